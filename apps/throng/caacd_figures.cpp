@@ -84,9 +84,9 @@ Chart figure_11(const Study& study, int32_t seeds) {
     }
   }
   chart.lines.push_back(bound(study, "[CAACD] figure 11", &caacd::Reported::others));
-  chart.most = 3 * most;
+  chart.max = 3 * most;
   const bool cut = std::ranges::any_of(chart.lines, [&](const ChartLine& line) {
-    return std::ranges::max(line.values) > chart.most;
+    return std::ranges::max(line.values) > chart.max;
   });
   if (cut) chart.notes.push_back("Sets of little force and much speed leave the chart at the top.");
   return chart;

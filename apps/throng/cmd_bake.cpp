@@ -85,7 +85,7 @@ Result<std::vector<NodeOffMeshLink>> read_off_mesh_links(const std::string& name
     off_mesh_link.avatar_class = static_cast<int32_t>(of - classes.begin());
     if (entry.contains("both_ways")) {
       if (!entry["both_ways"].is_boolean()) return bad("both_ways must be true or false");
-      off_mesh_link.both_ways = entry["both_ways"].get<bool>();
+      off_mesh_link.two_way = entry["both_ways"].get<bool>();
     }
     off_mesh_links.push_back(off_mesh_link);
   }

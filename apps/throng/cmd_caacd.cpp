@@ -122,8 +122,8 @@ Json study_json(const CaacdOptions& options, const Study& study, double seconds)
     };
     column("mean", &StudyCell::mean);
     column("deviation", &StudyCell::deviation);
-    column("least", &StudyCell::least);
-    column("most", &StudyCell::most);
+    column("least", &StudyCell::min_collisions);
+    column("most", &StudyCell::max_collisions);
     column("obstacles", &StudyCell::obstacle_mean);
     column("arrived", &StudyCell::arrived);
     column("waiting", &StudyCell::waiting);
@@ -137,7 +137,7 @@ Json study_json(const CaacdOptions& options, const Study& study, double seconds)
 }
 
 std::string cell_text(const StudyCell& cell) {
-  return fmt::format("{:.1f} +- {:.1f} ({})", cell.mean, cell.deviation, cell.most);
+  return fmt::format("{:.1f} +- {:.1f} ({})", cell.mean, cell.deviation, cell.max_collisions);
 }
 
 // A column a set: what the paper's figures show.

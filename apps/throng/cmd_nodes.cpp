@@ -34,7 +34,7 @@ int print_nodes(Session& session, const std::string& path) {
       summary.zones, human_bytes(summary.bytes), static_cast<double>(summary.bytes) / count);
   json["classes"] = Json::array();
   for (size_t c = 0; c < summary.classes.size(); ++c) {
-    const auto reach = nodes->reach(static_cast<int32_t>(c));
+    const auto reach = nodes->components(static_cast<int32_t>(c));
     double area = 0;
     uint64_t stands = 0;
     for (const NodeComponent& part : reach) {

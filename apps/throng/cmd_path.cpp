@@ -277,7 +277,7 @@ int fly(Session& session, const PathOptions& options, const World& world, int32_
   const auto start = std::chrono::steady_clock::now();
   finder->find({.from = *from,
                 .to = *to,
-                .reach = options.reach,
+                .vertical_tolerance = options.reach,
                 .max_bytes = options.search_bytes,
                 .cancel = &session.context.cancel},
                found);
@@ -286,7 +286,7 @@ int fly(Session& session, const PathOptions& options, const World& world, int32_
   if (found.end == PathEnd::kNoPlace) {
     // Which end it is: a way from each to itself is told at once.
     for (const auto& [position, option] : {std::pair{*from, "--from"}, std::pair{*to, "--to"}}) {
-      finder->find({.from = position, .to = position, .reach = options.reach}, found);
+      finder->find({.from = position, .to = position, .vertical_tolerance = options.reach}, found);
       if (found.end != PathEnd::kNoPlace) continue;
       return fail(bad_end(options, position, option, "is no place to be now: a --block is there"));
     }
@@ -305,7 +305,7 @@ Json node_path_json(const PathOptions& options, const NodePath& path, const Node
   }
   for (const NodePathLink& link : path.links) {
     links.push_back(
-        {{"point", link.point}, {"kind", app::word_for(link.kind)}, {"leaps", link.leaps}});
+        {{"point", link.point}, {"kind", app::word_for(link.kind)}, {"leaps", link.over_hole}});
   }
   Json json = {{"world", options.world},
                {"class", options.avatar_class},
@@ -334,7 +334,7 @@ Json node_path_json(const PathOptions& options, const NodePath& path, const Node
 }
 
 const char* word_of_gap(const NodePathLink& link) {
-  return link.leaps && link.kind != LinkKind::kDrop ? " over a gap" : "";
+  return link.over_hole && link.kind != LinkKind::kDrop ? " over a gap" : "";
 }
 
 std::string node_path_text(const PathOptions& options, const NodePath& path, const NodePlace& to,

@@ -126,7 +126,7 @@ Json frame_json(const RecordingInfo& info, const RecordedFrame& frame) {
                        {"position", numbers(frame.positions[i])},
                        {"radius", frame.radii[i]},
                        {"heading", {frame.headings[i].x, frame.headings[i].z}}});
-    if (!frame.ups.empty()) avatars.back()["up"] = numbers(frame.ups[i]);
+    if (!frame.up_vectors.empty()) avatars.back()["up"] = numbers(frame.up_vectors[i]);
   }
   return {{"time", frame.time},
           {"step", frame.step},

@@ -62,7 +62,7 @@ Json result_json(const Item& item, const ValidationResult& result) {
   json["overlaps"] = result.faults.overlaps;
   json["wall_entries"] = result.faults.wall_entries;
   json["obstacle_entries"] = result.faults.obstacle_entries;
-  json["looks"] = result.looks;
+  json["looks"] = result.checks;
   json["simulated"] = result.simulated;
   json["seconds"] = result.seconds;
   return json;
@@ -83,7 +83,7 @@ std::string result_text(const ValidationTest& test, const ValidationResult& resu
   }
   text +=
       fmt::format("  {} overlaps, {} wall entries in {} looks; {:.0f} s simulated in {:.1f} s\n",
-                  result.faults.overlaps, result.faults.wall_entries, result.looks,
+                  result.faults.overlaps, result.faults.wall_entries, result.checks,
                   result.simulated, result.seconds);
   return text + (result.passed() ? "  passed\n" : "  FAILED\n");
 }

@@ -231,7 +231,7 @@ int verify_all_nodes(Session& session, VerifyOptions& options, const std::vector
     list.push_back({{"class", name},
                     {"places", report->places},
                     {"arcs", report->arcs},
-                    {"leaps", report->leaps},
+                    {"leaps", report->hole_links},
                     {"entered", report->entered},
                     {"unsupported", report->unsupported},
                     {"steeper", report->steeper},
@@ -241,7 +241,7 @@ int verify_all_nodes(Session& session, VerifyOptions& options, const std::vector
     text += fmt::format(
         "{}: {} places on nodes, {} arcs, {} leaps in {:.1f} s\n"
         "  entered {}, unsupported {}, steeper {}, lower {}, one way {}\n",
-        name, report->places, report->arcs, report->leaps, report->seconds, report->entered,
+        name, report->places, report->arcs, report->hole_links, report->seconds, report->entered,
         report->unsupported, report->steeper, report->lower, report->one_way);
     text += told_faults(report->faults);
   }
@@ -295,7 +295,7 @@ WaysReport told(const std::string& name, const NodePathReport& report) {
                  {"blocked", report.blocked},
                  {"legs", report.segments},
                  {"links", kinds},
-                 {"leaps", report.leaps},
+                 {"leaps", report.hole_links},
                  {"poses", report.poses}},
                 report),
       fmt::format(
@@ -303,7 +303,7 @@ WaysReport told(const std::string& name, const NodePathReport& report) {
           "put up; {} legs, {} leaps, {} bodies on them in {:.1f} s\n"
           "  entered {}, unsupported {}, torn {}, against the parts {}\n",
           name, report.pairs, report.reached, report.parted, report.blocked, report.segments,
-          report.leaps, report.poses, report.seconds, report.entered, report.unsupported,
+          report.hole_links, report.poses, report.seconds, report.entered, report.unsupported,
           report.torn, report.disagree) +
           told_faults(report.faults),
       passes(report)};

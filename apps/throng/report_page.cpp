@@ -69,7 +69,7 @@ Chart flow_chart(const ReplaySummary& summary, const SummaryConfig& config, size
   // Room for the legend.
   const double most =
       std::max(*std::ranges::max_element(forth.values), *std::ranges::max_element(back.values));
-  chart.most = most > 0 ? most * 1.25 : 1;
+  chart.max = most > 0 ? most * 1.25 : 1;
   chart.lines = {std::move(forth), std::move(back)};
   return chart;
 }
@@ -172,14 +172,14 @@ Result<std::vector<ReportPicture>> draw_report(const ReplaySummary& summary,
     density.title = "Density";
     density.notes = {where, "Mean over the whole time"};
     density.unit = "persons / m2";
-    density.most = dense;
+    density.max = dense;
     take(fmt::format("density_{}", m), "How many stood on a square metre, in the mean over time.",
          draw_heat_map(density));
     HeatMap waiting = heat_map(map, map.waiting);
     waiting.title = "Waiting";
     waiting.notes = {where, fmt::format("Time of all who were slower than {:g} m/s", config.slow)};
     waiting.unit = "s / m2";
-    waiting.most = slow;
+    waiting.max = slow;
     take(fmt::format("waiting_{}", m), "How long people waited on a square metre, all together.",
          draw_heat_map(waiting));
   }

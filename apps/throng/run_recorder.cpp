@@ -27,7 +27,7 @@ Result<void> RunRecorder::add(uint64_t step, uint64_t state_hash,
   frame_.step = step;
   frame_.state_hash = state_hash;
   frame_.resize(avatars.size());
-  frame_.ups.resize(leans_ ? avatars.size() : 0);
+  frame_.up_vectors.resize(leans_ ? avatars.size() : 0);
   for (size_t i = 0; i < avatars.size(); ++i) {
     const AvatarState& state = avatars[i];
     frame_.ids[i] = state.id;
@@ -35,7 +35,7 @@ Result<void> RunRecorder::add(uint64_t step, uint64_t state_hash,
     frame_.positions[i] = state.position;
     frame_.radii[i] = static_cast<float>(state.radius);
     frame_.headings[i] = {static_cast<float>(state.heading_x), static_cast<float>(state.heading_z)};
-    if (leans_) frame_.ups[i] = state.up;
+    if (leans_) frame_.up_vectors[i] = state.up;
   }
   return recorder_->append(frame_.view());
 }

@@ -182,7 +182,7 @@ int draw_scene_picture(Session& session, const World& world, const ScenePictureO
     crowds.push_back({.atlas = std::get<0>(key),
                       .clip = std::get<1>(key),
                       .avatars = {g.x, g.y, g.z, g.heading, g.phase, g.look},
-                      .ups = g.ups});
+                      .up_vectors = g.ups});
   }
   DrawingReport report;
   const Result<Image> image = drawing->draw(crowds, config, &report);

@@ -121,7 +121,7 @@ Result<void> export_sqlite(Replay& replay, const std::string& wkt, const std::st
       sqlite3_bind_double(row, 3, p.x);
       sqlite3_bind_double(row, 4, p.z);
       Vec3d ahead{frame.headings[i].x, 0, frame.headings[i].z};
-      if (!frame.ups.empty()) ahead = leaned(ahead, frame.ups[i]);
+      if (!frame.up_vectors.empty()) ahead = leaned(ahead, frame.up_vectors[i]);
       sqlite3_bind_double(row, 5, ahead.x);
       sqlite3_bind_double(row, 6, ahead.z);
       db.step(row);

@@ -51,7 +51,7 @@ Json run(const Options& o) {
   auto crowd = Crowd::create(*world, {.dt = o.dt,
                                       .seed = o.seed,
                                       .workers = o.threads,
-                                      .ways = Routing::kStraight,
+                                      .routing = Routing::kStraight,
                                       .low_detail_steps = o.low_detail_steps,
                                       .low_detail_reaction = o.low_detail_reaction});
   if (!crowd) return fail(crowd.error());

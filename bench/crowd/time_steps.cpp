@@ -37,8 +37,8 @@ nlohmann::ordered_json time_steps(Crowd& crowd, const StepTiming& timing,
     seconds.push_back(r.seconds_total);
     progress += r.progress;
     sum.contested += r.contested;
-    sum.far += r.far;
-    sum.held += r.held;
+    sum.low_detail += r.low_detail;
+    sum.skipped += r.skipped;
     sum.seconds_plan += r.seconds_plan;
     sum.seconds_sort += r.seconds_sort;
     sum.seconds_steer += r.seconds_steer;
@@ -54,15 +54,15 @@ nlohmann::ordered_json time_steps(Crowd& crowd, const StepTiming& timing,
           {"ns_commit", sum.seconds_commit * all},
           {"ns_settle", sum.seconds_settle * all},
           {"contested", static_cast<double>(sum.contested) / avatars / steps},
-          {"far", static_cast<double>(sum.far) / avatars / steps},
-          {"held", static_cast<double>(sum.held) / avatars / steps},
+          {"far", static_cast<double>(sum.low_detail) / avatars / steps},
+          {"held", static_cast<double>(sum.skipped) / avatars / steps},
           {"progress", progress / steps},
           {"avatar_steps", (timing.warm + timing.steps) * crowd.size()},
           {"checked_avatar_steps", checks * crowd.size()},
           {"overlaps", found.overlaps},
           {"wall_entries", found.wall_entries},
           {"bytes_an_avatar", static_cast<double>(crowd.memory().avatars) / avatars},
-          {"bytes_of_ways", static_cast<double>(crowd.memory().ways) / avatars},
+          {"bytes_of_ways", static_cast<double>(crowd.memory().paths) / avatars},
           {"state_hash", crowd.state_hash()}};
 }
 

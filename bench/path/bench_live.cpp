@@ -99,7 +99,7 @@ Json fields(const World& world, double most) {
   if (!ground) stop(ground.error().message);
   const std::vector<Place> goals{world.random_place(0, 43, 0)};
   Context context;
-  auto flow = FlowField::make(*ground, goals, {.most = most}, context);
+  auto flow = FlowField::make(*ground, goals, {.max_distance = most}, context);
   if (!flow) stop(flow.error().message);
   const FlowSummary summary = flow->summary();
   constexpr uint64_t kPlaces = 20000;

@@ -10,43 +10,48 @@
 #include "throng/base.h"
 #include "throng/result.h"
 
-/// Avatar classes: the bodies that one bake serves together.
+/// Avatar classes: the kinds of bodies that a world is baked for.
 namespace throng {
 
-/// A body as an upright cylinder, and what it can climb. At most kMaxAvatarClasses in one world.
+/// An avatar class: the body, an upright cylinder, and its abilities. A world has at most
+/// kMaxAvatarClasses.
 struct AvatarClass {
   std::string name = "adult";
   double height = 1.75;  ///< [m, 0.1 to 30]
   double radius = 0.25;  ///< [m, 0.01 to 5]
-  double step = 0.4;  ///< Largest climb and drop between neighbouring places. [m, 0 to height / 2]
-  double max_slope = 45;  ///< Steepest surface it stands on upright. [degrees, 0 to 89]
-  double speed = 1.34;    ///< Preferred walking speed. [m/s, > 0]
-  /// Steepest surface of a curved patch that it climbs, its axis along the normal: 90 is a wall,
+  /// The step height: largest climb or descent between neighbouring places. [m, 0 to height / 2]
+  double step = 0.4;
+  double max_slope = 45;  ///< Steepest surface on which it stands upright. [degrees, 0 to 89]
+  double speed = 1.34;    ///< Desired speed. [m/s, > 0]
+  /// Steepest surface of a patch that it climbs, its axis along the surface's normal: 90 is a wall,
   /// 180 a ceiling. 0: it does not climb. [degrees, 0 to 180]
   double climb_slope = 0;
-  /// Deepest that it lets itself down over an edge, one way: a longer way down than its step that
-  /// ways over nodes may take. 0: it does not. [m, 0 to 1000]
+  /// Largest descent over an edge by a drop link, which is one-way; only paths over nodes use
+  /// these. 0: none. [m, 0 to 1000]
   double max_drop = 0;
-  bool flies = false;  ///< Moves through the air, too.
+  bool flies = false;  ///< It also moves through the air.
 };
 
+/// Maximum number of classes of a world.
 inline constexpr int32_t kMaxAvatarClasses = 16;
 
-/// Do only nodes ([Nodes]) know all the ways of a class that are not through the air?
+/// Does the class climb or drop, so that paths over level tiles lack some of its links and it needs
+/// Nodes?
 [[nodiscard]] inline bool goes_over_nodes(const AvatarClass& avatar) {
   return avatar.climb_slope > 0 || avatar.max_drop > 0;
 }
 
-/// How high above the feet matter may reach before it stops a body: max(step, radius * tan(slope)).
+/// Height above the feet from which a body's cylinder begins, so that lower solids do not stop it:
+/// max(step, radius * tan(max_slope)). [m]
 [[nodiscard]] THRONG_API double body_bottom(const AvatarClass& avatar);
 
-/// adult, child (1.10 m), wheelchair (0.02 m step, 6 % slope), giant (3 m).
+/// The default classes: adult, child (1.10 m), wheelchair (0.02 m step, 6 % slope), giant (3 m).
 [[nodiscard]] THRONG_API std::vector<AvatarClass> default_classes();
-/// An adult with wings, radius 0.4 m: not one of the default classes.
+/// An adult that flies, radius 0.4 m. It is none of the default classes.
 [[nodiscard]] THRONG_API AvatarClass flyer_class();
 
 /// Reads classes from a TOML or JSON file: `[[class]] name = "adult" height = 1.75 ...`; missing
-/// values take AvatarClass's defaults. Fails with kBadFile and the line, key and limit.
+/// values are those of AvatarClass. Fails with kBadFile and the line, key and limit.
 [[nodiscard]] THRONG_API Result<std::vector<AvatarClass>> load_classes(const std::string& path);
 
 /// Checks limits, names (non-empty, distinct) and count. Fails with kBadConfig and the class.

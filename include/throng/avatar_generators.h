@@ -14,46 +14,47 @@
 #include "throng/result.h"
 #include "throng/world.h"
 
-/// A populated world around an eye, of which only what can be seen, and a band around it, is
-/// simulated. Source: [TC00] 5, avatar generators.
+/// Avatar generators: keep a crowd populated around a viewer's eye. Only what the eye sees, and a
+/// band around it, is simulated. Source: [TC00] 5.
 namespace throng {
 
+/// Settings for AvatarGenerators::make.
 struct GeneratorConfig {
-  Place home = {};  ///< People are where one can walk to from here.
+  Place home = {};  ///< Only ground that the class can reach from here is populated.
   int32_t avatar_class = 0;
-  double density = 0.05;  ///< Avatars on a square metre of that ground. [1/m^2, > 0, <= 1]
-  /// Instead of a density, if not 0: so many on all of that ground, at most one on each square
-  /// metre. [>= 0]
+  double density = 0.05;  ///< Avatars per square metre of that ground. [1/m^2, > 0, <= 1]
+  /// If not 0, in place of `density`: number of avatars on all of that ground, at most one per
+  /// square metre. [>= 0]
   double people = 0;
-  double reach = 100;         ///< Ground further from the eye is left alone. [m, > 0]
-  double band = 16;           ///< How far unseen ground beside what is seen is populated. [m, > 0]
-  int32_t steps_a_look = 10;  ///< Between two questions of what can be seen. [steps, > 0]
+  double radius = 100;           ///< Ground farther from the eye is not populated. [m, > 0]
+  double band = 16;              ///< Width of the unseen band beside what is seen. [m, > 0]
+  int32_t steps_per_query = 10;  ///< Steps between two queries of what is seen. [steps, > 0]
   uint64_t seed = 1;
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
 };
 
-/// Whether anything inside a box can be seen from where the eye is. May say yes of what cannot:
-/// then less is hidden, and more is simulated. Who says no of what can be seen lets people appear.
+/// Returns whether anything inside a box can be seen from the eye. It may return true for a hidden
+/// box: then more is simulated. If it returns false for a visible box, avatars appear in view.
 using Sight = std::function<bool(const Box3d&)>;
 
-/// How things stand after an update.
+/// State after an update.
 struct GeneratorReport {
-  double seen_area = 0;       ///< Of ground cells of which something can be seen. [m^2]
-  double band_area = 0;       ///< Of those around them. [m^2]
-  uint32_t seen_avatars = 0;  ///< On the first; wanted: density times area.
+  double seen_area = 0;       ///< Area of the ground cells that are at least partly seen. [m^2]
+  double band_area = 0;       ///< Area of the ground cells of the band. [m^2]
+  uint32_t seen_avatars = 0;  ///< Avatars on seen cells. The target is density times area.
   uint32_t band_avatars = 0;
-  uint32_t added = 0;    ///< In this update, none of them where it could be seen.
+  uint32_t added = 0;    ///< In this update, none where it could be seen.
   uint32_t removed = 0;  ///< Likewise.
 };
 
 /// Keeps a crowd at a density in what an eye can see. Ground cells are level tiles. On cells of the
-/// band, whatever is missing is added and what is too much is removed, out of sight; who arrives
-/// gets another goal, among the seen cells the rather the fewer are there. Movable, not copyable;
-/// the same calls give the same crowd on any machine.
+/// band, avatars are added or removed out of sight to keep the density; an avatar that arrives gets
+/// a new goal, preferably on seen cells with few avatars. Movable, not copyable. The same calls
+/// give the same crowd on any machine.
 class THRONG_API AvatarGenerators {
  public:
-  /// Reads every zone once. Fails with kBadConfig, kNotFound (class), kBadInput (home is no place
-  /// of the class), and as Graph::make does.
+  /// Makes the generators. Reads every zone once. Fails with kBadConfig, kNotFound (class),
+  /// kBadInput (home is no place of the class), and as Graph::make does.
   [[nodiscard]] static Result<AvatarGenerators> make(const World& world,
                                                      const GeneratorConfig& config,
                                                      Context& context);
@@ -61,18 +62,18 @@ class THRONG_API AvatarGenerators {
   AvatarGenerators& operator=(AvatarGenerators&&) noexcept;
   ~AvatarGenerators();
 
-  /// At the beginning, and when the eye has jumped: removes all of its avatars and populates what
-  /// is seen and the band around it at once. Fails as Crowd::add does.
+  /// Removes all own avatars and populates what is seen and the band at once: call it first, and
+  /// when the eye has jumped. Fails as Crowd::add does.
   [[nodiscard]] Result<GeneratorReport> populate(Crowd& crowd, Vec3d eye, const Sight& can_see,
                                                  Context& context);
-  /// After each step of the crowd. The crowd must be the same one each time, of the same world;
-  /// others' avatars in it are left alone. Fails as Crowd::add does. Time: linear in its avatars
-  /// and in the cells within reach.
+  /// Adds and removes avatars: call it after each step of the crowd. The crowd must be the same
+  /// each time, of the same world; avatars that others added are not touched. Fails as Crowd::add
+  /// does. Time: linear in its avatars and in the cells within `radius`.
   [[nodiscard]] Result<GeneratorReport> update(Crowd& crowd, Vec3d eye, const Sight& can_see,
                                                Context& context);
-  /// Whom they have added, and not removed.
+  /// The avatars that the generators added and did not remove.
   [[nodiscard]] std::span<const AvatarId> members() const;
-  /// Area of all ground that one can walk to from home. [m^2]
+  /// Area of all ground that the class can reach from home. [m^2]
   [[nodiscard]] double area() const;
 
  private:

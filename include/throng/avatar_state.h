@@ -6,28 +6,30 @@
 
 #include "throng/math.h"
 
-/// What crowds show of their avatars, and what a check of them finds.
+/// The state of an avatar that a crowd reports, and the result of its self-check.
 namespace throng {
 
-/// What an independent look at the present positions found. All zero, always.
+/// Faults found by an independent check of the present positions. All must be 0.
 struct CrowdCheck {
-  uint64_t wall_entries = 0;      ///< Avatars on a cell that their class may not stand on.
+  uint64_t wall_entries = 0;      ///< Avatars on a cell where their class is not legal.
   uint64_t overlaps = 0;          ///< Pairs whose discs and heights both overlap.
-  uint64_t obstacle_entries = 0;  ///< Pairs of an avatar and an obstacle that its body is in.
+  uint64_t obstacle_entries = 0;  ///< Pairs of an avatar and an obstacle that overlap.
 };
 
-/// Read-back of one avatar.
+/// The state of one avatar.
 struct AvatarState {
   uint32_t id = 0;
   int32_t avatar_class = 0;
   Vec3d position;     ///< Y at the feet. [m]
   double radius = 0;  ///< Of the body. [m]
-  /// Unit vector of the walk; of who leans, before he leans: lean.h turns it to where he goes.
+  /// Unit vector in the ground plane. For an avatar that leans: before the lean; leaned() of lean.h
+  /// gives the direction of its walk.
   double heading_x = 0;
   double heading_z = 0;
-  bool flies = false;   ///< It is in the air, or on its way up or down.
-  bool climbs = false;  ///< It goes over nodes.
-  Vec3d up{0, 1, 0};    ///< Along the body, from its feet; of who climbs the surface's normal.
+  bool flies = false;   ///< It is in the air, or in a take-off or landing.
+  bool climbs = false;  ///< It walks over nodes.
+  /// Unit vector along the body from the feet; for climbers the surface's normal.
+  Vec3d up{0, 1, 0};
 };
 
 }  // namespace throng

@@ -4,7 +4,7 @@
 
 #include <cassert>
 
-/// Export and assertion macros. Everything not marked THRONG_API is hidden.
+/// Macros for exports and assertions. Symbols without THRONG_API are hidden.
 #if defined(_WIN32) && defined(THRONG_SHARED)
 #ifdef THRONG_BUILDING
 #define THRONG_API __declspec(dllexport)
@@ -17,5 +17,6 @@
 #define THRONG_API
 #endif
 
-/// Misuse by the caller's code (never bad data: that is a Result). Checked in debug builds only.
+/// Asserts against misuse by the calling code (bad data gives a Result). Checked in debug builds
+/// only.
 #define THRONG_ASSERT(condition) assert(condition)

@@ -9,23 +9,24 @@
 #include "throng/base.h"
 #include "throng/result.h"
 
-/// Worlds that are given cell by cell, as the benchmarks of path search do, not as triangles.
+/// Worlds given by cells or voxels in place of triangles, as in the benchmarks of path search.
 namespace throng {
 
-/// Level ground, row by row. A cell is where a point may be, not matter that keeps a body off.
+/// Flat ground, row by row. A cell says where a point may be; it is no solid that keeps a body
+/// away.
 struct FlatCells {
   int32_t width = 0;              ///< Along x. [1 to 16000]
   int32_t depth = 0;              ///< Along z. [1 to 16000]
   std::vector<uint8_t> passable;  ///< width * depth: 1 where the point may be, else 0.
 };
 
-/// Cubes of matter in a box of width * height * depth cubes, along x, y (up) and z.
+/// Filled voxels of a box of width * height * depth voxels along x, y (up) and z.
 struct VoxelCells {
   int32_t width = 0, height = 0, depth = 0;  ///< [1 to 4096]
   struct Cube {
     int32_t x = 0, y = 0, z = 0;
   };
-  std::vector<Cube> filled;  ///< In any order; the same may be named again.
+  std::vector<Cube> filled;  ///< In any order; repetitions are allowed.
 };
 
 /// Reads a map of Moving AI's voxel benchmarks (`voxel X Y Z`, then a filled voxel a line); the

@@ -17,26 +17,30 @@
 /// Y is up; a figure faces +Z. Lengths are the file's own until an atlas is built.
 namespace throng {
 
-/// What a surface belongs to, so that a crowd can wear many colours. Told by the material's name.
+/// The part of the body that a surface belongs to, so that avatars of a crowd can have different
+/// colours. It follows from the material's name.
 enum class BodyPart : uint8_t { kOther, kSkin, kHair, kShirt, kPants, kShoes };
+/// Number of BodyPart values.
 inline constexpr int32_t kBodyParts = 6;
 
-/// "Shirt", "suit_jacket" -> kShirt; "Socks" -> kShoes; a name that says nothing -> kOther.
+/// The body part that a material's name means: "Shirt", "suit_jacket" -> kShirt; "Socks" -> kShoes;
+/// any other name -> kOther.
 [[nodiscard]] THRONG_API BodyPart body_part_of(std::string_view material);
-/// "other", "skin", "hair", "shirt", "pants", "shoes".
+/// The name of a body part: "other", "skin", "hair", "shirt", "pants", "shoes".
 [[nodiscard]] THRONG_API const char* word_for(BodyPart part);
 
-/// A frame of reference that clips move. Parents come before their children.
+/// A joint of the skeleton: a frame of reference that clips move. Parents come before their
+/// children.
 struct Joint {
   std::string name;
   int32_t parent = -1;  ///< Index of an earlier joint, or -1.
-  Transform rest;       ///< Relative to the parent, where a clip says nothing.
+  Transform rest;       ///< Relative to the parent, where a clip has no keys.
 };
 
-/// A joint that vertices follow.
+/// A bone: a joint that vertices follow.
 struct Bone {
   int32_t joint = 0;
-  Transform inverse_bind;  ///< From the mesh, as it was modelled, to the joint.
+  Transform inverse_bind;  ///< From the mesh at rest to the joint.
 };
 
 /// The bones that a vertex follows; weights add up to 1, unused ones are 0.
@@ -45,7 +49,7 @@ struct Influence {
   std::array<float, 4> weight{};
 };
 
-/// Keys of one joint: times rise [s]; an empty array leaves that share of `rest` as it is.
+/// Keys of one joint. Times ascend [s]; an empty array leaves that part of `rest` as it is.
 struct JointTrack {
   int32_t joint = 0;
   std::vector<double> position_times, rotation_times, scale_times;
@@ -60,38 +64,41 @@ struct Clip {
   std::vector<JointTrack> tracks;
 };
 
+/// A material of a character.
 struct CharacterMaterial {
   std::string name;
   Vec3d colour;  ///< Red, green, blue as x, y, z; linear. [0 to 1]
   BodyPart part = BodyPart::kOther;
 };
 
-/// A character at rest. Triangle t has corners triangles[t] and materials[material[t]].
+/// A character at rest. Triangle t has the corners triangles[t] and the material
+/// materials[material[t]].
 struct Character {
   std::vector<Joint> joints;
   std::vector<Bone> bones;
   std::vector<Vec3d> positions;
-  std::vector<Vec3d> normals;         ///< One a position; unit length.
-  std::vector<Influence> influences;  ///< One a position.
+  std::vector<Vec3d> normals;         ///< One per position; unit length.
+  std::vector<Influence> influences;  ///< One per position.
   std::vector<std::array<uint32_t, 3>> triangles;
-  std::vector<uint8_t> material;  ///< One a triangle.
+  std::vector<uint8_t> material;  ///< One per triangle.
   std::vector<CharacterMaterial> materials;
   std::vector<Clip> clips;
 };
 
-/// Most bones that a character may have.
+/// Maximum number of bones of a character.
 inline constexpr size_t kMaxBones = 256;
 
-/// Reads glTF, GLB, FBX, DAE and whatever else assimp reads with a skeleton. Fails with kBadFile or
-/// kBadInput (no mesh, no skeleton, no clip, indices out of range), kLimit (bones). Never crashes.
+/// Reads a character from glTF, GLB, FBX, DAE or another format that assimp reads with a skeleton.
+/// Fails with kBadFile, kBadInput (no mesh, no skeleton, no clip, indices out of range) or kLimit
+/// (bones). Does not crash on any bytes.
 [[nodiscard]] THRONG_API Result<Character> load_character(const std::string& path,
                                                           Context& context);
 
-/// A figure of 1.75 m made by the program, with clips "Walk" and "Idle". Left and right are alike.
+/// A generated character of 1.75 m with the clips "Walk" and "Idle". Left and right are alike.
 [[nodiscard]] THRONG_API Character built_in_character();
 
-/// Index of the clip that a word names: a whole name, or its last word ("Walk" finds
-/// "Armature|Man_Walk"); case does not matter. Fails with kNotFound and the names to choose from.
+/// The index of the clip with a name: the whole name or its last word ("Walk" finds
+/// "Armature|Man_Walk"); case is ignored. Fails with kNotFound and the names of the clips.
 [[nodiscard]] THRONG_API Result<size_t> find_clip(const Character& character,
                                                   std::string_view word);
 
@@ -101,7 +108,7 @@ struct PosedMesh {
   std::vector<Vec3d> normals;  ///< Unit length.
 };
 
-/// Moves the mesh to `seconds` into a clip by linear blending of its bones; times outside the clip
+/// Poses the mesh at `seconds` into a clip by linear blending of its bones; times outside the clip
 /// wrap. Arrays of `out` are resized.
 THRONG_API void pose_character(const Character& character, size_t clip, double seconds,
                                PosedMesh& out);

@@ -10,32 +10,34 @@
 #include "throng/picture.h"
 #include "throng/result.h"
 
-/// Line charts as pictures, for tables of results.
+/// Line charts as pictures, for reports.
 namespace throng {
 
+/// How a line is drawn.
 enum class LineKind : uint8_t {
   kFaint,   ///< Thin and grey: one of many.
-  kPlain,   ///< In a colour of its own.
+  kPlain,   ///< In its own colour.
   kStrong,  ///< Twice as thick.
-  kDashed,  ///< A bound or what somebody else found.
+  kDashed,  ///< A bound, or a result from elsewhere.
 };
 
+/// A line of a chart.
 struct ChartLine {
-  std::string name = {};            ///< In the legend; lines without one are left out of it.
-  std::vector<double> values = {};  ///< One for each x of the chart. [finite, >= 0]
+  std::string name = {};            ///< Name in the legend; a line without one is not in it.
+  std::vector<double> values = {};  ///< One per x of the chart. [finite, >= 0]
   std::vector<double> spread =
       {};  ///< Drawn as a band of values +- spread; or empty. [finite, >= 0]
   LineKind kind = LineKind::kPlain;
 };
 
-/// Lines over a shared x; both axes linear, y from 0.
+/// A line chart: lines over a shared x; both axes are linear, y begins at 0.
 struct Chart {
   std::string title = {};
-  std::vector<std::string> notes = {};  ///< Under the title, each in one line.
+  std::vector<std::string> notes = {};  ///< Under the title, one line each.
   std::string x_title = {}, y_title = {};
   std::vector<double> x = {};  ///< [finite, ascending, at least 2]
   std::vector<ChartLine> lines = {};
-  double most = 0;       ///< Top of the y axis, 0: from the values. What lies above is cut off.
+  double max = 0;        ///< Top of the y axis; values above are cut off. 0: from the values.
   int32_t width = 1200;  ///< [px, 400 to 8000]
 };
 

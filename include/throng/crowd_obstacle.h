@@ -6,7 +6,7 @@
 
 #include "throng/prism.h"
 
-/// What is put up in a crowd while it runs: crates, barriers, doors, carts.
+/// Obstacles that are put up in a crowd while it runs: crates, barriers, doors, carts.
 namespace throng {
 
 /// Names an obstacle of a crowd; zero names none. An id is never given twice.
@@ -17,35 +17,35 @@ struct ObstacleId {
   friend bool operator==(ObstacleId, ObstacleId) = default;
 };
 
-/// What an obstacle is to those who look for their ways. A wall it is to everybody.
+/// How an obstacle affects paths. Avatars avoid both kinds as walls.
 enum class ObstacleKind : uint8_t {
-  kStatic,     ///< Ways lead around it: a crate, a door.
-  kKinematic,  ///< Ways do not know it: a cart, which is elsewhere by the time that one is there.
+  kStatic,  ///< Paths lead around it: a crate, a door.
+  /// Paths ignore it: a cart, which is elsewhere by the time that an avatar comes there.
+  kKinematic,
 };
 
-/// What an obstacle does that is to come up where avatars are.
+/// What happens when an obstacle is requested where avatars stand.
 enum class ObstaclePolicy : uint8_t {
   /// It closes: from the request on no avatar enters its volume, paths lead around it, and avatars
-  /// in it get out: on along their paths if these lead out soon, else the nearest way. It is up as
-  /// soon as no body is in it.
+  /// inside walk out: along their paths if these lead out soon, else by the shortest path. It comes
+  /// up as soon as no body is inside.
   kRefuseEntry,
-  /// It waits until its volume happens to be free; until then avatars go in and out.
+  /// It waits until no body is inside; until then avatars walk in and out.
   kWait,
 };
 
-/// An obstacle as it is now.
+/// The present state of an obstacle.
 struct ObstacleState {
-  Prism prism;         ///< Where it is, or would be.
-  bool is_up = false;  ///< It is in the way of those who walk.
-  bool waits =
-      false;  ///< It is not yet where, or what, it was asked to be: avatars are in its way.
+  Prism prism;         ///< Where it is, or will be.
+  bool is_up = false;  ///< It blocks avatars.
+  bool waits = false;  ///< It was requested to come up or to move, and waits for avatars to leave.
   ObstacleKind kind = ObstacleKind::kStatic;
   ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry;
-  /// When it was last asked to be up, in the crowd's time: steps times dt; below 0: never, or it
-  /// was asked to be down since. [s]
+  /// When it was last requested, in the crowd's time (steps times dt). Below 0: never, or switched
+  /// off since. [s]
   double asked_at = -1;
   double up_at = -1;  ///< When it came up; below 0: it is not up. [s]
-  /// In its way when this was last looked at: when it was asked for, and as each step begins.
+  /// Avatars inside, counted at the request and at the beginning of each step.
   uint32_t occupants = 0;
 };
 

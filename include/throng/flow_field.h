@@ -14,27 +14,30 @@
 #include "throng/result.h"
 #include "throng/world.h"
 
-/// How far it is to the nearest of some goals, from everywhere: one search for all who share them.
+/// Flow fields: the distance to the nearest of some goals from everywhere, by one search for all
+/// avatars that share these goals.
 namespace throng {
 
+/// Settings for FlowField::make.
 struct FlowConfig {
-  double most = std::numeric_limits<double>::infinity();  ///< Costs to look up to. [> 0, m]
+  /// Largest distance that is searched. [> 0, m]
+  double max_distance = std::numeric_limits<double>::infinity();
 };
 
+/// Sizes of a flow field.
 struct FlowSummary {
-  uint64_t points = 0;  ///< Of borders of rectangles that the goals were seen from.
+  uint64_t points = 0;  ///< Points on borders of rectangles that the search reached from the goals.
   uint64_t bytes = 0;
   double seconds = 0;  ///< To make it.
 };
 
-/// Distances to goals over the points of borders of rectangles, as LiveGround searches them. It
-/// shows the ground as it was when the field was made: whoever changes the ground makes another.
-/// Jumps are left out.
-/// Each copy has its own memory for walking; give every thread one.
+/// Distances to goals over points on the borders of rectangles, as LiveGround searches them. It
+/// describes the ground at the time when it was made; if the ground changes, make another one.
+/// Off-mesh links are ignored. Each copy has its own memory for queries; give every thread one.
 class THRONG_API FlowField {
  public:
-  /// Fails with kBadInput (no goal is a place of the class) or kCancelled. Goals that are no places
-  /// are left out.
+  /// Makes a field by one Dijkstra search. Goals that are no places of the class are ignored. Fails
+  /// with kBadInput (no goal is left) or kCancelled.
   [[nodiscard]] static Result<FlowField> make(const LiveGround& ground,
                                               std::span<const Place> goals,
                                               const FlowConfig& config, Context& context);
@@ -44,14 +47,14 @@ class THRONG_API FlowField {
   FlowField& operator=(FlowField&&) noexcept;
   ~FlowField();
 
-  /// Cost of the way to the nearest goal, as it goes over the points: in the mean 1 to 2 % above
-  /// the least. Infinite where none leads there, or none within `most`. [m]
+  /// Cost of the path to the nearest goal over the points: on average 1 to 2 % above the minimum.
+  /// Infinite if no path leads there, or none within `max_distance`. [m]
   [[nodiscard]] double distance(const Place& place);
-  /// Where to walk to in a straight line, to come nearer to the goal: the farthest point of the way
-  /// that such a line reaches. The goal itself at last; nowhere if no way leads there.
+  /// The next local target: the farthest point of the path to the nearest goal to which a straight
+  /// line leads. At last the goal itself; nowhere if no path leads there.
   [[nodiscard]] Place next(const Place& place);
-  /// The whole way, drawn straight.
-  void way(const Place& place, Path& path);
+  /// Finds the whole path to the nearest goal, pulled taut.
+  void find_path(const Place& place, Path& path);
 
   [[nodiscard]] FlowSummary summary() const;
 

@@ -11,6 +11,7 @@
 /// Small vectors in metres. Y is up, right-handed.
 namespace throng {
 
+/// A point or vector.
 struct Vec3d {
   double x = 0, y = 0, z = 0;
   friend bool operator==(const Vec3d&, const Vec3d&) = default;
@@ -25,7 +26,7 @@ inline Vec3d cross(Vec3d a, Vec3d b) {
 }
 inline double length(Vec3d a) { return std::sqrt(dot(a, a)); }
 
-/// Axis-aligned box; empty until a point is added.
+/// An axis-aligned box; empty until a point is added.
 struct Box3d {
   Vec3d min{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
             std::numeric_limits<double>::infinity()};
@@ -38,7 +39,7 @@ struct Box3d {
   }
 };
 
-/// Affine map, row-major 3 x 4: out = m[0..2] * in + m[3] per row.
+/// An affine map, row-major 3 x 4: out = m[r][0..2] * in + m[r][3] in row r.
 struct Transform {
   std::array<std::array<double, 4>, 3> m{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
   [[nodiscard]] Vec3d operator()(Vec3d p) const {

@@ -7,7 +7,7 @@
 
 namespace throng {
 
-/// Calls visit(s, t, count) for each run of cells in a row of a ragged node (NodeInfo::cells,
+/// Calls visit(s, t, count) for each run of cells in a row of a partial node (NodeInfo::cells,
 /// Nodes::partial_cells): `count` cells along s from (s, t) of its block of 8 x 8 on.
 template <class Visit>
 void for_partial_runs(uint64_t cells, Visit visit) {

@@ -9,7 +9,7 @@
 #include "throng/math.h"
 #include "throng/result.h"
 
-/// A simple volume for marking things.
+/// Prisms: simple volumes for obstacles and areas.
 namespace throng {
 
 /// A vertical prism over a convex polygon: a crate, a barrier, a door leaf, a marked zone.
@@ -20,20 +20,21 @@ struct Prism {
   [[nodiscard]] static Prism box(Vec3d low, Vec3d high) {
     return {{{low.x, low.z}, {high.x, low.z}, {high.x, high.z}, {low.x, high.z}}, low.y, high.y};
   }
-  /// Is (x, z) over or under it, its border included? [m]
+  /// Is (x, z) inside its polygon, border included? [m]
   [[nodiscard]] THRONG_API bool covers(double x, double z) const;
-  /// Do feet stand in it that are at a height? [m]
+  /// Is this height of feet within the prism's, up to kFeet? [m]
   [[nodiscard]] bool reaches(double y) const { return y >= low - kFeet && y <= high + kFeet; }
-  /// Does somebody stand in it whose feet are there?
+  /// Does an avatar with these feet stand in it?
   [[nodiscard]] bool holds(Vec3d feet) const { return reaches(feet.y) && covers(feet.x, feet.z); }
-  static constexpr double kFeet = 0.05;  ///< [m] Heights of feet and floors differ by rounding.
-  /// Around an upright cylinder: `middle` is that of its bottom; with 16 corners it reaches 2 % of
-  /// the radius beyond. [m, radius > 0, height > 0, corners 3 to 64]
+  /// Tolerance: heights of feet and floors differ by rounding. [m]
+  static constexpr double kFeet = 0.05;
+  /// A prism around an upright cylinder: `middle` is that of its bottom; with 16 corners it is 2 %
+  /// of the radius larger. [m, radius > 0, height > 0, corners 3 to 64]
   [[nodiscard]] THRONG_API static Prism circle(Vec3d middle, double radius, double height,
                                                int corners = 16);
 };
 
-/// Fails with kBadInput and what is wrong unless the prism is as it says.
+/// Checks that a prism is convex and within its limits. Fails with kBadInput and the reason.
 [[nodiscard]] THRONG_API Result<void> check_prism(const Prism& prism);
 
 }  // namespace throng

@@ -9,28 +9,28 @@
 
 #include "throng/base.h"
 
-/// How the library reports what went wrong with data, files and limits.
+/// Results and errors: how the library reports failures of data, files and limits.
 namespace throng {
 
-/// What kind of failure an Error is. The message says the rest.
+/// The kind of a failure. The message has the details.
 enum class Errc {
   kOk = 0,
   kBadConfig,  ///< A setting is out of its documented limits.
   kBadInput,   ///< A model, plan or table cannot be used as it is.
-  kBadFile,    ///< A file is missing, truncated, corrupt, foreign or of another version.
+  kBadFile,    ///< A file is missing, truncated, corrupt, of another format, world or version.
   kIo,         ///< The system refused to read or write.
-  kNotFound,   ///< The thing asked for is not there (class, level, place).
-  kLimit,      ///< More than fits; the message says how much fits.
-  kCancelled,  ///< The caller's Context asked to stop; nothing half-written is left.
+  kNotFound,   ///< The requested thing does not exist (class, level, place).
+  kLimit,      ///< More than a limit; the message says how much fits.
+  kCancelled,  ///< The caller's Context requested a stop; no partial result is left.
 };
 
-/// A failure as one sentence: file, place, what is wrong, what to do.
+/// A failure as one sentence: file, place, what is wrong, how to mend it.
 struct Error {
   Errc code = Errc::kOk;
   std::string message;
 };
 
-/// A value or an Error. Test it before use: `if (!r) return r.error();`
+/// A value or an Error. Test before use: `if (!r) return r.error();`
 template <class T>
 class [[nodiscard]] Result {
  public:

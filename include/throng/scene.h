@@ -18,55 +18,57 @@
 #include "throng/prism.h"
 #include "throng/result.h"
 
-/// A Scene is a triangle soup with an area kind per triangle: the only thing that a bake reads.
-/// Y is up, metres. Nothing is assumed of it: holes, overlaps, inverted normals are all welcome.
+/// Scenes: a triangle soup with an area kind per triangle, the only input of a bake. Y is up,
+/// metres. No requirements: holes, overlaps and inverted normals are allowed.
 namespace throng {
 
-/// What a surface is for. 2 to 63 are the user's own numbers, walkable like 1.
+/// The area kind of a surface. 2 to 63 are the user's own numbers, walkable like 1.
 using AreaKind = uint8_t;
-inline constexpr AreaKind kAreaBlocked = 0;   ///< Matter that nobody may stand on.
+inline constexpr AreaKind kAreaBlocked = 0;   ///< Solid on which no avatar may stand.
 inline constexpr AreaKind kAreaWalkable = 1;  ///< The default.
+/// The largest area kind.
 inline constexpr AreaKind kAreaLast = 63;
 inline constexpr AreaKind kAreaIgnored = 255;  ///< In a rule only: the triangles are dropped.
 
-/// Where a run of triangles came from: one mesh, material or node of a file.
+/// The origin of a run of triangles: one mesh, material or node of a file.
 struct ScenePart {
   std::string file;
   std::string node;
   std::string material;
   uint32_t first_triangle = 0;
   uint32_t triangle_count = 0;
-  uint32_t material1 = 0;  ///< Index into Scene::materials plus one; 0: nothing is known of it.
+  uint32_t material1 = 0;  ///< Index into Scene::materials plus one; 0: unknown.
 };
 
-/// What an import met and did. All zero for a clean model.
+/// Counts of faults that an import met. All zero for a clean model.
 struct SceneReport {
   uint64_t triangles_read = 0;
   uint64_t non_finite = 0;  ///< Triangles dropped: a vertex is NaN or infinite.
   uint64_t bad_index = 0;   ///< Triangles dropped: an index is out of range.
-  uint64_t degenerate = 0;  ///< Zero-area triangles: kept as lines and points of matter.
+  uint64_t degenerate = 0;  ///< Zero-area triangles: kept as solid lines and points.
   uint64_t duplicate = 0;   ///< Coincident triangles: harmless, counted.
   uint64_t ignored = 0;     ///< Triangles dropped by an `ignored` rule.
-  uint64_t spikes = 0;      ///< Triangles over 10 times longer than all others together need.
+  uint64_t spikes = 0;      ///< Triangles over 1 km and 10 times the extent of all others long.
   std::vector<std::string> warnings;  ///< Sentences: suspicious units, far-off parts ...
 };
 
-/// Owned triangle soup. Triangle t has corners positions[triangles[t][0..2]] and area[t].
+/// A triangle soup. Triangle t has corners positions[triangles[t][0..2]] and area[t].
 struct THRONG_API Scene {
   std::vector<Vec3d> positions;
   std::vector<std::array<uint32_t, 3>> triangles;
   std::vector<AreaKind> area;    ///< One per triangle.
   std::vector<ScenePart> parts;  ///< In order of triangles; may be empty.
   PatchSet patches;              ///< Curved ground; its triangles are among the above.
-  /// One per triangle, kNoPatch for those of no patch; empty where there are no patches.
+  /// One per triangle, kNoPatch for triangles of no patch; empty if there are no patches.
   std::vector<uint32_t> patch_of_triangle;
-  /// As PatchMesh has them: one per triangle, those of no patch hold nothing; and one per patch.
-  /// Both empty where nobody knows: then a patch's own triangles are taken for anybody's.
+  /// PatchMesh::parts, one per triangle (unused for triangles of no patch), and PatchMesh::off, one
+  /// per patch. Both are empty if unknown: then a patch's own triangles count as solids like any
+  /// others.
   std::vector<PatchPart> patch_part;
   std::vector<double> patch_off;
-  std::vector<Material> materials;  ///< Of the parts; empty where nobody asked for them.
+  std::vector<Material> materials;  ///< Of the parts; empty if they were not read.
   std::vector<Texture> textures;
-  /// One per triangle; empty where nothing has a texture.
+  /// One per triangle; empty if there are no textures.
   std::vector<TextureCorners> texture_corners;
   SceneReport report;
 
@@ -77,7 +79,7 @@ struct THRONG_API Scene {
   [[nodiscard]] Box3d bounds() const;
 };
 
-/// One file to read and how to place it. Unset options take the file format's own convention.
+/// A file to read, and its placement. Options that are not set follow the file format's convention.
 struct SceneSource {
   std::string path;
   std::optional<char> up;       ///< 'y' or 'z'.
@@ -93,42 +95,41 @@ struct AreaRule {
   AreaKind kind = kAreaWalkable;
 };
 
-/// Floors inside the prism get an area kind, whatever rules said; kAreaIgnored cuts them out. The
-/// last volume that holds a place wins.
+/// Gives floors inside a prism an area kind, after all rules; kAreaIgnored removes them. Where
+/// volumes overlap, the last one counts.
 struct AreaVolume {
   Prism prism;
   AreaKind kind = kAreaWalkable;
 };
 
-/// Whether to read what surfaces look like. The triangles are the same either way.
+/// Whether to read materials and textures. The triangles do not depend on it.
 enum class SceneLooks : uint8_t {
   kLeaveOut,
-  /// Colours and textures (PNG, JPEG, TGA, BMP), in the file or beside it. Those that cannot be
-  /// used are told in one warning a file, and their surfaces get plain colours; large ones are made
-  /// smaller, so that those of a file take 256 MiB at most. What has no material gets one by its
-  /// name, if that says what it is (roof, grass ...).
+  /// Reads colours and textures (PNG, JPEG, TGA, BMP), in the file or beside it. Those that cannot
+  /// be used give one warning per file, and their surfaces get plain colours; large ones are scaled
+  /// down, so that those of a file take 256 MiB at most. A surface without a material gets one by
+  /// its name, if the name has a meaning (roof, grass ...).
   kRead,
 };
 
-/// What to read and how: the content of a scene file.
+/// Sources and rules of a scene: the content of a scene file.
 struct SceneConfig {
   std::vector<SceneSource> sources;
   std::vector<AreaRule> rules;
   std::vector<AreaVolume> volumes;
-  double plan_height = 3.0;  ///< How high obstacles of 2D plans rise. [m, > 0]
-  double curve_tolerance =
-      0.02;  ///< Largest gap between a curved patch and its triangles. [m, > 0]
+  double plan_height = 3.0;       ///< Height of obstacles of 2D plans. [m, > 0]
+  double curve_tolerance = 0.02;  ///< Largest distance of a patch from its triangles. [m, > 0]
   SceneLooks looks = SceneLooks::kLeaveOut;
 };
 
 /// Reads all sources into one Scene. Bad triangles are dropped and counted; a file that cannot be
-/// used is refused with kBadFile or kBadInput and a sentence. Never crashes on any bytes.
-/// Formats by extension: obj gltf glb fbx ply stl dae ifc 3ds (assimp), city.json/json (CityJSON
-/// 1-2), gml (CityGML 2-3), bsp (Quake 3), wkt, geojson (2D plans), bpt, zonel, patches.json
-/// (curved patches). A folder stands for all its .zonel files; zones that meet are joined.
+/// used gives kBadFile or kBadInput and a sentence. Does not crash on any bytes. Formats by
+/// extension: obj gltf glb fbx ply stl dae ifc 3ds (assimp), city.json/json (CityJSON 1-2), gml
+/// (CityGML 2-3), bsp (Quake 3), wkt, geojson (2D plans), bpt, zonel, patches.json (curved
+/// patches). A folder means all its .zonel files; zones that meet are joined.
 [[nodiscard]] THRONG_API Result<Scene> load_scene(const SceneConfig& config, Context& context);
 
-/// Gives what lies inside a volume its kind: triangles that it cuts are cut in pieces. Fails with
+/// Gives all surfaces inside a volume its area kind; triangles that it cuts are divided. Fails with
 /// kBadInput: not a convex prism, or not an area kind.
 [[nodiscard]] THRONG_API Result<void> mark_volume(Scene& scene, const AreaVolume& volume);
 
@@ -136,7 +137,7 @@ struct SceneConfig {
 /// line and key.
 [[nodiscard]] THRONG_API Result<SceneConfig> load_scene_config(const std::string& path);
 
-/// A ring of (x, z) corners, first corner not repeated. [m]
+/// A ring of (x, z) corners; the first is not repeated. [m]
 using Ring = std::vector<std::array<double, 2>>;
 
 /// A polygon with holes in the ground plane.
@@ -145,9 +146,9 @@ struct Polygon {
   std::vector<Ring> holes;
 };
 
-/// A world without a 3D model: a flat ground and obstacles that rise from it.
+/// A plane world, without a 3D model: flat ground and obstacles that rise from it.
 struct PlaneConfig {
-  Polygon ground;  ///< Where one may walk.
+  Polygon ground;  ///< Walkable ground.
   std::vector<Polygon> obstacles;
   double ground_height = 0;      ///< [m]
   double obstacle_height = 3.0;  ///< [m, > 0]
@@ -156,11 +157,11 @@ struct PlaneConfig {
 /// Builds the triangles of a plane world. Fails with kBadInput and the polygon's index.
 [[nodiscard]] THRONG_API Result<Scene> make_plane_scene(const PlaneConfig& config);
 
-/// Writes a binary glTF with looks, one mesh per part. Nothing is left behind when it fails.
+/// Writes a binary glTF with materials, one mesh per part. Leaves no file if it fails.
 [[nodiscard]] THRONG_API Result<void> write_glb(const Scene& scene, const std::string& path);
 
 /// Writes a Wavefront OBJ: corners to a tenth of a millimetre at 100 km, a name and a material name
-/// a part, no material file. Nothing is left behind when it fails.
+/// per part, no material file. Leaves no file if it fails.
 [[nodiscard]] THRONG_API Result<void> write_obj(const Scene& scene, const std::string& path);
 
 }  // namespace throng

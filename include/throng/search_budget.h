@@ -5,10 +5,10 @@
 #include <atomic>
 #include <cstdint>
 
-/// When searches for ways stop without an answer.
+/// Limits after which a search for a path stops without a result.
 namespace throng {
 
-/// What a search had too little of.
+/// The part of a budget that a search exhausted.
 enum class SpentBudget : uint8_t {
   kNone,
   kNodes,      ///< SearchBudget::max_nodes.
@@ -16,39 +16,39 @@ enum class SpentBudget : uint8_t {
   kCancelled,  ///< SearchBudget::cancel was set.
 };
 
-/// How far a search may go before it gives up. A number of its own nodes is one.
+/// The budget of a search. A plain number converts to `max_nodes`.
 struct SearchBudget {
-  /// Enough for every path over worlds of cities and landscapes that was measured, and little
-  /// beside what a machine has. [bytes]
+  /// Enough for every measured path over cities and landscapes, and small beside a machine's
+  /// memory. [bytes]
   static constexpr uint64_t kDefaultBytes = uint64_t{256} << 20;
 
   // NOLINTNEXTLINE(google-explicit-constructor)
-  SearchBudget(uint64_t most = UINT64_MAX, const std::atomic<bool>* stop = nullptr,
+  SearchBudget(uint64_t nodes = UINT64_MAX, const std::atomic<bool>* stop = nullptr,
                uint64_t bytes = kDefaultBytes)
-      : max_nodes(most), cancel(stop), max_bytes(bytes) {}
+      : max_nodes(nodes), cancel(stop), max_bytes(bytes) {}
 
   uint64_t max_nodes;
-  /// Set from any thread to stop; looked at every 64 nodes. May be null.
+  /// Set from any thread to stop; read every 64 nodes. May be null.
   const std::atomic<bool>* cancel;
-  /// What one query may remember while it searches, beside what its finder holds of the world
-  /// (corners, zones, labels). Does not depend on what earlier queries left allocated, so that the
-  /// answer is the same on every machine. [bytes]
+  /// Limit of the memory of one query, beside what the finder holds of the world (corners, zones,
+  /// labels). It counts what the query uses, not what earlier queries allocated, so the result is
+  /// the same on every machine. [bytes]
   uint64_t max_bytes;
 
-  /// Asked with 1, 2, 3 ... before each node is looked at.
+  /// Is the budget exhausted? Call it with 1, 2, 3 ... before each node is expanded.
   [[nodiscard]] bool is_spent(uint64_t nodes) const {
     return nodes > max_nodes || (cancel != nullptr && nodes % 64 == 1 && *cancel);
   }
-  /// The same, with what the search remembers by now. [bytes]
+  /// The same, with the memory of the search so far. [bytes]
   [[nodiscard]] bool is_spent(uint64_t nodes, uint64_t bytes) const {
     return bytes > max_bytes || is_spent(nodes);
   }
-  /// Why a search gave up after so many nodes.
+  /// Which part a search exhausted that stopped after so many nodes.
   [[nodiscard]] SpentBudget spent(uint64_t nodes) const {
     if (nodes > max_nodes) return SpentBudget::kNodes;
     return cancel != nullptr && *cancel ? SpentBudget::kCancelled : SpentBudget::kMemory;
   }
-  /// What is left of it after so many nodes.
+  /// The budget that is left after so many nodes.
   [[nodiscard]] SearchBudget after(uint64_t nodes) const {
     SearchBudget left = *this;
     left.max_nodes = nodes < max_nodes ? max_nodes - nodes : 0;

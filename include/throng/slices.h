@@ -15,17 +15,19 @@
 /// Source: [ML06], algorithms 2 and 3, with the readings of docs/algorithms.md.
 namespace throng {
 
+/// Settings for slice_scene.
 struct SliceConfig {
-  double avatar_height = 1.75;  ///< The smallest avatar's. [m, > 0]
-  double resolution = 0.1;      ///< Vertical distance that may be lost over a head. [m, >= 0.001]
+  double avatar_height = 1.75;  ///< Of the smallest avatar. [m, > 0]
+  double resolution = 0.1;      ///< Largest loss of headroom. [m, >= 0.001]
   double cell = 0.1;            ///< Side of a cell. [m, >= 0.01]
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
 };
 
-/// One kept slice. Heights are on the world's grid of 1 mm.
+/// A slice that was kept. Heights are whole millimetres.
 struct Slice {
-  int32_t height = 0;            ///< Where the cut was taken. [mm]
-  std::vector<int32_t> surface;  ///< Highest surface below, per cell; the far plane if none. [mm]
+  int32_t height = 0;  ///< Height of the cut. [mm]
+  /// Highest surface below, per cell; the far plane if there is none. [mm]
+  std::vector<int32_t> surface;
 };
 
 /// All kept slices, highest first. Cell (x, z) is index z * width + x and covers
@@ -42,8 +44,8 @@ struct SliceSet {
   std::vector<Slice> kept;
 };
 
-/// Cuts a scene into slices by one sweep over columns of spans, filled once. Time: spans + cells x
-/// taken. Fails with kBadConfig, kBadInput (no triangles), kLimit (grid too large), kCancelled.
+/// Cuts a scene into slices by one sweep over columns of spans. Time: spans + cells x slices cut.
+/// Fails with kBadConfig, kBadInput (no triangles), kLimit (grid too large), kCancelled.
 [[nodiscard]] THRONG_API Result<SliceSet> slice_scene(const Scene& scene, const SliceConfig& config,
                                                       Context& context);
 

@@ -8,19 +8,20 @@
 
 #include "throng/base.h"
 
-/// Models of how avatars on foot avoid each other.
+/// Steering models: how avatars on foot avoid each other.
 namespace throng {
 
-/// Who decides at what velocity an avatar would walk. Whatever that is, where it comes to is
-/// settled as for all: nobody ever touches anybody, or enters a wall. docs/algorithms.md, "Models".
+/// The function that decides at which velocity an avatar would walk. Whatever the model, the moves
+/// pass the same tests: avatars never overlap and never enter a wall. docs/algorithms.md, "Models".
 enum class SteeringModel : uint8_t {
-  kSampled,      ///< "sampled": ours, velocities are tried and priced.
+  kSampled,      ///< "sampled": our own; velocities are sampled and their costs compared.
   kCurvilinear,  ///< "caacd": [CAACD] as printed, scaled to bodies and speeds.
   kSocialForce,  ///< "social-force": [HM95] as printed, walls included.
 };
 
-/// As in scenario files and on the command line.
+/// The name of a model in scenario files and on the command line.
 [[nodiscard]] THRONG_API const char* name_of(SteeringModel model);
+/// The model with a name, or none.
 [[nodiscard]] THRONG_API std::optional<SteeringModel> find_steering_model(std::string_view name);
 /// All names, "a, b or c", for messages.
 [[nodiscard]] THRONG_API const char* steering_model_names();

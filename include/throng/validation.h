@@ -14,12 +14,12 @@
 #include "throng/result.h"
 #include "throng/steering_model.h"
 
-/// Experiments with crowds whose outcome is known from real people or asked by a standard. Each
-/// runs on `Crowd` as anybody's program would, measures by a method that it states, and judges
-/// what it measured by a range.
+/// Validation: experiments with crowds whose outcome is known from real people or required by a
+/// standard. Each runs on the public `Crowd`, measures by a stated method, and judges the result by
+/// a range.
 namespace throng {
 
-/// What was measured, and between which bounds it passes.
+/// A measured value, and the bounds between which it passes.
 struct ValidationMeasure {
   std::string name;
   double value = 0;
@@ -27,7 +27,7 @@ struct ValidationMeasure {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 
-  /// Without a bound it is only reported.
+  /// Has it a bound? Without one the value is only reported.
   [[nodiscard]] bool is_judged() const {
     return low > -std::numeric_limits<double>::infinity() ||
            high < std::numeric_limits<double>::infinity();
@@ -43,33 +43,35 @@ struct ValidationChart {
 
 /// One test of the list.
 struct ValidationTest {
-  std::string name;    ///< What `run_validation` takes.
-  std::string title;   ///< What is tried.
+  std::string name;    ///< The name for run_validation.
+  std::string title;   ///< What is tested.
   std::string method;  ///< How it is measured, in sentences.
-  std::string source;  ///< Whose range it is: keys of docs/references.md.
+  std::string source;  ///< Source of the range: keys of docs/references.md.
 };
 
+/// Settings for run_validation and run_trial.
 struct ValidationConfig {
   uint64_t seed = 1;
   int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
-  bool brief = false;   ///< Fewer points and shorter runs, for a quick look.
-  /// Who steers the crowds; trials are steered as they say, unless this is another than ours.
+  bool brief = false;   ///< Fewer points and shorter runs.
+  /// The steering model of the crowds. Trials use their own, unless this is not the default.
   SteeringModel model = SteeringModel::kSampled;
 };
 
+/// The results of a test.
 struct ValidationResult {
   std::vector<ValidationMeasure> measures;
   std::vector<ValidationChart> charts;
-  CrowdCheck faults;     ///< Overlaps and wall entries, over all looks.
-  uint64_t looks = 0;    ///< How often all avatars were checked for them.
+  CrowdCheck faults;     ///< Overlaps and wall entries, over all checks.
+  uint64_t checks = 0;   ///< Checks of all avatars for these.
   double simulated = 0;  ///< [s]
   double seconds = 0;    ///< Wall clock.
 
-  /// Every measure within its bounds, and no faults.
+  /// Is every measure within its bounds, without faults?
   [[nodiscard]] THRONG_API bool passed() const;
 };
 
-/// All tests, in order of the tables.
+/// All tests, in the order of the tables.
 [[nodiscard]] THRONG_API std::vector<ValidationTest> validation_tests();
 
 /// Runs one test. Fails with kNotFound (no such test), kCancelled.
@@ -77,11 +79,11 @@ struct ValidationResult {
                                                                  const ValidationConfig& config,
                                                                  Context& context);
 
-/// Tests that need recordings of real people, which are none of ours to ship.
+/// The tests that need recordings of real people, which are not part of throng.
 [[nodiscard]] THRONG_API std::vector<ValidationTest> recorded_validation_tests();
 
-/// Runs one of those with a folder of recordings. Fails with kNotFound (no such test; nothing fits
-/// in the folder), kBadFile and the line, kCancelled.
+/// Runs one of these tests with a folder of recordings. Fails with kNotFound (no such test; nothing
+/// fits in the folder), kBadFile and the line, kCancelled.
 [[nodiscard]] THRONG_API Result<ValidationResult> run_recorded_validation(
     const std::string& name, const std::string& folder, const ValidationConfig& config,
     Context& context);

@@ -12,29 +12,31 @@
 #include "throng/scene.h"
 #include "throng/world.h"
 
-/// Where a class can stand, as triangles or seen from above, for other programs.
+/// The walkable surface of a class, as triangles or as polygons seen from above, for other
+/// programs.
 namespace throng {
 
-/// The floor under all legal cells of a class, as the feet follow it: level cells and planes merged
-/// into rectangles, true to 2 mm at the middle of each cell. One part a storey, material "floor".
-/// Borders of the triangles are borders of cells: where the middle of a body may be. Reads every
-/// zone. Fails with kBadConfig (no such class), kBadFile (a zone cannot be used), kCancelled.
+/// Makes triangles of the floor under all legal cells of a class, where its feet are: flat cells
+/// and planes are merged into rectangles, within 2 mm at the middle of each cell. One part per
+/// storey, material "floor". Borders of the triangles are borders of cells: where the middle of a
+/// body may be. Reads every zone. Fails with kBadConfig (no such class), kBadFile (a zone cannot be
+/// used), kCancelled.
 [[nodiscard]] THRONG_API Result<Scene> walkable_surface(const World& world, int32_t avatar_class,
                                                         Context& context);
 
-/// A piece of the plane that holds together by the sides of cells. Seen from above: x, z.
+/// A piece of the walkable surface seen from above: cells connected by their sides.
 struct WalkablePiece {
   Polygon polygon;  ///< Counter-clockwise, its holes clockwise, in (x, z). Rings may touch.
   double area = 0;  ///< [m^2]
 };
 
-/// The legal cells of a class whose floors lie from `lowest` to `highest`, all levels laid over
-/// each other, largest piece first. Reads every zone. Fails like walkable_surface, and with kLimit
-/// if the world has more than 2^32 cells.
+/// Makes polygons of the legal cells of a class whose floors lie from `lowest` to `highest`, all
+/// levels projected onto the plane, largest piece first. Reads every zone. Fails as
+/// walkable_surface does, and with kLimit if the world has more than 2^32 cells.
 [[nodiscard]] THRONG_API Result<std::vector<WalkablePiece>> walkable_pieces(
     const World& world, int32_t avatar_class, double lowest, double highest, Context& context);
 
-/// Well-known text: POLYGON((x z, ...), (hole)), to the millimetre.
+/// A polygon as well-known text: POLYGON((x z, ...), (hole)), to the millimetre.
 [[nodiscard]] THRONG_API std::string to_wkt(const Polygon& polygon);
 
 }  // namespace throng

@@ -13,10 +13,11 @@
 #include "throng/result.h"
 #include "throng/world.h"
 
-/// The crowd without goals: never into a wall and never into each other. A crowd with goals is in
-/// throng/crowd.h.
+/// A crowd of wanderers: avatars without goals that walk straight on and turn at random when
+/// blocked. They never enter a wall and never overlap. For avatars with goals see throng/crowd.h.
 namespace throng {
 
+/// Settings for Wanderers::create.
 struct WanderConfig {
   uint32_t avatars = 1000;
   int32_t avatar_class = 0;  ///< Class of the avatars, index into the world's classes.
@@ -30,31 +31,31 @@ struct WanderConfig {
 struct WanderReport {
   uint64_t step = 0;  ///< Number of the step just made, from 1.
   uint64_t moved = 0;
-  uint64_t blocked_by_wall = 0;  ///< Straight on was illegal.
+  uint64_t blocked_by_wall = 0;  ///< The straight move was illegal.
   uint64_t blocked_by_avatar = 0;
-  uint64_t waited = 0;  ///< Neither straight on nor the turned way was free.
+  uint64_t waited = 0;  ///< Neither the straight nor the turned move was free.
   double seconds_sort = 0;
   double seconds_move = 0;
   double seconds_total = 0;
 };
 
-/// Wanderers: straight on; a random left or right when blocked. Source: [ML06] section 4, [TC00] 3.
-/// Movable, not copyable; two crowds can live side by side.
+/// Wanderers: straight on; left or right at random when blocked. Source: [ML06] section 4, [TC00]
+/// 3. Movable, not copyable; several crowds can exist side by side.
 class THRONG_API Wanderers {
  public:
-  /// Places the avatars where they can stand, clear of each other. Fails with kLimit and how many
-  /// fit, kNotFound (class), kBadConfig.
+  /// Makes the avatars at places where they can stand without overlap. Fails with kLimit and how
+  /// many fit, kNotFound (class), kBadConfig.
   [[nodiscard]] static Result<Wanderers> create(const World& world, const WanderConfig& config);
   Wanderers(Wanderers&&) noexcept;
   Wanderers& operator=(Wanderers&&) noexcept;
   ~Wanderers();
 
-  /// One step. No allocation after the first. Time: linear in the avatars.
+  /// Advances all avatars by `dt`. No allocation after the first step. Time: linear in the avatars.
   WanderReport step();
   [[nodiscard]] CrowdCheck check() const;
   /// XXH3 of all avatars in order of id: position, level, heading. Same for any workers.
   [[nodiscard]] uint64_t state_hash() const;
-  /// All avatars in order of id, into `out` (resized).
+  /// Reads all avatars in order of id into `out` (resized).
   void read(std::vector<AvatarState>& out) const;
   [[nodiscard]] uint32_t size() const;
   [[nodiscard]] uint64_t bytes() const;  ///< Memory held by the crowd itself.

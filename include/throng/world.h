@@ -14,7 +14,7 @@
 #include "throng/math.h"
 #include "throng/result.h"
 
-/// The baked world: what everything after the bake reads. Opened by mapping its files.
+/// The baked world: all queries and crowds read it. Opened by mapping its files.
 namespace throng {
 
 struct WorldData;  // Internal: zones, tiles, planes.
@@ -29,27 +29,29 @@ struct Place {
 /// How a move ended.
 enum class MoveEnd { kArrived, kBlocked };
 
+/// The result of World::move.
 struct MoveResult {
-  Place place;  ///< Where the body is now: the goal, or where it began.
+  Place place;  ///< Where the body is now: the end of the line, or the start.
   MoveEnd end = MoveEnd::kBlocked;
 };
 
-/// One 64 x 64 sheet of a world in plain arrays, for tools and pictures.
+/// The content of one level tile in plain arrays, for tools and pictures.
 struct LevelTileContent {
   int32_t tile_x = 0;            ///< World tile coordinates: the tile covers cells
   int32_t tile_z = 0;            ///< [64 tile_x, 64 tile_x + 64) of the world's grid.
-  std::vector<int32_t> floor;    ///< 4096, row by row; kNoFloor where the sheet has none. [mm]
+  std::vector<int32_t> floor;    ///< 4096, row by row; kNoFloor where the level has none. [mm]
   std::vector<int32_t> ceiling;  ///< 4096; kOpenSky where nothing is above. [mm]
   std::vector<uint8_t> area;     ///< 4096 area kinds.
-  std::vector<std::vector<uint8_t>>
-      clearance;  ///< Per class 4096: 0 illegal, k: every point within
-                  ///< (k - 1) cells of this cell is legal too. [0 to 8]
+  /// Per class 4096: 0 is illegal, k: every point within k - 1 cells of this cell is legal, too.
+  /// [0 to 8]
+  std::vector<std::vector<uint8_t>> clearance;
 };
 
-inline constexpr int32_t kNoFloor = INT32_MIN;
-inline constexpr int32_t kOpenSky = INT32_MAX;
-inline constexpr int32_t kTileCells = 64;
+inline constexpr int32_t kNoFloor = INT32_MIN;  ///< In LevelTileContent::floor.
+inline constexpr int32_t kOpenSky = INT32_MAX;  ///< In LevelTileContent::ceiling.
+inline constexpr int32_t kTileCells = 64;       ///< Cells along a side of a tile.
 
+/// Description and sizes of a world.
 struct WorldSummary {
   double cell = 0;        ///< [m]
   double resolution = 0;  ///< [m]
@@ -66,14 +68,15 @@ struct WorldSummary {
   uint64_t hash = 0;                  ///< XXH3 of the manifest; 0 if it was not read from a folder.
 };
 
+/// Settings for World::open.
 struct WorldConfig {
-  /// Zones in memory beyond so many bytes are given back to the system, those that have not been
-  /// used for long first; they are read again when they are touched. 0: all stay. Never changes
-  /// what a look-up finds.
+  /// Limit of the memory of zones: beyond it, the zones that have not been used for longest are
+  /// given back to the system, and read again when they are used. 0: no limit. Never changes a
+  /// result.
   uint64_t resident_bytes = 0;
 };
 
-/// What of a world is in memory. Counted only under WorldConfig::resident_bytes.
+/// The part of a world that is in memory. Counted only with WorldConfig::resident_bytes.
 struct WorldResidency {
   uint64_t zones = 0;
   uint64_t bytes = 0;  ///< Of their files.
@@ -85,12 +88,12 @@ class THRONG_API World {
   World() = default;
   explicit World(std::shared_ptr<const WorldData> data) : data_(std::move(data)) {}
 
-  /// Opens a folder written by bake_world_to. Fails with kBadFile (by name) or kIo.
-  /// Reads the manifest alone: zones are mapped, and checked, when they are first touched.
+  /// Opens a folder written by bake_world_to. Reads only the manifest: zones are mapped and checked
+  /// when they are first used. Fails with kBadFile (by name) or kIo.
   [[nodiscard]] static Result<World> open(const std::string& path, const WorldConfig& config = {});
   /// Checks every zone against the manifest's checksums. Fails with kBadFile and the zone's name.
   [[nodiscard]] Result<void> check_ground() const;
-  /// As check_ground, and the air's files too, if there are any.
+  /// Checks the ground as check_ground does, and the files of the air, if there are any.
   [[nodiscard]] Result<void> check_all() const;
 
   [[nodiscard]] WorldSummary summary() const;
@@ -100,18 +103,19 @@ class THRONG_API World {
 
   [[nodiscard]] uint32_t level_tile_count() const;
   [[nodiscard]] LevelTileContent level_tile(uint32_t index) const;
-  /// Storey of each level tile: sheets that continue each other across tile borders share a number;
-  /// 0 is the lowest. For pictures and reports.
+  /// The storey of each level tile: level tiles that continue each other across tile borders have
+  /// the same number; 0 is the lowest. For pictures and reports.
   [[nodiscard]] std::vector<int32_t> storeys() const;
 
-  /// The legal place of a class under or over `position` whose feet are nearest to position.y
-  /// within `reach` metres, or nowhere. Exact column only.
-  [[nodiscard]] Place find_place(int32_t avatar_class, Vec3d position, double reach) const;
+  /// The legal place of a class in the column of `position` whose feet are nearest to position.y,
+  /// or nowhere if none is within `vertical_tolerance`. [m]
+  [[nodiscard]] Place find_place(int32_t avatar_class, Vec3d position,
+                                 double vertical_tolerance) const;
   /// The n-th of a reproducible stream of places, uniform over the class's walkable area. Nowhere
-  /// only if the class has no place at all.
+  /// only if the class has no place.
   [[nodiscard]] Place random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const;
-  /// Walks the straight line from `from` by (dx, dz), checking every cell on the way by the
-  /// conservative form of [ML06] algorithm 1. The feet follow the surface.
+  /// Moves straight from `from` by (dx, dz) and tests every cell on the line by the conservative
+  /// form of [ML06] algorithm 1. The feet follow the surface. [m]
   [[nodiscard]] MoveResult move(int32_t avatar_class, const Place& from, double dx,
                                 double dz) const;
   /// Height of the feet on the surface of the place's level at (x, z) of its position. [m]

@@ -16,17 +16,17 @@
 #include "throng/result.h"
 #include "throng/scene.h"
 
-/// Pictures of a world and its crowd by a graphics library, without a window or in one. A library
-/// of its own, throng_draw: the run-time library needs no graphics. OpenGL ES 3.0, so that a
-/// browser can run the same.
+/// Draws a world and its crowd with a graphics library, without a window or in one. A separate
+/// library, throng_draw: the run-time library needs no graphics. OpenGL ES 3.0, so that a browser
+/// can run the same.
 namespace throng {
 
-/// A scene in the form that a card reads. Made on any thread, so that a window need not wait.
+/// A scene prepared for a graphics card. Can be made on any thread, so that a window need not wait.
 class THRONG_API PreparedScene {
  public:
-  /// Corners, normals, and which sides of triangles are edges: those where the surface bends by 25
-  /// degrees or ends. `origin` is the point that everything drawn is relative to. Fails with
-  /// kLimit: more triangles than cards hold.
+  /// Makes corners, normals, and the edges to draw: sides of triangles where the surface bends by
+  /// 25 degrees or more, or ends. `origin` is the point that everything drawn is relative to. Fails
+  /// with kLimit: more triangles than cards hold.
   [[nodiscard]] static Result<PreparedScene> make(const Scene& scene, Vec3d origin);
   PreparedScene(PreparedScene&&) noexcept;
   PreparedScene& operator=(PreparedScene&&) noexcept;
@@ -43,32 +43,36 @@ class THRONG_API PreparedScene {
 
 /// Red, green, blue and alpha, 8 bits each, red lowest; alpha is not multiplied in.
 using Rgba = uint32_t;
+/// Makes a colour of 8-bit channels.
 [[nodiscard]] constexpr Rgba rgba(uint32_t red, uint32_t green, uint32_t blue,
                                   uint32_t alpha = 255) {
   return red | green << 8 | blue << 16 | alpha << 24;
 }
 
+/// A vertex of marks.
 struct MarkVertex {
   float x = 0, y = 0, z = 0;  ///< Relative to the drawing's origin. [m]
   Rgba colour = 0;
 };
 
-/// Overlays that explain a scene: flat colours, no light.
+/// Marks drawn over a scene to explain it: flat colours, no light.
 struct Marks {
-  std::vector<MarkVertex> triangles;  ///< Three each.
-  std::vector<MarkVertex> lines;      ///< Two each.
+  std::vector<MarkVertex> triangles;  ///< Three vertices per triangle.
+  std::vector<MarkVertex> lines;      ///< Two vertices per line.
   float line_width = 2;               ///< [px]
-  bool through_walls = false;         ///< Hidden parts show, too, faintly.
+  bool through_walls = false;         ///< Hidden parts are drawn faintly.
 };
+/// Number of slots for marks.
 inline constexpr size_t kMarkSlots = 16;
 
+/// A vertex of a panel.
 struct PanelVertex {
   float x = 0, y = 0;  ///< From the picture's upper left corner. [px]
   float u = 0, v = 0;  ///< Of the panel's texture. [0 to 1]
   Rgba colour = 0;
 };
 
-/// A run of triangles of a panel that shows only inside a rectangle. [px]
+/// A run of triangles of a panel that is drawn only inside a rectangle. [px]
 struct PanelRun {
   uint32_t first = 0, count = 0;  ///< Indices.
   int32_t left = 0, top = 0, right = 0, bottom = 0;
@@ -77,57 +81,58 @@ struct PanelRun {
 /// Text and buttons over the picture. Borrowed.
 struct PanelView {
   std::span<const PanelVertex> vertices;
-  std::span<const uint32_t> indices;  ///< Three a triangle.
+  std::span<const uint32_t> indices;  ///< Three per triangle.
   std::span<const PanelRun> runs;
 };
 
 /// Avatars that share an atlas and a clip. Positions are relative to the drawing's origin.
 struct DrawnCrowd {
-  size_t atlas = 0;  ///< As Drawing::add_atlas numbers them.
+  size_t atlas = 0;  ///< The number that Drawing::add_atlas returned.
   size_t clip = 0;
   ImpostorArrays avatars;
-  /// Unit vectors along each body from its feet; empty: all are upright. Headings are those before
-  /// the lean (lean.h).
-  std::span<const Vec3d> ups = {};
+  /// Unit vectors along each body from its feet; empty: all are upright. Headings are before the
+  /// lean (lean.h).
+  std::span<const Vec3d> up_vectors = {};
 };
 
 /// How avatars are drawn.
 enum class AvatarStyle : uint8_t {
   kPeople,      ///< In the detail that can be seen.
-  kPlainQuads,  ///< One rectangle of one colour each, for comparison.
+  kPlainQuads,  ///< One rectangle of one colour per avatar, for comparison.
 };
 
-/// Whether to query, while a picture is drawn, what the nearer parts of the scene hide, and leave
-/// these avatars and pieces of the scene out. The picture is the same, byte for byte. The query
-/// makes a graphics card wait for its own work, so it pays where a processor draws.
+/// Whether to query, while a picture is drawn, what the nearer parts of the scene hide, and to skip
+/// hidden avatars and pieces of the scene. The picture is the same, byte for byte. The query makes
+/// a graphics card wait for its own work, so it pays off where a processor draws.
 enum class HiddenCulling : uint8_t {
-  kWhereItPays,  ///< If the driver draws by the processor.
+  kWhereItPays,  ///< If the driver draws with the processor.
   kNever,
   kAlways,
 };
 
+/// Settings for Drawing::draw and show.
 struct DrawingConfig {
   EyeCamera camera;  ///< Relative to the drawing's origin; `aspect` follows from the picture.
   int32_t width = 1280, height = 720;  ///< [px, 16 to 8192]
   int32_t samples = 2;                 ///< Along each side of a pixel. [1 to 4]
   Vec3d to_sun{-0.5, 0.75, 0.45};      ///< Towards the sun, any length. [y > 0]
   AvatarStyle avatars = AvatarStyle::kPeople;
-  /// Avatars that have a model are drawn by it where a texel of their atlas would be so many
-  /// samples of the picture or more, 0: nowhere. [>= 0]
+  /// An avatar that has a model is drawn as a mesh where a texel of its atlas would take this many
+  /// samples of the picture or more. 0: never. [>= 0]
   double mesh_texel = 3;
-  /// An avatar whose view's side is at most so many samples of the picture is drawn as a point:
-  /// head, chest and legs in its colours. 0: none. [>= 0]
+  /// An avatar whose view's side takes at most this many samples of the picture is drawn as a
+  /// point: head, chest and legs in its colours. 0: never. [>= 0]
   double point_pixels = 10;
-  /// Views fade into the next ones as the eye goes around an avatar, over this share of the angle
-  /// between them; 0: the nearest view alone. [0 to 1]
+  /// Views fade into the next ones as the eye moves around an avatar, over this share of the angle
+  /// between them. 0: only the nearest view is drawn. [0 to 1]
   double view_blend = 0.4;
   bool avatar_shadows = true;  ///< Those of the scene are always drawn.
-  bool soft_shadows = true;    ///< Nine samples of the shadow map a pixel; else one, filtered.
+  bool soft_shadows = true;    ///< Nine samples of the shadow map per pixel; else one, filtered.
   int32_t sun_pixels = 4096;   ///< Along a side of the shadow map. [256 to 8192]
   HiddenCulling culling = HiddenCulling::kWhereItPays;
-  double edges = 0.5;  ///< How dark edges of the scene are, 0: not drawn. [0 to 1]
-  /// The scene above this height is left out, to show the inside of buildings; relative to the
-  /// origin. The caller leaves out avatars. [m]
+  double edges = 0.5;  ///< How dark edges of the scene are. 0: not drawn. [0 to 1]
+  /// Height above which the scene is cut away, to show the inside of buildings; relative to the
+  /// origin. The caller leaves out avatars above it. [m]
   double cut_height = std::numeric_limits<double>::infinity();
   int32_t workers = 0;  ///< For packing, 0 for all cores. [>= 0]
 };
@@ -139,18 +144,19 @@ struct DrawingReport {
   size_t hidden = 0;        ///< Inside the frame, but behind the scene.
   size_t triangles = 0;     ///< Of the scene, drawn for the eye.
   double seconds_pack = 0;  ///< Culling and packing, shadows included.
-  double seconds_cull = 0;  ///< Query of what is hidden, and what the driver must finish before.
+  /// The query of what is hidden, and the driver's work that must end before it.
+  double seconds_cull = 0;
   double seconds_draw = 0;  ///< Upload, draw calls and reading back.
 };
 
-/// Draws. Movable, not copyable; one thread at a time.
+/// A renderer. Movable, not copyable; one thread at a time.
 class THRONG_API Drawing {
  public:
-  /// One without a window. Fails with kNotFound where there is no EGL, or no driver that draws
-  /// without a window.
+  /// Creates a renderer without a window. Fails with kNotFound if there is no EGL, or no driver
+  /// that draws without a window.
   [[nodiscard]] static Result<Drawing> create();
-  /// One for the window whose OpenGL ES 3.0 context is current on this thread, now and whenever
-  /// this drawing is used; it must outlive the drawing. Fails with kNotFound.
+  /// Creates a renderer for the window whose OpenGL ES 3.0 context is current on this thread, now
+  /// and whenever the renderer is used; the context must outlive it. Fails with kNotFound.
   [[nodiscard]] static Result<Drawing> create_in_current_context();
   Drawing(Drawing&&) noexcept;
   Drawing& operator=(Drawing&&) noexcept;
@@ -158,35 +164,37 @@ class THRONG_API Drawing {
 
   /// The driver's name: "llvmpipe (LLVM 15.0.6, 256 bits)".
   [[nodiscard]] std::string renderer() const;
-  /// Sets the triangles to draw and the point that everything is relative to. Replaces both.
-  /// Fails with kLimit: more triangles than the card's memory holds.
+  /// Sets the scene and the point that everything is relative to; replaces both. Fails with kLimit:
+  /// more triangles than the card's memory holds.
   [[nodiscard]] Result<void> set_scene(const Scene& scene, Vec3d origin);
   [[nodiscard]] Result<void> set_scene(const PreparedScene& scene);
-  /// Sets what stands in the scene for a time: crates, barriers. Replaces all; an empty scene
-  /// removes them. `origin` as of the scene. Fails with kLimit.
+  /// Sets props: temporary parts of the scene, such as crates and barriers. Replaces all; an empty
+  /// scene removes them. `origin` as of the scene. Fails with kLimit.
   [[nodiscard]] Result<void> set_props(const Scene& props, Vec3d origin);
-  /// Sets what a slot < kMarkSlots shows; lower slots are drawn first. Fails with kLimit.
+  /// Sets the marks of a slot < kMarkSlots; lower slots are drawn first. Fails with kLimit.
   [[nodiscard]] Result<void> set_marks(size_t slot, const Marks& marks);
-  /// How opaque each texel of the panel's texture is, rows from the top.
+  /// Sets the panel's texture: the opacity of each texel, rows from the top.
   [[nodiscard]] Result<void> set_panel_texture(int32_t width, int32_t height,
                                                std::span<const uint8_t> alpha);
-  /// Keeps a copy of an atlas. Colours in blocks that the card reads (S3TC, ETC2) stay so, others
-  /// are unpacked. Fails with kLimit: pages larger than the card's textures.
+  /// Adds a copy of an atlas and returns its number. Colours in blocks that the card reads (S3TC,
+  /// ETC2) stay packed, others are unpacked. Fails with kLimit: pages larger than the card's
+  /// textures.
   [[nodiscard]] Result<size_t> add_atlas(const Atlas& atlas);
   /// The size of an atlas's colours in the card's memory, without smaller levels.
   [[nodiscard]] size_t colour_bytes(size_t atlas) const;
   /// Can the card read colours of this format as they are? False for formats without blocks.
   [[nodiscard]] bool takes_blocks(AtlasFormat format) const;
-  /// Draws avatars of an atlas as meshes where they are near. Fails with kBadInput (other clips
-  /// than the atlas has), kLimit.
+  /// Sets the model as which avatars of an atlas are drawn when they are near. Fails with kBadInput
+  /// (other clips than the atlas has), kLimit.
   [[nodiscard]] Result<void> set_model(size_t atlas, const FigureModel& model);
   void clear_atlases();  ///< Removes all: the next one is number 0.
-  /// Fails with kBadConfig if draw() would.
+  /// Checks the settings. Fails with kBadConfig if draw() would.
   [[nodiscard]] static Result<void> check(const DrawingConfig& config);
-  /// Fails with kBadConfig, or kLimit: a picture larger than the card draws.
+  /// Draws a picture. Fails with kBadConfig, or kLimit: a picture larger than the card draws.
   [[nodiscard]] Result<Image> draw(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
                                    DrawingReport* report = nullptr, const PanelView& panel = {});
-  /// The same into the window of the current context, which is `config.width` by `height` pixels.
+  /// Draws into the window of the current context, which is `config.width` by `config.height`
+  /// pixels.
   [[nodiscard]] Result<void> show(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
                                   DrawingReport* report = nullptr, const PanelView& panel = {});
 

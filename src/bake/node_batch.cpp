@@ -307,7 +307,7 @@ class NodeBatch {
                         .classes = static_cast<uint16_t>(1u << off_mesh_link.avatar_class),
                         .kind = LinkKind::kOffMesh,
                         .leap1 = static_cast<uint32_t>(leaps_.size()),
-                        .one_way = !off_mesh_link.both_ways});
+                        .one_way = !off_mesh_link.two_way});
     }
     return {};
   }

@@ -312,7 +312,7 @@ void find_node_inputs(const WorldData& world, const Scene& scene, const NodeConf
       words.add(off_mesh_link.from);
       words.add(off_mesh_link.to);
       words.add(uint64_t{static_cast<uint32_t>(off_mesh_link.avatar_class)} << 1 |
-                uint64_t{off_mesh_link.both_ways});
+                uint64_t{off_mesh_link.two_way});
     }
     zone.input = words.hash();
   }

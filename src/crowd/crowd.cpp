@@ -142,7 +142,7 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   if (!ground) return ground.error();
   made->ground = std::move(*ground);
   const bool over_nodes = goes_over_nodes(number);
-  if (config.ways == Routing::kPaths && !over_nodes) {
+  if (config.routing == Routing::kPaths && !over_nodes) {
     auto finder = PathFinder::make(world,
                                    {.avatar_class = number,
                                     .workers = config.workers,
@@ -422,8 +422,8 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goal
                   goals[i].level1 - 1};
     body->local_target_x = route.goal.x;
     body->local_target_z = route.goal.z;
-    body->flags = s.config.ways == Routing::kPaths ? Body::kHasGoal | Body::kLost
-                                                   : Body::kHasGoal | Body::kLast;
+    body->flags = s.config.routing == Routing::kPaths ? Body::kHasGoal | Body::kLost
+                                                      : Body::kHasGoal | Body::kLast;
   }
 }
 
@@ -489,7 +489,7 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
       body.clear(Body::kKeeps);
       continue;
     }
-    if (!body.has(Body::kHasGoal) || body.has(Body::kKeeps) || config.ways == Routing::kStraight)
+    if (!body.has(Body::kHasGoal) || body.has(Body::kKeeps) || config.routing == Routing::kStraight)
       continue;
     Route& route = routes[body.slot];
     const StrideGround ground(parts.ground, step_mm(body_class(body.avatar_class)));
@@ -538,7 +538,7 @@ CrowdReport Crowd::step() {
                        .steps = s.config.low_detail_steps,
                        .reaction = static_cast<float>(s.config.low_detail_reaction),
                        .narrowest = s.narrowest});
-  const bool has_paths = s.config.ways == Routing::kPaths || !s.flights.empty() || s.some_leave;
+  const bool has_paths = s.config.routing == Routing::kPaths || !s.flights.empty() || s.some_leave;
   for (int32_t i = 0; i < s.sub_steps; ++i) {
     s.engine.step(s.sub_step++, has_paths ? before : CrowdEngine::Before(), counts, times);
     for (const uint32_t slot : s.engine.arrived()) {
@@ -565,8 +565,8 @@ CrowdReport Crowd::step() {
   const auto moves = std::max<double>(1, static_cast<double>(report.avatars) * s.sub_steps);
   report.stood = counts.stood / static_cast<uint64_t>(s.sub_steps);
   report.contested = counts.contested;
-  report.far = counts.far / static_cast<uint64_t>(s.sub_steps);
-  report.held = counts.held / static_cast<uint64_t>(s.sub_steps);
+  report.low_detail = counts.far / static_cast<uint64_t>(s.sub_steps);
+  report.skipped = counts.held / static_cast<uint64_t>(s.sub_steps);
   report.arrived = s.arrived.size();
   report.planned = planned;
   report.no_path = s.goal_unreachable.size();
@@ -682,8 +682,8 @@ CrowdMemory Crowd::memory() const {
                    (s.generation.capacity() + s.where.capacity() + s.free_slots.capacity()) * 4 +
                    s.inside.capacity() * sizeof(uint64_t) +
                    s.looked_at.capacity() * sizeof(s.looked_at[0]);
-  memory.ways = s.routes.capacity() * sizeof(Route) + s.flights.capacity() * sizeof(Flight) +
-                s.climbs.capacity() * sizeof(Climb);
+  memory.paths = s.routes.capacity() * sizeof(Route) + s.flights.capacity() * sizeof(Flight) +
+                 s.climbs.capacity() * sizeof(Climb);
   for (const auto& parts : s.classes) memory.ground += parts ? parts->ground.bytes() : 0;
   memory.ground += s.obstacles.bytes();
   return memory;

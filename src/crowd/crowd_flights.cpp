@@ -102,7 +102,7 @@ bool Crowd::State::set_goal_of_flyer(Body& body, const Place& goal) {
   flight.local_target_y = flight.goal.y;
   const bool walks = !flies && flight.goal_level != Flight::kInAir;
   body.flags |= Body::kHasGoal;
-  body.flags |= config.ways == Routing::kStraight && walks ? Body::kLast : Body::kLost;
+  body.flags |= config.routing == Routing::kStraight && walks ? Body::kLast : Body::kLost;
   return true;
 }
 
@@ -152,7 +152,7 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
     }
   }
   if (!body.has(Body::kLost) || body.target != 0) return false;
-  const bool is_straight = config.ways == Routing::kStraight;
+  const bool is_straight = config.routing == Routing::kStraight;
   const bool lands = flight.goal_level != Flight::kInAir;
   if (is_straight && lands) return false;
   if (take_off(body, flight)) {
@@ -169,7 +169,7 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
   FlightPath& path = parts.flights[w];
   parts.flight_finders[w].find({.from = parts.air->metres(here(body)),
                                 .to = parts.air->metres(flight.goal),
-                                .reach = kReach,
+                                .vertical_tolerance = kReach,
                                 .max_nodes = kMaxBoxes,
                                 .max_bytes = config.search_bytes,
                                 .by_turns = false,
@@ -272,19 +272,19 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
   const auto high = lands ? air.take_off(to) : std::nullopt;
   if (high) to.y = *high;
   const bool ends_in_air = !lands || high;
-  const bool is_straight = config.ways == Routing::kStraight;
+  const bool is_straight = config.routing == Routing::kStraight;
   if (ends_in_air &&
       (is_straight || (air.sees(from, to) && is_clear_of_obstacles(body, from, to)))) {
     set_path(flight, std::span(&to, 1), lands);
     return true;
   }
-  if (config.ways == Routing::kStraight) return false;
+  if (config.routing == Routing::kStraight) return false;
   const auto w = static_cast<size_t>(worker);
   FlightPath& path = parts.flights[w];
   const auto find = [&](const AirSpot& begin, const AirSpot& end) {
     parts.flight_finders[w].find({.from = air.metres(begin),
                                   .to = air.metres(end),
-                                  .reach = kReach,
+                                  .vertical_tolerance = kReach,
                                   .max_nodes = kMaxBoxes,
                                   .max_bytes = config.search_bytes,
                                   .by_turns = false,
@@ -372,7 +372,7 @@ void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
       }
     }
     const bool looks = (sub_step + body.slot) % kLookEvery == 0;
-    if (looks && config.ways == Routing::kPaths) {
+    if (looks && config.routing == Routing::kPaths) {
       const AirSpot& local_target = flight.points[flight.next];
       if (!air.sees(at, local_target) || !is_clear_of_obstacles(body, at, local_target))
         body.flags |= Body::kLost;
@@ -424,7 +424,7 @@ void Crowd::State::fly(EngineCounts& counts, CrowdEngine::Times& times,
     const bool has_goal = body.has(Body::kHasGoal);
     body.flags &= Body::kExternal | Body::kHasGoal;
     if (!has_goal) continue;
-    const bool is_straight = config.ways == Routing::kStraight;
+    const bool is_straight = config.routing == Routing::kStraight;
     body.flags |= is_straight ? Body::kLast : Body::kLost;
     body.local_target_x = flight.goal.x;
     body.local_target_z = flight.goal.z;

@@ -108,7 +108,7 @@ bool Crowd::State::leads_out(const Body& body, std::span<const uint32_t> slots) 
   if (body.flies()) {
     const Flight& flight = flights[body.slot];
     for (size_t i = flight.next; i < flight.count; ++i) add(flight.points[i].x, flight.points[i].z);
-  } else if (config.ways == Routing::kStraight) {
+  } else if (config.routing == Routing::kStraight) {
     add(body.local_target_x, body.local_target_z);
   } else {
     const Route& route = routes[body.slot];
@@ -165,7 +165,7 @@ void Crowd::State::end_leaving(Body& body) {
     if (body.flies()) flights[body.slot].local_target_y = body.y;
     return;
   }
-  const bool walks_straight = config.ways == Routing::kStraight && !body.flies();
+  const bool walks_straight = config.routing == Routing::kStraight && !body.flies();
   if (!walks_straight || !body.has(Body::kLost)) return;  // A path is asked for.
   Spot goal = routes[body.slot].goal;
   if (air_of(body) != nullptr) {
@@ -207,7 +207,7 @@ void Crowd::State::plan_exit(Body& body) {
   const bool has_path =
       body.has(Body::kHasGoal) && !body.has(Body::kArrived) && !body.has(Body::kLost);
   if (has_path) {
-    if (config.ways == Routing::kPaths && !body.has(Body::kKeeps)) {
+    if (config.routing == Routing::kPaths && !body.has(Body::kKeeps)) {
       const uint64_t nth = (sub_step - 1 + body.slot) / engine.steps_of_reaction(body);
       follow(body, routes[body.slot], ground, nth, static_cast<float>(1 / unit));
     }

@@ -217,7 +217,7 @@ void Crowd::State::report_paths(uint32_t slot, size_t number) {
     told.told_version = obstacle.version;
   }
   tell(parts.node_finders, obstacle, is_new, told.node_change);
-  if (config.ways != Routing::kPaths) return;
+  if (config.routing != Routing::kPaths) return;
   if (obstacle.has_cells) make_lives(number);
   flows_are_old = true;
   tell(parts.lives, obstacle, is_new, told.change);
@@ -227,7 +227,7 @@ void Crowd::State::report_paths(uint32_t slot, size_t number) {
 // Whose way leads over what some obstacles have just taken asks for another.
 void Crowd::State::cut_ways(std::span<const uint32_t> slots) {
   if (!climbs.empty()) cut_climbs(slots);
-  if (config.ways != Routing::kPaths) return;
+  if (config.routing != Routing::kPaths) return;
   const WorldData& data = *world.data();
   double widest_class = 0;
   for (const AvatarClass& avatar : data.summary.classes) {

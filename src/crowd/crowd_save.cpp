@@ -146,7 +146,7 @@ Head head_of(const World& world, const CrowdConfig& config) {
   head.sight = config.sight;
   head.reaction = config.reaction;
   head.rounds = config.rounds;
-  head.ways = static_cast<int32_t>(config.ways);
+  head.ways = static_cast<int32_t>(config.routing);
   head.deadlock_avoidance = config.deadlock_avoidance ? 1 : 0;
   head.model = static_cast<int32_t>(config.model);
   head.low_detail_steps = config.low_detail_steps;

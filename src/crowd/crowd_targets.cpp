@@ -20,7 +20,7 @@ constexpr size_t kGrain = 4096;  // bodies
 
 Result<TargetId> Crowd::add_target(std::span<const Prism> areas, Context& context) {
   State& s = *state_;
-  if (s.config.ways != Routing::kPaths) {
+  if (s.config.routing != Routing::kPaths) {
     return Error{Errc::kBadConfig, "crowd: who goes straight on knows no targets; give goals"};
   }
   auto made = Target::make(*s.world.data(), areas);
@@ -96,13 +96,13 @@ double Crowd::distance(AvatarId id, TargetId target) const {
   return parts.flows[target - 1u].distance(parts.lives[0], place);
 }
 
-Result<std::vector<Place>> Crowd::places(TargetId target, int32_t avatar_class, size_t most,
+Result<std::vector<Place>> Crowd::places(TargetId target, int32_t avatar_class, size_t max_count,
                                          Context& context) {
   State& s = *state_;
   THRONG_ASSERT(target >= 1 && target <= s.targets.size());
   if (auto ok = s.open_class(avatar_class, context); !ok) return ok.error();
   return places_inside(*s.world.data(), s.classes[static_cast<size_t>(avatar_class)]->ground,
-                       s.targets[target - 1u].regions, std::max<size_t>(1, most));
+                       s.targets[target - 1u].regions, std::max<size_t>(1, max_count));
 }
 
 void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> speeds) {

@@ -160,7 +160,7 @@ void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& co
   for (auto* level : {&meshes_, &views_, &points_, &thrown_}) level->begin(max_count);
   blends_.begin(max_count);
   for (const DrawnCrowd& crowd : crowds) {
-    if (!crowd.ups.empty() && !plain) {
+    if (!crowd.up_vectors.empty() && !plain) {
       pack_leaning_crowd(crowd, config, to_sun);
       continue;
     }
@@ -190,7 +190,7 @@ void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& co
   hidden_ = 0;
   if (!config.avatar_shadows) return;
   for (const DrawnCrowd& crowd : crowds) {
-    if (!crowd.ups.empty() && !plain) continue;
+    if (!crowd.up_vectors.empty() && !plain) continue;
     const PackConfig pack_config{.camera = config.camera,
                                  .clip = crowd.clip,
                                  .from_direction = to_sun,

@@ -22,14 +22,14 @@ uint32_t word_of(const AtlasShape& shape, const ViewChoice& choice) {
 LevelCounts pack_leaning(const Atlas& atlas, const DrawnCrowd& crowd, const PackConfig& config,
                          const LevelDistances& levels, const LeaningSpans& out) {
   const ImpostorArrays& a = crowd.avatars;
-  THRONG_ASSERT(crowd.ups.size() == a.x.size());
+  THRONG_ASSERT(crowd.up_vectors.size() == a.x.size());
   const EyeCamera& camera = config.camera;
   const CameraAxes axes = camera_axes(camera);
   const double up = std::tan(0.5 * camera.field_of_view), right = up * camera.aspect;
   const double radius = 0.5 * atlas.shape.side;
   LevelCounts counts;
   for (size_t i = 0; i < a.x.size(); ++i) {
-    const Vec3d feet{a.x[i], a.y[i], a.z[i]}, axis = crowd.ups[i];
+    const Vec3d feet{a.x[i], a.y[i], a.z[i]}, axis = crowd.up_vectors[i];
     const Vec3d from_eye = feet + axis * atlas.shape.centre - camera.eye;
     const double depth = dot(from_eye, axes.forward);
     // Is the figure outside a side plane of the view frustum by more than its radius?

@@ -161,7 +161,7 @@ std::vector<NodeArc> Nodes::arcs(uint32_t node) const {
     if (leap == nullptr || other == nullptr) continue;
     const double from_side = 1 << zone->patch_of(local).depth();
     const double to_side = 1 << other->patch_of(to).depth();
-    found.leaps = true;
+    found.over_hole = true;
     found.from_s = (leap->from_s() + 0.5) / from_side;
     found.from_t = (leap->from_t() + 0.5) / from_side;
     found.to_s = (leap->to_s() + 0.5) / to_side;
@@ -266,8 +266,8 @@ NodePlace Nodes::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) c
                (info.t + random_unit(seed, n, 2)) * side);
 }
 
-std::vector<NodeComponent> Nodes::reach(int32_t avatar_class,
-                                        std::vector<uint32_t>* of_node) const {
+std::vector<NodeComponent> Nodes::components(int32_t avatar_class,
+                                             std::vector<uint32_t>* of_node) const {
   THRONG_ASSERT(data_);
   const uint32_t count = data_->node_count;
   DisjointSets sets(count);

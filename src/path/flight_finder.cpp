@@ -322,11 +322,11 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
   scratch_->search.give_back();
 }
 
-bool FlightFinder::locate(Vec3d at, double reach, End& end) const {
+bool FlightFinder::locate(Vec3d at, double vertical_tolerance, End& end) const {
   const FlightEndpoints ends = shared_->ends(scratch_->air(*shared_));
   end.air = ends.in_air(at);
   if (end.air) return true;
-  end.ground = shared_->world.find_place(shared_->avatar_class, at, reach);
+  end.ground = shared_->world.find_place(shared_->avatar_class, at, vertical_tolerance);
   return end.ground && ends.may_stand(end.ground);
 }
 
@@ -424,7 +424,9 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     return end == PathEnd::kReached;
   };
   End from, to;
-  if (!locate(query.from, query.reach, from) || !locate(query.to, query.reach, to)) return;
+  if (!locate(query.from, query.vertical_tolerance, from) ||
+      !locate(query.to, query.vertical_tolerance, to))
+    return;
 
   double on_foot = INFINITY;
   if (from.ground && to.ground && scratch.walker &&
@@ -490,7 +492,9 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
 void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
   Scratch& scratch = *scratch_;
   End from, to;
-  if (!locate(query.from, query.reach, from) || !locate(query.to, query.reach, to)) return;
+  if (!locate(query.from, query.vertical_tolerance, from) ||
+      !locate(query.to, query.vertical_tolerance, to))
+    return;
   const GroundAirLinks::Part start = shared_->part_of(from), goal = shared_->part_of(to);
   scratch.banned.clear();
   for (int32_t tries = 0; tries < (scratch.is_changed() ? kMaxTries : 1); ++tries) {
@@ -616,7 +620,7 @@ void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   const std::optional<AirPoint> reached = scratch.reached;
   const bool is_changed = scratch.is_changed();
   End from;
-  if (!locate(query.from, query.reach, from)) return;
+  if (!locate(query.from, query.vertical_tolerance, from)) return;
   const GroundAirLinks::Part start = shared_->part_of(from);
   shared_->ground_air_links.search(start, {kNoBox, true}, {}, scratch.parts);
   std::vector<uint32_t>& airs = scratch.common;

@@ -28,10 +28,11 @@ FlowField::~FlowField() = default;
 
 Result<FlowField> FlowField::make(const LiveGround& ground, std::span<const Place> goals,
                                   const FlowConfig& config, Context& context) {
-  if (!(config.most > 0)) return Error{Errc::kBadConfig, "flow field: most must be above 0"};
+  if (!(config.max_distance > 0))
+    return Error{Errc::kBadConfig, "flow field: max_distance must be above 0"};
   const auto start = Clock::now();
   auto state = std::make_unique<State>(State{ground, nullptr, 0});
-  auto points = FlowPoints::make(state->ground, goals, config.most, context);
+  auto points = FlowPoints::make(state->ground, goals, config.max_distance, context);
   if (!points) return Error{Errc::kCancelled, "flow field: cancelled"};
   if (points->empty()) {
     return Error{Errc::kBadInput, "flow field: none of " + std::to_string(goals.size()) +
@@ -48,7 +49,7 @@ double FlowField::distance(const Place& place) {
 
 Place FlowField::next(const Place& place) { return state_->points->next(state_->ground, place); }
 
-void FlowField::way(const Place& place, Path& path) {
+void FlowField::find_path(const Place& place, Path& path) {
   state_->points->way(state_->ground, place, path);
 }
 

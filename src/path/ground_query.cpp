@@ -258,13 +258,13 @@ Place GroundQuery::slide(const Place& from, double dx, double dz) {
   return place_at(s.data(), best_level, best);
 }
 
-NearestWall GroundQuery::nearest_wall(const Place& from, double most) {
+NearestWall GroundQuery::nearest_wall(const Place& from, double max_distance) {
   State& s = *state_;
   NearestWall wall;
   GroundLevel level;
   GroundPoint at;
-  if (!(most >= 0) || !s.locate(from, level, at)) return wall;
-  const double limit = std::min(most, 1e9) / s.unit();
+  if (!(max_distance >= 0) || !s.locate(from, level, at)) return wall;
+  const double limit = std::min(max_distance, 1e9) / s.unit();
   double best = std::nextafter(limit * limit, 1e300);
   const auto within = [&](int32_t x, int32_t z) {
     return squared(clamp_to_cell(at, x, z), at) < best;

@@ -121,7 +121,7 @@ Result<ChangeId> LiveGround::add_off_mesh_link(const OffMeshLink& off_mesh_link)
   const ChangeId id = s.mesh.add({});
   const double cost = std::max(off_mesh_link.cost / cell, length);
   s.mesh.add_off_mesh_link(from.level, {id, from.at, to.at, to.level, cost});
-  if (off_mesh_link.both_ways)
+  if (off_mesh_link.two_way)
     s.mesh.add_off_mesh_link(to.level, {id, to.at, from.at, from.level, cost});
   return id;
 }

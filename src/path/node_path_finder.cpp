@@ -468,13 +468,13 @@ std::optional<NodeSquare> NodePathFinder::square(uint32_t node, double from_s, d
   return square_of(mesh.blocks()[found]);
 }
 
-NodePlace NodePathFinder::find_place(Vec3d position, double reach) const {
+NodePlace NodePathFinder::find_place(Vec3d position, double search_radius) const {
   const NodeMesh& mesh = shared_->mesh;
-  if (!std::isfinite(position.x + position.y + position.z) || !(reach >= 0)) return {};
+  if (!std::isfinite(position.x + position.y + position.z) || !(search_radius >= 0)) return {};
   scratch_->update();
   const NodeChanges& changes = scratch_->changes;
   const NodeView& view = scratch_->view;
-  double nearest = reach;
+  double nearest = search_radius;
   uint64_t best_rank = 0;  // Of places as near as each other it is the first: level ground, then
                            // blocks in their order.
   NodePlace best;
@@ -492,7 +492,7 @@ NodePlace NodePathFinder::find_place(Vec3d position, double reach) const {
     consider(block, s, t, uint64_t{block} + 1);
   };
   const World& world = mesh.nodes().data()->world;
-  if (const Place place = world.find_place(mesh.avatar_class(), position, reach)) {
+  if (const Place place = world.find_place(mesh.avatar_class(), position, search_radius)) {
     if (const uint32_t patch = mesh.patch_of_level(place.level1 - 1); patch != kNoNode) {
       const GroundPoint at = to_ground(*world.data(), place.position.x, place.position.z);
       const auto along = [](int64_t unit) {

@@ -128,7 +128,7 @@ Result<void> FrameEncoder::quantise(const FrameView& frame) {
                  "recording: a frame needs as many classes, positions, radii and headings as ids, "
                  "fewer than 2^28"};
   }
-  if (!frame.ups.empty() && frame.ups.size() != count) {
+  if (!frame.up_vectors.empty() && frame.up_vectors.size() != count) {
     return Error{Errc::kBadInput, "recording: a frame needs as many axes as ids, or none"};
   }
   order_.resize(count);
@@ -162,8 +162,8 @@ Result<void> FrameEncoder::quantise(const FrameView& frame) {
     track.avatar_class = frame.classes[i];
     track.heading = heading_code(frame.headings[i]);
     track.up = {};
-    if (!frame.ups.empty()) {
-      const Vec3d& up = frame.ups[i];
+    if (!frame.up_vectors.empty()) {
+      const Vec3d& up = frame.up_vectors[i];
       const double size = length(up);
       if (!(size > 1e-100 && size < 1e100)) return bad_avatar(track.id, "has no axis");
       track.up = up_code(up);

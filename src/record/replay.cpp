@@ -339,7 +339,7 @@ Result<void> Replay::read(uint64_t index, RecordedFrame& frame) {
   }
   const std::span<const Track> tracks = s.decoder.tracks();
   frame.resize(tracks.size());
-  frame.ups.resize(s.info.leans ? tracks.size() : 0);
+  frame.up_vectors.resize(s.info.leans ? tracks.size() : 0);
   for (size_t i = 0; i < tracks.size(); ++i) {
     const Track& t = tracks[i];
     frame.ids[i] = t.id;
@@ -351,7 +351,7 @@ Result<void> Replay::read(uint64_t index, RecordedFrame& frame) {
     frame.positions[i] = {metres(0), metres(1), metres(2)};
     frame.radii[i] = static_cast<float>(t.radius) / 1000.0F;
     frame.headings[i] = heading_of(t.heading);
-    if (s.info.leans) frame.ups[i] = up_of(t.up);
+    if (s.info.leans) frame.up_vectors[i] = up_of(t.up);
     if (t.avatar_class >= s.info.classes.size()) return s.bad_chunk(chunk);
   }
   return {};
@@ -378,7 +378,7 @@ void RecordedFrame::resize(size_t avatars) {
 }
 
 FrameView RecordedFrame::view() const {
-  return {time, step, state_hash, ids, classes, positions, radii, headings, ups};
+  return {time, step, state_hash, ids, classes, positions, radii, headings, up_vectors};
 }
 
 }  // namespace throng

@@ -60,8 +60,8 @@ Result<void> export_csv(Replay& replay, const std::string& path, const ExportCon
                       fmt::format_to(out, "{},{},{},{:.4f},{:.4f},{:.4f},{:.4f}", frame.step,
                                      frame.ids[i], classes[frame.classes[i]].name, p.x, p.y, p.z,
                                      frame.radii[i]);
-                      if (!frame.ups.empty()) {
-                        const Vec3d& up = frame.ups[i];
+                      if (!frame.up_vectors.empty()) {
+                        const Vec3d& up = frame.up_vectors[i];
                         fmt::format_to(out, ",{:.4f},{:.4f},{:.4f}", up.x, up.y, up.z);
                       }
                       text.push_back('\n');

@@ -185,7 +185,7 @@ Result<void> check_chart(const Chart& chart) {
       return bad("the values of x must be finite and ascend");
     }
   }
-  if (!is_sound(chart.most)) return bad("the top of the y axis must be finite");
+  if (!is_sound(chart.max)) return bad("the top of the y axis must be finite");
   for (const ChartLine& line : chart.lines) {
     const bool sizes = line.values.size() == chart.x.size() &&
                        (line.spread.empty() || line.spread.size() == chart.x.size());
@@ -209,7 +209,7 @@ Result<Image> draw_chart(const Chart& chart) {
   frame.plot = {90 * u, head + 34 * u, chart.width - 130 * u, 520 * u};
   frame.x_low = std::min(0.0, chart.x.front());
   frame.x_high = chart.x.back();
-  double top = chart.most;
+  double top = chart.max;
   if (top == 0) {
     for (const ChartLine& line : chart.lines) {
       for (const double v : line.values) top = std::max(top, v);

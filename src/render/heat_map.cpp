@@ -35,7 +35,7 @@ Result<void> check_map(const HeatMap& map) {
     return bad("needs cells of more than 0 m at a finite place");
   }
   const auto sound = [](double v) { return v >= 0 && v < 1e15; };
-  if (!std::ranges::all_of(map.values, sound) || !sound(map.most)) {
+  if (!std::ranges::all_of(map.values, sound) || !sound(map.max)) {
     return bad("has a value below 0 or one that is not finite");
   }
   return {};
@@ -136,7 +136,7 @@ Result<Image> draw_heat_map(const HeatMap& map) {
     draw_text(canvas, {plot.x, (80 + 22 * static_cast<double>(i)) * u}, map.notes[i],
               {.size = 11 * u, .colour = kFaintInk});
   }
-  double top = map.most > 0 ? map.most : *std::ranges::max_element(map.values);
+  double top = map.max > 0 ? map.max : *std::ranges::max_element(map.values);
   if (!(top > 0)) top = 1;
   const double pixel = 1 / (scale * map.cell);  // in cells
   const auto x0 = static_cast<int32_t>(plot.x), y0 = static_cast<int32_t>(plot.y);

@@ -437,7 +437,7 @@ class NodePicture {
         if (!std::binary_search(shown_.begin(), shown_.end(), arc.to)) continue;
         ++link_count_;
         // Large nodes that hold smaller ones would only add lines across them.
-        const bool seen = arc.leaps || (info.terminal && nodes_.node(arc.to).terminal);
+        const bool seen = arc.over_hole || (info.terminal && nodes_.node(arc.to).terminal);
         if (config_.links && seen) links_.push_back({n, arc});
       }
     }
@@ -446,8 +446,9 @@ class NodePicture {
   void draw(DepthCanvas& canvas, const Link& link) const {
     const NodeArc& arc = link.arc;
     const Vec3d a =
-        arc.leaps ? nodes_.point(link.from, arc.from_s, arc.from_t) : nodes_.middle(link.from);
-    const Vec3d b = arc.leaps ? nodes_.point(arc.to, arc.to_s, arc.to_t) : nodes_.middle(arc.to);
+        arc.over_hole ? nodes_.point(link.from, arc.from_s, arc.from_t) : nodes_.middle(link.from);
+    const Vec3d b =
+        arc.over_hole ? nodes_.point(arc.to, arc.to_s, arc.to_t) : nodes_.middle(arc.to);
     if (arc.kind == LinkKind::kDrop) {
       const Vec3d over{b.x, a.y, b.z};
       canvas.line(at(a, 0.6), at(over, 0.6), 3, kDropLink);
@@ -458,8 +459,8 @@ class NodePicture {
         std::max(nodes_.node(link.from).inclination, nodes_.node(arc.to).inclination));
     Rgb colour = steepest > 90 ? kOverLink : steepest > 45 ? kSteepLink : kWalkLink;
     if (arc.kind == LinkKind::kStep) colour = kStepLink;
-    if (arc.leaps) colour = kHoleLink;
-    canvas.line(at(a, 0.6), at(b, 0.6), arc.leaps ? 3 : 2, colour);
+    if (arc.over_hole) colour = kHoleLink;
+    canvas.line(at(a, 0.6), at(b, 0.6), arc.over_hole ? 3 : 2, colour);
   }
 
   // Clips a segment of the path to the ground that is drawn; false if nothing is left.

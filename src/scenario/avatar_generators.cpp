@@ -99,7 +99,7 @@ void AvatarGenerators::State::look(Vec3d eye, const Sight& can_see) {
   active.clear();
   std::vector<uint32_t> near, seen;
   for (uint32_t i = 0; i < cells.size(); ++i) {
-    if (cells[i].area > 0 && flat_distance(cells[i].box, eye) <= config.reach) near.push_back(i);
+    if (cells[i].area > 0 && flat_distance(cells[i].box, eye) <= config.radius) near.push_back(i);
   }
   for (const uint32_t i : near) {
     if (!can_see(cells[i].box)) continue;
@@ -242,13 +242,13 @@ AvatarGenerators::~AvatarGenerators() = default;
 
 Result<AvatarGenerators> AvatarGenerators::make(const World& world, const GeneratorConfig& config,
                                                 Context& context) {
-  const bool sound = config.density > 0 && config.density <= 1 && config.reach > 0 &&
-                     config.band > 0 && config.steps_a_look > 0 && config.workers >= 0 &&
+  const bool sound = config.density > 0 && config.density <= 1 && config.radius > 0 &&
+                     config.band > 0 && config.steps_per_query > 0 && config.workers >= 0 &&
                      config.people >= 0 && std::isfinite(config.people);
   if (!sound) {
     return Error{Errc::kBadConfig,
                  "generators: need a density over 0 and up to 1, no people less than none, and "
-                 "reach, band and steps_a_look over 0"};
+                 "radius, band and steps_per_query over 0"};
   }
   const WorldSummary summary = world.summary();
   if (config.avatar_class < 0 ||
@@ -330,7 +330,7 @@ Result<GeneratorReport> AvatarGenerators::update(Crowd& crowd, Vec3d eye, const 
   State& s = *state_;
   if (s.steps_since_look < 0) return populate(crowd, eye, can_see, context);
   ++s.steps_since_look;
-  if (s.steps_since_look >= s.config.steps_a_look || length(eye - s.looked_from) > 2) {
+  if (s.steps_since_look >= s.config.steps_per_query || length(eye - s.looked_from) > 2) {
     s.look(eye, can_see);
   }
   const uint32_t removed = s.take_away(crowd, can_see);

@@ -153,7 +153,7 @@ Threat greatest_threat(const Body& self, std::span<const Body> others,
   return greatest;
 }
 
-double threat_reach(const Body& self, double alert, const Model& model) {
+double threat_radius(const Body& self, double alert, const Model& model) {
   // Eq. 10's other length is at least half of the true one.
   const double joint = (self.fields.alert + alert) * (model.length == Length::kTrue ? 1 : 2);
   // A body outside the alert field now is no threat.

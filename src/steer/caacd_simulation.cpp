@@ -148,7 +148,7 @@ void Simulation::sense(size_t i) {
     steer_[i] = {};
     return;
   }
-  const double radius = threat_reach(self, largest_alert_, model_);
+  const double radius = threat_radius(self, largest_alert_, model_);
   const Threat greatest = greatest_threat(self, space_.bodies, space_.obstacles, model_, radius);
   threats_[i] = greatest;
   if (greatest.level != State::kTolerable) {

@@ -55,11 +55,11 @@ Result<Outcome> run_once(const StudyConfig& config, const Model& model, int32_t 
 StudyCell sum_up(std::span<const Outcome> outcomes, int32_t avatars) {
   StudyCell cell;
   const auto n = static_cast<double>(outcomes.size());
-  cell.least = outcomes.front().counts.collisions;
+  cell.min_collisions = outcomes.front().counts.collisions;
   for (const Outcome& o : outcomes) {
     cell.mean += static_cast<double>(o.counts.collisions) / n;
-    cell.least = std::min(cell.least, o.counts.collisions);
-    cell.most = std::max(cell.most, o.counts.collisions);
+    cell.min_collisions = std::min(cell.min_collisions, o.counts.collisions);
+    cell.max_collisions = std::max(cell.max_collisions, o.counts.collisions);
     cell.obstacle_mean += static_cast<double>(o.counts.obstacle_collisions) / n;
     cell.arrived += static_cast<double>(o.counts.arrived) / (n * avatars);
     cell.waiting += static_cast<double>(o.counts.waiting) / (n * avatars);

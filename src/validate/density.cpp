@@ -137,7 +137,7 @@ ValidationChart diagram(const std::string& name, const std::string& title,
   chart.chart.title = title;
   chart.chart.x_title = "density, 1/m2";
   chart.chart.y_title = flow ? "flow, p/(m s)" : "speed, m/s";
-  if (!flow) chart.chart.most = 1.6;  // room for the legend
+  if (!flow) chart.chart.max = 1.6;  // room for the legend
   ChartLine ours{.name = "throng", .kind = LineKind::kStrong};
   ChartLine theirs{.name = "[Weidmann93]", .kind = LineKind::kDashed};
   for (const DiagramPoint& p : points) {

@@ -31,7 +31,7 @@ Result<PlaneCrowd> PlaneCrowd::build(const PlaneConfig& plane, const AvatarClass
   auto crowd = Crowd::create(*world, {.dt = kStep,
                                       .seed = config.seed,
                                       .workers = config.workers,
-                                      .ways = routing,
+                                      .routing = routing,
                                       .model = config.model});
   if (!crowd) return crowd.error();
   return PlaneCrowd(*std::move(world), *std::move(crowd));
@@ -105,7 +105,7 @@ void PlaneCrowd::step() {
 void PlaneCrowd::report(ValidationResult& result) const {
   result.faults.overlaps += faults_.overlaps;
   result.faults.wall_entries += faults_.wall_entries;
-  result.looks += checks_;
+  result.checks += checks_;
   result.simulated += time();
 }
 

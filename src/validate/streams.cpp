@@ -149,8 +149,8 @@ Result<ValidationResult> lanes(const ValidationConfig& config, Context& context)
   ValidationChart order{"lanes_order", {}}, speed{"lanes_speed", {}};
   order.chart.title = "Order of lanes in a counter-flow";
   order.chart.y_title = "order, 1: every row goes one way";
-  order.chart.most = 1.4;  // room for the legend
-  speed.chart.most = 1.9;
+  order.chart.max = 1.4;  // room for the legend
+  speed.chart.max = 1.9;
   speed.chart.title = "Speed in a counter-flow";
   speed.chart.y_title = "speed along the corridor, m/s";
   for (const double density : {0.3, 0.6, 1.0, 1.5, 2.0}) {

@@ -27,7 +27,7 @@ constexpr ObservedName kObserved[] = {
     {"left", Observed::kLeft},
     {"premovement", Observed::kPremovement},
     {"delay", Observed::kDelay},
-    {"desired_speed", Observed::kWish},
+    {"desired_speed", Observed::kDesiredSpeed},
     {"speed", Observed::kSpeed},
     {"people", Observed::kPeople},
     {"stayed", Observed::kStayed},
@@ -110,7 +110,7 @@ void names_of(ConfigReader& r, const char* key, const std::vector<Thing>& things
 
 bool is_per_person(Observed of) {
   return of == Observed::kTime || of == Observed::kLeft || of == Observed::kPremovement ||
-         of == Observed::kDelay || of == Observed::kWish || of == Observed::kSpeed;
+         of == Observed::kDelay || of == Observed::kDesiredSpeed || of == Observed::kSpeed;
 }
 bool is_of_others(Observed of) {
   return of == Observed::kRatio || of == Observed::kDifference || of == Observed::kRise;
@@ -152,7 +152,7 @@ void read_measure(ConfigReader& r, Trial& trial) {
   r.require("of");
   r.text("name", m.name);
   m.of = kObserved[pick(r, "of", kObserved)].of;
-  m.take = kStatistics[pick(r, "statistic", kStatistics)].statistic;
+  m.statistic = kStatistics[pick(r, "statistic", kStatistics)].statistic;
   names_of(r, "source", s.sources, m.sources);
   names_of(r, "profile", s.profiles, m.profiles);
   names_of(r, "journey", s.journeys, m.journeys);
@@ -179,16 +179,16 @@ void read_measure(ConfigReader& r, Trial& trial) {
   if (std::ranges::any_of(trial.measures, [&](const auto& o) { return o.name == m.name; })) {
     refuse("name", "the name stands here twice");
   }
-  if (m.take == Statistic::kOverall && m.of != Observed::kSpeed) {
+  if (m.statistic == Statistic::kOverall && m.of != Observed::kSpeed) {
     refuse("statistic", "only a speed has an overall value");
   }
-  if (m.take == Statistic::kFit && m.of != Observed::kPremovement && m.of != Observed::kWish &&
-      m.of != Observed::kSpeed) {
+  if (m.statistic == Statistic::kFit && m.of != Observed::kPremovement &&
+      m.of != Observed::kDesiredSpeed && m.of != Observed::kSpeed) {
     refuse("statistic", "only what the scenario draws can fit: premovement, desired_speed, speed");
   }
   const bool has_distribution =
       m.of == Observed::kPremovement ? m.sources.size() == 1 : m.profiles.size() == 1;
-  if (m.take == Statistic::kFit && !has_distribution) {
+  if (m.statistic == Statistic::kFit && !has_distribution) {
     refuse("statistic", "a fit needs one source for premovement, or one profile for a speed");
   }
   if (!is_per_person(m.of) && m.of != Observed::kDensity) {

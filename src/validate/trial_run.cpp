@@ -154,14 +154,14 @@ class Observer {
   }
 
   static std::string unit(const TrialMeasure& m) {
-    if (m.take == Statistic::kFit) return "p";
+    if (m.statistic == Statistic::kFit) return "p";
     switch (m.of) {
       case Observed::kTime:
       case Observed::kLeft:
       case Observed::kPremovement:
       case Observed::kDelay:
         return "s";
-      case Observed::kWish:
+      case Observed::kDesiredSpeed:
       case Observed::kSpeed:
         return "m/s";
       case Observed::kDensity:
@@ -180,7 +180,7 @@ class Observer {
     for (const Visit& v : visits) {
       if (!counts(m, v)) continue;
       if (m.of == Observed::kPremovement) numbers.push_back(v.started - v.entered);
-      if (m.of == Observed::kWish) numbers.push_back(v.speed);
+      if (m.of == Observed::kDesiredSpeed) numbers.push_back(v.speed);
       if (m.of == Observed::kDelay && first_step_[v.person] >= 0) {
         numbers.push_back(first_step_[v.person] - v.started);
       }
@@ -210,7 +210,7 @@ class Observer {
     const auto [min, max] = std::ranges::minmax(numbers);
     double sum = 0;
     for (const double x : numbers) sum += x;
-    switch (m.take) {
+    switch (m.statistic) {
       case Statistic::kMin:
         return min;
       case Statistic::kMax:
@@ -264,7 +264,7 @@ class Observer {
       default:
         break;
     }
-    if (m.take != Statistic::kOverall) return statistic_of(m, of_each(k, visits));
+    if (m.statistic != Statistic::kOverall) return statistic_of(m, of_each(k, visits));
     double distance = 0, time = 0;
     for (const double d : data_[k].distance) distance += d;
     for (const double t : data_[k].time) time += t;
@@ -308,7 +308,7 @@ Result<ValidationResult> run_trial(const Trial& trial, const ValidationConfig& c
     result.faults.overlaps += found.overlaps;
     result.faults.wall_entries += found.wall_entries;
     result.faults.obstacle_entries += found.obstacle_entries;
-    ++result.looks;
+    ++result.checks;
     result.simulated = report->time;
     if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
   }

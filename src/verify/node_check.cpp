@@ -126,7 +126,7 @@ class NodeJudge {
       });
       sample.one_way = returns ? 0 : 1;
     }
-    if (!arc.leaps) return;
+    if (!arc.over_hole) return;
     sample.leaps = 1;
     const int32_t c = config_.avatar_class;
     const NodePlace from = nodes_.place(c, node, arc.from_s, arc.from_t);
@@ -192,7 +192,7 @@ Result<NodeVerifyReport> verify_nodes(const Nodes& nodes, const Scene& source,
       };
       report.places += s.exists ? 1 : 0;
       report.arcs += s.arcs;
-      report.leaps += s.leaps;
+      report.hole_links += s.leaps;
       count(s.entered, report.entered, "entered", s.entered_at);
       count(s.unsupported, report.unsupported, "unsupported", s.feet);
       count(s.steeper, report.steeper, "steeper", s.feet);

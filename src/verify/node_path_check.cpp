@@ -77,7 +77,7 @@ class Follower {
         built_(with_obstacles(scene, config.obstacles)),
         tree_(config.obstacles.empty() ? scene : built_, config.workers),
         avatar_(nodes.summary().classes[static_cast<size_t>(config.avatar_class)]) {
-    (void)nodes.reach(config.avatar_class, &part_);
+    (void)nodes.components(config.avatar_class, &part_);
     // What leads one way joins no parts, but leads from one into another.
     const auto bit = static_cast<uint16_t>(1u << config.avatar_class);
     for (uint32_t n = 0; n < nodes.node_count(); ++n) {
@@ -118,7 +118,7 @@ class Follower {
     for (const NodePathLink& link : path.links) {
       ++walked.links;
       ++walked.kinds[static_cast<size_t>(link.kind)];
-      walked.leaps += link.leaps ? 1 : 0;
+      walked.leaps += link.over_hole ? 1 : 0;
     }
     size_t next = 0;
     for (size_t i = 1; i < path.points.size(); ++i) {
@@ -126,7 +126,7 @@ class Follower {
       const bool linked = next < path.links.size() && path.links[next].point == i;
       // (Where a body begins to fall it is in the air.)
       const bool in_air = !path.points[i].place;
-      const bool leaps = in_air || (linked && path.links[next].leaps);
+      const bool leaps = in_air || (linked && path.links[next].over_hole);
       if (linked && path.links[next].kind == LinkKind::kDrop) {
         check_drop(path.points, i, walked);
       }
@@ -272,7 +272,7 @@ Result<NodePathReport> verify_node_paths(const Nodes& nodes, const Scene& source
       count(g.torn, report.torn, "torn", g.torn_at);
       report.segments += g.segments;
       report.links += g.links;
-      report.leaps += g.leaps;
+      report.hole_links += g.leaps;
       report.poses += g.poses;
       report.length += g.length;
       report.straight += g.straight;

@@ -325,7 +325,7 @@ Result<void> CrowdPlayer::keep_populated() {
     GeneratorConfig config;
     config.avatar_class = commonest_class();
     config.home = place_under(now.eye, config.avatar_class);
-    config.reach = start_.sight;
+    config.radius = start_.sight;
     config.seed = start_.seed;
     config.workers = workers_;
     config.people = start_.avatars;

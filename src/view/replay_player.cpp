@@ -34,10 +34,11 @@ std::shared_ptr<const TimelineFrame> ReplayPlayer::read(uint64_t index) {
   frame->resize(recorded_.size());
   frame->ids = recorded_.ids;
   frame->classes = recorded_.classes;
-  const bool lean = std::any_of(recorded_.ups.begin(), recorded_.ups.end(), [](Vec3d up) {
-    return !(up == Vec3d{0, 1, 0});
-  });
-  if (lean) frame->ups = recorded_.ups;
+  const bool lean =
+      std::any_of(recorded_.up_vectors.begin(), recorded_.up_vectors.end(), [](Vec3d up) {
+        return !(up == Vec3d{0, 1, 0});
+      });
+  if (lean) frame->ups = recorded_.up_vectors;
   for (size_t i = 0; i < recorded_.size(); ++i) {
     const Vec3d p = recorded_.positions[i] - origin_;
     frame->x[i] = static_cast<float>(p.x);

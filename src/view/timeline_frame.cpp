@@ -163,7 +163,7 @@ void BlendedCrowd::blend(const TimelineFrame& a, const TimelineFrame& b, double 
     crowds_.push_back({.atlas = std::get<0>(key),
                        .clip = std::get<1>(key),
                        .avatars = {g.x, g.y, g.z, g.heading, g.phase, g.look},
-                       .ups = g.ups});
+                       .up_vectors = g.ups});
   }
 }
 

@@ -171,14 +171,14 @@ LevelTileContent World::level_tile(uint32_t index) const {
   return out;
 }
 
-Place World::find_place(int32_t avatar_class, Vec3d position, double reach) const {
+Place World::find_place(int32_t avatar_class, Vec3d position, double vertical_tolerance) const {
   if (!good_class(*data_, avatar_class) || !std::isfinite(position.x + position.y + position.z))
     return {};
   const GroundPoint p = to_ground(*data_, position.x, position.z);
   if (!in_grid(*data_, p)) return {};
   const auto tile = data_->tile_levels(p.cell_x() >> 6, p.cell_z() >> 6);
   Place best;
-  double best_distance = reach;
+  double best_distance = vertical_tolerance;
   for (uint32_t i = tile.first; i < tile.last; ++i) {
     const GroundLevel level =
         ground_level(*tile.zone, tile.zone_first + i - tile.first, i, avatar_class);

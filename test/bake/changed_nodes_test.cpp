@@ -178,7 +178,7 @@ TEST_F(ChangedNodes, LevelTilesAndLinksAreMadeWhereAChangeAffectsThem) {
       nodes.off_mesh_links.push_back({.from = {3.2 * 4 + 1.6, 0.5, 3.2 * 2 + 1.6},
                                       .to = {3.2 * (6 + i % 5) + 2, 0.8, 3.2 * 10 + 1.6},
                                       .avatar_class = i % 2,
-                                      .both_ways = i % 4 == 0});
+                                      .two_way = i % 4 == 0});
     } else {
       add_crate(scene, {draw(16, 60), draw(0, 2.5), draw(10, 28)},
                 {draw(0.2, 3), draw(0.2, 2), draw(0.2, 3)});

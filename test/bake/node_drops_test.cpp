@@ -200,7 +200,7 @@ TEST(NodeDrops, LeadDownOnlyForClassesThatDrop) {
   for (uint32_t n = 0; n < nodes.node_count(); ++n) {
     for (const NodeArc& arc : nodes.arcs(n)) {
       if (arc.kind != LinkKind::kDrop) continue;
-      ASSERT_TRUE(arc.leaps);
+      ASSERT_TRUE(arc.over_hole);
       const Vec3d from = nodes.point(n, arc.from_s, arc.from_t);
       const Vec3d to = nodes.point(arc.to, arc.to_s, arc.to_t);
       for (size_t c = 0; c < 3; ++c) {
@@ -241,7 +241,7 @@ TEST(NodeDrops, LeadDownOnlyForClassesThatDrop) {
     EXPECT_EQ(path.end, PathEnd::kUnreachable) << c;
   }
   // What leads one way holds nothing together.
-  EXPECT_EQ(nodes.reach(0).size(), nodes.reach(1).size());
+  EXPECT_EQ(nodes.components(0).size(), nodes.components(1).size());
 }
 
 // The oracle of src/verify walks the paths; which node reaches which it finds from the arcs.

@@ -82,7 +82,7 @@ TEST(NodeSteps, NoBodyGetsOverAKerbWithoutOne) {
         const auto adult = parts_without_steps(nodes, 0);
         ASSERT_EQ(adult.size(), 2u) << cell << ", " << high << ", " << at;
         EXPECT_GT(adult[1], 80);
-        EXPECT_EQ(nodes.reach(0).size(), 1u);
+        EXPECT_EQ(nodes.components(0).size(), 1u);
         for (uint32_t n = 0; n < nodes.node_count(); ++n) {
           for (const NodeArc& arc : nodes.arcs(n)) {
             if (arc.kind != LinkKind::kStep) continue;

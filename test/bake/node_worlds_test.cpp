@@ -70,10 +70,10 @@ size_t check_arcs(const std::string& name, const Nodes& nodes) {
       const auto back = nodes.arcs(arc.to);
       one_way += std::none_of(back.begin(), back.end(), [&](const NodeArc& b) {
         return b.to == n && b.kind == arc.kind && b.classes == arc.classes &&
-               b.leaps == arc.leaps && b.from_s == arc.to_s && b.to_t == arc.from_t;
+               b.over_hole == arc.over_hole && b.from_s == arc.to_s && b.to_t == arc.from_t;
       });
       ++arcs;
-      leaps += arc.leaps ? 1 : 0;
+      leaps += arc.over_hole ? 1 : 0;
     }
   }
   EXPECT_EQ(one_way, 0u) << name;

@@ -112,7 +112,7 @@ TEST(Nodes, OnLevelTilesPartsAreTheRegionsComponents) {
     ASSERT_TRUE(graph);
     for (int32_t c = 0; c < 4; ++c) {
       std::vector<double> by_nodes, by_regions;
-      for (const NodeComponent& part : nodes.reach(c)) by_nodes.push_back(part.area);
+      for (const NodeComponent& part : nodes.components(c)) by_nodes.push_back(part.area);
       for (const Component& part : graph->components(c)) by_regions.push_back(part.area);
       ASSERT_EQ(by_nodes.size(), by_regions.size()) << name << ", class " << c;
       for (size_t i = 0; i < by_nodes.size(); ++i) {
@@ -136,8 +136,8 @@ TEST(Nodes, ManyClassesShareOneGraph) {
       const Nodes alone = curved ? make(bake(scene, cell, {classes[c]}), scene, {.size = 1.5})
                                  : make(world, scene, {.classes = bit});
       largest = std::max(largest, alone.summary().bytes);
-      const auto one = alone.reach(curved ? 0 : static_cast<int32_t>(c));
-      const auto shared = together.reach(static_cast<int32_t>(c));
+      const auto one = alone.components(curved ? 0 : static_cast<int32_t>(c));
+      const auto shared = together.components(static_cast<int32_t>(c));
       ASSERT_EQ(one.size(), shared.size()) << name << ", " << classes[c].name;
       for (size_t i = 0; i < one.size(); ++i) {
         EXPECT_NEAR(one[i].area, shared[i].area, 1e-6 * (1 + one[i].area))
@@ -191,7 +191,7 @@ TEST(Nodes, NoBodyMeetsATriangleAndNoPromiseIsBroken) {
 TEST(Nodes, ClimbersReachWhatWalkersCannot) {
   const Scene scene = net_scene(9);
   const Nodes nodes = make(bake(scene, 0.25, {AvatarClass{}, climber()}), scene, {.size = 0.5});
-  const auto walker = nodes.reach(0), all = nodes.reach(1);
+  const auto walker = nodes.components(0), all = nodes.components(1);
   ASSERT_FALSE(walker.empty());
   ASSERT_FALSE(all.empty());
   EXPECT_GT(all[0].area, walker[0].area * 1.2);
@@ -211,16 +211,16 @@ TEST(Nodes, OffMeshLinksJoinWhatNothingElseJoins) {
   scene.add_quad({0, 0, 0}, {0, 0, 6}, {6, 0, 6}, {6, 0, 0});
   scene.add_quad({8, 0, 0}, {8, 0, 6}, {14, 0, 6}, {14, 0, 0});
   const World world = bake(scene, 0.2);
-  EXPECT_EQ(make(world, scene).reach(0).size(), 2u);
+  EXPECT_EQ(make(world, scene).components(0).size(), 2u);
   NodeConfig config;
   config.off_mesh_links = {
-      {.from = {4, 0, 3}, .to = {10, 0.5, 3}, .avatar_class = 0, .both_ways = true}};
+      {.from = {4, 0, 3}, .to = {10, 0.5, 3}, .avatar_class = 0, .two_way = true}};
   const Nodes joined = make(world, scene, config);
-  EXPECT_EQ(joined.reach(0).size(), 1u);
-  EXPECT_EQ(joined.reach(1).size(), 2u);  // For its class only.
-  config.off_mesh_links[0].both_ways = false;
+  EXPECT_EQ(joined.components(0).size(), 1u);
+  EXPECT_EQ(joined.components(1).size(), 2u);  // For its class only.
+  config.off_mesh_links[0].two_way = false;
   const Nodes one_way = make(world, scene, config);
-  EXPECT_EQ(one_way.reach(0).size(), 2u);  // Over a one-way link no body comes back.
+  EXPECT_EQ(one_way.components(0).size(), 2u);  // Over a one-way link no body comes back.
   size_t off_mesh_links = 0, back = 0;
   for (uint32_t n = 0; n < one_way.node_count(); ++n) {
     for (const NodeArc& arc : one_way.arcs(n)) {
@@ -259,7 +259,7 @@ TEST(Nodes, AreWrittenAndOpened) {
   EXPECT_EQ(opened->node_count(), made.node_count());
   EXPECT_EQ(opened->summary().arcs, made.summary().arcs);
   for (int32_t c = 0; c < 7; ++c) {
-    const auto a = made.reach(c), b = opened->reach(c);
+    const auto a = made.components(c), b = opened->components(c);
     ASSERT_EQ(a.size(), b.size());
     for (size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].area, b[i].area);
     EXPECT_EQ(made.random_place(c, 5, 6).feet, opened->random_place(c, 5, 6).feet);
@@ -305,7 +305,7 @@ TEST(Nodes, OverGroundThatCannotBeReadNoBodyStands) {
   EXPECT_GT(lost, 100u);
   EXPECT_GT(found, 1000u);
   for (uint64_t n = 0; n < 1000; ++n) (void)nodes->random_place(0, 1, n);
-  EXPECT_GT(nodes->reach(0).size(), 0u);
+  EXPECT_GT(nodes->components(0).size(), 0u);
   const auto checked = nodes->check_all();
   ASSERT_FALSE(checked);
   EXPECT_NE(checked.error().message.find(zone), std::string::npos) << checked.error().message;

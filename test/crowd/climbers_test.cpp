@@ -111,7 +111,7 @@ class Stage {
   [[nodiscard]] NodePlace place(int32_t avatar_class, uint64_t seed, uint64_t n) {
     if (parts_.size() <= static_cast<size_t>(avatar_class)) parts_.resize(kMaxAvatarClasses);
     std::vector<uint32_t>& part = parts_[static_cast<size_t>(avatar_class)];
-    if (part.empty()) (void)nodes_.reach(avatar_class, &part);
+    if (part.empty()) (void)nodes_.components(avatar_class, &part);
     for (uint64_t tries = 0;; ++tries) {
       const NodePlace place = nodes_.random_place(avatar_class, seed, n << 16 | tries);
       EXPECT_TRUE(place);

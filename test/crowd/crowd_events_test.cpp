@@ -98,7 +98,7 @@ TEST(CrowdEvents, watching_changes_nothing_and_has_limits) {
 TEST(CrowdEvents, tell_who_is_stuck) {
   const World world = plane();
   Context context;
-  auto crowd = Crowd::create(world, {.ways = Routing::kStraight, .no_progress_after = 2});
+  auto crowd = Crowd::create(world, {.routing = Routing::kStraight, .no_progress_after = 2});
   ASSERT_TRUE(crowd);
   const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 1); };
   const std::vector<AvatarSpawn> spawns = {

@@ -272,7 +272,7 @@ TEST(Crowd, AnAvatarTakesNoMoreThan160BytesBesideItsWay) {
     crowd.set_goals(ids, random_goals(world, count, 3));
     for (int step = 0; step < 5; ++step) crowd.step();
     EXPECT_LE(crowd.memory().avatars, 160 * count);
-    EXPECT_GE(crowd.memory().ways, 100 * count);
+    EXPECT_GE(crowd.memory().paths, 100 * count);
   }
 }
 

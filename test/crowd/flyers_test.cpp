@@ -464,7 +464,7 @@ TEST(Flyers, FindTheirWaysFromAndToWhereTheyTouchAWall) {
 
 TEST(Flyers, GoStraightWhereWaysAreNotAskedFor) {
   Stage stage(open_air(30, 15));
-  Crowd crowd = made(stage.world(), {.ways = Routing::kStraight});
+  Crowd crowd = made(stage.world(), {.routing = Routing::kStraight});
   std::vector<AvatarSpawn> spawns = {flyer_at({5, 5, 5}),
                                      {.place = stage.ground({8, 0, 8}), .avatar_class = kFlyer},
                                      flyer_at({9, 9, 9})};

@@ -42,7 +42,7 @@ class Figure {
     const std::vector<float> zero{0};
     const std::vector<uint16_t> turn{static_cast<uint16_t>(heading * 65536)}, phase{9000}, look{7};
     const DrawnCrowd crowd{
-        .atlas = 0, .clip = 0, .avatars = {zero, zero, zero, turn, phase, look}, .ups = ups};
+        .atlas = 0, .clip = 0, .avatars = {zero, zero, zero, turn, phase, look}, .up_vectors = ups};
     DrawingReport report;
     auto drawn = drawing_.draw({&crowd, 1}, config, &report);
     EXPECT_TRUE(drawn) << drawn.error().message;
@@ -232,7 +232,7 @@ TEST(GlLeaning, OnlyAvatarsOutsideThePictureAreLeftOut) {
     ups.push_back(up * (1 / length(up)));
   }
   const DrawnCrowd crowd{
-      .atlas = 0, .clip = 0, .avatars = {x, y, z, heading, phase, look}, .ups = ups};
+      .atlas = 0, .clip = 0, .avatars = {x, y, z, heading, phase, look}, .up_vectors = ups};
   EyeCamera camera{.eye = {3, 5, 20}, .target = {-2, 1, -4}, .field_of_view = 0.7, .aspect = 1.5};
   std::vector<LeaningInstance> views(x.size());
   const LevelCounts counts = pack_leaning(*atlas, crowd, {.camera = camera, .from_direction = {}},

@@ -314,7 +314,8 @@ TEST(FlightChanges, WaysAreWhereTheCellsHoldTogetherAndNobodyTouchesAPrism) {
         const Vec3d from = end_of(world, baked, seed, 2 * n),
                     to = end_of(world, baked, seed, 5 * n + 1);
         const int32_t a = cells.label(from), b = cells.label(to);
-        flight.find({.from = from, .to = to, .reach = 0.05, .by_turns = n % 2 == 0}, path);
+        flight.find({.from = from, .to = to, .vertical_tolerance = 0.05, .by_turns = n % 2 == 0},
+                    path);
         ASSERT_EQ(faults(prisms, path), 0) << seed << ", " << n;
         if (a > 0 && b > 0) {
           if (a == b) {

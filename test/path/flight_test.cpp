@@ -141,9 +141,9 @@ TEST(Flight, KnowsWhichGroundLeadsIntoWhichAir) {
       const bool together = std::find(over.begin(), over.end(), of_air) != over.end();
       (together ? reached : parted) += 1;
       const PathEnd expected = together ? PathEnd::kReached : PathEnd::kUnreachable;
-      flight.find({.from = place.position, .to = *point, .reach = 0.05}, path);
+      flight.find({.from = place.position, .to = *point, .vertical_tolerance = 0.05}, path);
       EXPECT_EQ(path.end, expected) << "pair " << n;
-      flight.find({.from = *point, .to = place.position, .reach = 0.05}, path);
+      flight.find({.from = *point, .to = place.position, .vertical_tolerance = 0.05}, path);
       EXPECT_EQ(path.end, expected) << "pair " << n << ", back";
     }
   }

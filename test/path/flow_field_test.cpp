@@ -26,7 +26,7 @@ LiveGround live(const World& world, int32_t avatar_class = 0) {
 
 FlowField field(const LiveGround& ground, const std::vector<Place>& goals, double most = 1e9) {
   Context context;
-  auto made = FlowField::make(ground, goals, {.most = most}, context);
+  auto made = FlowField::make(ground, goals, {.max_distance = most}, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -52,7 +52,7 @@ TEST(FlowField, IsAsFarAsTheNearestGoalByTheExactSearch) {
         if (best.end == PathEnd::kReached) nearest = std::min(nearest, best.length);
       }
       const double distance = flow.distance(from);
-      flow.way(from, way);
+      flow.find_path(from, way);
       ASSERT_EQ(std::isfinite(distance), std::isfinite(nearest));
       if (!std::isfinite(nearest)) {
         EXPECT_EQ(way.end, PathEnd::kUnreachable);
@@ -134,7 +134,7 @@ TEST(FlowField, StopsWhereAsked) {
   EXPECT_FALSE(std::isfinite(near.distance(beside)));
   EXPECT_FALSE(near.next(beside));
   Path way;
-  near.way(beside, way);
+  near.find_path(beside, way);
   EXPECT_EQ(way.end, PathEnd::kUnreachable);
 }
 
@@ -146,7 +146,7 @@ TEST(FlowField, RefusesNonsense) {
   const std::vector<Place> nowhere(2);
   EXPECT_FALSE(FlowField::make(ground, nowhere, {}, context));
   const std::vector<Place> goals{world.find_place(0, {3, 0, 3}, 0.5)};
-  EXPECT_FALSE(FlowField::make(ground, goals, {.most = -1}, context));
+  EXPECT_FALSE(FlowField::make(ground, goals, {.max_distance = -1}, context));
   context.cancel = true;
   EXPECT_FALSE(FlowField::make(ground, goals, {}, context));
   context.cancel = false;

@@ -66,7 +66,7 @@ TEST(NodePath, EveryWayCanBeGoneByItsBody) {
       EXPECT_EQ(report->torn, 0u) << name << ", class " << c;
       EXPECT_EQ(report->disagree, 0u) << name << ", class " << c;
       EXPECT_EQ(report->reached + report->parted, report->pairs) << name << ", class " << c;
-      leaps += report->leaps;
+      leaps += report->hole_links;
     }
   };
   uint64_t leaps = 0;
@@ -293,7 +293,7 @@ TEST(NodePath, JumpsLeadOnlyWhereTheyAreGiven) {
   const auto nodes = Nodes::make(
       bake(scene, 0.2), scene,
       {.off_mesh_links =
-           {{.from = {4, 0, 3}, .to = {10, 0, 3}, .avatar_class = 0, .both_ways = false}}},
+           {{.from = {4, 0, 3}, .to = {10, 0, 3}, .avatar_class = 0, .two_way = false}}},
       context);
   ASSERT_TRUE(nodes);
   NodePathFinder found = finder(*nodes, 0);
@@ -306,7 +306,7 @@ TEST(NodePath, JumpsLeadOnlyWhereTheyAreGiven) {
       std::find_if(path.links.begin(), path.links.end(),
                    [](const NodePathLink& l) { return l.kind == LinkKind::kOffMesh; });
   ASSERT_NE(off_mesh_link, path.links.end());
-  EXPECT_TRUE(off_mesh_link->leaps);
+  EXPECT_TRUE(off_mesh_link->over_hole);
   EXPECT_NEAR(path.points[off_mesh_link->point].place.feet.x, 10, 0.21);
   found.find(there, here, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);

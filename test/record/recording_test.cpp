@@ -162,20 +162,21 @@ std::vector<RecordedFrame> leaning_run(uint64_t seed, size_t frames, size_t most
       const auto axis = [&](uint64_t n) { return 2 * random_unit(seed, id, 3 * n) - 1; };
       const uint64_t turns = id % 4 == 1 ? frame.step / 12 : frame.step;
       const Vec3d up{axis(turns), axis(turns + 1000000), axis(turns + 2000000)};
-      frame.ups.push_back(id % 4 == 0 ? Vec3d{0, 2, 0} : up);
+      frame.up_vectors.push_back(id % 4 == 0 ? Vec3d{0, 2, 0} : up);
     }
   }
   return run;
 }
 
 void expect_same_axes(const RecordedFrame& wrote, const RecordedFrame& read) {
-  ASSERT_EQ(read.ups.size(), wrote.size());
+  ASSERT_EQ(read.up_vectors.size(), wrote.size());
   for (size_t i = 0; i < wrote.size(); ++i) {
     const auto at = std::lower_bound(read.ids.begin(), read.ids.end(), wrote.ids[i]);
-    const Vec3d a = wrote.ups[i] * (1 / length(wrote.ups[i])), b = read.ups[at - read.ids.begin()];
+    const Vec3d a = wrote.up_vectors[i] * (1 / length(wrote.up_vectors[i])),
+                b = read.up_vectors[at - read.ids.begin()];
     EXPECT_NEAR(length(b), 1, 1e-12);
     EXPECT_LT(length(a - b), 0.06 * 3.14159265 / 180) << a.x << ' ' << a.y << ' ' << a.z;
-    EXPECT_EQ(up_of(up_code(wrote.ups[i])), b);  // What was written, to the bit.
+    EXPECT_EQ(up_of(up_code(wrote.up_vectors[i])), b);  // What was written, to the bit.
     if (wrote.ids[i] % 4 == 0) {
       EXPECT_EQ(b, (Vec3d{0, 1, 0}));
     }
@@ -219,7 +220,7 @@ TEST(Recording, WithoutAnybodyWhoLeansStaysAsItWas) {
   const std::string path = folder.path() + "/run.replay", other = folder.path() + "/other.replay";
   auto run = random_run(4, 40, 20);
   record(path, run);
-  for (RecordedFrame& frame : run) frame.ups.assign(frame.size(), Vec3d{0, 1, 0});
+  for (RecordedFrame& frame : run) frame.up_vectors.assign(frame.size(), Vec3d{0, 1, 0});
   record(other, run);
   EXPECT_EQ(bytes_of(path), bytes_of(other));
   EXPECT_EQ(bytes_of(path).size(), 5096u);
@@ -228,14 +229,14 @@ TEST(Recording, WithoutAnybodyWhoLeansStaysAsItWas) {
   EXPECT_FALSE(replay->info().leans);
   RecordedFrame frame;
   ASSERT_TRUE(replay->read(30, frame));
-  EXPECT_TRUE(frame.ups.empty());
+  EXPECT_TRUE(frame.up_vectors.empty());
 
   RecordingInfo info = two_classes();
   auto upright = Recorder::create(path, info);
   info.leans = true;
   auto leans = Recorder::create(other, info);
   ASSERT_TRUE(upright && leans);
-  run[5].ups[0] = {1, 0, 0};
+  run[5].up_vectors[0] = {1, 0, 0};
   const auto refused = [](Recorder& recorder, const RecordedFrame& bad, const char* word) {
     const auto ok = recorder.append(bad.view());
     ASSERT_FALSE(ok) << word;
@@ -244,10 +245,10 @@ TEST(Recording, WithoutAnybodyWhoLeansStaysAsItWas) {
   };
   refused(*upright, run[5], "leans; set RecordingInfo::leans");
   for (const Vec3d& none : {Vec3d{}, Vec3d{NAN, 1, 0}, Vec3d{0, INFINITY, 0}}) {
-    run[5].ups[0] = none;
+    run[5].up_vectors[0] = none;
     refused(*leans, run[5], "has no axis");
   }
-  run[5].ups.pop_back();
+  run[5].up_vectors.pop_back();
   refused(*leans, run[5], "as many axes as ids");
   EXPECT_TRUE(leans->append(run[6].view()));
 }

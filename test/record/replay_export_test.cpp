@@ -137,7 +137,7 @@ TEST(ReplayExport, TablesHaveColumnsForAxesOnlyWhereSomeMayLean) {
   frame.resize(2);
   frame.ids = {3, 4};
   frame.radii = {0.25F, 0.25F};
-  frame.ups = {{0, 1, 0}, {0.6, 0, -0.8}};
+  frame.up_vectors = {{0, 1, 0}, {0.6, 0, -0.8}};
   auto recorder = Recorder::create(path, {.classes = {{.name = "climber"}}, .leans = true});
   ASSERT_TRUE(recorder);
   ASSERT_TRUE(recorder->append(frame.view()));

@@ -33,7 +33,7 @@ constexpr Colour kFirst{213, 94, 0}, kSecond{0, 114, 178};
 
 TEST(Chart, LinesLieWhereTheirValuesAreAndStrongOnesAreThicker) {
   Chart chart{.title = "t", .notes = {}, .x_title = "x", .y_title = "y", .x = {0, 10}};
-  chart.most = 100;
+  chart.max = 100;
   chart.lines = {{.name = "", .values = {25, 25}, .spread = {}, .kind = LineKind::kStrong},
                  {.name = "", .values = {75, 75}, .spread = {}, .kind = LineKind::kPlain}};
   const auto image = draw_chart(chart);
@@ -48,7 +48,7 @@ TEST(Chart, LinesLieWhereTheirValuesAreAndStrongOnesAreThicker) {
 
 TEST(Chart, ABandIsAsWideAsTheSpreadAndHighValuesAreCutOff) {
   Chart chart{.title = "t", .notes = {}, .x_title = "x", .y_title = "y", .x = {0, 10}};
-  chart.most = 100;
+  chart.max = 100;
   chart.lines = {{.name = "", .values = {50, 50}, .spread = {10, 10}, .kind = LineKind::kPlain},
                  {.name = "", .values = {900, 900}, .spread = {}, .kind = LineKind::kPlain},
                  {.name = "", .values = {0, 200}, .spread = {}, .kind = LineKind::kPlain}};

@@ -67,7 +67,7 @@ TEST(HeatMap, TicksOfNationalGridsKeepAllTheirDigits) {
 TEST(HeatMap, MoreCellsThanPixelsAreAveraged) {
   HeatMap map = map_of(3000, 1500, 3);
   for (size_t c = 0; c < map.values.size(); ++c) map.values[c] = c % 2 == 0 ? 0.0 : 2.0;
-  map.most = 2;
+  map.max = 2;
   const auto image = draw_heat_map(map);
   ASSERT_TRUE(image);
   std::set<std::array<uint8_t, 3>> colours;

@@ -161,7 +161,7 @@ GeneratorConfig config_of(double density) {
   GeneratorConfig config;
   config.home = town().world.find_place(0, {5, 0, 5}, 1);
   config.density = density;
-  config.reach = 90;
+  config.radius = 90;
   return config;
 }
 

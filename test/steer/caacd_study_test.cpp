@@ -47,8 +47,8 @@ TEST(CaacdStudy, TheSummaryIsThatOfItsRuns) {
   }
   EXPECT_NEAR(cell.mean, sum / 5, 1e-9);
   EXPECT_NEAR(cell.deviation, std::sqrt((squares - sum * sum / 5) / 4), 1e-9);
-  EXPECT_EQ(cell.least, least);
-  EXPECT_EQ(cell.most, most);
+  EXPECT_EQ(cell.min_collisions, least);
+  EXPECT_EQ(cell.max_collisions, most);
   EXPECT_GT(most, 0);
   EXPECT_NEAR(cell.walked, walked / 5, 1e-9);
 }

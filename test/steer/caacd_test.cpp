@@ -424,7 +424,7 @@ TEST(Caacd, NoBodyBeyondTheThreatRadiusIsAThreat) {
       const Body a = random_body(5, i, 0, 200, 1.4), b = random_body(5, i, 1, 200, 1.4);
       if (threat_of(a, b, model).level == State::kTolerable) continue;
       ++threats;
-      EXPECT_LE(length(a.position - b.position), threat_reach(a, kFields.alert, model));
+      EXPECT_LE(length(a.position - b.position), threat_radius(a, kFields.alert, model));
     }
   }
   EXPECT_GT(threats, 500);
@@ -436,7 +436,7 @@ TEST(Caacd, TheThreatRadiusAllowsForALengthThatIsTooShort) {
   model.trigger = Trigger::kThreat;
   const Body a = body(0, 0, 0, 0), b = body(39, 0, 0, 0, 1);  // 19.5 by eq. 10
   EXPECT_EQ(threat_of(a, b, model).level, State::kAlert);
-  EXPECT_GE(threat_reach(a, kFields.alert, model), 39);
+  EXPECT_GE(threat_radius(a, kFields.alert, model), 39);
 }
 
 TEST(Caacd, AnyInputGivesFiniteForcesWithinTheLimits) {

@@ -92,7 +92,7 @@ TEST(Trial, MeasuresAreThoseOfOneWalkWorkedOutByHand) {
   for (size_t i = 0; i < expected.size(); ++i) {
     EXPECT_NEAR(result.measures[i].value, expected[i].first, expected[i].second) << "m" << i;
   }
-  EXPECT_EQ(result.looks, static_cast<uint64_t>(std::lround(result.measures[1].value / 0.1)));
+  EXPECT_EQ(result.checks, static_cast<uint64_t>(std::lround(result.measures[1].value / 0.1)));
   EXPECT_TRUE(result.passed());
 }
 
@@ -145,7 +145,7 @@ TEST(Trial, NamesOfFormerVersionsMeanTheSame) {
     ASSERT_TRUE(expected) << expected.error().message;
     ASSERT_TRUE(found) << found.error().message;
     EXPECT_EQ(found->measures[0].of, expected->measures[0].of) << former;
-    EXPECT_EQ(found->measures[0].take, expected->measures[0].take) << former;
+    EXPECT_EQ(found->measures[0].statistic, expected->measures[0].statistic) << former;
   }
 }
 

@@ -57,7 +57,7 @@ TEST(Validation, SpeedFallsWithDensityAlikeForAnyWorkers) {
   const auto two = run_validation("fundamental", {.workers = 2, .brief = true}, context);
   ASSERT_TRUE(one && two);
   EXPECT_EQ(one->faults.overlaps + one->faults.wall_entries, 0);
-  EXPECT_GT(one->looks, 0);
+  EXPECT_GT(one->checks, 0);
   ASSERT_EQ(one->measures.size(), two->measures.size());
   double last = 1.35;
   for (size_t i = 0; i < one->measures.size(); ++i) {

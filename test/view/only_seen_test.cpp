@@ -234,9 +234,9 @@ TEST(OnlySeen, FarAvatarsAreInLowDetailIfSet) {
     (*made)->look_from({.eye = {80, 900, 80}});
     (void)(*made)->next();
     const auto far = (*made)->next();
-    EXPECT_EQ(far->report.far > 0, coarse);
+    EXPECT_EQ(far->report.low_detail > 0, coarse);
     (*made)->look_from({.eye = {80, 20, 80}});
-    EXPECT_EQ((*made)->next()->report.far, 0U);
+    EXPECT_EQ((*made)->next()->report.low_detail, 0U);
   }
 }
 

@@ -45,7 +45,7 @@ struct Body {
   steer::Plane velocity, preferred;
   int32_t local_target_x = 0,
           local_target_z = 0;  // where it is bound for in a straight line [units]
-  float turn = 0;              // of steer::Patience
+  float turn = 0;              // of steer::DeadlockAvoidance
   float speed = 1;             // wished, and the most [m/s]
   int32_t radius = 0;          // [units]
   uint32_t slot = 0;

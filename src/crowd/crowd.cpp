@@ -87,9 +87,9 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
                       .workers = config.workers,
                       .model = config.model,
                       .steering = steering,
-                      .patience = {},
+                      .deadlock_settings = {},
                       .lanes = {},
-                      .room = {}},
+                      .spacing = {}},
                      data.width, data.depth, data.summary.classes.size());
   FlyerEngine flyers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
                       .sight = static_cast<float>(config.sight),
@@ -98,7 +98,7 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
                       .seed = config.seed,
                       .workers = config.workers,
                       .steering = {},
-                      .patience = {}},
+                      .deadlock_settings = {}},
                      data.summary.classes.size());
   ClimberEngine climbers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
                           .sight = static_cast<float>(config.sight),

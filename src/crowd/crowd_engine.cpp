@@ -392,7 +392,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   situation.preferred = steer::following_fast(config_.steering, situation);
   // Before a corner one who crawls is turned as one who stands: doors need that.
   worker.follows =
-      !turns && steer::can_but_crawl(config_.patience, preferred, situation.preferred, body.speed);
+      !turns && steer::can_but_crawl(config_.deadlock_settings, preferred, situation.preferred, body.speed);
 }
 
 // Can the body do as it wishes? Else, can it if it wishes otherwise? Its wish is what it then is.
@@ -432,7 +432,7 @@ bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) con
 // Who can but stand between walls makes room for others.
 Plane CrowdEngine::if_blocked(Plane displacement, const steer::Situation& situation) const {
   const bool stands = displacement.x == 0 && displacement.z == 0;
-  return stands && situation.has_walls ? steer::making_room(config_.room, situation) : displacement;
+  return stands && situation.has_walls ? steer::keep_spacing(config_.spacing, situation) : displacement;
 }
 
 // A way that is free as far as one looks has no end that would matter.
@@ -479,7 +479,7 @@ void CrowdEngine::look_around(const Body& body, steer::Situation& situation) con
 void CrowdEngine::find_paths(const Body& body, const steer::Situation& situation, bool open,
                              Displacements& ways) {
   if (!is_sampled(body)) {
-    const steer::Choices choices = steer::ways_about(situation.preferred);
+    const steer::Choices choices = steer::candidates_about(situation.preferred);
     std::transform(choices.begin(), choices.end(), ways.begin(),
                    [&](Plane displacement) { return displacement_of(body, displacement); });
     return;
@@ -786,10 +786,10 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
         const float content =
             near_goal || is_alone
                 ? 1
-                : steer::progress_felt(config_.patience, towards / b.speed, b.follows);
+                : steer::progress_felt(config_.deadlock_settings, towards / b.speed, b.follows);
         const float along =
             (b.velocity.x * b.preferred.x + b.velocity.z * b.preferred.z) / (b.speed * b.speed);
-        b.turn = steer::next_turn(config_.patience, b.turn, content, along, units.dt);
+        b.turn = steer::next_detour_angle(config_.deadlock_settings, b.turn, content, along, units.dt);
       }
       const Plane rest = config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z);
       if (b.has(Body::kLast) && !b.has(Body::kArrived) && size_of(rest) < kThere) {

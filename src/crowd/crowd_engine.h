@@ -55,9 +55,9 @@ struct EngineConfig {
   int32_t workers = 0;
   SteeringModel model = SteeringModel::kSampled;
   steer::SampledSettings steering;
-  steer::Patience patience;
+  steer::DeadlockAvoidance deadlock_settings;
   steer::LaneSettings lanes;
-  steer::RoomSettings room;
+  steer::SpacingSettings spacing;
 };
 
 /// What a step did, summed over all bodies.

@@ -33,7 +33,7 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
   steer::View view{
       .velocity = body.velocity,
       .preferred = body.preferred,
-      .way = config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z),
+      .to_target = config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z),
       .stops = body.has(Body::kLast) && body.target == 0,
       .fastest = body.speed,
       .radius = static_cast<float>(body.radius) * config_.units.unit,
@@ -41,7 +41,7 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
       .others = {others.data(), count}};
   // Whoever has no goal of his own goes on as he is led.
   if (body.has(Body::kExternal) || !body.has(Body::kHasGoal)) {
-    view.way = body.preferred;
+    view.to_target = body.preferred;
     view.stops = false;
   }
   steer::Situation& situation = worker.situation;

@@ -471,7 +471,7 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
   if (config_.deadlock_avoidance) {
     const float content = near_goal ? 1 : towards / body.speed;
     const float along = steer::dot(velocity, preferred) / (body.speed * body.speed);
-    body.turn = steer::next_turn(config_.patience, body.turn, content, along, units.dt);
+    body.turn = steer::next_detour_angle(config_.deadlock_settings, body.turn, content, along, units.dt);
   }
   if (flight.lands != 0 && flight.is_last() && left < kFarthest && towards < 0.3f * body.speed) {
     flight.waited += units.dt;

@@ -31,7 +31,7 @@ struct FlyerConfig {
   uint64_t seed = 1;
   int32_t workers = 0;
   steer::AirSettings steering;
-  steer::Patience patience;
+  steer::DeadlockAvoidance deadlock_settings;
 };
 
 class FlyerEngine {

@@ -155,7 +155,7 @@ Plane preferred_towards(Plane to_target, float speed, float dt, float detour_ang
   return turned_right({to_target.x * size, to_target.z * size}, detour_angle);
 }
 
-float next_turn(const Patience& settings, float detour_angle, float progress, float along,
+float next_detour_angle(const DeadlockAvoidance& settings, float detour_angle, float progress, float along,
                 float dt) {
   const float side = settings.side_angle;
   const bool has_progress =

@@ -70,9 +70,9 @@ struct LevelGround {
                         .workers = workers,
                         .model = config.model,
                         .steering = config.steering,
-                        .patience = config.patience,
+                        .deadlock_settings = config.deadlock_settings,
                         .lanes = config.lanes,
-                        .room = {}},
+                        .spacing = {}},
                        data.width, data.depth, 1);
     engine.set_ground(0, StrideGround(ground, 400));
     engine.fit(widest, fastest, config.units.dt);

@@ -20,7 +20,7 @@ CollisionMap::CollisionMap(int32_t width, int32_t depth, PixelGrid grid, int32_t
   const int64_t row = stride_;
   for (int32_t dz = -1; dz <= 1; ++dz) {
     for (int32_t dx = -1; dx <= 1; ++dx) {
-      Ring& ring = rings_[way(dx, dz)];
+      Ring& ring = rings_[direction_index(dx, dz)];
       ring.to = dz * row + dx;
       size_t size = 0;
       for (int32_t z = dz - 1; z <= dz + 1; ++z) {

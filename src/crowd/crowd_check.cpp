@@ -70,9 +70,9 @@ uint64_t count_inside(const WorldData& data, std::span<const CheckedBody> bodies
     auto entry = std::lower_bound(entries.begin(), entries.end(), x0 - widest,
                                   [](const Entry& e, double x) { return e.x < x; });
     for (; entry != entries.end() && entry->x <= x1 + widest; ++entry) {
-      const double reach = entry->radius - 1e-9;
+      const double range = entry->radius - 1e-9;
       found += prism.low < entry->y + entry->height && prism.high > entry->y + entry->bottom &&
-               square_to(prism, entry->x, entry->z) < reach * reach;
+               square_to(prism, entry->x, entry->z) < range * range;
     }
   }
   return found;
@@ -180,10 +180,10 @@ CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
   });
   const auto overlaps_with = [&](const Entry& a, const Entry& b) {
     const double dx = a.x - b.x, dz = a.z - b.z;
-    const double reach = a.radius + b.radius - 1e-9;
+    const double range = a.radius + b.radius - 1e-9;
     // One may be exactly over the other.
     const bool level = a.y < b.y + b.height - 1e-9 && b.y < a.y + a.height - 1e-9;
-    return dx * dx + dz * dz < reach * reach && level;
+    return dx * dx + dz * dz < range * range && level;
   };
   parallel_ranges(entries.size(), 1024, workers, [&](size_t begin, size_t end) {
     uint64_t found = 0;

@@ -26,14 +26,14 @@ using steer::Plane;
 
 constexpr size_t kGrain = 256;  // bodies that are worth handing to another thread
 constexpr std::array<float, 3> kShorter = {0.5f, 0.25f, 0.1f};
-constexpr float kThere = 0.3f;               // [m] from its goal a body has arrived
-constexpr uint64_t kSides = 0x51de5;         // stream of chance
-constexpr float kClose = 0.1f;               // [m] to its corner a body turns to no side
-constexpr float kStepsBack = 1;              // [m] beside it, for one that leaves an obstacle
-constexpr float kAtOnce = 0.1f;              // [s] Who goes straight meets nobody within.
-constexpr size_t kFarAhead = 6, kAhead = 3;  // bodies, whose ground is asked for
-constexpr float kEnough = 14;                // bodies, to find the nearest among
-constexpr size_t kBits = 64;                 // of a word
+constexpr float kArrivalRadius = 0.3f;             // [m] from its goal a body has arrived
+constexpr uint64_t kSides = 0x51de5;               // stream of chance
+constexpr float kClose = 0.1f;                     // [m] to its corner a body turns to no side
+constexpr float kStepsBack = 1;                    // [m] beside it, for one that leaves an obstacle
+constexpr float kAtOnce = 0.1f;                    // [s] Who goes straight meets nobody within.
+constexpr size_t kFarPrefetch = 6, kPrefetch = 3;  // bodies, whose ground is asked for
+constexpr float kTargetCount = 14;                 // bodies, to find the nearest among
+constexpr size_t kBits = 64;                       // of a word
 
 // Do two bodies clash that stand at these places?
 bool overlaps_with(const Body& a, const Stand& at_a, const Body& b, const Stand& at_b) {
@@ -64,7 +64,7 @@ bool turns_corner(const Body& body) {
 
 // Turned aside by his patience where not only others are in the way?
 bool is_held_up(const Body& body) {
-  return body.turn != 0 && (!body.has(Body::kLast) || body.near_wall);
+  return body.detour_angle != 0 && (!body.has(Body::kLast) || body.near_wall);
 }
 
 // Speed towards where it is bound for, `displacement` from it. [m/s]
@@ -97,8 +97,8 @@ void EngineCounts::add(const EngineCounts& other) {
   contested += other.contested;
   stood += other.stood;
   progress += other.progress;
-  far += other.far;
-  held += other.held;
+  low_detail += other.low_detail;
+  skipped += other.skipped;
 }
 
 CrowdEngine::CrowdEngine(const EngineConfig& config, int32_t width, int32_t depth, size_t classes)
@@ -181,7 +181,7 @@ void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts
 
 // Does it go on as it did in the last step?
 bool CrowdEngine::keeps(const Body& body, uint64_t step) const {
-  return body.has(Body::kKeeps) && !body.has(Body::kExternal) && !body.has(Body::kLost) &&
+  return body.has(Body::kContinues) && !body.has(Body::kExternal) && !body.has(Body::kNeedsPath) &&
          !body.has(Body::kFlying) && !decides(steps_of_reaction(body), step, body.slot) &&
          !takes_few(body) &&
          !is_before({body.local_target_x - body.x, body.local_target_z - body.z}, stride_of(body));
@@ -193,11 +193,11 @@ void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
   // To the right, if nothing but others is in the way. Before a wall or a corner that would press a
   // crowd against it: there, to either side by chance.
   const auto turn = [&](const Body& b) {
-    if (b.in_counterflow || !is_held_up(b)) return b.turn;
+    if (b.in_counterflow || !is_held_up(b)) return b.detour_angle;
     if (size_of(config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z)) < kClose)
       return 0.0f;
     const bool left = (random_u64(config_.seed ^ kSides, b.slot, window) & 1) != 0;
-    return left ? -b.turn : b.turn;
+    return left ? -b.detour_angle : b.detour_angle;
   };
   const size_t pieces = (size_ + kGrain - 1) / kGrain;
   parallel_for_worker(pieces, config_.workers, [&](size_t piece, int32_t worker) {
@@ -205,7 +205,7 @@ void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
     const std::span<Body> bodies{bodies_.data() + begin, std::min(kGrain, size_ - begin)};
     for (Body& b : bodies) {
       choose_detail(b, step);
-      if (b.steps > 0 && !keeps(b, step)) b.clear(Body::kKeeps);
+      if (b.steps > 0 && !keeps(b, step)) b.clear(Body::kContinues);
     }
     if (before) before(bodies, worker);
     for (Body& b : bodies) {
@@ -236,12 +236,13 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
       prefetch_ground(i);
       if (bodies_[i].steps == 0) {
         proposals()[i] = {};
-        bodies_[i].state = Body::kShut;
+        bodies_[i].state = Body::kEnclosed;
         continue;
       }
       const uint32_t here = grid_->square(bodies_[i]);
       std::optional<bool> contested;
-      if (bodies_[i].has(Body::kKeeps)) contested = keep_on(static_cast<uint32_t>(i), w, here);
+      if (bodies_[i].has(Body::kContinues))
+        contested = try_to_continue(static_cast<uint32_t>(i), w, here);
       if (!contested) {
         if (here != square) {
           square = here;
@@ -261,13 +262,13 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
 
 // Asks for the ground that those who decide next come to, if they go on as they did.
 void CrowdEngine::prefetch_ground(size_t i) const {
-  if (i + kFarAhead < size_) {
-    const Body& body = bodies_[i + kFarAhead];
+  if (i + kFarPrefetch < size_) {
+    const Body& body = bodies_[i + kFarPrefetch];
     grounds_[body.avatar_class].prefetch_level(body.level);
   }
-  if (i + kAhead < size_) {
-    const Body& body = bodies_[i + kAhead];
-    const Displacement displacement = way_as_before(body, body.velocity);
+  if (i + kPrefetch < size_) {
+    const Body& body = bodies_[i + kPrefetch];
+    const Displacement displacement = displacement_again(body, body.velocity);
     grounds_[body.avatar_class].prefetch_cell(
         body.level, {int64_t{body.x} + displacement.x, int64_t{body.z} + displacement.z});
   }
@@ -292,10 +293,10 @@ void CrowdEngine::list_touched(const Body& body, const SeenLists& lists, Worker&
   for (size_t n = 0; n < lists.touches; ++n) {
     const uint32_t j = lists.touched[n];
     const Body& other = bodies_[j];
-    const int64_t reach = int64_t{body.radius} + other.radius + stride + stride_of(other);
+    const int64_t range = int64_t{body.radius} + other.radius + stride + stride_of(other);
     const int32_t rise = body.y - other.y;
     const bool near = rise < other.height + 2 * kMaxRise && -rise < body.height + 2 * kMaxRise;
-    if (near && nearer_than(other.x - body.x, other.z - body.z, reach)) worker.others.push_back(j);
+    if (near && nearer_than(other.x - body.x, other.z - body.z, range)) worker.others.push_back(j);
   }
 }
 
@@ -310,29 +311,29 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   // In a dense crowd the nearest are near: if enough are within less, nobody farther matters.
   const float sight = static_cast<float>(sight_) * static_cast<float>(sight_);
   const float across = grid_->width() * NeighbourGrid::kAround;
-  const float enough = across * across * kEnough /
-                       (3 * static_cast<float>(around.bodies()));  // 3 of the circle's pi
+  const float target_square = across * across * kTargetCount /
+                              (3 * static_cast<float>(around.bodies()));  // 3 of the circle's pi
   const auto wanted = static_cast<size_t>(config_.steering.neighbours);
   Eye eye{.x = body.x,
           .z = body.z,
           .y = body.y,
           .self = i,
-          .most = goes_blind(body) ? 0 : std::min(sight, enough),
+          .max_square = ignores_neighbours(body) ? 0 : std::min(sight, target_square),
           .tall = body.height,
           .touch = lists_others ? touch * touch : 0,
           .touch_tall = std::max<int32_t>(body.height, highest_) + 2 * kMaxRise};
   SeenLists lists;
-  const auto look = [&] {
+  const auto query = [&] {
     lists = {worker.squares.data(), worker.entries.data(), worker.touched.data()};
     find_seen(places, around.pieces(), eye, lists);
   };
-  look();
-  if (lists.seen < wanted && eye.most < sight && !goes_blind(body)) {
-    eye.most = sight;
-    look();
+  query();
+  if (lists.seen < wanted && eye.max_square < sight && !ignores_neighbours(body)) {
+    eye.max_square = sight;
+    query();
   }
   list_touched(body, lists, worker);
-  if (goes_blind(body)) {  // It looks no farther.
+  if (ignores_neighbours(body)) {  // It looks no farther.
     worker.situation.preferred = body.preferred;
     worker.situation.has_walls = false;
     return;
@@ -391,8 +392,8 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   const Plane preferred = situation.preferred;
   situation.preferred = steer::following_fast(config_.steering, situation);
   // Before a corner one who crawls is turned as one who stands: doors need that.
-  worker.follows =
-      !turns && steer::can_but_crawl(config_.deadlock_settings, preferred, situation.preferred, body.speed);
+  worker.follows = !turns && steer::can_but_crawl(config_.deadlock_settings, preferred,
+                                                  situation.preferred, body.speed);
 }
 
 // Can the body do as it wishes? Else, can it if it wishes otherwise? Its wish is what it then is.
@@ -432,55 +433,58 @@ bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) con
 // Who can but stand between walls makes room for others.
 Plane CrowdEngine::if_blocked(Plane displacement, const steer::Situation& situation) const {
   const bool stands = displacement.x == 0 && displacement.z == 0;
-  return stands && situation.has_walls ? steer::keep_spacing(config_.spacing, situation) : displacement;
+  return stands && situation.has_walls ? steer::keep_spacing(config_.spacing, situation)
+                                       : displacement;
 }
 
 // A way that is free as far as one looks has no end that would matter.
-float CrowdEngine::metres(float displacement, float look) const {
-  return displacement < look ? displacement * config_.units.unit
-                             : std::numeric_limits<float>::infinity();
+float CrowdEngine::metres(float displacement, float query_range) const {
+  return displacement < query_range ? displacement * config_.units.unit
+                                    : std::numeric_limits<float>::infinity();
 }
 
 // Is there a wall near, and how far is it to one along the wish?
 void CrowdEngine::look_ahead(const Body& body, steer::Situation& situation) const {
   const StrideGround& ground = grounds_[body.avatar_class];
-  const float look = wall_look(body);
-  situation.has_walls = !ground.is_open_around(body.level, body.point(), cells_of(look));
+  const float query_range = wall_range(body);
+  situation.has_walls = !ground.is_open_around(body.level, body.point(), cells_of(query_range));
   if (!situation.has_walls) return;
   const Plane ahead = steer::ahead_of(situation.preferred);
   situation.free_distance[0] =
-      metres(ground.free_distance(body.level, body.point(), ahead, look), look);
+      metres(ground.free_distance(body.level, body.point(), ahead, query_range), query_range);
 }
 
 // How far is it in all directions? Only for those whose wish is not open.
-void CrowdEngine::look_around(const Body& body, steer::Situation& situation) const {
+void CrowdEngine::query_walls(const Body& body, steer::Situation& situation) const {
   if (!situation.has_walls) return;
   const StrideGround& ground = grounds_[body.avatar_class];
-  const float look = wall_look(body);
-  const auto rise = static_cast<int32_t>(look * config_.units.unit * 1000);  // 45 degrees
+  const float query_range = wall_range(body);
+  const auto rise = static_cast<int32_t>(query_range * config_.units.unit * 1000);  // 45 degrees
   const steer::Fan fan = steer::fan_around(situation.preferred);
   WallWindow window;
-  switch (ground.look_around(body.level, body.y, body.point(), cells_of(look), rise, window)) {
+  switch (
+      ground.query_walls(body.level, body.y, body.point(), cells_of(query_range), rise, window)) {
     case StrideGround::Around::kOpen:
       situation.has_walls = false;
       break;
     case StrideGround::Around::kWalls:
-      find_free_distances(window, fan, look, situation.free_distance);
-      for (float& displacement : situation.free_distance) displacement = metres(displacement, look);
+      find_free_distances(window, fan, query_range, situation.free_distance);
+      for (float& displacement : situation.free_distance)
+        displacement = metres(displacement, query_range);
       break;
     case StrideGround::Around::kSteps:
       for (size_t k = 1; k < steer::kDirections; ++k) {
-        situation.free_distance[k] =
-            metres(ground.free_distance(body.level, body.point(), fan[k], look), look);
+        situation.free_distance[k] = metres(
+            ground.free_distance(body.level, body.point(), fan[k], query_range), query_range);
       }
   }
 }
 
 void CrowdEngine::find_paths(const Body& body, const steer::Situation& situation, bool open,
-                             Displacements& ways) {
+                             Displacements& candidates) {
   if (!is_sampled(body)) {
     const steer::Choices choices = steer::candidates_about(situation.preferred);
-    std::transform(choices.begin(), choices.end(), ways.begin(),
+    std::transform(choices.begin(), choices.end(), candidates.begin(),
                    [&](Plane displacement) { return displacement_of(body, displacement); });
     return;
   }
@@ -488,25 +492,26 @@ void CrowdEngine::find_paths(const Body& body, const steer::Situation& situation
   steer::Costs costs;
   steer::costs_of_fast(config_.steering, situation, trials, costs);
   size_t n = 0;
-  if (open) ways[n++] = displacement_of(body, if_blocked(situation.preferred, situation));
-  while (n < ways.size()) {
-    ways[n++] = displacement_of(body, if_blocked(steer::take_best_fast(trials, costs), situation));
+  if (open) candidates[n++] = displacement_of(body, if_blocked(situation.preferred, situation));
+  while (n < candidates.size()) {
+    candidates[n++] =
+        displacement_of(body, if_blocked(steer::take_best_fast(trials, costs), situation));
   }
 }
 
 std::span<const uint32_t> CrowdEngine::others_of(const Proposal& proposal) const {
   const uint32_t* const end = proposal.words.data() + kWords;
-  if (!proposal.is_far) return {end - proposal.others, end};
+  if (!proposal.is_in_list) return {end - proposal.others, end};
   const Worker& worker = workers_[proposal.words[kWords - 2]];
   return {worker.others.data() + proposal.words[kWords - 1], proposal.others};
 }
 
 // Puts whom a worker has listed last into the claim, if there is room.
-void CrowdEngine::keep_others(Proposal& proposal, uint16_t worker, size_t first) {
+void CrowdEngine::store_others(Proposal& proposal, uint16_t worker, size_t first) {
   std::vector<uint32_t>& others = workers_[worker].others;
   proposal.others = static_cast<uint32_t>(others.size() - first);
-  proposal.is_far = proposal.ways + size_t{proposal.others} > kWords;
-  if (proposal.is_far) {
+  proposal.is_in_list = proposal.candidate_count + size_t{proposal.others} > kWords;
+  if (proposal.is_in_list) {
     proposal.words[kWords - 2] = worker;
     proposal.words[kWords - 1] = static_cast<uint32_t>(first);
     return;
@@ -518,14 +523,14 @@ void CrowdEngine::keep_others(Proposal& proposal, uint16_t worker, size_t first)
 
 // Names the place that a body comes to if it goes on as it did, and tells whether it could touch
 // anybody. None if that is not free.
-std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square) {
+std::optional<bool> CrowdEngine::try_to_continue(uint32_t i, uint16_t w, uint32_t square) {
   Worker& worker = workers_[w];
   Body& body = bodies_[i];
   Proposal& proposal = proposals()[i];
   proposal = {};
-  proposal.flags = Body::kKeeps;
+  proposal.flags = Body::kContinues;
   proposal.in_counterflow = body.in_counterflow;
-  const Displacement displacement = way_as_before(body, body.velocity);
+  const Displacement displacement = displacement_again(body, body.velocity);
   if (!try_displacement(body, displacement, proposal.place)) return std::nullopt;
   const float touch = touch_of(body);
   const NeighbourGrid::Around around = grid_->around(square, touch <= grid_->width() ? 1 : 2);
@@ -534,7 +539,7 @@ std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square
                 .z = body.z,
                 .y = body.y,
                 .self = i,
-                .most = 0,
+                .max_square = 0,
                 .tall = 0,
                 .touch = touch * touch,
                 .touch_tall = std::max<int32_t>(body.height, highest_) + 2 * kMaxRise};
@@ -548,14 +553,14 @@ std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square
   }
   const std::span<const uint32_t> others(worker.others.data() + first,
                                          worker.others.size() - first);
-  if (!is_clear(body, proposal.place, others, /*somebody_moved=*/false)) {
+  if (!is_clear(body, proposal.place, others, /*any_moved=*/false)) {
     worker.others.resize(first);
     return std::nullopt;
   }
   body.state = Body::kUndecided;
   proposal.round = 1;
   proposal.add_displacement(displacement);
-  keep_others(proposal, w, first);
+  store_others(proposal, w, first);
   return true;
 }
 
@@ -566,7 +571,7 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   Proposal& proposal = proposals()[i];
   proposal = {};
   if (body.has(Body::kFlying)) {
-    body.state = Body::kShut;
+    body.state = Body::kEnclosed;
     return false;
   }
   const size_t first = worker.others.size();
@@ -580,31 +585,32 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   proposal.in_counterflow = worker.in_counterflow;
   body.follows = worker.follows;
   // The best of his ways is enough as long as nobody objects to it.
-  if (!open) look_around(body, worker.situation);
+  if (!open) query_walls(body, worker.situation);
   const Plane best =
       open ? worker.situation.preferred
            : if_blocked(steer::best_fast(config_.steering, worker.situation), worker.situation);
-  Displacements ways{displacement_of(body, best)};
-  bool named = try_displacement(body, ways[0], proposal.place) &&
-               is_clear(body, proposal.place, others, /*somebody_moved=*/false);
+  Displacements candidates{displacement_of(body, best)};
+  bool named = try_displacement(body, candidates[0], proposal.place) &&
+               is_clear(body, proposal.place, others, /*any_moved=*/false);
   if (named) {
-    proposal.flags = Body::kKeeps;
+    proposal.flags = Body::kContinues;
     proposal.round = others.empty() ? 0 : 1;
   } else {
-    if (open) look_around(body, worker.situation);
-    find_paths(body, worker.situation, open, ways);
+    if (open) query_walls(body, worker.situation);
+    find_paths(body, worker.situation, open, candidates);
     proposal.has_all = true;
   }
   // Known only where one had to look.
   body.near_wall = (!open || !named) && worker.situation.has_walls;
   if (others.empty()) {
-    if (!named) named = try_displacements(body, ways, others, proposal.place);
-    body.state = named ? Body::kFree : Body::kShut;
+    if (!named) named = try_displacements(body, candidates, others, proposal.place);
+    body.state = named ? Body::kFree : Body::kEnclosed;
     return false;
   }
   body.state = Body::kUndecided;
-  for (size_t n = 0; n < (named ? 1 : ways.size()); ++n) proposal.add_displacement(ways[n]);
-  keep_others(proposal, w, first);
+  for (size_t n = 0; n < (named ? 1 : candidates.size()); ++n)
+    proposal.add_displacement(candidates[n]);
+  store_others(proposal, w, first);
   return true;
 }
 
@@ -622,20 +628,20 @@ bool CrowdEngine::try_displacement(const Body& body, Displacement displacement,
 }
 
 // The first of the ways that is open and clear, then a shorter one.
-bool CrowdEngine::try_displacements(const Body& body, const Displacements& ways,
+bool CrowdEngine::try_displacements(const Body& body, const Displacements& candidates,
                                     std::span<const uint32_t> others, Stand& place) const {
   const auto is_free = [&](Displacement displacement) {
     Stand to;
     if (!try_displacement(body, displacement, to) ||
-        !is_clear(body, to, others, /*somebody_moved=*/true)) {
+        !is_clear(body, to, others, /*any_moved=*/true)) {
       return false;
     }
     place = to;
     return true;
   };
-  return std::any_of(ways.begin(), ways.end(), is_free) ||
+  return std::any_of(candidates.begin(), candidates.end(), is_free) ||
          std::any_of(kShorter.begin(), kShorter.end(),
-                     [&](float part) { return is_free(shorter(ways[0], part)); });
+                     [&](float part) { return is_free(shorter(candidates[0], part)); });
 }
 
 // Those of whom `act` says so are left out from then on.
@@ -680,10 +686,10 @@ void CrowdEngine::commit(uint64_t step) {
 
 // Is a place clear of where the others stand now?
 bool CrowdEngine::is_clear(const Body& body, const Stand& place, std::span<const uint32_t> others,
-                           bool somebody_moved) const {
+                           bool any_moved) const {
   return std::none_of(others.begin(), others.end(), [&](uint32_t j) {
     const Body& other = bodies_[j];
-    const bool moved = somebody_moved && other.state == Body::kDecided;
+    const bool moved = any_moved && other.state == Body::kDecided;
     return overlaps_with(body, place, other, moved ? proposals()[j].place : other.stand());
   });
 }
@@ -701,29 +707,29 @@ void CrowdEngine::name(uint32_t i, Worker& scratch, uint8_t round) {
   };
   if (!proposal.has_all && !proposal.forgets) {
     const bool found = try_displacement(body, proposal.displacement(0), place) &&
-                       is_clear(body, place, others, /*somebody_moved=*/true);
+                       is_clear(body, place, others, /*any_moved=*/true);
     if (found) return take(true);
   }
   proposal.flags = 0;  // It comes to do what it did not want first.
-  Displacements ways;
+  Displacements candidates;
   if (proposal.has_all) {
-    for (size_t n = 0; n < ways.size(); ++n)
-      ways[n] = proposal.displacement(static_cast<uint32_t>(n));
-    return take(try_displacements(body, ways, others, place));
+    for (size_t n = 0; n < candidates.size(); ++n)
+      candidates[n] = proposal.displacement(static_cast<uint32_t>(n));
+    return take(try_displacements(body, candidates, others, place));
   }
   // What it steers by is as it was when the step began. Others read `scratch.others` meanwhile.
   const NeighbourGrid::Around around = grid_->around(grid_->square(body));
   sense(i, scratch, around, /*lists_others=*/false);
   const bool open = find_open_preferred(i, scratch, around);
-  look_around(body, scratch.situation);
-  find_paths(body, scratch.situation, open, ways);
-  proposal.forgets = !proposal.has_room(ways.size());
+  query_walls(body, scratch.situation);
+  find_paths(body, scratch.situation, open, candidates);
+  proposal.forgets = !proposal.has_room(candidates.size());
   if (!proposal.forgets) {
-    proposal.ways = 0;
-    for (const Displacement displacement : ways) proposal.add_displacement(displacement);
+    proposal.candidate_count = 0;
+    for (const Displacement displacement : candidates) proposal.add_displacement(displacement);
     proposal.has_all = true;
   }
-  take(try_displacements(body, ways, others, place));
+  take(try_displacements(body, candidates, others, place));
 }
 
 bool CrowdEngine::holds(uint32_t i, uint64_t step) const {
@@ -749,18 +755,18 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
     for (size_t i = begin; i < end; ++i) {
       Body& b = bodies_[i];
       if (b.has(Body::kFlying)) continue;
-      here.far += b.has(Body::kFar) ? 1 : 0;
+      here.low_detail += b.has(Body::kLowDetail) ? 1 : 0;
       const Plane displacement =
           config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z);
       if (b.steps == 0) {  // To all others it is as if it had moved evenly.
-        ++here.held;
+        ++here.skipped;
         if (b.has(Body::kHasGoal)) here.progress += progress_of(b, displacement);
         continue;
       }
       const StepUnits units = units_of(b);
       const Proposal& proposal = proposals()[i];
       const Stand& place = proposal.place;
-      const bool is_alone = b.state == Body::kFree || b.state == Body::kShut;
+      const bool is_alone = b.state == Body::kFree || b.state == Body::kEnclosed;
       const bool may_move = b.state == Body::kFree || b.state == Body::kDecided;
       const bool moves = may_move && (place.x != b.x || place.z != b.z);
       if (moves) {
@@ -773,7 +779,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
         b.velocity = {};
         ++here.stood;
       }
-      b.clear(Body::kKeeps);
+      b.clear(Body::kContinues);
       b.in_counterflow = proposal.in_counterflow;
       if (may_move) b.flags = static_cast<uint8_t>(b.flags | proposal.flags);
       if (!b.has(Body::kHasGoal) || b.has(Body::kExternal)) continue;
@@ -789,10 +795,11 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
                 : steer::progress_felt(config_.deadlock_settings, towards / b.speed, b.follows);
         const float along =
             (b.velocity.x * b.preferred.x + b.velocity.z * b.preferred.z) / (b.speed * b.speed);
-        b.turn = steer::next_detour_angle(config_.deadlock_settings, b.turn, content, along, units.dt);
+        b.detour_angle = steer::next_detour_angle(config_.deadlock_settings, b.detour_angle,
+                                                  content, along, units.dt);
       }
       const Plane rest = config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z);
-      if (b.has(Body::kLast) && !b.has(Body::kArrived) && size_of(rest) < kThere) {
+      if (b.has(Body::kLast) && !b.has(Body::kArrived) && size_of(rest) < kArrivalRadius) {
         b.flags |= Body::kArrived;
         const std::lock_guard lock(adding);
         arrived_.push_back(b.slot);

@@ -19,10 +19,10 @@ CrowdEngine::Sides CrowdEngine::sides_of(const Body& body) const {
   if (far <= 1e-3f) return {config_.lanes.narrow, config_.lanes.narrow};
   ahead = {ahead.x / far, ahead.z / far};
   const StrideGround& ground = grounds_[body.avatar_class];
-  const float unit = config_.units.unit, look = config_.lanes.narrow / unit;
+  const float unit = config_.units.unit, query_range = config_.lanes.narrow / unit;
   const Plane right{-ahead.z, ahead.x}, left{ahead.z, -ahead.x};
-  return {ground.free_distance(body.level, body.point(), left, look) * unit,
-          ground.free_distance(body.level, body.point(), right, look) * unit};
+  return {ground.free_distance(body.level, body.point(), left, query_range) * unit,
+          ground.free_distance(body.level, body.point(), right, query_range) * unit};
 }
 
 // Does one of those whom it has sensed come towards it? Where he is bound for counts: a jam turns
@@ -73,7 +73,7 @@ bool CrowdEngine::take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Aro
                 .z = body.z,
                 .y = body.y,
                 .self = i,
-                .most = static_cast<float>(sight_) * static_cast<float>(sight_),
+                .max_square = static_cast<float>(sight_) * static_cast<float>(sight_),
                 .tall = body.height,
                 .touch = 0,
                 .touch_tall = 0};

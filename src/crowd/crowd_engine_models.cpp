@@ -48,7 +48,7 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
   situation.preferred = body.preferred;
   if (config_.model == SteeringModel::kSocialForce) {
     look_ahead(body, situation);
-    look_around(body, situation);
+    query_walls(body, situation);
     const steer::Fan fan = steer::fan_around(situation.preferred);
     const auto& free = situation.free_distance;
     const auto nearest_wall =

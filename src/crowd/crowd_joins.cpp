@@ -59,7 +59,7 @@ void CrowdGround::join_side(Level level, LevelLine::Side side) {
   const Range* range = tile(record.tile_x + (along_x ? (back ? -1 : 1) : 0),
                             record.tile_z + (along_x ? 0 : (back ? -1 : 1)));
   if (range == nullptr) return;
-  const auto taken_before = [&](Level other, Cell c, int32_t y) {
+  const auto already_joined = [&](Level other, Cell c, int32_t y) {
     for (Level j = range->first; j < other; ++j) {
       if (heights_[j].low > y || heights_[j].high < y) continue;
       for (int32_t cell = 0; cell < 16; ++cell) {
@@ -76,7 +76,7 @@ void CrowdGround::join_side(Level level, LevelLine::Side side) {
     for (Level other = range->first; other < range->last; ++other) {
       if (!is_plain(lines_[other], there) || sample(other, there.x, there.z) != y) continue;
       const bool fits = line.beyond[side] == LevelLine::kNone || line.beyond[side] == other;
-      if (!fits || taken_before(other, there, y)) break;
+      if (!fits || already_joined(other, there, y)) break;
       line.beyond[side] = other;
       line.joined[side] = static_cast<uint16_t>(line.joined[side] | 1u << i);
       break;
@@ -109,15 +109,15 @@ void CrowdGround::find_beyond(Level level, LevelLine::Side side) {
                           : std::nullopt;
     steps[i] = next ? *next : LevelLine::kNone;
   }
-  int64_t most = 0;
+  int64_t max_count = 0;
   for (const Level to : steps) {
     if (to == LevelLine::kNone || to == line.beyond[side]) continue;
     const int64_t count = std::count(steps.begin(), steps.end(), to);
-    if (count <= most) continue;
-    most = count;
+    if (count <= max_count) continue;
+    max_count = count;
     line.beyond[side] = to;
   }
-  if (most == 0) return;
+  if (max_count == 0) return;
   for (int32_t i = 0; i < 64; ++i) {
     line.cells[side] |= uint64_t{steps[i] == line.beyond[side]} << i;
   }

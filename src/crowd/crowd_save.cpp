@@ -42,7 +42,7 @@ struct SavedObstacle {
   double low = 0, high = 0, wanted_low = 0, wanted_high = 0;
   uint32_t generation = 0, corners = 0, wanted_corners = 0;
   uint8_t exists = 0, kind = 0, is_up = 0, wanted_up = 0;
-  uint8_t is_elsewhere = 0, policy = 0, has_cells = 0, lets_out = 0;
+  uint8_t is_elsewhere = 0, policy = 0, has_cells = 0, is_exit_only = 0;
   uint32_t occupants = 0;
   uint64_t asked_step = 0, up_step = 0;
 };
@@ -66,7 +66,7 @@ std::vector<SavedObstacle> saved_obstacles(std::span<const CrowdObstacle> all,
                      .is_elsewhere = o.is_elsewhere,
                      .policy = static_cast<uint8_t>(o.policy),
                      .has_cells = o.has_cells,
-                     .lets_out = o.lets_out,
+                     .is_exit_only = o.is_exit_only,
                      .occupants = o.occupants,
                      .asked_step = o.asked_step,
                      .up_step = o.up_step});
@@ -106,7 +106,7 @@ std::optional<std::vector<CrowdObstacle>> obstacles_of(
     o.is_elsewhere = s.is_elsewhere != 0;
     o.policy = static_cast<ObstaclePolicy>(s.policy);
     o.has_cells = s.has_cells != 0;
-    o.lets_out = s.lets_out != 0;
+    o.is_exit_only = s.is_exit_only != 0;
     o.occupants = s.occupants;
     o.asked_step = s.asked_step;
     o.up_step = s.up_step;
@@ -174,7 +174,7 @@ bool is_sound(const Route& route, uint32_t levels) {
 
 bool is_sound(const Body& b, const WorldData& data) {
   const bool finite =
-      std::isfinite(b.velocity.x + b.velocity.z + b.preferred.x + b.preferred.z + b.turn) &&
+      std::isfinite(b.velocity.x + b.velocity.z + b.preferred.x + b.preferred.z + b.detour_angle) &&
       std::isfinite(b.speed);
   if (!finite || !(b.speed > 0) || b.radius <= 0 || b.avatar_class >= data.summary.classes.size()) {
     return false;
@@ -192,10 +192,10 @@ bool is_sound(const Flight& flight, const Body& body, uint32_t levels) {
   const bool counts = flight.count <= Flight::kPoints && flight.next <= flight.count &&
                       (flight.count == 0 || flight.next < flight.count);
   const bool has_path =
-      !body.flies() || !body.has(Body::kHasGoal) || body.has(Body::kLost) || flight.count > 0;
+      !body.flies() || !body.has(Body::kHasGoal) || body.has(Body::kNeedsPath) || flight.count > 0;
   const bool goal = flight.goal_level == Flight::kInAir || flight.goal_level < levels;
-  return finite && counts && has_path && goal && flight.port_low <= flight.port_high &&
-         (flight.in_port == 0 || flight.port_level < levels);
+  return finite && counts && has_path && goal && flight.link_low <= flight.link_high &&
+         (flight.in_link == 0 || flight.link_level < levels);
 }
 
 // Targets as numbers: how many prisms, of each how many corners, low, high and the corners.
@@ -339,7 +339,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   s.views.resize(head.views);
   take(s.views.data(), s.views.size());
 
-  s.where.assign(head.slots, kNobody);
+  s.where.assign(head.slots, kNoBody);
   std::vector<bool> taken(head.slots, false);
   const auto take_slot = [&](uint32_t slot) {
     const bool is_new = slot < head.slots && !taken[slot];
@@ -366,7 +366,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   s.engine.reserve(bodies.size());
   for (const Body& body : bodies) {
     if (auto ok = s.open_class(body.avatar_class, context); !ok) return ok.error();
-    if (body.climbs != s.goes_over_nodes(body.avatar_class)) {
+    if (body.climbs != s.is_climber_class(body.avatar_class)) {
       return bad("has other settings; give the nodes that it was made with");
     }
   }
@@ -381,7 +381,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
     const FlyerAir* air = s.air_of(body);
     const bool flies = body.flies();
     if (flies && (air == nullptr || (!air->is_legal({body.x, body.z, body.y}) &&
-                                     s.flights[body.slot].in_port == 0))) {
+                                     s.flights[body.slot].in_link == 0))) {
       return bad("is not sound; save the crowd again");
     }
   }

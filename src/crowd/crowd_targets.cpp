@@ -73,13 +73,13 @@ void Crowd::set_targets(std::span<const AvatarId> ids, TargetId target) {
     Body* body = s.body(id);
     if (body == nullptr) continue;
     s.routes[body->slot] = {};
-    body->turn = 0;
+    body->detour_angle = 0;
     body->target = target;
     body->local_target_x = body->x;
     body->local_target_z = body->z;
     if (s.air_of(*body) != nullptr) s.set_goal_of_flyer(*body, {});
     if (body->climbs) s.set_goal_of_climber(*body, {});
-    body->flags = (body->flags & Body::kFlying) | Body::kHasGoal | Body::kLost;
+    body->flags = (body->flags & Body::kFlying) | Body::kHasGoal | Body::kNeedsPath;
   }
 }
 
@@ -96,13 +96,13 @@ double Crowd::distance(AvatarId id, TargetId target) const {
   return parts.flows[target - 1u].distance(parts.lives[0], place);
 }
 
-Result<std::vector<Place>> Crowd::places(TargetId target, int32_t avatar_class, size_t most,
+Result<std::vector<Place>> Crowd::places(TargetId target, int32_t avatar_class, size_t max_count,
                                          Context& context) {
   State& s = *state_;
   THRONG_ASSERT(target >= 1 && target <= s.targets.size());
   if (auto ok = s.open_class(avatar_class, context); !ok) return ok.error();
   return places_inside(*s.world.data(), s.classes[static_cast<size_t>(avatar_class)]->ground,
-                       s.targets[target - 1u].regions, std::max<size_t>(1, most));
+                       s.targets[target - 1u].regions, std::max<size_t>(1, max_count));
 }
 
 void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> speeds) {
@@ -123,7 +123,7 @@ bool Crowd::State::plan_path(Body& body, Route& route, const StrideGround& groun
   const WorldData& data = *world.data();
   ClassParts& parts = *classes[body.avatar_class];
   Path& path = parts.paths[w];
-  const Spot here{body.x, body.z, body.level};
+  const PathPoint here{body.x, body.z, body.level};
   const Place from = place_of(data, body, here);
   if (body.target != 0) {
     parts.flows[body.target - 1u].way(parts.lives[w], from, path);
@@ -132,13 +132,13 @@ bool Crowd::State::plan_path(Body& body, Route& route, const StrideGround& groun
     const Place to = place_of(data, body, route.goal);
     parts.finders[w].find(from, to, path, search_budget());
     SpentBudget spent = path.spent;
-    if (cuts_ways && path.end == PathEnd::kReached) {
+    if (cuts_paths && path.end == PathEnd::kReached) {
       lead_around(data, parts.lives[w], ground, search_budget(), path, parts.repairs[w]);
       if (path.spent != SpentBudget::kNone) spent = path.spent;
     }
     note_spent(spent);
   }
-  return take_way(data, path, ground, body, route);
+  return use_path(data, path, ground, body, route);
 }
 
 // The rectangles that flows name are of the ground as it was.
@@ -154,7 +154,8 @@ void Crowd::State::renew_flows() {
     THRONG_ASSERT(ok);  // It was possible before, and nobody cancels it.
   }
   for (Body& body : engine.bodies()) {
-    if (body.target != 0 && body.has(Body::kHasGoal) && !body.leaves) body.flags |= Body::kLost;
+    if (body.target != 0 && body.has(Body::kHasGoal) && !body.leaves)
+      body.flags |= Body::kNeedsPath;
   }
 }
 
@@ -167,7 +168,7 @@ void Crowd::State::arrive_in_targets() {
         continue;
       }
       body.flags |= Body::kArrived;
-      const std::lock_guard lock(stranding);
+      const std::lock_guard lock(goal_mutex);
       arrived.push_back(id_of(body.slot));
     }
   });

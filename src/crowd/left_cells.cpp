@@ -73,11 +73,11 @@ bool LeftCells::may_cross(const Cell& from, const Cell& over) const {
   });
 }
 
-bool LeftCells::enters(const Cell& cell, const AirSpot& from, const AirSpot& to) const {
-  constexpr int32_t kLooks = 4;  // on the way
+bool LeftCells::enters(const Cell& cell, const AirPosition& from, const AirPosition& to) const {
+  constexpr int32_t kSamples = 4;  // on the way
   const OfLevel* of = find(cell.level);
   if (of == nullptr) return false;
-  const auto is_in = [&](const Shape& shape, AirSpot feet) {
+  const auto is_in = [&](const Shape& shape, AirPosition feet) {
     feet.y += bottom_;
     return shape.solid.holds(feet, radius_, height_ - bottom_);
   };
@@ -87,12 +87,12 @@ bool LeftCells::enters(const Cell& cell, const AirSpot& from, const AirSpot& to)
                                     [&](const Shape& s) { return s.obstacle == part.obstacle; });
     if (shape == shapes_.end() || is_in(*shape, from)) return false;
     const auto between = [](int32_t a, int32_t b, int32_t i) {
-      return static_cast<int32_t>(a + (int64_t{b} - a) * i / kLooks);
+      return static_cast<int32_t>(a + (int64_t{b} - a) * i / kSamples);
     };
-    for (int32_t i = 1; i <= kLooks; ++i) {
-      const AirSpot spot{between(from.x, to.x, i), between(from.z, to.z, i),
-                         between(from.y, to.y, i)};
-      if (is_in(*shape, spot)) return true;
+    for (int32_t i = 1; i <= kSamples; ++i) {
+      const AirPosition position{between(from.x, to.x, i), between(from.z, to.z, i),
+                                 between(from.y, to.y, i)};
+      if (is_in(*shape, position)) return true;
     }
     return false;
   });

@@ -31,9 +31,9 @@ struct CrowdObstacle {
   bool is_up = false, wanted_up = false;
   bool is_elsewhere = false;  // it is up, but asked to be at `wanted`
   Prism place, wanted;
-  bool has_cells = false;  // taken from the grounds: it is up, or closes
-  bool lets_out = false;   // some who walk stand on these, and may only leave
-  uint32_t version = 0;    // of `place`
+  bool has_cells = false;     // taken from the grounds: it is up, or closes
+  bool is_exit_only = false;  // some who walk stand on these, and may only leave
+  uint32_t version = 0;       // of `place`
   uint64_t asked_step = kNever, up_step = kNever;  // steps made before it was asked, and came up
   uint32_t occupants = 0;                          // in its way, when last looked at
 
@@ -44,10 +44,10 @@ struct CrowdObstacle {
     std::vector<uint32_t> levels;   // from which it takes cells, while it is up
     std::vector<LevelCells> swept;  // that must be clear before it may come up or move on
     // What the class's live grounds, and its finders through the air and over nodes, call it; told
-    // of it as it was at `told_version`.
+    // of it as it was at `synced_version`.
     ChangeId change = 0, air_change = 0, node_change = 0;
-    bool is_told = false;
-    uint32_t told_version = 0;
+    bool is_synced = false;
+    uint32_t synced_version = 0;
   };
   std::vector<OfClass> of_class;
 
@@ -77,8 +77,8 @@ class ObstacleSet {
   [[nodiscard]] std::span<const CrowdObstacle> all() const { return obstacles_; }
   [[nodiscard]] CrowdObstacle& at(uint32_t slot) { return obstacles_[slot]; }
 
-  void ask_to_be_at(uint32_t slot, const Prism& prism);
-  void ask_to_be_up(uint32_t slot, bool up);
+  void request_move(uint32_t slot, const Prism& prism);
+  void request_active(uint32_t slot, bool up);
   void remove(uint32_t slot);
 
   /// Those that wait, or let out.
@@ -87,14 +87,14 @@ class ObstacleSet {
   [[nodiscard]] std::vector<std::pair<uint32_t, uint32_t>> blockers(std::span<const uint32_t> slots,
                                                                     std::span<const Body> bodies,
                                                                     int32_t workers) const;
-  /// It is where it waited to be. Then take_cells.
+  /// It is where it waited to be. Then block_cells.
   void settle(uint32_t slot);
-  /// From now on it is entered no more, and left only. Then take_cells.
+  /// From now on it is entered no more, and left only. Then block_cells.
   void close(uint32_t slot);
-  /// Those on its cells may leave these, or there are none any more. Then take_cells.
-  void let_out(uint32_t slot, bool lets);
+  /// Those on its cells may leave these, or there are none any more. Then block_cells.
+  void set_exit_only(uint32_t slot, bool lets);
   /// Brings the grounds up to date with all that was settled, asked down or removed.
-  void take_cells();
+  void block_cells();
 
   /// In the order in which they are given again: the last first.
   [[nodiscard]] std::span<const uint32_t> free_slots() const { return free_slots_; }
@@ -112,7 +112,7 @@ class ObstacleSet {
     std::unordered_map<uint32_t, std::vector<Taker>> takers;  // by level; looked up only
     std::vector<uint32_t> touched;                            // levels, with doubles
   };
-  void take_levels(size_t number, ClassGround& of);
+  void block_levels(size_t number, ClassGround& of);
   [[nodiscard]] std::vector<LevelCells> cells_under(size_t number, const Prism& prism) const;
   void find_swept(uint32_t slot);
   void take(uint32_t slot);

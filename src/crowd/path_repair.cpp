@@ -49,7 +49,8 @@ class PathRepair {
       // A covered corner is left out: the way goes around it to the next.
       if (!live_.is_free(to)) continue;
       live_.find(from, to, detour, kMaxNodes);
-      if (detour.end != PathEnd::kReached || detour.length > covered + kLongestDetour) return false;
+      if (detour.end != PathEnd::kReached || detour.length > covered + kMaxRepairDetour)
+        return false;
       mended.insert(mended.end(), detour.points.begin() + 1, detour.points.end());
       length += detour.length;
       covered = 0;

@@ -20,11 +20,11 @@ struct RepairScratch {
 
 /// Makes a way over the baked ground one over the ground as it is now. Obstacles only take away, so
 /// a way on which none lies stays, and is still the shortest. Where they lie on it, short detours
-/// are put in, each no more than kLongestDetour longer than what it replaces; if that does not do,
-/// the whole way is searched on the live ground. [path: reached]
+/// are put in, each no more than kMaxRepairDetour longer than what it replaces; if that does not
+/// do, the whole way is searched on the live ground. [path: reached]
 void lead_around(const WorldData& world, LiveGround& live, const StrideGround& ground,
                  const SearchBudget& budget, Path& path, RepairScratch& scratch);
 
-inline constexpr double kLongestDetour = 10;  // [m]
+inline constexpr double kMaxRepairDetour = 10;  // [m]
 
 }  // namespace throng

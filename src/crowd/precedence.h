@@ -30,18 +30,18 @@ inline bool goes_first(const Bound& other, const Bound& self) {
   if (!nearer_than(other.local_target_x - self.local_target_x,
                    other.local_target_z - self.local_target_z, room))
     return false;
-  const int64_t his = other.left(), mine = self.left();
+  const int64_t theirs = other.left(), mine = self.left();
   if (mine > kNear * kNear * room * room) return false;
-  return his < mine || (his == mine && other.slot < self.slot);
+  return theirs < mine || (theirs == mine && other.slot < self.slot);
 }
 
-/// The wish of who waits for another: to leave him room, then to stand. `way`: to one's own goal.
-/// `room`: sum of the radii. [m]
-inline steer::Plane preferred_of_waiting(steer::Plane way, float speed, float room) {
-  const float left = std::sqrt(way.x * way.x + way.z * way.z);
+/// The wish of who waits for another: to leave him room, then to stand. `displacement`: to one's
+/// own goal. `room`: sum of the radii. [m]
+inline steer::Plane preferred_of_waiting(steer::Plane displacement, float speed, float room) {
+  const float left = std::sqrt(displacement.x * displacement.x + displacement.z * displacement.z);
   if (left >= 2 * room || left < 1e-6f) return {};
   const float back = -0.5f * speed / left;
-  return {way.x * back, way.z * back};
+  return {displacement.x * back, displacement.z * back};
 }
 
 /// Must `self` step back for `other`, who would turn the same corner first, and stands? `far`,

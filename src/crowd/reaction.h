@@ -23,10 +23,11 @@ inline bool decides(uint64_t every, uint64_t step, uint32_t slot) {
   return (step + slot) % every == 0;
 }
 
-/// Right before where it is bound for it must not go past it. `way` there, `stride` of a step.
-inline bool is_before(GroundPoint way, int32_t stride) {
-  const int64_t reach = int64_t{2} * stride;
-  return way.x * way.x + way.z * way.z < reach * reach;
+/// Right before where it is bound for it must not go past it. `displacement` there, `stride` of a
+/// step.
+inline bool is_before(GroundPoint displacement, int32_t stride) {
+  const int64_t range = int64_t{2} * stride;
+  return displacement.x * displacement.x + displacement.z * displacement.z < range * range;
 }
 
 }  // namespace throng

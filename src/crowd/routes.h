@@ -15,7 +15,7 @@
 namespace throng {
 
 /// A place of the ground.
-struct Spot {
+struct PathPoint {
   int32_t x = 0, z = 0;  // [units]
   uint32_t level = 0;
 };
@@ -24,8 +24,8 @@ struct Spot {
 /// by then.
 struct Route {
   static constexpr size_t kCorners = 12;
-  Spot goal;
-  std::array<Spot, kCorners> corners;
+  PathPoint goal;
+  std::array<PathPoint, kCorners> corners;
   uint8_t count = 0, next = 0;
   bool whole = false;  // the last corner is the goal
 };
@@ -36,11 +36,11 @@ struct Route {
 void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float metre);
 
 /// Where a body stands, where it is bound for.
-Place place_of(const WorldData& world, const Body& body, const Spot& spot);
-Spot spot_of(const WorldData& world, const Place& place);
+Place place_of(const WorldData& world, const Body& body, const PathPoint& position);
+PathPoint point_of(const WorldData& world, const Place& place);
 
 /// Takes the next corners of a way that was found, from where the body is. False: none was.
-bool take_way(const WorldData& world, const Path& path, const StrideGround& ground, Body& body,
+bool use_path(const WorldData& world, const Path& path, const StrideGround& ground, Body& body,
               Route& route);
 
 /// A rectangle of the plane. [units]

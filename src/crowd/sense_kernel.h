@@ -17,7 +17,7 @@ struct Places {
 struct Eye {
   int32_t x, z, y;
   uint32_t self;       ///< Entry that is left out.
-  float most;          ///< Square of how far it sees. [units^2]
+  float max_square;    ///< Square of how far it sees. [units^2]
   int32_t tall;        ///< Whoever is as much higher or lower is on another floor. [mm]
   float touch;         ///< Square of how far it could touch somebody. [units^2]
   int32_t touch_tall;  ///< Whoever is as much higher or lower cannot be touched. [mm]
@@ -43,6 +43,6 @@ void find_seen(const Places& places, std::span<const Entries> around, const Eye&
 
 /// Keeps the nearest so many of those in sight, in order of entries, and all that are as near as
 /// the farthest of them. Returns how many.
-size_t keep_nearest(SeenLists& lists, size_t most);
+size_t keep_nearest(SeenLists& lists, size_t max_count);
 
 }  // namespace throng

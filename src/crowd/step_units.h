@@ -24,12 +24,12 @@ struct StepUnits {
   }
   /// The same for steps of few units: the n-th of many at one velocity, which together are as long
   /// as they should be to the unit. (As Bresenham's line does.)
-  [[nodiscard]] int32_t small_way(float velocity, uint64_t n) const {
+  [[nodiscard]] int32_t small_displacement(float velocity, uint64_t n) const {
     const double units = double{velocity} * (double{dt} / unit);
-    const auto k = static_cast<double>(n % kSmallWays);
+    const auto k = static_cast<double>(n % kSmallMoves);
     return static_cast<int32_t>(std::floor(units * (k + 1)) - std::floor(units * k));
   }
-  static constexpr uint64_t kSmallWays = 1 << 16;
+  static constexpr uint64_t kSmallMoves = 1 << 16;
   [[nodiscard]] float velocity(int32_t displacement) const {
     return static_cast<float>(displacement) * (unit / dt);
   }
@@ -46,8 +46,8 @@ inline float near_square(int32_t x, int32_t z) {
 }
 
 /// Are two points of the plane nearer than so many units? Exact.
-inline bool nearer_than(int32_t x, int32_t z, int64_t reach) {
-  return int64_t{x} * x + int64_t{z} * z < reach * reach;
+inline bool nearer_than(int32_t x, int32_t z, int64_t range) {
+  return int64_t{x} * x + int64_t{z} * z < range * range;
 }
 
 }  // namespace throng

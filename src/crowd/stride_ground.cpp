@@ -43,11 +43,11 @@ bool StrideGround::leave(uint32_t level, int32_t y, GroundPoint from, GroundPoin
   uint32_t end = level;
   if (!walk(leaving, end, from, to, step_mm_)) return false;
   landing = {end, ground_->feet(end, to)};
-  const auto spot = [](GroundPoint p, int32_t feet) {
-    return AirSpot{static_cast<int32_t>(p.x), static_cast<int32_t>(p.z), feet};
+  const auto position = [](GroundPoint p, int32_t feet) {
+    return AirPosition{static_cast<int32_t>(p.x), static_cast<int32_t>(p.z), feet};
   };
-  return !ground_->left().enters({level, from.cell_x() & 63, from.cell_z() & 63}, spot(from, y),
-                                 spot(to, landing.y));
+  return !ground_->left().enters({level, from.cell_x() & 63, from.cell_z() & 63}, position(from, y),
+                                 position(to, landing.y));
 }
 
 namespace {
@@ -73,10 +73,10 @@ uint32_t StrideGround::beyond(uint32_t level, LevelLine::Side side, int32_t low,
   return (line.joined[side] & wanted) == wanted ? line.beyond[side] : LevelLine::kNone;
 }
 
-bool StrideGround::is_open_around(uint32_t level, GroundPoint from, int32_t reach) const {
-  if (reach > 31) return false;  // of a tile's 64
+bool StrideGround::is_open_around(uint32_t level, GroundPoint from, int32_t range) const {
+  if (range > 31) return false;  // of a tile's 64
   const int32_t x = from.cell_x(), z = from.cell_z();
-  const int32_t x0 = x - reach, z0 = z - reach, x1 = x + reach, z1 = z + reach;
+  const int32_t x0 = x - range, z0 = z - range, x1 = x + range, z1 = z + range;
   const bool is_wide = (x0 ^ x1) >> 6 != 0, is_deep = (z0 ^ z1) >> 6 != 0;
   // Of the body's tile, and of the other one across and down.
   const int32_t edge_x = is_wide ? x1 & ~63 : x1 + 1, edge_z = is_deep ? z1 & ~63 : z1 + 1;
@@ -170,14 +170,14 @@ uint32_t even_bits(uint64_t v) {
 
 }  // namespace
 
-StrideGround::Around StrideGround::look_around(uint32_t level, int32_t y, GroundPoint from,
-                                               int32_t reach, int32_t rise,
+StrideGround::Around StrideGround::query_walls(uint32_t level, int32_t y, GroundPoint from,
+                                               int32_t range, int32_t rise,
                                                WallWindow& window) const {
   const int32_t x = from.cell_x(), z = from.cell_z();
   if (leaves(level, from)) return Around::kSteps;
   // Squares of one cell, or of two where the look is longer.
-  const int32_t scale = reach < WallWindow::kMiddle ? 1 : 2;
-  if (reach >= 2 * WallWindow::kMiddle) return Around::kSteps;
+  const int32_t scale = range < WallWindow::kMiddle ? 1 : 2;
+  if (range >= 2 * WallWindow::kMiddle) return Around::kSteps;
   const int32_t size = scale * WallWindow::kSize, middle = scale * WallWindow::kMiddle;
   const int32_t x0 = x - middle, z0 = z - middle;
   std::array<uint64_t, 64> cells{};  // rows of the window
@@ -193,9 +193,9 @@ StrideGround::Around StrideGround::look_around(uint32_t level, int32_t y, Ground
       }
     }
   }
-  const uint64_t wanted = ((uint64_t{2} << (2 * reach)) - 1) << (middle - reach);
+  const uint64_t wanted = ((uint64_t{2} << (2 * range)) - 1) << (middle - range);
   uint64_t all = wanted;
-  for (int32_t row = middle - reach; row <= middle + reach; ++row) all &= cells[row];
+  for (int32_t row = middle - range; row <= middle + range; ++row) all &= cells[row];
   if (all == wanted) return Around::kOpen;
   const CrowdGround::Walk walk = ground_->walk(level);
   if (!walk.is_step_safe || !walk.is_alone) return Around::kSteps;
@@ -280,43 +280,45 @@ WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint 
 }
 
 bool StrideGround::sees(uint32_t level, GroundPoint from, GroundPoint to, uint32_t end,
-                        float most) const {
+                        float max_range) const {
   const auto dx = static_cast<float>(to.x - from.x), dz = static_cast<float>(to.z - from.z);
   const float far = std::sqrt(dx * dx + dz * dz);
-  if (far > most) {
-    const float part = most / far;
+  if (far > max_range) {
+    const float part = max_range / far;
     to = {from.x + std::lrint(dx * part), from.z + std::lrint(dz * part)};
   }
   if (leaves(level, from)) {
     const LeavingGround leaving(*ground_, level, from.cell_x(), from.cell_z());
-    return walk(leaving, level, from, to, step_mm_) && (far > most || level == end);
+    return walk(leaving, level, from, to, step_mm_) && (far > max_range || level == end);
   }
   const bool arrives = walk_open(level, from, to) || walk_rows(level, from, to).arrived;
-  return arrives && (far > most || level == end);
+  return arrives && (far > max_range || level == end);
 }
 
 float StrideGround::free_distance(uint32_t level, GroundPoint from, steer::Plane direction,
-                                  float most) const {
-  const GroundPoint to{from.x + std::lrint(direction.x * most),
-                       from.z + std::lrint(direction.z * most)};
+                                  float max_range) const {
+  const GroundPoint to{from.x + std::lrint(direction.x * max_range),
+                       from.z + std::lrint(direction.z * max_range)};
   WalkStop stop;
   if (leaves(level, from)) {
     const LeavingGround leaving(*ground_, level, from.cell_x(), from.cell_z());
     stop = walk_far(leaving, level, from, to, step_mm_);
   } else {
-    if (walk_open(level, from, to)) return most;
+    if (walk_open(level, from, to)) return max_range;
     stop = walk_rows(level, from, to);
   }
-  if (stop.arrived) return most;
+  if (stop.arrived) return max_range;
   // To the border of the last cell that it could not cross.
   const auto part = [](int32_t cell, int32_t toward, int64_t begin, int64_t end) {
     const int64_t border = int64_t{cell + (toward > 0 ? 1 : 0)} << kUnitBits;
     return static_cast<float>(border - begin) / static_cast<float>(end - begin);
   };
-  float way = 1;
-  if (stop.toward_x != 0) way = std::min(way, part(stop.x, stop.toward_x, from.x, to.x));
-  if (stop.toward_z != 0) way = std::min(way, part(stop.z, stop.toward_z, from.z, to.z));
-  return std::max(way, 0.0f) * most;
+  float part_free = 1;
+  if (stop.toward_x != 0)
+    part_free = std::min(part_free, part(stop.x, stop.toward_x, from.x, to.x));
+  if (stop.toward_z != 0)
+    part_free = std::min(part_free, part(stop.z, stop.toward_z, from.z, to.z));
+  return std::max(part_free, 0.0f) * max_range;
 }
 
 }  // namespace throng

@@ -27,10 +27,10 @@ class StrideGround {
   /// go on in it, and out.
   bool move(uint32_t level, int32_t y, GroundPoint from, GroundPoint to, Landing& landing) const;
 
-  /// Is there no wall, as far as a quick look tells, up to a square of cells `reach` to each side?
-  [[nodiscard]] bool is_open_around(uint32_t level, GroundPoint from, int32_t reach) const;
+  /// Is there no wall, as far as a quick look tells, up to a square of cells `range` to each side?
+  [[nodiscard]] bool is_open_around(uint32_t level, GroundPoint from, int32_t range) const;
 
-  /// What there is around a body, up to a square of cells `reach` to each side.
+  /// What there is around a body, up to a square of cells `range` to each side.
   enum class Around : uint8_t {
     kOpen,   // no walls
     kWalls,  // as the window has them
@@ -38,7 +38,7 @@ class StrideGround {
   };
   /// For steering alone: on tiles beside its own a floor counts that is up to a step and `rise`
   /// higher or lower, whether or not steps lead there. [cells, mm]
-  Around look_around(uint32_t level, int32_t y, GroundPoint from, int32_t reach, int32_t rise,
+  Around query_walls(uint32_t level, int32_t y, GroundPoint from, int32_t range, int32_t rise,
                      WallWindow& window) const;
 
   /// Asks for what is read of the ground around a body, in two goes: the second reads what the
@@ -48,14 +48,14 @@ class StrideGround {
     ground_->prefetch_cell(level, at.cell_x(), at.cell_z());
   }
 
-  /// Is the straight way from a point to another legal, or its first `most` units? Where it is all
-  /// looked at, it must end on `end`.
+  /// Is the straight way from a point to another legal, or its first `max_range` units? Where it is
+  /// all looked at, it must end on `end`.
   [[nodiscard]] bool sees(uint32_t level, GroundPoint from, GroundPoint to, uint32_t end,
-                          float most) const;
+                          float max_range) const;
 
-  /// How far it is to a wall along a unit vector, at most `most`. [units]
+  /// How far it is to a wall along a unit vector, at most `max_range`. [units]
   [[nodiscard]] float free_distance(uint32_t level, GroundPoint from, steer::Plane direction,
-                                    float most) const;
+                                    float max_range) const;
 
  private:
   bool leave(uint32_t level, int32_t y, GroundPoint from, GroundPoint to, Landing& landing) const;

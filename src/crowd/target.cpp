@@ -65,7 +65,7 @@ bool Target::contains(const Body& body) const {
 }
 
 std::vector<Place> places_inside(const WorldData& world, const CrowdGround& ground,
-                                 std::span<const TargetRegion> regions, size_t most,
+                                 std::span<const TargetRegion> regions, size_t max_count,
                                  LiveGround* live) {
   const auto cell_of = [](double units, int32_t cells) {
     return static_cast<int32_t>(
@@ -117,7 +117,7 @@ std::vector<Place> places_inside(const WorldData& world, const CrowdGround& grou
   }
   const double cells = area / kUnitsPerCell / kUnitsPerCell;
   auto stride = static_cast<int32_t>(
-      std::clamp(std::ceil(std::sqrt(cells / static_cast<double>(most))), 1.0, 1e6));
+      std::clamp(std::ceil(std::sqrt(cells / static_cast<double>(max_count))), 1.0, 1e6));
   std::vector<Place> places;
   for (;; stride = std::max(1, stride / 2)) {
     for_cells(stride, [&](const Place& place) { places.push_back(place); });

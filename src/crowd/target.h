@@ -50,10 +50,10 @@ struct Target {
 };
 
 /// Legal cells whose middles are inside, by region, level and row: all, or every n-th of a row and
-/// every n-th row, so that they are not many more than `most`. Y at the feet. With `live`: those
-/// that are legal there, whatever else has been taken from `ground`.
+/// every n-th row, so that they are not many more than `max_count`. Y at the feet. With `live`:
+/// those that are legal there, whatever else has been taken from `ground`.
 std::vector<Place> places_inside(const WorldData& world, const CrowdGround& ground,
-                                 std::span<const TargetRegion> regions, size_t most,
+                                 std::span<const TargetRegion> regions, size_t max_count,
                                  LiveGround* live = nullptr);
 
 }  // namespace throng

@@ -45,8 +45,8 @@ class Rows {
   const uint32_t* rows_;
 };
 
-void FindFreeDistances(const WallWindow& window, const steer::Fan& fan, float look,
-                       FreeDistances& ways) {
+void FindFreeDistances(const WallWindow& window, const steer::Fan& fan, float query_range,
+                       FreeDistances& distances) {
   const DI d;
   const DF df;
   constexpr size_t kMax = 32;  // directions, up to a whole vector
@@ -54,7 +54,7 @@ void FindFreeDistances(const WallWindow& window, const steer::Fan& fan, float lo
   std::copy(fan.begin(), fan.end(), directions.begin());
   alignas(64) std::array<float, kMax> found;
   const auto spacing = static_cast<float>(window.spacing());
-  const auto steps = static_cast<int32_t>(std::ceil(look / spacing));
+  const auto steps = static_cast<int32_t>(std::ceil(query_range / spacing));
   const Rows rows(window);
   const VI one = hn::Set(d, 1);
   for (size_t n = 0; n < fan.size(); n += hn::Lanes(d)) {
@@ -73,10 +73,10 @@ void FindFreeDistances(const WallWindow& window, const steer::Fan& fan, float lo
       free = hn::And(free, hn::BitCast(d, hn::Shr(hn::BitCast(du, row), hn::BitCast(du, column))));
       count = hn::Add(count, free);
     }
-    const auto way = hn::Mul(hn::ConvertTo(df, count), hn::Set(df, spacing));
-    hn::Store(hn::Min(way, hn::Set(df, look)), df, &found[n]);
+    const auto distance = hn::Mul(hn::ConvertTo(df, count), hn::Set(df, spacing));
+    hn::Store(hn::Min(distance, hn::Set(df, query_range)), df, &found[n]);
   }
-  std::copy_n(found.begin(), ways.size(), ways.begin());
+  std::copy_n(found.begin(), distances.size(), distances.begin());
 }
 
 }  // namespace HWY_NAMESPACE
@@ -88,9 +88,9 @@ namespace throng {
 
 HWY_EXPORT(FindFreeDistances);
 
-void find_free_distances(const WallWindow& window, const steer::Fan& fan, float look,
-                         FreeDistances& ways) {
-  HWY_DYNAMIC_DISPATCH(FindFreeDistances)(window, fan, look, ways);
+void find_free_distances(const WallWindow& window, const steer::Fan& fan, float query_range,
+                         FreeDistances& distances) {
+  HWY_DYNAMIC_DISPATCH(FindFreeDistances)(window, fan, query_range, distances);
 }
 
 }  // namespace throng

@@ -22,14 +22,14 @@ struct WallWindow {
   [[nodiscard]] int32_t spacing() const { return 1 << (shift - 1); }
   /// How far ways can be looked along: a square less than there is, for what ends on its border.
   /// [units]
-  [[nodiscard]] float reach() const { return static_cast<float>((kMiddle - 1) << shift); }
+  [[nodiscard]] float range() const { return static_cast<float>((kMiddle - 1) << shift); }
 };
 
 using FreeDistances = std::array<float, steer::kDirections>;
 
-/// How many half squares each way leads over free squares, up to `look` [units, <= reach()], in
-/// units. The first point that is looked at lies half a square off.
-void find_free_distances(const WallWindow& window, const steer::Fan& fan, float look,
-                         FreeDistances& ways);
+/// How many half squares each way leads over free squares, up to `query_range` [units, <= reach()],
+/// in units. The first point that is looked at lies half a square off.
+void find_free_distances(const WallWindow& window, const steer::Fan& fan, float query_range,
+                         FreeDistances& distances);
 
 }  // namespace throng

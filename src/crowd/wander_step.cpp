@@ -47,7 +47,7 @@ class List {
 struct Proposal {
   uint32_t from;   // pixel
   uint32_t level;  // on which it ends
-  uint16_t way;
+  uint16_t direction_index;
   uint16_t n;
 };
 
@@ -61,23 +61,23 @@ class Group {
   // to `readable`, avatars may be read ahead of their turn.
   void start_all(Avatar* avatars, size_t size, const Avatar* readable) {
     avatars_ = avatars;
-    proposals_size_ = asked_ = walls_ = 0;
+    proposals_size_ = prefetched_ = walls_ = 0;
     for (List* list : {&unsure_, &uneven_, &slopes_, &walks_}) list->clear();
-    ask_ahead(size, readable - 1);
+    prefetch_levels_ahead(size, readable - 1);
     plan_all(size);
-    ask_for_levels();
-    ask_for_pixels();
+    prefetch_walk_levels();
+    prefetch_pixels();
   }
   void start(Avatar* avatars, const List& todo) {
     avatars_ = avatars;
     plan(todo.span());
-    ask_for_levels();
-    ask_for_pixels();
+    prefetch_walk_levels();
+    prefetch_pixels();
   }
-  void look() {
+  void prefetch_cells() {
     look_closer();
-    ask_for_pixels();
-    ask_for_cells();
+    prefetch_pixels();
+    prefetch_ground_cells();
   }
   void finish(List& blocked) {
     proposal(blocked);
@@ -89,15 +89,15 @@ class Group {
   [[nodiscard]] uint64_t walls() const { return walls_; }
 
  private:
-  void ask_ahead(size_t size, const Avatar* last_readable) const;
+  void prefetch_levels_ahead(size_t size, const Avatar* last_readable) const;
   void plan_all(size_t size);
   void plan(std::span<const uint16_t> todo);
-  void ask_for_levels() const;
+  void prefetch_walk_levels() const;
   void look_closer();
   bool go_or_propose(const Pixels& pixels, Avatar& a, bool really, uint32_t level, uint16_t n,
                      size_t& claimed);
-  void ask_for_pixels();
-  void ask_for_cells() const;
+  void prefetch_pixels();
+  void prefetch_ground_cells() const;
   void proposal(List& blocked);
   void sort_uneven();
   void climb(List& blocked);
@@ -108,9 +108,9 @@ class Group {
   std::array<Proposal, kGroup> proposals_;
   std::array<CollisionMap::Slices, kGroup> slices_;  // of the claims
   size_t proposals_size_ = 0;
-  size_t asked_ = 0;  // claims whose pixels were asked for
-  List unsure_;       // not within plain blocks
-  List uneven_;       // not plain: these go on one of the next two
+  size_t prefetched_ = 0;  // claims whose pixels were asked for
+  List unsure_;            // not within plain blocks
+  List uneven_;            // not plain: these go on one of the next two
   List slopes_;
   List walks_;
   uint64_t walls_ = 0;  // met
@@ -155,7 +155,7 @@ int32_t mask(bool condition) { return -static_cast<int32_t>(condition); }
   const int32_t dz = pixels.grid.pixel((z + vz) >> kUnitBits) - pz;
   const bool stays = (dx | dz) == 0;
   proposals_[claimed] = {pixels.number(px, pz), level,
-                         static_cast<uint16_t>(CollisionMap::way(dx, dz)), n};
+                         static_cast<uint16_t>(CollisionMap::direction_index(dx, dz)), n};
   claimed += really & !stays;
   const bool goes = really & stays;
   a.x = x + (vx & mask(goes));
@@ -163,7 +163,7 @@ int32_t mask(bool condition) { return -static_cast<int32_t>(condition); }
   return goes;
 }
 
-void Group::ask_ahead(size_t size, const Avatar* last_readable) const {
+void Group::prefetch_levels_ahead(size_t size, const Avatar* last_readable) const {
   const LevelLine* lines = in_.ground->lines();
   for (const Avatar* a = avatars_; a < avatars_ + size; ++a) {
     throng::prefetch(a + kAheadAvatar);
@@ -204,7 +204,7 @@ void Group::plan(std::span<const uint16_t> todo) {
   proposals_size_ = claimed;
 }
 
-void Group::ask_for_levels() const {
+void Group::prefetch_walk_levels() const {
   for (const uint16_t n : unsure_.span()) {
     const Avatar& a = avatars_[n];
     const int32_t x = (a.x + a.vx) >> kUnitBits, z = (a.z + a.vz) >> kUnitBits;
@@ -233,12 +233,12 @@ void Group::look_closer() {
   proposals_size_ = claimed;
 }
 
-void Group::ask_for_pixels() {
+void Group::prefetch_pixels() {
   const CollisionMap& map = *in_.map;
-  for (; asked_ < proposals_size_; ++asked_) {
-    const Proposal& c = proposals_[asked_];
-    slices_[asked_] = map.slices(avatars_[c.n].y);
-    map.prefetch(slices_[asked_], c.from, c.way);
+  for (; prefetched_ < proposals_size_; ++prefetched_) {
+    const Proposal& c = proposals_[prefetched_];
+    slices_[prefetched_] = map.slices(avatars_[c.n].y);
+    map.prefetch(slices_[prefetched_], c.from, c.direction_index);
   }
 }
 
@@ -247,7 +247,7 @@ void Group::proposal(List& blocked) {
   for (size_t i = 0; i < proposals_size_; ++i) {
     const Proposal& c = proposals_[i];
     Avatar& a = avatars_[c.n];
-    const bool moved = map.move_by_one(slices_[i], c.from, c.way);
+    const bool moved = map.move_by_one(slices_[i], c.from, c.direction_index);
     a.x += a.vx & mask(moved);
     a.z += a.vz & mask(moved);
     a.level = moved ? c.level : a.level;
@@ -290,7 +290,7 @@ bool commit(CollisionMap& map, Avatar& a, GroundPoint to, uint32_t level, int32_
 
 GroundPoint target(const Avatar& a) { return {int64_t{a.x} + a.vx, int64_t{a.z} + a.vz}; }
 
-void Group::ask_for_cells() const {
+void Group::prefetch_ground_cells() const {
   for (const uint16_t n : uneven_.span()) {
     const Avatar& a = avatars_[n];
     const int32_t x = (a.x + a.vx) >> kUnitBits, z = (a.z + a.vz) >> kUnitBits;
@@ -363,7 +363,7 @@ void finish(const StepInput& in, Group& straight, size_t size, StepCounts& count
   for (const uint16_t n : blocked.span()) turn(in, a[n]);
   Group turned(in);
   turned.start(a, blocked);
-  turned.look();
+  turned.prefetch_cells();
   turned.finish(waits);
   counts.moved += size - waits.size();
   counts.waited += waits.size();
@@ -382,7 +382,7 @@ void move_runs(const StepInput& in, Avatar* avatars, std::span<const CrowdBlocks
   size_t begun = 0;
   // What is due when group g has started, or would have if there were one.
   const auto follow = [&](size_t g) {
-    if (g >= 1 && g - 1 < begun) groups[(g - 1) % 3].look();
+    if (g >= 1 && g - 1 < begun) groups[(g - 1) % 3].prefetch_cells();
     if (g >= 2) finish(in, groups[(g - 2) % 3], sizes[(g - 2) % 3], counts);
   };
   for (const CrowdBlocks::Run& run : runs) {

@@ -45,9 +45,9 @@ struct Solid {
   double height = 0, radius = 0;
 
   // Its farthest point in a direction.
-  [[nodiscard]] Vec3d farthest(Vec3d way) const {
-    const double along = dot(way, axis);
-    const Vec3d across = way - axis * along;
+  [[nodiscard]] Vec3d farthest(Vec3d offset) const {
+    const double along = dot(offset, axis);
+    const Vec3d across = offset - axis * along;
     const double size = length(across);
     return feet + axis * (along > 0 ? height : 0) + (size > 0 ? across * (radius / size) : Vec3d{});
   }
@@ -60,20 +60,20 @@ bool are_apart(const Solid& a, const Solid& b) {
   constexpr int kSteps = 3000;
   const Vec3d up{0, 1, 0},
       middles = a.feet + a.axis * (a.height / 2) - b.feet - b.axis * (b.height / 2);
-  const auto lies_between = [&](Vec3d way) {
-    return dot(way, a.farthest(way * -1) - b.farthest(way)) > 0;
+  const auto lies_between = [&](Vec3d offset) {
+    return dot(offset, a.farthest(offset * -1) - b.farthest(offset)) > 0;
   };
-  for (const Vec3d& way : {up, up * -1, Vec3d{middles.x, 0, middles.z}}) {
-    if (lies_between(way)) return true;  // the steps come near to these, but slowly
+  for (const Vec3d& offset : {up, up * -1, Vec3d{middles.x, 0, middles.z}}) {
+    if (lies_between(offset)) return true;  // the steps come near to these, but slowly
   }
   Vec3d v = a.feet - b.feet;
   for (int n = 0; n < kSteps; ++n) {
     const Vec3d p = a.farthest(v * -1) - b.farthest(v);
     if (dot(v, p) > 0) return true;
-    const Vec3d way = p - v;
-    const double size = dot(way, way);
+    const Vec3d offset = p - v;
+    const double size = dot(offset, offset);
     if (!(size > 0)) return false;
-    v = v + way * std::clamp(-dot(v, way) / size, 0.0, 1.0);
+    v = v + offset * std::clamp(-dot(v, offset) / size, 0.0, 1.0);
   }
   return false;
 }
@@ -471,8 +471,8 @@ TEST(Climbers, WhoIsDrivenGoesWhereHeIsDriven) {
   const AvatarId id = added_on(crowd, finder->find_place({8, 0, 8}, 2), kGecko);
   ASSERT_TRUE(id);
   const Vec3d before = crowd.read(id)->position;
-  const Vec3d way{1, 0, 0.2};
-  crowd.set_velocities(std::span(&id, 1), std::span(&way, 1));
+  const Vec3d offset{1, 0, 0.2};
+  crowd.set_velocities(std::span(&id, 1), std::span(&offset, 1));
   Stage::Faults faults;
   for (int step = 0; step < 40; ++step) {
     crowd.step();

@@ -117,7 +117,8 @@ TEST(CollisionMap, LookingOnlyAtTheNewPixelsIsEnough) {
     simple.clear(from);
     const bool is_free = simple.is_free(to);
     simple.set(is_free ? to : from);
-    ASSERT_EQ(quick.move_by_one(from.slices, from.pixel, CollisionMap::way(dx, dz)), is_free);
+    ASSERT_EQ(quick.move_by_one(from.slices, from.pixel, CollisionMap::direction_index(dx, dz)),
+              is_free);
     if (is_free) body = next;
     ++(is_free ? moved : refused);
   }

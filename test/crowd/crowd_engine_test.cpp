@@ -35,7 +35,7 @@ struct Pair {
     for (size_t i = 0; i < by_slot.size(); ++i) {
       const test::PlainBody& p = plain.bodies()[i];
       const Body& b = *by_slot[i];
-      if (b.x != p.at.x || b.z != p.at.z || b.turn != p.turn ||
+      if (b.x != p.at.x || b.z != p.at.z || b.detour_angle != p.turn ||
           b.has(Body::kArrived) != (p.arrived >= 0)) {
         return "body " + std::to_string(i) + " in step " + std::to_string(steps);
       }

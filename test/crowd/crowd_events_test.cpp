@@ -60,10 +60,11 @@ TEST(CrowdEvents, tell_who_comes_into_areas) {
     for (const auto& one : now) {
       if (before.count(one) == 0) came.insert(one);
     }
-    std::set<std::pair<uint32_t, int>> told;
-    for (const AreaEntry& entry : crowd->entered()) told.emplace(entry.id.slot1 - 1, entry.area);
-    ASSERT_EQ(told, came) << step;
-    entries += told.size();
+    std::set<std::pair<uint32_t, int>> reported;
+    for (const AreaEntry& entry : crowd->entered())
+      reported.emplace(entry.id.slot1 - 1, entry.area);
+    ASSERT_EQ(reported, came) << step;
+    entries += reported.size();
     before = now;
   }
   EXPECT_GT(entries, 100U);
@@ -107,21 +108,21 @@ TEST(CrowdEvents, tell_who_is_stuck) {
   ASSERT_TRUE(ids);
   // Straight on into the wall; along the hall; nowhere.
   crowd->set_goals(*ids, std::vector<Place>{at(20, 4), at(28, 15), Place()});
-  int looks = 0, told = 0;
+  int checks = 0, reported = 0;
   for (int step = 1; step <= 100; ++step) {
     crowd->step();
     if (step % 20 != 0) {
       EXPECT_TRUE(crowd->no_progress().empty()) << step;
     }
     if (step % 20 != 0 || step == 20) continue;
-    ++looks;
+    ++checks;
     for (const AvatarId id : crowd->no_progress()) {
       EXPECT_EQ(id, (*ids)[0]);
-      ++told;
+      ++reported;
     }
   }
-  EXPECT_EQ(looks, 4);
-  EXPECT_GE(told, 1);
+  EXPECT_EQ(checks, 4);
+  EXPECT_GE(reported, 1);
 }
 
 }  // namespace

@@ -35,14 +35,14 @@ Vec3d position(const Crowd& crowd, AvatarId id) {
 }
 
 // Steps until the avatar arrives, at most so many times. Returns how many it took.
-int steps_to_arrive(Crowd& crowd, AvatarId id, int most) {
-  for (int step = 1; step <= most; ++step) {
+int steps_to_arrive(Crowd& crowd, AvatarId id, int max_steps) {
+  for (int step = 1; step <= max_steps; ++step) {
     crowd.step();
     for (const AvatarId there : crowd.arrived()) {
       if (there == id) return step;
     }
   }
-  return most + 1;
+  return max_steps + 1;
 }
 
 void expect_no_faults(const Crowd& crowd) {

@@ -153,9 +153,9 @@ TEST(Flyers, FiveHundredWhoCrossASphereAllArrive) {
   for (size_t i = 0; i < kCount; ++i) {  // evenly over the sphere
     const double y = 1 - (2 * static_cast<double>(i) + 1) / kCount;
     const double r = std::sqrt(1 - y * y), turn = 2.399963 * static_cast<double>(i);
-    const Vec3d way{25 * r * std::cos(turn), 25 * y, 25 * r * std::sin(turn)};
-    spawns.push_back(flyer_at(middle + way));
-    goals.push_back(air_place(middle - way));
+    const Vec3d offset{25 * r * std::cos(turn), 25 * y, 25 * r * std::sin(turn)};
+    spawns.push_back(flyer_at(middle + offset));
+    goals.push_back(air_place(middle - offset));
   }
   crowd.set_goals(added(crowd, spawns), goals);
   expect_all(go(crowd, stage, kCount, 600, 3), kCount);

@@ -150,7 +150,7 @@ TEST(ObstacleSet, GivesBackToTheBitWhatItTook) {
       }
       const size_t i = static_cast<size_t>(f.draw() * static_cast<double>(slots.size()));
       if (f.draw() < 0.5) {
-        f.book.ask_to_be_at(slots[i], f.random_prism());
+        f.book.request_move(slots[i], f.random_prism());
         f.book.settle(slots[i]);
       } else {
         f.book.remove(slots[i]);
@@ -217,8 +217,8 @@ TEST(ObstacleSet, FastMovesAreThoseOfThePlainGround) {
       const auto from = *ground_point(*f.world.data(), place);
       uint32_t level = place.level1 - 1;
       if (!f.ground.is_legal(level, from.cell_x() & 63, from.cell_z() & 63)) continue;
-      const auto way = [&] { return static_cast<int64_t>((f.draw() * 8 - 4) * kUnitsPerCell); };
-      const GroundPoint to{from.x + way(), from.z + way()};
+      const auto offset = [&] { return static_cast<int64_t>((f.draw() * 8 - 4) * kUnitsPerCell); };
+      const GroundPoint to{from.x + offset(), from.z + offset()};
       StrideGround::Landing landing;
       const bool moved = stride.move(level, f.ground.feet(level, from), from, to, landing);
       GroundLevel on = ground_level(*f.world.data(), level, 0);

@@ -103,7 +103,7 @@ TEST(Detours, LeadAroundCratesAndAreHardlyLongerThanTheBest) {
   EXPECT_GT(covered, 100u);
   EXPECT_GT(searched_in_vain, 5u);
   EXPECT_LT(ratios / static_cast<double>(reached), 1.03);
-  EXPECT_LT(worst, 2 * kLongestDetour);
+  EXPECT_LT(worst, 2 * kMaxRepairDetour);
 }
 
 }  // namespace

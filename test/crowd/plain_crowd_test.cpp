@@ -41,18 +41,18 @@ TEST(PlainCrowd, NobodyEverTouchesAnotherHoweverDense) {
 TEST(PlainCrowd, SeesOverTheBordersOfAPlaneThatRepeatsItself) {
   for (const double side : {6.0, 12.0, 18.0}) {  // one, two, three times as wide as one sees
     PlainConfig config;
-    const auto spot = [&](double x, double z) {
+    const auto point_at = [&](double x, double z) {
       return Spot{config.to_units(x), config.to_units(z)};
     };
     std::vector<PlainBody> bodies(4);
-    bodies[0].at = spot(side - 0.4, 1);
-    bodies[1].at = spot(side / 2 + 0.3, side - 0.7);
-    bodies[0].goal = spot(side + 4, 1);
-    bodies[1].goal = spot(side / 2 + 0.3, side + 4);
-    bodies[2].at = spot(0.4, 1);
-    bodies[2].goal = spot(-4, 1);
-    bodies[3].at = spot(side / 2 + 0.3, 0.3);
-    bodies[3].goal = spot(side / 2 + 0.3, -4);
+    bodies[0].at = point_at(side - 0.4, 1);
+    bodies[1].at = point_at(side / 2 + 0.3, side - 0.7);
+    bodies[0].goal = point_at(side + 4, 1);
+    bodies[1].goal = point_at(side / 2 + 0.3, side + 4);
+    bodies[2].at = point_at(0.4, 1);
+    bodies[2].goal = point_at(-4, 1);
+    bodies[3].at = point_at(side / 2 + 0.3, 0.3);
+    bodies[3].goal = point_at(side / 2 + 0.3, -4);
     config.side = config.to_units(side);
     PlainCrowd crowd(bodies, config);
     for (int step = 0; step < 30; ++step) {

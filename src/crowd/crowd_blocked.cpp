@@ -34,8 +34,9 @@ void CrowdGround::keep_baked(Level level, Baked& baked) {
   line.legal_set = own | (line.legal_set & ~kSetBits);
 }
 
-void CrowdGround::set_taken(Level level, const CellRows& taken) {
-  const bool any = std::any_of(taken.begin(), taken.end(), [](uint64_t row) { return row != 0; });
+void CrowdGround::set_blocked(Level level, const CellRows& blocked) {
+  const bool any =
+      std::any_of(blocked.begin(), blocked.end(), [](uint64_t row) { return row != 0; });
   auto kept = baked_.find(level);
   if (kept == baked_.end()) {
     if (!any || (lines_[level].legal_set & kSetBits) == kNoneLegal) return;
@@ -46,7 +47,7 @@ void CrowdGround::set_taken(Level level, const CellRows& taken) {
   LevelLine& line = lines_[level];
   const auto write = [&](uint32_t set, const CellRows& rows) {
     uint64_t* to = rows_.data() + size_t{set & kSetBits} * kRows;
-    for (size_t z = 0; z < kRows; ++z) to[z] = rows[z] & ~taken[z];
+    for (size_t z = 0; z < kRows; ++z) to[z] = rows[z] & ~blocked[z];
   };
   // A cell is plain if it is legal and as high as those beside it, legal or not.
   write(line.legal_set, baked.legal);

@@ -10,20 +10,21 @@
 #include "core/random.h"
 #include "steer/surface.h"
 
-// docs/design/013-climbers.md. Those who walk and those who fly have made their steps clear of the
-// cylinders that hold those who climb; now these go, clear of where everybody is.
+// The step of climbers: docs/design/013-climbers.md. Walkers and flyers have moved clear of the
+// cylinders that enclose climbers; then climbers move, clear of where all bodies are. Linear in the
+// climbers and their neighbours.
 namespace throng {
 namespace {
 
 using steer::Space;
 
-constexpr size_t kGrain = 32;              // climbers that are worth handing to another thread
+constexpr size_t kGrain = 32;              // climbers that are worth another thread
 constexpr float kArrivalRadius = 0.3f;     // [m] from its goal a body has arrived
 constexpr float kProgressShare = 0.1f;     // of its speed
-constexpr float kDetourDelay = 2;          // [s] at least, before one turns off
-constexpr float kRetreatDelay = 1;         // [s] before one in the air goes back
-constexpr float kYieldDelay = 0.5f;        // [s] before those who rest are asked to make room
-constexpr float kYieldDistance = 0.3f;     // [m] from who cannot step aside one makes room
+constexpr float kDetourDelay = 2;          // [s] at least, before it turns aside
+constexpr float kRetreatDelay = 1;         // [s] before one in the air moves back
+constexpr float kYieldDelay = 0.5f;        // [s] before others that rest yield to it
+constexpr float kYieldDistance = 0.3f;     // [m] from a body that cannot step aside
 constexpr uint64_t kTempers = 0x74656d70;  // stream of chance
 
 bool overlaps_with(const ClimbCylinder& a, const ClimbCylinder& b) {
@@ -50,7 +51,8 @@ void ClimberEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt
   config_.units.dt = dt;
   const float unit = config_.units.unit, stride = fastest * dt;
   sight_metres_ = std::max(config_.sight, config_.steering.horizon * fastest);
-  // As far as two cylinders' middles are apart whose bodies could touch after a step, all ways.
+  // The largest distance between the centres of two cylinders whose bodies could touch after a
+  // step.
   const float touched = 2 * static_cast<float>(widest) * unit + 2 * stride;
   const float high = 2 * static_cast<float>(tallest) * 1e-3f + 2 * stride;
   near_metres_ = std::max({sight_metres_ / 2, touched, high}) + 0.01f;
@@ -131,7 +133,7 @@ void ClimberEngine::step(uint64_t step, std::span<Body> bodies, std::span<Climb>
   }
 }
 
-// What it wishes for, as if nobody were there.
+// Its preferred velocity, as if no other were there.
 void ClimberEngine::preferred(Body& body, Climb& climb) const {
   Space desired;
   const bool goes = body.has(Body::kHasGoal) || body.has(Body::kExternal) || body.leaves;
@@ -151,8 +153,8 @@ void ClimberEngine::preferred(Body& body, Climb& climb) const {
   climb.preferred_up = desired.y;
 }
 
-// Is the other held up where he cannot step aside, on his way over an edge or a gap, or by one who
-// is bound for nowhere any more?
+// Is the other blocked where it cannot step aside, on its path over an edge or a hole, or by a body
+// that has no goal left?
 bool ClimberEngine::lets_off(const Body& body, const Climb& climb, const Body& other) const {
   if (!other.climbs || climb.at.in_air != 0) return false;
   const Climb& of_other = climbs_[other.slot];
@@ -162,7 +164,8 @@ bool ClimberEngine::lets_off(const Body& body, const Climb& climb, const Body& o
          (of_other.waited >= climb.waited || other.slot < body.slot);
 }
 
-// Appends whom the climber could touch to `others`, and takes in the nearest, by which it steers.
+// Appends the bodies that the climber could touch to `others`, and adds the nearest, by which it
+// steers.
 void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situation,
                           bool& yields) const {
   const uint32_t i = rounds_.movers[c];
@@ -170,7 +173,7 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
   const Climb& climb = climbs_[body.slot];
   const StepUnits& units = config_.units;
   NearestInAir nearest(sight_metres_);
-  // Where the middles of both may be after a step, and how far their cylinders may reach then.
+  // Where the centres of both may be after a step, and how far their cylinders may extend then.
   const auto rise = static_cast<int64_t>(fastest_ * units.dt * 1000) + 2;
   const int64_t stride = units.stride(fastest_) + 1;
   const auto query = [&](const FlyerGrid::Entry& entry, bool is_near) {
@@ -179,7 +182,7 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
     if (is_near) {
       const int64_t range = widest_ + stride + (other.climbs ? widest_ + stride : entry.radius);
       const int64_t high = tallest_ + 2 * rise + (other.climbs ? tallest_ : entry.height);
-      const int64_t up = int64_t{2} * (entry.y - body.y) + entry.height - body.height;  // twice
+      const int64_t up = int64_t{2} * (entry.y - body.y) + entry.height - body.height;  // doubled
       if (std::abs(up) <= 2 * high && nearer_than(entry.x - body.x, entry.z - body.z, range)) {
         worker.others.push_back(entry.body);
       }
@@ -209,7 +212,7 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
     } else if (other.flies()) {
       up = flights_[other.slot].rise;
     }
-    // Who has arrived makes way for those who would pass, were he not there.
+    // A climber that has arrived yields to those that would pass if it were not there.
     const bool is_passed = body.has(Body::kArrived) && other.climbs && !other.has(Body::kArrived);
     const Space velocity = is_passed ? Space{other.preferred.x, preferred_up, other.preferred.z}
                                      : Space{other.velocity.x, up, other.velocity.z};
@@ -245,7 +248,8 @@ void ClimberEngine::find_paths(const Body& body, const Climb& climb,
     contest.displacement[contest.candidate_count++] = {*step, *cylinder, on_path};
   };
   const bool goes = climb.count > 0 && steer::size_of(situation.preferred) > 0;
-  // Where it stops the wish is slower; else what is left of a step goes on along the way.
+  // Where it stops, the preferred velocity is slower; else the rest of a step continues along the
+  // path.
   const double desired = climb.is_last_segment() || body.has(Body::kExternal)
                              ? double{steer::size_of(situation.preferred)} * dt
                              : max_travel;
@@ -277,7 +281,7 @@ void ClimberEngine::find_paths(const Body& body, const Climb& climb,
   }
 }
 
-// Sense, steer, and take a place if nobody can object.
+// Senses, steers, and takes a place at once if no other could touch it.
 void ClimberEngine::decide(uint32_t c, Worker& worker) {
   const Body& body = bodies_[rounds_.movers[c]];
   const Climb& climb = climbs_[body.slot];
@@ -305,7 +309,7 @@ void ClimberEngine::decide(uint32_t c, Worker& worker) {
   worker.contests.pop_back();
 }
 
-// Is a cylinder clear of where everybody is now?
+// Is a cylinder clear of where all bodies are now?
 bool ClimberEngine::is_clear(const Contest& contest, const Worker& owner,
                              const ClimbCylinder& cylinder) const {
   for (const uint32_t j : owner.others_of(contest)) {
@@ -320,7 +324,7 @@ bool ClimberEngine::is_clear(const Contest& contest, const Worker& owner,
   return true;
 }
 
-// The first of his ways that is clear.
+// Proposes the first candidate that is clear.
 bool ClimberEngine::name(const Contest& contest, const Worker& owner) {
   for (size_t w = 0; w < contest.candidate_count; ++w) {
     if (!is_clear(contest, owner, contest.displacement[w].cylinder)) continue;

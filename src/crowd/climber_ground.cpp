@@ -8,15 +8,15 @@
 #include "world/place.h"
 #include "world/zone_data.h"
 
-// Whatever is told here is on the way that the finder proved, or in a square all of which the class
-// may stand on: docs/design/013-climbers.md. Additions, products and square roots only, so that it
-// is the same everywhere.
+// Moves over nodes. All poses lie on the path that the finder proved, or in a square all of which
+// the class may stand on: docs/design/013-climbers.md. Additions, products and square roots only,
+// so that the result is the same everywhere. Constant time, but for the points that a move passes.
 namespace throng {
 namespace {
 
 constexpr double kLittle = 1e-9;    // [m]
 constexpr double kEdgeStep = 1e-4;  // of a patch's parameters, for derivatives
-constexpr int kShorter = 8;         // tries to make a move short enough
+constexpr int kShorter = 8;         // attempts to make a move short enough
 
 }  // namespace
 
@@ -49,7 +49,7 @@ std::optional<ClimbPose> ClimberGround::pose(uint32_t node1, double s, double t)
 std::optional<ClimbPose> ClimberGround::pose_of_point(const Climb& climb, size_t point) const {
   const ClimbPoint& p = climb.points[point];
   if (p.node1 != 0) return pose(p.node1, p.s, p.t);
-  const auto landing = pose_of_point(climb, point + 1);  // a way never ends in the air
+  const auto landing = pose_of_point(climb, point + 1);  // a path never ends in the air
   if (!landing) return std::nullopt;
   return ClimbPose{{landing->feet.x, p.s, landing->feet.z}, {0, 1, 0}};
 }
@@ -64,7 +64,7 @@ std::optional<ClimbPose> ClimberGround::pose_of(const Climb& climb, const ClimbS
   return ClimbPose{from->feet * (1 - at.part) + to->feet * at.part, axis * (1 / size)};
 }
 
-// Circles around the middle: the farthest point of the leaning cylinder is on one of its rims, at
+// Circles around the centre: the farthest point of the leaning cylinder is on one of its rims, at
 // the lowest or highest point of that, or between.
 std::optional<ClimbCylinder> ClimberGround::cylinder_of(const ClimbPose& pose,
                                                         double radius) const {
@@ -79,7 +79,7 @@ std::optional<ClimbCylinder> ClimberGround::cylinder_of(const ClimbPose& pose,
   if (!(std::fabs(x) < 2e9 && std::fabs(z) < 2e9 && std::fabs(middle.y) + high < 2e6)) {
     return std::nullopt;
   }
-  // Those who lean out over the rim of the grid are held from inside.
+  // A body that leans out over the rim of the grid is enclosed from inside.
   const double in_x = std::clamp(std::floor(x), 0.0, width_ - 1.0);
   const double in_z = std::clamp(std::floor(z), 0.0, depth_ - 1.0);
   const double off_x = x - (in_x + 0.5), off_z = z - (in_z + 0.5);
@@ -116,7 +116,7 @@ BodyRoom ClimberGround::body_room_of(const ClimbPose& pose, double radius) const
   room.bottom = pose.axis.y > 1 - 1e-12 ? bottom_ : leaning_bottom_;
   room.top = height_;
   room.radius = radius;
-  room.margin = 0;  // Ways may lead along what finders took with a margin.
+  room.margin = 0;  // Paths may lead where finders kept a margin.
   return room;
 }
 
@@ -166,9 +166,9 @@ ClimberGround::Slope ClimberGround::slope_at(const Square& square, const ClimbSt
           (point(0, kEdgeStep) - point(0, -kEdgeStep)) * (0.5 / kEdgeStep)};
 }
 
-// May one who leaves a square along (ds, dt) go on in the next one of the way? On one curved patch,
-// if he leaves it where the two touch: each is proved whole. On level tiles the step between them
-// need not be one that he can take, so there he goes through the point that the way names.
+// May a body that leaves a square along (ds, dt) continue in the next one of the path? On one
+// curved patch, if it leaves it where the two touch: each is proved whole. On level tiles it may be
+// unable to take the step between them, so there it goes through the point that the path has.
 bool ClimberGround::enters_next(const Climb& climb, const Square& here, double ds,
                                 double dt) const {
   const ClimbStance& at = climb.at;
@@ -188,7 +188,7 @@ Vec3d ClimberGround::path_ahead(const Climb& climb) const {
     const auto to = pose_of_point(climb, at.next);
     const Vec3d displacement = to ? to->feet - climb.feet : Vec3d{};
     if (!to || length(displacement) > 0.05) return displacement;
-    // Nearly only turning: as its middle moves.
+    // It nearly only turns: as its centre moves.
     return displacement + (to->axis - climb.axis) * (height_ / 2);
   }
   const Square here = square_here(climb);
@@ -287,13 +287,13 @@ std::optional<ClimberGround::Step> ClimberGround::advance(const Climb& climb,
   Step step{climb.at, {climb.feet, climb.axis}};
   ClimbStance& at = step.at;
   if (climb.count == 0) return step;
-  if (at.in_air == 0 && at.next == climb.count) {  // back to where it was, if it made way
+  if (at.in_air == 0 && at.next == climb.count) {  // back to where it was, if it yielded
     at.next = climb.count - 1;
     go_on_surface(climb, step, max_travel);
     at.next = climb.count;
     return step;
   }
-  // At most all that is left of the way.
+  // At most all that is left of the path.
   while (max_travel > kLittle && at.next < climb.count) {
     const ClimbPoint& local_target = climb.points[at.next];
     const bool there = at.in_air != 0 ? go_through_air(climb, step, max_travel)

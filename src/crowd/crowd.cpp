@@ -31,7 +31,7 @@ constexpr uint64_t kAirDraws = 0x616972;  // stream of chance
 
 Error bad_config(const std::string& what) { return {Errc::kBadConfig, "crowd: " + what}; }
 
-// As far as one can tell from outside: worlds that were never written have no hash.
+// As far as known from outside: worlds that were never written have no hash.
 bool is_same_world(const Nodes& nodes, const World& world) {
   const WorldSummary &a = nodes.data()->world.data()->summary, &b = world.data()->summary;
   return a.hash == b.hash && a.cell == b.cell && a.origin == b.origin &&
@@ -208,10 +208,10 @@ Result<Body> Crowd::State::body_of(const AvatarSpawn& spawn) const {
   return body;
 }
 
-// Nobody moves further than the smallest radius at a time, so nobody passes through another.
+// No body moves further than the smallest radius at a time, so none passes through another.
 void Crowd::State::make_room(const Body& body) {
   int32_t wide = body.radius, narrow = body.radius, tall = body.height;
-  if (body.climbs) {  // It leans, so what holds it changes.
+  if (body.climbs) {  // It leans, so the cylinder that encloses it changes.
     const ClimberGround& ground = *classes[body.avatar_class]->nodes;
     const double radius = climbs[body.slot].radius;
     wide = ground.widest(radius);
@@ -474,7 +474,7 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
   }
 }
 
-// Follows ways, and asks for those that are missing.
+// Follows paths, and finds those that are missing.
 void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned) {
   const auto metre = static_cast<float>(1 / unit);
   const uint64_t step_now = sub_step - 1;
@@ -502,7 +502,7 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
     if (!body.has(Body::kNeedsPath)) continue;
     ++asked;
     if (plan_path(body, route, ground, worker)) continue;
-    // A region that cannot be walked to may be flown to.
+    // A target that cannot be walked to may be flown to.
     const bool takes_off = parts.air && body.target != 0 && take_off(body, flights[body.slot]);
     if (!takes_off) drop_goal(body);
   }
@@ -545,7 +545,7 @@ CrowdReport Crowd::step() {
   for (int32_t i = 0; i < s.sub_steps; ++i) {
     s.engine.step(s.sub_step++, has_paths ? before : CrowdEngine::Before(), counts, times);
     for (const uint32_t slot : s.engine.arrived()) {
-      // Who only came to where he takes off is not there yet.
+      // An avatar that only reached where it takes off has not arrived.
       if (s.flights.empty() || s.flights[slot].to_link == 0) s.arrived.push_back(s.id_of(slot));
     }
     if (!s.flights.empty()) s.fly(counts, times, planned);

@@ -64,7 +64,7 @@ void ClimberEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt
             static_cast<int32_t>(near_metres_ * 1000) + 4);
 }
 
-bool ClimberEngine::in_counterflow(const ClimberGround& ground, const ClimbCylinder& cylinder,
+bool ClimberEngine::meets_obstacle(const ClimberGround& ground, const ClimbCylinder& cylinder,
                                    const ClimbPose& pose, double radius,
                                    const AirObstacle& obstacle, const Solid& solid) const {
   return obstacle.holds(cylinder.low, cylinder.radius * double{config_.units.unit},
@@ -75,7 +75,7 @@ bool ClimberEngine::in_counterflow(const ClimberGround& ground, const ClimbCylin
 bool ClimberEngine::is_blocked(const ClimberGround& ground, const ClimbCylinder& cylinder,
                                const ClimbPose& pose, double radius) const {
   for (size_t i = 0; i < obstacles_.size(); ++i) {
-    if (in_counterflow(ground, cylinder, pose, radius, obstacles_[i], solids_[i])) return true;
+    if (meets_obstacle(ground, cylinder, pose, radius, obstacles_[i], solids_[i])) return true;
   }
   return false;
 }
@@ -84,7 +84,7 @@ bool ClimberEngine::is_inside(const ClimberGround& ground, const ClimbCylinder& 
                               const ClimbPose& pose, double radius) const {
   for (size_t i = 0; i < obstacles_.size(); ++i) {
     const bool is_up = !obstacles_[i].closes();
-    if (is_up && in_counterflow(ground, cylinder, pose, radius, obstacles_[i], solids_[i]))
+    if (is_up && meets_obstacle(ground, cylinder, pose, radius, obstacles_[i], solids_[i]))
       return true;
   }
   return false;
@@ -93,9 +93,9 @@ bool ClimberEngine::is_inside(const ClimberGround& ground, const ClimbCylinder& 
 bool ClimberEngine::is_blocked(const ClimberGround& ground, const Body& body, const Climb& climb,
                                const ClimbCylinder& cylinder, const ClimbPose& pose) const {
   for (size_t i = 0; i < obstacles_.size(); ++i) {
-    if (!in_counterflow(ground, cylinder, pose, climb.radius, obstacles_[i], solids_[i])) continue;
+    if (!meets_obstacle(ground, cylinder, pose, climb.radius, obstacles_[i], solids_[i])) continue;
     const bool continues = obstacles_[i].closes() &&
-                           in_counterflow(ground, cylinder_of(body), {climb.feet, climb.axis},
+                           meets_obstacle(ground, cylinder_of(body), {climb.feet, climb.axis},
                                           climb.radius, obstacles_[i], solids_[i]);
     if (!continues) return true;
   }

@@ -60,7 +60,7 @@ class ClimberEngine {
   [[nodiscard]] bool is_inside(const ClimberGround& ground, const ClimbCylinder& cylinder,
                                const ClimbPose& pose, double radius) const;
   /// Does a body meet an obstacle?
-  [[nodiscard]] bool in_counterflow(const ClimberGround& ground, const ClimbCylinder& cylinder,
+  [[nodiscard]] bool meets_obstacle(const ClimberGround& ground, const ClimbCylinder& cylinder,
                                     const ClimbPose& pose, double radius,
                                     const AirObstacle& obstacle, const Solid& solid) const;
 

@@ -70,8 +70,8 @@ class ClimberGround {
     double s0 = 0, t0 = 0, s1 = 0, t1 = 0;
     PatchKind kind = PatchKind::kLevelTile;
     uint32_t source = 0;
-    bool partial = false;  ///< Of a partial node: the block, of which some cells may lie outside the
-                           ///< node.
+    bool partial = false;  ///< Of a partial node: the block, of which some cells may lie outside
+                           ///< the node.
 
     /// (Up to rounding.)
     [[nodiscard]] bool holds(double s, double t) const {

@@ -5,8 +5,8 @@
 
 #include "crowd/crowd_ground.h"
 
-// Cells that obstacles take, and give back. What was baked is kept aside while a level lacks some
-// of it, so that it comes back to the bit.
+// Cells that obstacles block, and free again. While some cells of a level are blocked, what was
+// baked is kept aside, so that it comes back to the bit. Linear in the level's cells.
 namespace throng {
 namespace {
 
@@ -22,7 +22,7 @@ void CrowdGround::keep_baked(Level level, Baked& baked) {
   std::copy_n(legal(level), kRows, baked.legal.begin());
   std::copy_n(plain(level), kRows, baked.plain.begin());
   if (set != kAllLegal) return;
-  // The rows of all cells are shared by many levels: this one needs its own.
+  // Many levels share the rows of all cells: this one needs its own.
   uint32_t own = row_sets_;
   if (spare_sets_.empty()) {
     ++row_sets_;
@@ -49,7 +49,7 @@ void CrowdGround::set_blocked(Level level, const CellRows& blocked) {
     uint64_t* to = rows_.data() + size_t{set & kSetBits} * kRows;
     for (size_t z = 0; z < kRows; ++z) to[z] = rows[z] & ~blocked[z];
   };
-  // A cell is plain if it is legal and as high as those beside it, legal or not.
+  // A cell is flat if it is legal and as high as those beside it, legal or not.
   write(line.legal_set, baked.legal);
   if (line.plain_set != kNoneLegal) write(line.plain_set, baked.plain);
   uint32_t cells = 0;
@@ -72,7 +72,7 @@ const CellRows* CrowdGround::baked_legal(Level level) const {
 }
 
 void CrowdGround::join_tile(int32_t x, int32_t z) {
-  // The tile's sides, and from beyond each the one towards it.
+  // The tile's own sides, and from beyond each the side towards the tile.
   const auto for_sides = [&](auto act) {
     const auto for_levels = [&](int32_t tile_x, int32_t tile_z, LevelLine::Side side) {
       const Range* range = tile(tile_x, tile_z);

@@ -9,20 +9,23 @@
 #include "crowd/crowd_state.h"
 #include "throng/crowd.h"
 
-// What a crowd does about those who go over nodes: where they begin, and how they find and follow
-// their ways. docs/design/013-climbers.md.
+// Climbers of a crowd: where they are placed, and how they find and follow their paths.
+// docs/design/013-climbers.md. A path costs a search over nodes; a step without one is constant
+// time.
 namespace throng {
 namespace {
 
-constexpr double kSearchRadius = 0.5;      // [m] from a place to the nodes' place that it means
-constexpr double kNoSpacing = 1e9;         // [m] points of a way only where it bends
-constexpr float kMin = 1;                  // [s] of a way that is not to the goal
-constexpr float kExternal = 0.5f;          // [s] for which one who is driven looks ahead
-constexpr uint64_t kDetours = 0x6465746f;  // stream of chance
-constexpr uint64_t kPlaces = 0x706c6163;   // stream of chance
-constexpr double kRoomy = 2;               // [m] of a node in which one can go out of the way
+constexpr double kSearchRadius = 0.5;      // [m] from a place to the place on nodes that it stands
+                                           // for
+constexpr double kNoSpacing = 1e9;         // [m] points of a path only at its corners
+constexpr float kMin = 1;                  // [s] of a path that does not lead to the goal
+constexpr float kExternal = 0.5f;          // [s] for which one that is externally controlled plans
+                                           // ahead
+constexpr uint64_t kDetours = 0x6465746f;  // random stream
+constexpr uint64_t kPlaces = 0x706c6163;   // random stream
+constexpr double kRoomy = 2;               // [m] of a node in which a body can step aside
 constexpr double kSearchMargin = 1;        // [m] more than a square of a node
-constexpr uint64_t kFew = 8000;            // crossings that a search for a detour looks at
+constexpr uint64_t kFew = 8000;            // crossings that a search for a detour may expand
 
 ClimbPoint point_of(const NodePathPoint& point, bool drops) {
   ClimbPoint made;
@@ -34,7 +37,7 @@ ClimbPoint point_of(const NodePathPoint& point, bool drops) {
   return made;
 }
 
-// As much of a way as there is room for: it ends on the ground.
+// As much of a path as fits: it ends on the ground.
 void set_path(Climb& climb, const NodePath& path) {
   const size_t all = path.points.size();
   size_t count = std::min(all, Climb::kPoints);
@@ -54,7 +57,7 @@ void set_path(Climb& climb, const NodePath& path) {
   climb.at.in_air = count > 1 && climb.points[1].on_surface == 0 ? 1 : 0;
 }
 
-// Where the rest of a way leads through that there is no room for: not its end, which is the goal.
+// Where the rest of a path leads that does not fit: without its end, which is the goal.
 void set_stations(Climb& climb, const NodePath& path) {
   climb.station = climb.station_count = 0;
   const size_t first = climb.count, all = path.points.size();
@@ -68,7 +71,7 @@ void set_stations(Climb& climb, const NodePath& path) {
   }
 }
 
-// It stays where it is.
+// The body stays where it is.
 void clear_path(Climb& climb) {
   const ClimbStance at = climb.at;
   climb.count = 0;
@@ -121,14 +124,14 @@ bool Crowd::State::put_on_nodes(Body& body, Climb& climb, const NodePlace& place
   return true;
 }
 
-// Whose way leads past what has come up asks for another.
+// Climbers whose paths cross what became active need another path.
 void Crowd::State::cut_climbs(std::span<const uint32_t> slots) {
   for (Body& body : engine.bodies()) {
     if (!body.climbs || !body.has(Body::kHasGoal) || body.has(Body::kNeedsPath) || body.leaves)
       continue;
     const Climb& climb = climbs[body.slot];
     const ClimberGround& ground = *classes[body.avatar_class]->nodes;
-    BodyRoom around;  // all that it takes, whichever way it stands
+    BodyRoom around;  // all that it occupies, whichever direction it faces
     around.turns_far = true;
     around.top = body_class(body.avatar_class).height;
     around.radius = climb.radius;
@@ -180,7 +183,7 @@ void Crowd::State::stop_climber(Body& body) {
   if (climb.is_on_ground()) clear_path(climb);
 }
 
-// The nearest place of its region, in a straight line.
+// The nearest place of its target, in a straight line.
 void Crowd::State::aim_at_flow_target(const Body& body, Climb& climb) const {
   const auto& places = classes[body.avatar_class]->landings[body.target - 1u];
   double min_distance = HUGE_VAL;
@@ -198,7 +201,7 @@ void Crowd::State::aim_at_flow_target(const Body& body, Climb& climb) const {
   climb.goal_t = goal.t;
 }
 
-// Somewhere else for a while: often the others have found another way, too, and met again.
+// To another place for a while: a new path alone often meets the others again.
 void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
@@ -210,7 +213,7 @@ void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
       config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
   NodePath& path = parts.node_paths[w];
   path.points.clear();
-  // Now to anywhere, now to a place of the same node.
+  // Either to a random place of the graph, or to one of the same node.
   const NodeInfo info = config.nodes.node(climb.at.node1 - 1);
   const bool is_roomy = info.cells == 0 && info.area > kRoomy * kRoomy;
   if (!is_roomy || random_below(seed, stream | 1, sub_step, 2) == 0) {
@@ -240,8 +243,8 @@ void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
   climb.whole = 0;
 }
 
-// What has come up beside him takes the whole of a square of his node for his finder: on to the
-// nearest that is left of it.
+// An obstacle that came up beside it blocks a whole square of its node for its finder: on to the
+// nearest place of it that is left.
 bool Crowd::State::step_off(Body& body, Climb& climb, int32_t worker, double beside) {
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
@@ -260,7 +263,7 @@ bool Crowd::State::step_off(Body& body, Climb& climb, int32_t worker, double bes
   return true;
 }
 
-// Who is driven goes to where he would be soon, by a way as any other.
+// An externally controlled climber heads to where it would be soon, by a path as any other.
 void Crowd::State::drive_climber(const Body& body, Climb& climb, int32_t worker) {
   climb.detour -= static_cast<float>(config.dt / sub_steps);
   if (!climb.is_on_ground() || (climb.detour > 0 && climb.at.next < climb.count)) return;
@@ -277,7 +280,7 @@ void Crowd::State::drive_climber(const Body& body, Climb& climb, int32_t worker)
   if (!to || !from) return clear_path(climb);
   NodePath& path = parts.node_paths[w];
   parts.node_finders[w].find(from, to, path, kNoSpacing, search_budget(kFew));
-  // A long way around is none to where it is driven.
+  // A long detour does not lead in the direction that it is given.
   if (path.end != PathEnd::kReached || path.length > 3 * far) return clear_path(climb);
   set_path(climb, path);
   climb.whole = 0;
@@ -338,7 +341,7 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
   body.clear(Body::kNeedsPath);
 }
 
-// The step of those who go over nodes; the others have made theirs.
+// The step of climbers, after those of walkers and flyers.
 void Crowd::State::move_climbers(EngineCounts& counts, CrowdEngine::Times& times,
                                  std::atomic<uint64_t>& planned) {
   const ClimberEngine::Before before = [&](Body& body, Climb& climb, int32_t worker) {
@@ -348,7 +351,7 @@ void Crowd::State::move_climbers(EngineCounts& counts, CrowdEngine::Times& times
   for (const uint32_t slot : climbers.arrived()) arrived.push_back(id_of(slot));
 }
 
-// A body where its feet are, for who asks whether it is in a region.
+// A body at its feet, to test whether it is in a region.
 Body Crowd::State::at_feet(const Body& body) const {
   if (!body.climbs) return body;
   Body there = body;
@@ -376,7 +379,7 @@ bool Crowd::State::is_sound_climb(const Body& body) const {
     const ClimbPoint& p = climb.points[i];
     if (p.node1 != 0 && !parts->nodes->pose(p.node1, p.s, p.t)) return false;
     if (p.node1 == 0 && !std::isfinite(p.s)) return false;
-    // Who goes to it on the surface stays within the node of the one before.
+    // A segment on the surface stays within the node of the point before.
     const bool joined = i == 0 || p.on_surface == 0 ||
                         parts->nodes->pose(climb.points[i - 1].node1, p.s, p.t).has_value();
     if (!joined) return false;
@@ -402,7 +405,7 @@ bool Crowd::State::is_sound_climb(const Body& body) const {
          parts->nodes->pose(at.node1, at.s, at.t).has_value();
 }
 
-// Of those who go over nodes, who is in an obstacle.
+// Counts the climbers that are in an obstacle.
 uint64_t Crowd::State::count_climbers_inside() const {
   uint64_t found = 0;
   for (const Body& body : engine.bodies()) {
@@ -415,7 +418,8 @@ uint64_t Crowd::State::count_climbers_inside() const {
   return found;
 }
 
-// Whose class may not be where he is, or whom the cylinder that is kept for him does not hold.
+// Counts the climbers that stand where their class may not, or whose cylinder does not enclose
+// them.
 uint64_t Crowd::State::count_off_nodes() const {
   constexpr double kTouch = 1e-9;  // [m]
   uint64_t found = 0;

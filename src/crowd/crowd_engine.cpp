@@ -17,69 +17,71 @@
 #include "crowd/sense_kernel.h"
 #include "steer/sampled_kernel.h"
 
-// docs/design/008-engine.md. Whoever can touch nobody within the step takes what he wants at once;
-// only the others go through the rounds.
+// The step of a crowd: docs/design/008-engine.md. A body that can touch no other within the step
+// takes its first move at once; only the others go through conflict resolution rounds. Linear in
+// the bodies and their neighbours.
 namespace throng {
 namespace {
 
 using steer::Plane;
 
-constexpr size_t kGrain = 256;  // bodies that are worth handing to another thread
+constexpr size_t kGrain = 256;  // bodies that are worth another thread
 constexpr std::array<float, 3> kShorter = {0.5f, 0.25f, 0.1f};
 constexpr float kArrivalRadius = 0.3f;             // [m] from its goal a body has arrived
-constexpr uint64_t kSides = 0x51de5;               // stream of chance
-constexpr float kClose = 0.1f;                     // [m] to its corner a body turns to no side
+constexpr uint64_t kSides = 0x51de5;               // random stream
+constexpr float kClose = 0.1f;                     // [m] to its corner a body turns to neither side
 constexpr float kStepsBack = 1;                    // [m] beside it, for one that leaves an obstacle
-constexpr float kAtOnce = 0.1f;                    // [s] Who goes straight meets nobody within.
-constexpr size_t kFarPrefetch = 6, kPrefetch = 3;  // bodies, whose ground is asked for
+constexpr float kAtOnce = 0.1f;                    // [s] within which a body that walks straight
+                                                   // must meet no other
+constexpr size_t kFarPrefetch = 6, kPrefetch = 3;  // bodies, whose ground is prefetched
 constexpr float kTargetCount = 14;                 // bodies, to find the nearest among
 constexpr size_t kBits = 64;                       // of a word
 
-// Do two bodies clash that stand at these places?
+// Do two bodies at these places overlap?
 bool overlaps_with(const Body& a, const Stand& at_a, const Body& b, const Stand& at_b) {
   return nearer_than(at_a.x - at_b.x, at_a.z - at_b.z, int64_t{a.radius} + b.radius) &&
          at_a.y < at_b.y + b.height && at_b.y < at_a.y + a.height;
 }
 
-// On its last leg, and not there yet?
+// On its last segment, and not at its end yet?
 bool is_bound(const Body& body) {
   constexpr uint8_t kAll =
       Body::kHasGoal | Body::kLast | Body::kArrived | Body::kExternal | Body::kFlying;
-  // A region has room for many.
+  // A target can hold many.
   return body.target == 0 && !body.leaves && (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
 }
 
-// Part of a way.
+// A fraction of a displacement.
 template <class Displacement>
 Displacement shorter(Displacement displacement, float part) {
   return {static_cast<int16_t>(std::lrint(static_cast<float>(displacement.x) * part)),
           static_cast<int16_t>(std::lrint(static_cast<float>(displacement.z) * part))};
 }
 
-// Bound for a corner, not for its goal yet?
+// Does it head to a corner, not to its goal yet?
 bool turns_corner(const Body& body) {
   constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kExternal | Body::kFlying;
   return (body.flags & kAll) == Body::kHasGoal && !body.leaves;
 }
 
-// Turned aside by his patience where not only others are in the way?
+// Is it turned aside by deadlock avoidance, blocked by more than other bodies?
 bool is_held_up(const Body& body) {
   return body.detour_angle != 0 && (!body.has(Body::kLast) || body.near_wall);
 }
 
-// Speed towards where it is bound for, `displacement` from it. [m/s]
+// Speed towards its local target, which is `displacement` away. [m/s]
 float speed_towards(const Body& body, Plane displacement) {
   const float left = size_of(displacement);
   return left > 1e-6f ? (body.velocity.x * displacement.x + body.velocity.z * displacement.z) / left
                       : 0;
 }
 
-// By the wished speed. [millionths]
+// Relative to its desired speed. [millionths]
 int64_t progress_of(const Body& body, Plane displacement) {
   return std::lrint(speed_towards(body, displacement) / body.speed * 1e6f);
 }
 
-// Is somebody ahead, and goes one's own way? Within 45 degrees.
+// Is another body ahead that walks in the same direction? Within 45 degrees.
 bool leads(Plane apart, Plane preferred, Plane others) {
   const float same = preferred.x * others.x + preferred.z * others.z;
   const float both = (preferred.x * preferred.x + preferred.z * preferred.z) *
@@ -133,7 +135,7 @@ void CrowdEngine::fit_grid() {
     longest_ = std::max(longest_, std::min(detail_.narrowest, units.stride(fastest_)));
   }
   THRONG_ASSERT(longest_ <= kLongestStep);
-  // Who could be touched within a step must be seen, however short the sight.
+  // All that could be touched within a step must be sensed, however short the sight.
   const auto sight = static_cast<int32_t>(std::lround(config_.sight / double{config_.units.unit}));
   const int32_t wanted = std::max(sight, 2 * widest_ + 2 * longest_);
   if (wanted == sight_) return;
@@ -179,7 +181,7 @@ void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts
   lap(times.settle);
 }
 
-// Does it go on as it did in the last step?
+// Does it repeat its last move?
 bool CrowdEngine::keeps(const Body& body, uint64_t step) const {
   return body.has(Body::kContinues) && !body.has(Body::kExternal) && !body.has(Body::kNeedsPath) &&
          !body.has(Body::kFlying) && !decides(steps_of_reaction(body), step, body.slot) &&
@@ -188,10 +190,10 @@ bool CrowdEngine::keeps(const Body& body, uint64_t step) const {
 }
 
 void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
-  constexpr float kSide = 2;  // [s] that one keeps to a side
+  constexpr float kSide = 2;  // [s] for which a body keeps to a side
   const auto window = step / static_cast<uint64_t>(std::lround(kSide / config_.units.dt));
-  // To the right, if nothing but others is in the way. Before a wall or a corner that would press a
-  // crowd against it: there, to either side by chance.
+  // To the right, if only other bodies block it. At a wall or a corner that would press a crowd
+  // against it: there, to a random side.
   const auto turn = [&](const Body& b) {
     if (b.in_counterflow || !is_held_up(b)) return b.detour_angle;
     if (size_of(config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z)) < kClose)
@@ -260,7 +262,7 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
   for (const Worker& worker : workers_) counts.add(worker.counts);
 }
 
-// Asks for the ground that those who decide next come to, if they go on as they did.
+// Prefetches the ground that the bodies which decide next will reach if they repeat their moves.
 void CrowdEngine::prefetch_ground(size_t i) const {
   if (i + kFarPrefetch < size_) {
     const Body& body = bodies_[i + kFarPrefetch];
@@ -274,7 +276,7 @@ void CrowdEngine::prefetch_ground(size_t i) const {
   }
 }
 
-// Makes the lists as long as those around may need.
+// Makes the lists as long as the neighbours may need.
 void CrowdEngine::fit_lists(const NeighbourGrid::Around& around, Worker& worker) {
   const size_t wanted = around.bodies() + kSeenSpare;
   if (worker.squares.size() >= wanted) return;
@@ -282,12 +284,12 @@ void CrowdEngine::fit_lists(const NeighbourGrid::Around& around, Worker& worker)
   worker.squares.resize(worker.entries.size());
 }
 
-// Nobody farther away than this can be touched; the exact test follows. [units]
+// Farther bodies cannot be touched; the exact test follows. [units]
 float CrowdEngine::touch_of(const Body& body) const {
   return static_cast<float>(body.radius + stride_of(body) + widest_ + longest_ + 1) * 1.0001f;
 }
 
-// Appends whom the body could touch to `others`.
+// Appends the bodies that it could touch to `others`.
 void CrowdEngine::list_touched(const Body& body, const SeenLists& lists, Worker& worker) const {
   const int32_t stride = stride_of(body);
   for (size_t n = 0; n < lists.touches; ++n) {
@@ -300,7 +302,7 @@ void CrowdEngine::list_touched(const Body& body, const SeenLists& lists, Worker&
   }
 }
 
-// Takes in what it steers by, and if wanted lists whom it could touch.
+// Senses what it steers by, and if required lists the bodies that it could touch.
 void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
                         bool lists_others) {
   worker.waits = worker.in_counterflow = worker.follows = false;
@@ -308,11 +310,12 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   fit_lists(around, worker);
   const Places places{grid_->x(), grid_->z(), grid_->y()};
   const float touch = touch_of(body);
-  // In a dense crowd the nearest are near: if enough are within less, nobody farther matters.
+  // In a dense crowd the nearest are near: if a smaller range holds enough, no farther body
+  // matters.
   const float sight = static_cast<float>(sight_) * static_cast<float>(sight_);
   const float across = grid_->width() * NeighbourGrid::kAround;
   const float target_square = across * across * kTargetCount /
-                              (3 * static_cast<float>(around.bodies()));  // 3 of the circle's pi
+                              (3 * static_cast<float>(around.bodies()));  // 3 for pi, of the circle
   const auto wanted = static_cast<size_t>(config_.steering.neighbours);
   Eye eye{.x = body.x,
           .z = body.z,
@@ -333,7 +336,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     query();
   }
   list_touched(body, lists, worker);
-  if (ignores_neighbours(body)) {  // It looks no farther.
+  if (ignores_neighbours(body)) {  // It senses no more.
     worker.situation.preferred = body.preferred;
     worker.situation.has_walls = false;
     return;
@@ -359,7 +362,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   for (size_t n = 0; n < nearest; ++n) {
     const Body& other = bodies_[lists.entries[n]];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
-    // Those ahead tell those behind, who would else fill the whole width.
+    // Bodies ahead inform those behind, which would else fill the whole width.
     worker.in_counterflow = worker.in_counterflow ||
                             (other.in_counterflow && leads(apart, body.preferred, other.preferred));
     const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
@@ -376,14 +379,14 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
       const float back = -0.5f * body.speed / size_of(apart);
       situation.preferred = {apart.x * back, apart.z * back};
     }
-    // Those that stand step back from those beside them that leave an obstacle.
+    // Bodies that stand step back from those beside them that leave an obstacle.
     const float far = size_of(apart);
     if (other.leaves && rests && far > 0 && far < room + kStepsBack) {
       worker.waits = true;
       const float back = -0.5f * body.speed / far;
       situation.preferred = {apart.x * back, apart.z * back};
     }
-    // Who has arrived makes way for those who would pass, were he not there: they may stand.
+    // A body that has arrived yields to those that would pass if it were not there: they may stand.
     const bool yields =
         (body.has(Body::kArrived) && !other.has(Body::kArrived)) || (rests && other.leaves);
     situation.near.add(config_.steering,
@@ -391,12 +394,12 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   }
   const Plane preferred = situation.preferred;
   situation.preferred = steer::following_fast(config_.steering, situation);
-  // Before a corner one who crawls is turned as one who stands: doors need that.
+  // Before a corner a body that crawls is turned as one that stands: doors need that.
   worker.follows = !turns && steer::can_but_crawl(config_.deadlock_settings, preferred,
                                                   situation.preferred, body.speed);
 }
 
-// Can the body do as it wishes? Else, can it if it wishes otherwise? Its wish is what it then is.
+// Is its preferred velocity open, or is that of a lane? Then that is its preferred velocity.
 bool CrowdEngine::find_open_preferred(uint32_t i, Worker& worker,
                                       const NeighbourGrid::Around& around) {
   const Body& body = bodies_[i];
@@ -409,14 +412,15 @@ bool CrowdEngine::find_open_preferred(uint32_t i, Worker& worker,
   return is_open() || (!worker.waits && take_lane(i, worker, around) && is_open());
 }
 
-// Who was turned aside by a jam at a door goes through as soon as he can.
+// A body that a jam at a door turned aside passes as soon as it can.
 bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) const {
   if (!is_held_up(body)) return false;
   const Plane turned = situation.preferred;
   const Plane left =
       config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
   situation.preferred = steer::preferred_towards(left, body.speed, units_of(body).dt, 0);
-  // Who is a step from his corner stops there: whether he would touch somebody beyond is no matter.
+  // A body one step from its corner stops there: whether it would touch others beyond does not
+  // matter.
   if (!body.has(Body::kLast) && size_of(left) <= body.speed * units_of(body).dt) {
     look_ahead(body, situation);
     return true;
@@ -430,20 +434,20 @@ bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) con
   return false;
 }
 
-// Who can but stand between walls makes room for others.
+// A body that can only stand between walls keeps its spacing to others.
 Plane CrowdEngine::if_blocked(Plane displacement, const steer::Situation& situation) const {
   const bool stands = displacement.x == 0 && displacement.z == 0;
   return stands && situation.has_walls ? steer::keep_spacing(config_.spacing, situation)
                                        : displacement;
 }
 
-// A way that is free as far as one looks has no end that would matter.
+// A distance that is free over the whole query range counts as endless.
 float CrowdEngine::metres(float displacement, float query_range) const {
   return displacement < query_range ? displacement * config_.units.unit
                                     : std::numeric_limits<float>::infinity();
 }
 
-// Is there a wall near, and how far is it to one along the wish?
+// Is a wall near, and how far is it along the preferred velocity?
 void CrowdEngine::look_ahead(const Body& body, steer::Situation& situation) const {
   const StrideGround& ground = grounds_[body.avatar_class];
   const float query_range = wall_range(body);
@@ -454,7 +458,7 @@ void CrowdEngine::look_ahead(const Body& body, steer::Situation& situation) cons
       metres(ground.free_distance(body.level, body.point(), ahead, query_range), query_range);
 }
 
-// How far is it in all directions? Only for those whose wish is not open.
+// The distances to walls in all directions. Only for bodies whose preferred velocity is not open.
 void CrowdEngine::query_walls(const Body& body, steer::Situation& situation) const {
   if (!situation.has_walls) return;
   const StrideGround& ground = grounds_[body.avatar_class];
@@ -506,7 +510,7 @@ std::span<const uint32_t> CrowdEngine::others_of(const Proposal& proposal) const
   return {worker.others.data() + proposal.words[kWords - 1], proposal.others};
 }
 
-// Puts whom a worker has listed last into the claim, if there is room.
+// Appends the bodies that a worker listed last to the proposed move, if they fit.
 void CrowdEngine::store_others(Proposal& proposal, uint16_t worker, size_t first) {
   std::vector<uint32_t>& others = workers_[worker].others;
   proposal.others = static_cast<uint32_t>(others.size() - first);
@@ -521,8 +525,8 @@ void CrowdEngine::store_others(Proposal& proposal, uint16_t worker, size_t first
   others.resize(first);
 }
 
-// Names the place that a body comes to if it goes on as it did, and tells whether it could touch
-// anybody. None if that is not free.
+// Proposes the place that a body reaches if it repeats its move; returns whether it could touch
+// another. None if that is not free.
 std::optional<bool> CrowdEngine::try_to_continue(uint32_t i, uint16_t w, uint32_t square) {
   Worker& worker = workers_[w];
   Body& body = bodies_[i];
@@ -564,7 +568,8 @@ std::optional<bool> CrowdEngine::try_to_continue(uint32_t i, uint16_t w, uint32_
   return true;
 }
 
-// Sense, steer, and name a place if nobody can object. Could it touch anybody?
+// Senses, steers, and proposes a place if no other could touch it. Returns whether it could touch
+// one.
 bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& around) {
   Worker& worker = workers_[w];
   Body& body = bodies_[i];
@@ -578,13 +583,13 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   sense(i, worker, around, true);
   const std::span<const uint32_t> others(worker.others.data() + first,
                                          worker.others.size() - first);
-  // Not when ways are found again: who gave way to others then goes where he is bound for, or lanes
-  // jam more often.
+  // Not when candidates are found again: a body that yielded then heads to its target, or lanes jam
+  // more often.
   if (is_sampled(body)) keep_right(body, worker);
   const bool open = find_open_preferred(i, worker, around);
   proposal.in_counterflow = worker.in_counterflow;
   body.follows = worker.follows;
-  // The best of his ways is enough as long as nobody objects to it.
+  // The best candidate is enough as long as no other contests it.
   if (!open) query_walls(body, worker.situation);
   const Plane best =
       open ? worker.situation.preferred
@@ -600,7 +605,7 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
     find_paths(body, worker.situation, open, candidates);
     proposal.has_all = true;
   }
-  // Known only where one had to look.
+  // Known only if walls were queried.
   body.near_wall = (!open || !named) && worker.situation.has_walls;
   if (others.empty()) {
     if (!named) named = try_displacements(body, candidates, others, proposal.place);
@@ -614,7 +619,7 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   return true;
 }
 
-// Where a body would stand after a step, if the ground lets it.
+// Where a body would stand after a move, if the ground permits it.
 bool CrowdEngine::try_displacement(const Body& body, Displacement displacement,
                                    Stand& place) const {
   const GroundPoint to{int64_t{body.x} + displacement.x, int64_t{body.z} + displacement.z};
@@ -627,7 +632,7 @@ bool CrowdEngine::try_displacement(const Body& body, Displacement displacement,
   return true;
 }
 
-// The first of the ways that is open and clear, then a shorter one.
+// The first candidate that is open and clear, then a shorter one.
 bool CrowdEngine::try_displacements(const Body& body, const Displacements& candidates,
                                     std::span<const uint32_t> others, Stand& place) const {
   const auto is_free = [&](Displacement displacement) {
@@ -644,7 +649,7 @@ bool CrowdEngine::try_displacements(const Body& body, const Displacements& candi
                      [&](float part) { return is_free(shorter(candidates[0], part)); });
 }
 
-// Those of whom `act` says so are left out from then on.
+// Contests for which `act` returns true are left out from then on.
 template <class Do>
 void CrowdEngine::for_contests(uint64_t Contests::*which, Do act) {
   static_assert(kGrain % kBits == 0);
@@ -665,13 +670,13 @@ void CrowdEngine::for_contests(uint64_t Contests::*which, Do act) {
                       });
 }
 
-// By induction nobody ever touches anybody: a place that is named is clear of where all stand who
-// could touch it, and it is taken only if it is clear of what those before him named, whether or
-// not they take it.
+// By induction no body ever touches another: a proposed place is clear of where all bodies stand
+// that could touch it, and it is accepted only if it is clear of what those before it in the order
+// proposed, accepted or not.
 void CrowdEngine::commit(uint64_t step) {
   for (int32_t r = 1; r <= config_.rounds; ++r) {
     const auto round = static_cast<uint8_t>(r);
-    // Most named a place for the first round when they decided: nobody had moved yet.
+    // Nearly all proposed a place for the first round when they decided: none had moved yet.
     for_contests(r == 1 ? &Contests::unnamed : &Contests::open, [&](uint32_t i, Worker& scratch) {
       name(i, scratch, round);
       return false;
@@ -694,7 +699,7 @@ bool CrowdEngine::is_clear(const Body& body, const Stand& place, std::span<const
   });
 }
 
-// Names the first of his ways that is open and clear, if there is one.
+// Proposes the first candidate that is open and clear, if there is one.
 void CrowdEngine::name(uint32_t i, Worker& scratch, uint8_t round) {
   const Body& body = bodies_[i];
   Proposal& proposal = proposals()[i];
@@ -710,14 +715,14 @@ void CrowdEngine::name(uint32_t i, Worker& scratch, uint8_t round) {
                        is_clear(body, place, others, /*any_moved=*/true);
     if (found) return take(true);
   }
-  proposal.flags = 0;  // It comes to do what it did not want first.
+  proposal.flags = 0;  // It makes a move that was not its first choice.
   Displacements candidates;
   if (proposal.has_all) {
     for (size_t n = 0; n < candidates.size(); ++n)
       candidates[n] = proposal.displacement(static_cast<uint32_t>(n));
     return take(try_displacements(body, candidates, others, place));
   }
-  // What it steers by is as it was when the step began. Others read `scratch.others` meanwhile.
+  // What it steers by is as when the step began. Others read `scratch.others` meanwhile.
   const NeighbourGrid::Around around = grid_->around(grid_->square(body));
   sense(i, scratch, around, /*lists_others=*/false);
   const bool open = find_open_preferred(i, scratch, around);
@@ -758,7 +763,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       here.low_detail += b.has(Body::kLowDetail) ? 1 : 0;
       const Plane displacement =
           config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z);
-      if (b.steps == 0) {  // To all others it is as if it had moved evenly.
+      if (b.steps == 0) {  // For all others it looks as if it had moved evenly.
         ++here.skipped;
         if (b.has(Body::kHasGoal)) here.progress += progress_of(b, displacement);
         continue;
@@ -787,7 +792,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       const float towards = speed_towards(b, displacement);
       here.progress += progress_of(b, displacement);
       const bool near_goal = left <= 1 && b.has(Body::kLast);
-      // Nobody is in the way of who is alone, so there is nobody to be turned away from.
+      // A body without others near has none to turn away from.
       if (config_.deadlock_avoidance) {
         const float content =
             near_goal || is_alone

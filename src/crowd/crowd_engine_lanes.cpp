@@ -7,12 +7,13 @@
 #include "crowd/sense_kernel.h"
 #include "steer/sampled_kernel.h"
 
-// Streams that meet: lanes, and the right half of narrow places. docs/design/008-engine.md.
+// Counterflow: lanes, and the right half of narrow places. docs/design/008-engine.md. Constant time
+// for each body and its neighbours.
 namespace throng {
 
 using steer::Plane;
 
-// How far it is to walls on both sides of its way, up to where a place is narrow. [m]
+// Distances to walls on both sides of its path, up to where a place is narrow. [m]
 CrowdEngine::Sides CrowdEngine::sides_of(const Body& body) const {
   Plane ahead = path_ahead(body);
   const float far = size_of(ahead);
@@ -25,8 +26,8 @@ CrowdEngine::Sides CrowdEngine::sides_of(const Body& body) const {
           ground.free_distance(body.level, body.point(), right, query_range) * unit};
 }
 
-// Does one of those whom it has sensed come towards it? Where he is bound for counts: a jam turns
-// wishes any way.
+// Does a neighbour come towards it? The neighbour's local target counts: in a jam, preferred
+// velocities point in all directions.
 bool CrowdEngine::is_met(const Body& body, const Worker& worker) const {
   const Plane displacement = path_ahead(body);
   for (size_t n = 0; n < worker.situation.near.size; ++n) {
@@ -41,8 +42,8 @@ bool CrowdEngine::is_met(const Body& body, const Worker& worker) const {
   return false;
 }
 
-// Who meets a stream between walls leaves it the left half. Where no wall is near at all, which is
-// quickly told, nobody asks.
+// A body in counterflow between walls leaves the left half to the stream. Where no wall is near,
+// which is tested quickly, nothing changes.
 void CrowdEngine::keep_right(const Body& body, Worker& worker) const {
   if (worker.situation.near.size == 0) return;
   const float narrow = config_.lanes.narrow;
@@ -64,7 +65,7 @@ void CrowdEngine::keep_right(const Body& body, Worker& worker) const {
                (preferred.z + preferred.x * aside) * scale};
 }
 
-// True if the wish is another one now.
+// True if this changed the preferred velocity.
 bool CrowdEngine::take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
   const Body& body = bodies_[i];
   steer::Situation& situation = worker.situation;

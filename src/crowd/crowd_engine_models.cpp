@@ -8,12 +8,12 @@
 #include "crowd/crowd_engine.h"
 
 // Bodies that are steered by another model than steer/sampled.h: the model gives a velocity, which
-// takes the place of an open wish. Rounds and walls are the same for all.
+// replaces the preferred velocity as if that were open. Rounds and walls are the same for all.
 namespace throng {
 
 using steer::Plane;
 
-// What it would do goes into `worker.situation.preferred`.
+// Writes the model's velocity to `worker.situation.preferred`.
 void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker) const {
   const Body& body = bodies_[i];
   const auto key = [&](uint32_t j) {
@@ -39,7 +39,7 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
       .radius = static_cast<float>(body.radius) * config_.units.unit,
       .slot = body.slot,
       .others = {others.data(), count}};
-  // Whoever has no goal of his own goes on as he is led.
+  // A body without a goal of its own keeps the given velocity.
   if (body.has(Body::kExternal) || !body.has(Body::kHasGoal)) {
     view.to_target = body.preferred;
     view.stops = false;

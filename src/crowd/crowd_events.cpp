@@ -8,7 +8,8 @@
 #include "crowd/crowd_state.h"
 #include "throng/crowd.h"
 
-// What a crowd tells of its steps beside arrivals: who came into watched areas, who is stuck.
+// Events of a step beside arrivals: avatars that entered watched areas, avatars without progress.
+// Linear in the avatars and areas.
 namespace throng {
 namespace {
 

@@ -13,20 +13,24 @@
 #include "throng/crowd.h"
 #include "world/place.h"
 
-// What a crowd does about those who fly: when they take off, how they find and follow their ways,
-// and when they are on the ground again. docs/design/012-flyers.md.
+// Flyers of a crowd: when they take off, how they find and follow their paths, and when they are on
+// the ground again. docs/design/012-flyers.md. A path costs a search in the air's octree; a step
+// without one is constant time.
 namespace throng {
 namespace {
 
-constexpr double kCheckRange = 3;        // [m] to a bend, to see whether the next one is open
-constexpr double kAtLink = 0.3;          // [m] from where it wanted to take off
+constexpr double kCheckRange = 3;        // [m] to a waypoint, to test whether the next one is
+                                         // visible
+constexpr double kAtLink = 0.3;          // [m] from the place of its take-off
 constexpr float kTries = 10;             // [s] there, before it gives up
-constexpr double kSearchRadius = 0.5;    // [m] from feet to the ground that is theirs
+constexpr double kSearchRadius = 0.5;    // [m] from feet to the ground below them
 constexpr uint64_t kCheckInterval = 16;  // steps
-constexpr float kWaits = 2;              // [s] over its landing place, before it looks for another
-constexpr uint64_t kRooms = 0x726f6f6d;  // stream of chance
-constexpr uint64_t kMaxBoxes = 1 << 16;  // that a search may look at; then it goes over all
-constexpr int32_t kPointTolerance = 20;  // [units, mm] as near to a bend as matters
+constexpr float kWaits = 2;              // [s] over its landing place, before it takes another
+constexpr uint64_t kRooms = 0x726f6f6d;  // random stream
+constexpr uint64_t kMaxBoxes = 1 << 16;  // that a search may expand; then it passes over all
+                                         // obstacles
+constexpr int32_t kPointTolerance = 20;  // [units, mm] so near to a waypoint that the rest does not
+                                         // matter
 
 AirPosition here(const Body& body) { return {body.x, body.z, body.y}; }
 
@@ -178,7 +182,7 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
   note_spent(path.spent);
   flight.to_link = 0;
   if (lands) routes[body.slot].goal = {flight.goal.x, flight.goal.z, flight.goal_level};
-  if (path.end != PathEnd::kReached) return false;  // as those who only walk
+  if (path.end != PathEnd::kReached) return false;  // as a walker
   const auto walked = static_cast<size_t>(
       std::find_if(path.segments.begin(), path.segments.end(),
                    [](SegmentKind segment) { return segment != SegmentKind::kWalk; }) -
@@ -196,7 +200,7 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
   return false;
 }
 
-// Is a straight way open, as far as obstacles go that are up now?
+// Is a straight line clear of all active obstacles?
 bool Crowd::State::is_clear_of_obstacles(const Body& body, const AirPosition& from,
                                          const AirPosition& to) const {
   if (!flyers.has_obstacles()) return true;
@@ -217,7 +221,7 @@ bool Crowd::State::is_clear_of_obstacles(const Body& body, const AirPosition& fr
 // Straight up, across, and straight down: no search, but hardly ever short.
 bool Crowd::State::find_path_over(const Body& body, const AirPosition& from, const AirPosition& to,
                                   std::vector<AirPosition>& points) const {
-  constexpr int32_t kRise = 3000;  // [mm] more at a time
+  constexpr int32_t kRise = 3000;  // [mm] more at each attempt
   const FlyerAir& air = *air_of(body);
   const auto is_open = [&](const AirPosition& a, const AirPosition& b) {
     return air.sees(a, b) && is_clear_of_obstacles(body, a, b);
@@ -233,11 +237,11 @@ bool Crowd::State::find_path_over(const Body& body, const AirPosition& from, con
   }
 }
 
-// The nearest spot straight on from one, beside obstacles, that the finder of ways takes for open;
-// itself, if it does.
+// The nearest position beside obstacles that the path finder takes for open, straight on from `at`;
+// `at` itself if it is open.
 std::optional<AirPosition> Crowd::State::open_position(const Body& body, const AirPosition& at,
                                                        int32_t worker) const {
-  constexpr int32_t kCells = 2;  // off
+  constexpr int32_t kCells = 2;  // to each side
   const ClassParts& parts = *classes[body.avatar_class];
   const FlyerAir& air = *parts.air;
   const FlightFinder& finder = parts.flight_finders[static_cast<size_t>(worker)];
@@ -264,7 +268,7 @@ std::optional<AirPosition> Crowd::State::open_position(const Body& body, const A
   return nearest;
 }
 
-// A way from where a flyer is to its goal. False: there is none.
+// A path from where a flyer is to its goal. False: there is none.
 bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker) const {
   ClassParts& parts = *classes[body.avatar_class];
   const FlyerAir& air = *parts.air;
@@ -298,14 +302,14 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
   std::vector<AirPosition> points;
   std::optional<AirPosition> end;
   if (path.end == PathEnd::kNoPlace && flyers.has_obstacles()) {
-    // Beside an obstacle one may be where the finder's whole cell is shut.
+    // Beside an obstacle the feet may be where the finder's whole cell is blocked.
     const auto out = open_position(body, from, worker);
     end = lands ? flight.goal : open_position(body, to, worker);
     if (out && end) find(*out, *end);
     if (out) points.push_back(*out);
   }
   if (path.end == PathEnd::kReached) {
-    // What is walked after the landing is asked for then.
+    // The path on foot after the landing is searched for then.
     bool walks_then = false;
     for (size_t i = 0; i < path.segments.size() && !walks_then; ++i) {
       if (path.segments[i] == SegmentKind::kFly) points.push_back(air.position(path.points[i + 1]));
@@ -313,7 +317,8 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
     }
     if (end && !lands) points.push_back(to);
     if (points.empty()) points.push_back(from);
-    // The finder knows no obstacles that move. Where one is on its way, there may be one over it.
+    // The finder does not know obstacles that move. If one blocks the path, a path over it may be
+    // free.
     std::vector<AirPosition> over;
     AirPosition at = from;
     const bool clear = std::all_of(points.begin(), points.end(), [&](const AirPosition& next) {
@@ -333,7 +338,8 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
   return true;
 }
 
-// Others are where it would land: it looks elsewhere, the farther away the longer it has waited.
+// Others are where it would land: it picks another place, the farther away the longer it has
+// waited.
 void Crowd::State::find_landing_place(Body& body, const Flight& flight) const {
   const FlyerAir& air = *air_of(body);
   const AirPosition& over = flight.points[flight.next];
@@ -385,7 +391,7 @@ void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
   if (!body.has(Body::kNeedsPath)) return;
   planned.fetch_add(1, std::memory_order_relaxed);
   if (body.target != 0) {
-    // The nearest place of its region, in a straight line.
+    // The nearest place of its target, in a straight line.
     const auto& places = classes[body.avatar_class]->landings[body.target - 1u];
     double min_square = HUGE_VAL;
     for (const Place& place : places) {
@@ -406,7 +412,7 @@ void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
   turn_to(body, flight);
 }
 
-// The step of those who are in the air; the others have made theirs.
+// The step of flyers in the air, after that of walkers.
 void Crowd::State::fly(EngineCounts& counts, CrowdEngine::Times& times,
                        std::atomic<uint64_t>& planned) {
   const FlyerEngine::Before before = [&](Body& body, Flight& flight, int32_t worker) {

@@ -32,7 +32,7 @@ Heights heights_of(const LevelView& view, const uint64_t* legal) {
   return {low, high};
 }
 
-// How far feet can be above or below the sample of their cell, by all that the level holds. [mm]
+// How far feet can be above or below the sample of their cell, anywhere on the level. [mm]
 int32_t max_rise(const LevelView& view) {
   if (view.is_constant()) return 0;
   if (view.samples == nullptr) return (std::abs(view.slope_x) + std::abs(view.slope_z)) / 1024 + 2;
@@ -98,7 +98,7 @@ bool find_plain(const LevelView& view, const uint64_t* legal, uint64_t* plain) {
   return any != 0;
 }
 
-// True for levels with something to stand on whose floor is stored cell by cell.
+// True for levels with legal cells whose floor is stored cell by cell.
 bool is_rough(const Zone& zone, uint32_t level, int32_t avatar_class) {
   return zone.level(level).floor_kind() == format::HeightKind::Blocks &&
          zone.clearance(level, static_cast<uint32_t>(avatar_class)).kind() !=
@@ -125,7 +125,7 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
   ground.views_ = HugeArray<LevelView>(world.level_count);
   ground.lines_ = HugeArray<LevelLine>(world.level_count);
   ground.open_ = HugeArray<OpenLine>(world.level_count);
-  // Room for all levels; what is not written is never taken from the system.
+  // Capacity for all levels; the system allocates only what is written.
   ground.rows_ = HugeArray<uint64_t>((2 * size_t{world.level_count} + 2) * kRows);
   std::fill_n(ground.rows_.data() + kAllLegal * kRows, kRows, ~uint64_t{0});
   uint32_t& sets = ground.row_sets_;

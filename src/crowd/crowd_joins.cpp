@@ -6,8 +6,8 @@
 #include "crowd/crowd_ground.h"
 #include "world/walk.h"
 
-// Which plain blocks go on, level, beyond the edge of their tile: found once, so that a step over
-// the edge need not search. A step from a plain cell to an equally high one rises by 0, which no
+// Which flat blocks continue, level, beyond the edge of their tile: found once, so that a step over
+// the edge needs no search. A step from a flat cell to an equally high one rises by 0, which no
 // other level of the tile can better; world/walk.h takes the first of those that rise least. So a
 // join is right if no earlier level of the tile is legal at that height in a cell of the block.
 namespace throng {
@@ -88,8 +88,8 @@ void CrowdGround::find_open(Level level) {
   open_[level].open = step_safe(level) ? full_blocks(legal(level)) : std::array<uint16_t, 16>{};
 }
 
-// Of the levels that steps over a side lead to, the one that most of them do (the first of equals)
-// is the one beyond.
+// Of the levels that steps over a side lead to, the one beyond is that which most of them lead to
+// (the first of equals).
 void CrowdGround::find_beyond(Level level, LevelLine::Side side) {
   const bool along_x = side == LevelLine::kLeft || side == LevelLine::kRight;
   const int32_t toward = side == LevelLine::kLeft || side == LevelLine::kAbove ? -1 : 1;
@@ -98,7 +98,7 @@ void CrowdGround::find_beyond(Level level, LevelLine::Side side) {
   line.beyond[side] = LevelLine::kNone;
   line.cells[side] = 0;
   if ((lines_[level].legal_set & kSetBits) == kNoneLegal) return;
-  std::array<Level, 64> steps;  // where from each cell they lead
+  std::array<Level, 64> steps;  // where the step from each cell leads
   for (int32_t i = 0; i < 64; ++i) {
     const int32_t rim = toward > 0 ? 63 : 0;
     const int32_t x = record.tile_x * 64 + (along_x ? rim : i);
@@ -123,7 +123,7 @@ void CrowdGround::find_beyond(Level level, LevelLine::Side side) {
   }
 }
 
-// After both levels know where their steps lead: blocks join if all do, there and back.
+// After both levels know where their steps lead: blocks join if all steps lead there and back.
 void CrowdGround::join_open_side(Level level, LevelLine::Side side) {
   OpenLine& line = open_[level];
   line.joined[side] = 0;

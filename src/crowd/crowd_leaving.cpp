@@ -10,16 +10,16 @@
 #include "throng/crowd.h"
 #include "world/place.h"
 
-// What avatars do that are in an obstacle when it closes: they get out of it, on along their paths
-// if these lead out soon, else the nearest way. What they may do, StrideGround::move and the other
-// engines' is_blocked say, whatever they wish. docs/design/008-engine.md, "Obstacles".
+// Avatars that are in an obstacle when it closes leave it: along their paths if these lead out
+// soon, else by the shortest exit. Which moves are allowed, StrideGround::move and the other
+// engines' is_blocked decide. docs/design/008-engine.md, "Obstacles".
 namespace throng {
 namespace {
 
-constexpr double kMaxDetourFactor = 2;   // times the nearest way out, for a path that leads out
+constexpr double kMaxDetourFactor = 2;   // times the shortest exit, for a path that leads out
 constexpr double kMaxPath = 2;           // [m] more than that
-constexpr float kMaxDetourAngle = 0.4f;  // [radians] of a turn, before one gives its path up
-constexpr uint64_t kCheckInterval = 4;   // steps of one who finds no exit
+constexpr float kMaxDetourAngle = 0.4f;  // [radians] of a detour, before one gives its path up
+constexpr uint64_t kCheckInterval = 4;   // steps of one that finds no exit
 constexpr std::array<double, 4> kSearchRadii = {1, 2, 4, 8};  // [m] to a node's free place
 
 AirPosition here(const Body& body) { return {body.x, body.z, body.y}; }
@@ -164,7 +164,7 @@ void Crowd::State::end_leaving(Body& body) {
     return;
   }
   const bool walks_straight = config.ways == Routing::kStraight && !body.flies();
-  if (!walks_straight || !body.has(Body::kNeedsPath)) return;  // A path is asked for.
+  if (!walks_straight || !body.has(Body::kNeedsPath)) return;  // It needs a path.
   PathPoint goal = routes[body.slot].goal;
   if (air_of(body) != nullptr) {
     const Flight& flight = flights[body.slot];
@@ -177,7 +177,7 @@ void Crowd::State::end_leaving(Body& body) {
   body.flags |= Body::kLast;
 }
 
-// Does it take its path again, as it does not get on by the nearest way out either?
+// Does it take its path again, since it makes no progress towards the nearest exit either?
 bool Crowd::State::tries_path_again(Body& body) const {
   constexpr uint8_t kAll = Body::kHasGoal | Body::kArrived | Body::kNeedsPath;
   if ((body.flags & kAll) != (Body::kHasGoal | Body::kNeedsPath)) return false;
@@ -277,7 +277,7 @@ bool Crowd::State::plan_exit_on_nodes(Body& body, Climb& climb, int32_t worker) 
   const bool rests = !body.has(Body::kHasGoal) || body.has(Body::kArrived);
   const bool goes = climb.count > 0 && climb.at.next < climb.count;
   if (!rests && goes && !body.has(Body::kNeedsPath)) return false;  // on along its path
-  if (rests && goes && climb.whole == 0) return true;               // on its way out
+  if (rests && goes && climb.whole == 0) return true;               // on its exit
   if ((sub_step + body.slot) % kCheckInterval != 0) return true;
   for (const double search_radius : kSearchRadii) {
     if (step_off(body, climb, worker, search_radius)) return true;

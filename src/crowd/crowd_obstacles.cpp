@@ -8,13 +8,13 @@
 #include "path/blocked_cells.h"
 #include "throng/crowd.h"
 
-// Obstacles that are put up, moved and taken away while a crowd walks. Between two steps all stand;
-// an obstacle comes only where nobody does, so the rule that nobody enters a wall holds on.
+// Obstacles that are added, moved and removed while a crowd walks. Between two steps all avatars
+// stand; an obstacle appears only where none does, so it stays true that no avatar enters a wall.
 namespace throng {
 namespace {
 
-// What the finders of a class, one a worker, know of an obstacle: where it is new it is put up,
-// else switched. Copies number alike.
+// Updates what the finders of a class, one a worker, know of an obstacle: a new one is added, else
+// it is switched. All copies give the same id.
 template <class Finder>
 void sync(std::vector<Finder>& finders, const CrowdObstacle& obstacle, bool is_new,
           ChangeId& change) {
@@ -224,7 +224,7 @@ void Crowd::State::sync_paths(uint32_t slot, size_t number) {
   sync(parts.flight_finders, obstacle, is_new, synced.air_change);
 }
 
-// Whose way leads over what some obstacles have just taken asks for another.
+// Avatars whose paths lead over cells that some obstacles have just blocked need another path.
 void Crowd::State::cut_paths(std::span<const uint32_t> slots) {
   if (!climbs.empty()) cut_climbs(slots);
   if (config.ways != Routing::kPaths) return;

@@ -12,7 +12,8 @@
 #include "throng/crowd.h"
 #include "world/place.h"
 
-// A crowd as bytes: a head, arrays as they are, and a checksum over all of it.
+// A crowd as bytes: a header, arrays as they are, and a checksum over all of it. Linear in the
+// crowd.
 namespace throng {
 namespace {
 
@@ -77,7 +78,7 @@ std::vector<SavedObstacle> saved_obstacles(std::span<const CrowdObstacle> all,
   return saved;
 }
 
-// None if they are not as a book holds them.
+// None if they are not as an ObstacleSet holds them.
 std::optional<std::vector<CrowdObstacle>> obstacles_of(
     std::span<const SavedObstacle> saved, std::span<const std::array<double, 2>> corners) {
   std::vector<CrowdObstacle> obstacles;
@@ -115,7 +116,7 @@ std::optional<std::vector<CrowdObstacle>> obstacles_of(
   return at == corners.size() ? std::optional(std::move(obstacles)) : std::nullopt;
 }
 
-// Bytes of a crowd of such numbers.
+// Size in bytes of a crowd with the numbers of this header.
 uint64_t size_of(const Head& head) {
   return sizeof head + head.bodies * sizeof(Body) + head.slots * (sizeof(Route) + 4) +
          (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
@@ -163,7 +164,7 @@ void put(std::vector<uint8_t>& out, const T* values, size_t count) {
 
 Error bad(const std::string& what) { return {Errc::kBadFile, "crowd: what was saved " + what}; }
 
-// Would a step with it read what is not there?
+// Can a step use it without reading out of bounds?
 bool is_sound(const Route& route, uint32_t levels) {
   if (route.count > Route::kCorners || (route.count > 0 && route.next >= route.count)) return false;
   for (size_t i = 0; i < route.count; ++i) {
@@ -180,7 +181,7 @@ bool is_sound(const Body& b, const WorldData& data) {
     return false;
   }
   if (b.x < 0 || b.z < 0 || !in_grid(data, b.point())) return false;
-  if (b.climbs) return b.has(Body::kFlying) && b.level == 0;  // is_sound_climb tells the rest
+  if (b.climbs) return b.has(Body::kFlying) && b.level == 0;  // is_sound_climb tests the rest
   if (b.level >= data.level_count) return false;
   if (b.has(Body::kFlying)) return true;  // it has no level; is_sound of its flight
   const auto tile = data.tile_levels(b.x >> (kUnitBits + 6), b.z >> (kUnitBits + 6));
@@ -198,7 +199,7 @@ bool is_sound(const Flight& flight, const Body& body, uint32_t levels) {
          (flight.in_link == 0 || flight.link_level < levels);
 }
 
-// Targets as numbers: how many prisms, of each how many corners, low, high and the corners.
+// Targets as numbers: how many prisms, of each the number of corners, low, high and the corners.
 std::vector<double> values_of(const std::vector<Target>& targets) {
   std::vector<double> out;
   for (const Target& target : targets) {
@@ -387,7 +388,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   }
   s.where_is_old = true;
   s.some_leave = std::any_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.leaves; });
-  s.flows_are_old = head.flows_are_old != 0;  // opening a class found them as they are now
+  s.flows_are_old = head.flows_are_old != 0;  // opening a class made them from the current ground
   s.step = head.step;
   s.sub_step = head.sub_step;
   s.scattered = head.scattered;

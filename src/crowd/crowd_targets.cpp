@@ -8,12 +8,13 @@
 #include "crowd/crowd_state.h"
 #include "throng/crowd.h"
 
-// What a crowd does about regions that many are bound for.
+// Targets: regions that many avatars head to. A flow field costs one Dijkstra search for each
+// class.
 namespace throng {
 namespace {
 
 constexpr size_t kMaxTargets = UINT16_MAX;
-constexpr size_t kGoals = 4096;  // places of a region that ways lead to, about
+constexpr size_t kGoals = 4096;  // places of a target that paths lead to, about
 constexpr size_t kGrain = 4096;  // bodies
 
 }  // namespace
@@ -117,7 +118,7 @@ void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> sp
   }
 }
 
-// A way from where the body is to its target or goal. False: there is none.
+// A path from where the body is to its target or goal. False: there is none.
 bool Crowd::State::plan_path(Body& body, Route& route, const StrideGround& ground, int32_t worker) {
   const auto w = static_cast<size_t>(worker);
   const WorldData& data = *world.data();
@@ -141,7 +142,7 @@ bool Crowd::State::plan_path(Body& body, Route& route, const StrideGround& groun
   return use_path(data, path, ground, body, route);
 }
 
-// The rectangles that flows name are of the ground as it was.
+// The flow fields refer to rectangles of the ground as it was.
 void Crowd::State::renew_flows() {
   if (!flows_are_old) return;
   flows_are_old = false;
@@ -151,7 +152,7 @@ void Crowd::State::renew_flows() {
     classes[c]->flows.clear();
     classes[c]->landings.clear();
     const auto ok = find_flows(static_cast<int32_t>(c), context);
-    THRONG_ASSERT(ok);  // It was possible before, and nobody cancels it.
+    THRONG_ASSERT(ok);  // It was possible before, and nothing cancels it.
   }
   for (Body& body : engine.bodies()) {
     if (body.target != 0 && body.has(Body::kHasGoal) && !body.leaves)

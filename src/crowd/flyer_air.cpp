@@ -43,7 +43,7 @@ bool FlyerAir::is_open_around(const AirPosition& position, float distance) const
   return inside(p.x, box.x) && inside(p.y, box.y) && inside(p.z, box.z);
 }
 
-// As FlightEndpoints::take_off has it, in whole millimetres.
+// As FlightEndpoints::take_off computes it, in whole millimetres.
 std::optional<int32_t> FlyerAir::take_off(const AirPosition& feet) const {
   const AirPoint p = point(feet);
   const auto x = static_cast<int32_t>(std::floor(p.x)), z = static_cast<int32_t>(std::floor(p.z));
@@ -74,7 +74,7 @@ AirPosition FlyerAir::position(const Vec3d& metres) const {
   const auto whole = [](double v) {
     return static_cast<int32_t>(std::clamp(std::floor(v), -2e9, 2e9));
   };
-  // Points lie a skin off the faces of cells; rounded down they stay on their side.
+  // Points lie slightly off the faces of cells; rounded down they stay on their side.
   return {whole((metres.x - origin_.x) / unit_), whole((metres.z - origin_.z) / unit_),
           whole(metres.y * 1000)};
 }

@@ -10,22 +10,23 @@
 #include "core/parallel.h"
 #include "core/random.h"
 
-// docs/design/012-flyers.md. Those who walk have made their step clear of where all flyers are;
-// now these go, clear of where everybody is.
+// The step of flyers: docs/design/012-flyers.md. Walkers have moved clear of where all flyers are;
+// then flyers move, clear of where all bodies are. Linear in the flyers and their neighbours.
 namespace throng {
 namespace {
 
 using steer::Space;
 
-constexpr size_t kGrain = 128;           // flyers that are worth handing to another thread
+constexpr size_t kGrain = 128;           // flyers that are worth another thread
 constexpr float kArrivalRadius = 0.3f;   // [m] from its goal a body has arrived
-constexpr uint64_t kRolls = 0x726f6c6c;  // stream of chance
-constexpr float kRoll = 2;               // [s] that one keeps to a side
-constexpr float kSlow = 2;               // [m/s] at most, up or down a port
-constexpr float kPressed = 2;            // [s] that one who lands waits for who is below him
-constexpr float kLandingSpread = 0.5f;   // [m/s] by which one who waits lands farther away
+constexpr uint64_t kRolls = 0x726f6c6c;  // random stream
+constexpr float kRoll = 2;               // [s] for which a flyer keeps to a side
+constexpr float kSlow = 2;               // [m/s] at most, up or down a ground-air link
+constexpr float kPressed = 2;            // [s] that one which lands waits for a body below it
+constexpr float kLandingSpread = 0.5f;   // [m/s] by which one that waits lands farther away
 constexpr float kFarthest = 15;          // [m] from where one would land, at most
-constexpr int32_t kLowOver = 1500;       // [mm] over the ground's air one may begin to land
+constexpr int32_t kLowOver = 1500;       // [mm] above the start of the air at which it may begin to
+                                         // land
 constexpr std::array<float, 3> kShorterBy = {0.5f, 0.25f, 0.1f};
 
 bool overlap(int32_t y, int32_t height, int32_t other_y, int32_t other_height) {
@@ -52,7 +53,8 @@ void FlyerEngine::set_air(size_t avatar_class, const FlyerAir* air, double radiu
 
 void FlyerEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt) {
   config_.units.dt = dt;
-  // Far enough to see in time who comes at full speed; and whoever could be touched, all ways.
+  // Far enough to see in time what comes at full speed, and all that could be touched, in all
+  // directions.
   const float unit = config_.units.unit;
   const float stride = fastest * dt;
   sight_metres_ = std::max(config_.sight, config_.steering.horizon * fastest);
@@ -125,7 +127,7 @@ void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> 
   }
 }
 
-// What it wishes for, as if nobody were there.
+// Its preferred velocity, as if no other were there.
 void FlyerEngine::preferred(Body& body, Flight& flight, uint64_t step) const {
   if (body.has(Body::kExternal)) {
     flight.descends = flight.preferred_up < 0 ? 1 : 0;
@@ -168,8 +170,8 @@ bool FlyerEngine::wants_down(const Body& body, const Flight& flight) const {
   return off.x * off.x + off.z * off.z < range * range;
 }
 
-// Appends whom the flyer could touch to `others`, and takes in the nearest, by which it steers.
-// `column_is_clear`: nobody is in what it would pass down to the ground.
+// Appends the bodies that the flyer could touch to `others`, and adds the nearest, by which it
+// steers. `column_is_clear`: no body is in the column that it would descend.
 void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situation,
                         bool& column_is_clear,
                         const FlyerAir::GroundAirLink* ground_air_link) const {
@@ -182,7 +184,7 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
   };
   const int32_t rise = rise_of(body.speed);
   NearestInAir nearest(sight_metres_);
-  // Nobody farther away than that and his radius can be touched; the exact test follows.
+  // Bodies farther away than that and their radius cannot be touched; the exact test follows.
   const float own_range =
       static_cast<float>(body.radius + 2 * units.stride(fastest_) + 1) * units.unit * 1.0001f;
   const auto query = [&](const FlyerGrid::Entry& entry, bool is_near) {
@@ -225,7 +227,7 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
     const steer::Plane apart = units.metres(other.x - body.x, other.z - body.z);
     const Flight* of_other = flies ? &flights_[other.slot] : nullptr;
     Space velocity{other.velocity.x, flies ? of_other->rise : 0, other.velocity.z};
-    // Who has arrived makes way for those who would pass, were he not there.
+    // A flyer that has arrived yields to those that would pass if it were not there.
     const bool yields = body.has(Body::kArrived) && flies && other.has(Body::kHasGoal) &&
                         !other.has(Body::kArrived);
     if (yields) {
@@ -247,7 +249,7 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
   }
 }
 
-// Of two who touch before one bend the farther steps back, if the nearer stands.
+// Of two that touch before one waypoint the farther steps back, if the nearer stands.
 bool FlyerEngine::gives_precedence(const Body& body, const Flight& flight, const Body& other,
                                    const Flight& of_other) const {
   constexpr float kCornerRadius = 1.5f, kTouch = 0.3f, kStands = 0.3f;  // [m], [m], of its speed
@@ -278,7 +280,7 @@ bool FlyerEngine::gives_precedence(const Body& body, const Flight& flight, const
   return its != mine ? its < mine : other.slot < body.slot;
 }
 
-// Can the body do as it wishes? If not, how far is it to a wall, all around?
+// Is its preferred velocity open? If not, how far are walls in all directions?
 bool FlyerEngine::query_walls(const Body& body, steer::AirSituation& situation) const {
   const FlyerAir& air = *classes_[body.avatar_class].air;
   const AirPosition here = position_of(body);
@@ -325,7 +327,7 @@ void FlyerEngine::find_paths(const steer::AirSituation& situation, bool open,
   for (const float part : kShorterBy) add(part * best);
 }
 
-// Sense, steer, and take a place if nobody can object.
+// Senses, steers, and takes a place at once if no other could touch it.
 void FlyerEngine::decide(uint32_t f, Worker& worker) {
   Body& body = bodies_[rounds_.movers[f]];
   Flight& flight = flights_[body.slot];
@@ -357,7 +359,7 @@ void FlyerEngine::decide(uint32_t f, Worker& worker) {
                            0};
   }
   if (flight.in_link != 0) {
-    // Up and down only: there is nothing to choose from but how fast.
+    // Up and down only: it can choose nothing but its speed.
     contest.candidate_count = 0;
     for (const float part : {1.0f, 0.5f, 0.25f}) {
       const auto up = static_cast<int32_t>(
@@ -380,7 +382,7 @@ void FlyerEngine::decide(uint32_t f, Worker& worker) {
   }
 }
 
-// Where a body would be after a step, if what is between is air.
+// Where a body would be after a move, if all between is air.
 bool FlyerEngine::try_place(const Body& body, const AirPosition& displacement,
                             AirPosition& place) const {
   const Flight& flight = flights_[body.slot];
@@ -390,10 +392,10 @@ bool FlyerEngine::try_place(const Body& body, const AirPosition& displacement,
   if (flight.in_link != 0) {
     if (displacement.x != 0 || displacement.z != 0) return false;
     there.y = std::max(there.y, flight.link_low);
-    // An obstacle may have come to where one would stand.
+    // An obstacle may have appeared where it would stand.
     const bool lands = there.y == flight.link_low && here.y != there.y;
     if (lands && !air.may_stand(flight.link_level, there)) return false;
-    // What is between the ground and the air is free; all above is looked at.
+    // Between the ground and the air it is free; all above is tested.
     const int32_t from = std::max(here.y, flight.link_high);
     const int32_t to = std::max(there.y, flight.link_high);
     if (from != to && !air.sees({here.x, here.z, from}, {here.x, here.z, to})) return false;
@@ -405,7 +407,7 @@ bool FlyerEngine::try_place(const Body& body, const AirPosition& displacement,
   return true;
 }
 
-// Is a place clear of where everybody is now?
+// Is a place clear of where all bodies are now?
 bool FlyerEngine::is_clear(const Contest& contest, const Worker& owner,
                            const AirPosition& place) const {
   const Body& body = bodies_[rounds_.movers[contest.mover]];
@@ -421,7 +423,7 @@ bool FlyerEngine::is_clear(const Contest& contest, const Worker& owner,
   return true;
 }
 
-// The first of his ways that is open and clear.
+// Proposes the first candidate that is open and clear.
 bool FlyerEngine::name(const Contest& contest, const Worker& owner) {
   const Body& body = bodies_[rounds_.movers[contest.mover]];
   AirPosition place;

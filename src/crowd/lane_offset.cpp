@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
-// docs/design/008-engine.md, "Lane offset at corners".
+// Lane offsets at corners: docs/design/008-engine.md, "Lane offset at corners". Constant time.
 namespace throng {
 namespace {
 
 using steer::Plane;
 
-constexpr float kHardly = 0.9f;  // cosine of a bend that is none
-constexpr float kAbreast = 5;    // radii that three middles want
-constexpr float kWidest = 10;    // radii of an opening, of more nobody makes use
+constexpr float kHardly = 0.9f;  // cosine of a bend too small to matter
+constexpr float kAbreast = 5;    // radii that three centres in a row need
+constexpr float kWidest = 10;    // radii of an opening, beyond which width is not used
 constexpr float kWallRange = 3;  // [m] for the walls on both sides
 constexpr int32_t kTries = 3;    // each half as far from the corner
 
@@ -23,7 +23,7 @@ Plane towards(GroundPoint from, GroundPoint to) {
   return size > 0 ? Plane{displacement.x / size, displacement.z / size} : Plane{};
 }
 
-// What of `displacement` is across a unit vector, as a unit vector.
+// The part of `displacement` across a unit vector, as a unit vector.
 Plane across(Plane displacement, Plane ahead) {
   const float along = displacement.x * ahead.x + displacement.z * ahead.z;
   const Plane rest{displacement.x - along * ahead.x, displacement.z - along * ahead.z};
@@ -41,7 +41,7 @@ PathPoint lane_offset(const Body& body, const Route& route, const StrideGround& 
   const GroundPoint at{corner.x, corner.z}, beyond{next.x, next.z};
   const Plane in = towards(body.point(), at), out = towards(at, beyond);
   if (in.x * out.x + in.z * out.z > kHardly) return corner;
-  // Away from the wall that the way bends around.
+  // Away from the wall that the path bends around.
   Plane away{in.x - out.x, in.z - out.z};
   const float size = steer::size_of(away);
   if (!(size > 1e-3f)) return corner;
@@ -56,7 +56,7 @@ PathPoint lane_offset(const Body& body, const Route& route, const StrideGround& 
   const float inner =
       ground.free_distance(body.level, body.point(), {-side.x, -side.z}, query_range);
   float part = inner / std::max(inner + outer, 1.0f);
-  // People come the other way: theirs is the left half.
+  // Others come from the opposite direction: theirs is the left half.
   if (body.on_right) part = (part + (away.z * out.x - away.x * out.z > 0 ? 1.0f : 0.0f)) / 2;
   float off = ground.free_distance(corner.level, at, away, widest) * part;
   for (int32_t i = 0; i < kTries; ++i, off *= 0.5f) {

@@ -10,7 +10,7 @@
 #include "world/walk.h"
 
 // A breadth-first search from outside: in cells, along the axes, backwards over steps that a body
-// which stands there may make.
+// on such a cell may make.
 namespace throng {
 namespace {
 

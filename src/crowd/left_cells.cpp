@@ -20,7 +20,7 @@ void LeftCells::begin(const WorldSummary& summary, const AvatarClass& avatar) {
   origin_ = summary.origin;
   unit_ = summary.cell / kUnitsPerCell;
   radius_ = avatar.radius;
-  // As Crowd::State::is_occupied has it: what may come up is what may be entered no more.
+  // As Crowd::State::is_occupied tests it: what may become active is what may no longer be entered.
   bottom_ = static_cast<int32_t>(std::floor(body_bottom(avatar) * 1000));
   height_ = static_cast<int32_t>(std::ceil(avatar.height * 1000 - 1e-6));
   shapes_.clear();
@@ -74,7 +74,7 @@ bool LeftCells::may_cross(const Cell& from, const Cell& over) const {
 }
 
 bool LeftCells::enters(const Cell& cell, const AirPosition& from, const AirPosition& to) const {
-  constexpr int32_t kSamples = 4;  // on the way
+  constexpr int32_t kSamples = 4;  // on the line
   const OfLevel* of = find(cell.level);
   if (of == nullptr) return false;
   const auto is_in = [&](const Shape& shape, AirPosition feet) {

@@ -145,7 +145,7 @@ std::vector<std::pair<uint32_t, uint32_t>> ObstacleSet::blockers(std::span<const
     uint32_t slot;
     const CellRows* rows;
   };
-  // By class and level: which of the lists says who asks for it, plus one.
+  // By class and level: which of the lists wants its blockers, plus one.
   std::vector<std::vector<uint32_t>> list_of(classes_.size());
   std::vector<std::vector<Asked>> lists;
   for (const uint32_t slot : slots) {

@@ -28,14 +28,14 @@ class PathRepair {
     return true;
   }
 
-  // Replaces what is covered of the points by detours. False: they would be too long.
+  // Replaces the covered part of the points by detours. False: these would be too long.
   bool mend(std::vector<Place>& points, double& length, RepairScratch& scratch) const {
     const std::vector<Place>& old = points;
     std::vector<Place>& mended = scratch.points;
     Path& detour = scratch.detour;
     mended.assign(1, old[0]);
     length = 0;
-    double covered = 0;  // length of what is left out
+    double covered = 0;  // length that is left out
     for (size_t i = 1; i < old.size(); ++i) {
       const Place& from = mended.back();
       const Place& to = old[i];
@@ -46,7 +46,7 @@ class PathRepair {
         covered = 0;
         continue;
       }
-      // A covered corner is left out: the way goes around it to the next.
+      // A covered corner is left out: the path leads around it to the next.
       if (!live_.is_free(to)) continue;
       live_.find(from, to, detour, kMaxNodes);
       if (detour.end != PathEnd::kReached || detour.length > covered + kMaxRepairDetour)

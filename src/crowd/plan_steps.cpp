@@ -51,7 +51,7 @@ HWY_INLINE Fields load(const Avatar* a) {
 #endif
 }
 
-// High halves of the products, as PixelGrid::pixel has it.
+// High halves of the products, as PixelGrid::pixel computes them.
 HWY_INLINE U pixel(U cell, U magic) {
 #if HWY_TARGET == HWY_SCALAR
   const uint64_t product = uint64_t{hn::GetLane(cell)} * hn::GetLane(magic);
@@ -64,7 +64,7 @@ HWY_INLINE U pixel(U cell, U magic) {
 #endif
 }
 
-// The row of blocks in which a point lies, of the 32 bits that hold it and the one beside.
+// The row of blocks that contains a point, of the 32 bits that hold it and the next row.
 HWY_INLINE U blocks_at(const LevelLine* lines, I level, I z) {
   const DI d;
   const DU du;

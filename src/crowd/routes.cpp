@@ -14,8 +14,8 @@ namespace {
 
 constexpr uint64_t kCheckInterval = 16;  // decisions
 constexpr uint64_t kBlockedCheckInterval = 4;
-constexpr float kCheckRange = 3;  // [m] of a leg, to see whether it is open
-constexpr float kSoon = 0.3f;     // [m] before his own place one turns to the next
+constexpr float kCheckRange = 3;  // [m] of a segment, to test whether it is visible
+constexpr float kSoon = 0.3f;     // [m] before its lane offset a body turns to the next corner
 
 void turn_to(Body& body, const Route& route, const StrideGround& ground, float metre) {
   body.on_right = body.in_counterflow;
@@ -26,8 +26,8 @@ void turn_to(Body& body, const Route& route, const StrideGround& ground, float m
   body.flags = static_cast<uint8_t>(last ? body.flags | Body::kLast : body.flags & ~Body::kLast);
 }
 
-// Has it come as far as its own place, on the way to the next corner? Who turned as soon as he sees
-// that one would go along the inner wall after all.
+// Is it as far as its lane offset, on the segment to the next corner? One that turned at first
+// sight of that corner would walk along the inner wall after all.
 bool is_at_lane_offset(const Body& body, const Route& route, float metre) {
   const PathPoint& corner = route.corners[route.next];
   if (corner.x == body.local_target_x && corner.z == body.local_target_z) return true;
@@ -49,20 +49,20 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
   const float square = near_square(body.local_target_x - body.x, body.local_target_z - body.z);
   if (!body.has(Body::kLast) && square < range * range / 4) {
     const bool at_end = route.next + 1 == route.count;
-    const bool there = square < 16;  // a few units: as near as steps come
+    const bool there = square < 16;  // a few units: as near as moves come
     if (!at_end && (there || (is_at_lane_offset(body, route, metre) &&
                               sees(route.corners[route.next + 1u])))) {
       ++route.next;
       turn_to(body, route, ground, metre);
       return;
     }
-    if (at_end) {  // Corners are used up; the rest of the way is a new one.
+    if (at_end) {  // Corners are used up: the rest is a new path.
       body.flags |= Body::kNeedsPath;
       return;
     }
   }
   if (body.in_counterflow && !body.on_right) turn_to(body, route, ground, metre);
-  // Who was pushed back behind a corner sees it no more, and is held up until he looks.
+  // A body pushed back behind a corner no longer sees it, and is blocked until it checks.
   const bool held = body.detour_angle != 0 && body.near_wall;
   if (nth % (held ? kBlockedCheckInterval : kCheckInterval) != 0) return;
   if (!sees({body.local_target_x, body.local_target_z, route.corners[route.next].level}))
@@ -70,7 +70,7 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
 }
 
 bool leads_through(const Body& body, const Route& route, const PlanBox& box) {
-  // Is a part of the leg on the inner side of all four sides? (Liang and Barsky)
+  // Is a part of the segment on the inner side of all four sides? (Liang and Barsky)
   const auto crosses = [&](double ax, double az, double bx, double bz) {
     double from = 0, to = 1;
     const auto cut = [&](double at, double displacement, double low, double high) {

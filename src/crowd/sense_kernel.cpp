@@ -16,7 +16,7 @@ using DI = hn::CappedTag<int32_t, 16>;
 using DF = hn::RebindToFloat<DI>;
 using DU = hn::RebindToUnsigned<DI>;
 
-// Who sees nobody (`max_square` 0) only asks whom he could touch.
+// A body without sight (`max_square` 0) only finds those that it could touch.
 template <bool kSees>
 HWY_INLINE void FindAround(const Places& places, std::span<const Entries> around, const Eye& eye,
                            SeenLists& result) {
@@ -27,7 +27,7 @@ HWY_INLINE void FindAround(const Places& places, std::span<const Entries> around
   const auto max_square = hn::Set(df, eye.max_square), touch = hn::Set(df, eye.touch);
   const auto tall = hn::Set(d, eye.tall), touch_tall = hn::Set(d, eye.touch_tall);
   const auto self = hn::Set(du, eye.self);
-  const auto first = hn::Iota(du, 0);  // Iota(du, i) may go by memory.
+  const auto first = hn::Iota(du, 0);  // Iota(du, i) may use memory.
   SeenLists lists = result;
   const auto query = [&](uint32_t i, uint32_t last) HWY_ATTR {
     const auto dx = hn::ConvertTo(df, hn::Sub(hn::LoadU(d, places.x + i), x));
@@ -42,7 +42,7 @@ HWY_INLINE void FindAround(const Places& places, std::span<const Entries> around
     if (kSees) {
       const auto near = hn::And(hn::RebindMask(du, hn::Lt(square, max_square)), others);
       const auto seen = hn::And(near, hn::RebindMask(du, hn::Lt(dy, tall)));
-      // Compressing into memory is slow on some machines; there is room for a whole vector.
+      // Compressing into memory is slow on some machines; the lists have space for a whole vector.
       hn::StoreU(hn::Compress(entry, seen), du, lists.entries + lists.seen);
       hn::StoreU(hn::Compress(square, hn::RebindMask(df, seen)), df, lists.squares + lists.seen);
       lists.seen += hn::CountTrue(du, seen);
@@ -68,7 +68,7 @@ void FindSeen(const Places& places, std::span<const Entries> around, const Eye& 
   }
 }
 
-// Of each, how many are nearer; a vector of them at a time against all, one by one.
+// For each entry, how many are nearer; a vector of them at a time against all, one by one.
 size_t KeepNearest(SeenLists& lists, size_t max_count) {
   const DF d;
   const DI di;

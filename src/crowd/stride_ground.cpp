@@ -65,7 +65,7 @@ bool StrideGround::box_is_open(uint32_t level, int32_t x0, int32_t z0, int32_t x
   return ground_->open_line(level).has_all(z0 >> 2 & 15, z1 >> 2 & 15, blocks_between(x0, x1));
 }
 
-// The level beyond a side, if all blocks there from one cell to another are joined to it.
+// The level beyond a side, if all blocks there between two cells are joined to it.
 uint32_t StrideGround::beyond(uint32_t level, LevelLine::Side side, int32_t low,
                               int32_t high) const {
   const OpenLine& line = ground_->open_line(level);
@@ -100,13 +100,13 @@ bool StrideGround::is_open_around(uint32_t level, GroundPoint from, int32_t rang
     if (!box_is_open(down, own_x0, far_z0, own_x1, far_z1)) return false;
   }
   if (!is_wide || !is_deep) return true;
-  // The fourth tile is the same by both ways.
+  // The fourth tile is the same over both sides.
   const uint32_t fourth = beyond(across, side_z, far_x0, far_x1);
   return fourth != LevelLine::kNone && fourth == beyond(down, side_x, far_z0, far_z1) &&
          box_is_open(fourth, far_x0, far_z0, far_x1, far_z1);
 }
 
-// As throng::walk_far, block by block. False, and the level is as it was: blocks do not tell.
+// As throng::walk_far, block by block. False, and the level is unchanged: blocks cannot decide.
 bool StrideGround::walk_open(uint32_t& level, GroundPoint from, GroundPoint to) const {
   constexpr int32_t kShift = kUnitBits + 2;  // units of a block
   auto x = static_cast<int32_t>(from.x >> kShift), z = static_cast<int32_t>(from.z >> kShift);
@@ -114,7 +114,8 @@ bool StrideGround::walk_open(uint32_t& level, GroundPoint from, GroundPoint to) 
   const auto end_z = static_cast<int32_t>(to.z >> kShift);
   const int64_t dx = std::llabs(to.x - from.x), dz = std::llabs(to.z - from.z);
   const int32_t sx = to.x > from.x ? 1 : -1, sz = to.z > from.z ? 1 : -1;
-  // Products of the ways along each axis to the next line of blocks: the smaller is crossed first.
+  // Distances along each axis to the next line of blocks, multiplied out: the smaller is crossed
+  // first.
   const auto to_line = [](int64_t at, int32_t block, int32_t toward) {
     const int64_t line = int64_t{toward > 0 ? block + 1 : block} << kShift;
     return std::llabs(line - at);
@@ -175,7 +176,7 @@ StrideGround::Around StrideGround::query_walls(uint32_t level, int32_t y, Ground
                                                WallWindow& window) const {
   const int32_t x = from.cell_x(), z = from.cell_z();
   if (leaves(level, from)) return Around::kSteps;
-  // Squares of one cell, or of two where the look is longer.
+  // Squares of one cell, or of two for longer ranges.
   const int32_t scale = range < WallWindow::kMiddle ? 1 : 2;
   if (range >= 2 * WallWindow::kMiddle) return Around::kSteps;
   const int32_t size = scale * WallWindow::kSize, middle = scale * WallWindow::kMiddle;
@@ -213,8 +214,8 @@ StrideGround::Around StrideGround::query_walls(uint32_t level, int32_t y, Ground
   return Around::kWalls;
 }
 
-// As throng::walk_far, row by row: of a row the line needs some cells beside each other, which is
-// one look at its bits. Lines through a corner of cells are left to that.
+// As throng::walk_far, row by row: of a row the line crosses some adjacent cells, which is one test
+// of its bits. Lines through a corner of cells are left to walk_far.
 WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint to) const {
   int32_t x = from.cell_x(), z = from.cell_z();
   const uint32_t start = level;
@@ -245,7 +246,7 @@ WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint 
     int32_t last = end_x;
     if (z != end_z) {  // where the line leaves the row
       const int64_t border = int64_t{sz > 0 ? z + 1 : z} << kUnitBits;
-      // The product is exact, and so is a quotient that is whole.
+      // The product is exact, and so is a whole quotient.
       const double at =
           static_cast<double>(from.x) + static_cast<double>(border - from.z) * dx / dz;
       const auto whole = static_cast<int64_t>(at);
@@ -308,7 +309,7 @@ float StrideGround::free_distance(uint32_t level, GroundPoint from, steer::Plane
     stop = walk_rows(level, from, to);
   }
   if (stop.arrived) return max_range;
-  // To the border of the last cell that it could not cross.
+  // To the border of the last cell that could not be crossed.
   const auto part = [](int32_t cell, int32_t toward, int64_t begin, int64_t end) {
     const int64_t border = int64_t{cell + (toward > 0 ? 1 : 0)} << kUnitBits;
     return static_cast<float>(border - begin) / static_cast<float>(end - begin);

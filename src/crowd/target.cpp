@@ -110,7 +110,7 @@ std::vector<Place> places_inside(const WorldData& world, const CrowdGround& grou
       }
     }
   };
-  // As coarse as it takes; a narrow region that a coarse raster misses is looked at more closely.
+  // As coarse as required; a narrow region that a coarse raster misses is rasterised more finely.
   double area = 0;
   for (const TargetRegion& r : regions) {
     area += (r.bounds().x1 - r.bounds().x0) * (r.bounds().z1 - r.bounds().z0);

@@ -11,9 +11,9 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
-// A direction a lane: all go on by half a square at a time. Walls are as thick as bodies, since
-// squares are those on which a body's middle may be, so none is stepped over. In integers, and so
-// the same for every width.
+// A lane for each direction: all advance by half a square at a time. Walls are as thick as bodies,
+// since squares are free where a body's centre may be, so none is stepped over. In integers, hence
+// the same for every vector width.
 HWY_BEFORE_NAMESPACE();
 namespace throng {
 namespace HWY_NAMESPACE {
@@ -31,7 +31,7 @@ class Rows {
     const DI d;
     const auto* rows = reinterpret_cast<const int32_t*>(rows_);
 #if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
-    // All fit two vectors: two permutations, where gathering takes a load a lane.
+    // All fit two vectors: two permutations, where a gather takes a load for each lane.
     const auto low = hn::IndicesFromVec(d, hn::And(index, hn::Set(d, 15)));
     return hn::IfThenElse(hn::Gt(index, hn::Set(d, 15)),
                           hn::TableLookupLanes(hn::Load(d, rows + 16), low),

@@ -12,24 +12,24 @@
 #include "core/random.h"
 #include "crowd/plan_steps.h"
 
-// A run is moved in groups, and a group in passes, so that no pass waits for memory or guesses a
-// branch: what is asked of most avatars is answered without one, and those that need more are put
-// on a list for the next pass. The passes are three stages; while one group is in its last, the
-// next is in its second and the one after that in its first, and what a stage asks of the memory
-// arrives before the next. The order in which claims commit (group, pass, place in the group)
-// depends on nothing but the run, because only the last stage reads or writes what groups share.
+// A run is moved in groups, and a group in passes, so that no pass waits for memory or mispredicts
+// a branch: what nearly all avatars need is computed without one, and those that need more are put
+// on a list for the next pass. The passes are three stages: while one group is in its last, the
+// next is in its second and the one after that in its first, and what a stage prefetches arrives
+// before the next. The order in which moves are accepted (group, pass, place in the group) depends
+// on the run alone, because only the last stage reads or writes what groups share.
 namespace throng {
 namespace {
 
 constexpr size_t kGroup = 64;
-constexpr int32_t kAheadAvatar = 128;  // avatars between asking for one and using it
+constexpr int32_t kAheadAvatar = 128;  // avatars between the prefetch of one and its use
 constexpr int32_t kAheadLevel = 48;    // the same for the line of a level
-constexpr int32_t kShort = 2;          // longest plain step [cells]
+constexpr int32_t kShort = 2;          // longest flat step [cells]
 
 // Numbers of avatars of a group.
 class List {
  public:
-  // Appends if `really`, without a branch. There is always room for one more.
+  // Appends if `really`, without a branch. There is always space for one more.
   void add_if(bool really, uint16_t n) {
     at_[size_] = n;
     size_ += really;
@@ -43,7 +43,7 @@ class List {
   size_t size_ = 0;
 };
 
-// A plain step into another pixel.
+// A flat step into another pixel.
 struct Proposal {
   uint32_t from;   // pixel
   uint32_t level;  // on which it ends
@@ -57,7 +57,7 @@ class Group {
  public:
   explicit Group(const StepInput& in) : in_(in) {}
 
-  // The three stages: each avatar, or each of a list, makes one step, or goes on another list. Up
+  // The three stages: each avatar, or each of a list, makes one step, or is put on another list. Up
   // to `readable`, avatars may be read ahead of their turn.
   void start_all(Avatar* avatars, size_t size, const Avatar* readable) {
     avatars_ = avatars;
@@ -106,11 +106,11 @@ class Group {
   const StepInput& in_;
   Avatar* avatars_ = nullptr;
   std::array<Proposal, kGroup> proposals_;
-  std::array<CollisionMap::Slices, kGroup> slices_;  // of the claims
+  std::array<CollisionMap::Slices, kGroup> slices_;  // of the proposed moves
   size_t proposals_size_ = 0;
-  size_t prefetched_ = 0;  // claims whose pixels were asked for
-  List unsure_;            // not within plain blocks
-  List uneven_;            // not plain: these go on one of the next two
+  size_t prefetched_ = 0;  // proposed moves whose pixels were prefetched
+  List unsure_;            // not within flat blocks
+  List uneven_;            // not flat: these go on one of the next two
   List slopes_;
   List walks_;
   uint64_t walls_ = 0;  // met
@@ -129,23 +129,24 @@ std::span<const uint16_t> everyone() {
 // All ones if true.
 int32_t mask(bool condition) { return -static_cast<int32_t>(condition); }
 
-// True if all cells of a box between two cells are set and lie on one tile of 64 rows. Boxes longer
-// than kShort are not looked at.
+// True if all cells of a box between two cells are set and lie on one tile of 64 rows. False for
+// boxes longer than kShort.
 [[gnu::always_inline]] inline bool box_is_set(const uint64_t* rows, int32_t x0, int32_t z0,
                                               int32_t x1, int32_t z1) {
   const bool near = (static_cast<uint32_t>((x0 ^ x1) | (z0 ^ z1)) < 64) &
                     (static_cast<uint32_t>(x1 - x0 + kShort) <= 2 * kShort) &
                     (static_cast<uint32_t>(z1 - z0 + kShort) <= 2 * kShort);
-  // Of two cells that are at most two apart, the one between is all that lies between.
+  // Of two cells that are at most two apart, the middle one is all that lies between.
   const uint64_t common = rows[z0 & 63] & rows[((z0 + z1) >> 1) & 63] & rows[z1 & 63];
   const uint64_t all = (common >> (x0 & 63)) & (common >> (((x0 + x1) >> 1) & 63)) &
                        (common >> (x1 & 63)) & static_cast<uint64_t>(near);
   return all != 0;
 }
 
-// A plain step that `really` is one: whoever stays in his pixel moves at once, for nobody can
-// object; the others claim. Returns whether he moved. Arithmetic instead of branches: which way an
-// avatar goes is as good as random, and a wrong guess costs 20 cycles.
+// A flat step that `really` is one: an avatar that stays in its pixel moves at once, for no other
+// can be in conflict; the others propose a move. Returns whether it moved. Arithmetic instead of
+// branches: the direction of an avatar is as good as random, and a mispredicted branch costs 20
+// cycles.
 [[gnu::always_inline]] inline bool Group::go_or_propose(const Pixels& pixels, Avatar& a,
                                                         bool really, uint32_t level, uint16_t n,
                                                         size_t& claimed) {
@@ -171,7 +172,7 @@ void Group::prefetch_levels_ahead(size_t size, const Avatar* last_readable) cons
   }
 }
 
-// Most are answered by the line of their level alone.
+// The line of their level alone decides most of them.
 void Group::plan_all(size_t size) {
   const Pixels pixels = in_.map->pixels();
   if (!in_.is_short || !can_plan(pixels.grid, in_.ground->records().size()))
@@ -213,7 +214,7 @@ void Group::prefetch_walk_levels() const {
   }
 }
 
-// Plain blocks over the edge of the tile, and plain cells that do not fill a block.
+// Flat blocks over the edge of the tile, and flat cells that do not fill a block.
 void Group::look_closer() {
   const Pixels pixels = in_.map->pixels();
   size_t claimed = proposals_size_;
@@ -255,8 +256,8 @@ void Group::proposal(List& blocked) {
   }
 }
 
-// A level of which nothing but its own cells can be reached inside the tile: as world/walk.h wants
-// it, for the compiler to forget all that cannot happen.
+// A level from which no other can be reached inside the tile: the ground that world/walk.h expects,
+// so that the compiler removes all that cannot happen.
 struct LoneLevel {
   using Level = uint32_t;
   const uint64_t* legal;
@@ -269,7 +270,7 @@ struct LoneLevel {
   void for_tile(int32_t, int32_t, int32_t, int32_t, Visit) const {}
 };
 
-// Puts the body at `to` if nobody is there.
+// Puts the body at `to` if no other is there.
 bool commit(CollisionMap& map, Avatar& a, GroundPoint to, uint32_t level, int32_t y) {
   const CollisionMap::Mark old_mark = map.mark(a.point(), a.y);
   const CollisionMap::Mark mark = map.mark(to, y);
@@ -300,7 +301,7 @@ void Group::prefetch_ground_cells() const {
   }
 }
 
-// Slopes, where every cell in reach is legal, from walls, steps and edges of tiles.
+// Separates slopes, where every cell in range is legal, from walls, steps and edges of tiles.
 void Group::sort_uneven() {
   const CrowdGround& ground = *in_.ground;
   for (const uint16_t n : uneven_.span()) {
@@ -347,7 +348,7 @@ void Group::walk_on(List& blocked) {
   }
 }
 
-// To the left or to the right, by chance.
+// To the left or to the right, at random.
 void turn(const StepInput& in, Avatar& a) {
   const bool left = (random_u64(in.seed, a.id, in.step) & 1) != 0;
   const int32_t vx = left ? -a.vz : a.vz;

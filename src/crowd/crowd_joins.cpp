@@ -131,10 +131,10 @@ void CrowdGround::join_open_side(Level level, LevelLine::Side side) {
   const LevelLine::Side back = LevelLine::opposite(side);
   const OpenLine& other = open_[line.beyond[side]];
   if (other.beyond[back] != level) return;
-  const uint64_t both_ways = line.cells[side] & other.cells[back];
+  const uint64_t both_directions = line.cells[side] & other.cells[back];
   for (int32_t i = 0; i <= kLast; ++i) {
     const Cell here = rim(side, i), there = rim(back, i);
-    const bool joins = (both_ways >> (4 * i) & 15) == 15 && line.is_open(here.x / 4, here.z / 4) &&
+    const bool joins = (both_directions >> (4 * i) & 15) == 15 && line.is_open(here.x / 4, here.z / 4) &&
                        other.is_open(there.x / 4, there.z / 4);
     line.joined[side] = static_cast<uint16_t>(line.joined[side] | int{joins} << i);
   }

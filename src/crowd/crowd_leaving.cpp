@@ -41,7 +41,7 @@ bool Crowd::State::is_occupied(uint32_t slot,
     const AvatarClass& avatar = body_class(body.avatar_class);
     if (body.climbs) {
       const Climb& climb = climbs[body.slot];
-      return climbers.in_counterflow(*classes[body.avatar_class]->nodes,
+      return climbers.meets_obstacle(*classes[body.avatar_class]->nodes,
                                      {here(body), body.radius, body.height},
                                      {climb.feet, climb.axis}, climb.radius, solid, {prism, {}});
     }

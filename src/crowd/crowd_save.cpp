@@ -30,7 +30,7 @@ struct Head {
   uint64_t target_values = 0;  // doubles
   uint64_t flights = 0;        // by slot, or none
   uint64_t climbs = 0;         // by slot, or none
-  int32_t rounds = 0, ways = 0, deadlock_avoidance = 0, flows_are_old = 0;
+  int32_t rounds = 0, routing = 0, deadlock_avoidance = 0, flows_are_old = 0;
   int32_t model = 0, low_detail_steps = 0;
   uint64_t views = 0;
   double low_detail_reaction = 0;
@@ -147,7 +147,7 @@ Head head_of(const World& world, const CrowdConfig& config) {
   head.sight = config.sight;
   head.reaction = config.reaction;
   head.rounds = config.rounds;
-  head.ways = static_cast<int32_t>(config.ways);
+  head.routing = static_cast<int32_t>(config.ways);
   head.deadlock_avoidance = config.deadlock_avoidance ? 1 : 0;
   head.model = static_cast<int32_t>(config.model);
   head.low_detail_steps = config.low_detail_steps;
@@ -293,7 +293,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   if (head.world != expected.world) return bad("is of another world; open that one");
   if (head.seed != expected.seed || head.dt != expected.dt || head.sight != expected.sight ||
       head.reaction != expected.reaction || head.rounds != expected.rounds ||
-      head.ways != expected.ways || head.deadlock_avoidance != expected.deadlock_avoidance ||
+      head.routing != expected.routing || head.deadlock_avoidance != expected.deadlock_avoidance ||
       head.model != expected.model || head.low_detail_steps != expected.low_detail_steps ||
       head.low_detail_reaction != expected.low_detail_reaction) {
     return bad("has other settings; give those that it was made with");

@@ -22,7 +22,7 @@ constexpr size_t kGrain = 4096;  // bodies
 Result<TargetId> Crowd::add_target(std::span<const Prism> areas, Context& context) {
   State& s = *state_;
   if (s.config.ways != Routing::kPaths) {
-    return Error{Errc::kBadConfig, "crowd: who goes straight on knows no targets; give goals"};
+    return Error{Errc::kBadConfig, "crowd: Routing::kStraight supports no targets; give goals"};
   }
   auto made = Target::make(*s.world.data(), areas);
   if (!made) return made.error();

@@ -117,7 +117,7 @@ class Group {
 };
 
 // All of a group.
-std::span<const uint16_t> everyone() {
+std::span<const uint16_t> all_of_group() {
   static constexpr auto kAll = [] {
     std::array<uint16_t, kGroup> all{};
     for (size_t n = 0; n < kGroup; ++n) all[n] = static_cast<uint16_t>(n);
@@ -176,7 +176,7 @@ void Group::prefetch_levels_ahead(size_t size, const Avatar* last_readable) cons
 void Group::plan_all(size_t size) {
   const Pixels pixels = in_.map->pixels();
   if (!in_.is_short || !can_plan(pixels.grid, in_.ground->records().size()))
-    return plan(everyone().first(size));
+    return plan(all_of_group().first(size));
   const PlannedSteps planned = plan_steps(in_.ground->lines(), pixels.grid, avatars_, size);
   const uint64_t here = ~uint64_t{0} >> (kGroup - size);
   for (uint64_t bits = here & ~(planned.stays | planned.leaves); bits != 0; bits &= bits - 1) {

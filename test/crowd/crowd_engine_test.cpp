@@ -18,13 +18,13 @@
 namespace throng {
 namespace {
 
-// An engine on level ground, and the same bodies in the step as the tests have it.
+// An engine on level ground, and the same bodies in the reference step of the tests.
 struct Pair {
   test::PlainCrowd plain;
   CrowdEngine engine;
   uint64_t steps = 0;
 
-  // Steps both and says who differs first.
+  // Steps both and names the first body that differs.
   std::string step() {
     plain.step();
     EngineCounts counts;
@@ -126,7 +126,7 @@ TEST(CrowdEngine, DoesWhatThePlainStepDoes) {
   }
 }
 
-TEST(CrowdEngine, WhoGoesOnDoesWhatThePlainStepDoes) {
+TEST(CrowdEngine, BodiesThatContinueDoWhatThePlainStepDoes) {
   const LevelGround ground(60);
   test::PlainConfig config;
   config.units.dt = 0.05f;

@@ -23,8 +23,8 @@ World plane() {
   return *world;
 }
 
-// Who comes into areas, found from positions alone, step by step.
-TEST(CrowdEvents, tell_who_comes_into_areas) {
+// Avatars that enter areas, found from positions alone, step by step.
+TEST(CrowdEvents, ReportAvatarsThatEnterAreas) {
   const World world = plane();
   Context context;
   auto crowd = Crowd::create(world, {.workers = 2});
@@ -70,7 +70,7 @@ TEST(CrowdEvents, tell_who_comes_into_areas) {
   EXPECT_GT(entries, 100U);
 }
 
-TEST(CrowdEvents, watching_changes_nothing_and_has_limits) {
+TEST(CrowdEvents, WatchingChangesNothingAndHasLimits) {
   const World world = plane();
   Context context;
   auto plain = Crowd::create(world, {}), watched = Crowd::create(world, {.no_progress_after = 1});
@@ -95,8 +95,9 @@ TEST(CrowdEvents, watching_changes_nothing_and_has_limits) {
   }
 }
 
-// One who has a crate before him on every side is stuck; one who walks, stands or is new is not.
-TEST(CrowdEvents, tell_who_is_stuck) {
+// An avatar with a crate on every side makes no progress; one that walks, stands or is new is not
+// reported.
+TEST(CrowdEvents, ReportAvatarsWithoutProgress) {
   const World world = plane();
   Context context;
   auto crowd = Crowd::create(world, {.ways = Routing::kStraight, .no_progress_after = 2});
@@ -106,7 +107,7 @@ TEST(CrowdEvents, tell_who_is_stuck) {
       {at(13.6, 4), 0, 0, 0}, {at(2, 15), 0, 0, 0}, {at(5, 5), 0, 0, 0}};
   const auto ids = crowd->add(spawns, context);
   ASSERT_TRUE(ids);
-  // Straight on into the wall; along the hall; nowhere.
+  // Straight into the wall; along the hall; no goal.
   crowd->set_goals(*ids, std::vector<Place>{at(20, 4), at(28, 15), Place()});
   int checks = 0, reported = 0;
   for (int step = 1; step <= 100; ++step) {

@@ -61,9 +61,9 @@ Scene slope_over_the_edge(bool along_x) {
   return scene;
 }
 
-// Walks of up to two cells that stay on plain cells need no further look; that is, the world allows
+// Walks of up to two cells that stay on flat cells need no further test; that is, the world permits
 // them, and the feet stay as high as they are.
-TEST(CrowdGround, WhoStaysOnPlainCellsArrivesOnTheSameLevelAtTheSameHeight) {
+TEST(CrowdGround, AWalkOverFlatCellsEndsOnTheSameLevelAtTheSameHeight) {
   for (const Scene& scene :
        {worlds::two_floors(), worlds::steps(0.17, 0.3, 12), worlds::ramp(20, 8), worlds::doorway(1),
         slope_over_the_edge(true), slope_over_the_edge(false)}) {
@@ -107,7 +107,7 @@ Scene garage() {
 }
 
 // The same for steps of up to a block over the edge of a tile, which may change the level.
-TEST(CrowdGround, WhoCrossesAJoinArrivesWhereAWalkDoesAtTheSameHeight) {
+TEST(CrowdGround, AStepOverAJoinEndsWhereAWalkDoesAtTheSameHeight) {
   for (const Scene& scene : {worlds::two_floors(), worlds::flat(20), slope_over_the_edge(true),
                              slope_over_the_edge(false), garage()}) {
     const World world = baked(scene);
@@ -165,7 +165,7 @@ TEST(CrowdGround, ALoneLevelIsTheOnlyOneWithinAStepInItsTile) {
   EXPECT_GT(lone, 0);
 }
 
-TEST(CrowdGround, FloorsOutsideTheHeightsAskedForMayBeLeftOutButNoOther) {
+TEST(CrowdGround, FloorsOutsideTheGivenHeightsMayBeLeftOutButNoOther) {
   const World world = baked(worlds::two_floors());
   const auto ground = CrowdGround::make(*world.data(), 0, kStep);
   ASSERT_TRUE(ground);

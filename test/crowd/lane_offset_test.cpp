@@ -15,8 +15,7 @@
 namespace throng {
 namespace {
 
-// A corridor along X that turns along Z around the block that ends at (10, 2); both as wide as
-// told.
+// A corridor along X that turns along Z around the block that ends at (10, 2); both `width` wide.
 struct Bend {
   explicit Bend(double width) {
     const double out = 10 + width;
@@ -41,7 +40,7 @@ struct Bend {
     EXPECT_TRUE(place) << position.x << " " << position.z;
     return point_of(*world.data(), place);
   }
-  // Of who stands in the first corridor, so far from its inner wall (at z = width). [m]
+  // Of a body in the first corridor, at this distance from its inner wall (at z = width). [m]
   PathPoint own(double x, double z) {
     const PathPoint at = point_at({x, 0, z});
     body.x = at.x;
@@ -65,7 +64,7 @@ struct Bend {
   float metre = 1;
 };
 
-TEST(LaneOffset, WhoWalksFartherOutTurnsFartherOut) {
+TEST(LaneOffset, ABodyThatWalksFartherOutTurnsFartherOut) {
   Bend bend(2);
   double before = -1;
   for (const double z : {1.7, 1.4, 1.0, 0.6, 0.25}) {  // the inner wall is at z = 2
@@ -96,7 +95,7 @@ TEST(LaneOffset, IsSeenFromHereAndSeesTheNextCorner) {
 }
 
 TEST(LaneOffset, IsTheCornerWhereFewFitOrNothingBends) {
-  Bend narrow(1.2);  // Middles have 0.82 m: two abreast, not three.
+  Bend narrow(1.2);  // Centres have 0.82 m: two abreast, not three.
   EXPECT_EQ(narrow.off(narrow.own(5, 0.4)), 0);
   Bend bend(2);
   const PathPoint ahead = bend.next;
@@ -106,7 +105,7 @@ TEST(LaneOffset, IsTheCornerWhereFewFitOrNothingBends) {
   EXPECT_GT(bend.off(bend.own(5, 1.0)), 0);
 }
 
-TEST(LaneOffset, WhoMeetsAStreamKeepsToTheRightHalf) {
+TEST(LaneOffset, ABodyInCounterflowKeepsToTheRightHalf) {
   Bend bend(2);  // to the right
   for (const double z : {1.7, 1.4, 1.0, 0.6, 0.25}) {
     bend.body.on_right = false;
@@ -116,8 +115,8 @@ TEST(LaneOffset, WhoMeetsAStreamKeepsToTheRightHalf) {
   }
 }
 
-// Two rooms and a corridor of 2 m between them: with everybody at the place that the walls leave
-// him, sixty who met sixty there stood for ever.
+// Two rooms and a corridor of 2 m between them: with each avatar at the place that the walls leave
+// it, sixty that met sixty there stood for ever.
 TEST(LaneOffset, GroupsThatMeetInACorridorPass) {
   PlaneConfig plane;
   plane.ground = {{{0, 0}, {30, 0}, {30, 10}, {0, 10}}, {}};

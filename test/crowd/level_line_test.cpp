@@ -43,7 +43,7 @@ TEST(LevelLine, ABlockIsFullIfItsSixteenCellsAre) {
   }
 }
 
-TEST(LevelLine, AllCellsOfAPlainBoxAreSetWhereverItsTileLies) {
+TEST(LevelLine, AllCellsOfAFlatBoxAreSetWhereverItsTileLies) {
   int plain = 0;
   for (uint64_t seed = 0; seed < 50; ++seed) {
     const Rows rows = rows_with_holes(seed, 30);

@@ -67,7 +67,7 @@ struct Fixture {
 };
 
 // Square of the distance of a point from a convex polygon, by a walk along its sides in fine steps:
-// nothing of the code that takes cells.
+// independent of the code that blocks cells.
 double far_from(const Prism& prism, double x, double z) {
   bool left = true, right = true;
   double nearest = 1e300;
@@ -85,7 +85,7 @@ double far_from(const Prism& prism, double x, double z) {
   return left || right ? 0 : nearest;
 }
 
-TEST(ObstacleSet, TakesTheCellsOnWhichABodyCouldTouchAndFewMore) {
+TEST(ObstacleSet, BlocksTheCellsOnWhichABodyCouldTouchAndFewMore) {
   uint64_t taken = 0, left = 0;
   for (const Scene& scene : {worlds::two_floors(), worlds::ramp(20, 8), worlds::flat(14)}) {
     Fixture f(test::bake(scene, 0.1));
@@ -138,7 +138,7 @@ TEST(ObstacleSet, TakesTheCellsOnWhichABodyCouldTouchAndFewMore) {
   EXPECT_GT(left, 50000u);
 }
 
-TEST(ObstacleSet, GivesBackToTheBitWhatItTook) {
+TEST(ObstacleSet, FreesToTheBitWhatItBlocked) {
   for (const char* name : {"garage", "church", "maze"}) {
     Fixture f(test::bake(test::builtin({.name = name, .seed = 3}), 0.1));
     const uint64_t baked = hash_of(f.ground);
@@ -159,7 +159,7 @@ TEST(ObstacleSet, GivesBackToTheBitWhatItTook) {
       f.book.take_cells();
     }
     EXPECT_NE(hash_of(f.ground), baked);
-    // What is left is what the same obstacles take of a new ground.
+    // What is left must equal what the same obstacles leave of a new ground.
     CrowdGround fresh = *CrowdGround::make(*f.world.data(), 0, kStep);
     ObstacleSet again(f.world, f.world.summary().classes.size());
     again.open_class(0, fresh);
@@ -174,7 +174,7 @@ TEST(ObstacleSet, GivesBackToTheBitWhatItTook) {
   }
 }
 
-TEST(ObstacleSet, TakesNoMoreMemoryTheMoreOftenOneComesAndGoes) {
+TEST(ObstacleSet, MemoryDoesNotGrowAsObstaclesComeAndGo) {
   Fixture f(test::bake(worlds::flat(14), 0.1));
   const auto come_and_go = [&] {
     f.book.remove(f.put_up(Prism::box({5, 0, 5}, {8, 1, 8})));
@@ -187,7 +187,8 @@ TEST(ObstacleSet, TakesNoMoreMemoryTheMoreOftenOneComesAndGoes) {
   EXPECT_EQ(f.book.bytes(), book);
 }
 
-// The ground as it was baked, without the cells that `now` lacks: none of its lines, sets or joins.
+// The ground as it was baked, without the cells blocked in `now`: uses none of its lines, sets or
+// joins.
 struct PlainGround {
   using Level = GroundLevel;
   WorldGround baked;

@@ -47,7 +47,7 @@ Crated crated(World world) {
   return {std::move(world), *finder};
 }
 
-// Is each leg a legal move over the cells that are left?
+// Is each segment a legal move over the cells that are left?
 bool is_open(const Crated& c, const Path& path) {
   for (size_t i = 1; i < path.points.size(); ++i) {
     const Place &a = path.points[i - 1], &b = path.points[i];

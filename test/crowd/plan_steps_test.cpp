@@ -17,7 +17,7 @@ constexpr int32_t kLevels = 6;
 std::vector<LevelLine> random_lines() {
   std::vector<LevelLine> lines(kLevels);
   for (size_t level = 0; level < lines.size(); ++level) {
-    for (size_t z = 0; z < 16; ++z) {  // three blocks of four are plain
+    for (size_t z = 0; z < 16; ++z) {  // three blocks of four are flat
       const uint64_t bits = random_u64(level, z, 1);
       lines[level].plain[z] = static_cast<uint16_t>(bits | bits >> 16);
     }
@@ -43,7 +43,7 @@ std::vector<Avatar> random_avatars(size_t size, uint64_t seed) {
   return avatars;
 }
 
-// What the words say, one avatar at a time.
+// The scalar reference, one avatar at a time.
 PlannedSteps plan_one_by_one(const LevelLine* lines, PixelGrid grid, std::vector<Avatar>& avatars) {
   PlannedSteps planned;
   for (size_t n = 0; n < avatars.size(); ++n) {

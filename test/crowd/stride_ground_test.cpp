@@ -28,7 +28,7 @@ struct Fixture {
     ground = *CrowdGround::make(*world.data(), 0, kStep);
     stride = StrideGround(ground, kStep);
   }
-  // A body at random, and where it looks.
+  // A random body, and a point to look at.
   struct Stand {
     uint32_t level;
     GroundPoint at;
@@ -60,7 +60,7 @@ TEST(StrideGround, SeesAsFarAsItCanWalkCellByCell) {
       const double angle = 2 * M_PI * number(n, 1), far = 8 * kUnitsPerCell * 10 * number(n, 2);
       GroundPoint from = s.at, to{s.at.x + std::lround(far * std::cos(angle)),
                                   s.at.z + std::lround(far * std::sin(angle))};
-      // Ways turn at corners of cells, so lines from, to and through them are common.
+      // Paths bend at corners of cells, so lines from, to and through them are common.
       const auto to_corner = [](int64_t v) { return v & ~int64_t{kUnitsPerCell - 1}; };
       if (n % 4 >= 1) to = {to_corner(to.x), to_corner(to.z)};
       if (n % 4 >= 2) from = {to_corner(from.x), to_corner(from.z)};
@@ -78,7 +78,7 @@ TEST(StrideGround, SeesAsFarAsItCanWalkCellByCell) {
   }
 }
 
-TEST(StrideGround, FreeWaysEndWhereTheCellByCellWalkDoes) {
+TEST(StrideGround, FreeDistancesEndWhereTheCellByCellWalkDoes) {
   for (const BuiltinWorldConfig& config : kWorlds) {
     const Fixture f(config);
     uint64_t ends = 0, distinguished = 0;
@@ -88,17 +88,17 @@ TEST(StrideGround, FreeWaysEndWhereTheCellByCellWalkDoes) {
       const steer::Plane direction{static_cast<float>(std::cos(angle)),
                                    static_cast<float>(std::sin(angle))};
       const float most = 20.0f * kUnitsPerCell;
-      const float way = f.stride.free_distance(s.level, s.at, direction, most);
+      const float distance = f.stride.free_distance(s.level, s.at, direction, most);
       const auto at = [&](double size) {
         return GroundPoint{s.at.x + std::lround(size * direction.x),
                            s.at.z + std::lround(size * direction.z)};
       };
       uint32_t end = s.level;
-      distinguished += !walk(f.ground, end, s.at, at(std::max(way - 8.0, 0.0)), kStep);
+      distinguished += !walk(f.ground, end, s.at, at(std::max(distance - 8.0, 0.0)), kStep);
       end = s.level;
-      if (way == most) continue;
+      if (distance == most) continue;
       ++ends;
-      distinguished += walk(f.ground, end, s.at, at(way + 8.0), kStep);
+      distinguished += walk(f.ground, end, s.at, at(distance + 8.0), kStep);
     }
     EXPECT_GT(ends, 500u) << config.name;
     // Where a line grazes a corner of cells, one that ends elsewhere rounds to the other side.
@@ -106,8 +106,8 @@ TEST(StrideGround, FreeWaysEndWhereTheCellByCellWalkDoes) {
   }
 }
 
-// Wherever a square is said to be open, and from wherever to wherever one goes in it, cell by cell;
-// also where obstacles took cells, and gave them back.
+// Walks cell by cell between random points of squares that are reported as open; also where
+// obstacles blocked cells, and freed them.
 TEST(StrideGround, OpenSquaresHaveNoWalls) {
   for (const BuiltinWorldConfig& config : kWorlds) {
     Fixture f(config);
@@ -157,9 +157,9 @@ TEST(StrideGround, OpenSquaresHaveNoWalls) {
   }
 }
 
-// The window says of each square what may be walked on there, and the ways are those of a plain
-// loop over its squares.
-TEST(WallWindow, WaysAreThoseOfAPlainLoop) {
+// For each square the window states what may be walked on there, and the distances are those of a
+// simple loop over its squares.
+TEST(WallWindow, DistancesAreThoseOfAPlainLoop) {
   const auto plain = [](const WallWindow& w, steer::Plane d, float look) {
     const auto by = [&](float part) {
       return static_cast<int32_t>(std::lrint(part * static_cast<float>(w.spacing())));
@@ -200,7 +200,7 @@ TEST(WallWindow, WaysAreThoseOfAPlainLoop) {
   });
 }
 
-TEST(StrideGround, WindowsShowTheWaysThatAreFree) {
+TEST(StrideGround, WindowsShowWhichDistancesAreFree) {
   for (const BuiltinWorldConfig& config : kWorlds) {
     const Fixture f(config);
     uint64_t open = 0, walls = 0, steps = 0, distances = 0, near = 0;

@@ -55,7 +55,7 @@ struct Climb {
   float detour = 0;                  ///< Left of a path that does not lead to the goal. [s]
   uint8_t count = 0;
   uint8_t whole = 0;                       ///< The last point is the goal.
-  uint8_t turns_off = 0;                   ///< It has waited long enough, and turns aside.
+  uint8_t turns_aside = 0;                 ///< It has waited long enough, and turns aside.
   uint8_t station = 0, station_count = 0;  ///< The next one.
   uint8_t to_station = 0;                  ///< The last point is the next station.
   uint8_t reserved[2] = {};

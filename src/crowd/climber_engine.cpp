@@ -18,14 +18,14 @@ namespace {
 
 using steer::Space;
 
-constexpr size_t kGrain = 32;              // climbers that are worth another thread
-constexpr float kArrivalRadius = 0.3f;     // [m] from its goal a body has arrived
-constexpr float kProgressShare = 0.1f;     // of its speed
-constexpr float kDetourDelay = 2;          // [s] at least, before it turns aside
-constexpr float kRetreatDelay = 1;         // [s] before one in the air moves back
-constexpr float kYieldDelay = 0.5f;        // [s] before others that rest yield to it
-constexpr float kYieldDistance = 0.3f;     // [m] from a body that cannot step aside
-constexpr uint64_t kTempers = 0x74656d70;  // stream of chance
+constexpr size_t kGrain = 32;                   // climbers that are worth another thread
+constexpr float kArrivalRadius = 0.3f;          // [m] from its goal a body has arrived
+constexpr float kProgressShare = 0.1f;          // of its speed
+constexpr float kDetourDelay = 2;               // [s] at least, before it turns aside
+constexpr float kRetreatDelay = 1;              // [s] before one in the air moves back
+constexpr float kYieldDelay = 0.5f;             // [s] before others that rest yield to it
+constexpr float kYieldDistance = 0.3f;          // [m] from a body that cannot step aside
+constexpr uint64_t kDetourDelays = 0x74656d70;  // stream of chance
 
 bool overlaps_with(const ClimbCylinder& a, const ClimbCylinder& b) {
   return nearer_than(a.low.x - b.low.x, a.low.z - b.low.z, int64_t{a.radius} + b.radius) &&
@@ -119,7 +119,8 @@ void ClimberEngine::step(uint64_t step, std::span<Body> bodies, std::span<Climb>
             preferred(body, climb);
           },
       .decide = [&](uint32_t c, Worker& worker) { decide(c, worker); },
-      .name = [&](const Contest& contest, const Worker& owner) { return name(contest, owner); },
+      .propose = [&](const Contest& contest,
+                     const Worker& owner) { return propose(contest, owner); },
       .overlaps_with =
           [&](const Contest& contest, uint32_t other) {
             return overlaps_with(rounds_.moves[contest.mover].displacement.cylinder,
@@ -155,7 +156,7 @@ void ClimberEngine::preferred(Body& body, Climb& climb) const {
 
 // Is the other blocked where it cannot step aside, on its path over an edge or a hole, or by a body
 // that has no goal left?
-bool ClimberEngine::lets_off(const Body& body, const Climb& climb, const Body& other) const {
+bool ClimberEngine::needs_space(const Body& body, const Climb& climb, const Body& other) const {
   if (!other.climbs || climb.at.in_air != 0) return false;
   const Climb& of_other = climbs_[other.slot];
   const bool rests = body.has(Body::kArrived) || !body.has(Body::kHasGoal);
@@ -220,7 +221,7 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
                          velocity,
                          static_cast<float>(body.radius + other.radius) * units.unit,
                          static_cast<float>(other.height) * 1e-3f};
-    if (yields || !lets_off(body, climb, other)) continue;
+    if (yields || !needs_space(body, climb, other)) continue;
     const Climb& of_other = climbs_[other.slot];
     const Space off = space_of(of_other.feet - climb.feet);
     const float far = steer::size_of(off);
@@ -325,7 +326,7 @@ bool ClimberEngine::is_clear(const Contest& contest, const Worker& owner,
 }
 
 // Proposes the first candidate that is clear.
-bool ClimberEngine::name(const Contest& contest, const Worker& owner) {
+bool ClimberEngine::propose(const Contest& contest, const Worker& owner) {
   for (size_t w = 0; w < contest.candidate_count; ++w) {
     if (!is_clear(contest, owner, contest.displacement[w].cylinder)) continue;
     rounds_.moves[contest.mover].displacement = contest.displacement[w];
@@ -381,11 +382,12 @@ void ClimberEngine::settle(uint32_t c, uint64_t step, EngineCounts& counts) {
     return;
   }
   climb.waited += units.dt;
-  const auto temper = static_cast<float>(random_below(config_.seed ^ kTempers, body.slot, step, 3));
-  const float delay = kDetourDelay + temper;
+  const auto extra =
+      static_cast<float>(random_below(config_.seed ^ kDetourDelays, body.slot, step, 3));
+  const float delay = kDetourDelay + extra;
   if (config_.deadlock_avoidance && climb.waited > delay && climb.is_on_ground()) {
     climb.waited = 0;
-    climb.turns_off = 1;
+    climb.turns_aside = 1;
   }
 }
 

@@ -96,12 +96,12 @@ class ClimberEngine {
   void preferred(Body& body, Climb& climb) const;
   void decide(uint32_t climber, Worker& worker);
   void sense(uint32_t climber, Worker& worker, steer::AirSituation& situation, bool& yields) const;
-  [[nodiscard]] bool lets_off(const Body& body, const Climb& climb, const Body& other) const;
+  [[nodiscard]] bool needs_space(const Body& body, const Climb& climb, const Body& other) const;
   void find_paths(const Body& body, const Climb& climb, const steer::AirSituation& situation,
                   bool yields, Contest& contest) const;
   [[nodiscard]] bool is_clear(const Contest& contest, const Worker& owner,
                               const ClimbCylinder& cylinder) const;
-  bool name(const Contest& contest, const Worker& owner);
+  bool propose(const Contest& contest, const Worker& owner);
   void settle(uint32_t climber, uint64_t step, EngineCounts& counts);
 
   ClimberConfig config_;

@@ -220,7 +220,7 @@ Vec3d ClimberGround::normal_at(const Climb& climb) const {
 }
 
 // Towards the next point, within the square that holds both. True: it is there.
-bool ClimberGround::go_on_surface(const Climb& climb, Step& step, double& max_travel) const {
+bool ClimberGround::advance_on_surface(const Climb& climb, Step& step, double& max_travel) const {
   ClimbStance& at = step.at;
   const ClimbPoint& local_target = climb.points[at.next];
   const auto there = pose(at.node1, local_target.s, local_target.t);
@@ -251,7 +251,7 @@ bool ClimberGround::go_on_surface(const Climb& climb, Step& step, double& max_tr
   return false;
 }
 
-bool ClimberGround::go_through_air(const Climb& climb, Step& step, double& max_travel) const {
+bool ClimberGround::advance_through_air(const Climb& climb, Step& step, double& max_travel) const {
   ClimbStance& at = step.at;
   const auto from = pose_of_point(climb, at.next - 1u), to = pose_of_point(climb, at.next);
   if (!from || !to) {
@@ -289,15 +289,15 @@ std::optional<ClimberGround::Step> ClimberGround::advance(const Climb& climb,
   if (climb.count == 0) return step;
   if (at.in_air == 0 && at.next == climb.count) {  // back to where it was, if it yielded
     at.next = climb.count - 1;
-    go_on_surface(climb, step, max_travel);
+    advance_on_surface(climb, step, max_travel);
     at.next = climb.count;
     return step;
   }
   // At most all that is left of the path.
   while (max_travel > kLittle && at.next < climb.count) {
     const ClimbPoint& local_target = climb.points[at.next];
-    const bool there = at.in_air != 0 ? go_through_air(climb, step, max_travel)
-                                      : go_on_surface(climb, step, max_travel);
+    const bool there = at.in_air != 0 ? advance_through_air(climb, step, max_travel)
+                                      : advance_on_surface(climb, step, max_travel);
     if (!there) break;
     ++at.next;
     at.part = 0;

@@ -93,8 +93,8 @@ class ClimberGround {
   [[nodiscard]] std::optional<ClimbPose> pose_of_point(const Climb& climb, size_t point) const;
   [[nodiscard]] bool enters_next(const Climb& climb, const Square& here, double ds,
                                  double dt) const;
-  bool go_on_surface(const Climb& climb, Step& step, double& max_travel) const;
-  bool go_through_air(const Climb& climb, Step& step, double& max_travel) const;
+  bool advance_on_surface(const Climb& climb, Step& step, double& max_travel) const;
+  bool advance_through_air(const Climb& climb, Step& step, double& max_travel) const;
 
   const Nodes* nodes_;
   const NodePathFinder* finder_;

@@ -578,7 +578,7 @@ CrowdReport Crowd::step() {
   report.seconds_plan = times.plan;
   report.seconds_sort = times.sort;
   report.seconds_steer = times.steer;
-  report.seconds_commit = times.commit;
+  report.seconds_commit = times.resolve;
   report.seconds_settle = times.settle;
   report.seconds_total = seconds_since(start);
   return report;

@@ -18,9 +18,9 @@ void CrowdGround::keep_baked(Level level, Baked& baked) {
   LevelLine& line = lines_[level];
   const uint32_t set = line.legal_set & kSetBits;
   baked.legal_word = line.legal_set;
-  baked.plain_set = line.plain_set;
+  baked.flat_set = line.flat_set;
   std::copy_n(legal(level), kRows, baked.legal.begin());
-  std::copy_n(plain(level), kRows, baked.plain.begin());
+  std::copy_n(flat(level), kRows, baked.flat.begin());
   if (set != kAllLegal) return;
   // Many levels share the rows of all cells: this one needs its own.
   uint32_t own = row_sets_;
@@ -30,7 +30,7 @@ void CrowdGround::keep_baked(Level level, Baked& baked) {
     own = spare_sets_.back();
     spare_sets_.pop_back();
   }
-  if (line.plain_set == set) line.plain_set = own;
+  if (line.flat_set == set) line.flat_set = own;
   line.legal_set = own | (line.legal_set & ~kSetBits);
 }
 
@@ -51,18 +51,18 @@ void CrowdGround::set_blocked(Level level, const CellRows& blocked) {
   };
   // A cell is flat if it is legal and as high as those beside it, legal or not.
   write(line.legal_set, baked.legal);
-  if (line.plain_set != kNoneLegal) write(line.plain_set, baked.plain);
+  if (line.flat_set != kNoneLegal) write(line.flat_set, baked.flat);
   uint32_t cells = 0;
   for (size_t z = 0; z < kRows; ++z) {
     cells += static_cast<uint32_t>(std::popcount(legal(level)[z]));
   }
   records_[level].legal_cells = cells;
-  line.plain = full_blocks(plain(level));
+  line.flat = full_blocks(flat(level));
   find_open(level);
   if (any) return;
   if (line.legal_set != baked.legal_word) spare_sets_.push_back(line.legal_set & kSetBits);
   line.legal_set = baked.legal_word;
-  line.plain_set = baked.plain_set;
+  line.flat_set = baked.flat_set;
   baked_.erase(kept);
 }
 

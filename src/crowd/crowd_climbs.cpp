@@ -172,7 +172,7 @@ void Crowd::State::set_goal_of_climber(Body& body, const NodePlace& goal) {
   climb.goal_t = goal.t;
   climb.detour = 0;
   climb.waited = 0;
-  climb.turns_off = 0;
+  climb.turns_aside = 0;
   climb.station = climb.station_count = 0;
   body.flags = Body::kFlying | Body::kHasGoal | Body::kNeedsPath;
 }
@@ -184,7 +184,7 @@ void Crowd::State::stop_climber(Body& body) {
 }
 
 // The nearest place of its target, in a straight line.
-void Crowd::State::aim_at_flow_target(const Body& body, Climb& climb) const {
+void Crowd::State::head_to_target_place(const Body& body, Climb& climb) const {
   const auto& places = classes[body.avatar_class]->landings[body.target - 1u];
   double min_distance = HUGE_VAL;
   const Place* nearest = nullptr;
@@ -202,11 +202,11 @@ void Crowd::State::aim_at_flow_target(const Body& body, Climb& climb) const {
 }
 
 // To another place for a while: a new path alone often meets the others again.
-void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
+void Crowd::State::turn_aside(Body& body, Climb& climb, int32_t worker) {
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
   const uint64_t stream = uint64_t{body.slot} << 2, seed = config.seed ^ kDetours;
-  climb.turns_off = 0;
+  climb.turns_aside = 0;
   climb.detour = kMin + static_cast<float>(random_below(seed, stream, sub_step, 40)) * 0.1f;
   body.clear(Body::kNeedsPath);
   const NodePlace from =
@@ -245,7 +245,7 @@ void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
 
 // An obstacle that came up beside it blocks a whole square of its node for its finder: on to the
 // nearest place of it that is left.
-bool Crowd::State::step_off(Body& body, Climb& climb, int32_t worker, double beside) {
+bool Crowd::State::step_aside(Body& body, Climb& climb, int32_t worker, double beside) {
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
   const NodePlace from =
@@ -264,7 +264,7 @@ bool Crowd::State::step_off(Body& body, Climb& climb, int32_t worker, double bes
 }
 
 // An externally controlled climber heads to where it would be soon, by a path as any other.
-void Crowd::State::drive_climber(const Body& body, Climb& climb, int32_t worker) {
+void Crowd::State::control_climber(const Body& body, Climb& climb, int32_t worker) {
   climb.detour -= static_cast<float>(config.dt / sub_steps);
   if (!climb.is_on_ground() || (climb.detour > 0 && climb.at.next < climb.count)) return;
   ClassParts& parts = *classes[body.avatar_class];
@@ -288,7 +288,7 @@ void Crowd::State::drive_climber(const Body& body, Climb& climb, int32_t worker)
 
 void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
                               std::atomic<uint64_t>& planned) {
-  if (body.has(Body::kExternal)) return drive_climber(body, climb, worker);
+  if (body.has(Body::kExternal)) return control_climber(body, climb, worker);
   if (body.leaves && plan_exit_on_nodes(body, climb, worker)) return;
   if (!body.has(Body::kHasGoal)) return;
   if (climb.detour > 0) {
@@ -302,11 +302,11 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
     climb.to_station = 0;
   }
   if (!climb.is_on_ground()) return;
-  if (climb.turns_off != 0) return turn_off(body, climb, worker);
+  if (climb.turns_aside != 0) return turn_aside(body, climb, worker);
   if (!body.has(Body::kNeedsPath)) return;
   planned.fetch_add(1, std::memory_order_relaxed);
   climb.detour = 0;
-  if (body.target != 0) aim_at_flow_target(body, climb);
+  if (body.target != 0) head_to_target_place(body, climb);
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
   NodePath& path = parts.node_paths[w];
@@ -332,7 +332,7 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
     note_spent(path.spent);
   }
   if (!is_found()) {
-    if (path.end == PathEnd::kNoPlace && step_off(body, climb, worker, kSearchMargin)) return;
+    if (path.end == PathEnd::kNoPlace && step_aside(body, climb, worker, kSearchMargin)) return;
     clear_path(climb);
     return drop_goal(body);
   }

@@ -44,7 +44,7 @@ bool overlaps_with(const Body& a, const Stand& at_a, const Body& b, const Stand&
 }
 
 // On its last segment, and not at its end yet?
-bool is_bound(const Body& body) {
+bool is_on_last_segment(const Body& body) {
   constexpr uint8_t kAll =
       Body::kHasGoal | Body::kLast | Body::kArrived | Body::kExternal | Body::kFlying;
   // A target can hold many.
@@ -65,7 +65,7 @@ bool turns_corner(const Body& body) {
 }
 
 // Is it turned aside by deadlock avoidance, blocked by more than other bodies?
-bool is_held_up(const Body& body) {
+bool is_blocked_by_walls(const Body& body) {
   return body.detour_angle != 0 && (!body.has(Body::kLast) || body.near_wall);
 }
 
@@ -175,17 +175,17 @@ void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts
   lap(times.sort);
   decide_all(counts);
   lap(times.steer);
-  commit(step);
-  lap(times.commit);
+  resolve_conflicts(step);
+  lap(times.resolve);
   settle_all(counts);
   lap(times.settle);
 }
 
 // Does it repeat its last move?
-bool CrowdEngine::keeps(const Body& body, uint64_t step) const {
+bool CrowdEngine::continues(const Body& body, uint64_t step) const {
   return body.has(Body::kContinues) && !body.has(Body::kExternal) && !body.has(Body::kNeedsPath) &&
          !body.has(Body::kFlying) && !decides(steps_of_reaction(body), step, body.slot) &&
-         !takes_few(body) &&
+         !has_short_moves(body) &&
          !is_before({body.local_target_x - body.x, body.local_target_z - body.z}, stride_of(body));
 }
 
@@ -195,7 +195,7 @@ void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
   // To the right, if only other bodies block it. At a wall or a corner that would press a crowd
   // against it: there, to a random side.
   const auto turn = [&](const Body& b) {
-    if (b.in_counterflow || !is_held_up(b)) return b.detour_angle;
+    if (b.in_counterflow || !is_blocked_by_walls(b)) return b.detour_angle;
     if (size_of(config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z)) < kClose)
       return 0.0f;
     const bool left = (random_u64(config_.seed ^ kSides, b.slot, window) & 1) != 0;
@@ -207,7 +207,7 @@ void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
     const std::span<Body> bodies{bodies_.data() + begin, std::min(kGrain, size_ - begin)};
     for (Body& b : bodies) {
       choose_detail(b, step);
-      if (b.steps > 0 && !keeps(b, step)) b.clear(Body::kContinues);
+      if (b.steps > 0 && !continues(b, step)) b.clear(Body::kContinues);
     }
     if (before) before(bodies, worker);
     for (Body& b : bodies) {
@@ -255,7 +255,7 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
       if (!*contested) continue;
       const uint64_t bit = uint64_t{1} << (i % kBits);
       contests.open |= bit;
-      if (proposals()[i].round == 0) contests.unnamed |= bit;
+      if (proposals()[i].round == 0) contests.unproposed |= bit;
       ++workers_[w].counts.contested;
     }
   });
@@ -356,7 +356,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   situation.preferred = body.preferred;
   situation.fastest = body.speed;
   situation.near.size = 0;
-  const bool may_wait = is_bound(body), turns = turns_corner(body);
+  const bool may_wait = is_on_last_segment(body), turns = turns_corner(body);
   const bool rests = !body.leaves && !body.has(Body::kExternal) &&
                      (body.has(Body::kArrived) || !body.has(Body::kHasGoal));
   for (size_t n = 0; n < nearest; ++n) {
@@ -366,7 +366,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     worker.in_counterflow = worker.in_counterflow ||
                             (other.in_counterflow && leads(apart, body.preferred, other.preferred));
     const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
-    if (may_wait && is_bound(other) && goes_first(bound(other), bound(body))) {
+    if (may_wait && is_on_last_segment(other) && goes_first(bound(other), bound(body))) {
       worker.waits = true;
       situation.preferred = preferred_of_waiting(
           config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z),
@@ -406,15 +406,15 @@ bool CrowdEngine::find_open_preferred(uint32_t i, Worker& worker,
   if (!is_sampled(body)) return true;
   if (!worker.waits && go_straight(body, worker.situation)) return true;
   const auto is_open = [&] {
-    look_ahead(body, worker.situation);
+    query_wall_ahead(body, worker.situation);
     return steer::preferred_is_open_fast(config_.steering, worker.situation);
   };
-  return is_open() || (!worker.waits && take_lane(i, worker, around) && is_open());
+  return is_open() || (!worker.waits && choose_lane(i, worker, around) && is_open());
 }
 
 // A body that a jam at a door turned aside passes as soon as it can.
 bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) const {
-  if (!is_held_up(body)) return false;
+  if (!is_blocked_by_walls(body)) return false;
   const Plane turned = situation.preferred;
   const Plane left =
       config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
@@ -422,11 +422,11 @@ bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) con
   // A body one step from its corner stops there: whether it would touch others beyond does not
   // matter.
   if (!body.has(Body::kLast) && size_of(left) <= body.speed * units_of(body).dt) {
-    look_ahead(body, situation);
+    query_wall_ahead(body, situation);
     return true;
   }
   situation.preferred = steer::following_fast(config_.steering, situation);
-  look_ahead(body, situation);
+  query_wall_ahead(body, situation);
   steer::SampledSettings at_once = config_.steering;
   at_once.horizon = kAtOnce;
   if (steer::preferred_is_open_fast(at_once, situation)) return true;
@@ -448,7 +448,7 @@ float CrowdEngine::metres(float displacement, float query_range) const {
 }
 
 // Is a wall near, and how far is it along the preferred velocity?
-void CrowdEngine::look_ahead(const Body& body, steer::Situation& situation) const {
+void CrowdEngine::query_wall_ahead(const Body& body, steer::Situation& situation) const {
   const StrideGround& ground = grounds_[body.avatar_class];
   const float query_range = wall_range(body);
   situation.has_walls = !ground.is_open_around(body.level, body.point(), cells_of(query_range));
@@ -595,9 +595,9 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
       open ? worker.situation.preferred
            : if_blocked(steer::best_fast(config_.steering, worker.situation), worker.situation);
   Displacements candidates{displacement_of(body, best)};
-  bool named = try_displacement(body, candidates[0], proposal.place) &&
-               is_clear(body, proposal.place, others, /*any_moved=*/false);
-  if (named) {
+  bool proposed = try_displacement(body, candidates[0], proposal.place) &&
+                  is_clear(body, proposal.place, others, /*any_moved=*/false);
+  if (proposed) {
     proposal.flags = Body::kContinues;
     proposal.round = others.empty() ? 0 : 1;
   } else {
@@ -606,14 +606,14 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
     proposal.has_all = true;
   }
   // Known only if walls were queried.
-  body.near_wall = (!open || !named) && worker.situation.has_walls;
+  body.near_wall = (!open || !proposed) && worker.situation.has_walls;
   if (others.empty()) {
-    if (!named) named = try_displacements(body, candidates, others, proposal.place);
-    body.state = named ? Body::kFree : Body::kEnclosed;
+    if (!proposed) proposed = try_displacements(body, candidates, others, proposal.place);
+    body.state = proposed ? Body::kFree : Body::kEnclosed;
     return false;
   }
   body.state = Body::kUndecided;
-  for (size_t n = 0; n < (named ? 1 : candidates.size()); ++n)
+  for (size_t n = 0; n < (proposed ? 1 : candidates.size()); ++n)
     proposal.add_displacement(candidates[n]);
   store_others(proposal, w, first);
   return true;
@@ -673,16 +673,17 @@ void CrowdEngine::for_contests(uint64_t Contests::*which, Do act) {
 // By induction no body ever touches another: a proposed place is clear of where all bodies stand
 // that could touch it, and it is accepted only if it is clear of what those before it in the order
 // proposed, accepted or not.
-void CrowdEngine::commit(uint64_t step) {
+void CrowdEngine::resolve_conflicts(uint64_t step) {
   for (int32_t r = 1; r <= config_.rounds; ++r) {
     const auto round = static_cast<uint8_t>(r);
     // Nearly all proposed a place for the first round when they decided: none had moved yet.
-    for_contests(r == 1 ? &Contests::unnamed : &Contests::open, [&](uint32_t i, Worker& scratch) {
-      name(i, scratch, round);
-      return false;
-    });
+    for_contests(r == 1 ? &Contests::unproposed : &Contests::open,
+                 [&](uint32_t i, Worker& scratch) {
+                   propose(i, scratch, round);
+                   return false;
+                 });
     for_contests(&Contests::open, [&](uint32_t i, Worker&) {
-      const bool decided = proposals()[i].round == round && holds(i, step);
+      const bool decided = proposals()[i].round == round && is_accepted(i, step);
       if (decided) bodies_[i].state = Body::kDecided;
       return decided;
     });
@@ -700,7 +701,7 @@ bool CrowdEngine::is_clear(const Body& body, const Stand& place, std::span<const
 }
 
 // Proposes the first candidate that is open and clear, if there is one.
-void CrowdEngine::name(uint32_t i, Worker& scratch, uint8_t round) {
+void CrowdEngine::propose(uint32_t i, Worker& scratch, uint8_t round) {
   const Body& body = bodies_[i];
   Proposal& proposal = proposals()[i];
   const std::span<const uint32_t> others = others_of(proposal);
@@ -737,7 +738,7 @@ void CrowdEngine::name(uint32_t i, Worker& scratch, uint8_t round) {
   take(try_displacements(body, candidates, others, place));
 }
 
-bool CrowdEngine::holds(uint32_t i, uint64_t step) const {
+bool CrowdEngine::is_accepted(uint32_t i, uint64_t step) const {
   const Body& body = bodies_[i];
   const Proposal& proposal = proposals()[i];
   const auto order = [&](const Body& b) {

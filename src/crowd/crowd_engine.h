@@ -94,7 +94,7 @@ class CrowdEngine {
   void shrink(size_t size) { size_ = size; }
 
   struct Times {
-    double plan = 0, sort = 0, steer = 0, commit = 0, settle = 0;  // [s]
+    double plan = 0, sort = 0, steer = 0, resolve = 0, settle = 0;  // [s]
   };
   /// One step. `step`: its number, for the order of proposed moves. `before` is called first for
   /// all bodies, some at a time, on any worker.
@@ -148,8 +148,8 @@ class CrowdEngine {
   static_assert(sizeof(Proposal) == sizeof(Body) && std::is_trivially_copyable_v<Proposal>);
   // A bit for each body.
   struct Contests {
-    uint64_t open = 0;     // it could touch others, and is undecided
-    uint64_t unnamed = 0;  // of these: it has proposed no move for the first round
+    uint64_t open = 0;        // it could touch others, and is undecided
+    uint64_t unproposed = 0;  // of these: it has proposed no move for the first round
   };
   struct Worker {
     std::vector<float> squares;
@@ -184,7 +184,7 @@ class CrowdEngine {
   [[nodiscard]] bool is_sampled(const Body& body) const {
     return config_.model == SteeringModel::kSampled && !ignores_neighbours(body);
   }
-  [[nodiscard]] bool keeps(const Body& body, uint64_t step) const;
+  [[nodiscard]] bool continues(const Body& body, uint64_t step) const;
   void prefer_all(uint64_t step, const Before& before);
   void decide_all(EngineCounts& counts);
   bool decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& around);
@@ -208,13 +208,13 @@ class CrowdEngine {
                : config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
   }
   [[nodiscard]] Sides sides_of(const Body& body) const;
-  [[nodiscard]] bool is_met(const Body& body, const Worker& worker) const;
+  [[nodiscard]] bool has_oncoming(const Body& body, const Worker& worker) const;
   void keep_right(const Body& body, Worker& worker) const;
-  bool take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
+  bool choose_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
   [[nodiscard]] steer::Plane if_blocked(steer::Plane displacement,
                                         const steer::Situation& situation) const;
   [[nodiscard]] float metres(float displacement, float query_range) const;
-  void look_ahead(const Body& body, steer::Situation& situation) const;
+  void query_wall_ahead(const Body& body, steer::Situation& situation) const;
   void query_walls(const Body& body, steer::Situation& situation) const;
   [[nodiscard]] float wall_range(const Body& body) const {  // [units]
     return body.speed * config_.steering.wall_horizon / config_.units.unit;
@@ -223,14 +223,14 @@ class CrowdEngine {
                   Displacements& candidates);
   // Moves are whole units. A body whose moves are of few units decides in each step, and its moves
   // are rounded up or down in turn: else it would be too slow, or stand.
-  [[nodiscard]] bool takes_few(const Body& body) const {
+  [[nodiscard]] bool has_short_moves(const Body& body) const {
     constexpr float kFew = 128;  // [units]
     const StepUnits units = units_of(body);
     return body.speed * (units.dt / units.unit) < kFew;
   }
   [[nodiscard]] Displacement displacement_of(const Body& body, steer::Plane velocity) const {
     const StepUnits units = units_of(body);
-    if (takes_few(body)) {
+    if (has_short_moves(body)) {
       const uint64_t n = step_ + body.slot;
       return {static_cast<int16_t>(units.small_displacement(velocity.x, n)),
               static_cast<int16_t>(units.small_displacement(velocity.z, n))};
@@ -243,14 +243,14 @@ class CrowdEngine {
     return {static_cast<int16_t>(units.displacement(velocity.x)),
             static_cast<int16_t>(units.displacement(velocity.z))};
   }
-  void commit(uint64_t step);
+  void resolve_conflicts(uint64_t step);
   void settle_all(EngineCounts& counts);
-  void name(uint32_t i, Worker& scratch, uint8_t round);
+  void propose(uint32_t i, Worker& scratch, uint8_t round);
   [[nodiscard]] std::span<const uint32_t> others_of(const Proposal& proposal) const;
   void store_others(Proposal& proposal, uint16_t worker, size_t first);
   [[nodiscard]] bool is_clear(const Body& body, const Stand& place,
                               std::span<const uint32_t> others, bool any_moved) const;
-  [[nodiscard]] bool holds(uint32_t i, uint64_t step) const;
+  [[nodiscard]] bool is_accepted(uint32_t i, uint64_t step) const;
   template <class Do>
   void for_contests(uint64_t Contests::*which, Do act);
   bool try_displacement(const Body& body, Displacement displacement, Stand& place) const;

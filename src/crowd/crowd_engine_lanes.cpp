@@ -28,7 +28,7 @@ CrowdEngine::Sides CrowdEngine::sides_of(const Body& body) const {
 
 // Does a neighbour come towards it? The neighbour's local target counts: in a jam, preferred
 // velocities point in all directions.
-bool CrowdEngine::is_met(const Body& body, const Worker& worker) const {
+bool CrowdEngine::has_oncoming(const Body& body, const Worker& worker) const {
   const Plane displacement = path_ahead(body);
   for (size_t n = 0; n < worker.situation.near.size; ++n) {
     const Body& other = bodies_[worker.entries[n]];
@@ -51,7 +51,7 @@ void CrowdEngine::keep_right(const Body& body, Worker& worker) const {
   if (ground.is_open_around(body.level, body.point(), cells_of(narrow / config_.units.unit))) {
     return;
   }
-  if (!worker.in_counterflow && !is_met(body, worker)) return;
+  if (!worker.in_counterflow && !has_oncoming(body, worker)) return;
   const Sides sides = sides_of(body);
   if (sides.left >= narrow || sides.right >= narrow) return;
   worker.in_counterflow = true;
@@ -66,7 +66,7 @@ void CrowdEngine::keep_right(const Body& body, Worker& worker) const {
 }
 
 // True if this changed the preferred velocity.
-bool CrowdEngine::take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
+bool CrowdEngine::choose_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
   const Body& body = bodies_[i];
   steer::Situation& situation = worker.situation;
   if (!steer::is_opposed_fast(config_.lanes, situation)) return false;

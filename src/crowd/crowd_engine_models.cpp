@@ -47,7 +47,7 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
   steer::Situation& situation = worker.situation;
   situation.preferred = body.preferred;
   if (config_.model == SteeringModel::kSocialForce) {
-    look_ahead(body, situation);
+    query_wall_ahead(body, situation);
     query_walls(body, situation);
     const steer::Fan fan = steer::fan_around(situation.preferred);
     const auto& free = situation.free_distance;

@@ -48,22 +48,22 @@ class CrowdGround {
 
   /// 64 rows of flat cells: legal, and level with the cells beside them. An avatar on one may move
   /// wherever all cells between are flat, and stays on the level, at the height of its feet.
-  [[nodiscard]] const uint64_t* plain(Level level) const { return rows(lines_[level].plain_set); }
+  [[nodiscard]] const uint64_t* flat(Level level) const { return rows(lines_[level].flat_set); }
 
   /// What is known about walking on a level inside its tile.
   struct Walk {
     const uint64_t* legal;  // 64 rows
     bool is_step_safe;      // no two legal neighbours differ by more than the step
-    bool is_alone;          // step safe, and no other level of the tile is within a step of it
+    bool is_isolated;       // step safe, and no other level of the tile is within a step of it
   };
   [[nodiscard]] Walk walk(Level level) const {
     const uint32_t word = lines_[level].legal_set;
-    return {rows(word), (word & kStepSafe) != 0, (word & kAlone) != 0};
+    return {rows(word), (word & kStepSafe) != 0, (word & kIsolated) != 0};
   }
   /// Prefetches what is read of a level where its line gives no answer.
   void prefetch_level(Level level, int32_t z0, int32_t z1) const {
-    throng::prefetch(&plain(level)[z0 & 63]);
-    throng::prefetch(&plain(level)[z1 & 63]);
+    throng::prefetch(&flat(level)[z0 & 63]);
+    throng::prefetch(&flat(level)[z1 & 63]);
     throng::prefetch(&views_[level]);
   }
   /// Prefetches what a step from a cell of a level reads, and what is cached around it.
@@ -143,19 +143,19 @@ class CrowdGround {
   };
   // Flags beside the number of the legal set.
   static constexpr uint32_t kStepSafe = uint32_t{1} << 31;
-  static constexpr uint32_t kAlone = uint32_t{1} << 30;
-  static constexpr uint32_t kSetBits = kAlone - 1;
+  static constexpr uint32_t kIsolated = uint32_t{1} << 30;
+  static constexpr uint32_t kSetBits = kIsolated - 1;
   static constexpr uint32_t kNoneLegal = 0;  // Sets of rows that levels share.
   static constexpr uint32_t kAllLegal = 1;
 
   // Of a level with blocked cells, before these were.
   struct Baked {
-    uint32_t legal_word = 0, plain_set = 0;
-    CellRows legal{}, plain{};
+    uint32_t legal_word = 0, flat_set = 0;
+    CellRows legal{}, flat{};
   };
   void keep_baked(Level level, Baked& baked);
 
-  void find_alone(int32_t step_mm);
+  void find_isolated(int32_t step_mm);
   void join_blocks();
   void join_side(Level level, LevelLine::Side side);
   void find_open(Level level);

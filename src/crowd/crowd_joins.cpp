@@ -32,7 +32,7 @@ Cell rim(LevelLine::Side side, int32_t i) {
   }
 }
 
-bool is_plain(const LevelLine& line, Cell c) { return (line.plain[c.z / 4] >> (c.x / 4) & 1) != 0; }
+bool is_flat(const LevelLine& line, Cell c) { return (line.flat[c.z / 4] >> (c.x / 4) & 1) != 0; }
 
 }  // namespace
 
@@ -71,10 +71,10 @@ void CrowdGround::join_side(Level level, LevelLine::Side side) {
   };
   for (int32_t i = 0; i <= kLast; ++i) {
     const Cell here = rim(side, i), there = rim(opposite, i);
-    if (!is_plain(line, here)) continue;
+    if (!is_flat(line, here)) continue;
     const int32_t y = sample(level, here.x, here.z);
     for (Level other = range->first; other < range->last; ++other) {
-      if (!is_plain(lines_[other], there) || sample(other, there.x, there.z) != y) continue;
+      if (!is_flat(lines_[other], there) || sample(other, there.x, there.z) != y) continue;
       const bool fits = line.beyond[side] == LevelLine::kNone || line.beyond[side] == other;
       if (!fits || already_joined(other, there, y)) break;
       line.beyond[side] = other;
@@ -134,7 +134,8 @@ void CrowdGround::join_open_side(Level level, LevelLine::Side side) {
   const uint64_t both_directions = line.cells[side] & other.cells[back];
   for (int32_t i = 0; i <= kLast; ++i) {
     const Cell here = rim(side, i), there = rim(back, i);
-    const bool joins = (both_directions >> (4 * i) & 15) == 15 && line.is_open(here.x / 4, here.z / 4) &&
+    const bool joins = (both_directions >> (4 * i) & 15) == 15 &&
+                       line.is_open(here.x / 4, here.z / 4) &&
                        other.is_open(there.x / 4, there.z / 4);
     line.joined[side] = static_cast<uint16_t>(line.joined[side] | int{joins} << i);
   }

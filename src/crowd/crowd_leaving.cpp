@@ -120,23 +120,23 @@ bool Crowd::State::leads_out(const Body& body, std::span<const uint32_t> slots) 
   const double least = steps == LeftCells::kNone ? HUGE_VAL : steps * world.data()->summary.cell;
   const double limit = (kMaxDetourFactor * least + kMaxPath) / unit;
   const double step_size = radius / 2 / unit;
-  double gone = 0, x = body.x, z = body.z;
+  double walked = 0, x = body.x, z = body.z;
   bool is_out = false;
   for (const auto& [to_x, to_z] : points) {
     const double dx = to_x - x, dz = to_z - z, size = std::sqrt(dx * dx + dz * dz);
     const auto count = static_cast<int64_t>(size / step_size) + 1;
     for (int64_t i = 1; i <= count; ++i) {
       const double part = static_cast<double>(i) / static_cast<double>(count);
-      const AirPosition spot{static_cast<int32_t>(x + part * dx),
-                             static_cast<int32_t>(z + part * dz), 0};
-      const bool held = std::any_of(columns.begin(), columns.end(), [&](const AirObstacle& column) {
-        return column.holds(spot, radius, 1);
-      });
-      if (is_out && held) return false;
-      is_out = is_out || !held;
-      if (!is_out && gone + part * size > limit) return false;
+      const AirPosition position{static_cast<int32_t>(x + part * dx),
+                                 static_cast<int32_t>(z + part * dz), 0};
+      const bool is_inside =
+          std::any_of(columns.begin(), columns.end(),
+                      [&](const AirObstacle& column) { return column.holds(position, radius, 1); });
+      if (is_out && is_inside) return false;
+      is_out = is_out || !is_inside;
+      if (!is_out && walked + part * size > limit) return false;
     }
-    gone += size;
+    walked += size;
     x = to_x;
     z = to_z;
   }
@@ -280,7 +280,7 @@ bool Crowd::State::plan_exit_on_nodes(Body& body, Climb& climb, int32_t worker) 
   if (rests && goes && climb.whole == 0) return true;               // on its exit
   if ((sub_step + body.slot) % kCheckInterval != 0) return true;
   for (const double search_radius : kSearchRadii) {
-    if (step_off(body, climb, worker, search_radius)) return true;
+    if (step_aside(body, climb, worker, search_radius)) return true;
   }
   return true;
 }

@@ -32,11 +32,11 @@ void sync(std::vector<Finder>& finders, const CrowdObstacle& obstacle, bool is_n
 }
 
 template <class Finder>
-void take_back(std::vector<Finder>& finders, ChangeId change) {
+void remove_change(std::vector<Finder>& finders, ChangeId change) {
   for (Finder& finder : finders) finder.remove(change);
 }
 
-Error gone() { return {Errc::kNotFound, "crowd: there is no obstacle of that id"}; }
+Error no_obstacle() { return {Errc::kNotFound, "crowd: there is no obstacle of that id"}; }
 
 }  // namespace
 
@@ -45,7 +45,7 @@ Result<ObstacleId> Crowd::add_obstacle(const Prism& prism, ObstacleKind kind,
   if (auto ok = check_prism(prism); !ok) return ok.error();
   State& s = *state_;
   const uint32_t slot = s.obstacles.add(prism, kind, /*wanted_up=*/true, policy);
-  s.obstacles.at(slot).asked_step = s.step;
+  s.obstacles.at(slot).requested_step = s.step;
   s.settle_obstacles(std::span(&slot, 1), nullptr);
   return ObstacleId{slot + 1, s.obstacles.at(slot).generation};
 }
@@ -53,7 +53,7 @@ Result<ObstacleId> Crowd::add_obstacle(const Prism& prism, ObstacleKind kind,
 Result<void> Crowd::move_obstacle(ObstacleId id, const Prism& prism) {
   if (auto ok = check_prism(prism); !ok) return ok.error();
   State& s = *state_;
-  if (s.obstacles.find(id) == nullptr) return gone();
+  if (s.obstacles.find(id) == nullptr) return no_obstacle();
   const uint32_t slot = id.slot1 - 1;
   const bool closed = s.obstacles.at(slot).closes();
   s.obstacles.request_move(slot, prism);
@@ -69,7 +69,7 @@ bool Crowd::set_obstacle_active(ObstacleId id, bool active) {
   const CrowdObstacle& obstacle = s.obstacles.at(slot);
   const bool had_cells = obstacle.has_cells, was_wanted = obstacle.wanted_up;
   s.obstacles.request_active(slot, active);
-  if (active && !was_wanted) s.obstacles.at(slot).asked_step = s.step;
+  if (active && !was_wanted) s.obstacles.at(slot).requested_step = s.step;
   s.settle_obstacles(std::span(&slot, 1), nullptr);
   if (had_cells && !active) {
     s.ground_changed();
@@ -86,9 +86,9 @@ bool Crowd::remove_obstacle(ObstacleId id) {
   for (size_t c = 0; c < s.classes.size(); ++c) {
     if (!s.classes[c]) continue;
     const CrowdObstacle::OfClass& synced = s.obstacles.at(slot).of_class[c];
-    take_back(s.classes[c]->lives, synced.change);
-    take_back(s.classes[c]->flight_finders, synced.air_change);
-    take_back(s.classes[c]->node_finders, synced.node_change);
+    remove_change(s.classes[c]->lives, synced.change);
+    remove_change(s.classes[c]->flight_finders, synced.air_change);
+    remove_change(s.classes[c]->node_finders, synced.node_change);
   }
   s.obstacles.remove(slot);
   return true;
@@ -96,7 +96,7 @@ bool Crowd::remove_obstacle(ObstacleId id) {
 
 Result<ObstacleState> Crowd::obstacle(ObstacleId id) const {
   const CrowdObstacle* found = state_->obstacles.find(id);
-  if (found == nullptr) return gone();
+  if (found == nullptr) return no_obstacle();
   const auto seconds = [&](uint64_t step) {
     return step == CrowdObstacle::kNever ? -1 : static_cast<double>(step) * state_->config.dt;
   };
@@ -105,7 +105,7 @@ Result<ObstacleState> Crowd::obstacle(ObstacleId id) const {
                        found->waits(),
                        found->kind,
                        found->policy,
-                       seconds(found->asked_step),
+                       seconds(found->requested_step),
                        seconds(found->up_step),
                        found->occupants};
 }

@@ -45,7 +45,7 @@ struct SavedObstacle {
   uint8_t exists = 0, kind = 0, is_up = 0, wanted_up = 0;
   uint8_t is_elsewhere = 0, policy = 0, has_cells = 0, is_exit_only = 0;
   uint32_t occupants = 0;
-  uint64_t asked_step = 0, up_step = 0;
+  uint64_t requested_step = 0, up_step = 0;
 };
 static_assert(sizeof(SavedObstacle) == 72 && std::is_trivially_copyable_v<SavedObstacle>);
 
@@ -69,7 +69,7 @@ std::vector<SavedObstacle> saved_obstacles(std::span<const CrowdObstacle> all,
                      .has_cells = o.has_cells,
                      .is_exit_only = o.is_exit_only,
                      .occupants = o.occupants,
-                     .asked_step = o.asked_step,
+                     .requested_step = o.requested_step,
                      .up_step = o.up_step});
     for (const Prism* prism : {&o.place, &o.wanted}) {
       corners.insert(corners.end(), prism->corners.begin(), prism->corners.end());
@@ -109,7 +109,7 @@ std::optional<std::vector<CrowdObstacle>> obstacles_of(
     o.has_cells = s.has_cells != 0;
     o.is_exit_only = s.is_exit_only != 0;
     o.occupants = s.occupants;
-    o.asked_step = s.asked_step;
+    o.requested_step = s.requested_step;
     o.up_step = s.up_step;
     if ((o.is_up && !o.wanted_up) || (o.is_elsewhere && !o.is_up)) return {};
   }
@@ -342,15 +342,15 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
 
   s.where.assign(head.slots, kNoBody);
   std::vector<bool> taken(head.slots, false);
-  const auto take_slot = [&](uint32_t slot) {
+  const auto use_slot = [&](uint32_t slot) {
     const bool is_new = slot < head.slots && !taken[slot];
     if (is_new) taken[slot] = true;
     return is_new;
   };
   bool sound = head.bodies + head.free_slots == head.slots;
-  for (const uint32_t slot : s.free_slots) sound = sound && take_slot(slot);
+  for (const uint32_t slot : s.free_slots) sound = sound && use_slot(slot);
   for (const Body& body : bodies) {
-    sound = sound && is_sound(body, data) && take_slot(body.slot) &&
+    sound = sound && is_sound(body, data) && use_slot(body.slot) &&
             (!body.has(Body::kHasGoal) || body.climbs ||
              is_sound(s.routes[body.slot], data.level_count));
     sound = sound && (!body.climbs || !climbs.empty());

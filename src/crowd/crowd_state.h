@@ -208,9 +208,9 @@ struct Crowd::State {
   [[nodiscard]] NodePlace draw_on_nodes(int32_t number, uint64_t n) const;
   void set_goal_of_climber(Body& body, const NodePlace& goal);
   void stop_climber(Body& body);
-  void aim_at_flow_target(const Body& body, Climb& climb) const;
-  void turn_off(Body& body, Climb& climb, int32_t worker);
-  void drive_climber(const Body& body, Climb& climb, int32_t worker);
+  void head_to_target_place(const Body& body, Climb& climb) const;
+  void turn_aside(Body& body, Climb& climb, int32_t worker);
+  void control_climber(const Body& body, Climb& climb, int32_t worker);
   void plan_climb(Body& body, Climb& climb, int32_t worker, std::atomic<uint64_t>& planned);
   void move_climbers(EngineCounts& counts, CrowdEngine::Times& times,
                      std::atomic<uint64_t>& planned);
@@ -219,7 +219,7 @@ struct Crowd::State {
   [[nodiscard]] bool is_sound_climb(const Body& body) const;
   [[nodiscard]] uint64_t count_off_nodes() const;
   [[nodiscard]] uint64_t count_climbers_inside() const;
-  bool step_off(Body& body, Climb& climb, int32_t worker, double beside);
+  bool step_aside(Body& body, Climb& climb, int32_t worker, double beside);
   void cut_climbs(std::span<const uint32_t> slots);
 };
 

@@ -96,24 +96,25 @@ void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> 
   landed_.clear();
   bodies_ = bodies;
   flights_ = flights;
-  const Rounds::Parts parts{
-      .is_mover = [](const Body& body) { return body.flies(); },
-      .plan =
-          [&](uint32_t f, int32_t worker) {
-            Body& body = bodies_[rounds_.movers[f]];
-            Flight& flight = flights_[body.slot];
-            before(body, flight, worker);
-            preferred(body, flight, step);
-          },
-      .decide = [&](uint32_t f, Worker& worker) { decide(f, worker); },
-      .name = [&](const Contest& contest, const Worker& owner) { return name(contest, owner); },
-      .overlaps_with =
-          [&](const Contest& contest, uint32_t other) {
-            return overlaps_with(bodies_[rounds_.movers[contest.mover]],
-                                 rounds_.moves[contest.mover].place, bodies_[other],
-                                 rounds_.moves[rounds_.mover_of[other]].place);
-          },
-      .settle = [&](uint32_t f, EngineCounts& here) { settle(f, here); }};
+  const Rounds::Parts parts{.is_mover = [](const Body& body) { return body.flies(); },
+                            .plan =
+                                [&](uint32_t f, int32_t worker) {
+                                  Body& body = bodies_[rounds_.movers[f]];
+                                  Flight& flight = flights_[body.slot];
+                                  before(body, flight, worker);
+                                  preferred(body, flight, step);
+                                },
+                            .decide = [&](uint32_t f, Worker& worker) { decide(f, worker); },
+                            .propose = [&](const Contest& contest,
+                                           const Worker& owner) { return propose(contest, owner); },
+                            .overlaps_with =
+                                [&](const Contest& contest, uint32_t other) {
+                                  return overlaps_with(
+                                      bodies_[rounds_.movers[contest.mover]],
+                                      rounds_.moves[contest.mover].place, bodies_[other],
+                                      rounds_.moves[rounds_.mover_of[other]].place);
+                                },
+                            .settle = [&](uint32_t f, EngineCounts& here) { settle(f, here); }};
   rounds_.step(bodies, parts, grid_, kGrain, config_.workers, config_.rounds, {config_.seed, step},
                counts, times);
   for (size_t n = 0; n < rounds_.movers.size(); ++n) {
@@ -424,7 +425,7 @@ bool FlyerEngine::is_clear(const Contest& contest, const Worker& owner,
 }
 
 // Proposes the first candidate that is open and clear.
-bool FlyerEngine::name(const Contest& contest, const Worker& owner) {
+bool FlyerEngine::propose(const Contest& contest, const Worker& owner) {
   const Body& body = bodies_[rounds_.movers[contest.mover]];
   AirPosition place;
   for (size_t w = 0; w < contest.candidate_count; ++w) {

@@ -92,7 +92,7 @@ class FlyerEngine {
                                AirPosition& place) const;
   [[nodiscard]] bool is_clear(const Contest& contest, const Worker& owner,
                               const AirPosition& place) const;
-  bool name(const Contest& contest, const Worker& owner);
+  bool propose(const Contest& contest, const Worker& owner);
   void settle(uint32_t flyer, EngineCounts& counts);
 
   FlyerConfig config_;

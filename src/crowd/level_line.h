@@ -23,18 +23,18 @@ struct alignas(64) LevelLine {
   }
   static constexpr Side opposite(Side side) { return static_cast<Side>(side ^ 1); }
 
-  std::array<uint16_t, 16> plain{};  // bit x of word z: block (x, z)
+  std::array<uint16_t, 16> flat{};  // bit x of word z: block (x, z)
   // Where a flat block at the rim and the one beyond are equally high: the level beyond, the same
   // for a whole side, and a bit for each such block along it.
   std::array<uint32_t, 4> beyond = {kNone, kNone, kNone, kNone};
   std::array<uint16_t, 4> joined{};
-  uint32_t plain_set = 0;  // of 64 rows, cell by cell
+  uint32_t flat_set = 0;   // of 64 rows, cell by cell
   uint32_t legal_set = 0;  // of 64 rows, and flags
 
   /// True if all cells of a box of up to kBlock + 1 x kBlock + 1 cells of the world lie in flat
   /// blocks of one tile. The box between two blocks has cells of no more than four.
-  [[nodiscard]] bool box_is_plain(int32_t x0, int32_t z0, int32_t x1, int32_t z1) const {
-    const uint32_t common = uint32_t{plain[(z0 >> 2) & 15]} & plain[(z1 >> 2) & 15];
+  [[nodiscard]] bool box_is_flat(int32_t x0, int32_t z0, int32_t x1, int32_t z1) const {
+    const uint32_t common = uint32_t{flat[(z0 >> 2) & 15]} & flat[(z1 >> 2) & 15];
     const bool on_tile = static_cast<uint32_t>((x0 ^ x1) | (z0 ^ z1)) < 64;
     return ((common >> ((x0 >> 2) & 15)) & (common >> ((x1 >> 2) & 15)) &
             static_cast<uint32_t>(on_tile)) != 0;

@@ -109,7 +109,7 @@ class MoverRounds {
     std::function<void(uint32_t mover, int32_t worker)> plan;
     std::function<void(uint32_t mover, Worker& worker)> decide;
     /// Proposes the first candidate that is clear of where all bodies are now.
-    std::function<bool(const Contest& contest, const Worker& owner)> name;
+    std::function<bool(const Contest& contest, const Worker& owner)> propose;
     /// Do the moves that these two propose, of which the second moves too, overlap?
     std::function<bool(const Contest& contest, uint32_t other)> overlaps_with;
     std::function<void(uint32_t mover, EngineCounts& counts)> settle;
@@ -134,8 +134,9 @@ class MoverRounds {
   void begin(std::span<const Body> bodies, bool (*is_mover)(const Body&));
   template <class Do>
   void for_contests(int32_t threads, Do act);
-  [[nodiscard]] bool holds(std::span<const Body> bodies, const Parts& parts, const Contest& contest,
-                           const Worker& owner, std::pair<uint64_t, uint64_t> seed_and_step) const;
+  [[nodiscard]] bool is_accepted(std::span<const Body> bodies, const Parts& parts,
+                                 const Contest& contest, const Worker& owner,
+                                 std::pair<uint64_t, uint64_t> seed_and_step) const;
 };
 
 template <class Contest, class Move>
@@ -169,9 +170,9 @@ void MoverRounds<Contest, Move>::for_contests(int32_t threads, Do act) {
 
 // Is its proposed move clear of those that precede it in the order, of the same round?
 template <class Contest, class Move>
-bool MoverRounds<Contest, Move>::holds(std::span<const Body> bodies, const Parts& parts,
-                                       const Contest& contest, const Worker& owner,
-                                       std::pair<uint64_t, uint64_t> seed_and_step) const {
+bool MoverRounds<Contest, Move>::is_accepted(std::span<const Body> bodies, const Parts& parts,
+                                             const Contest& contest, const Worker& owner,
+                                             std::pair<uint64_t, uint64_t> seed_and_step) const {
   const auto [seed, step] = seed_and_step;
   const auto order = [seed = seed, step = step](const Body& b) {
     return std::pair(random_u64(seed, b.slot, step), b.slot);
@@ -217,17 +218,17 @@ void MoverRounds<Contest, Move>::step(std::span<const Body> bodies, const Parts&
     const auto round = static_cast<uint8_t>(r);
     for_contests(threads, [&](const Contest& contest, const Worker& owner) {
       Move& move = moves[contest.mover];
-      if (move.state == Move::kUndecided && parts.name(contest, owner)) move.round = round;
+      if (move.state == Move::kUndecided && parts.propose(contest, owner)) move.round = round;
     });
     for_contests(threads, [&](const Contest& contest, const Worker& owner) {
       Move& move = moves[contest.mover];
       if (move.state == Move::kUndecided && move.round == round &&
-          holds(bodies, parts, contest, owner, seed_and_step)) {
+          is_accepted(bodies, parts, contest, owner, seed_and_step)) {
         move.state = Move::kDecided;
       }
     });
   }
-  lap(times.commit);
+  lap(times.resolve);
   std::mutex adding;
   parallel_ranges(movers.size(), grain, threads, [&](size_t begin, size_t end) {
     EngineCounts here;

@@ -98,7 +98,7 @@ void ObstacleSet::request_move(uint32_t slot, const Prism& prism) {
   obstacle.wanted = prism;
   obstacle.is_elsewhere = obstacle.is_up;
   if (!obstacle.is_up) {
-    give_back(slot);  // It closes there instead.
+    unblock(slot);  // It closes there instead.
     obstacle.place = prism;
     ++obstacle.version;
   }
@@ -112,10 +112,10 @@ void ObstacleSet::request_active(uint32_t slot, bool up) {
     if (!obstacle.is_up) find_swept(slot);
     return;
   }
-  give_back(slot);
+  unblock(slot);
   if (obstacle.is_elsewhere) ++obstacle.version;
   obstacle.is_up = obstacle.is_elsewhere = false;
-  obstacle.asked_step = obstacle.up_step = CrowdObstacle::kNever;
+  obstacle.requested_step = obstacle.up_step = CrowdObstacle::kNever;
   obstacle.occupants = 0;
   obstacle.place = obstacle.wanted;
   for (auto& of_class : obstacle.of_class) of_class.swept.clear();
@@ -184,7 +184,7 @@ std::vector<std::pair<uint32_t, uint32_t>> ObstacleSet::blockers(std::span<const
 void ObstacleSet::settle(uint32_t slot) {
   CrowdObstacle& obstacle = obstacles_[slot];
   if (obstacle.is_elsewhere) {
-    give_back(slot);
+    unblock(slot);
     ++obstacle.version;
   }
   obstacle.place = obstacle.wanted;
@@ -215,10 +215,10 @@ void ObstacleSet::take(uint32_t slot) {
   for (size_t c = 0; c < classes_.size(); ++c) put_up(slot, c);
 }
 
-void ObstacleSet::give_back(uint32_t slot) {
+void ObstacleSet::unblock(uint32_t slot) {
   CrowdObstacle& obstacle = obstacles_[slot];
   if (obstacle.has_cells) {
-    for (size_t c = 0; c < classes_.size(); ++c) take_down(slot, c);
+    for (size_t c = 0; c < classes_.size(); ++c) unblock_class(slot, c);
   }
   obstacle.has_cells = obstacle.is_exit_only = false;
 }
@@ -261,18 +261,19 @@ void ObstacleSet::put_up(uint32_t slot, size_t number) {
   ClassGround& of = classes_[number];
   for (LevelCells& cells : cells_under(number, obstacle.place)) {
     obstacle.of_class[number].levels.push_back(cells.level);
-    of.takers[cells.level].push_back({slot, cells.rows});
+    of.cell_blockers[cells.level].push_back({slot, cells.rows});
     of.touched.push_back(cells.level);
   }
 }
 
-void ObstacleSet::take_down(uint32_t slot, size_t number) {
+void ObstacleSet::unblock_class(uint32_t slot, size_t number) {
   CrowdObstacle& obstacle = obstacles_[slot];
   ClassGround& of = classes_[number];
   for (const uint32_t level : obstacle.of_class[number].levels) {
-    const auto here = of.takers.find(level);
-    std::erase_if(here->second, [&](const Taker& taker) { return taker.slot == slot; });
-    if (here->second.empty()) of.takers.erase(here);
+    const auto here = of.cell_blockers.find(level);
+    std::erase_if(here->second,
+                  [&](const CellBlocker& cell_blocker) { return cell_blocker.slot == slot; });
+    if (here->second.empty()) of.cell_blockers.erase(here);
     of.touched.push_back(level);
   }
   obstacle.of_class[number].levels.clear();
@@ -301,14 +302,14 @@ void ObstacleSet::block_levels(size_t number, ClassGround& of) {
   for (const uint32_t level : of.touched) {
     CellRows blocked{}, kept{};
     std::vector<LeftCells::Part> parts;
-    const auto takers = of.takers.find(level);
-    if (takers != of.takers.end()) {
-      for (const Taker& taker : takers->second) {
-        for (size_t z = 0; z < blocked.size(); ++z) blocked[z] |= taker.rows[z];
-        if (obstacles_[taker.slot].is_exit_only) {
-          parts.push_back({taker.slot, taker.rows});
+    const auto cell_blockers = of.cell_blockers.find(level);
+    if (cell_blockers != of.cell_blockers.end()) {
+      for (const CellBlocker& cell_blocker : cell_blockers->second) {
+        for (size_t z = 0; z < blocked.size(); ++z) blocked[z] |= cell_blocker.rows[z];
+        if (obstacles_[cell_blocker.slot].is_exit_only) {
+          parts.push_back({cell_blocker.slot, cell_blocker.rows});
         } else {
-          for (size_t z = 0; z < kept.size(); ++z) kept[z] |= taker.rows[z];
+          for (size_t z = 0; z < kept.size(); ++z) kept[z] |= cell_blocker.rows[z];
         }
       }
     }
@@ -347,7 +348,8 @@ bool ObstacleSet::restore(std::vector<CrowdObstacle> obstacles, std::vector<uint
 uint64_t ObstacleSet::bytes() const {
   uint64_t bytes = obstacles_.capacity() * sizeof(CrowdObstacle);
   for (const ClassGround& of : classes_) {
-    for (const auto& [level, takers] : of.takers) bytes += takers.capacity() * sizeof(Taker);
+    for (const auto& [level, cell_blockers] : of.cell_blockers)
+      bytes += cell_blockers.capacity() * sizeof(CellBlocker);
   }
   return bytes;
 }

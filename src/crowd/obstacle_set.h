@@ -34,9 +34,9 @@ struct CrowdObstacle {
   bool has_cells = false;     // they are blocked in the grounds: it is active, or closes
   bool is_exit_only = false;  // walkers stand on these cells, and may only leave
   uint32_t version = 0;       // of `place`
-  uint64_t asked_step = kNever, up_step = kNever;  // steps made before the request, and before it
-                                                   // became active
-  uint32_t occupants = 0;                          // that blocked it at the last check
+  uint64_t requested_step = kNever, up_step = kNever;  // steps made before the request, and before
+                                                       // it became active
+  uint32_t occupants = 0;  // that blocked it at the last check
 
   static constexpr uint64_t kNever = UINT64_MAX;
 
@@ -105,22 +105,23 @@ class ObstacleSet {
   [[nodiscard]] uint64_t bytes() const;
 
  private:
-  struct Taker {
+  struct CellBlocker {
     uint32_t slot;
     CellRows rows;
   };
   struct ClassGround {
-    CrowdGround* ground = nullptr;                            // null: the class is not in use
-    std::unordered_map<uint32_t, std::vector<Taker>> takers;  // by level; looked up only
-    std::vector<uint32_t> touched;                            // levels, with doubles
+    CrowdGround* ground = nullptr;  // null: the class is not in use
+    std::unordered_map<uint32_t, std::vector<CellBlocker>>
+        cell_blockers;              // by level; looked up only
+    std::vector<uint32_t> touched;  // levels, with doubles
   };
   void block_levels(size_t number, ClassGround& of);
   [[nodiscard]] std::vector<LevelCells> cells_under(size_t number, const Prism& prism) const;
   void find_swept(uint32_t slot);
   void take(uint32_t slot);
-  void give_back(uint32_t slot);
+  void unblock(uint32_t slot);
   void put_up(uint32_t slot, size_t number);
-  void take_down(uint32_t slot, size_t number);
+  void unblock_class(uint32_t slot, size_t number);
 
   World world_;
   std::vector<ClassGround> classes_;

@@ -29,7 +29,7 @@ class PathRepair {
   }
 
   // Replaces the covered part of the points by detours. False: these would be too long.
-  bool mend(std::vector<Place>& points, double& length, RepairScratch& scratch) const {
+  bool insert_detours(std::vector<Place>& points, double& length, RepairScratch& scratch) const {
     const std::vector<Place>& old = points;
     std::vector<Place>& mended = scratch.points;
     Path& detour = scratch.detour;
@@ -82,7 +82,7 @@ void lead_around(const WorldData& world, LiveGround& live, const StrideGround& g
   const PathRepair repair(world, live, ground);
   if (repair.is_whole(path.points)) return;
   const Place from = path.points.front(), to = path.points.back();
-  if (repair.mend(path.points, path.length, scratch)) return;
+  if (repair.insert_detours(path.points, path.length, scratch)) return;
   live.find(from, to, path, budget);
 }
 

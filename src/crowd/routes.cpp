@@ -63,8 +63,8 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
   }
   if (body.in_counterflow && !body.on_right) turn_to(body, route, ground, metre);
   // A body pushed back behind a corner no longer sees it, and is blocked until it checks.
-  const bool held = body.detour_angle != 0 && body.near_wall;
-  if (nth % (held ? kBlockedCheckInterval : kCheckInterval) != 0) return;
+  const bool is_blocked = body.detour_angle != 0 && body.near_wall;
+  if (nth % (is_blocked ? kBlockedCheckInterval : kCheckInterval) != 0) return;
   if (!sees({body.local_target_x, body.local_target_z, route.corners[route.next].level}))
     body.flags |= Body::kNeedsPath;
 }

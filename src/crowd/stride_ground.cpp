@@ -16,7 +16,7 @@ bool StrideGround::move(uint32_t level, int32_t y, GroundPoint from, GroundPoint
   const int32_t x0 = from.cell_x(), z0 = from.cell_z(), x1 = to.cell_x(), z1 = to.cell_z();
   if (std::abs(x1 - x0) <= LevelLine::kBlock && std::abs(z1 - z0) <= LevelLine::kBlock) {
     const LevelLine& line = ground_->line(level);
-    if (line.box_is_plain(x0, z0, x1, z1)) {
+    if (line.box_is_flat(x0, z0, x1, z1)) {
       landing = {level, y};
       return true;
     }
@@ -199,7 +199,7 @@ StrideGround::Around StrideGround::query_walls(uint32_t level, int32_t y, Ground
   for (int32_t row = middle - range; row <= middle + range; ++row) all &= cells[row];
   if (all == wanted) return Around::kOpen;
   const CrowdGround::Walk walk = ground_->walk(level);
-  if (!walk.is_step_safe || !walk.is_alone) return Around::kSteps;
+  if (!walk.is_step_safe || !walk.is_isolated) return Around::kSteps;
   window.shift = kUnitBits + scale - 1;
   window.x = static_cast<int32_t>(from.x - (int64_t{x0} << kUnitBits));
   window.z = static_cast<int32_t>(from.z - (int64_t{z0} << kUnitBits));
@@ -233,7 +233,7 @@ WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint 
         walk = ground_->walk(level);
         return true;
       }
-    } else if (walk.is_alone && (walk.legal[nz & 63] >> (nx & 63) & 1) == 0) {
+    } else if (walk.is_isolated && (walk.legal[nz & 63] >> (nx & 63) & 1) == 0) {
       return false;
     }
     const auto next = step_to(*ground_, level, x, z, nx, nz, step_mm_);

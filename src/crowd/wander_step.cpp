@@ -29,10 +29,10 @@ constexpr int32_t kShort = 2;          // longest flat step [cells]
 // Numbers of avatars of a group.
 class List {
  public:
-  // Appends if `really`, without a branch. There is always space for one more.
-  void add_if(bool really, uint16_t n) {
+  // Appends if `condition`, without a branch. There is always space for one more.
+  void add_if(bool condition, uint16_t n) {
     at_[size_] = n;
-    size_ += really;
+    size_ += condition;
   }
   void clear() { size_ = 0; }
   [[nodiscard]] size_t size() const { return size_; }
@@ -62,7 +62,7 @@ class Group {
   void start_all(Avatar* avatars, size_t size, const Avatar* readable) {
     avatars_ = avatars;
     proposals_size_ = prefetched_ = walls_ = 0;
-    for (List* list : {&unsure_, &uneven_, &slopes_, &walks_}) list->clear();
+    for (List* list : {&undecided_, &uneven_, &slopes_, &walks_}) list->clear();
     prefetch_levels_ahead(size, readable - 1);
     plan_all(size);
     prefetch_walk_levels();
@@ -75,7 +75,7 @@ class Group {
     prefetch_pixels();
   }
   void prefetch_cells() {
-    look_closer();
+    plan_by_cells();
     prefetch_pixels();
     prefetch_ground_cells();
   }
@@ -93,9 +93,9 @@ class Group {
   void plan_all(size_t size);
   void plan(std::span<const uint16_t> todo);
   void prefetch_walk_levels() const;
-  void look_closer();
-  bool go_or_propose(const Pixels& pixels, Avatar& a, bool really, uint32_t level, uint16_t n,
-                     size_t& claimed);
+  void plan_by_cells();
+  bool move_or_propose(const Pixels& pixels, Avatar& a, bool condition, uint32_t level, uint16_t n,
+                       size_t& proposed);
   void prefetch_pixels();
   void prefetch_ground_cells() const;
   void proposal(List& blocked);
@@ -109,7 +109,7 @@ class Group {
   std::array<CollisionMap::Slices, kGroup> slices_;  // of the proposed moves
   size_t proposals_size_ = 0;
   size_t prefetched_ = 0;  // proposed moves whose pixels were prefetched
-  List unsure_;            // not within flat blocks
+  List undecided_;         // not within flat blocks
   List uneven_;            // not flat: these go on one of the next two
   List slopes_;
   List walks_;
@@ -143,22 +143,22 @@ int32_t mask(bool condition) { return -static_cast<int32_t>(condition); }
   return all != 0;
 }
 
-// A flat step that `really` is one: an avatar that stays in its pixel moves at once, for no other
-// can be in conflict; the others propose a move. Returns whether it moved. Arithmetic instead of
-// branches: the direction of an avatar is as good as random, and a mispredicted branch costs 20
+// A flat step that `condition` is one: an avatar that stays in its pixel moves at once, for no
+// other can be in conflict; the others propose a move. Returns whether it moved. Arithmetic instead
+// of branches: the direction of an avatar is as good as random, and a mispredicted branch costs 20
 // cycles.
-[[gnu::always_inline]] inline bool Group::go_or_propose(const Pixels& pixels, Avatar& a,
-                                                        bool really, uint32_t level, uint16_t n,
-                                                        size_t& claimed) {
+[[gnu::always_inline]] inline bool Group::move_or_propose(const Pixels& pixels, Avatar& a,
+                                                          bool condition, uint32_t level,
+                                                          uint16_t n, size_t& proposed) {
   const int32_t x = a.x, z = a.z, vx = a.vx, vz = a.vz;
   const int32_t px = pixels.grid.pixel(x >> kUnitBits), pz = pixels.grid.pixel(z >> kUnitBits);
   const int32_t dx = pixels.grid.pixel((x + vx) >> kUnitBits) - px;
   const int32_t dz = pixels.grid.pixel((z + vz) >> kUnitBits) - pz;
   const bool stays = (dx | dz) == 0;
-  proposals_[claimed] = {pixels.number(px, pz), level,
-                         static_cast<uint16_t>(CollisionMap::direction_index(dx, dz)), n};
-  claimed += really & !stays;
-  const bool goes = really & stays;
+  proposals_[proposed] = {pixels.number(px, pz), level,
+                          static_cast<uint16_t>(CollisionMap::direction_index(dx, dz)), n};
+  proposed += condition & !stays;
+  const bool goes = condition & stays;
   a.x = x + (vx & mask(goes));
   a.z = z + (vz & mask(goes));
   return goes;
@@ -180,33 +180,33 @@ void Group::plan_all(size_t size) {
   const PlannedSteps planned = plan_steps(in_.ground->lines(), pixels.grid, avatars_, size);
   const uint64_t here = ~uint64_t{0} >> (kGroup - size);
   for (uint64_t bits = here & ~(planned.stays | planned.leaves); bits != 0; bits &= bits - 1) {
-    unsure_.add_if(true, static_cast<uint16_t>(std::countr_zero(bits)));
+    undecided_.add_if(true, static_cast<uint16_t>(std::countr_zero(bits)));
   }
-  size_t claimed = 0;
+  size_t proposed = 0;
   for (uint64_t bits = planned.leaves; bits != 0; bits &= bits - 1) {
     const auto n = static_cast<uint16_t>(std::countr_zero(bits));
-    go_or_propose(pixels, avatars_[n], true, avatars_[n].level, n, claimed);
+    move_or_propose(pixels, avatars_[n], true, avatars_[n].level, n, proposed);
   }
-  proposals_size_ = claimed;
+  proposals_size_ = proposed;
 }
 
 void Group::plan(std::span<const uint16_t> todo) {
   const LevelLine* lines = in_.ground->lines();
   const Pixels pixels = in_.map->pixels();
-  size_t claimed = 0;
+  size_t proposed = 0;
   for (const uint16_t n : todo) {
     Avatar& a = avatars_[n];
-    const bool is_plain = in_.is_short & lines[a.level].box_is_plain(
-                                             a.x >> kUnitBits, a.z >> kUnitBits,
-                                             (a.x + a.vx) >> kUnitBits, (a.z + a.vz) >> kUnitBits);
-    unsure_.add_if(!is_plain, n);
-    go_or_propose(pixels, a, is_plain, a.level, n, claimed);
+    const bool is_flat = in_.is_short & lines[a.level].box_is_flat(
+                                            a.x >> kUnitBits, a.z >> kUnitBits,
+                                            (a.x + a.vx) >> kUnitBits, (a.z + a.vz) >> kUnitBits);
+    undecided_.add_if(!is_flat, n);
+    move_or_propose(pixels, a, is_flat, a.level, n, proposed);
   }
-  proposals_size_ = claimed;
+  proposals_size_ = proposed;
 }
 
 void Group::prefetch_walk_levels() const {
-  for (const uint16_t n : unsure_.span()) {
+  for (const uint16_t n : undecided_.span()) {
     const Avatar& a = avatars_[n];
     const int32_t x = (a.x + a.vx) >> kUnitBits, z = (a.z + a.vz) >> kUnitBits;
     in_.ground->prefetch_level(a.level, a.z >> kUnitBits, z);
@@ -215,23 +215,23 @@ void Group::prefetch_walk_levels() const {
 }
 
 // Flat blocks over the edge of the tile, and flat cells that do not fill a block.
-void Group::look_closer() {
+void Group::plan_by_cells() {
   const Pixels pixels = in_.map->pixels();
-  size_t claimed = proposals_size_;
-  for (const uint16_t n : unsure_.span()) {
+  size_t proposed = proposals_size_;
+  for (const uint16_t n : undecided_.span()) {
     Avatar& a = avatars_[n];
     const int32_t x0 = a.x >> kUnitBits, z0 = a.z >> kUnitBits;
     const int32_t x1 = (a.x + a.vx) >> kUnitBits, z1 = (a.z + a.vz) >> kUnitBits;
     const uint32_t beyond =
         in_.is_short ? in_.ground->line(a.level).cross(x0, z0, x1, z1) : LevelLine::kNone;
     const bool crosses = beyond != LevelLine::kNone;
-    const bool is_plain = crosses | box_is_set(in_.ground->plain(a.level), x0, z0, x1, z1);
-    uneven_.add_if(!is_plain, n);
+    const bool is_flat = crosses | box_is_set(in_.ground->flat(a.level), x0, z0, x1, z1);
+    uneven_.add_if(!is_flat, n);
     const uint32_t level = crosses ? beyond : a.level;
-    const bool goes = go_or_propose(pixels, a, is_plain, level, n, claimed);
+    const bool goes = move_or_propose(pixels, a, is_flat, level, n, proposed);
     a.level = goes ? level : a.level;
   }
-  proposals_size_ = claimed;
+  proposals_size_ = proposed;
 }
 
 void Group::prefetch_pixels() {
@@ -271,7 +271,7 @@ struct LoneLevel {
 };
 
 // Puts the body at `to` if no other is there.
-bool commit(CollisionMap& map, Avatar& a, GroundPoint to, uint32_t level, int32_t y) {
+bool try_move(CollisionMap& map, Avatar& a, GroundPoint to, uint32_t level, int32_t y) {
   const CollisionMap::Mark old_mark = map.mark(a.point(), a.y);
   const CollisionMap::Mark mark = map.mark(to, y);
   if (!(mark == old_mark)) {
@@ -326,7 +326,7 @@ void Group::climb(List& blocked) {
   for (const uint16_t n : slopes_.span()) {
     Avatar& a = avatars_[n];
     const GroundPoint to = target(a);
-    blocked.add_if(!commit(*in_.map, a, to, a.level, in_.ground->feet(a.level, to)), n);
+    blocked.add_if(!try_move(*in_.map, a, to, a.level, in_.ground->feet(a.level, to)), n);
   }
 }
 
@@ -338,11 +338,11 @@ void Group::walk_on(List& blocked) {
     uint32_t level = a.level;
     const CrowdGround::Walk here = ground.walk(level);
     const bool on_tile = ((from.x ^ to.x) | (from.z ^ to.z)) >> (kUnitBits + 6) == 0;
-    const bool is_open = here.is_alone && on_tile
+    const bool is_open = here.is_isolated && on_tile
                              ? walk(LoneLevel{here.legal}, level, from, to, in_.step_mm)
                              : to.x >= 0 && to.z >= 0 && to.x < in_.units_x && to.z < in_.units_z &&
                                    walk(ground, level, from, to, in_.step_mm);
-    const bool moved = is_open && commit(*in_.map, a, to, level, ground.feet(level, to));
+    const bool moved = is_open && try_move(*in_.map, a, to, level, ground.feet(level, to));
     walls_ += !is_open;
     blocked.add_if(!moved, n);
   }

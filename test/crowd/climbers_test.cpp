@@ -196,15 +196,15 @@ TEST(Climbers, PassOthersThatComeTowardsThemAndThatStand) {
   Crowd crowd = stage.crowd();
   uint32_t bound = 0;
   // Goals are apart: no two want one place.
-  std::vector<Vec3d> taken;
+  std::vector<Vec3d> chosen;
   const auto draw = [&](uint64_t& n) {
     for (;;) {
       const NodePlace place = stage.place(kClimber, 15, n++);
-      const bool is_apart = std::all_of(taken.begin(), taken.end(), [&](const Vec3d& other) {
+      const bool is_apart = std::all_of(chosen.begin(), chosen.end(), [&](const Vec3d& other) {
         return length(other - place.feet) > 3;
       });
       if (!is_apart) continue;
-      taken.push_back(place.feet);
+      chosen.push_back(place.feet);
       return place;
     }
   };
@@ -261,15 +261,15 @@ Mixed mix(Stage& stage, uint32_t of_each, int steps, int every) {
     const CrowdReport report = crowd.step();
     crowd.read(now);
     for (size_t i = 0; i < now.size(); ++i) {  // of 5 m/s at most
-      const Vec3d gone = now[i].position - before[i].position;
-      EXPECT_LE(length(gone), 0.8) << step << " " << i;
+      const Vec3d displacement = now[i].position - before[i].position;
+      EXPECT_LE(length(displacement), 0.8) << step << " " << i;
       // A climber looks in its direction of motion, as it leans: that of its last move, if it made
       // two.
-      if (!now[i].climbs || length(gone) < 0.05) continue;
-      const Vec3d looks = leaned({now[i].heading_x, 0, now[i].heading_z}, now[i].up);
-      EXPECT_NEAR(length(looks), 1, 1e-6);
-      EXPECT_NEAR(dot(looks, now[i].up), 0, 1e-6);
-      ahead += dot(looks, gone) / length(gone);
+      if (!now[i].climbs || length(displacement) < 0.05) continue;
+      const Vec3d heading = leaned({now[i].heading_x, 0, now[i].heading_z}, now[i].up);
+      EXPECT_NEAR(length(heading), 1, 1e-6);
+      EXPECT_NEAR(dot(heading, now[i].up), 0, 1e-6);
+      ahead += dot(heading, displacement) / length(displacement);
       ++looked;
     }
     std::swap(before, now);

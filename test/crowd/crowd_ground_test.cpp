@@ -78,11 +78,11 @@ TEST(CrowdGround, AWalkOverFlatCellsEndsOnTheSameLevelAtTheSameHeight) {
       const auto level = static_cast<uint32_t>(draw(world.level_tile_count()));
       const int32_t x0 = draw(64), z0 = draw(64);
       const int32_t x1 = std::min(63, x0 + draw(3)), z1 = std::min(63, z0 + draw(3));
-      bool plain = true;
+      bool all_flat = true;
       for (int32_t z = z0; z <= z1; ++z) {
-        for (int32_t x = x0; x <= x1; ++x) plain &= ((ground->plain(level)[z] >> x) & 1) != 0;
+        for (int32_t x = x0; x <= x1; ++x) all_flat &= ((ground->flat(level)[z] >> x) & 1) != 0;
       }
-      if (!plain) continue;
+      if (!all_flat) continue;
       ++plain_walks;
       const auto& record = ground->records()[level];
       const auto point = [&](int32_t x, int32_t z) {
@@ -146,7 +146,7 @@ TEST(CrowdGround, ALoneLevelIsTheOnlyOneWithinAStepInItsTile) {
   ASSERT_TRUE(ground);
   int32_t lone = 0;
   for (uint32_t level = 0; level < world.level_tile_count(); ++level) {
-    if (!ground->walk(level).is_alone) continue;
+    if (!ground->walk(level).is_isolated) continue;
     ++lone;
     const auto& record = ground->records()[level];
     const GroundLevel here = zone_level(world, level);

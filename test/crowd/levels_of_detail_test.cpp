@@ -81,7 +81,8 @@ TEST(LevelsOfDetail, AViewOfAllChangesNothingAndLowDetailAvatarsArrive) {
   all.set_views({&everything, 1});
   low_detail.set_views({&nothing, 1});
   uint64_t arrived = 0;
-  for (Crowd* crowd : {&none, &all, &low_detail}) give_goals(*crowd, world, scattered(*crowd, 100), 4);
+  for (Crowd* crowd : {&none, &all, &low_detail})
+    give_goals(*crowd, world, scattered(*crowd, 100), 4);
   for (int step = 0; step < 600; ++step) {
     none.step();
     all.step();

@@ -27,8 +27,8 @@ uint64_t hash_of(const CrowdGround& ground) {
     const LevelLine& line = ground.line(level);
     const auto add = [&](const void* data, size_t bytes) { hash = hash_bytes(data, bytes, hash); };
     add(ground.legal(level), 512);
-    add(ground.plain(level), 512);
-    add(line.plain.data(), sizeof line.plain);
+    add(ground.flat(level), 512);
+    add(line.flat.data(), sizeof line.flat);
     add(line.beyond.data(), sizeof line.beyond);
     add(line.joined.data(), sizeof line.joined);
     add(&ground.records()[level].legal_cells, 4);
@@ -68,7 +68,7 @@ struct Fixture {
 
 // Square of the distance of a point from a convex polygon, by a walk along its sides in fine steps:
 // independent of the code that blocks cells.
-double far_from(const Prism& prism, double x, double z) {
+double square_from(const Prism& prism, double x, double z) {
   bool left = true, right = true;
   double nearest = 1e300;
   for (size_t i = 0; i < prism.corners.size(); ++i) {
@@ -86,7 +86,7 @@ double far_from(const Prism& prism, double x, double z) {
 }
 
 TEST(ObstacleSet, BlocksTheCellsOnWhichABodyCouldTouchAndFewMore) {
-  uint64_t taken = 0, left = 0;
+  uint64_t blocked = 0, left = 0;
   for (const Scene& scene : {worlds::two_floors(), worlds::ramp(20, 8), worlds::flat(14)}) {
     Fixture f(test::bake(scene, 0.1));
     const CrowdGround baked = *CrowdGround::make(*f.world.data(), 0, kStep);
@@ -105,7 +105,7 @@ TEST(ObstacleSet, BlocksTheCellsOnWhichABodyCouldTouchAndFewMore) {
             continue;
           }
           // Bodies at random points of the cell.
-          const bool is_taken = !f.ground.is_legal(level, x, z);
+          const bool is_blocked = !f.ground.is_legal(level, x, z);
           bool touches = false, could = false;
           for (int k = 0; k < 3; ++k) {
             const GroundPoint p{(int64_t{record.tile_x * 64 + x} << kUnitBits) +
@@ -113,28 +113,29 @@ TEST(ObstacleSet, BlocksTheCellsOnWhichABodyCouldTouchAndFewMore) {
                                 (int64_t{record.tile_z * 64 + z} << kUnitBits) +
                                     static_cast<int64_t>(f.draw() * kUnitsPerCell)};
             const double unit = cell / kUnitsPerCell;
-            const double far = far_from(prism, origin.x + (static_cast<double>(p.x) + 0.5) * unit,
-                                        origin.z + (static_cast<double>(p.z) + 0.5) * unit);
+            const double far =
+                square_from(prism, origin.x + (static_cast<double>(p.x) + 0.5) * unit,
+                            origin.z + (static_cast<double>(p.z) + 0.5) * unit);
             const double feet = baked.feet(level, p) * 1e-3;
-            const double gap =
+            const double vertical_distance =
                 std::max(feet + bottom - prism.high, prism.low - feet - avatar.height);
-            touches |= far < avatar.radius && gap < 0;
-            could |= far < avatar.radius + 1.5 * cell + 0.05 && gap < 0.12;
+            touches |= far < avatar.radius && vertical_distance < 0;
+            could |= far < avatar.radius + 1.5 * cell + 0.05 && vertical_distance < 0.12;
           }
           if (touches) {
-            ASSERT_TRUE(is_taken) << level << ' ' << x << ' ' << z;
+            ASSERT_TRUE(is_blocked) << level << ' ' << x << ' ' << z;
           }
-          if (is_taken) {
+          if (is_blocked) {
             ASSERT_TRUE(could) << level << ' ' << x << ' ' << z;
           }
-          ++(is_taken ? taken : left);
+          ++(is_blocked ? blocked : left);
         }
       }
       f.book.remove(slot);
       f.book.take_cells();
     }
   }
-  EXPECT_GT(taken, 2000u);
+  EXPECT_GT(blocked, 2000u);
   EXPECT_GT(left, 50000u);
 }
 
@@ -160,14 +161,14 @@ TEST(ObstacleSet, FreesToTheBitWhatItBlocked) {
     }
     EXPECT_NE(hash_of(f.ground), baked);
     // What is left must equal what the same obstacles leave of a new ground.
-    CrowdGround fresh = *CrowdGround::make(*f.world.data(), 0, kStep);
+    CrowdGround rebuilt = *CrowdGround::make(*f.world.data(), 0, kStep);
     ObstacleSet again(f.world, f.world.summary().classes.size());
-    again.open_class(0, fresh);
+    again.open_class(0, rebuilt);
     for (const uint32_t slot : slots) {
       again.settle(again.add(f.book.at(slot).place, ObstacleKind::kStatic, true));
     }
     again.take_cells();
-    EXPECT_EQ(hash_of(f.ground), hash_of(fresh)) << name;
+    EXPECT_EQ(hash_of(f.ground), hash_of(rebuilt)) << name;
     for (const uint32_t slot : slots) f.book.remove(slot);
     f.book.take_cells();
     EXPECT_EQ(hash_of(f.ground), baked) << name;
@@ -256,7 +257,7 @@ TEST(ObstacleSet, TheHullOfTwoPrismsHoldsAllBetween) {
     EXPECT_GE(hull.high, std::max(a.high, b.high));
     for (const auto& [x, z] : a.corners) {
       const double t = draw();
-      EXPECT_LT(far_from(hull, x + t * dx, z + t * dz), 0.05);
+      EXPECT_LT(square_from(hull, x + t * dx, z + t * dz), 0.05);
     }
   }
 }

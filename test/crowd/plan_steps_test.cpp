@@ -19,7 +19,7 @@ std::vector<LevelLine> random_lines() {
   for (size_t level = 0; level < lines.size(); ++level) {
     for (size_t z = 0; z < 16; ++z) {  // three blocks of four are flat
       const uint64_t bits = random_u64(level, z, 1);
-      lines[level].plain[z] = static_cast<uint16_t>(bits | bits >> 16);
+      lines[level].flat[z] = static_cast<uint16_t>(bits | bits >> 16);
     }
   }
   return lines;
@@ -50,7 +50,7 @@ PlannedSteps plan_one_by_one(const LevelLine* lines, PixelGrid grid, std::vector
     Avatar& a = avatars[n];
     const int32_t x0 = a.x >> kUnitBits, z0 = a.z >> kUnitBits;
     const int32_t x1 = (a.x + a.vx) >> kUnitBits, z1 = (a.z + a.vz) >> kUnitBits;
-    if (!lines[a.level].box_is_plain(x0, z0, x1, z1)) continue;
+    if (!lines[a.level].box_is_flat(x0, z0, x1, z1)) continue;
     const bool stays = grid.pixel(x0) == grid.pixel(x1) && grid.pixel(z0) == grid.pixel(z1);
     (stays ? planned.stays : planned.leaves) |= uint64_t{1} << n;
     a.x += stays ? a.vx : 0;

@@ -234,9 +234,9 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
 }
 
 // The best first.
-void ClimberEngine::find_paths(const Body& body, const Climb& climb,
-                               const steer::AirSituation& situation, bool yields,
-                               Contest& contest) const {
+void ClimberEngine::find_candidates(const Body& body, const Climb& climb,
+                                    const steer::AirSituation& situation, bool yields,
+                                    Contest& contest) const {
   const ClimberGround& ground = *grounds_[body.avatar_class];
   const float dt = config_.units.dt;
   const double max_travel = double{body.speed} * dt;
@@ -295,7 +295,7 @@ void ClimberEngine::decide(uint32_t c, Worker& worker) {
   bool yields = false;
   sense(c, worker, situation, yields);
   contest.last = static_cast<uint32_t>(worker.others.size());
-  find_paths(body, climb, situation, yields, contest);
+  find_candidates(body, climb, situation, yields, contest);
   move.yields = yields;
   if (contest.first != contest.last && contest.candidate_count > 0) {
     ++worker.counts.contested;

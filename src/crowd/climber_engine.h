@@ -97,8 +97,8 @@ class ClimberEngine {
   void decide(uint32_t climber, Worker& worker);
   void sense(uint32_t climber, Worker& worker, steer::AirSituation& situation, bool& yields) const;
   [[nodiscard]] bool needs_space(const Body& body, const Climb& climb, const Body& other) const;
-  void find_paths(const Body& body, const Climb& climb, const steer::AirSituation& situation,
-                  bool yields, Contest& contest) const;
+  void find_candidates(const Body& body, const Climb& climb, const steer::AirSituation& situation,
+                       bool yields, Contest& contest) const;
   [[nodiscard]] bool is_clear(const Contest& contest, const Worker& owner,
                               const ClimbCylinder& cylinder) const;
   bool propose(const Contest& contest, const Worker& owner);

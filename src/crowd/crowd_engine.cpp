@@ -484,8 +484,8 @@ void CrowdEngine::query_walls(const Body& body, steer::Situation& situation) con
   }
 }
 
-void CrowdEngine::find_paths(const Body& body, const steer::Situation& situation, bool open,
-                             Displacements& candidates) {
+void CrowdEngine::find_candidates(const Body& body, const steer::Situation& situation, bool open,
+                                  Displacements& candidates) {
   if (!is_sampled(body)) {
     const steer::Choices choices = steer::candidates_about(situation.preferred);
     std::transform(choices.begin(), choices.end(), candidates.begin(),
@@ -602,7 +602,7 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
     proposal.round = others.empty() ? 0 : 1;
   } else {
     if (open) query_walls(body, worker.situation);
-    find_paths(body, worker.situation, open, candidates);
+    find_candidates(body, worker.situation, open, candidates);
     proposal.has_all = true;
   }
   // Known only if walls were queried.
@@ -728,7 +728,7 @@ void CrowdEngine::propose(uint32_t i, Worker& scratch, uint8_t round) {
   sense(i, scratch, around, /*lists_others=*/false);
   const bool open = find_open_preferred(i, scratch, around);
   query_walls(body, scratch.situation);
-  find_paths(body, scratch.situation, open, candidates);
+  find_candidates(body, scratch.situation, open, candidates);
   proposal.forgets = !proposal.has_room(candidates.size());
   if (!proposal.forgets) {
     proposal.candidate_count = 0;

@@ -219,8 +219,8 @@ class CrowdEngine {
   [[nodiscard]] float wall_range(const Body& body) const {  // [units]
     return body.speed * config_.steering.wall_horizon / config_.units.unit;
   }
-  void find_paths(const Body& body, const steer::Situation& situation, bool open,
-                  Displacements& candidates);
+  void find_candidates(const Body& body, const steer::Situation& situation, bool open,
+                       Displacements& candidates);
   // Moves are whole units. A body whose moves are of few units decides in each step, and its moves
   // are rounded up or down in turn: else it would be too slow, or stand.
   [[nodiscard]] bool has_short_moves(const Body& body) const {

@@ -308,8 +308,8 @@ bool FlyerEngine::query_walls(const Body& body, steer::AirSituation& situation) 
   return false;
 }
 
-void FlyerEngine::find_paths(const steer::AirSituation& situation, bool open,
-                             Contest& contest) const {
+void FlyerEngine::find_candidates(const steer::AirSituation& situation, bool open,
+                                  Contest& contest) const {
   const StepUnits& units = config_.units;
   contest.candidate_count = 0;
   const auto add = [&](Space v) {
@@ -368,7 +368,7 @@ void FlyerEngine::decide(uint32_t f, Worker& worker) {
       contest.displacement[contest.candidate_count++] = {0, 0, up};
     }
   } else {
-    find_paths(situation, query_walls(body, situation), contest);
+    find_candidates(situation, query_walls(body, situation), contest);
   }
   if (contest.first != contest.last) {
     ++worker.counts.contested;

@@ -86,7 +86,7 @@ class FlyerEngine {
   bool query_walls(const Body& body, steer::AirSituation& situation) const;
   [[nodiscard]] bool gives_precedence(const Body& body, const Flight& flight, const Body& other,
                                       const Flight& of_other) const;
-  void find_paths(const steer::AirSituation& situation, bool open, Contest& contest) const;
+  void find_candidates(const steer::AirSituation& situation, bool open, Contest& contest) const;
   [[nodiscard]] bool wants_down(const Body& body, const Flight& flight) const;
   [[nodiscard]] bool try_place(const Body& body, const AirPosition& displacement,
                                AirPosition& place) const;

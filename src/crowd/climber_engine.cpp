@@ -25,7 +25,7 @@ constexpr float kDetourDelay = 2;               // [s] at least, before it turns
 constexpr float kRetreatDelay = 1;              // [s] before one in the air moves back
 constexpr float kYieldDelay = 0.5f;             // [s] before others that rest yield to it
 constexpr float kYieldDistance = 0.3f;          // [m] from a body that cannot step aside
-constexpr uint64_t kDetourDelays = 0x74656d70;  // stream of chance
+constexpr uint64_t kDetourDelays = 0x74656d70;  // random stream
 
 bool overlaps_with(const ClimbCylinder& a, const ClimbCylinder& b) {
   return nearer_than(a.low.x - b.low.x, a.low.z - b.low.z, int64_t{a.radius} + b.radius) &&

@@ -22,7 +22,7 @@ struct ClimbPose {
 
 /// An upright cylinder that encloses a body, however it leans.
 struct ClimbCylinder {
-  AirPosition low;     // middle of its bottom
+  AirPosition low;     // centre of its bottom
   int32_t radius = 0;  // [units]
   int32_t height = 0;  // [mm]
 };

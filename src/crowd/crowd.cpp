@@ -27,7 +27,7 @@ constexpr double kMaxSpeed = 100;                        // [m/s]
 constexpr double kMaxRadius = 100;                       // [m]
 constexpr double kMaxBodyHeight = 65;                    // [m]
 constexpr int32_t kMaxSubSteps = 1000;
-constexpr uint64_t kAirDraws = 0x616972;  // stream of chance
+constexpr uint64_t kAirDraws = 0x616972;  // random stream
 
 Error bad_config(const std::string& what) { return {Errc::kBadConfig, "crowd: " + what}; }
 

@@ -11,7 +11,7 @@
 namespace throng {
 
 /// One cache line a level tile, instead of the eight that its 64 rows fill. A block is 4 x 4 cells;
-/// it is flat if all its cells are (see CrowdGround::plain), and then they are all equally high.
+/// it is flat if all its cells are (see CrowdGround::flat), and then they are all equally high.
 struct alignas(64) LevelLine {
   static constexpr int32_t kBlock = 4;  // cells; too few for longer steps to use blocks
   static constexpr uint32_t kNone = UINT32_MAX;

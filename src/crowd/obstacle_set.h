@@ -36,7 +36,7 @@ struct CrowdObstacle {
   uint32_t version = 0;       // of `place`
   uint64_t requested_step = kNever, up_step = kNever;  // steps made before the request, and before
                                                        // it became active
-  uint32_t occupants = 0;  // that blocked it at the last check
+  uint32_t occupants = 0;                              // that blocked it at the last check
 
   static constexpr uint64_t kNever = UINT64_MAX;
 

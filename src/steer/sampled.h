@@ -167,8 +167,8 @@ inline float progress_felt(const DeadlockAvoidance& settings, float progress, bo
 
 /// The next detour angle of an avatar. `progress`: its speed towards the goal by the desired one;
 /// `along`: the same along its turned preferred velocity.
-float next_detour_angle(const DeadlockAvoidance& settings, float detour_angle, float progress, float along,
-                float dt);
+float next_detour_angle(const DeadlockAvoidance& settings, float detour_angle, float progress,
+                        float along, float dt);
 
 /// `direction` turned to the right (seen from above, X to the right, Z down) by 2
 /// atan(detour_angle).

@@ -220,8 +220,8 @@ TEST(SampledSteering, ABlockedAvatarTurnsAwaySlowlyUntilItWalks) {
   for (int i = 0; i < 10; ++i) angle = next_detour_angle(settings, angle, 0, 0, 0.1f);
   EXPECT_NEAR(angle, settings.side_angle + settings.slow_rate, 1e-5);
   // It walks away from its goal: the angle decreases until it can head to the goal again.
-  EXPECT_NEAR(next_detour_angle(settings, angle, -0.2f, 0.9f, 0.1f), angle - 0.1 * settings.return_rate,
-              1e-6);
+  EXPECT_NEAR(next_detour_angle(settings, angle, -0.2f, 0.9f, 0.1f),
+              angle - 0.1 * settings.return_rate, 1e-6);
   // In a corner no angle helps: it starts again at 0.
   float largest = 0;
   int steps = 0;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// A cylinder against an upright prism: the disc of its feet against the polygon, its height against
+// the prism's. Linear in the polygon's corners.
 namespace throng {
 namespace {
 

@@ -18,6 +18,8 @@
 #include "world/node_data.h"
 #include "world/place.h"
 
+// The public face of a crowd: configuration, avatars and their goals, the order of a step's parts,
+// and reports. What classes, targets, obstacles, flyers and climbers need lies in the files beside.
 namespace throng {
 namespace {
 

@@ -13,6 +13,8 @@
 #include "world/air_data.h"
 #include "world/ground.h"
 
+// Counts overlapping pairs, bodies off legal ground or air, and bodies in obstacles, by exact
+// distances: sorted along one axis of squares, so n log n unless the crowd is dense.
 namespace throng {
 namespace {
 

@@ -11,6 +11,8 @@
 
 #include "world/place.h"
 
+// Copies the ground of one class out of the zones: rows of legal and of flat cells, a line for each
+// level, and samples. Linear in the level tiles.
 namespace throng {
 namespace {
 

@@ -7,6 +7,8 @@
 
 #include "world/place.h"
 
+// The air of a class in a step's integer units: conversions, lines of sight, and ground-air links.
+// Each costs a descent in the air's octree for each air box that a line crosses.
 namespace throng {
 namespace {
 

@@ -7,6 +7,8 @@
 
 #include "world/walk.h"
 
+// Which blocked cells a body may cross on its exit: by the obstacles whose cells it stands on.
+// Linear in the obstacles of a level.
 namespace throng {
 namespace {
 

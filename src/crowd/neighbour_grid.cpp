@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 
+// Sorts bodies by square with a counting sort, in parallel parts. Linear in the bodies and squares.
 namespace throng {
 namespace {
 

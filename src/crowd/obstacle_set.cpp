@@ -11,6 +11,9 @@
 #include "path/blocked_cells.h"
 #include "world/place.h"
 
+// What obstacles block in the grounds of all classes: the union of their cells by level, so that
+// they overlap and are removed in any order. An update is linear in the cells of the levels that
+// changed.
 namespace throng {
 namespace {
 

@@ -6,6 +6,8 @@
 
 #include "world/place.h"
 
+// Repairs a path piece by piece: for each stretch that obstacles cover, a bounded search for a
+// detour; a full search only if that fails.
 namespace throng {
 namespace {
 

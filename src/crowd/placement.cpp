@@ -7,6 +7,8 @@
 
 #include "core/random.h"
 
+// Random points of the ground, uniform by cell: a binary search among the levels, then the row of
+// the cell. Logarithmic in the levels.
 namespace throng {
 namespace {
 

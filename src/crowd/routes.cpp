@@ -9,6 +9,8 @@
 #include "crowd/step_units.h"
 #include "world/place.h"
 
+// Follows the corners of a path: heads to the next corner once it is visible, and requests the rest
+// of the path. Constant time but for the line of sight.
 namespace throng {
 namespace {
 

@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+// Finds the bodies within sight, and the nearest of them, a vector at a time. The first is linear
+// in the bodies around, the second quadratic in those within sight.
 HWY_BEFORE_NAMESPACE();
 namespace throng {
 namespace HWY_NAMESPACE {

@@ -9,6 +9,8 @@
 #include "crowd/leaving_ground.h"
 #include "world/walk.h"
 
+// Moves and lines of sight over the ground: block by block where blocks decide, else row by row,
+// else cell by cell ([ML06], algorithm 1). Linear in the blocks, rows or cells crossed.
 namespace throng {
 
 bool StrideGround::move(uint32_t level, int32_t y, GroundPoint from, GroundPoint to,

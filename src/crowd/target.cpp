@@ -7,6 +7,8 @@
 
 #include "world/place.h"
 
+// Targets in the units of bodies, and the legal cells inside: a raster of each prism's bounds,
+// linear in its cells.
 namespace throng {
 namespace {
 

@@ -18,6 +18,8 @@
 #include "crowd/wander_step.h"
 #include "world/place.h"
 
+// A crowd without goals: places avatars, sorts them by block as they drift, and moves blocks of one
+// colour in parallel. Source: [ML06] section 4. A step is linear in the avatars.
 namespace throng {
 namespace {
 

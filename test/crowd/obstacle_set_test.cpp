@@ -33,7 +33,7 @@ uint64_t hash_of(const CrowdGround& ground) {
     add(line.joined.data(), sizeof line.joined);
     add(&ground.records()[level].legal_cells, 4);
     const CrowdGround::Walk walk = ground.walk(level);
-    const bool flags[] = {walk.is_step_safe, walk.is_alone};
+    const bool flags[] = {walk.is_step_safe, walk.is_isolated};
     add(flags, sizeof flags);
   }
   return hash;
@@ -42,14 +42,14 @@ uint64_t hash_of(const CrowdGround& ground) {
 struct Fixture {
   World world;
   CrowdGround ground;
-  ObstacleSet book;
+  ObstacleSet obstacle_set;
   uint64_t n = 0;
 
   explicit Fixture(World of)
       : world(std::move(of)),
         ground(*CrowdGround::make(*world.data(), 0, kStep)),
-        book(world, world.summary().classes.size()) {
-    book.open_class(0, ground);
+        obstacle_set(world, world.summary().classes.size()) {
+    obstacle_set.open_class(0, ground);
   }
   double draw() { return random_unit(9, 1, n++); }
   Prism random_prism() {
@@ -59,9 +59,9 @@ struct Fixture {
                          3 + static_cast<int>(20 * draw()));
   }
   uint32_t put_up(const Prism& prism) {
-    const uint32_t slot = book.add(prism, ObstacleKind::kStatic, true);
-    book.settle(slot);
-    book.take_cells();
+    const uint32_t slot = obstacle_set.add(prism, ObstacleKind::kStatic, true);
+    obstacle_set.settle(slot);
+    obstacle_set.block_cells();
     return slot;
   }
 };
@@ -131,8 +131,8 @@ TEST(ObstacleSet, BlocksTheCellsOnWhichABodyCouldTouchAndFewMore) {
           ++(is_blocked ? blocked : left);
         }
       }
-      f.book.remove(slot);
-      f.book.take_cells();
+      f.obstacle_set.remove(slot);
+      f.obstacle_set.block_cells();
     }
   }
   EXPECT_GT(blocked, 2000u);
@@ -151,13 +151,13 @@ TEST(ObstacleSet, FreesToTheBitWhatItBlocked) {
       }
       const size_t i = static_cast<size_t>(f.draw() * static_cast<double>(slots.size()));
       if (f.draw() < 0.5) {
-        f.book.request_move(slots[i], f.random_prism());
-        f.book.settle(slots[i]);
+        f.obstacle_set.request_move(slots[i], f.random_prism());
+        f.obstacle_set.settle(slots[i]);
       } else {
-        f.book.remove(slots[i]);
+        f.obstacle_set.remove(slots[i]);
         slots.erase(slots.begin() + static_cast<ptrdiff_t>(i));
       }
-      f.book.take_cells();
+      f.obstacle_set.block_cells();
     }
     EXPECT_NE(hash_of(f.ground), baked);
     // What is left must equal what the same obstacles leave of a new ground.
@@ -165,12 +165,12 @@ TEST(ObstacleSet, FreesToTheBitWhatItBlocked) {
     ObstacleSet again(f.world, f.world.summary().classes.size());
     again.open_class(0, rebuilt);
     for (const uint32_t slot : slots) {
-      again.settle(again.add(f.book.at(slot).place, ObstacleKind::kStatic, true));
+      again.settle(again.add(f.obstacle_set.at(slot).place, ObstacleKind::kStatic, true));
     }
-    again.take_cells();
+    again.block_cells();
     EXPECT_EQ(hash_of(f.ground), hash_of(rebuilt)) << name;
-    for (const uint32_t slot : slots) f.book.remove(slot);
-    f.book.take_cells();
+    for (const uint32_t slot : slots) f.obstacle_set.remove(slot);
+    f.obstacle_set.block_cells();
     EXPECT_EQ(hash_of(f.ground), baked) << name;
   }
 }
@@ -178,14 +178,14 @@ TEST(ObstacleSet, FreesToTheBitWhatItBlocked) {
 TEST(ObstacleSet, MemoryDoesNotGrowAsObstaclesComeAndGo) {
   Fixture f(test::bake(worlds::flat(14), 0.1));
   const auto come_and_go = [&] {
-    f.book.remove(f.put_up(Prism::box({5, 0, 5}, {8, 1, 8})));
-    f.book.take_cells();
+    f.obstacle_set.remove(f.put_up(Prism::box({5, 0, 5}, {8, 1, 8})));
+    f.obstacle_set.block_cells();
   };
   come_and_go();
-  const uint64_t ground = f.ground.bytes(), book = f.book.bytes();
+  const uint64_t ground = f.ground.bytes(), obstacle_set = f.obstacle_set.bytes();
   for (int i = 0; i < 100; ++i) come_and_go();
   EXPECT_EQ(f.ground.bytes(), ground);
-  EXPECT_EQ(f.book.bytes(), book);
+  EXPECT_EQ(f.obstacle_set.bytes(), obstacle_set);
 }
 
 // The ground as it was baked, without the cells blocked in `now`: uses none of its lines, sets or

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+// A cylinder against an upright prism: the disc of its feet against the polygon, its height against
+// the prism's. Linear in the polygon's corners.
 namespace throng {
 namespace {
 
@@ -41,11 +43,11 @@ AirObstacle::AirObstacle(const Prism& prism, const Vec3d& origin, double unit, b
   if (area2 < 0) std::reverse(corners_.begin(), corners_.end());  // inside is on the left
 }
 
-bool AirObstacle::holds(const AirSpot& feet, double radius, int32_t height) const {
+bool AirObstacle::holds(const AirPosition& feet, double radius, int32_t height) const {
   if (!overlap(feet.y, height, low_, high_ - low_)) return false;
-  const double reach = radius / unit_ + 2;  // and what rounding takes
+  const double range = radius / unit_ + 2;  // and what rounding adds
   const double x = feet.x + 0.5, z = feet.z + 0.5;
-  if (x < x0_ - reach || x > x1_ + reach || z < z0_ - reach || z > z1_ + reach) return false;
+  if (x < x0_ - range || x > x1_ + range || z < z0_ - range || z > z1_ + range) return false;
   bool inside = true;
   for (size_t i = 0; i < corners_.size(); ++i) {
     const auto& [ax, az] = corners_[i];
@@ -55,14 +57,14 @@ bool AirObstacle::holds(const AirSpot& feet, double radius, int32_t height) cons
     const double whole = wx * wx + wz * wz;
     const double part = whole > 0 ? std::clamp((px * wx + pz * wz) / whole, 0.0, 1.0) : 0;
     const double dx = px - part * wx, dz = pz - part * wz;
-    if (dx * dx + dz * dz < reach * reach) return true;
+    if (dx * dx + dz * dz < range * range) return true;
   }
   return inside;
 }
 
-void AirObstacle::list_exits(const AirSpot& feet, double radius, int32_t height,
-                             std::vector<AirSpot>& exits) const {
-  const double reach = radius / unit_ + 2 + kBeyond;
+void AirObstacle::list_exits(const AirPosition& feet, double radius, int32_t height,
+                             std::vector<AirPosition>& exits) const {
+  const double range = radius / unit_ + 2 + kBeyond;
   const double x = feet.x + 0.5, z = feet.z + 0.5;
   for (size_t i = 0; i < corners_.size(); ++i) {
     const auto& [ax, az] = corners_[i];
@@ -72,8 +74,8 @@ void AirObstacle::list_exits(const AirSpot& feet, double radius, int32_t height,
     if (!(size > 0)) continue;
     // Inside is on the left: out of it is to the right, (wz, -wx).
     const double inside = (wx * (z - az) - wz * (x - ax)) / size;
-    const double way = (inside + reach) / size;
-    const double to_x = std::floor(x + way * wz), to_z = std::floor(z - way * wx);
+    const double factor = (inside + range) / size;
+    const double to_x = std::floor(x + factor * wz), to_z = std::floor(z - factor * wx);
     if (to_x < 0 || to_z < 0) continue;
     exits.push_back({whole(to_x), whole(to_z), feet.y});
   }

@@ -10,21 +10,21 @@
 #include "throng/math.h"
 #include "throng/prism.h"
 
-/// An obstacle as a cylinder meets it.
+/// An obstacle against which upright cylinders are tested.
 namespace throng {
 
-/// Counts a body as in it that is up to two units off.
+/// A body that is up to two units away counts as inside.
 class AirObstacle {
  public:
-  /// For a world whose units are so long, from its corner. `closes`: it is not up yet, but nothing
-  /// may enter it. [m]
+  /// `unit`: of the world, whose corner `origin` is. [m] `closes`: the obstacle is not active yet,
+  /// but no body may enter it.
   AirObstacle(const Prism& prism, const Vec3d& origin, double unit, bool closes = false);
-  /// Is a body in it whose feet are there? [m, mm]
-  [[nodiscard]] bool holds(const AirSpot& feet, double radius, int32_t height) const;
+  /// Is a body inside whose feet are at this position? [m, mm]
+  [[nodiscard]] bool holds(const AirPosition& feet, double radius, int32_t height) const;
   [[nodiscard]] bool closes() const { return closes_; }
-  /// Appends the nearest places beyond each of its sides, over it and under it. [m, mm]
-  void list_exits(const AirSpot& feet, double radius, int32_t height,
-                  std::vector<AirSpot>& exits) const;
+  /// Appends the nearest positions beyond each of its sides, above it and below it. [m, mm]
+  void list_exits(const AirPosition& feet, double radius, int32_t height,
+                  std::vector<AirPosition>& exits) const;
 
  private:
   std::vector<std::array<double, 2>> corners_;  // [units]

@@ -7,7 +7,7 @@
 
 #include "world/walk.h"
 
-/// Avatars as a step touches them.
+/// Avatars as a step reads and writes them.
 namespace throng {
 
 /// Two to a cache line. A wanderer is handled alone, so its fields lie together; arrays of fields

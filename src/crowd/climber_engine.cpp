@@ -10,28 +10,31 @@
 #include "core/random.h"
 #include "steer/surface.h"
 
-// docs/design/013-climbers.md. Those who walk and those who fly have made their steps clear of the
-// cylinders that hold those who climb; now these go, clear of where everybody is.
+// The step of climbers: docs/design/013-climbers.md. Walkers and flyers have moved clear of the
+// cylinders that enclose climbers; then climbers move, clear of where all bodies are. Linear in the
+// climbers and their neighbours.
 namespace throng {
 namespace {
 
 using steer::Space;
 
-constexpr size_t kGrain = 32;              // climbers that are worth handing to another thread
-constexpr float kThere = 0.3f;             // [m] from its goal a body has arrived
-constexpr float kGetsOn = 0.1f;            // of its speed
-constexpr float kPatience = 2;             // [s] at least, before one turns off
-constexpr float kTurnsBack = 1;            // [s] before one in the air goes back
-constexpr float kAsks = 0.5f;              // [s] before those who rest are asked to make room
-constexpr float kBeside = 0.3f;            // [m] from who cannot step aside one makes room
-constexpr uint64_t kTempers = 0x74656d70;  // stream of chance
+constexpr size_t kGrain = 32;                   // climbers that are worth another thread
+constexpr float kArrivalRadius = 0.3f;          // [m] from its goal a body has arrived
+constexpr float kProgressShare = 0.1f;          // of its speed
+constexpr float kDetourDelay = 2;               // [s] at least, before it turns aside
+constexpr float kRetreatDelay = 1;              // [s] before one in the air moves back
+constexpr float kYieldDelay = 0.5f;             // [s] before others that rest yield to it
+constexpr float kYieldDistance = 0.3f;          // [m] from a body that cannot step aside
+constexpr uint64_t kDetourDelays = 0x74656d70;  // random stream
 
-bool overlaps_with(const ClimbHold& a, const ClimbHold& b) {
+bool overlaps_with(const ClimbCylinder& a, const ClimbCylinder& b) {
   return nearer_than(a.low.x - b.low.x, a.low.z - b.low.z, int64_t{a.radius} + b.radius) &&
          a.low.y < b.low.y + b.height && b.low.y < a.low.y + a.height;
 }
 
-ClimbHold hold_of(const Body& body) { return {{body.x, body.z, body.y}, body.radius, body.height}; }
+ClimbCylinder cylinder_of(const Body& body) {
+  return {{body.x, body.z, body.y}, body.radius, body.height};
+}
 
 Space space_of(Vec3d v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
@@ -48,7 +51,8 @@ void ClimberEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt
   config_.units.dt = dt;
   const float unit = config_.units.unit, stride = fastest * dt;
   sight_metres_ = std::max(config_.sight, config_.steering.horizon * fastest);
-  // As far as two cylinders' middles are apart whose bodies could touch after a step, all ways.
+  // The largest distance between the centres of two cylinders whose bodies could touch after a
+  // step.
   const float touched = 2 * static_cast<float>(widest) * unit + 2 * stride;
   const float high = 2 * static_cast<float>(tallest) * 1e-3f + 2 * stride;
   near_metres_ = std::max({sight_metres_ / 2, touched, high}) + 0.01f;
@@ -60,38 +64,40 @@ void ClimberEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt
             static_cast<int32_t>(near_metres_ * 1000) + 4);
 }
 
-bool ClimberEngine::in_counterflow(const ClimberGround& ground, const ClimbHold& hold,
+bool ClimberEngine::meets_obstacle(const ClimberGround& ground, const ClimbCylinder& cylinder,
                                    const ClimbPose& pose, double radius,
                                    const AirObstacle& obstacle, const Solid& solid) const {
-  return obstacle.holds(hold.low, hold.radius * double{config_.units.unit}, hold.height) &&
-         may_touch(ground.room_of(pose, radius), solid);
+  return obstacle.holds(cylinder.low, cylinder.radius * double{config_.units.unit},
+                        cylinder.height) &&
+         may_touch(ground.body_room_of(pose, radius), solid);
 }
 
-bool ClimberEngine::is_blocked(const ClimberGround& ground, const ClimbHold& hold,
+bool ClimberEngine::is_blocked(const ClimberGround& ground, const ClimbCylinder& cylinder,
                                const ClimbPose& pose, double radius) const {
   for (size_t i = 0; i < obstacles_.size(); ++i) {
-    if (in_counterflow(ground, hold, pose, radius, obstacles_[i], solids_[i])) return true;
+    if (meets_obstacle(ground, cylinder, pose, radius, obstacles_[i], solids_[i])) return true;
   }
   return false;
 }
 
-bool ClimberEngine::is_inside(const ClimberGround& ground, const ClimbHold& hold,
+bool ClimberEngine::is_inside(const ClimberGround& ground, const ClimbCylinder& cylinder,
                               const ClimbPose& pose, double radius) const {
   for (size_t i = 0; i < obstacles_.size(); ++i) {
     const bool is_up = !obstacles_[i].closes();
-    if (is_up && in_counterflow(ground, hold, pose, radius, obstacles_[i], solids_[i])) return true;
+    if (is_up && meets_obstacle(ground, cylinder, pose, radius, obstacles_[i], solids_[i]))
+      return true;
   }
   return false;
 }
 
 bool ClimberEngine::is_blocked(const ClimberGround& ground, const Body& body, const Climb& climb,
-                               const ClimbHold& hold, const ClimbPose& pose) const {
+                               const ClimbCylinder& cylinder, const ClimbPose& pose) const {
   for (size_t i = 0; i < obstacles_.size(); ++i) {
-    if (!in_counterflow(ground, hold, pose, climb.radius, obstacles_[i], solids_[i])) continue;
-    const bool goes_on =
-        obstacles_[i].closes() && in_counterflow(ground, hold_of(body), {climb.feet, climb.axis},
-                                                 climb.radius, obstacles_[i], solids_[i]);
-    if (!goes_on) return true;
+    if (!meets_obstacle(ground, cylinder, pose, climb.radius, obstacles_[i], solids_[i])) continue;
+    const bool continues = obstacles_[i].closes() &&
+                           meets_obstacle(ground, cylinder_of(body), {climb.feet, climb.axis},
+                                          climb.radius, obstacles_[i], solids_[i]);
+    if (!continues) return true;
   }
   return false;
 }
@@ -113,11 +119,12 @@ void ClimberEngine::step(uint64_t step, std::span<Body> bodies, std::span<Climb>
             preferred(body, climb);
           },
       .decide = [&](uint32_t c, Worker& worker) { decide(c, worker); },
-      .name = [&](const Contest& contest, const Worker& owner) { return name(contest, owner); },
+      .propose = [&](const Contest& contest,
+                     const Worker& owner) { return propose(contest, owner); },
       .overlaps_with =
           [&](const Contest& contest, uint32_t other) {
-            return overlaps_with(rounds_.moves[contest.mover].displacement.hold,
-                                 rounds_.moves[rounds_.mover_of[other]].displacement.hold);
+            return overlaps_with(rounds_.moves[contest.mover].displacement.cylinder,
+                                 rounds_.moves[rounds_.mover_of[other]].displacement.cylinder);
           },
       .settle = [&](uint32_t c, EngineCounts& here) { settle(c, step, here); }};
   rounds_.step(bodies, parts, grid_, kGrain, config_.workers, config_.rounds, {config_.seed, step},
@@ -127,7 +134,7 @@ void ClimberEngine::step(uint64_t step, std::span<Body> bodies, std::span<Climb>
   }
 }
 
-// What it wishes for, as if nobody were there.
+// Its preferred velocity, as if no other were there.
 void ClimberEngine::preferred(Body& body, Climb& climb) const {
   Space desired;
   const bool goes = body.has(Body::kHasGoal) || body.has(Body::kExternal) || body.leaves;
@@ -147,18 +154,19 @@ void ClimberEngine::preferred(Body& body, Climb& climb) const {
   climb.preferred_up = desired.y;
 }
 
-// Is the other held up where he cannot step aside, on his way over an edge or a gap, or by one who
-// is bound for nowhere any more?
-bool ClimberEngine::lets_off(const Body& body, const Climb& climb, const Body& other) const {
+// Is the other blocked where it cannot step aside, on its path over an edge or a hole, or by a body
+// that has no goal left?
+bool ClimberEngine::needs_space(const Body& body, const Climb& climb, const Body& other) const {
   if (!other.climbs || climb.at.in_air != 0) return false;
   const Climb& of_other = climbs_[other.slot];
   const bool rests = body.has(Body::kArrived) || !body.has(Body::kHasGoal);
-  if (rests && of_other.waited > kAsks && !other.has(Body::kArrived)) return true;
+  if (rests && of_other.waited > kYieldDelay && !other.has(Body::kArrived)) return true;
   return of_other.at.in_air != 0 && of_other.at.part > 0 && of_other.waited > 0 &&
          (of_other.waited >= climb.waited || other.slot < body.slot);
 }
 
-// Appends whom the climber could touch to `others`, and takes in the nearest, by which it steers.
+// Appends the bodies that the climber could touch to `others`, and adds the nearest, by which it
+// steers.
 void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situation,
                           bool& yields) const {
   const uint32_t i = rounds_.movers[c];
@@ -166,17 +174,17 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
   const Climb& climb = climbs_[body.slot];
   const StepUnits& units = config_.units;
   NearestInAir nearest(sight_metres_);
-  // Where the middles of both may be after a step, and how far their cylinders may reach then.
+  // Where the centres of both may be after a step, and how far their cylinders may extend then.
   const auto rise = static_cast<int64_t>(fastest_ * units.dt * 1000) + 2;
   const int64_t stride = units.stride(fastest_) + 1;
-  const auto look_at = [&](const FlyerGrid::Entry& entry, bool is_near) {
+  const auto query = [&](const FlyerGrid::Entry& entry, bool is_near) {
     if (entry.body == i) return;
     const Body& other = bodies_[entry.body];
     if (is_near) {
-      const int64_t reach = widest_ + stride + (other.climbs ? widest_ + stride : entry.radius);
+      const int64_t range = widest_ + stride + (other.climbs ? widest_ + stride : entry.radius);
       const int64_t high = tallest_ + 2 * rise + (other.climbs ? tallest_ : entry.height);
-      const int64_t up = int64_t{2} * (entry.y - body.y) + entry.height - body.height;  // twice
-      if (std::abs(up) <= 2 * high && nearer_than(entry.x - body.x, entry.z - body.z, reach)) {
+      const int64_t up = int64_t{2} * (entry.y - body.y) + entry.height - body.height;  // doubled
+      if (std::abs(up) <= 2 * high && nearer_than(entry.x - body.x, entry.z - body.z, range)) {
         worker.others.push_back(entry.body);
       }
     }
@@ -187,7 +195,7 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
     const float high = static_cast<float>(apart) * 1e-3f;
     nearest.add(dx * dx + dz * dz + high * high, other.slot, entry.body);
   };
-  nearest.look_around(grid_, body, near_metres_, units.unit, look_at);
+  nearest.query_neighbours(grid_, body, near_metres_, units.unit, query);
   situation.velocity = {body.velocity.x, climb.rise, body.velocity.z};
   situation.preferred = {body.preferred.x, climb.preferred_up, body.preferred.z};
   situation.fastest = body.speed;
@@ -205,7 +213,7 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
     } else if (other.flies()) {
       up = flights_[other.slot].rise;
     }
-    // Who has arrived makes way for those who would pass, were he not there.
+    // A climber that has arrived yields to those that would pass if it were not there.
     const bool is_passed = body.has(Body::kArrived) && other.climbs && !other.has(Body::kArrived);
     const Space velocity = is_passed ? Space{other.preferred.x, preferred_up, other.preferred.z}
                                      : Space{other.velocity.x, up, other.velocity.z};
@@ -213,11 +221,11 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
                          velocity,
                          static_cast<float>(body.radius + other.radius) * units.unit,
                          static_cast<float>(other.height) * 1e-3f};
-    if (yields || !lets_off(body, climb, other)) continue;
+    if (yields || !needs_space(body, climb, other)) continue;
     const Climb& of_other = climbs_[other.slot];
     const Space off = space_of(of_other.feet - climb.feet);
     const float far = steer::size_of(off);
-    const float room = static_cast<float>(body.height + other.height) * 1e-3f + kBeside;
+    const float room = static_cast<float>(body.height + other.height) * 1e-3f + kYieldDistance;
     if (far > 0 && far < room) {
       situation.preferred = (-0.5f * body.speed / far) * off;
       yields = true;
@@ -226,32 +234,33 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
 }
 
 // The best first.
-void ClimberEngine::find_paths(const Body& body, const Climb& climb,
-                               const steer::AirSituation& situation, bool yields,
-                               Contest& contest) const {
+void ClimberEngine::find_candidates(const Body& body, const Climb& climb,
+                                    const steer::AirSituation& situation, bool yields,
+                                    Contest& contest) const {
   const ClimberGround& ground = *grounds_[body.avatar_class];
   const float dt = config_.units.dt;
-  const double most = double{body.speed} * dt;
-  contest.ways = 0;
+  const double max_travel = double{body.speed} * dt;
+  contest.candidate_count = 0;
   const auto add = [&](const std::optional<ClimberGround::Step>& step, bool on_path) {
-    if (!step || contest.ways == kWays) return;
-    const auto hold = ground.hold_of(step->pose, climb.radius);
-    if (!hold) return;
-    if (is_blocked(ground, body, climb, *hold, step->pose)) return;
-    contest.displacement[contest.ways++] = {*step, *hold, on_path};
+    if (!step || contest.candidate_count == kCandidates) return;
+    const auto cylinder = ground.cylinder_of(step->pose, climb.radius);
+    if (!cylinder) return;
+    if (is_blocked(ground, body, climb, *cylinder, step->pose)) return;
+    contest.displacement[contest.candidate_count++] = {*step, *cylinder, on_path};
   };
   const bool goes = climb.count > 0 && steer::size_of(situation.preferred) > 0;
-  // Where it stops the wish is slower; else what is left of a step goes on along the way.
+  // Where it stops, the preferred velocity is slower; else the rest of a step continues along the
+  // path.
   const double desired = climb.is_last_segment() || body.has(Body::kExternal)
                              ? double{steer::size_of(situation.preferred)} * dt
-                             : most;
+                             : max_travel;
   if (climb.at.in_air != 0) {
     const bool turning = climb.count > 0 && climb.at.next < climb.count;
-    const double along = body.has(Body::kExternal) ? std::max(desired, most / 4) : most;
+    const double along = body.has(Body::kExternal) ? std::max(desired, max_travel / 4) : max_travel;
     for (const double part : {1.0, 0.5, 0.25}) {
       if (turning) add(ground.advance(climb, part * along), true);
     }
-    if (climb.waited > kTurnsBack) add(ground.retreat(climb, most), false);
+    if (climb.waited > kRetreatDelay) add(ground.retreat(climb, max_travel), false);
     return;
   }
   if (!yields && steer::preferred_is_open(config_.steering, situation)) {
@@ -266,14 +275,14 @@ void ClimberEngine::find_paths(const Body& body, const Climb& climb,
     const bool ahead =
         !yields && goes && steer::dot(v, situation.preferred) > 0.999f * speed * preferred;
     if (ahead) {
-      add(ground.advance(climb, std::min(most, desired * (speed / preferred))), true);
+      add(ground.advance(climb, std::min(max_travel, desired * (speed / preferred))), true);
     } else {
-      add(ground.shift(climb, Vec3d{v.x, v.y, v.z} * dt, most), false);
+      add(ground.shift(climb, Vec3d{v.x, v.y, v.z} * dt, max_travel), false);
     }
   }
 }
 
-// Sense, steer, and take a place if nobody can object.
+// Senses, steers, and takes a place at once if no other could touch it.
 void ClimberEngine::decide(uint32_t c, Worker& worker) {
   const Body& body = bodies_[rounds_.movers[c]];
   const Climb& climb = climbs_[body.slot];
@@ -286,14 +295,14 @@ void ClimberEngine::decide(uint32_t c, Worker& worker) {
   bool yields = false;
   sense(c, worker, situation, yields);
   contest.last = static_cast<uint32_t>(worker.others.size());
-  find_paths(body, climb, situation, yields, contest);
+  find_candidates(body, climb, situation, yields, contest);
   move.yields = yields;
-  if (contest.first != contest.last && contest.ways > 0) {
+  if (contest.first != contest.last && contest.candidate_count > 0) {
     ++worker.counts.contested;
     move.state = Move::kUndecided;
     return;
   }
-  if (contest.ways > 0) {
+  if (contest.candidate_count > 0) {
     move.displacement = contest.displacement[0];
     move.state = Move::kDecided;
   }
@@ -301,25 +310,25 @@ void ClimberEngine::decide(uint32_t c, Worker& worker) {
   worker.contests.pop_back();
 }
 
-// Is a cylinder clear of where everybody is now?
+// Is a cylinder clear of where all bodies are now?
 bool ClimberEngine::is_clear(const Contest& contest, const Worker& owner,
-                             const ClimbHold& hold) const {
+                             const ClimbCylinder& cylinder) const {
   for (const uint32_t j : owner.others_of(contest)) {
     const Body& other = bodies_[j];
-    ClimbHold there = hold_of(other);
+    ClimbCylinder there = cylinder_of(other);
     if (other.climbs) {
       const Move& move = rounds_.moves[rounds_.mover_of[j]];
-      if (move.state == Move::kDecided) there = move.displacement.hold;
+      if (move.state == Move::kDecided) there = move.displacement.cylinder;
     }
-    if (overlaps_with(hold, there)) return false;
+    if (overlaps_with(cylinder, there)) return false;
   }
   return true;
 }
 
-// The first of his ways that is clear.
-bool ClimberEngine::name(const Contest& contest, const Worker& owner) {
-  for (size_t w = 0; w < contest.ways; ++w) {
-    if (!is_clear(contest, owner, contest.displacement[w].hold)) continue;
+// Proposes the first candidate that is clear.
+bool ClimberEngine::propose(const Contest& contest, const Worker& owner) {
+  for (size_t w = 0; w < contest.candidate_count; ++w) {
+    if (!is_clear(contest, owner, contest.displacement[w].cylinder)) continue;
     rounds_.moves[contest.mover].displacement = contest.displacement[w];
     return true;
   }
@@ -348,11 +357,11 @@ void ClimberEngine::settle(uint32_t c, uint64_t step, EngineCounts& counts) {
     climb.at = at;
     climb.feet = pose.feet;
     climb.axis = pose.axis;
-    body.x = move.displacement.hold.low.x;
-    body.z = move.displacement.hold.low.z;
-    body.y = move.displacement.hold.low.y;
-    body.radius = move.displacement.hold.radius;
-    body.height = static_cast<uint16_t>(move.displacement.hold.height);
+    body.x = move.displacement.cylinder.low.x;
+    body.z = move.displacement.cylinder.low.z;
+    body.y = move.displacement.cylinder.low.y;
+    body.radius = move.displacement.cylinder.radius;
+    body.height = static_cast<uint16_t>(move.displacement.cylinder.height);
     if (!(far > 0)) ++counts.stood;
   } else {
     body.velocity = {};
@@ -363,21 +372,22 @@ void ClimberEngine::settle(uint32_t c, uint64_t step, EngineCounts& counts) {
   counts.progress += std::lrint(gained * 1e6f);
   const bool at_end = climb.is_last_segment() && climb.at.in_air == 0;
   const float left = at_end ? steer::size_of(space_of(ground.path_ahead(climb))) : 1;
-  if (at_end && left < kThere && climb.detour <= 0 && !body.has(Body::kArrived)) {
+  if (at_end && left < kArrivalRadius && climb.detour <= 0 && !body.has(Body::kArrived)) {
     body.flags |= Body::kArrived;
     move.arrives = true;
   }
-  const bool is_there = body.has(Body::kArrived) && left < kThere && !move.yields;
-  if (gained > kGetsOn || is_there) {
+  const bool is_there = body.has(Body::kArrived) && left < kArrivalRadius && !move.yields;
+  if (gained > kProgressShare || is_there) {
     climb.waited = std::max(0.0f, climb.waited - 0.5f * units.dt);
     return;
   }
   climb.waited += units.dt;
-  const auto temper = static_cast<float>(random_below(config_.seed ^ kTempers, body.slot, step, 3));
-  const float most = kPatience + temper;
-  if (config_.deadlock_avoidance && climb.waited > most && climb.is_on_ground()) {
+  const auto extra =
+      static_cast<float>(random_below(config_.seed ^ kDetourDelays, body.slot, step, 3));
+  const float delay = kDetourDelay + extra;
+  if (config_.deadlock_avoidance && climb.waited > delay && climb.is_on_ground()) {
     climb.waited = 0;
-    climb.turns_off = 1;
+    climb.turns_aside = 1;
   }
 }
 

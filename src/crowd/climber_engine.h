@@ -19,8 +19,8 @@
 #include "crowd/step_units.h"
 #include "steer/air.h"
 
-/// The step of those who go over nodes, after those of who walks and who flies: sense, steer,
-/// commit in rounds, settle. docs/design/013-climbers.md.
+/// The step of climbers, after those of walkers and flyers: sense, steer, resolve conflicts,
+/// settle. docs/design/013-climbers.md.
 namespace throng {
 
 struct ClimberConfig {
@@ -38,54 +38,53 @@ class ClimberEngine {
   /// `classes`: of the world.
   ClimberEngine(const ClimberConfig& config, size_t classes);
 
-  /// Of a class that somebody is of who goes over nodes.
+  /// Required for each class of which there is a climber.
   void set_ground(size_t avatar_class, const ClimberGround* ground) {
     grounds_[avatar_class] = ground;
   }
-  /// As FlyerEngine::fit, of the cylinders that hold bodies.
+  /// As FlyerEngine::fit, for the cylinders that enclose bodies.
   void fit(int32_t widest, float fastest, int32_t tallest, float dt);
-  /// What is up: as flyers know it, and as it is.
+  /// The active obstacles: as flyers test them, and as solids.
   void set_obstacles(std::vector<AirObstacle> obstacles, std::vector<Solid> solids) {
     obstacles_ = std::move(obstacles);
     solids_ = std::move(solids);
   }
-  /// Does something that is up meet the body? What does not meet the cylinder that holds it is not
-  /// looked at.
-  [[nodiscard]] bool is_blocked(const ClimberGround& ground, const ClimbHold& hold,
+  /// Does an active obstacle meet the body? Only obstacles that meet its cylinder are tested.
+  [[nodiscard]] bool is_blocked(const ClimberGround& ground, const ClimbCylinder& cylinder,
                                 const ClimbPose& pose, double radius) const;
 
-  /// The same for a body that goes there from a pose: one that closes lets those go on in it.
+  /// The same for a body that moves there: an obstacle that closes lets a body continue inside it.
   [[nodiscard]] bool is_blocked(const ClimberGround& ground, const Body& body, const Climb& climb,
-                                const ClimbHold& hold, const ClimbPose& pose) const;
-  /// Does the body meet something that is up?
-  [[nodiscard]] bool is_inside(const ClimberGround& ground, const ClimbHold& hold,
+                                const ClimbCylinder& cylinder, const ClimbPose& pose) const;
+  /// Is the body inside an active obstacle?
+  [[nodiscard]] bool is_inside(const ClimberGround& ground, const ClimbCylinder& cylinder,
                                const ClimbPose& pose, double radius) const;
   /// Does a body meet an obstacle?
-  [[nodiscard]] bool in_counterflow(const ClimberGround& ground, const ClimbHold& hold,
+  [[nodiscard]] bool meets_obstacle(const ClimberGround& ground, const ClimbCylinder& cylinder,
                                     const ClimbPose& pose, double radius,
                                     const AirObstacle& obstacle, const Solid& solid) const;
 
-  /// Called for each of them first, on any worker: he finds and follows his way.
+  /// Called first for each climber, on any worker: it finds and follows the path.
   using Before = std::function<void(Body&, Climb&, int32_t worker)>;
-  /// One step of all who go over nodes; `climbs` by slot, `flights` too or none. The others stay
-  /// where they are.
+  /// One step of all climbers; `climbs` by slot, `flights` too, or none. Other bodies keep their
+  /// places.
   void step(uint64_t step, std::span<Body> bodies, std::span<Climb> climbs,
             std::span<const Flight> flights, const Before& before, EngineCounts& counts,
             CrowdEngine::Times& times);
-  /// Slots of those who arrived in the last step.
+  /// Slots of the climbers that arrived in the last step.
   [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
   [[nodiscard]] uint64_t bytes() const;
 
  private:
-  static constexpr size_t kWays = 6;
+  static constexpr size_t kCandidates = 6;
   struct Displacement {
     ClimberGround::Step step;
-    ClimbHold hold;
-    bool on_path = false;  // not aside
+    ClimbCylinder cylinder;
+    bool on_path = false;  // it does not turn aside
   };
   struct Contest : MoverContest {
-    size_t ways = 0;
-    std::array<Displacement, kWays> displacement;
+    size_t candidate_count = 0;
+    std::array<Displacement, kCandidates> displacement;
   };
   struct Move : MoverState {
     Displacement displacement;
@@ -97,18 +96,18 @@ class ClimberEngine {
   void preferred(Body& body, Climb& climb) const;
   void decide(uint32_t climber, Worker& worker);
   void sense(uint32_t climber, Worker& worker, steer::AirSituation& situation, bool& yields) const;
-  [[nodiscard]] bool lets_off(const Body& body, const Climb& climb, const Body& other) const;
-  void find_paths(const Body& body, const Climb& climb, const steer::AirSituation& situation,
-                  bool yields, Contest& contest) const;
+  [[nodiscard]] bool needs_space(const Body& body, const Climb& climb, const Body& other) const;
+  void find_candidates(const Body& body, const Climb& climb, const steer::AirSituation& situation,
+                       bool yields, Contest& contest) const;
   [[nodiscard]] bool is_clear(const Contest& contest, const Worker& owner,
-                              const ClimbHold& hold) const;
-  bool name(const Contest& contest, const Worker& owner);
+                              const ClimbCylinder& cylinder) const;
+  bool propose(const Contest& contest, const Worker& owner);
   void settle(uint32_t climber, uint64_t step, EngineCounts& counts);
 
   ClimberConfig config_;
   std::vector<const ClimberGround*> grounds_;  // by class
   std::vector<AirObstacle> obstacles_;
-  std::vector<Solid> solids_;  // the same
+  std::vector<Solid> solids_;  // the same obstacles
   float sight_metres_ = 5, near_metres_ = 5, fastest_ = 0;
   int32_t widest_ = 0, tallest_ = 0;
   std::span<Body> bodies_;

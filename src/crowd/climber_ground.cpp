@@ -8,15 +8,15 @@
 #include "world/place.h"
 #include "world/zone_data.h"
 
-// Whatever is told here is on the way that the finder proved, or in a square all of which the class
-// may stand on: docs/design/013-climbers.md. Additions, products and square roots only, so that it
-// is the same everywhere.
+// Moves over nodes. All poses lie on the path that the finder proved, or in a square all of which
+// the class may stand on: docs/design/013-climbers.md. Additions, products and square roots only,
+// so that the result is the same everywhere. Constant time, but for the points that a move passes.
 namespace throng {
 namespace {
 
 constexpr double kLittle = 1e-9;    // [m]
 constexpr double kEdgeStep = 1e-4;  // of a patch's parameters, for derivatives
-constexpr int kShorter = 8;         // tries to make a move short enough
+constexpr int kShorter = 8;         // attempts to make a move short enough
 
 }  // namespace
 
@@ -49,7 +49,7 @@ std::optional<ClimbPose> ClimberGround::pose(uint32_t node1, double s, double t)
 std::optional<ClimbPose> ClimberGround::pose_of_point(const Climb& climb, size_t point) const {
   const ClimbPoint& p = climb.points[point];
   if (p.node1 != 0) return pose(p.node1, p.s, p.t);
-  const auto landing = pose_of_point(climb, point + 1);  // a way never ends in the air
+  const auto landing = pose_of_point(climb, point + 1);  // a path never ends in the air
   if (!landing) return std::nullopt;
   return ClimbPose{{landing->feet.x, p.s, landing->feet.z}, {0, 1, 0}};
 }
@@ -64,9 +64,10 @@ std::optional<ClimbPose> ClimberGround::pose_of(const Climb& climb, const ClimbS
   return ClimbPose{from->feet * (1 - at.part) + to->feet * at.part, axis * (1 / size)};
 }
 
-// Circles around the middle: the farthest point of the leaning cylinder is on one of its rims, at
+// Circles around the centre: the farthest point of the leaning cylinder is on one of its rims, at
 // the lowest or highest point of that, or between.
-std::optional<ClimbHold> ClimberGround::hold_of(const ClimbPose& pose, double radius) const {
+std::optional<ClimbCylinder> ClimberGround::cylinder_of(const ClimbPose& pose,
+                                                        double radius) const {
   const Vec3d& axis = pose.axis;
   const double sine = std::sqrt(axis.x * axis.x + axis.z * axis.z), cosine = std::fabs(axis.y);
   const double half = height_ / 2;
@@ -78,20 +79,20 @@ std::optional<ClimbHold> ClimberGround::hold_of(const ClimbPose& pose, double ra
   if (!(std::fabs(x) < 2e9 && std::fabs(z) < 2e9 && std::fabs(middle.y) + high < 2e6)) {
     return std::nullopt;
   }
-  // Those who lean out over the rim of the grid are held from inside.
+  // A body that leans out over the rim of the grid is enclosed from inside.
   const double in_x = std::clamp(std::floor(x), 0.0, width_ - 1.0);
   const double in_z = std::clamp(std::floor(z), 0.0, depth_ - 1.0);
   const double off_x = x - (in_x + 0.5), off_z = z - (in_z + 0.5);
   const bool inside = in_x == std::floor(x) && in_z == std::floor(z);
   const double off = inside ? 1 : std::sqrt(off_x * off_x + off_z * off_z) + 1;
-  ClimbHold hold;
-  hold.radius = static_cast<int32_t>(std::ceil(wide / unit_ + off));
-  if (hold.radius > widest(radius)) return std::nullopt;
-  hold.low.x = static_cast<int32_t>(in_x);
-  hold.low.z = static_cast<int32_t>(in_z);
-  hold.low.y = static_cast<int32_t>(std::floor((middle.y - high) * 1000));
-  hold.height = static_cast<int32_t>(std::ceil((middle.y + high) * 1000)) - hold.low.y;
-  return hold;
+  ClimbCylinder cylinder;
+  cylinder.radius = static_cast<int32_t>(std::ceil(wide / unit_ + off));
+  if (cylinder.radius > widest(radius)) return std::nullopt;
+  cylinder.low.x = static_cast<int32_t>(in_x);
+  cylinder.low.z = static_cast<int32_t>(in_z);
+  cylinder.low.y = static_cast<int32_t>(std::floor((middle.y - high) * 1000));
+  cylinder.height = static_cast<int32_t>(std::ceil((middle.y + high) * 1000)) - cylinder.low.y;
+  return cylinder;
 }
 
 int32_t ClimberGround::widest(double radius) const {
@@ -108,14 +109,14 @@ double ClimberGround::travel(const ClimbPose& from, const ClimbPose& to) const {
   return length(to.feet - from.feet) + reach_ * length(to.axis - from.axis);
 }
 
-BodyRoom ClimberGround::room_of(const ClimbPose& pose, double radius) const {
+BodyRoom ClimberGround::body_room_of(const ClimbPose& pose, double radius) const {
   BodyRoom room;
   room.feet = pose.feet;
   room.axis = pose.axis;
   room.bottom = pose.axis.y > 1 - 1e-12 ? bottom_ : leaning_bottom_;
   room.top = height_;
   room.radius = radius;
-  room.margin = 0;  // Ways may lead along what finders took with a margin.
+  room.margin = 0;  // Paths may lead where finders kept a margin.
   return room;
 }
 
@@ -165,9 +166,9 @@ ClimberGround::Slope ClimberGround::slope_at(const Square& square, const ClimbSt
           (point(0, kEdgeStep) - point(0, -kEdgeStep)) * (0.5 / kEdgeStep)};
 }
 
-// May one who leaves a square along (ds, dt) go on in the next one of the way? On one curved patch,
-// if he leaves it where the two touch: each is proved whole. On level tiles the step between them
-// need not be one that he can take, so there he goes through the point that the way names.
+// May a body that leaves a square along (ds, dt) continue in the next one of the path? On one
+// curved patch, if it leaves it where the two touch: each is proved whole. On level tiles it may be
+// unable to take the step between them, so there it goes through the point that the path has.
 bool ClimberGround::enters_next(const Climb& climb, const Square& here, double ds,
                                 double dt) const {
   const ClimbStance& at = climb.at;
@@ -187,7 +188,7 @@ Vec3d ClimberGround::path_ahead(const Climb& climb) const {
     const auto to = pose_of_point(climb, at.next);
     const Vec3d displacement = to ? to->feet - climb.feet : Vec3d{};
     if (!to || length(displacement) > 0.05) return displacement;
-    // Nearly only turning: as its middle moves.
+    // It nearly only turns: as its centre moves.
     return displacement + (to->axis - climb.axis) * (height_ / 2);
   }
   const Square here = square_here(climb);
@@ -219,83 +220,84 @@ Vec3d ClimberGround::normal_at(const Climb& climb) const {
 }
 
 // Towards the next point, within the square that holds both. True: it is there.
-bool ClimberGround::go_on_surface(const Climb& climb, Step& step, double& most) const {
+bool ClimberGround::advance_on_surface(const Climb& climb, Step& step, double& max_travel) const {
   ClimbStance& at = step.at;
   const ClimbPoint& local_target = climb.points[at.next];
   const auto there = pose(at.node1, local_target.s, local_target.t);
   if (!there) return false;
   const double whole = travel(step.pose, *there);
-  if (whole <= most) {
-    most -= whole;
+  if (whole <= max_travel) {
+    max_travel -= whole;
     step.pose = *there;
     at.s = local_target.s;
     at.t = local_target.t;
     return true;
   }
   const double ds = local_target.s - at.s, dt = local_target.t - at.t;
-  double part = most / whole;
+  double part = max_travel / whole;
   for (int n = 0; n < kShorter; ++n) {
     const auto pose_there = pose(at.node1, at.s + part * ds, at.t + part * dt);
     if (!pose_there) return false;
     const double far = travel(step.pose, *pose_there);
-    if (far <= most) {
+    if (far <= max_travel) {
       at.s += part * ds;
       at.t += part * dt;
       step.pose = *pose_there;
       break;
     }
-    part *= 0.95 * most / far;
+    part *= 0.95 * max_travel / far;
   }
-  most = 0;
+  max_travel = 0;
   return false;
 }
 
-bool ClimberGround::go_through_air(const Climb& climb, Step& step, double& most) const {
+bool ClimberGround::advance_through_air(const Climb& climb, Step& step, double& max_travel) const {
   ClimbStance& at = step.at;
   const auto from = pose_of_point(climb, at.next - 1u), to = pose_of_point(climb, at.next);
   if (!from || !to) {
-    most = 0;
+    max_travel = 0;
     return false;
   }
   const double left = travel(step.pose, *to);
-  if (left <= most) {
-    most -= left;
+  if (left <= max_travel) {
+    max_travel -= left;
     step.pose = *to;
     return true;
   }
-  double part = (1 - at.part) * most / left;
+  double part = (1 - at.part) * max_travel / left;
   for (int n = 0; n < kShorter; ++n) {
     ClimbStance there = at;
     there.part = at.part + part;
     const auto pose_there = pose_of(climb, there);
     if (!pose_there) break;
     const double far = travel(step.pose, *pose_there);
-    if (far <= most) {
+    if (far <= max_travel) {
       at = there;
       step.pose = *pose_there;
       break;
     }
-    part *= 0.95 * most / far;
+    part *= 0.95 * max_travel / far;
   }
-  most = 0;
+  max_travel = 0;
   return false;
 }
 
-std::optional<ClimberGround::Step> ClimberGround::advance(const Climb& climb, double most) const {
+std::optional<ClimberGround::Step> ClimberGround::advance(const Climb& climb,
+                                                          double max_travel) const {
   Step step{climb.at, {climb.feet, climb.axis}};
   ClimbStance& at = step.at;
   if (climb.count == 0) return step;
-  if (at.in_air == 0 && at.next == climb.count) {  // back to where it was, if it made way
+  if (at.in_air == 0 && at.next == climb.count) {  // back to where it was, if it yielded
     at.next = climb.count - 1;
-    go_on_surface(climb, step, most);
+    advance_on_surface(climb, step, max_travel);
     at.next = climb.count;
     return step;
   }
-  // At most all that is left of the way.
-  while (most > kLittle && at.next < climb.count) {
+  // At most all that is left of the path.
+  while (max_travel > kLittle && at.next < climb.count) {
     const ClimbPoint& local_target = climb.points[at.next];
-    const bool there =
-        at.in_air != 0 ? go_through_air(climb, step, most) : go_on_surface(climb, step, most);
+    const bool there = at.in_air != 0 ? advance_through_air(climb, step, max_travel)
+                                      : advance_on_surface(climb, step, max_travel);
     if (!there) break;
     ++at.next;
     at.part = 0;
@@ -309,7 +311,8 @@ std::optional<ClimberGround::Step> ClimberGround::advance(const Climb& climb, do
   return step;
 }
 
-std::optional<ClimberGround::Step> ClimberGround::retreat(const Climb& climb, double most) const {
+std::optional<ClimberGround::Step> ClimberGround::retreat(const Climb& climb,
+                                                          double max_travel) const {
   Step step{climb.at, {climb.feet, climb.axis}};
   ClimbStance& at = step.at;
   if (at.in_air == 0 || at.part == 0 || climb.points[at.next].drops != 0) return std::nullopt;
@@ -322,14 +325,14 @@ std::optional<ClimberGround::Step> ClimberGround::retreat(const Climb& climb, do
     const auto pose_there = there.part == 0 ? from : pose_of(climb, there);
     if (!pose_there) return std::nullopt;
     const double far = travel(step.pose, *pose_there);
-    if (far <= most) return Step{there, *pose_there};
-    part *= 0.95 * most / far;
+    if (far <= max_travel) return Step{there, *pose_there};
+    part *= 0.95 * max_travel / far;
   }
   return std::nullopt;
 }
 
 std::optional<ClimberGround::Step> ClimberGround::shift(const Climb& climb, Vec3d displacement,
-                                                        double most) const {
+                                                        double max_travel) const {
   const ClimbStance& at = climb.at;
   if (at.in_air != 0) return std::nullopt;
   const Square here = square_here(climb);
@@ -339,11 +342,11 @@ std::optional<ClimberGround::Step> ClimberGround::shift(const Climb& climb, Vec3
   if (!(det > 1e-6 * a * c)) return std::nullopt;
   const double u = dot(displacement, slope.along_s), v = dot(displacement, slope.along_t);
   const double ds = (c * u - b * v) / det, dt = (a * v - b * u) / det;
-  const bool goes_on = enters_next(climb, here, ds, dt);
+  const bool continues = enters_next(climb, here, ds, dt);
   const double out = here.part_inside(at.s, at.t, ds, dt);
   Square next;
   double part = out;
-  if (goes_on && out < 1) {
+  if (continues && out < 1) {
     next = square_of(climb.points[at.next].node1);
     const double s = at.s + out * ds, t = at.t + out * dt;
     part = out + next.part_inside(s, t, (1 - out) * ds, (1 - out) * dt) * (1 - out);
@@ -362,11 +365,11 @@ std::optional<ClimberGround::Step> ClimberGround::shift(const Climb& climb, Vec3
     const auto pose_there = pose(step.at.node1, step.at.s, step.at.t);
     if (!pose_there) return std::nullopt;
     const double far = travel({climb.feet, climb.axis}, *pose_there);
-    if (far <= most) {
+    if (far <= max_travel) {
       step.pose = *pose_there;
       return step;
     }
-    part *= 0.95 * most / far;
+    part *= 0.95 * max_travel / far;
   }
   return std::nullopt;
 }

@@ -12,7 +12,7 @@
 #include "throng/nodes.h"
 #include "throng/world.h"
 
-/// The nodes of a class as a crowd's step moves over them.
+/// The nodes of a class, as climbers move over them.
 namespace throng {
 
 /// A body stands at `feet` along `axis`. [m]
@@ -20,48 +20,49 @@ struct ClimbPose {
   Vec3d feet, axis;
 };
 
-/// An upright cylinder that holds a body, however it leans.
-struct ClimbHold {
-  AirSpot low;         // middle of its bottom
+/// An upright cylinder that encloses a body, however it leans.
+struct ClimbCylinder {
+  AirPosition low;     // centre of its bottom
   int32_t radius = 0;  // [units]
   int32_t height = 0;  // [mm]
 };
 
 class ClimberGround {
  public:
-  /// [the finder is the class's, and outlives this]
+  /// [the finder is of this class, and outlives this]
   ClimberGround(const World& world, const Nodes& nodes, const NodePathFinder& finder,
                 int32_t avatar_class);
 
-  /// Where the class stands on a node; none where it may not.
+  /// How the class stands on a node; none where it may not.
   [[nodiscard]] std::optional<ClimbPose> pose(uint32_t node1, double s, double t) const;
   [[nodiscard]] std::optional<ClimbPose> pose_of(const Climb& climb, const ClimbStance& at) const;
   /// None if it would lie off the world's grid.
-  [[nodiscard]] std::optional<ClimbHold> hold_of(const ClimbPose& pose, double radius) const;
-  /// No body of such a radius needs a cylinder that is wider, or higher. [m to units, m to mm]
+  [[nodiscard]] std::optional<ClimbCylinder> cylinder_of(const ClimbPose& pose,
+                                                         double radius) const;
+  /// No body of this radius needs a wider or taller cylinder. [m to units, m to mm]
   [[nodiscard]] int32_t widest(double radius) const;
   [[nodiscard]] int32_t tallest(double radius) const;
   /// No point of a body moves farther from one pose to the other. [m]
   [[nodiscard]] double travel(const ClimbPose& from, const ClimbPose& to) const;
 
-  /// What a body takes in a pose. [m]
-  [[nodiscard]] BodyRoom room_of(const ClimbPose& pose, double radius) const;
+  /// The space that a body occupies in a pose. [m]
+  [[nodiscard]] BodyRoom body_room_of(const ClimbPose& pose, double radius) const;
 
   struct Step {
     ClimbStance at;
     ClimbPose pose;
   };
-  /// As far along the way as no point of the body moves farther than `most`; back, on a leg through
-  /// the air. [m]
-  [[nodiscard]] std::optional<Step> advance(const Climb& climb, double most) const;
-  [[nodiscard]] std::optional<Step> retreat(const Climb& climb, double most) const;
-  /// Off the way, on the surface: `displacement` from here, or as far as is proved.
+  /// As far along the path as no point of the body moves farther than `max_travel`; `retreat`:
+  /// back, on a segment through the air. [m]
+  [[nodiscard]] std::optional<Step> advance(const Climb& climb, double max_travel) const;
+  [[nodiscard]] std::optional<Step> retreat(const Climb& climb, double max_travel) const;
+  /// Off the path, on the surface: `displacement` from here, or as far as is proved free.
   [[nodiscard]] std::optional<Step> shift(const Climb& climb, Vec3d displacement,
-                                          double most) const;
-  /// What is left to the point that it is bound for: straight by the patch's parameters, so this
-  /// begins along the surface, and is as long as the straight line. [m]
+                                          double max_travel) const;
+  /// The vector to the point that it heads to: straight in the patch's parameters, so it begins
+  /// along the surface and is as long as the straight line. [m]
   [[nodiscard]] Vec3d path_ahead(const Climb& climb) const;
-  /// Up from the surface; along the body where it is in the air.
+  /// The surface's normal; the body's axis where it is in the air.
   [[nodiscard]] Vec3d normal_at(const Climb& climb) const;
 
  private:
@@ -69,21 +70,22 @@ class ClimberGround {
     double s0 = 0, t0 = 0, s1 = 0, t1 = 0;
     PatchKind kind = PatchKind::kLevelTile;
     uint32_t source = 0;
-    bool partial = false;  ///< Of a ragged node: its block, of which not all need be the node.
+    bool partial = false;  ///< Of a partial node: the block, of which some cells may lie outside
+                           ///< the node.
 
-    /// (But for what rounding takes.)
+    /// (Up to rounding.)
     [[nodiscard]] bool holds(double s, double t) const {
       constexpr double kRounded = 1e-12;
       return s >= s0 - kRounded && s <= s1 + kRounded && t >= t0 - kRounded && t <= t1 + kRounded;
     }
-    /// How much of the way from a point inside along (ds, dt) lies in it, at most all of it.
+    /// The fraction of the segment from a point inside along (ds, dt) that lies inside, at most 1.
     [[nodiscard]] double part_inside(double s, double t, double ds, double dt) const;
   };
   struct Slope {
     Vec3d along_s, along_t;
   };
-  /// The node's, or, of a ragged node, what is known to be free around a leg to (s, t): else only
-  /// the place itself.
+  /// The node's square; of a partial node, what is known to be free around a segment to (s, t):
+  /// else only the place itself.
   [[nodiscard]] Square square_of(const ClimbStance& at, double s, double t) const;
   [[nodiscard]] Square square_of(uint32_t node1) const;
   [[nodiscard]] Square square_here(const Climb& climb) const;
@@ -91,8 +93,8 @@ class ClimberGround {
   [[nodiscard]] std::optional<ClimbPose> pose_of_point(const Climb& climb, size_t point) const;
   [[nodiscard]] bool enters_next(const Climb& climb, const Square& here, double ds,
                                  double dt) const;
-  bool go_on_surface(const Climb& climb, Step& step, double& most) const;
-  bool go_through_air(const Climb& climb, Step& step, double& most) const;
+  bool advance_on_surface(const Climb& climb, Step& step, double& max_travel) const;
+  bool advance_through_air(const Climb& climb, Step& step, double& max_travel) const;
 
   const Nodes* nodes_;
   const NodePathFinder* finder_;

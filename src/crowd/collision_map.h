@@ -9,13 +9,13 @@
 #include "core/prefetch.h"
 #include "crowd/pixel_grid.h"
 
-/// The collision map: who is where, on a grid of its own. Source: [TC00] section 3; the bit per
+/// The collision map: where bodies are, on a grid of its own. Source: [TC00] section 3; the bit per
 /// cell and level of [ML06] section 3.1.
 namespace throng {
 
-/// [TC00] adds 1 to nine pixels and asks for a 0; setting bits in one pixel and reading nine is the
-/// same, with a ninth of the writes. A pixel's bits are slices of kSlab height, so floors above
-/// each other do not see each other. Two bodies whose heights overlap share a slice. Not
+/// [TC00] adds 1 to nine pixels and requires a 0; setting bits in one pixel and reading nine is the
+/// same, with a ninth of the writes. A pixel's bits are slices of kSlab height, so bodies on
+/// different floors do not collide. Two bodies whose heights overlap share a slice. Not
 /// synchronised: see CrowdBlocks.
 class CollisionMap {
  public:
@@ -41,7 +41,7 @@ class CollisionMap {
   [[nodiscard]] Mark mark(GroundPoint p, int32_t feet) const {
     return {pixels().number(grid_.pixel(p.cell_x()), grid_.pixel(p.cell_z())), slices(feet)};
   }
-  /// How the pixels of the map are numbered, as a value, for loops to keep at hand.
+  /// How the pixels of the map are numbered, as a value that a loop keeps in registers.
   struct Pixels {
     PixelGrid grid;
     uint32_t stride;  // pixels a row, with a rim of one
@@ -65,26 +65,26 @@ class CollisionMap {
     word(m.slices.plane, m.pixel) &= ~m.slices.low;
     if (m.slices.high != 0) word(m.slices.plane + 1, m.pixel) &= ~m.slices.high;
   }
-  /// True if nobody's slices overlap the mark's in its pixel and the eight around.
+  /// True if no body's slices overlap the mark's in its pixel and the eight around.
   [[nodiscard]] bool is_free(const Mark& m) const {
     if ((around(m.slices.plane, m.pixel) & m.slices.low) != 0) return false;
     return m.slices.high == 0 || (around(m.slices.plane + 1, m.pixel) & m.slices.high) == 0;
   }
 
-  /// One of the eight ways to a pixel beside: dx and dz are -1, 0 or 1, and not both 0.
-  [[nodiscard]] static constexpr uint32_t way(int32_t dx, int32_t dz) {
+  /// Index of one of the eight neighbour pixels: dx and dz are -1, 0 or 1, and not both 0.
+  [[nodiscard]] static constexpr uint32_t direction_index(int32_t dx, int32_t dz) {
     return static_cast<uint32_t>(dz * 3 + dx + 4);
   }
-  /// Asks for the words that move_by_one will read.
-  void prefetch(const Slices& s, uint32_t from, uint32_t way) const {
-    const Ring& ring = rings_[way];
+  /// Prefetches the words that move_by_one will read.
+  void prefetch(const Slices& s, uint32_t from, uint32_t direction_index) const {
+    const Ring& ring = rings_[direction_index];
     const uint64_t* w = &word(s.plane, from);
     throng::prefetch(w);
     throng::prefetch(w + ring.ahead[0]);
     throng::prefetch(w + ring.ahead[2]);
     throng::prefetch(w + ring.ahead[4]);
   }
-  /// Asks for the words that is_free will read around a point.
+  /// Prefetches the words that is_free will read around a point.
   void prefetch(GroundPoint p, int32_t feet) const {
     const Mark m = mark(p, feet);
     const uint64_t* w = &word(m.slices.plane, m.pixel);
@@ -92,15 +92,15 @@ class CollisionMap {
     throng::prefetch(w);
     throng::prefetch(w + stride_);
   }
-  /// Moves a body that is alone around `from` one pixel along `way`, if it is alone there too. Only
-  /// the pixels around the one and not around the other need a look.
-  bool move_by_one(const Slices& s, uint32_t from, uint32_t way) {
-    const Ring& ring = rings_[way];
+  /// Moves a body that is alone around `from` one pixel along `direction_index`, if it is alone
+  /// there too. Only the pixels around the new and not around the old one are read.
+  bool move_by_one(const Slices& s, uint32_t from, uint32_t direction_index) {
+    const Ring& ring = rings_[direction_index];
     uint64_t* w = &word(s.plane, from);
-    uint64_t taken = ahead(w, ring) & s.low;
-    if (s.high != 0) taken |= ahead(w + plane_size_, ring) & s.high;
-    const bool is_free = taken == 0;
-    // Without a branch: whether the way is free is what nobody can predict.
+    uint64_t occupied = ahead(w, ring) & s.low;
+    if (s.high != 0) occupied |= ahead(w + plane_size_, ring) & s.high;
+    const bool is_free = occupied == 0;
+    // Without a branch: whether the pixels are free cannot be predicted.
     const uint64_t low = is_free ? s.low : 0;
     w[0] ^= low;
     w[ring.to] ^= low;
@@ -115,8 +115,9 @@ class CollisionMap {
   [[nodiscard]] uint64_t bytes() const { return words_.size() * sizeof(uint64_t); }
 
  private:
-  // The pixel that a way leads to, and where to look: as offsets from where it begins. A straight
-  // step has three new pixels and names some of them twice, so that all steps look alike.
+  // The pixel that a direction leads to, and which pixels to read: as offsets from its start. A
+  // straight move has three new pixels and lists some of them twice, so that all moves run the same
+  // code.
   struct Ring {
     int64_t to = 0;
     std::array<int64_t, 5> ahead{};

@@ -18,6 +18,8 @@
 #include "world/node_data.h"
 #include "world/place.h"
 
+// The public face of a crowd: configuration, avatars and their goals, the order of a step's parts,
+// and reports. What classes, targets, obstacles, flyers and climbers need lies in the files beside.
 namespace throng {
 namespace {
 
@@ -27,11 +29,11 @@ constexpr double kMaxSpeed = 100;                        // [m/s]
 constexpr double kMaxRadius = 100;                       // [m]
 constexpr double kMaxBodyHeight = 65;                    // [m]
 constexpr int32_t kMaxSubSteps = 1000;
-constexpr uint64_t kAirDraws = 0x616972;  // stream of chance
+constexpr uint64_t kAirDraws = 0x616972;  // random stream
 
 Error bad_config(const std::string& what) { return {Errc::kBadConfig, "crowd: " + what}; }
 
-// As far as one can tell from outside: worlds that were never written have no hash.
+// As far as known from outside: worlds that were never written have no hash.
 bool is_same_world(const Nodes& nodes, const World& world) {
   const WorldSummary &a = nodes.data()->world.data()->summary, &b = world.data()->summary;
   return a.hash == b.hash && a.cell == b.cell && a.origin == b.origin &&
@@ -87,9 +89,9 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
                       .workers = config.workers,
                       .model = config.model,
                       .steering = steering,
-                      .patience = {},
+                      .deadlock_settings = {},
                       .lanes = {},
-                      .room = {}},
+                      .spacing = {}},
                      data.width, data.depth, data.summary.classes.size());
   FlyerEngine flyers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
                       .sight = static_cast<float>(config.sight),
@@ -98,7 +100,7 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
                       .seed = config.seed,
                       .workers = config.workers,
                       .steering = {},
-                      .patience = {}},
+                      .deadlock_settings = {}},
                      data.summary.classes.size());
   ClimberEngine climbers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
                           .sight = static_cast<float>(config.sight),
@@ -117,7 +119,7 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
 
 void Crowd::State::find_bodies() const {
   if (!where_is_old) return;
-  std::fill(where.begin(), where.end(), kNobody);
+  std::fill(where.begin(), where.end(), kNoBody);
   const std::span<const Body> bodies = engine.bodies();
   for (size_t i = 0; i < bodies.size(); ++i) where[bodies[i].slot] = static_cast<uint32_t>(i);
   where_is_old = false;
@@ -129,7 +131,7 @@ Body* Crowd::State::body(AvatarId id) const {
   }
   find_bodies();
   const uint32_t i = where[id.slot1 - 1];
-  return i == kNobody ? nullptr : &engine.bodies()[i];
+  return i == kNoBody ? nullptr : &engine.bodies()[i];
 }
 
 Result<void> Crowd::State::open_class(int32_t number, Context& context) {
@@ -141,7 +143,7 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   auto ground = CrowdGround::make(*world.data(), number, step_height);
   if (!ground) return ground.error();
   made->ground = std::move(*ground);
-  const bool over_nodes = goes_over_nodes(number);
+  const bool over_nodes = is_climber_class(number);
   if (config.routing == Routing::kPaths && !over_nodes) {
     auto finder = PathFinder::make(world,
                                    {.avatar_class = number,
@@ -169,7 +171,7 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   }
   obstacles.open_class(static_cast<size_t>(number), parts->ground);
   for (uint32_t slot = 0; slot < obstacles.all().size(); ++slot) {
-    report_paths(slot, static_cast<size_t>(number));
+    sync_paths(slot, static_cast<size_t>(number));
   }
   engine.set_ground(static_cast<size_t>(number), StrideGround(parts->ground, step_height));
   if (auto ok = find_flows(number, context); !ok) {
@@ -208,10 +210,10 @@ Result<Body> Crowd::State::body_of(const AvatarSpawn& spawn) const {
   return body;
 }
 
-// Nobody moves further than the smallest radius at a time, so nobody passes through another.
+// No body moves further than the smallest radius at a time, so none passes through another.
 void Crowd::State::make_room(const Body& body) {
   int32_t wide = body.radius, narrow = body.radius, tall = body.height;
-  if (body.climbs) {  // It leans, so what holds it changes.
+  if (body.climbs) {  // It leans, so the cylinder that encloses it changes.
     const ClimberGround& ground = *classes[body.avatar_class]->nodes;
     const double radius = climbs[body.slot].radius;
     wide = ground.widest(radius);
@@ -224,9 +226,11 @@ void Crowd::State::make_room(const Body& body) {
   widest = std::max(widest, wide);
   narrowest = std::min(narrowest, narrow);
   fastest = std::max(fastest, body.speed);
-  const double way = fastest * config.dt / unit;
-  const double most = std::min(narrowest, CrowdEngine::kLongestStep - 16);  // and what is rounded
-  sub_steps = std::clamp(static_cast<int32_t>(std::ceil(way / most - 1e-9)), 1, 1 << 20);
+  const double displacement = fastest * config.dt / unit;
+  const double max_displacement =
+      std::min(narrowest, CrowdEngine::kLongestStep - 16);  // and what is rounded
+  sub_steps = std::clamp(static_cast<int32_t>(std::ceil(displacement / max_displacement - 1e-9)), 1,
+                         1 << 20);
   engine.fit(widest, fastest, static_cast<float>(config.dt / sub_steps));
   flyers.fit(widest, fastest, tallest, static_cast<float>(config.dt / sub_steps));
   climbers.fit(widest, fastest, tallest, static_cast<float>(config.dt / sub_steps));
@@ -247,7 +251,7 @@ AvatarId Crowd::State::add(Body body, const Climb& climb) {
     body.slot = static_cast<uint32_t>(generation.size());
     generation.push_back(1);
     routes.emplace_back();
-    where.push_back(kNobody);
+    where.push_back(kNoBody);
   } else {
     body.slot = free_slots.back();
     free_slots.pop_back();
@@ -262,7 +266,7 @@ AvatarId Crowd::State::add(Body body, const Climb& climb) {
   }
   where[body.slot] = static_cast<uint32_t>(engine.bodies().size());
   if (body.slot < inside.size()) inside[body.slot] = 0;
-  if (body.slot < looked_at.size()) looked_at[body.slot] = kNeverLooked;
+  if (body.slot < checked_at.size()) checked_at[body.slot] = kNeverChecked;
   make_room(body);
   engine.add(body);
   return id_of(body.slot);
@@ -385,7 +389,7 @@ void Crowd::remove(std::span<const AvatarId> ids) {
     if (body == nullptr) continue;
     Body& last = s.engine.bodies().back();
     s.where[last.slot] = s.where[body->slot];
-    s.where[body->slot] = kNobody;
+    s.where[body->slot] = kNoBody;
     ++s.generation[body->slot];
     s.free_slots.push_back(body->slot);
     *body = last;
@@ -400,7 +404,7 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goal
     Body* body = s.body(ids[i]);
     if (body == nullptr) continue;
     body->target = 0;
-    body->turn = 0;
+    body->detour_angle = 0;
     if (s.air_of(*body) != nullptr) {
       s.set_goal_of_flyer(*body, goals[i]);
       continue;
@@ -422,7 +426,7 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goal
                   goals[i].level1 - 1};
     body->local_target_x = route.goal.x;
     body->local_target_z = route.goal.z;
-    body->flags = s.config.routing == Routing::kPaths ? Body::kHasGoal | Body::kLost
+    body->flags = s.config.routing == Routing::kPaths ? Body::kHasGoal | Body::kNeedsPath
                                                       : Body::kHasGoal | Body::kLast;
   }
 }
@@ -434,7 +438,7 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const NodePlace> 
     Body* body = s.body(ids[i]);
     if (body == nullptr || !body->climbs) continue;
     body->target = 0;
-    body->turn = 0;
+    body->detour_angle = 0;
     if (!goals[i]) {
       s.stop_climber(*body);
     } else {
@@ -456,7 +460,7 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
     const double part = size > body->speed ? body->speed / size : 1;
     body->flags = (body->flags & Body::kFlying) | Body::kExternal;
     body->target = 0;
-    body->turn = 0;
+    body->detour_angle = 0;
     body->preferred =
         part > 0 ? steer::Plane{static_cast<float>(v.x * part), static_cast<float>(v.z * part)}
                  : steer::Plane{};
@@ -472,7 +476,7 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
   }
 }
 
-// Follows ways, and asks for those that are missing.
+// Follows paths, and finds those that are missing.
 void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned) {
   const auto metre = static_cast<float>(1 / unit);
   const uint64_t step_now = sub_step - 1;
@@ -486,22 +490,23 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
     }
     if (parts.air && (body.has(Body::kHasGoal) || body.has(Body::kExternal)) &&
         plan_on_foot(body, flights[body.slot], worker, planned)) {
-      body.clear(Body::kKeeps);
+      body.clear(Body::kContinues);
       continue;
     }
-    if (!body.has(Body::kHasGoal) || body.has(Body::kKeeps) || config.routing == Routing::kStraight)
+    if (!body.has(Body::kHasGoal) || body.has(Body::kContinues) ||
+        config.routing == Routing::kStraight)
       continue;
     Route& route = routes[body.slot];
     const StrideGround ground(parts.ground, step_mm(body_class(body.avatar_class)));
-    if (!body.has(Body::kLost)) {
+    if (!body.has(Body::kNeedsPath)) {
       follow(body, route, ground, (step_now + body.slot) / engine.steps_of_reaction(body), metre);
     }
-    if (!body.has(Body::kLost)) continue;
+    if (!body.has(Body::kNeedsPath)) continue;
     ++asked;
     if (plan_path(body, route, ground, worker)) continue;
-    // A region that cannot be walked to may be flown to.
+    // A target that cannot be walked to may be flown to.
     const bool takes_off = parts.air && body.target != 0 && take_off(body, flights[body.slot]);
-    if (!takes_off) strand(body);
+    if (!takes_off) drop_goal(body);
   }
   if (asked > 0) planned.fetch_add(asked, std::memory_order_relaxed);
 }
@@ -542,8 +547,8 @@ CrowdReport Crowd::step() {
   for (int32_t i = 0; i < s.sub_steps; ++i) {
     s.engine.step(s.sub_step++, has_paths ? before : CrowdEngine::Before(), counts, times);
     for (const uint32_t slot : s.engine.arrived()) {
-      // Who only came to where he takes off is not there yet.
-      if (s.flights.empty() || s.flights[slot].to_port == 0) s.arrived.push_back(s.id_of(slot));
+      // An avatar that only reached where it takes off has not arrived.
+      if (s.flights.empty() || s.flights[slot].to_link == 0) s.arrived.push_back(s.id_of(slot));
     }
     if (!s.flights.empty()) s.fly(counts, times, planned);
     if (!s.climbs.empty()) s.move_climbers(counts, times, planned);
@@ -565,8 +570,8 @@ CrowdReport Crowd::step() {
   const auto moves = std::max<double>(1, static_cast<double>(report.avatars) * s.sub_steps);
   report.stood = counts.stood / static_cast<uint64_t>(s.sub_steps);
   report.contested = counts.contested;
-  report.low_detail = counts.far / static_cast<uint64_t>(s.sub_steps);
-  report.skipped = counts.held / static_cast<uint64_t>(s.sub_steps);
+  report.low_detail = counts.low_detail / static_cast<uint64_t>(s.sub_steps);
+  report.skipped = counts.skipped / static_cast<uint64_t>(s.sub_steps);
   report.arrived = s.arrived.size();
   report.planned = planned;
   report.no_path = s.goal_unreachable.size();
@@ -575,7 +580,7 @@ CrowdReport Crowd::step() {
   report.seconds_plan = times.plan;
   report.seconds_sort = times.sort;
   report.seconds_steer = times.steer;
-  report.seconds_commit = times.commit;
+  report.seconds_commit = times.resolve;
   report.seconds_settle = times.settle;
   report.seconds_total = seconds_since(start);
   return report;
@@ -603,7 +608,7 @@ uint64_t Crowd::state_hash() const {
   s.find_bodies();
   std::vector<Body> by_slot;
   for (const uint32_t i : s.where) {
-    if (i == kNobody) continue;
+    if (i == kNoBody) continue;
     Body body = s.engine.bodies()[i];
     body.state = Body::kFree;  // of the step, not of the avatar
     body.steps = 0;
@@ -627,14 +632,14 @@ AvatarState Crowd::State::state_of(const Body& b) const {
   const Vec3d origin = world.data()->summary.origin;
   if (b.climbs) {
     const Climb& climb = climbs[b.slot];
-    const Vec3d way = unleaned({b.velocity.x, climb.rise, b.velocity.z}, climb.axis);
-    const double size = std::hypot(way.x, way.z);
+    const Vec3d displacement = unleaned({b.velocity.x, climb.rise, b.velocity.z}, climb.axis);
+    const double size = std::hypot(displacement.x, displacement.z);
     return {.id = b.slot,
             .avatar_class = b.avatar_class,
             .position = climb.feet,
             .radius = climb.radius,
-            .heading_x = size > 0 ? way.x / size : 0,
-            .heading_z = size > 0 ? way.z / size : 1,
+            .heading_x = size > 0 ? displacement.x / size : 0,
+            .heading_z = size > 0 ? displacement.z / size : 1,
             .climbs = true,
             .up = climb.axis};
   }
@@ -653,7 +658,7 @@ void Crowd::read(std::vector<AvatarState>& out) const {
   s.find_bodies();
   out.clear();
   for (const uint32_t i : s.where) {
-    if (i != kNobody) out.push_back(s.state_of(s.engine.bodies()[i]));
+    if (i != kNoBody) out.push_back(s.state_of(s.engine.bodies()[i]));
   }
 }
 
@@ -681,7 +686,7 @@ CrowdMemory Crowd::memory() const {
   memory.avatars = s.engine.bytes() + s.flyers.bytes() + s.climbers.bytes() +
                    (s.generation.capacity() + s.where.capacity() + s.free_slots.capacity()) * 4 +
                    s.inside.capacity() * sizeof(uint64_t) +
-                   s.looked_at.capacity() * sizeof(s.looked_at[0]);
+                   s.checked_at.capacity() * sizeof(s.checked_at[0]);
   memory.paths = s.routes.capacity() * sizeof(Route) + s.flights.capacity() * sizeof(Flight) +
                  s.climbs.capacity() * sizeof(Climb);
   for (const auto& parts : s.classes) memory.ground += parts ? parts->ground.bytes() : 0;

@@ -7,6 +7,8 @@
 
 #include "core/parallel.h"
 
+// Sorts avatars by block with a counting sort, then each block by level and id. Linear in the
+// avatars and blocks, but for the sorts of single blocks.
 namespace throng {
 
 CrowdBlocks::CrowdBlocks(int32_t width, int32_t depth, PixelGrid grid, int32_t block_pixels)

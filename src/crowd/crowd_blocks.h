@@ -10,14 +10,14 @@
 #include "crowd/avatars.h"
 #include "crowd/pixel_grid.h"
 
-/// Who moves at the same time as whom.
+/// Which avatars move at the same time.
 namespace throng {
 
 /// The world in square blocks of pixels. Blocks of one colour (of four) lie a whole block apart, so
-/// nobody who moves in one of them reads or writes what a mover of another touches, as long as
-/// avatars have not drifted far since they were last sorted. Within a block avatars move in a fixed
-/// order. So every move sees the true places of all others, and the order, hence the result, is the
-/// same for any number of threads.
+/// an avatar that moves in one of them reads and writes nothing that an avatar in another touches,
+/// as long as avatars have not drifted far since they were last sorted. Within a block avatars move
+/// in a fixed order. So every move sees the current places of all others, and the order, hence the
+/// result, is the same for any number of threads.
 class CrowdBlocks {
  public:
   static constexpr uint32_t kColours = 4;

@@ -13,6 +13,8 @@
 #include "world/air_data.h"
 #include "world/ground.h"
 
+// Counts overlapping pairs, bodies off legal ground or air, and bodies in obstacles, by exact
+// distances: sorted along one axis of squares, so n log n unless the crowd is dense.
 namespace throng {
 namespace {
 
@@ -23,7 +25,7 @@ double square_to(const Prism& prism, double x, double z) {
     const auto& [ax, az] = prism.corners[i];
     const auto& [bx, bz] = prism.corners[(i + 1) % prism.corners.size()];
     const double ux = ax - x, uz = az - z, vx = bx - x, vz = bz - z;
-    // The angle under which the side is seen: all of them make a turn for whoever is inside.
+    // The angle under which the side is seen: the sum is a full turn if the point is inside.
     around += std::atan2(ux * vz - uz * vx, ux * vx + uz * vz);
     const double wx = bx - ax, wz = bz - az;
     const double along = -(ux * wx + uz * wz), whole = wx * wx + wz * wz;
@@ -50,7 +52,7 @@ uint64_t count_inside(const WorldData& data, std::span<const CheckedBody> bodies
   std::vector<Entry> entries;
   double widest = 0;
   for (const CheckedBody& body : bodies) {
-    if (body.climbs) continue;  // The crowd asks for his own body: this one only holds it.
+    if (body.climbs) continue;  // The crowd tests the body itself: this one only encloses it.
     const AvatarClass& avatar = data.summary.classes[static_cast<size_t>(body.avatar_class)];
     const double lean = avatar.radius * std::tan(avatar.max_slope * std::numbers::pi / 180);
     const double bottom = body.flies ? 0 : std::max(avatar.step, lean);
@@ -70,17 +72,17 @@ uint64_t count_inside(const WorldData& data, std::span<const CheckedBody> bodies
     auto entry = std::lower_bound(entries.begin(), entries.end(), x0 - widest,
                                   [](const Entry& e, double x) { return e.x < x; });
     for (; entry != entries.end() && entry->x <= x1 + widest; ++entry) {
-      const double reach = entry->radius - 1e-9;
+      const double range = entry->radius - 1e-9;
       found += prism.low < entry->y + entry->height && prism.high > entry->y + entry->bottom &&
-               square_to(prism, entry->x, entry->z) < reach * reach;
+               square_to(prism, entry->x, entry->z) < range * range;
     }
   }
   return found;
 }
 
-// May a class's feet be there, in the air? By the octrees of the zones, as they were baked; or on
-// the way between the ground and the lowest air straight over it, which begins no higher than the
-// body is.
+// May the feet of a class be at this position in the air? By the octrees of the zones, as they were
+// baked; or between the ground and the lowest air straight above it, which begins no higher than
+// the body is tall.
 class AirCheck {
  public:
   AirCheck(const WorldData& data, int32_t avatar_class)
@@ -160,8 +162,8 @@ CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
     wall_entries += found;
   });
 
-  // Bodies in order of a column of squares as wide as the widest, then along it: partners are near
-  // in the list.
+  // Bodies in order of a column of squares as wide as the widest, then along it: pairs are close in
+  // the list.
   double width = 0;
   for (const CheckedBody& body : bodies) width = std::max(width, 2 * body.radius);
   struct Entry {
@@ -180,10 +182,10 @@ CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
   });
   const auto overlaps_with = [&](const Entry& a, const Entry& b) {
     const double dx = a.x - b.x, dz = a.z - b.z;
-    const double reach = a.radius + b.radius - 1e-9;
-    // One may be exactly over the other.
+    const double range = a.radius + b.radius - 1e-9;
+    // One may stand exactly on top of the other.
     const bool level = a.y < b.y + b.height - 1e-9 && b.y < a.y + a.height - 1e-9;
-    return dx * dx + dz * dz < reach * reach && level;
+    return dx * dx + dz * dz < range * range && level;
   };
   parallel_ranges(entries.size(), 1024, workers, [&](size_t begin, size_t end) {
     uint64_t found = 0;

@@ -9,7 +9,7 @@
 #include "throng/prism.h"
 #include "throng/world.h"
 
-/// A look at a crowd that shares nothing with the step: exact distances, the world's own look-ups.
+/// A check of a crowd that shares nothing with the step: exact distances, the world's own queries.
 namespace throng {
 
 struct CheckedBody {
@@ -19,10 +19,11 @@ struct CheckedBody {
   int32_t avatar_class = 0;
   double radius = 0, height = 0;  // [m]
   bool flies = false;             // it is in the air, or between the ground and the air
-  bool climbs = false;            // over nodes: others ask whether it may be there
+  bool climbs = false;            // over nodes: other code checks whether it may be there
 };
 
-/// `obstacles`: what nobody may be in, a body with the radius of its class, from its step up.
+/// `obstacles`: what no body may be in, a body with the radius of its class, from its step height
+/// up.
 CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
                         std::span<const Prism> obstacles, int32_t workers);
 

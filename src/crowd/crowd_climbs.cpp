@@ -9,20 +9,23 @@
 #include "crowd/crowd_state.h"
 #include "throng/crowd.h"
 
-// What a crowd does about those who go over nodes: where they begin, and how they find and follow
-// their ways. docs/design/013-climbers.md.
+// Climbers of a crowd: where they are placed, and how they find and follow their paths.
+// docs/design/013-climbers.md. A path costs a search over nodes; a step without one is constant
+// time.
 namespace throng {
 namespace {
 
-constexpr double kReach = 0.5;             // [m] from a place to the nodes' place that it means
-constexpr double kNoSpacing = 1e9;         // [m] points of a way only where it bends
-constexpr float kMin = 1;                  // [s] of a way that is not to the goal
-constexpr float kExternal = 0.5f;          // [s] for which one who is driven looks ahead
-constexpr uint64_t kDetours = 0x6465746f;  // stream of chance
-constexpr uint64_t kPlaces = 0x706c6163;   // stream of chance
-constexpr double kRoomy = 2;               // [m] of a node in which one can go out of the way
-constexpr double kBeside = 1;              // [m] more than a square of a node
-constexpr uint64_t kFew = 8000;            // crossings that a search for a detour looks at
+constexpr double kSearchRadius = 0.5;      // [m] from a place to the place on nodes that it stands
+                                           // for
+constexpr double kNoSpacing = 1e9;         // [m] points of a path only at its corners
+constexpr float kMin = 1;                  // [s] of a path that does not lead to the goal
+constexpr float kExternal = 0.5f;          // [s] for which one that is externally controlled plans
+                                           // ahead
+constexpr uint64_t kDetours = 0x6465746f;  // random stream
+constexpr uint64_t kPlaces = 0x706c6163;   // random stream
+constexpr double kRoomy = 2;               // [m] of a node in which a body can step aside
+constexpr double kSearchMargin = 1;        // [m] more than a square of a node
+constexpr uint64_t kFew = 8000;            // crossings that a search for a detour may expand
 
 ClimbPoint point_of(const NodePathPoint& point, bool drops) {
   ClimbPoint made;
@@ -34,7 +37,7 @@ ClimbPoint point_of(const NodePathPoint& point, bool drops) {
   return made;
 }
 
-// Where the rest of a way leads through that there is no room for: not its end, which is the goal.
+// Where the rest of a path leads that does not fit: without its end, which is the goal.
 void set_stations(Climb& climb, const NodePath& path) {
   climb.station = climb.station_count = 0;
   const size_t first = climb.count, all = path.points.size();
@@ -48,8 +51,8 @@ void set_stations(Climb& climb, const NodePath& path) {
   }
 }
 
-// It stays where it is.
-void clear_way(Climb& climb) {
+// The body stays where it is.
+void clear_path(Climb& climb) {
   const ClimbStance at = climb.at;
   climb.count = 0;
   climb.whole = 0;
@@ -62,7 +65,7 @@ void clear_way(Climb& climb) {
 
 }  // namespace
 
-// As much of a way as there is room for: it ends on the ground.
+// As much of a path as fits: it ends on the ground.
 void Crowd::State::take_path(Climb& climb, const NodePath& path) {
   const size_t all = path.points.size();
   size_t count = std::min(all, Climb::kPoints);
@@ -82,7 +85,7 @@ void Crowd::State::take_path(Climb& climb, const NodePath& path) {
   climb.at.in_air = count > 1 && climb.points[1].on_surface == 0 ? 1 : 0;
 }
 
-bool Crowd::State::goes_over_nodes(int32_t number) const {
+bool Crowd::State::is_climber_class(int32_t number) const {
   const AvatarClass& avatar = body_class(number);
   return config.nodes.data() != nullptr && !avatar.flies && throng::goes_over_nodes(avatar);
 }
@@ -101,8 +104,8 @@ bool Crowd::State::put_on_nodes(Body& body, Climb& climb, const NodePlace& place
                                 double radius) const {
   const ClimberGround& ground = *classes[body.avatar_class]->nodes;
   const auto pose = ground.pose(place.node1, place.s, place.t);
-  const auto hold = pose ? ground.hold_of(*pose, radius) : std::nullopt;
-  if (!hold || climbers.is_blocked(ground, *hold, *pose, radius)) return false;
+  const auto cylinder = pose ? ground.cylinder_of(*pose, radius) : std::nullopt;
+  if (!cylinder || climbers.is_blocked(ground, *cylinder, *pose, radius)) return false;
   climb = {};
   climb.at.node1 = place.node1;
   climb.at.s = place.s;
@@ -110,24 +113,25 @@ bool Crowd::State::put_on_nodes(Body& body, Climb& climb, const NodePlace& place
   climb.feet = pose->feet;
   climb.axis = pose->axis;
   climb.radius = radius;
-  body.x = hold->low.x;
-  body.z = hold->low.z;
-  body.y = hold->low.y;
-  body.radius = hold->radius;
-  body.height = static_cast<uint16_t>(hold->height);
+  body.x = cylinder->low.x;
+  body.z = cylinder->low.z;
+  body.y = cylinder->low.y;
+  body.radius = cylinder->radius;
+  body.height = static_cast<uint16_t>(cylinder->height);
   body.level = 0;
   body.flags = Body::kFlying;
   body.climbs = true;
   return true;
 }
 
-// Whose way leads past what has come up asks for another.
+// Climbers whose paths cross what became active need another path.
 void Crowd::State::cut_climbs(std::span<const uint32_t> slots) {
   for (Body& body : engine.bodies()) {
-    if (!body.climbs || !body.has(Body::kHasGoal) || body.has(Body::kLost) || body.leaves) continue;
+    if (!body.climbs || !body.has(Body::kHasGoal) || body.has(Body::kNeedsPath) || body.leaves)
+      continue;
     const Climb& climb = climbs[body.slot];
     const ClimberGround& ground = *classes[body.avatar_class]->nodes;
-    BodyRoom around;  // all that it takes, whichever way it stands
+    BodyRoom around;  // all that it occupies, whichever direction it faces
     around.turns_far = true;
     around.top = body_class(body.avatar_class).height;
     around.radius = climb.radius;
@@ -145,13 +149,14 @@ void Crowd::State::cut_climbs(std::span<const uint32_t> slots) {
         return obstacle.kind == ObstacleKind::kStatic && may_touch(around, {obstacle.place, {}});
       });
     }
-    if (is_cut) body.flags |= Body::kLost;
+    if (is_cut) body.flags |= Body::kNeedsPath;
   }
 }
 
 NodePlace Crowd::State::place_on_nodes(int32_t number, const Place& place) const {
   if (!place || place.level1 == kAirLevel1) return {};
-  return classes[static_cast<size_t>(number)]->node_finders[0].find_place(place.position, kReach);
+  return classes[static_cast<size_t>(number)]->node_finders[0].find_place(place.position,
+                                                                          kSearchRadius);
 }
 
 NodePlace Crowd::State::draw_on_nodes(int32_t number, uint64_t n) const {
@@ -167,26 +172,26 @@ void Crowd::State::set_goal_of_climber(Body& body, const NodePlace& goal) {
   climb.goal_t = goal.t;
   climb.detour = 0;
   climb.waited = 0;
-  climb.turns_off = 0;
+  climb.turns_aside = 0;
   climb.station = climb.station_count = 0;
-  body.flags = Body::kFlying | Body::kHasGoal | Body::kLost;
+  body.flags = Body::kFlying | Body::kHasGoal | Body::kNeedsPath;
 }
 
 void Crowd::State::stop_climber(Body& body) {
   body.flags &= Body::kFlying;
   Climb& climb = climbs[body.slot];
-  if (climb.is_on_ground()) clear_way(climb);
+  if (climb.is_on_ground()) clear_path(climb);
 }
 
-// The nearest place of its region, in a straight line.
-void Crowd::State::aim_at_flow_target(const Body& body, Climb& climb) const {
+// The nearest place of its target, in a straight line.
+void Crowd::State::head_to_target_place(const Body& body, Climb& climb) const {
   const auto& places = classes[body.avatar_class]->landings[body.target - 1u];
-  double least = HUGE_VAL;
+  double min_distance = HUGE_VAL;
   const Place* nearest = nullptr;
   for (const Place& place : places) {
     const double far = length(place.position - climb.feet);
-    if (far >= least) continue;
-    least = far;
+    if (far >= min_distance) continue;
+    min_distance = far;
     nearest = &place;
   }
   const NodePlace goal =
@@ -196,19 +201,19 @@ void Crowd::State::aim_at_flow_target(const Body& body, Climb& climb) const {
   climb.goal_t = goal.t;
 }
 
-// Somewhere else for a while: often the others have found another way, too, and met again.
-void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
+// To another place for a while: a new path alone often meets the others again.
+void Crowd::State::turn_aside(Body& body, Climb& climb, int32_t worker) {
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
   const uint64_t stream = uint64_t{body.slot} << 2, seed = config.seed ^ kDetours;
-  climb.turns_off = 0;
+  climb.turns_aside = 0;
   climb.detour = kMin + static_cast<float>(random_below(seed, stream, sub_step, 40)) * 0.1f;
-  body.clear(Body::kLost);
+  body.clear(Body::kNeedsPath);
   const NodePlace from =
       config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
   NodePath& path = parts.node_paths[w];
   path.points.clear();
-  // Now to anywhere, now to a place of the same node.
+  // Either to a random place of the graph, or to one of the same node.
   const NodeInfo info = config.nodes.node(climb.at.node1 - 1);
   const bool is_roomy = info.cells == 0 && info.area > kRoomy * kRoomy;
   if (!is_roomy || random_below(seed, stream | 1, sub_step, 2) == 0) {
@@ -238,9 +243,9 @@ void Crowd::State::turn_off(Body& body, Climb& climb, int32_t worker) {
   climb.whole = 0;
 }
 
-// What has come up beside him takes the whole of a square of his node for his finder: on to the
-// nearest that is left of it.
-bool Crowd::State::step_off(Body& body, Climb& climb, int32_t worker, double beside) {
+// An obstacle that came up beside it blocks a whole square of its node for its finder: on to the
+// nearest place of it that is left.
+bool Crowd::State::step_aside(Body& body, Climb& climb, int32_t worker, double beside) {
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
   const NodePlace from =
@@ -254,53 +259,54 @@ bool Crowd::State::step_off(Body& body, Climb& climb, int32_t worker, double bes
   path.points.push_back({.place = to, .on_surface = true});
   take_path(climb, path);
   climb.whole = 0;
-  body.clear(Body::kLost);
+  body.clear(Body::kNeedsPath);
   return true;
 }
 
-// Who is driven goes to where he would be soon, by a way as any other.
-void Crowd::State::drive_climber(const Body& body, Climb& climb, int32_t worker) {
+// An externally controlled climber heads to where it would be soon, by a path as any other.
+void Crowd::State::control_climber(const Body& body, Climb& climb, int32_t worker) {
   climb.detour -= static_cast<float>(config.dt / sub_steps);
   if (!climb.is_on_ground() || (climb.detour > 0 && climb.at.next < climb.count)) return;
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
-  const Vec3d way{climb.external[0], climb.external[1], climb.external[2]};
+  const Vec3d displacement{climb.external[0], climb.external[1], climb.external[2]};
   climb.detour = kExternal;
-  const double far = length(way) * 2 * kExternal;
-  if (!(far > 0)) return clear_way(climb);
-  const NodePlace to = parts.node_finders[w].find_place(climb.feet + way * (2 * kExternal), far);
+  const double far = length(displacement) * 2 * kExternal;
+  if (!(far > 0)) return clear_path(climb);
+  const NodePlace to =
+      parts.node_finders[w].find_place(climb.feet + displacement * (2 * kExternal), far);
   const NodePlace from =
       config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
-  if (!to || !from) return clear_way(climb);
+  if (!to || !from) return clear_path(climb);
   NodePath& path = parts.node_paths[w];
   parts.node_finders[w].find(from, to, path, kNoSpacing, search_budget(kFew));
-  // A long way around is none to where it is driven.
-  if (path.end != PathEnd::kReached || path.length > 3 * far) return clear_way(climb);
+  // A long detour does not lead in the direction that it is given.
+  if (path.end != PathEnd::kReached || path.length > 3 * far) return clear_path(climb);
   take_path(climb, path);
   climb.whole = 0;
 }
 
 void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
                               std::atomic<uint64_t>& planned) {
-  if (body.has(Body::kExternal)) return drive_climber(body, climb, worker);
+  if (body.has(Body::kExternal)) return control_climber(body, climb, worker);
   if (body.leaves && plan_exit_on_nodes(body, climb, worker)) return;
   if (!body.has(Body::kHasGoal)) return;
   if (climb.detour > 0) {
     climb.detour -= static_cast<float>(config.dt / sub_steps);
-    if (climb.detour <= 0) body.flags |= Body::kLost;
+    if (climb.detour <= 0) body.flags |= Body::kNeedsPath;
   }
   const bool used_up = climb.at.next >= climb.count && climb.whole == 0;
   if (used_up) {
-    body.flags |= Body::kLost;
+    body.flags |= Body::kNeedsPath;
     climb.station += climb.to_station;
     climb.to_station = 0;
   }
   if (!climb.is_on_ground()) return;
-  if (climb.turns_off != 0) return turn_off(body, climb, worker);
-  if (!body.has(Body::kLost)) return;
+  if (climb.turns_aside != 0) return turn_aside(body, climb, worker);
+  if (!body.has(Body::kNeedsPath)) return;
   planned.fetch_add(1, std::memory_order_relaxed);
   climb.detour = 0;
-  if (body.target != 0) aim_at_flow_target(body, climb);
+  if (body.target != 0) head_to_target_place(body, climb);
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
   NodePath& path = parts.node_paths[w];
@@ -316,7 +322,7 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
     if (is_found()) {
       take_path(climb, path);
       climb.to_station = std::exchange(climb.whole, uint8_t{0});
-      return body.clear(Body::kLost);
+      return body.clear(Body::kNeedsPath);
     }
   }
   if (climb.goal_node1 != 0) {
@@ -326,16 +332,16 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
     note_spent(path.spent);
   }
   if (!is_found()) {
-    if (path.end == PathEnd::kNoPlace && step_off(body, climb, worker, kBeside)) return;
-    clear_way(climb);
-    return strand(body);
+    if (path.end == PathEnd::kNoPlace && step_aside(body, climb, worker, kSearchMargin)) return;
+    clear_path(climb);
+    return drop_goal(body);
   }
   take_path(climb, path);
   set_stations(climb, path);
-  body.clear(Body::kLost);
+  body.clear(Body::kNeedsPath);
 }
 
-// The step of those who go over nodes; the others have made theirs.
+// The step of climbers, after those of walkers and flyers.
 void Crowd::State::move_climbers(EngineCounts& counts, CrowdEngine::Times& times,
                                  std::atomic<uint64_t>& planned) {
   const ClimberEngine::Before before = [&](Body& body, Climb& climb, int32_t worker) {
@@ -345,7 +351,7 @@ void Crowd::State::move_climbers(EngineCounts& counts, CrowdEngine::Times& times
   for (const uint32_t slot : climbers.arrived()) arrived.push_back(id_of(slot));
 }
 
-// A body where its feet are, for who asks whether it is in a region.
+// A body at its feet, to test whether it is in a region.
 Body Crowd::State::at_feet(const Body& body) const {
   if (!body.climbs) return body;
   Body there = body;
@@ -373,7 +379,7 @@ bool Crowd::State::is_sound_climb(const Body& body) const {
     const ClimbPoint& p = climb.points[i];
     if (p.node1 != 0 && !parts->nodes->pose(p.node1, p.s, p.t)) return false;
     if (p.node1 == 0 && !std::isfinite(p.s)) return false;
-    // Who goes to it on the surface stays within the node of the one before.
+    // A segment on the surface stays within the node of the point before.
     const bool joined = i == 0 || p.on_surface == 0 ||
                         parts->nodes->pose(climb.points[i - 1].node1, p.s, p.t).has_value();
     if (!joined) return false;
@@ -393,26 +399,27 @@ bool Crowd::State::is_sound_climb(const Body& body) const {
   const auto pose = parts->nodes->pose_of(climb, at);
   if (!surfaced || !pose || !(pose->feet == climb.feet) || !(pose->axis == climb.axis))
     return false;
-  const auto hold = parts->nodes->hold_of(*pose, climb.radius);
-  return hold && hold->low == AirSpot{body.x, body.z, body.y} && hold->radius == body.radius &&
-         hold->height == body.height && at.node1 != 0 &&
+  const auto cylinder = parts->nodes->cylinder_of(*pose, climb.radius);
+  return cylinder && cylinder->low == AirPosition{body.x, body.z, body.y} &&
+         cylinder->radius == body.radius && cylinder->height == body.height && at.node1 != 0 &&
          parts->nodes->pose(at.node1, at.s, at.t).has_value();
 }
 
-// Of those who go over nodes, who is in an obstacle.
+// Counts the climbers that are in an obstacle.
 uint64_t Crowd::State::count_climbers_inside() const {
   uint64_t found = 0;
   for (const Body& body : engine.bodies()) {
     if (!body.climbs) continue;
     const Climb& climb = climbs[body.slot];
     const ClimberGround& ground = *classes[body.avatar_class]->nodes;
-    const ClimbHold hold{{body.x, body.z, body.y}, body.radius, body.height};
-    found += climbers.is_inside(ground, hold, {climb.feet, climb.axis}, climb.radius) ? 1 : 0;
+    const ClimbCylinder cylinder{{body.x, body.z, body.y}, body.radius, body.height};
+    found += climbers.is_inside(ground, cylinder, {climb.feet, climb.axis}, climb.radius) ? 1 : 0;
   }
   return found;
 }
 
-// Whose class may not be where he is, or whom the cylinder that is kept for him does not hold.
+// Counts the climbers that stand where their class may not, or whose cylinder does not enclose
+// them.
 uint64_t Crowd::State::count_off_nodes() const {
   constexpr double kTouch = 1e-9;  // [m]
   uint64_t found = 0;
@@ -438,8 +445,8 @@ uint64_t Crowd::State::count_off_nodes() const {
         const Vec3d p = climb.feet + climb.axis * up + rim;
         const double dx = p.x - origin.x - (body.x + 0.5) * unit;
         const double dz = p.z - origin.z - (body.z + 0.5) * unit;
-        const double reach = body.radius * unit + kTouch;
-        sound = sound && dx * dx + dz * dz <= reach * reach && p.y >= body.y * 1e-3 - kTouch &&
+        const double range = body.radius * unit + kTouch;
+        sound = sound && dx * dx + dz * dz <= range * range && p.y >= body.y * 1e-3 - kTouch &&
                 p.y <= (body.y + body.height) * 1e-3 + kTouch;
       }
     }

@@ -12,83 +12,56 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/stopwatch.h"
-#include "crowd/precedence.h"
 #include "crowd/reaction.h"
 #include "crowd/sense_kernel.h"
 #include "steer/sampled_kernel.h"
 
-// docs/design/008-engine.md. Whoever can touch nobody within the step takes what he wants at once;
-// only the others go through the rounds.
+// The step of a crowd: docs/design/008-engine.md. A body that can touch no other within the step
+// takes its first move at once; only the others go through conflict resolution rounds. Linear in
+// the bodies and their neighbours.
 namespace throng {
 namespace {
 
 using steer::Plane;
 
-constexpr size_t kGrain = 256;  // bodies that are worth handing to another thread
+constexpr size_t kGrain = 256;  // bodies that are worth another thread
 constexpr std::array<float, 3> kShorter = {0.5f, 0.25f, 0.1f};
-constexpr float kThere = 0.3f;               // [m] from its goal a body has arrived
-constexpr uint64_t kSides = 0x51de5;         // stream of chance
-constexpr float kClose = 0.1f;               // [m] to its corner a body turns to no side
-constexpr float kSlow = 0.3f;                // of its speed: it is held up
-constexpr float kAtOnce = 0.1f;              // [s] Who goes straight meets nobody within.
-constexpr size_t kFarAhead = 6, kAhead = 3;  // bodies, whose ground is asked for
-constexpr float kEnough = 14;                // bodies, to find the nearest among
-constexpr size_t kBits = 64;                 // of a word
+constexpr float kArrivalRadius = 0.3f;             // [m] from its goal a body has arrived
+constexpr uint64_t kSides = 0x51de5;               // random stream
+constexpr float kClose = 0.1f;                     // [m] to its corner a body turns to neither side
+constexpr float kAtOnce = 0.1f;                    // [s] within which a body that walks straight
+                                                   // must meet no other
+constexpr size_t kFarPrefetch = 6, kPrefetch = 3;  // bodies, whose ground is prefetched
+constexpr size_t kBits = 64;                       // of a word
 
-// Do two bodies clash that stand at these places?
+// Do two bodies at these places overlap?
 bool overlaps_with(const Body& a, const Stand& at_a, const Body& b, const Stand& at_b) {
   return nearer_than(at_a.x - at_b.x, at_a.z - at_b.z, int64_t{a.radius} + b.radius) &&
          at_a.y < at_b.y + b.height && at_b.y < at_a.y + a.height;
 }
 
-// On its last leg, and not there yet?
-bool is_bound(const Body& body) {
-  constexpr uint8_t kAll =
-      Body::kHasGoal | Body::kLast | Body::kArrived | Body::kExternal | Body::kFlying;
-  // A region has room for many.
-  return body.target == 0 && !body.leaves && (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
-}
-
-// Part of a way.
+// A fraction of a displacement.
 template <class Displacement>
 Displacement shorter(Displacement displacement, float part) {
   return {static_cast<int16_t>(std::lrint(static_cast<float>(displacement.x) * part)),
           static_cast<int16_t>(std::lrint(static_cast<float>(displacement.z) * part))};
 }
 
-// Bound for a corner, not for its goal yet?
-bool turns_corner(const Body& body) {
-  constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kExternal | Body::kFlying;
-  return (body.flags & kAll) == Body::kHasGoal && !body.leaves;
+// Is it turned aside by deadlock avoidance, blocked by more than other bodies?
+bool is_blocked_by_walls(const Body& body) {
+  return body.detour_angle != 0 && (!body.has(Body::kLast) || body.near_wall);
 }
 
-// Turned aside by his patience where not only others are in the way?
-bool is_held_up(const Body& body) {
-  return body.turn != 0 && (!body.has(Body::kLast) || body.near_wall);
-}
-
-// Speed towards where it is bound for, `displacement` from it. [m/s]
+// Speed towards its local target, which is `displacement` away. [m/s]
 float speed_towards(const Body& body, Plane displacement) {
   const float left = size_of(displacement);
   return left > 1e-6f ? (body.velocity.x * displacement.x + body.velocity.z * displacement.z) / left
                       : 0;
 }
 
-// By the wished speed. [millionths]
+// Relative to its desired speed. [millionths]
 int64_t progress_of(const Body& body, Plane displacement) {
   return std::lrint(speed_towards(body, displacement) / body.speed * 1e6f);
-}
-
-// Is somebody ahead, and goes one's own way? Within 45 degrees.
-bool leads(Plane apart, Plane preferred, Plane others) {
-  const float same = preferred.x * others.x + preferred.z * others.z;
-  const float both = (preferred.x * preferred.x + preferred.z * preferred.z) *
-                     (others.x * others.x + others.z * others.z);
-  return apart.x * preferred.x + apart.z * preferred.z > 0 && same > 0 && 2 * same * same > both;
-}
-
-Bound bound(const Body& body) {
-  return {body.x, body.z, body.local_target_x, body.local_target_z, body.radius, body.slot};
 }
 
 }  // namespace
@@ -97,8 +70,8 @@ void EngineCounts::add(const EngineCounts& other) {
   contested += other.contested;
   stood += other.stood;
   progress += other.progress;
-  far += other.far;
-  held += other.held;
+  low_detail += other.low_detail;
+  skipped += other.skipped;
 }
 
 CrowdEngine::CrowdEngine(const EngineConfig& config, int32_t width, int32_t depth, size_t classes)
@@ -133,7 +106,7 @@ void CrowdEngine::fit_grid() {
     longest_ = std::max(longest_, std::min(detail_.narrowest, units.stride(fastest_)));
   }
   THRONG_ASSERT(longest_ <= kLongestStep);
-  // Who could be touched within a step must be seen, however short the sight.
+  // All that could be touched within a step must be sensed, however short the sight.
   const auto sight = static_cast<int32_t>(std::lround(config_.sight / double{config_.units.unit}));
   const int32_t wanted = std::max(sight, 2 * widest_ + 2 * longest_);
   if (wanted == sight_) return;
@@ -173,31 +146,31 @@ void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts
   lap(times.sort);
   decide_all(counts);
   lap(times.steer);
-  commit(step);
-  lap(times.commit);
+  resolve_conflicts(step);
+  lap(times.resolve);
   settle_all(counts);
   lap(times.settle);
 }
 
-// Does it go on as it did in the last step?
-bool CrowdEngine::keeps(const Body& body, uint64_t step) const {
-  return body.has(Body::kKeeps) && !body.has(Body::kExternal) && !body.has(Body::kLost) &&
+// Does it repeat its last move?
+bool CrowdEngine::continues(const Body& body, uint64_t step) const {
+  return body.has(Body::kContinues) && !body.has(Body::kExternal) && !body.has(Body::kNeedsPath) &&
          !body.has(Body::kFlying) && !decides(steps_of_reaction(body), step, body.slot) &&
-         !takes_few(body) &&
+         !has_short_moves(body) &&
          !is_before({body.local_target_x - body.x, body.local_target_z - body.z}, stride_of(body));
 }
 
 void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
-  constexpr float kSide = 2;  // [s] that one keeps to a side
+  constexpr float kSide = 2;  // [s] for which a body keeps to a side
   const auto window = step / static_cast<uint64_t>(std::lround(kSide / config_.units.dt));
-  // To the right, if nothing but others is in the way. Before a wall or a corner that would press a
-  // crowd against it: there, to either side by chance.
+  // To the right, if only other bodies block it. At a wall or a corner that would press a crowd
+  // against it: there, to a random side.
   const auto turn = [&](const Body& b) {
-    if (b.in_counterflow || !is_held_up(b)) return b.turn;
+    if (b.in_counterflow || !is_blocked_by_walls(b)) return b.detour_angle;
     if (size_of(config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z)) < kClose)
       return 0.0f;
     const bool left = (random_u64(config_.seed ^ kSides, b.slot, window) & 1) != 0;
-    return left ? -b.turn : b.turn;
+    return left ? -b.detour_angle : b.detour_angle;
   };
   const size_t pieces = (size_ + kGrain - 1) / kGrain;
   parallel_for_worker(pieces, config_.workers, [&](size_t piece, int32_t worker) {
@@ -205,7 +178,7 @@ void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
     const std::span<Body> bodies{bodies_.data() + begin, std::min(kGrain, size_ - begin)};
     for (Body& b : bodies) {
       choose_detail(b, step);
-      if (b.steps > 0 && !keeps(b, step)) b.clear(Body::kKeeps);
+      if (b.steps > 0 && !continues(b, step)) b.clear(Body::kContinues);
     }
     if (before) before(bodies, worker);
     for (Body& b : bodies) {
@@ -236,12 +209,13 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
       prefetch_ground(i);
       if (bodies_[i].steps == 0) {
         proposals()[i] = {};
-        bodies_[i].state = Body::kShut;
+        bodies_[i].state = Body::kEnclosed;
         continue;
       }
       const uint32_t here = grid_->square(bodies_[i]);
       std::optional<bool> contested;
-      if (bodies_[i].has(Body::kKeeps)) contested = keep_on(static_cast<uint32_t>(i), w, here);
+      if (bodies_[i].has(Body::kContinues))
+        contested = try_to_continue(static_cast<uint32_t>(i), w, here);
       if (!contested) {
         if (here != square) {
           square = here;
@@ -252,173 +226,55 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
       if (!*contested) continue;
       const uint64_t bit = uint64_t{1} << (i % kBits);
       contests.open |= bit;
-      if (proposals()[i].round == 0) contests.unnamed |= bit;
+      if (proposals()[i].round == 0) contests.unproposed |= bit;
       ++workers_[w].counts.contested;
     }
   });
   for (const Worker& worker : workers_) counts.add(worker.counts);
 }
 
-// Asks for the ground that those who decide next come to, if they go on as they did.
+// Prefetches the ground that the bodies which decide next will reach if they repeat their moves.
 void CrowdEngine::prefetch_ground(size_t i) const {
-  if (i + kFarAhead < size_) {
-    const Body& body = bodies_[i + kFarAhead];
+  if (i + kFarPrefetch < size_) {
+    const Body& body = bodies_[i + kFarPrefetch];
     grounds_[body.avatar_class].prefetch_level(body.level);
   }
-  if (i + kAhead < size_) {
-    const Body& body = bodies_[i + kAhead];
-    const Displacement displacement = way_as_before(body, body.velocity);
+  if (i + kPrefetch < size_) {
+    const Body& body = bodies_[i + kPrefetch];
+    const Displacement displacement = displacement_again(body, body.velocity);
     grounds_[body.avatar_class].prefetch_cell(
         body.level, {int64_t{body.x} + displacement.x, int64_t{body.z} + displacement.z});
   }
 }
 
-// Makes the lists as long as those around may need.
-void CrowdEngine::fit_lists(const NeighbourGrid::Around& around, Worker& worker) {
-  const size_t wanted = around.bodies() + kSeenSpare;
-  if (worker.squares.size() >= wanted) return;
-  for (auto* entries : {&worker.entries, &worker.touched}) entries->resize(2 * wanted);
-  worker.squares.resize(worker.entries.size());
-}
-
-// Nobody farther away than this can be touched; the exact test follows. [units]
-float CrowdEngine::touch_of(const Body& body) const {
-  return static_cast<float>(body.radius + stride_of(body) + widest_ + longest_ + 1) * 1.0001f;
-}
-
-// Appends whom the body could touch to `others`.
-void CrowdEngine::list_touched(const Body& body, const SeenLists& lists, Worker& worker) const {
-  const int32_t stride = stride_of(body);
-  for (size_t n = 0; n < lists.touches; ++n) {
-    const uint32_t j = lists.touched[n];
-    const Body& other = bodies_[j];
-    const int64_t reach = int64_t{body.radius} + other.radius + stride + stride_of(other);
-    const int32_t rise = body.y - other.y;
-    const bool near = rise < other.height + 2 * kMaxRise && -rise < body.height + 2 * kMaxRise;
-    if (near && nearer_than(other.x - body.x, other.z - body.z, reach)) worker.others.push_back(j);
-  }
-}
-
-// Takes in what it steers by, and if wanted lists whom it could touch.
-void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
-                        bool lists_others) {
-  worker.waits = worker.in_counterflow = worker.follows = false;
-  const Body& body = bodies_[i];
-  fit_lists(around, worker);
-  const Places places{grid_->x(), grid_->z(), grid_->y()};
-  const float touch = touch_of(body);
-  // In a dense crowd the nearest are near: if enough are within less, nobody farther matters.
-  const float sight = static_cast<float>(sight_) * static_cast<float>(sight_);
-  const float across = grid_->width() * NeighbourGrid::kAround;
-  const float enough = across * across * kEnough /
-                       (3 * static_cast<float>(around.bodies()));  // 3 of the circle's pi
-  const auto wanted = static_cast<size_t>(config_.steering.neighbours);
-  Eye eye{.x = body.x,
-          .z = body.z,
-          .y = body.y,
-          .self = i,
-          .most = goes_blind(body) ? 0 : std::min(sight, enough),
-          .tall = body.height,
-          .touch = lists_others ? touch * touch : 0,
-          .touch_tall = std::max<int32_t>(body.height, highest_) + 2 * kMaxRise};
-  SeenLists lists;
-  const auto look = [&] {
-    lists = {worker.squares.data(), worker.entries.data(), worker.touched.data()};
-    find_seen(places, around.pieces(), eye, lists);
-  };
-  look();
-  if (lists.seen < wanted && eye.most < sight && !goes_blind(body)) {
-    eye.most = sight;
-    look();
-  }
-  list_touched(body, lists, worker);
-  if (goes_blind(body)) {  // It looks no farther.
-    worker.situation.preferred = body.preferred;
-    worker.situation.has_walls = false;
-    return;
-  }
-  size_t nearest = keep_nearest(lists, wanted);
-  if (nearest > wanted) {  // Some are equally far: of these the first slots.
-    const auto key = [&](uint32_t j) {
-      return std::pair(near_square(bodies_[j].x - body.x, bodies_[j].z - body.z), bodies_[j].slot);
-    };
-    std::sort(lists.entries, lists.entries + nearest,
-              [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
-    nearest = wanted;
-  }
-  if (config_.model != SteeringModel::kSampled) return prefer(i, {lists.entries, nearest}, worker);
-  steer::Situation& situation = worker.situation;
-  situation.velocity = body.velocity;
-  situation.preferred = body.preferred;
-  situation.fastest = body.speed;
-  situation.near.size = 0;
-  const bool may_wait = is_bound(body), turns = turns_corner(body);
-  const bool rests = !body.leaves && !body.has(Body::kExternal) &&
-                     (body.has(Body::kArrived) || !body.has(Body::kHasGoal));
-  const bool is_slow = size_of(body.velocity) < kSlow * body.speed;
-  const bool yields = rests || (is_slow && !body.leaves && !body.has(Body::kExternal));
-  for (size_t n = 0; n < nearest; ++n) {
-    const Body& other = bodies_[lists.entries[n]];
-    const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
-    // Those ahead tell those behind, who would else fill the whole width.
-    worker.in_counterflow = worker.in_counterflow ||
-                            (other.in_counterflow && leads(apart, body.preferred, other.preferred));
-    const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
-    if (may_wait && is_bound(other) && goes_first(bound(other), bound(body))) {
-      worker.waits = true;
-      situation.preferred = preferred_of_waiting(
-          config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z),
-          body.speed, room);
-    }
-    if (turns && turns_corner(other) &&
-        gives_precedence(bound(other), bound(body), size_of(apart), room,
-                         size_of(other.velocity) / other.speed)) {
-      worker.waits = true;
-      const float back = -0.5f * body.speed / size_of(apart);
-      situation.preferred = {apart.x * back, apart.z * back};
-    }
-    // Those that stand or are held up step back from those beside them that leave an obstacle.
-    if (other.leaves && yields) step_back(body, apart, room, worker);
-    // Who has arrived makes way for those who would pass, were he not there: they may stand.
-    const bool yields =
-        (body.has(Body::kArrived) && !other.has(Body::kArrived)) || (rests && other.leaves);
-    situation.near.add(config_.steering,
-                       {apart, yields ? other.preferred : other.velocity, room, other.preferred});
-  }
-  const Plane preferred = situation.preferred;
-  situation.preferred = steer::following_fast(config_.steering, situation);
-  // Before a corner one who crawls is turned as one who stands: doors need that.
-  worker.follows =
-      !turns && steer::can_but_crawl(config_.patience, preferred, situation.preferred, body.speed);
-}
-
-// Can the body do as it wishes? Else, can it if it wishes otherwise? Its wish is what it then is.
+// Is its preferred velocity open, or is that of a lane? Then that is its preferred velocity.
 bool CrowdEngine::find_open_preferred(uint32_t i, Worker& worker,
                                       const NeighbourGrid::Around& around) {
   const Body& body = bodies_[i];
   if (!is_sampled(body)) return true;
   if (!worker.waits && go_straight(body, worker.situation)) return true;
   const auto is_open = [&] {
-    look_ahead(body, worker.situation);
+    query_wall_ahead(body, worker.situation);
     return steer::preferred_is_open_fast(config_.steering, worker.situation);
   };
-  return is_open() || (!worker.waits && take_lane(i, worker, around) && is_open());
+  return is_open() || (!worker.waits && choose_lane(i, worker, around) && is_open());
 }
 
-// Who was turned aside by a jam at a door goes through as soon as he can.
+// A body that a jam at a door turned aside passes as soon as it can.
 bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) const {
-  if (!is_held_up(body)) return false;
+  if (!is_blocked_by_walls(body)) return false;
   const Plane turned = situation.preferred;
   const Plane left =
       config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
   situation.preferred = steer::preferred_towards(left, body.speed, units_of(body).dt, 0);
-  // Who is a step from his corner stops there: whether he would touch somebody beyond is no matter.
+  // A body one step from its corner stops there: whether it would touch others beyond does not
+  // matter.
   if (!body.has(Body::kLast) && size_of(left) <= body.speed * units_of(body).dt) {
-    look_ahead(body, situation);
+    query_wall_ahead(body, situation);
     return true;
   }
   situation.preferred = steer::following_fast(config_.steering, situation);
-  look_ahead(body, situation);
+  query_wall_ahead(body, situation);
   steer::SampledSettings at_once = config_.steering;
   at_once.horizon = kAtOnce;
   if (steer::preferred_is_open_fast(at_once, situation)) return true;
@@ -426,58 +282,61 @@ bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) con
   return false;
 }
 
-// Who can but stand between walls makes room for others.
+// A body that can only stand between walls keeps its spacing to others.
 Plane CrowdEngine::if_blocked(Plane displacement, const steer::Situation& situation) const {
   const bool stands = displacement.x == 0 && displacement.z == 0;
-  return stands && situation.has_walls ? steer::making_room(config_.room, situation) : displacement;
+  return stands && situation.has_walls ? steer::keep_spacing(config_.spacing, situation)
+                                       : displacement;
 }
 
-// A way that is free as far as one looks has no end that would matter.
-float CrowdEngine::metres(float displacement, float look) const {
-  return displacement < look ? displacement * config_.units.unit
-                             : std::numeric_limits<float>::infinity();
+// A distance that is free over the whole query range counts as endless.
+float CrowdEngine::metres(float displacement, float query_range) const {
+  return displacement < query_range ? displacement * config_.units.unit
+                                    : std::numeric_limits<float>::infinity();
 }
 
-// Is there a wall near, and how far is it to one along the wish?
-void CrowdEngine::look_ahead(const Body& body, steer::Situation& situation) const {
+// Is a wall near, and how far is it along the preferred velocity?
+void CrowdEngine::query_wall_ahead(const Body& body, steer::Situation& situation) const {
   const StrideGround& ground = grounds_[body.avatar_class];
-  const float look = wall_look(body);
-  situation.has_walls = !ground.is_open_around(body.level, body.point(), cells_of(look));
+  const float query_range = wall_range(body);
+  situation.has_walls = !ground.is_open_around(body.level, body.point(), cells_of(query_range));
   if (!situation.has_walls) return;
   const Plane ahead = steer::ahead_of(situation.preferred);
   situation.free_distance[0] =
-      metres(ground.free_distance(body.level, body.point(), ahead, look), look);
+      metres(ground.free_distance(body.level, body.point(), ahead, query_range), query_range);
 }
 
-// How far is it in all directions? Only for those whose wish is not open.
-void CrowdEngine::look_around(const Body& body, steer::Situation& situation) const {
+// The distances to walls in all directions. Only for bodies whose preferred velocity is not open.
+void CrowdEngine::query_walls(const Body& body, steer::Situation& situation) const {
   if (!situation.has_walls) return;
   const StrideGround& ground = grounds_[body.avatar_class];
-  const float look = wall_look(body);
-  const auto rise = static_cast<int32_t>(look * config_.units.unit * 1000);  // 45 degrees
+  const float query_range = wall_range(body);
+  const auto rise = static_cast<int32_t>(query_range * config_.units.unit * 1000);  // 45 degrees
   const steer::Fan fan = steer::fan_around(situation.preferred);
   WallWindow window;
-  switch (ground.look_around(body.level, body.y, body.point(), cells_of(look), rise, window)) {
+  switch (
+      ground.query_walls(body.level, body.y, body.point(), cells_of(query_range), rise, window)) {
     case StrideGround::Around::kOpen:
       situation.has_walls = false;
       break;
     case StrideGround::Around::kWalls:
-      find_free_distances(window, fan, look, situation.free_distance);
-      for (float& displacement : situation.free_distance) displacement = metres(displacement, look);
+      find_free_distances(window, fan, query_range, situation.free_distance);
+      for (float& displacement : situation.free_distance)
+        displacement = metres(displacement, query_range);
       break;
     case StrideGround::Around::kSteps:
       for (size_t k = 1; k < steer::kDirections; ++k) {
-        situation.free_distance[k] =
-            metres(ground.free_distance(body.level, body.point(), fan[k], look), look);
+        situation.free_distance[k] = metres(
+            ground.free_distance(body.level, body.point(), fan[k], query_range), query_range);
       }
   }
 }
 
-void CrowdEngine::find_paths(const Body& body, const steer::Situation& situation, bool open,
-                             Displacements& ways) {
+void CrowdEngine::find_candidates(const Body& body, const steer::Situation& situation, bool open,
+                                  Displacements& candidates) {
   if (!is_sampled(body)) {
-    const steer::Choices choices = steer::ways_about(situation.preferred);
-    std::transform(choices.begin(), choices.end(), ways.begin(),
+    const steer::Choices choices = steer::candidates_about(situation.preferred);
+    std::transform(choices.begin(), choices.end(), candidates.begin(),
                    [&](Plane displacement) { return displacement_of(body, displacement); });
     return;
   }
@@ -485,25 +344,26 @@ void CrowdEngine::find_paths(const Body& body, const steer::Situation& situation
   steer::Costs costs;
   steer::costs_of_fast(config_.steering, situation, trials, costs);
   size_t n = 0;
-  if (open) ways[n++] = displacement_of(body, if_blocked(situation.preferred, situation));
-  while (n < ways.size()) {
-    ways[n++] = displacement_of(body, if_blocked(steer::take_best_fast(trials, costs), situation));
+  if (open) candidates[n++] = displacement_of(body, if_blocked(situation.preferred, situation));
+  while (n < candidates.size()) {
+    candidates[n++] =
+        displacement_of(body, if_blocked(steer::take_best_fast(trials, costs), situation));
   }
 }
 
 std::span<const uint32_t> CrowdEngine::others_of(const Proposal& proposal) const {
   const uint32_t* const end = proposal.words.data() + kWords;
-  if (!proposal.is_far) return {end - proposal.others, end};
+  if (!proposal.is_in_list) return {end - proposal.others, end};
   const Worker& worker = workers_[proposal.words[kWords - 2]];
   return {worker.others.data() + proposal.words[kWords - 1], proposal.others};
 }
 
-// Puts whom a worker has listed last into the claim, if there is room.
-void CrowdEngine::keep_others(Proposal& proposal, uint16_t worker, size_t first) {
+// Appends the bodies that a worker listed last to the proposed move, if they fit.
+void CrowdEngine::store_others(Proposal& proposal, uint16_t worker, size_t first) {
   std::vector<uint32_t>& others = workers_[worker].others;
   proposal.others = static_cast<uint32_t>(others.size() - first);
-  proposal.is_far = proposal.ways + size_t{proposal.others} > kWords;
-  if (proposal.is_far) {
+  proposal.is_in_list = proposal.candidate_count + size_t{proposal.others} > kWords;
+  if (proposal.is_in_list) {
     proposal.words[kWords - 2] = worker;
     proposal.words[kWords - 1] = static_cast<uint32_t>(first);
     return;
@@ -513,16 +373,16 @@ void CrowdEngine::keep_others(Proposal& proposal, uint16_t worker, size_t first)
   others.resize(first);
 }
 
-// Names the place that a body comes to if it goes on as it did, and tells whether it could touch
-// anybody. None if that is not free.
-std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square) {
+// Proposes the place that a body reaches if it repeats its move; returns whether it could touch
+// another. None if that is not free.
+std::optional<bool> CrowdEngine::try_to_continue(uint32_t i, uint16_t w, uint32_t square) {
   Worker& worker = workers_[w];
   Body& body = bodies_[i];
   Proposal& proposal = proposals()[i];
   proposal = {};
-  proposal.flags = Body::kKeeps;
+  proposal.flags = Body::kContinues;
   proposal.in_counterflow = body.in_counterflow;
-  const Displacement displacement = way_as_before(body, body.velocity);
+  const Displacement displacement = displacement_again(body, body.velocity);
   if (!try_displacement(body, displacement, proposal.place)) return std::nullopt;
   const float touch = touch_of(body);
   const NeighbourGrid::Around around = grid_->around(square, touch <= grid_->width() ? 1 : 2);
@@ -531,7 +391,7 @@ std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square
                 .z = body.z,
                 .y = body.y,
                 .self = i,
-                .most = 0,
+                .max_square = 0,
                 .tall = 0,
                 .touch = touch * touch,
                 .touch_tall = std::max<int32_t>(body.height, highest_) + 2 * kMaxRise};
@@ -545,67 +405,69 @@ std::optional<bool> CrowdEngine::keep_on(uint32_t i, uint16_t w, uint32_t square
   }
   const std::span<const uint32_t> others(worker.others.data() + first,
                                          worker.others.size() - first);
-  if (!is_clear(body, proposal.place, others, /*somebody_moved=*/false)) {
+  if (!is_clear(body, proposal.place, others, /*any_moved=*/false)) {
     worker.others.resize(first);
     return std::nullopt;
   }
   body.state = Body::kUndecided;
   proposal.round = 1;
   proposal.add_displacement(displacement);
-  keep_others(proposal, w, first);
+  store_others(proposal, w, first);
   return true;
 }
 
-// Sense, steer, and name a place if nobody can object. Could it touch anybody?
+// Senses, steers, and proposes a place if no other could touch it. Returns whether it could touch
+// one.
 bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& around) {
   Worker& worker = workers_[w];
   Body& body = bodies_[i];
   Proposal& proposal = proposals()[i];
   proposal = {};
   if (body.has(Body::kFlying)) {
-    body.state = Body::kShut;
+    body.state = Body::kEnclosed;
     return false;
   }
   const size_t first = worker.others.size();
   sense(i, worker, around, true);
   const std::span<const uint32_t> others(worker.others.data() + first,
                                          worker.others.size() - first);
-  // Not when ways are found again: who gave way to others then goes where he is bound for, or lanes
-  // jam more often.
+  // Not when candidates are found again: a body that yielded then heads to its target, or lanes jam
+  // more often.
   if (is_sampled(body)) keep_right(body, worker);
   const bool open = find_open_preferred(i, worker, around);
   proposal.in_counterflow = worker.in_counterflow;
   body.follows = worker.follows;
-  // The best of his ways is enough as long as nobody objects to it.
-  if (!open) look_around(body, worker.situation);
+  // The best candidate is enough as long as no other contests it.
+  if (!open) query_walls(body, worker.situation);
   const Plane best =
       open ? worker.situation.preferred
            : if_blocked(steer::best_fast(config_.steering, worker.situation), worker.situation);
-  Displacements ways{displacement_of(body, best)};
-  bool named = try_displacement(body, ways[0], proposal.place) &&
-               is_clear(body, proposal.place, others, /*somebody_moved=*/false);
-  if (named) {
-    proposal.flags = Body::kKeeps;
+  Displacements candidates{displacement_of(body, best)};
+  bool proposed = try_displacement(body, candidates[0], proposal.place) &&
+                  is_clear(body, proposal.place, others, /*any_moved=*/false);
+  if (proposed) {
+    proposal.flags = Body::kContinues;
     proposal.round = others.empty() ? 0 : 1;
   } else {
-    if (open) look_around(body, worker.situation);
-    find_paths(body, worker.situation, open, ways);
+    if (open) query_walls(body, worker.situation);
+    find_candidates(body, worker.situation, open, candidates);
     proposal.has_all = true;
   }
-  // Known only where one had to look.
-  body.near_wall = (!open || !named) && worker.situation.has_walls;
+  // Known only if walls were queried.
+  body.near_wall = (!open || !proposed) && worker.situation.has_walls;
   if (others.empty()) {
-    if (!named) named = try_displacements(body, ways, others, proposal.place);
-    body.state = named ? Body::kFree : Body::kShut;
+    if (!proposed) proposed = try_displacements(body, candidates, others, proposal.place);
+    body.state = proposed ? Body::kFree : Body::kEnclosed;
     return false;
   }
   body.state = Body::kUndecided;
-  for (size_t n = 0; n < (named ? 1 : ways.size()); ++n) proposal.add_displacement(ways[n]);
-  keep_others(proposal, w, first);
+  for (size_t n = 0; n < (proposed ? 1 : candidates.size()); ++n)
+    proposal.add_displacement(candidates[n]);
+  store_others(proposal, w, first);
   return true;
 }
 
-// Where a body would stand after a step, if the ground lets it.
+// Where a body would stand after a move, if the ground permits it.
 bool CrowdEngine::try_displacement(const Body& body, Displacement displacement,
                                    Stand& place) const {
   const GroundPoint to{int64_t{body.x} + displacement.x, int64_t{body.z} + displacement.z};
@@ -618,24 +480,24 @@ bool CrowdEngine::try_displacement(const Body& body, Displacement displacement,
   return true;
 }
 
-// The first of the ways that is open and clear, then a shorter one.
-bool CrowdEngine::try_displacements(const Body& body, const Displacements& ways,
+// The first candidate that is open and clear, then a shorter one.
+bool CrowdEngine::try_displacements(const Body& body, const Displacements& candidates,
                                     std::span<const uint32_t> others, Stand& place) const {
   const auto is_free = [&](Displacement displacement) {
     Stand to;
     if (!try_displacement(body, displacement, to) ||
-        !is_clear(body, to, others, /*somebody_moved=*/true)) {
+        !is_clear(body, to, others, /*any_moved=*/true)) {
       return false;
     }
     place = to;
     return true;
   };
-  return std::any_of(ways.begin(), ways.end(), is_free) ||
+  return std::any_of(candidates.begin(), candidates.end(), is_free) ||
          std::any_of(kShorter.begin(), kShorter.end(),
-                     [&](float part) { return is_free(shorter(ways[0], part)); });
+                     [&](float part) { return is_free(shorter(candidates[0], part)); });
 }
 
-// Those of whom `act` says so are left out from then on.
+// Contests for which `act` returns true are left out from then on.
 template <class Do>
 void CrowdEngine::for_contests(uint64_t Contests::*which, Do act) {
   static_assert(kGrain % kBits == 0);
@@ -656,19 +518,20 @@ void CrowdEngine::for_contests(uint64_t Contests::*which, Do act) {
                       });
 }
 
-// By induction nobody ever touches anybody: a place that is named is clear of where all stand who
-// could touch it, and it is taken only if it is clear of what those before him named, whether or
-// not they take it.
-void CrowdEngine::commit(uint64_t step) {
+// By induction no body ever touches another: a proposed place is clear of where all bodies stand
+// that could touch it, and it is accepted only if it is clear of what those before it in the order
+// proposed, accepted or not.
+void CrowdEngine::resolve_conflicts(uint64_t step) {
   for (int32_t r = 1; r <= config_.rounds; ++r) {
     const auto round = static_cast<uint8_t>(r);
-    // Most named a place for the first round when they decided: nobody had moved yet.
-    for_contests(r == 1 ? &Contests::unnamed : &Contests::open, [&](uint32_t i, Worker& scratch) {
-      name(i, scratch, round);
-      return false;
-    });
+    // Nearly all proposed a place for the first round when they decided: none had moved yet.
+    for_contests(r == 1 ? &Contests::unproposed : &Contests::open,
+                 [&](uint32_t i, Worker& scratch) {
+                   propose(i, scratch, round);
+                   return false;
+                 });
     for_contests(&Contests::open, [&](uint32_t i, Worker&) {
-      const bool decided = proposals()[i].round == round && holds(i, step);
+      const bool decided = proposals()[i].round == round && is_accepted(i, step);
       if (decided) bodies_[i].state = Body::kDecided;
       return decided;
     });
@@ -677,16 +540,16 @@ void CrowdEngine::commit(uint64_t step) {
 
 // Is a place clear of where the others stand now?
 bool CrowdEngine::is_clear(const Body& body, const Stand& place, std::span<const uint32_t> others,
-                           bool somebody_moved) const {
+                           bool any_moved) const {
   return std::none_of(others.begin(), others.end(), [&](uint32_t j) {
     const Body& other = bodies_[j];
-    const bool moved = somebody_moved && other.state == Body::kDecided;
+    const bool moved = any_moved && other.state == Body::kDecided;
     return overlaps_with(body, place, other, moved ? proposals()[j].place : other.stand());
   });
 }
 
-// Names the first of his ways that is open and clear, if there is one.
-void CrowdEngine::name(uint32_t i, Worker& scratch, uint8_t round) {
+// Proposes the first candidate that is open and clear, if there is one.
+void CrowdEngine::propose(uint32_t i, Worker& scratch, uint8_t round) {
   const Body& body = bodies_[i];
   Proposal& proposal = proposals()[i];
   const std::span<const uint32_t> others = others_of(proposal);
@@ -698,32 +561,32 @@ void CrowdEngine::name(uint32_t i, Worker& scratch, uint8_t round) {
   };
   if (!proposal.has_all && !proposal.forgets) {
     const bool found = try_displacement(body, proposal.displacement(0), place) &&
-                       is_clear(body, place, others, /*somebody_moved=*/true);
+                       is_clear(body, place, others, /*any_moved=*/true);
     if (found) return take(true);
   }
-  proposal.flags = 0;  // It comes to do what it did not want first.
-  Displacements ways;
+  proposal.flags = 0;  // It makes a move that was not its first choice.
+  Displacements candidates;
   if (proposal.has_all) {
-    for (size_t n = 0; n < ways.size(); ++n)
-      ways[n] = proposal.displacement(static_cast<uint32_t>(n));
-    return take(try_displacements(body, ways, others, place));
+    for (size_t n = 0; n < candidates.size(); ++n)
+      candidates[n] = proposal.displacement(static_cast<uint32_t>(n));
+    return take(try_displacements(body, candidates, others, place));
   }
-  // What it steers by is as it was when the step began. Others read `scratch.others` meanwhile.
+  // What it steers by is as when the step began. Others read `scratch.others` meanwhile.
   const NeighbourGrid::Around around = grid_->around(grid_->square(body));
   sense(i, scratch, around, /*lists_others=*/false);
   const bool open = find_open_preferred(i, scratch, around);
-  look_around(body, scratch.situation);
-  find_paths(body, scratch.situation, open, ways);
-  proposal.forgets = !proposal.has_room(ways.size());
+  query_walls(body, scratch.situation);
+  find_candidates(body, scratch.situation, open, candidates);
+  proposal.forgets = !proposal.has_room(candidates.size());
   if (!proposal.forgets) {
-    proposal.ways = 0;
-    for (const Displacement displacement : ways) proposal.add_displacement(displacement);
+    proposal.candidate_count = 0;
+    for (const Displacement displacement : candidates) proposal.add_displacement(displacement);
     proposal.has_all = true;
   }
-  take(try_displacements(body, ways, others, place));
+  take(try_displacements(body, candidates, others, place));
 }
 
-bool CrowdEngine::holds(uint32_t i, uint64_t step) const {
+bool CrowdEngine::is_accepted(uint32_t i, uint64_t step) const {
   const Body& body = bodies_[i];
   const Proposal& proposal = proposals()[i];
   const auto order = [&](const Body& b) {
@@ -746,18 +609,18 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
     for (size_t i = begin; i < end; ++i) {
       Body& b = bodies_[i];
       if (b.has(Body::kFlying)) continue;
-      here.far += b.has(Body::kFar) ? 1 : 0;
+      here.low_detail += b.has(Body::kLowDetail) ? 1 : 0;
       const Plane displacement =
           config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z);
-      if (b.steps == 0) {  // To all others it is as if it had moved evenly.
-        ++here.held;
+      if (b.steps == 0) {  // For all others it looks as if it had moved evenly.
+        ++here.skipped;
         if (b.has(Body::kHasGoal)) here.progress += progress_of(b, displacement);
         continue;
       }
       const StepUnits units = units_of(b);
       const Proposal& proposal = proposals()[i];
       const Stand& place = proposal.place;
-      const bool is_alone = b.state == Body::kFree || b.state == Body::kShut;
+      const bool is_alone = b.state == Body::kFree || b.state == Body::kEnclosed;
       const bool may_move = b.state == Body::kFree || b.state == Body::kDecided;
       const bool moves = may_move && (place.x != b.x || place.z != b.z);
       if (moves) {
@@ -770,7 +633,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
         b.velocity = {};
         ++here.stood;
       }
-      b.clear(Body::kKeeps);
+      b.clear(Body::kContinues);
       b.in_counterflow = proposal.in_counterflow;
       if (may_move) b.flags = static_cast<uint8_t>(b.flags | proposal.flags);
       if (!b.has(Body::kHasGoal) || b.has(Body::kExternal)) continue;
@@ -778,18 +641,19 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       const float towards = speed_towards(b, displacement);
       here.progress += progress_of(b, displacement);
       const bool near_goal = left <= 1 && b.has(Body::kLast);
-      // Nobody is in the way of who is alone, so there is nobody to be turned away from.
+      // A body without others near has none to turn away from.
       if (config_.deadlock_avoidance) {
         const float content =
             near_goal || is_alone
                 ? 1
-                : steer::progress_felt(config_.patience, towards / b.speed, b.follows);
+                : steer::progress_felt(config_.deadlock_settings, towards / b.speed, b.follows);
         const float along =
             (b.velocity.x * b.preferred.x + b.velocity.z * b.preferred.z) / (b.speed * b.speed);
-        b.turn = steer::next_turn(config_.patience, b.turn, content, along, units.dt);
+        b.detour_angle = steer::next_detour_angle(config_.deadlock_settings, b.detour_angle,
+                                                  content, along, units.dt);
       }
       const Plane rest = config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z);
-      if (b.has(Body::kLast) && !b.has(Body::kArrived) && size_of(rest) < kThere) {
+      if (b.has(Body::kLast) && !b.has(Body::kArrived) && size_of(rest) < kArrivalRadius) {
         b.flags |= Body::kArrived;
         const std::lock_guard lock(adding);
         arrived_.push_back(b.slot);

@@ -6,9 +6,9 @@
 #include "crowd/crowd_engine.h"
 #include "crowd/reaction.h"
 
-// Levels of detail: docs/design/008-engine.md. Who is far moves some steps at once when it is his
-// turn, and stands in between. Each step by itself commits as ever, so whoever is near or far, and
-// changes between, touches nobody.
+// Levels of detail: docs/design/008-engine.md. A body in low detail makes several steps at once
+// when its turn comes, and stands in between. Each move goes through conflict resolution as ever,
+// so no body touches another, whatever its level of detail and when that changes.
 namespace throng {
 
 bool CrowdEngine::is_near(const Body& body) const {
@@ -21,32 +21,32 @@ bool CrowdEngine::is_near(const Body& body) const {
   });
 }
 
-// So many that it moves less than the narrowest is wide: nobody jumps through another.
-uint64_t CrowdEngine::steps_of_far(const Body& body) const {
+// At most as many that it moves less than the narrowest body is wide: none passes through another.
+uint64_t CrowdEngine::steps_in_low_detail(const Body& body) const {
   constexpr float kRounded = 4;  // [units]
   const float displacement = body.speed * (config_.units.dt / config_.units.unit);
-  const float most = (static_cast<float>(detail_.narrowest) - kRounded) / displacement;
-  return static_cast<uint64_t>(std::clamp(most, 1.0f, static_cast<float>(detail_.steps)));
+  const float max_steps = (static_cast<float>(detail_.narrowest) - kRounded) / displacement;
+  return static_cast<uint64_t>(std::clamp(max_steps, 1.0f, static_cast<float>(detail_.steps)));
 }
 
 uint64_t CrowdEngine::steps_of_reaction(const Body& body) const {
-  if (!body.has(Body::kFar)) return every_;
-  const uint64_t steps = steps_of_far(body);
+  if (!body.has(Body::kLowDetail)) return every_;
+  const uint64_t steps = steps_in_low_detail(body);
   return steps *
          throng::steps_of_reaction(detail_.reaction, config_.units.dt * static_cast<float>(steps));
 }
 
-// Far, or near? And if far, is it his turn?
+// Low detail or full? And in low detail, does it move in this step?
 void CrowdEngine::choose_detail(Body& body, uint64_t step) const {
   body.steps = 1;
-  const bool is_far = !detail_.views.empty() && !body.has(Body::kExternal) &&
-                      !body.has(Body::kFlying) && !is_near(body);
-  if (!is_far) {
-    body.clear(Body::kFar);
+  const bool low_detail = !detail_.views.empty() && !body.has(Body::kExternal) &&
+                          !body.has(Body::kFlying) && !is_near(body);
+  if (!low_detail) {
+    body.clear(Body::kLowDetail);
     return;
   }
-  body.flags |= Body::kFar;
-  const uint64_t steps = steps_of_far(body);
+  body.flags |= Body::kLowDetail;
+  const uint64_t steps = steps_in_low_detail(body);
   body.steps = ((step + body.slot) % steps == 0 ? steps : 0) & 127;
 }
 

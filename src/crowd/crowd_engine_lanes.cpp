@@ -7,27 +7,28 @@
 #include "crowd/sense_kernel.h"
 #include "steer/sampled_kernel.h"
 
-// Streams that meet: lanes, and the right half of narrow places. docs/design/008-engine.md.
+// Counterflow: lanes, and the right half of narrow places. docs/design/008-engine.md. Constant time
+// for each body and its neighbours.
 namespace throng {
 
 using steer::Plane;
 
-// How far it is to walls on both sides of its way, up to where a place is narrow. [m]
+// Distances to walls on both sides of its path, up to where a place is narrow. [m]
 CrowdEngine::Sides CrowdEngine::sides_of(const Body& body) const {
   Plane ahead = path_ahead(body);
   const float far = size_of(ahead);
   if (far <= 1e-3f) return {config_.lanes.narrow, config_.lanes.narrow};
   ahead = {ahead.x / far, ahead.z / far};
   const StrideGround& ground = grounds_[body.avatar_class];
-  const float unit = config_.units.unit, look = config_.lanes.narrow / unit;
+  const float unit = config_.units.unit, query_range = config_.lanes.narrow / unit;
   const Plane right{-ahead.z, ahead.x}, left{ahead.z, -ahead.x};
-  return {ground.free_distance(body.level, body.point(), left, look) * unit,
-          ground.free_distance(body.level, body.point(), right, look) * unit};
+  return {ground.free_distance(body.level, body.point(), left, query_range) * unit,
+          ground.free_distance(body.level, body.point(), right, query_range) * unit};
 }
 
-// Does one of those whom it has sensed come towards it? Where he is bound for counts: a jam turns
-// wishes any way.
-bool CrowdEngine::is_met(const Body& body, const Worker& worker) const {
+// Does a neighbour come towards it? The neighbour's local target counts: in a jam, preferred
+// velocities point in all directions.
+bool CrowdEngine::has_oncoming(const Body& body, const Worker& worker) const {
   const Plane displacement = path_ahead(body);
   for (size_t n = 0; n < worker.situation.near.size; ++n) {
     const Body& other = bodies_[worker.entries[n]];
@@ -41,8 +42,8 @@ bool CrowdEngine::is_met(const Body& body, const Worker& worker) const {
   return false;
 }
 
-// Who meets a stream between walls leaves it the left half. Where no wall is near at all, which is
-// quickly told, nobody asks.
+// A body in counterflow between walls leaves the left half to the stream. Where no wall is near,
+// which is tested quickly, nothing changes.
 void CrowdEngine::keep_right(const Body& body, Worker& worker) const {
   if (worker.situation.near.size == 0) return;
   const float narrow = config_.lanes.narrow;
@@ -50,7 +51,7 @@ void CrowdEngine::keep_right(const Body& body, Worker& worker) const {
   if (ground.is_open_around(body.level, body.point(), cells_of(narrow / config_.units.unit))) {
     return;
   }
-  if (!worker.in_counterflow && !is_met(body, worker)) return;
+  if (!worker.in_counterflow && !has_oncoming(body, worker)) return;
   const Sides sides = sides_of(body);
   if (sides.left >= narrow || sides.right >= narrow) return;
   worker.in_counterflow = true;
@@ -64,7 +65,7 @@ void CrowdEngine::keep_right(const Body& body, Worker& worker) const {
                (preferred.z + preferred.x * aside) * scale};
 }
 
-// From one that leaves an obstacle, and is so far away.
+// Prefers to step back from a body that leaves an obstacle, `apart` away.
 void CrowdEngine::step_back(const Body& body, Plane apart, float room, Worker& worker) {
   constexpr float kStepsBack = 1;  // [m] beside it
   const float far = size_of(apart);
@@ -74,8 +75,8 @@ void CrowdEngine::step_back(const Body& body, Plane apart, float room, Worker& w
   worker.situation.preferred = {apart.x * back, apart.z * back};
 }
 
-// True if the wish is another one now.
-bool CrowdEngine::take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
+// True if this changed the preferred velocity.
+bool CrowdEngine::choose_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around) {
   const Body& body = bodies_[i];
   steer::Situation& situation = worker.situation;
   if (!steer::is_opposed_fast(config_.lanes, situation)) return false;
@@ -83,7 +84,7 @@ bool CrowdEngine::take_lane(uint32_t i, Worker& worker, const NeighbourGrid::Aro
                 .z = body.z,
                 .y = body.y,
                 .self = i,
-                .most = static_cast<float>(sight_) * static_cast<float>(sight_),
+                .max_square = static_cast<float>(sight_) * static_cast<float>(sight_),
                 .tall = body.height,
                 .touch = 0,
                 .touch_tall = 0};

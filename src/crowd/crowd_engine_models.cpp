@@ -8,12 +8,12 @@
 #include "crowd/crowd_engine.h"
 
 // Bodies that are steered by another model than steer/sampled.h: the model gives a velocity, which
-// takes the place of an open wish. Rounds and walls are the same for all.
+// replaces the preferred velocity as if that were open. Rounds and walls are the same for all.
 namespace throng {
 
 using steer::Plane;
 
-// What it would do goes into `worker.situation.preferred`.
+// Writes the model's velocity to `worker.situation.preferred`.
 void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker) const {
   const Body& body = bodies_[i];
   const auto key = [&](uint32_t j) {
@@ -33,22 +33,22 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
   steer::View view{
       .velocity = body.velocity,
       .preferred = body.preferred,
-      .way = config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z),
+      .to_target = config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z),
       .stops = body.has(Body::kLast) && body.target == 0,
       .fastest = body.speed,
       .radius = static_cast<float>(body.radius) * config_.units.unit,
       .slot = body.slot,
       .others = {others.data(), count}};
-  // Whoever has no goal of his own goes on as he is led.
+  // A body without a goal of its own keeps the given velocity.
   if (body.has(Body::kExternal) || !body.has(Body::kHasGoal)) {
-    view.way = body.preferred;
+    view.to_target = body.preferred;
     view.stops = false;
   }
   steer::Situation& situation = worker.situation;
   situation.preferred = body.preferred;
   if (config_.model == SteeringModel::kSocialForce) {
-    look_ahead(body, situation);
-    look_around(body, situation);
+    query_wall_ahead(body, situation);
+    query_walls(body, situation);
     const steer::Fan fan = steer::fan_around(situation.preferred);
     const auto& free = situation.free_distance;
     const auto nearest_wall =

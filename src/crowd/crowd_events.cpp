@@ -8,7 +8,8 @@
 #include "crowd/crowd_state.h"
 #include "throng/crowd.h"
 
-// What a crowd tells of its steps beside arrivals: who came into watched areas, who is stuck.
+// Events of a step beside arrivals: avatars that entered watched areas, avatars without progress.
+// Linear in the avatars and areas.
 namespace throng {
 namespace {
 
@@ -67,14 +68,14 @@ void Crowd::State::find_entries() {
 }
 
 void Crowd::State::find_no_progress() {
-  looked_at.resize(generation.size(), kNeverLooked);
-  const double least = kNoProgress / unit;
+  checked_at.resize(generation.size(), kNeverChecked);
+  const double min_progress = kNoProgress / unit;
   for (const Body& body : engine.bodies()) {
-    auto& [x, z, y] = looked_at[body.slot];
+    auto& [x, z, y] = checked_at[body.slot];
     const double dx = double{1} * body.x - x, dz = double{1} * body.z - z;
     const double dy = (double{1} * body.y - y) * 1e-3 / unit;
     const bool walks = body.has(Body::kHasGoal) && !body.has(Body::kArrived);
-    if (walks && dx * dx + dy * dy + dz * dz < least * least)
+    if (walks && dx * dx + dy * dy + dz * dz < min_progress * min_progress)
       no_progress.push_back(id_of(body.slot));
     x = body.x;
     z = body.z;

@@ -13,25 +13,29 @@
 #include "throng/crowd.h"
 #include "world/place.h"
 
-// What a crowd does about those who fly: when they take off, how they find and follow their ways,
-// and when they are on the ground again. docs/design/012-flyers.md.
+// Flyers of a crowd: when they take off, how they find and follow their paths, and when they are on
+// the ground again. docs/design/012-flyers.md. A path costs a search in the air's octree; a step
+// without one is constant time.
 namespace throng {
 namespace {
 
-constexpr double kLook = 3;              // [m] to a bend, to see whether the next one is open
-constexpr double kAtPort = 0.3;          // [m] from where it wanted to take off
+constexpr double kCheckRange = 3;        // [m] to a waypoint, to test whether the next one is
+                                         // visible
+constexpr double kAtLink = 0.3;          // [m] from the place of its take-off
 constexpr float kTries = 10;             // [s] there, before it gives up
-constexpr double kReach = 0.5;           // [m] from feet to the ground that is theirs
-constexpr uint64_t kLookEvery = 16;      // steps
-constexpr float kWaits = 2;              // [s] over its landing place, before it looks for another
-constexpr uint64_t kRooms = 0x726f6f6d;  // stream of chance
-constexpr uint64_t kMaxBoxes = 1 << 16;  // that a search may look at; then it goes over all
-constexpr int32_t kThere = 20;           // [units, mm] as near to a bend as matters
+constexpr double kSearchRadius = 0.5;    // [m] from feet to the ground below them
+constexpr uint64_t kCheckInterval = 16;  // steps
+constexpr float kWaits = 2;              // [s] over its landing place, before it takes another
+constexpr uint64_t kRooms = 0x726f6f6d;  // random stream
+constexpr uint64_t kMaxBoxes = 1 << 16;  // that a search may expand; then it passes over all
+                                         // obstacles
+constexpr int32_t kPointTolerance = 20;  // [units, mm] so near to a waypoint that the rest does not
+                                         // matter
 
-AirSpot here(const Body& body) { return {body.x, body.z, body.y}; }
+AirPosition here(const Body& body) { return {body.x, body.z, body.y}; }
 
 void turn_to(Body& body, Flight& flight) {
-  const AirSpot& point = flight.points[flight.next];
+  const AirPosition& point = flight.points[flight.next];
   body.local_target_x = point.x;
   body.local_target_z = point.z;
   flight.local_target_y = point.y;
@@ -39,7 +43,7 @@ void turn_to(Body& body, Flight& flight) {
       static_cast<uint8_t>(flight.is_last() ? body.flags | Body::kLast : body.flags & ~Body::kLast);
 }
 
-void set_path(Flight& flight, std::span<const AirSpot> points, bool lands) {
+void set_path(Flight& flight, std::span<const AirPosition> points, bool lands) {
   flight.count = static_cast<uint8_t>(std::min(points.size(), Flight::kPoints));
   flight.next = 0;
   flight.whole = points.size() <= Flight::kPoints ? 1 : 0;
@@ -63,11 +67,11 @@ Result<void> Crowd::State::open_air(int32_t number, ClassParts& parts, Context& 
 bool Crowd::State::put_in_air(Body& body, const Vec3d& feet) const {
   const FlyerAir* air = air_of(body);
   if (air == nullptr || !air->in_grid(feet)) return false;
-  const AirSpot spot = air->spot(feet);
-  if (!air->is_legal(spot) || flyers.is_taken(body, spot)) return false;
-  body.x = spot.x;
-  body.z = spot.z;
-  body.y = spot.y;
+  const AirPosition position = air->position(feet);
+  if (!air->is_legal(position) || flyers.is_obstructed(body, position)) return false;
+  body.x = position.x;
+  body.z = position.z;
+  body.y = position.y;
   body.level = 0;
   body.flags = Body::kFlying;
   return true;
@@ -79,13 +83,13 @@ bool Crowd::State::set_goal_of_flyer(Body& body, const Place& goal) {
   Flight& flight = flights[body.slot];
   flight.waited = 0;
   flight.descends = 0;
-  flight.to_port = 0;
+  flight.to_link = 0;
   flight.lands = 0;
   flight.count = flight.next = 0;
   const FlyerAir& air = *air_of(body);
   if (goal.level1 == kAirLevel1) {
     if (!air.in_grid(goal.position)) return false;
-    flight.goal = air.spot(goal.position);
+    flight.goal = air.position(goal.position);
     flight.goal_level = Flight::kInAir;
   } else {
     const auto point = ground_point(*world.data(), goal);
@@ -102,33 +106,33 @@ bool Crowd::State::set_goal_of_flyer(Body& body, const Place& goal) {
   flight.local_target_y = flight.goal.y;
   const bool walks = !flies && flight.goal_level != Flight::kInAir;
   body.flags |= Body::kHasGoal;
-  body.flags |= config.routing == Routing::kStraight && walks ? Body::kLast : Body::kLost;
+  body.flags |= config.routing == Routing::kStraight && walks ? Body::kLast : Body::kNeedsPath;
   return true;
 }
 
-void Crowd::State::strand(Body& body) {
+void Crowd::State::drop_goal(Body& body) {
   body.flags &= Body::kFlying;
-  const std::lock_guard lock(stranding);
+  const std::lock_guard lock(goal_mutex);
   goal_unreachable.push_back(id_of(body.slot));
 }
 
 bool Crowd::State::take_off(Body& body, Flight& flight) const {
   const auto high = air_of(body)->take_off(here(body));
   if (!high) return false;
-  flight.in_port = 1;
+  flight.in_link = 1;
   flight.descends = 0;
-  flight.port_low = body.y;
-  flight.port_high = *high;
-  flight.port_level = body.level;
+  flight.link_low = body.y;
+  flight.link_high = *high;
+  flight.link_level = body.level;
   flight.rise = 0;
-  flight.to_port = 0;
+  flight.to_link = 0;
   flight.lands = 0;
   flight.count = flight.next = 0;
-  body.turn = 0;
+  body.detour_angle = 0;
   const bool has_goal = body.has(Body::kHasGoal);
   body.flags &= Body::kExternal | Body::kHasGoal;
   body.flags |= Body::kFlying;
-  if (has_goal) body.flags |= Body::kLost;
+  if (has_goal) body.flags |= Body::kNeedsPath;
   return true;
 }
 
@@ -138,30 +142,30 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
     if (flight.preferred_up > 0) take_off(body, flight);
     return true;
   }
-  if (flight.to_port != 0 && body.has(Body::kLast)) {
+  if (flight.to_link != 0 && body.has(Body::kLast)) {
     const double dx = static_cast<double>(body.local_target_x) - body.x;
     const double dz = static_cast<double>(body.local_target_z) - body.z;
-    const double near = kAtPort / unit;
+    const double near = kAtLink / unit;
     if (dx * dx + dz * dz < near * near) {
       if (take_off(body, flight)) return true;
       flight.waited += static_cast<float>(config.dt / sub_steps);
       if (flight.waited > kTries) {
-        strand(body);
+        drop_goal(body);
         return true;
       }
     }
   }
-  if (!body.has(Body::kLost) || body.target != 0) return false;
+  if (!body.has(Body::kNeedsPath) || body.target != 0) return false;
   const bool is_straight = config.routing == Routing::kStraight;
   const bool lands = flight.goal_level != Flight::kInAir;
   if (is_straight && lands) return false;
   if (take_off(body, flight)) {
     // Into the air from where it stands, unless it is shorter on foot.
     if (!lands) return true;
-    flight.in_port = 0;
-    body.flags = Body::kHasGoal | Body::kLost;
+    flight.in_link = 0;
+    body.flags = Body::kHasGoal | Body::kNeedsPath;
   } else if (is_straight) {
-    strand(body);
+    drop_goal(body);
     return true;
   }
   ClassParts& parts = *classes[body.avatar_class];
@@ -169,16 +173,16 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
   FlightPath& path = parts.flights[w];
   parts.flight_finders[w].find({.from = parts.air->metres(here(body)),
                                 .to = parts.air->metres(flight.goal),
-                                .vertical_tolerance = kReach,
+                                .vertical_tolerance = kSearchRadius,
                                 .max_nodes = kMaxBoxes,
                                 .max_bytes = config.search_bytes,
                                 .by_turns = false,
                                 .nearest = false},
                                path);
   note_spent(path.spent);
-  flight.to_port = 0;
+  flight.to_link = 0;
   if (lands) routes[body.slot].goal = {flight.goal.x, flight.goal.z, flight.goal_level};
-  if (path.end != PathEnd::kReached) return false;  // as those who only walk
+  if (path.end != PathEnd::kReached) return false;  // as a walker
   const auto walked = static_cast<size_t>(
       std::find_if(path.segments.begin(), path.segments.end(),
                    [](SegmentKind segment) { return segment != SegmentKind::kWalk; }) -
@@ -188,16 +192,17 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
     planned.fetch_add(1, std::memory_order_relaxed);
     return true;
   }
-  const Place port = world.find_place(body.avatar_class, path.points[walked], kReach);
-  if (!port) return false;
-  routes[body.slot].goal = spot_of(*world.data(), port);
-  flight.to_port = 1;
+  const Place ground_air_link =
+      world.find_place(body.avatar_class, path.points[walked], kSearchRadius);
+  if (!ground_air_link) return false;
+  routes[body.slot].goal = point_of(*world.data(), ground_air_link);
+  flight.to_link = 1;
   return false;
 }
 
-// Is a straight way open, as far as obstacles go that are up now?
-bool Crowd::State::is_clear_of_obstacles(const Body& body, const AirSpot& from,
-                                         const AirSpot& to) const {
+// Is a straight line clear of all active obstacles?
+bool Crowd::State::is_clear_of_obstacles(const Body& body, const AirPosition& from,
+                                         const AirPosition& to) const {
   if (!flyers.has_obstacles()) return true;
   const double dx = static_cast<double>(to.x) - from.x, dz = static_cast<double>(to.z) - from.z;
   const double dy = static_cast<double>(to.y) - from.y;
@@ -205,24 +210,25 @@ bool Crowd::State::is_clear_of_obstacles(const Body& body, const AirSpot& from,
   const auto steps = static_cast<int32_t>(length / (body.radius * unit)) + 1;
   for (int32_t i = 1; i <= steps; ++i) {
     const double t = static_cast<double>(i) / steps;
-    const AirSpot spot{from.x + static_cast<int32_t>(t * dx), from.z + static_cast<int32_t>(t * dz),
-                       from.y + static_cast<int32_t>(t * dy)};
-    if (flyers.is_blocked(body, spot)) return false;
+    const AirPosition position{from.x + static_cast<int32_t>(t * dx),
+                               from.z + static_cast<int32_t>(t * dz),
+                               from.y + static_cast<int32_t>(t * dy)};
+    if (flyers.is_blocked(body, position)) return false;
   }
   return true;
 }
 
 // Straight up, across, and straight down: no search, but hardly ever short.
-bool Crowd::State::find_path_over(const Body& body, const AirSpot& from, const AirSpot& to,
-                                  std::vector<AirSpot>& points) const {
-  constexpr int32_t kRise = 3000;  // [mm] more at a time
+bool Crowd::State::find_path_over(const Body& body, const AirPosition& from, const AirPosition& to,
+                                  std::vector<AirPosition>& points) const {
+  constexpr int32_t kRise = 3000;  // [mm] more at each attempt
   const FlyerAir& air = *air_of(body);
-  const auto is_open = [&](const AirSpot& a, const AirSpot& b) {
+  const auto is_open = [&](const AirPosition& a, const AirPosition& b) {
     return air.sees(a, b) && is_clear_of_obstacles(body, a, b);
   };
   const int32_t ceiling = air.ceiling() - 1;
   for (int32_t y = std::max(from.y, to.y);; y = std::min(y + kRise, ceiling)) {
-    const AirSpot up{from.x, from.z, y}, down{to.x, to.z, y};
+    const AirPosition up{from.x, from.z, y}, down{to.x, to.z, y};
     if (is_open(from, up) && is_open(up, down) && is_open(down, to)) {
       points.assign({up, down, to});
       return true;
@@ -231,30 +237,30 @@ bool Crowd::State::find_path_over(const Body& body, const AirSpot& from, const A
   }
 }
 
-// The nearest spot straight on from one, beside obstacles, that the finder of ways takes for open;
-// itself, if it does.
-std::optional<AirSpot> Crowd::State::open_spot(const Body& body, const AirSpot& at,
-                                               int32_t worker) const {
-  constexpr int32_t kCells = 2;  // off
+// The nearest position beside obstacles that the path finder takes for open, straight on from `at`;
+// `at` itself if it is open.
+std::optional<AirPosition> Crowd::State::open_position(const Body& body, const AirPosition& at,
+                                                       int32_t worker) const {
+  constexpr int32_t kCells = 2;  // to each side
   const ClassParts& parts = *classes[body.avatar_class];
   const FlyerAir& air = *parts.air;
   const FlightFinder& finder = parts.flight_finders[static_cast<size_t>(worker)];
   if (finder.is_legal(air.metres(at))) return at;
   const int32_t high = finder.space().shape.cell;
   const auto wide = static_cast<int32_t>(high * 1e-3 / unit);
-  std::optional<AirSpot> nearest;
-  int32_t least = INT32_MAX;
+  std::optional<AirPosition> nearest;
+  int32_t min_square = INT32_MAX;
   for (int32_t dy = -kCells; dy <= kCells; ++dy) {
     for (int32_t dz = -kCells; dz <= kCells; ++dz) {
       for (int32_t dx = -kCells; dx <= kCells; ++dx) {
         const int32_t square = dx * dx + dy * dy + dz * dz;
-        const AirSpot there{at.x + dx * wide, at.z + dz * wide, at.y + dy * high};
-        if (square >= least || there.x < 0 || there.z < 0) continue;
+        const AirPosition there{at.x + dx * wide, at.z + dz * wide, at.y + dy * high};
+        if (square >= min_square || there.x < 0 || there.z < 0) continue;
         if (!finder.is_legal(air.metres(there)) || !air.sees(at, there) ||
             !is_clear_of_obstacles(body, at, there)) {
           continue;
         }
-        least = square;
+        min_square = square;
         nearest = there;
       }
     }
@@ -262,12 +268,12 @@ std::optional<AirSpot> Crowd::State::open_spot(const Body& body, const AirSpot& 
   return nearest;
 }
 
-// A way from where a flyer is to its goal. False: there is none.
+// A path from where a flyer is to its goal. False: there is none.
 bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker) const {
   ClassParts& parts = *classes[body.avatar_class];
   const FlyerAir& air = *parts.air;
-  AirSpot from = here(body), to = flight.goal;
-  if (flight.in_port != 0) from.y = std::max(from.y, flight.port_high);
+  AirPosition from = here(body), to = flight.goal;
+  if (flight.in_link != 0) from.y = std::max(from.y, flight.link_high);
   const bool lands = flight.goal_level != Flight::kInAir;
   const auto high = lands ? air.take_off(to) : std::nullopt;
   if (high) to.y = *high;
@@ -281,10 +287,10 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
   if (config.routing == Routing::kStraight) return false;
   const auto w = static_cast<size_t>(worker);
   FlightPath& path = parts.flights[w];
-  const auto find = [&](const AirSpot& begin, const AirSpot& end) {
+  const auto find = [&](const AirPosition& begin, const AirPosition& end) {
     parts.flight_finders[w].find({.from = air.metres(begin),
                                   .to = air.metres(end),
-                                  .vertical_tolerance = kReach,
+                                  .vertical_tolerance = kSearchRadius,
                                   .max_nodes = kMaxBoxes,
                                   .max_bytes = config.search_bytes,
                                   .by_turns = false,
@@ -293,29 +299,30 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
     note_spent(path.spent);
   };
   find(from, flight.goal);
-  std::vector<AirSpot> points;
-  std::optional<AirSpot> end;
+  std::vector<AirPosition> points;
+  std::optional<AirPosition> end;
   if (path.end == PathEnd::kNoPlace && flyers.has_obstacles()) {
-    // Beside an obstacle one may be where the finder's whole cell is shut.
-    const auto out = open_spot(body, from, worker);
-    end = lands ? flight.goal : open_spot(body, to, worker);
+    // Beside an obstacle the feet may be where the finder's whole cell is blocked.
+    const auto out = open_position(body, from, worker);
+    end = lands ? flight.goal : open_position(body, to, worker);
     if (out && end) find(*out, *end);
     if (out) points.push_back(*out);
   }
   if (path.end == PathEnd::kReached) {
-    // What is walked after the landing is asked for then.
+    // The path on foot after the landing is searched for then.
     bool walks_then = false;
     for (size_t i = 0; i < path.segments.size() && !walks_then; ++i) {
-      if (path.segments[i] == SegmentKind::kFly) points.push_back(air.spot(path.points[i + 1]));
+      if (path.segments[i] == SegmentKind::kFly) points.push_back(air.position(path.points[i + 1]));
       walks_then = path.segments[i] == SegmentKind::kLand;
     }
     if (end && !lands) points.push_back(to);
     if (points.empty()) points.push_back(from);
-    // The finder knows no obstacles that move. Where one is on its way, there may be one over it.
-    std::vector<AirSpot> over;
-    AirSpot at = from;
-    const bool clear = std::all_of(points.begin(), points.end(), [&](const AirSpot& next) {
-      const AirSpot begin = std::exchange(at, next);
+    // The finder does not know obstacles that move. If one blocks the path, a path over it may be
+    // free.
+    std::vector<AirPosition> over;
+    AirPosition at = from;
+    const bool clear = std::all_of(points.begin(), points.end(), [&](const AirPosition& next) {
+      const AirPosition begin = std::exchange(at, next);
       return is_clear_of_obstacles(body, begin, next);
     });
     const bool goes_over = !clear && ends_in_air && find_path_over(body, from, to, over);
@@ -331,16 +338,17 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
   return true;
 }
 
-// Others are where it would land: it looks elsewhere, the farther away the longer it has waited.
-void Crowd::State::look_for_room(Body& body, const Flight& flight) const {
+// Others are where it would land: it picks another place, the farther away the longer it has
+// waited.
+void Crowd::State::find_landing_place(Body& body, const Flight& flight) const {
   const FlyerAir& air = *air_of(body);
-  const AirSpot& over = flight.points[flight.next];
+  const AirPosition& over = flight.points[flight.next];
   const auto window = static_cast<uint64_t>(static_cast<double>(step) * config.dt / kWaits);
   const uint64_t side =
       random_below(config.seed ^ kRooms, body.slot, window, steer::kEighths.size());
-  const double far = FlyerEngine::landing_reach(flight) / unit;
-  const AirSpot there{over.x + static_cast<int32_t>(far * steer::kEighths[side][0]),
-                      over.z + static_cast<int32_t>(far * steer::kEighths[side][1]), over.y};
+  const double far = FlyerEngine::landing_radius(flight) / unit;
+  const AirPosition there{over.x + static_cast<int32_t>(far * steer::kEighths[side][0]),
+                          over.z + static_cast<int32_t>(far * steer::kEighths[side][1]), over.y};
   const bool sees = there.x >= 0 && there.z >= 0 && air.sees(here(body), there);
   body.local_target_x = sees ? there.x : over.x;
   body.local_target_z = sees ? there.z : over.z;
@@ -351,59 +359,60 @@ void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
   if (body.leaves && plan_exit_in_air(body, flight)) return;
   if (!body.has(Body::kHasGoal)) return;
   const FlyerAir& air = *air_of(body);
-  const AirSpot at = here(body);
-  if (!body.has(Body::kLost) && flight.in_port == 0) {
+  const AirPosition at = here(body);
+  if (!body.has(Body::kNeedsPath) && flight.in_link == 0) {
     const double dx = (static_cast<double>(body.local_target_x) - body.x) * unit;
     const double dz = (static_cast<double>(body.local_target_z) - body.z) * unit;
     const double dy = (static_cast<double>(flight.local_target_y) - body.y) * 1e-3;
-    const bool is_near = dx * dx + dy * dy + dz * dz < kLook * kLook;
+    const bool is_near = dx * dx + dy * dy + dz * dz < kCheckRange * kCheckRange;
     if (is_near && !flight.is_last()) {
       const bool at_end = flight.next + 1 == flight.count;
-      const AirSpot& local_target = flight.points[flight.next];
-      const bool there = std::abs(local_target.x - at.x) < kThere &&
-                         std::abs(local_target.z - at.z) < kThere &&
-                         std::abs(local_target.y - at.y) < kThere;
+      const AirPosition& local_target = flight.points[flight.next];
+      const bool there = std::abs(local_target.x - at.x) < kPointTolerance &&
+                         std::abs(local_target.z - at.z) < kPointTolerance &&
+                         std::abs(local_target.y - at.y) < kPointTolerance;
       if (at_end) {
-        if (there || dx * dx + dy * dy + dz * dz < 1) body.flags |= Body::kLost;
+        if (there || dx * dx + dy * dy + dz * dz < 1) body.flags |= Body::kNeedsPath;
       } else if (there || (air.sees(at, flight.points[flight.next + 1u]) &&
                            is_clear_of_obstacles(body, at, flight.points[flight.next + 1u]))) {
         ++flight.next;
         turn_to(body, flight);
       }
     }
-    const bool looks = (sub_step + body.slot) % kLookEvery == 0;
-    if (looks && config.routing == Routing::kPaths) {
-      const AirSpot& local_target = flight.points[flight.next];
+    const bool checks_path = (sub_step + body.slot) % kCheckInterval == 0;
+    if (checks_path && config.routing == Routing::kPaths) {
+      const AirPosition& local_target = flight.points[flight.next];
       if (!air.sees(at, local_target) || !is_clear_of_obstacles(body, at, local_target))
-        body.flags |= Body::kLost;
+        body.flags |= Body::kNeedsPath;
     }
     if (flight.lands != 0 && flight.is_last() && flight.waited > kWaits)
-      look_for_room(body, flight);
+      find_landing_place(body, flight);
   }
-  if (!body.has(Body::kLost)) return;
+  if (!body.has(Body::kNeedsPath)) return;
   planned.fetch_add(1, std::memory_order_relaxed);
   if (body.target != 0) {
-    // The nearest place of its region, in a straight line.
+    // The nearest place of its target, in a straight line.
     const auto& places = classes[body.avatar_class]->landings[body.target - 1u];
-    double least = HUGE_VAL;
+    double min_square = HUGE_VAL;
     for (const Place& place : places) {
-      const AirSpot spot = air.spot(place.position);
-      const double dx = static_cast<double>(spot.x) - at.x, dz = static_cast<double>(spot.z) - at.z;
-      const double dy = (static_cast<double>(spot.y) - at.y) * 1e-3 / unit;
+      const AirPosition position = air.position(place.position);
+      const double dx = static_cast<double>(position.x) - at.x,
+                   dz = static_cast<double>(position.z) - at.z;
+      const double dy = (static_cast<double>(position.y) - at.y) * 1e-3 / unit;
       const double square = dx * dx + dy * dy + dz * dz;
-      if (square >= least) continue;
-      least = square;
-      flight.goal = spot;
+      if (square >= min_square) continue;
+      min_square = square;
+      flight.goal = position;
       flight.goal_level = place.level1 - 1;
     }
-    if (places.empty()) return strand(body);
+    if (places.empty()) return drop_goal(body);
   }
-  if (!find_flight(body, flight, worker)) return strand(body);
-  body.flags &= static_cast<uint8_t>(~Body::kLost);
+  if (!find_flight(body, flight, worker)) return drop_goal(body);
+  body.flags &= static_cast<uint8_t>(~Body::kNeedsPath);
   turn_to(body, flight);
 }
 
-// The step of those who are in the air; the others have made theirs.
+// The step of flyers in the air, after that of walkers.
 void Crowd::State::fly(EngineCounts& counts, CrowdEngine::Times& times,
                        std::atomic<uint64_t>& planned) {
   const FlyerEngine::Before before = [&](Body& body, Flight& flight, int32_t worker) {
@@ -414,10 +423,10 @@ void Crowd::State::fly(EngineCounts& counts, CrowdEngine::Times& times,
   for (const uint32_t i : flyers.landed()) {
     Body& body = engine.bodies()[i];
     Flight& flight = flights[body.slot];
-    body.level = flight.port_level;
+    body.level = flight.link_level;
     body.velocity = {};
-    body.turn = 0;
-    flight.in_port = 0;
+    body.detour_angle = 0;
+    flight.in_link = 0;
     flight.descends = 0;
     flight.lands = 0;
     flight.rise = 0;
@@ -425,7 +434,7 @@ void Crowd::State::fly(EngineCounts& counts, CrowdEngine::Times& times,
     body.flags &= Body::kExternal | Body::kHasGoal;
     if (!has_goal) continue;
     const bool is_straight = config.routing == Routing::kStraight;
-    body.flags |= is_straight ? Body::kLast : Body::kLost;
+    body.flags |= is_straight ? Body::kLast : Body::kNeedsPath;
     body.local_target_x = flight.goal.x;
     body.local_target_z = flight.goal.z;
   }
@@ -450,7 +459,7 @@ void Crowd::State::add_flyer_blockers(std::span<const uint32_t> slots,
   std::sort(found.begin(), found.end());
 }
 
-void Crowd::State::tell_flyers_of_obstacles() {
+void Crowd::State::sync_flyer_obstacles() {
   std::vector<AirObstacle> all;
   std::vector<Solid> solids;
   const Vec3d& origin = world.data()->summary.origin;

@@ -11,6 +11,8 @@
 
 #include "world/place.h"
 
+// Copies the ground of one class out of the zones: rows of legal and of flat cells, a line for each
+// level, and samples. Linear in the level tiles.
 namespace throng {
 namespace {
 
@@ -32,7 +34,7 @@ Heights heights_of(const LevelView& view, const uint64_t* legal) {
   return {low, high};
 }
 
-// How far feet can be above or below the sample of their cell, by all that the level holds. [mm]
+// How far feet can be above or below the sample of their cell, anywhere on the level. [mm]
 int32_t max_rise(const LevelView& view) {
   if (view.is_constant()) return 0;
   if (view.samples == nullptr) return (std::abs(view.slope_x) + std::abs(view.slope_z)) / 1024 + 2;
@@ -83,7 +85,7 @@ uint64_t same(const uint16_t* row, const uint16_t* other) {
 
 // Legal cells that are as high as the four beside them, as far as those are on the tile. Slopes
 // there are 0 (surface.h). False if there are none.
-bool find_plain(const LevelView& view, const uint64_t* legal, uint64_t* plain) {
+bool find_flat(const LevelView& view, const uint64_t* legal, uint64_t* flat) {
   if (view.samples == nullptr) return false;
   const uint64_t left_rim = 1, right_rim = uint64_t{1} << 63;
   uint64_t any = 0, above = ~uint64_t{0};
@@ -91,15 +93,15 @@ bool find_plain(const LevelView& view, const uint64_t* legal, uint64_t* plain) {
     const uint16_t* row = view.samples + z * 64;
     const uint64_t right = same_to_the_right(row);
     const uint64_t below = z + 1 < kRows ? same(row, row + 64) : ~uint64_t{0};
-    plain[z] = legal[z] & (right | right_rim) & (right << 1 | left_rim) & above & below;
-    any |= plain[z];
+    flat[z] = legal[z] & (right | right_rim) & (right << 1 | left_rim) & above & below;
+    any |= flat[z];
     above = below;
   }
   return any != 0;
 }
 
-// True for levels with something to stand on whose floor is stored cell by cell.
-bool is_rough(const Zone& zone, uint32_t level, int32_t avatar_class) {
+// True for levels with legal cells whose floor is stored cell by cell.
+bool is_sampled(const Zone& zone, uint32_t level, int32_t avatar_class) {
   return zone.level(level).floor_kind() == format::HeightKind::Blocks &&
          zone.clearance(level, static_cast<uint32_t>(avatar_class)).kind() !=
              format::CellsKind::None;
@@ -107,7 +109,7 @@ bool is_rough(const Zone& zone, uint32_t level, int32_t avatar_class) {
 size_t count_rough(const Zone& zone, int32_t avatar_class) {
   size_t count = 0;
   for (uint32_t i = 0; i < zone.level_count(); ++i)
-    count += is_rough(zone, i, avatar_class) ? 1 : 0;
+    count += is_sampled(zone, i, avatar_class) ? 1 : 0;
   return count;
 }
 
@@ -125,7 +127,7 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
   ground.views_ = HugeArray<LevelView>(world.level_count);
   ground.lines_ = HugeArray<LevelLine>(world.level_count);
   ground.open_ = HugeArray<OpenLine>(world.level_count);
-  // Room for all levels; what is not written is never taken from the system.
+  // Capacity for all levels; the system allocates only what is written.
   ground.rows_ = HugeArray<uint64_t>((2 * size_t{world.level_count} + 2) * kRows);
   std::fill_n(ground.rows_.data() + kAllLegal * kRows, kRows, ~uint64_t{0});
   uint32_t& sets = ground.row_sets_;
@@ -155,7 +157,7 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
       }
       LevelView& view = ground.views_[base + i];
       view = level.view;
-      if (is_rough(*zone, i, avatar_class)) {
+      if (is_sampled(*zone, i, avatar_class)) {
         uint16_t* samples = ground.samples_.data() + ground.sample_sets_++ * kBlocks * 64;
         unpack_floor(view, samples);
         view.samples = samples;
@@ -163,13 +165,13 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
       LevelLine& line = ground.lines_[base + i];
       line = {};
       line.legal_set = set | (level.step_safe ? kStepSafe : 0);
-      line.plain_set = set;
+      line.flat_set = set;
       if (set != kNoneLegal && !view.is_constant()) {
         const bool any =
-            find_plain(view, ground.legal(base + i), ground.rows_.data() + size_t{sets} * kRows);
-        line.plain_set = any ? sets++ : kNoneLegal;
+            find_flat(view, ground.legal(base + i), ground.rows_.data() + size_t{sets} * kRows);
+        line.flat_set = any ? sets++ : kNoneLegal;
       }
-      line.plain = full_blocks(ground.plain(base + i));
+      line.flat = full_blocks(ground.flat(base + i));
       ground.find_open(base + i);
       const Heights heights = heights_of(view, ground.legal(base + i));
       ground.heights_[base + i] = heights;
@@ -198,12 +200,12 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
       range.last = base + i + 1;
     }
   }
-  ground.find_alone(step_mm);
+  ground.find_isolated(step_mm);
   ground.join_blocks();
   return ground;
 }
 
-void CrowdGround::find_alone(int32_t step_mm) {
+void CrowdGround::find_isolated(int32_t step_mm) {
   for (const Range& range : tiles_) {
     for (uint32_t i = range.first; i < range.last; ++i) {
       bool alone = step_safe(i);
@@ -211,7 +213,7 @@ void CrowdGround::find_alone(int32_t step_mm) {
         alone &= i == j || heights_[j].low > heights_[i].high + step_mm ||
                  heights_[j].high < heights_[i].low - step_mm;
       }
-      lines_[i].legal_set |= alone ? kAlone : 0;
+      lines_[i].legal_set |= alone ? kIsolated : 0;
     }
   }
 }

@@ -13,7 +13,7 @@
 #include "throng/result.h"
 #include "world/ground.h"
 
-/// The ground as a step reads it: a line and 64 rows of legal cells a level.
+/// The ground as a step reads it: for each level a line and 64 rows of legal cells.
 namespace throng {
 
 class CrowdGround {
@@ -46,27 +46,27 @@ class CrowdGround {
   [[nodiscard]] const LevelLine* lines() const { return lines_.data(); }
   [[nodiscard]] const OpenLine& open_line(Level level) const { return open_[level]; }
 
-  /// 64 rows of plain cells: legal, and level with the cells beside them. Whoever stands on one may
-  /// go wherever all cells between are plain, and stays on the level, at the height of his feet.
-  [[nodiscard]] const uint64_t* plain(Level level) const { return rows(lines_[level].plain_set); }
+  /// 64 rows of flat cells: legal, and level with the cells beside them. An avatar on one may move
+  /// wherever all cells between are flat, and stays on the level, at the height of its feet.
+  [[nodiscard]] const uint64_t* flat(Level level) const { return rows(lines_[level].flat_set); }
 
-  /// What a level says about walking on it inside its tile.
+  /// What is known about walking on a level inside its tile.
   struct Walk {
     const uint64_t* legal;  // 64 rows
     bool is_step_safe;      // no two legal neighbours differ by more than the step
-    bool is_alone;          // step safe, and no other level of the tile is within a step of it
+    bool is_isolated;       // step safe, and no other level of the tile is within a step of it
   };
   [[nodiscard]] Walk walk(Level level) const {
     const uint32_t word = lines_[level].legal_set;
-    return {rows(word), (word & kStepSafe) != 0, (word & kAlone) != 0};
+    return {rows(word), (word & kStepSafe) != 0, (word & kIsolated) != 0};
   }
-  /// Asks for what is read of a level by those whom its line does not answer.
+  /// Prefetches what is read of a level where its line gives no answer.
   void prefetch_level(Level level, int32_t z0, int32_t z1) const {
-    throng::prefetch(&plain(level)[z0 & 63]);
-    throng::prefetch(&plain(level)[z1 & 63]);
+    throng::prefetch(&flat(level)[z0 & 63]);
+    throng::prefetch(&flat(level)[z1 & 63]);
     throng::prefetch(&views_[level]);
   }
-  /// Asks for what a step from a cell of a level reads of it, and for what is at hand around it.
+  /// Prefetches what a step from a cell of a level reads, and what is cached around it.
   void prefetch_cell(Level level, int32_t x, int32_t z) const {
     throng::prefetch(&rows(lines_[level].legal_set)[z & 63]);
     const LevelView& view = views_[level];
@@ -76,13 +76,13 @@ class CrowdGround {
     throng::prefetch(sample);
     throng::prefetch(sample + 64);
   }
-  /// Asks for what decides where one may walk on a level,
+  /// Prefetches what decides where an avatar may walk on a level.
   void prefetch_open(Level level) const {
     throng::prefetch(&open_[level]);
     throng::prefetch(&lines_[level]);
     throng::prefetch(&views_[level]);
   }
-  /// What is known of a tile's levels, in two goes: the second reads what the first asks for.
+  /// Prefetches the tile's level lines, in two calls: the second reads what the first prefetched.
   void prefetch_tile(int32_t tile_x, int32_t tile_z) const {
     throng::prefetch(tile(tile_x, tile_z));
   }
@@ -100,14 +100,14 @@ class CrowdGround {
                      static_cast<int32_t>(p.z & (kUnitsPerCell - 1)));
   }
 
-  /// Takes these cells from a level, of all cells that were baked, and no others: none gives back
-  /// what was taken before. Then join the tile. Not while others read.
-  void set_taken(Level level, const CellRows& taken);
-  /// Looks again for what lies level beyond the edges of a tile, from both sides.
+  /// Blocks exactly these cells of a level, of all cells that were baked: an empty set frees all
+  /// that were blocked before. Call join_tile then. Not while others read.
+  void set_blocked(Level level, const CellRows& blocked);
+  /// Updates what lies level beyond the edges of a tile, from both sides.
   void join_tile(int32_t x, int32_t z);
-  /// Legal cells of a level that lacks some, as they were baked; null: it lacks none.
+  /// Legal cells of a level of which some are blocked, as they were baked; null: none is blocked.
   [[nodiscard]] const CellRows* baked_legal(Level level) const;
-  /// Of the taken cells, those that bodies on them may leave.
+  /// The blocked cells that bodies on them may leave.
   [[nodiscard]] LeftCells& left() { return left_; }
   [[nodiscard]] const LeftCells& left() const { return left_; }
   [[nodiscard]] const LevelView& view(Level level) const { return views_[level]; }
@@ -115,7 +115,7 @@ class CrowdGround {
   /// 64 rows of legal cells.
   [[nodiscard]] const uint64_t* legal(Level level) const { return rows(lines_[level].legal_set); }
 
-  /// What only placing avatars needs.
+  /// What is needed only to place avatars.
   struct Record {
     uint32_t legal_cells = 0;
     int32_t tile_x = 0, tile_z = 0;
@@ -131,7 +131,7 @@ class CrowdGround {
   [[nodiscard]] int32_t tiles_x() const { return tiles_x_; }
   [[nodiscard]] int32_t tiles_z() const { return tiles_z_; }
 
-  /// Between these are all feet. [mm]
+  /// The range of all feet. [mm]
   struct Heights {
     int32_t low = 0, high = 0;
   };
@@ -143,19 +143,19 @@ class CrowdGround {
   };
   // Flags beside the number of the legal set.
   static constexpr uint32_t kStepSafe = uint32_t{1} << 31;
-  static constexpr uint32_t kAlone = uint32_t{1} << 30;
-  static constexpr uint32_t kSetBits = kAlone - 1;
+  static constexpr uint32_t kIsolated = uint32_t{1} << 30;
+  static constexpr uint32_t kSetBits = kIsolated - 1;
   static constexpr uint32_t kNoneLegal = 0;  // Sets of rows that levels share.
   static constexpr uint32_t kAllLegal = 1;
 
-  // Of a level that lacks cells, before it did.
+  // Of a level with blocked cells, before these were.
   struct Baked {
-    uint32_t legal_word = 0, plain_set = 0;
-    CellRows legal{}, plain{};
+    uint32_t legal_word = 0, flat_set = 0;
+    CellRows legal{}, flat{};
   };
   void keep_baked(Level level, Baked& baked);
 
-  void find_alone(int32_t step_mm);
+  void find_isolated(int32_t step_mm);
   void join_blocks();
   void join_side(Level level, LevelLine::Side side);
   void find_open(Level level);
@@ -175,18 +175,18 @@ class CrowdGround {
   Heights feet_range_;
   std::vector<Heights> heights_;  // between which a level's legal floors lie [mm]
   std::vector<Record> records_;
-  // Copied out of the zones, where one class's rows lie pages apart: here the levels of a tile are
-  // neighbours. Set 0 is empty, set 1 is full, for all levels that are.
+  // Copied out of the zones, where the rows of one class lie pages apart: here the levels of a tile
+  // are neighbours. Set 0 is empty and set 1 is full, for all such levels.
   HugeArray<LevelLine> lines_;
   HugeArray<OpenLine> open_;
   HugeArray<LevelView> views_;
   HugeArray<uint64_t> rows_;
   uint32_t row_sets_ = 0;
   std::unordered_map<Level, Baked> baked_;  // looked up only
-  std::vector<uint32_t> spare_sets_;        // given back
+  std::vector<uint32_t> spare_sets_;        // freed
   LeftCells left_;
-  // Floors that are no plane, row by row: each step of an avatar on one reads five of its cells,
-  // and out of the zone's blocks that takes a fifth of the step.
+  // Floors that are not flat, row by row: each step of an avatar on one reads five of its cells,
+  // and decoding these from the zone's blocks takes a fifth of the step.
   HugeArray<uint16_t> samples_;
   size_t sample_sets_ = 0;
 };

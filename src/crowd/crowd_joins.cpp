@@ -6,8 +6,8 @@
 #include "crowd/crowd_ground.h"
 #include "world/walk.h"
 
-// Which plain blocks go on, level, beyond the edge of their tile: found once, so that a step over
-// the edge need not search. A step from a plain cell to an equally high one rises by 0, which no
+// Which flat blocks continue, level, beyond the edge of their tile: found once, so that a step over
+// the edge needs no search. A step from a flat cell to an equally high one rises by 0, which no
 // other level of the tile can better; world/walk.h takes the first of those that rise least. So a
 // join is right if no earlier level of the tile is legal at that height in a cell of the block.
 namespace throng {
@@ -32,7 +32,7 @@ Cell rim(LevelLine::Side side, int32_t i) {
   }
 }
 
-bool is_plain(const LevelLine& line, Cell c) { return (line.plain[c.z / 4] >> (c.x / 4) & 1) != 0; }
+bool is_flat(const LevelLine& line, Cell c) { return (line.flat[c.z / 4] >> (c.x / 4) & 1) != 0; }
 
 }  // namespace
 
@@ -59,7 +59,7 @@ void CrowdGround::join_side(Level level, LevelLine::Side side) {
   const Range* range = tile(record.tile_x + (along_x ? (back ? -1 : 1) : 0),
                             record.tile_z + (along_x ? 0 : (back ? -1 : 1)));
   if (range == nullptr) return;
-  const auto taken_before = [&](Level other, Cell c, int32_t y) {
+  const auto already_joined = [&](Level other, Cell c, int32_t y) {
     for (Level j = range->first; j < other; ++j) {
       if (heights_[j].low > y || heights_[j].high < y) continue;
       for (int32_t cell = 0; cell < 16; ++cell) {
@@ -71,12 +71,12 @@ void CrowdGround::join_side(Level level, LevelLine::Side side) {
   };
   for (int32_t i = 0; i <= kLast; ++i) {
     const Cell here = rim(side, i), there = rim(opposite, i);
-    if (!is_plain(line, here)) continue;
+    if (!is_flat(line, here)) continue;
     const int32_t y = sample(level, here.x, here.z);
     for (Level other = range->first; other < range->last; ++other) {
-      if (!is_plain(lines_[other], there) || sample(other, there.x, there.z) != y) continue;
+      if (!is_flat(lines_[other], there) || sample(other, there.x, there.z) != y) continue;
       const bool fits = line.beyond[side] == LevelLine::kNone || line.beyond[side] == other;
-      if (!fits || taken_before(other, there, y)) break;
+      if (!fits || already_joined(other, there, y)) break;
       line.beyond[side] = other;
       line.joined[side] = static_cast<uint16_t>(line.joined[side] | 1u << i);
       break;
@@ -88,8 +88,8 @@ void CrowdGround::find_open(Level level) {
   open_[level].open = step_safe(level) ? full_blocks(legal(level)) : std::array<uint16_t, 16>{};
 }
 
-// Of the levels that steps over a side lead to, the one that most of them do (the first of equals)
-// is the one beyond.
+// Of the levels that steps over a side lead to, the one beyond is that which most of them lead to
+// (the first of equals).
 void CrowdGround::find_beyond(Level level, LevelLine::Side side) {
   const bool along_x = side == LevelLine::kLeft || side == LevelLine::kRight;
   const int32_t toward = side == LevelLine::kLeft || side == LevelLine::kAbove ? -1 : 1;
@@ -98,7 +98,7 @@ void CrowdGround::find_beyond(Level level, LevelLine::Side side) {
   line.beyond[side] = LevelLine::kNone;
   line.cells[side] = 0;
   if ((lines_[level].legal_set & kSetBits) == kNoneLegal) return;
-  std::array<Level, 64> steps;  // where from each cell they lead
+  std::array<Level, 64> steps;  // where the step from each cell leads
   for (int32_t i = 0; i < 64; ++i) {
     const int32_t rim = toward > 0 ? 63 : 0;
     const int32_t x = record.tile_x * 64 + (along_x ? rim : i);
@@ -109,21 +109,21 @@ void CrowdGround::find_beyond(Level level, LevelLine::Side side) {
                           : std::nullopt;
     steps[i] = next ? *next : LevelLine::kNone;
   }
-  int64_t most = 0;
+  int64_t max_count = 0;
   for (const Level to : steps) {
     if (to == LevelLine::kNone || to == line.beyond[side]) continue;
     const int64_t count = std::count(steps.begin(), steps.end(), to);
-    if (count <= most) continue;
-    most = count;
+    if (count <= max_count) continue;
+    max_count = count;
     line.beyond[side] = to;
   }
-  if (most == 0) return;
+  if (max_count == 0) return;
   for (int32_t i = 0; i < 64; ++i) {
     line.cells[side] |= uint64_t{steps[i] == line.beyond[side]} << i;
   }
 }
 
-// After both levels know where their steps lead: blocks join if all do, there and back.
+// After both levels know where their steps lead: blocks join if all steps lead there and back.
 void CrowdGround::join_open_side(Level level, LevelLine::Side side) {
   OpenLine& line = open_[level];
   line.joined[side] = 0;
@@ -131,10 +131,11 @@ void CrowdGround::join_open_side(Level level, LevelLine::Side side) {
   const LevelLine::Side back = LevelLine::opposite(side);
   const OpenLine& other = open_[line.beyond[side]];
   if (other.beyond[back] != level) return;
-  const uint64_t both_ways = line.cells[side] & other.cells[back];
+  const uint64_t both_directions = line.cells[side] & other.cells[back];
   for (int32_t i = 0; i <= kLast; ++i) {
     const Cell here = rim(side, i), there = rim(back, i);
-    const bool joins = (both_ways >> (4 * i) & 15) == 15 && line.is_open(here.x / 4, here.z / 4) &&
+    const bool joins = (both_directions >> (4 * i) & 15) == 15 &&
+                       line.is_open(here.x / 4, here.z / 4) &&
                        other.is_open(there.x / 4, there.z / 4);
     line.joined[side] = static_cast<uint16_t>(line.joined[side] | int{joins} << i);
   }

@@ -10,21 +10,21 @@
 #include "throng/crowd.h"
 #include "world/place.h"
 
-// What avatars do that are in an obstacle when it closes: they get out of it, on along their paths
-// if these lead out soon, else the nearest way. What they may do, StrideGround::move and the other
-// engines' is_blocked say, whatever they wish. docs/design/008-engine.md, "Obstacles".
+// Avatars that are in an obstacle when it closes leave it: along their paths if these lead out
+// soon, else by the shortest exit. Which moves are allowed, StrideGround::move and the other
+// engines' is_blocked decide. docs/design/008-engine.md, "Obstacles".
 namespace throng {
 namespace {
 
-constexpr double kMaxDetour = 2;      // times the nearest way out, for a path that leads out
-constexpr double kMaxPath = 2;        // [m] more than that
-constexpr float kPatience = 0.4f;     // [radians] of a turn, before one gives its path up
-constexpr double kNoSpacing = 1e9;    // [m] points of a path only where it bends
-constexpr uint64_t kFewNodes = 8000;  // crossings that a search for an exit looks at
-constexpr uint64_t kLookEvery = 4;    // steps of one who finds no exit
-constexpr std::array<double, 4> kReaches = {1, 2, 4, 8};  // [m] to a node's free place
+constexpr double kMaxDetourFactor = 2;    // times the shortest exit, for a path that leads out
+constexpr double kMaxPath = 2;            // [m] more than that
+constexpr float kMaxDetourAngle = 0.4f;   // [radians] of a detour, before one gives its path up
+constexpr double kNoSpacing = 1e9;        // [m] points of a path only at its corners
+constexpr uint64_t kMaxExitNodes = 8000;  // crossings that a search for an exit may expand
+constexpr uint64_t kCheckInterval = 4;    // steps of one that finds no exit
+constexpr std::array<double, 4> kSearchRadii = {1, 2, 4, 8};  // [m] to a node's free place
 
-AirSpot here(const Body& body) { return {body.x, body.z, body.y}; }
+AirPosition here(const Body& body) { return {body.x, body.z, body.y}; }
 
 // Of any height.
 AirObstacle column_of(const Prism& prism, const Vec3d& origin, double unit) {
@@ -43,11 +43,11 @@ bool Crowd::State::is_occupied(uint32_t slot,
     const AvatarClass& avatar = body_class(body.avatar_class);
     if (body.climbs) {
       const Climb& climb = climbs[body.slot];
-      return climbers.in_counterflow(*classes[body.avatar_class]->nodes,
+      return climbers.meets_obstacle(*classes[body.avatar_class]->nodes,
                                      {here(body), body.radius, body.height},
                                      {climb.feet, climb.axis}, climb.radius, solid, {prism, {}});
     }
-    AirSpot feet = here(body);
+    AirPosition feet = here(body);
     int32_t height = body.height;
     if (!body.has(Body::kFlying)) {
       const auto bottom = static_cast<int32_t>(std::floor(body_bottom(avatar) * 1000));
@@ -88,11 +88,11 @@ void Crowd::State::mark_leaving(std::span<const std::pair<uint32_t, uint32_t>> f
 
 void Crowd::State::begin_to_leave(Body& body, std::span<const uint32_t> slots) {
   body.leaves = true;
-  body.clear(Body::kKeeps);
-  body.turn = 0;
-  constexpr uint8_t kAll = Body::kHasGoal | Body::kExternal | Body::kArrived | Body::kLost;
+  body.clear(Body::kContinues);
+  body.detour_angle = 0;
+  constexpr uint8_t kAll = Body::kHasGoal | Body::kExternal | Body::kArrived | Body::kNeedsPath;
   if ((body.flags & kAll) != Body::kHasGoal || body.climbs) return;
-  if (!leads_out(body, slots)) body.flags |= Body::kLost;
+  if (!leads_out(body, slots)) body.flags |= Body::kNeedsPath;
 }
 
 // Does its path lead out of obstacles soon, and never back?
@@ -120,25 +120,25 @@ bool Crowd::State::leads_out(const Body& body, std::span<const uint32_t> slots) 
                              : ground.left().steps_out({body.level, body.point().cell_x() & 63,
                                                         body.point().cell_z() & 63});
   const double least = steps == LeftCells::kNone ? HUGE_VAL : steps * world.data()->summary.cell;
-  const double limit = (kMaxDetour * least + kMaxPath) / unit;
+  const double limit = (kMaxDetourFactor * least + kMaxPath) / unit;
   const double step_size = radius / 2 / unit;
-  double gone = 0, x = body.x, z = body.z;
+  double walked = 0, x = body.x, z = body.z;
   bool is_out = false;
   for (const auto& [to_x, to_z] : points) {
     const double dx = to_x - x, dz = to_z - z, size = std::sqrt(dx * dx + dz * dz);
     const auto count = static_cast<int64_t>(size / step_size) + 1;
     for (int64_t i = 1; i <= count; ++i) {
       const double part = static_cast<double>(i) / static_cast<double>(count);
-      const AirSpot spot{static_cast<int32_t>(x + part * dx), static_cast<int32_t>(z + part * dz),
-                         0};
-      const bool held = std::any_of(columns.begin(), columns.end(), [&](const AirObstacle& column) {
-        return column.holds(spot, radius, 1);
-      });
-      if (is_out && held) return false;
-      is_out = is_out || !held;
-      if (!is_out && gone + part * size > limit) return false;
+      const AirPosition position{static_cast<int32_t>(x + part * dx),
+                                 static_cast<int32_t>(z + part * dz), 0};
+      const bool is_inside =
+          std::any_of(columns.begin(), columns.end(),
+                      [&](const AirObstacle& column) { return column.holds(position, radius, 1); });
+      if (is_out && is_inside) return false;
+      is_out = is_out || !is_inside;
+      if (!is_out && walked + part * size > limit) return false;
     }
-    gone += size;
+    walked += size;
     x = to_x;
     z = to_z;
   }
@@ -166,8 +166,8 @@ void Crowd::State::end_leaving(Body& body) {
     return;
   }
   const bool walks_straight = config.routing == Routing::kStraight && !body.flies();
-  if (!walks_straight || !body.has(Body::kLost)) return;  // A path is asked for.
-  Spot goal = routes[body.slot].goal;
+  if (!walks_straight || !body.has(Body::kNeedsPath)) return;  // It needs a path.
+  PathPoint goal = routes[body.slot].goal;
   if (air_of(body) != nullptr) {
     const Flight& flight = flights[body.slot];
     if (flight.goal_level == Flight::kInAir) return;
@@ -175,26 +175,26 @@ void Crowd::State::end_leaving(Body& body) {
   }
   body.local_target_x = goal.x;
   body.local_target_z = goal.z;
-  body.clear(Body::kLost);
+  body.clear(Body::kNeedsPath);
   body.flags |= Body::kLast;
 }
 
-// Does it take its path again, as it does not get on by the nearest way out either?
+// Does it take its path again, since it makes no progress towards the nearest exit either?
 bool Crowd::State::tries_path_again(Body& body) const {
-  constexpr uint8_t kAll = Body::kHasGoal | Body::kArrived | Body::kLost;
-  if ((body.flags & kAll) != (Body::kHasGoal | Body::kLost)) return false;
+  constexpr uint8_t kAll = Body::kHasGoal | Body::kArrived | Body::kNeedsPath;
+  if ((body.flags & kAll) != (Body::kHasGoal | Body::kNeedsPath)) return false;
   const Route& route = routes[body.slot];
-  if (std::fabs(body.turn) <= kPatience || route.next >= route.count) return false;
-  body.turn = 0;
+  if (std::fabs(body.detour_angle) <= kMaxDetourAngle || route.next >= route.count) return false;
+  body.detour_angle = 0;
   std::vector<uint32_t> slots;
   const GroundPoint at = body.point();
   classes[body.avatar_class]->ground.left().list_obstacles(
       {body.level, at.cell_x() & 63, at.cell_z() & 63}, slots);
   if (slots.empty() || !leads_out(body, slots)) return false;
-  const Spot& corner = route.corners[route.next];
+  const PathPoint& corner = route.corners[route.next];
   body.local_target_x = corner.x;
   body.local_target_z = corner.z;
-  body.clear(Body::kLost);
+  body.clear(Body::kNeedsPath);
   if (route.whole && route.next + 1 == route.count) body.flags |= Body::kLast;
   return true;
 }
@@ -205,34 +205,35 @@ void Crowd::State::plan_exit(Body& body) {
   const int32_t step_height = step_mm(body_class(body.avatar_class));
   const StrideGround ground(cells, step_height);
   const bool has_path =
-      body.has(Body::kHasGoal) && !body.has(Body::kArrived) && !body.has(Body::kLost);
+      body.has(Body::kHasGoal) && !body.has(Body::kArrived) && !body.has(Body::kNeedsPath);
   if (has_path) {
-    if (config.routing == Routing::kPaths && !body.has(Body::kKeeps)) {
+    if (config.routing == Routing::kPaths && !body.has(Body::kContinues)) {
       const uint64_t nth = (sub_step - 1 + body.slot) / engine.steps_of_reaction(body);
       follow(body, routes[body.slot], ground, nth, static_cast<float>(1 / unit));
     }
-    if (std::fabs(body.turn) > kPatience) {
-      body.flags |= Body::kLost;
-      body.turn = 0;
+    if (std::fabs(body.detour_angle) > kMaxDetourAngle) {
+      body.flags |= Body::kNeedsPath;
+      body.detour_angle = 0;
     }
-    if (!body.has(Body::kLost)) return;
+    if (!body.has(Body::kNeedsPath)) return;
   } else if (tries_path_again(body)) {
     return;
   }
   body.clear(Body::kLast);
-  body.clear(Body::kKeeps);
+  body.clear(Body::kContinues);
   const GroundPoint from = body.point();
   if (!is_leaving(cells, body.level, from.cell_x(), from.cell_z())) return;  // It is out.
   body.local_target_x = body.x;
   body.local_target_z = body.z;
   constexpr int32_t kHalf = kUnitsPerCell / 2;
-  for (uint32_t most = cells.left().steps_out({body.level, from.cell_x() & 63, from.cell_z() & 63});
-       most > 0 && most != LeftCells::kNone; most /= 2) {
+  for (uint32_t max_steps =
+           cells.left().steps_out({body.level, from.cell_x() & 63, from.cell_z() & 63});
+       max_steps > 0 && max_steps != LeftCells::kNone; max_steps /= 2) {
     uint32_t level = body.level;
     int32_t x = from.cell_x(), z = from.cell_z();
-    if (!find_exit(cells, step_height, most, level, x, z)) return;
+    if (!find_exit(cells, step_height, max_steps, level, x, z)) return;
     const GroundPoint to{(int64_t{x} << kUnitBits) + kHalf, (int64_t{z} << kUnitBits) + kHalf};
-    if (most > 1 && !ground.sees(body.level, from, to, level, HUGE_VALF)) continue;
+    if (max_steps > 1 && !ground.sees(body.level, from, to, level, HUGE_VALF)) continue;
     body.local_target_x = static_cast<int32_t>(to.x);
     body.local_target_z = static_cast<int32_t>(to.z);
     return;
@@ -241,30 +242,30 @@ void Crowd::State::plan_exit(Body& body) {
 
 bool Crowd::State::plan_exit_in_air(Body& body, Flight& flight) const {
   if (body.has(Body::kExternal)) return false;
-  if (flight.in_port != 0) {
+  if (flight.in_link != 0) {
     flight.descends = 0;  // It may not stand there.
     return true;
   }
   const bool has_path =
-      body.has(Body::kHasGoal) && !body.has(Body::kArrived) && !body.has(Body::kLost);
-  if (has_path && std::fabs(body.turn) <= kPatience) return false;
-  if (has_path) body.flags |= Body::kLost;
+      body.has(Body::kHasGoal) && !body.has(Body::kArrived) && !body.has(Body::kNeedsPath);
+  if (has_path && std::fabs(body.detour_angle) <= kMaxDetourAngle) return false;
+  if (has_path) body.flags |= Body::kNeedsPath;
   const FlyerAir& air = *air_of(body);
-  const AirSpot at = here(body);
+  const AirPosition at = here(body);
   body.clear(Body::kLast);
   body.local_target_x = body.x;
   body.local_target_z = body.z;
   flight.local_target_y = body.y;
-  std::vector<AirSpot> exits;
+  std::vector<AirPosition> exits;
   flyers.list_exits(body, exits);
   double least = HUGE_VAL;
-  for (const AirSpot& exit : exits) {
+  for (const AirPosition& exit : exits) {
     const double dx = (static_cast<double>(exit.x) - at.x) * unit;
     const double dz = (static_cast<double>(exit.z) - at.z) * unit;
     const double dy = (static_cast<double>(exit.y) - at.y) * 1e-3;
     const double square = dx * dx + dy * dy + dz * dz;
     if (square >= least || !air.is_legal(exit) || !air.sees(at, exit)) continue;
-    if (flyers.is_taken(body, exit) || !is_clear_of_obstacles(body, at, exit)) continue;
+    if (flyers.is_obstructed(body, exit) || !is_clear_of_obstacles(body, at, exit)) continue;
     least = square;
     body.local_target_x = exit.x;
     body.local_target_z = exit.z;
@@ -277,11 +278,11 @@ bool Crowd::State::plan_exit_on_nodes(Body& body, Climb& climb, int32_t worker) 
   if (!climb.is_on_ground()) return false;
   const bool rests = !body.has(Body::kHasGoal) || body.has(Body::kArrived);
   const bool goes = climb.count > 0 && climb.at.next < climb.count;
-  if (!rests && goes && !body.has(Body::kLost)) return false;  // on along its path
-  if (rests && goes && climb.whole == 0) return true;          // on its way out
-  if ((sub_step + body.slot) % kLookEvery != 0) return true;
-  for (const double reach : kReaches) {
-    if (step_off(body, climb, worker, reach)) return true;
+  if (!rests && goes && !body.has(Body::kNeedsPath)) return false;  // on along its path
+  if (rests && goes && climb.whole == 0) return true;               // on its exit
+  if ((sub_step + body.slot) % kCheckInterval != 0) return true;
+  for (const double search_radius : kSearchRadii) {
+    if (step_aside(body, climb, worker, search_radius)) return true;
   }
   return find_exit_over_nodes(body, climb, worker);
 }
@@ -292,8 +293,8 @@ bool Crowd::State::find_exit_over_nodes(Body& body, Climb& climb, int32_t worker
   const auto w = static_cast<size_t>(worker);
   NodePathFinder& finder = parts.node_finders[w];
   NodePlace to;
-  for (size_t i = 0; i < kReaches.size() && !to; ++i) {
-    to = finder.find_place(climb.feet, kReaches[i]);
+  for (size_t i = 0; i < kSearchRadii.size() && !to; ++i) {
+    to = finder.find_place(climb.feet, kSearchRadii[i]);
   }
   const NodePlace from =
       config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
@@ -303,7 +304,7 @@ bool Crowd::State::find_exit_over_nodes(Body& body, Climb& climb, int32_t worker
     for (const CrowdObstacle& obstacle : obstacles.all()) {
       if (!obstacle.closes()) continue;
       const AirObstacle solid(obstacle.place, origin, unit);
-      const bool is_in = climbers.in_counterflow(
+      const bool is_in = climbers.meets_obstacle(
           *parts.nodes, {here(body), body.radius, body.height}, {climb.feet, climb.axis},
           climb.radius, solid, {obstacle.place, {}});
       if (is_in) finder.set_active(obstacle.of_class[body.avatar_class].node_change, !lets);
@@ -311,7 +312,7 @@ bool Crowd::State::find_exit_over_nodes(Body& body, Climb& climb, int32_t worker
   };
   NodePath& path = parts.node_paths[w];
   let_through(true);
-  finder.find(from, to, path, kNoSpacing, kFewNodes);
+  finder.find(from, to, path, kNoSpacing, kMaxExitNodes);
   let_through(false);
   if (path.end != PathEnd::kReached || path.points.size() < 2) return true;
   take_path(climb, path);

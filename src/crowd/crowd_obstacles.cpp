@@ -8,15 +8,15 @@
 #include "path/blocked_cells.h"
 #include "throng/crowd.h"
 
-// Obstacles that are put up, moved and taken away while a crowd walks. Between two steps all stand;
-// an obstacle comes only where nobody does, so the rule that nobody enters a wall holds on.
+// Obstacles that are added, moved and removed while a crowd walks. Between two steps all avatars
+// stand; an obstacle appears only where none does, so it stays true that no avatar enters a wall.
 namespace throng {
 namespace {
 
-// What the finders of a class, one a worker, know of an obstacle: where it is new it is put up,
-// else switched. Copies number alike.
+// Updates what the finders of a class, one a worker, know of an obstacle: a new one is added, else
+// it is switched. All copies give the same id.
 template <class Finder>
-void tell(std::vector<Finder>& finders, const CrowdObstacle& obstacle, bool is_new,
+void sync(std::vector<Finder>& finders, const CrowdObstacle& obstacle, bool is_new,
           ChangeId& change) {
   const ChangeId old = change;
   for (Finder& finder : finders) {
@@ -32,11 +32,11 @@ void tell(std::vector<Finder>& finders, const CrowdObstacle& obstacle, bool is_n
 }
 
 template <class Finder>
-void take_back(std::vector<Finder>& finders, ChangeId change) {
+void remove_change(std::vector<Finder>& finders, ChangeId change) {
   for (Finder& finder : finders) finder.remove(change);
 }
 
-Error gone() { return {Errc::kNotFound, "crowd: there is no obstacle of that id"}; }
+Error no_obstacle() { return {Errc::kNotFound, "crowd: there is no obstacle of that id"}; }
 
 }  // namespace
 
@@ -45,7 +45,7 @@ Result<ObstacleId> Crowd::add_obstacle(const Prism& prism, ObstacleKind kind,
   if (auto ok = check_prism(prism); !ok) return ok.error();
   State& s = *state_;
   const uint32_t slot = s.obstacles.add(prism, kind, /*wanted_up=*/true, policy);
-  s.obstacles.at(slot).asked_step = s.step;
+  s.obstacles.at(slot).requested_step = s.step;
   s.settle_obstacles(std::span(&slot, 1), nullptr);
   return ObstacleId{slot + 1, s.obstacles.at(slot).generation};
 }
@@ -53,10 +53,10 @@ Result<ObstacleId> Crowd::add_obstacle(const Prism& prism, ObstacleKind kind,
 Result<void> Crowd::move_obstacle(ObstacleId id, const Prism& prism) {
   if (auto ok = check_prism(prism); !ok) return ok.error();
   State& s = *state_;
-  if (s.obstacles.find(id) == nullptr) return gone();
+  if (s.obstacles.find(id) == nullptr) return no_obstacle();
   const uint32_t slot = id.slot1 - 1;
   const bool closed = s.obstacles.at(slot).closes();
-  s.obstacles.ask_to_be_at(slot, prism);
+  s.obstacles.request_move(slot, prism);
   s.settle_obstacles(std::span(&slot, 1), nullptr);
   if (closed && !s.obstacles.at(slot).has_cells) s.ground_changed();
   return {};
@@ -68,12 +68,12 @@ bool Crowd::set_obstacle_active(ObstacleId id, bool active) {
   const uint32_t slot = id.slot1 - 1;
   const CrowdObstacle& obstacle = s.obstacles.at(slot);
   const bool had_cells = obstacle.has_cells, was_wanted = obstacle.wanted_up;
-  s.obstacles.ask_to_be_up(slot, active);
-  if (active && !was_wanted) s.obstacles.at(slot).asked_step = s.step;
+  s.obstacles.request_active(slot, active);
+  if (active && !was_wanted) s.obstacles.at(slot).requested_step = s.step;
   s.settle_obstacles(std::span(&slot, 1), nullptr);
   if (had_cells && !active) {
     s.ground_changed();
-    s.report_paths(slot);
+    s.sync_paths(slot);
   }
   return true;
 }
@@ -85,10 +85,10 @@ bool Crowd::remove_obstacle(ObstacleId id) {
   s.flows_are_old = true;
   for (size_t c = 0; c < s.classes.size(); ++c) {
     if (!s.classes[c]) continue;
-    const CrowdObstacle::OfClass& told = s.obstacles.at(slot).of_class[c];
-    take_back(s.classes[c]->lives, told.change);
-    take_back(s.classes[c]->flight_finders, told.air_change);
-    take_back(s.classes[c]->node_finders, told.node_change);
+    const CrowdObstacle::OfClass& synced = s.obstacles.at(slot).of_class[c];
+    remove_change(s.classes[c]->lives, synced.change);
+    remove_change(s.classes[c]->flight_finders, synced.air_change);
+    remove_change(s.classes[c]->node_finders, synced.node_change);
   }
   s.obstacles.remove(slot);
   return true;
@@ -96,7 +96,7 @@ bool Crowd::remove_obstacle(ObstacleId id) {
 
 Result<ObstacleState> Crowd::obstacle(ObstacleId id) const {
   const CrowdObstacle* found = state_->obstacles.find(id);
-  if (found == nullptr) return gone();
+  if (found == nullptr) return no_obstacle();
   const auto seconds = [&](uint64_t step) {
     return step == CrowdObstacle::kNever ? -1 : static_cast<double>(step) * state_->config.dt;
   };
@@ -105,7 +105,7 @@ Result<ObstacleState> Crowd::obstacle(ObstacleId id) const {
                        found->waits(),
                        found->kind,
                        found->policy,
-                       seconds(found->asked_step),
+                       seconds(found->requested_step),
                        seconds(found->up_step),
                        found->occupants};
 }
@@ -141,22 +141,22 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
         std::lower_bound(found.begin(), found.end(), std::pair(slot + 1, uint32_t{0}));
     const bool refuses = obstacle.policy == ObstaclePolicy::kRefuseEntry && !obstacle.is_up;
     const std::span<const std::pair<uint32_t, uint32_t>> here(first, last);
-    if (!obstacle.waits() && !obstacle.lets_out) continue;
+    if (!obstacle.waits() && !obstacle.is_exit_only) continue;
     const bool had_cells = obstacle.has_cells && !obstacle.is_elsewhere;
-    const bool let_out = obstacle.lets_out, waited = obstacle.waits();
+    const bool was_exit_only = obstacle.is_exit_only, waited = obstacle.waits();
     bool comes = here.empty();
-    if (!here.empty() && (refuses || obstacle.lets_out)) {
+    if (!here.empty() && (refuses || obstacle.is_exit_only)) {
       leaving.insert(leaving.end(), here.begin(), here.end());
       const auto walks = [&](const auto& pair) {
         return !engine.bodies()[pair.second].has(Body::kFlying);
       };
-      obstacles.let_out(slot, std::any_of(here.begin(), here.end(), walks));
+      obstacles.set_exit_only(slot, std::any_of(here.begin(), here.end(), walks));
       if (refuses) {
         obstacles.close(slot);
         comes = !is_occupied(slot, here);
       }
     } else if (here.empty()) {
-      obstacles.let_out(slot, false);
+      obstacles.set_exit_only(slot, false);
     }
     if (waited && comes) {
       obstacles.settle(slot);
@@ -164,7 +164,7 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
         obstacles.at(slot).up_step = begins_step ? step - 1 : step;
       }
     }
-    changed = changed || (waited && comes) || let_out != obstacle.lets_out ||
+    changed = changed || (waited && comes) || was_exit_only != obstacle.is_exit_only ||
               had_cells != obstacle.has_cells;
     if (obstacle.has_cells && !had_cells) cut.push_back(slot);
     obstacles.at(slot).occupants = obstacle.waits() ? static_cast<uint32_t>(here.size()) : 0;
@@ -184,48 +184,48 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
   if (changed) ground_changed();
   mark_leaving(leaving, begins_step);
   if (cut.empty()) return waiting;
-  for (const uint32_t slot : cut) report_paths(slot);
-  cut_ways(cut);
+  for (const uint32_t slot : cut) sync_paths(slot);
+  cut_paths(cut);
   return waiting;
 }
 
 void Crowd::State::ground_changed() {
-  obstacles.take_cells();
-  cuts_ways = false;
+  obstacles.block_cells();
+  cuts_paths = false;
   for (const CrowdObstacle& obstacle : obstacles.all()) {
-    cuts_ways |= obstacle.exists && obstacle.has_cells && obstacle.kind == ObstacleKind::kStatic;
+    cuts_paths |= obstacle.exists && obstacle.has_cells && obstacle.kind == ObstacleKind::kStatic;
   }
   for (const auto& parts : classes) {
     if (parts) parts->standing.reset();
   }
-  tell_flyers_of_obstacles();
+  sync_flyer_obstacles();
 }
 
-void Crowd::State::report_paths(uint32_t slot) {
-  for (size_t c = 0; c < classes.size(); ++c) report_paths(slot, c);
+void Crowd::State::sync_paths(uint32_t slot) {
+  for (size_t c = 0; c < classes.size(); ++c) sync_paths(slot, c);
 }
 
-void Crowd::State::report_paths(uint32_t slot, size_t number) {
+void Crowd::State::sync_paths(uint32_t slot, size_t number) {
   CrowdObstacle& obstacle = obstacles.at(slot);
   if (obstacle.kind != ObstacleKind::kStatic || !obstacle.exists || !classes[number]) return;
   ClassParts& parts = *classes[number];
-  CrowdObstacle::OfClass& told = obstacle.of_class[number];
+  CrowdObstacle::OfClass& synced = obstacle.of_class[number];
   const bool is_new =
-      obstacle.has_cells && (!told.is_told || told.told_version != obstacle.version);
+      obstacle.has_cells && (!synced.is_synced || synced.synced_version != obstacle.version);
   if (is_new) {
-    told.is_told = true;
-    told.told_version = obstacle.version;
+    synced.is_synced = true;
+    synced.synced_version = obstacle.version;
   }
-  tell(parts.node_finders, obstacle, is_new, told.node_change);
+  sync(parts.node_finders, obstacle, is_new, synced.node_change);
   if (config.routing != Routing::kPaths) return;
   if (obstacle.has_cells) make_lives(number);
   flows_are_old = true;
-  tell(parts.lives, obstacle, is_new, told.change);
-  tell(parts.flight_finders, obstacle, is_new, told.air_change);
+  sync(parts.lives, obstacle, is_new, synced.change);
+  sync(parts.flight_finders, obstacle, is_new, synced.air_change);
 }
 
-// Whose way leads over what some obstacles have just taken asks for another.
-void Crowd::State::cut_ways(std::span<const uint32_t> slots) {
+// Avatars whose paths lead over cells that some obstacles have just blocked need another path.
+void Crowd::State::cut_paths(std::span<const uint32_t> slots) {
   if (!climbs.empty()) cut_climbs(slots);
   if (config.routing != Routing::kPaths) return;
   const WorldData& data = *world.data();
@@ -251,14 +251,14 @@ void Crowd::State::cut_ways(std::span<const uint32_t> slots) {
   const std::span<Body> bodies = engine.bodies();
   parallel_ranges(bodies.size(), 4096, config.workers, [&](size_t begin, size_t end) {
     for (Body& body : bodies.subspan(begin, end - begin)) {
-      if (!body.has(Body::kHasGoal) || body.has(Body::kLost) || body.has(Body::kFlying) ||
+      if (!body.has(Body::kHasGoal) || body.has(Body::kNeedsPath) || body.has(Body::kFlying) ||
           body.leaves) {
         continue;
       }
       const bool is_cut = std::any_of(boxes.begin(), boxes.end(), [&](const PlanBox& box) {
         return leads_through(body, routes[body.slot], box);
       });
-      if (is_cut) body.flags |= Body::kLost;
+      if (is_cut) body.flags |= Body::kNeedsPath;
     }
   });
 }

@@ -12,7 +12,8 @@
 #include "throng/crowd.h"
 #include "world/place.h"
 
-// A crowd as bytes: a head, arrays as they are, and a checksum over all of it.
+// A crowd as bytes: a header, arrays as they are, and a checksum over all of it. Linear in the
+// crowd.
 namespace throng {
 namespace {
 
@@ -29,7 +30,7 @@ struct Head {
   uint64_t target_values = 0;  // doubles
   uint64_t flights = 0;        // by slot, or none
   uint64_t climbs = 0;         // by slot, or none
-  int32_t rounds = 0, ways = 0, deadlock_avoidance = 0, flows_are_old = 0;
+  int32_t rounds = 0, routing = 0, deadlock_avoidance = 0, flows_are_old = 0;
   int32_t model = 0, low_detail_steps = 0;
   uint64_t views = 0;
   double low_detail_reaction = 0;
@@ -42,9 +43,9 @@ struct SavedObstacle {
   double low = 0, high = 0, wanted_low = 0, wanted_high = 0;
   uint32_t generation = 0, corners = 0, wanted_corners = 0;
   uint8_t exists = 0, kind = 0, is_up = 0, wanted_up = 0;
-  uint8_t is_elsewhere = 0, policy = 0, has_cells = 0, lets_out = 0;
+  uint8_t is_elsewhere = 0, policy = 0, has_cells = 0, is_exit_only = 0;
   uint32_t occupants = 0;
-  uint64_t asked_step = 0, up_step = 0;
+  uint64_t requested_step = 0, up_step = 0;
 };
 static_assert(sizeof(SavedObstacle) == 72 && std::is_trivially_copyable_v<SavedObstacle>);
 
@@ -66,9 +67,9 @@ std::vector<SavedObstacle> saved_obstacles(std::span<const CrowdObstacle> all,
                      .is_elsewhere = o.is_elsewhere,
                      .policy = static_cast<uint8_t>(o.policy),
                      .has_cells = o.has_cells,
-                     .lets_out = o.lets_out,
+                     .is_exit_only = o.is_exit_only,
                      .occupants = o.occupants,
-                     .asked_step = o.asked_step,
+                     .requested_step = o.requested_step,
                      .up_step = o.up_step});
     for (const Prism* prism : {&o.place, &o.wanted}) {
       corners.insert(corners.end(), prism->corners.begin(), prism->corners.end());
@@ -77,7 +78,7 @@ std::vector<SavedObstacle> saved_obstacles(std::span<const CrowdObstacle> all,
   return saved;
 }
 
-// None if they are not as a book holds them.
+// None if they are not as an ObstacleSet holds them.
 std::optional<std::vector<CrowdObstacle>> obstacles_of(
     std::span<const SavedObstacle> saved, std::span<const std::array<double, 2>> corners) {
   std::vector<CrowdObstacle> obstacles;
@@ -106,16 +107,16 @@ std::optional<std::vector<CrowdObstacle>> obstacles_of(
     o.is_elsewhere = s.is_elsewhere != 0;
     o.policy = static_cast<ObstaclePolicy>(s.policy);
     o.has_cells = s.has_cells != 0;
-    o.lets_out = s.lets_out != 0;
+    o.is_exit_only = s.is_exit_only != 0;
     o.occupants = s.occupants;
-    o.asked_step = s.asked_step;
+    o.requested_step = s.requested_step;
     o.up_step = s.up_step;
     if ((o.is_up && !o.wanted_up) || (o.is_elsewhere && !o.is_up)) return {};
   }
   return at == corners.size() ? std::optional(std::move(obstacles)) : std::nullopt;
 }
 
-// Bytes of a crowd of such numbers.
+// Size in bytes of a crowd with the numbers of this header.
 uint64_t size_of(const Head& head) {
   return sizeof head + head.bodies * sizeof(Body) + head.slots * (sizeof(Route) + 4) +
          (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
@@ -146,7 +147,7 @@ Head head_of(const World& world, const CrowdConfig& config) {
   head.sight = config.sight;
   head.reaction = config.reaction;
   head.rounds = config.rounds;
-  head.ways = static_cast<int32_t>(config.routing);
+  head.routing = static_cast<int32_t>(config.routing);
   head.deadlock_avoidance = config.deadlock_avoidance ? 1 : 0;
   head.model = static_cast<int32_t>(config.model);
   head.low_detail_steps = config.low_detail_steps;
@@ -163,7 +164,7 @@ void put(std::vector<uint8_t>& out, const T* values, size_t count) {
 
 Error bad(const std::string& what) { return {Errc::kBadFile, "crowd: what was saved " + what}; }
 
-// Would a step with it read what is not there?
+// Can a step use it without reading out of bounds?
 bool is_sound(const Route& route, uint32_t levels) {
   if (route.count > Route::kCorners || (route.count > 0 && route.next >= route.count)) return false;
   for (size_t i = 0; i < route.count; ++i) {
@@ -174,13 +175,13 @@ bool is_sound(const Route& route, uint32_t levels) {
 
 bool is_sound(const Body& b, const WorldData& data) {
   const bool finite =
-      std::isfinite(b.velocity.x + b.velocity.z + b.preferred.x + b.preferred.z + b.turn) &&
+      std::isfinite(b.velocity.x + b.velocity.z + b.preferred.x + b.preferred.z + b.detour_angle) &&
       std::isfinite(b.speed);
   if (!finite || !(b.speed > 0) || b.radius <= 0 || b.avatar_class >= data.summary.classes.size()) {
     return false;
   }
   if (b.x < 0 || b.z < 0 || !in_grid(data, b.point())) return false;
-  if (b.climbs) return b.has(Body::kFlying) && b.level == 0;  // is_sound_climb tells the rest
+  if (b.climbs) return b.has(Body::kFlying) && b.level == 0;  // is_sound_climb tests the rest
   if (b.level >= data.level_count) return false;
   if (b.has(Body::kFlying)) return true;  // it has no level; is_sound of its flight
   const auto tile = data.tile_levels(b.x >> (kUnitBits + 6), b.z >> (kUnitBits + 6));
@@ -192,13 +193,13 @@ bool is_sound(const Flight& flight, const Body& body, uint32_t levels) {
   const bool counts = flight.count <= Flight::kPoints && flight.next <= flight.count &&
                       (flight.count == 0 || flight.next < flight.count);
   const bool has_path =
-      !body.flies() || !body.has(Body::kHasGoal) || body.has(Body::kLost) || flight.count > 0;
+      !body.flies() || !body.has(Body::kHasGoal) || body.has(Body::kNeedsPath) || flight.count > 0;
   const bool goal = flight.goal_level == Flight::kInAir || flight.goal_level < levels;
-  return finite && counts && has_path && goal && flight.port_low <= flight.port_high &&
-         (flight.in_port == 0 || flight.port_level < levels);
+  return finite && counts && has_path && goal && flight.link_low <= flight.link_high &&
+         (flight.in_link == 0 || flight.link_level < levels);
 }
 
-// Targets as numbers: how many prisms, of each how many corners, low, high and the corners.
+// Targets as numbers: how many prisms, of each the number of corners, low, high and the corners.
 std::vector<double> values_of(const std::vector<Target>& targets) {
   std::vector<double> out;
   for (const Target& target : targets) {
@@ -292,7 +293,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   if (head.world != expected.world) return bad("is of another world; open that one");
   if (head.seed != expected.seed || head.dt != expected.dt || head.sight != expected.sight ||
       head.reaction != expected.reaction || head.rounds != expected.rounds ||
-      head.ways != expected.ways || head.deadlock_avoidance != expected.deadlock_avoidance ||
+      head.routing != expected.routing || head.deadlock_avoidance != expected.deadlock_avoidance ||
       head.model != expected.model || head.low_detail_steps != expected.low_detail_steps ||
       head.low_detail_reaction != expected.low_detail_reaction) {
     return bad("has other settings; give those that it was made with");
@@ -339,17 +340,17 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   s.views.resize(head.views);
   take(s.views.data(), s.views.size());
 
-  s.where.assign(head.slots, kNobody);
+  s.where.assign(head.slots, kNoBody);
   std::vector<bool> taken(head.slots, false);
-  const auto take_slot = [&](uint32_t slot) {
+  const auto use_slot = [&](uint32_t slot) {
     const bool is_new = slot < head.slots && !taken[slot];
     if (is_new) taken[slot] = true;
     return is_new;
   };
   bool sound = head.bodies + head.free_slots == head.slots;
-  for (const uint32_t slot : s.free_slots) sound = sound && take_slot(slot);
+  for (const uint32_t slot : s.free_slots) sound = sound && use_slot(slot);
   for (const Body& body : bodies) {
-    sound = sound && is_sound(body, data) && take_slot(body.slot) &&
+    sound = sound && is_sound(body, data) && use_slot(body.slot) &&
             (!body.has(Body::kHasGoal) || body.climbs ||
              is_sound(s.routes[body.slot], data.level_count));
     sound = sound && (!body.climbs || !climbs.empty());
@@ -366,7 +367,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   s.engine.reserve(bodies.size());
   for (const Body& body : bodies) {
     if (auto ok = s.open_class(body.avatar_class, context); !ok) return ok.error();
-    if (body.climbs != s.goes_over_nodes(body.avatar_class)) {
+    if (body.climbs != s.is_climber_class(body.avatar_class)) {
       return bad("has other settings; give the nodes that it was made with");
     }
   }
@@ -381,13 +382,13 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
     const FlyerAir* air = s.air_of(body);
     const bool flies = body.flies();
     if (flies && (air == nullptr || (!air->is_legal({body.x, body.z, body.y}) &&
-                                     s.flights[body.slot].in_port == 0))) {
+                                     s.flights[body.slot].in_link == 0))) {
       return bad("is not sound; save the crowd again");
     }
   }
   s.where_is_old = true;
   s.some_leave = std::any_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.leaves; });
-  s.flows_are_old = head.flows_are_old != 0;  // opening a class found them as they are now
+  s.flows_are_old = head.flows_are_old != 0;  // opening a class made them from the current ground
   s.step = head.step;
   s.sub_step = head.sub_step;
   s.scattered = head.scattered;

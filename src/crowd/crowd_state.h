@@ -30,18 +30,19 @@
 #include "throng/live_ground.h"
 #include "throng/node_path.h"
 
-/// What a crowd holds.
+/// The state of a crowd.
 namespace throng {
 
-inline constexpr uint32_t kNobody = UINT32_MAX;
-inline constexpr std::array<int32_t, 3> kNeverLooked = {INT32_MIN / 2, 0, 0};
+inline constexpr uint32_t kNoBody = UINT32_MAX;
+inline constexpr std::array<int32_t, 3> kNeverChecked = {INT32_MIN / 2, 0, 0};
 
-// What a class needs that somebody is of.
+// What is needed for each class in use.
 struct ClassParts {
   CrowdGround ground;
   std::optional<StandingDraw> standing;  // none: the ground has changed since
   std::vector<PathFinder> finders;       // one a worker
-  std::vector<LiveGround> lives;         // one a worker, once ways mind obstacles or targets
+  std::vector<LiveGround> lives;         // one a worker, once paths avoid obstacles or lead to
+                                         // targets
   std::vector<Path> paths;
   std::vector<RepairScratch> repairs;
   std::vector<FlowPoints> flows;  // by target
@@ -49,11 +50,11 @@ struct ClassParts {
   std::optional<FlyerAir> air;
   std::vector<FlightFinder> flight_finders;  // one a worker
   std::vector<FlightPath> flights;
-  // Of a class that goes over nodes.
+  // Of a class of climbers.
   std::optional<ClimberGround> nodes;
   std::vector<NodePathFinder> node_finders;  // one a worker
   std::vector<NodePath> node_paths;
-  // Of both, by target: where to land, or to climb to.
+  // Of flyers and climbers, by target: where to land, or to climb to.
   std::vector<std::vector<Place>> landings;
 };
 
@@ -71,28 +72,28 @@ struct Crowd::State {
   uint64_t step = 0, sub_step = 0;
   uint64_t scattered = 0;  // draws of `scatter`
   ObstacleSet obstacles;
-  bool cuts_ways = false;   // an obstacle that ways lead around is up, or closes
-  bool some_leave = false;  // Body::leaves of some
+  bool cuts_paths = false;  // an obstacle that paths avoid is active, or closes
+  bool some_leave = false;  // Body::leaves is set for some
 
   // By slot.
   std::vector<uint32_t> generation;
   std::vector<Route> routes;
   std::vector<Flight> flights;  // empty, if no class that is in use flies
-  std::vector<Climb> climbs;    // empty, if none goes over nodes
+  std::vector<Climb> climbs;    // empty, if there is no climber
   std::vector<uint32_t> free_slots;
-  mutable std::vector<uint32_t> where;  // which of the engine's bodies; kNobody: none
+  mutable std::vector<uint32_t> where;  // which of the engine's bodies; kNoBody: none
   mutable bool where_is_old = false;
-  // Events: what is watched, and by slot where each was.
+  // Events: what is watched, and by slot where each avatar was.
   std::vector<Target> watched;
-  std::vector<uint64_t> inside;                   // a bit for each watched area
-  std::vector<std::array<int32_t, 3>> looked_at;  // [units, mm]
+  std::vector<uint64_t> inside;                    // a bit for each watched area
+  std::vector<std::array<int32_t, 3>> checked_at;  // [units, mm]
   std::vector<EngineDetail::View> views;
   std::vector<AreaEntry> entered;
   std::vector<AvatarId> no_progress;
   std::vector<Target> targets;  // TargetId less one
   bool flows_are_old = false;   // the ground has changed since
   std::vector<AvatarId> arrived, goal_unreachable, blockers;
-  std::mutex stranding;
+  std::mutex goal_mutex;
   mutable std::atomic<uint64_t> out_of_memory{0};  // searches of this step
 
   State(const World& a_world, const CrowdConfig& a_config, CrowdEngine&& an_engine,
@@ -112,44 +113,43 @@ struct Crowd::State {
   void find_bodies() const;
   Result<void> open_class(int32_t number, Context& context);
   Result<Body> body_of(const AvatarSpawn& spawn) const;
-  /// The class's, or its own. [m]
+  /// The avatar's own radius, or its class's. [m]
   [[nodiscard]] double radius_of(const AvatarSpawn& spawn) const;
   void make_room(const Body& body);
-  /// Makes room for so many more.
+  /// Reserves memory for so many more avatars.
   void reserve(size_t more);
   AvatarId add(Body body, const Climb& climb = {});
-  /// Those obstacles that wait and in whose way nobody stands come up or move on. Returns how many
-  /// still wait.
+  /// Activates or moves the waiting obstacles that no avatar blocks. Returns how many still wait.
   size_t settle_obstacles(std::span<const uint32_t> slots, std::vector<AvatarId>* in_their_path);
-  /// Is any of these bodies in an obstacle that is to come up?
+  /// Is any of these bodies in an obstacle that is to become active?
   [[nodiscard]] bool is_occupied(uint32_t slot,
                                  std::span<const std::pair<uint32_t, uint32_t>> found) const;
 
   // crowd_leaving.cpp
-  /// These (obstacle, index of the body) are in obstacles that they are to leave; with `all`, no
+  /// These (obstacle, index of the body) are in obstacles that they must leave; with `all`, no
   /// others are.
   void mark_leaving(std::span<const std::pair<uint32_t, uint32_t>> found, bool all);
   void begin_to_leave(Body& body, std::span<const uint32_t> slots);
   void end_leaving(Body& body);
-  /// Of one on foot: on along its way, or to the nearest exit.
+  /// Of a walker: along its path, or to the nearest exit.
   void plan_exit(Body& body);
   bool tries_path_again(Body& body) const;
   [[nodiscard]] bool leads_out(const Body& body, std::span<const uint32_t> slots) const;
-  /// Of one who flies; true: its way is not followed.
+  /// Of a flyer. True: its path is not followed.
   bool plan_exit_in_air(Body& body, Flight& flight) const;
-  /// Of one who goes over nodes.
+  /// Of a climber.
   bool plan_exit_on_nodes(Body& body, Climb& climb, int32_t worker);
   bool find_exit_over_nodes(Body& body, Climb& climb, int32_t worker);
 
-  /// Tells the ways of a class, or of all, what an obstacle is to them by now.
-  void report_paths(uint32_t slot, size_t number);
-  void report_paths(uint32_t slot);
-  void cut_ways(std::span<const uint32_t> slots);
-  /// The grounds are to be as the obstacles are.
+  /// Updates the path finders of a class, or of all, to the obstacle's state.
+  void sync_paths(uint32_t slot, size_t number);
+  void sync_paths(uint32_t slot);
+  void cut_paths(std::span<const uint32_t> slots);
+  /// Updates the grounds to the obstacles.
   void ground_changed();
-  /// Live grounds of a class, if there are none yet.
+  /// Creates the live grounds of a class, if there are none yet.
   void make_lives(size_t number);
-  /// What a class lacks of the targets.
+  /// Makes the flow fields of the targets that a class lacks.
   Result<void> find_flows(int32_t number, Context& context);
   bool plan_path(Body& body, Route& route, const StrideGround& ground, int32_t worker);
   void renew_flows();
@@ -159,8 +159,8 @@ struct Crowd::State {
   void find_no_progress();
   [[nodiscard]] AvatarState state_of(const Body& body) const;
   void plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned);
-  void strand(Body& body);
-  /// Counts a search that would have taken more memory than it may.
+  void drop_goal(Body& body);
+  /// Counts a search that exhausted its memory.
   void note_spent(SpentBudget spent) const {
     if (spent == SpentBudget::kMemory) out_of_memory.fetch_add(1, std::memory_order_relaxed);
   }
@@ -175,53 +175,53 @@ struct Crowd::State {
     const auto& air = classes[body.avatar_class]->air;
     return air ? &*air : nullptr;
   }
-  /// Puts a body into the air, or not: it may not be there.
+  /// Puts a body into the air; false if it may not be there.
   [[nodiscard]] bool put_in_air(Body& body, const Vec3d& feet) const;
-  /// Of a body that flies or could: a goal of any kind. False: it is none.
+  /// Sets any kind of goal of a body that flies or can fly. False: the goal is not valid.
   bool set_goal_of_flyer(Body& body, const Place& goal);
-  /// What one who can fly does on foot before he walks. True: he need not ask for a way to walk.
+  /// What a flyer on the ground does before it walks. True: it needs no path to walk.
   bool plan_on_foot(Body& body, Flight& flight, int32_t worker, std::atomic<uint64_t>& planned);
   bool take_off(Body& body, Flight& flight) const;
-  void look_for_room(Body& body, const Flight& flight) const;
-  [[nodiscard]] bool is_clear_of_obstacles(const Body& body, const AirSpot& from,
-                                           const AirSpot& to) const;
-  bool find_path_over(const Body& body, const AirSpot& from, const AirSpot& to,
-                      std::vector<AirSpot>& points) const;
+  void find_landing_place(Body& body, const Flight& flight) const;
+  [[nodiscard]] bool is_clear_of_obstacles(const Body& body, const AirPosition& from,
+                                           const AirPosition& to) const;
+  bool find_path_over(const Body& body, const AirPosition& from, const AirPosition& to,
+                      std::vector<AirPosition>& points) const;
   void plan_flight(Body& body, Flight& flight, int32_t worker, std::atomic<uint64_t>& planned);
-  [[nodiscard]] std::optional<AirSpot> open_spot(const Body& body, const AirSpot& at,
-                                                 int32_t worker) const;
+  [[nodiscard]] std::optional<AirPosition> open_position(const Body& body, const AirPosition& at,
+                                                         int32_t worker) const;
   [[nodiscard]] bool find_flight(const Body& body, Flight& flight, int32_t worker) const;
   void fly(EngineCounts& counts, CrowdEngine::Times& times, std::atomic<uint64_t>& planned);
-  void tell_flyers_of_obstacles();
-  /// Who flies where some obstacles would come or pass, beside those who stand there, in order.
+  void sync_flyer_obstacles();
+  /// Adds flyers where obstacles would appear or pass to the walkers that stand there, in order.
   void add_flyer_blockers(std::span<const uint32_t> slots,
                           std::vector<std::pair<uint32_t, uint32_t>>& found) const;
 
   // crowd_climbs.cpp
-  [[nodiscard]] bool goes_over_nodes(int32_t number) const;
-  /// What a class needs that goes over nodes.
+  [[nodiscard]] bool is_climber_class(int32_t number) const;
+  /// What a class of climbers needs.
   Result<void> open_nodes(int32_t number, ClassParts& parts, Context& context) const;
-  /// Puts a body there, or not: it may not be there. [m]
+  /// Puts a body there; false if it may not be there. [m]
   [[nodiscard]] bool put_on_nodes(Body& body, Climb& climb, const NodePlace& place,
                                   double radius) const;
-  /// What a place means to a class that goes over nodes; nowhere if there is nothing near.
+  /// The place of a climber nearest to a place on the ground; none if there is none near.
   [[nodiscard]] NodePlace place_on_nodes(int32_t number, const Place& place) const;
   [[nodiscard]] NodePlace draw_on_nodes(int32_t number, uint64_t n) const;
   void set_goal_of_climber(Body& body, const NodePlace& goal);
   void stop_climber(Body& body);
-  void aim_at_flow_target(const Body& body, Climb& climb) const;
-  void turn_off(Body& body, Climb& climb, int32_t worker);
-  void drive_climber(const Body& body, Climb& climb, int32_t worker);
+  void head_to_target_place(const Body& body, Climb& climb) const;
+  void turn_aside(Body& body, Climb& climb, int32_t worker);
+  void control_climber(const Body& body, Climb& climb, int32_t worker);
   void plan_climb(Body& body, Climb& climb, int32_t worker, std::atomic<uint64_t>& planned);
   void move_climbers(EngineCounts& counts, CrowdEngine::Times& times,
                      std::atomic<uint64_t>& planned);
   [[nodiscard]] Body at_feet(const Body& body) const;
-  /// Would a step with what was saved of it read what is not there?
+  /// Can a step use the saved state of this body without reading out of bounds?
   [[nodiscard]] bool is_sound_climb(const Body& body) const;
   [[nodiscard]] uint64_t count_off_nodes() const;
   [[nodiscard]] uint64_t count_climbers_inside() const;
   static void take_path(Climb& climb, const NodePath& path);
-  bool step_off(Body& body, Climb& climb, int32_t worker, double beside);
+  bool step_aside(Body& body, Climb& climb, int32_t worker, double beside);
   void cut_climbs(std::span<const uint32_t> slots);
 };
 

@@ -8,12 +8,13 @@
 #include "crowd/crowd_state.h"
 #include "throng/crowd.h"
 
-// What a crowd does about regions that many are bound for.
+// Targets: regions that many avatars head to. A flow field costs one Dijkstra search for each
+// class.
 namespace throng {
 namespace {
 
 constexpr size_t kMaxTargets = UINT16_MAX;
-constexpr size_t kGoals = 4096;  // places of a region that ways lead to, about
+constexpr size_t kGoals = 4096;  // places of a target that paths lead to, about
 constexpr size_t kGrain = 4096;  // bodies
 
 }  // namespace
@@ -21,7 +22,7 @@ constexpr size_t kGrain = 4096;  // bodies
 Result<TargetId> Crowd::add_target(std::span<const Prism> areas, Context& context) {
   State& s = *state_;
   if (s.config.routing != Routing::kPaths) {
-    return Error{Errc::kBadConfig, "crowd: who goes straight on knows no targets; give goals"};
+    return Error{Errc::kBadConfig, "crowd: Routing::kStraight supports no targets; give goals"};
   }
   auto made = Target::make(*s.world.data(), areas);
   if (!made) return made.error();
@@ -73,13 +74,13 @@ void Crowd::set_targets(std::span<const AvatarId> ids, TargetId target) {
     Body* body = s.body(id);
     if (body == nullptr) continue;
     s.routes[body->slot] = {};
-    body->turn = 0;
+    body->detour_angle = 0;
     body->target = target;
     body->local_target_x = body->x;
     body->local_target_z = body->z;
     if (s.air_of(*body) != nullptr) s.set_goal_of_flyer(*body, {});
     if (body->climbs) s.set_goal_of_climber(*body, {});
-    body->flags = (body->flags & Body::kFlying) | Body::kHasGoal | Body::kLost;
+    body->flags = (body->flags & Body::kFlying) | Body::kHasGoal | Body::kNeedsPath;
   }
 }
 
@@ -117,13 +118,13 @@ void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> sp
   }
 }
 
-// A way from where the body is to its target or goal. False: there is none.
+// A path from where the body is to its target or goal. False: there is none.
 bool Crowd::State::plan_path(Body& body, Route& route, const StrideGround& ground, int32_t worker) {
   const auto w = static_cast<size_t>(worker);
   const WorldData& data = *world.data();
   ClassParts& parts = *classes[body.avatar_class];
   Path& path = parts.paths[w];
-  const Spot here{body.x, body.z, body.level};
+  const PathPoint here{body.x, body.z, body.level};
   const Place from = place_of(data, body, here);
   if (body.target != 0) {
     parts.flows[body.target - 1u].way(parts.lives[w], from, path);
@@ -132,16 +133,16 @@ bool Crowd::State::plan_path(Body& body, Route& route, const StrideGround& groun
     const Place to = place_of(data, body, route.goal);
     parts.finders[w].find(from, to, path, search_budget());
     SpentBudget spent = path.spent;
-    if (cuts_ways && path.end == PathEnd::kReached) {
+    if (cuts_paths && path.end == PathEnd::kReached) {
       lead_around(data, parts.lives[w], ground, search_budget(), path, parts.repairs[w]);
       if (path.spent != SpentBudget::kNone) spent = path.spent;
     }
     note_spent(spent);
   }
-  return take_way(data, path, ground, body, route);
+  return use_path(data, path, ground, body, route);
 }
 
-// The rectangles that flows name are of the ground as it was.
+// The flow fields refer to rectangles of the ground as it was.
 void Crowd::State::renew_flows() {
   if (!flows_are_old) return;
   flows_are_old = false;
@@ -151,10 +152,11 @@ void Crowd::State::renew_flows() {
     classes[c]->flows.clear();
     classes[c]->landings.clear();
     const auto ok = find_flows(static_cast<int32_t>(c), context);
-    THRONG_ASSERT(ok);  // It was possible before, and nobody cancels it.
+    THRONG_ASSERT(ok);  // It was possible before, and nothing cancels it.
   }
   for (Body& body : engine.bodies()) {
-    if (body.target != 0 && body.has(Body::kHasGoal) && !body.leaves) body.flags |= Body::kLost;
+    if (body.target != 0 && body.has(Body::kHasGoal) && !body.leaves)
+      body.flags |= Body::kNeedsPath;
   }
 }
 
@@ -167,7 +169,7 @@ void Crowd::State::arrive_in_targets() {
         continue;
       }
       body.flags |= Body::kArrived;
-      const std::lock_guard lock(stranding);
+      const std::lock_guard lock(goal_mutex);
       arrived.push_back(id_of(body.slot));
     }
   });

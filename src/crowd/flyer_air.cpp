@@ -7,6 +7,8 @@
 
 #include "world/place.h"
 
+// The air of a class in a step's integer units: conversions, lines of sight, and ground-air links.
+// Each costs a descent in the air's octree for each air box that a line crosses.
 namespace throng {
 namespace {
 
@@ -31,20 +33,20 @@ FlyerAir::FlyerAir(const World& world, const FlightSpace& space, const CrowdGrou
   height_ = static_cast<int32_t>(std::floor(avatar.height * 1000 + 1e-6));
 }
 
-bool FlyerAir::is_open_around(const AirSpot& spot, float reach) const {
-  const AirPoint p = point(spot);
+bool FlyerAir::is_open_around(const AirPosition& position, float distance) const {
+  const AirPoint p = point(position);
   const uint32_t index = space_->box_at(p);
   if (index == kNoBox) return false;
   const AirCube& box = space_->boxes[index];
-  const double cells = static_cast<double>(reach) * 1e3 / cell_;
+  const double cells = static_cast<double>(distance) * 1e3 / cell_;
   const auto inside = [&](double v, int32_t low) {
     return v - cells >= low && v + cells <= low + box.side;
   };
   return inside(p.x, box.x) && inside(p.y, box.y) && inside(p.z, box.z);
 }
 
-// As FlightEndpoints::take_off has it, in whole millimetres.
-std::optional<int32_t> FlyerAir::take_off(const AirSpot& feet) const {
+// As FlightEndpoints::take_off computes it, in whole millimetres.
+std::optional<int32_t> FlyerAir::take_off(const AirPosition& feet) const {
   const AirPoint p = point(feet);
   const auto x = static_cast<int32_t>(std::floor(p.x)), z = static_cast<int32_t>(std::floor(p.z));
   const int32_t head = feet.y + height_;
@@ -55,32 +57,33 @@ std::optional<int32_t> FlyerAir::take_off(const AirSpot& feet) const {
   }
 }
 
-std::optional<FlyerAir::Port> FlyerAir::port_below(const AirSpot& spot) const {
-  const GroundPoint p{spot.x, spot.z};
-  std::optional<Port> best;
+std::optional<FlyerAir::GroundAirLink> FlyerAir::link_below(const AirPosition& position) const {
+  const GroundPoint p{position.x, position.z};
+  std::optional<GroundAirLink> best;
   const auto range = ground_->feet_range();
-  ground_->for_tile(p.cell_x() >> 6, p.cell_z() >> 6, range.low, spot.y, [&](uint32_t level) {
+  ground_->for_tile(p.cell_x() >> 6, p.cell_z() >> 6, range.low, position.y, [&](uint32_t level) {
     if (!ground_->is_legal(level, p.cell_x() & 63, p.cell_z() & 63)) return;
     const int32_t feet = ground_->feet(level, p);
-    if (feet > spot.y || (best && feet <= best->low)) return;
-    const auto high = take_off({spot.x, spot.z, feet});
-    if (!high || *high > spot.y || !sees(spot, {spot.x, spot.z, *high})) return;
-    best = Port{feet, *high, level};
+    if (feet > position.y || (best && feet <= best->low)) return;
+    const auto high = take_off({position.x, position.z, feet});
+    if (!high || *high > position.y || !sees(position, {position.x, position.z, *high})) return;
+    best = GroundAirLink{feet, *high, level};
   });
   return best;
 }
 
-AirSpot FlyerAir::spot(const Vec3d& metres) const {
+AirPosition FlyerAir::position(const Vec3d& metres) const {
   const auto whole = [](double v) {
     return static_cast<int32_t>(std::clamp(std::floor(v), -2e9, 2e9));
   };
-  // Points lie a skin off the faces of cells; rounded down they stay on their side.
+  // Points lie slightly off the faces of cells; rounded down they stay on their side.
   return {whole((metres.x - origin_.x) / unit_), whole((metres.z - origin_.z) / unit_),
           whole(metres.y * 1000)};
 }
 
-Vec3d FlyerAir::metres(const AirSpot& spot) const {
-  return {origin_.x + (spot.x + 0.5) * unit_, spot.y * 1e-3, origin_.z + (spot.z + 0.5) * unit_};
+Vec3d FlyerAir::metres(const AirPosition& position) const {
+  return {origin_.x + (position.x + 0.5) * unit_, position.y * 1e-3,
+          origin_.z + (position.z + 0.5) * unit_};
 }
 
 bool FlyerAir::in_grid(const Vec3d& metres) const {

@@ -10,34 +10,35 @@
 #include "core/parallel.h"
 #include "core/random.h"
 
-// docs/design/012-flyers.md. Those who walk have made their step clear of where all flyers are;
-// now these go, clear of where everybody is.
+// The step of flyers: docs/design/012-flyers.md. Walkers have moved clear of where all flyers are;
+// then flyers move, clear of where all bodies are. Linear in the flyers and their neighbours.
 namespace throng {
 namespace {
 
 using steer::Space;
 
-constexpr size_t kGrain = 128;           // flyers that are worth handing to another thread
-constexpr float kThere = 0.3f;           // [m] from its goal a body has arrived
-constexpr uint64_t kRolls = 0x726f6c6c;  // stream of chance
-constexpr float kRoll = 2;               // [s] that one keeps to a side
-constexpr float kSlow = 2;               // [m/s] at most, up or down a port
-constexpr float kPressed = 2;            // [s] that one who lands waits for who is below him
-constexpr float kSpread = 0.5f;          // [m/s] by which one who waits lands farther away
+constexpr size_t kGrain = 128;           // flyers that are worth another thread
+constexpr float kArrivalRadius = 0.3f;   // [m] from its goal a body has arrived
+constexpr uint64_t kRolls = 0x726f6c6c;  // random stream
+constexpr float kRoll = 2;               // [s] for which a flyer keeps to a side
+constexpr float kSlow = 2;               // [m/s] at most, up or down a ground-air link
+constexpr float kPressed = 2;            // [s] that one which lands waits for a body below it
+constexpr float kLandingSpread = 0.5f;   // [m/s] by which one that waits lands farther away
 constexpr float kFarthest = 15;          // [m] from where one would land, at most
-constexpr int32_t kLowOver = 1500;       // [mm] over the ground's air one may begin to land
+constexpr int32_t kLowOver = 1500;       // [mm] above the start of the air at which it may begin to
+                                         // land
 constexpr std::array<float, 3> kShorterBy = {0.5f, 0.25f, 0.1f};
 
 bool overlap(int32_t y, int32_t height, int32_t other_y, int32_t other_height) {
   return y < other_y + other_height && other_y < y + height;
 }
 
-bool overlaps_with(const Body& a, const AirSpot& at_a, const Body& b, const AirSpot& at_b) {
+bool overlaps_with(const Body& a, const AirPosition& at_a, const Body& b, const AirPosition& at_b) {
   return nearer_than(at_a.x - at_b.x, at_a.z - at_b.z, int64_t{a.radius} + b.radius) &&
          overlap(at_a.y, a.height, at_b.y, b.height);
 }
 
-AirSpot spot_of(const Body& body) { return {body.x, body.z, body.y}; }
+AirPosition position_of(const Body& body) { return {body.x, body.z, body.y}; }
 
 }  // namespace
 
@@ -52,7 +53,8 @@ void FlyerEngine::set_air(size_t avatar_class, const FlyerAir* air, double radiu
 
 void FlyerEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt) {
   config_.units.dt = dt;
-  // Far enough to see in time who comes at full speed; and whoever could be touched, all ways.
+  // Far enough to see in time what comes at full speed, and all that could be touched, in all
+  // directions.
   const float unit = config_.units.unit;
   const float stride = fastest * dt;
   sight_metres_ = std::max(config_.sight, config_.steering.horizon * fastest);
@@ -65,26 +67,26 @@ void FlyerEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt) 
             static_cast<int32_t>(near_metres_ * 1000) + 4);
 }
 
-bool FlyerEngine::is_blocked(const Body& body, const AirSpot& spot) const {
+bool FlyerEngine::is_blocked(const Body& body, const AirPosition& position) const {
   const double radius = classes_[body.avatar_class].radius;
   return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const AirObstacle& obstacle) {
-    return obstacle.holds(spot, radius, body.height) &&
-           !(obstacle.closes() && obstacle.holds(spot_of(body), radius, body.height));
+    return obstacle.holds(position, radius, body.height) &&
+           !(obstacle.closes() && obstacle.holds(position_of(body), radius, body.height));
   });
 }
 
-bool FlyerEngine::is_taken(const Body& body, const AirSpot& spot) const {
+bool FlyerEngine::is_obstructed(const Body& body, const AirPosition& position) const {
   return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const AirObstacle& obstacle) {
-    return obstacle.holds(spot, classes_[body.avatar_class].radius, body.height);
+    return obstacle.holds(position, classes_[body.avatar_class].radius, body.height);
   });
 }
 
-void FlyerEngine::list_exits(const Body& body, std::vector<AirSpot>& exits) const {
+void FlyerEngine::list_exits(const Body& body, std::vector<AirPosition>& exits) const {
   const double radius = classes_[body.avatar_class].radius;
   exits.clear();
   for (const AirObstacle& obstacle : obstacles_) {
-    if (!obstacle.closes() || !obstacle.holds(spot_of(body), radius, body.height)) continue;
-    obstacle.list_exits(spot_of(body), radius, body.height, exits);
+    if (!obstacle.closes() || !obstacle.holds(position_of(body), radius, body.height)) continue;
+    obstacle.list_exits(position_of(body), radius, body.height, exits);
   }
 }
 
@@ -94,24 +96,25 @@ void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> 
   landed_.clear();
   bodies_ = bodies;
   flights_ = flights;
-  const Rounds::Parts parts{
-      .is_mover = [](const Body& body) { return body.flies(); },
-      .plan =
-          [&](uint32_t f, int32_t worker) {
-            Body& body = bodies_[rounds_.movers[f]];
-            Flight& flight = flights_[body.slot];
-            before(body, flight, worker);
-            preferred(body, flight, step);
-          },
-      .decide = [&](uint32_t f, Worker& worker) { decide(f, worker); },
-      .name = [&](const Contest& contest, const Worker& owner) { return name(contest, owner); },
-      .overlaps_with =
-          [&](const Contest& contest, uint32_t other) {
-            return overlaps_with(bodies_[rounds_.movers[contest.mover]],
-                                 rounds_.moves[contest.mover].place, bodies_[other],
-                                 rounds_.moves[rounds_.mover_of[other]].place);
-          },
-      .settle = [&](uint32_t f, EngineCounts& here) { settle(f, here); }};
+  const Rounds::Parts parts{.is_mover = [](const Body& body) { return body.flies(); },
+                            .plan =
+                                [&](uint32_t f, int32_t worker) {
+                                  Body& body = bodies_[rounds_.movers[f]];
+                                  Flight& flight = flights_[body.slot];
+                                  before(body, flight, worker);
+                                  preferred(body, flight, step);
+                                },
+                            .decide = [&](uint32_t f, Worker& worker) { decide(f, worker); },
+                            .propose = [&](const Contest& contest,
+                                           const Worker& owner) { return propose(contest, owner); },
+                            .overlaps_with =
+                                [&](const Contest& contest, uint32_t other) {
+                                  return overlaps_with(
+                                      bodies_[rounds_.movers[contest.mover]],
+                                      rounds_.moves[contest.mover].place, bodies_[other],
+                                      rounds_.moves[rounds_.mover_of[other]].place);
+                                },
+                            .settle = [&](uint32_t f, EngineCounts& here) { settle(f, here); }};
   rounds_.step(bodies, parts, grid_, kGrain, config_.workers, config_.rounds, {config_.seed, step},
                counts, times);
   for (size_t n = 0; n < rounds_.movers.size(); ++n) {
@@ -119,13 +122,13 @@ void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> 
     const Body& body = bodies_[i];
     const Flight& flight = flights_[body.slot];
     if (rounds_.moves[n].arrives) arrived_.push_back(body.slot);
-    if (flight.in_port != 0 && flight.descends != 0 && body.y == flight.port_low) {
+    if (flight.in_link != 0 && flight.descends != 0 && body.y == flight.link_low) {
       landed_.push_back(i);
     }
   }
 }
 
-// What it wishes for, as if nobody were there.
+// Its preferred velocity, as if no other were there.
 void FlyerEngine::preferred(Body& body, Flight& flight, uint64_t step) const {
   if (body.has(Body::kExternal)) {
     flight.descends = flight.preferred_up < 0 ? 1 : 0;
@@ -136,8 +139,8 @@ void FlyerEngine::preferred(Body& body, Flight& flight, uint64_t step) const {
     body.preferred = {v.x, v.z};
     flight.preferred_up = v.y;
   };
-  if (flight.in_port != 0) {
-    const int32_t to = flight.descends != 0 ? flight.port_low : flight.port_high;
+  if (flight.in_link != 0) {
+    const int32_t to = flight.descends != 0 ? flight.link_low : flight.link_high;
     const Space displacement{0, static_cast<float>(to - body.y) * 1e-3f, 0};
     return set(steer::preferred_towards(displacement, std::min(body.speed, kSlow), units.dt, 0, 0,
                                         flight.descends != 0));
@@ -149,29 +152,30 @@ void FlyerEngine::preferred(Body& body, Flight& flight, uint64_t step) const {
                            level.z};
   const auto window = step / static_cast<uint64_t>(std::max(1L, std::lround(kRoll / units.dt)));
   const auto roll = static_cast<int32_t>(random_below(config_.seed ^ kRolls, body.slot, window, 3));
-  set(steer::preferred_towards(displacement, body.speed, units.dt, body.turn, roll,
+  set(steer::preferred_towards(displacement, body.speed, units.dt, body.detour_angle, roll,
                                body.has(Body::kLast)));
 }
 
-float FlyerEngine::landing_reach(const Flight& flight) {
-  return std::min(kSpread * flight.waited, kFarthest);
+float FlyerEngine::landing_radius(const Flight& flight) {
+  return std::min(kLandingSpread * flight.waited, kFarthest);
 }
 
 // Would it land, if there is ground below?
 bool FlyerEngine::wants_down(const Body& body, const Flight& flight) const {
-  if (flight.in_port != 0) return false;
+  if (flight.in_link != 0) return false;
   if (body.has(Body::kExternal)) return flight.preferred_up < 0;
   if (!body.has(Body::kHasGoal) || flight.lands == 0 || !flight.is_last()) return false;
-  const AirSpot& over = flight.points[flight.next];
+  const AirPosition& over = flight.points[flight.next];
   const steer::Plane off = config_.units.metres(over.x - body.x, over.z - body.z);
-  const float reach = landing_reach(flight) + kThere;
-  return off.x * off.x + off.z * off.z < reach * reach;
+  const float range = landing_radius(flight) + kArrivalRadius;
+  return off.x * off.x + off.z * off.z < range * range;
 }
 
-// Appends whom the flyer could touch to `others`, and takes in the nearest, by which it steers.
-// `column_is_clear`: nobody is in what it would pass down to the ground.
+// Appends the bodies that the flyer could touch to `others`, and adds the nearest, by which it
+// steers. `column_is_clear`: no body is in the column that it would descend.
 void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situation,
-                        bool& column_is_clear, const FlyerAir::Port* port) const {
+                        bool& column_is_clear,
+                        const FlyerAir::GroundAirLink* ground_air_link) const {
   const uint32_t i = rounds_.movers[f];
   const Body& body = bodies_[i];
   const StepUnits& units = config_.units;
@@ -181,19 +185,19 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
   };
   const int32_t rise = rise_of(body.speed);
   NearestInAir nearest(sight_metres_);
-  // Nobody farther away than that and his radius can be touched; the exact test follows.
-  const float own_reach =
+  // Bodies farther away than that and their radius cannot be touched; the exact test follows.
+  const float own_range =
       static_cast<float>(body.radius + 2 * units.stride(fastest_) + 1) * units.unit * 1.0001f;
-  const auto look_at = [&](const FlyerGrid::Entry& entry, bool is_near) {
+  const auto query = [&](const FlyerGrid::Entry& entry, bool is_near) {
     const float dx = static_cast<float>(entry.x - body.x) * units.unit;
     const float dz = static_cast<float>(entry.z - body.z) * units.unit;
     const int32_t up = entry.y - body.y;
     const int32_t apart = std::max({up - body.height, -up - entry.height, 0});
     const float high = static_cast<float>(apart) * 1e-3f;
     const float level = dx * dx + dz * dz, square = level + high * high;
-    const float reach = own_reach + static_cast<float>(entry.radius) * units.unit;
-    const bool may_matter = is_near && level < reach * reach;
-    if ((square > nearest.most() && !may_matter) || entry.body == i) return;
+    const float range = own_range + static_cast<float>(entry.radius) * units.unit;
+    const bool may_matter = is_near && level < range * range;
+    if ((square > nearest.max_square() && !may_matter) || entry.body == i) return;
     const Body& other = bodies_[entry.body];
     if (may_matter) {
       const bool flies = other.flies();
@@ -203,14 +207,15 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
           nearer_than(entry.x - body.x, entry.z - body.z, touched)) {
         worker.others.push_back(entry.body);
       }
-      if (port != nullptr && nearer_than(entry.x - body.x, entry.z - body.z, radii) &&
-          overlap(port->low, body.y + body.height - port->low, entry.y, other.height)) {
+      if (ground_air_link != nullptr && nearer_than(entry.x - body.x, entry.z - body.z, radii) &&
+          overlap(ground_air_link->low, body.y + body.height - ground_air_link->low, entry.y,
+                  other.height)) {
         column_is_clear = false;
       }
     }
     nearest.add(square, other.slot, entry.body);
   };
-  nearest.look_around(grid_, body, near_metres_, units.unit, look_at);
+  nearest.query_neighbours(grid_, body, near_metres_, units.unit, query);
   const Flight& flight = flights_[body.slot];
   situation.velocity = {body.velocity.x, flight.rise, body.velocity.z};
   situation.preferred = {body.preferred.x, flight.preferred_up, body.preferred.z};
@@ -223,7 +228,7 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
     const steer::Plane apart = units.metres(other.x - body.x, other.z - body.z);
     const Flight* of_other = flies ? &flights_[other.slot] : nullptr;
     Space velocity{other.velocity.x, flies ? of_other->rise : 0, other.velocity.z};
-    // Who has arrived makes way for those who would pass, were he not there.
+    // A flyer that has arrived yields to those that would pass if it were not there.
     const bool yields = body.has(Body::kArrived) && flies && other.has(Body::kHasGoal) &&
                         !other.has(Body::kArrived);
     if (yields) {
@@ -245,16 +250,16 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
   }
 }
 
-// Of two who touch before one bend the farther steps back, if the nearer stands.
+// Of two that touch before one waypoint the farther steps back, if the nearer stands.
 bool FlyerEngine::gives_precedence(const Body& body, const Flight& flight, const Body& other,
                                    const Flight& of_other) const {
-  constexpr float kOneBend = 1.5f, kTouch = 0.3f, kStands = 0.3f;  // [m], [m], of its speed
+  constexpr float kCornerRadius = 1.5f, kTouch = 0.3f, kStands = 0.3f;  // [m], [m], of its speed
   const StepUnits& units = config_.units;
   const auto turns = [](const Body& b) {
     constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kExternal;
     return (b.flags & kAll) == Body::kHasGoal;
   };
-  if (!turns(body) || !turns(other) || flight.in_port != 0 || of_other.in_port != 0) return false;
+  if (!turns(body) || !turns(other) || flight.in_link != 0 || of_other.in_link != 0) return false;
   const auto left = [&](const Body& b, const Flight& f) {
     const steer::Plane level = units.metres(b.local_target_x - b.x, b.local_target_z - b.z);
     return steer::size_of(
@@ -264,7 +269,7 @@ bool FlyerEngine::gives_precedence(const Body& body, const Flight& flight, const
                                          other.local_target_z - body.local_target_z);
   const Space between{
       aims.x, static_cast<float>(of_other.local_target_y - flight.local_target_y) * 1e-3f, aims.z};
-  if (steer::size_of(between) > kOneBend) return false;
+  if (steer::size_of(between) > kCornerRadius) return false;
   const steer::Plane apart = units.metres(other.x - body.x, other.z - body.z);
   const int32_t up = other.y - body.y;
   const float gap = static_cast<float>(std::max({up - body.height, -up - other.height, 0})) * 1e-3f;
@@ -276,25 +281,25 @@ bool FlyerEngine::gives_precedence(const Body& body, const Flight& flight, const
   return its != mine ? its < mine : other.slot < body.slot;
 }
 
-// Can the body do as it wishes? If not, how far is it to a wall, all around?
-bool FlyerEngine::look_around(const Body& body, steer::AirSituation& situation) const {
+// Is its preferred velocity open? If not, how far are walls in all directions?
+bool FlyerEngine::query_walls(const Body& body, steer::AirSituation& situation) const {
   const FlyerAir& air = *classes_[body.avatar_class].air;
-  const AirSpot here = spot_of(body);
-  const float look = body.speed * config_.steering.wall_horizon;
+  const AirPosition here = position_of(body);
+  const float query_range = body.speed * config_.steering.wall_horizon;
   const auto free_distance = [&](Space direction) {
     const auto sees = [&](float far) {
-      const AirSpot there{here.x + static_cast<int32_t>(direction.x * far / config_.units.unit),
-                          here.z + static_cast<int32_t>(direction.z * far / config_.units.unit),
-                          here.y + static_cast<int32_t>(direction.y * far * 1000)};
+      const AirPosition there{here.x + static_cast<int32_t>(direction.x * far / config_.units.unit),
+                              here.z + static_cast<int32_t>(direction.z * far / config_.units.unit),
+                              here.y + static_cast<int32_t>(direction.y * far * 1000)};
       return air.sees(here, there);
     };
-    if (sees(look)) return std::numeric_limits<float>::infinity();
-    for (float far = look * 0.5f; far > look * 0.1f; far *= 0.5f) {
+    if (sees(query_range)) return std::numeric_limits<float>::infinity();
+    for (float far = query_range * 0.5f; far > query_range * 0.1f; far *= 0.5f) {
       if (sees(far)) return far;
     }
     return 0.0f;
   };
-  situation.has_walls = !air.is_open_around(here, look);
+  situation.has_walls = !air.is_open_around(here, query_range);
   const steer::AirFan fan = steer::air_fan(situation.preferred);
   if (situation.has_walls) situation.free_distance[0] = free_distance(fan[0]);
   if (steer::preferred_is_open(config_.steering, situation)) return true;
@@ -303,12 +308,12 @@ bool FlyerEngine::look_around(const Body& body, steer::AirSituation& situation) 
   return false;
 }
 
-void FlyerEngine::find_paths(const steer::AirSituation& situation, bool open,
-                             Contest& contest) const {
+void FlyerEngine::find_candidates(const steer::AirSituation& situation, bool open,
+                                  Contest& contest) const {
   const StepUnits& units = config_.units;
-  contest.ways = 0;
+  contest.candidate_count = 0;
   const auto add = [&](Space v) {
-    contest.displacement[contest.ways++] = {
+    contest.displacement[contest.candidate_count++] = {
         units.displacement(v.x), units.displacement(v.z),
         static_cast<int32_t>(std::lrint(v.y * (units.dt * 1000)))};
   };
@@ -323,44 +328,47 @@ void FlyerEngine::find_paths(const steer::AirSituation& situation, bool open,
   for (const float part : kShorterBy) add(part * best);
 }
 
-// Sense, steer, and take a place if nobody can object.
+// Senses, steers, and takes a place at once if no other could touch it.
 void FlyerEngine::decide(uint32_t f, Worker& worker) {
   Body& body = bodies_[rounds_.movers[f]];
   Flight& flight = flights_[body.slot];
   Move& move = rounds_.moves[f];
   move = {};
-  move.place = spot_of(body);
+  move.place = position_of(body);
   Contest contest;
   contest.mover = f;
   contest.first = static_cast<uint32_t>(worker.others.size());
-  std::optional<FlyerAir::Port> port;
-  if (wants_down(body, flight)) port = classes_[body.avatar_class].air->port_below(spot_of(body));
-  if (port && body.y - port->high > kLowOver) port.reset();
+  std::optional<FlyerAir::GroundAirLink> ground_air_link;
+  if (wants_down(body, flight))
+    ground_air_link = classes_[body.avatar_class].air->link_below(position_of(body));
+  if (ground_air_link && body.y - ground_air_link->high > kLowOver) ground_air_link.reset();
   steer::AirSituation situation;
   bool column_is_clear = true;
-  sense(f, worker, situation, column_is_clear, port ? &*port : nullptr);
+  sense(f, worker, situation, column_is_clear, ground_air_link ? &*ground_air_link : nullptr);
   contest.last = static_cast<uint32_t>(worker.others.size());
-  if (port && column_is_clear) {
-    flight.in_port = 1;
+  if (ground_air_link && column_is_clear) {
+    flight.in_link = 1;
     flight.descends = 1;
-    flight.port_low = port->low;
-    flight.port_high = port->high;
-    flight.port_level = port->level;
-    body.turn = 0;
+    flight.link_low = ground_air_link->low;
+    flight.link_high = ground_air_link->high;
+    flight.link_level = ground_air_link->level;
+    body.detour_angle = 0;
     const float down = -std::min(body.speed, kSlow);
-    situation.preferred = {
-        0, std::max(down, static_cast<float>(port->low - body.y) * 1e-3f / config_.units.dt), 0};
+    situation.preferred = {0,
+                           std::max(down, static_cast<float>(ground_air_link->low - body.y) *
+                                              1e-3f / config_.units.dt),
+                           0};
   }
-  if (flight.in_port != 0) {
-    // Up and down only: there is nothing to choose from but how fast.
-    contest.ways = 0;
+  if (flight.in_link != 0) {
+    // Up and down only: it can choose nothing but its speed.
+    contest.candidate_count = 0;
     for (const float part : {1.0f, 0.5f, 0.25f}) {
       const auto up = static_cast<int32_t>(
           std::lrint(part * situation.preferred.y * (config_.units.dt * 1000)));
-      contest.displacement[contest.ways++] = {0, 0, up};
+      contest.displacement[contest.candidate_count++] = {0, 0, up};
     }
   } else {
-    find_paths(situation, look_around(body, situation), contest);
+    find_candidates(situation, query_walls(body, situation), contest);
   }
   if (contest.first != contest.last) {
     ++worker.counts.contested;
@@ -368,28 +376,29 @@ void FlyerEngine::decide(uint32_t f, Worker& worker) {
     worker.contests.push_back(contest);
     return;
   }
-  for (size_t w = 0; w < contest.ways; ++w) {
+  for (size_t w = 0; w < contest.candidate_count; ++w) {
     if (!try_place(body, contest.displacement[w], move.place)) continue;
     move.state = Move::kDecided;
     return;
   }
 }
 
-// Where a body would be after a step, if what is between is air.
-bool FlyerEngine::try_place(const Body& body, const AirSpot& displacement, AirSpot& place) const {
+// Where a body would be after a move, if all between is air.
+bool FlyerEngine::try_place(const Body& body, const AirPosition& displacement,
+                            AirPosition& place) const {
   const Flight& flight = flights_[body.slot];
   const FlyerAir& air = *classes_[body.avatar_class].air;
-  const AirSpot here = spot_of(body);
-  AirSpot there{here.x + displacement.x, here.z + displacement.z, here.y + displacement.y};
-  if (flight.in_port != 0) {
+  const AirPosition here = position_of(body);
+  AirPosition there{here.x + displacement.x, here.z + displacement.z, here.y + displacement.y};
+  if (flight.in_link != 0) {
     if (displacement.x != 0 || displacement.z != 0) return false;
-    there.y = std::max(there.y, flight.port_low);
-    // An obstacle may have come to where one would stand.
-    const bool lands = there.y == flight.port_low && here.y != there.y;
-    if (lands && !air.may_stand(flight.port_level, there)) return false;
-    // What is between the ground and the air is free; all above is looked at.
-    const int32_t from = std::max(here.y, flight.port_high);
-    const int32_t to = std::max(there.y, flight.port_high);
+    there.y = std::max(there.y, flight.link_low);
+    // An obstacle may have appeared where it would stand.
+    const bool lands = there.y == flight.link_low && here.y != there.y;
+    if (lands && !air.may_stand(flight.link_level, there)) return false;
+    // Between the ground and the air it is free; all above is tested.
+    const int32_t from = std::max(here.y, flight.link_high);
+    const int32_t to = std::max(there.y, flight.link_high);
     if (from != to && !air.sees({here.x, here.z, from}, {here.x, here.z, to})) return false;
   } else if (!air.sees(here, there)) {
     return false;
@@ -399,13 +408,13 @@ bool FlyerEngine::try_place(const Body& body, const AirSpot& displacement, AirSp
   return true;
 }
 
-// Is a place clear of where everybody is now?
+// Is a place clear of where all bodies are now?
 bool FlyerEngine::is_clear(const Contest& contest, const Worker& owner,
-                           const AirSpot& place) const {
+                           const AirPosition& place) const {
   const Body& body = bodies_[rounds_.movers[contest.mover]];
   for (const uint32_t j : owner.others_of(contest)) {
     const Body& other = bodies_[j];
-    AirSpot there = spot_of(other);
+    AirPosition there = position_of(other);
     if (other.flies()) {
       const Move& move = rounds_.moves[rounds_.mover_of[j]];
       if (move.state == Move::kDecided) there = move.place;
@@ -415,11 +424,11 @@ bool FlyerEngine::is_clear(const Contest& contest, const Worker& owner,
   return true;
 }
 
-// The first of his ways that is open and clear.
-bool FlyerEngine::name(const Contest& contest, const Worker& owner) {
+// Proposes the first candidate that is open and clear.
+bool FlyerEngine::propose(const Contest& contest, const Worker& owner) {
   const Body& body = bodies_[rounds_.movers[contest.mover]];
-  AirSpot place;
-  for (size_t w = 0; w < contest.ways; ++w) {
+  AirPosition place;
+  for (size_t w = 0; w < contest.candidate_count; ++w) {
     if (!try_place(body, contest.displacement[w], place) || !is_clear(contest, owner, place))
       continue;
     rounds_.moves[contest.mover].place = place;
@@ -437,7 +446,7 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
       units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
   const Space displacement{level.x, static_cast<float>(flight.local_target_y - body.y) * 1e-3f,
                            level.z};
-  const bool moves = move.state == Move::kDecided && move.place != spot_of(body);
+  const bool moves = move.state == Move::kDecided && move.place != position_of(body);
   if (moves) {
     body.velocity = {units.velocity(move.place.x - body.x), units.velocity(move.place.z - body.z)};
     flight.rise = static_cast<float>(move.place.y - body.y) * (1e-3f / units.dt);
@@ -449,15 +458,15 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
     flight.rise = 0;
     ++counts.stood;
   }
-  if (flight.in_port != 0) {
+  if (flight.in_link != 0) {
     if (flight.descends != 0) {
-      body.turn = moves ? 0 : body.turn + units.dt;
+      body.detour_angle = moves ? 0 : body.detour_angle + units.dt;
       flight.waited += moves ? 0 : units.dt;
-      if (body.turn > kPressed && !body.has(Body::kExternal)) flight.descends = 0;
+      if (body.detour_angle > kPressed && !body.has(Body::kExternal)) flight.descends = 0;
     }
-    if (flight.descends == 0 && body.y >= flight.port_high) {
-      flight.in_port = 0;
-      body.turn = 0;
+    if (flight.descends == 0 && body.y >= flight.link_high) {
+      flight.in_link = 0;
+      body.detour_angle = 0;
     }
     return;
   }
@@ -471,7 +480,8 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
   if (config_.deadlock_avoidance) {
     const float content = near_goal ? 1 : towards / body.speed;
     const float along = steer::dot(velocity, preferred) / (body.speed * body.speed);
-    body.turn = steer::next_turn(config_.patience, body.turn, content, along, units.dt);
+    body.detour_angle = steer::next_detour_angle(config_.deadlock_settings, body.detour_angle,
+                                                 content, along, units.dt);
   }
   if (flight.lands != 0 && flight.is_last() && left < kFarthest && towards < 0.3f * body.speed) {
     flight.waited += units.dt;
@@ -480,7 +490,7 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
       units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
   const Space off{rest.x, static_cast<float>(flight.local_target_y - body.y) * 1e-3f, rest.z};
   if (body.has(Body::kLast) && flight.lands == 0 && !body.has(Body::kArrived) &&
-      steer::size_of(off) < kThere) {
+      steer::size_of(off) < kArrivalRadius) {
     body.flags |= Body::kArrived;
     move.arrives = true;
   }

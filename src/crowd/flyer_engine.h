@@ -19,8 +19,8 @@
 #include "steer/air.h"
 #include "steer/sampled.h"
 
-/// The step of those who are in the air, after that of those who walk: sense, steer, commit in
-/// rounds, settle. docs/design/012-flyers.md.
+/// The step of flyers in the air, after that of walkers: sense, steer, resolve conflicts, settle.
+/// docs/design/012-flyers.md.
 namespace throng {
 
 struct FlyerConfig {
@@ -31,7 +31,7 @@ struct FlyerConfig {
   uint64_t seed = 1;
   int32_t workers = 0;
   steer::AirSettings steering;
-  steer::Patience patience;
+  steer::DeadlockAvoidance deadlock_settings;
 };
 
 class FlyerEngine {
@@ -39,29 +39,30 @@ class FlyerEngine {
   /// `classes`: of the world.
   FlyerEngine(const FlyerConfig& config, size_t classes);
 
-  /// Of a class that somebody is of who flies. `radius`: what the class keeps away from walls. [m]
+  /// Required for each class of which there is a flyer. `radius`: the distance that the class keeps
+  /// from walls. [m]
   void set_air(size_t avatar_class, const FlyerAir* air, double radius);
-  /// As CrowdEngine::fit; nobody is taller. [mm]
+  /// As CrowdEngine::fit; no body is taller. [mm]
   void fit(int32_t widest, float fastest, int32_t tallest, float dt);
   void set_obstacles(std::vector<AirObstacle> obstacles) { obstacles_ = std::move(obstacles); }
   [[nodiscard]] bool has_obstacles() const { return !obstacles_.empty(); }
-  /// May the body not move there? One that closes lets those go on that are in it.
-  [[nodiscard]] bool is_blocked(const Body& body, const AirSpot& spot) const;
-  /// May no such body be put there?
-  [[nodiscard]] bool is_taken(const Body& body, const AirSpot& spot) const;
-  /// The nearest places beside, over and under the obstacles that close around a body, not yet
-  /// looked at otherwise.
-  void list_exits(const Body& body, std::vector<AirSpot>& exits) const;
+  /// Does an obstacle block a move there? One that closes lets a body continue inside it.
+  [[nodiscard]] bool is_blocked(const Body& body, const AirPosition& position) const;
+  /// Is the position inside an obstacle, so that no such body may be placed there?
+  [[nodiscard]] bool is_obstructed(const Body& body, const AirPosition& position) const;
+  /// The nearest positions beside, above and below the obstacles that close around a body, not
+  /// tested further.
+  void list_exits(const Body& body, std::vector<AirPosition>& exits) const;
 
-  /// How far from its landing place one comes down that waits for it. [m]
-  [[nodiscard]] static float landing_reach(const Flight& flight);
-  /// Called for each flyer first, on any worker: he finds and follows his way.
+  /// How far from its landing place a body comes down that waits for it. [m]
+  [[nodiscard]] static float landing_radius(const Flight& flight);
+  /// Called first for each flyer, on any worker: it finds and follows the path.
   using Before = std::function<void(Body&, Flight&, int32_t worker)>;
-  /// One step of all who are flying; `flights` by slot. The others stay where they are.
+  /// One step of all bodies that fly; `flights` by slot. Other bodies keep their places.
   void step(uint64_t step, std::span<Body> bodies, std::span<Flight> flights, const Before& before,
             EngineCounts& counts, CrowdEngine::Times& times);
-  /// Slots of those who arrived in the last step, and bodies of those who came to the ground. They
-  /// are still flying.
+  /// Slots of the bodies that arrived in the last step, and the bodies that reached the ground.
+  /// These are still flying.
   [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
   [[nodiscard]] std::span<const uint32_t> landed() const { return landed_; }
   [[nodiscard]] uint64_t bytes() const;
@@ -69,11 +70,11 @@ class FlyerEngine {
  private:
   static constexpr size_t kShorter = 3;
   struct Contest : MoverContest {
-    uint8_t ways = 0;
-    std::array<AirSpot, steer::kAirChoices + kShorter + 1> displacement;  // of a step
+    uint8_t candidate_count = 0;
+    std::array<AirPosition, steer::kAirChoices + kShorter + 1> displacement;  // of a step
   };
   struct Move : MoverState {
-    AirSpot place;
+    AirPosition place;
   };
   using Rounds = MoverRounds<Contest, Move>;
   using Worker = Rounds::Worker;
@@ -81,16 +82,17 @@ class FlyerEngine {
   void preferred(Body& body, Flight& flight, uint64_t step) const;
   void decide(uint32_t flyer, Worker& worker);
   void sense(uint32_t flyer, Worker& worker, steer::AirSituation& situation, bool& column_is_clear,
-             const FlyerAir::Port* port) const;
-  bool look_around(const Body& body, steer::AirSituation& situation) const;
+             const FlyerAir::GroundAirLink* ground_air_link) const;
+  bool query_walls(const Body& body, steer::AirSituation& situation) const;
   [[nodiscard]] bool gives_precedence(const Body& body, const Flight& flight, const Body& other,
                                       const Flight& of_other) const;
-  void find_paths(const steer::AirSituation& situation, bool open, Contest& contest) const;
+  void find_candidates(const steer::AirSituation& situation, bool open, Contest& contest) const;
   [[nodiscard]] bool wants_down(const Body& body, const Flight& flight) const;
-  [[nodiscard]] bool try_place(const Body& body, const AirSpot& displacement, AirSpot& place) const;
+  [[nodiscard]] bool try_place(const Body& body, const AirPosition& displacement,
+                               AirPosition& place) const;
   [[nodiscard]] bool is_clear(const Contest& contest, const Worker& owner,
-                              const AirSpot& place) const;
-  bool name(const Contest& contest, const Worker& owner);
+                              const AirPosition& place) const;
+  bool propose(const Contest& contest, const Worker& owner);
   void settle(uint32_t flyer, EngineCounts& counts);
 
   FlyerConfig config_;

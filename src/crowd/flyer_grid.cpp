@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+// Fills the grid of cubes with a counting sort. Linear in the bodies and cubes.
 namespace throng {
 namespace {
 

@@ -8,34 +8,34 @@
 
 #include "crowd/body.h"
 
-/// Who is near those whom an engine of its own moves: who flies, or who climbs.
+/// The bodies near those that the engine of flyers or of climbers moves.
 namespace throng {
 
-/// Cubes half as wide as one sees, in a table rolled up along all three axes: so it is as large as
-/// the crowd, not as the world. Of those who walk only those are in it whom a flyer could see.
+/// Cubes half as wide as the sight, in a table rolled up along all three axes: so it is as large as
+/// the crowd, not as the world. Of the walkers it holds only those that a flyer could see.
 class FlyerGrid {
  public:
-  /// Enough to know who is near.
+  /// What is needed to find neighbours.
   struct Entry {
     int32_t x, z, y;
     uint32_t body;
     int32_t radius, height;  // [units, mm]
   };
 
-  /// Cubes so many units wide and millimetres high.
+  /// Cubes of this width [units] and height [mm].
   void fit(int32_t width, int32_t height);
-  /// `flyers`: all of whom `is_flyer` is true. They may be climbers.
+  /// `flyers`: all bodies for which `is_flyer` is true. They may be climbers.
   void build(std::span<const Body> bodies, std::span<const uint32_t> flyers,
              bool (*is_flyer)(const Body& body));
 
-  /// Calls visit(entry) for all in the 27 cubes around a place: everybody within a cube's width.
+  /// Calls visit(entry) for all in the 27 cubes around a place: all bodies within a cube's width.
   template <class Visit>
   void for_near(int32_t x, int32_t z, int32_t y, Visit visit) const {
     const Cube c = cube(x, z, y);
     for_columns(1, [&](int32_t dx, int32_t dz) { column(c, dx, dz, -1, 1, visit); });
   }
-  /// The same for the 98 cubes around those: everybody else within two cubes' widths. Leaves out
-  /// columns of cubes the square of whose distance is over limit(), in units.
+  /// The same for the 98 cubes around those: all other bodies within two cubes' widths. Skips
+  /// columns of cubes whose squared distance exceeds limit(), in units.
   template <class Limit, class Visit>
   void for_far(int32_t x, int32_t z, int32_t y, Limit limit, Visit visit) const {
     const Cube c = cube(x, z, y);
@@ -66,10 +66,10 @@ class FlyerGrid {
            (static_cast<uint32_t>(c.y) & mask_y);
   }
   template <class Visit>
-  static void for_columns(int32_t reach, Visit visit) {
+  static void for_columns(int32_t range, Visit visit) {
     constexpr int32_t kInside[] = {0, -1, 1, -2, 2};  // the nearest first
-    for (int32_t z = 0; z <= 2 * reach; ++z) {
-      for (int32_t x = 0; x <= 2 * reach; ++x) visit(kInside[x], kInside[z]);
+    for (int32_t z = 0; z <= 2 * range; ++z) {
+      for (int32_t x = 0; x <= 2 * range; ++x) visit(kInside[x], kInside[z]);
     }
   }
   template <class Visit>
@@ -81,7 +81,7 @@ class FlyerGrid {
   }
 
   int32_t width_ = 1, height_ = 1;
-  uint32_t bits_xz_ = 3, bits_y_ = 3;  // five cubes beside each other are five
+  uint32_t bits_xz_ = 3, bits_y_ = 3;  // five adjacent cubes are different entries
   std::vector<uint32_t> first_;        // of a cube; one more than there are
   std::vector<uint8_t> wanted_;        // a flyer is in it or beside it
   std::vector<uint32_t> walkers_;

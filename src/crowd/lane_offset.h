@@ -6,14 +6,16 @@
 #include "crowd/routes.h"
 #include "crowd/stride_ground.h"
 
-/// Where in an opening one goes, instead of all going for the corner that the shortest ways touch.
+/// Where in an opening an avatar walks, so that not all crowd at the corner that shortest paths
+/// touch.
 namespace throng {
 
-/// The place at the next corner of a way that a body is bound for: as far from the corner, by the
-/// width of the opening there, as the body is from the wall on the inner side of the bend, by the
-/// width of where it walks. The corner itself where the way hardly bends, fewer than three find
-/// room abreast, or the place could not be seen from here or would not see the next corner.
-/// `metre`: [units]
-Spot lane_offset(const Body& body, const Route& route, const StrideGround& ground, float metre);
+/// The place beside the next corner of a body's path: its distance from the corner, relative to the
+/// width of the opening there, is the body's distance from the wall on the inner side, relative to
+/// the width where it walks. It is the corner itself if the path hardly bends, if fewer than three
+/// bodies fit abreast, or if the place is not visible from here or from the next corner. `metre`:
+/// [units]
+PathPoint lane_offset(const Body& body, const Route& route, const StrideGround& ground,
+                      float metre);
 
 }  // namespace throng

@@ -10,13 +10,13 @@
 #include "world/walk.h"
 
 // A breadth-first search from outside: in cells, along the axes, backwards over steps that a body
-// which stands there may make.
+// on such a cell may make.
 namespace throng {
 namespace {
 
 using Level = CrowdGround::Level;
 
-constexpr std::array<std::pair<int32_t, int32_t>, 4> kBeside = {{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
+constexpr std::array<std::pair<int32_t, int32_t>, 4> kSides = {{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
 
 struct WorldCell {
   Level level = 0;
@@ -67,7 +67,7 @@ class ExitSearch {
   }
   [[nodiscard]] bool leads_out(const WorldCell& cell) const {
     const LeavingGround leaving(ground_, cell.level, cell.x, cell.z);
-    for (const auto& [dx, dz] : kBeside) {
+    for (const auto& [dx, dz] : kSides) {
       const auto to =
           step_to(leaving, cell.level, cell.x, cell.z, cell.x + dx, cell.z + dz, step_mm_);
       if (to && is_out(ground_, *to, cell.x + dx, cell.z + dz)) return true;
@@ -76,7 +76,7 @@ class ExitSearch {
   }
   void look_back(const WorldCell& to, uint16_t count, std::vector<WorldCell>& found) {
     const int32_t feet = ground_.sample(to.level, to.x & 63, to.z & 63);
-    for (const auto& [dx, dz] : kBeside) {
+    for (const auto& [dx, dz] : kSides) {
       const int32_t x = to.x + dx, z = to.z + dz;
       ground_.for_tile(x >> 6, z >> 6, feet - step_mm_, feet + step_mm_, [&](Level level) {
         const WorldCell from{level, x, z};
@@ -107,7 +107,7 @@ bool find_exit(const CrowdGround& ground, int32_t step_mm, uint32_t max_steps, L
     const LeavingGround leaving(ground, level, x, z);
     const uint16_t here = ground.left().steps_out({level, x & 63, z & 63});
     bool found = false;
-    for (const auto& [dx, dz] : kBeside) {
+    for (const auto& [dx, dz] : kSides) {
       const auto to = step_to(leaving, level, x, z, x + dx, z + dz, step_mm);
       if (!to) continue;
       const int32_t nx = x + dx, nz = z + dz;

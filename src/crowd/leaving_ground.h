@@ -7,7 +7,7 @@
 #include "crowd/crowd_ground.h"
 #include "crowd/left_cells.h"
 
-/// The ground as a body has it that stands on taken cells which it may leave.
+/// The ground for a body that stands on blocked cells which it may leave.
 namespace throng {
 
 /// A Ground of walk.h.
@@ -37,16 +37,16 @@ class LeavingGround {
   LeftCells::Cell from_;
 };
 
-/// Does a body that stands there stand on a cell which it may leave?
+/// Does a body at this place stand on a cell which it may leave?
 inline bool is_leaving(const CrowdGround& ground, CrowdGround::Level level, int32_t x, int32_t z) {
   return !ground.left().is_empty() && !ground.is_legal(level, x & 63, z & 63);
 }
 
-/// Finds for all cells that are left how many steps it is out. Linear in these.
+/// For each blocked cell that may be left, counts the steps to an exit. Linear in these cells.
 void find_exits(CrowdGround& ground, int32_t step_mm);
 
-/// Where the fewest steps from a cell lead out to, or the first so many of them; false: none do.
-/// [cells]
+/// Where the shortest exit from a cell leads to, or its first `max_steps` steps; false: there is
+/// none. [cells]
 bool find_exit(const CrowdGround& ground, int32_t step_mm, uint32_t max_steps,
                CrowdGround::Level& level, int32_t& x, int32_t& z);
 

@@ -7,6 +7,8 @@
 
 #include "world/walk.h"
 
+// Which blocked cells a body may cross on its exit: by the obstacles whose cells it stands on.
+// Linear in the obstacles of a level.
 namespace throng {
 namespace {
 
@@ -20,7 +22,7 @@ void LeftCells::begin(const WorldSummary& summary, const AvatarClass& avatar) {
   origin_ = summary.origin;
   unit_ = summary.cell / kUnitsPerCell;
   radius_ = avatar.radius;
-  // As Crowd::State::is_occupied has it: what may come up is what may be entered no more.
+  // As Crowd::State::is_occupied tests it: what may become active is what may no longer be entered.
   bottom_ = static_cast<int32_t>(std::floor(body_bottom(avatar) * 1000));
   height_ = static_cast<int32_t>(std::ceil(avatar.height * 1000 - 1e-6));
   shapes_.clear();
@@ -73,11 +75,11 @@ bool LeftCells::may_cross(const Cell& from, const Cell& over) const {
   });
 }
 
-bool LeftCells::enters(const Cell& cell, const AirSpot& from, const AirSpot& to) const {
-  constexpr int32_t kLooks = 4;  // on the way
+bool LeftCells::enters(const Cell& cell, const AirPosition& from, const AirPosition& to) const {
+  constexpr int32_t kSamples = 4;  // on the line
   const OfLevel* of = find(cell.level);
   if (of == nullptr) return false;
-  const auto is_in = [&](const Shape& shape, AirSpot feet) {
+  const auto is_in = [&](const Shape& shape, AirPosition feet) {
     feet.y += bottom_;
     return shape.solid.holds(feet, radius_, height_ - bottom_);
   };
@@ -87,12 +89,12 @@ bool LeftCells::enters(const Cell& cell, const AirSpot& from, const AirSpot& to)
                                     [&](const Shape& s) { return s.obstacle == part.obstacle; });
     if (shape == shapes_.end() || is_in(*shape, from)) return false;
     const auto between = [](int32_t a, int32_t b, int32_t i) {
-      return static_cast<int32_t>(a + (int64_t{b} - a) * i / kLooks);
+      return static_cast<int32_t>(a + (int64_t{b} - a) * i / kSamples);
     };
-    for (int32_t i = 1; i <= kLooks; ++i) {
-      const AirSpot spot{between(from.x, to.x, i), between(from.z, to.z, i),
-                         between(from.y, to.y, i)};
-      if (is_in(*shape, spot)) return true;
+    for (int32_t i = 1; i <= kSamples; ++i) {
+      const AirPosition position{between(from.x, to.x, i), between(from.z, to.z, i),
+                                 between(from.y, to.y, i)};
+      if (is_in(*shape, position)) return true;
     }
     return false;
   });

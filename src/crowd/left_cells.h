@@ -12,16 +12,16 @@
 #include "world/cell_blocks.h"
 #include "world/ground.h"
 
-/// Cells that obstacles have taken from the ground of a class while bodies stand on them: these may
-/// go on over the cells of the obstacles in which they stand, and leave them. To all others such a
-/// cell is a wall.
+/// Cells that obstacles block for a class while bodies stand on them: such a body may continue over
+/// the cells of the obstacles in which it stands, and leave them. For all others these cells are
+/// walls.
 namespace throng {
 
 class LeftCells {
  public:
   using Level = uint32_t;  // of the world
 
-  /// Of an obstacle on a level.
+  /// An obstacle's cells on a level.
   struct Part {
     uint32_t obstacle = 0;
     CellRows rows{};
@@ -31,23 +31,24 @@ class LeftCells {
     int32_t x = 0, z = 0;  // of the tile
   };
 
-  /// Begins anew with the obstacles; levels stay.
+  /// Starts again with the current obstacles; levels stay.
   void begin(const WorldSummary& summary, const AvatarClass& avatar);
   void add(uint32_t obstacle, const Prism& prism);
-  /// `kept`: what other obstacles take there. Without parts: the level has no such cells.
+  /// `kept`: the cells that other obstacles block there. Without parts: the level has no such
+  /// cells.
   void set_level(Level level, std::vector<Part> parts, const CellRows& kept);
 
   [[nodiscard]] bool is_empty() const { return levels_.empty(); }
   [[nodiscard]] bool holds(const Cell& cell) const;
-  /// Appends the obstacles on whose cells it is.
+  /// Appends the obstacles whose cells contain the cell.
   void list_obstacles(const Cell& cell, std::vector<uint32_t>& obstacles) const;
-  /// May a body that stands on the cell `from` go over a cell that was legal before it was taken?
+  /// May a body that stands on the cell `from` cross a cell that was legal before it was blocked?
   [[nodiscard]] bool may_cross(const Cell& from, const Cell& over) const;
-  /// Would a body that stands on a cell come, from one point to another, into an obstacle in which
-  /// it is not, though it stands on one of its cells? Y: the feet.
-  [[nodiscard]] bool enters(const Cell& cell, const AirSpot& from, const AirSpot& to) const;
+  /// Would a body that stands on a cell enter, between two points, an obstacle in which it is not,
+  /// though it stands on one of that obstacle's cells? Y: the feet.
+  [[nodiscard]] bool enters(const Cell& cell, const AirPosition& from, const AirPosition& to) const;
 
-  /// Steps from a cell to where it is left, by cells; kNone: no way leads out.
+  /// Steps from a cell to an exit, by cells; kNone: there is none.
   static constexpr uint16_t kNone = UINT16_MAX;
   [[nodiscard]] uint16_t steps_out(const Cell& cell) const;
 
@@ -72,7 +73,7 @@ class LeftCells {
   std::vector<Shape> shapes_;
   Vec3d origin_;
   double unit_ = 0, radius_ = 0;     // [m]
-  int32_t bottom_ = 0, height_ = 0;  // of a body over its feet [mm]
+  int32_t bottom_ = 0, height_ = 0;  // of a body, above its feet [mm]
 };
 
 }  // namespace throng

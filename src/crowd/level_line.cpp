@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+// Bits of 4 x 4 blocks out of 64 rows of cells. Constant time.
 namespace throng {
 
 std::array<uint16_t, 16> full_blocks(const uint64_t* rows) {

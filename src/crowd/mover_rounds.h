@@ -19,42 +19,42 @@
 #include "crowd/flyer_grid.h"
 #include "steer/air.h"
 
-/// What engines of their own have in common, of those who fly and of those who climb: they move
-/// after all others, in rounds of claims.
+/// What the engines of flyers and of climbers have in common: their bodies move after all others,
+/// in conflict resolution rounds.
 namespace throng {
 
-/// The nearest few of those whom one looks at, of equals the first slots.
+/// The nearest few neighbours; of equally near ones, the lowest slots.
 class NearestInAir {
  public:
-  /// Nobody farther than `far` counts. [m]
-  explicit NearestInAir(float far) : most_(far * far) {}
+  /// Nothing farther than `far` counts. [m]
+  explicit NearestInAir(float far) : max_square_(far * far) {}
 
-  /// `square` of how far off it is. [m^2]
+  /// `square`: of its distance. [m^2]
   void add(float square, uint32_t slot, uint32_t body) {
     const Seen one{square, slot, body};
-    if (square > most_ || (seen_ == nearest_.size() && !(one < nearest_.back()))) return;
+    if (square > max_square_ || (seen_ == nearest_.size() && !(one < nearest_.back()))) return;
     size_t at = seen_ < nearest_.size() ? seen_++ : seen_ - 1;
     for (; at > 0 && one < nearest_[at - 1]; --at) nearest_[at] = nearest_[at - 1];
     nearest_[at] = one;
-    if (seen_ == nearest_.size()) most_ = nearest_.back().square;
+    if (seen_ == nearest_.size()) max_square_ = nearest_.back().square;
   }
   [[nodiscard]] size_t size() const { return seen_; }
   [[nodiscard]] uint32_t body(size_t n) const { return nearest_[n].body; }
-  /// Whoever is farther does not count any more. [m^2]
-  [[nodiscard]] float most() const { return most_; }
+  /// Neighbours that are farther no longer count. [m^2]
+  [[nodiscard]] float max_square() const { return max_square_; }
 
-  /// Takes in all that look_at(entry, is_near) hands to add(): first whoever may be within `near`,
-  /// then, unless these are enough, those beyond.
-  template <class LookAt>
-  void look_around(const FlyerGrid& grid, const Body& body, float near, float unit,
-                   LookAt look_at) const {
+  /// Runs query(entry, is_near), which calls add(), for all entries: first those that may be within
+  /// `near`, then, unless these are enough, those beyond.
+  template <class Query>
+  void query_neighbours(const FlyerGrid& grid, const Body& body, float near, float unit,
+                        Query query) const {
     grid.for_near(body.x, body.z, body.y,
-                  [&](const FlyerGrid::Entry& entry) { look_at(entry, true); });
+                  [&](const FlyerGrid::Entry& entry) { query(entry, true); });
     if (seen_ == nearest_.size() && nearest_.back().square <= near * near) return;
     const float per_metre = 1 / (unit * unit) * 1.0001f;
     grid.for_far(
-        body.x, body.z, body.y, [&] { return most_ * per_metre; },
-        [&](const FlyerGrid::Entry& entry) { look_at(entry, false); });
+        body.x, body.z, body.y, [&] { return max_square_ * per_metre; },
+        [&](const FlyerGrid::Entry& entry) { query(entry, false); });
   }
 
  private:
@@ -67,16 +67,16 @@ class NearestInAir {
   };
   std::array<Seen, steer::kMaxNearInAir> nearest_;
   size_t seen_ = 0;
-  float most_;
+  float max_square_;
 };
 
-/// Who could touch others in this step: the ways that he would go are the engine's.
+/// A body that could touch others in this step. Its candidate moves are the engine's.
 struct MoverContest {
   uint32_t mover = 0;            // of MoverRounds::movers
-  uint32_t first = 0, last = 0;  // of the worker's `others`: whom he could touch
+  uint32_t first = 0, last = 0;  // of the worker's `others`: the bodies that it could touch
 };
 
-/// Whether it is settled what a mover does in this step.
+/// Whether a mover's move in this step is decided.
 struct MoverState {
   enum State : uint8_t { kUndecided, kDecided, kStays };
   State state = kStays;
@@ -99,24 +99,24 @@ class MoverRounds {
   };
 
   std::vector<uint32_t> movers;    // bodies
-  std::vector<uint32_t> mover_of;  // by body, of those who move
+  std::vector<uint32_t> mover_of;  // by body, of those that move
   std::vector<Move> moves;         // by mover
   std::vector<Worker> workers;
 
-  /// What a step's parts are told by. Each `act` is called on any worker.
+  /// The parts of a step. Each `act` is called on any worker.
   struct Parts {
     bool (*is_mover)(const Body& body);
     std::function<void(uint32_t mover, int32_t worker)> plan;
     std::function<void(uint32_t mover, Worker& worker)> decide;
-    /// Names the first of his ways that is free of where everybody is now.
-    std::function<bool(const Contest& contest, const Worker& owner)> name;
-    /// Do what these two have named, of whom the second moves, too, touch each other?
+    /// Proposes the first candidate that is clear of where all bodies are now.
+    std::function<bool(const Contest& contest, const Worker& owner)> propose;
+    /// Do the moves that these two propose, of which the second moves too, overlap?
     std::function<bool(const Contest& contest, uint32_t other)> overlaps_with;
     std::function<void(uint32_t mover, EngineCounts& counts)> settle;
   };
 
-  /// One step. `grain`: movers that are worth handing to another thread; `seed` and `step` make the
-  /// order of claims.
+  /// One step. `grain`: how many movers are worth another thread; `seed` and `step` make the order
+  /// of proposed moves.
   void step(std::span<const Body> bodies, const Parts& parts, FlyerGrid& grid, size_t grain,
             int32_t threads, int32_t rounds, std::pair<uint64_t, uint64_t> seed_and_step,
             EngineCounts& counts, CrowdEngine::Times& times);
@@ -134,8 +134,9 @@ class MoverRounds {
   void begin(std::span<const Body> bodies, bool (*is_mover)(const Body&));
   template <class Do>
   void for_contests(int32_t threads, Do act);
-  [[nodiscard]] bool holds(std::span<const Body> bodies, const Parts& parts, const Contest& contest,
-                           const Worker& owner, std::pair<uint64_t, uint64_t> seed_and_step) const;
+  [[nodiscard]] bool is_accepted(std::span<const Body> bodies, const Parts& parts,
+                                 const Contest& contest, const Worker& owner,
+                                 std::pair<uint64_t, uint64_t> seed_and_step) const;
 };
 
 template <class Contest, class Move>
@@ -167,11 +168,11 @@ void MoverRounds<Contest, Move>::for_contests(int32_t threads, Do act) {
   }
 }
 
-// Is what he named clear of what those before him in the order named in the same round?
+// Is its proposed move clear of those that precede it in the order, of the same round?
 template <class Contest, class Move>
-bool MoverRounds<Contest, Move>::holds(std::span<const Body> bodies, const Parts& parts,
-                                       const Contest& contest, const Worker& owner,
-                                       std::pair<uint64_t, uint64_t> seed_and_step) const {
+bool MoverRounds<Contest, Move>::is_accepted(std::span<const Body> bodies, const Parts& parts,
+                                             const Contest& contest, const Worker& owner,
+                                             std::pair<uint64_t, uint64_t> seed_and_step) const {
   const auto [seed, step] = seed_and_step;
   const auto order = [seed = seed, step = step](const Body& b) {
     return std::pair(random_u64(seed, b.slot, step), b.slot);
@@ -185,9 +186,9 @@ bool MoverRounds<Contest, Move>::holds(std::span<const Body> bodies, const Parts
   });
 }
 
-// By induction nobody ever touches anybody: a place that is named is clear of where all are who
-// could touch it, and it is taken only if it is clear of what those before him named, whether or
-// not they take it. Nobody else moves any more.
+// By induction no body ever touches another: a proposed place is clear of where all are that could
+// touch it, and it is accepted only if it is clear of what those before it in the order proposed,
+// accepted or not. No other body moves any more.
 template <class Contest, class Move>
 void MoverRounds<Contest, Move>::step(std::span<const Body> bodies, const Parts& parts,
                                       FlyerGrid& grid, size_t grain, int32_t threads,
@@ -217,17 +218,17 @@ void MoverRounds<Contest, Move>::step(std::span<const Body> bodies, const Parts&
     const auto round = static_cast<uint8_t>(r);
     for_contests(threads, [&](const Contest& contest, const Worker& owner) {
       Move& move = moves[contest.mover];
-      if (move.state == Move::kUndecided && parts.name(contest, owner)) move.round = round;
+      if (move.state == Move::kUndecided && parts.propose(contest, owner)) move.round = round;
     });
     for_contests(threads, [&](const Contest& contest, const Worker& owner) {
       Move& move = moves[contest.mover];
       if (move.state == Move::kUndecided && move.round == round &&
-          holds(bodies, parts, contest, owner, seed_and_step)) {
+          is_accepted(bodies, parts, contest, owner, seed_and_step)) {
         move.state = Move::kDecided;
       }
     });
   }
-  lap(times.commit);
+  lap(times.resolve);
   std::mutex adding;
   parallel_ranges(movers.size(), grain, threads, [&](size_t begin, size_t end) {
     EngineCounts here;

@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 
+// Sorts bodies by square with a counting sort, in parallel parts. Linear in the bodies and squares.
 namespace throng {
 namespace {
 
@@ -21,10 +22,10 @@ uint32_t squares_of(int32_t cells, int32_t square) {
 }  // namespace
 
 NeighbourGrid::NeighbourGrid(int32_t width, int32_t depth, int64_t sight, size_t bodies)
-    : squares_(std::clamp(static_cast<int32_t>(((sight + 1) / kReach >> kUnitBits) + 1), 1, 4096)) {
+    : squares_(std::clamp(static_cast<int32_t>(((sight + 1) / kRange >> kUnitBits) + 1), 1, 4096)) {
   uint32_t across = squares_of(width, squares_.cells()), down = squares_of(depth, squares_.cells());
-  const size_t most = std::max(kMin, std::bit_floor(bodies - bodies / 4));
-  while (size_t{across} * down > most && across * down > 64) {
+  const size_t max_squares = std::max(kMin, std::bit_floor(bodies - bodies / 4));
+  while (size_t{across} * down > max_squares && across * down > 64) {
     (across > down ? across : down) /= 2;
   }
   across = std::max(across, 8u);
@@ -67,12 +68,12 @@ void NeighbourGrid::sort(std::span<const Body> bodies, std::span<Body> sorted, i
   });
 }
 
-NeighbourGrid::Around NeighbourGrid::around(uint32_t square, uint32_t reach) const {
+NeighbourGrid::Around NeighbourGrid::around(uint32_t square, uint32_t range) const {
   const uint32_t x = square & mask_x_, z = square >> bits_x_;
-  const uint32_t left = (x - reach) & mask_x_, right = (x + reach) & mask_x_;
+  const uint32_t left = (x - range) & mask_x_, right = (x + range) & mask_x_;
   Around pieces;
-  for (uint32_t row = 0; row < 2 * reach + 1; ++row) {
-    const uint32_t base = ((z + row - reach) & mask_z_) << bits_x_;
+  for (uint32_t row = 0; row < 2 * range + 1; ++row) {
+    const uint32_t base = ((z + row - range) & mask_z_) << bits_x_;
     if (left <= right) {
       pieces.add({first_[base + left], first_[base + right + 1]});
     } else {

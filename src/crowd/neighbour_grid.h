@@ -12,17 +12,17 @@
 #include "crowd/pixel_grid.h"
 #include "crowd/sense_kernel.h"
 
-/// Who is near whom: bodies in order of the square that they stand on.
+/// Which bodies are near each other: bodies in order of the square that they stand on.
 namespace throng {
 
 /// The plane in squares, rolled up: square (x, z) is the one of (x mod 2^a, z mod 2^b), so that a
-/// table of as many entries as there are bodies is enough for a world of any size. Whoever looks
-/// around meets bodies from far away, too, and tells them by their distance. What lies in the rows
-/// of squares around a body is no square twice: there are always at least kAround of them.
+/// table of as many entries as there are bodies is enough for a world of any size. A query also
+/// finds bodies from far away, and excludes them by their distance. In the rows of squares around a
+/// body no square occurs twice: there are always at least kAround of them.
 class NeighbourGrid {
  public:
-  static constexpr int32_t kReach = 2;  // squares to each side
-  static constexpr int32_t kAround = 2 * kReach + 1;
+  static constexpr int32_t kRange = 2;  // squares to each side
+  static constexpr int32_t kAround = 2 * kRange + 1;
 
   /// Squares at least as wide as half of `sight` units, for a world of width x depth cells.
   NeighbourGrid(int32_t width, int32_t depth, int64_t sight, size_t bodies);
@@ -45,9 +45,9 @@ class NeighbourGrid {
     std::array<Entries, 2 * kAround + 1> pieces_{};  // The last is for an empty one beyond all.
     uint32_t size_ = 0, bodies_ = 0;
   };
-  /// Those within so many squares of the square, at most kReach, which are all that may be within
-  /// sight.
-  [[nodiscard]] Around around(uint32_t square, uint32_t reach = kReach) const;
+  /// The bodies in the squares at most `range` (at most kRange) from the square: all that may be
+  /// within sight.
+  [[nodiscard]] Around around(uint32_t square, uint32_t range = kRange) const;
   /// Of a square. [units]
   [[nodiscard]] float width() const { return static_cast<float>(squares_.units()); }
   [[nodiscard]] uint32_t square(const Body& body) const {
@@ -56,7 +56,7 @@ class NeighbourGrid {
     return ((z & mask_z_) << bits_x_) | (x & mask_x_);
   }
 
-  /// Places of the sorted bodies, as arrays with room for a vector more.
+  /// Coordinates of the sorted bodies, as arrays with padding for one more vector.
   [[nodiscard]] const int32_t* x() const { return x_.data(); }
   [[nodiscard]] const int32_t* z() const { return z_.data(); }
   [[nodiscard]] const int32_t* y() const { return y_.data(); }

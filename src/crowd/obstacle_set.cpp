@@ -11,6 +11,9 @@
 #include "path/blocked_cells.h"
 #include "world/place.h"
 
+// What obstacles block in the grounds of all classes: the union of their cells by level, so that
+// they overlap and are removed in any order. An update is linear in the cells of the levels that
+// changed.
 namespace throng {
 namespace {
 
@@ -52,9 +55,9 @@ void ObstacleSet::open_class(size_t number, CrowdGround& ground) {
   for (uint32_t slot = 0; slot < obstacles_.size(); ++slot) {
     if (!obstacles_[slot].exists) continue;
     if (obstacles_[slot].has_cells) put_up(slot, number);
-    if (obstacles_[slot].waits() || obstacles_[slot].lets_out) find_swept(slot);
+    if (obstacles_[slot].waits() || obstacles_[slot].is_exit_only) find_swept(slot);
   }
-  take_cells();
+  block_cells();
 }
 
 void ObstacleSet::close_class(size_t number) {
@@ -83,7 +86,7 @@ uint32_t ObstacleSet::add(const Prism& prism, ObstacleKind kind, bool wanted_up,
   obstacle.policy = policy;
   obstacle.place = obstacle.wanted = prism;
   obstacle.of_class.resize(classes_.size());
-  if (wanted_up) ask_to_be_up(slot, true);
+  if (wanted_up) request_active(slot, true);
   return slot;
 }
 
@@ -93,36 +96,36 @@ const CrowdObstacle* ObstacleSet::find(ObstacleId id) const {
   return obstacle.exists && obstacle.generation == id.generation ? &obstacle : nullptr;
 }
 
-void ObstacleSet::ask_to_be_at(uint32_t slot, const Prism& prism) {
+void ObstacleSet::request_move(uint32_t slot, const Prism& prism) {
   CrowdObstacle& obstacle = obstacles_[slot];
   obstacle.wanted = prism;
   obstacle.is_elsewhere = obstacle.is_up;
   if (!obstacle.is_up) {
-    give_back(slot);  // It closes there instead.
+    unblock(slot);  // It closes there instead.
     obstacle.place = prism;
     ++obstacle.version;
   }
   find_swept(slot);
 }
 
-void ObstacleSet::ask_to_be_up(uint32_t slot, bool up) {
+void ObstacleSet::request_active(uint32_t slot, bool up) {
   CrowdObstacle& obstacle = obstacles_[slot];
   obstacle.wanted_up = up;
   if (up) {
     if (!obstacle.is_up) find_swept(slot);
     return;
   }
-  give_back(slot);
+  unblock(slot);
   if (obstacle.is_elsewhere) ++obstacle.version;
   obstacle.is_up = obstacle.is_elsewhere = false;
-  obstacle.asked_step = obstacle.up_step = CrowdObstacle::kNever;
+  obstacle.requested_step = obstacle.up_step = CrowdObstacle::kNever;
   obstacle.occupants = 0;
   obstacle.place = obstacle.wanted;
   for (auto& of_class : obstacle.of_class) of_class.swept.clear();
 }
 
 void ObstacleSet::remove(uint32_t slot) {
-  ask_to_be_up(slot, false);
+  request_active(slot, false);
   CrowdObstacle& obstacle = obstacles_[slot];
   const uint32_t generation = obstacle.generation;
   obstacle = {};
@@ -133,7 +136,7 @@ void ObstacleSet::remove(uint32_t slot) {
 std::vector<uint32_t> ObstacleSet::waiting() const {
   std::vector<uint32_t> slots;
   for (uint32_t slot = 0; slot < obstacles_.size(); ++slot) {
-    if (obstacles_[slot].waits() || obstacles_[slot].lets_out) slots.push_back(slot);
+    if (obstacles_[slot].waits() || obstacles_[slot].is_exit_only) slots.push_back(slot);
   }
   return slots;
 }
@@ -145,7 +148,7 @@ std::vector<std::pair<uint32_t, uint32_t>> ObstacleSet::blockers(std::span<const
     uint32_t slot;
     const CellRows* rows;
   };
-  // By class and level: which of the lists says who asks for it, plus one.
+  // By class and level: which of the lists wants its blockers, plus one.
   std::vector<std::vector<uint32_t>> list_of(classes_.size());
   std::vector<std::vector<Asked>> lists;
   for (const uint32_t slot : slots) {
@@ -184,13 +187,13 @@ std::vector<std::pair<uint32_t, uint32_t>> ObstacleSet::blockers(std::span<const
 void ObstacleSet::settle(uint32_t slot) {
   CrowdObstacle& obstacle = obstacles_[slot];
   if (obstacle.is_elsewhere) {
-    give_back(slot);
+    unblock(slot);
     ++obstacle.version;
   }
   obstacle.place = obstacle.wanted;
   obstacle.is_up = true;
   obstacle.is_elsewhere = false;
-  if (!obstacle.lets_out) {
+  if (!obstacle.is_exit_only) {
     for (auto& of_class : obstacle.of_class) of_class.swept.clear();
   }
   take(slot);
@@ -198,10 +201,10 @@ void ObstacleSet::settle(uint32_t slot) {
 
 void ObstacleSet::close(uint32_t slot) { take(slot); }
 
-void ObstacleSet::let_out(uint32_t slot, bool lets) {
+void ObstacleSet::set_exit_only(uint32_t slot, bool lets) {
   CrowdObstacle& obstacle = obstacles_[slot];
-  if (obstacle.lets_out == lets) return;
-  obstacle.lets_out = lets;
+  if (obstacle.is_exit_only == lets) return;
+  obstacle.is_exit_only = lets;
   for (size_t c = 0; c < classes_.size(); ++c) {
     CrowdObstacle::OfClass& of = obstacle.of_class[c];
     classes_[c].touched.insert(classes_[c].touched.end(), of.levels.begin(), of.levels.end());
@@ -215,12 +218,12 @@ void ObstacleSet::take(uint32_t slot) {
   for (size_t c = 0; c < classes_.size(); ++c) put_up(slot, c);
 }
 
-void ObstacleSet::give_back(uint32_t slot) {
+void ObstacleSet::unblock(uint32_t slot) {
   CrowdObstacle& obstacle = obstacles_[slot];
   if (obstacle.has_cells) {
-    for (size_t c = 0; c < classes_.size(); ++c) take_down(slot, c);
+    for (size_t c = 0; c < classes_.size(); ++c) unblock_class(slot, c);
   }
-  obstacle.has_cells = obstacle.lets_out = false;
+  obstacle.has_cells = obstacle.is_exit_only = false;
 }
 
 std::vector<LevelCells> ObstacleSet::cells_under(size_t number, const Prism& prism) const {
@@ -236,10 +239,10 @@ std::vector<LevelCells> ObstacleSet::cells_under(size_t number, const Prism& pri
         const CellRows* baked = ground->baked_legal(level);
         const uint64_t* legal = baked != nullptr ? baked->data() : ground->legal(level);
         const TileFloor floor{world.summary, ground->view(level), x, z};
-        const CellRows taken = blocked_cells(floor, avatar, prism, {}, legal);
+        const CellRows blocked = blocked_cells(floor, avatar, prism, {}, legal);
         const bool any =
-            std::any_of(taken.begin(), taken.end(), [](uint64_t row) { return row != 0; });
-        if (any) found.push_back({level, taken});
+            std::any_of(blocked.begin(), blocked.end(), [](uint64_t row) { return row != 0; });
+        if (any) found.push_back({level, blocked});
       });
     }
   }
@@ -250,8 +253,9 @@ void ObstacleSet::find_swept(uint32_t slot) {
   CrowdObstacle& obstacle = obstacles_[slot];
   const Prism swept = obstacle.is_up ? hull_of(obstacle.place, obstacle.wanted) : obstacle.wanted;
   for (size_t c = 0; c < classes_.size(); ++c) {
-    obstacle.of_class[c].swept =
-        obstacle.waits() || obstacle.lets_out ? cells_under(c, swept) : std::vector<LevelCells>();
+    obstacle.of_class[c].swept = obstacle.waits() || obstacle.is_exit_only
+                                     ? cells_under(c, swept)
+                                     : std::vector<LevelCells>();
   }
 }
 
@@ -260,58 +264,59 @@ void ObstacleSet::put_up(uint32_t slot, size_t number) {
   ClassGround& of = classes_[number];
   for (LevelCells& cells : cells_under(number, obstacle.place)) {
     obstacle.of_class[number].levels.push_back(cells.level);
-    of.takers[cells.level].push_back({slot, cells.rows});
+    of.cell_blockers[cells.level].push_back({slot, cells.rows});
     of.touched.push_back(cells.level);
   }
 }
 
-void ObstacleSet::take_down(uint32_t slot, size_t number) {
+void ObstacleSet::unblock_class(uint32_t slot, size_t number) {
   CrowdObstacle& obstacle = obstacles_[slot];
   ClassGround& of = classes_[number];
   for (const uint32_t level : obstacle.of_class[number].levels) {
-    const auto here = of.takers.find(level);
-    std::erase_if(here->second, [&](const Taker& taker) { return taker.slot == slot; });
-    if (here->second.empty()) of.takers.erase(here);
+    const auto here = of.cell_blockers.find(level);
+    std::erase_if(here->second,
+                  [&](const CellBlocker& cell_blocker) { return cell_blocker.slot == slot; });
+    if (here->second.empty()) of.cell_blockers.erase(here);
     of.touched.push_back(level);
   }
   obstacle.of_class[number].levels.clear();
 }
 
-void ObstacleSet::take_cells() {
+void ObstacleSet::block_cells() {
   for (size_t c = 0; c < classes_.size(); ++c) {
     ClassGround& of = classes_[c];
     if (of.touched.empty()) continue;
     std::sort(of.touched.begin(), of.touched.end());
     of.touched.erase(std::unique(of.touched.begin(), of.touched.end()), of.touched.end());
-    take_levels(c, of);
+    block_levels(c, of);
     of.touched.clear();
   }
 }
 
-void ObstacleSet::take_levels(size_t number, ClassGround& of) {
+void ObstacleSet::block_levels(size_t number, ClassGround& of) {
   std::vector<std::pair<int32_t, int32_t>> tiles;
   const WorldSummary& summary = world_.data()->summary;
   LeftCells& left = of.ground->left();
   left.begin(summary, summary.classes[number]);
   for (uint32_t slot = 0; slot < obstacles_.size(); ++slot) {
     const CrowdObstacle& obstacle = obstacles_[slot];
-    if (obstacle.exists && obstacle.lets_out) left.add(slot, obstacle.place);
+    if (obstacle.exists && obstacle.is_exit_only) left.add(slot, obstacle.place);
   }
   for (const uint32_t level : of.touched) {
-    CellRows taken{}, kept{};
+    CellRows blocked{}, kept{};
     std::vector<LeftCells::Part> parts;
-    const auto takers = of.takers.find(level);
-    if (takers != of.takers.end()) {
-      for (const Taker& taker : takers->second) {
-        for (size_t z = 0; z < taken.size(); ++z) taken[z] |= taker.rows[z];
-        if (obstacles_[taker.slot].lets_out) {
-          parts.push_back({taker.slot, taker.rows});
+    const auto cell_blockers = of.cell_blockers.find(level);
+    if (cell_blockers != of.cell_blockers.end()) {
+      for (const CellBlocker& cell_blocker : cell_blockers->second) {
+        for (size_t z = 0; z < blocked.size(); ++z) blocked[z] |= cell_blocker.rows[z];
+        if (obstacles_[cell_blocker.slot].is_exit_only) {
+          parts.push_back({cell_blocker.slot, cell_blocker.rows});
         } else {
-          for (size_t z = 0; z < kept.size(); ++z) kept[z] |= taker.rows[z];
+          for (size_t z = 0; z < kept.size(); ++z) kept[z] |= cell_blocker.rows[z];
         }
       }
     }
-    of.ground->set_taken(level, taken);
+    of.ground->set_blocked(level, blocked);
     left.set_level(level, std::move(parts), kept);
     const CrowdGround::Record& record = of.ground->records()[level];
     tiles.emplace_back(record.tile_x, record.tile_z);
@@ -336,7 +341,7 @@ bool ObstacleSet::restore(std::vector<CrowdObstacle> obstacles, std::vector<uint
     if (!check_prism(obstacle.place) || !check_prism(obstacle.wanted)) return false;
     const bool may_close = obstacle.wanted_up && obstacle.policy == ObstaclePolicy::kRefuseEntry;
     if (obstacle.is_up ? !obstacle.has_cells : obstacle.has_cells && !may_close) return false;
-    if (obstacle.lets_out && !obstacle.has_cells) return false;
+    if (obstacle.is_exit_only && !obstacle.has_cells) return false;
     obstacle.of_class.resize(classes_.size());
   }
   obstacles_ = std::move(obstacles);
@@ -347,7 +352,8 @@ bool ObstacleSet::restore(std::vector<CrowdObstacle> obstacles, std::vector<uint
 uint64_t ObstacleSet::bytes() const {
   uint64_t bytes = obstacles_.capacity() * sizeof(CrowdObstacle);
   for (const ClassGround& of : classes_) {
-    for (const auto& [level, takers] : of.takers) bytes += takers.capacity() * sizeof(Taker);
+    for (const auto& [level, cell_blockers] : of.cell_blockers)
+      bytes += cell_blockers.capacity() * sizeof(CellBlocker);
   }
   return bytes;
 }

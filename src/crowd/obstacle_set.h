@@ -14,7 +14,7 @@
 #include "throng/live_ground.h"
 #include "throng/world.h"
 
-/// The obstacles of a crowd, and what each takes from the grounds of the classes.
+/// The obstacles of a crowd, and what each blocks of the grounds of the classes.
 namespace throng {
 
 /// Cells of a level.
@@ -29,96 +29,99 @@ struct CrowdObstacle {
   ObstacleKind kind = ObstacleKind::kStatic;
   ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry;
   bool is_up = false, wanted_up = false;
-  bool is_elsewhere = false;  // it is up, but asked to be at `wanted`
+  bool is_elsewhere = false;  // it is active, but requested to be at `wanted`
   Prism place, wanted;
-  bool has_cells = false;  // taken from the grounds: it is up, or closes
-  bool lets_out = false;   // some who walk stand on these, and may only leave
-  uint32_t version = 0;    // of `place`
-  uint64_t asked_step = kNever, up_step = kNever;  // steps made before it was asked, and came up
-  uint32_t occupants = 0;                          // in its way, when last looked at
+  bool has_cells = false;     // they are blocked in the grounds: it is active, or closes
+  bool is_exit_only = false;  // walkers stand on these cells, and may only leave
+  uint32_t version = 0;       // of `place`
+  uint64_t requested_step = kNever, up_step = kNever;  // steps made before the request, and before
+                                                       // it became active
+  uint32_t occupants = 0;                              // that blocked it at the last check
 
   static constexpr uint64_t kNever = UINT64_MAX;
 
-  // By class, empty for those that nobody is of.
+  // By class, empty for those that are not in use.
   struct OfClass {
-    std::vector<uint32_t> levels;   // from which it takes cells, while it is up
-    std::vector<LevelCells> swept;  // that must be clear before it may come up or move on
-    // What the class's live grounds, and its finders through the air and over nodes, call it; told
-    // of it as it was at `told_version`.
+    std::vector<uint32_t> levels;   // on which it blocks cells, while it is active
+    std::vector<LevelCells> swept;  // that must be clear before it may become active or move on
+    // Its ids in the class's live grounds and in its finders through the air and over nodes; synced
+    // to `synced_version` of its place.
     ChangeId change = 0, air_change = 0, node_change = 0;
-    bool is_told = false;
-    uint32_t told_version = 0;
+    bool is_synced = false;
+    uint32_t synced_version = 0;
   };
   std::vector<OfClass> of_class;
 
   [[nodiscard]] bool waits() const { return exists && ((wanted_up && !is_up) || is_elsewhere); }
-  /// Not up, but no avatar may enter it.
+  /// Not active, but no avatar may enter it.
   [[nodiscard]] bool closes() const { return exists && has_cells && !is_up; }
 };
 
-/// The smallest convex prism around two.
+/// The smallest convex prism around two prisms.
 Prism hull_of(const Prism& a, const Prism& b);
 
 class ObstacleSet {
  public:
   ObstacleSet(World world, size_t classes);
 
-  /// Of a class that somebody is of from now on; what is up is taken from its ground at once.
+  /// Takes a class into use: what is active is blocked in its ground at once.
   void open_class(size_t number, CrowdGround& ground);
 
-  /// Undoes it. The ground is not given back its cells.
+  /// Reverts open_class. The cells of the ground stay blocked.
   void close_class(size_t number);
 
   /// [check_prism] It waits until it is settled.
   uint32_t add(const Prism& prism, ObstacleKind kind, bool wanted_up,
                ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry);
-  /// Null for those that are gone.
+  /// Null for those that were removed.
   [[nodiscard]] const CrowdObstacle* find(ObstacleId id) const;
   [[nodiscard]] std::span<const CrowdObstacle> all() const { return obstacles_; }
   [[nodiscard]] CrowdObstacle& at(uint32_t slot) { return obstacles_[slot]; }
 
-  void ask_to_be_at(uint32_t slot, const Prism& prism);
-  void ask_to_be_up(uint32_t slot, bool up);
+  void request_move(uint32_t slot, const Prism& prism);
+  void request_active(uint32_t slot, bool up);
   void remove(uint32_t slot);
 
-  /// Those that wait, or let out.
+  /// Those that wait, or are exit-only.
   [[nodiscard]] std::vector<uint32_t> waiting() const;
-  /// Who stands where some of them would come or pass: (obstacle, index of the body), in order.
+  /// Bodies that stand where some of them would appear or pass: (obstacle, index of the body), in
+  /// order.
   [[nodiscard]] std::vector<std::pair<uint32_t, uint32_t>> blockers(std::span<const uint32_t> slots,
                                                                     std::span<const Body> bodies,
                                                                     int32_t workers) const;
-  /// It is where it waited to be. Then take_cells.
+  /// Puts it where it waited to be. Call block_cells then.
   void settle(uint32_t slot);
-  /// From now on it is entered no more, and left only. Then take_cells.
+  /// From now on it can only be left. Call block_cells then.
   void close(uint32_t slot);
-  /// Those on its cells may leave these, or there are none any more. Then take_cells.
-  void let_out(uint32_t slot, bool lets);
-  /// Brings the grounds up to date with all that was settled, asked down or removed.
-  void take_cells();
+  /// Lets bodies on its cells leave these, or ends that. Call block_cells then.
+  void set_exit_only(uint32_t slot, bool lets);
+  /// Updates the grounds to all that was settled, deactivated or removed.
+  void block_cells();
 
-  /// In the order in which they are given again: the last first.
+  /// In the order in which they are reused: the last first.
   [[nodiscard]] std::span<const uint32_t> free_slots() const { return free_slots_; }
-  /// Before any class is opened. [not sound: false]
+  /// To be called before any class is opened. [not sound: false]
   bool restore(std::vector<CrowdObstacle> obstacles, std::vector<uint32_t> free_slots);
   [[nodiscard]] uint64_t bytes() const;
 
  private:
-  struct Taker {
+  struct CellBlocker {
     uint32_t slot;
     CellRows rows;
   };
   struct ClassGround {
-    CrowdGround* ground = nullptr;                            // null: nobody is of the class
-    std::unordered_map<uint32_t, std::vector<Taker>> takers;  // by level; looked up only
-    std::vector<uint32_t> touched;                            // levels, with doubles
+    CrowdGround* ground = nullptr;  // null: the class is not in use
+    std::unordered_map<uint32_t, std::vector<CellBlocker>>
+        cell_blockers;              // by level; looked up only
+    std::vector<uint32_t> touched;  // levels, with doubles
   };
-  void take_levels(size_t number, ClassGround& of);
+  void block_levels(size_t number, ClassGround& of);
   [[nodiscard]] std::vector<LevelCells> cells_under(size_t number, const Prism& prism) const;
   void find_swept(uint32_t slot);
   void take(uint32_t slot);
-  void give_back(uint32_t slot);
+  void unblock(uint32_t slot);
   void put_up(uint32_t slot, size_t number);
-  void take_down(uint32_t slot, size_t number);
+  void unblock_class(uint32_t slot, size_t number);
 
   World world_;
   std::vector<ClassGround> classes_;

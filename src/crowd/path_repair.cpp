@@ -6,6 +6,8 @@
 
 #include "world/place.h"
 
+// Repairs a path piece by piece: for each stretch that obstacles cover, a bounded search for a
+// detour; a full search only if that fails.
 namespace throng {
 namespace {
 
@@ -28,14 +30,14 @@ class PathRepair {
     return true;
   }
 
-  // Replaces what is covered of the points by detours. False: they would be too long.
-  bool mend(std::vector<Place>& points, double& length, RepairScratch& scratch) const {
+  // Replaces the covered part of the points by detours. False: these would be too long.
+  bool insert_detours(std::vector<Place>& points, double& length, RepairScratch& scratch) const {
     const std::vector<Place>& old = points;
     std::vector<Place>& mended = scratch.points;
     Path& detour = scratch.detour;
     mended.assign(1, old[0]);
     length = 0;
-    double covered = 0;  // length of what is left out
+    double covered = 0;  // length that is left out
     for (size_t i = 1; i < old.size(); ++i) {
       const Place& from = mended.back();
       const Place& to = old[i];
@@ -46,10 +48,11 @@ class PathRepair {
         covered = 0;
         continue;
       }
-      // A covered corner is left out: the way goes around it to the next.
+      // A covered corner is left out: the path leads around it to the next.
       if (!live_.is_free(to)) continue;
       live_.find(from, to, detour, kMaxNodes);
-      if (detour.end != PathEnd::kReached || detour.length > covered + kLongestDetour) return false;
+      if (detour.end != PathEnd::kReached || detour.length > covered + kMaxRepairDetour)
+        return false;
       mended.insert(mended.end(), detour.points.begin() + 1, detour.points.end());
       length += detour.length;
       covered = 0;
@@ -81,7 +84,7 @@ void lead_around(const WorldData& world, LiveGround& live, const StrideGround& g
   const PathRepair repair(world, live, ground);
   if (repair.is_whole(path.points)) return;
   const Place from = path.points.front(), to = path.points.back();
-  if (repair.mend(path.points, path.length, scratch)) return;
+  if (repair.insert_detours(path.points, path.length, scratch)) return;
   live.find(from, to, path, budget);
 }
 

@@ -9,22 +9,22 @@
 #include "throng/path.h"
 #include "world/zone_data.h"
 
-/// Ways around obstacles.
+/// Repair of paths that obstacles cut.
 namespace throng {
 
-/// Memory for it: kept, so that nothing is allocated once it is warm.
+/// Scratch memory: reused, so that nothing is allocated after warm-up.
 struct RepairScratch {
   Path detour;
   std::vector<Place> points;
 };
 
-/// Makes a way over the baked ground one over the ground as it is now. Obstacles only take away, so
-/// a way on which none lies stays, and is still the shortest. Where they lie on it, short detours
-/// are put in, each no more than kLongestDetour longer than what it replaces; if that does not do,
-/// the whole way is searched on the live ground. [path: reached]
+/// Changes a path over the baked ground into one over the current ground. Obstacles only block
+/// cells, so a path that none cuts stays, and is still the shortest. Where some cut it, short
+/// detours are put in, each at most kMaxRepairDetour longer than what it replaces; if that fails,
+/// the whole path is searched on the live ground. [path: reached]
 void lead_around(const WorldData& world, LiveGround& live, const StrideGround& ground,
                  const SearchBudget& budget, Path& path, RepairScratch& scratch);
 
-inline constexpr double kLongestDetour = 10;  // [m]
+inline constexpr double kMaxRepairDetour = 10;  // [m]
 
 }  // namespace throng

@@ -18,8 +18,8 @@ class PixelGrid {
         magic_(((uint64_t{1} << 32) + static_cast<uint64_t>(pixel_cells) - 1) /
                static_cast<uint64_t>(pixel_cells)) {}
 
-  /// Pixel of a cell that is not negative. Multiplying instead of dividing is exact for every cell
-  /// that 31 bits of units can name, and pixels of up to 4096 cells.
+  /// Pixel of a cell that is not negative. A multiplication replaces the division: it is exact for
+  /// all cells that 31 bits of units can name, and pixels of up to 4096 cells.
   [[nodiscard]] int32_t pixel(int32_t cell) const {
     return static_cast<int32_t>((static_cast<uint64_t>(static_cast<uint32_t>(cell)) * magic_) >>
                                 32);

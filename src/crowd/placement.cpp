@@ -7,6 +7,8 @@
 
 #include "core/random.h"
 
+// Random points of the ground, uniform by cell: a binary search among the levels, then the row of
+// the cell. Logarithmic in the levels.
 namespace throng {
 namespace {
 
@@ -66,7 +68,7 @@ std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uin
                        .id = static_cast<uint32_t>(avatars.size())});
     return true;
   };
-  // At random, until nine draws of ten fail over a while.
+  // At random, until nine draws of ten fail for a while.
   uint64_t draw = 0;
   uint32_t failed = 0, drawn = 0;
   while (avatars.size() < count) {

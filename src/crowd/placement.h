@@ -8,20 +8,20 @@
 #include "crowd/collision_map.h"
 #include "crowd/crowd_ground.h"
 
-/// Where a crowd begins.
+/// The first places of a crowd.
 namespace throng {
 
 /// Points where a class can stand, drawn at random, uniform over the ground.
 class StandingDraw {
  public:
   StandingDraw(const CrowdGround& ground, uint64_t seed);
-  /// Nowhere at all?
+  /// Can the class stand nowhere?
   [[nodiscard]] bool is_empty() const { return before_.back() == 0; }
   struct Stand {
     uint32_t level;
     GroundPoint point;
   };
-  /// The n-th of the stream.
+  /// The n-th point of the stream.
   [[nodiscard]] Stand draw(uint64_t n) const;
 
  private:
@@ -31,7 +31,7 @@ class StandingDraw {
 };
 
 /// Places `count` avatars on legal cells, clear of each other in `map`: at random, uniform over the
-/// ground, and when chance finds no more room, cell by cell. Returns fewer if no more fit.
+/// ground, and when random points no longer fit, cell by cell. Returns fewer if no more fit.
 std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uint64_t seed,
                                   CollisionMap& map);
 

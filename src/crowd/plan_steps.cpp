@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+// The step of a vector of avatars over flat blocks, without branches. Constant time an avatar.
 HWY_BEFORE_NAMESPACE();
 namespace throng {
 namespace HWY_NAMESPACE {
@@ -51,7 +52,7 @@ HWY_INLINE Fields load(const Avatar* a) {
 #endif
 }
 
-// High halves of the products, as PixelGrid::pixel has it.
+// High halves of the products, as PixelGrid::pixel computes them.
 HWY_INLINE U pixel(U cell, U magic) {
 #if HWY_TARGET == HWY_SCALAR
   const uint64_t product = uint64_t{hn::GetLane(cell)} * hn::GetLane(magic);
@@ -64,7 +65,7 @@ HWY_INLINE U pixel(U cell, U magic) {
 #endif
 }
 
-// The row of blocks in which a point lies, of the 32 bits that hold it and the one beside.
+// The row of blocks that contains a point, of the 32 bits that hold it and the next row.
 HWY_INLINE U blocks_at(const LevelLine* lines, I level, I z) {
   const DI d;
   const DU du;
@@ -93,7 +94,7 @@ PlannedSteps PlanSteps(const LevelLine* lines, PixelGrid grid, Avatar* avatars, 
     }
     const Fields f = load(a);
     const I x1 = hn::Add(f.x, f.vx), z1 = hn::Add(f.z, f.vz);
-    // LevelLine::box_is_plain, word by word
+    // LevelLine::box_is_flat, word by word
     const U common = hn::And(blocks_at(lines, f.level, f.z), blocks_at(lines, f.level, z1));
     const I bx0 = hn::And(hn::ShiftRight<kUnitBits + 2>(f.x), fifteen);
     const I bx1 = hn::And(hn::ShiftRight<kUnitBits + 2>(x1), fifteen);
@@ -101,7 +102,7 @@ PlannedSteps PlanSteps(const LevelLine* lines, PixelGrid grid, Avatar* avatars, 
         hn::And(hn::Shr(common, hn::BitCast(du, bx0)), hn::Shr(common, hn::BitCast(du, bx1)));
     const I moved = hn::Or(hn::Xor(f.x, x1), hn::Xor(f.z, z1));
     const auto on_tile = hn::Eq(hn::ShiftRight<kUnitBits + 6>(moved), hn::Zero(d));
-    const auto is_plain = hn::And(on_tile, hn::TestBit(hn::BitCast(d, both), hn::Set(d, 1)));
+    const auto is_flat = hn::And(on_tile, hn::TestBit(hn::BitCast(d, both), hn::Set(d, 1)));
 
     const auto pixel_of = [&](I v) {
       return pixel(hn::BitCast(du, hn::ShiftRight<kUnitBits>(v)), magic);
@@ -109,15 +110,15 @@ PlannedSteps PlanSteps(const LevelLine* lines, PixelGrid grid, Avatar* avatars, 
     const U across =
         hn::Or(hn::Xor(pixel_of(f.x), pixel_of(x1)), hn::Xor(pixel_of(f.z), pixel_of(z1)));
     const auto same_pixel = hn::Eq(hn::BitCast(d, across), hn::Zero(d));
-    const auto goes = hn::And(is_plain, same_pixel);
+    const auto goes = hn::And(is_flat, same_pixel);
     alignas(64) int32_t places[2 * kMaxLanes];
     hn::StoreInterleaved2(hn::IfThenElse(goes, x1, f.x), hn::IfThenElse(goes, z1, f.z), d, places);
     for (size_t n = 0; n < count; ++n) std::memcpy(&avatars[i + n].x, places + 2 * n, 8);
 
     const uint64_t here = (uint64_t{1} << count) - 1;
-    const uint64_t plain = bits_of(is_plain) & here, stays = bits_of(goes) & here;
+    const uint64_t flat = bits_of(is_flat) & here, stays = bits_of(goes) & here;
     planned.stays |= stays << i;
-    planned.leaves |= (plain & ~stays) << i;
+    planned.leaves |= (flat & ~stays) << i;
   }
   return planned;
 }

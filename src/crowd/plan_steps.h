@@ -9,22 +9,22 @@
 #include "crowd/level_line.h"
 #include "crowd/pixel_grid.h"
 
-/// The steps that the line of a level answers, several avatars at a time.
+/// Steps that a level's line decides, several avatars at a time.
 namespace throng {
 
-/// Which of up to 64 avatars step within plain blocks of their tile, a bit each.
+/// Which of up to 64 avatars step within flat blocks of their tile, a bit each.
 struct PlannedSteps {
   uint64_t stays = 0;   // in their pixel: they have moved
   uint64_t leaves = 0;  // it: they have not
 };
 
-/// True if plan_steps can answer: pixels of one cell are too rare to be worth it, and lines are
-/// found by 31 bits of bytes.
+/// Can plan_steps be used? Pixels of one cell are too rare to be worth it, and lines are found by
+/// 31 bits of bytes.
 inline bool can_plan(PixelGrid grid, size_t levels) {
   return grid.cells() > 1 && levels < (uint64_t{1} << 31) / sizeof(LevelLine);
 }
 
-/// Moves those who stay in their pixel. No step may be longer than a block.
+/// Moves the avatars that stay in their pixel. No step may be longer than a block.
 PlannedSteps plan_steps(const LevelLine* lines, PixelGrid grid, Avatar* avatars, size_t size);
 
 }  // namespace throng

@@ -8,8 +8,8 @@
 #include "crowd/step_units.h"
 #include "world/walk.h"
 
-/// Who decides when. Nobody needs to look around sixty times a second: whoever did what he wanted
-/// most goes on with it until his turn comes again, as long as it is free.
+/// When an avatar decides. It need not sense sixty times a second: an avatar that could make its
+/// preferred move repeats it until its turn comes again, as long as the move is free.
 /// docs/design/008-engine.md, "Reaction".
 namespace throng {
 
@@ -18,15 +18,16 @@ inline uint64_t steps_of_reaction(float reaction, float dt) {
   return static_cast<uint64_t>(std::max(1.0f, reaction / dt + 1e-3f));
 }
 
-/// Turns are spread over the steps of a reaction.
+/// Decisions are spread over the steps of a reaction.
 inline bool decides(uint64_t every, uint64_t step, uint32_t slot) {
   return (step + slot) % every == 0;
 }
 
-/// Right before where it is bound for it must not go past it. `way` there, `stride` of a step.
-inline bool is_before(GroundPoint way, int32_t stride) {
-  const int64_t reach = int64_t{2} * stride;
-  return way.x * way.x + way.z * way.z < reach * reach;
+/// Just before its local target, where it must not overshoot. `displacement`: to the target.
+/// `stride`: of a step.
+inline bool is_before(GroundPoint displacement, int32_t stride) {
+  const int64_t range = int64_t{2} * stride;
+  return displacement.x * displacement.x + displacement.z * displacement.z < range * range;
 }
 
 }  // namespace throng

@@ -7,6 +7,8 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+// Finds the bodies within sight, and the nearest of them, a vector at a time. The first is linear
+// in the bodies around, the second quadratic in those within sight.
 HWY_BEFORE_NAMESPACE();
 namespace throng {
 namespace HWY_NAMESPACE {
@@ -16,7 +18,7 @@ using DI = hn::CappedTag<int32_t, 16>;
 using DF = hn::RebindToFloat<DI>;
 using DU = hn::RebindToUnsigned<DI>;
 
-// Who sees nobody (`most` 0) only asks whom he could touch.
+// A body without sight (`max_square` 0) only finds those that it could touch.
 template <bool kSees>
 HWY_INLINE void FindAround(const Places& places, std::span<const Entries> around, const Eye& eye,
                            SeenLists& result) {
@@ -24,12 +26,12 @@ HWY_INLINE void FindAround(const Places& places, std::span<const Entries> around
   const DF df;
   const DU du;
   const auto x = hn::Set(d, eye.x), z = hn::Set(d, eye.z), y = hn::Set(d, eye.y);
-  const auto most = hn::Set(df, eye.most), touch = hn::Set(df, eye.touch);
+  const auto max_square = hn::Set(df, eye.max_square), touch = hn::Set(df, eye.touch);
   const auto tall = hn::Set(d, eye.tall), touch_tall = hn::Set(d, eye.touch_tall);
   const auto self = hn::Set(du, eye.self);
-  const auto first = hn::Iota(du, 0);  // Iota(du, i) may go by memory.
+  const auto first = hn::Iota(du, 0);  // Iota(du, i) may use memory.
   SeenLists lists = result;
-  const auto look = [&](uint32_t i, uint32_t last) HWY_ATTR {
+  const auto query = [&](uint32_t i, uint32_t last) HWY_ATTR {
     const auto dx = hn::ConvertTo(df, hn::Sub(hn::LoadU(d, places.x + i), x));
     const auto dz = hn::ConvertTo(df, hn::Sub(hn::LoadU(d, places.z + i), z));
     const auto square = hn::Add(hn::Mul(dx, dx), hn::Mul(dz, dz));
@@ -40,9 +42,9 @@ HWY_INLINE void FindAround(const Places& places, std::span<const Entries> around
     if (!kSees && !touches) return;
     const auto dy = hn::Abs(hn::Sub(hn::LoadU(d, places.y + i), y));
     if (kSees) {
-      const auto near = hn::And(hn::RebindMask(du, hn::Lt(square, most)), others);
+      const auto near = hn::And(hn::RebindMask(du, hn::Lt(square, max_square)), others);
       const auto seen = hn::And(near, hn::RebindMask(du, hn::Lt(dy, tall)));
-      // Compressing into memory is slow on some machines; there is room for a whole vector.
+      // Compressing into memory is slow on some machines; the lists have space for a whole vector.
       hn::StoreU(hn::Compress(entry, seen), du, lists.entries + lists.seen);
       hn::StoreU(hn::Compress(square, hn::RebindMask(df, seen)), df, lists.squares + lists.seen);
       lists.seen += hn::CountTrue(du, seen);
@@ -54,27 +56,27 @@ HWY_INLINE void FindAround(const Places& places, std::span<const Entries> around
   };
   const auto lanes = static_cast<uint32_t>(hn::Lanes(d));
   for (const Entries& piece : around) {
-    for (uint32_t i = piece.first; i < piece.last; i += lanes) look(i, piece.last);
+    for (uint32_t i = piece.first; i < piece.last; i += lanes) query(i, piece.last);
   }
   result = lists;
 }
 
 void FindSeen(const Places& places, std::span<const Entries> around, const Eye& eye,
               SeenLists& lists) {
-  if (eye.most > 0) {
+  if (eye.max_square > 0) {
     FindAround<true>(places, around, eye, lists);
   } else {
     FindAround<false>(places, around, eye, lists);
   }
 }
 
-// Of each, how many are nearer; a vector of them at a time against all, one by one.
-size_t KeepNearest(SeenLists& lists, size_t most) {
+// For each entry, how many are nearer; a vector of them at a time against all, one by one.
+size_t KeepNearest(SeenLists& lists, size_t max_count) {
   const DF d;
   const DI di;
   const DU du;
   const size_t lanes = hn::Lanes(d);
-  const auto too_many = hn::Set(di, static_cast<int32_t>(most));
+  const auto too_many = hn::Set(di, static_cast<int32_t>(max_count));
   size_t kept = 0;
   for (size_t n = 0; n < lists.seen; n += lanes) {
     const auto here = hn::LoadU(d, lists.squares + n);
@@ -106,8 +108,8 @@ void find_seen(const Places& places, std::span<const Entries> around, const Eye&
                SeenLists& lists) {
   HWY_DYNAMIC_DISPATCH(FindSeen)(places, around, eye, lists);
 }
-size_t keep_nearest(SeenLists& lists, size_t most) {
-  return lists.seen <= most ? lists.seen : HWY_DYNAMIC_DISPATCH(KeepNearest)(lists, most);
+size_t keep_nearest(SeenLists& lists, size_t max_count) {
+  return lists.seen <= max_count ? lists.seen : HWY_DYNAMIC_DISPATCH(KeepNearest)(lists, max_count);
 }
 
 }  // namespace throng

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <span>
 
-/// Who is within sight, many at a time.
+/// Which bodies are within sight, many at a time.
 namespace throng {
 
-/// Where the others stand. [units, units, mm]
+/// Where the other bodies are. [units, units, mm]
 struct Places {
   const int32_t *x, *z, *y;
 };
@@ -17,17 +17,17 @@ struct Places {
 struct Eye {
   int32_t x, z, y;
   uint32_t self;       ///< Entry that is left out.
-  float most;          ///< Square of how far it sees. [units^2]
-  int32_t tall;        ///< Whoever is as much higher or lower is on another floor. [mm]
-  float touch;         ///< Square of how far it could touch somebody. [units^2]
-  int32_t touch_tall;  ///< Whoever is as much higher or lower cannot be touched. [mm]
+  float max_square;    ///< Square of its sight. [units^2]
+  int32_t tall;        ///< Bodies that much higher or lower are on another floor. [mm]
+  float touch;         ///< Square of the distance at which it could touch another. [units^2]
+  int32_t touch_tall;  ///< Bodies that much higher or lower cannot be touched. [mm]
 };
 
-/// Lists with room for all who could be in them and kSeenSpare more.
+/// Lists with capacity for all that could be in them and kSeenSpare more.
 struct SeenLists {
-  float* squares;     ///< near_square of the ways to those who are in sight,
-  uint32_t* entries;  ///< who they are,
-  uint32_t* touched;  ///< and who could be touched.
+  float* squares;     ///< near_square of those within sight,
+  uint32_t* entries;  ///< their entries,
+  uint32_t* touched;  ///< and the entries that could be touched.
   size_t seen = 0, touches = 0;
 };
 inline constexpr size_t kSeenSpare = 64;
@@ -41,8 +41,8 @@ struct Entries {
 void find_seen(const Places& places, std::span<const Entries> around, const Eye& eye,
                SeenLists& lists);
 
-/// Keeps the nearest so many of those in sight, in order of entries, and all that are as near as
-/// the farthest of them. Returns how many.
-size_t keep_nearest(SeenLists& lists, size_t most);
+/// Keeps the nearest `max_count` of those in sight, in order of entries, and all that are as near
+/// as the farthest of these. Returns how many.
+size_t keep_nearest(SeenLists& lists, size_t max_count);
 
 }  // namespace throng

@@ -8,6 +8,8 @@
 #include "core/random.h"
 #include "crowd/step_units.h"
 
+// A hash table of squares with a list of bodies each. Constant time for each body unless a square
+// is crowded.
 namespace throng {
 
 StandingMap::StandingMap(std::span<const Body> bodies, int32_t widest, size_t more)

@@ -9,15 +9,15 @@
 
 #include "crowd/body.h"
 
-/// Who stands where, for those who are to be added.
+/// Where bodies stand, to place more.
 namespace throng {
 
-/// Squares as wide as the widest body, in a table that squares share; a list each.
+/// Squares as wide as the widest body, hashed into a table; a list each.
 class StandingMap {
  public:
-  /// With these bodies, none wider than `widest` units, and room for `more`.
+  /// With these bodies, none wider than `widest` units, and capacity for `more`.
   StandingMap(std::span<const Body> bodies, int32_t widest, size_t more);
-  /// Adds a body if it touches nobody.
+  /// Adds a body if it touches no other.
   bool add_if_clear(const Body& body);
 
  private:

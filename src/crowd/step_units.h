@@ -7,47 +7,47 @@
 
 #include "steer/sampled.h"
 
-/// Between velocities and the units of the grid that a body moves by in a step.
+/// Converts between velocities and the units of the grid that a body moves by in a step.
 namespace throng {
 
 struct StepUnits {
   float unit = 1;  ///< [m]
   float dt = 1;    ///< [s]
 
-  /// What is `units` long. [m]
+  /// Metres of a displacement in units.
   [[nodiscard]] steer::Plane metres(int32_t x, int32_t z) const {
     return {static_cast<float>(x) * unit, static_cast<float>(z) * unit};
   }
-  /// Way of a step at a velocity along an axis, to the nearest unit.
+  /// Displacement in a step at a velocity along an axis, to the nearest unit.
   [[nodiscard]] int32_t displacement(float velocity) const {
     return static_cast<int32_t>(std::lrint(velocity * (dt / unit)));
   }
-  /// The same for steps of few units: the n-th of many at one velocity, which together are as long
-  /// as they should be to the unit. (As Bresenham's line does.)
-  [[nodiscard]] int32_t small_way(float velocity, uint64_t n) const {
+  /// The same for displacements of few units: the n-th of many at one velocity, whose sum is right
+  /// to the unit. (As in Bresenham's line.)
+  [[nodiscard]] int32_t small_displacement(float velocity, uint64_t n) const {
     const double units = double{velocity} * (double{dt} / unit);
-    const auto k = static_cast<double>(n % kSmallWays);
+    const auto k = static_cast<double>(n % kSmallMoves);
     return static_cast<int32_t>(std::floor(units * (k + 1)) - std::floor(units * k));
   }
-  static constexpr uint64_t kSmallWays = 1 << 16;
+  static constexpr uint64_t kSmallMoves = 1 << 16;
   [[nodiscard]] float velocity(int32_t displacement) const {
     return static_cast<float>(displacement) * (unit / dt);
   }
-  /// No step at a speed is longer. [units]
+  /// No step at this speed is longer. [units]
   [[nodiscard]] int32_t stride(float speed) const {
     return static_cast<int32_t>(speed * (dt / unit)) + 2;
   }
 };
 
-/// Square of a distance in units, as neighbours are ordered by: not exact, but the same everywhere.
+/// Square of a distance in units, by which neighbours are sorted: rounded, but the same everywhere.
 inline float near_square(int32_t x, int32_t z) {
   return static_cast<float>(x) * static_cast<float>(x) +
          static_cast<float>(z) * static_cast<float>(z);
 }
 
-/// Are two points of the plane nearer than so many units? Exact.
-inline bool nearer_than(int32_t x, int32_t z, int64_t reach) {
-  return int64_t{x} * x + int64_t{z} * z < reach * reach;
+/// Are two points of the plane nearer than `range` units? Exact.
+inline bool nearer_than(int32_t x, int32_t z, int64_t range) {
+  return int64_t{x} * x + int64_t{z} * z < range * range;
 }
 
 }  // namespace throng

@@ -9,6 +9,8 @@
 #include "crowd/leaving_ground.h"
 #include "world/walk.h"
 
+// Moves and lines of sight over the ground: block by block where blocks decide, else row by row,
+// else cell by cell ([ML06], algorithm 1). Linear in the blocks, rows or cells crossed.
 namespace throng {
 
 bool StrideGround::move(uint32_t level, int32_t y, GroundPoint from, GroundPoint to,
@@ -16,7 +18,7 @@ bool StrideGround::move(uint32_t level, int32_t y, GroundPoint from, GroundPoint
   const int32_t x0 = from.cell_x(), z0 = from.cell_z(), x1 = to.cell_x(), z1 = to.cell_z();
   if (std::abs(x1 - x0) <= LevelLine::kBlock && std::abs(z1 - z0) <= LevelLine::kBlock) {
     const LevelLine& line = ground_->line(level);
-    if (line.box_is_plain(x0, z0, x1, z1)) {
+    if (line.box_is_flat(x0, z0, x1, z1)) {
       landing = {level, y};
       return true;
     }
@@ -43,11 +45,11 @@ bool StrideGround::leave(uint32_t level, int32_t y, GroundPoint from, GroundPoin
   uint32_t end = level;
   if (!walk(leaving, end, from, to, step_mm_)) return false;
   landing = {end, ground_->feet(end, to)};
-  const auto spot = [](GroundPoint p, int32_t feet) {
-    return AirSpot{static_cast<int32_t>(p.x), static_cast<int32_t>(p.z), feet};
+  const auto position = [](GroundPoint p, int32_t feet) {
+    return AirPosition{static_cast<int32_t>(p.x), static_cast<int32_t>(p.z), feet};
   };
-  return !ground_->left().enters({level, from.cell_x() & 63, from.cell_z() & 63}, spot(from, y),
-                                 spot(to, landing.y));
+  return !ground_->left().enters({level, from.cell_x() & 63, from.cell_z() & 63}, position(from, y),
+                                 position(to, landing.y));
 }
 
 namespace {
@@ -65,7 +67,7 @@ bool StrideGround::box_is_open(uint32_t level, int32_t x0, int32_t z0, int32_t x
   return ground_->open_line(level).has_all(z0 >> 2 & 15, z1 >> 2 & 15, blocks_between(x0, x1));
 }
 
-// The level beyond a side, if all blocks there from one cell to another are joined to it.
+// The level beyond a side, if all blocks there between two cells are joined to it.
 uint32_t StrideGround::beyond(uint32_t level, LevelLine::Side side, int32_t low,
                               int32_t high) const {
   const OpenLine& line = ground_->open_line(level);
@@ -73,10 +75,10 @@ uint32_t StrideGround::beyond(uint32_t level, LevelLine::Side side, int32_t low,
   return (line.joined[side] & wanted) == wanted ? line.beyond[side] : LevelLine::kNone;
 }
 
-bool StrideGround::is_open_around(uint32_t level, GroundPoint from, int32_t reach) const {
-  if (reach > 31) return false;  // of a tile's 64
+bool StrideGround::is_open_around(uint32_t level, GroundPoint from, int32_t range) const {
+  if (range > 31) return false;  // of a tile's 64
   const int32_t x = from.cell_x(), z = from.cell_z();
-  const int32_t x0 = x - reach, z0 = z - reach, x1 = x + reach, z1 = z + reach;
+  const int32_t x0 = x - range, z0 = z - range, x1 = x + range, z1 = z + range;
   const bool is_wide = (x0 ^ x1) >> 6 != 0, is_deep = (z0 ^ z1) >> 6 != 0;
   // Of the body's tile, and of the other one across and down.
   const int32_t edge_x = is_wide ? x1 & ~63 : x1 + 1, edge_z = is_deep ? z1 & ~63 : z1 + 1;
@@ -100,13 +102,13 @@ bool StrideGround::is_open_around(uint32_t level, GroundPoint from, int32_t reac
     if (!box_is_open(down, own_x0, far_z0, own_x1, far_z1)) return false;
   }
   if (!is_wide || !is_deep) return true;
-  // The fourth tile is the same by both ways.
+  // The fourth tile is the same over both sides.
   const uint32_t fourth = beyond(across, side_z, far_x0, far_x1);
   return fourth != LevelLine::kNone && fourth == beyond(down, side_x, far_z0, far_z1) &&
          box_is_open(fourth, far_x0, far_z0, far_x1, far_z1);
 }
 
-// As throng::walk_far, block by block. False, and the level is as it was: blocks do not tell.
+// As throng::walk_far, block by block. False, and the level is unchanged: blocks cannot decide.
 bool StrideGround::walk_open(uint32_t& level, GroundPoint from, GroundPoint to) const {
   constexpr int32_t kShift = kUnitBits + 2;  // units of a block
   auto x = static_cast<int32_t>(from.x >> kShift), z = static_cast<int32_t>(from.z >> kShift);
@@ -114,7 +116,8 @@ bool StrideGround::walk_open(uint32_t& level, GroundPoint from, GroundPoint to) 
   const auto end_z = static_cast<int32_t>(to.z >> kShift);
   const int64_t dx = std::llabs(to.x - from.x), dz = std::llabs(to.z - from.z);
   const int32_t sx = to.x > from.x ? 1 : -1, sz = to.z > from.z ? 1 : -1;
-  // Products of the ways along each axis to the next line of blocks: the smaller is crossed first.
+  // Distances along each axis to the next line of blocks, multiplied out: the smaller is crossed
+  // first.
   const auto to_line = [](int64_t at, int32_t block, int32_t toward) {
     const int64_t line = int64_t{toward > 0 ? block + 1 : block} << kShift;
     return std::llabs(line - at);
@@ -170,14 +173,14 @@ uint32_t even_bits(uint64_t v) {
 
 }  // namespace
 
-StrideGround::Around StrideGround::look_around(uint32_t level, int32_t y, GroundPoint from,
-                                               int32_t reach, int32_t rise,
+StrideGround::Around StrideGround::query_walls(uint32_t level, int32_t y, GroundPoint from,
+                                               int32_t range, int32_t rise,
                                                WallWindow& window) const {
   const int32_t x = from.cell_x(), z = from.cell_z();
   if (leaves(level, from)) return Around::kSteps;
-  // Squares of one cell, or of two where the look is longer.
-  const int32_t scale = reach < WallWindow::kMiddle ? 1 : 2;
-  if (reach >= 2 * WallWindow::kMiddle) return Around::kSteps;
+  // Squares of one cell, or of two for longer ranges.
+  const int32_t scale = range < WallWindow::kMiddle ? 1 : 2;
+  if (range >= 2 * WallWindow::kMiddle) return Around::kSteps;
   const int32_t size = scale * WallWindow::kSize, middle = scale * WallWindow::kMiddle;
   const int32_t x0 = x - middle, z0 = z - middle;
   std::array<uint64_t, 64> cells{};  // rows of the window
@@ -193,12 +196,12 @@ StrideGround::Around StrideGround::look_around(uint32_t level, int32_t y, Ground
       }
     }
   }
-  const uint64_t wanted = ((uint64_t{2} << (2 * reach)) - 1) << (middle - reach);
+  const uint64_t wanted = ((uint64_t{2} << (2 * range)) - 1) << (middle - range);
   uint64_t all = wanted;
-  for (int32_t row = middle - reach; row <= middle + reach; ++row) all &= cells[row];
+  for (int32_t row = middle - range; row <= middle + range; ++row) all &= cells[row];
   if (all == wanted) return Around::kOpen;
   const CrowdGround::Walk walk = ground_->walk(level);
-  if (!walk.is_step_safe || !walk.is_alone) return Around::kSteps;
+  if (!walk.is_step_safe || !walk.is_isolated) return Around::kSteps;
   window.shift = kUnitBits + scale - 1;
   window.x = static_cast<int32_t>(from.x - (int64_t{x0} << kUnitBits));
   window.z = static_cast<int32_t>(from.z - (int64_t{z0} << kUnitBits));
@@ -213,8 +216,8 @@ StrideGround::Around StrideGround::look_around(uint32_t level, int32_t y, Ground
   return Around::kWalls;
 }
 
-// As throng::walk_far, row by row: of a row the line needs some cells beside each other, which is
-// one look at its bits. Lines through a corner of cells are left to that.
+// As throng::walk_far, row by row: of a row the line crosses some adjacent cells, which is one test
+// of its bits. Lines through a corner of cells are left to walk_far.
 WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint to) const {
   int32_t x = from.cell_x(), z = from.cell_z();
   const uint32_t start = level;
@@ -232,7 +235,7 @@ WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint 
         walk = ground_->walk(level);
         return true;
       }
-    } else if (walk.is_alone && (walk.legal[nz & 63] >> (nx & 63) & 1) == 0) {
+    } else if (walk.is_isolated && (walk.legal[nz & 63] >> (nx & 63) & 1) == 0) {
       return false;
     }
     const auto next = step_to(*ground_, level, x, z, nx, nz, step_mm_);
@@ -245,7 +248,7 @@ WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint 
     int32_t last = end_x;
     if (z != end_z) {  // where the line leaves the row
       const int64_t border = int64_t{sz > 0 ? z + 1 : z} << kUnitBits;
-      // The product is exact, and so is a quotient that is whole.
+      // The product is exact, and so is a whole quotient.
       const double at =
           static_cast<double>(from.x) + static_cast<double>(border - from.z) * dx / dz;
       const auto whole = static_cast<int64_t>(at);
@@ -280,43 +283,45 @@ WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint 
 }
 
 bool StrideGround::sees(uint32_t level, GroundPoint from, GroundPoint to, uint32_t end,
-                        float most) const {
+                        float max_range) const {
   const auto dx = static_cast<float>(to.x - from.x), dz = static_cast<float>(to.z - from.z);
   const float far = std::sqrt(dx * dx + dz * dz);
-  if (far > most) {
-    const float part = most / far;
+  if (far > max_range) {
+    const float part = max_range / far;
     to = {from.x + std::lrint(dx * part), from.z + std::lrint(dz * part)};
   }
   if (leaves(level, from)) {
     const LeavingGround leaving(*ground_, level, from.cell_x(), from.cell_z());
-    return walk(leaving, level, from, to, step_mm_) && (far > most || level == end);
+    return walk(leaving, level, from, to, step_mm_) && (far > max_range || level == end);
   }
   const bool arrives = walk_open(level, from, to) || walk_rows(level, from, to).arrived;
-  return arrives && (far > most || level == end);
+  return arrives && (far > max_range || level == end);
 }
 
 float StrideGround::free_distance(uint32_t level, GroundPoint from, steer::Plane direction,
-                                  float most) const {
-  const GroundPoint to{from.x + std::lrint(direction.x * most),
-                       from.z + std::lrint(direction.z * most)};
+                                  float max_range) const {
+  const GroundPoint to{from.x + std::lrint(direction.x * max_range),
+                       from.z + std::lrint(direction.z * max_range)};
   WalkStop stop;
   if (leaves(level, from)) {
     const LeavingGround leaving(*ground_, level, from.cell_x(), from.cell_z());
     stop = walk_far(leaving, level, from, to, step_mm_);
   } else {
-    if (walk_open(level, from, to)) return most;
+    if (walk_open(level, from, to)) return max_range;
     stop = walk_rows(level, from, to);
   }
-  if (stop.arrived) return most;
-  // To the border of the last cell that it could not cross.
+  if (stop.arrived) return max_range;
+  // To the border of the last cell that could not be crossed.
   const auto part = [](int32_t cell, int32_t toward, int64_t begin, int64_t end) {
     const int64_t border = int64_t{cell + (toward > 0 ? 1 : 0)} << kUnitBits;
     return static_cast<float>(border - begin) / static_cast<float>(end - begin);
   };
-  float way = 1;
-  if (stop.toward_x != 0) way = std::min(way, part(stop.x, stop.toward_x, from.x, to.x));
-  if (stop.toward_z != 0) way = std::min(way, part(stop.z, stop.toward_z, from.z, to.z));
-  return std::max(way, 0.0f) * most;
+  float part_free = 1;
+  if (stop.toward_x != 0)
+    part_free = std::min(part_free, part(stop.x, stop.toward_x, from.x, to.x));
+  if (stop.toward_z != 0)
+    part_free = std::min(part_free, part(stop.z, stop.toward_z, from.z, to.z));
+  return std::max(part_free, 0.0f) * max_range;
 }
 
 }  // namespace throng

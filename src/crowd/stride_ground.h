@@ -9,7 +9,7 @@
 #include "crowd/wall_kernel.h"
 #include "steer/sampled.h"
 
-/// What the ground lets a body of a class do.
+/// The moves of a body of a class over the ground.
 namespace throng {
 
 class StrideGround {
@@ -24,38 +24,38 @@ class StrideGround {
   };
   /// The conservative move of algorithm 1 ([ML06]) from one point to another: every cell between is
   /// legal, and no step is too high. False: there is a wall. A body in an obstacle that closes may
-  /// go on in it, and out.
+  /// continue inside it, and leave it.
   bool move(uint32_t level, int32_t y, GroundPoint from, GroundPoint to, Landing& landing) const;
 
-  /// Is there no wall, as far as a quick look tells, up to a square of cells `reach` to each side?
-  [[nodiscard]] bool is_open_around(uint32_t level, GroundPoint from, int32_t reach) const;
+  /// Is a square of cells, `range` to each side, free of walls? A quick test: false may be wrong.
+  [[nodiscard]] bool is_open_around(uint32_t level, GroundPoint from, int32_t range) const;
 
-  /// What there is around a body, up to a square of cells `reach` to each side.
+  /// What surrounds a body, up to a square of cells `range` to each side.
   enum class Around : uint8_t {
     kOpen,   // no walls
-    kWalls,  // as the window has them
-    kSteps,  // steps matter, or it is too far for a window: ask `free_distance`
+    kWalls,  // as marked in the window
+    kSteps,  // steps matter, or the range exceeds the window: use `free_distance`
   };
-  /// For steering alone: on tiles beside its own a floor counts that is up to a step and `rise`
+  /// For steering alone: on neighbour tiles all floors count that are at most a step and `rise`
   /// higher or lower, whether or not steps lead there. [cells, mm]
-  Around look_around(uint32_t level, int32_t y, GroundPoint from, int32_t reach, int32_t rise,
+  Around query_walls(uint32_t level, int32_t y, GroundPoint from, int32_t range, int32_t rise,
                      WallWindow& window) const;
 
-  /// Asks for what is read of the ground around a body, in two goes: the second reads what the
-  /// first asks for.
+  /// Prefetches what is read of the ground around a body, in two calls: the second reads what the
+  /// first prefetched.
   void prefetch_level(uint32_t level) const { ground_->prefetch_open(level); }
   void prefetch_cell(uint32_t level, GroundPoint at) const {
     ground_->prefetch_cell(level, at.cell_x(), at.cell_z());
   }
 
-  /// Is the straight way from a point to another legal, or its first `most` units? Where it is all
-  /// looked at, it must end on `end`.
+  /// Is the straight line between two points legal, or its first `max_range` units? If it is tested
+  /// to its end, it must end on `end`.
   [[nodiscard]] bool sees(uint32_t level, GroundPoint from, GroundPoint to, uint32_t end,
-                          float most) const;
+                          float max_range) const;
 
-  /// How far it is to a wall along a unit vector, at most `most`. [units]
+  /// The distance to a wall along a unit vector, at most `max_range`. [units]
   [[nodiscard]] float free_distance(uint32_t level, GroundPoint from, steer::Plane direction,
-                                    float most) const;
+                                    float max_range) const;
 
  private:
   bool leave(uint32_t level, int32_t y, GroundPoint from, GroundPoint to, Landing& landing) const;

@@ -7,6 +7,8 @@
 
 #include "world/place.h"
 
+// Targets in the units of bodies, and the legal cells inside: a raster of each prism's bounds,
+// linear in its cells.
 namespace throng {
 namespace {
 
@@ -65,7 +67,7 @@ bool Target::contains(const Body& body) const {
 }
 
 std::vector<Place> places_inside(const WorldData& world, const CrowdGround& ground,
-                                 std::span<const TargetRegion> regions, size_t most,
+                                 std::span<const TargetRegion> regions, size_t max_count,
                                  LiveGround* live) {
   const auto cell_of = [](double units, int32_t cells) {
     return static_cast<int32_t>(
@@ -110,14 +112,14 @@ std::vector<Place> places_inside(const WorldData& world, const CrowdGround& grou
       }
     }
   };
-  // As coarse as it takes; a narrow region that a coarse raster misses is looked at more closely.
+  // As coarse as required; a narrow region that a coarse raster misses is rasterised more finely.
   double area = 0;
   for (const TargetRegion& r : regions) {
     area += (r.bounds().x1 - r.bounds().x0) * (r.bounds().z1 - r.bounds().z0);
   }
   const double cells = area / kUnitsPerCell / kUnitsPerCell;
   auto stride = static_cast<int32_t>(
-      std::clamp(std::ceil(std::sqrt(cells / static_cast<double>(most))), 1.0, 1e6));
+      std::clamp(std::ceil(std::sqrt(cells / static_cast<double>(max_count))), 1.0, 1e6));
   std::vector<Place> places;
   for (;; stride = std::max(1, stride / 2)) {
     for_cells(stride, [&](const Place& place) { places.push_back(place); });

@@ -13,10 +13,10 @@
 #include "throng/prism.h"
 #include "throng/world.h"
 
-/// Regions that many are bound for.
+/// Targets: regions that many avatars head to.
 namespace throng {
 
-/// A prism as bodies know places. Whoever's middle is in it, on its border too, is inside.
+/// A prism in the units of bodies. A body whose centre is inside, or on the border, is inside.
 class TargetRegion {
  public:
   TargetRegion(const WorldData& world, const Prism& prism);
@@ -44,16 +44,16 @@ struct Target {
   std::vector<Prism> prisms;
   std::vector<TargetRegion> regions;
 
-  /// Fails with kBadInput: none, or one that is no prism.
+  /// Fails with kBadInput: no prism, or an invalid one.
   static Result<Target> make(const WorldData& world, std::span<const Prism> areas);
   [[nodiscard]] bool contains(const Body& body) const;
 };
 
-/// Legal cells whose middles are inside, by region, level and row: all, or every n-th of a row and
-/// every n-th row, so that they are not many more than `most`. Y at the feet. With `live`: those
-/// that are legal there, whatever else has been taken from `ground`.
+/// Legal cells whose centres are inside, by region, level and row: all, or every n-th of a row and
+/// every n-th row, so that they are not many more than `max_count`. Y at the feet. With `live`:
+/// those that are legal there, whatever else is blocked in `ground`.
 std::vector<Place> places_inside(const WorldData& world, const CrowdGround& ground,
-                                 std::span<const TargetRegion> regions, size_t most,
+                                 std::span<const TargetRegion> regions, size_t max_count,
                                  LiveGround* live = nullptr);
 
 }  // namespace throng

@@ -11,9 +11,9 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
-// A direction a lane: all go on by half a square at a time. Walls are as thick as bodies, since
-// squares are those on which a body's middle may be, so none is stepped over. In integers, and so
-// the same for every width.
+// A lane for each direction: all advance by half a square at a time. Walls are as thick as bodies,
+// since squares are free where a body's centre may be, so none is stepped over. In integers, hence
+// the same for every vector width.
 HWY_BEFORE_NAMESPACE();
 namespace throng {
 namespace HWY_NAMESPACE {
@@ -31,7 +31,7 @@ class Rows {
     const DI d;
     const auto* rows = reinterpret_cast<const int32_t*>(rows_);
 #if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
-    // All fit two vectors: two permutations, where gathering takes a load a lane.
+    // All fit two vectors: two permutations, where a gather takes a load for each lane.
     const auto low = hn::IndicesFromVec(d, hn::And(index, hn::Set(d, 15)));
     return hn::IfThenElse(hn::Gt(index, hn::Set(d, 15)),
                           hn::TableLookupLanes(hn::Load(d, rows + 16), low),
@@ -45,8 +45,8 @@ class Rows {
   const uint32_t* rows_;
 };
 
-void FindFreeDistances(const WallWindow& window, const steer::Fan& fan, float look,
-                       FreeDistances& ways) {
+void FindFreeDistances(const WallWindow& window, const steer::Fan& fan, float query_range,
+                       FreeDistances& distances) {
   const DI d;
   const DF df;
   constexpr size_t kMax = 32;  // directions, up to a whole vector
@@ -54,7 +54,7 @@ void FindFreeDistances(const WallWindow& window, const steer::Fan& fan, float lo
   std::copy(fan.begin(), fan.end(), directions.begin());
   alignas(64) std::array<float, kMax> found;
   const auto spacing = static_cast<float>(window.spacing());
-  const auto steps = static_cast<int32_t>(std::ceil(look / spacing));
+  const auto steps = static_cast<int32_t>(std::ceil(query_range / spacing));
   const Rows rows(window);
   const VI one = hn::Set(d, 1);
   for (size_t n = 0; n < fan.size(); n += hn::Lanes(d)) {
@@ -73,10 +73,10 @@ void FindFreeDistances(const WallWindow& window, const steer::Fan& fan, float lo
       free = hn::And(free, hn::BitCast(d, hn::Shr(hn::BitCast(du, row), hn::BitCast(du, column))));
       count = hn::Add(count, free);
     }
-    const auto way = hn::Mul(hn::ConvertTo(df, count), hn::Set(df, spacing));
-    hn::Store(hn::Min(way, hn::Set(df, look)), df, &found[n]);
+    const auto distance = hn::Mul(hn::ConvertTo(df, count), hn::Set(df, spacing));
+    hn::Store(hn::Min(distance, hn::Set(df, query_range)), df, &found[n]);
   }
-  std::copy_n(found.begin(), ways.size(), ways.begin());
+  std::copy_n(found.begin(), distances.size(), distances.begin());
 }
 
 }  // namespace HWY_NAMESPACE
@@ -88,9 +88,9 @@ namespace throng {
 
 HWY_EXPORT(FindFreeDistances);
 
-void find_free_distances(const WallWindow& window, const steer::Fan& fan, float look,
-                         FreeDistances& ways) {
-  HWY_DYNAMIC_DISPATCH(FindFreeDistances)(window, fan, look, ways);
+void find_free_distances(const WallWindow& window, const steer::Fan& fan, float query_range,
+                         FreeDistances& distances) {
+  HWY_DYNAMIC_DISPATCH(FindFreeDistances)(window, fan, query_range, distances);
 }
 
 }  // namespace throng

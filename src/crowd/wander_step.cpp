@@ -12,27 +12,27 @@
 #include "core/random.h"
 #include "crowd/plan_steps.h"
 
-// A run is moved in groups, and a group in passes, so that no pass waits for memory or guesses a
-// branch: what is asked of most avatars is answered without one, and those that need more are put
-// on a list for the next pass. The passes are three stages; while one group is in its last, the
-// next is in its second and the one after that in its first, and what a stage asks of the memory
-// arrives before the next. The order in which claims commit (group, pass, place in the group)
-// depends on nothing but the run, because only the last stage reads or writes what groups share.
+// A run is moved in groups, and a group in passes, so that no pass waits for memory or mispredicts
+// a branch: what nearly all avatars need is computed without one, and those that need more are put
+// on a list for the next pass. The passes are three stages: while one group is in its last, the
+// next is in its second and the one after that in its first, and what a stage prefetches arrives
+// before the next. The order in which moves are accepted (group, pass, place in the group) depends
+// on the run alone, because only the last stage reads or writes what groups share.
 namespace throng {
 namespace {
 
 constexpr size_t kGroup = 64;
-constexpr int32_t kAheadAvatar = 128;  // avatars between asking for one and using it
+constexpr int32_t kAheadAvatar = 128;  // avatars between the prefetch of one and its use
 constexpr int32_t kAheadLevel = 48;    // the same for the line of a level
-constexpr int32_t kShort = 2;          // longest plain step [cells]
+constexpr int32_t kShort = 2;          // longest flat step [cells]
 
 // Numbers of avatars of a group.
 class List {
  public:
-  // Appends if `really`, without a branch. There is always room for one more.
-  void add_if(bool really, uint16_t n) {
+  // Appends if `condition`, without a branch. There is always space for one more.
+  void add_if(bool condition, uint16_t n) {
     at_[size_] = n;
-    size_ += really;
+    size_ += condition;
   }
   void clear() { size_ = 0; }
   [[nodiscard]] size_t size() const { return size_; }
@@ -43,11 +43,11 @@ class List {
   size_t size_ = 0;
 };
 
-// A plain step into another pixel.
+// A flat step into another pixel.
 struct Proposal {
   uint32_t from;   // pixel
   uint32_t level;  // on which it ends
-  uint16_t way;
+  uint16_t direction_index;
   uint16_t n;
 };
 
@@ -57,27 +57,27 @@ class Group {
  public:
   explicit Group(const StepInput& in) : in_(in) {}
 
-  // The three stages: each avatar, or each of a list, makes one step, or goes on another list. Up
+  // The three stages: each avatar, or each of a list, makes one step, or is put on another list. Up
   // to `readable`, avatars may be read ahead of their turn.
   void start_all(Avatar* avatars, size_t size, const Avatar* readable) {
     avatars_ = avatars;
-    proposals_size_ = asked_ = walls_ = 0;
-    for (List* list : {&unsure_, &uneven_, &slopes_, &walks_}) list->clear();
-    ask_ahead(size, readable - 1);
+    proposals_size_ = prefetched_ = walls_ = 0;
+    for (List* list : {&undecided_, &uneven_, &slopes_, &walks_}) list->clear();
+    prefetch_levels_ahead(size, readable - 1);
     plan_all(size);
-    ask_for_levels();
-    ask_for_pixels();
+    prefetch_walk_levels();
+    prefetch_pixels();
   }
   void start(Avatar* avatars, const List& todo) {
     avatars_ = avatars;
     plan(todo.span());
-    ask_for_levels();
-    ask_for_pixels();
+    prefetch_walk_levels();
+    prefetch_pixels();
   }
-  void look() {
-    look_closer();
-    ask_for_pixels();
-    ask_for_cells();
+  void prefetch_cells() {
+    plan_by_cells();
+    prefetch_pixels();
+    prefetch_ground_cells();
   }
   void finish(List& blocked) {
     proposal(blocked);
@@ -89,15 +89,15 @@ class Group {
   [[nodiscard]] uint64_t walls() const { return walls_; }
 
  private:
-  void ask_ahead(size_t size, const Avatar* last_readable) const;
+  void prefetch_levels_ahead(size_t size, const Avatar* last_readable) const;
   void plan_all(size_t size);
   void plan(std::span<const uint16_t> todo);
-  void ask_for_levels() const;
-  void look_closer();
-  bool go_or_propose(const Pixels& pixels, Avatar& a, bool really, uint32_t level, uint16_t n,
-                     size_t& claimed);
-  void ask_for_pixels();
-  void ask_for_cells() const;
+  void prefetch_walk_levels() const;
+  void plan_by_cells();
+  bool move_or_propose(const Pixels& pixels, Avatar& a, bool condition, uint32_t level, uint16_t n,
+                       size_t& proposed);
+  void prefetch_pixels();
+  void prefetch_ground_cells() const;
   void proposal(List& blocked);
   void sort_uneven();
   void climb(List& blocked);
@@ -106,18 +106,18 @@ class Group {
   const StepInput& in_;
   Avatar* avatars_ = nullptr;
   std::array<Proposal, kGroup> proposals_;
-  std::array<CollisionMap::Slices, kGroup> slices_;  // of the claims
+  std::array<CollisionMap::Slices, kGroup> slices_;  // of the proposed moves
   size_t proposals_size_ = 0;
-  size_t asked_ = 0;  // claims whose pixels were asked for
-  List unsure_;       // not within plain blocks
-  List uneven_;       // not plain: these go on one of the next two
+  size_t prefetched_ = 0;  // proposed moves whose pixels were prefetched
+  List undecided_;         // not within flat blocks
+  List uneven_;            // not flat: these go on one of the next two
   List slopes_;
   List walks_;
   uint64_t walls_ = 0;  // met
 };
 
 // All of a group.
-std::span<const uint16_t> everyone() {
+std::span<const uint16_t> all_of_group() {
   static constexpr auto kAll = [] {
     std::array<uint16_t, kGroup> all{};
     for (size_t n = 0; n < kGroup; ++n) all[n] = static_cast<uint16_t>(n);
@@ -129,41 +129,42 @@ std::span<const uint16_t> everyone() {
 // All ones if true.
 int32_t mask(bool condition) { return -static_cast<int32_t>(condition); }
 
-// True if all cells of a box between two cells are set and lie on one tile of 64 rows. Boxes longer
-// than kShort are not looked at.
+// True if all cells of a box between two cells are set and lie on one tile of 64 rows. False for
+// boxes longer than kShort.
 [[gnu::always_inline]] inline bool box_is_set(const uint64_t* rows, int32_t x0, int32_t z0,
                                               int32_t x1, int32_t z1) {
   const bool near = (static_cast<uint32_t>((x0 ^ x1) | (z0 ^ z1)) < 64) &
                     (static_cast<uint32_t>(x1 - x0 + kShort) <= 2 * kShort) &
                     (static_cast<uint32_t>(z1 - z0 + kShort) <= 2 * kShort);
-  // Of two cells that are at most two apart, the one between is all that lies between.
+  // Of two cells that are at most two apart, the middle one is all that lies between.
   const uint64_t common = rows[z0 & 63] & rows[((z0 + z1) >> 1) & 63] & rows[z1 & 63];
   const uint64_t all = (common >> (x0 & 63)) & (common >> (((x0 + x1) >> 1) & 63)) &
                        (common >> (x1 & 63)) & static_cast<uint64_t>(near);
   return all != 0;
 }
 
-// A plain step that `really` is one: whoever stays in his pixel moves at once, for nobody can
-// object; the others claim. Returns whether he moved. Arithmetic instead of branches: which way an
-// avatar goes is as good as random, and a wrong guess costs 20 cycles.
-[[gnu::always_inline]] inline bool Group::go_or_propose(const Pixels& pixels, Avatar& a,
-                                                        bool really, uint32_t level, uint16_t n,
-                                                        size_t& claimed) {
+// A flat step that `condition` is one: an avatar that stays in its pixel moves at once, for no
+// other can be in conflict; the others propose a move. Returns whether it moved. Arithmetic instead
+// of branches: the direction of an avatar is as good as random, and a mispredicted branch costs 20
+// cycles.
+[[gnu::always_inline]] inline bool Group::move_or_propose(const Pixels& pixels, Avatar& a,
+                                                          bool condition, uint32_t level,
+                                                          uint16_t n, size_t& proposed) {
   const int32_t x = a.x, z = a.z, vx = a.vx, vz = a.vz;
   const int32_t px = pixels.grid.pixel(x >> kUnitBits), pz = pixels.grid.pixel(z >> kUnitBits);
   const int32_t dx = pixels.grid.pixel((x + vx) >> kUnitBits) - px;
   const int32_t dz = pixels.grid.pixel((z + vz) >> kUnitBits) - pz;
   const bool stays = (dx | dz) == 0;
-  proposals_[claimed] = {pixels.number(px, pz), level,
-                         static_cast<uint16_t>(CollisionMap::way(dx, dz)), n};
-  claimed += really & !stays;
-  const bool goes = really & stays;
+  proposals_[proposed] = {pixels.number(px, pz), level,
+                          static_cast<uint16_t>(CollisionMap::direction_index(dx, dz)), n};
+  proposed += condition & !stays;
+  const bool goes = condition & stays;
   a.x = x + (vx & mask(goes));
   a.z = z + (vz & mask(goes));
   return goes;
 }
 
-void Group::ask_ahead(size_t size, const Avatar* last_readable) const {
+void Group::prefetch_levels_ahead(size_t size, const Avatar* last_readable) const {
   const LevelLine* lines = in_.ground->lines();
   for (const Avatar* a = avatars_; a < avatars_ + size; ++a) {
     throng::prefetch(a + kAheadAvatar);
@@ -171,41 +172,41 @@ void Group::ask_ahead(size_t size, const Avatar* last_readable) const {
   }
 }
 
-// Most are answered by the line of their level alone.
+// The line of their level alone decides most of them.
 void Group::plan_all(size_t size) {
   const Pixels pixels = in_.map->pixels();
   if (!in_.is_short || !can_plan(pixels.grid, in_.ground->records().size()))
-    return plan(everyone().first(size));
+    return plan(all_of_group().first(size));
   const PlannedSteps planned = plan_steps(in_.ground->lines(), pixels.grid, avatars_, size);
   const uint64_t here = ~uint64_t{0} >> (kGroup - size);
   for (uint64_t bits = here & ~(planned.stays | planned.leaves); bits != 0; bits &= bits - 1) {
-    unsure_.add_if(true, static_cast<uint16_t>(std::countr_zero(bits)));
+    undecided_.add_if(true, static_cast<uint16_t>(std::countr_zero(bits)));
   }
-  size_t claimed = 0;
+  size_t proposed = 0;
   for (uint64_t bits = planned.leaves; bits != 0; bits &= bits - 1) {
     const auto n = static_cast<uint16_t>(std::countr_zero(bits));
-    go_or_propose(pixels, avatars_[n], true, avatars_[n].level, n, claimed);
+    move_or_propose(pixels, avatars_[n], true, avatars_[n].level, n, proposed);
   }
-  proposals_size_ = claimed;
+  proposals_size_ = proposed;
 }
 
 void Group::plan(std::span<const uint16_t> todo) {
   const LevelLine* lines = in_.ground->lines();
   const Pixels pixels = in_.map->pixels();
-  size_t claimed = 0;
+  size_t proposed = 0;
   for (const uint16_t n : todo) {
     Avatar& a = avatars_[n];
-    const bool is_plain = in_.is_short & lines[a.level].box_is_plain(
-                                             a.x >> kUnitBits, a.z >> kUnitBits,
-                                             (a.x + a.vx) >> kUnitBits, (a.z + a.vz) >> kUnitBits);
-    unsure_.add_if(!is_plain, n);
-    go_or_propose(pixels, a, is_plain, a.level, n, claimed);
+    const bool is_flat = in_.is_short & lines[a.level].box_is_flat(
+                                            a.x >> kUnitBits, a.z >> kUnitBits,
+                                            (a.x + a.vx) >> kUnitBits, (a.z + a.vz) >> kUnitBits);
+    undecided_.add_if(!is_flat, n);
+    move_or_propose(pixels, a, is_flat, a.level, n, proposed);
   }
-  proposals_size_ = claimed;
+  proposals_size_ = proposed;
 }
 
-void Group::ask_for_levels() const {
-  for (const uint16_t n : unsure_.span()) {
+void Group::prefetch_walk_levels() const {
+  for (const uint16_t n : undecided_.span()) {
     const Avatar& a = avatars_[n];
     const int32_t x = (a.x + a.vx) >> kUnitBits, z = (a.z + a.vz) >> kUnitBits;
     in_.ground->prefetch_level(a.level, a.z >> kUnitBits, z);
@@ -213,32 +214,32 @@ void Group::ask_for_levels() const {
   }
 }
 
-// Plain blocks over the edge of the tile, and plain cells that do not fill a block.
-void Group::look_closer() {
+// Flat blocks over the edge of the tile, and flat cells that do not fill a block.
+void Group::plan_by_cells() {
   const Pixels pixels = in_.map->pixels();
-  size_t claimed = proposals_size_;
-  for (const uint16_t n : unsure_.span()) {
+  size_t proposed = proposals_size_;
+  for (const uint16_t n : undecided_.span()) {
     Avatar& a = avatars_[n];
     const int32_t x0 = a.x >> kUnitBits, z0 = a.z >> kUnitBits;
     const int32_t x1 = (a.x + a.vx) >> kUnitBits, z1 = (a.z + a.vz) >> kUnitBits;
     const uint32_t beyond =
         in_.is_short ? in_.ground->line(a.level).cross(x0, z0, x1, z1) : LevelLine::kNone;
     const bool crosses = beyond != LevelLine::kNone;
-    const bool is_plain = crosses | box_is_set(in_.ground->plain(a.level), x0, z0, x1, z1);
-    uneven_.add_if(!is_plain, n);
+    const bool is_flat = crosses | box_is_set(in_.ground->flat(a.level), x0, z0, x1, z1);
+    uneven_.add_if(!is_flat, n);
     const uint32_t level = crosses ? beyond : a.level;
-    const bool goes = go_or_propose(pixels, a, is_plain, level, n, claimed);
+    const bool goes = move_or_propose(pixels, a, is_flat, level, n, proposed);
     a.level = goes ? level : a.level;
   }
-  proposals_size_ = claimed;
+  proposals_size_ = proposed;
 }
 
-void Group::ask_for_pixels() {
+void Group::prefetch_pixels() {
   const CollisionMap& map = *in_.map;
-  for (; asked_ < proposals_size_; ++asked_) {
-    const Proposal& c = proposals_[asked_];
-    slices_[asked_] = map.slices(avatars_[c.n].y);
-    map.prefetch(slices_[asked_], c.from, c.way);
+  for (; prefetched_ < proposals_size_; ++prefetched_) {
+    const Proposal& c = proposals_[prefetched_];
+    slices_[prefetched_] = map.slices(avatars_[c.n].y);
+    map.prefetch(slices_[prefetched_], c.from, c.direction_index);
   }
 }
 
@@ -247,7 +248,7 @@ void Group::proposal(List& blocked) {
   for (size_t i = 0; i < proposals_size_; ++i) {
     const Proposal& c = proposals_[i];
     Avatar& a = avatars_[c.n];
-    const bool moved = map.move_by_one(slices_[i], c.from, c.way);
+    const bool moved = map.move_by_one(slices_[i], c.from, c.direction_index);
     a.x += a.vx & mask(moved);
     a.z += a.vz & mask(moved);
     a.level = moved ? c.level : a.level;
@@ -255,8 +256,8 @@ void Group::proposal(List& blocked) {
   }
 }
 
-// A level of which nothing but its own cells can be reached inside the tile: as world/walk.h wants
-// it, for the compiler to forget all that cannot happen.
+// A level from which no other can be reached inside the tile: the ground that world/walk.h expects,
+// so that the compiler removes all that cannot happen.
 struct LoneLevel {
   using Level = uint32_t;
   const uint64_t* legal;
@@ -269,8 +270,8 @@ struct LoneLevel {
   void for_tile(int32_t, int32_t, int32_t, int32_t, Visit) const {}
 };
 
-// Puts the body at `to` if nobody is there.
-bool commit(CollisionMap& map, Avatar& a, GroundPoint to, uint32_t level, int32_t y) {
+// Puts the body at `to` if no other is there.
+bool try_move(CollisionMap& map, Avatar& a, GroundPoint to, uint32_t level, int32_t y) {
   const CollisionMap::Mark old_mark = map.mark(a.point(), a.y);
   const CollisionMap::Mark mark = map.mark(to, y);
   if (!(mark == old_mark)) {
@@ -290,7 +291,7 @@ bool commit(CollisionMap& map, Avatar& a, GroundPoint to, uint32_t level, int32_
 
 GroundPoint target(const Avatar& a) { return {int64_t{a.x} + a.vx, int64_t{a.z} + a.vz}; }
 
-void Group::ask_for_cells() const {
+void Group::prefetch_ground_cells() const {
   for (const uint16_t n : uneven_.span()) {
     const Avatar& a = avatars_[n];
     const int32_t x = (a.x + a.vx) >> kUnitBits, z = (a.z + a.vz) >> kUnitBits;
@@ -300,7 +301,7 @@ void Group::ask_for_cells() const {
   }
 }
 
-// Slopes, where every cell in reach is legal, from walls, steps and edges of tiles.
+// Separates slopes, where every cell in range is legal, from walls, steps and edges of tiles.
 void Group::sort_uneven() {
   const CrowdGround& ground = *in_.ground;
   for (const uint16_t n : uneven_.span()) {
@@ -325,7 +326,7 @@ void Group::climb(List& blocked) {
   for (const uint16_t n : slopes_.span()) {
     Avatar& a = avatars_[n];
     const GroundPoint to = target(a);
-    blocked.add_if(!commit(*in_.map, a, to, a.level, in_.ground->feet(a.level, to)), n);
+    blocked.add_if(!try_move(*in_.map, a, to, a.level, in_.ground->feet(a.level, to)), n);
   }
 }
 
@@ -337,17 +338,17 @@ void Group::walk_on(List& blocked) {
     uint32_t level = a.level;
     const CrowdGround::Walk here = ground.walk(level);
     const bool on_tile = ((from.x ^ to.x) | (from.z ^ to.z)) >> (kUnitBits + 6) == 0;
-    const bool is_open = here.is_alone && on_tile
+    const bool is_open = here.is_isolated && on_tile
                              ? walk(LoneLevel{here.legal}, level, from, to, in_.step_mm)
                              : to.x >= 0 && to.z >= 0 && to.x < in_.units_x && to.z < in_.units_z &&
                                    walk(ground, level, from, to, in_.step_mm);
-    const bool moved = is_open && commit(*in_.map, a, to, level, ground.feet(level, to));
+    const bool moved = is_open && try_move(*in_.map, a, to, level, ground.feet(level, to));
     walls_ += !is_open;
     blocked.add_if(!moved, n);
   }
 }
 
-// To the left or to the right, by chance.
+// To the left or to the right, at random.
 void turn(const StepInput& in, Avatar& a) {
   const bool left = (random_u64(in.seed, a.id, in.step) & 1) != 0;
   const int32_t vx = left ? -a.vz : a.vz;
@@ -363,7 +364,7 @@ void finish(const StepInput& in, Group& straight, size_t size, StepCounts& count
   for (const uint16_t n : blocked.span()) turn(in, a[n]);
   Group turned(in);
   turned.start(a, blocked);
-  turned.look();
+  turned.prefetch_cells();
   turned.finish(waits);
   counts.moved += size - waits.size();
   counts.waited += waits.size();
@@ -382,7 +383,7 @@ void move_runs(const StepInput& in, Avatar* avatars, std::span<const CrowdBlocks
   size_t begun = 0;
   // What is due when group g has started, or would have if there were one.
   const auto follow = [&](size_t g) {
-    if (g >= 1 && g - 1 < begun) groups[(g - 1) % 3].look();
+    if (g >= 1 && g - 1 < begun) groups[(g - 1) % 3].prefetch_cells();
     if (g >= 2) finish(in, groups[(g - 2) % 3], sizes[(g - 2) % 3], counts);
   };
   for (const CrowdBlocks::Run& run : runs) {

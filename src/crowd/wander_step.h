@@ -10,7 +10,7 @@
 #include "crowd/crowd_blocks.h"
 #include "crowd/crowd_ground.h"
 
-/// One sub-step of all wanderers: claims commit in a fixed order.
+/// One sub-step of all wanderers: moves are accepted in a fixed order.
 namespace throng {
 
 struct StepCounts {

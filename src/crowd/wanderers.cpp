@@ -18,17 +18,18 @@
 #include "crowd/wander_step.h"
 #include "world/place.h"
 
+// A crowd without goals: places avatars, sorts them by block as they drift, and moves blocks of one
+// colour in parallel. Source: [ML06] section 4. A step is linear in the avatars.
 namespace throng {
 namespace {
 
 constexpr int32_t kBlockPixels = 32;
-// Pixels of the map for each avatar above which small pages, taken only around him, save memory: he
-// touches up to three pages of 512.
+// Pixels of the map for each avatar above which small pages, allocated only around it, save memory:
+// an avatar touches up to three pages of 512.
 constexpr int64_t kSparse = 2048;
-constexpr double kMaxPixels =
-    1e12;                         // 8 TB of addresses, of which only what is touched takes memory
+constexpr double kMaxPixels = 1e12;  // 8 TB of addresses; only what is touched takes memory
 constexpr double kMinUnits = 50;  // of a step: they are whole, so it is within 1.5 % of its length
-constexpr uint64_t kGrain = 512;  // avatars that are worth handing to another thread
+constexpr uint64_t kGrain = 512;  // avatars that are worth another thread
 
 // A direction, uniform over the circle, without trigonometry: a point of the disc, put on its rim.
 std::pair<double, double> random_direction(uint64_t seed, uint64_t id) {
@@ -56,8 +57,8 @@ struct Wanderers::State {
   int32_t sub_steps = 1;
   uint64_t step = 0;
   uint64_t sub_step = 0;
-  int64_t drift = 0;   // units that anybody can have moved since the last sort
-  int64_t stride = 0;  // units that anybody can move in a sub-step
+  int64_t drift = 0;   // units that an avatar can have moved since the last sort
+  int64_t stride = 0;  // units that an avatar can move in a sub-step
   int64_t max_drift = 0;
 };
 
@@ -106,7 +107,7 @@ Result<Wanderers> Wanderers::create(const World& world, const WanderConfig& conf
   state->map.emplace(data.width, data.depth, grid, low, high, body_mm, pages);
   state->unit = cell / kUnitsPerCell;
 
-  // Nobody moves further than a radius at a time.
+  // No avatar moves further than a radius at a time.
   const double speed = config.speed > 0 ? config.speed : body.speed;
   const double length = speed * config.dt;
   state->sub_steps = std::max(1, static_cast<int32_t>(std::ceil(length / body.radius - 1e-9)));
@@ -119,7 +120,7 @@ Result<Wanderers> Wanderers::create(const World& world, const WanderConfig& conf
                " mm are not exact in this world; take longer steps");
   }
   state->stride = static_cast<int64_t>(std::ceil(units)) + 1;
-  // A mover reads one pixel further than it goes; two movers of one colour keep a block between
+  // A mover reads one pixel further than it moves; two movers of one colour keep a block between
   // them.
   state->max_drift = (kBlockPixels / 2 - 2) * grid.units();
   state->blocks.emplace(data.width, data.depth, grid, kBlockPixels);
@@ -167,7 +168,7 @@ WanderReport Wanderers::step() {
     const auto move_start = Clock::now();
     input.step = ++s.sub_step;
     for (uint32_t turn = 0; turn < CrowdBlocks::kColours; ++turn) {
-      // Colours take turns at being first.
+      // Each colour is first in turn.
       const auto& runs = s.blocks->runs((turn + static_cast<uint32_t>(input.step)) & 3);
       const uint64_t avatars_here = runs.empty() ? 1 : runs.back().last - runs.front().first;
       const size_t grain = std::max<size_t>(1, kGrain * runs.size() / avatars_here);

@@ -71,7 +71,7 @@ Plane Lanes::preferred() const {
           (ahead_.z * settings_.ahead + ahead_.x * aside) * scale};
 }
 
-Plane making_room(const RoomSettings& settings, const Situation& s) {
+Plane keep_spacing(const SpacingSettings& settings, const Situation& s) {
   int64_t sum_x = 0, sum_z = 0;
   for (size_t n = 0; n < s.near.size; ++n) {
     const float x = s.near.x[n], z = s.near.z[n];

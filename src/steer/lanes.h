@@ -63,10 +63,10 @@ class Lanes {
 };
 
 /// Spacing that an avatar standing between walls keeps: it moves away from all nearer than `gap`.
-struct RoomSettings {
+struct SpacingSettings {
   float gap = 0.06f;  ///< [m]
   float rate = 3;     ///< Speed by the missing distance. [1/s]
 };
-Plane making_room(const RoomSettings& settings, const Situation& situation);
+Plane keep_spacing(const SpacingSettings& settings, const Situation& situation);
 
 }  // namespace throng::steer

@@ -54,7 +54,7 @@ Plane curvilinear_velocity(const View& view, float dt) {
   }
   const std::span<caacd::Body> near(others.data(), view.others.size());
   // The avatar does not stop at a corner: the target is moved beyond the braking distance.
-  Vec3d target = flat(view.way, units);
+  Vec3d target = flat(view.to_target, units);
   const double far = length(target);
   if (!view.stops && far > 1e-9) target = target * ((far + 2 * model.deceleration) / far);
   const int parts = std::max(1, static_cast<int>(std::ceil(dt * frames / kMaxFrames)));
@@ -113,7 +113,7 @@ Plane preferred_velocity(SteeringModel model, const View& view, float dt) {
                                               : force_velocity(view, dt);
 }
 
-Choices ways_about(Plane preferred) {
+Choices candidates_about(Plane preferred) {
   const float size = size_of(preferred);
   const Fan fan = fan_around(preferred);  // every 15 degrees, from X to Z: to the right
   Choices candidates{preferred};

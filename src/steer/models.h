@@ -23,7 +23,7 @@ struct Other {
 struct View {
   Plane velocity;
   Plane preferred;    ///< The velocity without others.
-  Plane way;          ///< Offset to its target. [m]
+  Plane to_target;    ///< Offset to its target. [m]
   bool stops = true;  ///< It stops at the target.
   float fastest = 1;  ///< [m/s, > 0]
   float radius = 0;   ///< [m]
@@ -39,6 +39,6 @@ Plane preferred_velocity(SteeringModel model, const View& view, float dt);
 
 /// Candidates for a preferred velocity, in order: the velocity itself, turned by 30, 60 and 90
 /// degrees, each to the right first, then straight on, slower.
-Choices ways_about(Plane preferred);
+Choices candidates_about(Plane preferred);
 
 }  // namespace throng::steer

@@ -155,8 +155,8 @@ Plane preferred_towards(Plane to_target, float speed, float dt, float detour_ang
   return turned_right({to_target.x * size, to_target.z * size}, detour_angle);
 }
 
-float next_turn(const Patience& settings, float detour_angle, float progress, float along,
-                float dt) {
+float next_detour_angle(const DeadlockAvoidance& settings, float detour_angle, float progress,
+                        float along, float dt) {
   const float side = settings.side_angle;
   const bool has_progress =
       progress >= settings.min_progress || (detour_angle > side && along >= settings.min_walk);

@@ -140,7 +140,7 @@ Plane preferred_towards(Plane to_target, float speed, float dt, float detour_ang
 /// Without progress at `side_angle` it grows slowly up to `max_angle`: away from the goal, out of a
 /// jam of the highest density. If that fails too, as in a corner, the angle starts again at 0. All
 /// angles are stored as tan(angle / 2), which needs no sines.
-struct Patience {
+struct DeadlockAvoidance {
   float rate = 0.5f;          ///< Growth up to `side_angle`. [1/s]
   float side_angle = 0.42f;   ///< 46 degrees
   float slow_rate = 0.03f;    ///< Growth beyond `side_angle`. [1/s]
@@ -155,20 +155,20 @@ struct Patience {
 
 /// True if the spacing to those ahead allows less than `min_progress`. `followed`: following() of
 /// `preferred`.
-inline bool can_but_crawl(const Patience& settings, Plane preferred, Plane followed,
+inline bool can_but_crawl(const DeadlockAvoidance& settings, Plane preferred, Plane followed,
                           float fastest) {
   const float size = size_of(followed);
   return size < settings.min_progress * fastest && size < size_of(preferred);
 }
-/// Progress as input of next_turn: full for an avatar that can only crawl and does so.
-inline float progress_felt(const Patience& settings, float progress, bool follows) {
+/// Progress as input of next_detour_angle: full for an avatar that can only crawl and does so.
+inline float progress_felt(const DeadlockAvoidance& settings, float progress, bool follows) {
   return follows && progress >= settings.min_crawl ? 1 : progress;
 }
 
 /// The next detour angle of an avatar. `progress`: its speed towards the goal by the desired one;
 /// `along`: the same along its turned preferred velocity.
-float next_turn(const Patience& settings, float detour_angle, float progress, float along,
-                float dt);
+float next_detour_angle(const DeadlockAvoidance& settings, float detour_angle, float progress,
+                        float along, float dt);
 
 /// `direction` turned to the right (seen from above, X to the right, Z down) by 2
 /// atan(detour_angle).

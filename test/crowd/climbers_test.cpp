@@ -22,8 +22,7 @@
 #include "verify/turned_body.h"
 #include "worlds.h"
 
-// Those who climb in a crowd: nobody enters matter or anybody else, however he leans, and all get
-// where they want to.
+// Climbers in a crowd: none enters a solid or another avatar, however it leans, and all arrive.
 namespace throng {
 namespace {
 
@@ -39,41 +38,41 @@ std::vector<AvatarClass> classes() {
   return all;
 }
 
-// A body as it is: a cylinder along an axis.
+// A body's true shape: a cylinder along an axis.
 struct Solid {
   Vec3d feet, axis;
   double height = 0, radius = 0;
 
   // Its farthest point in a direction.
-  [[nodiscard]] Vec3d farthest(Vec3d way) const {
-    const double along = dot(way, axis);
-    const Vec3d across = way - axis * along;
+  [[nodiscard]] Vec3d farthest(Vec3d offset) const {
+    const double along = dot(offset, axis);
+    const Vec3d across = offset - axis * along;
     const double size = length(across);
     return feet + axis * (along > 0 ? height : 0) + (size > 0 ? across * (radius / size) : Vec3d{});
   }
 };
 
 // Is there a plane between two bodies? By Gilbert's steps towards the point of all differences that
-// is nearest to nothing. [Gilbert, An iterative procedure for computing the minimum of a quadratic
-// form on a convex set, 1966]
+// is nearest to the origin. [Gilbert, An iterative procedure for computing the minimum of a
+// quadratic form on a convex set, 1966]
 bool are_apart(const Solid& a, const Solid& b) {
   constexpr int kSteps = 3000;
   const Vec3d up{0, 1, 0},
       middles = a.feet + a.axis * (a.height / 2) - b.feet - b.axis * (b.height / 2);
-  const auto lies_between = [&](Vec3d way) {
-    return dot(way, a.farthest(way * -1) - b.farthest(way)) > 0;
+  const auto lies_between = [&](Vec3d offset) {
+    return dot(offset, a.farthest(offset * -1) - b.farthest(offset)) > 0;
   };
-  for (const Vec3d& way : {up, up * -1, Vec3d{middles.x, 0, middles.z}}) {
-    if (lies_between(way)) return true;  // the steps come near to these, but slowly
+  for (const Vec3d& offset : {up, up * -1, Vec3d{middles.x, 0, middles.z}}) {
+    if (lies_between(offset)) return true;  // the steps converge to these slowly
   }
   Vec3d v = a.feet - b.feet;
   for (int n = 0; n < kSteps; ++n) {
     const Vec3d p = a.farthest(v * -1) - b.farthest(v);
     if (dot(v, p) > 0) return true;
-    const Vec3d way = p - v;
-    const double size = dot(way, way);
+    const Vec3d offset = p - v;
+    const double size = dot(offset, offset);
     if (!(size > 0)) return false;
-    v = v + way * std::clamp(-dot(v, way) / size, 0.0, 1.0);
+    v = v + offset * std::clamp(-dot(v, offset) / size, 0.0, 1.0);
   }
   return false;
 }
@@ -107,7 +106,7 @@ class Stage {
     config.nodes = nodes_;
     return made(world_, config);
   }
-  /// Of the largest part that a class can reach.
+  /// In the largest component of a class.
   [[nodiscard]] NodePlace place(int32_t avatar_class, uint64_t seed, uint64_t n) {
     if (parts_.size() <= static_cast<size_t>(avatar_class)) parts_.resize(kMaxAvatarClasses);
     std::vector<uint32_t>& part = parts_[static_cast<size_t>(avatar_class)];
@@ -130,7 +129,7 @@ class Stage {
     };
     for (size_t i = 0; i < states_.size(); ++i) {
       const AvatarState& a = states_[i];
-      if (!a.flies) {  // (flyers_test.cpp looks at these)
+      if (!a.flies) {  // (flyers_test.cpp tests these)
         const verify::Pose pose{a.position, a.up};
         faults.entered += verify::turned_intruder(tree_, of(a), pose).has_value() ? 1 : 0;
       }
@@ -169,7 +168,7 @@ AvatarId added_on(Crowd& crowd, const NodePlace& place, int32_t avatar_class = k
 
 Scene net() { return test::net_scene({.side = 3, .cell = 8, .relief = 6}); }
 
-// Climbers and geckos, each bound for a place of his own.
+// Climbers and geckos, each with a goal of its own.
 Crowd on_net(Stage& stage, uint32_t count, int32_t workers = 0) {
   Crowd crowd = stage.crowd({.workers = workers});
   for (uint32_t i = 0; i < count; ++i) {
@@ -181,7 +180,7 @@ Crowd on_net(Stage& stage, uint32_t count, int32_t workers = 0) {
   return crowd;
 }
 
-TEST(Climbers, ManyWhoCrossANetAllArrive) {
+TEST(Climbers, ManyThatCrossANetAllArrive) {
   Stage stage(net());
   Crowd crowd = on_net(stage, 80);
   EXPECT_GE(crowd.size(), 60u);
@@ -191,21 +190,21 @@ TEST(Climbers, ManyWhoCrossANetAllArrive) {
   EXPECT_GT(climbed.faults.pairs, 0u);
 }
 
-// Who would meet on the shortest way, and whoever stands on it.
-TEST(Climbers, PassThoseWhoComeTowardsThemAndThoseWhoStand) {
+// Pairs that would meet on the shortest path, and an avatar that stands on it.
+TEST(Climbers, PassOthersThatComeTowardsThemAndThatStand) {
   Stage stage(net());
   Crowd crowd = stage.crowd();
   uint32_t bound = 0;
-  // Whose goals are apart: no two want one place.
-  std::vector<Vec3d> taken;
+  // Goals are apart: no two want one place.
+  std::vector<Vec3d> chosen;
   const auto draw = [&](uint64_t& n) {
     for (;;) {
       const NodePlace place = stage.place(kClimber, 15, n++);
-      const bool is_apart = std::all_of(taken.begin(), taken.end(), [&](const Vec3d& other) {
+      const bool is_apart = std::all_of(chosen.begin(), chosen.end(), [&](const Vec3d& other) {
         return length(other - place.feet) > 3;
       });
       if (!is_apart) continue;
-      taken.push_back(place.feet);
+      chosen.push_back(place.feet);
       return place;
     }
   };
@@ -223,7 +222,7 @@ TEST(Climbers, PassThoseWhoComeTowardsThemAndThoseWhoStand) {
   expect_all(go(crowd, stage, bound, 1500, 5), bound);
 }
 
-// Walkers, climbers and flyers over one ground. Random goals; who arrives gets another.
+// Walkers, climbers and flyers over one ground. Random goals; an avatar that arrives gets another.
 struct Mixed {
   uint64_t steps = 0, arrived = 0;
   Stage::Faults faults;
@@ -262,14 +261,15 @@ Mixed mix(Stage& stage, uint32_t of_each, int steps, int every) {
     const CrowdReport report = crowd.step();
     crowd.read(now);
     for (size_t i = 0; i < now.size(); ++i) {  // of 5 m/s at most
-      const Vec3d gone = now[i].position - before[i].position;
-      EXPECT_LE(length(gone), 0.8) << step << " " << i;
-      // Who climbs looks where he goes, as he leans: where he went last, if he took two strides.
-      if (!now[i].climbs || length(gone) < 0.05) continue;
-      const Vec3d looks = leaned({now[i].heading_x, 0, now[i].heading_z}, now[i].up);
-      EXPECT_NEAR(length(looks), 1, 1e-6);
-      EXPECT_NEAR(dot(looks, now[i].up), 0, 1e-6);
-      ahead += dot(looks, gone) / length(gone);
+      const Vec3d displacement = now[i].position - before[i].position;
+      EXPECT_LE(length(displacement), 0.8) << step << " " << i;
+      // A climber looks in its direction of motion, as it leans: that of its last move, if it made
+      // two.
+      if (!now[i].climbs || length(displacement) < 0.05) continue;
+      const Vec3d heading = leaned({now[i].heading_x, 0, now[i].heading_z}, now[i].up);
+      EXPECT_NEAR(length(heading), 1, 1e-6);
+      EXPECT_NEAR(dot(heading, now[i].up), 0, 1e-6);
+      ahead += dot(heading, displacement) / length(displacement);
       ++looked;
     }
     std::swap(before, now);
@@ -293,13 +293,13 @@ Mixed mix(Stage& stage, uint32_t of_each, int steps, int every) {
   return mixed;
 }
 
-TEST(Climbers, GoAmongThoseWhoWalkAndThoseWhoFly) {
+TEST(Climbers, GoAmongWalkersAndFlyers) {
   Stage stage(net());
   const Mixed mixed = mix(stage, 16, 300, 5);
   EXPECT_GT(mixed.arrived, 20u);
 }
 
-// A million avatar-steps, each looked at.
+// A million avatar-steps, each checked.
 TEST(Climbers, AMillionStepsOverALandscapeSlow) {
   Stage stage(test::builtin({.name = "landscape", .size = 100, .seed = 3}), 0.5, 1.5);
   const Mixed mixed = mix(stage, 125, 2000, 1);
@@ -320,7 +320,7 @@ TEST(Climbers, SameStateForAnyWorkersAndMachines) {
   test::for_every_simd_target([&](const char* name) { walk(name, {1}); });
 }
 
-TEST(Climbers, ARestoredCrowdGoesOnAsTheSavedOneWould) {
+TEST(Climbers, ARestoredCrowdContinuesAsTheSavedOneWould) {
   Stage stage(net());
   Crowd crowd = on_net(stage, 80);
   for (int step = 0; step < 50; ++step) crowd.step();
@@ -337,8 +337,8 @@ TEST(Climbers, ARestoredCrowdGoesOnAsTheSavedOneWould) {
   EXPECT_FALSE(Crowd::restore(stage.world(), {.workers = 1}, saved, context));
 }
 
-// Where a body was saved that could not be there, nothing is restored.
-TEST(Climbers, WhatIsSavedIsLookedAt) {
+// If a body is saved at a place where it cannot be, nothing is restored.
+TEST(Climbers, SavedBodiesAreChecked) {
   Stage stage(net());
   Crowd crowd = on_net(stage, 6);
   for (int step = 0; step < 20; ++step) crowd.step();
@@ -351,7 +351,7 @@ TEST(Climbers, WhatIsSavedIsLookedAt) {
   }
 }
 
-// Down from a block as high as a man, over its edge.
+// Down from a block as high as an adult, over its edge.
 TEST(Climbers, LetThemselvesDownOverEdges) {
   AvatarClass jumper = default_classes()[0];
   jumper.name = "jumper";
@@ -371,7 +371,7 @@ TEST(Climbers, LetThemselvesDownOverEdges) {
   }
   crowd.set_goals(ids, goals);
   expect_all(go(crowd, stage, ids.size(), 900), ids.size());
-  // Nobody climbs back.
+  // None climbs back.
   const Place top = stage.world().find_place(0, {8, 2, 8}, 0.5);
   crowd.set_goals(std::span(ids).first(1), std::span(&top, 1));
   EXPECT_EQ(crowd.step().no_path, 1u);
@@ -398,7 +398,7 @@ TEST(Climbers, KeepOutOfObstaclesThatWaitForThem) {
   EXPECT_FALSE(added_on(crowd, here));
 }
 
-// On its way, at rest, or as it has just begun.
+// While it walks, at rest, or when it has just begun.
 TEST(Climbers, GetOutOfWhatClosesAroundThemAndEnterNoOther) {
   Stage stage(net());
   for (const uint64_t n : {1, 2, 3, 4}) {
@@ -425,9 +425,9 @@ TEST(Climbers, GetOutOfWhatClosesAroundThemAndEnterNoOther) {
   }
 }
 
-// Walls across everybody's way, put up before they begin or when they are under way, with a gap at
+// Walls across all paths, put up before the climbers begin or while they move, with an opening at
 // one end.
-TEST(Climbers, GoAroundWhatIsPutUpOnTheirWay) {
+TEST(Climbers, GoAroundObstaclesThatArePutUpOnTheirPaths) {
   Stage stage(net());
   std::vector<Prism> walls;
   for (int i = 0; i < 2; ++i) {
@@ -449,7 +449,7 @@ TEST(Climbers, GoAroundWhatIsPutUpOnTheirWay) {
       const int32_t avatar_class = n % 3 == 2 ? kGecko : kClimber;
       const NodePlace from = stage.place(avatar_class, 21, n),
                       to = stage.place(avatar_class, 22, n);
-      // From one end to the other, and not to where a wall will be.
+      // From one end to the other, and not where a wall will be.
       const auto clear = [&](Vec3d p) {
         return std::all_of(walls.begin(), walls.end(), [&](const Prism& wall) {
           return std::fabs(p.x - wall.corners[0][0]) > 2.2;
@@ -489,7 +489,7 @@ TEST(Climbers, GoAroundWhatIsPutUpOnTheirWay) {
   }
 }
 
-TEST(Climbers, WhoIsDrivenGoesWhereHeIsDriven) {
+TEST(Climbers, AnExternallyControlledOneMovesAsItIsControlled) {
   Stage stage(test::net_scene({.side = 2, .cell = 8, .relief = 0, .sideways = 0}));
   Crowd crowd = stage.crowd();
   Context context;
@@ -498,8 +498,8 @@ TEST(Climbers, WhoIsDrivenGoesWhereHeIsDriven) {
   const AvatarId id = added_on(crowd, finder->find_place({8, 0, 8}, 2), kGecko);
   ASSERT_TRUE(id);
   const Vec3d before = crowd.read(id)->position;
-  const Vec3d way{1, 0, 0.2};
-  crowd.set_velocities(std::span(&id, 1), std::span(&way, 1));
+  const Vec3d offset{1, 0, 0.2};
+  crowd.set_velocities(std::span(&id, 1), std::span(&offset, 1));
   Stage::Faults faults;
   for (int step = 0; step < 40; ++step) {
     crowd.step();
@@ -530,12 +530,12 @@ TEST(Climbers, AreSentToRegionsAndSeenToComeIn) {
   EXPECT_TRUE(entered);
 }
 
-TEST(Climbers, NobodyIsAddedWhereHeCannotClimb) {
+TEST(Climbers, NoneIsAddedWhereItCannotClimb) {
   Stage stage(net());
   Crowd crowd = stage.crowd();
   const NodePlace place = stage.place(kClimber, 2, 1);
   EXPECT_TRUE(added_on(crowd, place));
-  EXPECT_FALSE(added_on(crowd, place));  // somebody is there
+  EXPECT_FALSE(added_on(crowd, place));  // an avatar stands there
   EXPECT_FALSE(added_on(crowd, {}));
   NodePlace wrong = stage.place(kClimber, 2, 2);
   wrong.node1 = 1u << 30;
@@ -555,9 +555,8 @@ TEST(Climbers, NobodyIsAddedWhereHeCannotClimb) {
   EXPECT_EQ(crowd.step().no_path, 1u);
 }
 
-// What a crowd does with classes that climb where it has no nodes: on level tiles they are as
-// others.
-TEST(Climbers, WalkWhereTheyCanAsThoseWhoDoNotClimb) {
+// Classes that climb, in a crowd without nodes: on level tiles they are as others.
+TEST(Climbers, WalkWhereTheyCanAsOtherClassesDo) {
   AvatarClass climber = default_classes()[0], adult = climber;
   climber.name = "climber";
   climber.climb_slope = 120;

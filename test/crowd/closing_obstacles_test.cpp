@@ -14,7 +14,8 @@
 #include "throng/crowd.h"
 #include "worlds.h"
 
-// Obstacles that are to come up where avatars are: from then on none enters, those inside get out.
+// Obstacles that are to become active where avatars are: from then on none enters, those inside
+// leave.
 namespace throng {
 namespace {
 
@@ -56,7 +57,7 @@ bool is_free(const Crowd& crowd) {
   return found.wall_entries + found.overlaps + found.obstacle_entries == 0;
 }
 
-// 250 people in the west of the hall, on their way to its east, 20 s later.
+// 250 people in the west of the hall that walk to its east, 20 s later.
 struct Rush {
   World world = hall();
   double radius = world.summary().classes[0].radius;
@@ -83,7 +84,7 @@ struct Rush {
   }
 };
 
-TEST(ClosingObstacles, OnlyThoseInsideADoorComeThroughOnceItIsToShut) {
+TEST(ClosingObstacles, OnlyAvatarsInsideADoorComeThroughOnceItCloses) {
   for (const uint64_t seed : {1, 2, 3}) {
     uint64_t first = 0;
     for (const int32_t workers : {1, 3}) {
@@ -137,10 +138,10 @@ TEST(ClosingObstacles, OneThatWaitsStaysOpenAsLongAsPeopleStreamThrough) {
   EXPECT_GT(state.occupants, 0u);
 }
 
-TEST(ClosingObstacles, ADoorThatIsSwitchedOnClosesAlikeAndOpensAgain) {
+TEST(ClosingObstacles, ADoorThatIsSwitchedOnClosesTheSameAndOpensAgain) {
   Rush rush(2, 2);
   Crowd& crowd = rush.crowd;
-  // Where nobody is yet; then it is moved while it is open.
+  // Where no avatar is yet; then it is moved while it is open.
   const auto door = crowd.add_obstacle(Prism::box({38, 0, 1}, {38.5, 2, 2}));
   ASSERT_TRUE(door);
   ASSERT_TRUE(crowd.set_obstacle_active(*door, false));
@@ -153,7 +154,7 @@ TEST(ClosingObstacles, ADoorThatIsSwitchedOnClosesAlikeAndOpensAgain) {
   }
   EXPECT_TRUE(crowd.obstacle(*door)->is_up);
   EXPECT_TRUE(crowd.set_obstacle_active(*door, false));
-  // Asked to close, and to open before it has: avatars come in again.
+  // Requested to close, and to open before it has: avatars come in again.
   const auto west = [&] {
     int count = 0;
     for (const auto& [id, p] : positions(crowd)) count += p.x < 20 ? 1 : 0;
@@ -179,7 +180,7 @@ TEST(ClosingObstacles, ADoorThatIsSwitchedOnClosesAlikeAndOpensAgain) {
   EXPECT_LT(west(), before - 10);
 }
 
-TEST(ClosingObstacles, WhoOnlyStandsInOneOrHasArrivedThereGetsOutToo) {
+TEST(ClosingObstacles, AvatarsThatStandOrHaveArrivedInsideLeaveToo) {
   const World world = test::bake(worlds::flat(20), 0.1);
   for (const bool has_arrived : {false, true}) {
     Crowd crowd = made(world);
@@ -201,7 +202,7 @@ TEST(ClosingObstacles, WhoOnlyStandsInOneOrHasArrivedThereGetsOutToo) {
   }
 }
 
-TEST(ClosingObstacles, WhoCannotGetOutKeepsItOpenAndIsReported) {
+TEST(ClosingObstacles, AnAvatarThatCannotLeaveKeepsItOpenAndIsReported) {
   Scene scene = worlds::flat(20);
   scene.add_box({9, 0, 9}, {9.1, 3, 11});
   scene.add_box({11, 0, 9}, {11.1, 3, 11});
@@ -230,7 +231,7 @@ TEST(ClosingObstacles, WhoCannotGetOutKeepsItOpenAndIsReported) {
   EXPECT_TRUE(crowd.obstacle(*crate)->is_up);
 }
 
-TEST(ClosingObstacles, PathsLeadAroundOneFromTheTimeOnThatItIsAskedFor) {
+TEST(ClosingObstacles, PathsLeadAroundOneFromTheTimeOfTheRequest) {
   Scene scene = worlds::flat(24);
   scene.add_box({11.9, 0, 0}, {12.1, 3, 3});
   scene.add_box({11.9, 0, 5}, {12.1, 3, 19});
@@ -253,10 +254,10 @@ TEST(ClosingObstacles, PathsLeadAroundOneFromTheTimeOnThatItIsAskedFor) {
     ASSERT_TRUE(is_free(crowd));
   }
   EXPECT_TRUE(there) << "by the other door";
-  EXPECT_TRUE(crowd.obstacle(*door)->waits) << "who is driven stays in it";
+  EXPECT_TRUE(crowd.obstacle(*door)->waits) << "an externally controlled avatar stays in it";
 }
 
-TEST(ClosingObstacles, ACrowdRestoredWhileOneClosesGoesOnAlike) {
+TEST(ClosingObstacles, ACrowdRestoredWhileOneClosesContinuesTheSame) {
   Rush rush(3, 2);
   Crowd& crowd = rush.crowd;
   const auto door = crowd.add_obstacle(kDoor);

@@ -21,7 +21,7 @@ struct PrintedMap {
       for (int dx = -1; dx <= 1; ++dx) count[{x + dx, z + dz}] += n;
     }
   }
-  // May whoever stands on (x, z) enter (nx, nz)? His own share is removed first.
+  // May an avatar that stands on (x, z) enter (nx, nz)? Its own share is removed first.
   bool may_enter(int x, int z, int nx, int nz) {
     add(x, z, -1);
     const bool free = count[{nx, nz}] == 0;
@@ -68,7 +68,7 @@ TEST(CollisionMap, AnswersLikeThePrintedMap) {
   EXPECT_GT(refused, 1000);
 }
 
-TEST(CollisionMap, FloorsAboveEachOtherDoNotSeeEachOther) {
+TEST(CollisionMap, BodiesOnFloorsAboveEachOtherDoNotCollide) {
   CollisionMap map(10, 10, PixelGrid(1), 0, 200000, 1750);
   const GroundPoint p{5 << kUnitBits, 5 << kUnitBits};
   for (int32_t y = 0; y < 200000; y += 2250) {  // words of 16 m are crossed many times
@@ -80,9 +80,9 @@ TEST(CollisionMap, FloorsAboveEachOtherDoNotSeeEachOther) {
   }
 }
 
-// Bodies on several floors that take turns at going one pixel further, in two maps: one looks only
-// at what is new on the way, the other at all nine.
-TEST(CollisionMap, LookingOnlyAtTheNewPixelsIsEnough) {
+// Bodies on several floors that move one pixel at a time, in turn, in two maps: in one only the new
+// pixels around each move are tested, in the other all nine.
+TEST(CollisionMap, TestingOnlyTheNewPixelsIsEnough) {
   constexpr int32_t kSide = 12;
   constexpr int32_t kStorey = 2600;
   CollisionMap quick(kSide, kSide, PixelGrid(3), 0, 40000, 1750);
@@ -117,7 +117,8 @@ TEST(CollisionMap, LookingOnlyAtTheNewPixelsIsEnough) {
     simple.clear(from);
     const bool is_free = simple.is_free(to);
     simple.set(is_free ? to : from);
-    ASSERT_EQ(quick.move_by_one(from.slices, from.pixel, CollisionMap::way(dx, dz)), is_free);
+    ASSERT_EQ(quick.move_by_one(from.slices, from.pixel, CollisionMap::direction_index(dx, dz)),
+              is_free);
     if (is_free) body = next;
     ++(is_free ? moved : refused);
   }

@@ -29,7 +29,7 @@ HugeArray<Avatar> scattered(uint32_t count, int32_t width, int32_t depth) {
   return avatars;
 }
 
-TEST(CrowdBlocks, BlocksOfOneColourLieABlockApartAndHoldEverybody) {
+TEST(CrowdBlocks, BlocksOfOneColourLieABlockApartAndHoldAllAvatars) {
   constexpr int32_t kWidth = 333, kDepth = 170;
   CrowdBlocks blocks(kWidth, kDepth, PixelGrid(kPixelCells), kBlockPixels);
   HugeArray<Avatar> avatars = scattered(2000, kWidth, kDepth), scratch(2000);

@@ -18,13 +18,13 @@
 namespace throng {
 namespace {
 
-// An engine on level ground, and the same bodies in the step as the tests have it.
+// An engine on level ground, and the same bodies in the reference step of the tests.
 struct Pair {
   test::PlainCrowd plain;
   CrowdEngine engine;
   uint64_t steps = 0;
 
-  // Steps both and says who differs first.
+  // Steps both and names the first body that differs.
   std::string step() {
     plain.step();
     EngineCounts counts;
@@ -35,7 +35,7 @@ struct Pair {
     for (size_t i = 0; i < by_slot.size(); ++i) {
       const test::PlainBody& p = plain.bodies()[i];
       const Body& b = *by_slot[i];
-      if (b.x != p.at.x || b.z != p.at.z || b.turn != p.turn ||
+      if (b.x != p.at.x || b.z != p.at.z || b.detour_angle != p.turn ||
           b.has(Body::kArrived) != (p.arrived >= 0)) {
         return "body " + std::to_string(i) + " in step " + std::to_string(steps);
       }
@@ -70,9 +70,9 @@ struct LevelGround {
                         .workers = workers,
                         .model = config.model,
                         .steering = config.steering,
-                        .patience = config.patience,
+                        .deadlock_settings = config.deadlock_settings,
                         .lanes = config.lanes,
-                        .room = {}},
+                        .spacing = {}},
                        data.width, data.depth, 1);
     engine.set_ground(0, StrideGround(ground, 400));
     engine.fit(widest, fastest, config.units.dt);
@@ -126,7 +126,7 @@ TEST(CrowdEngine, DoesWhatThePlainStepDoes) {
   }
 }
 
-TEST(CrowdEngine, WhoGoesOnDoesWhatThePlainStepDoes) {
+TEST(CrowdEngine, BodiesThatContinueDoWhatThePlainStepDoes) {
   const LevelGround ground(60);
   test::PlainConfig config;
   config.units.dt = 0.05f;

@@ -23,8 +23,8 @@ World plane() {
   return *world;
 }
 
-// Who comes into areas, found from positions alone, step by step.
-TEST(CrowdEvents, tell_who_comes_into_areas) {
+// Avatars that enter areas, found from positions alone, step by step.
+TEST(CrowdEvents, ReportAvatarsThatEnterAreas) {
   const World world = plane();
   Context context;
   auto crowd = Crowd::create(world, {.workers = 2});
@@ -60,16 +60,17 @@ TEST(CrowdEvents, tell_who_comes_into_areas) {
     for (const auto& one : now) {
       if (before.count(one) == 0) came.insert(one);
     }
-    std::set<std::pair<uint32_t, int>> told;
-    for (const AreaEntry& entry : crowd->entered()) told.emplace(entry.id.slot1 - 1, entry.area);
-    ASSERT_EQ(told, came) << step;
-    entries += told.size();
+    std::set<std::pair<uint32_t, int>> reported;
+    for (const AreaEntry& entry : crowd->entered())
+      reported.emplace(entry.id.slot1 - 1, entry.area);
+    ASSERT_EQ(reported, came) << step;
+    entries += reported.size();
     before = now;
   }
   EXPECT_GT(entries, 100U);
 }
 
-TEST(CrowdEvents, watching_changes_nothing_and_has_limits) {
+TEST(CrowdEvents, WatchingChangesNothingAndHasLimits) {
   const World world = plane();
   Context context;
   auto plain = Crowd::create(world, {}), watched = Crowd::create(world, {.no_progress_after = 1});
@@ -94,8 +95,9 @@ TEST(CrowdEvents, watching_changes_nothing_and_has_limits) {
   }
 }
 
-// One who has a crate before him on every side is stuck; one who walks, stands or is new is not.
-TEST(CrowdEvents, tell_who_is_stuck) {
+// An avatar with a crate on every side makes no progress; one that walks, stands or is new is not
+// reported.
+TEST(CrowdEvents, ReportAvatarsWithoutProgress) {
   const World world = plane();
   Context context;
   auto crowd = Crowd::create(world, {.routing = Routing::kStraight, .no_progress_after = 2});
@@ -105,23 +107,23 @@ TEST(CrowdEvents, tell_who_is_stuck) {
       {at(13.6, 4), 0, 0, 0}, {at(2, 15), 0, 0, 0}, {at(5, 5), 0, 0, 0}};
   const auto ids = crowd->add(spawns, context);
   ASSERT_TRUE(ids);
-  // Straight on into the wall; along the hall; nowhere.
+  // Straight into the wall; along the hall; no goal.
   crowd->set_goals(*ids, std::vector<Place>{at(20, 4), at(28, 15), Place()});
-  int looks = 0, told = 0;
+  int checks = 0, reported = 0;
   for (int step = 1; step <= 100; ++step) {
     crowd->step();
     if (step % 20 != 0) {
       EXPECT_TRUE(crowd->no_progress().empty()) << step;
     }
     if (step % 20 != 0 || step == 20) continue;
-    ++looks;
+    ++checks;
     for (const AvatarId id : crowd->no_progress()) {
       EXPECT_EQ(id, (*ids)[0]);
-      ++told;
+      ++reported;
     }
   }
-  EXPECT_EQ(looks, 4);
-  EXPECT_GE(told, 1);
+  EXPECT_EQ(checks, 4);
+  EXPECT_GE(reported, 1);
 }
 
 }  // namespace

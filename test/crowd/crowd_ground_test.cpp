@@ -61,9 +61,9 @@ Scene slope_over_the_edge(bool along_x) {
   return scene;
 }
 
-// Walks of up to two cells that stay on plain cells need no further look; that is, the world allows
+// Walks of up to two cells that stay on flat cells need no further test; that is, the world permits
 // them, and the feet stay as high as they are.
-TEST(CrowdGround, WhoStaysOnPlainCellsArrivesOnTheSameLevelAtTheSameHeight) {
+TEST(CrowdGround, AWalkOverFlatCellsEndsOnTheSameLevelAtTheSameHeight) {
   for (const Scene& scene :
        {worlds::two_floors(), worlds::steps(0.17, 0.3, 12), worlds::ramp(20, 8), worlds::doorway(1),
         slope_over_the_edge(true), slope_over_the_edge(false)}) {
@@ -78,11 +78,11 @@ TEST(CrowdGround, WhoStaysOnPlainCellsArrivesOnTheSameLevelAtTheSameHeight) {
       const auto level = static_cast<uint32_t>(draw(world.level_tile_count()));
       const int32_t x0 = draw(64), z0 = draw(64);
       const int32_t x1 = std::min(63, x0 + draw(3)), z1 = std::min(63, z0 + draw(3));
-      bool plain = true;
+      bool all_flat = true;
       for (int32_t z = z0; z <= z1; ++z) {
-        for (int32_t x = x0; x <= x1; ++x) plain &= ((ground->plain(level)[z] >> x) & 1) != 0;
+        for (int32_t x = x0; x <= x1; ++x) all_flat &= ((ground->flat(level)[z] >> x) & 1) != 0;
       }
-      if (!plain) continue;
+      if (!all_flat) continue;
       ++plain_walks;
       const auto& record = ground->records()[level];
       const auto point = [&](int32_t x, int32_t z) {
@@ -107,7 +107,7 @@ Scene garage() {
 }
 
 // The same for steps of up to a block over the edge of a tile, which may change the level.
-TEST(CrowdGround, WhoCrossesAJoinArrivesWhereAWalkDoesAtTheSameHeight) {
+TEST(CrowdGround, AStepOverAJoinEndsWhereAWalkDoesAtTheSameHeight) {
   for (const Scene& scene : {worlds::two_floors(), worlds::flat(20), slope_over_the_edge(true),
                              slope_over_the_edge(false), garage()}) {
     const World world = baked(scene);
@@ -146,7 +146,7 @@ TEST(CrowdGround, ALoneLevelIsTheOnlyOneWithinAStepInItsTile) {
   ASSERT_TRUE(ground);
   int32_t lone = 0;
   for (uint32_t level = 0; level < world.level_tile_count(); ++level) {
-    if (!ground->walk(level).is_alone) continue;
+    if (!ground->walk(level).is_isolated) continue;
     ++lone;
     const auto& record = ground->records()[level];
     const GroundLevel here = zone_level(world, level);
@@ -165,7 +165,7 @@ TEST(CrowdGround, ALoneLevelIsTheOnlyOneWithinAStepInItsTile) {
   EXPECT_GT(lone, 0);
 }
 
-TEST(CrowdGround, FloorsOutsideTheHeightsAskedForMayBeLeftOutButNoOther) {
+TEST(CrowdGround, FloorsOutsideTheGivenHeightsMayBeLeftOutButNoOther) {
   const World world = baked(worlds::two_floors());
   const auto ground = CrowdGround::make(*world.data(), 0, kStep);
   ASSERT_TRUE(ground);

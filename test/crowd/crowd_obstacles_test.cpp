@@ -39,7 +39,7 @@ Vec3d position(const Crowd& crowd, AvatarId id) {
   for (const AvatarState& state : states) {
     if (state.id + 1 == id.slot1) return state.position;
   }
-  ADD_FAILURE() << "nobody of that id";
+  ADD_FAILURE() << "no avatar has that id";
   return {};
 }
 
@@ -49,7 +49,7 @@ bool is_free(const Crowd& crowd) {
 }
 
 // A square of 24 m, cut by a wall at x = 12 with openings of 2 m at z = 4 and z = 20.
-World two_ways() {
+World two_openings() {
   Scene scene = worlds::flat(24);
   scene.add_box({11.9, 0, 0}, {12.1, 3, 3});
   scene.add_box({11.9, 0, 5}, {12.1, 3, 19});
@@ -63,10 +63,10 @@ Prism crate_at(const Vec3d& middle, double half = 1.2) {
                     {middle.x + half, middle.y + 1, middle.z + half});
 }
 
-// ---- What it is to walkers.
+// ---- How they act on walkers.
 
-TEST(CrowdObstacles, PeopleTakeTheOtherWayWhileACrateStandsInTheFirst) {
-  const World world = two_ways();
+TEST(CrowdObstacles, AvatarsTakeTheOtherOpeningWhileACrateStandsInTheFirst) {
+  const World world = two_openings();
   const Place from = world.find_place(0, {4, 0, 4}, 0.5), to = world.find_place(0, {20, 0, 4}, 0.5);
   Crowd crowd = made(world);
   const auto steps_through = [&](const Vec3d& door) {
@@ -95,8 +95,8 @@ TEST(CrowdObstacles, PeopleTakeTheOtherWayWhileACrateStandsInTheFirst) {
   EXPECT_EQ(steps_through(kNearDoor), straight);
 }
 
-TEST(CrowdObstacles, WhoIsOnTheWayTurnsBackWhenADoorAheadCloses) {
-  const World world = two_ways();
+TEST(CrowdObstacles, AnAvatarTurnsBackWhenADoorAheadCloses) {
+  const World world = two_openings();
   Crowd crowd = made(world);
   const AvatarId id = added(crowd, world.find_place(0, {2, 0, 4}, 0.5));
   const ObstacleId door = put_up(crowd, crate_at(kNearDoor));
@@ -116,8 +116,8 @@ TEST(CrowdObstacles, WhoIsOnTheWayTurnsBackWhenADoorAheadCloses) {
   EXPECT_LT(steps, 400);
 }
 
-TEST(CrowdObstacles, OfTwoDoorsThatTakeTurnsTheOpenOneIsTaken) {
-  const World world = two_ways();
+TEST(CrowdObstacles, OfTwoDoorsThatTakeTurnsTheOpenOneIsUsed) {
+  const World world = two_openings();
   Crowd crowd = made(world);
   const AvatarId id = added(crowd, world.find_place(0, {4, 0, 12}, 0.5));
   const Place ends[] = {world.find_place(0, {20, 0, 12}, 0.5),
@@ -142,8 +142,8 @@ TEST(CrowdObstacles, OfTwoDoorsThatTakeTurnsTheOpenOneIsTaken) {
   }
 }
 
-TEST(CrowdObstacles, WhoHasNoWayLeftIsStranded) {
-  const World world = two_ways();
+TEST(CrowdObstacles, TheGoalOfAnAvatarWithoutAPathIsUnreachable) {
+  const World world = two_openings();
   Crowd crowd = made(world);
   const AvatarId id = added(crowd, world.find_place(0, {4, 0, 12}, 0.5));
   send(crowd, id, world.find_place(0, {20, 0, 12}, 0.5));
@@ -156,15 +156,15 @@ TEST(CrowdObstacles, WhoHasNoWayLeftIsStranded) {
   EXPECT_EQ(crowd.step().no_path, 1u);
   ASSERT_EQ(crowd.goal_unreachable().size(), 1u);
   EXPECT_EQ(crowd.goal_unreachable()[0], id);
-  // A goal under an obstacle is none either.
+  // A goal under an obstacle is unreachable too.
   const Place here = world.find_place(0, {8, 0, 22}, 0.5);
   put_up(crowd, crate_at({8, 0, 22}));
   send(crowd, id, here);
   EXPECT_EQ(crowd.step().no_path, 1u);
 }
 
-TEST(CrowdObstacles, ADoorWaitsForWhoStandsInItAndOpensAtOnce) {
-  const World world = two_ways();
+TEST(CrowdObstacles, ADoorWaitsForAvatarsInItAndOpensAtOnce) {
+  const World world = two_openings();
   Crowd crowd = made(world);
   const AvatarId id = added(crowd, world.find_place(0, kNearDoor, 0.5));
   const AvatarId other = added(crowd, world.find_place(0, {20, 0, 20}, 0.5));
@@ -193,14 +193,14 @@ TEST(CrowdObstacles, ADoorWaitsForWhoStandsInItAndOpensAtOnce) {
   EXPECT_TRUE(crowd.set_obstacle_active(door, false));
   EXPECT_FALSE(is_up(crowd, door));
   EXPECT_TRUE(added(crowd, world.find_place(0, kNearDoor, 0.5)));
-  // Asked to close and to open again before it could: it is open.
+  // Requested to close, and to open again before it could: it is open.
   crowd.set_obstacle_active(door, true);
   EXPECT_TRUE(waits(crowd, door));
   crowd.set_obstacle_active(door, false);
   EXPECT_EQ(crowd.step().waiting, 0u);
 }
 
-TEST(CrowdObstacles, ACartDoesNotJumpOverAnybody) {
+TEST(CrowdObstacles, ACartDoesNotJumpOverAnyAvatar) {
   const World world = test::bake(worlds::flat(20), 0.1);
   Crowd crowd = made(world);
   const AvatarId id = added(crowd, world.find_place(0, {10, 0, 10}, 0.5));
@@ -223,7 +223,7 @@ TEST(CrowdObstacles, ACartDoesNotJumpOverAnybody) {
   EXPECT_FALSE(added(crowd, world.find_place(0, {15, 0, 10}, 0.5)));
 }
 
-TEST(CrowdObstacles, WaysDoNotMindCartsButWalkersDo) {
+TEST(CrowdObstacles, PathsIgnoreCartsButWalkersDoNot) {
   const World world = test::bake(worlds::flat(20), 0.1);
   Crowd crowd = made(world);
   const AvatarId id = added(crowd, world.find_place(0, {4, 0, 10}, 0.5));
@@ -240,7 +240,7 @@ TEST(CrowdObstacles, WaysDoNotMindCartsButWalkersDo) {
 
 // ---- Heights, borders, sizes.
 
-TEST(CrowdObstacles, OnlyWhatABodyCouldTouchIsInTheWay) {
+TEST(CrowdObstacles, OnlyWhatABodyCouldTouchBlocks) {
   const World world = test::bake(worlds::two_floors(), 0.1);  // the deck is at 3
   Crowd crowd = made(world);
   const Place low = world.find_place(0, {8, 0, 4}, 0.5), high = world.find_place(0, {8, 3, 4}, 0.5);
@@ -248,14 +248,14 @@ TEST(CrowdObstacles, OnlyWhatABodyCouldTouchIsInTheWay) {
   const auto stand = [&](double bottom, double top) {
     const ObstacleId id = put_up(crowd, Prism::box({7.8, bottom, 3.8}, {8.2, top, 4.2}));
     EXPECT_TRUE(is_up(crowd, id));
-    std::string who;
+    std::string free_levels;
     for (const Place& place : {low, high}) {
       const AvatarId avatar = added(crowd, place);
-      who += avatar ? '1' : '0';
+      free_levels += avatar ? '1' : '0';
       crowd.remove(std::span(&avatar, 1));
     }
     EXPECT_TRUE(crowd.remove_obstacle(id));
-    return who;
+    return free_levels;
   };
   EXPECT_EQ(stand(0, 1), "01");
   EXPECT_EQ(stand(3, 4), "10");
@@ -291,7 +291,7 @@ TEST(CrowdObstacles, TinyOnesOnBordersAndHugeOnesCountToo) {
   EXPECT_TRUE(crowd.remove_obstacle(all));
   scattered(crowd, 50);
   const ObstacleId away = put_up(crowd, Prism::box({1e6, -1, 1e6}, {2e6, 50, 2e6}));
-  EXPECT_TRUE(is_up(crowd, away)) << "beyond the world nobody is in the way";
+  EXPECT_TRUE(is_up(crowd, away)) << "beyond the world no avatar blocks it";
   const ObstacleId again = put_up(crowd, Prism::box({-1e6, -1, -1e6}, {1e6, 50, 1e6}));
   EXPECT_FALSE(is_up(crowd, again));
   crowd.step();
@@ -334,9 +334,9 @@ TEST(CrowdObstacles, WhatIsNoPrismOrNoObstacleIsRefusedWithASentence) {
   EXPECT_FALSE(crowd.obstacle(id));
 }
 
-// ---- The look of check() at obstacles can fail.
+// ---- The test of obstacles in check() can fail.
 
-TEST(CrowdObstacles, TheCheckCountsWhoIsInAnObstacle) {
+TEST(CrowdObstacles, TheCheckCountsAvatarsInAnObstacle) {
   const World world = test::bake(worlds::flat(20), 0.1);
   const double unit = 0.1 / 2048, radius = world.summary().classes[0].radius;
   const Vec3d origin = world.summary().origin;
@@ -351,9 +351,9 @@ TEST(CrowdObstacles, TheCheckCountsWhoIsInAnObstacle) {
     return check_bodies(world, std::span(&body, 1), std::span(&prism, 1), 1).obstacle_entries;
   };
   const Prism box = Prism::box({5, 0, 5}, {7, 1, 7});
-  Prism other_way = box;
-  std::reverse(other_way.corners.begin(), other_way.corners.end());
-  for (const Prism& prism : {box, other_way}) {
+  Prism reversed = box;
+  std::reverse(reversed.corners.begin(), reversed.corners.end());
+  for (const Prism& prism : {box, reversed}) {
     EXPECT_EQ(entries(6, 6, 0, prism), 1u);
     EXPECT_EQ(entries(5 - radius + 0.001, 6, 0, prism), 1u);
     EXPECT_EQ(entries(5 - radius - 0.001, 6, 0, prism), 0u);
@@ -371,7 +371,7 @@ TEST(CrowdObstacles, TheCheckCountsWhoIsInAnObstacle) {
 
 // ---- Many of them, while many walk.
 
-// Puts up, moves, shuts, opens and takes away at random; looks after every step.
+// Adds, moves, switches on and off and removes at random; checks after every step.
 struct Chaos {
   Crowd& crowd;
   const World& world;
@@ -423,7 +423,7 @@ struct Chaos {
   }
 };
 
-TEST(CrowdObstacles, NobodyEntersOneWhileTheyComeMoveAndGo) {
+TEST(CrowdObstacles, NoAvatarEntersOneWhileTheyAppearMoveAndDisappear) {
   uint64_t avatar_steps = 0, came_up = 0, moved = 0, waited = 0, walked = 0;
   for (const char* name : {"garage", "church", "stairs", "bridge"}) {
     const World world = test::bake(test::builtin({.name = name, .seed = 3}), 0.1);
@@ -526,8 +526,8 @@ TargetId target_at(Crowd& crowd, const Vec3d& low, const Vec3d& high) {
   return target ? *target : TargetId{};
 }
 
-TEST(CrowdObstacles, WhoAreBoundForATargetTakeTheOtherWayToo) {
-  const World world = two_ways();
+TEST(CrowdObstacles, AvatarsThatHeadToATargetTakeTheOtherOpeningToo) {
+  const World world = two_openings();
   Crowd crowd = made(world);
   const TargetId target = target_at(crowd, {18, -1, 2}, {22, 2, 6});
   const auto ids = scattered(crowd, 40);
@@ -574,7 +574,7 @@ TEST(CrowdObstacles, RestoredWithTargetsAndForAnyWorkersItIsTheSame) {
     ASSERT_TRUE(restored) << restored.error().message;
     Chaos other{*restored, world, 33, chaos.ids, chaos.n};
     for (int step = 0; step < 20; ++step) {
-      // A while without changes, then with.
+      // For a while without changes, then with.
       if (step >= 8) chaos.act();
       if (step >= 8) other.act();
       crowd.step();
@@ -588,7 +588,7 @@ TEST(CrowdObstacles, RestoredWithTargetsAndForAnyWorkersItIsTheSame) {
 }
 
 TEST(CrowdObstacles, AClassThatCouldNotBeOpenedCanBeLater) {
-  const World world = two_ways();
+  const World world = two_openings();
   Crowd crowd = made(world);
   const ObstacleId crate = put_up(crowd, crate_at({6, 0, 6}));
   target_at(crowd, {18, -1, 2}, {22, 2, 6});

@@ -30,19 +30,19 @@ Vec3d position(const Crowd& crowd, AvatarId id) {
   for (const AvatarState& state : states) {
     if (state.id + 1 == id.slot1) return state.position;
   }
-  ADD_FAILURE() << "nobody of that id";
+  ADD_FAILURE() << "no avatar has that id";
   return {};
 }
 
-// Steps until the avatar arrives, at most so many times. Returns how many it took.
-int steps_to_arrive(Crowd& crowd, AvatarId id, int most) {
-  for (int step = 1; step <= most; ++step) {
+// Steps until the avatar arrives, at most `max_steps` times. Returns how many steps it took.
+int steps_to_arrive(Crowd& crowd, AvatarId id, int max_steps) {
+  for (int step = 1; step <= max_steps; ++step) {
     crowd.step();
     for (const AvatarId there : crowd.arrived()) {
       if (there == id) return step;
     }
   }
-  return most + 1;
+  return max_steps + 1;
 }
 
 void expect_no_faults(const Crowd& crowd) {
@@ -51,7 +51,7 @@ void expect_no_faults(const Crowd& crowd) {
   EXPECT_EQ(check.overlaps, 0u);
 }
 
-TEST(Crowd, NobodyEntersAWallOrAnotherInBuiltInWorlds) {
+TEST(Crowd, NoAvatarEntersAWallOrAnotherInBuiltInWorlds) {
   uint64_t moved = 0;
   for (const char* name : {"garage", "church", "stairs", "maze", "bridge"}) {
     const World world = test::bake(test::builtin({.name = name, .seed = 3}), 0.1);
@@ -145,7 +145,7 @@ TEST(Crowd, PathsThatAreLookedUpAreAsShortAsThoseOfTheSearch) {
   EXPECT_GT(straight, 20);
 }
 
-TEST(Crowd, WhoseGoalCannotBeReachedIsTold) {
+TEST(Crowd, UnreachableGoalsAreReported) {
   Scene scene = worlds::flat(20);
   scene.add_box({8, 0, 8}, {12, 1.5, 12});
   const World world = test::bake(scene, 0.1);
@@ -162,7 +162,7 @@ TEST(Crowd, WhoseGoalCannotBeReachedIsTold) {
   EXPECT_TRUE(crowd.goal_unreachable().empty());
 }
 
-TEST(Crowd, FloorsAboveEachOtherDoNotMindEachOther) {
+TEST(Crowd, AvatarsOnFloorsAboveEachOtherIgnoreEachOther) {
   const World world = test::bake(worlds::two_floors(), 0.1);
   Crowd crowd = made(world);
   std::vector<AvatarId> ids;
@@ -176,7 +176,7 @@ TEST(Crowd, FloorsAboveEachOtherDoNotMindEachOther) {
   for (int step = 0; step < 15; ++step) EXPECT_GT(crowd.step().progress, 0.99);
 }
 
-TEST(Crowd, IdsAreNeverGivenTwiceAndOldOnesNameNobody) {
+TEST(Crowd, IdsAreNeverGivenTwiceAndOldOnesNameNoAvatar) {
   const World world = test::bake(worlds::flat(20), 0.1);
   Crowd crowd = made(world);
   const auto ids = scattered(crowd, 50);
@@ -187,7 +187,7 @@ TEST(Crowd, IdsAreNeverGivenTwiceAndOldOnesNameNobody) {
   const auto more = scattered(crowd, 30);
   for (const AvatarId id : more) EXPECT_EQ(std::count(ids.begin(), ids.end(), id), 0);
   const auto goals = random_goals(world, ids.size(), 1);
-  crowd.set_goals(ids, goals);  // half of them are nobody's
+  crowd.set_goals(ids, goals);  // half of them name no avatar
   crowd.remove(ids);
   crowd.remove(ids);
   EXPECT_EQ(crowd.size(), 30u);
@@ -198,7 +198,7 @@ TEST(Crowd, IdsAreNeverGivenTwiceAndOldOnesNameNobody) {
   EXPECT_EQ(crowd.step().avatars, 0u);
 }
 
-TEST(Crowd, NobodyIsAddedWhereHeWouldTouchOrCannotStand) {
+TEST(Crowd, NoAvatarIsAddedWhereItWouldTouchAnotherOrCannotStand) {
   const World world = test::bake(worlds::flat(20), 0.1);
   Crowd crowd = made(world);
   const Place place = world.find_place(0, {10, 0, 10}, 0.5);
@@ -216,12 +216,12 @@ TEST(Crowd, NobodyIsAddedWhereHeWouldTouchOrCannotStand) {
   EXPECT_EQ(crowd.size(), 2u);
 }
 
-TEST(Crowd, WhoIsDrivenGoesWhereHeIsToldAndOthersMakeWay) {
+TEST(Crowd, AnExternallyControlledAvatarMovesAsControlledAndOthersYield) {
   const World world = test::bake(worlds::flat(30), 0.1);
   Crowd crowd = made(world);
   const AvatarId player = added(crowd, world.find_place(0, {5, 0, 15}, 0.5));
   const AvatarId other = added(crowd, world.find_place(0, {10, 0, 15}, 0.5));
-  const Vec3d east{50, 0, 0};  // cut to the speed of the class
+  const Vec3d east{50, 0, 0};  // clamped to the speed of the class
   crowd.set_velocities(std::span(&player, 1), std::span(&east, 1));
   const Place goal = world.find_place(0, {2, 0, 15}, 0.5);
   crowd.set_goals(std::span(&other, 1), std::span(&goal, 1));
@@ -250,8 +250,8 @@ TEST(Crowd, FastAndSmallOnesDoNotPassThroughOthers) {
   }
 }
 
-// A step is no longer than 16 bits hold: longer ones are taken in parts.
-TEST(Crowd, GiantsWithLongStepsTouchNobody) {
+// A step is no longer than 16 bits hold: longer ones are split.
+TEST(Crowd, GiantsWithLongStepsTouchNoOther) {
   const World world = test::bake(worlds::flat(60), 0.02);
   Crowd crowd = made(world, {.dt = 0.5});
   const auto giants = scattered(crowd, 6, {.radius = 2, .speed = 8});
@@ -264,7 +264,7 @@ TEST(Crowd, GiantsWithLongStepsTouchNobody) {
   }
 }
 
-TEST(Crowd, AnAvatarTakesNoMoreThan160BytesBesideItsWay) {
+TEST(Crowd, AnAvatarTakesNoMoreThan160BytesBesideItsPath) {
   const World world = test::bake(worlds::flat(200), 0.1);
   for (const uint32_t count : {20'000u, 21'846u, 32'769u}) {
     Crowd crowd = made(world, {.workers = 2});
@@ -276,7 +276,7 @@ TEST(Crowd, AnAvatarTakesNoMoreThan160BytesBesideItsWay) {
   }
 }
 
-TEST(Crowd, ARestoredCrowdGoesOnAsTheSavedOneWould) {
+TEST(Crowd, ARestoredCrowdContinuesAsTheSavedOneWould) {
   const World world = test::bake(test::builtin({.name = "garage", .seed = 3}), 0.1);
   Crowd crowd = made(world);
   const auto ids = scattered(crowd, 150);

@@ -120,7 +120,7 @@ TEST(FarWorld, WanderersWalkAndAreRecordedAsNearTheCoordinateOrigin) {
   }
 }
 
-TEST(FarWorld, ACrowdWithGoalsGoesAsNearTheCoordinateOrigin) {
+TEST(FarWorld, ACrowdWithGoalsWalksAsNearTheCoordinateOrigin) {
   const World near = test::bake(garage(), kCell);
   for (const Vec3d& by : translations()) {
     const World far = test::bake(moved(garage(), by), kCell);
@@ -181,7 +181,8 @@ TEST(FarWorld, PathsAreThoseNearTheCoordinateOrigin) {
   }
 }
 
-// Cells of a tenth of a metre are no binary fraction: the grid is rounded, and holds all the same.
+// A cell of a tenth of a metre is not a binary fraction: the grid is rounded, and all holds
+// nevertheless.
 TEST(FarWorld, CellsThatAreNoBinaryFractionWalkToTheMillimetre) {
   const World near = test::bake(garage(), 0.1);
   for (const Vec3d& by : translations()) {

@@ -17,14 +17,14 @@
 #include "verify/triangle_tree.h"
 #include "worlds.h"
 
-// Those who fly in a crowd: nobody enters matter or anybody else, and all get where they want to.
+// Flyers in a crowd: none enters a solid or another avatar, and all arrive.
 namespace throng {
 namespace {
 
 constexpr int32_t kFlyer = 0, kAdult = 1;
 
 // A world, and what is true in it: triangles and cylinders, and nothing of what was baked but where
-// a body on its way up has left the ground.
+// a body that takes off has left the ground.
 class Stage {
  public:
   explicit Stage(const Scene& scene, double cell = 0.1)
@@ -44,7 +44,7 @@ class Stage {
     return place;
   }
 
-  // Pairs whose cylinders overlap, bodies that matter is in.
+  // Pairs whose cylinders overlap, and bodies inside a solid.
   struct Faults {
     uint64_t overlaps = 0, entered = 0, bodies = 0, pairs = 0;
   };
@@ -92,7 +92,7 @@ class Stage {
                                 .high = state.position.y + avatar.height,
                                 .radius = avatar.radius};
     return tree_.find(body.bounds(), [&](uint32_t, const verify::Corners& corners) {
-      return verify::in_counterflow(body, corners);
+      return verify::meets(body, corners);
     });
   }
 
@@ -114,7 +114,7 @@ std::vector<AvatarId> added(Crowd& crowd, const std::vector<AvatarSpawn>& spawns
 
 AvatarSpawn flyer_at(Vec3d feet) { return {.place = air_place(feet), .avatar_class = kFlyer}; }
 
-// A floor of such a side, and something at such a height, so that there is air up to there.
+// A floor of side `side`, and a box at `height`, so that there is air up to there.
 Scene open_air(double side, double height) {
   Scene scene = worlds::flat(side);
   scene.add_box({0, height, 0}, {1, height + 0.5, 1});
@@ -131,7 +131,7 @@ Scene tunnel(double length) {
   return scene;
 }
 
-// Two halls of 12 x 10 x 8 m with a wall between them; a window of 2.4 x 3.2 m is the only way.
+// Two halls of 12 x 10 x 8 m with a wall between them; a window of 2.4 x 3.2 m is the only opening.
 Scene window() {
   Scene scene;
   scene.add_box({0, -1, 0}, {24.4, 0, 10});
@@ -143,7 +143,7 @@ Scene window() {
   return scene;
 }
 
-TEST(Flyers, FiveHundredWhoCrossASphereAllArrive) {
+TEST(Flyers, FiveHundredThatCrossASphereAllArrive) {
   Stage stage(open_air(80, 60), 0.2);
   Crowd crowd = made(stage.world());
   std::vector<AvatarSpawn> spawns;
@@ -153,9 +153,9 @@ TEST(Flyers, FiveHundredWhoCrossASphereAllArrive) {
   for (size_t i = 0; i < kCount; ++i) {  // evenly over the sphere
     const double y = 1 - (2 * static_cast<double>(i) + 1) / kCount;
     const double r = std::sqrt(1 - y * y), turn = 2.399963 * static_cast<double>(i);
-    const Vec3d way{25 * r * std::cos(turn), 25 * y, 25 * r * std::sin(turn)};
-    spawns.push_back(flyer_at(middle + way));
-    goals.push_back(air_place(middle - way));
+    const Vec3d offset{25 * r * std::cos(turn), 25 * y, 25 * r * std::sin(turn)};
+    spawns.push_back(flyer_at(middle + offset));
+    goals.push_back(air_place(middle - offset));
   }
   crowd.set_goals(added(crowd, spawns), goals);
   expect_all(go(crowd, stage, kCount, 600, 3), kCount);
@@ -178,7 +178,7 @@ TEST(Flyers, TwoGroupsThatMeetInATunnelPassEachOther) {
   expect_all(go(crowd, stage, spawns.size(), 900, 2), spawns.size());
 }
 
-TEST(Flyers, ThirtyWhoWantThroughAWindowGetThrough) {
+TEST(Flyers, ThirtyThatHeadThroughAWindowAllPass) {
   Stage stage(window());
   Crowd crowd = made(stage.world());
   std::vector<AvatarSpawn> spawns;
@@ -216,12 +216,12 @@ TEST(Flyers, ThirtyWhoseGoalIsOnePlaceOfTheGroundAllLandAroundIt) {
   }
 }
 
-// Two floors 20 m apart: nobody walks from one to the other.
-TEST(Flyers, ThoseOnTheGroundTakeOffAndLandWhereNoWayOnFootLeads) {
+// Two floors 20 m apart: no path on foot leads from one to the other.
+TEST(Flyers, TakeOffAndLandWhereNoPathOnFootLeads) {
   Scene scene;
   scene.add_quad({0, 0, 0}, {0, 0, 8}, {8, 0, 8}, {8, 0, 0});
   scene.add_quad({28, 3, 0}, {28, 3, 8}, {36, 3, 8}, {36, 3, 0});
-  scene.add_box({1, 1.9, 1}, {3.5, 2.5, 5.5});  // under this table one does not take off
+  scene.add_box({1, 1.9, 1}, {3.5, 2.5, 5.5});  // no take-off under this table
   Stage stage(scene);
   Crowd crowd = made(stage.world());
   std::vector<AvatarSpawn> spawns;
@@ -239,7 +239,7 @@ TEST(Flyers, ThoseOnTheGroundTakeOffAndLandWhereNoWayOnFootLeads) {
 }
 
 // Walkers on a floor, on stairs and on a deck, flyers among them, above them and down to them.
-TEST(Flyers, ShareStairsAndLevelsWithThoseWhoWalk) {
+TEST(Flyers, ShareStairsAndLevelsWithWalkers) {
   for (const char* name : {"garage", "stairs", "bridge"}) {
     Stage stage(test::builtin({.name = name, .seed = 3}));
     Crowd crowd = made(stage.world());
@@ -280,7 +280,7 @@ TEST(Flyers, ShareStairsAndLevelsWithThoseWhoWalk) {
   }
 }
 
-// A crowd of walkers and flyers, on its way.
+// A moving crowd of walkers and flyers.
 Crowd mixed(Stage& stage, int32_t workers) {
   Crowd crowd = made(stage.world(), {.workers = workers});
   const auto walkers = scattered(crowd, 60, {.avatar_class = kAdult});
@@ -313,7 +313,7 @@ TEST(Flyers, SameStateForAnyWorkersAndMachines) {
   test::for_every_simd_target([&](const char* name) { walk(name, {1}); });
 }
 
-TEST(Flyers, ThousandsOverACityAmongThoseWhoWalkSlow) {
+TEST(Flyers, ThousandsOverACityAmongWalkersSlow) {
   Stage stage(test::builtin({.name = "city", .size = 120, .seed = 2}), 0.2);
   Crowd crowd = made(stage.world());
   const auto walkers = scattered(crowd, 1000, {.avatar_class = kAdult});
@@ -353,7 +353,7 @@ TEST(Flyers, ThousandsOverACityAmongThoseWhoWalkSlow) {
   EXPECT_EQ(faults.bodies, 6u * 2200);
 }
 
-TEST(Flyers, ARestoredCrowdGoesOnAsTheSavedOneWould) {
+TEST(Flyers, ARestoredCrowdContinuesAsTheSavedOneWould) {
   Stage stage(test::builtin({.name = "garage", .seed = 3}));
   Crowd crowd = mixed(stage, 2);
   for (int step = 0; step < 30; ++step) crowd.step();
@@ -368,7 +368,7 @@ TEST(Flyers, ARestoredCrowdGoesOnAsTheSavedOneWould) {
   }
 }
 
-TEST(Flyers, WhoIsDrivenTakesOffFliesAndLands) {
+TEST(Flyers, AnExternallyControlledOneTakesOffFliesAndLands) {
   Stage stage(open_air(30, 15));
   Crowd crowd = made(stage.world());
   const AvatarId id = added(crowd, stage.ground({5, 0, 15}), {.avatar_class = kFlyer});
@@ -415,8 +415,9 @@ TEST(Flyers, KeepOutOfObstaclesThatWaitForThem) {
   EXPECT_FALSE(crowd.remove_obstacle({}));
 }
 
-// From wall to wall and higher than the air, but for a gap at one end; and a room around somebody.
-TEST(Flyers, GoAroundAWallThatIsPutUpAndAreToldWhereThereIsNoWay) {
+// From wall to wall and higher than the air, except for an opening at one end; and a room around
+// one flyer.
+TEST(Flyers, GoAroundAWallThatIsPutUpAndReportUnreachableGoals) {
   Stage stage(open_air(40, 12));
   Crowd crowd = made(stage.world());
   std::vector<AvatarSpawn> spawns;
@@ -428,7 +429,7 @@ TEST(Flyers, GoAroundAWallThatIsPutUpAndAreToldWhereThereIsNoWay) {
   }
   const std::vector<AvatarId> ids = added(crowd, spawns);
   crowd.set_goals(ids, goals);
-  for (int i = 0; i < 20; ++i) crowd.step();  // They are on their ways.
+  for (int i = 0; i < 20; ++i) crowd.step();  // They fly to their goals.
   const auto wall = crowd.add_obstacle(Prism::box({19, -1, -5}, {19.5, 40, 33}));
   ASSERT_TRUE(wall);
   ASSERT_FALSE(crowd.obstacle(*wall)->waits);
@@ -446,8 +447,8 @@ TEST(Flyers, GoAroundAWallThatIsPutUpAndAreToldWhereThereIsNoWay) {
   expect_all(go(crowd, stage, 1, 1200), 1);
 }
 
-// Some hover nearer to a wall than the cells that ways take it to be clear of.
-TEST(Flyers, FindTheirWaysFromAndToWhereTheyTouchAWall) {
+// Some hover so near to a wall that the finder's cells around them are not free.
+TEST(Flyers, FindPathsFromAndToWhereTheyTouchAWall) {
   Stage stage(open_air(40, 12));
   Crowd crowd = made(stage.world());
   std::vector<AvatarSpawn> spawns;
@@ -462,7 +463,7 @@ TEST(Flyers, FindTheirWaysFromAndToWhereTheyTouchAWall) {
   expect_all(go(crowd, stage, 6, 1200), 6);
 }
 
-TEST(Flyers, GoStraightWhereWaysAreNotAskedFor) {
+TEST(Flyers, FlyStraightWherePathsAreNotRequested) {
   Stage stage(open_air(30, 15));
   Crowd crowd = made(stage.world(), {.routing = Routing::kStraight});
   std::vector<AvatarSpawn> spawns = {flyer_at({5, 5, 5}),
@@ -474,25 +475,25 @@ TEST(Flyers, GoStraightWhereWaysAreNotAskedFor) {
   expect_all(go(crowd, stage, 3, 200), 3);
 }
 
-TEST(Flyers, NobodyIsAddedWhereHeCannotFly) {
+TEST(Flyers, NoneIsAddedWhereItCannotFly) {
   Stage stage(open_air(20, 10));
   Crowd crowd = made(stage.world());
   const AvatarSpawn flyer{.avatar_class = kFlyer}, adult{.avatar_class = kAdult};
   EXPECT_TRUE(added(crowd, air_place({10, 3, 10}), flyer));
-  EXPECT_FALSE(added(crowd, air_place({10, 4, 10}), flyer));  // somebody is there
-  EXPECT_TRUE(added(crowd, air_place({10, 5, 10}), flyer));   // over him
+  EXPECT_FALSE(added(crowd, air_place({10, 4, 10}), flyer));  // an avatar is there
+  EXPECT_TRUE(added(crowd, air_place({10, 5, 10}), flyer));   // above it
   EXPECT_FALSE(added(crowd, air_place({10, -3, 10}), flyer));
   EXPECT_FALSE(added(crowd, air_place({10, 1e9, 10}), flyer));
   EXPECT_FALSE(added(crowd, air_place({NAN, 3, 10}), flyer));
   EXPECT_FALSE(added(crowd, air_place({-5, 3, 10}), flyer));
-  EXPECT_FALSE(added(crowd, air_place({5, 3, 5}), adult));  // he does not fly
+  EXPECT_FALSE(added(crowd, air_place({5, 3, 5}), adult));  // it does not fly
   Context context;
   const auto none = crowd.scatter(5, {.place = air_place({}), .avatar_class = kAdult}, context);
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, Errc::kBadConfig);
 }
 
-TEST(Flyers, WhoseGoalCannotBeReachedIsTold) {
+TEST(Flyers, UnreachableGoalsAreReported) {
   Stage stage(window());
   Crowd crowd = made(stage.world());
   const AvatarId id = added(crowd, air_place({5, 2, 5}), {.avatar_class = kFlyer});

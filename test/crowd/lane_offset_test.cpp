@@ -15,8 +15,7 @@
 namespace throng {
 namespace {
 
-// A corridor along X that turns along Z around the block that ends at (10, 2); both as wide as
-// told.
+// A corridor along X that turns along Z around the block that ends at (10, 2); both `width` wide.
 struct Bend {
   explicit Bend(double width) {
     const double out = 10 + width;
@@ -32,18 +31,18 @@ struct Bend {
     ground = *CrowdGround::make(*world.data(), 0, 400);
     stride = StrideGround(ground, 400);
     metre = static_cast<float>(kUnitsPerCell / 0.05);
-    corner = spot({10.22, 0, width - 0.22});
-    next = spot({10.4, 0, 12});
+    corner = point_at({10.22, 0, width - 0.22});
+    next = point_at({10.4, 0, 12});
     body.radius = static_cast<int32_t>(0.19 * metre);
   }
-  [[nodiscard]] Spot spot(Vec3d position) const {
+  [[nodiscard]] PathPoint point_at(Vec3d position) const {
     const Place place = world.find_place(0, position, 0.2);
     EXPECT_TRUE(place) << position.x << " " << position.z;
-    return spot_of(*world.data(), place);
+    return point_of(*world.data(), place);
   }
-  // Of who stands in the first corridor, so far from its inner wall (at z = width). [m]
-  Spot own(double x, double z) {
-    const Spot at = spot({x, 0, z});
+  // Of a body in the first corridor, at this distance from its inner wall (at z = width). [m]
+  PathPoint own(double x, double z) {
+    const PathPoint at = point_at({x, 0, z});
     body.x = at.x;
     body.z = at.z;
     body.level = at.level;
@@ -53,19 +52,19 @@ struct Bend {
     route.count = 2;
     return lane_offset(body, route, stride, metre);
   }
-  [[nodiscard]] double off(const Spot& place) const {  // from the corner [m]
+  [[nodiscard]] double off(const PathPoint& place) const {  // from the corner [m]
     return std::hypot(place.x - corner.x, place.z - corner.z) / metre;
   }
 
   World world;
   CrowdGround ground;
   StrideGround stride;
-  Spot corner, next;
+  PathPoint corner, next;
   Body body;
   float metre = 1;
 };
 
-TEST(LaneOffset, WhoWalksFartherOutTurnsFartherOut) {
+TEST(LaneOffset, ABodyThatWalksFartherOutTurnsFartherOut) {
   Bend bend(2);
   double before = -1;
   for (const double z : {1.7, 1.4, 1.0, 0.6, 0.25}) {  // the inner wall is at z = 2
@@ -83,7 +82,7 @@ TEST(LaneOffset, IsSeenFromHereAndSeesTheNextCorner) {
   uint64_t others = 0;
   for (int n = 0; n < 200; ++n) {
     const double x = 2 + 0.04 * n, z = 0.25 + 0.007 * ((n * 37) % 200);
-    const Spot place = bend.own(x, z);
+    const PathPoint place = bend.own(x, z);
     const GroundPoint at{place.x, place.z}, body = bend.body.point();
     if (bend.off(place) == 0) continue;
     EXPECT_TRUE(bend.stride.sees(bend.body.level, body, at, place.level, 3 * bend.metre)) << n;
@@ -96,17 +95,17 @@ TEST(LaneOffset, IsSeenFromHereAndSeesTheNextCorner) {
 }
 
 TEST(LaneOffset, IsTheCornerWhereFewFitOrNothingBends) {
-  Bend narrow(1.2);  // Middles have 0.82 m: two abreast, not three.
+  Bend narrow(1.2);  // Centres have 0.82 m: two abreast, not three.
   EXPECT_EQ(narrow.off(narrow.own(5, 0.4)), 0);
   Bend bend(2);
-  const Spot ahead = bend.next;
-  bend.next = bend.spot({10.9, 0, 1.8});  // straight on
+  const PathPoint ahead = bend.next;
+  bend.next = bend.point_at({10.9, 0, 1.8});  // straight on
   EXPECT_EQ(bend.off(bend.own(5, 1.6)), 0);
   bend.next = ahead;
   EXPECT_GT(bend.off(bend.own(5, 1.0)), 0);
 }
 
-TEST(LaneOffset, WhoMeetsAStreamKeepsToTheRightHalf) {
+TEST(LaneOffset, ABodyInCounterflowKeepsToTheRightHalf) {
   Bend bend(2);  // to the right
   for (const double z : {1.7, 1.4, 1.0, 0.6, 0.25}) {
     bend.body.on_right = false;
@@ -116,8 +115,8 @@ TEST(LaneOffset, WhoMeetsAStreamKeepsToTheRightHalf) {
   }
 }
 
-// Two rooms and a corridor of 2 m between them: with everybody at the place that the walls leave
-// him, sixty who met sixty there stood for ever.
+// Two rooms and a corridor of 2 m between them: with each avatar at the place that the walls leave
+// it, sixty that met sixty there stood for ever.
 TEST(LaneOffset, GroupsThatMeetInACorridorPass) {
   PlaneConfig plane;
   plane.ground = {{{0, 0}, {30, 0}, {30, 10}, {0, 10}}, {}};

@@ -43,20 +43,20 @@ TEST(LevelLine, ABlockIsFullIfItsSixteenCellsAre) {
   }
 }
 
-TEST(LevelLine, AllCellsOfAPlainBoxAreSetWhereverItsTileLies) {
-  int plain = 0;
+TEST(LevelLine, AllCellsOfAFlatBoxAreSetWhereverItsTileLies) {
+  int flat = 0;
   for (uint64_t seed = 0; seed < 50; ++seed) {
     const Rows rows = rows_with_holes(seed, 30);
     LevelLine line;
-    line.plain = full_blocks(rows.data());
+    line.flat = full_blocks(rows.data());
     const auto draw = [&](uint64_t n, uint64_t below) {
       return static_cast<int32_t>(random_below(seed, 2, n, below));
     };
     for (uint64_t n = 0; n < 20000; n += 4) {
       const int32_t x0 = draw(n, 64), z0 = draw(n + 1, 64);
       const int32_t x1 = x0 + draw(n + 2, 9) - 4, z1 = z0 + draw(n + 3, 9) - 4;
-      if (!line.box_is_plain(640 + x0, 64 + z0, 640 + x1, 64 + z1)) continue;
-      ++plain;
+      if (!line.box_is_flat(640 + x0, 64 + z0, 640 + x1, 64 + z1)) continue;
+      ++flat;
       for (int32_t z = std::min(z0, z1); z <= std::max(z0, z1); ++z) {
         for (int32_t x = std::min(x0, x1); x <= std::max(x0, x1); ++x) {
           ASSERT_TRUE(x >= 0 && x < 64 && z >= 0 && z < 64 && is_set(rows, x, z));
@@ -64,7 +64,7 @@ TEST(LevelLine, AllCellsOfAPlainBoxAreSetWhereverItsTileLies) {
       }
     }
   }
-  EXPECT_GT(plain, 10000);
+  EXPECT_GT(flat, 10000);
 }
 
 TEST(LevelLine, CrossesOneSideWhereBothBlocksAreJoined) {

@@ -14,7 +14,7 @@
 namespace throng {
 namespace {
 
-// Pairs that overlap: all pairs, by what anybody can read.
+// Pairs that overlap: all pairs, by public state alone.
 uint64_t overlapping(const Crowd& crowd, double radius, double height) {
   std::vector<AvatarState> all;
   crowd.read(all);
@@ -35,8 +35,9 @@ void give_goals(Crowd& crowd, const World& world, std::span<const AvatarId> ids,
   crowd.set_goals(ids, goals);
 }
 
-// Views come, go, jump and grow at random, so that avatars change between the levels all the time.
-TEST(LevelsOfDetail, NobodyTouchesAnybodyWhileViewsMoveAtRandom) {
+// Views come, go, jump and grow at random, so that avatars change their level of detail all the
+// time.
+TEST(LevelsOfDetail, NoAvatarTouchesAnotherWhileViewsMoveAtRandom) {
   for (const SteeringModel model : {SteeringModel::kSampled, SteeringModel::kSocialForce}) {
     for (const char* name : {"garage", "maze", "stairs"}) {
       const World world = test::bake(test::builtin({.name = name, .seed = 3}), 0.1);
@@ -44,7 +45,7 @@ TEST(LevelsOfDetail, NobodyTouchesAnybodyWhileViewsMoveAtRandom) {
       const auto ids = scattered(crowd, 250);
       give_goals(crowd, world, ids, 1);
       const AvatarClass body = world.summary().classes[0];
-      uint64_t draws = 0, far = 0, held = 0, moved = 0;
+      uint64_t draws = 0, low_detail = 0, skipped = 0, moved = 0;
       const auto unit = [&] { return random_unit(9, 1, draws++); };
       for (int step = 0; step < 200; ++step) {
         if (unit() < 0.3) {
@@ -56,35 +57,36 @@ TEST(LevelsOfDetail, NobodyTouchesAnybodyWhileViewsMoveAtRandom) {
           crowd.set_views(views);
         }
         const CrowdReport report = crowd.step();
-        far += report.low_detail;
-        held += report.skipped;
+        low_detail += report.low_detail;
+        skipped += report.skipped;
         moved += report.avatars - report.stood - report.skipped;
         give_goals(crowd, world, crowd.arrived(), report.step + 2);
         ASSERT_EQ(overlapping(crowd, body.radius, body.height), 0U) << name << ' ' << step;
         const CrowdCheck check = crowd.check();
         ASSERT_EQ(check.overlaps + check.wall_entries, 0U) << name << ' ' << step;
       }
-      EXPECT_GT(far, 200U * 250 / 5) << name;
-      EXPECT_GT(held, far / 3) << name;
-      EXPECT_LT(held, far) << name;
+      EXPECT_GT(low_detail, 200U * 250 / 5) << name;
+      EXPECT_GT(skipped, low_detail / 3) << name;
+      EXPECT_LT(skipped, low_detail) << name;
       EXPECT_GT(moved, 200U * 250 / 6) << name;
     }
   }
 }
 
-// A view of all is none; and far ones come to their goals, too.
-TEST(LevelsOfDetail, AViewOfAllChangesNothingAndWhoIsFarArrives) {
+// A view of all changes nothing; and avatars in low detail reach their goals, too.
+TEST(LevelsOfDetail, AViewOfAllChangesNothingAndLowDetailAvatarsArrive) {
   const World world = test::bake(worlds::flat(30), 0.1);
-  Crowd none = made(world), all = made(world), far = made(world);
+  Crowd none = made(world), all = made(world), low_detail = made(world);
   const CrowdView everything{{15, 0, 15}, 100}, nothing{{-500, 0, 0}, 1};
   all.set_views({&everything, 1});
-  far.set_views({&nothing, 1});
+  low_detail.set_views({&nothing, 1});
   uint64_t arrived = 0;
-  for (Crowd* crowd : {&none, &all, &far}) give_goals(*crowd, world, scattered(*crowd, 100), 4);
+  for (Crowd* crowd : {&none, &all, &low_detail})
+    give_goals(*crowd, world, scattered(*crowd, 100), 4);
   for (int step = 0; step < 600; ++step) {
     none.step();
     all.step();
-    const CrowdReport report = far.step();
+    const CrowdReport report = low_detail.step();
     EXPECT_EQ(report.low_detail, 100U);
     arrived += report.arrived;
     if (step < 100) {
@@ -117,8 +119,8 @@ TEST(LevelsOfDetail, StatesAreTheSameForAnyWorkersAndWhenRestored) {
   EXPECT_FALSE(Crowd::restore(world, {.dt = 0.05, .low_detail_steps = 2}, saved, context));
 }
 
-// Nobody moves farther at once than the narrowest body is wide.
-TEST(LevelsOfDetail, NobodyJumpsThroughAnother) {
+// No avatar moves farther at once than the narrowest body is wide.
+TEST(LevelsOfDetail, NoAvatarJumpsThroughAnother) {
   const World world = test::bake(worlds::flat(30), 0.1);
   Crowd crowd = made(world, {.dt = 0.05, .low_detail_steps = 16});
   const AvatarId id = added(crowd, world.find_place(0, {5, 0, 15}, 0.5), {.radius = 0.3});

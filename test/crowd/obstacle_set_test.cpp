@@ -27,13 +27,13 @@ uint64_t hash_of(const CrowdGround& ground) {
     const LevelLine& line = ground.line(level);
     const auto add = [&](const void* data, size_t bytes) { hash = hash_bytes(data, bytes, hash); };
     add(ground.legal(level), 512);
-    add(ground.plain(level), 512);
-    add(line.plain.data(), sizeof line.plain);
+    add(ground.flat(level), 512);
+    add(line.flat.data(), sizeof line.flat);
     add(line.beyond.data(), sizeof line.beyond);
     add(line.joined.data(), sizeof line.joined);
     add(&ground.records()[level].legal_cells, 4);
     const CrowdGround::Walk walk = ground.walk(level);
-    const bool flags[] = {walk.is_step_safe, walk.is_alone};
+    const bool flags[] = {walk.is_step_safe, walk.is_isolated};
     add(flags, sizeof flags);
   }
   return hash;
@@ -42,14 +42,14 @@ uint64_t hash_of(const CrowdGround& ground) {
 struct Fixture {
   World world;
   CrowdGround ground;
-  ObstacleSet book;
+  ObstacleSet obstacle_set;
   uint64_t n = 0;
 
   explicit Fixture(World of)
       : world(std::move(of)),
         ground(*CrowdGround::make(*world.data(), 0, kStep)),
-        book(world, world.summary().classes.size()) {
-    book.open_class(0, ground);
+        obstacle_set(world, world.summary().classes.size()) {
+    obstacle_set.open_class(0, ground);
   }
   double draw() { return random_unit(9, 1, n++); }
   Prism random_prism() {
@@ -59,16 +59,16 @@ struct Fixture {
                          3 + static_cast<int>(20 * draw()));
   }
   uint32_t put_up(const Prism& prism) {
-    const uint32_t slot = book.add(prism, ObstacleKind::kStatic, true);
-    book.settle(slot);
-    book.take_cells();
+    const uint32_t slot = obstacle_set.add(prism, ObstacleKind::kStatic, true);
+    obstacle_set.settle(slot);
+    obstacle_set.block_cells();
     return slot;
   }
 };
 
 // Square of the distance of a point from a convex polygon, by a walk along its sides in fine steps:
-// nothing of the code that takes cells.
-double far_from(const Prism& prism, double x, double z) {
+// independent of the code that blocks cells.
+double square_from(const Prism& prism, double x, double z) {
   bool left = true, right = true;
   double nearest = 1e300;
   for (size_t i = 0; i < prism.corners.size(); ++i) {
@@ -85,8 +85,8 @@ double far_from(const Prism& prism, double x, double z) {
   return left || right ? 0 : nearest;
 }
 
-TEST(ObstacleSet, TakesTheCellsOnWhichABodyCouldTouchAndFewMore) {
-  uint64_t taken = 0, left = 0;
+TEST(ObstacleSet, BlocksTheCellsOnWhichABodyCouldTouchAndFewMore) {
+  uint64_t blocked = 0, left = 0;
   for (const Scene& scene : {worlds::two_floors(), worlds::ramp(20, 8), worlds::flat(14)}) {
     Fixture f(test::bake(scene, 0.1));
     const CrowdGround baked = *CrowdGround::make(*f.world.data(), 0, kStep);
@@ -105,7 +105,7 @@ TEST(ObstacleSet, TakesTheCellsOnWhichABodyCouldTouchAndFewMore) {
             continue;
           }
           // Bodies at random points of the cell.
-          const bool is_taken = !f.ground.is_legal(level, x, z);
+          const bool is_blocked = !f.ground.is_legal(level, x, z);
           bool touches = false, could = false;
           for (int k = 0; k < 3; ++k) {
             const GroundPoint p{(int64_t{record.tile_x * 64 + x} << kUnitBits) +
@@ -113,32 +113,33 @@ TEST(ObstacleSet, TakesTheCellsOnWhichABodyCouldTouchAndFewMore) {
                                 (int64_t{record.tile_z * 64 + z} << kUnitBits) +
                                     static_cast<int64_t>(f.draw() * kUnitsPerCell)};
             const double unit = cell / kUnitsPerCell;
-            const double far = far_from(prism, origin.x + (static_cast<double>(p.x) + 0.5) * unit,
-                                        origin.z + (static_cast<double>(p.z) + 0.5) * unit);
+            const double far =
+                square_from(prism, origin.x + (static_cast<double>(p.x) + 0.5) * unit,
+                            origin.z + (static_cast<double>(p.z) + 0.5) * unit);
             const double feet = baked.feet(level, p) * 1e-3;
-            const double gap =
+            const double vertical_distance =
                 std::max(feet + bottom - prism.high, prism.low - feet - avatar.height);
-            touches |= far < avatar.radius && gap < 0;
-            could |= far < avatar.radius + 1.5 * cell + 0.05 && gap < 0.12;
+            touches |= far < avatar.radius && vertical_distance < 0;
+            could |= far < avatar.radius + 1.5 * cell + 0.05 && vertical_distance < 0.12;
           }
           if (touches) {
-            ASSERT_TRUE(is_taken) << level << ' ' << x << ' ' << z;
+            ASSERT_TRUE(is_blocked) << level << ' ' << x << ' ' << z;
           }
-          if (is_taken) {
+          if (is_blocked) {
             ASSERT_TRUE(could) << level << ' ' << x << ' ' << z;
           }
-          ++(is_taken ? taken : left);
+          ++(is_blocked ? blocked : left);
         }
       }
-      f.book.remove(slot);
-      f.book.take_cells();
+      f.obstacle_set.remove(slot);
+      f.obstacle_set.block_cells();
     }
   }
-  EXPECT_GT(taken, 2000u);
+  EXPECT_GT(blocked, 2000u);
   EXPECT_GT(left, 50000u);
 }
 
-TEST(ObstacleSet, GivesBackToTheBitWhatItTook) {
+TEST(ObstacleSet, FreesToTheBitWhatItBlocked) {
   for (const char* name : {"garage", "church", "maze"}) {
     Fixture f(test::bake(test::builtin({.name = name, .seed = 3}), 0.1));
     const uint64_t baked = hash_of(f.ground);
@@ -150,44 +151,45 @@ TEST(ObstacleSet, GivesBackToTheBitWhatItTook) {
       }
       const size_t i = static_cast<size_t>(f.draw() * static_cast<double>(slots.size()));
       if (f.draw() < 0.5) {
-        f.book.ask_to_be_at(slots[i], f.random_prism());
-        f.book.settle(slots[i]);
+        f.obstacle_set.request_move(slots[i], f.random_prism());
+        f.obstacle_set.settle(slots[i]);
       } else {
-        f.book.remove(slots[i]);
+        f.obstacle_set.remove(slots[i]);
         slots.erase(slots.begin() + static_cast<ptrdiff_t>(i));
       }
-      f.book.take_cells();
+      f.obstacle_set.block_cells();
     }
     EXPECT_NE(hash_of(f.ground), baked);
-    // What is left is what the same obstacles take of a new ground.
-    CrowdGround fresh = *CrowdGround::make(*f.world.data(), 0, kStep);
+    // What is left must equal what the same obstacles leave of a new ground.
+    CrowdGround rebuilt = *CrowdGround::make(*f.world.data(), 0, kStep);
     ObstacleSet again(f.world, f.world.summary().classes.size());
-    again.open_class(0, fresh);
+    again.open_class(0, rebuilt);
     for (const uint32_t slot : slots) {
-      again.settle(again.add(f.book.at(slot).place, ObstacleKind::kStatic, true));
+      again.settle(again.add(f.obstacle_set.at(slot).place, ObstacleKind::kStatic, true));
     }
-    again.take_cells();
-    EXPECT_EQ(hash_of(f.ground), hash_of(fresh)) << name;
-    for (const uint32_t slot : slots) f.book.remove(slot);
-    f.book.take_cells();
+    again.block_cells();
+    EXPECT_EQ(hash_of(f.ground), hash_of(rebuilt)) << name;
+    for (const uint32_t slot : slots) f.obstacle_set.remove(slot);
+    f.obstacle_set.block_cells();
     EXPECT_EQ(hash_of(f.ground), baked) << name;
   }
 }
 
-TEST(ObstacleSet, TakesNoMoreMemoryTheMoreOftenOneComesAndGoes) {
+TEST(ObstacleSet, MemoryDoesNotGrowAsObstaclesComeAndGo) {
   Fixture f(test::bake(worlds::flat(14), 0.1));
   const auto come_and_go = [&] {
-    f.book.remove(f.put_up(Prism::box({5, 0, 5}, {8, 1, 8})));
-    f.book.take_cells();
+    f.obstacle_set.remove(f.put_up(Prism::box({5, 0, 5}, {8, 1, 8})));
+    f.obstacle_set.block_cells();
   };
   come_and_go();
-  const uint64_t ground = f.ground.bytes(), book = f.book.bytes();
+  const uint64_t ground = f.ground.bytes(), obstacle_set = f.obstacle_set.bytes();
   for (int i = 0; i < 100; ++i) come_and_go();
   EXPECT_EQ(f.ground.bytes(), ground);
-  EXPECT_EQ(f.book.bytes(), book);
+  EXPECT_EQ(f.obstacle_set.bytes(), obstacle_set);
 }
 
-// The ground as it was baked, without the cells that `now` lacks: none of its lines, sets or joins.
+// The ground as it was baked, without the cells blocked in `now`: uses none of its lines, sets or
+// joins.
 struct PlainGround {
   using Level = GroundLevel;
   WorldGround baked;
@@ -217,8 +219,8 @@ TEST(ObstacleSet, FastMovesAreThoseOfThePlainGround) {
       const auto from = *ground_point(*f.world.data(), place);
       uint32_t level = place.level1 - 1;
       if (!f.ground.is_legal(level, from.cell_x() & 63, from.cell_z() & 63)) continue;
-      const auto way = [&] { return static_cast<int64_t>((f.draw() * 8 - 4) * kUnitsPerCell); };
-      const GroundPoint to{from.x + way(), from.z + way()};
+      const auto offset = [&] { return static_cast<int64_t>((f.draw() * 8 - 4) * kUnitsPerCell); };
+      const GroundPoint to{from.x + offset(), from.z + offset()};
       StrideGround::Landing landing;
       const bool moved = stride.move(level, f.ground.feet(level, from), from, to, landing);
       GroundLevel on = ground_level(*f.world.data(), level, 0);
@@ -255,7 +257,7 @@ TEST(ObstacleSet, TheHullOfTwoPrismsHoldsAllBetween) {
     EXPECT_GE(hull.high, std::max(a.high, b.high));
     for (const auto& [x, z] : a.corners) {
       const double t = draw();
-      EXPECT_LT(far_from(hull, x + t * dx, z + t * dz), 0.05);
+      EXPECT_LT(square_from(hull, x + t * dx, z + t * dz), 0.05);
     }
   }
 }

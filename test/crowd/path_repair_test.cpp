@@ -35,7 +35,7 @@ struct Crated {
   }
   void put_up(const Prism& prism) {
     book.settle(book.add(prism, ObstacleKind::kStatic, true));
-    book.take_cells();
+    book.block_cells();
     ASSERT_TRUE(live.add_obstacle(prism));
   }
 };
@@ -47,7 +47,7 @@ Crated crated(World world) {
   return {std::move(world), *finder};
 }
 
-// Is each leg a legal move over the cells that are left?
+// Is each segment a legal move over the cells that are left?
 bool is_open(const Crated& c, const Path& path) {
   for (size_t i = 1; i < path.points.size(); ++i) {
     const Place &a = path.points[i - 1], &b = path.points[i];
@@ -103,7 +103,7 @@ TEST(Detours, LeadAroundCratesAndAreHardlyLongerThanTheBest) {
   EXPECT_GT(covered, 100u);
   EXPECT_GT(searched_in_vain, 5u);
   EXPECT_LT(ratios / static_cast<double>(reached), 1.03);
-  EXPECT_LT(worst, 2 * kLongestDetour);
+  EXPECT_LT(worst, 2 * kMaxRepairDetour);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ bool have_arrived(const PlainCrowd& crowd) {
                      [](const PlainBody& b) { return b.arrived >= 0; });
 }
 
-TEST(PlainCrowd, NobodyEverTouchesAnotherHoweverDense) {
+TEST(PlainCrowd, NoBodyEverTouchesAnotherHoweverDense) {
   for (const uint64_t seed : {1, 2, 3}) {
     PlainConfig config;
     std::vector<PlainBody> bodies = random_bodies(config, 100, 0.9, seed, config.side);
@@ -39,20 +39,20 @@ TEST(PlainCrowd, NobodyEverTouchesAnotherHoweverDense) {
 }
 
 TEST(PlainCrowd, SeesOverTheBordersOfAPlaneThatRepeatsItself) {
-  for (const double side : {6.0, 12.0, 18.0}) {  // one, two, three times as wide as one sees
+  for (const double side : {6.0, 12.0, 18.0}) {  // one, two, three times the sight
     PlainConfig config;
-    const auto spot = [&](double x, double z) {
+    const auto point_at = [&](double x, double z) {
       return Spot{config.to_units(x), config.to_units(z)};
     };
     std::vector<PlainBody> bodies(4);
-    bodies[0].at = spot(side - 0.4, 1);
-    bodies[1].at = spot(side / 2 + 0.3, side - 0.7);
-    bodies[0].goal = spot(side + 4, 1);
-    bodies[1].goal = spot(side / 2 + 0.3, side + 4);
-    bodies[2].at = spot(0.4, 1);
-    bodies[2].goal = spot(-4, 1);
-    bodies[3].at = spot(side / 2 + 0.3, 0.3);
-    bodies[3].goal = spot(side / 2 + 0.3, -4);
+    bodies[0].at = point_at(side - 0.4, 1);
+    bodies[1].at = point_at(side / 2 + 0.3, side - 0.7);
+    bodies[0].goal = point_at(side + 4, 1);
+    bodies[1].goal = point_at(side / 2 + 0.3, side + 4);
+    bodies[2].at = point_at(0.4, 1);
+    bodies[2].goal = point_at(-4, 1);
+    bodies[3].at = point_at(side / 2 + 0.3, 0.3);
+    bodies[3].goal = point_at(side / 2 + 0.3, -4);
     config.side = config.to_units(side);
     PlainCrowd crowd(bodies, config);
     for (int step = 0; step < 30; ++step) {
@@ -79,14 +79,14 @@ TEST(PlainCrowd, TwoHeadOnPassOnTheRight) {
   while (!have_arrived(crowd) && crowd.time() < 20) {
     crowd.step();
     ASSERT_EQ(crowd.overlaps(), 0u);
-    // Each to its own right. Who decides first may be the only one who must.
+    // Each to its own right. The body that decides first may be the only one that must turn.
     aside = std::max({aside, crowd.bodies()[0].at.z, -crowd.bodies()[1].at.z});
   }
   EXPECT_LT(crowd.time(), 9);
   EXPECT_GT(aside, config.to_units(0.2));  // its own right
 }
 
-TEST(PlainCrowd, OfTwoBoundForOnePlaceOneArrivesFirst) {
+TEST(PlainCrowd, OfTwoThatHeadToOnePlaceOneArrivesFirst) {
   std::vector<PlainBody> bodies(2);
   const PlainConfig config;
   bodies[0].at = {config.to_units(-4), 0};
@@ -104,7 +104,7 @@ TEST(PlainCrowd, OfTwoBoundForOnePlaceOneArrivesFirst) {
   EXPECT_TRUE(crowd.bodies()[0].arrived >= 0 || crowd.bodies()[1].arrived >= 0);
 }
 
-TEST(PlainCrowd, RingsChangePlacesBecauseTheImpatientTurnTogether) {
+TEST(PlainCrowd, RingsChangePlacesBecauseBlockedBodiesTurnTogether) {
   double took[2] = {};
   for (const bool deadlock_avoidance : {true, false}) {
     PlainConfig config;

@@ -17,9 +17,9 @@ constexpr int32_t kLevels = 6;
 std::vector<LevelLine> random_lines() {
   std::vector<LevelLine> lines(kLevels);
   for (size_t level = 0; level < lines.size(); ++level) {
-    for (size_t z = 0; z < 16; ++z) {  // three blocks of four are plain
+    for (size_t z = 0; z < 16; ++z) {  // three blocks of four are flat
       const uint64_t bits = random_u64(level, z, 1);
-      lines[level].plain[z] = static_cast<uint16_t>(bits | bits >> 16);
+      lines[level].flat[z] = static_cast<uint16_t>(bits | bits >> 16);
     }
   }
   return lines;
@@ -43,14 +43,14 @@ std::vector<Avatar> random_avatars(size_t size, uint64_t seed) {
   return avatars;
 }
 
-// What the words say, one avatar at a time.
+// The scalar reference, one avatar at a time.
 PlannedSteps plan_one_by_one(const LevelLine* lines, PixelGrid grid, std::vector<Avatar>& avatars) {
   PlannedSteps planned;
   for (size_t n = 0; n < avatars.size(); ++n) {
     Avatar& a = avatars[n];
     const int32_t x0 = a.x >> kUnitBits, z0 = a.z >> kUnitBits;
     const int32_t x1 = (a.x + a.vx) >> kUnitBits, z1 = (a.z + a.vz) >> kUnitBits;
-    if (!lines[a.level].box_is_plain(x0, z0, x1, z1)) continue;
+    if (!lines[a.level].box_is_flat(x0, z0, x1, z1)) continue;
     const bool stays = grid.pixel(x0) == grid.pixel(x1) && grid.pixel(z0) == grid.pixel(z1);
     (stays ? planned.stays : planned.leaves) |= uint64_t{1} << n;
     a.x += stays ? a.vx : 0;

@@ -24,8 +24,8 @@ std::vector<AvatarId> with_goals(Crowd& crowd, const World& world, uint32_t coun
   return ids;
 }
 
-// Whatever a model wishes, nobody touches anybody or enters a wall, and most get on.
-TEST(SteeringModels, NobodyEntersAWallOrAnotherWithAnyModel) {
+// Whatever velocity a model prefers, no avatar touches another or enters a wall, and most progress.
+TEST(SteeringModels, NoAvatarEntersAWallOrAnotherWithAnyModel) {
   for (const SteeringModel model : kModels) {
     for (const char* name : {"garage", "stairs", "maze"}) {
       const World world = test::bake(test::builtin({.name = name, .seed = 3}), 0.1);
@@ -61,7 +61,7 @@ TEST(SteeringModels, StatesAreTheSameForAnyWorkersAndDifferByModel) {
   EXPECT_NE(hashes[2], hashes[4]);
 }
 
-TEST(SteeringModels, ASavedCrowdGoesOnWithItsModelAndNoOther) {
+TEST(SteeringModels, ASavedCrowdContinuesWithItsModelAndNoOther) {
   const World world = test::bake(test::builtin({.name = "garage", .seed = 3}), 0.1);
   for (const SteeringModel model : kModels) {
     Crowd crowd = made(world, {.model = model});
@@ -82,8 +82,8 @@ TEST(SteeringModels, ASavedCrowdGoesOnWithItsModelAndNoOther) {
   }
 }
 
-// Who is led from outside goes where he is led.
-TEST(SteeringModels, VelocitiesFromOutsideAreWishes) {
+// An externally controlled avatar moves as it is controlled.
+TEST(SteeringModels, VelocitiesFromOutsideArePreferredVelocities) {
   const World world = test::bake(worlds::flat(20), 0.1);
   for (const SteeringModel model : kModels) {
     Crowd crowd = made(world, {.model = model});

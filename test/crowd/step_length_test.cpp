@@ -31,7 +31,7 @@ World open_ground(double cell) {
   return test::bake(scene, cell, {AvatarClass{}});
 }
 
-// One that is bound for somewhere far along a line that is not along an axis.
+// An avatar that heads to a place far along a line that is not along an axis.
 std::pair<Crowd, AvatarId> walker(const World& world, double dt, double speed) {
   auto crowd = Crowd::create(world, {.dt = dt, .workers = 1});
   EXPECT_TRUE(crowd) << crowd.error().message;
@@ -91,7 +91,7 @@ TEST(StepLength, EveryLengthIsRefusedWithASentenceOrWalked) {
   EXPECT_EQ(walked, 4);
 }
 
-TEST(StepLength, SlowOnesInShortStepsComeAsFarAsTheirSpeedSays) {
+TEST(StepLength, SlowAvatarsInShortStepsMoveAsFarAsTheirSpeedRequires) {
   for (const double cell : {0.1, 0.25, 0.5, 1.0}) {
     const World world = open_ground(cell);
     for (const double dt : {0.1, 0.01, 0.001}) {

@@ -28,7 +28,7 @@ struct Fixture {
     ground = *CrowdGround::make(*world.data(), 0, kStep);
     stride = StrideGround(ground, kStep);
   }
-  // A body at random, and where it looks.
+  // A random body, and a point to look at.
   struct Stand {
     uint32_t level;
     GroundPoint at;
@@ -54,60 +54,60 @@ double number(uint64_t n, uint64_t stream) { return random_unit(7, stream, n); }
 TEST(StrideGround, SeesAsFarAsItCanWalkCellByCell) {
   for (const BuiltinWorldConfig& config : kWorlds) {
     const Fixture f(config);
-    uint64_t free = 0, blocked = 0, told_apart = 0;
+    uint64_t free = 0, blocked = 0, distinguished = 0;
     for (uint64_t n = 0; n < 20000; ++n) {
       const auto s = f.stand(n);
       const double angle = 2 * M_PI * number(n, 1), far = 8 * kUnitsPerCell * 10 * number(n, 2);
       GroundPoint from = s.at, to{s.at.x + std::lround(far * std::cos(angle)),
                                   s.at.z + std::lround(far * std::sin(angle))};
-      // Ways turn at corners of cells, so lines from, to and through them are common.
+      // Paths bend at corners of cells, so lines from, to and through them are common.
       const auto to_corner = [](int64_t v) { return v & ~int64_t{kUnitsPerCell - 1}; };
       if (n % 4 >= 1) to = {to_corner(to.x), to_corner(to.z)};
       if (n % 4 >= 2) from = {to_corner(from.x), to_corner(from.z)};
       if (n % 4 == 3) to.x = from.x + (to.z - from.z);
       uint32_t end = s.level;
       const bool expected = walk(f.ground, end, from, to, kStep);
-      told_apart += f.stride.sees(s.level, from, to, end, 1e9f) != expected;
+      distinguished += f.stride.sees(s.level, from, to, end, 1e9f) != expected;
       ++(expected ? free : blocked);
       if (!expected) continue;
       EXPECT_FALSE(f.stride.sees(s.level, from, to, end + 1, 1e9f));
     }
     EXPECT_GT(free, 1000u) << config.name;
     EXPECT_GT(blocked, 1000u) << config.name;
-    EXPECT_EQ(told_apart, 0u) << config.name;
+    EXPECT_EQ(distinguished, 0u) << config.name;
   }
 }
 
-TEST(StrideGround, FreeWaysEndWhereTheCellByCellWalkDoes) {
+TEST(StrideGround, FreeDistancesEndWhereTheCellByCellWalkDoes) {
   for (const BuiltinWorldConfig& config : kWorlds) {
     const Fixture f(config);
-    uint64_t ends = 0, told_apart = 0;
+    uint64_t ends = 0, distinguished = 0;
     for (uint64_t n = 0; n < 5000; ++n) {
       const auto s = f.stand(n);
       const double angle = 2 * M_PI * number(n, 1);
       const steer::Plane direction{static_cast<float>(std::cos(angle)),
                                    static_cast<float>(std::sin(angle))};
       const float most = 20.0f * kUnitsPerCell;
-      const float way = f.stride.free_distance(s.level, s.at, direction, most);
+      const float distance = f.stride.free_distance(s.level, s.at, direction, most);
       const auto at = [&](double size) {
         return GroundPoint{s.at.x + std::lround(size * direction.x),
                            s.at.z + std::lround(size * direction.z)};
       };
       uint32_t end = s.level;
-      told_apart += !walk(f.ground, end, s.at, at(std::max(way - 8.0, 0.0)), kStep);
+      distinguished += !walk(f.ground, end, s.at, at(std::max(distance - 8.0, 0.0)), kStep);
       end = s.level;
-      if (way == most) continue;
+      if (distance == most) continue;
       ++ends;
-      told_apart += walk(f.ground, end, s.at, at(way + 8.0), kStep);
+      distinguished += walk(f.ground, end, s.at, at(distance + 8.0), kStep);
     }
     EXPECT_GT(ends, 500u) << config.name;
     // Where a line grazes a corner of cells, one that ends elsewhere rounds to the other side.
-    EXPECT_LE(told_apart, 15u) << config.name;
+    EXPECT_LE(distinguished, 15u) << config.name;
   }
 }
 
-// Wherever a square is said to be open, and from wherever to wherever one goes in it, cell by cell;
-// also where obstacles took cells, and gave them back.
+// Walks cell by cell between random points of squares that are reported as open; also where
+// obstacles blocked cells, and freed them.
 TEST(StrideGround, OpenSquaresHaveNoWalls) {
   for (const BuiltinWorldConfig& config : kWorlds) {
     Fixture f(config);
@@ -139,7 +139,7 @@ TEST(StrideGround, OpenSquaresHaveNoWalls) {
     const uint64_t open_as_baked = open;
     const size_t levels = f.ground.records().size();
     const auto take = [&](uint32_t level, const CellRows& cells) {
-      f.ground.set_taken(level, cells);
+      f.ground.set_blocked(level, cells);
       f.ground.join_tile(f.ground.records()[level].tile_x, f.ground.records()[level].tile_z);
     };
     CellRows some{};
@@ -157,9 +157,9 @@ TEST(StrideGround, OpenSquaresHaveNoWalls) {
   }
 }
 
-// The window says of each square what may be walked on there, and the ways are those of a plain
-// loop over its squares.
-TEST(WallWindow, WaysAreThoseOfAPlainLoop) {
+// For each square the window states what may be walked on there, and the distances are those of a
+// simple loop over its squares.
+TEST(WallWindow, DistancesAreThoseOfAPlainLoop) {
   const auto plain = [](const WallWindow& w, steer::Plane d, float look) {
     const auto by = [&](float part) {
       return static_cast<int32_t>(std::lrint(part * static_cast<float>(w.spacing())));
@@ -174,7 +174,7 @@ TEST(WallWindow, WaysAreThoseOfAPlainLoop) {
     return std::min(static_cast<float>(free * w.spacing()), look);
   };
   test::for_every_simd_target([&](const char* name) {
-    uint64_t short_ways = 0;
+    uint64_t short_distances = 0;
     for (uint64_t n = 0; n < 2000; ++n) {
       WallWindow window;
       window.shift = n % 2 == 0 ? kUnitBits : kUnitBits + 1;
@@ -188,28 +188,28 @@ TEST(WallWindow, WaysAreThoseOfAPlainLoop) {
       const double angle = 2 * M_PI * number(n, 5);
       const steer::Fan fan = steer::fan_around(
           {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))});
-      const auto look = static_cast<float>(window.reach() * number(n, 6));
-      FreeDistances ways;
-      find_free_distances(window, fan, look, ways);
-      for (size_t k = 0; k < ways.size(); ++k) {
-        ASSERT_EQ(ways[k], plain(window, fan[k], look)) << name << " " << n << " " << k;
-        short_ways += ways[k] < look;
+      const auto look = static_cast<float>(window.range() * number(n, 6));
+      FreeDistances distances;
+      find_free_distances(window, fan, look, distances);
+      for (size_t k = 0; k < distances.size(); ++k) {
+        ASSERT_EQ(distances[k], plain(window, fan[k], look)) << name << " " << n << " " << k;
+        short_distances += distances[k] < look;
       }
     }
-    EXPECT_GT(short_ways, 10000u);
+    EXPECT_GT(short_distances, 10000u);
   });
 }
 
-TEST(StrideGround, WindowsShowTheWaysThatAreFree) {
+TEST(StrideGround, WindowsShowWhichDistancesAreFree) {
   for (const BuiltinWorldConfig& config : kWorlds) {
     const Fixture f(config);
-    uint64_t open = 0, walls = 0, steps = 0, ways = 0, near = 0;
+    uint64_t open = 0, walls = 0, steps = 0, distances = 0, near = 0;
     for (uint64_t n = 0; n < 5000; ++n) {
       const auto s = f.stand(n);
       const float look = n % 2 == 0 ? 9.1f * kUnitsPerCell : 24.5f * kUnitsPerCell;
       const auto cells = static_cast<int32_t>(look) / kUnitsPerCell + 1;
       WallWindow window;
-      const auto around = f.stride.look_around(
+      const auto around = f.stride.query_walls(
           s.level, s.y, s.at, cells, static_cast<int32_t>(look / kUnitsPerCell * 100), window);
       open += around == StrideGround::Around::kOpen;
       walls += around == StrideGround::Around::kWalls;
@@ -219,12 +219,12 @@ TEST(StrideGround, WindowsShowTheWaysThatAreFree) {
       FreeDistances found;
       found.fill(look);
       if (around == StrideGround::Around::kWalls) {
-        ASSERT_LE(look, window.reach());
+        ASSERT_LE(look, window.range());
         find_free_distances(window, fan, look, found);
       }
       for (size_t k = 0; k < fan.size(); ++k) {
         const float exact = f.stride.free_distance(s.level, s.at, fan[k], look);
-        ++ways;
+        ++distances;
         near += std::abs(found[k] - exact) <= 2 * kUnitsPerCell;
       }
     }
@@ -232,7 +232,7 @@ TEST(StrideGround, WindowsShowTheWaysThatAreFree) {
     EXPECT_GT(open, 10u) << config.name;
     EXPECT_LT(steps, 500u) << config.name;
     // The others: stairs, and corners that a line passes narrowly.
-    EXPECT_GT(static_cast<double>(near), 0.97 * static_cast<double>(ways)) << config.name;
+    EXPECT_GT(static_cast<double>(near), 0.97 * static_cast<double>(distances)) << config.name;
   }
 }
 

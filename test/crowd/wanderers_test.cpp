@@ -31,7 +31,7 @@ World baked(const Scene& scene, BakeConfig config = {}) {
   return std::move(*world);
 }
 
-TEST(Wanderers, NobodyEverOverlapsOrEntersAWall) {
+TEST(Wanderers, NoAvatarEverOverlapsAnotherOrEntersAWall) {
   const World world = baked(small_garage());
   for (int32_t avatar_class = 0; avatar_class < 4; ++avatar_class) {
     auto crowd =
@@ -126,7 +126,7 @@ TEST(Wanderers, BadSettingsAreRefusedWithASentence) {
 }
 
 // Gentle slopes of 0.9 m with a step of 0.1 m between that is too steep to stand on: a single row
-// or column of illegal cells, which a step from cell to cell but one must not miss.
+// or column of illegal cells, which a walk over every second cell would miss.
 Scene washboard(bool along_x) {
   Scene scene;
   const auto strip = [&](double from, double to, double y0, double y1) {
@@ -144,13 +144,14 @@ Scene washboard(bool along_x) {
   return scene;
 }
 
-// Nobody is in the way, so what the crowd does in passes and by tricks is what the world allows.
+// No other avatar blocks it, so the passes and short cuts of the crowd must do what the world
+// permits.
 TEST(Wanderers, AnAvatarAloneWalksAsTheWorldAllows) {
   const World worlds[] = {baked(small_garage()), baked(washboard(true)), baked(washboard(false))};
   int moved = 0, blocked = 0;
   for (uint64_t seed = 0; seed < 180; ++seed) {
     const World& world = worlds[seed % 5 < 3 ? 0 : seed % 5 - 2];
-    const double speed = seed % 3 == 0 ? 2.4 : 0;  // A long step is more than the short cuts take.
+    const double speed = seed % 3 == 0 ? 2.4 : 0;  // A long step exceeds the short cuts.
     auto crowd = Wanderers::create(world, {.avatars = 1, .speed = speed, .seed = seed});
     ASSERT_TRUE(crowd);
     std::vector<AvatarState> before, after;
@@ -162,7 +163,7 @@ TEST(Wanderers, AnAvatarAloneWalksAsTheWorldAllows) {
       const AvatarState& b = after[0];
       const Place from = world.find_place(0, a.position, 0.001);
       ASSERT_TRUE(from);
-      // Half a unit is lost in rounding on the way out: the world gets what the crowd has.
+      // Half a unit is lost in rounding on output: the world is given what the crowd returned.
       const double length = std::hypot(b.position.x - a.position.x, b.position.z - a.position.z);
       if (report.moved == 1) {
         const MoveResult move =

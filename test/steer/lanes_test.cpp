@@ -97,20 +97,20 @@ TEST(Lanes, TheOrderDoesNotMatterAndTheSpeedStays) {
 
 TEST(Spacing, LeadsAwayFromOthersThatAreTooClose) {
   Situation s;
-  EXPECT_EQ(making_room({}, s).x, 0);
+  EXPECT_EQ(keep_spacing({}, s).x, 0);
   const SampledSettings settings;  // bodies count 0.02 m larger
   const auto add = [&](Plane at) {
     s.near.add(settings, {.at = at, .velocity = {}, .radii = 0.5f});
   };
   add({2, 0});
-  EXPECT_EQ(making_room({}, s).x, 0);
+  EXPECT_EQ(keep_spacing({}, s).x, 0);
   add({0.54f, 0});  // 0.02 m off: 0.04 m are missing, 3 times as much a second
-  EXPECT_NEAR(making_room({}, s).x, -0.12f, 1e-3f);
-  EXPECT_EQ(making_room({}, s).z, 0);
+  EXPECT_NEAR(keep_spacing({}, s).x, -0.12f, 1e-3f);
+  EXPECT_EQ(keep_spacing({}, s).z, 0);
   add({0, -0.5f});  // touching: 0.06 m
-  EXPECT_NEAR(making_room({}, s).z, 0.18f, 1e-3f);
+  EXPECT_NEAR(keep_spacing({}, s).z, 0.18f, 1e-3f);
   add({-0.54f, 0});
-  EXPECT_NEAR(making_room({}, s).x, 0, 1e-3f) << "between two it stays";
+  EXPECT_NEAR(keep_spacing({}, s).x, 0, 1e-3f) << "between two it stays";
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ constexpr SteeringModel kCurves = SteeringModel::kCurvilinear,
 View walker(Plane velocity, Plane to_target = {100, 0}) {
   return {.velocity = velocity,
           .preferred = {1.3f, 0},
-          .way = to_target,
+          .to_target = to_target,
           .fastest = 1.3f,
           .radius = 0.25f,
           .slot = 3,
@@ -107,14 +107,14 @@ TEST(SteeringModels, AWallPushesAnAvatarOfTheForceModel) {
 }
 
 TEST(SteeringModels, CandidatesBeginWithThePreferredVelocity) {
-  const Choices candidates = ways_about({0, 1});
+  const Choices candidates = candidates_about({0, 1});
   EXPECT_EQ(candidates[0].z, 1);
   EXPECT_NEAR(candidates[1].x, -0.5, 1e-6);  // 30 degrees to the right of Z, seen from above
   EXPECT_NEAR(candidates[2].x, 0.5, 1e-6);
   EXPECT_NEAR(candidates[5].x, -1, 1e-6);
   EXPECT_NEAR(candidates[6].x, 1, 1e-6);
   EXPECT_EQ(candidates[7].z, 0.75f);
-  for (const Plane& v : ways_about({})) EXPECT_EQ(size_of(v), 0);
+  for (const Plane& v : candidates_about({})) EXPECT_EQ(size_of(v), 0);
 }
 
 }  // namespace

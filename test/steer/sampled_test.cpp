@@ -204,36 +204,36 @@ TEST(SampledSteering, VectorsFindTheSameBits) {
 }
 
 TEST(SampledSteering, WithoutProgressItTurnsRightAndReturnsWithProgress) {
-  const Patience settings;
+  const DeadlockAvoidance settings;
   float angle = 0;
-  for (int i = 0; i < 5; ++i) angle = next_turn(settings, angle, 0.1f, 0.1f, 0.1f);
+  for (int i = 0; i < 5; ++i) angle = next_detour_angle(settings, angle, 0.1f, 0.1f, 0.1f);
   EXPECT_NEAR(angle, 5 * 0.1 * settings.rate, 1e-6);
-  angle = next_turn(settings, settings.side_angle, 0.9f, 0, 0.1f);
+  angle = next_detour_angle(settings, settings.side_angle, 0.9f, 0, 0.1f);
   EXPECT_NEAR(angle, settings.side_angle - 0.1 * settings.return_rate, 1e-6);
-  for (int i = 0; i < 100; ++i) angle = next_turn(settings, angle, 1, 1, 0.1f);
+  for (int i = 0; i < 100; ++i) angle = next_detour_angle(settings, angle, 1, 1, 0.1f);
   EXPECT_EQ(angle, 0);
 }
 
 TEST(SampledSteering, ABlockedAvatarTurnsAwaySlowlyUntilItWalks) {
-  const Patience settings;
+  const DeadlockAvoidance settings;
   float angle = settings.side_angle;
-  for (int i = 0; i < 10; ++i) angle = next_turn(settings, angle, 0, 0, 0.1f);
+  for (int i = 0; i < 10; ++i) angle = next_detour_angle(settings, angle, 0, 0, 0.1f);
   EXPECT_NEAR(angle, settings.side_angle + settings.slow_rate, 1e-5);
   // It walks away from its goal: the angle decreases until it can head to the goal again.
-  EXPECT_NEAR(next_turn(settings, angle, -0.2f, 0.9f, 0.1f), angle - 0.1 * settings.return_rate,
-              1e-6);
+  EXPECT_NEAR(next_detour_angle(settings, angle, -0.2f, 0.9f, 0.1f),
+              angle - 0.1 * settings.return_rate, 1e-6);
   // In a corner no angle helps: it starts again at 0.
   float largest = 0;
   int steps = 0;
   for (; angle > 0; ++steps) {
-    angle = next_turn(settings, angle, -0.1f, 0.2f, 0.1f);
+    angle = next_detour_angle(settings, angle, -0.1f, 0.2f, 0.1f);
     largest = std::max(largest, angle);
   }
   EXPECT_NEAR(largest, settings.max_angle, 0.1 * settings.slow_rate + 1e-5);
   EXPECT_NEAR(steps * 0.1, (settings.max_angle - settings.side_angle) / settings.slow_rate - 1,
               0.5);
   // Below side_angle only progress towards the goal counts.
-  EXPECT_GT(next_turn(settings, 0.3f, 0.2f, 0.9f, 0.1f), 0.3f);
+  EXPECT_GT(next_detour_angle(settings, 0.3f, 0.2f, 0.9f, 0.1f), 0.3f);
 }
 
 TEST(SampledSteering, DetourAnglesAreToTheRight) {

@@ -5,8 +5,8 @@
 
 #include "crowd/crowd_ground.h"
 
-// Cells that obstacles take, and give back. What was baked is kept aside while a level lacks some
-// of it, so that it comes back to the bit.
+// Cells that obstacles block, and free again. While some cells of a level are blocked, what was
+// baked is kept aside, so that it comes back to the bit. Linear in the level's cells.
 namespace throng {
 namespace {
 
@@ -18,11 +18,11 @@ void CrowdGround::keep_baked(Level level, Baked& baked) {
   LevelLine& line = lines_[level];
   const uint32_t set = line.legal_set & kSetBits;
   baked.legal_word = line.legal_set;
-  baked.plain_set = line.plain_set;
+  baked.flat_set = line.flat_set;
   std::copy_n(legal(level), kRows, baked.legal.begin());
-  std::copy_n(plain(level), kRows, baked.plain.begin());
+  std::copy_n(flat(level), kRows, baked.flat.begin());
   if (set != kAllLegal) return;
-  // The rows of all cells are shared by many levels: this one needs its own.
+  // Many levels share the rows of all cells: this one needs its own.
   uint32_t own = row_sets_;
   if (spare_sets_.empty()) {
     ++row_sets_;
@@ -30,12 +30,13 @@ void CrowdGround::keep_baked(Level level, Baked& baked) {
     own = spare_sets_.back();
     spare_sets_.pop_back();
   }
-  if (line.plain_set == set) line.plain_set = own;
+  if (line.flat_set == set) line.flat_set = own;
   line.legal_set = own | (line.legal_set & ~kSetBits);
 }
 
-void CrowdGround::set_taken(Level level, const CellRows& taken) {
-  const bool any = std::any_of(taken.begin(), taken.end(), [](uint64_t row) { return row != 0; });
+void CrowdGround::set_blocked(Level level, const CellRows& blocked) {
+  const bool any =
+      std::any_of(blocked.begin(), blocked.end(), [](uint64_t row) { return row != 0; });
   auto kept = baked_.find(level);
   if (kept == baked_.end()) {
     if (!any || (lines_[level].legal_set & kSetBits) == kNoneLegal) return;
@@ -46,22 +47,22 @@ void CrowdGround::set_taken(Level level, const CellRows& taken) {
   LevelLine& line = lines_[level];
   const auto write = [&](uint32_t set, const CellRows& rows) {
     uint64_t* to = rows_.data() + size_t{set & kSetBits} * kRows;
-    for (size_t z = 0; z < kRows; ++z) to[z] = rows[z] & ~taken[z];
+    for (size_t z = 0; z < kRows; ++z) to[z] = rows[z] & ~blocked[z];
   };
-  // A cell is plain if it is legal and as high as those beside it, legal or not.
+  // A cell is flat if it is legal and as high as those beside it, legal or not.
   write(line.legal_set, baked.legal);
-  if (line.plain_set != kNoneLegal) write(line.plain_set, baked.plain);
+  if (line.flat_set != kNoneLegal) write(line.flat_set, baked.flat);
   uint32_t cells = 0;
   for (size_t z = 0; z < kRows; ++z) {
     cells += static_cast<uint32_t>(std::popcount(legal(level)[z]));
   }
   records_[level].legal_cells = cells;
-  line.plain = full_blocks(plain(level));
+  line.flat = full_blocks(flat(level));
   find_open(level);
   if (any) return;
   if (line.legal_set != baked.legal_word) spare_sets_.push_back(line.legal_set & kSetBits);
   line.legal_set = baked.legal_word;
-  line.plain_set = baked.plain_set;
+  line.flat_set = baked.flat_set;
   baked_.erase(kept);
 }
 
@@ -71,7 +72,7 @@ const CellRows* CrowdGround::baked_legal(Level level) const {
 }
 
 void CrowdGround::join_tile(int32_t x, int32_t z) {
-  // The tile's sides, and from beyond each the one towards it.
+  // The tile's own sides, and from beyond each the side towards the tile.
   const auto for_sides = [&](auto act) {
     const auto for_levels = [&](int32_t tile_x, int32_t tile_z, LevelLine::Side side) {
       const Range* range = tile(tile_x, tile_z);

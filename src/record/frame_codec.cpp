@@ -18,8 +18,8 @@
 namespace throng {
 namespace {
 
-constexpr double kFarthest = 2e6;  // from the origin [m]: millimetres fit 32 bits
-constexpr double kWidest = 65.0;   // [m]: millimetres fit 16 bits
+constexpr double kMaxCoordinate = 2e6;  // from the origin [m]: millimetres fit 32 bits
+constexpr double kMaxDiameter = 65.0;   // [m]: millimetres fit 16 bits
 constexpr uint32_t kMinBits = 13;  // of one who has come
 constexpr size_t kUpMean = 4;      // Where in Track::mean those of its axis are.
 
@@ -147,7 +147,7 @@ Result<void> FrameEncoder::quantise(const FrameView& frame) {
     const Vec3d p = frame.positions[i] - origin_;
     const double metres[3] = {p.x, p.y, p.z};
     for (size_t axis = 0; axis < 3; ++axis) {
-      if (!(std::fabs(metres[axis]) < kFarthest)) {
+      if (!(std::fabs(metres[axis]) < kMaxCoordinate)) {
         return bad_avatar(track.id,
                           "is nowhere, or farther than 2000 km from the recording's origin; set "
                           "RecordingInfo::origin");
@@ -155,7 +155,7 @@ Result<void> FrameEncoder::quantise(const FrameView& frame) {
       track.at[axis] = static_cast<int32_t>(std::floor(metres[axis] * 1000 + 0.5));
     }
     const double radius = frame.radii[i];
-    if (!(radius >= 0 && radius <= kWidest)) {
+    if (!(radius >= 0 && radius <= kMaxDiameter)) {
       return bad_avatar(track.id, "has no radius between 0 and 65 m");
     }
     track.radius = static_cast<uint16_t>(radius * 1000 + 0.5);

@@ -22,7 +22,7 @@ namespace {
 
 constexpr int32_t kStride = 4;  // Every fourth cell along X and Z stands for 16.
 constexpr double kAdjust = 0.01, kMinFull = 0.3, kMaxFull = 1.5;  // Of the band, a step.
-constexpr double kLimbs = 0.5;  // A body reaches no further from its middle. [m]
+constexpr double kBodyMargin = 0.5;  // A body reaches no further from its middle. [m]
 enum Stream : uint64_t { kWant = 1, kSpawn, kGoal };
 
 // A level tile's part of the ground.
@@ -62,8 +62,8 @@ struct AvatarGenerators::State {
 
   std::vector<CellState> states;
   std::vector<uint32_t> active;  // Cells that are not idle.
-  Vec3d looked_from;
-  int32_t steps_since_look = -1;  // -1: never looked.
+  Vec3d classified_from;
+  int32_t steps_since_classified = -1;  // -1: never looked.
 
   std::vector<AvatarId> members;
   std::vector<uint32_t> counts;  // Of members, by cell.
@@ -79,13 +79,13 @@ struct AvatarGenerators::State {
   [[nodiscard]] Place random_goal();
   void give_goals(Crowd& crowd, const std::vector<AvatarId>& to);
   Result<uint32_t> fill(Crowd& crowd, uint32_t in, const Sight* can_see, Context& context);
-  uint32_t take_away(Crowd& crowd, const Sight& can_see);
+  uint32_t remove_surplus(Crowd& crowd, const Sight& can_see);
   [[nodiscard]] GeneratorReport report() const;
 };
 
 Box3d AvatarGenerators::State::body(Vec3d feet) const {
-  return {{feet.x - kLimbs, feet.y - 0.1, feet.z - kLimbs},
-          {feet.x + kLimbs, feet.y + height + 0.1, feet.z + kLimbs}};
+  return {{feet.x - kBodyMargin, feet.y - 0.1, feet.z - kBodyMargin},
+          {feet.x + kBodyMargin, feet.y + height + 0.1, feet.z + kBodyMargin}};
 }
 
 uint32_t AvatarGenerators::State::cell_of(Vec3d feet) const {
@@ -116,8 +116,8 @@ void AvatarGenerators::State::look(Vec3d eye, const Sight& can_see) {
   for (const uint32_t i : near) {
     if (states[i] != CellState::kIdle) active.push_back(i);
   }
-  looked_from = eye;
-  steps_since_look = 0;
+  classified_from = eye;
+  steps_since_classified = 0;
 }
 
 // Uniform over the cell's ground: draws until a place of it is hit.
@@ -156,9 +156,9 @@ double AvatarGenerators::State::missing() const {
 }
 
 Place AvatarGenerators::State::random_goal() {
-  const double rather = std::clamp(1 + 4 * missing(), 0.1, 5.0);
+  const double seen_weight = std::clamp(1 + 4 * missing(), 0.1, 5.0);
   const auto weight = [&](uint32_t i) {
-    return cells[i].area * (states[i] == CellState::kSeen ? rather : 1);
+    return cells[i].area * (states[i] == CellState::kSeen ? seen_weight : 1);
   };
   double sum = 0;
   for (const uint32_t i : active) sum += weight(i);
@@ -201,7 +201,7 @@ Result<uint32_t> AvatarGenerators::State::fill(Crowd& crowd, uint32_t in, const 
 
 // Counts members by cell and takes away, out of sight, who has left the band and who is too many
 // on it.
-uint32_t AvatarGenerators::State::take_away(Crowd& crowd, const Sight& can_see) {
+uint32_t AvatarGenerators::State::remove_surplus(Crowd& crowd, const Sight& can_see) {
   counts.assign(cells.size(), 0);
   std::vector<AvatarId> gone;
   size_t kept = 0;
@@ -328,12 +328,12 @@ Result<GeneratorReport> AvatarGenerators::populate(Crowd& crowd, Vec3d eye, cons
 Result<GeneratorReport> AvatarGenerators::update(Crowd& crowd, Vec3d eye, const Sight& can_see,
                                                  Context& context) {
   State& s = *state_;
-  if (s.steps_since_look < 0) return populate(crowd, eye, can_see, context);
-  ++s.steps_since_look;
-  if (s.steps_since_look >= s.config.steps_a_look || length(eye - s.looked_from) > 2) {
+  if (s.steps_since_classified < 0) return populate(crowd, eye, can_see, context);
+  ++s.steps_since_classified;
+  if (s.steps_since_classified >= s.config.steps_a_look || length(eye - s.classified_from) > 2) {
     s.look(eye, can_see);
   }
-  const uint32_t removed = s.take_away(crowd, can_see);
+  const uint32_t removed = s.remove_surplus(crowd, can_see);
   // Ways cross in the middle, so more walk there than goals alone would bring; slowly, as people
   // take a while to come.
   s.fullness = std::clamp(s.fullness + kAdjust * s.missing(), kMinFull, kMaxFull);

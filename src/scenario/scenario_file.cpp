@@ -18,9 +18,9 @@
 namespace throng {
 namespace {
 
-constexpr double kFarthest = 1e9;  // [m] Coordinates, as those of models.
-constexpr double kHighest = 1e6;   // [m] Heights, as those of worlds.
-constexpr double kLong = 1e9;      // [s]
+constexpr double kMaxCoordinate = 1e9;  // [m] Coordinates, as those of models.
+constexpr double kMaxHeight = 1e6;      // [m] Heights, as those of worlds.
+constexpr double kMaxSeconds = 1e9;     // [s]
 constexpr int kCircleSides = 32;
 constexpr double kMaxStages = 10000;  // of a journey
 
@@ -190,8 +190,8 @@ bool Reader::corners(const ConfigNode& node, const char* key,
   for (size_t i = 0; good && i < node.items.size(); ++i) {
     const ConfigNode& p = node.items[i];
     good = p.kind == Kind::kArray && p.items.size() == 2 && is_number(p.items[0]) &&
-           is_number(p.items[1]) && std::fabs(p.items[0].number) <= kFarthest &&
-           std::fabs(p.items[1].number) <= kFarthest;
+           is_number(p.items[1]) && std::fabs(p.items[0].number) <= kMaxCoordinate &&
+           std::fabs(p.items[1].number) <= kMaxCoordinate;
     if (good) out.push_back({p.items[0].number, p.items[1].number});
   }
   if (!good) fail(node, fmt::format("{} must be a list of [x, z]", key));
@@ -301,21 +301,21 @@ void File::read_top() {
     }
   }
   r.number("cell", out_.cell, 0.02, 5);
-  r.number("seconds", out_.seconds, 0, kLong);
+  r.number("seconds", out_.seconds, 0, kMaxSeconds);
   r.number("dt", out_.dt, 1e-3, 1);
   r.count("seed", out_.seed, 0, 9007199254740992.0);
   constexpr double kMebibyte = 1 << 20;
   double search_memory = static_cast<double>(out_.search_bytes) / kMebibyte;
   r.number("search_memory", search_memory, 1, kMebibyte);
   out_.search_bytes = static_cast<uint64_t>(search_memory * kMebibyte);
-  std::string ways = "corners";
-  r.text("ways", ways);
+  std::string paths = "corners";
+  r.text("ways", paths);
   if (const ConfigNode* node = r.find("ways");
-      node != nullptr && ways != "corners" && ways != "labels" && ways != "zones") {
+      node != nullptr && paths != "corners" && paths != "labels" && paths != "zones") {
     r.fail(*node, "ways must be \"corners\", \"labels\" or \"zones\"");
   }
-  out_.labels = ways == "labels";
-  out_.zones = ways == "zones";
+  out_.labels = paths == "labels";
+  out_.zones = paths == "zones";
   std::string steering = throng::name_of(out_.steering);
   r.text("steering", steering);
   if (const auto model = find_steering_model(steering)) {
@@ -339,9 +339,9 @@ void File::read_top() {
     keep(b);
   }
   if (const ConfigNode* table = r.find("plane"); table != nullptr) read_plane(*table);
-  const int ways_in = (out_.world.empty() ? 0 : 1) + (out_.models.empty() ? 0 : 1) +
-                      (out_.builtins.empty() ? 0 : 1) + (out_.planes.empty() ? 0 : 1);
-  if (ways_in != 1) {
+  const int world_count = (out_.world.empty() ? 0 : 1) + (out_.models.empty() ? 0 : 1) +
+                          (out_.builtins.empty() ? 0 : 1) + (out_.planes.empty() ? 0 : 1);
+  if (world_count != 1) {
     r.fail(root_, "give one of: world (a baked folder), model (files), [builtin], [plane]");
     keep(r);
   }
@@ -384,8 +384,8 @@ void File::read_plane(const ConfigNode& table) {
 }
 
 void File::heights(Reader& r, double& low, double& high) {
-  low = -kHighest;
-  high = kHighest;
+  low = -kMaxHeight;
+  high = kMaxHeight;
   double y[2] = {};
   if (!r.numbers("y", y, 2)) return;
   if (!(y[0] < y[1])) return r.fail(*r.find("y"), "y must be [low, high], low below high");
@@ -448,8 +448,8 @@ void File::read_obstacle(Reader& r) {
   } else if (policy != throng::name_of(obstacle.policy)) {
     return r.fail(*r.find("policy"), "policy: write \"shut\" or \"wait\"");
   }
-  r.number("begin", obstacle.begin, 0, kLong);
-  r.number("end", obstacle.end, 0, kLong);
+  r.number("begin", obstacle.begin, 0, kMaxSeconds);
+  r.number("end", obstacle.end, 0, kMaxSeconds);
   if (!read_shape(r, obstacle.prism)) return;
   if (!(obstacle.begin < obstacle.end)) {
     return r.fail(r.table(), "it must begin before it ends");
@@ -537,7 +537,7 @@ void File::read_queue(Reader& r) {
   double servers = 1;
   r.number("servers", servers, 1, 1000);
   queue.servers = static_cast<int32_t>(servers);
-  r.distribution("service", queue.service, 0, kLong);
+  r.distribution("service", queue.service, 0, kMaxSeconds);
   if (!r.ok()) return;
   const ConfigNode& line = *r.find("line");
   bool good = line.kind == Kind::kArray && line.items.size() >= 2;
@@ -556,9 +556,9 @@ void File::read_link(Reader& r) {
   name_of(r, out_.links, link.name);
   for (const char* key : {"from", "to", "seconds"}) r.require(key);
   double capacity = 1;
-  r.number("interval", link.interval, 0.01, kLong);
+  r.number("interval", link.interval, 0.01, kMaxSeconds);
   r.number("capacity", capacity, 1, 1e6);
-  r.number("seconds", link.seconds, 0, kLong);
+  r.number("seconds", link.seconds, 0, kMaxSeconds);
   link.capacity = static_cast<int32_t>(capacity);
   if (!r.ok()) return;
   link.from = r.named(*r.find("from"), out_.areas, "area");
@@ -591,7 +591,7 @@ void File::read_stage(Reader& r, Journey& journey) {
     stage.density = r.named(*r.find("density"), out_.densities, "density");
   } else if (have("wait")) {
     stage.kind = Stage::Kind::kWait;
-    r.distribution("wait", stage.seconds, 0, kLong);
+    r.distribution("wait", stage.seconds, 0, kMaxSeconds);
   } else if (have("queue")) {
     stage.kind = Stage::Kind::kQueue;
     stage.queue = r.named(*r.find("queue"), out_.queues, "queue");
@@ -659,10 +659,10 @@ void File::read_source(Reader& r) {
   r.choices("profile", out_.profiles, source.profiles);
   r.choices("journey", out_.journeys, source.journeys);
   r.count("count", source.count, 0, 1e7);
-  r.number("begin", source.begin, 0, kLong);
-  r.number("end", source.end, 0, kLong);
+  r.number("begin", source.begin, 0, kMaxSeconds);
+  r.number("end", source.end, 0, kMaxSeconds);
   r.flag("even", source.even);
-  r.distribution("premovement", source.premovement, 0, kLong);
+  r.distribution("premovement", source.premovement, 0, kMaxSeconds);
   source.group = Distribution::fixed(1);
   r.distribution("group", source.group, 1, 20);
   if (!r.ok()) return;

@@ -14,7 +14,7 @@ namespace throng {
 namespace {
 
 // When who comes in `tick` is through: everybody is served in order of coming, event by event.
-double passes_by_events(std::vector<uint32_t> ticks, double flow, uint32_t tick, uint32_t now) {
+double pass_time_by_events(std::vector<uint32_t> ticks, double flow, uint32_t tick, uint32_t now) {
   for (uint32_t& t : ticks) t = std::max(t, now);
   std::sort(ticks.begin(), ticks.end());
   double free = -1e9;
@@ -27,16 +27,16 @@ double passes_by_events(std::vector<uint32_t> ticks, double flow, uint32_t tick,
 
 TEST(DoorQueue, a_door_serves_nobody_before_he_has_come) {
   DoorQueue door(2);
-  EXPECT_DOUBLE_EQ(door.passes(DoorQueue::tick(10), 0), 10.5);
+  EXPECT_DOUBLE_EQ(door.pass_time(DoorQueue::tick(10), 0), 10.5);
   // Four come at 20 s: whoever comes at 10 s is through before them, whoever comes at 21 s is not.
   for (int k = 0; k < 4; ++k) door.add(DoorQueue::tick(20));
-  EXPECT_DOUBLE_EQ(door.passes(DoorQueue::tick(10), 0), 10.5);
-  EXPECT_DOUBLE_EQ(door.passes(DoorQueue::tick(21), 0), 22.5);
-  EXPECT_DOUBLE_EQ(door.passes(DoorQueue::tick(30), 0), 30.5);
+  EXPECT_DOUBLE_EQ(door.pass_time(DoorQueue::tick(10), 0), 10.5);
+  EXPECT_DOUBLE_EQ(door.pass_time(DoorQueue::tick(21), 0), 22.5);
+  EXPECT_DOUBLE_EQ(door.pass_time(DoorQueue::tick(30), 0), 30.5);
   // They are late: at 25 s all four still stand at the door.
-  EXPECT_DOUBLE_EQ(door.passes(DoorQueue::tick(21), DoorQueue::tick(25)), 27.5);
+  EXPECT_DOUBLE_EQ(door.pass_time(DoorQueue::tick(21), DoorQueue::tick(25)), 27.5);
   door.remove(DoorQueue::tick(20));
-  EXPECT_DOUBLE_EQ(door.passes(DoorQueue::tick(21), 0), 22);
+  EXPECT_DOUBLE_EQ(door.pass_time(DoorQueue::tick(21), 0), 22);
 }
 
 TEST(DoorQueue, tells_the_times_of_a_simulation_event_by_event) {
@@ -58,7 +58,7 @@ TEST(DoorQueue, tells_the_times_of_a_simulation_event_by_event) {
         ticks.push_back(tick);
       }
       const auto asked = static_cast<uint32_t>(below(400)), now = static_cast<uint32_t>(below(200));
-      EXPECT_NEAR(door.passes(asked, now), passes_by_events(ticks, flow, asked, now), 1e-6);
+      EXPECT_NEAR(door.pass_time(asked, now), pass_time_by_events(ticks, flow, asked, now), 1e-6);
     }
   }
 }
@@ -86,8 +86,8 @@ TEST(DoorQueue, days_take_no_more_memory_and_tell_the_same) {
       }
       if (change % 7 != 0) continue;
       const auto asked = now + static_cast<uint32_t>(below(3000));
-      const double passes = passes_by_events(ticks, flow, asked, now);
-      ASSERT_NEAR(door.passes(asked, now), passes, 1e-9 * passes) << change;
+      const double pass_time = pass_time_by_events(ticks, flow, asked, now);
+      ASSERT_NEAR(door.pass_time(asked, now), pass_time, 1e-9 * pass_time) << change;
       most = std::max(most, door.kept());
     }
     EXPECT_LE(most, 8192U);
@@ -102,7 +102,7 @@ TEST(DoorQueue, times_beyond_reason_are_held) {
   const uint32_t kept = door.add(last);
   EXPECT_EQ(kept, DoorQueue::tick(6 * 3600));
   door.remove(kept);
-  EXPECT_DOUBLE_EQ(door.passes(0, 0), 1);
+  EXPECT_DOUBLE_EQ(door.pass_time(0, 0), 1);
 }
 
 }  // namespace

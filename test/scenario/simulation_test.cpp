@@ -530,7 +530,7 @@ TEST(Simulation, says_what_cannot_be) {
   };
   EXPECT_NE(why("[[area]]\nname = \"off\"\nbox = [30, 0, 31, 1]\n[[source]]\nname = \"s\"\narea = "
                 "\"off\"\ncount = 1\n")
-                .find("source 's': nobody of class 'adult' can stand in area 'off'"),
+                .find("source 's': no avatar of class 'adult' can stand in area 'off'"),
             std::string::npos);
   EXPECT_NE(why("[[profile]]\nname = \"p\"\nclass = \"wolf\"\n").find("no class 'wolf'"),
             std::string::npos);

@@ -15,18 +15,21 @@
 #include "scenario/density_image.h"
 #include "throng/scenario.h"
 
+// Reads scenario files, TOML or JSON: one reader a table, in the order in which tables name each
+// other; the first error ends it. docs/scenarios.md has every key. Time: linear in the file, and in
+// the pixels of density maps times the areas painted on them.
 namespace throng {
 namespace {
 
-constexpr double kMaxCoordinate = 1e9;  // [m] Coordinates, as those of models.
-constexpr double kMaxHeight = 1e6;      // [m] Heights, as those of worlds.
+constexpr double kMaxCoordinate = 1e9;  // [m] as for models
+constexpr double kMaxHeight = 1e6;      // [m] as for worlds
 constexpr double kMaxSeconds = 1e9;     // [s]
 constexpr int kCircleSides = 32;
 constexpr double kMaxStages = 10000;  // of a journey
 
 using Kind = ConfigNode::Kind;
 
-// One table of the file, with what names mean that stand in it.
+// Reads one table of the file and resolves the names in it.
 class Reader : public ConfigReader {
  public:
   Reader(const std::string& file, const ConfigNode& table, const std::string& what)
@@ -46,6 +49,8 @@ class Reader : public ConfigReader {
   void choices(const char* key, const std::vector<Thing>& things, std::vector<Choice>& out);
   bool corners(const ConfigNode& node, const char* key, std::vector<std::array<double, 2>>& out);
   void count(const char* key, uint64_t& value, double low, double high);
+  /// The spelling of `key` in this table: `key` itself or `old`, its name in older versions.
+  const char* spelling(const char* key, const char* old);
 };
 
 bool is_number(const ConfigNode& node) {
@@ -57,7 +62,7 @@ void Reader::distribution(const char* key, Distribution& out, double low, double
     distribution_of(*node, key, out, low, high);
 }
 
-// How many draws of a hundred lie within the limits of a distribution.
+// The percentage of draws that lie within the limits of a distribution.
 double percent_within(const Distribution& d) {
   const auto below = [&](double x) {
     if (d.kind == Distribution::Kind::kExponential) return x > 0 ? 1 - std::exp(-x / d.a) : 0.0;
@@ -125,7 +130,7 @@ void Reader::distribution_of(const ConfigNode& node, const std::string& key, Dis
   if (has_within && out.kind == Distribution::Kind::kUniform) {
     fail(node, fmt::format("{}: a uniform number has its limits already", key));
   }
-  // Others are drawn again, but not for ever: the last would all lie on a limit.
+  // Draws outside are repeated, but a limited number of times; then they are set to a limit.
   constexpr double kMinPercent = 5;
   if (has_within && out.kind != Distribution::Kind::kUniform && percent_within(out) < kMinPercent) {
     fail(node,
@@ -207,7 +212,14 @@ void Reader::count(const char* key, uint64_t& value, double low, double high) {
   value = static_cast<uint64_t>(number);
 }
 
-// All tables of the file, in the order in which they name each other.
+const char* Reader::spelling(const char* key, const char* old) {
+  const ConfigNode* node = find(old);
+  if (node == nullptr) return key;
+  if (find(key) != nullptr) fail(*node, fmt::format("{} is the old name of {}; drop it", old, key));
+  return old;
+}
+
+// All tables of the file, in the order in which they refer to each other.
 class File {
  public:
   File(const std::string& name, const ConfigNode& root)
@@ -282,10 +294,10 @@ class File {
 
 void File::read_top() {
   Reader r(name_, root_, "scenario");
-  r.only({"world", "model", "builtin", "plane", "cell", "class", "seconds", "dt", "seed", "ways",
-          "search_memory", "steering", "area", "density", "profile", "queue", "link", "journey",
-          "source", "obstacle",
-          // What is expected of the run, read by load_trial.
+  r.only({"world", "model", "builtin", "plane", "cell", "class", "seconds", "dt", "seed", "paths",
+          "ways", "search_memory", "steering", "area", "density", "profile", "queue", "link",
+          "journey", "source", "obstacle",
+          // The expected results of the run, read by load_trial.
           "trial", "measure"});
   r.text("world", out_.world);
   if (!out_.world.empty()) out_.world = path(out_.world);
@@ -309,10 +321,11 @@ void File::read_top() {
   r.number("search_memory", search_memory, 1, kMebibyte);
   out_.search_bytes = static_cast<uint64_t>(search_memory * kMebibyte);
   std::string paths = "corners";
-  r.text("ways", paths);
-  if (const ConfigNode* node = r.find("ways");
+  const char* paths_key = r.spelling("paths", "ways");
+  r.text(paths_key, paths);
+  if (const ConfigNode* node = r.find(paths_key);
       node != nullptr && paths != "corners" && paths != "labels" && paths != "zones") {
-    r.fail(*node, "ways must be \"corners\", \"labels\" or \"zones\"");
+    r.fail(*node, fmt::format("{} must be \"corners\", \"labels\" or \"zones\"", paths_key));
   }
   out_.labels = paths == "labels";
   out_.zones = paths == "zones";
@@ -349,7 +362,7 @@ void File::read_top() {
     AvatarClass avatar;
     name_of(c, out_.classes, avatar.name);
     read_class(c, avatar);
-    c.number("speed", avatar.speed, 0.01, 100);  // what a crowd takes
+    c.number("speed", avatar.speed, 0.01, 100);  // the range that a crowd accepts
     out_.classes.push_back(avatar);
   });
   if (!out_.classes.empty() && !out_.world.empty()) {
@@ -421,20 +434,21 @@ bool File::read_shape(Reader& r, Prism& prism) {
 
 // Tables of one name are one area.
 void File::read_area(Reader& r) {
-  r.only({"name", "box", "polygon", "circle", "y", "pace"});
+  r.only({"name", "box", "polygon", "circle", "y", "speed_factor", "pace"});
   r.require("name");
   std::string name;
-  double pace = 1;
+  const char* factor_key = r.spelling("speed_factor", "pace");
+  double factor = 1;
   r.text("name", name);
-  r.number("pace", pace, 0.01, 10);
+  r.number(factor_key, factor, 0.01, 10);
   Prism prism;
   if (!read_shape(r, prism)) return;
   for (ScenarioArea& area : out_.areas) {
     if (area.name != name) continue;
-    if (r.find("pace") != nullptr) area.pace = pace;
+    if (r.find(factor_key) != nullptr) area.pace = factor;
     return area.prisms.push_back(prism);
   }
-  out_.areas.push_back({name, {prism}, pace});
+  out_.areas.push_back({name, {prism}, factor});
 }
 
 void File::read_obstacle(Reader& r) {
@@ -512,7 +526,7 @@ void File::read_density(Reader& r) {
   }
   if (r.ok() &&
       std::all_of(map.weights.begin(), map.weights.end(), [](uint8_t w) { return w == 0; })) {
-    r.fail(*r.find("box"), "its weights are all 0; paint where people may be");
+    r.fail(*r.find("box"), "its weights are all 0; paint where avatars may be");
   }
   out_.densities.push_back(std::move(map));
 }
@@ -568,14 +582,16 @@ void File::read_link(Reader& r) {
 
 void File::read_stage(Reader& r, Journey& journey) {
   Stage stage;
-  r.only({"go", "spot", "density", "wait", "queue", "link", "leave", "by"});
+  r.only({"go", "random_point", "spot", "density", "wait", "queue", "link", "leave", "by"});
+  const char* point_key = r.spelling("random_point", "spot");
   const auto have = [&](const char* key) { return r.find(key) != nullptr; };
-  const int kinds = (have("go") ? 1 : 0) + (have("spot") ? 1 : 0) + (have("wait") ? 1 : 0) +
+  const int kinds = (have("go") ? 1 : 0) + (have(point_key) ? 1 : 0) + (have("wait") ? 1 : 0) +
                     (have("queue") ? 1 : 0) + (have("link") ? 1 : 0) + (have("leave") ? 1 : 0) +
                     (have("density") ? 1 : 0);
   if (!r.ok()) return;
   if (kinds != 1) {
-    return r.fail(r.table(), "a stage is one of: go, spot, density, wait, queue, link, leave");
+    return r.fail(r.table(),
+                  "a stage is one of: go, random_point, density, wait, queue, link, leave");
   }
   if (have("go")) {
     stage.kind = Stage::Kind::kGo;
@@ -583,9 +599,9 @@ void File::read_stage(Reader& r, Journey& journey) {
   } else if (have("leave")) {
     stage.kind = Stage::Kind::kLeave;
     r.names(*r.find("leave"), out_.areas, "area", stage.areas);
-  } else if (have("spot")) {
+  } else if (have(point_key)) {
     stage.kind = Stage::Kind::kSpot;
-    r.names(*r.find("spot"), out_.areas, "area", stage.areas);
+    r.names(*r.find(point_key), out_.areas, "area", stage.areas);
   } else if (have("density")) {
     stage.kind = Stage::Kind::kSpot;
     stage.density = r.named(*r.find("density"), out_.densities, "density");
@@ -668,7 +684,7 @@ void File::read_source(Reader& r) {
   if (!r.ok()) return;
   const ConfigNode& name = *r.find("name");
   if ((r.find("area") != nullptr) == (r.find("density") != nullptr)) {
-    return r.fail(name, "say where they come from: an area, or a density");
+    return r.fail(name, "say where avatars enter: an area, or a density");
   }
   double rate = 0;
   r.number("rate", rate, 0, 1e6);
@@ -680,14 +696,14 @@ void File::read_source(Reader& r) {
     for (const auto& [from, value] : list) {
       if (!(value >= 0) || (!source.rates.empty() && !(from > source.rates.back().first))) {
         return r.fail(*rates,
-                      "rates must be a list of [time, people a second], times ascending, "
+                      "rates must be a list of [time, avatars a second], times ascending, "
                       "rates not below 0");
       }
       source.rates.emplace_back(from, value);
     }
   }
   if (source.rates.empty() && source.count == UINT64_MAX) {
-    return r.fail(name, "say how many: a count, a rate, or both");
+    return r.fail(name, "give a count, a rate, or both");
   }
   if (const ConfigNode* node = r.find("places"); node != nullptr) {
     std::string places;

@@ -62,7 +62,7 @@ TEST(Distribution, has_a_logarithm_of_its_own) {
   EXPECT_EQ(log_of(1), 0);
 }
 
-TEST(SpawnTimes, come_as_often_as_rates_say) {
+TEST(SpawnTimes, follow_the_rates) {
   Source source;
   source.group = Distribution::fixed(1);
   source.rates = {{10, 2}, {20, 0}, {30, 5}};
@@ -82,7 +82,7 @@ TEST(SpawnTimes, come_as_often_as_rates_say) {
   EXPECT_NEAR(late, 50, 3 * std::sqrt(50.0));
 }
 
-TEST(SpawnTimes, are_even_or_at_once_and_keep_to_their_count) {
+TEST(SpawnTimes, are_even_or_at_once_up_to_the_count) {
   Source source;
   source.group = Distribution::fixed(1);
   source.rates = {{0, 4}};

@@ -8,7 +8,7 @@
 #include "core/part_file.h"
 #include "throng/replay_export.h"
 
-// Recordings as text tables: CSV for spreadsheets, and trajectories as PedPy and JuPedSim read
+// Recordings as text: CSV for spreadsheets, and the trajectory format of the Juelich experiments.
 // them.
 namespace throng {
 namespace {

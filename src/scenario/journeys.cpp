@@ -103,8 +103,8 @@ void Simulation::State::begin_stage(ScenarioAvatar& p) {
 void Simulation::State::finish_stage(ScenarioAvatar& p) {
   if (p.group < 0 || p.doing == Doing::kWaiting) return next_stage(p);
   // Not in the entrance, where it would block the others.
-  const bool came_in = p.doing == Doing::kWalking;
-  const Place aside = came_in ? random_place(stage_of(p).areas, -1, p) : Place();
+  const bool is_in_region = p.doing == Doing::kWalking;
+  const Place aside = is_in_region ? random_place(stage_of(p).areas, -1, p) : Place();
   if (aside) {
     walk_to(p, aside, Doing::kGathering);
   } else {

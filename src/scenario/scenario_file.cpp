@@ -268,7 +268,7 @@ class File {
     if (!r.ok()) return;
     if (name.empty()) r.fail(*r.find("name"), "the name is empty");
     for (const Thing& other : others) {
-      if (other.name == name) r.fail(*r.find("name"), "the name stands here twice");
+      if (other.name == name) r.fail(*r.find("name"), "the name is used twice");
     }
   }
 

@@ -11,6 +11,8 @@
 #include "scenario/simulation_state.h"
 #include "throng/nodes.h"
 
+// A scenario as it runs: resolves its names to classes, targets and places, then steps the parts of
+// the state in a fixed order. Time of a step: that of the crowd, and linear in the avatars.
 namespace throng {
 namespace {
 

@@ -176,7 +176,8 @@ TEST(AvatarGenerators, KeepAStreetPopulatedWhileOnlyWhatIsSeenIsSimulated) {
   const auto stands = [](int32_t) { return Vec3d{35, 1.7, 65}; };
   const Walk r = walk_and_see(config, stands, 900);
   std::printf(
-      "standing: %.2f to %.2f of those wanted in sight, mean %.2f; %llu came, %llu went, %zu "
+      "standing: %.2f to %.2f of the required number in sight, mean %.2f; %llu added, %llu "
+      "removed, %zu "
       "and %zu in sight; at most %zu of %.0f simulated\n",
       r.min_share, r.max_share, r.mean, static_cast<unsigned long long>(r.added),
       static_cast<unsigned long long>(r.removed), r.appeared_in_sight, r.gone_in_sight, r.largest,
@@ -222,7 +223,7 @@ TEST(AvatarGenerators, FollowAnEyeThatWalksAroundCorners) {
     }
   };
   const Walk r = walk_and_see(config, walks, 900);
-  std::printf("walking: %.2f to %.2f, mean %.2f; %llu came, %llu went, %zu and %zu in sight\n",
+  std::printf("walking: %.2f to %.2f, mean %.2f; %llu added, %llu removed, %zu and %zu in sight\n",
               r.min_share, r.max_share, r.mean, static_cast<unsigned long long>(r.added),
               static_cast<unsigned long long>(r.removed), r.appeared_in_sight, r.gone_in_sight);
   EXPECT_EQ(r.appeared_in_sight, 0U);

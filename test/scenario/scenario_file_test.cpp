@@ -221,7 +221,7 @@ TEST(ScenarioFile, says_where_and_what_is_wrong) {
        "say where avatars enter"},
       {"rates = [[0, 0.5], [10, 0], [20, 2]]", "", "give a count, a rate"},
       {"begin = 5\nend = 9", "begin = 9\nend = 5", "obstacle 'crate': it must begin before"},
-      {"name = \"later\"", "name = \"first\"", "the name stands here twice"},
+      {"name = \"later\"", "name = \"first\"", "the name is used twice"},
   };
   for (const auto& c : cases) {
     const auto s = parse_scenario(changed(c.from, c.to), "full.toml");

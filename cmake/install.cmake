@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-# find_package(throng) for others: library, headers, version and the dependencies of a static build.
+# find_package(throng) for other projects: library, headers, version and the dependencies of a static build.
 include(CMakePackageConfigHelpers)
 
 set(THRONG_CONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/throng)

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-# What the build for browsers takes instead of the machine's libraries: headers only, each linked
-# into a folder of its own, because /usr/include as a whole is another system's. Dear ImGui has to be
+# The build for browsers uses these instead of the machine's libraries: headers only, each linked
+# into a folder of its own, because /usr/include as a whole belongs to another system. Dear ImGui has to be
 # compiled; scripts/web fetches its source.
 set(WEB_HEADERS ${CMAKE_BINARY_DIR}/headers)
 file(MAKE_DIRECTORY ${WEB_HEADERS})
@@ -35,7 +35,7 @@ add_library(web_imgui STATIC ${THRONG_IMGUI_SOURCE}/imgui.cpp ${THRONG_IMGUI_SOU
 target_include_directories(web_imgui SYSTEM PUBLIC ${THRONG_IMGUI_SOURCE})
 set_target_properties(web_imgui PROPERTIES COMPILE_WARNING_AS_ERROR OFF)
 add_library(PkgConfig::IMGUI ALIAS web_imgui)
-# The one file that hashes compiles the hash with it.
+# The one file that hashes also compiles the hash.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/src/core/hash.cpp PROPERTIES COMPILE_DEFINITIONS XXH_INLINE_ALL)
-# Exceptions are left out, but where a parser throws what is wrong with a file.
+# Exceptions are disabled, except in parsers, which throw the faults of a file.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/src/core/config_file.cpp PROPERTIES COMPILE_OPTIONS -fexceptions)

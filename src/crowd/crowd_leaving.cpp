@@ -317,7 +317,7 @@ bool Crowd::State::find_exit_over_nodes(Body& body, Climb& climb, int32_t worker
   if (path.end != PathEnd::kReached || path.points.size() < 2) return true;
   take_path(climb, path);
   climb.whole = 0;
-  body.clear(Body::kLost);
+  body.clear(Body::kNeedsPath);
   return true;
 }
 

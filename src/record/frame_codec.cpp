@@ -9,19 +9,19 @@
 
 #include "record/bit_stream.h"
 
-// A frame is: who has gone, who has come, and for everybody else by how much position and heading
-// differ from going on as in the frame before. A difference is written with a Golomb-Rice code
-// whose parameter follows the size of the same avatar's last differences, so that those who stand
-// cost a bit a number, whatever the others do. One large difference is likely to be the only one,
-// so the parameter is slow to believe in it. Who turns is expected to go on as fast. [Ric79]
-// Where some may lean, those whose axes differ from the frame before follow; who comes is upright.
+// A frame holds the removed avatars, the added ones, and for each other avatar the differences of
+// position and heading from a constant move in a constant direction. Differences are Golomb-Rice
+// codes [Ric79] whose parameter follows the last differences of the same avatar and field, so that
+// an avatar that stands costs a bit a number. One large difference is likely to stay the only one,
+// so the parameter grows slowly. After a turn the expected move has the new direction. If the run
+// may lean, the changed axes follow; an added avatar starts upright. Time: linear in the avatars.
 namespace throng {
 namespace {
 
-constexpr double kFarthest = 2e6;  // from the origin [m]: millimetres fit 32 bits
-constexpr double kWidest = 65.0;   // [m]: millimetres fit 16 bits
-constexpr uint32_t kMinBits = 13;  // of one who has come
-constexpr size_t kUpMean = 4;      // Where in Track::mean those of its axis are.
+constexpr double kMaxCoordinate = 2e6;  // from the origin [m]: millimetres fit 32 bits
+constexpr double kMaxDiameter = 65.0;   // [m]: millimetres fit 16 bits
+constexpr uint32_t kMinBits = 13;       // of an added avatar
+constexpr size_t kUpMean = 4;           // Index in Track::mean of the axis' two means.
 
 // Differences wrap, so that no bytes can overflow anything.
 int32_t minus(int32_t a, int32_t b) {
@@ -38,12 +38,12 @@ uint32_t rice_parameter(uint16_t mean) {
 }
 
 void follow(uint16_t& mean, uint32_t value) {
-  const uint32_t most = std::min(mean * 2u + 32, 64000u);
-  const auto now = static_cast<int32_t>(std::min(std::min(value, 4000u) * 16, most));
+  const uint32_t limit = std::min(mean * 2u + 32, 64000u);
+  const auto now = static_cast<int32_t>(std::min(std::min(value, 4000u) * 16, limit));
   mean = static_cast<uint16_t>(mean + (now - mean) / 4);
 }
 
-// After a turn by so much: the steps of the new direction.
+// Turns the expected move into the new direction.
 void expect_turned(Track& track, int32_t turn) {
   const double x = track.by[0], z = track.by[2];
   const double size = std::sqrt(x * x + z * z);
@@ -119,7 +119,7 @@ Vec3d up_of(UpCode code) {
   return {x / size, y / size, z / size};
 }
 
-// The frame as tracks in order of id, into wanted_.
+// Fills wanted_ with the frame as tracks in order of id.
 Result<void> FrameEncoder::quantise(const FrameView& frame) {
   const size_t count = frame.ids.size();
   if (frame.classes.size() != count || frame.positions.size() != count ||
@@ -147,7 +147,7 @@ Result<void> FrameEncoder::quantise(const FrameView& frame) {
     const Vec3d p = frame.positions[i] - origin_;
     const double metres[3] = {p.x, p.y, p.z};
     for (size_t axis = 0; axis < 3; ++axis) {
-      if (!(std::fabs(metres[axis]) < kFarthest)) {
+      if (!(std::fabs(metres[axis]) < kMaxCoordinate)) {
         return bad_avatar(track.id,
                           "is nowhere, or farther than 2000 km from the recording's origin; set "
                           "RecordingInfo::origin");
@@ -155,7 +155,7 @@ Result<void> FrameEncoder::quantise(const FrameView& frame) {
       track.at[axis] = static_cast<int32_t>(std::floor(metres[axis] * 1000 + 0.5));
     }
     const double radius = frame.radii[i];
-    if (!(radius >= 0 && radius <= kWidest)) {
+    if (!(radius >= 0 && radius <= kMaxDiameter)) {
       return bad_avatar(track.id, "has no radius between 0 and 65 m");
     }
     track.radius = static_cast<uint16_t>(radius * 1000 + 0.5);
@@ -179,19 +179,20 @@ Result<void> FrameEncoder::quantise(const FrameView& frame) {
 
 Result<void> FrameEncoder::encode(const FrameView& frame, std::vector<uint8_t>& bytes) {
   if (auto ok = quantise(frame); !ok) return ok;
-  // Who has gone (places in tracks_) and who has come (places in wanted_). A body that changes goes
-  // and comes.
+  // The removed (indices in tracks_) and the added (indices in wanted_). A changed body is both.
   removed_.clear();
   added_.clear();
   for (size_t a = 0, b = 0; a < tracks_.size() || b < wanted_.size();) {
-    const bool gone = b == wanted_.size() || (a < tracks_.size() && tracks_[a].id < wanted_[b].id);
-    const bool come = a == tracks_.size() || (b < wanted_.size() && wanted_[b].id < tracks_[a].id);
-    const bool same = !gone && !come && tracks_[a].radius == wanted_[b].radius &&
+    const bool is_removed =
+        b == wanted_.size() || (a < tracks_.size() && tracks_[a].id < wanted_[b].id);
+    const bool is_new =
+        a == tracks_.size() || (b < wanted_.size() && wanted_[b].id < tracks_[a].id);
+    const bool same = !is_removed && !is_new && tracks_[a].radius == wanted_[b].radius &&
                       tracks_[a].avatar_class == wanted_[b].avatar_class;
-    if (!same && !come) removed_.push_back(static_cast<uint32_t>(a));
-    if (!same && !gone) added_.push_back(static_cast<uint32_t>(b));
-    a += come ? 0 : 1;
-    b += gone ? 0 : 1;
+    if (!same && !is_new) removed_.push_back(static_cast<uint32_t>(a));
+    if (!same && !is_removed) added_.push_back(static_cast<uint32_t>(b));
+    a += is_new ? 0 : 1;
+    b += is_removed ? 0 : 1;
   }
 
   BitWriter out(bytes);
@@ -221,18 +222,18 @@ Result<void> FrameEncoder::encode(const FrameView& frame, std::vector<uint8_t>& 
     last = track;
   }
 
-  // Everybody else, in order of id; tracks_ becomes what wanted_ is.
-  size_t gone = 0, come = 0;
+  // All others, in order of id; next_ becomes the decoder's tracks.
+  size_t next_removed = 0, next_added = 0;
   next_.resize(wanted_.size());
   for (size_t a = 0, b = 0; b < wanted_.size(); ++b) {
-    if (come < added_.size() && added_[come] == b) {
-      ++come;
+    if (next_added < added_.size() && added_[next_added] == b) {
+      ++next_added;
       next_[b] = wanted_[b];
       next_[b].up = {};
       continue;
     }
-    while (gone < removed_.size() && removed_[gone] == a) {
-      ++gone;
+    while (next_removed < removed_.size() && removed_[next_removed] == a) {
+      ++next_removed;
       ++a;
     }
     Track& track = next_[b] = tracks_[a++];
@@ -276,24 +277,24 @@ bool FrameDecoder::decode(std::span<const uint8_t> bytes, uint32_t avatars) {
   BitReader in(bytes);
   const uint64_t removed = in.get_gamma();
   if (!in.ok() || removed > tracks_.size()) return false;
-  // Those who stay, pushed together.
+  // The tracks that stay, without gaps.
   kept_.clear();
   uint64_t next = 0;
   for (uint64_t r = 0; r < removed; ++r) {
-    const uint64_t gap = in.get_gamma();
-    if (!in.ok() || gap >= tracks_.size() - next) return false;
+    const uint64_t skipped = in.get_gamma();
+    if (!in.ok() || skipped >= tracks_.size() - next) return false;
     kept_.insert(kept_.end(), tracks_.begin() + static_cast<ptrdiff_t>(next),
-                 tracks_.begin() + static_cast<ptrdiff_t>(next + gap));
-    next += gap + 1;
+                 tracks_.begin() + static_cast<ptrdiff_t>(next + skipped));
+    next += skipped + 1;
   }
   kept_.insert(kept_.end(), tracks_.begin() + static_cast<ptrdiff_t>(next), tracks_.end());
 
-  const uint64_t come = in.get_gamma();
-  if (!in.ok() || come > in.left() / kMinBits || kept_.size() + come != avatars) return false;
+  const uint64_t added = in.get_gamma();
+  if (!in.ok() || added > in.left() / kMinBits || kept_.size() + added != avatars) return false;
   added_.clear();
   Track last;
   uint64_t next_id = 0;
-  for (uint64_t k = 0; k < come; ++k) {
+  for (uint64_t k = 0; k < added; ++k) {
     Track track;
     track.id = next_id + in.get_gamma();
     if (!in.ok() || track.id < next_id || track.id == UINT64_MAX) return false;
@@ -317,9 +318,9 @@ bool FrameDecoder::decode(std::span<const uint8_t> bytes, uint32_t avatars) {
   tracks_.clear();
   size_t a = 0, b = 0;
   while (a < kept_.size() || b < added_.size()) {
-    const bool fresh = a == kept_.size() || (b < added_.size() && added_[b].id < kept_[a].id);
-    if (!fresh && b < added_.size() && added_[b].id == kept_[a].id) return false;
-    if (fresh) {
+    const bool is_new = a == kept_.size() || (b < added_.size() && added_[b].id < kept_[a].id);
+    if (!is_new && b < added_.size() && added_[b].id == kept_[a].id) return false;
+    if (is_new) {
       tracks_.push_back(added_[b++]);
       continue;
     }
@@ -342,10 +343,10 @@ bool FrameDecoder::decode(std::span<const uint8_t> bytes, uint32_t avatars) {
   if (!in.ok() || turned > tracks_.size()) return false;
   uint64_t after = 0;
   for (uint64_t n = 0; n < turned; ++n) {
-    const uint64_t gap = in.get_gamma();
-    if (!in.ok() || gap >= tracks_.size() - after) return false;
-    Track& track = tracks_[after + gap];
-    after += gap + 1;
+    const uint64_t skipped = in.get_gamma();
+    if (!in.ok() || skipped >= tracks_.size() - after) return false;
+    Track& track = tracks_[after + skipped];
+    after += skipped + 1;
     for (size_t k = 0; k < track.up.size(); ++k) {
       const uint32_t value = in.get_rice(rice_parameter(track.mean[kUpMean + k]));
       follow(track.mean[kUpMean + k], value);

@@ -9,15 +9,15 @@
 
 #include "throng/recording.h"
 
-/// One frame after the other as bits: what differs from what was to be expected.
+/// Frames as bits: differences from the expected positions, headings and axes.
 namespace throng {
 
-/// A direction: where it meets an octahedron that stands on its tip, laid flat; upright is 0, 0. Up
-/// to kUpSteps either way.
+/// A direction: its point on an octahedron that stands on its tip, unfolded into a square; upright
+/// is (0, 0). [-kUpSteps to kUpSteps]
 using UpCode = std::array<int16_t, 2>;
 inline constexpr int32_t kUpSteps = 2047;
 
-/// An avatar as the last frame left it. Writer and reader hold the same, in order of id.
+/// An avatar after the last frame. Writer and reader hold the same tracks, in order of id.
 struct Track {
   uint64_t id = 0;
   std::array<int32_t, 3> at{};     // from the recording's origin [mm]
@@ -32,13 +32,13 @@ struct Track {
 /// The nearest of 256 directions, and back. Exact arithmetic: 0.9 degrees off at most.
 [[nodiscard]] uint8_t heading_code(Heading heading);
 [[nodiscard]] Heading heading_of(uint8_t code);
-/// The same of any direction but none at all: 0.06 degrees off at most.
+/// The same of any direction except zero: 0.06 degrees off at most.
 [[nodiscard]] UpCode up_code(Vec3d up);
 [[nodiscard]] Vec3d up_of(UpCode code);
 
 class FrameEncoder {
  public:
-  /// `leans`: frames tell who leans, and how. `origin`: tracks are relative to it [whole metres].
+  /// `leans`: frames hold axes. `origin`: tracks are relative to it [whole metres].
   explicit FrameEncoder(bool leans = false, Vec3d origin = {}) : leans_(leans), origin_(origin) {}
   /// The next frame is written without any frame before it.
   void forget() { tracks_.clear(); }
@@ -59,7 +59,7 @@ class FrameDecoder {
  public:
   explicit FrameDecoder(bool leans = false) : leans_(leans) {}
   void forget() { tracks_.clear(); }
-  /// Takes one frame in; false if the bytes make no sense, then it must forget.
+  /// Decodes the next frame; false if the bytes are not valid, then call forget().
   [[nodiscard]] bool decode(std::span<const uint8_t> bytes, uint32_t avatars);
   [[nodiscard]] std::span<const Track> tracks() const { return tracks_; }
 

@@ -13,8 +13,8 @@
 #include "record/replay_generated.h"
 #include "throng/recording.h"
 
-// A chunk is handed to the system in one write and never touched again: whenever the process dies,
-// the file is a row of whole chunks and at most one that is cut off.
+// Writes recordings in chunks, each with one system write and never changed: if the process dies,
+// the file is a sequence of whole chunks and at most one that is cut off. docs/file_format.md.
 namespace throng {
 namespace {
 
@@ -25,7 +25,7 @@ flatbuffers::DetachedBuffer info_bytes(const RecordingInfo& info) {
     classes.push_back(
         format::CreateRecordedClass(builder, builder.CreateString(c.name), c.height, c.radius));
   }
-  // Without an origin, as it was before there were any: also programs that know none read it.
+  // Without an origin, the older version, which programs without origins can read.
   const bool has_origin = info.origin != Vec3d{};
   const uint32_t version = has_origin   ? kReplayVersionWithOrigin
                            : info.leans ? kReplayVersionThatLeans
@@ -62,7 +62,7 @@ struct Recorder::State {
   std::vector<uint8_t> chunk;  // as it is written
   uint64_t frames = 0, bytes = 0;
   uint64_t since_key = 0;  // frames
-  bool key = true;         // this chunk begins with a frame that stands alone
+  bool key = true;         // this chunk begins with a frame that needs none before it
   double last_time = 0;
   uint64_t last_step = 0, last_hash_step = 0;
   bool any_hash = false;
@@ -117,10 +117,10 @@ struct Recorder::State {
 };
 
 Vec3d recording_origin(const Box3d& bounds) {
-  constexpr double kNear = 1e6;  // [m] Half of what a frame reaches.
+  constexpr double kMaxUnshifted = 1e6;  // [m] Half the range of positions in a frame.
   if (bounds.empty()) return {};
   const auto axis = [](double low, double high) {
-    if (low >= -kNear && high <= kNear) return 0.0;
+    if (low >= -kMaxUnshifted && high <= kMaxUnshifted) return 0.0;
     return std::floor(low + (high - low) / 2 + 0.5) + 0.0;  // never -0
   };
   return {axis(bounds.min.x, bounds.max.x), axis(bounds.min.y, bounds.max.y),

@@ -14,9 +14,9 @@
 #include "record/replay_generated.h"
 #include "throng/recording.h"
 
-// Opening walks from head to head and believes nothing that a checksum does not cover; a chunk's
-// own bytes are checked when it is first read. What stands behind the first head that is not right
-// is not part of the recording.
+// Reads recordings. Opening goes from head to head and trusts only bytes under a checksum; a
+// chunk's contents are checked when it is first read. Bytes from the first wrong head on are not
+// part of the recording. Time of a read: the frames since the last key frame.
 namespace throng {
 namespace {
 
@@ -27,7 +27,7 @@ constexpr const char* kBadSettings = "its settings are corrupt; record the run a
 struct Chunk {
   ChunkHead head;
   uint64_t at = 0;    // where its bytes begin
-  uint64_t key = 0;   // the chunk at or before it whose first frame stands alone
+  uint64_t key = 0;   // the key chunk at or before it: its first frame needs none before it
   bool good = false;  // its bytes have been checked
 };
 
@@ -46,7 +46,7 @@ struct Replay::State {
   uint64_t frames = 0;
   uint64_t good_bytes = 0;
 
-  // What the decoder holds: the frame before `next_frame`, in chunk `chunk`.
+  // The decoder's state: the frame before `next_frame`, in chunk `chunk`.
   static constexpr uint64_t kNone = ~uint64_t{0};
   FrameDecoder decoder;
   uint64_t next_frame = kNone;
@@ -224,7 +224,7 @@ Result<void> Replay::State::walk() {
                                                       reinterpret_cast<const char*>(bytes.data()));
     return bad(ours ? kBadSettings : "not a recording; `throng run --record` writes one");
   }
-  // A system that stopped may have written a head and not what it announces: that is lost, too.
+  // After a crash of the system a head may be on disk without its contents: that chunk is lost too.
   while (!chunks.empty() && !check(chunks.back())) {
     frames -= chunks.back().head.frames;
     at = chunks.back().at - sizeof(ChunkHead);
@@ -239,7 +239,7 @@ Result<void> Replay::State::walk() {
   return {};
 }
 
-// Makes the decoder hold frame `index`.
+// Brings the decoder to frame `index`.
 Result<void> Replay::State::decode_to(uint64_t index) {
   const Chunk* chunk = &chunk_of(index);
   const uint64_t first = chunks[chunk->key].head.first_frame;
@@ -344,7 +344,7 @@ Result<void> Replay::read(uint64_t index, RecordedFrame& frame) {
     const Track& t = tracks[i];
     frame.ids[i] = t.id;
     frame.classes[i] = t.avatar_class;
-    // Summed as whole millimetres: what comes out is the number next to them.
+    // Summed in whole millimetres: the result is the double nearest to the sum.
     const auto metres = [&](size_t axis) {
       return static_cast<double>(s.origin[axis] * 1000 + t.at[axis]) / 1000.0;
     };

@@ -9,25 +9,25 @@
 #include "core/hash.h"
 #include "throng/recording.h"
 
-/// The shape of a recording: chunks, each a head of 64 bytes and what it announces.
+/// The layout of a recording: chunks, each a head of 64 bytes and its contents.
 namespace throng {
 
 inline constexpr uint32_t kReplayVersion = 1, kReplayVersionThatLeans = 2;
-inline constexpr uint32_t kReplayVersionWithOrigin = 3;  // Tells by a field whether it leans.
+inline constexpr uint32_t kReplayVersionWithOrigin = 3;  // `leans` is a field.
 inline constexpr double kFarthestOrigin = 1e9;           // [m]
 inline constexpr std::array<char, 4> kChunkMark{'T', 'H', 'R', 'C'};
 
 enum class ChunkKind : uint32_t {
-  kRun = 1,        ///< replay.fbs; the first, and there is one.
+  kRun = 1,        ///< replay.fbs; the first chunk, and only that.
   kFrames = 2,     ///< FrameEntry, StepHash, then the frames' bytes.
-  kKeyFrames = 3,  ///< The same; its first frame stands alone.
-  kEnd = 4,        ///< The recording was finished: the text of its outcome, or nothing.
+  kKeyFrames = 3,  ///< The same; its first frame needs no frame before it.
+  kEnd = 4,        ///< The recording is complete: the text of its outcome, or nothing.
 };
 
 struct ChunkHead {
   std::array<char, 4> mark = kChunkMark;
   uint32_t kind = 0;
-  uint64_t bytes = 0;        ///< Behind the head; padded with zeros to a multiple of 8.
+  uint64_t bytes = 0;        ///< After the head; padded with zeros to a multiple of 8.
   uint64_t sum = 0;          ///< XXH3 of these.
   uint64_t first_frame = 0;  ///< Number of its first frame.
   uint32_t frames = 0;

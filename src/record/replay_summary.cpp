@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+// Summary of a recording in two passes: the first finds storeys and bounds, the second counts.
+// Time: linear in the positions, times the lines.
 namespace throng {
 namespace {
 
@@ -113,7 +115,7 @@ class Summary {
     return {};
   }
 
-  // The map and the cell of a place.
+  // The map and the cell of a position.
   std::pair<SummaryMap*, size_t> cell_of(const Vec3d& p) {
     const auto at = std::lower_bound(storeys_.begin(), storeys_.end(), storey_of(p.y));
     SummaryMap& map = out_.maps[static_cast<size_t>(at - storeys_.begin())];
@@ -138,28 +140,28 @@ class Summary {
       }
       // Both frames are in order of id.
       size_t stay = 0;
-      double way = 0;
+      double moved = 0;
       const double dt = f > 0 ? now_.time - before_.time : 0;
       const size_t before = f > 0 ? before_.size() : 0;
       for (size_t a = 0, b = 0; a < before || b < now_.size();) {
-        const bool gone = b == now_.size() || (a < before && before_.ids[a] < now_.ids[b]);
-        const bool fresh = a == before || (b < now_.size() && now_.ids[b] < before_.ids[a]);
-        come += fresh ? 1 : 0;
-        left += gone ? 1 : 0;
-        if (gone) out_.last_left = now_.time;
-        if (!gone && !fresh) {
+        const bool has_left = b == now_.size() || (a < before && before_.ids[a] < now_.ids[b]);
+        const bool is_new = a == before || (b < now_.size() && now_.ids[b] < before_.ids[a]);
+        come += is_new ? 1 : 0;
+        left += has_left ? 1 : 0;
+        if (has_left) out_.last_left = now_.time;
+        if (!has_left && !is_new) {
           ++stay;
-          way += move(before_.positions[a], now_.positions[b], dt);
+          moved += move(before_.positions[a], now_.positions[b], dt);
         }
-        a += fresh ? 0 : 1;
-        b += gone ? 0 : 1;
+        a += is_new ? 0 : 1;
+        b += has_left ? 0 : 1;
       }
       out_.come.push_back(come);
       out_.left.push_back(left);
       if (f > 0) {
         const double n = static_cast<double>(std::max<size_t>(stay, 1));
-        out_.speed.push_back(way / n / dt);
-        walked += way;
+        out_.speed.push_back(moved / n / dt);
+        walked += moved;
         walked_time += static_cast<double>(stay) * dt;
       }
       std::swap(before_, now_);
@@ -169,16 +171,16 @@ class Summary {
     return {};
   }
 
-  // One body from the frame before to this one. Returns how far.
+  // Adds the move of one body since the frame before. Returns its length.
   double move(const Vec3d& from, const Vec3d& to, double dt) {
-    const double way = length(to - from);
-    if (way < config_.slow * dt) {
+    const double moved = length(to - from);
+    if (moved < config_.slow * dt) {
       const auto [map, cell] = cell_of(from);
       map->waiting[cell] += dt / (config_.cell * config_.cell);
       out_.waited += dt;
     }
     for (size_t l = 0; l < config_.lines.size(); ++l) cross(l, from, to, dt);
-    return way;
+    return moved;
   }
 
   void cross(size_t index, const Vec3d& from, const Vec3d& to, double dt) {
@@ -186,7 +188,7 @@ class Summary {
     const double dx = l.x1 - l.x0, dz = l.z1 - l.z0;
     const double a = dx * (from.z - l.z0) - dz * (from.x - l.x0);
     const double b = dx * (to.z - l.z0) - dz * (to.x - l.x0);
-    if ((a > 0) == (b > 0)) return;  // On the line is on its left: nobody is counted twice.
+    if ((a > 0) == (b > 0)) return;  // The line belongs to its left side: a crossing counts once.
     const double part = a / (a - b);
     const Vec3d at = from + (to - from) * part;
     const double along = ((at.x - l.x0) * dx + (at.z - l.z0) * dz) / (dx * dx + dz * dz);
@@ -203,7 +205,7 @@ class Summary {
   Context& context_;
   Box3d box_;                         // of all positions
   double x_first_ = 0, z_first_ = 0;  // whole numbers of cells
-  std::vector<int64_t> storeys_;      // in which anybody was, ascending
+  std::vector<int64_t> storeys_;      // that had avatars, ascending
   RecordedFrame now_, before_;
   ReplaySummary out_;
 };

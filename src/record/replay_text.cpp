@@ -8,10 +8,12 @@
 #include "core/part_file.h"
 #include "throng/replay_export.h"
 
+// Recordings as text: CSV for spreadsheets, and the trajectory format of the Juelich experiments.
+// them.
 namespace throng {
 namespace {
 
-// Writes a head, then what `line` makes of each avatar.
+// Writes a head, then a line for each avatar of each frame.
 template <class Line>
 Result<void> write_text(Replay& replay, const std::string& path, const ExportConfig& config,
                         Context& context, const std::string& head, Line line) {

@@ -14,10 +14,12 @@
 #include "core/disjoint_sets.h"
 #include "throng/walkable_surface.h"
 
-// Rows of runs of cells; runs that share a side are one piece. Each piece's border is walked with
-// the piece on one's right (x to the right, z down). Where two of its cells touch at a corner only,
-// the walk goes on along the other cell: what is shut in between them becomes a hole that touches
-// the outer ring in a point, as the rules for polygons ask, and no ring touches itself.
+// The legal cells of a class as polygons: runs of cells in rows, and runs that share a side are one
+// piece (disjoint sets). Each border is traced with the piece on its right (x to the right, z
+// down). Where two of its cells touch at a corner only, the trace continues along the other cell:
+// what they enclose is a hole that touches the outer ring in a point, and no ring touches itself,
+// as polygons must. Time: linear in the cells, times the logarithm of the runs in a row along
+// borders.
 namespace throng {
 namespace {
 
@@ -33,7 +35,7 @@ class Plane {
   }
   void set(int64_t x, int64_t z) { bits_[bit(x, z) / 64] |= uint64_t{1} << bit(x, z) % 64; }
 
-  // Turns the cells into runs and tells pieces apart. Returns how many there are.
+  // Turns the cells into runs and labels these by piece. Returns the number of pieces.
   uint32_t find_pieces();
   [[nodiscard]] const std::vector<std::vector<Run>>& rows() const { return rows_; }
   [[nodiscard]] bool in_piece(int32_t x, int32_t z, uint32_t piece) const;
@@ -104,7 +106,7 @@ class Tracer {
  public:
   explicit Tracer(const Plane& plane) : plane_(plane) {}
 
-  // Takes (piece, ring) for each ring, each once.
+  // Calls take(piece, ring) once for each ring.
   template <class Take>
   void trace(Take take) {
     const auto depth = static_cast<int32_t>(plane_.rows().size());
@@ -151,7 +153,7 @@ class Tracer {
   }
 
   const Plane& plane_;
-  std::unordered_set<uint64_t> walked_;  // upper sides of cells; asked, never listed
+  std::unordered_set<uint64_t> walked_;  // upper sides of cells; the order is never used
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "core/check_class.h"
 
+// The walkable surface of a class as triangles: a rectangle of legal cells becomes two of them.
 namespace throng {
 namespace {
 
@@ -20,7 +21,8 @@ struct Rect {
   int32_t x = 0, z = 0, width = 1, depth = 1;
 };
 
-// Cuts the legal cells of one level tile into rectangles over which the floor is one plane.
+// Cuts the legal cells of one level tile into rectangles over which the floor is one plane,
+// greedily: time linear in the cells times the length of a rectangle's sides.
 class TileCutter {
  public:
   TileCutter(const LevelTileContent& tile, size_t avatar_class)
@@ -67,7 +69,7 @@ class TileCutter {
     }
     return true;
   }
-  // A row as long as it goes, then as many like it as go.
+  // The longest row, then as many like it as fit.
   [[nodiscard]] Rect grow(int32_t x, int32_t z) const {
     Rect rect{x, z};
     while (is_free(rect.x + rect.width, z)) {

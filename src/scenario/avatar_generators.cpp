@@ -13,21 +13,22 @@
 #include "core/random.h"
 #include "throng/graph.h"
 
-// Source: [TC00] 5. What is seen drains if only it is simulated: who walks out is gone and nobody
-// comes in. So the unseen cells beside the seen ones are kept at the density asked, as a reservoir,
-// and goals lead people from it into sight and out again. Whatever the walks do to the density in
-// sight is put right by where the next goals lie.
+// Source: [TC00] 5. A seen area that is simulated alone drains: avatars walk out and none enter. So
+// a band of unseen cells beside the seen ones is kept at the required density, as a reservoir, and
+// goals lead avatars from it into sight and out again. The choice of goals corrects the density in
+// sight. Time of an update: linear in the members, plus the cells of each classification.
 namespace throng {
 namespace {
 
-constexpr int32_t kStride = 4;  // Every fourth cell along X and Z stands for 16.
-constexpr double kAdjust = 0.01, kMinFull = 0.3, kMaxFull = 1.5;  // Of the band, a step.
-constexpr double kLimbs = 0.5;  // A body reaches no further from its middle. [m]
+constexpr int32_t kStride = 4;  // Every fourth cell along X and Z represents 16.
+constexpr double kAdjust = 0.01, kMinFull = 0.3,
+                 kMaxFull = 1.5;     // Fullness of the band: change a step, limits.
+constexpr double kBodyMargin = 0.5;  // No body extends further from its axis. [m]
 enum Stream : uint64_t { kWant = 1, kSpawn, kGoal };
 
 // A level tile's part of the ground.
 struct GroundCell {
-  Box3d box;  // With the bodies that stand on it.
+  Box3d box;  // Includes bodies that stand on it.
   double area = 0;
   int32_t tile_x = 0, tile_z = 0;
 };
@@ -41,7 +42,7 @@ double flat_distance(const Box3d& box, Vec3d p) {
   return std::hypot(beyond(p.x, box.min.x, box.max.x), beyond(p.z, box.min.z, box.max.z));
 }
 
-double gap(const Box3d& a, const Box3d& b) {
+double flat_distance(const Box3d& a, const Box3d& b) {
   const auto between = [](double a_low, double a_high, double b_low, double b_high) {
     return std::max({a_low - b_high, b_low - a_high, 0.0});
   };
@@ -57,20 +58,20 @@ struct AvatarGenerators::State {
   GeneratorConfig config;
   int32_t component = -1;
   double height = 0, cell = 0;
-  std::vector<GroundCell> cells;  // By level tile; of area 0: not of this ground.
+  std::vector<GroundCell> cells;  // By level tile; area 0: not of this component.
   double area = 0;
 
   std::vector<CellState> states;
   std::vector<uint32_t> active;  // Cells that are not idle.
-  Vec3d looked_from;
-  int32_t steps_since_look = -1;  // -1: never looked.
+  Vec3d classified_from;
+  int32_t steps_since_classified = -1;  // -1: never classified.
 
   std::vector<AvatarId> members;
   std::vector<uint32_t> counts;  // Of members, by cell.
-  double fullness = 1;           // Of the band, by what the density asks.
+  double fullness = 1;           // Of the band, as a share of the required density.
   uint64_t drawn = 0;            // Random numbers used so far.
 
-  void look(Vec3d eye, const Sight& can_see);
+  void classify(Vec3d eye, const Sight& can_see);
   [[nodiscard]] Box3d body(Vec3d feet) const;
   [[nodiscard]] uint32_t cell_of(Vec3d feet) const;
   [[nodiscard]] Place random_place(uint32_t in, Stream stream);
@@ -79,22 +80,22 @@ struct AvatarGenerators::State {
   [[nodiscard]] Place random_goal();
   void give_goals(Crowd& crowd, const std::vector<AvatarId>& to);
   Result<uint32_t> fill(Crowd& crowd, uint32_t in, const Sight* can_see, Context& context);
-  uint32_t take_away(Crowd& crowd, const Sight& can_see);
+  uint32_t remove_surplus(Crowd& crowd, const Sight& can_see);
   [[nodiscard]] GeneratorReport report() const;
 };
 
 Box3d AvatarGenerators::State::body(Vec3d feet) const {
-  return {{feet.x - kLimbs, feet.y - 0.1, feet.z - kLimbs},
-          {feet.x + kLimbs, feet.y + height + 0.1, feet.z + kLimbs}};
+  return {{feet.x - kBodyMargin, feet.y - 0.1, feet.z - kBodyMargin},
+          {feet.x + kBodyMargin, feet.y + height + 0.1, feet.z + kBodyMargin}};
 }
 
 uint32_t AvatarGenerators::State::cell_of(Vec3d feet) const {
   const Place place = world.find_place(config.avatar_class, feet, 1.0);
-  return place.level1 - 1;  // Nowhere: a number beyond all cells.
+  return place.level1 - 1;  // No place: an index beyond all cells.
 }
 
 // Marks cells as seen, as the band beside them, or as idle.
-void AvatarGenerators::State::look(Vec3d eye, const Sight& can_see) {
+void AvatarGenerators::State::classify(Vec3d eye, const Sight& can_see) {
   states.assign(cells.size(), CellState::kIdle);
   active.clear();
   std::vector<uint32_t> near, seen;
@@ -109,18 +110,18 @@ void AvatarGenerators::State::look(Vec3d eye, const Sight& can_see) {
   for (const uint32_t i : near) {
     if (states[i] != CellState::kIdle) continue;
     const bool beside = std::any_of(seen.begin(), seen.end(), [&](uint32_t s) {
-      return gap(cells[i].box, cells[s].box) <= config.band;
+      return flat_distance(cells[i].box, cells[s].box) <= config.band;
     });
     if (beside) states[i] = CellState::kBand;
   }
   for (const uint32_t i : near) {
     if (states[i] != CellState::kIdle) active.push_back(i);
   }
-  looked_from = eye;
-  steps_since_look = 0;
+  classified_from = eye;
+  steps_since_classified = 0;
 }
 
-// Uniform over the cell's ground: draws until a place of it is hit.
+// Uniform over the cell's ground: draws until a point has a place of the component.
 Place AvatarGenerators::State::random_place(uint32_t in, Stream stream) {
   const GroundCell& c = cells[in];
   const double side = cell * kTileCells;
@@ -138,13 +139,13 @@ Place AvatarGenerators::State::random_place(uint32_t in, Stream stream) {
   return {};
 }
 
-// In the mean over cells exactly what the density asks.
+// Rounded at random, so that the mean over cells is the required density.
 uint32_t AvatarGenerators::State::wanted(uint32_t in) const {
   return static_cast<uint32_t>(fullness * config.density * cells[in].area +
                                random_unit(config.seed, kWant, in));
 }
 
-// How many of those wanted in sight are not there, by those wanted.
+// The share of the avatars required in sight that is missing.
 double AvatarGenerators::State::missing() const {
   double area_seen = 0, there = 0;
   for (const uint32_t i : active) {
@@ -156,9 +157,9 @@ double AvatarGenerators::State::missing() const {
 }
 
 Place AvatarGenerators::State::random_goal() {
-  const double rather = std::clamp(1 + 4 * missing(), 0.1, 5.0);
+  const double seen_weight = std::clamp(1 + 4 * missing(), 0.1, 5.0);
   const auto weight = [&](uint32_t i) {
-    return cells[i].area * (states[i] == CellState::kSeen ? rather : 1);
+    return cells[i].area * (states[i] == CellState::kSeen ? seen_weight : 1);
   };
   double sum = 0;
   for (const uint32_t i : active) sum += weight(i);
@@ -176,7 +177,7 @@ void AvatarGenerators::State::give_goals(Crowd& crowd, const std::vector<AvatarI
   crowd.set_goals(to, goals);
 }
 
-// Adds who is missing on a cell, out of sight if there is one.
+// Adds the avatars missing on a cell; with `can_see`, only out of sight.
 Result<uint32_t> AvatarGenerators::State::fill(Crowd& crowd, uint32_t in, const Sight* can_see,
                                                Context& context) {
   const uint32_t want = wanted(in);
@@ -199,30 +200,29 @@ Result<uint32_t> AvatarGenerators::State::fill(Crowd& crowd, uint32_t in, const 
   return static_cast<uint32_t>(here.size());
 }
 
-// Counts members by cell and takes away, out of sight, who has left the band and who is too many
-// on it.
-uint32_t AvatarGenerators::State::take_away(Crowd& crowd, const Sight& can_see) {
+// Counts members by cell. Removes members out of sight that left the band or are surplus on it.
+uint32_t AvatarGenerators::State::remove_surplus(Crowd& crowd, const Sight& can_see) {
   counts.assign(cells.size(), 0);
-  std::vector<AvatarId> gone;
+  std::vector<AvatarId> removed;
   size_t kept = 0;
   for (const AvatarId id : members) {
     const auto state = crowd.read(id);
-    if (!state) continue;  // Somebody else has removed him.
+    if (!state) continue;  // Removed by other code.
     const uint32_t at = cell_of(state->position);
     const bool known = at < cells.size();
     const CellState where = known ? states[at] : CellState::kIdle;
     const bool surplus =
         where == CellState::kIdle || (where == CellState::kBand && counts[at] >= wanted(at));
     if (surplus && !can_see(body(state->position))) {
-      gone.push_back(id);
+      removed.push_back(id);
       continue;
     }
     if (known) ++counts[at];
     members[kept++] = id;
   }
   members.resize(kept);
-  crowd.remove(gone);
-  return static_cast<uint32_t>(gone.size());
+  crowd.remove(removed);
+  return static_cast<uint32_t>(removed.size());
 }
 
 GeneratorReport AvatarGenerators::State::report() const {
@@ -247,7 +247,7 @@ Result<AvatarGenerators> AvatarGenerators::make(const World& world, const Genera
                      config.people >= 0 && std::isfinite(config.people);
   if (!sound) {
     return Error{Errc::kBadConfig,
-                 "generators: need a density over 0 and up to 1, no people less than none, and "
+                 "generators: need a density over 0 and up to 1, people not below 0, and "
                  "radius, band and steps_per_query over 0"};
   }
   const WorldSummary summary = world.summary();
@@ -268,7 +268,7 @@ Result<AvatarGenerators> AvatarGenerators::make(const World& world, const Genera
   s.graph = *std::move(graph);
   s.component = s.graph.component_at(config.avatar_class, config.home);
   if (s.component < 0) {
-    return Error{Errc::kBadInput, "generators: nobody of this class can stand at home"};
+    return Error{Errc::kBadInput, "generators: no avatar of this class can stand at home"};
   }
   s.cells.resize(world.level_tile_count());
   parallel_for(s.cells.size(), config.workers, [&](size_t i) {
@@ -286,7 +286,7 @@ Result<AvatarGenerators> AvatarGenerators::make(const World& world, const Genera
                                                 (tile.tile_z * kTileCells + z + 0.5) * s.cell};
         if (s.graph.component_at(config.avatar_class, place) != s.component) continue;
         const Box3d around = s.body(place.position);
-        const Vec3d stride = Vec3d{1, 0, 1} * (kStride * s.cell);  // What it stands for.
+        const Vec3d stride = Vec3d{1, 0, 1} * (kStride * s.cell);  // The cells it represents.
         out.box.add(around.min - stride);
         out.box.add(around.max + stride);
         out.area += kStride * kStride * s.cell * s.cell;
@@ -313,7 +313,7 @@ Result<GeneratorReport> AvatarGenerators::populate(Crowd& crowd, Vec3d eye, cons
   s.members.clear();
   s.fullness = 1;
   s.counts.assign(s.cells.size(), 0);
-  s.look(eye, can_see);
+  s.classify(eye, can_see);
   uint32_t added = 0;
   for (const uint32_t i : s.active) {
     const Result<uint32_t> here = s.fill(crowd, i, nullptr, context);
@@ -328,14 +328,14 @@ Result<GeneratorReport> AvatarGenerators::populate(Crowd& crowd, Vec3d eye, cons
 Result<GeneratorReport> AvatarGenerators::update(Crowd& crowd, Vec3d eye, const Sight& can_see,
                                                  Context& context) {
   State& s = *state_;
-  if (s.steps_since_look < 0) return populate(crowd, eye, can_see, context);
-  ++s.steps_since_look;
-  if (s.steps_since_look >= s.config.steps_per_query || length(eye - s.looked_from) > 2) {
-    s.look(eye, can_see);
+  if (s.steps_since_classified < 0) return populate(crowd, eye, can_see, context);
+  ++s.steps_since_classified;
+  if (s.steps_since_classified >= s.config.steps_per_query || length(eye - s.classified_from) > 2) {
+    s.classify(eye, can_see);
   }
-  const uint32_t removed = s.take_away(crowd, can_see);
-  // Ways cross in the middle, so more walk there than goals alone would bring; slowly, as people
-  // take a while to come.
+  const uint32_t removed = s.remove_surplus(crowd, can_see);
+  // Paths cross in the middle, so its density exceeds that of the goals. The correction is slow, as
+  // avatars need time to get there.
   s.fullness = std::clamp(s.fullness + kAdjust * s.missing(), kMinFull, kMaxFull);
   uint32_t added = 0;
   for (const uint32_t i : s.active) {
@@ -344,7 +344,7 @@ Result<GeneratorReport> AvatarGenerators::update(Crowd& crowd, Vec3d eye, const 
     if (!here) return here.error();
     added += *here;
   }
-  // Who is there gets another goal: ids of others' avatars are among these, too.
+  // Members at their goal get another. The lists contain other avatars of the crowd too.
   std::vector<AvatarId> idle;
   const auto is_member = [&](AvatarId id) {
     return std::find(s.members.begin(), s.members.end(), id) != s.members.end();

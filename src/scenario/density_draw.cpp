@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+// Draws points by the weights of a density map: prefix sums of the pixels, and a binary search for
+// each point.
 namespace throng {
 
 DensityDraw::DensityDraw(const DensityMap& map) : map_(&map) {

@@ -8,7 +8,7 @@
 
 #include "throng/scenario.h"
 
-/// Points of the plane, as likely as a density map says.
+/// Random points of the plane, distributed by a density map.
 namespace throng {
 
 class DensityDraw {
@@ -19,7 +19,7 @@ class DensityDraw {
 
  private:
   const DensityMap* map_;
-  std::vector<uint64_t> before_;  // weights of the pixels before, and of all at last
+  std::vector<uint64_t> before_;  // sum of the weights before each pixel, and of all at the end
 };
 
 }  // namespace throng

@@ -16,6 +16,7 @@
 #include <stb/stb_image.h>
 #pragma GCC diagnostic pop
 
+// Density maps from PNG files (stb_image) and from prisms painted on them.
 namespace throng {
 namespace {
 

@@ -7,13 +7,13 @@
 
 #include "throng/scenario.h"
 
-/// Pictures of how many may be where.
+/// Density maps from images and painted areas.
 namespace throng {
 
 /// Reads a PNG's brightness into width, height and weights. Fails with kBadFile.
 [[nodiscard]] Result<void> read_density_image(const std::string& path, DensityMap& map);
 
-/// Gives the pixels whose middles are in one of the prisms a weight.
+/// Sets the weight of the pixels whose middles are in one of the prisms.
 void paint_density(DensityMap& map, std::span<const Prism> prisms, uint8_t weight);
 
 }  // namespace throng

@@ -8,10 +8,13 @@
 #include "core/trig.h"
 #include "throng/scenario.h"
 
+// Random numbers of the distributions in scenarios: by inversion, and normal ones after [BM58].
+// Each is a function of seed, stream and index. Draws outside the limits are repeated, 64 times at
+// most.
 namespace throng {
 namespace {
 
-constexpr uint64_t kTries = 64;
+constexpr uint64_t kMaxTries = 64;
 
 double draw_once(const Distribution& d, uint64_t seed, uint64_t stream, uint64_t n) {
   const double u = random_unit(seed, stream, n);
@@ -34,8 +37,8 @@ double draw_once(const Distribution& d, uint64_t seed, uint64_t stream, uint64_t
 
 double draw(const Distribution& distribution, uint64_t seed, uint64_t stream, uint64_t n) {
   double value = distribution.a;
-  for (uint64_t k = 0; k < kTries; ++k) {
-    value = draw_once(distribution, seed, stream, n * kTries + k);
+  for (uint64_t k = 0; k < kMaxTries; ++k) {
+    value = draw_once(distribution, seed, stream, n * kMaxTries + k);
     if (value >= distribution.low && value <= distribution.high) return value;
   }
   return std::clamp(value, distribution.low, distribution.high);

@@ -7,53 +7,53 @@
 #include <cstdint>
 #include <vector>
 
-/// When somebody gets through a door, by those who come to it before him: they go through one after
-/// the other, in order of coming, and nobody before he has come. Times are whole ticks. Memory: the
-/// ticks from the last one that was forgotten to the latest in which somebody comes.
+/// The time at which an avatar passes a door, from the arrival times of all that head there: they
+/// pass one after the other, in order of arrival, none before it arrives. Times are whole ticks.
+/// Memory: the ticks from the last forgotten one to the latest arrival.
 namespace throng {
 
 class DoorQueue {
  public:
   static constexpr double kTick = 0.125;  // [s]
 
-  /// `flow`: of the door. [people/s, > 0]
+  /// `flow`: of the door. [avatars/s, > 0]
   explicit DoorQueue(double flow) : service_(1 / flow) {}
 
   /// The tick in which a time lies. [s, 0 to 16 years]
   [[nodiscard]] static uint32_t tick(double time);
 
-  /// Nobody asks any more what was before `now`: whoever should have come by then stands at the
-  /// door, if he is still here.
+  /// No query concerns a time before `now` any more: avatars expected by then that were not removed
+  /// count as standing at the door.
   void forget_before(uint32_t now) { forgotten_ = std::max(forgotten_, now); }
-  /// Somebody comes in a tick. Returns that under which he is kept: beyond six hours from what was
-  /// forgotten last all is alike. Time: logarithm of the ticks that are kept.
+  /// Adds an arrival. Returns the tick under which it is stored: at most six hours after the last
+  /// forgotten one. Time: logarithmic in the stored ticks.
   uint32_t add(uint32_t tick);
-  /// He does not come. [tick: as `add` returned it]
+  /// Removes an arrival. [tick: as `add` returned it]
   void remove(uint32_t tick) { change(tick, -1); }
-  /// When whoever comes in a tick is through, after all who come before him or with him; those who
-  /// should have come by `now` and are still here stand at the door. Time: as `add`. [now: not
-  /// forgotten; s]
-  [[nodiscard]] double passes(uint32_t tick, uint32_t now) const;
-  /// So many ticks are kept.
+  /// When an avatar that arrives in `tick` has passed, after all that arrive before it or with it.
+  /// Those expected by `now` and not removed stand at the door. Time: as `add`. [s; now: not
+  /// forgotten]
+  [[nodiscard]] double pass_time(uint32_t tick, uint32_t now) const;
+  /// The number of stored ticks.
   [[nodiscard]] size_t kept() const { return tree_.size() / 2; }
 
  private:
-  // What a stretch of ticks does to a door that is free from some time on: it is free from then
-  // plus `people` services, or from `free`, whichever is later.
-  struct Stretch {
-    int64_t people = 0;
+  // The effect of a range of ticks on a door that is free from a time t on: afterwards it is free
+  // from max(t + count * service, free) on.
+  struct TickRange {
+    int64_t count = 0;
     double free = -1e300;
   };
-  [[nodiscard]] Stretch joined(const Stretch& first, const Stretch& then) const;
-  void change(uint32_t tick, int64_t people);
-  void make_room(uint32_t tick);
-  [[nodiscard]] Stretch between(size_t first, size_t last) const;
+  [[nodiscard]] TickRange combine(const TickRange& first, const TickRange& then) const;
+  void change(uint32_t tick, int64_t count);
+  void grow(uint32_t tick);
+  [[nodiscard]] TickRange combine_range(size_t first, size_t last) const;
 
-  double service_;             // [s]
-  uint32_t forgotten_ = 0;     // all before this tick
-  uint32_t first_ = 0;         // tick of the first leaf
-  int64_t late_ = 0;           // people who should have come before that
-  std::vector<Stretch> tree_;  // of n leaves: 1 is the root, n + tick - first a leaf
+  double service_;               // [s]
+  uint32_t forgotten_ = 0;       // all before this tick
+  uint32_t first_ = 0;           // tick of the first leaf
+  int64_t late_ = 0;             // avatars expected before that
+  std::vector<TickRange> tree_;  // of n leaves: 1 is the root, n + tick - first a leaf
 };
 
 }  // namespace throng

@@ -5,33 +5,36 @@
 
 #include "scenario/simulation_state.h"
 
-// Groups stay together: who is ahead of the others slows down, who is behind hurries.
+// Groups stay together: members ahead of the middle walk slower, those behind it faster. Time:
+// linear in the members.
 namespace throng {
 namespace {
 
-constexpr double kPerMetre = 0.35;  // of the speed, for each metre ahead of the middle
-constexpr double kSlowest = 0.35, kFastest = 1.15;
+constexpr double kSlowdownPerMetre =
+    0.35;  // [1/m] share of the speed lost for each metre ahead of the middle
+constexpr double kMinFactor = 0.35, kMaxFactor = 1.15;
 
 }  // namespace
 
-// Has everybody of his group who is about come as far?
-bool Simulation::State::group_is_ready(const Person& p) {
+// Are all present members of its group at this stage's end, or beyond, or unable to get there?
+bool Simulation::State::group_is_ready(const ScenarioAvatar& p) {
   const auto& members = groups[static_cast<size_t>(p.group)];
   return std::all_of(members.begin(), members.end(), [&](uint64_t number) {
-    const Person* other = person(number);
+    const ScenarioAvatar* other = find_avatar(number);
     return other == nullptr || other->stage > p.stage || other->doing == Doing::kGathering ||
            other->doing == Doing::kGoalUnreachable || other->doing == Doing::kNothing;
   });
 }
 
-void Simulation::State::keep_together() {
+void Simulation::State::adjust_group_speeds() {
   for (const std::vector<uint64_t>& members : groups) {
     Vec3d middle, heading;
     double slowest = INFINITY;
     std::vector<std::pair<AvatarId, AvatarState>> walkers;
     for (const uint64_t number : members) {
-      const Person* p = person(number);
-      if (p == nullptr || (p->doing != Doing::kWalking && p->doing != Doing::kToSpot)) continue;
+      const ScenarioAvatar* p = find_avatar(number);
+      if (p == nullptr || (p->doing != Doing::kWalking && p->doing != Doing::kToRandomPlace))
+        continue;
       walkers.emplace_back(p->id, *crowd.read(p->id));
       const AvatarState& at = walkers.back().second;
       middle = {middle.x + at.position.x, 0, middle.z + at.position.z};
@@ -48,8 +51,9 @@ void Simulation::State::keep_together() {
                  (at.position.z - middle.z / count) * heading.z) /
                 size;
       }
-      const Person& p = persons[id.slot1 - 1];
-      const double speed = p.pace * slowest * std::clamp(1 - kPerMetre * ahead, kSlowest, kFastest);
+      const ScenarioAvatar& p = avatars[id.slot1 - 1];
+      const double speed = p.speed_factor * slowest *
+                           std::clamp(1 - kSlowdownPerMetre * ahead, kMinFactor, kMaxFactor);
       crowd.set_speeds({&id, 1}, {&speed, 1});
     }
   }

@@ -7,35 +7,36 @@
 #include "core/plan_point.h"
 #include "scenario/simulation_state.h"
 
-// Journeys: one stage after the other.
+// Journeys: the stages of an avatar one after the other, and the choice of the quickest exit
+// ([Lindley52], door_queue.h). Time of a choice: exits x (a path length + log of the queue).
 namespace throng {
 namespace {
 
-constexpr double kNearSpot = 1.5;     // [m] Who is so near his spot
-constexpr double kNearLong = 4;       // [s] for so long, and cannot come nearer, is there.
-constexpr double kDoorFlow = 2.0;     // [people / (m s)], of who chooses the quickest exit
-constexpr uint64_t kChooseEvery = 3;  // looks around
-constexpr uint64_t kRetryEvery = 5;   // looks around
-constexpr double kBetter = 0.75;      // Another exit must be that much quicker.
+constexpr double kNearRadius = 1.5;    // [m] An avatar this near its place
+constexpr double kNearTime = 4;        // [s] for this long has arrived.
+constexpr double kDoorFlow = 2.0;      // [avatars / (m s)], assumed for the choice of an exit
+constexpr uint64_t kChoosePeriod = 3;  // [reviews]
+constexpr uint64_t kRetryPeriod = 5;   // [reviews]
+constexpr double kSwitchRatio = 0.75;  // Another exit must take less than this share of the time.
 
 // Not the C library's hypot, which differs between machines.
 double size_of(double x, double z) { return std::sqrt(x * x + z * z); }
 
-// How far a place is from a shape, looked at from above; 0 inside. [m]
+// Horizontal distance of a point to a prism; 0 inside. [m]
 double distance_to(const Prism& prism, double x, double z) {
   if (prism.covers(x, z)) return 0;
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < prism.corners.size(); ++i) {
     const PlanPoint &a = prism.corners[i], &b = prism.corners[(i + 1) % prism.corners.size()];
     const double ex = b[0] - a[0], ez = b[1] - a[1];
     const double along = ((x - a[0]) * ex + (z - a[1]) * ez) / (ex * ex + ez * ez);
     const double part = std::clamp(along, 0.0, 1.0);
-    least = std::min(least, size_of(a[0] + part * ex - x, a[1] + part * ez - z));
+    min_distance = std::min(min_distance, size_of(a[0] + part * ex - x, a[1] + part * ez - z));
   }
-  return least;
+  return min_distance;
 }
 
-// Longer side of what a shape covers: of an exit, its width. [m]
+// Sum of the longest sides of an area's prisms: the width of an exit. [m]
 double width_of(const ScenarioArea& area) {
   double width = 0;
   for (const Prism& prism : area.prisms) {
@@ -53,22 +54,22 @@ double width_of(const ScenarioArea& area) {
 
 double door_flow(const ScenarioArea& area) { return std::max(kDoorFlow * width_of(area), 1e-3); }
 
-// Where he is, but for making way for others.
-void Simulation::State::stand(Person& p, Doing doing) {
+// Makes the present place the goal: the avatar yields to others and returns.
+void Simulation::State::stand(ScenarioAvatar& p, Doing doing) {
   const auto state = crowd.read(p.id);
   const Place here = world.find_place(class_of(p), state->position, Prism::kFeet);
   crowd.set_goals({&p.id, 1}, {&here, 1});
   p.doing = doing;
 }
 
-void Simulation::State::walk_to(Person& p, const Place& place, Doing doing) {
-  p.spot = place;
+void Simulation::State::walk_to(ScenarioAvatar& p, const Place& place, Doing doing) {
+  p.goal = place;
   p.until = -1;
   crowd.set_goals({&p.id, 1}, {&place, 1});
   p.doing = place ? doing : Doing::kGoalUnreachable;
 }
 
-void Simulation::State::begin_stage(Person& p) {
+void Simulation::State::begin_stage(ScenarioAvatar& p) {
   if (p.journey < 0) return stand(p, Doing::kNothing);
   const Stage& stage = stage_of(p);
   switch (stage.kind) {
@@ -84,26 +85,26 @@ void Simulation::State::begin_stage(Person& p) {
       p.doing = Doing::kWalking;
       return;
     case Stage::Kind::kSpot:
-      return walk_to(p, random_spot(stage.areas, stage.density, p), Doing::kToSpot);
+      return walk_to(p, random_place(stage.areas, stage.density, p), Doing::kToRandomPlace);
     case Stage::Kind::kWait:
       stand(p, Doing::kWaiting);
       p.until = time() + draw(stage.seconds, scenario.seed, p.number, 16 + p.draws++);
       return;
     case Stage::Kind::kQueue: {
       WaitingLine& line = lines[static_cast<size_t>(stage.queue)];
-      line.coming.push_back(p.number);
+      line.approaching.push_back(p.number);
       const Queue& queue = scenario.queues[static_cast<size_t>(stage.queue)];
-      return walk_to(p, in_line(queue, line.people.size(), class_of(p)), Doing::kToQueue);
+      return walk_to(p, in_line(queue, line.members.size(), class_of(p)), Doing::kToQueue);
     }
   }
 }
 
-// Members of a group wait for each other between stages.
-void Simulation::State::finish_stage(Person& p) {
+// Members of a group wait for each other after each stage.
+void Simulation::State::finish_stage(ScenarioAvatar& p) {
   if (p.group < 0 || p.doing == Doing::kWaiting) return next_stage(p);
-  // Not in the door through which they come.
-  const bool came_in = p.doing == Doing::kWalking;
-  const Place aside = came_in ? random_spot(stage_of(p).areas, -1, p) : Place();
+  // Not in the entrance, where it would block the others.
+  const bool is_in_region = p.doing == Doing::kWalking;
+  const Place aside = is_in_region ? random_place(stage_of(p).areas, -1, p) : Place();
   if (aside) {
     walk_to(p, aside, Doing::kGathering);
   } else {
@@ -112,15 +113,15 @@ void Simulation::State::finish_stage(Person& p) {
   if (!group_is_ready(p)) return;
   const uint32_t stage = p.stage;
   for (const uint64_t number : groups[static_cast<size_t>(p.group)]) {
-    Person* member = person(number);
+    ScenarioAvatar* member = find_avatar(number);
     if (member == nullptr || member->doing != Doing::kGathering || member->stage != stage) continue;
     next_stage(*member);
   }
 }
 
-void Simulation::State::next_stage(Person& p) {
+void Simulation::State::next_stage(ScenarioAvatar& p) {
   const Journey& journey = scenario.journeys[static_cast<size_t>(p.journey)];
-  line_up(p, -1, 0);
+  set_door(p, -1, 0);
   if (p.stage + 1 < journey.stages.size()) {
     ++p.stage;
   } else if (journey.repeat) {
@@ -131,113 +132,114 @@ void Simulation::State::next_stage(Person& p) {
   begin_stage(p);
 }
 
-void Simulation::State::arrive(Person& p) {
+void Simulation::State::arrive(ScenarioAvatar& p) {
   switch (p.doing) {
     case Doing::kWalking:
       if (stage_of(p).kind == Stage::Kind::kLeave) return leave(p);
       if (stage_of(p).kind == Stage::Kind::kLink) {
-        landings[static_cast<size_t>(stage_of(p).link)].people.push_back(p.number);
-        p.doing = Doing::kBoarding;  // and goes on into the region, so that others find room
+        boarding[static_cast<size_t>(stage_of(p).link)].members.push_back(p.number);
+        p.doing = Doing::kBoarding;  // and walks on into the region, so that others find room
         return;
       }
       return finish_stage(p);
-    case Doing::kToSpot:
+    case Doing::kToRandomPlace:
       return finish_stage(p);
     default:
       return;
   }
 }
 
-// Out of the crowd; the slot is free then.
-void Simulation::State::take_out(Person& p) {
-  line_up(p, -1, 0);
+// Frees the avatar's slot.
+void Simulation::State::remove_from_crowd(ScenarioAvatar& p) {
+  set_door(p, -1, 0);
   slot_of[p.number] = kNoSlot;
   crowd.remove({&p.id, 1});
   p = {};
 }
 
-void Simulation::State::leave(Person& p) {
+void Simulation::State::leave(ScenarioAvatar& p) {
   Visit& visit = visits[p.number];
   visit.left = time();
   visit.exit = area_under(p);
   ++left;
-  take_out(p);
+  remove_from_crowd(p);
 }
 
-// Of the stage's areas that in which he stands, or the nearest: who comes to within a step of its
-// border has arrived.
-int32_t Simulation::State::area_under(const Person& p) const {
+// The stage's area in which the avatar stands, else the nearest: a target counts as reached within
+// one move of its border.
+int32_t Simulation::State::area_under(const ScenarioAvatar& p) const {
   const Stage& stage = stage_of(p);
   if (p.area >= 0) return p.area;
   int32_t nearest = stage.areas.front();
   const auto state = crowd.read(p.id);
   if (!state) return nearest;
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   for (const int32_t area : stage.areas) {
     for (const Prism& prism : scenario.areas[static_cast<size_t>(area)].prisms) {
       const Vec3d& at = state->position;
       if (!prism.reaches(at.y)) continue;
       const double off = distance_to(prism, at.x, at.z);
-      if (off >= least) continue;
-      least = off;
+      if (off >= min_distance) continue;
+      min_distance = off;
       nearest = area;
     }
   }
   return nearest;
 }
 
-// Is one of those who chose an area, of another than before, or of none (-1).
-void Simulation::State::line_up(Person& p, int32_t area, double way) {
-  if (p.area >= 0) doors[static_cast<size_t>(p.area)].remove(p.comes);
+// Moves the avatar from the queue of its exit to that of another, or of none (-1).
+void Simulation::State::set_door(ScenarioAvatar& p, int32_t area, double distance) {
+  if (p.area >= 0) doors[static_cast<size_t>(p.area)].remove(p.door_tick);
   p.area = area;
   if (area < 0) return;
   DoorQueue& door = doors[static_cast<size_t>(area)];
   door.forget_before(DoorQueue::tick(time()));
-  p.comes = door.add(DoorQueue::tick(time() + way / p.speed));
+  p.door_tick = door.add(DoorQueue::tick(time() + distance / p.speed));
 }
 
-// As far as it is by now.
-void Simulation::State::line_up_anew(Person& p) {
+// Puts the avatar in the queue by its present distance.
+void Simulation::State::update_door_time(ScenarioAvatar& p) {
   const Stage& stage = stage_of(p);
   const auto k = static_cast<size_t>(std::find(stage.areas.begin(), stage.areas.end(), p.area) -
                                      stage.areas.begin());
-  line_up(p, p.area, crowd.distance(p.id, targets_of(p)[k]));
+  set_door(p, p.area, crowd.distance(p.id, targets_of(p)[k]));
 }
 
-// Takes the area that is likely to be passed first, by the way there and by those who will be at
-// its door before him. The one that he has chosen, or at first the nearest, is left only for one
-// that is clearly quicker.
-void Simulation::State::choose_area(Person& p) {
+// Chooses the area with the earliest expected exit time, from the distance to it and the avatars
+// expected at its door before. The present choice, at first the nearest area, is dropped only for
+// one that is quicker by kSwitchRatio.
+void Simulation::State::choose_area(ScenarioAvatar& p) {
   const Stage& stage = stage_of(p);
   const std::vector<TargetId>& targets = targets_of(p);
   const int32_t before = p.doing == Doing::kWalking ? p.area : -1;
-  line_up(p, -1, 0);
+  set_door(p, -1, 0);
   const uint32_t now = DoorQueue::tick(time());
   constexpr double kNever = std::numeric_limits<double>::infinity();
   struct Exit {
-    double way = kNever, seconds = kNever;
+    double distance = kNever, seconds = kNever;
     size_t k = 0;
   };
   Exit best, present;
   for (size_t k = 0; k < targets.size(); ++k) {
     Exit exit{crowd.distance(p.id, targets[k]), kNever, k};
-    if (std::isfinite(exit.way)) {
+    if (std::isfinite(exit.distance)) {
       const DoorQueue& door = doors[static_cast<size_t>(stage.areas[k])];
-      exit.seconds = door.passes(DoorQueue::tick(time() + exit.way / p.speed), now) - time();
+      exit.seconds =
+          door.pass_time(DoorQueue::tick(time() + exit.distance / p.speed), now) - time();
     }
     if (exit.seconds < best.seconds) best = exit;
-    if (before < 0 ? exit.way < present.way : stage.areas[k] == before) present = exit;
+    if (before < 0 ? exit.distance < present.distance : stage.areas[k] == before) present = exit;
   }
-  const bool stays = !(best.seconds < present.seconds * kBetter);
-  const Exit& taken = stays ? present : best;
-  line_up(p, stage.areas[taken.k], taken.way);
+  const bool stays = !(best.seconds < present.seconds * kSwitchRatio);
+  const Exit& chosen = stays ? present : best;
+  set_door(p, stage.areas[chosen.k], chosen.distance);
   if (before == p.area) return;
-  crowd.set_targets({&p.id, 1}, targets[taken.k]);
+  crowd.set_targets({&p.id, 1}, targets[chosen.k]);
   p.doing = Doing::kWalking;
 }
 
 void Simulation::State::end_waits() {
-  for (Person& p : persons) {
+  for (ScenarioAvatar& p : avatars) {
     if (!p.id || p.doing != Doing::kWaiting || p.until > time()) continue;
     if (p.has_started) {
       finish_stage(p);
@@ -248,33 +250,34 @@ void Simulation::State::end_waits() {
   }
 }
 
-// Who stands near his spot and cannot come nearer is there; who chose an exit looks at the others.
-void Simulation::State::look_around() {
-  const auto look = static_cast<uint64_t>(time() + 0.5);
-  for (Person& p : persons) {
-    if (p.id && p.area >= 0) line_up_anew(p);
+// Ends the stage of avatars that stay near their place; lets the others compare exits again and
+// retry unreachable goals, each in turn.
+void Simulation::State::review_stages() {
+  const auto review = static_cast<uint64_t>(time() + 0.5);
+  for (ScenarioAvatar& p : avatars) {
+    if (p.id && p.area >= 0) update_door_time(p);
   }
-  for (Person& p : persons) {
+  for (ScenarioAvatar& p : avatars) {
     if (!p.id) continue;
     if (p.doing == Doing::kWalking && p.area >= 0 && stage_of(p).quickest &&
-        (look + p.number) % kChooseEvery == 0) {
+        (review + p.number) % kChoosePeriod == 0) {
       choose_area(p);
     }
     // The ground may have changed.
     if (p.doing == Doing::kGoalUnreachable && stage_of(p).kind != Stage::Kind::kQueue &&
-        (look + p.number) % kRetryEvery == 0) {
+        (review + p.number) % kRetryPeriod == 0) {
       begin_stage(p);
     }
-    if (p.doing != Doing::kToSpot) continue;
+    if (p.doing != Doing::kToRandomPlace) continue;
     const auto state = crowd.read(p.id);
     const Vec3d& at = state->position;
-    const bool near = size_of(at.x - p.spot.position.x, at.z - p.spot.position.z) < kNearSpot &&
-                      std::fabs(at.y - p.spot.position.y) < kNearSpot;
+    const bool near = size_of(at.x - p.goal.position.x, at.z - p.goal.position.z) < kNearRadius &&
+                      std::fabs(at.y - p.goal.position.y) < kNearRadius;
     if (!near) {
       p.until = -1;
     } else if (p.until < 0) {
       p.until = time();
-    } else if (time() - p.until >= kNearLong) {
+    } else if (time() - p.until >= kNearTime) {
       finish_stage(p);
     }
   }

@@ -5,29 +5,31 @@
 
 #include "scenario/simulation_state.h"
 
-// Lines of people before counters, and links: lifts and escalators.
+// Queues before counters, and links: lifts and escalators. Time of a step: linear in the avatars
+// that queue or wait.
 namespace throng {
 namespace {
 
-constexpr double kAtTail = 1.2;   // [m] Who is so near its tail joins a line.
-constexpr double kAtHead = 0.45;  // [m] Who is so near his place at a counter is served.
-constexpr double kFloor = 1;      // [m] Between a line as it is written and the floor.
+constexpr double kTailRadius = 1.2;  // [m] An avatar this near to the tail joins the line.
+constexpr double kServiceRadius =
+    0.45;                     // [m] An avatar this near to its place at a counter is served.
+constexpr double kFloor = 1;  // [m] Vertical tolerance between a line's points and the floor.
 
 double distance(const Vec3d& a, const Vec3d& b) {
   const double x = a.x - b.x, z = a.z - b.z;
   return std::sqrt(x * x + z * z);
 }
 
-// The point so far behind the head of a line; beyond its end, on along its last leg.
-Vec3d along(const std::vector<Vec3d>& line, double way) {
+// The point `offset` behind the head of a line; beyond its end, on its last segment prolonged.
+Vec3d along(const std::vector<Vec3d>& line, double offset) {
   for (size_t i = 0; i + 1 < line.size(); ++i) {
     const double segment = distance(line[i], line[i + 1]);
-    if (way > segment && i + 2 < line.size()) {
-      way -= segment;
+    if (offset > segment && i + 2 < line.size()) {
+      offset -= segment;
       continue;
     }
     if (segment <= 0) return line[i];
-    const double part = way / segment;
+    const double part = offset / segment;
     return {line[i].x + (line[i + 1].x - line[i].x) * part,
             line[i].y + (line[i + 1].y - line[i].y) * std::min(part, 1.0),
             line[i].z + (line[i + 1].z - line[i].z) * part};
@@ -37,7 +39,7 @@ Vec3d along(const std::vector<Vec3d>& line, double way) {
 
 }  // namespace
 
-// Where the n-th of a line stands; where the line has no ground, as far back as it has.
+// The place of the n-th of a line; where there is no floor, the last place before that has one.
 Place Simulation::State::in_line(const Queue& queue, size_t index, int32_t avatar_class) const {
   for (size_t n = index + 1; n-- > 0;) {
     const Vec3d at = along(queue.line, static_cast<double>(n) * queue.spacing);
@@ -52,70 +54,70 @@ void Simulation::State::move_lines() {
     WaitingLine& line = lines[q];
     const Queue& queue = scenario.queues[q];
     const auto servers = static_cast<size_t>(queue.servers);
-    // Who has been served goes.
-    for (size_t i = 0; i < std::min(servers, line.people.size());) {
-      Person* p = person(line.people[i]);
+    // Avatars whose service is over leave the line.
+    for (size_t i = 0; i < std::min(servers, line.members.size());) {
+      ScenarioAvatar* p = find_avatar(line.members[i]);
       if (line.served[i] >= 0 && line.served[i] <= time()) {
-        line.people.erase(line.people.begin() + static_cast<std::ptrdiff_t>(i));
+        line.members.erase(line.members.begin() + static_cast<std::ptrdiff_t>(i));
         line.served.erase(line.served.begin() + static_cast<std::ptrdiff_t>(i));
         finish_stage(*p);
       } else {
         ++i;
       }
     }
-    // Those behind close up, and whoever stands at a counter is served.
-    for (size_t i = 0; i < line.people.size(); ++i) {
-      Person& p = *person(line.people[i]);
+    // The others close up, and an avatar that stands at a counter is served.
+    for (size_t i = 0; i < line.members.size(); ++i) {
+      ScenarioAvatar& p = *find_avatar(line.members[i]);
       const Place place = in_line(queue, i, class_of(p));
-      const bool is_his = p.spot.level1 == place.level1 &&
-                          distance(p.spot.position, place.position) < queue.spacing / 4;
-      if (!is_his) walk_to(p, place, Doing::kInQueue);
+      const bool is_current = p.goal.level1 == place.level1 &&
+                              distance(p.goal.position, place.position) < queue.spacing / 4;
+      if (!is_current) walk_to(p, place, Doing::kInQueue);
       const auto state = crowd.read(p.id);
       if (i < servers && line.served[i] < 0 &&
-          distance(state->position, place.position) < kAtHead) {
+          distance(state->position, place.position) < kServiceRadius) {
         line.served[i] = time() + draw(queue.service, scenario.seed, p.number, 16 + p.draws++);
       }
     }
-    // Whoever reaches the tail joins; the others go where it is now.
-    size_t still = 0;
-    for (const uint64_t number : line.coming) {
-      Person* p = person(number);
+    // An avatar that reaches the tail joins; the others head to where it is now.
+    size_t kept = 0;
+    for (const uint64_t number : line.approaching) {
+      ScenarioAvatar* p = find_avatar(number);
       if (p == nullptr || (p->doing != Doing::kToQueue && p->doing != Doing::kGoalUnreachable))
         continue;
-      const Place tail = in_line(queue, line.people.size(), class_of(*p));
+      const Place tail = in_line(queue, line.members.size(), class_of(*p));
       const auto state = crowd.read(p->id);
-      if (tail && distance(state->position, tail.position) < kAtTail &&
-          std::fabs(state->position.y - tail.position.y) < kAtTail) {
-        line.people.push_back(number);
+      if (tail && distance(state->position, tail.position) < kTailRadius &&
+          std::fabs(state->position.y - tail.position.y) < kTailRadius) {
+        line.members.push_back(number);
         line.served.push_back(-1);
         walk_to(*p, tail, Doing::kInQueue);
         continue;
       }
-      line.coming[still++] = number;
-      if (distance(p->spot.position, tail.position) > kAtTail / 2)
+      line.approaching[kept++] = number;
+      if (distance(p->goal.position, tail.position) > kTailRadius / 2)
         walk_to(*p, tail, Doing::kToQueue);
     }
-    line.coming.resize(still);
+    line.approaching.resize(kept);
   }
 }
 
-// Who waits at a link when it leaves comes out at its other end later.
+// At each departure, up to `capacity` avatars that wait leave the crowd until their exit is due.
 void Simulation::State::run_links() {
-  for (size_t n = 0; n < landings.size(); ++n) {
+  for (size_t n = 0; n < boarding.size(); ++n) {
     const Link& link = scenario.links[n];
-    Landing& landing = landings[n];
-    for (; landing.next <= time() + 1e-9; landing.next += link.interval) {
-      for (int32_t k = 0; k < link.capacity && !landing.people.empty(); ++k) {
-        Person& p = *person(landing.people.front());
-        landing.people.pop_front();
-        Coming out;
-        out.person = p;
+    BoardingQueue& boarding_queue = boarding[n];
+    for (; boarding_queue.next <= time() + 1e-9; boarding_queue.next += link.interval) {
+      for (int32_t k = 0; k < link.capacity && !boarding_queue.members.empty(); ++k) {
+        ScenarioAvatar& p = *find_avatar(boarding_queue.members.front());
+        boarding_queue.members.pop_front();
+        PendingSpawn out;
+        out.avatar = p;
         out.due = time() + link.seconds;
         out.link = static_cast<int32_t>(n);
-        take_out(p);
-        out.person.id = {};
-        out.person.area = -1;
-        riding.push_back(out);
+        remove_from_crowd(p);
+        out.avatar.id = {};
+        out.avatar.area = -1;
+        in_transit.push_back(out);
       }
     }
   }

@@ -15,18 +15,21 @@
 #include "scenario/density_image.h"
 #include "throng/scenario.h"
 
+// Reads scenario files, TOML or JSON: one reader a table, in the order in which tables name each
+// other; the first error ends it. docs/scenarios.md has every key. Time: linear in the file, and in
+// the pixels of density maps times the areas painted on them.
 namespace throng {
 namespace {
 
-constexpr double kFarthest = 1e9;  // [m] Coordinates, as those of models.
-constexpr double kHighest = 1e6;   // [m] Heights, as those of worlds.
-constexpr double kLong = 1e9;      // [s]
+constexpr double kMaxCoordinate = 1e9;  // [m] as for models
+constexpr double kMaxHeight = 1e6;      // [m] as for worlds
+constexpr double kMaxSeconds = 1e9;     // [s]
 constexpr int kCircleSides = 32;
 constexpr double kMaxStages = 10000;  // of a journey
 
 using Kind = ConfigNode::Kind;
 
-// One table of the file, with what names mean that stand in it.
+// Reads one table of the file and resolves the names in it.
 class Reader : public ConfigReader {
  public:
   Reader(const std::string& file, const ConfigNode& table, const std::string& what)
@@ -46,6 +49,8 @@ class Reader : public ConfigReader {
   void choices(const char* key, const std::vector<Thing>& things, std::vector<Choice>& out);
   bool corners(const ConfigNode& node, const char* key, std::vector<std::array<double, 2>>& out);
   void count(const char* key, uint64_t& value, double low, double high);
+  /// The spelling of `key` in this table: `key` itself or `old`, its name in older versions.
+  const char* spelling(const char* key, const char* old);
 };
 
 bool is_number(const ConfigNode& node) {
@@ -57,7 +62,7 @@ void Reader::distribution(const char* key, Distribution& out, double low, double
     distribution_of(*node, key, out, low, high);
 }
 
-// How many draws of a hundred lie within the limits of a distribution.
+// The percentage of draws that lie within the limits of a distribution.
 double percent_within(const Distribution& d) {
   const auto below = [&](double x) {
     if (d.kind == Distribution::Kind::kExponential) return x > 0 ? 1 - std::exp(-x / d.a) : 0.0;
@@ -125,7 +130,7 @@ void Reader::distribution_of(const ConfigNode& node, const std::string& key, Dis
   if (has_within && out.kind == Distribution::Kind::kUniform) {
     fail(node, fmt::format("{}: a uniform number has its limits already", key));
   }
-  // Others are drawn again, but not for ever: the last would all lie on a limit.
+  // Draws outside are repeated, but a limited number of times; then they are set to a limit.
   constexpr double kMinPercent = 5;
   if (has_within && out.kind != Distribution::Kind::kUniform && percent_within(out) < kMinPercent) {
     fail(node,
@@ -190,8 +195,8 @@ bool Reader::corners(const ConfigNode& node, const char* key,
   for (size_t i = 0; good && i < node.items.size(); ++i) {
     const ConfigNode& p = node.items[i];
     good = p.kind == Kind::kArray && p.items.size() == 2 && is_number(p.items[0]) &&
-           is_number(p.items[1]) && std::fabs(p.items[0].number) <= kFarthest &&
-           std::fabs(p.items[1].number) <= kFarthest;
+           is_number(p.items[1]) && std::fabs(p.items[0].number) <= kMaxCoordinate &&
+           std::fabs(p.items[1].number) <= kMaxCoordinate;
     if (good) out.push_back({p.items[0].number, p.items[1].number});
   }
   if (!good) fail(node, fmt::format("{} must be a list of [x, z]", key));
@@ -207,7 +212,14 @@ void Reader::count(const char* key, uint64_t& value, double low, double high) {
   value = static_cast<uint64_t>(number);
 }
 
-// All tables of the file, in the order in which they name each other.
+const char* Reader::spelling(const char* key, const char* old) {
+  const ConfigNode* node = find(old);
+  if (node == nullptr) return key;
+  if (find(key) != nullptr) fail(*node, fmt::format("{} is the old name of {}; drop it", old, key));
+  return old;
+}
+
+// All tables of the file, in the order in which they refer to each other.
 class File {
  public:
   File(const std::string& name, const ConfigNode& root)
@@ -256,7 +268,7 @@ class File {
     if (!r.ok()) return;
     if (name.empty()) r.fail(*r.find("name"), "the name is empty");
     for (const Thing& other : others) {
-      if (other.name == name) r.fail(*r.find("name"), "the name stands here twice");
+      if (other.name == name) r.fail(*r.find("name"), "the name is used twice");
     }
   }
 
@@ -282,10 +294,10 @@ class File {
 
 void File::read_top() {
   Reader r(name_, root_, "scenario");
-  r.only({"world", "model", "builtin", "plane", "cell", "class", "seconds", "dt", "seed", "ways",
-          "search_memory", "steering", "area", "density", "profile", "queue", "link", "journey",
-          "source", "obstacle",
-          // What is expected of the run, read by load_trial.
+  r.only({"world", "model", "builtin", "plane", "cell", "class", "seconds", "dt", "seed", "paths",
+          "ways", "search_memory", "steering", "area", "density", "profile", "queue", "link",
+          "journey", "source", "obstacle",
+          // The expected results of the run, read by load_trial.
           "trial", "measure"});
   r.text("world", out_.world);
   if (!out_.world.empty()) out_.world = path(out_.world);
@@ -301,21 +313,22 @@ void File::read_top() {
     }
   }
   r.number("cell", out_.cell, 0.02, 5);
-  r.number("seconds", out_.seconds, 0, kLong);
+  r.number("seconds", out_.seconds, 0, kMaxSeconds);
   r.number("dt", out_.dt, 1e-3, 1);
   r.count("seed", out_.seed, 0, 9007199254740992.0);
   constexpr double kMebibyte = 1 << 20;
   double search_memory = static_cast<double>(out_.search_bytes) / kMebibyte;
   r.number("search_memory", search_memory, 1, kMebibyte);
   out_.search_bytes = static_cast<uint64_t>(search_memory * kMebibyte);
-  std::string ways = "corners";
-  r.text("ways", ways);
-  if (const ConfigNode* node = r.find("ways");
-      node != nullptr && ways != "corners" && ways != "labels" && ways != "zones") {
-    r.fail(*node, "ways must be \"corners\", \"labels\" or \"zones\"");
+  std::string paths = "corners";
+  const char* paths_key = r.spelling("paths", "ways");
+  r.text(paths_key, paths);
+  if (const ConfigNode* node = r.find(paths_key);
+      node != nullptr && paths != "corners" && paths != "labels" && paths != "zones") {
+    r.fail(*node, fmt::format("{} must be \"corners\", \"labels\" or \"zones\"", paths_key));
   }
-  out_.labels = ways == "labels";
-  out_.zones = ways == "zones";
+  out_.labels = paths == "labels";
+  out_.zones = paths == "zones";
   std::string steering = throng::name_of(out_.steering);
   r.text("steering", steering);
   if (const auto model = find_steering_model(steering)) {
@@ -339,9 +352,9 @@ void File::read_top() {
     keep(b);
   }
   if (const ConfigNode* table = r.find("plane"); table != nullptr) read_plane(*table);
-  const int ways_in = (out_.world.empty() ? 0 : 1) + (out_.models.empty() ? 0 : 1) +
-                      (out_.builtins.empty() ? 0 : 1) + (out_.planes.empty() ? 0 : 1);
-  if (ways_in != 1) {
+  const int world_count = (out_.world.empty() ? 0 : 1) + (out_.models.empty() ? 0 : 1) +
+                          (out_.builtins.empty() ? 0 : 1) + (out_.planes.empty() ? 0 : 1);
+  if (world_count != 1) {
     r.fail(root_, "give one of: world (a baked folder), model (files), [builtin], [plane]");
     keep(r);
   }
@@ -349,7 +362,7 @@ void File::read_top() {
     AvatarClass avatar;
     name_of(c, out_.classes, avatar.name);
     read_class(c, avatar);
-    c.number("speed", avatar.speed, 0.01, 100);  // what a crowd takes
+    c.number("speed", avatar.speed, 0.01, 100);  // the range that a crowd accepts
     out_.classes.push_back(avatar);
   });
   if (!out_.classes.empty() && !out_.world.empty()) {
@@ -384,8 +397,8 @@ void File::read_plane(const ConfigNode& table) {
 }
 
 void File::heights(Reader& r, double& low, double& high) {
-  low = -kHighest;
-  high = kHighest;
+  low = -kMaxHeight;
+  high = kMaxHeight;
   double y[2] = {};
   if (!r.numbers("y", y, 2)) return;
   if (!(y[0] < y[1])) return r.fail(*r.find("y"), "y must be [low, high], low below high");
@@ -421,20 +434,21 @@ bool File::read_shape(Reader& r, Prism& prism) {
 
 // Tables of one name are one area.
 void File::read_area(Reader& r) {
-  r.only({"name", "box", "polygon", "circle", "y", "pace"});
+  r.only({"name", "box", "polygon", "circle", "y", "speed_factor", "pace"});
   r.require("name");
   std::string name;
-  double pace = 1;
+  const char* factor_key = r.spelling("speed_factor", "pace");
+  double factor = 1;
   r.text("name", name);
-  r.number("pace", pace, 0.01, 10);
+  r.number(factor_key, factor, 0.01, 10);
   Prism prism;
   if (!read_shape(r, prism)) return;
   for (ScenarioArea& area : out_.areas) {
     if (area.name != name) continue;
-    if (r.find("pace") != nullptr) area.pace = pace;
+    if (r.find(factor_key) != nullptr) area.pace = factor;
     return area.prisms.push_back(prism);
   }
-  out_.areas.push_back({name, {prism}, pace});
+  out_.areas.push_back({name, {prism}, factor});
 }
 
 void File::read_obstacle(Reader& r) {
@@ -448,8 +462,8 @@ void File::read_obstacle(Reader& r) {
   } else if (policy != throng::name_of(obstacle.policy)) {
     return r.fail(*r.find("policy"), "policy: write \"shut\" or \"wait\"");
   }
-  r.number("begin", obstacle.begin, 0, kLong);
-  r.number("end", obstacle.end, 0, kLong);
+  r.number("begin", obstacle.begin, 0, kMaxSeconds);
+  r.number("end", obstacle.end, 0, kMaxSeconds);
   if (!read_shape(r, obstacle.prism)) return;
   if (!(obstacle.begin < obstacle.end)) {
     return r.fail(r.table(), "it must begin before it ends");
@@ -512,7 +526,7 @@ void File::read_density(Reader& r) {
   }
   if (r.ok() &&
       std::all_of(map.weights.begin(), map.weights.end(), [](uint8_t w) { return w == 0; })) {
-    r.fail(*r.find("box"), "its weights are all 0; paint where people may be");
+    r.fail(*r.find("box"), "its weights are all 0; paint where avatars may be");
   }
   out_.densities.push_back(std::move(map));
 }
@@ -537,7 +551,7 @@ void File::read_queue(Reader& r) {
   double servers = 1;
   r.number("servers", servers, 1, 1000);
   queue.servers = static_cast<int32_t>(servers);
-  r.distribution("service", queue.service, 0, kLong);
+  r.distribution("service", queue.service, 0, kMaxSeconds);
   if (!r.ok()) return;
   const ConfigNode& line = *r.find("line");
   bool good = line.kind == Kind::kArray && line.items.size() >= 2;
@@ -556,9 +570,9 @@ void File::read_link(Reader& r) {
   name_of(r, out_.links, link.name);
   for (const char* key : {"from", "to", "seconds"}) r.require(key);
   double capacity = 1;
-  r.number("interval", link.interval, 0.01, kLong);
+  r.number("interval", link.interval, 0.01, kMaxSeconds);
   r.number("capacity", capacity, 1, 1e6);
-  r.number("seconds", link.seconds, 0, kLong);
+  r.number("seconds", link.seconds, 0, kMaxSeconds);
   link.capacity = static_cast<int32_t>(capacity);
   if (!r.ok()) return;
   link.from = r.named(*r.find("from"), out_.areas, "area");
@@ -568,14 +582,16 @@ void File::read_link(Reader& r) {
 
 void File::read_stage(Reader& r, Journey& journey) {
   Stage stage;
-  r.only({"go", "spot", "density", "wait", "queue", "link", "leave", "by"});
+  r.only({"go", "random_point", "spot", "density", "wait", "queue", "link", "leave", "by"});
+  const char* point_key = r.spelling("random_point", "spot");
   const auto have = [&](const char* key) { return r.find(key) != nullptr; };
-  const int kinds = (have("go") ? 1 : 0) + (have("spot") ? 1 : 0) + (have("wait") ? 1 : 0) +
+  const int kinds = (have("go") ? 1 : 0) + (have(point_key) ? 1 : 0) + (have("wait") ? 1 : 0) +
                     (have("queue") ? 1 : 0) + (have("link") ? 1 : 0) + (have("leave") ? 1 : 0) +
                     (have("density") ? 1 : 0);
   if (!r.ok()) return;
   if (kinds != 1) {
-    return r.fail(r.table(), "a stage is one of: go, spot, density, wait, queue, link, leave");
+    return r.fail(r.table(),
+                  "a stage is one of: go, random_point, density, wait, queue, link, leave");
   }
   if (have("go")) {
     stage.kind = Stage::Kind::kGo;
@@ -583,15 +599,15 @@ void File::read_stage(Reader& r, Journey& journey) {
   } else if (have("leave")) {
     stage.kind = Stage::Kind::kLeave;
     r.names(*r.find("leave"), out_.areas, "area", stage.areas);
-  } else if (have("spot")) {
+  } else if (have(point_key)) {
     stage.kind = Stage::Kind::kSpot;
-    r.names(*r.find("spot"), out_.areas, "area", stage.areas);
+    r.names(*r.find(point_key), out_.areas, "area", stage.areas);
   } else if (have("density")) {
     stage.kind = Stage::Kind::kSpot;
     stage.density = r.named(*r.find("density"), out_.densities, "density");
   } else if (have("wait")) {
     stage.kind = Stage::Kind::kWait;
-    r.distribution("wait", stage.seconds, 0, kLong);
+    r.distribution("wait", stage.seconds, 0, kMaxSeconds);
   } else if (have("queue")) {
     stage.kind = Stage::Kind::kQueue;
     stage.queue = r.named(*r.find("queue"), out_.queues, "queue");
@@ -659,16 +675,16 @@ void File::read_source(Reader& r) {
   r.choices("profile", out_.profiles, source.profiles);
   r.choices("journey", out_.journeys, source.journeys);
   r.count("count", source.count, 0, 1e7);
-  r.number("begin", source.begin, 0, kLong);
-  r.number("end", source.end, 0, kLong);
+  r.number("begin", source.begin, 0, kMaxSeconds);
+  r.number("end", source.end, 0, kMaxSeconds);
   r.flag("even", source.even);
-  r.distribution("premovement", source.premovement, 0, kLong);
+  r.distribution("premovement", source.premovement, 0, kMaxSeconds);
   source.group = Distribution::fixed(1);
   r.distribution("group", source.group, 1, 20);
   if (!r.ok()) return;
   const ConfigNode& name = *r.find("name");
   if ((r.find("area") != nullptr) == (r.find("density") != nullptr)) {
-    return r.fail(name, "say where they come from: an area, or a density");
+    return r.fail(name, "say where avatars enter: an area, or a density");
   }
   double rate = 0;
   r.number("rate", rate, 0, 1e6);
@@ -680,14 +696,14 @@ void File::read_source(Reader& r) {
     for (const auto& [from, value] : list) {
       if (!(value >= 0) || (!source.rates.empty() && !(from > source.rates.back().first))) {
         return r.fail(*rates,
-                      "rates must be a list of [time, people a second], times ascending, "
+                      "rates must be a list of [time, avatars a second], times ascending, "
                       "rates not below 0");
       }
       source.rates.emplace_back(from, value);
     }
   }
   if (source.rates.empty() && source.count == UINT64_MAX) {
-    return r.fail(name, "say how many: a count, a rate, or both");
+    return r.fail(name, "give a count, a rate, or both");
   }
   if (const ConfigNode* node = r.find("places"); node != nullptr) {
     std::string places;

@@ -3,6 +3,7 @@
 #include "throng/bake.h"
 #include "throng/scenario.h"
 
+// The world of a scenario: opened, or baked in memory from models, a built-in world or a plane.
 namespace throng {
 
 Result<Scene> load_scene(const Scenario& scenario, Context& context, SceneLooks looks) {

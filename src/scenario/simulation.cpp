@@ -11,12 +11,14 @@
 #include "scenario/simulation_state.h"
 #include "throng/nodes.h"
 
+// A scenario as it runs: resolves its names to classes, targets and places, then steps the parts of
+// the state in a fixed order. Time of a step: that of the crowd, and linear in the avatars.
 namespace throng {
 namespace {
 
-constexpr size_t kMaxPlaces = 16384;  // of an area, to come in or to stand at
-constexpr double kLookEvery = 1;      // [s]
-constexpr double kGroupsEvery = 0.5;  // [s]
+constexpr size_t kMaxPlaces = 16384;    // of an area, to enter at or to stand on
+constexpr double kReviewInterval = 1;   // [s]
+constexpr double kGroupInterval = 0.5;  // [s]
 
 }  // namespace
 
@@ -25,23 +27,23 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
-double Simulation::State::unit(Person& p) const {
+double Simulation::State::unit(ScenarioAvatar& p) const {
   return random_unit(scenario.seed ^ 0x706572736f6eULL, p.number, p.draws++);
 }
 
-// Of those profiles who go over nodes: opened where the world lies, or made of what it was baked
-// from. None if nobody does, or the folder has none: then they walk.
+// The nodes that profiles of climbing or dropping classes walk over: opened beside the world, or
+// made from its scene. Empty if no profile needs them or the folder has none: then all walk.
 Result<Nodes> Simulation::State::nodes_for(const World& world, const Scenario& scenario,
                                            int32_t workers, Context& context) {
   const std::vector<AvatarClass> classes = world.summary().classes;
-  const auto wants = [](const AvatarClass& c) { return !c.flies && goes_over_nodes(c); };
-  const auto is_wanted = [&](const Profile& profile) {
+  const auto needs_nodes = [](const AvatarClass& c) { return !c.flies && goes_over_nodes(c); };
+  const auto is_needed = [&](const Profile& profile) {
     const int32_t named = world.find_class(profile.avatar_class).value_or(0);
-    return wants(classes[static_cast<size_t>(named)]);
+    return needs_nodes(classes[static_cast<size_t>(named)]);
   };
-  // Who has no profile is of the first class.
+  // An avatar without a profile is of the first class.
   const auto& profiles = scenario.profiles;
-  if (!wants(classes[0]) && std::none_of(profiles.begin(), profiles.end(), is_wanted)) {
+  if (!needs_nodes(classes[0]) && std::none_of(profiles.begin(), profiles.end(), is_needed)) {
     return Nodes();
   }
   if (!scenario.world.empty()) return Nodes::exist(world) ? Nodes::open(world) : Nodes();
@@ -85,16 +87,17 @@ Result<TargetId> Simulation::State::target_of(std::span<const int32_t> areas, Co
   return target;
 }
 
-// Where a class can stand in an area; it must be somewhere.
+// Lists the places of an area for a class. Fails if there are none.
 Result<void> Simulation::State::find_places(int32_t area, int32_t avatar_class,
-                                            const std::string& who, Context& context) {
+                                            const std::string& owner, Context& context) {
   const auto target = target_of({&area, 1}, context);
   if (!target) return target.error();
   auto found = crowd.places(*target, avatar_class, kMaxPlaces, context);
   if (!found) return found.error();
   if (found->empty()) {
     const std::string& name = kinds[static_cast<size_t>(avatar_class)].name;
-    return Error{Errc::kBadInput, who + ": nobody of class '" + name + "' can stand in area '" +
+    return Error{Errc::kBadInput, owner + ": no avatar of class '" + name +
+                                      "' can stand in area '" +
                                       scenario.areas[static_cast<size_t>(area)].name +
                                       "'; move it onto the floor, or make it larger"};
   }
@@ -139,7 +142,7 @@ Result<void> Simulation::State::prepare(Context& context) {
   area_target.assign(scenario.areas.size(), 0);
   for (const ScenarioArea& area : scenario.areas) doors.emplace_back(door_flow(area));
   lines.resize(scenario.queues.size());
-  for (const Link& link : scenario.links) landings.push_back({{}, link.interval});
+  for (const Link& link : scenario.links) boarding.push_back({{}, link.interval});
   for (const DensityMap& map : scenario.densities) densities.emplace_back(map);
 
   for (const Journey& journey : scenario.journeys) {
@@ -150,40 +153,40 @@ Result<void> Simulation::State::prepare(Context& context) {
   }
   for (size_t s = 0; s < scenario.sources.size(); ++s) {
     const Source& source = scenario.sources[s];
-    arrivals.emplace_back(source, scenario.seed, s);
-    called.push_back(0);
+    spawn_times.emplace_back(source, scenario.seed, s);
+    spawn_counts.push_back(0);
     std::vector<int32_t> bodies;
     for (const Choice& choice : source.profiles) {
       bodies.push_back(classes[static_cast<size_t>(choice.index)]);
     }
     if (bodies.empty()) bodies.push_back(0);
-    // All the areas in which one of these may have to find a place.
+    // All areas in which an avatar of this source may need a place.
     std::vector<std::pair<int32_t, std::string>> wanted;
     for (const int32_t a : source.areas) wanted.emplace_back(a, "source '" + source.name + "'");
     for (const Choice& choice : source.journeys) {
       const Journey& journey = scenario.journeys[static_cast<size_t>(choice.index)];
       for (const Stage& stage : journey.stages) {
-        const std::string who = "journey '" + journey.name + "'";
-        for (const int32_t a : stage.areas) wanted.emplace_back(a, who);
+        const std::string owner = "journey '" + journey.name + "'";
+        for (const int32_t a : stage.areas) wanted.emplace_back(a, owner);
         if (stage.link < 0) continue;
-        wanted.emplace_back(scenario.links[static_cast<size_t>(stage.link)].to, who);
+        wanted.emplace_back(scenario.links[static_cast<size_t>(stage.link)].to, owner);
       }
     }
-    for (const auto& [area, who] : wanted) {
+    for (const auto& [area, owner] : wanted) {
       for (const int32_t kind : bodies) {
-        if (auto ok = find_places(area, kind, who, context); !ok) return ok;
+        if (auto ok = find_places(area, kind, owner, context); !ok) return ok;
       }
     }
   }
   obstacles.resize(scenario.obstacles.size());
   obstacle_times.resize(scenario.obstacles.size());
-  mind_obstacles();
-  call_in();
-  return let_in(coming, context);
+  update_obstacles();
+  queue_spawns();
+  return spawn_due(pending, context);
 }
 
-// Those whose time has come, or is over.
-void Simulation::State::mind_obstacles() {
+// Adds obstacles whose time begins, removes those whose time is over.
+void Simulation::State::update_obstacles() {
   for (size_t n = 0; n < obstacles.size(); ++n) {
     const ScenarioObstacle& obstacle = scenario.obstacles[n];
     const bool wanted = time() >= obstacle.begin && time() < obstacle.end;
@@ -192,7 +195,7 @@ void Simulation::State::mind_obstacles() {
       THRONG_ASSERT(added);  // The prism was checked.
       obstacles[n] = *added;
       obstacle_times[n].asked = time();
-      note_obstacles();
+      record_obstacle_times();
       obstacle_times[n].inside = obstacle_times[n].waits_for;
     } else if (!wanted && obstacles[n]) {
       crowd.remove_obstacle(obstacles[n]);
@@ -203,7 +206,7 @@ void Simulation::State::mind_obstacles() {
   }
 }
 
-void Simulation::State::note_obstacles() {
+void Simulation::State::record_obstacle_times() {
   for (size_t n = 0; n < obstacles.size(); ++n) {
     const auto state = crowd.obstacle(obstacles[n]);
     if (!state) continue;
@@ -219,33 +222,33 @@ Result<SimulationReport> Simulation::step() {
     const auto steps = std::max<uint64_t>(1, static_cast<uint64_t>(every / s.scenario.dt + 0.5));
     return s.steps % steps == 0;
   };
-  s.mind_obstacles();
-  s.call_in();
+  s.update_obstacles();
+  s.queue_spawns();
   s.run_links();
-  if (auto ok = s.let_in(s.coming, context); !ok) return ok.error();
-  if (auto ok = s.let_in(s.riding, context); !ok) return ok.error();
+  if (auto ok = s.spawn_due(s.pending, context); !ok) return ok.error();
+  if (auto ok = s.spawn_due(s.in_transit, context); !ok) return ok.error();
   s.end_waits();
   s.move_lines();
-  if (is_due(kLookEvery)) s.look_around();
-  if (is_due(kGroupsEvery)) s.keep_together();
-  s.mind_paces();
+  if (is_due(kReviewInterval)) s.review_stages();
+  if (is_due(kGroupInterval)) s.adjust_group_speeds();
+  s.apply_speed_factors();
 
   SimulationReport report;
   report.crowd = s.crowd.step();
   ++s.steps;
-  s.note_obstacles();
+  s.record_obstacle_times();
   for (const AvatarId id : s.crowd.arrived()) {
-    if (s.is_here(id.slot1 - 1)) s.arrive(s.persons[id.slot1 - 1]);
+    if (s.is_here(id.slot1 - 1)) s.arrive(s.avatars[id.slot1 - 1]);
   }
   for (const AvatarId id : s.crowd.goal_unreachable()) {
-    if (s.is_here(id.slot1 - 1)) s.persons[id.slot1 - 1].doing = Doing::kGoalUnreachable;
+    if (s.is_here(id.slot1 - 1)) s.avatars[id.slot1 - 1].doing = Doing::kGoalUnreachable;
   }
   report.time = s.time();
   report.entered = s.entered;
   report.left = s.left;
-  report.outside = s.coming.size();
-  report.in_links = s.riding.size();
-  for (const Person& p : s.persons) {
+  report.outside = s.pending.size();
+  report.in_links = s.in_transit.size();
+  for (const ScenarioAvatar& p : s.avatars) {
     if (p.id && p.doing == Doing::kGoalUnreachable) ++report.goal_unreachable;
   }
   return report;
@@ -253,9 +256,9 @@ Result<SimulationReport> Simulation::step() {
 
 bool Simulation::is_over() const {
   const State& s = *state_;
-  return s.crowd.size() == 0 && s.coming.empty() && s.riding.empty() &&
-         std::all_of(s.arrivals.begin(), s.arrivals.end(),
-                     [](const Arrivals& a) { return a.is_over(); });
+  return s.crowd.size() == 0 && s.pending.empty() && s.in_transit.empty() &&
+         std::all_of(s.spawn_times.begin(), s.spawn_times.end(),
+                     [](const SpawnTimes& a) { return a.is_over(); });
 }
 
 const Crowd& Simulation::crowd() const { return state_->crowd; }
@@ -265,7 +268,7 @@ std::span<const Visit> Simulation::visits() const { return state_->visits; }
 void Simulation::read(std::vector<AvatarState>& out) const {
   state_->crowd.read(out);
   for (AvatarState& avatar : out) {
-    avatar.id = static_cast<uint32_t>(state_->persons[avatar.id].number);
+    avatar.id = static_cast<uint32_t>(state_->avatars[avatar.id].number);
   }
   std::sort(out.begin(), out.end(),
             [](const AvatarState& a, const AvatarState& b) { return a.id < b.id; });
@@ -273,19 +276,19 @@ void Simulation::read(std::vector<AvatarState>& out) const {
 
 uint64_t Simulation::state_hash() const {
   const State& s = *state_;
-  std::vector<uint64_t> words{s.crowd.state_hash(), s.steps,        s.entered, s.left,
-                              s.coming.size(),      s.riding.size()};
-  const auto add = [&](const Person& p) {
+  std::vector<uint64_t> words{s.crowd.state_hash(), s.steps, s.entered, s.left, s.pending.size(),
+                              s.in_transit.size()};
+  const auto add = [&](const ScenarioAvatar& p) {
     words.insert(words.end(), {p.number, uint64_t{p.stage} << 8 | static_cast<uint64_t>(p.doing),
                                std::bit_cast<uint64_t>(p.until), p.draws});
   };
-  for (const Person& p : s.persons) {
+  for (const ScenarioAvatar& p : s.avatars) {
     if (p.id) add(p);
   }
-  for (const Coming& c : s.coming) add(c.person);
-  for (const Coming& c : s.riding) add(c.person);
+  for (const PendingSpawn& c : s.pending) add(c.avatar);
+  for (const PendingSpawn& c : s.in_transit) add(c.avatar);
   for (const WaitingLine& line : s.lines) {
-    words.insert(words.end(), line.people.begin(), line.people.end());
+    words.insert(words.end(), line.members.begin(), line.members.end());
     for (const double until : line.served) words.push_back(std::bit_cast<uint64_t>(until));
   }
   return hash_bytes(words.data(), words.size() * sizeof(uint64_t));
@@ -302,7 +305,8 @@ Result<void> Simulation::set_density(const std::string& name, std::span<const ui
                                         std::to_string(weights.size())};
     }
     if (std::all_of(weights.begin(), weights.end(), [](uint8_t w) { return w == 0; })) {
-      return Error{Errc::kBadInput, "density '" + name + "': all weights are 0; nobody could be"};
+      return Error{Errc::kBadInput,
+                   "density '" + name + "': all weights are 0; give at least one pixel a weight"};
     }
     map.weights.assign(weights.begin(), weights.end());
     s.densities[d] = DensityDraw(map);

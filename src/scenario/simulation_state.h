@@ -10,70 +10,70 @@
 #include <utility>
 #include <vector>
 
-#include "scenario/arrivals.h"
 #include "scenario/density_draw.h"
 #include "scenario/door_queue.h"
+#include "scenario/spawn_times.h"
 #include "throng/simulation.h"
 
-/// What a simulation holds.
+/// The state of a simulation.
 namespace throng {
 
 inline constexpr uint32_t kNoSlot = UINT32_MAX;
 
-// What somebody does at present.
+// What an avatar does now.
 enum class Doing : uint8_t {
   kNothing,          // the journey is over, or there is none
   kWaiting,          // until a time
   kWalking,          // to a region
-  kToSpot,           // to a place of his own
+  kToRandomPlace,    // to a random place of an area or density map
   kToQueue,          // to the tail of a line
   kInQueue,          // in a line
   kBoarding,         // stands where a link leaves from
-  kGathering,        // for the others of his group
-  kGoalUnreachable,  // no way
+  kGathering,        // waits for the others of its group
+  kGoalUnreachable,  // no path leads there
 };
 
-struct Person {
-  AvatarId id;  // of nobody: he is in a link, or not yet here
+struct ScenarioAvatar {
+  AvatarId id;  // null: in a link, or not yet in the crowd
   uint64_t number = 0;
   int32_t profile = -1, journey = -1;
   uint32_t stage = 0;
   Doing doing = Doing::kNothing;
-  bool has_started = false;  // his premovement is over
-  double until = 0;          // kWaiting: when it ends; kToSpot: since when he is near [s]
-  double speed = 0;          // his own wish [m/s]
+  bool has_started = false;  // the premovement time is over
+  double until = 0;          // kWaiting: when it ends; kToRandomPlace: since when it is near [s]
+  double speed = 0;          // desired speed, before factors [m/s]
   uint64_t draws = 0;        // random choices so far
   int32_t group = -1;
-  int32_t area = -1;   // which he chose among areas; -1: all the same to him
-  uint32_t comes = 0;  // tick of DoorQueue: when he would be there, were he alone
-  double pace = 1;     // of the area in which he is
-  Place spot;          // kToSpot, kToQueue, kInQueue
+  int32_t area = -1;        // the exit chosen by `quickest`; -1: none
+  uint32_t door_tick = 0;   // tick of DoorQueue: expected arrival if no other were there
+  double speed_factor = 1;  // of the area in which it is
+  Place goal;               // kToRandomPlace, kToQueue, kInQueue
 };
 
-// People before a counter, by number.
+// Avatars before a counter, by number.
 struct WaitingLine {
-  std::vector<uint64_t> people;  // the head first
-  std::vector<double> served;    // of each until when; below 0: not begun
-  std::vector<uint64_t> coming;  // on their ways to the tail
+  std::vector<uint64_t> members;      // the head first
+  std::vector<double> served;         // of each, when service ends; below 0: not begun [s]
+  std::vector<uint64_t> approaching;  // on paths to the tail
 };
 
-// Who waits for a link, by number, in order of coming.
-struct Landing {
-  std::deque<uint64_t> people;
-  double next = 0;  // it leaves then [s]
+// Avatars that wait for a link, by number, in order of arrival.
+struct BoardingQueue {
+  std::deque<uint64_t> members;
+  double next = 0;  // next departure [s]
 };
 
-// Somebody who is to be put somewhere.
-struct Coming {
-  Person person;
+// An avatar that waits to enter the crowd, from a source or out of a link.
+struct PendingSpawn {
+  ScenarioAvatar avatar;
   double due = 0;       // [s]
-  int32_t source = -1;  // or
+  int32_t source = -1;  // or -1 and
   int32_t link = -1;
-  uint64_t companion = UINT64_MAX;  // number of him beside whom he comes
-  uint64_t nth = 0;                 // of its source
+  uint64_t companion = UINT64_MAX;  // number of the avatar beside which it enters
+  uint64_t nth = 0;                 // index in its source
 };
 
-/// People a second who get out by an area, as who chooses the quickest one takes it.
+/// The flow through an area that the choice of the quickest exit assumes. [avatars/s]
 double door_flow(const ScenarioArea& area);
 
 struct Simulation::State {
@@ -85,98 +85,98 @@ struct Simulation::State {
   Crowd crowd;
   uint64_t steps = 0;
 
-  // What the scenario's names mean.
+  // Resolved names of the scenario.
   std::vector<AvatarClass> kinds;     // of the world
-  std::vector<int32_t> classes;       // by profile; the last: of who has none
+  std::vector<int32_t> classes;       // by profile; the last: of avatars without one
   std::vector<TargetId> area_target;  // by area
-  // By journey and stage: where to: one target for all areas alike, or one for each.
+  // By journey and stage: one target for the union of the areas, or with `quickest` one for each.
   std::vector<std::vector<std::vector<TargetId>>> stage_targets;
   std::vector<DensityDraw> densities;
-  std::map<std::pair<TargetId, int32_t>, std::vector<Place>> places;  // of targets and classes
+  std::map<std::pair<TargetId, int32_t>, std::vector<Place>> places;  // by target and class
 
-  std::vector<Arrivals> arrivals;             // by source
-  std::vector<uint64_t> called;               // by source: how many so far
-  std::deque<Coming> coming;                  // out of sources, in order
-  std::deque<Coming> riding;                  // out of links, in order of coming out
+  std::vector<SpawnTimes> spawn_times;        // by source
+  std::vector<uint64_t> spawn_counts;         // by source: avatars so far
+  std::deque<PendingSpawn> pending;           // out of sources, in order of due times
+  std::deque<PendingSpawn> in_transit;        // out of links, in order of exit
   std::vector<Visit> visits;                  // by number
   std::vector<uint32_t> slot_of;              // by number; kNoSlot: not in the crowd
-  std::vector<Person> persons;                // by slot
+  std::vector<ScenarioAvatar> avatars;        // by slot
   std::vector<WaitingLine> lines;             // by queue
-  std::vector<Landing> landings;              // by link
+  std::vector<BoardingQueue> boarding;        // by link
   std::vector<std::vector<uint64_t>> groups;  // numbers
-  std::vector<DoorQueue> doors;               // by area: who chose it
-  std::vector<ObstacleId> obstacles;  // by obstacle; none before it begins, and after it ends
+  std::vector<DoorQueue> doors;               // by area: avatars that chose it
+  std::vector<ObstacleId> obstacles;  // by obstacle; null before it begins and after it ends
   std::vector<ObstacleTimes> obstacle_times;
   uint64_t entered = 0, left = 0;
 
   [[nodiscard]] double time() const { return static_cast<double>(steps) * scenario.dt; }
-  [[nodiscard]] int32_t class_of(const Person& p) const {
+  [[nodiscard]] int32_t class_of(const ScenarioAvatar& p) const {
     return classes[p.profile < 0 ? classes.size() - 1 : static_cast<size_t>(p.profile)];
   }
-  [[nodiscard]] const Stage& stage_of(const Person& p) const {
+  [[nodiscard]] const Stage& stage_of(const ScenarioAvatar& p) const {
     return scenario.journeys[static_cast<size_t>(p.journey)].stages[p.stage];
   }
-  [[nodiscard]] const std::vector<TargetId>& targets_of(const Person& p) const {
+  [[nodiscard]] const std::vector<TargetId>& targets_of(const ScenarioAvatar& p) const {
     return stage_targets[static_cast<size_t>(p.journey)][p.stage];
   }
   [[nodiscard]] bool is_here(uint32_t slot) const {
-    return slot < persons.size() && static_cast<bool>(persons[slot].id);
+    return slot < avatars.size() && static_cast<bool>(avatars[slot].id);
   }
-  [[nodiscard]] Person* person(uint64_t number) {
+  [[nodiscard]] ScenarioAvatar* find_avatar(uint64_t number) {
     const uint32_t slot = slot_of[number];
-    return slot == kNoSlot ? nullptr : &persons[slot];
+    return slot == kNoSlot ? nullptr : &avatars[slot];
   }
-  /// The person's next random number, [0, 1).
-  double unit(Person& p) const;
+  /// The avatar's next random number, [0, 1).
+  double unit(ScenarioAvatar& p) const;
 
   static Result<Nodes> nodes_for(const World& world, const Scenario& scenario, int32_t workers,
                                  Context& context);
 
-  // simulation.cpp: what the scenario's names mean.
+  // simulation.cpp
   Result<void> prepare(Context& context);
   Result<TargetId> target_of(std::span<const int32_t> areas, Context& context);
   Result<void> prepare_stage(const Stage& stage, std::vector<TargetId>& targets, Context& context);
-  Result<void> find_places(int32_t area, int32_t avatar_class, const std::string& who,
+  Result<void> find_places(int32_t area, int32_t avatar_class, const std::string& owner,
                            Context& context);
 
-  void mind_obstacles();
-  void note_obstacles();
+  void update_obstacles();
+  void record_obstacle_times();
 
-  // coming.cpp
-  void call_in();
-  Result<void> let_in(std::deque<Coming>& queue, Context& context);
-  Place place_for(Coming& coming);
-  Place place_in_rows(const Source& source, uint64_t nth, Person& p);
-  Place random_spot(std::span<const int32_t> areas, int32_t density, Person& p);
-  void enter(const Coming& coming, AvatarId id);
+  // spawning.cpp
+  void queue_spawns();
+  Result<void> spawn_due(std::deque<PendingSpawn>& queue, Context& context);
+  Place choose_place(PendingSpawn& one);
+  Place place_in_rows(const Source& source, uint64_t nth, ScenarioAvatar& p);
+  Place random_place(std::span<const int32_t> areas, int32_t density, ScenarioAvatar& p);
+  void enter(const PendingSpawn& one, AvatarId id);
 
   // journeys.cpp
-  void begin_stage(Person& p);
-  void finish_stage(Person& p);
-  void next_stage(Person& p);
-  void stand(Person& p, Doing doing);
-  void walk_to(Person& p, const Place& place, Doing doing);
-  void choose_area(Person& p);
-  void line_up(Person& p, int32_t area, double way);
-  void line_up_anew(Person& p);
-  void arrive(Person& p);
-  void leave(Person& p);
-  void take_out(Person& p);
+  void begin_stage(ScenarioAvatar& p);
+  void finish_stage(ScenarioAvatar& p);
+  void next_stage(ScenarioAvatar& p);
+  void stand(ScenarioAvatar& p, Doing doing);
+  void walk_to(ScenarioAvatar& p, const Place& place, Doing doing);
+  void choose_area(ScenarioAvatar& p);
+  void set_door(ScenarioAvatar& p, int32_t area, double distance);
+  void update_door_time(ScenarioAvatar& p);
+  void arrive(ScenarioAvatar& p);
+  void leave(ScenarioAvatar& p);
+  void remove_from_crowd(ScenarioAvatar& p);
   void end_waits();
-  void look_around();
-  [[nodiscard]] int32_t area_under(const Person& p) const;
+  void review_stages();
+  [[nodiscard]] int32_t area_under(const ScenarioAvatar& p) const;
 
   // lines.cpp
   [[nodiscard]] Place in_line(const Queue& queue, size_t index, int32_t avatar_class) const;
   void move_lines();
   void run_links();
 
-  // paces.cpp
-  void mind_paces();
+  // speed_factors.cpp
+  void apply_speed_factors();
 
   // groups.cpp
-  [[nodiscard]] bool group_is_ready(const Person& p);
-  void keep_together();
+  [[nodiscard]] bool group_is_ready(const ScenarioAvatar& p);
+  void adjust_group_speeds();
 };
 
 }  // namespace throng

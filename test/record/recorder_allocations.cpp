@@ -8,7 +8,7 @@
 #include "throng/recording.h"
 
 // A program of its own, because it counts every allocation: a warm recorder makes none, while
-// avatars walk, turn, come and go and chunks and keys are written.
+// avatars walk, turn, enter and leave and chunks and keys are written.
 namespace {
 uint64_t g_allocations = 0;
 }  // namespace
@@ -31,7 +31,7 @@ int main(int, char** arguments) {
   uint64_t warm = 0;
   constexpr uint64_t kFrames = 1000, kWarm = 300, kAvatars = 400;
   for (uint64_t f = 0; f < kFrames; ++f) {
-    // A window of ids that wanders: as many come as go; in descending order, so they are sorted.
+    // A moving window of ids: as many enter as leave; in descending order, so that they are sorted.
     frame.resize(kAvatars);
     frame.time = 0.1 * static_cast<double>(f);
     frame.step = f;

@@ -31,19 +31,19 @@ RecordingInfo two_classes() {
           .settings = "{\"seed\": 1}"};
 }
 
-// Walkers, standers and jumpers that come and go, in no order of id.
-std::vector<RecordedFrame> random_run(uint64_t seed, size_t frames, size_t most) {
+// Avatars that walk, stand or jump, enter and leave, in no order of id.
+std::vector<RecordedFrame> random_run(uint64_t seed, size_t frames, size_t max_avatars) {
   std::vector<RecordedFrame> run;
   std::vector<uint64_t> here;
   struct Body {
     Vec3d at, by;
   };
-  std::vector<Body> bodies(4 * most);
+  std::vector<Body> bodies(4 * max_avatars);
   uint64_t counter = 0;
   const auto unit = [&] { return random_unit(seed, 1, counter++); };
   for (size_t f = 0; f < frames; ++f) {
     std::erase_if(here, [&](uint64_t) { return unit() < 0.03; });
-    for (uint64_t id = 0; id < bodies.size() && here.size() < most; ++id) {
+    for (uint64_t id = 0; id < bodies.size() && here.size() < max_avatars; ++id) {
       if (unit() > 0.1 || std::count(here.begin(), here.end(), id) > 0) continue;
       here.push_back(id);
       bodies[id].at = {unit() * 100 - 50, unit() * 9, unit() * 2e6 - 1e6};
@@ -72,7 +72,7 @@ std::vector<RecordedFrame> random_run(uint64_t seed, size_t frames, size_t most)
   return run;
 }
 
-// What must come back: in order of id, to the millimetre.
+// The frame read back is in order of id, equal to the millimetre.
 void expect_same(const RecordedFrame& wrote, const RecordedFrame& read) {
   EXPECT_EQ(wrote.time, read.time);
   EXPECT_EQ(wrote.step, read.step);
@@ -154,9 +154,9 @@ TEST(Recording, GivesBackWhatWasWrittenInAnyOrderOfReading) {
   }
 }
 
-// Some of a random run lean, more and more of whom turn from frame to frame; others stand upright.
-std::vector<RecordedFrame> leaning_run(uint64_t seed, size_t frames, size_t most) {
-  auto run = random_run(seed, frames, most);
+// A random run in which some avatars lean; a part of these turn in every frame.
+std::vector<RecordedFrame> leaning_run(uint64_t seed, size_t frames, size_t max_avatars) {
+  auto run = random_run(seed, frames, max_avatars);
   for (RecordedFrame& frame : run) {
     for (const uint64_t id : frame.ids) {
       const auto axis = [&](uint64_t n) { return 2 * random_unit(seed, id, 3 * n) - 1; };
@@ -183,7 +183,7 @@ void expect_same_axes(const RecordedFrame& wrote, const RecordedFrame& read) {
   }
 }
 
-TEST(Recording, KeepsTheAxesOfThoseWhoLean) {
+TEST(Recording, KeepsTheAxesOfLeaningAvatars) {
   const ScratchFolder folder;
   const std::string path = folder.path() + "/run.replay";
   RecordingInfo info = two_classes();
@@ -213,9 +213,9 @@ TEST(Recording, KeepsTheAxesOfThoseWhoLean) {
   }
 }
 
-// All who stand upright are written as they were before anybody leaned, byte by byte; who does not
-// say that some may lean is refused if one does.
-TEST(Recording, WithoutAnybodyWhoLeansStaysAsItWas) {
+// A run without leaning avatars has the bytes of version 1. Without RecordingInfo::leans, a frame
+// with a leaning avatar is refused.
+TEST(Recording, WithoutLeaningAvatarsHasTheBytesOfVersion1) {
   const ScratchFolder folder;
   const std::string path = folder.path() + "/run.replay", other = folder.path() + "/other.replay";
   auto run = random_run(4, 40, 20);
@@ -260,8 +260,7 @@ std::string frames_of(const std::string& bytes) {
   return bytes.substr(sizeof head + head.bytes);
 }
 
-// What holds near the coordinate origin holds wherever the recording's origin is: the same
-// millimetres, in the same bytes.
+// Wherever the recording's origin is, frames are the same millimetres, in the same bytes.
 TEST(Recording, KeepsTheMillimetreFarFromTheCoordinateOrigin) {
   const ScratchFolder folder;
   const std::string near_path = folder.path() + "/near.replay",
@@ -315,7 +314,7 @@ TEST(Recording, KeepsTheMillimetreFarFromTheCoordinateOrigin) {
       if (info.leans) expect_same_axes(wrote, frame);
       for (size_t i = 0; i < frame.size(); ++i) {
         const Vec3d off = frame.positions[i] - info.origin - near_frame.positions[i];
-        EXPECT_LT(length(off), 4e-7);  // [m] What doubles can tell at 10^9 m.
+        EXPECT_LT(length(off), 4e-7);  // [m] The resolution of doubles at 10^9 m.
       }
     }
   }
@@ -390,7 +389,7 @@ TEST(Recording, TheOriginOfAWorldReachesAllOfIt) {
   }
 }
 
-// A recording of a version to come, or whose origin lies where none can.
+// A recording of a later version, or with an origin out of range.
 TEST(Recording, RefusesOtherVersionsAndSaysWhatToDo) {
   const auto settings = [](uint32_t version, int64_t origin) {
     flatbuffers::FlatBufferBuilder builder;
@@ -424,7 +423,7 @@ TEST(Recording, RefusesOtherVersionsAndSaysWhatToDo) {
     ASSERT_FALSE(replay);
     EXPECT_EQ(replay.error().message, "a.replay: its settings are corrupt; record the run again");
   }
-  // Versions before the third have no origin, whatever stands there.
+  // Versions before the third have no origin; the fields are ignored.
   for (const uint32_t version : {1u, 2u, 3u}) {
     const std::string bytes = settings(version, 10'000'000);
     const auto replay = Replay::from_bytes(span_of(bytes), "a.replay");
@@ -533,7 +532,7 @@ TEST(Recording, MayBeginWithHashesAlone) {
   }
 }
 
-// A system that stops may have kept a chunk's head and lost its bytes: all frames told are good.
+// After a crash a chunk's head may be on disk without its bytes: all frames counted are good.
 TEST(Recording, DoesNotCountALastChunkWhoseBytesAreLost) {
   const ScratchFolder folder;
   const std::string path = folder.path() + "/run.replay";
@@ -553,7 +552,7 @@ TEST(Recording, DoesNotCountALastChunkWhoseBytesAreLost) {
   }
 }
 
-// A process that dies leaves a beginning of the file: every such beginning, of every length.
+// A process that dies leaves the first bytes of the file: tests every length.
 TEST(Recording, OpensFromEveryBeginningOfAFile) {
   const ScratchFolder folder;
   const std::string path = folder.path() + "/run.replay";
@@ -561,7 +560,7 @@ TEST(Recording, OpensFromEveryBeginningOfAFile) {
   record(path, run, {.chunk_frames = 4, .key_frames = 8});
   const std::string bytes = bytes_of(path);
   ASSERT_LT(bytes.size(), 30000u);
-  uint64_t most = 0, opened = 0;
+  uint64_t max_frames = 0, opened = 0;
   for (size_t size = 0; size <= bytes.size(); ++size) {
     const std::string part = bytes.substr(0, size);
     auto replay = Replay::from_bytes(span_of(part), "cut");
@@ -572,16 +571,16 @@ TEST(Recording, OpensFromEveryBeginningOfAFile) {
     }
     ++opened;
     EXPECT_EQ(replay->damage().empty(), size == bytes.size());
-    EXPECT_GE(replay->frame_count(), most) << "fewer frames in more bytes";
-    most = replay->frame_count();
-    // Whole chunks of four are there as soon as their last byte is.
+    EXPECT_GE(replay->frame_count(), max_frames) << "fewer frames in more bytes";
+    max_frames = replay->frame_count();
+    // A chunk of four frames is readable once its last byte is there.
     RecordedFrame frame;
     for (uint64_t f = 0; f < replay->frame_count(); f += size % 50 == 0 ? 1 : 39) {
       ASSERT_TRUE(replay->read(f, frame));
       expect_same(run[f], frame);
     }
   }
-  EXPECT_EQ(most, run.size());
+  EXPECT_EQ(max_frames, run.size());
 }
 
 TEST(Recording, NamesWhatIsCorruptAndReadsTheRest) {
@@ -610,13 +609,13 @@ TEST(Recording, NamesWhatIsCorruptAndReadsTheRest) {
         EXPECT_NE(ok.error().message.find("damaged: the chunk at byte"), std::string::npos);
       }
     }
-    EXPECT_TRUE(lost > 0 || !replay->damage().empty()) << "nobody noticed byte " << at;
+    EXPECT_TRUE(lost > 0 || !replay->damage().empty()) << "no error for byte " << at;
     partly += lost > 0 && lost < run.size() ? 1 : 0;
   }
   EXPECT_GT(partly, bytes.size() / 2);
 }
 
-TEST(Recording, RefusesFramesThatMakeNoSenseAndGoesOn) {
+TEST(Recording, RefusesInvalidFramesAndContinues) {
   const ScratchFolder folder;
   const std::string path = folder.path() + "/run.replay";
   auto run = random_run(9, 30, 12);
@@ -701,7 +700,7 @@ TEST(FrameCodec, HeadingsAreTheNearestOf256) {
   EXPECT_EQ(heading_code({NAN, 1}), heading_code({0, 1}));
 }
 
-// Walkers on straight lines at 1.34 m/s, a frame each tenth of a second, headings theirs.
+// Avatars that walk straight at 1.34 m/s in the direction of their headings, ten frames a second.
 TEST(FrameCodec, AWalkerCostsAByteAFrame) {
   FrameEncoder encoder;
   std::vector<uint8_t> bytes;
@@ -711,9 +710,10 @@ TEST(FrameCodec, AWalkerCostsAByteAFrame) {
   for (size_t f = 0; f < kFrames; ++f) {
     for (size_t i = 0; i < kWalkers; ++i) {
       const double turn = random_unit(1, 1, i) * 6.28;
-      const double way = 0.134 * static_cast<double>(f);
+      const double walked = 0.134 * static_cast<double>(f);
       frame.ids[i] = i;
-      frame.positions[i] = {way * std::cos(turn) + static_cast<double>(i), 0, way * std::sin(turn)};
+      frame.positions[i] = {walked * std::cos(turn) + static_cast<double>(i), 0,
+                            walked * std::sin(turn)};
       frame.headings[i] = {static_cast<float>(std::cos(turn)), static_cast<float>(std::sin(turn))};
       frame.radii[i] = 0.25F;
     }

@@ -130,7 +130,7 @@ TEST(ReplayExport, TextsHoldEachPositionToTheMillimetreFarFromTheCoordinateOrigi
   expect_texts_to_the_millimetre({-1e7, 0, 1e7});
 }
 
-TEST(ReplayExport, TablesHaveColumnsForAxesOnlyWhereSomeMayLean) {
+TEST(ReplayExport, TablesHaveColumnsForAxesOnlyIfAvatarsMayLean) {
   const test::ScratchFolder folder;
   const std::string path = folder.path() + "/run.replay", csv = folder.path() + "/a.csv";
   RecordedFrame frame;
@@ -162,7 +162,7 @@ TEST(ReplayExport, TablesHaveColumnsForAxesOnlyWhereSomeMayLean) {
   EXPECT_NEAR(z, -0.8, 0.0011);
 }
 
-TEST(ReplayExport, LeavesNothingBehindWhenItFails) {
+TEST(ReplayExport, LeavesNoFileIfItFails) {
   const test::ScratchFolder folder;
   Replay replay = recorded(folder, uneven_run());
   Context context;

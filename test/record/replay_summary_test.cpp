@@ -19,7 +19,7 @@ struct Body {
   uint64_t id = 0;
   Vec3d at;
 };
-using Film = std::vector<std::pair<double, std::vector<Body>>>;  // time, who is there
+using Film = std::vector<std::pair<double, std::vector<Body>>>;  // time, avatars
 
 Result<ReplaySummary> summary_of(const Film& run, const SummaryConfig& config) {
   const test::ScratchFolder folder;
@@ -52,10 +52,10 @@ Result<ReplaySummary> summary_of(const Film& run, const SummaryConfig& config) {
   return summarise(*replay, config, context);
 }
 
-// Whole millimetres, so that nothing changes by being recorded.
+// Whole millimetres, which a recording keeps exactly.
 double mm(double v) { return std::round(v * 1000) / 1000; }
 
-// Random walks on two storeys, some stand, some leave for good or for a while.
+// Random walks on two storeys; some stand, some leave for ever or for a while.
 Film random_run(uint64_t seed) {
   Film run;
   std::map<uint64_t, Vec3d> here;
@@ -88,7 +88,7 @@ const Vec3d* find(const std::vector<Body>& bodies, uint64_t id) {
   return nullptr;
 }
 
-// Do the segments p q and a b cross? By areas, strictly: random points never touch.
+// Do the segments p q and a b cross? By signs of areas: random points never lie on a line.
 int32_t crossing(const Vec3d& p, const Vec3d& q, const FlowLine& l) {
   const auto area = [](double ax, double az, double bx, double bz, double cx, double cz) {
     return (bx - ax) * (cz - az) - (bz - az) * (cx - ax);
@@ -127,7 +127,7 @@ TEST(ReplaySummary, CountsWhatBruteForceCounts) {
       EXPECT_EQ(s.present[f], run[f].second.size());
       const double hold = f + 1 < run.size() ? run[f + 1].first - run[f].first : 0;
       for (const Body& body : run[f].second) density[cell(body.at)] += hold / seconds / 0.49;
-      double way = 0;
+      double moved = 0;
       int32_t stay = 0;
       for (const Body& body : f > 0 ? run[f - 1].second : std::vector<Body>()) {
         const Vec3d* now = find(run[f].second, body.id);
@@ -138,7 +138,7 @@ TEST(ReplaySummary, CountsWhatBruteForceCounts) {
         }
         const double dt = run[f].first - run[f - 1].first;
         ++stay;
-        way += length(*now - body.at);
+        moved += length(*now - body.at);
         walked += length(*now - body.at);
         walked_time += dt;
         if (length(*now - body.at) / dt < 0.4) {
@@ -158,7 +158,7 @@ TEST(ReplaySummary, CountsWhatBruteForceCounts) {
       EXPECT_EQ(s.come[f], come);
       EXPECT_EQ(s.left[f], left);
       if (f > 0 && stay > 0) {
-        EXPECT_NEAR(s.speed[f - 1], way / stay / (run[f].first - run[f - 1].first), 1e-9);
+        EXPECT_NEAR(s.speed[f - 1], moved / stay / (run[f].first - run[f - 1].first), 1e-9);
       }
     }
     EXPECT_EQ(s.last_left, last_left);
@@ -187,14 +187,14 @@ TEST(ReplaySummary, CountsWhatBruteForceCounts) {
         }
       }
     }
-    EXPECT_TRUE(density.empty()) << "somebody stood outside of the maps";
+    EXPECT_TRUE(density.empty()) << "an avatar stood outside the maps";
     EXPECT_TRUE(waiting.empty());
   }
   EXPECT_GT(crossings, 200u);
 }
 
-// Ten people leave through a door, one a second: by hand.
-TEST(ReplaySummary, AnEvacuationIsTold) {
+// Ten avatars leave through a door, one a second: values by hand.
+TEST(ReplaySummary, HasTheNumbersOfAnEvacuation) {
   Film run;
   for (int32_t t = 0; t <= 20; ++t) {
     std::vector<Body> bodies;
@@ -209,7 +209,7 @@ TEST(ReplaySummary, AnEvacuationIsTold) {
   EXPECT_EQ(s->come.back(), 10u);
   EXPECT_EQ(s->left.back(), 10u);
   EXPECT_EQ(s->last_left, 15);
-  EXPECT_EQ(s->lines[0].total_back, 10u);  // x grows: to the left of who looks along z
+  EXPECT_EQ(s->lines[0].total_back, 10u);  // towards +x: to the left if z is ahead
   EXPECT_EQ(s->lines[0].total_forth, 0u);
   for (size_t bin = 0; bin < 20; ++bin) {
     EXPECT_EQ(s->lines[0].back[bin], bin >= 4 && bin < 14 ? 1u : 0u) << bin;
@@ -218,9 +218,9 @@ TEST(ReplaySummary, AnEvacuationIsTold) {
   EXPECT_EQ(s->maps.at(0).waiting[0], 45);
 }
 
-// The line itself is on its left: who stops on it and goes on is counted once, whichever way; who
-// comes from the right and turns back on it has crossed it twice, once each way.
-TEST(ReplaySummary, WhoStandsOnALineIsNotCountedTwice) {
+// The line belongs to its left side: an avatar that stops on it and continues counts once, in
+// either direction; one that comes from the right and turns back on it counts once in each.
+TEST(ReplaySummary, AnAvatarThatStopsOnALineIsNotCountedTwice) {
   const double along[2][7] = {{-1, 0, 0, 1, 2, 3, 3}, {-1, -1, 0, 0, -1, -1, -1}};
   for (const double sign : {1.0, -1.0}) {
     Film run;
@@ -236,7 +236,7 @@ TEST(ReplaySummary, WhoStandsOnALineIsNotCountedTwice) {
   }
 }
 
-TEST(ReplaySummary, RefusesNonsense) {
+TEST(ReplaySummary, RefusesBadSettings) {
   const Film run = {{0, {{1, {0, 0, 0}}}}, {1, {{1, {1e5, 0, 1e5}}}}};
   EXPECT_EQ(summary_of(run, {.cell = 0}).error().code, Errc::kBadConfig);
   EXPECT_EQ(summary_of(run, {.bin = -1}).error().code, Errc::kBadConfig);

@@ -49,8 +49,8 @@ double area_of(const Ring& ring) {
   return twice / 2;
 }
 
-// Random cells of any density, full of cells that touch at corners, against a flood.
-TEST(WalkablePieces, AreTheCellsThatHoldTogether) {
+// Random cells of any density, many of which touch at corners only, against a flood fill.
+TEST(WalkablePieces, AreTheConnectedCells) {
   uint64_t cells_seen = 0;
   for (uint64_t seed = 0; seed < 30; ++seed) {
     constexpr int32_t kSide = 21;

@@ -36,7 +36,7 @@ double area_of(const Scene& scene, bool in_plan) {
   return area;
 }
 
-// Height of the surface at a point of the plan nearest to `y`, by asking every triangle.
+// Height of the surface at (x, z) nearest to `y`, by a test of every triangle.
 double height_at(const Scene& scene, double x, double z, double y) {
   double best = 1e9;
   for (const auto& t : scene.triangles) {
@@ -133,7 +133,7 @@ TEST(WalkableSurface, IsReadBackFromBothFormatsFarFromTheCoordinateOrigin) {
   }
 }
 
-TEST(WalkableSurface, RefusesNonsense) {
+TEST(WalkableSurface, RefusesBadSettings) {
   Context context;
   EXPECT_FALSE(walkable_surface(World(), 0, context));
   EXPECT_FALSE(walkable_surface(bake(worlds::flat(3), 0.1), 99, context));

@@ -60,7 +60,8 @@ bool cuts(Vec3d from, Vec3d to, const Box3d& box) {
   return enter < leave;
 }
 
-// The shadow of a convex body is convex: a box whose corners all lie in one house's is hidden.
+// The shadow of a convex body is convex: a box whose corners all lie in the shadow of one house is
+// hidden.
 bool can_see(Vec3d eye, const Box3d& box) {
   return std::none_of(town().houses.begin(), town().houses.end(), [&](const Box3d& house) {
     for (size_t k = 0; k < 8; ++k) {
@@ -72,7 +73,7 @@ bool can_see(Vec3d eye, const Box3d& box) {
   });
 }
 
-// An oracle that knows triangles alone: is any of some points of a body in sight?
+// An oracle from triangles alone: is any of some points of a body in sight?
 bool is_body_in_sight(Vec3d eye, Vec3d feet, uint64_t salt) {
   const Scene& scene = town().scene;
   for (uint64_t k = 0; k < 40; ++k) {
@@ -94,7 +95,7 @@ bool is_body_in_sight(Vec3d eye, Vec3d feet, uint64_t salt) {
 }
 
 struct Walk {
-  double least = 1e9, most = 0;  // Avatars in sight by those wanted, after a while.
+  double min_share = 1e9, max_share = 0;  // Avatars in sight by the required number, after a while.
   double mean = 0;
   uint64_t added = 0, removed = 0;
   size_t appeared_in_sight = 0, gone_in_sight = 0;
@@ -102,7 +103,7 @@ struct Walk {
   uint64_t hash = 0;
 };
 
-// Five minutes of a street; `at` is where the eye is after so many steps.
+// Five minutes of a street; `at` is where the eye is after that many steps.
 template <class At>
 Walk walk_and_see(const GeneratorConfig& config, At at, int32_t steps) {
   Walk out;
@@ -125,7 +126,7 @@ Walk walk_and_see(const GeneratorConfig& config, At at, int32_t steps) {
     EXPECT_TRUE(report) << report.error().message;
     crowd->read(states);
     if (step > 0) {
-      // Slots are given again, so by place: nobody has moved during the update.
+      // Slots are reused, so compare by place: no avatar moves during the update.
       const auto key = [](Vec3d p) { return std::array{p.x, p.y, p.z}; };
       std::set<std::array<double, 3>> then, now;
       for (const auto& [id, p] : last) then.insert(key(p));
@@ -144,8 +145,8 @@ Walk walk_and_see(const GeneratorConfig& config, At at, int32_t steps) {
     out.largest = std::max<size_t>(out.largest, crowd->size());
     if (step > steps / 4) {
       const double share = report->seen_avatars / (config.density * report->seen_area);
-      out.least = std::min(out.least, share);
-      out.most = std::max(out.most, share);
+      out.min_share = std::min(out.min_share, share);
+      out.max_share = std::max(out.max_share, share);
       out.mean += share;
       ++counted;
     }
@@ -175,22 +176,23 @@ TEST(AvatarGenerators, KeepAStreetPopulatedWhileOnlyWhatIsSeenIsSimulated) {
   const auto stands = [](int32_t) { return Vec3d{35, 1.7, 65}; };
   const Walk r = walk_and_see(config, stands, 900);
   std::printf(
-      "standing: %.2f to %.2f of those wanted in sight, mean %.2f; %llu came, %llu went, %zu "
+      "standing: %.2f to %.2f of the required number in sight, mean %.2f; %llu added, %llu "
+      "removed, %zu "
       "and %zu in sight; at most %zu of %.0f simulated\n",
-      r.least, r.most, r.mean, static_cast<unsigned long long>(r.added),
+      r.min_share, r.max_share, r.mean, static_cast<unsigned long long>(r.added),
       static_cast<unsigned long long>(r.removed), r.appeared_in_sight, r.gone_in_sight, r.largest,
       all);
   EXPECT_GT(r.added, 100U);
   EXPECT_GT(r.removed, 100U);
   EXPECT_EQ(r.appeared_in_sight, 0U);
   EXPECT_EQ(r.gone_in_sight, 0U);
-  EXPECT_GT(r.least, 0.55);
-  EXPECT_LT(r.most, 1.35);
+  EXPECT_GT(r.min_share, 0.55);
+  EXPECT_LT(r.max_share, 1.35);
   EXPECT_NEAR(r.mean, 1, 0.06);
   EXPECT_LT(static_cast<double>(r.largest), 0.8 * all);
 }
 
-TEST(AvatarGenerators, TakeANumberOfPeopleInPlaceOfADensity) {
+TEST(AvatarGenerators, TakeANumberOfAvatarsInPlaceOfADensity) {
   Context context;
   GeneratorConfig config = config_of(0.04);
   const auto by_density = AvatarGenerators::make(town().world, config, context);
@@ -207,7 +209,7 @@ TEST(AvatarGenerators, TakeANumberOfPeopleInPlaceOfADensity) {
 TEST(AvatarGenerators, FollowAnEyeThatWalksAroundCorners) {
   const GeneratorConfig config = config_of(0.04);
   const auto walks = [](int32_t step) {  // 1.4 m/s around a block.
-    const double way = std::fmod(step * 0.28, 120.0), side = way / 30;
+    const double walked = std::fmod(step * 0.28, 120.0), side = walked / 30;
     const double along = (side - std::floor(side)) * 30;
     switch (static_cast<int32_t>(side)) {
       case 0:
@@ -221,18 +223,18 @@ TEST(AvatarGenerators, FollowAnEyeThatWalksAroundCorners) {
     }
   };
   const Walk r = walk_and_see(config, walks, 900);
-  std::printf("walking: %.2f to %.2f, mean %.2f; %llu came, %llu went, %zu and %zu in sight\n",
-              r.least, r.most, r.mean, static_cast<unsigned long long>(r.added),
+  std::printf("walking: %.2f to %.2f, mean %.2f; %llu added, %llu removed, %zu and %zu in sight\n",
+              r.min_share, r.max_share, r.mean, static_cast<unsigned long long>(r.added),
               static_cast<unsigned long long>(r.removed), r.appeared_in_sight, r.gone_in_sight);
   EXPECT_EQ(r.appeared_in_sight, 0U);
   EXPECT_EQ(r.gone_in_sight, 0U);
-  EXPECT_GT(r.least, 0.55);
-  EXPECT_LT(r.most, 1.35);
+  EXPECT_GT(r.min_share, 0.55);
+  EXPECT_LT(r.max_share, 1.35);
   EXPECT_NEAR(r.mean, 1, 0.06);
   EXPECT_EQ(walk_and_see(config, walks, 60).hash, walk_and_see(config, walks, 60).hash);
 }
 
-TEST(AvatarGenerators, RefuseWhatCannotBe) {
+TEST(AvatarGenerators, RefuseBadSettings) {
   Context context;
   GeneratorConfig config = config_of(0.04);
   config.density = 0;

@@ -9,7 +9,7 @@
 
 #include "core/logarithm.h"
 #include "core/random.h"
-#include "scenario/arrivals.h"
+#include "scenario/spawn_times.h"
 #include "throng/scenario.h"
 
 namespace throng {
@@ -62,12 +62,12 @@ TEST(Distribution, has_a_logarithm_of_its_own) {
   EXPECT_EQ(log_of(1), 0);
 }
 
-TEST(Arrivals, come_as_often_as_rates_say) {
+TEST(SpawnTimes, follow_the_rates) {
   Source source;
   source.group = Distribution::fixed(1);
   source.rates = {{10, 2}, {20, 0}, {30, 5}};
   source.end = 40;
-  Arrivals arrivals(source, 1, 0);
+  SpawnTimes arrivals(source, 1, 0);
   int before = 0, early = 0, pause = 0, late = 0;
   for (int step = 0; step <= 1000; ++step) {
     const double time = step * 0.1;
@@ -82,13 +82,13 @@ TEST(Arrivals, come_as_often_as_rates_say) {
   EXPECT_NEAR(late, 50, 3 * std::sqrt(50.0));
 }
 
-TEST(Arrivals, are_even_or_at_once_and_keep_to_their_count) {
+TEST(SpawnTimes, are_even_or_at_once_up_to_the_count) {
   Source source;
   source.group = Distribution::fixed(1);
   source.rates = {{0, 4}};
   source.even = true;
   source.count = 10;
-  Arrivals even(source, 1, 0);
+  SpawnTimes even(source, 1, 0);
   std::vector<int> at;
   for (int step = 0; step < 100; ++step) {
     while (even.next_due(step * 0.125) > 0) at.push_back(step);
@@ -98,7 +98,7 @@ TEST(Arrivals, are_even_or_at_once_and_keep_to_their_count) {
   source.rates.clear();
   source.begin = 5;
   source.group = Distribution::fixed(4);
-  Arrivals once(source, 1, 0);
+  SpawnTimes once(source, 1, 0);
   EXPECT_EQ(once.next_due(4.9), 0U);
   EXPECT_EQ(once.next_due(5), 4U);
   EXPECT_EQ(once.next_due(5), 4U);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/random.h"
@@ -14,7 +15,7 @@ namespace {
 const char* const kFull = R"(seconds = 30
 dt = 0.05
 seed = 7
-ways = "labels"
+paths = "labels"
 cell = 0.2
 
 [plane]
@@ -35,7 +36,7 @@ box = [0.5, 1, 3, 9]
 name = "out"
 polygon = [[18, 1], [19.5, 1], [19.5, 4]]
 y = [-1, 1]
-pace = 0.5
+speed_factor = 0.5
 
 [[area]]
 name = "out"
@@ -73,7 +74,7 @@ name = "round"
 repeat = true
 stages = [
   { go = ["in", "out"], by = "quickest" },
-  { spot = "in" },
+  { random_point = "in" },
   { density = "crowd" },
   { wait = { uniform = [1, 2] } },
   { queue = "till" },
@@ -155,7 +156,7 @@ TEST(ScenarioFile, reads_every_key) {
   EXPECT_EQ(s->obstacles[0].policy, ObstaclePolicy::kRefuseEntry);
 }
 
-// A file with one line put in another's place.
+// The file with `from` replaced.
 std::string changed(const std::string& from, const std::string& to) {
   std::string text = kFull;
   const size_t at = text.find(from);
@@ -163,8 +164,8 @@ std::string changed(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
-TEST(ScenarioFile, names_who_steers) {
-  const std::string labels = "ways = \"labels\"";
+TEST(ScenarioFile, names_the_steering_model) {
+  const std::string labels = "paths = \"labels\"";
   const auto ours = parse_scenario(kFull, "full.toml");
   const auto other =
       parse_scenario(changed(labels, labels + "\nsteering = \"caacd\""), "full.toml");
@@ -179,8 +180,11 @@ TEST(ScenarioFile, says_where_and_what_is_wrong) {
   } cases[] = {
       {"seconds = 30", "seconds = \"long\"", "full.toml:1: scenario: seconds must be a number"},
       {"dt = 0.05", "dt = 2", "full.toml:2: scenario: dt = 2 is outside"},
-      {"ways = \"labels\"", "ways = \"magic\"", "full.toml:4: scenario: ways must be"},
-      {"ways = \"labels\"", "ways = \"labels\"\nsteering = \"orca\"",
+      {"paths = \"labels\"", "paths = \"magic\"", "full.toml:4: scenario: paths must be"},
+      {"paths = \"labels\"", "ways = \"magic\"", "full.toml:4: scenario: ways must be"},
+      {"paths = \"labels\"", "paths = \"labels\"\nways = \"labels\"",
+       "full.toml:5: scenario: ways is the old name of paths; drop it"},
+      {"paths = \"labels\"", "paths = \"labels\"\nsteering = \"orca\"",
        "full.toml:5: scenario: steering must be sampled, caacd or social-force"},
       {"seed = 7", "sead = 7", "full.toml:3: scenario: unknown key 'sead'"},
       {"[plane]\n", "world = \"x\"\n[plane]\n", "give one of: world"},
@@ -203,22 +207,23 @@ TEST(ScenarioFile, says_where_and_what_is_wrong) {
        "speed = { exponential = 1, within = [50, 60] }", "under 5 % of what is drawn"},
       {"line = [[10, 0, 5], [10, 0, 1]]", "line = [[10, 0, 5]]", "at least two"},
       {"from = \"in\"\n", "", "link 'lift': from is missing"},
-      {"{ spot = \"in\" }", "{ spot = \"in\", wait = 3 }",
+      {"{ random_point = \"in\" }", "{ random_point = \"in\", wait = 3 }",
        "journey 'round': stage 2: a stage is one"},
-      {"{ spot = \"in\" }", "{ leave = \"in\" }", "nothing can follow"},
+      {"{ random_point = \"in\" }", "{ leave = \"in\" }", "nothing can follow"},
       {"{ queue = \"till\" }", "{ queue = \"tall\" }", "there is no queue named 'tall'"},
       {"journey = { round = 1, away = 2.5 }", "journey = { round = -1 }",
        "must be a number above 0"},
-      {"pace = 0.5", "pace = 0", "area 'out': pace = 0 is outside"},
+      {"speed_factor = 0.5", "speed_factor = 0", "area 'out': speed_factor = 0 is outside"},
       {"count = 10", "count = 10\nplaces = \"heap\"", "places must be \"chance\" or \"rows\""},
       {"even = true", "even = true\nplaces = \"rows\"", "rows need one area, a count"},
       {"count = 10", "count = 1.5", "count must be a whole number"},
       {"rates = [[0, 0.5], [10, 0], [20, 2]]", "rates = [[0, 0.5], [0, 1]]", "times ascending"},
-      {"density = \"crowd\"\nrates", "density = \"crowd\"\narea = \"in\"\nrates", "say where they"},
-      {"rates = [[0, 0.5], [10, 0], [20, 2]]", "", "say how many"},
+      {"density = \"crowd\"\nrates", "density = \"crowd\"\narea = \"in\"\nrates",
+       "say where avatars enter"},
+      {"rates = [[0, 0.5], [10, 0], [20, 2]]", "", "give a count, a rate"},
       {"begin = 5\nend = 9", "begin = 9\nend = 5", "obstacle 'crate': it must begin before"},
       {"begin = 5\nend = 9", "begin = 5\npolicy = \"open\"", "policy: write \"shut\" or \"wait\""},
-      {"name = \"later\"", "name = \"first\"", "the name stands here twice"},
+      {"name = \"later\"", "name = \"first\"", "the name is used twice"},
   };
   for (const auto& c : cases) {
     const auto s = parse_scenario(changed(c.from, c.to), "full.toml");
@@ -229,7 +234,22 @@ TEST(ScenarioFile, says_where_and_what_is_wrong) {
   }
 }
 
-TEST(ScenarioFile, names_a_picture_that_is_not_there) {
+TEST(ScenarioFile, keeps_the_old_names_of_keys) {
+  std::string text = kFull;
+  for (const auto& [now, old] :
+       {std::pair("\npaths =", "\nways ="), std::pair("\nspeed_factor =", "\npace ="),
+        std::pair("{ random_point =", "{ spot =")}) {
+    text.replace(text.find(now), std::string(now).size(), old);
+  }
+  const auto s = parse_scenario(text, "full.toml");
+  ASSERT_TRUE(s) << s.error().message;
+  EXPECT_TRUE(s->labels);
+  EXPECT_EQ(s->areas[1].pace, 0.5);
+  EXPECT_EQ(s->journeys[0].stages[1].kind, Stage::Kind::kSpot);
+  EXPECT_EQ(s->journeys[0].stages[1].areas, std::vector<int32_t>{0});
+}
+
+TEST(ScenarioFile, names_an_image_file_that_does_not_exist) {
   const auto s = parse_scenario(
       changed(
           "pixel = 1\npaint = [{ area = \"in\", weight = 200 }, { area = \"out\", weight = 10 }]",
@@ -239,7 +259,7 @@ TEST(ScenarioFile, names_a_picture_that_is_not_there) {
   EXPECT_NE(s.error().message.find("somewhere/none.png"), std::string::npos) << s.error().message;
 }
 
-// Whatever the bytes, an answer comes back.
+// Random edits of a valid file parse or give an error, and never crash.
 TEST(ScenarioFile, survives_damaged_files) {
   const std::string text = kFull;
   int refused = 0;

@@ -14,7 +14,7 @@
 namespace throng {
 namespace {
 
-// A hall of 20 by 10 m with a wall across that has a door of 3 m.
+// A hall of 20 by 10 m, with a door of 3 m in a wall across it.
 const std::string kHall = R"(seconds = 60
 seed = 3
 cell = 0.1
@@ -53,8 +53,8 @@ Simulation made(const Hall& run, int32_t workers = 2) {
   return std::move(*simulation);
 }
 
-// Steps until it is over, at most so long. Looks for overlaps and walls at every step.
-double run_out(Simulation& simulation, double most) {
+// Steps until it is over, at most `max_time`. Checks overlaps and walls in every step.
+double run_out(Simulation& simulation, double max_time) {
   SimulationReport last;
   do {
     const auto report = simulation.step();
@@ -62,11 +62,11 @@ double run_out(Simulation& simulation, double most) {
     last = *report;
     const CrowdCheck found = simulation.crowd().check();
     EXPECT_EQ(found.overlaps + found.wall_entries, 0U) << "at " << last.time;
-  } while (!simulation.is_over() && last.time < most);
+  } while (!simulation.is_over() && last.time < max_time);
   return last.time;
 }
 
-// The hall's like at a place of the world, with all that names coordinates.
+// A similar hall at (x, z), with every table that has coordinates.
 Hall hall_at(double x, double z) {
   const auto box = [&](double u0, double v0, double u1, double v1) {
     return fmt::format("[{}, {}, {}, {}]", x + u0, z + v0, x + u1, z + v1);
@@ -118,7 +118,7 @@ count = 40
   return {*scenario, *world};
 }
 
-TEST(Simulation, a_scenario_in_a_national_grid_goes_as_near_the_coordinate_origin) {
+TEST(Simulation, runs_in_a_national_grid_as_near_the_coordinate_origin) {
   for (const auto& [x, z] : {std::pair{678000.0, -5403500.0}, std::pair{-1e7, 1e7}}) {
     Simulation near = made(hall_at(0, 0)), far = made(hall_at(x, z));
     std::vector<AvatarState> near_states, far_states;
@@ -138,7 +138,7 @@ TEST(Simulation, a_scenario_in_a_national_grid_goes_as_near_the_coordinate_origi
   }
 }
 
-TEST(Simulation, people_come_and_leave_by_the_nearest_exit) {
+TEST(Simulation, avatars_enter_and_leave_by_the_nearest_exit) {
   const Hall run = read(R"(
 [[journey]]
 name = "out"
@@ -174,7 +174,7 @@ service = { uniform = [0.5, 1] }
 name = "shop"
 stages = [
   { queue = "till" },
-  { spot = "west" },
+  { random_point = "west" },
   { wait = 2 },
   { leave = ["north", "south"], by = "quickest" },
 ]
@@ -194,7 +194,7 @@ group = { uniform = [1, 3] }
   EXPECT_GT(one.visits().size(), 60U);
 }
 
-TEST(Simulation, nobody_sets_off_before_his_time) {
+TEST(Simulation, no_avatar_starts_before_its_premovement_time_is_over) {
   const Hall run = read(R"(
 [[journey]]
 name = "out"
@@ -209,7 +209,7 @@ premovement = { uniform = [2, 8] }
   Simulation simulation = made(run);
   std::vector<AvatarState> before, now;
   simulation.read(before);
-  // Who waits makes room for who walks, but stays about where he is.
+  // An avatar that waits yields to those that walk, but stays about where it is.
   std::map<uint32_t, double> began;
   while (simulation.crowd().size() == 30) {
     const auto report = simulation.step();
@@ -222,7 +222,7 @@ premovement = { uniform = [2, 8] }
     }
   }
   EXPECT_GT(began.size(), 20U);
-  // Who stands where a stream passes is swept along for a while.
+  // An avatar that stands in a stream is swept along for a while.
   int swept = 0;
   for (const auto& [person, time] : began) {
     swept += time < simulation.visits()[person].started ? 1 : 0;
@@ -252,7 +252,7 @@ count = 12
   EXPECT_LT(over, 120);
   std::multiset<double> times;
   for (const Visit& visit : simulation.visits()) times.insert(visit.left);
-  // Each is served for two seconds before the next is.
+  // Service takes two seconds each, one after the other.
   EXPECT_GT(*times.rbegin() - *times.begin(), 11 * 2 - 3);
 }
 
@@ -308,7 +308,7 @@ journey = "out"
 count = 12
 group = 3
 )");
-  // The same people, each on his own.
+  // The same avatars, each alone.
   Hall alone = run;
   alone.scenario.sources[0].group = Distribution::fixed(1);
   const auto spread = [](const Hall& of) {
@@ -336,7 +336,7 @@ group = 3
   EXPECT_GT(apart, together * 1.5);
 }
 
-TEST(Simulation, density_maps_drive_where_people_appear) {
+TEST(Simulation, density_maps_decide_where_avatars_enter) {
   const Hall run = read(R"(
 [[density]]
 name = "map"
@@ -368,7 +368,7 @@ count = 60
   EXPECT_TRUE(simulation.set_density("map", std::vector<uint8_t>(200, 1)));
 }
 
-TEST(Simulation, who_wants_the_quickest_exit_goes_around_a_crowded_one) {
+TEST(Simulation, by_quickest_avoids_a_crowded_exit) {
   // All start near the north exit.
   const std::string text = R"(
 [[area]]
@@ -397,7 +397,7 @@ count = 60
   EXPECT_GT(by_south("quickest"), 5);
 }
 
-// The door is shut for ten seconds: nobody leaves before it opens, and all do then.
+// The door is shut for ten seconds: no avatar leaves before it opens, and all leave after that.
 TEST(Simulation, a_shut_door_opens_again) {
   const Hall run = read(R"(
 [[obstacle]]
@@ -419,9 +419,9 @@ count = 30
   for (const Visit& visit : simulation.visits()) EXPECT_GT(visit.left, 10 + 8 / 1.5);
 }
 
-// Both doors are to shut while people stream through: by the default policy soon, and nobody comes
-// through then; one that waits stays open.
-TEST(Simulation, a_door_that_is_to_shut_in_a_stream_tells_when_it_did) {
+// A door is to shut while avatars stream through. By the default policy it shuts soon; one that
+// waits may stay open.
+TEST(Simulation, a_door_that_is_to_shut_in_a_stream_reports_when_it_did) {
   const std::string text = R"(
 [[obstacle]]
 name = "door"
@@ -454,7 +454,7 @@ rate = 3
   }
 }
 
-// Two areas, and those who go from the first to the second, in a world of the text's.
+// Avatars of two classes that go from area "west" to area "east" in the world of the text.
 Simulation across(const std::string& text) {
   auto scenario = parse_scenario(text + R"(
 [[profile]]
@@ -489,8 +489,8 @@ journey = "across"
   return std::move(*simulation);
 }
 
-// Over a wall right across, in a crowd with those who cannot.
-TEST(Simulation, who_flies_goes_over_walls) {
+// Over a wall right across, in one crowd with avatars that cannot fly.
+TEST(Simulation, flyers_cross_walls) {
   Simulation simulation = across(R"(
 [plane]
 floor = [[0, 0], [20, 0], [20, 10], [0, 10]]
@@ -515,7 +515,7 @@ box = [12, 1, 19, 9]
 }
 
 // Over curved hills on foot and along the normal, in one crowd.
-TEST(Simulation, who_climbs_goes_over_nodes) {
+TEST(Simulation, climbers_walk_over_nodes) {
   Simulation simulation = across(R"(
 cell = 0.5
 [builtin]
@@ -556,7 +556,7 @@ box = [46, 2, 62, 62]
   EXPECT_GE(left, 20U);
 }
 
-TEST(Simulation, says_what_cannot_be) {
+TEST(Simulation, names_what_is_wrong) {
   const auto why = [](const std::string& text) {
     const Hall run = read(text);
     Context context;
@@ -565,14 +565,14 @@ TEST(Simulation, says_what_cannot_be) {
   };
   EXPECT_NE(why("[[area]]\nname = \"off\"\nbox = [30, 0, 31, 1]\n[[source]]\nname = \"s\"\narea = "
                 "\"off\"\ncount = 1\n")
-                .find("source 's': nobody of class 'adult' can stand in area 'off'"),
+                .find("source 's': no avatar of class 'adult' can stand in area 'off'"),
             std::string::npos);
   EXPECT_NE(why("[[profile]]\nname = \"p\"\nclass = \"wolf\"\n").find("no class 'wolf'"),
             std::string::npos);
 }
 
-// More than there is room for: the rest waits outside, and comes in when others leave.
-TEST(Simulation, who_finds_no_room_waits_outside) {
+// More avatars than there is room for: the rest waits outside and enters when others leave.
+TEST(Simulation, avatars_without_room_wait_outside) {
   const Hall run = read(R"(
 [[area]]
 name = "cell"
@@ -593,7 +593,7 @@ count = 60
   for (const Visit& visit : simulation.visits()) EXPECT_GE(visit.left, 0) << visit.person;
 }
 
-// In a crowd with targets, too, what was saved goes on to the bit.
+// A crowd with targets that is saved and restored takes the same steps, to the bit.
 TEST(Crowd, targets_are_saved) {
   const Hall run = read("");
   Context context;
@@ -619,7 +619,8 @@ TEST(Crowd, targets_are_saved) {
   EXPECT_GT(arrived, 20U);
 }
 
-// Whose way to a target is cut walks around, and back once it is open; the flows are those of now.
+// Where an obstacle cuts the path to a target, avatars walk around it, and straight again once it
+// is removed: flow fields follow the obstacles.
 TEST(Crowd, targets_are_reached_around_obstacles) {
   const Hall run = read("");
   Context context;
@@ -639,7 +640,7 @@ TEST(Crowd, targets_are_reached_around_obstacles) {
   const auto crate = crowd->add_obstacle(Prism::box({9.5, 0, 3.5}, {10.7, 2, 6}));
   ASSERT_TRUE(crate);
   EXPECT_GT(crowd->distance((*ids)[0], *target), before + 1);
-  // And all of it, for a while.
+  // Then all of the door, for a while.
   const auto door = crowd->add_obstacle(Prism::box({9.9, 0, 5}, {10.3, 2, 7.2}));
   ASSERT_TRUE(door);
   EXPECT_FALSE(std::isfinite(crowd->distance((*ids)[0], *target)));
@@ -648,7 +649,7 @@ TEST(Crowd, targets_are_reached_around_obstacles) {
   ASSERT_TRUE(crowd->remove_obstacle(*door));
   crowd->set_targets(*ids, *target);
   uint64_t arrived = 0;
-  // More than find room there: the last come in when others have made way.
+  // More than find room in the target: the last enter when others have yielded.
   for (int step = 0; step < 1500; ++step) {
     arrived += crowd->step().arrived;
     const CrowdCheck found = crowd->check();
@@ -657,7 +658,7 @@ TEST(Crowd, targets_are_reached_around_obstacles) {
   EXPECT_EQ(arrived, ids->size());
 }
 
-// A column bound for one place walks there; only near it one waits for the other.
+// A column of avatars with one goal walks there; they wait for each other only near it.
 TEST(Crowd, many_with_one_goal_walk) {
   const Hall run = read("");
   Context context;
@@ -673,11 +674,11 @@ TEST(Crowd, many_with_one_goal_walk) {
   crowd->set_goals(*ids, std::vector<Place>(ids->size(), goal));
   double progress = 0;
   for (int step = 0; step < 50; ++step) progress += crowd->step().progress / 50;
-  EXPECT_GT(progress, 0.75);  // 0.8 m behind each other nobody walks at his full speed
+  EXPECT_GT(progress, 0.75);  // At 0.8 m behind each other none has its full speed.
 }
 
-// Who has come to within a step of an area has left by it, not by the first of the list.
-TEST(Simulation, the_exit_told_is_the_one_taken) {
+// An avatar that leaves within a move of an area left by it, not by the first of the list.
+TEST(Simulation, reports_the_exit_that_was_used) {
   const Hall run = read(R"(
 [[area]]
 name = "beside north"
@@ -708,7 +709,7 @@ count = 3
   }
 }
 
-TEST(Simulation, rows_hold_five_a_square_metre_that_do_not_touch) {
+TEST(Simulation, rows_hold_five_avatars_a_square_metre_without_overlap) {
   const Hall run = read(R"(
 [[area]]
 name = "full"
@@ -728,12 +729,12 @@ places = "rows"
   EXPECT_EQ(simulation.crowd().check().overlaps, 0U);
 }
 
-TEST(Simulation, people_walk_at_an_areas_pace_inside_it_alone) {
+TEST(Simulation, the_speed_factor_of_an_area_holds_inside_it_alone) {
   const Hall run = read(R"(
 [[area]]
 name = "stairs"
 box = [8.5, 0, 14, 10]
-pace = 0.5
+speed_factor = 0.5
 [[profile]]
 name = "any"
 speed = 1

@@ -6,16 +6,18 @@
 #include "core/trig.h"
 #include "scenario/simulation_state.h"
 
-// How people come into the crowd: out of sources and out of links.
+// How avatars enter the crowd: from sources and out of links. A random place is drawn for each; the
+// crowd refuses those that overlap, which are drawn again. Time: kMaxRounds draws each a step at
+// most.
 namespace throng {
 namespace {
 
-constexpr int kRounds = 32;      // of drawing places, in a step
-constexpr int kPixels = 16;      // drawn, to find one with ground
-constexpr double kBeside = 0.7;  // Members of a group come in within so much of another [m]
-constexpr double kStorey = 1.5;  // and so much higher or lower. [m]
+constexpr int kMaxRounds = 32;        // of drawing places in a step
+constexpr int kMaxPixelDraws = 16;    // drawn to find one with a floor
+constexpr double kGroupRadius = 0.7;  // [m] Members of a group enter this near to the first,
+constexpr double kGroupHeight = 1.5;  // [m] and at most this much above or below.
 
-// The index of one of some weights that a number in [0, 1) falls to; -1: there are none.
+// The choice that a number in [0, 1) falls to by the weights; -1: there are none.
 int32_t pick(std::span<const Choice> choices, double number) {
   double sum = 0;
   for (const Choice& choice : choices) sum += choice.weight;
@@ -29,22 +31,22 @@ int32_t pick(std::span<const Choice> choices, double number) {
 
 }  // namespace
 
-// Whoever is due by now lines up outside.
-void Simulation::State::call_in() {
-  for (size_t n = 0; n < arrivals.size(); ++n) {
+// Appends the avatars due by now to `pending`.
+void Simulation::State::queue_spawns() {
+  for (size_t n = 0; n < spawn_times.size(); ++n) {
     const Source& source = scenario.sources[n];
-    while (const uint64_t people = arrivals[n].next_due(time())) {
-      const int32_t group = people > 1 ? static_cast<int32_t>(groups.size()) : -1;
-      if (people > 1) groups.emplace_back();
+    while (const uint64_t members = spawn_times[n].next_due(time())) {
+      const int32_t group = members > 1 ? static_cast<int32_t>(groups.size()) : -1;
+      if (members > 1) groups.emplace_back();
       int32_t journey = -1;
       uint64_t first = UINT64_MAX;
-      for (uint64_t k = 0; k < people; ++k) {
-        Coming one;
-        Person& p = one.person;
+      for (uint64_t k = 0; k < members; ++k) {
+        PendingSpawn one;
+        ScenarioAvatar& p = one.avatar;
         one.due = time();
         one.source = static_cast<int32_t>(n);
         one.companion = first;
-        one.nth = called[n]++;
+        one.nth = spawn_counts[n]++;
         p.number = slot_of.size();
         slot_of.push_back(kNoSlot);
         p.profile = pick(source.profiles, unit(p));
@@ -53,17 +55,18 @@ void Simulation::State::call_in() {
         p.group = group;
         if (group >= 0) groups[static_cast<size_t>(group)].push_back(p.number);
         if (k == 0) first = p.number;
-        coming.push_back(one);
+        pending.push_back(one);
       }
     }
   }
 }
 
-Place Simulation::State::random_spot(std::span<const int32_t> areas, int32_t density, Person& p) {
+Place Simulation::State::random_place(std::span<const int32_t> areas, int32_t density,
+                                      ScenarioAvatar& p) {
   const int32_t avatar_class = class_of(p);
   if (density >= 0) {
     const DensityMap& map = scenario.densities[static_cast<size_t>(density)];
-    for (int k = 0; k < kPixels; ++k) {
+    for (int k = 0; k < kMaxPixelDraws; ++k) {
       const double which = unit(p), along_x = unit(p), along_z = unit(p);
       const auto [x, z] = densities[static_cast<size_t>(density)].point(which, along_x, along_z);
       const Place place = world.find_place(avatar_class, {x, (map.low + map.high) / 2, z},
@@ -72,7 +75,7 @@ Place Simulation::State::random_spot(std::span<const int32_t> areas, int32_t den
     }
     return {};
   }
-  // As likely in each area as it has places.
+  // Each area with a probability proportional to its places.
   size_t count = 0;
   for (const int32_t a : areas) {
     count += places[{area_target[static_cast<size_t>(a)], avatar_class}].size();
@@ -86,9 +89,9 @@ Place Simulation::State::random_spot(std::span<const int32_t> areas, int32_t den
   return {};
 }
 
-// The n-th of as many places as the source has people: rows across the shorter side of the box
-// around its area, each place moved by chance as far as two bodies leave room.
-Place Simulation::State::place_in_rows(const Source& source, uint64_t nth, Person& p) {
+// The n-th of `count` places in rows across the shorter side of the box around the source's area,
+// each moved at random as far as two bodies leave room.
+Place Simulation::State::place_in_rows(const Source& source, uint64_t nth, ScenarioAvatar& p) {
   const ScenarioArea& area = scenario.areas[static_cast<size_t>(source.areas[0])];
   double x0 = INFINITY, x1 = -INFINITY, z0 = INFINITY, z1 = -INFINITY;
   for (const Prism& prism : area.prisms) {
@@ -104,7 +107,7 @@ Place Simulation::State::place_in_rows(const Source& source, uint64_t nth, Perso
   const auto count = static_cast<double>(source.count);
   const double across = std::max(1.0, std::round(width / std::sqrt(length * width / count)));
   const double rows = std::ceil(count / across);
-  const double gap_along = length / rows, gap_across = width / across;
+  const double spacing_along = length / rows, spacing_across = width / across;
   const auto n = static_cast<double>(nth);
   const double row = std::floor(n / across), column = n - row * across;
   const int32_t kind = class_of(p);
@@ -113,48 +116,49 @@ Place Simulation::State::place_in_rows(const Source& source, uint64_t nth, Perso
     const Profile& profile = scenario.profiles[static_cast<size_t>(p.profile)];
     if (profile.radius.a > 0) radius = std::max(profile.radius.a, profile.radius.b);
   }
-  const double spare = std::max(0.0, std::min(gap_along, gap_across) - 2 * radius - 0.004);
-  const double u = (row + 0.5) * gap_along + spare * (unit(p) - 0.5);
-  const double v = (column + 0.5) * gap_across + spare * (unit(p) - 0.5);
+  const double spare = std::max(0.0, std::min(spacing_along, spacing_across) - 2 * radius - 0.004);
+  const double u = (row + 0.5) * spacing_along + spare * (unit(p) - 0.5);
+  const double v = (column + 0.5) * spacing_across + spare * (unit(p) - 0.5);
   const Prism& first = area.prisms.front();
   const double x = x0 + (along_x ? u : v), z = z0 + (along_x ? v : u);
   return world.find_place(kind, {x, (first.low + first.high) / 2, z}, (first.high - first.low) / 2);
 }
 
-Place Simulation::State::place_for(Coming& one) {
-  Person& p = one.person;
+Place Simulation::State::choose_place(PendingSpawn& one) {
+  ScenarioAvatar& p = one.avatar;
   if (one.link >= 0) {
     const int32_t to = scenario.links[static_cast<size_t>(one.link)].to;
-    return random_spot({&to, 1}, -1, p);
+    return random_place({&to, 1}, -1, p);
   }
-  const Person* companion = one.companion == UINT64_MAX ? nullptr : person(one.companion);
+  const ScenarioAvatar* companion =
+      one.companion == UINT64_MAX ? nullptr : find_avatar(one.companion);
   if (companion != nullptr) {
     if (const auto beside = crowd.read(companion->id)) {
-      const double turns = unit(p), size = (0.3 + unit(p)) * kBeside;
+      const double turns = unit(p), size = (0.3 + unit(p)) * kGroupRadius;
       const Vec3d& at = beside->position;
       const Place place = world.find_place(
           class_of(p), {at.x + size * cos_turns(turns), at.y, at.z + size * sin_turns(turns)},
-          kStorey);
+          kGroupHeight);
       if (place) return place;
     }
   }
   const Source& source = scenario.sources[static_cast<size_t>(one.source)];
   if (source.in_rows) return place_in_rows(source, one.nth, p);
-  return random_spot(source.areas, source.density, p);
+  return random_place(source.areas, source.density, p);
 }
 
-// Whoever finds room comes in, the first first; the others try again in the next step.
-Result<void> Simulation::State::let_in(std::deque<Coming>& queue, Context& context) {
-  size_t tried_in_vain = 0;
-  for (int round = 0; round < kRounds; ++round) {
+// Adds avatars that find room to the crowd, in order; the others try again in the next step.
+Result<void> Simulation::State::spawn_due(std::deque<PendingSpawn>& queue, Context& context) {
+  size_t failed_rounds = 0;
+  for (int round = 0; round < kMaxRounds; ++round) {
     std::vector<AvatarSpawn> spawns;
-    std::vector<size_t> who;
+    std::vector<size_t> queue_index;
     for (size_t i = 0; i < queue.size(); ++i) {
-      Coming& one = queue[i];
+      PendingSpawn& one = queue[i];
       if (one.due > time()) continue;
-      const Place place = place_for(one);
+      const Place place = choose_place(one);
       if (!place) continue;
-      Person& p = one.person;
+      ScenarioAvatar& p = one.avatar;
       double speed = p.speed, radius = 0;
       if (p.profile >= 0) {
         const Profile& profile = scenario.profiles[static_cast<size_t>(p.profile)];
@@ -162,35 +166,35 @@ Result<void> Simulation::State::let_in(std::deque<Coming>& queue, Context& conte
         radius = draw(profile.radius, scenario.seed, p.number, 2);
       }
       spawns.push_back({place, class_of(p), radius, speed});
-      who.push_back(i);
+      queue_index.push_back(i);
     }
     if (spawns.empty()) break;
     const auto ids = crowd.add(spawns, context);
     if (!ids) return ids.error();
     std::vector<bool> is_in(queue.size(), false);
-    size_t came = 0;
+    size_t entered_now = 0;
     for (size_t k = 0; k < ids->size(); ++k) {
       if (!(*ids)[k]) continue;
-      Coming& one = queue[who[k]];
+      PendingSpawn& one = queue[queue_index[k]];
       const AvatarClass& kind = kinds[static_cast<size_t>(spawns[k].avatar_class)];
-      one.person.speed = spawns[k].speed > 0 ? spawns[k].speed : kind.speed;
-      is_in[who[k]] = true;
-      ++came;
+      one.avatar.speed = spawns[k].speed > 0 ? spawns[k].speed : kind.speed;
+      is_in[queue_index[k]] = true;
+      ++entered_now;
       enter(one, (*ids)[k]);
     }
     size_t i = 0;
-    std::erase_if(queue, [&](const Coming&) { return is_in[i++]; });
-    tried_in_vain = came == 0 ? tried_in_vain + 1 : 0;
-    if (tried_in_vain == 4 || came == spawns.size()) break;
+    std::erase_if(queue, [&](const PendingSpawn&) { return is_in[i++]; });
+    failed_rounds = entered_now == 0 ? failed_rounds + 1 : 0;
+    if (failed_rounds == 4 || entered_now == spawns.size()) break;
   }
   return {};
 }
 
-void Simulation::State::enter(const Coming& one, AvatarId id) {
+void Simulation::State::enter(const PendingSpawn& one, AvatarId id) {
   const uint32_t slot = id.slot1 - 1;
-  if (slot >= persons.size()) persons.resize(slot + 1);
-  Person& p = persons[slot];
-  p = one.person;
+  if (slot >= avatars.size()) avatars.resize(slot + 1);
+  ScenarioAvatar& p = avatars[slot];
+  p = one.avatar;
   p.id = id;
   slot_of[p.number] = slot;
   if (one.link >= 0) {

@@ -61,7 +61,7 @@ void add_search_memory(CLI::App& command, uint64_t& bytes);
 /// Index of the class that --class names. Fails with kNotFound and the names to choose from.
 Result<int32_t> class_named(const World& world, const std::string& name);
 
-/// A line for what tells of level tiles only, if the class also climbs or drops; else nothing.
+/// A line for results of level tiles alone, if the class also climbs or drops; else nothing.
 std::string note_of_nodes(const AvatarClass& avatar);
 
 /// "nothing", "too low", ...
@@ -82,22 +82,22 @@ std::string human_bytes(uint64_t bytes);
 void add_atlas(CLI::App& parser, Session& session);
 void add_bake(CLI::App& parser, Session& session);
 void add_caacd(CLI::App& parser, Session& session);
+void add_components(CLI::App& parser, Session& session);
 void add_export(CLI::App& parser, Session& session);
 void add_film(CLI::App& parser, Session& session);
+void add_generate(CLI::App& parser, Session& session);
 void add_info(CLI::App& parser, Session& session);
-void add_nodes(CLI::App& parser, Session& session);
 void add_path(CLI::App& parser, Session& session);
 void add_picture(CLI::App& parser, Session& session);
-void add_place(CLI::App& parser, Session& session);
-void add_region(CLI::App& parser, Session& session);
+void add_query(CLI::App& parser, Session& session);
 void add_replay(CLI::App& parser, Session& session);
 void add_report(CLI::App& parser, Session& session);
 void add_run(CLI::App& parser, Session& session);
 void add_slices(CLI::App& parser, Session& session);
+void add_surface(CLI::App& parser, Session& session);
 void add_validate(CLI::App& parser, Session& session);
 void add_verify(CLI::App& parser, Session& session);
 void add_view(CLI::App& parser, Session& session);
-void add_world(CLI::App& parser, Session& session);
 void add_bench(CLI::App& parser, Session& session);
 
 }  // namespace throng::app

@@ -58,7 +58,7 @@ def everywhere(options):
     for name, model, words in all_worlds.worlds():
         folder = WORK / "nodes.throng"
         run = run_json(PROGRAM, "bake", model, *words, "-o", folder, "--cell", 0.1, "--nodes", "--threads", options.threads, "--fresh", "--json")
-        found = run_json(PROGRAM, "nodes", folder, "--json")
+        found = run_json(PROGRAM, "surface", folder, "--json")
         info = run_json(PROGRAM, "info", folder, "--json")
         shutil.rmtree(folder)
         low, high = info["bounds_min"], info["bounds_max"]
@@ -102,7 +102,7 @@ def main():
         runs = [bake(model, cell, size, together, options.threads) for _ in range(options.runs)]
         folder = runs[0][0]
         seconds = median([run["seconds_nodes"] for _, run in runs])
-        found = run_json(PROGRAM, "nodes", folder, "--json")
+        found = run_json(PROGRAM, "surface", folder, "--json")
         proof = run_json(PROGRAM, "verify", folder, "--source", model, "--nodes", "--samples", options.samples, "--json")
         shutil.rmtree(folder)
         faults = sum(c[key] for c in proof["classes"] for key in ("entered", "unsupported", "steeper", "lower", "one_way"))

@@ -141,7 +141,7 @@ class ProgramWays(ProgramCase):
             self.assertEqual(path.read_bytes(), content, path)
 
     def test_ways_are_gone_and_those_through_another_model_found_out(self):
-        done = self.run_throng("world", "garage", "--levels", 2, "-o", "ways.glb")
+        done = self.run_throng("generate", "garage", "--levels", 2, "-o", "ways.glb")
         self.assertEqual(done.returncode, 0, done.stderr)
         ways = ("verify", self.world, "--paths", "--samples", 40, "--json", "--source")
         done = self.run_throng(*ways, "ways.glb")
@@ -159,7 +159,7 @@ class ProgramWays(ProgramCase):
 
     def test_regions_are_told_from_the_bakes_files_or_made_where_there_are_none(self):
         def region(world):
-            done = self.run_throng("region", world, "--at", "14,0,8", "--json")
+            done = self.run_throng("components", world, "--at", "14,0,8", "--json")
             self.assertEqual(done.returncode, 0, done.stderr)
             return json.loads(done.stdout)
         copy = self.path / "copy.throng"

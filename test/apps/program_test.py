@@ -49,20 +49,20 @@ class Program(ProgramCase):
         self.assert_refused(self.run_throng(*ends, "--block", "1,2,3,4,5"), "--block: wants X,Y,Z,X,Y,Z, and got 1,2,3,4,5;")
         self.assert_refused(self.run_throng(*ends, "--area-cost", "7=abc"), "--area-cost: wants KIND=COST, not 7=abc;")
         self.assert_refused(self.run_throng(*ends, "--from", "1,2,3"), "--from: wants X,Y,Z, once, and got 14,0,8,1,2,3;")
-        self.assert_refused(self.run_throng("place", self.world, "--at", "1,2"), "--at: wants X,Y,Z, and got 1,2;")
+        self.assert_refused(self.run_throng("query", self.world, "--at", "1,2"), "--at: wants X,Y,Z, and got 1,2;")
         self.assert_refused(self.run_throng("bake", "builtin:cube", "-o", "x", "--cell", "wide"), "--cell: wants a number, not wide;")
         self.assert_refused(self.run_throng("bake", "builtin:cube", "-o", "x", "--scale", "0"), "--scale: 0 is not above 0;")
-        self.assert_refused(self.run_throng("region", self.world, "--threads", "few"), "--threads: few is no number;")
-        self.assert_refused(self.run_throng("region", self.world, "--limit", "-3"), "--limit: -3 is below 0;")
+        self.assert_refused(self.run_throng("components", self.world, "--threads", "few"), "--threads: few is no number;")
+        self.assert_refused(self.run_throng("components", self.world, "--limit", "-3"), "--limit: -3 is below 0;")
 
     def test_what_lies_outside_the_world_is_told_by_whoever_is_asked(self):
-        for command in (["region", self.world, "--at", "5000,0,1"], ["place", self.world, "--at", "5000,0,8"],
+        for command in (["components", self.world, "--at", "5000,0,1"], ["query", self.world, "--at", "5000,0,8"],
                         ["path", self.world, "--from", "5000,0,8", "--to", "20,0,8"]):
             self.assert_refused(self.run_throng(*command), f"{command[2]} (5000.000", "lies outside the world, which reaches from")
-        inside = self.run_throng("region", self.world, "--at", "14,300,8")
+        inside = self.run_throng("components", self.world, "--at", "14,300,8")
         self.assertEqual(inside.returncode, 0, inside.stderr)
-        self.assertEqual(self.run_throng("place", self.world, "--at", "14,300,8").returncode, 1)
-        self.assertEqual(self.run_throng("place", self.world, "--at", "-1,0,8").returncode, 0)  # There is one within 5 m.
+        self.assertEqual(self.run_throng("query", self.world, "--at", "14,300,8").returncode, 1)
+        self.assertEqual(self.run_throng("query", self.world, "--at", "-1,0,8").returncode, 0)  # There is one within 5 m.
 
     def test_bad_input_is_one_sentence_and_two(self):
         self.assert_refused(self.run_throng("bake", "missing.obj", "-o", "x.throng", "--json"), "missing.obj")
@@ -82,8 +82,8 @@ class Program(ProgramCase):
         self.assert_refused(self.run_throng(*ends, "--reach", "inf"), "--reach", "finite")
         self.assert_refused(self.run_throng(*ends, "--reach", "far"), "--reach", "no number")
         self.assert_refused(self.run_throng(*ends, "--slope-cost", "-NaN"), "--slope-cost", "finite")
-        self.assert_refused(self.run_throng("place", self.world, "--at", "14,0,8", "--toward", "nan,0"), "--toward", "finite")
-        self.assert_refused(self.run_throng("region", self.world, "--at", "nan,0,8"), "--at", "finite")
+        self.assert_refused(self.run_throng("query", self.world, "--at", "14,0,8", "--toward", "nan,0"), "--toward", "finite")
+        self.assert_refused(self.run_throng("components", self.world, "--at", "nan,0,8"), "--at", "finite")
         self.assert_refused(self.run_throng("picture", self.world, "-o", "p.png", "--area", "nan,0,1,1"), "--area", "finite")
         self.assertEqual(list(self.path.iterdir()), [])
 
@@ -112,12 +112,12 @@ class Program(ProgramCase):
         self.assert_refused(self.run_throng("path", "w.throng", *ends), zone.name)
         self.assert_refused(self.run_throng("path", "w.throng", *ends, "--block", "16,0,0,17,2,9"), zone.name)
         self.assert_refused(self.run_throng("picture", "w.throng", "-o", "p.png"), zone.name)
-        self.assert_refused(self.run_throng("place", "w.throng", "--at", "14,0,8"), zone.name)
+        self.assert_refused(self.run_throng("query", "w.throng", "--at", "14,0,8"), zone.name)
 
     def test_a_place_asks_only_for_the_zones_around_it(self):
         done = self.run_throng("bake", "builtin:garage", "--cell", "0.2", "--zone", "12.8", "-o", "w.throng")
         self.assertEqual(done.returncode, 0, done.stderr)
-        near = ("place", "w.throng", "--at", "14,0,8", "--radius", "2", "--json")
+        near = ("query", "w.throng", "--at", "14,0,8", "--radius", "2", "--json")
         before = self.run_throng(*near)
         self.assertEqual(before.returncode, 0, before.stderr)
         zones = {tuple(map(int, p.stem.split("_")[1:])): p for p in (self.path / "w.throng").glob("zone_*.thz")}
@@ -142,7 +142,7 @@ class Program(ProgramCase):
 
     def test_landscapes_are_written_curved_read_back_and_refused_when_damaged(self):
         hills = self.path / "hills.patches.json"
-        self.assertEqual(self.run_throng("world", "landscape", "--size", 64, "-o", hills).returncode, 0)
+        self.assertEqual(self.run_throng("generate", "landscape", "--size", 64, "-o", hills).returncode, 0)
         baked = []
         for source in ("builtin:landscape,size=64", hills):
             done = self.run_throng("bake", source, "-o", "x.throng", "--cell", 0.5, "--json")
@@ -150,7 +150,7 @@ class Program(ProgramCase):
             self.assertGreater(json.loads(done.stdout)["patches"], 30)
             baked.append([(p.name, p.read_bytes()) for p in sorted((self.path / "x.throng").iterdir())])
         self.assertEqual(baked[0], baked[1])
-        self.assert_refused(self.run_throng("world", "cube", "-o", "cube.patches.json"), "no patches", ".glb")
+        self.assert_refused(self.run_throng("generate", "cube", "-o", "cube.patches.json"), "no patches", ".glb")
         hills.write_text(hills.read_text().replace("[1,0]", "[1,1]", 1))
         self.assert_refused(self.run_throng("bake", hills, "-o", "y.throng"), "hills.patches.json", "edge")
         for name, content in (("a.zonel", b"\x03ZONE\x02"), ("a.bpt", b"2\n3 3\n1 2"), ("a.patches.json", b"{")):
@@ -596,12 +596,12 @@ class Program(ProgramCase):
             zone.write_bytes(content)
             self.assert_refused(self.run_throng("info", copy, "--check"), zone.name)
             if kind != ".thl":  # Nobody reads the links but a bake.
-                at = ("region", copy, "--at", "14,0,8")
+                at = ("components", copy, "--at", "14,0,8")
                 self.assert_refused(self.run_throng(*at), zone.name, "bake the world again")
             shutil.rmtree(copy)
 
     def test_a_source_of_another_size_or_axis_than_the_world_is_noted(self):
-        done = self.run_throng("world", "garage", "--levels", 2, "-o", "garage.glb")
+        done = self.run_throng("generate", "garage", "--levels", 2, "-o", "garage.glb")
         self.assertEqual(done.returncode, 0, done.stderr)
         for options, is_elsewhere in (((), False), (("--scale", 0.1), True), (("--up", "z"), True)):
             done = self.run_throng("verify", self.world, "--source", "garage.glb", "--samples", 10, "--class", "adult", *options)

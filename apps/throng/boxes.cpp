@@ -11,7 +11,7 @@
 namespace throng::app {
 
 void add_blocks(CLI::App* command, std::vector<double>& blocks) {
-  command->add_option("--block", blocks, "A box that stands there now, from corner to corner [m]")
+  command->add_option("--block", blocks, "A box-shaped obstacle, by two opposite corners [m]")
       ->delimiter(',')
       ->type_size(6)
       ->expected(1, 1 << 16)
@@ -26,8 +26,8 @@ Result<std::vector<Prism>> boxes_of(const std::vector<double>& blocks) {
     if (a.x == b.x || a.y == b.y || a.z == b.z) {
       return Error{
           Errc::kBadInput,
-          fmt::format("--block: ({}) and ({}) are no opposite corners of a box, which differ "
-                      "in x, y and z",
+          fmt::format("--block: ({}) and ({}) are no opposite corners of a box: they must "
+                      "differ in x, y and z",
                       where(a), where(b))};
     }
     boxes.push_back(Prism::box({std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},

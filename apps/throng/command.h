@@ -17,7 +17,7 @@
 #include "throng/steering_model.h"
 #include "throng/world.h"
 
-/// What every command of the program shares. One file a command: it adds its options to the parser
+/// Shared by all commands of the program. One file per command: it adds its options to the parser
 /// and a callback that sets the exit code.
 namespace throng::app {
 
@@ -25,7 +25,7 @@ enum ExitCode : int { kDone = 0, kAnswerIsNo = 1, kBadUsage = 2, kInterrupted = 
 
 using Json = nlohmann::ordered_json;
 
-/// What one run of the program knows. There is one; commands get a reference to it.
+/// The state of one run of the program. There is one; commands get a reference to it.
 struct Session {
   bool json = false;  ///< --json: one object on standard output, all else on standard error.
   int exit_code = kDone;
@@ -49,7 +49,7 @@ int fail(const Error& error);
 void note(const std::string& sentence);
 
 /// A subcommand with --json and an example that `--help` shows and that works as printed: one
-/// command a line, run one after the other in an empty folder by scripts/test_examples.
+/// command per line, run in order in an empty folder by scripts/test_examples.
 CLI::App* add_command(CLI::App& parser, Session& session, const std::string& name,
                       const std::string& summary, const std::string& example);
 
@@ -73,7 +73,7 @@ const char* word_for(LinkKind kind);
 Json numbers(const Vec3d& p);
 std::string where(const Vec3d& p);
 
-/// Most memory that this process has held so far. [bytes]
+/// Peak memory of this process. [bytes]
 uint64_t peak_memory();
 
 /// "1.2 MB", "35 kB".

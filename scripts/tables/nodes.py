@@ -110,7 +110,7 @@ def main():
                      f"{found['nodes'] / area * 1e6:.0f}" if area else "", human(found["bytes"]),
                      f"{seconds:.2f}", f"{seconds * 1000 / found['zones']:.0f}",
                      f"{seconds / max_seconds:.2f}", f"{found['bytes'] / max_bytes:.2f}",
-                     f"{sum(c['leaps'] for c in proof['classes'])}", faults))
+                     f"{sum(c['links_over_holes'] for c in proof['classes'])}", faults))
     text = (f"Machine: {machine()}. Six classes, two of which climb; {options.threads} threads; {options.samples} places a "
             f"class; median of {options.runs} runs. The last ratios: six classes together / the most expensive class alone.\n\n")
     text += table(["world", "cell [m]", "node size [m]", "patches", "nodes", "arcs", "bytes a node", "nodes a km2", "bytes",

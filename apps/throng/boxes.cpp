@@ -24,11 +24,10 @@ Result<std::vector<Prism>> boxes_of(const std::vector<double>& blocks) {
     const Vec3d a{blocks[i], blocks[i + 1], blocks[i + 2]};
     const Vec3d b{blocks[i + 3], blocks[i + 4], blocks[i + 5]};
     if (a.x == b.x || a.y == b.y || a.z == b.z) {
-      return Error{
-          Errc::kBadInput,
-          fmt::format("--block: ({}) and ({}) are no opposite corners of a box: they must "
-                      "differ in x, y and z",
-                      where(a), where(b))};
+      return Error{Errc::kBadInput,
+                   fmt::format("--block: ({}) and ({}) are no opposite corners of a box: they must "
+                               "differ in x, y and z",
+                               where(a), where(b))};
     }
     boxes.push_back(Prism::box({std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
                                {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}));

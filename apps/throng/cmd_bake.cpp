@@ -50,17 +50,19 @@ bool read_point(const Json& entry, const char* key, Vec3d& out) {
   return true;
 }
 
-// Off-mesh links from a file: [{"from": [x, y, z], "to": [x, y, z], "class": NAME, "both_ways": false}].
+// Off-mesh links from a file: [{"from": [x, y, z], "to": [x, y, z], "class": NAME, "both_ways":
+// false}].
 Result<std::vector<NodeOffMeshLink>> read_off_mesh_links(const std::string& name,
                                                          const std::vector<AvatarClass>& classes) {
   std::ifstream file(name);
   if (!file) return Error{Errc::kBadFile, name + ": cannot be read"};
   const Json json = Json::parse(file, nullptr, false);
   if (!json.is_array()) {
-    return Error{Errc::kBadFile,
-                 name +
-                     ": is no list of off-mesh links in JSON, as [{\"from\": [0, 0, 0], \"to\": [3, 0, 0], "
-                     "\"class\": \"adult\", \"both_ways\": true}]"};
+    return Error{
+        Errc::kBadFile,
+        name +
+            ": is no list of off-mesh links in JSON, as [{\"from\": [0, 0, 0], \"to\": [3, 0, 0], "
+            "\"class\": \"adult\", \"both_ways\": true}]"};
   }
   std::vector<NodeOffMeshLink> links;
   for (const Json& entry : json) {
@@ -156,7 +158,8 @@ std::string bake_text(const BakeOptions& options, const Scene& scene, const Bake
     text += fmt::format(
         "  no class can stand anywhere: check the unit (--scale), the up axis (--up) and "
         "the classes (--classes){}\n",
-        options.config.one_sided ? ", and whether all triangles are wound backwards (--one-sided)" : "");
+        options.config.one_sided ? ", and whether all triangles are wound backwards (--one-sided)"
+                                 : "");
   }
   if (report.air_zones > 0) {
     text += fmt::format("  air over {} zones ({} reused), {}, in {:.2f} s of the above\n",
@@ -260,8 +263,9 @@ void add_bake(CLI::App& parser, Session& session) {
   command->add_option("--cell", config.cell, "Side of a cell [m]")->capture_default_str();
   command->add_flag("--fly", options->fly, "Add the class flyer, an adult with wings");
   command
-      ->add_option("--air", config.air,
-                   "Side of a voxel of the air: 1, 2, 4, 8 or 16 cells; 0: none unless a class flies [m]")
+      ->add_option(
+          "--air", config.air,
+          "Side of a voxel of the air: 1, 2, 4, 8 or 16 cells; 0: none unless a class flies [m]")
       ->capture_default_str();
   command->add_option("--resolution", config.resolution, "Headroom that may be lost [m]")
       ->capture_default_str();

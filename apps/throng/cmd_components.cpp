@@ -141,7 +141,8 @@ void add_components(CLI::App& parser, Session& session) {
   command->add_option("--threads", options->threads, "Threads, 0 for all cores")
       ->check(between(0, 1024))
       ->capture_default_str();
-  command->callback([&session, options] { session.exit_code = print_components(session, *options); });
+  command->callback(
+      [&session, options] { session.exit_code = print_components(session, *options); });
 }
 
 }  // namespace throng::app

@@ -77,10 +77,11 @@ int generate_world(const Session& session, const GenerateOptions& options) {
 }  // namespace
 
 void add_generate(CLI::App& parser, Session& session) {
-  CLI::App* command = add_command(parser, session, "generate", "Write a built-in world as a GLB file",
-                                  "throng generate --list\n"
-                                  "throng generate garage --size 120 --levels 4 -o garage.glb\n"
-                                  "throng generate landscape --seed 3 -o hills.patches.json");
+  CLI::App* command =
+      add_command(parser, session, "generate", "Write a built-in world as a GLB file",
+                  "throng generate --list\n"
+                  "throng generate garage --size 120 --levels 4 -o garage.glb\n"
+                  "throng generate landscape --seed 3 -o hills.patches.json");
   const auto options = std::make_shared<GenerateOptions>();
   BuiltinWorldConfig& config = options->config;
   config.name.clear();
@@ -104,9 +105,9 @@ void add_generate(CLI::App& parser, Session& session) {
     if (options->list) {
       session.exit_code = list_worlds(session);
     } else if (options->config.name.empty() || options->output.empty()) {
-      session.exit_code =
-          fail({Errc::kBadConfig,
-                "generate: name the world and the file: throng generate NAME -o FILE.glb, or --list"});
+      session.exit_code = fail(
+          {Errc::kBadConfig,
+           "generate: name the world and the file: throng generate NAME -o FILE.glb, or --list"});
     } else {
       session.exit_code = generate_world(session, *options);
     }

@@ -234,8 +234,8 @@ std::string flight_text(const PathOptions& options, const FlightPath& path, cons
            text_for(options, path.spent);
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d& nearest = path.points.back();
-    text += fmt::format("  gets to ({}), {:.3f} m from there; blocked by: {}\n",
-                        where(nearest), length(to - nearest), app::word_for(path.obstacle));
+    text += fmt::format("  gets to ({}), {:.3f} m from there; blocked by: {}\n", where(nearest),
+                        length(to - nearest), app::word_for(path.obstacle));
   }
   for (size_t i = 0; i < path.points.size(); ++i) {
     text += fmt::format("  {}{}\n", where(path.points[i]),
@@ -348,8 +348,8 @@ std::string node_path_text(const PathOptions& options, const NodePath& path, con
            text_for(options, path.spent);
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d nearest = path.points.back().place.feet;
-    text += fmt::format("  gets to ({}), {:.3f} m from there; blocked by: {}\n",
-                        where(nearest), length(nearest - to.feet), app::word_for(path.obstacle));
+    text += fmt::format("  gets to ({}), {:.3f} m from there; blocked by: {}\n", where(nearest),
+                        length(nearest - to.feet), app::word_for(path.obstacle));
   }
   size_t link = 0;
   for (size_t i = 0; i < path.points.size(); ++i) {
@@ -370,26 +370,26 @@ std::string node_path_text(const PathOptions& options, const NodePath& path, con
 constexpr double kMaxOffset = 0.01;  // of an end in the plane; larger ones are printed [m]
 
 int find_over_nodes(Session& session, const PathOptions& options, const World& world,
-                  int32_t avatar_class) {
+                    int32_t avatar_class) {
   const auto from_position = position_of(world, options, options.from, "--from");
   if (!from_position) return fail(from_position.error());
   const auto to_position = position_of(world, options, options.to, "--to");
   if (!to_position) return fail(to_position.error());
   const Result<Nodes> nodes = Nodes::open(options.world);
   if (!nodes) return fail(nodes.error());
-  auto finder =
-      NodePathFinder::make(*nodes,
-                           {.avatar_class = avatar_class,
-                            .slope_cost = options.slope_cost,
-                            .overlay = false,  // One query does not repay its time.
-                            .workers = options.threads},
-                           session.context);
+  auto finder = NodePathFinder::make(*nodes,
+                                     {.avatar_class = avatar_class,
+                                      .slope_cost = options.slope_cost,
+                                      .overlay = false,  // One query does not repay its time.
+                                      .workers = options.threads},
+                                     session.context);
   if (!finder) return fail(finder.error());
   if (auto ok = add_boxes(options, *finder); !ok) return fail(ok.error());
   // A class that only walks: the ground above or below; if there is none, the nearest place.
   const bool climbs = goes_over_nodes(world.summary().classes[static_cast<size_t>(avatar_class)]);
   const auto find_place = [&](const Vec3d& position) {
-    const Place ground = climbs ? Place{} : world.find_place(avatar_class, position, options.tolerance);
+    const Place ground =
+        climbs ? Place{} : world.find_place(avatar_class, position, options.tolerance);
     return finder->find_place(ground ? ground.position : position, options.tolerance);
   };
   const NodePlace from = place_at(*from_position);
@@ -433,7 +433,8 @@ Result<LiveGround> live_ground(const World& world, const PathOptions& options,
     if (!(kind >= 0 && kind <= 255 && kind == std::floor(kind))) {
       return Error{
           Errc::kBadConfig,
-          fmt::format("--area-cost: {} is no kind of ground; kinds are whole numbers from 0 to 255", kind)};
+          fmt::format("--area-cost: {} is no kind of ground; kinds are whole numbers from 0 to 255",
+                      kind)};
     }
     if (auto ok = ground->set_area_cost(static_cast<uint8_t>(kind), options.area_costs[i + 1]);
         !ok) {
@@ -443,8 +444,8 @@ Result<LiveGround> live_ground(const World& world, const PathOptions& options,
   for (size_t i = 0; i < options.off_mesh_links.size(); i += 6) {
     OffMeshLink link;
     for (Place* end : {&link.from, &link.to}) {
-      const auto at = options.off_mesh_links.begin() +
-                      static_cast<ptrdiff_t>(i + (end == &link.to ? 3 : 0));
+      const auto at =
+          options.off_mesh_links.begin() + static_cast<ptrdiff_t>(i + (end == &link.to ? 3 : 0));
       auto place = place_of(world, options, avatar_class, {at, at + 3}, "--off-mesh-link");
       if (!place) return place.error();
       *end = *place;
@@ -512,9 +513,8 @@ int path(Session& session, const PathOptions& options) {
     if (!ground) return fail(ground.error());
     for (const auto& [place, option] : {std::pair{*from, "--from"}, std::pair{*to, "--to"}}) {
       if (ground->is_free(place)) continue;
-      return fail(
-          bad_end(options, place.position, option,
-                  "is blocked: a --block stands there, or its ground is closed"));
+      return fail(bad_end(options, place.position, option,
+                          "is blocked: a --block stands there, or its ground is closed"));
     }
     timed([&] { ground->find(*from, *to, found, budget); });
   }
@@ -572,8 +572,8 @@ void add_path(CLI::App& parser, Session& session) {
   add_blocks(command, options->blocks);
   add_list("--off-mesh-link", options->off_mesh_links,
            "A link from one place to another and back, given by hand [m]", ',', 6, "X,Y,Z,X,Y,Z");
-  add_list("--area-cost", options->area_costs,
-           "Cost of a metre on ground of a kind; inf closes it", '=', 2, "KIND=COST");
+  add_list("--area-cost", options->area_costs, "Cost of a metre on ground of a kind; inf closes it",
+           '=', 2, "KIND=COST");
   command
       ->add_option("--slope-cost", options->slope_cost,
                    "Additional cost of a metre per metre of rise")

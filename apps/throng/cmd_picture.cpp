@@ -94,9 +94,10 @@ int picture(Session& session, PictureOptions& options) {
     return draw_scene_picture(session, *world, options.scene, options.output);
   }
   if (options.scene.needs_camera()) {
-    return fail({Errc::kBadConfig,
-                 "--atlas, --crowd, --height, --source and --view-angle draw a view from an eye: add "
-                 "--camera X,Y,Z,TX,TY,TZ"});
+    return fail(
+        {Errc::kBadConfig,
+         "--atlas, --crowd, --height, --source and --view-angle draw a view from an eye: add "
+         "--camera X,Y,Z,TX,TY,TZ"});
   }
   std::vector<PictureAvatar> avatars;
   if (!options.avatars.empty()) {

@@ -14,7 +14,8 @@
 #include "throng/ground_query.h"
 #include "throng/world.h"
 
-// throng query: the nearest place of a class to a position, its wall, a ray from it, places near it.
+// throng query: the nearest place of a class to a position, its wall, a ray from it, places near
+// it.
 namespace throng::app {
 namespace {
 
@@ -96,10 +97,10 @@ int query_place(Session& session, const QueryOptions& options) {
   json["place"] = numbers(found.position);
   json["distance"] = length(found.position - at);
   json["area"] = area;
-  std::string text = fmt::format(
-      "{} can stand at ({}), {:.3f} m away\n  {:.2f} m2 connected to it within {} m\n",
-      options.avatar_class, where(found.position), length(found.position - at), area,
-      options.radius);
+  std::string text =
+      fmt::format("{} can stand at ({}), {:.3f} m away\n  {:.2f} m2 connected to it within {} m\n",
+                  options.avatar_class, where(found.position), length(found.position - at), area,
+                  options.radius);
   describe_wall(*query, found, options.radius, json, text);
   if (!options.toward.empty()) describe_ray(*query, found, options.toward, json, text);
   Json random = Json::array();

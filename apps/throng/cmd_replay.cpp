@@ -259,8 +259,7 @@ void add_replay(CLI::App& parser, Session& session) {
   command->add_option("--class", options->avatar_class,
                       "Class of the walkable area in --sqlite (the recording's first)");
   command->add_option("--at", options->at, "Print the positions at this time [s]");
-  command->add_flag("--check", options->check,
-                    "Run it again and name the first step that differs");
+  command->add_flag("--check", options->check, "Run it again and name the first step that differs");
   command->add_option("--world", options->world, "World folder, if it is not where it was")
       ->type_name("WORLD");
   command->add_option("--threads", options->workers, "Threads of --check, 0 for all cores");

@@ -266,7 +266,9 @@ void add_run(CLI::App& parser, Session& session) {
       ->capture_default_str();
   command->add_option("--check-every", options->check_every,
                       "Check for walls entered and overlaps each K-th step, 0: ten times a run");
-  command->add_option("--trips", options->trips, "Of a scenario: write a line for each trip of an avatar")
+  command
+      ->add_option("--trips", options->trips,
+                   "Of a scenario: write a line for each trip of an avatar")
       ->type_name("FILE.csv");
   command
       ->add_option("--obstacles", options->obstacles,
@@ -277,8 +279,8 @@ void add_run(CLI::App& parser, Session& session) {
       session.exit_code = run_file(session, *command, *options);
       return;
     }
-    for (const auto& [name, path] : {std::pair("--trips", &options->trips),
-                                     std::pair("--obstacles", &options->obstacles)}) {
+    for (const auto& [name, path] :
+         {std::pair("--trips", &options->trips), std::pair("--obstacles", &options->obstacles)}) {
       if (path->empty()) continue;
       const std::string what = name;
       session.exit_code = fail({Errc::kBadConfig, what + " goes with a scenario file"});

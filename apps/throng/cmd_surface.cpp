@@ -57,10 +57,10 @@ int print_surface(Session& session, const std::string& path) {
 }  // namespace
 
 void add_surface(CLI::App& parser, Session& session) {
-  CLI::App* command =
-      add_command(parser, session, "surface", "Show what each class can reach over the nodes of a world",
-                  "throng bake builtin:landscape,size=160 -o hills.throng --cell 0.5 --nodes\n"
-                  "throng surface hills.throng");
+  CLI::App* command = add_command(
+      parser, session, "surface", "Show what each class can reach over the nodes of a world",
+      "throng bake builtin:landscape,size=160 -o hills.throng --cell 0.5 --nodes\n"
+      "throng surface hills.throng");
   const auto path = std::make_shared<std::string>();
   command->add_option("world", *path, "World folder with nodes")
       ->required()

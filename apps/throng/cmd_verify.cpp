@@ -68,8 +68,9 @@ Json faults_json(const Scene& scene, const VerifyReport& report) {
 Json flight_json(const ClassReport& entry) {
   if (!entry.flight) return nullptr;
   const FlightReport& flight = *entry.flight;
-  return {{"points", flight.points},  {"pairs", flight.pairs},         {"reached", flight.reached},
-          {"segments", flight.segments},  {"positions", flight.positions}, {"entered", flight.entered},
+  return {{"points", flight.points},       {"pairs", flight.pairs},
+          {"reached", flight.reached},     {"segments", flight.segments},
+          {"positions", flight.positions}, {"entered", flight.entered},
           {"seconds", flight.seconds}};
 }
 
@@ -160,7 +161,8 @@ std::string class_text(const ClassReport& entry) {
   if (!entry.flight) return text;
   const FlightReport& flight = *entry.flight;
   text += fmt::format(
-      "  in the air: {} points, {} of {} pairs reached over {} segments, {} bodies on them in {:.1f} "
+      "  in the air: {} points, {} of {} pairs reached over {} segments, {} bodies on them in "
+      "{:.1f} "
       "s; "
       "entered {}\n",
       flight.points, flight.reached, flight.pairs, flight.segments, flight.positions,
@@ -201,7 +203,7 @@ std::string fault_lines(const std::vector<VerifyFault>& faults) {
 
 // Prints the classes and the verdict. Returns the exit code.
 int print_verdict(Session& session, const VerifyOptions& options, const Json& classes, bool passed,
-         std::string text) {
+                  std::string text) {
   text += passed ? "passed\n" : "NOT passed\n";
   print_result(session,
                {{"world", options.world},
@@ -334,7 +336,7 @@ ClassPaths paths_of(const std::string& name, const PathReport& report) {
 // Verifies paths between random places: over nodes for classes that climb or drop and with --nodes,
 // else over level tiles.
 int verify_all_paths(Session& session, VerifyOptions& options, const World& world,
-                const std::vector<int32_t>& picked, const Scene& scene) {
+                     const std::vector<int32_t>& picked, const Scene& scene) {
   std::optional<Nodes> nodes;
   Json list = Json::array();
   std::string text;

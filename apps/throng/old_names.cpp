@@ -16,10 +16,8 @@ struct OldCommand {
   std::string_view before, now;
 };
 
-constexpr OldCommand kCommands[] = {{"nodes", "surface"},
-                                    {"place", "query"},
-                                    {"region", "components"},
-                                    {"world", "generate"}};
+constexpr OldCommand kCommands[] = {
+    {"nodes", "surface"}, {"place", "query"}, {"region", "components"}, {"world", "generate"}};
 
 struct OldOption {
   std::string_view command;  // by its name of today

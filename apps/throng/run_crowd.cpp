@@ -100,15 +100,16 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
   times.add_to(json);
   print_result(
       session, json,
-      fmt::format("{} {} avatars, {} steps of {} s: {}\n{}"
-                  "{} goals reached, {} paths planned, {} goals without a path; mean progress {:.2f} of "
-                  "the speed\n{}"
-                  "{} checks: {} wall entries, {} overlaps\n"
-                  "state {:016x}\n",
-                  crowd.size(), run.class_name, times.steps(), run.config.dt, times.text_of_steps(),
-                  times.text_of_parts(), t.sum.arrived, t.sum.planned, t.sum.no_path,
-                  t.progress / steps, memory_text(t.sum.out_of_memory, "--search-memory"), t.checks,
-                  t.found.wall_entries, t.found.overlaps, crowd.state_hash()));
+      fmt::format(
+          "{} {} avatars, {} steps of {} s: {}\n{}"
+          "{} goals reached, {} paths planned, {} goals without a path; mean progress {:.2f} of "
+          "the speed\n{}"
+          "{} checks: {} wall entries, {} overlaps\n"
+          "state {:016x}\n",
+          crowd.size(), run.class_name, times.steps(), run.config.dt, times.text_of_steps(),
+          times.text_of_parts(), t.sum.arrived, t.sum.planned, t.sum.no_path, t.progress / steps,
+          memory_text(t.sum.out_of_memory, "--search-memory"), t.checks, t.found.wall_entries,
+          t.found.overlaps, crowd.state_hash()));
 }
 
 }  // namespace
@@ -296,8 +297,7 @@ void GoalCrowd::give_goals() {
 
 std::string memory_text(uint64_t out_of_memory, const char* setting) {
   if (out_of_memory == 0) return {};
-  return fmt::format("{} searches for paths ran out of memory; raise {}\n", out_of_memory,
-                     setting);
+  return fmt::format("{} searches for paths ran out of memory; raise {}\n", out_of_memory, setting);
 }
 
 void add_step(const CrowdReport& report, RunTimes& times) {

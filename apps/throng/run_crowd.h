@@ -35,9 +35,9 @@ struct CrowdRun {
 /// Fills in goals_text. Fails with kNotFound.
 Result<void> read_goals(CrowdRun& run);
 
-/// A crowd whose avatars get one goal after the other. Equal runs have equal steps. Avatars that fly
-/// begin in the air, and every other goal of theirs is there; those that climb begin on nodes, and
-/// their goals are there.
+/// A crowd whose avatars get one goal after the other. Equal runs have equal steps. Avatars that
+/// fly begin in the air, and every other goal of theirs is there; those that climb begin on nodes,
+/// and their goals are there.
 class GoalCrowd {
  public:
   static Result<GoalCrowd> make(const World& world, const CrowdRun& run, Context& context);

@@ -53,7 +53,7 @@ std::string name_in(const Things& things, int32_t index) {
 }
 
 Result<void> write_trips(const std::string& path, const Scenario& scenario,
-                          const Simulation& simulation) {
+                         const Simulation& simulation) {
   OutputFile file;
   if (auto ok = file.open(path); !ok) return ok;
   file.write("person,source,profile,journey,speed,entered,started,left,exit\n");
@@ -180,7 +180,7 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
 }
 
 Result<Totals> run_steps(Session& session, const ScenarioRun& run, const Scenario& scenario,
-                    Simulation& simulation, Sinks& sinks, RunTimes& times) {
+                         Simulation& simulation, Sinks& sinks, RunTimes& times) {
   Totals t;
   const uint64_t steps =
       run.steps.value_or(static_cast<uint64_t>(std::ceil(scenario.seconds / scenario.dt - 1e-9)));

@@ -217,7 +217,8 @@ void add_people_options(CLI::App* command, ViewTarget& target) {
       ->capture_default_str();
   command->add_flag("--coarse-far", target.start.coarse_far,
                     "Simulate avatars more than 300 m away in longer steps");
-  command->add_option("--atlas", target.atlases, "Characters, made by throng atlas; may be repeated")
+  command
+      ->add_option("--atlas", target.atlases, "Characters, made by throng atlas; may be repeated")
       ->type_name("FILE.atlas")
       ->allow_extra_args(false);
   command

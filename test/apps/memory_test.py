@@ -50,7 +50,7 @@ def film(throng, folder, pictures, *arguments):
 
 
 def check_flat(samples):
-    """A quarter of the way must have shown all that is needed."""
+    """After the first quarter the memory must not grow."""
     early, late = max(samples[:len(samples) // 4]), max(samples[len(samples) // 4:-1])
     print(f"memory_test: {early:.0f} MB in the first quarter, {late:.0f} MB after it, {samples[-1]:.0f} MB at the peak")
     assert late < early + FLAT_MB, "grows from picture to picture"

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""A real window on a display of its own, driven with keys and mouse through XTest, looked at through the display.
+"""A real window on its own display, driven with keys and mouse through XTest; its pictures are read from the display.
 
 window_test.py THRONG. Exit 77: no Xvfb or no xdotool here."""
 import os
@@ -95,9 +95,9 @@ def check(window):
     # The bar of what is being loaded is the only thing of this yellow.
     window.wait("the end of the load", lambda p: not any(
         red > 200 and 150 < green < 200 and blue < 30 for row in p[HEIGHT // 2:] for red, green, blue in row), 300)
-    # Somebody walks: the picture changes by itself.
+    # An avatar walks: the picture changes by itself.
     still = window.look()
-    window.wait("somebody who walks", lambda p: differing(p, still) > 30)
+    window.wait("an avatar that walks", lambda p: differing(p, still) > 30)
     window.do("mousemove", str(WIDTH - 60), str(HEIGHT // 2))
     window.do("key", "space")  # Pause.
     paused = window.wait_until_still()

@@ -392,8 +392,8 @@ int find_over_nodes(Session& session, const PathOptions& options, const World& w
         climbs ? Place{} : world.find_place(avatar_class, position, options.tolerance);
     return finder->find_place(ground ? ground.position : position, options.tolerance);
   };
-  const NodePlace from = place_at(*from_position);
-  const NodePlace to = place_at(*to_position);
+  const NodePlace from = find_place(*from_position);
+  const NodePlace to = find_place(*to_position);
   for (const auto& [place, position, option] :
        {std::tuple{from, *from_position, "--from"}, std::tuple{to, *to_position, "--to"}}) {
     if (place) continue;

@@ -290,7 +290,7 @@ const char* word_for(LinkKind kind) {
     case LinkKind::kDrop:
       return "drop";
     case LinkKind::kOffMesh:
-      return "jump";
+      return "off-mesh link";
     case LinkKind::kLand:
       return "land";
     case LinkKind::kTakeOff:

@@ -15,6 +15,7 @@
 #include "throng/lean.h"
 #include "throng/replay_export.h"
 
+// Parser of trajectory files: the avatars of the last step, and headings from the steps before.
 namespace throng::app {
 namespace {
 

@@ -8,6 +8,7 @@
 
 #include "command.h"
 
+// The option --block: obstacles as boxes.
 namespace throng::app {
 
 void add_blocks(CLI::App* command, std::vector<double>& blocks) {

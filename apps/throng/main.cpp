@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "command.h"
 
+// The program throng: registers all commands and runs one.
 int main(int argc, char** argv) {
   using namespace throng::app;
   return run_program(argc, argv, [](CLI::App& parser, Session& session) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+// Validators of numeric options. CLI11's own accept NaN.
 namespace throng::app {
 namespace {
 

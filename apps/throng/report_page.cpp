@@ -10,6 +10,7 @@
 #include "throng/chart.h"
 #include "throng/heat_map.h"
 
+// The charts and maps of a recording, and one page of HTML that embeds them.
 namespace throng::app {
 namespace {
 

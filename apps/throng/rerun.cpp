@@ -9,6 +9,7 @@
 
 #include "run_scenario.h"
 
+// Repeats recorded runs from their settings, to compare state hashes.
 namespace throng::app {
 namespace {
 

@@ -14,6 +14,7 @@
 #include "throng/flight.h"
 #include "throng/ground_query.h"
 
+// A crowd of avatars that get one goal after the other: random places, or those of a file.
 namespace throng::app {
 namespace {
 

@@ -15,6 +15,7 @@
 #include "run_crowd.h"
 #include "run_times.h"
 
+// Runs a scenario file and writes its trips, obstacles and counts.
 namespace throng::app {
 namespace {
 

@@ -20,6 +20,7 @@
 #include "throng/cluster.h"
 #include "throng/search_budget.h"
 
+// What all commands share: parsing, progress, Ctrl-C, results, errors and notes.
 namespace throng::app {
 namespace {
 

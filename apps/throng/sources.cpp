@@ -11,6 +11,7 @@
 
 #include "number_checks.h"
 
+// Reads model files, scene files and built-in worlds into one Scene.
 namespace throng::app {
 namespace {
 

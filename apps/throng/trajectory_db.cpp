@@ -11,6 +11,7 @@
 
 #include "throng/lean.h"
 
+// Writes a recording as an SQLite file in the tables of JuPedSim, in one transaction.
 namespace throng::app {
 namespace {
 

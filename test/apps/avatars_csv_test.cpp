@@ -8,6 +8,7 @@
 
 #include "scratch_folder.h"
 
+// Trajectory files: what is read from them, and the message for each fault.
 namespace throng::app {
 namespace {
 

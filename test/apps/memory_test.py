@@ -67,7 +67,7 @@ def window(throng, folder):
     program = subprocess.Popen([throng, "view", "builtin:garage", "--avatars", "20", "--width", "640", "--height", "400", "--forget"],
                                env=env, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
-        # Loaded when nothing more is added for a while.
+        # The load is over when memory stays the same for five seconds.
         last, since, end = 0, time.time(), time.time() + 200
         while time.time() < since + 5 and time.time() < end:
             time.sleep(0.5)

@@ -347,7 +347,7 @@ class Program(ProgramCase):
             self.assertIn("all the same", check.stdout)
             file.unlink()
 
-    def test_a_crowd_with_goals_arrives_and_its_recording_comes_out_the_same(self):
+    def test_a_crowd_with_goals_arrives_and_its_recording_is_repeated_exactly(self):
         done = self.run_throng("run", self.world, "--avatars", 40, "--steps", 60, "--goals", "random", "--record", "goals.replay", "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
         said = json.loads(done.stdout)
@@ -813,7 +813,7 @@ class Program(ProgramCase):
         self.assertGreater(refused["city.throng"], 0)
         self.assertEqual([file.name for file in self.path.iterdir()], ["city.throng"])
         self.assertEqual(self.run_throng("info", "city.throng", "--check").returncode, 0)
-        # A bake that is killed holds nothing any more.
+        # A killed bake holds no lock.
         with subprocess.Popen(command[:-2] + ["--fresh"], cwd=self.path, stderr=subprocess.DEVNULL) as killed:
             while not (self.path / "city.throng.part").exists():
                 time.sleep(0.005)

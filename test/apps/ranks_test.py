@@ -105,7 +105,7 @@ def test_death(folder, reference):
         assert said and all("another rank has died" in line and "goes on from there" in line for line in said), err
         assert len(said) <= 2 and all(f"rank {rank} of {ranks}" not in line for line in said), err
         world = folder / "killed.throng"
-        # One process goes on, or several.
+        # One process resumes, or several.
         words = bake_words(world) if rank == 0 else [*MPIRUN, "-n", "2", *bake_words(world)]
         done = run(words)
         assert done.returncode == 0, done.stderr
@@ -160,7 +160,7 @@ def test_graph(folder, reference):
 
 
 def kill_amid_nodes(world, rank, ranks, options):
-    """Bakes until some zones' nodes are made, kills one rank; what was said, or None if all were made before."""
+    """Bakes until some zones' nodes are made, kills one rank. Returns standard error, or None if all were made before."""
     part = world / "nodes.part"
     words = bake_words(world, options=["--threads", "1", *options])
     with subprocess.Popen([*MPIRUN, "-n", str(ranks), *words], env=ENVIRONMENT,
@@ -178,7 +178,7 @@ def kill_amid_nodes(world, rank, ranks, options):
 
 
 def test_nodes(folder):
-    """Batches of zones are dealt to all ranks."""
+    """Batches of zones are assigned to all ranks."""
     options = ["--nodes", "--node-memory", "1"]  # MiB: many batches even of so small a world
     world = folder / "nodes.throng"
     done = run(bake_words(world, options=options))
@@ -240,7 +240,7 @@ def test_refusals(folder):
 
 
 def test_without_mpi(folder):
-    """Several processes that do not know of each other would write one folder."""
+    """Processes without MPI would all write the same folder."""
     for rank in range(2):
         ENVIRONMENT.update(OMPI_COMM_WORLD_SIZE="2", OMPI_COMM_WORLD_RANK=str(rank))
         done = run(bake_words(folder / "w.throng"))

@@ -70,7 +70,7 @@ class Window:
         raise SystemExit(f"never seen: {what}; {(self.folder / 'log').read_text()}")
 
     def wait_until_still(self, seconds=90):
-        """Looks until nothing but the panel's numbers changes for two seconds: a busy machine takes its time."""
+        """Looks until nothing but the panel's numbers changes for two seconds: a busy machine is slow."""
         end = time.time() + seconds
         last = self.look()
         while time.time() < end:
@@ -92,7 +92,7 @@ def check(window):
     black = (0, 0, 0)
     bright = window.wait("a scene", lambda p: sum(pixel != black for row in p for pixel in row) > WIDTH * HEIGHT * 0.9)
     assert differing(bright, [[black] * WIDTH] * HEIGHT) > WIDTH * HEIGHT // 2
-    # The bar of what is being loaded is the only thing of this yellow.
+    # Only the progress bar of the load has this yellow.
     window.wait("the end of the load", lambda p: not any(
         red > 200 and 150 < green < 200 and blue < 30 for row in p[HEIGHT // 2:] for red, green, blue in row), 300)
     # An avatar walks: the picture changes by itself.
@@ -108,7 +108,7 @@ def check(window):
     window.do("key", "Escape")
     # Not the same picture as before: hints come and go.
     without = window.wait("no keys after Escape", lambda p: differing(p, keys) > 8000)
-    # All at once: begun and ended between two frames.
+    # The drag begins and ends between two frames.
     window.do("mousedown", "1", "mousemove_relative", "--", "-80", "15", "mousemove_relative", "--", "-80", "15", "mouseup", "1")
     window.wait("another side after a drag", lambda p: differing(p, without) > 8000)
     window.do("key", "F12")

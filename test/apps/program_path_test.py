@@ -177,6 +177,32 @@ class ProgramPath(ProgramCase):
             del report["seconds"]
         self.assertEqual(on_disk, made)
 
+    def test_positions_outside_the_world_are_refused_by_each_command(self):
+        for command in (["components", self.world, "--at", "5000,0,1"], ["query", self.world, "--at", "5000,0,8"],
+                        ["path", self.world, "--from", "5000,0,8", "--to", "20,0,8"]):
+            self.assert_refused(self.run_throng(*command), f"{command[2]} (5000.000", "lies outside the world, which reaches from")
+        inside = self.run_throng("components", self.world, "--at", "14,300,8")
+        self.assertEqual(inside.returncode, 0, inside.stderr)
+        self.assertEqual(self.run_throng("query", self.world, "--at", "14,300,8").returncode, 1)
+        self.assertEqual(self.run_throng("query", self.world, "--at", "-1,0,8").returncode, 0)  # There is one within 5 m.
+
+    def test_a_query_reads_only_the_zones_around_it(self):
+        done = self.run_throng("bake", "builtin:garage", "--cell", "0.2", "--zone", "12.8", "-o", "w.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        near = ("query", "w.throng", "--at", "14,0,8", "--radius", "2", "--json")
+        before = self.run_throng(*near)
+        self.assertEqual(before.returncode, 0, before.stderr)
+        zones = {tuple(map(int, p.stem.split("_")[1:])): p for p in (self.path / "w.throng").glob("zone_*.thz")}
+        self.assertGreater(len(zones), 6)
+        # A circle of 2 m around (14, 8): of zones 12.8 m wide these two.
+        for place, zone in zones.items():
+            if place not in ((0, 0), (1, 0)):
+                zone.write_bytes(b"?")
+        after = self.run_throng(*near)
+        self.assertEqual((after.returncode, after.stdout), (0, before.stdout), after.stderr)
+        self.assert_refused(self.run_throng(*near[:-3], "--radius", "200"), "checksum")
+        self.assert_refused(self.run_throng(*near, "--toward", "0,40"), "checksum")
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

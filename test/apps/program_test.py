@@ -33,29 +33,6 @@ class Program(ProgramCase):
             self.assertEqual((done.returncode, done.stderr), (0, ""))
             self.assertIn("throng", done.stdout)
 
-    def test_old_names_work_with_a_note_and_no_help_shows_them(self):
-        at, ends = ("--at", "14,0,8"), ("--from", "14,0,8", "--to", "20,0,8")
-        for old, new in ((("place", self.world, *at), ("query", self.world, *at)),
-                         (("region", self.world, "--limit", "1"), ("components", self.world, "--limit", "1")),
-                         (("world", "--list"), ("generate", "--list")),
-                         (("path", self.world, *ends, "--reach=2"), ("path", self.world, *ends, "--tolerance=2"))):
-            before, now = self.run_throng(*old), self.run_throng(*new)
-            self.assertEqual((before.returncode, now.returncode, now.stderr), (0, 0, ""), before.stderr)
-            names = next((a.split("=")[0], b.split("=")[0]) for a, b in zip(old, new) if a != b)
-            self.assertEqual(before.stderr, "throng: note: '%s' is now '%s'\n" % names)
-            seconds = r'[0-9.]+ m?s\b'
-            self.assertEqual(re.sub(seconds, "", before.stdout), re.sub(seconds, "", now.stdout))
-        for words, note in ((("nodes", self.world), "'nodes' is now 'surface'"), (("run", self.world, "--visits", "v.csv"), "'--visits' is now '--trips'"),
-                            (("bake", "builtin:cube", "-o", "x", "--jumps", "none.json"), "'--jumps' is now '--off-mesh-links'"),
-                            (("path", self.world, *ends, "--jump", "14,0,8,19,0,99"), "'--jump' is now '--off-mesh-link'")):
-            done = self.run_throng(*words)
-            self.assertEqual((done.returncode, done.stderr.splitlines()[0]), (2, f"throng: note: {note}"), done.stderr)
-        for command, names in (((), ("nodes", "place", "region", "world")), (("path",), ("--reach", "--jump")), (("run",), ("--visits",)),
-                               (("bake",), ("--jumps",))):
-            shown = self.run_throng(*command, "--help").stdout
-            for name in names:
-                self.assertNotRegex(shown, rf"(?m)^  {name}\b")
-
     def test_bad_usage_is_one_sentence_and_two(self):
         self.assert_refused(self.run_throng(), "throng --help")
         self.assert_refused(self.run_throng("nosuch"), "throng --help")
@@ -77,15 +54,6 @@ class Program(ProgramCase):
         self.assert_refused(self.run_throng("bake", "builtin:cube", "-o", "x", "--scale", "0"), "--scale: 0 is not above 0;")
         self.assert_refused(self.run_throng("components", self.world, "--threads", "few"), "--threads: few is no number;")
         self.assert_refused(self.run_throng("components", self.world, "--limit", "-3"), "--limit: -3 is below 0;")
-
-    def test_positions_outside_the_world_are_refused_by_each_command(self):
-        for command in (["components", self.world, "--at", "5000,0,1"], ["query", self.world, "--at", "5000,0,8"],
-                        ["path", self.world, "--from", "5000,0,8", "--to", "20,0,8"]):
-            self.assert_refused(self.run_throng(*command), f"{command[2]} (5000.000", "lies outside the world, which reaches from")
-        inside = self.run_throng("components", self.world, "--at", "14,300,8")
-        self.assertEqual(inside.returncode, 0, inside.stderr)
-        self.assertEqual(self.run_throng("query", self.world, "--at", "14,300,8").returncode, 1)
-        self.assertEqual(self.run_throng("query", self.world, "--at", "-1,0,8").returncode, 0)  # There is one within 5 m.
 
     def test_bad_input_is_one_sentence_and_two(self):
         self.assert_refused(self.run_throng("bake", "missing.obj", "-o", "x.throng", "--json"), "missing.obj")
@@ -136,23 +104,6 @@ class Program(ProgramCase):
         self.assert_refused(self.run_throng("path", "w.throng", *ends, "--block", "16,0,0,17,2,9"), zone.name)
         self.assert_refused(self.run_throng("picture", "w.throng", "-o", "p.png"), zone.name)
         self.assert_refused(self.run_throng("query", "w.throng", "--at", "14,0,8"), zone.name)
-
-    def test_a_query_reads_only_the_zones_around_it(self):
-        done = self.run_throng("bake", "builtin:garage", "--cell", "0.2", "--zone", "12.8", "-o", "w.throng")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        near = ("query", "w.throng", "--at", "14,0,8", "--radius", "2", "--json")
-        before = self.run_throng(*near)
-        self.assertEqual(before.returncode, 0, before.stderr)
-        zones = {tuple(map(int, p.stem.split("_")[1:])): p for p in (self.path / "w.throng").glob("zone_*.thz")}
-        self.assertGreater(len(zones), 6)
-        # A circle of 2 m around (14, 8): of zones 12.8 m wide these two.
-        for place, zone in zones.items():
-            if place not in ((0, 0), (1, 0)):
-                zone.write_bytes(b"?")
-        after = self.run_throng(*near)
-        self.assertEqual((after.returncode, after.stdout), (0, before.stdout), after.stderr)
-        self.assert_refused(self.run_throng(*near[:-3], "--radius", "200"), "checksum")
-        self.assert_refused(self.run_throng(*near, "--toward", "0,40"), "checksum")
 
     def test_air_without_its_index_is_no_world_without_air(self):
         done = self.run_throng("bake", "builtin:cube", "--cell", "0.2", "--fly", "-o", "w.throng")

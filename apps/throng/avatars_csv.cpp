@@ -15,6 +15,7 @@
 #include "throng/lean.h"
 #include "throng/replay_export.h"
 
+// Parser of trajectory files: the avatars of the last step, and headings from the steps before.
 namespace throng::app {
 namespace {
 
@@ -43,7 +44,7 @@ struct CsvRow {
   Vec3d up{0, 1, 0};
 };
 
-// One line of the file, or what is wrong with it.
+// One line of the file, or its fault.
 Result<CsvRow> parse_row(const std::string& where, std::string_view line, size_t wanted) {
   const std::vector<std::string_view> fields = split(line);
   if (fields.size() != wanted) {
@@ -146,7 +147,7 @@ Result<std::vector<CsvWalker>> read_walkers(const std::string& path) {
     const Vec3d moved = unleaned(row.avatar.position - before, row.up);
     walker.last_move = std::hypot(moved.x, moved.z);
     walker.walked += walker.last_move;
-    // Where it stands still it looks where it went.
+    // A standing avatar keeps the heading of its last move.
     if (walker.last_move > 1e-6) walker.heading = Vec3d{moved.x, 0, moved.z};
   });
   if (!done) return done.error();

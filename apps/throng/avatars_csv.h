@@ -16,7 +16,7 @@ namespace throng::app {
 /// up_y,up_z if some lean. Fails with kBadFile, the line and what to write there.
 [[nodiscard]] Result<std::vector<PictureAvatar>> read_avatars(const std::string& path);
 
-/// An avatar of the last step, and what the steps before say of it.
+/// An avatar of the last step, and what the steps before add.
 struct CsvWalker {
   uint64_t id = 0;
   Vec3d position;        ///< Feet. [m]

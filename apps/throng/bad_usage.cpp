@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-// CLI11 counts values ("6 required X,Y,Z,X,Y,Z missing") and tells them as it has split them
-// ("7,abc" for 7=abc): here an option says what it wants, as its help does.
+// CLI11 counts values ("6 required X,Y,Z,X,Y,Z missing") and prints them as it split them
+// ("7,abc" for 7=abc). These messages name the type of the value, as --help does.
 namespace throng::app {
 namespace {
 

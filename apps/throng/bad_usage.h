@@ -10,7 +10,7 @@ namespace throng::app {
 /// The subcommand that was called, or null.
 [[nodiscard]] const CLI::App* command_in_use(const CLI::App& parser);
 
-/// What is wrong with the program's arguments, in one sentence without its full stop.
+/// The fault of the program's arguments, in one sentence without its full stop.
 [[nodiscard]] std::string what_is_wrong(const CLI::ParseError& error, const CLI::App& parser);
 
 }  // namespace throng::app

@@ -10,10 +10,10 @@
 
 namespace throng::app {
 
-/// Adds --block: boxes that are put up, six numbers each.
+/// Adds --block: box-shaped obstacles, six numbers each.
 void add_blocks(CLI::App* command, std::vector<double>& blocks);
 
-/// Of --block. Fails with kBadInput and a sentence.
+/// The boxes of --block. Fails with kBadInput and a sentence.
 Result<std::vector<Prism>> boxes_of(const std::vector<double>& blocks);
 
 }  // namespace throng::app

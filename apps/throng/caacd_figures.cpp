@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+// The charts of [CAACD] figures 10 and 11: collisions over the number of avatars.
 namespace throng::app {
 namespace {
 
@@ -18,7 +19,7 @@ Chart empty_chart(const Study& study, const std::string& title, int32_t seeds) {
   chart.title = title;
   chart.notes = {
       fmt::format("Means over {} seeds; bands: one standard deviation. Dashed: the "
-                  "most that [CAACD] reports.",
+                  "max that [CAACD] reports.",
                   seeds)};
   chart.x_title = "avatars";
   chart.y_title = "collisions a run";
@@ -68,7 +69,7 @@ Chart figure_10(const Study& study, int32_t seeds) {
 
 Chart figure_11(const Study& study, int32_t seeds) {
   Chart chart = empty_chart(study, "Collisions: all other sets, 2.0/0.4/0.06 bold", seeds);
-  double most = caacd::reported_collisions(study.avatars.back()).others;
+  double max = caacd::reported_collisions(study.avatars.back()).others;
   bool first = true;
   for (size_t s = 0; s < study.sets.size(); ++s) {
     const caacd::ParameterSet& set = study.sets[s];
@@ -76,7 +77,7 @@ Chart figure_11(const Study& study, int32_t seeds) {
     const bool best = set == kNamed[2];
     chart.lines.push_back(line_of(study, s, best ? LineKind::kStrong : LineKind::kFaint));
     if (best) {
-      most = std::max(most, study.at(s, study.avatars.size() - 1).mean);
+      max = std::max(max, study.at(s, study.avatars.size() - 1).mean);
     } else {
       // One entry of the legend stands for all grey lines.
       chart.lines.back().name = first ? "another set each" : "";
@@ -84,7 +85,7 @@ Chart figure_11(const Study& study, int32_t seeds) {
     }
   }
   chart.lines.push_back(bound(study, "[CAACD] figure 11", &caacd::Reported::others));
-  chart.max = 3 * most;
+  chart.max = 3 * max;
   const bool cut = std::ranges::any_of(chart.lines, [&](const ChartLine& line) {
     return std::ranges::max(line.values) > chart.max;
   });

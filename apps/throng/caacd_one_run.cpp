@@ -9,6 +9,7 @@
 #include "output_file.h"
 #include "throng/caacd_picture.h"
 
+// One run of the experiment of [CAACD] section V, as a picture and as a table of frames.
 namespace throng::app {
 namespace {
 

@@ -40,7 +40,7 @@ Result<void> write_images(const Atlas& atlas, const std::string& folder) {
   return {};
 }
 
-// One row a format: what its colours take, and how near they are to 8 bits a channel.
+// One row per format: bytes of its colours, and their PSNR against 8 bits per channel.
 struct FormatRow {
   AtlasFormat format;
   uint64_t sheet = 0, packed = 0;

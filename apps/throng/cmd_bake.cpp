@@ -16,7 +16,7 @@
 #include "throng/cluster.h"
 #include "throng/nodes.h"
 
-// throng bake: any model in, a folder of zone files out.
+// throng bake: turns models into a folder of zone files.
 namespace throng::app {
 namespace {
 
@@ -34,7 +34,7 @@ struct BakeOptions {
   uint64_t node_memory = node_config.working_bytes >> 20;  // [MiB]
 };
 
-// Nodes are made when they are asked for, and whenever a class climbs or drops: only they carry it.
+// Nodes are made on request, and if a class climbs or drops: it moves over nodes alone.
 bool wants_nodes(const BakeOptions& options) {
   return options.nodes || !options.off_mesh_links.empty() ||
          std::any_of(options.config.classes.begin(), options.config.classes.end(),
@@ -50,27 +50,28 @@ bool read_point(const Json& entry, const char* key, Vec3d& out) {
   return true;
 }
 
-// Jumps from a file: [{"from": [x, y, z], "to": [x, y, z], "class": NAME, "both_ways": false}].
+// Off-mesh links from a file: [{"from": [x, y, z], "to": [x, y, z], "class": NAME, "both_ways":
+// false}].
 Result<std::vector<NodeOffMeshLink>> read_off_mesh_links(const std::string& name,
                                                          const std::vector<AvatarClass>& classes) {
   std::ifstream file(name);
   if (!file) return Error{Errc::kBadFile, name + ": cannot be read"};
   const Json json = Json::parse(file, nullptr, false);
   if (!json.is_array()) {
-    return Error{Errc::kBadFile,
-                 name +
-                     ": is no list of jumps in JSON, as [{\"from\": [0, 0, 0], \"to\": [3, 0, 0], "
-                     "\"class\": \"adult\", \"both_ways\": true}]"};
+    return Error{
+        Errc::kBadFile,
+        name +
+            ": is no list of off-mesh links in JSON, as [{\"from\": [0, 0, 0], \"to\": [3, 0, 0], "
+            "\"class\": \"adult\", \"both_ways\": true}]"};
   }
-  std::vector<NodeOffMeshLink> off_mesh_links;
+  std::vector<NodeOffMeshLink> links;
   for (const Json& entry : json) {
     const auto bad = [&](const std::string& what) {
       return Error{Errc::kBadFile,
-                   fmt::format("{}: jump {}: {}", name, off_mesh_links.size() + 1, what)};
+                   fmt::format("{}: off-mesh link {}: {}", name, links.size() + 1, what)};
     };
-    NodeOffMeshLink off_mesh_link;
-    if (!read_point(entry, "from", off_mesh_link.from) ||
-        !read_point(entry, "to", off_mesh_link.to)) {
+    NodeOffMeshLink link;
+    if (!read_point(entry, "from", link.from) || !read_point(entry, "to", link.to)) {
       return bad("needs \"from\" and \"to\", three numbers each");
     }
     if (!entry.contains("class") || !entry["class"].is_string()) return bad("needs a \"class\"");
@@ -82,14 +83,14 @@ Result<std::vector<NodeOffMeshLink>> read_off_mesh_links(const std::string& name
       for (const AvatarClass& avatar : classes) known += (known.empty() ? "" : ", ") + avatar.name;
       return bad(fmt::format("there is no class {}; choose from {}", wanted, known));
     }
-    off_mesh_link.avatar_class = static_cast<int32_t>(of - classes.begin());
+    link.avatar_class = static_cast<int32_t>(of - classes.begin());
     if (entry.contains("both_ways")) {
       if (!entry["both_ways"].is_boolean()) return bad("both_ways must be true or false");
-      off_mesh_link.two_way = entry["both_ways"].get<bool>();
+      link.two_way = entry["both_ways"].get<bool>();
     }
-    off_mesh_links.push_back(off_mesh_link);
+    links.push_back(link);
   }
-  return off_mesh_links;
+  return links;
 }
 
 Result<NodeSummary> bake_nodes(BakeOptions& options, const Scene& scene, Context& context) {
@@ -114,7 +115,7 @@ Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport&
           {"resolution", options.config.resolution},
           {"zones", report.zones},
           {"zones_baked", report.zones_baked},
-          {"zones_kept", report.zones_reused},
+          {"zones_reused", report.zones_reused},
           {"zones_empty", report.zones_empty},
           {"zones_relinked", report.zones_relinked},
           {"tiles", report.tiles},
@@ -126,7 +127,7 @@ Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport&
           {"graph_bytes", report.graph_bytes},
           {"seconds_graph", report.seconds_graph},
           {"air_zones", report.air_zones},
-          {"air_zones_kept", report.air_zones_reused},
+          {"air_zones_reused", report.air_zones_reused},
           {"air_bytes", report.air_bytes},
           {"seconds_air", report.seconds_air},
           {"seconds_columns", report.seconds_columns},
@@ -145,7 +146,7 @@ bool stands_nowhere(const BakeReport& report) {
 
 std::string bake_text(const BakeOptions& options, const Scene& scene, const BakeReport& report) {
   std::string text = fmt::format(
-      "{}: {} triangles in {:.2f} s, {} zones ({} kept), {} level tiles ({} of them flat), {}\n",
+      "{}: {} triangles in {:.2f} s, {} zones ({} reused), {} level tiles ({} of them flat), {}\n",
       options.output, scene.triangles.size(), report.seconds_total, report.zones,
       report.zones_reused, report.level_tiles, report.constant_level_tiles,
       human_bytes(report.bytes));
@@ -155,20 +156,21 @@ std::string bake_text(const BakeOptions& options, const Scene& scene, const Bake
   }
   if (report.air_zones == 0 && stands_nowhere(report)) {
     text += fmt::format(
-        "  nobody of these can stand anywhere: check the unit (--scale), the up axis (--up) and "
+        "  no class can stand anywhere: check the unit (--scale), the up axis (--up) and "
         "the classes (--classes){}\n",
-        options.config.one_sided ? ", and whether all is wound the wrong way (--one-sided)" : "");
+        options.config.one_sided ? ", and whether all triangles are wound backwards (--one-sided)"
+                                 : "");
   }
   if (report.air_zones > 0) {
-    text += fmt::format("  air over {} zones ({} kept), {}, in {:.2f} s of the above\n",
+    text += fmt::format("  air over {} zones ({} reused), {}, in {:.2f} s of the above\n",
                         report.air_zones, report.air_zones_reused, human_bytes(report.air_bytes),
                         report.seconds_air);
   }
   return text;
 }
 
-// Reads what the options name besides the models. Before anything is baked: the new world would be
-// in the old one's place, and without nodes.
+// Reads the files of options other than the models. It runs before the bake, which replaces the old
+// world: an error found later would leave a world without nodes.
 Result<void> prepare(BakeOptions& options) {
   if (!options.classes.empty()) {
     Result<std::vector<AvatarClass>> classes = load_classes(options.classes);
@@ -193,11 +195,11 @@ Result<void> prepare(BakeOptions& options) {
   return check_node_config(options.node_config);
 }
 
-// What is there where nodes have failed.
+// The state of the world if making its nodes failed.
 std::string after_the_ground(const std::string& path) {
   const auto world = World::open(path);
-  return world && Nodes::open(*world) ? "; the ground has not changed, and its nodes are those of "
-                                        "before"
+  return world && Nodes::open(*world) ? "; the ground has not changed, and its nodes are the old "
+                                        "ones"
                                       : "; the world is baked, but it has no nodes yet";
 }
 
@@ -212,7 +214,7 @@ int bake(Session& session, BakeOptions& options) {
       bake_over_ranks(options.output, *scene, options.config, session.context);
   const bool nodes_follow = wants_nodes(options);
   if (nodes_follow) {
-    // The others have baked their last zone while rank 0 still makes the graph.
+    // Rank 0 still makes the graph when the others have baked their last zone.
     const auto baked = meet_over_ranks(report ? Result<void>() : report.error(), session.context);
     if (!baked) return fail(report ? baked.error() : report.error());
   }
@@ -233,13 +235,13 @@ int bake(Session& session, BakeOptions& options) {
   std::string text = bake_text(options, *scene, *report);
   if (nodes) {
     json["node_zones_made"] = nodes->zones_made;
-    json["node_zones_kept"] = nodes->zones_reused;
+    json["node_zones_reused"] = nodes->zones_reused;
     json["nodes"] = nodes->nodes;
     json["node_arcs"] = nodes->arcs;
     json["node_bytes"] = nodes->bytes;
     json["seconds_nodes"] = nodes->seconds;
     json["peak_bytes"] = peak_memory();
-    text += fmt::format("  {} nodes, {} arcs in {:.2f} s, {}, over {} zones ({} kept)\n",
+    text += fmt::format("  {} nodes, {} arcs in {:.2f} s, {}, over {} zones ({} reused)\n",
                         nodes->nodes, nodes->arcs, nodes->seconds, human_bytes(nodes->bytes),
                         nodes->zones_made + nodes->zones_reused, nodes->zones_reused);
   }
@@ -261,8 +263,9 @@ void add_bake(CLI::App& parser, Session& session) {
   command->add_option("--cell", config.cell, "Side of a cell [m]")->capture_default_str();
   command->add_flag("--fly", options->fly, "Add the class flyer, an adult with wings");
   command
-      ->add_option("--air", config.air,
-                   "Side of an air cell: 1, 2, 4, 8 or 16 cells; 0: none unless a class flies [m]")
+      ->add_option(
+          "--air", config.air,
+          "Side of a voxel of the air: 1, 2, 4, 8 or 16 cells; 0: none unless a class flies [m]")
       ->capture_default_str();
   command->add_option("--resolution", config.resolution, "Headroom that may be lost [m]")
       ->capture_default_str();
@@ -271,16 +274,16 @@ void add_bake(CLI::App& parser, Session& session) {
   command->add_option("--threads", config.workers,
                       "Threads, 0 for all cores (under mpirun: of each rank, and its share)");
   command->add_flag("--coarse", options->coarse,
-                    "Know matter by whole cells: faster, and loses up to a cell beside walls");
+                    "Solids as whole cells: faster, loses up to a cell beside walls");
   command->add_flag("--one-sided", config.one_sided,
-                    "Trust windings: only what faces up is floor, no upper sides of thin ceilings");
+                    "Trust windings: only triangles that face up are floor");
   command->add_flag("--fresh", options->fresh, "Bake all zones, also those that have not changed");
   command->add_flag("--nodes", options->nodes,
                     "Also make nodes and links; always done where a class climbs or drops, "
-                    "and for --jumps");
+                    "and with --off-mesh-links");
   command
-      ->add_option("--jumps", options->off_mesh_links,
-                   "Ways given by hand (JSON), which nodes carry: implies --nodes")
+      ->add_option("--off-mesh-links", options->off_mesh_links,
+                   "Off-mesh links given by hand (JSON); implies --nodes")
       ->type_name("FILE.json");
   command
       ->add_option("--node-size", options->node_config.size,
@@ -288,7 +291,7 @@ void add_bake(CLI::App& parser, Session& session) {
       ->capture_default_str();
   command
       ->add_option("--node-memory", options->node_memory,
-                   "About how much memory nodes in the making may take: less is slower [MiB]")
+                   "Approximate max memory while nodes are made; less is slower [MiB]")
       ->capture_default_str()
       ->check(between(1, 1 << 20));
   command->callback([&session, options] { session.exit_code = bake(session, *options); });

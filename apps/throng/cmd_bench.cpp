@@ -14,8 +14,8 @@
 #include "throng/builtin_worlds.h"
 #include "throng/wanderers.h"
 
-// throng bench: how fast this machine bakes the built-in worlds and walks crowds of several sizes,
-// on one thread and on several, in one run.
+// throng bench: times bakes of built-in worlds and crowds of several sizes on this machine, on one
+// thread and on several.
 namespace throng::app {
 namespace {
 
@@ -32,7 +32,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-// Best read as: seconds of the middle run.
+// Times are medians. [s]
 struct BakeRow {
   BuiltinWorldConfig world;
   uint64_t triangles = 0;

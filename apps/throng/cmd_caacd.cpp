@@ -67,7 +67,7 @@ Result<T> choose(const std::map<std::string, T>& choices, const std::string& wor
   return Error{Errc::kBadConfig, fmt::format("{} {}: choose from {}", option, word, known)};
 }
 
-// Fills in what the parser leaves as words.
+// Fills in the options that the parser leaves as text.
 Result<void> complete(CaacdOptions& options) {
   StudyConfig& study = options.study;
   if (study.avatars.empty()) study.avatars = paper_counts();
@@ -122,8 +122,8 @@ Json study_json(const CaacdOptions& options, const Study& study, double seconds)
     };
     column("mean", &StudyCell::mean);
     column("deviation", &StudyCell::deviation);
-    column("least", &StudyCell::min_collisions);
-    column("most", &StudyCell::max_collisions);
+    column("min", &StudyCell::min_collisions);
+    column("max", &StudyCell::max_collisions);
     column("obstacles", &StudyCell::obstacle_mean);
     column("arrived", &StudyCell::arrived);
     column("waiting", &StudyCell::waiting);
@@ -140,7 +140,7 @@ std::string cell_text(const StudyCell& cell) {
   return fmt::format("{:.1f} +- {:.1f} ({})", cell.mean, cell.deviation, cell.max_collisions);
 }
 
-// A column a set: what the paper's figures show.
+// A column per set, as in the paper's figures.
 std::string table_by_avatars(const Study& study) {
   std::string text = "avatars";
   for (const ParameterSet& set : study.sets) text += fmt::format(" {:>20}", name_of(set));
@@ -157,7 +157,7 @@ std::string table_by_avatars(const Study& study) {
   return text;
 }
 
-// A row a set, the fewest collisions first.
+// A row per set, ascending by collisions.
 std::string table_by_sets(const Study& study) {
   std::vector<double> sum(study.sets.size());
   for (size_t s = 0; s < sum.size(); ++s) {
@@ -216,10 +216,10 @@ int caacd(Session& session, CaacdOptions& options) {
       "collisions a run over {} seeds, at most {} frames each, {:.1f} s, state {:016x}\n",
       options.study.seeds, options.study.frames, seconds, study->hash);
   if (study->sets.size() <= kMaxColumns) {
-    text += "mean +- standard deviation (most), and the most that [CAACD] reports\n";
+    text += "mean +- standard deviation (max), and the max that [CAACD] reports\n";
     text += table_by_avatars(*study);
   } else {
-    text += "means, the fewest collisions first\n" + table_by_sets(*study);
+    text += "means, ascending\n" + table_by_sets(*study);
   }
   print_result(session, study_json(options, *study, seconds), text);
   return kDone;
@@ -252,8 +252,8 @@ void add_caacd(CLI::App& parser, Session& session) {
       ->capture_default_str();
   command
       ->add_option("--trigger", options->trigger,
-                   "Whom to avoid: threats in the alert field (near), all (threat), those whose "
-                   "zones meet (zones), nobody (never)")
+                   "Avatars to avoid: threats in the alert field (near), all (threat), those whose "
+                   "zones meet (zones), none (never)")
       ->capture_default_str();
   command->add_option("--length", options->length, "Eq. 10: true, or max-sum as printed")
       ->capture_default_str();
@@ -266,7 +266,7 @@ void add_caacd(CLI::App& parser, Session& session) {
       ->capture_default_str();
   command
       ->add_option("--zone-time", model.zone_time,
-                   "Zones reach the precaution field and so much farther [frames at speed]")
+                   "Zones extend this much beyond the precaution field [frames at speed]")
       ->capture_default_str();
   command->add_option("--fields", options->fields, "Radii: repulsive, precaution, alert [units]")
       ->expected(3)

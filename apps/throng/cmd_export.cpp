@@ -9,7 +9,7 @@
 #include "throng/walkable_surface.h"
 #include "throng/world.h"
 
-// throng export: where a class can stand, as a model for other programs.
+// throng export: the walkable surface of a class as a model for other programs.
 namespace throng::app {
 namespace {
 

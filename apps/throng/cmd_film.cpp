@@ -12,7 +12,7 @@
 #include "view_stage.h"
 #include "view_window.h"
 
-// throng film: a recording, or a crowd that walks now, as a film. No window, no display.
+// throng film: a recording, or a crowd that is simulated now, as a film. Needs no display.
 namespace throng::app {
 namespace {
 
@@ -29,7 +29,7 @@ struct FilmOptions {
   int32_t workers = 0;
 };
 
-// The eye after some seconds of a turn around what it looks at.
+// The eye, turned around its target.
 Vec3d turned(Vec3d eye, Vec3d target, double angle) {
   const Vec3d d = eye - target;
   const double c = std::cos(angle), s = std::sin(angle);
@@ -59,7 +59,7 @@ int film(Session& session, const FilmOptions& options) {
   viewer->play_for(options.from / options.speed);
   for (const std::string& overlay : options.overlays) viewer->show_overlay(overlay);
   if (!options.overlays.empty()) viewer->wait_for_overlays();
-  // Of a recording all that is left, of a crowd ten seconds.
+  // The rest of a recording, or ten seconds of a crowd.
   double seconds = options.seconds;
   const ViewerStatus begin = viewer->status();
   if (seconds <= 0)
@@ -73,9 +73,9 @@ int film(Session& session, const FilmOptions& options) {
   for (uint64_t frame = 0; frame < frames; ++frame) {
     if (session.context.cancel) return fail({Errc::kCancelled, "film: interrupted"});
     if (frame > 0) {
-      const double gone = static_cast<double>(frame) / format.rate;
+      const double elapsed = static_cast<double>(frame) / format.rate;
       if (options.turn != 0) {
-        const double angle = options.turn * gone * std::numbers::pi / 180;
+        const double angle = options.turn * elapsed * std::numbers::pi / 180;
         viewer->look_at(turned(start.eye, start.target, angle), start.target);
       }
       viewer->play_for(1.0 / format.rate);
@@ -106,7 +106,7 @@ int film(Session& session, const FilmOptions& options) {
 
 void add_film(CLI::App& parser, Session& session) {
   CLI::App* command = add_command(
-      parser, session, "film", "Make a film of a recording, or of a crowd that walks now",
+      parser, session, "film", "Make a film of a recording, or of a crowd simulated now",
       "throng bake builtin:garage -o garage.throng\n"
       "throng run garage.throng --avatars 200 --steps 10 --goals random --record walk.replay\n"
       "throng film walk.replay --source builtin:garage --width 320 --height 180 "
@@ -126,14 +126,14 @@ void add_film(CLI::App& parser, Session& session) {
   command->add_option("--overlay", options->overlays, "Switch on, may be repeated")
       ->check(CLI::IsMember(Viewer::overlay_names(), CLI::ignore_case))
       ->allow_extra_args(false);
-  command->add_option("--turn", options->turn, "Turn around what is looked at [degrees/s]");
+  command->add_option("--turn", options->turn, "Turn the eye around its target [degrees/s]");
   command->add_option("--from", options->from, "Leave out what comes before [s]")
       ->check(at_least(0));
   command
       ->add_option("--seconds", options->seconds,
                    "Length of the film, 0: all of a recording, ten of a crowd [s]")
       ->check(between(0, 86400));
-  command->add_option("--play-speed", options->speed, "Of time")
+  command->add_option("--play-speed", options->speed, "Speed of time")
       ->check(between(0.05, 16.0))
       ->capture_default_str();
   command->add_option("--rate", options->format.rate, "Pictures a second")
@@ -145,10 +145,10 @@ void add_film(CLI::App& parser, Session& session) {
   command->add_option("--height", options->format.height, "[px]")
       ->check(between(16, 4096))
       ->capture_default_str();
-  command->add_option("--avatars", target.start.avatars, "How many walk in a world")
+  command->add_option("--avatars", target.start.avatars, "Avatars in a world")
       ->capture_default_str();
   command->add_option("--seed", target.start.seed, "Seed of all chance")->capture_default_str();
-  command->add_option("--near", target.start.near, "Goals within so many metres, 0: anywhere")
+  command->add_option("--near", target.start.near, "Max distance of goals, 0: anywhere [m]")
       ->check(at_least(0))
       ->capture_default_str();
   add_people_options(command, target);

@@ -10,7 +10,7 @@
 #include "throng/graph.h"
 #include "throng/world.h"
 
-// throng info: what a baked world holds, and whether its files are intact.
+// throng info: prints the content of a baked world, and checks its files.
 namespace throng::app {
 namespace {
 
@@ -98,7 +98,7 @@ std::string info_text(const InfoOptions& options, const WorldSummary& summary,
   }
   if (air) {
     text += fmt::format(
-        "air from {:.1f} to {:.1f} m in cells of {} m: {} zones with matter, {} free cells in {} "
+        "air from {:.1f} to {:.1f} m in voxels of {} m: {} zones with solids, {} free voxels in {} "
         "nodes, {}\n",
         air->floor, air->ceiling, air->cell, air->zones, air->free_cells, air->nodes,
         human_bytes(air->bytes));

@@ -22,7 +22,8 @@
 #include "throng/path.h"
 #include "throng/world.h"
 
-// throng path: the shortest way for an avatar class between two places.
+// throng path: the shortest path of an avatar class between two places, on foot, over nodes or
+// through the air.
 namespace throng::app {
 namespace {
 
@@ -30,12 +31,12 @@ struct PathOptions {
   std::string world;
   std::string avatar_class = "adult";
   std::vector<double> from, to;
-  double reach = 1.0;
+  double tolerance = 1.0;
   int32_t threads = 0;
   bool fly = false;
   bool nodes = false;
   std::vector<double> blocks;          // six numbers a box
-  std::vector<double> off_mesh_links;  // six numbers a jump
+  std::vector<double> off_mesh_links;  // six numbers a link
   std::vector<double> area_costs;      // a kind and its cost
   double slope_cost = 0;
   uint64_t search_bytes = SearchBudget::kDefaultBytes;
@@ -59,10 +60,10 @@ const char* word_for(SpentBudget spent) {
   return "";
 }
 
-// What a search had too little of, and what to do; empty if it had enough.
+// The remedy if the memory of a search was exhausted; else empty.
 std::string text_for(const PathOptions& options, SpentBudget spent) {
   if (spent != SpentBudget::kMemory) return {};
-  return fmt::format("  the search would take more than {} MiB of memory; raise --search-memory\n",
+  return fmt::format("  the search needs more than {} MiB of memory; raise --search-memory\n",
                      options.search_bytes >> 20);
 }
 
@@ -75,24 +76,24 @@ const char* word_for(PathEnd end) {
     case PathEnd::kNoPlace:
       return "no place";
     case PathEnd::kBudgetExhausted:
-      return "gave up";
+      return "budget exhausted";
   }
   return "";
 }
 
-// "WORLD: --from (1, 2, 3) " and what is wrong with that end.
+// "WORLD: --from (1, 2, 3) " and the fault of that end.
 Error bad_end(const PathOptions& options, const Vec3d& position, const char* option,
               const std::string& what) {
   return bad_position(options.world, option, position, what);
 }
 
-// One end of the way as a position; fails with a sentence if it is none of the world's.
+// One end of the path as a position. Fails with a sentence if it lies outside the world.
 Result<Vec3d> position_of(const World& world, const PathOptions& options,
                           const std::vector<double>& at, const char* option) {
   return position_in(world, options.world, option, at);
 }
 
-// The same as a place; fails with a sentence if the class cannot stand there.
+// One end of the path as a place. Fails with a sentence if the class cannot stand there.
 Result<Place> place_of(const World& world, const PathOptions& options, int32_t avatar_class,
                        const std::vector<double>& at, const char* option) {
   const Result<Vec3d> found = position_of(world, options, at, option);
@@ -101,13 +102,13 @@ Result<Place> place_of(const World& world, const PathOptions& options, int32_t a
   const auto bad = [&](const std::string& what) {
     return bad_end(options, position, option, what);
   };
-  const Place place = world.find_place(avatar_class, position, options.reach);
+  const Place place = world.find_place(avatar_class, position, options.tolerance);
   if (!place) {
-    if (auto ok = world.check_ground(); !ok) return ok.error();  // Its zone may be what is bad.
+    if (auto ok = world.check_ground(); !ok) return ok.error();  // Its zone may be damaged.
     return bad(
         fmt::format("is no place where class {} can stand, within {} m up or down; see "
-                    "`throng picture`, or give a wider --reach",
-                    options.avatar_class, options.reach));
+                    "`throng picture`, or give a larger --tolerance",
+                    options.avatar_class, options.tolerance));
   }
   return place;
 }
@@ -128,7 +129,7 @@ Json path_json(const PathOptions& options, const Path& path, const Place& to, do
   for (const uint32_t point : path.off_mesh_links) {
     links.push_back({{"point", point}, {"kind", app::word_for(LinkKind::kOffMesh)}});
   }
-  // Where nothing costs more than its length, that is the cost.
+  // Without costs of ground, the cost is the length.
   Json json = {{"world", options.world},
                {"class", options.avatar_class},
                {"end", word_for(path.end)},
@@ -139,7 +140,7 @@ Json path_json(const PathOptions& options, const Path& path, const Place& to, do
                {"nodes", path.nodes},
                {"seconds", seconds}};
   if (path.spent != SpentBudget::kNone) json["spent"] = word_for(path.spent);
-  if (options.is_live()) json["jumps"] = path.off_mesh_links;
+  if (options.is_live()) json["off_mesh_links"] = path.off_mesh_links;
   if (path.end == PathEnd::kUnreachable && !path.points.empty()) {
     const Vec3d& nearest = path.points.back().position;
     json["nearest"] = {{"place", numbers(nearest)},
@@ -162,23 +163,22 @@ std::string path_text(const PathOptions& options, const Path& path, const Place&
                       double seconds) {
   std::string text;
   if (path.end == PathEnd::kReached) {
-    text = fmt::format("{:.3f} m for {}, {} legs, found in {:.3f} ms\n", path.length,
+    text = fmt::format("{:.3f} m for {}, {} segments, found in {:.3f} ms\n", path.length,
                        options.avatar_class, path.points.size() - 1, seconds * 1e3);
     if (options.is_live()) text += fmt::format("  costs {:.3f}\n", path.cost);
   } else {
-    text = fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end)) +
+    text = fmt::format("no path for {}: {}\n", options.avatar_class, word_for(path.end)) +
            text_for(options, path.spent);
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d& nearest = path.points.back().position;
-    text += fmt::format("  gets to ({}), {}; what is in the way: {}\n", where(nearest),
+    text += fmt::format("  gets to ({}), {}; blocked by: {}\n", where(nearest),
                         how_near(nearest, to.position), app::word_for(path.obstacle));
   }
-  size_t off_mesh_link = 0;
+  size_t link = 0;
   for (size_t i = 0; i < path.points.size(); ++i) {
-    const bool off_mesh_links =
-        off_mesh_link < path.off_mesh_links.size() && path.off_mesh_links[off_mesh_link] == i;
-    if (off_mesh_links) ++off_mesh_link;
-    text += "  " + where(path.points[i].position) + (off_mesh_links ? "  jump\n" : "\n");
+    const bool is_start = link < path.off_mesh_links.size() && path.off_mesh_links[link] == i;
+    if (is_start) ++link;
+    text += "  " + where(path.points[i].position) + (is_start ? "  off-mesh link\n" : "\n");
   }
   return text;
 }
@@ -209,7 +209,7 @@ Json flight_json(const PathOptions& options, const FlightPath& path, const Vec3d
       {"length", path.length},
       {"cost", path.length},
       {"points", points},
-      {"legs", segments},
+      {"segments", segments},
       {"nodes", path.nodes},
       {"seconds", seconds},
       {"air", {{"boxes", summary.boxes}, {"bytes", summary.bytes}, {"seconds", summary.seconds}}}};
@@ -227,15 +227,15 @@ std::string flight_text(const PathOptions& options, const FlightPath& path, cons
                         double seconds) {
   std::string text;
   if (path.end == PathEnd::kReached) {
-    text = fmt::format("{:.3f} m for {}, {} legs, found in {:.3f} ms\n", path.length,
+    text = fmt::format("{:.3f} m for {}, {} segments, found in {:.3f} ms\n", path.length,
                        options.avatar_class, path.segments.size(), seconds * 1e3);
   } else {
-    text = fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end)) +
+    text = fmt::format("no path for {}: {}\n", options.avatar_class, word_for(path.end)) +
            text_for(options, path.spent);
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d& nearest = path.points.back();
-    text += fmt::format("  gets to ({}), {:.3f} m from there; what is in the way: {}\n",
-                        where(nearest), length(to - nearest), app::word_for(path.obstacle));
+    text += fmt::format("  gets to ({}), {:.3f} m from there; blocked by: {}\n", where(nearest),
+                        length(to - nearest), app::word_for(path.obstacle));
   }
   for (size_t i = 0; i < path.points.size(); ++i) {
     text += fmt::format("  {}{}\n", where(path.points[i]),
@@ -244,9 +244,9 @@ std::string flight_text(const PathOptions& options, const FlightPath& path, cons
   return text;
 }
 
-// Puts the boxes of --block up, over the ground or in the air.
+// Adds the boxes of --block as obstacles.
 template <class Finder>
-Result<void> put_up(const PathOptions& options, Finder& finder) {
+Result<void> add_boxes(const PathOptions& options, Finder& finder) {
   const auto boxes = boxes_of(options.blocks);
   if (!boxes) return boxes.error();
   for (const Prism& box : *boxes) {
@@ -264,31 +264,31 @@ int fly(Session& session, const PathOptions& options, const World& world, int32_
       world, {.avatar_class = avatar_class, .workers = options.threads}, session.context);
   if (!finder) return fail(finder.error());
   for (const auto& [position, option] : {std::pair{*from, "--from"}, std::pair{*to, "--to"}}) {
-    if (finder->is_legal(position) || world.find_place(avatar_class, position, options.reach)) {
+    if (finder->is_legal(position) || world.find_place(avatar_class, position, options.tolerance)) {
       continue;
     }
     return fail(bad_end(options, position, option,
                         fmt::format("is neither in the air nor on the ground for class {}: its "
-                                    "body would touch matter, or it lies above or below the air",
+                                    "body would touch a solid, or it lies above or below the air",
                                     options.avatar_class)));
   }
-  if (auto ok = put_up(options, *finder); !ok) return fail(ok.error());
+  if (auto ok = add_boxes(options, *finder); !ok) return fail(ok.error());
   FlightPath found;
   const auto start = std::chrono::steady_clock::now();
   finder->find({.from = *from,
                 .to = *to,
-                .vertical_tolerance = options.reach,
+                .vertical_tolerance = options.tolerance,
                 .max_bytes = options.search_bytes,
                 .cancel = &session.context.cancel},
                found);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (found.end == PathEnd::kNoPlace) {
-    // Which end it is: a way from each to itself is told at once.
+    // Find out which end is blocked: a path from an end to itself.
     for (const auto& [position, option] : {std::pair{*from, "--from"}, std::pair{*to, "--to"}}) {
-      finder->find({.from = position, .to = position, .vertical_tolerance = options.reach}, found);
+      finder->find({.from = position, .to = position, .vertical_tolerance = options.tolerance}, found);
       if (found.end != PathEnd::kNoPlace) continue;
-      return fail(bad_end(options, position, option, "is no place to be now: a --block is there"));
+      return fail(bad_end(options, position, option, "is blocked: a --block is there"));
     }
   }
   print_result(session, flight_json(options, found, *to, finder->summary(), seconds),
@@ -305,7 +305,7 @@ Json node_path_json(const PathOptions& options, const NodePath& path, const Node
   }
   for (const NodePathLink& link : path.links) {
     links.push_back(
-        {{"point", link.point}, {"kind", app::word_for(link.kind)}, {"leaps", link.over_hole}});
+        {{"point", link.point}, {"kind", app::word_for(link.kind)}, {"over_hole", link.over_hole}});
   }
   Json json = {{"world", options.world},
                {"class", options.avatar_class},
@@ -333,8 +333,8 @@ Json node_path_json(const PathOptions& options, const NodePath& path, const Node
   return json;
 }
 
-const char* word_of_gap(const NodePathLink& link) {
-  return link.over_hole && link.kind != LinkKind::kDrop ? " over a gap" : "";
+const char* text_of_hole(const NodePathLink& link) {
+  return link.over_hole && link.kind != LinkKind::kDrop ? " over a hole" : "";
 }
 
 std::string node_path_text(const PathOptions& options, const NodePath& path, const NodePlace& to,
@@ -344,12 +344,12 @@ std::string node_path_text(const PathOptions& options, const NodePath& path, con
     text = fmt::format("{:.3f} m for {} over {} nodes, found in {:.3f} ms\n", path.length,
                        options.avatar_class, path.corridor.size(), seconds * 1e3);
   } else {
-    text = fmt::format("no way for {}: {}\n", options.avatar_class, word_for(path.end)) +
+    text = fmt::format("no path for {}: {}\n", options.avatar_class, word_for(path.end)) +
            text_for(options, path.spent);
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d nearest = path.points.back().place.feet;
-    text += fmt::format("  gets to ({}), {:.3f} m from there; what is in the way: {}\n",
-                        where(nearest), length(nearest - to.feet), app::word_for(path.obstacle));
+    text += fmt::format("  gets to ({}), {:.3f} m from there; blocked by: {}\n", where(nearest),
+                        length(nearest - to.feet), app::word_for(path.obstacle));
   }
   size_t link = 0;
   for (size_t i = 0; i < path.points.size(); ++i) {
@@ -360,47 +360,47 @@ std::string node_path_text(const PathOptions& options, const NodePath& path, con
     for (; link < path.links.size() && path.links[link].point == i; ++link) {
       if (path.links[link].kind == LinkKind::kWalk) continue;
       text += fmt::format("  {}{}", app::word_for(path.links[link].kind),
-                          word_of_gap(path.links[link]));
+                          text_of_hole(path.links[link]));
     }
     text += '\n';
   }
   return text;
 }
 
-constexpr double kBeside = 0.01;  // What an end may be off in the plane without a word. [m]
+constexpr double kMaxOffset = 0.01;  // of an end in the plane; larger ones are printed [m]
 
-int go_over_nodes(Session& session, const PathOptions& options, const World& world,
-                  int32_t avatar_class) {
+int find_over_nodes(Session& session, const PathOptions& options, const World& world,
+                    int32_t avatar_class) {
   const auto from_position = position_of(world, options, options.from, "--from");
   if (!from_position) return fail(from_position.error());
   const auto to_position = position_of(world, options, options.to, "--to");
   if (!to_position) return fail(to_position.error());
   const Result<Nodes> nodes = Nodes::open(options.world);
   if (!nodes) return fail(nodes.error());
-  auto finder =
-      NodePathFinder::make(*nodes,
-                           {.avatar_class = avatar_class,
-                            .slope_cost = options.slope_cost,
-                            .overlay = false,  // For one way they are not worth their time.
-                            .workers = options.threads},
-                           session.context);
+  auto finder = NodePathFinder::make(*nodes,
+                                     {.avatar_class = avatar_class,
+                                      .slope_cost = options.slope_cost,
+                                      .overlay = false,  // One query does not repay its time.
+                                      .workers = options.threads},
+                                     session.context);
   if (!finder) return fail(finder.error());
-  if (auto ok = put_up(options, *finder); !ok) return fail(ok.error());
-  // Who only walks is on the ground up or down from there; else it is the nearest place.
+  if (auto ok = add_boxes(options, *finder); !ok) return fail(ok.error());
+  // A class that only walks: the ground above or below; if there is none, the nearest place.
   const bool climbs = goes_over_nodes(world.summary().classes[static_cast<size_t>(avatar_class)]);
-  const auto place_at = [&](const Vec3d& position) {
-    const Place ground = climbs ? Place{} : world.find_place(avatar_class, position, options.reach);
-    return finder->find_place(ground ? ground.position : position, options.reach);
+  const auto find_place = [&](const Vec3d& position) {
+    const Place ground =
+        climbs ? Place{} : world.find_place(avatar_class, position, options.tolerance);
+    return finder->find_place(ground ? ground.position : position, options.tolerance);
   };
-  const NodePlace from = place_at(*from_position);
-  const NodePlace to = place_at(*to_position);
+  const NodePlace from = find_place(*from_position);
+  const NodePlace to = find_place(*to_position);
   for (const auto& [place, position, option] :
        {std::tuple{from, *from_position, "--from"}, std::tuple{to, *to_position, "--to"}}) {
     if (place) continue;
     return fail(bad_end(options, position, option,
                         fmt::format("is no place on nodes where class {} can be, within {} m; see "
-                                    "`throng picture --nodes`, or give a wider --reach",
-                                    options.avatar_class, options.reach)));
+                                    "`throng picture --nodes`, or give a larger --tolerance",
+                                    options.avatar_class, options.tolerance)));
   }
   NodePath found;
   const auto start = std::chrono::steady_clock::now();
@@ -410,30 +410,31 @@ int go_over_nodes(Session& session, const PathOptions& options, const World& wor
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Json json = node_path_json(options, found, to, finder->summary(), seconds);
   std::string text = node_path_text(options, found, to, seconds);
-  for (const auto& [place, asked, end] :
+  for (const auto& [place, position, end] :
        {std::tuple{from, *from_position, "from"}, std::tuple{to, *to_position, "to"}}) {
-    const double beside = plan_distance(place.feet, asked);
-    json["beside"][end] = beside;
-    if (beside < kBeside) continue;
-    text += fmt::format("  --{} is {:.3f} m beside, at ({})\n", end, beside, where(place.feet));
+    const double offset = plan_distance(place.feet, position);
+    json["beside"][end] = offset;
+    if (offset < kMaxOffset) continue;
+    text += fmt::format("  --{} is {:.3f} m beside, at ({})\n", end, offset, where(place.feet));
   }
   print_result(session, json, text);
   return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;
 }
 
-// The ground as the options say that it is now.
+// The ground with the boxes, costs and off-mesh links of the options.
 Result<LiveGround> live_ground(const World& world, const PathOptions& options,
                                int32_t avatar_class) {
   auto ground =
       LiveGround::make(world, {.avatar_class = avatar_class, .slope_cost = options.slope_cost});
   if (!ground) return ground.error();
-  if (auto ok = put_up(options, *ground); !ok) return ok.error();
+  if (auto ok = add_boxes(options, *ground); !ok) return ok.error();
   for (size_t i = 0; i < options.area_costs.size(); i += 2) {
     const double kind = options.area_costs[i];
     if (!(kind >= 0 && kind <= 255 && kind == std::floor(kind))) {
       return Error{
           Errc::kBadConfig,
-          fmt::format("--area-cost: {} is no kind of ground, which are whole numbers", kind)};
+          fmt::format("--area-cost: {} is no kind of ground; kinds are whole numbers from 0 to 255",
+                      kind)};
     }
     if (auto ok = ground->set_area_cost(static_cast<uint8_t>(kind), options.area_costs[i + 1]);
         !ok) {
@@ -441,17 +442,17 @@ Result<LiveGround> live_ground(const World& world, const PathOptions& options,
     }
   }
   for (size_t i = 0; i < options.off_mesh_links.size(); i += 6) {
-    OffMeshLink off_mesh_link;
-    for (Place* end : {&off_mesh_link.from, &off_mesh_link.to}) {
-      const auto at = options.off_mesh_links.begin() +
-                      static_cast<ptrdiff_t>(i + (end == &off_mesh_link.to ? 3 : 0));
-      auto place = place_of(world, options, avatar_class, {at, at + 3}, "--jump");
+    OffMeshLink link;
+    for (Place* end : {&link.from, &link.to}) {
+      const auto at =
+          options.off_mesh_links.begin() + static_cast<ptrdiff_t>(i + (end == &link.to ? 3 : 0));
+      auto place = place_of(world, options, avatar_class, {at, at + 3}, "--off-mesh-link");
       if (!place) return place.error();
       *end = *place;
     }
-    off_mesh_link.cost = length(off_mesh_link.to.position - off_mesh_link.from.position);
-    if (auto added = ground->add_off_mesh_link(off_mesh_link); !added) {
-      return Error{Errc::kBadInput, "--jump: " + added.error().message};
+    link.cost = length(link.to.position - link.from.position);
+    if (auto added = ground->add_off_mesh_link(link); !added) {
+      return Error{Errc::kBadInput, "--off-mesh-link: " + added.error().message};
     }
   }
   return ground;
@@ -464,26 +465,26 @@ int path(Session& session, const PathOptions& options) {
   if (!avatar_class) return fail(avatar_class.error());
   const AvatarClass avatar = world->summary().classes[static_cast<size_t>(*avatar_class)];
   if (options.fly && options.nodes) {
-    return fail({Errc::kBadConfig, "--fly leads through the air, --nodes over the ground"});
+    return fail({Errc::kBadConfig, "--fly finds paths through the air, --nodes over the ground"});
   }
   if (options.fly) {
     if (!options.off_mesh_links.empty() || !options.area_costs.empty() || options.slope_cost > 0) {
       return fail({Errc::kBadConfig,
-                   "--jump, --area-cost and --slope-cost are about the ground; ways through the "
-                   "air (--fly) only mind a --block"});
+                   "--off-mesh-link, --area-cost and --slope-cost change the ground; paths through "
+                   "the air (--fly) take only --block"});
     }
     return fly(session, options, *world, *avatar_class);
   }
   if (options.nodes || goes_over_nodes(avatar)) {
     if (!options.off_mesh_links.empty() || !options.area_costs.empty()) {
       return fail({Errc::kBadConfig,
-                   "--jump and --area-cost change the ground of level tiles; ways over nodes take "
-                   "jumps from `throng bake --jumps`"});
+                   "--off-mesh-link and --area-cost change the ground of level tiles; paths over "
+                   "nodes take off-mesh links from `throng bake --off-mesh-links`"});
     }
-    return go_over_nodes(session, options, *world, *avatar_class);
+    return find_over_nodes(session, options, *world, *avatar_class);
   }
   if (options.is_live()) {
-    // Ground that changes is read as it is needed, and a zone that cannot be is nobody's ground.
+    // A LiveGround reads zones on demand and takes a damaged one for empty: check all first.
     if (auto ok = world->check_ground(); !ok) return fail(ok.error());
   }
   const auto from = place_of(*world, options, *avatar_class, options.from, "--from");
@@ -506,15 +507,14 @@ int path(Session& session, const PathOptions& options) {
     mesh = mesh_json(finder->summary());
     timed([&] { finder->find(*from, *to, found, budget); });
   }
-  // How near it gets, and why no nearer, only the other one says.
+  // Only LiveGround finds the nearest point and its blocker.
   if (options.is_live() || found.end == PathEnd::kUnreachable) {
     auto ground = live_ground(*world, options, *avatar_class);
     if (!ground) return fail(ground.error());
     for (const auto& [place, option] : {std::pair{*from, "--from"}, std::pair{*to, "--to"}}) {
       if (ground->is_free(place)) continue;
-      return fail(
-          bad_end(options, place.position, option,
-                  "is no place to stand now: a --block stands there, or its ground is closed"));
+      return fail(bad_end(options, place.position, option,
+                          "is blocked: a --block stands there, or its ground is closed"));
     }
     timed([&] { ground->find(*from, *to, found, budget); });
   }
@@ -529,14 +529,14 @@ int path(Session& session, const PathOptions& options) {
 
 void add_path(CLI::App& parser, Session& session) {
   CLI::App* command =
-      add_command(parser, session, "path", "Find the shortest way between two places",
+      add_command(parser, session, "path", "Find the shortest path between two places",
                   "throng bake builtin:garage -o garage.throng\n"
                   "throng path garage.throng --from 14,0,8 --to 30,8.7,30 --class adult\n"
                   "throng path garage.throng --from 14,0,8 --to 20,0,8 --block 16,0,0,17,2,9\n"
                   "throng bake builtin:bridge --fly -o bridge.throng\n"
                   "throng path bridge.throng --from 10,9,10 --to 30,9,30 --class flyer --fly\n"
                   "throng bake builtin:landscape,size=160 -o hills.throng --cell 0.5 --nodes\n"
-                  "throng path hills.throng --from 20,5,20 --to 120,5,90 --reach 20 --nodes");
+                  "throng path hills.throng --from 20,5,20 --to 120,5,90 --tolerance 20 --nodes");
   const auto options = std::make_shared<PathOptions>();
   const auto add_place = [&](const char* name, std::vector<double>& at, const char* what) {
     command->add_option(name, at, what)
@@ -546,21 +546,21 @@ void add_path(CLI::App& parser, Session& session) {
         ->type_name("X,Y,Z");
   };
   command->add_option("world", options->world, "World folder")->required()->type_name("WORLD");
-  add_place("--from", options->from, "Where it begins [m]");
-  add_place("--to", options->to, "Where it ends [m]");
+  add_place("--from", options->from, "Start of the path [m]");
+  add_place("--to", options->to, "Goal of the path [m]");
   command->add_option("--class", options->avatar_class, "Avatar class by name")
       ->capture_default_str();
   command
       ->add_option(
-          "--reach", options->reach,
-          "How far up or down the feet may be; for climbers, and over nodes where there is no "
-          "ground up or down, how far off at all [m]")
+          "--tolerance", options->tolerance,
+          "Vertical tolerance of both ends; search radius for classes that climb, and over nodes "
+          "without ground above or below [m]")
       ->check(at_least(0))
       ->capture_default_str();
   command->add_flag("--fly", options->fly,
-                    "Through the air, for a class that flies; either end may be on the ground");
+                    "Path through the air, for a class that flies; an end may be on the ground");
   command->add_flag("--nodes", options->nodes,
-                    "Over the world's nodes, as classes that climb always go");
+                    "Path over the world's nodes, as always for classes that climb");
   const auto add_list = [&](const char* name, std::vector<double>& list, const char* what,
                             char between, int count, const char* type) {
     command->add_option(name, list, what)
@@ -570,13 +570,13 @@ void add_path(CLI::App& parser, Session& session) {
         ->type_name(type);
   };
   add_blocks(command, options->blocks);
-  add_list("--jump", options->off_mesh_links,
-           "A way from one place to another and back, given by hand [m]", ',', 6, "X,Y,Z,X,Y,Z");
-  add_list("--area-cost", options->area_costs,
-           "What a metre on ground of a kind costs; inf closes it", '=', 2, "KIND=COST");
+  add_list("--off-mesh-link", options->off_mesh_links,
+           "A link from one place to another and back, given by hand [m]", ',', 6, "X,Y,Z,X,Y,Z");
+  add_list("--area-cost", options->area_costs, "Cost of a metre on ground of a kind; inf closes it",
+           '=', 2, "KIND=COST");
   command
       ->add_option("--slope-cost", options->slope_cost,
-                   "What a metre costs more for each metre that the ground rises on it")
+                   "Additional cost of a metre per metre of rise")
       ->check(between(0.0, 1000.0))
       ->capture_default_str();
   add_search_memory(*command, options->search_bytes);

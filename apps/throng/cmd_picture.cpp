@@ -15,7 +15,7 @@
 #include "throng/nodes.h"
 #include "throng/picture.h"
 
-// throng picture: a baked world, and a crowd in it, on one sheet.
+// throng picture: a baked world, and a crowd in it, drawn from above as one PNG.
 namespace throng::app {
 namespace {
 
@@ -33,7 +33,7 @@ struct PictureOptions {
   NodePictureConfig node_config;
 };
 
-// The points of what `throng path --json` printed.
+// The points of a path that `throng path --json` printed.
 Result<std::vector<Vec3d>> read_path(const std::string& name) {
   std::ifstream file(name);
   const auto bad = [&](const char* what) { return Error{Errc::kBadFile, name + ": " + what}; };
@@ -94,9 +94,10 @@ int picture(Session& session, PictureOptions& options) {
     return draw_scene_picture(session, *world, options.scene, options.output);
   }
   if (options.scene.needs_camera()) {
-    return fail({Errc::kBadConfig,
-                 "--atlas, --crowd, --height, --source and --view-angle draw what an eye sees: add "
-                 "--camera X,Y,Z,TX,TY,TZ"});
+    return fail(
+        {Errc::kBadConfig,
+         "--atlas, --crowd, --height, --source and --view-angle draw a view from an eye: add "
+         "--camera X,Y,Z,TX,TY,TZ"});
   }
   std::vector<PictureAvatar> avatars;
   if (!options.avatars.empty()) {
@@ -154,7 +155,7 @@ void add_picture(CLI::App& parser, Session& session) {
       ->type_name("FILE.csv");
   command
       ->add_option("--class", options->avatar_class,
-                   "Whose floors to show; with --nodes: whose nodes and links")
+                   "Class of the floors to draw; with --nodes: of the nodes and links")
       ->type_name("NAME");
   command->add_flag("--nodes", options->nodes, "Draw the world's nodes, by inclination");
   command->add_flag("--links", options->node_config.links, "With --nodes: also their links");
@@ -164,7 +165,7 @@ void add_picture(CLI::App& parser, Session& session) {
       ->expected(4)
       ->delimiter(',')
       ->type_name("X0,Z0,X1,Z1");
-  command->add_option("--path", options->path, "A way, as `throng path --json` prints it")
+  command->add_option("--path", options->path, "A path, as `throng path --json` prints it")
       ->type_name("FILE.json");
   command->add_option("--width", options->config.width, "Width of the picture [px]")
       ->capture_default_str();

@@ -15,8 +15,7 @@
 #include "throng/walkable_surface.h"
 #include "trajectory_db.h"
 
-// throng replay: what a recording holds, as files of other programs, and whether it comes out the
-// same again.
+// throng replay: prints what a recording holds, exports it, and compares it with a repeated run.
 namespace throng::app {
 namespace {
 
@@ -33,15 +32,15 @@ struct ReplayOptions {
 
 struct Area {
   std::string wkt;
-  std::string remark;  // on what is not in it, or empty
+  std::string remark;  // which area it leaves out, or empty
 };
 
-// The largest piece of the plane: tools of pedestrian research know one polygon.
+// The largest piece of walkable area: tools of pedestrian research take one polygon.
 Result<Area> area_of(Session& session, const ReplayOptions& options, const Replay& replay,
                      const ExportConfig& config) {
   const Result<World> world = world_of(replay.info(), options.world);
   if (!world) {
-    // Asked for by name, it must be there; else the positions are worth having alone.
+    // A world named by an option must exist; else the positions are exported alone.
     if (!options.world.empty()) return world.error();
     return Area{"", world.error().message + "; the file has no geometry"};
   }
@@ -52,7 +51,7 @@ Result<Area> area_of(Session& session, const ReplayOptions& options, const Repla
   const auto pieces =
       walkable_pieces(*world, *avatar_class, config.lowest, config.highest, session.context);
   if (!pieces) return pieces.error();
-  if (pieces->empty()) return Area{"", "nobody can stand there; the file has no geometry"};
+  if (pieces->empty()) return Area{"", "no avatar can stand there; the file has no geometry"};
   Area area{.wkt = to_wkt(pieces->front().polygon), .remark = {}};
   double left_out = 0;
   for (size_t i = 1; i < pieces->size(); ++i) left_out += (*pieces)[i].area;
@@ -72,13 +71,13 @@ Json info_json(const ReplayOptions& options, Replay& replay, const FilmRate& fil
     classes.push_back({{"name", c.name}, {"height", c.height}, {"radius", c.radius}});
   }
   uint64_t positions = 0;
-  uint32_t most = 0;
+  uint32_t max_avatars = 0;
   double last_time = 0, first_time = 0;
   for (uint64_t f = 0; f < frames; ++f) {
     const Result<FrameInfo> frame = replay.frame_info(f);
     if (!frame) continue;
     positions += frame->avatars;
-    most = std::max(most, frame->avatars);
+    max_avatars = std::max(max_avatars, frame->avatars);
     if (f == 0) first_time = frame->time;
     last_time = frame->time;
   }
@@ -97,7 +96,7 @@ Json info_json(const ReplayOptions& options, Replay& replay, const FilmRate& fil
       {"frames_per_second", film.rate},
       {"first_time", first_time},
       {"last_time", last_time},
-      {"most_avatars", most},
+      {"max_avatars", max_avatars},
       {"positions", positions},
       {"bytes", replay.bytes()},
       {"bytes_per_position",
@@ -112,7 +111,7 @@ std::string info_text(const Json& info) {
       "bytes a position{}\n",
       info["file"].get<std::string>(), info["frames"].get<uint64_t>(),
       info["first_time"].get<double>(), info["last_time"].get<double>(),
-      info["most_avatars"].get<uint32_t>(), info["model"].get<std::string>(),
+      info["max_avatars"].get<uint32_t>(), info["model"].get<std::string>(),
       info["world"].get<std::string>(), human_bytes(info["bytes"].get<uint64_t>()),
       info["bytes_per_position"].get<double>(),
       info["complete"].get<bool>() ? "" : "; not complete");
@@ -156,7 +155,7 @@ int show_frame(Session& session, const ReplayOptions& options, Replay& replay) {
   return kDone;
 }
 
-// Runs the recorded inputs again and compares the hash of every step that has one.
+// Repeats the run and compares the hash of every recorded step.
 int check(Session& session, const ReplayOptions& options, Replay& replay) {
   const Result<std::vector<StepHash>> hashes = replay.step_hashes();
   if (!hashes) return fail(hashes.error());
@@ -241,7 +240,7 @@ int replay(Session& session, const ReplayOptions& options) {
 
 void add_replay(CLI::App& parser, Session& session) {
   CLI::App* command =
-      add_command(parser, session, "replay", "Tell, check and convert a recording",
+      add_command(parser, session, "replay", "Describe, check and convert a recording",
                   "throng bake builtin:garage -o garage.throng\n"
                   "throng run garage.throng --avatars 200 --steps 50 --record walk.replay\n"
                   "throng replay walk.replay --csv walk.csv --txt walk.txt\n"
@@ -258,10 +257,9 @@ void add_replay(CLI::App& parser, Session& session) {
       ->expected(2)
       ->type_name("LOW HIGH");
   command->add_option("--class", options->avatar_class,
-                      "Whose walkable area goes into --sqlite (the recording's first)");
-  command->add_option("--at", options->at, "Print who is where at this time [s]");
-  command->add_flag("--check", options->check,
-                    "Run it again and name the first step that comes out differently");
+                      "Class of the walkable area in --sqlite (the recording's first)");
+  command->add_option("--at", options->at, "Print the positions at this time [s]");
+  command->add_flag("--check", options->check, "Run it again and name the first step that differs");
   command->add_option("--world", options->world, "World folder, if it is not where it was")
       ->type_name("WORLD");
   command->add_option("--threads", options->workers, "Threads of --check, 0 for all cores");

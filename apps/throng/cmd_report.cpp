@@ -19,7 +19,7 @@
 namespace throng::app {
 namespace {
 
-constexpr double kLineReach = 1.5;  // above and below the height of a line [m]
+constexpr double kLineTolerance = 1.5;  // vertical, of --line with a height [m]
 
 struct ReportOptions {
   std::string file;
@@ -49,13 +49,13 @@ Result<FlowLine> parse_line(const std::string& text) {
   }
   FlowLine line{.x0 = values[0], .z0 = values[1], .x1 = values[2], .z1 = values[3]};
   if (values.size() == 5) {
-    line.lowest = values[4] - kLineReach;
-    line.highest = values[4] + kLineReach;
+    line.lowest = values[4] - kLineTolerance;
+    line.highest = values[4] + kLineTolerance;
   }
   return line;
 }
 
-// By name, as `throng run` tells of them; none where the recording does not.
+// By name, as `throng run` prints them; empty if the recording has none.
 Json obstacles_of(const Replay& replay) {
   Json found = Json::object();
   const Json outcome = Json::parse(replay.outcome(), nullptr, /*allow_exceptions=*/false);
@@ -86,7 +86,7 @@ ReportText report_text(const ReportOptions& options, const Replay& replay,
   number("came, left", fmt::format("{}, {}", summary.come.back(), summary.left.back()));
   if (summary.left.back() > 0) number("last one left", fmt::format("{:g} s", summary.last_left));
   number("mean speed", fmt::format("{:.3f} m/s", summary.mean_speed));
-  number("waited, all together",
+  number("waited, in total",
          fmt::format("{:.1f} s below {:g} m/s", summary.waited, options.config.slow));
   const double seconds = summary.time.back() - summary.time.front();
   for (size_t l = 0; l < summary.lines.size(); ++l) {
@@ -193,13 +193,13 @@ void add_report(CLI::App& parser, Session& session) {
       ->type_name("FILE.html");
   command
       ->add_option("--line", options->lines,
-                   "Count who crosses this line, near height Y if it is given; any number")
+                   "Count crossings of this line, near height Y if it is given; may be repeated")
       ->type_name("X0,Z0,X1,Z1[,Y]");
   command->add_option("--bin", config.bin, "Bins of the flows [s]")->capture_default_str();
   command->add_option("--cell", config.cell, "Cells of the maps [m]")->capture_default_str();
-  command->add_option("--storey", config.storey, "A map for each so many metres of height [m]")
+  command->add_option("--storey", config.storey, "Height of a storey: a map for each [m]")
       ->capture_default_str();
-  command->add_option("--slow", config.slow, "Who is slower than this waits [m/s]")
+  command->add_option("--slow", config.slow, "An avatar waits if it is slower [m/s]")
       ->capture_default_str();
   command->add_option("--png", options->pictures, "Write the pictures as NAME_*.png, too")
       ->type_name("NAME");

@@ -17,7 +17,8 @@
 #include "throng/wanderers.h"
 #include "throng/world.h"
 
-// throng run: a crowd in a baked world, timed, checked and hashed: of wanderers, or with goals.
+// throng run: moves a crowd of wanderers, or with goals, through a baked world, or runs a scenario;
+// times, checks and hashes it.
 namespace throng::app {
 namespace {
 
@@ -25,7 +26,7 @@ struct RunOptions {
   std::string world;
   std::string class_name;
   SinkOptions sinks;
-  std::string visits, obstacles;
+  std::string trips, obstacles;
   uint64_t steps = 100;
   uint64_t check_every = 0;
   WanderConfig config;
@@ -181,7 +182,7 @@ int run_wanderers(Session& session, const World& world, const RunOptions& option
 }
 
 int run_file(Session& session, const CLI::App& command, const RunOptions& options) {
-  // What the file says is not said again; a world's options are none of a scenario's.
+  // These are in the scenario file, or belong to worlds alone.
   for (const char* name : {"--avatars", "--dt", "--class", "--speed", "--goals", "--near", "--also",
                            "--radius", "--labels", "--zones", "--search-memory"}) {
     if (command.count(name) == 0) continue;
@@ -195,7 +196,7 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
                   .model = {},
                   .check_every = options.check_every,
                   .workers = options.config.workers,
-                  .visits = options.visits,
+                  .trips = options.trips,
                   .obstacles = options.obstacles,
                   .sinks = options.sinks};
   if (command.count("--steps") > 0) run.steps = options.steps;
@@ -222,7 +223,7 @@ int run(Session& session, RunOptions& options) {
 
 void add_run(CLI::App& parser, Session& session) {
   CLI::App* command = add_command(
-      parser, session, "run", "Walk a crowd through a baked world, or run a scenario",
+      parser, session, "run", "Move a crowd through a baked world, or run a scenario",
       "throng bake builtin:garage -o garage.throng\n"
       "throng run garage.throng --avatars 200 --steps 50 --goals random --trajectories walk.csv");
   const auto options = std::make_shared<RunOptions>();
@@ -240,20 +241,20 @@ void add_run(CLI::App& parser, Session& session) {
   command
       ->add_option(
           "--goals", options->crowd.goals,
-          "Go to goals and avoid each other: 'random', or a file of lines x,y,z. Who "
-          "flies begins in the air, and half of his random goals are there; who climbs goes "
+          "Go to goals and avoid each other: 'random', or a file of lines x,y,z. Avatars that fly "
+          "begin in the air, and half of their random goals are there; those that climb move "
           "over nodes, if the world has any")
       ->type_name("random|FILE");
   command
-      ->add_option("--near", options->crowd.near, "Random goals within so many metres, 0: anywhere")
+      ->add_option("--near", options->crowd.near, "Max distance of random goals, 0: anywhere [m]")
       ->check(at_least(0));
-  command->add_option("--also", options->also, "So many of another class, too; more than once")
+  command->add_option("--also", options->also, "Avatars of another class; may be repeated")
       ->type_name("CLASS:N");
   command->add_option("--radius", options->crowd.radius,
-                      "Of bodies with goals, 0 for the class's own [m]");
+                      "Radius of avatars with goals, 0 for the class's own [m]");
   command->add_flag("--labels", options->crowd.config.labels,
-                    "Label corners: faster ways, for small worlds");
-  command->add_flag("--zones", options->crowd.config.zones, "Ways by zones: for large worlds");
+                    "Label corners: faster paths, for small worlds");
+  command->add_flag("--zones", options->crowd.config.zones, "Paths by zones: for large worlds");
   add_search_memory(*command, options->crowd.config.search_bytes);
   add_model(*command, options->crowd.config.model);
   command->add_option("--trajectories", options->sinks.trajectories, "Write positions to this file")
@@ -264,12 +265,14 @@ void add_run(CLI::App& parser, Session& session) {
       ->check(above(0))
       ->capture_default_str();
   command->add_option("--check-every", options->check_every,
-                      "Look for walls entered and overlaps each K-th step, 0 for ten times a run");
-  command->add_option("--visits", options->visits, "Of a scenario: write who came and went")
+                      "Check for walls entered and overlaps each K-th step, 0: ten times a run");
+  command
+      ->add_option("--trips", options->trips,
+                   "Of a scenario: write a line for each trip of an avatar")
       ->type_name("FILE.csv");
   command
       ->add_option("--obstacles", options->obstacles,
-                   "Of a scenario: write when its obstacles were to come, and when they were up")
+                   "Of a scenario: write when obstacles were requested, and when they were up")
       ->type_name("FILE.csv");
   command->callback([&session, options, command] {
     if (is_scenario_file(options->world)) {
@@ -277,7 +280,7 @@ void add_run(CLI::App& parser, Session& session) {
       return;
     }
     for (const auto& [name, path] :
-         {std::pair("--visits", &options->visits), std::pair("--obstacles", &options->obstacles)}) {
+         {std::pair("--trips", &options->trips), std::pair("--obstacles", &options->obstacles)}) {
       if (path->empty()) continue;
       const std::string what = name;
       session.exit_code = fail({Errc::kBadConfig, what + " goes with a scenario file"});

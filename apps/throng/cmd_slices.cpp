@@ -12,7 +12,7 @@
 #include "throng/picture.h"
 #include "throng/slices.h"
 
-// throng slices: the seed's own preprocessing, for comparison and to look at.
+// throng slices: height slices of a model as in [ML06], for comparison.
 namespace throng::app {
 namespace {
 
@@ -22,7 +22,7 @@ struct SlicesOptions {
   SliceConfig config;
 };
 
-// What the kept slices take as [ML06] section 3.3 stores them: depths below the slice's height, 16
+// Bytes of the kept slices as [ML06] section 3.3 stores them: depths below the slice's height, 16
 // bits a cell where the deepest is at most 65.534 m (65535 mm stands for an empty cell), else 32.
 uint64_t stored_bytes(const SliceSet& set) {
   constexpr int32_t kDeepest = 65534;

@@ -14,7 +14,7 @@
 #include "throng/validation.h"
 #include "trials_folder.h"
 
-// throng validate: what is known of real crowds, tried on ours.
+// throng validate: tests the crowd against measured and standard behaviour of people.
 namespace throng::app {
 namespace {
 
@@ -42,7 +42,7 @@ Json test_json(const ValidationTest& test) {
 struct Item {
   ValidationTest about;
   std::optional<Trial> trial = {};
-  std::string recordings = {};  // A folder; empty: none are needed.
+  std::string recordings = {};  // Folder; empty: the test needs none.
 };
 
 Json item_json(const Item& item) {
@@ -62,7 +62,7 @@ Json result_json(const Item& item, const ValidationResult& result) {
   json["overlaps"] = result.faults.overlaps;
   json["wall_entries"] = result.faults.wall_entries;
   json["obstacle_entries"] = result.faults.obstacle_entries;
-  json["looks"] = result.checks;
+  json["checks"] = result.checks;
   json["simulated"] = result.simulated;
   json["seconds"] = result.seconds;
   return json;
@@ -82,7 +82,7 @@ std::string result_text(const ValidationTest& test, const ValidationResult& resu
     text += fmt::format("  {:48} {:9.3f} {:8}{}\n", m.name, m.value, m.unit, range_text(m));
   }
   text +=
-      fmt::format("  {} overlaps, {} wall entries in {} looks; {:.0f} s simulated in {:.1f} s\n",
+      fmt::format("  {} overlaps, {} wall entries in {} checks; {:.0f} s simulated in {:.1f} s\n",
                   result.faults.overlaps, result.faults.wall_entries, result.checks,
                   result.simulated, result.seconds);
   return text + (result.passed() ? "  passed\n" : "  FAILED\n");
@@ -136,7 +136,7 @@ Result<ValidationResult> run_item(const Item& item, const ValidationConfig& conf
   return run_recorded_validation(item.about.name, item.recordings, config, context);
 }
 
-// Those that a word on the command line means: a test, a standard, or a file.
+// The tests that a word on the command line names: a test, a standard, or a file.
 Result<std::vector<Item>> items_named(const std::string& word, const std::vector<Item>& all) {
   if (word.ends_with(".toml") || word.ends_with(".json")) {
     auto trial = load_trial(word);
@@ -227,14 +227,14 @@ int run(const ValidateOptions& options, Session& session) {
 void add_validate(CLI::App& parser, Session& session) {
   auto options = std::make_shared<ValidateOptions>();
   CLI::App* command = add_command(parser, session, "validate",
-                                  "Try what is known of real crowds: exit code 1 if a test fails",
+                                  "Test the crowd against real ones: exit code 1 if a test fails",
                                   "throng validate --list\n"
                                   "throng validate rimea.1 nist.2.1");
   command->add_option("test", options->names,
                       "Tests, standards (rimea, nist), scenario files, or a test of recordings and "
                       "their folder; all that need no recordings if none is named");
   add_model(*command, options->config.model);
-  command->add_flag("--list", options->list, "Say what tests there are, and run none");
+  command->add_flag("--list", options->list, "List the tests, and run none");
   command->add_flag("--brief", options->config.brief,
                     "Fewer points and shorter runs; not of scenario files");
   command->add_option("-o,--output", options->folder, "Folder for charts, PNG");

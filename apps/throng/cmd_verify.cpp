@@ -15,11 +15,11 @@
 #include "throng/verify.h"
 #include "throng/world.h"
 
-// throng verify: a baked world against the triangles that it came from.
+// throng verify: tests a baked world, its nodes or its paths against the source triangles.
 namespace throng::app {
 namespace {
 
-constexpr double kLostLimit = 0.01;  ///< Of the area where the grown body stands.
+constexpr double kLostLimit = 0.01;  ///< Max share of the area where the grown body stands.
 
 struct VerifyOptions {
   std::string world;
@@ -41,7 +41,7 @@ bool passes(const VerifyReport& report) {
          report.lost_grown <= kLostLimit;
 }
 
-// Where a triangle came from, or nothing for worlds without parts.
+// File, node and material of a triangle; null for a scene without parts.
 Json part_json(const Scene& scene, uint32_t triangle) {
   const auto after =
       std::upper_bound(scene.parts.begin(), scene.parts.end(), triangle,
@@ -68,8 +68,9 @@ Json faults_json(const Scene& scene, const VerifyReport& report) {
 Json flight_json(const ClassReport& entry) {
   if (!entry.flight) return nullptr;
   const FlightReport& flight = *entry.flight;
-  return {{"points", flight.points},  {"pairs", flight.pairs},         {"reached", flight.reached},
-          {"legs", flight.segments},  {"positions", flight.positions}, {"entered", flight.entered},
+  return {{"points", flight.points},       {"pairs", flight.pairs},
+          {"reached", flight.reached},     {"segments", flight.segments},
+          {"positions", flight.positions}, {"entered", flight.entered},
           {"seconds", flight.seconds}};
 }
 
@@ -98,7 +99,7 @@ Json class_json(const Scene& scene, const ClassReport& entry) {
           {"passed", passes(report)}};
 }
 
-// The sums and the worst of all classes, and each class by itself.
+// Sums and maxima over all classes, and each class.
 Json verify_json(const VerifyOptions& options, const Scene& scene,
                  const std::vector<ClassReport>& entries) {
   VerifyReport all;
@@ -160,7 +161,8 @@ std::string class_text(const ClassReport& entry) {
   if (!entry.flight) return text;
   const FlightReport& flight = *entry.flight;
   text += fmt::format(
-      "  in the air: {} points, {} of {} pairs reached over {} legs, {} bodies on them in {:.1f} "
+      "  in the air: {} points, {} of {} pairs reached over {} segments, {} bodies on them in "
+      "{:.1f} "
       "s; "
       "entered {}\n",
       flight.points, flight.reached, flight.pairs, flight.segments, flight.positions,
@@ -190,7 +192,7 @@ bool passes(const NodeVerifyReport& report) {
   return report.entered + report.unsupported + report.steeper + report.lower + report.one_way == 0;
 }
 
-std::string told_faults(const std::vector<VerifyFault>& faults) {
+std::string fault_lines(const std::vector<VerifyFault>& faults) {
   std::string text;
   for (const VerifyFault& fault : faults) {
     text += fmt::format("  {} at {:.4f} {:.4f} {:.4f}\n", fault.what, fault.position.x,
@@ -199,9 +201,9 @@ std::string told_faults(const std::vector<VerifyFault>& faults) {
   return text;
 }
 
-// The end of what is told of nodes: their classes one by one, and the verdict.
-int tell(Session& session, const VerifyOptions& options, const Json& classes, bool passed,
-         std::string text) {
+// Prints the classes and the verdict. Returns the exit code.
+int print_verdict(Session& session, const VerifyOptions& options, const Json& classes, bool passed,
+                  std::string text) {
   text += passed ? "passed\n" : "NOT passed\n";
   print_result(session,
                {{"world", options.world},
@@ -212,7 +214,7 @@ int tell(Session& session, const VerifyOptions& options, const Json& classes, bo
   return passed ? kDone : kAnswerIsNo;
 }
 
-// The nodes of a world instead of its level tiles.
+// Verifies the nodes of a world instead of its level tiles.
 int verify_all_nodes(Session& session, VerifyOptions& options, const std::vector<int32_t>& picked,
                      const Scene& scene) {
   const Result<Nodes> nodes = Nodes::open(options.world);
@@ -231,7 +233,7 @@ int verify_all_nodes(Session& session, VerifyOptions& options, const std::vector
     list.push_back({{"class", name},
                     {"places", report->places},
                     {"arcs", report->arcs},
-                    {"leaps", report->hole_links},
+                    {"links_over_holes", report->hole_links},
                     {"entered", report->entered},
                     {"unsupported", report->unsupported},
                     {"steeper", report->steeper},
@@ -239,13 +241,13 @@ int verify_all_nodes(Session& session, VerifyOptions& options, const std::vector
                     {"one_way", report->one_way},
                     {"seconds", report->seconds}});
     text += fmt::format(
-        "{}: {} places on nodes, {} arcs, {} leaps in {:.1f} s\n"
-        "  entered {}, unsupported {}, steeper {}, lower {}, one way {}\n",
+        "{}: {} places on nodes, {} arcs, {} links over holes in {:.1f} s\n"
+        "  entered {}, unsupported {}, steeper {}, lower {}, one-way {}\n",
         name, report->places, report->arcs, report->hole_links, report->seconds, report->entered,
         report->unsupported, report->steeper, report->lower, report->one_way);
-    text += told_faults(report->faults);
+    text += fault_lines(report->faults);
   }
-  return tell(session, options, list, passed, std::move(text));
+  return print_verdict(session, options, list, passed, std::move(text));
 }
 
 bool passes(const NodePathReport& report) {
@@ -256,14 +258,14 @@ bool passes(const PathReport& report) {
   return report.illegal + report.entered + report.unsupported + report.torn + report.disagree == 0;
 }
 
-// One class's ways, gone from end to end.
-struct WaysReport {
+// The verified paths of a class.
+struct ClassPaths {
   Json json;
   std::string text;
   bool passed = false;
 };
 
-// What is told of ways over nodes and over level tiles alike.
+// Adds the keys that paths over nodes and over level tiles share.
 template <class Report>
 Json with_sums(Json json, const Report& report) {
   json.update({{"entered", report.entered},
@@ -279,7 +281,7 @@ Json with_sums(Json json, const Report& report) {
   return json;
 }
 
-WaysReport told(const std::string& name, const NodePathReport& report) {
+ClassPaths paths_of(const std::string& name, const NodePathReport& report) {
   Json kinds = Json::object();
   for (uint8_t k = 0; k < kLinkKinds; ++k) {
     if (report.links_of_kind[k] != 0) {
@@ -291,50 +293,50 @@ WaysReport told(const std::string& name, const NodePathReport& report) {
                  {"over", "nodes"},
                  {"pairs", report.pairs},
                  {"reached", report.reached},
-                 {"parted", report.parted},
+                 {"disconnected", report.parted},
                  {"blocked", report.blocked},
-                 {"legs", report.segments},
+                 {"segments", report.segments},
                  {"links", kinds},
-                 {"leaps", report.hole_links},
+                 {"links_over_holes", report.hole_links},
                  {"poses", report.poses}},
                 report),
       fmt::format(
-          "{}, over nodes: {} pairs, {} reached, {} in different parts, {} shut off by what was "
-          "put up; {} legs, {} leaps, {} bodies on them in {:.1f} s\n"
-          "  entered {}, unsupported {}, torn {}, against the parts {}\n",
+          "{}, over nodes: {} pairs, {} reached, {} in different components, {} disconnected by "
+          "--block; {} segments, {} links over holes, {} bodies on them in {:.1f} s\n"
+          "  entered {}, unsupported {}, torn {}, against the components {}\n",
           name, report.pairs, report.reached, report.parted, report.blocked, report.segments,
           report.hole_links, report.poses, report.seconds, report.entered, report.unsupported,
           report.torn, report.disagree) +
-          told_faults(report.faults),
+          fault_lines(report.faults),
       passes(report)};
 }
 
-WaysReport told(const std::string& name, const PathReport& report) {
+ClassPaths paths_of(const std::string& name, const PathReport& report) {
   return {
       with_sums({{"class", name},
                  {"over", "level tiles"},
                  {"pairs", report.pairs},
                  {"reached", report.reached},
-                 {"parted", report.parted},
-                 {"legs", report.segments},
+                 {"disconnected", report.parted},
+                 {"segments", report.segments},
                  {"bodies", report.bodies},
                  {"illegal", report.illegal}},
                 report),
       fmt::format(
-          "{}: {} pairs, {} reached, {} in different parts; {} legs, {} bodies on them in {:.1f} "
-          "s\n"
-          "  illegal {}, entered {}, unsupported {}, torn {}, against the parts {}\n",
+          "{}: {} pairs, {} reached, {} in different components; {} segments, {} bodies on them in "
+          "{:.1f} s\n"
+          "  illegal {}, entered {}, unsupported {}, torn {}, against the components {}\n",
           name, report.pairs, report.reached, report.parted, report.segments, report.bodies,
           report.seconds, report.illegal, report.entered, report.unsupported, report.torn,
           report.disagree) +
-          told_faults(report.faults),
+          fault_lines(report.faults),
       passes(report)};
 }
 
-// Ways between random places: over nodes for who climbs or drops, and for all if that is asked;
-// as `throng path` goes.
-int verify_ways(Session& session, VerifyOptions& options, const World& world,
-                const std::vector<int32_t>& picked, const Scene& scene) {
+// Verifies paths between random places: over nodes for classes that climb or drop and with --nodes,
+// else over level tiles.
+int verify_all_paths(Session& session, VerifyOptions& options, const World& world,
+                     const std::vector<int32_t>& picked, const Scene& scene) {
   std::optional<Nodes> nodes;
   Json list = Json::array();
   std::string text;
@@ -343,7 +345,7 @@ int verify_ways(Session& session, VerifyOptions& options, const World& world,
   for (const int32_t index : picked) {
     const AvatarClass& avatar = classes[static_cast<size_t>(index)];
     options.config.avatar_class = index;
-    const auto over_nodes = [&]() -> Result<WaysReport> {
+    const auto over_nodes = [&]() -> Result<ClassPaths> {
       if (!nodes) {
         auto opened = Nodes::open(options.world);
         if (!opened) return opened.error();
@@ -351,19 +353,19 @@ int verify_ways(Session& session, VerifyOptions& options, const World& world,
       }
       const auto report = verify_node_paths(*nodes, scene, options.config, session.context);
       if (!report) return report.error();
-      return told(avatar.name, *report);
+      return paths_of(avatar.name, *report);
     };
-    const auto over_tiles = [&]() -> Result<WaysReport> {
+    const auto over_tiles = [&]() -> Result<ClassPaths> {
       const auto report = verify_paths(world, scene, options.config, session.context);
       if (!report) return report.error();
-      return told(avatar.name, *report);
+      return paths_of(avatar.name, *report);
     };
     const bool on_nodes = options.nodes || avatar.climb_slope > 0 || avatar.max_drop > 0;
     if (!on_nodes && !options.blocks.empty()) {
       return fail(
           {Errc::kBadConfig,
-           fmt::format("--block is for ways over nodes: say --nodes, or a --class that goes "
-                       "over them; {} does not",
+           fmt::format("--block is for paths over nodes: add --nodes, or name a --class that "
+                       "climbs or drops; {} does not",
                        avatar.name)});
     }
     auto report = on_nodes ? over_nodes() : over_tiles();
@@ -372,7 +374,7 @@ int verify_ways(Session& session, VerifyOptions& options, const World& world,
     text += report->text;
     passed = passed && report->passed;
   }
-  return tell(session, options, list, passed, std::move(text));
+  return print_verdict(session, options, list, passed, std::move(text));
 }
 
 int verify(Session& session, VerifyOptions& options) {
@@ -384,12 +386,12 @@ int verify(Session& session, VerifyOptions& options) {
   if (!scene) return fail(scene.error());
   note_if_elsewhere(*scene, world->summary().bounds);
   if (!options.paths && !options.blocks.empty()) {
-    return fail({Errc::kBadConfig, "--block is put up for ways: say --paths"});
+    return fail({Errc::kBadConfig, "--block is for paths: add --paths"});
   }
   const auto boxes = boxes_of(options.blocks);
   if (!boxes) return fail(boxes.error());
   options.config.obstacles = *boxes;
-  if (options.paths) return verify_ways(session, options, *world, *picked, *scene);
+  if (options.paths) return verify_all_paths(session, options, *world, *picked, *scene);
   if (options.nodes) return verify_all_nodes(session, options, *picked, *scene);
 
   const std::vector<AvatarClass> classes = world->summary().classes;
@@ -429,7 +431,7 @@ void add_verify(CLI::App& parser, Session& session) {
   add_source_options(command, options->sources, "--source");
   command
       ->add_option("--samples", options->config.samples,
-                   "States a class; as many moves and points of surfaces again")
+                   "States per class, and as many moves and points of surfaces")
       ->capture_default_str();
   command->add_option("--seed", options->config.seed, "Seed of the samples")->capture_default_str();
   command->add_option("--class", options->class_name, "Avatar class by name, or all")
@@ -437,8 +439,8 @@ void add_verify(CLI::App& parser, Session& session) {
   command->add_flag("--nodes", options->nodes, "Test the world's nodes, not its level tiles");
   command->add_flag(
       "--paths", options->paths,
-      "Go the ways between as many pairs of places, over nodes for who climbs or drops "
-      "or with --nodes");
+      "Test the paths between as many pairs of places; over nodes for classes that climb or "
+      "drop, or with --nodes");
   add_blocks(command, options->blocks);
   command->add_option("--threads", options->config.workers, "Threads, 0 for all cores");
   command->callback([&session, options] { session.exit_code = verify(session, *options); });

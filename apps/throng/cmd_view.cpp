@@ -10,8 +10,7 @@
 #include "view_stage.h"
 #include "view_window.h"
 
-// throng view: a world, a scenario, a model or a recording in a window, or one picture of what the
-// window would show.
+// throng view: a world, a scenario, a model or a recording in a window, or one picture of it.
 namespace throng::app {
 namespace {
 
@@ -53,7 +52,7 @@ int take_picture(Session& session, const ViewOptions& options) {
   viewer->pick(options.pick);
   for (const std::string& overlay : options.overlays) viewer->show_overlay(overlay);
   viewer->wait_for_overlays();
-  // The panel tells of the frame before: one goes ahead.
+  // The panel describes the frame before: draw one ahead.
   if (options.panel) (void)viewer->picture(0, options.width, options.height);
   const Result<Image> image = viewer->picture(0, options.width, options.height);
   if (!image) return fail(image.error());
@@ -107,7 +106,7 @@ void add_view(CLI::App& parser, Session& session) {
                    "World folder, scenario, recording, or a model (or builtin:NAME) to bake now")
       ->required()
       ->type_name("WORLD|SCENARIO.toml|FILE.replay|MODEL");
-  command->add_option("--avatars", target.start.avatars, "How many walk in a world")
+  command->add_option("--avatars", target.start.avatars, "Avatars in a world")
       ->capture_default_str();
   command->add_option("--seed", target.start.seed, "Seed of all chance")->capture_default_str();
   command->add_option("--dt", target.start.dt, "Length of a step [s]")
@@ -115,10 +114,10 @@ void add_view(CLI::App& parser, Session& session) {
       ->capture_default_str();
   command->add_option("--speed", target.start.speed, "Walking speed, 0 for each class's own [m/s]")
       ->check(at_least(0));
-  command->add_option("--near", target.start.near, "Goals within so many metres, 0: anywhere")
+  command->add_option("--near", target.start.near, "Max distance of goals, 0: anywhere [m]")
       ->check(at_least(0))
       ->capture_default_str();
-  command->add_flag("--zones", target.start.zones, "Ways by zones: for large worlds");
+  command->add_flag("--zones", target.start.zones, "Paths by zones: for large worlds");
   add_people_options(command, target);
   command->add_option("--cell", target.cell, "Side of a cell, to bake a model with [m]")
       ->capture_default_str();
@@ -127,9 +126,9 @@ void add_view(CLI::App& parser, Session& session) {
       ->expected(6)
       ->delimiter(',')
       ->type_name("X,Y,Z,TX,TY,TZ");
-  command->add_option("--picture", options->picture, "Open no window, write what it would show")
+  command->add_option("--picture", options->picture, "Write a picture instead of opening a window")
       ->type_name("FILE.png");
-  command->add_option("--after", options->after, "With --picture: let so much time pass [s]")
+  command->add_option("--after", options->after, "With --picture: time before it [s]")
       ->check(between(0.0, 3600.0))
       ->capture_default_str();
   command->add_option("--overlay", options->overlays, "With --picture: switch on, may be repeated")

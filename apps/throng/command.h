@@ -17,7 +17,7 @@
 #include "throng/steering_model.h"
 #include "throng/world.h"
 
-/// What every command of the program shares. One file a command: it adds its options to the parser
+/// Shared by all commands of the program. One file per command: it adds its options to the parser
 /// and a callback that sets the exit code.
 namespace throng::app {
 
@@ -25,7 +25,7 @@ enum ExitCode : int { kDone = 0, kAnswerIsNo = 1, kBadUsage = 2, kInterrupted = 
 
 using Json = nlohmann::ordered_json;
 
-/// What one run of the program knows. There is one; commands get a reference to it.
+/// The state of one run of the program. There is one; commands get a reference to it.
 struct Session {
   bool json = false;  ///< --json: one object on standard output, all else on standard error.
   int exit_code = kDone;
@@ -49,7 +49,7 @@ int fail(const Error& error);
 void note(const std::string& sentence);
 
 /// A subcommand with --json and an example that `--help` shows and that works as printed: one
-/// command a line, run one after the other in an empty folder by scripts/test_examples.
+/// command per line, run in order in an empty folder by scripts/test_examples.
 CLI::App* add_command(CLI::App& parser, Session& session, const std::string& name,
                       const std::string& summary, const std::string& example);
 
@@ -61,19 +61,19 @@ void add_search_memory(CLI::App& command, uint64_t& bytes);
 /// Index of the class that --class names. Fails with kNotFound and the names to choose from.
 Result<int32_t> class_named(const World& world, const std::string& name);
 
-/// A line for what tells of level tiles only, if the class also climbs or drops; else nothing.
+/// A line for results of level tiles alone, if the class also climbs or drops; else nothing.
 std::string note_of_nodes(const AvatarClass& avatar);
 
 /// "nothing", "too low", ...
 const char* word_for(Obstacle obstacle);
-/// "walk", "climb", ...
+/// "walk", "climb", "off-mesh link", ...
 const char* word_for(LinkKind kind);
 
 /// A position as JSON and for people, in millimetres.
 Json numbers(const Vec3d& p);
 std::string where(const Vec3d& p);
 
-/// Most memory that this process has held so far. [bytes]
+/// Peak memory of this process. [bytes]
 uint64_t peak_memory();
 
 /// "1.2 MB", "35 kB".
@@ -82,22 +82,22 @@ std::string human_bytes(uint64_t bytes);
 void add_atlas(CLI::App& parser, Session& session);
 void add_bake(CLI::App& parser, Session& session);
 void add_caacd(CLI::App& parser, Session& session);
+void add_components(CLI::App& parser, Session& session);
 void add_export(CLI::App& parser, Session& session);
 void add_film(CLI::App& parser, Session& session);
+void add_generate(CLI::App& parser, Session& session);
 void add_info(CLI::App& parser, Session& session);
-void add_nodes(CLI::App& parser, Session& session);
 void add_path(CLI::App& parser, Session& session);
 void add_picture(CLI::App& parser, Session& session);
-void add_place(CLI::App& parser, Session& session);
-void add_region(CLI::App& parser, Session& session);
+void add_query(CLI::App& parser, Session& session);
 void add_replay(CLI::App& parser, Session& session);
 void add_report(CLI::App& parser, Session& session);
 void add_run(CLI::App& parser, Session& session);
 void add_slices(CLI::App& parser, Session& session);
+void add_surface(CLI::App& parser, Session& session);
 void add_validate(CLI::App& parser, Session& session);
 void add_verify(CLI::App& parser, Session& session);
 void add_view(CLI::App& parser, Session& session);
-void add_world(CLI::App& parser, Session& session);
 void add_bench(CLI::App& parser, Session& session);
 
 }  // namespace throng::app

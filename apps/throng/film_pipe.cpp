@@ -17,6 +17,7 @@
 
 extern char** environ;
 
+// A child process of ffmpeg that reads raw pictures from a pipe.
 namespace throng::app {
 namespace {
 
@@ -42,7 +43,7 @@ FilmPipe::~FilmPipe() {
 Result<FilmPipe> FilmPipe::open(const std::string& path, const FilmFormat& format) {
   FilmPipe film;
   film.path_ = path;
-  // ffmpeg tells the kind of file by the end of its name.
+  // ffmpeg chooses the format by the extension.
   const std::filesystem::path p(path);
   film.beside_ =
       (p.parent_path() / (p.stem().string() + ".part" + p.extension().string())).string();
@@ -73,7 +74,7 @@ Result<FilmPipe> FilmPipe::open(const std::string& path, const FilmFormat& forma
   }
   if (failed != 0) return io_error(path, "ffmpeg cannot be started");
   film.child_ = child;
-  // A pipe that nobody reads must be an error, not the end.
+  // Writing to a closed pipe must fail, not end the program.
   std::signal(SIGPIPE, SIG_IGN);
   return film;
 }

@@ -8,6 +8,7 @@
 
 #include "command.h"
 
+// Positions of options, checked against the bounds of the world.
 namespace throng::app {
 
 Error bad_position(const std::string& world, const std::string& option, const Vec3d& position,

@@ -11,7 +11,7 @@
 
 namespace throng::app {
 
-/// "WORLD: --from (1, 2, 3) " and what is wrong with that position. [kBadInput]
+/// "WORLD: --from (1, 2, 3) " and the fault of that position. [kBadInput]
 [[nodiscard]] Error bad_position(const std::string& world, const std::string& option,
                                  const Vec3d& position, const std::string& what);
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "command.h"
 
+// The program throng: registers all commands and runs one.
 int main(int argc, char** argv) {
   using namespace throng::app;
   return run_program(argc, argv, [](CLI::App& parser, Session& session) {
@@ -9,22 +10,22 @@ int main(int argc, char** argv) {
     add_atlas(parser, session);
     add_bake(parser, session);
     add_caacd(parser, session);
+    add_components(parser, session);
     add_export(parser, session);
     add_film(parser, session);
+    add_generate(parser, session);
     add_info(parser, session);
-    add_nodes(parser, session);
     add_path(parser, session);
     add_picture(parser, session);
-    add_place(parser, session);
-    add_region(parser, session);
+    add_query(parser, session);
     add_replay(parser, session);
     add_report(parser, session);
     add_run(parser, session);
     add_slices(parser, session);
+    add_surface(parser, session);
     add_validate(parser, session);
     add_verify(parser, session);
     add_view(parser, session);
-    add_world(parser, session);
     add_bench(parser, session);
   });
 }

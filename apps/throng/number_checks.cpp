@@ -7,10 +7,11 @@
 #include <cmath>
 #include <string>
 
+// Validators of numeric options. CLI11's own accept NaN.
 namespace throng::app {
 namespace {
 
-// `wrong` says what is wrong with a number, or nothing.
+// `wrong` returns the fault of a number, or nothing.
 template <class Wrong>
 CLI::Validator validator(const std::string& range, Wrong wrong) {
   return {[wrong](std::string& given) -> std::string {
@@ -25,9 +26,9 @@ CLI::Validator validator(const std::string& range, Wrong wrong) {
 
 }  // namespace
 
-CLI::Validator at_least(double least) {
-  return validator(fmt::format("[{} or more]", least), [least](double number) {
-    return number < least ? fmt::format("below {}", least) : std::string();
+CLI::Validator at_least(double min) {
+  return validator(fmt::format("[{} or more]", min), [min](double number) {
+    return number < min ? fmt::format("below {}", min) : std::string();
   });
 }
 
@@ -37,10 +38,10 @@ CLI::Validator above(double bound) {
   });
 }
 
-CLI::Validator between(double least, double most) {
-  return validator(fmt::format("[{} to {}]", least, most), [least, most](double number) {
-    if (number < least) return fmt::format("below {}", least);
-    return number > most ? fmt::format("above {}", most) : std::string();
+CLI::Validator between(double min, double max) {
+  return validator(fmt::format("[{} to {}]", min, max), [min, max](double number) {
+    if (number < min) return fmt::format("below {}", min);
+    return number > max ? fmt::format("above {}", max) : std::string();
   });
 }
 

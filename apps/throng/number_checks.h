@@ -4,11 +4,11 @@
 
 #include <CLI/CLI.hpp>
 
-/// What numbers options take. Others are refused with a sentence: "--reach: -1 is below 0".
+/// Limits of numeric options. Other values are refused with a sentence: "--radius: -1 is below 0".
 namespace throng::app {
 
-[[nodiscard]] CLI::Validator at_least(double least);
+[[nodiscard]] CLI::Validator at_least(double min);
 [[nodiscard]] CLI::Validator above(double bound);
-[[nodiscard]] CLI::Validator between(double least, double most);
+[[nodiscard]] CLI::Validator between(double min, double max);
 
 }  // namespace throng::app

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
+// A text file written as PATH.part and renamed when it is complete.
 namespace throng::app {
 
 Error OutputFile::error(const char* what) const {

@@ -10,12 +10,13 @@
 #include "throng/chart.h"
 #include "throng/heat_map.h"
 
+// The charts and maps of a recording, and one page of HTML that embeds them.
 namespace throng::app {
 namespace {
 
 constexpr size_t kMaxPoints = 1000;  // of a line: more than the pixels of a chart
 
-// A chart over the frames, of every so many of them, and the last.
+// A chart over the frames: every n-th of them, and the last.
 class FrameChart {
  public:
   FrameChart(const ReplaySummary& summary, Chart chart) : chart_(std::move(chart)) {
@@ -67,9 +68,9 @@ Chart flow_chart(const ReplaySummary& summary, const SummaryConfig& config, size
     }
   }
   // Room for the legend.
-  const double most =
+  const double max =
       std::max(*std::ranges::max_element(forth.values), *std::ranges::max_element(back.values));
-  chart.max = most > 0 ? most * 1.25 : 1;
+  chart.max = max > 0 ? max * 1.25 : 1;
   chart.lines = {std::move(forth), std::move(back)};
   return chart;
 }
@@ -141,20 +142,20 @@ Result<std::vector<ReportPicture>> draw_report(const ReplaySummary& summary,
     if (image) pictures.push_back({name, caption, *std::move(image)});
   };
   if (summary.time.size() > 1) {
-    FrameChart egress(summary, {.title = "Who is there", .y_title = "avatars"});
+    FrameChart egress(summary, {.title = "Avatars present", .y_title = "avatars"});
     egress.add("present", summary.present);
     egress.add("left so far", summary.left);
     egress.add("come so far", summary.come);
-    take("egress", "Egress curve: how many are there, have left and have come, over time.",
+    take("egress", "Egress curve: avatars present, left and come, over time.",
          draw_chart(egress.chart()));
     FrameChart speed(summary, {.title = "Mean speed", .y_title = "m/s"});
     speed.add("", summary.speed);
-    take("speed", "Mean speed from each frame to the next, of those who are in both.",
+    take("speed", "Mean speed from each frame to the next, of avatars in both.",
          draw_chart(speed.chart()));
     for (size_t l = 0; l < summary.lines.size(); ++l) {
       take(fmt::format("line_{}", l + 1),
-           "Crossings, to the right and to the left of who goes from the line's first end to its "
-           "second.",
+           "Crossings, to the right and to the left of the direction from the line's first end to "
+           "its second.",
            draw_chart(flow_chart(summary, config, l)));
     }
   }
@@ -173,14 +174,14 @@ Result<std::vector<ReportPicture>> draw_report(const ReplaySummary& summary,
     density.notes = {where, "Mean over the whole time"};
     density.unit = "persons / m2";
     density.max = dense;
-    take(fmt::format("density_{}", m), "How many stood on a square metre, in the mean over time.",
+    take(fmt::format("density_{}", m), "Avatars on a square metre, mean over time.",
          draw_heat_map(density));
     HeatMap waiting = heat_map(map, map.waiting);
     waiting.title = "Waiting";
-    waiting.notes = {where, fmt::format("Time of all who were slower than {:g} m/s", config.slow)};
+    waiting.notes = {where, fmt::format("Time of all avatars slower than {:g} m/s", config.slow)};
     waiting.unit = "s / m2";
     waiting.max = slow;
-    take(fmt::format("waiting_{}", m), "How long people waited on a square metre, all together.",
+    take(fmt::format("waiting_{}", m), "Time that avatars waited on a square metre, in total.",
          draw_heat_map(waiting));
   }
   if (failed.code != Errc::kOk) return failed;
@@ -203,7 +204,7 @@ Result<std::string> report_page(const ReportText& text,
       "figcaption {{ color: #767c86; font-size: 0.9em; }}\n"
       "</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
       escaped(text.title));
-  page += table("What came out", text.numbers);
+  page += table("Results", text.numbers);
   for (const ReportPicture& picture : pictures) {
     const std::vector<uint8_t> png = png_bytes(picture.image);
     if (png.empty()) return Error{Errc::kLimit, "report: out of memory; take larger cells"};
@@ -212,7 +213,7 @@ Result<std::string> report_page(const ReportText& text,
         "<figcaption>{0}</figcaption>\n</figure>\n",
         escaped(picture.caption), base64(png));
   }
-  page += table("How it was made", text.settings);
+  page += table("Settings", text.settings);
   return page + "</body>\n</html>\n";
 }
 

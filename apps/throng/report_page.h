@@ -28,7 +28,7 @@ using ReportRow = std::pair<std::string, std::string>;
 
 struct ReportText {
   std::string title;
-  std::vector<ReportRow> numbers;   ///< What came out.
+  std::vector<ReportRow> numbers;   ///< Results.
   std::vector<ReportRow> settings;  ///< How the run was made.
 };
 

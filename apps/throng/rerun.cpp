@@ -9,10 +9,11 @@
 
 #include "run_scenario.h"
 
+// Repeats recorded runs from their settings, to compare state hashes.
 namespace throng::app {
 namespace {
 
-// Are all of these there, and of their kind?
+// Fails if a key is missing or of another kind.
 Result<void> need(const Json& settings, std::initializer_list<const char*> keys,
                   bool (*is_right)(const Json&)) {
   for (const char* key : keys) {
@@ -117,12 +118,12 @@ Result<Rerun> rerun_scenario(const Json& settings, const World& world, int32_t w
   auto made = Simulation::make(world, *scenario, workers, context);
   if (!made) return made.error();
   const auto simulation = std::make_shared<Simulation>(std::move(*made));
-  // Whatever fails leaves the state behind that of the recording, which the hash shows.
+  // If a step fails, the state differs from the recording, and so does its hash.
   return Rerun{.step = [simulation] { (void)simulation->step(); },
                .state_hash = [simulation] { return simulation->state_hash(); }};
 }
 
-// The world that a scenario had baked for itself; none if it opened a folder.
+// The world that a scenario bakes itself; a null world if it opens a folder.
 Result<World> own_world(const RecordingInfo& info) {
   const Json settings = Json::parse(info.settings, nullptr, /*allow_exceptions=*/false);
   const auto scenario = recorded_scenario(settings);
@@ -137,7 +138,7 @@ struct Model {
   Result<Rerun> (*rerun)(const Json& settings, const World& world, int32_t workers);
 };
 
-// One line a model: what `throng replay --check` can run again.
+// One line per model that `throng replay --check` can repeat.
 constexpr Model kModels[] = {{kWanderersModel, rerun_wanderers},
                              {kCrowdModel, rerun_crowd},
                              {kScenarioModel, rerun_scenario}};

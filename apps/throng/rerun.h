@@ -11,7 +11,7 @@
 #include "throng/wanderers.h"
 #include "throng/world.h"
 
-/// Runs what a recording tells of again: one entry a model in rerun.cpp.
+/// Repeats a recorded run: one entry per model in rerun.cpp.
 namespace throng::app {
 
 /// A run at step 0.

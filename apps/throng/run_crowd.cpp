@@ -14,14 +14,15 @@
 #include "throng/flight.h"
 #include "throng/ground_query.h"
 
+// A crowd of avatars that get one goal after the other: random places, or those of a file.
 namespace throng::app {
 namespace {
 
-constexpr double kNearGround = 2;    // [m] from the ground a goal of a file may be
-constexpr double kStorey = 4;        // [m] up or down a random goal may be
-constexpr uint64_t kTries = 32;      // to find one
-constexpr uint64_t kPlaces = 1024;   // the same, of places of nodes
-constexpr uint64_t kAir = 0x616972;  // stream of chance
+constexpr double kNearGround = 2;    // max distance of a goal of a file from the ground [m]
+constexpr double kStorey = 4;        // vertical tolerance of a random goal [m]
+constexpr uint64_t kTries = 32;      // random points per goal
+constexpr uint64_t kPlaces = 1024;   // random places of nodes per goal
+constexpr uint64_t kAir = 0x616972;  // stream of random numbers
 
 // Uniform in [0, 1), of a stream.
 double random_number(uint64_t seed, uint64_t stream, uint64_t n) {
@@ -30,7 +31,7 @@ double random_number(uint64_t seed, uint64_t stream, uint64_t n) {
   return static_cast<double>(x >> 11) * 0x1p-53;
 }
 
-// Numbers of a line, apart by commas; none if it has others.
+// The three numbers of a line "x,y,z"; null if it is another.
 std::optional<Vec3d> numbers_of(const std::string& line) {
   double v[3];
   const char* at = line.c_str();
@@ -84,7 +85,7 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
                {"progress", t.progress / steps},
                {"arrived", t.sum.arrived},
                {"planned", t.sum.planned},
-               {"no_way", t.sum.no_path},
+               {"no_path", t.sum.no_path},
                {"out_of_memory", t.sum.out_of_memory},
                {"flying", t.sum.flying},
                {"climbing", t.sum.climbing},
@@ -100,15 +101,16 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
   times.add_to(json);
   print_result(
       session, json,
-      fmt::format("{} {} avatars, {} steps of {} s: {}\n{}"
-                  "{} goals reached, {} ways planned, {} goals without a way; got on at {:.2f} of "
-                  "their speeds\n{}"
-                  "{} checks: {} wall entries, {} overlaps\n"
-                  "state {:016x}\n",
-                  crowd.size(), run.class_name, times.steps(), run.config.dt, times.text_of_steps(),
-                  times.text_of_parts(), t.sum.arrived, t.sum.planned, t.sum.no_path,
-                  t.progress / steps, memory_text(t.sum.out_of_memory, "--search-memory"), t.checks,
-                  t.found.wall_entries, t.found.overlaps, crowd.state_hash()));
+      fmt::format(
+          "{} {} avatars, {} steps of {} s: {}\n{}"
+          "{} goals reached, {} paths planned, {} goals without a path; mean progress {:.2f} of "
+          "the speed\n{}"
+          "{} checks: {} wall entries, {} overlaps\n"
+          "state {:016x}\n",
+          crowd.size(), run.class_name, times.steps(), run.config.dt, times.text_of_steps(),
+          times.text_of_parts(), t.sum.arrived, t.sum.planned, t.sum.no_path, t.progress / steps,
+          memory_text(t.sum.out_of_memory, "--search-memory"), t.checks, t.found.wall_entries,
+          t.found.overlaps, crowd.state_hash()));
 }
 
 }  // namespace
@@ -137,7 +139,7 @@ Result<GoalCrowd> GoalCrowd::make(const World& world, const CrowdRun& run, Conte
     const Result<int32_t> avatar_class = class_named(world, name);
     if (!avatar_class) return avatar_class.error();
     const AvatarClass& avatar = classes[static_cast<size_t>(*avatar_class)];
-    // A world that was baked for such a class has nodes; without them it walks.
+    // A world baked for such a class has nodes; without nodes it walks.
     wants_nodes = wants_nodes || throng::goes_over_nodes(avatar);
   }
   if (wants_nodes && Nodes::exist(world)) {
@@ -166,7 +168,7 @@ Result<void> GoalCrowd::scatter(const std::string& class_name, uint32_t count, C
   if (flies) like.place = air_place({});
   auto ids = crowd_.scatter(count, like, context);
   if (!ids && flies && ids.error().code == Errc::kBadConfig) {
-    like.place = {};  // Without air who could fly walks.
+    like.place = {};  // A flyer walks in a world without air.
     ids = crowd_.scatter(count, like, context);
   }
   if (!ids) return ids.error();
@@ -185,7 +187,7 @@ Result<void> GoalCrowd::read_places() {
   const auto bad = [&](size_t line, const std::string& what) {
     return Error{Errc::kBadFile, run_.goals + ":" + std::to_string(line) + ": " + what};
   };
-  // All classes share the file; what a place is worth to each is found out on the way.
+  // All classes share the file. It is checked for the first; others may not reach each goal.
   const int32_t avatar_class = class_of_.empty() ? 0 : class_of_[0];
   const bool over_nodes = goes_over_nodes(avatar_class);
   auto query = GroundQuery::make(world_, avatar_class);
@@ -196,7 +198,7 @@ Result<void> GoalCrowd::read_places() {
     if (line.empty() || line[0] == '#' || line == "\r") continue;
     const auto at = numbers_of(line);
     if (!at) return bad(n, "is no goal; write x,y,z in metres");
-    // (The crowd takes a climber's place by its position alone.)
+    // The crowd uses the position alone of a climber's goal.
     const Place place = over_nodes ? Place{*at, 1} : query->nearest_place(*at, kNearGround);
     const FlightFinder* flight = crowd_.flight_finder(avatar_class);
     const bool in_air = !place && flight != nullptr && flight->is_legal(*at);
@@ -209,7 +211,7 @@ Result<void> GoalCrowd::read_places() {
   return {};
 }
 
-// In the air; nowhere if none was found.
+// A random goal in the air; null if none was found.
 Place GoalCrowd::goal_in_air(uint32_t slot, uint64_t nth, const Vec3d& from) const {
   const FlightFinder& flight = *crowd_.flight_finder(class_of_[slot]);
   const uint64_t seed = run_.config.seed ^ kAir;
@@ -249,7 +251,7 @@ Place GoalCrowd::goal(uint32_t slot, uint64_t nth, const Vec3d& from) const {
   return world_.find_place(avatar_class, from, kNearGround);
 }
 
-// The n-th goal of one who goes over nodes: the first of some that is near enough, or the nearest.
+// The n-th goal over nodes: the first of kPlaces random places that is near enough, or the nearest.
 NodePlace GoalCrowd::goal_on_nodes(uint32_t slot, uint64_t nth, const Vec3d& from) const {
   const Nodes& nodes = run_.config.nodes;
   const int32_t avatar_class = class_of_[slot];
@@ -273,7 +275,7 @@ void GoalCrowd::give(std::span<const AvatarId> ids) {
   goals_on_nodes_.clear();
   if (run_.near > 0) crowd_.read(states_);
   for (const AvatarId id : ids) {
-    const uint32_t slot = id.slot1 - 1;  // Nobody is ever removed, so slots are numbers of states.
+    const uint32_t slot = id.slot1 - 1;  // No avatar is removed: slots index states.
     const Vec3d from = run_.near > 0 ? states_[slot].position : Vec3d{};
     if (places_.empty() && goes_over_nodes(class_of_[slot])) {
       goals_on_nodes_.push_back(goal_on_nodes(slot, given_[slot]++, from));
@@ -296,8 +298,7 @@ void GoalCrowd::give_goals() {
 
 std::string memory_text(uint64_t out_of_memory, const char* setting) {
   if (out_of_memory == 0) return {};
-  return fmt::format("{} searches for paths gave up for want of memory; raise {}\n", out_of_memory,
-                     setting);
+  return fmt::format("{} searches for paths ran out of memory; raise {}\n", out_of_memory, setting);
 }
 
 void add_step(const CrowdReport& report, RunTimes& times) {

@@ -22,10 +22,10 @@ struct CrowdRun {
   std::string world_name;
   std::string class_name;
   std::string goals;       // random, or a file of places
-  std::string goals_text;  // what the file holds
-  double near = 0;         // random goals are within so many metres; 0: anywhere
+  std::string goals_text;  // content of the file
+  double near = 0;         // max distance of random goals, 0: anywhere [m]
   uint32_t avatars = 1000;
-  std::vector<std::pair<std::string, uint32_t>> also;  // classes and how many of each, besides
+  std::vector<std::pair<std::string, uint32_t>> also;  // further classes and their counts
   uint64_t steps = 100;
   uint64_t check_every = 1;
   double speed = 0, radius = 0;
@@ -35,9 +35,9 @@ struct CrowdRun {
 /// Fills in goals_text. Fails with kNotFound.
 Result<void> read_goals(CrowdRun& run);
 
-/// A crowd whose avatars get goals, one after the other. The same run, the same steps. Those of a
-/// class that flies begin in the air, and every other goal of theirs is there; those who climb
-/// begin on nodes, and their goals are there.
+/// A crowd whose avatars get one goal after the other. Equal runs have equal steps. Avatars that
+/// fly begin in the air, and every other goal of theirs is there; those that climb begin on nodes,
+/// and their goals are there.
 class GoalCrowd {
  public:
   static Result<GoalCrowd> make(const World& world, const CrowdRun& run, Context& context);
@@ -68,12 +68,12 @@ class GoalCrowd {
   std::vector<NodePlace> goals_on_nodes_;
 };
 
-/// How many searches gave up for want of memory, and the setting to raise; empty if none did.
+/// The count of searches that ran out of memory, and the setting to raise; empty if 0.
 std::string memory_text(uint64_t out_of_memory, const char* setting);
-/// Counts the parts of a crowd's step.
+/// Adds the parts of a crowd's step to the times.
 void add_step(const CrowdReport& report, RunTimes& times);
 
-/// Walks the crowd and prints what came of it. `shown` is called at the start and after each step,
+/// Runs the crowd and prints the result. `shown` is called at the start and after each step,
 /// `finished` before anything is printed.
 int run_crowd(Session& session, const CrowdRun& run, GoalCrowd& crowd, RunTimes& times,
               const std::function<Result<void>(uint64_t step)>& shown,

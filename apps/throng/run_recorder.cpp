@@ -4,6 +4,7 @@
 
 #include <utility>
 
+// Copies the states of avatars into the frames of a recording.
 namespace throng::app {
 
 Result<void> RunRecorder::open(const std::string& path, RecordingInfo info, const World& world) {

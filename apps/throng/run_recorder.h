@@ -12,7 +12,7 @@
 #include "throng/recording.h"
 #include "throng/world.h"
 
-/// Records a run of the program, whatever makes its steps.
+/// Records a run of the program, for each kind of crowd.
 namespace throng::app {
 
 class RunRecorder {

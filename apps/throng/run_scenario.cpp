@@ -15,19 +15,20 @@
 #include "run_crowd.h"
 #include "run_times.h"
 
+// Runs a scenario file and writes its trips, obstacles and counts.
 namespace throng::app {
 namespace {
 
-// Who has left, by the area that he left by.
-struct Exit {
+// Avatars that left, per exit area.
+struct ExitCount {
   uint64_t left = 0;
   double first = 0, last = 0;  // [s]
 };
 
 struct Outcome {
-  std::map<std::string, Exit> exits;
+  std::map<std::string, ExitCount> exits;
   double last = 0;       // [s]
-  double mean_time = 0;  // from setting off to leaving [s]
+  double mean_time = 0;  // from start to exit [s]
 };
 
 Outcome outcome_of(const Scenario& scenario, const Simulation& simulation) {
@@ -35,7 +36,7 @@ Outcome outcome_of(const Scenario& scenario, const Simulation& simulation) {
   uint64_t left = 0;
   for (const Visit& visit : simulation.visits()) {
     if (visit.left < 0) continue;
-    Exit& exit = out.exits[scenario.areas[static_cast<size_t>(visit.exit)].name];
+    ExitCount& exit = out.exits[scenario.areas[static_cast<size_t>(visit.exit)].name];
     if (exit.left++ == 0) exit.first = visit.left;
     exit.first = std::min(exit.first, visit.left);
     exit.last = std::max(exit.last, visit.left);
@@ -52,8 +53,8 @@ std::string name_in(const Things& things, int32_t index) {
   return index < 0 ? "" : things[static_cast<size_t>(index)].name;
 }
 
-Result<void> write_visits(const std::string& path, const Scenario& scenario,
-                          const Simulation& simulation) {
+Result<void> write_trips(const std::string& path, const Scenario& scenario,
+                         const Simulation& simulation) {
   OutputFile file;
   if (auto ok = file.open(path); !ok) return ok;
   file.write("person,source,profile,journey,speed,entered,started,left,exit\n");
@@ -83,7 +84,7 @@ std::string words_for(const ScenarioObstacle& obstacle, const ObstacleTimes& tim
   return words;
 }
 
-// Each obstacle whose time has come, in a line, and as JSON.
+// A line for each obstacle whose time has come; all of them into `json`.
 std::string obstacle_lines(const Scenario& scenario, const Simulation& simulation, Json& json) {
   std::string lines;
   for (size_t n = 0; n < scenario.obstacles.size(); ++n) {
@@ -120,7 +121,7 @@ Result<void> write_obstacles(const std::string& path, const Scenario& scenario,
 }
 
 struct Totals {
-  uint64_t steps = 0, most = 0, checks = 0, out_of_memory = 0;
+  uint64_t steps = 0, max_avatars = 0, checks = 0, out_of_memory = 0;
   double avatar_steps = 0, progress = 0;
   CrowdCheck found;
   SimulationReport last;
@@ -134,7 +135,7 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
   std::string lines;
   for (const auto& [name, exit] : outcome.exits) {
     exits[name] = {{"left", exit.left}, {"first", exit.first}, {"last", exit.last}};
-    lines += fmt::format("  {:<16} {:6} people, {:.1f} to {:.1f} s\n", name, exit.left, exit.first,
+    lines += fmt::format("  {:<16} {:6} avatars, {:.1f} to {:.1f} s\n", name, exit.left, exit.first,
                          exit.last);
   }
   Json obstacles = Json::object();
@@ -151,8 +152,8 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
                {"still_here", simulation.crowd().size()},
                {"outside", t.last.outside},
                {"in_links", t.last.in_links},
-               {"stranded", t.last.goal_unreachable},
-               {"most_at_a_time", t.most},
+               {"goal_unreachable", t.last.goal_unreachable},
+               {"max_at_a_time", t.max_avatars},
                {"last_left", outcome.last},
                {"mean_time", outcome.mean_time},
                {"exits", exits},
@@ -168,9 +169,9 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
   times.add_to(json);
   print_result(
       session, json,
-      fmt::format("{}: {:.1f} s, {} people came, {} left, {} are still here\n{}"
-                  "the last left after {:.1f} s; a way took {:.1f} s in the mean\n"
-                  "{} stranded, {} found no room to come in\n{}\n{}{}"
+      fmt::format("{}: {:.1f} s, {} avatars came, {} left, {} are still here\n{}"
+                  "the last left after {:.1f} s; a trip took {:.1f} s in the mean\n"
+                  "{} with an unreachable goal, {} without room to come in\n{}\n{}{}"
                   "{} checks: {} wall entries, {} overlaps, {} in obstacles\nstate {:016x}\n",
                   run.file, t.last.time, t.last.entered, t.last.left, simulation.crowd().size(),
                   lines, outcome.last, outcome.mean_time, t.last.goal_unreachable, t.last.outside,
@@ -179,8 +180,8 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
                   t.found.overlaps, t.found.obstacle_entries, simulation.state_hash()));
 }
 
-Result<Totals> walk(Session& session, const ScenarioRun& run, const Scenario& scenario,
-                    Simulation& simulation, Sinks& sinks, RunTimes& times) {
+Result<Totals> run_steps(Session& session, const ScenarioRun& run, const Scenario& scenario,
+                         Simulation& simulation, Sinks& sinks, RunTimes& times) {
   Totals t;
   const uint64_t steps =
       run.steps.value_or(static_cast<uint64_t>(std::ceil(scenario.seconds / scenario.dt - 1e-9)));
@@ -208,7 +209,7 @@ Result<Totals> walk(Session& session, const ScenarioRun& run, const Scenario& sc
     ++t.steps;
     t.last = *report;
     const auto avatars = static_cast<double>(report->crowd.avatars);
-    t.most = std::max(t.most, report->crowd.avatars);
+    t.max_avatars = std::max(t.max_avatars, report->crowd.avatars);
     t.avatar_steps += avatars;
     t.out_of_memory += report->crowd.out_of_memory;
     t.progress += report->crowd.progress * avatars;
@@ -253,10 +254,10 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
                                 .settings = settings.dump(),
                                 .leans = simulation->crowd().may_lean()});
   if (!ok) return ok.error();
-  const auto totals = walk(session, run, *scenario, *simulation, sinks, times);
+  const auto totals = run_steps(session, run, *scenario, *simulation, sinks, times);
   if (!totals) return totals.error();
-  if (!run.visits.empty()) {
-    if (ok = write_visits(run.visits, *scenario, *simulation); !ok) return ok.error();
+  if (!run.trips.empty()) {
+    if (ok = write_trips(run.trips, *scenario, *simulation); !ok) return ok.error();
   }
   if (!run.obstacles.empty()) {
     if (ok = write_obstacles(run.obstacles, *scenario, *simulation); !ok) return ok.error();

@@ -16,21 +16,21 @@ namespace throng::app {
 
 struct ScenarioRun {
   std::string file;
-  std::string text;                    // what the file holds
+  std::string text;                    // content of the file
   std::optional<uint64_t> steps;       // instead of the scenario's seconds
   std::optional<uint64_t> seed;        // instead of the scenario's
   std::optional<SteeringModel> model;  // instead of the scenario's
   uint64_t check_every = 0;            // 0: ten times a run
   int32_t workers = 0;
-  std::string visits;     // CSV of who came and went; empty: none
-  std::string obstacles;  // CSV of when they were to come, and came; empty: none
+  std::string trips;      // CSV of all trips; empty: none
+  std::string obstacles;  // CSV of when obstacles were requested and up; empty: none
   SinkOptions sinks;
 };
 
-/// Is that a scenario's file, and not a world's folder?
+/// Is it the name of a scenario file, not of a world's folder?
 [[nodiscard]] bool is_scenario_file(const std::string& name);
 
-/// Runs it and prints what came of it. Returns the exit code.
+/// Runs it and prints the result. Returns the exit code.
 int run_scenario(Session& session, ScenarioRun& run);
 
 inline constexpr const char* kScenarioModel = "scenario";

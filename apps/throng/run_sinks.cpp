@@ -6,6 +6,7 @@
 
 #include "throng/replay_export.h"
 
+// Writes the steps of a run to a CSV file and to a recording.
 namespace throng::app {
 
 Result<void> Sinks::open(const World& world, const RecordingInfo& run) {

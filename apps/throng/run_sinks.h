@@ -13,7 +13,7 @@
 #include "throng/avatar_state.h"
 #include "throng/world.h"
 
-/// Where a run is written to, step by step.
+/// The files that a run writes, step by step.
 namespace throng::app {
 
 struct SinkOptions {
@@ -26,10 +26,9 @@ class Sinks {
  public:
   explicit Sinks(const SinkOptions& options) : options_(options) {}
 
-  /// `run`: what of it the world does not tell; its settings are all that rerun.h needs to run it
-  /// again.
+  /// `run`: all that is not in the world; its settings are all that rerun.h needs to repeat it.
   Result<void> open(const World& world, const RecordingInfo& run);
-  /// Of the steps between frames the recorder gets the hash alone.
+  /// Between frames, the recorder gets the hash alone.
   template <class Avatars>
   Result<void> add(uint64_t step, const Avatars& avatars) {
     const bool is_due = step % options_.every == 0;

@@ -9,7 +9,7 @@
 
 #include "command.h"
 
-/// Where the time of a run goes: a step's median alone hides the few steps that take most of it.
+/// The time of a run by its parts: the median of steps alone hides the few that take most of it.
 namespace throng::app {
 
 /// Seconds by part of a run, and of its steps one by one. Starts with its clock running.
@@ -25,7 +25,7 @@ class RunTimes {
   }
   /// Counts seconds that were measured elsewhere.
   void add(const char* part, double seconds);
-  /// Counts a step of so many avatars: the whole, of which parts are added apart.
+  /// Counts a whole step of `avatars`; its parts are added by add().
   void add_step(double seconds, double avatars);
 
   /// Over all steps, planning included: their time by all avatars of all steps. [ns]

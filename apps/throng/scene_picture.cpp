@@ -18,6 +18,7 @@
 #include "throng_draw/draw.h"
 #endif
 
+// A picture of a world and avatars from an eye, drawn as impostors without a window.
 namespace throng::app {
 
 bool ScenePictureOptions::needs_camera() const {
@@ -28,13 +29,13 @@ bool ScenePictureOptions::needs_camera() const {
 void add_scene_picture_options(CLI::App* command, ScenePictureOptions& options) {
   command
       ->add_option("--camera", options.camera,
-                   "Draw what an eye sees: where it is and what it looks at [m]")
+                   "Draw the view from an eye: its position and its target [m]")
       ->expected(6)
       ->delimiter(',')
       ->type_name("X,Y,Z,TX,TY,TZ");
   command
       ->add_option("--atlas", options.atlases,
-                   "With --camera: who walks, made by throng atlas; may be repeated")
+                   "With --camera: characters, made by throng atlas; may be repeated")
       ->type_name("FILE.atlas")
       ->allow_extra_args(false);
   command->add_option("--crowd", options.crowd,
@@ -57,7 +58,7 @@ int draw_scene_picture(Session&, const World&, const ScenePictureOptions&, const
 
 namespace {
 
-// Numbers that belong to an avatar alone, whatever else is in the picture.
+// Random bits of an avatar, the same in each picture.
 uint64_t scramble(uint64_t x) {
   x += 0x9e3779b97f4a7c15ULL;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -70,7 +71,7 @@ Result<std::vector<CsvWalker> > walkers_of(const World& world, const ScenePictur
   std::vector<CsvWalker> walkers;
   for (uint32_t i = 0; i < options.crowd; ++i) {
     const Place place = world.random_place(options.avatar_class, 1, i);
-    if (!place) return Error{Errc::kNotFound, "--crowd: nobody of this class can stand here"};
+    if (!place) return Error{Errc::kNotFound, "--crowd: no avatar of this class can stand here"};
     CsvWalker& walker = walkers.emplace_back();
     walker.id = i;
     walker.position = place.position;
@@ -102,10 +103,10 @@ struct Group {
   std::vector<Vec3d> ups;
 };
 
-// Those who lean apart from the others.
+// By atlas, clip and whether they lean.
 using Groups = std::map<std::tuple<size_t, size_t, bool>, Group>;
 
-// Who moves, walks; who stands, stands in the last clip of his atlas that stands.
+// The first clip that moves, or the first that stands; the first clip if there is none.
 size_t clip_for(const Atlas& atlas, bool moves) {
   for (size_t i = 0; i < atlas.clips.size(); ++i) {
     if ((atlas.clips[i].stride != 0) == moves) return i;

@@ -9,14 +9,14 @@
 #include "sources.h"
 #include "throng/world.h"
 
-/// throng picture --camera: what an eye in the world sees.
+/// throng picture --camera: the view from an eye in the world.
 namespace throng::app {
 
 struct ScenePictureOptions {
   std::vector<double> camera;        ///< Eye and target. [m]
   std::vector<std::string> atlases;  ///< None: the built-in figure.
-  SourceOptions sources;             ///< What to draw; none: where one can walk.
-  uint32_t crowd = 0;                ///< Avatars to place, where no file says where they are.
+  SourceOptions sources;             ///< The model to draw; none: the walkable surface.
+  uint32_t crowd = 0;                ///< Avatars to place if no file has positions.
   int32_t height = 0;                ///< 0: nine sixteenths of the width. [px]
   double view_angle = 45;            ///< Top to bottom. [degrees]
   // Set by the command itself.
@@ -24,7 +24,7 @@ struct ScenePictureOptions {
   int32_t avatar_class = 0;
   int32_t width = 0;
 
-  /// Is there an option that means nothing without --camera?
+  /// Is an option set that needs --camera?
   [[nodiscard]] bool needs_camera() const;
 };
 

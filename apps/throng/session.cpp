@@ -10,13 +10,17 @@
 #include <cstdio>
 #include <mutex>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "bad_usage.h"
 #include "command.h"
 #include "number_checks.h"
+#include "old_names.h"
 #include "throng/cluster.h"
 #include "throng/search_budget.h"
 
+// What all commands share: parsing, progress, Ctrl-C, results, errors and notes.
 namespace throng::app {
 namespace {
 
@@ -35,8 +39,8 @@ extern "C" void on_interrupt(int) {
   if (cancel == nullptr || cancel->exchange(true)) _exit(kInterrupted);
 }
 
-// Draws where the work is: one line that redraws itself on a terminal, elsewhere a line at each
-// tenth or each five seconds, whichever comes later than a second after the last.
+// Draws the progress: on a terminal one line that redraws itself; elsewhere a line at each tenth
+// (at most one a second), and one after five seconds without any.
 class ProgressLine {
  public:
   void show(const Progress& progress) {
@@ -123,7 +127,10 @@ int run_program(int argc, const char* const* argv,
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
   try {
-    parser.parse(argc, argv);
+    const std::vector<std::string> arguments = with_new_names(argc, argv);
+    std::vector<const char*> words;
+    for (const std::string& argument : arguments) words.push_back(argument.c_str());
+    parser.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::Success& success) {  // --help and --version
     session.exit_code = parser.exit(success);
   } catch (const CLI::ParseError& error) {
@@ -171,7 +178,7 @@ void note(const std::string& sentence) {
 
 namespace {
 
-// Every reader of numbers takes "nan" for one, and no comparison that is to refuse it does.
+// Parsers of numbers accept "nan", and no comparison with a limit refuses it.
 void refuse_nan(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options()) {
     for (const std::string& given : option->results()) {
@@ -202,7 +209,7 @@ void add_search_memory(CLI::App& command, uint64_t& bytes) {
       .add_option_function<double>(
           "--search-memory",
           [&bytes](double mebibytes) { bytes = static_cast<uint64_t>(mebibytes * (1 << 20)); },
-          fmt::format("Most that a search for one path may remember, {} unless given [MiB]",
+          fmt::format("Max memory of the search for one path, {} unless given [MiB]",
                       SearchBudget::kDefaultBytes >> 20))
       ->check(between(1, 1 << 20))
       ->type_name("MIB");
@@ -220,7 +227,7 @@ void add_model(CLI::App& command, SteeringModel& model) {
             }
             model = *found;
           },
-          "Who steers those on foot: sampled (ours), caacd or social-force")
+          "Steering model of avatars on foot: sampled (ours), caacd or social-force")
       ->type_name("MODEL");
 }
 
@@ -236,9 +243,8 @@ Result<int32_t> class_named(const World& world, const std::string& name) {
 std::string note_of_nodes(const AvatarClass& avatar) {
   if (!goes_over_nodes(avatar)) return {};
   return fmt::format(
-      "  on level tiles, where it stands upright: what {} climbs or drops to besides, `throng "
-      "nodes` "
-      "and `throng path` tell\n",
+      "  on level tiles alone, where it stands upright; for what {} climbs or drops to, use "
+      "`throng surface` and `throng path`\n",
       avatar.name);
 }
 
@@ -285,7 +291,7 @@ const char* word_for(LinkKind kind) {
     case LinkKind::kDrop:
       return "drop";
     case LinkKind::kOffMesh:
-      return "jump";
+      return "off-mesh link";
     case LinkKind::kLand:
       return "land";
     case LinkKind::kTakeOff:

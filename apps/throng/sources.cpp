@@ -11,6 +11,7 @@
 
 #include "number_checks.h"
 
+// Reads model files, scene files and built-in worlds into one Scene.
 namespace throng::app {
 namespace {
 
@@ -36,7 +37,7 @@ bool set_field(BuiltinWorldConfig& config, std::string_view key, std::string_vie
   return key == "seed" && parse_number(value, config.seed);
 }
 
-// Half of the longer of two ranges is in the other, or both are short.
+// Does half of the longer of two ranges lie in the other, or are both short?
 bool share_half(double low, double high, double other_low, double other_high) {
   constexpr double kShort = 2;  // [m]
   const double longer = std::max(high - low, other_high - other_low);

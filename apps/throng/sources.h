@@ -38,11 +38,11 @@ void append_scene(Scene& scene, const Scene& other);
 Result<Scene> read_sources(const SourceOptions& options, Context& context,
                            SceneLooks looks = SceneLooks::kLeaveOut);
 
-/// Says so if a model that is to be drawn or tested as a world's lies elsewhere, or is of another
-/// size: as one read in other units, or with another axis up. [world: WorldSummary::bounds]
+/// Prints a note if a model to draw or test with a world has another position or size than it: as
+/// one read in other units, or with another axis up. [world: WorldSummary::bounds]
 void note_if_elsewhere(const Scene& scene, const Box3d& world);
 
-/// What an import met, as JSON: only the counts that are not zero, and the warnings.
+/// The report of an import as JSON: counts that are not zero, and the warnings.
 Json report_json(const SceneReport& report);
 
 }  // namespace throng::app

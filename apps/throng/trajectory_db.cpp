@@ -11,6 +11,7 @@
 
 #include "throng/lean.h"
 
+// Writes a recording as an SQLite file in the tables of JuPedSim, in one transaction.
 namespace throng::app {
 namespace {
 
@@ -70,7 +71,7 @@ class Database {
   int code_ = SQLITE_OK;
 };
 
-// What joins frames to the one geometry that there is. Anything does; this depends on the text.
+// The key that joins frames to the only geometry: a hash of its text.
 int64_t geometry_hash(const std::string& wkt) {
   uint64_t hash = 1469598103934665603ULL;  // FNV-1a
   for (const char c : wkt) hash = (hash ^ static_cast<uint8_t>(c)) * 1099511628211ULL;
@@ -130,19 +131,19 @@ Result<void> export_sqlite(Replay& replay, const std::string& wkt, const std::st
     sqlite3_bind_int64(joined, 2, hash);
     if (!wkt.empty()) db.step(joined);
   }
-  const auto tell = [&](const char* key, const std::string& value) {
+  const auto add_metadata = [&](const char* key, const std::string& value) {
     if (db.failed()) return;
     sqlite3_bind_text(about, 1, key, -1, SQLITE_TRANSIENT);
     sqlite3_bind_text(about, 2, value.c_str(), -1, SQLITE_TRANSIENT);
     db.step(about);
   };
-  tell("version", "2");
-  tell("fps", fmt::format("{}", film->rate));
+  add_metadata("version", "2");
+  add_metadata("fps", fmt::format("{}", film->rate));
   if (!box.empty()) {
-    tell("xmin", fmt::format("{}", box.min.x));
-    tell("xmax", fmt::format("{}", box.max.x));
-    tell("ymin", fmt::format("{}", box.min.z));
-    tell("ymax", fmt::format("{}", box.max.z));
+    add_metadata("xmin", fmt::format("{}", box.min.x));
+    add_metadata("xmax", fmt::format("{}", box.max.x));
+    add_metadata("ymin", fmt::format("{}", box.min.z));
+    add_metadata("ymax", fmt::format("{}", box.max.z));
   }
   db.run("CREATE INDEX frame_id_idx ON trajectory_data(frame, id); COMMIT;");
   return db.close();

@@ -9,8 +9,8 @@
 #include "throng/replay_export.h"
 #include "throng/result.h"
 
-/// Recordings as the SQLite files that JuPedSim writes. Not in the library: it shall not need
-/// SQLite.
+/// Recordings as the SQLite files that JuPedSim writes. Not in the library, which does
+/// not need SQLite.
 namespace throng::app {
 
 /// Was the program built with SQLite?

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+// Finds the folder of trials beside the program or in the source tree.
 namespace throng::app {
 
 std::string trials_folder() {

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 
+// Files in the XDG folders of a user.
 namespace throng::app {
 
 namespace fs = std::filesystem;

@@ -19,6 +19,7 @@
 #include "throng/walkable_surface.h"
 #include "user_files.h"
 
+// Loads what throng view and throng film show: scene, world, figures and a source of avatars.
 namespace throng::app {
 namespace {
 
@@ -28,7 +29,7 @@ bool has_sources(const SourceOptions& sources) {
   return !sources.files.empty() || !sources.scene.empty();
 }
 
-// More poses than views: near the eye one sees them change.
+// More poses than an atlas: near the eye the changes are visible.
 Result<FigureModel> model_of(const Character& character, AtlasConfig config, Context& context) {
   config.frames = 24;
   return build_figure_model(character, config, context);
@@ -41,7 +42,7 @@ AtlasConfig figure_config(double height) {
   return config;
 }
 
-// The built-in figure at a height; kept for the next time, for it takes seconds to make.
+// The built-in figure at a height. It takes seconds to make and is cached.
 Result<Atlas> atlas_of(double height, Context& context) {
   const AtlasConfig config = figure_config(height);
   const std::string kept =
@@ -55,7 +56,7 @@ Result<Atlas> atlas_of(double height, Context& context) {
   return atlas;
 }
 
-// A character of a file, drawn and posed now; who cannot stand still only walks.
+// A character of a file. Without a clip "Idle" it only walks.
 Result<ViewFigure> figure_of_file(const std::string& path, Context& context) {
   const Result<Character> character = load_character(path, context);
   if (!character) return character.error();
@@ -103,7 +104,7 @@ std::vector<double> heights_of(const std::vector<AvatarClass>& classes) {
   return heights;
 }
 
-// Sets the scene: what the options name, or where one can walk.
+// Sets the scene: the sources of the options, or the walkable surface.
 Result<void> set_scene(StageParts& parts, const ViewTarget& target, const World& world,
                        Context& context) {
   const bool given = has_sources(target.sources);
@@ -116,7 +117,7 @@ Result<void> set_scene(StageParts& parts, const ViewTarget& target, const World&
 
 Result<void> show_world(StageParts& parts, const ViewTarget& target, const World& world,
                         Context& context) {
-  // Only some worlds have nodes; the overlay says so when it is asked for.
+  // A world may have no nodes; then the overlay reports it.
   std::optional<Nodes> nodes;
   if (!target.path.empty() && fs::exists(fs::path(target.path) / "manifest.thm")) {
     if (Result<Nodes> opened = Nodes::open(target.path)) nodes = *std::move(opened);
@@ -177,7 +178,7 @@ bool is_scenario(const fs::path& path) {
   return json.is_object() && !json.contains("type") && !json.contains("patches");
 }
 
-// Sources of the options are drawn in place of what the world was baked of.
+// Sources of the options are drawn in place of the model that was baked.
 Result<void> load_scenario_stage(StageParts& parts, const ViewTarget& target, Context& context) {
   Result<Scenario> scenario = load_scenario(target.path);
   if (!scenario) return scenario.error();
@@ -200,7 +201,7 @@ Result<void> load_scenario_stage(StageParts& parts, const ViewTarget& target, Co
   }
   ViewTarget without = target;
   without.crowd = false;
-  without.path = scenario->world;  // Where nodes may lie.
+  without.path = scenario->world;  // It may have nodes.
   if (auto ok = show_world(parts, without, *world, context); !ok) return ok;
   parts.set_scenario(*scenario);
   return {};
@@ -210,18 +211,19 @@ Result<void> load_scenario_stage(StageParts& parts, const ViewTarget& target, Co
 
 void add_people_options(CLI::App* command, ViewTarget& target) {
   command->add_flag("--only-seen", target.start.only_seen,
-                    "For a camera in a street: simulate only who could be seen from it");
-  command->add_option("--sight", target.start.sight, "With --only-seen: so far [m]")
+                    "For a camera in a street: simulate only avatars that could be seen from it");
+  command->add_option("--sight", target.start.sight, "With --only-seen: max distance [m]")
       ->check(between(1.0, 2000.0))
       ->capture_default_str();
   command->add_flag("--coarse-far", target.start.coarse_far,
-                    "Simulate who is more than 300 m away in longer steps");
-  command->add_option("--atlas", target.atlases, "Who walks, made by throng atlas; may be repeated")
+                    "Simulate avatars more than 300 m away in longer steps");
+  command
+      ->add_option("--atlas", target.atlases, "Characters, made by throng atlas; may be repeated")
       ->type_name("FILE.atlas")
       ->allow_extra_args(false);
   command
       ->add_option("--character", target.characters,
-                   "Who walks, with a skeleton (fbx, glb ...); may be repeated")
+                   "Characters with a skeleton (fbx, glb ...); may be repeated")
       ->type_name("FILE")
       ->allow_extra_args(false);
   command->add_option("--world", target.world, "World of a recording, if it is not where it was")

@@ -17,8 +17,8 @@ namespace throng::app {
 struct ViewTarget {
   std::string path;                          ///< World, scenario, recording, model, builtin:NAME.
   std::string world;                         ///< Of a recording, if it is not where it was.
-  SourceOptions sources;                     ///< What to draw; none: where one can walk.
-  std::vector<std::string> atlases;          ///< Who walks; none: the built-in figure.
+  SourceOptions sources;                     ///< The model to draw; none: the walkable surface.
+  std::vector<std::string> atlases;          ///< Characters; none: the built-in figure.
   std::vector<std::string> characters = {};  ///< The same as files with a skeleton.
   double cell = 0.1;                         ///< To bake models with. [m]
   bool crowd = true;                         ///< Start one in a world.
@@ -26,11 +26,11 @@ struct ViewTarget {
   CrowdStart start;
 };
 
-/// The options that say who walks and how closely: --only-seen, --sight, --coarse-far, --atlas,
+/// Options of simulated avatars and their look: --only-seen, --sight, --coarse-far, --atlas,
 /// --character, and --world.
 void add_people_options(CLI::App* command, ViewTarget& target);
 
-/// How to load it; what goes wrong is told when it is loaded.
+/// How to load it. Errors are reported on loading.
 [[nodiscard]] LoadStage stage_of(const ViewTarget& target);
 
 /// Last part of a path, for titles.

@@ -17,6 +17,7 @@
 #include "command.h"
 #include "user_files.h"
 
+// A window with GLFW: events in, pictures of the viewer out.
 namespace throng::app {
 namespace {
 
@@ -25,7 +26,7 @@ struct WindowCloser {
 };
 using Window = std::unique_ptr<GLFWwindow, WindowCloser>;
 
-// GLFW is one for a process.
+// GLFW is global to the process.
 struct Library {
   bool started = glfwInit() == GLFW_TRUE;
   Library() = default;
@@ -94,8 +95,8 @@ Key key_for(int key) {
   }
 }
 
-// Who is told of events, and where the pointer was when the last one came. Buttons are told without
-// a place, and glfwGetCursorPos gives where the pointer is by now: of a fast drag that is its end.
+// The receiver of events, and the pointer at the last one. Events of buttons have no position, and
+// glfwGetCursorPos returns the current one: in a fast drag, its end.
 struct Listener {
   Viewer* viewer = nullptr;
   double x = 0, y = 0;
@@ -183,7 +184,7 @@ Result<Window> open_window(const std::string& title, const WindowConfig& config)
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 0);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   glfwWindowHintString(GLFW_X11_CLASS_NAME, "throng");
-  // What the desktop's own interface does not make, EGL may.
+  // If the desktop's own interface fails, EGL may work.
   for (const int api : {GLFW_NATIVE_CONTEXT_API, GLFW_EGL_CONTEXT_API}) {
     glfwWindowHint(GLFW_CONTEXT_CREATION_API, api);
     Window window(glfwCreateWindow(config.width, config.height, title.c_str(), nullptr, nullptr));

@@ -47,7 +47,7 @@ class Study:
         return sum(self.sets[name]["mean"])
 
     def cell(self, name, avatars):
-        return f"{self.at(name, avatars):.1f} +- {self.at(name, avatars, 'deviation'):.1f} ({self.at(name, avatars, 'most')})"
+        return f"{self.at(name, avatars):.1f} +- {self.at(name, avatars, 'deviation'):.1f} ({self.at(name, avatars, 'max')})"
 
     def reported(self, which, avatars):
         return self.report["reported"][which][self.counts.index(avatars)]
@@ -63,7 +63,7 @@ def steps_table(study):
     """Whether the paper's number bounds the mean, and every run."""
     def verdict(names, which, n):
         mean = max(study.at(name, n) for name in names)
-        largest = max(study.at(name, n, "most") for name in names)
+        largest = max(study.at(name, n, "max") for name in names)
         bound = study.reported(which, n)
         return f"{mean:.1f} ({largest}): " + ("every run" if largest <= bound else "the mean" if mean <= bound else "NOT")
     sweep = [name for name in SWEEP if name not in BAD]

@@ -43,7 +43,7 @@ def medians(runs):
 
 def reached(folder):
     """By class: the areas of its components, the largest first [m2]. And the numbers of regions and links."""
-    found = run_json(PROGRAM, "region", folder, "--limit", 10**9, "--json")
+    found = run_json(PROGRAM, "components", folder, "--limit", 10**9, "--json")
     areas = {entry["class"]: sorted((round(part["area"], 6) for part in entry["largest"]), reverse=True) for entry in found["classes"]}
     return areas, (found["regions"], found["links"])
 

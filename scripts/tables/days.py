@@ -93,7 +93,7 @@ def station(days):
 
 def run(days, threads):
     visits = WORK / "days.csv"
-    report = run_json(PROGRAM, "run", station(days), "--threads", threads, "--check-every", 600, "--visits", visits, "--json")
+    report = run_json(PROGRAM, "run", station(days), "--threads", threads, "--check-every", 600, "--trips", visits, "--json")
     with open(visits, newline="", encoding="utf-8") as lines:
         people = [(float(v["entered"]), float(v["left"] or -1)) for v in csv.DictReader(lines)]
     visits.unlink()

@@ -43,7 +43,7 @@ def rows_of(source, cell, share, classes, options):
         total["entered"] += flight["entered"]
         rows.append((f"{name}, {avatar}", f"{cell} / {air['cell']:g}", f"{air['free_cells'] / 1e6:.1f}", f"{human(bake['air_bytes'])} ({human(bake['bytes'])})",
                      f"{bake['seconds_air']:.2f} ({bake['seconds_total']:.2f})", flight["points"], f"{flight['reached']} / {flight['pairs']}",
-                     flight["legs"], flight["positions"], flight["entered"]))
+                     flight["segments"], flight["positions"], flight["entered"]))
     return rows, total
 
 

@@ -31,7 +31,7 @@ def city_rows():
     run_json(PROGRAM, "bake", "builtin:city", "-o", world, "--cell", 0.2, "--fly", "--json")
     for avatars in (1000, 5000):
         found = run_json(PROGRAM, "run", world, "--class", "flyer", "--avatars", avatars, "--steps", 300, "--goals", "random", "--near", 60, "--json")
-        yield (avatars, f"{found['ns_per_avatar_step']:.0f} ({found['ns_per_avatar_step_mean']:.0f})", found["planned"], found["no_way"],
+        yield (avatars, f"{found['ns_per_avatar_step']:.0f} ({found['ns_per_avatar_step_mean']:.0f})", found["planned"], found["no_path"],
                found["arrived"], f"{found['progress']:.2f}", found["checks"] * avatars, found["overlaps"] + found["wall_entries"])
 
 

@@ -17,7 +17,7 @@ MAX_MEMORY = 4 << 30  # [bytes]
 def largest_text(threads):
     """The powerplant is read from a file, as any model is."""
     model, folder = WORK / "powerplant.glb", WORK / "powerplant.throng"
-    run_json(PROGRAM, "world", "powerplant", "--triangles", LARGEST, "-o", model, "--json")
+    run_json(PROGRAM, "generate", "powerplant", "--triangles", LARGEST, "-o", model, "--json")
     report = run_json(PROGRAM, "bake", model, "-o", folder, "--fresh", "--threads", threads, "--json")
     model.unlink()
     shutil.rmtree(folder)

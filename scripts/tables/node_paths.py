@@ -58,7 +58,7 @@ def main():
             pairs += c["pairs"]
             illegal += faults
             links = ", ".join(f"{count} {kind}" for kind, count in c["links"].items())
-            rows.append((name, c["class"], c["pairs"], c["reached"], c["parted"], c["legs"], c["poses"], links, c["leaps"],
+            rows.append((name, c["class"], c["pairs"], c["reached"], c["disconnected"], c["segments"], c["poses"], links, c["links_over_holes"],
                          f"{c['length'] / max(c['straight'], 1e-9):.3f}", f"{c['length'] / max(c['reached'], 1):.0f}",
                          f"{c['search_seconds'] / c['pairs'] * 1000:.2f}", human(c["finder_bytes"]), faults))
     text = (f"Machine: {machine()}. {pairs} pairs, {illegal} faults (target 0). A fault: a segment whose body meets a triangle or has "

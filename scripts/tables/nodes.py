@@ -58,7 +58,7 @@ def everywhere(options):
     for name, model, words in all_worlds.worlds():
         folder = WORK / "nodes.throng"
         run = run_json(PROGRAM, "bake", model, *words, "-o", folder, "--cell", 0.1, "--nodes", "--threads", options.threads, "--fresh", "--json")
-        found = run_json(PROGRAM, "nodes", folder, "--json")
+        found = run_json(PROGRAM, "surface", folder, "--json")
         info = run_json(PROGRAM, "info", folder, "--json")
         shutil.rmtree(folder)
         low, high = info["bounds_min"], info["bounds_max"]
@@ -102,7 +102,7 @@ def main():
         runs = [bake(model, cell, size, together, options.threads) for _ in range(options.runs)]
         folder = runs[0][0]
         seconds = median([run["seconds_nodes"] for _, run in runs])
-        found = run_json(PROGRAM, "nodes", folder, "--json")
+        found = run_json(PROGRAM, "surface", folder, "--json")
         proof = run_json(PROGRAM, "verify", folder, "--source", model, "--nodes", "--samples", options.samples, "--json")
         shutil.rmtree(folder)
         faults = sum(c[key] for c in proof["classes"] for key in ("entered", "unsupported", "steeper", "lower", "one_way"))
@@ -110,7 +110,7 @@ def main():
                      f"{found['nodes'] / area * 1e6:.0f}" if area else "", human(found["bytes"]),
                      f"{seconds:.2f}", f"{seconds * 1000 / found['zones']:.0f}",
                      f"{seconds / max_seconds:.2f}", f"{found['bytes'] / max_bytes:.2f}",
-                     f"{sum(c['leaps'] for c in proof['classes'])}", faults))
+                     f"{sum(c['links_over_holes'] for c in proof['classes'])}", faults))
     text = (f"Machine: {machine()}. Six classes, two of which climb; {options.threads} threads; {options.samples} places a "
             f"class; median of {options.runs} runs. The last ratios: six classes together / the most expensive class alone.\n\n")
     text += table(["world", "cell [m]", "node size [m]", "patches", "nodes", "arcs", "bytes a node", "nodes a km2", "bytes",

@@ -11,7 +11,7 @@ from all_worlds import worlds
 from results_page import PROGRAM, WORK, machine, run_json, table, write_between
 
 CLASSES = 4  # The default ones.
-COUNTS = ("pairs", "reached", "parted", "legs", "bodies", "illegal", "entered", "unsupported", "torn", "disagree")
+COUNTS = ("pairs", "reached", "disconnected", "segments", "bodies", "illegal", "entered", "unsupported", "torn", "disagree")
 FAULTS = COUNTS[5:]
 
 
@@ -23,7 +23,7 @@ def row_of(name, model, words, options):
     shutil.rmtree(folder)
     sums = {key: sum(entry[key] for entry in found) for key in COUNTS}
     length, straight = (sum(entry[key] for entry in found) for key in ("length", "straight"))
-    return sums, (name, f"{sums['pairs']:,}", f"{sums['reached']:,}", f"{sums['legs']:,}", f"{sums['bodies']:,}",
+    return sums, (name, f"{sums['pairs']:,}", f"{sums['reached']:,}", f"{sums['segments']:,}", f"{sums['bodies']:,}",
                   f"{length / sums['reached']:.0f}" if sums["reached"] else "",
                   f"{length / straight:.3f}" if straight else "",
                   *(sums[fault] for fault in FAULTS))
@@ -44,7 +44,7 @@ def main():
         total = {key: total[key] + sums[key] for key in COUNTS}
     faults = sum(total[fault] for fault in FAULTS)
     text = (f"Machine: {machine()}. {total['pairs']:,} pairs on {len(rows)} worlds, cells of 0.1 m, four classes: {total['reached']:,} with a path, "
-            f"{total['parted']:,} in different components; {total['bodies']:,} bodies on the paths; {faults} faults (target 0): "
+            f"{total['disconnected']:,} in different components; {total['bodies']:,} bodies on the paths; {faults} faults (target 0): "
             f"{'met' if faults == 0 else 'MISSED'}.\n\n")
     text += table(["world", "pairs", "reached", "segments", "bodies on them", "mean length [m]", "length / straight line", *FAULTS], rows)
     if options.only:

@@ -65,7 +65,7 @@ def merged(runs):
     if "lacks" in test:
         return test
     test["runs"], test["passes"] = len(runs), sum(r["passed"] for r in runs)
-    for key in ("overlaps", "wall_entries", "obstacle_entries", "looks", "simulated", "seconds"):
+    for key in ("overlaps", "wall_entries", "obstacle_entries", "checks", "simulated", "seconds"):
         test[key] = sum(r[key] for r in runs)
     for n, m in enumerate(test["measures"]):
         same = [r["measures"][n] for r in runs]
@@ -86,10 +86,10 @@ def standard_row(test):
 
 def standards(name, tests):
     count = {kind: sum(verdict(t).startswith(kind) for t in tests) for kind in ("passed", "MISSED", "reported", "not modelled")}
-    looks, entered = sum(t.get("looks", 0) for t in tests), sum(faults(t) for t in tests if "looks" in t)
+    checks, entered = sum(t.get("checks", 0) for t in tests), sum(faults(t) for t in tests if "checks" in t)
     return "\n".join([f"### {name}", "",
                       f"{count['passed']} passed, {count['MISSED']} missed, {count['reported']} only reported, {count['not modelled']} not modelled. "
-                      f"Overlaps and walls entered: {entered} in {looks} checks.", "",
+                      f"Overlaps and walls entered: {entered} in {checks} checks.", "",
                       table(["test", "", "measured (target)", ""], map(standard_row, tests))])
 
 
@@ -113,7 +113,7 @@ def section(test):
     recorded = test["test"] in ("walkers", "laboratory")
     lines = [f"### {test['test']}: {test['title']}", "", f"{test['method']} Range: {test['source']}.", "",
              by_scene(test) if recorded else measures(test), "",
-             f"{faults(test)} overlaps and walls entered in {test['looks']} checks; {test['simulated']:.0f} s simulated in {test['seconds']:.0f} s. "
+             f"{faults(test)} overlaps and walls entered in {test['checks']} checks; {test['simulated']:.0f} s simulated in {test['seconds']:.0f} s. "
              f"**{verdict(test)[0].upper()}{verdict(test)[1:]}.**"]
     for chart in test["charts"]:
         lines += ["", f"![{chart}](images/validate_{chart}.png)"]

@@ -8,6 +8,7 @@
 
 #include "scratch_folder.h"
 
+// Trajectory files: what is read from them, and the message for each fault.
 namespace throng::app {
 namespace {
 
@@ -58,7 +59,7 @@ TEST_F(AvatarsCsv, SomeMayLean) {
                    "4,1,adult,1,5,3,0.25,2,0,0\n4,2,adult,1,9,0,0.25,0,1,0\n"));
   const auto walkers = read_walkers(path_);
   ASSERT_TRUE(walkers) << walkers.error().message;
-  // Up a wall that faces +X: along -X before he leans, and all of it is walked.
+  // Up a wall that faces +X: along -X before it leans, and all of it is walked.
   EXPECT_EQ((*walkers)[0].up, (Vec3d{1, 0, 0}));
   EXPECT_NEAR(length((*walkers)[0].heading - Vec3d{-3, 0, 0}), 0, 1e-12);
   EXPECT_DOUBLE_EQ((*walkers)[0].walked, 3);

@@ -60,7 +60,7 @@ def main():
         folder = pathlib.Path(name)
         old_model, new_model = folder / "old.obj", folder / "new.obj"
         write_model(old_model, [])
-        # Crates in half of the zones: some are kept, and there is something to kill.
+        # Crates in half of the zones: some are reused, and there is something to kill.
         write_model(new_model, [(x, z) for z in range(1, 80, 6) for x in range(3, 46, 6)])
         empty, old, world = folder / "empty", folder / "old.throng", folder / "w.throng"
         bake(old_model, old)
@@ -74,11 +74,11 @@ def main():
                 begin = time.monotonic()
                 report = bake(new_model, world)
                 seconds = min(seconds, time.monotonic() - begin)
-            assert (report["zones_kept"] > 0) == start.exists(), report
+            assert (report["zones_reused"] > 0) == start.exists(), report
             references[start] = (content(world), seconds)
-            print(f"from {start.name}: {seconds:.2f} s, {report['zones_baked']} baked, {report['zones_kept']} kept")
+            print(f"from {start.name}: {seconds:.2f} s, {report['zones_baked']} baked, {report['zones_reused']} reused")
         assert references[empty][0] == references[old][0], "what was there before shows in the bytes"
-        assert bake(new_model, world, "--fresh")["zones_kept"] == 0
+        assert bake(new_model, world, "--fresh")["zones_reused"] == 0
         assert content(world) == references[empty][0]
         before = content(old)
         killed = resumed = in_graph = in_nodes = opened = refused = without_nodes = 0

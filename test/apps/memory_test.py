@@ -50,7 +50,7 @@ def film(throng, folder, pictures, *arguments):
 
 
 def check_flat(samples):
-    """A quarter of the way must have shown all that is needed."""
+    """After the first quarter the memory must not grow."""
     early, late = max(samples[:len(samples) // 4]), max(samples[len(samples) // 4:-1])
     print(f"memory_test: {early:.0f} MB in the first quarter, {late:.0f} MB after it, {samples[-1]:.0f} MB at the peak")
     assert late < early + FLAT_MB, "grows from picture to picture"
@@ -67,7 +67,7 @@ def window(throng, folder):
     program = subprocess.Popen([throng, "view", "builtin:garage", "--avatars", "20", "--width", "640", "--height", "400", "--forget"],
                                env=env, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
-        # Loaded when nothing more is added for a while.
+        # The load is over when memory stays the same for five seconds.
         last, since, end = 0, time.time(), time.time() + 200
         while time.time() < since + 5 and time.time() < end:
             time.sleep(0.5)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""What tests of the program from outside share: a world, a folder, and how a refusal looks."""
+"""Shared by tests of the program: a world, a folder, and the check of a refusal."""
 import pathlib
 import subprocess
 import sys

@@ -55,9 +55,8 @@ def child_of_rank(parent, rank):
 
 
 def kill_a_rank(folder, rank, ranks, files=0, kind="tha", options=()):
-    """Bakes until some zones are done, or some files of a kind that rank 0 makes alone, kills one rank; the words that
-    were said, and the zones in the journal. Rank 0 has made all of them before Open MPI tells it to stop: it is told
-    here."""
+    """Bakes until some zones are done, or some files of a kind that rank 0 makes alone, and kills one rank. Returns
+    standard error and the zones in the journal. Open MPI stops rank 0 only after it has made all files: stop it here."""
     world = folder / "killed.throng"
     part = folder / "killed.throng.part"
     journal = part / "journal"
@@ -86,14 +85,14 @@ def test_bytes(folder, reference):
         assert done.returncode == 0, done.stderr
         assert not ours(done.stderr), done.stderr
         report = json.loads(done.stdout)  # One object, from one rank.
-        assert report["zones_kept"] == 0 and report["zones_baked"] == reference["report"]["zones_baked"]
+        assert report["zones_reused"] == 0 and report["zones_baked"] == reference["report"]["zones_baked"]
         assert report["zones_relinked"] == report["zones"] == reference["report"]["zones"]
         assert report["walkable_area"] == reference["report"]["walkable_area"]
         assert content(world) == reference["content"], f"{ranks} ranks: other bytes than one process"
         again = run([*MPIRUN, "-n", str(ranks), *bake_words(world)])
         again_report = json.loads(again.stdout)
         assert again_report["zones_baked"] == again_report["zones_relinked"] == 0, again.stdout
-        assert content(world) == reference["content"], f"{ranks} ranks: other bytes when all is kept"
+        assert content(world) == reference["content"], f"{ranks} ranks: other bytes when all is reused"
         shutil.rmtree(world)
 
 
@@ -106,11 +105,11 @@ def test_death(folder, reference):
         assert said and all("another rank has died" in line and "goes on from there" in line for line in said), err
         assert len(said) <= 2 and all(f"rank {rank} of {ranks}" not in line for line in said), err
         world = folder / "killed.throng"
-        # Whoever goes on: one process, or others.
+        # One process resumes, or several.
         words = bake_words(world) if rank == 0 else [*MPIRUN, "-n", "2", *bake_words(world)]
         done = run(words)
         assert done.returncode == 0, done.stderr
-        assert json.loads(done.stdout)["zones_kept"] >= finished, done.stdout
+        assert json.loads(done.stdout)["zones_reused"] >= finished, done.stdout
         assert content(world) == reference["content"], "other bytes than undisturbed"
         assert not (folder / "killed.throng.part").exists()
         shutil.rmtree(world)
@@ -137,7 +136,7 @@ def test_air(folder):
         assert rank == 0 or said, err
         done = run(bake_words(folder / "killed.throng", options=fly))
         assert done.returncode == 0, done.stderr
-        assert json.loads(done.stdout)["zones_kept"] == finished, done.stdout
+        assert json.loads(done.stdout)["zones_reused"] == finished, done.stdout
         assert content(folder / "killed.throng") == one, "other bytes of air than undisturbed"
         shutil.rmtree(folder / "killed.throng")
 
@@ -154,14 +153,14 @@ def test_graph(folder, reference):
         world = folder / "killed.throng"
         words = bake_words(world) if rank == 0 else [*MPIRUN, "-n", "2", *bake_words(world)]
         report = json.loads(run(words).stdout)
-        assert report["zones_kept"] == total, report
+        assert report["zones_reused"] == total, report
         assert report["zones_relinked"] <= total - (3 if kind == "thl" else 0), report
         assert content(world) == reference["content"], "other bytes than undisturbed"
         shutil.rmtree(world)
 
 
 def kill_amid_nodes(world, rank, ranks, options):
-    """Bakes until some zones' nodes are made, kills one rank; what was said, or None if all were made before."""
+    """Bakes until some zones' nodes are made, kills one rank. Returns standard error, or None if all were made before."""
     part = world / "nodes.part"
     words = bake_words(world, options=["--threads", "1", *options])
     with subprocess.Popen([*MPIRUN, "-n", str(ranks), *words], env=ENVIRONMENT,
@@ -179,16 +178,16 @@ def kill_amid_nodes(world, rank, ranks, options):
 
 
 def test_nodes(folder):
-    """Batches of zones are dealt to all ranks."""
+    """Batches of zones are assigned to all ranks."""
     options = ["--nodes", "--node-memory", "1"]  # MiB: many batches even of so small a world
     world = folder / "nodes.throng"
     done = run(bake_words(world, options=options))
     assert done.returncode == 0, done.stderr
     report, one = json.loads(done.stdout), content(world)
     made = report["node_zones_made"]
-    assert made > 100 and report["node_zones_kept"] == 0, report
+    assert made > 100 and report["node_zones_reused"] == 0, report
     shutil.rmtree(world)
-    same = ("nodes", "node_arcs", "node_bytes", "node_zones_made", "node_zones_kept")
+    same = ("nodes", "node_arcs", "node_bytes", "node_zones_made", "node_zones_reused")
     for ranks in (2, 3):
         words = [*MPIRUN, "-n", str(ranks), *bake_words(world, options=options)]
         done = run(words)
@@ -196,8 +195,8 @@ def test_nodes(folder):
         assert [json.loads(done.stdout)[key] for key in same] == [report[key] for key in same], done.stdout
         assert content(world) == one, f"{ranks} ranks: other nodes than one process"
         again = json.loads(run(words).stdout)
-        assert (again["node_zones_made"], again["node_zones_kept"]) == (0, made), again
-        assert content(world) == one, f"{ranks} ranks: other nodes when all are kept"
+        assert (again["node_zones_made"], again["node_zones_reused"]) == (0, made), again
+        assert content(world) == one, f"{ranks} ranks: other nodes when all are reused"
         shutil.rmtree(world)
     resumed = 0
     for rank, ranks in ((1, 2), (0, 2), (2, 3)):
@@ -209,7 +208,7 @@ def test_nodes(folder):
         words = bake_words(world, options=options) if rank == 0 else [*MPIRUN, "-n", "2", *bake_words(world, options=options)]
         done = run(words)
         assert done.returncode == 0, done.stderr
-        resumed += err is not None and json.loads(done.stdout)["node_zones_kept"] > 0
+        resumed += err is not None and json.loads(done.stdout)["node_zones_reused"] > 0
         assert content(world) == one, "other nodes than undisturbed"
         assert not (world / "nodes.part").exists()
         shutil.rmtree(world)
@@ -231,7 +230,7 @@ def test_refusals(folder):
     assert "missing.obj" in refused("-n", "3", *bake_words(world, missing))
     assert "rank 1: " in refused("-n", "1", *here, ":", "-n", "1", *bake_words(world, missing))
     assert "cell" in refused("-n", "2", *bake_words(world, options=["--cell", "0"]))
-    for option in ("--jumps", "--classes"):
+    for option in ("--off-mesh-links", "--classes"):
         assert "missing.toml" in refused("-n", "3", *bake_words(world, options=[option, "missing.toml"]))
     other = bake_words(world, "builtin:city,size=300,seed=4")
     assert "rank 2 has read another scene" in refused("-n", "2", *here, ":", "-n", "1", *other)
@@ -241,7 +240,7 @@ def test_refusals(folder):
 
 
 def test_without_mpi(folder):
-    """Several processes that do not know of each other would write one folder."""
+    """Processes without MPI would all write the same folder."""
     for rank in range(2):
         ENVIRONMENT.update(OMPI_COMM_WORLD_SIZE="2", OMPI_COMM_WORLD_RANK=str(rank))
         done = run(bake_words(folder / "w.throng"))

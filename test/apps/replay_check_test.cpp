@@ -9,6 +9,7 @@
 #include "throng/bake.h"
 #include "worlds.h"
 
+// A repeated run has the hashes of its recording, or the first step that differs is named.
 namespace throng::app {
 namespace {
 
@@ -48,7 +49,7 @@ class ReplayCheck : public testing::Test {
     return wanderers_settings({.avatars = 20, .dt = 0.25, .seed = 5}, "adult");
   }
 
-  // Exit code and what was printed.
+  // Exit code and output.
   static std::pair<int, std::string> check(const std::string& path) {
     const char* const words[] = {"throng", "replay", path.c_str(), "--check", "--json"};
     testing::internal::CaptureStdout();
@@ -62,7 +63,7 @@ class ReplayCheck : public testing::Test {
   World world_;
 };
 
-TEST_F(ReplayCheck, ARunComesOutTheSameAgain) {
+TEST_F(ReplayCheck, ARepeatedRunHasTheSameHashes) {
   const auto [code, text] = check(record(999, settings()));
   EXPECT_EQ(code, kDone) << text;
   const Json said = Json::parse(text);
@@ -83,7 +84,7 @@ TEST_F(ReplayCheck, TheFirstStepThatDiffersIsNamedWithOrWithoutAFrame) {
   EXPECT_EQ(Json::parse(text)["first_difference"], 0);
 }
 
-TEST_F(ReplayCheck, SettingsThatSayTooLittleAreRefused) {
+TEST_F(ReplayCheck, IncompleteSettingsAreRefused) {
   const auto refused = [&](const Json& bad, const std::string& word) {
     const auto [code, text] = check(record(999, bad));
     EXPECT_EQ(code, kBadUsage) << text;

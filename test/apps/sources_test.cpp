@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+// Model arguments: built-in worlds and joined scenes.
 namespace throng::app {
 namespace {
 

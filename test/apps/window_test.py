@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""A real window on a display of its own, driven with keys and mouse through XTest, looked at through the display.
+"""A real window on its own display, driven with keys and mouse through XTest; its pictures are read from the display.
 
 window_test.py THRONG. Exit 77: no Xvfb or no xdotool here."""
 import os
@@ -70,7 +70,7 @@ class Window:
         raise SystemExit(f"never seen: {what}; {(self.folder / 'log').read_text()}")
 
     def wait_until_still(self, seconds=90):
-        """Looks until nothing but the panel's numbers changes for two seconds: a busy machine takes its time."""
+        """Looks until nothing but the panel's numbers changes for two seconds: a busy machine is slow."""
         end = time.time() + seconds
         last = self.look()
         while time.time() < end:
@@ -92,12 +92,12 @@ def check(window):
     black = (0, 0, 0)
     bright = window.wait("a scene", lambda p: sum(pixel != black for row in p for pixel in row) > WIDTH * HEIGHT * 0.9)
     assert differing(bright, [[black] * WIDTH] * HEIGHT) > WIDTH * HEIGHT // 2
-    # The bar of what is being loaded is the only thing of this yellow.
+    # Only the progress bar of the load has this yellow.
     window.wait("the end of the load", lambda p: not any(
         red > 200 and 150 < green < 200 and blue < 30 for row in p[HEIGHT // 2:] for red, green, blue in row), 300)
-    # Somebody walks: the picture changes by itself.
+    # An avatar walks: the picture changes by itself.
     still = window.look()
-    window.wait("somebody who walks", lambda p: differing(p, still) > 30)
+    window.wait("an avatar that walks", lambda p: differing(p, still) > 30)
     window.do("mousemove", str(WIDTH - 60), str(HEIGHT // 2))
     window.do("key", "space")  # Pause.
     paused = window.wait_until_still()
@@ -108,7 +108,7 @@ def check(window):
     window.do("key", "Escape")
     # Not the same picture as before: hints come and go.
     without = window.wait("no keys after Escape", lambda p: differing(p, keys) > 8000)
-    # All at once: begun and ended between two frames.
+    # The drag begins and ends between two frames.
     window.do("mousedown", "1", "mousemove_relative", "--", "-80", "15", "mousemove_relative", "--", "-80", "15", "mouseup", "1")
     window.wait("another side after a drag", lambda p: differing(p, without) > 8000)
     window.do("key", "F12")

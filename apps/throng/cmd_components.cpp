@@ -13,11 +13,11 @@
 #include "throng/graph.h"
 #include "throng/world.h"
 
-// throng region: which places of a world hold together, per avatar class.
+// throng components: the connected components of a world, per avatar class.
 namespace throng::app {
 namespace {
 
-struct RegionOptions {
+struct ComponentsOptions {
   std::string world;
   std::string avatar_class = "all";
   std::vector<double> at;
@@ -25,8 +25,7 @@ struct RegionOptions {
   int32_t threads = 0;
 };
 
-// Where the feet of --at are, if a class can stand there.
-constexpr double kReach = 1.0;  // up and down [m]
+constexpr double kVerticalTolerance = 1.0;  // of the feet at --at [m]
 
 std::string where(const Vec3d& p) { return fmt::format("{:.2f}, {:.2f}, {:.2f}", p.x, p.y, p.z); }
 
@@ -46,8 +45,8 @@ Json components_json(std::span<const Component> components, uint64_t limit) {
   return list;
 }
 
-// What one class sees: into the object and the text.
-void describe(const World& world, const Graph& graph, const RegionOptions& options,
+// Appends the components of one class to the object and the text.
+void describe(const World& world, const Graph& graph, const ComponentsOptions& options,
               int32_t avatar_class, Json& classes, std::string& text) {
   const auto summary = world.summary();
   const std::string& name = summary.classes[static_cast<size_t>(avatar_class)].name;
@@ -73,7 +72,7 @@ void describe(const World& world, const Graph& graph, const RegionOptions& optio
   if (!options.at.empty()) {
     const Vec3d at{options.at[0], options.at[1], options.at[2]};
     const int32_t found =
-        graph.component_at(avatar_class, world.find_place(avatar_class, at, kReach));
+        graph.component_at(avatar_class, world.find_place(avatar_class, at, kVerticalTolerance));
     json["at"] = found >= 0 ? Json(found) : Json(nullptr);
     text += found >= 0 ? fmt::format("  ({}) lies in component {}\n", where(at), found)
                        : fmt::format("  ({}) is no place for this class\n", where(at));
@@ -81,7 +80,7 @@ void describe(const World& world, const Graph& graph, const RegionOptions& optio
   classes.push_back(json);
 }
 
-int region(Session& session, const RegionOptions& options) {
+int print_components(Session& session, const ComponentsOptions& options) {
   const Result<World> world = World::open(options.world);
   if (!world) return fail(world.error());
   std::optional<int32_t> only;
@@ -123,16 +122,16 @@ int region(Session& session, const RegionOptions& options) {
 
 }  // namespace
 
-void add_region(CLI::App& parser, Session& session) {
-  CLI::App* command = add_command(parser, session, "region",
-                                  "Show which places of a world hold together, per class",
+void add_components(CLI::App& parser, Session& session) {
+  CLI::App* command = add_command(parser, session, "components",
+                                  "List the connected components of a world, per class",
                                   "throng bake builtin:garage -o garage.throng\n"
-                                  "throng region garage.throng --class adult --at 14,0,8");
-  const auto options = std::make_shared<RegionOptions>();
+                                  "throng components garage.throng --class adult --at 14,0,8");
+  const auto options = std::make_shared<ComponentsOptions>();
   command->add_option("world", options->world, "World folder")->required()->type_name("WORLD");
   command->add_option("--class", options->avatar_class, "Avatar class by name, or all")
       ->capture_default_str();
-  command->add_option("--at", options->at, "A place: which component holds it? [m]")
+  command->add_option("--at", options->at, "Name the component of this place [m]")
       ->delimiter(',')
       ->expected(3)
       ->type_name("X,Y,Z");
@@ -142,7 +141,8 @@ void add_region(CLI::App& parser, Session& session) {
   command->add_option("--threads", options->threads, "Threads, 0 for all cores")
       ->check(between(0, 1024))
       ->capture_default_str();
-  command->callback([&session, options] { session.exit_code = region(session, *options); });
+  command->callback(
+      [&session, options] { session.exit_code = print_components(session, *options); });
 }
 
 }  // namespace throng::app

@@ -14,11 +14,12 @@
 #include "throng/ground_query.h"
 #include "throng/world.h"
 
-// throng place: where a class can stand near a position, and what is around it there.
+// throng query: the nearest place of a class to a position, its wall, a ray from it, places near
+// it.
 namespace throng::app {
 namespace {
 
-struct PlaceOptions {
+struct QueryOptions {
   std::string world;
   std::string avatar_class = "adult";
   std::vector<double> at;
@@ -60,7 +61,7 @@ void describe_ray(GroundQuery& query, const Place& place, const std::vector<doub
   text += "\n";
 }
 
-int place(Session& session, const PlaceOptions& options) {
+int query_place(Session& session, const QueryOptions& options) {
   const Result<World> world = World::open(options.world);
   if (!world) return fail(world.error());
   const Result<int32_t> avatar_class = class_named(*world, options.avatar_class);
@@ -96,10 +97,10 @@ int place(Session& session, const PlaceOptions& options) {
   json["place"] = numbers(found.position);
   json["distance"] = length(found.position - at);
   json["area"] = area;
-  std::string text = fmt::format(
-      "{} can stand at ({}), {:.3f} m away\n  {:.2f} m2 hold together with it within {} m\n",
-      options.avatar_class, where(found.position), length(found.position - at), area,
-      options.radius);
+  std::string text =
+      fmt::format("{} can stand at ({}), {:.3f} m away\n  {:.2f} m2 connected to it within {} m\n",
+                  options.avatar_class, where(found.position), length(found.position - at), area,
+                  options.radius);
   describe_wall(*query, found, options.radius, json, text);
   if (!options.toward.empty()) describe_ray(*query, found, options.toward, json, text);
   Json random = Json::array();
@@ -116,12 +117,12 @@ int place(Session& session, const PlaceOptions& options) {
 
 }  // namespace
 
-void add_place(CLI::App& parser, Session& session) {
+void add_query(CLI::App& parser, Session& session) {
   CLI::App* command = add_command(
-      parser, session, "place", "Find the nearest place to stand, and what is around it",
+      parser, session, "query", "Find the nearest place to stand, and what is around it",
       "throng bake builtin:garage -o garage.throng\n"
-      "throng place garage.throng --at 14,0,8 --toward 30,0 --random 3");
-  const auto options = std::make_shared<PlaceOptions>();
+      "throng query garage.throng --at 14,0,8 --toward 30,0 --random 3");
+  const auto options = std::make_shared<QueryOptions>();
   command->add_option("world", options->world, "World folder")->required()->type_name("WORLD");
   command->add_option("--at", options->at, "Near where [m]")
       ->delimiter(',')
@@ -133,7 +134,7 @@ void add_place(CLI::App& parser, Session& session) {
   command->add_option("--radius", options->radius, "How far around to look [m]")
       ->check(between(0.0, 1000.0))
       ->capture_default_str();
-  command->add_option("--toward", options->toward, "Also: how far does a straight line go? [m]")
+  command->add_option("--toward", options->toward, "Also cast a ray by this vector [m]")
       ->delimiter(',')
       ->expected(2)
       ->type_name("DX,DZ");
@@ -141,7 +142,7 @@ void add_place(CLI::App& parser, Session& session) {
       ->check(between(0, 1000000))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Of the random places")->capture_default_str();
-  command->callback([&session, options] { session.exit_code = place(session, *options); });
+  command->callback([&session, options] { session.exit_code = query_place(session, *options); });
 }
 
 }  // namespace throng::app

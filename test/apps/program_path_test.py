@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Ways that the program finds: on foot, over nodes, through the air; and what it says where there are none.
+"""Paths that the program finds: on foot, over nodes, through the air; and what it prints if there is none.
 
-python3 program_ways_test.py build/release/throng"""
+python3 program_path_test.py build/release/throng"""
 import json
 import subprocess
 import unittest
@@ -10,8 +10,8 @@ import unittest
 from program_case import ProgramCase
 
 
-class ProgramWays(ProgramCase):
-    def test_a_way_through_the_air_is_told_by_its_legs_and_bad_ends_are_refused(self):
+class ProgramPath(ProgramCase):
+    def test_a_path_through_the_air_lists_its_segments_and_bad_ends_are_refused(self):
         self.assert_refused(self.run_throng("path", self.world, "--from", "14,0,8", "--to", "30,0,8", "--fly"), "baked without air")
         done = self.run_throng("bake", "builtin:cube", "--fly", "--cell", "0.2", "-o", "cube.throng", "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -23,7 +23,7 @@ class ProgramWays(ProgramCase):
             return self.run_throng("path", "cube.throng", "--from", start, "--to", goal, "--class", "flyer", "--fly", *more)
 
         found = json.loads(fly("2,3,2", "4,3,4", "--json").stdout)
-        self.assertEqual((found["end"], found["legs"]), ("reached", ["fly"]))
+        self.assertEqual((found["end"], found["segments"]), ("reached", ["fly"]))
         self.assert_refused(fly("nan,3,2", "4,3,4"), "--from", "finite")
         self.assert_refused(fly("2,3,2", "400,3,4"), "--to", "outside")
         self.assert_refused(fly("2,3,2", "4,900,4"), "--to", "neither in the air nor on the ground")
@@ -38,7 +38,7 @@ class ProgramWays(ProgramCase):
         self.assertEqual(around["end"], "reached")
         self.assertGreater(around["length"], found["length"] + 0.05)
 
-    def test_a_flight_into_a_closed_room_tells_how_near_it_comes(self):
+    def test_a_flight_into_a_closed_room_reports_the_nearest_point(self):
         lines, sides = [], ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6))
         for low, high in (((0, -1, 0), (20, 0, 8)), ((10, 0, 1), (16, 5, 7))):
             first = 8 * len(lines) // 14 + 1
@@ -47,8 +47,8 @@ class ProgramWays(ProgramCase):
         (self.path / "room.obj").write_text("\n".join(lines) + "\n", encoding="ascii")
         done = self.run_throng("bake", "room.obj", "--fly", "--cell", "0.2", "-o", "room.throng")
         self.assertEqual(done.returncode, 0, done.stderr)
-        way = ("path", "room.throng", "--from", "3,2,4", "--to", "13,2,4", "--class", "flyer", "--fly")
-        done = self.run_throng(*way, "--json")
+        path = ("path", "room.throng", "--from", "3,2,4", "--to", "13,2,4", "--class", "flyer", "--fly")
+        done = self.run_throng(*path, "--json")
         self.assertEqual(done.returncode, 1, done.stderr)
         found = json.loads(done.stdout)
         self.assertEqual((found["end"], found["nearest"]["obstacle"]), ("unreachable", "a wall, or too narrow"))
@@ -56,51 +56,51 @@ class ProgramWays(ProgramCase):
         self.assertGreater(found["nearest"]["distance"], 3)  # Over the roof.
         self.assertLess(found["nearest"]["distance"], 4.5)
         self.assertAlmostEqual(found["cost"], found["length"])
-        text = self.run_throng(*way).stdout
+        text = self.run_throng(*path).stdout
         self.assertIn("unreachable", text)
-        self.assertIn("what is in the way: a wall, or too narrow", text)
+        self.assertIn("blocked by: a wall, or too narrow", text)
 
-    def test_ways_lead_around_boxes_and_say_what_is_in_the_way(self):
-        def way(goal, *more):
+    def test_paths_lead_around_boxes_and_report_what_blocks_them(self):
+        def path(goal, *more):
             done = self.run_throng("path", self.world, "--from", "14,0,8", "--to", goal, "--json", *more)
             return done.returncode, json.loads(done.stdout)
 
-        code, straight = way("20,0,8")
+        code, straight = path("20,0,8")
         self.assertEqual((code, straight["end"]), (0, "reached"))
-        code, around = way("20,0,8", "--block", "17,2,9,16,0,0")
+        code, around = path("20,0,8", "--block", "17,2,9,16,0,0")
         self.assertEqual((code, around["end"]), (0, "reached"))
         self.assertGreater(around["length"], straight["length"] + 0.5)
         self.assertGreater(max(z for _, _, z in around["points"]), 9.2)
-        code, shut = way("20,0,8", "--block", "16,0,0,17,2,40")
+        code, shut = path("20,0,8", "--block", "16,0,0,17,2,40")
         self.assertEqual((code, shut["end"]), (1, "unreachable"))
         self.assertEqual(shut["nearest"]["obstacle"], "a wall, or too narrow")
         self.assertLess(shut["points"][-1][0], 16)
-        code, jump = way("20,0,8", "--block", "16,0,0,17,2,40", "--jump", "15,0,8,18,0,8")
-        self.assertEqual((code, len(jump["jumps"])), (0, 1))
-        code, up = way("30,2.9,30", "--class", "wheelchair")
+        code, link = path("20,0,8", "--block", "16,0,0,17,2,40", "--off-mesh-link", "15,0,8,18,0,8")
+        self.assertEqual((code, len(link["off_mesh_links"])), (0, 1))
+        code, up = path("30,2.9,30", "--class", "wheelchair")
         self.assertEqual((code, up["end"], up["nearest"]["obstacle"]), (1, "unreachable", "a gap"))
         ends = ["path", self.world, "--from", "14,0,8", "--to", "20,0,8"]
         self.assert_refused(self.run_throng(*ends, "--block", "13,0,7,15,2,9"), "--from", "--block")
         self.assert_refused(self.run_throng(*ends, "--block", "13,0,7,13,2,9"), "--block", "opposite corners")
         self.assert_refused(self.run_throng(*ends, "--area-cost", "1.5=2"), "--area-cost", "whole numbers")
-        self.assert_refused(self.run_throng(*ends, "--jump", "14,0,8,19,0,99"), "--jump", "outside")
+        self.assert_refused(self.run_throng(*ends, "--off-mesh-link", "14,0,8,19,0,99"), "--off-mesh-link", "outside")
 
-    def test_boxes_are_in_the_way_over_nodes_too(self):
+    def test_boxes_block_paths_over_nodes_too(self):
         done = self.run_throng("bake", "builtin:garage", "--cell", "0.2", "--nodes", "-o", "n.throng")
         self.assertEqual(done.returncode, 0, done.stderr)
         ends = ("path", "n.throng", "--nodes", "--from", "14,0,8", "--to", "20,0,8")
 
-        def way(*options):
+        def path(*options):
             done = self.run_throng(*ends, *options, "--json")
             return done.returncode, json.loads(done.stdout)["length"]
 
-        code, straight = way()
+        code, straight = path()
         self.assertEqual(code, 0)
-        code, around = way("--block", "17,2,9,16,0,0")
+        code, around = path("--block", "17,2,9,16,0,0")
         self.assertEqual(code, 0)
         self.assertGreater(around, straight + 0.3)
-        self.assertEqual(way("--block", "16,0,0,17,2,40")[0], 1)
-        self.assert_refused(self.run_throng(*ends, "--block", "13,0,7,15,2,9", "--reach", "0.1"), "--from")
+        self.assertEqual(path("--block", "16,0,0,17,2,40")[0], 1)
+        self.assert_refused(self.run_throng(*ends, "--block", "13,0,7,15,2,9", "--tolerance", "0.1"), "--from")
         verify = ("verify", "n.throng", "--source", "builtin:garage", "--samples", "40")
         box = ("--block", "16,0,0,17,2,9")
         done = self.run_throng(*verify, "--paths", "--nodes", *box, "--json")
@@ -108,43 +108,43 @@ class ProgramWays(ProgramCase):
         self.assert_refused(self.run_throng(*verify, *box), "--block", "--paths")
         self.assert_refused(self.run_throng(*verify, "--paths", *box), "--block", "--nodes")
 
-    def test_ends_over_nodes_are_up_or_down_from_where_they_were_asked(self):
+    def test_ends_over_nodes_are_above_or_below_the_given_ones(self):
         done = self.run_throng("bake", "builtin:landscape,size=160", "--cell", "0.5", "--nodes", "-o", "h.throng")
         self.assertEqual(done.returncode, 0, done.stderr)
-        ends = ("path", "h.throng", "--nodes", "--reach", "20", "--from", "20,5,20", "--to", "120,5,90")
-        way = json.loads(self.run_throng(*ends, "--json").stdout)
-        self.assertLess(max(way["beside"].values()), 0.001)
-        for point, asked in ((way["points"][0], (20, 20)), (way["points"][-1], (120, 90))):
-            self.assertLess(abs(point[0] - asked[0]) + abs(point[2] - asked[1]), 0.001)
+        ends = ("path", "h.throng", "--nodes", "--tolerance", "20", "--from", "20,5,20", "--to", "120,5,90")
+        path = json.loads(self.run_throng(*ends, "--json").stdout)
+        self.assertLess(max(path["beside"].values()), 0.001)
+        for point, given in ((path["points"][0], (20, 20)), (path["points"][-1], (120, 90))):
+            self.assertLess(abs(point[0] - given[0]) + abs(point[2] - given[1]), 0.001)
         self.assertNotIn("beside", self.run_throng(*ends).stdout)
 
-    def test_what_nodes_are_asked_for_is_looked_at_before_the_old_world_goes(self):
+    def test_options_of_nodes_are_checked_before_the_old_world_is_replaced(self):
         done = self.run_throng("bake", "builtin:stairs", "--cell", "0.2", "--nodes", "-o", "w.throng")
         self.assertEqual(done.returncode, 0, done.stderr)
         before = {p: p.read_bytes() for p in self.path.rglob("*") if p.is_file()}
-        (self.path / "jumps.json").write_text('[{"from": [0, 0, 0], "to": [1, 0, 1], "class": "horse"}]')
+        (self.path / "links.json").write_text('[{"from": [0, 0, 0], "to": [1, 0, 1], "class": "horse"}]')
         (self.path / "list.json").write_text("{}")
         again = ["bake", "builtin:garage", "--cell", "0.2", "-o", "w.throng"]
         self.assert_refused(self.run_throng(*again, "--nodes", "--node-size", "1000"), "size")
-        self.assert_refused(self.run_throng(*again, "--jumps", "jumps.json"), "jump 1", "horse", "adult")
-        self.assert_refused(self.run_throng(*again, "--jumps", "list.json"), "no list", '"from"')
-        self.assert_refused(self.run_throng(*again, "--jumps", "missing.json"), "missing.json")
-        # Whether a jump has places only the new ground tells.
+        self.assert_refused(self.run_throng(*again, "--off-mesh-links", "links.json"), "off-mesh link 1", "horse", "adult")
+        self.assert_refused(self.run_throng(*again, "--off-mesh-links", "list.json"), "no list", '"from"')
+        self.assert_refused(self.run_throng(*again, "--off-mesh-links", "missing.json"), "missing.json")
+        # Whether a link has places only the new ground shows.
         (self.path / "far.json").write_text('[{"from": [0, 0, 0], "to": [900, 0, 0], "class": "adult"}]')
         for cell in ("0.2", "0.25"):
-            done = self.run_throng("bake", "builtin:stairs", "--cell", cell, "-o", "w.throng", "--nodes", "--jumps", "far.json")
+            done = self.run_throng("bake", "builtin:stairs", "--cell", cell, "-o", "w.throng", "--nodes", "--off-mesh-links", "far.json")
             self.assert_refused(done, "jump 1", "no place", "nothing was written")
-            self.assertEqual({path.name for path in self.path.iterdir()}, {"w.throng", "jumps.json", "list.json", "far.json"})
-            self.assertEqual({path for path in before} | {self.path / name for name in ("jumps.json", "list.json", "far.json")},
+            self.assertEqual({path.name for path in self.path.iterdir()}, {"w.throng", "links.json", "list.json", "far.json"})
+            self.assertEqual({path for path in before} | {self.path / name for name in ("links.json", "list.json", "far.json")},
                              {path for path in self.path.rglob("*") if path.is_file()})
         for path, content in before.items():
             self.assertEqual(path.read_bytes(), content, path)
 
-    def test_ways_are_gone_and_those_through_another_model_found_out(self):
-        done = self.run_throng("world", "garage", "--levels", 2, "-o", "ways.glb")
+    def test_paths_are_verified_and_those_through_another_model_fail(self):
+        done = self.run_throng("generate", "garage", "--levels", 2, "-o", "model.glb")
         self.assertEqual(done.returncode, 0, done.stderr)
-        ways = ("verify", self.world, "--paths", "--samples", 40, "--json", "--source")
-        done = self.run_throng(*ways, "ways.glb")
+        verify = ("verify", self.world, "--paths", "--samples", 40, "--json", "--source")
+        done = self.run_throng(*verify, "model.glb")
         self.assertEqual(done.returncode, 0, done.stderr)
         report = json.loads(done.stdout)
         self.assertTrue(report["passed"])
@@ -153,29 +153,55 @@ class ProgramWays(ProgramCase):
             self.assertEqual(entry["pairs"], 40)
             self.assertGreater(entry["reached"], 10)
             self.assertEqual(sum(entry[fault] for fault in ("illegal", "entered", "unsupported", "torn", "disagree")), 0)
-        done = self.run_throng(*ways, "builtin:maze")
+        done = self.run_throng(*verify, "builtin:maze")
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertFalse(json.loads(done.stdout)["passed"])
 
-    def test_regions_are_told_from_the_bakes_files_or_made_where_there_are_none(self):
-        def region(world):
-            done = self.run_throng("region", world, "--at", "14,0,8", "--json")
+    def test_components_come_from_the_files_of_the_bake_or_are_computed(self):
+        def components(world):
+            done = self.run_throng("components", world, "--at", "14,0,8", "--json")
             self.assertEqual(done.returncode, 0, done.stderr)
             return json.loads(done.stdout)
         copy = self.path / "copy.throng"
         subprocess.run(["cp", "-r", self.world, copy], check=True)
-        on_disk = region(copy)
+        on_disk = components(copy)
         self.assertTrue(on_disk.pop("on_disk"))
         for entry in copy.iterdir():
             if entry.suffix in (".thr", ".thl") or entry.name == "graph.thm":
                 entry.unlink()
-        made = region(copy)
+        made = components(copy)
         self.assertFalse(made.pop("on_disk"))
         self.assertGreater(on_disk["classes"][0]["components"], 0)
         self.assertEqual(on_disk["classes"][0]["at"], 0)
         for report in (on_disk, made):
             del report["seconds"]
         self.assertEqual(on_disk, made)
+
+    def test_positions_outside_the_world_are_refused_by_each_command(self):
+        for command in (["components", self.world, "--at", "5000,0,1"], ["query", self.world, "--at", "5000,0,8"],
+                        ["path", self.world, "--from", "5000,0,8", "--to", "20,0,8"]):
+            self.assert_refused(self.run_throng(*command), f"{command[2]} (5000.000", "lies outside the world, which reaches from")
+        inside = self.run_throng("components", self.world, "--at", "14,300,8")
+        self.assertEqual(inside.returncode, 0, inside.stderr)
+        self.assertEqual(self.run_throng("query", self.world, "--at", "14,300,8").returncode, 1)
+        self.assertEqual(self.run_throng("query", self.world, "--at", "-1,0,8").returncode, 0)  # There is one within 5 m.
+
+    def test_a_query_reads_only_the_zones_around_it(self):
+        done = self.run_throng("bake", "builtin:garage", "--cell", "0.2", "--zone", "12.8", "-o", "w.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        near = ("query", "w.throng", "--at", "14,0,8", "--radius", "2", "--json")
+        before = self.run_throng(*near)
+        self.assertEqual(before.returncode, 0, before.stderr)
+        zones = {tuple(map(int, p.stem.split("_")[1:])): p for p in (self.path / "w.throng").glob("zone_*.thz")}
+        self.assertGreater(len(zones), 6)
+        # A circle of 2 m around (14, 8): of zones 12.8 m wide these two.
+        for place, zone in zones.items():
+            if place not in ((0, 0), (1, 0)):
+                zone.write_bytes(b"?")
+        after = self.run_throng(*near)
+        self.assertEqual((after.returncode, after.stdout), (0, before.stdout), after.stderr)
+        self.assert_refused(self.run_throng(*near[:-3], "--radius", "200"), "checksum")
+        self.assert_refused(self.run_throng(*near, "--toward", "0,40"), "checksum")
 
 
 if __name__ == "__main__":

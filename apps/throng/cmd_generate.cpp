@@ -8,11 +8,11 @@
 #include "command.h"
 #include "throng/builtin_worlds.h"
 
-// throng world: writes a built-in world as a GLB file.
+// throng generate: writes a built-in world as a GLB file.
 namespace throng::app {
 namespace {
 
-struct WorldOptions {
+struct GenerateOptions {
   BuiltinWorldConfig config;
   std::string output;
   bool list = false;
@@ -39,7 +39,7 @@ Result<void> write_world(const Scene& scene, const std::string& path) {
                path + ": this world has no patches; name a .glb file, or make a landscape"};
 }
 
-int make_world(const Session& session, const WorldOptions& options) {
+int generate_world(const Session& session, const GenerateOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -48,7 +48,7 @@ int make_world(const Session& session, const WorldOptions& options) {
   if (!scene) return fail(scene.error());
   const double made = seconds();
   if (session.context.cancel)
-    return fail({Errc::kCancelled, "world: stopped; nothing was written"});
+    return fail({Errc::kCancelled, "generate: stopped; nothing was written"});
   const Result<void> written = write_world(*scene, options.output);
   if (!written) return fail(written.error());
 
@@ -76,12 +76,13 @@ int make_world(const Session& session, const WorldOptions& options) {
 
 }  // namespace
 
-void add_world(CLI::App& parser, Session& session) {
-  CLI::App* command = add_command(parser, session, "world", "Write a built-in world as a GLB file",
-                                  "throng world --list\n"
-                                  "throng world garage --size 120 --levels 4 -o garage.glb\n"
-                                  "throng world landscape --seed 3 -o hills.patches.json");
-  const auto options = std::make_shared<WorldOptions>();
+void add_generate(CLI::App& parser, Session& session) {
+  CLI::App* command =
+      add_command(parser, session, "generate", "Write a built-in world as a GLB file",
+                  "throng generate --list\n"
+                  "throng generate garage --size 120 --levels 4 -o garage.glb\n"
+                  "throng generate landscape --seed 3 -o hills.patches.json");
+  const auto options = std::make_shared<GenerateOptions>();
   BuiltinWorldConfig& config = options->config;
   config.name.clear();
   auto* list = command->add_flag("--list", options->list, "Name the built-in worlds and stop");
@@ -104,11 +105,11 @@ void add_world(CLI::App& parser, Session& session) {
     if (options->list) {
       session.exit_code = list_worlds(session);
     } else if (options->config.name.empty() || options->output.empty()) {
-      session.exit_code =
-          fail({Errc::kBadConfig,
-                "world: say which one and where to: throng world NAME -o FILE.glb, or --list"});
+      session.exit_code = fail(
+          {Errc::kBadConfig,
+           "generate: name the world and the file: throng generate NAME -o FILE.glb, or --list"});
     } else {
-      session.exit_code = make_world(session, *options);
+      session.exit_code = generate_world(session, *options);
     }
   });
 }

@@ -8,11 +8,11 @@
 #include "command.h"
 #include "throng/nodes.h"
 
-// throng nodes: how many nodes and links a world has, and what each class can reach by them.
+// throng surface: how many nodes and arcs a world has, and their connected components per class.
 namespace throng::app {
 namespace {
 
-int print_nodes(Session& session, const std::string& path) {
+int print_surface(Session& session, const std::string& path) {
   const Result<Nodes> nodes = Nodes::open(path);
   if (!nodes) return fail(nodes.error());
   if (auto ok = nodes->check_all(); !ok) return fail(ok.error());
@@ -21,34 +21,34 @@ int print_nodes(Session& session, const std::string& path) {
   Json json = {{"world", path},
                {"nodes", summary.nodes},
                {"terminal", summary.terminal},
-               {"ragged", summary.partial},
+               {"partial", summary.partial},
                {"arcs", summary.arcs},
                {"patches", summary.patches},
                {"zones", summary.zones},
                {"bytes", summary.bytes},
                {"bytes_a_node", static_cast<double>(summary.bytes) / count}};
   std::string text = fmt::format(
-      "{}: {} nodes ({} terminal, {} ragged), {} arcs, {} patches in {} zones, {} ({:.1f} bytes a "
+      "{}: {} nodes ({} terminal, {} partial), {} arcs, {} patches in {} zones, {} ({:.1f} bytes a "
       "node)\n",
       path, summary.nodes, summary.terminal, summary.partial, summary.arcs, summary.patches,
       summary.zones, human_bytes(summary.bytes), static_cast<double>(summary.bytes) / count);
   json["classes"] = Json::array();
   for (size_t c = 0; c < summary.classes.size(); ++c) {
-    const auto reach = nodes->components(static_cast<int32_t>(c));
+    const auto components = nodes->components(static_cast<int32_t>(c));
     double area = 0;
     uint64_t stands = 0;
-    for (const NodeComponent& part : reach) {
-      area += part.area;
-      stands += part.nodes;
+    for (const NodeComponent& component : components) {
+      area += component.area;
+      stands += component.nodes;
     }
-    const double largest = reach.empty() ? 0 : reach[0].area;
+    const double largest = components.empty() ? 0 : components[0].area;
     json["classes"].push_back({{"class", summary.classes[c].name},
                                {"nodes", stands},
                                {"area", area},
-                               {"parts", reach.size()},
+                               {"components", components.size()},
                                {"largest", largest}});
-    text += fmt::format("  {:<12} {:9} nodes {:12.1f} m2, {} parts, the largest {:.1f} m2\n",
-                        summary.classes[c].name, stands, area, reach.size(), largest);
+    text += fmt::format("  {:<12} {:9} nodes {:12.1f} m2, {} components, the largest {:.1f} m2\n",
+                        summary.classes[c].name, stands, area, components.size(), largest);
   }
   print_result(session, json, text);
   return kDone;
@@ -56,16 +56,16 @@ int print_nodes(Session& session, const std::string& path) {
 
 }  // namespace
 
-void add_nodes(CLI::App& parser, Session& session) {
-  CLI::App* command =
-      add_command(parser, session, "nodes", "What the nodes of a world let one reach",
-                  "throng bake builtin:landscape,size=160 -o hills.throng --cell 0.5 --nodes\n"
-                  "throng nodes hills.throng");
+void add_surface(CLI::App& parser, Session& session) {
+  CLI::App* command = add_command(
+      parser, session, "surface", "Show what each class can reach over the nodes of a world",
+      "throng bake builtin:landscape,size=160 -o hills.throng --cell 0.5 --nodes\n"
+      "throng surface hills.throng");
   const auto path = std::make_shared<std::string>();
   command->add_option("world", *path, "World folder with nodes")
       ->required()
       ->type_name("WORLD.throng");
-  command->callback([&session, path] { session.exit_code = print_nodes(session, *path); });
+  command->callback([&session, path] { session.exit_code = print_surface(session, *path); });
 }
 
 }  // namespace throng::app

@@ -129,13 +129,14 @@ void PlainCrowd::prefer(uint32_t i) {
   const steer::View view{
       .velocity = body.velocity,
       .preferred = preferred_of(body),
-      .way = config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z),
+      .to_target = config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z),
       .stops = true,
       .fastest = body.speed,
       .radius = static_cast<float>(body.radius) * config_.units.unit,
       .slot = i,
       .others = others};
-  choices_[i] = steer::ways_about(steer::preferred_velocity(config_.model, view, config_.units.dt));
+  choices_[i] =
+      steer::candidates_about(steer::preferred_velocity(config_.model, view, config_.units.dt));
 }
 
 void PlainCrowd::steer_all() {
@@ -176,7 +177,9 @@ void PlainCrowd::steer_all() {
     const Plane preferred = situation.preferred;
     situation.preferred = steer::following(config_.steering, situation);
     follows_[i] =
-        steer::can_but_crawl(config_.patience, preferred, situation.preferred, body.speed) ? 1 : 0;
+        steer::can_but_crawl(config_.deadlock_settings, preferred, situation.preferred, body.speed)
+            ? 1
+            : 0;
     bool open = steer::preferred_is_open(config_.steering, situation);
     if (!open && !waits && steer::is_opposed(config_.lanes, situation)) {
       steer::Lanes lanes(config_.lanes, preferred_of(body));
@@ -296,11 +299,12 @@ void PlainCrowd::settle(const std::vector<Spot>& now, const std::vector<uint8_t>
       });
       const float content =
           left > 1 && !alone
-              ? steer::progress_felt(config_.patience, towards / body.speed, body.follows)
+              ? steer::progress_felt(config_.deadlock_settings, towards / body.speed, body.follows)
               : 1;
       const float along = (body.velocity.x * preferred.x + body.velocity.z * preferred.z) /
                           (body.speed * body.speed);
-      body.turn = steer::next_turn(config_.patience, body.turn, content, along, units.dt);
+      body.turn =
+          steer::next_detour_angle(config_.deadlock_settings, body.turn, content, along, units.dt);
     }
     const Plane rest = units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
     if (body.arrived < 0 && size_of(rest) < kArrivalRadius) body.arrived = time();

@@ -25,7 +25,7 @@ struct PlainBody {
   steer::Plane velocity;
   int32_t radius = 6144;  // [units] 0.3 m
   float speed = 1.3f;     // desired, and the maximum [m/s]
-  float turn = 0;         // detour angle, of steer::Patience
+  float turn = 0;         // detour angle, of steer::DeadlockAvoidance
   bool keeps = false;     // it moves by its first choice, and goes on so until it decides again
   bool follows = false;   // another so closely, when it last decided, that it could only crawl
   double arrived = -1;    // time at which it came within 0.3 m of the goal [s]; not yet: -1
@@ -41,7 +41,7 @@ struct PlainConfig {
   uint64_t seed = 1;
   SteeringModel model = SteeringModel::kSampled;
   steer::SampledSettings steering;
-  steer::Patience patience;
+  steer::DeadlockAvoidance deadlock_settings;
   steer::LaneSettings lanes;
 
   [[nodiscard]] int32_t to_units(double metres) const;

@@ -27,7 +27,7 @@ struct BuiltinWorldConfig {
 /// Description of a built-in world.
 struct BuiltinWorldInfo {
   std::string_view name;
-  std::string_view summary;  ///< One line, for `throng world --list`.
+  std::string_view summary;  ///< One line, for `throng generate --list`.
   double default_size = 0;   ///< [m]
 };
 

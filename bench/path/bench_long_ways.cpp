@@ -110,9 +110,9 @@ Json run(const Options& options) {
   auto search = PathFinder::make(*world, {}, context);
   if (!search) stop(search.error().message);
   const PathSummary made = finder->summary(), mesh = search->summary();
-  Json ways = Json::array();
+  Json paths = Json::array();
   for (const double apart : options.distances)
-    ways.push_back(measure(*world, *finder, *search, apart, options));
+    paths.push_back(measure(*world, *finder, *search, apart, options));
   const WorldSummary summary = world->summary();
   return {{"world", options.world},
           {"area_km2", (summary.bounds.max.x - summary.bounds.min.x) *
@@ -125,7 +125,7 @@ Json run(const Options& options) {
           {"bytes", made.bytes},
           {"mesh_bytes", mesh.bytes},
           {"make_seconds", made.seconds},
-          {"ways", ways}};
+          {"ways", paths}};
 }
 
 }  // namespace

@@ -188,9 +188,9 @@ Json run(const Options& options) {
   };
   NodePathFinder finder = make(true), search = make(false);
   const NodePathSummary made = finder.summary(), plain = search.summary();
-  Json ways = Json::array(), crates = Json::array();
+  Json paths = Json::array(), crates = Json::array();
   for (const double apart : options.distances) {
-    ways.push_back(measure(*nodes, avatar_class, finder, search, apart, options));
+    paths.push_back(measure(*nodes, avatar_class, finder, search, apart, options));
     if (options.crates == 0) continue;
     crates.push_back(put_crates(*nodes, avatar_class, finder, search, apart, options));
   }
@@ -201,7 +201,7 @@ Json run(const Options& options) {
           {"bytes", made.bytes},
           {"search_seconds", plain.seconds},
           {"search_bytes", plain.bytes},
-          {"ways", ways},
+          {"ways", paths},
           {"crates", crates}};
 }
 

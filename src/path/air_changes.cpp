@@ -85,19 +85,19 @@ void AirChanges::touch(ChangeId id) {
   touched_.clear();
   for (const uint32_t box : near_) {
     const AirCube& cube = space_->boxes[box];
-    CubeCells taken;
-    if (!take_air(grid_, cube, change.near, change.solid.prism, change.solid.triangles, taken))
+    CubeCells blocked;
+    if (!take_air(grid_, cube, change.near, change.solid.prism, change.solid.triangles, blocked))
       continue;
     std::vector<ChangeId>& here = of_box_[box];
     if (change.active) {
       here.push_back(id);
     } else {
-      taken = {};
+      blocked = {};
       std::erase(here, id);
     }
     for (const ChangeId other : here) {
       const Change& of = changes_[other - 1];
-      if (other != id) take_air(grid_, cube, of.near, of.solid.prism, of.solid.triangles, taken);
+      if (other != id) take_air(grid_, cube, of.near, of.solid.prism, of.solid.triangles, blocked);
     }
     if (here.empty()) of_box_.erase(box);
     old_.clear();
@@ -105,7 +105,7 @@ void AirChanges::touch(ChangeId id) {
       old_.push_back({air.cube(piece), islands_.label(piece)});
     });
     islands_.set_label(box, space_->component[box]);
-    splits_.cut(box, taken);
+    splits_.cut(box, blocked);
     label_pieces(box);
     touched_.push_back(box);
   }
@@ -140,35 +140,35 @@ void AirChanges::take_ground(int64_t tile, std::span<const ChangeId> here) {
     const GroundLevel level = ground_level(*world_, i, class_);
     if (level.zone == nullptr) continue;
     const CellRows legal = legal_rows(level);
-    CellRows taken{};
+    CellRows blocked{};
     uint64_t any = 0;
     for (const ChangeId id : here) {
       const Change& change = changes_[id - 1];
       const CellRows own = blocked_cells({world_->summary, level.view, x, z}, *avatar_,
                                          change.solid.prism, change.solid.triangles, legal.data());
-      for (size_t row = 0; row < own.size(); ++row) any |= taken[row] |= own[row];
+      for (size_t row = 0; row < own.size(); ++row) any |= blocked[row] |= own[row];
     }
     if (any != 0) {
-      taken_[i] = taken;
+      blocked_[i] = blocked;
     } else {
-      taken_.erase(i);
+      blocked_.erase(i);
     }
   }
 }
 
-void AirChanges::tell(LiveGround& ground, std::vector<ChangeId>& ids) const {
+void AirChanges::add_all_to(LiveGround& ground, std::vector<ChangeId>& ids) const {
   ids.clear();
   for (const Change& change : changes_) {
     if (change.removed) {
       ids.push_back(0);
       continue;
     }
-    ids.push_back(tell_of(ground, change.solid));
+    ids.push_back(add_to(ground, change.solid));
     ground.set_active(ids.back(), change.active);
   }
 }
 
-ChangeId AirChanges::tell_of(LiveGround& ground, const Solid& solid) {
+ChangeId AirChanges::add_to(LiveGround& ground, const Solid& solid) {
   const auto& [prism, triangles] = solid;
   if (triangles.empty()) {
     const auto added = ground.add_obstacle(prism);

@@ -38,14 +38,14 @@ class AirChanges {
   [[nodiscard]] const AirIslands& islands() const { return islands_; }
   /// May the class stand on a legal cell of the grid, as far as obstacles go?
   [[nodiscard]] bool may_stand(uint32_t level, int32_t x, int32_t z) const {
-    const auto found = taken_.find(level);
-    return found == taken_.end() ||
+    const auto found = blocked_.find(level);
+    return found == blocked_.end() ||
            (found->second[static_cast<size_t>(z & 63)] >> (x & 63) & 1) == 0;
   }
   /// Tells a ground of one; what it calls it.
-  static ChangeId tell_of(LiveGround& ground, const Solid& solid);
+  static ChangeId add_to(LiveGround& ground, const Solid& solid);
   /// Tells a ground of the class that knows none of them yet; `ids`: what it calls them, by id - 1.
-  void tell(LiveGround& ground, std::vector<ChangeId>& ids) const;
+  void add_all_to(LiveGround& ground, std::vector<ChangeId>& ids) const;
 
  private:
   struct Change {
@@ -70,8 +70,8 @@ class AirChanges {
   // Active ones, by box of the space and by tile of the ground; looked up only.
   std::unordered_map<uint32_t, std::vector<ChangeId>> of_box_;
   std::unordered_map<int64_t, std::vector<ChangeId>> of_tile_;
-  std::unordered_map<uint32_t, CellRows> taken_;  // by level of the world that has such cells
-  std::vector<uint32_t> near_, touched_;          // boxes
+  std::unordered_map<uint32_t, CellRows> blocked_;  // by level of the world that has such cells
+  std::vector<uint32_t> near_, touched_;            // boxes
   struct Old {
     AirCube cube;
     uint32_t label;

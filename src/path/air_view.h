@@ -65,7 +65,7 @@ class AirView {
   }
   /// As FlightSpace has it; the cube may be any that lies within a box of the space.
   template <class Visit>
-  void for_neighbours(const AirCube& cube, Visit&& visit, int32_t least = 1) const;
+  void for_neighbours(const AirCube& cube, Visit&& visit, int32_t min_side = 1) const;
   /// Calls visit(box) for what is left of a box of the space: itself, or its parts.
   template <class Visit>
   void for_pieces(uint32_t box, Visit visit) const {
@@ -100,9 +100,9 @@ inline AirPoint nearest_of(const AirCube& cube, AirPoint goal) {
 }
 
 template <class Visit>
-void AirView::for_neighbours(const AirCube& cube, Visit&& visit, int32_t least) const {
+void AirView::for_neighbours(const AirCube& cube, Visit&& visit, int32_t min_side) const {
   if (changes_ == nullptr) {
-    space_->for_neighbours(cube, visit, least);
+    space_->for_neighbours(cube, visit, min_side);
     return;
   }
   // The face's cells beyond it: of a box that is split, the parts that have some of them.
@@ -112,12 +112,12 @@ void AirView::for_neighbours(const AirCube& cube, Visit&& visit, int32_t least) 
     range.first[axis] = range.last[axis] = plane;
     const auto piece = [&](uint32_t box) {
       if (changes_->splits().is_split(box)) {
-        changes_->splits().for_parts_in(box, range, least, visit);
+        changes_->splits().for_parts_in(box, range, min_side, visit);
       } else {
         visit(box);
       }
     };
-    space_->visit_face(axis, plane, u, v, cube.side, least, piece);
+    space_->visit_face(axis, plane, u, v, cube.side, min_side, piece);
   };
   face(0, cube.x + cube.side, cube.y, cube.z);
   face(0, cube.x - 1, cube.y, cube.z);

@@ -22,7 +22,7 @@ struct Entry {
 };
 
 struct MiddleEntry {
-  uint32_t hub, trail;
+  uint32_t hub, tree_place;
   float length;
 };
 
@@ -38,7 +38,7 @@ class Lister {
 
   // Of the n-th block of rectangle `rect`.
   std::vector<Entry> list(uint32_t rect, uint32_t n) {
-    const MeshRect r = look(rect, n);
+    const MeshRect r = cast_into(rect, n);
     const uint32_t begin = labels_.first_candidate[r.first_block + n];
     const uint32_t end = labels_.first_candidate[r.first_block + n + 1];
     // From any other point p the way by the middle m is at most |p m| longer than from m, and a way
@@ -64,13 +64,13 @@ class Lister {
 
   // Of the middle alone.
   std::vector<MiddleEntry> list_middle(uint32_t rect, uint32_t n) {
-    look(rect, n);
+    cast_into(rect, n);
     std::vector<MiddleEntry> entries;
     for (const uint32_t hub : hubs_) {
       constexpr float kSlack =
           1e-3f;  // cells: the hub itself is one of those that it is reached by
       if (best_[hub].length > true_length(hub) + kSlack) continue;
-      entries.push_back({hub, labels_.trail[best_[hub].label], best_[hub].length});
+      entries.push_back({hub, labels_.tree_place[best_[hub].label], best_[hub].length});
     }
     std::sort(entries.begin(), entries.end(),
               [](const MiddleEntry& a, const MiddleEntry& b) { return a.hub < b.hub; });
@@ -79,7 +79,7 @@ class Lister {
 
  private:
   // Finds how far each hub is from the middle of the block, over the corners that it sees.
-  MeshRect look(uint32_t rect, uint32_t n) {
+  MeshRect cast_into(uint32_t rect, uint32_t n) {
     ++now_;
     hubs_.clear();
     const MeshRect r = mesh_.block(rect, n);
@@ -173,7 +173,7 @@ GroundPoint middle_of(const MeshRect& block) {
 }
 
 BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, int32_t workers,
-                               uint64_t most) {
+                               uint64_t max_entries) {
   BlockLabels out;
   const std::vector<Block> blocks = all_blocks(mesh);
   if (are_too_many(labels)) return {};
@@ -181,14 +181,14 @@ BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, in
   std::atomic<uint64_t> total{0};
   constexpr size_t kGrain = 64;
   parallel_ranges(blocks.size(), kGrain, workers, [&](size_t begin, size_t end) {
-    if (total > most) return;
+    if (total > max_entries) return;
     Lister lister(mesh, labels);
-    for (size_t b = begin; b < end && total <= most; ++b) {
+    for (size_t b = begin; b < end && total <= max_entries; ++b) {
       entries[b] = lister.list(blocks[b].rect, blocks[b].n);
       total += entries[b].size();
     }
   });
-  if (total > most) return {};
+  if (total > max_entries) return {};
   out.first.push_back(0);
   out.length.reserve(total);
   out.candidate.reserve(total);
@@ -221,7 +221,7 @@ MiddleLabels build_middle_labels(const PathMesh& mesh, const HubLabels& labels, 
   for (auto& of_block : entries) {
     for (const MiddleEntry& entry : of_block) {
       out.labels.push_back({entry.hub, entry.length});
-      out.trail.push_back(entry.trail);
+      out.tree_place.push_back(entry.tree_place);
     }
     out.first.push_back(static_cast<uint32_t>(out.labels.size()));
     of_block = {};

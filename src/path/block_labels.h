@@ -35,13 +35,14 @@ struct MiddleLabels {
   using Label = TwoHopLabels::Label;
   std::vector<uint32_t> first;  // per block, one more at the end; empty: there are none
   std::vector<Label> labels;    // by rising hub [cells]
-  std::vector<uint32_t> trail;  // per label: the place in HubLabels' trails of its way's corners
+  std::vector<uint32_t>
+      tree_place;  // per label: the place in HubLabels' trails of its way's corners
 
   [[nodiscard]] std::span<const Label> of(uint32_t block) const {
     return {labels.data() + first[block], labels.data() + first[block + 1]};
   }
   [[nodiscard]] uint64_t bytes() const {
-    return (first.size() + trail.size()) * sizeof(uint32_t) + labels.size() * sizeof(Label);
+    return (first.size() + tree_place.size()) * sizeof(uint32_t) + labels.size() * sizeof(Label);
   }
 };
 
@@ -50,9 +51,9 @@ GroundPoint middle_of(const MeshRect& block);
 
 /// An entry is left out if from nowhere in the block its corner can be on a shortest way to the
 /// hub, judged by the hub's distance from the middle. None at all if they would be more than
-/// `most`.
+/// `max_entries`.
 BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, int32_t workers,
-                               uint64_t most);
+                               uint64_t max_entries);
 
 /// A label is left out if the way over another hub is as short.
 MiddleLabels build_middle_labels(const PathMesh& mesh, const HubLabels& labels, int32_t workers);

@@ -24,19 +24,19 @@ class BlockSquares {
  public:
   explicit BlockSquares(const NodeMesh& mesh);
 
-  /// Calls visit(block) for each block that may have a point no farther than `reach`, which the
+  /// Calls visit(block) for each block that may have a point no farther than `radius`, which the
   /// calls may lessen. In no order.
   template <class Visit>
-  void for_each_near(Vec3d position, const double& reach, Visit visit) const {
+  void for_each_near(Vec3d position, const double& radius, Visit visit) const {
     if (balls_.empty()) return;
-    const double far = std::min(reach, 1e9) + largest_;
+    const double far = std::min(radius, 1e9) + largest_;
     const auto [x0, z0] = square(position.x - far, position.z - far);
     const auto [x1, z1] = square(position.x + far, position.z + far);
     for (size_t z = z0; z <= z1; ++z) {
       for (size_t k = first_[z * squares_x_ + x0]; k < first_[z * squares_x_ + x1 + 1]; ++k) {
         const Ball& ball = balls_[k];
         const Vec3d d = ball.middle(base_) - position;
-        const double within = reach + ball.radius;
+        const double within = radius + ball.radius;
         if (dot(d, d) <= within * within) visit(ball.block);
       }
     }

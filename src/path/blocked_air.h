@@ -44,6 +44,6 @@ AirRange air_near(const AirGrid& grid, const FlightSpace& space, const Prism& pr
 /// are, could touch the prism (its polygon convex, of any number of corners); with triangles, one
 /// of those that the prism encloses. False if there are none.
 bool take_air(const AirGrid& grid, const AirCube& cube, const AirRange& near, const Prism& prism,
-              std::span<const std::array<Vec3d, 3>> triangles, CubeCells& taken);
+              std::span<const std::array<Vec3d, 3>> triangles, CubeCells& blocked);
 
 }  // namespace throng

@@ -27,13 +27,13 @@ struct SquareRange {
   int32_t first_x = 0, last_x = -1, first_z = 0, last_z = -1;
 };
 
-/// Tiles with cells that lie nearer to a polygon's box than `reach`; clamped to a tile beyond the
+/// Tiles with cells that lie nearer to a polygon's box than `radius`; clamped to a tile beyond the
 /// world's rim. [m]
 SquareRange tiles_near(const WorldData& world, std::span<const std::array<double, 2>> polygon,
-                       double reach);
+                       double radius);
 /// The same for cells of a tile.
 SquareRange cells_near(const TileFloor& floor, std::span<const std::array<double, 2>> polygon,
-                       double reach);
+                       double radius);
 
 /// How a floor rises over a cell that has one, along x and z. [mm per cell]
 std::pair<int32_t, int32_t> rise_at(const LevelView& view, int32_t x, int32_t z);

@@ -35,21 +35,21 @@ class FlightEndpoints {
   /// height, the body in the air from its feet to its height: where the one's feet are not above
   /// the other's head, so is all that is passed between them.
   [[nodiscard]] std::optional<AirPoint> take_off(const Place& place) const;
-  /// The nearest place, in steps, from which feet come into the air; `most` cells are looked at.
-  /// Only into air of this component (see AirView), unless it is kNoBox.
+  /// The nearest place, in steps, from which feet come into the air; `max_cells` cells are looked
+  /// at. Only into air of this component (see AirView), unless it is kNoBox.
   struct TakeOff {
     Place place;                    ///< Null if there is none among them.
     bool budget_exhausted = false;  ///< There were more cells.
   };
-  [[nodiscard]] TakeOff nearest_take_off(const Place& from, uint64_t most, uint32_t component,
+  [[nodiscard]] TakeOff nearest_take_off(const Place& from, uint64_t max_cells, uint32_t component,
                                          CircleFlood& flood) const;
   /// Fills `components` with all that feet come into from there, the nearest first. True if there
-  /// were more than `most` cells.
-  bool components_over(const Place& from, uint64_t most, CircleFlood& flood,
+  /// were more than `max_cells` cells.
+  bool components_over(const Place& from, uint64_t max_cells, CircleFlood& flood,
                        std::vector<uint32_t>& components) const;
   /// Of the places that steps join to one, the nearest to a goal; null if there were more than
-  /// `most` cells, or that one is no place.
-  [[nodiscard]] Place nearest_place(const Place& from, uint64_t most, Vec3d goal,
+  /// `max_cells` cells, or that one is no place.
+  [[nodiscard]] Place nearest_place(const Place& from, uint64_t max_cells, Vec3d goal,
                                     CircleFlood& flood) const;
   /// The best place to land on under a box that holds no air below it.
   [[nodiscard]] Place best_landing(uint32_t box) const;
@@ -60,9 +60,9 @@ class FlightEndpoints {
   /// Calls visit(place), or visit(place, component of the air over it), for every cell that steps
   /// join to a place, until it says false or there are too many cells: then it is true.
   template <class Visit>
-  bool for_places(const Place& from, uint64_t most, CircleFlood& flood, Visit visit) const;
+  bool for_places(const Place& from, uint64_t max_cells, CircleFlood& flood, Visit visit) const;
   template <class Visit>
-  bool for_take_offs(const Place& from, uint64_t most, CircleFlood& flood, Visit visit) const;
+  bool for_take_offs(const Place& from, uint64_t max_cells, CircleFlood& flood, Visit visit) const;
 
   const WorldData& world_;
   AirView air_;

@@ -26,7 +26,7 @@ namespace {
 constexpr int32_t kLargestBox = 32;           // air cells: larger ones hide good ways
 constexpr uint64_t kMaxFloodCells = 1 << 18;  // on foot to where one can take off
 // The same where the nearest take-off leads into a pocket and there are several others.
-constexpr uint64_t kMaxPocketCells = 1 << 15;
+constexpr uint64_t kMaxIslandCells = 1 << 15;
 // Ways over other ground, or to what is less near, where obstacles are in the way of the first.
 constexpr int32_t kMaxTries = 4;
 
@@ -132,7 +132,7 @@ struct FlightFinder::Scratch {
     return *changes;
   }
   ChangeId add(const Shared& shared, Solid solid) {
-    if (live) live_ids.push_back(AirChanges::tell_of(*live, solid));
+    if (live) live_ids.push_back(AirChanges::add_to(*live, solid));
     return changes_of(shared).add(std::move(solid));
   }
   // The ground with all changes; made when it is first walked on.
@@ -140,7 +140,7 @@ struct FlightFinder::Scratch {
     if (!live) {
       auto made = LiveGround::make(shared.world, {.avatar_class = shared.avatar_class});
       THRONG_ASSERT(made);  // The class was checked.
-      changes->tell(*made, live_ids);
+      changes->add_all_to(*made, live_ids);
       live = std::move(*made);
     }
     return *live;
@@ -151,7 +151,7 @@ struct FlightFinder::Scratch {
   FlightStringPuller pull;
   CircleFlood flood;
   std::optional<PathFinder> walker;
-  std::vector<AirPoint> way;
+  std::vector<AirPoint> air_path;
   Path walk_there, walk_on, walk_all;
   std::vector<uint32_t> over_from, over_to, common;  // components of the air
   AirView::ZoneOrder zone_order;
@@ -322,11 +322,11 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
   scratch_->search.give_back();
 }
 
-bool FlightFinder::locate(Vec3d at, double reach, End& end) const {
+bool FlightFinder::locate(Vec3d at, double vertical_tolerance, End& end) const {
   const FlightEndpoints ends = shared_->ends(scratch_->air(*shared_));
   end.air = ends.in_air(at);
   if (end.air) return true;
-  end.ground = shared_->world.find_place(shared_->avatar_class, at, reach);
+  end.ground = shared_->world.find_place(shared_->avatar_class, at, vertical_tolerance);
   return end.ground && ends.may_stand(end.ground);
 }
 
@@ -359,7 +359,7 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
   bool budget_exhausted = false;  // somewhere: then what was not found may be there all the same
   const auto component_of = [&](AirPoint p) { return air.component(air.box_at(p)); };
   // From the ground into the air: into this component of it, or any (kNoBox).
-  const auto to_port = [&](End& end, uint32_t component) {
+  const auto to_link = [&](End& end, uint32_t component) {
     if (!end.ground) return end.air.has_value();
     end.ground_air_link = end.ground;
     end.air = ends.take_off(end.ground_air_link);
@@ -393,7 +393,7 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
         budget_exhausted = true;
         return kNoBox;
       }
-      ends.components_over(end->ground, kMaxPocketCells, scratch.flood, *over);
+      ends.components_over(end->ground, kMaxIslandCells, scratch.flood, *over);
     }
     size_t least = SIZE_MAX;
     uint32_t best = scratch.common[0];
@@ -409,14 +409,14 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
   };
   // The nearest ways into the air may lead into pockets of it, a room or a yard under a net: then
   // from one further off into air that leads to the other end.
-  const auto to_ports = [&](End& a, End& b) {
+  const auto to_links = [&](End& a, End& b) {
     if (!a.ground && !b.ground) return true;
-    if (!a.ground) return to_port(b, component_of(*a.air));
-    if (!b.ground) return to_port(a, component_of(*b.air));
-    if (!to_port(a, kNoBox) || !to_port(b, kNoBox)) return false;
+    if (!a.ground) return to_link(b, component_of(*a.air));
+    if (!b.ground) return to_link(a, component_of(*b.air));
+    if (!to_link(a, kNoBox) || !to_link(b, kNoBox)) return false;
     if (air.same_component(*a.air, *b.air)) return true;
     const uint32_t common = common_air(a, b);
-    return common != kNoBox && to_port(a, common) && to_port(b, common);
+    return common != kNoBox && to_link(a, common) && to_link(b, common);
   };
   const auto find_on_foot = [&](const Place& a, const Place& b, Path& ground) {
     const PathEnd end = walk(query, a, b, ground);
@@ -435,10 +435,10 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
       on_foot += distance(places[i - 1].position, places[i].position);
     }
   }
-  const bool ground_air_links = to_ports(from, to);
+  const bool ground_air_links = to_links(from, to);
   SearchResult result = SearchResult::kNone;
   if (ground_air_links && air.same_component(*from.air, *to.air)) {
-    result = scratch.search.find(air, *from.air, *to.air, budget_of(query), scratch.way);
+    result = scratch.search.find(air, *from.air, *to.air, budget_of(query), scratch.air_path);
     path.nodes = scratch.search.expanded();
     if (result == SearchResult::kBudget) {
       scratch.spent = budget_of(query).spent(path.nodes);
@@ -449,7 +449,7 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     }
   }
   if (result == SearchResult::kFound) {
-    scratch.pull.pull(air, scratch.way);
+    scratch.pull.pull(air, scratch.air_path);
     bool walked = true;
     if (from.ground) {
       if (from.ground_air_link.position.x != from.ground.position.x ||
@@ -460,8 +460,9 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
         add(from.ground_air_link.position, SegmentKind::kWalk, path);
       }
     }
-    for (size_t i = 0; i < scratch.way.size(); ++i) {
-      add(ends.to_metres(scratch.way[i]), i == 0 ? SegmentKind::kTakeOff : SegmentKind::kFly, path);
+    for (size_t i = 0; i < scratch.air_path.size(); ++i) {
+      add(ends.to_metres(scratch.air_path[i]), i == 0 ? SegmentKind::kTakeOff : SegmentKind::kFly,
+          path);
     }
     if (to.ground) {
       add(to.ground_air_link.position, SegmentKind::kLand, path);
@@ -541,21 +542,21 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
       return;
     }
     const SearchResult result =
-        scratch.search.find(view, air, there, budget_of(query), scratch.way);
+        scratch.search.find(view, air, there, budget_of(query), scratch.air_path);
     path.nodes += scratch.search.expanded();
     if (result == SearchResult::kBudget)
       scratch.spent = budget_of(query).spent(scratch.search.expanded());
     end = result == SearchResult::kFound    ? PathEnd::kReached
           : result == SearchResult::kBudget ? PathEnd::kBudgetExhausted
                                             : PathEnd::kUnreachable;
-    scratch.pull.pull(view, scratch.way);
-    for (size_t i = 1; i < scratch.way.size(); ++i) {
-      add(ends.to_metres(scratch.way[i]), SegmentKind::kFly, path);
+    scratch.pull.pull(view, scratch.air_path);
+    for (size_t i = 1; i < scratch.air_path.size(); ++i) {
+      add(ends.to_metres(scratch.air_path[i]), SegmentKind::kFly, path);
     }
     air = there;
   };
   // A place of some ground under some air: it leads into this component of that.
-  const auto port_near = [&](const Place& at, GroundAirLinks::Part ground,
+  const auto link_near = [&](const Place& at, GroundAirLinks::Part ground,
                              GroundAirLinks::Part over, uint32_t component) {
     const Place near =
         at ? ends.nearest_take_off(at, kMaxFloodCells, component, scratch.flood).place : Place{};
@@ -574,7 +575,7 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
     const bool last = k + 1 == count;
     if (next.is_air) {
       const bool known = last && to.air;
-      const Place ground_air_link = port_near(
+      const Place ground_air_link = link_near(
           feet, here, next, known ? view.component(view.box_at(*to.air)) : next.component);
       const auto up = ends.take_off(ground_air_link);
       if (!up) {
@@ -586,7 +587,7 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
       add(ends.to_metres(air), SegmentKind::kTakeOff, path);
     } else {
       const Place ground_air_link =
-          port_near(last ? to.ground : Place{}, next, here, view.component(view.box_at(air)));
+          link_near(last ? to.ground : Place{}, next, here, view.component(view.box_at(air)));
       const auto up = ends.take_off(ground_air_link);
       if (!up) {
         end = PathEnd::kUnreachable;
@@ -628,7 +629,7 @@ void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   if (is_changed && from.air) {
     airs.push_back(air.component(air.box_at(*from.air)));
   } else if (is_changed) {
-    ends.components_over(from.ground, kMaxPocketCells, scratch.flood, scratch.over_from);
+    ends.components_over(from.ground, kMaxIslandCells, scratch.flood, scratch.over_from);
     airs.insert(airs.end(), scratch.over_from.begin(), scratch.over_from.end());
   }
   std::sort(airs.begin(), airs.end());

@@ -23,7 +23,7 @@ class FlightSearch {
   /// Bends of a way from `from` to `to`, ends included. Gives up when the budget of boxes is spent.
   /// Far ends are looked for through large boxes first.
   SearchResult find(const AirView& air, AirPoint from, AirPoint to, const SearchBudget& budget,
-                    std::vector<AirPoint>& way);
+                    std::vector<AirPoint>& path);
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
   /// Gives back what is allocated beyond kKeptBytes: after a query, when nothing more is asked of
   /// it.
@@ -35,7 +35,7 @@ class FlightSearch {
 
  private:
   SearchResult search(AirPoint from, uint32_t start, const SearchBudget& budget,
-                      std::vector<AirPoint>& way);
+                      std::vector<AirPoint>& path);
   [[nodiscard]] uint64_t used_bytes() const;
   [[nodiscard]] int32_t min_around(const AirCube& box) const;
   struct Node {
@@ -60,7 +60,7 @@ class FlightSearch {
   };
 
   void open(uint32_t node);
-  void trace(uint32_t node, std::vector<AirPoint>& way) const;
+  void trace(uint32_t node, std::vector<AirPoint>& path) const;
   void reach(uint32_t from, uint32_t box);
   void push(uint32_t node);
 
@@ -72,8 +72,8 @@ class FlightSearch {
   uint64_t expanded_ = 0;
   ChunkedArray<Node> nodes_;
   std::vector<Entry> open_;
-  Paged<Mark> marks_;                // per box, parts of those that are split among them
-  std::vector<AirPoint> large_way_;  // through large boxes
+  Paged<Mark> marks_;                 // per box, parts of those that are split among them
+  std::vector<AirPoint> large_path_;  // through large boxes
 };
 
 }  // namespace throng

@@ -41,7 +41,7 @@ void FlightSpace::boxes_in(const AirRange& range, std::vector<uint32_t>& found) 
       const auto zone = static_cast<size_t>(zz * zones_x + zx);
       const AirTreeData& tree = zones[zone];
       // Cubes are told in cells of the world.
-      const auto look = [&](auto&& self, const AirCube& cube, uint32_t word) -> void {
+      const auto descend = [&](auto&& self, const AirCube& cube, uint32_t word) -> void {
         if (air_kind(word) == AirKind::kFull || !is_in(cube)) return;
         if (air_kind(word) == AirKind::kFree) {
           found.push_back(air_number(word));
@@ -62,10 +62,10 @@ void FlightSpace::boxes_in(const AirRange& range, std::vector<uint32_t>& found) 
         }
       };
       for (uint32_t r = 0; r < tree.roots; ++r) {
-        look(look,
-             {zx * zone_side, tree.base + static_cast<int32_t>(r) * tree.side, zz * zone_side,
-              tree.side},
-             tree.nodes[r]);
+        descend(descend,
+                {zx * zone_side, tree.base + static_cast<int32_t>(r) * tree.side, zz * zone_side,
+                 tree.side},
+                tree.nodes[r]);
       }
     }
   }

@@ -71,14 +71,14 @@ struct FlightSpace {
   [[nodiscard]] const AirCube& cube(uint32_t box) const { return boxes[box]; }
   /// The boxes with cells in a range, rising zone by zone.
   void boxes_in(const AirRange& range, std::vector<uint32_t>& found) const;
-  /// Calls visit(box) for each box of at least `least` cells a side (1 or 4) that shares a part of
-  /// a face with this one.
+  /// Calls visit(box) for each box of at least `min_side` cells a side (1 or 4) that shares a part
+  /// of a face with this one.
   template <class Visit>
-  void for_neighbours(const AirCube& box, Visit&& visit, int32_t least = 1) const;
+  void for_neighbours(const AirCube& box, Visit&& visit, int32_t min_side = 1) const;
   /// The same of a square of cells of a plane of them: at `plane` along the axis, from u and v on
   /// along the other two, the one of y first, else that of x.
   template <class Visit>
-  void visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side, int32_t least,
+  void visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side, int32_t min_side,
                   Visit& visit) const;
   [[nodiscard]] uint64_t bytes() const;
 
@@ -132,7 +132,7 @@ inline uint32_t FlightSpace::box_at(int32_t x, int32_t y, int32_t z) const {
 
 template <class Visit>
 void FlightSpace::visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side,
-                             int32_t least, Visit& visit) const {
+                             int32_t min_side, Visit& visit) const {
   const int32_t x = axis == 0 ? plane : u;
   const int32_t y = axis == 1 ? plane : axis == 0 ? u : v;
   const int32_t z = axis == 2 ? plane : v;
@@ -148,7 +148,7 @@ void FlightSpace::visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, 
     visit(air_number(place.word));
     return;
   }
-  if (kind == AirKind::kLeaf && least > 2) return;  // boxes of leaves have 1 or 2 cells a side
+  if (kind == AirKind::kLeaf && min_side > 2) return;  // boxes of leaves have 1 or 2 cells a side
   if (kind == AirKind::kLeaf && side <= 2) {
     const uint32_t box = box_in(zone, tree, place, own_x, y, own_z);
     if (side == 1 || (box != kNoBox && boxes[box].side == 2)) {
@@ -156,22 +156,22 @@ void FlightSpace::visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, 
       return;
     }
   }
-  if (side <= least) return;
+  if (side <= min_side) return;
   const int32_t half = side / 2;
-  visit_face(axis, plane, u, v, half, least, visit);
-  visit_face(axis, plane, u + half, v, half, least, visit);
-  visit_face(axis, plane, u, v + half, half, least, visit);
-  visit_face(axis, plane, u + half, v + half, half, least, visit);
+  visit_face(axis, plane, u, v, half, min_side, visit);
+  visit_face(axis, plane, u + half, v, half, min_side, visit);
+  visit_face(axis, plane, u, v + half, half, min_side, visit);
+  visit_face(axis, plane, u + half, v + half, half, min_side, visit);
 }
 
 template <class Visit>
-void FlightSpace::for_neighbours(const AirCube& box, Visit&& visit, int32_t least) const {
-  visit_face(0, box.x + box.side, box.y, box.z, box.side, least, visit);
-  visit_face(0, box.x - 1, box.y, box.z, box.side, least, visit);
-  visit_face(1, box.y + box.side, box.x, box.z, box.side, least, visit);
-  visit_face(1, box.y - 1, box.x, box.z, box.side, least, visit);
-  visit_face(2, box.z + box.side, box.x, box.y, box.side, least, visit);
-  visit_face(2, box.z - 1, box.x, box.y, box.side, least, visit);
+void FlightSpace::for_neighbours(const AirCube& box, Visit&& visit, int32_t min_side) const {
+  visit_face(0, box.x + box.side, box.y, box.z, box.side, min_side, visit);
+  visit_face(0, box.x - 1, box.y, box.z, box.side, min_side, visit);
+  visit_face(1, box.y + box.side, box.x, box.z, box.side, min_side, visit);
+  visit_face(1, box.y - 1, box.x, box.z, box.side, min_side, visit);
+  visit_face(2, box.z + box.side, box.x, box.y, box.side, min_side, visit);
+  visit_face(2, box.z - 1, box.x, box.y, box.side, min_side, visit);
 }
 
 // FlightSpace::sees over any air that knows box_at(x, y, z) and cube(box).
@@ -180,7 +180,7 @@ void FlightSpace::for_neighbours(const AirCube& box, Visit&& visit, int32_t leas
 template <class Air>
 bool air_sees(const Air& air, AirPoint from, AirPoint to) {
   const double begin[3] = {from.x, from.y, from.z};
-  const double way[3] = {to.x - from.x, to.y - from.y, to.z - from.z};
+  const double delta[3] = {to.x - from.x, to.y - from.y, to.z - from.z};
   int32_t cell[3], last[3];
   const double end[3] = {to.x, to.y, to.z};
   for (int a = 0; a < 3; ++a) {
@@ -197,8 +197,8 @@ bool air_sees(const Air& air, AirPoint from, AirPoint to) {
     for (int a = 0; a < 3; ++a) {
       if (last[a] >= low[a] && last[a] < low[a] + box.side)
         continue;  // it ends between these faces
-      const double face = way[a] > 0 ? low[a] + box.side : low[a];
-      const double t = (face - begin[a]) / way[a];
+      const double face = delta[a] > 0 ? low[a] + box.side : low[a];
+      const double t = (face - begin[a]) / delta[a];
       if (t < leave) {
         leave = t;
         axis = a;
@@ -207,9 +207,9 @@ bool air_sees(const Air& air, AirPoint from, AirPoint to) {
     if (axis < 0) return true;
     for (int a = 0; a < 3; ++a) {
       if (a == axis) {
-        cell[a] = way[a] > 0 ? low[a] + box.side : low[a] - 1;
+        cell[a] = delta[a] > 0 ? low[a] + box.side : low[a] - 1;
       } else {
-        const auto at = static_cast<int32_t>(std::floor(begin[a] + leave * way[a]));
+        const auto at = static_cast<int32_t>(std::floor(begin[a] + leave * delta[a]));
         cell[a] = std::clamp(at, low[a], low[a] + box.side - 1);
       }
     }

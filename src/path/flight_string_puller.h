@@ -14,15 +14,15 @@ namespace throng {
 /// as the lines to their neighbours stay legal. Never makes a way longer. Owns its memory.
 class FlightStringPuller {
  public:
-  void pull(const AirView& air, std::vector<AirPoint>& way);
+  void pull(const AirView& air, std::vector<AirPoint>& path);
 
  private:
   void shortcut();
   void cut_corners();
-  void slide(size_t bend);
+  void slide(size_t waypoint);
 
   std::optional<AirView> air_;
-  std::vector<AirPoint>* way_ = nullptr;
+  std::vector<AirPoint>* path_ = nullptr;
   std::vector<AirPoint> next_;
 };
 

@@ -22,10 +22,10 @@ class FlowPoints {
  public:
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
-  /// Searches outwards from all goals that are places of the class, up to `most` metres' cost. None
-  /// if it was cancelled; without any points if no goal is a place.
+  /// Searches outwards from all goals that are places of the class, up to `max_distance` metres'
+  /// cost. None if it was cancelled; without any points if no goal is a place.
   static std::optional<FlowPoints> make(LiveGround& ground, std::span<const Place> goals,
-                                        double most, Context& context);
+                                        double max_distance, Context& context);
   [[nodiscard]] bool empty() const { return points_.empty(); }
 
   // `ground` is that of which they were made, or a copy of it, here and below.
@@ -52,7 +52,7 @@ class FlowPoints {
 
   // By level and rectangle, so that those of one lie together.
   std::vector<Point> points_;
-  double most_ = kNever;  // [cells]
+  double max_distance_ = kNever;  // [cells]
 };
 
 }  // namespace throng

@@ -235,9 +235,9 @@ Place GroundQuery::slide(const Place& from, double dx, double dz) {
   if (walk(s.ground(), last, start, goal, s.step)) return State::end_of(from, dx, dz, last, goal);
   const GroundPoint middle{(start.x + goal.x) / 2, (start.z + goal.z) / 2};
   // A cell more than half the push: else a push shorter than a cell could leave none.
-  const double reach = std::sqrt(squared(start, goal)) / 2 + kUnitsPerCell;
+  const double limit = std::sqrt(squared(start, goal)) / 2 + kUnitsPerCell;
   const auto within = [&](int32_t x, int32_t z) {
-    return squared(clamp_to_cell(middle, x, z), middle) <= reach * reach;
+    return squared(clamp_to_cell(middle, x, z), middle) <= limit * limit;
   };
   GroundLevel best_level = level;
   GroundPoint best = start;
@@ -258,13 +258,13 @@ Place GroundQuery::slide(const Place& from, double dx, double dz) {
   return place_at(s.data(), best_level, best);
 }
 
-NearestWall GroundQuery::nearest_wall(const Place& from, double most) {
+NearestWall GroundQuery::nearest_wall(const Place& from, double max_distance) {
   State& s = *state_;
   NearestWall wall;
   GroundLevel level;
   GroundPoint at;
-  if (!(most >= 0) || !s.locate(from, level, at)) return wall;
-  const double limit = std::min(most, 1e9) / s.unit();
+  if (!(max_distance >= 0) || !s.locate(from, level, at)) return wall;
+  const double limit = std::min(max_distance, 1e9) / s.unit();
   double best = std::nextafter(limit * limit, 1e300);
   const auto within = [&](int32_t x, int32_t z) {
     return squared(clamp_to_cell(at, x, z), at) < best;
@@ -302,9 +302,9 @@ bool GroundQuery::State::gather(const Place& centre, double radius) {
   GroundLevel level;
   GroundPoint at;
   if (!(radius >= 0) || !locate(centre, level, at)) return false;
-  const double reach = std::min(radius, 1e9) / unit();
+  const double limit = std::min(radius, 1e9) / unit();
   const auto within = [&](int32_t x, int32_t z) {
-    return squared(clamp_to_cell(at, x, z), at) <= reach * reach;
+    return squared(clamp_to_cell(at, x, z), at) <= limit * limit;
   };
   flood.start(level, at.cell_x(), at.cell_z());
   flood.run(
@@ -321,7 +321,7 @@ Place GroundQuery::random_place_near(const Place& centre, double radius, uint64_
   State& s = *state_;
   if (!s.gather(centre, radius)) return {};
   const GroundPoint at = to_ground(s.data(), centre.position.x, centre.position.z);
-  const double reach = std::min(radius, 1e9) / s.unit();
+  const double limit = std::min(radius, 1e9) / s.unit();
   // Points outside the circle are drawn again: cells of its rim lie partly inside.
   constexpr uint64_t kTries = 256;
   for (uint64_t t = 0; t < kTries; ++t) {
@@ -331,7 +331,7 @@ Place GroundQuery::random_place_near(const Place& centre, double radius, uint64_
              static_cast<int64_t>(random_below(seed, n, 4 * t + draw, kUnitsPerCell));
     };
     const GroundPoint p{unit_of(cell.x, 1), unit_of(cell.z, 2)};
-    if (squared(p, at) > reach * reach) continue;
+    if (squared(p, at) > limit * limit) continue;
     return place_at(s.data(), ground_level(s.data(), cell.level, s.avatar_class), p);
   }
   return centre;  // a circle far smaller than a cell
@@ -341,11 +341,11 @@ double GroundQuery::area_near(const Place& centre, double radius) {
   State& s = *state_;
   if (!s.gather(centre, radius)) return 0;
   const GroundPoint at = to_ground(s.data(), centre.position.x, centre.position.z);
-  const double reach = std::min(radius, 1e9) / s.unit();
+  const double limit = std::min(radius, 1e9) / s.unit();
   const auto inside = [&](const State::NearCell& cell) {
     const GroundPoint middle{(int64_t{cell.x} << kUnitBits) + kUnitsPerCell / 2,
                              (int64_t{cell.z} << kUnitBits) + kUnitsPerCell / 2};
-    return squared(middle, at) <= reach * reach;
+    return squared(middle, at) <= limit * limit;
   };
   const double side = s.data().summary.cell;
   return static_cast<double>(std::count_if(s.near.begin(), s.near.end(), inside)) * side * side;

@@ -63,25 +63,25 @@ bool LabelSearch::narrow(const PathMesh& mesh, const HubLabels& labels, const St
 
 // The shortest way over the gathered corners; false if there is none.
 bool LabelSearch::join(const PathMesh& mesh, const HubLabels& labels, Best& best) {
-  if (reach_.size() != mesh.corner_count()) reach_.assign(mesh.corner_count(), {});
+  if (reached_hubs_.size() != mesh.corner_count()) reached_hubs_.assign(mesh.corner_count(), {});
   if (++search_ == 0) {
-    reach_.assign(mesh.corner_count(), {});
+    reached_hubs_.assign(mesh.corner_count(), {});
     search_ = 1;
   }
   for (const Turn& s : start_) {
     for (const HubLabels::Label& label : labels.of(s.corner)) {
-      Reach& reach = reach_[label.hub];
+      ReachedHub& reached = reached_hubs_[label.hub];
       const float here = s.distance + label.length;
-      if (reach.search != search_ || here < reach.length) reach = {search_, s.corner, here};
+      if (reached.search != search_ || here < reached.length) reached = {search_, s.corner, here};
     }
   }
   best.length = kFarthest;
   for (const Turn& s : goal_) {
     for (const HubLabels::Label& label : labels.of(s.corner)) {
-      const Reach& reach = reach_[label.hub];
-      const float here = reach.length + label.length + s.distance;
-      if (reach.search != search_ || here >= best.length) continue;
-      best = {here, label.hub, reach.corner, s.corner};
+      const ReachedHub& reached = reached_hubs_[label.hub];
+      const float here = reached.length + label.length + s.distance;
+      if (reached.search != search_ || here >= best.length) continue;
+      best = {here, label.hub, reached.corner, s.corner};
     }
   }
   return best.length < kFarthest;
@@ -102,16 +102,16 @@ struct SeenMiddle {
 
 // Behind an end, as seen from where its way bends first: a way from there comes by the end or
 // nearly so, and as much shorter as the end is away from there is the rest of it. Else `own`.
-SeenMiddle middle_behind(const PathMesh& mesh, const Stop& end, CellPoint bend, SeenMiddle own) {
+SeenMiddle middle_behind(const PathMesh& mesh, const Stop& end, CellPoint turn, SeenMiddle own) {
   const CellPoint at = in_cells(end.at);
-  const double gap = distance(at, bend);
+  const double gap = distance(at, turn);
   if (!(gap > 0)) return own;
   // The farther, the less it matters that a middle is not straight behind.
-  for (const double reach : {128.0, 48.0, 24.0, 12.0}) {  // cells
+  for (const double offset : {128.0, 48.0, 24.0, 12.0}) {  // cells
     const auto behind = [&](double from, double to) {
-      return std::llround((from + (from - to) * (reach / gap)) * kUnitsPerCell);
+      return std::llround((from + (from - to) * (offset / gap)) * kUnitsPerCell);
     };
-    const GroundPoint there{behind(at.x, bend.x), behind(at.z, bend.z)};
+    const GroundPoint there{behind(at.x, turn.x), behind(at.z, turn.z)};
     const uint32_t rect = mesh_ray(mesh, end.rect, end.at, there);
     if (rect == kNoRect) continue;
     const uint32_t block = mesh.block_at(rect, there.cell_x(), there.cell_z());
@@ -136,12 +136,12 @@ bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, cons
   if (!(best.length < kFarthest)) return false;
   const Waypoint from_middle{in_cells(middle_of(mesh, from.rect, a)), from.rect};
   const Waypoint to_middle{in_cells(middle_of(mesh, to.rect, b)), to.rect};
-  labels.walk(middles.trail[middles.first[a] + best.first],
-              middles.trail[middles.first[b] + best.last], corners);
-  way_.assign({{start, from.rect}, from_middle});
-  for (const uint32_t c : corners) way_.push_back(waypoint(mesh, c));
-  way_.insert(way_.end(), {to_middle, {goal, to.rect}});
-  if (!pull_.pull(mesh, way_, corners, length)) return false;
+  labels.walk(middles.tree_place[middles.first[a] + best.first],
+              middles.tree_place[middles.first[b] + best.last], corners);
+  path_.assign({{start, from.rect}, from_middle});
+  for (const uint32_t c : corners) path_.push_back(waypoint(mesh, c));
+  path_.insert(path_.end(), {to_middle, {goal, to.rect}});
+  if (!pull_.pull(mesh, path_, corners, length)) return false;
   // No way is shorter than that between two middles less the ends' distances from them. Labels know
   // ways over corners only: where the middles see each other, the shortest is the straight one.
   const double straight = distance(start, goal);
@@ -187,11 +187,11 @@ void distances(const PathMesh& mesh, const HubLabels& labels, const Stop& end,
 }
 
 // The shortest of the entries of a block's hub, by the distances of an end.
-struct HubReach {
+struct HubDistance {
   float length = kFarthest;
   uint32_t candidate = 0;
 
-  HubReach(const BlockLabels& labels, uint32_t hub, const std::vector<float>& to) {
+  HubDistance(const BlockLabels& labels, uint32_t hub, const std::vector<float>& to) {
     for (uint32_t at = labels.entries[hub]; at < labels.entries[hub + 1]; ++at) {
       const float here = to[labels.candidate[at]] + labels.length[at];
       if (here >= length) continue;
@@ -230,7 +230,7 @@ bool LabelSearch::merge(const PathMesh& mesh, const HubLabels& labels, const Sto
       } else if (other < hub) {
         ++j;
       } else {
-        const HubReach a(by_block, i++, from_), b(by_block, j++, to_);
+        const HubDistance a(by_block, i++, from_), b(by_block, j++, to_);
         if (a.length + b.length >= best.length) continue;
         best.length = a.length + b.length;
         best.hub = hub;
@@ -274,10 +274,10 @@ bool LabelSearch::find(const PathMesh& mesh, const HubLabels& labels, const Stop
       for (const SeenCorner& s : sight_.corners())
         turns.push_back({s.corner, static_cast<float>(s.distance), 0, true});
     };
-    sight_.look(mesh, from.rect, start, to.rect, goal);
+    sight_.cast(mesh, from.rect, start, to.rect, goal);
     if (sight_.sees_goal()) return true;
     take_seen(start_);
-    sight_.look(mesh, to.rect, goal, kNoRect, {});
+    sight_.cast(mesh, to.rect, goal, kNoRect, {});
     take_seen(goal_);
     if (!join(mesh, labels, best)) return false;
   }

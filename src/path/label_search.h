@@ -22,7 +22,7 @@ class LabelSearch {
             std::vector<uint32_t>& corners, double& length);
 
  private:
-  struct Reach {
+  struct ReachedHub {
     uint32_t search = 0;  // that set it
     uint32_t corner = 0;  // by which the hub is reached
     float length = 0;
@@ -50,10 +50,10 @@ class LabelSearch {
 
   Sight sight_;
   StringPuller pull_;
-  std::vector<Waypoint> way_;
+  std::vector<Waypoint> path_;
   std::vector<Turn> start_, goal_;
-  std::vector<Reach> reach_;      // per hub
-  std::vector<float> from_, to_;  // to each candidate of the ends' blocks
+  std::vector<ReachedHub> reached_hubs_;  // per hub
+  std::vector<float> from_, to_;          // to each candidate of the ends' blocks
   uint32_t search_ = 0;
 };
 

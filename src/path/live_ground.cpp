@@ -30,20 +30,20 @@ bool LiveGround::State::locate(const Place& place, LiveStop& stop) {
 void LiveGround::State::give(Path& path) {
   const WorldData& world = mesh.world();
   double length = 0, cost = 0;
-  for (size_t i = 0; i < way.size(); ++i) {
-    path.points.push_back(place_at(world, mesh.level(way[i].level)->ground, way[i].at));
+  for (size_t i = 0; i < stops.size(); ++i) {
+    path.points.push_back(place_at(world, mesh.level(stops[i].level)->ground, stops[i].at));
     if (i == 0) continue;
-    length += distance_of(way[i - 1].at, way[i].at);
-    cost += cost_to(mesh, way[i - 1], way[i]);
-    if (way[i].off_mesh_link > 0) path.off_mesh_links.push_back(static_cast<uint32_t>(i));
+    length += distance_of(stops[i - 1].at, stops[i].at);
+    cost += cost_to(mesh, stops[i - 1], stops[i]);
+    if (stops[i].off_mesh_link > 0) path.off_mesh_links.push_back(static_cast<uint32_t>(i));
   }
   path.length = length * world.summary.cell;
   path.cost = cost * world.summary.cell;
 }
 
 Obstacle LiveGround::State::blocker() {
-  const LiveLevel* level = mesh.level(way.back().level);
-  const WalkStop stop = walk_far(mesh.ground(), level, way.back().at, to.at, mesh.step());
+  const LiveLevel* level = mesh.level(stops.back().level);
+  const WalkStop stop = walk_far(mesh.ground(), level, stops.back().at, to.at, mesh.step());
   if (stop.arrived) return Obstacle::kGap;  // under or over the goal
   // What was put up since the bake is not in its floors.
   const WorldGround baked{mesh.world(), mesh.avatar_class()};
@@ -172,9 +172,9 @@ bool LiveGround::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& pa
   }
   path.end = result == LiveSearch::State::kFound ? PathEnd::kReached : PathEnd::kUnreachable;
   path.spent = SpentBudget::kNone;
-  search.way(mesh, way);
+  search.trace(mesh, stops);
   search.give_back();
-  straight.draw(mesh, way);
+  straight.draw(mesh, stops);
   give(path);
   if (path.end == PathEnd::kUnreachable) path.obstacle = blocker();
   return true;

@@ -201,9 +201,9 @@ void LiveMesh::take_obstacles(LiveLevel& level) const {
   for (const ChangeId id : found->second) {
     const Change& change = changes_[id - 1];
     if (!change.active || change.is_area) continue;
-    const CellRows taken = blocked_cells(floor, avatar, change.solid.prism, change.solid.triangles,
-                                         level.legal.data());
-    for (size_t z = 0; z < taken.size(); ++z) level.legal[z] &= ~taken[z];
+    const CellRows blocked = blocked_cells(floor, avatar, change.solid.prism,
+                                           change.solid.triangles, level.legal.data());
+    for (size_t z = 0; z < blocked.size(); ++z) level.legal[z] &= ~blocked[z];
   }
 }
 

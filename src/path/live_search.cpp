@@ -112,17 +112,17 @@ double segment_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
 
 // From each stop to the farthest that a straight leg reaches at no more cost, looked for by
 // doubling and halving: it need not be the farthest of all.
-void WayStraightener::leave_out(LiveMesh& mesh, std::vector<LiveStop>& way) {
+void LiveStringPuller::leave_out(LiveMesh& mesh, std::vector<LiveStop>& stops) {
   constexpr double kSlack = 1 + 1e-9;
-  if (way.size() < 3) return;
-  before_.assign(way.size(), 0);
-  for (size_t i = 1; i < way.size(); ++i)
-    before_[i] = before_[i - 1] + segment_cost(mesh, way[i - 1], way[i]);
+  if (stops.size() < 3) return;
+  before_.assign(stops.size(), 0);
+  for (size_t i = 1; i < stops.size(); ++i)
+    before_[i] = before_[i - 1] + segment_cost(mesh, stops[i - 1], stops[i]);
   size_t kept = 1;
   for (size_t i = 0; i + 1 < before_.size();) {
-    const LiveStop from = way[kept - 1];
+    const LiveStop from = stops[kept - 1];
     const auto reaches = [&](size_t to) {
-      return segment_cost(mesh, from, way[to]) <= (before_[to] - before_[i]) * kSlack;
+      return segment_cost(mesh, from, stops[to]) <= (before_[to] - before_[i]) * kSlack;
     };
     size_t good = i + 1, stride = 1;
     while (good + stride < before_.size() && reaches(good + stride)) {
@@ -132,25 +132,25 @@ void WayStraightener::leave_out(LiveMesh& mesh, std::vector<LiveStop>& way) {
     for (; stride > 0; stride /= 2) {
       if (good + stride < before_.size() && reaches(good + stride)) good += stride;
     }
-    way[kept++] = way[good];
+    stops[kept++] = stops[good];
     i = good;
   }
-  way.resize(kept);
+  stops.resize(kept);
 }
 
-void WayStraightener::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& way) {
-  leave_out(mesh, way);
+void LiveStringPuller::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops) {
+  leave_out(mesh, stops);
   // Bends move towards the straight line between their neighbours as far as the ground lets them.
   constexpr int kSweeps = 2, kHalvings = 6;
-  for (int sweep = 0; sweep < kSweeps && way.size() > 2; ++sweep) {
-    for (size_t i = 1; i + 1 < way.size(); ++i) {
-      const LiveStop a = way[i - 1], b = way[i + 1];
-      double best = segment_cost(mesh, a, way[i]) + segment_cost(mesh, way[i], b);
+  for (int sweep = 0; sweep < kSweeps && stops.size() > 2; ++sweep) {
+    for (size_t i = 1; i + 1 < stops.size(); ++i) {
+      const LiveStop a = stops[i - 1], b = stops[i + 1];
+      double best = segment_cost(mesh, a, stops[i]) + segment_cost(mesh, stops[i], b);
       const auto ux = static_cast<double>(b.at.x - a.at.x);
       const auto uz = static_cast<double>(b.at.z - a.at.z);
       const double size = ux * ux + uz * uz;
       if (!(size > 0)) continue;
-      const GroundPoint from = way[i].at;
+      const GroundPoint from = stops[i].at;
       const double along = std::clamp(
           (static_cast<double>(from.x - a.at.x) * ux + static_cast<double>(from.z - a.at.z) * uz) /
               size,
@@ -171,18 +171,18 @@ void WayStraightener::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& way) {
         const double cost = segment_cost(mesh, a, moved) + segment_cost(mesh, moved, b);
         if (cost >= best) continue;
         best = cost;
-        way[i] = moved;
+        stops[i] = moved;
         low = t;
       }
     }
-    leave_out(mesh, way);
+    leave_out(mesh, stops);
   }
 }
 
-void WayStraightener::draw(LiveMesh& mesh, std::vector<LiveStop>& way) {
-  if (std::none_of(way.begin(), way.end(),
+void LiveStringPuller::draw(LiveMesh& mesh, std::vector<LiveStop>& stops) {
+  if (std::none_of(stops.begin(), stops.end(),
                    [](const LiveStop& stop) { return stop.off_mesh_link > 0; }))
-    return draw_walk(mesh, way);
+    return draw_walk(mesh, stops);
   whole_.clear();
   walk_.clear();
   const auto end_walk = [&] {
@@ -190,12 +190,12 @@ void WayStraightener::draw(LiveMesh& mesh, std::vector<LiveStop>& way) {
     whole_.insert(whole_.end(), walk_.begin(), walk_.end());
     walk_.clear();
   };
-  for (const LiveStop& stop : way) {
+  for (const LiveStop& stop : stops) {
     if (stop.off_mesh_link > 0) end_walk();
     walk_.push_back(stop);
   }
   end_walk();
-  way.swap(whole_);
+  stops.swap(whole_);
 }
 
 void LiveSearch::begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
@@ -270,8 +270,8 @@ void LiveSearch::give_back() {
   std::vector<Open>().swap(open_);
 }
 
-LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t most, uint64_t max_bytes) {
-  for (uint64_t n = 0; n < most;) {
+LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t max_nodes, uint64_t max_bytes) {
+  for (uint64_t n = 0; n < max_nodes;) {
     if (open_.empty()) return State::kNone;
     if (nodes_.used_bytes() + 3 * open_.size() * sizeof(Open) > max_bytes) return State::kFull;
     std::pop_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
@@ -306,7 +306,7 @@ LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t most, uint64_t ma
   return State::kSearching;
 }
 
-void LiveSearch::way(LiveMesh& mesh, std::vector<LiveStop>& stops) const {
+void LiveSearch::trace(LiveMesh& mesh, std::vector<LiveStop>& stops) const {
   stops.clear();
   uint32_t index = goal_ != UINT32_MAX ? goal_ : nearest_;
   if (goal_ == UINT32_MAX) stops.push_back(nearest_stop_);

@@ -62,13 +62,13 @@ inline double cost_to(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) 
 
 /// Leaves out stops where a straight leg is no dearer, and draws bends straighter; jumps stay. Owns
 /// its memory: no allocation once it has grown.
-class WayStraightener {
+class LiveStringPuller {
  public:
-  void draw(LiveMesh& mesh, std::vector<LiveStop>& way);
+  void draw(LiveMesh& mesh, std::vector<LiveStop>& stops);
 
  private:
-  void draw_walk(LiveMesh& mesh, std::vector<LiveStop>& way);
-  void leave_out(LiveMesh& mesh, std::vector<LiveStop>& way);
+  void draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops);
+  void leave_out(LiveMesh& mesh, std::vector<LiveStop>& stops);
 
   std::vector<LiveStop> whole_, walk_;
   std::vector<double> before_;  // cost up to each stop
@@ -82,13 +82,13 @@ class LiveSearch {
   static constexpr uint64_t kKeptBytes = uint64_t{32} << 20;
 
   void begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
-  /// Looks at up to `most` points more; kFull where it would remember more than so many bytes.
-  State advance(LiveMesh& mesh, uint64_t most, uint64_t max_bytes);
+  /// Looks at up to `max_nodes` points more; kFull where it would remember more than so many bytes.
+  State advance(LiveMesh& mesh, uint64_t max_nodes, uint64_t max_bytes);
   /// Gives back what is allocated beyond kKeptBytes: for a search that is done with.
   void give_back();
   [[nodiscard]] uint64_t allocated_bytes() const;
   /// The way to the goal, or to the point met that is nearest to it; not yet straight.
-  void way(LiveMesh& mesh, std::vector<LiveStop>& stops) const;
+  void trace(LiveMesh& mesh, std::vector<LiveStop>& stops) const;
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
 
  private:

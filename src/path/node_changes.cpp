@@ -77,14 +77,14 @@ ChangeId NodeChanges::add(Solid solid) {
   const double around = reach_of(classes[static_cast<size_t>(mesh_->avatar_class())]);
   Change change;
   std::vector<uint32_t> near;
-  take_tiles(solid, around + longest_leap_, change, near);
+  take_tiles(solid, around + longest_hole_link_, change, near);
   const Prism& prism = solid.prism;
   Box3d box;
   for (const auto& [x, z] : prism.corners) {
     box.add({x, prism.low, z});
     box.add({x, prism.high, z});
   }
-  const double reach = length(box.max - box.min) / 2 + around + longest_leap_;
+  const double reach = length(box.max - box.min) / 2 + around + longest_hole_link_;
   const size_t first_curved = near.size();
   squares_->for_each_near((box.min + box.max) * 0.5, reach,
                           [&](uint32_t block) { near.push_back(block); });
@@ -171,7 +171,7 @@ void NodeChanges::take_squares(const Solid& solid, uint32_t block, Change& chang
   const AvatarClass& avatar = classes[static_cast<size_t>(mesh_->avatar_class())];
   const bool climbs = avatar.climb_slope > 0;
   const uint8_t finest = finest_level(whole);
-  const auto look = [&](auto&& self, uint8_t level, uint32_t s, uint32_t t) -> void {
+  const auto descend = [&](auto&& self, uint8_t level, uint32_t s, uint32_t t) -> void {
     const double side = 1.0 / (1 << level);
     const SurfacePiece piece =
         surface_piece(surface, s * side, t * side, (s + 1) * side, (t + 1) * side);
@@ -193,7 +193,7 @@ void NodeChanges::take_squares(const Solid& solid, uint32_t block, Change& chang
     for (uint32_t q = 0; q < 4; ++q)
       self(self, static_cast<uint8_t>(level + 1), 2 * s + q % 2, 2 * t + q / 2);
   };
-  look(look, whole.level, whole.s, whole.t);
+  descend(descend, whole.level, whole.s, whole.t);
 }
 
 // A step over the border of two tiles goes nowhere: who stands on either side is asked.
@@ -209,11 +209,11 @@ void NodeChanges::take_pieces(const Solid& solid, std::span<const uint32_t> near
       if (!portal.leaps && !doors) continue;
       uint16_t pieces = 0;
       if (portal.leaps) {
-        pieces = is_taken_over(solid, portal, 0, 0) ? 1 : 0;
-      } else if (is_taken_over(solid, portal, 0, 1)) {
+        pieces = blocks_portal(solid, portal, 0, 0) ? 1 : 0;
+      } else if (blocks_portal(solid, portal, 0, 1)) {
         for (int32_t k = 0; k < kPieces; ++k) {
           const double from = k * (1.0 / kPieces), to = (k + 1) * (1.0 / kPieces);
-          if (is_taken_over(solid, portal, from, to)) pieces |= static_cast<uint16_t>(1u << k);
+          if (blocks_portal(solid, portal, from, to)) pieces |= static_cast<uint16_t>(1u << k);
         }
       }
       if (pieces != 0) change.pieces.push_back({p, pieces});
@@ -221,7 +221,7 @@ void NodeChanges::take_pieces(const Solid& solid, std::span<const uint32_t> near
   }
 }
 
-bool NodeChanges::is_taken_over(const Solid& solid, const NodePortal& portal, double from,
+bool NodeChanges::blocks_portal(const Solid& solid, const NodePortal& portal, double from,
                                 double to) const {
   const auto& classes = mesh_->nodes().data()->world.data()->summary.classes;
   const AvatarClass& avatar = classes[static_cast<size_t>(mesh_->avatar_class())];
@@ -295,7 +295,7 @@ void NodeChanges::update() {
       for (size_t k = 0; k < 64; ++k) tiles[at->second].rows[k] |= tile.rows[k];
     }
     squares.insert(squares.end(), change.squares.begin(), change.squares.end());
-    for (const BlockedPieces& taken : change.pieces) pieces[taken.portal] |= taken.pieces;
+    for (const BlockedPieces& blocked : change.pieces) pieces[blocked.portal] |= blocked.pieces;
   }
   std::sort(tiles.begin(), tiles.end(),
             [](const BlockedTile& a, const BlockedTile& b) { return a.patch < b.patch; });
@@ -313,12 +313,12 @@ void NodeChanges::update() {
 
 // The largest squares of a block of which nothing is taken. taken(level, s, t): 0 nothing, 1 some
 // of it, 2 all.
-template <class Taken>
-void NodeChanges::cut(uint32_t block, const Taken& taken) {
+template <class IsBlocked>
+void NodeChanges::cut(uint32_t block, const IsBlocked& blocked) {
   const NodeBlock& whole = mesh_->blocks()[block];
   Cut made{static_cast<uint32_t>(parts_.size()), 0};
-  const auto look = [&](auto&& self, uint8_t level, uint32_t s, uint32_t t) -> void {
-    const int some = taken(level, s, t);
+  const auto descend = [&](auto&& self, uint8_t level, uint32_t s, uint32_t t) -> void {
+    const int some = blocked(level, s, t);
     if (some == 2) return;
     if (some == 0) {
       NodeBlock part = whole;
@@ -332,15 +332,15 @@ void NodeChanges::cut(uint32_t block, const Taken& taken) {
     for (uint32_t q = 0; q < 4; ++q)
       self(self, static_cast<uint8_t>(level + 1), 2 * s + q % 2, 2 * t + q / 2);
   };
-  look(look, whole.level, whole.s, whole.t);
+  descend(descend, whole.level, whole.s, whole.t);
   made.last = static_cast<uint32_t>(parts_.size());
   cuts_.emplace(block, made);
   cut_blocks_.push_back(block);
   cut_patches_.push_back(whole.patch);
 }
 
-void NodeChanges::cut_tiles(const std::vector<BlockedTile>& taken) {
-  for (const BlockedTile& tile : taken) {
+void NodeChanges::cut_tiles(const std::vector<BlockedTile>& blocked) {
+  for (const BlockedTile& tile : blocked) {
     const auto blocks = mesh_->blocks_of(tile.patch);
     const auto some = [&](uint8_t level, uint32_t s, uint32_t t) {
       const uint32_t side = 64u >> level;
@@ -359,14 +359,14 @@ void NodeChanges::cut_tiles(const std::vector<BlockedTile>& taken) {
   }
 }
 
-void NodeChanges::cut_squares(const std::vector<BlockedSquare>& taken) {
-  for (size_t i = 0; i < taken.size();) {
+void NodeChanges::cut_squares(const std::vector<BlockedSquare>& blocked) {
+  for (size_t i = 0; i < blocked.size();) {
     size_t j = i;
-    while (j < taken.size() && taken[j].block == taken[i].block) ++j;
-    const uint8_t finest = finest_level(mesh_->blocks()[taken[i].block]);
-    const auto begin = taken.begin() + static_cast<ptrdiff_t>(i);
-    const auto end = taken.begin() + static_cast<ptrdiff_t>(j);
-    cut(taken[i].block, [&](uint8_t level, uint32_t s, uint32_t t) {
+    while (j < blocked.size() && blocked[j].block == blocked[i].block) ++j;
+    const uint8_t finest = finest_level(mesh_->blocks()[blocked[i].block]);
+    const auto begin = blocked.begin() + static_cast<ptrdiff_t>(i);
+    const auto end = blocked.begin() + static_cast<ptrdiff_t>(j);
+    cut(blocked[i].block, [&](uint8_t level, uint32_t s, uint32_t t) {
       const uint32_t up = 2u * (finest - level);
       const uint32_t first = quad_order(s, t, level) << up, count = 1u << up;
       const auto before = [](const BlockedSquare& square, uint32_t order) {
@@ -432,7 +432,7 @@ void NodeChanges::join_parts(uint32_t block) {
 // What is left of portals whose blocks are cut, or that are not free on their way.
 void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& pieces) {
   std::vector<uint32_t> gone;
-  for (const auto& [portal, taken] : pieces) gone.push_back(portal);
+  for (const auto& [portal, blocked] : pieces) gone.push_back(portal);
   for (const uint32_t block : cut_blocks_) {
     const auto portals = mesh_->portals_of(block);
     gone.insert(gone.end(), portals.begin(), portals.end());
@@ -456,13 +456,13 @@ void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& 
       const NodeBlock& part = parts_[p];
       const double side = part.side();
       double from = 0, to = 1;
-      const auto clip = [&](double at, double way, double low, double high) {
+      const auto clip = [&](double at, double delta, double low, double high) {
         // A line along a side lies on it, or an inset beside it.
-        if (std::fabs(way) < kWide) {
+        if (std::fabs(delta) < kWide) {
           if (at < low - inset - kRounded || at > high + inset + kRounded) to = -1;
           return;
         }
-        const double one = (low + inset - at) / way, two = (high - inset - at) / way;
+        const double one = (low + inset - at) / delta, two = (high - inset - at) / delta;
         from = std::max(from, std::min(one, two));
         to = std::min(to, std::max(one, two));
       };
@@ -479,8 +479,8 @@ void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& 
     const NodePortal portal = mesh_->portals()[p];
     Replaced made{p, static_cast<uint32_t>(mesh_->portals().size() + portals_.size()), 0};
     free.clear();
-    const auto taken = pieces.find(p);
-    const uint16_t mask = taken == pieces.end() ? uint16_t{0} : taken->second;
+    const auto blocked = pieces.find(p);
+    const uint16_t mask = blocked == pieces.end() ? uint16_t{0} : blocked->second;
     if (mask == 0) {
       free.push_back({});
     } else if (!portal.leaps) {

@@ -25,8 +25,8 @@ namespace throng {
 class NodeChanges {
  public:
   /// No leap of the mesh is longer. [m]
-  NodeChanges(const NodeMesh& mesh, const BlockSquares& squares, double longest_leap)
-      : mesh_(&mesh), squares_(&squares), longest_leap_(longest_leap) {}
+  NodeChanges(const NodeMesh& mesh, const BlockSquares& squares, double longest_hole_link)
+      : mesh_(&mesh), squares_(&squares), longest_hole_link_(longest_hole_link) {}
 
   ChangeId add(Solid solid);
   /// False if there is none of that id, which is then never used again if it is removed.
@@ -88,20 +88,20 @@ class NodeChanges {
                   std::vector<uint32_t>& near) const;
   void take_squares(const Solid& solid, uint32_t block, Change& change) const;
   void take_pieces(const Solid& solid, std::span<const uint32_t> near, Change& change) const;
-  [[nodiscard]] bool is_taken_over(const Solid& solid, const NodePortal& portal, double from,
+  [[nodiscard]] bool blocks_portal(const Solid& solid, const NodePortal& portal, double from,
                                    double to) const;
   [[nodiscard]] uint8_t finest_level(const NodeBlock& block) const;
-  void cut_tiles(const std::vector<BlockedTile>& taken);
-  void cut_squares(const std::vector<BlockedSquare>& taken);
-  template <class Taken>
-  void cut(uint32_t block, const Taken& taken);
+  void cut_tiles(const std::vector<BlockedTile>& blocked);
+  void cut_squares(const std::vector<BlockedSquare>& blocked);
+  template <class IsBlocked>
+  void cut(uint32_t block, const IsBlocked& blocked);
   void join_parts(uint32_t block);
   void replace_portals(const std::unordered_map<uint32_t, uint16_t>& pieces);
   void list_portals();
 
   const NodeMesh* mesh_;
   const BlockSquares* squares_;
-  double longest_leap_;  // [m]
+  double longest_hole_link_;  // [m]
   uint64_t version_ = 0, updated_ = 0;
   std::vector<Change> changes_;
 

@@ -76,7 +76,7 @@ BlockPoint NodeParts::nearest(const NodeView& view, const BlockPoint& from, Vec3
     for (const uint32_t patch : view.changes()->cut_patches()) near.push_back({0, patch});
   }
   std::make_heap(near.begin(), near.end());
-  const auto look_at = [&](uint32_t block) {
+  const auto consider = [&](uint32_t block) {
     for_each_arc_in(view, block, [&](const Crossing& crossing) {
       const auto [out, in] = ends_of(view, crossing);
       if (!reached.holds(part_of_[view.base_of(out.block)]) || is_out(in.block)) return;
@@ -93,10 +93,10 @@ BlockPoint NodeParts::nearest(const NodeView& view, const BlockPoint& from, Vec3
     const auto blocks = static_cast<uint32_t>(mesh.blocks_of(patch).size());
     for (uint32_t b = mesh.first_block(patch); b < mesh.first_block(patch) + blocks; ++b) {
       if (!reached.holds(part_of_[b])) continue;
-      look_at(b);
+      consider(b);
       if (view.is_as_baked()) continue;
       const auto parts = view.changes()->parts_of(b);
-      for (uint32_t p = parts ? parts->first : 0; parts && p < parts->second; ++p) look_at(p);
+      for (uint32_t p = parts ? parts->first : 0; parts && p < parts->second; ++p) consider(p);
     }
   }
   return best;

@@ -44,7 +44,7 @@ struct NodePathFinder::Shared {
       if (!portal.leaps) continue;
       const Vec3d a = mesh.surface(portal.a).at(portal.on_a[0], portal.on_a[1]);
       const Vec3d b = mesh.surface(portal.b).at(portal.on_b[0], portal.on_b[1]);
-      longest_leap = std::max(longest_leap, length(b - a));
+      longest_hole_link = std::max(longest_hole_link, length(b - a));
     }
     if (config.overlay && mesh.portals().size() >= kManyCrossings) {
       const NodeView baked(mesh);
@@ -58,7 +58,7 @@ struct NodePathFinder::Shared {
   BlockSquares squares;
   NodeParts parts;
   Overlay overlay;
-  double longest_leap = 0;  // [m]
+  double longest_hole_link = 0;  // [m]
   double seconds = 0;
 };
 
@@ -72,7 +72,7 @@ struct NodePathFinder::Scratch {
         far_search(view, cost, of.overlay),
         pull(view, cost) {}
   explicit Scratch(const Shared& of)
-      : Scratch(of, NodeChanges(of.mesh, of.squares, of.longest_leap)) {}
+      : Scratch(of, NodeChanges(of.mesh, of.squares, of.longest_hole_link)) {}
   Scratch(const Scratch&) = delete;  // its parts point to each other
   Scratch& operator=(const Scratch&) = delete;
 
@@ -86,8 +86,9 @@ struct NodePathFinder::Scratch {
   NodeParts::Reached reached;
   NodeIsland islands;
   NodeStringPuller pull;
-  std::vector<Crossing> way;
-  std::optional<BlockPoint> nearest;  // where `way` ends, if not where its last crossing leads to
+  std::vector<Crossing> crossings;
+  std::optional<BlockPoint>
+      nearest;  // where `crossings` ends, if not where its last crossing leads to
   std::vector<PulledCrossing> pulled;
 
   void update() {
@@ -115,7 +116,7 @@ SearchBudget what_is_left(const SearchBudget& budget, const NodePath& path) {
 // To where a way leads, as far as is known before what has been put up is asked.
 PathEnd NodePathFinder::Scratch::find(const BlockPoint& from, const BlockPoint& to,
                                       const SearchBudget& budget, NodePath& path) {
-  const auto look = [&](auto&& searched, PathEnd end) {
+  const auto take = [&](auto&& searched, PathEnd end) {
     path.nodes += searched.expanded();
     path.searched_cost = searched.cost();
     return end;
@@ -125,12 +126,12 @@ PathEnd NodePathFinder::Scratch::find(const BlockPoint& from, const BlockPoint& 
     if (far <= kNearSides * shared.overlay.overlay_levels().front().side) {
       SearchBudget near = what_is_left(budget, path);
       near.max_nodes = std::min(near.max_nodes, kNearCrossings);
-      const PathEnd end = look(search, search.find(from, to, near, way));
+      const PathEnd end = take(search, search.find(from, to, near, crossings));
       const bool stopped = budget.cancel != nullptr && *budget.cancel;
       if (end != PathEnd::kBudgetExhausted || stopped) return end;
     }
     const SearchBudget left = what_is_left(budget, path);
-    const PathEnd end = look(far_search, far_search.find(from, to, left, search, way));
+    const PathEnd end = take(far_search, far_search.find(from, to, left, search, crossings));
     if (end != PathEnd::kUnreachable) return end;
   }
   return find_all(from, to, budget, path);
@@ -139,7 +140,7 @@ PathEnd NodePathFinder::Scratch::find(const BlockPoint& from, const BlockPoint& 
 // Of all crossings; where none leads there, to the one that comes nearest.
 PathEnd NodePathFinder::Scratch::find_all(const BlockPoint& from, const BlockPoint& to,
                                           const SearchBudget& budget, NodePath& path) {
-  const PathEnd end = search.find(from, to, what_is_left(budget, path), way);
+  const PathEnd end = search.find(from, to, what_is_left(budget, path), crossings);
   path.nodes += search.expanded();
   path.searched_cost = search.cost();
   return end;
@@ -151,12 +152,12 @@ PathEnd NodePathFinder::Scratch::find_nearest(const BlockPoint& from, const Bloc
                                               const SearchBudget& budget, NodePath& path) {
   constexpr int kMaxPockets = 16;
   const Vec3d goal = position(view, to);
-  if (islands.close(view, from.block, to.block, NodeIsland::Way::kOut))
+  if (islands.close(view, from.block, to.block, NodeIsland::Direction::kOut))
     return find_all(from, to, budget, path);
   for (int i = 0; i < kMaxPockets; ++i) {
     const auto is_cut_off = [&](uint32_t block) { return islands.holds(block); };
     const BlockPoint last = shared.parts.nearest(view, from, goal, reached, is_cut_off);
-    if (islands.close(view, last.block, from.block, NodeIsland::Way::kIn)) continue;
+    if (islands.close(view, last.block, from.block, NodeIsland::Direction::kIn)) continue;
     const PathEnd end = find(from, last, budget, path);
     if (end == PathEnd::kReached) nearest = last;
     if (end != PathEnd::kUnreachable) return end;
@@ -342,7 +343,7 @@ void for_each_level_part(const NodeView& view, Vec3d position, double reach, Vis
   const std::array<double, 2> plan{position.x, position.z};
   const SquareRange tiles = tiles_near(world, std::span(&plan, 1), std::min(reach, 1e6));
   const double tile = world.summary.cell * 64;
-  const auto look = [&](uint32_t block, double s, double t) {
+  const auto consider = [&](uint32_t block, double s, double t) {
     const double side = view.block(block).side(), low_s = view.block(block).s * side,
                  low_t = view.block(block).t * side;
     const auto inside = [&](double at, double low) {
@@ -361,9 +362,9 @@ void for_each_level_part(const NodeView& view, Vec3d position, double reach, Vis
         const auto count = static_cast<uint32_t>(mesh.blocks_of(patch).size());
         for (uint32_t b = mesh.first_block(patch); b < mesh.first_block(patch) + count; ++b) {
           const auto parts = view.changes()->parts_of(b);
-          if (!parts) look(b, s, t);
+          if (!parts) consider(b, s, t);
           for (uint32_t p = parts ? parts->first : 0; parts && p < parts->second; ++p) {
-            look(p, s, t);
+            consider(p, s, t);
           }
         }
       }
@@ -601,8 +602,8 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
   } else {
     // Parts tell who is reached if nothing is in the way.
     scratch.islands.clear(view);
-    reachable =
-        reachable && !scratch.islands.close(view, goal.block, start.block, NodeIsland::Way::kIn);
+    reachable = reachable &&
+                !scratch.islands.close(view, goal.block, start.block, NodeIsland::Direction::kIn);
     path.end = reachable ? scratch.find(start, goal, budget, path)
                          : scratch.find_nearest(start, goal, budget, path);
     reachable = reachable && path.end == PathEnd::kReached;
@@ -613,13 +614,13 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
   }
   BlockPoint last = goal;
   if (!reachable) {
-    last = scratch.way.empty() ? start : ends_of(view, scratch.way.back()).in;
+    last = scratch.crossings.empty() ? start : ends_of(view, scratch.crossings.back()).in;
     last = scratch.nearest.value_or(
         nearest_place(view, shared_->squares, last, to.feet, [](uint32_t) { return false; }));
     path.end = PathEnd::kUnreachable;
     path.obstacle = obstacle_towards(view, last, to.feet);
   }
-  scratch.pull.pull(start, last, scratch.way, scratch.pulled);
+  scratch.pull.pull(start, last, scratch.crossings, scratch.pulled);
   PathBuilder path_builder(view, scratch.cost, spacing, path);
   path_builder.begin(start);
   for (const PulledCrossing& crossing : scratch.pulled) {

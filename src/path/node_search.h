@@ -42,10 +42,10 @@ class NodeSearch {
  public:
   NodeSearch(const NodeView& view, const PieceCost& cost) : view_(&view), cost_(&cost) {}
 
-  /// Fills `way` with the portals from one to the other, or, if none leads there, to the crossing
-  /// that comes nearest. Ways that cost `less_than` and more are not looked for.
+  /// Fills `crossings` with the portals from one to the other, or, if none leads there, to the
+  /// crossing that comes nearest. Ways that cost `less_than` and more are not looked for.
   PathEnd find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-               std::vector<Crossing>& way, const SearchBounds& within = {},
+               std::vector<Crossing>& crossings, const SearchBounds& within = {},
                double less_than = std::numeric_limits<double>::infinity());
   [[nodiscard]] double cost() const { return best_cost_; }
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
@@ -68,12 +68,12 @@ class NodeSearch {
   };
 
   PathEnd search(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-                 std::vector<Crossing>& way, double less_than);
+                 std::vector<Crossing>& crossings, double less_than);
   [[nodiscard]] uint64_t used_bytes() const;
   void give_back();
   void expand(const BlockPoint& from, Vec3d at, double cost, uint32_t parent);
   void push(double estimate, uint32_t state);
-  void trace(uint32_t state, std::vector<Crossing>& way);
+  void trace(uint32_t state, std::vector<Crossing>& crossings);
 
   const NodeView* view_;
   const PieceCost* cost_;

@@ -42,25 +42,25 @@ void NodeStringPuller::place(PulledCrossing& crossing, double along) const {
   crossing.in_at = view_->surface(crossing.in.block).at(crossing.in.s, crossing.in.t);
 }
 
-double NodeStringPuller::cost_around(const std::vector<PulledCrossing>& way, size_t i,
+double NodeStringPuller::cost_around(const std::vector<PulledCrossing>& crossings, size_t i,
                                      const PulledCrossing& crossing, const BlockPoint& from,
                                      Vec3d from_at, const BlockPoint& to, Vec3d to_at) const {
-  const BlockPoint& before = i > 0 ? way[i - 1].in : from;
-  const BlockPoint& after = i + 1 < way.size() ? way[i + 1].out : to;
-  return (*cost_)(crossing.out.block, before.s, before.t, i > 0 ? way[i - 1].in_at : from_at,
+  const BlockPoint& before = i > 0 ? crossings[i - 1].in : from;
+  const BlockPoint& after = i + 1 < crossings.size() ? crossings[i + 1].out : to;
+  return (*cost_)(crossing.out.block, before.s, before.t, i > 0 ? crossings[i - 1].in_at : from_at,
                   crossing.out.s, crossing.out.t, crossing.out_at)
              .cost +
          portal_length(view_->portal(crossing.crossing.portal), crossing.out_at, crossing.in_at) +
          (*cost_)(crossing.in.block, crossing.in.s, crossing.in.t, crossing.in_at, after.s, after.t,
-                  i + 1 < way.size() ? way[i + 1].out_at : to_at)
+                  i + 1 < crossings.size() ? crossings[i + 1].out_at : to_at)
              .cost;
 }
 
 void NodeStringPuller::pull(const BlockPoint& from, const BlockPoint& to,
-                            const std::vector<Crossing>& way,
+                            const std::vector<Crossing>& crossings,
                             std::vector<PulledCrossing>& out) const {
   out.clear();
-  for (const Crossing& crossing : way) {
+  for (const Crossing& crossing : crossings) {
     out.emplace_back().crossing = crossing;
     place(out.back(), 0);
     out.back().first_at = out.back().out_at;

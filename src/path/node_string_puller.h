@@ -25,12 +25,12 @@ class NodeStringPuller {
   NodeStringPuller(const NodeView& view, const PieceCost& cost) : view_(&view), cost_(&cost) {}
 
   /// Moves where the way goes through each portal, as long as that makes it cheaper.
-  void pull(const BlockPoint& from, const BlockPoint& to, const std::vector<Crossing>& way,
+  void pull(const BlockPoint& from, const BlockPoint& to, const std::vector<Crossing>& crossings,
             std::vector<PulledCrossing>& out) const;
 
  private:
   void place(PulledCrossing& crossing, double along) const;
-  [[nodiscard]] double cost_around(const std::vector<PulledCrossing>& way, size_t i,
+  [[nodiscard]] double cost_around(const std::vector<PulledCrossing>& crossings, size_t i,
                                    const PulledCrossing& crossing, const BlockPoint& from,
                                    Vec3d from_at, const BlockPoint& to, Vec3d to_at) const;
 

@@ -70,12 +70,12 @@ class Surroundings {
 
   // Where the body would be in the cell ahead, and a cell more: matter in the middle of a cell
   // shows in the floor of the next.
-  [[nodiscard]] Around look_ahead(int32_t ahead_x, int32_t ahead_z) const {
-    const auto reach = static_cast<int32_t>(std::ceil(avatar().radius * 1000 / cell_)) + 2;
+  [[nodiscard]] Around cast_ahead(int32_t ahead_x, int32_t ahead_z) const {
+    const auto radius = static_cast<int32_t>(std::ceil(avatar().radius * 1000 / cell_)) + 2;
     Around around;
-    for (int32_t i = -reach; i <= reach; ++i) {
-      for (const auto& [dx, dz] : {std::pair{i, -reach}, {i, reach}, {-reach, i}, {reach, i}}) {
-        if (dx * ahead_x + dz * ahead_z > 0) look_along(dx, dz, reach, around);
+    for (int32_t i = -radius; i <= radius; ++i) {
+      for (const auto& [dx, dz] : {std::pair{i, -radius}, {i, radius}, {-radius, i}, {radius, i}}) {
+        if (dx * ahead_x + dz * ahead_z > 0) cast_along(dx, dz, radius, around);
       }
     }
     return around;
@@ -130,12 +130,12 @@ class Surroundings {
   }
 
   // Over the floor as far as it goes, and where it ends to what is seen first.
-  void look_along(int32_t dx, int32_t dz, int32_t reach, Around& around) const {
+  void cast_along(int32_t dx, int32_t dz, int32_t radius, Around& around) const {
     const auto beyond = static_cast<int32_t>(std::ceil(kThickWall / cell_));
     int32_t x = x_, z = z_, feet = feet_;
     bool is_known = true;
-    for (int32_t i = 1; i <= (is_known ? reach : reach + beyond); ++i) {
-      const int32_t next_x = x_ + rounded(i * dx, reach), next_z = z_ + rounded(i * dz, reach);
+    for (int32_t i = 1; i <= (is_known ? radius : radius + beyond); ++i) {
+      const int32_t next_x = x_ + rounded(i * dx, radius), next_z = z_ + rounded(i * dz, radius);
       const Column column = column_at(next_x, next_z, feet);
       if (column.sight == Sight::kUnknown) {
         is_known = false;
@@ -155,13 +155,13 @@ class Surroundings {
         feet = column.feet;
         continue;
       }
-      tell(column.sight, around);
+      note(column.sight, around);
       return;
     }
     if (!is_known) around.unknown = true;
   }
 
-  static void tell(Sight sight, Around& around) {
+  static void note(Sight sight, Around& around) {
     switch (sight) {
       case Sight::kFloor:
         around.wall = true;
@@ -199,9 +199,9 @@ class Surroundings {
   [[nodiscard]] bool is_slope(int32_t x, int32_t z, int32_t dx, int32_t dz, int32_t from,
                               int32_t to) const {
     constexpr double kSteepest = 4;  // A floor that rises more is a wall, about 76 degrees.
-    const double way = std::sqrt(static_cast<double>(dx * dx + dz * dz));
+    const double run = std::sqrt(static_cast<double>(dx * dx + dz * dz));
     const int32_t rise = to - from;
-    if (std::abs(rise) <= steepest_ * way || std::abs(rise) > kSteepest * cell_ * way) return false;
+    if (std::abs(rise) <= steepest_ * run || std::abs(rise) > kSteepest * cell_ * run) return false;
     const auto next = nearest_floor(ground_, x + dx, z + dz, to + rise);
     if (!next) return true;
     const int32_t goes_on = ground_.sample(*next, (x + dx) & 63, (z + dz) & 63) - to;
@@ -231,7 +231,7 @@ Obstacle obstacle_beyond(const WorldGround& ground, const GroundLevel& level,
       const int32_t there = ground.sample(*floor, (stop.x + dx) & 63, (stop.z + dz) & 63);
       if (std::abs(there - feet) <= step_mm(avatar)) return Obstacle::kNone;
     }
-    const Around around = Surroundings(ground, stop.x, stop.z, feet).look_ahead(dx, dz);
+    const Around around = Surroundings(ground, stop.x, stop.z, feet).cast_ahead(dx, dz);
     if (around.low) return Obstacle::kLow;
     if (around.steep) return Obstacle::kSteep;
     if (around.step && !around.wall) return Obstacle::kStep;

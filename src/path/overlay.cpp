@@ -58,7 +58,7 @@ Overlay::Overlay(const NodeMesh& mesh, const PieceCost& cost, int32_t workers, s
   for (size_t k = 0; k < overlay_levels_.size(); ++k) {
     list_entries(mesh, overlay_levels_[k], static_cast<uint8_t>(k));
   }
-  look_through(mesh, cost, workers);
+  measure_costs(mesh, cost, workers);
   for (size_t k = 1; k < overlay_levels_.size(); ++k) join_up(k, workers);
 }
 
@@ -205,7 +205,7 @@ void Overlay::list_entries(const NodeMesh& mesh, OverlayLevel& overlay_level, ui
 }
 
 // An entry of a one-way portal that cannot be gone backward leads nowhere: no way comes to it.
-void Overlay::look_through(const NodeMesh& mesh, const PieceCost& cost, int32_t workers) {
+void Overlay::measure_costs(const NodeMesh& mesh, const PieceCost& cost, int32_t workers) {
   OverlayLevel& overlay_level = overlay_levels_.front();
   const NodeView view(mesh);
   std::vector<OverlayGraph> graphs(static_cast<size_t>(worker_count(workers)), {view, cost});
@@ -217,10 +217,10 @@ void Overlay::look_through(const NodeMesh& mesh, const PieceCost& cost, int32_t 
     graph.set(blocks_of(overlay_cell), true);
     // Ways out over gates, and in which column they are told.
     std::vector<std::pair<uint32_t, uint32_t>> columns;
-    for (uint32_t w = 0; w < graph.ways().size(); ++w) {
-      const OverlayGraph::Way& way = graph.ways()[w];
-      if (way.into != kNoNode) continue;
-      const uint32_t entry = entry_of(way.crossing);
+    for (uint32_t w = 0; w < graph.arcs().size(); ++w) {
+      const OverlayGraph::Arc& arc = graph.arcs()[w];
+      if (arc.into != kNoNode) continue;
+      const uint32_t entry = entry_of(arc.crossing);
       if (entry != kNoNode) columns.emplace_back(w, overlay_level.place[entry ^ 1]);
     }
     for (size_t i = 0; i < entries.size(); ++i) {
@@ -228,8 +228,8 @@ void Overlay::look_through(const NodeMesh& mesh, const PieceCost& cost, int32_t 
       if (in.backward && mesh.portals().sides(in.portal).one_way) continue;
       const std::vector<double>& costs = graph.run(ends_of(view, in).in);
       float* row = overlay_level.costs.data() + overlay_level.first_cost[d] + i * entries.size();
-      for (const auto& [way, column] : columns) {
-        if (column != i) row[column] = static_cast<float>(costs[way]);
+      for (const auto& [arc, column] : columns) {
+        if (column != i) row[column] = static_cast<float>(costs[arc]);
       }
     }
   });

@@ -77,7 +77,7 @@ class Overlay {
   void choose_sides(const NodeMesh& mesh, int32_t workers, size_t crossings);
   void choose_entrances(const NodeMesh& mesh, int32_t workers);
   void list_entries(const NodeMesh& mesh, OverlayLevel& overlay_level, uint8_t k);
-  void look_through(const NodeMesh& mesh, const PieceCost& cost, int32_t workers);
+  void measure_costs(const NodeMesh& mesh, const PieceCost& cost, int32_t workers);
   void join_up(size_t overlay_level, int32_t workers);
 
   std::vector<uint32_t> of_block_;

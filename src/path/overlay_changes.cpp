@@ -108,8 +108,8 @@ std::span<const float> OverlayChanges::costs_from(uint32_t entry) {
   for (size_t j = 0; j < entries.size(); ++j) {
     const uint32_t out = entries[j] ^ 1;
     if (entries[j] == entry || is_closed(out)) continue;
-    const uint32_t way = graph_.way_of(crossing(out));
-    if (way != kNoNode) row[j] = static_cast<float>(costs[way]);
+    const uint32_t arc = graph_.arc_of(crossing(out));
+    if (arc != kNoNode) row[j] = static_cast<float>(costs[arc]);
   }
   return row;
 }

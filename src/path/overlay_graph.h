@@ -16,7 +16,7 @@ class OverlayGraph {
   OverlayGraph(const NodeView& view, const PieceCost& cost) : view_(&view), piece_(&cost) {}
 
   /// A way out of a block of the district: into another one, or out of the district.
-  struct Way {
+  struct Arc {
     Crossing crossing;
     BlockPoint out, in;
     Vec3d out_at, in_at;
@@ -27,9 +27,9 @@ class OverlayGraph {
   /// Of these blocks, rising; `keep` remembers what all pieces cost, for many calls of run().
   void set(std::span<const uint32_t> blocks, bool keep);
   /// In the order of the blocks that they leave.
-  [[nodiscard]] const std::vector<Way>& ways() const { return ways_; }
+  [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }
   /// The place of a crossing among them, or kNoNode.
-  [[nodiscard]] uint32_t way_of(const Crossing& crossing) const;
+  [[nodiscard]] uint32_t arc_of(const Crossing& crossing) const;
   /// What each way costs at least from a point of the district until it has been gone; infinite if
   /// none leads there. Dijkstra's algorithm.
   const std::vector<double>& run(const BlockPoint& from);
@@ -43,9 +43,9 @@ class OverlayGraph {
  private:
   struct Open {
     double cost;
-    uint32_t way;
+    uint32_t arc;
     bool operator<(const Open& other) const {
-      return cost != other.cost ? cost > other.cost : way > other.way;
+      return cost != other.cost ? cost > other.cost : arc > other.arc;
     }
   };
 
@@ -54,14 +54,14 @@ class OverlayGraph {
                              Vec3d to_at) const {
     return (*piece_)(from.block, from.s, from.t, at, to.s, to.t, to_at).cost;
   }
-  void reach(uint32_t way, double cost);
+  void reach(uint32_t arc, double cost);
   bool next(Open& top);
 
   const NodeView* view_;
   const PieceCost* piece_;
   std::span<const uint32_t> blocks_;
-  std::vector<uint32_t> first_path_;  // by place of the block that is left, and the end
-  std::vector<Way> ways_;
+  std::vector<uint32_t> first_arc_;  // by place of the block that is left, and the end
+  std::vector<Arc> arcs_;
   std::vector<uint32_t> first_in_, in_of_;  // by place of the block that is come to: ways
   std::vector<size_t> first_kept_;
   std::vector<double> kept_;  // by way, and way out of the block that it comes to

@@ -45,14 +45,14 @@ bool OverlaySearch::next(Open& top) {
 
 PathEnd OverlaySearch::find(const BlockPoint& from, const BlockPoint& to,
                             const SearchBudget& budget, NodeSearch& blocks,
-                            std::vector<Crossing>& way) {
-  way.clear();
+                            std::vector<Crossing>& crossings) {
+  crossings.clear();
   expanded_ = 0;
   cost_ = 0;
   if (const PathEnd end = over_entrances(from, to, budget); end != PathEnd::kReached) return end;
   const std::vector<uint32_t>& of_block = overlay_->of_block();
   if (first_ == kNoEntry)
-    return within(of_block[view_->base_of(from.block)], from, to, budget, blocks, way);
+    return within(of_block[view_->base_of(from.block)], from, to, budget, blocks, crossings);
   for (size_t overlay_level = overlay_->overlay_levels().size(); --overlay_level > 0;) {
     finer_.clear();
     for (const Stretch& stretch : stretches_) {
@@ -69,10 +69,11 @@ PathEnd OverlaySearch::find(const BlockPoint& from, const BlockPoint& to,
   const auto go_to = [&](uint32_t entry) {
     const Crossing crossing = now_.crossing(entry);
     const auto [out, in] = ends_of(*view_, crossing);
-    const PathEnd end = within(of_block[view_->base_of(at.block)], at, out, budget, blocks, way);
+    const PathEnd end =
+        within(of_block[view_->base_of(at.block)], at, out, budget, blocks, crossings);
     if (end != PathEnd::kReached) return end;
-    joints_.push_back(way.size());
-    way.push_back(crossing);
+    joints_.push_back(crossings.size());
+    crossings.push_back(crossing);
     cost_ += portal_length(view_->portal(crossing.portal), position(*view_, out), now_.at(entry));
     at = in;
     return end;
@@ -82,8 +83,8 @@ PathEnd OverlaySearch::find(const BlockPoint& from, const BlockPoint& to,
     end = go_to(stretches_[i].to);
   }
   if (end == PathEnd::kReached)
-    end = within(of_block[view_->base_of(to.block)], at, to, budget, blocks, way);
-  if (end == PathEnd::kReached) straighten(from, to, budget, blocks, way);
+    end = within(of_block[view_->base_of(to.block)], at, to, budget, blocks, crossings);
+  if (end == PathEnd::kReached) straighten(from, to, budget, blocks, crossings);
   return end;
 }
 
@@ -91,17 +92,17 @@ PathEnd OverlaySearch::find(const BlockPoint& from, const BlockPoint& to,
 // the gate between them.
 void OverlaySearch::straighten(const BlockPoint& from, const BlockPoint& to,
                                const SearchBudget& budget, NodeSearch& blocks,
-                               std::vector<Crossing>& way) {
+                               std::vector<Crossing>& crossings) {
   led_.clear();
   cost_ = 0;
   BlockPoint begin = from;
   size_t first = 0;  // of what is led anew
   for (size_t i = 0; i < joints_.size(); ++i) {
     const bool ends = i + 1 == joints_.size();
-    const size_t last = ends ? way.size() : (joints_[i] + joints_[i + 1]) / 2;
+    const size_t last = ends ? crossings.size() : (joints_[i] + joints_[i + 1]) / 2;
     if (!ends && last == joints_[i]) continue;  // No middle: over both gates at once.
-    const BlockPoint end = ends ? to : ends_of(*view_, way[last]).out;
-    const double known = cost_of(begin, end, way.data() + first, way.data() + last);
+    const BlockPoint end = ends ? to : ends_of(*view_, crossings[last]).out;
+    const double known = cost_of(begin, end, crossings.data() + first, crossings.data() + last);
     constexpr double kGain = 1e-6;  // Anything less is rounding.
     SearchBudget left = budget;
     left.max_nodes = budget.max_nodes - std::min(budget.max_nodes, expanded_);
@@ -112,19 +113,19 @@ void OverlaySearch::straighten(const BlockPoint& from, const BlockPoint& to,
       led_.insert(led_.end(), piece_.begin(), piece_.end());
       cost_ += blocks.cost();
     } else {
-      led_.insert(led_.end(), way.begin() + static_cast<ptrdiff_t>(first),
-                  way.begin() + static_cast<ptrdiff_t>(last));
+      led_.insert(led_.end(), crossings.begin() + static_cast<ptrdiff_t>(first),
+                  crossings.begin() + static_cast<ptrdiff_t>(last));
       cost_ += known;
     }
     if (ends) break;
-    led_.push_back(way[last]);
-    const auto [out, in] = ends_of(*view_, way[last]);
-    cost_ +=
-        portal_length(view_->portal(way[last].portal), position(*view_, out), position(*view_, in));
+    led_.push_back(crossings[last]);
+    const auto [out, in] = ends_of(*view_, crossings[last]);
+    cost_ += portal_length(view_->portal(crossings[last].portal), position(*view_, out),
+                           position(*view_, in));
     begin = in;
     first = last + 1;
   }
-  way.swap(led_);
+  crossings.swap(led_);
 }
 
 double OverlaySearch::cost_of(const BlockPoint& from, const BlockPoint& to, const Crossing* first,
@@ -184,8 +185,8 @@ PathEnd OverlaySearch::over_entrances(const BlockPoint& from, const BlockPoint& 
   for (const uint32_t entry : overlay_levels.front().entries_of(start_cell)) {
     const uint32_t out = entry ^ 1;
     if (now_.is_closed(out)) continue;
-    const uint32_t way = graph_.way_of(now_.crossing(out));
-    if (way != kNoNode) reach(out, kNoEntry, costs[way], 0, goal);
+    const uint32_t arc = graph_.arc_of(now_.crossing(out));
+    if (arc != kNoNode) reach(out, kNoEntry, costs[arc], 0, goal);
   }
   // By tier: the goal's district.
   std::array<uint32_t, 32> holds_goal{};
@@ -266,14 +267,14 @@ bool OverlaySearch::refine(const Stretch& stretch) {
 
 PathEnd OverlaySearch::within(uint32_t overlay_cell, const BlockPoint& from, const BlockPoint& to,
                               const SearchBudget& budget, NodeSearch& blocks,
-                              std::vector<Crossing>& way) {
+                              std::vector<Crossing>& crossings) {
   SearchBudget left = budget;
   left.max_nodes = budget.max_nodes > expanded_ ? budget.max_nodes - expanded_ : 0;
   const PathEnd end =
       blocks.find(from, to, left, piece_, {overlay_->of_block().data(), overlay_cell});
   expanded_ += blocks.expanded();
   if (end == PathEnd::kReached) {
-    way.insert(way.end(), piece_.begin(), piece_.end());
+    crossings.insert(crossings.end(), piece_.begin(), piece_.end());
     cost_ += blocks.cost();
   }
   return end;

@@ -26,11 +26,11 @@ class OverlaySearch {
   /// After the view has changed.
   void update() { now_.update(); }
 
-  /// Fills `way` with the crossings from one place to another: of those over gates the cheapest,
-  /// and so seldom much dearer than the best. kUnreachable if none leads there, and then `way` is
-  /// empty. `blocks` searches within districts.
+  /// Fills `crossings` with the crossings from one place to another: of those over gates the
+  /// cheapest, and so seldom much dearer than the best. kUnreachable if none leads there, and then
+  /// `crossings` is empty. `blocks` searches within districts.
   PathEnd find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-               NodeSearch& blocks, std::vector<Crossing>& way);
+               NodeSearch& blocks, std::vector<Crossing>& crossings);
   [[nodiscard]] double cost() const { return cost_; }
   /// Entries and crossings.
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
@@ -64,11 +64,11 @@ class OverlaySearch {
   PathEnd over_entrances(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget);
   bool refine(const Stretch& stretch);
   void straighten(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-                  NodeSearch& blocks, std::vector<Crossing>& way);
+                  NodeSearch& blocks, std::vector<Crossing>& crossings);
   [[nodiscard]] double cost_of(const BlockPoint& from, const BlockPoint& to, const Crossing* first,
                                const Crossing* last) const;
   PathEnd within(uint32_t overlay_cell, const BlockPoint& from, const BlockPoint& to,
-                 const SearchBudget& budget, NodeSearch& blocks, std::vector<Crossing>& way);
+                 const SearchBudget& budget, NodeSearch& blocks, std::vector<Crossing>& crossings);
 
   const NodeView* view_;
   const PieceCost* piece_cost_;

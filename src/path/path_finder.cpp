@@ -52,7 +52,7 @@ struct PathFinder::Shared {
 
 struct PathFinder::Scratch {
   PathSearch search;
-  LabelSearch look_up;
+  LabelSearch label_search;
   ZoneSearch over_zones;
   PortalSearch portals;
   std::vector<uint32_t> corners;
@@ -138,7 +138,8 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, const Sear
   double length = 0;
   SearchResult result = SearchResult::kNone;
   if (shared_->labels) {
-    if (scratch_->look_up.find(mesh, *shared_->labels, start, goal, scratch_->corners, length)) {
+    if (scratch_->label_search.find(mesh, *shared_->labels, start, goal, scratch_->corners,
+                                    length)) {
       result = SearchResult::kFound;
     }
   } else if (shared_->zones) {

@@ -27,7 +27,7 @@ void Sight::begin(const PathMesh& mesh, CellPoint from, uint32_t goal, CellPoint
   entered_.clear();
 }
 
-void Sight::look(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t goal,
+void Sight::cast(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t goal,
                  CellPoint goal_point) {
   begin(mesh, from, goal, goal_point);
   rects_around(mesh, rect, from, around_);
@@ -36,7 +36,7 @@ void Sight::look(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t g
   finish();
 }
 
-void Sight::look_from_corner(const PathMesh& mesh, uint32_t corner, bool with_blocks) {
+void Sight::cast_from_corner(const PathMesh& mesh, uint32_t corner, bool with_blocks) {
   const MeshCorner& at = mesh.corners[corner];
   begin(mesh, {double(at.x), double(at.z)}, kNoRect, {});
   own_ = corner;
@@ -47,7 +47,7 @@ void Sight::look_from_corner(const PathMesh& mesh, uint32_t corner, bool with_bl
   finish();
 }
 
-void Sight::look_into(const PathMesh& mesh, uint32_t corner, uint32_t rect, CellPoint from,
+void Sight::cast_into(const PathMesh& mesh, uint32_t corner, uint32_t rect, CellPoint from,
                       CellPoint right, CellPoint left) {
   begin(mesh, from, kNoRect, {});
   in_triangle_ = true;

@@ -38,14 +38,14 @@ class Sight {
   }
   /// The corners that are seen from a point of a rectangle and that a way may bend at; each once,
   /// by number. If `goal` is a rectangle, also whether `goal_point` in it is seen.
-  void look(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t goal,
+  void cast(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t goal,
             CellPoint goal_point);
   /// The corners that are seen from a corner, along lines that may bend at both.
-  void look_from_corner(const PathMesh& mesh, uint32_t corner, bool with_blocks);
+  void cast_from_corner(const PathMesh& mesh, uint32_t corner, bool with_blocks);
 
   /// The corners that are seen from a point, or from `corner` if that is one, in the triangle of
   /// it, `right` and `left`; of what lies beyond, some.
-  void look_into(const PathMesh& mesh, uint32_t corner, uint32_t rect, CellPoint from,
+  void cast_into(const PathMesh& mesh, uint32_t corner, uint32_t rect, CellPoint from,
                  CellPoint right, CellPoint left);
 
   [[nodiscard]] const std::vector<SeenCorner>& corners() const { return seen_; }

@@ -52,21 +52,21 @@ double distance(const std::array<Vec3d, 3>& triangle, Vec3d p) {
   return std::min({to_segment(p, a, b), to_segment(p, b, c), to_segment(p, c, a)});
 }
 
-// Is it nearer to the line from a to b than `reach`?
+// Is it nearer to the line from a to b than `radius`?
 template <class Shape>
-bool comes_near(const Shape& shape, Vec3d a, Vec3d b, double reach) {
+bool comes_near(const Shape& shape, Vec3d a, Vec3d b, double radius) {
   double low = 0, high = 1;
   const double all = length(b - a);
   const auto far = [&](double at) { return distance(shape, a + (b - a) * at); };
   for (int k = 0; k < kThirds; ++k) {
     const double one = (2 * low + high) / 3, two = (low + 2 * high) / 3;
     const double at_one = far(one), at_two = far(two);
-    if (std::min(at_one, at_two) < reach) return true;
+    if (std::min(at_one, at_two) < radius) return true;
     // Nothing between is nearer by more than it is away.
-    if (std::min(at_one, at_two) - (high - low) * all >= reach) return false;
+    if (std::min(at_one, at_two) - (high - low) * all >= radius) return false;
     (at_one < at_two ? high : low) = at_one < at_two ? two : one;
   }
-  return far((low + high) / 2) - (high - low) * all < reach;
+  return far((low + high) / 2) - (high - low) * all < radius;
 }
 
 template <class Corners>
@@ -94,9 +94,9 @@ std::pair<double, double> along(const Prism& prism, Vec3d from, Vec3d axis) {
 template <class Shape>
 bool meets(const BodyRoom& room, const Shape& shape) {
   if (room.turns_far) {
-    const double reach =
+    const double radius =
         std::sqrt(room.top * room.top + room.radius * room.radius) + room.spread + room.margin;
-    return distance(shape, room.feet) < reach;
+    return distance(shape, room.feet) < radius;
   }
   const auto [low, high] = along(shape, room.feet, room.axis);
   const double out = room.spread + room.radius * room.sine + room.margin;

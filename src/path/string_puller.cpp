@@ -70,11 +70,11 @@ bool see_each_other(const PathMesh& mesh, const Waypoint& a, const Waypoint& b) 
 
 // Most points at which the way need not bend will be pulled from, between the points beside them:
 // what lies there is asked for before any of it is waited for.
-void StringPuller::ask_for_bends(const PathMesh& mesh, const std::vector<Waypoint>& way) {
+void StringPuller::prefetch_waypoints(const PathMesh& mesh, const std::vector<Waypoint>& path) {
   asked_.clear();
-  for (size_t i = 1; i + 1 < way.size(); ++i) {
-    if (way[i].corner != kNoCorner) continue;
-    for (const Waypoint& beside : {way[i - 1], way[i + 1]}) {
+  for (size_t i = 1; i + 1 < path.size(); ++i) {
+    if (path[i].corner != kNoCorner) continue;
+    for (const Waypoint& beside : {path[i - 1], path[i + 1]}) {
       if (beside.corner == kNoCorner) continue;
       asked_.push_back(beside.corner);
       prefetch(mesh.corner_rects.data() + mesh.corners[beside.corner].first_rect);
@@ -104,7 +104,7 @@ void StringPuller::wrap(const PathMesh& mesh, const Waypoint& from, const Waypoi
   constexpr size_t kMax = 1000;  // corners: rounding must not wrap for ever
   while (chain_.size() < kMax) {
     const CellPoint right = side > 0 ? over.at : to.at, left = side > 0 ? to.at : over.at;
-    sight_.look_into(mesh, at.corner, at.rect, at.at, right, left);
+    sight_.cast_into(mesh, at.corner, at.rect, at.at, right, left);
     // The first one that a line from `at` meets as it swings from `over` to `to`.
     const SeenCorner* first = nullptr;
     for (const SeenCorner& seen : sight_.corners()) {
@@ -133,14 +133,14 @@ void StringPuller::wrap(const PathMesh& mesh, const Waypoint& from, const Waypoi
   }
 }
 
-bool StringPuller::pull(const PathMesh& mesh, const std::vector<Waypoint>& way,
+bool StringPuller::pull(const PathMesh& mesh, const std::vector<Waypoint>& path,
                         std::vector<uint32_t>& corners, double& length) {
-  ask_for_bends(mesh, way);
+  prefetch_waypoints(mesh, path);
   corners.clear();
-  taut_.assign(1, way.front());
-  ahead_.assign(way.rbegin(), way.rend() - 1);
+  taut_.assign(1, path.front());
+  ahead_.assign(path.rbegin(), path.rend() - 1);
   // Each turn makes the way shorter; the count stops what rounding might keep going.
-  size_t turns = 1000 + 100 * way.size();
+  size_t turns = 1000 + 100 * path.size();
   while (!ahead_.empty()) {
     if (turns-- == 0) return false;
     const Waypoint next = ahead_.back();

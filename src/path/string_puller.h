@@ -30,11 +30,11 @@ class StringPuller {
  public:
   /// Of a way whose points see each other one after the other, the corners that it bends at once it
   /// is taut, ends left out; `length` in cells. False if it does not come to an end.
-  bool pull(const PathMesh& mesh, const std::vector<Waypoint>& way, std::vector<uint32_t>& corners,
+  bool pull(const PathMesh& mesh, const std::vector<Waypoint>& path, std::vector<uint32_t>& corners,
             double& length);
 
  private:
-  void ask_for_bends(const PathMesh& mesh, const std::vector<Waypoint>& way);
+  void prefetch_waypoints(const PathMesh& mesh, const std::vector<Waypoint>& path);
   void wrap(const PathMesh& mesh, const Waypoint& from, const Waypoint& over, const Waypoint& to);
 
   Sight sight_;

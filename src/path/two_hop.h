@@ -41,11 +41,11 @@ struct TwoHopLabels {
   // where a run ends, a word that says at which place the way goes on, and after the hub, kEnd.
   static constexpr uint32_t kGoesOn = uint32_t{1} << 31;  // with a place
   static constexpr uint32_t kEnd = UINT32_MAX;
-  std::vector<uint32_t> first;   // per node, one more at the end
-  std::vector<Label> labels;     // of a node, by rising hub
-  std::vector<uint32_t> trail;   // per label: the place of its node in `trails`
-  std::vector<uint32_t> trails;  // of all hubs
-  std::vector<uint32_t> hubs;    // by rank: the node
+  std::vector<uint32_t> first;       // per node, one more at the end
+  std::vector<Label> labels;         // of a node, by rising hub
+  std::vector<uint32_t> tree_place;  // per label: the place of its node in `trees`
+  std::vector<uint32_t> trees;       // of all hubs
+  std::vector<uint32_t> hubs;        // by rank: the node
 
   [[nodiscard]] std::span<const Label> of(uint32_t node) const {
     return {labels.data() + first[node], labels.data() + first[node + 1]};
@@ -60,12 +60,12 @@ struct TwoHopLabels {
       for (size_t i = 0; i < kLines; ++i) prefetch(list + i * kLine);
     }
   }
-  /// Where in `trails` the way from a node to a hub that it has begins.
+  /// Where in `trees` the way from a node to a hub that it has begins.
   [[nodiscard]] uint32_t place_of(uint32_t node, uint32_t hub) const;
   /// Adds the nodes of the way from one place to another of the same hub's, over the hub.
   void walk(uint32_t from, uint32_t to, std::vector<uint32_t>& nodes) const;
   [[nodiscard]] uint64_t bytes() const {
-    return (first.size() + trail.size() + trails.size() + hubs.size()) * sizeof(uint32_t) +
+    return (first.size() + tree_place.size() + trees.size() + hubs.size()) * sizeof(uint32_t) +
            labels.size() * sizeof(Label);
   }
 };

@@ -65,15 +65,15 @@ PathGraph entrance_graph(const ZoneGraph& graph, const OverlayCell& zone_cell,
                          const std::vector<uint32_t>& zones) {
   Edges edges(zone_cell.entrances.size());
   for (const uint32_t zone : zones) {
-    const ZonePaths& ways = graph.zones[zone];
-    const size_t corners = ways.corners.size();
+    const ZonePaths& paths = graph.zones[zone];
+    const size_t corners = paths.corners.size();
     add_edges(
-        ways.entrances.size(),
+        paths.entrances.size(),
         [&](size_t a, size_t b) {
-          return std::min(ways.length[ways.row(corners + a) + b],
-                          ways.length[ways.row(corners + b) + a]);
+          return std::min(paths.length[paths.row(corners + a) + b],
+                          paths.length[paths.row(corners + b) + a]);
         },
-        [&](size_t entrance) { return zone_cell.place_of_entrance(ways.entrances[entrance]); },
+        [&](size_t entrance) { return zone_cell.place_of_entrance(paths.entrances[entrance]); },
         edges);
   }
   return to_graph(edges);
@@ -169,7 +169,7 @@ uint32_t OverlayCell::place_of_entrance(uint32_t entrance) const {
 uint64_t ZoneGraph::bytes() const {
   uint64_t bytes = entrances.size() * sizeof(Entrance) + boundary_labels.bytes() +
                    (cell_of_zone.size() + 2 * boundary_cells.size()) * sizeof(uint32_t);
-  for (const ZonePaths& ways : zones) bytes += sizeof(ZonePaths) + ways.bytes();
+  for (const ZonePaths& paths : zones) bytes += sizeof(ZonePaths) + paths.bytes();
   for (const OverlayCell& t : zone_cells) {
     bytes += t.labels.bytes() +
              (t.entrances.size() + t.boundary_nodes.size() + t.boundary_entrances.size()) *
@@ -234,9 +234,9 @@ Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh,
     std::sort(zone_cell.entrances.begin(), zone_cell.entrances.end());
     zone_cell.entrances.erase(std::unique(zone_cell.entrances.begin(), zone_cell.entrances.end()),
                               zone_cell.entrances.end());
-    const PathGraph ways = entrance_graph(graph, zone_cell, zones[t]);
-    components[t] = components_of(ways);
-    auto labels = label_graph(ways, kSamples, 1, context);
+    const PathGraph paths = entrance_graph(graph, zone_cell, zones[t]);
+    components[t] = components_of(paths);
+    auto labels = label_graph(paths, kSamples, 1, context);
     if (labels) {
       zone_cell.labels = std::move(*labels);
     } else {

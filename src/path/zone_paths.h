@@ -52,14 +52,14 @@ std::vector<uint32_t> zones_of_rects(const WorldData& world, const PathMesh& mes
 std::vector<Entrance> find_entrances(const WorldData& world, const PathMesh& mesh,
                                      const std::vector<uint32_t>& zone_of_rect);
 
-/// `ways` has its rectangles and gates; finds the rest. `sight` is scratch. False if the zone has
-/// too many corners for `next`: then only `ways.corners` is filled.
+/// `paths` has its rectangles and gates; finds the rest. `sight` is scratch. False if the zone has
+/// too many corners for `next`: then only `paths.corners` is filled.
 [[nodiscard]] bool find_zone_paths(const PathMesh& mesh, const std::vector<Entrance>& entrances,
-                                   uint32_t zone, Sight& sight, ZonePaths& ways);
+                                   uint32_t zone, Sight& sight, ZonePaths& paths);
 
 /// From a point of a zone to each of its gates, as a row of the tables.
 void find_entrances_around(const PathMesh& mesh, const std::vector<Entrance>& entrances,
-                           uint32_t zone, const ZonePaths& ways, const Stop& from, Sight& sight,
+                           uint32_t zone, const ZonePaths& paths, const Stop& from, Sight& sight,
                            std::vector<float>& length, std::vector<uint16_t>& next);
 
 }  // namespace throng

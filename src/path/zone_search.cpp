@@ -28,17 +28,17 @@ bool touch(const WorldData& world, uint32_t a, uint32_t b) {
 
 // The corners of the way to a gate of the zone, the first of which is at `next`. Where they are is
 // asked for, not waited for: place_corners() tells it.
-void add_corners(const PathMesh& mesh, const ZonePaths& ways, uint16_t next, size_t entrance,
-                 std::vector<Waypoint>& way) {
+void add_corners(const PathMesh& mesh, const ZonePaths& paths, uint16_t next, size_t entrance,
+                 std::vector<Waypoint>& path) {
   while (next != kStraight) {
-    way.push_back({{}, kNoRect, ways.corners[next]});
-    prefetch(&mesh.corners[way.back().corner]);
-    next = ways.next[ways.row(next) + entrance];
+    path.push_back({{}, kNoRect, paths.corners[next]});
+    prefetch(&mesh.corners[path.back().corner]);
+    next = paths.next[paths.row(next) + entrance];
   }
 }
 
-void place_corners(const PathMesh& mesh, std::vector<Waypoint>& way) {
-  for (Waypoint& point : way) {
+void place_corners(const PathMesh& mesh, std::vector<Waypoint>& path) {
+  for (Waypoint& point : path) {
     if (point.corner != kNoCorner) point = waypoint(mesh, point.corner);
   }
 }
@@ -54,16 +54,16 @@ void ZoneSearch::Reached::add(std::span<const TwoHopLabels::Label> labels, uint3
 }
 
 // From an end to the gates of its zone, and on to the hubs of its territory.
-void ZoneSearch::look_out(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
-                          const Stop& stop, End& end) {
+void ZoneSearch::find_hubs(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
+                           const Stop& stop, End& end) {
   end.zone = zone_of(world, mesh, stop.rect);
   end.zone_cell = graph.cell_of_zone[end.zone];
-  const ZonePaths& ways = graph.zones[end.zone];
-  find_entrances_around(mesh, graph.entrances, end.zone, ways, stop, sight_, end.length, end.next);
+  const ZonePaths& paths = graph.zones[end.zone];
+  find_entrances_around(mesh, graph.entrances, end.zone, paths, stop, sight_, end.length, end.next);
   const OverlayCell& zone_cell = graph.zone_cells[end.zone_cell];
   end.hubs.begin(zone_cell.entrances.size());
   asked_.clear();
-  for (const uint32_t entrance : ways.entrances)
+  for (const uint32_t entrance : paths.entrances)
     asked_.push_back(zone_cell.place_of_entrance(entrance));
   zone_cell.labels.ask_for(asked_);
   for (uint32_t g = 0; g < asked_.size(); ++g) {
@@ -235,7 +235,7 @@ void ZoneSearch::list_entrances(const ZoneGraph& graph, const Best& best) {
 }
 
 // Finds where the tables of zones tell of the ways from gate to gate.
-void ZoneSearch::look_up_segments(const ZoneGraph& graph) {
+void ZoneSearch::find_segments(const ZoneGraph& graph) {
   for (const uint32_t entrance : entrances_) prefetch(&graph.entrances[entrance]);
   segments_.clear();
   for (uint32_t i = 1; i < entrances_.size(); ++i) {
@@ -243,37 +243,37 @@ void ZoneSearch::look_up_segments(const ZoneGraph& graph) {
     for (const uint32_t zone : from.zone) {
       if (zone != to.zone[0] && zone != to.zone[1]) continue;
       segments_.push_back({i, &graph.zones[zone], 0, 0});
-      prefetch(&segments_.back().ways->entrances);
-      prefetch(&segments_.back().ways->next);
+      prefetch(&segments_.back().paths->entrances);
+      prefetch(&segments_.back().paths->next);
     }
   }
   for (const Segment& segment : segments_)
-    prefetch(segment.ways->entrances.data() + segment.ways->entrances.size() / 2);
+    prefetch(segment.paths->entrances.data() + segment.paths->entrances.size() / 2);
   for (Segment& segment : segments_) {
-    const ZonePaths& ways = *segment.ways;
-    segment.goal = ways.place_of_entrance(entrances_[segment.to]);
+    const ZonePaths& paths = *segment.paths;
+    segment.goal = paths.place_of_entrance(entrances_[segment.to]);
     segment.at =
-        ways.row(ways.corners.size() + ways.place_of_entrance(entrances_[segment.to - 1])) +
+        paths.row(paths.corners.size() + paths.place_of_entrance(entrances_[segment.to - 1])) +
         segment.goal;
-    prefetch(&ways.length[segment.at]);
-    prefetch(&ways.next[segment.at]);
+    prefetch(&paths.length[segment.at]);
+    prefetch(&paths.next[segment.at]);
   }
 }
 
 // From gate to gate: the first one is there already.
 void ZoneSearch::add_segments(const PathMesh& mesh, const ZoneGraph& graph) {
-  look_up_segments(graph);
+  find_segments(graph);
   auto segment = segments_.begin();
   for (uint32_t i = 1; i < entrances_.size(); ++i) {
     const Segment* best = nullptr;
     for (; segment != segments_.end() && segment->to == i; ++segment) {
-      const float length = segment->ways->length[segment->at];
-      if (length < (best == nullptr ? kNever : best->ways->length[best->at])) best = &*segment;
+      const float length = segment->paths->length[segment->at];
+      if (length < (best == nullptr ? kNever : best->paths->length[best->at])) best = &*segment;
     }
     if (best != nullptr)
-      add_corners(mesh, *best->ways, best->ways->next[best->at], best->goal, way_);
+      add_corners(mesh, *best->paths, best->paths->next[best->at], best->goal, path_);
     const Entrance& entrance = graph.entrances[entrances_[i]];
-    way_.push_back({entrance.at, entrance.rect[0]});
+    path_.push_back({entrance.at, entrance.rect[0]});
   }
 }
 
@@ -285,17 +285,17 @@ bool ZoneSearch::lead(const PathMesh& mesh, const ZoneGraph& graph, const Stop& 
   const ZonePaths &start = graph.zones[start_.zone], &goal = graph.zones[goal_.zone];
   const size_t first = start.place_of_entrance(entrances_.front());
   const size_t last = goal.place_of_entrance(entrances_.back());
-  way_.assign(1, {in_cells(from.at), from.rect});
-  add_corners(mesh, start, start_.next[first], first, way_);
-  way_.push_back(
+  path_.assign(1, {in_cells(from.at), from.rect});
+  add_corners(mesh, start, start_.next[first], first, path_);
+  path_.push_back(
       {graph.entrances[entrances_.front()].at, graph.entrances[entrances_.front()].rect[0]});
   add_segments(mesh, graph);
   tail_.clear();
   add_corners(mesh, goal, goal_.next[last], last, tail_);
-  way_.insert(way_.end(), tail_.rbegin(), tail_.rend());
-  way_.push_back({in_cells(to.at), to.rect});
-  place_corners(mesh, way_);
-  return pull_.pull(mesh, way_, corners, length);
+  path_.insert(path_.end(), tail_.rbegin(), tail_.rend());
+  path_.push_back({in_cells(to.at), to.rect});
+  place_corners(mesh, path_);
+  return pull_.pull(mesh, path_, corners, length);
 }
 
 SearchResult ZoneSearch::find(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
@@ -307,8 +307,8 @@ SearchResult ZoneSearch::find(const WorldData& world, const PathMesh& mesh, cons
     length = distance(in_cells(from.at), in_cells(to.at));
     return SearchResult::kFound;
   }
-  look_out(world, mesh, graph, from, start_);
-  look_out(world, mesh, graph, to, goal_);
+  find_hubs(world, mesh, graph, from, start_);
+  find_hubs(world, mesh, graph, to, goal_);
   Best best;
   const bool led =
       join(graph, from, to, best) && lead(mesh, graph, from, to, best, corners, length);

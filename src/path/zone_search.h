@@ -72,12 +72,12 @@ class ZoneSearch {
   // From a gate of the way to the next, in a zone that both are on the border of.
   struct Segment {
     uint32_t to;  // place of that gate in `entrances_`
-    const ZonePaths* ways;
+    const ZonePaths* paths;
     size_t goal, at;  // its place in them, and that of the way
   };
 
-  void look_out(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
-                const Stop& stop, End& end);
+  void find_hubs(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
+                 const Stop& stop, End& end);
   bool join(const ZoneGraph& graph, const Stop& from, const Stop& to, Best& best);
   void join_boundary_nodes(const ZoneGraph& graph, const Stop& from, const Stop& to, Best& best);
   void reach_boundary_node(const ZoneGraph& graph, End& end, size_t place);
@@ -85,7 +85,7 @@ class ZoneSearch {
             const Best& best, std::vector<uint32_t>& corners, double& length);
   void list_entrances(const ZoneGraph& graph, const Best& best);
   void add_entrances(const OverlayCell& zone_cell, uint32_t from, uint32_t hub, uint32_t to);
-  void look_up_segments(const ZoneGraph& graph);
+  void find_segments(const ZoneGraph& graph);
   void add_segments(const PathMesh& mesh, const ZoneGraph& graph);
 
   PathSearch search_;
@@ -99,7 +99,7 @@ class ZoneSearch {
   std::vector<Segment> segments_;
   std::vector<uint32_t> walked_;  // scratch of a walk over labels
   std::vector<uint32_t> boundary_nodes_;
-  std::vector<Waypoint> way_, tail_;
+  std::vector<Waypoint> path_, tail_;
   std::vector<uint32_t> near_corners_;
   uint64_t expanded_ = 0;
 };

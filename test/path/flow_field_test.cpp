@@ -43,7 +43,7 @@ TEST(FlowField, IsAsFarAsTheNearestGoalByTheExactSearch) {
     std::vector<Place> goals;
     for (uint64_t n = 0; n < 3; ++n) goals.push_back(world.random_place(0, 77, n));
     FlowField flow = field(live(world), goals);
-    Path best, way;
+    Path best, path;
     for (uint64_t n = 0; n < 150; ++n) {
       const Place from = world.random_place(0, 78, n);
       double nearest = std::numeric_limits<double>::infinity();
@@ -52,24 +52,24 @@ TEST(FlowField, IsAsFarAsTheNearestGoalByTheExactSearch) {
         if (best.end == PathEnd::kReached) nearest = std::min(nearest, best.length);
       }
       const double distance = flow.distance(from);
-      flow.way(from, way);
+      flow.path(from, path);
       ASSERT_EQ(std::isfinite(distance), std::isfinite(nearest));
       if (!std::isfinite(nearest)) {
-        EXPECT_EQ(way.end, PathEnd::kUnreachable);
+        EXPECT_EQ(path.end, PathEnd::kUnreachable);
         EXPECT_FALSE(flow.next(from));
         ++unreached;
         continue;
       }
-      ASSERT_EQ(way.end, PathEnd::kReached);
+      ASSERT_EQ(path.end, PathEnd::kReached);
       EXPECT_GE(distance, nearest - 0.01);
       EXPECT_LE(distance, nearest * 1.1 + 3 * world.summary().cell);
-      EXPECT_LE(way.length, distance + 1e-6);
+      EXPECT_LE(path.length, distance + 1e-6);
       sum += distance / std::max(nearest, world.summary().cell);
-      drawn += way.length / std::max(nearest, world.summary().cell);
+      drawn += path.length / std::max(nearest, world.summary().cell);
       ++reached;
-      for (size_t i = 1; i < way.points.size(); ++i) {
-        const Vec3d step = way.points[i].position - way.points[i - 1].position;
-        ASSERT_EQ(world.move(0, way.points[i - 1], step.x, step.z).end, MoveEnd::kArrived);
+      for (size_t i = 1; i < path.points.size(); ++i) {
+        const Vec3d step = path.points[i].position - path.points[i - 1].position;
+        ASSERT_EQ(world.move(0, path.points[i - 1], step.x, step.z).end, MoveEnd::kArrived);
       }
     }
   }
@@ -133,9 +133,9 @@ TEST(FlowField, StopsWhereAsked) {
   EXPECT_NEAR(far.distance(beside), 6, 0.1);
   EXPECT_FALSE(std::isfinite(near.distance(beside)));
   EXPECT_FALSE(near.next(beside));
-  Path way;
-  near.way(beside, way);
-  EXPECT_EQ(way.end, PathEnd::kUnreachable);
+  Path path;
+  near.path(beside, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
 }
 
 TEST(FlowField, RefusesNonsense) {

@@ -203,7 +203,7 @@ TEST(NodeObstacles, LongWaysArePutTogetherOfWhatIsLeft) {
       ASSERT_FALSE(overlay.empty());
       OverlaySearch search(view, piece, overlay);
       NodeSearch plain(view, piece), blocks(view, piece);
-      std::vector<Crossing> best, way;
+      std::vector<Crossing> best, crossings;
       for (uint64_t round = 0; round < 3; ++round) {
         for (const Prism& prism : random_prisms(world.nodes, 100 + round, 25))
           changes.add({prism, {}});
@@ -214,7 +214,7 @@ TEST(NodeObstacles, LongWaysArePutTogetherOfWhatIsLeft) {
           const BlockPoint to = point_of(view, world.nodes.random_place(c, 9, 2 * n + 1));
           if (from.block == kNoNode || to.block == kNoNode) continue;
           const PathEnd end = plain.find(from, to, {}, best);
-          const PathEnd over_entrances = search.find(from, to, {}, blocks, way);
+          const PathEnd over_entrances = search.find(from, to, {}, blocks, crossings);
           if (end != PathEnd::kReached) {
             EXPECT_EQ(over_entrances, end);
             continue;
@@ -226,7 +226,7 @@ TEST(NodeObstacles, LongWaysArePutTogetherOfWhatIsLeft) {
           EXPECT_GE(search.cost(), plain.cost() * (1 - 1e-9));
           sum += search.cost() / plain.cost();
           BlockPoint at = from;
-          for (const Crossing& crossing : way) {
+          for (const Crossing& crossing : crossings) {
             const auto [out, in] = ends_of(view, crossing);
             ASSERT_EQ(out.block, at.block);
             at = in;
@@ -309,7 +309,7 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
 // What is well clear of everything stays open: of random places whose bodies' balls no prism comes
 // near none is taken.
 TEST(NodeObstacles, TakeNoMoreThanTheyMust) {
-  uint64_t open = 0, taken = 0, taken_near = 0;
+  uint64_t open = 0, taken = 0, blocked_near = 0;
   for_each_world([&](const TestWorld& world) {
     Context context;
     for (int32_t c = 0; c < 4; ++c) {
@@ -324,7 +324,7 @@ TEST(NodeObstacles, TakeNoMoreThanTheyMust) {
       const AvatarClass avatar = classes()[static_cast<size_t>(c)];
       for (uint64_t n = 0; n < 4000; ++n) {
         const NodePlace place = world.nodes.random_place(c, 21, n);
-        const bool is_taken = point_of(view, place).block == kNoNode;
+        const bool is_blocked = point_of(view, place).block == kNoNode;
         // Along its axis, grown by a cell of half a metre.
         bool is_near = false;
         for (const Prism& prism : prisms) {
@@ -336,15 +336,15 @@ TEST(NodeObstacles, TakeNoMoreThanTheyMust) {
           body.radius = avatar.radius;
           is_near = is_near || may_touch(body, {prism, {}});
         }
-        taken += is_taken ? 1 : 0;
-        taken_near += is_taken && is_near ? 1 : 0;
-        open += is_taken ? 0 : 1;
+        taken += is_blocked ? 1 : 0;
+        blocked_near += is_blocked && is_near ? 1 : 0;
+        open += is_blocked ? 0 : 1;
       }
     }
   });
   EXPECT_GT(open, 30000u);
   EXPECT_GT(taken, 1000u);
-  EXPECT_EQ(taken_near, taken);
+  EXPECT_EQ(blocked_near, taken);
 }
 
 // A shell of triangles takes what its faces touch: no more than the whole prism does, and all along

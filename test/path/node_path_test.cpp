@@ -85,10 +85,10 @@ TEST(NodePath, NoPointOnASurfaceRepeatsTheOneBefore) {
     const Nodes nodes = make(builtin({.name = name, .size = size}), 0.25, 1);
     size_t points = 0;
     for (int32_t c = 0; c < 4; ++c) {
-      NodePathFinder ways = finder(nodes, c);
+      NodePathFinder paths = finder(nodes, c);
       NodePath path;
       for (uint64_t n = 0; n < 60; ++n) {
-        ways.find(nodes.random_place(c, 9, 2 * n), nodes.random_place(c, 9, 2 * n + 1), path);
+        paths.find(nodes.random_place(c, 9, 2 * n), nodes.random_place(c, 9, 2 * n + 1), path);
         for (size_t i = 1; i < path.points.size() && path.length > 0; ++i) {
           const NodePathPoint &last = path.points[i - 1], &here = path.points[i];
           EXPECT_FALSE(here.on_surface && here.place.feet == last.place.feet)

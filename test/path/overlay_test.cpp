@@ -54,7 +54,7 @@ BlockPoint random_point(const NodeMesh& mesh, uint64_t n) {
 
 // What a way costs from middle to middle; it must hang together.
 double cost_along(const NodeView& mesh, const PieceCost& piece, const BlockPoint& from,
-                  const std::vector<Crossing>& way, const BlockPoint& to) {
+                  const std::vector<Crossing>& crossings, const BlockPoint& to) {
   double cost = 0;
   BlockPoint at = from;
   const auto go = [&](const BlockPoint& next) {
@@ -62,7 +62,7 @@ double cost_along(const NodeView& mesh, const PieceCost& piece, const BlockPoint
     cost +=
         piece(at.block, at.s, at.t, position(mesh, at), next.s, next.t, position(mesh, next)).cost;
   };
-  for (const Crossing& crossing : way) {
+  for (const Crossing& crossing : crossings) {
     const NodePortal portal = mesh.portal(crossing.portal);
     EXPECT_FALSE(crossing.backward && portal.one_way);
     const auto [out, in] = ends_of(mesh, crossing);
@@ -91,21 +91,21 @@ TEST(Districts, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
       for (uint64_t n = 0; n < 40; ++n) {
         const BlockPoint from = random_point(mesh, 2 * n), to = random_point(mesh, 2 * n + 1);
         ASSERT_TRUE(from.block != kNoNode && to.block != kNoNode);
-        std::vector<Crossing> best, way;
+        std::vector<Crossing> best, crossings;
         const PathEnd end = plain.find(from, to, {}, best);
-        ASSERT_EQ(search.find(from, to, {}, blocks, way), end);
+        ASSERT_EQ(search.find(from, to, {}, blocks, crossings), end);
         if (end != PathEnd::kReached) {
           ++unreachable;
-          EXPECT_TRUE(way.empty());
+          EXPECT_TRUE(crossings.empty());
           continue;
         }
         ++reached;
         looked_at += search.looked_at();
         plainly += plain.looked_at();
-        const double cost = cost_along(view, piece, from, way, to);
+        const double cost = cost_along(view, piece, from, crossings, to);
         EXPECT_NEAR(search.cost(), cost, 1e-9 * cost);
         EXPECT_GE(cost, plain.cost() * (1 - 1e-9));
-        for (const Crossing& crossing : way) {
+        for (const Crossing& crossing : crossings) {
           drops += mesh.portals()[crossing.portal].kind == LinkKind::kDrop;
           leaps += mesh.portals()[crossing.portal].leaps;
         }
@@ -115,7 +115,7 @@ TEST(Districts, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
         ++count;
         // A budget is kept: it gives up, or needs no more.
         const SearchBudget little{search.looked_at() / 2};
-        const PathEnd cut = search.find(from, to, little, blocks, way);
+        const PathEnd cut = search.find(from, to, little, blocks, crossings);
         if (cut == PathEnd::kReached) {
           EXPECT_LE(search.looked_at(), 2 * little.max_nodes + 1);
         }
@@ -143,7 +143,7 @@ TEST(Districts, TellWhatItCostsToGoThrough) {
     const Districts overlay(mesh, piece, 1, 48);
     NodeSearch search(view, piece);
     std::vector<uint32_t> of_block = overlay.of_block();
-    std::vector<Crossing> way;
+    std::vector<Crossing> crossings;
     double sum = 0;
     int count = 0;
     for (const Districts::Tier& overlay_level : overlay.overlay_levels()) {
@@ -162,7 +162,7 @@ TEST(Districts, TellWhatItCostsToGoThrough) {
                                 (out.backward && portal.one_way);
             const auto ends = ends_of(view, out);
             const PathEnd end =
-                search.find(ends_of(view, crossing).in, ends.out, {}, way, {of_block.data(), d});
+                search.find(ends_of(view, crossing).in, ends.out, {}, crossings, {of_block.data(), d});
             if (closed || end != PathEnd::kReached) {
               EXPECT_TRUE(std::isinf(costs[j]));
               ++none;
@@ -212,10 +212,10 @@ TEST(NodeParts, TellWhoIsReachedAndWhatComesNearest) {
     const NodeParts parts(mesh, 2);
     NodeParts::Reached marks;
     NodeSearch plain(view, piece);
-    std::vector<Crossing> way;
+    std::vector<Crossing> crossings;
     for (uint64_t n = 0; n < 60; ++n) {
       const BlockPoint from = random_point(mesh, 3 * n), to = random_point(mesh, 3 * n + 1);
-      const PathEnd end = plain.find(from, to, {}, way);
+      const PathEnd end = plain.find(from, to, {}, crossings);
       parts.reach(from.block, marks);
       EXPECT_EQ(marks.holds(parts.of_block(to.block)), end == PathEnd::kReached);
       if (end == PathEnd::kReached) {
@@ -224,11 +224,11 @@ TEST(NodeParts, TellWhoIsReachedAndWhatComesNearest) {
       }
       ++unreachable;
       const Vec3d goal = position(view, to);
-      const BlockPoint searched = way.empty() ? from : ends_of(view, way.back()).in;
-      const BlockPoint told =
+      const BlockPoint searched = crossings.empty() ? from : ends_of(view, crossings.back()).in;
+      const BlockPoint reported =
           parts.nearest(view, from, goal, marks, [](uint32_t) { return false; });
-      EXPECT_EQ(length(position(view, told) - goal), length(position(view, searched) - goal));
-      EXPECT_EQ(plain.find(from, told, {}, way), PathEnd::kReached);
+      EXPECT_EQ(length(position(view, reported) - goal), length(position(view, searched) - goal));
+      EXPECT_EQ(plain.find(from, reported, {}, crossings), PathEnd::kReached);
     }
   });
   EXPECT_GT(reached, 400u);

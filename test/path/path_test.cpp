@@ -297,8 +297,8 @@ TEST(Path, LeadsAroundTheEndsOfRisesThatAreTooHigh) {
         if (!from || !to) break;
         const bool can = graph->component_at(c, from) == graph->component_at(c, to);
         ++(can ? together : apart);
-        for (PathFinder* way : {&paths, &looked_up, &*over_zones}) {
-          way->find(from, to, path);
+        for (PathFinder* finder : {&paths, &looked_up, &*over_zones}) {
+          finder->find(from, to, path);
           ASSERT_EQ(path.end, can ? PathEnd::kReached : PathEnd::kUnreachable);
           if (can) expect_walkable(world, c, from, to, path);
         }

@@ -18,7 +18,7 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 struct RandomGraph {
-  PathGraph ways;
+  PathGraph paths;
   std::vector<double> edge;      // count x count; infinite: none
   std::vector<double> shortest;  // count x count
 
@@ -35,14 +35,14 @@ struct RandomGraph {
       there = std::min(there, length);
       edge[size_t{b} * count + a] = there;
     }
-    ways.first.assign(1, 0);
+    paths.first.assign(1, 0);
     shortest = edge;
     for (uint32_t a = 0; a < count; ++a) {
       for (uint32_t b = 0; b < count; ++b) {
         if (edge[size_t{a} * count + b] < kNever)
-          ways.edges.push_back({b, edge[size_t{a} * count + b]});
+          paths.edges.push_back({b, edge[size_t{a} * count + b]});
       }
-      ways.first.push_back(static_cast<uint32_t>(ways.edges.size()));
+      paths.first.push_back(static_cast<uint32_t>(paths.edges.size()));
       shortest[size_t{a} * count + a] = 0;
     }
     for (size_t k = 0; k < count; ++k) {
@@ -58,7 +58,7 @@ struct RandomGraph {
   // Of a way by its edges; infinite if one is missing.
   [[nodiscard]] double length(const std::vector<uint32_t>& nodes) const {
     double sum = 0;
-    for (size_t i = 1; i < nodes.size(); ++i) sum += edge[nodes[i - 1] * ways.count() + nodes[i]];
+    for (size_t i = 1; i < nodes.size(); ++i) sum += edge[nodes[i - 1] * paths.count() + nodes[i]];
     return sum;
   }
 };
@@ -71,7 +71,7 @@ TEST(TwoHop, LooksUpTheShortestWaysAndTheirNodes) {
     const auto edges = static_cast<uint32_t>(random_below(seed, 0, 4, 3 * count));
     const RandomGraph graph(seed, count, edges, seed % 2 == 0);
     Context context;
-    const auto labels = label_graph(graph.ways, 16, 1 + static_cast<int32_t>(seed % 3), context);
+    const auto labels = label_graph(graph.paths, 16, 1 + static_cast<int32_t>(seed % 3), context);
     ASSERT_TRUE(labels);
     for (uint32_t a = 0; a < count; ++a) {
       for (uint32_t b = 0; b < count; ++b) {
@@ -105,7 +105,7 @@ TEST(TwoHop, LooksUpTheShortestWaysAndTheirNodes) {
       }
     }
     // Every node of a hub's tree lies in the trails once.
-    const auto nodes = std::count_if(labels->trails.begin(), labels->trails.end(),
+    const auto nodes = std::count_if(labels->trees.begin(), labels->trees.end(),
                                      [](uint32_t word) { return word < TwoHopLabels::kGoesOn; });
     EXPECT_EQ(static_cast<size_t>(nodes), labels->labels.size());
   }
@@ -121,7 +121,7 @@ TEST(TwoHop, AGraphWithoutNodesHasNoLabels) {
   const auto labels = label_graph(none, 16, 2, context);
   ASSERT_TRUE(labels);
   EXPECT_TRUE(labels->labels.empty());
-  EXPECT_TRUE(labels->trails.empty());
+  EXPECT_TRUE(labels->trees.empty());
 }
 
 }  // namespace

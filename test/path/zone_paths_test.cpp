@@ -31,11 +31,11 @@ TEST(ZonePaths, AZoneOfMoreCornersThanTheyCanNameIsRefused) {
   Sight sight;
   const auto fits = [&](int32_t pillars, size_t corners) {
     const PathMesh mesh = among_pillars(pillars);
-    ZonePaths ways;
-    ways.last_rect = static_cast<uint32_t>(mesh.rects.size() - 1);
-    ways.entrances = {0};
-    const bool found = find_zone_paths(mesh, entrances, 0, sight, ways);
-    EXPECT_EQ(ways.corners.size(), corners);
+    ZonePaths paths;
+    paths.last_rect = static_cast<uint32_t>(mesh.rects.size() - 1);
+    paths.entrances = {0};
+    const bool found = find_zone_paths(mesh, entrances, 0, sight, paths);
+    EXPECT_EQ(paths.corners.size(), corners);
     return found;
   };
   EXPECT_TRUE(fits(8, 4 * 8 * 8));

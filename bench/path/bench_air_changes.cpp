@@ -76,13 +76,13 @@ Json crates(FlightFinder& finder, int64_t trials, int64_t standing, double away,
   return {{"trials", added.size()},
           {"standing", standing},
           {"away_m", away},
-          {"way_before_ms", spread(before)},
+          {"path_before_ms", spread(before)},
           {"add_ms", spread(added)},
-          {"way_after_ms", spread(after)},
+          {"path_after_ms", spread(after)},
           {"until_avoided_ms", spread(both)},
           {"remove_ms", spread(removed)},
-          {"ways_made_longer", longer},
-          {"ways_that_crates_shut", shut}};
+          {"paths_made_longer", longer},
+          {"paths_blocked_by_crates", shut}};
 }
 
 }  // namespace

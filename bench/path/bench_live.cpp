@@ -87,11 +87,15 @@ Json crates(const World& world, int64_t trials, double away) {
     removed.push_back(milliseconds_since(start));
   }
   if (added.empty()) stop("no way was found to put a crate in");
-  return {{"trials", added.size()},          {"away_m", away},
-          {"first_way_ms", spread(first)},   {"add_ms", spread(added)},
-          {"way_after_ms", spread(found)},   {"until_avoided_ms", spread(both)},
-          {"remove_ms", spread(removed)},    {"ways_through_crates", through},
-          {"ways_that_crates_shut", blocked}};
+  return {{"trials", added.size()},
+          {"away_m", away},
+          {"first_path_ms", spread(first)},
+          {"add_ms", spread(added)},
+          {"path_after_ms", spread(found)},
+          {"until_avoided_ms", spread(both)},
+          {"remove_ms", spread(removed)},
+          {"paths_through_crates", through},
+          {"paths_blocked_by_crates", blocked}};
 }
 
 Json fields(const World& world, double most) {

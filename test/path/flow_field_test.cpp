@@ -52,7 +52,7 @@ TEST(FlowField, IsAsFarAsTheNearestGoalByTheExactSearch) {
         if (best.end == PathEnd::kReached) nearest = std::min(nearest, best.length);
       }
       const double distance = flow.distance(from);
-      flow.path(from, path);
+      flow.way(from, path);
       ASSERT_EQ(std::isfinite(distance), std::isfinite(nearest));
       if (!std::isfinite(nearest)) {
         EXPECT_EQ(path.end, PathEnd::kUnreachable);
@@ -134,7 +134,7 @@ TEST(FlowField, StopsWhereAsked) {
   EXPECT_FALSE(std::isfinite(near.distance(beside)));
   EXPECT_FALSE(near.next(beside));
   Path path;
-  near.path(beside, path);
+  near.way(beside, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
 }
 

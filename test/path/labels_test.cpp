@@ -18,7 +18,7 @@
 #include "throng/cells.h"
 #include "world/place.h"
 
-// MeshedWorld that are pulled taut, and ways looked up by the middles of blocks, against the
+// Paths that are pulled taut, and paths looked up by the middles of blocks, against the
 // search.
 namespace throng {
 namespace {

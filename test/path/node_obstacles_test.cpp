@@ -199,7 +199,7 @@ TEST(NodeObstacles, LongWaysArePutTogetherOfWhatIsLeft) {
       const PieceCost piece(view, 0);
       const NodeView baked(*mesh);
       const PieceCost baked_piece(baked, 0);
-      const Districts overlay(*mesh, baked_piece, 1, 48);
+      const Overlay overlay(*mesh, baked_piece, 1, 48);
       ASSERT_FALSE(overlay.empty());
       OverlaySearch search(view, piece, overlay);
       NodeSearch plain(view, piece), blocks(view, piece);

@@ -74,16 +74,16 @@ double cost_along(const NodeView& mesh, const PieceCost& piece, const BlockPoint
   return cost;
 }
 
-TEST(Districts, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
-  uint64_t reached = 0, unreachable = 0, drops = 0, leaps = 0, looked_at = 0, plainly = 0;
+TEST(Overlay, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
+  uint64_t reached = 0, unreachable = 0, drops = 0, leaps = 0, expanded = 0, plainly = 0;
   size_t overlay_levels = 0;
   for_each_mesh([&](const NodeMesh& mesh) {
     double sum = 0, most = 0;
     int count = 0;
-    for (const size_t crossings : {24, 192}) {
+    for (const size_t per_cell : {24, 192}) {
       const NodeView view(mesh);
-      const PieceCost piece(view, crossings == 24 ? 2 : 0);
-      const Districts overlay(mesh, piece, 2, crossings);
+      const PieceCost piece(view, per_cell == 24 ? 2 : 0);
+      const Overlay overlay(mesh, piece, 2, per_cell);
       ASSERT_FALSE(overlay.empty());
       overlay_levels = std::max(overlay_levels, overlay.overlay_levels().size());
       OverlaySearch search(view, piece, overlay);
@@ -100,8 +100,8 @@ TEST(Districts, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
           continue;
         }
         ++reached;
-        looked_at += search.looked_at();
-        plainly += plain.looked_at();
+        expanded += search.expanded();
+        plainly += plain.expanded();
         const double cost = cost_along(view, piece, from, crossings, to);
         EXPECT_NEAR(search.cost(), cost, 1e-9 * cost);
         EXPECT_GE(cost, plain.cost() * (1 - 1e-9));
@@ -114,10 +114,10 @@ TEST(Districts, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
         most = std::max(most, cost / plain.cost());
         ++count;
         // A budget is kept: it gives up, or needs no more.
-        const SearchBudget little{search.looked_at() / 2};
+        const SearchBudget little{search.expanded() / 2};
         const PathEnd cut = search.find(from, to, little, blocks, crossings);
         if (cut == PathEnd::kReached) {
-          EXPECT_LE(search.looked_at(), 2 * little.max_nodes + 1);
+          EXPECT_LE(search.expanded(), 2 * little.max_nodes + 1);
         }
       }
     }
@@ -130,23 +130,23 @@ TEST(Districts, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
   EXPECT_GT(unreachable, 40u);
   EXPECT_GT(drops, 0u);
   EXPECT_GT(leaps, drops);
-  EXPECT_LT(2 * looked_at, plainly);
+  EXPECT_LT(2 * expanded, plainly);
 }
 
 // Of every tier: what it tells of a district is what a search finds that does not leave it, or a
 // little more.
-TEST(Districts, TellWhatItCostsToGoThrough) {
+TEST(Overlay, TellWhatItCostsToGoThrough) {
   uint64_t through = 0, none = 0;
   for_each_mesh([&](const NodeMesh& mesh) {
     const NodeView view(mesh);
     const PieceCost piece(view, 1);
-    const Districts overlay(mesh, piece, 1, 48);
+    const Overlay overlay(mesh, piece, 1, 48);
     NodeSearch search(view, piece);
     std::vector<uint32_t> of_block = overlay.of_block();
     std::vector<Crossing> crossings;
     double sum = 0;
     int count = 0;
-    for (const Districts::Tier& overlay_level : overlay.overlay_levels()) {
+    for (const Overlay::OverlayLevel& overlay_level : overlay.overlay_levels()) {
       uint64_t looked = 0;
       const uint64_t stride = overlay_level.costs.size() / 300 + 1;
       for (uint32_t d = 0; d + 1 < overlay_level.first.size(); ++d) {
@@ -161,8 +161,8 @@ TEST(Districts, TellWhatItCostsToGoThrough) {
             const bool closed = (crossing.backward && mesh.portals()[crossing.portal].one_way) ||
                                 (out.backward && portal.one_way);
             const auto ends = ends_of(view, out);
-            const PathEnd end =
-                search.find(ends_of(view, crossing).in, ends.out, {}, crossings, {of_block.data(), d});
+            const PathEnd end = search.find(ends_of(view, crossing).in, ends.out, {}, crossings,
+                                            {of_block.data(), d});
             if (closed || end != PathEnd::kReached) {
               EXPECT_TRUE(std::isinf(costs[j]));
               ++none;
@@ -190,11 +190,11 @@ TEST(Districts, TellWhatItCostsToGoThrough) {
   EXPECT_GT(none, 100u);
 }
 
-TEST(Districts, AreTheSameForAnyNumberOfWorkers) {
+TEST(Overlay, AreTheSameForAnyNumberOfWorkers) {
   for_each_mesh([&](const NodeMesh& mesh) {
     const NodeView view(mesh);
     const PieceCost piece(view, 0);
-    const Districts one(mesh, piece, 1), four(mesh, piece, 4);
+    const Overlay one(mesh, piece, 1), four(mesh, piece, 4);
     EXPECT_EQ(one.bytes(), four.bytes());
     ASSERT_EQ(one.overlay_levels().size(), four.overlay_levels().size());
     for (size_t k = 0; k < one.overlay_levels().size(); ++k) {

@@ -29,7 +29,7 @@ struct Options {
 };
 
 [[noreturn]] void stop(const std::string& message) {
-  fmt::print(stderr, "bench_node_ways: {}\n", message);
+  fmt::print(stderr, "bench_node_paths: {}\n", message);
   std::exit(2);
 }
 
@@ -102,7 +102,7 @@ Json measure(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder,
           {"mean_length", length_sum / std::max<double>(1, static_cast<double>(reached_ms.size()))},
           {"median_ms", median(reached_ms)},
           {"most_ms", most(reached_ms)},
-          {"looked_at", median(looked)},
+          {"expanded", median(looked)},
           {"unreachable_median_ms", median(other_ms)},
           {"unreachable_most_ms", most(other_ms)},
           {"judged", search_ms.size()},
@@ -201,7 +201,7 @@ Json run(const Options& options) {
           {"bytes", made.bytes},
           {"search_seconds", plain.seconds},
           {"search_bytes", plain.bytes},
-          {"ways", paths},
+          {"paths", paths},
           {"crates", crates}};
 }
 
@@ -210,7 +210,7 @@ Json run(const Options& options) {
 
 int main(int argc, char** argv) {
   using namespace throng::bench;
-  CLI::App parser{"Ways over the nodes of a baked world", "bench_node_ways"};
+  CLI::App parser{"Ways over the nodes of a baked world", "bench_node_paths"};
   Options options;
   parser.add_option("world", options.world, "World folder with nodes")->required();
   parser.add_option("--class", options.avatar_class, "Avatar class")->capture_default_str();

@@ -31,7 +31,7 @@ struct Options {
 };
 
 [[noreturn]] void stop(const std::string& message) {
-  fmt::print(stderr, "bench_long_ways: {}\n", message);
+  fmt::print(stderr, "bench_long_paths: {}\n", message);
   std::exit(2);
 }
 
@@ -125,7 +125,7 @@ Json run(const Options& options) {
           {"bytes", made.bytes},
           {"mesh_bytes", mesh.bytes},
           {"make_seconds", made.seconds},
-          {"ways", paths}};
+          {"paths", paths}};
 }
 
 }  // namespace
@@ -133,7 +133,7 @@ Json run(const Options& options) {
 
 int main(int argc, char** argv) {
   using namespace throng::bench;
-  CLI::App parser{"Long ways over a large baked world", "bench_long_ways"};
+  CLI::App parser{"Long ways over a large baked world", "bench_long_paths"};
   Options options;
   parser.add_option("world", options.world, "World folder")->required();
   parser.add_option("--distances", options.distances, "How far the ends are apart [m]")

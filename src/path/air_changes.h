@@ -36,15 +36,16 @@ class AirChanges {
   [[nodiscard]] bool any() const { return active_ > 0; }
   [[nodiscard]] const SplitBoxes& splits() const { return splits_; }
   [[nodiscard]] const AirIslands& islands() const { return islands_; }
-  /// May the class stand on a legal cell of the grid, as far as obstacles go?
+  /// May the class stand on a legal cell of the grid, as far as obstacles permit?
   [[nodiscard]] bool may_stand(uint32_t level, int32_t x, int32_t z) const {
     const auto found = blocked_.find(level);
     return found == blocked_.end() ||
            (found->second[static_cast<size_t>(z & 63)] >> (x & 63) & 1) == 0;
   }
-  /// Tells a ground of one; what it calls it.
+  /// Adds one obstacle to a ground; returns its id there.
   static ChangeId add_to(LiveGround& ground, const Solid& solid);
-  /// Tells a ground of the class that knows none of them yet; `ids`: what it calls them, by id - 1.
+  /// Adds all obstacles to a ground of the class that has none of them yet; `ids`: their ids there,
+  /// by id - 1.
   void add_all_to(LiveGround& ground, std::vector<ChangeId>& ids) const;
 
  private:

@@ -45,8 +45,8 @@ class AirView {
   [[nodiscard]] const AirCube& cube(uint32_t box) const {
     return box < space_->boxes.size() ? space_->boxes[box] : changes_->splits().cube(box);
   }
-  /// What differs for boxes that do not hold together. Of whole boxes of the space it is their
-  /// component there, unless obstacles have cut them off.
+  /// The same for boxes that are connected. For a whole box of the space it is its component there,
+  /// unless obstacles have cut it off.
   [[nodiscard]] uint32_t component(uint32_t box) const {
     return changes_ == nullptr ? space_->component[box] : changes_->islands().label(box);
   }
@@ -54,12 +54,13 @@ class AirView {
   [[nodiscard]] uint32_t baked(uint32_t component) const {
     return changes_ == nullptr ? component : changes_->islands().component(component);
   }
-  /// False only if there is no way from one to the other.
+  /// False only if no path joins the two.
   [[nodiscard]] bool same_component(AirPoint a, AirPoint b) const {
     const uint32_t from = box_at(a), to = box_at(b);
     return from != kNoBox && to != kNoBox && component(from) == component(to);
   }
-  /// Is the straight line legal all the way? Points lie within boxes, a skin off their faces.
+  /// Is the straight line legal over its whole length? Points lie within boxes, a skin off their
+  /// faces.
   [[nodiscard]] bool sees(AirPoint from, AirPoint to) const {
     return changes_ == nullptr ? space_->sees(from, to) : air_sees(*this, from, to);
   }
@@ -76,8 +77,8 @@ class AirView {
     }
   }
   /// The point nearest to a goal in boxes of some components, rising, a skin off their faces; of
-  /// boxes as near as each other in the first. Zones are looked at in the order of how near they
-  /// may come, in `order`, whose memory stays. None if there is no such box.
+  /// equally near boxes the first. Zones are visited in the order of how near they may come, in
+  /// `order`, whose memory is kept. None if there is no such box.
   using ZoneOrder = std::vector<std::pair<double, uint32_t>>;
   [[nodiscard]] std::optional<AirPoint> nearest_in(std::span<const uint32_t> components,
                                                    AirPoint goal, ZoneOrder& order) const;

@@ -41,8 +41,8 @@ class Lister {
     const MeshRect r = cast_into(rect, n);
     const uint32_t begin = labels_.first_candidate[r.first_block + n];
     const uint32_t end = labels_.first_candidate[r.first_block + n + 1];
-    // From any other point p the way by the middle m is at most |p m| longer than from m, and a way
-    // by corner c at most |p m| shorter.
+    // From any other point p the path over the middle m is at most |p m| longer than from m, and a
+    // path over corner c at most |p m| shorter.
     const auto half = static_cast<float>(std::hypot(r.width * 0.5, r.depth * 0.5));
     std::vector<Entry> entries;
     for (uint32_t i = begin; i < end; ++i) {
@@ -102,8 +102,8 @@ class Lister {
     return r;
   }
 
-  // A hub may be nearer by another one than by all corners that have it in their lists: then no
-  // way from here needs it.
+  // A hub may be nearer over another hub than over all corners that have it in their lists: then no
+  // path from here needs it.
   float true_length(uint32_t hub) {
     if (known_[hub].block == now_) return known_[hub].length;
     float length = set_[hub] == now_ ? best_[hub].length : std::numeric_limits<float>::max();
@@ -156,7 +156,7 @@ std::vector<Block> all_blocks(const PathMesh& mesh) {
   return blocks;
 }
 
-// More candidates of a block than an entry's number can tell.
+// Thrown if a block has more candidates than an entry's number can hold.
 bool are_too_many(const HubLabels& labels) {
   for (size_t b = 0; b + 1 < labels.first_candidate.size(); ++b) {
     constexpr uint32_t kMax = std::numeric_limits<uint16_t>::max();

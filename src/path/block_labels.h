@@ -29,14 +29,14 @@ struct BlockLabels {
   }
 };
 
-/// For the middle of each block, labels as if it were a corner: the shortest way to each of its
+/// For the middle of each block, labels as if it were a corner: the shortest path to each of its
 /// hubs.
 struct MiddleLabels {
   using Label = TwoHopLabels::Label;
   std::vector<uint32_t> first;  // per block, one more at the end; empty: there are none
   std::vector<Label> labels;    // by rising hub [cells]
   std::vector<uint32_t>
-      tree_place;  // per label: the place in HubLabels' trails of its way's corners
+      tree_place;  // per label: the place in HubLabels' trees of its path's corners
 
   [[nodiscard]] std::span<const Label> of(uint32_t block) const {
     return {labels.data() + first[block], labels.data() + first[block + 1]};
@@ -49,13 +49,13 @@ struct MiddleLabels {
 /// The middle of a block.
 GroundPoint middle_of(const MeshRect& block);
 
-/// An entry is left out if from nowhere in the block its corner can be on a shortest way to the
-/// hub, judged by the hub's distance from the middle. None at all if they would be more than
+/// An entry is left out if its corner cannot be on a shortest path from any point of the block to
+/// the hub, judged by the hub's distance from the middle. Empty if there would be more than
 /// `max_entries`.
 BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, int32_t workers,
                                uint64_t max_entries);
 
-/// A label is left out if the way over another hub is as short.
+/// A label is left out if the path over another hub is as short.
 MiddleLabels build_middle_labels(const PathMesh& mesh, const HubLabels& labels, int32_t workers);
 
 }  // namespace throng

@@ -29,7 +29,7 @@ AirGrid::AirGrid(const WorldData& world, const AirShape& shape, const AvatarClas
       cell(shape.cell * 1e-3),
       radius(avatar.radius),
       height(avatar.height),
-      // Feet are rounded to units of the ground and to millimetres by those who follow ways.
+      // Whatever follows paths rounds feet to units of the ground and to millimetres.
       spare(std::max(kHeightRounding, 4 * world.summary.cell / kUnitsPerCell)) {}
 
 AirRange air_near(const AirGrid& grid, const FlightSpace& space, const Prism& prism) {

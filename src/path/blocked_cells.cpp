@@ -84,7 +84,7 @@ CellRows blocked_cells(const TileFloor& floor, const AvatarClass& avatar, const 
   if (first_x > last_x) return blocked;
   const auto [origin_x, origin_z] = corner_of(floor);
   const double side = floor.summary.cell;
-  // Triangles are as wide as they are told; a box around them must not leave any out.
+  // Triangles need not lie within the prism's polygon; a box around them must not leave any out.
   const double spare = triangles.empty() ? 0 : kHeightRounding;
   const uint64_t columns = (~uint64_t{0} >> (63 - (last_x - first_x))) << first_x;
   for (int32_t z = first_z; z <= last_z; ++z) {

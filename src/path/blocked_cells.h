@@ -40,7 +40,7 @@ std::pair<int32_t, int32_t> rise_at(const LevelView& view, int32_t x, int32_t z)
 
 /// Rounding of heights in whole millimetres, and then some. [m]
 inline constexpr double kHeightRounding = 0.003;
-/// No cell farther from an obstacle than this is taken by it. [m]
+/// No obstacle blocks a cell farther from it than this. [m]
 inline double taking_reach(const AvatarClass& avatar) { return avatar.radius + kHeightRounding; }
 
 /// Those of the `legal` cells on which a body of the class, wherever it stands on them, could touch

@@ -29,14 +29,14 @@ class FlightEndpoints {
   /// Nothing where the body may not fly.
   [[nodiscard]] std::optional<AirPoint> in_air(Vec3d feet) const;
 
-  /// May a body stand at a place of the class, as far as obstacles go that were put up?
+  /// May a body stand at a place of the class, as far as active obstacles permit?
   [[nodiscard]] bool may_stand(const Place& place) const;
   /// Straight up from feet on the ground. The body on the ground is clear from its bottom to its
   /// height, the body in the air from its feet to its height: where the one's feet are not above
   /// the other's head, so is all that is passed between them.
   [[nodiscard]] std::optional<AirPoint> take_off(const Place& place) const;
-  /// The nearest place, in steps, from which feet come into the air; `max_cells` cells are looked
-  /// at. Only into air of this component (see AirView), unless it is kNoBox.
+  /// The nearest place, by cells crossed, from which feet come into the air; `max_cells` cells are
+  /// visited. Only into air of this component (see AirView), unless it is kNoBox.
   struct TakeOff {
     Place place;                    ///< Null if there is none among them.
     bool budget_exhausted = false;  ///< There were more cells.

@@ -23,11 +23,11 @@
 namespace throng {
 namespace {
 
-constexpr int32_t kLargestBox = 32;           // air cells: larger ones hide good ways
+constexpr int32_t kLargestBox = 32;           // air cells: larger ones hide good paths
 constexpr uint64_t kMaxFloodCells = 1 << 18;  // on foot to where one can take off
-// The same where the nearest take-off leads into a pocket and there are several others.
+// The same where the nearest take-off leads into an island and there are several others.
 constexpr uint64_t kMaxIslandCells = 1 << 15;
-// Ways over other ground, or to what is less near, where obstacles are in the way of the first.
+// Paths over other ground, or to what is less near, where obstacles block the first.
 constexpr int32_t kMaxTries = 4;
 
 double distance(Vec3d a, Vec3d b) {
@@ -147,7 +147,7 @@ struct FlightFinder::Scratch {
   }
 
   FlightSearch search;
-  SpentBudget spent = SpentBudget::kNone;  // what the last search that gave up had too little of
+  SpentBudget spent = SpentBudget::kNone;  // the budget that the last search exhausted
   FlightStringPuller pull;
   CircleFlood flood;
   std::optional<PathFinder> walker;
@@ -162,8 +162,8 @@ struct FlightFinder::Scratch {
   std::optional<AirChanges> changes;
   std::optional<LiveGround> live;
   std::vector<ChangeId> live_ids;  // by id of a change - 1
-  // Of a search that found no way between ends that could hold together: the point of the air that
-  // it came to that is nearest to where the query wanted to go.
+  // Of a search that found no path between ends that could be connected: the point that it reached
+  // in the air that is nearest to where the query leads.
   std::optional<AirPoint> reached;
 };
 
@@ -275,7 +275,7 @@ std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const
     };
     return AirPoint{cube.x + part(1), cube.y + part(2), cube.z + part(3)};
   };
-  // What obstacles have taken is drawn anew. Where hardly anything is left, it is looked for.
+  // What obstacles have blocked is drawn again. Where hardly anything is left, it is searched.
   constexpr uint64_t kDraws = 256;
   size_t box = 0;
   for (uint64_t i = 0; i < kDraws; ++i) {
@@ -377,8 +377,8 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     end.air = ends.take_off(end.ground_air_link);
     return end.air.has_value();
   };
-  // Air over the ground at both ends: the one that is nearest to both, as far as a look around
-  // tells, where there is more than one.
+  // Air over the ground at both ends: if there is more than one component, the one that is nearest
+  // to both, as far as a flood around them shows.
   const auto common_air = [&](const End& a, const End& b) {
     const auto over_a = shared_->ground_air_links.air_over(shared_->ground_of(a.ground));
     const auto over_b = shared_->ground_air_links.air_over(shared_->ground_of(b.ground));
@@ -407,8 +407,8 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     }
     return best;
   };
-  // The nearest ways into the air may lead into pockets of it, a room or a yard under a net: then
-  // from one further off into air that leads to the other end.
+  // The nearest take-offs may lead into islands of the air, a room or a yard under a net: then the
+  // path takes off farther away, into air that leads to the other end.
   const auto to_links = [&](End& a, End& b) {
     if (!a.ground && !b.ground) return true;
     if (!a.ground) return to_link(b, component_of(*a.air));
@@ -484,10 +484,10 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
   path.end = PathEnd::kReached;
 }
 
-// From part to part of the ground and the air. Where it takes off and lands between two of them is
-// the nearest place to where it stands, or to the goal, else the one that is known of the two.
-// Parts are those of the world as it was baked: where an obstacle is in the way from one to the
-// next, another way is looked for that does without that pair.
+// From part to part of the ground and the air. The take-off or landing between two of them is at
+// the place nearest to where the path stands, or to the goal, else at the one that is known of the
+// two. Parts are those of the world as it was baked: where an obstacle blocks the path from one to
+// the next, another path that does without that pair is searched for.
 void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
   Scratch& scratch = *scratch_;
   End from, to;
@@ -608,8 +608,8 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
   return k - 1;
 }
 
-// To the point of all air that can be reached that is nearest to the goal; of the ground, if nobody
-// can take off from it: there of each rectangle the cell that is nearest in the plane.
+// To the point of all reachable air that is nearest to the goal; if no avatar can take off from the
+// ground, of the ground: there, of each rectangle, the cell that is nearest in the plane.
 void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   Scratch& scratch = *scratch_;
   const AirView air = scratch.air(*shared_);
@@ -662,7 +662,7 @@ void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   if (path.obstacle == Obstacle::kNone) path.obstacle = Obstacle::kNarrow;
 }
 
-// Over the ground, where nobody can take off.
+// Over the ground, where no avatar can take off.
 void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& from,
                                         FlightPath& path) {
   Scratch& scratch = *scratch_;
@@ -677,7 +677,7 @@ void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& f
   if (!nearest) nearest = shared_->nearest_ground(ground, query.to);
   if (!nearest) return;
   const PathEnd end = walk(query, from, nearest, scratch.walk_all);
-  // To what comes nearest, if the finder of ways on foot knows it.
+  // To what comes nearest, if the finder of paths on foot knows it.
   if (end != PathEnd::kReached && !(scratch.is_changed() && end == PathEnd::kUnreachable)) return;
   add_walk(scratch.walk_all, 0, path);
   path.obstacle =

@@ -9,16 +9,16 @@ namespace throng {
 namespace {
 
 constexpr double kShorter = 1e-9;
-// What is left counts a little more than what is behind: among ways that are nearly as short, the
-// one that is nearly there is followed. It costs 0.02 % of length and spares three boxes of four.
+// The heuristic is weighted a little: among paths that are nearly as short, the one that is nearly
+// at the goal is expanded first. It costs 0.02 % of length and spares three boxes of four.
 constexpr double kHaste = 1.02;
 constexpr double kLargeHaste = 1.1;  // through large boxes
 
-// Over hills and roofs most boxes are those of a cell or two along them, and most of those that a
-// search looks at are of no use. So ends that are far apart are first looked for through boxes that
-// are the larger the farther they are from both ends. What that finds is taken if it is hardly
-// longer than the straight line; else it waits for what a search through all boxes finds within a
-// budget. Pulling takes the way to the edges of what is in between in any case.
+// Over hills and roofs most boxes are a cell or two wide, and expanding most of them is of no use.
+// So if the ends are far apart, the first search goes through boxes of a minimum size that grows
+// with the distance from both ends. Its result is used if it is hardly longer than the straight
+// line; otherwise the search through all boxes has a budget in which to find a shorter one. String
+// pulling moves the path to the edges of what is in between in either case.
 constexpr double kFar = 256;            // ends so many cells apart
 constexpr double kHardlyLonger = 1.05;  // before it is pulled taut
 constexpr uint64_t kBudget = 1u << 17;  // boxes
@@ -50,7 +50,7 @@ Door door_between(const AirCube& a, const AirCube& b) {
   return {};
 }
 
-// Where the way from `from` to `to` best passes from one box into another: on the face that they
+// Where the path from `from` to `to` best passes from one box into another: on the face that they
 // share, where the straight line crosses its plane (mirrored, if both lie on one side of it).
 AirPoint pass(const AirCube& a, const AirCube& b, AirPoint from, AirPoint to) {
   const int32_t low_a[3] = {a.x, a.y, a.z}, low_b[3] = {b.x, b.y, b.z};
@@ -80,7 +80,7 @@ void FlightSearch::push(uint32_t node) {
   std::push_heap(open_.begin(), open_.end());
 }
 
-// A box takes a node, a mark and, more than once if it is reached anew, an entry of the heap.
+// A box takes a node, a mark and an entry of the heap each time it is reached.
 uint64_t FlightSearch::used_bytes() const {
   return nodes_.size() * (sizeof(Node) + sizeof(Mark)) + 3 * open_.size() * sizeof(Entry);
 }
@@ -149,7 +149,7 @@ int32_t FlightSearch::min_around(const AirCube& box) const {
 SearchResult FlightSearch::search(AirPoint from, uint32_t start, const SearchBudget& budget,
                                   std::vector<AirPoint>& path) {
   marks_.resize(air_->end());
-  if (++search_ == 0) {  // After 2^32 searches the marks begin anew.
+  if (++search_ == 0) {  // After 2^32 searches the marks start over.
     marks_.clear();
     search_ = 1;
   }
@@ -166,7 +166,8 @@ SearchResult FlightSearch::search(AirPoint from, uint32_t start, const SearchBud
     Node& node = nodes_[entry.node];
     if (node.opened || entry.estimate > node.estimate) continue;
     if (budget.is_spent(++expanded_, used_bytes())) return SearchResult::kBudget;
-    // Seen from the bend after all? Else the way bends where it entered the box before.
+    // Seen from the parent's waypoint after all? Else the path turns where it entered the box
+    // before.
     if (node.parent != node.via && !air_->sees(nodes_[node.parent].point, node.point)) {
       node.parent = node.via;
       const Node& via = nodes_[node.via];
@@ -202,8 +203,9 @@ AirPoint FlightSearch::nearest_reached(AirPoint goal) const {
   return nearest;
 }
 
-// From the goal back. A leg from box to box leaves the first through the face that they share, but
-// a skin before its end: where it runs so flat that this matters, it goes straight up to the face.
+// From the goal back. A segment from box to box leaves the first through the face that they share,
+// but a skin before its end: where it runs so flat that this matters, it goes straight up to the
+// face.
 void FlightSearch::trace(uint32_t node, std::vector<AirPoint>& path) const {
   path.push_back(goal_);
   for (uint32_t n = node;; n = nodes_[n].parent) {

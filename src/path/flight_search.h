@@ -12,21 +12,22 @@
 #include "path/search.h"
 #include "throng/search_budget.h"
 
-/// A short way through the air, over boxes.
+/// A short path through the air, over boxes.
 namespace throng {
 
-/// Lazy Theta* [NKH10] over boxes of any size: where the way enters a box is found anew for each,
-/// where the straight line from the last bend to the goal would, and a bend is taken for seen until
-/// its box is opened. Owns its memory: one per thread, no allocation once it has grown.
+/// Lazy Theta* [NKH10] over boxes of any size: where the path enters a box is computed for each,
+/// where the straight line from the last waypoint to the goal would, and a waypoint is assumed to
+/// be seen until its box is expanded. Owns its memory: one per thread, no allocation once it has
+/// grown.
 class FlightSearch {
  public:
-  /// Bends of a way from `from` to `to`, ends included. Gives up when the budget of boxes is spent.
-  /// Far ends are looked for through large boxes first.
+  /// Waypoints of a path from `from` to `to`, ends included. Stops when the budget of boxes is
+  /// exhausted. Far ends are searched through large boxes first.
   SearchResult find(const AirView& air, AirPoint from, AirPoint to, const SearchBudget& budget,
                     std::vector<AirPoint>& path);
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
-  /// Gives back what is allocated beyond kKeptBytes: after a query, when nothing more is asked of
-  /// it.
+  /// Frees what is allocated beyond kKeptBytes: after a query, when its results are no longer
+  /// needed.
   void give_back();
   [[nodiscard]] uint64_t allocated_bytes() const;
   static constexpr uint64_t kKeptBytes = uint64_t{64} << 20;
@@ -39,11 +40,11 @@ class FlightSearch {
   [[nodiscard]] uint64_t used_bytes() const;
   [[nodiscard]] int32_t min_around(const AirCube& box) const;
   struct Node {
-    AirPoint point;       // where the way enters the box
+    AirPoint point;       // where the path enters the box
     double length = 0;    // to there
     double estimate = 0;  // of the whole
     uint32_t box = kNoBox;
-    uint32_t parent = 0;  // node of the bend before it
+    uint32_t parent = 0;  // node of the waypoint before it
     uint32_t via = 0;     // node of the box before it
     bool opened = false;
   };

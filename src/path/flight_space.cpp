@@ -40,7 +40,7 @@ void FlightSpace::boxes_in(const AirRange& range, std::vector<uint32_t>& found) 
          zx <= std::min(range.last[0] / zone_side, zones_x - 1); ++zx) {
       const auto zone = static_cast<size_t>(zz * zones_x + zx);
       const AirTreeData& tree = zones[zone];
-      // Cubes are told in cells of the world.
+      // Cubes are given in cells of the world.
       const auto descend = [&](auto&& self, const AirCube& cube, uint32_t word) -> void {
         if (air_kind(word) == AirKind::kFull || !is_in(cube)) return;
         if (air_kind(word) == AirKind::kFree) {

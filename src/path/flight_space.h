@@ -20,7 +20,7 @@ namespace throng {
 
 inline constexpr uint32_t kNoBox = UINT32_MAX;
 
-/// A point of the air, or the way between two. [air cells from the world's origin and layer 0]
+/// A point of the air, or a vector between two. [air cells from the world's origin and layer 0]
 struct AirPoint {
   double x = 0, y = 0, z = 0;
   friend AirPoint operator+(AirPoint a, AirPoint b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
@@ -61,12 +61,13 @@ struct FlightSpace {
   std::vector<std::vector<Leaf>> leaves;  // per zone
   std::vector<AirCube> boxes;             // zone by zone
   std::vector<uint32_t> first_box;        // by zone, and the end
-  std::vector<uint32_t> component;  // per box: the first box of all that hold together with it
+  std::vector<uint32_t> component;        // per box: the first box of its connected component
 
   /// The box that a cell belongs to, or none if the body may not be there.
   [[nodiscard]] uint32_t box_at(int32_t x, int32_t y, int32_t z) const;
   [[nodiscard]] uint32_t box_at(AirPoint p) const;
-  /// Is the straight line legal all the way? Points lie within boxes, a skin off their faces.
+  /// Is the straight line legal over its whole length? Points lie within boxes, a skin off their
+  /// faces.
   [[nodiscard]] bool sees(AirPoint from, AirPoint to) const;
   [[nodiscard]] const AirCube& cube(uint32_t box) const { return boxes[box]; }
   /// The boxes with cells in a range, rising zone by zone.

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-// A taut way bends on edges of what is in the way, and its angles to the edge are alike on both
-// sides. Edges run along the axes, so a bend is slid along one axis at a time to where that is so;
-// a bend that hangs in the air is cut off, which makes two of it that reach the edges.
+// A taut path turns at edges of blockers, and its angles to the edge are alike on both sides. Edges
+// run along the axes, so a waypoint is slid along one axis at a time to where that is so; a
+// waypoint that hangs in the air is cut off, which makes two of it that lie on the edges.
 namespace throng {
 namespace {
 
@@ -59,7 +59,7 @@ void FlightStringPuller::shortcut() {
   path.swap(next_);
 }
 
-// Two points on the legs of a bend, as far out as they see each other, instead of it.
+// Two points on the segments of a waypoint, as far out as they see each other, instead of it.
 void FlightStringPuller::cut_corners() {
   std::vector<AirPoint>& path = *path_;
   next_.clear();
@@ -91,7 +91,7 @@ void FlightStringPuller::slide(size_t waypoint) {
   AirPoint& here = (*path_)[waypoint];
   const AirPoint before = (*path_)[waypoint - 1], after = (*path_)[waypoint + 1];
   for (int axis = 0; axis < 3; ++axis) {
-    // Where the angles are alike: the other two coordinates tell how far either end is.
+    // Where the angles are alike: the other two coordinates give the distance of either end.
     double across[2] = {0, 0};
     for (int other = 0; other < 3; ++other) {
       if (other == axis) continue;

@@ -7,11 +7,11 @@
 
 #include "path/air_view.h"
 
-/// Pulls a way through the air taut.
+/// Pulls a path through the air taut.
 namespace throng {
 
-/// Leaves out bends that are not needed and slides the others to where the way is shortest, as far
-/// as the lines to their neighbours stay legal. Never makes a way longer. Owns its memory.
+/// Leaves out waypoints that are not needed and slides the others to where the path is shortest, as
+/// far as the lines to their neighbours stay legal. Never makes a path longer. Owns its memory.
 class FlightStringPuller {
  public:
   void pull(const AirView& air, std::vector<AirPoint>& path);

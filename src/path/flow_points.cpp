@@ -113,7 +113,7 @@ std::pair<uint32_t, double> FlowPoints::leave_by(LiveMesh& mesh, const LiveStop&
   return best;
 }
 
-// The other side of the border that a point lies at: its way goes on there. [it has a next]
+// The other side of the border that a point lies at: its path continues there. [it has a next]
 LiveStop FlowPoints::across(LiveMesh& mesh, const Point& point) const {
   const LiveStop& on = points_[point.next].stop;
   LiveStop other = on;
@@ -140,7 +140,8 @@ Place FlowPoints::next(LiveGround& of, const Place& place) const {
   const auto [first, total] = leave_by(ground.mesh, from);
   if (first == kNoPoint) return {};
   const Point* best = &points_[first];
-  // On as long as a straight line is no dearer than the way so far; give up after some that are.
+  // On as long as a straight line costs no more than the path so far; stop after some that cost
+  // more.
   constexpr int kPatience = 3;
   int missed = 0;
   for (const Point* p = best; p->next != kNoPoint && missed < kPatience;) {

@@ -39,10 +39,10 @@ class FlowPoints {
 
  private:
   static constexpr uint32_t kNoPoint = UINT32_MAX;
-  // A goal, or a point just inside a rectangle by which the way to a goal leaves it.
+  // A goal, or a point just inside a rectangle where the path to a goal leaves it.
   struct Point {
     LiveStop stop;
-    uint32_t next = kNoPoint;  // on the way; none at a goal
+    uint32_t next = kNoPoint;  // on the path; none at a goal
     double cost = 0;           // [cells]
   };
 

@@ -77,7 +77,7 @@ struct GroundQuery::State {
   // The legal cells of one level that may be nearer than `best`, a place and its distance.
   void nearest_on(const GroundLevel& level, int32_t tile_x, int32_t tile_z, Vec3d position,
                   GroundPoint at, std::pair<Place, double>& best) const;
-  // Into `near`: cells that touch the circle and hold together with its middle.
+  // Into `near`: cells that touch the circle and are connected to its middle.
   bool gather(const Place& centre, double radius);
 };
 
@@ -149,7 +149,7 @@ Place GroundQuery::nearest_place(Vec3d position, double radius) {
   const State& s = *state_;
   const WorldData& world = s.data();
   if (!std::isfinite(position.x + position.y + position.z) || !(radius >= 0)) return {};
-  // A place may lie on the very edge of what is asked for.
+  // A place may lie on the very edge of the search radius.
   std::pair<Place, double> best{{}, std::nextafter(std::min(radius, 1e9), 2e9)};
   const GroundPoint at = to_ground(world, position.x, position.z);
   const int32_t tiles_x = (world.width + kTileCells - 1) / kTileCells;

@@ -12,7 +12,7 @@ namespace throng {
 namespace {
 
 constexpr float kFarthest = 3e38f;
-constexpr double kMaxLonger = 1.02;  // of ways by middles
+constexpr double kMaxLonger = 1.02;  // of paths over middles
 // Sums of two or three floats of up to 2^20 cells; what is as short within their error stays.
 constexpr float kSlack = 0.25f;  // cells
 
@@ -27,9 +27,9 @@ float gap(const MeshCorner& corner, CellPoint p) {
 
 }  // namespace
 
-// Joins the labels of the corners that the ends see. A way from one end to the other over a corner
+// Joins the labels of the corners that the ends see. A path from one end to the other over a corner
 // is at least as long as the straight lines to it and from it, so no corner outside the ellipse of
-// a way that is known can be on a shorter one, and rays are sent only to the corners within.
+// a known path can be on a shorter one, and rays are sent only to the corners within.
 bool LabelSearch::narrow(const PathMesh& mesh, const HubLabels& labels, const Stop& from,
                          const Stop& to, float known, Best& best) {
   const CellPoint start = in_cells(from.at), goal = in_cells(to.at);
@@ -61,7 +61,7 @@ bool LabelSearch::narrow(const PathMesh& mesh, const HubLabels& labels, const St
   return join(mesh, labels, best);
 }
 
-// The shortest way over the gathered corners; false if there is none.
+// The shortest path over the gathered corners; false if there is none.
 bool LabelSearch::join(const PathMesh& mesh, const HubLabels& labels, Best& best) {
   if (reached_hubs_.size() != mesh.corner_count()) reached_hubs_.assign(mesh.corner_count(), {});
   if (++search_ == 0) {
@@ -100,8 +100,8 @@ struct SeenMiddle {
   double distance = 0;  // [cells]
 };
 
-// Behind an end, as seen from where its way bends first: a way from there comes by the end or
-// nearly so, and as much shorter as the end is away from there is the rest of it. Else `own`.
+// Behind an end, as seen from its path's first waypoint: a path from there passes the end or nearly
+// so, and the rest of it is shorter by the distance to the end. Else `own`.
 SeenMiddle middle_behind(const PathMesh& mesh, const Stop& end, CellPoint turn, SeenMiddle own) {
   const CellPoint at = in_cells(end.at);
   const double gap = distance(at, turn);
@@ -124,9 +124,9 @@ SeenMiddle middle_behind(const PathMesh& mesh, const Stop& end, CellPoint turn, 
 
 }  // namespace
 
-// The way by the middles of the ends' blocks, pulled taut. It is as short as the shortest but where
-// that passes something on another side. False if there is none, or if it cannot be proved to be no
-// longer than `kMaxLonger` times the shortest; `length` is then still that of a way.
+// The path over the middles of the ends' blocks, pulled taut. It is as short as the shortest except
+// where that passes something on another side. False if there is none, or if it cannot be proved to
+// be no longer than `kMaxLonger` times the shortest; `length` is then still that of a path.
 bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, const Stop& from,
                              const Stop& to, std::vector<uint32_t>& corners, double& length) {
   const MiddleLabels& middles = labels.by_middle;
@@ -142,8 +142,9 @@ bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, cons
   for (const uint32_t c : corners) path_.push_back(waypoint(mesh, c));
   path_.insert(path_.end(), {to_middle, {goal, to.rect}});
   if (!pull_.pull(mesh, path_, corners, length)) return false;
-  // No way is shorter than that between two middles less the ends' distances from them. Labels know
-  // ways over corners only: where the middles see each other, the shortest is the straight one.
+  // No path is shorter than that between two middles less the ends' distances from them. Labels
+  // hold paths over corners only: where the middles see each other, the shortest is the straight
+  // line.
   const double straight = distance(start, goal);
   const auto is_proved = [&](const SeenMiddle& p, const SeenMiddle& q, double between) {
     const auto is_short = [&](double least) { return length <= kMaxLonger * least; };
@@ -203,7 +204,7 @@ struct HubDistance {
 
 }  // namespace
 
-// Joins the lists of the ends' blocks. Where a ray does not reach the best way's first or last
+// Joins the lists of the ends' blocks. Where a ray does not reach the best path's first or last
 // corner, the best without it.
 bool LabelSearch::merge(const PathMesh& mesh, const HubLabels& labels, const Stop& from,
                         const Stop& to, Best& best) {
@@ -267,7 +268,7 @@ bool LabelSearch::find(const PathMesh& mesh, const HubLabels& labels, const Stop
                           ? narrow(mesh, labels, from, to, static_cast<float>(known), best)
                           : merge(mesh, labels, from, to, best);
   if (!merged) {
-    // Rays to points beside corners may graze what a line to the corner itself passes by: look out
+    // Rays to points beside corners may graze what a line to the corner itself passes by: cast rays
     // from both ends.
     const auto take_seen = [&](std::vector<Turn>& turns) {
       turns.clear();

@@ -10,10 +10,10 @@
 #include "path/sight.h"
 #include "path/string_puller.h"
 
-/// Shortest ways looked up in hub labels.
+/// Shortest paths looked up in hub labels.
 namespace throng {
 
-/// The way between two ends by their seen corners. Owns its memory: one per thread.
+/// The path between two ends over the corners that they see. Owns its memory: one per thread.
 class LabelSearch {
  public:
   /// As PathSearch::find, without a budget: the length of what it finds is the same but for
@@ -31,7 +31,7 @@ class LabelSearch {
     float length = 0;
     uint32_t hub = 0, first = 0, last = 0;
   };
-  // A corner that a way from an end may bend at first.
+  // A corner at which a path from an end may turn first.
   struct Turn {
     uint32_t corner = 0;
     float distance = 0;  // from the end [cells]

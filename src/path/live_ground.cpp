@@ -182,7 +182,7 @@ bool LiveGround::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& pa
 
 bool LiveGround::advance(uint64_t max_nodes, Path& path) {
   State& s = *state_;
-  // What the search has met may be gone.
+  // What the search has reached may no longer exist.
   if (s.searching && s.version != s.mesh.version()) begin(s.from_place, s.to_place);
   return s.advance(max_nodes, SearchBudget::kDefaultBytes, path);
 }

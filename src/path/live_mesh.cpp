@@ -47,7 +47,7 @@ LiveMesh::LiveMesh(const LiveMesh& other)
       slope_factor_(other.slope_factor_),
       min_factor_(other.min_factor_),
       plain_(other.plain_),
-      levels_(other.levels_.size()),  // made again where they are asked for
+      levels_(other.levels_.size()),  // rebuilt when first used
       changes_(other.changes_),
       changes_of_tile_(other.changes_of_tile_),
       off_mesh_links_(other.off_mesh_links_),
@@ -121,7 +121,7 @@ void LiveMesh::switch_links(ChangeId change, uint32_t level, bool active) {
     std::erase_if(idle_links_, [&](const auto& idle) {
       return idle.first == level && idle.second.change == change;
     });
-    // In the order in which they were made: ways must not tell what was switched when.
+    // In the order in which they were made: paths must not depend on when each was switched.
     std::stable_sort(
         here.begin(), here.end(),
         [](const OffMeshLinkEnd& a, const OffMeshLinkEnd& b) { return a.change < b.change; });
@@ -144,7 +144,7 @@ bool LiveMesh::stand(uint32_t index, GroundPoint at, uint16_t& rect) {
   return std::isfinite(factor(of.rects[rect]));
 }
 
-// The tile's levels are made again; those beside it look for their portals again.
+// The tile's levels are rebuilt; those beside it find their portals again.
 void LiveMesh::forget(int64_t key) {
   ++version_;
   const auto x = static_cast<int32_t>(key), z = static_cast<int32_t>(key >> 32);
@@ -179,7 +179,7 @@ const LiveLevel* LiveMesh::level_with_portals(uint32_t index) {
 
 void LiveMesh::make(uint32_t index, LiveLevel& level) const {
   level.ground = ground_level(world(), index, config_.avatar_class);
-  if (level.ground.zone == nullptr) {  // nobody stands there
+  if (level.ground.zone == nullptr) {  // no avatar stands there
     level.ground.world_level = index;
     level.rects.emplace_back();
     level.has_portals = true;

@@ -110,8 +110,8 @@ double segment_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
   return std::isfinite(cost) ? cost : kNever;
 }
 
-// From each stop to the farthest that a straight leg reaches at no more cost, looked for by
-// doubling and halving: it need not be the farthest of all.
+// From each stop to the farthest that a straight segment reaches at no more cost, found by doubling
+// and halving: it need not be the farthest of all.
 void LiveStringPuller::leave_out(LiveMesh& mesh, std::vector<LiveStop>& stops) {
   constexpr double kSlack = 1 + 1e-9;
   if (stops.size() < 3) return;
@@ -163,7 +163,7 @@ void LiveStringPuller::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops) {
         if (t > 1) continue;
         const GroundPoint at{from.x + std::llround(t * (foot_x - static_cast<double>(from.x))),
                              from.z + std::llround(t * (foot_z - static_cast<double>(from.z)))};
-        // On whichever level the leg there leads to.
+        // On whichever level the segment there leads to.
         const LiveLevel* level = mesh.level(a.level);
         if (!walk_far(mesh.ground(), level, a.at, at, mesh.step()).arrived) continue;
         const LiveStop moved{level->ground.world_level,
@@ -213,12 +213,12 @@ LiveNode* LiveSearch::push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent
   const auto [index, is_new] = nodes_.node_of(stop);
   LiveNode& node = nodes_.nodes[index];
   if (!is_new && (node.done || node.cost <= cost)) return nullptr;
-  node.stop = stop;  // by a jump, or not
+  node.stop = stop;  // by an off-mesh link, or not
   node.cost = cost;
   node.parent = parent;
   const double left = distance_of(stop.at, to_.at);
   open_.push_back({cost + left * mesh.min_factor(), index});
-  // Equal bounds go by number: the same on every machine.
+  // Equal bounds are ordered by number: the same on every machine.
   std::push_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
     return a.bound != b.bound ? a.bound > b.bound : a.node < b.node;
   });

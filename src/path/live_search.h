@@ -8,15 +8,16 @@
 #include "core/chunked_array.h"
 #include "path/live_mesh.h"
 
-/// Ways of little cost over a LiveMesh: a search over points of portals, drawn straight afterwards.
+/// Paths of low cost over a LiveMesh: a search over points of portals, pulled taut afterwards.
 namespace throng {
 
-/// A point of a way, standing in a rectangle.
+/// A point of a path, standing in a rectangle.
 struct LiveStop {
   uint32_t level = 0;  // of the world
   uint16_t rect = 0;
   GroundPoint at;
-  double off_mesh_link = 0;  // cost of the jump that leads there, 0 if a leg does [cells]
+  double off_mesh_link =
+      0;  // cost of the off-mesh link that leads there, 0 if a segment does [cells]
 };
 
 /// A point that the search has reached.
@@ -24,17 +25,17 @@ struct LiveNode {
   LiveStop stop;
   uint32_t parent = UINT32_MAX;
   double cost = 0;          // so far [cells]
-  GroundPoint jumped_from;  // if stop.jump > 0: in the parent's rectangle
+  GroundPoint jumped_from;  // if stop.off_mesh_link > 0: in the parent's rectangle
   bool done = false;
 };
 
-/// Nodes by the stop that they are, found by look-up. Owns its memory.
+/// Hash map from a stop to its node. Owns its memory.
 class LiveNodes {
  public:
   void clear();
   /// Gives back what was allocated.
   void give_back();
-  /// Of what is remembered, the same whatever was allocated before. [bytes]
+  /// Bytes of what it holds, the same whatever was allocated before.
   [[nodiscard]] uint64_t used_bytes() const;
   [[nodiscard]] uint64_t allocated_bytes() const;
   /// The node of a stop, and whether it is new.
@@ -51,17 +52,17 @@ class LiveNodes {
 template <class Visit>
 void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit);
 
-/// Cost of the straight leg between two stops, in cells; infinite if it is no legal move to that
-/// very level.
+/// Cost of the straight segment between two stops, in cells; infinite if it is no legal move to
+/// that very level.
 double segment_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
 
-/// As segment_cost, or the cost of the jump.
+/// As segment_cost, or the cost of the off-mesh link.
 inline double cost_to(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
   return to.off_mesh_link > 0 ? to.off_mesh_link : segment_cost(mesh, from, to);
 }
 
-/// Leaves out stops where a straight leg is no dearer, and draws bends straighter; jumps stay. Owns
-/// its memory: no allocation once it has grown.
+/// Leaves out stops where a straight segment costs no more, and moves the others towards a straight
+/// line; off-mesh links stay. Owns its memory: no allocation once it has grown.
 class LiveStringPuller {
  public:
   void draw(LiveMesh& mesh, std::vector<LiveStop>& stops);
@@ -84,10 +85,10 @@ class LiveSearch {
   void begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
   /// Looks at up to `max_nodes` points more; kFull where it would remember more than so many bytes.
   State advance(LiveMesh& mesh, uint64_t max_nodes, uint64_t max_bytes);
-  /// Gives back what is allocated beyond kKeptBytes: for a search that is done with.
+  /// Frees what is allocated beyond kKeptBytes: after a search.
   void give_back();
   [[nodiscard]] uint64_t allocated_bytes() const;
-  /// The way to the goal, or to the point met that is nearest to it; not yet straight.
+  /// The path to the goal, or to the reached point that is nearest to it; not yet pulled taut.
   void trace(LiveMesh& mesh, std::vector<LiveStop>& stops) const;
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
 
@@ -96,7 +97,7 @@ class LiveSearch {
     double bound = 0;
     uint32_t node = 0;
   };
-  /// The node that now comes from `parent`, or null if what is known is no dearer.
+  /// The node now reached from `parent`, or null if the known cost is no higher.
   LiveNode* push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, double cost);
   void push_links(LiveMesh& mesh, const LiveNode& node, uint32_t index, double factor);
 

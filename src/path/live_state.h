@@ -15,7 +15,7 @@ struct LiveGround::State {
   explicit State(LiveMesh of) : mesh(std::move(of)) {}
 
   bool locate(const Place& place, LiveStop& stop);
-  /// False: there is more to look at.
+  /// False: the search has more to expand.
   bool advance(uint64_t max_nodes, uint64_t max_bytes, Path& path);
   /// Of `stops`.
   void give(Path& path);

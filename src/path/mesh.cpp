@@ -118,7 +118,7 @@ class Builder {
     return there;
   }
 
-  // The corner at `at` cells around the rectangle, looked at from the border cell `cell` around.
+  // The corner at `at` cells around the rectangle, seen from the border cell `cell` around.
   [[nodiscard]] std::optional<CornerKey> corner_at(const GroundLevel& level, const MeshRect& rect,
                                                    int32_t at, int32_t cell) const {
     const int32_t w = rect.width, d = rect.depth;
@@ -161,7 +161,7 @@ class Builder {
   int32_t step_;
 };
 
-// Numbers what portals hold together by its first rectangle.
+// Numbers each connected component by its first rectangle.
 void find_components(PathMesh& mesh) {
   const auto count = static_cast<uint32_t>(mesh.rects.size() - 1);
   std::vector<uint32_t> queue;

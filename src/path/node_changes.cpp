@@ -110,7 +110,7 @@ bool NodeChanges::set_active(ChangeId id, bool active, bool remove) {
   return true;
 }
 
-// Cells that are taken, and blocks within `around`.
+// Blocked cells, and blocks within `around`.
 void NodeChanges::take_tiles(const Solid& solid, double around, Change& change,
                              std::vector<uint32_t>& near) const {
   const WorldData& world = *mesh_->nodes().data()->world.data();
@@ -127,7 +127,7 @@ void NodeChanges::take_tiles(const Solid& solid, double around, Change& change,
         const GroundLevel ground = ground_level(world, level, mesh_->avatar_class());
         if (ground.zone == nullptr) continue;
         const TileFloor floor{world.summary, ground.view, x, z};
-        // Legal ones are asked for their heights only.
+        // Legal cells alone need their heights.
         CellRows legal{};
         const auto blocks = mesh_->blocks_of(patch);
         for (const NodeBlock& block : blocks) {
@@ -196,7 +196,7 @@ void NodeChanges::take_squares(const Solid& solid, uint32_t block, Change& chang
   descend(descend, whole.level, whole.s, whole.t);
 }
 
-// A step over the border of two tiles goes nowhere: who stands on either side is asked.
+// A step over the border of two tiles crosses no distance: the bodies on either side are checked.
 void NodeChanges::take_pieces(const Solid& solid, std::span<const uint32_t> near,
                               Change& change) const {
   for (const uint32_t block : near) {
@@ -262,8 +262,8 @@ bool NodeChanges::blocks_portal(const Solid& solid, const NodePortal& portal, do
   if (leans_far) return true;
   const bool upright = !climbs || (a.axis.y == 1 && b.axis.y == 1);
   BodyRoom body = body_of(avatar, climbs && !upright);
-  // Two of them lean from each other by twice that at most, and the chord of a doubled angle is
-  // twice its sine: so much elsewhere are their points.
+  // Their axes differ by twice that at most, and the chord of a doubled angle is twice its sine: so
+  // far apart are their points.
   spread += 2 * sine * reach_of(avatar);
   if (portal.kind != LinkKind::kDrop) return motion_may_touch(solid, body, a, b, spread, kTurns);
   const Pose over{{b.feet.x, a.feet.y, b.feet.z}, {0, 1, 0}};
@@ -311,8 +311,7 @@ void NodeChanges::update() {
   list_portals();
 }
 
-// The largest squares of a block of which nothing is taken. taken(level, s, t): 0 nothing, 1 some
-// of it, 2 all.
+// The largest free squares of a block. blocked(level, s, t): 0 free, 1 partly blocked, 2 blocked.
 template <class IsBlocked>
 void NodeChanges::cut(uint32_t block, const IsBlocked& blocked) {
   const NodeBlock& whole = mesh_->blocks()[block];
@@ -429,7 +428,7 @@ void NodeChanges::join_parts(uint32_t block) {
   }
 }
 
-// What is left of portals whose blocks are cut, or that are not free on their way.
+// What is left of portals whose blocks are cut, or that are blocked themselves.
 void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& pieces) {
   std::vector<uint32_t> gone;
   for (const auto& [portal, blocked] : pieces) gone.push_back(portal);

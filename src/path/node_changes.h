@@ -24,7 +24,7 @@ namespace throng {
 /// came first. Copies share the mesh.
 class NodeChanges {
  public:
-  /// No leap of the mesh is longer. [m]
+  /// No link over a hole of the mesh is longer. [m]
   NodeChanges(const NodeMesh& mesh, const BlockSquares& squares, double longest_hole_link)
       : mesh_(&mesh), squares_(&squares), longest_hole_link_(longest_hole_link) {}
 
@@ -33,7 +33,7 @@ class NodeChanges {
   bool set_active(ChangeId change, bool active, bool remove);
   /// Rises with every change.
   [[nodiscard]] uint64_t version() const { return version_; }
-  /// Brings what follows up to date. Time: what is up.
+  /// Brings what follows up to date. Time: linear in the active obstacles.
   void update();
 
   [[nodiscard]] bool empty() const { return touched_.empty(); }
@@ -51,7 +51,7 @@ class NodeChanges {
   [[nodiscard]] uint32_t part_at(uint32_t block, double s, double t) const;
   /// Blocks of the mesh that are cut or have other portals, rising.
   [[nodiscard]] std::span<const uint32_t> touched() const { return touched_; }
-  /// Portals of the mesh that are gone, rising, and what is left of each among portals().
+  /// Portals of the mesh that are closed, rising, and what is left of each among portals().
   struct Replaced {
     uint32_t portal = 0;
     uint32_t first = 0, last = 0;  // of portals(), numbered as a NodeView does
@@ -71,8 +71,8 @@ class NodeChanges {
     uint32_t block = 0, order = 0;
     friend auto operator<=>(const BlockedSquare&, const BlockedSquare&) = default;
   };
-  // Of a portal that leads through the air: those of its 16 pieces that are not free; a leap has
-  // one.
+  // Of a portal that leads through the air: those of its 16 pieces that are blocked; a link over a
+  // hole has one.
   struct BlockedPieces {
     uint32_t portal = 0;
     uint16_t pieces = 0;

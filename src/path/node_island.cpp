@@ -6,7 +6,7 @@ namespace throng {
 
 void NodeIsland::clear(const NodeView& view) {
   marks_.resize(view.block_count());
-  if (++query_ == 0) {  // After 2^32 queries the marks begin anew.
+  if (++query_ == 0) {  // After 2^32 queries the marks start over.
     marks_.clear();
     query_ = 1;
   }

@@ -14,14 +14,14 @@ namespace throng {
 class NodeIsland {
  public:
   enum class Direction { kOut, kIn };
-  static constexpr size_t kMax = 4096;  ///< Blocks that are looked at.
+  static constexpr size_t kMax = 4096;  ///< Blocks that are visited.
 
   /// Before the first of a query.
   void clear(const NodeView& view);
-  /// Looks for all blocks that ways lead to from a block, or from which they lead to it. True if
-  /// these are a pocket that does not hold `other`: it is kept. False if it may be reached.
+  /// Finds all blocks that paths lead to from a block, or from which they lead to it. True if these
+  /// are an island that does not hold `other`: it is kept. False if it may be reached.
   bool close(const NodeView& view, uint32_t from, uint32_t other, Direction direction);
-  /// Is a block in one of the pockets that were found since clear()?
+  /// Is a block in one of the islands found since clear()?
   [[nodiscard]] bool holds(uint32_t block) { return marks_[block] == query_; }
 
  private:

@@ -45,7 +45,7 @@ NodeParts::NodeParts(const NodeMesh& mesh, int32_t workers) : boxes_(mesh.patche
 
 void NodeParts::reach(uint32_t block, Reached& reached) const {
   reached.marks_.resize(count_, 0);
-  if (++reached.query_ == 0) {  // After 2^32 queries the marks begin anew.
+  if (++reached.query_ == 0) {  // After 2^32 queries the marks start over.
     std::fill(reached.marks_.begin(), reached.marks_.end(), 0);
     reached.query_ = 1;
   }

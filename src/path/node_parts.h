@@ -40,9 +40,9 @@ class NodeParts {
   /// Marks all parts that are reached from a block. Linear in the one-way portals that lead on from
   /// them.
   void reach(uint32_t block, Reached& reached) const;
-  /// Of the ends of portals that are gone through on ways from a place whose parts were marked, and
-  /// of that place itself, the nearest to a goal; none that lies in a block for which
-  /// is_out(block) is true. Patches are looked at in the order of how near they may come.
+  /// Of the ends of portals on paths from a place whose parts were marked, and of that place
+  /// itself, the nearest to a goal; none that lies in a block for which is_out(block) is true.
+  /// Patches are visited in the order of how near they may come.
   template <class IsOut>
   [[nodiscard]] BlockPoint nearest(const NodeView& view, const BlockPoint& from, Vec3d goal,
                                    Reached& reached, IsOut is_out) const;

@@ -25,9 +25,10 @@ namespace {
 
 constexpr double kEdgeStep = 1e-4;  // of a patch's parameters, for derivatives
 constexpr size_t kMaxPieces = 4096;
-constexpr size_t kManyCrossings = size_t{1} << 15;  // Fewer are looked at in no time.
-// Places no farther apart than so many sides of a district may be joined by a way that looks at so
-// few crossings that it need not be led over gates.
+constexpr size_t kManyCrossings = size_t{1}
+                                  << 15;  // A search of fewer crossings takes no noticeable time.
+// Places no farther apart than so many sides of an overlay cell may be joined by a path that
+// expands so few crossings that it need not be led over entrances.
 constexpr double kNearSides = 3;
 constexpr uint64_t kNearCrossings = 2048;
 
@@ -113,7 +114,7 @@ SearchBudget what_is_left(const SearchBudget& budget, const NodePath& path) {
 
 }  // namespace
 
-// To where a way leads, as far as is known before what has been put up is asked.
+// To where a path leads, as far as is known before active obstacles are tested.
 PathEnd NodePathFinder::Scratch::find(const BlockPoint& from, const BlockPoint& to,
                                       const SearchBudget& budget, NodePath& path) {
   const auto take = [&](auto&& searched, PathEnd end) {
@@ -146,8 +147,8 @@ PathEnd NodePathFinder::Scratch::find_all(const BlockPoint& from, const BlockPoi
   return end;
 }
 
-// To the reachable place that comes nearest to one that is not. What looks near may be cut off,
-// too.
+// To the reachable place that comes nearest to one that is not. A place that seems near may itself
+// be cut off.
 PathEnd NodePathFinder::Scratch::find_nearest(const BlockPoint& from, const BlockPoint& to,
                                               const SearchBudget& budget, NodePath& path) {
   constexpr int kMaxPockets = 16;
@@ -168,7 +169,7 @@ PathEnd NodePathFinder::Scratch::find_nearest(const BlockPoint& from, const Bloc
 
 namespace {
 
-// A way as it is told: points along the surface, links, corridor.
+// Builds the path that is returned: points along the surface, links, corridor.
 class PathBuilder {
  public:
   PathBuilder(const NodeView& view, const PieceCost& cost, double spacing, NodePath& path)
@@ -181,7 +182,7 @@ class PathBuilder {
   }
 
   void go_on(const BlockPoint& to) {
-    // Where a way leads through the corner of a block there is nothing to go, and no point to add.
+    // Where a path leads through the corner of a block it covers no distance, and adds no point.
     if (to.s == last_.s && to.t == last_.t) {
       last_ = to;
       return;
@@ -201,7 +202,7 @@ class PathBuilder {
     last_ = to;
   }
 
-  // A way that goes nowhere has two ends, too.
+  // A path of length 0 has two ends, too.
   void end() {
     if (path_.points.size() == 1) path_.points.push_back(path_.points.front());
   }
@@ -293,7 +294,7 @@ Obstacle obstacle_towards(const NodeView& view, const BlockPoint& from, Vec3d go
     outside = s < 0 || t < 0 || s > 1 || t > 1;
   }
   if (!view.is_as_baked() && !outside) {
-    // Whoever could stand there, but for what has been put up.
+    // A body could stand there, were it not for an obstacle.
     const uint32_t next = mesh.block_at(block.patch, s, t);
     if (next != kNoNode && view.changes()->part_at(next, s, t) == kNoNode) return Obstacle::kNarrow;
   }
@@ -313,7 +314,7 @@ Obstacle obstacle_towards(const NodeView& view, const BlockPoint& from, Vec3d go
   const double slope =
       std::acos(std::clamp(surface.normal(s, t).y, -1.0, 1.0)) * 180 / std::numbers::pi;
   if (slope > limit) return Obstacle::kSteep;
-  // Others that can stand there tell what is too much of this one.
+  // Classes that can stand there show which measure of this one is too large.
   const Nodes& nodes = mesh.nodes();
   Obstacle found = Obstacle::kNarrow;
   for (uint32_t node = block.node; node < nodes.node_count(); ++node) {
@@ -504,7 +505,7 @@ NodePlace NodePathFinder::find_place(Vec3d position, double reach) const {
       const uint32_t part = block == kNoNode ? kNoNode : changes.part_at(block, s, t);
       if (part != kNoNode) consider(part, s, t, 0);
       if (part == kNoNode && block != kNoNode) {
-        // What is nearest is taken. No level tile's place is nearer than in one of its parts.
+        // The nearest is used. No level tile's place is nearer than in one of its parts.
         for_each_level_part(view, position, nearest, [&](uint32_t other, double u, double v) {
           consider(other, u, v, uint64_t{other} + 1);
         });
@@ -600,7 +601,7 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
     }
     path.end = scratch.find(start, scratch.nearest.value_or(goal), budget, path);
   } else {
-    // Parts tell who is reached if nothing is in the way.
+    // If no obstacle blocks, parts decide what is reachable.
     scratch.islands.clear(view);
     reachable = reachable &&
                 !scratch.islands.close(view, goal.block, start.block, NodeIsland::Direction::kIn);

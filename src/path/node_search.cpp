@@ -8,13 +8,13 @@
 #include <numbers>
 
 // Hart, Nilsson, Raphael. A formal basis for the heuristic determination of minimum cost paths.
-// 1968. A way goes from the middle of one portal to the middle of the next, straight by the
+// 1968. A path leads from the middle of one portal to the middle of the next, straight in the
 // parameters of their block; a piece is measured over its middle, so it is never shorter than the
-// straight line, and the straight line to the goal never says too much.
+// straight line, and the straight line to the goal never overestimates.
 namespace throng {
 namespace {
 
-constexpr double kShort = 1;  // Pieces up to here are taken for straight. [m]
+constexpr double kShort = 1;  // Pieces up to here count as straight. [m]
 
 }  // namespace
 
@@ -86,7 +86,7 @@ PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const Sea
   expanded_ = met_ = 0;
   within_ = within;
   states_.resize(2 * view_->portal_count());
-  if (++query_ == 0) {  // After 2^32 queries the marks begin anew.
+  if (++query_ == 0) {  // After 2^32 queries the marks start over.
     states_.clear();
     query_ = 1;
   }

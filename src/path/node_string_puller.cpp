@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
-// One crossing after the other goes to where the straight lines from the one before it and to the
-// one after it, unfolded around the portal, meet it; there and back along the way, until nothing
-// gets cheaper. Whatever comes out lies in the same blocks, so it is as legal as what went in.
+// One crossing after the other moves to where the straight lines from the one before it and to the
+// one after it, unfolded around the portal, meet it; forward and back along the path, until its
+// cost no longer falls. The result lies in the same blocks, so it is as legal as the input.
 namespace throng {
 namespace {
 
 constexpr int kMaxRounds = 48;
 constexpr double kLittle = 1e-4;  // Of the whole cost: a round that gains less is the last.
 
-// Where the shortest way from p to q over the line from a to b meets it, 0 at a and 1 at b.
+// Where the shortest path from p to q over the line from a to b meets it, 0 at a and 1 at b.
 double unfolded(Vec3d p, Vec3d q, Vec3d a, Vec3d b) {
   const Vec3d along = b - a;
   const double size2 = dot(along, along);

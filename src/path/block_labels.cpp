@@ -156,7 +156,7 @@ std::vector<Block> all_blocks(const PathMesh& mesh) {
   return blocks;
 }
 
-// Thrown if a block has more candidates than an entry's number can hold.
+// Does a block have more candidates than the number of an entry can hold?
 bool are_too_many(const HubLabels& labels) {
   for (size_t b = 0; b + 1 < labels.first_candidate.size(); ++b) {
     constexpr uint32_t kMax = std::numeric_limits<uint16_t>::max();

@@ -54,8 +54,8 @@ struct Around {
   bool unknown = false;
 };
 
-// Levels keep floors where somebody can stand, and those beside; of matter they know nothing. So
-// what keeps a body off is told by what is seen where its own floor ends.
+// Levels keep floors where an avatar can stand, and those beside; they hold no solids. So what
+// blocks a body is inferred from what is seen where its own floor ends.
 class Surroundings {
  public:
   Surroundings(const WorldGround& ground, int32_t x, int32_t z, int32_t feet)
@@ -68,7 +68,7 @@ class Surroundings {
         cell_(ground.world.summary.cell * 1000),
         steepest_(std::tan(avatar().max_slope * std::numbers::pi / 180) * cell_) {}
 
-  // Where the body would be in the cell ahead, and a cell more: matter in the middle of a cell
+  // Where the body would be in the cell ahead, and a cell more: a solid in the middle of a cell
   // shows in the floor of the next.
   [[nodiscard]] Around cast_ahead(int32_t ahead_x, int32_t ahead_z) const {
     const auto radius = static_cast<int32_t>(std::ceil(avatar().radius * 1000 / cell_)) + 2;
@@ -82,11 +82,11 @@ class Surroundings {
   }
 
  private:
-  // Of several floors over a cell the one tells that comes last here.
+  // Of several floors over a cell the one that comes last here decides.
   enum class Sight : uint8_t { kUnknown, kRaised, kEdge, kWall, kStep, kFloor };
   struct Column {
     Sight sight = Sight::kUnknown;
-    int32_t feet = 0;  // of the floor that tells it
+    int32_t feet = 0;  // of the floor that decides
   };
 
   [[nodiscard]] const AvatarClass& avatar() const {
@@ -129,7 +129,7 @@ class Surroundings {
     return found;
   }
 
-  // Over the floor as far as it goes, and where it ends to what is seen first.
+  // Over the floor to its end, and from there to what is seen first.
   void cast_along(int32_t dx, int32_t dz, int32_t radius, Around& around) const {
     const auto beyond = static_cast<int32_t>(std::ceil(kThickWall / cell_));
     int32_t x = x_, z = z_, feet = feet_;
@@ -195,7 +195,7 @@ class Surroundings {
   }
 
   // Is the rise to a cell, too steep for the class, that of a slope, and not of a step, after which
-  // the floor is flat? Where nobody walks a slope no more of it is known than its first cell.
+  // the floor is flat? Of a slope where no avatar can stand only the first cell is known.
   [[nodiscard]] bool is_slope(int32_t x, int32_t z, int32_t dx, int32_t dz, int32_t from,
                               int32_t to) const {
     constexpr double kSteepest = 4;  // A floor that rises more is a wall, about 76 degrees.
@@ -237,7 +237,7 @@ Obstacle obstacle_beyond(const WorldGround& ground, const GroundLevel& level,
     if (around.step && !around.wall) return Obstacle::kStep;
     if (around.wall) return Obstacle::kNarrow;
     if (around.edge) return Obstacle::kGap;
-    // Under a floor higher up is most likely what bears it; and where the floor just goes on, what
+    // A floor higher up most likely stands on a solid; and where the floor continues, something
     // stands on it.
     return around.raised || !around.unknown ? Obstacle::kNarrow : Obstacle::kGap;
   };

@@ -14,7 +14,7 @@ constexpr double kNoPath = std::numeric_limits<double>::infinity();
 
 void OverlaySearch::begin() {
   states_.resize(2 * overlay_->entrances().size());
-  if (++query_ == 0) {  // After 2^32 queries the marks begin anew.
+  if (++query_ == 0) {  // After 2^32 queries the marks start over.
     std::fill(states_.begin(), states_.end(), State{});
     query_ = 1;
   }
@@ -59,7 +59,7 @@ PathEnd OverlaySearch::find(const BlockPoint& from, const BlockPoint& to,
       if (stretch.overlay_level < overlay_level) {
         finer_.push_back(stretch);
       } else if (!refine(stretch)) {
-        return PathEnd::kUnreachable;  // Never: what a tier tells is made of the one below.
+        return PathEnd::kUnreachable;  // Never: an overlay level is made from the one below.
       }
     }
     stretches_.swap(finer_);
@@ -88,19 +88,19 @@ PathEnd OverlaySearch::find(const BlockPoint& from, const BlockPoint& to,
   return end;
 }
 
-// From the middle of one district to the middle of the next, the way is looked for anew, free of
-// the gate between them.
+// From the middle of one overlay cell to the middle of the next, the path is searched for again,
+// without having to pass the entrance between them.
 void OverlaySearch::straighten(const BlockPoint& from, const BlockPoint& to,
                                const SearchBudget& budget, NodeSearch& blocks,
                                std::vector<Crossing>& crossings) {
   led_.clear();
   cost_ = 0;
   BlockPoint begin = from;
-  size_t first = 0;  // of what is led anew
+  size_t first = 0;  // of the stretch that is replaced
   for (size_t i = 0; i < joints_.size(); ++i) {
     const bool ends = i + 1 == joints_.size();
     const size_t last = ends ? crossings.size() : (joints_[i] + joints_[i + 1]) / 2;
-    if (!ends && last == joints_[i]) continue;  // No middle: over both gates at once.
+    if (!ends && last == joints_[i]) continue;  // No middle: over both entrances at once.
     const BlockPoint end = ends ? to : ends_of(*view_, crossings[last]).out;
     const double known = cost_of(begin, end, crossings.data() + first, crossings.data() + last);
     constexpr double kGain = 1e-6;  // Anything less is rounding.
@@ -150,8 +150,8 @@ double OverlaySearch::cost_of(const BlockPoint& from, const BlockPoint& to, cons
   return cost;
 }
 
-// A* over entries. A district that does not hold the goal is gone through as one of the highest
-// tier over whose border it was come to.
+// A* over entries. An overlay cell that does not hold the goal is crossed as one of the highest
+// overlay level whose border the search crossed to enter it.
 PathEnd OverlaySearch::over_entrances(const BlockPoint& from, const BlockPoint& to,
                                       const SearchBudget& budget) {
   const auto& overlay_levels = overlay_->overlay_levels();
@@ -160,7 +160,8 @@ PathEnd OverlaySearch::over_entrances(const BlockPoint& from, const BlockPoint& 
                  goal_cell = of_block[view_->base_of(to.block)];
   const Vec3d goal = position(*view_, to);
   stretches_.clear();
-  // What is left from the goal's district's entries, and from the start if it is there too.
+  // The remaining cost from the entries of the goal's overlay cell, and from the start if it is in
+  // that cell too.
   graph_.set(now_.blocks_of(goal_cell), false);
   graph_.run_back(to);
   const auto goal_entries = overlay_levels.front().entries_of(goal_cell);
@@ -188,7 +189,7 @@ PathEnd OverlaySearch::over_entrances(const BlockPoint& from, const BlockPoint& 
     const uint32_t arc = graph_.arc_of(now_.crossing(out));
     if (arc != kNoNode) reach(out, kNoEntry, costs[arc], 0, goal);
   }
-  // By tier: the goal's district.
+  // By overlay level: the cell of the goal.
   std::array<uint32_t, 32> holds_goal{};
   uint32_t overlay_cell = goal_cell;
   for (size_t k = 0; k < overlay_levels.size(); ++k) {
@@ -234,7 +235,7 @@ PathEnd OverlaySearch::over_entrances(const BlockPoint& from, const BlockPoint& 
   return PathEnd::kReached;
 }
 
-// Adds the same stretch to `finer_`, through districts of the tier below.
+// Adds the same stretch to `finer_`, through overlay cells of the level below.
 bool OverlaySearch::refine(const Stretch& stretch) {
   const Overlay::OverlayLevel& overlay_level = overlay_->overlay_levels()[stretch.overlay_level];
   const Overlay::OverlayLevel& below =

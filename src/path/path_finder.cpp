@@ -20,7 +20,7 @@
 namespace throng {
 namespace {
 
-// Most of what feet take is the wait for the ground's bytes: all are asked for before any is read.
+// Feet mostly wait for the ground's bytes: all are prefetched before any is read.
 void add_places(const WorldData& world, const PathMesh& mesh, const std::vector<Stop>& stops,
                 std::vector<LevelView>& views, Path& path) {
   views.clear();
@@ -151,7 +151,7 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, const Sear
     result = scratch_->search.find(mesh, start, goal, budget, scratch_->corners, length);
     path.nodes = scratch_->search.expanded();
   }
-  // Both are of one component: a way there is, even if none can be drawn over corners.
+  // Both are of one component: a path exists, even if none can be drawn over corners.
   const auto is_drawn = [&] {
     SegmentWalker walker(world, mesh);
     return walker.walk(start, scratch_->corners, goal.at, scratch_->stops) &&

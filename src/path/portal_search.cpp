@@ -123,7 +123,8 @@ void PortalSearch::expand(const Stop& at, double cost, uint32_t before) {
   }
 }
 
-// The way backwards from its last portal, both sides of each; then without what is needless.
+// The path backwards from its last portal, both sides of each; then without stops that are
+// needless.
 void PortalSearch::draw(uint32_t last, const Stop& from, const Stop& to, std::vector<Stop>& stops) {
   all_.clear();
   all_.push_back(to);
@@ -134,7 +135,7 @@ void PortalSearch::draw(uint32_t last, const Stop& from, const Stop& to, std::ve
   }
   all_.push_back(from);
   std::reverse(all_.begin(), all_.end());
-  // Straightened until nothing is left out: what goes makes room for the next.
+  // Repeated until no stop is left out: each removal may allow the next.
   for (size_t before = 0; before != all_.size();) {
     before = all_.size();
     stops.assign(1, all_.front());

@@ -8,7 +8,7 @@
 #include "path/border.h"
 
 // Distances around a rectangle run from its south-west corner with the inside on the left, as its
-// portals do. Of a node that looks in through [right, left], what lies from `right` on comes first,
+// portals do. Of a node that sees [right, left] of a portal, what lies from `right` on comes first,
 // then what the root sees, then what lies beyond `left`.
 namespace throng {
 namespace {
@@ -54,8 +54,8 @@ SearchResult PathSearch::find(const PathMesh& mesh, const Stop& from, const Stop
   return result;
 }
 
-// An interval is forgotten as soon as it is looked at, and those that can lead to nothing shorter
-// are when the memory is used up; what is given up then is seldom worth looking at.
+// An interval is forgotten as soon as it is expanded. When the memory is used up, so are those that
+// can lead to nothing shorter; those are seldom worth expanding.
 SearchResult PathSearch::run(const SearchBudget& budget) {
   size_t drop_at = kDropFrom;
   while (!open_.empty()) {
@@ -133,13 +133,14 @@ void PathSearch::start(uint32_t start_rect, CellPoint from) {
   }
 }
 
-// A better way to the root's corner has been found since.
+// A better path to the root's corner has been found since.
 bool PathSearch::is_stale(uint32_t root) const {
   const Root& r = roots_[root];
   return r.corner != kNoCorner && best_[r.corner].length < r.length - kSame;
 }
 
-// The root of ways that bend at a corner after `root`; UINT32_MAX if there was a better way there.
+// The root of paths that turn at a corner after `root`; UINT32_MAX if there was a better path
+// there.
 uint32_t PathSearch::turn(uint32_t root, CellPoint at, uint32_t corner) {
   const double length = roots_[root].length + distance(roots_[root].point, at);
   Best& best = best_[corner];
@@ -225,11 +226,12 @@ void PathSearch::expand(const Node& node) {
   uint32_t seen_root = node.root;
   const double side = cross(node.right, node.left, root);
   if (std::fabs(side) <= kSame * width) {
-    // The root lies on the interval's line: unless it lies on the interval, the way goes to the
+    // The root lies on the interval's line: unless it lies on the interval, the path goes to the
     // nearer end and turns there.
     const double to_right = distance(root, node.right), to_left = distance(root, node.left);
     const bool touches = std::max(to_right, to_left) <= width + kSame;
-    if (touches && roots_[node.root].corner == kNoCorner) return;  // start() looked out there
+    if (touches && roots_[node.root].corner == kNoCorner)
+      return;  // start() covered what is seen from there
     if (!touches) {
       const bool right = to_right < to_left;
       const uint32_t corner = right ? node.right_corner : node.left_corner;

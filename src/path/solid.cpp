@@ -101,7 +101,7 @@ bool meets(const BodyRoom& room, const Shape& shape) {
   const auto [low, high] = along(shape, room.feet, room.axis);
   const double out = room.spread + room.radius * room.sine + room.margin;
   if (high < room.bottom * room.cosine - out || low > room.top + out) return false;
-  // 2 sin(angle / 2) times as far as it is up the axis goes a point of the axis that turns.
+  // A point of an axis that turns moves 2 sin(angle / 2) times its distance up the axis.
   const double turned = room.top * std::sqrt(std::max(0.0, 2 - 2 * room.cosine));
   return comes_near(shape, room.feet + room.axis * room.bottom, room.feet + room.axis * room.top,
                     room.radius + room.spread + turned + room.margin);

@@ -8,7 +8,7 @@
 
 #include "path/blocked_air.h"
 
-/// Boxes of a space of which some cells are taken.
+/// Boxes of a space of which some cells are blocked.
 namespace throng {
 
 /// What is left of such a box is cut into cubes, its parts, as an octree down to single cells. They
@@ -25,7 +25,7 @@ class SplitBoxes {
   [[nodiscard]] const AirCube& cube(uint32_t part) const { return cubes_[part - first_]; }
   /// Every part's number is lower than that.
   [[nodiscard]] uint32_t end() const { return first_ + static_cast<uint32_t>(cubes_.size()); }
-  /// Takes cells from a box, instead of those taken before; with none it is whole again.
+  /// Blocks cells of a box, instead of those blocked before; with none it is whole again.
   void cut(uint32_t box, const CubeCells& blocked);
   /// Calls visit(part) for each part of a split box, always in the same order.
   template <class Visit>

@@ -17,7 +17,7 @@ double missing_side(const MeshCorner& corner, double dx, double dz) {
   return dx * -corner.away_z - dz * -corner.away_x;
 }
 
-// True if the way over `at` goes around what is missing there, or straight on.
+// True if the path over `at` goes around what is missing there, or straight on.
 bool holds(const PathMesh& mesh, CellPoint before, const Waypoint& at, CellPoint after) {
   if (at.corner == kNoCorner) return false;
   const double turn = cross(before, at.at, after);
@@ -57,7 +57,7 @@ bool keeps_out(const PathMesh& mesh, const Waypoint& p, double dx, double dz) {
 }
 
 // Rays go from and to points beside corners. Where the line between the corners themselves runs
-// into a cell that is missing at one of them the ray may still pass by, and tells nothing.
+// into a cell that is missing at one of them the ray may still pass by, and proves nothing.
 bool see_each_other(const PathMesh& mesh, const Waypoint& a, const Waypoint& b) {
   const double dx = b.at.x - a.at.x, dz = b.at.z - a.at.z;
   if (!keeps_out(mesh, a, dx, dz) || !keeps_out(mesh, b, dx, dz)) return false;
@@ -68,8 +68,8 @@ bool see_each_other(const PathMesh& mesh, const Waypoint& a, const Waypoint& b) 
 
 }  // namespace
 
-// Most points at which the way need not bend will be pulled from, between the points beside them:
-// what lies there is asked for before any of it is waited for.
+// Most points at which the path need not turn are pulled away from, between the points beside them:
+// what lies there is prefetched before any of it is read.
 void StringPuller::prefetch_waypoints(const PathMesh& mesh, const std::vector<Waypoint>& path) {
   asked_.clear();
   for (size_t i = 1; i + 1 < path.size(); ++i) {
@@ -90,12 +90,12 @@ void StringPuller::prefetch_waypoints(const PathMesh& mesh, const std::vector<Wa
   each_rect([&](uint32_t rect) { prefetch(mesh.portals.data() + mesh.rects[rect].first_portal); });
 }
 
-// What stands in the triangle of `from`, `over`, `to`, whose first two sides are free: the convex
-// chain of corners that a string over these two sides is caught by when it is pulled.
+// The obstacles in the triangle of `from`, `over`, `to`, whose first two sides are free: the convex
+// chain of corners that catches a string over these two sides when it is pulled.
 void StringPuller::wrap(const PathMesh& mesh, const Waypoint& from, const Waypoint& over,
                         const Waypoint& to) {
   chain_.clear();
-  // A ray is cheaper than looking into the triangle, and most often nothing stands there.
+  // A ray costs less than casting into the triangle, and usually nothing stands there.
   if (see_each_other(mesh, from, to)) return;
   const double turn = cross(from.at, over.at, to.at);
   if (std::fabs(turn) <= kSame) return;
@@ -139,7 +139,7 @@ bool StringPuller::pull(const PathMesh& mesh, const std::vector<Waypoint>& path,
   corners.clear();
   taut_.assign(1, path.front());
   ahead_.assign(path.rbegin(), path.rend() - 1);
-  // Each turn makes the way shorter; the count stops what rounding might keep going.
+  // Each turn makes the path shorter; the count ends what rounding could continue for ever.
   size_t turns = 1000 + 100 * path.size();
   while (!ahead_.empty()) {
     if (turns-- == 0) return false;

@@ -20,7 +20,7 @@ class DijkstraSearch {
  public:
   explicit DijkstraSearch(size_t count) : best_(count, kFar), before_(count, 0) {}
 
-  // Calls visit(node, length, before) in order of length; goes on from a node if it says so.
+  // Calls visit(node, length, before) in order of length; expands a node if it returns true.
   template <class Visit>
   void run(const PathGraph& graph, uint32_t from, Visit visit) {
     heap_.clear();
@@ -56,7 +56,7 @@ class DijkstraSearch {
   std::vector<uint32_t> touched_;
 };
 
-// Nodes by how many shortest ways from a sample of nodes lead over them: the more, the better a
+// Nodes by how many shortest paths from a sample of nodes lead over them: the more, the better a
 // hub.
 std::vector<uint32_t> order_hubs(const PathGraph& graph, uint64_t samples, int32_t workers) {
   const size_t count = graph.count();
@@ -97,7 +97,7 @@ std::vector<uint32_t> order_hubs(const PathGraph& graph, uint64_t samples, int32
   return order;
 }
 
-// The nodes that have a hub, and how ways lead from them to it.
+// The nodes that have a hub, and how paths lead from them to it.
 class HubTree {
  public:
   explicit HubTree(size_t count) : at_(count, 0) {}
@@ -109,10 +109,10 @@ class HubTree {
     at_[node] = n;
     nodes_.push_back({node, at_[before], 1, n, 0});
   }
-  // Adds the tree to the trails; calls place(node, its place).
+  // Adds the tree to the trees; calls place(node, its place).
   template <class Place>
   void write(std::vector<uint32_t>& trees, Place place) {
-    // From the ends on: the branch with most nodes goes on to where it leads.
+    // From the ends on: the branch with most nodes continues to the node that it leads to.
     for (size_t i = nodes_.size(); i-- > 1;) {
       Node& to = nodes_[nodes_[i].before];
       to.below += nodes_[i].below;
@@ -212,7 +212,7 @@ Result<TwoHopLabels> label_graph(const PathGraph& graph, uint64_t samples, int32
     tree.clear();
     search.run(graph, root, [&](uint32_t node, double length, uint32_t before) {
       for (const auto& label : labels[node]) {
-        // An earlier hub lies on a way as short.
+        // An earlier hub lies on a path that is as short.
         if (to_root[label.hub] + label.length <= length + kSame) return false;
       }
       labels[node].push_back({rank, 0, length});

@@ -19,7 +19,8 @@ namespace {
 constexpr float kNever = std::numeric_limits<float>::infinity();
 using Edges = std::vector<std::vector<PathGraph::Edge>>;
 
-// Joins every two of `count` nodes by their ways' lengths, without the ways that lead over another.
+// Joins every two of `count` nodes by their paths' lengths, without the paths that lead over
+// another.
 void add_edges(size_t count, const std::function<float(size_t, size_t)>& length_of,
                const std::function<uint32_t(size_t)>& node_of, Edges& edges) {
   std::vector<float> lengths(count * count, kNever);
@@ -79,7 +80,7 @@ PathGraph entrance_graph(const ZoneGraph& graph, const OverlayCell& zone_cell,
   return to_graph(edges);
 }
 
-// The first node of what holds together with each.
+// The first node of each connected component.
 std::vector<uint32_t> components_of(const PathGraph& graph) {
   std::vector<uint32_t> of(graph.count(), UINT32_MAX), queue;
   for (uint32_t node = 0; node < of.size(); ++node) {
@@ -99,8 +100,9 @@ std::vector<uint32_t> components_of(const PathGraph& graph) {
   return of;
 }
 
-// Of the gates between two territories that join the same parts of them, one every so many cells of
-// the border is a post. `components` has, for each territory, the part of each gate.
+// Of the entrances between two overlay cells that join the same components of them, one every so
+// many cells of the border is a boundary node. `components` has, for each overlay cell, the
+// component of each entrance.
 void choose_boundary_nodes(const WorldData& world,
                            const std::vector<std::vector<uint32_t>>& components, ZoneGraph& graph) {
   struct Candidate {
@@ -142,7 +144,7 @@ void choose_boundary_nodes(const WorldData& world,
   }
 }
 
-// Per territory its zones.
+// Per overlay cell its zones.
 std::vector<std::vector<uint32_t>> group_zones(const WorldData& world, ZoneGraph& graph) {
   std::map<std::pair<int32_t, int32_t>, std::vector<uint32_t>> groups;
   for (uint32_t slot = 0; slot < world.slots.size(); ++slot) {

@@ -48,7 +48,7 @@ std::vector<Crossing> find_crossings(const PathMesh& mesh,
       const bool is_east = a.x == b.x && a.x == rect.x + rect.width;
       const bool is_up = a.z == b.z && a.z == rect.z + rect.depth;
       if (!is_east && !is_up) continue;  // It is found from the other side.
-      // The way around leads up along the east side and back along the upper one.
+      // The path around leads up along the east side and back along the upper one.
       const bool forth = is_east;
       const bool from_corner = portal.from_corner != kNoCorner;
       const bool to_corner = portal.to_corner != kNoCorner;
@@ -68,7 +68,7 @@ std::vector<Crossing> find_crossings(const PathMesh& mesh,
   return crossings;
 }
 
-// A unit inside the zone: where rays to the gate end.
+// A unit inside the zone: where rays to the entrance end.
 GroundPoint inside(const Entrance& entrance, const MeshRect& rect) {
   const auto units = [](double cells) { return static_cast<int64_t>(cells * kUnitsPerCell); };
   GroundPoint p{units(entrance.at.x), units(entrance.at.z)};
@@ -77,7 +77,7 @@ GroundPoint inside(const Entrance& entrance, const MeshRect& rect) {
   return p;
 }
 
-// What the corners of a zone see in it, both ways: corner c owns edges[first[c]] to
+// What the corners of a zone see in it, in both directions: corner c owns edges[first[c]] to
 // edges[first[c + 1]].
 struct CornerGraph {
   struct Edge {
@@ -113,13 +113,13 @@ CornerGraph see_corners(const PathMesh& mesh, const ZonePaths& paths, Sight& sig
   return graph;
 }
 
-// A corner that a gate sees, by its place in the zone's corners.
+// A corner that an entrance sees, by its place in the zone's corners.
 struct EntranceView {
   uint16_t corner = 0;
   double distance = 0;
 };
 
-// How far corners are from a gate, and over which corner.
+// How far corners are from an entrance, and over which corner.
 class EntranceSearch {
  public:
   explicit EntranceSearch(const CornerGraph& graph)
@@ -211,7 +211,7 @@ std::vector<Entrance> find_entrances(const WorldData& world, const PathMesh& mes
 bool find_zone_paths(const PathMesh& mesh, const std::vector<Entrance>& entrances, uint32_t zone,
                      Sight& sight, ZonePaths& paths) {
   paths.corners.clear();
-  if (paths.entrances.empty()) return true;  // no way leads out, nor in
+  if (paths.entrances.empty()) return true;  // no path leads out, nor in
   sight.stay_within(paths.first_rect, paths.last_rect);
   for (uint32_t p = mesh.rects[paths.first_rect].first_portal;
        p < mesh.rects[paths.last_rect].first_portal; ++p) {
@@ -268,7 +268,7 @@ void find_entrances_around(const PathMesh& mesh, const std::vector<Entrance>& en
   const auto each_corner = [&](auto visit) {
     for (const SeenCorner& s : sight.corners()) visit(s, paths.place_of_corner(s.corner));
   };
-  // All rows are asked for before the first is waited for.
+  // All rows are prefetched before the first is read.
   each_corner([&](const SeenCorner&, size_t c) {
     constexpr size_t kLine = 64 / sizeof(float);
     for (size_t g = 0; g < count; g += kLine) prefetch(&paths.length[paths.row(c) + g]);

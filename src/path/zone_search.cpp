@@ -26,8 +26,8 @@ bool touch(const WorldData& world, uint32_t a, uint32_t b) {
   return std::abs(p.x() - q.x()) <= 1 && std::abs(p.z() - q.z()) <= 1;
 }
 
-// The corners of the way to a gate of the zone, the first of which is at `next`. Where they are is
-// asked for, not waited for: place_corners() tells it.
+// The corners of the path to an entrance of the zone, the first of which is at `next`. Their
+// positions are prefetched, not read: place_corners() reads them.
 void add_corners(const PathMesh& mesh, const ZonePaths& paths, uint16_t next, size_t entrance,
                  std::vector<Waypoint>& path) {
   while (next != kStraight) {
@@ -53,7 +53,7 @@ void ZoneSearch::Reached::add(std::span<const TwoHopLabels::Label> labels, uint3
     hubs_[label.hub] = std::min(hubs_[label.hub], word(length + label.length, from));
 }
 
-// From an end to the gates of its zone, and on to the hubs of its territory.
+// From an end to the entrances of its zone, and on to the hubs of its overlay cell.
 void ZoneSearch::find_hubs(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
                            const Stop& stop, End& end) {
   end.zone = zone_of(world, mesh, stop.rect);
@@ -84,7 +84,7 @@ bool ZoneSearch::join(const ZoneGraph& graph, const Stop& from, const Stop& to, 
   return best.length < kNever;
 }
 
-// Finds how far a post of an end's territory is.
+// Finds how far a boundary node of an end's overlay cell is.
 void ZoneSearch::reach_boundary_node(const ZoneGraph& graph, End& end, size_t place) {
   const OverlayCell& zone_cell = graph.zone_cells[end.zone_cell];
   End::BoundaryNode& boundary_node = end.boundary_nodes[place];
@@ -96,8 +96,8 @@ void ZoneSearch::reach_boundary_node(const ZoneGraph& graph, End& end, size_t pl
   }
 }
 
-// Ways that leave the territory. No way over a post is shorter than the straight lines to it and
-// from it, so of all posts only those count that lie in the ellipse of a way that is known.
+// Paths that leave the overlay cell. No path over a boundary node is shorter than the straight
+// lines to it and from it, so only boundary nodes in the ellipse of a known path count.
 void ZoneSearch::join_boundary_nodes(const ZoneGraph& graph, const Stop& from, const Stop& to,
                                      Best& best) {
   const auto list = [&](End& end, CellPoint here, CellPoint there) {
@@ -109,7 +109,7 @@ void ZoneSearch::join_boundary_nodes(const ZoneGraph& graph, const Stop& from, c
       end.boundary_nodes[p] = {kNever, 0, beyond, static_cast<float>(distance(here, at)) + beyond};
     }
   };
-  // The post of the smallest bound that is reached.
+  // The boundary node of the smallest bound that is reached.
   const auto nearest = [&](End& end) -> std::optional<size_t> {
     std::vector<End::BoundaryNode>& boundary_nodes = end.boundary_nodes;
     for (size_t tries = 0; tries < boundary_nodes.size(); ++tries) {
@@ -174,7 +174,7 @@ void ZoneSearch::join_boundary_nodes(const ZoneGraph& graph, const Stop& from, c
   });
 }
 
-// Adds the gates from one of a territory to another over a hub, without the first.
+// Adds the entrances from one of an overlay cell to another over a hub, without the first.
 void ZoneSearch::add_entrances(const OverlayCell& zone_cell, uint32_t from, uint32_t hub,
                                uint32_t to) {
   walked_.clear();
@@ -183,7 +183,7 @@ void ZoneSearch::add_entrances(const OverlayCell& zone_cell, uint32_t from, uint
   for (size_t i = 1; i < walked_.size(); ++i) entrances_.push_back(zone_cell.entrances[walked_[i]]);
 }
 
-// The gates of the way, from one of the first zone to one of the last.
+// The entrances of the path, from one of the first zone to one of the last.
 void ZoneSearch::list_entrances(const ZoneGraph& graph, const Best& best) {
   const OverlayCell& start = graph.zone_cells[start_.zone_cell];
   const OverlayCell& goal = graph.zone_cells[goal_.zone_cell];
@@ -207,7 +207,7 @@ void ZoneSearch::list_entrances(const ZoneGraph& graph, const Best& best) {
   labels.walk(labels.place_of(start.boundary_nodes[best.first], best.hub),
               labels.place_of(goal.boundary_nodes[best.last], best.hub), boundary_nodes_);
   for (size_t i = 1; i < boundary_nodes_.size(); ++i) {
-    // Two posts of one border are joined in both territories.
+    // Two boundary nodes of one border are joined in both overlay cells.
     Meeting least;
     const OverlayCell* over = nullptr;
     uint32_t from = 0, to = 0;
@@ -234,7 +234,7 @@ void ZoneSearch::list_entrances(const ZoneGraph& graph, const Best& best) {
   add_entrances(goal, goal.boundary_entrances[best.last], last_hub, goal.place_of_entrance(last));
 }
 
-// Finds where the tables of zones tell of the ways from gate to gate.
+// Finds where the tables of zones hold the paths from entrance to entrance.
 void ZoneSearch::find_segments(const ZoneGraph& graph) {
   for (const uint32_t entrance : entrances_) prefetch(&graph.entrances[entrance]);
   segments_.clear();
@@ -260,7 +260,7 @@ void ZoneSearch::find_segments(const ZoneGraph& graph) {
   }
 }
 
-// From gate to gate: the first one is there already.
+// From entrance to entrance: the first one is there already.
 void ZoneSearch::add_segments(const PathMesh& mesh, const ZoneGraph& graph) {
   find_segments(graph);
   auto segment = segments_.begin();
@@ -277,7 +277,7 @@ void ZoneSearch::add_segments(const PathMesh& mesh, const ZoneGraph& graph) {
   }
 }
 
-// The way that the labels tell, pulled taut.
+// The path that the labels give, pulled taut.
 bool ZoneSearch::lead(const PathMesh& mesh, const ZoneGraph& graph, const Stop& from,
                       const Stop& to, const Best& best, std::vector<uint32_t>& corners,
                       double& length) {
@@ -313,7 +313,7 @@ SearchResult ZoneSearch::find(const WorldData& world, const PathMesh& mesh, cons
   const bool led =
       join(graph, from, to, best) && lead(mesh, graph, from, to, best, corners, length);
   if (led && !touch(world, start_.zone, goal_.zone)) return SearchResult::kFound;
-  // Near ends, or a way that stays in one zone: search for one that is shorter.
+  // Near ends, or a path that stays in one zone: search for one that is shorter.
   constexpr uint64_t kNearNodes = 4096;
   double near = led ? length : PathSearch::kAnyLength;
   const SearchBudget least(std::min(budget.max_nodes, kNearNodes), budget.cancel, budget.max_bytes);

@@ -12,8 +12,8 @@
 #include "throng/node_path.h"
 #include "throng/nodes.h"
 
-// Ways over the nodes of a baked world, by districts and by a search of all crossings: how long
-// they take by distance, how much longer they are, and whether both say the same of who is reached.
+// Paths over the nodes of a baked world, by overlay cells and by a search of all crossings: their
+// time by distance, how much longer they are, and whether both agree on what is reachable.
 namespace throng::bench {
 namespace {
 
@@ -24,7 +24,7 @@ struct Options {
   std::vector<double> distances{100, 500, 1000, 2000};
   int pairs = 60;
   int judged = 30;  // pairs of each distance that all crossings are searched for, too
-  int crates = 60;  // pairs of each distance whose way a crate is put in
+  int crates = 60;  // pairs of each distance with a crate put onto their path
   int threads = 2;  // for making the finders
 };
 
@@ -41,7 +41,7 @@ struct Pair {
   NodePlace from, to;
 };
 
-// About so far from each other, whether or not a way joins them.
+// About so far from each other, whether or not a path joins them.
 std::vector<Pair> find_pairs(const Nodes& nodes, int32_t avatar_class, double apart, int count) {
   std::vector<Pair> pairs;
   NodePlace from;
@@ -114,8 +114,8 @@ Json measure(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder,
           {"worst_ratio", worst}};
 }
 
-// A crate of a metre in the middle of each way: how long until it is avoided, and how much longer
-// the way around it is than what a search of all crossings finds.
+// A crate of a metre in the middle of each path: the time until it is avoided, and how much longer
+// the path around it is than what a search of all crossings finds.
 Json put_crates(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder,
                 NodePathFinder& search, double apart, const Options& options) {
   std::vector<double> before_ms, add_ms, find_ms, both_ms, without_ms;
@@ -210,7 +210,7 @@ Json run(const Options& options) {
 
 int main(int argc, char** argv) {
   using namespace throng::bench;
-  CLI::App parser{"Ways over the nodes of a baked world", "bench_node_paths"};
+  CLI::App parser{"Paths over the nodes of a baked world", "bench_node_paths"};
   Options options;
   parser.add_option("world", options.world, "World folder with nodes")->required();
   parser.add_option("--class", options.avatar_class, "Avatar class")->capture_default_str();
@@ -219,7 +219,7 @@ int main(int argc, char** argv) {
   parser.add_option("--pairs", options.pairs, "Pairs of each distance")->capture_default_str();
   parser.add_option("--judged", options.judged, "Pairs that are searched for plainly, too")
       ->capture_default_str();
-  parser.add_option("--crates", options.crates, "Pairs whose way a crate is put in")
+  parser.add_option("--crates", options.crates, "Pairs with a crate on their path")
       ->capture_default_str();
   parser.add_option("--threads", options.threads, "Threads to make the finders")
       ->capture_default_str();

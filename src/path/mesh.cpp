@@ -17,7 +17,7 @@ namespace throng {
 namespace {
 
 // A corner before it has its number: the point, and the level of the cell across from the missing
-// one, which tells corners above each other apart.
+// one, which distinguishes corners above each other.
 struct CornerKey {
   int32_t x = 0, z = 0;
   uint32_t level = 0;

@@ -14,7 +14,7 @@ namespace throng {
 namespace {
 
 constexpr size_t kDropFrom = 1 << 16;        // open intervals, before it pays to drop any
-constexpr uint32_t kMaxPushed = 0xf0000000;  // numbers of pushes that can be told apart
+constexpr uint32_t kMaxPushed = 0xf0000000;  // numbers of pushes that are distinct
 
 }  // namespace
 

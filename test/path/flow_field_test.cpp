@@ -79,9 +79,9 @@ TEST(FlowField, IsAsFarAsTheNearestGoalByTheExactSearch) {
   EXPECT_LT(drawn / static_cast<double>(reached), 1.01);
 }
 
-// Whoever walks from point to point, each leg a legal move, comes to a goal on no longer a way than
-// was said.
-TEST(FlowField, WhoFollowsItArrives) {
+// Walking from point to point, each segment a legal move, leads to a goal on a path that is no
+// longer than the field's distance.
+TEST(FlowField, FollowingItArrives) {
   uint64_t walked = 0;
   for (const World& world :
        {bake(test::builtin({.name = "garage"}), 0.2), bake(worlds::two_floors(), 0.1),

@@ -38,7 +38,7 @@ std::vector<World> some_worlds() {
           bake(worlds::random_soup(7, 400, 12), 0.15)};
 }
 
-// The nearest place by looking at every cell of the world.
+// The nearest place by testing every cell of the world.
 double nearest_of_all(const World& world, int32_t avatar_class, Vec3d position) {
   const WorldSummary summary = world.summary();
   const double unit = summary.cell / 2048;
@@ -154,7 +154,7 @@ TEST(GroundQuery, NearestWallIsTheShortestOfAllRays) {
       EXPECT_NEAR(std::hypot(wall.x - from.position.x, wall.z - from.position.z), wall.distance,
                   cell / 1000);
       EXPECT_NEAR(std::hypot(wall.normal_x, wall.normal_z), 1, 1e-9);
-      // Up to the wall one may go, a cell further one may not.
+      // A body may stand up to the wall, not a cell further.
       const double inside = wall.distance - cell / 1000;
       if (inside > 0) {
         EXPECT_EQ(world.move(0, from, -wall.normal_x * inside, -wall.normal_z * inside).end,
@@ -242,7 +242,7 @@ TEST(GroundQuery, SlidesToTheNearestPlaceToTheEnd) {
   EXPECT_GT(slid, 60u);
 }
 
-TEST(GroundQuery, RandomPlacesAreNearAndEvenlySpread) {
+TEST(GroundQuery, RandomPlacesAreNearAndEvenlyDistributed) {
   const World world = bake(worlds::doorway(0.2), 0.1);  // too narrow for an adult: two rooms
   GroundQuery ask = query(world);
   const Place centre = world.find_place(0, {3.4, 0, 3}, 0.5);
@@ -268,7 +268,7 @@ TEST(GroundQuery, RandomPlacesAreNearAndEvenlySpread) {
   EXPECT_FALSE(ask.random_place_near({}, 2, 21, 0));
 }
 
-TEST(GroundQuery, SaysWhatIsInTheWay) {
+TEST(GroundQuery, SaysWhatBlocks) {
   const auto toward = [](const World& world, Vec3d at, double dx, double dz,
                          int32_t avatar_class = 0) {
     const Place from = world.find_place(avatar_class, at, 0.5);
@@ -294,7 +294,7 @@ TEST(GroundQuery, SaysWhatIsInTheWay) {
   EXPECT_EQ(toward(bake(worlds::doorway(0.9), 0.1), {2, 0, 1}, 4, 0), Obstacle::kNarrow);
   EXPECT_EQ(toward(bake(worlds::doorway(0.9), 0.1), {2, 0, 3}, 4, 0), Obstacle::kNone);
   // A block is a step or a wall from below, however high it is, and a step or a gap from above. (It
-  // is hollow: one a bit lower than a body is a low room to whoever sees no cell of its side.)
+  // is hollow: one a bit lower than a body is a low room if no cell of its side is seen.)
   for (const double cell : {0.1, 0.2, 0.25}) {
     for (const double height : {0.5, 0.8, 2.0, 3.0, 5.0}) {
       Scene scene = worlds::flat(8);
@@ -309,7 +309,7 @@ TEST(GroundQuery, SaysWhatIsInTheWay) {
   }
 }
 
-// However far it is meant to go, and in whichever direction.
+// Whatever the length and direction of the push.
 TEST(GroundQuery, APushFarBeyondTheWorldIsOneToItsRim) {
   const World world = bake(worlds::doorway(0.9), 0.1);
   GroundQuery ask = query(world);

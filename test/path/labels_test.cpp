@@ -18,8 +18,7 @@
 #include "throng/cells.h"
 #include "world/place.h"
 
-// Paths that are pulled taut, and paths looked up by the middles of blocks, against the
-// search.
+// Paths that are pulled taut, and paths looked up by the middles of blocks, against the search.
 namespace throng {
 namespace {
 
@@ -43,7 +42,7 @@ class MeshedWorld {
   [[nodiscard]] bool together(const Stop& a, const Stop& b) const {
     return mesh.rects[a.rect].component == mesh.rects[b.rect].component;
   }
-  // Of the shortest way.
+  // Of the shortest path.
   double search(const Stop& from, const Stop& to, std::vector<uint32_t>& corners) {
     double length = 0;
     EXPECT_EQ(search_.find(mesh, from, to, UINT64_MAX, corners, length), SearchResult::kFound);
@@ -98,7 +97,7 @@ TEST(Labels, AStringOverAThirdPlacePullsTaut) {
       EXPECT_GE(length, least - 1e-6);
       ++pulled;
       shortest += length < least + 1e-6;
-      // What is taut stays as it is.
+      // A taut path stays as it is.
       double again = 0;
       std::vector<Waypoint> taut{path.front()};
       for (const uint32_t c : corners) taut.push_back(waypoint(meshed.mesh, c));
@@ -111,7 +110,7 @@ TEST(Labels, AStringOverAThirdPlacePullsTaut) {
   EXPECT_GT(shortest, 50);
 }
 
-TEST(Labels, WaysByMiddlesAreHardlyLonger) {
+TEST(Labels, PathsOverMiddlesAreHardlyLonger) {
   int asked = 0, exact = 0;
   for (const World& world : some_worlds()) {
     MeshedWorld meshed(world, 0);
@@ -140,8 +139,8 @@ TEST(Labels, WaysByMiddlesAreHardlyLonger) {
   EXPECT_GT(exact, asked * 9 / 10);
 }
 
-// The 47025th pair is one whose way bends at a corner, runs on by less than rays can tell through
-// the cell that is missing there, and so lost that corner.
+// The 47025th pair is one whose path turns at a corner, continues through the cell that is missing
+// there by less than rays can distinguish, and so lost that corner.
 TEST(Labels, NoCornerIsLostToRounding) {
   const World world = test::bake(test::builtin({.name = "maze", .size = 30, .levels = 2}), 0.15);
   MeshedWorld meshed(world, 0);
@@ -271,9 +270,9 @@ TEST(Labels, AreAsShortAsTheSearchOverRandomCells) {
   EXPECT_GT(straight, 2000);
 }
 
-// Labels know of ways over corners only, so of none between two middles that see each other: what
-// they tell must prove nothing there. Ends behind a wall from each other, middles that are not.
-TEST(Labels, WaysAreHardlyLongerWhereMiddlesSeeEachOther) {
+// Labels hold paths over corners only, so none between two middles that see each other: their
+// length must prove nothing there. Ends behind a wall from each other, middles that are not.
+TEST(Labels, PathsAreHardlyLongerWhereMiddlesSeeEachOther) {
   constexpr int32_t kWidth = 190, kDepth = 120;
   for (uint64_t seed = 200; seed < 210; ++seed) {
     FlatCells cells{.width = kWidth, .depth = kDepth, .passable = {}};

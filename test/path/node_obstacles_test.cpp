@@ -22,7 +22,7 @@ namespace {
 using test::bake;
 using test::builtin;
 
-// A walker, one who drops, and climbers with leaps.
+// A walker, one that drops, and climbers with links over holes.
 std::vector<AvatarClass> classes() {
   std::vector<AvatarClass> all{{.name = "adult"}, {.name = "dropper"}, {.name = "climber"}};
   all[1].max_drop = 3;
@@ -47,7 +47,7 @@ TestWorld make(const BuiltinWorldConfig& world, double cell, double size) {
   return made;
 }
 
-// Boxes, posts and walls where people are: some across, some askew, some in the air.
+// Boxes, pillars and walls where bodies are: some across, some askew, some in the air.
 std::vector<Prism> random_prisms(const Nodes& nodes, uint64_t seed, int count) {
   std::vector<Prism> prisms;
   for (int i = 0; i < count; ++i) {
@@ -82,7 +82,7 @@ void for_each_world(Check check) {
   check(make({.name = "bridge"}, 0.25, 1));
 }
 
-TEST(NodeObstacles, EveryWayAroundThemIsGoneByItsBody) {
+TEST(NodeObstacles, EveryPathAroundThemIsLegalForItsBody) {
   uint64_t pairs = 0, reached = 0, blocked = 0, poses = 0;
   for_each_world([&](const TestWorld& world) {
     Context context;
@@ -121,7 +121,7 @@ BlockPoint point_of(const NodeView& view, const NodePlace& place) {
 }
 
 // A search of all crossings that are left.
-TEST(NodeObstacles, ASearchOfWhatIsLeftTellsTheSame) {
+TEST(NodeObstacles, ASearchOfWhatIsLeftFindsTheSame) {
   uint64_t reached = 0, unreachable = 0, nowhere = 0, islands = 0;
   for_each_world([&](const TestWorld& world) {
     Context context;
@@ -136,7 +136,7 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftTellsTheSame) {
         changes.add({prism, {}});
         ASSERT_TRUE(finder->add_obstacle(prism));
       }
-      // Somebody is walled in.
+      // A body is walled in.
       const Vec3d in = world.nodes.random_place(c, 5, 0).feet;
       for (const auto& [u, v] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
         const Prism wall = Prism::box(
@@ -184,8 +184,8 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftTellsTheSame) {
   EXPECT_GT(nowhere, 10u);
 }
 
-// Over gates, where the districts that something stands in are looked through anew.
-TEST(NodeObstacles, LongWaysArePutTogetherOfWhatIsLeft) {
+// Over entrances, where overlay cells that obstacles stand in are searched again.
+TEST(NodeObstacles, LongPathsLeadOverWhatIsLeft) {
   uint64_t reached = 0, missed = 0;
   double sum = 0;
   for_each_world([&](const TestWorld& world) {
@@ -219,7 +219,7 @@ TEST(NodeObstacles, LongWaysArePutTogetherOfWhatIsLeft) {
             EXPECT_EQ(over_entrances, end);
             continue;
           }
-          // A finder goes on to a search of all where gates do not lead there any more.
+          // A finder continues with a search of all where entrances no longer lead there.
           missed += over_entrances != PathEnd::kReached ? 1 : 0;
           if (over_entrances != PathEnd::kReached || plain.cost() < 5) continue;
           ++reached;
@@ -261,7 +261,7 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
     std::vector<ChangeId> ids;
     for (const Prism& prism : prisms) ids.push_back(*one.add_obstacle(prism));
     for (size_t i = prisms.size(); i-- > 0;) {
-      // What stands there for a while, and what is switched off, does not count.
+      // An obstacle that is removed later, or switched off, does not count.
       const ChangeId spare = *other.add_obstacle(prisms[(i * 7 + 3) % prisms.size()]);
       ASSERT_TRUE(other.add_obstacle(prisms[i]));
       if (i % 2 == 0) {
@@ -306,9 +306,9 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
   EXPECT_GT(changed, 30u);
 }
 
-// What is well clear of everything stays open: of random places whose bodies' balls no prism comes
-// near none is taken.
-TEST(NodeObstacles, TakeNoMoreThanTheyMust) {
+// What is well clear of every obstacle stays open: a random place whose body's ball no prism comes
+// near is never blocked.
+TEST(NodeObstacles, BlockNoMoreThanNeeded) {
   uint64_t open = 0, taken = 0, blocked_near = 0;
   for_each_world([&](const TestWorld& world) {
     Context context;
@@ -347,9 +347,9 @@ TEST(NodeObstacles, TakeNoMoreThanTheyMust) {
   EXPECT_EQ(blocked_near, taken);
 }
 
-// A shell of triangles takes what its faces touch: no more than the whole prism does, and all along
-// its ways no body meets one of them.
-TEST(NodeObstacles, MeshesTakeWhatTheirTrianglesTouch) {
+// A shell of triangles blocks what its faces touch: no more than the whole prism does, and all
+// along the paths no body meets one of them.
+TEST(NodeObstacles, MeshesBlockWhatTheirTrianglesTouch) {
   const TestWorld world = make({.name = "landscape", .size = 64, .seed = 6}, 0.5, 1);
   Context context;
   uint64_t around = 0, bodies = 0;
@@ -372,7 +372,7 @@ TEST(NodeObstacles, MeshesTakeWhatTheirTrianglesTouch) {
                       to = world.nodes.random_place(c, 8, 2 * n + 1);
       shells.find(from, to, path);
       solid.find(from, to, other);
-      // Whoever is in a closed shell of triangles is not in one.
+      // A body in a closed shell of triangles is not in one.
       EXPECT_TRUE(other.end == PathEnd::kNoPlace || path.end != PathEnd::kNoPlace);
       EXPECT_TRUE(other.end != PathEnd::kReached || path.end == PathEnd::kReached);
       for (const NodePathPoint& point : path.points) {

@@ -19,7 +19,7 @@ namespace {
 using test::bake;
 using test::builtin;
 
-// Walkers, one who drops, and climbers with leaps.
+// Walkers, one that drops, and climbers with links over holes.
 std::vector<AvatarClass> classes() {
   std::vector<AvatarClass> all = default_classes();
   all.push_back({.name = "climber"});
@@ -31,7 +31,7 @@ std::vector<AvatarClass> classes() {
   return all;
 }
 
-// Calls check(mesh) for classes of worlds of many districts: of curved ground, of level tiles.
+// Calls check(mesh) for classes of worlds of many overlay cells: of curved ground, of level tiles.
 template <class Check>
 void for_each_mesh(Check check) {
   Context context;
@@ -52,7 +52,7 @@ BlockPoint random_point(const NodeMesh& mesh, uint64_t n) {
   return {mesh.block_at(mesh.patch_of_node(place.node1 - 1), place.s, place.t), place.s, place.t};
 }
 
-// What a way costs from middle to middle; it must hang together.
+// What a path costs from middle to middle; it must be connected.
 double cost_along(const NodeView& mesh, const PieceCost& piece, const BlockPoint& from,
                   const std::vector<Crossing>& crossings, const BlockPoint& to) {
   double cost = 0;
@@ -74,7 +74,7 @@ double cost_along(const NodeView& mesh, const PieceCost& piece, const BlockPoint
   return cost;
 }
 
-TEST(Overlay, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
+TEST(Overlay, PathsOverEntrancesAreFoundIfAnyAndCostLittleMore) {
   uint64_t reached = 0, unreachable = 0, drops = 0, leaps = 0, expanded = 0, plainly = 0;
   size_t overlay_levels = 0;
   for_each_mesh([&](const NodeMesh& mesh) {
@@ -113,7 +113,7 @@ TEST(Overlay, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
         sum += cost / plain.cost();
         most = std::max(most, cost / plain.cost());
         ++count;
-        // A budget is kept: it gives up, or needs no more.
+        // A budget is kept: it is exhausted, or the search needs no more.
         const SearchBudget little{search.expanded() / 2};
         const PathEnd cut = search.find(from, to, little, blocks, crossings);
         if (cut == PathEnd::kReached) {
@@ -133,9 +133,9 @@ TEST(Overlay, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
   EXPECT_LT(2 * expanded, plainly);
 }
 
-// Of every tier: what it tells of a district is what a search finds that does not leave it, or a
-// little more.
-TEST(Overlay, TellWhatItCostsToGoThrough) {
+// On every overlay level: the costs in a cell are those that a search finds that does not leave it,
+// or a little more.
+TEST(Overlay, HoldsTheCostsOfCrossing) {
   uint64_t through = 0, none = 0;
   for_each_mesh([&](const NodeMesh& mesh) {
     const NodeView view(mesh);
@@ -204,7 +204,7 @@ TEST(Overlay, AreTheSameForAnyNumberOfWorkers) {
   });
 }
 
-TEST(NodeParts, TellWhoIsReachedAndWhatComesNearest) {
+TEST(NodeParts, FindWhatIsReachableAndWhatComesNearest) {
   uint64_t reached = 0, unreachable = 0;
   for_each_mesh([&](const NodeMesh& mesh) {
     const NodeView view(mesh);

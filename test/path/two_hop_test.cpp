@@ -11,7 +11,7 @@
 
 #include "core/random.h"
 
-// Looked-up ways of random graphs, against all shortest ways found by three nested loops.
+// Looked-up paths of random graphs, against all shortest paths found by three nested loops.
 namespace throng {
 namespace {
 
@@ -22,7 +22,7 @@ struct RandomGraph {
   std::vector<double> edge;      // count x count; infinite: none
   std::vector<double> shortest;  // count x count
 
-  // Lengths are small whole numbers where `ties`, so that many ways are as short as another.
+  // Lengths are small whole numbers where `ties`, so that many paths are equally short.
   RandomGraph(uint64_t seed, uint32_t count, uint32_t edges, bool ties)
       : edge(size_t{count} * count, kNever) {
     for (uint32_t e = 0; e < edges; ++e) {
@@ -55,7 +55,7 @@ struct RandomGraph {
     }
   }
 
-  // Of a way by its edges; infinite if one is missing.
+  // Of a path by its edges; infinite if one is missing.
   [[nodiscard]] double length(const std::vector<uint32_t>& nodes) const {
     double sum = 0;
     for (size_t i = 1; i < nodes.size(); ++i) sum += edge[nodes[i - 1] * paths.count() + nodes[i]];
@@ -63,7 +63,7 @@ struct RandomGraph {
   }
 };
 
-TEST(TwoHop, LooksUpTheShortestWaysAndTheirNodes) {
+TEST(TwoHop, LooksUpTheShortestPathsAndTheirNodes) {
   constexpr int kGraphs = 60;
   uint64_t joined = 0, apart = 0, steps = 0;
   for (uint64_t seed = 0; seed < kGraphs; ++seed) {
@@ -93,7 +93,7 @@ TEST(TwoHop, LooksUpTheShortestWaysAndTheirNodes) {
         EXPECT_EQ(met.length, best);
         EXPECT_EQ(labels->of(a)[met.first].hub, met.hub);
         EXPECT_EQ(labels->of(b)[met.last].hub, met.hub);
-        std::vector<uint32_t> nodes{a};  // what is there stays
+        std::vector<uint32_t> nodes{a};  // its old content stays
         labels->walk(labels->place_of(a, met.hub), labels->place_of(b, met.hub), nodes);
         nodes.erase(nodes.begin());
         ASSERT_EQ(nodes.front(), a);
@@ -104,7 +104,7 @@ TEST(TwoHop, LooksUpTheShortestWaysAndTheirNodes) {
         ++joined;
       }
     }
-    // Every node of a hub's tree lies in the trails once.
+    // Every node of a hub's tree lies in the trees once.
     const auto nodes = std::count_if(labels->trees.begin(), labels->trees.end(),
                                      [](uint32_t word) { return word < TwoHopLabels::kGoesOn; });
     EXPECT_EQ(static_cast<size_t>(nodes), labels->labels.size());

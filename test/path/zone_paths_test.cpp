@@ -25,7 +25,7 @@ PathMesh among_pillars(int32_t a_side) {
   return *std::move(mesh);
 }
 
-// Ways name corners by 16 bits, of which one number says that there is none.
+// Paths name corners by 16 bits, of which one number says that there is none.
 TEST(ZonePaths, AZoneOfMoreCornersThanTheyCanNameIsRefused) {
   const std::vector<Entrance> entrances{{.at = {0, 0.5}, .zone = {0, 1}, .rect = {0, 0}}};
   Sight sight;

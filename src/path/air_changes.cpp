@@ -9,6 +9,8 @@
 #include "path/air_view.h"
 #include "path/blocked_cells.h"
 
+// Active obstacles by box of the space and by tile of the ground: a change cuts again only the
+// boxes and tiles that it touches.
 namespace throng {
 namespace {
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+// Queries of the air as it is: the boxes of the space, or their parts where obstacles have cut
+// them.
 namespace throng {
 
 namespace {

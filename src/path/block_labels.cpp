@@ -12,6 +12,8 @@
 #include "path/hub_labels.h"
 #include "path/mesh_ray.h"
 
+// Hub labels merged per block, after [DSC23]: entries that no point of the block can need are left
+// out. Linear in the labels of the corners that the blocks see.
 namespace throng {
 namespace {
 

@@ -7,6 +7,8 @@
 #include "core/float_origin.h"
 #include "world/zone_data.h"
 
+// Balls around the blocks of Bezier patches, in a uniform grid of about one ball a square. The
+// nearest point of a block is found by Gauss-Newton steps.
 namespace throng {
 namespace {
 

@@ -9,6 +9,8 @@
 
 #include "path/plan_shapes.h"
 
+// Which cells of a tile an obstacle blocks: those on which a body could touch its prism or
+// triangles. Linear in cells times triangles.
 namespace throng {
 namespace {
 

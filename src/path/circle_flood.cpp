@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+// The visited cells of a flood fill: a hash table with linear probing, emptied run by run.
 namespace throng {
 namespace {
 

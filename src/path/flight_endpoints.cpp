@@ -8,6 +8,8 @@
 
 #include "world/place.h"
 
+// Where bodies take off and land, and the flood fills that search for such places. Linear in the
+// cells visited.
 namespace throng {
 namespace {
 

@@ -20,6 +20,7 @@
 #include "throng/flight.h"
 #include "world/place.h"
 
+// Joins the parts of a flight: walks, take-offs, flight search, landings and string pulling.
 namespace throng {
 namespace {
 

@@ -7,6 +7,8 @@
 
 #include "core/parallel.h"
 
+// The free air eroded by the body, word by word, then cut into the boxes of an octree per zone,
+// whose connected components are numbered. Linear in the cells times the body's width.
 namespace throng {
 
 double off_faces(double v) {

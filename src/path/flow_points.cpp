@@ -10,6 +10,7 @@
 #include "path/reset_path.h"
 #include "world/place.h"
 
+// Dijkstra's search outwards from all goals over the points of portals of a LiveMesh.
 namespace throng {
 namespace {
 

@@ -9,6 +9,8 @@
 #include "core/parallel.h"
 #include "world/place.h"
 
+// Sorted pairs of ground and air, from one pass over all legal cells; turns between ground and air
+// are counted by a breadth-first search.
 namespace throng {
 namespace {
 

@@ -14,6 +14,8 @@
 #include "path/circle_flood.h"
 #include "path/obstacle.h"
 
+// Queries of the ground around a place, cell by cell: the nearest place, rays, slides, walls,
+// random places. Linear in the cells within the radius.
 namespace throng {
 namespace {
 

@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 
+// Casts from every corner, then labels the visibility graph of the corners ([LPW79]) by hubs.
 namespace throng {
 namespace {
 

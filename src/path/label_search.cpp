@@ -8,6 +8,8 @@
 #include "path/border.h"
 #include "path/mesh_ray.h"
 
+// The shortest path by hub labels: the ends see corners, and the smallest sum of two labels of one
+// hub is the length. Linear in the labels that are read.
 namespace throng {
 namespace {
 

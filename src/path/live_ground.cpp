@@ -17,6 +17,7 @@
 #include "path/solid.h"
 #include "world/place.h"
 
+// Checks and converts what callers give, for the live mesh and its search.
 namespace throng {
 
 bool LiveGround::State::locate(const Place& place, LiveStop& stop) {

@@ -13,6 +13,8 @@
 #include "path/rects.h"
 #include "world/place.h"
 
+// Rectangles and portals of one level tile after the other, cut from its cells less those that
+// obstacles block; a change makes the levels of its tiles again.
 namespace throng {
 namespace {
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+// A* over points of portals at area costs, then string pulling by doubling, halving and moving
+// stops.
 namespace throng {
 namespace {
 

@@ -13,6 +13,8 @@
 #include "path/rects.h"
 #include "world/place.h"
 
+// Cuts all level tiles into rectangles, then finds their portals, corners and components. Linear in
+// the cells, parallel by level tile.
 namespace throng {
 namespace {
 

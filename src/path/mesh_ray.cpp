@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+// A ray from rectangle to rectangle: constant time each, in whole units, so it agrees with walk()
+// over cells.
 namespace throng {
 namespace {
 

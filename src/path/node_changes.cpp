@@ -9,6 +9,8 @@
 #include "path/blocked_cells.h"
 #include "world/place.h"
 
+// Which blocks and portals of a mesh of nodes obstacles block, found by halving blocks and motions.
+// Time by the blocks near an obstacle.
 namespace throng {
 namespace {
 

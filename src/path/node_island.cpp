@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "path/node_island.h"
 
+// A breadth-first flood over crossings, at most kMax blocks.
 namespace throng {
 
 void NodeIsland::clear(const NodeView& view) {

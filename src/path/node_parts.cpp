@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "core/strong_parts.h"
 
+// Strongly connected components of the blocks, and the graph between them. Linear in the portals.
 namespace throng {
 NodeParts::NodeParts(const NodeMesh& mesh, int32_t workers) : boxes_(mesh.patches().size()) {
   StrongParts parts = strong_parts(

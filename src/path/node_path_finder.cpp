@@ -20,6 +20,8 @@
 #include "throng/node_path.h"
 #include "world/place.h"
 
+// Finds paths over nodes: places the ends, searches (blocks when near, the overlay when far), pulls
+// the path taut, and reports what blocks it.
 namespace throng {
 namespace {
 

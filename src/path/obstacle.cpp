@@ -10,6 +10,7 @@
 
 #include "world/place.h"
 
+// What blocks a straight walk: rays over the cells around its end.
 namespace throng {
 namespace {
 

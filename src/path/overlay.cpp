@@ -11,6 +11,8 @@
 #include "core/strong_parts.h"
 #include "path/overlay_graph.h"
 
+// Chooses the entrances of a mesh's overlay, after [BMS04], and the costs between them from the
+// lowest level up, after [DGPW11].
 namespace throng {
 namespace {
 

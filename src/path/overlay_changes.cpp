@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+// Marks the overlay cells that obstacles touch, moves their entrances, and computes their rows of
+// costs when a search first needs them.
 namespace throng {
 
 void OverlayChanges::update() {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+// Dijkstra's algorithm over the arcs of one overlay cell, forward or backward. O(n log n) in the
+// arcs.
 namespace throng {
 namespace {
 

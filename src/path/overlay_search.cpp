@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+// A* over entrances, then a search of each overlay cell crossed. Source: [BMS04], [DGPW11].
 namespace throng {
 namespace {
 

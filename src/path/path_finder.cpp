@@ -17,6 +17,7 @@
 #include "throng/path.h"
 #include "world/place.h"
 
+// Chooses between labels, zones and search, and turns corners into places.
 namespace throng {
 namespace {
 

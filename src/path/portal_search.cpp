@@ -8,6 +8,7 @@
 #include "path/border.h"
 #include "path/mesh_ray.h"
 
+// A* over the ends and middles of portals, then string pulling over the stops.
 namespace throng {
 namespace {
 

@@ -9,6 +9,8 @@
 
 #include "path/mesh_ray.h"
 
+// Turns corners into stops that a body can walk between, each segment tested on the mesh or cell by
+// cell.
 namespace throng {
 namespace {
 

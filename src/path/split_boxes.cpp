@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "path/split_boxes.h"
 
+// Each box with blocked cells becomes an octree of free parts. Linear in the box's cells.
 namespace throng {
 
 SplitBoxes::SplitBoxes(const FlightSpace& space)

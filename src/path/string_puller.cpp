@@ -9,6 +9,8 @@
 #include "path/border.h"
 #include "path/mesh_ray.h"
 
+// Removes waypoint after waypoint that is not a taut turn, replacing it by the convex chain of
+// corners in its triangle.
 namespace throng {
 namespace {
 

@@ -9,6 +9,8 @@
 #include "core/parallel.h"
 #include "core/random.h"
 
+// Pruned landmark labelling [AIY13]: a Dijkstra search from each hub, pruned where earlier hubs
+// give as short a path.
 namespace throng {
 namespace {
 

@@ -13,6 +13,8 @@
 
 #include "core/parallel.h"
 
+// Builds the graph of zones: tables of each zone, labels of the entrances of each overlay cell,
+// labels of the boundary nodes between them.
 namespace throng {
 namespace {
 

@@ -12,6 +12,7 @@
 #include "path/border.h"
 #include "path/mesh_ray.h"
 
+// Tables of a zone: a Dijkstra search over its visible corners from each entrance.
 namespace throng {
 namespace {
 

@@ -12,6 +12,7 @@
 #include "path/border.h"
 #include "path/mesh_ray.h"
 
+// Joins the tables and labels of the zones of both ends, then pulls the path taut.
 namespace throng {
 namespace {
 

@@ -12,6 +12,7 @@
 #include "throng/node_path.h"
 #include "throng/path.h"
 
+// Copies of all finders that answer in many threads at once.
 namespace throng {
 namespace {
 

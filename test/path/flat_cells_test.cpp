@@ -7,6 +7,7 @@
 #include "throng/bake.h"
 #include "throng/path.h"
 
+// Worlds of flat cells, against a brute-force search.
 namespace throng {
 namespace {
 

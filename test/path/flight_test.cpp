@@ -19,6 +19,7 @@
 #include "voxel_oracle.h"
 #include "worlds.h"
 
+// Flight paths over built-in worlds and voxels, against an oracle of triangles.
 namespace throng {
 namespace {
 

@@ -13,6 +13,7 @@
 #include "throng/path.h"
 #include "worlds.h"
 
+// Flow fields against the exact search.
 namespace throng {
 namespace {
 

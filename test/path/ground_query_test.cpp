@@ -16,6 +16,7 @@
 #include "throng/path.h"
 #include "worlds.h"
 
+// Queries around a place, against brute force over all cells.
 namespace throng {
 namespace {
 

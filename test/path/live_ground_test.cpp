@@ -15,6 +15,7 @@
 #include "throng/path.h"
 #include "worlds.h"
 
+// Paths over ground that changes, against the exact search and the geometry of obstacles.
 namespace throng {
 namespace {
 

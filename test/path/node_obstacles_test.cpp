@@ -16,6 +16,7 @@
 #include "verify/triangle_tree.h"
 #include "verify/turned_body.h"
 
+// Obstacles on nodes, against the bodies' own geometry and a search of all crossings.
 namespace throng {
 namespace {
 

@@ -19,6 +19,7 @@
 #include "throng/path.h"
 #include "throng/verify.h"
 
+// Paths over nodes, against the oracle of src/verify and a search of all crossings.
 namespace throng {
 namespace {
 

@@ -13,6 +13,7 @@
 #include "path/overlay_search.h"
 #include "throng/node_path.h"
 
+// The overlay of a mesh of nodes, against a search of all crossings.
 namespace throng {
 namespace {
 

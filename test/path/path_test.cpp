@@ -16,6 +16,7 @@
 #include "throng/live_ground.h"
 #include "worlds.h"
 
+// Paths over the ground, against a brute-force visibility graph.
 namespace throng {
 namespace {
 

@@ -14,6 +14,7 @@
 #include "throng/live_ground.h"
 #include "throng/path.h"
 
+// Memory budgets of searches.
 namespace throng {
 namespace {
 

@@ -7,6 +7,7 @@
 #include "throng/bake.h"
 #include "throng/cells.h"
 
+// The limit of corners in a zone's tables.
 namespace throng {
 namespace {
 

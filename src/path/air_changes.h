@@ -18,7 +18,7 @@
 #include "world/cell_blocks.h"
 #include "world/ground.h"
 
-/// Obstacles put up in the air of a class since it was made.
+/// Obstacles placed in the air of a class since it was made.
 namespace throng {
 
 /// The space itself stays as it is. An AirView shows both. A change undoes and makes again only the

@@ -51,7 +51,7 @@ Obstacle air_obstacle(const AirData& air, const AirBody& body, const AirView& vi
   for (double at = 0; at < far; at += kStep) {
     const AirPoint p = from + (at / far) * delta;
     if (view.box_at(p) != kNoBox) continue;
-    if (view.space().box_at(p) != kNoBox) return Obstacle::kNarrow;  // put up since
+    if (view.space().box_at(p) != kNoBox) return Obstacle::kNarrow;  // placed since
     const int32_t layers =
         free_layers(air, body, static_cast<int32_t>(std::floor(p.x)),
                     static_cast<int32_t>(std::floor(p.y)), static_cast<int32_t>(std::floor(p.z)));

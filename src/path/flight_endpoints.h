@@ -14,7 +14,7 @@
 namespace throng {
 
 /// What a body meets first on the straight line from where it may be: kLow where it would fit if it
-/// were less tall, else kNarrow, as where an obstacle was put up; kNone if it meets nothing. Time:
+/// were less tall, else kNarrow, as where an obstacle was placed; kNone if it meets nothing. Time:
 /// the line's cells.
 [[nodiscard]] Obstacle air_obstacle(const AirData& air, const AirBody& body, const AirView& view,
                                     AirPoint from, AirPoint to);

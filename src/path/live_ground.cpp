@@ -46,7 +46,7 @@ Obstacle LiveGround::State::blocker() {
   const LiveLevel* level = mesh.level(stops.back().level);
   const WalkStop stop = walk_far(mesh.ground(), level, stops.back().at, to.at, mesh.step());
   if (stop.arrived) return Obstacle::kGap;  // under or over the goal
-  // What was put up since the bake is not in its floors.
+  // Obstacles placed since the bake are not in its floors.
   const WorldGround baked{mesh.world(), mesh.avatar_class()};
   const Obstacle found = obstacle_beyond(baked, level->ground, stop);
   const GroundLevel& ground = level->ground;
@@ -110,14 +110,16 @@ Result<ChangeId> LiveGround::add_off_mesh_link(const OffMeshLink& off_mesh_link)
   State& s = *state_;
   LiveStop from, to;
   if (!s.locate(off_mesh_link.from, from) || !s.locate(off_mesh_link.to, to)) {
-    return Error{Errc::kBadInput,
-                 std::string("jump: it must lead from a place of the class to ") + "another"};
+    return Error{
+        Errc::kBadInput,
+        std::string("off-mesh link: it must lead from a place of the class to ") + "another"};
   }
   const double cell = s.mesh.world().summary.cell;
   const double length = distance_of(from.at, to.at);
   if (!std::isfinite(off_mesh_link.cost) || !(off_mesh_link.cost > 0) ||
       off_mesh_link.cost < length * cell - 1e-6) {
-    return Error{Errc::kBadInput, "jump: its cost must be above 0 and at least its length"};
+    return Error{Errc::kBadInput,
+                 "off-mesh link: its cost must be above 0 and at least its length"};
   }
   const ChangeId id = s.mesh.add({});
   const double cost = std::max(off_mesh_link.cost / cell, length);

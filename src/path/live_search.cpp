@@ -258,7 +258,7 @@ void LiveSearch::push_links(LiveMesh& mesh, const LiveNode& node, uint32_t index
     if (!mesh.stand(to.level, to.at, to.rect)) continue;
     const double cost =
         node.cost + distance_of(node.stop.at, from.at) * factor + off_mesh_link.cost;
-    if (LiveNode* there = push(mesh, to, index, cost)) there->jumped_from = from.at;
+    if (LiveNode* there = push(mesh, to, index, cost)) there->link_from = from.at;
   }
 }
 
@@ -319,7 +319,7 @@ void LiveSearch::trace(LiveMesh& mesh, std::vector<LiveStop>& stops) const {
     // A stop beyond a portal was reached straight across from its other side.
     const LiveStop& before = nodes_.nodes[node.parent].stop;
     if (node.stop.off_mesh_link > 0) {
-      stops.push_back({before.level, before.rect, node.jumped_from});
+      stops.push_back({before.level, before.rect, node.link_from});
       continue;
     }
     if (before.level == node.stop.level && before.rect == node.stop.rect) continue;

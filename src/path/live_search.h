@@ -24,8 +24,8 @@ struct LiveStop {
 struct LiveNode {
   LiveStop stop;
   uint32_t parent = UINT32_MAX;
-  double cost = 0;          // so far [cells]
-  GroundPoint jumped_from;  // if stop.off_mesh_link > 0: in the parent's rectangle
+  double cost = 0;        // so far [cells]
+  GroundPoint link_from;  // if stop.off_mesh_link > 0: in the parent's rectangle
   bool done = false;
 };
 

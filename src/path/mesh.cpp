@@ -47,7 +47,8 @@ class Builder {
     const auto [tile_x, tile_z] = tile_of(ground_.world, *ground.zone, *ground.view.record);
     std::vector<MeshRect> rects;
     for (const CellRect& r : tile_with_rects(legal, cuts ? &*cuts : nullptr)) {
-      rects.push_back({level, tile_x * 64 + r.x0, tile_z * 64 + r.z0, r.x1 - r.x0, r.z1 - r.z0, 0});
+      rects.push_back({level, tile_x * kTileCells + r.x0, tile_z * kTileCells + r.z0, r.x1 - r.x0,
+                       r.z1 - r.z0, 0});
     }
     return rects;
   }

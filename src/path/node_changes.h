@@ -15,7 +15,7 @@
 #include "throng/live_ground.h"
 #include "world/cell_blocks.h"
 
-/// What has been put up on a mesh of nodes since the bake.
+/// Obstacles placed on a mesh of nodes since the bake.
 namespace throng {
 
 /// Where a body could touch a solid its block is cut: level tiles by their cells, curved patches by

@@ -8,7 +8,7 @@
 #include "core/paged.h"
 #include "path/node_view.h"
 
-/// Blocks that are cut off from the rest by what has been put up.
+/// Blocks that are cut off from the rest by obstacles.
 namespace throng {
 
 class NodeIsland {

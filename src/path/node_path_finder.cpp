@@ -337,15 +337,15 @@ Obstacle obstacle_towards(const NodeView& view, const BlockPoint& from, Vec3d go
   return found;
 }
 
-// Calls visit(block, s, t) for the parts and blocks of level tiles within `reach`: with the point
+// Calls visit(block, s, t) for the parts and blocks of level tiles within `radius`: with the point
 // that lies nearest in the plane.
 template <class Visit>
-void for_each_level_part(const NodeView& view, Vec3d position, double reach, Visit visit) {
+void for_each_level_part(const NodeView& view, Vec3d position, double radius, Visit visit) {
   const NodeMesh& mesh = view.mesh();
   const WorldData& world = *mesh.nodes().data()->world.data();
   const std::array<double, 2> plan{position.x, position.z};
-  const SquareRange tiles = tiles_near(world, std::span(&plan, 1), std::min(reach, 1e6));
-  const double tile = world.summary.cell * 64;
+  const SquareRange tiles = tiles_near(world, std::span(&plan, 1), std::min(radius, 1e6));
+  const double tile = world.summary.cell * kTileCells;
   const auto consider = [&](uint32_t block, double s, double t) {
     const double side = view.block(block).side(), low_s = view.block(block).s * side,
                  low_t = view.block(block).t * side;
@@ -472,13 +472,13 @@ std::optional<NodeSquare> NodePathFinder::square(uint32_t node, double from_s, d
   return square_of(mesh.blocks()[found]);
 }
 
-NodePlace NodePathFinder::find_place(Vec3d position, double reach) const {
+NodePlace NodePathFinder::find_place(Vec3d position, double radius) const {
   const NodeMesh& mesh = shared_->mesh;
-  if (!std::isfinite(position.x + position.y + position.z) || !(reach >= 0)) return {};
+  if (!std::isfinite(position.x + position.y + position.z) || !(radius >= 0)) return {};
   scratch_->update();
   const NodeChanges& changes = scratch_->changes;
   const NodeView& view = scratch_->view;
-  double nearest = reach;
+  double nearest = radius;
   uint64_t best_rank = 0;  // Of places as near as each other it is the first: level ground, then
                            // blocks in their order.
   NodePlace best;
@@ -496,7 +496,7 @@ NodePlace NodePathFinder::find_place(Vec3d position, double reach) const {
     consider(block, s, t, uint64_t{block} + 1);
   };
   const World& world = mesh.nodes().data()->world;
-  if (const Place place = world.find_place(mesh.avatar_class(), position, reach)) {
+  if (const Place place = world.find_place(mesh.avatar_class(), position, radius)) {
     if (const uint32_t patch = mesh.patch_of_level(place.level1 - 1); patch != kNoNode) {
       const GroundPoint at = to_ground(*world.data(), place.position.x, place.position.z);
       const auto along = [](int64_t unit) {

@@ -8,7 +8,7 @@
 #include "graph/node_mesh.h"
 #include "path/node_changes.h"
 
-/// A mesh of nodes as it is now: as it was baked, but for what has been put up since.
+/// A mesh of nodes as it is now: as it was baked, less what obstacles block since.
 namespace throng {
 
 /// Blocks and portals have the mesh's numbers. Above these are parts of blocks that something

@@ -188,7 +188,7 @@ std::vector<uint32_t> zones_of_rects(const WorldData& world, const PathMesh& mes
 std::vector<Entrance> find_entrances(const WorldData& world, const PathMesh& mesh,
                                      const std::vector<uint32_t>& zone_of_rect) {
   const std::vector<Crossing> crossings = find_crossings(mesh, zone_of_rect);
-  const int32_t apart = std::max(1, static_cast<int32_t>(world.tiles_per_zone) * 64 / 10);
+  const int32_t apart = std::max(1, static_cast<int32_t>(world.tiles_per_zone) * kTileCells / 10);
   std::vector<Entrance> entrances;
   for (size_t i = 0; i < crossings.size();) {
     size_t stop = i + 1;

@@ -89,11 +89,11 @@ Json crates(const World& world, int64_t trials, double away) {
   if (added.empty()) stop("no path was found to put a crate onto");
   return {{"trials", added.size()},
           {"away_m", away},
-          {"first_path_ms", spread(first)},
-          {"add_ms", spread(added)},
-          {"path_after_ms", spread(found)},
-          {"until_avoided_ms", spread(both)},
-          {"remove_ms", spread(removed)},
+          {"first_path_ms", quantiles(first)},
+          {"add_ms", quantiles(added)},
+          {"path_after_ms", quantiles(found)},
+          {"until_avoided_ms", quantiles(both)},
+          {"remove_ms", quantiles(removed)},
           {"paths_through_crates", through},
           {"paths_blocked_by_crates", blocked}};
 }

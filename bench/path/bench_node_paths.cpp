@@ -93,7 +93,7 @@ Json measure(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder,
     best += shortest.length;
     worst = std::max(worst, path.length / shortest.length);
   }
-  const auto most = [](const std::vector<double>& values) {
+  const auto max_of = [](const std::vector<double>& values) {
     return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
   };
   return {{"distance", apart},
@@ -101,14 +101,14 @@ Json measure(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder,
           {"reached", reached_ms.size()},
           {"mean_length", length_sum / std::max<double>(1, static_cast<double>(reached_ms.size()))},
           {"median_ms", median(reached_ms)},
-          {"most_ms", most(reached_ms)},
+          {"max_ms", max_of(reached_ms)},
           {"expanded", median(looked)},
           {"unreachable_median_ms", median(other_ms)},
-          {"unreachable_most_ms", most(other_ms)},
+          {"unreachable_max_ms", max_of(other_ms)},
           {"judged", search_ms.size()},
           {"differ", differ},
           {"search_median_ms", median(search_ms)},
-          {"search_most_ms", most(search_ms)},
+          {"search_max_ms", max_of(search_ms)},
           {"searched", median(searched)},
           {"mean_ratio", best > 0 ? ours / best : 0},
           {"worst_ratio", worst}};
@@ -161,7 +161,7 @@ Json put_crates(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder
           {"add_median_ms", median(add_ms)},
           {"find_median_ms", median(find_ms)},
           {"until_median_ms", median(both_ms)},
-          {"until_most_ms", both_ms.empty() ? 0 : both_ms.back()},
+          {"until_max_ms", both_ms.empty() ? 0 : both_ms.back()},
           {"without_median_ms", median(without_ms)},
           {"shut", shut},
           {"differ", differ},

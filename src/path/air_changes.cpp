@@ -79,7 +79,7 @@ void AirChanges::touch(ChangeId id) {
     } else {
       std::erase(here, id);
     }
-    take_ground(tile, here);
+    block_ground(tile, here);
     if (here.empty()) of_tile_.erase(tile);
   }
   const AirView air(*space_, this);
@@ -88,7 +88,7 @@ void AirChanges::touch(ChangeId id) {
   for (const uint32_t box : near_) {
     const AirCube& cube = space_->boxes[box];
     CubeCells blocked;
-    if (!take_air(grid_, cube, change.near, change.solid.prism, change.solid.triangles, blocked))
+    if (!block_air(grid_, cube, change.near, change.solid.prism, change.solid.triangles, blocked))
       continue;
     std::vector<ChangeId>& here = of_box_[box];
     if (change.active) {
@@ -99,7 +99,7 @@ void AirChanges::touch(ChangeId id) {
     }
     for (const ChangeId other : here) {
       const Change& of = changes_[other - 1];
-      if (other != id) take_air(grid_, cube, of.near, of.solid.prism, of.solid.triangles, blocked);
+      if (other != id) block_air(grid_, cube, of.near, of.solid.prism, of.solid.triangles, blocked);
     }
     if (here.empty()) of_box_.erase(box);
     old_.clear();
@@ -135,7 +135,7 @@ void AirChanges::label_pieces(uint32_t box) {
 }
 
 // The cells that obstacles take of every level of a tile.
-void AirChanges::take_ground(int64_t tile, std::span<const ChangeId> here) {
+void AirChanges::block_ground(int64_t tile, std::span<const ChangeId> here) {
   const auto x = static_cast<int32_t>(tile), z = static_cast<int32_t>(tile >> 32);
   const auto levels = world_->tile_levels(x, z);
   for (uint32_t i = levels.first; i < levels.last; ++i) {

@@ -57,7 +57,7 @@ class AirChanges {
   };
   void touch(ChangeId id);
   void label_pieces(uint32_t box);
-  void take_ground(int64_t tile, std::span<const ChangeId> here);
+  void block_ground(int64_t tile, std::span<const ChangeId> here);
 
   const WorldData* world_;
   const FlightSpace* space_;

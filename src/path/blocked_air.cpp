@@ -55,8 +55,8 @@ AirRange air_near(const AirGrid& grid, const FlightSpace& space, const Prism& pr
            std::min(cell(z1 + radius, grid.z, space.depth), space.depth - 1)}};
 }
 
-bool take_air(const AirGrid& grid, const AirCube& cube, const AirRange& near, const Prism& prism,
-              std::span<const std::array<Vec3d, 3>> triangles, CubeCells& blocked) {
+bool block_air(const AirGrid& grid, const AirCube& cube, const AirRange& near, const Prism& prism,
+               std::span<const std::array<Vec3d, 3>> triangles, CubeCells& blocked) {
   const double radius = grid.radius + grid.spare;
   bool any = false;
   const auto take = [&](int32_t x, int32_t z, double low, double high) {

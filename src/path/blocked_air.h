@@ -43,7 +43,7 @@ AirRange air_near(const AirGrid& grid, const FlightSpace& space, const Prism& pr
 /// Adds those cells of a cube of at most 32 a side in which a body, wherever in the cell its feet
 /// are, could touch the prism (its polygon convex, of any number of corners); with triangles, one
 /// of those that the prism encloses. False if there are none.
-bool take_air(const AirGrid& grid, const AirCube& cube, const AirRange& near, const Prism& prism,
-              std::span<const std::array<Vec3d, 3>> triangles, CubeCells& blocked);
+bool block_air(const AirGrid& grid, const AirCube& cube, const AirRange& near, const Prism& prism,
+               std::span<const std::array<Vec3d, 3>> triangles, CubeCells& blocked);
 
 }  // namespace throng

@@ -11,8 +11,8 @@ namespace {
 constexpr double kShorter = 1e-9;
 // The heuristic is weighted a little: among paths that are nearly as short, the one that is nearly
 // at the goal is expanded first. It costs 0.02 % of length and spares three boxes of four.
-constexpr double kHaste = 1.02;
-constexpr double kLargeHaste = 1.1;  // through large boxes
+constexpr double kHeuristicWeight = 1.02;
+constexpr double kLargeHeuristicWeight = 1.1;  // through large boxes
 
 // Over hills and roofs most boxes are a cell or two wide, and expanding most of them is of no use.
 // So if the ends are far apart, the first search goes through boxes of a minimum size that grows
@@ -237,7 +237,8 @@ void FlightSearch::reach(uint32_t from, uint32_t box) {
   Node next;
   next.point = pass(air_->cube(nodes_[from].box), air_->cube(box), turn.point, goal_);
   next.length = turn.length + air_distance(turn.point, next.point);
-  next.estimate = next.length + (large_ ? kLargeHaste : kHaste) * air_distance(next.point, goal_);
+  next.estimate = next.length + (large_ ? kLargeHeuristicWeight : kHeuristicWeight) *
+                                    air_distance(next.point, goal_);
   next.box = box;
   next.parent = parent;
   next.via = from;

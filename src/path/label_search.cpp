@@ -22,7 +22,7 @@ uint32_t block_of(const PathMesh& mesh, const Stop& end) {
   return mesh.block_at(end.rect, end.at.cell_x(), end.at.cell_z());
 }
 
-float gap(const MeshCorner& corner, CellPoint p) {
+float distance_to(const MeshCorner& corner, CellPoint p) {
   const double dx = corner.x - p.x, dz = corner.z - p.z;
   return static_cast<float>(std::sqrt(dx * dx + dz * dz));
 }
@@ -43,9 +43,9 @@ bool LabelSearch::narrow(const PathMesh& mesh, const HubLabels& labels, const St
       const HubLabels::Candidate candidate = labels.candidates[i];
       const MeshCorner& corner = mesh.corners[candidate.corner];
       if (!is_taut(corner, corner.x - here.x, corner.z - here.z)) continue;
-      const float distance = gap(corner, here);
-      turns.push_back(
-          {candidate.corner, distance, distance + gap(corner, there), candidate.from_all != 0});
+      const float distance = distance_to(corner, here);
+      turns.push_back({candidate.corner, distance, distance + distance_to(corner, there),
+                       candidate.from_all != 0});
     }
   };
   const auto see = [&](const Stop& end, Turn& turn) {
@@ -106,12 +106,12 @@ struct SeenMiddle {
 // so, and the rest of it is shorter by the distance to the end. Else `own`.
 SeenMiddle middle_behind(const PathMesh& mesh, const Stop& end, CellPoint turn, SeenMiddle own) {
   const CellPoint at = in_cells(end.at);
-  const double gap = distance(at, turn);
-  if (!(gap > 0)) return own;
+  const double length = distance(at, turn);
+  if (!(length > 0)) return own;
   // The farther, the less it matters that a middle is not straight behind.
   for (const double offset : {128.0, 48.0, 24.0, 12.0}) {  // cells
     const auto behind = [&](double from, double to) {
-      return std::llround((from + (from - to) * (offset / gap)) * kUnitsPerCell);
+      return std::llround((from + (from - to) * (offset / length)) * kUnitsPerCell);
     };
     const GroundPoint there{behind(at.x, turn.x), behind(at.z, turn.z)};
     const uint32_t rect = mesh_ray(mesh, end.rect, end.at, there);
@@ -185,7 +185,7 @@ void distances(const PathMesh& mesh, const HubLabels& labels, const Stop& end,
   const uint32_t block = block_of(mesh, end), last = labels.first_candidate[block + 1];
   for (uint32_t i = labels.first_candidate[block]; i < last; ++i) {
     const MeshCorner& corner = mesh.corners[labels.candidates[i].corner];
-    out.push_back(gap(corner, from));
+    out.push_back(distance_to(corner, from));
   }
 }
 

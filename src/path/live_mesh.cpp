@@ -190,11 +190,11 @@ void LiveMesh::make(uint32_t index, LiveLevel& level) const {
   std::tie(level.tile_x, level.tile_z) =
       tile_of(world(), *level.ground.zone, *level.ground.view.record);
   level.legal = legal_rows(level.ground);
-  take_obstacles(level);
+  block_cells(level);
   cut(level);
 }
 
-void LiveMesh::take_obstacles(LiveLevel& level) const {
+void LiveMesh::block_cells(LiveLevel& level) const {
   const auto found = changes_of_tile_.find(tile_key(level.tile_x, level.tile_z));
   if (found == changes_of_tile_.end()) return;
   const WorldSummary& summary = world().summary;

@@ -117,7 +117,7 @@ class LiveMesh {
 
  private:
   void make(uint32_t index, LiveLevel& level) const;
-  void take_obstacles(LiveLevel& level) const;
+  void block_cells(LiveLevel& level) const;
   void cut(LiveLevel& level) const;
   void find_portals(LiveLevel& level);
   void forget(int64_t tile);

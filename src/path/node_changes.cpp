@@ -79,7 +79,7 @@ ChangeId NodeChanges::add(Solid solid) {
   const double around = reach_of(classes[static_cast<size_t>(mesh_->avatar_class())]);
   Change change;
   std::vector<uint32_t> near;
-  take_tiles(solid, around + longest_hole_link_, change, near);
+  block_tiles(solid, around + longest_hole_link_, change, near);
   const Prism& prism = solid.prism;
   Box3d box;
   for (const auto& [x, z] : prism.corners) {
@@ -91,9 +91,9 @@ ChangeId NodeChanges::add(Solid solid) {
   squares_->for_each_near((box.min + box.max) * 0.5, reach,
                           [&](uint32_t block) { near.push_back(block); });
   std::sort(near.begin() + static_cast<ptrdiff_t>(first_curved), near.end());
-  for (size_t i = first_curved; i < near.size(); ++i) take_squares(solid, near[i], change);
+  for (size_t i = first_curved; i < near.size(); ++i) block_squares(solid, near[i], change);
   std::sort(near.begin(), near.end());
-  take_pieces(solid, near, change);
+  block_pieces(solid, near, change);
   changes_.push_back(std::move(change));
   ++version_;
   return static_cast<ChangeId>(changes_.size());
@@ -113,8 +113,8 @@ bool NodeChanges::set_active(ChangeId id, bool active, bool remove) {
 }
 
 // Blocked cells, and blocks within `around`.
-void NodeChanges::take_tiles(const Solid& solid, double around, Change& change,
-                             std::vector<uint32_t>& near) const {
+void NodeChanges::block_tiles(const Solid& solid, double around, Change& change,
+                              std::vector<uint32_t>& near) const {
   const WorldData& world = *mesh_->nodes().data()->world.data();
   const AvatarClass& avatar = world.summary.classes[static_cast<size_t>(mesh_->avatar_class())];
   const SquareRange tiles = tiles_near(world, solid.prism.corners, around);
@@ -166,7 +166,7 @@ uint8_t NodeChanges::finest_level(const NodeBlock& block) const {
   return level;
 }
 
-void NodeChanges::take_squares(const Solid& solid, uint32_t block, Change& change) const {
+void NodeChanges::block_squares(const Solid& solid, uint32_t block, Change& change) const {
   const NodeBlock& whole = mesh_->blocks()[block];
   const NodeSurface& surface = mesh_->surface(block);
   const auto& classes = mesh_->nodes().data()->world.data()->summary.classes;
@@ -199,8 +199,8 @@ void NodeChanges::take_squares(const Solid& solid, uint32_t block, Change& chang
 }
 
 // A step over the border of two tiles crosses no distance: the bodies on either side are checked.
-void NodeChanges::take_pieces(const Solid& solid, std::span<const uint32_t> near,
-                              Change& change) const {
+void NodeChanges::block_pieces(const Solid& solid, std::span<const uint32_t> near,
+                               Change& change) const {
   for (const uint32_t block : near) {
     for (const uint32_t p : mesh_->portals_of(block)) {
       const NodePortal portal = mesh_->portals()[p];
@@ -432,14 +432,14 @@ void NodeChanges::join_parts(uint32_t block) {
 
 // What is left of portals whose blocks are cut, or that are blocked themselves.
 void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& pieces) {
-  std::vector<uint32_t> gone;
-  for (const auto& [portal, blocked] : pieces) gone.push_back(portal);
+  std::vector<uint32_t> closed;
+  for (const auto& [portal, blocked] : pieces) closed.push_back(portal);
   for (const uint32_t block : cut_blocks_) {
     const auto portals = mesh_->portals_of(block);
-    gone.insert(gone.end(), portals.begin(), portals.end());
+    closed.insert(closed.end(), portals.begin(), portals.end());
   }
-  std::sort(gone.begin(), gone.end());
-  gone.erase(std::unique(gone.begin(), gone.end()), gone.end());
+  std::sort(closed.begin(), closed.end());
+  closed.erase(std::unique(closed.begin(), closed.end()), closed.end());
   const auto base = static_cast<uint32_t>(mesh_->blocks().size());
   std::vector<Stretch> free, on_a, on_b;
   // The pieces of a line that lie in what is left of a block.
@@ -476,7 +476,7 @@ void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& 
     std::sort(out.begin(), out.end(),
               [](const Stretch& a, const Stretch& b) { return a.from < b.from; });
   };
-  for (const uint32_t p : gone) {
+  for (const uint32_t p : closed) {
     const NodePortal portal = mesh_->portals()[p];
     Replaced made{p, static_cast<uint32_t>(mesh_->portals().size() + portals_.size()), 0};
     free.clear();

@@ -84,10 +84,10 @@ class NodeChanges {
     std::vector<BlockedPieces> pieces;
   };
 
-  void take_tiles(const Solid& solid, double around, Change& change,
-                  std::vector<uint32_t>& near) const;
-  void take_squares(const Solid& solid, uint32_t block, Change& change) const;
-  void take_pieces(const Solid& solid, std::span<const uint32_t> near, Change& change) const;
+  void block_tiles(const Solid& solid, double around, Change& change,
+                   std::vector<uint32_t>& near) const;
+  void block_squares(const Solid& solid, uint32_t block, Change& change) const;
+  void block_pieces(const Solid& solid, std::span<const uint32_t> near, Change& change) const;
   [[nodiscard]] bool blocks_portal(const Solid& solid, const NodePortal& portal, double from,
                                    double to) const;
   [[nodiscard]] uint8_t finest_level(const NodeBlock& block) const;

@@ -94,7 +94,7 @@ PathEnd OverlaySearch::find(const BlockPoint& from, const BlockPoint& to,
 void OverlaySearch::straighten(const BlockPoint& from, const BlockPoint& to,
                                const SearchBudget& budget, NodeSearch& blocks,
                                std::vector<Crossing>& crossings) {
-  led_.clear();
+  straightened_.clear();
   cost_ = 0;
   BlockPoint begin = from;
   size_t first = 0;  // of the stretch that is replaced
@@ -111,22 +111,22 @@ void OverlaySearch::straighten(const BlockPoint& from, const BlockPoint& to,
         blocks.find(begin, end, left, piece_, {}, known * (1 - kGain)) == PathEnd::kReached;
     expanded_ += blocks.expanded();
     if (cheaper) {
-      led_.insert(led_.end(), piece_.begin(), piece_.end());
+      straightened_.insert(straightened_.end(), piece_.begin(), piece_.end());
       cost_ += blocks.cost();
     } else {
-      led_.insert(led_.end(), crossings.begin() + static_cast<ptrdiff_t>(first),
-                  crossings.begin() + static_cast<ptrdiff_t>(last));
+      straightened_.insert(straightened_.end(), crossings.begin() + static_cast<ptrdiff_t>(first),
+                           crossings.begin() + static_cast<ptrdiff_t>(last));
       cost_ += known;
     }
     if (ends) break;
-    led_.push_back(crossings[last]);
+    straightened_.push_back(crossings[last]);
     const auto [out, in] = ends_of(*view_, crossings[last]);
     cost_ += portal_length(view_->portal(crossings[last].portal), position(*view_, out),
                            position(*view_, in));
     begin = in;
     first = last + 1;
   }
-  crossings.swap(led_);
+  crossings.swap(straightened_);
 }
 
 double OverlaySearch::cost_of(const BlockPoint& from, const BlockPoint& to, const Crossing* first,

@@ -79,7 +79,7 @@ class OverlaySearch {
   std::vector<Open> open_;
   std::vector<double> rest_;  // from the entries of the goal's overlay cell
   std::vector<Stretch> stretches_, finer_;
-  std::vector<Crossing> piece_, led_;
+  std::vector<Crossing> piece_, straightened_;
   std::vector<size_t> joints_;                   // where entrances come in the path
   uint32_t first_ = kNoEntry, last_ = kNoEntry;  // none: the path does not leave the overlay cell
   uint32_t query_ = 0;

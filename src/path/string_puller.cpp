@@ -73,17 +73,17 @@ bool see_each_other(const PathMesh& mesh, const Waypoint& a, const Waypoint& b) 
 // Most points at which the path need not turn are pulled away from, between the points beside them:
 // what lies there is prefetched before any of it is read.
 void StringPuller::prefetch_waypoints(const PathMesh& mesh, const std::vector<Waypoint>& path) {
-  asked_.clear();
+  prefetched_.clear();
   for (size_t i = 1; i + 1 < path.size(); ++i) {
     if (path[i].corner != kNoCorner) continue;
     for (const Waypoint& beside : {path[i - 1], path[i + 1]}) {
       if (beside.corner == kNoCorner) continue;
-      asked_.push_back(beside.corner);
+      prefetched_.push_back(beside.corner);
       prefetch(mesh.corner_rects.data() + mesh.corners[beside.corner].first_rect);
     }
   }
   const auto each_rect = [&](auto visit) {
-    for (const uint32_t corner : asked_) {
+    for (const uint32_t corner : prefetched_) {
       const uint32_t end = mesh.corners[corner + 1].first_rect;
       for (uint32_t i = mesh.corners[corner].first_rect; i < end; ++i) visit(mesh.corner_rects[i]);
     }

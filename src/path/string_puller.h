@@ -38,10 +38,10 @@ class StringPuller {
   void wrap(const PathMesh& mesh, const Waypoint& from, const Waypoint& over, const Waypoint& to);
 
   Sight sight_;
-  std::vector<Waypoint> taut_;   // the path so far
-  std::vector<Waypoint> ahead_;  // the rest of it, the next one last
-  std::vector<uint32_t> asked_;  // corners that are prefetched
-  std::vector<Waypoint> chain_;  // what stands between two points
+  std::vector<Waypoint> taut_;        // the path so far
+  std::vector<Waypoint> ahead_;       // the rest of it, the next one last
+  std::vector<uint32_t> prefetched_;  // corners that are prefetched
+  std::vector<Waypoint> chain_;       // what stands between two points
 };
 
 }  // namespace throng

@@ -63,12 +63,12 @@ void ZoneSearch::find_hubs(const WorldData& world, const PathMesh& mesh, const Z
   find_entrances_around(mesh, graph.entrances, end.zone, paths, stop, sight_, end.length, end.next);
   const OverlayCell& zone_cell = graph.zone_cells[end.zone_cell];
   end.hubs.begin(zone_cell.entrances.size());
-  asked_.clear();
+  prefetched_.clear();
   for (const uint32_t entrance : paths.entrances)
-    asked_.push_back(zone_cell.place_of_entrance(entrance));
-  zone_cell.labels.ask_for(asked_);
-  for (uint32_t g = 0; g < asked_.size(); ++g) {
-    if (end.length[g] < kNever) end.hubs.add(zone_cell.labels.of(asked_[g]), g, end.length[g]);
+    prefetched_.push_back(zone_cell.place_of_entrance(entrance));
+  zone_cell.labels.ask_for(prefetched_);
+  for (uint32_t g = 0; g < prefetched_.size(); ++g) {
+    if (end.length[g] < kNever) end.hubs.add(zone_cell.labels.of(prefetched_[g]), g, end.length[g]);
   }
 }
 
@@ -145,16 +145,16 @@ void ZoneSearch::join_boundary_nodes(const ZoneGraph& graph, const Stop& from, c
     within_.resize(end.boundary_nodes.size());
     std::iota(within_.begin(), within_.end(), 0u);
     keep([&](const End::BoundaryNode& boundary_node) { return boundary_node.bound <= known; });
-    asked_.clear();
-    for (const uint32_t p : within_) asked_.push_back(zone_cell.boundary_entrances[p]);
-    zone_cell.labels.ask_for(asked_);
+    prefetched_.clear();
+    for (const uint32_t p : within_) prefetched_.push_back(zone_cell.boundary_entrances[p]);
+    zone_cell.labels.ask_for(prefetched_);
     for (const uint32_t p : within_) reach_boundary_node(graph, end, p);
     keep([&](const End::BoundaryNode& boundary_node) {
       return boundary_node.length + boundary_node.beyond <= known;
     });
-    asked_.clear();
-    for (const uint32_t p : within_) asked_.push_back(zone_cell.boundary_nodes[p]);
-    graph.boundary_labels.ask_for(asked_);
+    prefetched_.clear();
+    for (const uint32_t p : within_) prefetched_.push_back(zone_cell.boundary_nodes[p]);
+    graph.boundary_labels.ask_for(prefetched_);
     for (const uint32_t p : within_) {
       if (end.boundary_nodes[p].length + end.boundary_nodes[p].beyond <= known) visit(p);
     }

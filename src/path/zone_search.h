@@ -93,9 +93,9 @@ class ZoneSearch {
   StringPuller pull_;
   End start_, goal_;
   Reached boundary_hubs_;
-  std::vector<uint32_t> within_;     // boundary nodes that may lie on the path
-  std::vector<uint32_t> asked_;      // nodes whose labels will be read
-  std::vector<uint32_t> entrances_;  // of the path
+  std::vector<uint32_t> within_;      // boundary nodes that may lie on the path
+  std::vector<uint32_t> prefetched_;  // nodes whose labels will be read
+  std::vector<uint32_t> entrances_;   // of the path
   std::vector<Segment> segments_;
   std::vector<uint32_t> walked_;  // scratch of a walk over labels
   std::vector<uint32_t> boundary_nodes_;

@@ -358,19 +358,19 @@ TEST(FlightChanges, RemovedObstaclesLeaveNoTraceAndTheOrderDoesNotMatter) {
     for (size_t i = shuffled.size(); i > 1; --i) {
       std::swap(shuffled[i - 1], shuffled[random_below(seed, i, 7, i)]);
     }
-    FlightFinder fresh = baked;
+    FlightFinder rebuilt = baked;
     std::vector<ChangeId> ids = put_up(used, prisms);
     // Some are removed, and come back.
     for (const ChangeId id : ids) {
       EXPECT_TRUE(used.set_active(id, id % 2 != 0));
     }
     for (const ChangeId id : ids) EXPECT_TRUE(used.set_active(id, true));
-    put_up(fresh, shuffled);
+    put_up(rebuilt, shuffled);
     for (uint64_t n = 0; n < 20; ++n) {
       const FlightQuery query{.from = end_of(world, baked, seed, 2 * n),
                               .to = end_of(world, baked, seed, 5 * n + 1)};
       used.find(query, a);
-      fresh.find(query, b);
+      rebuilt.find(query, b);
       expect_same(a, b);
     }
     // In another order than they came.
@@ -454,8 +454,8 @@ TEST(FlightChanges, AtAnyTimeAnswersAreThoseOfANewFinder) {
       for (size_t i = 0; i < ids.size(); ++i) {
         if (up[i]) standing.push_back(prisms[i]);
       }
-      FlightFinder fresh = baked;
-      put_up(fresh, standing);
+      FlightFinder rebuilt = baked;
+      put_up(rebuilt, standing);
       const Cells cells(world, flight);
       for (uint64_t k = 0; k < 12; ++k) {
         const auto from = flight.random_point(seed, 100 * n + 2 * k);
@@ -467,7 +467,7 @@ TEST(FlightChanges, AtAnyTimeAnswersAreThoseOfANewFinder) {
         ASSERT_TRUE(together || path.nodes == 0) << "it was not reported at once";
         (together ? open : shut) += 1;
         flight.find({.from = *from, .to = *to}, path);
-        fresh.find({.from = *from, .to = *to}, other);
+        rebuilt.find({.from = *from, .to = *to}, other);
         expect_same(path, other);
         ASSERT_EQ(faults(standing, path), 0);
       }

@@ -25,9 +25,10 @@ LiveGround live(const World& world, int32_t avatar_class = 0) {
   return *std::move(made);
 }
 
-FlowField field(const LiveGround& ground, const std::vector<Place>& goals, double most = 1e9) {
+FlowField field(const LiveGround& ground, const std::vector<Place>& goals,
+                double max_distance = 1e9) {
   Context context;
-  auto made = FlowField::make(ground, goals, {.most = most}, context);
+  auto made = FlowField::make(ground, goals, {.most = max_distance}, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }

@@ -114,8 +114,8 @@ TEST(GroundQuery, RaysEndWhereMovesEnd) {
       const GroundRay ray = ask.ray(from, dx, dz);
       const bool arrives = world.move(0, from, dx, dz).end == MoveEnd::kArrived;
       ASSERT_EQ(ray.arrived, arrives);
-      const Vec3d gone = ray.place.position - from.position;
-      const MoveResult move = world.move(0, from, gone.x, gone.z);
+      const Vec3d moved = ray.place.position - from.position;
+      const MoveResult move = world.move(0, from, moved.x, moved.z);
       ASSERT_EQ(move.end, MoveEnd::kArrived);
       EXPECT_EQ(move.place.level1, ray.place.level1);
       EXPECT_EQ(ray.obstacle == Obstacle::kNone, arrives);
@@ -123,7 +123,7 @@ TEST(GroundQuery, RaysEndWhereMovesEnd) {
       ++stopped;
       const double whole = std::hypot(dx, dz);
       const double t = farthest(world, 0, from, dx, dz, static_cast<int32_t>(whole / cell * 64));
-      EXPECT_NEAR(std::hypot(gone.x, gone.z), t * whole, cell / 16) << n;
+      EXPECT_NEAR(std::hypot(moved.x, moved.z), t * whole, cell / 16) << n;
       EXPECT_NEAR(std::hypot(ray.normal_x, ray.normal_z), 1, 1e-12);
       EXPECT_LT(ray.normal_x * dx + ray.normal_z * dz, 0);
     }
@@ -144,8 +144,8 @@ TEST(GroundQuery, NearestWallIsTheShortestOfAllRays) {
       for (int32_t r = 0; r < kRays; ++r) {
         const double angle = r * 2 * 3.14159265358979 / kRays;
         const GroundRay ray = ask.ray(from, 1.5 * std::cos(angle), 1.5 * std::sin(angle));
-        const Vec3d gone = ray.place.position - from.position;
-        if (!ray.arrived) shortest = std::min(shortest, std::hypot(gone.x, gone.z));
+        const Vec3d moved = ray.place.position - from.position;
+        if (!ray.arrived) shortest = std::min(shortest, std::hypot(moved.x, moved.z));
       }
       EXPECT_LE(wall.found ? wall.distance : 1.5, shortest + cell / 500);
       if (!wall.found) continue;

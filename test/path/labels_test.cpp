@@ -48,8 +48,8 @@ class MeshedWorld {
     EXPECT_EQ(search_.find(mesh, from, to, UINT64_MAX, corners, length), SearchResult::kFound);
     return length;
   }
-  [[nodiscard]] bool can_be_gone(const Stop& from, const std::vector<uint32_t>& corners,
-                                 const Stop& to) const {
+  [[nodiscard]] bool is_legal(const Stop& from, const std::vector<uint32_t>& corners,
+                              const Stop& to) const {
     std::vector<Stop> stops;
     return SegmentWalker(*world_.data(), mesh).walk(from, corners, to.at, stops) &&
            stops.back().rect == to.rect;
@@ -91,7 +91,7 @@ TEST(Labels, AStringOverAThirdPlacePullsTaut) {
       path.push_back({in_cells(to.at), to.rect});
       double length = 0;
       ASSERT_TRUE(puller.pull(meshed.mesh, path, corners, length));
-      EXPECT_TRUE(meshed.can_be_gone(from, corners, to));
+      EXPECT_TRUE(meshed.is_legal(from, corners, to));
       const double least = meshed.search(from, to, exact);
       EXPECT_LE(length, both + 1e-6);
       EXPECT_GE(length, least - 1e-6);
@@ -111,7 +111,7 @@ TEST(Labels, AStringOverAThirdPlacePullsTaut) {
 }
 
 TEST(Labels, PathsOverMiddlesAreHardlyLonger) {
-  int asked = 0, exact = 0;
+  int pairs = 0, exact = 0;
   for (const World& world : some_worlds()) {
     MeshedWorld meshed(world, 0);
     cut_into_blocks(meshed.mesh, kLargeBlock);
@@ -127,16 +127,16 @@ TEST(Labels, PathsOverMiddlesAreHardlyLonger) {
       SCOPED_TRACE(testing::Message() << n);
       double length = 0;
       ASSERT_TRUE(label_search.find(meshed.mesh, *labels, from, to, corners, length));
-      EXPECT_TRUE(meshed.can_be_gone(from, corners, to));
+      EXPECT_TRUE(meshed.is_legal(from, corners, to));
       const double least = meshed.search(from, to, shortest);
       EXPECT_GE(length, least - 1e-6);
       EXPECT_LE(length, least * 1.02 + 1e-6);
-      ++asked;
+      ++pairs;
       exact += length < least + 1e-6;
     }
   }
-  EXPECT_GT(asked, 600);
-  EXPECT_GT(exact, asked * 9 / 10);
+  EXPECT_GT(pairs, 600);
+  EXPECT_GT(exact, pairs * 9 / 10);
 }
 
 // The 47025th pair is one whose path turns at a corner, continues through the cell that is missing
@@ -155,7 +155,7 @@ TEST(Labels, NoCornerIsLostToRounding) {
     ASSERT_TRUE(meshed.together(from, to));
     double length = 0;
     ASSERT_TRUE(label_search.find(meshed.mesh, *labels, from, to, corners, length)) << n;
-    EXPECT_TRUE(meshed.can_be_gone(from, corners, to)) << n;
+    EXPECT_TRUE(meshed.is_legal(from, corners, to)) << n;
   }
 }
 
@@ -226,7 +226,7 @@ TEST(Labels, StraightLinesThroughPointsOfFourCellsAreFound) {
 
 // Ends anywhere and on halves and quarters of cells, over one tile and over several.
 TEST(Labels, AreAsShortAsTheSearchOverRandomCells) {
-  int asked = 0, straight = 0;
+  int pairs = 0, straight = 0;
   for (uint64_t seed = 0; seed < 20; ++seed) {
     const int32_t width = seed < 3 ? 140 : 30, depth = seed < 3 ? 80 : 24;
     FlatCells cells{.width = width, .depth = depth, .passable = {}};
@@ -257,16 +257,16 @@ TEST(Labels, AreAsShortAsTheSearchOverRandomCells) {
         SCOPED_TRACE(testing::Message() << "seed " << seed << ", pair " << n << ", side " << side);
         double length = 0;
         ASSERT_TRUE(label_search.find(meshed.mesh, labels, from, to, corners, length));
-        EXPECT_TRUE(meshed.can_be_gone(from, corners, to));
+        EXPECT_TRUE(meshed.is_legal(from, corners, to));
         const double least = meshed.search(from, to, exact);
         EXPECT_GE(length, least - 1e-5);
         EXPECT_LE(length, least * (side == kSmallBlock ? 1 : 1.02) + 1e-5);
-        ++asked;
+        ++pairs;
         straight += exact.empty();
       }
     }
   }
-  EXPECT_GT(asked, 10000);
+  EXPECT_GT(pairs, 10000);
   EXPECT_GT(straight, 2000);
 }
 

@@ -125,7 +125,7 @@ Prism random_prism(uint64_t seed, uint64_t n, const Box3d& box) {
 }
 
 TEST(LiveGround, NoPlaceIsInAnObstacleAndLittleElseIsLost) {
-  uint64_t taken = 0, free = 0, entered = 0;
+  uint64_t blocked = 0, free = 0, entered = 0;
   for (const World& world : {bake(worlds::two_floors(), 0.1), bake(worlds::ramp(20, 4), 0.1),
                              bake(test::builtin({.name = "garage"}), 0.2)}) {
     const WorldSummary summary = world.summary();
@@ -158,12 +158,12 @@ TEST(LiveGround, NoPlaceIsInAnObstacleAndLittleElseIsLost) {
         if (!near) {
           EXPECT_TRUE(stands);
         }
-        ++(stands ? free : taken);
+        ++(stands ? free : blocked);
       }
     }
   }
   EXPECT_EQ(entered, 0u);
-  EXPECT_GT(taken, 100u);
+  EXPECT_GT(blocked, 100u);
   EXPECT_GT(free, 10000u);
 }
 
@@ -226,7 +226,7 @@ TEST(LiveGround, ChangesAreUndoneWithoutATrace) {
   const World world = bake(test::builtin({.name = "garage"}), 0.2);
   LiveGround changed = live(world);
   std::vector<std::pair<ChangeId, Prism>> active;
-  Path path, fresh_path;
+  Path path, rebuilt_path;
   for (uint64_t n = 0; n < 60; ++n) {
     if (active.size() > 12 || (!active.empty() && random_below(3, n, 0, 3) == 0)) {
       const size_t which = random_below(3, n, 1, active.size());
@@ -239,15 +239,15 @@ TEST(LiveGround, ChangesAreUndoneWithoutATrace) {
       ASSERT_TRUE(id);
       active.push_back({*id, prism});
     }
-    LiveGround fresh = live(world);
-    for (const auto& [id, prism] : active) ASSERT_TRUE(fresh.add_obstacle(prism));
+    LiveGround rebuilt = live(world);
+    for (const auto& [id, prism] : active) ASSERT_TRUE(rebuilt.add_obstacle(prism));
     for (uint64_t k = 0; k < 5; ++k) {
       const Place from = world.random_place(0, n, 2 * k), to = world.random_place(0, n, 2 * k + 1);
       changed.find(from, to, path);
-      fresh.find(from, to, fresh_path);
-      ASSERT_EQ(path.end, fresh_path.end);
-      EXPECT_EQ(path.length, fresh_path.length);
-      ASSERT_EQ(path.points.size(), fresh_path.points.size());
+      rebuilt.find(from, to, rebuilt_path);
+      ASSERT_EQ(path.end, rebuilt_path.end);
+      EXPECT_EQ(path.length, rebuilt_path.length);
+      ASSERT_EQ(path.points.size(), rebuilt_path.points.size());
     }
   }
 }

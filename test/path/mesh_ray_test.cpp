@@ -61,8 +61,9 @@ TEST(MeshRay, GoesAsFarAsTheWalkOverCells) {
     for (uint64_t n = 0; n < 4000; ++n) {
       const auto random_point = [&](uint64_t use) {
         const auto cell = [&](uint64_t more, int32_t size) {
-          const auto most = static_cast<uint64_t>(size);
-          return static_cast<int64_t>(random_below(seed, n + 1, 2 * use + more, most)) << kUnitBits;
+          const auto count = static_cast<uint64_t>(size);
+          return static_cast<int64_t>(random_below(seed, n + 1, 2 * use + more, count))
+                 << kUnitBits;
         };
         return round_off({cell(0, width), cell(1, depth)}, seed + 100 * (use + 1), n);
       };

@@ -257,7 +257,7 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
   for (int32_t c = 0; c < 4; ++c) {
     auto made = NodePathFinder::make(world.nodes, {.avatar_class = c, .workers = 1}, context);
     ASSERT_TRUE(made);
-    NodePathFinder fresh = *made, one = *made, other = *made;
+    NodePathFinder rebuilt = *made, one = *made, other = *made;
     const std::vector<Prism> prisms = random_prisms(world.nodes, 3, 30);
     std::vector<ChangeId> ids;
     for (const Prism& prism : prisms) ids.push_back(*one.add_obstacle(prism));
@@ -277,7 +277,7 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
     for (uint64_t n = 0; n < 25; ++n) {
       const NodePlace from = world.nodes.random_place(c, 2, 2 * n),
                       to = world.nodes.random_place(c, 2, 2 * n + 1);
-      fresh.find(from, to, e);
+      rebuilt.find(from, to, e);
       one.find(from, to, a);
       other.find(from, to, b);
       copy.find(from, to, d);
@@ -299,7 +299,7 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
     for (uint64_t n = 0; n < 25; ++n) {
       const NodePlace from = world.nodes.random_place(c, 2, 2 * n),
                       to = world.nodes.random_place(c, 2, 2 * n + 1);
-      fresh.find(from, to, e);
+      rebuilt.find(from, to, e);
       one.find(from, to, a);
       EXPECT_TRUE(is_same(a, e));
     }
@@ -310,7 +310,7 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
 // What is well clear of every obstacle stays open: a random place whose body's ball no prism comes
 // near is never blocked.
 TEST(NodeObstacles, BlockNoMoreThanNeeded) {
-  uint64_t open = 0, taken = 0, blocked_near = 0;
+  uint64_t open = 0, blocked = 0, blocked_near = 0;
   for_each_world([&](const TestWorld& world) {
     Context context;
     for (int32_t c = 0; c < 4; ++c) {
@@ -337,15 +337,15 @@ TEST(NodeObstacles, BlockNoMoreThanNeeded) {
           body.radius = avatar.radius;
           is_near = is_near || may_touch(body, {prism, {}});
         }
-        taken += is_blocked ? 1 : 0;
+        blocked += is_blocked ? 1 : 0;
         blocked_near += is_blocked && is_near ? 1 : 0;
         open += is_blocked ? 0 : 1;
       }
     }
   });
   EXPECT_GT(open, 30000u);
-  EXPECT_GT(taken, 1000u);
-  EXPECT_EQ(blocked_near, taken);
+  EXPECT_GT(blocked, 1000u);
+  EXPECT_EQ(blocked_near, blocked);
 }
 
 // A shell of triangles blocks what its faces touch: no more than the whole prism does, and all
@@ -357,7 +357,7 @@ TEST(NodeObstacles, MeshesBlockWhatTheirTrianglesTouch) {
   for (int32_t c = 0; c < 4; ++c) {
     auto made = NodePathFinder::make(world.nodes, {.avatar_class = c, .workers = 1}, context);
     ASSERT_TRUE(made);
-    NodePathFinder fresh = *made, solid = *made, shells = *made;
+    NodePathFinder rebuilt = *made, solid = *made, shells = *made;
     Scene scene;
     for (const Prism& prism : random_prisms(world.nodes, 31, 40)) {
       const test::PrismShell shell = test::shell_of(prism);
@@ -381,7 +381,7 @@ TEST(NodeObstacles, MeshesBlockWhatTheirTrianglesTouch) {
         ++bodies;
         EXPECT_FALSE(verify::turned_intruder(tree, avatar, {point.place.feet, point.place.axis}));
       }
-      fresh.find(from, to, other);
+      rebuilt.find(from, to, other);
       around += !is_same(path, other) ? 1 : 0;
     }
   }

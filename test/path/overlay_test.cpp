@@ -79,7 +79,7 @@ TEST(Overlay, PathsOverEntrancesAreFoundIfAnyAndCostLittleMore) {
   uint64_t reached = 0, unreachable = 0, drops = 0, leaps = 0, expanded = 0, plainly = 0;
   size_t overlay_levels = 0;
   for_each_mesh([&](const NodeMesh& mesh) {
-    double sum = 0, most = 0;
+    double sum = 0, worst = 0;
     int count = 0;
     for (const size_t per_cell : {24, 192}) {
       const NodeView view(mesh);
@@ -112,7 +112,7 @@ TEST(Overlay, PathsOverEntrancesAreFoundIfAnyAndCostLittleMore) {
         }
         if (plain.cost() < 5) continue;
         sum += cost / plain.cost();
-        most = std::max(most, cost / plain.cost());
+        worst = std::max(worst, cost / plain.cost());
         ++count;
         // A budget is kept: it is exhausted, or the search needs no more.
         const SearchBudget little{search.expanded() / 2};
@@ -124,7 +124,7 @@ TEST(Overlay, PathsOverEntrancesAreFoundIfAnyAndCostLittleMore) {
     }
     EXPECT_GT(count, 30);
     EXPECT_LE(sum / count, 1.015);
-    EXPECT_LE(most, 1.1);
+    EXPECT_LE(worst, 1.1);
   });
   EXPECT_GT(overlay_levels, 2u);
   EXPECT_GT(reached, 600u);

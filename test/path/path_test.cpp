@@ -380,8 +380,8 @@ TEST(Path, StraightLinesOverManyZonesAreFound) {
                         by(at.position.z, summary.origin.z, cells_z));
     };
     const MoveResult from = move(place, 0, 0);
-    const auto random = [&](uint64_t use, uint64_t most) {
-      return static_cast<double>(random_below(7, n, use, most));
+    const auto random = [&](uint64_t use, uint64_t count) {
+      return static_cast<double>(random_below(7, n, use, count));
     };
     const double times = 1 + random(0, 120);
     const MoveResult to =

@@ -21,8 +21,8 @@
 /// Obstacles placed in the air of a class since it was made.
 namespace throng {
 
-/// The space itself stays as it is. An AirView shows both. A change undoes and makes again only the
-/// boxes that it touches.
+/// The space itself stays as it is. An AirView shows both. A change cuts again only the boxes that
+/// it touches.
 class AirChanges {
  public:
   /// The world and the space outlive it.

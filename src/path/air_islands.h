@@ -36,8 +36,7 @@ class AirIslands {
   /// After cells of some boxes of the space were blocked: finds what is still connected. Pieces are
   /// flooded in turns, so this takes as long as all but the largest have boxes.
   void divide(const AirView& air, std::span<const uint32_t> boxes);
-  /// After cells of some boxes were given back; parts that were not there before are labelled
-  /// kNoBox.
+  /// After cells of some boxes were freed; new parts are labelled kNoBox.
   void join(const AirView& air, std::span<const uint32_t> boxes);
 
  private:

@@ -37,7 +37,7 @@ class AirView {
                                                       static_cast<int32_t>(std::floor(p.z)))
                          : box;
   }
-  /// Every box's number is lower than that.
+  /// Above every box's number.
   [[nodiscard]] uint32_t end() const {
     return changes_ == nullptr ? static_cast<uint32_t>(space_->boxes.size())
                                : changes_->splits().end();
@@ -50,7 +50,7 @@ class AirView {
   [[nodiscard]] uint32_t component(uint32_t box) const {
     return changes_ == nullptr ? space_->component[box] : changes_->islands().label(box);
   }
-  /// That of the space that such a component is all of, or a piece of.
+  /// The component of the space that it is, or is a piece of.
   [[nodiscard]] uint32_t baked(uint32_t component) const {
     return changes_ == nullptr ? component : changes_->islands().component(component);
   }

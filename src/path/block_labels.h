@@ -9,14 +9,14 @@
 #include "path/mesh.h"
 #include "path/two_hop.h"
 
-/// Labels of blocks: what hub labels say of the points of each, worked out before.
+/// Labels of blocks: the hub labels that the points of each need, prepared.
 namespace throng {
 
 struct HubLabels;
 
-/// For each block of a mesh, by rising hub, the corners by which some point of it may reach the hub
-/// shortest. Source: Du, Shen, Cheema. Ultrafast Euclidean Shortest Path Computation using Hub
-/// Labeling. AAAI 2023, [DSC23].
+/// For each block of a mesh, by rising hub, the corners over which the shortest path from some
+/// point of it to the hub may lead. Source: Du, Shen, Cheema. Ultrafast Euclidean Shortest Path
+/// Computation using Hub Labeling. AAAI 2023, [DSC23].
 struct BlockLabels {
   std::vector<uint32_t> first;      // per block its first hub, one more at the end; empty: none
   std::vector<uint32_t> hub;        // of each block, rising

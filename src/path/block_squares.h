@@ -14,8 +14,8 @@
 /// Which blocks of Bezier patches lie near a point.
 namespace throng {
 
-/// The parameters of a block's point nearest to a position: from its middle by Gauss and Newton's
-/// steps, kept inside; on a level tile the nearest in the plane.
+/// The parameters of a block's point nearest to a position: from its middle by Gauss-Newton steps,
+/// kept inside; on a level tile the nearest in the plane.
 [[nodiscard]] std::pair<double, double> nearest_in(const NodeSurface& surface,
                                                    const NodeBlock& block, Vec3d position);
 
@@ -25,7 +25,7 @@ class BlockSquares {
   explicit BlockSquares(const NodeMesh& mesh);
 
   /// Calls visit(block) for each block that may have a point no farther than `radius`, which the
-  /// calls may lessen. In no order.
+  /// calls may reduce. In no order.
   template <class Visit>
   void for_each_near(Vec3d position, const double& radius, Visit visit) const {
     if (balls_.empty()) return;

@@ -9,7 +9,7 @@
 #include "path/plan_shapes.h"
 #include "world/walk.h"
 
-// Which air cells an obstacle blocks: those in which a body, grown by rounding, could touch its
+// Which voxels an obstacle blocks: those in which a body, grown by rounding, could touch its
 // prism or triangles. Linear in cells times triangles.
 namespace throng {
 namespace {

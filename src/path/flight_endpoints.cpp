@@ -45,7 +45,7 @@ int32_t free_layers(const AirData& air, const AirBody& body, int32_t x, int32_t 
 
 Obstacle air_obstacle(const AirData& air, const AirBody& body, const AirView& view, AirPoint from,
                       AirPoint to) {
-  constexpr double kStep = 0.25;  // [air cells]
+  constexpr double kStep = 0.25;  // [voxels]
   const AirPoint delta = to - from;
   const double far = air_distance(from, to);
   for (double at = 0; at < far; at += kStep) {

@@ -24,7 +24,7 @@
 namespace throng {
 namespace {
 
-constexpr int32_t kLargestBox = 32;           // air cells: larger ones hide good paths
+constexpr int32_t kLargestBox = 32;           // voxels: larger ones hide good paths
 constexpr uint64_t kMaxFloodCells = 1 << 18;  // on foot to where one can take off
 // The same where the nearest take-off leads into an island and there are several others.
 constexpr uint64_t kMaxIslandCells = 1 << 15;

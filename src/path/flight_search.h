@@ -31,7 +31,7 @@ class FlightSearch {
   void give_back();
   [[nodiscard]] uint64_t allocated_bytes() const;
   static constexpr uint64_t kKeptBytes = uint64_t{64} << 20;
-  /// After a search that found none: of all that is reached, the point nearest to another.
+  /// After a search that found none: the point nearest to another in all boxes that it reached.
   [[nodiscard]] AirPoint nearest_reached(AirPoint goal) const;
 
  private:
@@ -67,13 +67,14 @@ class FlightSearch {
 
   std::optional<AirView> air_;
   AirPoint start_, goal_;
-  bool large_ = false;  // only through boxes that are the larger the farther from both ends
+  bool large_ =
+      false;  // only through boxes of a minimum size that grows with the distance from both ends
   uint32_t goal_box_ = kNoBox;
   uint32_t search_ = 0;
   uint64_t expanded_ = 0;
   ChunkedArray<Node> nodes_;
   std::vector<Entry> open_;
-  Paged<Mark> marks_;                 // per box, parts of those that are split among them
+  Paged<Mark> marks_;                 // per box or part of a split one
   std::vector<AirPoint> large_path_;  // through large boxes
 };
 

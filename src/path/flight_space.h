@@ -20,7 +20,7 @@ namespace throng {
 
 inline constexpr uint32_t kNoBox = UINT32_MAX;
 
-/// A point of the air, or a vector between two. [air cells from the world's origin and layer 0]
+/// A point of the air, or a vector between two. [voxels from the world's origin and layer 0]
 struct AirPoint {
   double x = 0, y = 0, z = 0;
   friend AirPoint operator+(AirPoint a, AirPoint b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
@@ -36,13 +36,13 @@ inline double axis_of(const AirPoint& p, int axis) {
   return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
 }
 
-/// Cells of the air, the last ones too. None: a first above its last.
+/// Voxels, last included. None: a first above its last.
 struct AirRange {
   int32_t first[3] = {0, 0, 0}, last[3] = {-1, -1, -1};  // x, y, z
 };
 
-/// Points keep that far off the faces of boxes, so that a line between two never runs along one.
-/// [air cells]
+/// Points keep so far off the faces of boxes, so that a line between two never runs along one.
+/// [voxels]
 inline constexpr double kAirSkin = 1.0 / 1024;
 /// The nearest such coordinates in the same cell.
 double off_faces(double v);
@@ -50,12 +50,12 @@ AirPoint off_faces(AirPoint p);
 
 struct FlightSpace {
   AirShape shape;
-  int32_t width = 0, depth = 0;  // [air cells]
+  int32_t width = 0, depth = 0;  // [voxels]
   int32_t zone_side = 0, zones_x = 0, zones_z = 0;
   /// A zone's tree: the number of a free cube is its box, of a leaf its index in the arrays below.
   std::vector<AirTreeData> zones;
   struct Leaf {
-    uint64_t starts = 0;     // lowest cell of each box
+    uint64_t starts = 0;     // lowest voxel of each box
     uint32_t first_box = 0;  // boxes follow in the order of these
   };
   std::vector<std::vector<Leaf>> leaves;  // per zone
@@ -63,40 +63,40 @@ struct FlightSpace {
   std::vector<uint32_t> first_box;        // by zone, and the end
   std::vector<uint32_t> component;        // per box: the first box of its connected component
 
-  /// The box that a cell belongs to, or none if the body may not be there.
+  /// The box that a voxel belongs to, or none if the body may not be there.
   [[nodiscard]] uint32_t box_at(int32_t x, int32_t y, int32_t z) const;
   [[nodiscard]] uint32_t box_at(AirPoint p) const;
   /// Is the straight line legal over its whole length? Points lie within boxes, a skin off their
   /// faces.
   [[nodiscard]] bool sees(AirPoint from, AirPoint to) const;
   [[nodiscard]] const AirCube& cube(uint32_t box) const { return boxes[box]; }
-  /// The boxes with cells in a range, rising zone by zone.
+  /// The boxes with voxels in a range, rising zone by zone.
   void boxes_in(const AirRange& range, std::vector<uint32_t>& found) const;
-  /// Calls visit(box) for each box of at least `min_side` cells a side (1 or 4) that shares a part
+  /// Calls visit(box) for each box of at least `min_side` voxels a side (1 or 4) that shares a part
   /// of a face with this one.
   template <class Visit>
   void for_neighbours(const AirCube& box, Visit&& visit, int32_t min_side = 1) const;
-  /// The same of a square of cells of a plane of them: at `plane` along the axis, from u and v on
-  /// along the other two, the one of y first, else that of x.
+  /// The same for a square of voxels of a plane: at `plane` along the axis, from u and v on along
+  /// the other two, the one of y first, else that of x.
   template <class Visit>
   void visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side, int32_t min_side,
                   Visit& visit) const;
   [[nodiscard]] uint64_t bytes() const;
 
  private:
-  /// Of a cell of a zone, and of the node of the zone's tree that holds it.
+  /// Of a voxel of a zone, and of the node of the zone's tree that holds it.
   [[nodiscard]] uint32_t box_in(size_t zone, const AirTree& tree, const AirTree::Place& place,
                                 int32_t x, int32_t y, int32_t z) const;
 };
 
-/// The cells where the body may be, from what is free around. Boxes have at most `largest` cells a
+/// The voxels where the body may be, given the free ones. Boxes have at most `largest` voxels a
 /// side. Fails with kBadFile (a zone cannot be used) or kCancelled. The same for any number of
 /// workers.
 Result<FlightSpace> build_flight_space(const AirData& air, const AirBody& body, int32_t largest,
                                        int32_t workers, Context& context);
 
-/// Clears every cell of `free` around which the body is not free; layers over the rows count as
-/// free, cells beside them do not. Word by word.
+/// Clears every voxel of `free` around which the body is not free; layers over the rows count as
+/// free, voxels beside them do not. Word by word.
 void erode_air(const AirBody& body, const AirRows& free, AirRows& legal);
 
 namespace flight_detail {
@@ -175,9 +175,9 @@ void FlightSpace::for_neighbours(const AirCube& box, Visit&& visit, int32_t min_
   visit_face(2, box.z - 1, box.x, box.y, box.side, min_side, visit);
 }
 
-// FlightSpace::sees over any air that knows box_at(x, y, z) and cube(box).
-// From box to box: the line leaves one by the face that it meets first. At an edge or a corner it
-// takes one face after the other, and must be free to pass what lies between.
+// FlightSpace::sees over any air that has box_at(x, y, z) and cube(box). From box to box: the line
+// leaves one by the face that it meets first. At an edge or a corner it passes one face after the
+// other, and what lies between must be free.
 template <class Air>
 bool air_sees(const Air& air, AirPoint from, AirPoint to) {
   const double begin[3] = {from.x, from.y, from.z};

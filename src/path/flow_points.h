@@ -14,16 +14,16 @@
 #include "throng/live_ground.h"
 #include "throng/path.h"
 
-/// The distances that a FlowField shows, apart from the ground: one table serves many workers, each
-/// with a copy of the ground of its own.
+/// The distances of a FlowField, apart from the ground: one table serves many workers, each with
+/// its own copy of the ground.
 namespace throng {
 
 class FlowPoints {
  public:
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
-  /// Searches outwards from all goals that are places of the class, up to `max_distance` metres'
-  /// cost. None if it was cancelled; without any points if no goal is a place.
+  /// Searches outwards from all goals that are places of the class, up to a cost of `max_distance`
+  /// metres. None if it was cancelled; without any points if no goal is a place.
   static std::optional<FlowPoints> make(LiveGround& ground, std::span<const Place> goals,
                                         double max_distance, Context& context);
   [[nodiscard]] bool empty() const { return points_.empty(); }

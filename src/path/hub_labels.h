@@ -14,7 +14,7 @@
 /// Shortest paths between corners, by look-up.
 namespace throng {
 
-/// Labels of corners, and of what the blocks of a mesh see.
+/// Labels of corners, and the corners that the blocks of a mesh see.
 struct HubLabels : TwoHopLabels {
   // Per block the corners that may be seen from some point of it: a path from there that turns does
   // so first at one of them.
@@ -33,7 +33,7 @@ struct HubLabels : TwoHopLabels {
   }
 };
 
-/// Looks from every corner, then labels them all. Fails with kCancelled. The same for any number of
+/// Casts from every corner, then labels them all. Fails with kCancelled. The same for any number of
 /// workers.
 Result<HubLabels> build_labels(const PathMesh& mesh, int32_t workers, Context& context);
 

@@ -16,8 +16,7 @@ namespace throng {
 /// The path between two ends over the corners that they see. Owns its memory: one per thread.
 class LabelSearch {
  public:
-  /// As PathSearch::find, without a budget: the length of what it finds is the same but for
-  /// rounding.
+  /// As PathSearch::find, without a budget: the length of what it finds is the same up to rounding.
   bool find(const PathMesh& mesh, const HubLabels& labels, const Stop& from, const Stop& to,
             std::vector<uint32_t>& corners, double& length);
 

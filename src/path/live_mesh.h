@@ -23,7 +23,7 @@ inline constexpr std::array<double, kSlopeClasses> kSteepestOf{0.05, 0.1, 0.2, 0
 struct LiveRect {
   int16_t x0 = 0, z0 = 0, x1 = 0, z1 = 0;
   uint8_t area = 0, slope = 0;
-  uint32_t first_portal = 0;  // they end where the next rectangle's begin
+  uint32_t first_portal = 0;  // its portals end where the next rectangle's begin
 };
 
 /// A stretch of a rectangle's side over which a step leads to another, and back.
@@ -48,7 +48,7 @@ struct LiveLevel {
   [[nodiscard]] uint16_t rect_at(int32_t x, int32_t z) const;  // cell of the tile, legal
 };
 
-/// Levels with what has changed on them. Copies share nothing.
+/// Levels and the changes made to them. Copies share nothing.
 class LiveMesh {
  public:
   LiveMesh(World world, const LiveConfig& config);
@@ -95,7 +95,7 @@ class LiveMesh {
   bool stand(uint32_t level, GroundPoint at, uint16_t& rect);
   bool set_active(ChangeId change, bool active, bool remove);
 
-  /// As world/walk.h wants it.
+  /// As world/walk.h needs it.
   struct Ground {
     using Level = const LiveLevel*;
     LiveMesh& mesh;

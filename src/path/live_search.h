@@ -33,7 +33,7 @@ struct LiveNode {
 class LiveNodes {
  public:
   void clear();
-  /// Gives back what was allocated.
+  /// Frees what was allocated.
   void give_back();
   /// Bytes of what it holds, the same whatever was allocated before.
   [[nodiscard]] uint64_t used_bytes() const;
@@ -47,8 +47,8 @@ class LiveNodes {
   std::vector<uint32_t> table_;  // open addressing; 0 is free, else index plus one
 };
 
-/// Calls visit(on_this_side, beyond) for points of all portals of a rectangle;
-/// beyond is a stop in the next rectangle, straight across.
+/// Calls visit(on_this_side, beyond) for points of all portals of a rectangle; beyond is a stop in
+/// the next rectangle, straight across.
 template <class Visit>
 void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit);
 
@@ -75,15 +75,15 @@ class LiveStringPuller {
   std::vector<double> before_;  // cost up to each stop
 };
 
-/// A*, best first. Owns its memory: no allocation once it has grown; what a large query took beyond
-/// kKeptBytes is given back when the next one begins.
+/// A*, best first. Owns its memory: no allocation once it has grown; what a large query allocated
+/// beyond kKeptBytes is freed when the next one begins.
 class LiveSearch {
  public:
   enum class State { kSearching, kFound, kNone, kFull };
   static constexpr uint64_t kKeptBytes = uint64_t{32} << 20;
 
   void begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
-  /// Looks at up to `max_nodes` points more; kFull where it would remember more than so many bytes.
+  /// Expands up to `max_nodes` points more; kFull if it would need more than `max_bytes`.
   State advance(LiveMesh& mesh, uint64_t max_nodes, uint64_t max_bytes);
   /// Frees what is allocated beyond kKeptBytes: after a search.
   void give_back();

@@ -19,9 +19,9 @@
 namespace throng {
 
 /// Where a body could touch a solid its block is cut: level tiles by their cells, curved patches by
-/// squares of about a quarter of a metre. What is left of a block are *parts*. What a solid takes
-/// is found once, when it is added; then parts and portals are those of all that is up, whatever
-/// came first. Copies share the mesh.
+/// squares of about a quarter of a metre. What is left of a block are *parts*. What a solid blocks
+/// is found once, when it is added; parts and portals are those of all active solids, in whatever
+/// order they were added. Copies share the mesh.
 class NodeChanges {
  public:
   /// No link over a hole of the mesh is longer. [m]
@@ -29,7 +29,7 @@ class NodeChanges {
       : mesh_(&mesh), squares_(&squares), longest_hole_link_(longest_hole_link) {}
 
   ChangeId add(Solid solid);
-  /// False if there is none of that id, which is then never used again if it is removed.
+  /// False if there is none of that id, which is never used again once removed.
   bool set_active(ChangeId change, bool active, bool remove);
   /// Rises with every change.
   [[nodiscard]] uint64_t version() const { return version_; }
@@ -39,13 +39,12 @@ class NodeChanges {
   [[nodiscard]] bool empty() const { return touched_.empty(); }
   [[nodiscard]] std::span<const NodeBlock> parts() const { return parts_; }
   [[nodiscard]] std::span<const NodePortal> portals() const { return portals_; }
-  /// Of a part, or of a block some of whose portals are others now; none: they are as they were.
+  /// Of a part, or of a block whose portals have changed; none: they are as they were.
   [[nodiscard]] std::optional<std::span<const uint32_t>> portals_of(uint32_t block) const;
   [[nodiscard]] uint32_t base_of(uint32_t part) const {
     return base_of_part_[part - mesh_->blocks().size()];
   }
-  /// The numbers of the parts that are left of a block, from the first to before the last; none: it
-  /// is whole.
+  /// The numbers of the parts that are left of a block, [first, last); none: it is whole.
   [[nodiscard]] std::optional<std::pair<uint32_t, uint32_t>> parts_of(uint32_t block) const;
   /// The block or the part of it that holds a point, which may lie on its border; or kNoNode.
   [[nodiscard]] uint32_t part_at(uint32_t block, double s, double t) const;

@@ -11,7 +11,8 @@
 /// What of a mesh can be reached from where, without a search over its portals.
 namespace throng {
 
-/// Blocks of one part are reached from each other; one-way portals lead from part to part.
+/// Blocks of one part (a strongly connected component) can reach each other; one-way portals lead
+/// from part to part.
 class NodeParts {
  public:
   explicit NodeParts(const NodeMesh& mesh, int32_t workers);
@@ -37,8 +38,8 @@ class NodeParts {
   };
 
   [[nodiscard]] uint32_t of_block(uint32_t block) const { return part_of_[block]; }
-  /// Marks all parts that are reached from a block. Linear in the one-way portals that lead on from
-  /// them.
+  /// Marks all parts that can be reached from a block. Linear in the one-way portals that lead on
+  /// from them.
   void reach(uint32_t block, Reached& reached) const;
   /// Of the ends of portals on paths from a place whose parts were marked, and of that place
   /// itself, the nearest to a goal; none that lies in a block for which is_out(block) is true.

@@ -14,12 +14,12 @@
 /// A* over the portals between blocks of nodes.
 namespace throng {
 
-/// What a straight piece within a block costs.
+/// The cost of a straight piece within a block.
 class PieceCost {
  public:
   PieceCost(const NodeView& view, double slope_cost);
 
-  /// Metres over the surface, and what they cost. Both ends lie in the patch's block.
+  /// Length over the surface in metres, and its cost. Both ends lie in the patch's block.
   struct Piece {
     double length = 0, cost = 0;
   };

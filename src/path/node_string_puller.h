@@ -12,8 +12,8 @@ namespace throng {
 /// A portal of a path, and where the path crosses it.
 struct PulledCrossing {
   Crossing crossing;
-  double along = 0.5;  ///< From the portal's beginning to its end.
-  BlockPoint out, in;  ///< In the block that it leaves, and in the one that it comes to.
+  double along = 0.5;  ///< From the portal's start to its end.
+  BlockPoint out, in;  ///< In the block that it leaves, and in the one that it enters.
   Vec3d out_at, in_at;
   Vec3d first_at, last_at;  ///< Ends of the portal, in the block that it leaves.
   double around = 0;        ///< Cost of the path from the crossing before to the one after.

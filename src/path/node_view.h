@@ -11,8 +11,8 @@
 /// A mesh of nodes as it is now: as it was baked, less what obstacles block since.
 namespace throng {
 
-/// Blocks and portals have the mesh's numbers. Above these are parts of blocks that something
-/// stands on, which no portal leads to any more, and portals between parts.
+/// Blocks and portals have the mesh's numbers. Above these are parts of the blocks that obstacles
+/// cut, to which no portal leads any more, and portals between parts.
 class NodeView {
  public:
   /// As it was baked, if `changes` are null.

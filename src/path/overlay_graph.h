@@ -24,7 +24,7 @@ class OverlayGraph {
     uint32_t into = kNoNode;  ///< Place of its block in the overlay cell; none: it leads out.
   };
 
-  /// Of these blocks, rising; `keep` remembers what all pieces cost, for many calls of run().
+  /// Of these blocks, rising; `keep` stores the costs of all pieces, for many calls of run().
   void set(std::span<const uint32_t> blocks, bool keep);
   /// In the order of the blocks that they leave.
   [[nodiscard]] const std::vector<Arc>& arcs() const { return arcs_; }

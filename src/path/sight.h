@@ -8,7 +8,7 @@
 
 #include "path/mesh.h"
 
-/// What is seen from a point of the ground.
+/// The corners and blocks that are seen from a point of the ground.
 namespace throng {
 
 /// A block of which something may be seen; `whole` if all of it is.
@@ -28,7 +28,7 @@ inline bool is_taut(const MeshCorner& corner, double dx, double dz) {
   return dx * corner.away_x * (dz * corner.away_z) <= 0;
 }
 
-/// Looks over a mesh along straight lines. Owns its memory: one per thread.
+/// Casts over a mesh along straight lines. Owns its memory: one per thread.
 class Sight {
  public:
   /// From now on, casts into rectangles [first, last) only.
@@ -44,7 +44,7 @@ class Sight {
   void cast_from_corner(const PathMesh& mesh, uint32_t corner, bool with_blocks);
 
   /// The corners that are seen from a point, or from `corner` if that is one, in the triangle of
-  /// it, `right` and `left`; of what lies beyond, some.
+  /// it, `right` and `left`; of those beyond, some.
   void cast_into(const PathMesh& mesh, uint32_t corner, uint32_t rect, CellPoint from,
                  CellPoint right, CellPoint left);
 

@@ -13,7 +13,7 @@
 #include "throng/prism.h"
 #include "throng/result.h"
 
-/// What is put into a world at run time, and whether a body touches it.
+/// A solid that is placed in a world at run time, and whether a body touches it.
 namespace throng {
 
 struct Solid {
@@ -41,7 +41,7 @@ struct BodyRoom {
 };
 
 /// False: none of these bodies is nearer to the solid than the margin. May be true of bodies that
-/// are not.
+/// are not nearer.
 [[nodiscard]] bool may_touch(const BodyRoom& room, const Solid& solid);
 
 /// The maximum distance of points of such bodies from their feet. [m]

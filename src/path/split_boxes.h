@@ -11,8 +11,8 @@
 /// Boxes of a space of which some cells are blocked.
 namespace throng {
 
-/// What is left of such a box is cut into cubes, its parts, as an octree down to single cells. They
-/// are numbered from the number of boxes on; numbers of parts that are no more are given again.
+/// What is left of such a box is cut into cubes, its parts, as an octree down to single voxels.
+/// They are numbered from the number of boxes on; numbers of deleted parts are used again.
 class SplitBoxes {
  public:
   explicit SplitBoxes(const FlightSpace& space);
@@ -20,12 +20,12 @@ class SplitBoxes {
   [[nodiscard]] bool is_split(uint32_t box) const {
     return (split_[box / 64] >> (box % 64) & 1) != 0;
   }
-  /// Of a split box: the part that holds one of its cells, or kNoBox.
+  /// Of a split box: the part that holds one of its voxels, or kNoBox.
   [[nodiscard]] uint32_t part_at(uint32_t box, int32_t x, int32_t y, int32_t z) const;
   [[nodiscard]] const AirCube& cube(uint32_t part) const { return cubes_[part - first_]; }
-  /// Every part's number is lower than that.
+  /// Above every part's number.
   [[nodiscard]] uint32_t end() const { return first_ + static_cast<uint32_t>(cubes_.size()); }
-  /// Blocks cells of a box, instead of those blocked before; with none it is whole again.
+  /// Blocks voxels of a box, instead of those blocked before; with none it is whole again.
   void cut(uint32_t box, const CubeCells& blocked);
   /// Calls visit(part) for each part of a split box, always in the same order.
   template <class Visit>
@@ -53,7 +53,7 @@ class SplitBoxes {
   std::vector<uint64_t> split_;                // bits, by box
   std::unordered_map<uint32_t, Nodes> nodes_;  // by split box; looked up only
   std::vector<AirCube> cubes_;                 // by part
-  std::vector<uint32_t> spare_;                // parts that are no more
+  std::vector<uint32_t> spare_;                // deleted parts
 };
 
 template <class Visit>

@@ -51,13 +51,13 @@ struct TwoHopLabels {
   [[nodiscard]] std::span<const Label> of(uint32_t node) const {
     return {labels.data() + first[node], labels.data() + first[node + 1]};
   }
-  /// Asks memory for what of() of several nodes will read: all of them before any is waited for.
+  /// Prefetches what of() will read of several nodes.
   template <class Nodes>
   void ask_for(const Nodes& nodes) const {
     for (const uint32_t node : nodes) prefetch(&first[node]);
     for (const uint32_t node : nodes) {
       const Label* list = labels.data() + first[node];
-      constexpr size_t kLine = 64 / sizeof(Label), kLines = 4;  // what follows comes by itself
+      constexpr size_t kLine = 64 / sizeof(Label), kLines = 4;  // hardware prefetches the rest
       for (size_t i = 0; i < kLines; ++i) prefetch(list + i * kLine);
     }
   }

@@ -29,7 +29,7 @@ class ZoneSearch {
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
 
  private:
-  // How far hubs are, and from which of several nodes.
+  // Distances of hubs, and from which of several nodes.
   class Reached {
    public:
     void begin(size_t hubs);

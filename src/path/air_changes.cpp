@@ -63,13 +63,13 @@ bool AirChanges::set_active(ChangeId id, bool active) {
 bool AirChanges::remove(ChangeId id) {
   if (!set_active(id, false)) return false;
   Change& change = changes_[id - 1];
-  change = {};  // Its id is never used again, its memory is given back.
+  change = {};  // Its id is never used again, its memory is freed.
   change.active = false;
   change.removed = true;
   return true;
 }
 
-// Makes the boxes again that it touches, after it was switched.
+// Cuts the boxes again that a change touches, after it was switched.
 void AirChanges::touch(ChangeId id) {
   const Change& change = changes_[id - 1];
   for (const int64_t tile : change.tiles) {
@@ -116,10 +116,10 @@ void AirChanges::touch(ChangeId id) {
   } else {
     islands_.join(air, touched_);
   }
-  if (active_ == 0) islands_ = AirIslands(*space_);  // nothing is cut off; gives memory back
+  if (active_ == 0) islands_ = AirIslands(*space_);  // nothing is cut off; frees memory
 }
 
-// A piece has the label of the piece that it was of, or that it was made of.
+// A piece has the label of a former piece that holds it or lies in it.
 void AirChanges::label_pieces(uint32_t box) {
   const AirView air(*space_, this);
   air.for_pieces(box, [&](uint32_t piece) {
@@ -134,7 +134,7 @@ void AirChanges::label_pieces(uint32_t box) {
   });
 }
 
-// The cells that obstacles take of every level of a tile.
+// The cells that obstacles block on every level of a tile.
 void AirChanges::block_ground(int64_t tile, std::span<const ChangeId> here) {
   const auto x = static_cast<int32_t>(tile), z = static_cast<int32_t>(tile >> 32);
   const auto levels = world_->tile_levels(x, z);

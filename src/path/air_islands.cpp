@@ -70,7 +70,7 @@ void AirIslands::unite(uint32_t a, uint32_t b) {
   --left(into.label);
 }
 
-// Looks at one box of a piece. False if there is none.
+// Visits one box of a piece. False if there is none.
 bool AirIslands::expand(const AirView& air, uint32_t piece) {
   const uint32_t index = pieces_[piece].head;
   if (index == kNoBox) return false;

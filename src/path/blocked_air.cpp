@@ -9,8 +9,8 @@
 #include "path/plan_shapes.h"
 #include "world/walk.h"
 
-// Which voxels an obstacle blocks: those in which a body, grown by rounding, could touch its
-// prism or triangles. Linear in cells times triangles.
+// Which voxels an obstacle blocks: those in which a body, grown by rounding, could touch its prism
+// or triangles. Linear in voxels times triangles.
 namespace throng {
 namespace {
 

@@ -29,7 +29,7 @@ PlanPoint corner_of(const TileFloor& floor) {
           floor.summary.origin.z + floor.tile_z * side};
 }
 
-// What a body takes on a cell, from its lowest feet to its highest. [m]
+// The height of a body on a cell, from its lowest feet to its highest head. [m]
 std::pair<double, double> body_heights(const LevelView& view, const AvatarClass& avatar, int32_t x,
                                        int32_t z) {
   const auto [gx, gz] = rise_at(view, x, z);
@@ -86,7 +86,7 @@ CellRows blocked_cells(const TileFloor& floor, const AvatarClass& avatar, const 
   if (first_x > last_x) return blocked;
   const auto [origin_x, origin_z] = corner_of(floor);
   const double side = floor.summary.cell;
-  // Triangles need not lie within the prism's polygon; a box around them must not leave any out.
+  // Triangles are grown by kHeightRounding in height, so the box around them is, too.
   const double spare = triangles.empty() ? 0 : kHeightRounding;
   const uint64_t columns = (~uint64_t{0} >> (63 - (last_x - first_x))) << first_x;
   for (int32_t z = first_z; z <= last_z; ++z) {

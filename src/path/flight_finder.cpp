@@ -25,7 +25,7 @@ namespace throng {
 namespace {
 
 constexpr int32_t kLargestBox = 32;           // voxels: larger ones hide good paths
-constexpr uint64_t kMaxFloodCells = 1 << 18;  // on foot to where one can take off
+constexpr uint64_t kMaxFloodCells = 1 << 18;  // on foot to a take-off
 // The same where the nearest take-off leads into an island and there are several others.
 constexpr uint64_t kMaxIslandCells = 1 << 15;
 // Paths over other ground, or to what is less near, where obstacles block the first.
@@ -136,7 +136,7 @@ struct FlightFinder::Scratch {
     if (live) live_ids.push_back(AirChanges::add_to(*live, solid));
     return changes_of(shared).add(std::move(solid));
   }
-  // The ground with all changes; made when it is first walked on.
+  // The ground with all changes; made on the first walk.
   LiveGround& ground(const Shared& shared) {
     if (!live) {
       auto made = LiveGround::make(shared.world, {.avatar_class = shared.avatar_class});
@@ -159,7 +159,7 @@ struct FlightFinder::Scratch {
   GroundAirLinks::Scratch parts;
   std::vector<GroundAirLinks::Part> route;
   std::vector<GroundAirLinks::Pair> banned;
-  // Put up since the finder was made; none before the first one.
+  // Made with the first obstacle; none before.
   std::optional<AirChanges> changes;
   std::optional<LiveGround> live;
   std::vector<ChangeId> live_ids;  // by id of a change - 1
@@ -357,7 +357,7 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
   clear(path);
   path.nodes = 0;
   scratch.reached.reset();
-  bool budget_exhausted = false;  // somewhere: then what was not found may be there all the same
+  bool budget_exhausted = false;  // somewhere: then what was not found may exist all the same
   const auto component_of = [&](AirPoint p) { return air.component(air.box_at(p)); };
   // From the ground into the air: into this component of it, or any (kNoBox).
   const auto to_link = [&](End& end, uint32_t component) {
@@ -521,14 +521,14 @@ void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
   }
 }
 
-// Where it does not lead on, the place in the route of the part that it did not come to.
+// If it does not lead on: the place in the route of the part that it did not reach.
 size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, const End& to,
                                   FlightPath& path) {
   Scratch& scratch = *scratch_;
   const AirView view = scratch.air(*shared_);
   const FlightEndpoints ends = shared_->ends(view);
   PathEnd end = PathEnd::kReached;
-  Place feet = from.ground;  // where it is by now, or
+  Place feet = from.ground;  // where the path is by now, or
   AirPoint air = from.air.value_or(AirPoint{});
   const auto go = [&](const Place& there) {
     if (end != PathEnd::kReached) return;
@@ -626,7 +626,7 @@ void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   for (const auto& step : scratch.parts.steps) {
     if (step.part.is_air) airs.push_back(step.part.component);
   }
-  // Obstacles may have cut off where it is from what the ground leads to otherwise.
+  // Obstacles may have cut off its air from what the ground leads to otherwise.
   if (is_changed && from.air) {
     airs.push_back(air.component(air.box_at(*from.air)));
   } else if (is_changed) {

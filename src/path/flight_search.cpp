@@ -19,12 +19,12 @@ constexpr double kLargeHeuristicWeight = 1.1;  // through large boxes
 // with the distance from both ends. Its result is used if it is hardly longer than the straight
 // line; otherwise the search through all boxes has a budget in which to find a shorter one. String
 // pulling moves the path to the edges of what is in between in either case.
-constexpr double kFar = 256;            // ends so many cells apart
+constexpr double kFar = 256;            // ends so many voxels apart
 constexpr double kHardlyLonger = 1.05;  // before it is pulled taut
 constexpr uint64_t kBudget = 1u << 17;  // boxes
 struct Ring {
-  double within;     // cells from an end
-  int32_t min_side;  // cells a side of a box
+  double within;     // voxels from an end
+  int32_t min_side;  // voxels a side of a box
 };
 constexpr Ring kRings[] = {{64, 1}, {256, 4}, {1024, 8}, {HUGE_VAL, 16}};
 

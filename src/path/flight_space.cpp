@@ -8,7 +8,7 @@
 #include "core/parallel.h"
 
 // The free air eroded by the body, word by word, then cut into the boxes of an octree per zone,
-// whose connected components are numbered. Linear in the cells times the body's width.
+// whose connected components are numbered. Linear in the voxels times the body's width.
 namespace throng {
 
 double off_faces(double v) {
@@ -82,8 +82,8 @@ uint64_t FlightSpace::bytes() const {
 
 namespace {
 
-// dst &= src moved by `cells` along x: bit x of dst meets bit x + cells of src. What comes from
-// beyond the row is not free.
+// dst &= src moved by `cells` along x: bit x of dst meets bit x + cells of src. Bits beyond the row
+// are not free.
 void and_shifted(uint64_t* dst, const uint64_t* src, int32_t words, int32_t cells) {
   const int32_t whole = std::abs(cells) / 64, part = std::abs(cells) % 64;
   for (int32_t w = 0; w < words; ++w) {
@@ -100,7 +100,7 @@ void and_shifted(uint64_t* dst, const uint64_t* src, int32_t words, int32_t cell
   }
 }
 
-// Free cells of all zones around one, by rows of the window.
+// Free voxels of all zones around one, by rows of the window.
 bool fill_window(const AirData& air, int32_t first_x, int32_t first_z, int32_t base,
                  AirRows& rows) {
   const int32_t side = air.zone_side;

@@ -35,7 +35,7 @@ LiveMesh::LiveMesh(World world, const LiveConfig& config)
       levels_(world_.data()->level_count) {
   area_cost_.fill(1);
   for (size_t s = 0; s < slope_factor_.size(); ++s) {
-    // The gentlest class has level ground in it: it is free.
+    // The gentlest class holds level ground: no extra cost.
     slope_factor_[s] = 1 + (s == 0 ? 0 : config.slope_cost * kSteepestOf[s]);
   }
   plain_ = config.slope_cost == 0;
@@ -94,7 +94,7 @@ bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
     std::erase_if(idle_links_,
                   [&](const auto& off_mesh_link) { return off_mesh_link.second.change == id; });
     for (const int64_t tile : change.tiles) std::erase(changes_of_tile_[tile], id);
-    change = Change{};  // Its id is never used again, its memory is given back.
+    change = Change{};  // Its id is never used again, its memory is freed.
     change.active = false;
     change.removed = true;
   }

@@ -24,7 +24,7 @@ bool same(const LiveStop& a, const LiveStop& b) {
   return a.level == b.level && a.at.x == b.at.x && a.at.z == b.at.z;
 }
 
-// What a metre costs in the middle of nowhere else than this cell.
+// Cost of a metre on the ground of a cell.
 double factor_at(LiveMesh& mesh, const LiveLevel& level, int32_t x, int32_t z) {
   return mesh.factor(level.rects[level.rect_at(x & 63, z & 63)]);
 }
@@ -142,7 +142,7 @@ void LiveStringPuller::leave_out(LiveMesh& mesh, std::vector<LiveStop>& stops) {
 
 void LiveStringPuller::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops) {
   leave_out(mesh, stops);
-  // Bends move towards the straight line between their neighbours as far as the ground lets them.
+  // Waypoints move towards the straight line between their neighbours as far as the ground permits.
   constexpr int kSweeps = 2, kHalvings = 6;
   for (int sweep = 0; sweep < kSweeps && stops.size() > 2; ++sweep) {
     for (size_t i = 1; i + 1 < stops.size(); ++i) {
@@ -227,7 +227,8 @@ LiveNode* LiveSearch::push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent
   return &node;
 }
 
-// Of the node's rectangle, the point nearest to the goal, heights too: below it is not there.
+// Of the node's rectangle, the point nearest to the goal; heights count, so a point below the goal
+// is not at it.
 void LiveSearch::note_nearest(LiveMesh& mesh, const LiveLevel& level, uint32_t index) {
   const LiveStop& stop = nodes_.nodes[index].stop;
   const LiveRect& rect = level.rects[stop.rect];

@@ -151,7 +151,7 @@ class Builder {
                        static_cast<int8_t>(missing_z < pz ? 1 : -1)};
     };
     if (beside_x && beside_z) {
-      // The fourth is missing, or a step to it is, or what lies there are two sheets that part.
+      // The fourth is missing, or a step to it is, or two levels part there.
       if (across_x && across_z && across_x->world_level == across_z->world_level) return {};
       return key(ox, oz, level.world_level);
     }

@@ -15,11 +15,11 @@ namespace throng {
 namespace {
 
 constexpr double kFinest = 0.35;  // [m] across a square of curved ground that is cut no further
-constexpr uint8_t kDeepest = 8;   // what a block's numbers hold
+constexpr uint8_t kDeepest = 8;   // the maximum that a block's numbers hold
 constexpr int32_t kPieces = 16;   // of a portal's line
 constexpr int kTurns = 7;         // halvings of a motion
 constexpr double kRounded = 1e-9;
-constexpr double kWide = 1e-7;  // Less of a line is nothing.
+constexpr double kWide = 1e-7;  // A shorter piece of a line counts as empty.
 
 struct Pose {
   Vec3d feet, axis;
@@ -105,7 +105,7 @@ bool NodeChanges::set_active(ChangeId id, bool active, bool remove) {
   if (change.active != active) ++version_;
   change.active = active;
   if (remove) {
-    change = {};  // Its id is never used again, its memory is given back.
+    change = {};  // Its id is never used again, its memory is freed.
     change.active = false;
     change.removed = true;
   }
@@ -238,7 +238,7 @@ bool NodeChanges::blocks_portal(const Solid& solid, const NodePortal& portal, do
     if (surface.points == nullptr) return found;
     if (climbs) found.axis = surface.normal(s, t);
     if (to <= from) return found;
-    // A strip along the line: of a line alone it is not known how it leans.
+    // A strip along the line: a line alone does not show how bodies lean.
     constexpr double kStrip = 1.0 / 256;
     const auto cut = cut_line(on, from, to);
     const auto range = [&](size_t k) {

@@ -116,7 +116,7 @@ SearchBudget what_is_left(const SearchBudget& budget, const NodePath& path) {
 
 }  // namespace
 
-// To where a path leads, as far as is known before active obstacles are tested.
+// Over crossings nearby if the ends are near, else over the overlay; if that finds none, over all.
 PathEnd NodePathFinder::Scratch::find(const BlockPoint& from, const BlockPoint& to,
                                       const SearchBudget& budget, NodePath& path) {
   const auto take = [&](auto&& searched, PathEnd end) {
@@ -272,7 +272,7 @@ uint32_t block_around(const NodeMesh& mesh, uint32_t node, double s, double t, A
   return kNoNode;
 }
 
-// What keeps the class from going on from a block towards a position.
+// What blocks the class from a block towards a position.
 Obstacle obstacle_towards(const NodeView& view, const BlockPoint& from, Vec3d goal) {
   const NodeMesh& mesh = view.mesh();
   const NodeBlock& block = view.block(from.block);
@@ -301,7 +301,7 @@ Obstacle obstacle_towards(const NodeView& view, const BlockPoint& from, Vec3d go
     if (next != kNoNode && view.changes()->part_at(next, s, t) == kNoNode) return Obstacle::kNarrow;
   }
   if (surface.points == nullptr) {
-    // What stops a straight walk, as over level tiles without nodes.
+    // What blocks a straight walk, as over level tiles without nodes.
     const WorldData& world = *surface.world;
     const WorldGround ground{world, mesh.avatar_class()};
     GroundLevel level = ground_level(world, surface.source, mesh.avatar_class());
@@ -380,7 +380,7 @@ void for_each_level_part(const NodeView& view, Vec3d position, double radius, Vi
 template <class IsReached>
 BlockPoint nearest_place(const NodeView& view, const BlockSquares& squares,
                          const BlockPoint& crossing, Vec3d goal, IsReached is_reached) {
-  constexpr double kNear = 25;  // There are too many blocks around a far goal. [m]
+  constexpr double kNear = 25;  // There are too many blocks around a farther goal. [m]
   BlockPoint best = crossing;
   double least = length(goal - position(view, best));
   const auto consider = [&](uint32_t block, double s, double t) {
@@ -562,7 +562,7 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
     if (!place || place.node1 > mesh.nodes().node_count()) return at;
     if (!(place.s >= 0 && place.s <= 1 && place.t >= 0 && place.t <= 1)) return at;
     at.block = mesh.block_at(mesh.patch_of_node(place.node1 - 1), place.s, place.t);
-    // On the border of a cell the other one may be meant.
+    // On the border of a cell the other cell may be meant.
     if (at.block == kNoNode || mesh.blocks()[at.block].node != place.node1 - 1) {
       const uint32_t own = block_around(mesh, place.node1 - 1, place.s, place.t,
                                         [](const NodeBlock&) { return true; });

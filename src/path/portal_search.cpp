@@ -69,7 +69,7 @@ SearchResult PortalSearch::search(const Stop& from, const Stop& to, const Search
     open_.pop_back();
     const auto [search, before, rect, cost] = reached_[next.point];
     const Stop at{crossing(rect, next.point).beyond, mesh_->portals[next.point / kPoints].rect};
-    if (next.estimate > cost + between(at.at, goal_)) continue;  // It was reached more cheaply.
+    if (next.estimate > cost + between(at.at, goal_)) continue;  // It was reached at a lower cost.
     if (budget.is_spent(++expanded_, used_bytes())) return SearchResult::kBudget;
     if (at.rect == to.rect) {
       best = cost + between(at.at, to.at);

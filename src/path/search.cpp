@@ -62,7 +62,7 @@ SearchResult PathSearch::run(const SearchBudget& budget) {
     if (open_.size() >= drop_at || used_bytes() > budget.max_bytes || pushed_ > kMaxPushed) {
       drop_useless();
       drop_at = std::max(kDropFrom, 2 * open_.size());
-      // So much is to be free that it takes a while until it is full again.
+      // So much must be free that it takes a while until the memory is full again.
       if (used_bytes() > budget.max_bytes - budget.max_bytes / 8 || pushed_ > kMaxPushed)
         return SearchResult::kBudget;
       if (open_.empty()) break;
@@ -92,7 +92,7 @@ uint64_t PathSearch::allocated_bytes() const {
          free_.capacity() * sizeof(uint32_t);
 }
 
-// Takes out what would be passed over when its turn came: the order of the others is as it was.
+// Removes intervals that would be skipped; the order of the others stays.
 void PathSearch::drop_useless() {
   size_t kept = 0;
   for (const Entry& entry : open_) {
@@ -157,7 +157,7 @@ double PathSearch::estimate(const Node& node) const {
   const double side_goal = cross(node.right, node.left, goal);
   const double width = distance(node.left, node.right);
   if (std::fabs(side_root) <= kSame * width) {
-    // Edge on: by the nearer end, or from where the root lies on the interval.
+    // Edge on: over the nearer end, or from where the root lies on the interval.
     const double to_right = distance(root.point, node.right);
     const double to_left = distance(root.point, node.left);
     if (std::max(to_right, to_left) <= width + kSame)
@@ -165,7 +165,8 @@ double PathSearch::estimate(const Node& node) const {
     const CellPoint end = to_right < to_left ? node.right : node.left;
     return root.length + std::min(to_right, to_left) + distance(end, goal);
   }
-  // A goal on the root's side is reached over the interval all the same: mirrored, it is as far.
+  // A goal on the root's side is reached over the interval all the same: its mirror image is as
+  // far.
   if (side_root * side_goal > 0) {
     const bool upright = node.left.x == node.right.x;
     if (upright) {

@@ -10,8 +10,9 @@
 #include "path/plan_shapes.h"
 
 // A cylinder lies in the capsule around its axis and in the slab between its ends. A solid that
-// stays clear of either stays clear of the cylinder. How far a convex solid is from a point of the
-// axis is a convex function of where on the axis that is, so its least value is found by thirds.
+// stays clear of either stays clear of the cylinder. The distance of a convex solid from a point of
+// the axis is a convex function of the point's place on the axis, so its minimum is found by
+// ternary search.
 namespace throng {
 namespace {
 

@@ -48,7 +48,7 @@ def main():
                 rows.append((name, avatar["name"], found["crossings"], made, f"{paths['distance']:.0f}", f"{paths['reached']} of {paths['pairs']}",
                              f"{paths['mean_length']:.0f}", f"{paths['median_ms']:.2f}, {paths['max_ms']:.2f}",
                              f"{paths['search_median_ms']:.2f}, {paths['search_max_ms']:.2f}",
-                             f"{paths['looked_at']:.0f}, {paths["searched"]:.0f}",
+                             f"{paths['expanded']:.0f}, {paths['searched']:.0f}",
                              f"{paths['mean_ratio']:.4f}, {paths['worst_ratio']:.4f} of {paths['judged']}",
                              f"{paths['unreachable_median_ms']:.2f}, {paths['unreachable_max_ms']:.2f}"))
             for put in found["crates"]:

@@ -11,8 +11,8 @@
 #include "crate_times.h"
 #include "throng/flight.h"
 
-// How soon ways through the air avoid a crate that is put in the way of one, on a world of any
-// size; with `--standing`, among others that stand there.
+// Time until paths through the air avoid a crate that is put onto one, on a world of any size; with
+// `--standing`, among other crates.
 namespace throng::bench {
 namespace {
 
@@ -72,17 +72,17 @@ Json crates(FlightFinder& finder, int64_t trials, int64_t standing, double away,
     finder.remove(*crate);
     removed.push_back(milliseconds_since(start));
   }
-  if (added.empty()) stop("no way was found to put a crate in");
+  if (added.empty()) stop("no path was found to put a crate onto");
   return {{"trials", added.size()},
           {"standing", standing},
           {"away_m", away},
-          {"way_before_ms", spread(before)},
-          {"add_ms", spread(added)},
-          {"way_after_ms", spread(after)},
-          {"until_avoided_ms", spread(both)},
-          {"remove_ms", spread(removed)},
-          {"ways_made_longer", longer},
-          {"ways_that_crates_shut", shut}};
+          {"path_before_ms", quantiles(before)},
+          {"add_ms", quantiles(added)},
+          {"path_after_ms", quantiles(after)},
+          {"until_avoided_ms", quantiles(both)},
+          {"remove_ms", quantiles(removed)},
+          {"paths_made_longer", longer},
+          {"paths_blocked_by_crates", shut}};
 }
 
 }  // namespace
@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
   app.add_option("--class", name, "Avatar class that flies");
   app.add_option("--trials", trials, "Crates");
   app.add_option("--standing", standing, "Other crates, all over the air");
-  app.add_option("--away", away, "Length of the ways [m]");
+  app.add_option("--away", away, "Length of the paths [m]");
   app.add_option("--side", side, "Of a crate [m]");
   CLI11_PARSE(app, argc, argv);
   const auto world = throng::World::open(folder);

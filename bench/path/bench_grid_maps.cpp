@@ -17,7 +17,7 @@
 #include "throng/cells.h"
 #include "throng/path.h"
 
-// Moving AI's grid maps and their scenarios: our ways' lengths beside the published ones, which
+// Moving AI's grid maps and their scenarios: our paths' lengths beside the published ones, which
 // keep to eight directions, and, for a sample, beside a brute-force search's; and the time of a
 // query.
 namespace throng::bench {
@@ -72,7 +72,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-// What the oracle says of every (count / sample)-th query: a shorter way, and illegal legs.
+// The oracle's result for every (count / sample)-th query: a shorter path, and illegal segments.
 Json judge(const FlatCells& cells, const std::vector<Query>& queries, int sample) {
   const test::GridOracle oracle(cells);
   const size_t every =
@@ -82,7 +82,7 @@ Json judge(const FlatCells& cells, const std::vector<Query>& queries, int sample
   for (size_t i = every / 2; i < queries.size(); i += every) {
     const Query& q = queries[i];
     if (!q.reached) continue;
-    // The ellipse of all ways that are not longer than ours: the shortest of them is the optimum.
+    // The ellipse of all paths that are not longer than ours: the shortest of them is the optimum.
     const auto best = oracle.shortest(test::middle(q.from_x, q.from_z),
                                       test::middle(q.to_x, q.to_z), q.length * (1 + 1e-9) + 1e-9);
     if (!best) {
@@ -162,7 +162,7 @@ int main(int argc, char** argv) {
   parser.add_option("scenario", options.scenario, "Its queries (.scen)")->required();
   parser.add_option("--runs", options.runs, "Times each query is timed")->check(CLI::Range(1, 100));
   parser.add_option("--sample", options.sample, "Queries that the oracle judges");
-  parser.add_flag("--labels", options.labels, "Look ways up instead of searching");
+  parser.add_flag("--labels", options.labels, "Look paths up instead of searching");
   CLI11_PARSE(parser, argc, argv);
   fmt::print("{}\n", throng::bench::measure(options).dump(2));
   return 0;

@@ -14,8 +14,8 @@
 #include "throng/live_ground.h"
 #include "throng/world.h"
 
-// How soon ways avoid a crate that is put in the way of one, on a world of any size; and what a
-// field of distances to shared goals costs.
+// Time until paths avoid a crate that is put onto one, on a world of any size; and the cost of a
+// field of distances to shared goals.
 namespace throng::bench {
 namespace {
 
@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
   std::exit(2);
 }
 
-// Is a point of the way inside the crate grown by the body?
+// Is a point of the path inside the crate grown by the body?
 bool avoids(const Path& path, const Vec3d& low, const Vec3d& high, double radius) {
   for (size_t i = 1; i < path.points.size(); ++i) {
     const Vec3d a = path.points[i - 1].position, b = path.points[i].position;
@@ -60,7 +60,7 @@ Json crates(const World& world, int64_t trials, double away) {
     ground->find(from, to, path, 20000);
     if (path.end != PathEnd::kReached || path.length > 2 * away) continue;
     first.push_back(milliseconds_since(start));
-    // A crate of a metre over the middle of the way.
+    // A crate of a metre over the middle of the path.
     Vec3d middle = path.points[0].position;
     double left = path.length / 2;
     for (size_t i = 1; i < path.points.size(); ++i) {
@@ -86,12 +86,16 @@ Json crates(const World& world, int64_t trials, double away) {
     ground->remove(*crate);
     removed.push_back(milliseconds_since(start));
   }
-  if (added.empty()) stop("no way was found to put a crate in");
-  return {{"trials", added.size()},          {"away_m", away},
-          {"first_way_ms", spread(first)},   {"add_ms", spread(added)},
-          {"way_after_ms", spread(found)},   {"until_avoided_ms", spread(both)},
-          {"remove_ms", spread(removed)},    {"ways_through_crates", through},
-          {"ways_that_crates_shut", blocked}};
+  if (added.empty()) stop("no path was found to put a crate onto");
+  return {{"trials", added.size()},
+          {"away_m", away},
+          {"first_path_ms", quantiles(first)},
+          {"add_ms", quantiles(added)},
+          {"path_after_ms", quantiles(found)},
+          {"until_avoided_ms", quantiles(both)},
+          {"remove_ms", quantiles(removed)},
+          {"paths_through_crates", through},
+          {"paths_blocked_by_crates", blocked}};
 }
 
 Json fields(const World& world, double most) {
@@ -128,7 +132,7 @@ int main(int argc, char** argv) {
   double away = 20, most = 500;
   app.add_option("world", folder, "World folder")->required();
   app.add_option("--trials", trials, "Crates");
-  app.add_option("--away", away, "Length of the ways [m]");
+  app.add_option("--away", away, "Length of the paths [m]");
   app.add_option("--most", most, "Farthest that the field looks [m]");
   CLI11_PARSE(app, argc, argv);
   const auto start = Clock::now();

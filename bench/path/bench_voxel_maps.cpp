@@ -17,9 +17,9 @@
 #include "throng/flight.h"
 #include "voxel_oracle.h"
 
-// Moving AI's voxel maps and their queries: our ways' lengths beside the published ones, which keep
-// to 26 directions, and, for a sample, beside a brute-force any-angle search's; and the time of a
-// query.
+// Moving AI's voxel maps and their queries: our paths' lengths beside the published ones, which
+// keep to 26 directions, and, for a sample, beside a brute-force any-angle search's; and the time
+// of a query.
 namespace throng::bench {
 namespace {
 
@@ -28,8 +28,8 @@ using Json = nlohmann::ordered_json;
 struct Options {
   std::string map;
   int runs = 1;
-  int sample = 50;     // queries that the oracle is asked
-  size_t most = 3000;  // corners that it looks at for one
+  int sample = 50;     // queries that the oracle checks
+  size_t most = 3000;  // corners that it expands for one
 };
 
 struct Query {
@@ -92,7 +92,7 @@ Json judge(const test::VoxelOracle& oracle, const std::vector<Query>& queries,
       continue;
     }
     ++judged;
-    // No way over corners is within a thousandth of ours: ours is shorter than that.
+    // No path over corners is within a thousandth of ours: ours is shorter than that.
     const double ratio = best.length ? q.length / *best.length : 1 / 1.001;
     shorter += best.length ? 0 : 1;
     sum += ratio;

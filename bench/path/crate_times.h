@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-/// What benchmarks of crates that are put up measure with.
+/// Helpers of benchmarks that place crates.
 namespace throng::bench {
 
 using Clock = std::chrono::steady_clock;
@@ -17,7 +17,7 @@ inline double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-inline nlohmann::ordered_json spread(std::vector<double> values) {
+inline nlohmann::ordered_json quantiles(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const auto at = [&](double part) {
     return values[static_cast<size_t>(part * static_cast<double>(values.size() - 1))];

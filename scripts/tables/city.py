@@ -9,7 +9,7 @@ import sys
 
 from results_page import PROGRAM, ROOT, WORK, human, machine, run_json, table, write_between
 
-BENCH = ROOT / "build/release/bench/bench_long_ways"
+BENCH = ROOT / "build/release/bench/bench_long_paths"
 MAX_MEMORY = 4 << 30  # [bytes]
 MAX_MS = 1  # Median of the longest paths. [ms]
 
@@ -30,7 +30,7 @@ def bake_row(report, found):
 
 def path_rows(found):
     made = f"{found['make_seconds']:.0f} s, {human(found['bytes'])}"
-    for paths in found["ways"]:
+    for paths in found["paths"]:
         if not paths["pairs"]:
             continue
         longest = paths["distance"] >= 10000

@@ -18,7 +18,7 @@ import shutil
 from results_page import PROGRAM, ROOT, WORK, human, machine, run_json, table, write_between
 
 CROWD = ROOT / "build/release/bench/bench_crowd"
-FINDER = ROOT / "build/release/bench/bench_node_ways"
+FINDER = ROOT / "build/release/bench/bench_node_paths"
 
 
 def digest(folder):

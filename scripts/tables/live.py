@@ -35,9 +35,9 @@ def main():
         area = f"{side * side / 1e6:g}"
         made = report["crates"]
         verdict = "met" if made["until_avoided_ms"]["median"] < MAX_MS else "MISSED"
-        crates.append((area, made["trials"], times(made["first_way_ms"]), times(made["add_ms"]), times(made["way_after_ms"]),
+        crates.append((area, made["trials"], times(made["first_path_ms"]), times(made["add_ms"]), times(made["path_after_ms"]),
                        f"{times(made['until_avoided_ms'])}: {verdict}", times(made["remove_ms"]),
-                       made["ways_through_crates"]))
+                       made["paths_through_crates"]))
         field = report["field"]
         fields.append((area, f"{field['most_m']:g}", field["points"], human(field["bytes"]), f"{field['seconds']:.3f}",
                        f"{field['distance_us']:.2f}"))
@@ -49,9 +49,9 @@ def main():
             report = run_json(AIR_BENCH, folder, "--trials", options.trials, "--standing", standing)
             made = report["crates"]
             verdict = "met" if made["until_avoided_ms"]["median"] < MAX_MS else "MISSED"
-            air.append((f"{side * side / 1e6:g}", f"{report['boxes'] / 1e6:.1f}", standing, times(made["way_before_ms"]), times(made["add_ms"]),
-                        times(made["way_after_ms"]), f"{times(made['until_avoided_ms'])}: {verdict}", times(made["remove_ms"]),
-                        made["ways_made_longer"], made["ways_that_crates_shut"]))
+            air.append((f"{side * side / 1e6:g}", f"{report['boxes'] / 1e6:.1f}", standing, times(made["path_before_ms"]), times(made["add_ms"]),
+                        times(made["path_after_ms"]), f"{times(made['until_avoided_ms'])}: {verdict}", times(made["remove_ms"]),
+                        made["paths_made_longer"], made["paths_blocked_by_crates"]))
         shutil.rmtree(folder)
     text = (f"Machine: {machine()}. `city`, cells of {CELL} m, adult, one thread. Paths of about 20 m between random places; a crate "
             "of 1 m over the middle of each. Milliseconds, median / 99 % / max.\n\n")

@@ -9,7 +9,7 @@ import shutil
 
 from results_page import PROGRAM, ROOT, WORK, WORLDS, human, machine, run_json, table, write_between
 
-BENCH = ROOT / "build/release/bench/bench_node_ways"
+BENCH = ROOT / "build/release/bench/bench_node_paths"
 CLASSES = [
     {"name": "adult", "max_drop": 1.5},
     {"name": "climber", "climb_slope": 120},
@@ -42,20 +42,20 @@ def main():
             found = run_json(BENCH, folder, "--class", avatar["name"], "--distances", ",".join(map(str, distances)), "--pairs", options.pairs,
                              "--judged", options.pairs // 2, "--threads", options.threads)
             made = f"{found['seconds']:.1f} s, {human(found['bytes'])} ({found['search_seconds']:.1f} s, {human(found['search_bytes'])})"
-            for paths in found["ways"]:
+            for paths in found["paths"]:
                 differ += paths["differ"]
                 judged += options.pairs // 2
                 rows.append((name, avatar["name"], found["crossings"], made, f"{paths['distance']:.0f}", f"{paths['reached']} of {paths['pairs']}",
-                             f"{paths['mean_length']:.0f}", f"{paths['median_ms']:.2f}, {paths['most_ms']:.2f}",
-                             f"{paths['search_median_ms']:.2f}, {paths['search_most_ms']:.2f}",
-                             f"{paths['looked_at']:.0f}, {paths['searched']:.0f}",
+                             f"{paths['mean_length']:.0f}", f"{paths['median_ms']:.2f}, {paths['max_ms']:.2f}",
+                             f"{paths['search_median_ms']:.2f}, {paths['search_max_ms']:.2f}",
+                             f"{paths['expanded']:.0f}, {paths['searched']:.0f}",
                              f"{paths['mean_ratio']:.4f}, {paths['worst_ratio']:.4f} of {paths['judged']}",
-                             f"{paths['unreachable_median_ms']:.2f}, {paths['unreachable_most_ms']:.2f}"))
+                             f"{paths['unreachable_median_ms']:.2f}, {paths['unreachable_max_ms']:.2f}"))
             for put in found["crates"]:
                 parted += put["differ"]
                 crates.append((name, avatar["name"], f"{put['distance']:.0f}", put["crates"], f"{put['before_median_ms']:.2f}",
                                f"{put['add_median_ms']:.2f}", f"{put['find_median_ms']:.2f}",
-                               f"{put['until_median_ms']:.2f}, {put['until_most_ms']:.2f}", f"{put['without_median_ms']:.2f}",
+                               f"{put['until_median_ms']:.2f}, {put['until_max_ms']:.2f}", f"{put['without_median_ms']:.2f}",
                                f"{put['mean_ratio']:.4f}, {put['worst_ratio']:.4f}", put["shut"]))
         shutil.rmtree(folder)
     text = (f"Machine: {machine()}. Random places about this far from each other, one run, one thread; half of the pairs searched for "

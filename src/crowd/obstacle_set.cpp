@@ -336,7 +336,7 @@ bool ObstacleSet::restore(std::vector<CrowdObstacle> obstacles, std::vector<uint
   for (size_t slot = 0; slot < obstacles.size(); ++slot) {
     CrowdObstacle& obstacle = obstacles[slot];
     if (obstacle.exists == is_free[slot]) return false;
-    if (!obstacle.exists && (obstacle.has_cells || obstacle.lets_out)) return false;
+    if (!obstacle.exists && (obstacle.has_cells || obstacle.is_exit_only)) return false;
     if (!obstacle.exists) continue;
     if (!check_prism(obstacle.place) || !check_prism(obstacle.wanted)) return false;
     const bool may_close = obstacle.wanted_up && obstacle.policy == ObstaclePolicy::kRefuseEntry;

@@ -9,6 +9,8 @@
 #include "path/air_view.h"
 #include "path/blocked_cells.h"
 
+// Active obstacles by box of the space and by tile of the ground: a change cuts again only the
+// boxes and tiles that it touches.
 namespace throng {
 namespace {
 
@@ -61,13 +63,13 @@ bool AirChanges::set_active(ChangeId id, bool active) {
 bool AirChanges::remove(ChangeId id) {
   if (!set_active(id, false)) return false;
   Change& change = changes_[id - 1];
-  change = {};  // Its id is never used again, its memory is given back.
+  change = {};  // Its id is never used again, its memory is freed.
   change.active = false;
   change.removed = true;
   return true;
 }
 
-// Makes the boxes again that it touches, after it was switched.
+// Cuts the boxes again that a change touches, after it was switched.
 void AirChanges::touch(ChangeId id) {
   const Change& change = changes_[id - 1];
   for (const int64_t tile : change.tiles) {
@@ -77,7 +79,7 @@ void AirChanges::touch(ChangeId id) {
     } else {
       std::erase(here, id);
     }
-    take_ground(tile, here);
+    block_ground(tile, here);
     if (here.empty()) of_tile_.erase(tile);
   }
   const AirView air(*space_, this);
@@ -85,19 +87,19 @@ void AirChanges::touch(ChangeId id) {
   touched_.clear();
   for (const uint32_t box : near_) {
     const AirCube& cube = space_->boxes[box];
-    CubeCells taken;
-    if (!take_air(grid_, cube, change.near, change.solid.prism, change.solid.triangles, taken))
+    CubeCells blocked;
+    if (!block_air(grid_, cube, change.near, change.solid.prism, change.solid.triangles, blocked))
       continue;
     std::vector<ChangeId>& here = of_box_[box];
     if (change.active) {
       here.push_back(id);
     } else {
-      taken = {};
+      blocked = {};
       std::erase(here, id);
     }
     for (const ChangeId other : here) {
       const Change& of = changes_[other - 1];
-      if (other != id) take_air(grid_, cube, of.near, of.solid.prism, of.solid.triangles, taken);
+      if (other != id) block_air(grid_, cube, of.near, of.solid.prism, of.solid.triangles, blocked);
     }
     if (here.empty()) of_box_.erase(box);
     old_.clear();
@@ -105,7 +107,7 @@ void AirChanges::touch(ChangeId id) {
       old_.push_back({air.cube(piece), islands_.label(piece)});
     });
     islands_.set_label(box, space_->component[box]);
-    splits_.cut(box, taken);
+    splits_.cut(box, blocked);
     label_pieces(box);
     touched_.push_back(box);
   }
@@ -114,10 +116,10 @@ void AirChanges::touch(ChangeId id) {
   } else {
     islands_.join(air, touched_);
   }
-  if (active_ == 0) islands_ = AirIslands(*space_);  // nothing is cut off; gives memory back
+  if (active_ == 0) islands_ = AirIslands(*space_);  // nothing is cut off; frees memory
 }
 
-// A piece has the label of the piece that it was of, or that it was made of.
+// A piece has the label of a former piece that holds it or lies in it.
 void AirChanges::label_pieces(uint32_t box) {
   const AirView air(*space_, this);
   air.for_pieces(box, [&](uint32_t piece) {
@@ -132,43 +134,43 @@ void AirChanges::label_pieces(uint32_t box) {
   });
 }
 
-// The cells that obstacles take of every level of a tile.
-void AirChanges::take_ground(int64_t tile, std::span<const ChangeId> here) {
+// The cells that obstacles block on every level of a tile.
+void AirChanges::block_ground(int64_t tile, std::span<const ChangeId> here) {
   const auto x = static_cast<int32_t>(tile), z = static_cast<int32_t>(tile >> 32);
   const auto levels = world_->tile_levels(x, z);
   for (uint32_t i = levels.first; i < levels.last; ++i) {
     const GroundLevel level = ground_level(*world_, i, class_);
     if (level.zone == nullptr) continue;
     const CellRows legal = legal_rows(level);
-    CellRows taken{};
+    CellRows blocked{};
     uint64_t any = 0;
     for (const ChangeId id : here) {
       const Change& change = changes_[id - 1];
       const CellRows own = blocked_cells({world_->summary, level.view, x, z}, *avatar_,
                                          change.solid.prism, change.solid.triangles, legal.data());
-      for (size_t row = 0; row < own.size(); ++row) any |= taken[row] |= own[row];
+      for (size_t row = 0; row < own.size(); ++row) any |= blocked[row] |= own[row];
     }
     if (any != 0) {
-      taken_[i] = taken;
+      blocked_[i] = blocked;
     } else {
-      taken_.erase(i);
+      blocked_.erase(i);
     }
   }
 }
 
-void AirChanges::tell(LiveGround& ground, std::vector<ChangeId>& ids) const {
+void AirChanges::add_all_to(LiveGround& ground, std::vector<ChangeId>& ids) const {
   ids.clear();
   for (const Change& change : changes_) {
     if (change.removed) {
       ids.push_back(0);
       continue;
     }
-    ids.push_back(tell_of(ground, change.solid));
+    ids.push_back(add_to(ground, change.solid));
     ground.set_active(ids.back(), change.active);
   }
 }
 
-ChangeId AirChanges::tell_of(LiveGround& ground, const Solid& solid) {
+ChangeId AirChanges::add_to(LiveGround& ground, const Solid& solid) {
   const auto& [prism, triangles] = solid;
   if (triangles.empty()) {
     const auto added = ground.add_obstacle(prism);

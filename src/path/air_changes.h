@@ -18,11 +18,11 @@
 #include "world/cell_blocks.h"
 #include "world/ground.h"
 
-/// Obstacles put up in the air of a class since it was made.
+/// Obstacles placed in the air of a class since it was made.
 namespace throng {
 
-/// The space itself stays as it is. An AirView shows both. A change undoes and makes again only the
-/// boxes that it touches.
+/// The space itself stays as it is. An AirView shows both. A change cuts again only the boxes that
+/// it touches.
 class AirChanges {
  public:
   /// The world and the space outlive it.
@@ -36,16 +36,17 @@ class AirChanges {
   [[nodiscard]] bool any() const { return active_ > 0; }
   [[nodiscard]] const SplitBoxes& splits() const { return splits_; }
   [[nodiscard]] const AirIslands& islands() const { return islands_; }
-  /// May the class stand on a legal cell of the grid, as far as obstacles go?
+  /// May the class stand on a legal cell of the grid, as far as obstacles permit?
   [[nodiscard]] bool may_stand(uint32_t level, int32_t x, int32_t z) const {
-    const auto found = taken_.find(level);
-    return found == taken_.end() ||
+    const auto found = blocked_.find(level);
+    return found == blocked_.end() ||
            (found->second[static_cast<size_t>(z & 63)] >> (x & 63) & 1) == 0;
   }
-  /// Tells a ground of one; what it calls it.
-  static ChangeId tell_of(LiveGround& ground, const Solid& solid);
-  /// Tells a ground of the class that knows none of them yet; `ids`: what it calls them, by id - 1.
-  void tell(LiveGround& ground, std::vector<ChangeId>& ids) const;
+  /// Adds one obstacle to a ground; returns its id there.
+  static ChangeId add_to(LiveGround& ground, const Solid& solid);
+  /// Adds all obstacles to a ground of the class that has none of them yet; `ids`: their ids there,
+  /// by id - 1.
+  void add_all_to(LiveGround& ground, std::vector<ChangeId>& ids) const;
 
  private:
   struct Change {
@@ -56,7 +57,7 @@ class AirChanges {
   };
   void touch(ChangeId id);
   void label_pieces(uint32_t box);
-  void take_ground(int64_t tile, std::span<const ChangeId> here);
+  void block_ground(int64_t tile, std::span<const ChangeId> here);
 
   const WorldData* world_;
   const FlightSpace* space_;
@@ -70,8 +71,8 @@ class AirChanges {
   // Active ones, by box of the space and by tile of the ground; looked up only.
   std::unordered_map<uint32_t, std::vector<ChangeId>> of_box_;
   std::unordered_map<int64_t, std::vector<ChangeId>> of_tile_;
-  std::unordered_map<uint32_t, CellRows> taken_;  // by level of the world that has such cells
-  std::vector<uint32_t> near_, touched_;          // boxes
+  std::unordered_map<uint32_t, CellRows> blocked_;  // by level of the world that has such cells
+  std::vector<uint32_t> near_, touched_;            // boxes
   struct Old {
     AirCube cube;
     uint32_t label;

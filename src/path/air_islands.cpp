@@ -7,14 +7,14 @@
 #include "path/air_changes.h"
 #include "path/air_view.h"
 
-// Whatever is cut off has a box beside cells that were taken. So those boxes are where floods
-// begin, each as a piece of its own; pieces that meet become one. They take turns, box by box, and
-// stop when only one is left of what held together: what has no box left to look at before that is
-// a pocket. Around a crate all pieces have met after a few turns.
+// Whatever is cut off has a box beside cells that became blocked. So floods start from those boxes,
+// each as a piece of its own; pieces that meet are merged. They take turns, box by box, and stop
+// when only one piece is left of what was connected: a piece that runs out of boxes before that is
+// an island. Around a crate all pieces have met after a few turns.
 namespace throng {
 namespace {
 
-constexpr size_t kMaxBoxes = 1 << 16;  // that are looked at for one change
+constexpr size_t kMaxBoxes = 1 << 16;  // that are visited for one change
 
 }  // namespace
 
@@ -70,7 +70,7 @@ void AirIslands::unite(uint32_t a, uint32_t b) {
   --left(into.label);
 }
 
-// Looks at one box of a piece. False if there is none.
+// Visits one box of a piece. False if there is none.
 bool AirIslands::expand(const AirView& air, uint32_t piece) {
   const uint32_t index = pieces_[piece].head;
   if (index == kNoBox) return false;
@@ -147,12 +147,12 @@ void AirIslands::join(const AirView& air, std::span<const uint32_t> boxes) {
     air.for_pieces(box, [&](uint32_t piece) {
       air.for_neighbours(air.cube(piece), [&](uint32_t next) {
         const uint32_t a = last(label(piece)), b = last(label(next));
-        // The lowest stays: a component is lower than its pockets.
+        // The lowest stays: a component is lower than its islands.
         if (a != b) into.emplace(std::max(a, b), std::min(a, b));
       });
     });
   }
-  // Most often only pieces that were given back join what is around them.
+  // Usually only pieces that were freed join what is around them.
   bool any_new = false, any_old = false;
   for (const uint32_t box : boxes) {
     air.for_pieces(box, [&](uint32_t piece) {

@@ -10,15 +10,14 @@
 
 #include "path/flight_space.h"
 
-/// What obstacles have cut off from the air that it held together with.
+/// What obstacles have cut off from the air that it was connected to.
 namespace throng {
 
 class AirView;
 
-/// Labels boxes and parts of boxes: those of which one label differs from the other's do not hold
-/// together. The largest piece of a component keeps the component as its label, others are pockets.
-/// Where pieces are so large that it would take long to look around in them, they keep the same
-/// label; a search tells.
+/// Labels boxes and parts of boxes: two with different labels are not connected. The largest piece
+/// of a component keeps the component as its label, the others are islands. Pieces too large to
+/// flood in time keep the same label; then only a search can decide.
 class AirIslands {
  public:
   explicit AirIslands(const FlightSpace& space);
@@ -34,15 +33,14 @@ class AirIslands {
     return label < first_ ? label : component_[label - first_];
   }
   void set_label(uint32_t box, uint32_t label);
-  /// After cells of some boxes of the space were taken: looks what they held together. Pieces are
+  /// After cells of some boxes of the space were blocked: finds what is still connected. Pieces are
   /// flooded in turns, so this takes as long as all but the largest have boxes.
   void divide(const AirView& air, std::span<const uint32_t> boxes);
-  /// After cells of some boxes were given back; parts that were not there before are labelled
-  /// kNoBox.
+  /// After cells of some boxes were freed; new parts are labelled kNoBox.
   void join(const AirView& air, std::span<const uint32_t> boxes);
 
  private:
-  // A piece that is flooded: a list of what it has yet to look at.
+  // A piece that is flooded: a list of what it has yet to visit.
   struct Piece {
     uint32_t parent = 0, label = 0;
     uint32_t head = kNoBox, tail = kNoBox;  // in seen_
@@ -60,15 +58,15 @@ class AirIslands {
   bool expand(const AirView& air, uint32_t piece);
 
   const FlightSpace* space_;
-  uint32_t first_;                                 // labels of pockets and parts begin there
-  std::unordered_map<uint32_t, uint32_t> of_box_;  // of whole boxes that are in pockets
+  uint32_t first_;                                 // labels of islands and parts begin there
+  std::unordered_map<uint32_t, uint32_t> of_box_;  // of whole boxes that are in islands
   std::vector<uint32_t> of_part_;
-  std::vector<uint32_t> component_;  // by pocket
-  // While they are looked for:
+  std::vector<uint32_t> component_;  // by island
+  // While islands are searched for:
   std::vector<Piece> pieces_;
   std::vector<Seen> seen_;
   std::unordered_map<uint32_t, uint32_t> seen_of_;   // box: in seen_; looked up only
-  std::vector<std::pair<uint32_t, uint32_t>> left_;  // label: pieces not known to be pockets
+  std::vector<std::pair<uint32_t, uint32_t>> left_;  // label: pieces not known to be islands
 };
 
 }  // namespace throng

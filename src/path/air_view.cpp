@@ -6,11 +6,13 @@
 #include <cmath>
 #include <limits>
 
+// Queries of the air as it is: the boxes of the space, or their parts where obstacles have cut
+// them.
 namespace throng {
 
 namespace {
 
-// Nearest to a goal of the wanted parts of a split box; of those as near as each other the first.
+// Nearest to a goal of the wanted parts of a split box; of equally near boxes the first.
 template <class Wanted>
 std::optional<AirPoint> nearest_part(const SplitBoxes& splits, uint32_t box, AirPoint goal,
                                      Wanted is_wanted) {

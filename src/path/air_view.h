@@ -37,7 +37,7 @@ class AirView {
                                                       static_cast<int32_t>(std::floor(p.z)))
                          : box;
   }
-  /// Every box's number is lower than that.
+  /// Above every box's number.
   [[nodiscard]] uint32_t end() const {
     return changes_ == nullptr ? static_cast<uint32_t>(space_->boxes.size())
                                : changes_->splits().end();
@@ -45,27 +45,28 @@ class AirView {
   [[nodiscard]] const AirCube& cube(uint32_t box) const {
     return box < space_->boxes.size() ? space_->boxes[box] : changes_->splits().cube(box);
   }
-  /// What differs for boxes that do not hold together. Of whole boxes of the space it is their
-  /// component there, unless obstacles have cut them off.
+  /// The same for boxes that are connected. For a whole box of the space it is its component there,
+  /// unless obstacles have cut it off.
   [[nodiscard]] uint32_t component(uint32_t box) const {
     return changes_ == nullptr ? space_->component[box] : changes_->islands().label(box);
   }
-  /// That of the space that such a component is all of, or a piece of.
+  /// The component of the space that it is, or is a piece of.
   [[nodiscard]] uint32_t baked(uint32_t component) const {
     return changes_ == nullptr ? component : changes_->islands().component(component);
   }
-  /// False only if there is no way from one to the other.
+  /// False only if no path joins the two.
   [[nodiscard]] bool same_component(AirPoint a, AirPoint b) const {
     const uint32_t from = box_at(a), to = box_at(b);
     return from != kNoBox && to != kNoBox && component(from) == component(to);
   }
-  /// Is the straight line legal all the way? Points lie within boxes, a skin off their faces.
+  /// Is the straight line legal over its whole length? Points lie within boxes, a skin off their
+  /// faces.
   [[nodiscard]] bool sees(AirPoint from, AirPoint to) const {
     return changes_ == nullptr ? space_->sees(from, to) : air_sees(*this, from, to);
   }
   /// As FlightSpace has it; the cube may be any that lies within a box of the space.
   template <class Visit>
-  void for_neighbours(const AirCube& cube, Visit&& visit, int32_t least = 1) const;
+  void for_neighbours(const AirCube& cube, Visit&& visit, int32_t min_side = 1) const;
   /// Calls visit(box) for what is left of a box of the space: itself, or its parts.
   template <class Visit>
   void for_pieces(uint32_t box, Visit visit) const {
@@ -76,8 +77,8 @@ class AirView {
     }
   }
   /// The point nearest to a goal in boxes of some components, rising, a skin off their faces; of
-  /// boxes as near as each other in the first. Zones are looked at in the order of how near they
-  /// may come, in `order`, whose memory stays. None if there is no such box.
+  /// equally near boxes the first. Zones are visited in the order of how near they may come, in
+  /// `order`, whose memory is kept. None if there is no such box.
   using ZoneOrder = std::vector<std::pair<double, uint32_t>>;
   [[nodiscard]] std::optional<AirPoint> nearest_in(std::span<const uint32_t> components,
                                                    AirPoint goal, ZoneOrder& order) const;
@@ -100,9 +101,9 @@ inline AirPoint nearest_of(const AirCube& cube, AirPoint goal) {
 }
 
 template <class Visit>
-void AirView::for_neighbours(const AirCube& cube, Visit&& visit, int32_t least) const {
+void AirView::for_neighbours(const AirCube& cube, Visit&& visit, int32_t min_side) const {
   if (changes_ == nullptr) {
-    space_->for_neighbours(cube, visit, least);
+    space_->for_neighbours(cube, visit, min_side);
     return;
   }
   // The face's cells beyond it: of a box that is split, the parts that have some of them.
@@ -112,12 +113,12 @@ void AirView::for_neighbours(const AirCube& cube, Visit&& visit, int32_t least) 
     range.first[axis] = range.last[axis] = plane;
     const auto piece = [&](uint32_t box) {
       if (changes_->splits().is_split(box)) {
-        changes_->splits().for_parts_in(box, range, least, visit);
+        changes_->splits().for_parts_in(box, range, min_side, visit);
       } else {
         visit(box);
       }
     };
-    space_->visit_face(axis, plane, u, v, cube.side, least, piece);
+    space_->visit_face(axis, plane, u, v, cube.side, min_side, piece);
   };
   face(0, cube.x + cube.side, cube.y, cube.z);
   face(0, cube.x - 1, cube.y, cube.z);

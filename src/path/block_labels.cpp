@@ -12,6 +12,8 @@
 #include "path/hub_labels.h"
 #include "path/mesh_ray.h"
 
+// Hub labels merged per block, after [DSC23]: entries that no point of the block can need are left
+// out. Linear in the labels of the corners that the blocks see.
 namespace throng {
 namespace {
 
@@ -22,7 +24,7 @@ struct Entry {
 };
 
 struct MiddleEntry {
-  uint32_t hub, trail;
+  uint32_t hub, tree_place;
   float length;
 };
 
@@ -38,11 +40,11 @@ class Lister {
 
   // Of the n-th block of rectangle `rect`.
   std::vector<Entry> list(uint32_t rect, uint32_t n) {
-    const MeshRect r = look(rect, n);
+    const MeshRect r = cast_into(rect, n);
     const uint32_t begin = labels_.first_candidate[r.first_block + n];
     const uint32_t end = labels_.first_candidate[r.first_block + n + 1];
-    // From any other point p the way by the middle m is at most |p m| longer than from m, and a way
-    // by corner c at most |p m| shorter.
+    // From any other point p the path over the middle m is at most |p m| longer than from m, and a
+    // path over corner c at most |p m| shorter.
     const auto half = static_cast<float>(std::hypot(r.width * 0.5, r.depth * 0.5));
     std::vector<Entry> entries;
     for (uint32_t i = begin; i < end; ++i) {
@@ -64,13 +66,13 @@ class Lister {
 
   // Of the middle alone.
   std::vector<MiddleEntry> list_middle(uint32_t rect, uint32_t n) {
-    look(rect, n);
+    cast_into(rect, n);
     std::vector<MiddleEntry> entries;
     for (const uint32_t hub : hubs_) {
       constexpr float kSlack =
           1e-3f;  // cells: the hub itself is one of those that it is reached by
       if (best_[hub].length > true_length(hub) + kSlack) continue;
-      entries.push_back({hub, labels_.trail[best_[hub].label], best_[hub].length});
+      entries.push_back({hub, labels_.tree_place[best_[hub].label], best_[hub].length});
     }
     std::sort(entries.begin(), entries.end(),
               [](const MiddleEntry& a, const MiddleEntry& b) { return a.hub < b.hub; });
@@ -79,7 +81,7 @@ class Lister {
 
  private:
   // Finds how far each hub is from the middle of the block, over the corners that it sees.
-  MeshRect look(uint32_t rect, uint32_t n) {
+  MeshRect cast_into(uint32_t rect, uint32_t n) {
     ++now_;
     hubs_.clear();
     const MeshRect r = mesh_.block(rect, n);
@@ -102,8 +104,8 @@ class Lister {
     return r;
   }
 
-  // A hub may be nearer by another one than by all corners that have it in their lists: then no
-  // way from here needs it.
+  // A hub may be nearer over another hub than over all corners that have it in their lists: then no
+  // path from here needs it.
   float true_length(uint32_t hub) {
     if (known_[hub].block == now_) return known_[hub].length;
     float length = set_[hub] == now_ ? best_[hub].length : std::numeric_limits<float>::max();
@@ -156,7 +158,7 @@ std::vector<Block> all_blocks(const PathMesh& mesh) {
   return blocks;
 }
 
-// More candidates of a block than an entry's number can tell.
+// Does a block have more candidates than the number of an entry can hold?
 bool are_too_many(const HubLabels& labels) {
   for (size_t b = 0; b + 1 < labels.first_candidate.size(); ++b) {
     constexpr uint32_t kMax = std::numeric_limits<uint16_t>::max();
@@ -173,7 +175,7 @@ GroundPoint middle_of(const MeshRect& block) {
 }
 
 BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, int32_t workers,
-                               uint64_t most) {
+                               uint64_t max_entries) {
   BlockLabels out;
   const std::vector<Block> blocks = all_blocks(mesh);
   if (are_too_many(labels)) return {};
@@ -181,14 +183,14 @@ BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, in
   std::atomic<uint64_t> total{0};
   constexpr size_t kGrain = 64;
   parallel_ranges(blocks.size(), kGrain, workers, [&](size_t begin, size_t end) {
-    if (total > most) return;
+    if (total > max_entries) return;
     Lister lister(mesh, labels);
-    for (size_t b = begin; b < end && total <= most; ++b) {
+    for (size_t b = begin; b < end && total <= max_entries; ++b) {
       entries[b] = lister.list(blocks[b].rect, blocks[b].n);
       total += entries[b].size();
     }
   });
-  if (total > most) return {};
+  if (total > max_entries) return {};
   out.first.push_back(0);
   out.length.reserve(total);
   out.candidate.reserve(total);
@@ -221,7 +223,7 @@ MiddleLabels build_middle_labels(const PathMesh& mesh, const HubLabels& labels, 
   for (auto& of_block : entries) {
     for (const MiddleEntry& entry : of_block) {
       out.labels.push_back({entry.hub, entry.length});
-      out.trail.push_back(entry.trail);
+      out.tree_place.push_back(entry.tree_place);
     }
     out.first.push_back(static_cast<uint32_t>(out.labels.size()));
     of_block = {};

@@ -7,6 +7,8 @@
 #include "core/float_origin.h"
 #include "world/zone_data.h"
 
+// Balls around the blocks of Bezier patches, in a uniform grid of about one ball a square. The
+// nearest point of a block is found by Gauss-Newton steps.
 namespace throng {
 namespace {
 
@@ -35,7 +37,7 @@ std::pair<double, double> nearest_in(const NodeSurface& surface, const NodeBlock
   const double side = block.side(), s0 = block.s * side, t0 = block.t * side;
   if (surface.points == nullptr) {
     const Vec3d corner = surface.at(0, 0);
-    const double tile = surface.world->summary.cell * 64;
+    const double tile = surface.world->summary.cell * kTileCells;
     const auto inside = [&](double at, double low) {
       return std::clamp(at, low + kTileInset, low + side - kTileInset);
     };

@@ -14,8 +14,8 @@
 /// Which blocks of Bezier patches lie near a point.
 namespace throng {
 
-/// The parameters of a block's point nearest to a position: from its middle by Gauss and Newton's
-/// steps, kept inside; on a level tile the nearest in the plane.
+/// The parameters of a block's point nearest to a position: from its middle by Gauss-Newton steps,
+/// kept inside; on a level tile the nearest in the plane.
 [[nodiscard]] std::pair<double, double> nearest_in(const NodeSurface& surface,
                                                    const NodeBlock& block, Vec3d position);
 
@@ -24,19 +24,19 @@ class BlockSquares {
  public:
   explicit BlockSquares(const NodeMesh& mesh);
 
-  /// Calls visit(block) for each block that may have a point no farther than `reach`, which the
-  /// calls may lessen. In no order.
+  /// Calls visit(block) for each block that may have a point no farther than `radius`, which the
+  /// calls may reduce. In no order.
   template <class Visit>
-  void for_each_near(Vec3d position, const double& reach, Visit visit) const {
+  void for_each_near(Vec3d position, const double& radius, Visit visit) const {
     if (balls_.empty()) return;
-    const double far = std::min(reach, 1e9) + largest_;
+    const double far = std::min(radius, 1e9) + largest_;
     const auto [x0, z0] = square(position.x - far, position.z - far);
     const auto [x1, z1] = square(position.x + far, position.z + far);
     for (size_t z = z0; z <= z1; ++z) {
       for (size_t k = first_[z * squares_x_ + x0]; k < first_[z * squares_x_ + x1 + 1]; ++k) {
         const Ball& ball = balls_[k];
         const Vec3d d = ball.middle(base_) - position;
-        const double within = reach + ball.radius;
+        const double within = radius + ball.radius;
         if (dot(d, d) <= within * within) visit(ball.block);
       }
     }

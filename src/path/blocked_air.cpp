@@ -9,6 +9,8 @@
 #include "path/plan_shapes.h"
 #include "world/walk.h"
 
+// Which voxels an obstacle blocks: those in which a body, grown by rounding, could touch its prism
+// or triangles. Linear in voxels times triangles.
 namespace throng {
 namespace {
 
@@ -29,11 +31,11 @@ AirGrid::AirGrid(const WorldData& world, const AirShape& shape, const AvatarClas
       cell(shape.cell * 1e-3),
       radius(avatar.radius),
       height(avatar.height),
-      // Feet are rounded to units of the ground and to millimetres by those who follow ways.
+      // Whatever follows paths rounds feet to units of the ground and to millimetres.
       spare(std::max(kHeightRounding, 4 * world.summary.cell / kUnitsPerCell)) {}
 
 AirRange air_near(const AirGrid& grid, const FlightSpace& space, const Prism& prism) {
-  const double reach = grid.radius + grid.spare;
+  const double radius = grid.radius + grid.spare;
   double x0 = HUGE_VAL, z0 = HUGE_VAL, x1 = -HUGE_VAL, z1 = -HUGE_VAL;
   for (const PlanPoint& p : prism.corners) {
     x0 = std::min(x0, p[0]);
@@ -46,23 +48,23 @@ AirRange air_near(const AirGrid& grid, const FlightSpace& space, const Prism& pr
     return static_cast<int32_t>(std::clamp(index, -1.0, static_cast<double>(cells)));
   };
   const auto [low, high] = layers_near(grid, prism.low, prism.high);
-  return {{std::max(cell(x0 - reach, grid.x, space.width), 0), std::max(low, space.shape.floor),
-           std::max(cell(z0 - reach, grid.z, space.depth), 0)},
-          {std::min(cell(x1 + reach, grid.x, space.width), space.width - 1),
+  return {{std::max(cell(x0 - radius, grid.x, space.width), 0), std::max(low, space.shape.floor),
+           std::max(cell(z0 - radius, grid.z, space.depth), 0)},
+          {std::min(cell(x1 + radius, grid.x, space.width), space.width - 1),
            std::min(high, space.shape.ceiling - 1),
-           std::min(cell(z1 + reach, grid.z, space.depth), space.depth - 1)}};
+           std::min(cell(z1 + radius, grid.z, space.depth), space.depth - 1)}};
 }
 
-bool take_air(const AirGrid& grid, const AirCube& cube, const AirRange& near, const Prism& prism,
-              std::span<const std::array<Vec3d, 3>> triangles, CubeCells& taken) {
-  const double reach = grid.radius + grid.spare;
+bool block_air(const AirGrid& grid, const AirCube& cube, const AirRange& near, const Prism& prism,
+               std::span<const std::array<Vec3d, 3>> triangles, CubeCells& blocked) {
+  const double radius = grid.radius + grid.spare;
   bool any = false;
   const auto take = [&](int32_t x, int32_t z, double low, double high) {
     auto [first, last] = layers_near(grid, low, high);
     first = std::max({first, near.first[1], cube.y});
     last = std::min({last, near.last[1], cube.y + cube.side - 1});
     for (int32_t y = first; y <= last; ++y) {
-      taken.row(y - cube.y, z - cube.z) |= uint32_t{1} << (x - cube.x);
+      blocked.row(y - cube.y, z - cube.z) |= uint32_t{1} << (x - cube.x);
       any = true;
     }
   };
@@ -74,17 +76,17 @@ bool take_air(const AirGrid& grid, const AirCube& cube, const AirRange& near, co
       PlanSquare square{grid.x + x * grid.cell, grid.z + z * grid.cell, 0, 0};
       square.x1 = square.x0 + grid.cell;
       square.z1 = square.z0 + grid.cell;
-      if (!is_nearer(square, prism.corners, reach)) continue;
+      if (!is_nearer(square, prism.corners, radius)) continue;
       if (triangles.empty()) {
         take(x, z, prism.low, prism.high);
         continue;
       }
-      const PlanSquare around{square.x0 - reach, square.z0 - reach, square.x1 + reach,
-                              square.z1 + reach};
+      const PlanSquare around{square.x0 - radius, square.z0 - radius, square.x1 + radius,
+                              square.z1 + radius};
       for (const std::array<Vec3d, 3>& t : triangles) {
         const std::array<PlanPoint, 3> plan{PlanPoint{t[0].x, t[0].z}, PlanPoint{t[1].x, t[1].z},
                                             PlanPoint{t[2].x, t[2].z}};
-        if (!is_nearer(square, plan, reach)) continue;
+        if (!is_nearer(square, plan, radius)) continue;
         if (const auto heights = heights_over(around, t))
           take(x, z, heights->first, heights->second);
       }

@@ -9,6 +9,8 @@
 
 #include "path/plan_shapes.h"
 
+// Which cells of a tile an obstacle blocks: those on which a body could touch its prism or
+// triangles. Linear in cells times triangles.
 namespace throng {
 namespace {
 
@@ -27,7 +29,7 @@ PlanPoint corner_of(const TileFloor& floor) {
           floor.summary.origin.z + floor.tile_z * side};
 }
 
-// What a body takes on a cell, from its lowest feet to its highest. [m]
+// The height of a body on a cell, from its lowest feet to its highest head. [m]
 std::pair<double, double> body_heights(const LevelView& view, const AvatarClass& avatar, int32_t x,
                                        int32_t z) {
   const auto [gx, gz] = rise_at(view, x, z);
@@ -38,7 +40,7 @@ std::pair<double, double> body_heights(const LevelView& view, const AvatarClass&
 
 }  // namespace
 
-SquareRange tiles_near(const WorldData& world, std::span<const PlanPoint> polygon, double reach) {
+SquareRange tiles_near(const WorldData& world, std::span<const PlanPoint> polygon, double radius) {
   const PlanSquare box = box_of(polygon);
   const double side = world.summary.cell * kTileCells;
   const auto tile = [&](double at, double origin, int32_t cells) {
@@ -46,11 +48,12 @@ SquareRange tiles_near(const WorldData& world, std::span<const PlanPoint> polygo
     return static_cast<int32_t>(std::clamp(index, -1.0, cells / kTileCells + 1.0));
   };
   const Vec3d& origin = world.summary.origin;
-  return {tile(box.x0 - reach, origin.x, world.width), tile(box.x1 + reach, origin.x, world.width),
-          tile(box.z0 - reach, origin.z, world.depth), tile(box.z1 + reach, origin.z, world.depth)};
+  return {
+      tile(box.x0 - radius, origin.x, world.width), tile(box.x1 + radius, origin.x, world.width),
+      tile(box.z0 - radius, origin.z, world.depth), tile(box.z1 + radius, origin.z, world.depth)};
 }
 
-SquareRange cells_near(const TileFloor& floor, std::span<const PlanPoint> polygon, double reach) {
+SquareRange cells_near(const TileFloor& floor, std::span<const PlanPoint> polygon, double radius) {
   const PlanSquare box = box_of(polygon);
   const auto [origin_x, origin_z] = corner_of(floor);
   const auto cell = [&](double at, double origin) {
@@ -58,10 +61,10 @@ SquareRange cells_near(const TileFloor& floor, std::span<const PlanPoint> polygo
         std::clamp(std::floor((at - origin) / floor.summary.cell), -1.0, kTileCells + 0.0));
   };
   return {
-      std::max(cell(box.x0 - reach, origin_x), 0),
-      std::min(cell(box.x1 + reach, origin_x), kTileCells - 1),
-      std::max(cell(box.z0 - reach, origin_z), 0),
-      std::min(cell(box.z1 + reach, origin_z), kTileCells - 1),
+      std::max(cell(box.x0 - radius, origin_x), 0),
+      std::min(cell(box.x1 + radius, origin_x), kTileCells - 1),
+      std::max(cell(box.z0 - radius, origin_z), 0),
+      std::min(cell(box.z1 + radius, origin_z), kTileCells - 1),
   };
 }
 
@@ -77,13 +80,13 @@ std::pair<int32_t, int32_t> rise_at(const LevelView& view, int32_t x, int32_t z)
 
 CellRows blocked_cells(const TileFloor& floor, const AvatarClass& avatar, const Prism& prism,
                        std::span<const std::array<Vec3d, 3>> triangles, const uint64_t* legal) {
-  CellRows taken{};
-  const double reach = taking_reach(avatar);
-  const auto [first_x, last_x, first_z, last_z] = cells_near(floor, prism.corners, reach);
-  if (first_x > last_x) return taken;
+  CellRows blocked{};
+  const double radius = taking_reach(avatar);
+  const auto [first_x, last_x, first_z, last_z] = cells_near(floor, prism.corners, radius);
+  if (first_x > last_x) return blocked;
   const auto [origin_x, origin_z] = corner_of(floor);
   const double side = floor.summary.cell;
-  // Triangles are as wide as they are told; a box around them must not leave any out.
+  // Triangles are grown by kHeightRounding in height, so the box around them is, too.
   const double spare = triangles.empty() ? 0 : kHeightRounding;
   const uint64_t columns = (~uint64_t{0} >> (63 - (last_x - first_x))) << first_x;
   for (int32_t z = first_z; z <= last_z; ++z) {
@@ -97,21 +100,22 @@ CellRows blocked_cells(const TileFloor& floor, const AvatarClass& avatar, const 
       PlanSquare cell{origin_x + x * side, origin_z + z * side, 0, 0};
       cell.x1 = cell.x0 + side;
       cell.z1 = cell.z0 + side;
-      if (!is_nearer(cell, prism.corners, reach)) continue;
+      if (!is_nearer(cell, prism.corners, radius)) continue;
       bool hit = triangles.empty();
-      const PlanSquare around{cell.x0 - reach, cell.z0 - reach, cell.x1 + reach, cell.z1 + reach};
+      const PlanSquare around{cell.x0 - radius, cell.z0 - radius, cell.x1 + radius,
+                              cell.z1 + radius};
       for (const std::array<Vec3d, 3>& t : triangles) {
         if (hit) break;
         const std::array<PlanPoint, 3> plan{PlanPoint{t[0].x, t[0].z}, PlanPoint{t[1].x, t[1].z},
                                             PlanPoint{t[2].x, t[2].z}};
-        if (!is_nearer(cell, plan, reach)) continue;
+        if (!is_nearer(cell, plan, radius)) continue;
         const auto heights = heights_over(around, t);
         hit = heights && meets(heights->first - kHeightRounding, heights->second + kHeightRounding);
       }
-      if (hit) taken[static_cast<size_t>(z)] |= uint64_t{1} << x;
+      if (hit) blocked[static_cast<size_t>(z)] |= uint64_t{1} << x;
     }
   }
-  return taken;
+  return blocked;
 }
 
 }  // namespace throng

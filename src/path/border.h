@@ -73,7 +73,7 @@ inline bool runs_along(const MeshRect& rect, CellPoint root, CellPoint through) 
   return false;
 }
 
-/// The rectangles that hold together around a point of `rect`: only that one, unless the point lies
+/// The rectangles that are connected around a point of `rect`: only that one, unless the point lies
 /// on its border and there are portals at it. What lies around the point is seen from them, so no
 /// line of sight needs to pass a portal that touches it.
 inline void rects_around(const PathMesh& mesh, uint32_t rect, CellPoint point,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+// The visited cells of a flood fill: a hash table with linear probing, emptied run by run.
 namespace throng {
 namespace {
 
@@ -20,10 +21,10 @@ size_t slot_of(uint64_t key, size_t mask) {
 
 void CircleFlood::start(const GroundLevel& level, int32_t x, int32_t z) {
   if (seen_.empty()) seen_.resize(1024);
-  if (cells_.size() * 8 < seen_.size()) {  // few: sooner taken out one by one
+  if (cells_.size() * 8 < seen_.size()) {  // few: it is faster to erase them one by one
     for (const Cell& cell : cells_) {
-      // Whoever stands in a run of taken slots moves on only as far as the run goes: emptying the
-      // runs of all keys empties the table.
+      // A key in a run of occupied slots is probed only as far as the run goes: emptying the runs
+      // of all keys empties the table.
       const uint64_t key = key_of(cell.level.world_level, cell.x, cell.z);
       for (size_t s = slot_of(key, seen_.size() - 1); seen_[s] != 0;
            s = (s + 1) & (seen_.size() - 1)) {

@@ -8,11 +8,11 @@
 #include "world/ground.h"
 #include "world/place.h"
 
-/// The cells around a place that hold together with it.
+/// The cells around a place that are connected to it.
 namespace throng {
 
-/// Cells that steps join to a first one, over cells that touch a circle, each once, nearest first
-/// in steps. Owns its memory: no allocation once it has grown.
+/// Cells that are connected to a first one over cells that touch a circle, each once, nearest first
+/// in number of cells crossed. Owns its memory: no allocation once it has grown.
 class CircleFlood {
  public:
   struct Cell {
@@ -20,7 +20,7 @@ class CircleFlood {
     int32_t x = 0, z = 0;  // of the grid
   };
 
-  /// Starts anew at a cell that is legal for the ground's class. The circle may shrink on the way.
+  /// Restarts at a cell that is legal for the ground's class. The circle may shrink meanwhile.
   void start(const GroundLevel& level, int32_t x, int32_t z);
   /// Calls visit(cell) for every cell, then blocked(cell, toward_x, toward_z) for each side of it
   /// over which no step leads. within(x, z): is that cell of the grid still wanted? open(level, x,

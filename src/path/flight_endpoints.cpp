@@ -8,6 +8,8 @@
 
 #include "world/place.h"
 
+// Where bodies take off and land, and the flood fills that search for such places. Linear in the
+// cells visited.
 namespace throng {
 namespace {
 
@@ -43,13 +45,13 @@ int32_t free_layers(const AirData& air, const AirBody& body, int32_t x, int32_t 
 
 Obstacle air_obstacle(const AirData& air, const AirBody& body, const AirView& view, AirPoint from,
                       AirPoint to) {
-  constexpr double kStep = 0.25;  // [air cells]
-  const AirPoint way = to - from;
+  constexpr double kStep = 0.25;  // [voxels]
+  const AirPoint delta = to - from;
   const double far = air_distance(from, to);
   for (double at = 0; at < far; at += kStep) {
-    const AirPoint p = from + (at / far) * way;
+    const AirPoint p = from + (at / far) * delta;
     if (view.box_at(p) != kNoBox) continue;
-    if (view.space().box_at(p) != kNoBox) return Obstacle::kNarrow;  // put up since
+    if (view.space().box_at(p) != kNoBox) return Obstacle::kNarrow;  // placed since
     const int32_t layers =
         free_layers(air, body, static_cast<int32_t>(std::floor(p.x)),
                     static_cast<int32_t>(std::floor(p.y)), static_cast<int32_t>(std::floor(p.z)));
@@ -105,7 +107,7 @@ bool FlightEndpoints::may_stand(const Place& place) const {
 }
 
 template <class Visit>
-bool FlightEndpoints::for_places(const Place& from, uint64_t most, CircleFlood& flood,
+bool FlightEndpoints::for_places(const Place& from, uint64_t max_cells, CircleFlood& flood,
                                  Visit visit) const {
   const auto start = ground_point(world_, from);
   if (!start) return false;
@@ -118,7 +120,7 @@ bool FlightEndpoints::for_places(const Place& from, uint64_t most, CircleFlood& 
   flood.run(
       ground_, step_mm(avatar_),
       [&](int32_t, int32_t) {
-        budget_exhausted = more && seen == most;
+        budget_exhausted = more && seen == max_cells;
         return more && !budget_exhausted;
       },
       [&](const CircleFlood::Cell& cell) {
@@ -135,19 +137,19 @@ bool FlightEndpoints::for_places(const Place& from, uint64_t most, CircleFlood& 
 }
 
 template <class Visit>
-bool FlightEndpoints::for_take_offs(const Place& from, uint64_t most, CircleFlood& flood,
+bool FlightEndpoints::for_take_offs(const Place& from, uint64_t max_cells, CircleFlood& flood,
                                     Visit visit) const {
-  return for_places(from, most, flood, [&](const Place& place) {
+  return for_places(from, max_cells, flood, [&](const Place& place) {
     const auto up = take_off(place);
     return !up || visit(place, air_.component(air_.box_at(*up)));
   });
 }
 
-Place FlightEndpoints::nearest_place(const Place& from, uint64_t most, Vec3d goal,
+Place FlightEndpoints::nearest_place(const Place& from, uint64_t max_cells, Vec3d goal,
                                      CircleFlood& flood) const {
   Place nearest;
   double least = HUGE_VAL;
-  const bool budget_exhausted = for_places(from, most, flood, [&](const Place& place) {
+  const bool budget_exhausted = for_places(from, max_cells, flood, [&](const Place& place) {
     const double far = length(place.position - goal);
     if (far < least) {
       least = far;
@@ -158,22 +160,22 @@ Place FlightEndpoints::nearest_place(const Place& from, uint64_t most, Vec3d goa
   return budget_exhausted ? Place{} : nearest;
 }
 
-FlightEndpoints::TakeOff FlightEndpoints::nearest_take_off(const Place& from, uint64_t most,
+FlightEndpoints::TakeOff FlightEndpoints::nearest_take_off(const Place& from, uint64_t max_cells,
                                                            uint32_t component,
                                                            CircleFlood& flood) const {
   Place found;
   const bool budget_exhausted =
-      for_take_offs(from, most, flood, [&](const Place& place, uint32_t leads_to) {
+      for_take_offs(from, max_cells, flood, [&](const Place& place, uint32_t leads_to) {
         if (component == kNoBox || leads_to == component) found = place;
         return !found;
       });
   return {found, budget_exhausted};
 }
 
-bool FlightEndpoints::components_over(const Place& from, uint64_t most, CircleFlood& flood,
+bool FlightEndpoints::components_over(const Place& from, uint64_t max_cells, CircleFlood& flood,
                                       std::vector<uint32_t>& components) const {
   components.clear();
-  return for_take_offs(from, most, flood, [&](const Place&, uint32_t leads_to) {
+  return for_take_offs(from, max_cells, flood, [&](const Place&, uint32_t leads_to) {
     if (std::find(components.begin(), components.end(), leads_to) == components.end()) {
       components.push_back(leads_to);
     }

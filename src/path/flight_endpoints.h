@@ -14,8 +14,8 @@
 namespace throng {
 
 /// What a body meets first on the straight line from where it may be: kLow where it would fit if it
-/// were less tall, else kNarrow, as where an obstacle was put up; kNone if it meets nothing. Time:
-/// the line's cells.
+/// were less tall, else kNarrow, as where an obstacle was placed; kNone if it meets nothing. Linear
+/// in the voxels on the line.
 [[nodiscard]] Obstacle air_obstacle(const AirData& air, const AirBody& body, const AirView& view,
                                     AirPoint from, AirPoint to);
 
@@ -25,31 +25,31 @@ class FlightEndpoints {
 
   [[nodiscard]] AirPoint to_air(Vec3d p) const;
   [[nodiscard]] Vec3d to_metres(AirPoint p) const;
-  /// The point of the air that stands for feet: the same, but for a skin off the faces of its cell.
-  /// Nothing where the body may not fly.
+  /// The point of the air that stands for feet: the same, but for a skin off the faces of its
+  /// voxel. None where the body may not fly.
   [[nodiscard]] std::optional<AirPoint> in_air(Vec3d feet) const;
 
-  /// May a body stand at a place of the class, as far as obstacles go that were put up?
+  /// May a body stand at a place of the class, as far as active obstacles permit?
   [[nodiscard]] bool may_stand(const Place& place) const;
   /// Straight up from feet on the ground. The body on the ground is clear from its bottom to its
-  /// height, the body in the air from its feet to its height: where the one's feet are not above
-  /// the other's head, so is all that is passed between them.
+  /// height, the body in the air from its feet to its height: if the feet in the air are not above
+  /// the head on the ground, so is everything between the two.
   [[nodiscard]] std::optional<AirPoint> take_off(const Place& place) const;
-  /// The nearest place, in steps, from which feet come into the air; `most` cells are looked at.
-  /// Only into air of this component (see AirView), unless it is kNoBox.
+  /// The nearest place, by cells crossed, from which feet come into the air; `max_cells` cells are
+  /// visited. Only into air of this component (see AirView), unless it is kNoBox.
   struct TakeOff {
     Place place;                    ///< Null if there is none among them.
     bool budget_exhausted = false;  ///< There were more cells.
   };
-  [[nodiscard]] TakeOff nearest_take_off(const Place& from, uint64_t most, uint32_t component,
+  [[nodiscard]] TakeOff nearest_take_off(const Place& from, uint64_t max_cells, uint32_t component,
                                          CircleFlood& flood) const;
-  /// Fills `components` with all that feet come into from there, the nearest first. True if there
-  /// were more than `most` cells.
-  bool components_over(const Place& from, uint64_t most, CircleFlood& flood,
+  /// Fills `components` with the components of the air over those places, the nearest first. True
+  /// if there were more than `max_cells` cells.
+  bool components_over(const Place& from, uint64_t max_cells, CircleFlood& flood,
                        std::vector<uint32_t>& components) const;
-  /// Of the places that steps join to one, the nearest to a goal; null if there were more than
-  /// `most` cells, or that one is no place.
-  [[nodiscard]] Place nearest_place(const Place& from, uint64_t most, Vec3d goal,
+  /// Of the places that are connected to one, the nearest to a goal; null if there were more than
+  /// `max_cells` cells, or that one is no place.
+  [[nodiscard]] Place nearest_place(const Place& from, uint64_t max_cells, Vec3d goal,
                                     CircleFlood& flood) const;
   /// The best place to land on under a box that holds no air below it.
   [[nodiscard]] Place best_landing(uint32_t box) const;
@@ -57,12 +57,12 @@ class FlightEndpoints {
   [[nodiscard]] uint32_t lowest_box(AirPoint p) const;
 
  private:
-  /// Calls visit(place), or visit(place, component of the air over it), for every cell that steps
-  /// join to a place, until it says false or there are too many cells: then it is true.
+  /// Calls visit(place), or visit(place, component of the air over it), for every cell that is
+  /// connected to a place, until it returns false. True if there are too many cells.
   template <class Visit>
-  bool for_places(const Place& from, uint64_t most, CircleFlood& flood, Visit visit) const;
+  bool for_places(const Place& from, uint64_t max_cells, CircleFlood& flood, Visit visit) const;
   template <class Visit>
-  bool for_take_offs(const Place& from, uint64_t most, CircleFlood& flood, Visit visit) const;
+  bool for_take_offs(const Place& from, uint64_t max_cells, CircleFlood& flood, Visit visit) const;
 
   const WorldData& world_;
   AirView air_;

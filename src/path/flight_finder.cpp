@@ -20,14 +20,15 @@
 #include "throng/flight.h"
 #include "world/place.h"
 
+// Joins the parts of a flight: walks, take-offs, flight search, landings and string pulling.
 namespace throng {
 namespace {
 
-constexpr int32_t kLargestBox = 32;           // air cells: larger ones hide good ways
-constexpr uint64_t kMaxFloodCells = 1 << 18;  // on foot to where one can take off
-// The same where the nearest take-off leads into a pocket and there are several others.
-constexpr uint64_t kMaxPocketCells = 1 << 15;
-// Ways over other ground, or to what is less near, where obstacles are in the way of the first.
+constexpr int32_t kLargestBox = 32;           // voxels: larger ones hide good paths
+constexpr uint64_t kMaxFloodCells = 1 << 18;  // on foot to a take-off
+// The same where the nearest take-off leads into an island and there are several others.
+constexpr uint64_t kMaxIslandCells = 1 << 15;
+// Paths over other ground, or to what is less near, where obstacles block the first.
 constexpr int32_t kMaxTries = 4;
 
 double distance(Vec3d a, Vec3d b) {
@@ -132,38 +133,38 @@ struct FlightFinder::Scratch {
     return *changes;
   }
   ChangeId add(const Shared& shared, Solid solid) {
-    if (live) live_ids.push_back(AirChanges::tell_of(*live, solid));
+    if (live) live_ids.push_back(AirChanges::add_to(*live, solid));
     return changes_of(shared).add(std::move(solid));
   }
-  // The ground with all changes; made when it is first walked on.
+  // The ground with all changes; made on the first walk.
   LiveGround& ground(const Shared& shared) {
     if (!live) {
       auto made = LiveGround::make(shared.world, {.avatar_class = shared.avatar_class});
       THRONG_ASSERT(made);  // The class was checked.
-      changes->tell(*made, live_ids);
+      changes->add_all_to(*made, live_ids);
       live = std::move(*made);
     }
     return *live;
   }
 
   FlightSearch search;
-  SpentBudget spent = SpentBudget::kNone;  // what the last search that gave up had too little of
+  SpentBudget spent = SpentBudget::kNone;  // the budget that the last search exhausted
   FlightStringPuller pull;
   CircleFlood flood;
   std::optional<PathFinder> walker;
-  std::vector<AirPoint> way;
+  std::vector<AirPoint> air_path;
   Path walk_there, walk_on, walk_all;
   std::vector<uint32_t> over_from, over_to, common;  // components of the air
   AirView::ZoneOrder zone_order;
   GroundAirLinks::Scratch parts;
   std::vector<GroundAirLinks::Part> route;
   std::vector<GroundAirLinks::Pair> banned;
-  // Put up since the finder was made; none before the first one.
+  // Made with the first obstacle; none before.
   std::optional<AirChanges> changes;
   std::optional<LiveGround> live;
   std::vector<ChangeId> live_ids;  // by id of a change - 1
-  // Of a search that found no way between ends that could hold together: the point of the air that
-  // it came to that is nearest to where the query wanted to go.
+  // Of a search that found no path between ends that could be connected: the point that it reached
+  // in the air that is nearest to where the query leads.
   std::optional<AirPoint> reached;
 };
 
@@ -275,7 +276,7 @@ std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const
     };
     return AirPoint{cube.x + part(1), cube.y + part(2), cube.z + part(3)};
   };
-  // What obstacles have taken is drawn anew. Where hardly anything is left, it is looked for.
+  // What obstacles have blocked is drawn again. Where hardly anything is left, it is searched.
   constexpr uint64_t kDraws = 256;
   size_t box = 0;
   for (uint64_t i = 0; i < kDraws; ++i) {
@@ -356,10 +357,10 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
   clear(path);
   path.nodes = 0;
   scratch.reached.reset();
-  bool budget_exhausted = false;  // somewhere: then what was not found may be there all the same
+  bool budget_exhausted = false;  // somewhere: then what was not found may exist all the same
   const auto component_of = [&](AirPoint p) { return air.component(air.box_at(p)); };
   // From the ground into the air: into this component of it, or any (kNoBox).
-  const auto to_port = [&](End& end, uint32_t component) {
+  const auto to_link = [&](End& end, uint32_t component) {
     if (!end.ground) return end.air.has_value();
     end.ground_air_link = end.ground;
     end.air = ends.take_off(end.ground_air_link);
@@ -377,8 +378,8 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     end.air = ends.take_off(end.ground_air_link);
     return end.air.has_value();
   };
-  // Air over the ground at both ends: the one that is nearest to both, as far as a look around
-  // tells, where there is more than one.
+  // Air over the ground at both ends: if there is more than one component, the one that is nearest
+  // to both, as far as a flood around them shows.
   const auto common_air = [&](const End& a, const End& b) {
     const auto over_a = shared_->ground_air_links.air_over(shared_->ground_of(a.ground));
     const auto over_b = shared_->ground_air_links.air_over(shared_->ground_of(b.ground));
@@ -393,7 +394,7 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
         budget_exhausted = true;
         return kNoBox;
       }
-      ends.components_over(end->ground, kMaxPocketCells, scratch.flood, *over);
+      ends.components_over(end->ground, kMaxIslandCells, scratch.flood, *over);
     }
     size_t least = SIZE_MAX;
     uint32_t best = scratch.common[0];
@@ -407,16 +408,16 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     }
     return best;
   };
-  // The nearest ways into the air may lead into pockets of it, a room or a yard under a net: then
-  // from one further off into air that leads to the other end.
-  const auto to_ports = [&](End& a, End& b) {
+  // The nearest take-offs may lead into islands of the air, a room or a yard under a net: then the
+  // path takes off farther away, into air that leads to the other end.
+  const auto to_links = [&](End& a, End& b) {
     if (!a.ground && !b.ground) return true;
-    if (!a.ground) return to_port(b, component_of(*a.air));
-    if (!b.ground) return to_port(a, component_of(*b.air));
-    if (!to_port(a, kNoBox) || !to_port(b, kNoBox)) return false;
+    if (!a.ground) return to_link(b, component_of(*a.air));
+    if (!b.ground) return to_link(a, component_of(*b.air));
+    if (!to_link(a, kNoBox) || !to_link(b, kNoBox)) return false;
     if (air.same_component(*a.air, *b.air)) return true;
     const uint32_t common = common_air(a, b);
-    return common != kNoBox && to_port(a, common) && to_port(b, common);
+    return common != kNoBox && to_link(a, common) && to_link(b, common);
   };
   const auto find_on_foot = [&](const Place& a, const Place& b, Path& ground) {
     const PathEnd end = walk(query, a, b, ground);
@@ -437,10 +438,10 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
       on_foot += distance(places[i - 1].position, places[i].position);
     }
   }
-  const bool ground_air_links = to_ports(from, to);
+  const bool ground_air_links = to_links(from, to);
   SearchResult result = SearchResult::kNone;
   if (ground_air_links && air.same_component(*from.air, *to.air)) {
-    result = scratch.search.find(air, *from.air, *to.air, budget_of(query), scratch.way);
+    result = scratch.search.find(air, *from.air, *to.air, budget_of(query), scratch.air_path);
     path.nodes = scratch.search.expanded();
     if (result == SearchResult::kBudget) {
       scratch.spent = budget_of(query).spent(path.nodes);
@@ -451,7 +452,7 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     }
   }
   if (result == SearchResult::kFound) {
-    scratch.pull.pull(air, scratch.way);
+    scratch.pull.pull(air, scratch.air_path);
     bool walked = true;
     if (from.ground) {
       if (from.ground_air_link.position.x != from.ground.position.x ||
@@ -462,8 +463,9 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
         add(from.ground_air_link.position, SegmentKind::kWalk, path);
       }
     }
-    for (size_t i = 0; i < scratch.way.size(); ++i) {
-      add(ends.to_metres(scratch.way[i]), i == 0 ? SegmentKind::kTakeOff : SegmentKind::kFly, path);
+    for (size_t i = 0; i < scratch.air_path.size(); ++i) {
+      add(ends.to_metres(scratch.air_path[i]), i == 0 ? SegmentKind::kTakeOff : SegmentKind::kFly,
+          path);
     }
     if (to.ground) {
       add(to.ground_air_link.position, SegmentKind::kLand, path);
@@ -485,10 +487,10 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
   path.end = PathEnd::kReached;
 }
 
-// From part to part of the ground and the air. Where it takes off and lands between two of them is
-// the nearest place to where it stands, or to the goal, else the one that is known of the two.
-// Parts are those of the world as it was baked: where an obstacle is in the way from one to the
-// next, another way is looked for that does without that pair.
+// From part to part of the ground and the air. The take-off or landing between two of them is at
+// the place nearest to where the path stands, or to the goal, else at the one that is known of the
+// two. Parts are those of the world as it was baked: where an obstacle blocks the path from one to
+// the next, another path that does without that pair is searched for.
 void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
   Scratch& scratch = *scratch_;
   End from, to;
@@ -523,14 +525,14 @@ void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
   }
 }
 
-// Where it does not lead on, the place in the route of the part that it did not come to.
+// If it does not lead on: the place in the route of the part that it did not reach.
 size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, const End& to,
                                   FlightPath& path) {
   Scratch& scratch = *scratch_;
   const AirView view = scratch.air(*shared_);
   const FlightEndpoints ends = shared_->ends(view);
   PathEnd end = PathEnd::kReached;
-  Place feet = from.ground;  // where it is by now, or
+  Place feet = from.ground;  // where the path is by now, or
   AirPoint air = from.air.value_or(AirPoint{});
   const auto go = [&](const Place& there) {
     if (end != PathEnd::kReached) return;
@@ -545,21 +547,21 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
       return;
     }
     const SearchResult result =
-        scratch.search.find(view, air, there, budget_of(query), scratch.way);
+        scratch.search.find(view, air, there, budget_of(query), scratch.air_path);
     path.nodes += scratch.search.expanded();
     if (result == SearchResult::kBudget)
       scratch.spent = budget_of(query).spent(scratch.search.expanded());
     end = result == SearchResult::kFound    ? PathEnd::kReached
           : result == SearchResult::kBudget ? PathEnd::kBudgetExhausted
                                             : PathEnd::kUnreachable;
-    scratch.pull.pull(view, scratch.way);
-    for (size_t i = 1; i < scratch.way.size(); ++i) {
-      add(ends.to_metres(scratch.way[i]), SegmentKind::kFly, path);
+    scratch.pull.pull(view, scratch.air_path);
+    for (size_t i = 1; i < scratch.air_path.size(); ++i) {
+      add(ends.to_metres(scratch.air_path[i]), SegmentKind::kFly, path);
     }
     air = there;
   };
   // A place of some ground under some air: it leads into this component of that.
-  const auto port_near = [&](const Place& at, GroundAirLinks::Part ground,
+  const auto link_near = [&](const Place& at, GroundAirLinks::Part ground,
                              GroundAirLinks::Part over, uint32_t component) {
     const Place near =
         at ? ends.nearest_take_off(at, kMaxFloodCells, component, scratch.flood).place : Place{};
@@ -578,7 +580,7 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
     const bool last = k + 1 == count;
     if (next.is_air) {
       const bool known = last && to.air;
-      const Place ground_air_link = port_near(
+      const Place ground_air_link = link_near(
           feet, here, next, known ? view.component(view.box_at(*to.air)) : next.component);
       const auto up = ends.take_off(ground_air_link);
       if (!up) {
@@ -590,7 +592,7 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
       add(ends.to_metres(air), SegmentKind::kTakeOff, path);
     } else {
       const Place ground_air_link =
-          port_near(last ? to.ground : Place{}, next, here, view.component(view.box_at(air)));
+          link_near(last ? to.ground : Place{}, next, here, view.component(view.box_at(air)));
       const auto up = ends.take_off(ground_air_link);
       if (!up) {
         end = PathEnd::kUnreachable;
@@ -611,8 +613,8 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
   return k - 1;
 }
 
-// To the point of all air that can be reached that is nearest to the goal; of the ground, if nobody
-// can take off from it: there of each rectangle the cell that is nearest in the plane.
+// To the point of all reachable air that is nearest to the goal; if no avatar can take off from the
+// ground, of the ground: there, of each rectangle, the cell that is nearest in the plane.
 void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   Scratch& scratch = *scratch_;
   const AirView air = scratch.air(*shared_);
@@ -628,11 +630,11 @@ void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   for (const auto& step : scratch.parts.steps) {
     if (step.part.is_air) airs.push_back(step.part.component);
   }
-  // Obstacles may have cut off where it is from what the ground leads to otherwise.
+  // Obstacles may have cut off its air from what the ground leads to otherwise.
   if (is_changed && from.air) {
     airs.push_back(air.component(air.box_at(*from.air)));
   } else if (is_changed) {
-    ends.components_over(from.ground, kMaxPocketCells, scratch.flood, scratch.over_from);
+    ends.components_over(from.ground, kMaxIslandCells, scratch.flood, scratch.over_from);
     airs.insert(airs.end(), scratch.over_from.begin(), scratch.over_from.end());
   }
   std::sort(airs.begin(), airs.end());
@@ -665,7 +667,7 @@ void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   if (path.obstacle == Obstacle::kNone) path.obstacle = Obstacle::kNarrow;
 }
 
-// Over the ground, where nobody can take off.
+// Over the ground, where no avatar can take off.
 void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& from,
                                         FlightPath& path) {
   Scratch& scratch = *scratch_;
@@ -680,7 +682,7 @@ void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& f
   if (!nearest) nearest = shared_->nearest_ground(ground, query.to);
   if (!nearest) return;
   const PathEnd end = walk(query, from, nearest, scratch.walk_all);
-  // To what comes nearest, if the finder of ways on foot knows it.
+  // To what comes nearest, if the finder of paths on foot knows it.
   if (end != PathEnd::kReached && !(scratch.is_changed() && end == PathEnd::kUnreachable)) return;
   add_walk(scratch.walk_all, 0, path);
   path.obstacle =

@@ -9,28 +9,28 @@ namespace throng {
 namespace {
 
 constexpr double kShorter = 1e-9;
-// What is left counts a little more than what is behind: among ways that are nearly as short, the
-// one that is nearly there is followed. It costs 0.02 % of length and spares three boxes of four.
-constexpr double kHaste = 1.02;
-constexpr double kLargeHaste = 1.1;  // through large boxes
+// The heuristic is weighted a little: among paths that are nearly as short, the one that is nearly
+// at the goal is expanded first. It costs 0.02 % of length and spares three boxes of four.
+constexpr double kHeuristicWeight = 1.02;
+constexpr double kLargeHeuristicWeight = 1.1;  // through large boxes
 
-// Over hills and roofs most boxes are those of a cell or two along them, and most of those that a
-// search looks at are of no use. So ends that are far apart are first looked for through boxes that
-// are the larger the farther they are from both ends. What that finds is taken if it is hardly
-// longer than the straight line; else it waits for what a search through all boxes finds within a
-// budget. Pulling takes the way to the edges of what is in between in any case.
-constexpr double kFar = 256;            // ends so many cells apart
+// Over hills and roofs most boxes are a cell or two wide, and expanding most of them is of no use.
+// So if the ends are far apart, the first search goes through boxes of a minimum size that grows
+// with the distance from both ends. Its result is used if it is hardly longer than the straight
+// line; otherwise the search through all boxes has a budget in which to find a shorter one. String
+// pulling moves the path to the edges of what is in between in either case.
+constexpr double kFar = 256;            // ends so many voxels apart
 constexpr double kHardlyLonger = 1.05;  // before it is pulled taut
 constexpr uint64_t kBudget = 1u << 17;  // boxes
 struct Ring {
-  double within;  // cells from an end
-  int32_t least;  // cells a side of a box
+  double within;     // voxels from an end
+  int32_t min_side;  // voxels a side of a box
 };
 constexpr Ring kRings[] = {{64, 1}, {256, 4}, {1024, 8}, {HUGE_VAL, 16}};
 
-double length_of(const std::vector<AirPoint>& way) {
+double length_of(const std::vector<AirPoint>& path) {
   double sum = 0;
-  for (size_t i = 1; i < way.size(); ++i) sum += air_distance(way[i - 1], way[i]);
+  for (size_t i = 1; i < path.size(); ++i) sum += air_distance(path[i - 1], path[i]);
   return sum;
 }
 
@@ -50,7 +50,7 @@ Door door_between(const AirCube& a, const AirCube& b) {
   return {};
 }
 
-// Where the way from `from` to `to` best passes from one box into another: on the face that they
+// Where the path from `from` to `to` best passes from one box into another: on the face that they
 // share, where the straight line crosses its plane (mirrored, if both lie on one side of it).
 AirPoint pass(const AirCube& a, const AirCube& b, AirPoint from, AirPoint to) {
   const int32_t low_a[3] = {a.x, a.y, a.z}, low_b[3] = {b.x, b.y, b.z};
@@ -80,7 +80,7 @@ void FlightSearch::push(uint32_t node) {
   std::push_heap(open_.begin(), open_.end());
 }
 
-// A box takes a node, a mark and, more than once if it is reached anew, an entry of the heap.
+// A box takes a node, a mark and an entry of the heap each time it is reached.
 uint64_t FlightSearch::used_bytes() const {
   return nodes_.size() * (sizeof(Node) + sizeof(Mark)) + 3 * open_.size() * sizeof(Entry);
 }
@@ -98,39 +98,39 @@ void FlightSearch::give_back() {
 }
 
 SearchResult FlightSearch::find(const AirView& air, AirPoint from, AirPoint to,
-                                const SearchBudget& budget, std::vector<AirPoint>& way) {
+                                const SearchBudget& budget, std::vector<AirPoint>& path) {
   air_ = air;
   start_ = from;
   goal_ = to;
   expanded_ = 0;
-  way.clear();
+  path.clear();
   const uint32_t start = air.box_at(from);
   goal_box_ = air.box_at(to);
   if (start == kNoBox || goal_box_ == kNoBox) return SearchResult::kNone;
   if (air.sees(from, to)) {
-    way = {from, to};
+    path = {from, to};
     return SearchResult::kFound;
   }
   const double straight = air_distance(from, to);
   if (straight <= kFar) {
     large_ = false;
-    return search(from, start, budget, way);
+    return search(from, start, budget, path);
   }
   large_ = true;
-  large_way_.clear();
-  const SearchResult large = search(from, start, budget, large_way_);
+  large_path_.clear();
+  const SearchResult large = search(from, start, budget, large_path_);
   if (large == SearchResult::kBudget) return large;
   const bool found = large == SearchResult::kFound;
-  const double length = length_of(large_way_);
+  const double length = length_of(large_path_);
   if (!found || length > kHardlyLonger * straight) {
     large_ = false;
     const uint64_t left = budget.max_nodes - expanded_;
     SearchBudget rest = budget;
     rest.max_nodes = expanded_ + (found ? std::min(left, kBudget) : left);
-    const SearchResult all = search(from, start, rest, way);
-    if (!found || (all == SearchResult::kFound && length_of(way) <= length)) return all;
+    const SearchResult all = search(from, start, rest, path);
+    if (!found || (all == SearchResult::kFound && length_of(path) <= length)) return all;
   }
-  way = large_way_;
+  path = large_path_;
   return SearchResult::kFound;
 }
 
@@ -143,17 +143,17 @@ int32_t FlightSearch::min_around(const AirCube& box) const {
   const double distance = std::min(off(start_), off(goal_));
   const Ring* ring = kRings;
   while (distance >= ring->within) ++ring;
-  return ring->least;
+  return ring->min_side;
 }
 
 SearchResult FlightSearch::search(AirPoint from, uint32_t start, const SearchBudget& budget,
-                                  std::vector<AirPoint>& way) {
+                                  std::vector<AirPoint>& path) {
   marks_.resize(air_->end());
-  if (++search_ == 0) {  // After 2^32 searches the marks begin anew.
+  if (++search_ == 0) {  // After 2^32 searches the marks start over.
     marks_.clear();
     search_ = 1;
   }
-  way.clear();
+  path.clear();
   nodes_.clear();
   open_.clear();
   nodes_.push_back({from, 0, air_distance(from, goal_), start, 0, 0, false});
@@ -166,7 +166,8 @@ SearchResult FlightSearch::search(AirPoint from, uint32_t start, const SearchBud
     Node& node = nodes_[entry.node];
     if (node.opened || entry.estimate > node.estimate) continue;
     if (budget.is_spent(++expanded_, used_bytes())) return SearchResult::kBudget;
-    // Seen from the bend after all? Else the way bends where it entered the box before.
+    // Seen from the parent's waypoint after all? Else the path turns where it entered the box
+    // before.
     if (node.parent != node.via && !air_->sees(nodes_[node.parent].point, node.point)) {
       node.parent = node.via;
       const Node& via = nodes_[node.via];
@@ -180,7 +181,7 @@ SearchResult FlightSearch::search(AirPoint from, uint32_t start, const SearchBud
     }
     node.opened = true;
     if (node.box == goal_box_) {
-      trace(entry.node, way);
+      trace(entry.node, path);
       return SearchResult::kFound;
     }
     open(entry.node);
@@ -190,34 +191,35 @@ SearchResult FlightSearch::search(AirPoint from, uint32_t start, const SearchBud
 
 AirPoint FlightSearch::nearest_reached(AirPoint goal) const {
   AirPoint nearest = start_;
-  double least = air_distance(start_, goal);
+  double min_side = air_distance(start_, goal);
   for (size_t n = 0; n < nodes_.size(); ++n) {
     const Node& node = nodes_[n];
     const AirPoint p = nearest_of(air_->cube(node.box), goal);
     const double far = air_distance(p, goal);
-    if (far >= least) continue;
-    least = far;
+    if (far >= min_side) continue;
+    min_side = far;
     nearest = p;
   }
   return nearest;
 }
 
-// From the goal back. A leg from box to box leaves the first through the face that they share, but
-// a skin before its end: where it runs so flat that this matters, it goes straight up to the face.
-void FlightSearch::trace(uint32_t node, std::vector<AirPoint>& way) const {
-  way.push_back(goal_);
+// From the goal back. A segment from box to box leaves the first through the face that they share,
+// but a skin before its end: where it runs so flat that this matters, it goes straight up to the
+// face.
+void FlightSearch::trace(uint32_t node, std::vector<AirPoint>& path) const {
+  path.push_back(goal_);
   for (uint32_t n = node;; n = nodes_[n].parent) {
     const Node& at = nodes_[n];
-    way.push_back(at.point);
+    path.push_back(at.point);
     if (n == 0) break;
     const Node& via = nodes_[at.via];
     if (at.parent != at.via || air_->sees(via.point, at.point)) continue;
     const Door door = door_between(air_->cube(via.box), air_->cube(at.box));
     double before[3] = {at.point.x, at.point.y, at.point.z};
     before[door.axis] = door.plane - door.skin;
-    way.push_back({before[0], before[1], before[2]});
+    path.push_back({before[0], before[1], before[2]});
   }
-  std::reverse(way.begin(), way.end());
+  std::reverse(path.begin(), path.end());
 }
 
 void FlightSearch::open(uint32_t node) {
@@ -231,11 +233,12 @@ void FlightSearch::reach(uint32_t from, uint32_t box) {
   const bool known = mark.search == search_;
   if (known && nodes_[mark.node].opened) return;
   const uint32_t parent = nodes_[from].parent;
-  const Node& bend = nodes_[parent];
+  const Node& turn = nodes_[parent];
   Node next;
-  next.point = pass(air_->cube(nodes_[from].box), air_->cube(box), bend.point, goal_);
-  next.length = bend.length + air_distance(bend.point, next.point);
-  next.estimate = next.length + (large_ ? kLargeHaste : kHaste) * air_distance(next.point, goal_);
+  next.point = pass(air_->cube(nodes_[from].box), air_->cube(box), turn.point, goal_);
+  next.length = turn.length + air_distance(turn.point, next.point);
+  next.estimate = next.length + (large_ ? kLargeHeuristicWeight : kHeuristicWeight) *
+                                    air_distance(next.point, goal_);
   next.box = box;
   next.parent = parent;
   next.via = from;

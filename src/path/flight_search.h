@@ -12,38 +12,39 @@
 #include "path/search.h"
 #include "throng/search_budget.h"
 
-/// A short way through the air, over boxes.
+/// A short path through the air, over boxes.
 namespace throng {
 
-/// Lazy Theta* [NKH10] over boxes of any size: where the way enters a box is found anew for each,
-/// where the straight line from the last bend to the goal would, and a bend is taken for seen until
-/// its box is opened. Owns its memory: one per thread, no allocation once it has grown.
+/// Lazy Theta* [NKH10] over boxes of any size: where the path enters a box is computed for each,
+/// where the straight line from the last waypoint to the goal would, and a waypoint is assumed to
+/// be seen until its box is expanded. Owns its memory: one per thread, no allocation once it has
+/// grown.
 class FlightSearch {
  public:
-  /// Bends of a way from `from` to `to`, ends included. Gives up when the budget of boxes is spent.
-  /// Far ends are looked for through large boxes first.
+  /// Waypoints of a path from `from` to `to`, ends included. Stops when the budget of boxes is
+  /// exhausted. Far ends are searched through large boxes first.
   SearchResult find(const AirView& air, AirPoint from, AirPoint to, const SearchBudget& budget,
-                    std::vector<AirPoint>& way);
+                    std::vector<AirPoint>& path);
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
-  /// Gives back what is allocated beyond kKeptBytes: after a query, when nothing more is asked of
-  /// it.
+  /// Frees what is allocated beyond kKeptBytes: after a query, when its results are no longer
+  /// needed.
   void give_back();
   [[nodiscard]] uint64_t allocated_bytes() const;
   static constexpr uint64_t kKeptBytes = uint64_t{64} << 20;
-  /// After a search that found none: of all that is reached, the point nearest to another.
+  /// After a search that found none: the point nearest to another in all boxes that it reached.
   [[nodiscard]] AirPoint nearest_reached(AirPoint goal) const;
 
  private:
   SearchResult search(AirPoint from, uint32_t start, const SearchBudget& budget,
-                      std::vector<AirPoint>& way);
+                      std::vector<AirPoint>& path);
   [[nodiscard]] uint64_t used_bytes() const;
   [[nodiscard]] int32_t min_around(const AirCube& box) const;
   struct Node {
-    AirPoint point;       // where the way enters the box
+    AirPoint point;       // where the path enters the box
     double length = 0;    // to there
     double estimate = 0;  // of the whole
     uint32_t box = kNoBox;
-    uint32_t parent = 0;  // node of the bend before it
+    uint32_t parent = 0;  // node of the waypoint before it
     uint32_t via = 0;     // node of the box before it
     bool opened = false;
   };
@@ -60,20 +61,21 @@ class FlightSearch {
   };
 
   void open(uint32_t node);
-  void trace(uint32_t node, std::vector<AirPoint>& way) const;
+  void trace(uint32_t node, std::vector<AirPoint>& path) const;
   void reach(uint32_t from, uint32_t box);
   void push(uint32_t node);
 
   std::optional<AirView> air_;
   AirPoint start_, goal_;
-  bool large_ = false;  // only through boxes that are the larger the farther from both ends
+  bool large_ =
+      false;  // only through boxes of a minimum size that grows with the distance from both ends
   uint32_t goal_box_ = kNoBox;
   uint32_t search_ = 0;
   uint64_t expanded_ = 0;
   ChunkedArray<Node> nodes_;
   std::vector<Entry> open_;
-  Paged<Mark> marks_;                // per box, parts of those that are split among them
-  std::vector<AirPoint> large_way_;  // through large boxes
+  Paged<Mark> marks_;                 // per box or part of a split one
+  std::vector<AirPoint> large_path_;  // through large boxes
 };
 
 }  // namespace throng

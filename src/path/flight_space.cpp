@@ -7,6 +7,8 @@
 
 #include "core/parallel.h"
 
+// The free air eroded by the body, word by word, then cut into the boxes of an octree per zone,
+// whose connected components are numbered. Linear in the voxels times the body's width.
 namespace throng {
 
 double off_faces(double v) {
@@ -40,8 +42,8 @@ void FlightSpace::boxes_in(const AirRange& range, std::vector<uint32_t>& found) 
          zx <= std::min(range.last[0] / zone_side, zones_x - 1); ++zx) {
       const auto zone = static_cast<size_t>(zz * zones_x + zx);
       const AirTreeData& tree = zones[zone];
-      // Cubes are told in cells of the world.
-      const auto look = [&](auto&& self, const AirCube& cube, uint32_t word) -> void {
+      // Cubes are given in cells of the world.
+      const auto descend = [&](auto&& self, const AirCube& cube, uint32_t word) -> void {
         if (air_kind(word) == AirKind::kFull || !is_in(cube)) return;
         if (air_kind(word) == AirKind::kFree) {
           found.push_back(air_number(word));
@@ -62,10 +64,10 @@ void FlightSpace::boxes_in(const AirRange& range, std::vector<uint32_t>& found) 
         }
       };
       for (uint32_t r = 0; r < tree.roots; ++r) {
-        look(look,
-             {zx * zone_side, tree.base + static_cast<int32_t>(r) * tree.side, zz * zone_side,
-              tree.side},
-             tree.nodes[r]);
+        descend(descend,
+                {zx * zone_side, tree.base + static_cast<int32_t>(r) * tree.side, zz * zone_side,
+                 tree.side},
+                tree.nodes[r]);
       }
     }
   }
@@ -80,8 +82,8 @@ uint64_t FlightSpace::bytes() const {
 
 namespace {
 
-// dst &= src moved by `cells` along x: bit x of dst meets bit x + cells of src. What comes from
-// beyond the row is not free.
+// dst &= src moved by `cells` along x: bit x of dst meets bit x + cells of src. Bits beyond the row
+// are not free.
 void and_shifted(uint64_t* dst, const uint64_t* src, int32_t words, int32_t cells) {
   const int32_t whole = std::abs(cells) / 64, part = std::abs(cells) % 64;
   for (int32_t w = 0; w < words; ++w) {
@@ -98,7 +100,7 @@ void and_shifted(uint64_t* dst, const uint64_t* src, int32_t words, int32_t cell
   }
 }
 
-// Free cells of all zones around one, by rows of the window.
+// Free voxels of all zones around one, by rows of the window.
 bool fill_window(const AirData& air, int32_t first_x, int32_t first_z, int32_t base,
                  AirRows& rows) {
   const int32_t side = air.zone_side;

@@ -20,7 +20,7 @@ namespace throng {
 
 inline constexpr uint32_t kNoBox = UINT32_MAX;
 
-/// A point of the air, or the way between two. [air cells from the world's origin and layer 0]
+/// A point of the air, or a vector between two. [voxels from the world's origin and layer 0]
 struct AirPoint {
   double x = 0, y = 0, z = 0;
   friend AirPoint operator+(AirPoint a, AirPoint b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
@@ -36,13 +36,13 @@ inline double axis_of(const AirPoint& p, int axis) {
   return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
 }
 
-/// Cells of the air, the last ones too. None: a first above its last.
+/// Voxels, last included. None: a first above its last.
 struct AirRange {
   int32_t first[3] = {0, 0, 0}, last[3] = {-1, -1, -1};  // x, y, z
 };
 
-/// Points keep that far off the faces of boxes, so that a line between two never runs along one.
-/// [air cells]
+/// Points keep so far off the faces of boxes, so that a line between two never runs along one.
+/// [voxels]
 inline constexpr double kAirSkin = 1.0 / 1024;
 /// The nearest such coordinates in the same cell.
 double off_faces(double v);
@@ -50,52 +50,53 @@ AirPoint off_faces(AirPoint p);
 
 struct FlightSpace {
   AirShape shape;
-  int32_t width = 0, depth = 0;  // [air cells]
+  int32_t width = 0, depth = 0;  // [voxels]
   int32_t zone_side = 0, zones_x = 0, zones_z = 0;
   /// A zone's tree: the number of a free cube is its box, of a leaf its index in the arrays below.
   std::vector<AirTreeData> zones;
   struct Leaf {
-    uint64_t starts = 0;     // lowest cell of each box
+    uint64_t starts = 0;     // lowest voxel of each box
     uint32_t first_box = 0;  // boxes follow in the order of these
   };
   std::vector<std::vector<Leaf>> leaves;  // per zone
   std::vector<AirCube> boxes;             // zone by zone
   std::vector<uint32_t> first_box;        // by zone, and the end
-  std::vector<uint32_t> component;  // per box: the first box of all that hold together with it
+  std::vector<uint32_t> component;        // per box: the first box of its connected component
 
-  /// The box that a cell belongs to, or none if the body may not be there.
+  /// The box that a voxel belongs to, or none if the body may not be there.
   [[nodiscard]] uint32_t box_at(int32_t x, int32_t y, int32_t z) const;
   [[nodiscard]] uint32_t box_at(AirPoint p) const;
-  /// Is the straight line legal all the way? Points lie within boxes, a skin off their faces.
+  /// Is the straight line legal over its whole length? Points lie within boxes, a skin off their
+  /// faces.
   [[nodiscard]] bool sees(AirPoint from, AirPoint to) const;
   [[nodiscard]] const AirCube& cube(uint32_t box) const { return boxes[box]; }
-  /// The boxes with cells in a range, rising zone by zone.
+  /// The boxes with voxels in a range, rising zone by zone.
   void boxes_in(const AirRange& range, std::vector<uint32_t>& found) const;
-  /// Calls visit(box) for each box of at least `least` cells a side (1 or 4) that shares a part of
-  /// a face with this one.
+  /// Calls visit(box) for each box of at least `min_side` voxels a side (1 or 4) that shares a part
+  /// of a face with this one.
   template <class Visit>
-  void for_neighbours(const AirCube& box, Visit&& visit, int32_t least = 1) const;
-  /// The same of a square of cells of a plane of them: at `plane` along the axis, from u and v on
-  /// along the other two, the one of y first, else that of x.
+  void for_neighbours(const AirCube& box, Visit&& visit, int32_t min_side = 1) const;
+  /// The same for a square of voxels of a plane: at `plane` along the axis, from u and v on along
+  /// the other two, the one of y first, else that of x.
   template <class Visit>
-  void visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side, int32_t least,
+  void visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side, int32_t min_side,
                   Visit& visit) const;
   [[nodiscard]] uint64_t bytes() const;
 
  private:
-  /// Of a cell of a zone, and of the node of the zone's tree that holds it.
+  /// Of a voxel of a zone, and of the node of the zone's tree that holds it.
   [[nodiscard]] uint32_t box_in(size_t zone, const AirTree& tree, const AirTree::Place& place,
                                 int32_t x, int32_t y, int32_t z) const;
 };
 
-/// The cells where the body may be, from what is free around. Boxes have at most `largest` cells a
+/// The voxels where the body may be, given the free ones. Boxes have at most `largest` voxels a
 /// side. Fails with kBadFile (a zone cannot be used) or kCancelled. The same for any number of
 /// workers.
 Result<FlightSpace> build_flight_space(const AirData& air, const AirBody& body, int32_t largest,
                                        int32_t workers, Context& context);
 
-/// Clears every cell of `free` around which the body is not free; layers over the rows count as
-/// free, cells beside them do not. Word by word.
+/// Clears every voxel of `free` around which the body is not free; layers over the rows count as
+/// free, voxels beside them do not. Word by word.
 void erode_air(const AirBody& body, const AirRows& free, AirRows& legal);
 
 namespace flight_detail {
@@ -132,7 +133,7 @@ inline uint32_t FlightSpace::box_at(int32_t x, int32_t y, int32_t z) const {
 
 template <class Visit>
 void FlightSpace::visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, int32_t side,
-                             int32_t least, Visit& visit) const {
+                             int32_t min_side, Visit& visit) const {
   const int32_t x = axis == 0 ? plane : u;
   const int32_t y = axis == 1 ? plane : axis == 0 ? u : v;
   const int32_t z = axis == 2 ? plane : v;
@@ -148,7 +149,7 @@ void FlightSpace::visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, 
     visit(air_number(place.word));
     return;
   }
-  if (kind == AirKind::kLeaf && least > 2) return;  // boxes of leaves have 1 or 2 cells a side
+  if (kind == AirKind::kLeaf && min_side > 2) return;  // boxes of leaves have 1 or 2 cells a side
   if (kind == AirKind::kLeaf && side <= 2) {
     const uint32_t box = box_in(zone, tree, place, own_x, y, own_z);
     if (side == 1 || (box != kNoBox && boxes[box].side == 2)) {
@@ -156,31 +157,31 @@ void FlightSpace::visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, 
       return;
     }
   }
-  if (side <= least) return;
+  if (side <= min_side) return;
   const int32_t half = side / 2;
-  visit_face(axis, plane, u, v, half, least, visit);
-  visit_face(axis, plane, u + half, v, half, least, visit);
-  visit_face(axis, plane, u, v + half, half, least, visit);
-  visit_face(axis, plane, u + half, v + half, half, least, visit);
+  visit_face(axis, plane, u, v, half, min_side, visit);
+  visit_face(axis, plane, u + half, v, half, min_side, visit);
+  visit_face(axis, plane, u, v + half, half, min_side, visit);
+  visit_face(axis, plane, u + half, v + half, half, min_side, visit);
 }
 
 template <class Visit>
-void FlightSpace::for_neighbours(const AirCube& box, Visit&& visit, int32_t least) const {
-  visit_face(0, box.x + box.side, box.y, box.z, box.side, least, visit);
-  visit_face(0, box.x - 1, box.y, box.z, box.side, least, visit);
-  visit_face(1, box.y + box.side, box.x, box.z, box.side, least, visit);
-  visit_face(1, box.y - 1, box.x, box.z, box.side, least, visit);
-  visit_face(2, box.z + box.side, box.x, box.y, box.side, least, visit);
-  visit_face(2, box.z - 1, box.x, box.y, box.side, least, visit);
+void FlightSpace::for_neighbours(const AirCube& box, Visit&& visit, int32_t min_side) const {
+  visit_face(0, box.x + box.side, box.y, box.z, box.side, min_side, visit);
+  visit_face(0, box.x - 1, box.y, box.z, box.side, min_side, visit);
+  visit_face(1, box.y + box.side, box.x, box.z, box.side, min_side, visit);
+  visit_face(1, box.y - 1, box.x, box.z, box.side, min_side, visit);
+  visit_face(2, box.z + box.side, box.x, box.y, box.side, min_side, visit);
+  visit_face(2, box.z - 1, box.x, box.y, box.side, min_side, visit);
 }
 
-// FlightSpace::sees over any air that knows box_at(x, y, z) and cube(box).
-// From box to box: the line leaves one by the face that it meets first. At an edge or a corner it
-// takes one face after the other, and must be free to pass what lies between.
+// FlightSpace::sees over any air that has box_at(x, y, z) and cube(box). From box to box: the line
+// leaves one by the face that it meets first. At an edge or a corner it passes one face after the
+// other, and what lies between must be free.
 template <class Air>
 bool air_sees(const Air& air, AirPoint from, AirPoint to) {
   const double begin[3] = {from.x, from.y, from.z};
-  const double way[3] = {to.x - from.x, to.y - from.y, to.z - from.z};
+  const double delta[3] = {to.x - from.x, to.y - from.y, to.z - from.z};
   int32_t cell[3], last[3];
   const double end[3] = {to.x, to.y, to.z};
   for (int a = 0; a < 3; ++a) {
@@ -197,8 +198,8 @@ bool air_sees(const Air& air, AirPoint from, AirPoint to) {
     for (int a = 0; a < 3; ++a) {
       if (last[a] >= low[a] && last[a] < low[a] + box.side)
         continue;  // it ends between these faces
-      const double face = way[a] > 0 ? low[a] + box.side : low[a];
-      const double t = (face - begin[a]) / way[a];
+      const double face = delta[a] > 0 ? low[a] + box.side : low[a];
+      const double t = (face - begin[a]) / delta[a];
       if (t < leave) {
         leave = t;
         axis = a;
@@ -207,9 +208,9 @@ bool air_sees(const Air& air, AirPoint from, AirPoint to) {
     if (axis < 0) return true;
     for (int a = 0; a < 3; ++a) {
       if (a == axis) {
-        cell[a] = way[a] > 0 ? low[a] + box.side : low[a] - 1;
+        cell[a] = delta[a] > 0 ? low[a] + box.side : low[a] - 1;
       } else {
-        const auto at = static_cast<int32_t>(std::floor(begin[a] + leave * way[a]));
+        const auto at = static_cast<int32_t>(std::floor(begin[a] + leave * delta[a]));
         cell[a] = std::clamp(at, low[a], low[a] + box.side - 1);
       }
     }

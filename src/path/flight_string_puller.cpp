@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-// A taut way bends on edges of what is in the way, and its angles to the edge are alike on both
-// sides. Edges run along the axes, so a bend is slid along one axis at a time to where that is so;
-// a bend that hangs in the air is cut off, which makes two of it that reach the edges.
+// A taut path turns at edges of blockers, and its angles to the edge are alike on both sides. Edges
+// run along the axes, so a waypoint is slid along one axis at a time to where that is so; a
+// waypoint that hangs in the air is cut off, which makes two of it that lie on the edges.
 namespace throng {
 namespace {
 
@@ -16,25 +16,25 @@ constexpr int32_t kRounds = 6;
 constexpr int32_t kHalvings = 8;
 constexpr double kGain = 1e-3;  // less is not worth a round, of the whole length
 
-double length_of(const std::vector<AirPoint>& way) {
+double length_of(const std::vector<AirPoint>& path) {
   double sum = 0;
-  for (size_t i = 1; i < way.size(); ++i) sum += air_distance(way[i - 1], way[i]);
+  for (size_t i = 1; i < path.size(); ++i) sum += air_distance(path[i - 1], path[i]);
   return sum;
 }
 
 }  // namespace
 
-void FlightStringPuller::pull(const AirView& air, std::vector<AirPoint>& way) {
+void FlightStringPuller::pull(const AirView& air, std::vector<AirPoint>& path) {
   air_ = air;
-  way_ = &way;
-  if (way.size() <= 2) return;
+  path_ = &path;
+  if (path.size() <= 2) return;
   shortcut();
-  double length = length_of(way);
-  for (int32_t round = 0; round < kRounds && way.size() > 2; ++round) {
+  double length = length_of(path);
+  for (int32_t round = 0; round < kRounds && path.size() > 2; ++round) {
     if (round < 3) cut_corners();
-    for (size_t i = 1; i + 1 < way.size(); ++i) slide(i);
+    for (size_t i = 1; i + 1 < path.size(); ++i) slide(i);
     shortcut();
-    const double now = length_of(way);
+    const double now = length_of(path);
     if (now > length * (1 - kGain)) break;
     length = now;
   }
@@ -42,30 +42,30 @@ void FlightStringPuller::pull(const AirView& air, std::vector<AirPoint>& way) {
 
 // From each point on to the last one that it sees.
 void FlightStringPuller::shortcut() {
-  std::vector<AirPoint>& way = *way_;
+  std::vector<AirPoint>& path = *path_;
   next_.clear();
-  next_.push_back(way[0]);
-  for (size_t at = 0; at + 1 < way.size();) {
+  next_.push_back(path[0]);
+  for (size_t at = 0; at + 1 < path.size();) {
     size_t to = at + 1;
-    for (size_t far = way.size() - 1; far > at + 1; --far) {
-      if (air_->sees(way[at], way[far])) {
+    for (size_t far = path.size() - 1; far > at + 1; --far) {
+      if (air_->sees(path[at], path[far])) {
         to = far;
         break;
       }
     }
-    next_.push_back(way[to]);
+    next_.push_back(path[to]);
     at = to;
   }
-  way.swap(next_);
+  path.swap(next_);
 }
 
-// Two points on the legs of a bend, as far out as they see each other, instead of it.
+// Two points on the segments of a waypoint, as far out as they see each other, instead of it.
 void FlightStringPuller::cut_corners() {
-  std::vector<AirPoint>& way = *way_;
+  std::vector<AirPoint>& path = *path_;
   next_.clear();
-  next_.push_back(way[0]);
-  for (size_t i = 1; i + 1 < way.size(); ++i) {
-    const AirPoint before = next_.back(), here = way[i], after = way[i + 1];
+  next_.push_back(path[0]);
+  for (size_t i = 1; i + 1 < path.size(); ++i) {
+    const AirPoint before = next_.back(), here = path[i], after = path[i + 1];
     const auto toward = [&](AirPoint end, double part) {
       return off_faces(here + part * (end - here));
     };
@@ -83,15 +83,15 @@ void FlightStringPuller::cut_corners() {
     next_.push_back(toward(before, low));
     next_.push_back(toward(after, low));
   }
-  next_.push_back(way.back());
-  way.swap(next_);
+  next_.push_back(path.back());
+  path.swap(next_);
 }
 
-void FlightStringPuller::slide(size_t bend) {
-  AirPoint& here = (*way_)[bend];
-  const AirPoint before = (*way_)[bend - 1], after = (*way_)[bend + 1];
+void FlightStringPuller::slide(size_t waypoint) {
+  AirPoint& here = (*path_)[waypoint];
+  const AirPoint before = (*path_)[waypoint - 1], after = (*path_)[waypoint + 1];
   for (int axis = 0; axis < 3; ++axis) {
-    // Where the angles are alike: the other two coordinates tell how far either end is.
+    // Where the angles are alike: the other two coordinates give the distance of either end.
     double across[2] = {0, 0};
     for (int other = 0; other < 3; ++other) {
       if (other == axis) continue;

@@ -7,22 +7,22 @@
 
 #include "path/air_view.h"
 
-/// Pulls a way through the air taut.
+/// Pulls a path through the air taut.
 namespace throng {
 
-/// Leaves out bends that are not needed and slides the others to where the way is shortest, as far
-/// as the lines to their neighbours stay legal. Never makes a way longer. Owns its memory.
+/// Leaves out waypoints that are not needed and slides the others to where the path is shortest, as
+/// far as the lines to their neighbours stay legal. Never makes a path longer. Owns its memory.
 class FlightStringPuller {
  public:
-  void pull(const AirView& air, std::vector<AirPoint>& way);
+  void pull(const AirView& air, std::vector<AirPoint>& path);
 
  private:
   void shortcut();
   void cut_corners();
-  void slide(size_t bend);
+  void slide(size_t waypoint);
 
   std::optional<AirView> air_;
-  std::vector<AirPoint>* way_ = nullptr;
+  std::vector<AirPoint>* path_ = nullptr;
   std::vector<AirPoint> next_;
 };
 

@@ -8,6 +8,7 @@
 #include "core/stopwatch.h"
 #include "path/flow_points.h"
 
+// A FlowField is a table of FlowPoints with a ground of its own.
 namespace throng {
 
 struct FlowField::State {

@@ -10,6 +10,7 @@
 #include "path/reset_path.h"
 #include "world/place.h"
 
+// Dijkstra's search outwards from all goals over the points of portals of a LiveMesh.
 namespace throng {
 namespace {
 
@@ -20,10 +21,12 @@ bool lies_before(const LiveStop& a, const LiveStop& b) {
 // The search outwards from all goals.
 class Outwards {
  public:
-  Outwards(LiveMesh& mesh, double most) : mesh_(mesh), most_(most) { nodes_.clear(); }
+  Outwards(LiveMesh& mesh, double max_distance) : mesh_(mesh), max_distance_(max_distance) {
+    nodes_.clear();
+  }
 
   void push(const LiveStop& stop, uint32_t parent, double cost) {
-    if (cost > most_) return;
+    if (cost > max_distance_) return;
     const auto [index, is_new] = nodes_.node_of(stop);
     LiveNode& node = nodes_.nodes[index];
     if (!is_new && (node.done || node.cost <= cost)) return;
@@ -58,7 +61,7 @@ class Outwards {
 
  private:
   LiveMesh& mesh_;
-  double most_;
+  double max_distance_;
   LiveNodes nodes_;
   std::vector<std::pair<double, uint32_t>> open_;
 };
@@ -68,10 +71,10 @@ class Outwards {
 bool FlowPoints::before(const Point& a, const Point& b) { return lies_before(a.stop, b.stop); }
 
 std::optional<FlowPoints> FlowPoints::make(LiveGround& of, std::span<const Place> goals,
-                                           double most, Context& context) {
+                                           double max_distance, Context& context) {
   LiveGround::State& ground = *of.state_;
-  most /= ground.mesh.world().summary.cell;
-  Outwards search(ground.mesh, most);
+  max_distance /= ground.mesh.world().summary.cell;
+  Outwards search(ground.mesh, max_distance);
   for (const Place& goal : goals) {
     LiveStop stop;
     if (ground.locate(goal, stop)) search.push(stop, UINT32_MAX, 0);
@@ -87,7 +90,7 @@ std::optional<FlowPoints> FlowPoints::make(LiveGround& of, std::span<const Place
   std::vector<uint32_t> number(order.size());
   for (uint32_t n = 0; n < order.size(); ++n) number[order[n]] = n;
   FlowPoints made;
-  made.most_ = most;
+  made.max_distance_ = max_distance;
   made.points_.reserve(order.size());
   for (const uint32_t n : order) {
     const LiveNode& node = nodes[n];
@@ -105,13 +108,13 @@ std::pair<uint32_t, double> FlowPoints::leave_by(LiveMesh& mesh, const LiveStop&
   std::pair<uint32_t, double> best{kNoPoint, kNever};
   for (auto p = first; p != last; ++p) {
     const double cost = p->cost + distance_of(p->stop.at, stop.at) * factor;
-    if (cost >= best.second || cost > most_) continue;
+    if (cost >= best.second || cost > max_distance_) continue;
     best = {static_cast<uint32_t>(p - points_.begin()), cost};
   }
   return best;
 }
 
-// The other side of the border that a point lies at: its way goes on there. [it has a next]
+// The other side of the border that a point lies at: its path continues there. [it has a next]
 LiveStop FlowPoints::across(LiveMesh& mesh, const Point& point) const {
   const LiveStop& on = points_[point.next].stop;
   LiveStop other = on;
@@ -138,7 +141,8 @@ Place FlowPoints::next(LiveGround& of, const Place& place) const {
   const auto [first, total] = leave_by(ground.mesh, from);
   if (first == kNoPoint) return {};
   const Point* best = &points_[first];
-  // On as long as a straight line is no dearer than the way so far; give up after some that are.
+  // On as long as a straight line costs no more than the path so far; stop after some that cost
+  // more.
   constexpr int kPatience = 3;
   int missed = 0;
   for (const Point* p = best; p->next != kNoPoint && missed < kPatience;) {
@@ -164,12 +168,12 @@ void FlowPoints::way(LiveGround& of, const Place& place, Path& path) const {
   const uint32_t first = leave_by(ground.mesh, stop).first;
   path.end = PathEnd::kUnreachable;
   if (first == kNoPoint) return;
-  ground.way.assign(1, stop);
+  ground.stops.assign(1, stop);
   for (uint32_t p = first; p != kNoPoint; p = points_[p].next) {
-    ground.way.push_back(points_[p].stop);
-    if (points_[p].next != kNoPoint) ground.way.push_back(across(ground.mesh, points_[p]));
+    ground.stops.push_back(points_[p].stop);
+    if (points_[p].next != kNoPoint) ground.stops.push_back(across(ground.mesh, points_[p]));
   }
-  ground.straight.draw(ground.mesh, ground.way);
+  ground.straight.draw(ground.mesh, ground.stops);
   ground.give(path);
   path.end = PathEnd::kReached;
 }

@@ -14,18 +14,18 @@
 #include "throng/live_ground.h"
 #include "throng/path.h"
 
-/// The distances that a FlowField shows, apart from the ground: one table serves many workers, each
-/// with a copy of the ground of its own.
+/// The distances of a FlowField, apart from the ground: one table serves many workers, each with
+/// its own copy of the ground.
 namespace throng {
 
 class FlowPoints {
  public:
   static constexpr double kNever = std::numeric_limits<double>::infinity();
 
-  /// Searches outwards from all goals that are places of the class, up to `most` metres' cost. None
-  /// if it was cancelled; without any points if no goal is a place.
+  /// Searches outwards from all goals that are places of the class, up to a cost of `max_distance`
+  /// metres. None if it was cancelled; without any points if no goal is a place.
   static std::optional<FlowPoints> make(LiveGround& ground, std::span<const Place> goals,
-                                        double most, Context& context);
+                                        double max_distance, Context& context);
   [[nodiscard]] bool empty() const { return points_.empty(); }
 
   // `ground` is that of which they were made, or a copy of it, here and below.
@@ -39,10 +39,10 @@ class FlowPoints {
 
  private:
   static constexpr uint32_t kNoPoint = UINT32_MAX;
-  // A goal, or a point just inside a rectangle by which the way to a goal leaves it.
+  // A goal, or a point just inside a rectangle where the path to a goal leaves it.
   struct Point {
     LiveStop stop;
-    uint32_t next = kNoPoint;  // on the way; none at a goal
+    uint32_t next = kNoPoint;  // on the path; none at a goal
     double cost = 0;           // [cells]
   };
 
@@ -52,7 +52,7 @@ class FlowPoints {
 
   // By level and rectangle, so that those of one lie together.
   std::vector<Point> points_;
-  double most_ = kNever;  // [cells]
+  double max_distance_ = kNever;  // [cells]
 };
 
 }  // namespace throng

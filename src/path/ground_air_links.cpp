@@ -9,6 +9,8 @@
 #include "core/parallel.h"
 #include "world/place.h"
 
+// Sorted pairs of ground and air, from one pass over all legal cells; turns between ground and air
+// are counted by a breadth-first search.
 namespace throng {
 namespace {
 
@@ -112,7 +114,7 @@ void GroundAirLinks::search(Part from, Part goal, std::span<const Pair> banned,
   scratch.known_ground.assign(ground_.size(), 0);
   scratch.known_air.assign(airs_.size(), 0);
   scratch.steps.assign(1, {from, 0});
-  // Nothing leads back to where it began but what is known by then.
+  // No link leads back to where it began except over what is known by then.
   for (uint32_t i = 0; i < scratch.steps.size() && scratch.steps.back().part != goal; ++i) {
     const Part part = scratch.steps[i].part;
     const std::vector<uint32_t>& own = part.is_air ? airs_ : ground_;

@@ -10,7 +10,8 @@
 #include "path/flight_endpoints.h"
 #include "path/mesh.h"
 
-/// Which ground leads into which air: what cannot be reached is told without a look around.
+/// Which ground leads into which air: a query between ends that are not connected is answered
+/// without a search.
 namespace throng {
 
 /// Pairs of a component of the ground (MeshRect::component) and one of the air
@@ -54,9 +55,9 @@ class GroundAirLinks {
     std::vector<Step> steps;  ///< In the order in which they were found.
     std::vector<uint8_t> known_ground, known_air;
   };
-  /// All parts that taking off and landing lead to from one, itself first, the fewest turns first;
-  /// stops at `goal`, if that is among them: then it is the last. Not between the ground and the
-  /// air of a banned pair.
+  /// All parts that take-offs and landings lead to from one, itself first, the smallest number of
+  /// turns first; stops at `goal`, if that is among them: then it is the last. Not between the
+  /// ground and the air of a banned pair.
   using Pair = std::pair<uint32_t, uint32_t>;
   void search(Part from, Part goal, std::span<const Pair> banned, Scratch& scratch) const;
 

@@ -14,6 +14,8 @@
 #include "path/circle_flood.h"
 #include "path/obstacle.h"
 
+// Queries of the ground around a place, cell by cell: the nearest place, rays, slides, walls,
+// random places. Linear in the cells within the radius.
 namespace throng {
 namespace {
 
@@ -77,7 +79,7 @@ struct GroundQuery::State {
   // The legal cells of one level that may be nearer than `best`, a place and its distance.
   void nearest_on(const GroundLevel& level, int32_t tile_x, int32_t tile_z, Vec3d position,
                   GroundPoint at, std::pair<Place, double>& best) const;
-  // Into `near`: cells that touch the circle and hold together with its middle.
+  // Into `near`: cells that touch the circle and are connected to its middle.
   bool gather(const Place& centre, double radius);
 };
 
@@ -149,7 +151,7 @@ Place GroundQuery::nearest_place(Vec3d position, double radius) {
   const State& s = *state_;
   const WorldData& world = s.data();
   if (!std::isfinite(position.x + position.y + position.z) || !(radius >= 0)) return {};
-  // A place may lie on the very edge of what is asked for.
+  // A place may lie on the very edge of the search radius.
   std::pair<Place, double> best{{}, std::nextafter(std::min(radius, 1e9), 2e9)};
   const GroundPoint at = to_ground(world, position.x, position.z);
   const int32_t tiles_x = (world.width + kTileCells - 1) / kTileCells;
@@ -235,9 +237,9 @@ Place GroundQuery::slide(const Place& from, double dx, double dz) {
   if (walk(s.ground(), last, start, goal, s.step)) return State::end_of(from, dx, dz, last, goal);
   const GroundPoint middle{(start.x + goal.x) / 2, (start.z + goal.z) / 2};
   // A cell more than half the push: else a push shorter than a cell could leave none.
-  const double reach = std::sqrt(squared(start, goal)) / 2 + kUnitsPerCell;
+  const double limit = std::sqrt(squared(start, goal)) / 2 + kUnitsPerCell;
   const auto within = [&](int32_t x, int32_t z) {
-    return squared(clamp_to_cell(middle, x, z), middle) <= reach * reach;
+    return squared(clamp_to_cell(middle, x, z), middle) <= limit * limit;
   };
   GroundLevel best_level = level;
   GroundPoint best = start;
@@ -302,9 +304,9 @@ bool GroundQuery::State::gather(const Place& centre, double radius) {
   GroundLevel level;
   GroundPoint at;
   if (!(radius >= 0) || !locate(centre, level, at)) return false;
-  const double reach = std::min(radius, 1e9) / unit();
+  const double limit = std::min(radius, 1e9) / unit();
   const auto within = [&](int32_t x, int32_t z) {
-    return squared(clamp_to_cell(at, x, z), at) <= reach * reach;
+    return squared(clamp_to_cell(at, x, z), at) <= limit * limit;
   };
   flood.start(level, at.cell_x(), at.cell_z());
   flood.run(
@@ -321,7 +323,7 @@ Place GroundQuery::random_place_near(const Place& centre, double radius, uint64_
   State& s = *state_;
   if (!s.gather(centre, radius)) return {};
   const GroundPoint at = to_ground(s.data(), centre.position.x, centre.position.z);
-  const double reach = std::min(radius, 1e9) / s.unit();
+  const double limit = std::min(radius, 1e9) / s.unit();
   // Points outside the circle are drawn again: cells of its rim lie partly inside.
   constexpr uint64_t kTries = 256;
   for (uint64_t t = 0; t < kTries; ++t) {
@@ -331,7 +333,7 @@ Place GroundQuery::random_place_near(const Place& centre, double radius, uint64_
              static_cast<int64_t>(random_below(seed, n, 4 * t + draw, kUnitsPerCell));
     };
     const GroundPoint p{unit_of(cell.x, 1), unit_of(cell.z, 2)};
-    if (squared(p, at) > reach * reach) continue;
+    if (squared(p, at) > limit * limit) continue;
     return place_at(s.data(), ground_level(s.data(), cell.level, s.avatar_class), p);
   }
   return centre;  // a circle far smaller than a cell
@@ -341,11 +343,11 @@ double GroundQuery::area_near(const Place& centre, double radius) {
   State& s = *state_;
   if (!s.gather(centre, radius)) return 0;
   const GroundPoint at = to_ground(s.data(), centre.position.x, centre.position.z);
-  const double reach = std::min(radius, 1e9) / s.unit();
+  const double limit = std::min(radius, 1e9) / s.unit();
   const auto inside = [&](const State::NearCell& cell) {
     const GroundPoint middle{(int64_t{cell.x} << kUnitBits) + kUnitsPerCell / 2,
                              (int64_t{cell.z} << kUnitBits) + kUnitsPerCell / 2};
-    return squared(middle, at) <= reach * reach;
+    return squared(middle, at) <= limit * limit;
   };
   const double side = s.data().summary.cell;
   return static_cast<double>(std::count_if(s.near.begin(), s.near.end(), inside)) * side * side;

@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 
+// Casts from every corner, then labels the visibility graph of the corners ([LPW79]) by hubs.
 namespace throng {
 namespace {
 
@@ -26,8 +27,8 @@ void list_candidates(const PathMesh& mesh, const std::vector<std::vector<SeenBlo
   }
 }
 
-PathGraph look_around(const PathMesh& mesh, int32_t workers, const Context& context,
-                      HubLabels& out) {
+PathGraph cast_from_corners(const PathMesh& mesh, int32_t workers, const Context& context,
+                            HubLabels& out) {
   const size_t count = mesh.corner_count();
   std::vector<std::vector<SeenBlock>> blocks(count);  // of each corner
   std::vector<std::vector<SeenCorner>> seen(count);
@@ -35,7 +36,7 @@ PathGraph look_around(const PathMesh& mesh, int32_t workers, const Context& cont
   parallel_ranges(count, kGrain, workers, [&](size_t begin, size_t end) {
     Sight sight;
     for (size_t c = begin; c < end && !context.cancel; ++c) {
-      sight.look_from_corner(mesh, static_cast<uint32_t>(c), true);
+      sight.cast_from_corner(mesh, static_cast<uint32_t>(c), true);
       seen[c] = sight.corners();
       blocks[c] = sight.blocks();
     }
@@ -72,7 +73,7 @@ PathGraph look_around(const PathMesh& mesh, int32_t workers, const Context& cont
 
 Result<HubLabels> build_labels(const PathMesh& mesh, int32_t workers, Context& context) {
   HubLabels out;
-  const PathGraph graph = look_around(mesh, workers, context, out);
+  const PathGraph graph = cast_from_corners(mesh, workers, context, out);
   if (context.cancel) return Error{Errc::kCancelled, "path: cancelled"};
   constexpr uint64_t kSamples = 256;
   auto labels = label_graph(graph, kSamples, workers, context);

@@ -11,13 +11,13 @@
 #include "path/sight.h"
 #include "path/two_hop.h"
 
-/// Shortest ways between corners, by look-up.
+/// Shortest paths between corners, by look-up.
 namespace throng {
 
-/// Labels of corners, and of what the blocks of a mesh see.
+/// Labels of corners, and the corners that the blocks of a mesh see.
 struct HubLabels : TwoHopLabels {
-  // Per block the corners that may be seen from some point of it: a way from there that bends bends
-  // first at one of them.
+  // Per block the corners that may be seen from some point of it: a path from there that turns does
+  // so first at one of them.
   struct Candidate {
     uint32_t corner : 31;
     uint32_t from_all : 1;  // it is seen from all of the block
@@ -33,7 +33,7 @@ struct HubLabels : TwoHopLabels {
   }
 };
 
-/// Looks from every corner, then labels them all. Fails with kCancelled. The same for any number of
+/// Casts from every corner, then labels them all. Fails with kCancelled. The same for any number of
 /// workers.
 Result<HubLabels> build_labels(const PathMesh& mesh, int32_t workers, Context& context);
 

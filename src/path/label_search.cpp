@@ -8,11 +8,13 @@
 #include "path/border.h"
 #include "path/mesh_ray.h"
 
+// The shortest path by hub labels: the ends see corners, and the smallest sum of two labels of one
+// hub is the length. Linear in the labels that are read.
 namespace throng {
 namespace {
 
 constexpr float kFarthest = 3e38f;
-constexpr double kMaxLonger = 1.02;  // of ways by middles
+constexpr double kMaxLonger = 1.02;  // of paths over middles
 // Sums of two or three floats of up to 2^20 cells; what is as short within their error stays.
 constexpr float kSlack = 0.25f;  // cells
 
@@ -20,16 +22,16 @@ uint32_t block_of(const PathMesh& mesh, const Stop& end) {
   return mesh.block_at(end.rect, end.at.cell_x(), end.at.cell_z());
 }
 
-float gap(const MeshCorner& corner, CellPoint p) {
+float distance_to(const MeshCorner& corner, CellPoint p) {
   const double dx = corner.x - p.x, dz = corner.z - p.z;
   return static_cast<float>(std::sqrt(dx * dx + dz * dz));
 }
 
 }  // namespace
 
-// Joins the labels of the corners that the ends see. A way from one end to the other over a corner
+// Joins the labels of the corners that the ends see. A path from one end to the other over a corner
 // is at least as long as the straight lines to it and from it, so no corner outside the ellipse of
-// a way that is known can be on a shorter one, and rays are sent only to the corners within.
+// a known path can be on a shorter one, and rays are sent only to the corners within.
 bool LabelSearch::narrow(const PathMesh& mesh, const HubLabels& labels, const Stop& from,
                          const Stop& to, float known, Best& best) {
   const CellPoint start = in_cells(from.at), goal = in_cells(to.at);
@@ -41,9 +43,9 @@ bool LabelSearch::narrow(const PathMesh& mesh, const HubLabels& labels, const St
       const HubLabels::Candidate candidate = labels.candidates[i];
       const MeshCorner& corner = mesh.corners[candidate.corner];
       if (!is_taut(corner, corner.x - here.x, corner.z - here.z)) continue;
-      const float distance = gap(corner, here);
-      turns.push_back(
-          {candidate.corner, distance, distance + gap(corner, there), candidate.from_all != 0});
+      const float distance = distance_to(corner, here);
+      turns.push_back({candidate.corner, distance, distance + distance_to(corner, there),
+                       candidate.from_all != 0});
     }
   };
   const auto see = [&](const Stop& end, Turn& turn) {
@@ -61,27 +63,27 @@ bool LabelSearch::narrow(const PathMesh& mesh, const HubLabels& labels, const St
   return join(mesh, labels, best);
 }
 
-// The shortest way over the gathered corners; false if there is none.
+// The shortest path over the gathered corners; false if there is none.
 bool LabelSearch::join(const PathMesh& mesh, const HubLabels& labels, Best& best) {
-  if (reach_.size() != mesh.corner_count()) reach_.assign(mesh.corner_count(), {});
+  if (reached_hubs_.size() != mesh.corner_count()) reached_hubs_.assign(mesh.corner_count(), {});
   if (++search_ == 0) {
-    reach_.assign(mesh.corner_count(), {});
+    reached_hubs_.assign(mesh.corner_count(), {});
     search_ = 1;
   }
   for (const Turn& s : start_) {
     for (const HubLabels::Label& label : labels.of(s.corner)) {
-      Reach& reach = reach_[label.hub];
+      ReachedHub& reached = reached_hubs_[label.hub];
       const float here = s.distance + label.length;
-      if (reach.search != search_ || here < reach.length) reach = {search_, s.corner, here};
+      if (reached.search != search_ || here < reached.length) reached = {search_, s.corner, here};
     }
   }
   best.length = kFarthest;
   for (const Turn& s : goal_) {
     for (const HubLabels::Label& label : labels.of(s.corner)) {
-      const Reach& reach = reach_[label.hub];
-      const float here = reach.length + label.length + s.distance;
-      if (reach.search != search_ || here >= best.length) continue;
-      best = {here, label.hub, reach.corner, s.corner};
+      const ReachedHub& reached = reached_hubs_[label.hub];
+      const float here = reached.length + label.length + s.distance;
+      if (reached.search != search_ || here >= best.length) continue;
+      best = {here, label.hub, reached.corner, s.corner};
     }
   }
   return best.length < kFarthest;
@@ -100,18 +102,18 @@ struct SeenMiddle {
   double distance = 0;  // [cells]
 };
 
-// Behind an end, as seen from where its way bends first: a way from there comes by the end or
-// nearly so, and as much shorter as the end is away from there is the rest of it. Else `own`.
-SeenMiddle middle_behind(const PathMesh& mesh, const Stop& end, CellPoint bend, SeenMiddle own) {
+// Behind an end, as seen from its path's first waypoint: a path from there passes the end or nearly
+// so, and the rest of it is shorter by the distance to the end. Else `own`.
+SeenMiddle middle_behind(const PathMesh& mesh, const Stop& end, CellPoint turn, SeenMiddle own) {
   const CellPoint at = in_cells(end.at);
-  const double gap = distance(at, bend);
-  if (!(gap > 0)) return own;
+  const double length = distance(at, turn);
+  if (!(length > 0)) return own;
   // The farther, the less it matters that a middle is not straight behind.
-  for (const double reach : {128.0, 48.0, 24.0, 12.0}) {  // cells
+  for (const double offset : {128.0, 48.0, 24.0, 12.0}) {  // cells
     const auto behind = [&](double from, double to) {
-      return std::llround((from + (from - to) * (reach / gap)) * kUnitsPerCell);
+      return std::llround((from + (from - to) * (offset / length)) * kUnitsPerCell);
     };
-    const GroundPoint there{behind(at.x, bend.x), behind(at.z, bend.z)};
+    const GroundPoint there{behind(at.x, turn.x), behind(at.z, turn.z)};
     const uint32_t rect = mesh_ray(mesh, end.rect, end.at, there);
     if (rect == kNoRect) continue;
     const uint32_t block = mesh.block_at(rect, there.cell_x(), there.cell_z());
@@ -124,9 +126,9 @@ SeenMiddle middle_behind(const PathMesh& mesh, const Stop& end, CellPoint bend, 
 
 }  // namespace
 
-// The way by the middles of the ends' blocks, pulled taut. It is as short as the shortest but where
-// that passes something on another side. False if there is none, or if it cannot be proved to be no
-// longer than `kMaxLonger` times the shortest; `length` is then still that of a way.
+// The path over the middles of the ends' blocks, pulled taut. It is as short as the shortest except
+// where that passes something on another side. False if there is none, or if it cannot be proved to
+// be no longer than `kMaxLonger` times the shortest; `length` is then still that of a path.
 bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, const Stop& from,
                              const Stop& to, std::vector<uint32_t>& corners, double& length) {
   const MiddleLabels& middles = labels.by_middle;
@@ -136,14 +138,15 @@ bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, cons
   if (!(best.length < kFarthest)) return false;
   const Waypoint from_middle{in_cells(middle_of(mesh, from.rect, a)), from.rect};
   const Waypoint to_middle{in_cells(middle_of(mesh, to.rect, b)), to.rect};
-  labels.walk(middles.trail[middles.first[a] + best.first],
-              middles.trail[middles.first[b] + best.last], corners);
-  way_.assign({{start, from.rect}, from_middle});
-  for (const uint32_t c : corners) way_.push_back(waypoint(mesh, c));
-  way_.insert(way_.end(), {to_middle, {goal, to.rect}});
-  if (!pull_.pull(mesh, way_, corners, length)) return false;
-  // No way is shorter than that between two middles less the ends' distances from them. Labels know
-  // ways over corners only: where the middles see each other, the shortest is the straight one.
+  labels.walk(middles.tree_place[middles.first[a] + best.first],
+              middles.tree_place[middles.first[b] + best.last], corners);
+  path_.assign({{start, from.rect}, from_middle});
+  for (const uint32_t c : corners) path_.push_back(waypoint(mesh, c));
+  path_.insert(path_.end(), {to_middle, {goal, to.rect}});
+  if (!pull_.pull(mesh, path_, corners, length)) return false;
+  // No path is shorter than that between two middles less the ends' distances from them. Labels
+  // hold paths over corners only: where the middles see each other, the shortest is the straight
+  // line.
   const double straight = distance(start, goal);
   const auto is_proved = [&](const SeenMiddle& p, const SeenMiddle& q, double between) {
     const auto is_short = [&](double least) { return length <= kMaxLonger * least; };
@@ -182,16 +185,16 @@ void distances(const PathMesh& mesh, const HubLabels& labels, const Stop& end,
   const uint32_t block = block_of(mesh, end), last = labels.first_candidate[block + 1];
   for (uint32_t i = labels.first_candidate[block]; i < last; ++i) {
     const MeshCorner& corner = mesh.corners[labels.candidates[i].corner];
-    out.push_back(gap(corner, from));
+    out.push_back(distance_to(corner, from));
   }
 }
 
 // The shortest of the entries of a block's hub, by the distances of an end.
-struct HubReach {
+struct HubDistance {
   float length = kFarthest;
   uint32_t candidate = 0;
 
-  HubReach(const BlockLabels& labels, uint32_t hub, const std::vector<float>& to) {
+  HubDistance(const BlockLabels& labels, uint32_t hub, const std::vector<float>& to) {
     for (uint32_t at = labels.entries[hub]; at < labels.entries[hub + 1]; ++at) {
       const float here = to[labels.candidate[at]] + labels.length[at];
       if (here >= length) continue;
@@ -203,7 +206,7 @@ struct HubReach {
 
 }  // namespace
 
-// Joins the lists of the ends' blocks. Where a ray does not reach the best way's first or last
+// Joins the lists of the ends' blocks. Where a ray does not reach the best path's first or last
 // corner, the best without it.
 bool LabelSearch::merge(const PathMesh& mesh, const HubLabels& labels, const Stop& from,
                         const Stop& to, Best& best) {
@@ -230,7 +233,7 @@ bool LabelSearch::merge(const PathMesh& mesh, const HubLabels& labels, const Sto
       } else if (other < hub) {
         ++j;
       } else {
-        const HubReach a(by_block, i++, from_), b(by_block, j++, to_);
+        const HubDistance a(by_block, i++, from_), b(by_block, j++, to_);
         if (a.length + b.length >= best.length) continue;
         best.length = a.length + b.length;
         best.hub = hub;
@@ -267,17 +270,17 @@ bool LabelSearch::find(const PathMesh& mesh, const HubLabels& labels, const Stop
                           ? narrow(mesh, labels, from, to, static_cast<float>(known), best)
                           : merge(mesh, labels, from, to, best);
   if (!merged) {
-    // Rays to points beside corners may graze what a line to the corner itself passes by: look out
+    // Rays to points beside corners may graze what a line to the corner itself passes by: cast rays
     // from both ends.
     const auto take_seen = [&](std::vector<Turn>& turns) {
       turns.clear();
       for (const SeenCorner& s : sight_.corners())
         turns.push_back({s.corner, static_cast<float>(s.distance), 0, true});
     };
-    sight_.look(mesh, from.rect, start, to.rect, goal);
+    sight_.cast(mesh, from.rect, start, to.rect, goal);
     if (sight_.sees_goal()) return true;
     take_seen(start_);
-    sight_.look(mesh, to.rect, goal, kNoRect, {});
+    sight_.cast(mesh, to.rect, goal, kNoRect, {});
     take_seen(goal_);
     if (!join(mesh, labels, best)) return false;
   }

@@ -10,19 +10,18 @@
 #include "path/sight.h"
 #include "path/string_puller.h"
 
-/// Shortest ways looked up in hub labels.
+/// Shortest paths looked up in hub labels.
 namespace throng {
 
-/// The way between two ends by their seen corners. Owns its memory: one per thread.
+/// The path between two ends over the corners that they see. Owns its memory: one per thread.
 class LabelSearch {
  public:
-  /// As PathSearch::find, without a budget: the length of what it finds is the same but for
-  /// rounding.
+  /// As PathSearch::find, without a budget: the length of what it finds is the same up to rounding.
   bool find(const PathMesh& mesh, const HubLabels& labels, const Stop& from, const Stop& to,
             std::vector<uint32_t>& corners, double& length);
 
  private:
-  struct Reach {
+  struct ReachedHub {
     uint32_t search = 0;  // that set it
     uint32_t corner = 0;  // by which the hub is reached
     float length = 0;
@@ -31,7 +30,7 @@ class LabelSearch {
     float length = 0;
     uint32_t hub = 0, first = 0, last = 0;
   };
-  // A corner that a way from an end may bend at first.
+  // A corner at which a path from an end may turn first.
   struct Turn {
     uint32_t corner = 0;
     float distance = 0;  // from the end [cells]
@@ -50,10 +49,10 @@ class LabelSearch {
 
   Sight sight_;
   StringPuller pull_;
-  std::vector<Waypoint> way_;
+  std::vector<Waypoint> path_;
   std::vector<Turn> start_, goal_;
-  std::vector<Reach> reach_;      // per hub
-  std::vector<float> from_, to_;  // to each candidate of the ends' blocks
+  std::vector<ReachedHub> reached_hubs_;  // per hub
+  std::vector<float> from_, to_;          // to each candidate of the ends' blocks
   uint32_t search_ = 0;
 };
 

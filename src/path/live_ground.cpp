@@ -17,6 +17,7 @@
 #include "path/solid.h"
 #include "world/place.h"
 
+// Checks and converts what callers give, for the live mesh and its search.
 namespace throng {
 
 bool LiveGround::State::locate(const Place& place, LiveStop& stop) {
@@ -30,22 +31,22 @@ bool LiveGround::State::locate(const Place& place, LiveStop& stop) {
 void LiveGround::State::give(Path& path) {
   const WorldData& world = mesh.world();
   double length = 0, cost = 0;
-  for (size_t i = 0; i < way.size(); ++i) {
-    path.points.push_back(place_at(world, mesh.level(way[i].level)->ground, way[i].at));
+  for (size_t i = 0; i < stops.size(); ++i) {
+    path.points.push_back(place_at(world, mesh.level(stops[i].level)->ground, stops[i].at));
     if (i == 0) continue;
-    length += distance_of(way[i - 1].at, way[i].at);
-    cost += cost_to(mesh, way[i - 1], way[i]);
-    if (way[i].off_mesh_link > 0) path.off_mesh_links.push_back(static_cast<uint32_t>(i));
+    length += distance_of(stops[i - 1].at, stops[i].at);
+    cost += cost_to(mesh, stops[i - 1], stops[i]);
+    if (stops[i].off_mesh_link > 0) path.off_mesh_links.push_back(static_cast<uint32_t>(i));
   }
   path.length = length * world.summary.cell;
   path.cost = cost * world.summary.cell;
 }
 
 Obstacle LiveGround::State::blocker() {
-  const LiveLevel* level = mesh.level(way.back().level);
-  const WalkStop stop = walk_far(mesh.ground(), level, way.back().at, to.at, mesh.step());
+  const LiveLevel* level = mesh.level(stops.back().level);
+  const WalkStop stop = walk_far(mesh.ground(), level, stops.back().at, to.at, mesh.step());
   if (stop.arrived) return Obstacle::kGap;  // under or over the goal
-  // What was put up since the bake is not in its floors.
+  // Obstacles placed since the bake are not in its floors.
   const WorldGround baked{mesh.world(), mesh.avatar_class()};
   const Obstacle found = obstacle_beyond(baked, level->ground, stop);
   const GroundLevel& ground = level->ground;
@@ -109,14 +110,16 @@ Result<ChangeId> LiveGround::add_off_mesh_link(const OffMeshLink& off_mesh_link)
   State& s = *state_;
   LiveStop from, to;
   if (!s.locate(off_mesh_link.from, from) || !s.locate(off_mesh_link.to, to)) {
-    return Error{Errc::kBadInput,
-                 std::string("jump: it must lead from a place of the class to ") + "another"};
+    return Error{
+        Errc::kBadInput,
+        std::string("off-mesh link: it must lead from a place of the class to ") + "another"};
   }
   const double cell = s.mesh.world().summary.cell;
   const double length = distance_of(from.at, to.at);
   if (!std::isfinite(off_mesh_link.cost) || !(off_mesh_link.cost > 0) ||
       off_mesh_link.cost < length * cell - 1e-6) {
-    return Error{Errc::kBadInput, "jump: its cost must be above 0 and at least its length"};
+    return Error{Errc::kBadInput,
+                 "off-mesh link: its cost must be above 0 and at least its length"};
   }
   const ChangeId id = s.mesh.add({});
   const double cost = std::max(off_mesh_link.cost / cell, length);
@@ -172,9 +175,9 @@ bool LiveGround::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& pa
   }
   path.end = result == LiveSearch::State::kFound ? PathEnd::kReached : PathEnd::kUnreachable;
   path.spent = SpentBudget::kNone;
-  search.way(mesh, way);
+  search.trace(mesh, stops);
   search.give_back();
-  straight.draw(mesh, way);
+  straight.draw(mesh, stops);
   give(path);
   if (path.end == PathEnd::kUnreachable) path.obstacle = blocker();
   return true;
@@ -182,7 +185,7 @@ bool LiveGround::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& pa
 
 bool LiveGround::advance(uint64_t max_nodes, Path& path) {
   State& s = *state_;
-  // What the search has met may be gone.
+  // What the search has reached may no longer exist.
   if (s.searching && s.version != s.mesh.version()) begin(s.from_place, s.to_place);
   return s.advance(max_nodes, SearchBudget::kDefaultBytes, path);
 }

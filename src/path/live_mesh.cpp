@@ -13,6 +13,8 @@
 #include "path/rects.h"
 #include "world/place.h"
 
+// Rectangles and portals of one level tile after the other, cut from its cells less those that
+// obstacles block; a change makes the levels of its tiles again.
 namespace throng {
 namespace {
 
@@ -33,7 +35,7 @@ LiveMesh::LiveMesh(World world, const LiveConfig& config)
       levels_(world_.data()->level_count) {
   area_cost_.fill(1);
   for (size_t s = 0; s < slope_factor_.size(); ++s) {
-    // The gentlest class has level ground in it: it is free.
+    // The gentlest class holds level ground: no extra cost.
     slope_factor_[s] = 1 + (s == 0 ? 0 : config.slope_cost * kSteepestOf[s]);
   }
   plain_ = config.slope_cost == 0;
@@ -47,7 +49,7 @@ LiveMesh::LiveMesh(const LiveMesh& other)
       slope_factor_(other.slope_factor_),
       min_factor_(other.min_factor_),
       plain_(other.plain_),
-      levels_(other.levels_.size()),  // made again where they are asked for
+      levels_(other.levels_.size()),  // rebuilt when first used
       changes_(other.changes_),
       changes_of_tile_(other.changes_of_tile_),
       off_mesh_links_(other.off_mesh_links_),
@@ -92,7 +94,7 @@ bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
     std::erase_if(idle_links_,
                   [&](const auto& off_mesh_link) { return off_mesh_link.second.change == id; });
     for (const int64_t tile : change.tiles) std::erase(changes_of_tile_[tile], id);
-    change = Change{};  // Its id is never used again, its memory is given back.
+    change = Change{};  // Its id is never used again, its memory is freed.
     change.active = false;
     change.removed = true;
   }
@@ -121,7 +123,7 @@ void LiveMesh::switch_links(ChangeId change, uint32_t level, bool active) {
     std::erase_if(idle_links_, [&](const auto& idle) {
       return idle.first == level && idle.second.change == change;
     });
-    // In the order in which they were made: ways must not tell what was switched when.
+    // In the order in which they were made: paths must not depend on when each was switched.
     std::stable_sort(
         here.begin(), here.end(),
         [](const OffMeshLinkEnd& a, const OffMeshLinkEnd& b) { return a.change < b.change; });
@@ -144,7 +146,7 @@ bool LiveMesh::stand(uint32_t index, GroundPoint at, uint16_t& rect) {
   return std::isfinite(factor(of.rects[rect]));
 }
 
-// The tile's levels are made again; those beside it look for their portals again.
+// The tile's levels are rebuilt; those beside it find their portals again.
 void LiveMesh::forget(int64_t key) {
   ++version_;
   const auto x = static_cast<int32_t>(key), z = static_cast<int32_t>(key >> 32);
@@ -179,7 +181,7 @@ const LiveLevel* LiveMesh::level_with_portals(uint32_t index) {
 
 void LiveMesh::make(uint32_t index, LiveLevel& level) const {
   level.ground = ground_level(world(), index, config_.avatar_class);
-  if (level.ground.zone == nullptr) {  // nobody stands there
+  if (level.ground.zone == nullptr) {  // no avatar stands there
     level.ground.world_level = index;
     level.rects.emplace_back();
     level.has_portals = true;
@@ -188,11 +190,11 @@ void LiveMesh::make(uint32_t index, LiveLevel& level) const {
   std::tie(level.tile_x, level.tile_z) =
       tile_of(world(), *level.ground.zone, *level.ground.view.record);
   level.legal = legal_rows(level.ground);
-  take_obstacles(level);
+  block_cells(level);
   cut(level);
 }
 
-void LiveMesh::take_obstacles(LiveLevel& level) const {
+void LiveMesh::block_cells(LiveLevel& level) const {
   const auto found = changes_of_tile_.find(tile_key(level.tile_x, level.tile_z));
   if (found == changes_of_tile_.end()) return;
   const WorldSummary& summary = world().summary;
@@ -201,9 +203,9 @@ void LiveMesh::take_obstacles(LiveLevel& level) const {
   for (const ChangeId id : found->second) {
     const Change& change = changes_[id - 1];
     if (!change.active || change.is_area) continue;
-    const CellRows taken = blocked_cells(floor, avatar, change.solid.prism, change.solid.triangles,
-                                         level.legal.data());
-    for (size_t z = 0; z < taken.size(); ++z) level.legal[z] &= ~taken[z];
+    const CellRows blocked = blocked_cells(floor, avatar, change.solid.prism,
+                                           change.solid.triangles, level.legal.data());
+    for (size_t z = 0; z < blocked.size(); ++z) level.legal[z] &= ~blocked[z];
   }
 }
 

@@ -13,7 +13,7 @@
 #include "throng/live_ground.h"
 #include "world/ground.h"
 
-/// The ground of a LiveGround, level by level, made when first asked for.
+/// The ground of a LiveGround, level by level, made on first use.
 namespace throng {
 
 inline constexpr int32_t kSlopeClasses = 6;
@@ -23,7 +23,7 @@ inline constexpr std::array<double, kSlopeClasses> kSteepestOf{0.05, 0.1, 0.2, 0
 struct LiveRect {
   int16_t x0 = 0, z0 = 0, x1 = 0, z1 = 0;
   uint8_t area = 0, slope = 0;
-  uint32_t first_portal = 0;  // they end where the next rectangle's begin
+  uint32_t first_portal = 0;  // its portals end where the next rectangle's begin
 };
 
 /// A stretch of a rectangle's side over which a step leads to another, and back.
@@ -48,7 +48,7 @@ struct LiveLevel {
   [[nodiscard]] uint16_t rect_at(int32_t x, int32_t z) const;  // cell of the tile, legal
 };
 
-/// Levels with what has changed on them. Copies share nothing.
+/// Levels and the changes made to them. Copies share nothing.
 class LiveMesh {
  public:
   LiveMesh(World world, const LiveConfig& config);
@@ -77,17 +77,17 @@ class LiveMesh {
     uint8_t kind = 0;
     Solid solid;                   // of an area: its prism
     std::vector<int64_t> tiles;    // that it touches
-    std::vector<uint32_t> levels;  // from which a jump leads
+    std::vector<uint32_t> levels;  // from which an off-mesh link leads
   };
   ChangeId add(Change change);
-  /// A jump, one way, as long as the change is active.
+  /// An off-mesh link in one direction, as long as the change is active.
   struct OffMeshLinkEnd {
     ChangeId change = 0;
     GroundPoint from, to;
     uint32_t to_level = 0;
     double cost = 0;  // [cells]
   };
-  /// From a level. [jumps of a change are added right after it]
+  /// From a level. [links of a change are added right after it]
   void add_off_mesh_link(uint32_t level, const OffMeshLinkEnd& off_mesh_link);
   /// Those that are active now.
   [[nodiscard]] const std::vector<OffMeshLinkEnd>& links_from(uint32_t level) const;
@@ -95,7 +95,7 @@ class LiveMesh {
   bool stand(uint32_t level, GroundPoint at, uint16_t& rect);
   bool set_active(ChangeId change, bool active, bool remove);
 
-  /// As world/walk.h wants it.
+  /// As world/walk.h needs it.
   struct Ground {
     using Level = const LiveLevel*;
     LiveMesh& mesh;
@@ -117,7 +117,7 @@ class LiveMesh {
 
  private:
   void make(uint32_t index, LiveLevel& level) const;
-  void take_obstacles(LiveLevel& level) const;
+  void block_cells(LiveLevel& level) const;
   void cut(LiveLevel& level) const;
   void find_portals(LiveLevel& level);
   void forget(int64_t tile);
@@ -133,7 +133,7 @@ class LiveMesh {
   double min_factor_ = 1;
   bool plain_ = true;
   uint64_t version_ = 0;
-  std::vector<std::unique_ptr<LiveLevel>> levels_;  // of the world; null: not asked for
+  std::vector<std::unique_ptr<LiveLevel>> levels_;  // of the world; null: not made yet
   std::vector<Change> changes_;
   std::unordered_map<int64_t, std::vector<ChangeId>> changes_of_tile_;  // in order; looked up only
   std::unordered_map<uint32_t, std::vector<OffMeshLinkEnd>>

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+// A* over points of portals at area costs, then string pulling by doubling, halving and moving
+// stops.
 namespace throng {
 namespace {
 
@@ -22,7 +24,7 @@ bool same(const LiveStop& a, const LiveStop& b) {
   return a.level == b.level && a.at.x == b.at.x && a.at.z == b.at.z;
 }
 
-// What a metre costs in the middle of nowhere else than this cell.
+// Cost of a metre on the ground of a cell.
 double factor_at(LiveMesh& mesh, const LiveLevel& level, int32_t x, int32_t z) {
   return mesh.factor(level.rects[level.rect_at(x & 63, z & 63)]);
 }
@@ -110,19 +112,19 @@ double segment_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
   return std::isfinite(cost) ? cost : kNever;
 }
 
-// From each stop to the farthest that a straight leg reaches at no more cost, looked for by
-// doubling and halving: it need not be the farthest of all.
-void WayStraightener::leave_out(LiveMesh& mesh, std::vector<LiveStop>& way) {
+// From each stop to the farthest that a straight segment reaches at no more cost, found by doubling
+// and halving: it need not be the farthest of all.
+void LiveStringPuller::leave_out(LiveMesh& mesh, std::vector<LiveStop>& stops) {
   constexpr double kSlack = 1 + 1e-9;
-  if (way.size() < 3) return;
-  before_.assign(way.size(), 0);
-  for (size_t i = 1; i < way.size(); ++i)
-    before_[i] = before_[i - 1] + segment_cost(mesh, way[i - 1], way[i]);
+  if (stops.size() < 3) return;
+  before_.assign(stops.size(), 0);
+  for (size_t i = 1; i < stops.size(); ++i)
+    before_[i] = before_[i - 1] + segment_cost(mesh, stops[i - 1], stops[i]);
   size_t kept = 1;
   for (size_t i = 0; i + 1 < before_.size();) {
-    const LiveStop from = way[kept - 1];
+    const LiveStop from = stops[kept - 1];
     const auto reaches = [&](size_t to) {
-      return segment_cost(mesh, from, way[to]) <= (before_[to] - before_[i]) * kSlack;
+      return segment_cost(mesh, from, stops[to]) <= (before_[to] - before_[i]) * kSlack;
     };
     size_t good = i + 1, stride = 1;
     while (good + stride < before_.size() && reaches(good + stride)) {
@@ -132,25 +134,25 @@ void WayStraightener::leave_out(LiveMesh& mesh, std::vector<LiveStop>& way) {
     for (; stride > 0; stride /= 2) {
       if (good + stride < before_.size() && reaches(good + stride)) good += stride;
     }
-    way[kept++] = way[good];
+    stops[kept++] = stops[good];
     i = good;
   }
-  way.resize(kept);
+  stops.resize(kept);
 }
 
-void WayStraightener::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& way) {
-  leave_out(mesh, way);
-  // Bends move towards the straight line between their neighbours as far as the ground lets them.
+void LiveStringPuller::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops) {
+  leave_out(mesh, stops);
+  // Waypoints move towards the straight line between their neighbours as far as the ground permits.
   constexpr int kSweeps = 2, kHalvings = 6;
-  for (int sweep = 0; sweep < kSweeps && way.size() > 2; ++sweep) {
-    for (size_t i = 1; i + 1 < way.size(); ++i) {
-      const LiveStop a = way[i - 1], b = way[i + 1];
-      double best = segment_cost(mesh, a, way[i]) + segment_cost(mesh, way[i], b);
+  for (int sweep = 0; sweep < kSweeps && stops.size() > 2; ++sweep) {
+    for (size_t i = 1; i + 1 < stops.size(); ++i) {
+      const LiveStop a = stops[i - 1], b = stops[i + 1];
+      double best = segment_cost(mesh, a, stops[i]) + segment_cost(mesh, stops[i], b);
       const auto ux = static_cast<double>(b.at.x - a.at.x);
       const auto uz = static_cast<double>(b.at.z - a.at.z);
       const double size = ux * ux + uz * uz;
       if (!(size > 0)) continue;
-      const GroundPoint from = way[i].at;
+      const GroundPoint from = stops[i].at;
       const double along = std::clamp(
           (static_cast<double>(from.x - a.at.x) * ux + static_cast<double>(from.z - a.at.z) * uz) /
               size,
@@ -163,7 +165,7 @@ void WayStraightener::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& way) {
         if (t > 1) continue;
         const GroundPoint at{from.x + std::llround(t * (foot_x - static_cast<double>(from.x))),
                              from.z + std::llround(t * (foot_z - static_cast<double>(from.z)))};
-        // On whichever level the leg there leads to.
+        // On whichever level the segment there leads to.
         const LiveLevel* level = mesh.level(a.level);
         if (!walk_far(mesh.ground(), level, a.at, at, mesh.step()).arrived) continue;
         const LiveStop moved{level->ground.world_level,
@@ -171,18 +173,18 @@ void WayStraightener::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& way) {
         const double cost = segment_cost(mesh, a, moved) + segment_cost(mesh, moved, b);
         if (cost >= best) continue;
         best = cost;
-        way[i] = moved;
+        stops[i] = moved;
         low = t;
       }
     }
-    leave_out(mesh, way);
+    leave_out(mesh, stops);
   }
 }
 
-void WayStraightener::draw(LiveMesh& mesh, std::vector<LiveStop>& way) {
-  if (std::none_of(way.begin(), way.end(),
+void LiveStringPuller::draw(LiveMesh& mesh, std::vector<LiveStop>& stops) {
+  if (std::none_of(stops.begin(), stops.end(),
                    [](const LiveStop& stop) { return stop.off_mesh_link > 0; }))
-    return draw_walk(mesh, way);
+    return draw_walk(mesh, stops);
   whole_.clear();
   walk_.clear();
   const auto end_walk = [&] {
@@ -190,12 +192,12 @@ void WayStraightener::draw(LiveMesh& mesh, std::vector<LiveStop>& way) {
     whole_.insert(whole_.end(), walk_.begin(), walk_.end());
     walk_.clear();
   };
-  for (const LiveStop& stop : way) {
+  for (const LiveStop& stop : stops) {
     if (stop.off_mesh_link > 0) end_walk();
     walk_.push_back(stop);
   }
   end_walk();
-  way.swap(whole_);
+  stops.swap(whole_);
 }
 
 void LiveSearch::begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
@@ -213,19 +215,20 @@ LiveNode* LiveSearch::push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent
   const auto [index, is_new] = nodes_.node_of(stop);
   LiveNode& node = nodes_.nodes[index];
   if (!is_new && (node.done || node.cost <= cost)) return nullptr;
-  node.stop = stop;  // by a jump, or not
+  node.stop = stop;  // by an off-mesh link, or not
   node.cost = cost;
   node.parent = parent;
   const double left = distance_of(stop.at, to_.at);
   open_.push_back({cost + left * mesh.min_factor(), index});
-  // Equal bounds go by number: the same on every machine.
+  // Equal bounds are ordered by number: the same on every machine.
   std::push_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
     return a.bound != b.bound ? a.bound > b.bound : a.node < b.node;
   });
   return &node;
 }
 
-// Of the node's rectangle, the point nearest to the goal, heights too: below it is not there.
+// Of the node's rectangle, the point nearest to the goal; heights count, so a point below the goal
+// is not at it.
 void LiveSearch::note_nearest(LiveMesh& mesh, const LiveLevel& level, uint32_t index) {
   const LiveStop& stop = nodes_.nodes[index].stop;
   const LiveRect& rect = level.rects[stop.rect];
@@ -256,7 +259,7 @@ void LiveSearch::push_links(LiveMesh& mesh, const LiveNode& node, uint32_t index
     if (!mesh.stand(to.level, to.at, to.rect)) continue;
     const double cost =
         node.cost + distance_of(node.stop.at, from.at) * factor + off_mesh_link.cost;
-    if (LiveNode* there = push(mesh, to, index, cost)) there->jumped_from = from.at;
+    if (LiveNode* there = push(mesh, to, index, cost)) there->link_from = from.at;
   }
 }
 
@@ -270,8 +273,8 @@ void LiveSearch::give_back() {
   std::vector<Open>().swap(open_);
 }
 
-LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t most, uint64_t max_bytes) {
-  for (uint64_t n = 0; n < most;) {
+LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t max_nodes, uint64_t max_bytes) {
+  for (uint64_t n = 0; n < max_nodes;) {
     if (open_.empty()) return State::kNone;
     if (nodes_.used_bytes() + 3 * open_.size() * sizeof(Open) > max_bytes) return State::kFull;
     std::pop_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
@@ -306,7 +309,7 @@ LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t most, uint64_t ma
   return State::kSearching;
 }
 
-void LiveSearch::way(LiveMesh& mesh, std::vector<LiveStop>& stops) const {
+void LiveSearch::trace(LiveMesh& mesh, std::vector<LiveStop>& stops) const {
   stops.clear();
   uint32_t index = goal_ != UINT32_MAX ? goal_ : nearest_;
   if (goal_ == UINT32_MAX) stops.push_back(nearest_stop_);
@@ -317,7 +320,7 @@ void LiveSearch::way(LiveMesh& mesh, std::vector<LiveStop>& stops) const {
     // A stop beyond a portal was reached straight across from its other side.
     const LiveStop& before = nodes_.nodes[node.parent].stop;
     if (node.stop.off_mesh_link > 0) {
-      stops.push_back({before.level, before.rect, node.jumped_from});
+      stops.push_back({before.level, before.rect, node.link_from});
       continue;
     }
     if (before.level == node.stop.level && before.rect == node.stop.rect) continue;

@@ -8,33 +8,34 @@
 #include "core/chunked_array.h"
 #include "path/live_mesh.h"
 
-/// Ways of little cost over a LiveMesh: a search over points of portals, drawn straight afterwards.
+/// Paths of low cost over a LiveMesh: a search over points of portals, pulled taut afterwards.
 namespace throng {
 
-/// A point of a way, standing in a rectangle.
+/// A point of a path, standing in a rectangle.
 struct LiveStop {
   uint32_t level = 0;  // of the world
   uint16_t rect = 0;
   GroundPoint at;
-  double off_mesh_link = 0;  // cost of the jump that leads there, 0 if a leg does [cells]
+  double off_mesh_link =
+      0;  // cost of the off-mesh link that leads there, 0 if a segment does [cells]
 };
 
 /// A point that the search has reached.
 struct LiveNode {
   LiveStop stop;
   uint32_t parent = UINT32_MAX;
-  double cost = 0;          // so far [cells]
-  GroundPoint jumped_from;  // if stop.jump > 0: in the parent's rectangle
+  double cost = 0;        // so far [cells]
+  GroundPoint link_from;  // if stop.off_mesh_link > 0: in the parent's rectangle
   bool done = false;
 };
 
-/// Nodes by the stop that they are, found by look-up. Owns its memory.
+/// Hash map from a stop to its node. Owns its memory.
 class LiveNodes {
  public:
   void clear();
-  /// Gives back what was allocated.
+  /// Frees what was allocated.
   void give_back();
-  /// Of what is remembered, the same whatever was allocated before. [bytes]
+  /// Bytes of what it holds, the same whatever was allocated before.
   [[nodiscard]] uint64_t used_bytes() const;
   [[nodiscard]] uint64_t allocated_bytes() const;
   /// The node of a stop, and whether it is new.
@@ -46,49 +47,49 @@ class LiveNodes {
   std::vector<uint32_t> table_;  // open addressing; 0 is free, else index plus one
 };
 
-/// Calls visit(on_this_side, beyond) for points of all portals of a rectangle;
-/// beyond is a stop in the next rectangle, straight across.
+/// Calls visit(on_this_side, beyond) for points of all portals of a rectangle; beyond is a stop in
+/// the next rectangle, straight across.
 template <class Visit>
 void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit);
 
-/// Cost of the straight leg between two stops, in cells; infinite if it is no legal move to that
-/// very level.
+/// Cost of the straight segment between two stops, in cells; infinite if it is no legal move to
+/// that very level.
 double segment_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
 
-/// As segment_cost, or the cost of the jump.
+/// As segment_cost, or the cost of the off-mesh link.
 inline double cost_to(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
   return to.off_mesh_link > 0 ? to.off_mesh_link : segment_cost(mesh, from, to);
 }
 
-/// Leaves out stops where a straight leg is no dearer, and draws bends straighter; jumps stay. Owns
-/// its memory: no allocation once it has grown.
-class WayStraightener {
+/// Leaves out stops where a straight segment costs no more, and moves the others towards a straight
+/// line; off-mesh links stay. Owns its memory: no allocation once it has grown.
+class LiveStringPuller {
  public:
-  void draw(LiveMesh& mesh, std::vector<LiveStop>& way);
+  void draw(LiveMesh& mesh, std::vector<LiveStop>& stops);
 
  private:
-  void draw_walk(LiveMesh& mesh, std::vector<LiveStop>& way);
-  void leave_out(LiveMesh& mesh, std::vector<LiveStop>& way);
+  void draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops);
+  void leave_out(LiveMesh& mesh, std::vector<LiveStop>& stops);
 
   std::vector<LiveStop> whole_, walk_;
   std::vector<double> before_;  // cost up to each stop
 };
 
-/// A*, best first. Owns its memory: no allocation once it has grown; what a large query took beyond
-/// kKeptBytes is given back when the next one begins.
+/// A*, best first. Owns its memory: no allocation once it has grown; what a large query allocated
+/// beyond kKeptBytes is freed when the next one begins.
 class LiveSearch {
  public:
   enum class State { kSearching, kFound, kNone, kFull };
   static constexpr uint64_t kKeptBytes = uint64_t{32} << 20;
 
   void begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
-  /// Looks at up to `most` points more; kFull where it would remember more than so many bytes.
-  State advance(LiveMesh& mesh, uint64_t most, uint64_t max_bytes);
-  /// Gives back what is allocated beyond kKeptBytes: for a search that is done with.
+  /// Expands up to `max_nodes` points more; kFull if it would need more than `max_bytes`.
+  State advance(LiveMesh& mesh, uint64_t max_nodes, uint64_t max_bytes);
+  /// Frees what is allocated beyond kKeptBytes: after a search.
   void give_back();
   [[nodiscard]] uint64_t allocated_bytes() const;
-  /// The way to the goal, or to the point met that is nearest to it; not yet straight.
-  void way(LiveMesh& mesh, std::vector<LiveStop>& stops) const;
+  /// The path to the goal, or to the reached point that is nearest to it; not yet pulled taut.
+  void trace(LiveMesh& mesh, std::vector<LiveStop>& stops) const;
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
 
  private:
@@ -96,7 +97,7 @@ class LiveSearch {
     double bound = 0;
     uint32_t node = 0;
   };
-  /// The node that now comes from `parent`, or null if what is known is no dearer.
+  /// The node now reached from `parent`, or null if the known cost is no higher.
   LiveNode* push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, double cost);
   void push_links(LiveMesh& mesh, const LiveNode& node, uint32_t index, double factor);
 

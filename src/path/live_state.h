@@ -15,21 +15,21 @@ struct LiveGround::State {
   explicit State(LiveMesh of) : mesh(std::move(of)) {}
 
   bool locate(const Place& place, LiveStop& stop);
-  /// False: there is more to look at.
+  /// False: the search has more to expand.
   bool advance(uint64_t max_nodes, uint64_t max_bytes, Path& path);
-  /// Of `way`.
+  /// Of `stops`.
   void give(Path& path);
   /// What a straight line from its end to the goal meets first.
   Obstacle blocker();
 
   LiveMesh mesh;
   LiveSearch search;
-  WayStraightener straight;
+  LiveStringPuller straight;
   Place from_place, to_place;
   LiveStop from, to;
   uint64_t version = 0;
   bool searching = false;
-  std::vector<LiveStop> way;
+  std::vector<LiveStop> stops;
 };
 
 }  // namespace throng

@@ -13,11 +13,13 @@
 #include "path/rects.h"
 #include "world/place.h"
 
+// Cuts all level tiles into rectangles, then finds their portals, corners and components. Linear in
+// the cells, parallel by level tile.
 namespace throng {
 namespace {
 
 // A corner before it has its number: the point, and the level of the cell across from the missing
-// one, which tells corners above each other apart.
+// one, which distinguishes corners above each other.
 struct CornerKey {
   int32_t x = 0, z = 0;
   uint32_t level = 0;
@@ -45,7 +47,8 @@ class Builder {
     const auto [tile_x, tile_z] = tile_of(ground_.world, *ground.zone, *ground.view.record);
     std::vector<MeshRect> rects;
     for (const CellRect& r : tile_with_rects(legal, cuts ? &*cuts : nullptr)) {
-      rects.push_back({level, tile_x * 64 + r.x0, tile_z * 64 + r.z0, r.x1 - r.x0, r.z1 - r.z0, 0});
+      rects.push_back({level, tile_x * kTileCells + r.x0, tile_z * kTileCells + r.z0, r.x1 - r.x0,
+                       r.z1 - r.z0, 0});
     }
     return rects;
   }
@@ -118,7 +121,7 @@ class Builder {
     return there;
   }
 
-  // The corner at `at` cells around the rectangle, looked at from the border cell `cell` around.
+  // The corner at `at` cells around the rectangle, seen from the border cell `cell` around.
   [[nodiscard]] std::optional<CornerKey> corner_at(const GroundLevel& level, const MeshRect& rect,
                                                    int32_t at, int32_t cell) const {
     const int32_t w = rect.width, d = rect.depth;
@@ -148,7 +151,7 @@ class Builder {
                        static_cast<int8_t>(missing_z < pz ? 1 : -1)};
     };
     if (beside_x && beside_z) {
-      // The fourth is missing, or a step to it is, or what lies there are two sheets that part.
+      // The fourth is missing, or a step to it is, or two levels part there.
       if (across_x && across_z && across_x->world_level == across_z->world_level) return {};
       return key(ox, oz, level.world_level);
     }
@@ -161,7 +164,7 @@ class Builder {
   int32_t step_;
 };
 
-// Numbers what portals hold together by its first rectangle.
+// Numbers each connected component by its first rectangle.
 void find_components(PathMesh& mesh) {
   const auto count = static_cast<uint32_t>(mesh.rects.size() - 1);
   std::vector<uint32_t> queue;

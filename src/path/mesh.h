@@ -32,28 +32,27 @@ struct MeshRect {
   int32_t x = 0, z = 0;
   int32_t width = 0, depth = 0;
   uint32_t first_portal = 0;  // its portals end where the next rectangle's begin
-  uint32_t component = 0;     // rectangles that portals hold together share it
+  uint32_t component = 0;     // rectangles that portals connect share it
   uint32_t first_block = 0;   // of its blocks, in rows
 };
 
 /// A stretch of a rectangle's border over which a step leads to another, and back. Portals of a
 /// rectangle go around it with its inside on the left: south (z), east (x + width), north, west.
-/// `from` and `to` count cells along that way.
+/// `from` and `to` count cells in that direction.
 struct MeshPortal {
   uint32_t rect = 0;  // behind it
   int32_t from = 0, to = 0;
   uint32_t from_corner = kNoCorner, to_corner = kNoCorner;
 };
 
-/// Where three of four cells hold together and the fourth stands in the way: shortest paths bend
-/// only here.
+/// Where three of four cells are connected and the fourth blocks: shortest paths turn only here.
 struct MeshCorner {
   int32_t x = 0, z = 0;           // the point that the four cells share
   int8_t away_x = 0, away_z = 0;  // from the missing cell: 1 or -1
   uint32_t first_rect = 0;        // of corner_rects; they end where the next corner's begin
 };
 
-/// A point of a way, in a rectangle.
+/// A point of a path, in a rectangle.
 struct Stop {
   GroundPoint at;
   uint32_t rect = kNoRect;
@@ -80,8 +79,8 @@ struct PathMesh {
   std::vector<uint32_t> corner_rects;  // rectangles around each corner
 
   [[nodiscard]] uint32_t rect_at(uint32_t level, int32_t x, int32_t z) const;  // cell of the grid
-  /// Rectangles are cut into blocks of up to so many cells along a side, small enough for lists of
-  /// what may matter to any of their points.
+  /// Rectangles are cut into blocks of at most so many cells along a side, small enough for lists
+  /// of what may matter to any of their points.
   int32_t block_side = kSmallBlock;
   [[nodiscard]] uint32_t block_count() const { return rects.back().first_block; }
   [[nodiscard]] uint32_t block_at(uint32_t rect, int32_t x, int32_t z) const {  // cell of the grid

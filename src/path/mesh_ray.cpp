@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+// A ray from rectangle to rectangle: constant time each, in whole units, so it agrees with walk()
+// over cells.
 namespace throng {
 namespace {
 
@@ -73,8 +75,8 @@ uint32_t mesh_ray(const PathMesh& mesh, uint32_t rect, GroundPoint from, GroundP
       const int64_t rise = to_x * dz;
       const int64_t at = from.z + (up ? rise / dx : -((rise + dx - 1) / dx));
       auto z = static_cast<int32_t>(at >> kUnitBits);
-      // The point before the cell is met: then the way is from one row into the next, if it goes
-      // on that far.
+      // The point lies before the cell: then the ray goes from one row into the next, if it gets
+      // that far.
       if ((at & (kUnitsPerCell - 1)) == 0 && rise % dx == 0 && (rise > 0 || !up)) {
         if (up) --z;
         if (z != end_z) {

@@ -10,11 +10,11 @@
 namespace throng {
 
 /// The rectangle in which the move from `from`, which lies in `rect`, to `to` ends; kNoRect if it
-/// leaves the mesh. Exact, through points that four cells share too: what it lets pass, walk() lets
-/// pass to the same level, and what it does not, walk() does only over steps that lead one way.
+/// leaves the mesh. Exact, also through points that four cells share: what it lets pass, walk()
+/// lets pass to the same level; what it blocks, walk() lets pass only over one-way steps.
 uint32_t mesh_ray(const PathMesh& mesh, uint32_t rect, GroundPoint from, GroundPoint to);
 
-/// Does a ray reach the point beside a corner, on the corner's own storey?
+/// Does a ray reach the point beside a corner, on the corner's own level?
 bool sees_corner(const PathMesh& mesh, const Stop& from, uint32_t corner);
 
 }  // namespace throng

@@ -9,15 +9,17 @@
 #include "path/blocked_cells.h"
 #include "world/place.h"
 
+// Which blocks and portals of a mesh of nodes obstacles block, found by halving blocks and motions.
+// Time by the blocks near an obstacle.
 namespace throng {
 namespace {
 
 constexpr double kFinest = 0.35;  // [m] across a square of curved ground that is cut no further
-constexpr uint8_t kDeepest = 8;   // what a block's numbers hold
+constexpr uint8_t kDeepest = 8;   // the maximum that a block's numbers hold
 constexpr int32_t kPieces = 16;   // of a portal's line
 constexpr int kTurns = 7;         // halvings of a motion
 constexpr double kRounded = 1e-9;
-constexpr double kWide = 1e-7;  // Less of a line is nothing.
+constexpr double kWide = 1e-7;  // A shorter piece of a line counts as empty.
 
 struct Pose {
   Vec3d feet, axis;
@@ -77,21 +79,21 @@ ChangeId NodeChanges::add(Solid solid) {
   const double around = reach_of(classes[static_cast<size_t>(mesh_->avatar_class())]);
   Change change;
   std::vector<uint32_t> near;
-  take_tiles(solid, around + longest_leap_, change, near);
+  block_tiles(solid, around + longest_hole_link_, change, near);
   const Prism& prism = solid.prism;
   Box3d box;
   for (const auto& [x, z] : prism.corners) {
     box.add({x, prism.low, z});
     box.add({x, prism.high, z});
   }
-  const double reach = length(box.max - box.min) / 2 + around + longest_leap_;
+  const double reach = length(box.max - box.min) / 2 + around + longest_hole_link_;
   const size_t first_curved = near.size();
   squares_->for_each_near((box.min + box.max) * 0.5, reach,
                           [&](uint32_t block) { near.push_back(block); });
   std::sort(near.begin() + static_cast<ptrdiff_t>(first_curved), near.end());
-  for (size_t i = first_curved; i < near.size(); ++i) take_squares(solid, near[i], change);
+  for (size_t i = first_curved; i < near.size(); ++i) block_squares(solid, near[i], change);
   std::sort(near.begin(), near.end());
-  take_pieces(solid, near, change);
+  block_pieces(solid, near, change);
   changes_.push_back(std::move(change));
   ++version_;
   return static_cast<ChangeId>(changes_.size());
@@ -103,16 +105,16 @@ bool NodeChanges::set_active(ChangeId id, bool active, bool remove) {
   if (change.active != active) ++version_;
   change.active = active;
   if (remove) {
-    change = {};  // Its id is never used again, its memory is given back.
+    change = {};  // Its id is never used again, its memory is freed.
     change.active = false;
     change.removed = true;
   }
   return true;
 }
 
-// Cells that are taken, and blocks within `around`.
-void NodeChanges::take_tiles(const Solid& solid, double around, Change& change,
-                             std::vector<uint32_t>& near) const {
+// Blocked cells, and blocks within `around`.
+void NodeChanges::block_tiles(const Solid& solid, double around, Change& change,
+                              std::vector<uint32_t>& near) const {
   const WorldData& world = *mesh_->nodes().data()->world.data();
   const AvatarClass& avatar = world.summary.classes[static_cast<size_t>(mesh_->avatar_class())];
   const SquareRange tiles = tiles_near(world, solid.prism.corners, around);
@@ -127,7 +129,7 @@ void NodeChanges::take_tiles(const Solid& solid, double around, Change& change,
         const GroundLevel ground = ground_level(world, level, mesh_->avatar_class());
         if (ground.zone == nullptr) continue;
         const TileFloor floor{world.summary, ground.view, x, z};
-        // Legal ones are asked for their heights only.
+        // Legal cells alone need their heights.
         CellRows legal{};
         const auto blocks = mesh_->blocks_of(patch);
         for (const NodeBlock& block : blocks) {
@@ -164,14 +166,14 @@ uint8_t NodeChanges::finest_level(const NodeBlock& block) const {
   return level;
 }
 
-void NodeChanges::take_squares(const Solid& solid, uint32_t block, Change& change) const {
+void NodeChanges::block_squares(const Solid& solid, uint32_t block, Change& change) const {
   const NodeBlock& whole = mesh_->blocks()[block];
   const NodeSurface& surface = mesh_->surface(block);
   const auto& classes = mesh_->nodes().data()->world.data()->summary.classes;
   const AvatarClass& avatar = classes[static_cast<size_t>(mesh_->avatar_class())];
   const bool climbs = avatar.climb_slope > 0;
   const uint8_t finest = finest_level(whole);
-  const auto look = [&](auto&& self, uint8_t level, uint32_t s, uint32_t t) -> void {
+  const auto descend = [&](auto&& self, uint8_t level, uint32_t s, uint32_t t) -> void {
     const double side = 1.0 / (1 << level);
     const SurfacePiece piece =
         surface_piece(surface, s * side, t * side, (s + 1) * side, (t + 1) * side);
@@ -193,12 +195,12 @@ void NodeChanges::take_squares(const Solid& solid, uint32_t block, Change& chang
     for (uint32_t q = 0; q < 4; ++q)
       self(self, static_cast<uint8_t>(level + 1), 2 * s + q % 2, 2 * t + q / 2);
   };
-  look(look, whole.level, whole.s, whole.t);
+  descend(descend, whole.level, whole.s, whole.t);
 }
 
-// A step over the border of two tiles goes nowhere: who stands on either side is asked.
-void NodeChanges::take_pieces(const Solid& solid, std::span<const uint32_t> near,
-                              Change& change) const {
+// A step over the border of two tiles crosses no distance: the bodies on either side are checked.
+void NodeChanges::block_pieces(const Solid& solid, std::span<const uint32_t> near,
+                               Change& change) const {
   for (const uint32_t block : near) {
     for (const uint32_t p : mesh_->portals_of(block)) {
       const NodePortal portal = mesh_->portals()[p];
@@ -209,11 +211,11 @@ void NodeChanges::take_pieces(const Solid& solid, std::span<const uint32_t> near
       if (!portal.leaps && !doors) continue;
       uint16_t pieces = 0;
       if (portal.leaps) {
-        pieces = is_taken_over(solid, portal, 0, 0) ? 1 : 0;
-      } else if (is_taken_over(solid, portal, 0, 1)) {
+        pieces = blocks_portal(solid, portal, 0, 0) ? 1 : 0;
+      } else if (blocks_portal(solid, portal, 0, 1)) {
         for (int32_t k = 0; k < kPieces; ++k) {
           const double from = k * (1.0 / kPieces), to = (k + 1) * (1.0 / kPieces);
-          if (is_taken_over(solid, portal, from, to)) pieces |= static_cast<uint16_t>(1u << k);
+          if (blocks_portal(solid, portal, from, to)) pieces |= static_cast<uint16_t>(1u << k);
         }
       }
       if (pieces != 0) change.pieces.push_back({p, pieces});
@@ -221,7 +223,7 @@ void NodeChanges::take_pieces(const Solid& solid, std::span<const uint32_t> near
   }
 }
 
-bool NodeChanges::is_taken_over(const Solid& solid, const NodePortal& portal, double from,
+bool NodeChanges::blocks_portal(const Solid& solid, const NodePortal& portal, double from,
                                 double to) const {
   const auto& classes = mesh_->nodes().data()->world.data()->summary.classes;
   const AvatarClass& avatar = classes[static_cast<size_t>(mesh_->avatar_class())];
@@ -236,7 +238,7 @@ bool NodeChanges::is_taken_over(const Solid& solid, const NodePortal& portal, do
     if (surface.points == nullptr) return found;
     if (climbs) found.axis = surface.normal(s, t);
     if (to <= from) return found;
-    // A strip along the line: of a line alone it is not known how it leans.
+    // A strip along the line: a line alone does not show how bodies lean.
     constexpr double kStrip = 1.0 / 256;
     const auto cut = cut_line(on, from, to);
     const auto range = [&](size_t k) {
@@ -262,8 +264,8 @@ bool NodeChanges::is_taken_over(const Solid& solid, const NodePortal& portal, do
   if (leans_far) return true;
   const bool upright = !climbs || (a.axis.y == 1 && b.axis.y == 1);
   BodyRoom body = body_of(avatar, climbs && !upright);
-  // Two of them lean from each other by twice that at most, and the chord of a doubled angle is
-  // twice its sine: so much elsewhere are their points.
+  // Their axes differ by twice that at most, and the chord of a doubled angle is twice its sine: so
+  // far apart are their points.
   spread += 2 * sine * reach_of(avatar);
   if (portal.kind != LinkKind::kDrop) return motion_may_touch(solid, body, a, b, spread, kTurns);
   const Pose over{{b.feet.x, a.feet.y, b.feet.z}, {0, 1, 0}};
@@ -295,7 +297,7 @@ void NodeChanges::update() {
       for (size_t k = 0; k < 64; ++k) tiles[at->second].rows[k] |= tile.rows[k];
     }
     squares.insert(squares.end(), change.squares.begin(), change.squares.end());
-    for (const BlockedPieces& taken : change.pieces) pieces[taken.portal] |= taken.pieces;
+    for (const BlockedPieces& blocked : change.pieces) pieces[blocked.portal] |= blocked.pieces;
   }
   std::sort(tiles.begin(), tiles.end(),
             [](const BlockedTile& a, const BlockedTile& b) { return a.patch < b.patch; });
@@ -311,14 +313,13 @@ void NodeChanges::update() {
   list_portals();
 }
 
-// The largest squares of a block of which nothing is taken. taken(level, s, t): 0 nothing, 1 some
-// of it, 2 all.
-template <class Taken>
-void NodeChanges::cut(uint32_t block, const Taken& taken) {
+// The largest free squares of a block. blocked(level, s, t): 0 free, 1 partly blocked, 2 blocked.
+template <class IsBlocked>
+void NodeChanges::cut(uint32_t block, const IsBlocked& blocked) {
   const NodeBlock& whole = mesh_->blocks()[block];
   Cut made{static_cast<uint32_t>(parts_.size()), 0};
-  const auto look = [&](auto&& self, uint8_t level, uint32_t s, uint32_t t) -> void {
-    const int some = taken(level, s, t);
+  const auto descend = [&](auto&& self, uint8_t level, uint32_t s, uint32_t t) -> void {
+    const int some = blocked(level, s, t);
     if (some == 2) return;
     if (some == 0) {
       NodeBlock part = whole;
@@ -332,15 +333,15 @@ void NodeChanges::cut(uint32_t block, const Taken& taken) {
     for (uint32_t q = 0; q < 4; ++q)
       self(self, static_cast<uint8_t>(level + 1), 2 * s + q % 2, 2 * t + q / 2);
   };
-  look(look, whole.level, whole.s, whole.t);
+  descend(descend, whole.level, whole.s, whole.t);
   made.last = static_cast<uint32_t>(parts_.size());
   cuts_.emplace(block, made);
   cut_blocks_.push_back(block);
   cut_patches_.push_back(whole.patch);
 }
 
-void NodeChanges::cut_tiles(const std::vector<BlockedTile>& taken) {
-  for (const BlockedTile& tile : taken) {
+void NodeChanges::cut_tiles(const std::vector<BlockedTile>& blocked) {
+  for (const BlockedTile& tile : blocked) {
     const auto blocks = mesh_->blocks_of(tile.patch);
     const auto some = [&](uint8_t level, uint32_t s, uint32_t t) {
       const uint32_t side = 64u >> level;
@@ -359,14 +360,14 @@ void NodeChanges::cut_tiles(const std::vector<BlockedTile>& taken) {
   }
 }
 
-void NodeChanges::cut_squares(const std::vector<BlockedSquare>& taken) {
-  for (size_t i = 0; i < taken.size();) {
+void NodeChanges::cut_squares(const std::vector<BlockedSquare>& blocked) {
+  for (size_t i = 0; i < blocked.size();) {
     size_t j = i;
-    while (j < taken.size() && taken[j].block == taken[i].block) ++j;
-    const uint8_t finest = finest_level(mesh_->blocks()[taken[i].block]);
-    const auto begin = taken.begin() + static_cast<ptrdiff_t>(i);
-    const auto end = taken.begin() + static_cast<ptrdiff_t>(j);
-    cut(taken[i].block, [&](uint8_t level, uint32_t s, uint32_t t) {
+    while (j < blocked.size() && blocked[j].block == blocked[i].block) ++j;
+    const uint8_t finest = finest_level(mesh_->blocks()[blocked[i].block]);
+    const auto begin = blocked.begin() + static_cast<ptrdiff_t>(i);
+    const auto end = blocked.begin() + static_cast<ptrdiff_t>(j);
+    cut(blocked[i].block, [&](uint8_t level, uint32_t s, uint32_t t) {
       const uint32_t up = 2u * (finest - level);
       const uint32_t first = quad_order(s, t, level) << up, count = 1u << up;
       const auto before = [](const BlockedSquare& square, uint32_t order) {
@@ -429,16 +430,16 @@ void NodeChanges::join_parts(uint32_t block) {
   }
 }
 
-// What is left of portals whose blocks are cut, or that are not free on their way.
+// What is left of portals whose blocks are cut, or that are blocked themselves.
 void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& pieces) {
-  std::vector<uint32_t> gone;
-  for (const auto& [portal, taken] : pieces) gone.push_back(portal);
+  std::vector<uint32_t> closed;
+  for (const auto& [portal, blocked] : pieces) closed.push_back(portal);
   for (const uint32_t block : cut_blocks_) {
     const auto portals = mesh_->portals_of(block);
-    gone.insert(gone.end(), portals.begin(), portals.end());
+    closed.insert(closed.end(), portals.begin(), portals.end());
   }
-  std::sort(gone.begin(), gone.end());
-  gone.erase(std::unique(gone.begin(), gone.end()), gone.end());
+  std::sort(closed.begin(), closed.end());
+  closed.erase(std::unique(closed.begin(), closed.end()), closed.end());
   const auto base = static_cast<uint32_t>(mesh_->blocks().size());
   std::vector<Stretch> free, on_a, on_b;
   // The pieces of a line that lie in what is left of a block.
@@ -456,13 +457,13 @@ void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& 
       const NodeBlock& part = parts_[p];
       const double side = part.side();
       double from = 0, to = 1;
-      const auto clip = [&](double at, double way, double low, double high) {
+      const auto clip = [&](double at, double delta, double low, double high) {
         // A line along a side lies on it, or an inset beside it.
-        if (std::fabs(way) < kWide) {
+        if (std::fabs(delta) < kWide) {
           if (at < low - inset - kRounded || at > high + inset + kRounded) to = -1;
           return;
         }
-        const double one = (low + inset - at) / way, two = (high - inset - at) / way;
+        const double one = (low + inset - at) / delta, two = (high - inset - at) / delta;
         from = std::max(from, std::min(one, two));
         to = std::min(to, std::max(one, two));
       };
@@ -475,12 +476,12 @@ void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& 
     std::sort(out.begin(), out.end(),
               [](const Stretch& a, const Stretch& b) { return a.from < b.from; });
   };
-  for (const uint32_t p : gone) {
+  for (const uint32_t p : closed) {
     const NodePortal portal = mesh_->portals()[p];
     Replaced made{p, static_cast<uint32_t>(mesh_->portals().size() + portals_.size()), 0};
     free.clear();
-    const auto taken = pieces.find(p);
-    const uint16_t mask = taken == pieces.end() ? uint16_t{0} : taken->second;
+    const auto blocked = pieces.find(p);
+    const uint16_t mask = blocked == pieces.end() ? uint16_t{0} : blocked->second;
     if (mask == 0) {
       free.push_back({});
     } else if (!portal.leaps) {

@@ -15,43 +15,42 @@
 #include "throng/live_ground.h"
 #include "world/cell_blocks.h"
 
-/// What has been put up on a mesh of nodes since the bake.
+/// Obstacles placed on a mesh of nodes since the bake.
 namespace throng {
 
 /// Where a body could touch a solid its block is cut: level tiles by their cells, curved patches by
-/// squares of about a quarter of a metre. What is left of a block are *parts*. What a solid takes
-/// is found once, when it is added; then parts and portals are those of all that is up, whatever
-/// came first. Copies share the mesh.
+/// squares of about a quarter of a metre. What is left of a block are *parts*. What a solid blocks
+/// is found once, when it is added; parts and portals are those of all active solids, in whatever
+/// order they were added. Copies share the mesh.
 class NodeChanges {
  public:
-  /// No leap of the mesh is longer. [m]
-  NodeChanges(const NodeMesh& mesh, const BlockSquares& squares, double longest_leap)
-      : mesh_(&mesh), squares_(&squares), longest_leap_(longest_leap) {}
+  /// No link over a hole of the mesh is longer. [m]
+  NodeChanges(const NodeMesh& mesh, const BlockSquares& squares, double longest_hole_link)
+      : mesh_(&mesh), squares_(&squares), longest_hole_link_(longest_hole_link) {}
 
   ChangeId add(Solid solid);
-  /// False if there is none of that id, which is then never used again if it is removed.
+  /// False if there is none of that id, which is never used again once removed.
   bool set_active(ChangeId change, bool active, bool remove);
   /// Rises with every change.
   [[nodiscard]] uint64_t version() const { return version_; }
-  /// Brings what follows up to date. Time: what is up.
+  /// Brings what follows up to date. Time: linear in the active obstacles.
   void update();
 
   [[nodiscard]] bool empty() const { return touched_.empty(); }
   [[nodiscard]] std::span<const NodeBlock> parts() const { return parts_; }
   [[nodiscard]] std::span<const NodePortal> portals() const { return portals_; }
-  /// Of a part, or of a block some of whose portals are others now; none: they are as they were.
+  /// Of a part, or of a block whose portals have changed; none: they are as they were.
   [[nodiscard]] std::optional<std::span<const uint32_t>> portals_of(uint32_t block) const;
   [[nodiscard]] uint32_t base_of(uint32_t part) const {
     return base_of_part_[part - mesh_->blocks().size()];
   }
-  /// The numbers of the parts that are left of a block, from the first to before the last; none: it
-  /// is whole.
+  /// The numbers of the parts that are left of a block, [first, last); none: it is whole.
   [[nodiscard]] std::optional<std::pair<uint32_t, uint32_t>> parts_of(uint32_t block) const;
   /// The block or the part of it that holds a point, which may lie on its border; or kNoNode.
   [[nodiscard]] uint32_t part_at(uint32_t block, double s, double t) const;
   /// Blocks of the mesh that are cut or have other portals, rising.
   [[nodiscard]] std::span<const uint32_t> touched() const { return touched_; }
-  /// Portals of the mesh that are gone, rising, and what is left of each among portals().
+  /// Portals of the mesh that are closed, rising, and what is left of each among portals().
   struct Replaced {
     uint32_t portal = 0;
     uint32_t first = 0, last = 0;  // of portals(), numbered as a NodeView does
@@ -71,8 +70,8 @@ class NodeChanges {
     uint32_t block = 0, order = 0;
     friend auto operator<=>(const BlockedSquare&, const BlockedSquare&) = default;
   };
-  // Of a portal that leads through the air: those of its 16 pieces that are not free; a leap has
-  // one.
+  // Of a portal that leads through the air: those of its 16 pieces that are blocked; a link over a
+  // hole has one.
   struct BlockedPieces {
     uint32_t portal = 0;
     uint16_t pieces = 0;
@@ -84,24 +83,24 @@ class NodeChanges {
     std::vector<BlockedPieces> pieces;
   };
 
-  void take_tiles(const Solid& solid, double around, Change& change,
-                  std::vector<uint32_t>& near) const;
-  void take_squares(const Solid& solid, uint32_t block, Change& change) const;
-  void take_pieces(const Solid& solid, std::span<const uint32_t> near, Change& change) const;
-  [[nodiscard]] bool is_taken_over(const Solid& solid, const NodePortal& portal, double from,
+  void block_tiles(const Solid& solid, double around, Change& change,
+                   std::vector<uint32_t>& near) const;
+  void block_squares(const Solid& solid, uint32_t block, Change& change) const;
+  void block_pieces(const Solid& solid, std::span<const uint32_t> near, Change& change) const;
+  [[nodiscard]] bool blocks_portal(const Solid& solid, const NodePortal& portal, double from,
                                    double to) const;
   [[nodiscard]] uint8_t finest_level(const NodeBlock& block) const;
-  void cut_tiles(const std::vector<BlockedTile>& taken);
-  void cut_squares(const std::vector<BlockedSquare>& taken);
-  template <class Taken>
-  void cut(uint32_t block, const Taken& taken);
+  void cut_tiles(const std::vector<BlockedTile>& blocked);
+  void cut_squares(const std::vector<BlockedSquare>& blocked);
+  template <class IsBlocked>
+  void cut(uint32_t block, const IsBlocked& blocked);
   void join_parts(uint32_t block);
   void replace_portals(const std::unordered_map<uint32_t, uint16_t>& pieces);
   void list_portals();
 
   const NodeMesh* mesh_;
   const BlockSquares* squares_;
-  double longest_leap_;  // [m]
+  double longest_hole_link_;  // [m]
   uint64_t version_ = 0, updated_ = 0;
   std::vector<Change> changes_;
 

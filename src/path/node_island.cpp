@@ -2,17 +2,18 @@
 // SPDX-License-Identifier: MIT
 #include "path/node_island.h"
 
+// A breadth-first flood over crossings, at most kMax blocks.
 namespace throng {
 
 void NodeIsland::clear(const NodeView& view) {
   marks_.resize(view.block_count());
-  if (++query_ == 0) {  // After 2^32 queries the marks begin anew.
+  if (++query_ == 0) {  // After 2^32 queries the marks start over.
     marks_.clear();
     query_ = 1;
   }
 }
 
-bool NodeIsland::close(const NodeView& view, uint32_t from, uint32_t other, Way way) {
+bool NodeIsland::close(const NodeView& view, uint32_t from, uint32_t other, Direction direction) {
   if (from == other) return false;
   if (holds(from)) return true;
   marks_[from] = query_;
@@ -20,7 +21,7 @@ bool NodeIsland::close(const NodeView& view, uint32_t from, uint32_t other, Way 
   for (size_t i = 0; i < found_.size(); ++i) {
     const uint32_t block = found_[i];
     bool meets = false;
-    const auto look = [&](const Crossing& crossing) {
+    const auto add = [&](const Crossing& crossing) {
       const PortalSides portal = view.sides(crossing.portal);
       const uint32_t next = portal.a == block ? portal.b : portal.a;
       meets |= next == other;
@@ -28,10 +29,10 @@ bool NodeIsland::close(const NodeView& view, uint32_t from, uint32_t other, Way 
       marks_[next] = query_;
       found_.push_back(next);
     };
-    if (way == Way::kOut) {
-      for_each_arc_out(view, block, look);
+    if (direction == Direction::kOut) {
+      for_each_arc_out(view, block, add);
     } else {
-      for_each_arc_in(view, block, look);
+      for_each_arc_in(view, block, add);
     }
     if (!meets && found_.size() <= kMax) continue;
     for (const uint32_t open : found_) marks_[open] = 0;

@@ -8,20 +8,20 @@
 #include "core/paged.h"
 #include "path/node_view.h"
 
-/// Blocks that are cut off from the rest by what has been put up.
+/// Blocks that are cut off from the rest by obstacles.
 namespace throng {
 
 class NodeIsland {
  public:
-  enum class Way { kOut, kIn };
-  static constexpr size_t kMax = 4096;  ///< Blocks that are looked at.
+  enum class Direction { kOut, kIn };
+  static constexpr size_t kMax = 4096;  ///< Blocks that are visited.
 
   /// Before the first of a query.
   void clear(const NodeView& view);
-  /// Looks for all blocks that ways lead to from a block, or from which they lead to it. True if
-  /// these are a pocket that does not hold `other`: it is kept. False if it may be reached.
-  bool close(const NodeView& view, uint32_t from, uint32_t other, Way way);
-  /// Is a block in one of the pockets that were found since clear()?
+  /// Finds all blocks that paths lead to from a block, or from which they lead to it. True if these
+  /// are an island that does not hold `other`: it is kept. False if it may be reached.
+  bool close(const NodeView& view, uint32_t from, uint32_t other, Direction direction);
+  /// Is a block in one of the islands found since clear()?
   [[nodiscard]] bool holds(uint32_t block) { return marks_[block] == query_; }
 
  private:

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "core/strong_parts.h"
 
+// Strongly connected components of the blocks, and the graph between them. Linear in the portals.
 namespace throng {
 NodeParts::NodeParts(const NodeMesh& mesh, int32_t workers) : boxes_(mesh.patches().size()) {
   StrongParts parts = strong_parts(
@@ -45,7 +46,7 @@ NodeParts::NodeParts(const NodeMesh& mesh, int32_t workers) : boxes_(mesh.patche
 
 void NodeParts::reach(uint32_t block, Reached& reached) const {
   reached.marks_.resize(count_, 0);
-  if (++reached.query_ == 0) {  // After 2^32 queries the marks begin anew.
+  if (++reached.query_ == 0) {  // After 2^32 queries the marks start over.
     std::fill(reached.marks_.begin(), reached.marks_.end(), 0);
     reached.query_ = 1;
   }

@@ -11,7 +11,8 @@
 /// What of a mesh can be reached from where, without a search over its portals.
 namespace throng {
 
-/// Blocks of one part are reached from each other; one-way portals lead from part to part.
+/// Blocks of one part (a strongly connected component) can reach each other; one-way portals lead
+/// from part to part.
 class NodeParts {
  public:
   explicit NodeParts(const NodeMesh& mesh, int32_t workers);
@@ -37,12 +38,12 @@ class NodeParts {
   };
 
   [[nodiscard]] uint32_t of_block(uint32_t block) const { return part_of_[block]; }
-  /// Marks all parts that are reached from a block. Linear in the one-way portals that lead on from
-  /// them.
+  /// Marks all parts that can be reached from a block. Linear in the one-way portals that lead on
+  /// from them.
   void reach(uint32_t block, Reached& reached) const;
-  /// Of the ends of portals that are gone through on ways from a place whose parts were marked, and
-  /// of that place itself, the nearest to a goal; none that lies in a block for which
-  /// is_out(block) is true. Patches are looked at in the order of how near they may come.
+  /// Of the ends of portals on paths from a place whose parts were marked, and of that place
+  /// itself, the nearest to a goal; none that lies in a block for which is_out(block) is true.
+  /// Patches are visited in the order of how near they may come.
   template <class IsOut>
   [[nodiscard]] BlockPoint nearest(const NodeView& view, const BlockPoint& from, Vec3d goal,
                                    Reached& reached, IsOut is_out) const;
@@ -76,7 +77,7 @@ BlockPoint NodeParts::nearest(const NodeView& view, const BlockPoint& from, Vec3
     for (const uint32_t patch : view.changes()->cut_patches()) near.push_back({0, patch});
   }
   std::make_heap(near.begin(), near.end());
-  const auto look_at = [&](uint32_t block) {
+  const auto consider = [&](uint32_t block) {
     for_each_arc_in(view, block, [&](const Crossing& crossing) {
       const auto [out, in] = ends_of(view, crossing);
       if (!reached.holds(part_of_[view.base_of(out.block)]) || is_out(in.block)) return;
@@ -93,10 +94,10 @@ BlockPoint NodeParts::nearest(const NodeView& view, const BlockPoint& from, Vec3
     const auto blocks = static_cast<uint32_t>(mesh.blocks_of(patch).size());
     for (uint32_t b = mesh.first_block(patch); b < mesh.first_block(patch) + blocks; ++b) {
       if (!reached.holds(part_of_[b])) continue;
-      look_at(b);
+      consider(b);
       if (view.is_as_baked()) continue;
       const auto parts = view.changes()->parts_of(b);
-      for (uint32_t p = parts ? parts->first : 0; parts && p < parts->second; ++p) look_at(p);
+      for (uint32_t p = parts ? parts->first : 0; parts && p < parts->second; ++p) consider(p);
     }
   }
   return best;

@@ -20,14 +20,17 @@
 #include "throng/node_path.h"
 #include "world/place.h"
 
+// Finds paths over nodes: places the ends, searches (blocks when near, the overlay when far), pulls
+// the path taut, and reports what blocks it.
 namespace throng {
 namespace {
 
 constexpr double kEdgeStep = 1e-4;  // of a patch's parameters, for derivatives
 constexpr size_t kMaxPieces = 4096;
-constexpr size_t kManyCrossings = size_t{1} << 15;  // Fewer are looked at in no time.
-// Places no farther apart than so many sides of a district may be joined by a way that looks at so
-// few crossings that it need not be led over gates.
+constexpr size_t kManyCrossings = size_t{1}
+                                  << 15;  // A search of fewer crossings takes no noticeable time.
+// Places no farther apart than so many sides of an overlay cell may be joined by a path that
+// expands so few crossings that it need not be led over entrances.
 constexpr double kNearSides = 3;
 constexpr uint64_t kNearCrossings = 2048;
 
@@ -44,7 +47,7 @@ struct NodePathFinder::Shared {
       if (!portal.leaps) continue;
       const Vec3d a = mesh.surface(portal.a).at(portal.on_a[0], portal.on_a[1]);
       const Vec3d b = mesh.surface(portal.b).at(portal.on_b[0], portal.on_b[1]);
-      longest_leap = std::max(longest_leap, length(b - a));
+      longest_hole_link = std::max(longest_hole_link, length(b - a));
     }
     if (config.overlay && mesh.portals().size() >= kManyCrossings) {
       const NodeView baked(mesh);
@@ -58,7 +61,7 @@ struct NodePathFinder::Shared {
   BlockSquares squares;
   NodeParts parts;
   Overlay overlay;
-  double longest_leap = 0;  // [m]
+  double longest_hole_link = 0;  // [m]
   double seconds = 0;
 };
 
@@ -72,7 +75,7 @@ struct NodePathFinder::Scratch {
         far_search(view, cost, of.overlay),
         pull(view, cost) {}
   explicit Scratch(const Shared& of)
-      : Scratch(of, NodeChanges(of.mesh, of.squares, of.longest_leap)) {}
+      : Scratch(of, NodeChanges(of.mesh, of.squares, of.longest_hole_link)) {}
   Scratch(const Scratch&) = delete;  // its parts point to each other
   Scratch& operator=(const Scratch&) = delete;
 
@@ -86,8 +89,9 @@ struct NodePathFinder::Scratch {
   NodeParts::Reached reached;
   NodeIsland islands;
   NodeStringPuller pull;
-  std::vector<Crossing> way;
-  std::optional<BlockPoint> nearest;  // where `way` ends, if not where its last crossing leads to
+  std::vector<Crossing> crossings;
+  std::optional<BlockPoint>
+      nearest;  // where `crossings` ends, if not where its last crossing leads to
   std::vector<PulledCrossing> pulled;
 
   void update() {
@@ -112,10 +116,10 @@ SearchBudget what_is_left(const SearchBudget& budget, const NodePath& path) {
 
 }  // namespace
 
-// To where a way leads, as far as is known before what has been put up is asked.
+// Over crossings nearby if the ends are near, else over the overlay; if that finds none, over all.
 PathEnd NodePathFinder::Scratch::find(const BlockPoint& from, const BlockPoint& to,
                                       const SearchBudget& budget, NodePath& path) {
-  const auto look = [&](auto&& searched, PathEnd end) {
+  const auto take = [&](auto&& searched, PathEnd end) {
     path.nodes += searched.expanded();
     path.searched_cost = searched.cost();
     return end;
@@ -125,12 +129,12 @@ PathEnd NodePathFinder::Scratch::find(const BlockPoint& from, const BlockPoint& 
     if (far <= kNearSides * shared.overlay.overlay_levels().front().side) {
       SearchBudget near = what_is_left(budget, path);
       near.max_nodes = std::min(near.max_nodes, kNearCrossings);
-      const PathEnd end = look(search, search.find(from, to, near, way));
+      const PathEnd end = take(search, search.find(from, to, near, crossings));
       const bool stopped = budget.cancel != nullptr && *budget.cancel;
       if (end != PathEnd::kBudgetExhausted || stopped) return end;
     }
     const SearchBudget left = what_is_left(budget, path);
-    const PathEnd end = look(far_search, far_search.find(from, to, left, search, way));
+    const PathEnd end = take(far_search, far_search.find(from, to, left, search, crossings));
     if (end != PathEnd::kUnreachable) return end;
   }
   return find_all(from, to, budget, path);
@@ -139,24 +143,24 @@ PathEnd NodePathFinder::Scratch::find(const BlockPoint& from, const BlockPoint& 
 // Of all crossings; where none leads there, to the one that comes nearest.
 PathEnd NodePathFinder::Scratch::find_all(const BlockPoint& from, const BlockPoint& to,
                                           const SearchBudget& budget, NodePath& path) {
-  const PathEnd end = search.find(from, to, what_is_left(budget, path), way);
+  const PathEnd end = search.find(from, to, what_is_left(budget, path), crossings);
   path.nodes += search.expanded();
   path.searched_cost = search.cost();
   return end;
 }
 
-// To the reachable place that comes nearest to one that is not. What looks near may be cut off,
-// too.
+// To the reachable place that comes nearest to one that is not. A place that seems near may itself
+// be cut off.
 PathEnd NodePathFinder::Scratch::find_nearest(const BlockPoint& from, const BlockPoint& to,
                                               const SearchBudget& budget, NodePath& path) {
   constexpr int kMaxPockets = 16;
   const Vec3d goal = position(view, to);
-  if (islands.close(view, from.block, to.block, NodeIsland::Way::kOut))
+  if (islands.close(view, from.block, to.block, NodeIsland::Direction::kOut))
     return find_all(from, to, budget, path);
   for (int i = 0; i < kMaxPockets; ++i) {
     const auto is_cut_off = [&](uint32_t block) { return islands.holds(block); };
     const BlockPoint last = shared.parts.nearest(view, from, goal, reached, is_cut_off);
-    if (islands.close(view, last.block, from.block, NodeIsland::Way::kIn)) continue;
+    if (islands.close(view, last.block, from.block, NodeIsland::Direction::kIn)) continue;
     const PathEnd end = find(from, last, budget, path);
     if (end == PathEnd::kReached) nearest = last;
     if (end != PathEnd::kUnreachable) return end;
@@ -167,7 +171,7 @@ PathEnd NodePathFinder::Scratch::find_nearest(const BlockPoint& from, const Bloc
 
 namespace {
 
-// A way as it is told: points along the surface, links, corridor.
+// Builds the path that is returned: points along the surface, links, corridor.
 class PathBuilder {
  public:
   PathBuilder(const NodeView& view, const PieceCost& cost, double spacing, NodePath& path)
@@ -180,7 +184,7 @@ class PathBuilder {
   }
 
   void go_on(const BlockPoint& to) {
-    // Where a way leads through the corner of a block there is nothing to go, and no point to add.
+    // Where a path leads through the corner of a block it covers no distance, and adds no point.
     if (to.s == last_.s && to.t == last_.t) {
       last_ = to;
       return;
@@ -200,7 +204,7 @@ class PathBuilder {
     last_ = to;
   }
 
-  // A way that goes nowhere has two ends, too.
+  // A path of length 0 has two ends, too.
   void end() {
     if (path_.points.size() == 1) path_.points.push_back(path_.points.front());
   }
@@ -268,7 +272,7 @@ uint32_t block_around(const NodeMesh& mesh, uint32_t node, double s, double t, A
   return kNoNode;
 }
 
-// What keeps the class from going on from a block towards a position.
+// What blocks the class from a block towards a position.
 Obstacle obstacle_towards(const NodeView& view, const BlockPoint& from, Vec3d goal) {
   const NodeMesh& mesh = view.mesh();
   const NodeBlock& block = view.block(from.block);
@@ -292,12 +296,12 @@ Obstacle obstacle_towards(const NodeView& view, const BlockPoint& from, Vec3d go
     outside = s < 0 || t < 0 || s > 1 || t > 1;
   }
   if (!view.is_as_baked() && !outside) {
-    // Whoever could stand there, but for what has been put up.
+    // A body could stand there, were it not for an obstacle.
     const uint32_t next = mesh.block_at(block.patch, s, t);
     if (next != kNoNode && view.changes()->part_at(next, s, t) == kNoNode) return Obstacle::kNarrow;
   }
   if (surface.points == nullptr) {
-    // What stops a straight walk, as over level tiles without nodes.
+    // What blocks a straight walk, as over level tiles without nodes.
     const WorldData& world = *surface.world;
     const WorldGround ground{world, mesh.avatar_class()};
     GroundLevel level = ground_level(world, surface.source, mesh.avatar_class());
@@ -312,7 +316,7 @@ Obstacle obstacle_towards(const NodeView& view, const BlockPoint& from, Vec3d go
   const double slope =
       std::acos(std::clamp(surface.normal(s, t).y, -1.0, 1.0)) * 180 / std::numbers::pi;
   if (slope > limit) return Obstacle::kSteep;
-  // Others that can stand there tell what is too much of this one.
+  // Classes that can stand there show which measure of this one is too large.
   const Nodes& nodes = mesh.nodes();
   Obstacle found = Obstacle::kNarrow;
   for (uint32_t node = block.node; node < nodes.node_count(); ++node) {
@@ -333,16 +337,16 @@ Obstacle obstacle_towards(const NodeView& view, const BlockPoint& from, Vec3d go
   return found;
 }
 
-// Calls visit(block, s, t) for the parts and blocks of level tiles within `reach`: with the point
+// Calls visit(block, s, t) for the parts and blocks of level tiles within `radius`: with the point
 // that lies nearest in the plane.
 template <class Visit>
-void for_each_level_part(const NodeView& view, Vec3d position, double reach, Visit visit) {
+void for_each_level_part(const NodeView& view, Vec3d position, double radius, Visit visit) {
   const NodeMesh& mesh = view.mesh();
   const WorldData& world = *mesh.nodes().data()->world.data();
   const std::array<double, 2> plan{position.x, position.z};
-  const SquareRange tiles = tiles_near(world, std::span(&plan, 1), std::min(reach, 1e6));
-  const double tile = world.summary.cell * 64;
-  const auto look = [&](uint32_t block, double s, double t) {
+  const SquareRange tiles = tiles_near(world, std::span(&plan, 1), std::min(radius, 1e6));
+  const double tile = world.summary.cell * kTileCells;
+  const auto consider = [&](uint32_t block, double s, double t) {
     const double side = view.block(block).side(), low_s = view.block(block).s * side,
                  low_t = view.block(block).t * side;
     const auto inside = [&](double at, double low) {
@@ -361,9 +365,9 @@ void for_each_level_part(const NodeView& view, Vec3d position, double reach, Vis
         const auto count = static_cast<uint32_t>(mesh.blocks_of(patch).size());
         for (uint32_t b = mesh.first_block(patch); b < mesh.first_block(patch) + count; ++b) {
           const auto parts = view.changes()->parts_of(b);
-          if (!parts) look(b, s, t);
+          if (!parts) consider(b, s, t);
           for (uint32_t p = parts ? parts->first : 0; parts && p < parts->second; ++p) {
-            look(p, s, t);
+            consider(p, s, t);
           }
         }
       }
@@ -376,7 +380,7 @@ void for_each_level_part(const NodeView& view, Vec3d position, double reach, Vis
 template <class IsReached>
 BlockPoint nearest_place(const NodeView& view, const BlockSquares& squares,
                          const BlockPoint& crossing, Vec3d goal, IsReached is_reached) {
-  constexpr double kNear = 25;  // There are too many blocks around a far goal. [m]
+  constexpr double kNear = 25;  // There are too many blocks around a farther goal. [m]
   BlockPoint best = crossing;
   double least = length(goal - position(view, best));
   const auto consider = [&](uint32_t block, double s, double t) {
@@ -503,7 +507,7 @@ NodePlace NodePathFinder::find_place(Vec3d position, double search_radius) const
       const uint32_t part = block == kNoNode ? kNoNode : changes.part_at(block, s, t);
       if (part != kNoNode) consider(part, s, t, 0);
       if (part == kNoNode && block != kNoNode) {
-        // What is nearest is taken. No level tile's place is nearer than in one of its parts.
+        // The nearest is used. No level tile's place is nearer than in one of its parts.
         for_each_level_part(view, position, nearest, [&](uint32_t other, double u, double v) {
           consider(other, u, v, uint64_t{other} + 1);
         });
@@ -558,7 +562,7 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
     if (!place || place.node1 > mesh.nodes().node_count()) return at;
     if (!(place.s >= 0 && place.s <= 1 && place.t >= 0 && place.t <= 1)) return at;
     at.block = mesh.block_at(mesh.patch_of_node(place.node1 - 1), place.s, place.t);
-    // On the border of a cell the other one may be meant.
+    // On the border of a cell the other cell may be meant.
     if (at.block == kNoNode || mesh.blocks()[at.block].node != place.node1 - 1) {
       const uint32_t own = block_around(mesh, place.node1 - 1, place.s, place.t,
                                         [](const NodeBlock&) { return true; });
@@ -599,10 +603,10 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
     }
     path.end = scratch.find(start, scratch.nearest.value_or(goal), budget, path);
   } else {
-    // Parts tell who is reached if nothing is in the way.
+    // If no obstacle blocks, parts decide what is reachable.
     scratch.islands.clear(view);
-    reachable =
-        reachable && !scratch.islands.close(view, goal.block, start.block, NodeIsland::Way::kIn);
+    reachable = reachable &&
+                !scratch.islands.close(view, goal.block, start.block, NodeIsland::Direction::kIn);
     path.end = reachable ? scratch.find(start, goal, budget, path)
                          : scratch.find_nearest(start, goal, budget, path);
     reachable = reachable && path.end == PathEnd::kReached;
@@ -613,13 +617,13 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
   }
   BlockPoint last = goal;
   if (!reachable) {
-    last = scratch.way.empty() ? start : ends_of(view, scratch.way.back()).in;
+    last = scratch.crossings.empty() ? start : ends_of(view, scratch.crossings.back()).in;
     last = scratch.nearest.value_or(
         nearest_place(view, shared_->squares, last, to.feet, [](uint32_t) { return false; }));
     path.end = PathEnd::kUnreachable;
     path.obstacle = obstacle_towards(view, last, to.feet);
   }
-  scratch.pull.pull(start, last, scratch.way, scratch.pulled);
+  scratch.pull.pull(start, last, scratch.crossings, scratch.pulled);
   PathBuilder path_builder(view, scratch.cost, spacing, path);
   path_builder.begin(start);
   for (const PulledCrossing& crossing : scratch.pulled) {

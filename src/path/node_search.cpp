@@ -8,13 +8,13 @@
 #include <numbers>
 
 // Hart, Nilsson, Raphael. A formal basis for the heuristic determination of minimum cost paths.
-// 1968. A way goes from the middle of one portal to the middle of the next, straight by the
+// 1968. A path leads from the middle of one portal to the middle of the next, straight in the
 // parameters of their block; a piece is measured over its middle, so it is never shorter than the
-// straight line, and the straight line to the goal never says too much.
+// straight line, and the straight line to the goal never overestimates.
 namespace throng {
 namespace {
 
-constexpr double kShort = 1;  // Pieces up to here are taken for straight. [m]
+constexpr double kShort = 1;  // Pieces up to here count as straight. [m]
 
 }  // namespace
 
@@ -80,17 +80,18 @@ void NodeSearch::expand(const BlockPoint& from, Vec3d at, double cost, uint32_t 
 }
 
 PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-                         std::vector<Crossing>& way, const SearchBounds& within, double less_than) {
-  way.clear();
+                         std::vector<Crossing>& crossings, const SearchBounds& within,
+                         double less_than) {
+  crossings.clear();
   expanded_ = met_ = 0;
   within_ = within;
   states_.resize(2 * view_->portal_count());
-  if (++query_ == 0) {  // After 2^32 queries the marks begin anew.
+  if (++query_ == 0) {  // After 2^32 queries the marks start over.
     states_.clear();
     query_ = 1;
   }
   open_.clear();
-  const PathEnd end = search(from, to, budget, way, less_than);
+  const PathEnd end = search(from, to, budget, crossings, less_than);
   give_back();
   return end;
 }
@@ -110,7 +111,7 @@ void NodeSearch::give_back() {
 }
 
 PathEnd NodeSearch::search(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-                           std::vector<Crossing>& way, double less_than) {
+                           std::vector<Crossing>& crossings, double less_than) {
   goal_ = position(*view_, to);
   const Vec3d start = position(*view_, from);
   constexpr uint32_t kGoal = UINT32_MAX - 1, kStart = UINT32_MAX;
@@ -137,7 +138,7 @@ PathEnd NodeSearch::search(const BlockPoint& from, const BlockPoint& to, const S
     if (top.estimate >= less_than) break;
     if (top.state == kGoal) {
       best_cost_ = found;
-      trace(last, way);
+      trace(last, crossings);
       return PathEnd::kReached;
     }
     State& state = states_[top.state];
@@ -155,15 +156,15 @@ PathEnd NodeSearch::search(const BlockPoint& from, const BlockPoint& to, const S
     expand(in, at, cost, top.state);
   }
   best_cost_ = nearest_state == kStart ? 0 : states_[nearest_state].cost;
-  trace(nearest_state, way);
+  trace(nearest_state, crossings);
   return PathEnd::kUnreachable;
 }
 
-void NodeSearch::trace(uint32_t state, std::vector<Crossing>& way) {
+void NodeSearch::trace(uint32_t state, std::vector<Crossing>& crossings) {
   for (; state != UINT32_MAX; state = states_[state].parent) {
-    way.push_back({state / 2, (state & 1) != 0});
+    crossings.push_back({state / 2, (state & 1) != 0});
   }
-  std::reverse(way.begin(), way.end());
+  std::reverse(crossings.begin(), crossings.end());
 }
 
 }  // namespace throng

@@ -14,12 +14,12 @@
 /// A* over the portals between blocks of nodes.
 namespace throng {
 
-/// What a straight piece within a block costs.
+/// The cost of a straight piece within a block.
 class PieceCost {
  public:
   PieceCost(const NodeView& view, double slope_cost);
 
-  /// Metres over the surface, and what they cost. Both ends lie in the patch's block.
+  /// Length over the surface in metres, and its cost. Both ends lie in the patch's block.
   struct Piece {
     double length = 0, cost = 0;
   };
@@ -32,9 +32,9 @@ class PieceCost {
   std::vector<double> by_code_;  // cost of a metre on level tiles, by inclination
 };
 
-/// Which district each block of the mesh lies in, and to which one a search is kept.
+/// Which overlay cell each block of the mesh lies in, and which of them a search stays in.
 struct SearchBounds {
-  const uint32_t* overlay_cell_of_block = nullptr;  ///< Null: it may go anywhere.
+  const uint32_t* overlay_cell_of_block = nullptr;  ///< Null: no bounds.
   uint32_t overlay_cell = 0;
 };
 
@@ -42,15 +42,15 @@ class NodeSearch {
  public:
   NodeSearch(const NodeView& view, const PieceCost& cost) : view_(&view), cost_(&cost) {}
 
-  /// Fills `way` with the portals from one to the other, or, if none leads there, to the crossing
-  /// that comes nearest. Ways that cost `less_than` and more are not looked for.
+  /// Fills `crossings` with the portals from one to the other, or, if none leads there, to the
+  /// crossing that comes nearest. Paths that cost `less_than` and more are not searched for.
   PathEnd find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-               std::vector<Crossing>& way, const SearchBounds& within = {},
+               std::vector<Crossing>& crossings, const SearchBounds& within = {},
                double less_than = std::numeric_limits<double>::infinity());
   [[nodiscard]] double cost() const { return best_cost_; }
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
   [[nodiscard]] uint64_t allocated_bytes() const;
-  /// Of these, what stays allocated from one query to the next, at most. [bytes]
+  /// Of these, the maximum that stays allocated from one query to the next. [bytes]
   static constexpr uint64_t kKeptBytes = uint64_t{64} << 20;
 
  private:
@@ -68,12 +68,12 @@ class NodeSearch {
   };
 
   PathEnd search(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-                 std::vector<Crossing>& way, double less_than);
+                 std::vector<Crossing>& crossings, double less_than);
   [[nodiscard]] uint64_t used_bytes() const;
   void give_back();
   void expand(const BlockPoint& from, Vec3d at, double cost, uint32_t parent);
   void push(double estimate, uint32_t state);
-  void trace(uint32_t state, std::vector<Crossing>& way);
+  void trace(uint32_t state, std::vector<Crossing>& crossings);
 
   const NodeView* view_;
   const PieceCost* cost_;

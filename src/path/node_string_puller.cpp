@@ -5,16 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
-// One crossing after the other goes to where the straight lines from the one before it and to the
-// one after it, unfolded around the portal, meet it; there and back along the way, until nothing
-// gets cheaper. Whatever comes out lies in the same blocks, so it is as legal as what went in.
+// One crossing after the other moves to where the straight lines from the one before it and to the
+// one after it, unfolded around the portal, meet it; forward and back along the path, until its
+// cost no longer falls. The result lies in the same blocks, so it is as legal as the input.
 namespace throng {
 namespace {
 
 constexpr int kMaxRounds = 48;
 constexpr double kLittle = 1e-4;  // Of the whole cost: a round that gains less is the last.
 
-// Where the shortest way from p to q over the line from a to b meets it, 0 at a and 1 at b.
+// Where the shortest path from p to q over the line from a to b meets it, 0 at a and 1 at b.
 double unfolded(Vec3d p, Vec3d q, Vec3d a, Vec3d b) {
   const Vec3d along = b - a;
   const double size2 = dot(along, along);
@@ -42,25 +42,25 @@ void NodeStringPuller::place(PulledCrossing& crossing, double along) const {
   crossing.in_at = view_->surface(crossing.in.block).at(crossing.in.s, crossing.in.t);
 }
 
-double NodeStringPuller::cost_around(const std::vector<PulledCrossing>& way, size_t i,
+double NodeStringPuller::cost_around(const std::vector<PulledCrossing>& crossings, size_t i,
                                      const PulledCrossing& crossing, const BlockPoint& from,
                                      Vec3d from_at, const BlockPoint& to, Vec3d to_at) const {
-  const BlockPoint& before = i > 0 ? way[i - 1].in : from;
-  const BlockPoint& after = i + 1 < way.size() ? way[i + 1].out : to;
-  return (*cost_)(crossing.out.block, before.s, before.t, i > 0 ? way[i - 1].in_at : from_at,
+  const BlockPoint& before = i > 0 ? crossings[i - 1].in : from;
+  const BlockPoint& after = i + 1 < crossings.size() ? crossings[i + 1].out : to;
+  return (*cost_)(crossing.out.block, before.s, before.t, i > 0 ? crossings[i - 1].in_at : from_at,
                   crossing.out.s, crossing.out.t, crossing.out_at)
              .cost +
          portal_length(view_->portal(crossing.crossing.portal), crossing.out_at, crossing.in_at) +
          (*cost_)(crossing.in.block, crossing.in.s, crossing.in.t, crossing.in_at, after.s, after.t,
-                  i + 1 < way.size() ? way[i + 1].out_at : to_at)
+                  i + 1 < crossings.size() ? crossings[i + 1].out_at : to_at)
              .cost;
 }
 
 void NodeStringPuller::pull(const BlockPoint& from, const BlockPoint& to,
-                            const std::vector<Crossing>& way,
+                            const std::vector<Crossing>& crossings,
                             std::vector<PulledCrossing>& out) const {
   out.clear();
-  for (const Crossing& crossing : way) {
+  for (const Crossing& crossing : crossings) {
     out.emplace_back().crossing = crossing;
     place(out.back(), 0);
     out.back().first_at = out.back().out_at;

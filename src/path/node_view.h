@@ -8,11 +8,11 @@
 #include "graph/node_mesh.h"
 #include "path/node_changes.h"
 
-/// A mesh of nodes as it is now: as it was baked, but for what has been put up since.
+/// A mesh of nodes as it is now: as it was baked, less what obstacles block since.
 namespace throng {
 
-/// Blocks and portals have the mesh's numbers. Above these are parts of blocks that something
-/// stands on, which no portal leads to any more, and portals between parts.
+/// Blocks and portals have the mesh's numbers. Above these are parts of the blocks that obstacles
+/// cut, to which no portal leads any more, and portals between parts.
 class NodeView {
  public:
   /// As it was baked, if `changes` are null.
@@ -68,7 +68,7 @@ struct BlockPoint {
   double s = 0, t = 0;
 };
 
-/// A portal as it is gone through.
+/// A portal and the direction in which it is crossed.
 struct Crossing {
   uint32_t portal = 0;
   bool backward = false;  ///< From b to a.
@@ -96,7 +96,7 @@ inline Vec3d position(const NodeView& view, const BlockPoint& at) {
   return view.surface(at.block).at(at.s, at.t);
 }
 
-/// Calls visit(crossing) for each way out of a block.
+/// Calls visit(crossing) for each crossing out of a block.
 template <class Visit>
 void for_each_arc_out(const NodeView& view, uint32_t block, Visit visit) {
   for (const uint32_t p : view.portals_of(block)) {
@@ -106,7 +106,7 @@ void for_each_arc_out(const NodeView& view, uint32_t block, Visit visit) {
   }
 }
 
-/// Calls visit(crossing) for each way into a block.
+/// Calls visit(crossing) for each crossing into a block.
 template <class Visit>
 void for_each_arc_in(const NodeView& view, uint32_t block, Visit visit) {
   for (const uint32_t p : view.portals_of(block)) {

@@ -10,6 +10,7 @@
 
 #include "world/place.h"
 
+// What blocks a straight walk: rays over the cells around its end.
 namespace throng {
 namespace {
 
@@ -54,8 +55,8 @@ struct Around {
   bool unknown = false;
 };
 
-// Levels keep floors where somebody can stand, and those beside; of matter they know nothing. So
-// what keeps a body off is told by what is seen where its own floor ends.
+// Levels keep floors where an avatar can stand, and those beside; they hold no solids. So what
+// blocks a body is inferred from what is seen where its own floor ends.
 class Surroundings {
  public:
   Surroundings(const WorldGround& ground, int32_t x, int32_t z, int32_t feet)
@@ -68,25 +69,25 @@ class Surroundings {
         cell_(ground.world.summary.cell * 1000),
         steepest_(std::tan(avatar().max_slope * std::numbers::pi / 180) * cell_) {}
 
-  // Where the body would be in the cell ahead, and a cell more: matter in the middle of a cell
+  // Where the body would be in the cell ahead, and a cell more: a solid in the middle of a cell
   // shows in the floor of the next.
-  [[nodiscard]] Around look_ahead(int32_t ahead_x, int32_t ahead_z) const {
-    const auto reach = static_cast<int32_t>(std::ceil(avatar().radius * 1000 / cell_)) + 2;
+  [[nodiscard]] Around cast_ahead(int32_t ahead_x, int32_t ahead_z) const {
+    const auto radius = static_cast<int32_t>(std::ceil(avatar().radius * 1000 / cell_)) + 2;
     Around around;
-    for (int32_t i = -reach; i <= reach; ++i) {
-      for (const auto& [dx, dz] : {std::pair{i, -reach}, {i, reach}, {-reach, i}, {reach, i}}) {
-        if (dx * ahead_x + dz * ahead_z > 0) look_along(dx, dz, reach, around);
+    for (int32_t i = -radius; i <= radius; ++i) {
+      for (const auto& [dx, dz] : {std::pair{i, -radius}, {i, radius}, {-radius, i}, {radius, i}}) {
+        if (dx * ahead_x + dz * ahead_z > 0) cast_along(dx, dz, radius, around);
       }
     }
     return around;
   }
 
  private:
-  // Of several floors over a cell the one tells that comes last here.
+  // Of several floors over a cell the one that comes last here decides.
   enum class Sight : uint8_t { kUnknown, kRaised, kEdge, kWall, kStep, kFloor };
   struct Column {
     Sight sight = Sight::kUnknown;
-    int32_t feet = 0;  // of the floor that tells it
+    int32_t feet = 0;  // of the floor that decides
   };
 
   [[nodiscard]] const AvatarClass& avatar() const {
@@ -129,13 +130,13 @@ class Surroundings {
     return found;
   }
 
-  // Over the floor as far as it goes, and where it ends to what is seen first.
-  void look_along(int32_t dx, int32_t dz, int32_t reach, Around& around) const {
+  // Over the floor to its end, and from there to what is seen first.
+  void cast_along(int32_t dx, int32_t dz, int32_t radius, Around& around) const {
     const auto beyond = static_cast<int32_t>(std::ceil(kThickWall / cell_));
     int32_t x = x_, z = z_, feet = feet_;
     bool is_known = true;
-    for (int32_t i = 1; i <= (is_known ? reach : reach + beyond); ++i) {
-      const int32_t next_x = x_ + rounded(i * dx, reach), next_z = z_ + rounded(i * dz, reach);
+    for (int32_t i = 1; i <= (is_known ? radius : radius + beyond); ++i) {
+      const int32_t next_x = x_ + rounded(i * dx, radius), next_z = z_ + rounded(i * dz, radius);
       const Column column = column_at(next_x, next_z, feet);
       if (column.sight == Sight::kUnknown) {
         is_known = false;
@@ -155,13 +156,13 @@ class Surroundings {
         feet = column.feet;
         continue;
       }
-      tell(column.sight, around);
+      note(column.sight, around);
       return;
     }
     if (!is_known) around.unknown = true;
   }
 
-  static void tell(Sight sight, Around& around) {
+  static void note(Sight sight, Around& around) {
     switch (sight) {
       case Sight::kFloor:
         around.wall = true;
@@ -195,13 +196,13 @@ class Surroundings {
   }
 
   // Is the rise to a cell, too steep for the class, that of a slope, and not of a step, after which
-  // the floor is flat? Where nobody walks a slope no more of it is known than its first cell.
+  // the floor is flat? Of a slope where no avatar can stand only the first cell is known.
   [[nodiscard]] bool is_slope(int32_t x, int32_t z, int32_t dx, int32_t dz, int32_t from,
                               int32_t to) const {
     constexpr double kSteepest = 4;  // A floor that rises more is a wall, about 76 degrees.
-    const double way = std::sqrt(static_cast<double>(dx * dx + dz * dz));
+    const double run = std::sqrt(static_cast<double>(dx * dx + dz * dz));
     const int32_t rise = to - from;
-    if (std::abs(rise) <= steepest_ * way || std::abs(rise) > kSteepest * cell_ * way) return false;
+    if (std::abs(rise) <= steepest_ * run || std::abs(rise) > kSteepest * cell_ * run) return false;
     const auto next = nearest_floor(ground_, x + dx, z + dz, to + rise);
     if (!next) return true;
     const int32_t goes_on = ground_.sample(*next, (x + dx) & 63, (z + dz) & 63) - to;
@@ -231,13 +232,13 @@ Obstacle obstacle_beyond(const WorldGround& ground, const GroundLevel& level,
       const int32_t there = ground.sample(*floor, (stop.x + dx) & 63, (stop.z + dz) & 63);
       if (std::abs(there - feet) <= step_mm(avatar)) return Obstacle::kNone;
     }
-    const Around around = Surroundings(ground, stop.x, stop.z, feet).look_ahead(dx, dz);
+    const Around around = Surroundings(ground, stop.x, stop.z, feet).cast_ahead(dx, dz);
     if (around.low) return Obstacle::kLow;
     if (around.steep) return Obstacle::kSteep;
     if (around.step && !around.wall) return Obstacle::kStep;
     if (around.wall) return Obstacle::kNarrow;
     if (around.edge) return Obstacle::kGap;
-    // Under a floor higher up is most likely what bears it; and where the floor just goes on, what
+    // A floor higher up most likely stands on a solid; and where the floor continues, something
     // stands on it.
     return around.raised || !around.unknown ? Obstacle::kNarrow : Obstacle::kGap;
   };

@@ -5,7 +5,7 @@
 #include "throng/ground_query.h"
 #include "world/ground.h"
 
-/// Why a class cannot go on.
+/// What blocks a class.
 namespace throng {
 
 /// What stopped a straight walk on `level`.

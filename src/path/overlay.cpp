@@ -11,11 +11,13 @@
 #include "core/strong_parts.h"
 #include "path/overlay_graph.h"
 
+// Chooses the entrances of a mesh's overlay, after [BMS04], and the costs between them from the
+// lowest level up, after [DGPW11].
 namespace throng {
 namespace {
 
 constexpr double kSmallestSide = 5;           // [m]
-constexpr size_t kMinOverlayCells = 8;        // No tier is made above so few.
+constexpr size_t kMinOverlayCells = 8;        // An overlay level of fewer cells has none above.
 constexpr double kEntranceSpacing = 1.0 / 8;  // of a side
 constexpr double kNoPath = std::numeric_limits<double>::infinity();
 
@@ -58,7 +60,7 @@ Overlay::Overlay(const NodeMesh& mesh, const PieceCost& cost, int32_t workers, s
   for (size_t k = 0; k < overlay_levels_.size(); ++k) {
     list_entries(mesh, overlay_levels_[k], static_cast<uint8_t>(k));
   }
-  look_through(mesh, cost, workers);
+  measure_costs(mesh, cost, workers);
   for (size_t k = 1; k < overlay_levels_.size(); ++k) join_up(k, workers);
 }
 
@@ -107,7 +109,7 @@ void Overlay::choose_sides(const NodeMesh& mesh, int32_t workers, size_t crossin
 }
 
 void Overlay::choose_entrances(const NodeMesh& mesh, int32_t workers) {
-  // Parts of each district by itself.
+  // Components of each overlay cell by itself.
   std::vector<uint32_t> part_of(of_block_.size());
   std::vector<uint32_t> counts(first_block_.size() - 1);
   parallel_for(counts.size(), workers, [&](size_t d) {
@@ -204,8 +206,8 @@ void Overlay::list_entries(const NodeMesh& mesh, OverlayLevel& overlay_level, ui
   overlay_level.costs.assign(costs, std::numeric_limits<float>::infinity());
 }
 
-// An entry of a one-way portal that cannot be gone backward leads nowhere: no way comes to it.
-void Overlay::look_through(const NodeMesh& mesh, const PieceCost& cost, int32_t workers) {
+// An entry into a one-way portal from its far side leads nowhere: no path comes to it.
+void Overlay::measure_costs(const NodeMesh& mesh, const PieceCost& cost, int32_t workers) {
   OverlayLevel& overlay_level = overlay_levels_.front();
   const NodeView view(mesh);
   std::vector<OverlayGraph> graphs(static_cast<size_t>(worker_count(workers)), {view, cost});
@@ -215,12 +217,12 @@ void Overlay::look_through(const NodeMesh& mesh, const PieceCost& cost, int32_t 
     if (entries.empty()) return;
     OverlayGraph& graph = graphs[static_cast<size_t>(worker)];
     graph.set(blocks_of(overlay_cell), true);
-    // Ways out over gates, and in which column they are told.
+    // Arcs out over entrances, and their columns in the table.
     std::vector<std::pair<uint32_t, uint32_t>> columns;
-    for (uint32_t w = 0; w < graph.ways().size(); ++w) {
-      const OverlayGraph::Way& way = graph.ways()[w];
-      if (way.into != kNoNode) continue;
-      const uint32_t entry = entry_of(way.crossing);
+    for (uint32_t w = 0; w < graph.arcs().size(); ++w) {
+      const OverlayGraph::Arc& arc = graph.arcs()[w];
+      if (arc.into != kNoNode) continue;
+      const uint32_t entry = entry_of(arc.crossing);
       if (entry != kNoNode) columns.emplace_back(w, overlay_level.place[entry ^ 1]);
     }
     for (size_t i = 0; i < entries.size(); ++i) {
@@ -228,14 +230,14 @@ void Overlay::look_through(const NodeMesh& mesh, const PieceCost& cost, int32_t 
       if (in.backward && mesh.portals().sides(in.portal).one_way) continue;
       const std::vector<double>& costs = graph.run(ends_of(view, in).in);
       float* row = overlay_level.costs.data() + overlay_level.first_cost[d] + i * entries.size();
-      for (const auto& [way, column] : columns) {
-        if (column != i) row[column] = static_cast<float>(costs[way]);
+      for (const auto& [arc, column] : columns) {
+        if (column != i) row[column] = static_cast<float>(costs[arc]);
       }
     }
   });
 }
 
-// Through a district by way of those of the tier below that it holds.
+// Through an overlay cell over the cells of the level below that it holds.
 void Overlay::join_up(size_t k, int32_t workers) {
   OverlayLevel& overlay_level = overlay_levels_[k];
   const OverlayLevel& below = overlay_levels_[k - 1];
@@ -279,9 +281,9 @@ void Overlay::join_up(size_t k, int32_t workers) {
         for (size_t j = 0; j < others.size(); ++j) {
           const double next = top.cost + double{through[j]};
           if (!(next < kNoPath)) continue;
-          const uint32_t out = others[j] ^ 1;  // The gate gone through, out of the part.
+          const uint32_t out = others[j] ^ 1;  // The entrance crossed, out of the sub-cell.
           if (below.above[below.of_entry[out]] != d) {
-            // Only over the district's own gates is it left.
+            // The overlay cell is left only over its own entrances.
             float& known = row[overlay_level.place[others[j]]];
             known = std::min(known, static_cast<float>(next));
             continue;

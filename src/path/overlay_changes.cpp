@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+// Marks the overlay cells that obstacles touch, moves their entrances, and computes their rows of
+// costs when a search first needs them.
 namespace throng {
 
 void OverlayChanges::update() {
@@ -108,8 +110,8 @@ std::span<const float> OverlayChanges::costs_from(uint32_t entry) {
   for (size_t j = 0; j < entries.size(); ++j) {
     const uint32_t out = entries[j] ^ 1;
     if (entries[j] == entry || is_closed(out)) continue;
-    const uint32_t way = graph_.way_of(crossing(out));
-    if (way != kNoNode) row[j] = static_cast<float>(costs[way]);
+    const uint32_t arc = graph_.arc_of(crossing(out));
+    if (arc != kNoNode) row[j] = static_cast<float>(costs[arc]);
   }
   return row;
 }

@@ -11,20 +11,22 @@
 #include "path/overlay.h"
 #include "path/overlay_graph.h"
 
-/// Overlay of a mesh on which something has been put up: where that is, what it costs to go
-/// through them is not what was told of them.
+/// The overlay of a mesh on which obstacles stand: where the obstacles are, costs differ from those
+/// of the overlay.
 namespace throng {
 
-/// A district is *stale* if a block of it is cut or has other portals, and so is each that holds
-/// it. Of the lowest tier such rows of costs are told anew when they are asked for; higher ones are
-/// not used. A gate whose portal is gone moves to what is left of it, or to the nearest other
-/// crossing between the same two districts; without one it is closed.
+/// An overlay cell is *stale* if a block of it is cut or has other portals, and so is each that
+/// holds it. On the lowest overlay level the rows of costs of stale cells are computed again when
+/// they are first used; higher ones are not used. An entrance whose portal is closed moves to what
+/// is left of it, or to the nearest other crossing between the same two overlay cells; without one
+/// it is closed.
 class OverlayChanges {
  public:
   OverlayChanges(const NodeView& view, const PieceCost& cost, const Overlay& overlay)
       : view_(&view), overlay_(&overlay), graph_(view, cost) {}
 
-  /// After the view has changed. Time: what is up, and the districts below that.
+  /// After the view has changed. Time: linear in the active obstacles and the overlay cells below
+  /// them.
   void update();
 
   [[nodiscard]] bool is_stale(size_t overlay_level, uint32_t overlay_cell) const {
@@ -45,18 +47,19 @@ class OverlayChanges {
     if (moved == nullptr || moved->portal == kNoNode) return overlay_->at(entry);
     return moved->at[entry % 2];
   }
-  /// Of the lowest tier, as they are now: rising.
+  /// Of the lowest overlay level, as they are now: rising.
   [[nodiscard]] std::span<const uint32_t> blocks_of(uint32_t overlay_cell) const {
     if (is_stale(0, overlay_cell)) return blocks_.at(overlay_cell);
     return overlay_->blocks_of(overlay_cell);
   }
-  /// Of an entry into a stale district of the lowest tier, as Overlay::OverlayLevel::costs_from.
+  /// Of an entry into a stale overlay cell of the lowest level, as
+  /// Overlay::OverlayLevel::costs_from.
   std::span<const float> costs_from(uint32_t entry);
 
  private:
   struct Entrance {
     uint32_t portal = kNoNode;
-    bool turned = false;  // Its portal's a and b are the other way round.
+    bool turned = false;  // Its portal's a and b are swapped.
     Vec3d at[2];
   };
   [[nodiscard]] const Entrance* moved_entrance(uint32_t entry) const {
@@ -69,12 +72,14 @@ class OverlayChanges {
   const NodeView* view_;
   const Overlay* overlay_;
   OverlayGraph graph_;
-  uint32_t in_graph_ = kNoNode;              // a stale district, of which rows are told
-  std::vector<std::vector<uint8_t>> stale_;  // by tier and district; empty: nothing has changed yet
+  uint32_t in_graph_ = kNoNode;  // the stale overlay cell that is in graph_
+  std::vector<std::vector<uint8_t>>
+      stale_;  // by overlay level and cell; empty: nothing has changed yet
   std::vector<std::vector<uint32_t>> stale_of_level_;
-  std::unordered_map<uint32_t, std::vector<uint32_t>> blocks_;  // by stale district; looked up only
-  std::unordered_map<uint32_t, Entrance> moved_;                // looked up only
-  std::unordered_map<uint32_t, std::vector<float>> rows_;       // by entry; looked up only
+  std::unordered_map<uint32_t, std::vector<uint32_t>>
+      blocks_;                                             // by stale overlay cell; looked up only
+  std::unordered_map<uint32_t, Entrance> moved_;           // looked up only
+  std::unordered_map<uint32_t, std::vector<float>> rows_;  // by entry; looked up only
 };
 
 }  // namespace throng

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+// Dijkstra's algorithm over the arcs of one overlay cell, forward or backward. O(n log n) in the
+// arcs.
 namespace throng {
 namespace {
 
@@ -18,11 +20,11 @@ uint32_t OverlayGraph::place_of(uint32_t block) const {
   return static_cast<uint32_t>(at - blocks_.begin());
 }
 
-uint32_t OverlayGraph::way_of(const Crossing& crossing) const {
+uint32_t OverlayGraph::arc_of(const Crossing& crossing) const {
   const uint32_t from = place_of(ends_of(*view_, crossing).out.block);
   if (from == kNoNode) return kNoNode;
-  for (uint32_t w = first_path_[from]; w < first_path_[from + 1]; ++w) {
-    if (ways_[w].crossing == crossing) return w;
+  for (uint32_t w = first_arc_[from]; w < first_arc_[from + 1]; ++w) {
+    if (arcs_[w].crossing == crossing) return w;
   }
   return kNoNode;
 }
@@ -30,27 +32,27 @@ uint32_t OverlayGraph::way_of(const Crossing& crossing) const {
 void OverlayGraph::set(std::span<const uint32_t> blocks, bool keep) {
   blocks_ = blocks;
   expanded_ = 0;
-  first_path_.assign(1, 0);
-  ways_.clear();
+  first_arc_.assign(1, 0);
+  arcs_.clear();
   for (const uint32_t block : blocks_) {
     for_each_arc_out(*view_, block, [&](const Crossing& crossing) {
       const NodePortal portal = view_->portal(crossing.portal);
       const auto [out, in] = ends_of(portal, crossing.backward);
-      Way way{crossing, out, in, position(*view_, out), position(*view_, in)};
-      way.through = portal_length(portal, way.out_at, way.in_at);
-      way.into = place_of(in.block);
-      ways_.push_back(way);
+      Arc arc{crossing, out, in, position(*view_, out), position(*view_, in)};
+      arc.through = portal_length(portal, arc.out_at, arc.in_at);
+      arc.into = place_of(in.block);
+      arcs_.push_back(arc);
     });
-    first_path_.push_back(static_cast<uint32_t>(ways_.size()));
+    first_arc_.push_back(static_cast<uint32_t>(arcs_.size()));
   }
   first_in_.assign(blocks_.size() + 1, 0);
-  for (const Way& way : ways_) {
-    if (way.into != kNoNode) ++first_in_[way.into + 1];
+  for (const Arc& arc : arcs_) {
+    if (arc.into != kNoNode) ++first_in_[arc.into + 1];
   }
   for (size_t b = 0; b < blocks_.size(); ++b) first_in_[b + 1] += first_in_[b];
   in_of_.resize(first_in_.back());
-  for (size_t w = ways_.size(); w-- > 0;) {
-    const uint32_t into = ways_[w].into;
+  for (size_t w = arcs_.size(); w-- > 0;) {
+    const uint32_t into = arcs_[w].into;
     if (into == kNoNode) continue;
     // Filled from the end of each block's own: what is left of them is counted in `first_in_`.
     in_of_[--first_in_[into + 1]] = static_cast<uint32_t>(w);
@@ -61,19 +63,19 @@ void OverlayGraph::set(std::span<const uint32_t> blocks, bool keep) {
   first_kept_.clear();
   kept_.clear();
   if (!keep) return;
-  for (const Way& way : ways_) {
+  for (const Arc& arc : arcs_) {
     first_kept_.push_back(kept_.size());
-    if (way.into == kNoNode) continue;
-    for (uint32_t w = first_path_[way.into]; w < first_path_[way.into + 1]; ++w) {
-      kept_.push_back(piece(way.in, way.in_at, ways_[w].out, ways_[w].out_at));
+    if (arc.into == kNoNode) continue;
+    for (uint32_t w = first_arc_[arc.into]; w < first_arc_[arc.into + 1]; ++w) {
+      kept_.push_back(piece(arc.in, arc.in_at, arcs_[w].out, arcs_[w].out_at));
     }
   }
 }
 
-void OverlayGraph::reach(uint32_t way, double cost) {
-  if (cost >= cost_[way]) return;
-  cost_[way] = cost;
-  open_.push_back({cost, way});
+void OverlayGraph::reach(uint32_t arc, double cost) {
+  if (cost >= cost_[arc]) return;
+  cost_[arc] = cost;
+  open_.push_back({cost, arc});
   std::push_heap(open_.begin(), open_.end());
 }
 
@@ -82,7 +84,7 @@ bool OverlayGraph::next(Open& top) {
     std::pop_heap(open_.begin(), open_.end());
     top = open_.back();
     open_.pop_back();
-    if (top.cost > cost_[top.way]) continue;
+    if (top.cost > cost_[top.arc]) continue;
     ++expanded_;
     return true;
   }
@@ -90,45 +92,45 @@ bool OverlayGraph::next(Open& top) {
 }
 
 const std::vector<double>& OverlayGraph::run(const BlockPoint& from) {
-  cost_.assign(ways_.size(), kNoPath);
+  cost_.assign(arcs_.size(), kNoPath);
   open_.clear();
   const uint32_t start = place_of(from.block);
   const Vec3d at = position(*view_, from);
-  for (uint32_t w = first_path_[start]; w < first_path_[start + 1]; ++w) {
-    reach(w, piece(from, at, ways_[w].out, ways_[w].out_at) + ways_[w].through);
+  for (uint32_t w = first_arc_[start]; w < first_arc_[start + 1]; ++w) {
+    reach(w, piece(from, at, arcs_[w].out, arcs_[w].out_at) + arcs_[w].through);
   }
   for (Open top; next(top);) {
-    const Way& way = ways_[top.way];
-    if (way.into == kNoNode) continue;
-    const uint32_t first = first_path_[way.into], last = first_path_[way.into + 1];
+    const Arc& arc = arcs_[top.arc];
+    if (arc.into == kNoNode) continue;
+    const uint32_t first = first_arc_[arc.into], last = first_arc_[arc.into + 1];
     for (uint32_t w = first; w < last; ++w) {
       if (cost_[w] <= top.cost) continue;
-      const double along = kept_.empty() ? piece(way.in, way.in_at, ways_[w].out, ways_[w].out_at)
-                                         : kept_[first_kept_[top.way] + w - first];
-      reach(w, top.cost + along + ways_[w].through);
+      const double along = kept_.empty() ? piece(arc.in, arc.in_at, arcs_[w].out, arcs_[w].out_at)
+                                         : kept_[first_kept_[top.arc] + w - first];
+      reach(w, top.cost + along + arcs_[w].through);
     }
   }
   return cost_;
 }
 
 const std::vector<double>& OverlayGraph::run_back(const BlockPoint& to) {
-  cost_.assign(ways_.size(), kNoPath);
+  cost_.assign(arcs_.size(), kNoPath);
   open_.clear();
   goal_ = to;
   goal_at_ = position(*view_, to);
   const uint32_t goal = place_of(to.block);
   for (uint32_t k = first_in_[goal]; k < first_in_[goal + 1]; ++k) {
-    const Way& way = ways_[in_of_[k]];
-    reach(in_of_[k], piece(way.in, way.in_at, goal_, goal_at_));
+    const Arc& arc = arcs_[in_of_[k]];
+    reach(in_of_[k], piece(arc.in, arc.in_at, goal_, goal_at_));
   }
   for (Open top; next(top);) {
-    const Way& way = ways_[top.way];
-    const uint32_t from = place_of(way.out.block);
+    const Arc& arc = arcs_[top.arc];
+    const uint32_t from = place_of(arc.out.block);
     for (uint32_t k = first_in_[from]; k < first_in_[from + 1]; ++k) {
-      const Way& before = ways_[in_of_[k]];
+      const Arc& before = arcs_[in_of_[k]];
       if (cost_[in_of_[k]] <= top.cost) continue;
       reach(in_of_[k],
-            piece(before.in, before.in_at, way.out, way.out_at) + way.through + top.cost);
+            piece(before.in, before.in_at, arc.out, arc.out_at) + arc.through + top.cost);
     }
   }
   return cost_;
@@ -138,10 +140,10 @@ double OverlayGraph::rest(const BlockPoint& from) const {
   const Vec3d at = position(*view_, from);
   double least = from.block == goal_.block ? piece(from, at, goal_, goal_at_) : kNoPath;
   const uint32_t start = place_of(from.block);
-  for (uint32_t w = first_path_[start]; w < first_path_[start + 1]; ++w) {
-    const Way& way = ways_[w];
-    if (way.into == kNoNode || cost_[w] >= least) continue;
-    least = std::min(least, piece(from, at, way.out, way.out_at) + way.through + cost_[w]);
+  for (uint32_t w = first_arc_[start]; w < first_arc_[start + 1]; ++w) {
+    const Arc& arc = arcs_[w];
+    if (arc.into == kNoNode || cost_[w] >= least) continue;
+    least = std::min(least, piece(from, at, arc.out, arc.out_at) + arc.through + cost_[w]);
   }
   return least;
 }

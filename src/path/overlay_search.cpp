@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+// A* over entrances, then a search of each overlay cell crossed. Source: [BMS04], [DGPW11].
 namespace throng {
 namespace {
 
@@ -14,7 +15,7 @@ constexpr double kNoPath = std::numeric_limits<double>::infinity();
 
 void OverlaySearch::begin() {
   states_.resize(2 * overlay_->entrances().size());
-  if (++query_ == 0) {  // After 2^32 queries the marks begin anew.
+  if (++query_ == 0) {  // After 2^32 queries the marks start over.
     std::fill(states_.begin(), states_.end(), State{});
     query_ = 1;
   }
@@ -45,21 +46,21 @@ bool OverlaySearch::next(Open& top) {
 
 PathEnd OverlaySearch::find(const BlockPoint& from, const BlockPoint& to,
                             const SearchBudget& budget, NodeSearch& blocks,
-                            std::vector<Crossing>& way) {
-  way.clear();
+                            std::vector<Crossing>& crossings) {
+  crossings.clear();
   expanded_ = 0;
   cost_ = 0;
   if (const PathEnd end = over_entrances(from, to, budget); end != PathEnd::kReached) return end;
   const std::vector<uint32_t>& of_block = overlay_->of_block();
   if (first_ == kNoEntry)
-    return within(of_block[view_->base_of(from.block)], from, to, budget, blocks, way);
+    return within(of_block[view_->base_of(from.block)], from, to, budget, blocks, crossings);
   for (size_t overlay_level = overlay_->overlay_levels().size(); --overlay_level > 0;) {
     finer_.clear();
     for (const Stretch& stretch : stretches_) {
       if (stretch.overlay_level < overlay_level) {
         finer_.push_back(stretch);
       } else if (!refine(stretch)) {
-        return PathEnd::kUnreachable;  // Never: what a tier tells is made of the one below.
+        return PathEnd::kUnreachable;  // Never: an overlay level is made from the one below.
       }
     }
     stretches_.swap(finer_);
@@ -69,10 +70,11 @@ PathEnd OverlaySearch::find(const BlockPoint& from, const BlockPoint& to,
   const auto go_to = [&](uint32_t entry) {
     const Crossing crossing = now_.crossing(entry);
     const auto [out, in] = ends_of(*view_, crossing);
-    const PathEnd end = within(of_block[view_->base_of(at.block)], at, out, budget, blocks, way);
+    const PathEnd end =
+        within(of_block[view_->base_of(at.block)], at, out, budget, blocks, crossings);
     if (end != PathEnd::kReached) return end;
-    joints_.push_back(way.size());
-    way.push_back(crossing);
+    joints_.push_back(crossings.size());
+    crossings.push_back(crossing);
     cost_ += portal_length(view_->portal(crossing.portal), position(*view_, out), now_.at(entry));
     at = in;
     return end;
@@ -82,26 +84,26 @@ PathEnd OverlaySearch::find(const BlockPoint& from, const BlockPoint& to,
     end = go_to(stretches_[i].to);
   }
   if (end == PathEnd::kReached)
-    end = within(of_block[view_->base_of(to.block)], at, to, budget, blocks, way);
-  if (end == PathEnd::kReached) straighten(from, to, budget, blocks, way);
+    end = within(of_block[view_->base_of(to.block)], at, to, budget, blocks, crossings);
+  if (end == PathEnd::kReached) straighten(from, to, budget, blocks, crossings);
   return end;
 }
 
-// From the middle of one district to the middle of the next, the way is looked for anew, free of
-// the gate between them.
+// From the middle of one overlay cell to the middle of the next, the path is searched for again,
+// without having to pass the entrance between them.
 void OverlaySearch::straighten(const BlockPoint& from, const BlockPoint& to,
                                const SearchBudget& budget, NodeSearch& blocks,
-                               std::vector<Crossing>& way) {
-  led_.clear();
+                               std::vector<Crossing>& crossings) {
+  straightened_.clear();
   cost_ = 0;
   BlockPoint begin = from;
-  size_t first = 0;  // of what is led anew
+  size_t first = 0;  // of the stretch that is replaced
   for (size_t i = 0; i < joints_.size(); ++i) {
     const bool ends = i + 1 == joints_.size();
-    const size_t last = ends ? way.size() : (joints_[i] + joints_[i + 1]) / 2;
-    if (!ends && last == joints_[i]) continue;  // No middle: over both gates at once.
-    const BlockPoint end = ends ? to : ends_of(*view_, way[last]).out;
-    const double known = cost_of(begin, end, way.data() + first, way.data() + last);
+    const size_t last = ends ? crossings.size() : (joints_[i] + joints_[i + 1]) / 2;
+    if (!ends && last == joints_[i]) continue;  // No middle: over both entrances at once.
+    const BlockPoint end = ends ? to : ends_of(*view_, crossings[last]).out;
+    const double known = cost_of(begin, end, crossings.data() + first, crossings.data() + last);
     constexpr double kGain = 1e-6;  // Anything less is rounding.
     SearchBudget left = budget;
     left.max_nodes = budget.max_nodes - std::min(budget.max_nodes, expanded_);
@@ -109,22 +111,22 @@ void OverlaySearch::straighten(const BlockPoint& from, const BlockPoint& to,
         blocks.find(begin, end, left, piece_, {}, known * (1 - kGain)) == PathEnd::kReached;
     expanded_ += blocks.expanded();
     if (cheaper) {
-      led_.insert(led_.end(), piece_.begin(), piece_.end());
+      straightened_.insert(straightened_.end(), piece_.begin(), piece_.end());
       cost_ += blocks.cost();
     } else {
-      led_.insert(led_.end(), way.begin() + static_cast<ptrdiff_t>(first),
-                  way.begin() + static_cast<ptrdiff_t>(last));
+      straightened_.insert(straightened_.end(), crossings.begin() + static_cast<ptrdiff_t>(first),
+                           crossings.begin() + static_cast<ptrdiff_t>(last));
       cost_ += known;
     }
     if (ends) break;
-    led_.push_back(way[last]);
-    const auto [out, in] = ends_of(*view_, way[last]);
-    cost_ +=
-        portal_length(view_->portal(way[last].portal), position(*view_, out), position(*view_, in));
+    straightened_.push_back(crossings[last]);
+    const auto [out, in] = ends_of(*view_, crossings[last]);
+    cost_ += portal_length(view_->portal(crossings[last].portal), position(*view_, out),
+                           position(*view_, in));
     begin = in;
     first = last + 1;
   }
-  way.swap(led_);
+  crossings.swap(straightened_);
 }
 
 double OverlaySearch::cost_of(const BlockPoint& from, const BlockPoint& to, const Crossing* first,
@@ -149,8 +151,8 @@ double OverlaySearch::cost_of(const BlockPoint& from, const BlockPoint& to, cons
   return cost;
 }
 
-// A* over entries. A district that does not hold the goal is gone through as one of the highest
-// tier over whose border it was come to.
+// A* over entries. An overlay cell that does not hold the goal is crossed as one of the highest
+// overlay level whose border the search crossed to enter it.
 PathEnd OverlaySearch::over_entrances(const BlockPoint& from, const BlockPoint& to,
                                       const SearchBudget& budget) {
   const auto& overlay_levels = overlay_->overlay_levels();
@@ -159,7 +161,8 @@ PathEnd OverlaySearch::over_entrances(const BlockPoint& from, const BlockPoint& 
                  goal_cell = of_block[view_->base_of(to.block)];
   const Vec3d goal = position(*view_, to);
   stretches_.clear();
-  // What is left from the goal's district's entries, and from the start if it is there too.
+  // The remaining cost from the entries of the goal's overlay cell, and from the start if it is in
+  // that cell too.
   graph_.set(now_.blocks_of(goal_cell), false);
   graph_.run_back(to);
   const auto goal_entries = overlay_levels.front().entries_of(goal_cell);
@@ -184,10 +187,10 @@ PathEnd OverlaySearch::over_entrances(const BlockPoint& from, const BlockPoint& 
   for (const uint32_t entry : overlay_levels.front().entries_of(start_cell)) {
     const uint32_t out = entry ^ 1;
     if (now_.is_closed(out)) continue;
-    const uint32_t way = graph_.way_of(now_.crossing(out));
-    if (way != kNoNode) reach(out, kNoEntry, costs[way], 0, goal);
+    const uint32_t arc = graph_.arc_of(now_.crossing(out));
+    if (arc != kNoNode) reach(out, kNoEntry, costs[arc], 0, goal);
   }
-  // By tier: the goal's district.
+  // By overlay level: the cell of the goal.
   std::array<uint32_t, 32> holds_goal{};
   uint32_t overlay_cell = goal_cell;
   for (size_t k = 0; k < overlay_levels.size(); ++k) {
@@ -233,7 +236,7 @@ PathEnd OverlaySearch::over_entrances(const BlockPoint& from, const BlockPoint& 
   return PathEnd::kReached;
 }
 
-// Adds the same stretch to `finer_`, through districts of the tier below.
+// Adds the same stretch to `finer_`, through overlay cells of the level below.
 bool OverlaySearch::refine(const Stretch& stretch) {
   const Overlay::OverlayLevel& overlay_level = overlay_->overlay_levels()[stretch.overlay_level];
   const Overlay::OverlayLevel& below =
@@ -266,14 +269,14 @@ bool OverlaySearch::refine(const Stretch& stretch) {
 
 PathEnd OverlaySearch::within(uint32_t overlay_cell, const BlockPoint& from, const BlockPoint& to,
                               const SearchBudget& budget, NodeSearch& blocks,
-                              std::vector<Crossing>& way) {
+                              std::vector<Crossing>& crossings) {
   SearchBudget left = budget;
   left.max_nodes = budget.max_nodes > expanded_ ? budget.max_nodes - expanded_ : 0;
   const PathEnd end =
       blocks.find(from, to, left, piece_, {overlay_->of_block().data(), overlay_cell});
   expanded_ += blocks.expanded();
   if (end == PathEnd::kReached) {
-    way.insert(way.end(), piece_.begin(), piece_.end());
+    crossings.insert(crossings.end(), piece_.begin(), piece_.end());
     cost_ += blocks.cost();
   }
   return end;

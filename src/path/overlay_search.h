@@ -10,8 +10,8 @@
 #include "path/overlay_changes.h"
 #include "path/overlay_graph.h"
 
-/// Long ways over a mesh: first over the gates of districts, high tiers between far places, then
-/// within one district after the other.
+/// Long paths over a mesh: first over the entrances of overlay cells, on high overlay levels
+/// between far places, then within one overlay cell after the other.
 namespace throng {
 
 class OverlaySearch {
@@ -26,11 +26,11 @@ class OverlaySearch {
   /// After the view has changed.
   void update() { now_.update(); }
 
-  /// Fills `way` with the crossings from one place to another: of those over gates the cheapest,
-  /// and so seldom much dearer than the best. kUnreachable if none leads there, and then `way` is
-  /// empty. `blocks` searches within districts.
+  /// Fills `crossings` with the crossings from one place to another: of paths over entrances the
+  /// cheapest, which seldom costs much more than the best. kUnreachable if none leads there, and
+  /// then `crossings` is empty. `blocks` searches within overlay cells.
   PathEnd find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-               NodeSearch& blocks, std::vector<Crossing>& way);
+               NodeSearch& blocks, std::vector<Crossing>& crossings);
   [[nodiscard]] double cost() const { return cost_; }
   /// Entries and crossings.
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
@@ -42,7 +42,7 @@ class OverlaySearch {
     uint32_t query = 0;
     uint32_t parent = kNoEntry;
     double cost = 0;
-    uint8_t overlay_level = 0;  // of the district through which it was
+    uint8_t overlay_level = 0;  // of the overlay cell through which it was reached
     bool closed = false;
   };
   struct Open {
@@ -52,7 +52,7 @@ class OverlaySearch {
       return estimate != other.estimate ? estimate > other.estimate : entry > other.entry;
     }
   };
-  // From entry to entry through a district of a tier.
+  // From entry to entry through an overlay cell of some level.
   struct Stretch {
     uint32_t from, to;
     uint8_t overlay_level;
@@ -64,11 +64,11 @@ class OverlaySearch {
   PathEnd over_entrances(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget);
   bool refine(const Stretch& stretch);
   void straighten(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-                  NodeSearch& blocks, std::vector<Crossing>& way);
+                  NodeSearch& blocks, std::vector<Crossing>& crossings);
   [[nodiscard]] double cost_of(const BlockPoint& from, const BlockPoint& to, const Crossing* first,
                                const Crossing* last) const;
   PathEnd within(uint32_t overlay_cell, const BlockPoint& from, const BlockPoint& to,
-                 const SearchBudget& budget, NodeSearch& blocks, std::vector<Crossing>& way);
+                 const SearchBudget& budget, NodeSearch& blocks, std::vector<Crossing>& crossings);
 
   const NodeView* view_;
   const PieceCost* piece_cost_;
@@ -77,11 +77,11 @@ class OverlaySearch {
   OverlayGraph graph_;
   std::vector<State> states_;  // by entry
   std::vector<Open> open_;
-  std::vector<double> rest_;  // from the entries of the goal's district
+  std::vector<double> rest_;  // from the entries of the goal's overlay cell
   std::vector<Stretch> stretches_, finer_;
-  std::vector<Crossing> piece_, led_;
-  std::vector<size_t> joints_;                   // where gates come in the way
-  uint32_t first_ = kNoEntry, last_ = kNoEntry;  // none: the way does not leave the district
+  std::vector<Crossing> piece_, straightened_;
+  std::vector<size_t> joints_;                   // where entrances come in the path
+  uint32_t first_ = kNoEntry, last_ = kNoEntry;  // none: the path does not leave the overlay cell
   uint32_t query_ = 0;
   double cost_ = 0;
   uint64_t expanded_ = 0;

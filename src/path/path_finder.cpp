@@ -17,10 +17,11 @@
 #include "throng/path.h"
 #include "world/place.h"
 
+// Chooses between labels, zones and search, and turns corners into places.
 namespace throng {
 namespace {
 
-// Most of what feet take is the wait for the ground's bytes: all are asked for before any is read.
+// Feet mostly wait for the ground's bytes: all are prefetched before any is read.
 void add_places(const WorldData& world, const PathMesh& mesh, const std::vector<Stop>& stops,
                 std::vector<LevelView>& views, Path& path) {
   views.clear();
@@ -52,7 +53,7 @@ struct PathFinder::Shared {
 
 struct PathFinder::Scratch {
   PathSearch search;
-  LabelSearch look_up;
+  LabelSearch label_search;
   ZoneSearch over_zones;
   PortalSearch portals;
   std::vector<uint32_t> corners;
@@ -138,7 +139,8 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, const Sear
   double length = 0;
   SearchResult result = SearchResult::kNone;
   if (shared_->labels) {
-    if (scratch_->look_up.find(mesh, *shared_->labels, start, goal, scratch_->corners, length)) {
+    if (scratch_->label_search.find(mesh, *shared_->labels, start, goal, scratch_->corners,
+                                    length)) {
       result = SearchResult::kFound;
     }
   } else if (shared_->zones) {
@@ -150,7 +152,7 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, const Sear
     result = scratch_->search.find(mesh, start, goal, budget, scratch_->corners, length);
     path.nodes = scratch_->search.expanded();
   }
-  // Both are of one component: a way there is, even if none can be drawn over corners.
+  // Both are of one component: a path exists, even if none can be drawn over corners.
   const auto is_drawn = [&] {
     SegmentWalker walker(world, mesh);
     return walker.walk(start, scratch_->corners, goal.at, scratch_->stops) &&

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+// Distances of convex polygons, and heights of a triangle over a square.
 namespace throng {
 namespace {
 

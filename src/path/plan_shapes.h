@@ -10,7 +10,7 @@
 #include "core/plan_point.h"
 #include "throng/math.h"
 
-/// Squares of the ground's plane against polygons and triangles: what obstacles take from cells.
+/// Squares of the ground's plane against polygons and triangles: which cells obstacles block.
 namespace throng {
 
 /// A square of the ground's plane. [m]

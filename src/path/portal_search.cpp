@@ -8,6 +8,7 @@
 #include "path/border.h"
 #include "path/mesh_ray.h"
 
+// A* over the ends and middles of portals, then string pulling over the stops.
 namespace throng {
 namespace {
 
@@ -68,7 +69,7 @@ SearchResult PortalSearch::search(const Stop& from, const Stop& to, const Search
     open_.pop_back();
     const auto [search, before, rect, cost] = reached_[next.point];
     const Stop at{crossing(rect, next.point).beyond, mesh_->portals[next.point / kPoints].rect};
-    if (next.estimate > cost + between(at.at, goal_)) continue;  // It was reached more cheaply.
+    if (next.estimate > cost + between(at.at, goal_)) continue;  // It was reached at a lower cost.
     if (budget.is_spent(++expanded_, used_bytes())) return SearchResult::kBudget;
     if (at.rect == to.rect) {
       best = cost + between(at.at, to.at);
@@ -123,7 +124,8 @@ void PortalSearch::expand(const Stop& at, double cost, uint32_t before) {
   }
 }
 
-// The way backwards from its last portal, both sides of each; then without what is needless.
+// The path backwards from its last portal, both sides of each; then without stops that are
+// needless.
 void PortalSearch::draw(uint32_t last, const Stop& from, const Stop& to, std::vector<Stop>& stops) {
   all_.clear();
   all_.push_back(to);
@@ -134,7 +136,7 @@ void PortalSearch::draw(uint32_t last, const Stop& from, const Stop& to, std::ve
   }
   all_.push_back(from);
   std::reverse(all_.begin(), all_.end());
-  // Straightened until nothing is left out: what goes makes room for the next.
+  // Repeated until no stop is left out: each removal may allow the next.
   for (size_t before = 0; before != all_.size();) {
     before = all_.size();
     stops.assign(1, all_.front());

@@ -9,24 +9,23 @@
 #include "path/mesh.h"
 #include "path/search.h"
 
-/// Ways over a mesh from portal to portal: none is the shortest, but every leg is surely legal.
+/// Paths over a mesh from portal to portal: none is the shortest, but every segment is legal.
 namespace throng {
 
 /// Where neighbouring cells that can both be stood on lie a step apart, two sides of one line touch
-/// and a shortest way over corners may be drawn across it: nothing is missing there that it could
-/// keep a distance from. This search tells the way then. A* over the ends and the middles of
-/// portals; stops that a straight leg makes needless are left out. Owns its memory:
-/// one per thread, no allocation once it has grown; what a large query took is given back.
+/// and a shortest path over corners may be drawn across it: nothing is missing there from which it
+/// could keep a distance. Then this search finds the path. A* over the ends and the middles of
+/// portals; stops that a straight segment makes needless are left out. Owns its memory: one per
+/// thread, no allocation once it has grown; what a large query allocated is freed.
 class PortalSearch {
  public:
-  /// The stops from `from` to `to`, and their length in cells. Finds a way wherever both are of one
-  /// component. Gives up when as many portals' ends and middles as the budget allows were
-  /// looked at.
+  /// The stops from `from` to `to`, and their length in cells. Finds a path wherever both are of
+  /// one component. Stops when the budget of portals' ends and middles to expand is exhausted.
   SearchResult find(const PathMesh& mesh, const Stop& from, const Stop& to,
                     const SearchBudget& budget, std::vector<Stop>& stops, double& length);
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
   [[nodiscard]] uint64_t allocated_bytes() const;
-  /// Of these, what stays allocated from one query to the next, at most. [bytes]
+  /// Of these, the maximum that stays allocated from one query to the next. [bytes]
   static constexpr uint64_t kKeptBytes = uint64_t{32} << 20;
 
  private:

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 
+// Greedy: runs of cells, stacked while they are alike, by rows and by columns; the fewer rectangles
+// win.
 namespace throng {
 namespace {
 

@@ -8,13 +8,13 @@
 #include "path/border.h"
 
 // Distances around a rectangle run from its south-west corner with the inside on the left, as its
-// portals do. Of a node that looks in through [right, left], what lies from `right` on comes first,
+// portals do. Of a node that sees [right, left] of a portal, what lies from `right` on comes first,
 // then what the root sees, then what lies beyond `left`.
 namespace throng {
 namespace {
 
 constexpr size_t kDropFrom = 1 << 16;        // open intervals, before it pays to drop any
-constexpr uint32_t kMaxPushed = 0xf0000000;  // numbers of pushes that can be told apart
+constexpr uint32_t kMaxPushed = 0xf0000000;  // numbers of pushes that are distinct
 
 }  // namespace
 
@@ -54,15 +54,15 @@ SearchResult PathSearch::find(const PathMesh& mesh, const Stop& from, const Stop
   return result;
 }
 
-// An interval is forgotten as soon as it is looked at, and those that can lead to nothing shorter
-// are when the memory is used up; what is given up then is seldom worth looking at.
+// An interval is forgotten as soon as it is expanded. When the memory is used up, so are those that
+// can lead to nothing shorter; those are seldom worth expanding.
 SearchResult PathSearch::run(const SearchBudget& budget) {
   size_t drop_at = kDropFrom;
   while (!open_.empty()) {
     if (open_.size() >= drop_at || used_bytes() > budget.max_bytes || pushed_ > kMaxPushed) {
       drop_useless();
       drop_at = std::max(kDropFrom, 2 * open_.size());
-      // So much is to be free that it takes a while until it is full again.
+      // So much must be free that it takes a while until the memory is full again.
       if (used_bytes() > budget.max_bytes - budget.max_bytes / 8 || pushed_ > kMaxPushed)
         return SearchResult::kBudget;
       if (open_.empty()) break;
@@ -92,7 +92,7 @@ uint64_t PathSearch::allocated_bytes() const {
          free_.capacity() * sizeof(uint32_t);
 }
 
-// Takes out what would be passed over when its turn came: the order of the others is as it was.
+// Removes intervals that would be skipped; the order of the others stays.
 void PathSearch::drop_useless() {
   size_t kept = 0;
   for (const Entry& entry : open_) {
@@ -133,13 +133,14 @@ void PathSearch::start(uint32_t start_rect, CellPoint from) {
   }
 }
 
-// A better way to the root's corner has been found since.
+// A better path to the root's corner has been found since.
 bool PathSearch::is_stale(uint32_t root) const {
   const Root& r = roots_[root];
   return r.corner != kNoCorner && best_[r.corner].length < r.length - kSame;
 }
 
-// The root of ways that bend at a corner after `root`; UINT32_MAX if there was a better way there.
+// The root of paths that turn at a corner after `root`; UINT32_MAX if there was a better path
+// there.
 uint32_t PathSearch::turn(uint32_t root, CellPoint at, uint32_t corner) {
   const double length = roots_[root].length + distance(roots_[root].point, at);
   Best& best = best_[corner];
@@ -156,7 +157,7 @@ double PathSearch::estimate(const Node& node) const {
   const double side_goal = cross(node.right, node.left, goal);
   const double width = distance(node.left, node.right);
   if (std::fabs(side_root) <= kSame * width) {
-    // Edge on: by the nearer end, or from where the root lies on the interval.
+    // Edge on: over the nearer end, or from where the root lies on the interval.
     const double to_right = distance(root.point, node.right);
     const double to_left = distance(root.point, node.left);
     if (std::max(to_right, to_left) <= width + kSame)
@@ -164,7 +165,8 @@ double PathSearch::estimate(const Node& node) const {
     const CellPoint end = to_right < to_left ? node.right : node.left;
     return root.length + std::min(to_right, to_left) + distance(end, goal);
   }
-  // A goal on the root's side is reached over the interval all the same: mirrored, it is as far.
+  // A goal on the root's side is reached over the interval all the same: its mirror image is as
+  // far.
   if (side_root * side_goal > 0) {
     const bool upright = node.left.x == node.right.x;
     if (upright) {
@@ -225,11 +227,12 @@ void PathSearch::expand(const Node& node) {
   uint32_t seen_root = node.root;
   const double side = cross(node.right, node.left, root);
   if (std::fabs(side) <= kSame * width) {
-    // The root lies on the interval's line: unless it lies on the interval, the way goes to the
+    // The root lies on the interval's line: unless it lies on the interval, the path goes to the
     // nearer end and turns there.
     const double to_right = distance(root, node.right), to_left = distance(root, node.left);
     const bool touches = std::max(to_right, to_left) <= width + kSame;
-    if (touches && roots_[node.root].corner == kNoCorner) return;  // start() looked out there
+    if (touches && roots_[node.root].corner == kNoCorner)
+      return;  // start() covered what is seen from there
     if (!touches) {
       const bool right = to_right < to_left;
       const uint32_t corner = right ? node.right_corner : node.left_corner;

@@ -9,40 +9,40 @@
 #include "path/mesh.h"
 #include "throng/search_budget.h"
 
-/// The shortest way over a mesh, by search over intervals.
+/// The shortest path over a mesh, by search over intervals.
 namespace throng {
 
 enum class SearchResult { kFound, kNone, kBudget };
 
 /// Polyanya over rectangles (source: [CHG17]): a node is an interval of a portal that is seen from
-/// a root; the way bends at corners only, and the first one to arrive is the shortest over the
-/// mesh. Owns its memory: one per thread, no allocation once it has grown; what a large query took
-/// beyond kKeptBytes is given back after it.
+/// a root; the path turns at corners only, and the first one to arrive is the shortest over the
+/// mesh. Owns its memory: one per thread, no allocation once it has grown; what a large query
+/// allocated beyond kKeptBytes is freed after it.
 class PathSearch {
  public:
-  /// Corners of the shortest way from `from` to `to`, in order, ends left out; `length` in cells.
-  /// Gives up when the budget is spent, and does not look for ways that are not shorter than
+  /// Corners of the shortest path from `from` to `to`, in order, ends left out; `length` in cells.
+  /// Stops when the budget is exhausted, and does not search for paths that are not shorter than
   /// `longest`.
   SearchResult find(const PathMesh& mesh, const Stop& from, const Stop& to,
                     const SearchBudget& budget, std::vector<uint32_t>& corners, double& length,
                     double longest = kAnyLength);
   static constexpr double kAnyLength = 1e300;  // cells
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
-  /// What it has allocated for queries by now, without what it holds of the mesh. [bytes]
+  /// What it has allocated for queries by now, without references to the mesh. [bytes]
   [[nodiscard]] uint64_t allocated_bytes() const;
-  /// Of these, what stays allocated from one query to the next, at most. [bytes]
+  /// Of these, the maximum that stays allocated from one query to the next. [bytes]
   static constexpr uint64_t kKeptBytes = uint64_t{32} << 20;
 
  private:
-  // Where a way bends, and what it took to get there.
+  // Where a path turns, and its length up to there.
   struct Root {
     CellPoint point;
     double length = 0;
     uint32_t corner = kNoCorner;  // none: the start
     uint32_t before = 0;          // index of the root before it
   };
-  // An interval of a portal, seen from the root; the way goes on into `rect`. Looking that way,
-  // left is on the left.
+  // An interval of a portal, seen from the root; the path continues into `rect`. Seen in that
+  // direction, left is on the left.
   struct Node {
     CellPoint left, right;
     uint32_t left_corner = kNoCorner, right_corner = kNoCorner;

@@ -9,10 +9,12 @@
 
 #include "path/mesh_ray.h"
 
+// Turns corners into stops that a body can walk between, each segment tested on the mesh or cell by
+// cell.
 namespace throng {
 namespace {
 
-constexpr int32_t kMaxGrazed = 64;  // corners past which one leg is led
+constexpr int32_t kMaxGrazed = 64;  // corners past which one segment is led
 constexpr double kGrazes = 0.02;    // cells
 
 bool is_same(GroundPoint a, GroundPoint b) { return a.x == b.x && a.z == b.z; }
@@ -23,7 +25,7 @@ GroundPoint quadrant(const CellCorner& corner, size_t i) {
           (int64_t{corner.z} << kUnitBits) + (i < 2 ? 1 : -1)};
 }
 
-// From a corner to the line that a leg lies on. [cells]
+// From a corner to the line that a segment lies on. [cells]
 double distance(const CellCorner& corner, GroundPoint from, GroundPoint to) {
   const CellPoint a = in_cells(from), b = in_cells(to);
   const double dx = b.x - a.x, dz = b.z - a.z;
@@ -50,7 +52,7 @@ bool SegmentWalker::segment(GroundPoint to, int32_t depth, std::vector<Stop>& st
     stops.push_back({to, rect});
     return true;
   }
-  // Only the cells can tell.
+  // Only the cells can decide.
   const GroundLevel level =
       ground_level(ground_.world, mesh_->rects[from.rect].level, ground_.avatar_class);
   GroundLevel end = level;
@@ -66,10 +68,10 @@ bool SegmentWalker::segment(GroundPoint to, int32_t depth, std::vector<Stop>& st
   return segment(*past, depth / 2, stops) && segment(to, depth - 1, stops);
 }
 
-// Adds stops a unit beside the corner at which the leg ends, on whichever sides the body gets on
-// from. Between two cells on which it may stand the ground may rise by more than a step: nothing
-// is missing there, and who comes to the end of such a rise has to go around it, from one side of
-// one point to the other.
+// Adds stops a unit beside the corner at which the segment ends, on the sides from which the body
+// can continue. Between two cells on which it may stand the ground may rise by more than the step
+// height: nothing is missing there, and a body at the end of such a rise has to go around it, from
+// one side of one point to the other.
 bool SegmentWalker::slip_by(const GroundLevel& level, GroundPoint from, GroundPoint to,
                             std::vector<Stop>& stops) {
   GroundLevel end = level;
@@ -102,7 +104,7 @@ bool SegmentWalker::slip_by(const GroundLevel& level, GroundPoint from, GroundPo
   return false;
 }
 
-// Does a straight way from a stop lead out of the four cells around a corner, or to its end?
+// Does a straight line from a stop lead out of the four cells around a corner, or to its end?
 bool SegmentWalker::gets_past(const CellCorner& corner, const Stop& from, GroundPoint to) const {
   GroundLevel level =
       ground_level(ground_.world, mesh_->rects[from.rect].level, ground_.avatar_class);
@@ -113,7 +115,7 @@ bool SegmentWalker::gets_past(const CellCorner& corner, const Stop& from, Ground
   return stop.arrived || !is_beside(stop.x, corner.x) || !is_beside(stop.z, corner.z);
 }
 
-// The point beside the corner of the first cell in the way, if the leg just grazes it.
+// The point beside the corner of the first blocking cell, if the segment just grazes it.
 std::optional<GroundPoint> SegmentWalker::grazed(GroundLevel level, GroundPoint from,
                                                  GroundPoint to) const {
   const double fx = static_cast<double>(from.x) / kUnitsPerCell;
@@ -122,8 +124,8 @@ std::optional<GroundPoint> SegmentWalker::grazed(GroundLevel level, GroundPoint 
   const double dz = static_cast<double>(to.z) / kUnitsPerCell - fz;
   const double length = std::sqrt(dx * dx + dz * dz);
   if (!(length > 0)) return {};
-  // The way is legal up to the first border of cells at which it is not: found by halving would
-  // miss one, so cell by cell, as walk() goes.
+  // The segment is legal up to the first border of cells at which it is not: halving could miss
+  // one, so it is tested cell by cell, as walk() does.
   int32_t x = from.cell_x(), z = from.cell_z();
   const int32_t sx = to.x > from.x ? 1 : -1, sz = to.z > from.z ? 1 : -1;
   const int64_t ux = std::llabs(to.x - from.x), uz = std::llabs(to.z - from.z);
@@ -138,11 +140,11 @@ std::optional<GroundPoint> SegmentWalker::grazed(GroundLevel level, GroundPoint 
     const GroundPoint here{(int64_t{x} << kUnitBits) + 1024, (int64_t{z} << kUnitBits) + 1024};
     const GroundPoint there{(int64_t{nx} << kUnitBits) + 1024, (int64_t{nz} << kUnitBits) + 1024};
     if (!throng::walk(ground_, next, here, there, mesh_->step)) {
-      // Of the cells that may be in the way, the corner that the leg passes closest.
+      // Of the cells that may block, the corner that the segment passes closest.
       double nearest = kGrazes;
       std::optional<GroundPoint> best;
-      // The cells beside the leg first: a diagonal one that can be stood on shares their corner,
-      // but it is not what is missing there.
+      // The cells beside the segment first: a diagonal one that can be stood on shares their
+      // corner, but it is not what is missing there.
       const std::array<std::array<int32_t, 2>, 3> cells{{{nx, z}, {x, nz}, {nx, nz}}};
       for (const auto& [cx, cz] : cells) {
         if (cx == x && cz == z) continue;

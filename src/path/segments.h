@@ -8,7 +8,7 @@
 #include "path/mesh.h"
 #include "world/ground.h"
 
-/// From the corners of a way to legs that a body can walk.
+/// From the corners of a path to segments that a body can walk.
 namespace throng {
 
 /// A point that four cells of the grid share.
@@ -16,8 +16,8 @@ struct CellCorner {
   int32_t x = 0, z = 0;
 };
 
-/// Walks from `from` by way of the corners to `to`, a unit beside each corner, and past every other
-/// corner that a leg would graze. False if a leg is blocked for another reason.
+/// Walks from `from` over the corners to `to`, a unit beside each corner, and past every other
+/// corner that a segment would graze. False if a segment is blocked for another reason.
 class SegmentWalker {
  public:
   SegmentWalker(const WorldData& world, const PathMesh& mesh)

@@ -27,7 +27,7 @@ void Sight::begin(const PathMesh& mesh, CellPoint from, uint32_t goal, CellPoint
   entered_.clear();
 }
 
-void Sight::look(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t goal,
+void Sight::cast(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t goal,
                  CellPoint goal_point) {
   begin(mesh, from, goal, goal_point);
   rects_around(mesh, rect, from, around_);
@@ -36,7 +36,7 @@ void Sight::look(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t g
   finish();
 }
 
-void Sight::look_from_corner(const PathMesh& mesh, uint32_t corner, bool with_blocks) {
+void Sight::cast_from_corner(const PathMesh& mesh, uint32_t corner, bool with_blocks) {
   const MeshCorner& at = mesh.corners[corner];
   begin(mesh, {double(at.x), double(at.z)}, kNoRect, {});
   own_ = corner;
@@ -47,7 +47,7 @@ void Sight::look_from_corner(const PathMesh& mesh, uint32_t corner, bool with_bl
   finish();
 }
 
-void Sight::look_into(const PathMesh& mesh, uint32_t corner, uint32_t rect, CellPoint from,
+void Sight::cast_into(const PathMesh& mesh, uint32_t corner, uint32_t rect, CellPoint from,
                       CellPoint right, CellPoint left) {
   begin(mesh, from, kNoRect, {});
   in_triangle_ = true;
@@ -88,12 +88,12 @@ void Sight::start(uint32_t rect_index) {
     add(rect, mesh_->portals[p], mesh_->portals[p].from, mesh_->portals[p].to);
 }
 
-// Most of what looking takes is the wait for the mesh's bytes: they are asked for as soon as it is
-// known which, and views and corners come again in the order in which they were asked for.
+// Most of the time is the wait for the mesh's bytes: they are prefetched as soon as it is known
+// which, and views and corners are processed in the order of their prefetches.
 void Sight::run() {
   constexpr size_t kForgetFrom = 1 << 14;
   for (size_t i = 0; i < views_.size(); ++i) {
-    if (i >= kForgetFrom && i * 2 >= views_.size()) {  // Views that were gone on from are not kept.
+    if (i >= kForgetFrom && i * 2 >= views_.size()) {  // Views that were expanded are not kept.
       views_.erase(views_.begin(), views_.begin() + static_cast<ptrdiff_t>(i));
       i = 0;
     }
@@ -189,7 +189,7 @@ void Sight::add(const MeshRect& rect, const MeshPortal& portal, double from, dou
   view.rect = portal.rect;
   if (in_triangle_ && is_outside(view.right, view.left)) return;
   if (own_ != kNoCorner) {
-    // No shortest way leaves a corner into the quarter across from its missing cell.
+    // No shortest path leaves a corner into the quarter across from its missing cell.
     const MeshCorner& own = mesh_->corners[own_];
     const auto is_across = [&](CellPoint p) {
       return (p.x - from_.x) * own.away_x > kSame && (p.z - from_.z) * own.away_z > kSame;
@@ -211,7 +211,7 @@ void Sight::expand(const View& view) {
     return rest < -kSame ? rest + whole : std::max(rest, 0.0);
   };
   double first_seen = 0, last_seen = last;
-  // Edge on there is nothing to see, and around the eye itself start() has looked.
+  // Edge on nothing is seen, and start() covered what is around the eye itself.
   if (std::fabs(cross(view.right, view.left, from_)) <= kSame * width) return;
   if (!runs_along(rect, from_, view.right))
     first_seen = from_base(exit_around(rect, from_, view.right));

@@ -8,7 +8,7 @@
 
 #include "path/mesh.h"
 
-/// What is seen from a point of the ground.
+/// The corners and blocks that are seen from a point of the ground.
 namespace throng {
 
 /// A block of which something may be seen; `whole` if all of it is.
@@ -22,30 +22,30 @@ struct SeenCorner {
   double distance = 0;  // cells
 };
 
-/// True if a shortest way may come to the corner along (dx, dz) or leave it that way: the line
-/// through the corner passes the missing cell by.
+/// True if a shortest path may come to the corner along (dx, dz) or leave it in that direction: the
+/// line through the corner passes the missing cell by.
 inline bool is_taut(const MeshCorner& corner, double dx, double dz) {
   return dx * corner.away_x * (dz * corner.away_z) <= 0;
 }
 
-/// Looks over a mesh along straight lines. Owns its memory: one per thread.
+/// Casts over a mesh along straight lines. Owns its memory: one per thread.
 class Sight {
  public:
-  /// From now on, looks into rectangles [first, last) only.
+  /// From now on, casts into rectangles [first, last) only.
   void stay_within(uint32_t first_rect, uint32_t last_rect) {
     first_rect_ = first_rect;
     last_rect_ = last_rect;
   }
-  /// The corners that are seen from a point of a rectangle and that a way may bend at; each once,
+  /// The corners that are seen from a point of a rectangle and that a path may turn at; each once,
   /// by number. If `goal` is a rectangle, also whether `goal_point` in it is seen.
-  void look(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t goal,
+  void cast(const PathMesh& mesh, uint32_t rect, CellPoint from, uint32_t goal,
             CellPoint goal_point);
-  /// The corners that are seen from a corner, along lines that may bend at both.
-  void look_from_corner(const PathMesh& mesh, uint32_t corner, bool with_blocks);
+  /// The corners that are seen from a corner, along lines that may turn at both.
+  void cast_from_corner(const PathMesh& mesh, uint32_t corner, bool with_blocks);
 
   /// The corners that are seen from a point, or from `corner` if that is one, in the triangle of
-  /// it, `right` and `left`; of what lies beyond, some.
-  void look_into(const PathMesh& mesh, uint32_t corner, uint32_t rect, CellPoint from,
+  /// it, `right` and `left`; of those beyond, some.
+  void cast_into(const PathMesh& mesh, uint32_t corner, uint32_t rect, CellPoint from,
                  CellPoint right, CellPoint left);
 
   [[nodiscard]] const std::vector<SeenCorner>& corners() const { return seen_; }
@@ -78,7 +78,7 @@ class Sight {
   const PathMesh* mesh_ = nullptr;
   uint32_t first_rect_ = 0, last_rect_ = kNoRect;
   CellPoint from_;
-  uint32_t own_ = kNoCorner;  // the corner that is looked from
+  uint32_t own_ = kNoCorner;  // the corner that is cast from
   uint32_t goal_ = kNoRect;
   CellPoint goal_point_;
   bool sees_goal_ = false;

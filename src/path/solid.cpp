@@ -10,8 +10,9 @@
 #include "path/plan_shapes.h"
 
 // A cylinder lies in the capsule around its axis and in the slab between its ends. A solid that
-// stays clear of either stays clear of the cylinder. How far a convex solid is from a point of the
-// axis is a convex function of where on the axis that is, so its least value is found by thirds.
+// stays clear of either stays clear of the cylinder. The distance of a convex solid from a point of
+// the axis is a convex function of the point's place on the axis, so its minimum is found by
+// ternary search.
 namespace throng {
 namespace {
 
@@ -52,21 +53,21 @@ double distance(const std::array<Vec3d, 3>& triangle, Vec3d p) {
   return std::min({to_segment(p, a, b), to_segment(p, b, c), to_segment(p, c, a)});
 }
 
-// Is it nearer to the line from a to b than `reach`?
+// Is it nearer to the line from a to b than `radius`?
 template <class Shape>
-bool comes_near(const Shape& shape, Vec3d a, Vec3d b, double reach) {
+bool comes_near(const Shape& shape, Vec3d a, Vec3d b, double radius) {
   double low = 0, high = 1;
   const double all = length(b - a);
   const auto far = [&](double at) { return distance(shape, a + (b - a) * at); };
   for (int k = 0; k < kThirds; ++k) {
     const double one = (2 * low + high) / 3, two = (low + 2 * high) / 3;
     const double at_one = far(one), at_two = far(two);
-    if (std::min(at_one, at_two) < reach) return true;
+    if (std::min(at_one, at_two) < radius) return true;
     // Nothing between is nearer by more than it is away.
-    if (std::min(at_one, at_two) - (high - low) * all >= reach) return false;
+    if (std::min(at_one, at_two) - (high - low) * all >= radius) return false;
     (at_one < at_two ? high : low) = at_one < at_two ? two : one;
   }
-  return far((low + high) / 2) - (high - low) * all < reach;
+  return far((low + high) / 2) - (high - low) * all < radius;
 }
 
 template <class Corners>
@@ -94,14 +95,14 @@ std::pair<double, double> along(const Prism& prism, Vec3d from, Vec3d axis) {
 template <class Shape>
 bool meets(const BodyRoom& room, const Shape& shape) {
   if (room.turns_far) {
-    const double reach =
+    const double radius =
         std::sqrt(room.top * room.top + room.radius * room.radius) + room.spread + room.margin;
-    return distance(shape, room.feet) < reach;
+    return distance(shape, room.feet) < radius;
   }
   const auto [low, high] = along(shape, room.feet, room.axis);
   const double out = room.spread + room.radius * room.sine + room.margin;
   if (high < room.bottom * room.cosine - out || low > room.top + out) return false;
-  // 2 sin(angle / 2) times as far as it is up the axis goes a point of the axis that turns.
+  // A point of an axis that turns moves 2 sin(angle / 2) times its distance up the axis.
   const double turned = room.top * std::sqrt(std::max(0.0, 2 - 2 * room.cosine));
   return comes_near(shape, room.feet + room.axis * room.bottom, room.feet + room.axis * room.top,
                     room.radius + room.spread + turned + room.margin);

@@ -13,7 +13,7 @@
 #include "throng/prism.h"
 #include "throng/result.h"
 
-/// What is put into a world at run time, and whether a body touches it.
+/// A solid that is placed in a world at run time, and whether a body touches it.
 namespace throng {
 
 struct Solid {
@@ -28,7 +28,7 @@ struct Solid {
                                        std::span<const std::array<uint32_t, 3>> triangles);
 
 /// Bodies whose feet are no farther than `spread` from `feet` and whose axes turn away from `axis`
-/// by no more than an angle; where `turns_far` is set, by any.
+/// by at most an angle; where `turns_far` is set, by any.
 struct BodyRoom {
   Vec3d feet, axis;
   double spread = 0;            ///< [m]
@@ -41,10 +41,10 @@ struct BodyRoom {
 };
 
 /// False: none of these bodies is nearer to the solid than the margin. May be true of bodies that
-/// are not.
+/// are not nearer.
 [[nodiscard]] bool may_touch(const BodyRoom& room, const Solid& solid);
 
-/// How far points of such bodies are from their feet at most. [m]
+/// The maximum distance of points of such bodies from their feet. [m]
 [[nodiscard]] double reach_of(const AvatarClass& avatar);
 
 }  // namespace throng

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "path/split_boxes.h"
 
+// Each box with blocked cells becomes an octree of free parts. Linear in the box's cells.
 namespace throng {
 
 SplitBoxes::SplitBoxes(const FlightSpace& space)
@@ -24,7 +25,7 @@ uint32_t SplitBoxes::part_at(uint32_t box, int32_t x, int32_t y, int32_t z) cons
   return air_kind(word) == AirKind::kFree ? first_ + air_number(word) : kNoBox;
 }
 
-void SplitBoxes::cut(uint32_t box, const CubeCells& taken) {
+void SplitBoxes::cut(uint32_t box, const CubeCells& blocked) {
   if (is_split(box)) {
     for_parts(box, [&](uint32_t part) { spare_.push_back(part - first_); });
     nodes_.erase(box);
@@ -35,22 +36,22 @@ void SplitBoxes::cut(uint32_t box, const CubeCells& taken) {
   const int32_t side = cube.side;
   uint32_t any = 0;
   for (int32_t y = 0; y < side; ++y) {
-    for (int32_t z = 0; z < side; ++z) any |= taken.row(y, z);
+    for (int32_t z = 0; z < side; ++z) any |= blocked.row(y, z);
   }
   if (any == 0) return;
-  nodes[0] = build(nodes, {0, 0, 0, side}, cube, taken);
+  nodes[0] = build(nodes, {0, 0, 0, side}, cube, blocked);
   split_[box / 64] |= uint64_t{1} << (box % 64);
   nodes_.emplace(box, std::move(nodes));
 }
 
 uint32_t SplitBoxes::build(Nodes& nodes, const AirCube& cube, const AirCube& box,
-                           const CubeCells& taken) {
+                           const CubeCells& blocked) {
   const uint32_t columns = (~uint32_t{0} >> (32 - cube.side)) << cube.x;
   uint32_t any = 0, all = columns;
   for (int32_t y = cube.y; y < cube.y + cube.side; ++y) {
     for (int32_t z = cube.z; z < cube.z + cube.side; ++z) {
-      any |= taken.row(y, z);
-      all &= taken.row(y, z);
+      any |= blocked.row(y, z);
+      all &= blocked.row(y, z);
     }
   }
   if (all == columns) return air_word(AirKind::kFull, 0);
@@ -72,7 +73,7 @@ uint32_t SplitBoxes::build(Nodes& nodes, const AirCube& cube, const AirCube& box
     const uint32_t word = build(
         nodes,
         {cube.x + (c & 1) * half, cube.y + (c >> 1 & 1) * half, cube.z + (c >> 2) * half, half},
-        box, taken);
+        box, blocked);
     nodes[first + static_cast<size_t>(c)] = word;
   }
   return air_word(AirKind::kInner, static_cast<uint32_t>(first));

@@ -9,6 +9,8 @@
 #include "path/border.h"
 #include "path/mesh_ray.h"
 
+// Removes waypoint after waypoint that is not a taut turn, replacing it by the convex chain of
+// corners in its triangle.
 namespace throng {
 namespace {
 
@@ -17,7 +19,7 @@ double missing_side(const MeshCorner& corner, double dx, double dz) {
   return dx * -corner.away_z - dz * -corner.away_x;
 }
 
-// True if the way over `at` goes around what is missing there, or straight on.
+// True if the path over `at` goes around what is missing there, or straight on.
 bool holds(const PathMesh& mesh, CellPoint before, const Waypoint& at, CellPoint after) {
   if (at.corner == kNoCorner) return false;
   const double turn = cross(before, at.at, after);
@@ -57,7 +59,7 @@ bool keeps_out(const PathMesh& mesh, const Waypoint& p, double dx, double dz) {
 }
 
 // Rays go from and to points beside corners. Where the line between the corners themselves runs
-// into a cell that is missing at one of them the ray may still pass by, and tells nothing.
+// into a cell that is missing at one of them the ray may still pass by, and proves nothing.
 bool see_each_other(const PathMesh& mesh, const Waypoint& a, const Waypoint& b) {
   const double dx = b.at.x - a.at.x, dz = b.at.z - a.at.z;
   if (!keeps_out(mesh, a, dx, dz) || !keeps_out(mesh, b, dx, dz)) return false;
@@ -68,20 +70,20 @@ bool see_each_other(const PathMesh& mesh, const Waypoint& a, const Waypoint& b) 
 
 }  // namespace
 
-// Most points at which the way need not bend will be pulled from, between the points beside them:
-// what lies there is asked for before any of it is waited for.
-void StringPuller::ask_for_bends(const PathMesh& mesh, const std::vector<Waypoint>& way) {
-  asked_.clear();
-  for (size_t i = 1; i + 1 < way.size(); ++i) {
-    if (way[i].corner != kNoCorner) continue;
-    for (const Waypoint& beside : {way[i - 1], way[i + 1]}) {
+// Most points at which the path need not turn are pulled away from, between the points beside them:
+// what lies there is prefetched before any of it is read.
+void StringPuller::prefetch_waypoints(const PathMesh& mesh, const std::vector<Waypoint>& path) {
+  prefetched_.clear();
+  for (size_t i = 1; i + 1 < path.size(); ++i) {
+    if (path[i].corner != kNoCorner) continue;
+    for (const Waypoint& beside : {path[i - 1], path[i + 1]}) {
       if (beside.corner == kNoCorner) continue;
-      asked_.push_back(beside.corner);
+      prefetched_.push_back(beside.corner);
       prefetch(mesh.corner_rects.data() + mesh.corners[beside.corner].first_rect);
     }
   }
   const auto each_rect = [&](auto visit) {
-    for (const uint32_t corner : asked_) {
+    for (const uint32_t corner : prefetched_) {
       const uint32_t end = mesh.corners[corner + 1].first_rect;
       for (uint32_t i = mesh.corners[corner].first_rect; i < end; ++i) visit(mesh.corner_rects[i]);
     }
@@ -90,12 +92,12 @@ void StringPuller::ask_for_bends(const PathMesh& mesh, const std::vector<Waypoin
   each_rect([&](uint32_t rect) { prefetch(mesh.portals.data() + mesh.rects[rect].first_portal); });
 }
 
-// What stands in the triangle of `from`, `over`, `to`, whose first two sides are free: the convex
-// chain of corners that a string over these two sides is caught by when it is pulled.
+// The obstacles in the triangle of `from`, `over`, `to`, whose first two sides are free: the convex
+// chain of corners that catches a string over these two sides when it is pulled.
 void StringPuller::wrap(const PathMesh& mesh, const Waypoint& from, const Waypoint& over,
                         const Waypoint& to) {
   chain_.clear();
-  // A ray is cheaper than looking into the triangle, and most often nothing stands there.
+  // A ray costs less than casting into the triangle, and usually nothing stands there.
   if (see_each_other(mesh, from, to)) return;
   const double turn = cross(from.at, over.at, to.at);
   if (std::fabs(turn) <= kSame) return;
@@ -104,7 +106,7 @@ void StringPuller::wrap(const PathMesh& mesh, const Waypoint& from, const Waypoi
   constexpr size_t kMax = 1000;  // corners: rounding must not wrap for ever
   while (chain_.size() < kMax) {
     const CellPoint right = side > 0 ? over.at : to.at, left = side > 0 ? to.at : over.at;
-    sight_.look_into(mesh, at.corner, at.rect, at.at, right, left);
+    sight_.cast_into(mesh, at.corner, at.rect, at.at, right, left);
     // The first one that a line from `at` meets as it swings from `over` to `to`.
     const SeenCorner* first = nullptr;
     for (const SeenCorner& seen : sight_.corners()) {
@@ -133,14 +135,14 @@ void StringPuller::wrap(const PathMesh& mesh, const Waypoint& from, const Waypoi
   }
 }
 
-bool StringPuller::pull(const PathMesh& mesh, const std::vector<Waypoint>& way,
+bool StringPuller::pull(const PathMesh& mesh, const std::vector<Waypoint>& path,
                         std::vector<uint32_t>& corners, double& length) {
-  ask_for_bends(mesh, way);
+  prefetch_waypoints(mesh, path);
   corners.clear();
-  taut_.assign(1, way.front());
-  ahead_.assign(way.rbegin(), way.rend() - 1);
-  // Each turn makes the way shorter; the count stops what rounding might keep going.
-  size_t turns = 1000 + 100 * way.size();
+  taut_.assign(1, path.front());
+  ahead_.assign(path.rbegin(), path.rend() - 1);
+  // Each turn makes the path shorter; the count ends what rounding could continue for ever.
+  size_t turns = 1000 + 100 * path.size();
   while (!ahead_.empty()) {
     if (turns-- == 0) return false;
     const Waypoint next = ahead_.back();

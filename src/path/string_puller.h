@@ -8,40 +8,40 @@
 #include "path/mesh.h"
 #include "path/sight.h"
 
-/// Pulling a way taut.
+/// Pulls a path taut.
 namespace throng {
 
-/// A point that a way leads over: a corner, or anywhere in a rectangle.
+/// A point that a path leads over: a corner, or anywhere in a rectangle.
 struct Waypoint {
   CellPoint at;
   uint32_t rect = kNoRect;      // of which it is a point, if it is no corner
-  uint32_t corner = kNoCorner;  // none: the way need not bend here
+  uint32_t corner = kNoCorner;  // none: the path need not turn here
 };
 
-/// The way point of a corner.
+/// The waypoint of a corner.
 inline Waypoint waypoint(const PathMesh& mesh, uint32_t corner) {
   const MeshCorner& at = mesh.corners[corner];
   return {{double(at.x), double(at.z)}, kNoRect, corner};
 }
 
-/// Makes ways that are pieced together the shortest of their kind: those that pass every obstacle
+/// Makes paths that are pieced together the shortest of their kind: those that pass every obstacle
 /// on the same side. Owns its memory: one per thread.
 class StringPuller {
  public:
-  /// Of a way whose points see each other one after the other, the corners that it bends at once it
-  /// is taut, ends left out; `length` in cells. False if it does not come to an end.
-  bool pull(const PathMesh& mesh, const std::vector<Waypoint>& way, std::vector<uint32_t>& corners,
+  /// Of a path whose points see each other one after the other, the corners at which it turns once
+  /// it is taut, ends left out; `length` in cells. False if it does not come to an end.
+  bool pull(const PathMesh& mesh, const std::vector<Waypoint>& path, std::vector<uint32_t>& corners,
             double& length);
 
  private:
-  void ask_for_bends(const PathMesh& mesh, const std::vector<Waypoint>& way);
+  void prefetch_waypoints(const PathMesh& mesh, const std::vector<Waypoint>& path);
   void wrap(const PathMesh& mesh, const Waypoint& from, const Waypoint& over, const Waypoint& to);
 
   Sight sight_;
-  std::vector<Waypoint> taut_;   // the way so far
-  std::vector<Waypoint> ahead_;  // the rest of it, the next one last
-  std::vector<uint32_t> asked_;  // corners that are asked for
-  std::vector<Waypoint> chain_;  // what stands between two points
+  std::vector<Waypoint> taut_;        // the path so far
+  std::vector<Waypoint> ahead_;       // the rest of it, the next one last
+  std::vector<uint32_t> prefetched_;  // corners that are prefetched
+  std::vector<Waypoint> chain_;       // what stands between two points
 };
 
 }  // namespace throng

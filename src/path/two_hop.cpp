@@ -9,6 +9,8 @@
 #include "core/parallel.h"
 #include "core/random.h"
 
+// Pruned landmark labelling [AIY13]: a Dijkstra search from each hub, pruned where earlier hubs
+// give as short a path.
 namespace throng {
 namespace {
 
@@ -16,11 +18,11 @@ constexpr double kFar = 1e300;
 constexpr double kSame = 1e-9;
 
 // Dijkstra's search with its memory.
-class Spread {
+class DijkstraSearch {
  public:
-  explicit Spread(size_t count) : best_(count, kFar), before_(count, 0) {}
+  explicit DijkstraSearch(size_t count) : best_(count, kFar), before_(count, 0) {}
 
-  // Calls visit(node, length, before) in order of length; goes on from a node if it says so.
+  // Calls visit(node, length, before) in order of length; expands a node if it returns true.
   template <class Visit>
   void run(const PathGraph& graph, uint32_t from, Visit visit) {
     heap_.clear();
@@ -56,23 +58,23 @@ class Spread {
   std::vector<uint32_t> touched_;
 };
 
-// Nodes by how many shortest ways from a sample of nodes lead over them: the more, the better a
+// Nodes by how many shortest paths from a sample of nodes lead over them: the more, the better a
 // hub.
 std::vector<uint32_t> order_hubs(const PathGraph& graph, uint64_t samples, int32_t workers) {
   const size_t count = graph.count();
   samples = std::min<uint64_t>(samples, count);
   const auto threads = static_cast<size_t>(worker_count(workers));
-  std::vector<std::vector<uint64_t>> ways(threads);  // per worker: sums do not depend on the order
+  std::vector<std::vector<uint64_t>> paths(threads);  // per worker: sums do not depend on the order
   parallel_for_worker(threads, workers, [&](size_t share, int32_t) {
-    std::vector<uint64_t>& sums = ways[share];
+    std::vector<uint64_t>& sums = paths[share];
     sums.assign(count, 0);
     std::vector<uint64_t> below(count, 0);
-    Spread spread(count);
+    DijkstraSearch search(count);
     std::vector<std::pair<uint32_t, uint32_t>> tree;  // node, before it
     for (uint64_t n = share; n < samples; n += threads) {
       tree.clear();
       const auto from = static_cast<uint32_t>(random_below(1, n, 0, count));
-      spread.run(graph, from, [&](uint32_t node, double, uint32_t before) {
+      search.run(graph, from, [&](uint32_t node, double, uint32_t before) {
         tree.push_back({node, before});
         return true;
       });
@@ -85,19 +87,19 @@ std::vector<uint32_t> order_hubs(const PathGraph& graph, uint64_t samples, int32
     }
   });
   for (size_t t = 1; t < threads; ++t) {
-    for (size_t i = 0; i < count; ++i) ways[0][i] += ways[t][i];
+    for (size_t i = 0; i < count; ++i) paths[0][i] += paths[t][i];
   }
   std::vector<uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0u);
   const auto weight = [&](uint32_t c) {
-    return std::pair{ways[0][c], uint64_t{graph.first[c + 1] - graph.first[c]}};
+    return std::pair{paths[0][c], uint64_t{graph.first[c + 1] - graph.first[c]}};
   };
   std::stable_sort(order.begin(), order.end(),
                    [&](uint32_t a, uint32_t b) { return weight(a) > weight(b); });
   return order;
 }
 
-// The nodes that have a hub, and how ways lead from them to it.
+// The nodes that have a hub, and how paths lead from them to it.
 class HubTree {
  public:
   explicit HubTree(size_t count) : at_(count, 0) {}
@@ -109,10 +111,10 @@ class HubTree {
     at_[node] = n;
     nodes_.push_back({node, at_[before], 1, n, 0});
   }
-  // Adds the tree to the trails; calls place(node, its place).
+  // Adds the tree to the trees; calls place(node, its place).
   template <class Place>
-  void write(std::vector<uint32_t>& trails, Place place) {
-    // From the ends on: the branch with most nodes goes on to where it leads.
+  void write(std::vector<uint32_t>& trees, Place place) {
+    // From the ends on: the branch with most nodes continues to the node that it leads to.
     for (size_t i = nodes_.size(); i-- > 1;) {
       Node& to = nodes_[nodes_[i].before];
       to.below += nodes_[i].below;
@@ -126,11 +128,11 @@ class HubTree {
       while (nodes_[run_.back()].heavy != run_.back()) run_.push_back(nodes_[run_.back()].heavy);
       for (size_t k = run_.size(); k-- > 0;) {
         Node& node = nodes_[run_[k]];
-        node.place = static_cast<uint32_t>(trails.size());
+        node.place = static_cast<uint32_t>(trees.size());
         place(node.node, node.place);
-        trails.push_back(node.node);
+        trees.push_back(node.node);
       }
-      trails.push_back(i == 0 ? TwoHopLabels::kEnd : TwoHopLabels::kGoesOn | nodes_[before].place);
+      trees.push_back(i == 0 ? TwoHopLabels::kEnd : TwoHopLabels::kGoesOn | nodes_[before].place);
     }
   }
 
@@ -152,12 +154,12 @@ uint32_t TwoHopLabels::place_of(uint32_t node, uint32_t hub) const {
   const auto list = of(node);
   const auto at = std::lower_bound(list.begin(), list.end(), hub,
                                    [](const Label& l, uint32_t wanted) { return l.hub < wanted; });
-  return trail[static_cast<size_t>(&*at - labels.data())];
+  return tree_place[static_cast<size_t>(&*at - labels.data())];
 }
 
 void TwoHopLabels::walk(uint32_t from, uint32_t to, std::vector<uint32_t>& nodes) const {
   const auto to_hub = [&](uint32_t place) {
-    for (uint32_t word = trails[place]; word != kEnd; word = trails[place]) {
+    for (uint32_t word = trees[place]; word != kEnd; word = trees[place]) {
       if ((word & kGoesOn) != 0) {
         place = word & ~kGoesOn;
       } else {
@@ -194,25 +196,25 @@ Result<TwoHopLabels> label_graph(const PathGraph& graph, uint64_t samples, int32
   TwoHopLabels out;
   out.hubs = order_hubs(graph, samples, workers);
   struct Made {
-    uint32_t hub, trail;
+    uint32_t hub, tree_place;
     double length;
   };
   std::vector<std::vector<Made>> labels(count);
   std::vector<double> to_root(count, kFar);  // per hub that the root has
-  Spread spread(count);
+  DijkstraSearch search(count);
   HubTree tree(count);
   for (uint32_t rank = 0; rank < count; ++rank) {
     if (context.cancel) return Error{Errc::kCancelled, "path: cancelled"};
     // A tree of all nodes still has to fit: each is at most a run of its own.
-    if (out.trails.size() + 2 * count >= TwoHopLabels::kGoesOn) {
+    if (out.trees.size() + 2 * count >= TwoHopLabels::kGoesOn) {
       return Error{Errc::kLimit, "path: more than 2^30 labels; use a larger cell, or zones"};
     }
     const uint32_t root = out.hubs[rank];
     for (const auto& label : labels[root]) to_root[label.hub] = label.length;
     tree.clear();
-    spread.run(graph, root, [&](uint32_t node, double length, uint32_t before) {
+    search.run(graph, root, [&](uint32_t node, double length, uint32_t before) {
       for (const auto& label : labels[node]) {
-        // An earlier hub lies on a way as short.
+        // An earlier hub lies on a path that is as short.
         if (to_root[label.hub] + label.length <= length + kSame) return false;
       }
       labels[node].push_back({rank, 0, length});
@@ -220,14 +222,14 @@ Result<TwoHopLabels> label_graph(const PathGraph& graph, uint64_t samples, int32
       return true;
     });
     for (const auto& label : labels[root]) to_root[label.hub] = kFar;
-    tree.write(out.trails,
-               [&](uint32_t node, uint32_t place) { labels[node].back().trail = place; });
+    tree.write(out.trees,
+               [&](uint32_t node, uint32_t place) { labels[node].back().tree_place = place; });
   }
   out.first.push_back(0);
   for (auto& of_node : labels) {
     for (const Made& label : of_node) {
       out.labels.push_back({label.hub, static_cast<float>(label.length)});
-      out.trail.push_back(label.trail);
+      out.tree_place.push_back(label.tree_place);
     }
     out.first.push_back(static_cast<uint32_t>(out.labels.size()));
     of_node = {};

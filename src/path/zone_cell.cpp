@@ -13,13 +13,16 @@
 
 #include "core/parallel.h"
 
+// Builds the graph of zones: tables of each zone, labels of the entrances of each overlay cell,
+// labels of the boundary nodes between them.
 namespace throng {
 namespace {
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
 using Edges = std::vector<std::vector<PathGraph::Edge>>;
 
-// Joins every two of `count` nodes by their ways' lengths, without the ways that lead over another.
+// Joins every two of `count` nodes by their paths' lengths, without the paths that lead over
+// another.
 void add_edges(size_t count, const std::function<float(size_t, size_t)>& length_of,
                const std::function<uint32_t(size_t)>& node_of, Edges& edges) {
   std::vector<float> lengths(count * count, kNever);
@@ -65,21 +68,21 @@ PathGraph entrance_graph(const ZoneGraph& graph, const OverlayCell& zone_cell,
                          const std::vector<uint32_t>& zones) {
   Edges edges(zone_cell.entrances.size());
   for (const uint32_t zone : zones) {
-    const ZonePaths& ways = graph.zones[zone];
-    const size_t corners = ways.corners.size();
+    const ZonePaths& paths = graph.zones[zone];
+    const size_t corners = paths.corners.size();
     add_edges(
-        ways.entrances.size(),
+        paths.entrances.size(),
         [&](size_t a, size_t b) {
-          return std::min(ways.length[ways.row(corners + a) + b],
-                          ways.length[ways.row(corners + b) + a]);
+          return std::min(paths.length[paths.row(corners + a) + b],
+                          paths.length[paths.row(corners + b) + a]);
         },
-        [&](size_t entrance) { return zone_cell.place_of_entrance(ways.entrances[entrance]); },
+        [&](size_t entrance) { return zone_cell.place_of_entrance(paths.entrances[entrance]); },
         edges);
   }
   return to_graph(edges);
 }
 
-// The first node of what holds together with each.
+// The first node of each connected component.
 std::vector<uint32_t> components_of(const PathGraph& graph) {
   std::vector<uint32_t> of(graph.count(), UINT32_MAX), queue;
   for (uint32_t node = 0; node < of.size(); ++node) {
@@ -99,8 +102,9 @@ std::vector<uint32_t> components_of(const PathGraph& graph) {
   return of;
 }
 
-// Of the gates between two territories that join the same parts of them, one every so many cells of
-// the border is a post. `components` has, for each territory, the part of each gate.
+// Of the entrances between two overlay cells that join the same components of them, one every so
+// many cells of the border is a boundary node. `components` has, for each overlay cell, the
+// component of each entrance.
 void choose_boundary_nodes(const WorldData& world,
                            const std::vector<std::vector<uint32_t>>& components, ZoneGraph& graph) {
   struct Candidate {
@@ -142,7 +146,7 @@ void choose_boundary_nodes(const WorldData& world,
   }
 }
 
-// Per territory its zones.
+// Per overlay cell its zones.
 std::vector<std::vector<uint32_t>> group_zones(const WorldData& world, ZoneGraph& graph) {
   std::map<std::pair<int32_t, int32_t>, std::vector<uint32_t>> groups;
   for (uint32_t slot = 0; slot < world.slots.size(); ++slot) {
@@ -169,7 +173,7 @@ uint32_t OverlayCell::place_of_entrance(uint32_t entrance) const {
 uint64_t ZoneGraph::bytes() const {
   uint64_t bytes = entrances.size() * sizeof(Entrance) + boundary_labels.bytes() +
                    (cell_of_zone.size() + 2 * boundary_cells.size()) * sizeof(uint32_t);
-  for (const ZonePaths& ways : zones) bytes += sizeof(ZonePaths) + ways.bytes();
+  for (const ZonePaths& paths : zones) bytes += sizeof(ZonePaths) + paths.bytes();
   for (const OverlayCell& t : zone_cells) {
     bytes += t.labels.bytes() +
              (t.entrances.size() + t.boundary_nodes.size() + t.boundary_entrances.size()) *
@@ -234,9 +238,9 @@ Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh,
     std::sort(zone_cell.entrances.begin(), zone_cell.entrances.end());
     zone_cell.entrances.erase(std::unique(zone_cell.entrances.begin(), zone_cell.entrances.end()),
                               zone_cell.entrances.end());
-    const PathGraph ways = entrance_graph(graph, zone_cell, zones[t]);
-    components[t] = components_of(ways);
-    auto labels = label_graph(ways, kSamples, 1, context);
+    const PathGraph paths = entrance_graph(graph, zone_cell, zones[t]);
+    components[t] = components_of(paths);
+    auto labels = label_graph(paths, kSamples, 1, context);
     if (labels) {
       zone_cell.labels = std::move(*labels);
     } else {

@@ -12,19 +12,19 @@
 #include "throng/context.h"
 #include "throng/result.h"
 
-/// Territories group zones ([PACS00]): ways inside one are looked up in labels of its gates, ways
-/// between them in labels of posts, a few of the gates of their borders.
+/// Overlay cells group zones ([PACS00]): paths inside one are looked up in labels of its entrances,
+/// paths between them in labels of boundary nodes, a few of the entrances of their borders.
 namespace throng {
 
 inline constexpr int32_t kZonesPerCell = 8;  // along a side
 
 struct OverlayCell {
-  std::vector<uint32_t> entrances;           // of its zones, rising
-  TwoHopLabels labels;                       // of places in `entrances`: ways inside the territory
-  std::vector<uint32_t> boundary_nodes;      // on its borders, rising
+  std::vector<uint32_t> entrances;       // of its zones, rising
+  TwoHopLabels labels;                   // of places in `entrances`: paths inside the overlay cell
+  std::vector<uint32_t> boundary_nodes;  // on its borders, rising
   std::vector<uint32_t> boundary_entrances;  // their places in `entrances`
   std::vector<CellPoint>
-      boundary_node_at;  // where they are, side by side: a query looks at all of them
+      boundary_node_at;  // where they are, side by side: a query reads all of them
 
   [[nodiscard]] uint32_t place_of_entrance(uint32_t entrance) const;
 };
@@ -34,9 +34,9 @@ struct ZoneGraph {
   std::vector<ZonePaths> zones;        // per slot of the world
   std::vector<uint32_t> cell_of_zone;  // per slot
   std::vector<OverlayCell> zone_cells;
-  // Of each post the territories that it lies between.
+  // Of each boundary node the overlay cells that it lies between.
   std::vector<std::array<uint32_t, 2>> boundary_cells;
-  TwoHopLabels boundary_labels;  // ways between posts over all territories
+  TwoHopLabels boundary_labels;  // paths between boundary nodes over all overlay cells
   [[nodiscard]] uint64_t bytes() const;
   [[nodiscard]] uint64_t label_count() const;
 };

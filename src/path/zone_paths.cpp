@@ -12,6 +12,7 @@
 #include "path/border.h"
 #include "path/mesh_ray.h"
 
+// Tables of a zone: a Dijkstra search over its visible corners from each entrance.
 namespace throng {
 namespace {
 
@@ -48,7 +49,7 @@ std::vector<Crossing> find_crossings(const PathMesh& mesh,
       const bool is_east = a.x == b.x && a.x == rect.x + rect.width;
       const bool is_up = a.z == b.z && a.z == rect.z + rect.depth;
       if (!is_east && !is_up) continue;  // It is found from the other side.
-      // The way around leads up along the east side and back along the upper one.
+      // The path around leads up along the east side and back along the upper one.
       const bool forth = is_east;
       const bool from_corner = portal.from_corner != kNoCorner;
       const bool to_corner = portal.to_corner != kNoCorner;
@@ -68,7 +69,7 @@ std::vector<Crossing> find_crossings(const PathMesh& mesh,
   return crossings;
 }
 
-// A unit inside the zone: where rays to the gate end.
+// A unit inside the zone: where rays to the entrance end.
 GroundPoint inside(const Entrance& entrance, const MeshRect& rect) {
   const auto units = [](double cells) { return static_cast<int64_t>(cells * kUnitsPerCell); };
   GroundPoint p{units(entrance.at.x), units(entrance.at.z)};
@@ -77,7 +78,7 @@ GroundPoint inside(const Entrance& entrance, const MeshRect& rect) {
   return p;
 }
 
-// What the corners of a zone see in it, both ways: corner c owns edges[first[c]] to
+// What the corners of a zone see in it, in both directions: corner c owns edges[first[c]] to
 // edges[first[c + 1]].
 struct CornerGraph {
   struct Edge {
@@ -89,13 +90,13 @@ struct CornerGraph {
 };
 
 // What one sees the other does, even where rounding hid it from one of them.
-CornerGraph see_corners(const PathMesh& mesh, const ZonePaths& ways, Sight& sight) {
+CornerGraph see_corners(const PathMesh& mesh, const ZonePaths& paths, Sight& sight) {
   CornerGraph graph;
-  for (size_t c = 0; c < ways.corners.size(); ++c) {
-    sight.look_from_corner(mesh, ways.corners[c], false);
+  for (size_t c = 0; c < paths.corners.size(); ++c) {
+    sight.cast_from_corner(mesh, paths.corners[c], false);
     for (const SeenCorner& seen : sight.corners()) {
       const auto here = static_cast<uint16_t>(c);
-      const auto other = static_cast<uint16_t>(ways.place_of_corner(seen.corner));
+      const auto other = static_cast<uint16_t>(paths.place_of_corner(seen.corner));
       graph.edges.push_back({here, other, seen.distance});
       graph.edges.push_back({other, here, seen.distance});
     }
@@ -107,19 +108,19 @@ CornerGraph see_corners(const PathMesh& mesh, const ZonePaths& ways, Sight& sigh
     return a.from == b.from && a.to == b.to;
   };
   graph.edges.erase(std::unique(graph.edges.begin(), graph.edges.end(), again), graph.edges.end());
-  graph.first.assign(ways.corners.size() + 1, 0);
+  graph.first.assign(paths.corners.size() + 1, 0);
   for (const CornerGraph::Edge& edge : graph.edges) ++graph.first[edge.from + size_t{1}];
   for (size_t c = 1; c < graph.first.size(); ++c) graph.first[c] += graph.first[c - 1];
   return graph;
 }
 
-// A corner that a gate sees, by its place in the zone's corners.
+// A corner that an entrance sees, by its place in the zone's corners.
 struct EntranceView {
   uint16_t corner = 0;
   double distance = 0;
 };
 
-// How far corners are from a gate, and over which corner.
+// How far corners are from an entrance, and over which corner.
 class EntranceSearch {
  public:
   explicit EntranceSearch(const CornerGraph& graph)
@@ -187,7 +188,7 @@ std::vector<uint32_t> zones_of_rects(const WorldData& world, const PathMesh& mes
 std::vector<Entrance> find_entrances(const WorldData& world, const PathMesh& mesh,
                                      const std::vector<uint32_t>& zone_of_rect) {
   const std::vector<Crossing> crossings = find_crossings(mesh, zone_of_rect);
-  const int32_t apart = std::max(1, static_cast<int32_t>(world.tiles_per_zone) * 64 / 10);
+  const int32_t apart = std::max(1, static_cast<int32_t>(world.tiles_per_zone) * kTileCells / 10);
   std::vector<Entrance> entrances;
   for (size_t i = 0; i < crossings.size();) {
     size_t stop = i + 1;
@@ -209,72 +210,72 @@ std::vector<Entrance> find_entrances(const WorldData& world, const PathMesh& mes
 }
 
 bool find_zone_paths(const PathMesh& mesh, const std::vector<Entrance>& entrances, uint32_t zone,
-                     Sight& sight, ZonePaths& ways) {
-  ways.corners.clear();
-  if (ways.entrances.empty()) return true;  // no way leads out, nor in
-  sight.stay_within(ways.first_rect, ways.last_rect);
-  for (uint32_t p = mesh.rects[ways.first_rect].first_portal;
-       p < mesh.rects[ways.last_rect].first_portal; ++p) {
+                     Sight& sight, ZonePaths& paths) {
+  paths.corners.clear();
+  if (paths.entrances.empty()) return true;  // no path leads out, nor in
+  sight.stay_within(paths.first_rect, paths.last_rect);
+  for (uint32_t p = mesh.rects[paths.first_rect].first_portal;
+       p < mesh.rects[paths.last_rect].first_portal; ++p) {
     for (const uint32_t corner : {mesh.portals[p].from_corner, mesh.portals[p].to_corner}) {
-      if (corner != kNoCorner) ways.corners.push_back(corner);
+      if (corner != kNoCorner) paths.corners.push_back(corner);
     }
   }
-  std::sort(ways.corners.begin(), ways.corners.end());
-  ways.corners.erase(std::unique(ways.corners.begin(), ways.corners.end()), ways.corners.end());
-  const size_t corners = ways.corners.size(), count = ways.entrances.size();
+  std::sort(paths.corners.begin(), paths.corners.end());
+  paths.corners.erase(std::unique(paths.corners.begin(), paths.corners.end()), paths.corners.end());
+  const size_t corners = paths.corners.size(), count = paths.entrances.size();
   if (corners >= kStraight) return false;
-  ways.length.assign((corners + count) * count, kNever);
-  ways.next.assign(ways.length.size(), kStraight);
-  const CornerGraph graph = see_corners(mesh, ways, sight);
+  paths.length.assign((corners + count) * count, kNever);
+  paths.next.assign(paths.length.size(), kStraight);
+  const CornerGraph graph = see_corners(mesh, paths, sight);
   std::vector<std::vector<EntranceView>> seen(count);
   for (size_t g = 0; g < count; ++g) {
-    const Entrance& entrance = entrances[ways.entrances[g]];
-    sight.look(mesh, entrance.rect_in(zone), entrance.at, kNoRect, {});
+    const Entrance& entrance = entrances[paths.entrances[g]];
+    sight.cast(mesh, entrance.rect_in(zone), entrance.at, kNoRect, {});
     for (const SeenCorner& s : sight.corners())
-      seen[g].push_back({static_cast<uint16_t>(ways.place_of_corner(s.corner)), s.distance});
+      seen[g].push_back({static_cast<uint16_t>(paths.place_of_corner(s.corner)), s.distance});
   }
-  EntranceSearch spread(graph);
+  EntranceSearch search(graph);
   for (size_t g = 0; g < count; ++g) {
-    spread.run(seen[g]);
+    search.run(seen[g]);
     for (size_t c = 0; c < corners; ++c)
-      take_shorter(spread.length[c], spread.next[c], ways.length[ways.row(c) + g],
-                   ways.next[ways.row(c) + g]);
-    const Entrance& to = entrances[ways.entrances[g]];
+      take_shorter(search.length[c], search.next[c], paths.length[paths.row(c) + g],
+                   paths.next[paths.row(c) + g]);
+    const Entrance& to = entrances[paths.entrances[g]];
     for (size_t other = 0; other < count; ++other) {
-      const Entrance& from = entrances[ways.entrances[other]];
-      const size_t at = ways.row(corners + other) + g;
+      const Entrance& from = entrances[paths.entrances[other]];
+      const size_t at = paths.row(corners + other) + g;
       const uint32_t rect = from.rect_in(zone), goal = to.rect_in(zone);
       const GroundPoint begin = inside(from, mesh.rects[rect]), end = inside(to, mesh.rects[goal]);
       if (mesh_ray(mesh, rect, begin, end) == goal)
-        take_shorter(distance(from.at, to.at), kStraight, ways.length[at], ways.next[at]);
+        take_shorter(distance(from.at, to.at), kStraight, paths.length[at], paths.next[at]);
       for (const EntranceView& s : seen[other])
-        take_shorter(s.distance + spread.length[s.corner], s.corner, ways.length[at],
-                     ways.next[at]);
+        take_shorter(s.distance + search.length[s.corner], s.corner, paths.length[at],
+                     paths.next[at]);
     }
   }
   return true;
 }
 
 void find_entrances_around(const PathMesh& mesh, const std::vector<Entrance>& entrances,
-                           uint32_t zone, const ZonePaths& ways, const Stop& from, Sight& sight,
+                           uint32_t zone, const ZonePaths& paths, const Stop& from, Sight& sight,
                            std::vector<float>& length, std::vector<uint16_t>& next) {
-  const size_t count = ways.entrances.size();
+  const size_t count = paths.entrances.size();
   length.assign(count, kNever);
   next.assign(count, kStraight);
   if (count == 0) return;
-  sight.stay_within(ways.first_rect, ways.last_rect);
+  sight.stay_within(paths.first_rect, paths.last_rect);
   const CellPoint here = in_cells(from.at);
-  sight.look(mesh, from.rect, here, kNoRect, {});
+  sight.cast(mesh, from.rect, here, kNoRect, {});
   const auto each_corner = [&](auto visit) {
-    for (const SeenCorner& s : sight.corners()) visit(s, ways.place_of_corner(s.corner));
+    for (const SeenCorner& s : sight.corners()) visit(s, paths.place_of_corner(s.corner));
   };
-  // All rows are asked for before the first is waited for.
+  // All rows are prefetched before the first is read.
   each_corner([&](const SeenCorner&, size_t c) {
     constexpr size_t kLine = 64 / sizeof(float);
-    for (size_t g = 0; g < count; g += kLine) prefetch(&ways.length[ways.row(c) + g]);
+    for (size_t g = 0; g < count; g += kLine) prefetch(&paths.length[paths.row(c) + g]);
   });
   each_corner([&](const SeenCorner& s, size_t c) {
-    const float* row = &ways.length[ways.row(c)];
+    const float* row = &paths.length[paths.row(c)];
     const auto first = static_cast<float>(s.distance);
     for (size_t g = 0; g < count; ++g) {
       if (!(first + row[g] < length[g])) continue;
@@ -283,7 +284,7 @@ void find_entrances_around(const PathMesh& mesh, const std::vector<Entrance>& en
     }
   });
   for (size_t g = 0; g < count; ++g) {
-    const Entrance& entrance = entrances[ways.entrances[g]];
+    const Entrance& entrance = entrances[paths.entrances[g]];
     const double straight = distance(here, entrance.at);
     if (!(straight < length[g])) continue;
     const uint32_t rect = entrance.rect_in(zone);

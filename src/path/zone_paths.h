@@ -10,10 +10,10 @@
 #include "path/sight.h"
 #include "throng/context.h"
 
-/// Ways inside one zone, between the gates of its borders.
+/// Paths inside one zone, between the entrances of its borders.
 namespace throng {
 
-/// A point on the border of two zones through which ways between them are led.
+/// A point on the border of two zones through which paths between them are led.
 struct Entrance {
   CellPoint at;                    // on the border, in the middle of a cell's side
   std::array<uint32_t, 2> zone{};  // slots of the world, the lower one first
@@ -23,16 +23,16 @@ struct Entrance {
 
 inline constexpr uint16_t kStraight = UINT16_MAX;  // also one more than corners a zone may have
 
-/// The shortest ways from each corner and each gate of a zone to each of its gates that do not
-/// leave the zone. Made from the zone's part of the mesh alone, so that it can be made again when
+/// The shortest paths from each corner and each entrance of a zone to each of its entrances that do
+/// not leave the zone. Made from the zone's part of the mesh alone, so that it can be rebuilt when
 /// the zone has changed.
 struct ZonePaths {
   uint32_t first_rect = 0, last_rect = 0;  // of the mesh, [first, last)
   std::vector<uint32_t> entrances;         // rising
   std::vector<uint32_t> corners;           // of the mesh, rising
-  // For each corner, then for each gate, one a gate.
+  // For each corner, then for each entrance, one an entrance.
   std::vector<float> length;   // [cells]; infinite: there is none
-  std::vector<uint16_t> next;  // the place in `corners` where the way bends first, or kStraight
+  std::vector<uint16_t> next;  // the place in `corners` where the path turns first, or kStraight
 
   [[nodiscard]] size_t row(size_t node) const { return node * entrances.size(); }
   /// Places in `corners` and `entrances` of what is there.
@@ -47,19 +47,19 @@ struct ZonePaths {
 /// Slot of the zone of each rectangle.
 std::vector<uint32_t> zones_of_rects(const WorldData& world, const PathMesh& mesh);
 
-/// The gates of a world: one in the middle of each run of border over which steps lead, more of
+/// The entrances of a world: one in the middle of each run of border over which steps lead, more of
 /// them on long runs, about a tenth of a zone's side apart.
 std::vector<Entrance> find_entrances(const WorldData& world, const PathMesh& mesh,
                                      const std::vector<uint32_t>& zone_of_rect);
 
-/// `ways` has its rectangles and gates; finds the rest. `sight` is scratch. False if the zone has
-/// too many corners for `next`: then only `ways.corners` is filled.
+/// `paths` has its rectangles and entrances; finds the rest. `sight` is scratch. False if the zone
+/// has too many corners for `next`: then only `paths.corners` is filled.
 [[nodiscard]] bool find_zone_paths(const PathMesh& mesh, const std::vector<Entrance>& entrances,
-                                   uint32_t zone, Sight& sight, ZonePaths& ways);
+                                   uint32_t zone, Sight& sight, ZonePaths& paths);
 
-/// From a point of a zone to each of its gates, as a row of the tables.
+/// From a point of a zone to each of its entrances, as a row of the tables.
 void find_entrances_around(const PathMesh& mesh, const std::vector<Entrance>& entrances,
-                           uint32_t zone, const ZonePaths& ways, const Stop& from, Sight& sight,
+                           uint32_t zone, const ZonePaths& paths, const Stop& from, Sight& sight,
                            std::vector<float>& length, std::vector<uint16_t>& next);
 
 }  // namespace throng

@@ -12,6 +12,7 @@
 #include "path/border.h"
 #include "path/mesh_ray.h"
 
+// Joins the tables and labels of the zones of both ends, then pulls the path taut.
 namespace throng {
 namespace {
 
@@ -26,19 +27,19 @@ bool touch(const WorldData& world, uint32_t a, uint32_t b) {
   return std::abs(p.x() - q.x()) <= 1 && std::abs(p.z() - q.z()) <= 1;
 }
 
-// The corners of the way to a gate of the zone, the first of which is at `next`. Where they are is
-// asked for, not waited for: place_corners() tells it.
-void add_corners(const PathMesh& mesh, const ZonePaths& ways, uint16_t next, size_t entrance,
-                 std::vector<Waypoint>& way) {
+// The corners of the path to an entrance of the zone, the first of which is at `next`. Their
+// positions are prefetched, not read: place_corners() reads them.
+void add_corners(const PathMesh& mesh, const ZonePaths& paths, uint16_t next, size_t entrance,
+                 std::vector<Waypoint>& path) {
   while (next != kStraight) {
-    way.push_back({{}, kNoRect, ways.corners[next]});
-    prefetch(&mesh.corners[way.back().corner]);
-    next = ways.next[ways.row(next) + entrance];
+    path.push_back({{}, kNoRect, paths.corners[next]});
+    prefetch(&mesh.corners[path.back().corner]);
+    next = paths.next[paths.row(next) + entrance];
   }
 }
 
-void place_corners(const PathMesh& mesh, std::vector<Waypoint>& way) {
-  for (Waypoint& point : way) {
+void place_corners(const PathMesh& mesh, std::vector<Waypoint>& path) {
+  for (Waypoint& point : path) {
     if (point.corner != kNoCorner) point = waypoint(mesh, point.corner);
   }
 }
@@ -53,21 +54,21 @@ void ZoneSearch::Reached::add(std::span<const TwoHopLabels::Label> labels, uint3
     hubs_[label.hub] = std::min(hubs_[label.hub], word(length + label.length, from));
 }
 
-// From an end to the gates of its zone, and on to the hubs of its territory.
-void ZoneSearch::look_out(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
-                          const Stop& stop, End& end) {
+// From an end to the entrances of its zone, and on to the hubs of its overlay cell.
+void ZoneSearch::find_hubs(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
+                           const Stop& stop, End& end) {
   end.zone = zone_of(world, mesh, stop.rect);
   end.zone_cell = graph.cell_of_zone[end.zone];
-  const ZonePaths& ways = graph.zones[end.zone];
-  find_entrances_around(mesh, graph.entrances, end.zone, ways, stop, sight_, end.length, end.next);
+  const ZonePaths& paths = graph.zones[end.zone];
+  find_entrances_around(mesh, graph.entrances, end.zone, paths, stop, sight_, end.length, end.next);
   const OverlayCell& zone_cell = graph.zone_cells[end.zone_cell];
   end.hubs.begin(zone_cell.entrances.size());
-  asked_.clear();
-  for (const uint32_t entrance : ways.entrances)
-    asked_.push_back(zone_cell.place_of_entrance(entrance));
-  zone_cell.labels.ask_for(asked_);
-  for (uint32_t g = 0; g < asked_.size(); ++g) {
-    if (end.length[g] < kNever) end.hubs.add(zone_cell.labels.of(asked_[g]), g, end.length[g]);
+  prefetched_.clear();
+  for (const uint32_t entrance : paths.entrances)
+    prefetched_.push_back(zone_cell.place_of_entrance(entrance));
+  zone_cell.labels.ask_for(prefetched_);
+  for (uint32_t g = 0; g < prefetched_.size(); ++g) {
+    if (end.length[g] < kNever) end.hubs.add(zone_cell.labels.of(prefetched_[g]), g, end.length[g]);
   }
 }
 
@@ -84,7 +85,7 @@ bool ZoneSearch::join(const ZoneGraph& graph, const Stop& from, const Stop& to, 
   return best.length < kNever;
 }
 
-// Finds how far a post of an end's territory is.
+// Finds how far a boundary node of an end's overlay cell is.
 void ZoneSearch::reach_boundary_node(const ZoneGraph& graph, End& end, size_t place) {
   const OverlayCell& zone_cell = graph.zone_cells[end.zone_cell];
   End::BoundaryNode& boundary_node = end.boundary_nodes[place];
@@ -96,8 +97,8 @@ void ZoneSearch::reach_boundary_node(const ZoneGraph& graph, End& end, size_t pl
   }
 }
 
-// Ways that leave the territory. No way over a post is shorter than the straight lines to it and
-// from it, so of all posts only those count that lie in the ellipse of a way that is known.
+// Paths that leave the overlay cell. No path over a boundary node is shorter than the straight
+// lines to it and from it, so only boundary nodes in the ellipse of a known path count.
 void ZoneSearch::join_boundary_nodes(const ZoneGraph& graph, const Stop& from, const Stop& to,
                                      Best& best) {
   const auto list = [&](End& end, CellPoint here, CellPoint there) {
@@ -109,7 +110,7 @@ void ZoneSearch::join_boundary_nodes(const ZoneGraph& graph, const Stop& from, c
       end.boundary_nodes[p] = {kNever, 0, beyond, static_cast<float>(distance(here, at)) + beyond};
     }
   };
-  // The post of the smallest bound that is reached.
+  // The boundary node of the smallest bound that is reached.
   const auto nearest = [&](End& end) -> std::optional<size_t> {
     std::vector<End::BoundaryNode>& boundary_nodes = end.boundary_nodes;
     for (size_t tries = 0; tries < boundary_nodes.size(); ++tries) {
@@ -144,16 +145,16 @@ void ZoneSearch::join_boundary_nodes(const ZoneGraph& graph, const Stop& from, c
     within_.resize(end.boundary_nodes.size());
     std::iota(within_.begin(), within_.end(), 0u);
     keep([&](const End::BoundaryNode& boundary_node) { return boundary_node.bound <= known; });
-    asked_.clear();
-    for (const uint32_t p : within_) asked_.push_back(zone_cell.boundary_entrances[p]);
-    zone_cell.labels.ask_for(asked_);
+    prefetched_.clear();
+    for (const uint32_t p : within_) prefetched_.push_back(zone_cell.boundary_entrances[p]);
+    zone_cell.labels.ask_for(prefetched_);
     for (const uint32_t p : within_) reach_boundary_node(graph, end, p);
     keep([&](const End::BoundaryNode& boundary_node) {
       return boundary_node.length + boundary_node.beyond <= known;
     });
-    asked_.clear();
-    for (const uint32_t p : within_) asked_.push_back(zone_cell.boundary_nodes[p]);
-    graph.boundary_labels.ask_for(asked_);
+    prefetched_.clear();
+    for (const uint32_t p : within_) prefetched_.push_back(zone_cell.boundary_nodes[p]);
+    graph.boundary_labels.ask_for(prefetched_);
     for (const uint32_t p : within_) {
       if (end.boundary_nodes[p].length + end.boundary_nodes[p].beyond <= known) visit(p);
     }
@@ -174,7 +175,7 @@ void ZoneSearch::join_boundary_nodes(const ZoneGraph& graph, const Stop& from, c
   });
 }
 
-// Adds the gates from one of a territory to another over a hub, without the first.
+// Adds the entrances from one of an overlay cell to another over a hub, without the first.
 void ZoneSearch::add_entrances(const OverlayCell& zone_cell, uint32_t from, uint32_t hub,
                                uint32_t to) {
   walked_.clear();
@@ -183,7 +184,7 @@ void ZoneSearch::add_entrances(const OverlayCell& zone_cell, uint32_t from, uint
   for (size_t i = 1; i < walked_.size(); ++i) entrances_.push_back(zone_cell.entrances[walked_[i]]);
 }
 
-// The gates of the way, from one of the first zone to one of the last.
+// The entrances of the path, from one of the first zone to one of the last.
 void ZoneSearch::list_entrances(const ZoneGraph& graph, const Best& best) {
   const OverlayCell& start = graph.zone_cells[start_.zone_cell];
   const OverlayCell& goal = graph.zone_cells[goal_.zone_cell];
@@ -207,7 +208,7 @@ void ZoneSearch::list_entrances(const ZoneGraph& graph, const Best& best) {
   labels.walk(labels.place_of(start.boundary_nodes[best.first], best.hub),
               labels.place_of(goal.boundary_nodes[best.last], best.hub), boundary_nodes_);
   for (size_t i = 1; i < boundary_nodes_.size(); ++i) {
-    // Two posts of one border are joined in both territories.
+    // Two boundary nodes of one border are joined in both overlay cells.
     Meeting least;
     const OverlayCell* over = nullptr;
     uint32_t from = 0, to = 0;
@@ -234,8 +235,8 @@ void ZoneSearch::list_entrances(const ZoneGraph& graph, const Best& best) {
   add_entrances(goal, goal.boundary_entrances[best.last], last_hub, goal.place_of_entrance(last));
 }
 
-// Finds where the tables of zones tell of the ways from gate to gate.
-void ZoneSearch::look_up_segments(const ZoneGraph& graph) {
+// Finds where the tables of zones hold the paths from entrance to entrance.
+void ZoneSearch::find_segments(const ZoneGraph& graph) {
   for (const uint32_t entrance : entrances_) prefetch(&graph.entrances[entrance]);
   segments_.clear();
   for (uint32_t i = 1; i < entrances_.size(); ++i) {
@@ -243,41 +244,41 @@ void ZoneSearch::look_up_segments(const ZoneGraph& graph) {
     for (const uint32_t zone : from.zone) {
       if (zone != to.zone[0] && zone != to.zone[1]) continue;
       segments_.push_back({i, &graph.zones[zone], 0, 0});
-      prefetch(&segments_.back().ways->entrances);
-      prefetch(&segments_.back().ways->next);
+      prefetch(&segments_.back().paths->entrances);
+      prefetch(&segments_.back().paths->next);
     }
   }
   for (const Segment& segment : segments_)
-    prefetch(segment.ways->entrances.data() + segment.ways->entrances.size() / 2);
+    prefetch(segment.paths->entrances.data() + segment.paths->entrances.size() / 2);
   for (Segment& segment : segments_) {
-    const ZonePaths& ways = *segment.ways;
-    segment.goal = ways.place_of_entrance(entrances_[segment.to]);
+    const ZonePaths& paths = *segment.paths;
+    segment.goal = paths.place_of_entrance(entrances_[segment.to]);
     segment.at =
-        ways.row(ways.corners.size() + ways.place_of_entrance(entrances_[segment.to - 1])) +
+        paths.row(paths.corners.size() + paths.place_of_entrance(entrances_[segment.to - 1])) +
         segment.goal;
-    prefetch(&ways.length[segment.at]);
-    prefetch(&ways.next[segment.at]);
+    prefetch(&paths.length[segment.at]);
+    prefetch(&paths.next[segment.at]);
   }
 }
 
-// From gate to gate: the first one is there already.
+// From entrance to entrance: the first one is there already.
 void ZoneSearch::add_segments(const PathMesh& mesh, const ZoneGraph& graph) {
-  look_up_segments(graph);
+  find_segments(graph);
   auto segment = segments_.begin();
   for (uint32_t i = 1; i < entrances_.size(); ++i) {
     const Segment* best = nullptr;
     for (; segment != segments_.end() && segment->to == i; ++segment) {
-      const float length = segment->ways->length[segment->at];
-      if (length < (best == nullptr ? kNever : best->ways->length[best->at])) best = &*segment;
+      const float length = segment->paths->length[segment->at];
+      if (length < (best == nullptr ? kNever : best->paths->length[best->at])) best = &*segment;
     }
     if (best != nullptr)
-      add_corners(mesh, *best->ways, best->ways->next[best->at], best->goal, way_);
+      add_corners(mesh, *best->paths, best->paths->next[best->at], best->goal, path_);
     const Entrance& entrance = graph.entrances[entrances_[i]];
-    way_.push_back({entrance.at, entrance.rect[0]});
+    path_.push_back({entrance.at, entrance.rect[0]});
   }
 }
 
-// The way that the labels tell, pulled taut.
+// The path that the labels give, pulled taut.
 bool ZoneSearch::lead(const PathMesh& mesh, const ZoneGraph& graph, const Stop& from,
                       const Stop& to, const Best& best, std::vector<uint32_t>& corners,
                       double& length) {
@@ -285,17 +286,17 @@ bool ZoneSearch::lead(const PathMesh& mesh, const ZoneGraph& graph, const Stop& 
   const ZonePaths &start = graph.zones[start_.zone], &goal = graph.zones[goal_.zone];
   const size_t first = start.place_of_entrance(entrances_.front());
   const size_t last = goal.place_of_entrance(entrances_.back());
-  way_.assign(1, {in_cells(from.at), from.rect});
-  add_corners(mesh, start, start_.next[first], first, way_);
-  way_.push_back(
+  path_.assign(1, {in_cells(from.at), from.rect});
+  add_corners(mesh, start, start_.next[first], first, path_);
+  path_.push_back(
       {graph.entrances[entrances_.front()].at, graph.entrances[entrances_.front()].rect[0]});
   add_segments(mesh, graph);
   tail_.clear();
   add_corners(mesh, goal, goal_.next[last], last, tail_);
-  way_.insert(way_.end(), tail_.rbegin(), tail_.rend());
-  way_.push_back({in_cells(to.at), to.rect});
-  place_corners(mesh, way_);
-  return pull_.pull(mesh, way_, corners, length);
+  path_.insert(path_.end(), tail_.rbegin(), tail_.rend());
+  path_.push_back({in_cells(to.at), to.rect});
+  place_corners(mesh, path_);
+  return pull_.pull(mesh, path_, corners, length);
 }
 
 SearchResult ZoneSearch::find(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
@@ -307,13 +308,13 @@ SearchResult ZoneSearch::find(const WorldData& world, const PathMesh& mesh, cons
     length = distance(in_cells(from.at), in_cells(to.at));
     return SearchResult::kFound;
   }
-  look_out(world, mesh, graph, from, start_);
-  look_out(world, mesh, graph, to, goal_);
+  find_hubs(world, mesh, graph, from, start_);
+  find_hubs(world, mesh, graph, to, goal_);
   Best best;
   const bool led =
       join(graph, from, to, best) && lead(mesh, graph, from, to, best, corners, length);
   if (led && !touch(world, start_.zone, goal_.zone)) return SearchResult::kFound;
-  // Near ends, or a way that stays in one zone: search for one that is shorter.
+  // Near ends, or a path that stays in one zone: search for one that is shorter.
   constexpr uint64_t kNearNodes = 4096;
   double near = led ? length : PathSearch::kAnyLength;
   const SearchBudget least(std::min(budget.max_nodes, kNearNodes), budget.cancel, budget.max_bytes);

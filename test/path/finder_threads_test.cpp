@@ -12,6 +12,7 @@
 #include "throng/node_path.h"
 #include "throng/path.h"
 
+// Copies of all finders that answer in many threads at once.
 namespace throng {
 namespace {
 
@@ -34,7 +35,7 @@ T need(Result<T> made) {
   return *std::move(made);
 }
 
-// Each thread asks its own copy; all share the world, its zones, and what the finders have in
+// Each thread queries its own copy; all share the world, its zones, and what the finders have in
 // common.
 TEST(Finders, CopiesAnswerTheSameInManyThreadsAtOnce) {
   Context context;
@@ -49,7 +50,7 @@ TEST(Finders, CopiesAnswerTheSameInManyThreadsAtOnce) {
   FlightFinder flight = need(FlightFinder::make(world, {.avatar_class = 1}, context));
   const auto from = [&](uint64_t n) { return world.random_place(0, 7, 2 * n); };
   const auto to = [&](uint64_t n) { return world.random_place(0, 7, 2 * n + 1); };
-  // Whoever is first puts a crate up in its own copy: the others must not see it.
+  // The first thread to get here adds a crate to its own copy: the others must not see it.
   const auto ask_all = [&](PathFinder by_search, PathFinder by_labels, LiveGround on_live,
                            NodePathFinder on_nodes, FlightFinder in_air, bool crate) {
     GroundQuery query = need(GroundQuery::make(world, 0));

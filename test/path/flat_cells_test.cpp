@@ -7,6 +7,7 @@
 #include "throng/bake.h"
 #include "throng/path.h"
 
+// Worlds of flat cells, against a brute-force search.
 namespace throng {
 namespace {
 
@@ -41,7 +42,7 @@ TEST(FlatCells, ThePointIsLegalOnPassableCellsAndNowhereElse) {
 
 // Random maps of any density: the same length as brute force, and unreachable only if nothing leads
 // there.
-TEST(FlatCells, WaysAreAsShortAsBruteForceFinds) {
+TEST(FlatCells, PathsAreAsShortAsBruteForceFinds) {
   Context context;
   uint64_t compared = 0, unreachable = 0;
   for (uint64_t seed = 0; seed < 24; ++seed) {

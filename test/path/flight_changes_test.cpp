@@ -16,8 +16,8 @@
 #include "throng/builtin_worlds.h"
 #include "throng/flight.h"
 
-// Obstacles in the air. The oracle goes over cells: which of them a body could touch a prism from,
-// which of the others hold together, and the whole cylinder along every way.
+// Obstacles in the air. The oracle works on cells: in which of them a body could touch a prism,
+// which of the others are connected, and the whole cylinder along every path.
 namespace throng {
 namespace {
 
@@ -106,14 +106,14 @@ std::vector<Prism> random_prisms(uint64_t seed, double width) {
           all.push_back(side);
         }
         break;
-      default:  // in the way of nobody
+      default:  // blocks nothing
         all.push_back(box({p.x + 200, p.y, p.z}, {p.x + 201, p.y + 1, p.z + 1}));
     }
   }
   return all;
 }
 
-// The cells of the air of a finder as it is now, and what holds together.
+// The cells of the air of a finder as it is now, and their connected components.
 class Cells {
  public:
   explicit Cells(const World& world, const FlightFinder& flight)
@@ -160,7 +160,7 @@ class Cells {
     return ends_.to_metres({x + 0.5, y + 0.5, z + 0.5});
   }
   [[nodiscard]] double side() const { return space_.shape.cell * 1e-3; }
-  /// -1: nobody may be there.
+  /// -1: no body may be there.
   [[nodiscard]] int32_t label(Vec3d feet) const {
     const AirPoint p = ends_.to_air(feet);
     const auto x = static_cast<int32_t>(std::floor(p.x)), y = static_cast<int32_t>(std::floor(p.y)),
@@ -198,7 +198,7 @@ class Cells {
   std::vector<int32_t> label_;
 };
 
-// Places on a way where the body touches a prism.
+// Places on a path where the body touches a prism.
 int faults(const std::vector<Prism>& prisms, const FlightPath& path) {
   const AvatarClass avatar = flyer_class();
   int found = 0;
@@ -299,7 +299,7 @@ TEST(FlightChanges, CellsAreClosedWhereABodyCouldTouchThePrismAndNowhereElse) {
   EXPECT_GT(open, 1000u);
 }
 
-TEST(FlightChanges, WaysAreWhereTheCellsHoldTogetherAndNobodyTouchesAPrism) {
+TEST(FlightChanges, PathsExistWhereCellsAreConnectedAndNoBodyTouchesAPrism) {
   uint64_t reached = 0, parted = 0, nearest = 0, on_ground = 0;
   for (const Scene& scene : {open_floor(), two_halls(), two_halls(true)}) {
     const World world = bake(scene);
@@ -348,7 +348,7 @@ TEST(FlightChanges, WaysAreWhereTheCellsHoldTogetherAndNobodyTouchesAPrism) {
   EXPECT_GT(on_ground, 60u);
 }
 
-TEST(FlightChanges, WhatIsTakenAwayWasNeverThereAndTheOrderDoesNotMatter) {
+TEST(FlightChanges, RemovedObstaclesLeaveNoTraceAndTheOrderDoesNotMatter) {
   const World world = bake(two_halls(true));
   FlightFinder baked = finder(world);
   FlightFinder used = baked;
@@ -359,19 +359,19 @@ TEST(FlightChanges, WhatIsTakenAwayWasNeverThereAndTheOrderDoesNotMatter) {
     for (size_t i = shuffled.size(); i > 1; --i) {
       std::swap(shuffled[i - 1], shuffled[random_below(seed, i, 7, i)]);
     }
-    FlightFinder fresh = baked;
+    FlightFinder rebuilt = baked;
     std::vector<ChangeId> ids = put_up(used, prisms);
-    // Some go, and come back.
+    // Some are removed, and come back.
     for (const ChangeId id : ids) {
       EXPECT_TRUE(used.set_active(id, id % 2 != 0));
     }
     for (const ChangeId id : ids) EXPECT_TRUE(used.set_active(id, true));
-    put_up(fresh, shuffled);
+    put_up(rebuilt, shuffled);
     for (uint64_t n = 0; n < 20; ++n) {
       const FlightQuery query{.from = end_of(world, baked, seed, 2 * n),
                               .to = end_of(world, baked, seed, 5 * n + 1)};
       used.find(query, a);
-      fresh.find(query, b);
+      rebuilt.find(query, b);
       expect_same(a, b);
     }
     // In another order than they came.
@@ -394,7 +394,7 @@ TEST(FlightChanges, WhatIsTakenAwayWasNeverThereAndTheOrderDoesNotMatter) {
 }
 
 // What is left of the obstacles must cut off just what they do, whatever was there in between.
-TEST(FlightChanges, RoomsThatAreShutAndOpenedAgainAreKnown) {
+TEST(FlightChanges, ClosedAndReopenedRoomsAreKnown) {
   const World world = bake(open_floor());
   const FlightFinder baked = finder(world);
   FlightFinder flight = baked;
@@ -409,7 +409,7 @@ TEST(FlightChanges, RoomsThatAreShutAndOpenedAgainAreKnown) {
   std::vector<bool> up(ids.size(), true);
   uint64_t shut = 0;
   for (uint64_t n = 0; n < 60; ++n) {
-    // Two go, then two come back, so that most rooms are shut.
+    // Two are removed, then two come back, so that most rooms are closed.
     const auto down = static_cast<size_t>(std::find(up.begin(), up.end(), false) - up.begin());
     const size_t any = random_below(3, n, 0, ids.size());
     const size_t i = n % 4 >= 2 && down < up.size() ? down : any;
@@ -424,14 +424,14 @@ TEST(FlightChanges, RoomsThatAreShutAndOpenedAgainAreKnown) {
       flight.find({.from = from, .to = to, .by_turns = false}, path);
       ASSERT_EQ(path.end == PathEnd::kReached, a == b) << n << ", " << k;
       shut += a != b ? 1 : 0;
-      // Told at once: nothing is looked at but the way to what comes nearest.
+      // Reported at once: nothing is expanded but the path to what comes nearest.
       ASSERT_TRUE(a == b || path.nodes < 300);
     }
   }
   EXPECT_GT(shut, 20u);
 }
 
-TEST(FlightChanges, AtAnyTimeAnswersAreThoseOfAFinderThatKnewNothingElse) {
+TEST(FlightChanges, AtAnyTimeAnswersAreThoseOfANewFinder) {
   uint64_t open = 0, shut = 0;
   for (uint64_t seed = 1; seed < 4; ++seed) {
     const World world = bake(seed % 2 != 0 ? open_floor() : two_halls(true));
@@ -455,8 +455,8 @@ TEST(FlightChanges, AtAnyTimeAnswersAreThoseOfAFinderThatKnewNothingElse) {
       for (size_t i = 0; i < ids.size(); ++i) {
         if (up[i]) standing.push_back(prisms[i]);
       }
-      FlightFinder fresh = baked;
-      put_up(fresh, standing);
+      FlightFinder rebuilt = baked;
+      put_up(rebuilt, standing);
       const Cells cells(world, flight);
       for (uint64_t k = 0; k < 12; ++k) {
         const auto from = flight.random_point(seed, 100 * n + 2 * k);
@@ -465,10 +465,10 @@ TEST(FlightChanges, AtAnyTimeAnswersAreThoseOfAFinderThatKnewNothingElse) {
         const bool together = cells.label(*from) == cells.label(*to);
         flight.find({.from = *from, .to = *to, .by_turns = false, .nearest = false}, path);
         ASSERT_EQ(path.end, together ? PathEnd::kReached : PathEnd::kUnreachable);
-        ASSERT_TRUE(together || path.nodes == 0) << "it was not told at once";
+        ASSERT_TRUE(together || path.nodes == 0) << "it was not reported at once";
         (together ? open : shut) += 1;
         flight.find({.from = *from, .to = *to}, path);
-        fresh.find({.from = *from, .to = *to}, other);
+        rebuilt.find({.from = *from, .to = *to}, other);
         expect_same(path, other);
         ASSERT_EQ(faults(standing, path), 0);
       }
@@ -478,7 +478,7 @@ TEST(FlightChanges, AtAnyTimeAnswersAreThoseOfAFinderThatKnewNothingElse) {
   EXPECT_GT(shut, 50u);
 }
 
-TEST(FlightChanges, EndsInAnObstacleAreNoPlacesAndAWallIsGoneAround) {
+TEST(FlightChanges, EndsInAnObstacleAreNoPlacesAndPathsLeadAroundAWall) {
   const World world = bake(open_floor());
   FlightFinder flight = finder(world);
   const Vec3d here{3, 3, 4}, there{21, 3, 4};
@@ -512,7 +512,7 @@ TEST(FlightChanges, EndsInAnObstacleAreNoPlacesAndAWallIsGoneAround) {
 }
 
 // Over the ground, as well: a wall of which one cannot fly over the end.
-TEST(FlightChanges, WalksAndPlacesToTakeOffMindThemToo) {
+TEST(FlightChanges, WalksAndTakeOffsAvoidThemToo) {
   const World world = bake(open_floor());
   FlightFinder flight = finder(world);
   const std::vector<Prism> prisms{box({7, 0, -1}, {7.2, 3, 6}), box({2, 1.9, 1}, {6, 2.2, 7})};
@@ -526,14 +526,14 @@ TEST(FlightChanges, WalksAndPlacesToTakeOffMindThemToo) {
   }
 }
 
-TEST(FlightChanges, GroundBetweenTwoAirsIsLeftOutWhereAnObstacleStands) {
+TEST(FlightChanges, GroundBetweenTwoComponentsOfAirIsLeftOutUnderAnObstacle) {
   const World world = bake(two_halls());
   FlightFinder flight = finder(world);
   const FlightQuery query{.from = {3, 2, 4}, .to = {16, 3, 3}};
   FlightPath path;
   flight.find(query, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
-  // One lands elsewhere than where a crate is, and goes around it.
+  // The path lands elsewhere than where a crate is, and leads around it.
   const std::vector<Prism> crates{box({8, 0, 3.4}, {8.6, 1, 5}),
                                   box({11.5, 0, 3.4}, {12.5, 3, 4.4})};
   std::vector<ChangeId> ids = put_up(flight, crates);
@@ -552,7 +552,7 @@ TEST(FlightChanges, GroundBetweenTwoAirsIsLeftOutWhereAnObstacleStands) {
 }
 
 // Air that an obstacle has cut in two, over a floor that leads under it.
-TEST(FlightChanges, UnderACurtainOneWalks) {
+TEST(FlightChanges, UnderACurtainPathsWalk) {
   const World world = bake(two_halls(true));
   FlightFinder flight = finder(world);
   const Prism curtain = box({9.7, 2.0, 4.5}, {10.1, 6, 8});
@@ -566,7 +566,7 @@ TEST(FlightChanges, UnderACurtainOneWalks) {
   EXPECT_EQ(faults({curtain, low}, path), 0);
 }
 
-TEST(FlightChanges, ABoxedInGoalIsToldWithHowNearOneComes) {
+TEST(FlightChanges, ABoxedInGoalIsReportedWithTheNearestPoint) {
   const World world = bake(open_floor());
   FlightFinder flight = finder(world);
   const Vec3d goal{18, 3, 4};
@@ -589,8 +589,8 @@ TEST(FlightChanges, ABoxedInGoalIsToldWithHowNearOneComes) {
   EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
 }
 
-// Two halves too large to look around in when the wall comes: a search tells, and how near.
-TEST(FlightChanges, AWallThroughALargeWorldIsFoundOutBySearching) {
+// Two halves too large to flood when the wall comes: a search decides, and how near it comes.
+TEST(FlightChanges, AWallThroughALargeWorldIsFoundBySearching) {
   VoxelCells cells{.width = 96, .height = 32, .depth = 64, .filled = {}};
   for (int32_t x = 0; x < cells.width; ++x) {
     for (int32_t y = 0; y < cells.height; ++y) {
@@ -651,7 +651,7 @@ TEST(FlightChanges, AWallThroughALargeWorldIsFoundOutBySearching) {
   EXPECT_EQ(path.end, PathEnd::kReached);
 }
 
-TEST(FlightChanges, TrianglesAreObstaclesTooAndOnlyWhatTheyCover) {
+TEST(FlightChanges, TrianglesAreObstaclesAndBlockOnlyWhatTheyCover) {
   const World world = bake(open_floor());
   FlightFinder flight = finder(world);
   // A sail from the floor on one side up to 6 m on the other.
@@ -688,7 +688,7 @@ TEST(FlightChanges, BadPrismsAreRefusedAndUnknownOnesAreNoChanges) {
   EXPECT_FALSE(flight.remove(1));
 }
 
-TEST(FlightChanges, RandomPointsAreWhereOneMayBe) {
+TEST(FlightChanges, RandomPointsAreLegal) {
   const World world = bake(open_floor());
   const FlightFinder baked = finder(world);
   FlightFinder flight = baked;

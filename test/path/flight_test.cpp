@@ -19,6 +19,7 @@
 #include "voxel_oracle.h"
 #include "worlds.h"
 
+// Flight paths over built-in worlds and voxels, against an oracle of triangles.
 namespace throng {
 namespace {
 
@@ -36,7 +37,7 @@ FlightFinder finder(const World& world) {
   return *std::move(made);
 }
 
-// Two floors 20 m apart, both 8 m wide: nobody walks from one to the other.
+// Two floors 20 m apart, both 8 m wide: no path on foot joins them.
 Scene two_floors() {
   Scene scene;
   scene.add_quad({0, 0, 0}, {0, 0, 8}, {8, 0, 8}, {8, 0, 0});
@@ -72,7 +73,7 @@ TEST(Flight, WalksWhereThatIsShorter) {
 }
 
 // Under a table 2 m high one stands but does not take off.
-TEST(Flight, WalksToWhereOneCanTakeOff) {
+TEST(Flight, WalksToATakeOff) {
   Scene scene = two_floors();
   scene.add_box({1, 1.9, 1}, {7, 2.5, 7});
   const World world = bake(scene);
@@ -87,7 +88,7 @@ TEST(Flight, WalksToWhereOneCanTakeOff) {
 
 // A hall with a door that one walks through and cannot fly through: the nearest take-off leads
 // nowhere, the one outside does.
-TEST(Flight, LeavesAClosedPocketOfAirOnFoot) {
+TEST(Flight, LeavesAClosedIslandOfAirOnFoot) {
   Scene scene = two_floors();
   scene.add_box({1, -0.1, 1}, {7, 6, 1.2});
   scene.add_box({1, -0.1, 6.8}, {7, 6, 7});
@@ -115,7 +116,7 @@ TEST(Flight, LeavesAClosedPocketOfAirOnFoot) {
   }
 }
 
-// Who has a way from the ground to the air: flooded cell by cell, without an end.
+// Which places have a path from the ground to the air: flooded cell by cell, without a limit.
 TEST(Flight, KnowsWhichGroundLeadsIntoWhichAir) {
   uint64_t reached = 0, parted = 0;
   Scene yards = two_floors();  // and two rooms without a window
@@ -162,7 +163,7 @@ TEST(Flight, LandsOnTheMostOpenGroundBelow) {
   EXPECT_FALSE(flight.landing({4, -5, 4}));
 }
 
-TEST(Flight, EndsInMatterOrOutsideOrNowhereAreNoPlaces) {
+TEST(Flight, EndsInSolidsOrOutsideOrNowhereAreNoPlaces) {
   Scene scene = two_floors();
   scene.add_box({3, 0, 3}, {5, 4, 5});
   const World world = bake(scene);
@@ -181,7 +182,7 @@ TEST(Flight, EndsInMatterOrOutsideOrNowhereAreNoPlaces) {
   }
 }
 
-TEST(Flight, TellsWhatCannotBeReachedAndKeepsToItsBudget) {
+TEST(Flight, ReportsUnreachableGoalsAndKeepsToItsBudget) {
   Scene scene = two_floors();
   scene.add_box({10, 0, 0}, {20, 8, 8});  // hollow: inside is air, too
   const World world = bake(scene);
@@ -197,8 +198,7 @@ TEST(Flight, TellsWhatCannotBeReachedAndKeepsToItsBudget) {
   EXPECT_GT(path.nodes, 3u);
 }
 
-// Two halls without a roof that is open: only a door for those who walk leads from one to the
-// other.
+// Two halls with no opening in the roof: only a door for walkers leads from one to the other.
 Scene two_halls(bool door) {
   Scene scene;
   scene.add_quad({0, 0, 0}, {0, 0, 8}, {20, 0, 8}, {20, 0, 0});
@@ -239,7 +239,7 @@ TEST(Flight, LandsAndTakesOffAgainWhereOnlyTheGroundLeadsFromAirToAir) {
   for (size_t i = 1; i < path.points.size(); ++i)
     sum += length(path.points[i] - path.points[i - 1]);
   EXPECT_NEAR(path.length, sum, 1e-9);
-  // Whoever does not want that, or has no time for it.
+  // Without the nearest point, or with too small a budget for it.
   flight.find({.from = here, .to = there, .by_turns = false, .nearest = false}, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
   EXPECT_TRUE(path.points.empty());
@@ -247,7 +247,7 @@ TEST(Flight, LandsAndTakesOffAgainWhereOnlyTheGroundLeadsFromAirToAir) {
   EXPECT_NE(path.end, PathEnd::kReached);
 }
 
-TEST(Flight, TellsHowNearItComesAndWhatIsInTheWay) {
+TEST(Flight, ReportsHowNearItComesAndTheBlocker) {
   const Scene scene = two_halls(false);
   const World world = bake(scene);
   FlightFinder flight = finder(world);
@@ -295,7 +295,7 @@ TEST(Flight, TellsHowNearItComesAndWhatIsInTheWay) {
 }
 
 // Two halls with a hole in the wall between: as wide as the wall, or as high.
-TEST(Flight, TellsHolesThatAreTooLowFromThoseThatAreTooNarrow) {
+TEST(Flight, DistinguishesHolesThatAreTooLowFromTooNarrow) {
   for (const bool is_low : {true, false}) {
     Scene scene;
     scene.add_quad({0, 0, 0}, {0, 0, 8}, {20, 0, 8}, {20, 0, 0});
@@ -323,7 +323,7 @@ TEST(Flight, TellsHolesThatAreTooLowFromThoseThatAreTooNarrow) {
 }
 
 // Under a roof that nothing takes off from, walked to behind a wall.
-TEST(Flight, GivingUpOnFootIsNoProofThatNothingLeadsThere) {
+TEST(Flight, AnExhaustedBudgetOnFootIsNoProofThatNoPathExists) {
   Scene scene;
   scene.add_quad({0, 0, 0}, {0, 0, 8}, {12, 0, 8}, {12, 0, 0});
   scene.add_box({-2, 1.9, -2}, {14, 2.5, 10});
@@ -371,8 +371,8 @@ TEST(Flight, CopiesAndSecondQueriesFindTheSame) {
   }
 }
 
-// The oracle: no body on any way meets a triangle.
-TEST(Flight, NoBodyOnAnyWayTouchesABuiltInWorld) {
+// The oracle: no body on any path meets a triangle.
+TEST(Flight, NoBodyOnAnyPathTouchesABuiltInWorld) {
   Context context;
   uint64_t pairs = 0, bodies = 0;
   for (const char* name : {"stairs", "garage", "church", "cube"}) {
@@ -390,7 +390,7 @@ TEST(Flight, NoBodyOnAnyWayTouchesABuiltInWorld) {
   EXPECT_GT(bodies, 5000u);
 }
 
-// Whoever takes the oracle's triangles away from under the world must hear of it.
+// If the oracle's triangles are taken away from under the world, it must fail.
 TEST(Flight, TheOracleSeesAWallThatTheBakeDidNot) {
   Context context;
   Scene scene = two_floors();
@@ -419,7 +419,7 @@ VoxelCells random_voxels(uint64_t seed, uint64_t percent) {
   return cells;
 }
 
-TEST(VoxelCells, WaysAreLegalAndNotMuchLongerThanBruteForceFinds) {
+TEST(VoxelCells, PathsAreLegalAndNotMuchLongerThanBruteForceFinds) {
   Context context;
   double ratios = 0, worst = 0;
   uint64_t compared = 0, unreachable = 0;

@@ -13,6 +13,7 @@
 #include "throng/path.h"
 #include "worlds.h"
 
+// Flow fields against the exact search.
 namespace throng {
 namespace {
 
@@ -24,9 +25,10 @@ LiveGround live(const World& world, int32_t avatar_class = 0) {
   return *std::move(made);
 }
 
-FlowField field(const LiveGround& ground, const std::vector<Place>& goals, double most = 1e9) {
+FlowField field(const LiveGround& ground, const std::vector<Place>& goals,
+                double max_distance = 1e9) {
   Context context;
-  auto made = FlowField::make(ground, goals, {.max_distance = most}, context);
+  auto made = FlowField::make(ground, goals, {.max_distance = max_distance}, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -43,7 +45,7 @@ TEST(FlowField, IsAsFarAsTheNearestGoalByTheExactSearch) {
     std::vector<Place> goals;
     for (uint64_t n = 0; n < 3; ++n) goals.push_back(world.random_place(0, 77, n));
     FlowField flow = field(live(world), goals);
-    Path best, way;
+    Path best, path;
     for (uint64_t n = 0; n < 150; ++n) {
       const Place from = world.random_place(0, 78, n);
       double nearest = std::numeric_limits<double>::infinity();
@@ -52,24 +54,24 @@ TEST(FlowField, IsAsFarAsTheNearestGoalByTheExactSearch) {
         if (best.end == PathEnd::kReached) nearest = std::min(nearest, best.length);
       }
       const double distance = flow.distance(from);
-      flow.find_path(from, way);
+      flow.find_path(from, path);
       ASSERT_EQ(std::isfinite(distance), std::isfinite(nearest));
       if (!std::isfinite(nearest)) {
-        EXPECT_EQ(way.end, PathEnd::kUnreachable);
+        EXPECT_EQ(path.end, PathEnd::kUnreachable);
         EXPECT_FALSE(flow.next(from));
         ++unreached;
         continue;
       }
-      ASSERT_EQ(way.end, PathEnd::kReached);
+      ASSERT_EQ(path.end, PathEnd::kReached);
       EXPECT_GE(distance, nearest - 0.01);
       EXPECT_LE(distance, nearest * 1.1 + 3 * world.summary().cell);
-      EXPECT_LE(way.length, distance + 1e-6);
+      EXPECT_LE(path.length, distance + 1e-6);
       sum += distance / std::max(nearest, world.summary().cell);
-      drawn += way.length / std::max(nearest, world.summary().cell);
+      drawn += path.length / std::max(nearest, world.summary().cell);
       ++reached;
-      for (size_t i = 1; i < way.points.size(); ++i) {
-        const Vec3d step = way.points[i].position - way.points[i - 1].position;
-        ASSERT_EQ(world.move(0, way.points[i - 1], step.x, step.z).end, MoveEnd::kArrived);
+      for (size_t i = 1; i < path.points.size(); ++i) {
+        const Vec3d step = path.points[i].position - path.points[i - 1].position;
+        ASSERT_EQ(world.move(0, path.points[i - 1], step.x, step.z).end, MoveEnd::kArrived);
       }
     }
   }
@@ -79,9 +81,9 @@ TEST(FlowField, IsAsFarAsTheNearestGoalByTheExactSearch) {
   EXPECT_LT(drawn / static_cast<double>(reached), 1.01);
 }
 
-// Whoever walks from point to point, each leg a legal move, comes to a goal on no longer a way than
-// was said.
-TEST(FlowField, WhoFollowsItArrives) {
+// Walking from point to point, each segment a legal move, leads to a goal on a path that is no
+// longer than the field's distance.
+TEST(FlowField, FollowingItArrives) {
   uint64_t walked = 0;
   for (const World& world :
        {bake(test::builtin({.name = "garage"}), 0.2), bake(worlds::two_floors(), 0.1),
@@ -133,9 +135,9 @@ TEST(FlowField, StopsWhereAsked) {
   EXPECT_NEAR(far.distance(beside), 6, 0.1);
   EXPECT_FALSE(std::isfinite(near.distance(beside)));
   EXPECT_FALSE(near.next(beside));
-  Path way;
-  near.find_path(beside, way);
-  EXPECT_EQ(way.end, PathEnd::kUnreachable);
+  Path path;
+  near.find_path(beside, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
 }
 
 TEST(FlowField, RefusesNonsense) {

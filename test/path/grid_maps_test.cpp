@@ -41,7 +41,7 @@ TEST_P(GridMaps, LabelsAndZonesAreAsShortAsTheSearchInSharedWorlds) {
   std::getline(scenario, line);  // "version 1"
   Path searched, looked_up, over_zones;
   // Berlin's labels do not fit the lists of blocks, and PathConfig::labels promises 2 % then.
-  const double most_longer = GetParam() == std::string("Berlin_0_512") ? 0.02 : 1e-4;
+  const double max_longer = GetParam() == std::string("Berlin_0_512") ? 0.02 : 1e-4;
   double worst = 1;
   int queries = 0;
   while (std::getline(scenario, line)) {
@@ -60,7 +60,7 @@ TEST_P(GridMaps, LabelsAndZonesAreAsShortAsTheSearchInSharedWorlds) {
     ASSERT_EQ(searched.end, PathEnd::kReached);
     ASSERT_EQ(looked_up.end, PathEnd::kReached);
     ASSERT_EQ(over_zones.end, PathEnd::kReached);
-    EXPECT_NEAR(looked_up.length, searched.length, searched.length * most_longer);
+    EXPECT_NEAR(looked_up.length, searched.length, searched.length * max_longer);
     EXPECT_NEAR(over_zones.length, searched.length, searched.length * 1e-4);
     if (searched.length > 0) worst = std::max(worst, looked_up.length / searched.length);
   }

@@ -16,6 +16,7 @@
 #include "throng/path.h"
 #include "worlds.h"
 
+// Queries around a place, against brute force over all cells.
 namespace throng {
 namespace {
 
@@ -38,7 +39,7 @@ std::vector<World> some_worlds() {
           bake(worlds::random_soup(7, 400, 12), 0.15)};
 }
 
-// The nearest place by looking at every cell of the world.
+// The nearest place by testing every cell of the world.
 double nearest_of_all(const World& world, int32_t avatar_class, Vec3d position) {
   const WorldSummary summary = world.summary();
   const double unit = summary.cell / 2048;
@@ -113,8 +114,8 @@ TEST(GroundQuery, RaysEndWhereMovesEnd) {
       const GroundRay ray = ask.ray(from, dx, dz);
       const bool arrives = world.move(0, from, dx, dz).end == MoveEnd::kArrived;
       ASSERT_EQ(ray.arrived, arrives);
-      const Vec3d gone = ray.place.position - from.position;
-      const MoveResult move = world.move(0, from, gone.x, gone.z);
+      const Vec3d moved = ray.place.position - from.position;
+      const MoveResult move = world.move(0, from, moved.x, moved.z);
       ASSERT_EQ(move.end, MoveEnd::kArrived);
       EXPECT_EQ(move.place.level1, ray.place.level1);
       EXPECT_EQ(ray.obstacle == Obstacle::kNone, arrives);
@@ -122,7 +123,7 @@ TEST(GroundQuery, RaysEndWhereMovesEnd) {
       ++stopped;
       const double whole = std::hypot(dx, dz);
       const double t = farthest(world, 0, from, dx, dz, static_cast<int32_t>(whole / cell * 64));
-      EXPECT_NEAR(std::hypot(gone.x, gone.z), t * whole, cell / 16) << n;
+      EXPECT_NEAR(std::hypot(moved.x, moved.z), t * whole, cell / 16) << n;
       EXPECT_NEAR(std::hypot(ray.normal_x, ray.normal_z), 1, 1e-12);
       EXPECT_LT(ray.normal_x * dx + ray.normal_z * dz, 0);
     }
@@ -143,8 +144,8 @@ TEST(GroundQuery, NearestWallIsTheShortestOfAllRays) {
       for (int32_t r = 0; r < kRays; ++r) {
         const double angle = r * 2 * 3.14159265358979 / kRays;
         const GroundRay ray = ask.ray(from, 1.5 * std::cos(angle), 1.5 * std::sin(angle));
-        const Vec3d gone = ray.place.position - from.position;
-        if (!ray.arrived) shortest = std::min(shortest, std::hypot(gone.x, gone.z));
+        const Vec3d moved = ray.place.position - from.position;
+        if (!ray.arrived) shortest = std::min(shortest, std::hypot(moved.x, moved.z));
       }
       EXPECT_LE(wall.found ? wall.distance : 1.5, shortest + cell / 500);
       if (!wall.found) continue;
@@ -154,7 +155,7 @@ TEST(GroundQuery, NearestWallIsTheShortestOfAllRays) {
       EXPECT_NEAR(std::hypot(wall.x - from.position.x, wall.z - from.position.z), wall.distance,
                   cell / 1000);
       EXPECT_NEAR(std::hypot(wall.normal_x, wall.normal_z), 1, 1e-9);
-      // Up to the wall one may go, a cell further one may not.
+      // A body may stand up to the wall, not a cell further.
       const double inside = wall.distance - cell / 1000;
       if (inside > 0) {
         EXPECT_EQ(world.move(0, from, -wall.normal_x * inside, -wall.normal_z * inside).end,
@@ -242,7 +243,7 @@ TEST(GroundQuery, SlidesToTheNearestPlaceToTheEnd) {
   EXPECT_GT(slid, 60u);
 }
 
-TEST(GroundQuery, RandomPlacesAreNearAndEvenlySpread) {
+TEST(GroundQuery, RandomPlacesAreNearAndEvenlyDistributed) {
   const World world = bake(worlds::doorway(0.2), 0.1);  // too narrow for an adult: two rooms
   GroundQuery ask = query(world);
   const Place centre = world.find_place(0, {3.4, 0, 3}, 0.5);
@@ -268,7 +269,7 @@ TEST(GroundQuery, RandomPlacesAreNearAndEvenlySpread) {
   EXPECT_FALSE(ask.random_place_near({}, 2, 21, 0));
 }
 
-TEST(GroundQuery, SaysWhatIsInTheWay) {
+TEST(GroundQuery, SaysWhatBlocks) {
   const auto toward = [](const World& world, Vec3d at, double dx, double dz,
                          int32_t avatar_class = 0) {
     const Place from = world.find_place(avatar_class, at, 0.5);
@@ -294,7 +295,7 @@ TEST(GroundQuery, SaysWhatIsInTheWay) {
   EXPECT_EQ(toward(bake(worlds::doorway(0.9), 0.1), {2, 0, 1}, 4, 0), Obstacle::kNarrow);
   EXPECT_EQ(toward(bake(worlds::doorway(0.9), 0.1), {2, 0, 3}, 4, 0), Obstacle::kNone);
   // A block is a step or a wall from below, however high it is, and a step or a gap from above. (It
-  // is hollow: one a bit lower than a body is a low room to whoever sees no cell of its side.)
+  // is hollow: one a bit lower than a body is a low room if no cell of its side is seen.)
   for (const double cell : {0.1, 0.2, 0.25}) {
     for (const double height : {0.5, 0.8, 2.0, 3.0, 5.0}) {
       Scene scene = worlds::flat(8);
@@ -309,7 +310,7 @@ TEST(GroundQuery, SaysWhatIsInTheWay) {
   }
 }
 
-// However far it is meant to go, and in whichever direction.
+// Whatever the length and direction of the push.
 TEST(GroundQuery, APushFarBeyondTheWorldIsOneToItsRim) {
   const World world = bake(worlds::doorway(0.9), 0.1);
   GroundQuery ask = query(world);

@@ -18,13 +18,13 @@
 #include "throng/cells.h"
 #include "world/place.h"
 
-// Ways that are pulled taut, and ways looked up by the middles of blocks, against the search.
+// Paths that are pulled taut, and paths looked up by the middles of blocks, against the search.
 namespace throng {
 namespace {
 
-class Ways {
+class MeshedWorld {
  public:
-  Ways(const World& world, int32_t avatar_class) : world_(world), class_(avatar_class) {
+  MeshedWorld(const World& world, int32_t avatar_class) : world_(world), class_(avatar_class) {
     Context context;
     auto made = build_mesh(*world.data(), avatar_class, 0, context);
     EXPECT_TRUE(made);
@@ -42,14 +42,14 @@ class Ways {
   [[nodiscard]] bool together(const Stop& a, const Stop& b) const {
     return mesh.rects[a.rect].component == mesh.rects[b.rect].component;
   }
-  // Of the shortest way.
+  // Of the shortest path.
   double search(const Stop& from, const Stop& to, std::vector<uint32_t>& corners) {
     double length = 0;
     EXPECT_EQ(search_.find(mesh, from, to, UINT64_MAX, corners, length), SearchResult::kFound);
     return length;
   }
-  [[nodiscard]] bool can_be_gone(const Stop& from, const std::vector<uint32_t>& corners,
-                                 const Stop& to) const {
+  [[nodiscard]] bool is_legal(const Stop& from, const std::vector<uint32_t>& corners,
+                              const Stop& to) const {
     std::vector<Stop> stops;
     return SegmentWalker(*world_.data(), mesh).walk(from, corners, to.at, stops) &&
            stops.back().rect == to.rect;
@@ -75,34 +75,34 @@ std::vector<World> some_worlds() {
 TEST(Labels, AStringOverAThirdPlacePullsTaut) {
   int pulled = 0, shortest = 0;
   for (const World& world : some_worlds()) {
-    Ways ways(world, 0);
+    MeshedWorld meshed(world, 0);
     StringPuller puller;
     std::vector<uint32_t> first, second, corners, exact;
     for (uint64_t n = 0; n < 150; ++n) {
-      const Stop from = ways.random_stop(1, 3 * n), over = ways.random_stop(1, 3 * n + 1);
-      const Stop to = ways.random_stop(1, 3 * n + 2);
-      if (!ways.together(from, to) || !ways.together(from, over)) continue;
+      const Stop from = meshed.random_stop(1, 3 * n), over = meshed.random_stop(1, 3 * n + 1);
+      const Stop to = meshed.random_stop(1, 3 * n + 2);
+      if (!meshed.together(from, to) || !meshed.together(from, over)) continue;
       SCOPED_TRACE(testing::Message() << n);
-      const double both = ways.search(from, over, first) + ways.search(over, to, second);
-      std::vector<Waypoint> way{{in_cells(from.at), from.rect}};
-      for (const uint32_t c : first) way.push_back(waypoint(ways.mesh, c));
-      way.push_back({in_cells(over.at), over.rect});
-      for (const uint32_t c : second) way.push_back(waypoint(ways.mesh, c));
-      way.push_back({in_cells(to.at), to.rect});
+      const double both = meshed.search(from, over, first) + meshed.search(over, to, second);
+      std::vector<Waypoint> path{{in_cells(from.at), from.rect}};
+      for (const uint32_t c : first) path.push_back(waypoint(meshed.mesh, c));
+      path.push_back({in_cells(over.at), over.rect});
+      for (const uint32_t c : second) path.push_back(waypoint(meshed.mesh, c));
+      path.push_back({in_cells(to.at), to.rect});
       double length = 0;
-      ASSERT_TRUE(puller.pull(ways.mesh, way, corners, length));
-      EXPECT_TRUE(ways.can_be_gone(from, corners, to));
-      const double least = ways.search(from, to, exact);
+      ASSERT_TRUE(puller.pull(meshed.mesh, path, corners, length));
+      EXPECT_TRUE(meshed.is_legal(from, corners, to));
+      const double least = meshed.search(from, to, exact);
       EXPECT_LE(length, both + 1e-6);
       EXPECT_GE(length, least - 1e-6);
       ++pulled;
       shortest += length < least + 1e-6;
-      // What is taut stays as it is.
+      // A taut path stays as it is.
       double again = 0;
-      std::vector<Waypoint> taut{way.front()};
-      for (const uint32_t c : corners) taut.push_back(waypoint(ways.mesh, c));
-      taut.push_back(way.back());
-      ASSERT_TRUE(puller.pull(ways.mesh, taut, exact, again));
+      std::vector<Waypoint> taut{path.front()};
+      for (const uint32_t c : corners) taut.push_back(waypoint(meshed.mesh, c));
+      taut.push_back(path.back());
+      ASSERT_TRUE(puller.pull(meshed.mesh, taut, exact, again));
       EXPECT_EQ(exact, corners);
     }
   }
@@ -110,52 +110,52 @@ TEST(Labels, AStringOverAThirdPlacePullsTaut) {
   EXPECT_GT(shortest, 50);
 }
 
-TEST(Labels, WaysByMiddlesAreHardlyLonger) {
-  int asked = 0, exact = 0;
+TEST(Labels, PathsOverMiddlesAreHardlyLonger) {
+  int pairs = 0, exact = 0;
   for (const World& world : some_worlds()) {
-    Ways ways(world, 0);
-    cut_into_blocks(ways.mesh, kLargeBlock);
+    MeshedWorld meshed(world, 0);
+    cut_into_blocks(meshed.mesh, kLargeBlock);
     Context context;
-    const auto labels = build_labels(ways.mesh, 0, context);
+    const auto labels = build_labels(meshed.mesh, 0, context);
     ASSERT_TRUE(labels);
     ASSERT_FALSE(labels->by_middle.first.empty());
-    LabelSearch look_up;
+    LabelSearch label_search;
     std::vector<uint32_t> corners, shortest;
     for (uint64_t n = 0; n < 250; ++n) {
-      const Stop from = ways.random_stop(2, 2 * n), to = ways.random_stop(2, 2 * n + 1);
-      if (!ways.together(from, to)) continue;
+      const Stop from = meshed.random_stop(2, 2 * n), to = meshed.random_stop(2, 2 * n + 1);
+      if (!meshed.together(from, to)) continue;
       SCOPED_TRACE(testing::Message() << n);
       double length = 0;
-      ASSERT_TRUE(look_up.find(ways.mesh, *labels, from, to, corners, length));
-      EXPECT_TRUE(ways.can_be_gone(from, corners, to));
-      const double least = ways.search(from, to, shortest);
+      ASSERT_TRUE(label_search.find(meshed.mesh, *labels, from, to, corners, length));
+      EXPECT_TRUE(meshed.is_legal(from, corners, to));
+      const double least = meshed.search(from, to, shortest);
       EXPECT_GE(length, least - 1e-6);
       EXPECT_LE(length, least * 1.02 + 1e-6);
-      ++asked;
+      ++pairs;
       exact += length < least + 1e-6;
     }
   }
-  EXPECT_GT(asked, 600);
-  EXPECT_GT(exact, asked * 9 / 10);
+  EXPECT_GT(pairs, 600);
+  EXPECT_GT(exact, pairs * 9 / 10);
 }
 
-// The 47025th pair is one whose way bends at a corner, runs on by less than rays can tell through
-// the cell that is missing there, and so lost that corner.
+// The 47025th pair is one whose path turns at a corner, continues through the cell that is missing
+// there by less than rays can distinguish, and so lost that corner.
 TEST(Labels, NoCornerIsLostToRounding) {
   const World world = test::bake(test::builtin({.name = "maze", .size = 30, .levels = 2}), 0.15);
-  Ways ways(world, 0);
-  cut_into_blocks(ways.mesh, kLargeBlock);
+  MeshedWorld meshed(world, 0);
+  cut_into_blocks(meshed.mesh, kLargeBlock);
   Context context;
-  const auto labels = build_labels(ways.mesh, 0, context);
+  const auto labels = build_labels(meshed.mesh, 0, context);
   ASSERT_TRUE(labels);
-  LabelSearch look_up;
+  LabelSearch label_search;
   std::vector<uint32_t> corners;
   for (uint64_t n = 47000; n < 60000; ++n) {
-    const Stop from = ways.random_stop(2, 2 * n), to = ways.random_stop(2, 2 * n + 1);
-    ASSERT_TRUE(ways.together(from, to));
+    const Stop from = meshed.random_stop(2, 2 * n), to = meshed.random_stop(2, 2 * n + 1);
+    ASSERT_TRUE(meshed.together(from, to));
     double length = 0;
-    ASSERT_TRUE(look_up.find(ways.mesh, *labels, from, to, corners, length)) << n;
-    EXPECT_TRUE(ways.can_be_gone(from, corners, to)) << n;
+    ASSERT_TRUE(label_search.find(meshed.mesh, *labels, from, to, corners, length)) << n;
+    EXPECT_TRUE(meshed.is_legal(from, corners, to)) << n;
   }
 }
 
@@ -193,18 +193,18 @@ TEST(Labels, StraightLinesThroughPointsOfFourCellsAreFound) {
   const auto world = bake_flat_cells(cells, 1);
   ASSERT_TRUE(world);
   const test::GridOracle oracle(cells);
-  Ways ways(*world, 0);
+  MeshedWorld meshed(*world, 0);
   for (const int32_t side : {kSmallBlock, kLargeBlock}) {
-    cut_into_blocks(ways.mesh, side);
-    const HubLabels labels = labels_of(ways.mesh);
-    LabelSearch look_up;
+    cut_into_blocks(meshed.mesh, side);
+    const HubLabels labels = labels_of(meshed.mesh);
+    LabelSearch label_search;
     std::vector<uint32_t> corners;
     for (const int32_t half : {1, 0}) {
       for (int32_t n = 0; n < kWindow * kWindow * kWindow * kWindow; ++n) {
         const int32_t from = n / (kWindow * kWindow), to = n % (kWindow * kWindow);
         const auto stop_at = [&](int32_t cell) {
           const GroundPoint within{half * kUnitsPerCell / 2, half * kUnitsPerCell / 2};
-          return stop_in(*world, ways.mesh, kFirst + cell % kWindow, kFirst + cell / kWindow,
+          return stop_in(*world, meshed.mesh, kFirst + cell % kWindow, kFirst + cell / kWindow,
                          within);
         };
         const auto point = [&](int32_t cell) {
@@ -214,7 +214,7 @@ TEST(Labels, StraightLinesThroughPointsOfFourCellsAreFound) {
         const Stop a = stop_at(from), b = stop_at(to);
         if (a.rect == kNoRect || b.rect == kNoRect) continue;
         double length = 0;
-        ASSERT_TRUE(look_up.find(ways.mesh, labels, a, b, corners, length));
+        ASSERT_TRUE(label_search.find(meshed.mesh, labels, a, b, corners, length));
         const auto best = oracle.shortest(point(from), point(to), length * (1 + 1e-9) + 1e-9);
         ASSERT_TRUE(best) << from << " to " << to;
         EXPECT_LE(length, *best * (side == kSmallBlock ? 1 : 1.02) + 1e-6)
@@ -226,7 +226,7 @@ TEST(Labels, StraightLinesThroughPointsOfFourCellsAreFound) {
 
 // Ends anywhere and on halves and quarters of cells, over one tile and over several.
 TEST(Labels, AreAsShortAsTheSearchOverRandomCells) {
-  int asked = 0, straight = 0;
+  int pairs = 0, straight = 0;
   for (uint64_t seed = 0; seed < 20; ++seed) {
     const int32_t width = seed < 3 ? 140 : 30, depth = seed < 3 ? 80 : 24;
     FlatCells cells{.width = width, .depth = depth, .passable = {}};
@@ -234,12 +234,12 @@ TEST(Labels, AreAsShortAsTheSearchOverRandomCells) {
       cells.passable.push_back(random_below(seed, 0, i, 200) < 2 + seed ? 0 : 1);
     const auto world = bake_flat_cells(cells, 1);
     ASSERT_TRUE(world);
-    Ways ways(*world, 0);
+    MeshedWorld meshed(*world, 0);
     for (const int32_t side : {kSmallBlock, kLargeBlock}) {
-      cut_into_blocks(ways.mesh, side);
-      const HubLabels labels = labels_of(ways.mesh);
+      cut_into_blocks(meshed.mesh, side);
+      const HubLabels labels = labels_of(meshed.mesh);
       ASSERT_EQ(labels.by_middle.first.empty(), side == kSmallBlock);
-      LabelSearch look_up;
+      LabelSearch label_search;
       std::vector<uint32_t> corners, exact;
       for (uint64_t n = 0; n < 400; ++n) {
         const auto random_stop = [&](uint64_t use) {
@@ -250,29 +250,29 @@ TEST(Labels, AreAsShortAsTheSearchOverRandomCells) {
           const int32_t parts = 1 << std::min(below(0, 14), kUnitBits);
           const int32_t part = kUnitsPerCell / parts;
           const GroundPoint within{below(1, parts) * part, below(2, parts) * part};
-          return stop_in(*world, ways.mesh, below(3, width), below(4, depth), within);
+          return stop_in(*world, meshed.mesh, below(3, width), below(4, depth), within);
         };
         const Stop from = random_stop(0), to = random_stop(1);
-        if (from.rect == kNoRect || to.rect == kNoRect || !ways.together(from, to)) continue;
+        if (from.rect == kNoRect || to.rect == kNoRect || !meshed.together(from, to)) continue;
         SCOPED_TRACE(testing::Message() << "seed " << seed << ", pair " << n << ", side " << side);
         double length = 0;
-        ASSERT_TRUE(look_up.find(ways.mesh, labels, from, to, corners, length));
-        EXPECT_TRUE(ways.can_be_gone(from, corners, to));
-        const double least = ways.search(from, to, exact);
+        ASSERT_TRUE(label_search.find(meshed.mesh, labels, from, to, corners, length));
+        EXPECT_TRUE(meshed.is_legal(from, corners, to));
+        const double least = meshed.search(from, to, exact);
         EXPECT_GE(length, least - 1e-5);
         EXPECT_LE(length, least * (side == kSmallBlock ? 1 : 1.02) + 1e-5);
-        ++asked;
+        ++pairs;
         straight += exact.empty();
       }
     }
   }
-  EXPECT_GT(asked, 10000);
+  EXPECT_GT(pairs, 10000);
   EXPECT_GT(straight, 2000);
 }
 
-// Labels know of ways over corners only, so of none between two middles that see each other: what
-// they tell must prove nothing there. Ends behind a wall from each other, middles that are not.
-TEST(Labels, WaysAreHardlyLongerWhereMiddlesSeeEachOther) {
+// Labels hold paths over corners only, so none between two middles that see each other: their
+// length must prove nothing there. Ends behind a wall from each other, middles that are not.
+TEST(Labels, PathsAreHardlyLongerWhereMiddlesSeeEachOther) {
   constexpr int32_t kWidth = 190, kDepth = 120;
   for (uint64_t seed = 200; seed < 210; ++seed) {
     FlatCells cells{.width = kWidth, .depth = kDepth, .passable = {}};
@@ -300,22 +300,22 @@ TEST(Labels, WaysAreHardlyLongerWhereMiddlesSeeEachOther) {
     }
     const auto world = bake_flat_cells(cells, 1);
     ASSERT_TRUE(world);
-    Ways ways(*world, 0);
-    cut_into_blocks(ways.mesh, kLargeBlock);
-    const HubLabels labels = labels_of(ways.mesh);
-    LabelSearch look_up;
+    MeshedWorld meshed(*world, 0);
+    cut_into_blocks(meshed.mesh, kLargeBlock);
+    const HubLabels labels = labels_of(meshed.mesh);
+    LabelSearch label_search;
     std::vector<uint32_t> corners, exact;
     for (uint64_t n = 0; n < 2000; ++n) {
       const auto random_stop = [&](uint64_t use) {
-        return stop_in(*world, ways.mesh,
+        return stop_in(*world, meshed.mesh,
                        static_cast<int32_t>(random_below(seed, 100 + n, use, kWidth)),
                        static_cast<int32_t>(random_below(seed, 100 + n, use + 1, kDepth)));
       };
       const Stop from = random_stop(0), to = random_stop(2);
-      if (from.rect == kNoRect || to.rect == kNoRect || !ways.together(from, to)) continue;
+      if (from.rect == kNoRect || to.rect == kNoRect || !meshed.together(from, to)) continue;
       double length = 0;
-      ASSERT_TRUE(look_up.find(ways.mesh, labels, from, to, corners, length));
-      EXPECT_LE(length, ways.search(from, to, exact) * 1.02 + 1e-5) << seed << ", " << n;
+      ASSERT_TRUE(label_search.find(meshed.mesh, labels, from, to, corners, length));
+      EXPECT_LE(length, meshed.search(from, to, exact) * 1.02 + 1e-5) << seed << ", " << n;
     }
   }
 }

@@ -15,6 +15,7 @@
 #include "throng/path.h"
 #include "worlds.h"
 
+// Paths over ground that changes, against the exact search and the geometry of obstacles.
 namespace throng {
 namespace {
 
@@ -53,7 +54,7 @@ void expect_walkable(const World& world, int32_t avatar_class, const Path& path)
   EXPECT_NEAR(length, path.length, 1e-3 * static_cast<double>(path.points.size()));
 }
 
-// Unchanged, it finds what the exact search finds, a little longer at most.
+// Unchanged, it finds what the exact search finds, at most a little longer.
 TEST(LiveGround, FindsWhatTheExactSearchFinds) {
   uint64_t found = 0, none = 0;
   double sum = 0;
@@ -90,7 +91,8 @@ TEST(LiveGround, FindsWhatTheExactSearchFinds) {
   EXPECT_LT(sum / static_cast<double>(found), 1.01);
 }
 
-// Distance of a point of the plan to a convex polygon, 0 inside. Its corners go round one way.
+// Distance of a point of the plan to a convex polygon, 0 inside. Its corners go around in one
+// direction.
 double distance_to(const Prism& prism, double x, double z) {
   double best = std::numeric_limits<double>::infinity();
   int left = 0;
@@ -122,8 +124,8 @@ Prism random_prism(uint64_t seed, uint64_t n, const Box3d& box) {
   return prism;
 }
 
-TEST(LiveGround, NobodyStandsInAnObstacleAndLittleElseIsLost) {
-  uint64_t taken = 0, free = 0, entered = 0;
+TEST(LiveGround, NoPlaceIsInAnObstacleAndLittleElseIsLost) {
+  uint64_t blocked = 0, free = 0, entered = 0;
   for (const World& world : {bake(worlds::two_floors(), 0.1), bake(worlds::ramp(20, 4), 0.1),
                              bake(test::builtin({.name = "garage"}), 0.2)}) {
     const WorldSummary summary = world.summary();
@@ -156,16 +158,16 @@ TEST(LiveGround, NobodyStandsInAnObstacleAndLittleElseIsLost) {
         if (!near) {
           EXPECT_TRUE(stands);
         }
-        ++(stands ? free : taken);
+        ++(stands ? free : blocked);
       }
     }
   }
   EXPECT_EQ(entered, 0u);
-  EXPECT_GT(taken, 100u);
+  EXPECT_GT(blocked, 100u);
   EXPECT_GT(free, 10000u);
 }
 
-TEST(LiveGround, MeshesTakeWhatTheirTrianglesTouch) {
+TEST(LiveGround, MeshesBlockWhatTheirTrianglesTouch) {
   const World world = bake(worlds::flat(8), 0.1);
   LiveGround by_mesh = live(world), by_prism = live(world);
   Scene crate;
@@ -179,7 +181,7 @@ TEST(LiveGround, MeshesTakeWhatTheirTrianglesTouch) {
   }
 }
 
-TEST(LiveGround, WaysLeadAroundACrateAndBackWhenItIsGone) {
+TEST(LiveGround, PathsLeadAroundACrateAndStraightAfterItsRemoval) {
   const World world = bake(worlds::doorway(1.2), 0.1);
   LiveGround ground = live(world);
   const Place from = world.find_place(0, {2, 0, 3}, 0.5), to = world.find_place(0, {6, 0, 3}, 0.5);
@@ -200,7 +202,7 @@ TEST(LiveGround, WaysLeadAroundACrateAndBackWhenItIsGone) {
       EXPECT_GE(distance_to(Prism::box({2.8, 0, 2.8}, {3.1, 1, 3.2}), at.x, at.z), 0.25 - 1e-3);
     }
   }
-  // A door leaf in the doorway: shut, no way; the nearest place is on this side of it.
+  // A closed door leaf in the doorway: no path; the nearest place is on this side of it.
   const auto door = ground.add_obstacle(Prism::box({3.95, 0, 2.3}, {4.05, 2, 3.7}));
   ASSERT_TRUE(door);
   ground.find(from, to, path);
@@ -224,7 +226,7 @@ TEST(LiveGround, ChangesAreUndoneWithoutATrace) {
   const World world = bake(test::builtin({.name = "garage"}), 0.2);
   LiveGround changed = live(world);
   std::vector<std::pair<ChangeId, Prism>> active;
-  Path path, fresh_path;
+  Path path, rebuilt_path;
   for (uint64_t n = 0; n < 60; ++n) {
     if (active.size() > 12 || (!active.empty() && random_below(3, n, 0, 3) == 0)) {
       const size_t which = random_below(3, n, 1, active.size());
@@ -237,15 +239,15 @@ TEST(LiveGround, ChangesAreUndoneWithoutATrace) {
       ASSERT_TRUE(id);
       active.push_back({*id, prism});
     }
-    LiveGround fresh = live(world);
-    for (const auto& [id, prism] : active) ASSERT_TRUE(fresh.add_obstacle(prism));
+    LiveGround rebuilt = live(world);
+    for (const auto& [id, prism] : active) ASSERT_TRUE(rebuilt.add_obstacle(prism));
     for (uint64_t k = 0; k < 5; ++k) {
       const Place from = world.random_place(0, n, 2 * k), to = world.random_place(0, n, 2 * k + 1);
       changed.find(from, to, path);
-      fresh.find(from, to, fresh_path);
-      ASSERT_EQ(path.end, fresh_path.end);
-      EXPECT_EQ(path.length, fresh_path.length);
-      ASSERT_EQ(path.points.size(), fresh_path.points.size());
+      rebuilt.find(from, to, rebuilt_path);
+      ASSERT_EQ(path.end, rebuilt_path.end);
+      EXPECT_EQ(path.length, rebuilt_path.length);
+      ASSERT_EQ(path.points.size(), rebuilt_path.points.size());
     }
   }
 }
@@ -281,7 +283,7 @@ TEST(LiveGround, DearGroundIsAvoidedAndClosedGroundNeverEntered) {
   EXPECT_EQ(path.end, PathEnd::kReached);
 }
 
-// The way over a refracting border: by Snell's law, found by trying all places to cross.
+// The path over a refracting border: by Snell's law, found by trying all places to cross.
 TEST(LiveGround, CrossesBordersOfAreasWhereItIsCheapest) {
   const World world = bake(worlds::flat(12), 0.1);
   LiveGround ground = live(world);
@@ -304,7 +306,7 @@ TEST(LiveGround, CrossesBordersOfAreasWhereItIsCheapest) {
   }
 }
 
-TEST(LiveGround, SlopesCostMoreWhereAskedTo) {
+TEST(LiveGround, SlopesCostMoreIfSet) {
   const World world = bake(worlds::ramp(20, 4), 0.1);
   const Place from = world.find_place(0, {1, 0, 1.5}, 0.5),
               to = world.find_place(0, {9, 2, 1.5}, 3);
@@ -320,7 +322,7 @@ TEST(LiveGround, SlopesCostMoreWhereAskedTo) {
   EXPECT_NEAR(path.cost, length + 4 * 3 * 0.6, 1.2);
 }
 
-TEST(LiveGround, JumpsLeadWhereMovesDoNot) {
+TEST(LiveGround, OffMeshLinksLeadWhereMovesDoNot) {
   const World world = bake(worlds::doorway(0.2), 0.1);  // too narrow for an adult: two rooms
   LiveGround ground = live(world);
   const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
@@ -355,7 +357,7 @@ TEST(LiveGround, JumpsLeadWhereMovesDoNot) {
   ASSERT_TRUE(ground.set_active(*lift, true));
   ground.find(to, from, path);
   EXPECT_EQ(path.end, PathEnd::kReached);
-  // A crate where it lands: nobody jumps there.
+  // A crate where it lands: no path uses the link.
   ASSERT_TRUE(ground.add_obstacle(Prism::box({4.4, 0, 2.9}, {4.6, 1, 3.1})));
   ASSERT_TRUE(ground.remove(*lift));
   ground.find(from, to, path);
@@ -363,8 +365,8 @@ TEST(LiveGround, JumpsLeadWhereMovesDoNot) {
   ASSERT_TRUE(ground.remove(*off_mesh_link));
 }
 
-// Two jumps to one place: the way takes the cheaper, and stands where that one begins.
-TEST(LiveGround, OfTwoJumpsToOnePlaceTheCheaperIsTaken) {
+// Two off-mesh links to one place: the path uses the cheaper, and stands where that one begins.
+TEST(LiveGround, OfTwoOffMeshLinksToOnePlaceTheCheaperIsUsed) {
   const World world = bake(worlds::doorway(0.2), 0.1);
   const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
   const Place from = at(1, 3), to = at(7, 3);
@@ -383,7 +385,7 @@ TEST(LiveGround, OfTwoJumpsToOnePlaceTheCheaperIsTaken) {
   }
 }
 
-// A path is used again and again, by whoever finds one next.
+// A path is used again and again, by one finder after the other.
 TEST(LiveGround, NothingOfAnOldPathIsLeft) {
   const World world = bake(worlds::doorway(0.2), 0.1);
   const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };

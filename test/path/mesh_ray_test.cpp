@@ -42,7 +42,7 @@ GroundPoint round_off(GroundPoint p, uint64_t seed, uint64_t n) {
   return {low(p.x, 8), low(p.z, 9)};
 }
 
-// Every point of a map of one level has one rectangle at most, so rays and walks tell the same.
+// Every point of a map of one level has one rectangle at most, so rays and walks must agree.
 TEST(MeshRay, GoesAsFarAsTheWalkOverCells) {
   int through = 0, blocked = 0;
   for (uint64_t seed = 0; seed < 40; ++seed) {
@@ -61,8 +61,9 @@ TEST(MeshRay, GoesAsFarAsTheWalkOverCells) {
     for (uint64_t n = 0; n < 4000; ++n) {
       const auto random_point = [&](uint64_t use) {
         const auto cell = [&](uint64_t more, int32_t size) {
-          const auto most = static_cast<uint64_t>(size);
-          return static_cast<int64_t>(random_below(seed, n + 1, 2 * use + more, most)) << kUnitBits;
+          const auto count = static_cast<uint64_t>(size);
+          return static_cast<int64_t>(random_below(seed, n + 1, 2 * use + more, count))
+                 << kUnitBits;
         };
         return round_off({cell(0, width), cell(1, depth)}, seed + 100 * (use + 1), n);
       };
@@ -80,7 +81,7 @@ TEST(MeshRay, GoesAsFarAsTheWalkOverCells) {
   EXPECT_GT(blocked, 20000);
 }
 
-TEST(MeshRay, LeadsToTheStoreyThatTheWalkLeadsTo) {
+TEST(MeshRay, LeadsToTheLevelThatTheWalkLeadsTo) {
   int through = 0, lost = 0;
   for (const auto& [name, cell] :
        {std::pair{"church", 0.15}, {"garage", 0.2}, {"stairs", 0.1}, {"bridge", 0.2}}) {

@@ -16,13 +16,14 @@
 #include "verify/triangle_tree.h"
 #include "verify/turned_body.h"
 
+// Obstacles on nodes, against the bodies' own geometry and a search of all crossings.
 namespace throng {
 namespace {
 
 using test::bake;
 using test::builtin;
 
-// A walker, one who drops, and climbers with leaps.
+// A walker, one that drops, and climbers with links over holes.
 std::vector<AvatarClass> classes() {
   std::vector<AvatarClass> all{{.name = "adult"}, {.name = "dropper"}, {.name = "climber"}};
   all[1].max_drop = 3;
@@ -47,7 +48,7 @@ TestWorld make(const BuiltinWorldConfig& world, double cell, double size) {
   return made;
 }
 
-// Boxes, posts and walls where people are: some across, some askew, some in the air.
+// Boxes, pillars and walls where bodies are: some across, some askew, some in the air.
 std::vector<Prism> random_prisms(const Nodes& nodes, uint64_t seed, int count) {
   std::vector<Prism> prisms;
   for (int i = 0; i < count; ++i) {
@@ -82,7 +83,7 @@ void for_each_world(Check check) {
   check(make({.name = "bridge"}, 0.25, 1));
 }
 
-TEST(NodeObstacles, EveryWayAroundThemIsGoneByItsBody) {
+TEST(NodeObstacles, EveryPathAroundThemIsLegalForItsBody) {
   uint64_t pairs = 0, reached = 0, blocked = 0, poses = 0;
   for_each_world([&](const TestWorld& world) {
     Context context;
@@ -121,7 +122,7 @@ BlockPoint point_of(const NodeView& view, const NodePlace& place) {
 }
 
 // A search of all crossings that are left.
-TEST(NodeObstacles, ASearchOfWhatIsLeftTellsTheSame) {
+TEST(NodeObstacles, ASearchOfWhatIsLeftFindsTheSame) {
   uint64_t reached = 0, unreachable = 0, nowhere = 0, islands = 0;
   for_each_world([&](const TestWorld& world) {
     Context context;
@@ -136,7 +137,7 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftTellsTheSame) {
         changes.add({prism, {}});
         ASSERT_TRUE(finder->add_obstacle(prism));
       }
-      // Somebody is walled in.
+      // A body is walled in.
       const Vec3d in = world.nodes.random_place(c, 5, 0).feet;
       for (const auto& [u, v] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
         const Prism wall = Prism::box(
@@ -184,8 +185,8 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftTellsTheSame) {
   EXPECT_GT(nowhere, 10u);
 }
 
-// Over gates, where the districts that something stands in are looked through anew.
-TEST(NodeObstacles, LongWaysArePutTogetherOfWhatIsLeft) {
+// Over entrances, where overlay cells that obstacles stand in are searched again.
+TEST(NodeObstacles, LongPathsLeadOverWhatIsLeft) {
   uint64_t reached = 0, missed = 0;
   double sum = 0;
   for_each_world([&](const TestWorld& world) {
@@ -199,11 +200,11 @@ TEST(NodeObstacles, LongWaysArePutTogetherOfWhatIsLeft) {
       const PieceCost piece(view, 0);
       const NodeView baked(*mesh);
       const PieceCost baked_piece(baked, 0);
-      const Districts overlay(*mesh, baked_piece, 1, 48);
+      const Overlay overlay(*mesh, baked_piece, 1, 48);
       ASSERT_FALSE(overlay.empty());
       OverlaySearch search(view, piece, overlay);
       NodeSearch plain(view, piece), blocks(view, piece);
-      std::vector<Crossing> best, way;
+      std::vector<Crossing> best, crossings;
       for (uint64_t round = 0; round < 3; ++round) {
         for (const Prism& prism : random_prisms(world.nodes, 100 + round, 25))
           changes.add({prism, {}});
@@ -214,19 +215,19 @@ TEST(NodeObstacles, LongWaysArePutTogetherOfWhatIsLeft) {
           const BlockPoint to = point_of(view, world.nodes.random_place(c, 9, 2 * n + 1));
           if (from.block == kNoNode || to.block == kNoNode) continue;
           const PathEnd end = plain.find(from, to, {}, best);
-          const PathEnd over_entrances = search.find(from, to, {}, blocks, way);
+          const PathEnd over_entrances = search.find(from, to, {}, blocks, crossings);
           if (end != PathEnd::kReached) {
             EXPECT_EQ(over_entrances, end);
             continue;
           }
-          // A finder goes on to a search of all where gates do not lead there any more.
+          // A finder continues with a search of all where entrances no longer lead there.
           missed += over_entrances != PathEnd::kReached ? 1 : 0;
           if (over_entrances != PathEnd::kReached || plain.cost() < 5) continue;
           ++reached;
           EXPECT_GE(search.cost(), plain.cost() * (1 - 1e-9));
           sum += search.cost() / plain.cost();
           BlockPoint at = from;
-          for (const Crossing& crossing : way) {
+          for (const Crossing& crossing : crossings) {
             const auto [out, in] = ends_of(view, crossing);
             ASSERT_EQ(out.block, at.block);
             at = in;
@@ -256,12 +257,12 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
   for (int32_t c = 0; c < 4; ++c) {
     auto made = NodePathFinder::make(world.nodes, {.avatar_class = c, .workers = 1}, context);
     ASSERT_TRUE(made);
-    NodePathFinder fresh = *made, one = *made, other = *made;
+    NodePathFinder rebuilt = *made, one = *made, other = *made;
     const std::vector<Prism> prisms = random_prisms(world.nodes, 3, 30);
     std::vector<ChangeId> ids;
     for (const Prism& prism : prisms) ids.push_back(*one.add_obstacle(prism));
     for (size_t i = prisms.size(); i-- > 0;) {
-      // What stands there for a while, and what is switched off, does not count.
+      // An obstacle that is removed later, or switched off, does not count.
       const ChangeId spare = *other.add_obstacle(prisms[(i * 7 + 3) % prisms.size()]);
       ASSERT_TRUE(other.add_obstacle(prisms[i]));
       if (i % 2 == 0) {
@@ -276,7 +277,7 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
     for (uint64_t n = 0; n < 25; ++n) {
       const NodePlace from = world.nodes.random_place(c, 2, 2 * n),
                       to = world.nodes.random_place(c, 2, 2 * n + 1);
-      fresh.find(from, to, e);
+      rebuilt.find(from, to, e);
       one.find(from, to, a);
       other.find(from, to, b);
       copy.find(from, to, d);
@@ -298,7 +299,7 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
     for (uint64_t n = 0; n < 25; ++n) {
       const NodePlace from = world.nodes.random_place(c, 2, 2 * n),
                       to = world.nodes.random_place(c, 2, 2 * n + 1);
-      fresh.find(from, to, e);
+      rebuilt.find(from, to, e);
       one.find(from, to, a);
       EXPECT_TRUE(is_same(a, e));
     }
@@ -306,10 +307,10 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
   EXPECT_GT(changed, 30u);
 }
 
-// What is well clear of everything stays open: of random places whose bodies' balls no prism comes
-// near none is taken.
-TEST(NodeObstacles, TakeNoMoreThanTheyMust) {
-  uint64_t open = 0, taken = 0, taken_near = 0;
+// What is well clear of every obstacle stays open: a random place whose body's ball no prism comes
+// near is never blocked.
+TEST(NodeObstacles, BlockNoMoreThanNeeded) {
+  uint64_t open = 0, blocked = 0, blocked_near = 0;
   for_each_world([&](const TestWorld& world) {
     Context context;
     for (int32_t c = 0; c < 4; ++c) {
@@ -324,7 +325,7 @@ TEST(NodeObstacles, TakeNoMoreThanTheyMust) {
       const AvatarClass avatar = classes()[static_cast<size_t>(c)];
       for (uint64_t n = 0; n < 4000; ++n) {
         const NodePlace place = world.nodes.random_place(c, 21, n);
-        const bool is_taken = point_of(view, place).block == kNoNode;
+        const bool is_blocked = point_of(view, place).block == kNoNode;
         // Along its axis, grown by a cell of half a metre.
         bool is_near = false;
         for (const Prism& prism : prisms) {
@@ -336,27 +337,27 @@ TEST(NodeObstacles, TakeNoMoreThanTheyMust) {
           body.radius = avatar.radius;
           is_near = is_near || may_touch(body, {prism, {}});
         }
-        taken += is_taken ? 1 : 0;
-        taken_near += is_taken && is_near ? 1 : 0;
-        open += is_taken ? 0 : 1;
+        blocked += is_blocked ? 1 : 0;
+        blocked_near += is_blocked && is_near ? 1 : 0;
+        open += is_blocked ? 0 : 1;
       }
     }
   });
   EXPECT_GT(open, 30000u);
-  EXPECT_GT(taken, 1000u);
-  EXPECT_EQ(taken_near, taken);
+  EXPECT_GT(blocked, 1000u);
+  EXPECT_EQ(blocked_near, blocked);
 }
 
-// A shell of triangles takes what its faces touch: no more than the whole prism does, and all along
-// its ways no body meets one of them.
-TEST(NodeObstacles, MeshesTakeWhatTheirTrianglesTouch) {
+// A shell of triangles blocks what its faces touch: no more than the whole prism does, and all
+// along the paths no body meets one of them.
+TEST(NodeObstacles, MeshesBlockWhatTheirTrianglesTouch) {
   const TestWorld world = make({.name = "landscape", .size = 64, .seed = 6}, 0.5, 1);
   Context context;
   uint64_t around = 0, bodies = 0;
   for (int32_t c = 0; c < 4; ++c) {
     auto made = NodePathFinder::make(world.nodes, {.avatar_class = c, .workers = 1}, context);
     ASSERT_TRUE(made);
-    NodePathFinder fresh = *made, solid = *made, shells = *made;
+    NodePathFinder rebuilt = *made, solid = *made, shells = *made;
     Scene scene;
     for (const Prism& prism : random_prisms(world.nodes, 31, 40)) {
       const test::PrismShell shell = test::shell_of(prism);
@@ -372,7 +373,7 @@ TEST(NodeObstacles, MeshesTakeWhatTheirTrianglesTouch) {
                       to = world.nodes.random_place(c, 8, 2 * n + 1);
       shells.find(from, to, path);
       solid.find(from, to, other);
-      // Whoever is in a closed shell of triangles is not in one.
+      // A body in a closed shell of triangles is not in one.
       EXPECT_TRUE(other.end == PathEnd::kNoPlace || path.end != PathEnd::kNoPlace);
       EXPECT_TRUE(other.end != PathEnd::kReached || path.end == PathEnd::kReached);
       for (const NodePathPoint& point : path.points) {
@@ -380,7 +381,7 @@ TEST(NodeObstacles, MeshesTakeWhatTheirTrianglesTouch) {
         ++bodies;
         EXPECT_FALSE(verify::turned_intruder(tree, avatar, {point.place.feet, point.place.axis}));
       }
-      fresh.find(from, to, other);
+      rebuilt.find(from, to, other);
       around += !is_same(path, other) ? 1 : 0;
     }
   }

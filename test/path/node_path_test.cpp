@@ -19,6 +19,7 @@
 #include "throng/path.h"
 #include "throng/verify.h"
 
+// Paths over nodes, against the oracle of src/verify and a search of all crossings.
 namespace throng {
 namespace {
 
@@ -51,8 +52,8 @@ NodePathFinder finder(const Nodes& nodes, int32_t avatar_class, double slope_cos
   return *std::move(made);
 }
 
-// The oracle of src/verify goes them; it also compares who reaches whom with the arcs' parts.
-TEST(NodePath, EveryWayCanBeGoneByItsBody) {
+// The oracle of src/verify walks them; it also compares what is reachable with the arcs' parts.
+TEST(NodePath, EveryPathIsLegalForItsBody) {
   Context context;
   const auto check = [&](const char* name, const Scene& scene, double cell, double size,
                          uint64_t pairs, uint64_t& leaps) {
@@ -77,7 +78,7 @@ TEST(NodePath, EveryWayCanBeGoneByItsBody) {
   EXPECT_GT(leaps, 0u);
 }
 
-// Ways lead through corners of blocks, where there is nothing to go. (Over the edge of a patch the
+// Paths lead through corners of blocks, where they cover no distance. (Over the edge of a patch the
 // last point of one and the first of the next may be the same.)
 TEST(NodePath, NoPointOnASurfaceRepeatsTheOneBefore) {
   for (const char* name : {"bridge", "landscape"}) {
@@ -85,14 +86,14 @@ TEST(NodePath, NoPointOnASurfaceRepeatsTheOneBefore) {
     const Nodes nodes = make(builtin({.name = name, .size = size}), 0.25, 1);
     size_t points = 0;
     for (int32_t c = 0; c < 4; ++c) {
-      NodePathFinder ways = finder(nodes, c);
+      NodePathFinder paths = finder(nodes, c);
       NodePath path;
       for (uint64_t n = 0; n < 60; ++n) {
-        ways.find(nodes.random_place(c, 9, 2 * n), nodes.random_place(c, 9, 2 * n + 1), path);
+        paths.find(nodes.random_place(c, 9, 2 * n), nodes.random_place(c, 9, 2 * n + 1), path);
         for (size_t i = 1; i < path.points.size() && path.length > 0; ++i) {
           const NodePathPoint &last = path.points[i - 1], &here = path.points[i];
           EXPECT_FALSE(here.on_surface && here.place.feet == last.place.feet)
-              << name << ", class " << c << ", way " << n << ", point " << i;
+              << name << ", class " << c << ", path " << n << ", point " << i;
         }
         points += path.points.size();
       }
@@ -168,14 +169,14 @@ TEST(NodePath, SearchFindsTheCheapestCrossings) {
         EXPECT_EQ(path.end == PathEnd::kReached, best < std::numeric_limits<double>::infinity());
         if (path.end != PathEnd::kReached) continue;
         EXPECT_NEAR(path.searched_cost, best, 1e-9 * best) << "class " << c << ", pair " << n;
-        EXPECT_LE(path.cost, best * (1 + 1e-9));  // Pulling taut only gains.
+        EXPECT_LE(path.cost, best * (1 + 1e-9));  // String pulling never costs more.
       }
     }
   }
 }
 
 // The exact any-angle finder of level tiles shares no code with nodes.
-TEST(NodePath, OnLevelTilesWaysAreNearlyTheShortest) {
+TEST(NodePath, OnLevelTilesPathsAreNearlyTheShortest) {
   Context context;
   for (const char* name : {"garage", "stairs", "church"}) {
     const Scene scene = builtin({.name = name});
@@ -184,7 +185,7 @@ TEST(NodePath, OnLevelTilesWaysAreNearlyTheShortest) {
     auto exact = PathFinder::make(world, {.avatar_class = 0}, context);
     ASSERT_TRUE(exact);
     NodePathFinder found = finder(nodes, 0);
-    double sum = 0, most = 0;
+    double sum = 0, worst = 0;
     int count = 0;
     for (uint64_t n = 0; n < 200; ++n) {
       const NodePlace from = nodes.random_place(0, 1, 2 * n),
@@ -201,18 +202,18 @@ TEST(NodePath, OnLevelTilesWaysAreNearlyTheShortest) {
         plan += std::hypot(d.x, d.z);
       }
       sum += plan / shortest.length;
-      most = std::max(most, plan / shortest.length);
+      worst = std::max(worst, plan / shortest.length);
       ++count;
     }
     EXPECT_GT(count, 50) << name;
     EXPECT_GE(sum / count, 1 - 1e-3) << name;
     EXPECT_LE(sum / count, 1.01) << name;
-    EXPECT_LE(most, 1.1) << name;
-    RecordProperty(name, std::to_string(sum / count) + ", at most " + std::to_string(most));
+    EXPECT_LE(worst, 1.1) << name;
+    RecordProperty(name, std::to_string(sum / count) + ", at most " + std::to_string(worst));
   }
 }
 
-TEST(NodePath, WhereItEndsIsSaid) {
+TEST(NodePath, ReportsWhereItEnds) {
   Scene scene;  // A floor, a gap, another floor with a wall across.
   scene.add_quad({0, 0, 0}, {0, 0, 6}, {6, 0, 6}, {6, 0, 0});
   scene.add_quad({8, 0, 0}, {8, 0, 6}, {14, 0, 6}, {14, 0, 0});
@@ -247,7 +248,7 @@ TEST(NodePath, WhereItEndsIsSaid) {
 
 TEST(NodePath, EndsAtTheNearestPlaceThatIsReached) {
   Context context;
-  Scene floors;  // Two that nothing joins, the other as wide as a body can look over.
+  Scene floors;  // Two that nothing joins, the other as wide as a body can see across.
   floors.add_quad({0, 0, 0}, {0, 0, 20}, {12, 0, 20}, {12, 0, 0});
   floors.add_quad({14, 0, 0}, {14, 0, 20}, {30, 0, 20}, {30, 0, 0});
   size_t unreachable = 0;
@@ -285,7 +286,7 @@ TEST(NodePath, EndsAtTheNearestPlaceThatIsReached) {
   EXPECT_GT(unreachable, 50u);
 }
 
-TEST(NodePath, JumpsLeadOnlyWhereTheyAreGiven) {
+TEST(NodePath, OffMeshLinksLeadOnlyWhereTheyAreGiven) {
   Scene scene;
   scene.add_quad({0, 0, 0}, {0, 0, 6}, {6, 0, 6}, {6, 0, 0});
   scene.add_quad({8, 0, 0}, {8, 0, 6}, {14, 0, 6}, {14, 0, 0});
@@ -391,7 +392,7 @@ TEST(NodePath, FindPlaceFindsWhatASearchThroughAllBlocksFinds) {
   }
 }
 
-TEST(NodePath, WaysAreTheSameForCopiesAndAnyThreads) {
+TEST(NodePath, PathsAreTheSameForCopiesAndAnyThreads) {
   Context context;
   const Nodes nodes = make(builtin({.name = "landscape", .size = 100}), 0.5, 2);
   std::vector<double> first;

@@ -13,13 +13,14 @@
 #include "path/overlay_search.h"
 #include "throng/node_path.h"
 
+// The overlay of a mesh of nodes, against a search of all crossings.
 namespace throng {
 namespace {
 
 using test::bake;
 using test::builtin;
 
-// Walkers, one who drops, and climbers with leaps.
+// Walkers, one that drops, and climbers with links over holes.
 std::vector<AvatarClass> classes() {
   std::vector<AvatarClass> all = default_classes();
   all.push_back({.name = "climber"});
@@ -31,7 +32,7 @@ std::vector<AvatarClass> classes() {
   return all;
 }
 
-// Calls check(mesh) for classes of worlds of many districts: of curved ground, of level tiles.
+// Calls check(mesh) for classes of worlds of many overlay cells: of curved ground, of level tiles.
 template <class Check>
 void for_each_mesh(Check check) {
   Context context;
@@ -52,9 +53,9 @@ BlockPoint random_point(const NodeMesh& mesh, uint64_t n) {
   return {mesh.block_at(mesh.patch_of_node(place.node1 - 1), place.s, place.t), place.s, place.t};
 }
 
-// What a way costs from middle to middle; it must hang together.
+// What a path costs from middle to middle; it must be connected.
 double cost_along(const NodeView& mesh, const PieceCost& piece, const BlockPoint& from,
-                  const std::vector<Crossing>& way, const BlockPoint& to) {
+                  const std::vector<Crossing>& crossings, const BlockPoint& to) {
   double cost = 0;
   BlockPoint at = from;
   const auto go = [&](const BlockPoint& next) {
@@ -62,7 +63,7 @@ double cost_along(const NodeView& mesh, const PieceCost& piece, const BlockPoint
     cost +=
         piece(at.block, at.s, at.t, position(mesh, at), next.s, next.t, position(mesh, next)).cost;
   };
-  for (const Crossing& crossing : way) {
+  for (const Crossing& crossing : crossings) {
     const NodePortal portal = mesh.portal(crossing.portal);
     EXPECT_FALSE(crossing.backward && portal.one_way);
     const auto [out, in] = ends_of(mesh, crossing);
@@ -74,16 +75,16 @@ double cost_along(const NodeView& mesh, const PieceCost& piece, const BlockPoint
   return cost;
 }
 
-TEST(Districts, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
-  uint64_t reached = 0, unreachable = 0, drops = 0, leaps = 0, looked_at = 0, plainly = 0;
+TEST(Overlay, PathsOverEntrancesAreFoundIfAnyAndCostLittleMore) {
+  uint64_t reached = 0, unreachable = 0, drops = 0, leaps = 0, expanded = 0, plainly = 0;
   size_t overlay_levels = 0;
   for_each_mesh([&](const NodeMesh& mesh) {
-    double sum = 0, most = 0;
+    double sum = 0, worst = 0;
     int count = 0;
-    for (const size_t crossings : {24, 192}) {
+    for (const size_t per_cell : {24, 192}) {
       const NodeView view(mesh);
-      const PieceCost piece(view, crossings == 24 ? 2 : 0);
-      const Districts overlay(mesh, piece, 2, crossings);
+      const PieceCost piece(view, per_cell == 24 ? 2 : 0);
+      const Overlay overlay(mesh, piece, 2, per_cell);
       ASSERT_FALSE(overlay.empty());
       overlay_levels = std::max(overlay_levels, overlay.overlay_levels().size());
       OverlaySearch search(view, piece, overlay);
@@ -91,62 +92,62 @@ TEST(Districts, WaysOverGatesAreFoundWhereThereAreAnyAndCostLittleMore) {
       for (uint64_t n = 0; n < 40; ++n) {
         const BlockPoint from = random_point(mesh, 2 * n), to = random_point(mesh, 2 * n + 1);
         ASSERT_TRUE(from.block != kNoNode && to.block != kNoNode);
-        std::vector<Crossing> best, way;
+        std::vector<Crossing> best, crossings;
         const PathEnd end = plain.find(from, to, {}, best);
-        ASSERT_EQ(search.find(from, to, {}, blocks, way), end);
+        ASSERT_EQ(search.find(from, to, {}, blocks, crossings), end);
         if (end != PathEnd::kReached) {
           ++unreachable;
-          EXPECT_TRUE(way.empty());
+          EXPECT_TRUE(crossings.empty());
           continue;
         }
         ++reached;
-        looked_at += search.looked_at();
-        plainly += plain.looked_at();
-        const double cost = cost_along(view, piece, from, way, to);
+        expanded += search.expanded();
+        plainly += plain.expanded();
+        const double cost = cost_along(view, piece, from, crossings, to);
         EXPECT_NEAR(search.cost(), cost, 1e-9 * cost);
         EXPECT_GE(cost, plain.cost() * (1 - 1e-9));
-        for (const Crossing& crossing : way) {
+        for (const Crossing& crossing : crossings) {
           drops += mesh.portals()[crossing.portal].kind == LinkKind::kDrop;
           leaps += mesh.portals()[crossing.portal].leaps;
         }
         if (plain.cost() < 5) continue;
         sum += cost / plain.cost();
-        most = std::max(most, cost / plain.cost());
+        worst = std::max(worst, cost / plain.cost());
         ++count;
-        // A budget is kept: it gives up, or needs no more.
-        const SearchBudget little{search.looked_at() / 2};
-        const PathEnd cut = search.find(from, to, little, blocks, way);
+        // A budget is kept: it is exhausted, or the search needs no more.
+        const SearchBudget little{search.expanded() / 2};
+        const PathEnd cut = search.find(from, to, little, blocks, crossings);
         if (cut == PathEnd::kReached) {
-          EXPECT_LE(search.looked_at(), 2 * little.max_nodes + 1);
+          EXPECT_LE(search.expanded(), 2 * little.max_nodes + 1);
         }
       }
     }
     EXPECT_GT(count, 30);
     EXPECT_LE(sum / count, 1.015);
-    EXPECT_LE(most, 1.1);
+    EXPECT_LE(worst, 1.1);
   });
   EXPECT_GT(overlay_levels, 2u);
   EXPECT_GT(reached, 600u);
   EXPECT_GT(unreachable, 40u);
   EXPECT_GT(drops, 0u);
   EXPECT_GT(leaps, drops);
-  EXPECT_LT(2 * looked_at, plainly);
+  EXPECT_LT(2 * expanded, plainly);
 }
 
-// Of every tier: what it tells of a district is what a search finds that does not leave it, or a
-// little more.
-TEST(Districts, TellWhatItCostsToGoThrough) {
+// On every overlay level: the costs in a cell are those that a search finds that does not leave it,
+// or a little more.
+TEST(Overlay, HoldsTheCostsOfCrossing) {
   uint64_t through = 0, none = 0;
   for_each_mesh([&](const NodeMesh& mesh) {
     const NodeView view(mesh);
     const PieceCost piece(view, 1);
-    const Districts overlay(mesh, piece, 1, 48);
+    const Overlay overlay(mesh, piece, 1, 48);
     NodeSearch search(view, piece);
     std::vector<uint32_t> of_block = overlay.of_block();
-    std::vector<Crossing> way;
+    std::vector<Crossing> crossings;
     double sum = 0;
     int count = 0;
-    for (const Districts::Tier& overlay_level : overlay.overlay_levels()) {
+    for (const Overlay::OverlayLevel& overlay_level : overlay.overlay_levels()) {
       uint64_t looked = 0;
       const uint64_t stride = overlay_level.costs.size() / 300 + 1;
       for (uint32_t d = 0; d + 1 < overlay_level.first.size(); ++d) {
@@ -161,8 +162,8 @@ TEST(Districts, TellWhatItCostsToGoThrough) {
             const bool closed = (crossing.backward && mesh.portals()[crossing.portal].one_way) ||
                                 (out.backward && portal.one_way);
             const auto ends = ends_of(view, out);
-            const PathEnd end =
-                search.find(ends_of(view, crossing).in, ends.out, {}, way, {of_block.data(), d});
+            const PathEnd end = search.find(ends_of(view, crossing).in, ends.out, {}, crossings,
+                                            {of_block.data(), d});
             if (closed || end != PathEnd::kReached) {
               EXPECT_TRUE(std::isinf(costs[j]));
               ++none;
@@ -190,11 +191,11 @@ TEST(Districts, TellWhatItCostsToGoThrough) {
   EXPECT_GT(none, 100u);
 }
 
-TEST(Districts, AreTheSameForAnyNumberOfWorkers) {
+TEST(Overlay, AreTheSameForAnyNumberOfWorkers) {
   for_each_mesh([&](const NodeMesh& mesh) {
     const NodeView view(mesh);
     const PieceCost piece(view, 0);
-    const Districts one(mesh, piece, 1), four(mesh, piece, 4);
+    const Overlay one(mesh, piece, 1), four(mesh, piece, 4);
     EXPECT_EQ(one.bytes(), four.bytes());
     ASSERT_EQ(one.overlay_levels().size(), four.overlay_levels().size());
     for (size_t k = 0; k < one.overlay_levels().size(); ++k) {
@@ -204,7 +205,7 @@ TEST(Districts, AreTheSameForAnyNumberOfWorkers) {
   });
 }
 
-TEST(NodeParts, TellWhoIsReachedAndWhatComesNearest) {
+TEST(NodeParts, FindWhatIsReachableAndWhatComesNearest) {
   uint64_t reached = 0, unreachable = 0;
   for_each_mesh([&](const NodeMesh& mesh) {
     const NodeView view(mesh);
@@ -212,10 +213,10 @@ TEST(NodeParts, TellWhoIsReachedAndWhatComesNearest) {
     const NodeParts parts(mesh, 2);
     NodeParts::Reached marks;
     NodeSearch plain(view, piece);
-    std::vector<Crossing> way;
+    std::vector<Crossing> crossings;
     for (uint64_t n = 0; n < 60; ++n) {
       const BlockPoint from = random_point(mesh, 3 * n), to = random_point(mesh, 3 * n + 1);
-      const PathEnd end = plain.find(from, to, {}, way);
+      const PathEnd end = plain.find(from, to, {}, crossings);
       parts.reach(from.block, marks);
       EXPECT_EQ(marks.holds(parts.of_block(to.block)), end == PathEnd::kReached);
       if (end == PathEnd::kReached) {
@@ -224,11 +225,11 @@ TEST(NodeParts, TellWhoIsReachedAndWhatComesNearest) {
       }
       ++unreachable;
       const Vec3d goal = position(view, to);
-      const BlockPoint searched = way.empty() ? from : ends_of(view, way.back()).in;
-      const BlockPoint told =
+      const BlockPoint searched = crossings.empty() ? from : ends_of(view, crossings.back()).in;
+      const BlockPoint reported =
           parts.nearest(view, from, goal, marks, [](uint32_t) { return false; });
-      EXPECT_EQ(length(position(view, told) - goal), length(position(view, searched) - goal));
-      EXPECT_EQ(plain.find(from, told, {}, way), PathEnd::kReached);
+      EXPECT_EQ(length(position(view, reported) - goal), length(position(view, searched) - goal));
+      EXPECT_EQ(plain.find(from, reported, {}, crossings), PathEnd::kReached);
     }
   });
   EXPECT_GT(reached, 400u);

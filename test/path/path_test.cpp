@@ -16,6 +16,7 @@
 #include "throng/live_ground.h"
 #include "worlds.h"
 
+// Paths over the ground, against a brute-force visibility graph.
 namespace throng {
 namespace {
 
@@ -34,7 +35,7 @@ PathFinder finder(const World& world, int32_t avatar_class, bool labels = false)
 
 double plan_distance(const Vec3d& a, const Vec3d& b) { return std::hypot(a.x - b.x, a.z - b.z); }
 
-// The path can be gone from its first place to its last, and is as long as it says.
+// The path is legal from its first place to its last, and its length is right.
 void expect_walkable(const World& world, int32_t avatar_class, const Place& from, const Place& to,
                      const Path& path) {
   ASSERT_GE(path.points.size(), 2u);
@@ -78,14 +79,14 @@ Scene boxes(uint64_t seed) {
       scene.add_quad(corner(p[0], p[1], 0), corner(q[0], q[1], 0), corner(q[0], q[1], 2.5),
                      corner(p[0], p[1], 2.5));
     }
-    // The room inside is nobody's.
+    // No body fits into the room inside.
     scene.add_quad(corner(-0.5, -0.5, 0.6), corner(0.5, -0.5, 0.6), corner(0.5, 0.5, 0.6),
                    corner(-0.5, 0.5, 0.6), kAreaBlocked);
   }
   return scene;
 }
 
-// The shortest way over all points beside convex corners of the legal cells that moves can join: a
+// The shortest path over all points beside convex corners of the legal cells that moves can join: a
 // visibility graph, by trying every pair. Of one level tile after the other, so for flat worlds.
 class Visibility {
  public:
@@ -122,7 +123,7 @@ class Visibility {
     }
   }
 
-  // Infinite if there is no way.
+  // Infinite if there is no path.
   [[nodiscard]] double length(const Place& from, const Place& to) const {
     std::vector<Place> points = corners_;
     points.push_back(from);
@@ -155,7 +156,7 @@ class Visibility {
   std::vector<Place> corners_;
 };
 
-TEST(Path, NoLegalWayIsShorterOnRandomFloors) {
+TEST(Path, NoLegalPathIsShorterOnRandomFloors) {
   int reached = 0, bent = 0;
   for (uint64_t seed = 0; seed < 24; ++seed) {
     const World world = bake(boxes(seed), seed % 2 == 0 ? 0.15 : 0.1, {AvatarClass{}});
@@ -175,7 +176,7 @@ TEST(Path, NoLegalWayIsShorterOnRandomFloors) {
       bent += path.points.size() > 2;
       expect_walkable(world, 0, from, to, path);
       EXPECT_LE(path.length, shortest + 1e-4);
-      // The oracle goes two units further around each corner.
+      // The oracle keeps two units farther from each corner.
       EXPECT_GE(path.length, shortest * (1 - 1e-3) - 1e-3);
       looked_up.find(from, to, label_path);
       ASSERT_EQ(label_path.end, PathEnd::kReached);
@@ -200,7 +201,7 @@ Place on_border(const World& world, int32_t avatar_class, const Place& place) {
   return move.place;
 }
 
-// Ways exist within components and nowhere else, and can be gone.
+// Paths exist within components and nowhere else, and are legal.
 void expect_as_graph(const World& world, uint64_t pairs) {
   Context context;
   const auto graph = Graph::make(world, {}, context);
@@ -297,8 +298,8 @@ TEST(Path, LeadsAroundTheEndsOfRisesThatAreTooHigh) {
         if (!from || !to) break;
         const bool can = graph->component_at(c, from) == graph->component_at(c, to);
         ++(can ? together : apart);
-        for (PathFinder* way : {&paths, &looked_up, &*over_zones}) {
-          way->find(from, to, path);
+        for (PathFinder* finder : {&paths, &looked_up, &*over_zones}) {
+          finder->find(from, to, path);
           ASSERT_EQ(path.end, can ? PathEnd::kReached : PathEnd::kUnreachable);
           if (can) expect_walkable(world, c, from, to, path);
         }
@@ -315,8 +316,8 @@ TEST(Path, LeadsAroundTheEndsOfRisesThatAreTooHigh) {
   EXPECT_LT(sum, by_live * 1.01);
 }
 
-// A city of many small zones, in territories of 8 x 8: ways over them beside the shortest.
-TEST(Path, WaysOverManyZonesAreHardlyLonger) {
+// A city of many small zones, in overlay cells of 8 x 8: paths over them against the shortest.
+TEST(Path, PathsOverManyZonesAreHardlyLonger) {
   BakeConfig config{.cell = 0.4, .resolution = 0.1, .zone = 26};
   Context context;
   const auto world = bake_world(test::builtin({.name = "city", .size = 420}), config, context);
@@ -379,8 +380,8 @@ TEST(Path, StraightLinesOverManyZonesAreFound) {
                         by(at.position.z, summary.origin.z, cells_z));
     };
     const MoveResult from = move(place, 0, 0);
-    const auto random = [&](uint64_t use, uint64_t most) {
-      return static_cast<double>(random_below(7, n, use, most));
+    const auto random = [&](uint64_t use, uint64_t count) {
+      return static_cast<double>(random_below(7, n, use, count));
     };
     const double times = 1 + random(0, 120);
     const MoveResult to =
@@ -417,7 +418,7 @@ TEST(Path, ZonesAreTheSameForAnyNumberOfWorkers) {
   }
 }
 
-TEST(Path, StopsWhenItIsToldTo) {
+TEST(Path, StopsWhenCancelled) {
   const World world = builtin({.name = "garage", .size = 45, .levels = 3}, 0.2);
   Context context;
   auto over_zones = PathFinder::make(world, {.zones = true}, context);

@@ -15,8 +15,7 @@
 #include "throng/node_path.h"
 #include "throng/path.h"
 
-// A program of its own, because it counts every allocation: queries that have been asked before
-// make none when they are asked again.
+// A program of its own, because it counts every allocation: a query that is repeated makes none.
 namespace {
 std::atomic<uint64_t> g_allocations{0};
 }  // namespace
@@ -122,7 +121,7 @@ int run() {
     flight.find({.from = from(n).position, .to = to(n).position}, flown);
     reached += flown.end == PathEnd::kReached;
   });
-  std::printf("%llu ways found\n", static_cast<unsigned long long>(reached));
+  std::printf("%llu paths found\n", static_cast<unsigned long long>(reached));
   return sum == 0 && reached > 5 * kPairs ? 0 : 1;
 }
 

@@ -14,6 +14,7 @@
 #include "throng/live_ground.h"
 #include "throng/path.h"
 
+// Memory budgets of searches.
 namespace throng {
 namespace {
 
@@ -103,12 +104,12 @@ TEST(SearchMemory, WhatIsAllocatedKeepsToTheBudget) {
     const Stop from = random_stop(mesh, 2 * n), to = random_stop(mesh, 2 * n + 1);
     if (mesh.rects[from.rect].component != mesh.rects[to.rect].component) continue;
     const uint64_t bytes = uint64_t{1} << (12 + n % 8);
-    PathSearch fresh;
+    PathSearch rebuilt;
     const SearchResult result =
-        fresh.find(mesh, from, to, {UINT64_MAX, nullptr, bytes}, corners, length);
+        rebuilt.find(mesh, from, to, {UINT64_MAX, nullptr, bytes}, corners, length);
     stopped += result == SearchResult::kBudget ? 1 : 0;
     // Chunks of 1024 roots and nodes, and what one expansion adds.
-    EXPECT_LT(fresh.allocated_bytes(), bytes + (uint64_t{1} << 18)) << n;
+    EXPECT_LT(rebuilt.allocated_bytes(), bytes + (uint64_t{1} << 18)) << n;
     search.find(mesh, from, to, {}, corners, length);
     most = std::max(most, search.allocated_bytes());
     portals.find(mesh, from, to, {}, stops, length);

@@ -11,18 +11,18 @@
 
 #include "core/random.h"
 
-// Looked-up ways of random graphs, against all shortest ways found by three nested loops.
+// Looked-up paths of random graphs, against all shortest paths found by three nested loops.
 namespace throng {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 struct RandomGraph {
-  PathGraph ways;
+  PathGraph paths;
   std::vector<double> edge;      // count x count; infinite: none
   std::vector<double> shortest;  // count x count
 
-  // Lengths are small whole numbers where `ties`, so that many ways are as short as another.
+  // Lengths are small whole numbers where `ties`, so that many paths are equally short.
   RandomGraph(uint64_t seed, uint32_t count, uint32_t edges, bool ties)
       : edge(size_t{count} * count, kNever) {
     for (uint32_t e = 0; e < edges; ++e) {
@@ -35,14 +35,14 @@ struct RandomGraph {
       there = std::min(there, length);
       edge[size_t{b} * count + a] = there;
     }
-    ways.first.assign(1, 0);
+    paths.first.assign(1, 0);
     shortest = edge;
     for (uint32_t a = 0; a < count; ++a) {
       for (uint32_t b = 0; b < count; ++b) {
         if (edge[size_t{a} * count + b] < kNever)
-          ways.edges.push_back({b, edge[size_t{a} * count + b]});
+          paths.edges.push_back({b, edge[size_t{a} * count + b]});
       }
-      ways.first.push_back(static_cast<uint32_t>(ways.edges.size()));
+      paths.first.push_back(static_cast<uint32_t>(paths.edges.size()));
       shortest[size_t{a} * count + a] = 0;
     }
     for (size_t k = 0; k < count; ++k) {
@@ -55,15 +55,15 @@ struct RandomGraph {
     }
   }
 
-  // Of a way by its edges; infinite if one is missing.
+  // Of a path by its edges; infinite if one is missing.
   [[nodiscard]] double length(const std::vector<uint32_t>& nodes) const {
     double sum = 0;
-    for (size_t i = 1; i < nodes.size(); ++i) sum += edge[nodes[i - 1] * ways.count() + nodes[i]];
+    for (size_t i = 1; i < nodes.size(); ++i) sum += edge[nodes[i - 1] * paths.count() + nodes[i]];
     return sum;
   }
 };
 
-TEST(TwoHop, LooksUpTheShortestWaysAndTheirNodes) {
+TEST(TwoHop, LooksUpTheShortestPathsAndTheirNodes) {
   constexpr int kGraphs = 60;
   uint64_t joined = 0, apart = 0, steps = 0;
   for (uint64_t seed = 0; seed < kGraphs; ++seed) {
@@ -71,7 +71,7 @@ TEST(TwoHop, LooksUpTheShortestWaysAndTheirNodes) {
     const auto edges = static_cast<uint32_t>(random_below(seed, 0, 4, 3 * count));
     const RandomGraph graph(seed, count, edges, seed % 2 == 0);
     Context context;
-    const auto labels = label_graph(graph.ways, 16, 1 + static_cast<int32_t>(seed % 3), context);
+    const auto labels = label_graph(graph.paths, 16, 1 + static_cast<int32_t>(seed % 3), context);
     ASSERT_TRUE(labels);
     for (uint32_t a = 0; a < count; ++a) {
       for (uint32_t b = 0; b < count; ++b) {
@@ -93,7 +93,7 @@ TEST(TwoHop, LooksUpTheShortestWaysAndTheirNodes) {
         EXPECT_EQ(met.length, best);
         EXPECT_EQ(labels->of(a)[met.first].hub, met.hub);
         EXPECT_EQ(labels->of(b)[met.last].hub, met.hub);
-        std::vector<uint32_t> nodes{a};  // what is there stays
+        std::vector<uint32_t> nodes{a};  // its old content stays
         labels->walk(labels->place_of(a, met.hub), labels->place_of(b, met.hub), nodes);
         nodes.erase(nodes.begin());
         ASSERT_EQ(nodes.front(), a);
@@ -104,8 +104,8 @@ TEST(TwoHop, LooksUpTheShortestWaysAndTheirNodes) {
         ++joined;
       }
     }
-    // Every node of a hub's tree lies in the trails once.
-    const auto nodes = std::count_if(labels->trails.begin(), labels->trails.end(),
+    // Every node of a hub's tree lies in the trees once.
+    const auto nodes = std::count_if(labels->trees.begin(), labels->trees.end(),
                                      [](uint32_t word) { return word < TwoHopLabels::kGoesOn; });
     EXPECT_EQ(static_cast<size_t>(nodes), labels->labels.size());
   }
@@ -121,7 +121,7 @@ TEST(TwoHop, AGraphWithoutNodesHasNoLabels) {
   const auto labels = label_graph(none, 16, 2, context);
   ASSERT_TRUE(labels);
   EXPECT_TRUE(labels->labels.empty());
-  EXPECT_TRUE(labels->trails.empty());
+  EXPECT_TRUE(labels->trees.empty());
 }
 
 }  // namespace

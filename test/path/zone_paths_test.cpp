@@ -7,6 +7,7 @@
 #include "throng/bake.h"
 #include "throng/cells.h"
 
+// The limit of corners in a zone's tables.
 namespace throng {
 namespace {
 
@@ -25,17 +26,17 @@ PathMesh among_pillars(int32_t a_side) {
   return *std::move(mesh);
 }
 
-// Ways name corners by 16 bits, of which one number says that there is none.
+// Paths name corners by 16 bits, of which one number says that there is none.
 TEST(ZonePaths, AZoneOfMoreCornersThanTheyCanNameIsRefused) {
   const std::vector<Entrance> entrances{{.at = {0, 0.5}, .zone = {0, 1}, .rect = {0, 0}}};
   Sight sight;
   const auto fits = [&](int32_t pillars, size_t corners) {
     const PathMesh mesh = among_pillars(pillars);
-    ZonePaths ways;
-    ways.last_rect = static_cast<uint32_t>(mesh.rects.size() - 1);
-    ways.entrances = {0};
-    const bool found = find_zone_paths(mesh, entrances, 0, sight, ways);
-    EXPECT_EQ(ways.corners.size(), corners);
+    ZonePaths paths;
+    paths.last_rect = static_cast<uint32_t>(mesh.rects.size() - 1);
+    paths.entrances = {0};
+    const bool found = find_zone_paths(mesh, entrances, 0, sight, paths);
+    EXPECT_EQ(paths.corners.size(), corners);
     return found;
   };
   EXPECT_TRUE(fits(8, 4 * 8 * 8));

@@ -12,8 +12,8 @@
 #include "throng/node_path.h"
 #include "throng/nodes.h"
 
-// Ways over the nodes of a baked world, by districts and by a search of all crossings: how long
-// they take by distance, how much longer they are, and whether both say the same of who is reached.
+// Paths over the nodes of a baked world, by overlay cells and by a search of all crossings: their
+// time by distance, how much longer they are, and whether both agree on what is reachable.
 namespace throng::bench {
 namespace {
 
@@ -24,12 +24,12 @@ struct Options {
   std::vector<double> distances{100, 500, 1000, 2000};
   int pairs = 60;
   int judged = 30;  // pairs of each distance that all crossings are searched for, too
-  int crates = 60;  // pairs of each distance whose way a crate is put in
+  int crates = 60;  // pairs of each distance with a crate put onto their path
   int threads = 2;  // for making the finders
 };
 
 [[noreturn]] void stop(const std::string& message) {
-  fmt::print(stderr, "bench_node_ways: {}\n", message);
+  fmt::print(stderr, "bench_node_paths: {}\n", message);
   std::exit(2);
 }
 
@@ -41,7 +41,7 @@ struct Pair {
   NodePlace from, to;
 };
 
-// About so far from each other, whether or not a way joins them.
+// About so far from each other, whether or not a path joins them.
 std::vector<Pair> find_pairs(const Nodes& nodes, int32_t avatar_class, double apart, int count) {
   std::vector<Pair> pairs;
   NodePlace from;
@@ -93,7 +93,7 @@ Json measure(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder,
     best += shortest.length;
     worst = std::max(worst, path.length / shortest.length);
   }
-  const auto most = [](const std::vector<double>& values) {
+  const auto max_of = [](const std::vector<double>& values) {
     return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
   };
   return {{"distance", apart},
@@ -101,21 +101,21 @@ Json measure(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder,
           {"reached", reached_ms.size()},
           {"mean_length", length_sum / std::max<double>(1, static_cast<double>(reached_ms.size()))},
           {"median_ms", median(reached_ms)},
-          {"most_ms", most(reached_ms)},
-          {"looked_at", median(looked)},
+          {"max_ms", max_of(reached_ms)},
+          {"expanded", median(looked)},
           {"unreachable_median_ms", median(other_ms)},
-          {"unreachable_most_ms", most(other_ms)},
+          {"unreachable_max_ms", max_of(other_ms)},
           {"judged", search_ms.size()},
           {"differ", differ},
           {"search_median_ms", median(search_ms)},
-          {"search_most_ms", most(search_ms)},
+          {"search_max_ms", max_of(search_ms)},
           {"searched", median(searched)},
           {"mean_ratio", best > 0 ? ours / best : 0},
           {"worst_ratio", worst}};
 }
 
-// A crate of a metre in the middle of each way: how long until it is avoided, and how much longer
-// the way around it is than what a search of all crossings finds.
+// A crate of a metre in the middle of each path: the time until it is avoided, and how much longer
+// the path around it is than what a search of all crossings finds.
 Json put_crates(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder,
                 NodePathFinder& search, double apart, const Options& options) {
   std::vector<double> before_ms, add_ms, find_ms, both_ms, without_ms;
@@ -161,7 +161,7 @@ Json put_crates(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder
           {"add_median_ms", median(add_ms)},
           {"find_median_ms", median(find_ms)},
           {"until_median_ms", median(both_ms)},
-          {"until_most_ms", both_ms.empty() ? 0 : both_ms.back()},
+          {"until_max_ms", both_ms.empty() ? 0 : both_ms.back()},
           {"without_median_ms", median(without_ms)},
           {"shut", shut},
           {"differ", differ},
@@ -188,9 +188,9 @@ Json run(const Options& options) {
   };
   NodePathFinder finder = make(true), search = make(false);
   const NodePathSummary made = finder.summary(), plain = search.summary();
-  Json ways = Json::array(), crates = Json::array();
+  Json paths = Json::array(), crates = Json::array();
   for (const double apart : options.distances) {
-    ways.push_back(measure(*nodes, avatar_class, finder, search, apart, options));
+    paths.push_back(measure(*nodes, avatar_class, finder, search, apart, options));
     if (options.crates == 0) continue;
     crates.push_back(put_crates(*nodes, avatar_class, finder, search, apart, options));
   }
@@ -201,7 +201,7 @@ Json run(const Options& options) {
           {"bytes", made.bytes},
           {"search_seconds", plain.seconds},
           {"search_bytes", plain.bytes},
-          {"ways", ways},
+          {"paths", paths},
           {"crates", crates}};
 }
 
@@ -210,7 +210,7 @@ Json run(const Options& options) {
 
 int main(int argc, char** argv) {
   using namespace throng::bench;
-  CLI::App parser{"Ways over the nodes of a baked world", "bench_node_ways"};
+  CLI::App parser{"Paths over the nodes of a baked world", "bench_node_paths"};
   Options options;
   parser.add_option("world", options.world, "World folder with nodes")->required();
   parser.add_option("--class", options.avatar_class, "Avatar class")->capture_default_str();
@@ -219,7 +219,7 @@ int main(int argc, char** argv) {
   parser.add_option("--pairs", options.pairs, "Pairs of each distance")->capture_default_str();
   parser.add_option("--judged", options.judged, "Pairs that are searched for plainly, too")
       ->capture_default_str();
-  parser.add_option("--crates", options.crates, "Pairs whose way a crate is put in")
+  parser.add_option("--crates", options.crates, "Pairs with a crate on their path")
       ->capture_default_str();
   parser.add_option("--threads", options.threads, "Threads to make the finders")
       ->capture_default_str();

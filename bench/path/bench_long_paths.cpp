@@ -14,8 +14,8 @@
 #include "throng/path.h"
 #include "throng/world.h"
 
-// Long ways over a large baked world, by zones: how long they take by distance, and how much longer
-// than the shortest they are.
+// Long paths over a large baked world, by zones: their time by distance, and how much longer than
+// the shortest they are.
 namespace throng::bench {
 namespace {
 
@@ -31,7 +31,7 @@ struct Options {
 };
 
 [[noreturn]] void stop(const std::string& message) {
-  fmt::print(stderr, "bench_long_ways: {}\n", message);
+  fmt::print(stderr, "bench_long_paths: {}\n", message);
   std::exit(2);
 }
 
@@ -39,7 +39,7 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Random places so far from each other that a way joins.
+// Random places so far from each other that a path joins.
 std::vector<Pair> find_pairs(const World& world, PathFinder& finder, double apart,
                              const Options& options) {
   std::vector<Pair> pairs;
@@ -82,7 +82,7 @@ Json measure(const World& world, PathFinder& finder, PathFinder& search, double 
     const double start = now();
     search.find(from, to, shortest);
     search_times.push_back((now() - start) * 1e3);
-    if (shortest.end != PathEnd::kReached) stop("the search finds no way where the zones do");
+    if (shortest.end != PathEnd::kReached) stop("the search finds no path where the zones do");
     ours += path.length;
     best += shortest.length;
     worst = std::max(worst, path.length / shortest.length);
@@ -110,9 +110,9 @@ Json run(const Options& options) {
   auto search = PathFinder::make(*world, {}, context);
   if (!search) stop(search.error().message);
   const PathSummary made = finder->summary(), mesh = search->summary();
-  Json ways = Json::array();
+  Json paths = Json::array();
   for (const double apart : options.distances)
-    ways.push_back(measure(*world, *finder, *search, apart, options));
+    paths.push_back(measure(*world, *finder, *search, apart, options));
   const WorldSummary summary = world->summary();
   return {{"world", options.world},
           {"area_km2", (summary.bounds.max.x - summary.bounds.min.x) *
@@ -125,7 +125,7 @@ Json run(const Options& options) {
           {"bytes", made.bytes},
           {"mesh_bytes", mesh.bytes},
           {"make_seconds", made.seconds},
-          {"ways", ways}};
+          {"paths", paths}};
 }
 
 }  // namespace
@@ -133,7 +133,7 @@ Json run(const Options& options) {
 
 int main(int argc, char** argv) {
   using namespace throng::bench;
-  CLI::App parser{"Long ways over a large baked world", "bench_long_ways"};
+  CLI::App parser{"Long paths over a large baked world", "bench_long_paths"};
   Options options;
   parser.add_option("world", options.world, "World folder")->required();
   parser.add_option("--distances", options.distances, "How far the ends are apart [m]")

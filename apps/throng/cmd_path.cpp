@@ -286,7 +286,8 @@ int fly(Session& session, const PathOptions& options, const World& world, int32_
   if (found.end == PathEnd::kNoPlace) {
     // Find out which end is blocked: a path from an end to itself.
     for (const auto& [position, option] : {std::pair{*from, "--from"}, std::pair{*to, "--to"}}) {
-      finder->find({.from = position, .to = position, .vertical_tolerance = options.tolerance}, found);
+      finder->find({.from = position, .to = position, .vertical_tolerance = options.tolerance},
+                   found);
       if (found.end != PathEnd::kNoPlace) continue;
       return fail(bad_end(options, position, option, "is blocked: a --block is there"));
     }

@@ -50,7 +50,7 @@ bool read_point(const Json& entry, const char* key, Vec3d& out) {
   return true;
 }
 
-// Off-mesh links from a file: [{"from": [x, y, z], "to": [x, y, z], "class": NAME, "both_ways":
+// Off-mesh links from a file: [{"from": [x, y, z], "to": [x, y, z], "class": NAME, "two_way":
 // false}].
 Result<std::vector<NodeOffMeshLink>> read_off_mesh_links(const std::string& name,
                                                          const std::vector<AvatarClass>& classes) {
@@ -62,7 +62,7 @@ Result<std::vector<NodeOffMeshLink>> read_off_mesh_links(const std::string& name
         Errc::kBadFile,
         name +
             ": is no list of off-mesh links in JSON, as [{\"from\": [0, 0, 0], \"to\": [3, 0, 0], "
-            "\"class\": \"adult\", \"both_ways\": true}]"};
+            "\"class\": \"adult\", \"two_way\": true}]"};
   }
   std::vector<NodeOffMeshLink> links;
   for (const Json& entry : json) {
@@ -84,9 +84,10 @@ Result<std::vector<NodeOffMeshLink>> read_off_mesh_links(const std::string& name
       return bad(fmt::format("there is no class {}; choose from {}", wanted, known));
     }
     link.avatar_class = static_cast<int32_t>(of - classes.begin());
-    if (entry.contains("both_ways")) {
-      if (!entry["both_ways"].is_boolean()) return bad("both_ways must be true or false");
-      link.two_way = entry["both_ways"].get<bool>();
+    for (const char* key : {"both_ways", "two_way"}) {  // The first is the name of before.
+      if (!entry.contains(key)) continue;
+      if (!entry[key].is_boolean()) return bad(fmt::format("{} must be true or false", key));
+      link.two_way = entry[key].get<bool>();
     }
     links.push_back(link);
   }

@@ -62,7 +62,7 @@ nlohmann::ordered_json time_steps(Crowd& crowd, const StepTiming& timing,
           {"overlaps", found.overlaps},
           {"wall_entries", found.wall_entries},
           {"bytes_an_avatar", static_cast<double>(crowd.memory().avatars) / avatars},
-          {"bytes_of_ways", static_cast<double>(crowd.memory().paths) / avatars},
+          {"bytes_of_paths", static_cast<double>(crowd.memory().paths) / avatars},
           {"state_hash", crowd.state_hash()}};
 }
 

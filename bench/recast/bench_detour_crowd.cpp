@@ -147,7 +147,7 @@ struct Account {
     return {{"us_an_update", sum / static_cast<double>(seconds.size()) * each},
             {"us_median", sorted[sorted.size() / 2] * each},
             {"first_second", seconds.front()},
-            {"with_way_after_1_s", with_path},
+            {"with_path_after_1_s", with_path},
             {"partial", partial},
             {"speed_at_end", walked / o.avatars / o.speed},
             {"overlaps", overlaps},

@@ -137,5 +137,5 @@ window.bench = async (counts, rounds) => {
   const gl = document.getElementById('ours').getContext('webgl2');
   const info = gl.getExtension('WEBGL_debug_renderer_info');
   const without_avatars = { ours: median(empty.ours), theirs: median(empty.theirs) };
-  return { rows, nobody: without_avatars, renderer: gl.getParameter(info.UNMASKED_RENDERER_WEBGL), three: THREE.REVISION };
+  return { rows, empty: without_avatars, renderer: gl.getParameter(info.UNMASKED_RENDERER_WEBGL), three: THREE.REVISION };
 };

@@ -37,8 +37,8 @@ def slope(points):
 
 def alone(report):
     """Time that people add to a frame / time that quads add, where the latter is more than a tenth of the frame."""
-    added = report["ms_quads"] - report["ms_nobody"]
-    return f"{(report['ms_people'] - report['ms_nobody']) / added:.2f}" if added > 0.1 * report["ms_quads"] else "too little to measure"
+    added = report["ms_quads"] - report["ms_empty"]
+    return f"{(report['ms_people'] - report['ms_empty']) / added:.2f}" if added > 0.1 * report["ms_quads"] else "too little to measure"
 
 
 def number(value):
@@ -90,7 +90,7 @@ def beside_quads(runs):
         shadows = measure(avatars, CITY, max(3, runs // 3), "--shadows")
         renderer = report["renderer"]
         met = met and report["ratio"] <= MAX_RATIO
-        rows.append((number(avatars), number(report["seen"]), ms(report["ms_quads"]), ms(report["ms_people"]), ms(report["ms_nobody"]),
+        rows.append((number(avatars), number(report["seen"]), ms(report["ms_quads"]), ms(report["ms_people"]), ms(report["ms_empty"]),
                      f"**{report['ratio']:.2f}**: {'met' if report['ratio'] <= MAX_RATIO else 'MISSED'}", alone(report),
                      f"{views['ratio']:.2f}", f"{shadows['ratio']:.2f}", ms(report["ms_pack"])))
     head = ("avatars", "drawn", "plain quads [ms]", "people [ms]", "no avatar [ms]", f"people / quads, <= {MAX_RATIO}", "without the city's share",
@@ -105,7 +105,7 @@ def street(runs):
         report = measure(avatars, polygons, runs, "--street")
         rows.append((number(report["avatars"]), number(report["triangles"]), f"{number(report['seen'])} / {number(report['hidden'])}",
                      f"{number(report['triangles_seen'])} / {number(report['triangles_drawn'])}", ms(report["ms_all"]), ms(report["ms_people"]),
-                     f"{report['ms_all'] / report['ms_people']:.2f}", ms(report["ms_nobody"])))
+                     f"{report['ms_all'] / report['ms_people']:.2f}", ms(report["ms_empty"])))
     head = ("avatars", "triangles", "in the frustum / hidden", "triangles in the frustum / drawn", "all of it drawn [ms]", "without what is hidden [ms]", "times faster", "no avatar [ms]")
     write_between("draw_street_table", f"Medians of {runs} frames of each kind, in turn. Load of the machine at the start: {os.getloadavg()[0]:.1f}.\n\n" + table(head, rows))
 
@@ -118,15 +118,15 @@ def growth(runs, quick):
 
     def curves(report, key):
         return [(name, colour, [(row[key], row[f"least_{what}"]) for row in report])
-                for name, colour, what in (("people", PEOPLE, "people"), ("plain quads", QUADS, "quads"), ("no avatar", EMPTY, "nobody"))]
+                for name, colour, what in (("people", PEOPLE, "people"), ("plain quads", QUADS, "quads"), ("no avatar", EMPTY, "empty"))]
 
     chart(ROOT / "docs/images/draw_avatars.svg", f"Time against avatars; a city of {number(by_avatars[0]['triangles'])} triangles", "avatars",
           curves(by_avatars, "avatars"))
     chart(ROOT / "docs/images/draw_polygons.svg", "Time against polygons of the city; 10 000 avatars", "triangles", curves(by_polygons, "triangles"))
-    added = [(row["avatars"], row["least_people"] - row["least_nobody"]) for row in by_avatars if row["avatars"] >= 30_000]
-    large = [(row["triangles"], row["least_nobody"]) for row in by_polygons if row["triangles"] >= 100_000]
-    rows = [(number(row["avatars"]), ms(row["least_people"]), ms(row["least_quads"]), ms(row["least_nobody"])) for row in by_avatars]
-    more = [(number(row["triangles"]), ms(row["least_people"]), ms(row["least_quads"]), ms(row["least_nobody"])) for row in by_polygons]
+    added = [(row["avatars"], row["least_people"] - row["min_empty"]) for row in by_avatars if row["avatars"] >= 30_000]
+    large = [(row["triangles"], row["min_empty"]) for row in by_polygons if row["triangles"] >= 100_000]
+    rows = [(number(row["avatars"]), ms(row["least_people"]), ms(row["least_quads"]), ms(row["min_empty"])) for row in by_avatars]
+    more = [(number(row["triangles"]), ms(row["least_people"]), ms(row["least_quads"]), ms(row["min_empty"])) for row in by_polygons]
     text = [f"Minimum of {runs} frames: other load on the machine only adds.", table(("avatars", "people [ms]", "plain quads [ms]", "no avatar [ms]"), rows)]
     if len(added) > 1:
         text.append(f"What the avatars add grows from 30 000 on with the power {slope(added):.2f} of their number.")

@@ -110,7 +110,7 @@ def picture():
 TOWN = """# People stroll through the streets of a part of The Hague.
 world = "{world}"
 seconds = 60
-ways = "zones"
+paths = "zones"
 
 [[area]]
 name = "town"

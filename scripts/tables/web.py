@@ -40,7 +40,7 @@ def main():
     os.environ["NODE_MODULES"] = str(MODULES)
     report = run_json("node", ROOT / "bench/web/run.mjs", BUILD / "bench", MODULES, rounds)
     rows, met = [], True
-    empty = report["nobody"]
+    empty = report["empty"]
     for row in report["rows"]:
         ratio = row["still"] / row["ours"]
         met = met and ratio >= MIN_RATIO

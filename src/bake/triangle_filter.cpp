@@ -8,7 +8,7 @@
 #include <cmath>
 
 // Tests triangles against cylinders a vector at a time, with margins for rounding in single
-// precision: a sure answer either way, or an exact test later. Linear in the triangles.
+// precision: a sure yes or no, or an exact test later. Linear in the triangles.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bake/triangle_filter.cpp"

@@ -9,7 +9,7 @@
 /// Where floats hold coordinates, wherever in the world these are.
 namespace throng {
 
-/// The whole multiples of 4096 m next to a position: relative to them floats tell 0.25 mm around
+/// The whole multiples of 4096 m next to a position: relative to them floats resolve 0.25 mm around
 /// it. Zero near the coordinate origin.
 inline Vec3d float_origin(Vec3d position) {
   constexpr double kSpacing = 4096;  // [m]

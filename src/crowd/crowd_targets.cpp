@@ -127,7 +127,7 @@ bool Crowd::State::plan_path(Body& body, Route& route, const StrideGround& groun
   const PathPoint here{body.x, body.z, body.level};
   const Place from = place_of(data, body, here);
   if (body.target != 0) {
-    parts.flows[body.target - 1u].way(parts.lives[w], from, path);
+    parts.flows[body.target - 1u].find_path(parts.lives[w], from, path);
     route.goal = here;  // if it stands there already
   } else {
     const Place to = place_of(data, body, route.goal);

@@ -51,7 +51,7 @@ double FlowField::distance(const Place& place) {
 Place FlowField::next(const Place& place) { return state_->points->next(state_->ground, place); }
 
 void FlowField::find_path(const Place& place, Path& path) {
-  state_->points->way(state_->ground, place, path);
+  state_->points->find_path(state_->ground, place, path);
 }
 
 FlowSummary FlowField::summary() const {

@@ -160,7 +160,7 @@ Place FlowPoints::next(LiveGround& of, const Place& place) const {
   return place_at(ground.mesh.world(), ground.mesh.level(to.level)->ground, to.at);
 }
 
-void FlowPoints::way(LiveGround& of, const Place& place, Path& path) const {
+void FlowPoints::find_path(LiveGround& of, const Place& place, Path& path) const {
   LiveGround::State& ground = *of.state_;
   reset(path);
   LiveStop stop;

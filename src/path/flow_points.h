@@ -29,10 +29,10 @@ class FlowPoints {
   [[nodiscard]] bool empty() const { return points_.empty(); }
 
   // `ground` is that of which they were made, or a copy of it, here and below.
-  /// As FlowField::distance, next, way.
+  /// As FlowField::distance, next, find_path.
   [[nodiscard]] double distance(LiveGround& ground, const Place& place) const;
   [[nodiscard]] Place next(LiveGround& ground, const Place& place) const;
-  void way(LiveGround& ground, const Place& place, Path& path) const;
+  void find_path(LiveGround& ground, const Place& place, Path& path) const;
 
   [[nodiscard]] size_t size() const { return points_.size(); }
   [[nodiscard]] uint64_t bytes() const { return points_.size() * sizeof(Point); }

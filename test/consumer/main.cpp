@@ -6,7 +6,7 @@
 
 #include <cstdio>
 
-// A square with a pillar, fifty wanderers, a hundred steps; fails when anyone enters anything.
+// A square with a pillar, fifty wanderers, a hundred steps; fails when an avatar enters a wall or another.
 int main() {
   throng::Scene scene;
   scene.add_quad({0, 0, 0}, {0, 0, 20}, {20, 0, 20}, {20, 0, 0});

@@ -6,7 +6,8 @@
 
 #include <cstdio>
 
-// A square with a pillar, fifty wanderers, a hundred steps; fails when an avatar enters a wall or another.
+// A square with a pillar, fifty wanderers, a hundred steps; fails when an avatar enters a wall or
+// another.
 int main() {
   throng::Scene scene;
   scene.add_quad({0, 0, 0}, {0, 0, 20}, {20, 0, 20}, {20, 0, 0});

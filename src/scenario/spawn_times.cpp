@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+// When a source spawns avatars, and how many at once: all at the beginning, or as its rates say.
 namespace throng {
 namespace {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-// A* over the free boxes of the air's octree, from face to face; the path's points lie on the faces.
-// Source: [PACS00]. Cost: n log n in the boxes that are expanded.
+// A* over the free boxes of the air's octree, from face to face; the path's points lie on the
+// faces. Source: [PACS00]. Cost: n log n in the boxes that are expanded.
 namespace throng {
 namespace {
 

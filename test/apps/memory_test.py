@@ -4,8 +4,8 @@
 
 memory_test.py THRONG city     100 pictures of a large scene, at most 700 MB
 memory_test.py THRONG overlay  300 pictures with Clearance
-memory_test.py THRONG window   15 s of a window with Clearance. Exit 77: no Xvfb or no xdotool here.
-All but the window exit 77 where there is no ffmpeg."""
+memory_test.py THRONG window   15 s of a window with Clearance. It needs Xvfb and xdotool, films need ffmpeg: without
+them the test fails."""
 import os
 import pathlib
 import shutil
@@ -92,7 +92,7 @@ def main():
     needed = ["Xvfb", "xdotool"] if case == "window" else ["ffmpeg"]
     if not all(shutil.which(tool) for tool in needed):
         print(f"memory_test: no {' or no '.join(needed)}; scripts/install_deps installs them")
-        return 77
+        return 1
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         if case == "window":

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """A real window on its own display, driven with keys and mouse through XTest; its pictures are read from the display.
 
-window_test.py THRONG. Exit 77: no Xvfb or no xdotool here."""
+window_test.py THRONG. Needs Xvfb and xdotool: without them it fails."""
 import os
 import pathlib
 import shutil
@@ -123,7 +123,7 @@ def check(window):
 def main():
     if not shutil.which("Xvfb") or not shutil.which("xdotool"):
         print("window_test: no Xvfb or no xdotool; scripts/install_deps installs them")
-        return 77
+        return 1
     with tempfile.TemporaryDirectory() as name:
         window = Window(sys.argv[1], pathlib.Path(name), "builtin:stairs", "--avatars", "60", "--near", "5")
         try:

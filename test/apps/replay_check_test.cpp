@@ -41,7 +41,7 @@ class ReplayCheck : public testing::Test {
       crowd->read(states);
       EXPECT_TRUE(step % 3 == 0 ? recorder.add(step, hash, states) : recorder.add_hash(step, hash));
     }
-    EXPECT_TRUE(recorder.finish());
+    EXPECT_TRUE(recorder.finish(""));
     return path;
   }
 

@@ -106,8 +106,8 @@ TEST(TimelineFrame, AClimberLeansAndFacesItsMove) {
   ASSERT_EQ(crowd.crowds().size(), 2U);  // One leans, one does not.
   size_t leaning = 0;
   for (const DrawnCrowd& drawn : crowd.crowds()) {
-    EXPECT_TRUE(drawn.ups.empty() || drawn.ups.size() == drawn.avatars.x.size());
-    leaning += drawn.ups.size();
+    EXPECT_TRUE(drawn.up_vectors.empty() || drawn.up_vectors.size() == drawn.avatars.x.size());
+    leaning += drawn.up_vectors.size();
   }
   EXPECT_EQ(leaning, 1U);
   crowd.blend(a, a, 1, one_figure(), 1e9);

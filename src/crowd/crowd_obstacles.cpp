@@ -140,7 +140,9 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
     const auto last =
         std::lower_bound(found.begin(), found.end(), std::pair(slot + 1, uint32_t{0}));
     const bool refuses = obstacle.policy == ObstaclePolicy::kRefuseEntry && !obstacle.is_up;
-    const std::span<const std::pair<uint32_t, uint32_t>> here(first, last);
+    // (Of pointers: the page's standard library makes no span of two iterators.)
+    const std::span<const std::pair<uint32_t, uint32_t>> here(
+        found.data() + (first - found.begin()), static_cast<size_t>(last - first));
     if (!obstacle.waits() && !obstacle.is_exit_only) continue;
     const bool had_cells = obstacle.has_cells && !obstacle.is_elsewhere;
     const bool was_exit_only = obstacle.is_exit_only, waited = obstacle.waits();

@@ -55,15 +55,16 @@ struct Body {
   uint16_t height = 0;  // [mm, at most 65 m]
   uint16_t target = 0;  // TargetId: its goal is a target
   State state : 3 = kFree;
-  bool leaves : 1 = false;     // an obstacle that closes around it, or that became active beside it
+  bool unused : 1 = false;     // (state hashes are of these bytes)
   bool follows : 1 = false;    // so closely that it could but crawl, when it last decided
   bool climbs : 1 = false;     // kFlying is set too: it is a climber, which ClimberEngine moves
   bool on_right : 1 = false;   // in counterflow, its lane lies in the right half of the opening
   bool near_wall : 1 = false;  // and in need of another path, in the last step
   uint8_t : 0;                 // What follows lies in another byte.
-  uint8_t steps : 7 = 1;       // that it takes at once in this step; 0: it is skipped
-  // A stream came towards it when it last sensed. Others read this while they decide, so what
-  // shares its byte must not change then.
+  uint8_t steps : 6 = 1;       // that it takes at once in this step; 0: it is skipped
+  // Others read the next two while they decide, so what shares their byte must not change then.
+  bool leaves : 1 = false;  // an obstacle that closes around it, or that became active beside it
+  // A stream came towards it when it last sensed.
   bool in_counterflow : 1 = false;
 
   [[nodiscard]] GroundPoint point() const { return {x, z}; }

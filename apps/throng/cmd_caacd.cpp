@@ -16,8 +16,8 @@
 #include "caacd_one_run.h"
 #include "command.h"
 #include "number_checks.h"
-#include "throng/caacd_experiment.h"
-#include "throng/chart.h"
+#include "throng/papers.h"
+#include "throng/picture.h"
 
 // throng caacd: the experiment of [CAACD] section V, next to the paper's own numbers.
 namespace throng::app {

@@ -13,7 +13,6 @@
 #include "output_file.h"
 #include "report_page.h"
 #include "throng/recording.h"
-#include "throng/replay_summary.h"
 
 // throng report: a recording in numbers and pictures, on one page.
 namespace throng::app {

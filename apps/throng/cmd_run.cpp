@@ -14,7 +14,7 @@
 #include "run_scenario.h"
 #include "run_sinks.h"
 #include "run_times.h"
-#include "throng/wanderers.h"
+#include "throng/papers.h"
 #include "throng/world.h"
 
 // throng run: moves a crowd of wanderers, or with goals, through a baked world, or runs a scenario;

@@ -9,12 +9,9 @@
 #include <string>
 #include <string_view>
 
-#include "throng/context.h"
-#include "throng/ground_query.h"
-#include "throng/math.h"
-#include "throng/nodes.h"
-#include "throng/result.h"
-#include "throng/steering_model.h"
+#include "throng/avatar.h"
+#include "throng/base.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 
 /// Shared by all commands of the program. One file per command: it adds its options to the parser

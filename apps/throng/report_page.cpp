@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "throng/chart.h"
-#include "throng/heat_map.h"
+#include "throng/picture.h"
 
 // The charts and maps of a recording, and one page of HTML that embeds them.
 namespace throng::app {

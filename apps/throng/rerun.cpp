@@ -115,7 +115,7 @@ Result<Rerun> rerun_scenario(const Json& settings, const World& world, int32_t w
   const auto scenario = recorded_scenario(settings);
   if (!scenario) return scenario.error();
   Context context;
-  auto made = Simulation::make(world, *scenario, workers, context);
+  auto made = Simulation::create(world, *scenario, workers, context);
   if (!made) return made.error();
   const auto simulation = std::make_shared<Simulation>(std::move(*made));
   // If a step fails, the state differs from the recording, and so does its hash.
@@ -181,7 +181,7 @@ Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t 
 Result<World> world_of(const RecordingInfo& info, const std::string& folder) {
   if (folder.empty() && info.model == kScenarioModel) {
     auto world = own_world(info);
-    if (!world || world->data() != nullptr) return world;
+    if (!world || *world) return world;
   }
   const std::string& name = folder.empty() ? info.world : folder;
   Result<World> world = World::open(name);

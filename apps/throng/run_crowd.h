@@ -12,7 +12,7 @@
 #include "command.h"
 #include "run_times.h"
 #include "throng/crowd.h"
-#include "throng/nodes.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 
 /// throng run with goals.

@@ -240,8 +240,9 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
   if (run.model) scenario->steering = *run.model;
   const auto world = times.measure("open", [&] { return open_world(*scenario, session.context); });
   if (!world) return world.error();
-  auto simulation = times.measure(
-      "prepare", [&] { return Simulation::make(*world, *scenario, run.workers, session.context); });
+  auto simulation = times.measure("prepare", [&] {
+    return Simulation::create(*world, *scenario, run.workers, session.context);
+  });
   if (!simulation) return simulation.error();
   Sinks sinks(run.sinks);
   const Json settings = {{"scenario", run.text},

@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "avatars_csv.h"
+#include "throng/bake.h"
 #include "throng/impostor.h"
-#include "throng/walkable_surface.h"
 #ifdef THRONG_WITH_DRAW
 #include "throng_draw/draw.h"
 #endif
@@ -90,7 +90,7 @@ Result<std::vector<Atlas> > atlases_of(Session& session, const ScenePictureOptio
   if (!atlases.empty()) return atlases;
   AtlasConfig config;
   config.clips = {"Walk", "Idle"};
-  Result<Atlas> atlas = build_atlas(built_in_character(), config, session.context);
+  Result<Atlas> atlas = create_atlas(built_in_character(), config, session.context);
   if (!atlas) return atlas.error();
   atlases.push_back(*std::move(atlas));
   return atlases;

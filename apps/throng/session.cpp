@@ -17,8 +17,8 @@
 #include "command.h"
 #include "number_checks.h"
 #include "old_names.h"
-#include "throng/cluster.h"
-#include "throng/search_budget.h"
+#include "throng/bake.h"
+#include "throng/path.h"
 
 // What all commands share: parsing, progress, Ctrl-C, results, errors and notes.
 namespace throng::app {

@@ -172,7 +172,7 @@ Result<Scene> read_sources(const SourceOptions& options, Context& context, Scene
     scene = *std::move(loaded);
   }
   for (const BuiltinWorldConfig& builtin : builtins) {
-    Result<Scene> made = make_builtin_world(builtin);
+    Result<Scene> made = create_builtin_world(builtin);
     if (!made) return made.error();
     if (scene.triangles.empty() && scene.report.triangles_read == 0) {
       scene = *std::move(made);

@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "command.h"
-#include "throng/builtin_worlds.h"
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// Turns the FILE arguments that several commands share into one Scene.

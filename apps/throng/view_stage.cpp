@@ -13,10 +13,9 @@
 #include "number_checks.h"
 #include "rerun.h"
 #include "throng/bake.h"
-#include "throng/character.h"
-#include "throng/nodes.h"
+#include "throng/impostor.h"
 #include "throng/scenario.h"
-#include "throng/walkable_surface.h"
+#include "throng/surface.h"
 #include "user_files.h"
 
 // Loads what throng view and throng film show: scene, world, figures and a source of avatars.
@@ -32,7 +31,7 @@ bool has_sources(const SourceOptions& sources) {
 // More poses than an atlas: near the eye the changes are visible.
 Result<FigureModel> model_of(const Character& character, AtlasConfig config, Context& context) {
   config.frames = 24;
-  return build_figure_model(character, config, context);
+  return create_figure_model(character, config, context);
 }
 
 AtlasConfig figure_config(double height) {
@@ -50,7 +49,7 @@ Result<Atlas> atlas_of(double height, Context& context) {
   if (!kept.empty()) {
     if (Result<Atlas> atlas = load_atlas(kept)) return atlas;
   }
-  Result<Atlas> atlas = build_atlas(built_in_character(), config, context);
+  Result<Atlas> atlas = create_atlas(built_in_character(), config, context);
   // A cache that cannot be written costs time, nothing else.
   if (atlas && !kept.empty() && make_folder_of(kept)) (void)save_atlas(*atlas, kept);
   return atlas;
@@ -62,7 +61,7 @@ Result<ViewFigure> figure_of_file(const std::string& path, Context& context) {
   if (!character) return character.error();
   AtlasConfig config = figure_config(AtlasConfig{}.height);
   if (!find_clip(*character, "Idle")) config.clips = {"Walk"};
-  Result<Atlas> atlas = build_atlas(*character, config, context);
+  Result<Atlas> atlas = create_atlas(*character, config, context);
   if (!atlas) return Error{atlas.error().code, path + ": " + atlas.error().message};
   Result<FigureModel> model = model_of(*character, config, context);
   if (!model) return Error{model.error().code, path + ": " + model.error().message};

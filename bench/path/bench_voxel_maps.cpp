@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "throng/bake.h"
-#include "throng/cells.h"
-#include "throng/flight.h"
+#include "throng/path.h"
+#include "throng/scene.h"
 #include "voxel_oracle.h"
 
 // Moving AI's voxel maps and their queries: our paths' lengths beside the published ones, which
@@ -111,7 +111,7 @@ Json measure(const Options& options) {
   const auto world = bake_voxel_cells(*cells, 1);
   if (!world) stop(world.error().message);
   Context context;
-  auto finder = FlightFinder::make(*world, {}, context);
+  auto finder = FlightFinder::create(*world, {}, context);
   if (!finder) stop(finder.error().message);
   const test::VoxelOracle oracle(*cells);
   std::vector<Query> queries = read_queries(options.map + ".3dscen");

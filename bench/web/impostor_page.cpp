@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "throng/character.h"
+#include "throng/impostor.h"
 #include "throng_draw/draw.h"
 
 // Impostors in a browser, for scripts/results web: the page sets the places of all avatars and the
@@ -47,7 +47,7 @@ EMSCRIPTEN_KEEPALIVE bool bench_start(const char* canvas, int32_t width, int32_t
   if (!drawing) return false;
   Context quiet;
   AtlasConfig atlas_config;
-  const Result<Atlas> atlas = build_atlas(built_in_character(), atlas_config, quiet);
+  const Result<Atlas> atlas = create_atlas(built_in_character(), atlas_config, quiet);
   if (!atlas || !drawing->add_atlas(*atlas)) return false;
   bench().drawing = std::move(*drawing);
   bench().config.width = width;

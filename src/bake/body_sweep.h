@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bake/triangles.h"
-#include "throng/math.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// Where a body may be while its feet are anywhere in a sub-patch, against triangles.

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "bake/node_bake.h"
-#include "throng/nodes.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 
 // Replaces the old world by the complete one in NAME.part, after a check of the off-mesh links of

@@ -4,8 +4,7 @@
 
 #include "bake/world_folder.h"
 #include "throng/bake.h"
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// The end of a bake into a folder, by one process or by many.

@@ -6,8 +6,7 @@
 
 #include "bake/world_folder.h"
 #include "throng/bake.h"
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/base.h"
 
 /// The graph of a baked world, into its folder.
 namespace throng {

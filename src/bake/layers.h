@@ -12,7 +12,7 @@
 #include "bake/free_spans.h"
 #include "bake/grid.h"
 #include "bake/triangles.h"
-#include "throng/avatar_class.h"
+#include "throng/avatar.h"
 
 /// Layers: the free spans of a tile, assigned to layers of at most one free span per column, so
 /// that a layer follows one floor. A finished layer is a level tile.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bake/node_file.h"
+#include "core/access.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "graph/node_bins.h"
@@ -34,14 +35,14 @@ Result<void> first_failure(std::span<const std::optional<Error>> failed) {
 NodeBaker::NodeBaker(const World& world, const Scene& scene, const NodeConfig& config,
                      const NodeFolder* folder)
     : world_(world),
-      data_(*world.data()),
+      data_(*data_of(world)),
       scene_(scene),
       config_(config),
       folder_(folder),
       bins_(make_bins(data_.summary.classes)) {}
 
 Result<void> NodeBaker::check(const World& world, const Scene& scene, const NodeConfig& config) {
-  if (world.data() == nullptr) return Error{Errc::kBadInput, "nodes: the world is empty"};
+  if (data_of(world) == nullptr) return Error{Errc::kBadInput, "nodes: the world is empty"};
   if (auto ok = check_node_config(config); !ok) return ok.error();
   if (scene.triangles.size() != world.summary().source_triangles) {
     return Error{Errc::kBadInput, "nodes: the world was not baked from this scene: it has " +
@@ -239,21 +240,21 @@ Result<void> check_node_config(const NodeConfig& config) {
   return {};
 }
 
-Result<Nodes> Nodes::make(const World& world, const Scene& scene, const NodeConfig& config,
-                          Context& context) {
+Result<Nodes> Nodes::create(const World& world, const Scene& scene, const NodeConfig& config,
+                            Context& context) {
   if (auto ok = NodeBaker::check(world, scene, config); !ok) return ok.error();
   auto nodes = make_all(world, scene, config, context, nullptr);
   if (!nodes) return nodes.error();
   return Nodes(*std::move(nodes));
 }
 
-Result<Nodes> Nodes::make_in_folder(const World& world, const Scene& scene,
-                                    const NodeConfig& config, Context& context) {
+Result<Nodes> Nodes::create_in_folder(const World& world, const Scene& scene,
+                                      const NodeConfig& config, Context& context) {
   if (auto ok = NodeBaker::check(world, scene, config); !ok) return ok.error();
-  if (world.data()->path.empty()) {
+  if (data_of(world)->path.empty()) {
     return Error{Errc::kBadInput, "nodes: the world is in no folder"};
   }
-  auto folder = NodeFolder::begin(world.data()->path);
+  auto folder = NodeFolder::begin(data_of(world)->path);
   if (!folder) return folder.error();
   const auto made = make_all(world, scene, config, context, &*folder);
   if (!made) {
@@ -261,30 +262,30 @@ Result<Nodes> Nodes::make_in_folder(const World& world, const Scene& scene,
     return made.error();
   }
   if (auto ok = folder->finish(**made); !ok) return ok.error();
-  (*made)->path = world.data()->path + "/" + kNodeFolder;
+  (*made)->path = data_of(world)->path + "/" + kNodeFolder;
   return Nodes(*made);
 }
 
 Result<void> Nodes::write(const std::string& world_path, int32_t workers) const {
-  THRONG_ASSERT(data_);
+  THRONG_ASSERT(state_);
   const auto world = World::open(world_path);
   if (!world) return world.error();
-  if (world->summary().hash != data_->world_hash) {
+  if (world->summary().hash != state_->world_hash) {
     return Error{Errc::kBadFile, world_path + ": holds another world than these nodes' own"};
   }
   auto folder = NodeFolder::begin(world_path);
   if (!folder) return folder.error();
-  std::vector<std::optional<Error>> failed(data_->slots.size());
+  std::vector<std::optional<Error>> failed(state_->slots.size());
   parallel_for(failed.size(), workers, [&](size_t s) {
-    const NodeZone* zone = data_->zone(s);
+    const NodeZone* zone = state_->zone(s);
     if (zone == nullptr) {
-      failed[s] = Error{Errc::kBadFile, data_->slots[s]->error};
+      failed[s] = Error{Errc::kBadFile, state_->slots[s]->error};
     } else if (auto ok = folder->write(*zone); !ok) {
       failed[s] = ok.error();
     }
   });
   if (auto ok = first_failure(failed); !ok) return ok;
-  return folder->finish(*data_);
+  return folder->finish(*state_);
 }
 
 }  // namespace throng

@@ -10,6 +10,7 @@
 #include "bake/node_drops.h"
 #include "bake/node_file.h"
 #include "bake/patch_links.h"
+#include "core/access.h"
 #include "core/parallel.h"
 #include "graph/node_bins.h"
 #include "graph/node_width.h"
@@ -34,7 +35,7 @@ class NodeBatch {
  public:
   NodeBatch(const NodeBatchInput& input, std::span<const uint32_t> zones)
       : world_(input.world),
-        data_(*input.world.data()),
+        data_(*data_of(input.world)),
         scene_(input.scene),
         config_(input.config),
         context_(input.context),

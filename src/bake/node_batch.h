@@ -10,9 +10,9 @@
 
 #include "bake/node_plan.h"
 #include "bake/triangles.h"
-#include "throng/context.h"
-#include "throng/nodes.h"
+#include "throng/base.h"
 #include "throng/scene.h"
+#include "throng/surface.h"
 #include "world/node_data.h"
 
 /// From patches and level tiles to nodes, links and widths, so many zones at a time as fit in

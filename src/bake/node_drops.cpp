@@ -12,6 +12,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/access.h"
 #include "core/parallel.h"
 #include "graph/ground_parts.h"
 #include "graph/node_width.h"
@@ -94,7 +95,7 @@ class DropFinder {
              const PatchBody& body)
       : input_(input),
         patches_(patches),
-        world_(*input.links.world->data()),
+        world_(*data_of(*input.links.world)),
         ground_{world_, static_cast<int32_t>(avatar_class)},
         avatar_(input.links.classes[avatar_class]),
         body_(body),
@@ -307,7 +308,7 @@ bool is_patch_edge(const DropInput& input, const CrossCells& cross, const DropEn
 }  // namespace
 
 std::vector<NodeDrop> find_drops(const DropInput& input, int32_t workers) {
-  const WorldData& world = *input.links.world->data();
+  const WorldData& world = *data_of(*input.links.world);
   const std::vector<PatchBody> bodies = patch_bodies(input.links.classes);
   const CrossCells cross(input.edges, input.links.cells.size(), workers);
   std::vector<NodeDrop> drops;

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bake/body_sweep.h"
-#include "throng/nodes.h"
 #include "throng/scene.h"
+#include "throng/surface.h"
 #include "world/zone_data.h"
 
 /// Which patches nodes are made of, zone by zone, and what each zone's nodes depend on.

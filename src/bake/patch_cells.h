@@ -14,8 +14,8 @@
 #include "bake/triangle_filter.h"
 #include "graph/node_width.h"
 #include "graph/quadtree.h"
-#include "throng/nodes.h"
-#include "throng/patch.h"
+#include "throng/scene.h"
+#include "throng/surface.h"
 
 /// What the finest sub-patches of Bezier patches promise, proved against all triangles.
 namespace throng {

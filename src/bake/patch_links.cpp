@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/access.h"
 #include "core/parallel.h"
 #include "graph/patch_pairs.h"
 #include "world/node_data.h"
@@ -277,7 +278,7 @@ std::vector<CellPair> link_holes(const PatchLinkInput& input, int32_t workers) {
 
 std::vector<CellPair> link_tiles(const PatchLinkInput& input, int32_t workers) {
   const std::vector<PatchBody> bodies = patch_bodies(input.classes);
-  const WorldData& data = *input.world->data();
+  const WorldData& data = *data_of(*input.world);
   std::vector<std::vector<CellPair>> lists(input.cells.size());
   parallel_for(input.cells.size(), workers, [&](size_t p) {
     MotionJudge judge(*input.triangles);

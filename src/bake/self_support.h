@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "throng/patch.h"
+#include "throng/scene.h"
 
 /// How far a patch's own triangles may come up towards bodies that stand on it.
 namespace throng {

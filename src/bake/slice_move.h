@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "throng/slices.h"
+#include "throng/papers.h"
 
 /// [ML06] algorithm 1 in its conservative form, on the slices themselves. The crowd walks on level
 /// tiles instead; this is the seed's own method, and what the level tiles are held against.

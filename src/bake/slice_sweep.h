@@ -6,9 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "throng/context.h"
-#include "throng/result.h"
-#include "throng/slices.h"
+#include "throng/base.h"
+#include "throng/papers.h"
 #include "throng/world.h"
 
 /// The sweep: all slices of a grid from columns that were filled once.

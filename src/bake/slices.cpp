@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/slices.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,6 +14,7 @@
 #include "bake/slice_sweep.h"
 #include "bake/triangles.h"
 #include "core/parallel.h"
+#include "throng/papers.h"
 
 // Columns of the whole grid are filled once, tile by tile; the sweep does the rest.
 namespace throng {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bake/body_sweep.h"
-#include "throng/patch.h"
+#include "throng/scene.h"
 
 /// Where sub-patches of Bezier patches lie and how far they are inclined.
 namespace throng {

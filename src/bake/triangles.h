@@ -12,8 +12,8 @@
 
 #include "bake/grid.h"
 #include "core/parallel.h"
-#include "throng/avatar_class.h"
-#include "throng/math.h"
+#include "throng/avatar.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// Triangles as the rasteriser needs them: in cells and millimetres, corners sorted by z.

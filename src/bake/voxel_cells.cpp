@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/access.h"
 #include "core/hash.h"
 #include "throng/bake.h"
 #include "world/air_data.h"
@@ -83,7 +84,7 @@ Result<World> bake_voxel_cells(const VoxelCells& cells, double cell) {
   air->slot_of_zone = {0};
   air->slots.push_back(std::move(slot));
   world->air = std::move(air);
-  return World(std::move(world));
+  return Access::create<World>(std::move(world));
 }
 
 }  // namespace throng

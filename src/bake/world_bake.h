@@ -12,8 +12,7 @@
 #include "bake/world_folder.h"
 #include "bake/zone_bake.h"
 #include "throng/bake.h"
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 #include "world/zone_data.h"
 

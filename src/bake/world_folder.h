@@ -14,7 +14,7 @@
 
 #include "core/folder_lock.h"
 #include "throng/bake.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "world/air_data.h"
 #include "world/region_data.h"
 #include "world/zone_data.h"

@@ -12,7 +12,7 @@
 #include "bake/legality.h"
 #include "bake/triangles.h"
 #include "throng/bake.h"
-#include "throng/context.h"
+#include "throng/base.h"
 
 /// One zone, from its triangles to its file's bytes.
 namespace throng {

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "crowd/flight.h"
-#include "throng/math.h"
-#include "throng/prism.h"
+#include "throng/base.h"
 
 /// An obstacle against which upright cylinders are tested.
 namespace throng {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "throng/math.h"
+#include "throng/base.h"
 
 /// What a climber has beside its Body, by slot. docs/design/013-climbers.md.
 namespace throng {

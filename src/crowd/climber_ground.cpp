@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/access.h"
 #include "world/place.h"
 #include "world/zone_data.h"
 
@@ -23,7 +24,7 @@ constexpr int kShorter = 8;         // attempts to make a move short enough
 ClimberGround::ClimberGround(const World& world, const Nodes& nodes, const NodePathFinder& finder,
                              int32_t avatar_class)
     : nodes_(&nodes), finder_(&finder), avatar_class_(avatar_class) {
-  const WorldData& data = *world.data();
+  const WorldData& data = *data_of(world);
   const AvatarClass& avatar = data.summary.classes[static_cast<size_t>(avatar_class)];
   origin_ = data.summary.origin;
   unit_ = data.summary.cell / kUnitsPerCell;

@@ -8,8 +8,8 @@
 #include "crowd/climb.h"
 #include "crowd/flight.h"
 #include "path/solid.h"
-#include "throng/node_path.h"
-#include "throng/nodes.h"
+#include "throng/path.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 
 /// The nodes of a class, as climbers move over them.

@@ -10,7 +10,7 @@
 #include "core/prefetch.h"
 #include "crowd/left_cells.h"
 #include "crowd/level_line.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "world/ground.h"
 
 /// The ground as a step reads it: for each level a line and 64 rows of legal cells.

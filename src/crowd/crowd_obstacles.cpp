@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "core/access.h"
 #include "core/parallel.h"
 #include "crowd/crowd_state.h"
 #include "path/blocked_cells.h"
@@ -230,7 +231,7 @@ void Crowd::State::sync_paths(uint32_t slot, size_t number) {
 void Crowd::State::cut_paths(std::span<const uint32_t> slots) {
   if (!climbs.empty()) cut_climbs(slots);
   if (config.routing != Routing::kPaths) return;
-  const WorldData& data = *world.data();
+  const WorldData& data = *data_of(world);
   double widest_class = 0;
   for (const AvatarClass& avatar : data.summary.classes) {
     widest_class = std::max(widest_class, taking_reach(avatar));

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "core/access.h"
 #include "core/hash.h"
 #include "crowd/crowd_state.h"
 #include "throng/crowd.h"
@@ -127,7 +128,7 @@ uint64_t size_of(const Head& head) {
 
 // A world that was never written has no hash of its own.
 uint64_t hash_of(const World& world) {
-  const WorldData& data = *world.data();
+  const WorldData& data = *data_of(world);
   const Vec3d& origin = data.summary.origin;
   const double facts[] = {data.summary.cell,
                           origin.x,
@@ -282,7 +283,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   auto made = create(world, config);
   if (!made) return made;
   State& s = *made->state_;
-  const WorldData& data = *s.world.data();
+  const WorldData& data = *data_of(s.world);
   Head head;
   if (saved.size() < sizeof head + 8) return bad("is cut short; save the crowd again");
   std::memcpy(&head, saved.data(), sizeof head);

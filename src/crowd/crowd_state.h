@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "core/access.h"
 #include "crowd/climb.h"
 #include "crowd/climber_engine.h"
 #include "crowd/climber_ground.h"
@@ -26,9 +27,7 @@
 #include "crowd/target.h"
 #include "path/flow_points.h"
 #include "throng/crowd.h"
-#include "throng/flight.h"
-#include "throng/live_ground.h"
-#include "throng/node_path.h"
+#include "throng/path.h"
 
 /// The state of a crowd.
 namespace throng {
@@ -103,10 +102,10 @@ struct Crowd::State {
         engine(std::move(an_engine)),
         flyers(std::move(a_flyer_engine)),
         climbers(std::move(a_climber_engine)),
-        obstacles(a_world, a_world.data()->summary.classes.size()) {}
+        obstacles(a_world, data_of(a_world)->summary.classes.size()) {}
 
   [[nodiscard]] const AvatarClass& body_class(int32_t number) const {
-    return world.data()->summary.classes[static_cast<size_t>(number)];
+    return data_of(world)->summary.classes[static_cast<size_t>(number)];
   }
   [[nodiscard]] AvatarId id_of(uint32_t slot) const { return {slot + 1, generation[slot]}; }
   [[nodiscard]] Body* body(AvatarId id) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/access.h"
 #include "world/place.h"
 
 // The air of a class in a step's integer units: conversions, lines of sight, and ground-air links.
@@ -20,16 +21,16 @@ FlyerAir::FlyerAir(const World& world, const FlightSpace& space, const CrowdGrou
                    int32_t avatar_class)
     : space_(&space),
       ground_(&ground),
-      origin_(world.data()->summary.origin),
-      unit_(world.data()->summary.cell / kUnitsPerCell),
+      origin_(data_of(world)->summary.origin),
+      unit_(data_of(world)->summary.cell / kUnitsPerCell),
       per_unit_(1.0 / (static_cast<double>(kUnitsPerCell) * space.shape.multiple)),
       width_(static_cast<int32_t>(
-          std::min<int64_t>(int64_t{world.data()->width} << kUnitBits, INT32_MAX))),
+          std::min<int64_t>(int64_t{data_of(world)->width} << kUnitBits, INT32_MAX))),
       depth_(static_cast<int32_t>(
-          std::min<int64_t>(int64_t{world.data()->depth} << kUnitBits, INT32_MAX))),
+          std::min<int64_t>(int64_t{data_of(world)->depth} << kUnitBits, INT32_MAX))),
       origin_y_(space.shape.origin_y),
       cell_(space.shape.cell) {
-  const AvatarClass& avatar = world.data()->summary.classes[static_cast<size_t>(avatar_class)];
+  const AvatarClass& avatar = data_of(world)->summary.classes[static_cast<size_t>(avatar_class)];
   height_ = static_cast<int32_t>(std::floor(avatar.height * 1000 + 1e-6));
 }
 

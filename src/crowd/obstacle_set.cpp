@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "core/access.h"
 #include "core/parallel.h"
 #include "core/plan_point.h"
 #include "crowd/leaving_ground.h"
@@ -154,7 +155,7 @@ std::vector<std::pair<uint32_t, uint32_t>> ObstacleSet::blockers(std::span<const
   for (const uint32_t slot : slots) {
     for (size_t c = 0; c < classes_.size(); ++c) {
       for (const LevelCells& cells : obstacles_[slot].of_class[c].swept) {
-        if (list_of[c].empty()) list_of[c].resize(world_.data()->level_count);
+        if (list_of[c].empty()) list_of[c].resize(data_of(world_)->level_count);
         uint32_t& list = list_of[c][cells.level];
         if (list == 0) {
           lists.emplace_back();
@@ -230,7 +231,7 @@ std::vector<LevelCells> ObstacleSet::cells_under(size_t number, const Prism& pri
   std::vector<LevelCells> found;
   const CrowdGround* ground = classes_[number].ground;
   if (ground == nullptr) return found;
-  const WorldData& world = *world_.data();
+  const WorldData& world = *data_of(world_);
   const AvatarClass& avatar = world.summary.classes[number];
   const SquareRange tiles = tiles_near(world, prism.corners, taking_reach(avatar));
   for (int32_t z = tiles.first_z; z <= tiles.last_z; ++z) {
@@ -295,7 +296,7 @@ void ObstacleSet::block_cells() {
 
 void ObstacleSet::block_levels(size_t number, ClassGround& of) {
   std::vector<std::pair<int32_t, int32_t>> tiles;
-  const WorldSummary& summary = world_.data()->summary;
+  const WorldSummary& summary = data_of(world_)->summary;
   LeftCells& left = of.ground->left();
   left.begin(summary, summary.classes[number]);
   for (uint32_t slot = 0; slot < obstacles_.size(); ++slot) {

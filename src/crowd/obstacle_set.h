@@ -10,8 +10,8 @@
 
 #include "crowd/body.h"
 #include "crowd/crowd_ground.h"
-#include "throng/crowd_obstacle.h"
-#include "throng/live_ground.h"
+#include "throng/crowd.h"
+#include "throng/path.h"
 #include "throng/world.h"
 
 /// The obstacles of a crowd, and what each blocks of the grounds of the classes.

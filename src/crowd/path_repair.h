@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "crowd/stride_ground.h"
-#include "throng/live_ground.h"
 #include "throng/path.h"
 #include "world/zone_data.h"
 

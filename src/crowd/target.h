@@ -9,8 +9,8 @@
 
 #include "crowd/body.h"
 #include "crowd/crowd_ground.h"
-#include "throng/live_ground.h"
-#include "throng/prism.h"
+#include "throng/base.h"
+#include "throng/path.h"
 #include "throng/world.h"
 
 /// Targets: regions that many avatars head to.

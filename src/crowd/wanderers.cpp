@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/wanderers.h"
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <optional>
 
+#include "core/access.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "core/random.h"
@@ -16,6 +15,7 @@
 #include "crowd/crowd_check.h"
 #include "crowd/placement.h"
 #include "crowd/wander_step.h"
+#include "throng/papers.h"
 #include "world/place.h"
 
 // A crowd without goals: places avatars, sorts them by block as they drift, and moves blocks of one
@@ -71,8 +71,8 @@ Result<Wanderers> Wanderers::create(const World& world, const WanderConfig& conf
   const auto bad = [](const std::string& what) {
     return Error{Errc::kBadConfig, "crowd: " + what};
   };
-  if (!world.data()) return bad("there is no world");
-  const WorldData& data = *world.data();
+  if (!data_of(world)) return bad("there is no world");
+  const WorldData& data = *data_of(world);
   if (config.avatar_class < 0 ||
       static_cast<size_t>(config.avatar_class) >= data.summary.classes.size()) {
     return Error{Errc::kNotFound, "crowd: class " + std::to_string(config.avatar_class) +
@@ -156,8 +156,8 @@ WanderReport Wanderers::step() {
                   .seed = s.config.seed,
                   .step_mm = step_mm(s.body),
                   .is_short = s.stride <= LevelLine::kBlock << kUnitBits,
-                  .units_x = s.world.data()->width << kUnitBits,
-                  .units_z = s.world.data()->depth << kUnitBits};
+                  .units_x = data_of(s.world)->width << kUnitBits,
+                  .units_z = data_of(s.world)->depth << kUnitBits};
   for (int32_t i = 0; i < s.sub_steps; ++i) {
     if (s.drift + s.stride > s.max_drift) {
       const auto sort_start = Clock::now();
@@ -211,9 +211,9 @@ uint64_t Wanderers::state_hash() const {
 void Wanderers::read(std::vector<AvatarState>& out) const {
   const State& s = *state_;
   out.resize(s.avatars.size());
-  const Vec3d origin = s.world.data()->summary.origin;
+  const Vec3d origin = data_of(s.world)->summary.origin;
   const double radius =
-      s.world.data()->summary.classes[static_cast<size_t>(s.config.avatar_class)].radius;
+      data_of(s.world)->summary.classes[static_cast<size_t>(s.config.avatar_class)].radius;
   for (const Avatar& avatar : s.avatars.span()) {
     AvatarState& state = out[avatar.id];
     state.id = avatar.id;

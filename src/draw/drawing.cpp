@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/access.h"
 #include "core/stopwatch.h"
 #include "draw/crowd_pass.h"
 #include "draw/depth_reader.h"
@@ -78,7 +79,7 @@ PreparedScene::PreparedScene(PreparedScene&&) noexcept = default;
 PreparedScene& PreparedScene::operator=(PreparedScene&&) noexcept = default;
 PreparedScene::~PreparedScene() = default;
 
-Result<PreparedScene> PreparedScene::make(const Scene& scene, Vec3d origin) {
+Result<PreparedScene> PreparedScene::create(const Scene& scene, Vec3d origin) {
   TextureLayers textures = make_texture_layers(scene, kTextureBudget);
   Result<SceneCorners> corners = scene_corners(scene, origin, textures.of_texture);
   if (!corners) return corners.error();
@@ -346,15 +347,16 @@ std::string Drawing::renderer() const {
 }
 
 Result<void> Drawing::set_scene(const Scene& scene, Vec3d origin) {
-  const Result<PreparedScene> prepared = PreparedScene::make(scene, origin);
+  const Result<PreparedScene> prepared = PreparedScene::create(scene, origin);
   if (!prepared) return prepared.error();
   return set_scene(*prepared);
 }
 
 Result<void> Drawing::set_scene(const PreparedScene& scene) {
   state_->make_current();
-  if (auto ok = state_->textures.set(scene.state_->textures, !state_->is_software); !ok) return ok;
-  return state_->mesh.set(scene.state_->corners);
+  if (auto ok = state_->textures.set(Access::state(scene)->textures, !state_->is_software); !ok)
+    return ok;
+  return state_->mesh.set(Access::state(scene)->corners);
 }
 
 Result<void> Drawing::set_props(const Scene& props, Vec3d origin) {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "throng/lean.h"
+#include "throng/avatar.h"
 
 // Packs avatars that lean. A leaning figure looks like an upright one to an eye turned by the
 // opposite rotation, so the same views serve, on cards that lean. An avatar on a wall is seen from

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "import/world_builder.h"
-#include "throng/builtin_worlds.h"
+#include "throng/scene.h"
 
 /// One builder for each world. The config has been checked and its zeros replaced by the world's
 /// defaults.

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/builtin_worlds.h"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -9,6 +7,7 @@
 #include "import/builtin_table.h"
 #include "import/name_colour.h"
 #include "import/patch_scene.h"
+#include "throng/scene.h"
 
 // The table of built-in worlds: checks a config, fills in defaults and calls the builder.
 namespace throng {
@@ -132,7 +131,7 @@ std::span<const BuiltinWorldInfo> builtin_worlds() {
   return infos;
 }
 
-Result<Scene> make_builtin_world(const BuiltinWorldConfig& config) {
+Result<Scene> create_builtin_world(const BuiltinWorldConfig& config) {
   const Entry* entry = find_entry(config.name);
   if (entry == nullptr) {
     return Error{Errc::kNotFound,

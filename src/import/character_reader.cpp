@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "import/child_process.h"
-#include "throng/character.h"
+#include "throng/impostor.h"
 
 // assimp reads a character in a child process (for the reason see assimp_reader.cpp). The child
 // converts it to our own arrays and sends them; the parent checks every index and number first.

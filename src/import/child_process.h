@@ -6,8 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/base.h"
 
 /// Runs code that may corrupt memory in a child process, which sends its results through a pipe.
 namespace throng {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "throng/cells.h"
+#include "throng/scene.h"
 
 /// Moving AI's benchmark maps.
 namespace throng {

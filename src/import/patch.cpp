@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/patch.h"
-
 #include <algorithm>
+
+#include "throng/scene.h"
 
 // Bernstein's polynomials and de Casteljau's construction, as in G. Farin. Curves and Surfaces for
 // CAGD. 5th edition, 2002, chapters 4, 5 and 14. Only + - * /: the same bits on every machine.

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "throng/patch.h"
+#include "throng/scene.h"
 
 /// Neighbours along the edges of patches.
 namespace throng {

@@ -11,7 +11,7 @@
 #include "core/parallel.h"
 #include "import/patch_edges.h"
 #include "import/patch_steps.h"
-#include "throng/patch.h"
+#include "throng/scene.h"
 
 // Cuts patches into triangles without cracks. A *seam* is a run of vertices between two corners of
 // pieces, which the pieces on both sides use by index. Seams end wherever a piece on either side

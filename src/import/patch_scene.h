@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// Patches become triangles of the scene that holds them.

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "import/patch_edges.h"
-#include "throng/patch.h"
+#include "throng/scene.h"
 
 // Checks that neighbours along edges name each other and meet. Linear in the edges.
 namespace throng {

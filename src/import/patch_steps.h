@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "throng/patch.h"
+#include "throng/scene.h"
 
 /// How finely a patch must be cut.
 namespace throng {

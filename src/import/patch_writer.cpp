@@ -6,7 +6,7 @@
 
 #include "core/part_file.h"
 #include "import/patch_edges.h"
-#include "throng/patch.h"
+#include "throng/scene.h"
 
 // Writes docs/file_format.md, "Patch files": a patch a line. fmt prints the shortest decimal that
 // reads back as the same double.

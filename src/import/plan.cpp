@@ -185,7 +185,7 @@ Result<void> write_plan(const Plan& plan, PlanAxes axes, double ground_height, d
   return {};
 }
 
-Result<Scene> make_plane_scene(const PlaneConfig& config) {
+Result<Scene> create_plane_scene(const PlaneConfig& config) {
   if (!(config.obstacle_height > 0 && config.obstacle_height <= 1e6 &&
         std::fabs(config.ground_height) <= 1e6)) {
     return Error{Errc::kBadConfig, "plane: need obstacle_height > 0 and a finite ground_height"};

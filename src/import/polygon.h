@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "import/orient.h"
-#include "throng/math.h"
+#include "throng/base.h"
 
 /// Polygons with holes, in space, cut into triangles.
 namespace throng {

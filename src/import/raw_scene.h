@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "import/polygon.h"
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// What the readers of all formats share. A reader turns bytes into triangles as they are in the

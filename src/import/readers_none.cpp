@@ -9,7 +9,7 @@
 #include "import/patch_json.h"
 #include "import/plan.h"
 #include "import/texture_reader.h"
-#include "throng/character.h"
+#include "throng/impostor.h"
 
 // A build without assimp, pugixml and simdjson, and without child processes: a browser's.
 namespace throng {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/part_file.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// What the writers of scenes share.

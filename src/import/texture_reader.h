@@ -8,9 +8,8 @@
 #include <vector>
 
 #include "import/raw_scene.h"
-#include "throng/context.h"
-#include "throng/material.h"
-#include "throng/result.h"
+#include "throng/base.h"
+#include "throng/scene.h"
 
 /// Pictures of surfaces, wherever a model keeps them.
 namespace throng {

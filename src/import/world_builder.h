@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "throng/math.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// Collects the triangles of a built-in world by node and material, with shared corners.

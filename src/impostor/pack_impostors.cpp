@@ -8,7 +8,7 @@
 #include "core/parallel.h"
 #include "impostor/blend_views.h"
 #include "impostor/pack_loops.h"
-#include "throng/impostor_pack.h"
+#include "throng/impostor.h"
 
 // Packs visible avatars, block by block: short loops over arrays that fit the first-level cache
 // find which avatars are in the picture and by which view, and another loop writes these out. A

@@ -14,7 +14,7 @@
 #include "path/blocked_air.h"
 #include "path/solid.h"
 #include "path/split_boxes.h"
-#include "throng/live_ground.h"
+#include "throng/path.h"
 #include "world/cell_blocks.h"
 #include "world/ground.h"
 

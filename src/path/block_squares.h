@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "graph/node_mesh.h"
-#include "throng/math.h"
+#include "throng/base.h"
 
 /// Which blocks of Bezier patches lie near a point.
 namespace throng {

@@ -7,8 +7,8 @@
 #include <span>
 
 #include "path/flight_space.h"
-#include "throng/avatar_class.h"
-#include "throng/prism.h"
+#include "throng/avatar.h"
+#include "throng/base.h"
 #include "world/zone_data.h"
 
 /// What an obstacle blocks in the air of a class: the voxels from which a body could touch it.

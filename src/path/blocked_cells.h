@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "throng/prism.h"
+#include "throng/base.h"
 #include "world/cell_blocks.h"
 #include "world/level_view.h"
 #include "world/zone_data.h"

@@ -7,7 +7,6 @@
 
 #include "path/air_view.h"
 #include "path/circle_flood.h"
-#include "throng/ground_query.h"
 #include "throng/world.h"
 
 /// Between the ground and the air: where a body that stands comes into the air, and where it lands.

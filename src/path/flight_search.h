@@ -10,7 +10,7 @@
 #include "core/paged.h"
 #include "path/air_view.h"
 #include "path/search.h"
-#include "throng/search_budget.h"
+#include "throng/path.h"
 
 /// A short path through the air, over boxes.
 namespace throng {

@@ -9,14 +9,15 @@
 #include <limits>
 #include <vector>
 
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "world/air_data.h"
 #include "world/air_rows.h"
 #include "world/zone_data.h"
 
 /// Where one class may fly, as boxes: what flight search runs on.
 namespace throng {
+
+class FlightFinder;
 
 inline constexpr uint32_t kNoBox = UINT32_MAX;
 
@@ -216,5 +217,8 @@ bool air_sees(const Air& air, AirPoint from, AirPoint to) {
     }
   }
 }
+
+/// The legal air of a finder as it was baked. It lives as long as the finder or a copy of it.
+const FlightSpace& space_of(const FlightFinder& finder);
 
 }  // namespace throng

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "core/access.h"
 #include "path/live_state.h"
 #include "path/reset_path.h"
 #include "world/place.h"
@@ -72,7 +73,7 @@ bool FlowPoints::before(const Point& a, const Point& b) { return lies_before(a.s
 
 std::optional<FlowPoints> FlowPoints::make(LiveGround& of, std::span<const Place> goals,
                                            double max_distance, Context& context) {
-  LiveGround::State& ground = *of.state_;
+  auto& ground = *Access::state(of);
   max_distance /= ground.mesh.world().summary.cell;
   Outwards search(ground.mesh, max_distance);
   for (const Place& goal : goals) {
@@ -128,14 +129,14 @@ LiveStop FlowPoints::across(LiveMesh& mesh, const Point& point) const {
 }
 
 double FlowPoints::distance(LiveGround& of, const Place& place) const {
-  LiveGround::State& ground = *of.state_;
+  auto& ground = *Access::state(of);
   LiveStop stop;
   if (!ground.locate(place, stop)) return kNever;
   return leave_by(ground.mesh, stop).second * ground.mesh.world().summary.cell;
 }
 
 Place FlowPoints::next(LiveGround& of, const Place& place) const {
-  LiveGround::State& ground = *of.state_;
+  auto& ground = *Access::state(of);
   LiveStop from;
   if (!ground.locate(place, from)) return {};
   const auto [first, total] = leave_by(ground.mesh, from);
@@ -161,7 +162,7 @@ Place FlowPoints::next(LiveGround& of, const Place& place) const {
 }
 
 void FlowPoints::find_path(LiveGround& of, const Place& place, Path& path) const {
-  LiveGround::State& ground = *of.state_;
+  auto& ground = *Access::state(of);
   reset(path);
   LiveStop stop;
   if (!ground.locate(place, stop)) return;

@@ -10,8 +10,7 @@
 #include <vector>
 
 #include "path/live_search.h"
-#include "throng/context.h"
-#include "throng/live_ground.h"
+#include "throng/base.h"
 #include "throng/path.h"
 
 /// The distances of a FlowField, apart from the ground: one table serves many workers, each with

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/access.h"
 #include "path/blocked_cells.h"
 #include "path/plan_shapes.h"
 #include "path/rects.h"
@@ -31,8 +32,8 @@ uint16_t LiveLevel::rect_at(int32_t x, int32_t z) const {
 LiveMesh::LiveMesh(World world, const LiveConfig& config)
     : world_(std::move(world)),
       config_(config),
-      step_(step_mm(world_.data()->summary.classes[static_cast<size_t>(config.avatar_class)])),
-      levels_(world_.data()->level_count) {
+      step_(step_mm(data_of(world_)->summary.classes[static_cast<size_t>(config.avatar_class)])),
+      levels_(data_of(world_)->level_count) {
   area_cost_.fill(1);
   for (size_t s = 0; s < slope_factor_.size(); ++s) {
     // The gentlest class holds level ground: no extra cost.

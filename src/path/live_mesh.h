@@ -8,9 +8,10 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/access.h"
 #include "graph/ground_parts.h"
 #include "path/solid.h"
-#include "throng/live_ground.h"
+#include "throng/path.h"
 #include "world/ground.h"
 
 /// The ground of a LiveGround, level by level, made on first use.
@@ -54,7 +55,7 @@ class LiveMesh {
   LiveMesh(World world, const LiveConfig& config);
   LiveMesh(const LiveMesh& other);
 
-  [[nodiscard]] const WorldData& world() const { return *world_.data(); }
+  [[nodiscard]] const WorldData& world() const { return *data_of(world_); }
   [[nodiscard]] int32_t avatar_class() const { return config_.avatar_class; }
   [[nodiscard]] int32_t step() const { return step_; }
 

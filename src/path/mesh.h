@@ -5,14 +5,15 @@
 #include <cstdint>
 #include <vector>
 
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "world/walk.h"
 #include "world/zone_data.h"
 
 /// The walkable ground of one class as rectangles of cells joined by portals: what path search runs
 /// on.
 namespace throng {
+
+class PathFinder;
 
 inline constexpr uint32_t kNoRect = UINT32_MAX;
 inline constexpr uint32_t kNoCorner = UINT32_MAX;
@@ -102,5 +103,8 @@ uint32_t cut_into_blocks(PathMesh& mesh, int32_t side);
 /// workers.
 Result<PathMesh> build_mesh(const WorldData& world, int32_t avatar_class, int32_t workers,
                             Context& context);
+
+/// The rectangles and portals of a finder. They live as long as it or a copy of it.
+const PathMesh& mesh_of(const PathFinder& finder);
 
 }  // namespace throng

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/access.h"
 #include "graph/surface_piece.h"
 #include "path/blocked_cells.h"
 #include "world/place.h"
@@ -75,7 +76,7 @@ std::array<double, 4> cut_line(const std::array<double, 4>& on, double from, dou
 }  // namespace
 
 ChangeId NodeChanges::add(Solid solid) {
-  const auto& classes = mesh_->nodes().data()->world.data()->summary.classes;
+  const auto& classes = data_of(data_of(mesh_->nodes())->world)->summary.classes;
   const double around = reach_of(classes[static_cast<size_t>(mesh_->avatar_class())]);
   Change change;
   std::vector<uint32_t> near;
@@ -115,7 +116,7 @@ bool NodeChanges::set_active(ChangeId id, bool active, bool remove) {
 // Blocked cells, and blocks within `around`.
 void NodeChanges::block_tiles(const Solid& solid, double around, Change& change,
                               std::vector<uint32_t>& near) const {
-  const WorldData& world = *mesh_->nodes().data()->world.data();
+  const WorldData& world = *data_of(data_of(mesh_->nodes())->world);
   const AvatarClass& avatar = world.summary.classes[static_cast<size_t>(mesh_->avatar_class())];
   const SquareRange tiles = tiles_near(world, solid.prism.corners, around);
   CellRows all;
@@ -169,7 +170,7 @@ uint8_t NodeChanges::finest_level(const NodeBlock& block) const {
 void NodeChanges::block_squares(const Solid& solid, uint32_t block, Change& change) const {
   const NodeBlock& whole = mesh_->blocks()[block];
   const NodeSurface& surface = mesh_->surface(block);
-  const auto& classes = mesh_->nodes().data()->world.data()->summary.classes;
+  const auto& classes = data_of(data_of(mesh_->nodes())->world)->summary.classes;
   const AvatarClass& avatar = classes[static_cast<size_t>(mesh_->avatar_class())];
   const bool climbs = avatar.climb_slope > 0;
   const uint8_t finest = finest_level(whole);
@@ -225,7 +226,7 @@ void NodeChanges::block_pieces(const Solid& solid, std::span<const uint32_t> nea
 
 bool NodeChanges::blocks_portal(const Solid& solid, const NodePortal& portal, double from,
                                 double to) const {
-  const auto& classes = mesh_->nodes().data()->world.data()->summary.classes;
+  const auto& classes = data_of(data_of(mesh_->nodes())->world)->summary.classes;
   const AvatarClass& avatar = classes[static_cast<size_t>(mesh_->avatar_class())];
   const bool climbs = avatar.climb_slope > 0;
   const double middle = (from + to) / 2;

@@ -12,7 +12,7 @@
 #include "graph/node_mesh.h"
 #include "path/block_squares.h"
 #include "path/solid.h"
-#include "throng/live_ground.h"
+#include "throng/path.h"
 #include "world/cell_blocks.h"
 
 /// Obstacles placed on a mesh of nodes since the bake.

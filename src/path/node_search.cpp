@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "core/access.h"
+
 // Hart, Nilsson, Raphael. A formal basis for the heuristic determination of minimum cost paths.
 // 1968. A path leads from the middle of one portal to the middle of the next, straight in the
 // parameters of their block; a piece is measured over its middle, so it is never shorter than the
@@ -20,7 +22,7 @@ constexpr double kShort = 1;  // Pieces up to here count as straight. [m]
 
 PieceCost::PieceCost(const NodeView& view, double slope_cost)
     : view_(&view), slope_cost_(slope_cost) {
-  const NodeBins& bins = view.mesh().nodes().data()->summary.bins;
+  const NodeBins& bins = data_of(view.mesh().nodes())->summary.bins;
   for (uint8_t code = 0; code < 16; ++code) {
     const double degrees = bins.inclination_of(code);
     // To 9 digits: the last bits of cos() differ between machines' libraries.

@@ -9,7 +9,6 @@
 #include "core/paged.h"
 #include "path/node_view.h"
 #include "throng/path.h"
-#include "throng/search_budget.h"
 
 /// A* over the portals between blocks of nodes.
 namespace throng {

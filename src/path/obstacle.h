@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "throng/ground_query.h"
+#include "throng/world.h"
 #include "world/ground.h"
 
 /// What blocks a class.

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/plan_point.h"
-#include "throng/math.h"
+#include "throng/base.h"
 
 /// Squares of the ground's plane against polygons and triangles: which cells obstacles block.
 namespace throng {

@@ -7,7 +7,7 @@
 
 #include "core/chunked_array.h"
 #include "path/mesh.h"
-#include "throng/search_budget.h"
+#include "throng/path.h"
 
 /// The shortest path over a mesh, by search over intervals.
 namespace throng {

@@ -8,10 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "throng/avatar_class.h"
-#include "throng/math.h"
-#include "throng/prism.h"
-#include "throng/result.h"
+#include "throng/avatar.h"
+#include "throng/base.h"
 
 /// A solid that is placed in a world at run time, and whether a body touches it.
 namespace throng {

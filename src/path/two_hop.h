@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "core/prefetch.h"
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/base.h"
 
 /// Two-hop labels of any graph: shortest paths by look-up.
 namespace throng {

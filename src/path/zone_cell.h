@@ -9,8 +9,7 @@
 #include "path/mesh.h"
 #include "path/two_hop.h"
 #include "path/zone_paths.h"
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/base.h"
 
 /// Overlay cells group zones ([PACS00]): paths inside one are looked up in labels of its entrances,
 /// paths between them in labels of boundary nodes, a few of the entrances of their borders.

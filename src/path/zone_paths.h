@@ -8,7 +8,7 @@
 
 #include "path/mesh.h"
 #include "path/sight.h"
-#include "throng/context.h"
+#include "throng/base.h"
 
 /// Paths inside one zone, between the entrances of its borders.
 namespace throng {

@@ -12,7 +12,7 @@
 #include "path/sight.h"
 #include "path/string_puller.h"
 #include "path/zone_cell.h"
-#include "throng/search_budget.h"
+#include "throng/path.h"
 
 /// Paths over large worlds: inside zones by their tables, inside overlay cells by labels of their
 /// entrances, between them by labels of their boundary nodes.

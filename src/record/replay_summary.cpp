@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/replay_summary.h"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
+
+#include "throng/recording.h"
 
 // Summary of a recording in two passes: the first finds storeys and bounds, the second counts.
 // Time: linear in the positions, times the lines.

@@ -10,9 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/access.h"
 #include "core/check_class.h"
 #include "core/disjoint_sets.h"
-#include "throng/walkable_surface.h"
+#include "throng/bake.h"
 
 // The legal cells of a class as polygons: runs of cells in rows, and runs that share a side are one
 // piece (disjoint sets). Each border is traced with the piece on its right (x to the right, z
@@ -161,7 +162,7 @@ class Tracer {
 Result<std::vector<WalkablePiece>> walkable_pieces(const World& world, int32_t avatar_class,
                                                    double lowest, double highest,
                                                    Context& context) {
-  if (world.data() == nullptr) return Error{Errc::kBadInput, "surface: the world is empty"};
+  if (data_of(world) == nullptr) return Error{Errc::kBadInput, "surface: the world is empty"};
   const WorldSummary summary = world.summary();
   if (auto ok = check_class(summary.classes, avatar_class, "surface"); !ok) return ok.error();
   if (auto ok = world.check_ground(); !ok) return ok.error();

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/walkable_surface.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/access.h"
 #include "core/check_class.h"
+#include "throng/bake.h"
 
 // The walkable surface of a class as triangles: a rectangle of legal cells becomes two of them.
 namespace throng {
@@ -129,7 +129,7 @@ void add_rect(const World& world, const WorldSummary& summary, uint32_t level,
 }  // namespace
 
 Result<Scene> walkable_surface(const World& world, int32_t avatar_class, Context& context) {
-  if (world.data() == nullptr) return Error{Errc::kBadInput, "surface: the world is empty"};
+  if (data_of(world) == nullptr) return Error{Errc::kBadInput, "surface: the world is empty"};
   const WorldSummary summary = world.summary();
   if (auto ok = check_class(summary.classes, avatar_class, "surface"); !ok) return ok.error();
   if (auto ok = world.check_ground(); !ok) return ok.error();

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/caacd_picture.h"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -12,6 +10,7 @@
 #include "render/canvas.h"
 #include "render/marks.h"
 #include "render/text.h"
+#include "throng/papers.h"
 
 // [CAACD] figure 9, in colours: the fill of an avatar shows its state.
 namespace throng::caacd {

@@ -9,7 +9,7 @@
 #include "render/canvas.h"
 #include "render/marks.h"
 #include "render/text.h"
-#include "throng/picture.h"
+#include "throng/papers.h"
 
 // Draws a slice as in [ML06] figures 9 and 10: darker is higher, the contrast stretched, the far
 // plane white. Cells become blocks of whole pixels, or share a pixel that shows the highest of

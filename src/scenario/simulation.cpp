@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/simulation.h"
-
 #include <algorithm>
 #include <bit>
 #include <string>
@@ -9,7 +7,8 @@
 #include "core/hash.h"
 #include "core/random.h"
 #include "scenario/simulation_state.h"
-#include "throng/nodes.h"
+#include "throng/scenario.h"
+#include "throng/surface.h"
 
 // A scenario as it runs: resolves its names to classes, targets and places, then steps the parts of
 // the state in a fixed order. Time of a step: that of the crowd, and linear in the avatars.
@@ -49,11 +48,11 @@ Result<Nodes> Simulation::State::nodes_for(const World& world, const Scenario& s
   if (!scenario.world.empty()) return Nodes::exist(world) ? Nodes::open(world) : Nodes();
   const Result<Scene> scene = load_scene(scenario, context);
   if (!scene) return scene.error();
-  return Nodes::make(world, *scene, {.workers = workers}, context);
+  return Nodes::create(world, *scene, {.workers = workers}, context);
 }
 
-Result<Simulation> Simulation::make(const World& world, const Scenario& scenario, int32_t workers,
-                                    Context& context) {
+Result<Simulation> Simulation::create(const World& world, const Scenario& scenario, int32_t workers,
+                                      Context& context) {
   auto nodes = State::nodes_for(world, scenario, workers, context);
   if (!nodes) return nodes.error();
   auto crowd = Crowd::create(world, {.dt = scenario.dt,

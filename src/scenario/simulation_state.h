@@ -13,7 +13,7 @@
 #include "scenario/density_draw.h"
 #include "scenario/door_queue.h"
 #include "scenario/spawn_times.h"
-#include "throng/simulation.h"
+#include "throng/scenario.h"
 
 /// The state of a simulation.
 namespace throng {

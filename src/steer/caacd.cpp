@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/caacd.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
+
+#include "throng/papers.h"
 
 // [CAACD] equations 1 to 15, one function for each step that has a meaning of its own. What the
 // paper leaves open, and the measurements that decided it: docs/design/007-caacd.md. The greatest

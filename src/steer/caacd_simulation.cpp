@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/hash.h"
-#include "throng/caacd_experiment.h"
+#include "throng/papers.h"
 
 // One run of [CAACD] section V: determination, avoidance and path amendment of section III, all
 // avatars at once, frame by frame. Time of a frame: the square of the bodies.

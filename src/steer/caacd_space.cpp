@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/random.h"
-#include "throng/caacd_experiment.h"
+#include "throng/papers.h"
 
 // Random spaces for [CAACD] section V: a position is drawn again until it is free.
 namespace throng::caacd {

@@ -11,7 +11,7 @@
 
 #include "core/hash.h"
 #include "core/parallel.h"
-#include "throng/caacd_experiment.h"
+#include "throng/papers.h"
 
 // Many runs of [CAACD] section V in parallel: each run writes its own slot; sums are in order.
 namespace throng::caacd {

@@ -6,8 +6,7 @@
 #include <utility>
 
 #include "core/stopwatch.h"
-#include "throng/simulation.h"
-#include "throng/trial.h"
+#include "throng/scenario.h"
 #include "validate/statistics.h"
 
 // Runs the scenario of a trial and measures after every step. Cost of a step: its avatars times the
@@ -294,7 +293,7 @@ Result<ValidationResult> run_trial(const Trial& trial, const ValidationConfig& c
   if (config.model != SteeringModel::kSampled) scenario.steering = config.model;
   const auto world = open_world(scenario, context);
   if (!world) return world.error();
-  auto simulation = Simulation::make(*world, scenario, config.workers, context);
+  auto simulation = Simulation::create(*world, scenario, config.workers, context);
   if (!simulation) return simulation.error();
   Observer observer(trial);
   observer.observe(*simulation, 0);

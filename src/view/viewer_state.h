@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "throng/ground_query.h"
+#include "throng/world.h"
 #include "throng_view/viewer.h"
 #include "view/camera_rig.h"
 #include "view/ground_pick.h"

@@ -164,7 +164,7 @@ std::vector<std::vector<uint32_t>> group_levels(const WorldData& world,
 }  // namespace
 
 std::vector<int32_t> World::storeys() const {
-  const WorldData& world = *data_;
+  const WorldData& world = *state_;
   std::vector<LevelInfo> levels(world.level_count);
   double max_step = 0;
   for (const AvatarClass& avatar : world.summary.classes)

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/slices.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "core/random.h"
 #include "naive_columns.h"
 #include "naive_slices.h"
+#include "throng/papers.h"
 
 namespace throng {
 namespace {

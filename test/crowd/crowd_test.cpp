@@ -12,7 +12,7 @@
 #include "crowds.h"
 #include "simd_targets.h"
 #include "throng/bake.h"
-#include "throng/cells.h"
+#include "throng/scene.h"
 #include "worlds.h"
 
 namespace throng {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "baked.h"
+#include "core/access.h"
 #include "core/hash.h"
 #include "core/random.h"
 #include "crowd/stride_ground.h"
@@ -47,7 +48,7 @@ struct Fixture {
 
   explicit Fixture(World of)
       : world(std::move(of)),
-        ground(*CrowdGround::make(*world.data(), 0, kStep)),
+        ground(*CrowdGround::make(*data_of(world), 0, kStep)),
         obstacle_set(world, world.summary().classes.size()) {
     obstacle_set.open_class(0, ground);
   }
@@ -89,7 +90,7 @@ TEST(ObstacleSet, BlocksTheCellsOnWhichABodyCouldTouchAndFewMore) {
   uint64_t blocked = 0, left = 0;
   for (const Scene& scene : {worlds::two_floors(), worlds::ramp(20, 8), worlds::flat(14)}) {
     Fixture f(test::bake(scene, 0.1));
-    const CrowdGround baked = *CrowdGround::make(*f.world.data(), 0, kStep);
+    const CrowdGround baked = *CrowdGround::make(*data_of(f.world), 0, kStep);
     const AvatarClass avatar = f.world.summary().classes[0];
     const double bottom = body_bottom(avatar), cell = f.world.summary().cell;
     const Vec3d origin = f.world.summary().origin;
@@ -161,7 +162,7 @@ TEST(ObstacleSet, FreesToTheBitWhatItBlocked) {
     }
     EXPECT_NE(hash_of(f.ground), baked);
     // What is left must equal what the same obstacles leave of a new ground.
-    CrowdGround rebuilt = *CrowdGround::make(*f.world.data(), 0, kStep);
+    CrowdGround rebuilt = *CrowdGround::make(*data_of(f.world), 0, kStep);
     ObstacleSet again(f.world, f.world.summary().classes.size());
     again.open_class(0, rebuilt);
     for (const uint32_t slot : slots) {
@@ -213,17 +214,17 @@ TEST(ObstacleSet, FastMovesAreThoseOfThePlainGround) {
     Fixture f(test::bake(test::builtin({.name = name, .seed = 3}), 0.1));
     for (int i = 0; i < 60; ++i) f.put_up(f.random_prism());
     const StrideGround stride(f.ground, kStep);
-    const PlainGround plain{{*f.world.data(), 0}, f.ground};
+    const PlainGround plain{{*data_of(f.world), 0}, f.ground};
     for (int i = 0; i < 30000; ++i) {
       const Place place = f.world.random_place(0, 31, static_cast<uint64_t>(i));
-      const auto from = *ground_point(*f.world.data(), place);
+      const auto from = *ground_point(*data_of(f.world), place);
       uint32_t level = place.level1 - 1;
       if (!f.ground.is_legal(level, from.cell_x() & 63, from.cell_z() & 63)) continue;
       const auto offset = [&] { return static_cast<int64_t>((f.draw() * 8 - 4) * kUnitsPerCell); };
       const GroundPoint to{from.x + offset(), from.z + offset()};
       StrideGround::Landing landing;
       const bool moved = stride.move(level, f.ground.feet(level, from), from, to, landing);
-      GroundLevel on = ground_level(*f.world.data(), level, 0);
+      GroundLevel on = ground_level(*data_of(f.world), level, 0);
       const bool expected = walk(plain, on, from, to, kStep);
       ASSERT_EQ(moved, expected) << name << ' ' << i;
       ++moves;

@@ -17,7 +17,7 @@
 #include "import/ply.h"
 #include "import/scene_config.h"
 #include "scratch_folder.h"
-#include "throng/avatar_class.h"
+#include "throng/avatar.h"
 #include "tiny_bsp.h"
 
 // Every parser on damaged files: cut at every byte, bytes changed at random. The tests assert

@@ -17,7 +17,6 @@
 #include "import/name_colour.h"
 #include "import/texture_reader.h"
 #include "scratch_folder.h"
-#include "throng/builtin_worlds.h"
 #include "throng/scene.h"
 
 namespace throng {
@@ -418,7 +417,7 @@ TEST(Materials, TwoModelsKeepTheirOwn) {
 }
 
 TEST(Materials, NamesSayWhatBuiltInWorldsAndCitiesAreMadeOf) {
-  const auto garage = make_builtin_world({.name = "garage"});
+  const auto garage = create_builtin_world({.name = "garage"});
   ASSERT_TRUE(garage);
   for (const ScenePart& part : garage->parts) EXPECT_NE(part.material1, 0U) << part.material;
   const auto roof = name_colour("RoofSurface");

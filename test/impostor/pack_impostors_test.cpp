@@ -12,7 +12,7 @@
 
 #include "core/random.h"
 #include "simd_targets.h"
-#include "throng/impostor_pack.h"
+#include "throng/impostor.h"
 
 namespace throng {
 namespace {

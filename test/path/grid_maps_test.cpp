@@ -9,8 +9,8 @@
 #include <string>
 
 #include "throng/bake.h"
-#include "throng/cells.h"
 #include "throng/path.h"
+#include "throng/scene.h"
 
 // Moving AI's grid maps with all queries of their scenarios: paths that are looked up against those
 // of the search.
@@ -21,7 +21,7 @@ class GridMaps : public testing::TestWithParam<const char*> {};
 
 PathFinder finder(const World& world, const PathConfig& config) {
   Context context;
-  auto made = PathFinder::make(world, config, context);
+  auto made = PathFinder::create(world, config, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }

@@ -11,7 +11,6 @@
 #include "path/portal_search.h"
 #include "path/search.h"
 #include "throng/crowd.h"
-#include "throng/live_ground.h"
 #include "throng/path.h"
 
 // Memory budgets of searches.
@@ -44,7 +43,7 @@ const World& maze() {
 
 PathFinder finder() {
   Context context;
-  auto made = PathFinder::make(maze(), {}, context);
+  auto made = PathFinder::create(maze(), {}, context);
   EXPECT_TRUE(made);
   return *std::move(made);
 }
@@ -93,7 +92,7 @@ TEST(SearchMemory, APathIsTheSameWhateverMemoryIsLeftAsLongAsItIsEnough) {
 
 TEST(SearchMemory, WhatIsAllocatedKeepsToTheBudget) {
   const PathFinder paths = finder();
-  const PathMesh& mesh = paths.mesh();
+  const PathMesh& mesh = mesh_of(paths);
   PathSearch search;
   PortalSearch portals;
   std::vector<uint32_t> corners;
@@ -121,7 +120,7 @@ TEST(SearchMemory, WhatIsAllocatedKeepsToTheBudget) {
 }
 
 TEST(SearchMemory, LiveGroundSaysThatItHadTooLittle) {
-  auto ground = LiveGround::make(maze(), {});
+  auto ground = LiveGround::create(maze(), {});
   ASSERT_TRUE(ground);
   Path path, whole;
   uint64_t given_up = 0;

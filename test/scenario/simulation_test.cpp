@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/simulation.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,8 @@
 #include <set>
 #include <string>
 #include <vector>
+
+#include "throng/scenario.h"
 
 namespace throng {
 namespace {
@@ -48,7 +48,7 @@ Hall read(const std::string& text) {
 
 Simulation made(const Hall& run, int32_t workers = 2) {
   Context context;
-  auto simulation = Simulation::make(run.world, run.scenario, workers, context);
+  auto simulation = Simulation::create(run.world, run.scenario, workers, context);
   EXPECT_TRUE(simulation) << simulation.error().message;
   return std::move(*simulation);
 }
@@ -484,7 +484,7 @@ journey = "across"
   Context context;
   const auto world = open_world(*scenario, context);
   EXPECT_TRUE(world) << world.error().message;
-  auto simulation = Simulation::make(*world, *scenario, 2, context);
+  auto simulation = Simulation::create(*world, *scenario, 2, context);
   EXPECT_TRUE(simulation) << simulation.error().message;
   return std::move(*simulation);
 }
@@ -560,7 +560,7 @@ TEST(Simulation, names_what_is_wrong) {
   const auto why = [](const std::string& text) {
     const Hall run = read(text);
     Context context;
-    const auto simulation = Simulation::make(run.world, run.scenario, 1, context);
+    const auto simulation = Simulation::create(run.world, run.scenario, 1, context);
     return simulation ? std::string() : simulation.error().message;
   };
   EXPECT_NE(why("[[area]]\nname = \"off\"\nbox = [30, 0, 31, 1]\n[[source]]\nname = \"s\"\narea = "

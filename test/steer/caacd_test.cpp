@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/caacd.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "throng/papers.h"
 
 // Each equation of [CAACD] against values worked out by hand, then what must hold for any input.
 namespace throng::caacd {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "throng/cells.h"
-#include "throng/math.h"
+#include "throng/base.h"
+#include "throng/scene.h"
 
 /// Short any-angle paths between voxels, by brute force: independent of octrees and air boxes.
 namespace throng::test {

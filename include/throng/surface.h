@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -10,14 +11,15 @@
 #include <vector>
 
 #include "throng/base.h"
-#include "throng/context.h"
-#include "throng/math.h"
-#include "throng/result.h"
 #include "throng/world.h"
 
-/// Nodes: where bodies can stand on Bezier patches, overhangs included, and on level tiles, as one
-/// graph for all avatar classes. Source: [PACS00] 1.2.3; docs/design/006-nodes.md.
+/// Surfaces: the nodes on which bodies stand on Bezier patches, overhangs included, and on level
+/// tiles.
 namespace throng {
+
+// ----
+// Nodes: where bodies can stand on Bezier patches, overhangs included, and on level tiles, as one
+// graph for all avatar classes. Source: [PACS00] 1.2.3; docs/design/006-nodes.md.
 
 struct Scene;
 struct NodeData;  // Internal: zones of nodes.
@@ -46,7 +48,7 @@ struct NodeOffMeshLink {
   bool two_way = false;
 };
 
-/// Settings for Nodes::make.
+/// Settings for Nodes::create.
 struct NodeConfig {
   /// Sub-patches of Bezier patches are halved down to this size. [m, 0.05 to 100]
   double size = 1.0;
@@ -163,20 +165,21 @@ struct NodePlace {
 class THRONG_API Nodes {
  public:
   Nodes() = default;
-  explicit Nodes(std::shared_ptr<const NodeData> data) : data_(std::move(data)) {}
+  /// False for a handle without nodes, made by default.
+  [[nodiscard]] explicit operator bool() const { return state_ != nullptr; }
 
   /// Makes the nodes of a world from the scene that it was baked from: of its Bezier patches and,
   /// where there are triangles of no patch, of its level tiles. Zones of the world's folder
   /// (BakeConfig::carry_nodes) whose nodes are up to date are reused. Fails with kBadConfig,
   /// kBadFile (a zone cannot be used), kLimit or kCancelled.
-  [[nodiscard]] static Result<Nodes> make(const World& world, const Scene& scene,
-                                          const NodeConfig& config, Context& context);
+  [[nodiscard]] static Result<Nodes> create(const World& world, const Scene& scene,
+                                            const NodeConfig& config, Context& context);
   /// The same for a world that was opened from its folder, into which the nodes are written batch
   /// by batch, so that only one batch is in memory. They replace those in the folder once all are
   /// made; if the call is cancelled or killed before, the next call reuses what was made. Also
   /// fails with kIo.
-  [[nodiscard]] static Result<Nodes> make_in_folder(const World& world, const Scene& scene,
-                                                    const NodeConfig& config, Context& context);
+  [[nodiscard]] static Result<Nodes> create_in_folder(const World& world, const Scene& scene,
+                                                      const NodeConfig& config, Context& context);
   /// Opens the nodes in a world's folder. Fails with kBadFile (by name) or kIo.
   [[nodiscard]] static Result<Nodes> open(const std::string& world_path);
   /// Have nodes been written into the folder that a world was opened from?
@@ -217,10 +220,23 @@ class THRONG_API Nodes {
   [[nodiscard]] std::vector<NodeComponent> components(
       int32_t avatar_class, std::vector<uint32_t>* of_node = nullptr) const;
 
-  [[nodiscard]] const std::shared_ptr<const NodeData>& data() const { return data_; }
-
  private:
-  std::shared_ptr<const NodeData> data_;
+  friend struct Access;
+  explicit Nodes(std::shared_ptr<const NodeData> state) : state_(std::move(state)) {}
+  std::shared_ptr<const NodeData> state_;
 };
+
+/// Calls visit(s, t, count) for each run of cells in a row of a partial node (NodeInfo::cells,
+/// Nodes::partial_cells): `count` cells along s from (s, t) of its block of 8 x 8 on.
+template <class Visit>
+void for_partial_runs(uint64_t cells, Visit visit) {
+  for (int32_t t = 0; t < 8; ++t) {
+    for (auto row = static_cast<uint32_t>(cells >> (8 * t) & 0xff); row != 0;) {
+      const int32_t s = std::countr_zero(row), count = std::countr_one(row >> s);
+      visit(s, t, count);
+      row &= ~(((1u << count) - 1) << s);
+    }
+  }
+}
 
 }  // namespace throng

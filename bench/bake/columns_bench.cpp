@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "bake/free_spans.h"
+#include "bake/columns/free_spans.h"
 #include "throng/scene.h"
 
 namespace {

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "bake/finish_bake.h"
-#include "bake/graph_bake.h"
-#include "bake/world_bake.h"
-#include "bake/world_folder.h"
-#include "bake/zone_bake.h"
+#include "bake/folder/finish_bake.h"
+#include "bake/folder/graph_bake.h"
+#include "bake/folder/world_bake.h"
+#include "bake/folder/world_folder.h"
+#include "bake/folder/zone_bake.h"
 #include "core/access.h"
 #include "core/parallel.h"
 #include "core/side_by_side.h"

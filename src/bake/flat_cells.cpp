@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/layer_kernels.h"
-#include "bake/zone_builder.h"
+#include "bake/folder/zone_builder.h"
+#include "bake/layers/layer_kernels.h"
 #include "core/access.h"
 #include "core/hash.h"
 #include "core/parallel.h"

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <optional>
 
-#include "bake/finish_bake.h"
-#include "bake/graph_bake.h"
-#include "bake/world_bake.h"
-#include "bake/world_folder.h"
+#include "bake/folder/finish_bake.h"
+#include "bake/folder/graph_bake.h"
+#include "bake/folder/world_bake.h"
+#include "bake/folder/world_folder.h"
 #include "cluster/job_assignment.h"
 #include "core/stopwatch.h"
 #include "throng/bake.h"

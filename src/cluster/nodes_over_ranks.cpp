@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "bake/node_bake.h"
+#include "bake/surface/node_bake.h"
 #include "cluster/job_assignment.h"
 #include "core/access.h"
 #include "core/stopwatch.h"

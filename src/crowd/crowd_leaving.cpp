@@ -7,7 +7,7 @@
 
 #include "core/access.h"
 #include "crowd/crowd_state.h"
-#include "crowd/leaving_ground.h"
+#include "crowd/ground/leaving_ground.h"
 #include "throng/crowd.h"
 #include "world/place.h"
 

@@ -6,7 +6,7 @@
 #include "core/access.h"
 #include "core/parallel.h"
 #include "crowd/crowd_state.h"
-#include "path/blocked_cells.h"
+#include "path/edits/blocked_cells.h"
 #include "throng/crowd.h"
 
 // Obstacles that are added, moved and removed while a crowd walks. Between two steps all avatars

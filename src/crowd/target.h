@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "crowd/body.h"
-#include "crowd/crowd_ground.h"
+#include "crowd/ground/crowd_ground.h"
+#include "crowd/walk/body.h"
 #include "throng/base.h"
 #include "throng/path.h"
 #include "throng/world.h"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/stopwatch.h"
-#include "path/flow_points.h"
+#include "path/edits/flow_points.h"
 #include "throng/path.h"
 
 // A FlowField is a table of FlowPoints with a ground of its own.

@@ -10,8 +10,8 @@
 #include "core/access.h"
 #include "core/check_class.h"
 #include "core/random.h"
-#include "path/circle_flood.h"
-#include "path/obstacle.h"
+#include "path/edits/obstacle.h"
+#include "path/ground/circle_flood.h"
 #include "throng/world.h"
 
 // Queries of the ground around a place, cell by cell: the nearest place, rays, slides, walls,

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/node_drops.h"
+#include "bake/surface/node_drops.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "bake/columns.h"
+#include "bake/columns/columns.h"
 #include "core/random.h"
 #include "naive_columns.h"
 #include "naive_slices.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/crowd_engine.h"
+#include "crowd/walk/crowd_engine.h"
 
 #include <gtest/gtest.h>
 

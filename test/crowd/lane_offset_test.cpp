@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/lane_offset.h"
+#include "crowd/walk/lane_offset.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/obstacle_set.h"
+#include "crowd/obstacles/obstacle_set.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "core/access.h"
 #include "core/hash.h"
 #include "core/random.h"
-#include "crowd/stride_ground.h"
+#include "crowd/ground/stride_ground.h"
 #include "world/place.h"
 #include "worlds.h"
 

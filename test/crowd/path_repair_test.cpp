@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/path_repair.h"
+#include "crowd/obstacles/path_repair.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "baked.h"
 #include "core/access.h"
 #include "core/random.h"
-#include "crowd/obstacle_set.h"
+#include "crowd/obstacles/obstacle_set.h"
 #include "world/place.h"
 #include "worlds.h"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/stride_ground.h"
+#include "crowd/ground/stride_ground.h"
 
 #include <gtest/gtest.h>
 

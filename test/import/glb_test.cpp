@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "import/glb.h"
+#include "import/formats/glb.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "core/random.h"
 #include "core/read_file.h"
-#include "import/assimp_reader.h"
+#include "import/formats/assimp_reader.h"
 #include "scratch_folder.h"
 #include "throng/scene.h"
 

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "core/read_file.h"
-#include "import/glb.h"
-#include "import/mtl.h"
-#include "import/name_colour.h"
-#include "import/texture_reader.h"
+#include "import/formats/glb.h"
+#include "import/formats/mtl.h"
+#include "import/formats/texture_reader.h"
+#include "import/raw/name_colour.h"
 #include "scratch_folder.h"
 #include "throng/scene.h"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "import/plan.h"
+#include "import/formats/plan.h"
 
 #include <gtest/gtest.h>
 

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "core/read_file.h"
-#include "import/glb.h"
-#include "import/texture_reader.h"
+#include "import/formats/glb.h"
+#include "import/formats/texture_reader.h"
 #include "throng/scene.h"
 
 namespace throng {

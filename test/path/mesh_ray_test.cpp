@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/mesh_ray.h"
+#include "path/ground/mesh_ray.h"
 
 #include <gtest/gtest.h>
 

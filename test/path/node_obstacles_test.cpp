@@ -7,9 +7,9 @@
 
 #include "baked.h"
 #include "core/random.h"
-#include "path/node_changes.h"
-#include "path/node_view.h"
-#include "path/overlay_search.h"
+#include "path/overlay/overlay_search.h"
+#include "path/surface/node_changes.h"
+#include "path/surface/node_view.h"
 #include "prism_shell.h"
 #include "throng/path.h"
 #include "throng/verify.h"

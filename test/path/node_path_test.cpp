@@ -12,9 +12,9 @@
 #include "core/random.h"
 #include "graph/node_mesh.h"
 #include "patch_nets.h"
-#include "path/block_squares.h"
-#include "path/node_parts.h"
-#include "path/node_search.h"
+#include "path/surface/block_squares.h"
+#include "path/surface/node_parts.h"
+#include "path/surface/node_search.h"
 #include "throng/path.h"
 #include "throng/verify.h"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/overlay.h"
+#include "path/overlay/overlay.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 
 #include "baked.h"
 #include "core/random.h"
-#include "path/node_parts.h"
-#include "path/overlay_search.h"
+#include "path/overlay/overlay_search.h"
+#include "path/surface/node_parts.h"
 #include "throng/path.h"
 
 // The overlay of a mesh of nodes, against a search of all crossings.

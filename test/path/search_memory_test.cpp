@@ -7,9 +7,9 @@
 
 #include "baked.h"
 #include "core/random.h"
-#include "path/mesh.h"
-#include "path/portal_search.h"
-#include "path/search.h"
+#include "path/ground/mesh.h"
+#include "path/ground/portal_search.h"
+#include "path/ground/search.h"
 #include "throng/crowd.h"
 #include "throng/path.h"
 

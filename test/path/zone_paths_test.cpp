@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/zone_paths.h"
+#include "path/overlay/zone_paths.h"
 
 #include <gtest/gtest.h>
 

@@ -264,9 +264,11 @@ void add_run(CLI::App& parser, Session& session) {
       ->type_name("CLASS:N");
   command->add_option("--radius", options->crowd.radius,
                       "Radius of avatars with goals, 0 for the class's own [m]");
-  command->add_flag("--labels", options->crowd.config.labels,
-                    "Label corners: faster paths, for small worlds");
-  command->add_flag("--zones", options->crowd.config.zones, "Paths by zones: for large worlds");
+  PathSpeedup& speedup = options->crowd.config.speedup;
+  CLI::Option* labels = add_speedup(*command, "--labels", PathSpeedup::kLabels, speedup,
+                                    "Label corners: faster paths, for small worlds");
+  add_speedup(*command, "--zones", PathSpeedup::kZones, speedup, "Paths by zones: for large worlds")
+      ->excludes(labels);
   add_search_memory(*command, options->crowd.config.search_bytes);
   add_model(*command, options->crowd.config.model);
   command->add_option("--trajectories", options->sinks.trajectories, "Write positions to this file")

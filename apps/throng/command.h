@@ -11,6 +11,7 @@
 
 #include "throng/avatar.h"
 #include "throng/base.h"
+#include "throng/path.h"
 #include "throng/surface.h"
 #include "throng/world.h"
 
@@ -52,6 +53,9 @@ CLI::App* add_command(CLI::App& parser, Session& session, const std::string& nam
 
 /// The option --model.
 void add_model(CLI::App& command, SteeringModel& model);
+/// A flag that chooses how paths are found faster.
+CLI::Option* add_speedup(CLI::App& command, const std::string& flag, PathSpeedup chosen,
+                         PathSpeedup& speedup, const std::string& text);
 /// --search-memory, in MiB.
 void add_search_memory(CLI::App& command, uint64_t& bytes);
 

@@ -87,8 +87,8 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
   run.radius = settings.at("radius");
   run.config.dt = settings.at("dt");
   run.config.seed = settings.at("seed");
-  run.config.labels = settings.at("labels");
-  run.config.zones = settings.at("zones");
+  if (settings.at("labels")) run.config.speedup = PathSpeedup::kLabels;
+  if (settings.at("zones")) run.config.speedup = PathSpeedup::kZones;
   run.config.search_bytes = settings.value("search_bytes", run.config.search_bytes);
   run.config.workers = workers;
   const auto model = find_steering_model(settings.value("model", name_of(run.config.model)));
@@ -156,13 +156,20 @@ Json wanderers_settings(const WanderConfig& config, const std::string& class_nam
 Json crowd_settings(const CrowdRun& run) {
   Json also = Json::array();
   for (const auto& [name, count] : run.also) also.push_back(Json::array({name, count}));
-  return {{"avatars", run.avatars},       {"also", also},
-          {"class", run.class_name},      {"goals", run.goals},
-          {"goals_text", run.goals_text}, {"near", run.near},
-          {"dt", run.config.dt},          {"speed", run.speed},
-          {"radius", run.radius},         {"labels", run.config.labels},
-          {"zones", run.config.zones},    {"search_bytes", run.config.search_bytes},
-          {"seed", run.config.seed},      {"model", name_of(run.config.model)}};
+  return {{"avatars", run.avatars},
+          {"also", also},
+          {"class", run.class_name},
+          {"goals", run.goals},
+          {"goals_text", run.goals_text},
+          {"near", run.near},
+          {"dt", run.config.dt},
+          {"speed", run.speed},
+          {"radius", run.radius},
+          {"labels", run.config.speedup == PathSpeedup::kLabels},
+          {"zones", run.config.speedup == PathSpeedup::kZones},
+          {"search_bytes", run.config.search_bytes},
+          {"seed", run.config.seed},
+          {"model", name_of(run.config.model)}};
 }
 
 Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t workers) {

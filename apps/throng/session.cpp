@@ -204,6 +204,12 @@ CLI::App* add_command(CLI::App& parser, Session& session, const std::string& nam
   return command;
 }
 
+CLI::Option* add_speedup(CLI::App& command, const std::string& flag, PathSpeedup chosen,
+                         PathSpeedup& speedup, const std::string& text) {
+  return command.add_flag_callback(
+      flag, [chosen, &speedup] { speedup = chosen; }, text);
+}
+
 void add_search_memory(CLI::App& command, uint64_t& bytes) {
   command
       .add_option_function<double>(

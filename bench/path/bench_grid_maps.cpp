@@ -106,7 +106,8 @@ Json measure(const Options& options) {
   const auto world = bake_flat_cells(*cells, 1);
   if (!world) stop(world.error().message);
   Context context;
-  auto finder = PathFinder::create(*world, {.labels = options.labels}, context);
+  auto finder = PathFinder::create(
+      *world, {.speedup = options.labels ? PathSpeedup::kLabels : PathSpeedup::kNone}, context);
   if (!finder) stop(finder.error().message);
   std::vector<Query> queries = read_scenario(options.scenario);
   std::vector<std::pair<Place, Place>> ends;

@@ -211,7 +211,8 @@ class Ours {
 
  private:
   static Crowd make(const World& world, const Options& o) {
-    auto crowd = Crowd::create(world, {.dt = kDt, .seed = o.seed, .workers = 1, .labels = true});
+    auto crowd = Crowd::create(
+        world, {.dt = kDt, .seed = o.seed, .workers = 1, .speedup = PathSpeedup::kLabels});
     if (!crowd) stop(crowd.error().message);
     return std::move(*crowd);
   }

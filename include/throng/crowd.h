@@ -110,8 +110,8 @@ struct CrowdConfig {
   /// How avatars on foot avoid each other. `reaction` and `deadlock_avoidance` apply to kSampled
   /// alone: other models decide in each step.
   SteeringModel model = SteeringModel::kSampled;
-  bool labels = false;  ///< PathConfig::labels: for small worlds and many long paths.
-  bool zones = false;   ///< PathConfig::zones: for large worlds and long paths.
+  /// Of finding paths: kLabels for small worlds and many long paths, kZones for large worlds.
+  PathSpeedup speedup = PathSpeedup::kNone;
   /// SearchBudget::max_bytes of each search for a path. As many searches as there are workers may
   /// run at the same time. [bytes, >= 2^20]
   uint64_t search_bytes = SearchBudget::kDefaultBytes;

@@ -73,21 +73,26 @@ struct SearchBudget {
 // ----
 // Shortest paths for a class over the ground of a baked world.
 
+/// What a PathFinder prepares so that queries are faster.
+enum class PathSpeedup : uint8_t {
+  kNone,  ///< Nothing: queries search.
+  /// Hub labels of all corners: queries look paths up and do not search. For many queries. Labels
+  /// take time and memory when the finder is made: about 10 kB per square metre of small worlds, 1
+  /// kB of large ones (over some 2^23 cells). In large worlds a path may pass an obstacle on the
+  /// wrong side; it is provably at most 2 % longer than the shortest (0.02 % on average over a
+  /// city).
+  kLabels,
+  /// Paths inside each zone between the entrances of its borders, and labels of these entrances:
+  /// for long paths over large worlds. A path between zones that do not touch is then the shortest
+  /// that passes every obstacle on the same side, but it may pass one on the wrong side.
+  kZones,
+};
+
 /// Settings for PathFinder::create.
 struct PathConfig {
   int32_t avatar_class = 0;
   int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores.
-  /// Makes hub labels of all corners: queries then look paths up and do not search. For many
-  /// queries. Labels take time and memory when the finder is made: about 10 kB per square metre of
-  /// small worlds, 1 kB of large ones (over some 2^23 cells). In large worlds a path may pass an
-  /// obstacle on the wrong side; it is provably at most 2 % longer than the shortest (0.02 % on
-  /// average over a city).
-  bool labels = false;
-  /// Makes paths inside each zone between the entrances of its borders, and labels of these
-  /// entrances: for long paths over large worlds. A path between zones that do not touch is then
-  /// the shortest that passes every obstacle on the same side, but it may pass one on the wrong
-  /// side.
-  bool zones = false;
+  PathSpeedup speedup = PathSpeedup::kNone;
 };
 
 /// How a search ended.
@@ -118,8 +123,8 @@ struct PathSummary {
   uint64_t rectangles = 0;
   uint64_t portals = 0;
   uint64_t corners = 0;
-  uint64_t entrances = 0;  ///< Of zones; 0 without `zones`.
-  uint64_t labels = 0;     ///< 0 without `labels`.
+  uint64_t entrances = 0;  ///< Of zones; 0 without kZones.
+  uint64_t labels = 0;     ///< 0 without kLabels.
   uint64_t bytes = 0;      ///< Of all.
   double seconds = 0;      ///< To make them.
 };
@@ -129,7 +134,7 @@ struct PathSummary {
 class THRONG_API PathFinder {
  public:
   /// Makes a finder. Reads every zone once. Fails with kBadConfig (no such class, or zones with too
-  /// many corners for `zones`), kBadFile (a zone cannot be used) or kCancelled.
+  /// many corners for kZones), kBadFile (a zone cannot be used) or kCancelled.
   [[nodiscard]] static Result<PathFinder> create(const World& world, const PathConfig& config,
                                                  Context& context);
   PathFinder(const PathFinder& other);

@@ -170,7 +170,7 @@ struct Scenario {
   double seconds = 60;  ///< Duration. [s]
   double dt = 0.1;      ///< [s]
   uint64_t seed = 1;
-  bool labels = false, zones = false;                   ///< As in CrowdConfig.
+  PathSpeedup paths = PathSpeedup::kNone;               ///< CrowdConfig::speedup.
   uint64_t search_bytes = SearchBudget::kDefaultBytes;  ///< As in CrowdConfig.
   SteeringModel steering = SteeringModel::kSampled;     ///< CrowdConfig::model.
 

@@ -99,7 +99,7 @@ struct CrowdStart {
   double near = 60;         ///< Largest distance of goals along X and Z, 0: anywhere. [m, >= 0]
   double dt = 0.1;          ///< Length of a step. [s, 0.01 to 0.5]
   uint64_t seed = 1;
-  bool zones = false;  ///< Paths are searched zone by zone: for large worlds.
+  PathSpeedup speedup = PathSpeedup::kNone;  ///< CrowdConfig::speedup.
   /// Only what the eye can see within `sight`, and a band around it, is populated and simulated.
   /// The density is that of `avatars` spread over all ground that is reachable from below the eye.
   /// No avatar appears or disappears in sight. All are of the class with the largest share.

@@ -72,7 +72,6 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (!(config.no_progress_after >= 0 && config.no_progress_after <= 1e6)) {
     return bad_config("stuck_after must be 0 to 1000000 s");
   }
-  if (config.labels && config.zones) return bad_config("choose labels or zones, not both");
   if (data_of(config.nodes) != nullptr && !is_same_world(config.nodes, world)) {
     return bad_config("the nodes are of another world");
   }
@@ -146,12 +145,9 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   made->ground = std::move(*ground);
   const bool over_nodes = is_climber_class(number);
   if (config.routing == Routing::kPaths && !over_nodes) {
-    auto finder = PathFinder::create(world,
-                                     {.avatar_class = number,
-                                      .workers = config.workers,
-                                      .labels = config.labels,
-                                      .zones = config.zones},
-                                     context);
+    auto finder = PathFinder::create(
+        world, {.avatar_class = number, .workers = config.workers, .speedup = config.speedup},
+        context);
     if (!finder) return finder.error();
     made->finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
     made->paths.resize(made->finders.size());

@@ -79,8 +79,6 @@ Result<PathFinder> PathFinder::create(const World& world, const PathConfig& conf
   if (data_of(world) == nullptr) return Error{Errc::kBadInput, "path: the world is empty"};
   if (auto ok = check_class(data_of(world)->summary.classes, config.avatar_class, "path"); !ok)
     return ok.error();
-  if (config.labels && config.zones)
-    return Error{Errc::kBadConfig, "path: choose labels or zones, not both"};
   if (config.workers < 0) return Error{Errc::kBadConfig, "path: workers must be 0 or more"};
   const auto start = std::chrono::steady_clock::now();
   if (auto ok = world.check_ground(); !ok) return ok.error();
@@ -97,14 +95,14 @@ Result<PathFinder> PathFinder::create(const World& world, const PathConfig& conf
              0,
              shared->mesh.bytes(),
              0};
-  if (config.labels) {
+  if (config.speedup == PathSpeedup::kLabels) {
     auto labels = build_labels(shared->mesh, config.workers, context);
     if (!labels) return labels.error();
     shared->labels = std::move(*labels);
     summary.labels = shared->labels->labels.size();
     summary.bytes += shared->labels->bytes();
   }
-  if (config.zones) {
+  if (config.speedup == PathSpeedup::kZones) {
     auto zones = build_zone_graph(*data_of(world), shared->mesh, config.workers, context);
     if (!zones) return zones.error();
     shared->zones = std::move(*zones);

@@ -327,8 +327,8 @@ void File::read_top() {
       node != nullptr && paths != "corners" && paths != "labels" && paths != "zones") {
     r.fail(*node, fmt::format("{} must be \"corners\", \"labels\" or \"zones\"", paths_key));
   }
-  out_.labels = paths == "labels";
-  out_.zones = paths == "zones";
+  if (paths == "labels") out_.paths = PathSpeedup::kLabels;
+  if (paths == "zones") out_.paths = PathSpeedup::kZones;
   std::string steering = throng::name_of(out_.steering);
   r.text("steering", steering);
   if (const auto model = find_steering_model(steering)) {

@@ -59,8 +59,7 @@ Result<Simulation> Simulation::create(const World& world, const Scenario& scenar
                                      .seed = scenario.seed,
                                      .workers = workers,
                                      .model = scenario.steering,
-                                     .labels = scenario.labels,
-                                     .zones = scenario.zones,
+                                     .speedup = scenario.paths,
                                      .search_bytes = scenario.search_bytes,
                                      .nodes = *std::move(nodes)});
   if (!crowd) return crowd.error();

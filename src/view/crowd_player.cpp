@@ -44,7 +44,7 @@ Result<std::unique_ptr<CrowdPlayer>> CrowdPlayer::make(World world, Nodes nodes,
   const CrowdConfig config{.dt = start.dt,
                            .seed = start.seed,
                            .workers = workers,
-                           .zones = start.zones,
+                           .speedup = start.speedup,
                            .nodes = std::move(nodes)};
   Result<Crowd> crowd = Crowd::create(world, config);
   if (!crowd) return crowd.error();

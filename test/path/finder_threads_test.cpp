@@ -41,7 +41,7 @@ TEST(Finders, CopiesAnswerTheSameInManyThreadsAtOnce) {
   const World world = test::bake(scene, 0.25, classes);
   const Nodes nodes = need(Nodes::create(world, scene, {}, context));
   PathFinder search = need(PathFinder::create(world, {}, context));
-  PathFinder labels = need(PathFinder::create(world, {.labels = true}, context));
+  PathFinder labels = need(PathFinder::create(world, {.speedup = PathSpeedup::kLabels}, context));
   LiveGround live = need(LiveGround::create(world, {}));
   NodePathFinder over_nodes = need(NodePathFinder::create(nodes, {}, context));
   FlightFinder flight = need(FlightFinder::create(world, {.avatar_class = 1}, context));

@@ -33,14 +33,15 @@ TEST_P(GridMaps, LabelsAndZonesAreAsShortAsTheSearchInSharedWorlds) {
   ASSERT_TRUE(cells) << cells.error().message;
   const auto world = bake_flat_cells(*cells, 1);
   ASSERT_TRUE(world) << world.error().message;
-  PathFinder search = finder(*world, {}), labels = finder(*world, {.labels = true});
-  PathFinder zones = finder(*world, {.zones = true});
+  PathFinder search = finder(*world, {}),
+             labels = finder(*world, {.speedup = PathSpeedup::kLabels});
+  PathFinder zones = finder(*world, {.speedup = PathSpeedup::kZones});
 
   std::ifstream scenario(map + ".scen");
   std::string line;
   std::getline(scenario, line);  // "version 1"
   Path searched, looked_up, over_zones;
-  // Berlin's labels do not fit the lists of blocks, and PathConfig::labels promises 2 % then.
+  // Berlin's labels do not fit the lists of blocks, and kLabels promises 2 % then.
   const double max_longer = GetParam() == std::string("Berlin_0_512") ? 0.02 : 1e-4;
   double worst = 1;
   int queries = 0;

@@ -58,12 +58,12 @@ int run() {
   const auto to = [&](uint64_t n) { return world.random_place(0, 7, 2 * n + 1); };
   uint64_t sum = 0, reached = 0;
   Path path;
-  for (const PathConfig& config :
-       {PathConfig{}, PathConfig{.labels = true}, PathConfig{.zones = true}}) {
+  for (const PathConfig& config : {PathConfig{}, PathConfig{.speedup = PathSpeedup::kLabels},
+                                   PathConfig{.speedup = PathSpeedup::kZones}}) {
     PathFinder finder = need(PathFinder::create(world, config, context));
-    sum += late(config.labels  ? "labels"
-                : config.zones ? "zones"
-                               : "search",
+    sum += late(config.speedup == PathSpeedup::kLabels  ? "labels"
+                : config.speedup == PathSpeedup::kZones ? "zones"
+                                                        : "search",
                 [&](uint64_t n) {
                   finder.find(from(n), to(n), path);
                   reached += path.end == PathEnd::kReached;

@@ -299,10 +299,6 @@ void ObstacleSet::block_levels(size_t number, ClassGround& of) {
   const WorldSummary& summary = data_of(world_)->summary;
   LeftCells& left = of.ground->left();
   left.begin(summary, summary.classes[number]);
-  for (uint32_t slot = 0; slot < obstacles_.size(); ++slot) {
-    const CrowdObstacle& obstacle = obstacles_[slot];
-    if (obstacle.exists && obstacle.is_exit_only) left.add(slot, obstacle.place);
-  }
   for (const uint32_t level : of.touched) {
     CellRows blocked{}, kept{};
     std::vector<LeftCells::Part> parts;
@@ -310,8 +306,9 @@ void ObstacleSet::block_levels(size_t number, ClassGround& of) {
     if (cell_blockers != of.cell_blockers.end()) {
       for (const CellBlocker& cell_blocker : cell_blockers->second) {
         for (size_t z = 0; z < blocked.size(); ++z) blocked[z] |= cell_blocker.rows[z];
-        if (obstacles_[cell_blocker.slot].is_exit_only) {
-          parts.push_back({cell_blocker.slot, cell_blocker.rows});
+        const CrowdObstacle& obstacle = obstacles_[cell_blocker.slot];
+        if (obstacle.is_exit_only) {
+          parts.push_back(left.part(cell_blocker.slot, obstacle.place, cell_blocker.rows));
         } else {
           for (size_t z = 0; z < kept.size(); ++z) kept[z] |= cell_blocker.rows[z];
         }
@@ -325,7 +322,7 @@ void ObstacleSet::block_levels(size_t number, ClassGround& of) {
   std::sort(tiles.begin(), tiles.end());
   tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
   for (const auto& [x, z] : tiles) of.ground->join_tile(x, z);
-  find_exits(*of.ground, step_mm(summary.classes[number]));
+  find_exits(*of.ground, step_mm(summary.classes[number]), of.touched);
 }
 
 bool ObstacleSet::restore(std::vector<CrowdObstacle> obstacles, std::vector<uint32_t> free_slots) {

@@ -224,8 +224,8 @@ class THRONG_API Crowd {
   /// up, could touch the obstacle. If bodies are in it, it comes up later, as a door that closes:
   /// before the first step that begins with no body in it; ObstaclePolicy says what happens until
   /// then. Paths lead around kStatic obstacles: an avatar whose path is cut gets another one or, if
-  /// there is none, its goal is unreachable. Fails with kBadInput. Time: all avatars, and the cells
-  /// that the obstacle touches.
+  /// there is none, its goal is unreachable. Fails with kBadInput. Time, also of the changes below:
+  /// all avatars, and the tiles that the obstacle touches with what stands in these.
   [[nodiscard]] Result<ObstacleId> add_obstacle(
       const Prism& prism, ObstacleKind kind = ObstacleKind::kStatic,
       ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry);

@@ -112,7 +112,6 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
                          data.summary.classes.size());
   auto state = std::make_unique<State>(world, config, std::move(engine), std::move(flyers),
                                        std::move(climbers));
-  state->unit = unit;
   state->classes.resize(data.summary.classes.size());
   return Crowd(std::move(state));
 }
@@ -527,7 +526,9 @@ CrowdReport Crowd::step() {
   s.arrived.clear();
   s.goal_unreachable.clear();
   s.out_of_memory = 0;
-  report.waiting = s.settle_obstacles(s.obstacles.waiting(), &s.blockers);
+  // A copy, because what settles is taken out of the list.
+  const std::span<const uint32_t> waiting = s.obstacles.waiting();
+  report.waiting = s.settle_obstacles(std::vector(waiting.begin(), waiting.end()), &s.blockers);
   s.renew_flows();
   report.seconds_obstacles = seconds_since(start);
   EngineCounts counts;

@@ -444,33 +444,43 @@ void Crowd::State::fly(EngineCounts& counts, CrowdEngine::Times& times,
 void Crowd::State::add_flyer_blockers(std::span<const uint32_t> slots,
                                       std::vector<std::pair<uint32_t, uint32_t>>& found) const {
   const Vec3d& origin = data_of(world)->summary.origin;
-  const std::span<const Body> bodies = engine.bodies();
+  ObstacleGrid passed(unit);
   for (const uint32_t slot : slots) {
     const CrowdObstacle& obstacle = obstacles.all()[slot];
     if (!obstacle.waits()) continue;
-    const AirObstacle passed(
-        obstacle.is_up ? hull_of(obstacle.place, obstacle.wanted) : obstacle.wanted, origin, unit);
-    for (uint32_t i = 0; i < bodies.size(); ++i) {
-      const Body& body = bodies[i];
-      if (!body.has(Body::kFlying)) continue;
-      const double radius = body.climbs ? body.radius * unit : body_class(body.avatar_class).radius;
-      if (passed.holds(here(body), radius, body.height)) found.emplace_back(slot, i);
+    const Prism& prism =
+        obstacle.is_up ? hull_of(obstacle.place, obstacle.wanted) : obstacle.wanted;
+    passed.set(slot, {AirObstacle(prism, origin, unit), {}, slot});
+  }
+  if (passed.is_empty()) return;
+  const std::span<const Body> bodies = engine.bodies();
+  std::vector<const ObstacleGrid::Item*> near;
+  for (uint32_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    if (!body.has(Body::kFlying)) continue;
+    const double radius = body.climbs ? body.radius * unit : body_class(body.avatar_class).radius;
+    passed.list_near(here(body), radius, near);
+    for (const ObstacleGrid::Item* obstacle : near) {
+      if (obstacle->shape.holds(here(body), radius, body.height)) {
+        found.emplace_back(obstacle->slot, i);
+      }
     }
   }
   std::sort(found.begin(), found.end());
 }
 
-void Crowd::State::sync_flyer_obstacles() {
-  std::vector<AirObstacle> all;
-  std::vector<Solid> solids;
+void Crowd::State::update_obstacle_grid() {
   const Vec3d& origin = data_of(world)->summary.origin;
-  for (const CrowdObstacle& obstacle : obstacles.all()) {
-    if (!obstacle.exists || !obstacle.has_cells) continue;
-    all.emplace_back(obstacle.place, origin, unit, obstacle.closes());
-    solids.push_back({obstacle.place, {}});
+  for (const uint32_t slot : obstacles.take_changed()) {
+    const CrowdObstacle& obstacle = obstacles.at(slot);
+    if (!obstacle.exists || !obstacle.has_cells) {
+      obstacle_grid.erase(slot);
+      continue;
+    }
+    obstacle_grid.set(
+        slot,
+        {AirObstacle(obstacle.place, origin, unit, obstacle.closes()), {obstacle.place, {}}, slot});
   }
-  climbers.set_obstacles(all, std::move(solids));
-  flyers.set_obstacles(std::move(all));
 }
 
 }  // namespace throng

@@ -302,7 +302,8 @@ bool Crowd::State::find_exit_over_nodes(Body& body, Climb& climb, int32_t worker
   if (!to || !from) return true;
   const Vec3d& origin = data_of(world)->summary.origin;
   const auto let_through = [&](bool lets) {
-    for (const CrowdObstacle& obstacle : obstacles.all()) {
+    for (const uint32_t slot : obstacles.waiting()) {  // One that closes waits.
+      const CrowdObstacle& obstacle = obstacles.all()[slot];
       if (!obstacle.closes()) continue;
       const AirObstacle solid(obstacle.place, origin, unit);
       const bool is_in = climbers.meets_obstacle(

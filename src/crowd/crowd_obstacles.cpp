@@ -194,14 +194,11 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
 
 void Crowd::State::ground_changed() {
   obstacles.block_cells();
-  cuts_paths = false;
-  for (const CrowdObstacle& obstacle : obstacles.all()) {
-    cuts_paths |= obstacle.exists && obstacle.has_cells && obstacle.kind == ObstacleKind::kStatic;
-  }
+  cuts_paths = obstacles.cuts_paths();
   for (const auto& parts : classes) {
     if (parts) parts->standing.reset();
   }
-  sync_flyer_obstacles();
+  update_obstacle_grid();
 }
 
 void Crowd::State::sync_paths(uint32_t slot) {

@@ -193,7 +193,7 @@ void Simulation::State::update_obstacles() {
       THRONG_ASSERT(added);  // The prism was checked.
       obstacles[n] = *added;
       obstacle_times[n].asked = time();
-      record_obstacle_times();
+      record_obstacle_times(n);
       obstacle_times[n].inside = obstacle_times[n].waits_for;
     } else if (!wanted && obstacles[n]) {
       crowd.remove_obstacle(obstacles[n]);
@@ -205,12 +205,17 @@ void Simulation::State::update_obstacles() {
 }
 
 void Simulation::State::record_obstacle_times() {
-  for (size_t n = 0; n < obstacles.size(); ++n) {
-    const auto state = crowd.obstacle(obstacles[n]);
-    if (!state) continue;
-    obstacle_times[n].up = state->up_at;
-    obstacle_times[n].waits_for = state->occupants;
-  }
+  for (size_t n = 0; n < obstacles.size(); ++n) record_obstacle_times(n);
+}
+
+void Simulation::State::record_obstacle_times(size_t n) {
+  ObstacleTimes& times = obstacle_times[n];
+  const bool is_up = times.up >= 0 && times.waits_for == 0;  // and stays so until it is removed
+  if (is_up || !obstacles[n]) return;
+  const auto state = crowd.obstacle(obstacles[n]);
+  if (!state) return;
+  times.up = state->up_at;
+  times.waits_for = state->occupants;
 }
 
 Result<SimulationReport> Simulation::step() {

@@ -141,6 +141,7 @@ struct Simulation::State {
 
   void update_obstacles();
   void record_obstacle_times();
+  void record_obstacle_times(size_t n);
 
   // spawning.cpp
   void queue_spawns();

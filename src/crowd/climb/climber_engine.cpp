@@ -72,34 +72,38 @@ bool ClimberEngine::meets_obstacle(const ClimberGround& ground, const ClimbCylin
          may_touch(ground.body_room_of(pose, radius), solid);
 }
 
+// Does a test hold for one of the obstacles that a body meets?
+template <class Test>
+bool ClimberEngine::any_meets(const ClimberGround& ground, const ClimbCylinder& cylinder,
+                              const ClimbPose& pose, double radius, Test test) const {
+  if (obstacles_ == nullptr) return false;
+  return obstacles_->any_near(cylinder.low, cylinder.radius * double{config_.units.unit},
+                              [&](const ObstacleGrid::Item& obstacle) {
+                                return meets_obstacle(ground, cylinder, pose, radius,
+                                                      obstacle.shape, obstacle.solid) &&
+                                       test(obstacle);
+                              });
+}
+
 bool ClimberEngine::is_blocked(const ClimberGround& ground, const ClimbCylinder& cylinder,
                                const ClimbPose& pose, double radius) const {
-  for (size_t i = 0; i < obstacles_.size(); ++i) {
-    if (meets_obstacle(ground, cylinder, pose, radius, obstacles_[i], solids_[i])) return true;
-  }
-  return false;
+  return any_meets(ground, cylinder, pose, radius, [](const auto&) { return true; });
 }
 
 bool ClimberEngine::is_inside(const ClimberGround& ground, const ClimbCylinder& cylinder,
                               const ClimbPose& pose, double radius) const {
-  for (size_t i = 0; i < obstacles_.size(); ++i) {
-    const bool is_up = !obstacles_[i].closes();
-    if (is_up && meets_obstacle(ground, cylinder, pose, radius, obstacles_[i], solids_[i]))
-      return true;
-  }
-  return false;
+  return any_meets(ground, cylinder, pose, radius,
+                   [](const auto& obstacle) { return !obstacle.shape.closes(); });
 }
 
 bool ClimberEngine::is_blocked(const ClimberGround& ground, const Body& body, const Climb& climb,
                                const ClimbCylinder& cylinder, const ClimbPose& pose) const {
-  for (size_t i = 0; i < obstacles_.size(); ++i) {
-    if (!meets_obstacle(ground, cylinder, pose, climb.radius, obstacles_[i], solids_[i])) continue;
-    const bool continues = obstacles_[i].closes() &&
+  return any_meets(ground, cylinder, pose, climb.radius, [&](const ObstacleGrid::Item& obstacle) {
+    const bool continues = obstacle.shape.closes() &&
                            meets_obstacle(ground, cylinder_of(body), {climb.feet, climb.axis},
-                                          climb.radius, obstacles_[i], solids_[i]);
-    if (!continues) return true;
-  }
-  return false;
+                                          climb.radius, obstacle.shape, obstacle.solid);
+    return !continues;
+  });
 }
 
 void ClimberEngine::step(uint64_t step, std::span<Body> bodies, std::span<Climb> climbs,

@@ -44,11 +44,8 @@ class ClimberEngine {
   }
   /// As FlyerEngine::fit, for the cylinders that enclose bodies.
   void fit(int32_t widest, float fastest, int32_t tallest, float dt);
-  /// The active obstacles: as flyers test them, and as solids.
-  void set_obstacles(std::vector<AirObstacle> obstacles, std::vector<Solid> solids) {
-    obstacles_ = std::move(obstacles);
-    solids_ = std::move(solids);
-  }
+  /// The obstacles that are active or close, which outlive it.
+  void set_obstacles(const ObstacleGrid* obstacles) { obstacles_ = obstacles; }
   /// Does an active obstacle meet the body? Only obstacles that meet its cylinder are tested.
   [[nodiscard]] bool is_blocked(const ClimberGround& ground, const ClimbCylinder& cylinder,
                                 const ClimbPose& pose, double radius) const;
@@ -77,6 +74,9 @@ class ClimberEngine {
 
  private:
   static constexpr size_t kCandidates = 6;
+  template <class Test>
+  [[nodiscard]] bool any_meets(const ClimberGround& ground, const ClimbCylinder& cylinder,
+                               const ClimbPose& pose, double radius, Test test) const;
   struct Displacement {
     ClimberGround::Step step;
     ClimbCylinder cylinder;
@@ -106,8 +106,7 @@ class ClimberEngine {
 
   ClimberConfig config_;
   std::vector<const ClimberGround*> grounds_;  // by class
-  std::vector<AirObstacle> obstacles_;
-  std::vector<Solid> solids_;  // the same obstacles
+  const ObstacleGrid* obstacles_ = nullptr;
   float sight_metres_ = 5, near_metres_ = 5, fastest_ = 0;
   int32_t widest_ = 0, tallest_ = 0;
   std::span<Body> bodies_;

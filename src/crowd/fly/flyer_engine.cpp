@@ -68,25 +68,33 @@ void FlyerEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt) 
 }
 
 bool FlyerEngine::is_blocked(const Body& body, const AirPosition& position) const {
+  if (!has_obstacles()) return false;
   const double radius = classes_[body.avatar_class].radius;
-  return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const AirObstacle& obstacle) {
-    return obstacle.holds(position, radius, body.height) &&
-           !(obstacle.closes() && obstacle.holds(position_of(body), radius, body.height));
+  return obstacles_->any_near(position, radius, [&](const ObstacleGrid::Item& obstacle) {
+    const AirObstacle& shape = obstacle.shape;
+    return shape.holds(position, radius, body.height) &&
+           !(shape.closes() && shape.holds(position_of(body), radius, body.height));
   });
 }
 
 bool FlyerEngine::is_obstructed(const Body& body, const AirPosition& position) const {
-  return std::any_of(obstacles_.begin(), obstacles_.end(), [&](const AirObstacle& obstacle) {
-    return obstacle.holds(position, classes_[body.avatar_class].radius, body.height);
+  if (!has_obstacles()) return false;
+  const double radius = classes_[body.avatar_class].radius;
+  return obstacles_->any_near(position, radius, [&](const ObstacleGrid::Item& obstacle) {
+    return obstacle.shape.holds(position, radius, body.height);
   });
 }
 
 void FlyerEngine::list_exits(const Body& body, std::vector<AirPosition>& exits) const {
   const double radius = classes_[body.avatar_class].radius;
   exits.clear();
-  for (const AirObstacle& obstacle : obstacles_) {
-    if (!obstacle.closes() || !obstacle.holds(position_of(body), radius, body.height)) continue;
-    obstacle.list_exits(position_of(body), radius, body.height, exits);
+  if (!has_obstacles()) return;
+  std::vector<const ObstacleGrid::Item*> near;
+  obstacles_->list_near(position_of(body), radius, near);
+  for (const ObstacleGrid::Item* obstacle : near) {
+    const AirObstacle& shape = obstacle->shape;
+    if (!shape.closes() || !shape.holds(position_of(body), radius, body.height)) continue;
+    shape.list_exits(position_of(body), radius, body.height, exits);
   }
 }
 
@@ -403,7 +411,7 @@ bool FlyerEngine::try_place(const Body& body, const AirPosition& displacement,
   } else if (!air.sees(here, there)) {
     return false;
   }
-  if (!obstacles_.empty() && there != here && is_blocked(body, there)) return false;
+  if (there != here && is_blocked(body, there)) return false;
   place = there;
   return true;
 }

@@ -12,7 +12,7 @@
 #include "crowd/fly/flyer_air.h"
 #include "crowd/fly/flyer_grid.h"
 #include "crowd/fly/mover_rounds.h"
-#include "crowd/ground/air_obstacle.h"
+#include "crowd/ground/obstacle_grid.h"
 #include "crowd/walk/body.h"
 #include "crowd/walk/crowd_engine.h"
 #include "crowd/walk/step_units.h"
@@ -44,8 +44,11 @@ class FlyerEngine {
   void set_air(size_t avatar_class, const FlyerAir* air, double radius);
   /// As CrowdEngine::fit; no body is taller. [mm]
   void fit(int32_t widest, float fastest, int32_t tallest, float dt);
-  void set_obstacles(std::vector<AirObstacle> obstacles) { obstacles_ = std::move(obstacles); }
-  [[nodiscard]] bool has_obstacles() const { return !obstacles_.empty(); }
+  /// The obstacles that are active or close, which outlive it.
+  void set_obstacles(const ObstacleGrid* obstacles) { obstacles_ = obstacles; }
+  [[nodiscard]] bool has_obstacles() const {
+    return obstacles_ != nullptr && !obstacles_->is_empty();
+  }
   /// Does an obstacle block a move there? One that closes lets a body continue inside it.
   [[nodiscard]] bool is_blocked(const Body& body, const AirPosition& position) const;
   /// Is the position inside an obstacle, so that no such body may be placed there?
@@ -101,7 +104,7 @@ class FlyerEngine {
     double radius = 0;  // [m]
   };
   std::vector<OfClass> classes_;
-  std::vector<AirObstacle> obstacles_;
+  const ObstacleGrid* obstacles_ = nullptr;
   float sight_metres_ = 5, near_metres_ = 5, fastest_ = 0;
   std::span<Body> bodies_;
   std::span<Flight> flights_;

@@ -45,7 +45,7 @@ AirObstacle::AirObstacle(const Prism& prism, const Vec3d& origin, double unit, b
 
 bool AirObstacle::holds(const AirPosition& feet, double radius, int32_t height) const {
   if (!overlap(feet.y, height, low_, high_ - low_)) return false;
-  const double range = radius / unit_ + 2;  // and what rounding adds
+  const double range = AirObstacle::range(radius, unit_);
   const double x = feet.x + 0.5, z = feet.z + 0.5;
   if (x < x0_ - range || x > x1_ + range || z < z0_ - range || z > z1_ + range) return false;
   bool inside = true;

@@ -21,6 +21,10 @@ class AirObstacle {
   /// Is a body inside whose feet are at this position? [m, mm]
   [[nodiscard]] bool holds(const AirPosition& feet, double radius, int32_t height) const;
   [[nodiscard]] bool closes() const { return closes_; }
+  /// Around its polygon: x0, z0, x1, z1. [units]
+  [[nodiscard]] std::array<double, 4> box() const { return {x0_, z0_, x1_, z1_}; }
+  /// No body of this radius is inside that is farther from the polygon. [m, m; units]
+  static double range(double radius, double unit) { return radius / unit + 2; }
   /// Appends the nearest positions beyond each of its sides, above it and below it. [m, mm]
   void list_exits(const AirPosition& feet, double radius, int32_t height,
                   std::vector<AirPosition>& exits) const;

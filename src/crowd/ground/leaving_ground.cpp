@@ -4,6 +4,7 @@
 
 #include <array>
 #include <bit>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -33,33 +34,63 @@ class ExitSearch {
  public:
   ExitSearch(CrowdGround& ground, int32_t step_mm) : ground_(ground), step_mm_(step_mm) {}
 
-  void run() {
-    LeftCells& left = ground_.left();
-    for (auto& [level, of] : left.levels_) of.steps.fill(LeftCells::kNone);
+  size_t run(std::span<const Level> changed) {
+    list_cells(changed);
+    for (const WorldCell& cell : cells_) steps(cell) = LeftCells::kNone;
     std::vector<WorldCell> now, next;
-    for (const Level level : left.order_) {
-      const LeftCells::OfLevel& of = left.levels_.at(level);
-      const CrowdGround::Record& record = ground_.records()[level];
-      for (int32_t z = 0; z < 64; ++z) {
-        uint64_t row = 0;
-        for (const LeftCells::Part& part : of.parts) row |= part.rows[static_cast<size_t>(z)];
-        for (; row != 0; row &= row - 1) {
-          const WorldCell cell{level, record.tile_x * 64 + std::countr_zero(row),
-                               record.tile_z * 64 + z};
-          if (!leads_out(cell)) continue;
-          steps(cell) = 1;
-          now.push_back(cell);
-        }
-      }
+    for (const WorldCell& cell : cells_) {
+      if (!leads_out(cell)) continue;
+      steps(cell) = 1;
+      now.push_back(cell);
     }
     for (uint16_t count = 2; !now.empty() && count < LeftCells::kNone; ++count) {
       next.clear();
       for (const WorldCell& cell : now) look_back(cell, count, next);
       now.swap(next);
     }
+    return cells_.size();
   }
 
  private:
+  // Whatever a step from a cell depends on lies on that cell and on the four beside it. So a change
+  // of a tile counts for the cells in it and at its rim, and on from there over cells that may be
+  // left, whatever their heights.
+  void list_cells(std::span<const Level> changed) {
+    constexpr uint64_t kAll = ~uint64_t{0};
+    const LeftCells& left = ground_.left();
+    const auto add_rows = [&](int32_t tile_x, int32_t tile_z, int32_t first, int32_t last,
+                              uint64_t columns) {
+      ground_.for_tile(tile_x, tile_z, INT32_MIN, INT32_MAX, [&](Level level) {
+        const LeftCells::OfLevel* of = left.find(level);
+        for (int32_t z = first; of != nullptr && z <= last; ++z) {
+          for (uint64_t row = of->held[static_cast<size_t>(z)] & columns; row != 0; row &= row - 1)
+            add({level, tile_x * 64 + std::countr_zero(row), tile_z * 64 + z});
+        }
+      });
+    };
+    for (const Level level : changed) {
+      const auto& [legal_cells, x, z] = ground_.records()[level];
+      add_rows(x, z, 0, 63, kAll);
+      add_rows(x - 1, z, 0, 63, uint64_t{1} << 63);
+      add_rows(x + 1, z, 0, 63, 1);
+      add_rows(x, z - 1, 63, 63, kAll);
+      add_rows(x, z + 1, 0, 0, kAll);
+    }
+    for (size_t i = 0; i < cells_.size(); ++i) {
+      for (const auto& [dx, dz] : kSides) {
+        const int32_t x = cells_[i].x + dx, z = cells_[i].z + dz;
+        ground_.for_tile(x >> 6, z >> 6, INT32_MIN, INT32_MAX, [&](Level level) {
+          if (left.holds({level, x & 63, z & 63})) add({level, x, z});
+        });
+      }
+    }
+  }
+  void add(const WorldCell& cell) {
+    uint64_t& row = listed_[cell.level][static_cast<size_t>(cell.z & 63)];
+    const uint64_t bit = uint64_t{1} << (cell.x & 63);
+    if ((row & bit) == 0) cells_.push_back(cell);
+    row |= bit;
+  }
   [[nodiscard]] uint16_t& steps(const WorldCell& cell) {
     return ground_.left()
         .levels_.at(cell.level)
@@ -94,10 +125,12 @@ class ExitSearch {
 
   CrowdGround& ground_;
   int32_t step_mm_;
+  std::vector<WorldCell> cells_;
+  std::unordered_map<Level, CellRows> listed_;  // which of a level are; looked up only
 };
 
-void find_exits(CrowdGround& ground, int32_t step_mm) {
-  if (!ground.left().is_empty()) ExitSearch(ground, step_mm).run();
+size_t find_exits(CrowdGround& ground, int32_t step_mm, std::span<const Level> changed) {
+  return ground.left().is_empty() ? 0 : ExitSearch(ground, step_mm).run(changed);
 }
 
 bool find_exit(const CrowdGround& ground, int32_t step_mm, uint32_t max_steps, Level& level,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "crowd/ground/crowd_ground.h"
 #include "crowd/ground/left_cells.h"
@@ -42,8 +43,11 @@ inline bool is_leaving(const CrowdGround& ground, CrowdGround::Level level, int3
   return !ground.left().is_empty() && !ground.is_legal(level, x & 63, z & 63);
 }
 
-/// For each blocked cell that may be left, counts the steps to an exit. Linear in these cells.
-void find_exits(CrowdGround& ground, int32_t step_mm);
+/// For each blocked cell that may be left, counts the steps to an exit, after some levels changed.
+/// Returns the number of cells that are counted again: those of the levels' tiles, and those that
+/// are joined to these by others. Linear in them.
+size_t find_exits(CrowdGround& ground, int32_t step_mm,
+                  std::span<const CrowdGround::Level> changed);
 
 /// Where the shortest exit from a cell leads to, or its first `max_steps` steps; false: there is
 /// none. [cells]

@@ -25,32 +25,26 @@ void LeftCells::begin(const WorldSummary& summary, const AvatarClass& avatar) {
   // As Crowd::State::is_occupied tests it: what may become active is what may no longer be entered.
   bottom_ = static_cast<int32_t>(std::floor(body_bottom(avatar) * 1000));
   height_ = static_cast<int32_t>(std::ceil(avatar.height * 1000 - 1e-6));
-  shapes_.clear();
-}
-
-void LeftCells::add(uint32_t obstacle, const Prism& prism) {
-  shapes_.push_back({obstacle, AirObstacle(prism, origin_, unit_)});
 }
 
 void LeftCells::set_level(Level level, std::vector<Part> parts, const CellRows& kept) {
-  const auto at = std::lower_bound(order_.begin(), order_.end(), level);
-  const bool is_known = at != order_.end() && *at == level;
   if (parts.empty()) {
-    if (is_known) order_.erase(at);
     levels_.erase(level);
     return;
   }
-  if (!is_known) order_.insert(at, level);
   OfLevel& of = levels_[level];
   of.parts = std::move(parts);
+  of.held = {};
+  for (const Part& part : of.parts) {
+    for (size_t z = 0; z < of.held.size(); ++z) of.held[z] |= part.rows[z];
+  }
   of.kept = kept;
   of.steps.fill(kNone);
 }
 
 bool LeftCells::holds(const Cell& cell) const {
   const OfLevel* of = find(cell.level);
-  return of != nullptr && std::any_of(of->parts.begin(), of->parts.end(),
-                                      [&](const Part& part) { return has(part.rows, cell); });
+  return of != nullptr && has(of->held, cell);
 }
 
 void LeftCells::list_obstacles(const Cell& cell, std::vector<uint32_t>& obstacles) const {
@@ -79,22 +73,19 @@ bool LeftCells::enters(const Cell& cell, const AirPosition& from, const AirPosit
   constexpr int32_t kSamples = 4;  // on the line
   const OfLevel* of = find(cell.level);
   if (of == nullptr) return false;
-  const auto is_in = [&](const Shape& shape, AirPosition feet) {
+  const auto is_in = [&](const Part& part, AirPosition feet) {
     feet.y += bottom_;
-    return shape.solid.holds(feet, radius_, height_ - bottom_);
+    return part.solid.holds(feet, radius_, height_ - bottom_);
   };
   return std::any_of(of->parts.begin(), of->parts.end(), [&](const Part& part) {
-    if (!has(part.rows, cell)) return false;
-    const auto shape = std::find_if(shapes_.begin(), shapes_.end(),
-                                    [&](const Shape& s) { return s.obstacle == part.obstacle; });
-    if (shape == shapes_.end() || is_in(*shape, from)) return false;
+    if (!has(part.rows, cell) || is_in(part, from)) return false;
     const auto between = [](int32_t a, int32_t b, int32_t i) {
       return static_cast<int32_t>(a + (int64_t{b} - a) * i / kSamples);
     };
     for (int32_t i = 1; i <= kSamples; ++i) {
       const AirPosition position{between(from.x, to.x, i), between(from.z, to.z, i),
                                  between(from.y, to.y, i)};
-      if (is_in(*shape, position)) return true;
+      if (is_in(part, position)) return true;
     }
     return false;
   });

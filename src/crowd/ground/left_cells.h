@@ -21,19 +21,22 @@ class LeftCells {
  public:
   using Level = uint32_t;  // of the world
 
-  /// An obstacle's cells on a level.
+  /// An obstacle, and its cells on a level.
   struct Part {
     uint32_t obstacle = 0;
     CellRows rows{};
+    AirObstacle solid;
   };
   struct Cell {
     Level level = 0;
     int32_t x = 0, z = 0;  // of the tile
   };
 
-  /// Starts again with the current obstacles; levels stay.
+  /// For which bodies, in which world; levels stay.
   void begin(const WorldSummary& summary, const AvatarClass& avatar);
-  void add(uint32_t obstacle, const Prism& prism);
+  [[nodiscard]] Part part(uint32_t obstacle, const Prism& prism, const CellRows& rows) const {
+    return {obstacle, rows, AirObstacle(prism, origin_, unit_)};
+  }
   /// `kept`: the cells that other obstacles block there. Without parts: the level has no such
   /// cells.
   void set_level(Level level, std::vector<Part> parts, const CellRows& kept);
@@ -56,12 +59,9 @@ class LeftCells {
   friend class ExitSearch;
   struct OfLevel {
     std::vector<Part> parts;
+    CellRows held{};  // the cells of all parts
     CellRows kept{};
     std::array<uint16_t, 4096> steps{};
-  };
-  struct Shape {
-    uint32_t obstacle = 0;
-    AirObstacle solid;
   };
   [[nodiscard]] const OfLevel* find(Level level) const {
     const auto found = levels_.find(level);
@@ -69,8 +69,6 @@ class LeftCells {
   }
 
   std::unordered_map<Level, OfLevel> levels_;  // looked up only
-  std::vector<Level> order_;                   // of these, ascending
-  std::vector<Shape> shapes_;
   Vec3d origin_;
   double unit_ = 0, radius_ = 0;     // [m]
   int32_t bottom_ = 0, height_ = 0;  // of a body, above its feet [mm]

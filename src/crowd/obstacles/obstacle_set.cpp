@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <utility>
 
 #include "core/access.h"
 #include "core/parallel.h"
@@ -88,6 +89,7 @@ uint32_t ObstacleSet::add(const Prism& prism, ObstacleKind kind, bool wanted_up,
   obstacle.place = obstacle.wanted = prism;
   obstacle.of_class.resize(classes_.size());
   if (wanted_up) request_active(slot, true);
+  note(slot);
   return slot;
 }
 
@@ -107,6 +109,26 @@ void ObstacleSet::request_move(uint32_t slot, const Prism& prism) {
     ++obstacle.version;
   }
   find_swept(slot);
+  note(slot);
+}
+
+// After any change: is it one that waits now?
+void ObstacleSet::note(uint32_t slot) {
+  const CrowdObstacle& obstacle = obstacles_[slot];
+  const auto at = std::lower_bound(waiting_.begin(), waiting_.end(), slot);
+  const bool is_known = at != waiting_.end() && *at == slot;
+  const bool waits = obstacle.waits() || obstacle.is_exit_only;
+  if (waits && !is_known) waiting_.insert(at, slot);
+  if (!waits && is_known) waiting_.erase(at);
+  if (is_changed_.size() < obstacles_.size()) is_changed_.resize(obstacles_.size(), false);
+  if (!is_changed_[slot]) changed_.push_back(slot);
+  is_changed_[slot] = true;
+}
+
+std::vector<uint32_t> ObstacleSet::take_changed() {
+  std::sort(changed_.begin(), changed_.end());
+  for (const uint32_t slot : changed_) is_changed_[slot] = false;
+  return std::exchange(changed_, {});
 }
 
 void ObstacleSet::request_active(uint32_t slot, bool up) {
@@ -114,6 +136,7 @@ void ObstacleSet::request_active(uint32_t slot, bool up) {
   obstacle.wanted_up = up;
   if (up) {
     if (!obstacle.is_up) find_swept(slot);
+    note(slot);
     return;
   }
   unblock(slot);
@@ -123,6 +146,7 @@ void ObstacleSet::request_active(uint32_t slot, bool up) {
   obstacle.occupants = 0;
   obstacle.place = obstacle.wanted;
   for (auto& of_class : obstacle.of_class) of_class.swept.clear();
+  note(slot);
 }
 
 void ObstacleSet::remove(uint32_t slot) {
@@ -132,14 +156,7 @@ void ObstacleSet::remove(uint32_t slot) {
   obstacle = {};
   obstacle.generation = generation + 1;
   free_slots_.push_back(slot);
-}
-
-std::vector<uint32_t> ObstacleSet::waiting() const {
-  std::vector<uint32_t> slots;
-  for (uint32_t slot = 0; slot < obstacles_.size(); ++slot) {
-    if (obstacles_[slot].waits() || obstacles_[slot].is_exit_only) slots.push_back(slot);
-  }
-  return slots;
+  note(slot);
 }
 
 std::vector<std::pair<uint32_t, uint32_t>> ObstacleSet::blockers(std::span<const uint32_t> slots,
@@ -149,19 +166,13 @@ std::vector<std::pair<uint32_t, uint32_t>> ObstacleSet::blockers(std::span<const
     uint32_t slot;
     const CellRows* rows;
   };
-  // By class and level: which of the lists wants its blockers, plus one.
-  std::vector<std::vector<uint32_t>> list_of(classes_.size());
-  std::vector<std::vector<Asked>> lists;
+  // By class and level; looked up only.
+  std::unordered_map<uint64_t, std::vector<Asked>> lists;
+  const auto key = [](size_t number, uint32_t level) { return uint64_t{number} << 32 | level; };
   for (const uint32_t slot : slots) {
     for (size_t c = 0; c < classes_.size(); ++c) {
       for (const LevelCells& cells : obstacles_[slot].of_class[c].swept) {
-        if (list_of[c].empty()) list_of[c].resize(data_of(world_)->level_count);
-        uint32_t& list = list_of[c][cells.level];
-        if (list == 0) {
-          lists.emplace_back();
-          list = static_cast<uint32_t>(lists.size());
-        }
-        lists[list - 1].push_back({slot, &cells.rows});
+        lists[key(c, cells.level)].push_back({slot, &cells.rows});
       }
     }
   }
@@ -172,9 +183,9 @@ std::vector<std::pair<uint32_t, uint32_t>> ObstacleSet::blockers(std::span<const
     for (size_t i = begin; i < end; ++i) {
       const Body& body = bodies[i];
       if (body.has(Body::kFlying)) continue;
-      const std::vector<uint32_t>& list = list_of[body.avatar_class];
-      if (list.empty() || list[body.level] == 0) continue;
-      for (const Asked& asked : lists[list[body.level] - 1]) {
+      const auto list = lists.find(key(body.avatar_class, body.level));
+      if (list == lists.end()) continue;
+      for (const Asked& asked : list->second) {
         if (!has(*asked.rows, body.point().cell_x(), body.point().cell_z())) continue;
         const std::lock_guard lock(adding);
         found.emplace_back(asked.slot, static_cast<uint32_t>(i));
@@ -198,9 +209,13 @@ void ObstacleSet::settle(uint32_t slot) {
     for (auto& of_class : obstacle.of_class) of_class.swept.clear();
   }
   take(slot);
+  note(slot);
 }
 
-void ObstacleSet::close(uint32_t slot) { take(slot); }
+void ObstacleSet::close(uint32_t slot) {
+  take(slot);
+  note(slot);
+}
 
 void ObstacleSet::set_exit_only(uint32_t slot, bool lets) {
   CrowdObstacle& obstacle = obstacles_[slot];
@@ -211,17 +226,20 @@ void ObstacleSet::set_exit_only(uint32_t slot, bool lets) {
     classes_[c].touched.insert(classes_[c].touched.end(), of.levels.begin(), of.levels.end());
     if (!lets && !obstacle.waits()) of.swept.clear();
   }
+  note(slot);
 }
 
 void ObstacleSet::take(uint32_t slot) {
   if (obstacles_[slot].has_cells) return;
   obstacles_[slot].has_cells = true;
+  path_cutters_ += obstacles_[slot].kind == ObstacleKind::kStatic ? 1 : 0;
   for (size_t c = 0; c < classes_.size(); ++c) put_up(slot, c);
 }
 
 void ObstacleSet::unblock(uint32_t slot) {
   CrowdObstacle& obstacle = obstacles_[slot];
   if (obstacle.has_cells) {
+    path_cutters_ -= obstacle.kind == ObstacleKind::kStatic ? 1 : 0;
     for (size_t c = 0; c < classes_.size(); ++c) unblock_class(slot, c);
   }
   obstacle.has_cells = obstacle.is_exit_only = false;
@@ -299,10 +317,6 @@ void ObstacleSet::block_levels(size_t number, ClassGround& of) {
   const WorldSummary& summary = data_of(world_)->summary;
   LeftCells& left = of.ground->left();
   left.begin(summary, summary.classes[number]);
-  for (uint32_t slot = 0; slot < obstacles_.size(); ++slot) {
-    const CrowdObstacle& obstacle = obstacles_[slot];
-    if (obstacle.exists && obstacle.is_exit_only) left.add(slot, obstacle.place);
-  }
   for (const uint32_t level : of.touched) {
     CellRows blocked{}, kept{};
     std::vector<LeftCells::Part> parts;
@@ -310,8 +324,9 @@ void ObstacleSet::block_levels(size_t number, ClassGround& of) {
     if (cell_blockers != of.cell_blockers.end()) {
       for (const CellBlocker& cell_blocker : cell_blockers->second) {
         for (size_t z = 0; z < blocked.size(); ++z) blocked[z] |= cell_blocker.rows[z];
-        if (obstacles_[cell_blocker.slot].is_exit_only) {
-          parts.push_back({cell_blocker.slot, cell_blocker.rows});
+        const CrowdObstacle& obstacle = obstacles_[cell_blocker.slot];
+        if (obstacle.is_exit_only) {
+          parts.push_back(left.part(cell_blocker.slot, obstacle.place, cell_blocker.rows));
         } else {
           for (size_t z = 0; z < kept.size(); ++z) kept[z] |= cell_blocker.rows[z];
         }
@@ -325,7 +340,7 @@ void ObstacleSet::block_levels(size_t number, ClassGround& of) {
   std::sort(tiles.begin(), tiles.end());
   tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
   for (const auto& [x, z] : tiles) of.ground->join_tile(x, z);
-  find_exits(*of.ground, step_mm(summary.classes[number]));
+  find_exits(*of.ground, step_mm(summary.classes[number]), of.touched);
 }
 
 bool ObstacleSet::restore(std::vector<CrowdObstacle> obstacles, std::vector<uint32_t> free_slots) {
@@ -347,11 +362,19 @@ bool ObstacleSet::restore(std::vector<CrowdObstacle> obstacles, std::vector<uint
   }
   obstacles_ = std::move(obstacles);
   free_slots_ = std::move(free_slots);
+  waiting_.clear();
+  path_cutters_ = 0;
+  for (uint32_t slot = 0; slot < obstacles_.size(); ++slot) {
+    const CrowdObstacle& obstacle = obstacles_[slot];
+    path_cutters_ += obstacle.has_cells && obstacle.kind == ObstacleKind::kStatic ? 1 : 0;
+    note(slot);
+  }
   return true;
 }
 
 uint64_t ObstacleSet::bytes() const {
-  uint64_t bytes = obstacles_.capacity() * sizeof(CrowdObstacle);
+  uint64_t bytes = obstacles_.capacity() * sizeof(CrowdObstacle) +
+                   (waiting_.capacity() + changed_.capacity()) * sizeof(uint32_t);
   for (const ClassGround& of : classes_) {
     for (const auto& [level, cell_blockers] : of.cell_blockers)
       bytes += cell_blockers.capacity() * sizeof(CellBlocker);

@@ -82,8 +82,13 @@ class ObstacleSet {
   void request_active(uint32_t slot, bool up);
   void remove(uint32_t slot);
 
-  /// Those that wait, or are exit-only.
-  [[nodiscard]] std::vector<uint32_t> waiting() const;
+  /// Those that wait, or are exit-only, in order of slot.
+  [[nodiscard]] std::span<const uint32_t> waiting() const { return waiting_; }
+  /// Is one that paths avoid active, or does one close?
+  [[nodiscard]] bool cuts_paths() const { return path_cutters_ > 0; }
+  /// Those of which the place or the cells may have changed since the last call, each once, in
+  /// order of slot.
+  [[nodiscard]] std::vector<uint32_t> take_changed();
   /// Bodies that stand where some of them would appear or pass: (obstacle, index of the body), in
   /// order.
   [[nodiscard]] std::vector<std::pair<uint32_t, uint32_t>> blockers(std::span<const uint32_t> slots,
@@ -120,6 +125,7 @@ class ObstacleSet {
   void find_swept(uint32_t slot);
   void take(uint32_t slot);
   void unblock(uint32_t slot);
+  void note(uint32_t slot);
   void put_up(uint32_t slot, size_t number);
   void unblock_class(uint32_t slot, size_t number);
 
@@ -127,6 +133,11 @@ class ObstacleSet {
   std::vector<ClassGround> classes_;
   std::vector<CrowdObstacle> obstacles_;
   std::vector<uint32_t> free_slots_;
+  // Of these, so that no call needs to look at all of them:
+  std::vector<uint32_t> waiting_;  // slots, rising
+  std::vector<uint32_t> changed_;  // slots, in no order
+  std::vector<bool> is_changed_;   // by slot: it is one of these
+  size_t path_cutters_ = 0;        // kStatic ones with cells
 };
 
 }  // namespace throng

@@ -53,8 +53,7 @@ LiveMesh::LiveMesh(const LiveMesh& other)
       levels_(other.levels_.size()),  // rebuilt when first used
       changes_(other.changes_),
       changes_of_tile_(other.changes_of_tile_),
-      off_mesh_links_(other.off_mesh_links_),
-      idle_links_(other.idle_links_) {}
+      off_mesh_links_(other.off_mesh_links_) {}
 
 void LiveMesh::set_area_cost(uint8_t kind, double cost) {
   ++version_;
@@ -89,11 +88,9 @@ bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
   if (change.active != active) {
     change.active = active;
     for (const int64_t tile : change.tiles) forget(tile);
-    for (const uint32_t level : change.levels) switch_links(id, level, active);
+    for (const LevelLinkEnd& link : change.links) switch_link(link, active);
   }
   if (remove) {
-    std::erase_if(idle_links_,
-                  [&](const auto& off_mesh_link) { return off_mesh_link.second.change == id; });
     for (const int64_t tile : change.tiles) std::erase(changes_of_tile_[tile], id);
     change = Change{};  // Its id is never used again, its memory is freed.
     change.active = false;
@@ -103,7 +100,7 @@ bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
 }
 
 void LiveMesh::add_off_mesh_link(uint32_t level, const OffMeshLinkEnd& off_mesh_link) {
-  changes_[off_mesh_link.change - 1].levels.push_back(level);
+  changes_[off_mesh_link.change - 1].links.push_back({level, off_mesh_link});
   off_mesh_links_[level].push_back(off_mesh_link);
   ++version_;
 }
@@ -114,26 +111,20 @@ const std::vector<LiveMesh::OffMeshLinkEnd>& LiveMesh::links_from(uint32_t level
   return found == off_mesh_links_.end() ? none : found->second;
 }
 
-void LiveMesh::switch_links(ChangeId change, uint32_t level, bool active) {
+// Links are kept in the order in which they were made: paths must not depend on when each was
+// switched.
+void LiveMesh::switch_link(const LevelLinkEnd& link, bool active) {
   ++version_;
-  std::vector<OffMeshLinkEnd>& here = off_mesh_links_[level];
+  std::vector<OffMeshLinkEnd>& here = off_mesh_links_[link.level];
+  const ChangeId change = link.end.change;
+  const auto after =
+      std::upper_bound(here.begin(), here.end(), change,
+                       [](ChangeId id, const OffMeshLinkEnd& other) { return id < other.change; });
   if (active) {
-    for (const auto& [of_level, off_mesh_link] : idle_links_) {
-      if (of_level == level && off_mesh_link.change == change) here.push_back(off_mesh_link);
-    }
-    std::erase_if(idle_links_, [&](const auto& idle) {
-      return idle.first == level && idle.second.change == change;
-    });
-    // In the order in which they were made: paths must not depend on when each was switched.
-    std::stable_sort(
-        here.begin(), here.end(),
-        [](const OffMeshLinkEnd& a, const OffMeshLinkEnd& b) { return a.change < b.change; });
+    here.insert(after, link.end);
   } else {
-    for (const OffMeshLinkEnd& off_mesh_link : here) {
-      if (off_mesh_link.change == change) idle_links_.emplace_back(level, off_mesh_link);
-    }
-    std::erase_if(
-        here, [&](const OffMeshLinkEnd& off_mesh_link) { return off_mesh_link.change == change; });
+    // Of a link in both directions on one level, both are erased; the second time there is none.
+    std::erase_if(here, [&](const OffMeshLinkEnd& other) { return other.change == change; });
   }
 }
 

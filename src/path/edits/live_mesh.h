@@ -72,15 +72,6 @@ class LiveMesh {
   [[nodiscard]] double min_factor() const { return min_factor_; }
   void set_area_cost(uint8_t kind, double cost);
 
-  struct Change {
-    bool active = true, removed = false;
-    bool is_area = false;
-    uint8_t kind = 0;
-    Solid solid;                   // of an area: its prism
-    std::vector<int64_t> tiles;    // that it touches
-    std::vector<uint32_t> levels;  // from which an off-mesh link leads
-  };
-  ChangeId add(Change change);
   /// An off-mesh link in one direction, as long as the change is active.
   struct OffMeshLinkEnd {
     ChangeId change = 0;
@@ -88,6 +79,19 @@ class LiveMesh {
     uint32_t to_level = 0;
     double cost = 0;  // [cells]
   };
+  struct LevelLinkEnd {
+    uint32_t level = 0;  // from which it leads
+    OffMeshLinkEnd end;
+  };
+  struct Change {
+    bool active = true, removed = false;
+    bool is_area = false;
+    uint8_t kind = 0;
+    Solid solid;                      // of an area: its prism
+    std::vector<int64_t> tiles;       // that it touches
+    std::vector<LevelLinkEnd> links;  // of an off-mesh link
+  };
+  ChangeId add(Change change);
   /// From a level. [links of a change are added right after it]
   void add_off_mesh_link(uint32_t level, const OffMeshLinkEnd& off_mesh_link);
   /// Those that are active now.
@@ -122,7 +126,7 @@ class LiveMesh {
   void cut(LiveLevel& level) const;
   void find_portals(LiveLevel& level);
   void forget(int64_t tile);
-  void switch_links(ChangeId change, uint32_t level, bool active);
+  void switch_link(const LevelLinkEnd& link, bool active);
   [[nodiscard]] std::array<uint8_t, 4096> kinds_of(const LiveLevel& level) const;
   [[nodiscard]] std::array<uint8_t, 4096> slopes_of(const LiveLevel& level) const;
 
@@ -138,8 +142,7 @@ class LiveMesh {
   std::vector<Change> changes_;
   std::unordered_map<int64_t, std::vector<ChangeId>> changes_of_tile_;  // in order; looked up only
   std::unordered_map<uint32_t, std::vector<OffMeshLinkEnd>>
-      off_mesh_links_;                                           // active ones, by level
-  std::vector<std::pair<uint32_t, OffMeshLinkEnd>> idle_links_;  // of changes switched off
+      off_mesh_links_;  // active ones, by level, in order of change
 };
 
 }  // namespace throng

@@ -97,13 +97,22 @@ ChangeId NodeChanges::add(Solid solid) {
   block_pieces(solid, near, change);
   changes_.push_back(std::move(change));
   ++version_;
-  return static_cast<ChangeId>(changes_.size());
+  active_.push_back(static_cast<ChangeId>(changes_.size()));
+  return active_.back();
 }
 
 bool NodeChanges::set_active(ChangeId id, bool active, bool remove) {
   if (id == 0 || id > changes_.size() || changes_[id - 1].removed) return false;
   Change& change = changes_[id - 1];
-  if (change.active != active) ++version_;
+  if (change.active != active) {
+    ++version_;
+    const auto at = std::lower_bound(active_.begin(), active_.end(), id);
+    if (active) {
+      active_.insert(at, id);
+    } else {
+      active_.erase(at);
+    }
+  }
   change.active = active;
   if (remove) {
     change = {};  // Its id is never used again, its memory is freed.
@@ -290,8 +299,8 @@ void NodeChanges::update() {
   std::vector<BlockedSquare> squares;
   std::unordered_map<uint32_t, uint16_t> pieces;
   std::unordered_map<uint32_t, size_t> place;
-  for (const Change& change : changes_) {
-    if (!change.active) continue;
+  for (const ChangeId id : active_) {
+    const Change& change = changes_[id - 1];
     for (const BlockedTile& tile : change.tiles) {
       const auto [at, is_new] = place.try_emplace(tile.patch, tiles.size());
       if (is_new) tiles.push_back({tile.patch, {}});
@@ -535,9 +544,9 @@ void NodeChanges::list_portals() {
     return block < base ? place_of_touched_.at(block)
                         : static_cast<uint32_t>(touched_.size()) + block - base;
   };
-  // Those that stay, then new ones. A cut block has none.
+  // Those that stay, then new ones: rising. A cut block keeps none.
   const auto count = static_cast<uint32_t>(mesh_->portals().size());
-  std::vector<std::pair<uint32_t, uint32_t>> pairs;
+  std::vector<std::pair<uint32_t, uint32_t>> pairs;  // place, portal
   for (uint32_t i = 0; i < touched_.size(); ++i) {
     if (cuts_.contains(touched_[i])) continue;
     for (const uint32_t p : mesh_->portals_of(touched_[i])) {
@@ -546,18 +555,18 @@ void NodeChanges::list_portals() {
       if (at == replaced_.end() || at->portal != p) pairs.emplace_back(i, p);
     }
   }
+  std::sort(pairs.begin(), pairs.end());
   for (uint32_t k = 0; k < portals_.size(); ++k) {
     pairs.emplace_back(place(portals_[k].a), count + k);
     pairs.emplace_back(place(portals_[k].b), count + k);
   }
-  std::sort(pairs.begin(), pairs.end());
+  // By counting: the portals of each place are in order already.
   first_portal_.assign(touched_.size() + parts_.size() + 1, 0);
-  portal_of_.clear();
-  for (const auto& [at, portal] : pairs) {
-    ++first_portal_[at + 1];
-    portal_of_.push_back(portal);
-  }
+  for (const auto& [at, portal] : pairs) ++first_portal_[at + 1];
   for (size_t i = 1; i < first_portal_.size(); ++i) first_portal_[i] += first_portal_[i - 1];
+  std::vector<uint32_t> next(first_portal_.begin(), first_portal_.end() - 1);
+  portal_of_.resize(pairs.size());
+  for (const auto& [at, portal] : pairs) portal_of_[next[at]++] = portal;
 }
 
 std::optional<std::span<const uint32_t>> NodeChanges::portals_of(uint32_t block) const {

@@ -103,6 +103,7 @@ class NodeChanges {
   double longest_hole_link_;  // [m]
   uint64_t version_ = 0, updated_ = 0;
   std::vector<Change> changes_;
+  std::vector<ChangeId> active_;  // rising
 
   struct Cut {
     uint32_t first = 0, last = 0;  // of parts_

@@ -148,6 +148,14 @@ struct FlightFinder::Scratch {
     return *live;
   }
 
+  // From the ground into the air: into this component of it, or any (kNoBox). False: none is found.
+  bool find_link(const Shared& shared, const AirView& air, End& end, uint32_t component,
+                 bool& budget_exhausted);
+  // A component of the air over the ground at both ends: if there is more than one, the one that is
+  // nearest to both, as far as a flood around them shows. kNoBox: none.
+  uint32_t common_air(const Shared& shared, const AirView& air, const End& a, const End& b,
+                      const std::atomic<bool>* cancel, bool& budget_exhausted);
+
   FlightSearch search;
   SpentBudget spent = SpentBudget::kNone;  // the budget that the last search exhausted
   FlightStringPuller pull;
@@ -168,6 +176,60 @@ struct FlightFinder::Scratch {
   // in the air that is nearest to where the query leads.
   std::optional<AirPoint> reached;
 };
+
+bool FlightFinder::Scratch::find_link(const Shared& shared, const AirView& air_now, End& end,
+                                      uint32_t component, bool& budget_exhausted) {
+  if (!end.ground) return end.air.has_value();
+  const FlightEndpoints ends = shared.ends(air_now);
+  end.ground_air_link = end.ground;
+  end.air = ends.take_off(end.ground_air_link);
+  if (end.air &&
+      (component == kNoBox || air_now.component(air_now.box_at(*end.air)) == component)) {
+    return true;
+  }
+  end.air.reset();
+  const uint32_t ground_part = shared.ground_of(end.ground);
+  const bool leads = component == kNoBox
+                         ? !shared.ground_air_links.air_over(ground_part).empty()
+                         : shared.ground_air_links.joins(ground_part, air_now.baked(component));
+  if (!leads) return false;
+  const auto nearest = ends.nearest_take_off(end.ground, kMaxFloodCells, component, flood);
+  budget_exhausted = budget_exhausted || nearest.budget_exhausted;
+  end.ground_air_link = nearest.place;
+  end.air = ends.take_off(end.ground_air_link);
+  return end.air.has_value();
+}
+
+uint32_t FlightFinder::Scratch::common_air(const Shared& shared, const AirView& air_now,
+                                           const End& a, const End& b,
+                                           const std::atomic<bool>* cancel,
+                                           bool& budget_exhausted) {
+  const FlightEndpoints ends = shared.ends(air_now);
+  const auto over_a = shared.ground_air_links.air_over(shared.ground_of(a.ground));
+  const auto over_b = shared.ground_air_links.air_over(shared.ground_of(b.ground));
+  common.clear();
+  std::set_intersection(over_a.begin(), over_a.end(), over_b.begin(), over_b.end(),
+                        std::back_inserter(common));
+  if (common.empty()) return kNoBox;
+  if (common.size() < 2 && !is_changed()) return common[0];
+  for (const auto& [end, over] : {std::pair{&a, &over_from}, std::pair{&b, &over_to}}) {
+    if (cancel != nullptr && *cancel) {
+      budget_exhausted = true;
+      return kNoBox;
+    }
+    ends.components_over(end->ground, kMaxIslandCells, flood, *over);
+  }
+  size_t least = SIZE_MAX;
+  uint32_t best = common[0];
+  for (size_t i = 0; i < over_from.size(); ++i) {
+    const auto found = std::find(over_to.begin(), over_to.end(), over_from[i]);
+    const size_t rank = i + static_cast<size_t>(found - over_to.begin());
+    if (found == over_to.end() || rank >= least) continue;
+    least = rank;
+    best = over_from[i];
+  }
+  return best;
+}
 
 FlightFinder::FlightFinder(std::shared_ptr<const Shared> shared)
     : state_(std::move(shared)), scratch_(std::make_unique<Scratch>(*state_)) {}
@@ -360,54 +422,8 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
   scratch.reached.reset();
   bool budget_exhausted = false;  // somewhere: then what was not found may exist all the same
   const auto component_of = [&](AirPoint p) { return air.component(air.box_at(p)); };
-  // From the ground into the air: into this component of it, or any (kNoBox).
   const auto to_link = [&](End& end, uint32_t component) {
-    if (!end.ground) return end.air.has_value();
-    end.ground_air_link = end.ground;
-    end.air = ends.take_off(end.ground_air_link);
-    if (end.air && (component == kNoBox || component_of(*end.air) == component)) return true;
-    end.air.reset();
-    const uint32_t ground = state_->ground_of(end.ground);
-    const bool leads = component == kNoBox
-                           ? !state_->ground_air_links.air_over(ground).empty()
-                           : state_->ground_air_links.joins(ground, air.baked(component));
-    if (!leads) return false;
-    const auto nearest =
-        ends.nearest_take_off(end.ground, kMaxFloodCells, component, scratch.flood);
-    budget_exhausted = budget_exhausted || nearest.budget_exhausted;
-    end.ground_air_link = nearest.place;
-    end.air = ends.take_off(end.ground_air_link);
-    return end.air.has_value();
-  };
-  // Air over the ground at both ends: if there is more than one component, the one that is nearest
-  // to both, as far as a flood around them shows.
-  const auto common_air = [&](const End& a, const End& b) {
-    const auto over_a = state_->ground_air_links.air_over(state_->ground_of(a.ground));
-    const auto over_b = state_->ground_air_links.air_over(state_->ground_of(b.ground));
-    scratch.common.clear();
-    std::set_intersection(over_a.begin(), over_a.end(), over_b.begin(), over_b.end(),
-                          std::back_inserter(scratch.common));
-    if (scratch.common.empty()) return kNoBox;
-    if (scratch.common.size() < 2 && !scratch.is_changed()) return scratch.common[0];
-    for (const auto& [end, over] :
-         {std::pair{&a, &scratch.over_from}, std::pair{&b, &scratch.over_to}}) {
-      if (query.cancel != nullptr && *query.cancel) {
-        budget_exhausted = true;
-        return kNoBox;
-      }
-      ends.components_over(end->ground, kMaxIslandCells, scratch.flood, *over);
-    }
-    size_t least = SIZE_MAX;
-    uint32_t best = scratch.common[0];
-    for (size_t i = 0; i < scratch.over_from.size(); ++i) {
-      const auto found =
-          std::find(scratch.over_to.begin(), scratch.over_to.end(), scratch.over_from[i]);
-      const size_t rank = i + static_cast<size_t>(found - scratch.over_to.begin());
-      if (found == scratch.over_to.end() || rank >= least) continue;
-      least = rank;
-      best = scratch.over_from[i];
-    }
-    return best;
+    return scratch.find_link(*state_, air, end, component, budget_exhausted);
   };
   // The nearest take-offs may lead into islands of the air, a room or a yard under a net: then the
   // path takes off farther away, into air that leads to the other end.
@@ -417,7 +433,7 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     if (!b.ground) return to_link(a, component_of(*b.air));
     if (!to_link(a, kNoBox) || !to_link(b, kNoBox)) return false;
     if (air.same_component(*a.air, *b.air)) return true;
-    const uint32_t common = common_air(a, b);
+    const uint32_t common = scratch.common_air(*state_, air, a, b, query.cancel, budget_exhausted);
     return common != kNoBox && to_link(a, common) && to_link(b, common);
   };
   const auto find_on_foot = [&](const Place& a, const Place& b, Path& ground) {

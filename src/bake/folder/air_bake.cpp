@@ -155,6 +155,74 @@ void AirBaker::rasterise(int32_t tile_x, int32_t tile_z, const TileRect& rect,
   }
 }
 
+// Measures of a zone and its apron, in air cells but for the ring.
+struct AirBaker::ZoneCells {
+  int32_t per_tile, apron, known, side, across;
+  int32_t ring;            // tiles along a side of the zone and the ring around it
+  int32_t grid_x, grid_z;  // of the world
+};
+
+// The tiles of the zone and the ring of tiles around it, row by row.
+std::vector<AirBaker::TileAir> AirBaker::rasterise_ring(int32_t zone_x, int32_t zone_z,
+                                                        std::span<const uint32_t> triangles,
+                                                        int32_t apron, const Context& context) {
+  const auto workers = static_cast<int32_t>(workers_.size());
+  const int32_t tiles = plan_.tiles_per_zone, ring = tiles + 2;
+  const int32_t first_x = zone_x * tiles - 1, first_z = zone_z * tiles - 1;
+  triangles_.resize(triangles.size());
+  parallel_for(triangles.size(), workers, [&](size_t i) {
+    triangles_[i] =
+        to_cell_triangle(*plan_.scene, triangles[i], plan_.grid, plan_.coder->code(triangles[i]));
+  });
+  const TriangleBins bins =
+      bin_triangles(triangles_, first_x * kTileSide, first_z * kTileSide, ring, ring, kTileSide, 0);
+  std::vector<TileAir> air(static_cast<size_t>(ring) * static_cast<size_t>(ring));
+  parallel_for_worker(air.size(), workers, [&](size_t i, int32_t worker) {
+    const auto items = bins.square(i);
+    if (items.empty() || context.cancel) return;
+    const int32_t column = static_cast<int32_t>(i) % ring, row = static_cast<int32_t>(i) / ring;
+    TileRect rect;  // of a ring tile only what is read
+    if (column == 0) rect.x0 = kTileSide - apron * shape_.multiple;
+    if (column == ring - 1) rect.x1 = apron * shape_.multiple;
+    if (row == 0) rect.z0 = kTileSide - apron * shape_.multiple;
+    if (row == ring - 1) rect.z1 = apron * shape_.multiple;
+    rasterise(first_x + column, first_z + row, rect, items, *workers_[static_cast<size_t>(worker)],
+              air[i]);
+  });
+  return air;
+}
+
+// Makes the air cells with solids not free, and those beside the world and where nothing is known.
+void AirBaker::fill_solids(const ZoneCells& c, int32_t zone_x, int32_t zone_z, int32_t base,
+                           int32_t height, const std::vector<TileAir>& air, AirRows& rows) const {
+  const auto workers = static_cast<int32_t>(workers_.size());
+  parallel_for(static_cast<size_t>(c.across), workers, [&](size_t i) {
+    const auto z = static_cast<int32_t>(i);
+    const int32_t cell_z = zone_z * c.side + z - c.apron, first_cell = zone_x * c.side - c.apron;
+    const int32_t row = (z - c.apron + c.per_tile) / c.per_tile,
+                  in_row = (z - c.apron + c.per_tile) % c.per_tile;
+    for (int32_t y = 0; y < height; ++y) {  // beside the world, and where nothing is known
+      const bool inside = cell_z >= 0 && cell_z < c.grid_z && z >= c.apron - c.known &&
+                          z < c.apron + c.side + c.known;
+      rows.fill(0, inside ? std::max(-first_cell, c.apron - c.known) : c.across, y, z, false);
+      rows.fill(std::min(c.grid_x - first_cell, c.apron + c.side + c.known), c.across, y, z, false);
+    }
+    for (int32_t x = 0; x < c.across; ++x) {
+      const int32_t column = (x - c.apron + c.per_tile) / c.per_tile,
+                    in_column = (x - c.apron + c.per_tile) % c.per_tile;
+      const TileAir& tile = air[static_cast<size_t>(row * c.ring + column)];
+      if (tile.first.empty()) continue;
+      const auto square = static_cast<size_t>(in_row * c.per_tile + in_column);
+      for (uint32_t s = tile.first[square]; s < tile.first[square + 1]; ++s) {
+        const int32_t last = std::min(tile.layers[s].last - base, height - 1);
+        for (int32_t y = std::max(tile.layers[s].first - base, 0); y <= last; ++y) {
+          rows.fill(x, x + 1, y, z, false);
+        }
+      }
+    }
+  });
+}
+
 Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zone_z,
                                                       std::span<const uint32_t> triangles,
                                                       uint64_t input, Context& context) {
@@ -190,27 +258,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
       return slot_of(zone_x, zone_z, reused->bytes(), nullptr);
     }
   }
-  const int32_t first_x = zone_x * tiles - 1, first_z = zone_z * tiles - 1;
-  triangles_.resize(triangles.size());
-  parallel_for(triangles.size(), workers, [&](size_t i) {
-    triangles_[i] =
-        to_cell_triangle(*plan_.scene, triangles[i], plan_.grid, plan_.coder->code(triangles[i]));
-  });
-  const TriangleBins bins =
-      bin_triangles(triangles_, first_x * kTileSide, first_z * kTileSide, ring, ring, kTileSide, 0);
-  std::vector<TileAir> air(static_cast<size_t>(ring) * static_cast<size_t>(ring));
-  parallel_for_worker(air.size(), workers, [&](size_t i, int32_t worker) {
-    const auto items = bins.square(i);
-    if (items.empty() || context.cancel) return;
-    const int32_t column = static_cast<int32_t>(i) % ring, row = static_cast<int32_t>(i) / ring;
-    TileRect rect;  // of a ring tile only what is read
-    if (column == 0) rect.x0 = kTileSide - apron * shape_.multiple;
-    if (column == ring - 1) rect.x1 = apron * shape_.multiple;
-    if (row == 0) rect.z0 = kTileSide - apron * shape_.multiple;
-    if (row == ring - 1) rect.z1 = apron * shape_.multiple;
-    rasterise(first_x + column, first_z + row, rect, items, *workers_[static_cast<size_t>(worker)],
-              air[i]);
-  });
+  const std::vector<TileAir> air = rasterise_ring(zone_x, zone_z, triangles, apron, context);
   if (context.cancel) return Error{Errc::kCancelled, "bake: cancelled; nothing was written"};
 
   int32_t low = INT32_MAX, high = INT32_MIN;  // of the solids here and around
@@ -233,31 +281,15 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
                                    "baked; use a larger air cell or smaller zones"};
   }
   AirRows rows(across, height, across, true);
-  parallel_for(static_cast<size_t>(across), workers, [&](size_t i) {
-    const auto z = static_cast<int32_t>(i);
-    const int32_t cell_z = zone_z * side + z - apron, first_cell = zone_x * side - apron;
-    const int32_t row = (z - apron + per_tile) / per_tile,
-                  in_row = (z - apron + per_tile) % per_tile;
-    for (int32_t y = 0; y < height; ++y) {  // beside the world, and where nothing is known
-      const bool inside =
-          cell_z >= 0 && cell_z < grid_z && z >= apron - known && z < apron + side + known;
-      rows.fill(0, inside ? std::max(-first_cell, apron - known) : across, y, z, false);
-      rows.fill(std::min(grid_x - first_cell, apron + side + known), across, y, z, false);
-    }
-    for (int32_t x = 0; x < across; ++x) {
-      const int32_t column = (x - apron + per_tile) / per_tile,
-                    in_column = (x - apron + per_tile) % per_tile;
-      const TileAir& tile = air[static_cast<size_t>(row * ring + column)];
-      if (tile.first.empty()) continue;
-      const auto square = static_cast<size_t>(in_row * per_tile + in_column);
-      for (uint32_t s = tile.first[square]; s < tile.first[square + 1]; ++s) {
-        const int32_t last = std::min(tile.layers[s].last - base, height - 1);
-        for (int32_t y = std::max(tile.layers[s].first - base, 0); y <= last; ++y) {
-          rows.fill(x, x + 1, y, z, false);
-        }
-      }
-    }
-  });
+  const ZoneCells cells{.per_tile = per_tile,
+                        .apron = apron,
+                        .known = known,
+                        .side = side,
+                        .across = across,
+                        .ring = ring,
+                        .grid_x = grid_x,
+                        .grid_z = grid_z};
+  fill_solids(cells, zone_x, zone_z, base, height, air, rows);
   const AirTreeSource source{.rows = &rows,
                              .x = apron,
                              .z = apron,

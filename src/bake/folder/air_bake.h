@@ -15,6 +15,8 @@
 /// The free space of a world's zones, beside their ground.
 namespace throng {
 
+class AirRows;
+
 /// Heights of whole and half cells lie off the borders of layers, as in the plane
 /// (bake/columns/grid.h).
 AirShape air_shape(const BakePlan& plan, const Box3d& bounds);
@@ -47,6 +49,12 @@ class AirBaker {
  private:
   struct Worker;
   struct TileAir;
+  struct ZoneCells;
+  std::vector<TileAir> rasterise_ring(int32_t zone_x, int32_t zone_z,
+                                      std::span<const uint32_t> triangles, int32_t apron,
+                                      const Context& context);
+  void fill_solids(const ZoneCells& c, int32_t zone_x, int32_t zone_z, int32_t base, int32_t height,
+                   const std::vector<TileAir>& air, AirRows& rows) const;
   void rasterise(int32_t tile_x, int32_t tile_z, const TileRect& rect,
                  std::span<const uint32_t> items, Worker& worker, TileAir& tile) const;
 

@@ -267,120 +267,155 @@ void LayerWindow::fill_corner(const LayerList& tile, const Layer& own, int32_t d
   }
 }
 
-// Where the layer has no free span but another layer of the tile continues it (a seam), takes that
-// one's.
-void LayerWindow::fill_holes(const LayerList& tile, size_t layer, const BodyLimits& limits) {
-  const Layer& own = *tile[layer];
-  if (own.cells == kTileArea) return;
-  CellRows filled{}, others{}, hopeful{};
-  add_free_span_bits(own, filled);
-  uint64_t any = 0;
-  for (const Layer* other : tile) {
-    if (other == &own) continue;
-    CellRows free_spans{};
-    add_free_span_bits(*other, free_spans);
-    for (size_t z = 0; z < kTileSide; ++z) others[z] |= free_spans[z];
-    any |= add_steps(own, filled, *other, free_spans, limits.link_step, hopeful);
+namespace {
+
+// Fills the holes of a layer's window: cells where the layer has no free span but another layer of
+// the tile continues it (a seam).
+class HoleFiller {
+ public:
+  HoleFiller(LayerWindow& window, const LayerList& tile, size_t layer, const BodyLimits& limits)
+      : window_(window),
+        tile_(tile),
+        own_(*tile[layer]),
+        limits_(limits),
+        surely_nearest_((limits.low_free_span - 1) / 2),
+        last_(layer == 0 ? 1 : 0),
+        even_(tile.size()),
+        known_(tile.size(), 0) {}
+
+  // Holes are filled from their rims inward, a row at a time: down the tile, then up.
+  void fill() {
+    add_free_span_bits(own_, filled_);
+    uint64_t any = 0;
+    for (const Layer* other : tile_) {
+      if (other == &own_) continue;
+      CellRows free_spans{};
+      add_free_span_bits(*other, free_spans);
+      for (size_t z = 0; z < kTileSide; ++z) others_[z] |= free_spans[z];
+      any |= add_steps(own_, filled_, *other, free_spans, limits_.link_step, hopeful_);
+    }
+    if (any == 0) return;
+    for (int32_t z = 0; z < kTileSide; ++z) fill_row(z);
+    for (int32_t z = kTileSide - 1; z >= 0; --z) fill_row(z);
   }
-  if (any == 0) return;
-  // Which layer has the free span nearest to a top, if it lies within a step. Free spans of a
-  // column have tops at least low_free_span apart, so one that is nearer than half of that is the
-  // nearest: mostly the layer's that the last hole was filled from.
-  size_t last = layer == 0 ? 1 : 0;
-  const int32_t surely_nearest = (limits.low_free_span - 1) / 2;
-  const auto next_floor = [&](size_t cell, int32_t near_top) {
+
+ private:
+  // Which layer has the free span nearest to a top, if it lies within a step; else their number.
+  // Free spans of a column have tops at least low_free_span apart, so one that is nearer than half
+  // of that is the nearest: mostly the layer's that the last hole was filled from.
+  [[nodiscard]] size_t next_floor(size_t cell, int32_t near_top) const {
     const auto distance = [&](const Layer& other) {
       return std::abs(other.base + other.top[cell] - near_top);
     };
-    if (tile[last]->top[cell] != kNone16 && distance(*tile[last]) <= surely_nearest) return last;
-    size_t best = tile.size();
-    int32_t best_distance = limits.link_step + 1;
-    for (size_t i = 0; i < tile.size(); ++i) {
-      const Layer& other = *tile[i];
-      if (near_top < other.base + other.low_top - limits.link_step ||
-          near_top > other.base + other.high_top + limits.link_step || other.top[cell] == kNone16 ||
-          distance(other) >= best_distance) {
+    if (tile_[last_]->top[cell] != kNone16 && distance(*tile_[last_]) <= surely_nearest_) {
+      return last_;
+    }
+    size_t best = tile_.size();
+    int32_t best_distance = limits_.link_step + 1;
+    for (size_t i = 0; i < tile_.size(); ++i) {
+      const Layer& other = *tile_[i];
+      if (near_top < other.base + other.low_top - limits_.link_step ||
+          near_top > other.base + other.high_top + limits_.link_step ||
+          other.top[cell] == kNone16 || distance(other) >= best_distance) {
         continue;
       }
       best_distance = distance(other);
       best = i;
     }
     return best;
-  };
-  const auto try_fill = [&](int32_t x, int32_t z) {
-    const size_t at = index(x, z);
+  }
+
+  bool try_fill(int32_t x, int32_t z) {
+    const size_t at = window_.index(x, z);
     const size_t cell = static_cast<size_t>(z * kTileSide + x);
-    const std::array<size_t, 4> around{index(x - 1, z), index(x + 1, z), index(x, z - 1),
-                                       index(x, z + 1)};
+    const std::array<size_t, 4> around{window_.index(x - 1, z), window_.index(x + 1, z),
+                                       window_.index(x, z - 1), window_.index(x, z + 1)};
     for (const size_t next : around) {
-      if (top[next] == kNone16) continue;
-      const size_t floor = next_floor(cell, own.base + top[next]);
-      if (floor == tile.size()) continue;
-      const Layer& other = *tile[floor];
-      const int32_t shift = other.base - own.base;
+      if (window_.top[next] == kNone16) continue;
+      const size_t floor = next_floor(cell, own_.base + window_.top[next]);
+      if (floor == tile_.size()) continue;
+      const Layer& other = *tile_[floor];
+      const int32_t shift = other.base - own_.base;
       const uint16_t other_top = rebased_top(other.top[cell], shift);
       const uint16_t other_ceiling = rebased_ceiling(other.ceiling[cell], shift);
       const int32_t headroom =
-          std::min(other_ceiling, ceiling[next]) - std::max(other_top, top[next]);
-      if (std::abs(other_top - top[next]) > limits.link_step || headroom < limits.low_free_span) {
+          std::min(other_ceiling, window_.ceiling[next]) - std::max(other_top, window_.top[next]);
+      if (std::abs(other_top - window_.top[next]) > limits_.link_step ||
+          headroom < limits_.low_free_span) {
         continue;
       }
-      top[at] = other_top;
-      ceiling[at] = other_ceiling;
-      last = floor;
+      window_.top[at] = other_top;
+      window_.ceiling[at] = other_ceiling;
+      last_ = floor;
       return true;
     }
     return false;
-  };
-  // After a hole was filled, those to the right of it as far as the same floor is so even that
-  // each would be filled from the one before it.
-  std::vector<CellRows> even(tile.size());
-  std::vector<uint8_t> known(tile.size(), 0);
-  const auto fill_on = [&](int32_t x, int32_t z, uint64_t open) {
-    const Layer& other = *tile[last];
-    const int32_t shift = other.base - own.base;
+  }
+
+  // After a hole was filled, fills those to the right of it as far as the same floor is so even
+  // that each would be filled from the one before it. Returns which.
+  uint64_t fill_on(int32_t x, int32_t z, uint64_t open) {
+    const Layer& other = *tile_[last_];
+    const int32_t shift = other.base - own_.base;
     // All heights are on this layer's scale, too.
     if (other.low_top + shift < 0 ||
-        other.high_top + shift + limits.low_free_span > kHighCeiling16) {
-      return uint64_t{0};
+        other.high_top + shift + limits_.low_free_span > kHighCeiling16) {
+      return 0;
     }
-    if (known[last] == 0) even_runs(other, {surely_nearest, limits.low_free_span}, even[last]);
-    known[last] = 1;
-    const uint64_t onward = open & even[last][static_cast<size_t>(z)] << 1;
+    if (known_[last_] == 0) {
+      even_runs(other, {surely_nearest_, limits_.low_free_span}, even_[last_]);
+    }
+    known_[last_] = 1;
+    const uint64_t onward = open & even_[last_][static_cast<size_t>(z)] << 1;
     const int32_t count = x < kTileSide - 1 ? std::countr_one(onward >> (x + 1)) : 0;
-    if (count == 0) return uint64_t{0};
-    const size_t from = static_cast<size_t>(z * kTileSide + x + 1), to = index(x + 1, z);
-    rebase_row(&other.top[from], count, shift, &top[to], rebased_top);
-    rebase_row(&other.ceiling[from], count, shift, &ceiling[to], rebased_ceiling);
+    if (count == 0) return 0;
+    const size_t from = static_cast<size_t>(z * kTileSide + x + 1), to = window_.index(x + 1, z);
+    rebase_row(&other.top[from], count, shift, &window_.top[to], rebased_top);
+    rebase_row(&other.ceiling[from], count, shift, &window_.ceiling[to], rebased_ceiling);
     return ~uint64_t{0} >> (64 - count) << (x + 1);
-  };
-  // Holes are filled from their rims inward, a row at a time: down the tile, then up. Each is asked
-  // once a pass, the first of a row's rim first; but those that are neither hopeful nor beside one
-  // that was filled would be asked in vain.
-  CellRows fresh{};  // filled here
-  const auto fill_row = [&](int32_t z) {
+  }
+
+  // Each hole is asked once a pass, the first of a row's rim first; but those that are neither
+  // hopeful nor beside one that was filled would be asked in vain.
+  void fill_row(int32_t z) {
     const auto r = static_cast<size_t>(z);
     const auto beside = [&](const CellRows& rows) {
       const uint64_t above = z > 0 ? rows[r - 1] : 0;
       const uint64_t below = z + 1 < kTileSide ? rows[r + 1] : 0;
       return above | below | rows[r] << 1 | rows[r] >> 1;
     };
-    uint64_t open = others[r] & ~filled[r];
+    uint64_t open = others_[r] & ~filled_[r];
     while (true) {
-      const uint64_t asked = open & (hopeful[r] | beside(fresh));
+      const uint64_t asked = open & (hopeful_[r] | beside(fresh_));
       if (asked == 0) return;
       const uint64_t bit = asked & (~asked + 1);
-      open &= ~(bit | (beside(filled) & (bit - 1)));
+      open &= ~(bit | (beside(filled_) & (bit - 1)));
       const int32_t x = std::countr_zero(bit);
       if (!try_fill(x, z)) continue;
       const uint64_t cells = bit | fill_on(x, z, open);
       open &= ~cells;
-      filled[r] |= cells;
-      fresh[r] |= cells;
+      filled_[r] |= cells;
+      fresh_[r] |= cells;
     }
-  };
-  for (int32_t z = 0; z < kTileSide; ++z) fill_row(z);
-  for (int32_t z = kTileSide - 1; z >= 0; --z) fill_row(z);
+  }
+
+  LayerWindow& window_;
+  const LayerList& tile_;
+  const Layer& own_;
+  const BodyLimits& limits_;
+  int32_t surely_nearest_;
+  size_t last_;                 // layer that the last hole was filled from
+  std::vector<CellRows> even_;  // by layer, once known
+  std::vector<uint8_t> known_;
+  CellRows filled_{}, others_{}, hopeful_{};
+  CellRows fresh_{};  // filled here
+};
+
+}  // namespace
+
+void LayerWindow::fill_holes(const LayerList& tile, size_t layer, const BodyLimits& limits) {
+  if (tile[layer]->cells == kTileArea) return;
+  HoleFiller(*this, tile, layer, limits).fill();
 }
 
 bool all_legal(const Neighbourhood& tiles, size_t layer, const BodyWindow& body,

@@ -87,6 +87,33 @@ bool GroundOf(const Layer& layer, const BodyWindow& body, const BodyLimits& limi
   return any != 0;
 }
 
+// The extremes of all widths along each row, from those of the next narrower one. Rows that no
+// allowed cell reads are left out.
+void fill_rows(const std::vector<int32_t>& widths, const BitPlane& ground, int32_t reach,
+               const LegalityScratch& scratch, const RowTable& table) {
+  const auto is_asked = [&](int32_t z) {
+    const int32_t from = std::max(z - reach, 0), to = std::min(z + reach, kTileSide - 1);
+    return std::any_of(&ground[static_cast<size_t>(from)], &ground[static_cast<size_t>(to)] + 1,
+                       [](uint64_t row) { return row != 0; });
+  };
+  for (int32_t z = -reach; z < kTileSide + reach; ++z) {
+    if (!is_asked(z)) continue;
+    const uint16_t* top = &scratch.window.top[scratch.window.index(0, z)];
+    const uint16_t* ceiling = &scratch.window.ceiling[scratch.window.index(0, z)];
+    const auto row = [&](int32_t k, int32_t q) {
+      return k < 0 ? nullptr : table.row(k, q, z + reach);
+    };
+    int32_t narrower = 0;
+    for (int32_t k = 0; k < static_cast<int32_t>(widths.size()); ++k) {
+      const int32_t w = widths[static_cast<size_t>(k)];
+      extreme_row(top, row(k - 1, 0), narrower, w, row(k, 0), Highest{});
+      extreme_row(top, row(k - 1, 1), narrower, w, row(k, 1), Lowest{});
+      extreme_row(ceiling, row(k - 1, 2), narrower, w, row(k, 2), Lowest{});
+      narrower = w;
+    }
+  }
+}
+
 void LegalCellsOf(const Layer& layer, const BodyWindow& body, const BitPlane& ground,
                   LegalityScratch& scratch, LegalCells& out) {
   out = {};
@@ -112,28 +139,7 @@ void LegalCellsOf(const Layer& layer, const BodyWindow& body, const BitPlane& gr
   uint16_t* aligned = scratch.rows.data();
   aligned += (64 - reinterpret_cast<uintptr_t>(aligned) % 64) % 64 / sizeof(uint16_t);
   const RowTable table{aligned, count};
-  // Rows that no allowed cell reads are left out.
-  const auto is_asked = [&](int32_t z) {
-    const int32_t from = std::max(z - reach, 0), to = std::min(z + reach, kTileSide - 1);
-    return std::any_of(&ground[static_cast<size_t>(from)], &ground[static_cast<size_t>(to)] + 1,
-                       [](uint64_t row) { return row != 0; });
-  };
-  for (int32_t z = -reach; z < kTileSide + reach; ++z) {
-    if (!is_asked(z)) continue;
-    const uint16_t* top = &scratch.window.top[scratch.window.index(0, z)];
-    const uint16_t* ceiling = &scratch.window.ceiling[scratch.window.index(0, z)];
-    const auto row = [&](int32_t k, int32_t q) {
-      return k < 0 ? nullptr : table.row(k, q, z + reach);
-    };
-    int32_t narrower = 0;
-    for (int32_t k = 0; k < static_cast<int32_t>(widths.size()); ++k) {
-      const int32_t w = widths[static_cast<size_t>(k)];
-      extreme_row(top, row(k - 1, 0), narrower, w, row(k, 0), Highest{});
-      extreme_row(top, row(k - 1, 1), narrower, w, row(k, 1), Lowest{});
-      extreme_row(ceiling, row(k - 1, 2), narrower, w, row(k, 2), Lowest{});
-      narrower = w;
-    }
-  }
+  fill_rows(widths, ground, reach, scratch, table);
 
   const VU none = hn::Set(du, kNone16);
   const VU bottom = hn::Set(du, static_cast<uint16_t>(std::min(body.bottom, 65535)));

@@ -210,6 +210,30 @@ void PathSearch::add_piece(const MeshRect& rect, const MeshPortal& portal, doubl
   push(node);
 }
 
+// The goal is seen, or lies behind one of the interval's ends: then the path turns there, at a root
+// that is made.
+void PathSearch::look_at_goal(const Node& node, bool on_line, uint32_t seen_root,
+                              uint32_t& right_root, uint32_t& left_root) {
+  uint32_t via = seen_root;
+  const CellPoint from = roots_[seen_root].point;
+  if (!on_line && cross(from, node.right, goal_) < -kSame) {
+    if (node.right_corner == kNoCorner)
+      via = UINT32_MAX;
+    else
+      via = right_root = turn(node.root, node.right, node.right_corner);
+  } else if (!on_line && cross(from, node.left, goal_) > kSame) {
+    if (node.left_corner == kNoCorner)
+      via = UINT32_MAX;
+    else
+      via = left_root = turn(node.root, node.left, node.left_corner);
+  }
+  if (via == UINT32_MAX) return;
+  const double length = roots_[via].length + distance(roots_[via].point, goal_);
+  if (length >= found_length_) return;
+  found_length_ = length;
+  found_root_ = via;
+}
+
 void PathSearch::expand(const Node& node) {
   const CellPoint root = roots_[node.root].point;
   const MeshRect& rect = mesh_->rects[node.rect];
@@ -251,29 +275,8 @@ void PathSearch::expand(const Node& node) {
 
   uint32_t right_root = UINT32_MAX, left_root = UINT32_MAX;
   if (node.rect == goal_rect_) {
-    // The goal is seen, or lies behind one of the ends.
     const bool on_line = std::fabs(side) <= kSame * width;
-    double length = 0;
-    uint32_t via = seen_root;
-    const CellPoint from = roots_[seen_root].point;
-    if (!on_line && cross(from, node.right, goal_) < -kSame) {
-      if (node.right_corner == kNoCorner)
-        via = UINT32_MAX;
-      else
-        via = right_root = turn(node.root, node.right, node.right_corner);
-    } else if (!on_line && cross(from, node.left, goal_) > kSame) {
-      if (node.left_corner == kNoCorner)
-        via = UINT32_MAX;
-      else
-        via = left_root = turn(node.root, node.left, node.left_corner);
-    }
-    if (via != UINT32_MAX) {
-      length = roots_[via].length + distance(roots_[via].point, goal_);
-      if (length < found_length_) {
-        found_length_ = length;
-        found_root_ = via;
-      }
-    }
+    look_at_goal(node, on_line, seen_root, right_root, left_root);
   }
   bool right_asked = right_root != UINT32_MAX, left_asked = left_root != UINT32_MAX;
   const auto behind = [&](bool right) {

@@ -66,6 +66,8 @@ class PathSearch {
   SearchResult run(const SearchBudget& budget);
   void start(uint32_t rect, CellPoint from);
   void expand(const Node& node);
+  void look_at_goal(const Node& node, bool on_line, uint32_t seen_root, uint32_t& right_root,
+                    uint32_t& left_root);
   void add_piece(const MeshRect& rect, const MeshPortal& portal, double from, double to,
                  uint32_t root);
   uint32_t turn(uint32_t root, CellPoint at, uint32_t corner);

@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
   // The flow through each exit, between its first and its last avatar.
   for (size_t exit = 0; exit < scenario.areas.size(); ++exit) {
     std::vector<double> times;
-    for (const Visit& visit : simulation.visits()) {
+    for (const Trip& visit : simulation.trips()) {
       if (visit.left >= 0 && visit.exit == static_cast<int32_t>(exit)) times.push_back(visit.left);
     }
     if (times.size() < 2) continue;

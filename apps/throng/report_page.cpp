@@ -144,7 +144,7 @@ Result<std::vector<ReportPicture>> draw_report(const ReplaySummary& summary,
     FrameChart egress(summary, {.title = "Avatars present", .y_title = "avatars"});
     egress.add("present", summary.present);
     egress.add("left so far", summary.left);
-    egress.add("come so far", summary.come);
+    egress.add("come so far", summary.entered);
     take("egress", "Egress curve: avatars present, left and come, over time.",
          draw_chart(egress.chart()));
     FrameChart speed(summary, {.title = "Mean speed", .y_title = "m/s"});

@@ -146,7 +146,7 @@ Result<Scene> scene_of(Session& session, const World& world, const ScenePictureO
   if (options.sources.files.empty() && options.sources.scene.empty()) {
     return walkable_surface(world, options.avatar_class, session.context);
   }
-  Result<Scene> scene = read_sources(options.sources, session.context, SceneLooks::kRead);
+  Result<Scene> scene = read_sources(options.sources, session.context, SceneMaterials::kRead);
   if (scene) note_if_elsewhere(*scene, world.summary().bounds);
   return scene;
 }

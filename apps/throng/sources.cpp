@@ -140,7 +140,7 @@ void append_scene(Scene& scene, const Scene& other) {
                                other.report.warnings.end());
 }
 
-Result<Scene> read_sources(const SourceOptions& options, Context& context, SceneLooks looks) {
+Result<Scene> read_sources(const SourceOptions& options, Context& context, SceneMaterials looks) {
   SceneConfig config;
   if (!options.scene.empty()) {
     Result<SceneConfig> loaded = load_scene_config(options.scene);

@@ -107,7 +107,7 @@ std::vector<double> heights_of(const std::vector<AvatarClass>& classes) {
 Result<void> set_scene(StageParts& parts, const ViewTarget& target, const World& world,
                        Context& context) {
   const bool given = has_sources(target.sources);
-  Result<Scene> scene = given ? read_sources(target.sources, context, SceneLooks::kRead)
+  Result<Scene> scene = given ? read_sources(target.sources, context, SceneMaterials::kRead)
                               : walkable_surface(world, 0, context);
   if (!scene) return scene.error();
   if (given) note_if_elsewhere(*scene, world.summary().bounds);
@@ -138,7 +138,7 @@ Result<void> load_world(StageParts& parts, const ViewTarget& target, Context& co
 
 Result<void> load_model(StageParts& parts, ViewTarget target, Context& context) {
   target.sources.files.insert(target.sources.files.begin(), target.path);
-  const Result<Scene> scene = read_sources(target.sources, context, SceneLooks::kRead);
+  const Result<Scene> scene = read_sources(target.sources, context, SceneMaterials::kRead);
   if (!scene) return scene.error();
   if (auto ok = parts.set_scene(*scene); !ok) return ok;
   BakeConfig config;
@@ -184,7 +184,7 @@ Result<void> load_scenario_stage(StageParts& parts, const ViewTarget& target, Co
   if (target.seed) scenario->seed = *target.seed;
   Result<World> world = Error{Errc::kNotFound, ""};
   if (scenario->world.empty()) {
-    const Result<Scene> scene = load_scene(*scenario, context, SceneLooks::kRead);
+    const Result<Scene> scene = load_scene(*scenario, context, SceneMaterials::kRead);
     if (!scene) return scene.error();
     if (!has_sources(target.sources)) {
       if (auto ok = parts.set_scene(*scene); !ok) return ok;

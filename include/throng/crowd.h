@@ -56,7 +56,7 @@ struct ObstacleState {
   ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry;
   /// When it was last requested, in the crowd's time (steps times dt). Below 0: never, or switched
   /// off since. [s]
-  double asked_at = -1;
+  double requested_at = -1;
   double up_at = -1;  ///< When it came up; below 0: it is not up. [s]
   /// Avatars inside, counted at the request and at the beginning of each step.
   uint32_t occupants = 0;

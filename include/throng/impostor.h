@@ -263,10 +263,10 @@ struct EyeCamera {
 /// Borrowed arrays, one entry per avatar. Positions are relative to a point of the caller's, near
 /// enough for floats (a kilometre to 0.06 mm).
 struct ImpostorArrays {
-  std::span<const float> x, y, z;     ///< Feet. [m]
-  std::span<const uint16_t> heading;  ///< From +Z towards +X. [65536 a turn]
-  std::span<const uint16_t> phase;    ///< Of the clip's cycle, see walk_phase. [65536 a cycle]
-  std::span<const uint16_t> look;  ///< Appearance: any number, which selects the outfit. [< 2048]
+  std::span<const float> x, y, z;        ///< Feet. [m]
+  std::span<const uint16_t> heading;     ///< From +Z towards +X. [65536 a turn]
+  std::span<const uint16_t> phase;       ///< Of the clip's cycle, see walk_phase. [65536 a cycle]
+  std::span<const uint16_t> appearance;  ///< Any number, which selects the outfit. [< 2048]
 };
 
 /// An avatar for the card, 16 bytes. `view`: AtlasShape::view in bits 0 to 19, mirrored in bit 20,

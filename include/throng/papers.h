@@ -187,7 +187,7 @@ struct Model {
   double lambda3 = 0.5;     ///< Share of max_speed in eq. 12 and 13. [0 to 1]
   /// Psi: distance from the target at which braking begins. [length, > 0]
   double deceleration = 30;
-  double zone_time = 0;  ///< The length of a probe is A_pre + speed x zone_time. [time, >= 0]
+  double probe_time = 0;  ///< The length of a probe is A_pre + speed x probe_time. [time, >= 0]
   Length length = Length::kTrue;
   Trigger trigger = Trigger::kNear;
   Axes axes = Axes::kSide;
@@ -248,14 +248,14 @@ struct Threat {
 
 /// Length of a body's probe: a rectangle as wide as the repulsive field, from the position along
 /// the heading.
-[[nodiscard]] THRONG_API double zone_length(const Body& body, const Model& model);
+[[nodiscard]] THRONG_API double probe_length(const Body& body, const Model& model);
 
 /// Do two probes overlap? Heights are ignored.
-[[nodiscard]] THRONG_API bool zones_meet(const Body& a, const Body& b, const Model& model);
+[[nodiscard]] THRONG_API bool probes_meet(const Body& a, const Body& b, const Model& model);
 
 /// Does the probe of `body` overlap a disc? Heights are ignored.
-[[nodiscard]] THRONG_API bool zone_overlaps(const Body& body, Vec3d centre, double radius,
-                                            const Model& model);
+[[nodiscard]] THRONG_API bool probe_overlaps(const Body& body, Vec3d centre, double radius,
+                                             const Model& model);
 
 /// The horizontal unit vector to the right of a heading.
 [[nodiscard]] THRONG_API Vec3d right_of(Vec3d forward);

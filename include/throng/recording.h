@@ -263,7 +263,7 @@ struct ReplaySummary {
   // One per frame:
   std::vector<double> time;  ///< [s]
   std::vector<uint32_t> present;
-  std::vector<uint64_t> come, left;  ///< So far; avatars of the first frame have come.
+  std::vector<uint64_t> entered, left;  ///< So far; avatars of the first frame have entered.
   /// Mean over avatars that are also in the next frame; the last frame repeats the one before.
   std::vector<double> speed;
   std::vector<LineFlow> lines;   ///< In the order of the config.

@@ -52,7 +52,7 @@ struct ScenarioArea {
   std::vector<Prism> prisms;
   /// Speed factor: share of its desired speed at which an avatar walks inside, as on stairs or
   /// sand. [0.01 to 10]
-  double pace = 1;
+  double speed_factor = 1;
 };
 
 /// One of several alternatives, with a weight; one is drawn at random by the weights.
@@ -81,12 +81,12 @@ struct DensityMap {
 /// A stage: one thing that an avatar does in a journey.
 struct Stage {
   enum class Kind : uint8_t {
-    kGo,     ///< Walks until it is inside one of `areas`.
-    kSpot,   ///< Walks to a random point in one of `areas`, or drawn from `density`.
-    kWait,   ///< Stands for `seconds`.
-    kQueue,  ///< Stands in line at `queue` until it has been served.
-    kLink,   ///< Takes the lift or escalator `link`.
-    kLeave,  ///< Walks until it is inside one of `areas`, and leaves the simulation.
+    kGo,           ///< Walks until it is inside one of `areas`.
+    kRandomPoint,  ///< Walks to a random point in one of `areas`, or drawn from `density`.
+    kWait,         ///< Stands for `seconds`.
+    kQueue,        ///< Stands in line at `queue` until it has been served.
+    kLink,         ///< Takes the lift or escalator `link`.
+    kLeave,        ///< Walks until it is inside one of `areas`, and leaves the simulation.
   };
   Kind kind = Kind::kGo;
   std::vector<int32_t> areas;
@@ -195,7 +195,7 @@ struct Scenario {
 /// Reads the triangles that a scenario's world is baked from. Fails as load_scene does, and with
 /// kBadConfig if the scenario opens a baked world, which keeps no triangles.
 [[nodiscard]] THRONG_API Result<Scene> load_scene(const Scenario& scenario, Context& context,
-                                                  SceneLooks looks = SceneLooks::kLeaveOut);
+                                                  SceneMaterials looks = SceneMaterials::kLeaveOut);
 /// Bakes a scenario's world from the scene that load_scene has read.
 [[nodiscard]] THRONG_API Result<World> bake_world(const Scenario& scenario, const Scene& scene,
                                                   Context& context);
@@ -215,7 +215,7 @@ struct SimulationReport {
 };
 
 /// A trip: one avatar from entering to leaving.
-struct Visit {
+struct Trip {
   uint64_t person = 0;   ///< From 0, in order of entering.
   int32_t source = 0;    ///< Of the scenario.
   int32_t profile = -1;  ///< -1: none.
@@ -229,9 +229,9 @@ struct Visit {
 
 /// Times of an obstacle of the scenario.
 struct ObstacleTimes {
-  double asked = -1;  ///< When it was requested; -1: not yet. [s]
-  double up = -1;     ///< When it came up: no body is in it since then; -1: not yet, or never. [s]
-  double gone = -1;   ///< When it was removed; -1: not yet. [s]
+  double requested_at = -1;  ///< When it was requested; -1: not yet. [s]
+  double up = -1;  ///< When it came up: no body is in it since then; -1: not yet, or never. [s]
+  double removed_at = -1;  ///< When it was removed; -1: not yet. [s]
   uint32_t inside = 0;     ///< Avatars inside at the request.
   uint32_t waits_for = 0;  ///< Avatars inside now, for which it waits.
 };
@@ -262,7 +262,7 @@ class THRONG_API Simulation {
   /// XXH3 of the crowd and of the state of all journeys.
   [[nodiscard]] uint64_t state_hash() const;
   /// All trips so far, in order of entering.
-  [[nodiscard]] std::span<const Visit> visits() const;
+  [[nodiscard]] std::span<const Trip> trips() const;
 
   /// The times of each obstacle of the scenario, in its order.
   [[nodiscard]] std::span<const ObstacleTimes> obstacle_times() const;

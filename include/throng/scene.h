@@ -313,7 +313,7 @@ struct AreaVolume {
 };
 
 /// Whether to read materials and textures. The triangles do not depend on it.
-enum class SceneLooks : uint8_t {
+enum class SceneMaterials : uint8_t {
   kLeaveOut,
   /// Reads colours and textures (PNG, JPEG, TGA, BMP), in the file or beside it. Those that cannot
   /// be used give one warning per file, and their surfaces get plain colours; large ones are scaled
@@ -329,7 +329,7 @@ struct SceneConfig {
   std::vector<AreaVolume> volumes;
   double plan_height = 3.0;       ///< Height of obstacles of 2D plans. [m, > 0]
   double curve_tolerance = 0.02;  ///< Largest distance of a patch from its triangles. [m, > 0]
-  SceneLooks looks = SceneLooks::kLeaveOut;
+  SceneMaterials looks = SceneMaterials::kLeaveOut;
 };
 
 /// Reads all sources into one Scene. Bad triangles are dropped and counted; a file that cannot be

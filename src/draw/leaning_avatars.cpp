@@ -41,7 +41,7 @@ LevelCounts pack_leaning(const Atlas& atlas, const DrawnCrowd& crowd, const Pack
       continue;
     }
     const double far = length(from_eye);
-    const uint32_t look = static_cast<uint32_t>(a.look[i]) << 21;
+    const uint32_t look = static_cast<uint32_t>(a.appearance[i]) << 21;
     LeaningInstance instance{.body = {a.x[i], a.y[i], a.z[i], 0},
                              .up_x = static_cast<float>(axis.x),
                              .up_y = static_cast<float>(axis.y),

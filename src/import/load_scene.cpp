@@ -253,7 +253,7 @@ Result<Scene> load_scene(const SceneConfig& config, Context& context) {
   const std::string name = sources->size() == 1 ? sources->front().path
                                                 : fmt::format("scene of {} files", sources->size());
   if (auto cleaned = clean_scene(all, name, context); !cleaned) return cleaned.error();
-  if (config.looks == SceneLooks::kRead) add_named_materials(all);
+  if (config.looks == SceneMaterials::kRead) add_named_materials(all);
   if (context.on_progress) {
     context.on_progress({"read", sources->size(), sources->size()});
   }

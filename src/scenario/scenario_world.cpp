@@ -6,7 +6,7 @@
 // The world of a scenario: opened, or baked in memory from models, a built-in world or a plane.
 namespace throng {
 
-Result<Scene> load_scene(const Scenario& scenario, Context& context, SceneLooks looks) {
+Result<Scene> load_scene(const Scenario& scenario, Context& context, SceneMaterials looks) {
   if (!scenario.world.empty()) {
     return Error{Errc::kBadConfig, scenario.world + ": a baked world keeps no triangles"};
   }

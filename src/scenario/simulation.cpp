@@ -192,13 +192,13 @@ void Simulation::State::update_obstacles() {
       const auto added = crowd.add_obstacle(obstacle.prism, ObstacleKind::kStatic, obstacle.policy);
       THRONG_ASSERT(added);  // The prism was checked.
       obstacles[n] = *added;
-      obstacle_times[n].asked = time();
+      obstacle_times[n].requested_at = time();
       record_obstacle_times(n);
       obstacle_times[n].inside = obstacle_times[n].waits_for;
     } else if (!wanted && obstacles[n]) {
       crowd.remove_obstacle(obstacles[n]);
       obstacles[n] = {};
-      obstacle_times[n].gone = time();
+      obstacle_times[n].removed_at = time();
       obstacle_times[n].waits_for = 0;
     }
   }
@@ -266,7 +266,7 @@ bool Simulation::is_over() const {
 
 const Crowd& Simulation::crowd() const { return state_->crowd; }
 std::span<const ObstacleTimes> Simulation::obstacle_times() const { return state_->obstacle_times; }
-std::span<const Visit> Simulation::visits() const { return state_->visits; }
+std::span<const Trip> Simulation::trips() const { return state_->trips; }
 
 void Simulation::read(std::vector<AvatarState>& out) const {
   state_->crowd.read(out);

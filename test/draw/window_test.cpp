@@ -99,7 +99,7 @@ std::vector<uint8_t> shown(EGLint depth_bits, HiddenCulling culling, const Scene
     turns.push_back(static_cast<uint16_t>(i * 1700));
   }
   const DrawnCrowd crowd{
-      .avatars = {.x = x, .y = y, .z = z, .heading = turns, .phase = turns, .look = turns}};
+      .avatars = {.x = x, .y = y, .z = z, .heading = turns, .phase = turns, .appearance = turns}};
   glClearColor(1, 0, 1, 1);
   for (int32_t again = 0; again < 2; ++again) {
     const auto ok = drawing->show({&crowd, 1}, config);

@@ -101,7 +101,7 @@ Scene textured_scene() {
 Result<Scene> load(const std::string& path, std::vector<AreaVolume> volumes = {}) {
   SceneConfig config;
   config.sources.push_back({.path = path, .up = {}, .scale = {}, .transform = {}});
-  config.looks = SceneLooks::kRead;
+  config.looks = SceneMaterials::kRead;
   config.volumes = std::move(volumes);
   Context context;
   return load_scene(config, context);
@@ -155,7 +155,7 @@ TEST(Materials, GoThroughGlbAndBackWithTheirTextures) {
   Context context;
   ReadOptions options;
   options.name = path;
-  options.looks = SceneLooks::kRead;
+  options.looks = SceneMaterials::kRead;
   auto by_us = read_glb(*bytes, options, context);
   ASSERT_TRUE(by_us) << by_us.error().message;
   ASSERT_TRUE(read_textures(*by_us, path, context));
@@ -174,7 +174,7 @@ TEST(Materials, AreLeftOutUnlessRequested) {
   EXPECT_TRUE(scene->materials.empty());
   EXPECT_TRUE(scene->textures.empty());
   EXPECT_TRUE(scene->texture_corners.empty());
-  config.looks = SceneLooks::kRead;
+  config.looks = SceneMaterials::kRead;
   const auto looks = load_scene(config, context);
   ASSERT_TRUE(looks);
   EXPECT_EQ(scene->positions, looks->positions);
@@ -403,7 +403,7 @@ TEST(Materials, TwoModelsKeepTheirOwn) {
   for (const std::string& one : {folder.write("looks.obj", kObj), path}) {
     config.sources.push_back({.path = one, .up = {}, .scale = {}, .transform = {}});
   }
-  config.looks = SceneLooks::kRead;
+  config.looks = SceneMaterials::kRead;
   Context context;
   const auto scene = load_scene(config, context);
   ASSERT_TRUE(scene);

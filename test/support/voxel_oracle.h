@@ -34,7 +34,7 @@ class VoxelOracle {
   /// less than a hundredth at the unit spacing of corners. Nothing: there is no such path, or there
   /// are more than `max_corners` corners.
   struct Answer {
-    bool given_up = false;
+    bool budget_exhausted = false;
     std::optional<double> length;
   };
   [[nodiscard]] Answer shortest(const HalfPoint3& from, const HalfPoint3& to, double limit,

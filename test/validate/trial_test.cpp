@@ -31,7 +31,7 @@ box = [0.9, 0.9, 1.1, 1.1]
 [[area]]
 name = "slow"
 box = [11, 0, 16, 2]
-pace = 0.5
+speed_factor = 0.5
 [[area]]
 name = "end"
 box = [20, 0, 22, 2]

@@ -94,10 +94,10 @@ int32_t area_of(const aiNode& node, int32_t above) {
 
 class Sender {
  public:
-  Sender(aiScene& scene, const std::string& path, SceneLooks looks, const PipeWriter& pipe)
+  Sender(aiScene& scene, const std::string& path, SceneMaterials looks, const PipeWriter& pipe)
       : scene_(scene),
         pipe_(pipe),
-        looks_(looks == SceneLooks::kRead),
+        looks_(looks == SceneMaterials::kRead),
         extension_(std::filesystem::path(path).extension().string()) {
     for (char& c : extension_) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     has_areas_ = extension_ == ".glb" || extension_ == ".gltf";
@@ -341,11 +341,11 @@ void refuse(const PipeWriter& pipe, std::string why) {
   pipe.write(why.data(), why.size());
 }
 
-void read_and_send(const std::string& path, SceneLooks looks, const PipeWriter& pipe) {
+void read_and_send(const std::string& path, SceneMaterials looks, const PipeWriter& pipe) {
   try {
     auto* importer = new Assimp::Importer;  // Never destroyed: the child ends by _exit.
     const int of_looks =
-        looks == SceneLooks::kRead ? 0 : aiComponent_TEXCOORDS | aiComponent_TEXTURES;
+        looks == SceneMaterials::kRead ? 0 : aiComponent_TEXCOORDS | aiComponent_TEXTURES;
     importer->SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
                                  aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
                                      aiComponent_COLORS | aiComponent_BONEWEIGHTS |

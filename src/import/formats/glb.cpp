@@ -118,7 +118,7 @@ struct Elements {
 class GlbReader {
  public:
   explicit GlbReader(const ReadOptions& options)
-      : name_(options.name), looks_(options.looks == SceneLooks::kRead), writer_(options) {}
+      : name_(options.name), looks_(options.looks == SceneMaterials::kRead), writer_(options) {}
 
   Result<RawScene> read(std::string_view bytes, Context& context) {
     if (auto ok = read_chunks(bytes); !ok) return ok.error();

@@ -21,7 +21,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 class ObjReader {
  public:
   explicit ObjReader(const ReadOptions& options)
-      : writer_(options), looks_(options.looks == SceneLooks::kRead), library_(options.name) {}
+      : writer_(options), looks_(options.looks == SceneMaterials::kRead), library_(options.name) {}
 
   Result<RawScene> read(std::string_view bytes, Context& context) {
     size_t lines = 0;

@@ -56,7 +56,7 @@ Result<void> check_model(const Model& m) {
       {"max_force", m.max_force, 0, kMax, true},
       {"horizon", m.horizon, 0, kMax, true},
       {"deceleration", m.deceleration, 0, kMax, true},
-      {"zone_time", m.zone_time, 0, kMax, false},
+      {"zone_time", m.probe_time, 0, kMax, false},
       {"lambda1", m.lambda1, 0.5, 1, false},
       {"lambda3", m.lambda3, 0, 1, false},
   }};
@@ -108,14 +108,14 @@ Threat threat_of(const Body& self, const Body& other, const Model& model) {
           State::kTolerable) {
     return {};
   }
-  if (model.trigger == Trigger::kZones && !zones_meet(self, other, model)) return {};
+  if (model.trigger == Trigger::kZones && !probes_meet(self, other, model)) return {};
   threat.level = state == State::kAlert ? State::kAlert : State::kCritical;
   return threat;
 }
 
 Threat threat_of(const Body& self, const Obstacle& obstacle, const Model& model) {
   if (model.trigger == Trigger::kNever) return {};
-  if (!zone_overlaps(self, obstacle.position, obstacle.fields.precaution, model)) return {};
+  if (!probe_overlaps(self, obstacle.position, obstacle.fields.precaution, model)) return {};
   const Body standing{.position = obstacle.position, .velocity = {}, .fields = obstacle.fields};
   const Approach approach = nearest_approach(self, standing);
   // An obstacle behind is no threat, even if the zone still covers it.

@@ -69,7 +69,7 @@ void draw_avatar(Canvas& canvas, const View& view, const Body& body, Activity ac
     draw_ring(canvas, at, body.fields.precaution * view.scale, thin, kHatch);
     // The probe: two lines ahead, as wide as the repulsive field.
     const Vec3d right = right_of(body.forward) * body.fields.repulsive;
-    const Vec3d ahead = body.forward * zone_length(body, model);
+    const Vec3d ahead = body.forward * probe_length(body, model);
     for (const Vec3d& side : {right, right * -1}) {
       canvas.line(view(body.position + side), view(body.position + side + ahead), thin, kFaintInk);
     }

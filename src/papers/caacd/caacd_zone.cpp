@@ -21,7 +21,7 @@ struct Zone {
 Zone zone_of(const Body& body, const Model& model) {
   const Vec3d aside = right_of(body.forward);
   const Vec3d along{aside.z, 0, -aside.x};
-  const double half = zone_length(body, model) / 2;
+  const double half = probe_length(body, model) / 2;
   const Vec3d ground{body.position.x, 0, body.position.z};
   return {.middle = ground + along * half,
           .along = along,
@@ -38,11 +38,11 @@ double half_shadow(const Zone& zone, Vec3d axis) {
 
 }  // namespace
 
-double zone_length(const Body& body, const Model& model) {
-  return body.fields.precaution + length(body.velocity) * model.zone_time;
+double probe_length(const Body& body, const Model& model) {
+  return body.fields.precaution + length(body.velocity) * model.probe_time;
 }
 
-bool zones_meet(const Body& a, const Body& b, const Model& model) {
+bool probes_meet(const Body& a, const Body& b, const Model& model) {
   const Zone za = zone_of(a, model), zb = zone_of(b, model);
   const Vec3d between = zb.middle - za.middle;
   // Two rectangles are apart iff a side of one of them separates them.
@@ -52,7 +52,7 @@ bool zones_meet(const Body& a, const Body& b, const Model& model) {
   return true;
 }
 
-bool zone_overlaps(const Body& body, Vec3d centre, double radius, const Model& model) {
+bool probe_overlaps(const Body& body, Vec3d centre, double radius, const Model& model) {
   const Zone zone = zone_of(body, model);
   const Vec3d to{centre.x - zone.middle.x, 0, centre.z - zone.middle.z};
   const double along = std::max(0.0, std::fabs(dot(to, zone.along)) - zone.half_length);

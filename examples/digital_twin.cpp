@@ -10,9 +10,9 @@
 //   a step stops it at (4.85, 0.12, 50.00); with a ramp, 1 of 25 zones baked again:
 //   55 components, the largest 11755 m2; 612 of 1000 places reach an exit, mean 116 m
 #include <throng/bake.h>
-#include <throng/builtin_worlds.h>
-#include <throng/flow_field.h>
-#include <throng/graph.h>
+#include <throng/path.h>
+#include <throng/scene.h>
+#include <throng/world.h>
 
 #include <cmath>
 #include <cstdio>
@@ -29,13 +29,13 @@ T need(Result<T> result) {  // The value, or the end of the program with the err
 
 // Prints components and the flow to two exits; returns the area of the largest component.
 double report(const World& world, int32_t wheelchair, Vec3d exit_a, Vec3d exit_b) {
-  const Graph graph = need(Graph::make(world, {}, context));
+  const Graph graph = need(Graph::create(world, {}, context));
   const std::span<const Component> components = graph.components(wheelchair);
   if (components.empty()) std::puts("no place for a wheelchair"), std::exit(1);
-  GroundQuery query = need(GroundQuery::make(world, wheelchair));
+  GroundQuery query = need(GroundQuery::create(world, wheelchair));
   const Place exits[] = {query.nearest_place(exit_a, 20), query.nearest_place(exit_b, 20)};
-  const LiveGround ground = need(LiveGround::make(world, {.avatar_class = wheelchair}));
-  FlowField flow = need(FlowField::make(ground, exits, {}, context));
+  const LiveGround ground = need(LiveGround::create(world, {.avatar_class = wheelchair}));
+  FlowField flow = need(FlowField::create(ground, exits, {}, context));
   double sum = 0, reached = 0;
   for (uint64_t n = 0; n < 1000; ++n) {
     const double distance = flow.distance(world.random_place(wheelchair, /*seed=*/1, n));
@@ -51,7 +51,7 @@ int main(int argc, char** argv) {
   SceneConfig input;
   if (argc > 1) input.sources.emplace_back().path = argv[1];
   Scene scene =
-      argc > 1 ? need(load_scene(input, context)) : need(make_builtin_world({"city", 130}));
+      argc > 1 ? need(load_scene(input, context)) : need(create_builtin_world({"city", 130}));
   const BakeConfig config{.zone = 30};
   need(bake_world_to("twin.throng", scene, config, context));
   const World world = need(World::open("twin.throng"));
@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
   const double before = report(world, wheelchair, low, corner);
 
   // From the pavement towards the street, straight on: what stops a wheelchair?
-  GroundQuery query = need(GroundQuery::make(world, wheelchair));
+  GroundQuery query = need(GroundQuery::create(world, wheelchair));
   const Place pavement = query.nearest_place(low + Vec3d{6, 0, 50}, 20);
   const GroundRay ray = query.ray(pavement, -5, 0);
   if (ray.obstacle != Obstacle::kStep) return std::puts("no step stops it"), 0;

@@ -14,7 +14,7 @@
 //   west exit, 1.2 m wide: 120 avatars from 6.5 s to 57.6 s, 2.33 per second
 //   east exit, 1.0 m wide: 120 avatars from 7.9 s to 69.4 s, 1.93 per second
 //   240 entered, 240 left, 0 faults
-#include <throng/simulation.h>
+#include <throng/scenario.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
   Context context;  // Progress and cancel, for long calls.
   const Scenario scenario = need(load_scenario(argc > 1 ? argv[1] : "examples/evacuation.toml"));
   const World world = need(open_world(scenario, context));
-  Simulation simulation = need(Simulation::make(world, scenario, /*workers=*/0, context));
+  Simulation simulation = need(Simulation::create(world, scenario, /*workers=*/0, context));
 
   // The egress curve: how many have left, every 10 s.
   SimulationReport now;
@@ -52,7 +52,7 @@ int main(int argc, char** argv) {
   // The flow through each exit, between its first and its last avatar.
   for (size_t exit = 0; exit < scenario.areas.size(); ++exit) {
     std::vector<double> times;
-    for (const Visit& visit : simulation.visits()) {
+    for (const Trip& visit : simulation.trips()) {
       if (visit.left >= 0 && visit.exit == static_cast<int32_t>(exit)) times.push_back(visit.left);
     }
     if (times.size() < 2) continue;

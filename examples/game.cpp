@@ -8,9 +8,9 @@
 //   60.8 m to the goal: ray 6.4 m, path 125.7 m, with crate and shut door 128.4 m
 //   the player arrives after 75.2 s; 249 of 500 avatars have arrived; 0 faults
 #include <throng/bake.h>
-#include <throng/builtin_worlds.h>
 #include <throng/crowd.h>
-#include <throng/flow_field.h>
+#include <throng/path.h>
+#include <throng/scene.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -27,15 +27,15 @@ int main(int argc, char** argv) {
   Context context;  // Progress and cancel, for long calls.
   SceneConfig input;
   input.sources.emplace_back().path = argc > 1 ? argv[1] : "game_level.glb";
-  if (argc < 2) need(write_glb(need(make_builtin_world({"city", 100})), "game_level.glb"));
+  if (argc < 2) need(write_glb(need(create_builtin_world({"city", 100})), "game_level.glb"));
   const World world = need(bake_world(need(load_scene(input, context)), {}, context));
 
   // A ray along the ground, and the path between the same places. Class 0 is the adult.
   const Place from = world.random_place(0, /*seed=*/2, 0), to = world.random_place(0, 2, 1);
   const Vec3d line = to.position - from.position;
-  GroundQuery query = need(GroundQuery::make(world, 0));
+  GroundQuery query = need(GroundQuery::create(world, 0));
   const double seen = length(query.ray(from, line.x, line.z).place.position - from.position);
-  LiveGround ground = need(LiveGround::make(world, {.avatar_class = 0}));
+  LiveGround ground = need(LiveGround::create(world, {.avatar_class = 0}));
   Path path;
   ground.find(from, to, path);
   if (path.end != PathEnd::kReached) return std::puts("game: no path to the goal"), 1;
@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
   for (const Prism& obstacle : {door, crate}) need(ground.add_obstacle(obstacle));
   ground.find(from, to, path);
   std::printf(", with crate and shut door %.1f m\n", path.length);
-  FlowField guide = need(FlowField::make(ground, {&to, 1}, {}, context));
+  FlowField guide = need(FlowField::create(ground, {&to, 1}, {}, context));
 
   // The crowd: a player, and 500 avatars with goals. It has obstacles of its own.
   Crowd crowd = need(Crowd::create(world, {.dt = 0.1}));

@@ -12,8 +12,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "throng/lean.h"
-#include "throng/replay_export.h"
+#include "throng/avatar.h"
+#include "throng/recording.h"
 
 // Parser of trajectory files: the avatars of the last step, and headings from the steps before.
 namespace throng::app {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "throng/base.h"
 #include "throng/picture.h"
-#include "throng/result.h"
 
 /// Reads back what `throng run --trajectories` writes.
 namespace throng::app {

@@ -5,8 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <vector>
 
-#include "throng/prism.h"
-#include "throng/result.h"
+#include "throng/base.h"
 
 namespace throng::app {
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "throng/caacd_experiment.h"
-#include "throng/chart.h"
+#include "throng/papers.h"
+#include "throng/picture.h"
 
 /// [CAACD] figures 10 and 11 from a study.
 namespace throng::app {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "output_file.h"
-#include "throng/caacd_picture.h"
+#include "throng/papers.h"
 
 // One run of the experiment of [CAACD] section V, as a picture and as a table of frames.
 namespace throng::app {

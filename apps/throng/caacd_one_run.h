@@ -6,7 +6,7 @@
 #include <string>
 
 #include "command.h"
-#include "throng/caacd_experiment.h"
+#include "throng/papers.h"
 
 /// One run of the experiment of [CAACD], to look at.
 namespace throng::app {

@@ -132,7 +132,7 @@ int atlas(Session& session, const AtlasOptions& options) {
     if (!loaded) return fail(loaded.error());
     character = *std::move(loaded);
   }
-  const Result<Atlas> exact = build_atlas(character, options.config, session.context);
+  const Result<Atlas> exact = create_atlas(character, options.config, session.context);
   if (!exact) {
     const std::string whose = options.character.empty() ? "" : options.character + ": ";
     return fail({exact.error().code, whose + exact.error().message});

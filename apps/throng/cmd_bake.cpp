@@ -13,8 +13,7 @@
 #include "number_checks.h"
 #include "sources.h"
 #include "throng/bake.h"
-#include "throng/cluster.h"
-#include "throng/nodes.h"
+#include "throng/surface.h"
 
 // throng bake: turns models into a folder of zone files.
 namespace throng::app {

@@ -11,8 +11,8 @@
 #include "command.h"
 #include "number_checks.h"
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
-#include "throng/wanderers.h"
+#include "throng/papers.h"
+#include "throng/scene.h"
 
 // throng bench: times bakes of built-in worlds and crowds of several sizes on this machine, on one
 // thread and on several.
@@ -43,7 +43,7 @@ struct BakeRow {
 
 Result<BakeRow> bench_bake(const BuiltinWorldConfig& world, const BenchOptions& options,
                            Context& context) {
-  const Result<Scene> scene = make_builtin_world(world);
+  const Result<Scene> scene = create_builtin_world(world);
   if (!scene) return scene.error();
   BakeRow row{.world = world, .triangles = scene->triangles.size(), .report = {}};
   std::vector<double> one;
@@ -156,7 +156,7 @@ int bench(Session& session, const BenchOptions& options) {
   std::vector<CrowdRow> crowds;
   bool same = true;
   for (uint32_t avatars = 1000; avatars <= options.avatars; avatars *= 10) {
-    const Result<Scene> scene = make_builtin_world(garage_for(avatars));
+    const Result<Scene> scene = create_builtin_world(garage_for(avatars));
     if (!scene) return fail(scene.error());
     const Result<World> world =
         bake_world(*scene, {.cell = options.cell, .classes = {AvatarClass{}}}, session.context);

@@ -16,8 +16,8 @@
 #include "caacd_one_run.h"
 #include "command.h"
 #include "number_checks.h"
-#include "throng/caacd_experiment.h"
-#include "throng/chart.h"
+#include "throng/papers.h"
+#include "throng/picture.h"
 
 // throng caacd: the experiment of [CAACD] section V, next to the paper's own numbers.
 namespace throng::app {
@@ -265,7 +265,7 @@ void add_caacd(CLI::App& parser, Session& session) {
   command->add_option("--psi", model.deceleration, "Distance to the target to brake from [units]")
       ->capture_default_str();
   command
-      ->add_option("--zone-time", model.zone_time,
+      ->add_option("--zone-time", model.probe_time,
                    "Zones extend this much beyond the precaution field [frames at speed]")
       ->capture_default_str();
   command->add_option("--fields", options->fields, "Radii: repulsive, precaution, alert [units]")

@@ -10,7 +10,6 @@
 #include "command.h"
 #include "in_world.h"
 #include "number_checks.h"
-#include "throng/graph.h"
 #include "throng/world.h"
 
 // throng components: the connected components of a world, per avatar class.
@@ -93,7 +92,7 @@ int print_components(Session& session, const ComponentsOptions& options) {
     const Result<Vec3d> at = position_in(*world, options.world, "--at", options.at);
     if (!at) return fail(at.error());
   }
-  const Result<Graph> graph = Graph::make(*world, {.workers = options.threads}, session.context);
+  const Result<Graph> graph = Graph::create(*world, {.workers = options.threads}, session.context);
   if (!graph) return fail(graph.error());
   if (!options.at.empty()) {
     const auto usable = graph->check_at({options.at[0], options.at[1], options.at[2]});

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "command.h"
-#include "throng/walkable_surface.h"
+#include "throng/bake.h"
 #include "throng/world.h"
 
 // throng export: the walkable surface of a class as a model for other programs.

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "command.h"
-#include "throng/builtin_worlds.h"
+#include "throng/scene.h"
 
 // throng generate: writes a built-in world as a GLB file.
 namespace throng::app {
@@ -44,7 +44,7 @@ int generate_world(const Session& session, const GenerateOptions& options) {
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  const Result<Scene> scene = make_builtin_world(options.config);
+  const Result<Scene> scene = create_builtin_world(options.config);
   if (!scene) return fail(scene.error());
   const double made = seconds();
   if (session.context.cancel)

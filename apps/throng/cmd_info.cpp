@@ -6,8 +6,7 @@
 #include <optional>
 
 #include "command.h"
-#include "throng/flight.h"
-#include "throng/graph.h"
+#include "throng/path.h"
 #include "throng/world.h"
 
 // throng info: prints the content of a baked world, and checks its files.

@@ -16,9 +16,6 @@
 #include "command.h"
 #include "in_world.h"
 #include "number_checks.h"
-#include "throng/flight.h"
-#include "throng/live_ground.h"
-#include "throng/node_path.h"
 #include "throng/path.h"
 #include "throng/world.h"
 
@@ -260,7 +257,7 @@ int fly(Session& session, const PathOptions& options, const World& world, int32_
   if (!from) return fail(from.error());
   const auto to = position_of(world, options, options.to, "--to");
   if (!to) return fail(to.error());
-  Result<FlightFinder> finder = FlightFinder::make(
+  Result<FlightFinder> finder = FlightFinder::create(
       world, {.avatar_class = avatar_class, .workers = options.threads}, session.context);
   if (!finder) return fail(finder.error());
   for (const auto& [position, option] : {std::pair{*from, "--from"}, std::pair{*to, "--to"}}) {
@@ -378,12 +375,12 @@ int find_over_nodes(Session& session, const PathOptions& options, const World& w
   if (!to_position) return fail(to_position.error());
   const Result<Nodes> nodes = Nodes::open(options.world);
   if (!nodes) return fail(nodes.error());
-  auto finder = NodePathFinder::make(*nodes,
-                                     {.avatar_class = avatar_class,
-                                      .slope_cost = options.slope_cost,
-                                      .overlay = false,  // One query does not repay its time.
-                                      .workers = options.threads},
-                                     session.context);
+  auto finder = NodePathFinder::create(*nodes,
+                                       {.avatar_class = avatar_class,
+                                        .slope_cost = options.slope_cost,
+                                        .overlay = false,  // One query does not repay its time.
+                                        .workers = options.threads},
+                                       session.context);
   if (!finder) return fail(finder.error());
   if (auto ok = add_boxes(options, *finder); !ok) return fail(ok.error());
   // A class that only walks: the ground above or below; if there is none, the nearest place.
@@ -426,7 +423,7 @@ int find_over_nodes(Session& session, const PathOptions& options, const World& w
 Result<LiveGround> live_ground(const World& world, const PathOptions& options,
                                int32_t avatar_class) {
   auto ground =
-      LiveGround::make(world, {.avatar_class = avatar_class, .slope_cost = options.slope_cost});
+      LiveGround::create(world, {.avatar_class = avatar_class, .slope_cost = options.slope_cost});
   if (!ground) return ground.error();
   if (auto ok = add_boxes(options, *ground); !ok) return ok.error();
   for (size_t i = 0; i < options.area_costs.size(); i += 2) {
@@ -502,7 +499,7 @@ int path(Session& session, const PathOptions& options) {
     seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
   if (!options.is_live()) {
-    Result<PathFinder> finder = PathFinder::make(
+    Result<PathFinder> finder = PathFinder::create(
         *world, {.avatar_class = *avatar_class, .workers = options.threads}, session.context);
     if (!finder) return fail(finder.error());
     mesh = mesh_json(finder->summary());

@@ -12,8 +12,8 @@
 #include "avatars_csv.h"
 #include "command.h"
 #include "scene_picture.h"
-#include "throng/nodes.h"
 #include "throng/picture.h"
+#include "throng/surface.h"
 
 // throng picture: a baked world, and a crowd in it, drawn from above as one PNG.
 namespace throng::app {

@@ -11,7 +11,6 @@
 #include "command.h"
 #include "in_world.h"
 #include "number_checks.h"
-#include "throng/ground_query.h"
 #include "throng/world.h"
 
 // throng query: the nearest place of a class to a position, its wall, a ray from it, places near
@@ -66,7 +65,7 @@ int query_place(Session& session, const QueryOptions& options) {
   if (!world) return fail(world.error());
   const Result<int32_t> avatar_class = class_named(*world, options.avatar_class);
   if (!avatar_class) return fail(avatar_class.error());
-  Result<GroundQuery> query = GroundQuery::make(*world, *avatar_class);
+  Result<GroundQuery> query = GroundQuery::create(*world, *avatar_class);
   if (!query) return fail(query.error());
   const Vec3d at{options.at[0], options.at[1], options.at[2]};
   if (!std::isfinite(at.x + at.y + at.z)) {

@@ -10,9 +10,8 @@
 
 #include "command.h"
 #include "rerun.h"
+#include "throng/bake.h"
 #include "throng/recording.h"
-#include "throng/replay_export.h"
-#include "throng/walkable_surface.h"
 #include "trajectory_db.h"
 
 // throng replay: prints what a recording holds, exports it, and compares it with a repeated run.

@@ -13,7 +13,6 @@
 #include "output_file.h"
 #include "report_page.h"
 #include "throng/recording.h"
-#include "throng/replay_summary.h"
 
 // throng report: a recording in numbers and pictures, on one page.
 namespace throng::app {
@@ -83,7 +82,7 @@ ReportText report_text(const ReportOptions& options, const Replay& replay,
   number("avatars",
          fmt::format("{} at first, {} at most, {} at last", summary.present.front(),
                      *std::ranges::max_element(summary.present), summary.present.back()));
-  number("came, left", fmt::format("{}, {}", summary.come.back(), summary.left.back()));
+  number("came, left", fmt::format("{}, {}", summary.entered.back(), summary.left.back()));
   if (summary.left.back() > 0) number("last one left", fmt::format("{:g} s", summary.last_left));
   number("mean speed", fmt::format("{:.3f} m/s", summary.mean_speed));
   number("waited, in total",
@@ -135,7 +134,7 @@ Json report_json(const ReportOptions& options, const Replay& replay, const Repla
           {"first_time", summary.time.front()},
           {"last_time", summary.time.back()},
           {"positions", summary.positions},
-          {"came", summary.come.back()},
+          {"came", summary.entered.back()},
           {"left", summary.left.back()},
           {"last_left", summary.last_left},
           {"mean_speed", summary.mean_speed},

@@ -14,11 +14,11 @@
 #include "run_scenario.h"
 #include "run_sinks.h"
 #include "run_times.h"
-#include "throng/wanderers.h"
+#include "throng/papers.h"
 #include "throng/world.h"
 
-// throng run: moves a crowd of wanderers, or with goals, through a baked world, or runs a scenario;
-// times, checks and hashes it.
+// throng run: moves a crowd with goals, or one of wanderers, through a baked world, or runs a
+// scenario; times, checks and hashes it.
 namespace throng::app {
 namespace {
 
@@ -30,7 +30,8 @@ struct RunOptions {
   uint64_t steps = 100;
   uint64_t check_every = 0;
   WanderConfig config;
-  CrowdRun crowd;                 // its goals are empty: wanderers
+  CrowdRun crowd;
+  bool wander = false;            // without goals
   std::vector<std::string> also;  // CLASS:N
 };
 
@@ -141,10 +142,6 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
 
 int run_wanderers(Session& session, const World& world, const RunOptions& options,
                   RunTimes& times) {
-  if (!options.also.empty()) return fail({Errc::kBadConfig, "--also goes with --goals"});
-  if (options.crowd.config.model != SteeringModel::kSampled) {
-    return fail({Errc::kBadConfig, "--model goes with --goals, or with a scenario file"});
-  }
   Result<Wanderers> crowd =
       times.measure("prepare", [&] { return Wanderers::create(world, options.config); });
   if (!crowd) return fail(crowd.error());
@@ -183,8 +180,9 @@ int run_wanderers(Session& session, const World& world, const RunOptions& option
 
 int run_file(Session& session, const CLI::App& command, const RunOptions& options) {
   // These are in the scenario file, or belong to worlds alone.
-  for (const char* name : {"--avatars", "--dt", "--class", "--speed", "--goals", "--near", "--also",
-                           "--radius", "--labels", "--zones", "--search-memory"}) {
+  for (const char* name :
+       {"--avatars", "--dt", "--class", "--speed", "--goals", "--wander", "--near", "--also",
+        "--radius", "--labels", "--zones", "--search-memory"}) {
     if (command.count(name) == 0) continue;
     return fail({Errc::kBadConfig,
                  fmt::format("{} goes with a world; write it into {}", name, options.world)});
@@ -205,6 +203,17 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
   return run_scenario(session, run);
 }
 
+// Fails if an option of avatars with goals stands beside --wander.
+Result<void> check_wander(const CLI::App& command) {
+  for (const char* name : {"--goals", "--near", "--also", "--radius", "--labels", "--zones",
+                           "--search-memory", "--model"}) {
+    if (command.count(name) == 0) continue;
+    return Error{Errc::kBadConfig,
+                 fmt::format("{} is for avatars with goals; leave out --wander", name)};
+  }
+  return {};
+}
+
 int run(Session& session, RunOptions& options) {
   RunTimes times;
   const Result<World> world = times.measure("open", [&] { return World::open(options.world); });
@@ -215,17 +224,17 @@ int run(Session& session, RunOptions& options) {
   if (options.check_every == 0) options.check_every = std::max<uint64_t>(1, options.steps / 10);
   options.crowd.steps = options.steps;
   options.crowd.check_every = options.check_every;
-  return options.crowd.goals.empty() ? run_wanderers(session, *world, options, times)
-                                     : run_with_goals(session, *world, options, times);
+  return options.wander ? run_wanderers(session, *world, options, times)
+                        : run_with_goals(session, *world, options, times);
 }
 
 }  // namespace
 
 void add_run(CLI::App& parser, Session& session) {
-  CLI::App* command = add_command(
-      parser, session, "run", "Move a crowd through a baked world, or run a scenario",
-      "throng bake builtin:garage -o garage.throng\n"
-      "throng run garage.throng --avatars 200 --steps 50 --goals random --trajectories walk.csv");
+  CLI::App* command =
+      add_command(parser, session, "run", "Move a crowd through a baked world, or run a scenario",
+                  "throng bake builtin:garage -o garage.throng\n"
+                  "throng run garage.throng --avatars 200 --steps 50 --trajectories walk.csv");
   const auto options = std::make_shared<RunOptions>();
   WanderConfig& config = options->config;
   command->add_option("world", options->world, "World folder, or a scenario file")
@@ -241,10 +250,13 @@ void add_run(CLI::App& parser, Session& session) {
   command
       ->add_option(
           "--goals", options->crowd.goals,
-          "Go to goals and avoid each other: 'random', or a file of lines x,y,z. Avatars that fly "
-          "begin in the air, and half of their random goals are there; those that climb move "
-          "over nodes, if the world has any")
-      ->type_name("random|FILE");
+          "Goals of the avatars: 'random', or a file of lines x,y,z. Avatars that fly begin in "
+          "the air, and half of their random goals are there; those that climb move over nodes, "
+          "if the world has any")
+      ->type_name("random|FILE")
+      ->capture_default_str();
+  command->add_flag("--wander", options->wander,
+                    "Without goals: avatars walk straight on and turn at random when blocked");
   command
       ->add_option("--near", options->crowd.near, "Max distance of random goals, 0: anywhere [m]")
       ->check(at_least(0));
@@ -252,9 +264,11 @@ void add_run(CLI::App& parser, Session& session) {
       ->type_name("CLASS:N");
   command->add_option("--radius", options->crowd.radius,
                       "Radius of avatars with goals, 0 for the class's own [m]");
-  command->add_flag("--labels", options->crowd.config.labels,
-                    "Label corners: faster paths, for small worlds");
-  command->add_flag("--zones", options->crowd.config.zones, "Paths by zones: for large worlds");
+  PathSpeedup& speedup = options->crowd.config.speedup;
+  CLI::Option* labels = add_speedup(*command, "--labels", PathSpeedup::kLabels, speedup,
+                                    "Label corners: faster paths, for small worlds");
+  add_speedup(*command, "--zones", PathSpeedup::kZones, speedup, "Paths by zones: for large worlds")
+      ->excludes(labels);
   add_search_memory(*command, options->crowd.config.search_bytes);
   add_model(*command, options->crowd.config.model);
   command->add_option("--trajectories", options->sinks.trajectories, "Write positions to this file")
@@ -286,7 +300,8 @@ void add_run(CLI::App& parser, Session& session) {
       session.exit_code = fail({Errc::kBadConfig, what + " goes with a scenario file"});
       return;
     }
-    session.exit_code = run(session, *options);
+    const Result<void> fits = options->wander ? check_wander(*command) : Result<void>{};
+    session.exit_code = fits ? run(session, *options) : fail(fits.error());
   });
 }
 

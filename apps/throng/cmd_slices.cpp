@@ -9,8 +9,8 @@
 
 #include "command.h"
 #include "sources.h"
+#include "throng/papers.h"
 #include "throng/picture.h"
-#include "throng/slices.h"
 
 // throng slices: height slices of a model as in [ML06], for comparison.
 namespace throng::app {

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "command.h"
-#include "throng/nodes.h"
+#include "throng/surface.h"
 
 // throng surface: how many nodes and arcs a world has, and their connected components per class.
 namespace throng::app {

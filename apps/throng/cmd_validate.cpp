@@ -10,8 +10,7 @@
 
 #include "command.h"
 #include "number_checks.h"
-#include "throng/trial.h"
-#include "throng/validation.h"
+#include "throng/scenario.h"
 #include "trials_folder.h"
 
 // throng validate: tests the crowd against measured and standard behaviour of people.

@@ -117,7 +117,8 @@ void add_view(CLI::App& parser, Session& session) {
   command->add_option("--near", target.start.near, "Max distance of goals, 0: anywhere [m]")
       ->check(at_least(0))
       ->capture_default_str();
-  command->add_flag("--zones", target.start.zones, "Paths by zones: for large worlds");
+  add_speedup(*command, "--zones", PathSpeedup::kZones, target.start.speedup,
+              "Paths by zones: for large worlds");
   add_people_options(command, target);
   command->add_option("--cell", target.cell, "Side of a cell, to bake a model with [m]")
       ->capture_default_str();

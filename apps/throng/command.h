@@ -9,12 +9,10 @@
 #include <string>
 #include <string_view>
 
-#include "throng/context.h"
-#include "throng/ground_query.h"
-#include "throng/math.h"
-#include "throng/nodes.h"
-#include "throng/result.h"
-#include "throng/steering_model.h"
+#include "throng/avatar.h"
+#include "throng/base.h"
+#include "throng/path.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 
 /// Shared by all commands of the program. One file per command: it adds its options to the parser
@@ -55,6 +53,9 @@ CLI::App* add_command(CLI::App& parser, Session& session, const std::string& nam
 
 /// The option --model.
 void add_model(CLI::App& command, SteeringModel& model);
+/// A flag that chooses how paths are found faster.
+CLI::Option* add_speedup(CLI::App& command, const std::string& flag, PathSpeedup chosen,
+                         PathSpeedup& speedup, const std::string& text);
 /// --search-memory, in MiB.
 void add_search_memory(CLI::App& command, uint64_t& bytes);
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <string>
 
+#include "throng/base.h"
 #include "throng/picture.h"
-#include "throng/result.h"
 
 namespace throng::app {
 

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "throng/math.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng/world.h"
 
 namespace throng::app {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "throng/result.h"
+#include "throng/base.h"
 
 /// A text file that is either complete or not there: written as PATH.part, renamed by finish().
 namespace throng::app {

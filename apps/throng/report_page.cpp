@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "throng/chart.h"
-#include "throng/heat_map.h"
+#include "throng/picture.h"
 
 // The charts and maps of a recording, and one page of HTML that embeds them.
 namespace throng::app {
@@ -145,7 +144,7 @@ Result<std::vector<ReportPicture>> draw_report(const ReplaySummary& summary,
     FrameChart egress(summary, {.title = "Avatars present", .y_title = "avatars"});
     egress.add("present", summary.present);
     egress.add("left so far", summary.left);
-    egress.add("come so far", summary.come);
+    egress.add("come so far", summary.entered);
     take("egress", "Egress curve: avatars present, left and come, over time.",
          draw_chart(egress.chart()));
     FrameChart speed(summary, {.title = "Mean speed", .y_title = "m/s"});

@@ -6,10 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "throng/base.h"
 #include "throng/picture.h"
 #include "throng/recording.h"
-#include "throng/replay_summary.h"
-#include "throng/result.h"
 
 /// What `throng report` shows: pictures, and one page that holds them all.
 namespace throng::app {

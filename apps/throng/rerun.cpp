@@ -87,8 +87,8 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
   run.radius = settings.at("radius");
   run.config.dt = settings.at("dt");
   run.config.seed = settings.at("seed");
-  run.config.labels = settings.at("labels");
-  run.config.zones = settings.at("zones");
+  if (settings.at("labels")) run.config.speedup = PathSpeedup::kLabels;
+  if (settings.at("zones")) run.config.speedup = PathSpeedup::kZones;
   run.config.search_bytes = settings.value("search_bytes", run.config.search_bytes);
   run.config.workers = workers;
   const auto model = find_steering_model(settings.value("model", name_of(run.config.model)));
@@ -115,7 +115,7 @@ Result<Rerun> rerun_scenario(const Json& settings, const World& world, int32_t w
   const auto scenario = recorded_scenario(settings);
   if (!scenario) return scenario.error();
   Context context;
-  auto made = Simulation::make(world, *scenario, workers, context);
+  auto made = Simulation::create(world, *scenario, workers, context);
   if (!made) return made.error();
   const auto simulation = std::make_shared<Simulation>(std::move(*made));
   // If a step fails, the state differs from the recording, and so does its hash.
@@ -156,13 +156,20 @@ Json wanderers_settings(const WanderConfig& config, const std::string& class_nam
 Json crowd_settings(const CrowdRun& run) {
   Json also = Json::array();
   for (const auto& [name, count] : run.also) also.push_back(Json::array({name, count}));
-  return {{"avatars", run.avatars},       {"also", also},
-          {"class", run.class_name},      {"goals", run.goals},
-          {"goals_text", run.goals_text}, {"near", run.near},
-          {"dt", run.config.dt},          {"speed", run.speed},
-          {"radius", run.radius},         {"labels", run.config.labels},
-          {"zones", run.config.zones},    {"search_bytes", run.config.search_bytes},
-          {"seed", run.config.seed},      {"model", name_of(run.config.model)}};
+  return {{"avatars", run.avatars},
+          {"also", also},
+          {"class", run.class_name},
+          {"goals", run.goals},
+          {"goals_text", run.goals_text},
+          {"near", run.near},
+          {"dt", run.config.dt},
+          {"speed", run.speed},
+          {"radius", run.radius},
+          {"labels", run.config.speedup == PathSpeedup::kLabels},
+          {"zones", run.config.speedup == PathSpeedup::kZones},
+          {"search_bytes", run.config.search_bytes},
+          {"seed", run.config.seed},
+          {"model", name_of(run.config.model)}};
 }
 
 Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t workers) {
@@ -181,7 +188,7 @@ Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t 
 Result<World> world_of(const RecordingInfo& info, const std::string& folder) {
   if (folder.empty() && info.model == kScenarioModel) {
     auto world = own_world(info);
-    if (!world || world->data() != nullptr) return world;
+    if (!world || *world) return world;
   }
   const std::string& name = folder.empty() ? info.world : folder;
   Result<World> world = World::open(name);

@@ -7,8 +7,8 @@
 
 #include "command.h"
 #include "run_crowd.h"
+#include "throng/papers.h"
 #include "throng/recording.h"
-#include "throng/wanderers.h"
 #include "throng/world.h"
 
 /// Repeats a recorded run: one entry per model in rerun.cpp.

@@ -11,8 +11,8 @@
 #include <optional>
 #include <sstream>
 
-#include "throng/flight.h"
-#include "throng/ground_query.h"
+#include "throng/path.h"
+#include "throng/world.h"
 
 // A crowd of avatars that get one goal after the other: random places, or those of a file.
 namespace throng::app {
@@ -179,7 +179,7 @@ Result<void> GoalCrowd::scatter(const std::string& class_name, uint32_t count, C
 
 bool GoalCrowd::goes_over_nodes(int32_t avatar_class) const {
   const AvatarClass avatar = world_.summary().classes[static_cast<size_t>(avatar_class)];
-  return run_.config.nodes.data() != nullptr && !avatar.flies && throng::goes_over_nodes(avatar);
+  return run_.config.nodes && !avatar.flies && throng::goes_over_nodes(avatar);
 }
 
 Result<void> GoalCrowd::read_places() {
@@ -190,7 +190,7 @@ Result<void> GoalCrowd::read_places() {
   // All classes share the file. It is checked for the first; others may not reach each goal.
   const int32_t avatar_class = class_of_.empty() ? 0 : class_of_[0];
   const bool over_nodes = goes_over_nodes(avatar_class);
-  auto query = GroundQuery::make(world_, avatar_class);
+  auto query = GroundQuery::create(world_, avatar_class);
   if (!query) return query.error();
   std::istringstream lines(run_.goals_text);
   std::string line;

@@ -12,7 +12,7 @@
 #include "command.h"
 #include "run_times.h"
 #include "throng/crowd.h"
-#include "throng/nodes.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 
 /// throng run with goals.
@@ -21,9 +21,9 @@ namespace throng::app {
 struct CrowdRun {
   std::string world_name;
   std::string class_name;
-  std::string goals;       // random, or a file of places
-  std::string goals_text;  // content of the file
-  double near = 0;         // max distance of random goals, 0: anywhere [m]
+  std::string goals = "random";  // or a file of places
+  std::string goals_text;        // content of the file
+  double near = 0;               // max distance of random goals, 0: anywhere [m]
   uint32_t avatars = 1000;
   std::vector<std::pair<std::string, uint32_t>> also;  // further classes and their counts
   uint64_t steps = 100;

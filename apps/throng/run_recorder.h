@@ -8,7 +8,7 @@
 #include <string>
 
 #include "command.h"
-#include "throng/avatar_state.h"
+#include "throng/avatar.h"
 #include "throng/recording.h"
 #include "throng/world.h"
 

@@ -34,7 +34,7 @@ struct Outcome {
 Outcome outcome_of(const Scenario& scenario, const Simulation& simulation) {
   Outcome out;
   uint64_t left = 0;
-  for (const Visit& visit : simulation.visits()) {
+  for (const Trip& visit : simulation.trips()) {
     if (visit.left < 0) continue;
     ExitCount& exit = out.exits[scenario.areas[static_cast<size_t>(visit.exit)].name];
     if (exit.left++ == 0) exit.first = visit.left;
@@ -59,7 +59,7 @@ Result<void> write_trips(const std::string& path, const Scenario& scenario,
   if (auto ok = file.open(path); !ok) return ok;
   file.write("person,source,profile,journey,speed,entered,started,left,exit\n");
   const auto time = [](double t) { return t < 0 ? std::string() : fmt::format("{:.3f}", t); };
-  for (const Visit& v : simulation.visits()) {
+  for (const Trip& v : simulation.trips()) {
     if (v.entered < 0) continue;
     file.write(fmt::format(
         "{},{},{},{},{:.4f},{},{},{},{}\n", v.person, name_in(scenario.sources, v.source),
@@ -71,11 +71,11 @@ Result<void> write_trips(const std::string& path, const Scenario& scenario,
 
 // The times of an obstacle in a sentence.
 std::string words_for(const ScenarioObstacle& obstacle, const ObstacleTimes& times) {
-  std::string words = fmt::format("to come at {:.1f} s, ", times.asked);
+  std::string words = fmt::format("to come at {:.1f} s, ", times.requested_at);
   if (times.up >= 0) {
     words += fmt::format("up at {:.1f} s", times.up);
-  } else if (times.gone >= 0) {
-    words += fmt::format("never up until it went at {:.1f} s", times.gone);
+  } else if (times.removed_at >= 0) {
+    words += fmt::format("never up until it went at {:.1f} s", times.removed_at);
   } else {
     words += fmt::format("still open: {} avatars are in it", times.waits_for);
   }
@@ -91,11 +91,11 @@ std::string obstacle_lines(const Scenario& scenario, const Simulation& simulatio
     const ScenarioObstacle& obstacle = scenario.obstacles[n];
     const ObstacleTimes& times = simulation.obstacle_times()[n];
     const auto time = [](double t) { return t < 0 ? Json(nullptr) : Json(t); };
-    const std::string words = times.asked < 0 ? "" : words_for(obstacle, times);
+    const std::string words = times.requested_at < 0 ? "" : words_for(obstacle, times);
     json[obstacle.name] = {{"policy", name_of(obstacle.policy)},
-                           {"asked", time(times.asked)},
+                           {"requested_at", time(times.requested_at)},
                            {"up", time(times.up)},
-                           {"gone", time(times.gone)},
+                           {"removed_at", time(times.removed_at)},
                            {"inside", times.inside},
                            {"waits_for", times.waits_for},
                            {"words", words}};
@@ -108,14 +108,14 @@ Result<void> write_obstacles(const std::string& path, const Scenario& scenario,
                              const Simulation& simulation) {
   OutputFile file;
   if (auto ok = file.open(path); !ok) return ok;
-  file.write("obstacle,policy,asked,up,gone,inside,waits_for\n");
+  file.write("obstacle,policy,requested_at,up,removed_at,inside,waits_for\n");
   const auto time = [](double t) { return t < 0 ? std::string() : fmt::format("{:.3f}", t); };
   for (size_t n = 0; n < scenario.obstacles.size(); ++n) {
     const ScenarioObstacle& obstacle = scenario.obstacles[n];
     const ObstacleTimes& times = simulation.obstacle_times()[n];
     file.write(fmt::format("{},{},{},{},{},{},{}\n", obstacle.name, name_of(obstacle.policy),
-                           time(times.asked), time(times.up), time(times.gone), times.inside,
-                           times.waits_for));
+                           time(times.requested_at), time(times.up), time(times.removed_at),
+                           times.inside, times.waits_for));
   }
   return file.finish();
 }
@@ -240,8 +240,9 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
   if (run.model) scenario->steering = *run.model;
   const auto world = times.measure("open", [&] { return open_world(*scenario, session.context); });
   if (!world) return world.error();
-  auto simulation = times.measure(
-      "prepare", [&] { return Simulation::make(*world, *scenario, run.workers, session.context); });
+  auto simulation = times.measure("prepare", [&] {
+    return Simulation::create(*world, *scenario, run.workers, session.context);
+  });
   if (!simulation) return simulation.error();
   Sinks sinks(run.sinks);
   const Json settings = {{"scenario", run.text},

@@ -9,7 +9,6 @@
 #include "command.h"
 #include "run_sinks.h"
 #include "throng/scenario.h"
-#include "throng/simulation.h"
 
 /// throng run with a scenario file.
 namespace throng::app {

@@ -4,7 +4,7 @@
 
 #include <iterator>
 
-#include "throng/replay_export.h"
+#include "throng/recording.h"
 
 // Writes the steps of a run to a CSV file and to a recording.
 namespace throng::app {

@@ -10,7 +10,7 @@
 #include "command.h"
 #include "output_file.h"
 #include "run_recorder.h"
-#include "throng/avatar_state.h"
+#include "throng/avatar.h"
 #include "throng/world.h"
 
 /// The files that a run writes, step by step.

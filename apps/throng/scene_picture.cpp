@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "avatars_csv.h"
+#include "throng/bake.h"
 #include "throng/impostor.h"
-#include "throng/walkable_surface.h"
 #ifdef THRONG_WITH_DRAW
 #include "throng_draw/draw.h"
 #endif
@@ -90,7 +90,7 @@ Result<std::vector<Atlas> > atlases_of(Session& session, const ScenePictureOptio
   if (!atlases.empty()) return atlases;
   AtlasConfig config;
   config.clips = {"Walk", "Idle"};
-  Result<Atlas> atlas = build_atlas(built_in_character(), config, session.context);
+  Result<Atlas> atlas = create_atlas(built_in_character(), config, session.context);
   if (!atlas) return atlas.error();
   atlases.push_back(*std::move(atlas));
   return atlases;
@@ -146,7 +146,7 @@ Result<Scene> scene_of(Session& session, const World& world, const ScenePictureO
   if (options.sources.files.empty() && options.sources.scene.empty()) {
     return walkable_surface(world, options.avatar_class, session.context);
   }
-  Result<Scene> scene = read_sources(options.sources, session.context, SceneLooks::kRead);
+  Result<Scene> scene = read_sources(options.sources, session.context, SceneMaterials::kRead);
   if (scene) note_if_elsewhere(*scene, world.summary().bounds);
   return scene;
 }

@@ -17,8 +17,8 @@
 #include "command.h"
 #include "number_checks.h"
 #include "old_names.h"
-#include "throng/cluster.h"
-#include "throng/search_budget.h"
+#include "throng/bake.h"
+#include "throng/path.h"
 
 // What all commands share: parsing, progress, Ctrl-C, results, errors and notes.
 namespace throng::app {
@@ -202,6 +202,12 @@ CLI::App* add_command(CLI::App& parser, Session& session, const std::string& nam
   command->footer(indented);
   command->parse_complete_callback([command] { refuse_nan(*command); });
   return command;
+}
+
+CLI::Option* add_speedup(CLI::App& command, const std::string& flag, PathSpeedup chosen,
+                         PathSpeedup& speedup, const std::string& text) {
+  return command.add_flag_callback(
+      flag, [chosen, &speedup] { speedup = chosen; }, text);
 }
 
 void add_search_memory(CLI::App& command, uint64_t& bytes) {

@@ -140,7 +140,7 @@ void append_scene(Scene& scene, const Scene& other) {
                                other.report.warnings.end());
 }
 
-Result<Scene> read_sources(const SourceOptions& options, Context& context, SceneLooks looks) {
+Result<Scene> read_sources(const SourceOptions& options, Context& context, SceneMaterials looks) {
   SceneConfig config;
   if (!options.scene.empty()) {
     Result<SceneConfig> loaded = load_scene_config(options.scene);
@@ -172,7 +172,7 @@ Result<Scene> read_sources(const SourceOptions& options, Context& context, Scene
     scene = *std::move(loaded);
   }
   for (const BuiltinWorldConfig& builtin : builtins) {
-    Result<Scene> made = make_builtin_world(builtin);
+    Result<Scene> made = create_builtin_world(builtin);
     if (!made) return made.error();
     if (scene.triangles.empty() && scene.report.triangles_read == 0) {
       scene = *std::move(made);

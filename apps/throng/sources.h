@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "command.h"
-#include "throng/builtin_worlds.h"
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// Turns the FILE arguments that several commands share into one Scene.
@@ -36,7 +34,7 @@ void append_scene(Scene& scene, const Scene& other);
 /// Reads everything that the options name: the scene file's sources, then the files, then the
 /// built-in worlds. Prints the report's warnings as notes.
 Result<Scene> read_sources(const SourceOptions& options, Context& context,
-                           SceneLooks looks = SceneLooks::kLeaveOut);
+                           SceneMaterials looks = SceneMaterials::kLeaveOut);
 
 /// Prints a note if a model to draw or test with a world has another position or size than it: as
 /// one read in other units, or with another axis up. [world: WorldSummary::bounds]

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "throng/lean.h"
+#include "throng/avatar.h"
 
 // Writes a recording as an SQLite file in the tables of JuPedSim, in one transaction.
 namespace throng::app {

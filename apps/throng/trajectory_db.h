@@ -4,10 +4,8 @@
 
 #include <string>
 
-#include "throng/context.h"
+#include "throng/base.h"
 #include "throng/recording.h"
-#include "throng/replay_export.h"
-#include "throng/result.h"
 
 /// Recordings as the SQLite files that JuPedSim writes. Not in the library, which does
 /// not need SQLite.

@@ -13,10 +13,9 @@
 #include "number_checks.h"
 #include "rerun.h"
 #include "throng/bake.h"
-#include "throng/character.h"
-#include "throng/nodes.h"
+#include "throng/impostor.h"
 #include "throng/scenario.h"
-#include "throng/walkable_surface.h"
+#include "throng/surface.h"
 #include "user_files.h"
 
 // Loads what throng view and throng film show: scene, world, figures and a source of avatars.
@@ -32,7 +31,7 @@ bool has_sources(const SourceOptions& sources) {
 // More poses than an atlas: near the eye the changes are visible.
 Result<FigureModel> model_of(const Character& character, AtlasConfig config, Context& context) {
   config.frames = 24;
-  return build_figure_model(character, config, context);
+  return create_figure_model(character, config, context);
 }
 
 AtlasConfig figure_config(double height) {
@@ -50,7 +49,7 @@ Result<Atlas> atlas_of(double height, Context& context) {
   if (!kept.empty()) {
     if (Result<Atlas> atlas = load_atlas(kept)) return atlas;
   }
-  Result<Atlas> atlas = build_atlas(built_in_character(), config, context);
+  Result<Atlas> atlas = create_atlas(built_in_character(), config, context);
   // A cache that cannot be written costs time, nothing else.
   if (atlas && !kept.empty() && make_folder_of(kept)) (void)save_atlas(*atlas, kept);
   return atlas;
@@ -62,7 +61,7 @@ Result<ViewFigure> figure_of_file(const std::string& path, Context& context) {
   if (!character) return character.error();
   AtlasConfig config = figure_config(AtlasConfig{}.height);
   if (!find_clip(*character, "Idle")) config.clips = {"Walk"};
-  Result<Atlas> atlas = build_atlas(*character, config, context);
+  Result<Atlas> atlas = create_atlas(*character, config, context);
   if (!atlas) return Error{atlas.error().code, path + ": " + atlas.error().message};
   Result<FigureModel> model = model_of(*character, config, context);
   if (!model) return Error{model.error().code, path + ": " + model.error().message};
@@ -108,7 +107,7 @@ std::vector<double> heights_of(const std::vector<AvatarClass>& classes) {
 Result<void> set_scene(StageParts& parts, const ViewTarget& target, const World& world,
                        Context& context) {
   const bool given = has_sources(target.sources);
-  Result<Scene> scene = given ? read_sources(target.sources, context, SceneLooks::kRead)
+  Result<Scene> scene = given ? read_sources(target.sources, context, SceneMaterials::kRead)
                               : walkable_surface(world, 0, context);
   if (!scene) return scene.error();
   if (given) note_if_elsewhere(*scene, world.summary().bounds);
@@ -139,7 +138,7 @@ Result<void> load_world(StageParts& parts, const ViewTarget& target, Context& co
 
 Result<void> load_model(StageParts& parts, ViewTarget target, Context& context) {
   target.sources.files.insert(target.sources.files.begin(), target.path);
-  const Result<Scene> scene = read_sources(target.sources, context, SceneLooks::kRead);
+  const Result<Scene> scene = read_sources(target.sources, context, SceneMaterials::kRead);
   if (!scene) return scene.error();
   if (auto ok = parts.set_scene(*scene); !ok) return ok;
   BakeConfig config;
@@ -185,7 +184,7 @@ Result<void> load_scenario_stage(StageParts& parts, const ViewTarget& target, Co
   if (target.seed) scenario->seed = *target.seed;
   Result<World> world = Error{Errc::kNotFound, ""};
   if (scenario->world.empty()) {
-    const Result<Scene> scene = load_scene(*scenario, context, SceneLooks::kRead);
+    const Result<Scene> scene = load_scene(*scenario, context, SceneMaterials::kRead);
     if (!scene) return scene.error();
     if (!has_sources(target.sources)) {
       if (auto ok = parts.set_scene(*scene); !ok) return ok;

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng_view/viewer.h"
 
 /// The viewer's window: the only file that names GLFW.

@@ -226,7 +226,7 @@ EMSCRIPTEN_KEEPALIVE bool throng_make_figure(const char* path, bool etc2) {
   AtlasConfig config;
   config.clips = {"Walk", "Idle"};
   Context context;
-  const Result<Atlas> atlas = build_atlas(built_in_character(), config, context);
+  const Result<Atlas> atlas = create_atlas(built_in_character(), config, context);
   if (!atlas) return fail_with(atlas.error().message);
   const AtlasFormat format = etc2 ? AtlasFormat::kEtc2a1 : AtlasFormat::kBc1;
   const Result<void> saved = save_atlas(convert_atlas(*atlas, format), path);

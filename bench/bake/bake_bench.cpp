@@ -3,13 +3,13 @@
 #include <benchmark/benchmark.h>
 
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
+#include "throng/scene.h"
 
 namespace {
 
 // Whole bakes in memory; items are square metres of ground plan.
 void bake_world(benchmark::State& state, const char* name, double size) {
-  const auto scene = throng::make_builtin_world({.name = name, .size = size});
+  const auto scene = throng::create_builtin_world({.name = name, .size = size});
   if (!scene) return state.SkipWithError(scene.error().message.c_str());
   const throng::BakeConfig config{.cell = 0.1, .workers = static_cast<int32_t>(state.range(0))};
   throng::Context context;

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "bake/free_spans.h"
-#include "throng/builtin_worlds.h"
+#include "bake/columns/free_spans.h"
+#include "throng/scene.h"
 
 namespace {
 
@@ -36,7 +36,7 @@ struct Tiles {
 
 // Items are cells.
 void rasterise(benchmark::State& state, const char* name) {
-  const auto scene = make_builtin_world({.name = name});
+  const auto scene = create_builtin_world({.name = name});
   if (!scene) return state.SkipWithError(scene.error().message.c_str());
   const Tiles tiles(*scene);
   TileColumns columns;
@@ -51,7 +51,7 @@ void rasterise(benchmark::State& state, const char* name) {
 }
 
 void rasterise_and_find_free_spans(benchmark::State& state, const char* name) {
-  const auto scene = make_builtin_world({.name = name});
+  const auto scene = create_builtin_world({.name = name});
   if (!scene) return state.SkipWithError(scene.error().message.c_str());
   const Tiles tiles(*scene);
   TileColumns columns;

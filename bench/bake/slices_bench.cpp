@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include <benchmark/benchmark.h>
 
-#include "throng/builtin_worlds.h"
-#include "throng/slices.h"
+#include "throng/papers.h"
+#include "throng/scene.h"
 
 namespace {
 
 // Items are cells of slices taken, kept or not.
 void slice_scene(benchmark::State& state, const char* name) {
-  const auto scene = throng::make_builtin_world({.name = name});
+  const auto scene = throng::create_builtin_world({.name = name});
   if (!scene) return state.SkipWithError(scene.error().message.c_str());
   throng::Context context;
   int64_t cells = 0;

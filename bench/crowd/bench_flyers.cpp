@@ -13,7 +13,7 @@
 #include "core/random.h"
 #include "throng/bake.h"
 #include "throng/crowd.h"
-#include "throng/flight.h"
+#include "throng/path.h"
 #include "throng/scene.h"
 #include "time_steps.h"
 

@@ -11,8 +11,8 @@
 
 #include "scenes.h"
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
 #include "throng/crowd.h"
+#include "throng/scene.h"
 
 namespace {
 
@@ -107,7 +107,7 @@ Json run_play(const Play& play, const Options& o) {
 
 // Scattered over a built-in world; each gets one nearby goal after the other.
 Json run_world(const Options& o) {
-  const auto scene = make_builtin_world({.name = o.scene, .seed = o.seed});
+  const auto scene = create_builtin_world({.name = o.scene, .seed = o.seed});
   if (!scene) return fail(scene.error());
   Context context;
   const auto world = bake(*scene, {}, o.cell);

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "throng/avatar_class.h"
-#include "throng/result.h"
+#include "throng/avatar.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// Scenes for crowds: a world, and avatars with one goal each.

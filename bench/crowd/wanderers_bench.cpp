@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
-#include "throng/wanderers.h"
+#include "throng/papers.h"
+#include "throng/scene.h"
 
 // Steps of wanderers, and the moves that they make.
 namespace {
@@ -17,7 +17,7 @@ namespace {
 void wander_step(benchmark::State& state) {
   const auto avatars = static_cast<uint32_t>(state.range(0));
   const double size = std::max(60.0, std::ceil(std::sqrt(avatars * 4 / 2.75)));
-  const auto scene = throng::make_builtin_world({.name = "garage", .size = size, .levels = 4});
+  const auto scene = throng::create_builtin_world({.name = "garage", .size = size, .levels = 4});
   if (!scene) return state.SkipWithError(scene.error().message.c_str());
   throng::Context context;
   const auto world =
@@ -37,7 +37,7 @@ BENCHMARK(wander_step)
 
 // Straight moves of one body, tested cell by cell; items are moves.
 void world_move(benchmark::State& state) {
-  const auto scene = throng::make_builtin_world({.name = "garage"});
+  const auto scene = throng::create_builtin_world({.name = "garage"});
   if (!scene) return state.SkipWithError(scene.error().message.c_str());
   throng::Context context;
   const auto world = throng::bake_world(*scene, {.cell = 0.1}, context);

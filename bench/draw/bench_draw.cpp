@@ -10,7 +10,7 @@
 
 #include "core/random.h"
 #include "core/stopwatch.h"
-#include "throng/builtin_worlds.h"
+#include "throng/scene.h"
 #include "throng_draw/draw.h"
 
 // Frames of a city with a crowd on its ground: as people, as plain quads at the same places,
@@ -97,7 +97,7 @@ int run(const Options& options) {
   // Small cities are parts of one.
   constexpr uint64_t kWhole = 30'000;
   Result<Scene> scene =
-      make_builtin_world({.name = "city", .triangles = std::max(kWhole, options.polygons)});
+      create_builtin_world({.name = "city", .triangles = std::max(kWhole, options.polygons)});
   if (!scene) return fail(scene.error());
   if (options.polygons < kWhole && scene->triangles.size() > options.polygons) {
     scene->triangles.resize(options.polygons);
@@ -110,7 +110,7 @@ int run(const Options& options) {
   if (auto ok = drawing->set_scene(*scene, {origin.x, 0, origin.z}); !ok) return fail(ok.error());
   Context context;
   AtlasConfig atlas_config;
-  const auto atlas = build_atlas(built_in_character(), atlas_config, context);
+  const auto atlas = create_atlas(built_in_character(), atlas_config, context);
   if (!atlas) return fail(atlas.error());
   const auto number = drawing->add_atlas(*atlas);
   if (!number) return fail(number.error());

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include <benchmark/benchmark.h>
 
-#include "throng/builtin_worlds.h"
-#include "throng/patch.h"
+#include "throng/scene.h"
 
 namespace {
 
 // Items are triangles. The tolerance is in millimetres.
 void tessellate_patches(benchmark::State& state) {
-  const auto scene = throng::make_builtin_world({.name = "landscape", .size = 640});
+  const auto scene = throng::create_builtin_world({.name = "landscape", .size = 640});
   if (!scene) return state.SkipWithError(scene.error().message.c_str());
   const throng::TessellationConfig config{.tolerance = static_cast<double>(state.range(0)) / 1000,
                                           .workers = static_cast<int32_t>(state.range(1))};

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "throng/impostor_pack.h"
+#include "throng/impostor.h"
 
 // A million avatars of a square city, seen from above (all are in the picture) and from the street
 // (few are).

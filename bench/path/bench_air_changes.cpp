@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "crate_times.h"
-#include "throng/flight.h"
+#include "throng/path.h"
 
 // Time until paths through the air avoid a crate that is put onto one, on a world of any size; with
 // `--standing`, among other crates.
@@ -108,7 +108,7 @@ int main(int argc, char** argv) {
                                   [&](const auto& avatar) { return avatar.name == name; });
   if (found == classes.end()) stop("there is no class " + name);
   throng::Context context;
-  auto finder = throng::FlightFinder::make(
+  auto finder = throng::FlightFinder::create(
       *world, {.avatar_class = static_cast<int32_t>(found - classes.begin())}, context);
   if (!finder) stop(finder.error().message);
   const Json report = {{"world", folder},

@@ -14,8 +14,8 @@
 
 #include "grid_oracle.h"
 #include "throng/bake.h"
-#include "throng/cells.h"
 #include "throng/path.h"
+#include "throng/scene.h"
 
 // Moving AI's grid maps and their scenarios: our paths' lengths beside the published ones, which
 // keep to eight directions, and, for a sample, beside a brute-force search's; and the time of a
@@ -106,7 +106,8 @@ Json measure(const Options& options) {
   const auto world = bake_flat_cells(*cells, 1);
   if (!world) stop(world.error().message);
   Context context;
-  auto finder = PathFinder::make(*world, {.labels = options.labels}, context);
+  auto finder = PathFinder::create(
+      *world, {.speedup = options.labels ? PathSpeedup::kLabels : PathSpeedup::kNone}, context);
   if (!finder) stop(finder.error().message);
   std::vector<Query> queries = read_scenario(options.scenario);
   std::vector<std::pair<Place, Place>> ends;

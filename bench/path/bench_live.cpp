@@ -10,8 +10,7 @@
 #include <vector>
 
 #include "crate_times.h"
-#include "throng/flow_field.h"
-#include "throng/live_ground.h"
+#include "throng/path.h"
 #include "throng/world.h"
 
 // Time until paths avoid a crate that is put onto one, on a world of any size; and the cost of a
@@ -42,7 +41,7 @@ bool avoids(const Path& path, const Vec3d& low, const Vec3d& high, double radius
 }
 
 Json crates(const World& world, int64_t trials, double away) {
-  auto ground = LiveGround::make(world, {});
+  auto ground = LiveGround::create(world, {});
   if (!ground) stop(ground.error().message);
   const double radius = world.summary().classes[0].radius;
   std::vector<double> first, added, found, both, removed;
@@ -99,11 +98,11 @@ Json crates(const World& world, int64_t trials, double away) {
 }
 
 Json fields(const World& world, double most) {
-  auto ground = LiveGround::make(world, {});
+  auto ground = LiveGround::create(world, {});
   if (!ground) stop(ground.error().message);
   const std::vector<Place> goals{world.random_place(0, 43, 0)};
   Context context;
-  auto flow = FlowField::make(*ground, goals, {.max_distance = most}, context);
+  auto flow = FlowField::create(*ground, goals, {.max_distance = most}, context);
   if (!flow) stop(flow.error().message);
   const FlowSummary summary = flow->summary();
   constexpr uint64_t kPlaces = 20000;

@@ -105,9 +105,9 @@ Json run(const Options& options) {
   const Result<World> world = World::open(options.world);
   if (!world) stop(world.error().message);
   const double opened = now() - start;
-  auto finder = PathFinder::make(*world, {.zones = true}, context);
+  auto finder = PathFinder::create(*world, {.speedup = PathSpeedup::kZones}, context);
   if (!finder) stop(finder.error().message);
-  auto search = PathFinder::make(*world, {}, context);
+  auto search = PathFinder::create(*world, {}, context);
   if (!search) stop(search.error().message);
   const PathSummary made = finder->summary(), mesh = search->summary();
   Json paths = Json::array();

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "throng/node_path.h"
-#include "throng/nodes.h"
+#include "throng/path.h"
+#include "throng/surface.h"
 
 // Paths over the nodes of a baked world, by overlay cells and by a search of all crossings: their
 // time by distance, how much longer they are, and whether both agree on what is reachable.
@@ -180,7 +180,7 @@ Json run(const Options& options) {
   if (found == classes.end()) stop("there is no class " + options.avatar_class);
   const auto avatar_class = static_cast<int32_t>(found - classes.begin());
   const auto make = [&](bool overlay) {
-    auto made = NodePathFinder::make(
+    auto made = NodePathFinder::create(
         *nodes, {.avatar_class = avatar_class, .overlay = overlay, .workers = options.threads},
         context);
     if (!made) stop(made.error().message);

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "throng/bake.h"
-#include "throng/cells.h"
-#include "throng/flight.h"
+#include "throng/path.h"
+#include "throng/scene.h"
 #include "voxel_oracle.h"
 
 // Moving AI's voxel maps and their queries: our paths' lengths beside the published ones, which
@@ -79,7 +79,7 @@ Json judge(const test::VoxelOracle& oracle, const std::vector<Query>& queries,
            const Options& options) {
   const size_t every =
       std::max<size_t>(1, queries.size() / static_cast<size_t>(std::max(1, options.sample)));
-  int judged = 0, given_up = 0, shorter = 0;
+  int judged = 0, budget_exhausted = 0, shorter = 0;
   double sum = 0, worst = 0;
   for (size_t i = every / 2; i < queries.size() && options.sample > 0; i += every) {
     const Query& q = queries[i];
@@ -87,8 +87,8 @@ Json judge(const test::VoxelOracle& oracle, const std::vector<Query>& queries,
     const auto best = oracle.shortest(test::middle(q.from[0], q.from[1], q.from[2]),
                                       test::middle(q.to[0], q.to[1], q.to[2]),
                                       q.length * 1.001 + 0.01, options.most);
-    if (best.given_up) {
-      ++given_up;
+    if (best.budget_exhausted) {
+      ++budget_exhausted;
       continue;
     }
     ++judged;
@@ -99,7 +99,7 @@ Json judge(const test::VoxelOracle& oracle, const std::vector<Query>& queries,
     worst = std::max(worst, ratio);
   }
   return {{"judged", judged},
-          {"given_up", given_up},
+          {"given_up", budget_exhausted},
           {"shorter_than_over_corners", shorter},
           {"mean_ratio", judged > 0 ? sum / judged : 0},
           {"worst_ratio", worst}};
@@ -111,7 +111,7 @@ Json measure(const Options& options) {
   const auto world = bake_voxel_cells(*cells, 1);
   if (!world) stop(world.error().message);
   Context context;
-  auto finder = FlightFinder::make(*world, {}, context);
+  auto finder = FlightFinder::create(*world, {}, context);
   if (!finder) stop(finder.error().message);
   const test::VoxelOracle oracle(*cells);
   std::vector<Query> queries = read_queries(options.map + ".3dscen");

@@ -127,7 +127,8 @@ Json compare(const Scene& scene, const Options& options) {
   auto world = bake_world(
       scene, {.cell = options.cell, .resolution = 0.1, .classes = {AvatarClass{}}}, context);
   if (!world) stop(world.error().message);
-  auto finder = PathFinder::make(*world, {.labels = options.labels}, context);
+  auto finder = PathFinder::create(
+      *world, {.speedup = options.labels ? PathSpeedup::kLabels : PathSpeedup::kNone}, context);
   if (!finder) stop(finder.error().message);
 
   // Places of Detour's mesh that are ours, too.

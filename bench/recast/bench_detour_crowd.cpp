@@ -20,7 +20,7 @@
 #include "detour_mesh.h"
 #include "throng/bake.h"
 #include "throng/crowd.h"
-#include "throng/graph.h"
+#include "throng/world.h"
 
 // Our crowd beside DetourCrowd in one world: the same bodies at the same places, heading to the
 // same far goals at the same speed, one thread each, alternating every simulated second. An
@@ -68,7 +68,7 @@ std::array<float, 3> floats(const Vec3d& p) {
 // avatars touch at the start.
 std::vector<Trip> draw_trips(const World& world, const dtNavMesh& mesh, const Options& o) {
   Context context;
-  const auto graph = Graph::make(world, {}, context);
+  const auto graph = Graph::create(world, {}, context);
   if (!graph) stop(graph.error().message);
   dtNavMeshQuery query;
   const dtQueryFilter filter;
@@ -211,7 +211,8 @@ class Ours {
 
  private:
   static Crowd make(const World& world, const Options& o) {
-    auto crowd = Crowd::create(world, {.dt = kDt, .seed = o.seed, .workers = 1, .labels = true});
+    auto crowd = Crowd::create(
+        world, {.dt = kDt, .seed = o.seed, .workers = 1, .speedup = PathSpeedup::kLabels});
     if (!crowd) stop(crowd.error().message);
     return std::move(*crowd);
   }

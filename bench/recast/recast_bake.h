@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "throng/avatar_class.h"
+#include "throng/avatar.h"
 #include "throng/scene.h"
 
 /// The part of Recast that does what our bake does: triangles to a compact heightfield on which the

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "throng/character.h"
+#include "throng/impostor.h"
 #include "throng_draw/draw.h"
 
 // Impostors in a browser, for scripts/results web: the page sets the places of all avatars and the
@@ -47,7 +47,7 @@ EMSCRIPTEN_KEEPALIVE bool bench_start(const char* canvas, int32_t width, int32_t
   if (!drawing) return false;
   Context quiet;
   AtlasConfig atlas_config;
-  const Result<Atlas> atlas = build_atlas(built_in_character(), atlas_config, quiet);
+  const Result<Atlas> atlas = create_atlas(built_in_character(), atlas_config, quiet);
   if (!atlas || !drawing->add_atlas(*atlas)) return false;
   bench().drawing = std::move(*drawing);
   bench().config.width = width;
@@ -79,9 +79,12 @@ EMSCRIPTEN_KEEPALIVE bool bench_draw(double x, double y, double z, double to_x, 
       .eye = {x, y, z}, .target = {to_x, to_y, to_z}, .field_of_view = field_of_view};
   b.config.camera.nearest = 0.5;
   b.config.camera.furthest = 4000;
-  const DrawnCrowd crowd{
-      .avatars = {
-          .x = b.x, .y = b.y, .z = b.z, .heading = b.heading, .phase = b.phase, .look = b.look}};
+  const DrawnCrowd crowd{.avatars = {.x = b.x,
+                                     .y = b.y,
+                                     .z = b.z,
+                                     .heading = b.heading,
+                                     .phase = b.phase,
+                                     .appearance = b.look}};
   return bool(b.drawing->show({&crowd, 1}, b.config, &b.report));
 }
 EMSCRIPTEN_KEEPALIVE uint32_t bench_drawn() { return static_cast<uint32_t>(bench().report.drawn); }

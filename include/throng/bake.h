@@ -7,22 +7,26 @@
 #include <string>
 #include <vector>
 
-#include "throng/avatar_class.h"
+#include "throng/avatar.h"
 #include "throng/base.h"
-#include "throng/cells.h"
-#include "throng/context.h"
-#include "throng/result.h"
 #include "throng/scene.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 
-/// The bake: from triangles to a world that avatars walk in. Columns of spans, level tiles,
-/// clearance, zones.
+/// Bakes: from a scene to a world, by one process or by several ranks, and the walkable surface of
+/// the result.
 namespace throng {
+
+// ----
+// The bake: from triangles to a world that avatars walk in. Columns of spans, level tiles,
+// clearance, zones.
 
 struct NodeConfig;
 
 /// Whether a bake into a folder reuses zones that were baked from the same input.
 enum class OldZones : uint8_t { kKeep, kBakeAgain };
+
+class FolderLock;  // Internal: keeps other bakes out of a folder.
 
 /// Settings for bake_world and bake_world_to.
 struct BakeConfig {
@@ -43,7 +47,7 @@ struct BakeConfig {
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
   /// Zones of the world, or of the interrupted bake, that the folder holds.
   OldZones old_zones = OldZones::kKeep;
-  /// Into a folder: keeps the old world's nodes, so that Nodes::make reuses what has not changed.
+  /// Into a folder: keeps the old world's nodes, so that Nodes::create reuses what has not changed.
   /// They are not valid for the new world until it has made them.
   bool carry_nodes = false;
   /// Into a folder: settings of nodes that will be made afterwards. Their off-mesh links are
@@ -81,7 +85,7 @@ struct BakeReport {
   double seconds_write = 0;
   double seconds_total = 0;  ///< Wall clock.
   /// With BakeConfig::nodes: as long as it exists, the folder accepts nodes but no other bake.
-  std::shared_ptr<const void> hold;
+  std::shared_ptr<const FolderLock> hold;
 };
 
 /// Bakes a world into memory. Fails with kBadConfig, kBadInput (no triangles), kLimit, kCancelled.
@@ -108,5 +112,80 @@ struct BakeReport {
 /// voxel is filled; voxel (0, 0, 0) lies at the origin. Fails with kBadConfig (`cell` must be a
 /// whole number of millimetres) or kBadInput.
 [[nodiscard]] THRONG_API Result<World> bake_voxel_cells(const VoxelCells& cells, double cell);
+
+// ----
+// Bakes by several processes, on one machine or on several that share a file system. `mpirun -n K`
+// starts them; each calls the same functions in the same order.
+
+/// The rank of this process among those that were started together.
+struct RankInfo {
+  int32_t rank = 0;  ///< [0, size)
+  int32_t size = 1;
+};
+
+/// Reads the rank from the environment that mpirun (Open MPI, MPICH) sets. Does not initialise MPI,
+/// and works without it.
+[[nodiscard]] THRONG_API RankInfo rank_info();
+
+/// Exchanges success or failure between all ranks. Succeeds if `mine` is a success on every rank.
+/// Otherwise it fails on rank 0 with the error and the number of the first rank that failed, and
+/// with kCancelled on the others. Fails with kBadConfig if there are several ranks and the library
+/// was built without MPI.
+[[nodiscard]] THRONG_API Result<void> agree_over_ranks(const Result<void>& mine);
+
+/// The same for ranks that arrive at very different times: they wait without using a core, and only
+/// until their context is cancelled.
+[[nodiscard]] THRONG_API Result<void> meet_over_ranks(const Result<void>& mine, Context& context);
+
+/// bake_world_to by all ranks: each idle rank gets the next zone. The world's bytes do not depend
+/// on the number of ranks. Every rank has read the same scene; `path` is on a file system that all
+/// ranks see. config.workers is per rank; 0 shares the cores of a machine among its ranks. The
+/// report is complete on rank 0 and empty elsewhere.
+///
+/// Fails on rank 0 as bake_world_to does, and with the error and name of another rank that failed;
+/// on the others with kCancelled. If a rank dies, mpirun ends the others: their contexts are
+/// cancelled if a signal handler does so, and the baked zones stay in PATH.part, which the next
+/// bake reuses.
+[[nodiscard]] THRONG_API Result<BakeReport> bake_over_ranks(const std::string& path,
+                                                            const Scene& scene,
+                                                            const BakeConfig& config,
+                                                            Context& context);
+
+/// Nodes::create_in_folder by all ranks, of a world that each has opened from the same folder. Each
+/// idle rank gets the next batch of zones; a batch takes config.working_bytes at most, and is small
+/// enough that each rank gets some. The bytes do not depend on the number of ranks. The summary is
+/// complete on rank 0 and empty elsewhere. Fails as bake_over_ranks does; what was made stays in
+/// the folder's nodes.part, which the next call reuses.
+[[nodiscard]] THRONG_API Result<NodeSummary> nodes_over_ranks(const World& world,
+                                                              const Scene& scene,
+                                                              const NodeConfig& config,
+                                                              Context& context);
+
+// ----
+// The walkable surface of a class, as triangles or as polygons seen from above, for other
+// programs.
+
+/// Makes triangles of the floor under all legal cells of a class, where its feet are: flat cells
+/// and planes are merged into rectangles, within 2 mm at the middle of each cell. One part per
+/// storey, material "floor". Borders of the triangles are borders of cells: where the middle of a
+/// body may be. Reads every zone. Fails with kBadConfig (no such class), kBadFile (a zone cannot be
+/// used), kCancelled.
+[[nodiscard]] THRONG_API Result<Scene> walkable_surface(const World& world, int32_t avatar_class,
+                                                        Context& context);
+
+/// A piece of the walkable surface seen from above: cells connected by their sides.
+struct WalkablePiece {
+  Polygon polygon;  ///< Counter-clockwise, its holes clockwise, in (x, z). Rings may touch.
+  double area = 0;  ///< [m^2]
+};
+
+/// Makes polygons of the legal cells of a class whose floors lie from `lowest` to `highest`, all
+/// levels projected onto the plane, largest piece first. Reads every zone. Fails as
+/// walkable_surface does, and with kLimit if the world has more than 2^32 cells.
+[[nodiscard]] THRONG_API Result<std::vector<WalkablePiece>> walkable_pieces(
+    const World& world, int32_t avatar_class, double lowest, double highest, Context& context);
+
+/// A polygon as well-known text: POLYGON((x z, ...), (hole)), to the millimetre.
+[[nodiscard]] THRONG_API std::string to_wkt(const Polygon& polygon);
 
 }  // namespace throng

@@ -3,26 +3,68 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "throng/avatar_state.h"
+#include "throng/avatar.h"
 #include "throng/base.h"
-#include "throng/context.h"
-#include "throng/crowd_obstacle.h"
-#include "throng/nodes.h"
 #include "throng/path.h"
-#include "throng/prism.h"
-#include "throng/result.h"
-#include "throng/steering_model.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 
-/// The crowd: avatars with goals that find paths through a baked world and avoid each other. No
-/// avatar enters a wall, and no two avatars ever overlap.
+/// Crowds: avatars that move in a world, the obstacles among them, and generators of avatars.
 namespace throng {
+
+// ----
+// Obstacles that are put up in a crowd while it runs: crates, barriers, doors, carts.
+
+/// Names an obstacle of a crowd; zero names none. An id is never given twice.
+struct ObstacleId {
+  uint32_t slot1 = 0;  ///< Slot plus one.
+  uint32_t generation = 0;
+  explicit operator bool() const { return slot1 != 0; }
+  friend bool operator==(ObstacleId, ObstacleId) = default;
+};
+
+/// How an obstacle affects paths. Avatars avoid both kinds as walls.
+enum class ObstacleKind : uint8_t {
+  kStatic,  ///< Paths lead around it: a crate, a door.
+  /// Paths ignore it: a cart, which is elsewhere by the time that an avatar comes there.
+  kKinematic,
+};
+
+/// What happens when an obstacle is requested where avatars stand.
+enum class ObstaclePolicy : uint8_t {
+  /// It closes: from the request on no avatar enters its volume, paths lead around it, and avatars
+  /// inside walk out: along their paths if these lead out soon, else by the shortest path. It comes
+  /// up as soon as no body is inside.
+  kRefuseEntry,
+  /// It waits until no body is inside; until then avatars walk in and out.
+  kWait,
+};
+
+/// The present state of an obstacle.
+struct ObstacleState {
+  Prism prism;         ///< Where it is, or will be.
+  bool is_up = false;  ///< It blocks avatars.
+  bool waits = false;  ///< It was requested to come up or to move, and waits for avatars to leave.
+  ObstacleKind kind = ObstacleKind::kStatic;
+  ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry;
+  /// When it was last requested, in the crowd's time (steps times dt). Below 0: never, or switched
+  /// off since. [s]
+  double requested_at = -1;
+  double up_at = -1;  ///< When it came up; below 0: it is not up. [s]
+  /// Avatars inside, counted at the request and at the beginning of each step.
+  uint32_t occupants = 0;
+};
+
+// ----
+// The crowd: avatars with goals that find paths through a baked world and avoid each other. No
+// avatar enters a wall, and no two avatars ever overlap.
 
 /// Names an avatar of a crowd; zero names none. An id is never given twice.
 struct AvatarId {
@@ -68,8 +110,8 @@ struct CrowdConfig {
   /// How avatars on foot avoid each other. `reaction` and `deadlock_avoidance` apply to kSampled
   /// alone: other models decide in each step.
   SteeringModel model = SteeringModel::kSampled;
-  bool labels = false;  ///< PathConfig::labels: for small worlds and many long paths.
-  bool zones = false;   ///< PathConfig::zones: for large worlds and long paths.
+  /// Of finding paths: kLabels for small worlds and many long paths, kZones for large worlds.
+  PathSpeedup speedup = PathSpeedup::kNone;
   /// SearchBudget::max_bytes of each search for a path. As many searches as there are workers may
   /// run at the same time. [bytes, >= 2^20]
   uint64_t search_bytes = SearchBudget::kDefaultBytes;
@@ -182,8 +224,8 @@ class THRONG_API Crowd {
   /// up, could touch the obstacle. If bodies are in it, it comes up later, as a door that closes:
   /// before the first step that begins with no body in it; ObstaclePolicy says what happens until
   /// then. Paths lead around kStatic obstacles: an avatar whose path is cut gets another one or, if
-  /// there is none, its goal is unreachable. Fails with kBadInput. Time: all avatars, and the cells
-  /// that the obstacle touches.
+  /// there is none, its goal is unreachable. Fails with kBadInput. Time, also of the changes below:
+  /// all avatars, and the tiles that the obstacle touches with what stands in these.
   [[nodiscard]] Result<ObstacleId> add_obstacle(
       const Prism& prism, ObstacleKind kind = ObstacleKind::kStatic,
       ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry);
@@ -288,6 +330,74 @@ class THRONG_API Crowd {
  private:
   struct State;
   explicit Crowd(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+// ----
+// Avatar generators: keep a crowd populated around a viewer's eye. Only what the eye sees, and a
+// band around it, is simulated. Source: [TC00] 5.
+
+/// Settings for AvatarGenerators::create.
+struct GeneratorConfig {
+  Place home = {};  ///< Only ground that the class can reach from here is populated.
+  int32_t avatar_class = 0;
+  double density = 0.05;  ///< Avatars per square metre of that ground. [1/m^2, > 0, <= 1]
+  /// If not 0, in place of `density`: number of avatars on all of that ground, at most one per
+  /// square metre. [>= 0]
+  double people = 0;
+  double radius = 100;           ///< Ground farther from the eye is not populated. [m, > 0]
+  double band = 16;              ///< Width of the unseen band beside what is seen. [m, > 0]
+  int32_t steps_per_query = 10;  ///< Steps between two queries of what is seen. [steps, > 0]
+  uint64_t seed = 1;
+  int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
+};
+
+/// Returns whether anything inside a box can be seen from the eye. It may return true for a hidden
+/// box: then more is simulated. If it returns false for a visible box, avatars appear in view.
+using Sight = std::function<bool(const Box3d&)>;
+
+/// State after an update.
+struct GeneratorReport {
+  double seen_area = 0;       ///< Area of the ground cells that are at least partly seen. [m^2]
+  double band_area = 0;       ///< Area of the ground cells of the band. [m^2]
+  uint32_t seen_avatars = 0;  ///< Avatars on seen cells. The target is density times area.
+  uint32_t band_avatars = 0;
+  uint32_t added = 0;    ///< In this update, none where it could be seen.
+  uint32_t removed = 0;  ///< Likewise.
+};
+
+/// Keeps a crowd at a density in what an eye can see. Ground cells are level tiles. On cells of the
+/// band, avatars are added or removed out of sight to keep the density; an avatar that arrives gets
+/// a new goal, preferably on seen cells with few avatars. Movable, not copyable. The same calls
+/// give the same crowd on any machine.
+class THRONG_API AvatarGenerators {
+ public:
+  /// Makes the generators. Reads every zone once. Fails with kBadConfig, kNotFound (class),
+  /// kBadInput (home is no place of the class), and as Graph::create does.
+  [[nodiscard]] static Result<AvatarGenerators> create(const World& world,
+                                                       const GeneratorConfig& config,
+                                                       Context& context);
+  AvatarGenerators(AvatarGenerators&&) noexcept;
+  AvatarGenerators& operator=(AvatarGenerators&&) noexcept;
+  ~AvatarGenerators();
+
+  /// Removes all own avatars and populates what is seen and the band at once: call it first, and
+  /// when the eye has jumped. Fails as Crowd::add does.
+  [[nodiscard]] Result<GeneratorReport> populate(Crowd& crowd, Vec3d eye, const Sight& can_see,
+                                                 Context& context);
+  /// Adds and removes avatars: call it after each step of the crowd. The crowd must be the same
+  /// each time, of the same world; avatars that others added are not touched. Fails as Crowd::add
+  /// does. Time: linear in its avatars and in the cells within `radius`.
+  [[nodiscard]] Result<GeneratorReport> update(Crowd& crowd, Vec3d eye, const Sight& can_see,
+                                               Context& context);
+  /// The avatars that the generators added and did not remove.
+  [[nodiscard]] std::span<const AvatarId> members() const;
+  /// Area of all ground that the class can reach from home. [m^2]
+  [[nodiscard]] double area() const;
+
+ private:
+  struct State;
+  explicit AvatarGenerators(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 

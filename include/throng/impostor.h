@@ -4,20 +4,121 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "throng/base.h"
-#include "throng/character.h"
-#include "throng/context.h"
-#include "throng/math.h"
 #include "throng/picture.h"
-#include "throng/result.h"
 
-/// Impostors: pictures of a walking figure from many directions, drawn as one rectangle per avatar.
-/// Source: [TC00] 2 and 4. Angles are in turns from +Z towards +X: 0.25 faces +X.
+/// Impostors: characters, their figures as triangles or as pictures from all sides, atlases.
 namespace throng {
+
+// ----
+// Skinned characters: a mesh, the skeleton that moves it, and clips of movement.
+// Y is up; a figure faces +Z. Lengths are the file's own until an atlas is built.
+
+/// The part of the body that a surface belongs to, so that avatars of a crowd can have different
+/// colours. It follows from the material's name.
+enum class BodyPart : uint8_t { kOther, kSkin, kHair, kShirt, kPants, kShoes };
+/// Number of BodyPart values.
+inline constexpr int32_t kBodyParts = 6;
+
+/// The body part that a material's name means: "Shirt", "suit_jacket" -> kShirt; "Socks" -> kShoes;
+/// any other name -> kOther.
+[[nodiscard]] THRONG_API BodyPart body_part_of(std::string_view material);
+/// The name of a body part: "other", "skin", "hair", "shirt", "pants", "shoes".
+[[nodiscard]] THRONG_API const char* word_for(BodyPart part);
+
+/// A joint of the skeleton: a frame of reference that clips move. Parents come before their
+/// children.
+struct Joint {
+  std::string name;
+  int32_t parent = -1;  ///< Index of an earlier joint, or -1.
+  Transform rest;       ///< Relative to the parent, where a clip has no keys.
+};
+
+/// A bone: a joint that vertices follow.
+struct Bone {
+  int32_t joint = 0;
+  Transform inverse_bind;  ///< From the mesh at rest to the joint.
+};
+
+/// The bones that a vertex follows; weights add up to 1, unused ones are 0.
+struct Influence {
+  std::array<uint8_t, 4> bone{};
+  std::array<float, 4> weight{};
+};
+
+/// Keys of one joint. Times ascend [s]; an empty array leaves that part of `rest` as it is.
+struct JointTrack {
+  int32_t joint = 0;
+  std::vector<double> position_times, rotation_times, scale_times;
+  std::vector<Vec3d> positions, scales;
+  std::vector<std::array<double, 4>> rotations;  ///< Unit quaternions x, y, z, w.
+};
+
+/// A movement that repeats after `seconds`.
+struct Clip {
+  std::string name;
+  double seconds = 0;
+  std::vector<JointTrack> tracks;
+};
+
+/// A material of a character.
+struct CharacterMaterial {
+  std::string name;
+  Vec3d colour;  ///< Red, green, blue as x, y, z; linear. [0 to 1]
+  BodyPart part = BodyPart::kOther;
+};
+
+/// A character at rest. Triangle t has the corners triangles[t] and the material
+/// materials[material[t]].
+struct Character {
+  std::vector<Joint> joints;
+  std::vector<Bone> bones;
+  std::vector<Vec3d> positions;
+  std::vector<Vec3d> normals;         ///< One per position; unit length.
+  std::vector<Influence> influences;  ///< One per position.
+  std::vector<std::array<uint32_t, 3>> triangles;
+  std::vector<uint8_t> material;  ///< One per triangle.
+  std::vector<CharacterMaterial> materials;
+  std::vector<Clip> clips;
+};
+
+/// Maximum number of bones of a character.
+inline constexpr size_t kMaxBones = 256;
+
+/// Reads a character from glTF, GLB, FBX, DAE or another format that assimp reads with a skeleton.
+/// Fails with kBadFile, kBadInput (no mesh, no skeleton, no clip, indices out of range) or kLimit
+/// (bones). Does not crash on any bytes.
+[[nodiscard]] THRONG_API Result<Character> load_character(const std::string& path,
+                                                          Context& context);
+
+/// A generated character of 1.75 m with the clips "Walk" and "Idle". Left and right are alike.
+[[nodiscard]] THRONG_API Character built_in_character();
+
+/// The index of the clip with a name: the whole name or its last word ("Walk" finds
+/// "Armature|Man_Walk"); case is ignored. Fails with kNotFound and the names of the clips.
+[[nodiscard]] THRONG_API Result<size_t> find_clip(const Character& character,
+                                                  std::string_view word);
+
+/// A mesh in one pose.
+struct PosedMesh {
+  std::vector<Vec3d> positions;
+  std::vector<Vec3d> normals;  ///< Unit length.
+};
+
+/// Poses the mesh at `seconds` into a clip by linear blending of its bones; times outside the clip
+/// wrap. Arrays of `out` are resized.
+THRONG_API void pose_character(const Character& character, size_t clip, double seconds,
+                               PosedMesh& out);
+
+// ----
+// Impostors: pictures of a walking figure from many directions, drawn as one rectangle per avatar.
+// Source: [TC00] 2 and 4. Angles are in turns from +Z towards +X: 0.25 faces +X.
 
 /// The texel format of an atlas. Normals and masks are stored beside the colours.
 enum class AtlasFormat : uint8_t {
@@ -100,8 +201,8 @@ struct Atlas {
 /// Makes an atlas: poses and draws a character from all sides. Linear in views and triangles. Fails
 /// with kBadConfig, kNotFound (clip), kBadInput (a character without height), kLimit (too many
 /// texels for 64 pages of 2048 x 2048), kCancelled.
-[[nodiscard]] THRONG_API Result<Atlas> build_atlas(const Character& character,
-                                                   const AtlasConfig& config, Context& context);
+[[nodiscard]] THRONG_API Result<Atlas> create_atlas(const Character& character,
+                                                    const AtlasConfig& config, Context& context);
 
 /// Converts an atlas to another format; views, masks and clips stay.
 [[nodiscard]] THRONG_API Atlas convert_atlas(const Atlas& atlas, AtlasFormat format,
@@ -144,5 +245,144 @@ struct ViewChoice {
 /// The phase of a figure that has walked `distance` since phase `start`: its feet do not slide.
 /// `distance` in metres; `start` and the result in turns, [0, 1).
 [[nodiscard]] THRONG_API double walk_phase(const AtlasClip& clip, double distance, double start);
+
+// ----
+// Packs arrays of avatars into instances that a graphics card draws: culls avatars and chooses
+// their views. Runs on the processor; the same bytes for any number of threads.
+
+/// An eye that looks at a point. Y is up.
+struct EyeCamera {
+  Vec3d eye{0, 1.7, 5};
+  Vec3d target{0, 1, 0};
+  double field_of_view = 0.8;  ///< Top to bottom. [rad, > 0, < 3]
+  double aspect = 16.0 / 9;    ///< Width by height. [> 0]
+  double nearest = 0.2;        ///< Nearer things are not drawn. [m, > 0]
+  double furthest = 10000;     ///< Farther things are not drawn. [m, > nearest]
+};
+
+/// Borrowed arrays, one entry per avatar. Positions are relative to a point of the caller's, near
+/// enough for floats (a kilometre to 0.06 mm).
+struct ImpostorArrays {
+  std::span<const float> x, y, z;        ///< Feet. [m]
+  std::span<const uint16_t> heading;     ///< From +Z towards +X. [65536 a turn]
+  std::span<const uint16_t> phase;       ///< Of the clip's cycle, see walk_phase. [65536 a cycle]
+  std::span<const uint16_t> appearance;  ///< Any number, which selects the outfit. [< 2048]
+};
+
+/// An avatar for the card, 16 bytes. `view`: AtlasShape::view in bits 0 to 19, mirrored in bit 20,
+/// look in bits 21 to 31. For a mesh: heading in bits 0 to 10 [2048 a turn], phase in bits 11 to 20
+/// [1024 a cycle], look as before.
+struct ImpostorInstance {
+  float x = 0, y = 0, z = 0;
+  uint32_t view = 0;
+};
+
+/// An avatar for the card, 32 bytes, seen from between two directions or elevations and blended
+/// from the four views around. `nearest_below` is that of the lower column and row, `others` those
+/// of the next column, the next row and both, as ImpostorInstance::view without a look. `shares`:
+/// of the next column in bits 0 to 8, of the next row in bits 9 to 17 [256: all].
+struct BlendedInstance {
+  ImpostorInstance nearest_below;
+  std::array<uint32_t, 3> others{};
+  uint32_t shares = 0;
+};
+
+/// Settings for pack_impostors and pack_levels.
+struct PackConfig {
+  EyeCamera camera;  ///< Relative to the same point as the arrays.
+  size_t clip = 0;   ///< Index into Atlas::clips.
+  /// If set, all are seen from this direction, as by the sun, and not from the eye. It points away
+  /// from the avatars.
+  std::optional<Vec3d> from_direction;
+  int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
+};
+
+/// Packs the avatars whose bounding ball, of half a view's side, may be in the camera's picture, in
+/// order of index, and returns their number. Linear time. All spans of `avatars` must have one
+/// length, at most 2^31 - 1, and `out` at least that.
+THRONG_API size_t pack_impostors(const Atlas& atlas, const ImpostorArrays& avatars,
+                                 const PackConfig& config, std::span<ImpostorInstance> out);
+
+/// Distances from the eye at which an avatar is drawn as mesh, view or point. Where two ranges
+/// overlap it is drawn as both, and they fade into each other. [m, 0 <= mesh_near <= mesh_far <=
+/// point_near <= point_far]
+struct LevelDistances {
+  double mesh_near = 0, mesh_far = 0;  ///< Meshes end at `mesh_far`, views begin at `mesh_near`.
+  /// Points begin at `point_near`, views end at `point_far`.
+  double point_near = 1e18, point_far = 1e18;
+  /// Nearer than this, a view fades into the next one as the eye moves around the avatar: over
+  /// `blend_share` of the angle between two views [0 to 1; 0: never], and less in the last fifth of
+  /// the distance.
+  double blend_far = 0;
+  double blend_share = 0;
+};
+
+/// Distances by the size of a texel in the picture: meshes where it is `mesh_texel` pixels or more,
+/// points where a view's side is `point_pixels` pixels or less; each fades over a fifth of the
+/// distance. 0: none. Views blend up to where a view's side is 24 pixels: beyond, the change from
+/// one view to the next moves an arm by less than a pixel. `blend_share` stays 0. `height` is the
+/// picture's. [px]
+[[nodiscard]] THRONG_API LevelDistances level_distances(const AtlasShape& shape,
+                                                        const EyeCamera& camera, double height,
+                                                        double mesh_texel, double point_pixels);
+
+/// Output of pack_levels: spans as long as the avatars. The spans of a level that cannot occur may
+/// be empty.
+struct LevelSpans {
+  std::span<ImpostorInstance> meshes, views, points;
+  std::span<BlendedInstance> blends = {};
+};
+/// Numbers of instances that pack_levels wrote.
+struct LevelCounts {
+  size_t meshes = 0, views = 0, points = 0, blends = 0;
+};
+/// Packs avatars as pack_impostors does, each for the level of its distance. Points use only place
+/// and look.
+THRONG_API LevelCounts pack_levels(const Atlas& atlas, const ImpostorArrays& avatars,
+                                   const PackConfig& config, const LevelDistances& levels,
+                                   const LevelSpans& out);
+
+/// The axes of a camera: unit vectors.
+struct CameraAxes {
+  Vec3d right, up, forward;
+};
+/// The axes of a camera.
+[[nodiscard]] THRONG_API CameraAxes camera_axes(const EyeCamera& camera);
+
+// ----
+// A figure as an animated mesh, for avatars near the eye: the poses of its clips, ready for a
+// graphics card. Far avatars are drawn from an Atlas.
+
+/// A vertex of one pose. Positions are 65535ths of FigureModel::low to high.
+struct PosedVertex {
+  uint16_t x = 0, y = 0, z = 0;
+  /// The unit normal on an octahedron folded flat: u in the low byte, v in the high, 128 is 0.
+  uint16_t normal = 0;
+  friend bool operator==(const PosedVertex&, const PosedVertex&) = default;
+};
+
+/// The colour of a vertex in all poses: albedo as Atlas keeps colours, and the BodyPart.
+struct ModelPaint {
+  std::array<uint8_t, 3> colour{};
+  uint8_t part = 0;
+  friend bool operator==(const ModelPaint&, const ModelPaint&) = default;
+};
+
+/// An animated mesh: triangles over vertices that have a position in each pose.
+struct FigureModel {
+  std::vector<AtlasClip> clips;  ///< As those of an atlas with the same settings.
+  uint32_t vertices = 0;
+  std::vector<PosedVertex> poses;  ///< Vertex v of frame f is poses[f * vertices + v].
+  std::vector<ModelPaint> paint;   ///< One per vertex.
+  std::vector<std::array<uint32_t, 3>> triangles;
+  Vec3d low, high;  ///< Bounds of all poses; feet at 0, facing +Z. [m]
+};
+
+/// Poses a character as create_atlas does; uses only `clips`, `frames` and `height` of the
+/// settings. Linear in frames and triangles. Fails as create_atlas does, and with kLimit: more than
+/// 4 million vertices in all poses.
+[[nodiscard]] THRONG_API Result<FigureModel> create_figure_model(const Character& character,
+                                                                 const AtlasConfig& config,
+                                                                 Context& context);
 
 }  // namespace throng

@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "throng/base.h"
-#include "throng/math.h"
-#include "throng/nodes.h"
-#include "throng/result.h"
-#include "throng/slices.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 
-/// Pictures without a window: plans of each level, a section, an exploded view of the levels.
+/// Pictures without a window: plans, sections and heat maps of worlds, charts.
 namespace throng {
+
+// ----
+// Pictures without a window: plans of each level, a section, an exploded view of the levels.
 
 /// An avatar to draw as a disc.
 struct PictureAvatar {
@@ -62,12 +62,64 @@ struct Image {
 [[nodiscard]] THRONG_API Result<Image> draw_nodes(const Nodes& nodes,
                                                   const NodePictureConfig& config);
 
-/// Draws one slice as [ML06] figures 9 and 10 do: darker is higher.
-[[nodiscard]] THRONG_API Image draw_slice(const SliceSet& slices, size_t index);
-
 /// Encodes a PNG file. Empty if there is no memory for it.
 [[nodiscard]] THRONG_API std::vector<uint8_t> png_bytes(const Image& image);
 /// Writes a PNG file beside `path` and renames it. Fails with kIo.
 [[nodiscard]] THRONG_API Result<void> write_png(const Image& image, const std::string& path);
+
+// ----
+// Line charts as pictures, for reports.
+
+/// How a line is drawn.
+enum class LineKind : uint8_t {
+  kFaint,   ///< Thin and grey: one of many.
+  kPlain,   ///< In its own colour.
+  kStrong,  ///< Twice as thick.
+  kDashed,  ///< A bound, or a result from elsewhere.
+};
+
+/// A line of a chart.
+struct ChartLine {
+  std::string name = {};            ///< Name in the legend; a line without one is not in it.
+  std::vector<double> values = {};  ///< One per x of the chart. [finite, >= 0]
+  std::vector<double> spread =
+      {};  ///< Drawn as a band of values +- spread; or empty. [finite, >= 0]
+  LineKind kind = LineKind::kPlain;
+};
+
+/// A line chart: lines over a shared x; both axes are linear, y begins at 0.
+struct Chart {
+  std::string title = {};
+  std::vector<std::string> notes = {};  ///< Under the title, one line each.
+  std::string x_title = {}, y_title = {};
+  std::vector<double> x = {};  ///< [finite, ascending, at least 2]
+  std::vector<ChartLine> lines = {};
+  double max = 0;        ///< Top of the y axis; values above are cut off. 0: from the values.
+  int32_t width = 1200;  ///< [px, 400 to 8000]
+};
+
+/// Draws a chart. Fails with kBadConfig and the line that does not fit.
+[[nodiscard]] THRONG_API Result<Image> draw_chart(const Chart& chart);
+
+// ----
+// Heat maps: a quantity over the plan as a picture, such as density or waiting time.
+
+/// A heat map. Cells are row by row, x to the right, z down: cell (i, k) begins at x0 + i * cell,
+/// z0 + k * cell.
+struct HeatMap {
+  std::string title = {};
+  std::vector<std::string> notes = {};  ///< Under the title, one line each.
+  std::string unit = {};                ///< Of the values.
+  double x0 = 0, z0 = 0;                ///< [m]
+  double cell = 0.5;                    ///< [m, > 0]
+  int32_t width = 0, depth = 0;         ///< [cells, 1 to 1000000]
+  std::vector<double> values = {};      ///< width * depth. [finite, >= 0; 0 stays paper]
+  double max = 0;  ///< Value of the darkest colour; larger values have the same. 0: the largest.
+  int32_t picture_width = 1200;  ///< [px, 400 to 8000]
+};
+
+/// Draws a map; cells larger than a pixel are squares, smaller ones are averaged. Fails with
+/// kBadConfig.
+[[nodiscard]] THRONG_API Result<Image> draw_heat_map(const HeatMap& map);
 
 }  // namespace throng

@@ -10,13 +10,14 @@
 #include <vector>
 
 #include "throng/base.h"
-#include "throng/math.h"
-#include "throng/result.h"
 
-/// Recordings: the positions of all avatars, frame by frame, and the hash of every step. A file
-/// format of its own (docs/file_format.md), written during the run: the part that was written opens
-/// even if the run was killed.
+/// Recordings of a crowd: writing, replay, exports, summaries.
 namespace throng {
+
+// ----
+// Recordings: the positions of all avatars, frame by frame, and the hash of every step. A file
+// format of its own (docs/file_format.md), written during the run: the part that was written opens
+// even if the run was killed.
 
 /// A direction in the ground plane. Any length.
 struct Heading {
@@ -179,5 +180,101 @@ class THRONG_API Replay {
   explicit Replay(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
+
+// ----
+// Exports recordings as text that other programs read. Files are complete or absent.
+
+/// Which avatars of a recording to export: many tools know one floor only, a recording may have
+/// several.
+struct ExportConfig {
+  double lowest = -1e9;  ///< Lowest feet to export. [m]
+  double highest = 1e9;  ///< Highest feet to export. [m]
+};
+
+/// Maps steps to film frames at a constant rate. The interval is the greatest common divisor of the
+/// steps between recorded frames, so that each of these falls on a film frame.
+struct FilmRate {
+  uint64_t first_step = 0;
+  uint64_t steps = 1;  ///< From one film frame to the next.
+  double rate = 10;    ///< Film frames per second.
+  [[nodiscard]] uint64_t frame_of(uint64_t step) const { return (step - first_step) / steps; }
+};
+
+/// The film rate of a recording. Fails with kBadFile as Replay::read does.
+[[nodiscard]] THRONG_API Result<FilmRate> film_rate(Replay& replay);
+
+/// The first line of a CSV table, and its continuation where avatars may lean: the unit vector
+/// along the body from its feet.
+inline constexpr const char* kCsvColumns = "step,id,class,x,y,z,radius";
+inline constexpr const char* kCsvUpColumns = ",up_x,up_y,up_z";
+
+/// Exports a CSV table, one line per avatar and frame, as `throng run --trajectories` writes. Fails
+/// with kBadFile, kIo or kCancelled.
+[[nodiscard]] THRONG_API Result<void> export_csv(Replay& replay, const std::string& path,
+                                                 const ExportConfig& config, Context& context);
+
+/// Exports the text format of the Juelich experiments, one line per avatar and frame: id, frame, x,
+/// y, z in metres. Its x and y are x and z here, its z is the height of the feet. Fails as
+/// export_csv does.
+[[nodiscard]] THRONG_API Result<void> export_juelich(Replay& replay, const std::string& path,
+                                                     const ExportConfig& config, Context& context);
+
+// ----
+// Summaries of recordings: numbers of avatars, flows over lines, maps of density and of waiting.
+
+/// A line on the ground, seen from above, where crossings are counted.
+struct FlowLine {
+  double x0 = 0, z0 = 0, x1 = 0, z1 = 0;  ///< Its ends. [m, not the same]
+  double lowest = -1e9, highest = 1e9;    ///< Only feet between these heights count. [m]
+};
+
+/// Settings for summarise.
+struct SummaryConfig {
+  std::vector<FlowLine> lines = {};
+  double bin = 1;                          ///< Time bin of the flows. [s, >= 0.001]
+  double cell = 0.5;                       ///< Side of a cell of the maps. [m, >= 0.001]
+  double storey = 3;                       ///< Height of a storey; each has its maps. [m, >= 0.001]
+  double slow = 0.2;                       ///< Avatars slower than this wait. [m/s, >= 0.001]
+  uint64_t max_cells = uint64_t{1} << 24;  ///< Limit of the cells of all maps together.
+};
+
+/// Crossings of one line, per time bin from the first frame on. Forth is to the right as seen from
+/// the line's first end towards its second (x to the right, z down).
+struct LineFlow {
+  std::vector<uint32_t> forth, back;
+  uint64_t total_forth = 0, total_back = 0;
+};
+
+/// Cells of one storey, row by row: cell (i, k) begins at x0 + i * cell, z0 + k * cell.
+struct SummaryMap {
+  double lowest = 0, highest = 0;  ///< Feet in [lowest, highest). [m]
+  double x0 = 0, z0 = 0, cell = 0.5;
+  int32_t width = 0, depth = 0;
+  std::vector<double> density;  ///< Mean over the whole time. [persons / m^2]
+  std::vector<double> waiting;  ///< Waiting time, summed over avatars. [s / m^2]
+};
+
+/// The summary of a recording.
+struct ReplaySummary {
+  uint64_t positions = 0;  ///< Avatars summed over all frames.
+  double mean_speed = 0;   ///< Over all avatars and frames. [m/s]
+  double waited = 0;       ///< Waiting time, summed over avatars. [s]
+  double last_left = 0;    ///< When the last avatar left; 0 if none did. [s]
+  // One per frame:
+  std::vector<double> time;  ///< [s]
+  std::vector<uint32_t> present;
+  std::vector<uint64_t> entered, left;  ///< So far; avatars of the first frame have entered.
+  /// Mean over avatars that are also in the next frame; the last frame repeats the one before.
+  std::vector<double> speed;
+  std::vector<LineFlow> lines;   ///< In the order of the config.
+  std::vector<SummaryMap> maps;  ///< Of storeys with avatars, lowest first.
+};
+
+/// Summarises a recording; each position counts until the next frame. Reads all frames twice. Fails
+/// with kBadConfig, kBadFile (a corrupt chunk, no frame at all), kLimit (too many cells) or
+/// kCancelled.
+[[nodiscard]] THRONG_API Result<ReplaySummary> summarise(Replay& replay,
+                                                         const SummaryConfig& config,
+                                                         Context& context);
 
 }  // namespace throng

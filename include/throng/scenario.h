@@ -2,28 +2,31 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "throng/avatar_class.h"
+#include "throng/avatar.h"
 #include "throng/base.h"
-#include "throng/builtin_worlds.h"
-#include "throng/context.h"
-#include "throng/crowd_obstacle.h"
-#include "throng/prism.h"
-#include "throng/result.h"
+#include "throng/crowd.h"
+#include "throng/path.h"
+#include "throng/picture.h"
 #include "throng/scene.h"
-#include "throng/search_budget.h"
-#include "throng/steering_model.h"
 #include "throng/world.h"
 
-/// Scenarios: which avatars enter a world, when and where, where they head to, and what they do on
-/// their journeys. One readable file (TOML or JSON); docs/scenarios.md lists every key.
+/// Scenarios: files that describe avatars, their sources and journeys; runs, trials of many runs,
+/// validation.
 namespace throng {
+
+// ----
+// Scenarios: which avatars enter a world, when and where, where they head to, and what they do on
+// their journeys. One readable file (TOML or JSON); docs/scenarios.md lists every key.
 
 /// A random number with a distribution, drawn for each person.
 struct Distribution {
@@ -49,7 +52,7 @@ struct ScenarioArea {
   std::vector<Prism> prisms;
   /// Speed factor: share of its desired speed at which an avatar walks inside, as on stairs or
   /// sand. [0.01 to 10]
-  double pace = 1;
+  double speed_factor = 1;
 };
 
 /// One of several alternatives, with a weight; one is drawn at random by the weights.
@@ -78,12 +81,12 @@ struct DensityMap {
 /// A stage: one thing that an avatar does in a journey.
 struct Stage {
   enum class Kind : uint8_t {
-    kGo,     ///< Walks until it is inside one of `areas`.
-    kSpot,   ///< Walks to a random point in one of `areas`, or drawn from `density`.
-    kWait,   ///< Stands for `seconds`.
-    kQueue,  ///< Stands in line at `queue` until it has been served.
-    kLink,   ///< Takes the lift or escalator `link`.
-    kLeave,  ///< Walks until it is inside one of `areas`, and leaves the simulation.
+    kGo,           ///< Walks until it is inside one of `areas`.
+    kRandomPoint,  ///< Walks to a random point in one of `areas`, or drawn from `density`.
+    kWait,         ///< Stands for `seconds`.
+    kQueue,        ///< Stands in line at `queue` until it has been served.
+    kLink,         ///< Takes the lift or escalator `link`.
+    kLeave,        ///< Walks until it is inside one of `areas`, and leaves the simulation.
   };
   Kind kind = Kind::kGo;
   std::vector<int32_t> areas;
@@ -167,7 +170,7 @@ struct Scenario {
   double seconds = 60;  ///< Duration. [s]
   double dt = 0.1;      ///< [s]
   uint64_t seed = 1;
-  bool labels = false, zones = false;                   ///< As in CrowdConfig.
+  PathSpeedup paths = PathSpeedup::kNone;               ///< CrowdConfig::speedup.
   uint64_t search_bytes = SearchBudget::kDefaultBytes;  ///< As in CrowdConfig.
   SteeringModel steering = SteeringModel::kSampled;     ///< CrowdConfig::model.
 
@@ -192,9 +195,237 @@ struct Scenario {
 /// Reads the triangles that a scenario's world is baked from. Fails as load_scene does, and with
 /// kBadConfig if the scenario opens a baked world, which keeps no triangles.
 [[nodiscard]] THRONG_API Result<Scene> load_scene(const Scenario& scenario, Context& context,
-                                                  SceneLooks looks = SceneLooks::kLeaveOut);
+                                                  SceneMaterials looks = SceneMaterials::kLeaveOut);
 /// Bakes a scenario's world from the scene that load_scene has read.
 [[nodiscard]] THRONG_API Result<World> bake_world(const Scenario& scenario, const Scene& scene,
                                                   Context& context);
+
+// ----
+// A running scenario: avatars enter, do the stages of their journeys, and leave.
+
+/// What one step of a simulation did, and its state afterwards.
+struct SimulationReport {
+  CrowdReport crowd;
+  double time = 0;                ///< After the step. [s]
+  uint64_t entered = 0;           ///< So far.
+  uint64_t left = 0;              ///< So far.
+  uint64_t goal_unreachable = 0;  ///< Now: avatars that stand because no path leads to their goals.
+  uint64_t outside = 0;           ///< Now: due to enter, but without free space yet.
+  uint64_t in_links = 0;          ///< Now: in lifts and on escalators, so not in the crowd.
+};
+
+/// A trip: one avatar from entering to leaving.
+struct Trip {
+  uint64_t person = 0;   ///< From 0, in order of entering.
+  int32_t source = 0;    ///< Of the scenario.
+  int32_t profile = -1;  ///< -1: none.
+  int32_t journey = -1;  ///< -1: none.
+  double entered = -1;   ///< -1: not yet, for lack of free space. [s]
+  double started = 0;    ///< After the premovement time. [s]
+  double left = -1;      ///< -1: not yet. [s]
+  int32_t exit = -1;     ///< Area by which it left.
+  double speed = 0;      ///< Desired. [m/s]
+};
+
+/// Times of an obstacle of the scenario.
+struct ObstacleTimes {
+  double requested_at = -1;  ///< When it was requested; -1: not yet. [s]
+  double up = -1;  ///< When it came up: no body is in it since then; -1: not yet, or never. [s]
+  double removed_at = -1;  ///< When it was removed; -1: not yet. [s]
+  uint32_t inside = 0;     ///< Avatars inside at the request.
+  uint32_t waits_for = 0;  ///< Avatars inside now, for which it waits.
+};
+
+/// A simulation of a scenario. Movable, not copyable. One thread at a time. The same scenario gives
+/// the same steps on any machine with any number of workers.
+class THRONG_API Simulation {
+ public:
+  /// Makes a simulation. If a class climbs or drops, the nodes beside the world are opened or, for
+  /// a world baked from models, made from these. Fails with kBadInput (an area in which a class
+  /// cannot stand, ...), kNotFound (a class that the world does not have), and as load_scene,
+  /// Nodes::create, Nodes::open, Crowd::create, add and add_target do.
+  [[nodiscard]] static Result<Simulation> create(const World& world, const Scenario& scenario,
+                                                 int32_t workers, Context& context);
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+  ~Simulation();
+
+  /// Advances by the scenario's dt. Fails as Crowd::add does.
+  [[nodiscard]] Result<SimulationReport> step();
+  /// Are all avatars gone, and will no more enter? None is in the crowd, outside or in a link.
+  [[nodiscard]] bool is_over() const;
+
+  [[nodiscard]] const Crowd& crowd() const;
+  /// Reads the avatars of the crowd in ascending order of id, which is the person's number modulo
+  /// 2^32.
+  void read(std::vector<AvatarState>& out) const;
+  /// XXH3 of the crowd and of the state of all journeys.
+  [[nodiscard]] uint64_t state_hash() const;
+  /// All trips so far, in order of entering.
+  [[nodiscard]] std::span<const Trip> trips() const;
+
+  /// The times of each obstacle of the scenario, in its order.
+  [[nodiscard]] std::span<const ObstacleTimes> obstacle_times() const;
+
+  /// Replaces the weights of a density map, from the next draw on. Fails with kNotFound, kBadInput
+  /// (another number of pixels, or all are 0).
+  [[nodiscard]] Result<void> set_density(const std::string& name, std::span<const uint8_t> weights);
+
+ private:
+  struct State;
+  explicit Simulation(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+// ----
+// Validation: experiments with crowds whose outcome is known from real people or required by a
+// standard. Each runs on the public `Crowd`, measures by a stated method, and judges the result by
+// a range.
+
+/// A measured value, and the bounds between which it passes.
+struct ValidationMeasure {
+  std::string name;
+  double value = 0;
+  std::string unit = {};
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+
+  /// Has it a bound? Without one the value is only reported.
+  [[nodiscard]] bool is_judged() const {
+    return low > -std::numeric_limits<double>::infinity() ||
+           high < std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] bool passed() const { return !is_judged() || (value >= low && value <= high); }
+};
+
+/// A chart and the name of its file, without a suffix.
+struct ValidationChart {
+  std::string name;
+  Chart chart;
+};
+
+/// One test of the list.
+struct ValidationTest {
+  std::string name;    ///< The name for run_validation.
+  std::string title;   ///< What is tested.
+  std::string method;  ///< How it is measured, in sentences.
+  std::string source;  ///< Source of the range: keys of docs/references.md.
+};
+
+/// Settings for run_validation and run_trial.
+struct ValidationConfig {
+  uint64_t seed = 1;
+  int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
+  bool brief = false;   ///< Fewer points and shorter runs.
+  /// The steering model of the crowds. Trials use their own, unless this is not the default.
+  SteeringModel model = SteeringModel::kSampled;
+};
+
+/// The results of a test.
+struct ValidationResult {
+  std::vector<ValidationMeasure> measures;
+  std::vector<ValidationChart> charts;
+  CrowdCheck faults;     ///< Overlaps and wall entries, over all checks.
+  uint64_t checks = 0;   ///< Checks of all avatars for these.
+  double simulated = 0;  ///< [s]
+  double seconds = 0;    ///< Wall clock.
+
+  /// Is every measure within its bounds, without faults?
+  [[nodiscard]] THRONG_API bool passed() const;
+};
+
+/// All tests, in the order of the tables.
+[[nodiscard]] THRONG_API std::vector<ValidationTest> validation_tests();
+
+/// Runs one test. Fails with kNotFound (no such test), kCancelled.
+[[nodiscard]] THRONG_API Result<ValidationResult> run_validation(const std::string& name,
+                                                                 const ValidationConfig& config,
+                                                                 Context& context);
+
+/// The tests that need recordings of real people, which are not part of throng.
+[[nodiscard]] THRONG_API std::vector<ValidationTest> recorded_validation_tests();
+
+/// Runs one of these tests with a folder of recordings. Fails with kNotFound (no such test; nothing
+/// fits in the folder), kBadFile and the line, kCancelled.
+[[nodiscard]] THRONG_API Result<ValidationResult> run_recorded_validation(
+    const std::string& name, const std::string& folder, const ValidationConfig& config,
+    Context& context);
+
+// ----
+// Trials: scenario files that state what their run must measure (tables [trial] and [[measure]],
+// docs/validation.md), such as the tests of the standards.
+
+/// The quantity that is measured.
+enum class Observed : uint8_t {
+  kTime,          ///< From the end of the premovement to leaving, per avatar. [s]
+  kLeft,          ///< Time of leaving, per avatar. [s]
+  kPremovement,   ///< From entering to the end of the premovement, per avatar. [s]
+  kDelay,         ///< From the end of the premovement to the first move, per avatar. [s]
+  kDesiredSpeed,  ///< Desired speed, per avatar. [m/s]
+  kSpeed,       ///< Distance walked by time, per avatar, in an area or since the premovement. [m/s]
+  kPeople,      ///< Number of avatars that left.
+  kStayed,      ///< Number of avatars that entered and have not left.
+  kDensity,     ///< People in an area by its size, at each step. [1/m2]
+  kFlow,        ///< People per second over a line, or by its length. [p/s, p/(m s)]
+  kPassed,      ///< Number of avatars that crossed a line.
+  kRatio,       ///< Of two earlier measures.
+  kDifference,  ///< Of two earlier measures.
+  /// Minimum difference from one to the next of some earlier measures: 0 or more if they never
+  /// fall.
+  kRise,
+};
+
+/// How many numbers become one.
+enum class Statistic : uint8_t {
+  kMean,
+  kMin,
+  kMax,
+  kRange,    ///< kMax - kMin.
+  kOverall,  ///< Of kSpeed: all distances by all times.
+  kFit,      ///< Likelihood that they were drawn from the scenario's distribution [Stephens70].
+};
+
+/// A measure: which quantity of which avatars, and the bounds between which it passes.
+struct TrialMeasure {
+  std::string name;
+  Observed of = Observed::kTime;
+  Statistic statistic = Statistic::kMean;
+  std::vector<int32_t> sources, profiles, journeys;  ///< Only these; empty: all.
+  std::vector<int32_t> exits;  ///< Only avatars that left by these areas; empty: all.
+  int32_t area = -1;           ///< kSpeed, kDensity.
+  std::array<std::array<double, 2>, 2> line = {};  ///< kFlow, kPassed. [x, z, m]
+  bool by_width = false;                           ///< kFlow: by the line's length.
+  double from = 0;                                 ///< kSpeed, kDensity, kFlow, kPassed. [s]
+  double until = std::numeric_limits<double>::infinity();  ///< [s]
+  std::vector<size_t> others;                              ///< Indices of earlier measures.
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+};
+
+/// A trial: a scenario and its measures.
+struct Trial {
+  ValidationTest about;
+  std::string note;  ///< What differs from the source.
+  /// What the simulation cannot do yet, so that the trial does not run; empty: nothing.
+  std::string lacks;
+  Scenario scenario;  ///< Empty if something is lacking.
+  std::vector<TrialMeasure> measures;
+};
+
+/// Reads a trial. Fails as load_scenario does, and with kBadFile if it has no measures.
+[[nodiscard]] THRONG_API Result<Trial> load_trial(const std::string& path);
+/// The same for a text; `name` is used in messages.
+[[nodiscard]] THRONG_API Result<Trial> parse_trial(const std::string& text,
+                                                   const std::string& name);
+/// Reads all trials below a folder, sorted by name. Fails with kNotFound (no folder), and as
+/// load_trial does.
+[[nodiscard]] THRONG_API Result<std::vector<Trial>> load_trials(const std::string& folder);
+
+/// Runs a trial's scenario until its time is over or all avatars have left, and checks every step
+/// for overlaps and wall entries. config.seed counts from the scenario's own seed: 1 is that one.
+/// Fails with kBadConfig (something is lacking), and as open_world and Simulation::create do.
+[[nodiscard]] THRONG_API Result<ValidationResult> run_trial(const Trial& trial,
+                                                            const ValidationConfig& config,
+                                                            Context& context);
 
 }  // namespace throng

@@ -8,11 +8,8 @@
 #include <vector>
 
 #include "throng/base.h"
-#include "throng/context.h"
-#include "throng/nodes.h"
-#include "throng/prism.h"
-#include "throng/result.h"
 #include "throng/scene.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 
 /// Verification: an oracle that uses neither columns nor tiles tests a baked world against the

@@ -9,13 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "throng/avatar_class.h"
+#include "throng/avatar.h"
 #include "throng/base.h"
-#include "throng/math.h"
-#include "throng/result.h"
 
-/// The baked world: all queries and crowds read it. Opened by mapping its files.
+/// Baked worlds: where each class can stand, queries of that ground, and what is connected.
 namespace throng {
+
+// ----
+// The baked world: all queries and crowds read it. Opened by mapping its files.
 
 struct WorldData;  // Internal: zones, tiles, planes.
 
@@ -86,7 +87,8 @@ struct WorldResidency {
 class THRONG_API World {
  public:
   World() = default;
-  explicit World(std::shared_ptr<const WorldData> data) : data_(std::move(data)) {}
+  /// False for a handle without a world, made by default.
+  [[nodiscard]] explicit operator bool() const { return state_ != nullptr; }
 
   /// Opens a folder written by bake_world_to. Reads only the manifest: zones are mapped and checked
   /// when they are first used. Fails with kBadFile (by name) or kIo.
@@ -121,10 +123,143 @@ class THRONG_API World {
   /// Height of the feet on the surface of the place's level at (x, z) of its position. [m]
   [[nodiscard]] double feet(const Place& place) const;
 
-  [[nodiscard]] const std::shared_ptr<const WorldData>& data() const { return data_; }
+ private:
+  friend struct Access;
+  explicit World(std::shared_ptr<const WorldData> state) : state_(std::move(state)) {}
+  std::shared_ptr<const WorldData> state_;
+};
+
+// ----
+// Queries of the ground around a body: the nearest place, the nearest wall, how far a straight
+// line leads, sliding along walls, random places nearby. A wall is whatever stops the class: a
+// solid, a step that is too high, a slope that is too steep, an edge. All lengths are of the
+// body's middle, in the ground's plane: the solid of a wall is a radius farther.
+
+/// What makes a cell illegal for a class, as far as a baked world knows: it stores floors and
+/// ceilings, not walls. There, or within the class's radius,
+enum class Obstacle {
+  kNone,
+  kGap,     ///< is no floor near the height of the feet on which any class could stand.
+  kStep,    ///< is a floor more than the step height up or down, but not the top of a wall.
+  kLow,     ///< is less than the class's height below the ceiling.
+  kSteep,   ///< is a floor steeper than the class's limit.
+  kNarrow,  ///< is a solid: the passage is too narrow, or ends at a wall.
+};
+
+/// The result of a straight walk along the ground.
+struct GroundRay {
+  Place place;           ///< The last place on the line; a straight move leads there.
+  bool arrived = false;  ///< The walk reached the end of the line.
+  /// Normal of the wall that stopped it, towards the body. [unit]
+  double normal_x = 0, normal_z = 0;
+  Obstacle obstacle = Obstacle::kNone;  ///< What stopped it.
+};
+
+/// The nearest wall around a place.
+struct NearestWall {
+  bool found = false;                 ///< False: none within the given distance.
+  double distance = 0;                ///< [m]
+  double x = 0, z = 0;                ///< Its nearest point. [m]
+  double normal_x = 0, normal_z = 0;  ///< From there towards the body. [unit]
+};
+
+/// Queries of a world's ground for one class. Each has its own memory: give every thread one. No
+/// allocation once it is warm. Results are the same on every machine.
+class THRONG_API GroundQuery {
+ public:
+  /// Makes queries for a class; reads nothing yet. Fails with kBadConfig: no such class.
+  [[nodiscard]] static Result<GroundQuery> create(const World& world, int32_t avatar_class);
+  GroundQuery(GroundQuery&&) noexcept;
+  GroundQuery& operator=(GroundQuery&&) noexcept;
+  ~GroundQuery();
+
+  /// Checks that all zones within `radius` of a position, seen from above, can be used; queries
+  /// take a zone that cannot be used as empty. Reads these zones. Fails with kBadFile and the first
+  /// one's name. [m, m]
+  [[nodiscard]] Result<void> check_near(Vec3d position, double radius) const;
+  /// The place of the class nearest to a position in three dimensions, or nowhere if none is within
+  /// `radius`. Time: the tiles that the circle touches. [m, m]
+  [[nodiscard]] Place nearest_place(Vec3d position, double radius);
+  /// Walks straight from a place by (dx, dz), as far as the ground allows. [m, m]
+  [[nodiscard]] GroundRay ray(const Place& from, double dx, double dz);
+  /// Slides a body that is pushed by (dx, dz) along walls: of the places connected with `from`
+  /// inside the circle whose diameter is the push, the nearest to its end. `from` itself if there
+  /// is no better one. [m, m]
+  [[nodiscard]] Place slide(const Place& from, double dx, double dz);
+  /// The nearest wall within `max_distance` that a straight line from the place can meet. Time: the
+  /// cells within that distance. [m]
+  [[nodiscard]] NearestWall nearest_wall(const Place& from, double max_distance);
+  /// The n-th of a reproducible stream of places, uniform over those connected with `centre` inside
+  /// the circle around it. Nowhere only if `centre` is no place of the class. [m]
+  [[nodiscard]] Place random_place_near(const Place& centre, double radius, uint64_t seed,
+                                        uint64_t n);
+  /// Area of these places, to one cell. [m^2]
+  [[nodiscard]] double area_near(const Place& centre, double radius);
 
  private:
-  std::shared_ptr<const WorldData> data_;
+  struct State;
+  explicit GroundQuery(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+// ----
+// The accessibility graph of a baked world: which places are connected, for every class. Source:
+// [PACS00], as docs/design/003-graph.md reads it for level tiles.
+
+struct GraphData;  // Internal: regions and links.
+
+/// Settings for Graph::create.
+struct GraphConfig {
+  int32_t workers = 0;  ///< Threads, 0 for all cores; used if the graph is not on disk.
+};
+
+/// Sizes of a graph.
+struct GraphSummary {
+  uint64_t regions = 0;  ///< Connected parts of level tiles, shared by classes.
+  uint64_t links = 0;    ///< Undirected links: pairs of regions between which some class can walk.
+  uint64_t bytes = 0;    ///< Of both, without files and data of classes.
+  bool on_disk = false;  ///< Read from the files of the bake, not made in memory.
+  double seconds = 0;    ///< To read or to make them.
+};
+
+/// A connected component: a class can walk from each of its places to every other.
+struct Component {
+  double area = 0;       ///< Of the cells where the class may stand. [m^2]
+  uint64_t regions = 0;  ///< Regions that it consists of.
+  Place place;           ///< One of its places, the middle of a cell.
+};
+
+/// The regions and links of a world. Cheap to copy (shared, immutable); safe to read from many
+/// threads.
+class THRONG_API Graph {
+ public:
+  Graph() = default;
+
+  /// Opens the graph that a bake has left in the world's folder: reads only its index, and the
+  /// regions of a zone when a query needs them. If there is none (a world in memory, or of an old
+  /// bake), makes it: reads every zone once; the result is the same for any number of workers.
+  /// Fails with kBadFile (the index or, where it is made, a zone cannot be used, by name) or
+  /// kCancelled.
+  [[nodiscard]] static Result<Graph> create(const World& world, const GraphConfig& config,
+                                            Context& context);
+
+  [[nodiscard]] GraphSummary summary() const;
+  /// The components of a class, largest first; empty for a class that the world does not have.
+  [[nodiscard]] std::span<const Component> components(int32_t avatar_class) const;
+  /// Index in components() of the component that a place belongs to. -1 if the class cannot stand
+  /// there, or its zone cannot be used: see check_at().
+  [[nodiscard]] int32_t component_at(int32_t avatar_class, const Place& place) const;
+  /// Checks that the files of the zone at a position can be used, ground and regions. Fails with
+  /// kBadFile and the file.
+  [[nodiscard]] Result<void> check_at(Vec3d position) const;
+  /// Checks that all files of the graph in a world's folder can be used, also those of links, which
+  /// no query here reads. Succeeds if there is no graph. Fails as check_at().
+  [[nodiscard]] static Result<void> check_files(const World& world);
+
+ private:
+  explicit Graph(std::shared_ptr<const GraphData> data) : data_(std::move(data)) {}
+
+  std::shared_ptr<const GraphData> data_;
 };
 
 }  // namespace throng

@@ -9,11 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "throng/figure_model.h"
+#include "throng/base.h"
 #include "throng/impostor.h"
-#include "throng/impostor_pack.h"
 #include "throng/picture.h"
-#include "throng/result.h"
 #include "throng/scene.h"
 
 /// Draws a world and its crowd with a graphics library, without a window or in one. A separate
@@ -27,7 +25,7 @@ class THRONG_API PreparedScene {
   /// Makes corners, normals, and the edges to draw: sides of triangles where the surface bends by
   /// 25 degrees or more, or ends. `origin` is the point that everything drawn is relative to. Fails
   /// with kLimit: more triangles than cards hold.
-  [[nodiscard]] static Result<PreparedScene> make(const Scene& scene, Vec3d origin);
+  [[nodiscard]] static Result<PreparedScene> create(const Scene& scene, Vec3d origin);
   PreparedScene(PreparedScene&&) noexcept;
   PreparedScene& operator=(PreparedScene&&) noexcept;
   ~PreparedScene();
@@ -35,7 +33,7 @@ class THRONG_API PreparedScene {
   [[nodiscard]] Vec3d origin() const;
 
  private:
-  friend class Drawing;
+  friend struct Access;
   struct State;
   explicit PreparedScene(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
@@ -91,7 +89,7 @@ struct DrawnCrowd {
   size_t clip = 0;
   ImpostorArrays avatars;
   /// Unit vectors along each body from its feet; empty: all are upright. Headings are before the
-  /// lean (lean.h).
+  /// lean (avatar.h).
   std::span<const Vec3d> up_vectors = {};
 };
 

@@ -9,21 +9,87 @@
 #include <string>
 #include <vector>
 
-#include "throng/context.h"
-#include "throng/figure_model.h"
+#include "throng/base.h"
 #include "throng/impostor.h"
-#include "throng/nodes.h"
 #include "throng/recording.h"
-#include "throng/result.h"
 #include "throng/scenario.h"
 #include "throng/scene.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 #include "throng_draw/draw.h"
-#include "throng_view/view_event.h"
 
 /// The viewer without a window: what it shows, how it reacts to keys, and its panel. The owner of
 /// the window passes events on and requests frames. A library of its own, throng_view.
 namespace throng {
+
+// ----
+// Events of a window as plain data: from GLFW, from a browser, from a test.
+
+/// Keys that the viewer knows. Letters and digits are their ASCII codes.
+enum class Key : uint8_t {
+  kNone = 0,
+  kSpace = ' ',
+  kComma = ',',
+  kPeriod = '.',
+  k0 = '0',
+  kA = 'A',
+  kZ = 'Z',
+  kEscape = 128,
+  kEnter,
+  kTab,
+  kBackspace,
+  kDelete,
+  kLeft,
+  kRight,
+  kUp,
+  kDown,
+  kPageUp,
+  kPageDown,
+  kHome,
+  kEnd,
+  kF1,
+  kF2,
+  kF11,
+  kF12,
+  kShift,
+  kControl,
+  kAlt,
+};
+/// The key of a letter or digit: key_of('W').
+[[nodiscard]] constexpr Key key_of(char upper) { return static_cast<Key>(upper); }
+
+enum class MouseButton : uint8_t { kLeft, kRight, kMiddle };
+
+enum class ViewEventKind : uint8_t {
+  kKeyDown,    ///< `key`. Not for repeats.
+  kKeyUp,      ///< `key`.
+  kText,       ///< `text`: a character that was typed.
+  kMouseMove,  ///< `x`, `y`.
+  kMouseDown,  ///< `button` at `x`, `y`.
+  kMouseUp,    ///< `button` at `x`, `y`.
+  kWheel,      ///< `y`: notches away from the user.
+  kLeave,      ///< The window lost the keyboard: no key or button is down any more.
+  kDrop,       ///< `path`: a file was dropped on the window.
+};
+
+struct ViewEvent {
+  ViewEventKind kind = ViewEventKind::kLeave;
+  Key key = Key::kNone;
+  MouseButton button = MouseButton::kLeft;
+  double x = 0, y = 0;  ///< From the picture's upper left corner. [px]
+  uint32_t text = 0;    ///< Unicode.
+  std::string path = {};
+};
+
+/// Sticks of a gamepad now. [-1 to 1, right and down are positive]
+struct GamepadState {
+  double walk_x = 0, walk_y = 0;
+  double look_x = 0, look_y = 0;
+  bool hurry = false;
+};
+
+// ----
+// The viewer.
 
 /// A crowd to start in a world.
 struct CrowdStart {
@@ -33,7 +99,7 @@ struct CrowdStart {
   double near = 60;         ///< Largest distance of goals along X and Z, 0: anywhere. [m, >= 0]
   double dt = 0.1;          ///< Length of a step. [s, 0.01 to 0.5]
   uint64_t seed = 1;
-  bool zones = false;  ///< Paths are searched zone by zone: for large worlds.
+  PathSpeedup speedup = PathSpeedup::kNone;  ///< CrowdConfig::speedup.
   /// Only what the eye can see within `sight`, and a band around it, is populated and simulated.
   /// The density is that of `avatars` spread over all ground that is reachable from below the eye.
   /// No avatar appears or disappears in sight. All are of the class with the largest share.
@@ -71,10 +137,9 @@ class THRONG_API StageParts {
   void set_scenario(const Scenario& scenario);
   /// Shows a recording instead of a crowd.
   void set_replay(Replay replay);
+  explicit StageParts(StageJob& job) : job_(job) {}  ///< For the viewer.
 
  private:
-  friend class StageJob;
-  explicit StageParts(StageJob& job) : job_(job) {}
   StageJob& job_;
 };
 

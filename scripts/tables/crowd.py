@@ -31,7 +31,7 @@ def crowd_rows(steps, largest, cell):
             continue
         world = garage_for(avatars, cell)
         runs = {threads: run_json(PROGRAM, "run", world, "--avatars", avatars, "--steps", steps, "--threads",
-                                  threads, "--check-every", steps, "--json") for threads in (1, 2)}
+                                  threads, "--check-every", steps, "--wander", "--json") for threads in (1, 2)}
         one, two = runs[1], runs[2]
         adult = run_json(PROGRAM, "info", world, "--json")["classes"][0]
         if avatars >= 10000:

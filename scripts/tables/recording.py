@@ -32,7 +32,8 @@ def row(runs, world, options, avatars, steps, *more):
     if not folder.exists():
         run_json(PROGRAM, "bake", f"builtin:garage,{options}", "-o", folder, "--json")
     file, csv = WORK / "table.replay", WORK / "table.csv"
-    plain = [PROGRAM, "run", folder, "--avatars", avatars, "--steps", steps, "--threads", 2, "--check-every", steps, *more]
+    plain = [PROGRAM, "run", folder, "--avatars", avatars, "--steps", steps, "--threads", 2, "--check-every", steps,
+             *(more or ["--wander"])]
     costs = []
     for _ in range(runs):
         without = cpu_seconds(plain)

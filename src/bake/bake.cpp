@@ -7,11 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "bake/finish_bake.h"
-#include "bake/graph_bake.h"
-#include "bake/world_bake.h"
-#include "bake/world_folder.h"
-#include "bake/zone_bake.h"
+#include "bake/folder/finish_bake.h"
+#include "bake/folder/graph_bake.h"
+#include "bake/folder/world_bake.h"
+#include "bake/folder/world_folder.h"
+#include "bake/folder/zone_bake.h"
+#include "core/access.h"
 #include "core/parallel.h"
 #include "core/side_by_side.h"
 #include "core/stopwatch.h"
@@ -139,7 +140,7 @@ Result<World> bake_world(const Scene& scene, const BakeConfig& config, Context& 
   if (!world) return world.error();
   for (size_t i = 0; i < zones.size(); ++i) (*world)->slots[i]->zone = std::move(zones[i]);
   if (report != nullptr) *report = local;
-  return World(std::move(*world));
+  return Access::create<World>(std::move(*world));
 }
 
 Result<BakeReport> bake_world_to(const std::string& path, const Scene& scene,

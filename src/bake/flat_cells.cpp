@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/layer_kernels.h"
-#include "bake/zone_builder.h"
+#include "bake/folder/zone_builder.h"
+#include "bake/layers/layer_kernels.h"
+#include "core/access.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "throng/bake.h"
@@ -116,7 +117,7 @@ Result<World> bake_flat_cells(const FlatCells& cells, double cell, int32_t worke
   summary.zones = world->slots.size();
   summary.level_tiles = world->level_count;
   summary.walkable_area = {static_cast<double>(legal) * cell * cell};
-  return World(std::move(world));
+  return Access::create<World>(std::move(world));
 }
 
 }  // namespace throng

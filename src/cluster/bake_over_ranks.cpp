@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <optional>
 
-#include "bake/finish_bake.h"
-#include "bake/graph_bake.h"
-#include "bake/world_bake.h"
-#include "bake/world_folder.h"
+#include "bake/folder/finish_bake.h"
+#include "bake/folder/graph_bake.h"
+#include "bake/folder/world_bake.h"
+#include "bake/folder/world_folder.h"
 #include "cluster/job_assignment.h"
 #include "core/stopwatch.h"
-#include "throng/cluster.h"
+#include "throng/bake.h"
 
 // Rank 0 owns the folder: it takes over what need not be baked and hands out the rest, the largest
 // zones first. The others write their zones' files and send what the manifest needs of them, which

@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "core/parallel.h"
-#include "throng/cluster.h"
+#include "throng/bake.h"
 
 // Rank 0 assigns jobs and enters their results, so that the next bake can continue where a rank has
 // died. It works too, on a thread beside the one that listens. All of them poll: MPI waits by

@@ -13,8 +13,7 @@
 #include <vector>
 
 #include "cluster/ranks.h"
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/base.h"
 
 /// Jobs handed out one by one to whichever rank is free.
 namespace throng {

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <optional>
 
-#include "bake/node_bake.h"
+#include "bake/surface/node_bake.h"
 #include "cluster/job_assignment.h"
+#include "core/access.h"
 #include "core/stopwatch.h"
-#include "throng/cluster.h"
+#include "throng/bake.h"
 
 // Rank 0 reuses what need not be made and assigns batches of zones to the ranks. A rank that has
 // made one writes its files and returns what the index needs of them. The bytes of a zone do not
@@ -79,7 +80,7 @@ Result<NodeSummary> assign_nodes(Ranks& ranks, NodeBaker& baker, const NodeConfi
   if (!nodes) return nodes.error();
   if (auto ok = folder.finish(**nodes); !ok) return ok.error();
   (*nodes)->path = path + "/" + kNodeFolder;
-  return Nodes(*nodes).summary();
+  return Access::create<Nodes>(*nodes).summary();
 }
 
 }  // namespace
@@ -87,7 +88,7 @@ Result<NodeSummary> assign_nodes(Ranks& ranks, NodeBaker& baker, const NodeConfi
 Result<NodeSummary> nodes_over_ranks(const World& world, const Scene& scene,
                                      const NodeConfig& config, Context& context) {
   if (rank_info().size == 1) {
-    const auto nodes = Nodes::make_in_folder(world, scene, config, context);
+    const auto nodes = Nodes::create_in_folder(world, scene, config, context);
     if (!nodes) return nodes.error();
     return nodes->summary();
   }
@@ -96,7 +97,7 @@ Result<NodeSummary> nodes_over_ranks(const World& world, const Scene& scene,
   if (!joined) return joined.error();
   Ranks& ranks = **joined;
   if (auto ok = agree_over_ranks(NodeBaker::check(world, scene, config)); !ok) return ok.error();
-  const std::string& path = world.data()->path;
+  const std::string& path = data_of(world)->path;
   NodeConfig own = config;
   own.workers = workers_of_rank(config.workers, ranks);
   Result<void> begun;

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "throng/cluster.h"
+#include "throng/bake.h"
 
 // Rank and number of ranks, from the environment that mpirun sets, without starting MPI.
 namespace throng {

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "throng/result.h"
+#include "throng/base.h"
 
 /// What a bake needs of MPI, and the only place that knows it. Calls come from the thread that made
 /// the first one.

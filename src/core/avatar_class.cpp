@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/avatar_class.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "core/classes_file.h"
 #include "core/config_file.h"
 #include "core/read_file.h"
+#include "throng/avatar.h"
 
 // Limits of avatar classes, the default classes, and lists of classes in TOML and JSON files.
 namespace throng {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "throng/avatar_class.h"
-#include "throng/result.h"
+#include "throng/avatar.h"
+#include "throng/base.h"
 
 namespace throng {
 

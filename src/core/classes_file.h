@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/config_file.h"
-#include "throng/avatar_class.h"
+#include "throng/avatar.h"
 
 /// What load_classes does once the file is parsed.
 namespace throng {

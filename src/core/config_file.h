@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "throng/result.h"
+#include "throng/base.h"
 
 /// Small settings files, TOML or JSON, as one tree that remembers the line of every value, so that
 /// a wrong setting can be named by file, line, key and limit.

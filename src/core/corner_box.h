@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "throng/math.h"
+#include "throng/base.h"
 
 namespace throng {
 

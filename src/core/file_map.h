@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "throng/result.h"
+#include "throng/base.h"
 
 /// Files: mapped for reading, written whole or not at all.
 namespace throng {

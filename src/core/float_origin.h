@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "throng/math.h"
+#include "throng/base.h"
 
 /// Where floats hold coordinates, wherever in the world these are.
 namespace throng {

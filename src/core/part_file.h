@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "throng/result.h"
+#include "throng/base.h"
 
 namespace throng {
 

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/prism.h"
-
 #include <cmath>
 #include <string>
 
 #include "core/plan_point.h"
 #include "core/trig.h"
+#include "throng/base.h"
 
 // Upright convex prisms: circles, containment, checks.
 namespace throng {

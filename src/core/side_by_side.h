@@ -6,8 +6,7 @@
 #include <mutex>
 
 #include "core/parallel.h"
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/base.h"
 
 namespace throng {
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/access.h"
 #include "core/check_class.h"
 #include "core/hash.h"
 #include "core/parallel.h"
@@ -14,7 +15,7 @@
 #include "crowd/crowd_check.h"
 #include "crowd/crowd_state.h"
 #include "crowd/standing_map.h"
-#include "throng/lean.h"
+#include "throng/avatar.h"
 #include "world/node_data.h"
 #include "world/place.h"
 
@@ -35,10 +36,10 @@ Error bad_config(const std::string& what) { return {Errc::kBadConfig, "crowd: " 
 
 // As far as known from outside: worlds that were never written have no hash.
 bool is_same_world(const Nodes& nodes, const World& world) {
-  const WorldSummary &a = nodes.data()->world.data()->summary, &b = world.data()->summary;
+  const WorldSummary &a = data_of(data_of(nodes)->world)->summary, &b = data_of(world)->summary;
   return a.hash == b.hash && a.cell == b.cell && a.origin == b.origin &&
          a.classes.size() == b.classes.size() &&
-         nodes.data()->world.data()->level_count == world.data()->level_count;
+         data_of(data_of(nodes)->world)->level_count == data_of(world)->level_count;
 }
 
 }  // namespace
@@ -49,7 +50,7 @@ Crowd& Crowd::operator=(Crowd&&) noexcept = default;
 Crowd::~Crowd() = default;
 
 Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
-  if (!world.data()) return bad_config("there is no world");
+  if (!data_of(world)) return bad_config("there is no world");
   if (!(config.dt >= kMinDt && config.dt <= kMaxDt)) {
     return bad_config("dt must be 0.001 to 1 s");
   }
@@ -71,11 +72,10 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (!(config.no_progress_after >= 0 && config.no_progress_after <= 1e6)) {
     return bad_config("stuck_after must be 0 to 1000000 s");
   }
-  if (config.labels && config.zones) return bad_config("choose labels or zones, not both");
-  if (config.nodes.data() != nullptr && !is_same_world(config.nodes, world)) {
+  if (data_of(config.nodes) != nullptr && !is_same_world(config.nodes, world)) {
     return bad_config("the nodes are of another world");
   }
-  const WorldData& data = *world.data();
+  const WorldData& data = *data_of(world);
   const double unit = data.summary.cell / kUnitsPerCell;
   const bool is_sampled = config.model == SteeringModel::kSampled;
   steer::SampledSettings steering;
@@ -112,7 +112,6 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
                          data.summary.classes.size());
   auto state = std::make_unique<State>(world, config, std::move(engine), std::move(flyers),
                                        std::move(climbers));
-  state->unit = unit;
   state->classes.resize(data.summary.classes.size());
   return Crowd(std::move(state));
 }
@@ -135,22 +134,19 @@ Body* Crowd::State::body(AvatarId id) const {
 }
 
 Result<void> Crowd::State::open_class(int32_t number, Context& context) {
-  if (auto ok = check_class(world.data()->summary.classes, number, "crowd"); !ok) return ok;
+  if (auto ok = check_class(data_of(world)->summary.classes, number, "crowd"); !ok) return ok;
   std::unique_ptr<ClassParts>& parts = classes[static_cast<size_t>(number)];
   if (parts) return {};
   auto made = std::make_unique<ClassParts>();
   const int32_t step_height = step_mm(body_class(number));
-  auto ground = CrowdGround::make(*world.data(), number, step_height);
+  auto ground = CrowdGround::make(*data_of(world), number, step_height);
   if (!ground) return ground.error();
   made->ground = std::move(*ground);
   const bool over_nodes = is_climber_class(number);
   if (config.routing == Routing::kPaths && !over_nodes) {
-    auto finder = PathFinder::make(world,
-                                   {.avatar_class = number,
-                                    .workers = config.workers,
-                                    .labels = config.labels,
-                                    .zones = config.zones},
-                                   context);
+    auto finder = PathFinder::create(
+        world, {.avatar_class = number, .workers = config.workers, .speedup = config.speedup},
+        context);
     if (!finder) return finder.error();
     made->finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
     made->paths.resize(made->finders.size());
@@ -303,7 +299,7 @@ Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Co
       if (map.add_if_clear(body)) ids[i] = s.add(body, climb);
       continue;
     }
-    const auto point = ground_point(*s.world.data(), spawns[i].place);
+    const auto point = ground_point(*data_of(s.world), spawns[i].place);
     if (!point) continue;
     const CrowdGround& ground = s.classes[static_cast<size_t>(spawns[i].avatar_class)]->ground;
     body.x = static_cast<int32_t>(point->x);
@@ -418,7 +414,7 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goal
       continue;
     }
     body->flags = 0;
-    const auto point = ground_point(*s.world.data(), goals[i]);
+    const auto point = ground_point(*data_of(s.world), goals[i]);
     if (!point) continue;
     Route& route = s.routes[body->slot];
     route = {};
@@ -512,7 +508,7 @@ void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint
 }
 
 void Crowd::set_views(std::span<const CrowdView> views) {
-  const Vec3d& origin = state_->world.data()->summary.origin;
+  const Vec3d& origin = data_of(state_->world)->summary.origin;
   state_->views.clear();
   for (const CrowdView& v : views) {
     state_->views.push_back({static_cast<float>(v.position.x - origin.x),
@@ -530,7 +526,9 @@ CrowdReport Crowd::step() {
   s.arrived.clear();
   s.goal_unreachable.clear();
   s.out_of_memory = 0;
-  report.waiting = s.settle_obstacles(s.obstacles.waiting(), &s.blockers);
+  // A copy, because what settles is taken out of the list.
+  const std::span<const uint32_t> waiting = s.obstacles.waiting();
+  report.waiting = s.settle_obstacles(std::vector(waiting.begin(), waiting.end()), &s.blockers);
   s.renew_flows();
   report.seconds_obstacles = seconds_since(start);
   EngineCounts counts;
@@ -629,7 +627,7 @@ uint64_t Crowd::state_hash() const {
 }
 
 AvatarState Crowd::State::state_of(const Body& b) const {
-  const Vec3d origin = world.data()->summary.origin;
+  const Vec3d origin = data_of(world)->summary.origin;
   if (b.climbs) {
     const Climb& climb = climbs[b.slot];
     const Vec3d displacement = unleaned({b.velocity.x, climb.rise, b.velocity.z}, climb.axis);
@@ -667,7 +665,7 @@ std::optional<AvatarState> Crowd::read(AvatarId id) const {
   return body == nullptr ? std::nullopt : std::optional(state_->state_of(*body));
 }
 
-bool Crowd::may_lean() const { return state_->config.nodes.data() != nullptr; }
+bool Crowd::may_lean() const { return data_of(state_->config.nodes) != nullptr; }
 
 std::span<const AvatarId> Crowd::arrived() const { return state_->arrived; }
 std::span<const AvatarId> Crowd::goal_unreachable() const { return state_->goal_unreachable; }

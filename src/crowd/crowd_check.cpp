@@ -9,6 +9,7 @@
 #include <numeric>
 #include <vector>
 
+#include "core/access.h"
 #include "core/parallel.h"
 #include "world/air_data.h"
 #include "world/ground.h"
@@ -132,7 +133,7 @@ class AirCheck {
 
 CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
                         std::span<const Prism> obstacles, int32_t workers) {
-  const WorldData& data = *world.data();
+  const WorldData& data = *data_of(world);
   const double unit = data.summary.cell / kUnitsPerCell;
 
   std::vector<AirCheck> air;

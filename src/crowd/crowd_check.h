@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
-#include "throng/avatar_state.h"
-#include "throng/prism.h"
+#include "throng/avatar.h"
+#include "throng/base.h"
 #include "throng/world.h"
 
 /// A check of a crowd that shares nothing with the step: exact distances, the world's own queries.

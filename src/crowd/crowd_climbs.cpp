@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/access.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "crowd/crowd_state.h"
@@ -87,12 +88,12 @@ void Crowd::State::take_path(Climb& climb, const NodePath& path) {
 
 bool Crowd::State::is_climber_class(int32_t number) const {
   const AvatarClass& avatar = body_class(number);
-  return config.nodes.data() != nullptr && !avatar.flies && throng::goes_over_nodes(avatar);
+  return data_of(config.nodes) != nullptr && !avatar.flies && throng::goes_over_nodes(avatar);
 }
 
 Result<void> Crowd::State::open_nodes(int32_t number, ClassParts& parts, Context& context) const {
-  auto finder = NodePathFinder::make(config.nodes,
-                                     {.avatar_class = number, .workers = config.workers}, context);
+  auto finder = NodePathFinder::create(
+      config.nodes, {.avatar_class = number, .workers = config.workers}, context);
   if (!finder) return finder.error();
   parts.node_finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
   parts.node_paths.resize(parts.node_finders.size());
@@ -355,7 +356,7 @@ void Crowd::State::move_climbers(EngineCounts& counts, CrowdEngine::Times& times
 Body Crowd::State::at_feet(const Body& body) const {
   if (!body.climbs) return body;
   Body there = body;
-  const Vec3d& origin = world.data()->summary.origin;
+  const Vec3d& origin = data_of(world)->summary.origin;
   const Vec3d& feet = climbs[body.slot].feet;
   there.x = static_cast<int32_t>(std::floor((feet.x - origin.x) / unit));
   there.z = static_cast<int32_t>(std::floor((feet.z - origin.z) / unit));
@@ -436,7 +437,7 @@ uint64_t Crowd::State::count_off_nodes() const {
     Vec3d side = cross(other, climb.axis);
     side = side * (1 / length(side));
     const Vec3d front = cross(side, climb.axis);
-    const Vec3d& origin = world.data()->summary.origin;
+    const Vec3d& origin = data_of(world)->summary.origin;
     for (int turn = 0; turn < 16; ++turn) {
       const double angle = turn * (2 * 3.14159265358979 / 16);
       const Vec3d rim =

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "core/access.h"
 #include "core/parallel.h"
 #include "crowd/crowd_state.h"
 #include "throng/crowd.h"
@@ -21,7 +22,7 @@ constexpr double kNoProgress = 0.3;  // [m]
 
 Result<WatchedArea> Crowd::watch_area(std::span<const Prism> prisms) {
   State& s = *state_;
-  auto made = Target::make(*s.world.data(), prisms);
+  auto made = Target::make(*data_of(s.world), prisms);
   if (!made) return made.error();
   if (s.watched.size() >= kMaxAreas) {
     return Error{Errc::kLimit, "crowd: it watches 64 areas; watch fewer"};

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <utility>
 
+#include "core/access.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "crowd/crowd_state.h"
@@ -54,13 +55,13 @@ void set_path(Flight& flight, std::span<const AirPosition> points, bool lands) {
 }  // namespace
 
 Result<void> Crowd::State::open_air(int32_t number, ClassParts& parts, Context& context) const {
-  if (!body_class(number).flies || world.data()->air == nullptr) return {};
+  if (!body_class(number).flies || data_of(world)->air == nullptr) return {};
   auto finder =
-      FlightFinder::make(world, {.avatar_class = number, .workers = config.workers}, context);
+      FlightFinder::create(world, {.avatar_class = number, .workers = config.workers}, context);
   if (!finder) return finder.error();
   parts.flight_finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
   parts.flights.resize(parts.flight_finders.size());
-  parts.air.emplace(world, parts.flight_finders[0].space(), parts.ground, number);
+  parts.air.emplace(world, space_of(parts.flight_finders[0]), parts.ground, number);
   return {};
 }
 
@@ -92,7 +93,7 @@ bool Crowd::State::set_goal_of_flyer(Body& body, const Place& goal) {
     flight.goal = air.position(goal.position);
     flight.goal_level = Flight::kInAir;
   } else {
-    const auto point = ground_point(*world.data(), goal);
+    const auto point = ground_point(*data_of(world), goal);
     if (!point) return false;
     const CrowdGround& ground = classes[body.avatar_class]->ground;
     flight.goal = {static_cast<int32_t>(point->x), static_cast<int32_t>(point->z), 0};
@@ -195,7 +196,7 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
   const Place ground_air_link =
       world.find_place(body.avatar_class, path.points[walked], kSearchRadius);
   if (!ground_air_link) return false;
-  routes[body.slot].goal = point_of(*world.data(), ground_air_link);
+  routes[body.slot].goal = point_of(*data_of(world), ground_air_link);
   flight.to_link = 1;
   return false;
 }
@@ -246,7 +247,7 @@ std::optional<AirPosition> Crowd::State::open_position(const Body& body, const A
   const FlyerAir& air = *parts.air;
   const FlightFinder& finder = parts.flight_finders[static_cast<size_t>(worker)];
   if (finder.is_legal(air.metres(at))) return at;
-  const int32_t high = finder.space().shape.cell;
+  const int32_t high = space_of(finder).shape.cell;
   const auto wide = static_cast<int32_t>(high * 1e-3 / unit);
   std::optional<AirPosition> nearest;
   int32_t min_square = INT32_MAX;
@@ -442,34 +443,44 @@ void Crowd::State::fly(EngineCounts& counts, CrowdEngine::Times& times,
 
 void Crowd::State::add_flyer_blockers(std::span<const uint32_t> slots,
                                       std::vector<std::pair<uint32_t, uint32_t>>& found) const {
-  const Vec3d& origin = world.data()->summary.origin;
-  const std::span<const Body> bodies = engine.bodies();
+  const Vec3d& origin = data_of(world)->summary.origin;
+  ObstacleGrid passed(unit);
   for (const uint32_t slot : slots) {
     const CrowdObstacle& obstacle = obstacles.all()[slot];
     if (!obstacle.waits()) continue;
-    const AirObstacle passed(
-        obstacle.is_up ? hull_of(obstacle.place, obstacle.wanted) : obstacle.wanted, origin, unit);
-    for (uint32_t i = 0; i < bodies.size(); ++i) {
-      const Body& body = bodies[i];
-      if (!body.has(Body::kFlying)) continue;
-      const double radius = body.climbs ? body.radius * unit : body_class(body.avatar_class).radius;
-      if (passed.holds(here(body), radius, body.height)) found.emplace_back(slot, i);
+    const Prism& prism =
+        obstacle.is_up ? hull_of(obstacle.place, obstacle.wanted) : obstacle.wanted;
+    passed.set(slot, {AirObstacle(prism, origin, unit), {}, slot});
+  }
+  if (passed.is_empty()) return;
+  const std::span<const Body> bodies = engine.bodies();
+  std::vector<const ObstacleGrid::Item*> near;
+  for (uint32_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    if (!body.has(Body::kFlying)) continue;
+    const double radius = body.climbs ? body.radius * unit : body_class(body.avatar_class).radius;
+    passed.list_near(here(body), radius, near);
+    for (const ObstacleGrid::Item* obstacle : near) {
+      if (obstacle->shape.holds(here(body), radius, body.height)) {
+        found.emplace_back(obstacle->slot, i);
+      }
     }
   }
   std::sort(found.begin(), found.end());
 }
 
-void Crowd::State::sync_flyer_obstacles() {
-  std::vector<AirObstacle> all;
-  std::vector<Solid> solids;
-  const Vec3d& origin = world.data()->summary.origin;
-  for (const CrowdObstacle& obstacle : obstacles.all()) {
-    if (!obstacle.exists || !obstacle.has_cells) continue;
-    all.emplace_back(obstacle.place, origin, unit, obstacle.closes());
-    solids.push_back({obstacle.place, {}});
+void Crowd::State::update_obstacle_grid() {
+  const Vec3d& origin = data_of(world)->summary.origin;
+  for (const uint32_t slot : obstacles.take_changed()) {
+    const CrowdObstacle& obstacle = obstacles.at(slot);
+    if (!obstacle.exists || !obstacle.has_cells) {
+      obstacle_grid.erase(slot);
+      continue;
+    }
+    obstacle_grid.set(
+        slot,
+        {AirObstacle(obstacle.place, origin, unit, obstacle.closes()), {obstacle.place, {}}, slot});
   }
-  climbers.set_obstacles(all, std::move(solids));
-  flyers.set_obstacles(std::move(all));
 }
 
 }  // namespace throng

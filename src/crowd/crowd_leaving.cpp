@@ -5,8 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "core/access.h"
 #include "crowd/crowd_state.h"
-#include "crowd/leaving_ground.h"
+#include "crowd/ground/leaving_ground.h"
 #include "throng/crowd.h"
 #include "world/place.h"
 
@@ -37,7 +38,7 @@ AirObstacle column_of(const Prism& prism, const Vec3d& origin, double unit) {
 bool Crowd::State::is_occupied(uint32_t slot,
                                std::span<const std::pair<uint32_t, uint32_t>> found) const {
   const Prism& prism = obstacles.all()[slot].wanted;
-  const AirObstacle solid(prism, world.data()->summary.origin, unit);
+  const AirObstacle solid(prism, data_of(world)->summary.origin, unit);
   return std::any_of(found.begin(), found.end(), [&](const auto& pair) {
     const Body& body = engine.bodies()[pair.second];
     const AvatarClass& avatar = body_class(body.avatar_class);
@@ -97,7 +98,7 @@ void Crowd::State::begin_to_leave(Body& body, std::span<const uint32_t> slots) {
 
 // Does its path lead out of obstacles soon, and never back?
 bool Crowd::State::leads_out(const Body& body, std::span<const uint32_t> slots) const {
-  const Vec3d& origin = world.data()->summary.origin;
+  const Vec3d& origin = data_of(world)->summary.origin;
   std::vector<AirObstacle> columns;
   for (const uint32_t slot : slots) {
     columns.push_back(column_of(obstacles.all()[slot].wanted, origin, unit));
@@ -119,7 +120,7 @@ bool Crowd::State::leads_out(const Body& body, std::span<const uint32_t> slots) 
                              ? uint16_t{0}
                              : ground.left().steps_out({body.level, body.point().cell_x() & 63,
                                                         body.point().cell_z() & 63});
-  const double least = steps == LeftCells::kNone ? HUGE_VAL : steps * world.data()->summary.cell;
+  const double least = steps == LeftCells::kNone ? HUGE_VAL : steps * data_of(world)->summary.cell;
   const double limit = (kMaxDetourFactor * least + kMaxPath) / unit;
   const double step_size = radius / 2 / unit;
   double walked = 0, x = body.x, z = body.z;
@@ -299,9 +300,10 @@ bool Crowd::State::find_exit_over_nodes(Body& body, Climb& climb, int32_t worker
   const NodePlace from =
       config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
   if (!to || !from) return true;
-  const Vec3d& origin = world.data()->summary.origin;
+  const Vec3d& origin = data_of(world)->summary.origin;
   const auto let_through = [&](bool lets) {
-    for (const CrowdObstacle& obstacle : obstacles.all()) {
+    for (const uint32_t slot : obstacles.waiting()) {  // One that closes waits.
+      const CrowdObstacle& obstacle = obstacles.all()[slot];
       if (!obstacle.closes()) continue;
       const AirObstacle solid(obstacle.place, origin, unit);
       const bool is_in = climbers.meets_obstacle(

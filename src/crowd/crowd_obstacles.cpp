@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <string>
 
+#include "core/access.h"
 #include "core/parallel.h"
 #include "crowd/crowd_state.h"
-#include "path/blocked_cells.h"
+#include "path/edits/blocked_cells.h"
 #include "throng/crowd.h"
 
 // Obstacles that are added, moved and removed while a crowd walks. Between two steps all avatars
@@ -193,14 +194,11 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
 
 void Crowd::State::ground_changed() {
   obstacles.block_cells();
-  cuts_paths = false;
-  for (const CrowdObstacle& obstacle : obstacles.all()) {
-    cuts_paths |= obstacle.exists && obstacle.has_cells && obstacle.kind == ObstacleKind::kStatic;
-  }
+  cuts_paths = obstacles.cuts_paths();
   for (const auto& parts : classes) {
     if (parts) parts->standing.reset();
   }
-  sync_flyer_obstacles();
+  update_obstacle_grid();
 }
 
 void Crowd::State::sync_paths(uint32_t slot) {
@@ -230,7 +228,7 @@ void Crowd::State::sync_paths(uint32_t slot, size_t number) {
 void Crowd::State::cut_paths(std::span<const uint32_t> slots) {
   if (!climbs.empty()) cut_climbs(slots);
   if (config.routing != Routing::kPaths) return;
-  const WorldData& data = *world.data();
+  const WorldData& data = *data_of(world);
   double widest_class = 0;
   for (const AvatarClass& avatar : data.summary.classes) {
     widest_class = std::max(widest_class, taking_reach(avatar));

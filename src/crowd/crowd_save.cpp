@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "core/access.h"
 #include "core/hash.h"
 #include "crowd/crowd_state.h"
 #include "throng/crowd.h"
@@ -127,7 +128,7 @@ uint64_t size_of(const Head& head) {
 
 // A world that was never written has no hash of its own.
 uint64_t hash_of(const World& world) {
-  const WorldData& data = *world.data();
+  const WorldData& data = *data_of(world);
   const Vec3d& origin = data.summary.origin;
   const double facts[] = {data.summary.cell,
                           origin.x,
@@ -236,6 +237,100 @@ bool add_targets(Crowd& crowd, std::span<const double> values, Context& context)
   return true;
 }
 
+// Reads the head of a saved crowd. Fails with the reason why it is not one of this world and these
+// settings, or not whole.
+Result<Head> read_head(const World& world, const CrowdConfig& config,
+                       std::span<const uint8_t> saved) {
+  Head head;
+  if (saved.size() < sizeof head + 8) return bad("is cut short; save the crowd again");
+  std::memcpy(&head, saved.data(), sizeof head);
+  if (head.magic != kMagic) {
+    return bad("is no crowd of this version; restore it with the program that saved it");
+  }
+  Head expected = head_of(world, config);
+  if (head.world != expected.world) return bad("is of another world; open that one");
+  if (head.seed != expected.seed || head.dt != expected.dt || head.sight != expected.sight ||
+      head.reaction != expected.reaction || head.rounds != expected.rounds ||
+      head.routing != expected.routing || head.deadlock_avoidance != expected.deadlock_avoidance ||
+      head.model != expected.model || head.low_detail_steps != expected.low_detail_steps ||
+      head.low_detail_reaction != expected.low_detail_reaction) {
+    return bad("has other settings; give those that it was made with");
+  }
+  constexpr uint64_t kMax = uint64_t{1} << 32;
+  if (head.bodies >= kMax || head.slots >= kMax || head.free_slots >= kMax ||
+      head.obstacles >= kMax || head.corners >= kMax || head.free_obstacles >= kMax ||
+      head.target_values >= kMax || head.views >= kMax ||
+      (head.flights != 0 && head.flights != head.slots) ||
+      (head.climbs != 0 && head.climbs != head.slots) || saved.size() != size_of(head)) {
+    return bad("is cut short; save the crowd again");
+  }
+  uint64_t sum = 0;
+  std::memcpy(&sum, saved.data() + saved.size() - 8, 8);
+  if (sum != hash_bytes(saved.data(), saved.size() - 8)) {
+    return bad("is corrupt; save the crowd again");
+  }
+  return head;
+}
+
+// The arrays behind the head that are not the state's own.
+struct SavedArrays {
+  std::vector<Body> bodies;
+  std::vector<SavedObstacle> obstacles;
+  std::vector<std::array<double, 2>> corners;
+  std::vector<uint32_t> free_obstacles;
+  std::vector<double> targets;
+  std::vector<Flight> flights;
+  std::vector<Climb> climbs;
+};
+
+// Reads all arrays, in the order of Crowd::save.
+template <class State>
+SavedArrays read_arrays(const Head& head, const uint8_t* at, State& s) {
+  const auto take = [&](auto& values, size_t count) {
+    values.resize(count);
+    const size_t bytes = count * sizeof(values[0]);
+    if (bytes > 0) std::memcpy(values.data(), at, bytes);
+    at += bytes;
+  };
+  SavedArrays saved;
+  take(saved.bodies, head.bodies);
+  take(s.generation, head.slots);
+  take(s.routes, head.slots);
+  take(s.free_slots, head.free_slots);
+  take(saved.obstacles, head.obstacles);
+  take(saved.corners, head.corners);
+  take(saved.free_obstacles, head.free_obstacles);
+  take(saved.targets, head.target_values);
+  take(saved.flights, head.flights);
+  take(saved.climbs, head.climbs);
+  take(s.views, head.views);
+  return saved;
+}
+
+// Does each slot belong to one body or to the free ones, and is what each body holds possible?
+template <class State>
+bool are_sound(const SavedArrays& saved, const Head& head, const WorldData& data, const State& s) {
+  std::vector<bool> taken(head.slots, false);
+  const auto use_slot = [&](uint32_t slot) {
+    const bool is_new = slot < head.slots && !taken[slot];
+    if (is_new) taken[slot] = true;
+    return is_new;
+  };
+  bool sound = head.bodies + head.free_slots == head.slots;
+  for (const uint32_t slot : s.free_slots) sound = sound && use_slot(slot);
+  for (const Body& body : saved.bodies) {
+    sound = sound && is_sound(body, data) && use_slot(body.slot) &&
+            (!body.has(Body::kHasGoal) || body.climbs ||
+             is_sound(s.routes[body.slot], data.level_count));
+    sound = sound && (!body.climbs || !saved.climbs.empty());
+    const bool flies = body.flies();
+    sound = sound &&
+            (saved.flights.empty() ? !flies
+                                   : is_sound(saved.flights[body.slot], body, data.level_count));
+  }
+  return sound;
+}
+
 }  // namespace
 
 std::vector<uint8_t> Crowd::save() const {
@@ -282,85 +377,16 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   auto made = create(world, config);
   if (!made) return made;
   State& s = *made->state_;
-  const WorldData& data = *s.world.data();
-  Head head;
-  if (saved.size() < sizeof head + 8) return bad("is cut short; save the crowd again");
-  std::memcpy(&head, saved.data(), sizeof head);
-  if (head.magic != kMagic) {
-    return bad("is no crowd of this version; restore it with the program that saved it");
-  }
-  Head expected = head_of(world, config);
-  if (head.world != expected.world) return bad("is of another world; open that one");
-  if (head.seed != expected.seed || head.dt != expected.dt || head.sight != expected.sight ||
-      head.reaction != expected.reaction || head.rounds != expected.rounds ||
-      head.routing != expected.routing || head.deadlock_avoidance != expected.deadlock_avoidance ||
-      head.model != expected.model || head.low_detail_steps != expected.low_detail_steps ||
-      head.low_detail_reaction != expected.low_detail_reaction) {
-    return bad("has other settings; give those that it was made with");
-  }
-  constexpr uint64_t kMax = uint64_t{1} << 32;
-  if (head.bodies >= kMax || head.slots >= kMax || head.free_slots >= kMax ||
-      head.obstacles >= kMax || head.corners >= kMax || head.free_obstacles >= kMax ||
-      head.target_values >= kMax || head.views >= kMax ||
-      (head.flights != 0 && head.flights != head.slots) ||
-      (head.climbs != 0 && head.climbs != head.slots) || saved.size() != size_of(head)) {
-    return bad("is cut short; save the crowd again");
-  }
-  uint64_t sum = 0;
-  std::memcpy(&sum, saved.data() + saved.size() - 8, 8);
-  if (sum != hash_bytes(saved.data(), saved.size() - 8)) {
-    return bad("is corrupt; save the crowd again");
-  }
-  const uint8_t* at = saved.data() + sizeof head;
-  const auto take = [&](auto* values, size_t count) {
-    const size_t bytes = count * sizeof(*values);
-    if (bytes > 0) std::memcpy(values, at, bytes);
-    at += bytes;
-  };
-  std::vector<Body> bodies(head.bodies);
-  take(bodies.data(), bodies.size());
-  s.generation.resize(head.slots);
-  take(s.generation.data(), s.generation.size());
-  s.routes.resize(head.slots);
-  take(s.routes.data(), s.routes.size());
-  s.free_slots.resize(head.free_slots);
-  take(s.free_slots.data(), s.free_slots.size());
-  std::vector<SavedObstacle> obstacles(head.obstacles);
-  take(obstacles.data(), obstacles.size());
-  std::vector<std::array<double, 2>> corners(head.corners);
-  take(corners.data(), corners.size());
-  std::vector<uint32_t> free_obstacles(head.free_obstacles);
-  take(free_obstacles.data(), free_obstacles.size());
-  std::vector<double> targets(head.target_values);
-  take(targets.data(), targets.size());
-  std::vector<Flight> flights(head.flights);
-  take(flights.data(), flights.size());
-  std::vector<Climb> climbs(head.climbs);
-  take(climbs.data(), climbs.size());
-  s.views.resize(head.views);
-  take(s.views.data(), s.views.size());
-
+  const Result<Head> read = read_head(world, config, saved);
+  if (!read) return read.error();
+  const Head& head = *read;
+  SavedArrays arrays = read_arrays(head, saved.data() + sizeof head, s);
+  const std::vector<Body>& bodies = arrays.bodies;
   s.where.assign(head.slots, kNoBody);
-  std::vector<bool> taken(head.slots, false);
-  const auto use_slot = [&](uint32_t slot) {
-    const bool is_new = slot < head.slots && !taken[slot];
-    if (is_new) taken[slot] = true;
-    return is_new;
-  };
-  bool sound = head.bodies + head.free_slots == head.slots;
-  for (const uint32_t slot : s.free_slots) sound = sound && use_slot(slot);
-  for (const Body& body : bodies) {
-    sound = sound && is_sound(body, data) && use_slot(body.slot) &&
-            (!body.has(Body::kHasGoal) || body.climbs ||
-             is_sound(s.routes[body.slot], data.level_count));
-    sound = sound && (!body.climbs || !climbs.empty());
-    const bool flies = body.flies();
-    sound =
-        sound && (flights.empty() ? !flies : is_sound(flights[body.slot], body, data.level_count));
-  }
-  auto all = obstacles_of(obstacles, corners);
-  sound = sound && all && s.obstacles.restore(std::move(*all), std::move(free_obstacles));
-  sound = sound && add_targets(*made, targets, context);
+  bool sound = are_sound(arrays, head, *data_of(s.world), s);
+  auto all = obstacles_of(arrays.obstacles, arrays.corners);
+  sound = sound && all && s.obstacles.restore(std::move(*all), std::move(arrays.free_obstacles));
+  sound = sound && add_targets(*made, arrays.targets, context);
   for (const Body& body : bodies) sound = sound && body.target <= s.targets.size();
   if (!sound) return bad("is not sound; save the crowd again");
   s.ground_changed();
@@ -371,13 +397,13 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
       return bad("has other settings; give the nodes that it was made with");
     }
   }
-  if (!climbs.empty()) s.climbs = std::move(climbs);
+  if (!arrays.climbs.empty()) s.climbs = std::move(arrays.climbs);
   for (const Body& body : bodies) {
     if (body.climbs && !s.is_sound_climb(body)) return bad("is not sound; save the crowd again");
     s.make_room(body);
     s.engine.add(body);
   }
-  if (!flights.empty()) s.flights = std::move(flights);
+  if (!arrays.flights.empty()) s.flights = std::move(arrays.flights);
   for (const Body& body : bodies) {
     const FlyerAir* air = s.air_of(body);
     const bool flies = body.flies();

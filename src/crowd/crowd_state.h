@@ -11,24 +11,24 @@
 #include <span>
 #include <vector>
 
-#include "crowd/climb.h"
-#include "crowd/climber_engine.h"
-#include "crowd/climber_ground.h"
-#include "crowd/crowd_engine.h"
-#include "crowd/crowd_ground.h"
-#include "crowd/flight.h"
-#include "crowd/flyer_air.h"
-#include "crowd/flyer_engine.h"
-#include "crowd/obstacle_set.h"
-#include "crowd/path_repair.h"
+#include "core/access.h"
+#include "crowd/climb/climb.h"
+#include "crowd/climb/climber_engine.h"
+#include "crowd/climb/climber_ground.h"
+#include "crowd/fly/flight.h"
+#include "crowd/fly/flyer_air.h"
+#include "crowd/fly/flyer_engine.h"
+#include "crowd/ground/crowd_ground.h"
+#include "crowd/ground/obstacle_grid.h"
+#include "crowd/obstacles/obstacle_set.h"
+#include "crowd/obstacles/path_repair.h"
 #include "crowd/placement.h"
-#include "crowd/routes.h"
 #include "crowd/target.h"
-#include "path/flow_points.h"
+#include "crowd/walk/crowd_engine.h"
+#include "crowd/walk/routes.h"
+#include "path/edits/flow_points.h"
 #include "throng/crowd.h"
-#include "throng/flight.h"
-#include "throng/live_ground.h"
-#include "throng/node_path.h"
+#include "throng/path.h"
 
 /// The state of a crowd.
 namespace throng {
@@ -72,8 +72,9 @@ struct Crowd::State {
   uint64_t step = 0, sub_step = 0;
   uint64_t scattered = 0;  // draws of `scatter`
   ObstacleSet obstacles;
-  bool cuts_paths = false;  // an obstacle that paths avoid is active, or closes
-  bool some_leave = false;  // Body::leaves is set for some
+  ObstacleGrid obstacle_grid;  // those that are active or close
+  bool cuts_paths = false;     // an obstacle that paths avoid is active, or closes
+  bool some_leave = false;     // Body::leaves is set for some
 
   // By slot.
   std::vector<uint32_t> generation;
@@ -103,10 +104,15 @@ struct Crowd::State {
         engine(std::move(an_engine)),
         flyers(std::move(a_flyer_engine)),
         climbers(std::move(a_climber_engine)),
-        obstacles(a_world, a_world.data()->summary.classes.size()) {}
+        unit(data_of(a_world)->summary.cell / kUnitsPerCell),
+        obstacles(a_world, data_of(a_world)->summary.classes.size()),
+        obstacle_grid(unit) {
+    flyers.set_obstacles(&obstacle_grid);
+    climbers.set_obstacles(&obstacle_grid);
+  }
 
   [[nodiscard]] const AvatarClass& body_class(int32_t number) const {
-    return world.data()->summary.classes[static_cast<size_t>(number)];
+    return data_of(world)->summary.classes[static_cast<size_t>(number)];
   }
   [[nodiscard]] AvatarId id_of(uint32_t slot) const { return {slot + 1, generation[slot]}; }
   [[nodiscard]] Body* body(AvatarId id) const;
@@ -192,7 +198,8 @@ struct Crowd::State {
                                                          int32_t worker) const;
   [[nodiscard]] bool find_flight(const Body& body, Flight& flight, int32_t worker) const;
   void fly(EngineCounts& counts, CrowdEngine::Times& times, std::atomic<uint64_t>& planned);
-  void sync_flyer_obstacles();
+  /// Updates what flyers and climbers test.
+  void update_obstacle_grid();
   /// Adds flyers where obstacles would appear or pass to the walkers that stand there, in order.
   void add_flyer_blockers(std::span<const uint32_t> slots,
                           std::vector<std::pair<uint32_t, uint32_t>>& found) const;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "core/access.h"
 #include "core/parallel.h"
 #include "crowd/crowd_state.h"
 #include "throng/crowd.h"
@@ -24,7 +25,7 @@ Result<TargetId> Crowd::add_target(std::span<const Prism> areas, Context& contex
   if (s.config.routing != Routing::kPaths) {
     return Error{Errc::kBadConfig, "crowd: Routing::kStraight supports no targets; give goals"};
   }
-  auto made = Target::make(*s.world.data(), areas);
+  auto made = Target::make(*data_of(s.world), areas);
   if (!made) return made.error();
   if (s.targets.size() >= kMaxTargets) {
     return Error{Errc::kLimit, "crowd: it has 65535 targets; use those that it has again"};
@@ -47,7 +48,7 @@ Result<TargetId> Crowd::add_target(std::span<const Prism> areas, Context& contex
 void Crowd::State::make_lives(size_t number) {
   std::vector<LiveGround>& lives = classes[number]->lives;
   if (!lives.empty()) return;
-  auto made = LiveGround::make(world, {.avatar_class = static_cast<int32_t>(number)});
+  auto made = LiveGround::create(world, {.avatar_class = static_cast<int32_t>(number)});
   THRONG_ASSERT(made);  // The class is one of the world's.
   lives.assign(static_cast<size_t>(worker_count(config.workers)), *made);
 }
@@ -58,7 +59,7 @@ Result<void> Crowd::State::find_flows(int32_t number, Context& context) {
   while (parts.flows.size() < targets.size()) {
     const Target& target = targets[parts.flows.size()];
     const std::vector<Place> goals =
-        places_inside(*world.data(), parts.ground, target.regions, kGoals, &parts.lives[0]);
+        places_inside(*data_of(world), parts.ground, target.regions, kGoals, &parts.lives[0]);
     auto flow = FlowPoints::make(parts.lives[0], goals, FlowPoints::kNever, context);
     if (!flow) return Error{Errc::kCancelled, "crowd: cancelled"};
     parts.flows.push_back(std::move(*flow));
@@ -93,7 +94,7 @@ double Crowd::distance(AvatarId id, TargetId target) const {
     return std::numeric_limits<double>::infinity();
   }
   ClassParts& parts = *s.classes[body->avatar_class];
-  const Place place = place_of(*s.world.data(), *body, {body->x, body->z, body->level});
+  const Place place = place_of(*data_of(s.world), *body, {body->x, body->z, body->level});
   return parts.flows[target - 1u].distance(parts.lives[0], place);
 }
 
@@ -102,7 +103,7 @@ Result<std::vector<Place>> Crowd::places(TargetId target, int32_t avatar_class, 
   State& s = *state_;
   THRONG_ASSERT(target >= 1 && target <= s.targets.size());
   if (auto ok = s.open_class(avatar_class, context); !ok) return ok.error();
-  return places_inside(*s.world.data(), s.classes[static_cast<size_t>(avatar_class)]->ground,
+  return places_inside(*data_of(s.world), s.classes[static_cast<size_t>(avatar_class)]->ground,
                        s.targets[target - 1u].regions, std::max<size_t>(1, max_count));
 }
 
@@ -121,7 +122,7 @@ void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> sp
 // A path from where the body is to its target or goal. False: there is none.
 bool Crowd::State::plan_path(Body& body, Route& route, const StrideGround& ground, int32_t worker) {
   const auto w = static_cast<size_t>(worker);
-  const WorldData& data = *world.data();
+  const WorldData& data = *data_of(world);
   ClassParts& parts = *classes[body.avatar_class];
   Path& path = parts.paths[w];
   const PathPoint here{body.x, body.z, body.level};

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "crowd/avatars.h"
-#include "crowd/collision_map.h"
-#include "crowd/crowd_ground.h"
+#include "crowd/ground/avatars.h"
+#include "crowd/ground/crowd_ground.h"
+#include "crowd/walk/collision_map.h"
 
 /// The first places of a crowd.
 namespace throng {

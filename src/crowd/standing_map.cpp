@@ -6,7 +6,7 @@
 #include <bit>
 
 #include "core/random.h"
-#include "crowd/step_units.h"
+#include "crowd/walk/step_units.h"
 
 // A hash table of squares with a list of bodies each. Constant time for each body unless a square
 // is crowded.

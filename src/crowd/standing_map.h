@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "crowd/body.h"
+#include "crowd/walk/body.h"
 
 /// Where bodies stand, to place more.
 namespace throng {

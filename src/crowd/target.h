@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "crowd/body.h"
-#include "crowd/crowd_ground.h"
-#include "throng/live_ground.h"
-#include "throng/prism.h"
+#include "crowd/ground/crowd_ground.h"
+#include "crowd/walk/body.h"
+#include "throng/base.h"
+#include "throng/path.h"
 #include "throng/world.h"
 
 /// Targets: regions that many avatars head to.

@@ -15,7 +15,7 @@
 #include "draw/leaning_avatars.h"
 #include "draw/matrix.h"
 #include "draw/model_mesh.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng_draw/draw.h"
 
 namespace throng {

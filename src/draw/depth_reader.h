@@ -6,7 +6,7 @@
 
 #include "draw/depth_pyramid.h"
 #include "draw/gl_objects.h"
-#include "throng/result.h"
+#include "throng/base.h"
 
 namespace throng {
 

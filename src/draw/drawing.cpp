@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/access.h"
 #include "core/stopwatch.h"
 #include "draw/crowd_pass.h"
 #include "draw/depth_reader.h"
@@ -78,7 +79,7 @@ PreparedScene::PreparedScene(PreparedScene&&) noexcept = default;
 PreparedScene& PreparedScene::operator=(PreparedScene&&) noexcept = default;
 PreparedScene::~PreparedScene() = default;
 
-Result<PreparedScene> PreparedScene::make(const Scene& scene, Vec3d origin) {
+Result<PreparedScene> PreparedScene::create(const Scene& scene, Vec3d origin) {
   TextureLayers textures = make_texture_layers(scene, kTextureBudget);
   Result<SceneCorners> corners = scene_corners(scene, origin, textures.of_texture);
   if (!corners) return corners.error();
@@ -346,15 +347,16 @@ std::string Drawing::renderer() const {
 }
 
 Result<void> Drawing::set_scene(const Scene& scene, Vec3d origin) {
-  const Result<PreparedScene> prepared = PreparedScene::make(scene, origin);
+  const Result<PreparedScene> prepared = PreparedScene::create(scene, origin);
   if (!prepared) return prepared.error();
   return set_scene(*prepared);
 }
 
 Result<void> Drawing::set_scene(const PreparedScene& scene) {
   state_->make_current();
-  if (auto ok = state_->textures.set(scene.state_->textures, !state_->is_software); !ok) return ok;
-  return state_->mesh.set(scene.state_->corners);
+  if (auto ok = state_->textures.set(Access::state(scene)->textures, !state_->is_software); !ok)
+    return ok;
+  return state_->mesh.set(Access::state(scene)->corners);
 }
 
 Result<void> Drawing::set_props(const Scene& props, Vec3d origin) {
@@ -428,6 +430,31 @@ void Drawing::State::draw_sky(const DrawingConfig& config, const CameraAxes& axe
   glDepthMask(GL_TRUE);
 }
 
+namespace {
+
+// What the shadow map covers: what is near the camera's target, as far as shadows can be
+// distinguished.
+struct SunView {
+  double scene_radius = 1, half_side = 1;  // [m]
+  Vec3d right, up;
+  Matrix from_world;
+};
+
+SunView sun_view(const Box3d& bounds, const EyeCamera& camera, const Vec3d& to_sun) {
+  SunView sun;
+  sun.scene_radius = bounds.empty() ? 1 : 0.5 * length(bounds.max - bounds.min) + 1;
+  const Vec3d scene_middle = bounds.empty() ? Vec3d{} : (bounds.min + bounds.max) * 0.5;
+  sun.half_side = std::min(sun.scene_radius, 1.6 * length(camera.target - camera.eye) + 20);
+  const Vec3d middle = sun.half_side < sun.scene_radius ? camera.target : scene_middle;
+  sun.right = cross({0, 1, 0}, to_sun) * (1 / std::max(1e-9, length(cross({0, 1, 0}, to_sun))));
+  sun.up = cross(to_sun, sun.right);
+  sun.from_world = parallel_view(sun.right, sun.up, to_sun, middle, sun.half_side,
+                                 2 * sun.scene_radius + sun.half_side);
+  return sun;
+}
+
+}  // namespace
+
 Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
                                    bool into_window, DrawingReport& report) {
   const GLsizei wide = config.width * config.samples, high = config.height * config.samples;
@@ -444,23 +471,13 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   const auto draw_start = Clock::now();
   crowd.upload_shadows();
 
-  // The shadow map covers what is near the target, as far as shadows can be distinguished.
   const EyeCamera& camera = config.camera;
   const CameraAxes axes = camera_axes(camera);
-  const Box3d& bounds = mesh.bounds();
-  const double scene_radius = bounds.empty() ? 1 : 0.5 * length(bounds.max - bounds.min) + 1;
-  const Vec3d scene_middle = bounds.empty() ? Vec3d{} : (bounds.min + bounds.max) * 0.5;
-  const double half_side = std::min(scene_radius, 1.6 * length(camera.target - camera.eye) + 20);
-  const Vec3d middle = half_side < scene_radius ? camera.target : scene_middle;
-  const Vec3d sun_right =
-      cross({0, 1, 0}, to_sun) * (1 / std::max(1e-9, length(cross({0, 1, 0}, to_sun))));
-  const Vec3d sun_up = cross(to_sun, sun_right);
-  const Matrix sun_from_world =
-      parallel_view(sun_right, sun_up, to_sun, middle, half_side, 2 * scene_radius + half_side);
+  const SunView sun = sun_view(mesh.bounds(), camera, to_sun);
   const Matrix clip_from_world = perspective(camera);
   // Little haze over the scene, however large it is, and the sky's colour at the end of the ground.
   const auto haze = static_cast<float>(
-      0.15 / std::max({150.0, scene_radius, length(camera.target - camera.eye)}));
+      0.15 / std::max({150.0, sun.scene_radius, length(camera.target - camera.eye)}));
 
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
@@ -469,7 +486,7 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   const double cut_given = std::min(config.cut_height, 1e9);
   const auto cut = static_cast<float>(cut_given);
   textures.bind(kPictureUnit);
-  draw_sun_depth(sun_from_world, to_sun, sun_right, sun_up, cut);
+  draw_sun_depth(sun.from_world, to_sun, sun.right, sun.up, cut);
 
   glBindFramebuffer(GL_FRAMEBUFFER, canvas);
   glViewport(0, 0, wide, high);
@@ -479,7 +496,7 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   const auto begin = [&](const GlProgram& program) {
     program.use();
     program.set_matrix("clip_from_world", clip_from_world.data());
-    program.set_matrix("sun_from_world", sun_from_world.data());
+    program.set_matrix("sun_from_world", sun.from_world.data());
     program.set("eye", camera.eye);
     program.set("to_sun", to_sun);
     program.set("haze", haze);
@@ -500,7 +517,7 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
 
   const auto begin_scene = [&](const GlProgram& program, float prop) {
     begin(program);
-    program.set("bias", static_cast<float>(2.5 * half_side / sun_pixels));
+    program.set("bias", static_cast<float>(2.5 * sun.half_side / sun_pixels));
     program.set("soft", config.soft_shadows ? 1.0F : 0.0F);
     program.set("cut", cut);
     program.set("edges", static_cast<float>(config.edges));

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "draw/gl.h"
-#include "throng/math.h"
+#include "throng/base.h"
 
 /// Names that OpenGL allocates, released when their owner is destroyed. A context must be current.
 namespace throng {

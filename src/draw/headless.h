@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "throng/result.h"
+#include "throng/base.h"
 
 /// A graphics context that needs no window and no display server.
 namespace throng {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "draw/depth_pyramid.h"
-#include "throng/impostor_pack.h"
+#include "throng/impostor.h"
 
 namespace throng {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "throng/lean.h"
+#include "throng/avatar.h"
 
 // Packs avatars that lean. A leaning figure looks like an upright one to an eye turned by the
 // opposite rotation, so the same views serve, on cards that lean. An avatar on a wall is seen from
@@ -41,7 +41,7 @@ LevelCounts pack_leaning(const Atlas& atlas, const DrawnCrowd& crowd, const Pack
       continue;
     }
     const double far = length(from_eye);
-    const uint32_t look = static_cast<uint32_t>(a.look[i]) << 21;
+    const uint32_t look = static_cast<uint32_t>(a.appearance[i]) << 21;
     LeaningInstance instance{.body = {a.x[i], a.y[i], a.z[i], 0},
                              .up_x = static_cast<float>(axis.x),
                              .up_y = static_cast<float>(axis.y),

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "throng/impostor_pack.h"
+#include "throng/impostor.h"
 #include "throng_draw/draw.h"
 
 /// Avatars whose axes are not upright, in the form that a card reads. They are few, so a serial

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "draw/gl_objects.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng_draw/draw.h"
 
 namespace throng {

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "throng/impostor_pack.h"
-#include "throng/math.h"
+#include "throng/base.h"
+#include "throng/impostor.h"
 
 /// Matrices as OpenGL takes them: column by column.
 namespace throng {

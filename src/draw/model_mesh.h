@@ -3,8 +3,8 @@
 #pragma once
 
 #include "draw/gl_objects.h"
-#include "throng/figure_model.h"
-#include "throng/result.h"
+#include "throng/base.h"
+#include "throng/impostor.h"
 
 namespace throng {
 

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "draw/gl_objects.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng_draw/draw.h"
 
 namespace throng {

@@ -9,7 +9,7 @@
 #include "draw/depth_pyramid.h"
 #include "draw/matrix.h"
 #include "draw/scene_corners.h"
-#include "throng/math.h"
+#include "throng/base.h"
 
 /// Pieces of a scene that are drawn or left out as a whole.
 namespace throng {

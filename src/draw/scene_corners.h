@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "draw/texture_layers.h"
-#include "throng/math.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// A scene's triangles in the form that the card reads: three corners each, no index, because flat

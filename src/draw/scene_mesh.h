@@ -8,8 +8,7 @@
 
 #include "draw/gl_objects.h"
 #include "draw/scene_corners.h"
-#include "throng/math.h"
-#include "throng/result.h"
+#include "throng/base.h"
 
 namespace throng {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "draw/gl_objects.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// A scene's textures as layers of one: all brought to one size, so that a scene needs no change of

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "throng/character.h"
+#include "throng/impostor.h"
 
 /// The colours of a crowd's clothes.
 namespace throng {

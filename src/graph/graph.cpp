@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/graph.h"
-
 #include <chrono>
 #include <cmath>
 
+#include "core/access.h"
 #include "core/file_map.h"
 #include "graph/graph_passes.h"
 #include "graph/zone_regions.h"
+#include "throng/world.h"
 #include "world/place.h"
 #include "world/region_data.h"
 #include "world/sealed_file.h"
@@ -32,18 +32,18 @@ Result<std::shared_ptr<GraphData>> read_index(const WorldData& world) {
 
 Result<std::shared_ptr<GraphData>> read_or_make(const World& world, int32_t workers,
                                                 Context& context) {
-  auto graph = read_index(*world.data());
+  auto graph = read_index(*data_of(world));
   if (!graph || *graph != nullptr) return graph;
   if (auto ok = world.check_ground(); !ok) return ok.error();
-  auto made = make_graph(*world.data(), nullptr, workers, context);
+  auto made = make_graph(*data_of(world), nullptr, workers, context);
   if (!made) return made.error();
   return std::move(made->graph);
 }
 
 }  // namespace
 
-Result<Graph> Graph::make(const World& world, const GraphConfig& config, Context& context) {
-  if (world.data() == nullptr) return Error{Errc::kBadInput, "graph: the world is empty"};
+Result<Graph> Graph::create(const World& world, const GraphConfig& config, Context& context) {
+  if (data_of(world) == nullptr) return Error{Errc::kBadInput, "graph: the world is empty"};
   if (config.workers < 0) return Error{Errc::kBadConfig, "graph: workers must be 0 or more"};
   if (context.cancel) return Error{Errc::kCancelled, "graph: cancelled"};
   const auto start = std::chrono::steady_clock::now();
@@ -68,7 +68,7 @@ std::span<const Component> Graph::components(int32_t avatar_class) const {
 
 int32_t Graph::component_at(int32_t avatar_class, const Place& place) const {
   THRONG_ASSERT(data_);
-  const WorldData& world = *data_->world.data();
+  const WorldData& world = *data_of(data_->world);
   if (components(avatar_class).empty()) return -1;
   const auto at = ground_point(world, place);
   if (!at) return -1;
@@ -86,7 +86,7 @@ int32_t Graph::component_at(int32_t avatar_class, const Place& place) const {
 
 Result<void> Graph::check_at(Vec3d position) const {
   THRONG_ASSERT(data_);
-  const WorldData& world = *data_->world.data();
+  const WorldData& world = *data_of(data_->world);
   if (!std::isfinite(position.x + position.z)) return {};
   const GroundPoint at = to_ground(world, position.x, position.z);
   if (!in_grid(world, at)) return {};
@@ -102,11 +102,11 @@ Result<void> Graph::check_at(Vec3d position) const {
 }
 
 Result<void> Graph::check_files(const World& world) {
-  if (world.data() == nullptr) return Error{Errc::kBadInput, "graph: the world is empty"};
-  const auto graph = read_index(*world.data());
+  if (data_of(world) == nullptr) return Error{Errc::kBadInput, "graph: the world is empty"};
+  const auto graph = read_index(*data_of(world));
   if (!graph) return graph.error();
   for (size_t slot = 0; *graph != nullptr && slot < (*graph)->slots.size(); ++slot) {
-    if (auto ok = (*graph)->check_links(*world.data(), slot); !ok) return ok.error();
+    if (auto ok = (*graph)->check_links(*data_of(world), slot); !ok) return ok.error();
   }
   return {};
 }

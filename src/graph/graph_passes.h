@@ -7,8 +7,7 @@
 #include <span>
 #include <string>
 
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "world/region_data.h"
 
 /// The graph of a world in two passes over its zones, as [PACS00] makes it.

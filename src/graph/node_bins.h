@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "throng/nodes.h"
+#include "throng/surface.h"
 
 /// The bins in which promises are stored.
 namespace throng {

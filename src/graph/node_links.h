@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "graph/quadtree.h"
-#include "throng/nodes.h"
+#include "throng/surface.h"
 
 /// Links between nodes, from which cells lie beside each other. Source: [PACS00] 1.2.3.6.
 namespace throng {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <tuple>
 
+#include "core/access.h"
 #include "core/parallel.h"
 #include "graph/ground_parts.h"
 #include "graph/patch_pairs.h"
@@ -47,9 +48,9 @@ Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_
                                 Context& context) {
   if (auto ok = nodes.check_all(); !ok) return ok.error();
   NodeMesh mesh(nodes, avatar_class);
-  const NodeData& data = *nodes.data();
+  const NodeData& data = *data_of(nodes);
   double steepest = 0;
-  for (const AvatarClass& avatar : data.world.data()->summary.classes) {
+  for (const AvatarClass& avatar : data_of(data.world)->summary.classes) {
     steepest = std::max(steepest, avatar.max_slope);
   }
   mesh.walking_ = data.summary.bins.inclination_code(steepest);
@@ -60,7 +61,7 @@ Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_
   });
   mesh.portals_.add_all(lists);
   mesh.open_doors();
-  const WorldData& world = *data.world.data();
+  const WorldData& world = *data_of(data.world);
   const bool tiles = std::any_of(mesh.patches_.begin(), mesh.patches_.end(),
                                  [](const NodeSurface& p) { return p.points == nullptr; });
   const int32_t tiles_x = world.summary.tiles_x, tiles_z = world.summary.tiles_z;
@@ -197,8 +198,8 @@ class BlockCutter {
 
   void read_ground() {
     if (ground_) return;
-    ground_ = ground_level(*data_.world.data(), surface_.source, class_);
-    const auto& avatar = data_.world.data()->summary.classes[static_cast<size_t>(class_)];
+    ground_ = ground_level(*data_of(data_.world), surface_.source, class_);
+    const auto& avatar = data_of(data_.world)->summary.classes[static_cast<size_t>(class_)];
     cuts_ = step_cuts(*ground_, legal_rows(*ground_), step_mm(avatar));
   }
 
@@ -239,8 +240,8 @@ class BlockCutter {
 }  // namespace
 
 void NodeMesh::list_blocks(int32_t workers) {
-  const NodeData& data = *nodes_.data();
-  of_level_.assign(data.world.data()->level_count, kNoNode);
+  const NodeData& data = *data_of(nodes_);
+  of_level_.assign(data_of(data.world)->level_count, kNoNode);
   struct Source {
     const NodeZone* zone;
     const format::NodePatch* patch;
@@ -327,8 +328,8 @@ PortalList NodeMesh::inside_patch(uint32_t patch) const {
   PatchCells cells;  // only of tiles are cells cut
   const bool tile = surface.points == nullptr;
   if (tile) {
-    cells =
-        tile_cells(nodes_.data()->world, surface.source, UINT16_MAX, nodes_.data()->summary.bins);
+    cells = tile_cells(data_of(nodes_)->world, surface.source, UINT16_MAX,
+                       data_of(nodes_)->summary.bins);
   }
   const double unit = 1.0 / side, inset = tile ? kTileInset : 0;
   // Along `t` if the cells lie beside each other along s.
@@ -376,7 +377,7 @@ PortalList NodeMesh::inside_patch(uint32_t patch) const {
 
 // A door is cut where the blocks on either side end.
 void NodeMesh::open_doors() {
-  const NodeData& data = *nodes_.data();
+  const NodeData& data = *data_of(nodes_);
   uint32_t first_patch = 0;
   for (size_t s = 0; s < data.slots.size(); ++s) {
     const NodeZone& zone = *data.zone(s);
@@ -435,7 +436,7 @@ PortalList NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) const {
     LinkKind kind;
   };
   std::vector<Touch> touches;
-  for (const CellPair& pair : tile_pairs(*nodes_.data()->world.data(), tile_x, tile_z)) {
+  for (const CellPair& pair : tile_pairs(*data_of(data_of(nodes_)->world), tile_x, tile_z)) {
     if ((pair.classes >> avatar_class_ & 1) == 0) continue;
     const uint32_t pa = patch_of_level(pair.patch_a), pb = patch_of_level(pair.patch_b);
     if (pa == kNoNode || pb == kNoNode) continue;
@@ -482,7 +483,7 @@ PortalList NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) const {
 
 // Each direction has an arc of its own. A node around another may have the same leap.
 void NodeMesh::add_leaps() {
-  const NodeData& data = *nodes_.data();
+  const NodeData& data = *data_of(nodes_);
   using Key = std::tuple<uint32_t, uint32_t, uint8_t, uint8_t, uint8_t, uint8_t>;
   std::map<Key, size_t> known;
   for (size_t s = 0; s < data.slots.size(); ++s) {

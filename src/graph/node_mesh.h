@@ -11,8 +11,8 @@
 #include "graph/node_surface.h"
 #include "graph/portal_list.h"
 #include "graph/quadtree.h"
-#include "throng/context.h"
-#include "throng/nodes.h"
+#include "throng/base.h"
+#include "throng/surface.h"
 
 /// Nodes as one class sees them: where it can stand, as squares of patches, and where exactly it
 /// gets from one to the next. Source: [PACS00] 1.2.3; docs/design/006-nodes.md.

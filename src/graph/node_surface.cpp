@@ -4,7 +4,8 @@
 
 #include <algorithm>
 
-#include "throng/patch.h"
+#include "core/access.h"
+#include "throng/scene.h"
 #include "world/place.h"
 
 // Points and normals of a patch: of the Bezier surface, or of a level tile's floor.
@@ -55,7 +56,7 @@ NodeSurface surface_of(const NodeData& nodes, const NodeZone& zone,
           .depth = patch.depth(),
           .source = nodes.source_of(zone, patch),
           .points = kind == PatchKind::kBezier ? zone.points(patch) : nullptr,
-          .world = nodes.world.data().get()};
+          .world = data_of(nodes.world).get()};
 }
 
 }  // namespace throng

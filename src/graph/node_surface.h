@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "throng/math.h"
-#include "throng/nodes.h"
+#include "throng/base.h"
+#include "throng/surface.h"
 #include "world/node_data.h"
 
 /// The ground of a node's patch.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "graph/node_links.h"
-#include "throng/math.h"
+#include "throng/base.h"
 
 /// How far around its middle nothing is more restrictive than a node: the seed's cylinder width.
 namespace throng {

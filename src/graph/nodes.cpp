@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/nodes.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <filesystem>
 #include <numeric>
 
+#include "core/access.h"
 #include "core/disjoint_sets.h"
 #include "core/hash.h"
 #include "core/random.h"
 #include "graph/node_surface.h"
+#include "throng/surface.h"
 #include "world/node_data.h"
 #include "world/sealed_file.h"
 #include "world/zone_data.h"
@@ -77,13 +77,13 @@ Result<Nodes> Nodes::open(const std::string& world_path) {
 
 bool Nodes::exist(const World& world) {
   std::error_code failure;
-  return !world.data()->path.empty() &&
-         std::filesystem::exists(index_of(world.data()->path), failure);
+  return !data_of(world)->path.empty() &&
+         std::filesystem::exists(index_of(data_of(world)->path), failure);
 }
 
 Result<Nodes> Nodes::open(const World& world) {
-  THRONG_ASSERT(world.data());
-  const std::string& world_path = world.data()->path;
+  THRONG_ASSERT(world);
+  const std::string& world_path = data_of(world)->path;
   if (world_path.empty()) {
     return Error{Errc::kBadFile,
                  "this world was not opened from a folder, so it has no nodes there"};
@@ -97,7 +97,7 @@ Result<Nodes> Nodes::open(const World& world) {
   auto nodes = read_node_index(map->bytes(), name);
   if (!nodes) return nodes.error();
   if (const auto whole = unsealed(map->bytes(), name); !whole) return whole.error();
-  if (world.data()->manifest_hash != (*nodes)->world_hash) {
+  if (data_of(world)->manifest_hash != (*nodes)->world_hash) {
     return Error{Errc::kBadFile, name + ": belongs to another world; bake it again with --nodes"};
   }
   (*nodes)->world = world;
@@ -106,19 +106,19 @@ Result<Nodes> Nodes::open(const World& world) {
 }
 
 Result<void> Nodes::check_all() const {
-  THRONG_ASSERT(data_);
-  for (size_t s = 0; s < data_->slots.size(); ++s) {
-    if (data_->zone(s) == nullptr) return Error{Errc::kBadFile, data_->slots[s]->error};
+  THRONG_ASSERT(state_);
+  for (size_t s = 0; s < state_->slots.size(); ++s) {
+    if (state_->zone(s) == nullptr) return Error{Errc::kBadFile, state_->slots[s]->error};
   }
-  return data_->world.check_ground();
+  return state_->world.check_ground();
 }
 
 NodeSummary Nodes::summary() const {
-  THRONG_ASSERT(data_);
-  NodeSummary summary = data_->summary;
-  summary.classes = data_->world.summary().classes;
-  for (size_t s = 0; s < data_->slots.size(); ++s) {
-    const NodeZone* zone = data_->zone(s);
+  THRONG_ASSERT(state_);
+  NodeSummary summary = state_->summary;
+  summary.classes = state_->world.summary().classes;
+  for (size_t s = 0; s < state_->slots.size(); ++s) {
+    const NodeZone* zone = state_->zone(s);
     if (zone == nullptr) continue;
     for (const format::Node& node : zone->nodes()) {
       summary.terminal += (node.flags() & kTerminalFlag) != 0;
@@ -130,17 +130,17 @@ NodeSummary Nodes::summary() const {
 }
 
 uint32_t Nodes::node_count() const {
-  THRONG_ASSERT(data_);
-  return data_->node_count;
+  THRONG_ASSERT(state_);
+  return state_->node_count;
 }
 
 NodeInfo Nodes::node(uint32_t node) const {
   THRONG_ASSERT(node < node_count());
-  const auto [zone, local] = data_->find(node);
+  const auto [zone, local] = state_->find(node);
   if (zone == nullptr) return {};
   const format::Node& found = zone->nodes()[local];
   const format::NodePatch& patch = zone->patch_of(local);
-  NodeInfo info = info_of(data_->source_of(*zone, patch), patch, found, zone->cells_of(local));
+  NodeInfo info = info_of(state_->source_of(*zone, patch), patch, found, zone->cells_of(local));
   if (found.parent() != UINT32_MAX) info.parent1 = node - local + found.parent() + 1;
   return info;
 }
@@ -148,16 +148,16 @@ NodeInfo Nodes::node(uint32_t node) const {
 std::vector<NodeArc> Nodes::arcs(uint32_t node) const {
   THRONG_ASSERT(node < node_count());
   std::vector<NodeArc> out;
-  const size_t slot = data_->slot_of(node);
-  const NodeZone* zone = data_->zone(slot);
+  const size_t slot = state_->slot_of(node);
+  const NodeZone* zone = state_->zone(slot);
   if (zone == nullptr) return out;
-  const uint32_t local = node - data_->slots[slot]->first_node;
+  const uint32_t local = node - state_->slots[slot]->first_node;
   for (const format::Arc& arc : zone->arcs(local)) {
-    NodeArc& found = out.emplace_back(NodeArc{.to = data_->target(slot, *zone, arc),
+    NodeArc& found = out.emplace_back(NodeArc{.to = state_->target(slot, *zone, arc),
                                               .classes = arc.classes(),
                                               .kind = static_cast<LinkKind>(arc.kind())});
     const auto* leap = zone->leap_of(static_cast<uint32_t>(&arc - zone->first_arc()));
-    const auto [other, to] = data_->find(found.to);
+    const auto [other, to] = state_->find(found.to);
     if (leap == nullptr || other == nullptr) continue;
     const double from_side = 1 << zone->patch_of(local).depth();
     const double to_side = 1 << other->patch_of(to).depth();
@@ -172,9 +172,9 @@ std::vector<NodeArc> Nodes::arcs(uint32_t node) const {
 
 uint64_t Nodes::partial_cells(int32_t avatar_class, uint32_t node) const {
   THRONG_ASSERT(node < node_count());
-  const auto [zone, local] = data_->find(node);
+  const auto [zone, local] = state_->find(node);
   if (zone == nullptr || avatar_class < 0 || avatar_class >= kMaxAvatarClasses) return 0;
-  return data_->cells_of(*zone, local, avatar_class);
+  return state_->cells_of(*zone, local, avatar_class);
 }
 
 std::array<Vec3d, 4> Nodes::corners(uint32_t node) const {
@@ -214,16 +214,16 @@ Vec3d Nodes::middle(uint32_t node) const {
 
 Vec3d Nodes::point(uint32_t node, double s, double t) const {
   THRONG_ASSERT(node < node_count());
-  const auto [zone, local] = data_->find(node);
+  const auto [zone, local] = state_->find(node);
   if (zone == nullptr) return {};
-  return surface_of(*data_, *zone, zone->patch_of(local)).at(s, t);
+  return surface_of(*state_, *zone, zone->patch_of(local)).at(s, t);
 }
 
 NodePlace Nodes::place(int32_t avatar_class, uint32_t node, double s, double t) const {
   THRONG_ASSERT(node < node_count());
-  const auto& classes = data_->world.data()->summary.classes;
+  const auto& classes = data_of(state_->world)->summary.classes;
   if (avatar_class < 0 || static_cast<size_t>(avatar_class) >= classes.size()) return {};
-  const auto [zone, local] = data_->find(node);
+  const auto [zone, local] = state_->find(node);
   if (zone == nullptr) return {};
   const format::Node& found = zone->nodes()[local];
   const double blocks = 1 << found.level();
@@ -231,11 +231,11 @@ NodePlace Nodes::place(int32_t avatar_class, uint32_t node, double s, double t) 
                       t * blocks >= found.t() && t * blocks <= found.t() + 1;
   if (!inside || (found.classes() >> avatar_class & 1) == 0) return {};
   if ((found.flags() & kPartialFlag) != 0 &&
-      !touches(data_->cells_of(*zone, local, avatar_class), s * 64 - found.s() * 8,
+      !touches(state_->cells_of(*zone, local, avatar_class), s * 64 - found.s() * 8,
                t * 64 - found.t() * 8)) {
     return {};
   }
-  const NodeSurface surface = surface_of(*data_, *zone, zone->patch_of(local));
+  const NodeSurface surface = surface_of(*state_, *zone, zone->patch_of(local));
   if (!surface.is_there()) return {};
   const bool climbs = classes[static_cast<size_t>(avatar_class)].climb_slope > 0;
   const Vec3d normal = surface.normal(s, t);
@@ -243,9 +243,9 @@ NodePlace Nodes::place(int32_t avatar_class, uint32_t node, double s, double t) 
 }
 
 NodePlace Nodes::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const {
-  THRONG_ASSERT(data_);
+  THRONG_ASSERT(state_);
   // Nodes without a parent for the class share out its area; sums of them are made once.
-  const auto& areas = data_->areas_before(avatar_class);
+  const auto& areas = state_->areas_before(avatar_class);
   if (areas.empty() || !(areas.back().second > 0)) return {};
   const double target = random_unit(seed, n, 0) * areas.back().second;
   auto found = std::upper_bound(areas.begin(), areas.end(), target,
@@ -268,17 +268,17 @@ NodePlace Nodes::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) c
 
 std::vector<NodeComponent> Nodes::components(int32_t avatar_class,
                                              std::vector<uint32_t>* of_node) const {
-  THRONG_ASSERT(data_);
-  const uint32_t count = data_->node_count;
+  THRONG_ASSERT(state_);
+  const uint32_t count = state_->node_count;
   DisjointSets sets(count);
   const uint32_t bit =
       avatar_class >= 0 && avatar_class < kMaxAvatarClasses ? 1u << avatar_class : 0u;
   std::vector<uint8_t> stands(count, 0);
   std::vector<double> area(count, 0);
-  for (size_t s = 0; s < data_->slots.size(); ++s) {
-    const NodeZone* zone = data_->zone(s);
+  for (size_t s = 0; s < state_->slots.size(); ++s) {
+    const NodeZone* zone = state_->zone(s);
     if (zone == nullptr) continue;
-    const uint32_t first = data_->slots[s]->first_node;
+    const uint32_t first = state_->slots[s]->first_node;
     const auto nodes = zone->nodes();
     for (uint32_t n = 0; n < nodes.size(); ++n) {
       if ((nodes[n].classes() & bit) == 0) continue;
@@ -286,11 +286,11 @@ std::vector<NodeComponent> Nodes::components(int32_t avatar_class,
       const uint32_t parent = nodes[n].parent();
       const bool inside = parent != UINT32_MAX && (nodes[parent].classes() & bit) != 0;
       if (inside) sets.join(first + n, first + parent);
-      area[first + n] = inside ? 0 : data_->area_of(*zone, n, avatar_class);
+      area[first + n] = inside ? 0 : state_->area_of(*zone, n, avatar_class);
       for (const format::Arc& arc : zone->arcs(n)) {
         if ((arc.classes() & bit) == 0) continue;
-        const uint32_t to = data_->target(s, *zone, arc);
-        if (goes_back(*data_, first + n, to, arc)) sets.join(first + n, to);
+        const uint32_t to = state_->target(s, *zone, arc);
+        if (goes_back(*state_, first + n, to, arc)) sets.join(first + n, to);
       }
     }
   }

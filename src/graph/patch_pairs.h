@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "graph/node_links.h"
-#include "throng/patch.h"
+#include "throng/scene.h"
 
 /// Which finest sub-patches of Bezier patches lie beside each other over patches' edges.
 namespace throng {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "throng/nodes.h"
+#include "throng/surface.h"
 
 /// Portals between blocks of nodes, in little memory: a city of 100 km2 has 67 million.
 namespace throng {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "throng/patch.h"
+#include "throng/scene.h"
 
 // A piece is a patch of its own, by de Casteljau's construction, and lies in the hull of its
 // control points. Its derivatives are means of differences of these, so its normals lie in the cone

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/access.h"
 #include "graph/ground_parts.h"
 #include "graph/tile_steps.h"
 #include "world/place.h"
@@ -72,7 +73,7 @@ std::optional<std::array<uint16_t, kArea>> unpack_ceilings(const Zone& zone,
 }  // namespace
 
 PatchCells tile_cells(const World& world, uint32_t level, uint16_t wanted, const NodeBins& bins) {
-  const WorldData& data = *world.data();
+  const WorldData& data = *data_of(world);
   const std::vector<AvatarClass>& classes = data.summary.classes;
   PatchCells patch;
   patch.depth = kTileDepth;

@@ -7,7 +7,7 @@
 
 #include "graph/node_links.h"
 #include "graph/quadtree.h"
-#include "throng/nodes.h"
+#include "throng/surface.h"
 #include "world/zone_data.h"
 
 /// Level tiles as patches: their 64 x 64 cells are the finest sub-patches, s along x, t along z.

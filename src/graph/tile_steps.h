@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "throng/avatar_class.h"
+#include "throng/avatar.h"
 #include "world/level_view.h"
 
 /// Where the floor of level tiles rises by a step, and not by a slope.

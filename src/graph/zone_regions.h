@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "throng/context.h"
+#include "throng/base.h"
 #include "world/region_data.h"
 
 /// What the two passes make of zones: regions and links within one, then links into the next ones.

@@ -8,21 +8,21 @@
 #include <utility>
 
 #include "core/read_file.h"
-#include "import/area_rules.h"
-#include "import/assimp_reader.h"
-#include "import/bpt.h"
-#include "import/bsp.h"
-#include "import/city.h"
-#include "import/clean.h"
-#include "import/name_colour.h"
-#include "import/obj.h"
-#include "import/patch_json.h"
-#include "import/patch_scene.h"
-#include "import/plan.h"
-#include "import/ply.h"
-#include "import/raw_scene.h"
-#include "import/texture_reader.h"
-#include "import/zonel.h"
+#include "import/formats/assimp_reader.h"
+#include "import/formats/bpt.h"
+#include "import/formats/bsp.h"
+#include "import/formats/city.h"
+#include "import/formats/obj.h"
+#include "import/formats/patch_json.h"
+#include "import/formats/plan.h"
+#include "import/formats/ply.h"
+#include "import/formats/texture_reader.h"
+#include "import/formats/zonel.h"
+#include "import/patches/patch_scene.h"
+#include "import/raw/area_rules.h"
+#include "import/raw/clean.h"
+#include "import/raw/name_colour.h"
+#include "import/raw/raw_scene.h"
 
 // The one entry for all formats: reads each file as it is, places it in metres with Y up, sets area
 // kinds, joins the files and cleans the result.
@@ -253,7 +253,7 @@ Result<Scene> load_scene(const SceneConfig& config, Context& context) {
   const std::string name = sources->size() == 1 ? sources->front().path
                                                 : fmt::format("scene of {} files", sources->size());
   if (auto cleaned = clean_scene(all, name, context); !cleaned) return cleaned.error();
-  if (config.looks == SceneLooks::kRead) add_named_materials(all);
+  if (config.looks == SceneMaterials::kRead) add_named_materials(all);
   if (context.on_progress) {
     context.on_progress({"read", sources->size(), sources->size()});
   }

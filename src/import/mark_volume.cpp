@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "import/raw_scene.h"
+#include "import/raw/raw_scene.h"
 #include "throng/scene.h"
 
 // Cuts triangles at the sides of a prism, one plane after the other (Sutherland and Hodgman, 1974,

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "throng/math.h"
+#include "throng/base.h"
 
 /// Affine maps for skeletons.
 namespace throng {

@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
+#include "throng/base.h"
 #include "throng/impostor.h"
-#include "throng/result.h"
 
 namespace throng {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "impostor/pack_loops.h"
-#include "throng/impostor_pack.h"
+#include "throng/impostor.h"
 
 /// Transitions between views without a step: near the border of two columns or rows an avatar is
 /// shown by both, with shares that change as the eye crosses the border.

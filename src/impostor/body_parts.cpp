@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "throng/character.h"
+#include "throng/impostor.h"
 
 // Finds the body part of a material, and a clip, by their names.
 namespace throng {

@@ -135,7 +135,8 @@ void find_part_colours(Atlas& atlas) {
 
 }  // namespace
 
-Result<Atlas> build_atlas(const Character& character, const AtlasConfig& config, Context& context) {
+Result<Atlas> create_atlas(const Character& character, const AtlasConfig& config,
+                           Context& context) {
   if (auto sound = check_atlas_config(config); !sound) return sound.error();
   Result<FigureFrames> poses = pose_frames(character, config);
   if (!poses) return poses.error();

@@ -7,7 +7,7 @@
 
 #include "core/trig.h"
 #include "impostor/figure_mesh.h"
-#include "throng/character.h"
+#include "throng/impostor.h"
 
 // Makes a simple person: 16 joints, tubes for a body, and a gait with the joint angles of
 // textbooks: the hip follows a cosine, the knee flexes a little as it takes the weight and more as

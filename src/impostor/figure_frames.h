@@ -4,9 +4,8 @@
 
 #include <vector>
 
-#include "throng/character.h"
+#include "throng/base.h"
 #include "throng/impostor.h"
-#include "throng/result.h"
 
 namespace throng {
 

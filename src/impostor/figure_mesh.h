@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "throng/character.h"
+#include "throng/impostor.h"
 
 /// Bodies from rings: a limb is a tube through ellipses that lie flat.
 namespace throng {

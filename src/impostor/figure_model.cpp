@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/figure_model.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +8,7 @@
 
 #include "impostor/figure_frames.h"
 #include "impostor/srgb.h"
+#include "throng/impostor.h"
 
 // Makes the poses of a figure's clips as vertices in textures: the card blends two poses with two
 // texel fetches a vertex, whatever the skeleton. Bones stay on the processor.
@@ -40,8 +39,8 @@ uint16_t share_of(double value, double low, double high) {
 
 }  // namespace
 
-Result<FigureModel> build_figure_model(const Character& character, const AtlasConfig& config,
-                                       Context& context) {
+Result<FigureModel> create_figure_model(const Character& character, const AtlasConfig& config,
+                                        Context& context) {
   if (auto sound = check_atlas_config(config); !sound) return sound.error();
   Result<FigureFrames> frames = pose_frames(character, config);
   if (!frames) return frames.error();

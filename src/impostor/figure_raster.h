@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "throng/character.h"
-#include "throng/math.h"
+#include "throng/base.h"
+#include "throng/impostor.h"
 
 /// One view of a figure, rasterised in software: the same texels on every machine, no driver.
 namespace throng {

@@ -4,8 +4,8 @@
 
 #include <cstddef>
 
-#include "throng/character.h"
-#include "throng/math.h"
+#include "throng/base.h"
+#include "throng/impostor.h"
 
 /// How a clip moves its figure.
 namespace throng {

@@ -8,7 +8,7 @@
 #include "core/parallel.h"
 #include "impostor/blend_views.h"
 #include "impostor/pack_loops.h"
-#include "throng/impostor_pack.h"
+#include "throng/impostor.h"
 
 // Packs visible avatars, block by block: short loops over arrays that fit the first-level cache
 // find which avatars are in the picture and by which view, and another loop writes these out. A
@@ -131,7 +131,7 @@ LevelCounts pack_levels(const Atlas& atlas, const ImpostorArrays& avatars, const
   const size_t count = avatars.x.size();
   THRONG_ASSERT(avatars.y.size() == count && avatars.z.size() == count &&
                 avatars.heading.size() == count && avatars.phase.size() == count &&
-                avatars.look.size() == count && config.clip < atlas.clips.size());
+                avatars.appearance.size() == count && config.clip < atlas.clips.size());
   THRONG_ASSERT(out.views.size() >= count && (levels.mesh_far == 0 || out.meshes.size() >= count) &&
                 (levels.point_near >= 1e18 || out.points.size() >= count) &&
                 (levels.blend_share == 0 || out.blends.size() >= count));
@@ -149,7 +149,7 @@ LevelCounts pack_levels(const Atlas& atlas, const ImpostorArrays& avatars, const
                          &avatars.z[first],
                          &avatars.heading[first],
                          &avatars.phase[first],
-                         &avatars.look[first],
+                         &avatars.appearance[first],
                          std::min(kPackBlock, count - first)};
       find_views(s, in, block);
       const auto any = [&](uint32_t as) { return (block.seen_any & as) != 0; };

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "impostor/affine.h"
-#include "throng/character.h"
+#include "throng/impostor.h"
 
 // Linear blend skinning: every vertex is moved by the weighted sum of its bones' matrices.
 namespace throng {

@@ -7,17 +7,18 @@
 #include <limits>
 #include <string>
 
+#include "core/access.h"
 #include "core/check_class.h"
 #include "core/random.h"
-#include "path/air_view.h"
-#include "path/flight_endpoints.h"
-#include "path/flight_search.h"
-#include "path/flight_string_puller.h"
-#include "path/ground_air_links.h"
-#include "path/mesh.h"
-#include "path/reset_path.h"
-#include "path/solid.h"
-#include "throng/flight.h"
+#include "path/air/air_view.h"
+#include "path/air/flight_endpoints.h"
+#include "path/air/flight_search.h"
+#include "path/air/flight_string_puller.h"
+#include "path/air/ground_air_links.h"
+#include "path/edits/solid.h"
+#include "path/ground/mesh.h"
+#include "path/ground/reset_path.h"
+#include "throng/path.h"
 #include "world/place.h"
 
 // Joins the parts of a flight: walks, take-offs, flight search, landings and string pulling.
@@ -82,13 +83,13 @@ struct FlightFinder::Shared {
   FlightSummary summary;
 
   [[nodiscard]] FlightEndpoints ends(const AirView& air) const {
-    return {*world.data(), air, avatar_class};
+    return {*data_of(world), air, avatar_class};
   }
   // The component of the ground at a place.
   [[nodiscard]] uint32_t ground_of(const Place& place) const {
-    const auto at = ground_point(*world.data(), place);
+    const auto at = ground_point(*data_of(world), place);
     if (!walker || !at) return kNoRect;
-    const PathMesh& mesh = walker->mesh();
+    const PathMesh& mesh = mesh_of(*walker);
     const uint32_t rect = mesh.rect_at(place.level1 - 1, at->cell_x(), at->cell_z());
     return rect == kNoRect ? kNoRect : mesh.rects[rect].component;
   }
@@ -98,7 +99,7 @@ struct FlightFinder::Shared {
   }
   // The middle of a cell.
   [[nodiscard]] Place place_of(const GroundAirLinks::Cell& cell) const {
-    return place_at(*world.data(), ground_level(*world.data(), cell.level, avatar_class),
+    return place_at(*data_of(world), ground_level(*data_of(world), cell.level, avatar_class),
                     {(int64_t{cell.x} << kUnitBits) + kUnitsPerCell / 2,
                      (int64_t{cell.z} << kUnitBits) + kUnitsPerCell / 2});
   }
@@ -106,8 +107,8 @@ struct FlightFinder::Shared {
     Place nearest;
     double least = std::numeric_limits<double>::infinity();
     if (!walker) return nearest;
-    const GroundPoint to = to_ground(*world.data(), at.x, at.z);
-    for (const MeshRect& rect : walker->mesh().rects) {
+    const GroundPoint to = to_ground(*data_of(world), at.x, at.z);
+    for (const MeshRect& rect : mesh_of(*walker).rects) {
       if (rect.component != component) continue;
       const Place place =
           place_of({rect.level, std::clamp(to.cell_x(), rect.x, rect.x + rect.width - 1),
@@ -129,7 +130,7 @@ struct FlightFinder::Scratch {
     return {shared.space, is_changed() ? &*changes : nullptr};
   }
   AirChanges& changes_of(const Shared& shared) {
-    if (!changes) changes.emplace(*shared.world.data(), shared.space, shared.avatar_class);
+    if (!changes) changes.emplace(*data_of(shared.world), shared.space, shared.avatar_class);
     return *changes;
   }
   ChangeId add(const Shared& shared, Solid solid) {
@@ -139,13 +140,21 @@ struct FlightFinder::Scratch {
   // The ground with all changes; made on the first walk.
   LiveGround& ground(const Shared& shared) {
     if (!live) {
-      auto made = LiveGround::make(shared.world, {.avatar_class = shared.avatar_class});
+      auto made = LiveGround::create(shared.world, {.avatar_class = shared.avatar_class});
       THRONG_ASSERT(made);  // The class was checked.
       changes->add_all_to(*made, live_ids);
       live = std::move(*made);
     }
     return *live;
   }
+
+  // From the ground into the air: into this component of it, or any (kNoBox). False: none is found.
+  bool find_link(const Shared& shared, const AirView& air, End& end, uint32_t component,
+                 bool& budget_exhausted);
+  // A component of the air over the ground at both ends: if there is more than one, the one that is
+  // nearest to both, as far as a flood around them shows. kNoBox: none.
+  uint32_t common_air(const Shared& shared, const AirView& air, const End& a, const End& b,
+                      const std::atomic<bool>* cancel, bool& budget_exhausted);
 
   FlightSearch search;
   SpentBudget spent = SpentBudget::kNone;  // the budget that the last search exhausted
@@ -168,9 +177,63 @@ struct FlightFinder::Scratch {
   std::optional<AirPoint> reached;
 };
 
+bool FlightFinder::Scratch::find_link(const Shared& shared, const AirView& air_now, End& end,
+                                      uint32_t component, bool& budget_exhausted) {
+  if (!end.ground) return end.air.has_value();
+  const FlightEndpoints ends = shared.ends(air_now);
+  end.ground_air_link = end.ground;
+  end.air = ends.take_off(end.ground_air_link);
+  if (end.air &&
+      (component == kNoBox || air_now.component(air_now.box_at(*end.air)) == component)) {
+    return true;
+  }
+  end.air.reset();
+  const uint32_t ground_part = shared.ground_of(end.ground);
+  const bool leads = component == kNoBox
+                         ? !shared.ground_air_links.air_over(ground_part).empty()
+                         : shared.ground_air_links.joins(ground_part, air_now.baked(component));
+  if (!leads) return false;
+  const auto nearest = ends.nearest_take_off(end.ground, kMaxFloodCells, component, flood);
+  budget_exhausted = budget_exhausted || nearest.budget_exhausted;
+  end.ground_air_link = nearest.place;
+  end.air = ends.take_off(end.ground_air_link);
+  return end.air.has_value();
+}
+
+uint32_t FlightFinder::Scratch::common_air(const Shared& shared, const AirView& air_now,
+                                           const End& a, const End& b,
+                                           const std::atomic<bool>* cancel,
+                                           bool& budget_exhausted) {
+  const FlightEndpoints ends = shared.ends(air_now);
+  const auto over_a = shared.ground_air_links.air_over(shared.ground_of(a.ground));
+  const auto over_b = shared.ground_air_links.air_over(shared.ground_of(b.ground));
+  common.clear();
+  std::set_intersection(over_a.begin(), over_a.end(), over_b.begin(), over_b.end(),
+                        std::back_inserter(common));
+  if (common.empty()) return kNoBox;
+  if (common.size() < 2 && !is_changed()) return common[0];
+  for (const auto& [end, over] : {std::pair{&a, &over_from}, std::pair{&b, &over_to}}) {
+    if (cancel != nullptr && *cancel) {
+      budget_exhausted = true;
+      return kNoBox;
+    }
+    ends.components_over(end->ground, kMaxIslandCells, flood, *over);
+  }
+  size_t least = SIZE_MAX;
+  uint32_t best = common[0];
+  for (size_t i = 0; i < over_from.size(); ++i) {
+    const auto found = std::find(over_to.begin(), over_to.end(), over_from[i]);
+    const size_t rank = i + static_cast<size_t>(found - over_to.begin());
+    if (found == over_to.end() || rank >= least) continue;
+    least = rank;
+    best = over_from[i];
+  }
+  return best;
+}
+
 FlightFinder::FlightFinder(std::shared_ptr<const Shared> shared)
-    : shared_(std::move(shared)), scratch_(std::make_unique<Scratch>(*shared_)) {}
-FlightFinder::FlightFinder(const FlightFinder& other) : FlightFinder(other.shared_) {
+    : state_(std::move(shared)), scratch_(std::make_unique<Scratch>(*state_)) {}
+FlightFinder::FlightFinder(const FlightFinder& other) : FlightFinder(other.state_) {
   scratch_->changes = other.scratch_->changes;
 }
 FlightFinder& FlightFinder::operator=(const FlightFinder& other) {
@@ -181,10 +244,10 @@ FlightFinder::FlightFinder(FlightFinder&&) noexcept = default;
 FlightFinder& FlightFinder::operator=(FlightFinder&&) noexcept = default;
 FlightFinder::~FlightFinder() = default;
 
-Result<FlightFinder> FlightFinder::make(const World& world, const FlightConfig& config,
-                                        Context& context) {
-  if (world.data() == nullptr) return Error{Errc::kBadInput, "flight: the world is empty"};
-  const WorldData& data = *world.data();
+Result<FlightFinder> FlightFinder::create(const World& world, const FlightConfig& config,
+                                          Context& context) {
+  if (data_of(world) == nullptr) return Error{Errc::kBadInput, "flight: the world is empty"};
+  const WorldData& data = *data_of(world);
   if (auto ok = check_air_index(data); !ok) return ok.error();
   if (data.air == nullptr) {
     return Error{Errc::kNotFound,
@@ -215,12 +278,12 @@ Result<FlightFinder> FlightFinder::make(const World& world, const FlightConfig& 
     shared->cells_before.push_back(shared->cells_before.back() + side * side * side);
   }
   if (data.level_count > 0) {
-    auto walker = PathFinder::make(
+    auto walker = PathFinder::create(
         world, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
     if (!walker) return walker.error();
     shared->walker = std::move(*walker);
     shared->ground_air_links =
-        GroundAirLinks(data, shared->walker->mesh(), shared->space, config.workers);
+        GroundAirLinks(data, mesh_of(*shared->walker), shared->space, config.workers);
   }
   shared->summary.boxes = shared->space.boxes.size();
   shared->summary.bytes = shared->space.bytes() + shared->cells_before.size() * sizeof(uint64_t) +
@@ -231,20 +294,20 @@ Result<FlightFinder> FlightFinder::make(const World& world, const FlightConfig& 
   return FlightFinder(std::move(shared));
 }
 
-FlightSummary FlightFinder::summary() const { return shared_->summary; }
-const FlightSpace& FlightFinder::space() const { return shared_->space; }
+FlightSummary FlightFinder::summary() const { return state_->summary; }
+const FlightSpace& space_of(const FlightFinder& finder) { return Access::state(finder)->space; }
 
 Result<ChangeId> FlightFinder::add_obstacle(const Prism& prism) {
   auto solid = make_solid(prism);
   if (!solid) return solid.error();
-  return scratch_->add(*shared_, std::move(*solid));
+  return scratch_->add(*state_, std::move(*solid));
 }
 
 Result<ChangeId> FlightFinder::add_obstacle(std::span<const Vec3d> corners,
                                             std::span<const std::array<uint32_t, 3>> triangles) {
   auto solid = make_solid(corners, triangles);
   if (!solid) return solid.error();
-  return scratch_->add(*shared_, std::move(*solid));
+  return scratch_->add(*state_, std::move(*solid));
 }
 
 bool FlightFinder::set_active(ChangeId change, bool active) {
@@ -262,14 +325,14 @@ bool FlightFinder::remove(ChangeId change) {
 }
 
 bool FlightFinder::is_legal(Vec3d feet) const {
-  return shared_->ends(scratch_->air(*shared_)).in_air(feet).has_value();
+  return state_->ends(scratch_->air(*state_)).in_air(feet).has_value();
 }
 
 std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const {
-  const std::vector<uint64_t>& before = shared_->cells_before;
+  const std::vector<uint64_t>& before = state_->cells_before;
   if (before.back() == 0) return {};
-  const AirView air = scratch_->air(*shared_);
-  const FlightEndpoints ends = shared_->ends(air);
+  const AirView air = scratch_->air(*state_);
+  const FlightEndpoints ends = state_->ends(air);
   const auto draw = [&](const AirCube& cube, uint64_t first) {
     const auto part = [&](uint64_t i) {
       return kAirSkin + random_unit(seed, n, first + i) * (cube.side - 2 * kAirSkin);
@@ -283,12 +346,12 @@ std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const
     const uint64_t pick = random_below(seed, n, 4 * i, before.back());
     box = static_cast<size_t>(std::upper_bound(before.begin(), before.end(), pick) -
                               before.begin() - 1);
-    const AirPoint p = draw(shared_->space.boxes[box], 4 * i);
+    const AirPoint p = draw(state_->space.boxes[box], 4 * i);
     if (air.changes() == nullptr || air.box_at(p) != kNoBox) return ends.to_metres(p);
   }
   std::optional<AirPoint> found;
-  for (size_t i = 0; i < shared_->space.boxes.size() && !found; ++i) {
-    air.for_pieces(static_cast<uint32_t>((box + i) % shared_->space.boxes.size()),
+  for (size_t i = 0; i < state_->space.boxes.size() && !found; ++i) {
+    air.for_pieces(static_cast<uint32_t>((box + i) % state_->space.boxes.size()),
                    [&](uint32_t piece) {
                      if (!found) found = draw(air.cube(piece), 4 * kDraws);
                    });
@@ -298,14 +361,14 @@ std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const
 }
 
 std::optional<Vec3d> FlightFinder::take_off(const Place& place) const {
-  const FlightEndpoints ends = shared_->ends(scratch_->air(*shared_));
+  const FlightEndpoints ends = state_->ends(scratch_->air(*state_));
   const auto up = ends.take_off(place);
   if (!up) return {};
   return ends.to_metres(*up);
 }
 
 Place FlightFinder::landing(Vec3d feet) const {
-  const FlightEndpoints ends = shared_->ends(scratch_->air(*shared_));
+  const FlightEndpoints ends = state_->ends(scratch_->air(*state_));
   const auto point = ends.in_air(feet);
   if (!point) return {};
   return ends.best_landing(ends.lowest_box(*point));
@@ -324,10 +387,10 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
 }
 
 bool FlightFinder::locate(Vec3d at, double vertical_tolerance, End& end) const {
-  const FlightEndpoints ends = shared_->ends(scratch_->air(*shared_));
+  const FlightEndpoints ends = state_->ends(scratch_->air(*state_));
   end.air = ends.in_air(at);
   if (end.air) return true;
-  end.ground = shared_->world.find_place(shared_->avatar_class, at, vertical_tolerance);
+  end.ground = state_->world.find_place(state_->avatar_class, at, vertical_tolerance);
   return end.ground && ends.may_stand(end.ground);
 }
 
@@ -340,10 +403,10 @@ PathEnd FlightFinder::walk(const FlightQuery& query, const Place& from, const Pl
     if (path.end == PathEnd::kBudgetExhausted) scratch_->spent = path.spent;
     return path.end;
   }
-  if (shared_->ground_of(from) != shared_->ground_of(to)) {
+  if (state_->ground_of(from) != state_->ground_of(to)) {
     path.end = PathEnd::kUnreachable;
   } else {
-    scratch_->ground(*shared_).find(from, to, path, budget_of(query));
+    scratch_->ground(*state_).find(from, to, path, budget_of(query));
     if (path.end == PathEnd::kBudgetExhausted) scratch_->spent = path.spent;
   }
   return path.end;
@@ -352,61 +415,15 @@ PathEnd FlightFinder::walk(const FlightQuery& query, const Place& from, const Pl
 // One flight, or a walk.
 void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
   Scratch& scratch = *scratch_;
-  const AirView air = scratch.air(*shared_);
-  const FlightEndpoints ends = shared_->ends(air);
+  const AirView air = scratch.air(*state_);
+  const FlightEndpoints ends = state_->ends(air);
   clear(path);
   path.nodes = 0;
   scratch.reached.reset();
   bool budget_exhausted = false;  // somewhere: then what was not found may exist all the same
   const auto component_of = [&](AirPoint p) { return air.component(air.box_at(p)); };
-  // From the ground into the air: into this component of it, or any (kNoBox).
   const auto to_link = [&](End& end, uint32_t component) {
-    if (!end.ground) return end.air.has_value();
-    end.ground_air_link = end.ground;
-    end.air = ends.take_off(end.ground_air_link);
-    if (end.air && (component == kNoBox || component_of(*end.air) == component)) return true;
-    end.air.reset();
-    const uint32_t ground = shared_->ground_of(end.ground);
-    const bool leads = component == kNoBox
-                           ? !shared_->ground_air_links.air_over(ground).empty()
-                           : shared_->ground_air_links.joins(ground, air.baked(component));
-    if (!leads) return false;
-    const auto nearest =
-        ends.nearest_take_off(end.ground, kMaxFloodCells, component, scratch.flood);
-    budget_exhausted = budget_exhausted || nearest.budget_exhausted;
-    end.ground_air_link = nearest.place;
-    end.air = ends.take_off(end.ground_air_link);
-    return end.air.has_value();
-  };
-  // Air over the ground at both ends: if there is more than one component, the one that is nearest
-  // to both, as far as a flood around them shows.
-  const auto common_air = [&](const End& a, const End& b) {
-    const auto over_a = shared_->ground_air_links.air_over(shared_->ground_of(a.ground));
-    const auto over_b = shared_->ground_air_links.air_over(shared_->ground_of(b.ground));
-    scratch.common.clear();
-    std::set_intersection(over_a.begin(), over_a.end(), over_b.begin(), over_b.end(),
-                          std::back_inserter(scratch.common));
-    if (scratch.common.empty()) return kNoBox;
-    if (scratch.common.size() < 2 && !scratch.is_changed()) return scratch.common[0];
-    for (const auto& [end, over] :
-         {std::pair{&a, &scratch.over_from}, std::pair{&b, &scratch.over_to}}) {
-      if (query.cancel != nullptr && *query.cancel) {
-        budget_exhausted = true;
-        return kNoBox;
-      }
-      ends.components_over(end->ground, kMaxIslandCells, scratch.flood, *over);
-    }
-    size_t least = SIZE_MAX;
-    uint32_t best = scratch.common[0];
-    for (size_t i = 0; i < scratch.over_from.size(); ++i) {
-      const auto found =
-          std::find(scratch.over_to.begin(), scratch.over_to.end(), scratch.over_from[i]);
-      const size_t rank = i + static_cast<size_t>(found - scratch.over_to.begin());
-      if (found == scratch.over_to.end() || rank >= least) continue;
-      least = rank;
-      best = scratch.over_from[i];
-    }
-    return best;
+    return scratch.find_link(*state_, air, end, component, budget_exhausted);
   };
   // The nearest take-offs may lead into islands of the air, a room or a yard under a net: then the
   // path takes off farther away, into air that leads to the other end.
@@ -416,7 +433,7 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     if (!b.ground) return to_link(a, component_of(*b.air));
     if (!to_link(a, kNoBox) || !to_link(b, kNoBox)) return false;
     if (air.same_component(*a.air, *b.air)) return true;
-    const uint32_t common = common_air(a, b);
+    const uint32_t common = scratch.common_air(*state_, air, a, b, query.cancel, budget_exhausted);
     return common != kNoBox && to_link(a, common) && to_link(b, common);
   };
   const auto find_on_foot = [&](const Place& a, const Place& b, Path& ground) {
@@ -497,13 +514,13 @@ void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
   if (!locate(query.from, query.vertical_tolerance, from) ||
       !locate(query.to, query.vertical_tolerance, to))
     return;
-  const GroundAirLinks::Part start = shared_->part_of(from), goal = shared_->part_of(to);
+  const GroundAirLinks::Part start = state_->part_of(from), goal = state_->part_of(to);
   scratch.banned.clear();
   for (int32_t tries = 0; tries < (scratch.is_changed() ? kMaxTries : 1); ++tries) {
     // Air that an obstacle has cut in two is one part: then over some ground under it.
     const bool returns = start == goal && scratch.is_changed() && goal.is_air;
     const GroundAirLinks::Part last = returns ? GroundAirLinks::Part{kNoBox, true} : goal;
-    shared_->ground_air_links.search(start, last, scratch.banned, scratch.parts);
+    state_->ground_air_links.search(start, last, scratch.banned, scratch.parts);
     const auto& steps = scratch.parts.steps;
     if (steps.size() < 2 || (!returns && steps.back().part != goal)) return;
     scratch.route.clear();
@@ -529,8 +546,8 @@ void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
 size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, const End& to,
                                   FlightPath& path) {
   Scratch& scratch = *scratch_;
-  const AirView view = scratch.air(*shared_);
-  const FlightEndpoints ends = shared_->ends(view);
+  const AirView view = scratch.air(*state_);
+  const FlightEndpoints ends = state_->ends(view);
   PathEnd end = PathEnd::kReached;
   Place feet = from.ground;  // where the path is by now, or
   AirPoint air = from.air.value_or(AirPoint{});
@@ -567,7 +584,7 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
         at ? ends.nearest_take_off(at, kMaxFloodCells, component, scratch.flood).place : Place{};
     if (near) return near;
     const Place known =
-        shared_->place_of(shared_->ground_air_links.cell(ground.component, over.component));
+        state_->place_of(state_->ground_air_links.cell(ground.component, over.component));
     if (view.changes() == nullptr) return known;
     return ends.nearest_take_off(known, kMaxFloodCells, component, scratch.flood).place;
   };
@@ -617,14 +634,14 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
 // ground, of the ground: there, of each rectangle, the cell that is nearest in the plane.
 void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   Scratch& scratch = *scratch_;
-  const AirView air = scratch.air(*shared_);
-  const FlightEndpoints ends = shared_->ends(air);
+  const AirView air = scratch.air(*state_);
+  const FlightEndpoints ends = state_->ends(air);
   const std::optional<AirPoint> reached = scratch.reached;
   const bool is_changed = scratch.is_changed();
   End from;
   if (!locate(query.from, query.vertical_tolerance, from)) return;
-  const GroundAirLinks::Part start = shared_->part_of(from);
-  shared_->ground_air_links.search(start, {kNoBox, true}, {}, scratch.parts);
+  const GroundAirLinks::Part start = state_->part_of(from);
+  state_->ground_air_links.search(start, {kNoBox, true}, {}, scratch.parts);
   std::vector<uint32_t>& airs = scratch.common;
   airs.clear();
   for (const auto& step : scratch.parts.steps) {
@@ -662,7 +679,7 @@ void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   path.obstacle = Obstacle::kNone;
   if (path.points.empty()) return;
   path.obstacle =
-      air_obstacle(*shared_->world.data()->air, shared_->body, air, off_faces(*nearest), goal);
+      air_obstacle(*data_of(state_->world)->air, state_->body, air, off_faces(*nearest), goal);
   // Air that begins right there and leads nowhere else: only a corner is between.
   if (path.obstacle == Obstacle::kNone) path.obstacle = Obstacle::kNarrow;
 }
@@ -673,30 +690,30 @@ void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& f
   Scratch& scratch = *scratch_;
   clear(path);
   path.end = PathEnd::kUnreachable;
-  const uint32_t ground = shared_->ground_of(from);
+  const uint32_t ground = state_->ground_of(from);
   Place nearest;
   if (scratch.is_changed()) {
-    nearest = shared_->ends(scratch.air(*shared_))
+    nearest = state_->ends(scratch.air(*state_))
                   .nearest_place(from, kMaxFloodCells, query.to, scratch.flood);
   }
-  if (!nearest) nearest = shared_->nearest_ground(ground, query.to);
+  if (!nearest) nearest = state_->nearest_ground(ground, query.to);
   if (!nearest) return;
   const PathEnd end = walk(query, from, nearest, scratch.walk_all);
   // To what comes nearest, if the finder of paths on foot knows it.
   if (end != PathEnd::kReached && !(scratch.is_changed() && end == PathEnd::kUnreachable)) return;
   add_walk(scratch.walk_all, 0, path);
   path.obstacle =
-      shared_->ground_air_links.air_over(ground).empty() ? Obstacle::kLow : Obstacle::kNarrow;
+      state_->ground_air_links.air_over(ground).empty() ? Obstacle::kLow : Obstacle::kNarrow;
 }
 
 Result<AirSummary> air_summary(const World& world) {
-  if (world.data() != nullptr) {
-    if (auto ok = check_air_index(*world.data()); !ok) return ok.error();
+  if (data_of(world) != nullptr) {
+    if (auto ok = check_air_index(*data_of(world)); !ok) return ok.error();
   }
-  if (world.data() == nullptr || world.data()->air == nullptr) {
+  if (data_of(world) == nullptr || data_of(world)->air == nullptr) {
     return Error{Errc::kNotFound, "the world was baked without air"};
   }
-  const AirData& air = *world.data()->air;
+  const AirData& air = *data_of(world)->air;
   const AirShape& shape = air.shape;
   const auto height = [&](int32_t layer) {
     return (static_cast<double>(layer) * shape.cell + shape.origin_y) * 1e-3;

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/flow_field.h"
-
 #include <string>
 #include <utility>
 
 #include "core/stopwatch.h"
-#include "path/flow_points.h"
+#include "path/edits/flow_points.h"
+#include "throng/path.h"
 
 // A FlowField is a table of FlowPoints with a ground of its own.
 namespace throng {
@@ -27,8 +26,8 @@ FlowField::FlowField(FlowField&&) noexcept = default;
 FlowField& FlowField::operator=(FlowField&&) noexcept = default;
 FlowField::~FlowField() = default;
 
-Result<FlowField> FlowField::make(const LiveGround& ground, std::span<const Place> goals,
-                                  const FlowConfig& config, Context& context) {
+Result<FlowField> FlowField::create(const LiveGround& ground, std::span<const Place> goals,
+                                    const FlowConfig& config, Context& context) {
   if (!(config.max_distance > 0))
     return Error{Errc::kBadConfig, "flow field: max_distance must be above 0"};
   const auto start = Clock::now();

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/ground_query.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -9,10 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "core/access.h"
 #include "core/check_class.h"
 #include "core/random.h"
-#include "path/circle_flood.h"
-#include "path/obstacle.h"
+#include "path/edits/obstacle.h"
+#include "path/ground/circle_flood.h"
+#include "throng/world.h"
 
 // Queries of the ground around a place, cell by cell: the nearest place, rays, slides, walls,
 // random places. Linear in the cells within the radius.
@@ -49,7 +49,7 @@ struct GroundQuery::State {
   };
   std::vector<NearCell> near;
 
-  [[nodiscard]] const WorldData& data() const { return *world.data(); }
+  [[nodiscard]] const WorldData& data() const { return *data_of(world); }
   [[nodiscard]] WorldGround ground() const { return {data(), avatar_class}; }
   [[nodiscard]] double unit() const { return data().summary.cell / kUnitsPerCell; }
 
@@ -88,9 +88,9 @@ GroundQuery::GroundQuery(GroundQuery&&) noexcept = default;
 GroundQuery& GroundQuery::operator=(GroundQuery&&) noexcept = default;
 GroundQuery::~GroundQuery() = default;
 
-Result<GroundQuery> GroundQuery::make(const World& world, int32_t avatar_class) {
-  if (world.data() == nullptr) return Error{Errc::kBadInput, "ground query: the world is empty"};
-  const std::vector<AvatarClass>& classes = world.data()->summary.classes;
+Result<GroundQuery> GroundQuery::create(const World& world, int32_t avatar_class) {
+  if (data_of(world) == nullptr) return Error{Errc::kBadInput, "ground query: the world is empty"};
+  const std::vector<AvatarClass>& classes = data_of(world)->summary.classes;
   if (auto ok = check_class(classes, avatar_class, "ground query"); !ok) return ok.error();
   auto state = std::make_unique<State>();
   state->world = world;

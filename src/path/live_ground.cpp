@@ -1,20 +1,20 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/live_ground.h"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "core/access.h"
 #include "core/check_class.h"
-#include "path/live_mesh.h"
-#include "path/live_search.h"
-#include "path/live_state.h"
-#include "path/obstacle.h"
-#include "path/plan_shapes.h"
-#include "path/reset_path.h"
-#include "path/solid.h"
+#include "path/edits/live_mesh.h"
+#include "path/edits/live_search.h"
+#include "path/edits/live_state.h"
+#include "path/edits/obstacle.h"
+#include "path/edits/plan_shapes.h"
+#include "path/edits/solid.h"
+#include "path/ground/reset_path.h"
+#include "throng/path.h"
 #include "world/place.h"
 
 // Checks and converts what callers give, for the live mesh and its search.
@@ -67,9 +67,10 @@ LiveGround::LiveGround(LiveGround&&) noexcept = default;
 LiveGround& LiveGround::operator=(LiveGround&&) noexcept = default;
 LiveGround::~LiveGround() = default;
 
-Result<LiveGround> LiveGround::make(const World& world, const LiveConfig& config) {
-  if (world.data() == nullptr) return Error{Errc::kBadInput, "live ground: the world is empty"};
-  if (auto ok = check_class(world.data()->summary.classes, config.avatar_class, "live ground"); !ok)
+Result<LiveGround> LiveGround::create(const World& world, const LiveConfig& config) {
+  if (data_of(world) == nullptr) return Error{Errc::kBadInput, "live ground: the world is empty"};
+  if (auto ok = check_class(data_of(world)->summary.classes, config.avatar_class, "live ground");
+      !ok)
     return ok.error();
   if (!(config.slope_cost >= 0 && config.slope_cost <= 1000)) {
     return Error{Errc::kBadConfig, "live ground: slope_cost must be 0 to 1000"};

@@ -6,18 +6,19 @@
 #include <limits>
 #include <numbers>
 
-#include "path/block_squares.h"
-#include "path/blocked_cells.h"
-#include "path/node_changes.h"
-#include "path/node_island.h"
-#include "path/node_parts.h"
-#include "path/node_search.h"
-#include "path/node_string_puller.h"
-#include "path/node_view.h"
-#include "path/obstacle.h"
-#include "path/overlay_search.h"
-#include "path/solid.h"
-#include "throng/node_path.h"
+#include "core/access.h"
+#include "path/edits/blocked_cells.h"
+#include "path/edits/obstacle.h"
+#include "path/edits/solid.h"
+#include "path/overlay/overlay_search.h"
+#include "path/surface/block_squares.h"
+#include "path/surface/node_changes.h"
+#include "path/surface/node_island.h"
+#include "path/surface/node_parts.h"
+#include "path/surface/node_search.h"
+#include "path/surface/node_string_puller.h"
+#include "path/surface/node_view.h"
+#include "throng/path.h"
 #include "world/place.h"
 
 // Finds paths over nodes: places the ends, searches (blocks when near, the overlay when far), pulls
@@ -241,7 +242,7 @@ class PathBuilder {
 
   void add(const BlockPoint& at, bool on_surface) {
     const NodeSurface& surface = view_.surface(at.block);
-    const auto& classes = view_.mesh().nodes().data()->world.data()->summary.classes;
+    const auto& classes = data_of(data_of(view_.mesh().nodes())->world)->summary.classes;
     const bool climbs = classes[static_cast<size_t>(view_.mesh().avatar_class())].climb_slope > 0;
     const Vec3d normal = surface.normal(at.s, at.t), feet = surface.at(at.s, at.t);
     if (!path_.points.empty()) path_.length += length(feet - path_.points.back().place.feet);
@@ -277,7 +278,7 @@ Obstacle obstacle_towards(const NodeView& view, const BlockPoint& from, Vec3d go
   const NodeMesh& mesh = view.mesh();
   const NodeBlock& block = view.block(from.block);
   const NodeSurface& surface = view.surface(from.block);
-  const auto& classes = mesh.nodes().data()->world.data()->summary.classes;
+  const auto& classes = data_of(data_of(mesh.nodes())->world)->summary.classes;
   const AvatarClass& avatar = classes[static_cast<size_t>(mesh.avatar_class())];
   // Just beyond the side of the block that lies nearest to the goal.
   const double side = block.side(), s0 = block.s * side, t0 = block.t * side;
@@ -342,7 +343,7 @@ Obstacle obstacle_towards(const NodeView& view, const BlockPoint& from, Vec3d go
 template <class Visit>
 void for_each_level_part(const NodeView& view, Vec3d position, double radius, Visit visit) {
   const NodeMesh& mesh = view.mesh();
-  const WorldData& world = *mesh.nodes().data()->world.data();
+  const WorldData& world = *data_of(data_of(mesh.nodes())->world);
   const std::array<double, 2> plan{position.x, position.z};
   const SquareRange tiles = tiles_near(world, std::span(&plan, 1), std::min(radius, 1e6));
   const double tile = world.summary.cell * kTileCells;
@@ -409,10 +410,9 @@ BlockPoint nearest_place(const NodeView& view, const BlockSquares& squares,
 }  // namespace
 
 NodePathFinder::NodePathFinder(std::shared_ptr<const Shared> shared)
-    : shared_(std::move(shared)), scratch_(std::make_unique<Scratch>(*shared_)) {}
+    : state_(std::move(shared)), scratch_(std::make_unique<Scratch>(*state_)) {}
 NodePathFinder::NodePathFinder(const NodePathFinder& other)
-    : shared_(other.shared_),
-      scratch_(std::make_unique<Scratch>(*shared_, other.scratch_->changes)) {}
+    : state_(other.state_), scratch_(std::make_unique<Scratch>(*state_, other.scratch_->changes)) {}
 NodePathFinder& NodePathFinder::operator=(const NodePathFinder& other) {
   if (this != &other) *this = NodePathFinder(other);
   return *this;
@@ -421,11 +421,11 @@ NodePathFinder::NodePathFinder(NodePathFinder&&) noexcept = default;
 NodePathFinder& NodePathFinder::operator=(NodePathFinder&&) noexcept = default;
 NodePathFinder::~NodePathFinder() = default;
 
-Result<NodePathFinder> NodePathFinder::make(const Nodes& nodes, const NodePathConfig& config,
-                                            Context& context) {
+Result<NodePathFinder> NodePathFinder::create(const Nodes& nodes, const NodePathConfig& config,
+                                              Context& context) {
   const auto start = std::chrono::steady_clock::now();
-  if (nodes.data() == nullptr) return Error{Errc::kBadInput, "path: there are no nodes"};
-  const size_t classes = nodes.data()->world.data()->summary.classes.size();
+  if (data_of(nodes) == nullptr) return Error{Errc::kBadInput, "path: there are no nodes"};
+  const size_t classes = data_of(data_of(nodes)->world)->summary.classes.size();
   if (config.avatar_class < 0 || static_cast<size_t>(config.avatar_class) >= classes) {
     return Error{Errc::kBadConfig, "path: the world has no avatar class " +
                                        std::to_string(config.avatar_class) + "; it has " +
@@ -443,17 +443,17 @@ Result<NodePathFinder> NodePathFinder::make(const Nodes& nodes, const NodePathCo
 }
 
 NodePathSummary NodePathFinder::summary() const {
-  const NodeMesh& mesh = shared_->mesh;
+  const NodeMesh& mesh = state_->mesh;
   return {.blocks = mesh.blocks().size(),
           .crossings = mesh.portals().size(),
-          .bytes = mesh.bytes() + shared_->squares.bytes() + shared_->parts.bytes() +
-                   shared_->overlay.bytes(),
-          .seconds = shared_->seconds};
+          .bytes = mesh.bytes() + state_->squares.bytes() + state_->parts.bytes() +
+                   state_->overlay.bytes(),
+          .seconds = state_->seconds};
 }
 
 std::optional<NodeSquare> NodePathFinder::square(uint32_t node, double from_s, double from_t,
                                                  double to_s, double to_t) const {
-  const NodeMesh& mesh = shared_->mesh;
+  const NodeMesh& mesh = state_->mesh;
   THRONG_ASSERT(node < mesh.nodes().node_count());
   const auto square_of = [&](const NodeBlock& b) {
     const double side = b.side();
@@ -473,7 +473,7 @@ std::optional<NodeSquare> NodePathFinder::square(uint32_t node, double from_s, d
 }
 
 NodePlace NodePathFinder::find_place(Vec3d position, double search_radius) const {
-  const NodeMesh& mesh = shared_->mesh;
+  const NodeMesh& mesh = state_->mesh;
   if (!std::isfinite(position.x + position.y + position.z) || !(search_radius >= 0)) return {};
   scratch_->update();
   const NodeChanges& changes = scratch_->changes;
@@ -495,10 +495,10 @@ NodePlace NodePathFinder::find_place(Vec3d position, double search_radius) const
     const auto [s, t] = nearest_in(mesh.surface(block), view.block(block), position);
     consider(block, s, t, uint64_t{block} + 1);
   };
-  const World& world = mesh.nodes().data()->world;
+  const World& world = data_of(mesh.nodes())->world;
   if (const Place place = world.find_place(mesh.avatar_class(), position, search_radius)) {
     if (const uint32_t patch = mesh.patch_of_level(place.level1 - 1); patch != kNoNode) {
-      const GroundPoint at = to_ground(*world.data(), place.position.x, place.position.z);
+      const GroundPoint at = to_ground(*data_of(world), place.position.x, place.position.z);
       const auto along = [](int64_t unit) {
         return (static_cast<double>(unit & (64 * kUnitsPerCell - 1)) + 0.5) / (64 * kUnitsPerCell);
       };
@@ -514,7 +514,7 @@ NodePlace NodePathFinder::find_place(Vec3d position, double search_radius) const
       }
     }
   }
-  shared_->squares.for_each_near(position, nearest, [&](uint32_t block) {
+  state_->squares.for_each_near(position, nearest, [&](uint32_t block) {
     const auto parts = changes.parts_of(block);
     if (!parts) return consider_curved(block);
     for (uint32_t p = parts->first; p < parts->second; ++p) {
@@ -548,7 +548,7 @@ bool NodePathFinder::set_active(ChangeId change, bool active) {
 void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& path,
                           double spacing, const SearchBudget& budget) {
   THRONG_ASSERT(spacing > 0);
-  const NodeMesh& mesh = shared_->mesh;
+  const NodeMesh& mesh = state_->mesh;
   path.end = PathEnd::kNoPlace;
   path.points.clear();
   path.links.clear();
@@ -590,16 +590,16 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
   };
   const BlockPoint start = part_of(block_of(from)), goal = part_of(block_of(to));
   if (start.block == kNoNode || goal.block == kNoNode) return;
-  shared_->parts.reach(view.base_of(start.block), scratch.reached);
-  bool reachable = scratch.reached.holds(shared_->parts.of_block(view.base_of(goal.block)));
+  state_->parts.reach(view.base_of(start.block), scratch.reached);
+  bool reachable = scratch.reached.holds(state_->parts.of_block(view.base_of(goal.block)));
   scratch.nearest.reset();
   if (view.is_as_baked()) {
     if (!reachable) {
-      const BlockPoint crossing = shared_->parts.nearest(view, start, to.feet, scratch.reached,
-                                                         [](uint32_t) { return false; });
+      const BlockPoint crossing = state_->parts.nearest(view, start, to.feet, scratch.reached,
+                                                        [](uint32_t) { return false; });
       scratch.nearest = nearest_place(
-          view, shared_->squares, crossing, to.feet,
-          [&](uint32_t block) { return scratch.reached.holds(shared_->parts.of_block(block)); });
+          view, state_->squares, crossing, to.feet,
+          [&](uint32_t block) { return scratch.reached.holds(state_->parts.of_block(block)); });
     }
     path.end = scratch.find(start, scratch.nearest.value_or(goal), budget, path);
   } else {
@@ -619,7 +619,7 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
   if (!reachable) {
     last = scratch.crossings.empty() ? start : ends_of(view, scratch.crossings.back()).in;
     last = scratch.nearest.value_or(
-        nearest_place(view, shared_->squares, last, to.feet, [](uint32_t) { return false; }));
+        nearest_place(view, state_->squares, last, to.feet, [](uint32_t) { return false; }));
     path.end = PathEnd::kUnreachable;
     path.obstacle = obstacle_towards(view, last, to.feet);
   }

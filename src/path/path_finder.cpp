@@ -5,15 +5,16 @@
 #include <optional>
 #include <string>
 
+#include "core/access.h"
 #include "core/check_class.h"
-#include "path/hub_labels.h"
-#include "path/label_search.h"
-#include "path/mesh.h"
-#include "path/portal_search.h"
-#include "path/reset_path.h"
-#include "path/search.h"
-#include "path/segments.h"
-#include "path/zone_search.h"
+#include "path/ground/hub_labels.h"
+#include "path/ground/label_search.h"
+#include "path/ground/mesh.h"
+#include "path/ground/portal_search.h"
+#include "path/ground/reset_path.h"
+#include "path/ground/search.h"
+#include "path/ground/segments.h"
+#include "path/overlay/zone_search.h"
 #include "throng/path.h"
 #include "world/place.h"
 
@@ -62,10 +63,10 @@ struct PathFinder::Scratch {
 };
 
 PathFinder::PathFinder(std::shared_ptr<const Shared> shared)
-    : shared_(std::move(shared)), scratch_(std::make_unique<Scratch>()) {}
-PathFinder::PathFinder(const PathFinder& other) : PathFinder(other.shared_) {}
+    : state_(std::move(shared)), scratch_(std::make_unique<Scratch>()) {}
+PathFinder::PathFinder(const PathFinder& other) : PathFinder(other.state_) {}
 PathFinder& PathFinder::operator=(const PathFinder& other) {
-  shared_ = other.shared_;
+  state_ = other.state_;
   if (scratch_ == nullptr) scratch_ = std::make_unique<Scratch>();  // it was moved from
   return *this;
 }
@@ -73,17 +74,15 @@ PathFinder::PathFinder(PathFinder&&) noexcept = default;
 PathFinder& PathFinder::operator=(PathFinder&&) noexcept = default;
 PathFinder::~PathFinder() = default;
 
-Result<PathFinder> PathFinder::make(const World& world, const PathConfig& config,
-                                    Context& context) {
-  if (world.data() == nullptr) return Error{Errc::kBadInput, "path: the world is empty"};
-  if (auto ok = check_class(world.data()->summary.classes, config.avatar_class, "path"); !ok)
+Result<PathFinder> PathFinder::create(const World& world, const PathConfig& config,
+                                      Context& context) {
+  if (data_of(world) == nullptr) return Error{Errc::kBadInput, "path: the world is empty"};
+  if (auto ok = check_class(data_of(world)->summary.classes, config.avatar_class, "path"); !ok)
     return ok.error();
-  if (config.labels && config.zones)
-    return Error{Errc::kBadConfig, "path: choose labels or zones, not both"};
   if (config.workers < 0) return Error{Errc::kBadConfig, "path: workers must be 0 or more"};
   const auto start = std::chrono::steady_clock::now();
   if (auto ok = world.check_ground(); !ok) return ok.error();
-  auto mesh = build_mesh(*world.data(), config.avatar_class, config.workers, context);
+  auto mesh = build_mesh(*data_of(world), config.avatar_class, config.workers, context);
   if (!mesh) return mesh.error();
   auto shared = std::make_shared<Shared>();
   shared->world = world;
@@ -96,15 +95,15 @@ Result<PathFinder> PathFinder::make(const World& world, const PathConfig& config
              0,
              shared->mesh.bytes(),
              0};
-  if (config.labels) {
+  if (config.speedup == PathSpeedup::kLabels) {
     auto labels = build_labels(shared->mesh, config.workers, context);
     if (!labels) return labels.error();
     shared->labels = std::move(*labels);
     summary.labels = shared->labels->labels.size();
     summary.bytes += shared->labels->bytes();
   }
-  if (config.zones) {
-    auto zones = build_zone_graph(*world.data(), shared->mesh, config.workers, context);
+  if (config.speedup == PathSpeedup::kZones) {
+    auto zones = build_zone_graph(*data_of(world), shared->mesh, config.workers, context);
     if (!zones) return zones.error();
     shared->zones = std::move(*zones);
     summary.entrances = shared->zones->entrances.size();
@@ -115,12 +114,12 @@ Result<PathFinder> PathFinder::make(const World& world, const PathConfig& config
   return PathFinder(std::move(shared));
 }
 
-PathSummary PathFinder::summary() const { return shared_->summary; }
-const PathMesh& PathFinder::mesh() const { return shared_->mesh; }
+PathSummary PathFinder::summary() const { return state_->summary; }
+const PathMesh& mesh_of(const PathFinder& finder) { return Access::state(finder)->mesh; }
 
 void PathFinder::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget) {
-  const WorldData& world = *shared_->world.data();
-  const PathMesh& mesh = shared_->mesh;
+  const WorldData& world = *data_of(state_->world);
+  const PathMesh& mesh = state_->mesh;
   reset(path);
   const auto locate = [&](const Place& place, Stop& end) {
     const auto at = ground_point(world, place);
@@ -138,15 +137,15 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, const Sear
   }
   double length = 0;
   SearchResult result = SearchResult::kNone;
-  if (shared_->labels) {
-    if (scratch_->label_search.find(mesh, *shared_->labels, start, goal, scratch_->corners,
+  if (state_->labels) {
+    if (scratch_->label_search.find(mesh, *state_->labels, start, goal, scratch_->corners,
                                     length)) {
       result = SearchResult::kFound;
     }
-  } else if (shared_->zones) {
+  } else if (state_->zones) {
     ZoneSearch& search = scratch_->over_zones;
     result =
-        search.find(world, mesh, *shared_->zones, start, goal, budget, scratch_->corners, length);
+        search.find(world, mesh, *state_->zones, start, goal, budget, scratch_->corners, length);
     path.nodes = search.expanded();
   } else {
     result = scratch_->search.find(mesh, start, goal, budget, scratch_->corners, length);

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/replay_summary.h"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
+
+#include "throng/recording.h"
 
 // Summary of a recording in two passes: the first finds storeys and bounds, the second counts.
 // Time: linear in the positions, times the lines.
@@ -127,7 +127,7 @@ class Summary {
   Result<void> count() {
     const double area = config_.cell * config_.cell;
     const double seconds = out_.time.back() - out_.time.front();
-    uint64_t come = 0, left = 0;
+    uint64_t entered = 0, left = 0;
     double walked = 0, walked_time = 0;
     for (uint64_t f = 0; f < replay_.frame_count(); ++f) {
       if (auto ok = read(1, f, now_); !ok) return ok;
@@ -146,7 +146,7 @@ class Summary {
       for (size_t a = 0, b = 0; a < before || b < now_.size();) {
         const bool has_left = b == now_.size() || (a < before && before_.ids[a] < now_.ids[b]);
         const bool is_new = a == before || (b < now_.size() && now_.ids[b] < before_.ids[a]);
-        come += is_new ? 1 : 0;
+        entered += is_new ? 1 : 0;
         left += has_left ? 1 : 0;
         if (has_left) out_.last_left = now_.time;
         if (!has_left && !is_new) {
@@ -156,7 +156,7 @@ class Summary {
         a += is_new ? 0 : 1;
         b += has_left ? 0 : 1;
       }
-      out_.come.push_back(come);
+      out_.entered.push_back(entered);
       out_.left.push_back(left);
       if (f > 0) {
         const double n = static_cast<double>(std::max<size_t>(stay, 1));

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/part_file.h"
-#include "throng/replay_export.h"
+#include "throng/recording.h"
 
 // Recordings as text: CSV for spreadsheets, and the trajectory format of the Juelich experiments.
 // them.

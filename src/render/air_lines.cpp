@@ -7,7 +7,8 @@
 #include <cmath>
 #include <optional>
 
-#include "throng/flight.h"
+#include "core/access.h"
+#include "throng/path.h"
 #include "world/air_data.h"
 #include "world/zone_data.h"
 
@@ -116,10 +117,10 @@ class LineFinder {
 }  // namespace
 
 Result<std::vector<AirLine>> air_lines(const World& world, const Box3d& area) {
-  if (world.data() != nullptr) {
-    if (auto ok = check_air_index(*world.data()); !ok) return ok.error();
+  if (data_of(world) != nullptr) {
+    if (auto ok = check_air_index(*data_of(world)); !ok) return ok.error();
   }
-  if (world.data() == nullptr || world.data()->air == nullptr) {
+  if (data_of(world) == nullptr || data_of(world)->air == nullptr) {
     return Error{Errc::kNotFound,
                  "picture: the world was baked without air; bake it with --fly or with --air"};
   }
@@ -129,11 +130,11 @@ Result<std::vector<AirLine>> air_lines(const World& world, const Box3d& area) {
   for (size_t c = 0; c < classes.size() && !flight; ++c) {
     if (!classes[c].flies) continue;
     Context context;
-    auto made = FlightFinder::make(world, {.avatar_class = static_cast<int32_t>(c)}, context);
+    auto made = FlightFinder::create(world, {.avatar_class = static_cast<int32_t>(c)}, context);
     if (!made) return made.error();
     flight = *std::move(made);
   }
-  const LineFinder finder(*world.data(), area);
+  const LineFinder finder(*data_of(world), area);
   std::vector<AirLine> lines;
   finder.for_cubes([&](const AirCube& cube) {
     finder.add_links(cube, lines);

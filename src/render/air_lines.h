@@ -5,8 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "throng/math.h"
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng/world.h"
 
 /// The links of a world's air as lines to draw, like the last figures of [PACS00].

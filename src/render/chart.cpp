@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/chart.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "render/canvas.h"
 #include "render/marks.h"
 #include "render/text.h"
+#include "throng/picture.h"
 
 // All lengths are for a chart 1200 pixels wide and grow with it.
 namespace throng {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/heat_map.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "render/colour.h"
 #include "render/marks.h"
 #include "render/text.h"
+#include "throng/picture.h"
 
 // All lengths are for a picture 1200 pixels wide and grow with it.
 namespace throng {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "render/storey_raster.h"
+#include "throng/base.h"
 #include "throng/picture.h"
-#include "throng/result.h"
 
 /// The whole picture: title, plans, fan, section, legend, laid out as a poster.
 namespace throng {

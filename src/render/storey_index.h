@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "throng/math.h"
+#include "throng/base.h"
 #include "throng/world.h"
 
 /// Which storeys a world has, how large they are, and how high they lie around a tile.

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/avatar_generators.h"
-
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -11,7 +9,8 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
-#include "throng/graph.h"
+#include "throng/crowd.h"
+#include "throng/world.h"
 
 // Source: [TC00] 5. A seen area that is simulated alone drains: avatars walk out and none enter. So
 // a band of unseen cells beside the seen ones is kept at the required density, as a reservoir, and
@@ -240,8 +239,8 @@ AvatarGenerators::AvatarGenerators(AvatarGenerators&&) noexcept = default;
 AvatarGenerators& AvatarGenerators::operator=(AvatarGenerators&&) noexcept = default;
 AvatarGenerators::~AvatarGenerators() = default;
 
-Result<AvatarGenerators> AvatarGenerators::make(const World& world, const GeneratorConfig& config,
-                                                Context& context) {
+Result<AvatarGenerators> AvatarGenerators::create(const World& world, const GeneratorConfig& config,
+                                                  Context& context) {
   const bool sound = config.density > 0 && config.density <= 1 && config.radius > 0 &&
                      config.band > 0 && config.steps_per_query > 0 && config.workers >= 0 &&
                      config.people >= 0 && std::isfinite(config.people);
@@ -263,7 +262,7 @@ Result<AvatarGenerators> AvatarGenerators::make(const World& world, const Genera
   s.cell = summary.cell;
   const auto of_class = static_cast<size_t>(config.avatar_class);
   s.height = summary.classes[of_class].height;
-  Result<Graph> graph = Graph::make(world, {.workers = config.workers}, context);
+  Result<Graph> graph = Graph::create(world, {.workers = config.workers}, context);
   if (!graph) return graph.error();
   s.graph = *std::move(graph);
   s.component = s.graph.component_at(config.avatar_class, config.home);

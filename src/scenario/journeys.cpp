@@ -84,7 +84,7 @@ void Simulation::State::begin_stage(ScenarioAvatar& p) {
       crowd.set_targets({&p.id, 1}, targets_of(p)[0]);
       p.doing = Doing::kWalking;
       return;
-    case Stage::Kind::kSpot:
+    case Stage::Kind::kRandomPoint:
       return walk_to(p, random_place(stage.areas, stage.density, p), Doing::kToRandomPlace);
     case Stage::Kind::kWait:
       stand(p, Doing::kWaiting);
@@ -158,7 +158,7 @@ void Simulation::State::remove_from_crowd(ScenarioAvatar& p) {
 }
 
 void Simulation::State::leave(ScenarioAvatar& p) {
-  Visit& visit = visits[p.number];
+  Trip& visit = trips[p.number];
   visit.left = time();
   visit.exit = area_under(p);
   ++left;

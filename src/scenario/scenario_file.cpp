@@ -327,8 +327,8 @@ void File::read_top() {
       node != nullptr && paths != "corners" && paths != "labels" && paths != "zones") {
     r.fail(*node, fmt::format("{} must be \"corners\", \"labels\" or \"zones\"", paths_key));
   }
-  out_.labels = paths == "labels";
-  out_.zones = paths == "zones";
+  if (paths == "labels") out_.paths = PathSpeedup::kLabels;
+  if (paths == "zones") out_.paths = PathSpeedup::kZones;
   std::string steering = throng::name_of(out_.steering);
   r.text("steering", steering);
   if (const auto model = find_steering_model(steering)) {
@@ -445,7 +445,7 @@ void File::read_area(Reader& r) {
   if (!read_shape(r, prism)) return;
   for (ScenarioArea& area : out_.areas) {
     if (area.name != name) continue;
-    if (r.find(factor_key) != nullptr) area.pace = factor;
+    if (r.find(factor_key) != nullptr) area.speed_factor = factor;
     return area.prisms.push_back(prism);
   }
   out_.areas.push_back({name, {prism}, factor});
@@ -600,10 +600,10 @@ void File::read_stage(Reader& r, Journey& journey) {
     stage.kind = Stage::Kind::kLeave;
     r.names(*r.find("leave"), out_.areas, "area", stage.areas);
   } else if (have(point_key)) {
-    stage.kind = Stage::Kind::kSpot;
+    stage.kind = Stage::Kind::kRandomPoint;
     r.names(*r.find(point_key), out_.areas, "area", stage.areas);
   } else if (have("density")) {
-    stage.kind = Stage::Kind::kSpot;
+    stage.kind = Stage::Kind::kRandomPoint;
     stage.density = r.named(*r.find("density"), out_.densities, "density");
   } else if (have("wait")) {
     stage.kind = Stage::Kind::kWait;

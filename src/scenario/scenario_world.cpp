@@ -6,7 +6,7 @@
 // The world of a scenario: opened, or baked in memory from models, a built-in world or a plane.
 namespace throng {
 
-Result<Scene> load_scene(const Scenario& scenario, Context& context, SceneLooks looks) {
+Result<Scene> load_scene(const Scenario& scenario, Context& context, SceneMaterials looks) {
   if (!scenario.world.empty()) {
     return Error{Errc::kBadConfig, scenario.world + ": a baked world keeps no triangles"};
   }
@@ -18,8 +18,8 @@ Result<Scene> load_scene(const Scenario& scenario, Context& context, SceneLooks 
     }
     return load_scene(config, context);
   }
-  if (!scenario.builtins.empty()) return make_builtin_world(scenario.builtins.front());
-  if (!scenario.planes.empty()) return make_plane_scene(scenario.planes.front());
+  if (!scenario.builtins.empty()) return create_builtin_world(scenario.builtins.front());
+  if (!scenario.planes.empty()) return create_plane_scene(scenario.planes.front());
   return Error{Errc::kBadConfig, "the scenario names no world"};
 }
 

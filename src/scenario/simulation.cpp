@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/simulation.h"
-
 #include <algorithm>
 #include <bit>
 #include <string>
@@ -9,7 +7,8 @@
 #include "core/hash.h"
 #include "core/random.h"
 #include "scenario/simulation_state.h"
-#include "throng/nodes.h"
+#include "throng/scenario.h"
+#include "throng/surface.h"
 
 // A scenario as it runs: resolves its names to classes, targets and places, then steps the parts of
 // the state in a fixed order. Time of a step: that of the crowd, and linear in the avatars.
@@ -49,19 +48,18 @@ Result<Nodes> Simulation::State::nodes_for(const World& world, const Scenario& s
   if (!scenario.world.empty()) return Nodes::exist(world) ? Nodes::open(world) : Nodes();
   const Result<Scene> scene = load_scene(scenario, context);
   if (!scene) return scene.error();
-  return Nodes::make(world, *scene, {.workers = workers}, context);
+  return Nodes::create(world, *scene, {.workers = workers}, context);
 }
 
-Result<Simulation> Simulation::make(const World& world, const Scenario& scenario, int32_t workers,
-                                    Context& context) {
+Result<Simulation> Simulation::create(const World& world, const Scenario& scenario, int32_t workers,
+                                      Context& context) {
   auto nodes = State::nodes_for(world, scenario, workers, context);
   if (!nodes) return nodes.error();
   auto crowd = Crowd::create(world, {.dt = scenario.dt,
                                      .seed = scenario.seed,
                                      .workers = workers,
                                      .model = scenario.steering,
-                                     .labels = scenario.labels,
-                                     .zones = scenario.zones,
+                                     .speedup = scenario.paths,
                                      .search_bytes = scenario.search_bytes,
                                      .nodes = *std::move(nodes)});
   if (!crowd) return crowd.error();
@@ -194,25 +192,30 @@ void Simulation::State::update_obstacles() {
       const auto added = crowd.add_obstacle(obstacle.prism, ObstacleKind::kStatic, obstacle.policy);
       THRONG_ASSERT(added);  // The prism was checked.
       obstacles[n] = *added;
-      obstacle_times[n].asked = time();
-      record_obstacle_times();
+      obstacle_times[n].requested_at = time();
+      record_obstacle_times(n);
       obstacle_times[n].inside = obstacle_times[n].waits_for;
     } else if (!wanted && obstacles[n]) {
       crowd.remove_obstacle(obstacles[n]);
       obstacles[n] = {};
-      obstacle_times[n].gone = time();
+      obstacle_times[n].removed_at = time();
       obstacle_times[n].waits_for = 0;
     }
   }
 }
 
 void Simulation::State::record_obstacle_times() {
-  for (size_t n = 0; n < obstacles.size(); ++n) {
-    const auto state = crowd.obstacle(obstacles[n]);
-    if (!state) continue;
-    obstacle_times[n].up = state->up_at;
-    obstacle_times[n].waits_for = state->occupants;
-  }
+  for (size_t n = 0; n < obstacles.size(); ++n) record_obstacle_times(n);
+}
+
+void Simulation::State::record_obstacle_times(size_t n) {
+  ObstacleTimes& times = obstacle_times[n];
+  const bool is_up = times.up >= 0 && times.waits_for == 0;  // and stays so until it is removed
+  if (is_up || !obstacles[n]) return;
+  const auto state = crowd.obstacle(obstacles[n]);
+  if (!state) return;
+  times.up = state->up_at;
+  times.waits_for = state->occupants;
 }
 
 Result<SimulationReport> Simulation::step() {
@@ -263,7 +266,7 @@ bool Simulation::is_over() const {
 
 const Crowd& Simulation::crowd() const { return state_->crowd; }
 std::span<const ObstacleTimes> Simulation::obstacle_times() const { return state_->obstacle_times; }
-std::span<const Visit> Simulation::visits() const { return state_->visits; }
+std::span<const Trip> Simulation::trips() const { return state_->trips; }
 
 void Simulation::read(std::vector<AvatarState>& out) const {
   state_->crowd.read(out);

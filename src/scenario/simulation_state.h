@@ -13,7 +13,7 @@
 #include "scenario/density_draw.h"
 #include "scenario/door_queue.h"
 #include "scenario/spawn_times.h"
-#include "throng/simulation.h"
+#include "throng/scenario.h"
 
 /// The state of a simulation.
 namespace throng {
@@ -98,7 +98,7 @@ struct Simulation::State {
   std::vector<uint64_t> spawn_counts;         // by source: avatars so far
   std::deque<PendingSpawn> pending;           // out of sources, in order of due times
   std::deque<PendingSpawn> in_transit;        // out of links, in order of exit
-  std::vector<Visit> visits;                  // by number
+  std::vector<Trip> trips;                    // by number
   std::vector<uint32_t> slot_of;              // by number; kNoSlot: not in the crowd
   std::vector<ScenarioAvatar> avatars;        // by slot
   std::vector<WaitingLine> lines;             // by queue
@@ -141,6 +141,7 @@ struct Simulation::State {
 
   void update_obstacles();
   void record_obstacle_times();
+  void record_obstacle_times(size_t n);
 
   // spawning.cpp
   void queue_spawns();

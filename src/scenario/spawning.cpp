@@ -203,17 +203,17 @@ void Simulation::State::enter(const PendingSpawn& one, AvatarId id) {
   }
   const Source& source = scenario.sources[static_cast<size_t>(one.source)];
   ++entered;
-  if (visits.size() <= p.number) visits.resize(p.number + 1);
+  if (trips.size() <= p.number) trips.resize(p.number + 1);
   const double wait = draw(source.premovement, scenario.seed, p.number, 3);
-  visits[p.number] = {.person = p.number,
-                      .source = one.source,
-                      .profile = p.profile,
-                      .journey = p.journey,
-                      .entered = time(),
-                      .started = time() + wait,
-                      .left = -1,
-                      .exit = -1,
-                      .speed = p.speed};
+  trips[p.number] = {.person = p.number,
+                     .source = one.source,
+                     .profile = p.profile,
+                     .journey = p.journey,
+                     .entered = time(),
+                     .started = time() + wait,
+                     .left = -1,
+                     .exit = -1,
+                     .speed = p.speed};
   if (wait > 0) {
     stand(p, Doing::kWaiting);
     p.until = time() + wait;

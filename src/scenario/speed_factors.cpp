@@ -10,7 +10,7 @@ namespace throng {
 
 // The first area with a factor in which an avatar stands sets its own.
 void Simulation::State::apply_speed_factors() {
-  const auto has_factor = [](const ScenarioArea& area) { return area.pace != 1; };
+  const auto has_factor = [](const ScenarioArea& area) { return area.speed_factor != 1; };
   if (std::ranges::none_of(scenario.areas, has_factor)) return;
   for (ScenarioAvatar& p : avatars) {
     if (!p.id) continue;
@@ -19,7 +19,7 @@ void Simulation::State::apply_speed_factors() {
     for (const ScenarioArea& area : scenario.areas) {
       const auto is_here = [&](const Prism& prism) { return prism.holds(at); };
       if (!has_factor(area) || std::ranges::none_of(area.prisms, is_here)) continue;
-      factor = area.pace;
+      factor = area.speed_factor;
       break;
     }
     if (factor == p.speed_factor) continue;

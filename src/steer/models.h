@@ -6,7 +6,7 @@
 #include <span>
 
 #include "steer/sampled.h"
-#include "throng/steering_model.h"
+#include "throng/avatar.h"
 
 /// The other models that can steer a crowd, for comparison: from the view of an avatar to its next
 /// velocity. Their only state is the present velocity.

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/steering_model.h"
-
 #include <array>
 #include <cstddef>
+
+#include "throng/avatar.h"
 
 // Names of the steering models.
 namespace throng {

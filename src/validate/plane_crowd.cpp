@@ -23,7 +23,7 @@ Polygon box(double x0, double z0, double x1, double z1) {
 Result<PlaneCrowd> PlaneCrowd::build(const PlaneConfig& plane, const AvatarClass& body,
                                      Routing routing, const ValidationConfig& config,
                                      Context& context) {
-  const auto scene = make_plane_scene(plane);
+  const auto scene = create_plane_scene(plane);
   if (!scene) return scene.error();
   auto world = bake_world(
       *scene, {.cell = kCell, .zone = 51.2, .classes = {body}, .workers = config.workers}, context);

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "throng/avatar_class.h"
+#include "throng/avatar.h"
 #include "throng/crowd.h"
+#include "throng/scenario.h"
 #include "throng/scene.h"
-#include "throng/validation.h"
 #include "throng/world.h"
 
 /// A crowd on a plane with walls, and the state of its avatars after every step.

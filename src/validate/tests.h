@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "throng/validation.h"
+#include "throng/scenario.h"
 
 /// The families of tests, one file each.
 namespace throng::validate {

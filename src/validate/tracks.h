@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "throng/result.h"
+#include "throng/base.h"
 
 /// Recorded trajectories of people.
 namespace throng::validate {

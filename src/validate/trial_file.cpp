@@ -9,7 +9,7 @@
 
 #include "core/config_file.h"
 #include "core/read_file.h"
-#include "throng/trial.h"
+#include "throng/scenario.h"
 
 // Reads the tables [trial] and [[measure]] of a scenario file, which takes time linear in the text.
 // Keys and names of former versions are accepted.

@@ -6,8 +6,7 @@
 #include <utility>
 
 #include "core/stopwatch.h"
-#include "throng/simulation.h"
-#include "throng/trial.h"
+#include "throng/scenario.h"
 #include "validate/statistics.h"
 
 // Runs the scenario of a trial and measures after every step. Cost of a step: its avatars times the
@@ -39,7 +38,7 @@ bool is_in(const std::vector<int32_t>& list, int32_t index) {
   return list.empty() || std::ranges::find(list, index) != list.end();
 }
 
-bool counts(const TrialMeasure& m, const Visit& v) {
+bool counts(const TrialMeasure& m, const Trip& v) {
   return v.entered >= 0 && is_in(m.sources, v.source) && is_in(m.profiles, v.profile) &&
          is_in(m.journeys, v.journey) &&
          (m.exits.empty() || (v.left >= 0 && is_in(m.exits, v.exit)));
@@ -74,8 +73,8 @@ class Observer {
 
   void observe(const Simulation& simulation, double time) {
     simulation.read(states_);
-    const auto visits = simulation.visits();
-    const size_t people = visits.size();
+    const auto trips = simulation.trips();
+    const size_t people = trips.size();
     last_position_.resize(people);
     was_here_.resize(people, 0);
     first_step_.resize(people, -1);
@@ -86,9 +85,9 @@ class Observer {
       const Vec3d& now = state.position;
       // An avatar observed the last time has walked since; in a lift it is not observed.
       if (was_here_[n] == observations_ - 1 && was_here_[n] > 0) {
-        walked(visits[n], last_position_[n], now, time);
+        walked(trips[n], last_position_[n], now, time);
       } else {
-        for (size_t k = 0; k < data_.size(); ++k) stands(k, visits[n], now);
+        for (size_t k = 0; k < data_.size(); ++k) stands(k, trips[n], now);
       }
       last_position_[n] = now;
       was_here_[n] = observations_;
@@ -101,12 +100,12 @@ class Observer {
     }
   }
 
-  [[nodiscard]] std::vector<ValidationMeasure> measures(std::span<const Visit> visits) const {
+  [[nodiscard]] std::vector<ValidationMeasure> measures(std::span<const Trip> trips) const {
     std::vector<ValidationMeasure> out;
     for (size_t k = 0; k < data_.size(); ++k) {
       const TrialMeasure& m = trial_.measures[k];
       out.push_back({.name = m.name,
-                     .value = value(k, visits, out),
+                     .value = value(k, trips, out),
                      .unit = unit(m),
                      .low = m.low,
                      .high = m.high});
@@ -117,13 +116,13 @@ class Observer {
   }
 
  private:
-  void stands(size_t k, const Visit& visit, const Vec3d& now) {
+  void stands(size_t k, const Trip& visit, const Vec3d& now) {
     const TrialMeasure& m = trial_.measures[k];
     if (m.of != Observed::kDensity || !counts(m, visit)) return;
     if (covers(trial_.scenario.areas[static_cast<size_t>(m.area)], now)) inside_[k] += 1;
   }
 
-  void walked(const Visit& visit, const Vec3d& before, const Vec3d& now, double time) {
+  void walked(const Trip& visit, const Vec3d& before, const Vec3d& now, double time) {
     const double distance = std::hypot(now.x - before.x, now.z - before.z);
     const double dt = trial_.scenario.dt;
     double& first = first_step_[visit.person];
@@ -174,10 +173,10 @@ class Observer {
   }
 
   // One number for each person that the measure counts.
-  [[nodiscard]] std::vector<double> of_each(size_t k, std::span<const Visit> visits) const {
+  [[nodiscard]] std::vector<double> of_each(size_t k, std::span<const Trip> trips) const {
     const TrialMeasure& m = trial_.measures[k];
     std::vector<double> numbers;
-    for (const Visit& v : visits) {
+    for (const Trip& v : trips) {
       if (!counts(m, v)) continue;
       if (m.of == Observed::kPremovement) numbers.push_back(v.started - v.entered);
       if (m.of == Observed::kDesiredSpeed) numbers.push_back(v.speed);
@@ -226,12 +225,12 @@ class Observer {
     }
   }
 
-  [[nodiscard]] double value(size_t k, std::span<const Visit> visits,
+  [[nodiscard]] double value(size_t k, std::span<const Trip> trips,
                              const std::vector<ValidationMeasure>& before) const {
     const TrialMeasure& m = trial_.measures[k];
     const auto count = [&](bool has_left) {
       return static_cast<double>(std::ranges::count_if(
-          visits, [&](const Visit& v) { return counts(m, v) && (v.left >= 0) == has_left; }));
+          trips, [&](const Trip& v) { return counts(m, v) && (v.left >= 0) == has_left; }));
     };
     switch (m.of) {
       case Observed::kPeople:
@@ -264,7 +263,7 @@ class Observer {
       default:
         break;
     }
-    if (m.statistic != Statistic::kOverall) return statistic_of(m, of_each(k, visits));
+    if (m.statistic != Statistic::kOverall) return statistic_of(m, of_each(k, trips));
     double distance = 0, time = 0;
     for (const double d : data_[k].distance) distance += d;
     for (const double t : data_[k].time) time += t;
@@ -294,7 +293,7 @@ Result<ValidationResult> run_trial(const Trial& trial, const ValidationConfig& c
   if (config.model != SteeringModel::kSampled) scenario.steering = config.model;
   const auto world = open_world(scenario, context);
   if (!world) return world.error();
-  auto simulation = Simulation::make(*world, scenario, config.workers, context);
+  auto simulation = Simulation::create(*world, scenario, config.workers, context);
   if (!simulation) return simulation.error();
   Observer observer(trial);
   observer.observe(*simulation, 0);
@@ -312,7 +311,7 @@ Result<ValidationResult> run_trial(const Trial& trial, const ValidationConfig& c
     result.simulated = report->time;
     if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
   }
-  result.measures = observer.measures(simulation->visits());
+  result.measures = observer.measures(simulation->trips());
   result.seconds = seconds_since(start);
   return result;
 }

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/validation.h"
-
 #include <algorithm>
 
 #include "core/stopwatch.h"
+#include "throng/scenario.h"
 #include "validate/tests.h"
 
 // The list of tests, and the run of one by its name.

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "throng/avatar_class.h"
-#include "throng/math.h"
+#include "throng/avatar.h"
+#include "throng/base.h"
 #include "verify/triangle_tree.h"
 
 /// What the triangles say of one claimed place of one avatar class.

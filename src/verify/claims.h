@@ -5,9 +5,8 @@
 #include <cstdint>
 #include <functional>
 
-#include "throng/avatar_class.h"
-#include "throng/context.h"
-#include "throng/result.h"
+#include "throng/avatar.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 #include "throng/verify.h"
 #include "throng/world.h"

@@ -5,7 +5,7 @@
 #include <array>
 #include <optional>
 
-#include "throng/math.h"
+#include "throng/base.h"
 
 /// The exact tests of the oracle, in double precision: an upright cylinder, and a vertical line,
 /// against one triangle. Triangles may be degenerate (a segment, a point): they are still solid.

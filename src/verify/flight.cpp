@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/flight.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
 
 #include "core/parallel.h"
+#include "throng/path.h"
 #include "throng/verify.h"
 #include "verify/claims.h"
 #include "verify/cylinder.h"
@@ -94,7 +93,7 @@ Result<FlightReport> verify_flight(const World& world, const Scene& source,
                                    const VerifyConfig& config, Context& context) {
   const auto start = std::chrono::steady_clock::now();
   if (auto sound = verify::check_source(source, config); !sound) return sound.error();
-  auto finder = FlightFinder::make(
+  auto finder = FlightFinder::create(
       world, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
   if (!finder) return finder.error();
   const AvatarClass avatar = world.summary().classes[static_cast<size_t>(config.avatar_class)];

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "throng/node_path.h"
+#include "throng/path.h"
 #include "throng/verify.h"
 #include "verify/claims.h"
 #include "verify/turned_body.h"
@@ -233,7 +233,7 @@ Result<NodePathReport> verify_node_paths(const Nodes& nodes, const Scene& source
                                          const VerifyConfig& config, Context& context) {
   const auto start = Clock::now();
   if (auto sound = verify::check_source(source, config); !sound) return sound.error();
-  auto finder = NodePathFinder::make(
+  auto finder = NodePathFinder::create(
       nodes, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
   if (!finder) return finder.error();
   for (const Prism& prism : config.obstacles) {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "throng/graph.h"
 #include "throng/path.h"
 #include "throng/verify.h"
+#include "throng/world.h"
 #include "verify/body_check.h"
 #include "verify/claims.h"
 #include "verify/segment_check.h"
@@ -155,9 +155,9 @@ Result<PathReport> verify_paths(const World& world, const Scene& source, const V
   const auto claims = verify::claims_of(world, config.avatar_class);
   if (!claims) return claims.error();
   if (auto sound = verify::check_source(source, config); !sound) return sound.error();
-  const auto graph = Graph::make(world, {.workers = config.workers}, context);
+  const auto graph = Graph::create(world, {.workers = config.workers}, context);
   if (!graph) return graph.error();
-  const auto finder = PathFinder::make(
+  const auto finder = PathFinder::create(
       world, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
   if (!finder) return finder.error();
   const Walker walker(*claims, *graph, source, config);

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "throng/math.h"
+#include "throng/base.h"
 #include "verify/body_check.h"
 #include "verify/claims.h"
 #include "verify/segment_check.h"

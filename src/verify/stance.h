@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "throng/math.h"
+#include "throng/base.h"
 #include "verify/cylinder.h"
 #include "verify/triangle_tree.h"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "throng/math.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// Points on the surfaces of a scene, uniform by area.

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "throng/math.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 #include "verify/cylinder.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "throng/avatar_class.h"
+#include "throng/avatar.h"
 #include "verify/cylinder.h"
 #include "verify/triangle_tree.h"
 

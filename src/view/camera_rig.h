@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "throng/impostor_pack.h"
-#include "throng/math.h"
+#include "throng/base.h"
+#include "throng/impostor.h"
 
 /// The eye, and how it is moved. Y is up.
 namespace throng {

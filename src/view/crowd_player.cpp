@@ -44,13 +44,13 @@ Result<std::unique_ptr<CrowdPlayer>> CrowdPlayer::make(World world, Nodes nodes,
   const CrowdConfig config{.dt = start.dt,
                            .seed = start.seed,
                            .workers = workers,
-                           .zones = start.zones,
+                           .speedup = start.speedup,
                            .nodes = std::move(nodes)};
   Result<Crowd> crowd = Crowd::create(world, config);
   if (!crowd) return crowd.error();
   std::unique_ptr<CrowdPlayer> player(
       new CrowdPlayer(std::move(world), start, origin, *std::move(crowd)));
-  Result<Graph> graph = Graph::make(player->world_, {.workers = workers}, context);
+  Result<Graph> graph = Graph::create(player->world_, {.workers = workers}, context);
   if (!graph) return graph.error();
   player->graph_ = *std::move(graph);
   player->workers_ = workers;
@@ -329,7 +329,7 @@ Result<void> CrowdPlayer::keep_populated() {
     config.seed = start_.seed;
     config.workers = workers_;
     config.people = start_.avatars;
-    Result<AvatarGenerators> made = AvatarGenerators::make(world_, config, quiet);
+    Result<AvatarGenerators> made = AvatarGenerators::create(world_, config, quiet);
     if (!made) return made.error();
     s.generators = *std::move(made);
   }

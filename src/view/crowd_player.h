@@ -9,10 +9,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "throng/avatar_generators.h"
-#include "throng/context.h"
+#include "throng/base.h"
 #include "throng/crowd.h"
-#include "throng/graph.h"
 #include "throng/world.h"
 #include "throng_view/viewer.h"
 #include "view/density_brush.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "throng/math.h"
+#include "throng/base.h"
 #include "throng/scenario.h"
 
 /// Density maps that a brush changes, and random points drawn from them.

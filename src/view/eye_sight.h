@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "throng/math.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 namespace throng {

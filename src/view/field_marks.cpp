@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "throng/caacd.h"
+#include "throng/papers.h"
 #include "view/overlays.h"
 
 // [CAACD] II: three concentric fields around each avatar, the probe ahead, and the state that
@@ -24,8 +24,8 @@ constexpr double kAround = 8;                       // [m] Around the picked ava
 caacd::Model model_of_metres() {
   caacd::Model model;
   model.max_speed = 2;
-  model.horizon = 3;      // [s]
-  model.zone_time = 0.8;  // [s]
+  model.horizon = 3;       // [s]
+  model.probe_time = 0.8;  // [s]
   model.trigger = caacd::Trigger::kThreat;
   return model;
 }
@@ -61,7 +61,7 @@ void add_circle(Marks& marks, Vec3d middle, double radius, Rgba colour) {
 }
 
 void add_probe(Marks& marks, const caacd::Body& body, const caacd::Model& model, Rgba colour) {
-  const Vec3d ahead = body.forward * caacd::zone_length(body, model);
+  const Vec3d ahead = body.forward * caacd::probe_length(body, model);
   const Vec3d side = caacd::right_of(body.forward) * body.fields.repulsive;
   const std::array<Vec3d, 4> c = {body.position + side, body.position + side + ahead,
                                   body.position - side + ahead, body.position - side};

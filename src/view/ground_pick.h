@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "throng/impostor_pack.h"
+#include "throng/impostor.h"
 #include "throng/world.h"
 #include "view/timeline_frame.h"
 

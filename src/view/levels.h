@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "throng/context.h"
+#include "throng/base.h"
 #include "throng/world.h"
 
 namespace throng {

@@ -41,7 +41,7 @@ std::optional<OverlayMaker::Made> OverlayMaker::take() {
 Result<std::vector<Vec3d>> OverlayMaker::find_path(const Order& order) {
   if (!finder_ || finder_class_ != order.avatar_class) {
     Result<PathFinder> finder =
-        PathFinder::make(world_, {.avatar_class = order.avatar_class}, context_);
+        PathFinder::create(world_, {.avatar_class = order.avatar_class}, context_);
     if (!finder) return finder.error();
     finder_.emplace(*std::move(finder));
     finder_class_ = order.avatar_class;

@@ -10,8 +10,8 @@
 #include <tuple>
 
 #include "core/random.h"
-#include "throng/flight.h"
-#include "throng/partial_runs.h"
+#include "throng/path.h"
+#include "throng/surface.h"
 
 // Each overlay is a list of triangles and lines, linear in cells, nodes or avatars.
 namespace throng {
@@ -228,7 +228,7 @@ Result<Marks> air_marks(const World& world, double height, Vec3d origin, Context
   }
   FlightConfig config;
   config.avatar_class = static_cast<int32_t>(flyer - summary.classes.begin());
-  const Result<FlightFinder> finder = FlightFinder::make(world, config, context);
+  const Result<FlightFinder> finder = FlightFinder::create(world, config, context);
   if (!finder) return finder.error();
   const Result<AirSummary> air = air_summary(world);
   if (!air) return air.error();

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "throng/context.h"
-#include "throng/nodes.h"
+#include "throng/base.h"
 #include "throng/scenario.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 #include "throng_draw/draw.h"
 #include "view/timeline_frame.h"
@@ -45,7 +45,7 @@ inline constexpr size_t kOverlays = 10;
 [[nodiscard]] Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context);
 /// Arcs between nodes: white walk, orange step, magenta climb, blue off-mesh link, red drop link.
 [[nodiscard]] Marks link_marks(const Nodes& nodes, Vec3d origin, Context& context);
-/// Where a flyer's feet may be at one height [m, world]. Fails as FlightFinder::make does.
+/// Where a flyer's feet may be at one height [m, world]. Fails as FlightFinder::create does.
 [[nodiscard]] Result<Marks> air_marks(const World& world, double height, Vec3d origin,
                                       Context& context);
 /// Avatars per square metre, over squares of two metres: blue few, red four and more.

@@ -24,7 +24,7 @@ Result<std::unique_ptr<ScenarioPlayer>> ScenarioPlayer::make(const World& world,
                                                              const Scenario& scenario,
                                                              int32_t workers, Vec3d origin,
                                                              Context& context) {
-  Result<Simulation> simulation = Simulation::make(world, scenario, workers, context);
+  Result<Simulation> simulation = Simulation::create(world, scenario, workers, context);
   if (!simulation) return simulation.error();
   return std::unique_ptr<ScenarioPlayer>(
       new ScenarioPlayer(*std::move(simulation), scenario.seconds, origin));

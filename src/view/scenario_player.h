@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "throng/simulation.h"
+#include "throng/scenario.h"
 #include "view/timeline_source.h"
 
 namespace throng {
@@ -15,7 +15,7 @@ namespace throng {
 /// Runs a scenario until its time is over or all avatars have left.
 class ScenarioPlayer final : public TimelinePlayer {
  public:
-  /// Fails as Simulation::make does.
+  /// Fails as Simulation::create does.
   [[nodiscard]] static Result<std::unique_ptr<ScenarioPlayer>> make(const World& world,
                                                                     const Scenario& scenario,
                                                                     int32_t workers, Vec3d origin,

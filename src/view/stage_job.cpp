@@ -87,7 +87,7 @@ Result<void> StageParts::set_scene(const Scene& scene) {
   // Whole metres: relative positions then keep the decimals of the world's.
   job.before_.origin = {std::round(middle.x), std::round(bounds.empty() ? 0 : bounds.min.y),
                         std::round(middle.z)};
-  Result<PreparedScene> prepared = PreparedScene::make(scene, job.before_.origin);
+  Result<PreparedScene> prepared = PreparedScene::create(scene, job.before_.origin);
   if (!prepared) return prepared.error();
   job.before_.occluders = occluders_of(scene, job.before_.origin);
   const std::lock_guard lock(job.mutex_);

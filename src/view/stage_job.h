@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "throng/context.h"
+#include "throng/base.h"
 #include "throng_view/viewer.h"
 #include "view/crowd_player.h"
 #include "view/replay_player.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "core/random.h"
-#include "throng/lean.h"
+#include "throng/avatar.h"
 
 // Frames are matched by id and generation, as sorted lists; positions and headings are interpolated
 // linearly, headings of climbers after parallel transport between their axes. Time: linear.

@@ -10,9 +10,9 @@
 #include <tuple>
 #include <vector>
 
+#include "throng/base.h"
 #include "throng/crowd.h"
 #include "throng/impostor.h"
-#include "throng/prism.h"
 #include "throng_draw/draw.h"
 
 /// The avatars at one time, and the blend of two such frames.

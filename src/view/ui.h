@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng_draw/draw.h"
-#include "throng_view/view_event.h"
+#include "throng_view/viewer.h"
 
 struct ImGuiContext;
 

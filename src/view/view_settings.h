@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "throng/result.h"
+#include "throng/base.h"
 
 namespace throng {
 

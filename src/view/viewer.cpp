@@ -37,79 +37,88 @@ void mean(double& value, double now) {
 
 }  // namespace
 
+void Viewer::State::keep_error(const Result<void>& ok) {
+  if (!ok) panel.status.error = ok.error().message;
+}
+
+// A new scene: nothing of the stage before remains.
+void Viewer::State::take_scene(const PreparedScene& scene,
+                               std::shared_ptr<const Occluders> new_occluders) {
+  source.reset();
+  world = {};
+  nodes.reset();
+  overlay_maker.reset();
+  ordered.fill(false);
+  for (size_t i = 0; i < kOverlays; ++i) {
+    if (std::exchange(shown[i], false)) keep_error(drawing.set_marks(i, {}));
+  }
+  figures = {};
+  drawing.clear_atlases();
+  panel.has_world = panel.has_crowd = false;
+  occluders = std::move(new_occluders);
+  panel.replay.reset();
+  panel.scenario.reset();
+  scenario.reset();
+  painted.clear();
+  if (props) keep_error(drawing.set_props({}, {}));
+  props.reset();
+  panel.tool = Tool::kPick;
+  panel.storeys.clear();
+  panel.class_names.clear();
+  panel.class_heights.clear();
+  panel.class_radii.clear();
+  panel.is_cut = false;
+  panel.status.picked = panel.status.controlled = -1;
+  origin = scene.origin();
+  bounds = scene.bounds();
+  panel.bounds = {bounds.min + origin, bounds.max + origin};
+  if (bounds.empty()) panel.bounds = {};
+  keep_error(drawing.set_scene(scene));
+  if (!camera_given) rig.show(bounds, aspect);
+  if (camera_given) rig.look(camera_given->eye - origin, camera_given->target - origin);
+  panel.cut = panel.bounds.empty() ? 0 : panel.bounds.max.y + 1;
+}
+
+void Viewer::State::take_world(const World& new_world, const std::optional<Nodes>& new_nodes) {
+  world = new_world;
+  panel.has_world = true;
+  nodes = new_nodes;
+  overlay_maker = std::make_unique<OverlayMaker>(world, new_nodes, origin);
+  for (const AvatarClass& c : world.summary().classes) {
+    panel.class_names.push_back(c.name);
+    panel.class_heights.push_back(c.height);
+    panel.class_radii.push_back(c.radius);
+  }
+}
+
+void Viewer::State::take_figures(const std::vector<std::vector<ViewFigure>>& of_class) {
+  for (const auto& row : of_class) {
+    auto& numbers = figures.of_class.emplace_back();
+    for (const auto& [atlas, model] : row) {
+      const Result<size_t> number = drawing.add_atlas(atlas);
+      if (!number) {
+        keep_error(number.error());
+        continue;
+      }
+      numbers.push_back(*number);
+      if (model) keep_error(drawing.set_model(*number, *model));
+      Atlas& shape = figures.shapes.emplace_back();
+      shape.shape = atlas.shape;
+      shape.clips = atlas.clips;
+    }
+    if (numbers.empty()) figures.of_class.pop_back();
+  }
+}
+
 void Viewer::State::take_parts() {
   if (!job) return;
   job->run_slice();
   const bool done = job->done();  // Read first: parts that come later are taken in the next frame.
   StageMail mail = job->take();
-  const auto keep = [&](const Result<void>& ok) {
-    if (!ok) panel.status.error = ok.error().message;
-  };
-  if (mail.scene) {
-    source.reset();
-    world = {};
-    nodes.reset();
-    overlay_maker.reset();
-    ordered.fill(false);
-    for (size_t i = 0; i < kOverlays; ++i) {
-      if (std::exchange(shown[i], false)) keep(drawing.set_marks(i, {}));
-    }
-    figures = {};
-    drawing.clear_atlases();
-    panel.has_world = panel.has_crowd = false;
-    occluders = std::move(mail.occluders);
-    panel.replay.reset();
-    panel.scenario.reset();
-    scenario.reset();
-    painted.clear();
-    if (props) keep(drawing.set_props({}, {}));
-    props.reset();
-    panel.tool = Tool::kPick;
-    panel.storeys.clear();
-    panel.class_names.clear();
-    panel.class_heights.clear();
-    panel.class_radii.clear();
-    panel.is_cut = false;
-    panel.status.picked = panel.status.controlled = -1;
-    origin = mail.scene->origin();
-    bounds = mail.scene->bounds();
-    panel.bounds = {bounds.min + origin, bounds.max + origin};
-    if (bounds.empty()) panel.bounds = {};
-    keep(drawing.set_scene(*mail.scene));
-    if (!camera_given) rig.show(bounds, aspect);
-    if (camera_given) rig.look(camera_given->eye - origin, camera_given->target - origin);
-    panel.cut = panel.bounds.empty() ? 0 : panel.bounds.max.y + 1;
-  }
-  if (mail.world) {
-    world = *mail.world;
-    panel.has_world = true;
-    nodes = mail.nodes;
-    overlay_maker = std::make_unique<OverlayMaker>(world, mail.nodes, origin);
-    for (const AvatarClass& c : world.summary().classes) {
-      panel.class_names.push_back(c.name);
-      panel.class_heights.push_back(c.height);
-      panel.class_radii.push_back(c.radius);
-    }
-  }
+  if (mail.scene) take_scene(*mail.scene, std::move(mail.occluders));
+  if (mail.world) take_world(*mail.world, mail.nodes);
   if (mail.storeys) panel.storeys = *std::move(mail.storeys);
-  if (mail.figures) {
-    for (auto& row : *mail.figures) {
-      auto& numbers = figures.of_class.emplace_back();
-      for (const auto& [atlas, model] : row) {
-        const Result<size_t> number = drawing.add_atlas(atlas);
-        if (!number) {
-          keep(number.error());
-          continue;
-        }
-        numbers.push_back(*number);
-        if (model) keep(drawing.set_model(*number, *model));
-        Atlas& shape = figures.shapes.emplace_back();
-        shape.shape = atlas.shape;
-        shape.clips = atlas.clips;
-      }
-      if (numbers.empty()) figures.of_class.pop_back();
-    }
-  }
+  if (mail.figures) take_figures(*mail.figures);
   if (mail.replay) {
     panel.replay = mail.replay;
     panel.class_names = std::move(mail.class_names);

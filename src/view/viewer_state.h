@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "throng/ground_query.h"
+#include "throng/world.h"
 #include "throng_view/viewer.h"
 #include "view/camera_rig.h"
 #include "view/ground_pick.h"
@@ -99,6 +99,10 @@ struct Viewer::State {
   std::optional<double> last_asked;
 
   void take_parts();
+  void take_scene(const PreparedScene& scene, std::shared_ptr<const Occluders> new_occluders);
+  void take_world(const World& new_world, const std::optional<Nodes>& new_nodes);
+  void take_figures(const std::vector<std::vector<ViewFigure>>& of_class);
+  void keep_error(const Result<void>& ok);  // in the panel's status
   void reap();
   void retire_job();
   void restart_crowd();

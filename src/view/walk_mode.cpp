@@ -102,7 +102,7 @@ double Viewer::State::free_behind(Vec3d feet, int32_t avatar_class) {
   constexpr double kMin = 0.6;
   const Place place = world.find_place(avatar_class, feet, 0.5);
   if (!ground_query) {
-    auto query = GroundQuery::make(world, avatar_class);
+    auto query = GroundQuery::create(world, avatar_class);
     if (query) ground_query.emplace(*std::move(query));
   }
   if (!place || !ground_query) return walk_distance;

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "throng/avatar_class.h"
-#include "throng/result.h"
+#include "throng/avatar.h"
+#include "throng/base.h"
 #include "world/air_generated.h"
 #include "world/air_tree.h"
 #include "world/zone_file.h"

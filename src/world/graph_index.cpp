@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "core/var_number.h"
-#include "throng/avatar_class.h"
+#include "throng/avatar.h"
 
 // Packs the components of a world into bytes: 7 bits a byte, as differences from the one before.
 // Linear.

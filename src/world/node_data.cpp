@@ -7,6 +7,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/access.h"
 #include "core/hash.h"
 #include "world/ground.h"
 #include "world/region_data.h"
@@ -188,9 +189,9 @@ const NodeZone* NodeData::zone(size_t slot) const {
             const size_t other = slot_at(far.x(), far.z());
             belongs = belongs && other < slots.size() && far.node() < slots[other]->entry.nodes();
           }
-          const int32_t ground = throng::slot_at(*world.data(), found.x(), found.z());
+          const int32_t ground = throng::slot_at(*data_of(world), found.x(), found.z());
           const uint32_t levels =
-              ground < 0 ? 0 : world.data()->slots[static_cast<size_t>(ground)]->entry.levels();
+              ground < 0 ? 0 : data_of(world)->slots[static_cast<size_t>(ground)]->entry.levels();
           for (const format::NodePatch& patch : found.patches()) {
             belongs = belongs && (patch.kind() == static_cast<uint8_t>(PatchKind::kBezier) ||
                                   (patch.source() < levels && patch.depth() == 6));
@@ -218,7 +219,7 @@ size_t NodeData::slot_at(int32_t x, int32_t z) const {
 
 uint32_t NodeData::source_of(const NodeZone& from, const format::NodePatch& patch) const {
   if (patch.kind() == static_cast<uint8_t>(PatchKind::kBezier)) return patch.source();
-  const WorldData& ground = *world.data();
+  const WorldData& ground = *data_of(world);
   const auto slot = static_cast<size_t>(throng::slot_at(ground, from.x(), from.z()));
   return ground.slots[slot]->first_level + patch.source();
 }
@@ -255,14 +256,14 @@ uint64_t NodeData::cells_of(const NodeZone& from, uint32_t node, int32_t avatar_
   const format::Node& found = from.nodes()[node];
   if (cells == 0 || (found.classes() >> avatar_class & 1) == 0) return 0;
   const GroundLevel ground =
-      ground_level(*world.data(), source_of(from, from.patch_of(node)), avatar_class);
+      ground_level(*data_of(world), source_of(from, from.patch_of(node)), avatar_class);
   return cells & ground.legal_in(block_of(found.s() * 8, found.t() * 8));
 }
 
 double NodeData::area_of(const NodeZone& from, uint32_t node, int32_t avatar_class) const {
   const format::Node& found = from.nodes()[node];
   if ((found.flags() & kPartialFlag) == 0) return static_cast<double>(found.area());
-  const double cell = world.data()->summary.cell;
+  const double cell = data_of(world)->summary.cell;
   return std::popcount(cells_of(from, node, avatar_class)) * cell * cell;
 }
 

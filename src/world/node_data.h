@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "throng/nodes.h"
-#include "throng/result.h"
+#include "throng/base.h"
+#include "throng/surface.h"
 #include "world/nodes_generated.h"
 #include "world/zone_file.h"
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "throng/graph.h"
-#include "throng/result.h"
+#include "throng/base.h"
+#include "throng/world.h"
 #include "world/region_groups.h"
 #include "world/regions_generated.h"
 #include "world/zone_data.h"

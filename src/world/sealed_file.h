@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "throng/result.h"
+#include "throng/base.h"
 
 /// Files whose sum no other file knows, and that end in their own: XXH3 of all before, 8 bytes, the
 /// low one first.

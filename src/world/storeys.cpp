@@ -161,15 +161,9 @@ std::vector<std::vector<uint32_t>> group_levels(const WorldData& world,
   return members;
 }
 
-}  // namespace
-
-std::vector<int32_t> World::storeys() const {
-  const WorldData& world = *data_;
+// Each level with its mean height, over samples a few cells apart.
+std::vector<LevelInfo> levels_of(const WorldData& world) {
   std::vector<LevelInfo> levels(world.level_count);
-  double max_step = 0;
-  for (const AvatarClass& avatar : world.summary.classes)
-    max_step = std::max(max_step, avatar.step);
-  const auto step = static_cast<int32_t>(max_step * 1000);
   for (size_t s = 0; s < world.slots.size(); ++s) {
     const Zone* zone = world.zone(s);
     if (zone == nullptr) continue;
@@ -196,79 +190,112 @@ std::vector<int32_t> World::storeys() const {
       level.mean = level.cells > 0 ? sum / level.cells : 0;
     }
   }
+  return levels;
+}
 
-  const std::vector<std::vector<uint32_t>> members = group_levels(world, levels, step);
-  std::vector<int32_t> group(levels.size(), 0);
-  for (size_t g = 0; g < members.size(); ++g) {
-    for (const uint32_t level : members[g]) group[level] = static_cast<int32_t>(g);
+// Groups of levels of about one height that do not lie over each other share a storey.
+class Storeys {
+ public:
+  explicit Storeys(const std::vector<LevelInfo>& levels) : levels_(levels) {}
+
+  // The storey that a group joins: a new one if it fits into none. Give the largest group first.
+  int32_t add(const std::vector<uint32_t>& group, double size) {
+    double mean = 0;
+    for (const uint32_t level : group) mean += levels_[level].mean * levels_[level].cells;
+    mean /= std::max(1.0, size);
+    const size_t best = find(group, size, mean);
+    if (best == storeys_.size()) storeys_.emplace_back();
+    Storey& storey = storeys_[best];
+    storey.mean = (storey.mean * storey.cells + mean * size) / std::max(1.0, storey.cells + size);
+    storey.cells += size;
+    for (const uint32_t level : group) {
+      storey.tiles[{levels_[level].tile_z, levels_[level].tile_x}].push_back(level);
+    }
+    return static_cast<int32_t>(best);
   }
 
-  // Groups of about one height that do not lie over each other share a storey.
-  // What is left of a floor where it was cut, under the low end of a ramp, founds none.
-  constexpr double kRemnant = 0.02;  // of a storey's cells
+  // Of each storey: how many are lower.
+  [[nodiscard]] std::vector<int32_t> ranks() const {
+    std::vector<int32_t> rank(storeys_.size()), by_height(storeys_.size());
+    std::iota(by_height.begin(), by_height.end(), 0);
+    std::stable_sort(by_height.begin(), by_height.end(), [&](int32_t a, int32_t b) {
+      return storeys_[static_cast<size_t>(a)].mean < storeys_[static_cast<size_t>(b)].mean;
+    });
+    for (size_t i = 0; i < by_height.size(); ++i)
+      rank[static_cast<size_t>(by_height[i])] = static_cast<int32_t>(i);
+    return rank;
+  }
+
+ private:
+  // What is left of a floor where it was cut, under the low end of a ramp, founds no storey.
+  static constexpr double kRemnant = 0.02;      // of a storey's cells
+  static constexpr double kMaxDistance = 1500;  // [mm]
   struct Storey {
     double mean = 0, cells = 0;
     std::map<std::pair<int32_t, int32_t>, std::vector<uint32_t>> tiles;
   };
-  std::vector<Storey> storeys;
-  std::vector<int32_t> storey_of(members.size(), 0);
-  std::vector<size_t> by_size(members.size());
-  std::iota(by_size.begin(), by_size.end(), size_t{0});
-  const auto size_of = [&](size_t g) {
-    double cells = 0;
-    for (const uint32_t level : members[g]) cells += levels[level].cells;
-    return cells;
-  };
-  std::vector<double> sizes;
-  for (size_t g = 0; g < members.size(); ++g) sizes.push_back(size_of(g));
-  std::stable_sort(by_size.begin(), by_size.end(),
-                   [&](size_t a, size_t b) { return sizes[a] > sizes[b]; });
-  for (const size_t g : by_size) {
-    double mean = 0;
-    for (const uint32_t level : members[g]) mean += levels[level].mean * levels[level].cells;
-    mean /= std::max(1.0, sizes[g]);
-    size_t best = storeys.size(), nearest = storeys.size();
-    double best_distance = 1500, min_distance = best_distance;  // [mm]
-    for (size_t s = 0; s < storeys.size(); ++s) {
-      const double distance = std::fabs(storeys[s].mean - mean);
-      if (distance < min_distance && sizes[g] < kRemnant * storeys[s].cells) {
+
+  // The storey of the nearest height over or under which no level of the group lies; for remnants
+  // the nearest of all if there is none. Else their number.
+  [[nodiscard]] size_t find(const std::vector<uint32_t>& group, double size, double mean) const {
+    size_t best = storeys_.size(), nearest = storeys_.size();
+    double best_distance = kMaxDistance, min_distance = kMaxDistance;
+    for (size_t s = 0; s < storeys_.size(); ++s) {
+      const double distance = std::fabs(storeys_[s].mean - mean);
+      if (distance < min_distance && size < kRemnant * storeys_[s].cells) {
         nearest = s;
         min_distance = distance;
       }
-      if (distance >= best_distance) continue;
-      bool clash = false;
-      for (const uint32_t level : members[g]) {
-        const auto found = storeys[s].tiles.find({levels[level].tile_z, levels[level].tile_x});
-        if (found == storeys[s].tiles.end()) continue;
-        for (const uint32_t other : found->second) {
-          clash = clash || overlap(levels[level].view, levels[other].view);
-        }
-      }
-      if (clash) continue;
+      if (distance >= best_distance || clashes(storeys_[s], group)) continue;
       best = s;
       best_distance = distance;
     }
-    if (best == storeys.size()) best = nearest;
-    if (best == storeys.size()) storeys.emplace_back();
-    Storey& storey = storeys[best];
-    storey.mean =
-        (storey.mean * storey.cells + mean * sizes[g]) / std::max(1.0, storey.cells + sizes[g]);
-    storey.cells += sizes[g];
-    for (const uint32_t level : members[g]) {
-      storey.tiles[{levels[level].tile_z, levels[level].tile_x}].push_back(level);
-    }
-    storey_of[g] = static_cast<int32_t>(best);
+    return best == storeys_.size() ? nearest : best;
   }
-  std::vector<int32_t> rank(storeys.size()), by_height(storeys.size());
-  std::iota(by_height.begin(), by_height.end(), 0);
-  std::stable_sort(by_height.begin(), by_height.end(), [&](int32_t a, int32_t b) {
-    return storeys[static_cast<size_t>(a)].mean < storeys[static_cast<size_t>(b)].mean;
-  });
-  for (size_t i = 0; i < by_height.size(); ++i)
-    rank[static_cast<size_t>(by_height[i])] = static_cast<int32_t>(i);
+
+  // Does a level of the group lie over or under one of the storey?
+  [[nodiscard]] bool clashes(const Storey& storey, const std::vector<uint32_t>& group) const {
+    for (const uint32_t level : group) {
+      const auto found = storey.tiles.find({levels_[level].tile_z, levels_[level].tile_x});
+      if (found == storey.tiles.end()) continue;
+      for (const uint32_t other : found->second) {
+        if (overlap(levels_[level].view, levels_[other].view)) return true;
+      }
+    }
+    return false;
+  }
+
+  const std::vector<LevelInfo>& levels_;
+  std::vector<Storey> storeys_;
+};
+
+}  // namespace
+
+std::vector<int32_t> World::storeys() const {
+  const WorldData& world = *state_;
+  double max_step = 0;
+  for (const AvatarClass& avatar : world.summary.classes)
+    max_step = std::max(max_step, avatar.step);
+  const auto step = static_cast<int32_t>(max_step * 1000);
+  const std::vector<LevelInfo> levels = levels_of(world);
+  const std::vector<std::vector<uint32_t>> members = group_levels(world, levels, step);
+  std::vector<double> sizes;  // of the groups [cells]
+  for (const std::vector<uint32_t>& group : members) {
+    double cells = 0;
+    for (const uint32_t level : group) cells += levels[level].cells;
+    sizes.push_back(cells);
+  }
+  std::vector<size_t> by_size(members.size());
+  std::iota(by_size.begin(), by_size.end(), size_t{0});
+  std::stable_sort(by_size.begin(), by_size.end(),
+                   [&](size_t a, size_t b) { return sizes[a] > sizes[b]; });
+  Storeys storeys(levels);
+  std::vector<int32_t> storey_of(members.size(), 0);
+  for (const size_t g : by_size) storey_of[g] = storeys.add(members[g], sizes[g]);
+  const std::vector<int32_t> rank = storeys.ranks();
   std::vector<int32_t> out(levels.size(), 0);
-  for (size_t l = 0; l < out.size(); ++l) {
-    out[l] = rank[static_cast<size_t>(storey_of[static_cast<size_t>(group[l])])];
+  for (size_t g = 0; g < members.size(); ++g) {
+    for (const uint32_t level : members[g]) out[level] = rank[static_cast<size_t>(storey_of[g])];
   }
   return out;
 }

@@ -79,18 +79,18 @@ Result<World> World::open(const std::string& path, const WorldConfig& config) {
 }
 
 Result<void> World::check_ground() const {
-  THRONG_ASSERT(data_);
-  for (size_t s = 0; s < data_->slots.size(); ++s) {
-    if (data_->zone(s) == nullptr) return Error{Errc::kBadFile, data_->slots[s]->error};
+  THRONG_ASSERT(state_);
+  for (size_t s = 0; s < state_->slots.size(); ++s) {
+    if (state_->zone(s) == nullptr) return Error{Errc::kBadFile, state_->slots[s]->error};
   }
   return {};
 }
 
 Result<void> World::check_all() const {
   if (auto ok = check_ground(); !ok) return ok;
-  if (data_->air == nullptr) return check_air_index(*data_);
-  for (const auto& slot : data_->air->slots) {
-    if (!data_->air->zone(slot->entry.x(), slot->entry.z()).usable) {
+  if (state_->air == nullptr) return check_air_index(*state_);
+  for (const auto& slot : state_->air->slots) {
+    if (!state_->air->zone(slot->entry.x(), slot->entry.z()).usable) {
       return Error{Errc::kBadFile, slot->error};
     }
   }
@@ -98,39 +98,39 @@ Result<void> World::check_all() const {
 }
 
 WorldSummary World::summary() const {
-  THRONG_ASSERT(data_);
-  return data_->summary;
+  THRONG_ASSERT(state_);
+  return state_->summary;
 }
 
 WorldResidency World::residency() const {
-  THRONG_ASSERT(data_);
-  const std::lock_guard lock(data_->residency);
-  return {data_->resident_zones, data_->resident_bytes};
+  THRONG_ASSERT(state_);
+  const std::lock_guard lock(state_->residency);
+  return {state_->resident_zones, state_->resident_bytes};
 }
 
 std::optional<int32_t> World::find_class(const std::string& name) const {
-  const auto& classes = data_->summary.classes;
+  const auto& classes = state_->summary.classes;
   for (size_t c = 0; c < classes.size(); ++c) {
     if (classes[c].name == name) return static_cast<int32_t>(c);
   }
   return std::nullopt;
 }
 
-uint32_t World::level_tile_count() const { return data_->level_count; }
+uint32_t World::level_tile_count() const { return state_->level_count; }
 
 LevelTileContent World::level_tile(uint32_t index) const {
-  THRONG_ASSERT(index < data_->level_count);
+  THRONG_ASSERT(index < state_->level_count);
   LevelTileContent out;
   out.floor.assign(kArea, kNoFloor);
   out.ceiling.assign(kArea, kOpenSky);
   out.area.assign(kArea, 0);
-  out.clearance.assign(data_->summary.classes.size(), std::vector<uint8_t>(kArea, 0));
-  const size_t slot = data_->slot_of_level(index);
-  const Zone* zone = data_->zone(slot);
+  out.clearance.assign(state_->summary.classes.size(), std::vector<uint8_t>(kArea, 0));
+  const size_t slot = state_->slot_of_level(index);
+  const Zone* zone = state_->zone(slot);
   if (zone == nullptr) return out;
-  const uint32_t local = index - data_->slots[slot]->first_level;
+  const uint32_t local = index - state_->slots[slot]->first_level;
   const format::Level& level = zone->level(local);
-  std::tie(out.tile_x, out.tile_z) = tile_of(*data_, *zone, level);
+  std::tie(out.tile_x, out.tile_z) = tile_of(*state_, *zone, level);
   const LevelView view = zone->view(local);
   const uint64_t* ceilings = level.ceiling_kind() == format::HeightKind::Blocks
                                  ? zone->words(level.ceiling_offset())
@@ -172,11 +172,11 @@ LevelTileContent World::level_tile(uint32_t index) const {
 }
 
 Place World::find_place(int32_t avatar_class, Vec3d position, double vertical_tolerance) const {
-  if (!good_class(*data_, avatar_class) || !std::isfinite(position.x + position.y + position.z))
+  if (!good_class(*state_, avatar_class) || !std::isfinite(position.x + position.y + position.z))
     return {};
-  const GroundPoint p = to_ground(*data_, position.x, position.z);
-  if (!in_grid(*data_, p)) return {};
-  const auto tile = data_->tile_levels(p.cell_x() >> 6, p.cell_z() >> 6);
+  const GroundPoint p = to_ground(*state_, position.x, position.z);
+  if (!in_grid(*state_, p)) return {};
+  const auto tile = state_->tile_levels(p.cell_x() >> 6, p.cell_z() >> 6);
   Place best;
   double best_distance = vertical_tolerance;
   for (uint32_t i = tile.first; i < tile.last; ++i) {
@@ -193,46 +193,46 @@ Place World::find_place(int32_t avatar_class, Vec3d position, double vertical_to
 }
 
 Place World::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const {
-  if (!good_class(*data_, avatar_class)) return {};
-  const std::vector<uint64_t>& before = cells_before(*data_, avatar_class);
+  if (!good_class(*state_, avatar_class)) return {};
+  const std::vector<uint64_t>& before = cells_before(*state_, avatar_class);
   if (before.back() == 0) return {};
   const uint64_t pick = random_below(seed, n, 0, before.back());
   const auto level_index = static_cast<uint32_t>(
       std::upper_bound(before.begin(), before.end(), pick) - before.begin() - 1);
   auto rank = static_cast<uint32_t>(pick - before[level_index]);
-  const GroundLevel level = ground_level(*data_, level_index, avatar_class);
+  const GroundLevel level = ground_level(*state_, level_index, avatar_class);
   if (level.legal != nullptr) rank = nth_bit(level.legal, rank);
   const int32_t x = static_cast<int32_t>(rank % 64), z = static_cast<int32_t>(rank / 64);
-  const auto [tile_x, tile_z] = tile_of(*data_, *level.zone, *level.view.record);
+  const auto [tile_x, tile_z] = tile_of(*state_, *level.zone, *level.view.record);
   const int64_t cell_x = int64_t{tile_x} * 64 + x, cell_z = int64_t{tile_z} * 64 + z;
   const GroundPoint p{
       (cell_x << kUnitBits) + static_cast<int64_t>(random_below(seed, n, 1, kUnitsPerCell)),
       (cell_z << kUnitBits) + static_cast<int64_t>(random_below(seed, n, 2, kUnitsPerCell))};
-  return place_at(*data_, level, p);
+  return place_at(*state_, level, p);
 }
 
 MoveResult World::move(int32_t avatar_class, const Place& from, double dx, double dz) const {
   MoveResult result{from, MoveEnd::kBlocked};
-  if (!good_class(*data_, avatar_class) || !std::isfinite(dx + dz)) return result;
-  const auto start = ground_point(*data_, from);
+  if (!good_class(*state_, avatar_class) || !std::isfinite(dx + dz)) return result;
+  const auto start = ground_point(*state_, from);
   if (!start) return result;
   const Vec3d goal{from.position.x + dx, 0, from.position.z + dz};
-  const GroundPoint end = to_ground(*data_, goal.x, goal.z);
-  if (!in_grid(*data_, end)) return result;
-  GroundLevel level = ground_level(*data_, from.level1 - 1, avatar_class);
+  const GroundPoint end = to_ground(*state_, goal.x, goal.z);
+  if (!in_grid(*state_, end)) return result;
+  GroundLevel level = ground_level(*state_, from.level1 - 1, avatar_class);
   if (!level.is_legal(start->cell_x() & 63, start->cell_z() & 63)) return result;
-  const int32_t step = step_mm(data_->summary.classes[static_cast<size_t>(avatar_class)]);
-  if (!walk(WorldGround{*data_, avatar_class}, level, *start, end, step)) return result;
+  const int32_t step = step_mm(state_->summary.classes[static_cast<size_t>(avatar_class)]);
+  if (!walk(WorldGround{*state_, avatar_class}, level, *start, end, step)) return result;
   result.place = {{goal.x, feet_at(level, end), goal.z}, level.world_level + 1};
   result.end = MoveEnd::kArrived;
   return result;
 }
 
 double World::feet(const Place& place) const {
-  if (!place || place.level1 > data_->level_count) return place.position.y;
-  const GroundLevel level = ground_level(*data_, place.level1 - 1, 0);
-  const GroundPoint p = to_ground(*data_, place.position.x, place.position.z);
-  if (level.zone == nullptr || !in_grid(*data_, p)) return place.position.y;
+  if (!place || place.level1 > state_->level_count) return place.position.y;
+  const GroundLevel level = ground_level(*state_, place.level1 - 1, 0);
+  const GroundPoint p = to_ground(*state_, place.position.x, place.position.z);
+  if (level.zone == nullptr || !in_grid(*state_, p)) return place.position.y;
   return feet_at(level, p);
 }
 

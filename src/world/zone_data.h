@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "throng/result.h"
+#include "throng/base.h"
 #include "throng/world.h"
 #include "world/level_view.h"
 #include "world/manifest_generated.h"

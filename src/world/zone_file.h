@@ -13,7 +13,7 @@
 
 #include "core/file_map.h"
 #include "core/hash.h"
-#include "throng/result.h"
+#include "throng/base.h"
 
 /// What the files of a world's zones share: the ground's, the air's, the nodes'.
 namespace throng {

@@ -133,12 +133,12 @@ class Program(ProgramCase):
         self.assertFalse((self.path / "y.throng").exists())
 
     def test_more_avatars_than_fit_are_refused_with_the_number_that_fits(self):
-        done = self.run_throng("run", self.world, "--avatars", 10_000_000, "--steps", 1)
+        done = self.run_throng("run", self.world, "--avatars", 10_000_000, "--steps", 1, "--wander")
         self.assert_refused(done, "fit")
         counts = [int(n) for n in re.findall(r"\d+", done.stderr)]
         fitting = [n for n in counts if 0 < n < 10_000_000]
         self.assertTrue(fitting, done.stderr)
-        again = self.run_throng("run", self.world, "--avatars", max(fitting), "--steps", 1)
+        again = self.run_throng("run", self.world, "--avatars", max(fitting), "--steps", 1, "--wander")
         self.assertEqual(again.returncode, 0, again.stderr)
 
     def test_json_is_one_object_on_standard_output(self):
@@ -151,7 +151,7 @@ class Program(ProgramCase):
 
     def test_a_run_prints_its_time_by_parts_and_the_mean_of_all_steps_first(self):
         parts = ("open", "prepare", "plan", "sort", "steer", "commit", "settle", "obstacles", "events", "goals", "write", "check")
-        for goals, names in (((), ("open", "prepare", "sort", "move", "write", "check")), (("--goals", "random"), parts)):
+        for goals, names in ((("--wander",), ("open", "prepare", "sort", "move", "write", "check")), (("--goals", "random"), parts)):
             arguments = ("run", self.world, "--avatars", 50, "--steps", 30, *goals)
             report = json.loads(self.run_throng(*arguments, "--json").stdout)
             known = sum(report[f"seconds_{name}"] for name in (*names, "other"))
@@ -164,7 +164,7 @@ class Program(ProgramCase):
 
     def test_lengths_of_steps_that_cannot_be_walked_are_refused_with_a_sentence(self):
         for length in ("0", "-1", "1e-300", "1e-20", "1e-9", "1e9", "inf", "nan"):
-            for goals in ((), ("--goals", "random")):
+            for goals in (("--wander",), ("--goals", "random")):
                 done = self.run_throng("run", self.world, "--avatars", 5, "--steps", 2, "--dt", length, *goals)
                 self.assertEqual(done.returncode, 2, (length, done.stderr))
                 self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
@@ -173,7 +173,7 @@ class Program(ProgramCase):
     def test_a_run_has_the_same_state_for_any_threads_and_another_for_another_seed(self):
         def state(**options):
             words = [word for key, value in options.items() for word in (f"--{key}", value)]
-            report = json.loads(self.run_throng("run", self.world, "--avatars", 300, "--steps", 40, "--json",
+            report = json.loads(self.run_throng("run", self.world, "--avatars", 300, "--steps", 40, "--wander", "--json",
                                                 *words).stdout)
             self.assertEqual((report["wall_entries"], report["overlaps"]), (0, 0))
             self.assertGreater(report["moved"], 0)
@@ -182,7 +182,7 @@ class Program(ProgramCase):
         self.assertNotEqual(state(seed=1), state(seed=2))
 
     def test_trajectories_have_a_line_an_avatar_a_step_with_four_decimals(self):
-        done = self.run_throng("run", self.world, "--avatars", 20, "--steps", 10, "--every", 5, "--trajectories",
+        done = self.run_throng("run", self.world, "--avatars", 20, "--steps", 10, "--wander", "--every", 5, "--trajectories",
                                "walk.csv")
         self.assertEqual(done.returncode, 0, done.stderr)
         head, *lines = (self.path / "walk.csv").read_text().splitlines()
@@ -215,7 +215,7 @@ class Program(ProgramCase):
                 self.assertEqual(done.returncode, 0, done.stderr)
 
     def assert_formats_hold_trajectories(self, world):
-        done = self.run_throng("run", world, "--avatars", 30, "--steps", 12, "--every", 3, "--dt", 0.2, "--trajectories",
+        done = self.run_throng("run", world, "--avatars", 30, "--steps", 12, "--wander", "--every", 3, "--dt", 0.2, "--trajectories",
                                "walk.csv", "--record", "walk.replay")
         self.assertEqual(done.returncode, 0, done.stderr)
         done = self.run_throng("replay", "walk.replay", "--csv", "out.csv", "--txt", "out.txt", "--sqlite", "out.sqlite", "--json")
@@ -276,7 +276,7 @@ class Program(ProgramCase):
 
     def test_a_killed_run_leaves_a_recording_that_opens_and_is_repeated_exactly(self):
         for wait in (0.05, 0.2, 0.5):
-            process = subprocess.Popen([PROGRAM, "run", self.world, "--avatars", "50", "--steps", "100000000", "--record",
+            process = subprocess.Popen([PROGRAM, "run", self.world, "--avatars", "50", "--steps", "100000000", "--wander", "--record",
                                         "walk.replay"], cwd=self.path, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
             file = self.path / "walk.replay"
             deadline = time.monotonic() + 60
@@ -305,7 +305,7 @@ class Program(ProgramCase):
         self.assertEqual((said["wall_entries"], said["overlaps"]), (0, 0))
         self.assertGreater(said["progress"], 0.5)
         self.assertGreaterEqual(said["planned"], 40)
-        again = self.run_throng("run", self.world, "--avatars", 40, "--steps", 60, "--goals", "random", "--threads", 1, "--json")
+        again = self.run_throng("run", self.world, "--avatars", 40, "--steps", 60, "--threads", 1, "--json")
         self.assertEqual(json.loads(again.stdout)["state_hash"], said["state_hash"])
         check = self.run_throng("replay", "goals.replay", "--check")
         self.assertEqual(check.returncode, 0, check.stderr)
@@ -325,7 +325,8 @@ class Program(ProgramCase):
             self.assertIn("all the same", check.stdout)
         self.assertEqual(len(hashes), 3)
         self.assert_refused(self.run_throng(*run, "--model", "orca"), "sampled, caacd or social-force")
-        self.assert_refused(self.run_throng("run", self.world, "--model", "caacd"), "--goals")
+        for option in (("--model", "caacd"), ("--goals", "random"), ("--near", 5), ("--also", "adult:3"), ("--labels",)):
+            self.assert_refused(self.run_throng("run", self.world, "--wander", *option), option[0], "--wander")
 
     def test_flyers_take_off_and_land_and_their_recording_is_repeated(self):
         done = self.run_throng("bake", "builtin:garage,levels=2", "-o", "air.throng", "--cell", 0.2, "--fly")
@@ -510,12 +511,13 @@ class Program(ProgramCase):
     def test_options_of_worlds_are_refused_for_scenarios_and_vice_versa(self):
         file = self.scenario()
         self.assert_refused(self.run_throng("run", file, "--avatars", 3), "--avatars", "hall.toml")
+        self.assert_refused(self.run_throng("run", file, "--wander"), "--wander", "hall.toml")
         self.assert_refused(self.run_throng("run", self.world, "--trips", "v.csv"), "--trips")
         self.assert_refused(self.run_throng("run", "none.toml"), "none.toml", "cannot be read")
         self.assertFalse((self.path / "v.csv").exists())
 
     def test_a_report_is_one_page_that_holds_its_pictures(self):
-        self.run_throng("run", self.world, "--avatars", 40, "--steps", 60, "--record", "walk.replay")
+        self.run_throng("run", self.world, "--avatars", 40, "--steps", 60, "--wander", "--record", "walk.replay")
         done = self.run_throng("report", "walk.replay", "-o", "report.html", "--line", "20,0,20,30", "--line", "1,1,9,1,0", "--png",
                                "pic", "--json")
         self.assertEqual(done.returncode, 0, done.stderr)

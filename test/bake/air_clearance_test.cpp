@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/air_clearance.h"
+#include "bake/air/air_clearance.h"
 
 #include <gtest/gtest.h>
 

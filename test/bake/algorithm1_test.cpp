@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "bake/slice_move.h"
-#include "bake/slice_sweep.h"
 #include "core/random.h"
 #include "naive_columns.h"
 #include "naive_slices.h"
+#include "papers/slices/slice_move.h"
+#include "papers/slices/slice_sweep.h"
 
 namespace throng {
 namespace {

@@ -15,11 +15,12 @@
 #include <tuple>
 #include <utility>
 
+#include "core/access.h"
 #include "core/hash.h"
 #include "flood.h"
 #include "scratch_folder.h"
 #include "simd_targets.h"
-#include "throng/builtin_worlds.h"
+#include "throng/scene.h"
 #include "world/zone_data.h"
 #include "worlds.h"
 
@@ -34,7 +35,7 @@ World bake(const Scene& scene, const BakeConfig& config) {
 }
 
 Scene builtin(const std::string& name) {
-  auto scene = make_builtin_world({.name = name});
+  auto scene = create_builtin_world({.name = name});
   EXPECT_TRUE(scene) << scene.error().message;
   return scene ? std::move(*scene) : Scene{};
 }
@@ -42,11 +43,11 @@ Scene builtin(const std::string& name) {
 // Every byte that would be written, but for the hashes of the zones' inputs: a world in memory does
 // not know them.
 uint64_t hash_of(const World& world) {
-  const auto data = std::const_pointer_cast<WorldData>(world.data());
+  const auto data = std::const_pointer_cast<WorldData>(data_of(world));
   const auto inputs = std::exchange(data->inputs, {});
   uint64_t hash = 0;
-  for (size_t s = 0; s < world.data()->slots.size(); ++s) {
-    hash = hash_span(world.data()->zone(s)->bytes(), hash);
+  for (size_t s = 0; s < data_of(world)->slots.size(); ++s) {
+    hash = hash_span(data_of(world)->zone(s)->bytes(), hash);
   }
   hash = hash_span(std::span<const uint8_t>(write_manifest(*data)), hash);
   data->inputs = inputs;
@@ -217,7 +218,7 @@ TEST(Bake, AFlatFloorIsAFewBytesATile) {
   ASSERT_TRUE(world);
   EXPECT_EQ(report.level_tiles, 256u);
   EXPECT_EQ(report.constant_level_tiles, 256u);
-  const Zone& zone = *world->data()->zone(0);
+  const Zone& zone = *data_of(*world)->zone(0);
   // Only tiles at the rim need clearance cell by cell: four sides and four corners, shared.
   std::set<uint32_t> rims;
   for (const format::Clearance* c : *zone.root().clearance()) {
@@ -244,7 +245,7 @@ TEST(Bake, ASteadyRampIsAPlaneAndMeetsTheModelWithinAMillimetre) {
   const auto world = bake_world(scene, {.cell = 0.1}, context, &report);
   ASSERT_TRUE(world);
   EXPECT_EQ(report.constant_level_tiles, report.level_tiles);
-  for (const format::Level* level : *world->data()->zone(0)->root().levels()) {
+  for (const format::Level* level : *data_of(*world)->zone(0)->root().levels()) {
     EXPECT_NE(level->floor_kind(), format::HeightKind::Blocks);
   }
   for (uint64_t n = 0; n < 2000; ++n) {

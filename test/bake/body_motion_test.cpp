@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/body_motion.h"
+#include "bake/surface/body_motion.h"
 
 #include <gtest/gtest.h>
 

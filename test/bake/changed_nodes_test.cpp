@@ -12,7 +12,7 @@
 #include "patch_nets.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
-#include "throng/nodes.h"
+#include "throng/surface.h"
 
 // Nodes of a world that changes: zones that no change affects are reused, and the bytes are those
 // of a new bake.
@@ -74,8 +74,8 @@ class ChangedNodes : public testing::Test {
     const auto world = World::open(at(name));
     // All at once, and then written; or so many at a time as fit into little memory.
     config.working_bytes = fresh ? UINT64_MAX : uint64_t{1} << (10 + 2 * (bakes_++ % 6));
-    const auto nodes = fresh ? Nodes::make(*world, scene, config, context)
-                             : Nodes::make_in_folder(*world, scene, config, context);
+    const auto nodes = fresh ? Nodes::create(*world, scene, config, context)
+                             : Nodes::create_in_folder(*world, scene, config, context);
     EXPECT_TRUE(nodes) << nodes.error().message;
     if (!nodes) return {};
     EXPECT_TRUE(!fresh || nodes->write(at(name)));
@@ -242,7 +242,7 @@ TEST_F(ChangedNodes, WhatIsMadeBeforeABakeStopsIsNotMadeAgain) {
       EXPECT_EQ(progress.total, 20u);
       context.cancel = progress.done >= stop_at;
     };
-    const auto nodes = Nodes::make_in_folder(*world, scene, {.working_bytes = 1}, context);
+    const auto nodes = Nodes::create_in_folder(*world, scene, {.working_bytes = 1}, context);
     ASSERT_FALSE(nodes);
     EXPECT_EQ(nodes.error().code, Errc::kCancelled);
     EXPECT_FALSE(Nodes::open(at("w")));
@@ -256,7 +256,7 @@ TEST_F(ChangedNodes, WhatIsMadeBeforeABakeStopsIsNotMadeAgain) {
   std::ofstream(at("w") + "/nodes.part/zone_0_0.thn.part", std::ios::binary) << "half";
   std::ofstream(at("w") + "/nodes.part/zone_77_0.thn", std::ios::binary) << "whose?";
   const auto world = World::open(at("w"));
-  const auto nodes = Nodes::make_in_folder(*world, scene, {}, silent);
+  const auto nodes = Nodes::create_in_folder(*world, scene, {}, silent);
   ASSERT_TRUE(nodes);
   EXPECT_EQ(nodes->summary().zones_reused, 19u);
   EXPECT_EQ(nodes->summary().zones_made, 1u);
@@ -273,13 +273,13 @@ TEST_F(ChangedNodes, WhatCannotBeMadeLeavesNothingBehind) {
   ASSERT_TRUE(bake_world_to(at("w"), scene, config, context));
   const Folder before = folder_bytes(at("w"));
   const auto world = World::open(at("w"));
-  const auto refused = Nodes::make_in_folder(*world, scene, nodes, context);
+  const auto refused = Nodes::create_in_folder(*world, scene, nodes, context);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Errc::kBadInput);
   EXPECT_TRUE(folder_bytes(at("w")) == before);
   const auto in_memory = bake_world(scene, config, context);
   ASSERT_TRUE(in_memory);
-  const auto nowhere = Nodes::make_in_folder(*in_memory, scene, {}, context);
+  const auto nowhere = Nodes::create_in_folder(*in_memory, scene, {}, context);
   ASSERT_FALSE(nowhere);
   EXPECT_EQ(nowhere.error().code, Errc::kBadInput);
 }
@@ -318,7 +318,7 @@ TEST_F(ChangedNodes, AnOffMeshLinkWithoutAPlaceIsFoundWhileTheOldWorldIsThere) {
       BakeConfig other = config;
       other.nodes = nullptr;
       ASSERT_TRUE(bake_world_to(at("other"), scene, other, context));
-      const auto made = Nodes::make(*World::open(at("other")), scene, wanted, context);
+      const auto made = Nodes::create(*World::open(at("other")), scene, wanted, context);
       EXPECT_EQ(static_cast<bool>(report), static_cast<bool>(made)) << i;
       ++(report ? good : bad);
       if (report) {

@@ -10,8 +10,8 @@
 #include "folder_bytes.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
-#include "throng/nodes.h"
+#include "throng/scene.h"
+#include "throng/surface.h"
 
 // A bake into the folder of a world: what has changed is baked, the rest is reused, and the bytes
 // are those of a new bake.
@@ -376,13 +376,13 @@ TEST_F(ChangedZones, WhileNodesAreMadeTheirWorldCannotBeReplaced) {
       if (tried++ > 0) return;
       EXPECT_NE(refused("w", scene, kConfig).find(busy), std::string::npos);
       Context inner;
-      const auto nodes = Nodes::make_in_folder(*world, scene, wanted, inner);
+      const auto nodes = Nodes::create_in_folder(*world, scene, wanted, inner);
       ASSERT_FALSE(nodes);
       EXPECT_NE(nodes.error().message.find(busy), std::string::npos) << nodes.error().message;
     };
     NodeConfig again = wanted;
     again.fresh = true;
-    const auto nodes = Nodes::make_in_folder(*world, scene, again, context);
+    const auto nodes = Nodes::create_in_folder(*world, scene, again, context);
     ASSERT_TRUE(nodes) << nodes.error().message;
     EXPECT_GT(tried, 0);
   }

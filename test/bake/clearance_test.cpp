@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/clearance.h"
+#include "bake/layers/clearance.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "bake/free_spans.h"
+#include "bake/columns/free_spans.h"
 #include "core/hash.h"
 #include "core/random.h"
 #include "naive_columns.h"

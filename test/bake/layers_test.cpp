@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/layers.h"
+#include "bake/layers/layers.h"
 
 #include <gtest/gtest.h>
 

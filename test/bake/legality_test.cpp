@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/legality.h"
+#include "bake/layers/legality.h"
 
 #include <gtest/gtest.h>
 

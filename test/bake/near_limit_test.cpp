@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "bake/surface_planes.h"
+#include "bake/layers/surface_planes.h"
 #include "baked.h"
 #include "core/random.h"
 #include "exact_bodies.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/node_drops.h"
+#include "bake/surface/node_drops.h"
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,12 @@
 #include <numeric>
 
 #include "baked.h"
+#include "core/access.h"
 #include "core/random.h"
 #include "patch_nets.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
-#include "throng/node_path.h"
+#include "throng/path.h"
 #include "throng/verify.h"
 #include "verify/turned_body.h"
 #include "world/node_data.h"
@@ -74,7 +75,7 @@ Scene boxes(uint64_t seed) {
 
 Nodes make(const World& world, const Scene& scene, NodeConfig config = {}) {
   Context context;
-  const auto nodes = Nodes::make(world, scene, config, context);
+  const auto nodes = Nodes::create(world, scene, config, context);
   EXPECT_TRUE(nodes) << nodes.error().message;
   return nodes ? *nodes : Nodes{};
 }
@@ -215,7 +216,7 @@ TEST(NodeDrops, LeadDownOnlyForClassesThatDrop) {
   EXPECT_GT(drops[1], 10u);
   EXPECT_GT(drops[2], 0u);  // The kid: from what is 1.5 m high.
   for (int32_t c = 0; c < 3; ++c) {
-    auto finder = NodePathFinder::make(nodes, {.avatar_class = c}, context);
+    auto finder = NodePathFinder::create(nodes, {.avatar_class = c}, context);
     ASSERT_TRUE(finder);
     const NodePlace top = finder->find_place({6, 2, 6}, 0.2);
     const NodePlace below = finder->find_place({1, 0, 1}, 0.2);
@@ -288,7 +289,7 @@ TEST(NodeDrops, AreTheSameForAnyNumberOfThreads) {
   for (const int32_t workers : {1, 2, 0}) {
     const Nodes nodes = make(world, scene, {.size = 2, .workers = workers});
     std::vector<uint64_t> hashes;
-    for (const auto& slot : nodes.data()->slots) hashes.push_back(slot->entry.hash());
+    for (const auto& slot : data_of(nodes)->slots) hashes.push_back(slot->entry.hash());
     if (first.empty()) first = hashes;
     EXPECT_EQ(hashes, first) << workers << " workers";
   }
@@ -314,10 +315,10 @@ TEST(NodeDrops, AreStoredByAWorldAndItsNodes) {
   EXPECT_GT(drops, 10u);
   // A class that does not drop is stored as before.
   const std::vector<AvatarClass> plain = default_classes();
-  const auto manifest = write_manifest(*bake(scene, 0.2, plain).data());
+  const auto manifest = write_manifest(*data_of(bake(scene, 0.2, plain)));
   std::vector<AvatarClass> changed = plain;
   changed[0].max_drop = 2;
-  EXPECT_GT(write_manifest(*bake(scene, 0.2, changed).data()).size(), manifest.size());
+  EXPECT_GT(write_manifest(*data_of(bake(scene, 0.2, changed))).size(), manifest.size());
 }
 
 }  // namespace

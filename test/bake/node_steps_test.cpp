@@ -7,8 +7,8 @@
 
 #include "baked.h"
 #include "core/disjoint_sets.h"
-#include "throng/node_path.h"
-#include "throng/nodes.h"
+#include "throng/path.h"
+#include "throng/surface.h"
 
 // Links over steps: LinkKind::kStep, in nodes and in paths over them.
 namespace throng {
@@ -16,7 +16,7 @@ namespace {
 
 Nodes make(const Scene& scene, double cell) {
   Context context;
-  const auto nodes = Nodes::make(test::bake(scene, cell), scene, {}, context);
+  const auto nodes = Nodes::create(test::bake(scene, cell), scene, {}, context);
   EXPECT_TRUE(nodes) << nodes.error().message;
   return nodes ? *nodes : Nodes{};
 }
@@ -148,7 +148,7 @@ TEST(NodeSteps, AClassThatCanGoAroundNeedsNone) {
 TEST(NodeSteps, APathUpstairsNamesEveryRiser) {
   Context context;
   const Nodes nodes = make(test::builtin({.name = "stairs"}), 0.1);
-  auto finder = NodePathFinder::make(nodes, {}, context);
+  auto finder = NodePathFinder::create(nodes, {}, context);
   ASSERT_TRUE(finder) << finder.error().message;
   NodePath path;
   finder->find(finder->find_place({2, 0, 2}, 10), finder->find_place({12, 3.06, 2}, 1), path);

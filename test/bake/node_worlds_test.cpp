@@ -10,7 +10,7 @@
 #include "baked.h"
 #include "core/random.h"
 #include "patch_nets.h"
-#include "throng/nodes.h"
+#include "throng/surface.h"
 
 // What every world's nodes must be: links lead back, and widths are there. In built-in worlds and,
 // where they are, shared ones.
@@ -35,7 +35,7 @@ struct Made {
 Made make(const Scene& scene, double cell, double size) {
   Context context;
   Made made{test::bake(scene, cell, many_classes()), {}};
-  const auto nodes = Nodes::make(made.world, scene, {.size = size}, context);
+  const auto nodes = Nodes::create(made.world, scene, {.size = size}, context);
   EXPECT_TRUE(nodes) << nodes.error().message;
   if (nodes) made.nodes = *nodes;
   return made;

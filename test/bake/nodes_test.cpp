@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/nodes.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,12 +8,14 @@
 #include <map>
 
 #include "baked.h"
+#include "core/access.h"
 #include "core/random.h"
 #include "patch_nets.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
-#include "throng/graph.h"
+#include "throng/surface.h"
 #include "throng/verify.h"
+#include "throng/world.h"
 #include "world/node_data.h"
 #include "worlds.h"
 
@@ -27,7 +27,7 @@ using test::builtin;
 
 Nodes make(const World& world, const Scene& scene, NodeConfig config = {}) {
   Context context;
-  const auto nodes = Nodes::make(world, scene, config, context);
+  const auto nodes = Nodes::create(world, scene, config, context);
   EXPECT_TRUE(nodes) << nodes.error().message;
   return nodes ? *nodes : Nodes{};
 }
@@ -108,7 +108,7 @@ TEST(Nodes, OnLevelTilesPartsAreTheRegionsComponents) {
     const World world = bake(scene, 0.25);
     const Nodes nodes = make(world, scene);
     Context context;
-    const auto graph = Graph::make(world, {}, context);
+    const auto graph = Graph::create(world, {}, context);
     ASSERT_TRUE(graph);
     for (int32_t c = 0; c < 4; ++c) {
       std::vector<double> by_nodes, by_regions;
@@ -162,7 +162,7 @@ TEST(Nodes, AreTheSameForAnyNumberOfThreads) {
   for (const int32_t workers : {1, 2, 3, 0}) {
     const Nodes nodes = make(world, scene, {.size = 2, .workers = workers});
     std::vector<uint64_t> hashes;
-    for (const auto& slot : nodes.data()->slots) hashes.push_back(slot->entry.hash());
+    for (const auto& slot : data_of(nodes)->slots) hashes.push_back(slot->entry.hash());
     EXPECT_GT(hashes.size(), 4u);
     if (first.empty()) first = hashes;
     EXPECT_EQ(hashes, first) << workers << " workers";
@@ -237,7 +237,7 @@ TEST(Nodes, OffMeshLinksJoinWhatNothingElseJoins) {
   EXPECT_EQ(back, 0u);
   config.off_mesh_links[0].to = {7, 0, 3};
   Context context;
-  EXPECT_EQ(Nodes::make(world, scene, config, context).error().message,
+  EXPECT_EQ(Nodes::create(world, scene, config, context).error().message,
             "nodes: jump 1: adult has no place within a metre of where it ends");
 }
 
@@ -319,16 +319,16 @@ TEST(Nodes, BadInputIsRefusedAndNamed) {
     EXPECT_FALSE(nodes);
     return nodes ? std::string() : nodes.error().message;
   };
-  EXPECT_EQ(message(Nodes::make(world, scene, {.size = 0}, context)),
+  EXPECT_EQ(message(Nodes::create(world, scene, {.size = 0}, context)),
             "nodes: the size must be 0.05 to 100 m");
-  EXPECT_EQ(message(Nodes::make(world, scene, {.workers = -1}, context)),
+  EXPECT_EQ(message(Nodes::create(world, scene, {.workers = -1}, context)),
             "nodes: workers must be 0 or more");
-  EXPECT_EQ(message(Nodes::make({}, scene, {}, context)), "nodes: the world is empty");
-  EXPECT_NE(message(Nodes::make(world, builtin({.name = "bridge"}), {}, context))
+  EXPECT_EQ(message(Nodes::create({}, scene, {}, context)), "nodes: the world is empty");
+  EXPECT_NE(message(Nodes::create(world, builtin({.name = "bridge"}), {}, context))
                 .find("not baked from this scene"),
             std::string::npos);
   context.cancel = true;
-  EXPECT_EQ(message(Nodes::make(world, scene, {}, context)), "nodes: cancelled");
+  EXPECT_EQ(message(Nodes::create(world, scene, {}, context)), "nodes: cancelled");
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/patch_cells.h"
+#include "bake/surface/patch_cells.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/self_support.h"
+#include "bake/surface/self_support.h"
 
 #include <gtest/gtest.h>
 

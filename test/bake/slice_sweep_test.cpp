@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/slice_sweep.h"
+#include "papers/slices/slice_sweep.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/slices.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,10 +7,11 @@
 #include <memory>
 #include <vector>
 
-#include "bake/columns.h"
+#include "bake/columns/columns.h"
 #include "core/random.h"
 #include "naive_columns.h"
 #include "naive_slices.h"
+#include "throng/papers.h"
 
 namespace throng {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/surface_bound.h"
+#include "bake/surface/surface_bound.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/triangle_filter.h"
+#include "bake/surface/triangle_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "bake/body_sweep.h"
+#include "bake/surface/body_sweep.h"
 #include "core/random.h"
 
 namespace throng {

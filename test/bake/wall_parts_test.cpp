@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "bake/wall_parts.h"
+#include "bake/layers/wall_parts.h"
 
 #include <gtest/gtest.h>
 

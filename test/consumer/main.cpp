@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <throng/bake.h>
+#include <throng/papers.h>
 #include <throng/scene.h>
-#include <throng/wanderers.h>
 
 #include <cstdio>
 

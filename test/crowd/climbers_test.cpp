@@ -12,11 +12,10 @@
 #include "patch_nets.h"
 #include "prism_shell.h"
 #include "simd_targets.h"
+#include "throng/avatar.h"
 #include "throng/crowd.h"
-#include "throng/flight.h"
-#include "throng/lean.h"
-#include "throng/node_path.h"
-#include "throng/nodes.h"
+#include "throng/path.h"
+#include "throng/surface.h"
 #include "trips.h"
 #include "verify/triangle_tree.h"
 #include "verify/turned_body.h"
@@ -96,7 +95,7 @@ class Stage {
                  std::vector<AvatarClass> classes = throng::classes())
       : scene_(scene), tree_(scene_, 0), world_(test::bake(scene, cell, std::move(classes))) {
     Context context;
-    auto made = Nodes::make(world_, scene_, {.size = size}, context);
+    auto made = Nodes::create(world_, scene_, {.size = size}, context);
     EXPECT_TRUE(made) << made.error().message;
     if (made) nodes_ = *made;
   }
@@ -493,7 +492,7 @@ TEST(Climbers, AnExternallyControlledOneMovesAsItIsControlled) {
   Stage stage(test::net_scene({.side = 2, .cell = 8, .relief = 0, .sideways = 0}));
   Crowd crowd = stage.crowd();
   Context context;
-  const auto finder = NodePathFinder::make(stage.nodes(), {.avatar_class = kGecko}, context);
+  const auto finder = NodePathFinder::create(stage.nodes(), {.avatar_class = kGecko}, context);
   ASSERT_TRUE(finder);
   const AvatarId id = added_on(crowd, finder->find_place({8, 0, 8}, 2), kGecko);
   ASSERT_TRUE(id);

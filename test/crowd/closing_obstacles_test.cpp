@@ -110,9 +110,9 @@ TEST(ClosingObstacles, OnlyAvatarsInsideADoorComeThroughOnceItCloses) {
       }
       const ObstacleState state = *crowd.obstacle(*door);
       ASSERT_TRUE(state.is_up);
-      EXPECT_NEAR(state.asked_at, 20, 1e-9);
-      EXPECT_GT(state.up_at, state.asked_at);
-      EXPECT_LE(state.up_at, state.asked_at + 3) << seed;
+      EXPECT_NEAR(state.requested_at, 20, 1e-9);
+      EXPECT_GT(state.up_at, state.requested_at);
+      EXPECT_LE(state.up_at, state.requested_at + 3) << seed;
       for (const auto& [id, p] : positions(crowd)) {
         const bool came_through = before.at(id).x < 20.2 && p.x > 20.5;
         if (came_through) {
@@ -134,7 +134,7 @@ TEST(ClosingObstacles, OneThatWaitsStaysOpenAsLongAsPeopleStreamThrough) {
   EXPECT_FALSE(state.is_up);
   EXPECT_EQ(state.policy, ObstaclePolicy::kWait);
   EXPECT_LT(state.up_at, 0);
-  EXPECT_NEAR(state.asked_at, 20, 1e-9);
+  EXPECT_NEAR(state.requested_at, 20, 1e-9);
   EXPECT_GT(state.occupants, 0u);
 }
 
@@ -145,7 +145,7 @@ TEST(ClosingObstacles, ADoorThatIsSwitchedOnClosesTheSameAndOpensAgain) {
   const auto door = crowd.add_obstacle(Prism::box({38, 0, 1}, {38.5, 2, 2}));
   ASSERT_TRUE(door);
   ASSERT_TRUE(crowd.set_obstacle_active(*door, false));
-  EXPECT_LT(crowd.obstacle(*door)->asked_at, 0);
+  EXPECT_LT(crowd.obstacle(*door)->requested_at, 0);
   ASSERT_TRUE(crowd.move_obstacle(*door, kDoor));
   ASSERT_TRUE(crowd.set_obstacle_active(*door, true));
   for (int step = 0; step < 30 && !crowd.obstacle(*door)->is_up; ++step) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/collision_map.h"
+#include "crowd/walk/collision_map.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/crowd_engine.h"
+#include "crowd/walk/crowd_engine.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "baked.h"
+#include "core/access.h"
 #include "core/random.h"
 #include "plain_crowd.h"
 #include "simd_targets.h"
@@ -50,11 +51,11 @@ struct LevelGround {
 
   explicit LevelGround(double side)
       : world(test::bake(worlds::flat(side), 0.1)),
-        ground(*CrowdGround::make(*world.data(), 0, 400)) {}
+        ground(*CrowdGround::make(*data_of(world), 0, 400)) {}
 
   [[nodiscard]] Pair pair(const std::vector<test::PlainBody>& bodies,
                           const test::PlainConfig& config, int32_t workers) const {
-    const WorldData& data = *world.data();
+    const WorldData& data = *data_of(world);
     int32_t widest = 0;
     float fastest = 0;
     for (const test::PlainBody& b : bodies) {

@@ -14,8 +14,9 @@ namespace throng {
 namespace {
 
 World plane() {
-  const auto scene = make_plane_scene({.ground = {{{0, 0}, {30, 0}, {30, 20}, {0, 20}}, {}},
-                                       .obstacles = {{{{14, 0}, {15, 0}, {15, 8}, {14, 8}}, {}}}});
+  const auto scene =
+      create_plane_scene({.ground = {{{0, 0}, {30, 0}, {30, 20}, {0, 20}}, {}},
+                          .obstacles = {{{{14, 0}, {15, 0}, {15, 8}, {14, 8}}, {}}}});
   EXPECT_TRUE(scene);
   Context context;
   auto world = bake_world(*scene, {}, context);

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/crowd_ground.h"
+#include "crowd/ground/crowd_ground.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "core/access.h"
 #include "core/random.h"
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
+#include "throng/scene.h"
 #include "worlds.h"
 
 namespace throng {
@@ -24,16 +25,16 @@ World baked(const Scene& scene) {
 }
 
 // The same ground, straight from the zones.
-WorldGround zones(const World& world) { return {*world.data(), 0}; }
+WorldGround zones(const World& world) { return {*data_of(world), 0}; }
 
 GroundLevel zone_level(const World& world, uint32_t level) {
-  return ground_level(*world.data(), level, 0);
+  return ground_level(*data_of(world), level, 0);
 }
 
 TEST(CrowdGround, LegalCellsAreThoseOfTheZones) {
   for (const Scene& scene : {worlds::two_floors(), worlds::flat(20), worlds::ramp(20, 8)}) {
     const World world = baked(scene);
-    const auto ground = CrowdGround::make(*world.data(), 0, kStep);
+    const auto ground = CrowdGround::make(*data_of(world), 0, kStep);
     ASSERT_TRUE(ground);
     for (uint32_t level = 0; level < world.level_tile_count(); ++level) {
       const GroundLevel expected = zone_level(world, level);
@@ -68,7 +69,7 @@ TEST(CrowdGround, AWalkOverFlatCellsEndsOnTheSameLevelAtTheSameHeight) {
        {worlds::two_floors(), worlds::steps(0.17, 0.3, 12), worlds::ramp(20, 8), worlds::doorway(1),
         slope_over_the_edge(true), slope_over_the_edge(false)}) {
     const World world = baked(scene);
-    const auto ground = CrowdGround::make(*world.data(), 0, kStep);
+    const auto ground = CrowdGround::make(*data_of(world), 0, kStep);
     ASSERT_TRUE(ground);
     uint64_t n = 0, plain_walks = 0;
     const auto draw = [&](uint64_t below) {
@@ -101,7 +102,7 @@ TEST(CrowdGround, AWalkOverFlatCellsEndsOnTheSameLevelAtTheSameHeight) {
 }
 
 Scene garage() {
-  auto scene = make_builtin_world({.name = "garage", .size = 60, .levels = 2});
+  auto scene = create_builtin_world({.name = "garage", .size = 60, .levels = 2});
   EXPECT_TRUE(scene);
   return std::move(*scene);
 }
@@ -111,7 +112,7 @@ TEST(CrowdGround, AStepOverAJoinEndsWhereAWalkDoesAtTheSameHeight) {
   for (const Scene& scene : {worlds::two_floors(), worlds::flat(20), slope_over_the_edge(true),
                              slope_over_the_edge(false), garage()}) {
     const World world = baked(scene);
-    const auto ground = CrowdGround::make(*world.data(), 0, kStep);
+    const auto ground = CrowdGround::make(*data_of(world), 0, kStep);
     ASSERT_TRUE(ground);
     uint64_t n = 0, crossed = 0;
     const auto draw = [&](uint64_t below) {
@@ -142,7 +143,7 @@ TEST(CrowdGround, AStepOverAJoinEndsWhereAWalkDoesAtTheSameHeight) {
 
 TEST(CrowdGround, ALoneLevelIsTheOnlyOneWithinAStepInItsTile) {
   const World world = baked(worlds::two_floors());
-  const auto ground = CrowdGround::make(*world.data(), 0, kStep);
+  const auto ground = CrowdGround::make(*data_of(world), 0, kStep);
   ASSERT_TRUE(ground);
   int32_t lone = 0;
   for (uint32_t level = 0; level < world.level_tile_count(); ++level) {
@@ -167,7 +168,7 @@ TEST(CrowdGround, ALoneLevelIsTheOnlyOneWithinAStepInItsTile) {
 
 TEST(CrowdGround, FloorsOutsideTheGivenHeightsMayBeLeftOutButNoOther) {
   const World world = baked(worlds::two_floors());
-  const auto ground = CrowdGround::make(*world.data(), 0, kStep);
+  const auto ground = CrowdGround::make(*data_of(world), 0, kStep);
   ASSERT_TRUE(ground);
   for (uint32_t level = 0; level < world.level_tile_count(); ++level) {
     const auto& record = ground->records()[level];

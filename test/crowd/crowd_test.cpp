@@ -12,7 +12,7 @@
 #include "crowds.h"
 #include "simd_targets.h"
 #include "throng/bake.h"
-#include "throng/cells.h"
+#include "throng/scene.h"
 #include "worlds.h"
 
 namespace throng {
@@ -117,8 +117,8 @@ TEST(Crowd, PathsThatAreLookedUpAreAsShortAsThoseOfTheSearch) {
   ASSERT_TRUE(world);
   std::vector<Crowd> crowds;
   crowds.push_back(made(*world));
-  crowds.push_back(made(*world, {.labels = true}));
-  crowds.push_back(made(*world, {.zones = true}));
+  crowds.push_back(made(*world, {.speedup = PathSpeedup::kLabels}));
+  crowds.push_back(made(*world, {.speedup = PathSpeedup::kZones}));
   int straight = 0;
   for (uint64_t n = 0; n < 100; ++n) {
     const auto middle = [&](uint64_t use) {
@@ -333,7 +333,6 @@ TEST(Crowd, BadSettingsAreNamed) {
   EXPECT_EQ(refused({.dt = 0}), "crowd: dt must be 0.001 to 1 s");
   EXPECT_EQ(refused({.dt = NAN}), "crowd: dt must be 0.001 to 1 s");
   EXPECT_EQ(refused({.workers = -1}), "crowd: workers must be 0 (all cores) or more");
-  EXPECT_EQ(refused({.labels = true, .zones = true}), "crowd: choose labels or zones, not both");
   EXPECT_EQ(refused({.sight = 0}), "crowd: sight must be 1 to 50 m");
   EXPECT_EQ(refused({.rounds = 0}), "crowd: rounds must be 1 to 100");
   EXPECT_FALSE(Crowd::create({}, {}));

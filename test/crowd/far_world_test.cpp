@@ -10,11 +10,10 @@
 #include "crowds.h"
 #include "patch_nets.h"
 #include "scratch_folder.h"
-#include "throng/node_path.h"
+#include "throng/papers.h"
 #include "throng/path.h"
 #include "throng/recording.h"
 #include "throng/verify.h"
-#include "throng/wanderers.h"
 
 // National grids count metres from far away: a world is the same wherever it lies, to less than a
 // millimetre at 10 000 km. Translations are by whole metres, which are whole cells of an eighth.
@@ -153,12 +152,12 @@ TEST(FarWorld, ACrowdWithGoalsWalksAsNearTheCoordinateOrigin) {
 TEST(FarWorld, PathsAreThoseNearTheCoordinateOrigin) {
   Context context;
   const World near = test::bake(garage(), kCell);
-  auto a = PathFinder::make(near, {}, context);
+  auto a = PathFinder::create(near, {}, context);
   ASSERT_TRUE(a);
   for (const Vec3d& by : translations()) {
     const Scene scene = moved(garage(), by);
     const World far = test::bake(scene, kCell);
-    auto b = PathFinder::make(far, {}, context);
+    auto b = PathFinder::create(far, {}, context);
     ASSERT_TRUE(b);
     Path near_path, far_path;
     for (uint64_t n = 0; n < 40; ++n) {
@@ -224,13 +223,13 @@ Scene pierced_net() {
 TEST(FarWorld, NodesAndTheirPathsAreThoseNearTheCoordinateOrigin) {
   Context context;
   const Scene scene = pierced_net();
-  const auto near = Nodes::make(test::bake(scene, 0.25, climbers()), scene, {.size = 1}, context);
+  const auto near = Nodes::create(test::bake(scene, 0.25, climbers()), scene, {.size = 1}, context);
   ASSERT_TRUE(near) << near.error().message;
   const NodeSummary expected = near->summary();
   for (const Vec3d& by : translations()) {
     const Scene far_scene = moved(scene, by);
     const auto far =
-        Nodes::make(test::bake(far_scene, 0.25, climbers()), far_scene, {.size = 1}, context);
+        Nodes::create(test::bake(far_scene, 0.25, climbers()), far_scene, {.size = 1}, context);
     ASSERT_TRUE(far) << far.error().message;
     const NodeSummary found = far->summary();
     EXPECT_EQ(found.nodes, expected.nodes);

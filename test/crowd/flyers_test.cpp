@@ -11,7 +11,7 @@
 #include "crowds.h"
 #include "simd_targets.h"
 #include "throng/crowd.h"
-#include "throng/flight.h"
+#include "throng/path.h"
 #include "trips.h"
 #include "verify/cylinder.h"
 #include "verify/triangle_tree.h"
@@ -32,7 +32,7 @@ class Stage {
         tree_(scene_, 0),
         world_(test::bake(scene, cell, {flyer_class(), default_classes()[0]})) {
     Context context;
-    auto made = FlightFinder::make(world_, {.avatar_class = kFlyer}, context);
+    auto made = FlightFinder::create(world_, {.avatar_class = kFlyer}, context);
     EXPECT_TRUE(made) << made.error().message;
     if (made) flight_.emplace(std::move(*made));
   }

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/lane_offset.h"
+#include "crowd/walk/lane_offset.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
 #include "baked.h"
+#include "core/access.h"
 #include "crowds.h"
 #include "throng/crowd.h"
 #include "throng/scene.h"
@@ -23,12 +24,12 @@ struct Bend {
     plane.ground = {{{0, 0}, {20, 0}, {20, 16}, {0, 16}}, {}};
     plane.obstacles = {{{{0, width}, {10, width}, {10, 16}, {0, 16}}, {}},
                        {{{out, 0}, {20, 0}, {20, 16}, {out, 16}}, {}}};
-    const auto scene = make_plane_scene(plane);
+    const auto scene = create_plane_scene(plane);
     EXPECT_TRUE(scene) << scene.error().message;
     AvatarClass walker;
     walker.radius = 0.19;
     world = test::bake(*scene, 0.05, {walker});
-    ground = *CrowdGround::make(*world.data(), 0, 400);
+    ground = *CrowdGround::make(*data_of(world), 0, 400);
     stride = StrideGround(ground, 400);
     metre = static_cast<float>(kUnitsPerCell / 0.05);
     corner = point_at({10.22, 0, width - 0.22});
@@ -38,7 +39,7 @@ struct Bend {
   [[nodiscard]] PathPoint point_at(Vec3d position) const {
     const Place place = world.find_place(0, position, 0.2);
     EXPECT_TRUE(place) << position.x << " " << position.z;
-    return point_of(*world.data(), place);
+    return point_of(*data_of(world), place);
   }
   // Of a body in the first corridor, at this distance from its inner wall (at z = width). [m]
   PathPoint own(double x, double z) {
@@ -122,7 +123,7 @@ TEST(LaneOffset, GroupsThatMeetInACorridorPass) {
   plane.ground = {{{0, 0}, {30, 0}, {30, 10}, {0, 10}}, {}};
   plane.obstacles = {{{{10, 0}, {20, 0}, {20, 4}, {10, 4}}, {}},
                      {{{10, 6}, {20, 6}, {20, 10}, {10, 10}}, {}}};
-  const auto scene = make_plane_scene(plane);
+  const auto scene = create_plane_scene(plane);
   ASSERT_TRUE(scene) << scene.error().message;
   AvatarClass walker;
   walker.radius = 0.19;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/level_line.h"
+#include "crowd/ground/level_line.h"
 
 #include <gtest/gtest.h>
 

@@ -1,17 +1,21 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/obstacle_set.h"
+#include "crowd/obstacles/obstacle_set.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "baked.h"
+#include "core/access.h"
 #include "core/hash.h"
 #include "core/random.h"
-#include "crowd/stride_ground.h"
+#include "crowd/ground/leaving_ground.h"
+#include "crowd/ground/stride_ground.h"
 #include "world/place.h"
 #include "worlds.h"
 
@@ -47,7 +51,7 @@ struct Fixture {
 
   explicit Fixture(World of)
       : world(std::move(of)),
-        ground(*CrowdGround::make(*world.data(), 0, kStep)),
+        ground(*CrowdGround::make(*data_of(world), 0, kStep)),
         obstacle_set(world, world.summary().classes.size()) {
     obstacle_set.open_class(0, ground);
   }
@@ -89,7 +93,7 @@ TEST(ObstacleSet, BlocksTheCellsOnWhichABodyCouldTouchAndFewMore) {
   uint64_t blocked = 0, left = 0;
   for (const Scene& scene : {worlds::two_floors(), worlds::ramp(20, 8), worlds::flat(14)}) {
     Fixture f(test::bake(scene, 0.1));
-    const CrowdGround baked = *CrowdGround::make(*f.world.data(), 0, kStep);
+    const CrowdGround baked = *CrowdGround::make(*data_of(f.world), 0, kStep);
     const AvatarClass avatar = f.world.summary().classes[0];
     const double bottom = body_bottom(avatar), cell = f.world.summary().cell;
     const Vec3d origin = f.world.summary().origin;
@@ -161,7 +165,7 @@ TEST(ObstacleSet, FreesToTheBitWhatItBlocked) {
     }
     EXPECT_NE(hash_of(f.ground), baked);
     // What is left must equal what the same obstacles leave of a new ground.
-    CrowdGround rebuilt = *CrowdGround::make(*f.world.data(), 0, kStep);
+    CrowdGround rebuilt = *CrowdGround::make(*data_of(f.world), 0, kStep);
     ObstacleSet again(f.world, f.world.summary().classes.size());
     again.open_class(0, rebuilt);
     for (const uint32_t slot : slots) {
@@ -173,6 +177,101 @@ TEST(ObstacleSet, FreesToTheBitWhatItBlocked) {
     f.obstacle_set.block_cells();
     EXPECT_EQ(hash_of(f.ground), baked) << name;
   }
+}
+
+// Random orders, as a crowd gives them: what is kept by slot must be what a look at all shows, and
+// exits that are counted again around a change must be those of a search everywhere.
+void change_at_random(Fixture f, const std::function<Prism(Fixture&)>& draw_prism) {
+  std::vector<uint32_t> slots, all_levels;
+  uint64_t waited = 0, left = 0;
+  for (uint32_t level = 0; level < f.ground.records().size(); ++level) all_levels.push_back(level);
+  const auto exits = [&] {
+    std::vector<uint16_t> steps;
+    for (const uint32_t level : all_levels) {
+      for (int32_t cell = 0; cell < 4096; ++cell) {
+        steps.push_back(f.ground.left().steps_out({level, cell % 64, cell / 64}));
+      }
+    }
+    return steps;
+  };
+  for (int round = 0; round < 200; ++round) {
+    const double what = f.draw();
+    const uint32_t slot =
+        slots.size() < 20 || what < 0.2
+            ? slots.emplace_back(f.obstacle_set.add(draw_prism(f), ObstacleKind::kStatic, true))
+            : slots[static_cast<size_t>(f.draw() * static_cast<double>(slots.size()))];
+    if (what < 0.3) {
+      f.obstacle_set.request_move(slot, draw_prism(f));
+    } else if (what < 0.4) {
+      f.obstacle_set.request_active(slot, f.draw() < 0.5);
+    } else if (what < 0.6) {
+      if (f.obstacle_set.at(slot).waits()) f.obstacle_set.settle(slot);
+    } else if (what < 0.85) {
+      if (f.obstacle_set.at(slot).wanted_up) {
+        f.obstacle_set.set_exit_only(slot, true);
+        f.obstacle_set.close(slot);
+      }
+    } else {
+      f.obstacle_set.remove(slot);
+      std::erase(slots, slot);
+    }
+    f.obstacle_set.block_cells();
+    std::vector<uint32_t> waiting;
+    bool cuts_paths = false;
+    for (const uint32_t one : slots) {
+      const CrowdObstacle& obstacle = f.obstacle_set.at(one);
+      if (obstacle.waits() || obstacle.is_exit_only) waiting.push_back(one);
+      cuts_paths |= obstacle.has_cells;
+    }
+    std::sort(waiting.begin(), waiting.end());
+    const auto kept = f.obstacle_set.waiting();
+    ASSERT_EQ(std::vector(kept.begin(), kept.end()), waiting) << round;
+    ASSERT_EQ(f.obstacle_set.cuts_paths(), cuts_paths);
+    waited += waiting.size();
+    const std::vector<uint16_t> counted = exits();
+    left += find_exits(f.ground, kStep, all_levels);
+    ASSERT_EQ(counted, exits()) << round;
+  }
+  EXPECT_GT(waited, 500u);
+  EXPECT_GT(left, 1000u);
+}
+
+TEST(ObstacleSet, KeepsWhatWaitsAndCountsExitsAsALookAtAllDoes) {
+  change_at_random(Fixture(test::bake(test::builtin({.name = "garage", .seed = 3}), 0.1)),
+                   [](Fixture& f) { return f.random_prism(); });
+}
+
+TEST(ObstacleSet, CountsExitsOverTheBordersOfTiles) {
+  // On both sides of the border of two tiles, at 6.347 m: the cells that are taken end at it.
+  change_at_random(Fixture(test::bake(worlds::flat(14), 0.1)), [](Fixture& f) {
+    const double x = f.draw() < 0.5 ? 6.02 : 6.64, z = 1 + 11 * f.draw();
+    return Prism::box({x, 0, z}, {x + 0.05, 2, z + 0.1 + 0.5 * f.draw()});
+  });
+}
+
+TEST(ObstacleSet, AChangeTouchesNothingElsewhereHoweverManyStandThere) {
+  Fixture f(test::bake(worlds::flat(100), 0.1));
+  std::vector<size_t> changed, counted;
+  for (const int side : {4, 8, 16, 32}) {
+    for (int i = 0; i < side * side; ++i) {
+      const double x = 3.0 * (i % side) + 3, z = 3.0 * static_cast<double>(i / side) + 3;
+      const Prism crate = Prism::box({x, 0, z}, {x + 0.5, 2, z + 0.5});
+      const uint32_t slot = f.obstacle_set.add(crate, ObstacleKind::kStatic, true);
+      f.obstacle_set.set_exit_only(slot, true);
+      f.obstacle_set.close(slot);
+    }
+    f.obstacle_set.block_cells();
+    (void)f.obstacle_set.take_changed();
+    const uint32_t slot = f.put_up(Prism::box({1, 0, 1}, {1.5, 2, 1.5}));
+    changed.push_back(f.obstacle_set.take_changed().size());
+    f.obstacle_set.remove(slot);
+    f.obstacle_set.block_cells();
+    const std::array<uint32_t, 1> first{0};  // the level of a tile
+    counted.push_back(find_exits(f.ground, kStep, first));
+  }
+  EXPECT_EQ(changed, (std::vector<size_t>{1, 1, 1, 1}));
+  EXPECT_GT(counted[0], 0u);
+  EXPECT_LE(counted[3], 2 * counted[0]);
 }
 
 TEST(ObstacleSet, MemoryDoesNotGrowAsObstaclesComeAndGo) {
@@ -213,17 +312,17 @@ TEST(ObstacleSet, FastMovesAreThoseOfThePlainGround) {
     Fixture f(test::bake(test::builtin({.name = name, .seed = 3}), 0.1));
     for (int i = 0; i < 60; ++i) f.put_up(f.random_prism());
     const StrideGround stride(f.ground, kStep);
-    const PlainGround plain{{*f.world.data(), 0}, f.ground};
+    const PlainGround plain{{*data_of(f.world), 0}, f.ground};
     for (int i = 0; i < 30000; ++i) {
       const Place place = f.world.random_place(0, 31, static_cast<uint64_t>(i));
-      const auto from = *ground_point(*f.world.data(), place);
+      const auto from = *ground_point(*data_of(f.world), place);
       uint32_t level = place.level1 - 1;
       if (!f.ground.is_legal(level, from.cell_x() & 63, from.cell_z() & 63)) continue;
       const auto offset = [&] { return static_cast<int64_t>((f.draw() * 8 - 4) * kUnitsPerCell); };
       const GroundPoint to{from.x + offset(), from.z + offset()};
       StrideGround::Landing landing;
       const bool moved = stride.move(level, f.ground.feet(level, from), from, to, landing);
-      GroundLevel on = ground_level(*f.world.data(), level, 0);
+      GroundLevel on = ground_level(*data_of(f.world), level, 0);
       const bool expected = walk(plain, on, from, to, kStep);
       ASSERT_EQ(moved, expected) << name << ' ' << i;
       ++moves;

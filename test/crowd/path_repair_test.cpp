@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/path_repair.h"
+#include "crowd/obstacles/path_repair.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "baked.h"
+#include "core/access.h"
 #include "core/random.h"
-#include "crowd/obstacle_set.h"
+#include "crowd/obstacles/obstacle_set.h"
 #include "world/place.h"
 #include "worlds.h"
 
@@ -27,9 +28,9 @@ struct Crated {
 
   Crated(World of, PathFinder a_finder)
       : world(std::move(of)),
-        ground(*CrowdGround::make(*world.data(), 0, kStep)),
+        ground(*CrowdGround::make(*data_of(world), 0, kStep)),
         book(world, world.summary().classes.size()),
-        live(*LiveGround::make(world, {})),
+        live(*LiveGround::create(world, {})),
         finder(std::move(a_finder)) {
     book.open_class(0, ground);
   }
@@ -42,7 +43,7 @@ struct Crated {
 
 Crated crated(World world) {
   Context context;
-  auto finder = PathFinder::make(world, {}, context);
+  auto finder = PathFinder::create(world, {}, context);
   EXPECT_TRUE(finder);
   return {std::move(world), *finder};
 }
@@ -52,8 +53,8 @@ bool is_open(const Crated& c, const Path& path) {
   for (size_t i = 1; i < path.points.size(); ++i) {
     const Place &a = path.points[i - 1], &b = path.points[i];
     uint32_t level = a.level1 - 1;
-    const GroundPoint from = *ground_point(*c.world.data(), a),
-                      to = *ground_point(*c.world.data(), b);
+    const GroundPoint from = *ground_point(*data_of(c.world), a),
+                      to = *ground_point(*data_of(c.world), b);
     if (!walk(c.ground, level, from, to, kStep) || level != b.level1 - 1) return false;
   }
   return true;
@@ -79,7 +80,7 @@ TEST(Detours, LeadAroundCratesAndAreHardlyLongerThanTheBest) {
       if (path.end != PathEnd::kReached) continue;
       const double least = path.length;
       const bool was_open = is_open(c, path);
-      lead_around(*c.world.data(), c.live, ground, {}, path, scratch);
+      lead_around(*data_of(c.world), c.live, ground, {}, path, scratch);
       c.live.find(from, to, best);
       ASSERT_EQ(path.end, best.end) << name << ' ' << i;
       if (was_open) {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/plan_steps.h"
+#include "crowd/ground/plan_steps.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 
 #include "baked.h"
 #include "crowds.h"
+#include "throng/avatar.h"
 #include "throng/crowd.h"
-#include "throng/steering_model.h"
 #include "worlds.h"
 
 namespace throng {

@@ -9,12 +9,10 @@
 #include <vector>
 
 #include "baked.h"
-#include "throng/caacd_experiment.h"
 #include "throng/crowd.h"
+#include "throng/papers.h"
 #include "throng/recording.h"
 #include "throng/scenario.h"
-#include "throng/simulation.h"
-#include "throng/wanderers.h"
 
 namespace throng {
 namespace {
@@ -82,7 +80,7 @@ TEST(StepLength, EveryLengthIsRefusedWithASentenceOrWalked) {
     Scenario scenario;
     scenario.dt = dt;
     Context context;
-    auto simulation = Simulation::make(world, scenario, 1, context);
+    auto simulation = Simulation::create(world, scenario, 1, context);
     EXPECT_EQ(static_cast<bool>(simulation), dt >= 1e-3 && dt <= 1);
     if (simulation) {
       EXPECT_TRUE(simulation->step());

@@ -1,15 +1,16 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/stride_ground.h"
+#include "crowd/ground/stride_ground.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "core/access.h"
 #include "core/random.h"
 #include "simd_targets.h"
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
+#include "throng/scene.h"
 #include "world/place.h"
 
 namespace throng {
@@ -20,12 +21,12 @@ constexpr int32_t kStep = 400;  // mm
 struct Fixture {
   explicit Fixture(const BuiltinWorldConfig& config) {
     Context context;
-    const auto scene = make_builtin_world(config);
+    const auto scene = create_builtin_world(config);
     EXPECT_TRUE(scene) << scene.error().message;
     auto baked = bake_world(*scene, {.cell = 0.1, .classes = {AvatarClass{}}}, context);
     EXPECT_TRUE(baked) << baked.error().message;
     world = *baked;
-    ground = *CrowdGround::make(*world.data(), 0, kStep);
+    ground = *CrowdGround::make(*data_of(world), 0, kStep);
     stride = StrideGround(ground, kStep);
   }
   // A random body, and a point to look at.
@@ -36,7 +37,7 @@ struct Fixture {
   };
   [[nodiscard]] Stand stand(uint64_t n) const {
     const Place place = world.random_place(0, 1, n);
-    const GroundPoint at = *ground_point(*world.data(), place);
+    const GroundPoint at = *ground_point(*data_of(world), place);
     return {place.level1 - 1, at, ground.feet(place.level1 - 1, at)};
   }
   World world;

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/wanderers.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "throng/bake.h"
+#include "throng/papers.h"
 
 namespace throng {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "blank_atlas.h"
 #include "golden_image.h"
-#include "throng/builtin_worlds.h"
-#include "throng/figure_model.h"
+#include "throng/impostor.h"
+#include "throng/scene.h"
 #include "throng_draw/draw.h"
 
 namespace throng {
@@ -63,7 +63,7 @@ TEST(GlDrawing, AtlasesOfBlocksStayBlocksAndLookTheSame) {
   AtlasConfig made;
   made.frames = 4;
   Context context;
-  const auto atlas = build_atlas(built_in_character(), made, context);
+  const auto atlas = create_atlas(built_in_character(), made, context);
   ASSERT_TRUE(atlas);
   Avatars avatars;
   for (int32_t i = 0; i < 200; ++i) {
@@ -186,7 +186,7 @@ const Atlas& people() {
     config.frames = 4;
     config.pixels = 48;
     Context context;
-    auto built = build_atlas(built_in_character(), config, context);
+    auto built = create_atlas(built_in_character(), config, context);
     return *std::move(built);
   }();
   return atlas;
@@ -326,7 +326,7 @@ TEST(GlDrawing, ABuiltInWorldIsDrawnAndBadSettingsAreRefused) {
   EXPECT_FALSE(drawing.renderer().empty());
   BuiltinWorldConfig world;
   world.name = "stairs";
-  const auto scene = make_builtin_world(world);
+  const auto scene = create_builtin_world(world);
   ASSERT_TRUE(scene) << scene.error().message;
   ASSERT_TRUE(drawing.set_scene(*scene, {1, 0, 1}));
   DrawingConfig good = stage_config();
@@ -354,12 +354,12 @@ TEST(GlDrawing, LevelsOfDetailLookAlike) {
   Drawing drawing = made_drawing();
   Context context;
   AtlasConfig atlas_config;
-  const auto atlas = build_atlas(built_in_character(), atlas_config, context);
+  const auto atlas = create_atlas(built_in_character(), atlas_config, context);
   ASSERT_TRUE(atlas);
   ASSERT_TRUE(drawing.add_atlas(*atlas));
   AtlasConfig pose_config = atlas_config;
   pose_config.frames = 24;
-  const auto model = build_figure_model(built_in_character(), pose_config, context);
+  const auto model = create_figure_model(built_in_character(), pose_config, context);
   ASSERT_TRUE(model);
   ASSERT_TRUE(drawing.set_model(0, *model));
   FigureModel other = *model;

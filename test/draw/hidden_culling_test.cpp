@@ -13,8 +13,8 @@
 #include "core/random.h"
 #include "draw/depth_pyramid.h"
 #include "draw/scene_chunks.h"
-#include "throng/builtin_worlds.h"
-#include "throng/figure_model.h"
+#include "throng/impostor.h"
+#include "throng/scene.h"
 #include "throng_draw/draw.h"
 
 namespace throng {
@@ -97,9 +97,9 @@ Tally compare(const std::string& name, const Result<Scene>& scene, size_t avatar
   Context context;
   AtlasConfig atlas_config;
   atlas_config.frames = 2;
-  const auto atlas = build_atlas(built_in_character(), atlas_config, context);
+  const auto atlas = create_atlas(built_in_character(), atlas_config, context);
   EXPECT_TRUE(drawing->add_atlas(*atlas));
-  const auto model = build_figure_model(built_in_character(), atlas_config, context);
+  const auto model = create_figure_model(built_in_character(), atlas_config, context);
   EXPECT_TRUE(drawing->set_model(0, *model));
   const Box3d box = scene->bounds();
   EXPECT_TRUE(drawing->set_scene(*scene, {}));
@@ -149,14 +149,14 @@ Tally compare(const std::string& name, const Result<Scene>& scene, size_t avatar
 
 TEST(HiddenCulling, LeavesNothingOutThatAPictureOfACityShows) {
   const Tally tally =
-      compare("city", make_builtin_world({.name = "city", .triangles = 60'000}), 3000, 24);
+      compare("city", create_builtin_world({.name = "city", .triangles = 60'000}), 3000, 24);
   EXPECT_EQ(tally.wrong_pixels, 0U);
   EXPECT_GT(tally.hidden, tally.drawn / 4);
   EXPECT_LT(tally.triangles, tally.all_triangles);
 }
 
 TEST(HiddenCulling, LeavesNothingOutThatAPictureOfAGarageShows) {
-  const Tally tally = compare("garage", make_builtin_world({.name = "garage"}), 2000, 24);
+  const Tally tally = compare("garage", create_builtin_world({.name = "garage"}), 2000, 24);
   EXPECT_EQ(tally.wrong_pixels, 0U);
   EXPECT_GT(tally.hidden, tally.drawn / 4);
 }
@@ -175,7 +175,7 @@ TEST(HiddenCulling, LeavesNothingOutThatAPictureOfARealCityShows) {
 }
 
 TEST(SceneChunks, HoldEachTriangleOnceAndLeaveOutOnlyWhatIsNotInThePicture) {
-  const auto scene = make_builtin_world({.name = "city", .triangles = 30'000});
+  const auto scene = create_builtin_world({.name = "city", .triangles = 30'000});
   ASSERT_TRUE(scene);
   auto corners = scene_corners(*scene, {});
   ASSERT_TRUE(corners);

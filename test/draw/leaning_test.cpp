@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "draw/leaning_avatars.h"
-#include "throng/figure_model.h"
-#include "throng/lean.h"
+#include "throng/avatar.h"
+#include "throng/impostor.h"
 #include "throng_draw/draw.h"
 
 namespace throng {
@@ -23,13 +23,13 @@ class Figure {
     Context context;
     AtlasConfig config;
     config.clips = {"Walk"};
-    auto atlas = build_atlas(built_in_character(), config, context);
+    auto atlas = create_atlas(built_in_character(), config, context);
     EXPECT_TRUE(atlas);
     atlas_ = *std::move(atlas);
     EXPECT_TRUE(drawing_.add_atlas(atlas_));
     if (!mesh) return;
     config.frames = 24;
-    const auto model = build_figure_model(built_in_character(), config, context);
+    const auto model = create_figure_model(built_in_character(), config, context);
     EXPECT_TRUE(model);
     EXPECT_TRUE(drawing_.set_model(0, *model));
   }
@@ -215,7 +215,7 @@ TEST(GlLeaning, ALeaningAvatarCastsItsOwnShadow) {
 TEST(GlLeaning, OnlyAvatarsOutsideThePictureAreLeftOut) {
   Context context;
   AtlasConfig made;
-  const auto atlas = build_atlas(built_in_character(), made, context);
+  const auto atlas = create_atlas(built_in_character(), made, context);
   ASSERT_TRUE(atlas);
   std::vector<float> x, y, z;
   std::vector<uint16_t> heading, phase, look;

@@ -125,7 +125,7 @@ const Atlas& figure() {
     AtlasConfig config;
     config.frames = 2;
     Context context;
-    auto built = build_atlas(built_in_character(), config, context);
+    auto built = create_atlas(built_in_character(), config, context);
     return *std::move(built);
   }();
   return atlas;

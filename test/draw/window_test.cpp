@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <vector>
 
-#include "throng/builtin_worlds.h"
-#include "throng/character.h"
+#include "throng/impostor.h"
+#include "throng/scene.h"
 #include "throng_draw/draw.h"
 
 // A picture is drawn directly into a window that has depths, unless something else needs them; else
@@ -99,7 +99,7 @@ std::vector<uint8_t> shown(EGLint depth_bits, HiddenCulling culling, const Scene
     turns.push_back(static_cast<uint16_t>(i * 1700));
   }
   const DrawnCrowd crowd{
-      .avatars = {.x = x, .y = y, .z = z, .heading = turns, .phase = turns, .look = turns}};
+      .avatars = {.x = x, .y = y, .z = z, .heading = turns, .phase = turns, .appearance = turns}};
   glClearColor(1, 0, 1, 1);
   for (int32_t again = 0; again < 2; ++again) {
     const auto ok = drawing->show({&crowd, 1}, config);
@@ -125,10 +125,10 @@ void expect_alike(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) 
 
 TEST(GlWindow, ShowsTheSamePictureWithDepthsOfItsOwnAndWithout) {
   if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless")) GTEST_SKIP();
-  const auto garage = make_builtin_world({.name = "garage"});
+  const auto garage = create_builtin_world({.name = "garage"});
   ASSERT_TRUE(garage);
   Context quiet;
-  const auto atlas = build_atlas(built_in_character(), {}, quiet);
+  const auto atlas = create_atlas(built_in_character(), {}, quiet);
   ASSERT_TRUE(atlas);
   const auto copied = shown(0, HiddenCulling::kNever, *garage, *atlas);
   const auto at_once = shown(24, HiddenCulling::kNever, *garage, *atlas);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include "fuzz_reader.h"
-#include "import/plan.h"
+#include "import/formats/plan.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   return throng::fuzz_reader(throng::read_geojson, bytes, size);

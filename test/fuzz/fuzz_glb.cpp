@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include "fuzz_reader.h"
-#include "import/glb.h"
+#include "import/formats/glb.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   return throng::fuzz_reader(throng::read_glb, bytes, size);

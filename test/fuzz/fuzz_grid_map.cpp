@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "import/movingai.h"
+#include "import/formats/movingai.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   const auto cells = throng::read_grid_map({reinterpret_cast<const char*>(bytes), size}, "fuzz");

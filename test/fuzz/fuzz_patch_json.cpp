@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include "fuzz_reader.h"
-#include "import/patch_json.h"
+#include "import/formats/patch_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   return throng::fuzz_reader(throng::read_patch_json, bytes, size);

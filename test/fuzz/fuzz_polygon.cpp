@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "import/polygon.h"
+#include "import/raw/polygon.h"
 
 // Bytes become rings of small whole numbers: touching, crossing and degenerate rings are then
 // common. A byte of 255 begins a new ring, 254 makes the next corner arbitrary.

@@ -4,8 +4,8 @@
 
 #include <cstdlib>
 
-#include "import/clean.h"
-#include "import/raw_scene.h"
+#include "import/raw/clean.h"
+#include "import/raw/raw_scene.h"
 
 /// What all targets for readers do: read, cut patches, clean, check the result's order.
 namespace throng {

@@ -7,11 +7,12 @@
 #include <map>
 
 #include "baked.h"
+#include "core/access.h"
 #include "core/random.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
-#include "throng/graph.h"
+#include "throng/scene.h"
+#include "throng/world.h"
 #include "whole_graph.h"
 #include "world/place.h"
 #include "world/region_data.h"
@@ -48,7 +49,7 @@ class GraphOnDisk : public testing::Test {
 
 Result<Graph> make(const World& world) {
   Context context;
-  return Graph::make(world, {}, context);
+  return Graph::create(world, {}, context);
 }
 
 template <class File>
@@ -73,7 +74,7 @@ void write_text(const std::string& name, const std::string& bytes) {
 // Regions, links and components of the files of a world, put together, are those of the oracle.
 // Returns how many links lead over borders.
 size_t expect_whole(const World& opened, const std::string& path) {
-  const WorldData& world = *opened.data();
+  const WorldData& world = *data_of(opened);
   const WholeGraph whole = test::whole_graph(opened);
   std::vector<std::unique_ptr<RegionZone>> zones;
   std::vector<uint32_t> base{0};

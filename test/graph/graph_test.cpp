@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/graph.h"
-
 #include <gtest/gtest.h>
 
 #include <map>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "baked.h"
+#include "throng/world.h"
 #include "worlds.h"
 
 // The graph against a flood over World::move, cell by cell, that knows no regions.
@@ -20,7 +19,7 @@ using test::builtin;
 
 Graph make(const World& world, int32_t workers = 0) {
   Context context;
-  const auto graph = Graph::make(world, {.workers = workers}, context);
+  const auto graph = Graph::create(world, {.workers = workers}, context);
   EXPECT_TRUE(graph);
   return graph ? *graph : Graph{};
 }
@@ -164,11 +163,11 @@ TEST(Graph, ManyClassesShareOneGraph) {
 
 TEST(Graph, RefusesWhatIsNoWorldAndAnswersForNoPlace) {
   Context context;
-  EXPECT_FALSE(Graph::make(World{}, {}, context));
+  EXPECT_FALSE(Graph::create(World{}, {}, context));
   const World world = bake(worlds::two_floors(), 0.1, default_classes());
-  EXPECT_FALSE(Graph::make(world, {.workers = -1}, context));
+  EXPECT_FALSE(Graph::create(world, {.workers = -1}, context));
   context.cancel = true;
-  const auto cancelled = Graph::make(world, {}, context);
+  const auto cancelled = Graph::create(world, {}, context);
   ASSERT_FALSE(cancelled);
   EXPECT_EQ(cancelled.error().code, Errc::kCancelled);
   const Graph graph = make(world);

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "import/bpt.h"
+#include "import/formats/bpt.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "core/read_file.h"
-#include "import/patch_edges.h"
+#include "import/patches/patch_edges.h"
 #include "patch_bytes.h"
 #include "patch_nets.h"
 

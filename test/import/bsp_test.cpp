@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "import/bsp.h"
+#include "import/formats/bsp.h"
 
 #include <gtest/gtest.h>
 

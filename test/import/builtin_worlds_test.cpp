@@ -1,20 +1,19 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/builtin_worlds.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
 
 #include "core/hash.h"
-#include "throng/slices.h"
+#include "throng/papers.h"
+#include "throng/scene.h"
 
 namespace throng {
 namespace {
 
 Scene make(const BuiltinWorldConfig& config) {
-  auto scene = make_builtin_world(config);
+  auto scene = create_builtin_world(config);
   EXPECT_TRUE(scene) << scene.error().message;
   return scene ? std::move(*scene) : Scene{};
 }
@@ -202,7 +201,7 @@ TEST(BuiltinWorlds, NoAvatarStandsOnCarsPipesOrTrees) {
 
 TEST(BuiltinWorlds, WhatCannotBeBuiltIsRefusedWithASentence) {
   const auto refusal = [](const BuiltinWorldConfig& config) {
-    const auto scene = make_builtin_world(config);
+    const auto scene = create_builtin_world(config);
     EXPECT_FALSE(scene);
     return scene ? Error{} : scene.error();
   };

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "import/city.h"
+#include "import/formats/city.h"
 
 #include <gtest/gtest.h>
 

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "import/clean.h"
+#include "import/raw/clean.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "import/area_rules.h"
-#include "import/obj.h"
-#include "import/ply.h"
-#include "import/raw_scene.h"
+#include "import/formats/obj.h"
+#include "import/formats/ply.h"
+#include "import/raw/area_rules.h"
+#include "import/raw/raw_scene.h"
 
 namespace throng {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "import/glb.h"
+#include "import/formats/glb.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,8 @@
 
 #include "core/random.h"
 #include "core/read_file.h"
-#include "import/assimp_reader.h"
+#include "import/formats/assimp_reader.h"
 #include "scratch_folder.h"
-#include "throng/builtin_worlds.h"
 #include "throng/scene.h"
 
 namespace throng {
@@ -49,7 +48,7 @@ std::vector<Vec3d> corners_of(const Scene& scene) {
 TEST(Glb, BuiltInWorldsAreReadAsAssimpReadsThem) {
   const test::ScratchFolder folder;
   for (const char* name : {"garage", "stairs", "cube"}) {
-    const auto scene = make_builtin_world({.name = name});
+    const auto scene = create_builtin_world({.name = name});
     ASSERT_TRUE(scene);
     const std::string path = folder.path() + "/" + name + ".glb";
     ASSERT_TRUE(write_glb(*scene, path));
@@ -122,7 +121,7 @@ TEST(Glb, WhatIsNotReadIsRefusedByName) {
 // Wrong bytes give an error or a scene, and no other fault, under the sanitizers too.
 TEST(Glb, DamagedFilesNeverReachBeyondTheirEnd) {
   const test::ScratchFolder folder;
-  const auto cube = make_builtin_world({.name = "cube"});
+  const auto cube = create_builtin_world({.name = "cube"});
   ASSERT_TRUE(cube);
   ASSERT_TRUE(write_glb(*cube, folder.path() + "/cube.glb"));
   const auto whole = read_file(folder.path() + "/cube.glb");

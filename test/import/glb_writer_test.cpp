@@ -11,7 +11,6 @@
 
 #include "scratch_folder.h"
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
 #include "throng/scene.h"
 
 namespace throng {
@@ -84,7 +83,7 @@ void expect_equal(const std::vector<Triangle>& a, const std::vector<Triangle>& b
 TEST_F(GlbWriter, BuiltinWorldsComeBackAsTheyWere) {
   for (const BuiltinWorldInfo& info : builtin_worlds()) {
     const std::string name(info.name);
-    const auto scene = make_builtin_world({.name = name});
+    const auto scene = create_builtin_world({.name = name});
     ASSERT_TRUE(scene);
     ASSERT_TRUE(write_glb(*scene, path(name + ".glb")));
     SCOPED_TRACE(name);
@@ -105,7 +104,7 @@ Scene load(const std::string& path) {
 TEST_F(GlbWriter, EveryTriangleKeepsItsAreaKind) {
   for (const BuiltinWorldInfo& info : builtin_worlds()) {
     const std::string name(info.name);
-    const auto scene = make_builtin_world({.name = name});
+    const auto scene = create_builtin_world({.name = name});
     ASSERT_TRUE(scene);
     ASSERT_TRUE(write_glb(*scene, path(name + ".glb")));
     EXPECT_EQ(load(path(name + ".glb")).area, scene->area) << name;
@@ -126,7 +125,7 @@ TEST_F(GlbWriter, EveryTriangleKeepsItsAreaKind) {
 
 // The generator's area kinds decide what is walkable: cars, pillars, railings.
 TEST_F(GlbWriter, AWorldFromItsFileIsBakedLikeTheWorldItself) {
-  const auto garage = make_builtin_world({.name = "garage"});
+  const auto garage = create_builtin_world({.name = "garage"});
   ASSERT_TRUE(garage);
   ASSERT_TRUE(write_glb(*garage, path("garage.glb")));
   Context context;

@@ -7,14 +7,14 @@
 
 #include "patch_nets.h"
 #include "scratch_folder.h"
-#include "throng/builtin_worlds.h"
+#include "throng/scene.h"
 
 // What the built-in landscape guarantees beyond what every world does.
 namespace throng {
 namespace {
 
 Scene make(double size, uint64_t seed) {
-  auto scene = make_builtin_world({.name = "landscape", .size = size, .seed = seed});
+  auto scene = create_builtin_world({.name = "landscape", .size = size, .seed = seed});
   EXPECT_TRUE(scene) << scene.error().message;
   return scene ? *std::move(scene) : Scene{};
 }

@@ -12,12 +12,11 @@
 #include <vector>
 
 #include "core/read_file.h"
-#include "import/glb.h"
-#include "import/mtl.h"
-#include "import/name_colour.h"
-#include "import/texture_reader.h"
+#include "import/formats/glb.h"
+#include "import/formats/mtl.h"
+#include "import/formats/texture_reader.h"
+#include "import/raw/name_colour.h"
 #include "scratch_folder.h"
-#include "throng/builtin_worlds.h"
 #include "throng/scene.h"
 
 namespace throng {
@@ -102,7 +101,7 @@ Scene textured_scene() {
 Result<Scene> load(const std::string& path, std::vector<AreaVolume> volumes = {}) {
   SceneConfig config;
   config.sources.push_back({.path = path, .up = {}, .scale = {}, .transform = {}});
-  config.looks = SceneLooks::kRead;
+  config.looks = SceneMaterials::kRead;
   config.volumes = std::move(volumes);
   Context context;
   return load_scene(config, context);
@@ -156,7 +155,7 @@ TEST(Materials, GoThroughGlbAndBackWithTheirTextures) {
   Context context;
   ReadOptions options;
   options.name = path;
-  options.looks = SceneLooks::kRead;
+  options.looks = SceneMaterials::kRead;
   auto by_us = read_glb(*bytes, options, context);
   ASSERT_TRUE(by_us) << by_us.error().message;
   ASSERT_TRUE(read_textures(*by_us, path, context));
@@ -175,7 +174,7 @@ TEST(Materials, AreLeftOutUnlessRequested) {
   EXPECT_TRUE(scene->materials.empty());
   EXPECT_TRUE(scene->textures.empty());
   EXPECT_TRUE(scene->texture_corners.empty());
-  config.looks = SceneLooks::kRead;
+  config.looks = SceneMaterials::kRead;
   const auto looks = load_scene(config, context);
   ASSERT_TRUE(looks);
   EXPECT_EQ(scene->positions, looks->positions);
@@ -404,7 +403,7 @@ TEST(Materials, TwoModelsKeepTheirOwn) {
   for (const std::string& one : {folder.write("looks.obj", kObj), path}) {
     config.sources.push_back({.path = one, .up = {}, .scale = {}, .transform = {}});
   }
-  config.looks = SceneLooks::kRead;
+  config.looks = SceneMaterials::kRead;
   Context context;
   const auto scene = load_scene(config, context);
   ASSERT_TRUE(scene);
@@ -418,7 +417,7 @@ TEST(Materials, TwoModelsKeepTheirOwn) {
 }
 
 TEST(Materials, NamesSayWhatBuiltInWorldsAndCitiesAreMadeOf) {
-  const auto garage = make_builtin_world({.name = "garage"});
+  const auto garage = create_builtin_world({.name = "garage"});
   ASSERT_TRUE(garage);
   for (const ScenePart& part : garage->parts) EXPECT_NE(part.material1, 0U) << part.material;
   const auto roof = name_colour("RoofSurface");

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "import/movingai.h"
+#include "import/formats/movingai.h"
 
 #include <gtest/gtest.h>
 

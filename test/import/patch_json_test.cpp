@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "import/patch_json.h"
+#include "import/formats/patch_json.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

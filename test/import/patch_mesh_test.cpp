@@ -8,7 +8,7 @@
 #include "core/hash.h"
 #include "core/random.h"
 #include "patch_nets.h"
-#include "throng/patch.h"
+#include "throng/scene.h"
 
 namespace throng {
 namespace {

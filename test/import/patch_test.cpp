@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/patch.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/random.h"
 #include "patch_nets.h"
+#include "throng/scene.h"
 
 namespace throng {
 namespace {

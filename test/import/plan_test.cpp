@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "import/plan.h"
+#include "import/formats/plan.h"
 
 #include <gtest/gtest.h>
 
@@ -63,7 +63,7 @@ TEST(Plan, APlaneWithAnObstacleHasGroundWallsRoofAndPlate) {
   config.ground.outer = kSquare;
   config.obstacles.push_back({kSmall, {}});
   config.ground_height = 1;
-  const auto scene = make_plane_scene(config);
+  const auto scene = create_plane_scene(config);
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_NEAR(flat_area(*scene, 1, kAreaWalkable, 1), 100, 1e-9);
   EXPECT_NEAR(flat_area(*scene, 4, kAreaBlocked, 1), 4, 1e-9);
@@ -75,7 +75,7 @@ TEST(Plan, APlaneWithAnObstacleHasGroundWallsRoofAndPlate) {
 TEST(Plan, HolesInTheGroundAreObstacles) {
   PlaneConfig config;
   config.ground = {kSquare, {kSmall}};
-  const auto scene = make_plane_scene(config);
+  const auto scene = create_plane_scene(config);
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_NEAR(flat_area(*scene, 0, kAreaWalkable, 1), 96, 1e-9);
   EXPECT_NEAR(wall_area(*scene, 1), 24, 1e-9);
@@ -86,7 +86,7 @@ TEST(Plan, UnusablePolygonsAreRefusedByTheirPlace) {
     PlaneConfig config;
     config.ground = std::move(ground);
     config.obstacles = std::move(obstacles);
-    const auto scene = make_plane_scene(config);
+    const auto scene = create_plane_scene(config);
     return scene ? std::string("accepted") : scene.error().message;
   };
   EXPECT_EQ(message({{{0, 0}, {4, 4}, {4, 0}, {0, 5}}, {}}),
@@ -104,7 +104,7 @@ TEST(Plan, UnusablePolygonsAreRefusedByTheirPlace) {
             "plane: the ground: a corner is not a number; draw it again");
   EXPECT_EQ(message({}), "plane: the ground: a ring has 0 corners, needs 3; draw it again");
   EXPECT_EQ(
-      make_plane_scene(
+      create_plane_scene(
           {.ground = {kSquare, {}}, .obstacles = {}, .ground_height = 0, .obstacle_height = 0})
           .error()
           .code,

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "import/polygon.h"
+#include "import/raw/polygon.h"
 
 #include <gtest/gtest.h>
 

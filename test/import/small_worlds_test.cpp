@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include "throng/slices.h"
+#include "throng/papers.h"
 #include "worlds.h"
 
 // The hand-made scenes are as their comments state.

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "core/read_file.h"
-#include "import/glb.h"
-#include "import/texture_reader.h"
+#include "import/formats/glb.h"
+#include "import/formats/texture_reader.h"
 #include "throng/scene.h"
 
 namespace throng {
@@ -20,7 +20,7 @@ namespace {
 Result<Scene> load(const std::string& path) {
   SceneConfig config;
   config.sources.push_back({.path = path, .up = {}, .scale = {}, .transform = {}});
-  config.looks = SceneLooks::kRead;
+  config.looks = SceneMaterials::kRead;
   Context context;
   return load_scene(config, context);
 }
@@ -92,7 +92,7 @@ TEST(TexturedModels, OurOwnReaderOfGlbAgrees) {
     ASSERT_TRUE(bytes);
     ReadOptions options;
     options.name = path;
-    options.looks = SceneLooks::kRead;
+    options.looks = SceneMaterials::kRead;
     Context context;
     auto raw = read_glb(*bytes, options, context);
     ASSERT_TRUE(raw) << raw.error().message;

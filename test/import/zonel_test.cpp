@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "import/zonel.h"
+#include "import/formats/zonel.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "core/hash.h"
 #include "core/random.h"
 #include "core/read_file.h"
-#include "import/patch_edges.h"
+#include "import/patches/patch_edges.h"
 #include "patch_bytes.h"
 #include "patch_nets.h"
 #include "scratch_folder.h"

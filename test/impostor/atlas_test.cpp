@@ -34,7 +34,7 @@ AtlasConfig small_config(int32_t workers = 0) {
 const Atlas& small_atlas() {
   static const Atlas atlas = [] {
     Context context;
-    auto built = build_atlas(built_in_character(), small_config(), context);
+    auto built = create_atlas(built_in_character(), small_config(), context);
     return *std::move(built);
   }();
   return atlas;
@@ -210,7 +210,7 @@ TEST(Atlas, CodedViewsComeBackFromAllDirectionsElevationsAndFrames) {
 TEST(Atlas, SameBytesForAnyNumberOfWorkers) {
   for (const int32_t workers : {1, 2, 3, 0}) {
     Context context;
-    const auto atlas = build_atlas(built_in_character(), small_config(workers), context);
+    const auto atlas = create_atlas(built_in_character(), small_config(workers), context);
     ASSERT_TRUE(atlas) << atlas.error().message;
     EXPECT_EQ(hash_of(*atlas), 8541779138725335988ULL) << "workers = " << workers;
     EXPECT_EQ(hash_of(convert_atlas(*atlas, AtlasFormat::kBc3, workers)), 8726157399351789964ULL);
@@ -289,7 +289,7 @@ TEST_P(DamagedAtlas, IsRefusedWhereverItIsDamaged) {
   config.elevations = 1;
   config.pixels = 8;
   Context context;
-  const auto tiny = build_atlas(built_in_character(), config, context);
+  const auto tiny = create_atlas(built_in_character(), config, context);
   ASSERT_TRUE(tiny) << tiny.error().message;
   ASSERT_TRUE(save_atlas(convert_atlas(*tiny, GetParam()), path));
   std::ifstream file(path, std::ios::binary);
@@ -356,7 +356,7 @@ TEST(Atlas, BadSettingsAreRefusedAndNamed) {
     AtlasConfig config = small_config();
     change(config);
     Context context;
-    const auto atlas = build_atlas(character, config, context);
+    const auto atlas = create_atlas(character, config, context);
     ASSERT_FALSE(atlas) << word;
     EXPECT_EQ(atlas.error().code, code) << word;
     EXPECT_NE(atlas.error().message.find(word), std::string::npos) << atlas.error().message;
@@ -377,7 +377,7 @@ TEST(Atlas, BadSettingsAreRefusedAndNamed) {
   for (Influence& i : still.influences) i.bone = {};
   for (Clip& clip : still.clips) clip.tracks.clear();
   Context context;
-  const auto point = build_atlas(still, small_config(), context);
+  const auto point = create_atlas(still, small_config(), context);
   ASSERT_FALSE(point);
   EXPECT_EQ(point.error().code, Errc::kBadInput);
 }
@@ -385,7 +385,7 @@ TEST(Atlas, BadSettingsAreRefusedAndNamed) {
 TEST(Atlas, CancelStops) {
   Context context;
   context.cancel = true;
-  const auto atlas = build_atlas(built_in_character(), small_config(), context);
+  const auto atlas = create_atlas(built_in_character(), small_config(), context);
   ASSERT_FALSE(atlas);
   EXPECT_EQ(atlas.error().code, Errc::kCancelled);
 }

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/character.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include <filesystem>
 
 #include "impostor/gait.h"
+#include "throng/impostor.h"
 
 namespace throng {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/figure_model.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "throng/impostor.h"
 
 namespace throng {
 namespace {
@@ -39,9 +39,9 @@ Vec3d normal_of(const PosedVertex& v) {
 TEST(FigureModel, HasTheClipsAndTheSizeOfTheAtlas) {
   Context context;
   const Character character = built_in_character();
-  const auto model = build_figure_model(character, small_config(), context);
+  const auto model = create_figure_model(character, small_config(), context);
   ASSERT_TRUE(model) << model.error().message;
-  const auto atlas = build_atlas(character, small_config(), context);
+  const auto atlas = create_atlas(character, small_config(), context);
   ASSERT_TRUE(atlas);
   ASSERT_EQ(model->clips.size(), atlas->clips.size());
   for (size_t c = 0; c < model->clips.size(); ++c) {
@@ -57,7 +57,7 @@ TEST(FigureModel, HasTheClipsAndTheSizeOfTheAtlas) {
 TEST(FigureModel, VerticesAreWhereThePoseHasThem) {
   Context context;
   const Character character = built_in_character();
-  const auto model = build_figure_model(character, small_config(), context);
+  const auto model = create_figure_model(character, small_config(), context);
   ASSERT_TRUE(model);
   PosedMesh mesh;
   pose_character(character, 0, character.clips[0].seconds / 4, mesh);  // The walk's second frame.
@@ -89,11 +89,11 @@ TEST(FigureModel, RefusesWhatAnAtlasRefuses) {
   Context context;
   AtlasConfig config = small_config();
   config.frames = 3;
-  EXPECT_EQ(build_figure_model(built_in_character(), config, context).error().code,
+  EXPECT_EQ(create_figure_model(built_in_character(), config, context).error().code,
             Errc::kBadConfig);
   config = small_config();
   config.clips = {"Fly"};
-  EXPECT_EQ(build_figure_model(built_in_character(), config, context).error().code,
+  EXPECT_EQ(create_figure_model(built_in_character(), config, context).error().code,
             Errc::kNotFound);
 }
 

@@ -12,15 +12,15 @@
 
 #include "core/random.h"
 #include "simd_targets.h"
-#include "throng/impostor_pack.h"
+#include "throng/impostor.h"
 
 namespace throng {
 namespace {
 
 struct Avatars {
   std::vector<float> x, y, z;
-  std::vector<uint16_t> heading, phase, look;
-  [[nodiscard]] ImpostorArrays view() const { return {x, y, z, heading, phase, look}; }
+  std::vector<uint16_t> heading, phase, appearance;
+  [[nodiscard]] ImpostorArrays view() const { return {x, y, z, heading, phase, appearance}; }
 };
 
 // Around the eye, some very near and some on round coordinates.
@@ -36,7 +36,7 @@ Avatars random_avatars(size_t count, double spread) {
     a.z.push_back(coordinate(2));
     a.heading.push_back(static_cast<uint16_t>(random_u64(5, i, 3)));
     a.phase.push_back(static_cast<uint16_t>(random_u64(5, i, 4)));
-    a.look.push_back(static_cast<uint16_t>(i % 2048));
+    a.appearance.push_back(static_cast<uint16_t>(i % 2048));
   }
   return a;
 }
@@ -86,7 +86,7 @@ TEST(PackImpostors, ShowsEachAvatarByTheViewThatIsChosenForItAlone) {
         EXPECT_EQ(instance.view & 0xfffff,
                   atlas.shape.view(choice.frame, choice.row, choice.column));
         EXPECT_EQ(instance.view >> 20 & 1, choice.mirrored ? 1U : 0U);
-        EXPECT_EQ(instance.view >> 21, avatars.look[i]);
+        EXPECT_EQ(instance.view >> 21, avatars.appearance[i]);
         ++i;
       }
     }
@@ -200,13 +200,13 @@ TEST(PackImpostors, EachIsDrawnAtTheLevelOfItsDistance) {
 TEST(PackImpostors, MeshesKnowHeadingAndPhase) {
   const Atlas atlas = atlas_of(16, 8);
   const std::vector<float> x{0, 0, 0}, y{0, 0, 0}, z{-3, -3, -3};
-  const std::vector<uint16_t> heading{0, 32768, 65530}, phase{0, 32768, 65535}, look{1, 2, 2047};
+  const std::vector<uint16_t> heading{0, 32768, 65530}, phase{0, 32768, 65535}, appearance{1, 2, 2047};
   PackConfig config;
   config.camera.eye = {0, 1, 0};
   config.camera.target = {0, 1, -1};
   std::vector<ImpostorInstance> meshes(3), views(3);
   const LevelCounts counts =
-      pack_levels(atlas, {x, y, z, heading, phase, look}, config, {.mesh_near = 4, .mesh_far = 5},
+      pack_levels(atlas, {x, y, z, heading, phase, appearance}, config, {.mesh_near = 4, .mesh_far = 5},
                   {.meshes = meshes, .views = views, .points = {}});
   ASSERT_EQ(counts.meshes, 3U);
   EXPECT_EQ(counts.views, 0U);
@@ -311,7 +311,8 @@ TEST(PackImpostors, BlendsTheFourViewsAroundTheEyesDirection) {
     }
     const auto near_floor = [](double at) { return std::fabs(at - std::round(at)) < 1e-3; };
     if ((to_column == 0 && near_floor(column)) || (to_row == 0 && near_floor(row))) continue;
-    EXPECT_EQ(b.nearest_below.view, view(c0, r0) | static_cast<uint32_t>(avatars.look[i]) << 21);
+    EXPECT_EQ(b.nearest_below.view, view(c0, r0) | static_cast<uint32_t>(avatars.appearance[i])
+                                                       << 21);
     EXPECT_EQ(b.others[0], view(c1, r0));
     EXPECT_EQ(b.others[1], view(c0, r1));
     EXPECT_EQ(b.others[2], view(c1, r1));

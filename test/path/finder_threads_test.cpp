@@ -6,11 +6,8 @@
 #include <vector>
 
 #include "baked.h"
-#include "throng/flight.h"
-#include "throng/ground_query.h"
-#include "throng/live_ground.h"
-#include "throng/node_path.h"
 #include "throng/path.h"
+#include "throng/world.h"
 
 // Copies of all finders that answer in many threads at once.
 namespace throng {
@@ -42,18 +39,18 @@ TEST(Finders, CopiesAnswerTheSameInManyThreadsAtOnce) {
   const Scene scene = test::builtin({.name = "garage", .size = 45, .levels = 2});
   std::vector<AvatarClass> classes = {{.name = "adult"}, flyer_class()};
   const World world = test::bake(scene, 0.25, classes);
-  const Nodes nodes = need(Nodes::make(world, scene, {}, context));
-  PathFinder search = need(PathFinder::make(world, {}, context));
-  PathFinder labels = need(PathFinder::make(world, {.labels = true}, context));
-  LiveGround live = need(LiveGround::make(world, {}));
-  NodePathFinder over_nodes = need(NodePathFinder::make(nodes, {}, context));
-  FlightFinder flight = need(FlightFinder::make(world, {.avatar_class = 1}, context));
+  const Nodes nodes = need(Nodes::create(world, scene, {}, context));
+  PathFinder search = need(PathFinder::create(world, {}, context));
+  PathFinder labels = need(PathFinder::create(world, {.speedup = PathSpeedup::kLabels}, context));
+  LiveGround live = need(LiveGround::create(world, {}));
+  NodePathFinder over_nodes = need(NodePathFinder::create(nodes, {}, context));
+  FlightFinder flight = need(FlightFinder::create(world, {.avatar_class = 1}, context));
   const auto from = [&](uint64_t n) { return world.random_place(0, 7, 2 * n); };
   const auto to = [&](uint64_t n) { return world.random_place(0, 7, 2 * n + 1); };
   // The first thread to get here adds a crate to its own copy: the others must not see it.
   const auto ask_all = [&](PathFinder by_search, PathFinder by_labels, LiveGround on_live,
                            NodePathFinder on_nodes, FlightFinder in_air, bool crate) {
-    GroundQuery query = need(GroundQuery::make(world, 0));
+    GroundQuery query = need(GroundQuery::create(world, 0));
     Answers answers;
     Path path;
     NodePath node_path;

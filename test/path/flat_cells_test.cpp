@@ -48,7 +48,7 @@ TEST(FlatCells, PathsAreAsShortAsBruteForceFinds) {
   for (uint64_t seed = 0; seed < 24; ++seed) {
     const FlatCells cells = random_cells(24, 24, 5 + 2 * seed, seed);
     const World world = bake(cells);
-    auto finder = PathFinder::make(world, {}, context);
+    auto finder = PathFinder::create(world, {}, context);
     ASSERT_TRUE(finder) << finder.error().message;
     const test::GridOracle oracle(cells);
     Path path;

@@ -8,13 +8,14 @@
 #include <cmath>
 #include <vector>
 
+#include "core/access.h"
 #include "core/random.h"
 #include "exact_prism.h"
-#include "path/flight_endpoints.h"
-#include "path/flight_space.h"
+#include "path/air/flight_endpoints.h"
+#include "path/air/flight_space.h"
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
-#include "throng/flight.h"
+#include "throng/path.h"
+#include "throng/scene.h"
 
 // Obstacles in the air. The oracle works on cells: in which of them a body could touch a prism,
 // which of the others are connected, and the whole cylinder along every path.
@@ -30,7 +31,7 @@ World bake(const Scene& scene, double cell = 0.2) {
 
 FlightFinder finder(const World& world) {
   Context context;
-  auto made = FlightFinder::make(world, {}, context);
+  auto made = FlightFinder::create(world, {}, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -117,7 +118,7 @@ std::vector<Prism> random_prisms(uint64_t seed, double width) {
 class Cells {
  public:
   explicit Cells(const World& world, const FlightFinder& flight)
-      : space_(flight.space()), ends_(*world.data(), flight.space(), 0) {
+      : space_(space_of(flight)), ends_(*data_of(world), space_of(flight), 0) {
     const int32_t layers = space_.shape.ceiling - space_.shape.floor;
     label_.assign(static_cast<size_t>(space_.width * space_.depth * layers), -1);
     for_all([&](int32_t x, int32_t y, int32_t z) {
@@ -604,16 +605,16 @@ TEST(FlightChanges, AWallThroughALargeWorldIsFoundBySearching) {
   ASSERT_TRUE(world) << world.error().message;
   FlightFinder flight = finder(*world);
   ASSERT_GT(flight.summary().boxes, 90'000u);
-  const FlightEndpoints ends(*world->data(), flight.space(), 0);
+  const FlightEndpoints ends(*data_of(*world), space_of(flight), 0);
   const auto component_of = [&](Vec3d p) {
-    const uint32_t at = flight.space().box_at(ends.to_air(p));
-    return at == kNoBox ? kNoBox : flight.space().component[at];
+    const uint32_t at = space_of(flight).box_at(ends.to_air(p));
+    return at == kNoBox ? kNoBox : space_of(flight).component[at];
   };
   std::vector<Vec3d> left, right;
   const uint32_t most = component_of([&] {
     for (uint64_t n = 0;; ++n) {
       const Vec3d p = *flight.random_point(4, n);
-      if (std::count(flight.space().component.begin(), flight.space().component.end(),
+      if (std::count(space_of(flight).component.begin(), space_of(flight).component.end(),
                      component_of(p)) > 50'000) {
         return p;
       }

@@ -1,20 +1,20 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/flight.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
+#include "core/access.h"
 #include "core/random.h"
-#include "path/air_view.h"
-#include "path/circle_flood.h"
-#include "path/flight_endpoints.h"
-#include "path/flight_space.h"
+#include "path/air/air_view.h"
+#include "path/air/flight_endpoints.h"
+#include "path/air/flight_space.h"
+#include "path/ground/circle_flood.h"
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
+#include "throng/path.h"
+#include "throng/scene.h"
 #include "throng/verify.h"
 #include "voxel_oracle.h"
 #include "worlds.h"
@@ -32,7 +32,7 @@ World bake(const Scene& scene, double cell = 0.1) {
 
 FlightFinder finder(const World& world) {
   Context context;
-  auto made = FlightFinder::make(world, {}, context);
+  auto made = FlightFinder::create(world, {}, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -123,11 +123,11 @@ TEST(Flight, KnowsWhichGroundLeadsIntoWhichAir) {
   yards.add_box({10, 0, 0}, {20, 4, 8});
   yards.add_box({40, 0, 0}, {50, 4, 8});
   yards.add_quad({38, 0, -2}, {52, 0, -2}, {52, 0, 10}, {38, 0, 10});
-  const Scene church = *make_builtin_world({.name = "church"});
+  const Scene church = *create_builtin_world({.name = "church"});
   for (const bool yard : {true, false}) {
     const World world = bake(yard ? yards : church, 0.2);
     FlightFinder flight = finder(world);
-    const FlightEndpoints ends(*world.data(), flight.space(), 0);
+    const FlightEndpoints ends(*data_of(world), space_of(flight), 0);
     CircleFlood flood;
     FlightPath path;
     std::vector<uint32_t> over;
@@ -138,7 +138,7 @@ TEST(Flight, KnowsWhichGroundLeadsIntoWhichAir) {
       const auto air = ends.in_air(*point);
       ASSERT_TRUE(air);
       EXPECT_FALSE(ends.components_over(place, UINT64_MAX, flood, over));
-      const uint32_t of_air = flight.space().component[flight.space().box_at(*air)];
+      const uint32_t of_air = space_of(flight).component[space_of(flight).box_at(*air)];
       const bool together = std::find(over.begin(), over.end(), of_air) != over.end();
       (together ? reached : parted) += 1;
       const PathEnd expected = together ? PathEnd::kReached : PathEnd::kUnreachable;
@@ -222,9 +222,9 @@ TEST(Flight, LandsAndTakesOffAgainWhereOnlyTheGroundLeadsFromAirToAir) {
   const World world = bake(scene);
   FlightFinder flight = finder(world);
   const Vec3d here{3, 2, 4}, there{16, 3, 3};
-  const FlightEndpoints ends(*world.data(), flight.space(), 0);
+  const FlightEndpoints ends(*data_of(world), space_of(flight), 0);
   ASSERT_TRUE(ends.in_air(here) && ends.in_air(there));
-  ASSERT_FALSE(AirView(flight.space()).same_component(*ends.in_air(here), *ends.in_air(there)));
+  ASSERT_FALSE(AirView(space_of(flight)).same_component(*ends.in_air(here), *ends.in_air(there)));
   FlightPath path;
   flight.find({.from = here, .to = there}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
@@ -262,11 +262,12 @@ TEST(Flight, ReportsHowNearItComesAndTheBlocker) {
     EXPECT_NEAR(length(path.points.front() - here), 0, 0.01);
     // As near as the air comes, of all boxes, by many points of each.
     double least = INFINITY;
-    const FlightEndpoints ends(*world.data(), flight.space(), 0);
-    const uint32_t part = flight.space().component[flight.space().box_at(*ends.in_air({3, 2, 4}))];
-    for (size_t b = 0; b < flight.space().boxes.size(); ++b) {
-      if (flight.space().component[b] != part) continue;
-      const AirCube& box = flight.space().boxes[b];
+    const FlightEndpoints ends(*data_of(world), space_of(flight), 0);
+    const uint32_t part =
+        space_of(flight).component[space_of(flight).box_at(*ends.in_air({3, 2, 4}))];
+    for (size_t b = 0; b < space_of(flight).boxes.size(); ++b) {
+      if (space_of(flight).component[b] != part) continue;
+      const AirCube& box = space_of(flight).boxes[b];
       for (int i = 0; i < 27; ++i) {
         const auto at = [&](int32_t low, int k) { return low + box.side * (0.01 + 0.49 * k); };
         const Vec3d p = ends.to_metres({at(box.x, i % 3), at(box.y, i / 3 % 3), at(box.z, i / 9)});
@@ -351,10 +352,11 @@ TEST(Flight, NeedsAirAndAClassThatFlies) {
   Context context;
   const Scene scene = two_floors();
   const auto ground = bake_world(scene, {.cell = 0.2}, context);
-  EXPECT_EQ(FlightFinder::make(*ground, {}, context).error().code, Errc::kNotFound);
+  EXPECT_EQ(FlightFinder::create(*ground, {}, context).error().code, Errc::kNotFound);
   const auto air = bake_world(scene, {.cell = 0.2, .air = 0.4}, context);
-  EXPECT_EQ(FlightFinder::make(*air, {}, context).error().code, Errc::kBadConfig);
-  EXPECT_EQ(FlightFinder::make(*air, {.avatar_class = 9}, context).error().code, Errc::kBadConfig);
+  EXPECT_EQ(FlightFinder::create(*air, {}, context).error().code, Errc::kBadConfig);
+  EXPECT_EQ(FlightFinder::create(*air, {.avatar_class = 9}, context).error().code,
+            Errc::kBadConfig);
 }
 
 TEST(Flight, CopiesAndSecondQueriesFindTheSame) {
@@ -376,7 +378,7 @@ TEST(Flight, NoBodyOnAnyPathTouchesABuiltInWorld) {
   Context context;
   uint64_t pairs = 0, bodies = 0;
   for (const char* name : {"stairs", "garage", "church", "cube"}) {
-    const auto scene = make_builtin_world({.name = name});
+    const auto scene = create_builtin_world({.name = name});
     ASSERT_TRUE(scene) << scene.error().message;
     const World world = bake(*scene, 0.2);
     const auto report = verify_flight(world, *scene, {.samples = 1500}, context);

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/flow_field.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +18,7 @@ namespace {
 using test::bake;
 
 LiveGround live(const World& world, int32_t avatar_class = 0) {
-  auto made = LiveGround::make(world, {.avatar_class = avatar_class});
+  auto made = LiveGround::create(world, {.avatar_class = avatar_class});
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -28,7 +26,7 @@ LiveGround live(const World& world, int32_t avatar_class = 0) {
 FlowField field(const LiveGround& ground, const std::vector<Place>& goals,
                 double max_distance = 1e9) {
   Context context;
-  auto made = FlowField::make(ground, goals, {.max_distance = max_distance}, context);
+  auto made = FlowField::create(ground, goals, {.max_distance = max_distance}, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -40,7 +38,7 @@ TEST(FlowField, IsAsFarAsTheNearestGoalByTheExactSearch) {
        {bake(test::builtin({.name = "garage"}), 0.2), bake(test::builtin({.name = "church"}), 0.15),
         bake(test::builtin({.name = "maze"}), 0.2), bake(worlds::random_soup(7, 400, 12), 0.15)}) {
     Context context;
-    auto exact = PathFinder::make(world, {.avatar_class = 0}, context);
+    auto exact = PathFinder::create(world, {.avatar_class = 0}, context);
     ASSERT_TRUE(exact);
     std::vector<Place> goals;
     for (uint64_t n = 0; n < 3; ++n) goals.push_back(world.random_place(0, 77, n));
@@ -144,15 +142,15 @@ TEST(FlowField, RefusesNonsense) {
   const World world = bake(worlds::flat(6), 0.2);
   LiveGround ground = live(world);
   Context context;
-  EXPECT_FALSE(FlowField::make(ground, {}, {}, context));
+  EXPECT_FALSE(FlowField::create(ground, {}, {}, context));
   const std::vector<Place> nowhere(2);
-  EXPECT_FALSE(FlowField::make(ground, nowhere, {}, context));
+  EXPECT_FALSE(FlowField::create(ground, nowhere, {}, context));
   const std::vector<Place> goals{world.find_place(0, {3, 0, 3}, 0.5)};
-  EXPECT_FALSE(FlowField::make(ground, goals, {.max_distance = -1}, context));
+  EXPECT_FALSE(FlowField::create(ground, goals, {.max_distance = -1}, context));
   context.cancel = true;
-  EXPECT_FALSE(FlowField::make(ground, goals, {}, context));
+  EXPECT_FALSE(FlowField::create(ground, goals, {}, context));
   context.cancel = false;
-  auto flow = FlowField::make(ground, goals, {}, context);
+  auto flow = FlowField::create(ground, goals, {}, context);
   ASSERT_TRUE(flow);
   EXPECT_FALSE(flow->next({}));
   EXPECT_FALSE(std::isfinite(flow->distance({{1e300, 0, 0}, 1})));

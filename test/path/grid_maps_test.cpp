@@ -9,8 +9,8 @@
 #include <string>
 
 #include "throng/bake.h"
-#include "throng/cells.h"
 #include "throng/path.h"
+#include "throng/scene.h"
 
 // Moving AI's grid maps with all queries of their scenarios: paths that are looked up against those
 // of the search.
@@ -21,7 +21,7 @@ class GridMaps : public testing::TestWithParam<const char*> {};
 
 PathFinder finder(const World& world, const PathConfig& config) {
   Context context;
-  auto made = PathFinder::make(world, config, context);
+  auto made = PathFinder::create(world, config, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -33,14 +33,15 @@ TEST_P(GridMaps, LabelsAndZonesAreAsShortAsTheSearchInSharedWorlds) {
   ASSERT_TRUE(cells) << cells.error().message;
   const auto world = bake_flat_cells(*cells, 1);
   ASSERT_TRUE(world) << world.error().message;
-  PathFinder search = finder(*world, {}), labels = finder(*world, {.labels = true});
-  PathFinder zones = finder(*world, {.zones = true});
+  PathFinder search = finder(*world, {}),
+             labels = finder(*world, {.speedup = PathSpeedup::kLabels});
+  PathFinder zones = finder(*world, {.speedup = PathSpeedup::kZones});
 
   std::ifstream scenario(map + ".scen");
   std::string line;
   std::getline(scenario, line);  // "version 1"
   Path searched, looked_up, over_zones;
-  // Berlin's labels do not fit the lists of blocks, and PathConfig::labels promises 2 % then.
+  // Berlin's labels do not fit the lists of blocks, and kLabels promises 2 % then.
   const double max_longer = GetParam() == std::string("Berlin_0_512") ? 0.02 : 1e-4;
   double worst = 1;
   int queries = 0;

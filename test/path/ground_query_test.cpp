@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/ground_query.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,6 +12,7 @@
 #include "baked.h"
 #include "core/random.h"
 #include "throng/path.h"
+#include "throng/world.h"
 #include "worlds.h"
 
 // Queries around a place, against brute force over all cells.
@@ -23,7 +22,7 @@ namespace {
 using test::bake;
 
 GroundQuery query(const World& world, int32_t avatar_class = 0) {
-  auto made = GroundQuery::make(world, avatar_class);
+  auto made = GroundQuery::create(world, avatar_class);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -349,9 +348,9 @@ TEST(GroundQuery, APlaceBesideTheTileOfItsLevelIsNone) {
 
 TEST(GroundQuery, RefusesNonsense) {
   const World world = bake(worlds::flat(6), 0.1);
-  EXPECT_FALSE(GroundQuery::make(world, 99));
-  EXPECT_FALSE(GroundQuery::make(world, -1));
-  EXPECT_FALSE(GroundQuery::make(World(), 0));
+  EXPECT_FALSE(GroundQuery::create(world, 99));
+  EXPECT_FALSE(GroundQuery::create(world, -1));
+  EXPECT_FALSE(GroundQuery::create(World(), 0));
   GroundQuery ask = query(world);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();

@@ -7,15 +7,16 @@
 #include <vector>
 
 #include "baked.h"
+#include "core/access.h"
 #include "core/random.h"
 #include "grid_oracle.h"
-#include "path/label_search.h"
-#include "path/mesh.h"
-#include "path/search.h"
-#include "path/segments.h"
-#include "path/string_puller.h"
+#include "path/ground/label_search.h"
+#include "path/ground/mesh.h"
+#include "path/ground/search.h"
+#include "path/ground/segments.h"
+#include "path/ground/string_puller.h"
 #include "throng/bake.h"
-#include "throng/cells.h"
+#include "throng/scene.h"
 #include "world/place.h"
 
 // Paths that are pulled taut, and paths looked up by the middles of blocks, against the search.
@@ -26,7 +27,7 @@ class MeshedWorld {
  public:
   MeshedWorld(const World& world, int32_t avatar_class) : world_(world), class_(avatar_class) {
     Context context;
-    auto made = build_mesh(*world.data(), avatar_class, 0, context);
+    auto made = build_mesh(*data_of(world), avatar_class, 0, context);
     EXPECT_TRUE(made);
     mesh = *std::move(made);
   }
@@ -34,7 +35,7 @@ class MeshedWorld {
   [[nodiscard]] Stop random_stop(uint64_t seed, uint64_t n) const {
     const Place place = world_.random_place(class_, seed, n);
     Stop stop;
-    stop.at = to_ground(*world_.data(), place.position.x, place.position.z);
+    stop.at = to_ground(*data_of(world_), place.position.x, place.position.z);
     stop.rect = mesh.rect_at(place.level1 - 1, stop.at.cell_x(), stop.at.cell_z());
     EXPECT_NE(stop.rect, kNoRect);
     return stop;
@@ -51,7 +52,7 @@ class MeshedWorld {
   [[nodiscard]] bool is_legal(const Stop& from, const std::vector<uint32_t>& corners,
                               const Stop& to) const {
     std::vector<Stop> stops;
-    return SegmentWalker(*world_.data(), mesh).walk(from, corners, to.at, stops) &&
+    return SegmentWalker(*data_of(world_), mesh).walk(from, corners, to.at, stops) &&
            stops.back().rect == to.rect;
   }
 

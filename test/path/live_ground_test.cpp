@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/live_ground.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,14 +20,14 @@ namespace {
 using test::bake;
 
 LiveGround live(const World& world, int32_t avatar_class = 0, double slope_cost = 0) {
-  auto made = LiveGround::make(world, {.avatar_class = avatar_class, .slope_cost = slope_cost});
+  auto made = LiveGround::create(world, {.avatar_class = avatar_class, .slope_cost = slope_cost});
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
 
 PathFinder exact(const World& world, int32_t avatar_class = 0) {
   Context context;
-  auto made = PathFinder::make(world, {.avatar_class = avatar_class}, context);
+  auto made = PathFinder::create(world, {.avatar_class = avatar_class}, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -435,9 +433,9 @@ TEST(LiveGround, SearchesInSlicesAndStartsAgainWhenTheGroundChanges) {
 
 TEST(LiveGround, RefusesNonsense) {
   const World world = bake(worlds::flat(6), 0.1);
-  EXPECT_FALSE(LiveGround::make(World(), {}));
-  EXPECT_FALSE(LiveGround::make(world, {.avatar_class = 9}));
-  EXPECT_FALSE(LiveGround::make(world, {.slope_cost = -1}));
+  EXPECT_FALSE(LiveGround::create(World(), {}));
+  EXPECT_FALSE(LiveGround::create(world, {.avatar_class = 9}));
+  EXPECT_FALSE(LiveGround::create(world, {.slope_cost = -1}));
   LiveGround ground = live(world);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(ground.add_obstacle(Prism{}));

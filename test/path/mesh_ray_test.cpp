@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/mesh_ray.h"
+#include "path/ground/mesh_ray.h"
 
 #include <gtest/gtest.h>
 
 #include "baked.h"
+#include "core/access.h"
 #include "core/random.h"
 #include "throng/bake.h"
-#include "throng/cells.h"
+#include "throng/scene.h"
 #include "world/ground.h"
 #include "world/place.h"
 
@@ -17,15 +18,15 @@ namespace {
 
 PathMesh mesh_of(const World& world, int32_t avatar_class) {
   Context context;
-  auto mesh = build_mesh(*world.data(), avatar_class, 0, context);
+  auto mesh = build_mesh(*data_of(world), avatar_class, 0, context);
   EXPECT_TRUE(mesh);
   return *std::move(mesh);
 }
 
 // The rectangle in which a walk over cells ends.
 uint32_t walked(const World& world, const PathMesh& mesh, const Stop& from, GroundPoint to) {
-  const WorldGround ground{*world.data(), mesh.avatar_class};
-  GroundLevel level = ground_level(*world.data(), mesh.rects[from.rect].level, mesh.avatar_class);
+  const WorldGround ground{*data_of(world), mesh.avatar_class};
+  GroundLevel level = ground_level(*data_of(world), mesh.rects[from.rect].level, mesh.avatar_class);
   if (!walk(ground, level, from.at, to, mesh.step)) return kNoRect;
   return mesh.rect_at(level.world_level, to.cell_x(), to.cell_z());
 }
@@ -90,7 +91,7 @@ TEST(MeshRay, LeadsToTheLevelThatTheWalkLeadsTo) {
     const PathMesh mesh = mesh_of(world, 0);
     for (uint64_t n = 0; n < 20000; ++n) {
       const Place place = world.random_place(0, 1, n);
-      const GroundPoint at = to_ground(*world.data(), place.position.x, place.position.z);
+      const GroundPoint at = to_ground(*data_of(world), place.position.x, place.position.z);
       const Stop from{round_off(at, 2, n),
                       mesh.rect_at(place.level1 - 1, at.cell_x(), at.cell_z())};
       ASSERT_NE(from.rect, kNoRect);

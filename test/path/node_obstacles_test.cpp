@@ -7,11 +7,11 @@
 
 #include "baked.h"
 #include "core/random.h"
-#include "path/node_changes.h"
-#include "path/node_view.h"
-#include "path/overlay_search.h"
+#include "path/overlay/overlay_search.h"
+#include "path/surface/node_changes.h"
+#include "path/surface/node_view.h"
 #include "prism_shell.h"
-#include "throng/node_path.h"
+#include "throng/path.h"
 #include "throng/verify.h"
 #include "verify/triangle_tree.h"
 #include "verify/turned_body.h"
@@ -42,7 +42,8 @@ struct TestWorld {
 TestWorld make(const BuiltinWorldConfig& world, double cell, double size) {
   Context context;
   TestWorld made{builtin(world), {}};
-  auto nodes = Nodes::make(bake(made.scene, cell, classes()), made.scene, {.size = size}, context);
+  auto nodes =
+      Nodes::create(bake(made.scene, cell, classes()), made.scene, {.size = size}, context);
   EXPECT_TRUE(nodes);
   if (nodes) made.nodes = *nodes;
   return made;
@@ -131,7 +132,7 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftFindsTheSame) {
       ASSERT_TRUE(mesh);
       const BlockSquares squares(*mesh);
       NodeChanges changes(*mesh, squares, 20);
-      auto finder = NodePathFinder::make(world.nodes, {.avatar_class = c, .workers = 1}, context);
+      auto finder = NodePathFinder::create(world.nodes, {.avatar_class = c, .workers = 1}, context);
       ASSERT_TRUE(finder);
       for (const Prism& prism : random_prisms(world.nodes, 77, 50)) {
         changes.add({prism, {}});
@@ -255,7 +256,7 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
   Context context;
   uint64_t changed = 0;
   for (int32_t c = 0; c < 4; ++c) {
-    auto made = NodePathFinder::make(world.nodes, {.avatar_class = c, .workers = 1}, context);
+    auto made = NodePathFinder::create(world.nodes, {.avatar_class = c, .workers = 1}, context);
     ASSERT_TRUE(made);
     NodePathFinder rebuilt = *made, one = *made, other = *made;
     const std::vector<Prism> prisms = random_prisms(world.nodes, 3, 30);
@@ -355,7 +356,7 @@ TEST(NodeObstacles, MeshesBlockWhatTheirTrianglesTouch) {
   Context context;
   uint64_t around = 0, bodies = 0;
   for (int32_t c = 0; c < 4; ++c) {
-    auto made = NodePathFinder::make(world.nodes, {.avatar_class = c, .workers = 1}, context);
+    auto made = NodePathFinder::create(world.nodes, {.avatar_class = c, .workers = 1}, context);
     ASSERT_TRUE(made);
     NodePathFinder rebuilt = *made, solid = *made, shells = *made;
     Scene scene;
@@ -392,7 +393,7 @@ TEST(NodeObstacles, MeshesBlockWhatTheirTrianglesTouch) {
 TEST(NodeObstacles, BadOnesAreRefusedAndNamed) {
   const TestWorld world = make({.name = "stairs"}, 0.25, 1);
   Context context;
-  auto finder = NodePathFinder::make(world.nodes, {.workers = 1}, context);
+  auto finder = NodePathFinder::create(world.nodes, {.workers = 1}, context);
   ASSERT_TRUE(finder);
   EXPECT_FALSE(finder->add_obstacle(Prism{{{0, 0}, {1, 0}}, 0, 1}));
   EXPECT_FALSE(finder->add_obstacle(Prism::box({0, 1, 0}, {1, 0, 1})));

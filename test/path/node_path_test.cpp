@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/node_path.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,12 +8,13 @@
 #include <queue>
 
 #include "baked.h"
+#include "core/access.h"
 #include "core/random.h"
 #include "graph/node_mesh.h"
 #include "patch_nets.h"
-#include "path/block_squares.h"
-#include "path/node_parts.h"
-#include "path/node_search.h"
+#include "path/surface/block_squares.h"
+#include "path/surface/node_parts.h"
+#include "path/surface/node_search.h"
 #include "throng/path.h"
 #include "throng/verify.h"
 
@@ -39,15 +38,15 @@ Scene net_scene(double relief) { return test::net_scene({.side = 3, .cell = 8, .
 
 Nodes make(const Scene& scene, double cell, double size) {
   Context context;
-  const auto nodes = Nodes::make(bake(scene, cell, classes()), scene, {.size = size}, context);
+  const auto nodes = Nodes::create(bake(scene, cell, classes()), scene, {.size = size}, context);
   EXPECT_TRUE(nodes) << nodes.error().message;
   return nodes ? *nodes : Nodes{};
 }
 
 NodePathFinder finder(const Nodes& nodes, int32_t avatar_class, double slope_cost = 0) {
   Context context;
-  auto made = NodePathFinder::make(nodes, {.avatar_class = avatar_class, .slope_cost = slope_cost},
-                                   context);
+  auto made = NodePathFinder::create(
+      nodes, {.avatar_class = avatar_class, .slope_cost = slope_cost}, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -181,8 +180,8 @@ TEST(NodePath, OnLevelTilesPathsAreNearlyTheShortest) {
   for (const char* name : {"garage", "stairs", "church"}) {
     const Scene scene = builtin({.name = name});
     const Nodes nodes = make(scene, 0.2, 1);
-    const World world = nodes.data()->world;
-    auto exact = PathFinder::make(world, {.avatar_class = 0}, context);
+    const World world = data_of(nodes)->world;
+    auto exact = PathFinder::create(world, {.avatar_class = 0}, context);
     ASSERT_TRUE(exact);
     NodePathFinder found = finder(nodes, 0);
     double sum = 0, worst = 0;
@@ -291,7 +290,7 @@ TEST(NodePath, OffMeshLinksLeadOnlyWhereTheyAreGiven) {
   scene.add_quad({0, 0, 0}, {0, 0, 6}, {6, 0, 6}, {6, 0, 0});
   scene.add_quad({8, 0, 0}, {8, 0, 6}, {14, 0, 6}, {14, 0, 0});
   Context context;
-  const auto nodes = Nodes::make(
+  const auto nodes = Nodes::create(
       bake(scene, 0.2), scene,
       {.off_mesh_links =
            {{.from = {4, 0, 3}, .to = {10, 0, 3}, .avatar_class = 0, .two_way = false}}},
@@ -397,7 +396,7 @@ TEST(NodePath, PathsAreTheSameForCopiesAndAnyThreads) {
   const Nodes nodes = make(builtin({.name = "landscape", .size = 100}), 0.5, 2);
   std::vector<double> first;
   for (const int32_t workers : {1, 2, 0}) {
-    auto made = NodePathFinder::make(nodes, {.avatar_class = 4, .workers = workers}, context);
+    auto made = NodePathFinder::create(nodes, {.avatar_class = 4, .workers = workers}, context);
     ASSERT_TRUE(made);
     NodePathFinder copy = *made;
     std::vector<double> all;
@@ -416,7 +415,7 @@ TEST(NodePath, PathsAreTheSameForCopiesAndAnyThreads) {
 TEST(NodePath, BadInputIsRefusedAndNamed) {
   Context context;
   const auto message = [&](const Nodes& nodes, const NodePathConfig& config) {
-    const auto made = NodePathFinder::make(nodes, config, context);
+    const auto made = NodePathFinder::create(nodes, config, context);
     EXPECT_FALSE(made);
     return made ? std::string() : made.error().message;
   };

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/overlay.h"
+#include "path/overlay/overlay.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 
 #include "baked.h"
 #include "core/random.h"
-#include "path/node_parts.h"
-#include "path/overlay_search.h"
-#include "throng/node_path.h"
+#include "path/overlay/overlay_search.h"
+#include "path/surface/node_parts.h"
+#include "throng/path.h"
 
 // The overlay of a mesh of nodes, against a search of all crossings.
 namespace throng {
@@ -38,7 +38,7 @@ void for_each_mesh(Check check) {
   Context context;
   for (const Scene& scene : {builtin({.name = "landscape", .size = 160, .seed = 2}),
                              builtin({.name = "garage"}), builtin({.name = "bridge"})}) {
-    const auto nodes = Nodes::make(bake(scene, 0.25, classes()), scene, {.size = 1}, context);
+    const auto nodes = Nodes::create(bake(scene, 0.25, classes()), scene, {.size = 1}, context);
     ASSERT_TRUE(nodes) << nodes.error().message;
     for (const int32_t c : {0, 3, 4, 5}) {
       const auto mesh = NodeMesh::make(*nodes, c, 1, context);

@@ -12,8 +12,7 @@
 #include "baked.h"
 #include "core/random.h"
 #include "throng/bake.h"
-#include "throng/graph.h"
-#include "throng/live_ground.h"
+#include "throng/world.h"
 #include "worlds.h"
 
 // Paths over the ground, against a brute-force visibility graph.
@@ -28,7 +27,10 @@ World builtin(const BuiltinWorldConfig& config, double cell) {
 
 PathFinder finder(const World& world, int32_t avatar_class, bool labels = false) {
   Context context;
-  auto made = PathFinder::make(world, {.avatar_class = avatar_class, .labels = labels}, context);
+  auto made = PathFinder::create(
+      world,
+      {.avatar_class = avatar_class, .speedup = labels ? PathSpeedup::kLabels : PathSpeedup::kNone},
+      context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -204,13 +206,14 @@ Place on_border(const World& world, int32_t avatar_class, const Place& place) {
 // Paths exist within components and nowhere else, and are legal.
 void expect_as_graph(const World& world, uint64_t pairs) {
   Context context;
-  const auto graph = Graph::make(world, {}, context);
+  const auto graph = Graph::create(world, {}, context);
   ASSERT_TRUE(graph);
   const auto classes = static_cast<int32_t>(world.summary().classes.size());
   for (int32_t c = 0; c < classes; ++c) {
     SCOPED_TRACE(world.summary().classes[static_cast<size_t>(c)].name);
     PathFinder paths = finder(world, c), looked_up = finder(world, c, true);
-    auto over_zones = PathFinder::make(world, {.avatar_class = c, .zones = true}, context);
+    auto over_zones =
+        PathFinder::create(world, {.avatar_class = c, .speedup = PathSpeedup::kZones}, context);
     ASSERT_TRUE(over_zones);
     EXPECT_EQ(looked_up.summary().corners == 0, looked_up.summary().labels == 0);
     Path path, label_path, zone_path;
@@ -283,12 +286,13 @@ TEST(Path, LeadsAroundTheEndsOfRisesThatAreTooHigh) {
   double sum = 0, by_live = 0;
   for (uint64_t seed = 0; seed < 12; ++seed) {
     const World world = bake(hills(seed, 16, 0.4), seed % 2 == 0 ? 0.2 : 0.25, classes);
-    const auto graph = Graph::make(world, {}, context);
+    const auto graph = Graph::create(world, {}, context);
     ASSERT_TRUE(graph);
     for (const int32_t c : {0, 1}) {
       PathFinder paths = finder(world, c), looked_up = finder(world, c, true);
-      auto over_zones = PathFinder::make(world, {.avatar_class = c, .zones = true}, context);
-      auto live = LiveGround::make(world, {.avatar_class = c});
+      auto over_zones =
+          PathFinder::create(world, {.avatar_class = c, .speedup = PathSpeedup::kZones}, context);
+      auto live = LiveGround::create(world, {.avatar_class = c});
       ASSERT_TRUE(over_zones && live);
       Path path, live_path;
       for (uint64_t n = 0; n < 60; ++n) {
@@ -327,7 +331,8 @@ TEST(Path, PathsOverManyZonesAreHardlyLonger) {
   double sum = 0, shortest = 0;
   for (int32_t c = 0; c < classes; ++c) {
     SCOPED_TRACE(world->summary().classes[static_cast<size_t>(c)].name);
-    auto made = PathFinder::make(*world, {.avatar_class = c, .zones = true}, context);
+    auto made =
+        PathFinder::create(*world, {.avatar_class = c, .speedup = PathSpeedup::kZones}, context);
     ASSERT_TRUE(made);
     PathFinder over_zones = *std::move(made), exact = finder(*world, c);
     EXPECT_GT(over_zones.summary().entrances, 100u);
@@ -362,7 +367,7 @@ TEST(Path, StraightLinesOverManyZonesAreFound) {
   const WorldSummary summary = world.summary();
   const double cell = summary.cell;
   Context context;
-  auto made = PathFinder::make(world, {.zones = true}, context);
+  auto made = PathFinder::create(world, {.speedup = PathSpeedup::kZones}, context);
   ASSERT_TRUE(made);
   PathFinder over_zones = *std::move(made), search = finder(world, 0),
              labels = finder(world, 0, true);
@@ -407,7 +412,8 @@ TEST(Path, ZonesAreTheSameForAnyNumberOfWorkers) {
   ASSERT_TRUE(world);
   std::vector<double> lengths;
   for (const int32_t workers : {1, 2, 7}) {
-    auto made = PathFinder::make(*world, {.workers = workers, .zones = true}, context);
+    auto made =
+        PathFinder::create(*world, {.workers = workers, .speedup = PathSpeedup::kZones}, context);
     ASSERT_TRUE(made);
     Path path;
     for (uint64_t n = 0; n < 40; ++n) {
@@ -421,8 +427,8 @@ TEST(Path, ZonesAreTheSameForAnyNumberOfWorkers) {
 TEST(Path, StopsWhenCancelled) {
   const World world = builtin({.name = "garage", .size = 45, .levels = 3}, 0.2);
   Context context;
-  auto over_zones = PathFinder::make(world, {.zones = true}, context);
-  auto live = LiveGround::make(world, {});
+  auto over_zones = PathFinder::create(world, {.speedup = PathSpeedup::kZones}, context);
+  auto live = LiveGround::create(world, {});
   ASSERT_TRUE(over_zones && live);
   PathFinder search = finder(world, 0);
   std::atomic<bool> stop{true}, go{false};
@@ -487,11 +493,10 @@ TEST(Path, SaysWhyThereIsNone) {
   copy.find(from, to, again);
   EXPECT_EQ(again.length, path.length);
   Context context;
-  EXPECT_FALSE(PathFinder::make(world, {.avatar_class = 1}, context));
-  EXPECT_FALSE(PathFinder::make(World{}, {}, context));
-  EXPECT_FALSE(PathFinder::make(world, {.labels = true, .zones = true}, context));
+  EXPECT_FALSE(PathFinder::create(world, {.avatar_class = 1}, context));
+  EXPECT_FALSE(PathFinder::create(World{}, {}, context));
   context.cancel = true;
-  EXPECT_FALSE(PathFinder::make(world, {}, context));
+  EXPECT_FALSE(PathFinder::create(world, {}, context));
 }
 
 }  // namespace

@@ -8,12 +8,9 @@
 #include <string>
 
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
-#include "throng/flight.h"
-#include "throng/ground_query.h"
-#include "throng/live_ground.h"
-#include "throng/node_path.h"
 #include "throng/path.h"
+#include "throng/scene.h"
+#include "throng/world.h"
 
 // A program of its own, because it counts every allocation: a query that is repeated makes none.
 namespace {
@@ -53,7 +50,7 @@ T need(Result<T> made) {
 
 int run() {
   Context context;
-  const Scene scene = need(make_builtin_world({.name = "garage", .size = 45, .levels = 2}));
+  const Scene scene = need(create_builtin_world({.name = "garage", .size = 45, .levels = 2}));
   std::vector<AvatarClass> classes = default_classes();
   classes.push_back(flyer_class());
   const World world = need(bake_world(scene, {.cell = 0.2, .classes = classes}, context));
@@ -61,38 +58,38 @@ int run() {
   const auto to = [&](uint64_t n) { return world.random_place(0, 7, 2 * n + 1); };
   uint64_t sum = 0, reached = 0;
   Path path;
-  for (const PathConfig& config :
-       {PathConfig{}, PathConfig{.labels = true}, PathConfig{.zones = true}}) {
-    PathFinder finder = need(PathFinder::make(world, config, context));
-    sum += late(config.labels  ? "labels"
-                : config.zones ? "zones"
-                               : "search",
+  for (const PathConfig& config : {PathConfig{}, PathConfig{.speedup = PathSpeedup::kLabels},
+                                   PathConfig{.speedup = PathSpeedup::kZones}}) {
+    PathFinder finder = need(PathFinder::create(world, config, context));
+    sum += late(config.speedup == PathSpeedup::kLabels  ? "labels"
+                : config.speedup == PathSpeedup::kZones ? "zones"
+                                                        : "search",
                 [&](uint64_t n) {
                   finder.find(from(n), to(n), path);
                   reached += path.end == PathEnd::kReached;
                 });
   }
-  LiveGround live = need(LiveGround::make(world, {}));
+  LiveGround live = need(LiveGround::create(world, {}));
   sum += late("live ground", [&](uint64_t n) {
     live.find(from(n), to(n), path);
     reached += path.end == PathEnd::kReached;
   });
-  const Nodes nodes = need(Nodes::make(world, scene, {}, context));
-  NodePathFinder over_nodes = need(NodePathFinder::make(nodes, {}, context));
+  const Nodes nodes = need(Nodes::create(world, scene, {}, context));
+  NodePathFinder over_nodes = need(NodePathFinder::create(nodes, {}, context));
   NodePath node_path;
   sum += late("nodes", [&](uint64_t n) {
     over_nodes.find(over_nodes.find_place(from(n).position, 1),
                     over_nodes.find_place(to(n).position, 1), node_path);
     reached += node_path.end == PathEnd::kReached;
   });
-  FlightFinder flight = need(FlightFinder::make(
+  FlightFinder flight = need(FlightFinder::create(
       world, {.avatar_class = static_cast<int32_t>(classes.size()) - 1}, context));
   FlightPath flown;
   sum += late("flight", [&](uint64_t n) {
     flight.find({.from = from(n).position, .to = to(n).position}, flown);
     reached += flown.end == PathEnd::kReached;
   });
-  GroundQuery query = need(GroundQuery::make(world, 0));
+  GroundQuery query = need(GroundQuery::create(world, 0));
   sum += late("the ground around", [&](uint64_t n) {
     const Place place = from(n);
     reached += query.ray(place, 5, 3).arrived;

@@ -7,11 +7,10 @@
 
 #include "baked.h"
 #include "core/random.h"
-#include "path/mesh.h"
-#include "path/portal_search.h"
-#include "path/search.h"
+#include "path/ground/mesh.h"
+#include "path/ground/portal_search.h"
+#include "path/ground/search.h"
 #include "throng/crowd.h"
-#include "throng/live_ground.h"
 #include "throng/path.h"
 
 // Memory budgets of searches.
@@ -44,7 +43,7 @@ const World& maze() {
 
 PathFinder finder() {
   Context context;
-  auto made = PathFinder::make(maze(), {}, context);
+  auto made = PathFinder::create(maze(), {}, context);
   EXPECT_TRUE(made);
   return *std::move(made);
 }
@@ -65,7 +64,7 @@ Stop random_stop(const PathMesh& mesh, uint64_t n) {
 TEST(SearchMemory, APathIsTheSameWhateverMemoryIsLeftAsLongAsItIsEnough) {
   PathFinder paths = finder();
   Path whole, path;
-  uint64_t found = 0, given_up = 0;
+  uint64_t found = 0, budget_exhausted = 0;
   for (uint64_t n = 0; n < 60; ++n) {
     SCOPED_TRACE(testing::Message() << "pair " << n);
     const Place from = maze().random_place(0, 5, 2 * n), to = maze().random_place(0, 5, 2 * n + 1);
@@ -77,7 +76,7 @@ TEST(SearchMemory, APathIsTheSameWhateverMemoryIsLeftAsLongAsItIsEnough) {
       if (path.end == PathEnd::kBudgetExhausted) {
         EXPECT_EQ(path.spent, SpentBudget::kMemory);
         EXPECT_TRUE(path.points.empty());
-        ++given_up;
+        ++budget_exhausted;
         continue;
       }
       ASSERT_EQ(path.end, PathEnd::kReached);
@@ -88,12 +87,12 @@ TEST(SearchMemory, APathIsTheSameWhateverMemoryIsLeftAsLongAsItIsEnough) {
     }
   }
   EXPECT_GT(found, 100u);
-  EXPECT_GT(given_up, 20u);
+  EXPECT_GT(budget_exhausted, 20u);
 }
 
 TEST(SearchMemory, WhatIsAllocatedKeepsToTheBudget) {
   const PathFinder paths = finder();
-  const PathMesh& mesh = paths.mesh();
+  const PathMesh& mesh = mesh_of(paths);
   PathSearch search;
   PortalSearch portals;
   std::vector<uint32_t> corners;
@@ -121,10 +120,10 @@ TEST(SearchMemory, WhatIsAllocatedKeepsToTheBudget) {
 }
 
 TEST(SearchMemory, LiveGroundSaysThatItHadTooLittle) {
-  auto ground = LiveGround::make(maze(), {});
+  auto ground = LiveGround::create(maze(), {});
   ASSERT_TRUE(ground);
   Path path, whole;
-  uint64_t given_up = 0;
+  uint64_t budget_exhausted = 0;
   for (uint64_t n = 0; n < 20; ++n) {
     const Place from = maze().random_place(0, 5, 2 * n), to = maze().random_place(0, 5, 2 * n + 1);
     ground->find(from, to, whole);
@@ -132,7 +131,7 @@ TEST(SearchMemory, LiveGroundSaysThatItHadTooLittle) {
     ground->find(from, to, path, {UINT64_MAX, nullptr, 1 << 12});
     if (path.end == PathEnd::kBudgetExhausted) {
       EXPECT_EQ(path.spent, SpentBudget::kMemory);
-      ++given_up;
+      ++budget_exhausted;
     } else {
       EXPECT_EQ(path.end, whole.end);
       EXPECT_EQ(path.length, whole.length);
@@ -146,7 +145,7 @@ TEST(SearchMemory, LiveGroundSaysThatItHadTooLittle) {
     EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
     EXPECT_EQ(path.spent, SpentBudget::kCancelled);
   }
-  EXPECT_GT(given_up, 5u);
+  EXPECT_GT(budget_exhausted, 5u);
 }
 
 TEST(SearchMemory, ACrowdRefusesLessThanOneMebibyteAndCountsWhatItLacked) {

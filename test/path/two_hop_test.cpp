@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/two_hop.h"
+#include "path/ground/two_hop.h"
 
 #include <gtest/gtest.h>
 

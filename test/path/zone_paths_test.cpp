@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/zone_paths.h"
+#include "path/overlay/zone_paths.h"
 
 #include <gtest/gtest.h>
 
+#include "core/access.h"
 #include "throng/bake.h"
-#include "throng/cells.h"
+#include "throng/scene.h"
 
 // The limit of corners in a zone's tables.
 namespace throng {
@@ -21,7 +22,7 @@ PathMesh among_pillars(int32_t a_side) {
   Context context;
   const auto world = bake_flat_cells(cells, 0.5, 0);
   EXPECT_TRUE(world);
-  auto mesh = build_mesh(*world->data(), 0, 0, context);
+  auto mesh = build_mesh(*data_of(*world), 0, 0, context);
   EXPECT_TRUE(mesh);
   return *std::move(mesh);
 }

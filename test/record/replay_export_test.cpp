@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/replay_export.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -10,6 +8,7 @@
 
 #include "core/random.h"
 #include "scratch_folder.h"
+#include "throng/recording.h"
 
 namespace throng {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/replay_summary.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 
 #include "core/random.h"
 #include "scratch_folder.h"
+#include "throng/recording.h"
 
 namespace throng {
 namespace {
@@ -114,7 +113,7 @@ TEST(ReplaySummary, CountsWhatBruteForceCounts) {
     const ReplaySummary& s = *made;
     ASSERT_EQ(s.time.size(), run.size());
     const double seconds = run.back().first - run.front().first;
-    uint64_t come = run[0].second.size(), left = 0;
+    uint64_t entered = run[0].second.size(), left = 0;
     double waited = 0, walked = 0, walked_time = 0, last_left = 0;
     std::vector<uint64_t> forth(2), back(2);
     std::map<std::pair<int32_t, std::pair<int32_t, int32_t>>, double> density, waiting;
@@ -153,9 +152,9 @@ TEST(ReplaySummary, CountsWhatBruteForceCounts) {
         }
       }
       for (const Body& body : f > 0 ? run[f].second : std::vector<Body>()) {
-        come += find(run[f - 1].second, body.id) == nullptr ? 1 : 0;
+        entered += find(run[f - 1].second, body.id) == nullptr ? 1 : 0;
       }
-      EXPECT_EQ(s.come[f], come);
+      EXPECT_EQ(s.entered[f], entered);
       EXPECT_EQ(s.left[f], left);
       if (f > 0 && stay > 0) {
         EXPECT_NEAR(s.speed[f - 1], moved / stay / (run[f].first - run[f - 1].first), 1e-9);
@@ -206,7 +205,7 @@ TEST(ReplaySummary, HasTheNumbersOfAnEvacuation) {
   }
   const auto s = summary_of(run, {.lines = {{4.5, -1, 4.5, 1}}, .cell = 1});
   ASSERT_TRUE(s);
-  EXPECT_EQ(s->come.back(), 10u);
+  EXPECT_EQ(s->entered.back(), 10u);
   EXPECT_EQ(s->left.back(), 10u);
   EXPECT_EQ(s->last_left, 15);
   EXPECT_EQ(s->lines[0].total_back, 10u);  // towards +x: to the left if z is ahead

@@ -10,7 +10,6 @@
 #include "baked.h"
 #include "core/random.h"
 #include "throng/bake.h"
-#include "throng/walkable_surface.h"
 #include "worlds.h"
 
 namespace throng {

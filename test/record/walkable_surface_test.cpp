@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/walkable_surface.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 
 #include "baked.h"
 #include "scratch_folder.h"
+#include "throng/bake.h"
 #include "throng/scene.h"
 #include "worlds.h"
 

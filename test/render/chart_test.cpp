@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/chart.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
-#include "throng/caacd_picture.h"
+#include "throng/papers.h"
+#include "throng/picture.h"
 
 namespace throng {
 namespace {

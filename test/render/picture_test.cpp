@@ -55,7 +55,7 @@ TEST(Storeys, AFloorStaysOneStoreyAlthoughARampLeadsToTheNext) {
 
 TEST(NodePicture, DrawsNodesAndAPathThatStartsFarBeyondThem) {
   Context context;
-  const auto nodes = Nodes::make(two_storeys(), two_storeys_scene(), {}, context);
+  const auto nodes = Nodes::create(two_storeys(), two_storeys_scene(), {}, context);
   ASSERT_TRUE(nodes) << nodes.error().message;
   NodePictureConfig config{.width = 600, .links = true, .area = {}, .path = {}, .title = ""};
   const auto all = draw_nodes(*nodes, config);
@@ -119,7 +119,7 @@ TEST(NodePicture, LevelFloorBesideWallsIsGreen) {
   scene.add_quad({20, 0, 3}, {20, 0, 5}, {20, 2, 5}, {20, 2, 3});  // a wall
   const auto world = bake_world(scene, {}, context);
   ASSERT_TRUE(world) << world.error().message;
-  const auto nodes = Nodes::make(*world, scene, {}, context);
+  const auto nodes = Nodes::create(*world, scene, {}, context);
   ASSERT_TRUE(nodes) << nodes.error().message;
   for (const int32_t avatar_class : {-1, 0}) {
     NodePictureConfig config{.width = 600, .area = {}, .path = {}, .title = ""};
@@ -142,7 +142,7 @@ TEST(NodePicture, LevelFloorBesideWallsIsGreen) {
 TEST(NodePicture, GroundFillsThePicture) {
   Context context;
   const Scene scene = test::builtin({.name = "stairs"});
-  const auto nodes = Nodes::make(test::bake(scene, 0.2), scene, {}, context);
+  const auto nodes = Nodes::create(test::bake(scene, 0.2), scene, {}, context);
   ASSERT_TRUE(nodes) << nodes.error().message;
   const auto image = draw_nodes(*nodes, {.width = 600, .area = {}, .path = {}, .title = ""});
   ASSERT_TRUE(image) << image.error().message;
@@ -157,7 +157,7 @@ TEST(NodePicture, APathOverAWideMapIsBlueEverywhereAlsoUnderLinks) {
   scene.add_quad({0, 0, 0}, {0, 0, 300}, {300, 0, 300}, {300, 0, 0});
   const auto world = bake_world(scene, {.cell = 0.5}, context);
   ASSERT_TRUE(world) << world.error().message;
-  const auto nodes = Nodes::make(*world, scene, {}, context);
+  const auto nodes = Nodes::create(*world, scene, {}, context);
   ASSERT_TRUE(nodes) << nodes.error().message;
   NodePictureConfig config{.width = 200, .area = {}, .path = {}, .title = ""};
   config.path = {{150, 0, 20}, {150, 0, 100}, {150, 0, 190}, {150, 0, 280}};
@@ -173,7 +173,7 @@ TEST(NodePicture, APathOverAWideMapIsBlueEverywhereAlsoUnderLinks) {
 
 TEST(NodePicture, APathIsDrawnOnTheMapOnly) {
   Context context;
-  const auto nodes = Nodes::make(two_storeys(), two_storeys_scene(), {}, context);
+  const auto nodes = Nodes::create(two_storeys(), two_storeys_scene(), {}, context);
   ASSERT_TRUE(nodes) << nodes.error().message;
   NodePictureConfig config{.width = 600, .area = {}, .path = {}, .title = ""};
   config.area = {{10, -10, 0}, {20, 10, 8}};

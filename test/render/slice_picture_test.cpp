@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scratch_folder.h"
+#include "throng/papers.h"
 #include "throng/picture.h"
 
 namespace throng {

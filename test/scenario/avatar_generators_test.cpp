@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/avatar_generators.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,6 +12,7 @@
 #include "baked.h"
 #include "core/random.h"
 #include "rays.h"
+#include "throng/crowd.h"
 
 namespace throng {
 namespace {
@@ -110,7 +109,7 @@ Walk walk_and_see(const GeneratorConfig& config, At at, int32_t steps) {
   auto crowd = Crowd::create(town().world, {.dt = 0.2, .seed = 3});
   EXPECT_TRUE(crowd) << crowd.error().message;
   Context context;
-  auto generators = AvatarGenerators::make(town().world, config, context);
+  auto generators = AvatarGenerators::create(town().world, config, context);
   EXPECT_TRUE(generators) << generators.error().message;
   std::set<uint32_t> before;
   std::vector<AvatarState> states;
@@ -169,7 +168,7 @@ GeneratorConfig config_of(double density) {
 TEST(AvatarGenerators, KeepAStreetPopulatedWhileOnlyWhatIsSeenIsSimulated) {
   const GeneratorConfig config = config_of(0.04);
   Context context;
-  const auto generators = AvatarGenerators::make(town().world, config, context);
+  const auto generators = AvatarGenerators::create(town().world, config, context);
   ASSERT_TRUE(generators);
   const double all = config.density * generators->area();
   EXPECT_NEAR(generators->area(), 160 * 160 - 25 * 21 * 21, 1500);  // Bodies keep off walls.
@@ -195,7 +194,7 @@ TEST(AvatarGenerators, KeepAStreetPopulatedWhileOnlyWhatIsSeenIsSimulated) {
 TEST(AvatarGenerators, TakeANumberOfAvatarsInPlaceOfADensity) {
   Context context;
   GeneratorConfig config = config_of(0.04);
-  const auto by_density = AvatarGenerators::make(town().world, config, context);
+  const auto by_density = AvatarGenerators::create(town().world, config, context);
   ASSERT_TRUE(by_density);
   const auto stands = [](int32_t) { return Vec3d{35, 1.7, 65}; };
   const uint64_t wanted = walk_and_see(config, stands, 30).hash;
@@ -203,7 +202,7 @@ TEST(AvatarGenerators, TakeANumberOfAvatarsInPlaceOfADensity) {
   config.density = 0.9;
   EXPECT_EQ(walk_and_see(config, stands, 30).hash, wanted);
   config.people = -1;
-  EXPECT_EQ(AvatarGenerators::make(town().world, config, context).error().code, Errc::kBadConfig);
+  EXPECT_EQ(AvatarGenerators::create(town().world, config, context).error().code, Errc::kBadConfig);
 }
 
 TEST(AvatarGenerators, FollowAnEyeThatWalksAroundCorners) {
@@ -238,13 +237,13 @@ TEST(AvatarGenerators, RefuseBadSettings) {
   Context context;
   GeneratorConfig config = config_of(0.04);
   config.density = 0;
-  EXPECT_EQ(AvatarGenerators::make(town().world, config, context).error().code, Errc::kBadConfig);
+  EXPECT_EQ(AvatarGenerators::create(town().world, config, context).error().code, Errc::kBadConfig);
   config = config_of(0.04);
   config.avatar_class = 7;
-  EXPECT_EQ(AvatarGenerators::make(town().world, config, context).error().code, Errc::kNotFound);
+  EXPECT_EQ(AvatarGenerators::create(town().world, config, context).error().code, Errc::kNotFound);
   config = config_of(0.04);
   config.home = {};
-  EXPECT_EQ(AvatarGenerators::make(town().world, config, context).error().code, Errc::kBadInput);
+  EXPECT_EQ(AvatarGenerators::create(town().world, config, context).error().code, Errc::kBadInput);
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ TEST(ScenarioFile, reads_every_key) {
   EXPECT_EQ(s->seconds, 30);
   EXPECT_EQ(s->dt, 0.05);
   EXPECT_EQ(s->seed, 7U);
-  EXPECT_TRUE(s->labels);
+  EXPECT_EQ(s->paths, PathSpeedup::kLabels);
   ASSERT_EQ(s->planes.size(), 1U);
   EXPECT_EQ(s->planes[0].ground.holes.size(), 1U);
   EXPECT_EQ(s->planes[0].obstacles.size(), 1U);
@@ -125,8 +125,8 @@ TEST(ScenarioFile, reads_every_key) {
   ASSERT_EQ(s->areas.size(), 2U);
   EXPECT_EQ(s->areas[1].prisms.size(), 2U);
   EXPECT_EQ(s->areas[1].prisms[0].low, -1);
-  EXPECT_EQ(s->areas[0].pace, 1);
-  EXPECT_EQ(s->areas[1].pace, 0.5);
+  EXPECT_EQ(s->areas[0].speed_factor, 1);
+  EXPECT_EQ(s->areas[1].speed_factor, 0.5);
   EXPECT_FALSE(s->sources[0].in_rows);
   ASSERT_EQ(s->densities.size(), 1U);
   EXPECT_EQ(s->densities[0].width, 20);
@@ -243,9 +243,9 @@ TEST(ScenarioFile, keeps_the_old_names_of_keys) {
   }
   const auto s = parse_scenario(text, "full.toml");
   ASSERT_TRUE(s) << s.error().message;
-  EXPECT_TRUE(s->labels);
-  EXPECT_EQ(s->areas[1].pace, 0.5);
-  EXPECT_EQ(s->journeys[0].stages[1].kind, Stage::Kind::kSpot);
+  EXPECT_EQ(s->paths, PathSpeedup::kLabels);
+  EXPECT_EQ(s->areas[1].speed_factor, 0.5);
+  EXPECT_EQ(s->journeys[0].stages[1].kind, Stage::Kind::kRandomPoint);
   EXPECT_EQ(s->journeys[0].stages[1].areas, std::vector<int32_t>{0});
 }
 

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/simulation.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,8 @@
 #include <set>
 #include <string>
 #include <vector>
+
+#include "throng/scenario.h"
 
 namespace throng {
 namespace {
@@ -48,7 +48,7 @@ Hall read(const std::string& text) {
 
 Simulation made(const Hall& run, int32_t workers = 2) {
   Context context;
-  auto simulation = Simulation::make(run.world, run.scenario, workers, context);
+  auto simulation = Simulation::create(run.world, run.scenario, workers, context);
   EXPECT_TRUE(simulation) << simulation.error().message;
   return std::move(*simulation);
 }
@@ -152,9 +152,9 @@ count = 80
   Simulation simulation = made(run);
   EXPECT_EQ(simulation.crowd().size(), 80U);
   EXPECT_LT(run_out(simulation, 120), 60);
-  ASSERT_EQ(simulation.visits().size(), 80U);
+  ASSERT_EQ(simulation.trips().size(), 80U);
   std::map<int32_t, int> by_exit;
-  for (const Visit& visit : simulation.visits()) {
+  for (const Trip& visit : simulation.trips()) {
     EXPECT_GT(visit.left, 5);
     EXPECT_EQ(visit.entered, 0);
     ++by_exit[visit.exit];
@@ -191,7 +191,7 @@ group = { uniform = [1, 3] }
     ASSERT_EQ(one.state_hash(), two.state_hash()) << step;
     ASSERT_EQ(one.state_hash(), four.state_hash()) << step;
   }
-  EXPECT_GT(one.visits().size(), 60U);
+  EXPECT_GT(one.trips().size(), 60U);
 }
 
 TEST(Simulation, no_avatar_starts_before_its_premovement_time_is_over) {
@@ -225,8 +225,8 @@ premovement = { uniform = [2, 8] }
   // An avatar that stands in a stream is swept along for a while.
   int swept = 0;
   for (const auto& [person, time] : began) {
-    swept += time < simulation.visits()[person].started ? 1 : 0;
-    EXPECT_LT(time, simulation.visits()[person].started + 8) << person;
+    swept += time < simulation.trips()[person].started ? 1 : 0;
+    EXPECT_LT(time, simulation.trips()[person].started + 8) << person;
   }
   EXPECT_LE(swept, 2);
 }
@@ -251,7 +251,7 @@ count = 12
   const double over = run_out(simulation, 200);
   EXPECT_LT(over, 120);
   std::multiset<double> times;
-  for (const Visit& visit : simulation.visits()) times.insert(visit.left);
+  for (const Trip& visit : simulation.trips()) times.insert(visit.left);
   // Service takes two seconds each, one after the other.
   EXPECT_GT(*times.rbegin() - *times.begin(), 11 * 2 - 3);
 }
@@ -289,7 +289,7 @@ count = 10
   EXPECT_EQ(max_in, 4U);
   EXPECT_GE(rides.size(), 3U);
   for (const double time : rides) EXPECT_NEAR(std::remainder(time - 0.1, 10), 0, 0.01) << time;
-  for (const Visit& visit : simulation.visits()) EXPECT_GE(visit.left, 16);
+  for (const Trip& visit : simulation.trips()) EXPECT_GE(visit.left, 16);
 }
 
 TEST(Simulation, groups_stay_together) {
@@ -390,7 +390,7 @@ count = 60
     run_out(simulation, 120);
     EXPECT_TRUE(simulation.is_over());
     int south = 0;
-    for (const Visit& visit : simulation.visits()) south += visit.exit == 2 ? 1 : 0;
+    for (const Trip& visit : simulation.trips()) south += visit.exit == 2 ? 1 : 0;
     return south;
   };
   EXPECT_EQ(by_south("nearest"), 0);
@@ -416,7 +416,7 @@ count = 30
   Simulation simulation = made(run);
   EXPECT_LT(run_out(simulation, 200), 100);
   EXPECT_TRUE(simulation.is_over());
-  for (const Visit& visit : simulation.visits()) EXPECT_GT(visit.left, 10 + 8 / 1.5);
+  for (const Trip& visit : simulation.trips()) EXPECT_GT(visit.left, 10 + 8 / 1.5);
 }
 
 // A door is to shut while avatars stream through. By the default policy it shuts soon; one that
@@ -442,10 +442,10 @@ rate = 3
     const Hall run = read(of.replace(of.find("POLICY"), 6, waits ? "policy = \"wait\"" : ""));
     Simulation simulation = made(run);
     const ObstacleTimes& times = simulation.obstacle_times()[0];
-    EXPECT_LT(times.asked, 0);
+    EXPECT_LT(times.requested_at, 0);
     for (int step = 0; step < 200; ++step) ASSERT_TRUE(simulation.step());
-    EXPECT_NEAR(times.asked, 8, 1e-9);
-    EXPECT_LT(times.gone, 0);
+    EXPECT_NEAR(times.requested_at, 8, 1e-9);
+    EXPECT_LT(times.removed_at, 0);
     EXPECT_GT(times.inside, 0u);
     if (waits) continue;
     EXPECT_GE(times.up, 8);
@@ -484,7 +484,7 @@ journey = "across"
   Context context;
   const auto world = open_world(*scenario, context);
   EXPECT_TRUE(world) << world.error().message;
-  auto simulation = Simulation::make(*world, *scenario, 2, context);
+  auto simulation = Simulation::create(*world, *scenario, 2, context);
   EXPECT_TRUE(simulation) << simulation.error().message;
   return std::move(*simulation);
 }
@@ -510,8 +510,8 @@ name = "east"
 box = [12, 1, 19, 9]
 )");
   run_out(simulation, 40);
-  for (const Visit& visit : simulation.visits()) EXPECT_EQ(visit.exit >= 0, visit.profile == 1);
-  EXPECT_EQ(simulation.visits().size(), 24U);
+  for (const Trip& visit : simulation.trips()) EXPECT_EQ(visit.exit >= 0, visit.profile == 1);
+  EXPECT_EQ(simulation.trips().size(), 24U);
 }
 
 // Over curved hills on foot and along the normal, in one crowd.
@@ -551,8 +551,8 @@ box = [46, 2, 62, 62]
   EXPECT_GT(climbing, 0U);
   EXPECT_GT(leaning, 0U);
   size_t left = 0;
-  for (const Visit& visit : simulation.visits()) left += visit.exit >= 0 ? 1 : 0;
-  EXPECT_EQ(simulation.visits().size(), 24U);
+  for (const Trip& visit : simulation.trips()) left += visit.exit >= 0 ? 1 : 0;
+  EXPECT_EQ(simulation.trips().size(), 24U);
   EXPECT_GE(left, 20U);
 }
 
@@ -560,7 +560,7 @@ TEST(Simulation, names_what_is_wrong) {
   const auto why = [](const std::string& text) {
     const Hall run = read(text);
     Context context;
-    const auto simulation = Simulation::make(run.world, run.scenario, 1, context);
+    const auto simulation = Simulation::create(run.world, run.scenario, 1, context);
     return simulation ? std::string() : simulation.error().message;
   };
   EXPECT_NE(why("[[area]]\nname = \"off\"\nbox = [30, 0, 31, 1]\n[[source]]\nname = \"s\"\narea = "
@@ -590,7 +590,7 @@ count = 60
   EXPECT_LT(simulation.crowd().size(), 20U);
   run_out(simulation, 200);
   EXPECT_TRUE(simulation.is_over());
-  for (const Visit& visit : simulation.visits()) EXPECT_GE(visit.left, 0) << visit.person;
+  for (const Trip& visit : simulation.trips()) EXPECT_GE(visit.left, 0) << visit.person;
 }
 
 // A crowd with targets that is saved and restored takes the same steps, to the bit.
@@ -702,7 +702,7 @@ count = 3
 )");
   Simulation simulation = made(run);
   run_out(simulation, 30);
-  for (const Visit& visit : simulation.visits()) {
+  for (const Trip& visit : simulation.trips()) {
     ASSERT_GE(visit.exit, 0);
     EXPECT_EQ(run.scenario.areas[static_cast<size_t>(visit.exit)].name,
               visit.source == 0 ? "north" : "south");

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/random.h"
-#include "throng/caacd_experiment.h"
+#include "throng/papers.h"
 
 // The plane of [CAACD] section V: encounters walked through to their end, every change of activity,
 // what counts as a collision, random spaces.

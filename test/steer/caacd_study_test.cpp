@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "throng/caacd_experiment.h"
+#include "throng/papers.h"
 
 namespace throng::caacd {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/caacd.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "throng/papers.h"
 
 // Each equation of [CAACD] against values worked out by hand, then what must hold for any input.
 namespace throng::caacd {
@@ -144,18 +143,18 @@ TEST(Caacd, OnlyABodyInTheAlertFieldIsAThreat) {
 TEST(Caacd, ZonesAreRectanglesAheadAsWideAsTheRepulsiveField) {
   Model model = brisk(Trigger::kZones);
   const Body a = body(0, 0, 1, 0);  // x from 0 to 7.5, z from -5 to 5
-  EXPECT_DOUBLE_EQ(zone_length(a, model), 7.5);
-  EXPECT_TRUE(zones_meet(a, body(14.9, 0, -1, 0), model));
-  EXPECT_FALSE(zones_meet(a, body(15.1, 0, -1, 0), model));
-  EXPECT_TRUE(zones_meet(a, body(3, 9.9, 1, 0), model));
-  EXPECT_FALSE(zones_meet(a, body(3, 10.1, 1, 0), model));
-  EXPECT_FALSE(zones_meet(a, body(-7.6, 0, 1, 0), model));  // behind, its zone ends at -0.1
-  EXPECT_TRUE(zones_meet(a, body(-7.4, 0, 1, 0), model));
+  EXPECT_DOUBLE_EQ(probe_length(a, model), 7.5);
+  EXPECT_TRUE(probes_meet(a, body(14.9, 0, -1, 0), model));
+  EXPECT_FALSE(probes_meet(a, body(15.1, 0, -1, 0), model));
+  EXPECT_TRUE(probes_meet(a, body(3, 9.9, 1, 0), model));
+  EXPECT_FALSE(probes_meet(a, body(3, 10.1, 1, 0), model));
+  EXPECT_FALSE(probes_meet(a, body(-7.6, 0, 1, 0), model));  // behind, its zone ends at -0.1
+  EXPECT_TRUE(probes_meet(a, body(-7.4, 0, 1, 0), model));
   // Corner to corner: at 45 degrees the rectangle's corner is cut, boxes around them overlap.
-  EXPECT_FALSE(zones_meet(a, body(16, 13, 1, 1), model));
-  model.zone_time = 10;
-  EXPECT_DOUBLE_EQ(zone_length(a, model), 17.5);
-  EXPECT_TRUE(zones_meet(a, body(22, 0, -1, 0), model));
+  EXPECT_FALSE(probes_meet(a, body(16, 13, 1, 1), model));
+  model.probe_time = 10;
+  EXPECT_DOUBLE_EQ(probe_length(a, model), 17.5);
+  EXPECT_TRUE(probes_meet(a, body(22, 0, -1, 0), model));
 }
 
 TEST(Caacd, ZonesMeetIffSomePointLiesInBoth) {
@@ -164,7 +163,7 @@ TEST(Caacd, ZonesMeetIffSomePointLiesInBoth) {
   const auto inside = [&](const Body& b, Vec3d p, double slack) {
     const Vec3d d = p - b.position;
     const double along = dot(d, b.forward), aside = dot(d, right_of(b.forward));
-    return along >= -slack && along <= zone_length(b, model) + slack &&
+    return along >= -slack && along <= probe_length(b, model) + slack &&
            std::fabs(aside) <= b.fields.repulsive + slack;
   };
   int meet = 0, apart = 0;
@@ -175,14 +174,14 @@ TEST(Caacd, ZonesMeetIffSomePointLiesInBoth) {
     bool certain = false, possible = false;
     for (int u = 0; u <= 40; ++u) {
       for (int v = -40; v <= 40; ++v) {
-        const Vec3d p = a.position + a.forward * (zone_length(a, model) * u / 40) +
+        const Vec3d p = a.position + a.forward * (probe_length(a, model) * u / 40) +
                         right_of(a.forward) * (a.fields.repulsive * v / 40);
         certain |= inside(b, p, -1e-9);
         possible |= inside(b, p, 0.25);
       }
     }
-    const bool found = zones_meet(a, b, model);
-    EXPECT_EQ(found, zones_meet(b, a, model));
+    const bool found = probes_meet(a, b, model);
+    EXPECT_EQ(found, probes_meet(b, a, model));
     EXPECT_TRUE(found || !certain) << i;
     EXPECT_TRUE(!found || possible) << i;
     meet += certain;
@@ -355,7 +354,7 @@ TEST(Caacd, SettingsOutOfTheirLimitsAreNamed) {
   EXPECT_EQ(refused({.max_force = INFINITY}), "caacd: max_force must be above 0 and finite");
   EXPECT_EQ(refused({.horizon = -1}), "caacd: horizon must be above 0 and finite");
   EXPECT_EQ(refused({.deceleration = 0}), "caacd: deceleration must be above 0 and finite");
-  EXPECT_EQ(refused({.zone_time = -1}), "caacd: zone_time must be 0 or more and finite");
+  EXPECT_EQ(refused({.probe_time = -1}), "caacd: zone_time must be 0 or more and finite");
   EXPECT_EQ(refused({.lambda1 = 0.4}), "caacd: lambda1 must be from 0.5 to 1");
   EXPECT_EQ(refused({.lambda3 = 1.1}), "caacd: lambda3 must be from 0 to 1");
 }
@@ -454,7 +453,7 @@ TEST(Caacd, AnyInputGivesFiniteForcesWithinTheLimits) {
       b.forward = heading_of(b.velocity, {0, 0, 1});
       return b;
     };
-    Model model{.max_speed = 1, .max_force = 0.5, .zone_time = 3};
+    Model model{.max_speed = 1, .max_force = 0.5, .probe_time = 3};
     model.trigger = static_cast<Trigger>(1 + i % 3);
     model.axes = static_cast<Axes>(i / 3 % 2);
     model.length = static_cast<Length>(i / 6 % 2);

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "throng/caacd.h"
+#include "throng/papers.h"
 
 namespace throng::steer {
 namespace {

@@ -12,7 +12,7 @@
 namespace throng::test {
 
 Scene builtin(const BuiltinWorldConfig& config) {
-  auto scene = make_builtin_world(config);
+  auto scene = create_builtin_world(config);
   EXPECT_TRUE(scene) << scene.error().message;
   return scene ? *std::move(scene) : Scene{};
 }

@@ -4,8 +4,7 @@
 
 #include <vector>
 
-#include "throng/avatar_class.h"
-#include "throng/builtin_worlds.h"
+#include "throng/avatar.h"
 #include "throng/scene.h"
 #include "throng/world.h"
 

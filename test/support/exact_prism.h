@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "throng/prism.h"
+#include "throng/base.h"
 
 /// An exact test of an upright cylinder against a prism, independent of the library's.
 namespace throng::test {

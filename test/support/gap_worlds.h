@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bake/free_spans.h"
-#include "bake/layers.h"
+#include "bake/columns/free_spans.h"
+#include "bake/layers/layers.h"
 
 /// Columns made by hand, for the stages between the rasteriser and the baked world: 3 x 3 tiles of
 /// solids, and the free spans above them by the rule of docs/algorithms.md, written out plainly.

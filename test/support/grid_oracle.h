@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "throng/cells.h"
+#include "throng/scene.h"
 
 /// Shortest any-angle paths over flat cells, by brute force: independent of meshes and intervals.
 namespace throng::test {

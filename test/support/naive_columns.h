@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "throng/math.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// The oracle of the rasteriser: columns of spans by clipping every triangle

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "bake/slice_sweep.h"
 #include "naive_columns.h"
+#include "papers/slices/slice_sweep.h"
 
 /// [ML06] algorithms 2 and 3 to the letter: every slice is cut again from the columns, every test
 /// reads every cell. The oracle of the sweep.

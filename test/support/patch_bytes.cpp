@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/random.h"
-#include "throng/patch.h"
+#include "throng/scene.h"
 
 // Prefixes and single changed bytes of a file of patches.
 namespace throng::test {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "import/raw_scene.h"
+#include "import/raw/raw_scene.h"
 
 /// Tests of damaged bytes for all readers of patches.
 namespace throng::test {

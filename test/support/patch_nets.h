@@ -4,7 +4,6 @@
 
 #include <cstdint>
 
-#include "throng/patch.h"
 #include "throng/scene.h"
 
 /// Patches for tests, and checks of their triangles.

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "core/random.h"
-#include "crowd/precedence.h"
-#include "crowd/reaction.h"
+#include "crowd/walk/precedence.h"
+#include "crowd/walk/reaction.h"
 
 // Neighbours by a grid, then the steps of the engine as loops over all bodies.
 namespace throng::test {

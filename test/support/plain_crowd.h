@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "crowd/step_units.h"
+#include "crowd/walk/step_units.h"
 #include "steer/lanes.h"
 #include "steer/models.h"
 #include "steer/sampled.h"

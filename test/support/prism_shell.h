@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "throng/prism.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// A prism as triangles.

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "throng/math.h"
+#include "throng/base.h"
 #include "throng/scene.h"
 
 /// Rays against triangles: an oracle of visibility that uses no code of the library.

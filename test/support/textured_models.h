@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scratch_folder.h"
-#include "throng/material.h"
+#include "throng/scene.h"
 
 /// The same upright square in every format that can carry a texture: x from -2 to 2 m, y from 0 to
 /// 4 m, facing +z, with texture_of_quarters() on it once.

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "throng/patch.h"
+#include "throng/scene.h"
 
 /// Landscape zones made by hand, for the reader's tests.
 namespace throng::test {

@@ -211,7 +211,8 @@ VoxelOracle::Answer VoxelOracle::shortest(const HalfPoint3& from, const HalfPoin
   const auto node_of = [](const HalfPoint3& p) {
     return Node{p, {{floor_div(p[0], 2), floor_div(p[1], 2), floor_div(p[2], 2)}}};
   };
-  if (sees(node_of(from), node_of(to))) return {.given_up = false, .length = length(from, to)};
+  if (sees(node_of(from), node_of(to)))
+    return {.budget_exhausted = false, .length = length(from, to)};
   std::vector<Node> points;
   // Half of the width of the ellipsoid of points on paths within the limit.
   const double straight = length(from, to);
@@ -231,7 +232,7 @@ VoxelOracle::Answer VoxelOracle::shortest(const HalfPoint3& from, const HalfPoin
       }
     }
   }
-  if (points.size() > max_corners) return {.given_up = true, .length = {}};
+  if (points.size() > max_corners) return {.budget_exhausted = true, .length = {}};
   points.push_back(node_of(to));
   const size_t goal = points.size() - 1;
   points.push_back(node_of(from));
@@ -245,7 +246,7 @@ VoxelOracle::Answer VoxelOracle::shortest(const HalfPoint3& from, const HalfPoin
     const size_t at = open.top().second;
     open.pop();
     if (done[at] != 0) continue;
-    if (at == goal) return {.given_up = false, .length = best[goal]};
+    if (at == goal) return {.budget_exhausted = false, .length = best[goal]};
     done[at] = 1;
     for (size_t p = 0; p <= goal; ++p) {
       if (done[p] != 0) continue;

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "throng/cells.h"
-#include "throng/math.h"
+#include "throng/base.h"
+#include "throng/scene.h"
 
 /// Short any-angle paths between voxels, by brute force: independent of octrees and air boxes.
 namespace throng::test {
@@ -34,7 +34,7 @@ class VoxelOracle {
   /// less than a hundredth at the unit spacing of corners. Nothing: there is no such path, or there
   /// are more than `max_corners` corners.
   struct Answer {
-    bool given_up = false;
+    bool budget_exhausted = false;
     std::optional<double> length;
   };
   [[nodiscard]] Answer shortest(const HalfPoint3& from, const HalfPoint3& to, double limit,

@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "core/access.h"
+
 // Links tile by tile with the library's TileRegions, components by floods over regions.
 namespace throng::test {
 namespace {
@@ -85,7 +87,7 @@ void find_components(WholeGraph& graph, const std::vector<std::map<uint32_t, uin
 }  // namespace
 
 WholeGraph whole_graph(const World& of_world) {
-  const WorldData& world = *of_world.data();
+  const WorldData& world = *data_of(of_world);
   const TileRegions finder(world);
   const Tiles tiles = find_tiles(world, finder);
   const size_t classes = world.summary.classes.size();

@@ -9,7 +9,7 @@
 
 #include "core/random.h"
 #include "scratch_folder.h"
-#include "throng/validation.h"
+#include "throng/scenario.h"
 #include "validate/tracks.h"
 
 namespace throng {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "throng/validation.h"
+#include "throng/scenario.h"
 
 namespace throng {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/trial.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "throng/scenario.h"
 
 namespace throng {
 namespace {
@@ -32,7 +31,7 @@ box = [0.9, 0.9, 1.1, 1.1]
 [[area]]
 name = "slow"
 box = [11, 0, 16, 2]
-pace = 0.5
+speed_factor = 0.5
 [[area]]
 name = "end"
 box = [20, 0, 22, 2]

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "throng/validation.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 #include <string>
+
+#include "throng/scenario.h"
 
 namespace throng {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
+#include "throng/scene.h"
 #include "throng/verify.h"
 
 /// The oracle on baked worlds, through the public API alone.
@@ -70,7 +70,7 @@ TEST(VerifyWorld, BakedHallHoldsForEveryClass) {
 // taken from a floor to the one above it.
 TEST(VerifyWorld, BuiltInWorldsHoldForEveryClass) {
   for (const char* name : {"stairs", "church", "garage"}) {
-    const auto scene = make_builtin_world({.name = name});
+    const auto scene = create_builtin_world({.name = name});
     ASSERT_TRUE(scene) << scene.error().message;
     Context context;
     const auto world = bake_world(*scene, {}, context);
@@ -133,7 +133,7 @@ PathReport walk_paths(const World& world, const Scene& source, int32_t avatar_cl
 
 TEST(VerifyPaths, EveryPathIsWalkedByLegalMovesAndItsBody) {
   for (const char* name : {"stairs", "church", "garage", "maze"}) {
-    const auto scene = make_builtin_world({.name = name});
+    const auto scene = create_builtin_world({.name = name});
     ASSERT_TRUE(scene) << scene.error().message;
     Context context;
     const auto world = bake_world(*scene, {}, context);

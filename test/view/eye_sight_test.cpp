@@ -10,7 +10,7 @@
 
 #include "core/random.h"
 #include "rays.h"
-#include "throng/builtin_worlds.h"
+#include "throng/scene.h"
 
 // EyeSight against rays: what a ray reaches must not be hidden.
 namespace throng {
@@ -74,7 +74,7 @@ TEST(EyeSight, NeverHidesWhatARayReaches) {
     BuiltinWorldConfig world;
     world.name = name;
     if (world.name == "city") world.size = 120;
-    const Result<Scene> scene = make_builtin_world(world);
+    const Result<Scene> scene = create_builtin_world(world);
     ASSERT_TRUE(scene) << scene.error().message;
     for (const int32_t pixels : {64, 512}) {
       const Count c = compare(*scene, static_cast<uint64_t>(pixels), 6, 120, pixels);

@@ -163,7 +163,7 @@ LoadStage stage_of(const CrowdStart& start) {
     config.frames = 4;
     config.pixels = 16;
     Context context;
-    auto atlas = build_atlas(built_in_character(), config, context);
+    auto atlas = create_atlas(built_in_character(), config, context);
     if (!atlas) return atlas.error();
     parts.set_atlases({{*atlas}});
     parts.set_crowd(start);

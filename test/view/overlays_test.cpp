@@ -39,7 +39,7 @@ const Baked& hall() {
     auto world = bake_world(b.scene, config, context);
     EXPECT_TRUE(world) << world.error().message;
     b.world = *std::move(world);
-    auto nodes = Nodes::make(b.world, b.scene, {}, context);
+    auto nodes = Nodes::create(b.world, b.scene, {}, context);
     EXPECT_TRUE(nodes) << nodes.error().message;
     b.nodes = *std::move(nodes);
     return b;
@@ -61,7 +61,7 @@ Viewer made_viewer(const std::string& overlay) {
     config.clips = {"Walk", "Idle"};
     config.frames = 2;
     config.pixels = 32;
-    auto atlas = build_atlas(built_in_character(), config, context);
+    auto atlas = create_atlas(built_in_character(), config, context);
     if (!atlas) return atlas.error();
     parts.set_atlases({{*atlas}});
     CrowdStart start;

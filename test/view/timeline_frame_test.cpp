@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "throng/lean.h"
+#include "throng/avatar.h"
 
 // Hand-made frames of few avatars.
 namespace throng {

@@ -9,9 +9,9 @@
 #include <string>
 
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
 #include "throng/crowd.h"
 #include "throng/scenario.h"
+#include "throng/scene.h"
 #include "view/crowd_player.h"
 #include "view/density_brush.h"
 
@@ -47,7 +47,7 @@ const Atlas& people() {
     config.frames = 4;
     config.pixels = 32;
     Context context;
-    auto built = build_atlas(built_in_character(), config, context);
+    auto built = create_atlas(built_in_character(), config, context);
     return *std::move(built);
   }();
   return atlas;

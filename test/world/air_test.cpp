@@ -10,15 +10,15 @@
 #include <iterator>
 #include <limits>
 
+#include "core/access.h"
 #include "core/hash.h"
 #include "core/random.h"
-#include "path/air_view.h"
-#include "path/flight_space.h"
+#include "path/air/air_view.h"
+#include "path/air/flight_space.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
-#include "throng/flight.h"
 #include "throng/path.h"
+#include "throng/scene.h"
 #include "verify/cylinder.h"
 #include "world/air_data.h"
 #include "worlds.h"
@@ -108,7 +108,7 @@ TEST(Air, CellsAreFreeWhereNoTriangleTouchesThemAndOnlyThere) {
   for (uint64_t seed = 0; seed < 3; ++seed) {
     const Scene scene = litter(seed);
     const World world = bake(scene, 0.4, 6.4);
-    const AirData& air = *world.data()->air;
+    const AirData& air = *data_of(world)->air;
     ASSERT_GT(air.zones_x, 1);
     uint64_t free = 0, full = 0;
     for (int32_t y = air.shape.floor; y < air.shape.ceiling; ++y) {
@@ -133,7 +133,7 @@ TEST(Air, CellsAreFreeWhereNoTriangleTouchesThemAndOnlyThere) {
 TEST(Air, ACellIsLegalIfTheBodyIsFreeWhereverInItItsFeetAre) {
   for (const double cell : {0.1, 0.2, 0.8}) {
     const World world = bake(litter(7), cell, 6.4);
-    const AirData& air = *world.data()->air;
+    const AirData& air = *data_of(world)->air;
     for (const AvatarClass& avatar : flyers()) {
       const AirBody body = air_body(avatar, air.shape);
       Context context;
@@ -181,7 +181,7 @@ TEST(Air, ACellIsLegalIfTheBodyIsFreeWhereverInItItsFeetAre) {
 
 TEST(Air, NoAirBoxPromisesMoreClearanceThanThereIs) {
   const World world = bake(litter(3), 0.2, 6.4);
-  const AirData& air = *world.data()->air;
+  const AirData& air = *data_of(world)->air;
   uint64_t wide = 0;
   for (const auto& slot : air.slots) {
     const int32_t x0 = slot->entry.x() * air.zone_side, z0 = slot->entry.z() * air.zone_side;
@@ -211,7 +211,7 @@ TEST(Air, TheNearestPointOfSomeComponentsIsFoundZoneByZone) {
   uint64_t asked = 0;
   for (uint64_t seed = 0; seed < 4; ++seed) {
     const World world = bake(litter(seed), 0.2, 6.4);
-    const AirData& air = *world.data()->air;
+    const AirData& air = *data_of(world)->air;
     ASSERT_GT(air.zones_x, 1);
     Context context;
     const auto space =
@@ -259,14 +259,15 @@ TEST(Air, SameBytesForAnyNumberOfWorkers) {
   const World one = bake(scene, 0.2, 6.4, 1);
   for (const int32_t workers : {2, 3, 8}) {
     const World other = bake(scene, 0.2, 6.4, workers);
-    ASSERT_EQ(other.data()->air->slots.size(), one.data()->air->slots.size());
-    for (size_t i = 0; i < one.data()->air->slots.size(); ++i) {
-      EXPECT_EQ(other.data()->air->slots[i]->entry.hash(), one.data()->air->slots[i]->entry.hash());
+    ASSERT_EQ(data_of(other)->air->slots.size(), data_of(one)->air->slots.size());
+    for (size_t i = 0; i < data_of(one)->air->slots.size(); ++i) {
+      EXPECT_EQ(data_of(other)->air->slots[i]->entry.hash(),
+                data_of(one)->air->slots[i]->entry.hash());
     }
   }
   // Also on another machine and with another compiler.
   uint64_t all = 0;
-  for (const auto& slot : one.data()->air->slots) all = mix64(all ^ slot->entry.hash());
+  for (const auto& slot : data_of(one)->air->slots) all = mix64(all ^ slot->entry.hash());
   EXPECT_EQ(all, 9259508204915397938u);
 }
 
@@ -321,7 +322,7 @@ TEST_F(DamagedAir, IsOpenedAgainAsItWasBaked) {
   EXPECT_TRUE(world->check_all());
   EXPECT_TRUE(world->summary().classes[0].flies);
   const World memory = bake(litter(2), 0.4, 6.4);
-  const AirData &a = *world->data()->air, &b = *memory.data()->air;
+  const AirData &a = *data_of(*world)->air, &b = *data_of(memory)->air;
   for (int32_t y = a.shape.floor; y < a.shape.ceiling; ++y) {
     for (int32_t z = 0; z < a.depth; ++z) {
       for (int32_t x = 0; x < a.width; ++x) {
@@ -386,8 +387,8 @@ TEST_F(DamagedAir, DoesNotConcernTheGround) {
   EXPECT_TRUE(world->check_ground());
   EXPECT_FALSE(world->check_all());
   Context context;
-  EXPECT_TRUE(PathFinder::make(*world, {}, context));
-  EXPECT_EQ(FlightFinder::make(*world, {}, context).error().code, Errc::kBadFile);
+  EXPECT_TRUE(PathFinder::create(*world, {}, context));
+  EXPECT_EQ(FlightFinder::create(*world, {}, context).error().code, Errc::kBadFile);
 }
 
 TEST_F(DamagedAir, FilesAreRefusedByName) {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/cell_packer.h"
+#include "bake/folder/cell_packer.h"
 #include "core/random.h"
 #include "simd_targets.h"
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "baked.h"
+#include "core/access.h"
 #include "core/random.h"
 #include "world/node_data.h"
 
@@ -16,7 +17,7 @@ Nodes make_small(Scene& scene) {
   std::vector<AvatarClass> classes = {AvatarClass{}, AvatarClass{.name = "climber"}};
   classes[1].climb_slope = 150;
   Context context;
-  const auto nodes = Nodes::make(test::bake(scene, 0.5, classes), scene, {.size = 4}, context);
+  const auto nodes = Nodes::create(test::bake(scene, 0.5, classes), scene, {.size = 4}, context);
   EXPECT_TRUE(nodes);
   return nodes ? *nodes : Nodes{};
 }
@@ -39,7 +40,7 @@ TEST(FalseNodes, AreRefusedByNameOrUsedWithoutACrash) {
   const Nodes nodes = make_small(scene);
   size_t refused = 0, used = 0;
   for (uint64_t seed = 0; seed < 1500; ++seed) {
-    const NodeZone& zone = *nodes.data()->zone(seed % nodes.data()->slots.size());
+    const NodeZone& zone = *data_of(nodes)->zone(seed % data_of(nodes)->slots.size());
     std::string why;
     const auto found = changed(zone.bytes(), seed, why);
     if (found == nullptr) {
@@ -75,14 +76,14 @@ TEST(FalseNodes, AreRefusedByNameOrUsedWithoutACrash) {
 TEST(FalseNodes, ATruncatedOrForeignFileIsRefused) {
   Scene scene;
   const Nodes nodes = make_small(scene);
-  const auto bytes = nodes.data()->zone(0)->bytes();
+  const auto bytes = data_of(nodes)->zone(0)->bytes();
   for (size_t size = 0; size < bytes.size(); size += 1 + size / 3) {
     auto* copy = new uint8_t[size + 1];
     std::copy_n(bytes.data(), size, copy);
     EXPECT_FALSE(NodeZone::from_bytes(
         flatbuffers::DetachedBuffer(nullptr, false, copy, size + 1, copy, size), "it"));
   }
-  const std::vector<uint8_t> index = write_node_index(*nodes.data());
+  const std::vector<uint8_t> index = write_node_index(*data_of(nodes));
   EXPECT_TRUE(read_node_index(index, "it"));
   EXPECT_FALSE(read_node_index(std::span(index).first(index.size() / 2), "it"));
   EXPECT_FALSE(read_node_index(bytes, "it"));  // A zone is no index.

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "baked.h"
+#include "core/access.h"
 #include "core/random.h"
 #include "graph/graph_passes.h"
 #include "scratch_folder.h"
@@ -46,7 +47,7 @@ Made make_small(FilesInMemory& files) {
   Made made;
   made.world = test::bake(test::builtin({.name = "garage", .size = 60, .levels = 2}), 0.2);
   // The passes read the files back from where they have put them.
-  auto* world = const_cast<WorldData*>(made.world.data().get());
+  auto* world = const_cast<WorldData*>(data_of(made.world).get());
   world->path = files.folder.path();
   Context context;
   auto graph = make_graph(*world, &files, 1, context);
@@ -197,7 +198,7 @@ TEST(FalseRegions, ChangedBytesAndCutFilesAreRefusedByTheSum) {
 TEST(FalseRegions, LinksThatLeadNowhereDoNotFit) {
   FilesInMemory files;
   const Made made = make_small(files);
-  const WorldData& world = *made.world.data();
+  const WorldData& world = *data_of(made.world);
   size_t fitting = 0, refused = 0;
   for (uint64_t seed = 0; seed < 3000; ++seed) {
     const size_t s = seed % made.links.size();
@@ -235,7 +236,7 @@ TEST(FalseRegions, LinksThatLeadNowhereDoNotFit) {
 TEST(FalseRegions, AFalseIndexIsRefusedOrNamesWhatIsThere) {
   FilesInMemory files;
   const Made made = make_small(files);
-  const WorldData& world = *made.world.data();
+  const WorldData& world = *data_of(made.world);
   const std::vector<uint8_t> whole = write_graph_index(*made.graph, 7);
   ASSERT_TRUE(read_graph_index(whole, "it", world, 7));
   EXPECT_FALSE(read_graph_index(whole, "it", world, 8));  // Of another bake.

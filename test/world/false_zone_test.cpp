@@ -4,11 +4,12 @@
 
 #include <array>
 
+#include "core/access.h"
 #include "core/random.h"
 #include "throng/bake.h"
-#include "throng/graph.h"
+#include "throng/papers.h"
 #include "throng/path.h"
-#include "throng/wanderers.h"
+#include "throng/world.h"
 #include "world/zone_data.h"
 #include "worlds.h"
 
@@ -33,7 +34,7 @@ Baked bake_small() {
   auto world = bake_world(scene, {.cell = 0.2, .zone = 12.8}, context);
   EXPECT_TRUE(world);
   Baked baked;
-  const WorldData& data = *world->data();
+  const WorldData& data = *data_of(*world);
   baked.manifest = write_manifest(data);
   for (size_t s = 0; s < data.slots.size(); ++s) {
     const auto bytes = data.zone(s)->bytes();
@@ -96,8 +97,8 @@ bool use(const World& world) {
   }
   EXPECT_TRUE(std::isfinite(sum));
   EXPECT_EQ(world.storeys().size(), world.level_tile_count());
-  EXPECT_TRUE(Graph::make(world, {}, context));
-  auto finder = PathFinder::make(world, {}, context);
+  EXPECT_TRUE(Graph::create(world, {}, context));
+  auto finder = PathFinder::create(world, {}, context);
   EXPECT_TRUE(finder);
   Path path;
   for (uint64_t n = 0; n < 20; ++n) {
@@ -130,7 +131,7 @@ TEST(FalseZones, WithAnyHeightsAnswerAndDoNotCrash) {
     if (!sound) {
       ++unread;
     } else {
-      ++(use(World(*data)) ? run : refused);
+      ++(use(Access::create<World>(*data)) ? run : refused);
     }
   }
   EXPECT_GT(unread, 0);

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
+#include "throng/scene.h"
 #include "worlds.h"
 
 // On foot through baked worlds: what is joined by stairs and ramps is reached, what is not is not.
@@ -20,7 +20,7 @@ World bake(const Scene& scene, double cell = 0.1) {
 }
 
 World bake(const BuiltinWorldConfig& config, double cell = 0.1) {
-  const auto scene = make_builtin_world(config);
+  const auto scene = create_builtin_world(config);
   EXPECT_TRUE(scene) << scene.error().message;
   return scene ? bake(*scene, cell) : World{};
 }

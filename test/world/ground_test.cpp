@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "baked.h"
+#include "core/access.h"
 
 namespace throng {
 namespace {
@@ -18,7 +19,7 @@ TEST(Ground, FloorsLieWithinTheRangeOfTheirBlocks) {
     if (config.name == "landscape") config.size = 80;
     if (config.name == "garage") config.levels = 2;
     const World world = test::bake(test::builtin(config), 0.25);
-    const WorldData& data = *world.data();
+    const WorldData& data = *data_of(world);
     int32_t lowest = INT32_MAX;
     for (uint32_t l = 0; l < data.level_count; ++l) {
       const LevelView view = ground_level(data, l, 0).view;

@@ -12,7 +12,7 @@
 
 #include "core/random.h"
 #include "throng/bake.h"
-#include "throng/builtin_worlds.h"
+#include "throng/scene.h"
 #include "worlds.h"
 
 // Look-ups and moves against the levels' plain content.
@@ -27,7 +27,7 @@ World bake(const Scene& scene, double cell, double zone = 160) {
 }
 
 World garage() {
-  const auto scene = make_builtin_world({.name = "garage"});
+  const auto scene = create_builtin_world({.name = "garage"});
   EXPECT_TRUE(scene);
   return scene ? bake(*scene, 0.2, 25.6) : World{};
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/access.h"
 #include "core/random.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
@@ -225,7 +226,7 @@ TEST_F(ZoneFiles, AFlippedByteBehindTheChecksumIsRefusedOrHarmless) {
       ASSERT_TRUE(data);
       ASSERT_EQ((*data)->slots.size(), 1u);
       (*data)->slots[0]->zone = std::move(*zone);
-      use(World(*data));
+      use(Access::create<World>(*data));
     }
   }
   EXPECT_GT(refused, 500);
@@ -245,7 +246,7 @@ TEST_F(ZoneFiles, AFlippedByteOfTheManifestIsRefusedOrHarmless) {
       }
       ++opened;
       (*data)->path = path();
-      const World world(*data);
+      const auto world = Access::create<World>(*data);
       if (const auto checked = world.check_all(); !checked) {
         EXPECT_EQ(checked.error().code, Errc::kBadFile);
       }

@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "throng/base.h"
+#include "throng/world.h"
+
+/// Surfaces: the nodes on which bodies stand on Bezier patches, overhangs included, and on level
+/// tiles.
+namespace throng {
+
+// ----
+// Nodes: where bodies can stand on Bezier patches, overhangs included, and on level tiles, as one
+// graph for all avatar classes. Source: [PACS00] 1.2.3; docs/design/006-nodes.md.
+
+struct Scene;
+struct NodeData;  // Internal: zones of nodes.
+
+/// How a body moves from one node to another.
+enum class LinkKind : uint8_t {
+  kWalk = 0,
+  kStep,     ///< Over a step of the floor, not a slope, that some class of the world cannot climb.
+  kClimb,    ///< One end is steeper than any walker's limit, or there is a gap between patches.
+  kDrop,     ///< A drop link, one-way: out over an edge and down. For classes with a `max_drop`.
+  kOffMesh,  ///< An off-mesh link; may be one-way.
+  kLand,     ///< From the air. (Reserved.)
+  kTakeOff,  ///< To the air. (Reserved.)
+};
+/// Number of LinkKind values.
+inline constexpr uint8_t kLinkKinds = 7;
+
+/// What a node is a part of.
+enum class PatchKind : uint8_t { kBezier = 0, kLevelTile = 1 };
+
+/// An off-mesh link, given by hand: a ditch to jump, a ladder, a lift. The body is not tested on
+/// it.
+struct NodeOffMeshLink {
+  Vec3d from, to;  ///< Within a metre of places of the class. [m]
+  int32_t avatar_class = 0;
+  bool two_way = false;
+};
+
+/// Settings for Nodes::create.
+struct NodeConfig {
+  /// Sub-patches of Bezier patches are halved down to this size. [m, 0.05 to 100]
+  double size = 1.0;
+  uint16_t classes = 0xffff;  ///< Bit per class: the classes to make nodes for.
+  std::vector<NodeOffMeshLink> off_mesh_links = {};
+  int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
+  /// Rebuild all zones, also those whose nodes in the world's folder are up to date.
+  bool fresh = false;
+  /// Approximate memory limit while nodes are made: zones are made in as many batches as it takes,
+  /// each with its surroundings. Never changes the result. [bytes]
+  uint64_t working_bytes = uint64_t{1} << 30;
+};
+
+/// Checks the settings, whatever the world. Fails with kBadConfig.
+[[nodiscard]] THRONG_API Result<void> check_node_config(const NodeConfig& config);
+
+/// Edges of the bins that codes of nodes stand for. A code k of inclination means "at most
+/// inclination[k] degrees" (180 beyond the last); a code k > 0 of a length means "at least edge[k -
+/// 1] metres", 0 promises nothing. The limits of every class are edges.
+struct THRONG_API NodeBins {
+  std::vector<double> inclination;  ///< Ascending, at most 15. [degrees]
+  std::vector<double> height;       ///< Also of headroom. [m]
+  std::vector<double> width;        ///< [m]
+
+  [[nodiscard]] double inclination_of(uint8_t code) const {
+    return code < inclination.size() ? inclination[code] : 180;
+  }
+  [[nodiscard]] double height_of(uint8_t code) const { return length_of(height, code); }
+  [[nodiscard]] double width_of(uint8_t code) const { return length_of(width, code); }
+  /// The best code that holds for a value, rounded to the safe side.
+  [[nodiscard]] uint8_t inclination_code(double degrees) const;
+  [[nodiscard]] uint8_t height_code(double metres) const;
+  [[nodiscard]] uint8_t width_code(double metres) const;
+
+ private:
+  static double length_of(const std::vector<double>& edges, size_t code) {
+    return code == 0 || edges.empty() ? 0
+                                      : edges[code < edges.size() ? code - 1 : edges.size() - 1];
+  }
+};
+
+/// A node: a sub-patch, and what bodies may rely on everywhere in it. Level tiles have *partial*
+/// nodes along walls: some of a block's 8 x 8 cells. Each class of a partial node stands on some of
+/// these, which are connected (Nodes::partial_cells).
+struct NodeInfo {
+  /// Bit per class: its body may stand anywhere in the sub-patch, or somewhere in a partial node.
+  uint16_t classes = 0;
+  uint8_t inclination = 0;  ///< Steepest surface. [code]
+  /// Free height along the normal, above what any class steps over (level tiles: straight up from
+  /// the floor). [code]
+  uint8_t height = 0;
+  uint8_t headroom = 0;  ///< The same straight up; 0 where it is too steep to walk. [code]
+  uint8_t width = 0;     ///< Radius around the middle without anything more restrictive. [code]
+  bool terminal = true;  ///< No smaller node lies in it.
+  PatchKind kind = PatchKind::kLevelTile;
+  uint32_t source = 0;   ///< Bezier patch of the scene, or level tile of the world.
+  uint8_t depth = 0;     ///< The patch is cut into 2^depth x 2^depth finest sub-patches.
+  uint8_t level = 0;     ///< The node is one of 2^level x 2^level blocks of the patch,
+  uint8_t s = 0, t = 0;  ///< namely this one.
+  uint32_t parent1 = 0;  ///< Smallest node around it, plus one; 0: none.
+  float area = 0;        ///< Of the sub-patch; of a partial node's cells. [m^2]
+  uint64_t cells = 0;    ///< Partial node: the cells of its block, bit 8 t + s. 0: all.
+};
+
+/// A directed link from a node. The opposite arc is always at the other node, except for drop links
+/// and one-way off-mesh links.
+struct NodeArc {
+  uint32_t to = 0;
+  uint16_t classes = 0;  ///< Bit per class that can use it.
+  LinkKind kind = LinkKind::kWalk;
+  /// Over a hole: the nodes do not touch. A body moves straight between these two places, given by
+  /// parameters of their patches, and turns evenly. On a drop link it moves horizontally from the
+  /// first to above the second, upright there, and straight down.
+  bool over_hole = false;
+  double from_s = 0, from_t = 0, to_s = 0, to_t = 0;
+};
+
+/// Sizes of nodes, and what was made.
+struct NodeSummary {
+  uint64_t nodes = 0;
+  uint64_t terminal = 0;
+  uint64_t partial = 0;
+  uint64_t arcs = 0;  ///< Two per undirected link.
+  uint64_t patches = 0;
+  uint64_t bezier_patches = 0;
+  uint64_t zones = 0;
+  uint64_t zones_made = 0;    ///< Zones with patches, with or without nodes.
+  uint64_t zones_reused = 0;  ///< Of these, reused: nothing that they depend on has changed.
+  uint64_t bytes = 0;         ///< Of all zones.
+  double seconds = 0;         ///< To make them; 0 if they were opened.
+  NodeBins bins;
+  std::vector<AvatarClass> classes;
+};
+
+/// A connected component: nodes between which a class can move in both directions.
+struct NodeComponent {
+  double area = 0;  ///< [m^2]
+  uint64_t nodes = 0;
+  uint32_t node = 0;  ///< Its first node.
+};
+
+/// A place on a node: a body stands at `feet` along `axis`, which is the surface's normal for
+/// climbers on Bezier patches and straight up for all others. A zero-initialised place is nowhere.
+struct NodePlace {
+  uint32_t node1 = 0;  ///< Node plus one.
+  Vec3d feet;          ///< [m]
+  Vec3d axis;
+  Vec3d normal;         ///< Of the surface; straight up on level tiles.
+  double s = 0, t = 0;  ///< Parameters on the node's patch. [0 to 1]
+  [[nodiscard]] explicit operator bool() const { return node1 != 0; }
+};
+
+/// The nodes of a world. Cheap to copy (shared, immutable); safe to read from many threads.
+class THRONG_API Nodes {
+ public:
+  Nodes() = default;
+  /// False for a handle without nodes, made by default.
+  [[nodiscard]] explicit operator bool() const { return state_ != nullptr; }
+
+  /// Makes the nodes of a world from the scene that it was baked from: of its Bezier patches and,
+  /// where there are triangles of no patch, of its level tiles. Zones of the world's folder
+  /// (BakeConfig::carry_nodes) whose nodes are up to date are reused. Fails with kBadConfig,
+  /// kBadFile (a zone cannot be used), kLimit or kCancelled.
+  [[nodiscard]] static Result<Nodes> create(const World& world, const Scene& scene,
+                                            const NodeConfig& config, Context& context);
+  /// The same for a world that was opened from its folder, into which the nodes are written batch
+  /// by batch, so that only one batch is in memory. They replace those in the folder once all are
+  /// made; if the call is cancelled or killed before, the next call reuses what was made. Also
+  /// fails with kIo.
+  [[nodiscard]] static Result<Nodes> create_in_folder(const World& world, const Scene& scene,
+                                                      const NodeConfig& config, Context& context);
+  /// Opens the nodes in a world's folder. Fails with kBadFile (by name) or kIo.
+  [[nodiscard]] static Result<Nodes> open(const std::string& world_path);
+  /// Have nodes been written into the folder that a world was opened from?
+  [[nodiscard]] static bool exist(const World& world);
+  /// The same for a world that was opened from its folder.
+  [[nodiscard]] static Result<Nodes> open(const World& world);
+  /// Writes them into the folder of the world that they were made for, in place of those there, on
+  /// `workers` threads (0: all cores). Fails with kIo or, if the folder holds another world,
+  /// kBadFile.
+  [[nodiscard]] Result<void> write(const std::string& world_path, int32_t workers = 0) const;
+  /// Checks every zone against the index. Fails with kBadFile and the zone's name.
+  [[nodiscard]] Result<void> check_all() const;
+
+  [[nodiscard]] NodeSummary summary() const;
+  [[nodiscard]] uint32_t node_count() const;
+  [[nodiscard]] NodeInfo node(uint32_t node) const;
+  [[nodiscard]] std::vector<NodeArc> arcs(uint32_t node) const;
+  /// The cells of a partial node on which a class may stand, bit 8 t + s of its block of 8 x 8. 0
+  /// for other nodes and for classes that are not the node's.
+  [[nodiscard]] uint64_t partial_cells(int32_t avatar_class, uint32_t node) const;
+  /// Corners of a node's sub-patch on the ground, in the order of BezierPatch's vertices; for a
+  /// partial node those of its block, where the ground may be missing. [m]
+  [[nodiscard]] std::array<Vec3d, 4> corners(uint32_t node) const;
+  /// The ground in the middle of a node; for a partial node, in the middle of one of its cells. [m]
+  [[nodiscard]] Vec3d middle(uint32_t node) const;
+  /// The ground at parameters (s, t) of a node's patch, in the node or not; (0, 0, 0) if its zone
+  /// cannot be used. [m, 0 to 1]
+  [[nodiscard]] Vec3d point(uint32_t node, double s, double t) const;
+  /// The place at parameters (s, t) of the patch, which must lie in the node. Nowhere if the class
+  /// may not stand there or the ground's zone cannot be used (check_all returns the error).
+  [[nodiscard]] NodePlace place(int32_t avatar_class, uint32_t node, double s, double t) const;
+  /// The n-th of a reproducible stream of places of a class, about uniform over its area. Nowhere
+  /// only if the class has no node.
+  [[nodiscard]] NodePlace random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const;
+
+  /// The connected components of a class, largest first. If given, `of_node` gets the component of
+  /// each node, UINT32_MAX for nodes where the class cannot stand. Linear in nodes and arcs.
+  [[nodiscard]] std::vector<NodeComponent> components(
+      int32_t avatar_class, std::vector<uint32_t>* of_node = nullptr) const;
+
+ private:
+  friend struct Access;
+  explicit Nodes(std::shared_ptr<const NodeData> state) : state_(std::move(state)) {}
+  std::shared_ptr<const NodeData> state_;
+};
+
+/// Calls visit(s, t, count) for each run of cells in a row of a partial node (NodeInfo::cells,
+/// Nodes::partial_cells): `count` cells along s from (s, t) of its block of 8 x 8 on.
+template <class Visit>
+void for_partial_runs(uint64_t cells, Visit visit) {
+  for (int32_t t = 0; t < 8; ++t) {
+    for (auto row = static_cast<uint32_t>(cells >> (8 * t) & 0xff); row != 0;) {
+      const int32_t s = std::countr_zero(row), count = std::countr_one(row >> s);
+      visit(s, t, count);
+      row &= ~(((1u << count) - 1) << s);
+    }
+  }
+}
+
+}  // namespace throng

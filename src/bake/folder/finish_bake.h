@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bake/folder/world_folder.h"
+#include "throng/bake.h"
+#include "throng/base.h"
+#include "throng/scene.h"
+
+/// The end of a bake into a folder, by one process or by many.
+namespace throng {
+
+/// Puts a world whose zones, air and graph are all in the folder into its place, if what will be
+/// made of it can be: else nothing of the old world is lost. Fails with kIo, kBadInput (off-mesh
+/// links), kBadFile or kCancelled.
+Result<void> finish_bake(WorldFolder& folder, const WorldData& world, const GraphData& graph,
+                         const Scene& scene, const BakeConfig& config, Context& context,
+                         BakeReport& report);
+
+}  // namespace throng

@@ -1,0 +1,291 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "bake/surface/node_bake.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "bake/surface/node_file.h"
+#include "core/access.h"
+#include "core/hash.h"
+#include "core/parallel.h"
+#include "graph/node_bins.h"
+#include "throng/scene.h"
+
+// Makes nodes zone by zone in batches, reuses those whose input is unchanged, and collects what the
+// index needs of them.
+namespace throng {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Of calls that ran side by side.
+Result<void> first_failure(std::span<const std::optional<Error>> failed) {
+  for (const auto& failure : failed) {
+    if (failure) return *failure;
+  }
+  return {};
+}
+
+}  // namespace
+
+NodeBaker::NodeBaker(const World& world, const Scene& scene, const NodeConfig& config,
+                     const NodeFolder* folder)
+    : world_(world),
+      data_(*data_of(world)),
+      scene_(scene),
+      config_(config),
+      folder_(folder),
+      bins_(make_bins(data_.summary.classes)) {}
+
+Result<void> NodeBaker::check(const World& world, const Scene& scene, const NodeConfig& config) {
+  if (data_of(world) == nullptr) return Error{Errc::kBadInput, "nodes: the world is empty"};
+  if (auto ok = check_node_config(config); !ok) return ok.error();
+  if (scene.triangles.size() != world.summary().source_triangles) {
+    return Error{Errc::kBadInput, "nodes: the world was not baked from this scene: it has " +
+                                      std::to_string(world.summary().source_triangles) +
+                                      " source triangles, the scene has " +
+                                      std::to_string(scene.triangles.size())};
+  }
+  return {};
+}
+
+Result<void> NodeBaker::check_off_mesh_links(const World& world, const Scene& scene,
+                                             const NodeConfig& config, Context& context) {
+  NodeBaker baker(world, scene, config, nullptr);
+  baker.plan();
+  std::vector<uint32_t> zones;
+  for (uint32_t z = 0; z < baker.plan_.zones.size(); ++z) {
+    if (!baker.plan_.zones[z].off_mesh_links.empty()) zones.push_back(z);
+  }
+  return check_batch_links(baker.batch_input(true, context), zones);
+}
+
+// A world in memory does not know what it was made from.
+void NodeBaker::plan() {
+  plan_ = plan_nodes(data_, scene_, config_);
+  if (plan_.needs_triangles()) triangles_.emplace(scene_, config_.workers);
+  is_done_.assign(plan_.zones.size(), 0);
+  slots_.resize(plan_.zones.size());
+  if (!data_.path.empty()) {
+    find_node_inputs(data_, scene_, config_, triangles_ ? &*triangles_ : nullptr, plan_);
+  }
+}
+
+uint64_t NodeBaker::input() const {
+  std::vector<uint64_t> inputs;
+  for (const NodePlanZone& zone : plan_.zones) inputs.push_back(zone.input);
+  return hash_span<uint64_t>(inputs);
+}
+
+Result<void> NodeBaker::reuse_zones() {
+  if (data_.path.empty() || config_.fresh) return {};
+  const OldNodes old(data_.path);
+  std::vector<std::optional<Error>> failed(plan_.zones.size());
+  parallel_for(plan_.zones.size(), config_.workers, [&](size_t z) {
+    const NodePlanZone& zone = plan_.zones[z];
+    auto reused = old.reuse(zone.x, zone.z, zone.input);
+    if (!reused) return;
+    is_done_[z] = 1;
+    slots_[z] = std::move(reused->slot);
+    if (folder_ == nullptr || slots_[z] == nullptr) return;
+    if (auto ok = folder_->take_over(*slots_[z]->zone, reused->file); !ok) failed[z] = ok.error();
+    slots_[z]->zone.reset();
+  });
+  reused_ = zones_done();
+  return first_failure(failed);
+}
+
+uint64_t NodeBaker::zones_done() const {
+  return std::accumulate(is_done_.begin(), is_done_.end(), uint64_t{0});
+}
+
+std::vector<std::vector<uint32_t>> NodeBaker::batches(uint64_t max_bytes) const {
+  std::vector<uint32_t> left;
+  for (uint32_t z = 0; z < is_done_.size(); ++z) {
+    if (is_done_[z] == 0) left.push_back(z);
+  }
+  return node_batches(scene_, config_, plan_, std::move(left), max_bytes);
+}
+
+NodeBatchInput NodeBaker::batch_input(bool is_last, Context& context) {
+  return {.world = world_,
+          .scene = scene_,
+          .config = config_,
+          .bins = bins_,
+          .plan = plan_,
+          .triangles = triangles_,
+          .is_last = is_last,
+          .context = context};
+}
+
+Result<NodeSlots> NodeBaker::make(std::span<const uint32_t> zones, bool is_last, Context& context) {
+  return make_node_batch(batch_input(is_last, context), zones);
+}
+
+Result<std::vector<NodeBaker::Made>> NodeBaker::write(std::span<const uint32_t> zones,
+                                                      NodeSlots& made) const {
+  std::vector<Made> made_entries(zones.size());
+  std::vector<std::optional<Error>> failed(zones.size());
+  parallel_for(zones.size(), config_.workers, [&](size_t i) {
+    made_entries[i].zone = zones[i];
+    if (made[i] == nullptr) return;
+    made_entries[i].has_nodes = 1;
+    made_entries[i].entry = made[i]->entry;
+    if (folder_ == nullptr) return;
+    if (auto ok = folder_->write(*made[i]->zone); !ok) failed[i] = ok.error();
+    made[i]->zone.reset();
+  });
+  if (auto ok = first_failure(failed); !ok) return ok.error();
+  return made_entries;
+}
+
+void NodeBaker::enter(std::span<const Made> made, NodeSlots* slots) {
+  for (size_t i = 0; i < made.size(); ++i) {
+    is_done_[made[i].zone] = 1;
+    if (made[i].has_nodes == 0) continue;
+    auto& slot = slots_[made[i].zone];
+    slot = slots != nullptr ? std::move((*slots)[i]) : std::make_unique<NodeData::Slot>();
+    slot->entry = made[i].entry;
+  }
+}
+
+Result<void> NodeBaker::list() {
+  return folder_ != nullptr ? folder_->list(*gather()) : Result<void>();
+}
+
+Result<std::shared_ptr<NodeData>> NodeBaker::finish() {
+  auto nodes = gather();
+  if (nodes->node_count >= kFarNode) return too_many_nodes();
+  nodes->summary.zones_reused = reused_;
+  nodes->summary.zones_made = plan_.zones.size() - reused_;
+  return nodes;
+}
+
+// What is done so far. Where nodes stay in memory they are in it, and no longer here.
+std::shared_ptr<NodeData> NodeBaker::gather() {
+  auto nodes = std::make_shared<NodeData>();
+  nodes->world = world_;
+  nodes->world_hash = world_hash(data_);
+  nodes->size = config_.size;
+  nodes->summary.bins = bins_;
+  nodes->summary.bezier_patches = scene_.patches.size();
+  uint64_t count = 0;
+  for (size_t z = 0; z < slots_.size(); ++z) {
+    if (is_done_[z] == 0) continue;
+    if (!data_.path.empty()) {
+      nodes->inputs.emplace_back(plan_.zones[z].x, plan_.zones[z].z, plan_.zones[z].input);
+    }
+    if (slots_[z] == nullptr) continue;
+    auto slot = std::make_unique<NodeData::Slot>();
+    slot->entry = slots_[z]->entry;
+    slot->zone = std::move(slots_[z]->zone);
+    slot->first_node = static_cast<uint32_t>(count);
+    count = std::min<uint64_t>(count + slot->entry.nodes(), kFarNode);
+    nodes->summary.bytes += slot->entry.bytes();
+    nodes->summary.patches += slot->entry.patches();
+    nodes->slots.push_back(std::move(slot));
+  }
+  nodes->node_count = static_cast<uint32_t>(count);
+  nodes->summary.nodes = count;
+  nodes->summary.zones = nodes->slots.size();
+  return nodes;
+}
+
+namespace {
+
+// By this process alone.
+Result<std::shared_ptr<NodeData>> make_all(const World& world, const Scene& scene,
+                                           const NodeConfig& config, Context& context,
+                                           const NodeFolder* folder) {
+  const auto start = Clock::now();
+  NodeBaker baker(world, scene, config, folder);
+  baker.plan();
+  if (auto ok = baker.reuse_zones(); !ok) return ok.error();
+  // Off-mesh links are checked even if nothing has to be made.
+  const auto batches = baker.batches(config.working_bytes);
+  for (size_t b = 0; b < batches.size(); ++b) {
+    if (context.on_progress) context.on_progress({"nodes", baker.zones_done(), baker.zones()});
+    // The journal names what is there before the rest is begun.
+    if (auto ok = baker.list(); !ok) return ok.error();
+    auto slots = baker.make(batches[b], b + 1 == batches.size(), context);
+    if (!slots) return slots.error();
+    const auto made = baker.write(batches[b], *slots);
+    if (!made) return made.error();
+    baker.enter(*made, &*slots);
+  }
+  auto nodes = baker.finish();
+  if (!nodes) return nodes.error();
+  (*nodes)->summary.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  return nodes;
+}
+
+}  // namespace
+
+Result<void> check_node_config(const NodeConfig& config) {
+  if (!(config.size >= 0.05 && config.size <= 100)) {
+    return Error{Errc::kBadConfig, "nodes: the size must be 0.05 to 100 m"};
+  }
+  if (config.workers < 0) return Error{Errc::kBadConfig, "nodes: workers must be 0 or more"};
+  for (size_t j = 0; j < config.off_mesh_links.size(); ++j) {
+    const NodeOffMeshLink& off_mesh_link = config.off_mesh_links[j];
+    const Vec3d sum = off_mesh_link.from + off_mesh_link.to;
+    if (std::isfinite(sum.x + sum.y + sum.z)) continue;
+    return Error{Errc::kBadConfig,
+                 "nodes: jump " + std::to_string(j + 1) + ": its ends must be finite"};
+  }
+  return {};
+}
+
+Result<Nodes> Nodes::create(const World& world, const Scene& scene, const NodeConfig& config,
+                            Context& context) {
+  if (auto ok = NodeBaker::check(world, scene, config); !ok) return ok.error();
+  auto nodes = make_all(world, scene, config, context, nullptr);
+  if (!nodes) return nodes.error();
+  return Nodes(*std::move(nodes));
+}
+
+Result<Nodes> Nodes::create_in_folder(const World& world, const Scene& scene,
+                                      const NodeConfig& config, Context& context) {
+  if (auto ok = NodeBaker::check(world, scene, config); !ok) return ok.error();
+  if (data_of(world)->path.empty()) {
+    return Error{Errc::kBadInput, "nodes: the world is in no folder"};
+  }
+  auto folder = NodeFolder::begin(data_of(world)->path);
+  if (!folder) return folder.error();
+  const auto made = make_all(world, scene, config, context, &*folder);
+  if (!made) {
+    if (made.error().code == Errc::kCancelled) folder->leave();
+    return made.error();
+  }
+  if (auto ok = folder->finish(**made); !ok) return ok.error();
+  (*made)->path = data_of(world)->path + "/" + kNodeFolder;
+  return Nodes(*made);
+}
+
+Result<void> Nodes::write(const std::string& world_path, int32_t workers) const {
+  THRONG_ASSERT(state_);
+  const auto world = World::open(world_path);
+  if (!world) return world.error();
+  if (world->summary().hash != state_->world_hash) {
+    return Error{Errc::kBadFile, world_path + ": holds another world than these nodes' own"};
+  }
+  auto folder = NodeFolder::begin(world_path);
+  if (!folder) return folder.error();
+  std::vector<std::optional<Error>> failed(state_->slots.size());
+  parallel_for(failed.size(), workers, [&](size_t s) {
+    const NodeZone* zone = state_->zone(s);
+    if (zone == nullptr) {
+      failed[s] = Error{Errc::kBadFile, state_->slots[s]->error};
+    } else if (auto ok = folder->write(*zone); !ok) {
+      failed[s] = ok.error();
+    }
+  });
+  if (auto ok = first_failure(failed); !ok) return ok;
+  return folder->finish(*state_);
+}
+
+}  // namespace throng

@@ -1,0 +1,169 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "bake/surface/node_folder.h"
+
+#include <algorithm>
+#include <set>
+#include <system_error>
+#include <tuple>
+#include <utility>
+
+#include "core/file_map.h"
+#include "core/hash.h"
+#include "world/sealed_file.h"
+
+// The nodes' folder of a world: files of earlier bakes that can be reused, and a folder of new ones
+// that replaces it at once.
+namespace throng {
+namespace fs = std::filesystem;
+namespace {
+
+// Two names for one file, or two files where that cannot be.
+bool link_or_copy(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::create_hard_link(from, to, error);
+  if (error) fs::copy_file(from, to, error);
+  return !error;
+}
+
+}  // namespace
+
+OldNodes::OldNodes(const std::string& world_path) {
+  if (world_path.empty()) return;
+  for (const char* folder : {kNodeFolder, kOldNodeFolder, kPartNodeFolder}) {
+    const std::string path = (fs::path(world_path) / folder).string();
+    const std::string name = path + "/" + kNodeIndexName;
+    const auto map = FileMap::open(name);
+    if (!map) continue;
+    auto index = read_node_index(map->bytes(), name);
+    if (!index || !unsealed(map->bytes(), name)) continue;
+    (*index)->path = path;
+    folders_.push_back(std::move(*index));
+  }
+}
+
+std::optional<OldNodes::Reused> OldNodes::reuse(int32_t x, int32_t z, uint64_t input) const {
+  for (const auto& index : folders_) {
+    const auto& inputs = index->inputs;
+    const auto found =
+        std::lower_bound(inputs.begin(), inputs.end(), std::pair{z, x},
+                         [](const format::NodeInput& i, std::pair<int32_t, int32_t> at) {
+                           return std::pair{i.z(), i.x()} < at;
+                         });
+    if (found == inputs.end() || found->x() != x || found->z() != z || found->hash() != input) {
+      continue;
+    }
+    const size_t place = index->slot_at(x, z);
+    if (place == index->slots.size()) return Reused{};
+    const format::NodeZoneEntry& entry = index->slots[place]->entry;
+    const std::string file = index->path + "/" + node_file_name(x, z);
+    auto zone = open_listed<NodeZone>(
+        {.name = file, .bytes = entry.bytes(), .hash = entry.hash(), .whose = "the index's"});
+    if (!zone || (*zone)->nodes().size() != entry.nodes()) continue;
+    auto slot = std::make_unique<NodeData::Slot>();
+    slot->entry = entry;
+    slot->zone = std::move(*zone);
+    return Reused{std::move(slot), file};
+  }
+  return std::nullopt;
+}
+
+NodeFolder::NodeFolder(std::string world_path)
+    : world_path_(std::move(world_path)), part_(fs::path(world_path_) / kPartNodeFolder) {}
+
+NodeFolder::NodeFolder(NodeFolder&& other) noexcept
+    : world_path_(std::move(other.world_path_)),
+      part_(std::exchange(other.part_, {})),
+      is_own_(other.is_own_),
+      world_lock_(std::move(other.world_lock_)),
+      part_lock_(std::move(other.part_lock_)) {}
+
+NodeFolder::~NodeFolder() {
+  std::error_code error;
+  if (is_own_ && !part_.empty()) fs::remove_all(part_, error);
+}
+
+// The world's folder is locked as shared: to replace its world, the lock must be exclusive.
+Result<NodeFolder> NodeFolder::begin(const std::string& world_path) {
+  auto world_lock = FolderLock::take(world_path, FolderLock::Kind::kShared, world_path);
+  if (!world_lock) return world_lock.error();
+  const std::string part = (fs::path(world_path) / kPartNodeFolder).string();
+  auto part_lock = FolderLock::make(part, world_path);
+  if (!part_lock) return part_lock.error();
+  NodeFolder folder(world_path);
+  folder.world_lock_ = *std::move(world_lock);
+  folder.part_lock_ = *std::move(part_lock);
+  return folder;
+}
+
+NodeFolder NodeFolder::join(const std::string& world_path) {
+  NodeFolder folder(world_path);
+  folder.is_own_ = false;
+  return folder;
+}
+
+Result<void> NodeFolder::write(const NodeZone& zone) const {
+  return write_file((part_ / node_file_name(zone.x(), zone.z())).string(), zone.bytes());
+}
+
+Result<void> NodeFolder::take_over(const NodeZone& zone, const std::string& file) const {
+  const fs::path to = part_ / node_file_name(zone.x(), zone.z());
+  if (fs::path(file) == to) return {};
+  std::error_code error;
+  fs::remove(to, error);
+  if (link_or_copy(file, to)) return {};
+  return write(zone);
+}
+
+Result<void> NodeFolder::list(const NodeData& nodes) const {
+  return write_file((part_ / kNodeIndexName).string(), sealed(write_node_index(nodes)));
+}
+
+Result<void> NodeFolder::finish(const NodeData& nodes) {
+  std::set<std::string> names{kNodeIndexName};
+  for (const auto& slot : nodes.slots) {
+    names.insert(node_file_name(slot->entry.x(), slot->entry.z()));
+  }
+  std::error_code error;
+  std::vector<fs::path>
+      stale;  // Of killed bakes of something else, and what they left half written.
+  for (const auto& file : fs::directory_iterator(part_, error)) {
+    if (!names.contains(file.path().filename().string())) stale.push_back(file.path());
+  }
+  for (const fs::path& file : stale) fs::remove_all(file, error);
+  if (auto ok = list(nodes); !ok) return ok;
+  const fs::path target = fs::path(world_path_) / kNodeFolder;
+  fs::remove_all(target, error);
+  fs::rename(part_, target, error);
+  if (error) return Error{Errc::kIo, target.string() + ": cannot be written: " + error.message()};
+  part_.clear();
+  fs::remove_all(fs::path(world_path_) / kOldNodeFolder, error);
+  return {};
+}
+
+namespace {
+
+// If it has any nodes.
+bool reuse_folder(const fs::path& source, const fs::path& target) {
+  std::error_code error;
+  if (!fs::exists(source / kNodeIndexName, error)) return false;
+  fs::remove_all(target, error);
+  fs::create_directory(target, error);
+  for (const auto& file : fs::directory_iterator(source, error)) {
+    link_or_copy(file.path(), target / file.path().filename());
+  }
+  return true;
+}
+
+}  // namespace
+
+void carry_nodes(const std::string& from, const std::string& to, bool is_same_world) {
+  const fs::path source(from), target(to);
+  reuse_folder(source / kPartNodeFolder, target / kPartNodeFolder);
+  if (reuse_folder(source / kNodeFolder, target / (is_same_world ? kNodeFolder : kOldNodeFolder))) {
+    return;
+  }
+  reuse_folder(source / kOldNodeFolder, target / kOldNodeFolder);
+}
+
+}  // namespace throng

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/surface/body_sweep.h"
+#include "throng/scene.h"
+#include "throng/surface.h"
+#include "world/zone_data.h"
+
+/// Which patches nodes are made of, zone by zone, and what each zone's nodes depend on.
+namespace throng {
+
+/// A patch of the forest: where it comes from and which zone keeps it.
+struct PatchSource {
+  int32_t zone_z = 0, zone_x = 0;
+  PatchKind kind = PatchKind::kBezier;
+  uint32_t source = 0;  ///< Patch of the scene, or level of the world.
+
+  friend auto operator<=>(const PatchSource&, const PatchSource&) = default;
+};
+
+/// A zone that patches belong to.
+struct NodePlanZone {
+  int32_t x = 0, z = 0;
+  uint32_t first = 0, last = 0;  ///< of the plan's sources
+  Box3d box = {};                ///< That holds its patches, heights left out.
+  std::vector<uint32_t> near =
+      {};  ///< Zones that its nodes depend on, itself among them; ascending.
+  std::vector<uint32_t> off_mesh_links = {};  ///< That begin or end in or near it, ascending.
+  uint64_t input = 0;                         ///< XXH3 of all that its nodes depend on.
+};
+
+struct NodePlan {
+  bool has_patches = false;  ///< Do Bezier patches carry a class,
+  bool has_tiles = false;    ///< do level tiles?
+  bool drops = false;        ///< Does a class drop?
+  uint16_t on_patches = 0;   ///< Classes that patches carry.
+  std::vector<PatchSource> sources;
+  std::vector<NodePlanZone> zones;  ///< By z, then x.
+
+  /// Do nodes need triangles at all?
+  [[nodiscard]] bool needs_triangles() const { return has_patches || drops; }
+};
+
+/// Lists patches and zones, by zones, then kinds, then sources.
+[[nodiscard]] NodePlan plan_nodes(const WorldData& world, const Scene& scene,
+                                  const NodeConfig& config);
+
+/// Finds which zones depend on which, and `input` of each: equal inputs give equal bytes. Needs the
+/// triangles if the plan does. A zone that has to be made reads its `near` zones.
+void find_node_inputs(const WorldData& world, const Scene& scene, const NodeConfig& config,
+                      const TriangleSquares* triangles, NodePlan& plan);
+
+/// Splits zones, given in ascending order, into batches whose nodes are made together: nearly
+/// square, of about `max_bytes` each, because zones near a batch are made for it too. At least one;
+/// only a single batch may be empty.
+[[nodiscard]] std::vector<std::vector<uint32_t>> node_batches(const Scene& scene,
+                                                              const NodeConfig& config,
+                                                              const NodePlan& plan,
+                                                              std::vector<uint32_t> zones,
+                                                              uint64_t max_bytes);
+/// What the nodes of all zones would take while they are made, about. [bytes]
+[[nodiscard]] uint64_t all_working_bytes(const Scene& scene, const NodeConfig& config,
+                                         const NodePlan& plan);
+/// The same of a batch, with what lies near its zones and is made for it too.
+[[nodiscard]] uint64_t batch_working_bytes(const Scene& scene, const NodeConfig& config,
+                                           const NodePlan& plan, std::span<const uint32_t> batch);
+
+}  // namespace throng

@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/surface/body_motion.h"
+#include "bake/surface/patch_cells.h"
+#include "graph/node_links.h"
+
+/// Which classes go from a Bezier patch's cells to those of others: over shared edges, over the
+/// holes that patches make in each other, and onto level tiles.
+namespace throng {
+
+struct PatchLinkInput {
+  const TriangleSquares* triangles = nullptr;
+  const World* world = nullptr;
+  std::span<const AvatarClass> classes;
+  std::span<const BezierCells> cells;  ///< By patch of the scene; none of those not judged.
+  double size = 1;                     ///< Of cells. [m]
+
+  [[nodiscard]] bool is_judged(uint32_t patch) const { return !cells[patch].promise.cells.empty(); }
+};
+
+/// A part of an edge over which the same classes go to the patch beyond and back, in 256ths of the
+/// edges: `first` meets `to_first`, and the edge beyond runs in the opposite direction.
+struct PatchDoor {
+  uint32_t patch = 0, to_patch = 0;
+  uint8_t edge = 0, to_edge = 0;
+  uint16_t classes = 0;
+  uint16_t first = 0, last = 0, to_first = 0, to_last = 0;
+};
+
+struct EdgeLinks {
+  std::vector<CellPair> pairs;
+  std::vector<PatchDoor> doors;  ///< By patch.
+};
+
+/// The farthest that a class goes over a hole between patches, from cell to cell. [m]
+[[nodiscard]] inline double patch_leap(double radius, double size) { return 3 * size + 2 * radius; }
+
+/// Pairs of cells over all edges that patches share, and where exactly they touch. Where the
+/// surface has a crease, a climber must be able to turn over it.
+[[nodiscard]] EdgeLinks link_edges(const PatchLinkInput& input, int32_t workers);
+
+/// For each class, each cell of a patch with holes that lacks a neighbour, and each patch that made
+/// the holes: the nearest of its cells to which the body can go straight. Source: [PACS00] 1.2.3.6.
+[[nodiscard]] std::vector<CellPair> link_holes(const PatchLinkInput& input, int32_t workers);
+
+/// Cells on which a climber also finds a place on a level tile, and can straighten up there.
+/// `patch_b` counts levels of the world.
+[[nodiscard]] std::vector<CellPair> link_tiles(const PatchLinkInput& input, int32_t workers);
+
+}  // namespace throng

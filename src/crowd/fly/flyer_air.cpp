@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "crowd/fly/flyer_air.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/access.h"
+#include "world/place.h"
+
+// The air of a class in a step's integer units: conversions, lines of sight, and ground-air links.
+// Each costs a descent in the air's octree for each air box that a line crosses.
+namespace throng {
+namespace {
+
+int32_t floor_div(int32_t a, int32_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
+
+}  // namespace
+
+FlyerAir::FlyerAir(const World& world, const FlightSpace& space, const CrowdGround& ground,
+                   int32_t avatar_class)
+    : space_(&space),
+      ground_(&ground),
+      origin_(data_of(world)->summary.origin),
+      unit_(data_of(world)->summary.cell / kUnitsPerCell),
+      per_unit_(1.0 / (static_cast<double>(kUnitsPerCell) * space.shape.multiple)),
+      width_(static_cast<int32_t>(
+          std::min<int64_t>(int64_t{data_of(world)->width} << kUnitBits, INT32_MAX))),
+      depth_(static_cast<int32_t>(
+          std::min<int64_t>(int64_t{data_of(world)->depth} << kUnitBits, INT32_MAX))),
+      origin_y_(space.shape.origin_y),
+      cell_(space.shape.cell) {
+  const AvatarClass& avatar = data_of(world)->summary.classes[static_cast<size_t>(avatar_class)];
+  height_ = static_cast<int32_t>(std::floor(avatar.height * 1000 + 1e-6));
+}
+
+bool FlyerAir::is_open_around(const AirPosition& position, float distance) const {
+  const AirPoint p = point(position);
+  const uint32_t index = space_->box_at(p);
+  if (index == kNoBox) return false;
+  const AirCube& box = space_->boxes[index];
+  const double cells = static_cast<double>(distance) * 1e3 / cell_;
+  const auto inside = [&](double v, int32_t low) {
+    return v - cells >= low && v + cells <= low + box.side;
+  };
+  return inside(p.x, box.x) && inside(p.y, box.y) && inside(p.z, box.z);
+}
+
+// As FlightEndpoints::take_off computes it, in whole millimetres.
+std::optional<int32_t> FlyerAir::take_off(const AirPosition& feet) const {
+  const AirPoint p = point(feet);
+  const auto x = static_cast<int32_t>(std::floor(p.x)), z = static_cast<int32_t>(std::floor(p.z));
+  const int32_t head = feet.y + height_;
+  for (int32_t layer = floor_div(feet.y - origin_y_, cell_);; ++layer) {
+    const int32_t y = std::max(feet.y, layer * cell_ + origin_y_);
+    if (y > head) return {};
+    if (space_->box_at(x, layer, z) != kNoBox) return y;
+  }
+}
+
+std::optional<FlyerAir::GroundAirLink> FlyerAir::link_below(const AirPosition& position) const {
+  const GroundPoint p{position.x, position.z};
+  std::optional<GroundAirLink> best;
+  const auto range = ground_->feet_range();
+  ground_->for_tile(p.cell_x() >> 6, p.cell_z() >> 6, range.low, position.y, [&](uint32_t level) {
+    if (!ground_->is_legal(level, p.cell_x() & 63, p.cell_z() & 63)) return;
+    const int32_t feet = ground_->feet(level, p);
+    if (feet > position.y || (best && feet <= best->low)) return;
+    const auto high = take_off({position.x, position.z, feet});
+    if (!high || *high > position.y || !sees(position, {position.x, position.z, *high})) return;
+    best = GroundAirLink{feet, *high, level};
+  });
+  return best;
+}
+
+AirPosition FlyerAir::position(const Vec3d& metres) const {
+  const auto whole = [](double v) {
+    return static_cast<int32_t>(std::clamp(std::floor(v), -2e9, 2e9));
+  };
+  // Points lie slightly off the faces of cells; rounded down they stay on their side.
+  return {whole((metres.x - origin_.x) / unit_), whole((metres.z - origin_.z) / unit_),
+          whole(metres.y * 1000)};
+}
+
+Vec3d FlyerAir::metres(const AirPosition& position) const {
+  return {origin_.x + (position.x + 0.5) * unit_, position.y * 1e-3,
+          origin_.z + (position.z + 0.5) * unit_};
+}
+
+bool FlyerAir::in_grid(const Vec3d& metres) const {
+  if (!std::isfinite(metres.x + metres.y + metres.z) || std::fabs(metres.y) > 1e6) return false;
+  const double x = (metres.x - origin_.x) / unit_, z = (metres.z - origin_.z) / unit_;
+  return x >= 0 && z >= 0 && x < width_ && z < depth_;
+}
+
+int32_t FlyerAir::ceiling() const { return space_->shape.ceiling * cell_ + origin_y_; }
+
+}  // namespace throng

@@ -1,0 +1,194 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "core/huge_array.h"
+#include "core/prefetch.h"
+#include "crowd/ground/left_cells.h"
+#include "crowd/ground/level_line.h"
+#include "throng/base.h"
+#include "world/ground.h"
+
+/// The ground as a step reads it: for each level a line and 64 rows of legal cells.
+namespace throng {
+
+class CrowdGround {
+ public:
+  using Level = uint32_t;  // of the world
+
+  /// Opens every zone of the world. Fails with kBadFile, also where floors are not between the
+  /// world's lowest and highest triangle.
+  static Result<CrowdGround> make(const WorldData& world, int32_t avatar_class, int32_t step_mm);
+
+  [[nodiscard]] bool is_legal(Level level, int32_t x, int32_t z) const {
+    return ((rows(lines_[level].legal_set)[z] >> x) & 1) != 0;
+  }
+  [[nodiscard]] int32_t sample(Level level, int32_t x, int32_t z) const {
+    return views_[level].sample(x, z);
+  }
+  [[nodiscard]] bool step_safe(Level level) const {
+    return (lines_[level].legal_set & kStepSafe) != 0;
+  }
+  template <class Visit>
+  void for_tile(int32_t tile_x, int32_t tile_z, int32_t low, int32_t high, Visit visit) const {
+    const Range* range = tile(tile_x, tile_z);
+    if (range == nullptr) return;
+    for (uint32_t i = range->first; i < range->last; ++i) {
+      if (heights_[i].low <= high && heights_[i].high >= low) visit(i);
+    }
+  }
+
+  [[nodiscard]] const LevelLine& line(Level level) const { return lines_[level]; }
+  [[nodiscard]] const LevelLine* lines() const { return lines_.data(); }
+  [[nodiscard]] const OpenLine& open_line(Level level) const { return open_[level]; }
+
+  /// 64 rows of flat cells: legal, and level with the cells beside them. An avatar on one may move
+  /// wherever all cells between are flat, and stays on the level, at the height of its feet.
+  [[nodiscard]] const uint64_t* flat(Level level) const { return rows(lines_[level].flat_set); }
+
+  /// What is known about walking on a level inside its tile.
+  struct Walk {
+    const uint64_t* legal;  // 64 rows
+    bool is_step_safe;      // no two legal neighbours differ by more than the step
+    bool is_isolated;       // step safe, and no other level of the tile is within a step of it
+  };
+  [[nodiscard]] Walk walk(Level level) const {
+    const uint32_t word = lines_[level].legal_set;
+    return {rows(word), (word & kStepSafe) != 0, (word & kIsolated) != 0};
+  }
+  /// Prefetches what is read of a level where its line gives no answer.
+  void prefetch_level(Level level, int32_t z0, int32_t z1) const {
+    throng::prefetch(&flat(level)[z0 & 63]);
+    throng::prefetch(&flat(level)[z1 & 63]);
+    throng::prefetch(&views_[level]);
+  }
+  /// Prefetches what a step from a cell of a level reads, and what is cached around it.
+  void prefetch_cell(Level level, int32_t x, int32_t z) const {
+    throng::prefetch(&rows(lines_[level].legal_set)[z & 63]);
+    const LevelView& view = views_[level];
+    if (view.samples == nullptr) return;
+    const uint16_t* sample = &view.samples[(z & 63) * 64 + (x & 63)];
+    throng::prefetch(sample - 64);
+    throng::prefetch(sample);
+    throng::prefetch(sample + 64);
+  }
+  /// Prefetches what decides where an avatar may walk on a level.
+  void prefetch_open(Level level) const {
+    throng::prefetch(&open_[level]);
+    throng::prefetch(&lines_[level]);
+    throng::prefetch(&views_[level]);
+  }
+  /// Prefetches the tile's level lines, in two calls: the second reads what the first prefetched.
+  void prefetch_tile(int32_t tile_x, int32_t tile_z) const {
+    throng::prefetch(tile(tile_x, tile_z));
+  }
+  void prefetch_levels(int32_t tile_x, int32_t tile_z) const {
+    const Range* range = tile(tile_x, tile_z);
+    if (range == nullptr) return;
+    throng::prefetch(&heights_[range->first]);
+    throng::prefetch(&lines_[range->first]);
+  }
+  [[nodiscard]] int32_t feet(Level level, GroundPoint p) const {
+    const LevelView& view = views_[level];
+    if (view.is_constant()) return view.floor_base;
+    return view.feet(p.cell_x() & 63, p.cell_z() & 63,
+                     static_cast<int32_t>(p.x & (kUnitsPerCell - 1)),
+                     static_cast<int32_t>(p.z & (kUnitsPerCell - 1)));
+  }
+
+  /// Blocks exactly these cells of a level, of all cells that were baked: an empty set frees all
+  /// that were blocked before. Call join_tile then. Not while others read.
+  void set_blocked(Level level, const CellRows& blocked);
+  /// Updates what lies level beyond the edges of a tile, from both sides.
+  void join_tile(int32_t x, int32_t z);
+  /// Legal cells of a level of which some are blocked, as they were baked; null: none is blocked.
+  [[nodiscard]] const CellRows* baked_legal(Level level) const;
+  /// The blocked cells that bodies on them may leave.
+  [[nodiscard]] LeftCells& left() { return left_; }
+  [[nodiscard]] const LeftCells& left() const { return left_; }
+  [[nodiscard]] const LevelView& view(Level level) const { return views_[level]; }
+
+  /// 64 rows of legal cells.
+  [[nodiscard]] const uint64_t* legal(Level level) const { return rows(lines_[level].legal_set); }
+
+  /// What is needed only to place avatars.
+  struct Record {
+    uint32_t legal_cells = 0;
+    int32_t tile_x = 0, tile_z = 0;
+  };
+  [[nodiscard]] const std::vector<Record>& records() const { return records_; }
+  [[nodiscard]] uint64_t bytes() const {
+    const uint64_t level =
+        sizeof(Record) + sizeof(Heights) + sizeof(LevelView) + sizeof(LevelLine) + sizeof(OpenLine);
+    return records_.size() * level + tiles_.size() * sizeof(Range) +
+           row_sets_ * 64 * sizeof(uint64_t) + sample_sets_ * 4096 * sizeof(uint16_t) +
+           baked_.size() * sizeof(Baked);
+  }
+  [[nodiscard]] int32_t tiles_x() const { return tiles_x_; }
+  [[nodiscard]] int32_t tiles_z() const { return tiles_z_; }
+
+  /// The range of all feet. [mm]
+  struct Heights {
+    int32_t low = 0, high = 0;
+  };
+  [[nodiscard]] Heights feet_range() const { return feet_range_; }
+
+ private:
+  struct Range {
+    uint32_t first = 0, last = 0;
+  };
+  // Flags beside the number of the legal set.
+  static constexpr uint32_t kStepSafe = uint32_t{1} << 31;
+  static constexpr uint32_t kIsolated = uint32_t{1} << 30;
+  static constexpr uint32_t kSetBits = kIsolated - 1;
+  static constexpr uint32_t kNoneLegal = 0;  // Sets of rows that levels share.
+  static constexpr uint32_t kAllLegal = 1;
+
+  // Of a level with blocked cells, before these were.
+  struct Baked {
+    uint32_t legal_word = 0, flat_set = 0;
+    CellRows legal{}, flat{};
+  };
+  void keep_baked(Level level, Baked& baked);
+
+  void find_isolated(int32_t step_mm);
+  void join_blocks();
+  void join_side(Level level, LevelLine::Side side);
+  void find_open(Level level);
+  void find_beyond(Level level, LevelLine::Side side);
+  void join_open_side(Level level, LevelLine::Side side);
+  [[nodiscard]] const Range* tile(int32_t x, int32_t z) const {
+    if (x < 0 || z < 0 || x >= tiles_x_ || z >= tiles_z_) return nullptr;
+    return &tiles_[static_cast<size_t>(z) * static_cast<size_t>(tiles_x_) + static_cast<size_t>(x)];
+  }
+  [[nodiscard]] const uint64_t* rows(uint32_t word) const {
+    return rows_.data() + size_t{word & kSetBits} * 64;
+  }
+
+  int32_t tiles_x_ = 0, tiles_z_ = 0;
+  int32_t step_mm_ = 0;
+  std::vector<Range> tiles_;
+  Heights feet_range_;
+  std::vector<Heights> heights_;  // between which a level's legal floors lie [mm]
+  std::vector<Record> records_;
+  // Copied out of the zones, where the rows of one class lie pages apart: here the levels of a tile
+  // are neighbours. Set 0 is empty and set 1 is full, for all such levels.
+  HugeArray<LevelLine> lines_;
+  HugeArray<OpenLine> open_;
+  HugeArray<LevelView> views_;
+  HugeArray<uint64_t> rows_;
+  uint32_t row_sets_ = 0;
+  std::unordered_map<Level, Baked> baked_;  // looked up only
+  std::vector<uint32_t> spare_sets_;        // freed
+  LeftCells left_;
+  // Floors that are not flat, row by row: each step of an avatar on one reads five of its cells,
+  // and decoding these from the zone's blocks takes a fifth of the step.
+  HugeArray<uint16_t> samples_;
+  size_t sample_sets_ = 0;
+};
+
+}  // namespace throng

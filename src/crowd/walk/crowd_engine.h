@@ -1,0 +1,283 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/huge_array.h"
+#include "crowd/ground/stride_ground.h"
+#include "crowd/walk/body.h"
+#include "crowd/walk/neighbour_grid.h"
+#include "crowd/walk/step_units.h"
+#include "steer/lanes.h"
+#include "steer/models.h"
+#include "steer/sampled.h"
+
+/// The step of a crowd with goals as passes over arrays: sort, sense and steer, resolve conflicts,
+/// settle. test/support/plain_crowd.h does the same in the simplest code.
+namespace throng {
+
+/// The capacity for `needed` elements in an array of `capacity`: doubling, as vectors do, would
+/// leave up to half of the memory unused.
+inline size_t grown(size_t capacity, size_t needed) {
+  return needed <= capacity ? capacity : std::max(needed, capacity + capacity / 4);
+}
+
+/// How many cells to each side a query range covers.
+inline int32_t cells_of(float query_range) {
+  return static_cast<int32_t>(query_range) / kUnitsPerCell + 1;
+}
+
+/// Which bodies are in low detail, and what that means. docs/design/008-engine.md, "Levels of
+/// detail".
+struct EngineDetail {
+  struct View {
+    float x = 0, z = 0, y = 0;  ///< From the world's corner. [m]
+    float radius = 0;           ///< Bodies within are in full detail. [m]
+  };
+  std::span<const View> views;  ///< None: all bodies are in full detail.
+  int32_t steps = 1;            ///< At once, at most.
+  float reaction = 1;           ///< [s]
+  int32_t narrowest = 0;        ///< No move is longer. [units]
+};
+
+struct EngineConfig {
+  StepUnits units;
+  float sight = 5;  ///< [m]
+  int32_t rounds = 3;
+  bool deadlock_avoidance = true;
+  float reaction = 0.2f;  ///< A body that continues decides again after that. [s]
+  uint64_t seed = 1;
+  int32_t workers = 0;
+  SteeringModel model = SteeringModel::kSampled;
+  steer::SampledSettings steering;
+  steer::DeadlockAvoidance deadlock_settings;
+  steer::LaneSettings lanes;
+  steer::SpacingSettings spacing;
+};
+
+/// What a step did, summed over all bodies.
+struct EngineCounts {
+  uint64_t contested = 0;  // those that could touch another
+  uint64_t stood = 0;
+  uint64_t low_detail = 0;  // those in low detail
+  uint64_t skipped = 0;     // of these, those that took no step
+  int64_t progress = 0;     // speeds towards local targets over desired speeds, millionths
+
+  void add(const EngineCounts& other);
+};
+
+class CrowdEngine {
+ public:
+  /// For a world of width x depth cells and classes; grounds of those that are used must be set.
+  CrowdEngine(const EngineConfig& config, int32_t width, int32_t depth, size_t classes);
+
+  void set_ground(size_t avatar_class, const StrideGround& ground);
+  /// No body may be wider or faster. To be called before the first such body is added.
+  void fit(int32_t widest, float fastest, float dt);
+  /// A body may become that tall. [mm]
+  void expect_height(int32_t tallest) { highest_ = highest_ < tallest ? tallest : highest_; }
+  /// From the next step on; the views must stay until it is over.
+  void set_detail(const EngineDetail& detail);
+  /// Reserves memory for so many bodies. The bodies stay.
+  void reserve(size_t bodies);
+  [[nodiscard]] std::span<Body> bodies() const { return {bodies_.data(), size_}; }
+  void add(const Body& body);
+  /// Removes the last bodies.
+  void shrink(size_t size) { size_ = size; }
+
+  struct Times {
+    double plan = 0, sort = 0, steer = 0, resolve = 0, settle = 0;  // [s]
+  };
+  /// One step. `step`: its number, for the order of proposed moves. `before` is called first for
+  /// all bodies, some at a time, on any worker.
+  using Before = std::function<void(std::span<Body>, int32_t worker)>;
+  void step(uint64_t step, const Before& before, EngineCounts& counts, Times& times);
+  /// After how many steps a body that continues decides again.
+  [[nodiscard]] uint64_t steps_of_reaction(const Body& body) const;
+  /// Slots of the bodies that arrived in the last step, in no order.
+  [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
+  [[nodiscard]] uint64_t bytes() const;
+
+  /// Two bodies can touch only if the heights of their feet differ by less than a body's height and
+  /// what both can rise in a step. [mm]
+  static constexpr int32_t kMaxRise = 450;
+  /// The longest step. [units]
+  static constexpr int32_t kLongestStep = 32000;
+
+ private:
+  // Displacements of a contest and the bodies that it could touch are words of four bytes. What
+  // does not fit into a proposed move lies in the list of the worker that decided.
+  static constexpr size_t kWords = 10;
+  struct Displacement {
+    int16_t x, z;  // [units]
+  };
+  // Where a body would move in this step. If it could touch others: which, and its candidate
+  // displacements, the best first. Those after the first are found when they are needed.
+  struct Proposal {
+    Stand place;
+    uint8_t round;  // in which it was proposed, from 1; 0: before
+    uint8_t flags;  // Body::kContinues
+    uint8_t candidate_count;
+    bool has_all : 1;
+    bool in_counterflow : 1;             // Body::in_counterflow, from the next step on
+    bool forgets : 1;                    // No space is left for the candidates: they are found
+                                         // again.
+    bool is_in_list : 1;                 // The last words state where in which worker's list the
+                                         // others lie.
+    uint32_t others;                     // how many
+    std::array<uint32_t, kWords> words;  // candidates from the front, others from the back
+
+    [[nodiscard]] Displacement displacement(uint32_t w) const {
+      return std::bit_cast<Displacement>(words[w]);
+    }
+    void add_displacement(Displacement displacement) {
+      words[candidate_count++] = std::bit_cast<uint32_t>(displacement);
+    }
+    [[nodiscard]] bool has_room(size_t more) const {
+      return more + (is_in_list ? 2 : others) <= kWords;
+    }
+  };
+  static_assert(sizeof(Proposal) == sizeof(Body) && std::is_trivially_copyable_v<Proposal>);
+  // A bit for each body.
+  struct Contests {
+    uint64_t open = 0;        // it could touch others, and is undecided
+    uint64_t unproposed = 0;  // of these: it has proposed no move for the first round
+  };
+  struct Worker {
+    std::vector<float> squares;
+    std::vector<uint32_t> entries, touched;
+    std::vector<uint32_t> others;
+    steer::Situation situation;
+    bool waits = false;           // it yields to another, instead of its preferred velocity
+    bool in_counterflow = false;  // a stream comes towards it
+    bool follows = false;         // Body::follows
+    EngineCounts counts;
+  };
+  using Displacements = std::array<Displacement, steer::kChoices>;
+
+  void fit_grid();
+  void choose_detail(Body& body, uint64_t step) const;
+  [[nodiscard]] bool is_near(const Body& body) const;
+  [[nodiscard]] uint64_t steps_in_low_detail(const Body& body) const;
+  // To convert between its velocity and its move in this step.
+  [[nodiscard]] StepUnits units_of(const Body& body) const {
+    const auto steps = static_cast<float>(body.steps);
+    return {config_.units.unit, body.steps < 2 ? config_.units.dt : config_.units.dt * steps};
+  }
+  // No move of it in this step is longer. [units]
+  [[nodiscard]] int32_t stride_of(const Body& body) const {
+    return body.steps == 0 ? 0 : units_of(body).stride(body.speed);
+  }
+  // A body that takes several steps at once relies on conflict resolution alone. One in low detail
+  // that takes a single step is steered in full: without that, it would block others so often that
+  // it costs more than the query.
+  static bool ignores_neighbours(const Body& body) { return body.steps > 1; }
+  // Steered by the model of our own, and in full.
+  [[nodiscard]] bool is_sampled(const Body& body) const {
+    return config_.model == SteeringModel::kSampled && !ignores_neighbours(body);
+  }
+  [[nodiscard]] bool continues(const Body& body, uint64_t step) const;
+  void prefer_all(uint64_t step, const Before& before);
+  void decide_all(EngineCounts& counts);
+  bool decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& around);
+  void prefetch_ground(size_t i) const;
+  std::optional<bool> try_to_continue(uint32_t i, uint16_t w, uint32_t square);
+  void list_touched(const Body& body, const SeenLists& lists, Worker& worker) const;
+  static void fit_lists(const NeighbourGrid::Around& around, Worker& worker);
+  [[nodiscard]] float touch_of(const Body& body) const;
+  void sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around, bool lists_others);
+  static void step_back(const Body& body, steer::Plane apart, float room, Worker& worker);
+  void prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker) const;
+  bool find_open_preferred(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
+  bool go_straight(const Body& body, steer::Situation& situation) const;
+  struct Sides {
+    float left, right;  // [m]
+  };
+  // The vector to its local target; of a body without one, its preferred velocity.
+  [[nodiscard]] steer::Plane path_ahead(const Body& body) const {
+    const bool is_led = body.has(Body::kExternal) || !body.has(Body::kHasGoal);
+    return is_led
+               ? body.preferred
+               : config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
+  }
+  [[nodiscard]] Sides sides_of(const Body& body) const;
+  [[nodiscard]] bool has_oncoming(const Body& body, const Worker& worker) const;
+  void keep_right(const Body& body, Worker& worker) const;
+  bool choose_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
+  [[nodiscard]] steer::Plane if_blocked(steer::Plane displacement,
+                                        const steer::Situation& situation) const;
+  [[nodiscard]] float metres(float displacement, float query_range) const;
+  void query_wall_ahead(const Body& body, steer::Situation& situation) const;
+  void query_walls(const Body& body, steer::Situation& situation) const;
+  [[nodiscard]] float wall_range(const Body& body) const {  // [units]
+    return body.speed * config_.steering.wall_horizon / config_.units.unit;
+  }
+  void find_candidates(const Body& body, const steer::Situation& situation, bool open,
+                       Displacements& candidates);
+  // Moves are whole units. A body whose moves are of few units decides in each step, and its moves
+  // are rounded up or down in turn: else it would be too slow, or stand.
+  [[nodiscard]] bool has_short_moves(const Body& body) const {
+    constexpr float kFew = 128;  // [units]
+    const StepUnits units = units_of(body);
+    return body.speed * (units.dt / units.unit) < kFew;
+  }
+  [[nodiscard]] Displacement displacement_of(const Body& body, steer::Plane velocity) const {
+    const StepUnits units = units_of(body);
+    if (has_short_moves(body)) {
+      const uint64_t n = step_ + body.slot;
+      return {static_cast<int16_t>(units.small_displacement(velocity.x, n)),
+              static_cast<int16_t>(units.small_displacement(velocity.z, n))};
+    }
+    return displacement_again(body, velocity);
+  }
+  // Of a velocity that a move gave: the same move again.
+  [[nodiscard]] Displacement displacement_again(const Body& body, steer::Plane velocity) const {
+    const StepUnits units = units_of(body);
+    return {static_cast<int16_t>(units.displacement(velocity.x)),
+            static_cast<int16_t>(units.displacement(velocity.z))};
+  }
+  void resolve_conflicts(uint64_t step);
+  void settle_all(EngineCounts& counts);
+  void propose(uint32_t i, Worker& scratch, uint8_t round);
+  [[nodiscard]] std::span<const uint32_t> others_of(const Proposal& proposal) const;
+  void store_others(Proposal& proposal, uint16_t worker, size_t first);
+  [[nodiscard]] bool is_clear(const Body& body, const Stand& place,
+                              std::span<const uint32_t> others, bool any_moved) const;
+  [[nodiscard]] bool is_accepted(uint32_t i, uint64_t step) const;
+  template <class Do>
+  void for_contests(uint64_t Contests::*which, Do act);
+  bool try_displacement(const Body& body, Displacement displacement, Stand& place) const;
+  bool try_displacements(const Body& body, const Displacements& candidates,
+                         std::span<const uint32_t> others, Stand& place) const;
+  /// Proposed moves lie where the bodies were before they were sorted.
+  [[nodiscard]] Proposal* proposals() const {
+    return static_cast<Proposal*>(static_cast<void*>(spare_.data()));
+  }
+
+  EngineConfig config_;
+  uint64_t step_ = 0;                  // the current one
+  std::vector<StrideGround> grounds_;  // by class
+  int32_t width_, depth_;
+  int32_t widest_ = 0, longest_ = 0, sight_ = 0;
+  uint64_t every_ = 1;  // steps of a reaction
+  float fastest_ = 0;   // of all bodies [m/s]
+  EngineDetail detail_;
+  int32_t highest_ = 0;  // of all bodies there ever were [mm]
+  size_t size_ = 0;
+  HugeArray<Body> bodies_;
+  HugeArray<Body> spare_;           // while sorting: the source; then: proposed moves
+  std::vector<Contests> contests_;  // of bodies in order
+  std::optional<NeighbourGrid> grid_;
+  std::vector<Worker> workers_;
+  std::vector<uint32_t> arrived_;
+};
+
+}  // namespace throng

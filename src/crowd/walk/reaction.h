@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "crowd/walk/step_units.h"
+#include "world/walk.h"
+
+/// When an avatar decides. It need not sense sixty times a second: an avatar that could make its
+/// preferred move repeats it until its turn comes again, as long as the move is free.
+/// docs/design/008-engine.md, "Reaction".
+namespace throng {
+
+/// Whole steps, at least one.
+inline uint64_t steps_of_reaction(float reaction, float dt) {
+  return static_cast<uint64_t>(std::max(1.0f, reaction / dt + 1e-3f));
+}
+
+/// Decisions are spread over the steps of a reaction.
+inline bool decides(uint64_t every, uint64_t step, uint32_t slot) {
+  return (step + slot) % every == 0;
+}
+
+/// Just before its local target, where it must not overshoot. `displacement`: to the target.
+/// `stride`: of a step.
+inline bool is_before(GroundPoint displacement, int32_t stride) {
+  const int64_t range = int64_t{2} * stride;
+  return displacement.x * displacement.x + displacement.z * displacement.z < range * range;
+}
+
+}  // namespace throng

@@ -1,0 +1,131 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "crowd/walk/routes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "crowd/walk/lane_offset.h"
+#include "crowd/walk/step_units.h"
+#include "world/place.h"
+
+// Follows the corners of a path: heads to the next corner once it is visible, and requests the rest
+// of the path. Constant time but for the line of sight.
+namespace throng {
+namespace {
+
+constexpr uint64_t kCheckInterval = 16;  // decisions
+constexpr uint64_t kBlockedCheckInterval = 4;
+constexpr float kCheckRange = 3;  // [m] of a segment, to test whether it is visible
+constexpr float kSoon = 0.3f;     // [m] before its lane offset a body turns to the next corner
+
+void turn_to(Body& body, const Route& route, const StrideGround& ground, float metre) {
+  body.on_right = body.in_counterflow;
+  const PathPoint place = lane_offset(body, route, ground, metre);
+  body.local_target_x = place.x;
+  body.local_target_z = place.z;
+  const bool last = route.whole && route.next + 1 == route.count;
+  body.flags = static_cast<uint8_t>(last ? body.flags | Body::kLast : body.flags & ~Body::kLast);
+}
+
+// Is it as far as its lane offset, on the segment to the next corner? One that turned at first
+// sight of that corner would walk along the inner wall after all.
+bool is_at_lane_offset(const Body& body, const Route& route, float metre) {
+  const PathPoint& corner = route.corners[route.next];
+  if (corner.x == body.local_target_x && corner.z == body.local_target_z) return true;
+  const PathPoint& next = route.corners[route.next + 1u];
+  const auto x = static_cast<float>(next.x - body.local_target_x);
+  const auto z = static_cast<float>(next.z - body.local_target_z);
+  const float along = static_cast<float>(body.x - body.local_target_x) * x +
+                      static_cast<float>(body.z - body.local_target_z) * z;
+  return along > -kSoon * metre * std::sqrt(x * x + z * z);
+}
+
+}  // namespace
+
+void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float metre) {
+  const float range = kCheckRange * metre;
+  const auto sees = [&](const PathPoint& position) {
+    return ground.sees(body.level, body.point(), {position.x, position.z}, position.level, range);
+  };
+  const float square = near_square(body.local_target_x - body.x, body.local_target_z - body.z);
+  if (!body.has(Body::kLast) && square < range * range / 4) {
+    const bool at_end = route.next + 1 == route.count;
+    const bool there = square < 16;  // a few units: as near as moves come
+    if (!at_end && (there || (is_at_lane_offset(body, route, metre) &&
+                              sees(route.corners[route.next + 1u])))) {
+      ++route.next;
+      turn_to(body, route, ground, metre);
+      return;
+    }
+    if (at_end) {  // Corners are used up: the rest is a new path.
+      body.flags |= Body::kNeedsPath;
+      return;
+    }
+  }
+  if (body.in_counterflow && !body.on_right) turn_to(body, route, ground, metre);
+  // A body pushed back behind a corner no longer sees it, and is blocked until it checks.
+  const bool is_blocked = body.detour_angle != 0 && body.near_wall;
+  if (nth % (is_blocked ? kBlockedCheckInterval : kCheckInterval) != 0) return;
+  if (!sees({body.local_target_x, body.local_target_z, route.corners[route.next].level}))
+    body.flags |= Body::kNeedsPath;
+}
+
+bool leads_through(const Body& body, const Route& route, const PlanBox& box) {
+  // Is a part of the segment on the inner side of all four sides? (Liang and Barsky)
+  const auto crosses = [&](double ax, double az, double bx, double bz) {
+    double from = 0, to = 1;
+    const auto cut = [&](double at, double displacement, double low, double high) {
+      if (displacement == 0) return at >= low && at <= high;
+      const double t0 = (low - at) / displacement, t1 = (high - at) / displacement;
+      from = std::max(from, std::min(t0, t1));
+      to = std::min(to, std::max(t0, t1));
+      return from <= to;
+    };
+    return cut(ax, bx - ax, box.x0, box.x1) && cut(az, bz - az, box.z0, box.z1);
+  };
+  double x = body.x, z = body.z;
+  for (size_t i = route.next; i < route.count; ++i) {
+    const PathPoint& corner = route.corners[i];
+    if (crosses(x, z, corner.x, corner.z)) return true;
+    x = corner.x;
+    z = corner.z;
+  }
+  return false;
+}
+
+Place place_of(const WorldData& world, const Body& body, const PathPoint& position) {
+  const GroundLevel level = ground_level(world, position.level, body.avatar_class);
+  return place_at(world, level, {position.x, position.z});
+}
+
+PathPoint point_of(const WorldData& world, const Place& place) {
+  const GroundPoint point = to_ground(world, place.position.x, place.position.z);
+  return {static_cast<int32_t>(point.x), static_cast<int32_t>(point.z), place.level1 - 1};
+}
+
+bool use_path(const WorldData& world, const Path& path, const StrideGround& ground, Body& body,
+              Route& route) {
+  const float metre = kUnitsPerCell / static_cast<float>(world.summary.cell);
+  body.flags = static_cast<uint8_t>(body.flags & ~Body::kNeedsPath);
+  if (path.end != PathEnd::kReached) return false;
+  if (path.points.size() < 2) {  // It stands on its goal.
+    route.corners[0] = route.goal;
+    route.count = 1;
+    route.next = 0;
+    route.whole = true;
+    turn_to(body, route, ground, metre);
+    return true;
+  }
+  const size_t segments = path.points.size() - 1;
+  route.count = static_cast<uint8_t>(std::min(segments, Route::kCorners));
+  route.next = 0;
+  route.whole = segments <= Route::kCorners;
+  for (size_t i = 0; i < route.count; ++i) {
+    route.corners[i] = point_of(world, path.points[i + 1]);
+  }
+  turn_to(body, route, ground, metre);
+  return true;
+}
+
+}  // namespace throng

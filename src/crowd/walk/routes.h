@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "crowd/ground/stride_ground.h"
+#include "crowd/walk/body.h"
+#include "throng/path.h"
+#include "throng/world.h"
+
+/// Where avatars head to, and the corners of their paths.
+namespace throng {
+
+/// A point of the ground.
+struct PathPoint {
+  int32_t x = 0, z = 0;  // [units]
+  uint32_t level = 0;
+};
+
+/// The next corners of a path. When they are used up, the rest is searched for from the place
+/// reached by then.
+struct Route {
+  static constexpr size_t kCorners = 12;
+  PathPoint goal;
+  std::array<PathPoint, kCorners> corners;
+  uint8_t count = 0, next = 0;
+  bool whole = false;  // the last corner is the goal
+};
+
+/// Heads to the next corner once it is visible, and marks a body that has lost its path. `nth`:
+/// counts decisions, from a different number for each body, so that not all check in the same step.
+/// `metre`: [units]
+void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float metre);
+
+/// The place of a body that heads to `position`.
+Place place_of(const WorldData& world, const Body& body, const PathPoint& position);
+PathPoint point_of(const WorldData& world, const Place& place);
+
+/// Takes the next corners of a path that was found, from where the body is. False: none was found.
+bool use_path(const WorldData& world, const Path& path, const StrideGround& ground, Body& body,
+              Route& route);
+
+/// A rectangle of the plane. [units]
+struct PlanBox {
+  double x0 = 0, z0 = 0, x1 = 0, z1 = 0;
+};
+/// Do the corners that a body heads to lead through a box?
+bool leads_through(const Body& body, const Route& route, const PlanBox& box);
+
+}  // namespace throng

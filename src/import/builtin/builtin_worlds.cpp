@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <array>
+
+#include "import/builtin/builtin_table.h"
+#include "import/patches/patch_scene.h"
+#include "import/raw/name_colour.h"
+#include "throng/scene.h"
+
+// The table of built-in worlds: checks a config, fills in defaults and calls the builder.
+namespace throng {
+namespace {
+
+struct Entry {
+  BuiltinWorldInfo info;
+  double min_size = 0;
+  double max_size = 0;
+  int32_t default_levels = 0;  // 0: the world has no storeys to count.
+  int32_t max_levels = 0;
+  double (*size_for)(uint64_t triangles, int32_t levels) = nullptr;  // Null: does not grow.
+  uint64_t max_triangles = 0;
+  void (*build)(WorldBuilder&, const BuiltinWorldConfig&) = nullptr;
+  PatchSet (*build_patches)(const BuiltinWorldConfig&) = nullptr;  // Instead of `build`.
+};
+
+constexpr uint64_t kMaxTriangles = 100'000'000;  // Corners must stay below 2^32 with room.
+
+const std::array<Entry, 9> kWorlds = {{
+    {{"cube", "a hollow cube: floor, roof and four walls without thickness", 5.8},
+     0.5,
+     10000,
+     0,
+     0,
+     nullptr,
+     0,
+     builtin::build_cube},
+    {{"stairs", "flights of all kinds up two terraces: easy, steep, too high, ramps, spirals", 44},
+     44,
+     4000,
+     0,
+     0,
+     nullptr,
+     0,
+     builtin::build_stairs},
+    {{"garage", "a car park: floors, ramps, pillars, cars, stairwells", 60},
+     45,
+     2000,
+     3,
+     40,
+     nullptr,
+     0,
+     builtin::build_garage},
+    {{"bridge", "a road over a river and a road: arches, embankments, stairs, an underpass", 160},
+     160,
+     4000,
+     0,
+     0,
+     nullptr,
+     0,
+     builtin::build_bridge},
+    {{"church", "nave, arcades, galleries at two heights, spiral stairs, a tower", 42},
+     30,
+     400,
+     0,
+     0,
+     nullptr,
+     0,
+     builtin::build_church},
+    {{"powerplant", "a dense steel frame: gratings, stairs, pipes, tanks, ladders", 36},
+     24,
+     1200,
+     22,
+     22,
+     builtin::powerplant_size,
+     kMaxTriangles,
+     builtin::build_powerplant},
+    {{"city", "streets, kerbs, buildings with storeys inside, a canal, bridges, underpasses", 500},
+     100,
+     12000,
+     0,
+     0,
+     [](uint64_t triangles, int32_t) { return builtin::city_size(triangles); },
+     10'000'000,
+     builtin::build_city},
+    {{"maze", "a perfect maze of 2 m corridors on levels joined by spiral stairs", 50},
+     30,
+     1500,
+     2,
+     40,
+     nullptr,
+     0,
+     builtin::build_maze},
+    {{"landscape", "curved hills, cliffs, overhangs, sunken rocks and arches, as Bezier patches",
+      320},
+     64,
+     12000,
+     0,
+     0,
+     nullptr,
+     0,
+     nullptr,
+     builtin::build_landscape},
+}};
+
+const Entry* find_entry(const std::string& name) {
+  for (const Entry& entry : kWorlds) {
+    if (entry.info.name == name) return &entry;
+  }
+  return nullptr;
+}
+
+std::string all_names() {
+  std::string names;
+  for (const Entry& entry : kWorlds) {
+    if (!names.empty()) names += ", ";
+    names += entry.info.name;
+  }
+  return names;
+}
+
+}  // namespace
+
+std::span<const BuiltinWorldInfo> builtin_worlds() {
+  static const auto infos = [] {
+    std::array<BuiltinWorldInfo, kWorlds.size()> list;
+    for (size_t i = 0; i < list.size(); ++i) list[i] = kWorlds[i].info;
+    return list;
+  }();
+  return infos;
+}
+
+Result<Scene> create_builtin_world(const BuiltinWorldConfig& config) {
+  const Entry* entry = find_entry(config.name);
+  if (entry == nullptr) {
+    return Error{Errc::kNotFound,
+                 fmt::format("world: there is no built-in world \"{}\"; use one of {}", config.name,
+                             all_names())};
+  }
+  const auto refuse = [&](const std::string& what) {
+    return Error{Errc::kBadConfig, fmt::format("world {}: {}", config.name, what)};
+  };
+  BuiltinWorldConfig full = config;
+  if (config.levels != 0 && entry->default_levels == 0) {
+    return refuse("has no levels to count; leave levels out");
+  }
+  if (config.levels < 0 || config.levels > entry->max_levels) {
+    return refuse(fmt::format("levels is {}, use 1 to {}", config.levels, entry->max_levels));
+  }
+  if (config.levels == 0) full.levels = entry->default_levels;
+  if (config.triangles != 0) {
+    if (entry->size_for == nullptr) {
+      return refuse("does not grow by triangles; use size (only powerplant and city grow)");
+    }
+    if (config.size != 0) return refuse("takes either size or triangles; leave one out");
+    if (config.triangles > entry->max_triangles) {
+      return refuse(
+          fmt::format("triangles is {}, at most {} fit", config.triangles, entry->max_triangles));
+    }
+    full.size = entry->size_for(config.triangles, full.levels);
+    if (full.size < entry->min_size) {
+      return refuse(fmt::format("triangles is {}, too few even for its smallest size; use size {}",
+                                config.triangles, entry->min_size));
+    }
+  } else if (config.size == 0) {
+    full.size = entry->info.default_size;
+  }
+  if (!(full.size >= entry->min_size && full.size <= entry->max_size)) {
+    return refuse(
+        fmt::format("size is {} m, use {} to {}", full.size, entry->min_size, entry->max_size));
+  }
+  if (entry->build_patches != nullptr) {
+    Scene scene;
+    scene.patches = entry->build_patches(full);
+    Context context;
+    SceneConfig how;
+    how.curve_tolerance = builtin::landscape_tolerance(full.size);
+    if (const auto cut = cut_patches(scene, how, context); !cut) {
+      return refuse(cut.error().message);
+    }
+    add_named_materials(scene);
+    return scene;
+  }
+  WorldBuilder builder;
+  entry->build(builder, full);
+  Scene scene = builder.finish();
+  add_named_materials(scene);
+  return scene;
+}
+
+}  // namespace throng

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "path/air/air_islands.h"
+#include "path/air/blocked_air.h"
+#include "path/air/split_boxes.h"
+#include "path/edits/solid.h"
+#include "throng/path.h"
+#include "world/cell_blocks.h"
+#include "world/ground.h"
+
+/// Obstacles placed in the air of a class since it was made.
+namespace throng {
+
+/// The space itself stays as it is. An AirView shows both. A change cuts again only the boxes that
+/// it touches.
+class AirChanges {
+ public:
+  /// The world and the space outlive it.
+  AirChanges(const WorldData& world, const FlightSpace& space, int32_t avatar_class);
+
+  ChangeId add(Solid solid);
+  /// False if there is none of that id.
+  bool set_active(ChangeId change, bool active);
+  bool remove(ChangeId change);
+
+  [[nodiscard]] bool any() const { return active_ > 0; }
+  [[nodiscard]] const SplitBoxes& splits() const { return splits_; }
+  [[nodiscard]] const AirIslands& islands() const { return islands_; }
+  /// May the class stand on a legal cell of the grid, as far as obstacles permit?
+  [[nodiscard]] bool may_stand(uint32_t level, int32_t x, int32_t z) const {
+    const auto found = blocked_.find(level);
+    return found == blocked_.end() ||
+           (found->second[static_cast<size_t>(z & 63)] >> (x & 63) & 1) == 0;
+  }
+  /// Adds one obstacle to a ground; returns its id there.
+  static ChangeId add_to(LiveGround& ground, const Solid& solid);
+  /// Adds all obstacles to a ground of the class that has none of them yet; `ids`: their ids there,
+  /// by id - 1.
+  void add_all_to(LiveGround& ground, std::vector<ChangeId>& ids) const;
+
+ private:
+  struct Change {
+    Solid solid;
+    AirRange near;
+    bool active = true, removed = false;
+    std::vector<int64_t> tiles;  // of the ground
+  };
+  void touch(ChangeId id);
+  void label_pieces(uint32_t box);
+  void block_ground(int64_t tile, std::span<const ChangeId> here);
+
+  const WorldData* world_;
+  const FlightSpace* space_;
+  int32_t class_;
+  const AvatarClass* avatar_;
+  AirGrid grid_;
+  SplitBoxes splits_;
+  AirIslands islands_;
+  std::vector<Change> changes_;
+  size_t active_ = 0;
+  // Active ones, by box of the space and by tile of the ground; looked up only.
+  std::unordered_map<uint32_t, std::vector<ChangeId>> of_box_;
+  std::unordered_map<int64_t, std::vector<ChangeId>> of_tile_;
+  std::unordered_map<uint32_t, CellRows> blocked_;  // by level of the world that has such cells
+  std::vector<uint32_t> near_, touched_;            // boxes
+  struct Old {
+    AirCube cube;
+    uint32_t label;
+  };
+  std::vector<Old> old_;  // pieces of a box before a change
+};
+
+}  // namespace throng

@@ -1,0 +1,313 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/air/flight_space.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+
+// The free air eroded by the body, word by word, then cut into the boxes of an octree per zone,
+// whose connected components are numbered. Linear in the voxels times the body's width.
+namespace throng {
+
+double off_faces(double v) {
+  const double low = std::floor(v);
+  return std::clamp(v, low + kAirSkin, low + 1 - kAirSkin);
+}
+
+AirPoint off_faces(AirPoint p) { return {off_faces(p.x), off_faces(p.y), off_faces(p.z)}; }
+
+uint32_t FlightSpace::box_at(AirPoint p) const {
+  constexpr double kFar = 1e9;
+  if (!(std::fabs(p.x) < kFar && std::fabs(p.y) < kFar && std::fabs(p.z) < kFar)) return kNoBox;
+  return box_at(static_cast<int32_t>(std::floor(p.x)), static_cast<int32_t>(std::floor(p.y)),
+                static_cast<int32_t>(std::floor(p.z)));
+}
+
+bool FlightSpace::sees(AirPoint from, AirPoint to) const { return air_sees(*this, from, to); }
+
+void FlightSpace::boxes_in(const AirRange& range, std::vector<uint32_t>& found) const {
+  found.clear();
+  const auto is_in = [&](const AirCube& cube) {
+    const int32_t low[3] = {cube.x, cube.y, cube.z};
+    for (int a = 0; a < 3; ++a) {
+      if (low[a] > range.last[a] || low[a] + cube.side <= range.first[a]) return false;
+    }
+    return true;
+  };
+  for (int32_t zz = std::max(range.first[2], 0) / zone_side;
+       zz <= std::min(range.last[2] / zone_side, zones_z - 1); ++zz) {
+    for (int32_t zx = std::max(range.first[0], 0) / zone_side;
+         zx <= std::min(range.last[0] / zone_side, zones_x - 1); ++zx) {
+      const auto zone = static_cast<size_t>(zz * zones_x + zx);
+      const AirTreeData& tree = zones[zone];
+      // Cubes are given in cells of the world.
+      const auto descend = [&](auto&& self, const AirCube& cube, uint32_t word) -> void {
+        if (air_kind(word) == AirKind::kFull || !is_in(cube)) return;
+        if (air_kind(word) == AirKind::kFree) {
+          found.push_back(air_number(word));
+        } else if (air_kind(word) == AirKind::kLeaf) {
+          const Leaf& leaf = leaves[zone][air_number(word)];
+          for (int32_t i = 0; i < std::popcount(leaf.starts); ++i) {
+            const uint32_t box = leaf.first_box + static_cast<uint32_t>(i);
+            if (is_in(boxes[box])) found.push_back(box);
+          }
+        } else {
+          const int32_t half = cube.side / 2;
+          for (int32_t c = 0; c < 8; ++c) {
+            self(self,
+                 {cube.x + (c & 1) * half, cube.y + (c >> 1 & 1) * half, cube.z + (c >> 2) * half,
+                  half},
+                 tree.nodes[air_number(word) + static_cast<uint32_t>(c)]);
+          }
+        }
+      };
+      for (uint32_t r = 0; r < tree.roots; ++r) {
+        descend(descend,
+                {zx * zone_side, tree.base + static_cast<int32_t>(r) * tree.side, zz * zone_side,
+                 tree.side},
+                tree.nodes[r]);
+      }
+    }
+  }
+}
+
+uint64_t FlightSpace::bytes() const {
+  uint64_t sum = boxes.size() * (sizeof(AirCube) + sizeof(uint32_t));
+  for (const AirTreeData& tree : zones) sum += tree.nodes.size() * 4 + tree.leaves.size() * 8;
+  for (const auto& of_zone : leaves) sum += of_zone.size() * sizeof(Leaf);
+  return sum;
+}
+
+namespace {
+
+// dst &= src moved by `cells` along x: bit x of dst meets bit x + cells of src. Bits beyond the row
+// are not free.
+void and_shifted(uint64_t* dst, const uint64_t* src, int32_t words, int32_t cells) {
+  const int32_t whole = std::abs(cells) / 64, part = std::abs(cells) % 64;
+  for (int32_t w = 0; w < words; ++w) {
+    const auto at = [&](int32_t i) { return i >= 0 && i < words ? src[i] : 0; };
+    uint64_t moved;
+    if (cells >= 0) {
+      moved = at(w + whole) >> part;
+      if (part != 0) moved |= at(w + whole + 1) << (64 - part);
+    } else {
+      moved = at(w - whole) << part;
+      if (part != 0) moved |= at(w - whole - 1) >> (64 - part);
+    }
+    dst[w] &= moved;
+  }
+}
+
+// Free voxels of all zones around one, by rows of the window.
+bool fill_window(const AirData& air, int32_t first_x, int32_t first_z, int32_t base,
+                 AirRows& rows) {
+  const int32_t side = air.zone_side;
+  const int32_t zx0 = std::max(first_x, 0) / side, zz0 = std::max(first_z, 0) / side;
+  const int32_t zx1 = std::min((first_x + rows.width - 1) / side, air.zones_x - 1);
+  const int32_t zz1 = std::min((first_z + rows.depth - 1) / side, air.zones_z - 1);
+  for (int32_t zz = zz0; zz <= zz1; ++zz) {
+    for (int32_t zx = zx0; zx <= zx1; ++zx) {
+      const AirData::ZoneAir zone = air.zone(zx, zz);
+      if (!zone.usable) return false;
+      const int32_t x0 = zx * side - first_x, z0 = zz * side - first_z;
+      const int32_t x1 = std::min(x0 + side, air.width - first_x);
+      const int32_t z1 = std::min(z0 + side, air.depth - first_z);
+      const auto fill = [&](int32_t y0, int32_t y1) {  // all of the zone
+        for (int32_t y = std::max(y0, 0); y < std::min(y1, rows.height); ++y) {
+          for (int32_t z = std::max(z0, 0); z < std::min(z1, rows.depth); ++z) {
+            rows.fill(x0, x1, y, z, true);
+          }
+        }
+      };
+      if (zone.tree == nullptr) {
+        fill(0, rows.height);
+        continue;
+      }
+      const int32_t under = zone.tree->base - base;
+      fill(0, under);
+      fill(under + zone.tree->side * static_cast<int32_t>(zone.tree->roots), rows.height);
+      zone.tree->for_each([&](const AirCube& cube, uint32_t word) {
+        if (air_kind(word) == AirKind::kFull) return;
+        const int32_t y0 = cube.y - base;
+        const int32_t cx1 = std::min(x0 + cube.x + cube.side, x1);
+        if (air_kind(word) == AirKind::kFree) {
+          for (int32_t y = std::max(y0, 0); y < std::min(y0 + cube.side, rows.height); ++y) {
+            for (int32_t z = std::max(z0 + cube.z, 0);
+                 z < std::min(z0 + cube.z + cube.side, std::min(z1, rows.depth)); ++z) {
+              rows.fill(x0 + cube.x, cx1, y, z, true);
+            }
+          }
+          return;
+        }
+        const uint64_t cells = zone.tree->leaves[air_number(word)];
+        for (uint64_t rest = cells; rest != 0; rest &= rest - 1) {
+          const int32_t bit = std::countr_zero(rest);
+          const int32_t x = x0 + cube.x + (bit & 3), z = z0 + cube.z + (bit >> 4);
+          if (x < x1 && z < z1) rows.fill(x, x + 1, y0 + (bit >> 2 & 3), z, true);
+        }
+      });
+    }
+  }
+  return true;
+}
+
+// Numbers the free cubes and the boxes of leaves.
+void number_boxes(AirTreeData& tree, std::vector<FlightSpace::Leaf>& leaves,
+                  std::vector<AirCube>& boxes) {
+  leaves.resize(tree.leaves.size());
+  const auto number = [&](auto&& self, const AirCube& cube, size_t node) -> void {
+    const uint32_t word = tree.nodes[node];
+    if (air_kind(word) == AirKind::kFree) {
+      tree.nodes[node] = air_word(AirKind::kFree, static_cast<uint32_t>(boxes.size()));
+      boxes.push_back(cube);
+    } else if (air_kind(word) == AirKind::kLeaf) {
+      const uint64_t cells = tree.leaves[air_number(word)];
+      FlightSpace::Leaf& leaf = leaves[air_number(word)];
+      leaf.first_box = static_cast<uint32_t>(boxes.size());
+      for (uint64_t rest = cells; rest != 0; rest &= rest - 1) {
+        const auto bit = static_cast<uint32_t>(std::countr_zero(rest));
+        const uint64_t all = flight_detail::octant(bit);
+        const bool whole = (cells & all) == all;
+        if (whole && bit != flight_detail::octant_low(bit)) continue;
+        leaf.starts |= uint64_t{1} << bit;
+        const auto b = static_cast<int32_t>(bit);
+        boxes.push_back(
+            {cube.x + (b & 3), cube.y + (b >> 2 & 3), cube.z + (b >> 4), whole ? 2 : 1});
+      }
+    } else if (air_kind(word) == AirKind::kInner) {
+      const int32_t half = cube.side / 2;
+      for (int32_t c = 0; c < 8; ++c) {
+        self(
+            self,
+            {cube.x + (c & 1) * half, cube.y + (c >> 1 & 1) * half, cube.z + (c >> 2) * half, half},
+            air_number(word) + static_cast<size_t>(c));
+      }
+    }
+  };
+  for (uint32_t r = 0; r < tree.roots; ++r) {
+    number(number, {0, tree.base + static_cast<int32_t>(r) * tree.side, 0, tree.side}, r);
+  }
+}
+
+void find_components(FlightSpace& space) {
+  space.component.assign(space.boxes.size(), kNoBox);
+  std::vector<uint32_t> queue;
+  for (uint32_t first = 0; first < space.boxes.size(); ++first) {
+    if (space.component[first] != kNoBox) continue;
+    space.component[first] = first;
+    queue.assign(1, first);
+    while (!queue.empty()) {
+      const uint32_t box = queue.back();
+      queue.pop_back();
+      space.for_neighbours(space.boxes[box], [&](uint32_t next) {
+        if (space.component[next] != kNoBox) return;
+        space.component[next] = first;
+        queue.push_back(next);
+      });
+    }
+  }
+}
+
+}  // namespace
+
+void erode_air(const AirBody& body, const AirRows& free, AirRows& legal) {
+  legal = free;
+  for (int32_t y = 0; y < free.height; ++y) {
+    for (int32_t z = 0; z < free.depth; ++z) {
+      uint64_t* out = legal.row(y, z);
+      for (int32_t up = 1; up <= body.up && y + up < free.height; ++up) {
+        and_shifted(out, free.row(y + up, z), free.words, 0);
+      }
+    }
+  }
+  if (body.reach == 0) return;
+  const AirRows tall = legal;
+  for (int32_t y = 0; y < free.height; ++y) {
+    for (int32_t z = 0; z < free.depth; ++z) {
+      uint64_t* out = legal.row(y, z);
+      for (int32_t dz = -body.reach; dz <= body.reach; ++dz) {
+        const int32_t half = body.half_width[static_cast<size_t>(std::abs(dz))];
+        if (z + dz < 0 || z + dz >= free.depth) {
+          std::fill(out, out + free.words, 0);
+          break;
+        }
+        for (int32_t dx = -half; dx <= half; ++dx) {
+          and_shifted(out, tall.row(y, z + dz), free.words, dx);
+        }
+      }
+    }
+  }
+}
+
+Result<FlightSpace> build_flight_space(const AirData& air, const AirBody& body, int32_t largest,
+                                       int32_t workers, Context& context) {
+  FlightSpace space;
+  space.shape = air.shape;
+  space.width = air.width;
+  space.depth = air.depth;
+  space.zone_side = air.zone_side;
+  space.zones_x = air.zones_x;
+  space.zones_z = air.zones_z;
+  const auto count = static_cast<size_t>(air.zones_x) * static_cast<size_t>(air.zones_z);
+  space.zones.resize(count);
+  space.leaves.resize(count);
+  std::vector<std::vector<AirCube>> boxes(count);
+  std::vector<uint8_t> failed(count, 0);
+  const int32_t pad = (body.reach + 3) & -4, base = air.shape.floor & -4;
+  const int32_t height = ((air.shape.ceiling - base) + 3) & -4;
+  parallel_for(count, workers, [&](size_t i) {
+    if (context.cancel) return;
+    const auto zx = static_cast<int32_t>(i) % air.zones_x,
+               zz = static_cast<int32_t>(i) / air.zones_x;
+    const int32_t across = air.zone_side + 2 * pad;
+    AirRows free(across, height, across, false), legal;
+    if (!fill_window(air, zx * air.zone_side - pad, zz * air.zone_side - pad, base, free)) {
+      failed[i] = 1;
+      return;
+    }
+    for (int32_t y = 0; y < air.shape.floor - base; ++y) {  // no air below
+      for (int32_t z = 0; z < across; ++z) free.fill(0, across, y, z, false);
+    }
+    erode_air(body, free, legal);
+    for (int32_t y = 0; y < height; ++y) {
+      if (base + y < air.shape.ceiling) continue;
+      for (int32_t z = 0; z < across; ++z) legal.fill(0, across, y, z, false);
+    }
+    space.zones[i] = build_air_tree({.rows = &legal,
+                                     .x = pad,
+                                     .z = pad,
+                                     .side = air.zone_side,
+                                     .width = air.zone_side,
+                                     .depth = air.zone_side,
+                                     .base = base,
+                                     .largest = largest,
+                                     .free_beyond = false});
+    number_boxes(space.zones[i], space.leaves[i], boxes[i]);
+  });
+  if (context.cancel) return Error{Errc::kCancelled, "path: cancelled"};
+  for (size_t i = 0; i < count; ++i) {
+    if (failed[i] != 0) return Error{Errc::kBadFile, "path: a zone's air cannot be used"};
+    const auto zx = static_cast<int32_t>(i) % air.zones_x,
+               zz = static_cast<int32_t>(i) / air.zones_x;
+    const auto first = static_cast<uint32_t>(space.boxes.size());
+    space.first_box.push_back(first);
+    for (uint32_t& word : space.zones[i].nodes) {
+      if (air_kind(word) == AirKind::kFree)
+        word = air_word(AirKind::kFree, air_number(word) + first);
+    }
+    for (FlightSpace::Leaf& leaf : space.leaves[i]) leaf.first_box += first;
+    for (AirCube box : boxes[i]) {
+      box.x += zx * air.zone_side;
+      box.z += zz * air.zone_side;
+      space.boxes.push_back(box);
+    }
+    boxes[i] = {};
+  }
+  space.first_box.push_back(static_cast<uint32_t>(space.boxes.size()));
+  find_components(space);
+  return space;
+}
+
+}  // namespace throng

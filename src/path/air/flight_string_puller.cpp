@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/air/flight_string_puller.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+// A taut path turns at edges of blockers, and its angles to the edge are alike on both sides. Edges
+// run along the axes, so a waypoint is slid along one axis at a time to where that is so; a
+// waypoint that hangs in the air is cut off, which makes two of it that lie on the edges.
+namespace throng {
+namespace {
+
+constexpr int32_t kRounds = 6;
+constexpr int32_t kHalvings = 8;
+constexpr double kGain = 1e-3;  // less is not worth a round, of the whole length
+
+double length_of(const std::vector<AirPoint>& path) {
+  double sum = 0;
+  for (size_t i = 1; i < path.size(); ++i) sum += air_distance(path[i - 1], path[i]);
+  return sum;
+}
+
+}  // namespace
+
+void FlightStringPuller::pull(const AirView& air, std::vector<AirPoint>& path) {
+  air_ = air;
+  path_ = &path;
+  if (path.size() <= 2) return;
+  shortcut();
+  double length = length_of(path);
+  for (int32_t round = 0; round < kRounds && path.size() > 2; ++round) {
+    if (round < 3) cut_corners();
+    for (size_t i = 1; i + 1 < path.size(); ++i) slide(i);
+    shortcut();
+    const double now = length_of(path);
+    if (now > length * (1 - kGain)) break;
+    length = now;
+  }
+}
+
+// From each point on to the last one that it sees.
+void FlightStringPuller::shortcut() {
+  std::vector<AirPoint>& path = *path_;
+  next_.clear();
+  next_.push_back(path[0]);
+  for (size_t at = 0; at + 1 < path.size();) {
+    size_t to = at + 1;
+    for (size_t far = path.size() - 1; far > at + 1; --far) {
+      if (air_->sees(path[at], path[far])) {
+        to = far;
+        break;
+      }
+    }
+    next_.push_back(path[to]);
+    at = to;
+  }
+  path.swap(next_);
+}
+
+// Two points on the segments of a waypoint, as far out as they see each other, instead of it.
+void FlightStringPuller::cut_corners() {
+  std::vector<AirPoint>& path = *path_;
+  next_.clear();
+  next_.push_back(path[0]);
+  for (size_t i = 1; i + 1 < path.size(); ++i) {
+    const AirPoint before = next_.back(), here = path[i], after = path[i + 1];
+    const auto toward = [&](AirPoint end, double part) {
+      return off_faces(here + part * (end - here));
+    };
+    double low = 0, high = 1;
+    for (int32_t h = 0; h < kHalvings; ++h) {
+      const double part = (low + high) / 2;
+      const AirPoint a = toward(before, part), b = toward(after, part);
+      const bool legal = air_->sees(before, a) && air_->sees(a, b) && air_->sees(b, after);
+      (legal ? low : high) = part;
+    }
+    if (low == 0) {
+      next_.push_back(here);
+      continue;
+    }
+    next_.push_back(toward(before, low));
+    next_.push_back(toward(after, low));
+  }
+  next_.push_back(path.back());
+  path.swap(next_);
+}
+
+void FlightStringPuller::slide(size_t waypoint) {
+  AirPoint& here = (*path_)[waypoint];
+  const AirPoint before = (*path_)[waypoint - 1], after = (*path_)[waypoint + 1];
+  for (int axis = 0; axis < 3; ++axis) {
+    // Where the angles are alike: the other two coordinates give the distance of either end.
+    double across[2] = {0, 0};
+    for (int other = 0; other < 3; ++other) {
+      if (other == axis) continue;
+      const double a = axis_of(before, other) - axis_of(here, other);
+      const double b = axis_of(after, other) - axis_of(here, other);
+      across[0] += a * a;
+      across[1] += b * b;
+    }
+    const double da = std::sqrt(across[0]), db = std::sqrt(across[1]);
+    if (!(da + db > 0)) continue;
+    const double from = axis_of(here, axis);
+    const double best =
+        axis_of(before, axis) + (axis_of(after, axis) - axis_of(before, axis)) * (da / (da + db));
+    const double old = air_distance(before, here) + air_distance(here, after);
+    double low = 0, high = 1;
+    AirPoint to = here;
+    for (int32_t h = 0; h <= kHalvings; ++h) {
+      const double part = h == 0 ? 1.0 : (low + high) / 2;
+      axis_of(to, axis) = off_faces(from + part * (best - from));
+      const bool legal = air_->sees(before, to) && air_->sees(to, after);
+      (legal ? low : high) = part;
+      if (h == 0 && legal) break;
+    }
+    if (low == 0) continue;
+    axis_of(to, axis) = off_faces(from + low * (best - from));
+    if (air_distance(before, to) + air_distance(to, after) >= old) continue;
+    here = to;
+  }
+}
+
+}  // namespace throng

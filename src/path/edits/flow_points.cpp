@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/edits/flow_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/access.h"
+#include "path/edits/live_state.h"
+#include "path/ground/reset_path.h"
+#include "world/place.h"
+
+// Dijkstra's search outwards from all goals over the points of portals of a LiveMesh.
+namespace throng {
+namespace {
+
+bool lies_before(const LiveStop& a, const LiveStop& b) {
+  return a.level != b.level ? a.level < b.level : a.rect < b.rect;
+}
+
+// The search outwards from all goals.
+class Outwards {
+ public:
+  Outwards(LiveMesh& mesh, double max_distance) : mesh_(mesh), max_distance_(max_distance) {
+    nodes_.clear();
+  }
+
+  void push(const LiveStop& stop, uint32_t parent, double cost) {
+    if (cost > max_distance_) return;
+    const auto [index, is_new] = nodes_.node_of(stop);
+    LiveNode& node = nodes_.nodes[index];
+    if (!is_new && (node.done || node.cost <= cost)) return;
+    node.cost = cost;
+    node.parent = parent;
+    open_.emplace_back(cost, index);
+    std::push_heap(open_.begin(), open_.end(), std::greater<>());
+  }
+
+  bool run(Context& context) {
+    for (uint64_t n = 0; !open_.empty(); ++n) {
+      if (n % 1024 == 0 && context.cancel) return false;
+      std::pop_heap(open_.begin(), open_.end(), std::greater<>());
+      const uint32_t index = open_.back().second;
+      open_.pop_back();
+      if (nodes_.nodes[index].done) continue;
+      nodes_.nodes[index].done = true;
+      const LiveNode node = nodes_.nodes[index];
+      const LiveLevel& level = *mesh_.level_with_portals(node.stop.level);
+      const double factor = mesh_.factor(level.rects[node.stop.rect]);
+      for_portal_points(mesh_, node.stop, [&](GroundPoint side, const LiveStop& beyond) {
+        const double there = mesh_.factor(mesh_.level(beyond.level)->rects[beyond.rect]);
+        if (!std::isfinite(there)) return;
+        push(beyond, index,
+             node.cost + distance_of(node.stop.at, side) * factor + there / kUnitsPerCell);
+      });
+    }
+    return true;
+  }
+
+  [[nodiscard]] const ChunkedArray<LiveNode>& nodes() const { return nodes_.nodes; }
+
+ private:
+  LiveMesh& mesh_;
+  double max_distance_;
+  LiveNodes nodes_;
+  std::vector<std::pair<double, uint32_t>> open_;
+};
+
+}  // namespace
+
+bool FlowPoints::before(const Point& a, const Point& b) { return lies_before(a.stop, b.stop); }
+
+std::optional<FlowPoints> FlowPoints::make(LiveGround& of, std::span<const Place> goals,
+                                           double max_distance, Context& context) {
+  auto& ground = *Access::state(of);
+  max_distance /= ground.mesh.world().summary.cell;
+  Outwards search(ground.mesh, max_distance);
+  for (const Place& goal : goals) {
+    LiveStop stop;
+    if (ground.locate(goal, stop)) search.push(stop, UINT32_MAX, 0);
+  }
+  if (!search.run(context)) return {};
+  const ChunkedArray<LiveNode>& nodes = search.nodes();
+  std::vector<uint32_t> order(nodes.size());
+  for (uint32_t n = 0; n < order.size(); ++n) order[n] = n;
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    const LiveStop &p = nodes[a].stop, &q = nodes[b].stop;
+    return lies_before(p, q) || (!lies_before(q, p) && a < b);
+  });
+  std::vector<uint32_t> number(order.size());
+  for (uint32_t n = 0; n < order.size(); ++n) number[order[n]] = n;
+  FlowPoints made;
+  made.max_distance_ = max_distance;
+  made.points_.reserve(order.size());
+  for (const uint32_t n : order) {
+    const LiveNode& node = nodes[n];
+    made.points_.push_back(
+        {node.stop, node.parent == UINT32_MAX ? kNoPoint : number[node.parent], node.cost});
+  }
+  return made;
+}
+
+// The point of a stop's rectangle by which it is nearest to a goal, none if that costs too much.
+std::pair<uint32_t, double> FlowPoints::leave_by(LiveMesh& mesh, const LiveStop& stop) const {
+  const double factor = mesh.factor(mesh.level(stop.level)->rects[stop.rect]);
+  const auto [first, last] =
+      std::equal_range(points_.begin(), points_.end(), Point{stop, kNoPoint, 0}, before);
+  std::pair<uint32_t, double> best{kNoPoint, kNever};
+  for (auto p = first; p != last; ++p) {
+    const double cost = p->cost + distance_of(p->stop.at, stop.at) * factor;
+    if (cost >= best.second || cost > max_distance_) continue;
+    best = {static_cast<uint32_t>(p - points_.begin()), cost};
+  }
+  return best;
+}
+
+// The other side of the border that a point lies at: its path continues there. [it has a next]
+LiveStop FlowPoints::across(LiveMesh& mesh, const Point& point) const {
+  const LiveStop& on = points_[point.next].stop;
+  LiveStop other = on;
+  for_portal_points(mesh, on, [&](GroundPoint side, const LiveStop& beyond) {
+    if (beyond.level == point.stop.level && beyond.at.x == point.stop.at.x &&
+        beyond.at.z == point.stop.at.z) {
+      other.at = side;
+    }
+  });
+  return other;
+}
+
+double FlowPoints::distance(LiveGround& of, const Place& place) const {
+  auto& ground = *Access::state(of);
+  LiveStop stop;
+  if (!ground.locate(place, stop)) return kNever;
+  return leave_by(ground.mesh, stop).second * ground.mesh.world().summary.cell;
+}
+
+Place FlowPoints::next(LiveGround& of, const Place& place) const {
+  auto& ground = *Access::state(of);
+  LiveStop from;
+  if (!ground.locate(place, from)) return {};
+  const auto [first, total] = leave_by(ground.mesh, from);
+  if (first == kNoPoint) return {};
+  const Point* best = &points_[first];
+  // On as long as a straight line costs no more than the path so far; stop after some that cost
+  // more.
+  constexpr int kPatience = 3;
+  int missed = 0;
+  for (const Point* p = best; p->next != kNoPoint && missed < kPatience;) {
+    p = &points_[p->next];
+    if (segment_cost(ground.mesh, from, p->stop) <= (total - p->cost) * (1 + 1e-9)) {
+      best = p;
+      missed = 0;
+    } else {
+      ++missed;
+    }
+  }
+  LiveStop to = best->stop;
+  const bool is_there = to.level == from.level && to.at.x == from.at.x && to.at.z == from.at.z;
+  if (is_there && best->next != kNoPoint) to = across(ground.mesh, *best);
+  return place_at(ground.mesh.world(), ground.mesh.level(to.level)->ground, to.at);
+}
+
+void FlowPoints::find_path(LiveGround& of, const Place& place, Path& path) const {
+  auto& ground = *Access::state(of);
+  reset(path);
+  LiveStop stop;
+  if (!ground.locate(place, stop)) return;
+  const uint32_t first = leave_by(ground.mesh, stop).first;
+  path.end = PathEnd::kUnreachable;
+  if (first == kNoPoint) return;
+  ground.stops.assign(1, stop);
+  for (uint32_t p = first; p != kNoPoint; p = points_[p].next) {
+    ground.stops.push_back(points_[p].stop);
+    if (points_[p].next != kNoPoint) ground.stops.push_back(across(ground.mesh, points_[p]));
+  }
+  ground.straight.draw(ground.mesh, ground.stops);
+  ground.give(path);
+  path.end = PathEnd::kReached;
+}
+
+}  // namespace throng

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "path/edits/live_search.h"
+#include "throng/base.h"
+#include "throng/path.h"
+
+/// The distances of a FlowField, apart from the ground: one table serves many workers, each with
+/// its own copy of the ground.
+namespace throng {
+
+class FlowPoints {
+ public:
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
+
+  /// Searches outwards from all goals that are places of the class, up to a cost of `max_distance`
+  /// metres. None if it was cancelled; without any points if no goal is a place.
+  static std::optional<FlowPoints> make(LiveGround& ground, std::span<const Place> goals,
+                                        double max_distance, Context& context);
+  [[nodiscard]] bool empty() const { return points_.empty(); }
+
+  // `ground` is that of which they were made, or a copy of it, here and below.
+  /// As FlowField::distance, next, find_path.
+  [[nodiscard]] double distance(LiveGround& ground, const Place& place) const;
+  [[nodiscard]] Place next(LiveGround& ground, const Place& place) const;
+  void find_path(LiveGround& ground, const Place& place, Path& path) const;
+
+  [[nodiscard]] size_t size() const { return points_.size(); }
+  [[nodiscard]] uint64_t bytes() const { return points_.size() * sizeof(Point); }
+
+ private:
+  static constexpr uint32_t kNoPoint = UINT32_MAX;
+  // A goal, or a point just inside a rectangle where the path to a goal leaves it.
+  struct Point {
+    LiveStop stop;
+    uint32_t next = kNoPoint;  // on the path; none at a goal
+    double cost = 0;           // [cells]
+  };
+
+  static bool before(const Point& a, const Point& b);
+  [[nodiscard]] std::pair<uint32_t, double> leave_by(LiveMesh& mesh, const LiveStop& stop) const;
+  [[nodiscard]] LiveStop across(LiveMesh& mesh, const Point& point) const;
+
+  // By level and rectangle, so that those of one lie together.
+  std::vector<Point> points_;
+  double max_distance_ = kNever;  // [cells]
+};
+
+}  // namespace throng

@@ -1,0 +1,334 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/edits/live_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+// A* over points of portals at area costs, then string pulling by doubling, halving and moving
+// stops.
+namespace throng {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+size_t slot_of(const LiveStop& stop, size_t mask) {
+  const auto x = static_cast<uint64_t>(stop.at.x), z = static_cast<uint64_t>(stop.at.z);
+  uint64_t hash = (x * 0x9e3779b97f4a7c15 ^ z) * 0xbf58476d1ce4e5b9 + stop.level;
+  hash = (hash ^ hash >> 29) * 0x94d049bb133111eb;
+  return static_cast<size_t>(hash >> 20) & mask;
+}
+
+bool same(const LiveStop& a, const LiveStop& b) {
+  return a.level == b.level && a.at.x == b.at.x && a.at.z == b.at.z;
+}
+
+// Cost of a metre on the ground of a cell.
+double factor_at(LiveMesh& mesh, const LiveLevel& level, int32_t x, int32_t z) {
+  return mesh.factor(level.rects[level.rect_at(x & 63, z & 63)]);
+}
+
+}  // namespace
+
+void LiveNodes::clear() {
+  if (table_.empty()) table_.resize(1 << 12);
+  if (nodes.size() * 16 < table_.size()) {
+    for (size_t n = 0; n < nodes.size(); ++n) {
+      for (size_t s = slot_of(nodes[n].stop, table_.size() - 1); table_[s] != 0;
+           s = (s + 1) & (table_.size() - 1)) {
+        table_[s] = 0;
+      }
+    }
+  } else {
+    std::fill(table_.begin(), table_.end(), 0);
+  }
+  nodes.clear();
+}
+
+void LiveNodes::give_back() {
+  nodes.clear();
+  nodes.shrink(0);
+  std::vector<uint32_t>().swap(table_);
+}
+
+// Beside itself a node takes up to eight places of the table, and two of the old one as it grows.
+uint64_t LiveNodes::used_bytes() const {
+  return nodes.size() * (sizeof(LiveNode) + 10 * sizeof(uint32_t));
+}
+
+uint64_t LiveNodes::allocated_bytes() const {
+  return nodes.allocated_bytes() + table_.capacity() * sizeof(uint32_t);
+}
+
+std::pair<uint32_t, bool> LiveNodes::node_of(const LiveStop& stop) {
+  size_t slot = slot_of(stop, table_.size() - 1);
+  for (; table_[slot] != 0; slot = (slot + 1) & (table_.size() - 1)) {
+    if (same(nodes[table_[slot] - 1].stop, stop)) return {table_[slot] - 1, false};
+  }
+  const auto index = static_cast<uint32_t>(nodes.size());
+  nodes.push_back({});
+  nodes[index].stop = stop;
+  table_[slot] = index + 1;
+  if (nodes.size() * 2 > table_.size()) grow();
+  return {index, true};
+}
+
+void LiveNodes::grow() {
+  table_.assign(table_.size() * 4, 0);
+  for (uint32_t n = 0; n < nodes.size(); ++n) {
+    size_t slot = slot_of(nodes[n].stop, table_.size() - 1);
+    while (table_[slot] != 0) slot = (slot + 1) & (table_.size() - 1);
+    table_[slot] = n + 1;
+  }
+}
+
+double segment_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
+  const LiveLevel* level = mesh.level(from.level);
+  const double length = distance_of(from.at, to.at);
+  double cost = 0, t = 0;
+  double factor = mesh.is_plain() ? 1 : factor_at(mesh, *level, from.at.cell_x(), from.at.cell_z());
+  const auto dx = static_cast<double>(to.at.x - from.at.x);
+  const auto dz = static_cast<double>(to.at.z - from.at.z);
+  const auto enter = [&](const LiveLevel* next, int32_t x, int32_t z, int32_t before_x,
+                         int32_t before_z) {
+    if (mesh.is_plain()) return;
+    double at = t;
+    if (x != before_x) {
+      const int64_t line = int64_t{std::max(x, before_x)} << kUnitBits;
+      at = static_cast<double>(line - from.at.x) / dx;
+    } else if (z != before_z) {
+      const int64_t line = int64_t{std::max(z, before_z)} << kUnitBits;
+      at = static_cast<double>(line - from.at.z) / dz;
+    }
+    cost += (at - t) * length * factor;
+    t = at;
+    factor = factor_at(mesh, *next, x, z);
+  };
+  const WalkStop stop = walk_far(mesh.ground(), level, from.at, to.at, mesh.step(), enter);
+  if (!stop.arrived || level->ground.world_level != to.level) return kNever;
+  if (mesh.is_plain()) return length;
+  cost += (1 - t) * length * factor;
+  return std::isfinite(cost) ? cost : kNever;
+}
+
+// From each stop to the farthest that a straight segment reaches at no more cost, found by doubling
+// and halving: it need not be the farthest of all.
+void LiveStringPuller::leave_out(LiveMesh& mesh, std::vector<LiveStop>& stops) {
+  constexpr double kSlack = 1 + 1e-9;
+  if (stops.size() < 3) return;
+  before_.assign(stops.size(), 0);
+  for (size_t i = 1; i < stops.size(); ++i)
+    before_[i] = before_[i - 1] + segment_cost(mesh, stops[i - 1], stops[i]);
+  size_t kept = 1;
+  for (size_t i = 0; i + 1 < before_.size();) {
+    const LiveStop from = stops[kept - 1];
+    const auto reaches = [&](size_t to) {
+      return segment_cost(mesh, from, stops[to]) <= (before_[to] - before_[i]) * kSlack;
+    };
+    size_t good = i + 1, stride = 1;
+    while (good + stride < before_.size() && reaches(good + stride)) {
+      good += stride;
+      stride *= 2;
+    }
+    for (; stride > 0; stride /= 2) {
+      if (good + stride < before_.size() && reaches(good + stride)) good += stride;
+    }
+    stops[kept++] = stops[good];
+    i = good;
+  }
+  stops.resize(kept);
+}
+
+void LiveStringPuller::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops) {
+  leave_out(mesh, stops);
+  // Waypoints move towards the straight line between their neighbours as far as the ground permits.
+  constexpr int kSweeps = 2, kHalvings = 6;
+  for (int sweep = 0; sweep < kSweeps && stops.size() > 2; ++sweep) {
+    for (size_t i = 1; i + 1 < stops.size(); ++i) {
+      const LiveStop a = stops[i - 1], b = stops[i + 1];
+      double best = segment_cost(mesh, a, stops[i]) + segment_cost(mesh, stops[i], b);
+      const auto ux = static_cast<double>(b.at.x - a.at.x);
+      const auto uz = static_cast<double>(b.at.z - a.at.z);
+      const double size = ux * ux + uz * uz;
+      if (!(size > 0)) continue;
+      const GroundPoint from = stops[i].at;
+      const double along = std::clamp(
+          (static_cast<double>(from.x - a.at.x) * ux + static_cast<double>(from.z - a.at.z) * uz) /
+              size,
+          0.0, 1.0);
+      const double foot_x = static_cast<double>(a.at.x) + along * ux;
+      const double foot_z = static_cast<double>(a.at.z) + along * uz;
+      double low = 0, step = 1;
+      for (int h = 0; h < kHalvings; ++h, step /= 2) {
+        const double t = low + step;
+        if (t > 1) continue;
+        const GroundPoint at{from.x + std::llround(t * (foot_x - static_cast<double>(from.x))),
+                             from.z + std::llround(t * (foot_z - static_cast<double>(from.z)))};
+        // On whichever level the segment there leads to.
+        const LiveLevel* level = mesh.level(a.level);
+        if (!walk_far(mesh.ground(), level, a.at, at, mesh.step()).arrived) continue;
+        const LiveStop moved{level->ground.world_level,
+                             level->rect_at(at.cell_x() & 63, at.cell_z() & 63), at};
+        const double cost = segment_cost(mesh, a, moved) + segment_cost(mesh, moved, b);
+        if (cost >= best) continue;
+        best = cost;
+        stops[i] = moved;
+        low = t;
+      }
+    }
+    leave_out(mesh, stops);
+  }
+}
+
+void LiveStringPuller::draw(LiveMesh& mesh, std::vector<LiveStop>& stops) {
+  if (std::none_of(stops.begin(), stops.end(),
+                   [](const LiveStop& stop) { return stop.off_mesh_link > 0; }))
+    return draw_walk(mesh, stops);
+  whole_.clear();
+  walk_.clear();
+  const auto end_walk = [&] {
+    draw_walk(mesh, walk_);
+    whole_.insert(whole_.end(), walk_.begin(), walk_.end());
+    walk_.clear();
+  };
+  for (const LiveStop& stop : stops) {
+    if (stop.off_mesh_link > 0) end_walk();
+    walk_.push_back(stop);
+  }
+  end_walk();
+  stops.swap(whole_);
+}
+
+void LiveSearch::begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
+  to_ = to;
+  nodes_.clear();
+  open_.clear();
+  expanded_ = 0;
+  goal_ = UINT32_MAX;
+  nearest_ = 0;
+  nearest_distance_ = kNever;
+  push(mesh, from, UINT32_MAX, 0);
+}
+
+LiveNode* LiveSearch::push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, double cost) {
+  const auto [index, is_new] = nodes_.node_of(stop);
+  LiveNode& node = nodes_.nodes[index];
+  if (!is_new && (node.done || node.cost <= cost)) return nullptr;
+  node.stop = stop;  // by an off-mesh link, or not
+  node.cost = cost;
+  node.parent = parent;
+  const double left = distance_of(stop.at, to_.at);
+  open_.push_back({cost + left * mesh.min_factor(), index});
+  // Equal bounds are ordered by number: the same on every machine.
+  std::push_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
+    return a.bound != b.bound ? a.bound > b.bound : a.node < b.node;
+  });
+  return &node;
+}
+
+// Of the node's rectangle, the point nearest to the goal; heights count, so a point below the goal
+// is not at it.
+void LiveSearch::note_nearest(LiveMesh& mesh, const LiveLevel& level, uint32_t index) {
+  const LiveStop& stop = nodes_.nodes[index].stop;
+  const LiveRect& rect = level.rects[stop.rect];
+  const auto clamped = [](int64_t at, int32_t tile, int32_t first, int32_t end) {
+    const int64_t cell = int64_t{tile} * kTileCells;
+    return std::clamp(at, (cell + first) << kUnitBits, ((cell + end) << kUnitBits) - 1);
+  };
+  const GroundPoint at{clamped(to_.at.x, level.tile_x, rect.x0, rect.x1),
+                       clamped(to_.at.z, level.tile_z, rect.z0, rect.z1)};
+  const auto feet = [](const LiveLevel& of, GroundPoint p) {
+    return of.ground.view.sample(p.cell_x() & 63, p.cell_z() & 63);
+  };
+  const double rise =
+      (feet(level, at) - feet(*mesh.level(to_.level), to_.at)) * 1e-3 / mesh.world().summary.cell;
+  const double away = distance_of(at, to_.at);
+  const double distance = std::sqrt(away * away + rise * rise);
+  if (distance >= nearest_distance_) return;
+  nearest_distance_ = distance;
+  nearest_ = index;
+  nearest_stop_ = {stop.level, stop.rect, at};
+}
+
+void LiveSearch::push_links(LiveMesh& mesh, const LiveNode& node, uint32_t index, double factor) {
+  for (const LiveMesh::OffMeshLinkEnd& off_mesh_link : mesh.links_from(node.stop.level)) {
+    LiveStop from{node.stop.level, 0, off_mesh_link.from},
+        to{off_mesh_link.to_level, 0, off_mesh_link.to, off_mesh_link.cost};
+    if (!mesh.stand(from.level, from.at, from.rect) || from.rect != node.stop.rect) continue;
+    if (!mesh.stand(to.level, to.at, to.rect)) continue;
+    const double cost =
+        node.cost + distance_of(node.stop.at, from.at) * factor + off_mesh_link.cost;
+    if (LiveNode* there = push(mesh, to, index, cost)) there->link_from = from.at;
+  }
+}
+
+uint64_t LiveSearch::allocated_bytes() const {
+  return nodes_.allocated_bytes() + open_.capacity() * sizeof(Open);
+}
+
+void LiveSearch::give_back() {
+  if (allocated_bytes() <= kKeptBytes) return;
+  nodes_.give_back();
+  std::vector<Open>().swap(open_);
+}
+
+LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t max_nodes, uint64_t max_bytes) {
+  for (uint64_t n = 0; n < max_nodes;) {
+    if (open_.empty()) return State::kNone;
+    if (nodes_.used_bytes() + 3 * open_.size() * sizeof(Open) > max_bytes) return State::kFull;
+    std::pop_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
+      return a.bound != b.bound ? a.bound > b.bound : a.node < b.node;
+    });
+    const uint32_t index = open_.back().node;
+    open_.pop_back();
+    if (nodes_.nodes[index].done) continue;
+    ++n;
+    ++expanded_;
+    nodes_.nodes[index].done = true;
+    const LiveNode node = nodes_.nodes[index];
+    if (same(node.stop, to_)) {
+      goal_ = index;
+      return State::kFound;
+    }
+    const LiveLevel& level = *mesh.level_with_portals(node.stop.level);
+    note_nearest(mesh, level, index);
+    const double away = distance_of(node.stop.at, to_.at);
+    const double factor = mesh.factor(level.rects[node.stop.rect]);
+    if (node.stop.level == to_.level && node.stop.rect == to_.rect)
+      push(mesh, to_, index, node.cost + away * factor);
+    push_links(mesh, node, index, factor);
+    for_portal_points(mesh, node.stop, [&](GroundPoint side, const LiveStop& beyond) {
+      const double beyond_factor = mesh.factor(mesh.level(beyond.level)->rects[beyond.rect]);
+      if (!std::isfinite(beyond_factor)) return;
+      const double cost =
+          node.cost + distance_of(node.stop.at, side) * factor + beyond_factor / kUnitsPerCell;
+      push(mesh, beyond, index, cost);
+    });
+  }
+  return State::kSearching;
+}
+
+void LiveSearch::trace(LiveMesh& mesh, std::vector<LiveStop>& stops) const {
+  stops.clear();
+  uint32_t index = goal_ != UINT32_MAX ? goal_ : nearest_;
+  if (goal_ == UINT32_MAX) stops.push_back(nearest_stop_);
+  for (; index != UINT32_MAX; index = nodes_.nodes[index].parent) {
+    const LiveNode& node = nodes_.nodes[index];
+    stops.push_back(node.stop);
+    if (node.parent == UINT32_MAX) break;
+    // A stop beyond a portal was reached straight across from its other side.
+    const LiveStop& before = nodes_.nodes[node.parent].stop;
+    if (node.stop.off_mesh_link > 0) {
+      stops.push_back({before.level, before.rect, node.link_from});
+      continue;
+    }
+    if (before.level == node.stop.level && before.rect == node.stop.rect) continue;
+    for_portal_points(mesh, before, [&](GroundPoint side, const LiveStop& beyond) {
+      if (same(beyond, node.stop)) stops.push_back({before.level, before.rect, side});
+    });
+  }
+  std::reverse(stops.begin(), stops.end());
+}
+
+}  // namespace throng

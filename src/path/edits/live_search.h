@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/chunked_array.h"
+#include "path/edits/live_mesh.h"
+
+/// Paths of low cost over a LiveMesh: a search over points of portals, pulled taut afterwards.
+namespace throng {
+
+/// A point of a path, standing in a rectangle.
+struct LiveStop {
+  uint32_t level = 0;  // of the world
+  uint16_t rect = 0;
+  GroundPoint at;
+  double off_mesh_link =
+      0;  // cost of the off-mesh link that leads there, 0 if a segment does [cells]
+};
+
+/// A point that the search has reached.
+struct LiveNode {
+  LiveStop stop;
+  uint32_t parent = UINT32_MAX;
+  double cost = 0;        // so far [cells]
+  GroundPoint link_from;  // if stop.off_mesh_link > 0: in the parent's rectangle
+  bool done = false;
+};
+
+/// Hash map from a stop to its node. Owns its memory.
+class LiveNodes {
+ public:
+  void clear();
+  /// Frees what was allocated.
+  void give_back();
+  /// Bytes of what it holds, the same whatever was allocated before.
+  [[nodiscard]] uint64_t used_bytes() const;
+  [[nodiscard]] uint64_t allocated_bytes() const;
+  /// The node of a stop, and whether it is new.
+  std::pair<uint32_t, bool> node_of(const LiveStop& stop);
+  ChunkedArray<LiveNode> nodes;
+
+ private:
+  void grow();
+  std::vector<uint32_t> table_;  // open addressing; 0 is free, else index plus one
+};
+
+/// Calls visit(on_this_side, beyond) for points of all portals of a rectangle; beyond is a stop in
+/// the next rectangle, straight across.
+template <class Visit>
+void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit);
+
+/// Cost of the straight segment between two stops, in cells; infinite if it is no legal move to
+/// that very level.
+double segment_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
+
+/// As segment_cost, or the cost of the off-mesh link.
+inline double cost_to(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
+  return to.off_mesh_link > 0 ? to.off_mesh_link : segment_cost(mesh, from, to);
+}
+
+/// Leaves out stops where a straight segment costs no more, and moves the others towards a straight
+/// line; off-mesh links stay. Owns its memory: no allocation once it has grown.
+class LiveStringPuller {
+ public:
+  void draw(LiveMesh& mesh, std::vector<LiveStop>& stops);
+
+ private:
+  void draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops);
+  void leave_out(LiveMesh& mesh, std::vector<LiveStop>& stops);
+
+  std::vector<LiveStop> whole_, walk_;
+  std::vector<double> before_;  // cost up to each stop
+};
+
+/// A*, best first. Owns its memory: no allocation once it has grown; what a large query allocated
+/// beyond kKeptBytes is freed when the next one begins.
+class LiveSearch {
+ public:
+  enum class State { kSearching, kFound, kNone, kFull };
+  static constexpr uint64_t kKeptBytes = uint64_t{32} << 20;
+
+  void begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
+  /// Expands up to `max_nodes` points more; kFull if it would need more than `max_bytes`.
+  State advance(LiveMesh& mesh, uint64_t max_nodes, uint64_t max_bytes);
+  /// Frees what is allocated beyond kKeptBytes: after a search.
+  void give_back();
+  [[nodiscard]] uint64_t allocated_bytes() const;
+  /// The path to the goal, or to the reached point that is nearest to it; not yet pulled taut.
+  void trace(LiveMesh& mesh, std::vector<LiveStop>& stops) const;
+  [[nodiscard]] uint64_t expanded() const { return expanded_; }
+
+ private:
+  struct Open {
+    double bound = 0;
+    uint32_t node = 0;
+  };
+  /// The node now reached from `parent`, or null if the known cost is no higher.
+  LiveNode* push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, double cost);
+  void push_links(LiveMesh& mesh, const LiveNode& node, uint32_t index, double factor);
+
+  void note_nearest(LiveMesh& mesh, const LiveLevel& level, uint32_t index);
+
+  LiveStop to_, nearest_stop_;
+  LiveNodes nodes_;
+  std::vector<Open> open_;
+  uint32_t nearest_ = 0, goal_ = UINT32_MAX;
+  double nearest_distance_ = 0;
+  uint64_t expanded_ = 0;
+};
+
+inline double distance_of(GroundPoint a, GroundPoint b) {  // [cells]
+  const auto dx = static_cast<double>(a.x - b.x), dz = static_cast<double>(a.z - b.z);
+  return std::sqrt(dx * dx + dz * dz) * (1.0 / kUnitsPerCell);
+}
+
+template <class Visit>
+void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit) {
+  constexpr int32_t kSpacing = 8;  // cells
+  const LiveLevel& level = *mesh.level_with_portals(from.level);
+  const LiveRect& rect = level.rects[from.rect];
+  const uint32_t end = level.rects[from.rect + size_t{1}].first_portal;
+  const auto unit = [](int32_t tile, int32_t cell) {
+    return (int64_t{tile} * kTileCells + cell) << kUnitBits;
+  };
+  for (uint32_t p = rect.first_portal; p < end; ++p) {
+    const LivePortal portal = level.portals[p];
+    const bool along_x = portal.toward_x == 0;
+    const int64_t border_x = unit(level.tile_x, portal.toward_x > 0 ? rect.x1 : rect.x0);
+    const int64_t border_z = unit(level.tile_z, portal.toward_z > 0 ? rect.z1 : rect.z0);
+    const auto point = [&](int64_t along) {
+      // A border's units belong to the cells after it.
+      const int32_t toward = along_x ? portal.toward_z : portal.toward_x;
+      const int64_t border = along_x ? border_z : border_x;
+      const int64_t inside = toward > 0 ? border - 1 : border;
+      const int64_t outside = toward > 0 ? border : border - 1;
+      const LiveStop beyond{portal.to_level, portal.to_rect,
+                            along_x ? GroundPoint{along, outside} : GroundPoint{outside, along}};
+      visit(along_x ? GroundPoint{along, inside} : GroundPoint{inside, along}, beyond);
+    };
+    const int32_t tile = along_x ? level.tile_x : level.tile_z;
+    // A unit from its ends, so that nothing beside it is grazed; the same points from both sides.
+    point(unit(tile, portal.from) + 1);
+    for (int32_t i = (portal.from / kSpacing + 1) * kSpacing; i < portal.to; i += kSpacing)
+      point(unit(tile, i));
+    point(unit(tile, portal.to) - 2);
+  }
+}
+
+}  // namespace throng

@@ -1,0 +1,318 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/ground/mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "core/parallel.h"
+#include "graph/ground_parts.h"
+#include "path/ground/rects.h"
+#include "world/place.h"
+
+// Cuts all level tiles into rectangles, then finds their portals, corners and components. Linear in
+// the cells, parallel by level tile.
+namespace throng {
+namespace {
+
+// A corner before it has its number: the point, and the level of the cell across from the missing
+// one, which distinguishes corners above each other.
+struct CornerKey {
+  int32_t x = 0, z = 0;
+  uint32_t level = 0;
+  int8_t away_x = 0, away_z = 0;
+  auto operator<=>(const CornerKey&) const = default;
+};
+
+struct FoundPortal {
+  MeshPortal portal;
+  std::optional<CornerKey> from_corner, to_corner;
+};
+
+class Builder {
+ public:
+  Builder(const WorldData& world, int32_t avatar_class)
+      : ground_{world, avatar_class},
+        step_(step_mm(world.summary.classes[static_cast<size_t>(avatar_class)])) {}
+
+  [[nodiscard]] int32_t step() const { return step_; }
+
+  [[nodiscard]] std::vector<MeshRect> find_rects(uint32_t level) const {
+    const GroundLevel ground = level_of(level);
+    const CellRows legal = legal_rows(ground);
+    const auto cuts = step_cuts(ground, legal, step_);
+    const auto [tile_x, tile_z] = tile_of(ground_.world, *ground.zone, *ground.view.record);
+    std::vector<MeshRect> rects;
+    for (const CellRect& r : tile_with_rects(legal, cuts ? &*cuts : nullptr)) {
+      rects.push_back({level, tile_x * kTileCells + r.x0, tile_z * kTileCells + r.z0, r.x1 - r.x0,
+                       r.z1 - r.z0, 0});
+    }
+    return rects;
+  }
+
+  // The portals of a rectangle, around it.
+  void find_portals(const PathMesh& mesh, const MeshRect& rect,
+                    std::vector<FoundPortal>& portals) const {
+    const GroundLevel level = level_of(rect.level);
+    const int32_t w = rect.width, d = rect.depth;
+    const auto side = [&](int32_t begin, int32_t length, auto cell_at, int32_t dx, int32_t dz) {
+      uint32_t last = kNoRect;
+      for (int32_t i = 0; i < length; ++i) {
+        const auto [x, z] = cell_at(i);
+        const auto beyond = step_both(level, x, z, x + dx, z + dz);
+        const uint32_t to = beyond ? mesh.rect_at(beyond->world_level, x + dx, z + dz) : kNoRect;
+        if (to != kNoRect && to == last) {
+          ++portals.back().portal.to;
+        } else if (to != kNoRect) {
+          portals.push_back({{to, begin + i, begin + i + 1, kNoCorner, kNoCorner}, {}, {}});
+        }
+        last = to;
+      }
+    };
+    const int32_t x1 = rect.x + w - 1, z1 = rect.z + d - 1;
+    side(
+        0, w,
+        [&](int32_t i) {
+          return std::pair{rect.x + i, rect.z};
+        },
+        0, -1);
+    side(
+        w, d,
+        [&](int32_t i) {
+          return std::pair{x1, rect.z + i};
+        },
+        1, 0);
+    side(
+        w + d, w,
+        [&](int32_t i) {
+          return std::pair{x1 - i, z1};
+        },
+        0, 1);
+    side(
+        2 * w + d, d,
+        [&](int32_t i) {
+          return std::pair{rect.x, z1 - i};
+        },
+        -1, 0);
+  }
+
+  void find_corners(const MeshRect& rect, FoundPortal& found) const {
+    const GroundLevel level = level_of(rect.level);
+    found.from_corner = corner_at(level, rect, found.portal.from, found.portal.from);
+    found.to_corner = corner_at(level, rect, found.portal.to, found.portal.to - 1);
+  }
+
+ private:
+  [[nodiscard]] GroundLevel level_of(uint32_t level) const {
+    return ground_level(ground_.world, level, ground_.avatar_class);
+  }
+
+  // The level on the other side of a step that leads there and back.
+  [[nodiscard]] std::optional<GroundLevel> step_both(const GroundLevel& from, int32_t x, int32_t z,
+                                                     int32_t nx, int32_t nz) const {
+    if (nx < 0 || nz < 0 || nx >= ground_.world.width || nz >= ground_.world.depth) return {};
+    const auto there = step_to(ground_, from, x, z, nx, nz, step_);
+    if (!there) return {};
+    const auto back = step_to(ground_, *there, nx, nz, x, z, step_);
+    if (!back || back->world_level != from.world_level) return {};
+    return there;
+  }
+
+  // The corner at `at` cells around the rectangle, seen from the border cell `cell` around.
+  [[nodiscard]] std::optional<CornerKey> corner_at(const GroundLevel& level, const MeshRect& rect,
+                                                   int32_t at, int32_t cell) const {
+    const int32_t w = rect.width, d = rect.depth;
+    int32_t px = 0, pz = 0;  // the point
+    int32_t cx = 0, cz = 0;  // a cell of the rectangle that touches it
+    const int32_t side = cell < w ? 0 : cell < w + d ? 1 : cell < 2 * w + d ? 2 : 3;
+    if (side == 0) {
+      px = rect.x + at, pz = rect.z, cx = rect.x + cell, cz = rect.z;
+    } else if (side == 1) {
+      px = rect.x + w, pz = rect.z + at - w, cx = px - 1, cz = rect.z + cell - w;
+    } else if (side == 2) {
+      px = rect.x + w - (at - w - d), pz = rect.z + d;
+      cx = rect.x + w - 1 - (cell - w - d), cz = pz - 1;
+    } else {
+      px = rect.x, pz = rect.z + d - (at - 2 * w - d);
+      cx = px, cz = rect.z + d - 1 - (cell - 2 * w - d);
+    }
+    // The other three cells around the point.
+    const int32_t ox = cx == px ? px - 1 : px, oz = cz == pz ? pz - 1 : pz;
+    const auto beside_x = step_both(level, cx, cz, ox, cz);
+    const auto beside_z = step_both(level, cx, cz, cx, oz);
+    std::optional<GroundLevel> across_x, across_z;
+    if (beside_x) across_x = step_both(*beside_x, ox, cz, ox, oz);
+    if (beside_z) across_z = step_both(*beside_z, cx, oz, ox, oz);
+    const auto key = [&](int32_t missing_x, int32_t missing_z, uint32_t across_level) {
+      return CornerKey{px, pz, across_level, static_cast<int8_t>(missing_x < px ? 1 : -1),
+                       static_cast<int8_t>(missing_z < pz ? 1 : -1)};
+    };
+    if (beside_x && beside_z) {
+      // The fourth is missing, or a step to it is, or two levels part there.
+      if (across_x && across_z && across_x->world_level == across_z->world_level) return {};
+      return key(ox, oz, level.world_level);
+    }
+    if (across_x) return key(cx, oz, beside_x->world_level);
+    if (across_z) return key(ox, cz, beside_z->world_level);
+    return {};
+  }
+
+  WorldGround ground_;
+  int32_t step_;
+};
+
+// Numbers each connected component by its first rectangle.
+void find_components(PathMesh& mesh) {
+  const auto count = static_cast<uint32_t>(mesh.rects.size() - 1);
+  std::vector<uint32_t> queue;
+  for (uint32_t r = 0; r < count; ++r) mesh.rects[r].component = kNoRect;
+  for (uint32_t r = 0; r < count; ++r) {
+    if (mesh.rects[r].component != kNoRect) continue;
+    queue.assign(1, r);
+    mesh.rects[r].component = r;
+    for (size_t i = 0; i < queue.size(); ++i) {
+      const uint32_t end = mesh.rects[queue[i] + 1].first_portal;
+      for (uint32_t p = mesh.rects[queue[i]].first_portal; p < end; ++p) {
+        const uint32_t beyond = mesh.portals[p].rect;
+        if (mesh.rects[beyond].component != kNoRect) continue;
+        mesh.rects[beyond].component = r;
+        queue.push_back(beyond);
+      }
+    }
+  }
+}
+
+// The rectangles around each corner: every two of them share a portal that ends there.
+void gather_corner_rects(PathMesh& mesh) {
+  std::vector<std::pair<uint32_t, uint32_t>> around;  // corner, rectangle
+  for (uint32_t r = 0; r + 1 < mesh.rects.size(); ++r) {
+    for (uint32_t p = mesh.rects[r].first_portal; p < mesh.rects[r + 1].first_portal; ++p) {
+      const MeshPortal& portal = mesh.portals[p];
+      for (const uint32_t corner : {portal.from_corner, portal.to_corner}) {
+        if (corner == kNoCorner) continue;
+        around.push_back({corner, r});
+        around.push_back({corner, portal.rect});
+      }
+    }
+  }
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  mesh.corners.emplace_back();
+  for (const auto& [corner, rect] : around) {
+    ++mesh.corners[corner + 1].first_rect;
+    mesh.corner_rects.push_back(rect);
+  }
+  for (size_t c = 1; c < mesh.corners.size(); ++c)
+    mesh.corners[c].first_rect += mesh.corners[c - 1].first_rect;
+}
+
+}  // namespace
+
+uint32_t PathMesh::rect_at(uint32_t level, int32_t x, int32_t z) const {
+  for (uint32_t r = first[level]; r < first[level + 1]; ++r) {
+    const MeshRect& rect = rects[r];
+    if (x >= rect.x && x < rect.x + rect.width && z >= rect.z && z < rect.z + rect.depth) return r;
+  }
+  return kNoRect;
+}
+
+MeshRect PathMesh::block(uint32_t rect, uint32_t n) const {
+  MeshRect block = rects[rect];
+  const int32_t across = (block.width + block_side - 1) / block_side;
+  const int32_t x = static_cast<int32_t>(n) % across * block_side;
+  const int32_t z = static_cast<int32_t>(n) / across * block_side;
+  block.x += x;
+  block.z += z;
+  block.width = std::min(block_side, block.width - x);
+  block.depth = std::min(block_side, block.depth - z);
+  return block;
+}
+
+uint32_t cut_into_blocks(PathMesh& mesh, int32_t side) {
+  mesh.block_side = side;
+  uint32_t blocks = 0;
+  for (MeshRect& rect : mesh.rects) {
+    rect.first_block = blocks;
+    blocks +=
+        static_cast<uint32_t>((rect.width + side - 1) / side * ((rect.depth + side - 1) / side));
+  }
+  return blocks;
+}
+
+uint64_t PathMesh::bytes() const {
+  return first.size() * sizeof(first[0]) + rects.size() * sizeof(MeshRect) +
+         portals.size() * sizeof(MeshPortal) + corners.size() * sizeof(MeshCorner) +
+         corner_rects.size() * sizeof(uint32_t);
+}
+
+Result<PathMesh> build_mesh(const WorldData& world, int32_t avatar_class, int32_t workers,
+                            Context& context) {
+  const Builder builder(world, avatar_class);
+  PathMesh mesh;
+  mesh.avatar_class = avatar_class;
+  mesh.step = builder.step();
+  constexpr size_t kGrain = 16;  // levels
+
+  std::vector<std::vector<MeshRect>> rects(world.level_count);
+  parallel_ranges(rects.size(), kGrain, workers, [&](size_t begin, size_t end) {
+    for (size_t l = begin; l < end && !context.cancel; ++l)
+      rects[l] = builder.find_rects(static_cast<uint32_t>(l));
+  });
+  mesh.first.push_back(0);
+  for (const auto& of_level : rects) {
+    mesh.rects.insert(mesh.rects.end(), of_level.begin(), of_level.end());
+    mesh.first.push_back(static_cast<uint32_t>(mesh.rects.size()));
+  }
+
+  std::vector<std::vector<FoundPortal>> portals(world.level_count);  // of a level's rectangles
+  parallel_ranges(portals.size(), kGrain, workers, [&](size_t begin, size_t end) {
+    for (size_t l = begin; l < end && !context.cancel; ++l) {
+      for (uint32_t r = mesh.first[l]; r < mesh.first[l + 1]; ++r) {
+        MeshRect& rect = mesh.rects[r];
+        const size_t before = portals[l].size();
+        builder.find_portals(mesh, rect, portals[l]);
+        rect.first_portal = static_cast<uint32_t>(portals[l].size() - before);  // count, for now
+        for (size_t p = before; p < portals[l].size(); ++p)
+          builder.find_corners(rect, portals[l][p]);
+      }
+    }
+  });
+  if (context.cancel) return Error{Errc::kCancelled, "path: cancelled"};
+
+  std::vector<CornerKey> keys;
+  for (const auto& of_level : portals) {
+    for (const FoundPortal& found : of_level) {
+      if (found.from_corner) keys.push_back(*found.from_corner);
+      if (found.to_corner) keys.push_back(*found.to_corner);
+    }
+  }
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  for (const CornerKey& key : keys) mesh.corners.push_back({key.x, key.z, key.away_x, key.away_z});
+  const auto number = [&](const std::optional<CornerKey>& key) {
+    if (!key) return kNoCorner;
+    return static_cast<uint32_t>(std::lower_bound(keys.begin(), keys.end(), *key) - keys.begin());
+  };
+  uint32_t next = 0;
+  for (MeshRect& rect : mesh.rects) next += std::exchange(rect.first_portal, next);
+  mesh.rects.push_back({.first_portal = next});
+  mesh.portals.reserve(next);
+  for (const auto& of_level : portals) {
+    for (const FoundPortal& found : of_level) {
+      MeshPortal portal = found.portal;
+      portal.from_corner = number(found.from_corner);
+      portal.to_corner = number(found.to_corner);
+      mesh.portals.push_back(portal);
+    }
+  }
+  gather_corner_rects(mesh);
+  find_components(mesh);
+  constexpr uint32_t kMaxBlocks = 1 << 17;
+  if (cut_into_blocks(mesh, kSmallBlock) > kMaxBlocks) cut_into_blocks(mesh, kLargeBlock);
+  return mesh;
+}
+
+}  // namespace throng

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "path/ground/mesh.h"
+#include "world/ground.h"
+
+/// From the corners of a path to segments that a body can walk.
+namespace throng {
+
+/// A point that four cells of the grid share.
+struct CellCorner {
+  int32_t x = 0, z = 0;
+};
+
+/// Walks from `from` over the corners to `to`, a unit beside each corner, and past every other
+/// corner that a segment would graze. False if a segment is blocked for another reason.
+class SegmentWalker {
+ public:
+  SegmentWalker(const WorldData& world, const PathMesh& mesh)
+      : ground_{world, mesh.avatar_class}, mesh_(&mesh) {}
+
+  bool walk(const Stop& from, const std::vector<uint32_t>& corners, GroundPoint to,
+            std::vector<Stop>& stops);
+
+ private:
+  bool segment(GroundPoint to, int32_t depth, std::vector<Stop>& stops);
+  std::optional<GroundPoint> grazed(GroundLevel level, GroundPoint from, GroundPoint to) const;
+  bool slip_by(const GroundLevel& level, GroundPoint from, GroundPoint to,
+               std::vector<Stop>& stops);
+  [[nodiscard]] bool gets_past(const CellCorner& corner, const Stop& from, GroundPoint to) const;
+
+  WorldGround ground_;
+  const PathMesh* mesh_;
+};
+
+}  // namespace throng

@@ -1,0 +1,616 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/surface/node_changes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/access.h"
+#include "graph/surface_piece.h"
+#include "path/edits/blocked_cells.h"
+#include "world/place.h"
+
+// Which blocks and portals of a mesh of nodes obstacles block, found by halving blocks and motions.
+// Time by the blocks near an obstacle.
+namespace throng {
+namespace {
+
+constexpr double kFinest = 0.35;  // [m] across a square of curved ground that is cut no further
+constexpr uint8_t kDeepest = 8;   // the maximum that a block's numbers hold
+constexpr int32_t kPieces = 16;   // of a portal's line
+constexpr int kTurns = 7;         // halvings of a motion
+constexpr double kRounded = 1e-9;
+constexpr double kWide = 1e-7;  // A shorter piece of a line counts as empty.
+
+struct Pose {
+  Vec3d feet, axis;
+};
+
+BodyRoom body_of(const AvatarClass& avatar, bool climbs) {
+  BodyRoom body;
+  body.bottom = climbs ? avatar.step : body_bottom(avatar);
+  body.top = avatar.height;
+  body.radius = avatar.radius;
+  return body;
+}
+
+// Straight from one to the other, the axis turning evenly, feet up to `spread` beside that.
+bool motion_may_touch(const Solid& solid, BodyRoom body, const Pose& from, const Pose& to,
+                      double spread, int halvings) {
+  const Vec3d sum = from.axis + to.axis;
+  const double size = length(sum);
+  const Vec3d feet = (from.feet + to.feet) * 0.5;
+  body.feet = feet;
+  body.spread = spread + length(to.feet - from.feet) / 2;
+  body.turns_far = !(size > 1e-6);
+  if (!body.turns_far) {
+    body.axis = sum * (1 / size);
+    body.cosine = std::clamp(dot(body.axis, from.axis) - kRounded, 0.0, 1.0);
+    body.sine = std::sqrt(1 - body.cosine * body.cosine);
+  }
+  if (!may_touch(body, solid)) return false;
+  if (halvings == 0 || body.turns_far) return true;
+  const Pose middle{feet, body.axis};
+  return motion_may_touch(solid, body, from, middle, spread, halvings - 1) ||
+         motion_may_touch(solid, body, middle, to, spread, halvings - 1);
+}
+
+struct Line {
+  double s = 0, t = 0, ds = 0, dt = 0;
+};
+
+Line line_of(const std::array<double, 4>& on) {
+  return {on[0], on[1], on[2] - on[0], on[3] - on[1]};
+}
+
+struct Stretch {
+  double from = 0, to = 1;
+  uint32_t block = 0;
+};
+
+std::array<double, 4> cut_line(const std::array<double, 4>& on, double from, double to) {
+  const auto at = [&](double u, size_t k) { return on[k] + u * (on[k + 2] - on[k]); };
+  return {at(from, 0), at(from, 1), at(to, 0), at(to, 1)};
+}
+
+}  // namespace
+
+ChangeId NodeChanges::add(Solid solid) {
+  const auto& classes = data_of(data_of(mesh_->nodes())->world)->summary.classes;
+  const double around = reach_of(classes[static_cast<size_t>(mesh_->avatar_class())]);
+  Change change;
+  std::vector<uint32_t> near;
+  block_tiles(solid, around + longest_hole_link_, change, near);
+  const Prism& prism = solid.prism;
+  Box3d box;
+  for (const auto& [x, z] : prism.corners) {
+    box.add({x, prism.low, z});
+    box.add({x, prism.high, z});
+  }
+  const double reach = length(box.max - box.min) / 2 + around + longest_hole_link_;
+  const size_t first_curved = near.size();
+  squares_->for_each_near((box.min + box.max) * 0.5, reach,
+                          [&](uint32_t block) { near.push_back(block); });
+  std::sort(near.begin() + static_cast<ptrdiff_t>(first_curved), near.end());
+  for (size_t i = first_curved; i < near.size(); ++i) block_squares(solid, near[i], change);
+  std::sort(near.begin(), near.end());
+  block_pieces(solid, near, change);
+  changes_.push_back(std::move(change));
+  ++version_;
+  active_.push_back(static_cast<ChangeId>(changes_.size()));
+  return active_.back();
+}
+
+bool NodeChanges::set_active(ChangeId id, bool active, bool remove) {
+  if (id == 0 || id > changes_.size() || changes_[id - 1].removed) return false;
+  Change& change = changes_[id - 1];
+  if (change.active != active) {
+    ++version_;
+    const auto at = std::lower_bound(active_.begin(), active_.end(), id);
+    if (active) {
+      active_.insert(at, id);
+    } else {
+      active_.erase(at);
+    }
+  }
+  change.active = active;
+  if (remove) {
+    change = {};  // Its id is never used again, its memory is freed.
+    change.active = false;
+    change.removed = true;
+  }
+  return true;
+}
+
+// Blocked cells, and blocks within `around`.
+void NodeChanges::block_tiles(const Solid& solid, double around, Change& change,
+                              std::vector<uint32_t>& near) const {
+  const WorldData& world = *data_of(data_of(mesh_->nodes())->world);
+  const AvatarClass& avatar = world.summary.classes[static_cast<size_t>(mesh_->avatar_class())];
+  const SquareRange tiles = tiles_near(world, solid.prism.corners, around);
+  CellRows all;
+  all.fill(~uint64_t{0});
+  for (int32_t z = tiles.first_z; z <= tiles.last_z; ++z) {
+    for (int32_t x = tiles.first_x; x <= tiles.last_x; ++x) {
+      const auto levels = world.tile_levels(x, z);
+      for (uint32_t level = levels.first; level < levels.last; ++level) {
+        const uint32_t patch = mesh_->patch_of_level(level);
+        if (patch == kNoNode) continue;
+        const GroundLevel ground = ground_level(world, level, mesh_->avatar_class());
+        if (ground.zone == nullptr) continue;
+        const TileFloor floor{world.summary, ground.view, x, z};
+        // Legal cells alone need their heights.
+        CellRows legal{};
+        const auto blocks = mesh_->blocks_of(patch);
+        for (const NodeBlock& block : blocks) {
+          const int32_t side = 64 >> block.level;
+          const uint64_t row = (~uint64_t{0} >> (64 - side)) << (block.s * side);
+          for (int32_t k = block.t * side; k < (block.t + 1) * side; ++k)
+            legal[static_cast<size_t>(k)] |= row;
+        }
+        const CellRows rows =
+            blocked_cells(floor, avatar, solid.prism, solid.triangles, legal.data());
+        if (std::any_of(rows.begin(), rows.end(), [](uint64_t row) { return row != 0; })) {
+          change.tiles.push_back({patch, rows});
+        }
+        const auto [first_x, last_x, first_z, last_z] =
+            cells_near(floor, solid.prism.corners, around);
+        for (uint32_t b = 0; b < blocks.size(); ++b) {
+          const int32_t side = 64 >> blocks[b].level;
+          const int32_t s = blocks[b].s * side, t = blocks[b].t * side;
+          if (s <= last_x && s + side > first_x && t <= last_z && t + side > first_z) {
+            near.push_back(mesh_->first_block(patch) + b);
+          }
+        }
+      }
+    }
+  }
+}
+
+uint8_t NodeChanges::finest_level(const NodeBlock& block) const {
+  const NodeSurface& surface = mesh_->patches()[block.patch];
+  const double side = block.side(), s = block.s * side, t = block.t * side;
+  double across = 2 * surface_piece(surface, s, t, s + side, t + side).spread;
+  uint8_t level = block.level;
+  for (; level < kDeepest && across > kFinest; across /= 2) ++level;
+  return level;
+}
+
+void NodeChanges::block_squares(const Solid& solid, uint32_t block, Change& change) const {
+  const NodeBlock& whole = mesh_->blocks()[block];
+  const NodeSurface& surface = mesh_->surface(block);
+  const auto& classes = data_of(data_of(mesh_->nodes())->world)->summary.classes;
+  const AvatarClass& avatar = classes[static_cast<size_t>(mesh_->avatar_class())];
+  const bool climbs = avatar.climb_slope > 0;
+  const uint8_t finest = finest_level(whole);
+  const auto descend = [&](auto&& self, uint8_t level, uint32_t s, uint32_t t) -> void {
+    const double side = 1.0 / (1 << level);
+    const SurfacePiece piece =
+        surface_piece(surface, s * side, t * side, (s + 1) * side, (t + 1) * side);
+    BodyRoom body = body_of(avatar, climbs);
+    body.feet = piece.middle;
+    body.spread = piece.spread;
+    body.axis = {0, 1, 0};
+    if (climbs) {
+      body.axis = piece.normal;
+      body.turns_far = !piece.leans;
+      body.cosine = piece.cosine;
+      body.sine = piece.sine;
+    }
+    if (!may_touch(body, solid)) return;
+    if (level == finest) {
+      change.squares.push_back({block, quad_order(s, t, level)});
+      return;
+    }
+    for (uint32_t q = 0; q < 4; ++q)
+      self(self, static_cast<uint8_t>(level + 1), 2 * s + q % 2, 2 * t + q / 2);
+  };
+  descend(descend, whole.level, whole.s, whole.t);
+}
+
+// A step over the border of two tiles crosses no distance: the bodies on either side are checked.
+void NodeChanges::block_pieces(const Solid& solid, std::span<const uint32_t> near,
+                               Change& change) const {
+  for (const uint32_t block : near) {
+    for (const uint32_t p : mesh_->portals_of(block)) {
+      const NodePortal portal = mesh_->portals()[p];
+      if (portal.a != block) continue;
+      const bool curved = mesh_->surface(portal.a).points != nullptr;
+      const bool doors =
+          mesh_->blocks()[portal.a].patch != mesh_->blocks()[portal.b].patch && curved;
+      if (!portal.leaps && !doors) continue;
+      uint16_t pieces = 0;
+      if (portal.leaps) {
+        pieces = blocks_portal(solid, portal, 0, 0) ? 1 : 0;
+      } else if (blocks_portal(solid, portal, 0, 1)) {
+        for (int32_t k = 0; k < kPieces; ++k) {
+          const double from = k * (1.0 / kPieces), to = (k + 1) * (1.0 / kPieces);
+          if (blocks_portal(solid, portal, from, to)) pieces |= static_cast<uint16_t>(1u << k);
+        }
+      }
+      if (pieces != 0) change.pieces.push_back({p, pieces});
+    }
+  }
+}
+
+bool NodeChanges::blocks_portal(const Solid& solid, const NodePortal& portal, double from,
+                                double to) const {
+  const auto& classes = data_of(data_of(mesh_->nodes())->world)->summary.classes;
+  const AvatarClass& avatar = classes[static_cast<size_t>(mesh_->avatar_class())];
+  const bool climbs = avatar.climb_slope > 0;
+  const double middle = (from + to) / 2;
+  double spread = 0;
+  double sine = 0;  // of how far bodies along the line lean from the one of a strip's middle
+  bool leans_far = false;
+  const auto pose = [&](const NodeSurface& surface, const std::array<double, 4>& on) {
+    const double s = on[0] + middle * (on[2] - on[0]), t = on[1] + middle * (on[3] - on[1]);
+    Pose found{surface.at(s, t), {0, 1, 0}};
+    if (surface.points == nullptr) return found;
+    if (climbs) found.axis = surface.normal(s, t);
+    if (to <= from) return found;
+    // A strip along the line: a line alone does not show how bodies lean.
+    constexpr double kStrip = 1.0 / 256;
+    const auto cut = cut_line(on, from, to);
+    const auto range = [&](size_t k) {
+      double low = std::min(cut[k], cut[k + 2]), high = std::max(cut[k], cut[k + 2]);
+      if (high - low < kStrip) {
+        low = std::clamp(low - kStrip / 2, 0.0, 1 - kStrip);
+        high = low + kStrip;
+      }
+      return std::pair{low, high};
+    };
+    const auto [s0, s1] = range(0);
+    const auto [t0, t1] = range(1);
+    const SurfacePiece piece = surface_piece(surface, s0, t0, s1, t1);
+    spread = std::max(spread, piece.spread + length(piece.middle - found.feet));
+    if (climbs) {
+      leans_far |= !piece.leans || piece.cosine < 0.71;
+      sine = std::max(sine, piece.sine);
+    }
+    return found;
+  };
+  const Pose a = pose(mesh_->surface(portal.a), portal.on_a);
+  const Pose b = pose(mesh_->surface(portal.b), portal.on_b);
+  if (leans_far) return true;
+  const bool upright = !climbs || (a.axis.y == 1 && b.axis.y == 1);
+  BodyRoom body = body_of(avatar, climbs && !upright);
+  // Their axes differ by twice that at most, and the chord of a doubled angle is twice its sine: so
+  // far apart are their points.
+  spread += 2 * sine * reach_of(avatar);
+  if (portal.kind != LinkKind::kDrop) return motion_may_touch(solid, body, a, b, spread, kTurns);
+  const Pose over{{b.feet.x, a.feet.y, b.feet.z}, {0, 1, 0}};
+  return motion_may_touch(solid, body, a, over, spread, kTurns) ||
+         motion_may_touch(solid, body, over, b, spread, kTurns);
+}
+
+void NodeChanges::update() {
+  if (updated_ == version_) return;
+  updated_ = version_;
+  cuts_.clear();
+  cut_blocks_.clear();
+  cut_patches_.clear();
+  parts_.clear();
+  base_of_part_.clear();
+  portals_.clear();
+  replaced_.clear();
+  touched_.clear();
+  place_of_touched_.clear();
+  std::vector<BlockedTile> tiles;
+  std::vector<BlockedSquare> squares;
+  std::unordered_map<uint32_t, uint16_t> pieces;
+  std::unordered_map<uint32_t, size_t> place;
+  for (const ChangeId id : active_) {
+    const Change& change = changes_[id - 1];
+    for (const BlockedTile& tile : change.tiles) {
+      const auto [at, is_new] = place.try_emplace(tile.patch, tiles.size());
+      if (is_new) tiles.push_back({tile.patch, {}});
+      for (size_t k = 0; k < 64; ++k) tiles[at->second].rows[k] |= tile.rows[k];
+    }
+    squares.insert(squares.end(), change.squares.begin(), change.squares.end());
+    for (const BlockedPieces& blocked : change.pieces) pieces[blocked.portal] |= blocked.pieces;
+  }
+  std::sort(tiles.begin(), tiles.end(),
+            [](const BlockedTile& a, const BlockedTile& b) { return a.patch < b.patch; });
+  std::sort(squares.begin(), squares.end());
+  squares.erase(std::unique(squares.begin(), squares.end()), squares.end());
+  cut_tiles(tiles);
+  cut_squares(squares);
+  std::sort(cut_blocks_.begin(), cut_blocks_.end());
+  std::sort(cut_patches_.begin(), cut_patches_.end());
+  cut_patches_.erase(std::unique(cut_patches_.begin(), cut_patches_.end()), cut_patches_.end());
+  for (const uint32_t block : cut_blocks_) join_parts(block);
+  replace_portals(pieces);
+  list_portals();
+}
+
+// The largest free squares of a block. blocked(level, s, t): 0 free, 1 partly blocked, 2 blocked.
+template <class IsBlocked>
+void NodeChanges::cut(uint32_t block, const IsBlocked& blocked) {
+  const NodeBlock& whole = mesh_->blocks()[block];
+  Cut made{static_cast<uint32_t>(parts_.size()), 0};
+  const auto descend = [&](auto&& self, uint8_t level, uint32_t s, uint32_t t) -> void {
+    const int some = blocked(level, s, t);
+    if (some == 2) return;
+    if (some == 0) {
+      NodeBlock part = whole;
+      part.level = level;
+      part.s = static_cast<uint8_t>(s);
+      part.t = static_cast<uint8_t>(t);
+      parts_.push_back(part);
+      base_of_part_.push_back(block);
+      return;
+    }
+    for (uint32_t q = 0; q < 4; ++q)
+      self(self, static_cast<uint8_t>(level + 1), 2 * s + q % 2, 2 * t + q / 2);
+  };
+  descend(descend, whole.level, whole.s, whole.t);
+  made.last = static_cast<uint32_t>(parts_.size());
+  cuts_.emplace(block, made);
+  cut_blocks_.push_back(block);
+  cut_patches_.push_back(whole.patch);
+}
+
+void NodeChanges::cut_tiles(const std::vector<BlockedTile>& blocked) {
+  for (const BlockedTile& tile : blocked) {
+    const auto blocks = mesh_->blocks_of(tile.patch);
+    const auto some = [&](uint8_t level, uint32_t s, uint32_t t) {
+      const uint32_t side = 64u >> level;
+      const uint64_t row = (~uint64_t{0} >> (64 - side)) << (s * side);
+      bool any = false, all = true;
+      for (uint32_t k = t * side; k < (t + 1) * side; ++k) {
+        any |= (tile.rows[k] & row) != 0;
+        all &= (tile.rows[k] & row) == row;
+      }
+      return all ? 2 : any ? 1 : 0;
+    };
+    for (uint32_t b = 0; b < blocks.size(); ++b) {
+      if (some(blocks[b].level, blocks[b].s, blocks[b].t) == 0) continue;
+      cut(mesh_->first_block(tile.patch) + b, some);
+    }
+  }
+}
+
+void NodeChanges::cut_squares(const std::vector<BlockedSquare>& blocked) {
+  for (size_t i = 0; i < blocked.size();) {
+    size_t j = i;
+    while (j < blocked.size() && blocked[j].block == blocked[i].block) ++j;
+    const uint8_t finest = finest_level(mesh_->blocks()[blocked[i].block]);
+    const auto begin = blocked.begin() + static_cast<ptrdiff_t>(i);
+    const auto end = blocked.begin() + static_cast<ptrdiff_t>(j);
+    cut(blocked[i].block, [&](uint8_t level, uint32_t s, uint32_t t) {
+      const uint32_t up = 2u * (finest - level);
+      const uint32_t first = quad_order(s, t, level) << up, count = 1u << up;
+      const auto before = [](const BlockedSquare& square, uint32_t order) {
+        return square.order < order;
+      };
+      const auto found = std::lower_bound(begin, end, first, before) -
+                         std::lower_bound(begin, end, first + count, before);
+      return found == 0 ? 0 : -found == static_cast<ptrdiff_t>(count) ? 2 : 1;
+    });
+    i = j;
+  }
+}
+
+// Portals between the parts of a block: where two squares share a part of a side.
+void NodeChanges::join_parts(uint32_t block) {
+  const auto [first, last] = cuts_.at(block);
+  const auto base = static_cast<uint32_t>(mesh_->blocks().size());
+  const bool tile = mesh_->surface(block).points == nullptr;
+  const double inset = tile ? kTileInset : 0;
+  struct Side {
+    double at, from, to;
+    uint32_t part;
+  };
+  for (const bool by_s : {true, false}) {
+    std::vector<Side> lows, highs;
+    for (uint32_t p = first; p < last; ++p) {
+      const NodeBlock& part = parts_[p];
+      const double side = part.side();
+      const double along = (by_s ? part.s : part.t) * side,
+                   across = (by_s ? part.t : part.s) * side;
+      lows.push_back({along, across, across + side, p});
+      highs.push_back({along + side, across, across + side, p});
+    }
+    const auto before = [](const Side& a, const Side& b) {
+      return a.at != b.at ? a.at < b.at : a.from < b.from;
+    };
+    std::sort(lows.begin(), lows.end(), before);
+    std::sort(highs.begin(), highs.end(), before);
+    size_t from = 0;
+    for (const Side& high : highs) {
+      const auto is_before = [&](const Side& low) {
+        return low.at < high.at || (low.at == high.at && low.to <= high.from);
+      };
+      while (from < lows.size() && is_before(lows[from])) ++from;
+      for (size_t k = from; k < lows.size() && lows[k].at == high.at && lows[k].from < high.to;
+           ++k) {
+        const double begin = std::max(high.from, lows[k].from) + inset;
+        const double end = std::min(high.to, lows[k].to) - inset;
+        if (!(end > begin)) continue;
+        NodePortal portal{.a = base + high.part, .b = base + lows[k].part, .on_a = {}, .on_b = {}};
+        portal.kind =
+            parts_[high.part].inclination > mesh_->walking() ? LinkKind::kClimb : LinkKind::kWalk;
+        portal.inside = true;
+        portal.on_a = by_s ? std::array{high.at, begin, high.at, end}
+                           : std::array{begin, high.at, end, high.at};
+        portal.on_b = portal.on_a;
+        portals_.push_back(portal);
+      }
+    }
+  }
+}
+
+// What is left of portals whose blocks are cut, or that are blocked themselves.
+void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& pieces) {
+  std::vector<uint32_t> closed;
+  for (const auto& [portal, blocked] : pieces) closed.push_back(portal);
+  for (const uint32_t block : cut_blocks_) {
+    const auto portals = mesh_->portals_of(block);
+    closed.insert(closed.end(), portals.begin(), portals.end());
+  }
+  std::sort(closed.begin(), closed.end());
+  closed.erase(std::unique(closed.begin(), closed.end()), closed.end());
+  const auto base = static_cast<uint32_t>(mesh_->blocks().size());
+  std::vector<Stretch> free, on_a, on_b;
+  // The pieces of a line that lie in what is left of a block.
+  const auto stretches = [&](uint32_t block, const std::array<double, 4>& on,
+                             std::vector<Stretch>& out) {
+    out.clear();
+    const auto cut = cuts_.find(block);
+    if (cut == cuts_.end()) {
+      out.push_back({0, 1, block});
+      return;
+    }
+    const double inset = mesh_->surface(block).points == nullptr ? kTileInset : 0;
+    const Line line = line_of(on);
+    for (uint32_t p = cut->second.first; p < cut->second.last; ++p) {
+      const NodeBlock& part = parts_[p];
+      const double side = part.side();
+      double from = 0, to = 1;
+      const auto clip = [&](double at, double delta, double low, double high) {
+        // A line along a side lies on it, or an inset beside it.
+        if (std::fabs(delta) < kWide) {
+          if (at < low - inset - kRounded || at > high + inset + kRounded) to = -1;
+          return;
+        }
+        const double one = (low + inset - at) / delta, two = (high - inset - at) / delta;
+        from = std::max(from, std::min(one, two));
+        to = std::min(to, std::max(one, two));
+      };
+      clip(line.s, line.ds, part.s * side, (part.s + 1) * side);
+      clip(line.t, line.dt, part.t * side, (part.t + 1) * side);
+      const bool is_point = std::fabs(line.ds) < kWide && std::fabs(line.dt) < kWide;
+      if (is_point ? to >= 0 : to - from > kWide) out.push_back({from, to, base + p});
+      if (is_point && !out.empty()) break;
+    }
+    std::sort(out.begin(), out.end(),
+              [](const Stretch& a, const Stretch& b) { return a.from < b.from; });
+  };
+  for (const uint32_t p : closed) {
+    const NodePortal portal = mesh_->portals()[p];
+    Replaced made{p, static_cast<uint32_t>(mesh_->portals().size() + portals_.size()), 0};
+    free.clear();
+    const auto blocked = pieces.find(p);
+    const uint16_t mask = blocked == pieces.end() ? uint16_t{0} : blocked->second;
+    if (mask == 0) {
+      free.push_back({});
+    } else if (!portal.leaps) {
+      for (int32_t k = 0; k < kPieces; ++k) {
+        if ((mask >> k & 1) != 0) continue;
+        const double from = k * (1.0 / kPieces), to = (k + 1) * (1.0 / kPieces);
+        if (!free.empty() && free.back().to == from) {
+          free.back().to = to;
+        } else {
+          free.push_back({from, to, 0});
+        }
+      }
+    }
+    stretches(portal.a, portal.on_a, on_a);
+    stretches(portal.b, portal.on_b, on_b);
+    for (const Stretch& piece : free) {
+      for (const Stretch& a : on_a) {
+        for (const Stretch& b : on_b) {
+          const double from = std::max({piece.from, a.from, b.from});
+          const double to = std::min({piece.to, a.to, b.to});
+          if (!portal.leaps && !(to - from > kWide)) continue;
+          NodePortal left = portal;
+          left.a = a.block;
+          left.b = b.block;
+          if (!portal.leaps) {
+            left.on_a = cut_line(portal.on_a, from, to);
+            left.on_b = cut_line(portal.on_b, from, to);
+          }
+          portals_.push_back(left);
+        }
+      }
+    }
+    made.last = static_cast<uint32_t>(mesh_->portals().size() + portals_.size());
+    replaced_.push_back(made);
+  }
+}
+
+void NodeChanges::list_portals() {
+  const auto base = static_cast<uint32_t>(mesh_->blocks().size());
+  touched_ = cut_blocks_;
+  for (const Replaced& r : replaced_) {
+    const PortalSides portal = mesh_->portals().sides(r.portal);
+    touched_.push_back(portal.a);
+    touched_.push_back(portal.b);
+  }
+  std::sort(touched_.begin(), touched_.end());
+  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+  for (uint32_t i = 0; i < touched_.size(); ++i) place_of_touched_.emplace(touched_[i], i);
+  const auto place = [&](uint32_t block) {
+    return block < base ? place_of_touched_.at(block)
+                        : static_cast<uint32_t>(touched_.size()) + block - base;
+  };
+  // Those that stay, then new ones: rising. A cut block keeps none.
+  const auto count = static_cast<uint32_t>(mesh_->portals().size());
+  std::vector<std::pair<uint32_t, uint32_t>> pairs;  // place, portal
+  for (uint32_t i = 0; i < touched_.size(); ++i) {
+    if (cuts_.contains(touched_[i])) continue;
+    for (const uint32_t p : mesh_->portals_of(touched_[i])) {
+      const auto at = std::lower_bound(replaced_.begin(), replaced_.end(), p,
+                                       [](const Replaced& r, uint32_t q) { return r.portal < q; });
+      if (at == replaced_.end() || at->portal != p) pairs.emplace_back(i, p);
+    }
+  }
+  std::sort(pairs.begin(), pairs.end());
+  for (uint32_t k = 0; k < portals_.size(); ++k) {
+    pairs.emplace_back(place(portals_[k].a), count + k);
+    pairs.emplace_back(place(portals_[k].b), count + k);
+  }
+  // By counting: the portals of each place are in order already.
+  first_portal_.assign(touched_.size() + parts_.size() + 1, 0);
+  for (const auto& [at, portal] : pairs) ++first_portal_[at + 1];
+  for (size_t i = 1; i < first_portal_.size(); ++i) first_portal_[i] += first_portal_[i - 1];
+  std::vector<uint32_t> next(first_portal_.begin(), first_portal_.end() - 1);
+  portal_of_.resize(pairs.size());
+  for (const auto& [at, portal] : pairs) portal_of_[next[at]++] = portal;
+}
+
+std::optional<std::span<const uint32_t>> NodeChanges::portals_of(uint32_t block) const {
+  size_t place = 0;
+  if (block >= mesh_->blocks().size()) {
+    place = touched_.size() + block - mesh_->blocks().size();
+  } else {
+    const auto at = place_of_touched_.find(block);
+    if (at == place_of_touched_.end()) return std::nullopt;
+    place = at->second;
+  }
+  return std::span(portal_of_)
+      .subspan(first_portal_[place], first_portal_[place + 1] - first_portal_[place]);
+}
+
+std::optional<std::pair<uint32_t, uint32_t>> NodeChanges::parts_of(uint32_t block) const {
+  const auto cut = cuts_.find(block);
+  if (cut == cuts_.end()) return std::nullopt;
+  const auto base = static_cast<uint32_t>(mesh_->blocks().size());
+  return std::pair{base + cut->second.first, base + cut->second.last};
+}
+
+uint32_t NodeChanges::part_at(uint32_t block, double s, double t) const {
+  const auto parts = parts_of(block);
+  if (!parts) return block;
+  for (uint32_t p = parts->first; p < parts->second; ++p) {
+    const NodeBlock& part = parts_[p - mesh_->blocks().size()];
+    const double side = part.side(), ds = s - part.s * side, dt = t - part.t * side;
+    if (std::min(ds, dt) >= -kRounded && std::max(ds, dt) <= side + kRounded) return p;
+  }
+  return kNoNode;
+}
+
+uint64_t NodeChanges::bytes() const {
+  uint64_t bytes = parts_.size() * sizeof(NodeBlock) + portals_.size() * sizeof(NodePortal) +
+                   (base_of_part_.size() + touched_.size() + first_portal_.size() +
+                    portal_of_.size() + cut_blocks_.size()) *
+                       sizeof(uint32_t);
+  for (const Change& change : changes_) {
+    bytes += change.tiles.size() * sizeof(BlockedTile) +
+             change.squares.size() * sizeof(BlockedSquare) +
+             change.pieces.size() * sizeof(BlockedPieces);
+  }
+  return bytes;
+}
+
+}  // namespace throng

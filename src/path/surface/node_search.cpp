@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/surface/node_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/access.h"
+
+// Hart, Nilsson, Raphael. A formal basis for the heuristic determination of minimum cost paths.
+// 1968. A path leads from the middle of one portal to the middle of the next, straight in the
+// parameters of their block; a piece is measured over its middle, so it is never shorter than the
+// straight line, and the straight line to the goal never overestimates.
+namespace throng {
+namespace {
+
+constexpr double kShort = 1;  // Pieces up to here count as straight. [m]
+
+}  // namespace
+
+PieceCost::PieceCost(const NodeView& view, double slope_cost)
+    : view_(&view), slope_cost_(slope_cost) {
+  const NodeBins& bins = data_of(view.mesh().nodes())->summary.bins;
+  for (uint8_t code = 0; code < 16; ++code) {
+    const double degrees = bins.inclination_of(code);
+    // To 9 digits: the last bits of cos() differ between machines' libraries.
+    const double cosine = std::round(std::cos(degrees * std::numbers::pi / 180) * 1e9) / 1e9;
+    by_code_.push_back(1 + slope_cost * (1 - cosine));
+  }
+}
+
+PieceCost::Piece PieceCost::operator()(uint32_t block, double s0, double t0, Vec3d from, double s1,
+                                       double t1, Vec3d to) const {
+  const NodeSurface& surface = view_->surface(block);
+  const double straight = length(to - from);
+  if (surface.points == nullptr) {
+    return {straight, straight * by_code_[view_->block(block).inclination]};
+  }
+  const double s = (s0 + s1) / 2, t = (t0 + t1) / 2;
+  double along = straight;
+  if (straight > kShort) {
+    const Vec3d middle = surface.at(s, t);
+    along = length(middle - from) + length(to - middle);
+  }
+  if (slope_cost_ == 0) return {along, along};
+  return {along, along * (1 + slope_cost_ * (1 - surface.normal(s, t).y))};
+}
+
+void NodeSearch::push(double estimate, uint32_t state) {
+  open_.push_back({estimate, state});
+  std::push_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
+    return a.estimate != b.estimate ? a.estimate > b.estimate : a.state > b.state;
+  });
+}
+
+void NodeSearch::expand(const BlockPoint& from, Vec3d at, double cost, uint32_t parent) {
+  for_each_arc_out(*view_, from.block, [&](const Crossing& crossing) {
+    const uint32_t id = 2 * crossing.portal + (crossing.backward ? 1 : 0);
+    if ((id ^ 1) == parent || id == parent) return;
+    const PortalSides sides = view_->sides(crossing.portal);
+    const uint32_t into = crossing.backward ? sides.a : sides.b;
+    if (within_.overlay_cell_of_block != nullptr &&
+        within_.overlay_cell_of_block[view_->base_of(into)] != within_.overlay_cell) {
+      return;
+    }
+    State& state = states_[id];
+    if (state.query == query_ && state.cost <= cost) return;
+    const NodePortal portal = view_->portal(crossing.portal);
+    const auto [out, in] = ends_of(portal, crossing.backward);
+    const Vec3d here = position(*view_, out);
+    double next = cost + (*cost_)(out.block, from.s, from.t, at, out.s, out.t, here).cost;
+    if (state.query == query_ && state.cost <= next) return;
+    const Vec3d there = position(*view_, in);
+    next += portal_length(portal, here, there);
+    if (state.query == query_ && state.cost <= next) return;
+    met_ += state.query == query_ ? 0 : 1;
+    state = {query_, parent, next, there, false};
+    push(next + length(goal_ - there), id);
+  });
+}
+
+PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
+                         std::vector<Crossing>& crossings, const SearchBounds& within,
+                         double less_than) {
+  crossings.clear();
+  expanded_ = met_ = 0;
+  within_ = within;
+  states_.resize(2 * view_->portal_count());
+  if (++query_ == 0) {  // After 2^32 queries the marks start over.
+    states_.clear();
+    query_ = 1;
+  }
+  open_.clear();
+  const PathEnd end = search(from, to, budget, crossings, less_than);
+  give_back();
+  return end;
+}
+
+uint64_t NodeSearch::used_bytes() const {
+  return met_ * sizeof(State) + 3 * open_.size() * sizeof(Open);  // as PathSearch::used_bytes
+}
+
+uint64_t NodeSearch::allocated_bytes() const {
+  return states_.allocated_bytes() + open_.capacity() * sizeof(Open);
+}
+
+void NodeSearch::give_back() {
+  if (allocated_bytes() <= kKeptBytes) return;
+  states_.clear();
+  std::vector<Open>().swap(open_);
+}
+
+PathEnd NodeSearch::search(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
+                           std::vector<Crossing>& crossings, double less_than) {
+  goal_ = position(*view_, to);
+  const Vec3d start = position(*view_, from);
+  constexpr uint32_t kGoal = UINT32_MAX - 1, kStart = UINT32_MAX;
+  double found = std::numeric_limits<double>::infinity();
+  uint32_t last = kStart;
+  const auto arrive = [&](const BlockPoint& in, Vec3d at, double cost, uint32_t parent) {
+    if (in.block != to.block) return;
+    const double all = cost + (*cost_)(in.block, in.s, in.t, at, to.s, to.t, goal_).cost;
+    if (all >= found) return;
+    found = all;
+    last = parent;
+    push(all, kGoal);
+  };
+  arrive(from, start, 0, kStart);
+  expand(from, start, 0, kStart);
+  double nearest = length(goal_ - start);
+  uint32_t nearest_state = kStart;
+  while (!open_.empty()) {
+    std::pop_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
+      return a.estimate != b.estimate ? a.estimate > b.estimate : a.state > b.state;
+    });
+    const Open top = open_.back();
+    open_.pop_back();
+    if (top.estimate >= less_than) break;
+    if (top.state == kGoal) {
+      best_cost_ = found;
+      trace(last, crossings);
+      return PathEnd::kReached;
+    }
+    State& state = states_[top.state];
+    if (state.closed) continue;
+    state.closed = true;
+    if (budget.is_spent(++expanded_, used_bytes())) return PathEnd::kBudgetExhausted;
+    const BlockPoint in = ends_of(*view_, {top.state / 2, (top.state & 1) != 0}).in;
+    const Vec3d at = state.at;
+    const double cost = state.cost;
+    if (const double far = length(goal_ - at); far < nearest) {
+      nearest = far;
+      nearest_state = top.state;
+    }
+    arrive(in, at, cost, top.state);
+    expand(in, at, cost, top.state);
+  }
+  best_cost_ = nearest_state == kStart ? 0 : states_[nearest_state].cost;
+  trace(nearest_state, crossings);
+  return PathEnd::kUnreachable;
+}
+
+void NodeSearch::trace(uint32_t state, std::vector<Crossing>& crossings) {
+  for (; state != UINT32_MAX; state = states_[state].parent) {
+    crossings.push_back({state / 2, (state & 1) != 0});
+  }
+  std::reverse(crossings.begin(), crossings.end());
+}
+
+}  // namespace throng

@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/surface/node_string_puller.h"
+
+#include <algorithm>
+#include <cmath>
+
+// One crossing after the other moves to where the straight lines from the one before it and to the
+// one after it, unfolded around the portal, meet it; forward and back along the path, until its
+// cost no longer falls. The result lies in the same blocks, so it is as legal as the input.
+namespace throng {
+namespace {
+
+constexpr int kMaxRounds = 48;
+constexpr double kLittle = 1e-4;  // Of the whole cost: a round that gains less is the last.
+
+// Where the shortest path from p to q over the line from a to b meets it, 0 at a and 1 at b.
+double unfolded(Vec3d p, Vec3d q, Vec3d a, Vec3d b) {
+  const Vec3d along = b - a;
+  const double size2 = dot(along, along);
+  if (!(size2 > 1e-12)) return 0.5;
+  const double ps = dot(p - a, along) / size2, qs = dot(q - a, along) / size2;
+  const double pd = length(p - (a + along * ps)), qd = length(q - (a + along * qs));
+  const double sum = pd + qd;
+  return std::clamp(sum > 0 ? (qd * ps + pd * qs) / sum : (ps + qs) / 2, 0.0, 1.0);
+}
+
+}  // namespace
+
+void NodeStringPuller::place(PulledCrossing& crossing, double along) const {
+  const NodePortal portal = view_->portal(crossing.crossing.portal);
+  const bool backward = crossing.crossing.backward;
+  const auto on = [&](const std::array<double, 4>& line, uint32_t block) {
+    return BlockPoint{block, line[0] + along * (line[2] - line[0]),
+                      line[1] + along * (line[3] - line[1])};
+  };
+  const BlockPoint a = on(portal.on_a, portal.a), b = on(portal.on_b, portal.b);
+  crossing.along = along;
+  crossing.out = backward ? b : a;
+  crossing.in = backward ? a : b;
+  crossing.out_at = view_->surface(crossing.out.block).at(crossing.out.s, crossing.out.t);
+  crossing.in_at = view_->surface(crossing.in.block).at(crossing.in.s, crossing.in.t);
+}
+
+double NodeStringPuller::cost_around(const std::vector<PulledCrossing>& crossings, size_t i,
+                                     const PulledCrossing& crossing, const BlockPoint& from,
+                                     Vec3d from_at, const BlockPoint& to, Vec3d to_at) const {
+  const BlockPoint& before = i > 0 ? crossings[i - 1].in : from;
+  const BlockPoint& after = i + 1 < crossings.size() ? crossings[i + 1].out : to;
+  return (*cost_)(crossing.out.block, before.s, before.t, i > 0 ? crossings[i - 1].in_at : from_at,
+                  crossing.out.s, crossing.out.t, crossing.out_at)
+             .cost +
+         portal_length(view_->portal(crossing.crossing.portal), crossing.out_at, crossing.in_at) +
+         (*cost_)(crossing.in.block, crossing.in.s, crossing.in.t, crossing.in_at, after.s, after.t,
+                  i + 1 < crossings.size() ? crossings[i + 1].out_at : to_at)
+             .cost;
+}
+
+void NodeStringPuller::pull(const BlockPoint& from, const BlockPoint& to,
+                            const std::vector<Crossing>& crossings,
+                            std::vector<PulledCrossing>& out) const {
+  out.clear();
+  for (const Crossing& crossing : crossings) {
+    out.emplace_back().crossing = crossing;
+    place(out.back(), 0);
+    out.back().first_at = out.back().out_at;
+    place(out.back(), 1);
+    out.back().last_at = out.back().out_at;
+    place(out.back(), 0.5);
+  }
+  if (out.empty()) return;
+  const Vec3d from_at = view_->surface(from.block).at(from.s, from.t);
+  const Vec3d to_at = view_->surface(to.block).at(to.s, to.t);
+  for (int round = 0; round < kMaxRounds; ++round) {
+    double gained = 0, all = 0;
+    for (size_t k = 0; k < out.size(); ++k) {
+      const size_t i = round % 2 == 0 ? k : out.size() - 1 - k;
+      PulledCrossing& here = out[i];
+      const NodePortal portal = view_->portal(here.crossing.portal);
+      if (portal.leaps) continue;
+      if (here.settled) {
+        all += here.around;
+        continue;
+      }
+      here.settled = true;
+      const double before = cost_around(out, i, here, from, from_at, to, to_at);
+      all += before;
+      here.around = before;
+      const double along =
+          unfolded(i > 0 ? out[i - 1].in_at : from_at,
+                   i + 1 < out.size() ? out[i + 1].out_at : to_at, here.first_at, here.last_at);
+      if (std::fabs(along - here.along) < 1e-6) continue;
+      PulledCrossing moved = here;
+      place(moved, along);
+      const double after = cost_around(out, i, moved, from, from_at, to, to_at);
+      if (!(after < before)) continue;
+      gained += before - after;
+      here = moved;
+      here.settled = false;
+      if (i > 0) out[i - 1].settled = false;
+      if (i + 1 < out.size()) out[i + 1].settled = false;
+    }
+    if (gained <= kLittle * all) break;
+  }
+}
+
+}  // namespace throng

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include "throng/bake.h"
+#include "throng/crowd.h"
+#include "throng/scene.h"
+#include "throng/world.h"
+
+// A program of its own, because it counts every allocation: a change of one obstacle makes no more
+// of them, nor does a step, when thousands stand elsewhere.
+namespace {
+std::atomic<uint64_t> g_allocations{0};
+}  // namespace
+
+void* operator new(size_t size) {
+  ++g_allocations;
+  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, size_t) noexcept { std::free(memory); }
+
+namespace throng {
+namespace {
+
+constexpr int kSide = 64;         // crates in a row
+constexpr uint64_t kSpare = 200;  // allocations: tables grow now and then
+
+template <class T>
+T need(Result<T> made) {
+  if (made) return *std::move(made);
+  std::fprintf(stderr, "%s\n", made.error().message.c_str());
+  std::exit(1);
+}
+
+Prism crate(double x, double z) { return Prism::box({x, 0, z}, {x + 0.5, 2, z + 0.5}); }
+
+// Of one that is added, moved, switched off and on and removed, with steps between.
+uint64_t allocations_of_one(Crowd& crowd) {
+  const uint64_t before = g_allocations;
+  const ObstacleId id = need(crowd.add_obstacle(crate(3, 3)));
+  crowd.step();
+  if (!crowd.move_obstacle(id, crate(3.2, 3))) std::exit(1);
+  crowd.step();
+  crowd.set_obstacle_active(id, false);
+  crowd.set_obstacle_active(id, true);
+  crowd.step();
+  crowd.remove_obstacle(id);
+  crowd.step();
+  return g_allocations - before;
+}
+
+int run() {
+  Context context;
+  Scene scene;
+  scene.positions = {{0, 0, 0}, {0, 0, 110}, {110, 0, 110}, {110, 0, 0}};
+  scene.triangles = {{0, 1, 2}, {0, 2, 3}};
+  const World world = need(bake_world(scene, {.cell = 0.2}, context));
+  Crowd crowd = need(Crowd::create(world, {.workers = 1}));
+  const std::vector<AvatarSpawn> spawns = {{world.find_place(0, {1, 0, 1}, 1)}};
+  if (need(crowd.add(spawns, context)).size() != 1) return 1;
+  std::vector<uint64_t> counts;
+  for (int row = 0; row < kSide; ++row) {
+    for (int i = 0; i < kSide; ++i) {
+      if (!crowd.add_obstacle(crate(1.5 * i + 8, 1.5 * row + 8))) return 1;
+    }
+    if (row != 1 && row + 1 != kSide) continue;
+    (void)allocations_of_one(crowd);
+    counts.push_back(allocations_of_one(crowd));
+    std::printf("%d obstacles stand: %llu allocations\n", (row + 1) * kSide,
+                static_cast<unsigned long long>(counts.back()));
+  }
+  return counts[1] > counts[0] + kSpare ? 1 : 0;
+}
+
+}  // namespace
+}  // namespace throng
+
+int main() { return throng::run(); }

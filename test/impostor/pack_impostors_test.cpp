@@ -200,14 +200,15 @@ TEST(PackImpostors, EachIsDrawnAtTheLevelOfItsDistance) {
 TEST(PackImpostors, MeshesKnowHeadingAndPhase) {
   const Atlas atlas = atlas_of(16, 8);
   const std::vector<float> x{0, 0, 0}, y{0, 0, 0}, z{-3, -3, -3};
-  const std::vector<uint16_t> heading{0, 32768, 65530}, phase{0, 32768, 65535}, appearance{1, 2, 2047};
+  const std::vector<uint16_t> heading{0, 32768, 65530}, phase{0, 32768, 65535},
+      appearance{1, 2, 2047};
   PackConfig config;
   config.camera.eye = {0, 1, 0};
   config.camera.target = {0, 1, -1};
   std::vector<ImpostorInstance> meshes(3), views(3);
-  const LevelCounts counts =
-      pack_levels(atlas, {x, y, z, heading, phase, appearance}, config, {.mesh_near = 4, .mesh_far = 5},
-                  {.meshes = meshes, .views = views, .points = {}});
+  const LevelCounts counts = pack_levels(atlas, {x, y, z, heading, phase, appearance}, config,
+                                         {.mesh_near = 4, .mesh_far = 5},
+                                         {.meshes = meshes, .views = views, .points = {}});
   ASSERT_EQ(counts.meshes, 3U);
   EXPECT_EQ(counts.views, 0U);
   EXPECT_EQ(meshes[0].view, 1U << 21);

@@ -77,18 +77,15 @@ AirPoint pass(const AirCube& a, const AirCube& b, AirPoint from, AirPoint to) {
 
 }  // namespace
 
-void FlightSearch::push(uint32_t node) {
-  open_.push_back({nodes_[node].estimate, node});
-  std::push_heap(open_.begin(), open_.end());
-}
+void FlightSearch::push(uint32_t node) { open_.push({nodes_[node].estimate, node}); }
 
 // A box takes a node, a mark and an entry of the heap each time it is reached.
 uint64_t FlightSearch::used_bytes() const {
-  return nodes_.size() * (sizeof(Node) + sizeof(Mark)) + 3 * open_.size() * sizeof(Entry);
+  return nodes_.size() * (sizeof(Node) + sizeof(Mark)) + open_.used_bytes();
 }
 
 uint64_t FlightSearch::allocated_bytes() const {
-  return nodes_.allocated_bytes() + marks_.allocated_bytes() + open_.capacity() * sizeof(Entry);
+  return nodes_.allocated_bytes() + marks_.allocated_bytes() + open_.allocated_bytes();
 }
 
 void FlightSearch::give_back() {
@@ -96,7 +93,7 @@ void FlightSearch::give_back() {
   nodes_.clear();
   nodes_.shrink(0);
   marks_.clear();
-  std::vector<Entry>().swap(open_);
+  open_.give_back();
 }
 
 SearchResult FlightSearch::find(const AirView& air, AirPoint from, AirPoint to,
@@ -162,9 +159,7 @@ SearchResult FlightSearch::search(AirPoint from, uint32_t start, const SearchBud
   marks_[start] = {search_, 0};
   push(0);
   while (!open_.empty()) {
-    std::pop_heap(open_.begin(), open_.end());
-    const Entry entry = open_.back();
-    open_.pop_back();
+    const Entry entry = open_.pop();
     Node& node = nodes_[entry.node];
     if (node.opened || entry.estimate > node.estimate) continue;
     if (budget.is_spent(++expanded_, used_bytes())) return SearchResult::kBudget;
@@ -176,7 +171,7 @@ SearchResult FlightSearch::search(AirPoint from, uint32_t start, const SearchBud
       const double longer = via.length + air_distance(via.point, node.point) - node.length;
       node.length += longer;
       node.estimate += longer;
-      if (!open_.empty() && open_.front().estimate < node.estimate) {
+      if (!open_.empty() && open_.first().estimate < node.estimate) {
         push(entry.node);
         continue;
       }

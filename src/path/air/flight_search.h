@@ -9,6 +9,7 @@
 #include "core/chunked_array.h"
 #include "core/paged.h"
 #include "path/air/air_view.h"
+#include "path/ground/open_list.h"
 #include "path/ground/search.h"
 #include "throng/path.h"
 
@@ -73,7 +74,7 @@ class FlightSearch {
   uint32_t search_ = 0;
   uint64_t expanded_ = 0;
   ChunkedArray<Node> nodes_;
-  std::vector<Entry> open_;
+  OpenList<Entry> open_;
   Paged<Mark> marks_;                 // per box or part of a split one
   std::vector<AirPoint> large_path_;  // through large boxes
 };

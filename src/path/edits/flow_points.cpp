@@ -8,6 +8,7 @@
 
 #include "core/access.h"
 #include "path/edits/live_state.h"
+#include "path/ground/open_list.h"
 #include "path/ground/reset_path.h"
 #include "world/place.h"
 
@@ -33,16 +34,13 @@ class Outwards {
     if (!is_new && (node.done || node.cost <= cost)) return;
     node.cost = cost;
     node.parent = parent;
-    open_.emplace_back(cost, index);
-    std::push_heap(open_.begin(), open_.end(), std::greater<>());
+    open_.push({cost, index});
   }
 
   bool run(Context& context) {
     for (uint64_t n = 0; !open_.empty(); ++n) {
       if (n % 1024 == 0 && context.cancel) return false;
-      std::pop_heap(open_.begin(), open_.end(), std::greater<>());
-      const uint32_t index = open_.back().second;
-      open_.pop_back();
+      const uint32_t index = open_.pop().second;
       if (nodes_.nodes[index].done) continue;
       nodes_.nodes[index].done = true;
       const LiveNode node = nodes_.nodes[index];
@@ -64,7 +62,7 @@ class Outwards {
   LiveMesh& mesh_;
   double max_distance_;
   LiveNodes nodes_;
-  std::vector<std::pair<double, uint32_t>> open_;
+  OpenList<std::pair<double, uint32_t>, std::greater<>> open_;
 };
 
 }  // namespace

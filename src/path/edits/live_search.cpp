@@ -219,11 +219,7 @@ LiveNode* LiveSearch::push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent
   node.cost = cost;
   node.parent = parent;
   const double left = distance_of(stop.at, to_.at);
-  open_.push_back({cost + left * mesh.min_factor(), index});
-  // Equal bounds are ordered by number: the same on every machine.
-  std::push_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
-    return a.bound != b.bound ? a.bound > b.bound : a.node < b.node;
-  });
+  open_.push({cost + left * mesh.min_factor(), index});
   return &node;
 }
 
@@ -264,24 +260,20 @@ void LiveSearch::push_links(LiveMesh& mesh, const LiveNode& node, uint32_t index
 }
 
 uint64_t LiveSearch::allocated_bytes() const {
-  return nodes_.allocated_bytes() + open_.capacity() * sizeof(Open);
+  return nodes_.allocated_bytes() + open_.allocated_bytes();
 }
 
 void LiveSearch::give_back() {
   if (allocated_bytes() <= kKeptBytes) return;
   nodes_.give_back();
-  std::vector<Open>().swap(open_);
+  open_.give_back();
 }
 
 LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t max_nodes, uint64_t max_bytes) {
   for (uint64_t n = 0; n < max_nodes;) {
     if (open_.empty()) return State::kNone;
-    if (nodes_.used_bytes() + 3 * open_.size() * sizeof(Open) > max_bytes) return State::kFull;
-    std::pop_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
-      return a.bound != b.bound ? a.bound > b.bound : a.node < b.node;
-    });
-    const uint32_t index = open_.back().node;
-    open_.pop_back();
+    if (nodes_.used_bytes() + open_.used_bytes() > max_bytes) return State::kFull;
+    const uint32_t index = open_.pop().node;
     if (nodes_.nodes[index].done) continue;
     ++n;
     ++expanded_;

@@ -7,6 +7,7 @@
 
 #include "core/chunked_array.h"
 #include "path/edits/live_mesh.h"
+#include "path/ground/open_list.h"
 
 /// Paths of low cost over a LiveMesh: a search over points of portals, pulled taut afterwards.
 namespace throng {
@@ -96,6 +97,10 @@ class LiveSearch {
   struct Open {
     double bound = 0;
     uint32_t node = 0;
+    // Equal bounds are ordered by number: the same on every machine.
+    bool operator<(const Open& other) const {
+      return bound != other.bound ? bound > other.bound : node < other.node;
+    }
   };
   /// The node now reached from `parent`, or null if the known cost is no higher.
   LiveNode* push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, double cost);
@@ -105,7 +110,7 @@ class LiveSearch {
 
   LiveStop to_, nearest_stop_;
   LiveNodes nodes_;
-  std::vector<Open> open_;
+  OpenList<Open> open_;
   uint32_t nearest_ = 0, goal_ = UINT32_MAX;
   double nearest_distance_ = 0;
   uint64_t expanded_ = 0;

@@ -35,18 +35,17 @@ SearchResult PortalSearch::find(const PathMesh& mesh, const Stop& from, const St
 }
 
 uint64_t PortalSearch::used_bytes() const {
-  return met_ * sizeof(Reached) + 3 * open_.size() * sizeof(Open);  // as PathSearch::used_bytes
+  return met_ * sizeof(Reached) + open_.used_bytes();  // as PathSearch::used_bytes
 }
 
 uint64_t PortalSearch::allocated_bytes() const {
-  return reached_.allocated_bytes() + open_.capacity() * sizeof(Open) +
-         all_.capacity() * sizeof(Stop);
+  return reached_.allocated_bytes() + open_.allocated_bytes() + all_.capacity() * sizeof(Stop);
 }
 
 void PortalSearch::give_back() {
   if (allocated_bytes() <= kKeptBytes) return;
   reached_.clear();
-  std::vector<Open>().swap(open_);
+  open_.give_back();
   std::vector<Stop>().swap(all_);
 }
 
@@ -63,10 +62,8 @@ SearchResult PortalSearch::search(const Stop& from, const Stop& to, const Search
   } else {
     expand(from, 0, kStart);
   }
-  while (!open_.empty() && open_.front().estimate < best) {
-    const Open next = open_.front();
-    std::pop_heap(open_.begin(), open_.end());
-    open_.pop_back();
+  while (!open_.empty() && open_.first().estimate < best) {
+    const Open next = open_.pop();
     const auto [search, before, rect, cost] = reached_[next.point];
     const Stop at{crossing(rect, next.point).beyond, mesh_->portals[next.point / kPoints].rect};
     if (next.estimate > cost + between(at.at, goal_)) continue;  // It was reached at a lower cost.
@@ -119,8 +116,7 @@ void PortalSearch::expand(const Stop& at, double cost, uint32_t before) {
     if (reached.search == search_ && reached.cost <= whole) continue;
     met_ += reached.search == search_ ? 0 : 1;
     reached = {search_, before, at.rect, whole};
-    open_.push_back({whole + between(to, goal_), p});
-    std::push_heap(open_.begin(), open_.end());
+    open_.push({whole + between(to, goal_), p});
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/paged.h"
 #include "path/ground/mesh.h"
+#include "path/ground/open_list.h"
 #include "path/ground/search.h"
 
 /// Paths over a mesh from portal to portal: none is the shortest, but every segment is legal.
@@ -64,7 +65,7 @@ class PortalSearch {
   uint64_t expanded_ = 0;
   uint64_t met_ = 0;  // points that this search has reached
   Paged<Reached> reached_;
-  std::vector<Open> open_;
+  OpenList<Open> open_;
   std::vector<Stop> all_;
 };
 

@@ -67,9 +67,7 @@ SearchResult PathSearch::run(const SearchBudget& budget) {
         return SearchResult::kBudget;
       if (open_.empty()) break;
     }
-    std::pop_heap(open_.begin(), open_.end());
-    const Entry entry = open_.back();
-    open_.pop_back();
+    const Entry entry = open_.pop();
     if (entry.estimate >= found_length_) break;
     const Node node = nodes_[entry.node];
     free_.push_back(entry.node);
@@ -83,27 +81,22 @@ SearchResult PathSearch::run(const SearchBudget& budget) {
 // The vectors hold up to twice what they need, and the old array beside the new one as they grow.
 uint64_t PathSearch::used_bytes() const {
   constexpr uint64_t kGrowth = 3;
-  return roots_.size() * sizeof(Root) + nodes_.size() * sizeof(Node) +
-         kGrowth * (open_.size() * sizeof(Entry) + free_.size() * sizeof(uint32_t));
+  return roots_.size() * sizeof(Root) + nodes_.size() * sizeof(Node) + open_.used_bytes() +
+         kGrowth * free_.size() * sizeof(uint32_t);
 }
 
 uint64_t PathSearch::allocated_bytes() const {
-  return roots_.allocated_bytes() + nodes_.allocated_bytes() + open_.capacity() * sizeof(Entry) +
+  return roots_.allocated_bytes() + nodes_.allocated_bytes() + open_.allocated_bytes() +
          free_.capacity() * sizeof(uint32_t);
 }
 
 // Removes intervals that would be skipped; the order of the others stays.
 void PathSearch::drop_useless() {
-  size_t kept = 0;
-  for (const Entry& entry : open_) {
-    if (entry.estimate < found_length_ && !is_stale(nodes_[entry.node].root)) {
-      open_[kept++] = entry;
-    } else {
-      free_.push_back(entry.node);
-    }
-  }
-  open_.resize(kept);
-  std::make_heap(open_.begin(), open_.end());
+  open_.keep_if([&](const Entry& entry) {
+    const bool useful = entry.estimate < found_length_ && !is_stale(nodes_[entry.node].root);
+    if (!useful) free_.push_back(entry.node);
+    return useful;
+  });
 }
 
 void PathSearch::give_back() {
@@ -112,7 +105,7 @@ void PathSearch::give_back() {
   nodes_.clear();
   roots_.shrink(kKeptBytes / 4 / sizeof(Root));
   nodes_.shrink(kKeptBytes / 4 / sizeof(Node));
-  if (open_.capacity() * sizeof(Entry) > kKeptBytes / 4) std::vector<Entry>().swap(open_);
+  if (open_.allocated_bytes() > kKeptBytes / 4) open_.give_back();
   if (free_.capacity() * sizeof(uint32_t) > kKeptBytes / 8) std::vector<uint32_t>().swap(free_);
 }
 
@@ -191,8 +184,7 @@ void PathSearch::push(const Node& node) {
     free_.pop_back();
     nodes_[place] = node;
   }
-  open_.push_back({estimate(node), pushed_++, place});
-  std::push_heap(open_.begin(), open_.end());
+  open_.push({estimate(node), pushed_++, place});
 }
 
 // The stretch [from, to] of a portal of `rect`, seen from the root.

@@ -7,6 +7,7 @@
 
 #include "core/chunked_array.h"
 #include "path/ground/mesh.h"
+#include "path/ground/open_list.h"
 #include "throng/path.h"
 
 /// The shortest path over a mesh, by search over intervals.
@@ -88,7 +89,7 @@ class PathSearch {
   ChunkedArray<Root> roots_;
   ChunkedArray<Node> nodes_;    // of entries of open_, and free places
   std::vector<uint32_t> free_;  // places of nodes_
-  std::vector<Entry> open_;
+  OpenList<Entry> open_;
   uint32_t pushed_ = 0;
   std::vector<Best> best_;        // per corner
   std::vector<uint32_t> around_;  // rectangles around the start

@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
+#include "path/ground/open_list.h"
 
 // Pruned landmark labelling [AIY13]: a Dijkstra search from each hub, pruned where earlier hubs
 // give as short a path.
@@ -25,13 +26,11 @@ class DijkstraSearch {
   // Calls visit(node, length, before) in order of length; expands a node if it returns true.
   template <class Visit>
   void run(const PathGraph& graph, uint32_t from, Visit visit) {
-    heap_.clear();
+    open_.clear();
     touched_.clear();
     relax(from, 0, from);
-    while (!heap_.empty()) {
-      std::pop_heap(heap_.begin(), heap_.end(), later);
-      const auto [length, node] = heap_.back();
-      heap_.pop_back();
+    while (!open_.empty()) {
+      const auto [length, node] = open_.pop();
       if (length > best_[node]) continue;
       if (!visit(node, length, before_[node])) continue;
       for (const PathGraph::Edge& edge : graph.of(node)) relax(edge.to, length + edge.length, node);
@@ -41,20 +40,18 @@ class DijkstraSearch {
 
  private:
   using Entry = std::pair<double, uint32_t>;
-  static bool later(const Entry& a, const Entry& b) { return a > b; }
 
   void relax(uint32_t node, double length, uint32_t before) {
     if (length >= best_[node]) return;
     if (best_[node] == kFar) touched_.push_back(node);
     best_[node] = length;
     before_[node] = before;
-    heap_.push_back({length, node});
-    std::push_heap(heap_.begin(), heap_.end(), later);
+    open_.push({length, node});
   }
 
   std::vector<double> best_;
   std::vector<uint32_t> before_;
-  std::vector<Entry> heap_;
+  OpenList<Entry, std::greater<>> open_;
   std::vector<uint32_t> touched_;
 };
 

@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/strong_parts.h"
+#include "path/ground/open_list.h"
 #include "path/overlay/overlay_graph.h"
 
 // Chooses the entrances of a mesh's overlay, after [BMS04], and the costs between them from the
@@ -265,16 +266,14 @@ void Overlay::join_up(size_t k, int32_t workers) {
       return first[static_cast<size_t>(part - parts[d].begin())] + below.place[entry];
     };
     std::vector<double> cost;
-    std::vector<Open> open;
+    OpenList<Open> open;
     for (size_t i = 0; i < entries.size(); ++i) {
       cost.assign(count, kNoPath);
       float* row = overlay_level.costs.data() + overlay_level.first_cost[d] + i * entries.size();
       cost[index(entries[i])] = 0;
-      open.assign(1, {0, entries[i]});
+      open.push({0, entries[i]});  // (it is empty here)
       while (!open.empty()) {
-        std::pop_heap(open.begin(), open.end());
-        const Open top = open.back();
-        open.pop_back();
+        const Open top = open.pop();
         if (top.cost > cost[index(top.entry)]) continue;
         const auto through = below.costs_from(top.entry);
         const auto others = below.entries_of(below.of_entry[top.entry]);
@@ -291,8 +290,7 @@ void Overlay::join_up(size_t k, int32_t workers) {
           double& reached = cost[index(out)];
           if (next >= reached) continue;
           reached = next;
-          open.push_back({next, out});
-          std::push_heap(open.begin(), open.end());
+          open.push({next, out});
         }
       }
       row[i] = std::numeric_limits<float>::infinity();

@@ -75,15 +75,12 @@ void OverlayGraph::set(std::span<const uint32_t> blocks, bool keep) {
 void OverlayGraph::reach(uint32_t arc, double cost) {
   if (cost >= cost_[arc]) return;
   cost_[arc] = cost;
-  open_.push_back({cost, arc});
-  std::push_heap(open_.begin(), open_.end());
+  open_.push({cost, arc});
 }
 
 bool OverlayGraph::next(Open& top) {
   while (!open_.empty()) {
-    std::pop_heap(open_.begin(), open_.end());
-    top = open_.back();
-    open_.pop_back();
+    top = open_.pop();
     if (top.cost > cost_[top.arc]) continue;
     ++expanded_;
     return true;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "path/ground/open_list.h"
 #include "path/surface/node_search.h"
 
 /// The arcs within one overlay cell of a mesh, with costs from one point or to one point.
@@ -66,7 +67,7 @@ class OverlayGraph {
   std::vector<size_t> first_kept_;
   std::vector<double> kept_;  // by arc, and arc out of the block that it enters
   std::vector<double> cost_;
-  std::vector<Open> open_;
+  OpenList<Open> open_;
   BlockPoint goal_;
   Vec3d goal_at_;
   uint64_t expanded_ = 0;

@@ -28,15 +28,12 @@ void OverlaySearch::reach(uint32_t entry, uint32_t parent, double cost, uint8_t 
   if (!(cost < kNoPath) || (state.query == query_ && state.cost <= cost)) return;
   if (now_.is_closed(entry)) return;
   state = {query_, parent, cost, overlay_level, false};
-  open_.push_back({cost + length(goal - now_.at(entry)), entry});
-  std::push_heap(open_.begin(), open_.end());
+  open_.push({cost + length(goal - now_.at(entry)), entry});
 }
 
 bool OverlaySearch::next(Open& top) {
   while (!open_.empty()) {
-    std::pop_heap(open_.begin(), open_.end());
-    top = open_.back();
-    open_.pop_back();
+    top = open_.pop();
     if (states_[top.entry].closed) continue;
     states_[top.entry].closed = true;
     return true;
@@ -199,8 +196,7 @@ PathEnd OverlaySearch::over_entrances(const BlockPoint& from, const BlockPoint& 
   }
   for (Open top; next(top);) {
     if (top.estimate >= found) break;
-    if (budget.is_spent(++expanded_, 3 * open_.size() * sizeof(Open)))
-      return PathEnd::kBudgetExhausted;
+    if (budget.is_spent(++expanded_, open_.used_bytes())) return PathEnd::kBudgetExhausted;
     const uint32_t entry = top.entry;
     const double cost = states_[entry].cost;
     if (overlay_levels.front().of_entry[entry] == goal_cell) {

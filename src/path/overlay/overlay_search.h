@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "path/ground/open_list.h"
 #include "path/overlay/overlay.h"
 #include "path/overlay/overlay_changes.h"
 #include "path/overlay/overlay_graph.h"
@@ -76,7 +77,7 @@ class OverlaySearch {
   OverlayChanges now_;
   OverlayGraph graph_;
   std::vector<State> states_;  // by entry
-  std::vector<Open> open_;
+  OpenList<Open> open_;
   std::vector<double> rest_;  // from the entries of the goal's overlay cell
   std::vector<Stretch> stretches_, finer_;
   std::vector<Crossing> piece_, straightened_;

@@ -11,6 +11,7 @@
 #include "core/prefetch.h"
 #include "path/ground/border.h"
 #include "path/ground/mesh_ray.h"
+#include "path/ground/open_list.h"
 
 // Tables of a zone: a Dijkstra search over its visible corners from each entrance.
 namespace throng {
@@ -129,10 +130,8 @@ class EntranceSearch {
   void run(const std::vector<EntranceView>& seen) {
     std::fill(length.begin(), length.end(), kFar);
     for (const EntranceView& s : seen) relax(s.corner, s.distance, kStraight);
-    while (!heap_.empty()) {
-      std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
-      const auto [reached, corner] = heap_.back();
-      heap_.pop_back();
+    while (!open_.empty()) {
+      const auto [reached, corner] = open_.pop();
       if (reached > length[corner]) continue;
       for (uint32_t e = graph_.first[corner]; e < graph_.first[corner + size_t{1}]; ++e)
         relax(graph_.edges[e].to, reached + graph_.edges[e].length, corner);
@@ -147,12 +146,11 @@ class EntranceSearch {
     if (reached >= length[corner]) return;
     length[corner] = reached;
     next[corner] = over;
-    heap_.push_back({reached, corner});
-    std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
+    open_.push({reached, corner});
   }
 
   const CornerGraph& graph_;
-  std::vector<std::pair<double, uint16_t>> heap_;
+  OpenList<std::pair<double, uint16_t>, std::greater<>> open_;
 };
 
 void take_shorter(double length, uint16_t next, float& best, uint16_t& best_next) {

@@ -48,12 +48,7 @@ PieceCost::Piece PieceCost::operator()(uint32_t block, double s0, double t0, Vec
   return {along, along * (1 + slope_cost_ * (1 - surface.normal(s, t).y))};
 }
 
-void NodeSearch::push(double estimate, uint32_t state) {
-  open_.push_back({estimate, state});
-  std::push_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
-    return a.estimate != b.estimate ? a.estimate > b.estimate : a.state > b.state;
-  });
-}
+void NodeSearch::push(double estimate, uint32_t state) { open_.push({estimate, state}); }
 
 void NodeSearch::expand(const BlockPoint& from, Vec3d at, double cost, uint32_t parent) {
   for_each_arc_out(*view_, from.block, [&](const Crossing& crossing) {
@@ -99,17 +94,17 @@ PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const Sea
 }
 
 uint64_t NodeSearch::used_bytes() const {
-  return met_ * sizeof(State) + 3 * open_.size() * sizeof(Open);  // as PathSearch::used_bytes
+  return met_ * sizeof(State) + open_.used_bytes();  // as PathSearch::used_bytes
 }
 
 uint64_t NodeSearch::allocated_bytes() const {
-  return states_.allocated_bytes() + open_.capacity() * sizeof(Open);
+  return states_.allocated_bytes() + open_.allocated_bytes();
 }
 
 void NodeSearch::give_back() {
   if (allocated_bytes() <= kKeptBytes) return;
   states_.clear();
-  std::vector<Open>().swap(open_);
+  open_.give_back();
 }
 
 PathEnd NodeSearch::search(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
@@ -132,11 +127,7 @@ PathEnd NodeSearch::search(const BlockPoint& from, const BlockPoint& to, const S
   double nearest = length(goal_ - start);
   uint32_t nearest_state = kStart;
   while (!open_.empty()) {
-    std::pop_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
-      return a.estimate != b.estimate ? a.estimate > b.estimate : a.state > b.state;
-    });
-    const Open top = open_.back();
-    open_.pop_back();
+    const Open top = open_.pop();
     if (top.estimate >= less_than) break;
     if (top.state == kGoal) {
       best_cost_ = found;

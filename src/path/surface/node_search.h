@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/paged.h"
+#include "path/ground/open_list.h"
 #include "path/surface/node_view.h"
 #include "throng/path.h"
 
@@ -64,6 +65,9 @@ class NodeSearch {
   struct Open {
     double estimate;
     uint32_t state;
+    bool operator<(const Open& other) const {
+      return estimate != other.estimate ? estimate > other.estimate : state > other.state;
+    }
   };
 
   PathEnd search(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
@@ -78,7 +82,7 @@ class NodeSearch {
   const PieceCost* cost_;
   SearchBounds within_;
   Paged<State> states_;
-  std::vector<Open> open_;
+  OpenList<Open> open_;
   uint32_t query_ = 0;
   Vec3d goal_;
   double best_cost_ = 0;

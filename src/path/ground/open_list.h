@@ -8,8 +8,8 @@
 #include <functional>
 #include <vector>
 
-/// The open list of a best-first search (A*, Dijkstra, Theta*): what was reached and is not expanded
-/// yet. All searches of src/path use it.
+/// The open list of a best-first search (A*, Dijkstra, Theta*): what was reached and is not
+/// expanded yet. All searches of src/path use it.
 namespace throng {
 
 /// Entries leave it in the order of `Later`, a strict weak order that is true if the first of two

@@ -32,7 +32,7 @@ double distance_to_law(const Distribution& d, const std::function<double(double)
 // 1.36 / sqrt(n) is exceeded by chance once in twenty; the numbers are fixed, so never here.
 constexpr double kMax = 0.0096;
 
-TEST(Distribution, follows_its_law) {
+TEST(Distribution, FollowsItsLaw) {
   EXPECT_LT(distance_to_law({Distribution::Kind::kUniform, 2, 5, 2, 5},
                             [](double x) { return (x - 2) / 3; }),
             kMax);
@@ -45,7 +45,7 @@ TEST(Distribution, follows_its_law) {
             kMax);
 }
 
-TEST(Distribution, keeps_within_its_limits) {
+TEST(Distribution, KeepsWithinItsLimits) {
   const Distribution d{Distribution::Kind::kNormal, 1.3, 1, 1, 1.4};
   for (uint64_t n = 0; n < 10000; ++n) {
     const double value = draw(d, 1, 2, n);
@@ -54,7 +54,7 @@ TEST(Distribution, keeps_within_its_limits) {
   EXPECT_EQ(draw(Distribution::fixed(3), 1, 2, 3), 3);
 }
 
-TEST(Distribution, has_a_logarithm_of_its_own) {
+TEST(Distribution, HasALogarithmOfItsOwn) {
   for (uint64_t n = 0; n < 100000; ++n) {
     const double x = std::ldexp(random_unit(1, 2, n) + 1e-9, static_cast<int>(n % 200) - 100);
     EXPECT_NEAR(log_of(x), std::log(x), 1e-15 * std::max(1.0, std::fabs(std::log(x))) * 4) << x;
@@ -62,7 +62,7 @@ TEST(Distribution, has_a_logarithm_of_its_own) {
   EXPECT_EQ(log_of(1), 0);
 }
 
-TEST(SpawnTimes, follow_the_rates) {
+TEST(SpawnTimes, FollowTheRates) {
   Source source;
   source.group = Distribution::fixed(1);
   source.rates = {{10, 2}, {20, 0}, {30, 5}};
@@ -82,7 +82,7 @@ TEST(SpawnTimes, follow_the_rates) {
   EXPECT_NEAR(late, 50, 3 * std::sqrt(50.0));
 }
 
-TEST(SpawnTimes, are_even_or_at_once_up_to_the_count) {
+TEST(SpawnTimes, AreEvenOrAtOnceUpToTheCount) {
   Source source;
   source.group = Distribution::fixed(1);
   source.rates = {{0, 4}};

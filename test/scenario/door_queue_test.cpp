@@ -25,7 +25,7 @@ double pass_time_by_events(std::vector<uint32_t> ticks, double flow, uint32_t ti
   return std::max(free, std::max(tick, now) * DoorQueue::kTick) + 1 / flow;
 }
 
-TEST(DoorQueue, serves_no_avatar_before_its_arrival) {
+TEST(DoorQueue, ServesNoAvatarBeforeItsArrival) {
   DoorQueue door(2);
   EXPECT_DOUBLE_EQ(door.pass_time(DoorQueue::tick(10), 0), 10.5);
   // Four arrive at 20 s: an arrival at 10 s passes before them, one at 21 s after them.
@@ -39,7 +39,7 @@ TEST(DoorQueue, serves_no_avatar_before_its_arrival) {
   EXPECT_DOUBLE_EQ(door.pass_time(DoorQueue::tick(21), 0), 22);
 }
 
-TEST(DoorQueue, returns_the_times_of_a_simulation_of_all_events) {
+TEST(DoorQueue, ReturnsTheTimesOfASimulationOfAllEvents) {
   for (uint64_t seed = 0; seed < 30; ++seed) {
     const double flow = 0.2 + 4 * random_unit(seed, 1, 0);
     DoorQueue door(flow);
@@ -66,7 +66,7 @@ TEST(DoorQueue, returns_the_times_of_a_simulation_of_all_events) {
 }
 
 // Ticks before now are forgotten, except for the avatars expected there that are late.
-TEST(DoorQueue, needs_no_more_memory_over_days) {
+TEST(DoorQueue, NeedsNoMoreMemoryOverDays) {
   for (uint64_t seed = 0; seed < 10; ++seed) {
     const double flow = 0.5 + 2 * random_unit(seed, 1, 0);
     DoorQueue door(flow);
@@ -96,7 +96,7 @@ TEST(DoorQueue, needs_no_more_memory_over_days) {
   }
 }
 
-TEST(DoorQueue, clamps_times_out_of_range) {
+TEST(DoorQueue, ClampsTimesOutOfRange) {
   DoorQueue door(1);
   EXPECT_EQ(DoorQueue::tick(-3), 0U);
   const uint32_t last = DoorQueue::tick(INFINITY);

@@ -109,7 +109,7 @@ begin = 5
 end = 9
 )";
 
-TEST(ScenarioFile, reads_every_key) {
+TEST(ScenarioFile, ReadsEveryKey) {
   const auto s = parse_scenario(kFull, "folder/full.toml");
   ASSERT_TRUE(s) << s.error().message;
   EXPECT_EQ(s->seconds, 30);
@@ -164,7 +164,7 @@ std::string changed(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
-TEST(ScenarioFile, names_the_steering_model) {
+TEST(ScenarioFile, NamesTheSteeringModel) {
   const std::string labels = "paths = \"labels\"";
   const auto ours = parse_scenario(kFull, "full.toml");
   const auto other =
@@ -174,7 +174,7 @@ TEST(ScenarioFile, names_the_steering_model) {
   EXPECT_EQ(other->steering, SteeringModel::kCurvilinear);
 }
 
-TEST(ScenarioFile, says_where_and_what_is_wrong) {
+TEST(ScenarioFile, SaysWhereAndWhatIsWrong) {
   const struct {
     const char *from, *to, *says;
   } cases[] = {
@@ -234,7 +234,7 @@ TEST(ScenarioFile, says_where_and_what_is_wrong) {
   }
 }
 
-TEST(ScenarioFile, keeps_the_old_names_of_keys) {
+TEST(ScenarioFile, KeepsTheOldNamesOfKeys) {
   std::string text = kFull;
   for (const auto& [now, old] :
        {std::pair("\npaths =", "\nways ="), std::pair("\nspeed_factor =", "\npace ="),
@@ -249,7 +249,7 @@ TEST(ScenarioFile, keeps_the_old_names_of_keys) {
   EXPECT_EQ(s->journeys[0].stages[1].areas, std::vector<int32_t>{0});
 }
 
-TEST(ScenarioFile, names_an_image_file_that_does_not_exist) {
+TEST(ScenarioFile, NamesAnImageFileThatDoesNotExist) {
   const auto s = parse_scenario(
       changed(
           "pixel = 1\npaint = [{ area = \"in\", weight = 200 }, { area = \"out\", weight = 10 }]",
@@ -260,7 +260,7 @@ TEST(ScenarioFile, names_an_image_file_that_does_not_exist) {
 }
 
 // Random edits of a valid file parse or give an error, and never crash.
-TEST(ScenarioFile, survives_damaged_files) {
+TEST(ScenarioFile, SurvivesDamagedFiles) {
   const std::string text = kFull;
   int refused = 0;
   constexpr int kFiles = 3000;

@@ -118,7 +118,7 @@ count = 40
   return {*scenario, *world};
 }
 
-TEST(Simulation, runs_in_a_national_grid_as_near_the_coordinate_origin) {
+TEST(Simulation, RunsInANationalGridAsNearTheCoordinateOrigin) {
   for (const auto& [x, z] : {std::pair{678000.0, -5403500.0}, std::pair{-1e7, 1e7}}) {
     Simulation near = made(hall_at(0, 0)), far = made(hall_at(x, z));
     std::vector<AvatarState> near_states, far_states;
@@ -138,7 +138,7 @@ TEST(Simulation, runs_in_a_national_grid_as_near_the_coordinate_origin) {
   }
 }
 
-TEST(Simulation, avatars_enter_and_leave_by_the_nearest_exit) {
+TEST(Simulation, AvatarsEnterAndLeaveByTheNearestExit) {
   const Hall run = read(R"(
 [[journey]]
 name = "out"
@@ -164,7 +164,7 @@ count = 80
   EXPECT_GT(by_exit[2], 3);
 }
 
-TEST(Simulation, is_the_same_for_any_workers) {
+TEST(Simulation, IsTheSameForAnyWorkers) {
   const Hall run = read(R"(
 [[queue]]
 name = "till"
@@ -194,7 +194,7 @@ group = { uniform = [1, 3] }
   EXPECT_GT(one.trips().size(), 60U);
 }
 
-TEST(Simulation, no_avatar_starts_before_its_premovement_time_is_over) {
+TEST(Simulation, NoAvatarStartsBeforeItsPremovementTimeIsOver) {
   const Hall run = read(R"(
 [[journey]]
 name = "out"
@@ -231,7 +231,7 @@ premovement = { uniform = [2, 8] }
   EXPECT_LE(swept, 2);
 }
 
-TEST(Simulation, a_counter_serves_one_after_the_other) {
+TEST(Simulation, ACounterServesOneAfterTheOther) {
   const Hall run = read(R"(
 [[queue]]
 name = "till"
@@ -256,7 +256,7 @@ count = 12
   EXPECT_GT(*times.rbegin() - *times.begin(), 11 * 2 - 3);
 }
 
-TEST(Simulation, a_lift_takes_as_many_as_it_holds) {
+TEST(Simulation, ALiftTakesAsManyAsItHolds) {
   const Hall run = read(R"(
 [[link]]
 name = "lift"
@@ -292,7 +292,7 @@ count = 10
   for (const Trip& visit : simulation.trips()) EXPECT_GE(visit.left, 16);
 }
 
-TEST(Simulation, groups_stay_together) {
+TEST(Simulation, GroupsStayTogether) {
   const Hall run = read(R"(
 [[profile]]
 name = "mixed"
@@ -336,7 +336,7 @@ group = 3
   EXPECT_GT(apart, together * 1.5);
 }
 
-TEST(Simulation, density_maps_decide_where_avatars_enter) {
+TEST(Simulation, DensityMapsDecideWhereAvatarsEnter) {
   const Hall run = read(R"(
 [[density]]
 name = "map"
@@ -368,7 +368,7 @@ count = 60
   EXPECT_TRUE(simulation.set_density("map", std::vector<uint8_t>(200, 1)));
 }
 
-TEST(Simulation, by_quickest_avoids_a_crowded_exit) {
+TEST(Simulation, ByQuickestAvoidsACrowdedExit) {
   // All start near the north exit.
   const std::string text = R"(
 [[area]]
@@ -398,7 +398,7 @@ count = 60
 }
 
 // The door is shut for ten seconds: no avatar leaves before it opens, and all leave after that.
-TEST(Simulation, a_shut_door_opens_again) {
+TEST(Simulation, AShutDoorOpensAgain) {
   const Hall run = read(R"(
 [[obstacle]]
 name = "door"
@@ -421,7 +421,7 @@ count = 30
 
 // A door is to shut while avatars stream through. By the default policy it shuts soon; one that
 // waits may stay open.
-TEST(Simulation, a_door_that_is_to_shut_in_a_stream_reports_when_it_did) {
+TEST(Simulation, ADoorThatIsToShutInAStreamReportsWhenItDid) {
   const std::string text = R"(
 [[obstacle]]
 name = "door"
@@ -490,7 +490,7 @@ journey = "across"
 }
 
 // Over a wall right across, in one crowd with avatars that cannot fly.
-TEST(Simulation, flyers_cross_walls) {
+TEST(Simulation, FlyersCrossWalls) {
   Simulation simulation = across(R"(
 [plane]
 floor = [[0, 0], [20, 0], [20, 10], [0, 10]]
@@ -515,7 +515,7 @@ box = [12, 1, 19, 9]
 }
 
 // Over curved hills on foot and along the normal, in one crowd.
-TEST(Simulation, climbers_walk_over_nodes) {
+TEST(Simulation, ClimbersWalkOverNodes) {
   Simulation simulation = across(R"(
 cell = 0.5
 [builtin]
@@ -556,7 +556,7 @@ box = [46, 2, 62, 62]
   EXPECT_GE(left, 20U);
 }
 
-TEST(Simulation, names_what_is_wrong) {
+TEST(Simulation, NamesWhatIsWrong) {
   const auto why = [](const std::string& text) {
     const Hall run = read(text);
     Context context;
@@ -572,7 +572,7 @@ TEST(Simulation, names_what_is_wrong) {
 }
 
 // More avatars than there is room for: the rest waits outside and enters when others leave.
-TEST(Simulation, avatars_without_room_wait_outside) {
+TEST(Simulation, AvatarsWithoutRoomWaitOutside) {
   const Hall run = read(R"(
 [[area]]
 name = "cell"
@@ -594,7 +594,7 @@ count = 60
 }
 
 // A crowd with targets that is saved and restored takes the same steps, to the bit.
-TEST(Crowd, targets_are_saved) {
+TEST(Crowd, TargetsAreSaved) {
   const Hall run = read("");
   Context context;
   auto crowd = Crowd::create(run.world, {});
@@ -621,7 +621,7 @@ TEST(Crowd, targets_are_saved) {
 
 // Where an obstacle cuts the path to a target, avatars walk around it, and straight again once it
 // is removed: flow fields follow the obstacles.
-TEST(Crowd, targets_are_reached_around_obstacles) {
+TEST(Crowd, TargetsAreReachedAroundObstacles) {
   const Hall run = read("");
   Context context;
   auto crowd = Crowd::create(run.world, {});
@@ -659,7 +659,7 @@ TEST(Crowd, targets_are_reached_around_obstacles) {
 }
 
 // A column of avatars with one goal walks there; they wait for each other only near it.
-TEST(Crowd, many_with_one_goal_walk) {
+TEST(Crowd, ManyWithOneGoalWalk) {
   const Hall run = read("");
   Context context;
   auto crowd = Crowd::create(run.world, {});
@@ -678,7 +678,7 @@ TEST(Crowd, many_with_one_goal_walk) {
 }
 
 // An avatar that leaves within a move of an area left by it, not by the first of the list.
-TEST(Simulation, reports_the_exit_that_was_used) {
+TEST(Simulation, ReportsTheExitThatWasUsed) {
   const Hall run = read(R"(
 [[area]]
 name = "beside north"
@@ -709,7 +709,7 @@ count = 3
   }
 }
 
-TEST(Simulation, rows_hold_five_avatars_a_square_metre_without_overlap) {
+TEST(Simulation, RowsHoldFiveAvatarsASquareMetreWithoutOverlap) {
   const Hall run = read(R"(
 [[area]]
 name = "full"
@@ -729,7 +729,7 @@ places = "rows"
   EXPECT_EQ(simulation.crowd().check().overlaps, 0U);
 }
 
-TEST(Simulation, the_speed_factor_of_an_area_holds_inside_it_alone) {
+TEST(Simulation, TheSpeedFactorOfAnAreaHoldsInsideItAlone) {
   const Hall run = read(R"(
 [[area]]
 name = "stairs"

@@ -15,7 +15,7 @@
 /// The free space of a world's zones, beside their ground.
 namespace throng {
 
-class AirRows;
+struct AirRows;
 
 /// Heights of whole and half cells lie off the borders of layers, as in the plane
 /// (bake/columns/grid.h).

@@ -279,9 +279,7 @@ class HoleFiller {
         own_(*tile[layer]),
         limits_(limits),
         surely_nearest_((limits.low_free_span - 1) / 2),
-        last_(layer == 0 ? 1 : 0),
-        even_(tile.size()),
-        known_(tile.size(), 0) {}
+        last_(layer == 0 ? 1 : 0) {}
 
   // Holes are filled from their rims inward, a row at a time: down the tile, then up.
   void fill() {
@@ -295,6 +293,8 @@ class HoleFiller {
       any |= add_steps(own_, filled_, *other, free_spans, limits_.link_step, hopeful_);
     }
     if (any == 0) return;
+    even_.resize(tile_.size());
+    known_.assign(tile_.size(), 0);
     for (int32_t z = 0; z < kTileSide; ++z) fill_row(z);
     for (int32_t z = kTileSide - 1; z >= 0; --z) fill_row(z);
   }

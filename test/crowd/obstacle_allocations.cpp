@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include <atomic>
 #include <cstdio>
 #include <cstdlib>
-#include <new>
 #include <vector>
 
+#include "support/counted_allocations.h"
 #include "throng/bake.h"
 #include "throng/crowd.h"
 #include "throng/scene.h"
@@ -13,30 +12,11 @@
 
 // A program of its own, because it counts every allocation: a change of one obstacle makes no more
 // of them, nor does a step, when thousands stand elsewhere.
-namespace {
-std::atomic<uint64_t> g_allocations{0};
-}  // namespace
-
-void* operator new(size_t size) {
-  ++g_allocations;
-  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, size_t) noexcept { std::free(memory); }
-
 namespace throng {
 namespace {
 
 constexpr int kSide = 64;         // crates in a row
 constexpr uint64_t kSpare = 200;  // allocations: tables grow now and then
-
-template <class T>
-T need(Result<T> made) {
-  if (made) return *std::move(made);
-  std::fprintf(stderr, "%s\n", made.error().message.c_str());
-  std::exit(1);
-}
 
 Prism crate(double x, double z) { return Prism::box({x, 0, z}, {x + 0.5, 2, z + 0.5}); }
 

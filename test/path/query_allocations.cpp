@@ -1,30 +1,16 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include <atomic>
 #include <cstdio>
-#include <cstdlib>
 #include <functional>
-#include <new>
 #include <string>
 
+#include "support/counted_allocations.h"
 #include "throng/bake.h"
 #include "throng/path.h"
 #include "throng/scene.h"
 #include "throng/world.h"
 
 // A program of its own, because it counts every allocation: a query that is repeated makes none.
-namespace {
-std::atomic<uint64_t> g_allocations{0};
-}  // namespace
-
-void* operator new(size_t size) {
-  ++g_allocations;
-  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, size_t) noexcept { std::free(memory); }
-
 namespace throng {
 namespace {
 
@@ -39,13 +25,6 @@ uint64_t late(const char* name, const std::function<void(uint64_t)>& ask) {
   const uint64_t more = g_allocations - warm;
   std::printf("%s: %llu allocations once warm\n", name, static_cast<unsigned long long>(more));
   return more;
-}
-
-template <class T>
-T need(Result<T> made) {
-  if (made) return *std::move(made);
-  std::fprintf(stderr, "%s\n", made.error().message.c_str());
-  std::exit(1);
 }
 
 int run() {

@@ -1,32 +1,18 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <cstdio>
-#include <cstdlib>
-#include <new>
 
 #include "core/random.h"
+#include "support/counted_allocations.h"
 #include "throng/recording.h"
 
 // A program of its own, because it counts every allocation: a warm recorder makes none, while
 // avatars walk, turn, enter and leave and chunks and keys are written.
-namespace {
-uint64_t g_allocations = 0;
-}  // namespace
-
-void* operator new(size_t size) {
-  ++g_allocations;
-  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, size_t) noexcept { std::free(memory); }
-
 int main(int, char** arguments) {
   using namespace throng;
   const std::string path = std::string(arguments[0]) + ".replay";
-  auto recorder = Recorder::create(
-      path, {.dt = 0.1, .classes = {{.name = "adult"}}, .model = "test"}, {.key_frames = 64});
-  if (!recorder) return std::fprintf(stderr, "%s\n", recorder.error().message.c_str()), 1;
+  Recorder recorder = need(Recorder::create(
+      path, {.dt = 0.1, .classes = {{.name = "adult"}}, .model = "test"}, {.key_frames = 64}));
   RecordedFrame frame;
   uint64_t warm = 0;
   constexpr uint64_t kFrames = 1000, kWarm = 300, kAvatars = 400;
@@ -44,7 +30,7 @@ int main(int, char** arguments) {
       frame.headings[i] = {1, static_cast<float>(random_unit(2, f / 7, id))};
     }
     if (f == kWarm) warm = g_allocations;
-    if (const auto ok = recorder->append(frame.view()); !ok) {
+    if (const auto ok = recorder.append(frame.view()); !ok) {
       return std::fprintf(stderr, "%s\n", ok.error().message.c_str()), 1;
     }
   }
@@ -52,7 +38,7 @@ int main(int, char** arguments) {
   std::printf("%llu allocations until frame %llu, %llu after it\n",
               static_cast<unsigned long long>(warm), static_cast<unsigned long long>(kWarm),
               static_cast<unsigned long long>(late));
-  const bool finished = static_cast<bool>(recorder->finish());
+  const bool finished = static_cast<bool>(recorder.finish());
   std::remove(path.c_str());
   return finished && warm > 0 && late == 0 ? 0 : 1;
 }

@@ -64,13 +64,13 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   }
   if (!(config.rounds >= 1 && config.rounds <= 100)) return bad_config("rounds must be 1 to 100");
   if (!(config.low_detail_reaction >= 0 && config.low_detail_reaction <= 10)) {
-    return bad_config("far_reaction must be 0 to 10 s");
+    return bad_config("low_detail_reaction must be 0 to 10 s");
   }
   if (!(config.low_detail_steps >= 1 && config.low_detail_steps <= 16)) {
-    return bad_config("far_steps must be 1 to 16");
+    return bad_config("low_detail_steps must be 1 to 16");
   }
   if (!(config.no_progress_after >= 0 && config.no_progress_after <= 1e6)) {
-    return bad_config("stuck_after must be 0 to 1000000 s");
+    return bad_config("no_progress_after must be 0 to 1000000 s");
   }
   if (data_of(config.nodes) != nullptr && !is_same_world(config.nodes, world)) {
     return bad_config("the nodes are of another world");

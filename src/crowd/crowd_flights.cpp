@@ -450,7 +450,7 @@ void Crowd::State::add_flyer_blockers(std::span<const uint32_t> slots,
     if (!obstacle.waits()) continue;
     const Prism& prism =
         obstacle.is_up ? hull_of(obstacle.place, obstacle.wanted) : obstacle.wanted;
-    passed.set(slot, {AirObstacle(prism, origin, unit), {}, slot});
+    passed.set(slot, AirObstacle(prism, origin, unit), {});
   }
   if (passed.is_empty()) return;
   const std::span<const Body> bodies = engine.bodies();
@@ -477,9 +477,8 @@ void Crowd::State::update_obstacle_grid() {
       obstacle_grid.erase(slot);
       continue;
     }
-    obstacle_grid.set(
-        slot,
-        {AirObstacle(obstacle.place, origin, unit, obstacle.closes()), {obstacle.place, {}}, slot});
+    obstacle_grid.set(slot, AirObstacle(obstacle.place, origin, unit, obstacle.closes()),
+                      {obstacle.place, {}});
   }
 }
 

@@ -194,7 +194,6 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
 
 void Crowd::State::ground_changed() {
   obstacles.block_cells();
-  cuts_paths = obstacles.cuts_paths();
   for (const auto& parts : classes) {
     if (parts) parts->standing.reset();
   }

@@ -73,7 +73,6 @@ struct Crowd::State {
   uint64_t scattered = 0;  // draws of `scatter`
   ObstacleSet obstacles;
   ObstacleGrid obstacle_grid;  // those that are active or close
-  bool cuts_paths = false;     // an obstacle that paths avoid is active, or closes
   bool some_leave = false;     // Body::leaves is set for some
 
   // By slot.

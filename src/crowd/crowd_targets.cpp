@@ -134,7 +134,7 @@ bool Crowd::State::plan_path(Body& body, Route& route, const StrideGround& groun
     const Place to = place_of(data, body, route.goal);
     parts.finders[w].find(from, to, path, search_budget());
     SpentBudget spent = path.spent;
-    if (cuts_paths && path.end == PathEnd::kReached) {
+    if (obstacles.cuts_paths() && path.end == PathEnd::kReached) {
       lead_around(data, parts.lives[w], ground, search_budget(), path, parts.repairs[w]);
       if (path.spent != SpentBudget::kNone) spent = path.spent;
     }

@@ -147,9 +147,9 @@ TEST(LevelsOfDetail, LimitsAreNamed) {
     const auto crowd = Crowd::create(world, config);
     return crowd ? std::string() : crowd.error().message;
   };
-  EXPECT_EQ(why({.low_detail_steps = 0}), "crowd: far_steps must be 1 to 16");
-  EXPECT_EQ(why({.low_detail_steps = 17}), "crowd: far_steps must be 1 to 16");
-  EXPECT_EQ(why({.low_detail_reaction = -1}), "crowd: far_reaction must be 0 to 10 s");
+  EXPECT_EQ(why({.low_detail_steps = 0}), "crowd: low_detail_steps must be 1 to 16");
+  EXPECT_EQ(why({.low_detail_steps = 17}), "crowd: low_detail_steps must be 1 to 16");
+  EXPECT_EQ(why({.low_detail_reaction = -1}), "crowd: low_detail_reaction must be 0 to 10 s");
 }
 
 }  // namespace

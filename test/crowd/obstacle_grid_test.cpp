@@ -16,8 +16,8 @@ namespace {
 constexpr double kUnit = 0.2 / 2048;  // [m]
 constexpr int32_t kHeight = 1800;     // [mm]
 
-ObstacleGrid::Item item_of(const Prism& prism) {
-  return {AirObstacle(prism, Vec3d{}, kUnit), {prism, {}}, 0};
+void set(ObstacleGrid& grid, uint32_t slot, const Prism& prism) {
+  grid.set(slot, AirObstacle(prism, Vec3d{}, kUnit), {prism, {}});
 }
 
 AirPosition position(double x, double y, double z) {
@@ -47,7 +47,7 @@ TEST(ObstacleGrid, FindsWhatALoopOverAllFindsAndInOrderOfSlot) {
       const double size = 0.01 * std::pow(10, draw(0, draw(0, 1) < 0.05 ? 9 : 4));
       const Vec3d at{draw(-20, 120), draw(-1, 3), draw(-20, 120)};
       const Prism prism = Prism::circle(at, size, draw(0.1, 4), 3 + static_cast<int>(draw(0, 9)));
-      grid.set(slot, item_of(prism));
+      set(grid, slot, prism);
       all.insert_or_assign(slot, AirObstacle(prism, Vec3d{}, kUnit));
     }
     ASSERT_EQ(grid.is_empty(), all.empty());
@@ -86,7 +86,7 @@ TEST(ObstacleGrid, TestsFewHoweverManyStandElsewhere) {
   for (const int side : {16, 32, 64, 128}) {
     for (int i = 0; i < side * side; ++i) {
       const double x = 1.5 * (i % side) + 10, z = 1.5 * static_cast<double>(i / side) + 10;
-      grid.set(static_cast<uint32_t>(i), item_of(Prism::box({x, 0, z}, {x + 0.5, 2, z + 0.5})));
+      set(grid, static_cast<uint32_t>(i), Prism::box({x, 0, z}, {x + 0.5, 2, z + 0.5}));
     }
     counts.push_back(tested());
   }

@@ -25,13 +25,12 @@ size_t ObstacleGrid::level_of(const std::array<double, 4>& box) {
   return level;
 }
 
-void ObstacleGrid::set(uint32_t slot, Item item) {
+void ObstacleGrid::set(uint32_t slot, AirObstacle shape, Solid solid) {
   erase(slot);
   if (item_of_.size() <= slot) item_of_.resize(slot + size_t{1}, kNoItem);
   item_of_[slot] = static_cast<uint32_t>(items_.size());
-  item.slot = slot;
-  const std::array<double, 4> box = item.shape.box();
-  items_.push_back(std::move(item));
+  const std::array<double, 4> box = shape.box();
+  items_.push_back({std::move(shape), std::move(solid), slot});
   const size_t level = level_of(box);
   ++on_level_[level];
   const Squares s = squares(level, box);

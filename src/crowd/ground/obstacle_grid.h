@@ -29,7 +29,7 @@ class ObstacleGrid {
     uint32_t slot = 0;
   };
   /// Replaces what is known of the slot.
-  void set(uint32_t slot, Item item);
+  void set(uint32_t slot, AirObstacle shape, Solid solid);
   void erase(uint32_t slot);
   [[nodiscard]] bool is_empty() const { return items_.empty(); }
 

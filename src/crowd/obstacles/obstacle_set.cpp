@@ -169,9 +169,12 @@ std::vector<std::pair<uint32_t, uint32_t>> ObstacleSet::blockers(std::span<const
   // By class and level; looked up only.
   std::unordered_map<uint64_t, std::vector<Asked>> lists;
   const auto key = [](size_t number, uint32_t level) { return uint64_t{number} << 32 | level; };
+  uint32_t first = UINT32_MAX, last = 0;  // levels: most bodies are on none of them
   for (const uint32_t slot : slots) {
     for (size_t c = 0; c < classes_.size(); ++c) {
       for (const LevelCells& cells : obstacles_[slot].of_class[c].swept) {
+        first = std::min(first, cells.level);
+        last = std::max(last, cells.level);
         lists[key(c, cells.level)].push_back({slot, &cells.rows});
       }
     }
@@ -182,7 +185,7 @@ std::vector<std::pair<uint32_t, uint32_t>> ObstacleSet::blockers(std::span<const
   parallel_ranges(bodies.size(), 4096, workers, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Body& body = bodies[i];
-      if (body.has(Body::kFlying)) continue;
+      if (body.level < first || body.level > last || body.has(Body::kFlying)) continue;
       const auto list = lists.find(key(body.avatar_class, body.level));
       if (list == lists.end()) continue;
       for (const Asked& asked : list->second) {

@@ -52,8 +52,8 @@ int main(int argc, char** argv) {
   // The flow through each exit, between its first and its last avatar.
   for (size_t exit = 0; exit < scenario.areas.size(); ++exit) {
     std::vector<double> times;
-    for (const Trip& visit : simulation.trips()) {
-      if (visit.left >= 0 && visit.exit == static_cast<int32_t>(exit)) times.push_back(visit.left);
+    for (const Trip& trip : simulation.trips()) {
+      if (trip.left >= 0 && trip.exit == static_cast<int32_t>(exit)) times.push_back(trip.left);
     }
     if (times.size() < 2) continue;
     const auto [first, last] = std::minmax_element(times.begin(), times.end());

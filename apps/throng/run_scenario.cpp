@@ -34,14 +34,14 @@ struct Outcome {
 Outcome outcome_of(const Scenario& scenario, const Simulation& simulation) {
   Outcome out;
   uint64_t left = 0;
-  for (const Trip& visit : simulation.trips()) {
-    if (visit.left < 0) continue;
-    ExitCount& exit = out.exits[scenario.areas[static_cast<size_t>(visit.exit)].name];
-    if (exit.left++ == 0) exit.first = visit.left;
-    exit.first = std::min(exit.first, visit.left);
-    exit.last = std::max(exit.last, visit.left);
-    out.last = std::max(out.last, visit.left);
-    out.mean_time += visit.left - visit.started;
+  for (const Trip& trip : simulation.trips()) {
+    if (trip.left < 0) continue;
+    ExitCount& exit = out.exits[scenario.areas[static_cast<size_t>(trip.exit)].name];
+    if (exit.left++ == 0) exit.first = trip.left;
+    exit.first = std::min(exit.first, trip.left);
+    exit.last = std::max(exit.last, trip.left);
+    out.last = std::max(out.last, trip.left);
+    out.mean_time += trip.left - trip.started;
     ++left;
   }
   if (left > 0) out.mean_time /= static_cast<double>(left);

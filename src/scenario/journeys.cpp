@@ -158,9 +158,9 @@ void Simulation::State::remove_from_crowd(ScenarioAvatar& p) {
 }
 
 void Simulation::State::leave(ScenarioAvatar& p) {
-  Trip& visit = trips[p.number];
-  visit.left = time();
-  visit.exit = area_under(p);
+  Trip& trip = trips[p.number];
+  trip.left = time();
+  trip.exit = area_under(p);
   ++left;
   remove_from_crowd(p);
 }

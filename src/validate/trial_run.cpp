@@ -116,37 +116,37 @@ class Observer {
   }
 
  private:
-  void stands(size_t k, const Trip& visit, const Vec3d& now) {
+  void stands(size_t k, const Trip& trip, const Vec3d& now) {
     const TrialMeasure& m = trial_.measures[k];
-    if (m.of != Observed::kDensity || !counts(m, visit)) return;
+    if (m.of != Observed::kDensity || !counts(m, trip)) return;
     if (covers(trial_.scenario.areas[static_cast<size_t>(m.area)], now)) inside_[k] += 1;
   }
 
-  void walked(const Trip& visit, const Vec3d& before, const Vec3d& now, double time) {
+  void walked(const Trip& trip, const Vec3d& before, const Vec3d& now, double time) {
     const double distance = std::hypot(now.x - before.x, now.z - before.z);
     const double dt = trial_.scenario.dt;
-    double& first = first_step_[visit.person];
-    if (first < 0 && time > visit.started && distance >= kFirstStep) first = time;
+    double& first = first_step_[trip.person];
+    if (first < 0 && time > trip.started && distance >= kFirstStep) first = time;
     for (size_t k = 0; k < data_.size(); ++k) {
       const TrialMeasure& m = trial_.measures[k];
-      stands(k, visit, now);
-      if (time < m.from || time > m.until || !counts(m, visit)) continue;
+      stands(k, trip, now);
+      if (time < m.from || time > m.until || !counts(m, trip)) continue;
       MeasureData& data = data_[k];
       if (m.of == Observed::kSpeed) {
         const bool here =
-            m.area < 0 ? time - dt >= visit.started - 1e-9
+            m.area < 0 ? time - dt >= trip.started - 1e-9
                        : covers(trial_.scenario.areas[static_cast<size_t>(m.area)], now) &&
                              covers(trial_.scenario.areas[static_cast<size_t>(m.area)], before);
         if (!here) continue;
         data.distance.resize(last_position_.size());
         data.time.resize(last_position_.size());
-        data.distance[visit.person] += distance;
-        data.time[visit.person] += dt;
+        data.distance[trip.person] += distance;
+        data.time[trip.person] += dt;
       } else if (m.of == Observed::kFlow || m.of == Observed::kPassed) {
         data.has_crossed.resize(last_position_.size());
         const auto part = crossing(before, now, m.line);
-        if (!part || data.has_crossed[visit.person]) continue;
-        data.has_crossed[visit.person] = true;
+        if (!part || data.has_crossed[trip.person]) continue;
+        data.has_crossed[trip.person] = true;
         data.crossed.push_back(time - dt * (1 - *part));
       }
     }

@@ -154,10 +154,10 @@ count = 80
   EXPECT_LT(run_out(simulation, 120), 60);
   ASSERT_EQ(simulation.trips().size(), 80U);
   std::map<int32_t, int> by_exit;
-  for (const Trip& visit : simulation.trips()) {
-    EXPECT_GT(visit.left, 5);
-    EXPECT_EQ(visit.entered, 0);
-    ++by_exit[visit.exit];
+  for (const Trip& trip : simulation.trips()) {
+    EXPECT_GT(trip.left, 5);
+    EXPECT_EQ(trip.entered, 0);
+    ++by_exit[trip.exit];
   }
   EXPECT_EQ(by_exit[1] + by_exit[2], 80);
   EXPECT_GT(by_exit[1], 10);
@@ -251,7 +251,7 @@ count = 12
   const double over = run_out(simulation, 200);
   EXPECT_LT(over, 120);
   std::multiset<double> times;
-  for (const Trip& visit : simulation.trips()) times.insert(visit.left);
+  for (const Trip& trip : simulation.trips()) times.insert(trip.left);
   // Service takes two seconds each, one after the other.
   EXPECT_GT(*times.rbegin() - *times.begin(), 11 * 2 - 3);
 }
@@ -289,7 +289,7 @@ count = 10
   EXPECT_EQ(max_in, 4U);
   EXPECT_GE(rides.size(), 3U);
   for (const double time : rides) EXPECT_NEAR(std::remainder(time - 0.1, 10), 0, 0.01) << time;
-  for (const Trip& visit : simulation.trips()) EXPECT_GE(visit.left, 16);
+  for (const Trip& trip : simulation.trips()) EXPECT_GE(trip.left, 16);
 }
 
 TEST(Simulation, GroupsStayTogether) {
@@ -390,7 +390,7 @@ count = 60
     run_out(simulation, 120);
     EXPECT_TRUE(simulation.is_over());
     int south = 0;
-    for (const Trip& visit : simulation.trips()) south += visit.exit == 2 ? 1 : 0;
+    for (const Trip& trip : simulation.trips()) south += trip.exit == 2 ? 1 : 0;
     return south;
   };
   EXPECT_EQ(by_south("nearest"), 0);
@@ -416,7 +416,7 @@ count = 30
   Simulation simulation = made(run);
   EXPECT_LT(run_out(simulation, 200), 100);
   EXPECT_TRUE(simulation.is_over());
-  for (const Trip& visit : simulation.trips()) EXPECT_GT(visit.left, 10 + 8 / 1.5);
+  for (const Trip& trip : simulation.trips()) EXPECT_GT(trip.left, 10 + 8 / 1.5);
 }
 
 // A door is to shut while avatars stream through. By the default policy it shuts soon; one that
@@ -510,7 +510,7 @@ name = "east"
 box = [12, 1, 19, 9]
 )");
   run_out(simulation, 40);
-  for (const Trip& visit : simulation.trips()) EXPECT_EQ(visit.exit >= 0, visit.profile == 1);
+  for (const Trip& trip : simulation.trips()) EXPECT_EQ(trip.exit >= 0, trip.profile == 1);
   EXPECT_EQ(simulation.trips().size(), 24U);
 }
 
@@ -551,7 +551,7 @@ box = [46, 2, 62, 62]
   EXPECT_GT(climbing, 0U);
   EXPECT_GT(leaning, 0U);
   size_t left = 0;
-  for (const Trip& visit : simulation.trips()) left += visit.exit >= 0 ? 1 : 0;
+  for (const Trip& trip : simulation.trips()) left += trip.exit >= 0 ? 1 : 0;
   EXPECT_EQ(simulation.trips().size(), 24U);
   EXPECT_GE(left, 20U);
 }
@@ -590,7 +590,7 @@ count = 60
   EXPECT_LT(simulation.crowd().size(), 20U);
   run_out(simulation, 200);
   EXPECT_TRUE(simulation.is_over());
-  for (const Trip& visit : simulation.trips()) EXPECT_GE(visit.left, 0) << visit.person;
+  for (const Trip& trip : simulation.trips()) EXPECT_GE(trip.left, 0) << trip.person;
 }
 
 // A crowd with targets that is saved and restored takes the same steps, to the bit.
@@ -702,10 +702,10 @@ count = 3
 )");
   Simulation simulation = made(run);
   run_out(simulation, 30);
-  for (const Trip& visit : simulation.trips()) {
-    ASSERT_GE(visit.exit, 0);
-    EXPECT_EQ(run.scenario.areas[static_cast<size_t>(visit.exit)].name,
-              visit.source == 0 ? "north" : "south");
+  for (const Trip& trip : simulation.trips()) {
+    ASSERT_GE(trip.exit, 0);
+    EXPECT_EQ(run.scenario.areas[static_cast<size_t>(trip.exit)].name,
+              trip.source == 0 ? "north" : "south");
   }
 }
 

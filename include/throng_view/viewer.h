@@ -110,7 +110,9 @@ struct CrowdStart {
   std::vector<DensityMap> density = {};
 };
 
+namespace view {
 class StageJob;  // Internal.
+}
 
 /// What an avatar looks like: an atlas and, for avatars near the eye, a model with the same clips.
 struct ViewFigure {
@@ -137,10 +139,10 @@ class THRONG_API StageParts {
   void set_scenario(const Scenario& scenario);
   /// Shows a recording instead of a crowd.
   void set_replay(Replay replay);
-  explicit StageParts(StageJob& job) : job_(job) {}  ///< For the viewer.
+  explicit StageParts(view::StageJob& job) : job_(job) {}  ///< For the viewer.
 
  private:
-  StageJob& job_;
+  view::StageJob& job_;
 };
 
 /// Loads a stage; runs on a thread of the viewer.

@@ -39,14 +39,16 @@ class ZoneJobs {
       : bake_(bake), path_(path), workers_(workers) {}
 
   // Of all ranks.
-  [[nodiscard]] RankJobs jobs() {
+  [[nodiscard]] cluster::RankJobs jobs() {
     return {.stage = "bake",
-            .work = [this](std::span<const uint8_t> job, Context& context) -> Result<RankBytes> {
+            .work = [this](std::span<const uint8_t> job,
+                           Context& context) -> Result<cluster::RankBytes> {
               if (!scratch_) scratch_.emplace(workers_);
               const auto facts = bake_and_write(
-                  bake_, path_, static_cast<size_t>(value_of<uint64_t>(job)), *scratch_, context);
+                  bake_, path_, static_cast<size_t>(cluster::value_of<uint64_t>(job)), *scratch_,
+                  context);
               if (!facts) return facts.error();
-              return bytes_of(*facts);
+              return cluster::bytes_of(*facts);
             },
             .finished =
                 [this](bool knows) { return finished(knows ? so_far() : "finished zones are"); }};
@@ -56,7 +58,8 @@ class ZoneJobs {
   }
 
   // Of rank 0: the facts of all zones, in their order.
-  Result<std::vector<ZoneFacts>> assign(Ranks& ranks, WorldFolder& folder, Context& context);
+  Result<std::vector<ZoneFacts>> assign(cluster::Ranks& ranks, WorldFolder& folder,
+                                        Context& context);
 
  private:
   [[nodiscard]] std::string so_far() const {
@@ -71,7 +74,7 @@ class ZoneJobs {
   size_t done_ = 0;
 };
 
-Result<std::vector<ZoneFacts>> ZoneJobs::assign(Ranks& ranks, WorldFolder& folder,
+Result<std::vector<ZoneFacts>> ZoneJobs::assign(cluster::Ranks& ranks, WorldFolder& folder,
                                                 Context& context) {
   const auto zones = bake_.zones();
   facts_.resize(zones.size());
@@ -87,11 +90,11 @@ Result<std::vector<ZoneFacts>> ZoneJobs::assign(Ranks& ranks, WorldFolder& folde
   std::stable_sort(open.begin(), open.end(), [&](uint64_t a, uint64_t b) {
     return bake_.triangle_count(a) > bake_.triangle_count(b);
   });
-  JobsToAssign to_assign;
-  for (const uint64_t zone : open) to_assign.jobs.push_back(bytes_of(zone));
+  cluster::JobsToAssign to_assign;
+  for (const uint64_t zone : open) to_assign.jobs.push_back(cluster::bytes_of(zone));
   to_assign.enter = [&](size_t job, std::span<const uint8_t> result) {
     const auto zone = static_cast<size_t>(open[job]);
-    facts_[zone] = value_of<ZoneFacts>(result);
+    facts_[zone] = cluster::value_of<ZoneFacts>(result);
     ++done_;
     return folder.add(facts_[zone].entry, zones[zone].hash());
   };
@@ -99,7 +102,8 @@ Result<std::vector<ZoneFacts>> ZoneJobs::assign(Ranks& ranks, WorldFolder& folde
     if (context.on_progress) context.on_progress({"bake", done_, facts_.size()});
   };
   to_assign.on_cancel = [&] { folder.leave(); };
-  if (auto ok = assign_jobs(ranks, jobs(), std::move(to_assign), context); !ok) return ok.error();
+  if (auto ok = cluster::assign_jobs(ranks, jobs(), std::move(to_assign), context); !ok)
+    return ok.error();
   return std::move(facts_);
 }
 
@@ -109,13 +113,13 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
                                    const BakeConfig& config, Context& context) {
   if (rank_info().size == 1) return bake_world_to(path, scene, config, context);
   const auto start = Clock::now();
-  auto joined = Ranks::join();
+  auto joined = cluster::Ranks::join();
   if (!joined) return joined.error();
-  Ranks& ranks = **joined;
+  cluster::Ranks& ranks = **joined;
   if (auto ok = agree_over_ranks(check_bake(scene, config)); !ok) return ok.error();
 
   BakeConfig own = config;
-  own.workers = workers_of_rank(config.workers, ranks);
+  own.workers = cluster::workers_of_rank(config.workers, ranks);
   // The folder first: what is there decides on the grid.
   std::optional<WorldFolder> folder;
   Result<void> begun;
@@ -135,14 +139,15 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
   Result<void> planned;
   if (!bake) planned = bake.error();
   if (auto ok = agree_over_ranks(planned); !ok) return ok.error();
-  if (auto ok = same_over_ranks(ranks, bake->input_hash(), "bake", "read another scene"); !ok) {
+  if (auto ok = cluster::same_over_ranks(ranks, bake->input_hash(), "bake", "read another scene");
+      !ok) {
     return ok.error();
   }
 
   BakeReport report;
   ZoneJobs zones(*bake, path, own.workers);
   if (ranks.rank() != 0) {
-    if (auto ok = do_assigned_jobs(ranks, zones.jobs(), context); !ok) return ok.error();
+    if (auto ok = cluster::do_assigned_jobs(ranks, zones.jobs(), context); !ok) return ok.error();
   } else {
     const auto facts = zones.assign(ranks, *folder, context);
     if (!facts) return facts.error();
@@ -153,9 +158,9 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
       if (error.code != Errc::kCancelled) return error;
       ranks.abandon();
       folder->leave();
-      RankJobs rest = zones.jobs();
+      cluster::RankJobs rest = zones.jobs();
       rest.finished = [&](bool) { return zones.finished(finished); };
-      return stopped_error(ranks, rest);
+      return cluster::stopped_error(ranks, rest);
     };
     if (auto ok = bake->add_air(&*folder, **world, context, report); !ok) {
       return failed(ok.error(), "all zones' ground and some of their air are finished");

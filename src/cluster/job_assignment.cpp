@@ -18,7 +18,7 @@
 // Rank 0 assigns jobs and enters their results, so that the next bake can continue where a rank has
 // died. It works too, on a thread beside the one that listens. All of them poll: MPI waits by
 // spinning, which would take a core from those that work.
-namespace throng {
+namespace throng::cluster {
 namespace {
 
 enum Tag : int32_t {
@@ -279,18 +279,22 @@ Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context) {
   return all;
 }
 
+}  // namespace throng::cluster
+
+namespace throng {
+
 Result<void> meet_over_ranks(const Result<void>& mine, Context& context) {
   if (rank_info().size == 1) return mine;
-  auto joined = Ranks::join();
+  auto joined = cluster::Ranks::join();
   if (!joined) return joined.error();
-  return meet(**joined, mine, context);
+  return cluster::meet(**joined, mine, context);
 }
 
 Result<void> agree_over_ranks(const Result<void>& mine) {
   if (rank_info().size == 1) return mine;
-  auto joined = Ranks::join();
+  auto joined = cluster::Ranks::join();
   if (!joined) return joined.error();
-  Ranks& ranks = **joined;
+  cluster::Ranks& ranks = **joined;
   const auto all = ranks.gather(mine ? 0 : 1);
   const auto failed = std::find(all.begin(), all.end(), uint64_t{1});
   if (failed == all.end()) return {};

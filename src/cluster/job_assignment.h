@@ -16,7 +16,7 @@
 #include "throng/base.h"
 
 /// Jobs handed out one by one to whichever rank is free.
-namespace throng {
+namespace throng::cluster {
 
 using RankBytes = std::vector<uint8_t>;
 
@@ -90,4 +90,4 @@ std::vector<T> values_of(std::span<const uint8_t> bytes) {
   return values;
 }
 
-}  // namespace throng
+}  // namespace throng::cluster

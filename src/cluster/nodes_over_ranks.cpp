@@ -39,33 +39,34 @@ std::vector<std::vector<uint32_t>> choose_batches(const NodeBaker& baker, const 
   return best;
 }
 
-RankJobs jobs_of(NodeBaker& baker, const std::string& path) {
-  return {.stage = "nodes",
-          .work = [&](std::span<const uint8_t> job, Context& context) -> Result<RankBytes> {
-            const auto zones = values_of<uint32_t>(job);
-            auto slots = baker.make(zones, false, context);
-            if (!slots) return slots.error();
-            const auto made = baker.write(zones, *slots);
-            if (!made) return made.error();
-            return bytes_of(*made);
-          },
-          .finished =
-              [&](bool knows) {
-                return (knows ? std::to_string(baker.zones_done()) + " of " +
-                                    std::to_string(baker.zones()) + " zones are finished"
-                              : std::string("finished zones are")) +
-                       " in " + path + "/" + kPartNodeFolder + ", and the next bake of " + path +
-                       " goes on from there";
-              }};
+cluster::RankJobs jobs_of(NodeBaker& baker, const std::string& path) {
+  return {
+      .stage = "nodes",
+      .work = [&](std::span<const uint8_t> job, Context& context) -> Result<cluster::RankBytes> {
+        const auto zones = cluster::values_of<uint32_t>(job);
+        auto slots = baker.make(zones, false, context);
+        if (!slots) return slots.error();
+        const auto made = baker.write(zones, *slots);
+        if (!made) return made.error();
+        return cluster::bytes_of(*made);
+      },
+      .finished =
+          [&](bool knows) {
+            return (knows ? std::to_string(baker.zones_done()) + " of " +
+                                std::to_string(baker.zones()) + " zones are finished"
+                          : std::string("finished zones are")) +
+                   " in " + path + "/" + kPartNodeFolder + ", and the next bake of " + path +
+                   " goes on from there";
+          }};
 }
 
-Result<NodeSummary> assign_nodes(Ranks& ranks, NodeBaker& baker, const NodeConfig& config,
+Result<NodeSummary> assign_nodes(cluster::Ranks& ranks, NodeBaker& baker, const NodeConfig& config,
                                  const std::string& path, NodeFolder& folder, Context& context) {
   const auto batches = choose_batches(baker, config, ranks.size());
-  JobsToAssign to_assign;
-  for (const auto& zones : batches) to_assign.jobs.push_back(bytes_of(zones));
+  cluster::JobsToAssign to_assign;
+  for (const auto& zones : batches) to_assign.jobs.push_back(cluster::bytes_of(zones));
   to_assign.enter = [&](size_t, std::span<const uint8_t> result) {
-    baker.enter(values_of<NodeBaker::Made>(result));
+    baker.enter(cluster::values_of<NodeBaker::Made>(result));
     return baker.list();
   };
   to_assign.on_progress = [&] {
@@ -73,7 +74,8 @@ Result<NodeSummary> assign_nodes(Ranks& ranks, NodeBaker& baker, const NodeConfi
   };
   to_assign.on_cancel = [&] { folder.leave(); };
   if (auto ok = baker.list(); !ok) return ok.error();
-  if (auto ok = assign_jobs(ranks, jobs_of(baker, path), std::move(to_assign), context); !ok) {
+  if (auto ok = cluster::assign_jobs(ranks, jobs_of(baker, path), std::move(to_assign), context);
+      !ok) {
     return ok.error();
   }
   const auto nodes = baker.finish();
@@ -93,13 +95,13 @@ Result<NodeSummary> nodes_over_ranks(const World& world, const Scene& scene,
     return nodes->summary();
   }
   const auto start = Clock::now();
-  auto joined = Ranks::join();
+  auto joined = cluster::Ranks::join();
   if (!joined) return joined.error();
-  Ranks& ranks = **joined;
+  cluster::Ranks& ranks = **joined;
   if (auto ok = agree_over_ranks(NodeBaker::check(world, scene, config)); !ok) return ok.error();
   const std::string& path = data_of(world)->path;
   NodeConfig own = config;
-  own.workers = workers_of_rank(config.workers, ranks);
+  own.workers = cluster::workers_of_rank(config.workers, ranks);
   Result<void> begun;
   auto folder =
       ranks.rank() == 0 ? NodeFolder::begin(path) : Result<NodeFolder>(NodeFolder::join(path));
@@ -107,14 +109,16 @@ Result<NodeSummary> nodes_over_ranks(const World& world, const Scene& scene,
   if (auto ok = agree_over_ranks(begun); !ok) return ok.error();
   NodeBaker baker(world, scene, own, &*folder);
   baker.plan();
-  if (auto ok = same_over_ranks(ranks, baker.input(), "nodes", "opened another world"); !ok) {
+  if (auto ok = cluster::same_over_ranks(ranks, baker.input(), "nodes", "opened another world");
+      !ok) {
     return ok.error();
   }
   // Rank 0 looks through what is there.
   const Result<void> reused = ranks.rank() == 0 ? baker.reuse_zones() : Result<void>();
-  if (auto ok = meet(ranks, reused, context); !ok) return ok.error();
+  if (auto ok = cluster::meet(ranks, reused, context); !ok) return ok.error();
   if (ranks.rank() != 0) {
-    if (auto ok = do_assigned_jobs(ranks, jobs_of(baker, path), context); !ok) return ok.error();
+    if (auto ok = cluster::do_assigned_jobs(ranks, jobs_of(baker, path), context); !ok)
+      return ok.error();
     return NodeSummary{};
   }
   auto made = assign_nodes(ranks, baker, config, path, *folder, context);

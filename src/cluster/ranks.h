@@ -11,7 +11,7 @@
 
 /// What a bake needs of MPI, and the only place that knows it. Calls come from the thread that made
 /// the first one.
-namespace throng {
+namespace throng::cluster {
 
 struct RankMessage {
   int32_t from = 0;
@@ -47,4 +47,4 @@ class Ranks {
   int32_t rank_ = 0, size_ = 1, local_size_ = 1;
 };
 
-}  // namespace throng
+}  // namespace throng::cluster

@@ -7,7 +7,7 @@
 #include "cluster/ranks.h"
 
 // Messages between ranks over MPI. MPI is started once in a process and ended at its exit.
-namespace throng {
+namespace throng::cluster {
 namespace {
 
 bool g_abandoned = false;
@@ -79,4 +79,4 @@ std::optional<RankMessage> Ranks::poll(Channel channel) {
 
 void Ranks::abandon() { g_abandoned = true; }
 
-}  // namespace throng
+}  // namespace throng::cluster

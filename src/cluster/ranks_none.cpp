@@ -3,7 +3,7 @@
 #include "cluster/ranks.h"
 
 // The library without MPI.
-namespace throng {
+namespace throng::cluster {
 
 Result<Ranks*> Ranks::join() {
   return Error{Errc::kBadConfig,
@@ -17,4 +17,4 @@ void Ranks::send(int32_t /*to*/, int32_t /*tag*/, std::span<const uint8_t> /*byt
 std::optional<RankMessage> Ranks::poll(Channel) { return std::nullopt; }
 void Ranks::abandon() {}
 
-}  // namespace throng
+}  // namespace throng::cluster

@@ -10,7 +10,7 @@
 #include <vector>
 
 // Uploads an atlas: colours as blocks where the card reads them, else unpacked; details; views.
-namespace throng {
+namespace throng::draw {
 namespace {
 
 constexpr GLsizei kViewsWide = 1024;  // Two texels a view.
@@ -205,4 +205,4 @@ void AtlasTextures::bind(const GlProgram& program) const {
   program.set_size("page", static_cast<float>(shape.width), static_cast<float>(shape.height));
 }
 
-}  // namespace throng
+}  // namespace throng::draw

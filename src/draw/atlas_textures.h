@@ -8,7 +8,7 @@
 #include "draw/hidden_avatars.h"
 #include "throng/impostor.h"
 
-namespace throng {
+namespace throng::draw {
 
 /// Can the card read colours of this format as they are, in blocks of 4 x 4 texels (S3TC, ETC2)?
 [[nodiscard]] bool takes_blocks(AtlasFormat format);
@@ -27,4 +27,4 @@ struct AtlasTextures {
   GlTexture colour, detail, views;
 };
 
-}  // namespace throng
+}  // namespace throng::draw

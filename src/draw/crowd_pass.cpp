@@ -12,7 +12,7 @@
 #include "draw/wardrobe.h"
 
 // Draws crowds by level of detail: meshes, views, blended views, points; upright or leaning.
-namespace throng {
+namespace throng::draw {
 namespace {
 
 constexpr GLsizei kInstancesWide = 2048;  // [texels]
@@ -419,4 +419,4 @@ void CrowdPass::draw(const DrawingConfig& config,
   }
 }
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -18,7 +18,7 @@
 #include "throng/base.h"
 #include "throng_draw/draw.h"
 
-namespace throng {
+namespace throng::draw {
 
 /// Draws crowds: culled and packed by the processor, uploaded at once, pulled by vertex number.
 class CrowdPass {
@@ -104,4 +104,4 @@ class CrowdPass {
 /// Fails with kNotFound if a program is not linked.
 [[nodiscard]] Result<void> check_linked(std::initializer_list<const GlProgram*> programs);
 
-}  // namespace throng
+}  // namespace throng::draw

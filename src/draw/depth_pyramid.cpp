@@ -7,7 +7,7 @@
 
 #include "throng/base.h"
 
-namespace throng {
+namespace throng::draw {
 namespace {
 
 // The card computes depths in floats and keeps 24 bits.
@@ -75,4 +75,4 @@ bool DepthPyramid::hides(const NdcBox& box) const {
   return true;
 }
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -7,7 +7,7 @@
 #include <vector>
 
 /// A test of what the part of a picture drawn so far certainly hides. Source: [GKM93].
-namespace throng {
+namespace throng::draw {
 
 /// A rectangle of a picture and the depth of the nearest point behind it, all from -1 to 1 as
 /// OpenGL's normalised device coordinates.
@@ -36,4 +36,4 @@ class DepthPyramid {
   int32_t width_ = 0, height_ = 0;
 };
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -8,7 +8,7 @@
 #include "draw/shaders.h"
 
 // Reduces the depth buffer to the furthest depth of each block, and reads that back.
-namespace throng {
+namespace throng::draw {
 
 Result<void> DepthReader::make_program() {
   program_ = GlProgram(shaders::furthest_vertex(), shaders::furthest_fragment());
@@ -47,4 +47,4 @@ void DepthReader::read(const GlTexture& depth, GLsizei width, GLsizei height, De
   out.set(furthest_, width, height);
 }
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -8,7 +8,7 @@
 #include "draw/gl_objects.h"
 #include "throng/base.h"
 
-namespace throng {
+namespace throng::draw {
 
 /// Brings the depths of a picture that is being drawn to the processor, as a pyramid. The card
 /// takes the furthest of each block: OpenGL ES cannot read depths back, and it is less to send.
@@ -30,4 +30,4 @@ class DepthReader {
   std::vector<float> furthest_;
 };
 
-}  // namespace throng
+}  // namespace throng::draw

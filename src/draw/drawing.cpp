@@ -37,9 +37,9 @@ constexpr double kNearer =
 
 // Colour and depth of an offscreen target.
 struct Target {
-  GlFramebuffer frame;
-  GlRenderbuffer colour;
-  GlTexture depth;
+  draw::GlFramebuffer frame;
+  draw::GlRenderbuffer colour;
+  draw::GlTexture depth;
   GLsizei width = 0, height = 0;
 };
 
@@ -70,8 +70,8 @@ Image reduce(const std::vector<uint8_t>& rgba, int32_t width, int32_t height, in
 }  // namespace
 
 struct PreparedScene::State {
-  SceneCorners corners;
-  TextureLayers textures;
+  draw::SceneCorners corners;
+  draw::TextureLayers textures;
 };
 
 PreparedScene::PreparedScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -80,11 +80,11 @@ PreparedScene& PreparedScene::operator=(PreparedScene&&) noexcept = default;
 PreparedScene::~PreparedScene() = default;
 
 Result<PreparedScene> PreparedScene::create(const Scene& scene, Vec3d origin) {
-  TextureLayers textures = make_texture_layers(scene, kTextureBudget);
-  Result<SceneCorners> corners = scene_corners(scene, origin, textures.of_texture);
+  draw::TextureLayers textures = draw::make_texture_layers(scene, kTextureBudget);
+  Result<draw::SceneCorners> corners = draw::scene_corners(scene, origin, textures.of_texture);
   if (!corners) return corners.error();
-  sort_into_chunks(*corners);
-  add_ground_plane(*corners);
+  draw::sort_into_chunks(*corners);
+  draw::add_ground_plane(*corners);
   return PreparedScene(std::make_unique<State>(State{*std::move(corners), std::move(textures)}));
 }
 
@@ -92,19 +92,19 @@ const Box3d& PreparedScene::bounds() const { return state_->corners.bounds; }
 Vec3d PreparedScene::origin() const { return state_->corners.origin; }
 
 struct Drawing::State {
-  std::unique_ptr<Headless> context;  // None: a window's, which its owner keeps current.
-  GlProgram sky, scene, surfaced, depth, surfaced_depth, mark, panel_program;
-  GlVertexArray nothing;  // Vertices by number alone.
-  SceneMesh mesh, props;
-  SurfaceTextures textures;
-  std::array<MarkMesh, kMarkSlots> marks;
-  PanelMesh panel;
-  CrowdPass crowd;
-  DepthReader depth_reader;
-  DepthPyramid depths;
+  std::unique_ptr<draw::Headless> context;  // None: a window's, which its owner keeps current.
+  draw::GlProgram sky, scene, surfaced, depth, surfaced_depth, mark, panel_program;
+  draw::GlVertexArray nothing;  // Vertices by number alone.
+  draw::SceneMesh mesh, props;
+  draw::SurfaceTextures textures;
+  std::array<draw::MarkMesh, kMarkSlots> marks;
+  draw::PanelMesh panel;
+  draw::CrowdPass crowd;
+  draw::DepthReader depth_reader;
+  draw::DepthPyramid depths;
   bool is_software = false;  // A processor draws.
-  GlTexture sun_depth;
-  GlFramebuffer sun_frame;
+  draw::GlTexture sun_depth;
+  draw::GlFramebuffer sun_frame;
   GLsizei sun_pixels = 0;
   Target target;
   std::vector<uint8_t> texels;  // Of the target, kept from picture to picture.
@@ -116,14 +116,14 @@ struct Drawing::State {
   Result<void> make_programs();
   Result<void> fit_sun(GLsizei pixels);
   Result<void> fit_target(GLsizei width, GLsizei height);
-  [[nodiscard]] const GlProgram& scene_program() const {
+  [[nodiscard]] const draw::GlProgram& scene_program() const {
     return mesh.has_surfaces() ? surfaced : scene;
   }
-  void draw_sun_depth(const Matrix& sun_from_world, Vec3d to_sun, Vec3d sun_right, Vec3d sun_up,
-                      float cut) const;
-  size_t draw_scene(const Matrix& clip_from_world, Vec3d eye,
+  void draw_sun_depth(const draw::Matrix& sun_from_world, Vec3d to_sun, Vec3d sun_right,
+                      Vec3d sun_up, float cut) const;
+  size_t draw_scene(const draw::Matrix& clip_from_world, Vec3d eye,
                     const std::function<void()>& read_depths);
-  void draw_marks(const Matrix& clip_from_world, const DrawingConfig& config) const;
+  void draw_marks(const draw::Matrix& clip_from_world, const DrawingConfig& config) const;
   // Does the window have depths, so that a picture can be drawn there directly?
   [[nodiscard]] bool window_has_depth() const;
   [[nodiscard]] bool culls(const DrawingConfig& config) const;
@@ -134,19 +134,20 @@ struct Drawing::State {
 };
 
 Result<void> Drawing::State::make_programs() {
-  sky = GlProgram(shaders::sky_vertex(), shaders::sky_fragment());
-  scene = GlProgram(shaders::scene_vertex(), shaders::scene_fragment());
-  surfaced = GlProgram(shaders::surface_vertex(), shaders::surface_fragment());
-  depth = GlProgram(shaders::depth_vertex(), shaders::depth_fragment());
-  surfaced_depth = GlProgram(shaders::surface_depth_vertex(), shaders::surface_depth_fragment());
-  mark = GlProgram(shaders::mark_vertex(), shaders::mark_fragment());
-  panel_program = GlProgram(shaders::panel_vertex(), shaders::panel_fragment());
-  if (auto ok =
-          check_linked({&sky, &scene, &surfaced, &depth, &surfaced_depth, &mark, &panel_program});
+  sky = draw::GlProgram(draw::shaders::sky_vertex(), draw::shaders::sky_fragment());
+  scene = draw::GlProgram(draw::shaders::scene_vertex(), draw::shaders::scene_fragment());
+  surfaced = draw::GlProgram(draw::shaders::surface_vertex(), draw::shaders::surface_fragment());
+  depth = draw::GlProgram(draw::shaders::depth_vertex(), draw::shaders::depth_fragment());
+  surfaced_depth = draw::GlProgram(draw::shaders::surface_depth_vertex(),
+                                   draw::shaders::surface_depth_fragment());
+  mark = draw::GlProgram(draw::shaders::mark_vertex(), draw::shaders::mark_fragment());
+  panel_program = draw::GlProgram(draw::shaders::panel_vertex(), draw::shaders::panel_fragment());
+  if (auto ok = draw::check_linked(
+          {&sky, &scene, &surfaced, &depth, &surfaced_depth, &mark, &panel_program});
       !ok)
     return ok;
-  nothing = make_vertex_array();
-  const std::string renderer = renderer_name();
+  nothing = draw::make_vertex_array();
+  const std::string renderer = draw::renderer_name();
   for (const char* one : {"llvmpipe", "SwiftShader", "softpipe", "Software"}) {
     is_software = is_software || renderer.find(one) != std::string::npos;
   }
@@ -163,7 +164,7 @@ Result<void> Drawing::State::fit_sun(GLsizei pixels) {
                                    std::to_string(largest) + " pixels a side; set sun_pixels"};
   }
   sun_pixels = pixels;
-  sun_depth = make_texture();
+  sun_depth = draw::make_texture();
   glBindTexture(GL_TEXTURE_2D, sun_depth.get());
   glTexStorage2D(GL_TEXTURE_2D, 1, GL_DEPTH_COMPONENT24, pixels, pixels);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
@@ -173,7 +174,7 @@ Result<void> Drawing::State::fit_sun(GLsizei pixels) {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-  sun_frame = make_framebuffer();
+  sun_frame = draw::make_framebuffer();
   glBindFramebuffer(GL_FRAMEBUFFER, sun_frame.get());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, sun_depth.get(), 0);
   return {};
@@ -188,7 +189,8 @@ Result<void> Drawing::State::fit_target(GLsizei width, GLsizei height) {
                                    "a pixel"};
   }
   if (target.width == width && target.height == height) return {};
-  target = {make_framebuffer(), make_renderbuffer(), make_texture(), width, height};
+  target = {draw::make_framebuffer(), draw::make_renderbuffer(), draw::make_texture(), width,
+            height};
   glBindRenderbuffer(GL_RENDERBUFFER, target.colour.get());
   glRenderbufferStorage(GL_RENDERBUFFER, GL_RGBA8, width, height);
   glBindTexture(GL_TEXTURE_2D, target.depth.get());
@@ -206,12 +208,12 @@ Result<void> Drawing::State::fit_target(GLsizei width, GLsizei height) {
                "smaller"};
 }
 
-void Drawing::State::draw_sun_depth(const Matrix& sun_from_world, Vec3d to_sun, Vec3d sun_right,
-                                    Vec3d sun_up, float cut) const {
+void Drawing::State::draw_sun_depth(const draw::Matrix& sun_from_world, Vec3d to_sun,
+                                    Vec3d sun_right, Vec3d sun_up, float cut) const {
   glBindFramebuffer(GL_FRAMEBUFFER, sun_frame.get());
   glViewport(0, 0, sun_pixels, sun_pixels);
   glClear(GL_DEPTH_BUFFER_BIT);
-  const auto begin = [&](const GlProgram& program) {
+  const auto begin = [&](const draw::GlProgram& program) {
     program.use();
     program.set_matrix("clip_from_world", sun_from_world.data());
     program.set("cut", cut);
@@ -220,7 +222,7 @@ void Drawing::State::draw_sun_depth(const Matrix& sun_from_world, Vec3d to_sun, 
   glPolygonOffset(1.5F, 2.0F);
   begin(mesh.has_holes() ? surfaced_depth : depth);
   if (mesh.has_holes()) surfaced_depth.set("pictures", kPictureUnit);
-  mesh.draw(chunks_in_view(mesh.chunks(), sun_from_world, {}));
+  mesh.draw(draw::chunks_in_view(mesh.chunks(), sun_from_world, {}));
   mesh.draw_ground_plane();
   if (mesh.has_holes()) begin(depth);
   props.draw();
@@ -231,11 +233,11 @@ void Drawing::State::draw_sun_depth(const Matrix& sun_from_world, Vec3d to_sun, 
 // Near parts first: they hide much of the rest, which is tested before it is drawn. The order is
 // the same with and without culling, because where surfaces coincide the last one shows. Returns
 // the number of triangles drawn.
-size_t Drawing::State::draw_scene(const Matrix& clip_from_world, Vec3d eye,
+size_t Drawing::State::draw_scene(const draw::Matrix& clip_from_world, Vec3d eye,
                                   const std::function<void()>& read_depths) {
   constexpr size_t kWorthAsking = 8'000, kNearShare = 8;
-  const std::span<const SceneChunk> chunks = mesh.chunks();
-  std::vector<uint32_t> near = chunks_in_view(chunks, clip_from_world, eye), rest;
+  const std::span<const draw::SceneChunk> chunks = mesh.chunks();
+  std::vector<uint32_t> near = draw::chunks_in_view(chunks, clip_from_world, eye), rest;
   const auto triangles = [&](const std::vector<uint32_t>& indices) {
     size_t corners = 0;
     for (const uint32_t i : indices) corners += chunks[i].count;
@@ -253,7 +255,7 @@ size_t Drawing::State::draw_scene(const Matrix& clip_from_world, Vec3d eye,
   if (!rest.empty()) {
     if (read_depths) {
       read_depths();
-      drop_hidden_chunks(chunks, clip_from_world, depths, rest);
+      draw::drop_hidden_chunks(chunks, clip_from_world, depths, rest);
       scene_program().use();
     }
     mesh.draw(rest);
@@ -263,7 +265,8 @@ size_t Drawing::State::draw_scene(const Matrix& clip_from_world, Vec3d eye,
   return drawn;
 }
 
-void Drawing::State::draw_marks(const Matrix& clip_from_world, const DrawingConfig& config) const {
+void Drawing::State::draw_marks(const draw::Matrix& clip_from_world,
+                                const DrawingConfig& config) const {
   mark.use();
   mark.set_matrix("clip_from_world", clip_from_world.data());
   mark.set("cut", static_cast<float>(std::min(config.cut_height, 1e9)));
@@ -275,7 +278,7 @@ void Drawing::State::draw_marks(const Matrix& clip_from_world, const DrawingConf
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glDepthMask(GL_FALSE);
-  for (const MarkMesh& mesh_of_slot : marks) {
+  for (const draw::MarkMesh& mesh_of_slot : marks) {
     mesh_of_slot.draw(mark, static_cast<float>(config.samples));
   }
   glDepthMask(GL_TRUE);
@@ -289,13 +292,13 @@ Drawing& Drawing::operator=(Drawing&&) noexcept = default;
 Drawing::~Drawing() {
   if (!state_) return;
   state_->make_current();
-  std::unique_ptr<Headless> last = std::move(state_->context);
+  std::unique_ptr<draw::Headless> last = std::move(state_->context);
   state_.reset();  // OpenGL names first, then their context.
 }
 
 Result<Drawing> Drawing::create() {
   auto state = std::make_unique<State>();
-  Result<std::unique_ptr<Headless>> context = Headless::create();
+  Result<std::unique_ptr<draw::Headless>> context = draw::Headless::create();
   if (!context) return context.error();
   state->context = *std::move(context);
   Drawing drawing(std::move(state));
@@ -343,7 +346,7 @@ Result<void> Drawing::check(const DrawingConfig& c) {
 
 std::string Drawing::renderer() const {
   state_->make_current();
-  return renderer_name();
+  return draw::renderer_name();
 }
 
 Result<void> Drawing::set_scene(const Scene& scene, Vec3d origin) {
@@ -360,7 +363,7 @@ Result<void> Drawing::set_scene(const PreparedScene& scene) {
 }
 
 Result<void> Drawing::set_props(const Scene& props, Vec3d origin) {
-  const Result<SceneCorners> corners = scene_corners(props, origin);
+  const Result<draw::SceneCorners> corners = draw::scene_corners(props, origin);
   if (!corners) return corners.error();
   state_->make_current();
   return state_->props.set(*corners);
@@ -387,7 +390,7 @@ size_t Drawing::colour_bytes(size_t atlas) const { return state_->crowd.colour_b
 
 bool Drawing::takes_blocks(AtlasFormat format) const {
   state_->make_current();
-  return throng::takes_blocks(format);
+  return draw::takes_blocks(format);
 }
 
 Result<void> Drawing::set_model(size_t atlas, const FigureModel& model) {
@@ -437,7 +440,7 @@ namespace {
 struct SunView {
   double scene_radius = 1, half_side = 1;  // [m]
   Vec3d right, up;
-  Matrix from_world;
+  draw::Matrix from_world;
 };
 
 SunView sun_view(const Box3d& bounds, const EyeCamera& camera, const Vec3d& to_sun) {
@@ -448,8 +451,8 @@ SunView sun_view(const Box3d& bounds, const EyeCamera& camera, const Vec3d& to_s
   const Vec3d middle = sun.half_side < sun.scene_radius ? camera.target : scene_middle;
   sun.right = cross({0, 1, 0}, to_sun) * (1 / std::max(1e-9, length(cross({0, 1, 0}, to_sun))));
   sun.up = cross(to_sun, sun.right);
-  sun.from_world = parallel_view(sun.right, sun.up, to_sun, middle, sun.half_side,
-                                 2 * sun.scene_radius + sun.half_side);
+  sun.from_world = draw::parallel_view(sun.right, sun.up, to_sun, middle, sun.half_side,
+                                       2 * sun.scene_radius + sun.half_side);
   return sun;
 }
 
@@ -474,7 +477,7 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   const EyeCamera& camera = config.camera;
   const CameraAxes axes = camera_axes(camera);
   const SunView sun = sun_view(mesh.bounds(), camera, to_sun);
-  const Matrix clip_from_world = perspective(camera);
+  const draw::Matrix clip_from_world = draw::perspective(camera);
   // Little haze over the scene, however large it is, and the sky's colour at the end of the ground.
   const auto haze = static_cast<float>(
       0.15 / std::max({150.0, sun.scene_radius, length(camera.target - camera.eye)}));
@@ -493,7 +496,7 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   glActiveTexture(GL_TEXTURE4);
   glBindTexture(GL_TEXTURE_2D, sun_depth.get());
-  const auto begin = [&](const GlProgram& program) {
+  const auto begin = [&](const draw::GlProgram& program) {
     program.use();
     program.set_matrix("clip_from_world", clip_from_world.data());
     program.set_matrix("sun_from_world", sun.from_world.data());
@@ -515,7 +518,7 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
     seconds_cull += seconds_since(cull_start);
   };
 
-  const auto begin_scene = [&](const GlProgram& program, float prop) {
+  const auto begin_scene = [&](const draw::GlProgram& program, float prop) {
     begin(program);
     program.set("bias", static_cast<float>(2.5 * sun.half_side / sun_pixels));
     program.set("soft", config.soft_shadows ? 1.0F : 0.0F);

@@ -3,7 +3,7 @@
 #include "draw/shaders.h"
 
 // Shaders of what is unlit: marks over the scene, and the panel.
-namespace throng::shaders {
+namespace throng::draw::shaders {
 namespace {
 
 constexpr const char* kHead = R"(#version 300 es
@@ -89,4 +89,4 @@ void main() { colour = vec4(tint.rgb, tint.a * texture(letters, at).r); }
 )";
 }
 
-}  // namespace throng::shaders
+}  // namespace throng::draw::shaders

@@ -9,7 +9,7 @@
 #include <epoxy/gl.h>
 #endif
 
-namespace throng {
+namespace throng::draw {
 
 /// The query for the driver's name. In a browser GL_RENDERER does not give it.
 #ifdef __EMSCRIPTEN__
@@ -18,4 +18,4 @@ inline constexpr GLenum kRendererName = 0x9246;  // UNMASKED_RENDERER_WEBGL
 inline constexpr GLenum kRendererName = GL_RENDERER;
 #endif
 
-}  // namespace throng
+}  // namespace throng::draw

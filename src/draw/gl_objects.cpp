@@ -9,7 +9,7 @@
 #endif
 
 // Shader programs and other OpenGL objects, and what the driver supports.
-namespace throng {
+namespace throng::draw {
 namespace {
 
 GLuint compile(GLenum kind, const std::string& source, std::string& fault) {
@@ -130,4 +130,4 @@ GlRenderbuffer make_renderbuffer() {
   return GlRenderbuffer(name);
 }
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -11,7 +11,7 @@
 #include "throng/base.h"
 
 /// Names that OpenGL allocates, released when their owner is destroyed. A context must be current.
-namespace throng {
+namespace throng::draw {
 
 template <void (*kDelete)(GLuint)>
 class GlName {
@@ -80,4 +80,4 @@ GlVertexArray make_vertex_array();
 GlFramebuffer make_framebuffer();
 GlRenderbuffer make_renderbuffer();
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -11,7 +11,7 @@
 // Uses EGL's surfaceless platform: Mesa draws on the processor where there is no graphics card, and
 // no display server has to run. OpenGL ES, not desktop OpenGL: what compiles here compiles in a
 // browser.
-namespace throng {
+namespace throng::draw {
 namespace {
 
 Error nothing_draws(const std::string& why) {
@@ -86,4 +86,4 @@ void Headless::make_current() const {
   eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
 }
 
-}  // namespace throng
+}  // namespace throng::draw

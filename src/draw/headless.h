@@ -7,7 +7,7 @@
 #include "throng/base.h"
 
 /// A graphics context that needs no window and no display server.
-namespace throng {
+namespace throng::draw {
 
 class Headless {
  public:
@@ -25,4 +25,4 @@ class Headless {
   void* context_ = nullptr;
 };
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -3,7 +3,7 @@
 #include "draw/headless.h"
 
 // In a browser's page there is only the canvas's context.
-namespace throng {
+namespace throng::draw {
 
 Result<std::unique_ptr<Headless>> Headless::create() {
   return Error{Errc::kNotFound, "drawing: a page draws into its canvas only"};
@@ -13,4 +13,4 @@ Headless::~Headless() = default;
 
 void Headless::make_current() const {}
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -6,7 +6,7 @@
 #include <cmath>
 
 // Tests whether all that could be drawn of a figure lies behind the depths of the picture.
-namespace throng {
+namespace throng::draw {
 
 std::vector<FigureExtent> extents_of(const Atlas& atlas) {
   const AtlasShape& shape = atlas.shape;
@@ -71,4 +71,4 @@ bool HiddenAvatars::hides_point(Vec3d middle, double half_size) const {
   return hides(to, depth, depth, half_size, depth);
 }
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -8,7 +8,7 @@
 #include "draw/depth_pyramid.h"
 #include "throng/impostor.h"
 
-namespace throng {
+namespace throng::draw {
 
 /// The extent of what is drawn of a figure, from its middle. [m]
 struct FigureExtent {
@@ -38,4 +38,4 @@ class HiddenAvatars {
   const DepthPyramid& depths_;
 };
 
-}  // namespace throng
+}  // namespace throng::draw

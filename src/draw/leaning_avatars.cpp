@@ -9,7 +9,7 @@
 // Packs avatars that lean. A leaning figure looks like an upright one to an eye turned by the
 // opposite rotation, so the same views serve, on cards that lean. An avatar on a wall is seen from
 // the free side of the wall, which is above it, so the rows over the horizon suffice.
-namespace throng {
+namespace throng::draw {
 namespace {
 
 uint32_t word_of(const AtlasShape& shape, const ViewChoice& choice) {
@@ -63,4 +63,4 @@ LevelCounts pack_leaning(const Atlas& atlas, const DrawnCrowd& crowd, const Pack
   return counts;
 }
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -9,7 +9,7 @@
 
 /// Avatars whose axes are not upright, in the form that a card reads. They are few, so a serial
 /// loop is fast enough.
-namespace throng {
+namespace throng::draw {
 
 /// Thirty-two bytes for the card: an instance and its axis.
 struct LeaningInstance {
@@ -27,4 +27,4 @@ struct LeaningSpans {
 LevelCounts pack_leaning(const Atlas& atlas, const DrawnCrowd& crowd, const PackConfig& config,
                          const LevelDistances& levels, const LeaningSpans& out);
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -7,7 +7,7 @@
 #include <vector>
 
 // Uploads marks and draws them; each line is two triangles.
-namespace throng {
+namespace throng::draw {
 namespace {
 
 struct Vertex {
@@ -71,4 +71,4 @@ void MarkMesh::draw(const GlProgram& program, float samples) const {
   glDepthFunc(GL_LEQUAL);
 }
 
-}  // namespace throng
+}  // namespace throng::draw

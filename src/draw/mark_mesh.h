@@ -6,7 +6,7 @@
 #include "throng/base.h"
 #include "throng_draw/draw.h"
 
-namespace throng {
+namespace throng::draw {
 
 /// Marks in the card's memory. A line is two triangles that the vertex shader spreads apart: lines
 /// of OpenGL ES are a pixel wide.
@@ -25,4 +25,4 @@ class MarkMesh {
   bool through_walls_ = false;
 };
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -9,7 +9,7 @@
 #include "throng/impostor.h"
 
 /// Matrices as OpenGL takes them: column by column.
-namespace throng {
+namespace throng::draw {
 
 using Matrix = std::array<float, 16>;
 
@@ -41,4 +41,4 @@ inline Matrix parallel_view(Vec3d right, Vec3d up, Vec3d towards, Vec3d middle, 
                    -dot(towards, middle) * d, {0, 0, 0}, 1);
 }
 
-}  // namespace throng
+}  // namespace throng::draw

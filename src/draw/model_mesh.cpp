@@ -6,7 +6,7 @@
 #include <string>
 
 // Uploads the poses and vertices of a figure model.
-namespace throng {
+namespace throng::draw {
 namespace {
 
 constexpr GLsizei kPosesWide = 2048;
@@ -77,4 +77,4 @@ double ModelMesh::extent(double centre) const {
                     larger(low_.z, high_.z));
 }
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -6,7 +6,7 @@
 #include "throng/base.h"
 #include "throng/impostor.h"
 
-namespace throng {
+namespace throng::draw {
 
 /// A FigureModel in the card's memory: poses in a texture, one vertex buffer, drawn once for all.
 class ModelMesh {
@@ -28,4 +28,4 @@ class ModelMesh {
   GlBuffer paint_, index_;
 };
 
-}  // namespace throng
+}  // namespace throng::draw

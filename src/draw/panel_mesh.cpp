@@ -6,7 +6,7 @@
 #include <cstddef>
 
 // Uploads and draws a panel.
-namespace throng {
+namespace throng::draw {
 
 Result<void> PanelMesh::set_texture(int32_t width, int32_t height, std::span<const uint8_t> alpha) {
   THRONG_ASSERT(alpha.size() == static_cast<size_t>(width) * static_cast<size_t>(height));
@@ -68,4 +68,4 @@ void PanelMesh::draw(const GlProgram& program, const PanelView& panel, int32_t w
   glDisable(GL_BLEND);
 }
 
-}  // namespace throng
+}  // namespace throng::draw

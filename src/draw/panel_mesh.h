@@ -8,7 +8,7 @@
 #include "throng/base.h"
 #include "throng_draw/draw.h"
 
-namespace throng {
+namespace throng::draw {
 
 /// A panel and its texture in the card's memory.
 class PanelMesh {
@@ -26,4 +26,4 @@ class PanelMesh {
   GlBuffer vertices_, indices_;
 };
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -10,7 +10,7 @@
 #include <utility>
 
 // Sorts triangles into chunks, and culls chunks by the view frustum and by a depth pyramid.
-namespace throng {
+namespace throng::draw {
 namespace {
 
 constexpr double kPerChunk = 500;  // Triangles.
@@ -142,4 +142,4 @@ void drop_hidden_chunks(std::span<const SceneChunk> chunks, const Matrix& clip_f
   });
 }
 
-}  // namespace throng
+}  // namespace throng::draw

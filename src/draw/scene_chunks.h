@@ -12,7 +12,7 @@
 #include "throng/base.h"
 
 /// Pieces of a scene that are drawn or left out as a whole.
-namespace throng {
+namespace throng::draw {
 
 /// Sorts triangles into cubic cells of about five hundred each and lists them in `scene.chunks`.
 void sort_into_chunks(SceneCorners& scene);
@@ -26,4 +26,4 @@ void sort_into_chunks(SceneCorners& scene);
 void drop_hidden_chunks(std::span<const SceneChunk> chunks, const Matrix& clip_from_world,
                         const DepthPyramid& depths, std::vector<uint32_t>& indices);
 
-}  // namespace throng
+}  // namespace throng::draw

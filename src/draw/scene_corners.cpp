@@ -12,7 +12,7 @@
 // Makes the corners of a scene and finds its edges. Models are triangle soups: triangles that share
 // a side do not share corners, and may have opposite windings. So sides are matched by position, to
 // a tenth of a millimetre.
-namespace throng {
+namespace throng::draw {
 namespace {
 
 constexpr size_t kMaxTriangles = 40'000'000;  // 1.9 GB.
@@ -187,4 +187,4 @@ void add_ground_plane(SceneCorners& scene) {
   if (!scene.surfaces.empty()) scene.surfaces.resize(scene.corners.size());
 }
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -13,7 +13,7 @@
 
 /// A scene's triangles in the form that the card reads: three corners each, no index, because flat
 /// normals are not shared.
-namespace throng {
+namespace throng::draw {
 
 struct SceneCorner {
   std::array<float, 3> position{};
@@ -55,4 +55,4 @@ struct SceneCorners {
 /// Adds a plane just under the lowest point, out to the haze, on which the scene stands.
 void add_ground_plane(SceneCorners& scene);
 
-}  // namespace throng
+}  // namespace throng::draw

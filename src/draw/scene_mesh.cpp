@@ -6,7 +6,7 @@
 #include <cstddef>
 
 // Uploads the corners of a scene and draws all of it or some chunks.
-namespace throng {
+namespace throng::draw {
 
 Result<void> SceneMesh::set(const SceneCorners& scene) {
   bounds_ = scene.bounds;
@@ -79,4 +79,4 @@ void SceneMesh::draw_ground_plane() const {
   draw_corners(first, static_cast<uint32_t>(corners_) - first);
 }
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -10,7 +10,7 @@
 #include "draw/scene_corners.h"
 #include "throng/base.h"
 
-namespace throng {
+namespace throng::draw {
 
 /// A scene's triangles in the card's memory.
 class SceneMesh {
@@ -40,4 +40,4 @@ class SceneMesh {
   Box3d bounds_;
 };
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -3,7 +3,7 @@
 #include "draw/shaders.h"
 
 // Source texts of the shaders.
-namespace throng::shaders {
+namespace throng::draw::shaders {
 namespace {
 
 constexpr const char* kHead = R"(#version 300 es
@@ -753,4 +753,4 @@ void main() {
 )";
 }
 
-}  // namespace throng::shaders
+}  // namespace throng::draw::shaders

@@ -6,7 +6,7 @@
 #include <string>
 
 /// The shaders: OpenGL ES 3.0, which is WebGL 2. Colours are linear until the last line.
-namespace throng::shaders {
+namespace throng::draw::shaders {
 
 /// Of avatars: all upright, or each with an axis of its own.
 enum class Leaning : uint8_t { kNo, kYes };
@@ -40,4 +40,4 @@ std::string mark_fragment();
 std::string panel_vertex();
 std::string panel_fragment();
 
-}  // namespace throng::shaders
+}  // namespace throng::draw::shaders

@@ -10,7 +10,7 @@
 #include "draw/gl.h"
 
 // Scales textures to one size and makes their smaller levels.
-namespace throng {
+namespace throng::draw {
 namespace {
 
 constexpr int32_t kLargestSide = 2048;  // Of any card.
@@ -163,4 +163,4 @@ void SurfaceTextures::bind(GLenum unit) const {
   glBindTexture(GL_TEXTURE_2D_ARRAY, texture_.get());
 }
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -12,7 +12,7 @@
 
 /// A scene's textures as layers of one: all brought to one size, so that a scene needs no change of
 /// textures between its triangles.
-namespace throng {
+namespace throng::draw {
 
 inline constexpr size_t kMaxLayers = 256;  // What any card has.
 
@@ -47,4 +47,4 @@ class SurfaceTextures {
   bool any_ = false;
 };
 
-}  // namespace throng
+}  // namespace throng::draw

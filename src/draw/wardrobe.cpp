@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace throng {
+namespace throng::draw {
 namespace {
 
 // As a screen shows them, red, green, blue in hexadecimal.
@@ -38,4 +38,4 @@ std::array<float, 3 * kColoursAPart * kBodyParts> wardrobe() {
   return out;
 }
 
-}  // namespace throng
+}  // namespace throng::draw

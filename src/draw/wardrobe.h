@@ -7,7 +7,7 @@
 #include "throng/impostor.h"
 
 /// The colours of a crowd's clothes.
-namespace throng {
+namespace throng::draw {
 
 inline constexpr int32_t kColoursAPart = 12;
 
@@ -15,4 +15,4 @@ inline constexpr int32_t kColoursAPart = 12;
 /// street, most of them quiet, some bright; skins and hair from everywhere.
 [[nodiscard]] std::array<float, 3 * kColoursAPart * kBodyParts> wardrobe();
 
-}  // namespace throng
+}  // namespace throng::draw

@@ -29,7 +29,8 @@
 namespace throng {
 namespace {
 
-using Reader = Result<RawScene> (*)(std::string_view, const ReadOptions&, Context&);
+using Reader = Result<importer::RawScene> (*)(std::string_view, const importer::ReadOptions&,
+                                              Context&);
 
 std::string lower_case(std::string text) {
   for (char& c : text) {
@@ -43,19 +44,20 @@ std::string lower_case(std::string text) {
 Reader json_reader(const std::string& path, std::string_view bytes) {
   if (lower_case(path).ends_with(".patches.json") ||
       bytes.find("\"throng-patches\"") != std::string_view::npos)
-    return &read_patch_json;
-  return bytes.find("\"CityJSON\"") != std::string_view::npos ? &read_cityjson : &read_geojson;
+    return &importer::read_patch_json;
+  return bytes.find("\"CityJSON\"") != std::string_view::npos ? &importer::read_cityjson
+                                                              : &importer::read_geojson;
 }
 
-Result<RawScene> read_source(const SceneSource& source, const ReadOptions& options,
-                             Context& context) {
+Result<importer::RawScene> read_source(const SceneSource& source,
+                                       const importer::ReadOptions& options, Context& context) {
   const std::string extension = lower_case(std::filesystem::path(source.path).extension().string());
   for (const char* known : {".gltf", ".glb", ".fbx", ".stl", ".dae", ".ifc", ".3ds"}) {
     if (extension != known) continue;
     // The child reads the file itself; here only the message for a missing file is made.
     std::error_code failure;
     if (!std::filesystem::is_regular_file(source.path, failure)) break;
-    return read_with_assimp(source.path, options, context);
+    return importer::read_with_assimp(source.path, options, context);
   }
   const bool known = extension == ".obj" || extension == ".ply" || extension == ".json" ||
                      extension == ".gml" || extension == ".bsp" || extension == ".wkt" ||
@@ -70,28 +72,28 @@ Result<RawScene> read_source(const SceneSource& source, const ReadOptions& optio
   }
   Reader reader = nullptr;
   if (extension == ".obj")
-    reader = &read_obj;
+    reader = &importer::read_obj;
   else if (extension == ".ply")
-    reader = &read_ply;
+    reader = &importer::read_ply;
   else if (extension == ".json")
     reader = json_reader(source.path, *bytes);
   else if (extension == ".gml")
-    reader = &read_citygml;
+    reader = &importer::read_citygml;
   else if (extension == ".bsp")
-    reader = &read_bsp;
+    reader = &importer::read_bsp;
   else if (extension == ".wkt")
-    reader = &read_wkt;
+    reader = &importer::read_wkt;
   else if (extension == ".bpt")
-    reader = &read_bpt;
+    reader = &importer::read_bpt;
   else if (extension == ".zonel")
-    reader = &read_zonel;
+    reader = &importer::read_zonel;
   else
-    reader = &read_geojson;
+    reader = &importer::read_geojson;
   return reader(*bytes, options, context);
 }
 
 // Into metres with Y up, then the source's own transform, as one matrix.
-Transform placement(const SceneSource& source, const RawScene& raw) {
+Transform placement(const SceneSource& source, const importer::RawScene& raw) {
   const double s = source.scale.value_or(raw.metres_per_unit);
   const bool z_up = source.up.value_or(raw.up) == 'z';
   Transform out;
@@ -120,7 +122,8 @@ void append(Scene& all, Scene&& one) {
   one.positions = {};
   for (const auto& corners : one.triangles) {
     auto& moved = all.triangles.emplace_back(corners);
-    for (uint32_t& corner : moved) corner = corner == kNoVertex ? kNoVertex : corner + first_vertex;
+    for (uint32_t& corner : moved)
+      corner = corner == importer::kNoVertex ? importer::kNoVertex : corner + first_vertex;
   }
   all.area.insert(all.area.end(), one.area.begin(), one.area.end());
   const auto first_material = static_cast<uint32_t>(all.materials.size());
@@ -208,12 +211,12 @@ Result<Scene> load_scene(const SceneConfig& config, Context& context) {
   const auto sources = open_folders(config.sources);
   if (!sources) return sources.error();
   Scene all;
-  std::vector<PatchZone> zones;
+  std::vector<importer::PatchZone> zones;
   for (size_t i = 0; i < sources->size(); ++i) {
     const SceneSource& source = (*sources)[i];
     if (context.on_progress) context.on_progress({"read", i, sources->size()});
     if (context.cancel) return Error{Errc::kCancelled, "cancelled while reading"};
-    ReadOptions options;
+    importer::ReadOptions options;
     options.name = source.path;
     options.curve_tolerance = config.curve_tolerance;
     options.plan_height = config.plan_height;
@@ -221,7 +224,7 @@ Result<Scene> load_scene(const SceneConfig& config, Context& context) {
     options.looks = config.looks;
     auto raw = read_source(source, options, context);
     if (!raw) return raw.error();
-    if (auto ok = read_textures(*raw, source.path, context); !ok) return ok.error();
+    if (auto ok = importer::read_textures(*raw, source.path, context); !ok) return ok.error();
     const Transform place = placement(source, *raw);
     for (Vec3d& p : raw->scene.positions) p = place(p);
     for (BezierPatch& patch : raw->scene.patches.patches) {
@@ -231,29 +234,29 @@ Result<Scene> load_scene(const SceneConfig& config, Context& context) {
       raw->zone->first_patch = static_cast<uint32_t>(all.patches.size());
       zones.push_back(*std::move(raw->zone));
     }
-    apply_rules(raw->scene, config.rules);
+    importer::apply_rules(raw->scene, config.rules);
     if (raw->scene.patches.size() + all.patches.size() >= kNoPatch / 4) {
       return Error{Errc::kLimit,
                    "scene: more than 1.07 thousand million patches; bake it in parts"};
     }
     const uint64_t vertices = uint64_t{all.positions.size()} + raw->scene.positions.size();
     const uint64_t triangles = uint64_t{all.triangles.size()} + raw->scene.triangles.size();
-    if (vertices >= kNoVertex || triangles >= kNoVertex) {
+    if (vertices >= importer::kNoVertex || triangles >= importer::kNoVertex) {
       return Error{Errc::kLimit,
                    "scene: more than 4.29 thousand million vertices; bake it in parts"};
     }
     append(all, std::move(raw->scene));
   }
-  if (const auto joined = join_zones(all.patches, zones, all.report); !joined)
+  if (const auto joined = importer::join_zones(all.patches, zones, all.report); !joined)
     return joined.error();
-  if (const auto cut = cut_patches(all, config, context); !cut) return cut.error();
+  if (const auto cut = importer::cut_patches(all, config, context); !cut) return cut.error();
   for (const AreaVolume& volume : config.volumes) {
     if (const auto marked = mark_volume(all, volume); !marked) return marked.error();
   }
   const std::string name = sources->size() == 1 ? sources->front().path
                                                 : fmt::format("scene of {} files", sources->size());
-  if (auto cleaned = clean_scene(all, name, context); !cleaned) return cleaned.error();
-  if (config.looks == SceneMaterials::kRead) add_named_materials(all);
+  if (auto cleaned = importer::clean_scene(all, name, context); !cleaned) return cleaned.error();
+  if (config.looks == SceneMaterials::kRead) importer::add_named_materials(all);
   if (context.on_progress) {
     context.on_progress({"read", sources->size(), sources->size()});
   }

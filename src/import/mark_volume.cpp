@@ -151,7 +151,7 @@ class Cutter {
   void keep_broken(uint32_t t) {
     std::array<uint32_t, 3> corners = scene_.triangles[t];
     for (uint32_t& c : corners) {
-      if (c >= vertices_) c = kNoVertex;
+      if (c >= vertices_) c = importer::kNoVertex;
     }
     keep(corners[0], corners[1], corners[2], t, scene_.area[t]);
   }

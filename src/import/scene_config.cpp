@@ -142,8 +142,8 @@ Result<AreaVolume> read_volume(const ConfigNode& table, const std::string& name,
 
 }  // namespace
 
-Result<SceneConfig> read_scene_config(const ConfigNode& root, const std::string& name,
-                                      const std::string& folder) {
+Result<SceneConfig> importer::read_scene_config(const ConfigNode& root, const std::string& name,
+                                                const std::string& folder) {
   SceneConfig config;
   ConfigReader top(name, root, "scene");
   top.only({"source", "rule", "volume", "plan_height", "curve_tolerance"});
@@ -173,7 +173,8 @@ Result<SceneConfig> load_scene_config(const std::string& path) {
   if (!text) return text.error();
   const auto root = parse_config(*text, path);
   if (!root) return root.error();
-  return read_scene_config(*root, path, std::filesystem::path(path).parent_path().string());
+  return importer::read_scene_config(*root, path,
+                                     std::filesystem::path(path).parent_path().string());
 }
 
 }  // namespace throng

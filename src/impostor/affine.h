@@ -7,7 +7,7 @@
 #include "throng/base.h"
 
 /// Affine maps for skeletons.
-namespace throng {
+namespace throng::impostor {
 
 /// outer(inner(p)).
 inline Transform operator*(const Transform& outer, const Transform& inner) {
@@ -44,4 +44,4 @@ inline Transform compose(Vec3d position, const std::array<double, 4>& q, Vec3d s
   return t;
 }
 
-}  // namespace throng
+}  // namespace throng::impostor

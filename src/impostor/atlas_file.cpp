@@ -71,9 +71,10 @@ bool is_sound(const Atlas& atlas) {
                      s.elevations >= 1 && s.elevations <= 32 && s.frames >= 1 &&
                      s.frames <= 16 * 64 && std::isfinite(s.side) && s.side > 0 &&
                      std::isfinite(s.centre) && std::isfinite(s.height) && s.height > 0;
-  const bool pages = atlas.width >= 4 && atlas.width <= kPageWidth && atlas.width % 4 == 0 &&
-                     atlas.height >= 4 && atlas.height <= kPageHeight && atlas.height % 4 == 0 &&
-                     atlas.pages >= 1 && atlas.pages <= kMaxPages;
+  const bool pages = atlas.width >= 4 && atlas.width <= impostor::kPageWidth &&
+                     atlas.width % 4 == 0 && atlas.height >= 4 &&
+                     atlas.height <= impostor::kPageHeight && atlas.height % 4 == 0 &&
+                     atlas.pages >= 1 && atlas.pages <= impostor::kMaxPages;
   if (!shape || !pages || atlas.views.size() != s.view(s.frames, 0, 0)) return false;
   for (const AtlasView& v : atlas.views) {
     const bool inside = v.page < atlas.pages && v.x + v.width <= atlas.width &&
@@ -90,9 +91,10 @@ bool is_sound(const Atlas& atlas) {
     frames += clip.frames;
   }
   if (frames != s.frames) return false;
-  const size_t texels = texel_count(atlas);
-  return atlas.colour.size() == colour_bytes(atlas.format, texels) &&
-         atlas.normal.size() == normal_bytes(atlas.format, texels) && atlas.mask.size() == texels;
+  const size_t texels = impostor::texel_count(atlas);
+  return atlas.colour.size() == impostor::colour_bytes(atlas.format, texels) &&
+         atlas.normal.size() == impostor::normal_bytes(atlas.format, texels) &&
+         atlas.mask.size() == texels;
 }
 
 }  // namespace
@@ -134,10 +136,10 @@ Result<void> save_atlas(const Atlas& atlas, const std::string& path) {
 Result<Atlas> load_atlas(const std::string& path) {
   const Result<FileMap> map = FileMap::open(path);
   if (!map) return map.error();
-  return read_atlas(map->bytes(), path);
+  return impostor::read_atlas(map->bytes(), path);
 }
 
-Result<Atlas> read_atlas(std::span<const uint8_t> bytes, const std::string& path) {
+Result<Atlas> impostor::read_atlas(std::span<const uint8_t> bytes, const std::string& path) {
   flatbuffers::Verifier verifier(bytes.data(), bytes.size());
   if (bytes.size() < 8 || !flatbuffers::BufferHasIdentifier(bytes.data(), kIdentifier) ||
       !verifier.VerifyBuffer<format::AtlasFile>(kIdentifier)) {

@@ -9,9 +9,9 @@
 #include "throng/base.h"
 #include "throng/impostor.h"
 
-namespace throng {
+namespace throng::impostor {
 
 /// load_atlas from bytes; `name` is for messages.
 [[nodiscard]] Result<Atlas> read_atlas(std::span<const uint8_t> bytes, const std::string& name);
 
-}  // namespace throng
+}  // namespace throng::impostor

@@ -40,13 +40,13 @@ void for_each_block(const Atlas& atlas, int32_t workers, Body body) {
 
 size_t texel_of(size_t first, size_t width, size_t i) { return first + i / 4 * width + i % 4; }
 
-Bytes8 bytes_at(const std::vector<uint8_t>& from, size_t offset) {
-  Bytes8 out;
+impostor::Bytes8 bytes_at(const std::vector<uint8_t>& from, size_t offset) {
+  impostor::Bytes8 out;
   std::copy_n(from.begin() + static_cast<ptrdiff_t>(offset), 8, out.begin());
   return out;
 }
 
-void put(const Bytes8& bytes, std::vector<uint8_t>& to, size_t offset) {
+void put(const impostor::Bytes8& bytes, std::vector<uint8_t>& to, size_t offset) {
   std::copy_n(bytes.begin(), 8, to.begin() + static_cast<ptrdiff_t>(offset));
 }
 
@@ -62,35 +62,39 @@ bool has_holes(AtlasFormat format) {
 }
 
 void decode_colour(AtlasFormat format, const std::vector<uint8_t>& from, size_t block,
-                   ColourBlock& texel) {
+                   impostor::ColourBlock& texel) {
   const bool holes = has_holes(format);
-  const Bytes8 colour = bytes_at(from, holes ? block * 8 : block * 16 + 8);
-  is_etc2(format) ? decode_etc2(colour, holes, texel) : decode_bc1(colour, holes, texel);
+  const impostor::Bytes8 colour = bytes_at(from, holes ? block * 8 : block * 16 + 8);
+  is_etc2(format) ? impostor::decode_etc2(colour, holes, texel)
+                  : impostor::decode_bc1(colour, holes, texel);
   if (holes) return;
-  ChannelBlock alpha;
-  const Bytes8 bytes = bytes_at(from, block * 16);
-  is_etc2(format) ? decode_eac(bytes, alpha) : decode_bc4(bytes, alpha);
+  impostor::ChannelBlock alpha;
+  const impostor::Bytes8 bytes = bytes_at(from, block * 16);
+  is_etc2(format) ? impostor::decode_eac(bytes, alpha) : impostor::decode_bc4(bytes, alpha);
   for (size_t i = 0; i < 16; ++i) texel[i][3] = alpha[i];
 }
 
-void encode_colour(AtlasFormat format, const ColourBlock& texel, std::vector<uint8_t>& to,
+void encode_colour(AtlasFormat format, const impostor::ColourBlock& texel, std::vector<uint8_t>& to,
                    size_t block) {
-  ChannelBlock alpha;
-  TexelWeights weights, all;
+  impostor::ChannelBlock alpha;
+  impostor::TexelWeights weights, all;
   all.fill(1);
   for (size_t i = 0; i < 16; ++i) weights[i] = alpha[i] = texel[i][3];  // By its opacity.
   const bool holes = has_holes(format);
-  put(is_etc2(format) ? encode_etc2(texel, weights, holes) : encode_bc1(texel, weights, holes), to,
-      holes ? block * 8 : block * 16 + 8);
+  put(is_etc2(format) ? impostor::encode_etc2(texel, weights, holes)
+                      : impostor::encode_bc1(texel, weights, holes),
+      to, holes ? block * 8 : block * 16 + 8);
   if (!holes)
-    put(is_etc2(format) ? encode_eac(alpha, all) : encode_bc4(alpha, all), to, block * 16);
+    put(is_etc2(format) ? impostor::encode_eac(alpha, all) : impostor::encode_bc4(alpha, all), to,
+        block * 16);
 }
 
 // One of a normal's two channels.
-void decode_channel(AtlasFormat format, const Bytes8& bytes, ChannelBlock& values) {
-  if (!is_etc2(format)) return decode_bc4(bytes, values);
-  WideChannelBlock wide;
-  decode_eac11(bytes, wide);
+void decode_channel(AtlasFormat format, const impostor::Bytes8& bytes,
+                    impostor::ChannelBlock& values) {
+  if (!is_etc2(format)) return impostor::decode_bc4(bytes, values);
+  impostor::WideChannelBlock wide;
+  impostor::decode_eac11(bytes, wide);
   for (size_t i = 0; i < 16; ++i) {
     values[i] = static_cast<uint8_t>((wide[i] * 255 + 1023) / 2047);
   }
@@ -98,7 +102,7 @@ void decode_channel(AtlasFormat format, const Bytes8& bytes, ChannelBlock& value
 
 std::vector<uint8_t> unpack_colour(const Atlas& atlas, int32_t workers) {
   if (atlas.format == AtlasFormat::kRgba8) return atlas.colour;
-  const size_t texels = texel_count(atlas);
+  const size_t texels = impostor::texel_count(atlas);
   std::vector<uint8_t> out(texels * 4);
   if (atlas.format == AtlasFormat::kRgb5a1) {
     for (size_t i = 0; i < texels; ++i) {
@@ -111,7 +115,7 @@ std::vector<uint8_t> unpack_colour(const Atlas& atlas, int32_t workers) {
     return out;
   }
   for_each_block(atlas, workers, [&](size_t block, size_t first, size_t width) {
-    ColourBlock texel;
+    impostor::ColourBlock texel;
     decode_colour(atlas.format, atlas.colour, block, texel);
     for (size_t i = 0; i < 16; ++i) {
       std::copy_n(texel[i].begin(), 4,
@@ -122,11 +126,11 @@ std::vector<uint8_t> unpack_colour(const Atlas& atlas, int32_t workers) {
 }
 
 std::vector<uint8_t> unpack_normal(const Atlas& atlas, int32_t workers) {
-  if (!in_blocks(atlas.format)) return atlas.normal;
-  std::vector<uint8_t> out(texel_count(atlas) * 2);
+  if (!impostor::in_blocks(atlas.format)) return atlas.normal;
+  std::vector<uint8_t> out(impostor::texel_count(atlas) * 2);
   for_each_block(atlas, workers, [&](size_t block, size_t first, size_t width) {
     for (size_t channel = 0; channel < 2; ++channel) {
-      ChannelBlock values;
+      impostor::ChannelBlock values;
       decode_channel(atlas.format, bytes_at(atlas.normal, block * 16 + channel * 8), values);
       for (size_t i = 0; i < 16; ++i) out[2 * texel_of(first, width, i) + channel] = values[i];
     }
@@ -137,8 +141,8 @@ std::vector<uint8_t> unpack_normal(const Atlas& atlas, int32_t workers) {
 std::vector<uint8_t> pack_colour(const Atlas& atlas, const std::vector<uint8_t>& colour,
                                  AtlasFormat format, int32_t workers) {
   if (format == AtlasFormat::kRgba8) return colour;
-  const size_t texels = texel_count(atlas);
-  std::vector<uint8_t> out(colour_bytes(format, texels));
+  const size_t texels = impostor::texel_count(atlas);
+  std::vector<uint8_t> out(impostor::colour_bytes(format, texels));
   if (format == AtlasFormat::kRgb5a1) {
     const auto five = [&](size_t i) { return (colour[i] * 31 + 127) / 255; };
     for (size_t i = 0; i < texels; ++i) {
@@ -150,7 +154,7 @@ std::vector<uint8_t> pack_colour(const Atlas& atlas, const std::vector<uint8_t>&
     return out;
   }
   for_each_block(atlas, workers, [&](size_t block, size_t first, size_t width) {
-    ColourBlock texel;
+    impostor::ColourBlock texel;
     for (size_t i = 0; i < 16; ++i) {
       std::copy_n(colour.begin() + static_cast<ptrdiff_t>(4 * texel_of(first, width, i)), 4,
                   texel[i].begin());
@@ -163,18 +167,19 @@ std::vector<uint8_t> pack_colour(const Atlas& atlas, const std::vector<uint8_t>&
 std::vector<uint8_t> pack_normal(const Atlas& atlas, const std::vector<uint8_t>& normal,
                                  const std::vector<uint8_t>& colour, AtlasFormat format,
                                  int32_t workers) {
-  if (!in_blocks(format)) return normal;
-  std::vector<uint8_t> out(texel_count(atlas));
+  if (!impostor::in_blocks(format)) return normal;
+  std::vector<uint8_t> out(impostor::texel_count(atlas));
   for_each_block(atlas, workers, [&](size_t block, size_t first, size_t width) {
-    TexelWeights weights;
+    impostor::TexelWeights weights;
     for (size_t i = 0; i < 16; ++i) {
       weights[i] = colour[4 * texel_of(first, width, i) + 3] > 0 ? 1 : 0;
     }
     for (size_t channel = 0; channel < 2; ++channel) {
-      ChannelBlock values;
+      impostor::ChannelBlock values;
       for (size_t i = 0; i < 16; ++i) values[i] = normal[2 * texel_of(first, width, i) + channel];
-      put(is_etc2(format) ? encode_eac11(values, weights) : encode_bc4(values, weights), out,
-          block * 16 + channel * 8);
+      put(is_etc2(format) ? impostor::encode_eac11(values, weights)
+                          : impostor::encode_bc4(values, weights),
+          out, block * 16 + channel * 8);
     }
   });
   return out;
@@ -207,12 +212,12 @@ Atlas convert_atlas(const Atlas& atlas, AtlasFormat format, int32_t workers) {
 }
 
 uint64_t packed_colour_bytes(const Atlas& atlas, AtlasFormat format) {
-  return colour_bytes(format, texel_count(atlas));
+  return impostor::colour_bytes(format, impostor::texel_count(atlas));
 }
 
 uint64_t sheet_colour_bytes(const AtlasShape& shape, AtlasFormat format) {
   const size_t side = (static_cast<size_t>(shape.pixels) + 3) / 4 * 4;
-  return colour_bytes(format, shape.view(shape.frames, 0, 0) * side * side);
+  return impostor::colour_bytes(format, shape.view(shape.frames, 0, 0) * side * side);
 }
 
 double atlas_psnr(const Atlas& exact, const Atlas& other) {

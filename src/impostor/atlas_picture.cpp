@@ -18,7 +18,8 @@ Vec3d lit(const uint8_t* colour, const uint8_t* normal) {
   const double x = (normal[0] - 128) / 127.0, y = (normal[1] - 128) / 127.0;
   const double z = std::sqrt(std::max(0.0, 1 - x * x - y * y));
   const double light = 0.45 + 1.1 * std::max(0.0, dot({x, y, z}, kLight));
-  return Vec3d{decode_colour(colour[0]), decode_colour(colour[1]), decode_colour(colour[2])} *
+  return Vec3d{impostor::decode_colour(colour[0]), impostor::decode_colour(colour[1]),
+               impostor::decode_colour(colour[2])} *
          light;
 }
 
@@ -31,7 +32,7 @@ Image draw_atlas(const Atlas& packed, int32_t frame) {
   THRONG_ASSERT(frame >= 0 && frame < s.frames);
   Image image{.width = s.directions * s.pixels, .height = s.elevations * s.pixels, .rgb = {}};
   image.rgb.assign(static_cast<size_t>(image.width) * static_cast<size_t>(image.height) * 3,
-                   encode_colour(kPaper));
+                   impostor::encode_colour(kPaper));
   for (int32_t row = 0; row < s.elevations; ++row) {
     for (int32_t column = 0; column < s.directions; ++column) {
       const AtlasView& view = atlas.views[s.view(frame, row, column)];
@@ -48,9 +49,9 @@ Image draw_atlas(const Atlas& packed, int32_t frame) {
                                static_cast<size_t>(image.width) +
                            static_cast<size_t>(column * s.pixels + view.left + x)) *
                           3;
-          image.rgb[to] = encode_colour(mixed.x);
-          image.rgb[to + 1] = encode_colour(mixed.y);
-          image.rgb[to + 2] = encode_colour(mixed.z);
+          image.rgb[to] = impostor::encode_colour(mixed.x);
+          image.rgb[to + 1] = impostor::encode_colour(mixed.y);
+          image.rgb[to + 2] = impostor::encode_colour(mixed.z);
         }
       }
     }

@@ -7,7 +7,7 @@
 #include "throng/impostor.h"
 
 /// Sizes in bytes of the arrays of an atlas.
-namespace throng {
+namespace throng::impostor {
 
 inline bool in_blocks(AtlasFormat format) { return format >= AtlasFormat::kBc1; }
 
@@ -37,4 +37,4 @@ inline size_t normal_bytes(AtlasFormat format, size_t texels) {
   return in_blocks(format) ? texels : texels * 2;
 }
 
-}  // namespace throng
+}  // namespace throng::impostor

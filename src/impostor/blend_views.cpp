@@ -8,7 +8,7 @@
 #include "impostor/choose_view.h"
 
 // Blends the views around the direction to the eye by how near it is to the borders between them.
-namespace throng {
+namespace throng::impostor {
 namespace {
 
 constexpr uint32_t kWhole = 256;  // Of a share.
@@ -70,4 +70,4 @@ size_t write_blends(const PackShared& s, const BlendShape& shape, const PackInpu
   return written;
 }
 
-}  // namespace throng
+}  // namespace throng::impostor

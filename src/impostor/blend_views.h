@@ -9,7 +9,7 @@
 
 /// Transitions between views without a step: near the border of two columns or rows an avatar is
 /// shown by both, with shares that change as the eye crosses the border.
-namespace throng {
+namespace throng::impostor {
 
 struct BlendShape {
   float share = 0;  ///< Of the angle between two views, over which they blend. [> 0, <= 1]
@@ -21,4 +21,4 @@ struct BlendShape {
 size_t write_blends(const PackShared& shared, const BlendShape& shape, const PackInput& input,
                     PackBlock& block, BlendedInstance* out);
 
-}  // namespace throng
+}  // namespace throng::impostor

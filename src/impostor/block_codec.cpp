@@ -11,7 +11,7 @@
 // extremes along the axis of largest variance, are fitted to their texels by least squares, and are
 // then moved by single steps of their quantised components while the error falls. Invisible texels
 // have no weight, so all of a block's range serves the visible ones.
-namespace throng {
+namespace throng::impostor {
 namespace {
 
 using Colour = std::array<int32_t, 3>;
@@ -306,4 +306,4 @@ void decode_bc4(const Bytes8& bytes, ChannelBlock& block) {
   for (size_t i = 0; i < 16; ++i) block[i] = static_cast<uint8_t>(values[bits >> (3 * i) & 7]);
 }
 
-}  // namespace throng
+}  // namespace throng::impostor

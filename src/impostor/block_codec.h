@@ -7,7 +7,7 @@
 
 /// Blocks of 4 x 4 texels that graphics cards read: BC1 (S3TC DXT1) for colours, BC4 (RGTC) for
 /// one channel. BC3 is BC4 of alpha before BC1 of colour; BC5 is two BC4.
-namespace throng {
+namespace throng::impostor {
 
 using ColourBlock = std::array<std::array<uint8_t, 4>, 16>;  ///< Red, green, blue, alpha; by row.
 using ChannelBlock = std::array<uint8_t, 16>;
@@ -23,4 +23,4 @@ void decode_bc1(const Bytes8& bytes, bool holes, ColourBlock& block);
 [[nodiscard]] Bytes8 encode_bc4(const ChannelBlock& block, const TexelWeights& weights);
 void decode_bc4(const Bytes8& bytes, ChannelBlock& block);
 
-}  // namespace throng
+}  // namespace throng::impostor

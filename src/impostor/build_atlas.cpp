@@ -22,7 +22,7 @@ namespace throng {
 namespace {
 
 // A view without its empty rows and columns, with one empty texel around.
-AtlasView trim(const FigureView& view) {
+AtlasView trim(const impostor::FigureView& view) {
   int32_t x0 = view.pixels, y0 = view.pixels, x1 = -1, y1 = -1;
   for (int32_t i = 0; i < view.pixels * view.pixels; ++i) {
     if (view.colour[static_cast<size_t>(i)][3] == 0) continue;
@@ -81,7 +81,7 @@ void bleed(Texels& texels, int32_t width, int32_t height) {
   }
 }
 
-Texels cut_out(const FigureView& view, const AtlasView& part) {
+Texels cut_out(const impostor::FigureView& view, const AtlasView& part) {
   Texels out;
   const auto count = static_cast<size_t>(part.width) * part.height;
   out.colour.assign(count, {0, 0, 0, 0});
@@ -122,14 +122,16 @@ void find_part_colours(Atlas& atlas) {
     const uint8_t* texel = &atlas.colour[i * 4];
     if (texel[3] < 128) continue;
     const auto part = static_cast<size_t>(atlas.mask[i] >> 5);
-    sum[part] = sum[part] +
-                Vec3d{decode_colour(texel[0]), decode_colour(texel[1]), decode_colour(texel[2])};
+    sum[part] =
+        sum[part] + Vec3d{impostor::decode_colour(texel[0]), impostor::decode_colour(texel[1]),
+                          impostor::decode_colour(texel[2])};
     ++count[part];
   }
   for (size_t part = 0; part < kBodyParts; ++part) {
     if (count[part] == 0) continue;
     const Vec3d mean = sum[part] * (1.0 / static_cast<double>(count[part]));
-    atlas.part_colour[part] = {encode_colour(mean.x), encode_colour(mean.y), encode_colour(mean.z)};
+    atlas.part_colour[part] = {impostor::encode_colour(mean.x), impostor::encode_colour(mean.y),
+                               impostor::encode_colour(mean.z)};
   }
 }
 
@@ -137,8 +139,8 @@ void find_part_colours(Atlas& atlas) {
 
 Result<Atlas> create_atlas(const Character& character, const AtlasConfig& config,
                            Context& context) {
-  if (auto sound = check_atlas_config(config); !sound) return sound.error();
-  Result<FigureFrames> poses = pose_frames(character, config);
+  if (auto sound = impostor::check_atlas_config(config); !sound) return sound.error();
+  Result<impostor::FigureFrames> poses = impostor::pose_frames(character, config);
   if (!poses) return poses.error();
 
   Atlas atlas;
@@ -156,8 +158,9 @@ Result<Atlas> create_atlas(const Character& character, const AtlasConfig& config
   atlas.views.resize(count);
   std::vector<Texels> texels(count);
   const auto workers = static_cast<size_t>(worker_count(config.workers));
-  std::vector<FigureRaster> rasters(workers, FigureRaster(character, config.pixels));
-  std::vector<FigureView> views(workers);
+  std::vector<impostor::FigureRaster> rasters(workers,
+                                              impostor::FigureRaster(character, config.pixels));
+  std::vector<impostor::FigureView> views(workers);
   std::atomic<uint64_t> done = 0;
   std::mutex telling;
   parallel_for_worker(count, config.workers, [&](size_t index, int32_t worker) {
@@ -166,7 +169,8 @@ Result<Atlas> create_atlas(const Character& character, const AtlasConfig& config
     const auto column = static_cast<int32_t>(index) % config.directions;
     const auto row = static_cast<int32_t>(index) / config.directions % config.elevations;
     const auto frame = index / static_cast<size_t>(config.directions * config.elevations);
-    FigureCamera camera = figure_camera(column, config.directions, row, config.elevations);
+    impostor::FigureCamera camera =
+        impostor::figure_camera(column, config.directions, row, config.elevations);
     camera.centre = {0, atlas.shape.centre, 0};
     camera.side = side;
     rasters[w].draw(poses->frames[frame], camera, views[w]);
@@ -179,10 +183,10 @@ Result<Atlas> create_atlas(const Character& character, const AtlasConfig& config
   });
   if (context.cancel) return Error{Errc::kCancelled, "atlas: cancelled"};
 
-  const PageSize size = pack_views(atlas.views);
-  if (size.pages > kMaxPages) {
+  const impostor::PageSize size = impostor::pack_views(atlas.views);
+  if (size.pages > impostor::kMaxPages) {
     return Error{Errc::kLimit, "atlas: " + std::to_string(size.pages) + " pages, more than " +
-                                   std::to_string(kMaxPages) +
+                                   std::to_string(impostor::kMaxPages) +
                                    "; take fewer frames, directions or pixels"};
   }
   atlas.width = size.width;

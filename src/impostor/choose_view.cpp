@@ -22,13 +22,14 @@ ViewChoice choose_view(const AtlasShape& shape, const AtlasClip& clip, Vec3d to_
                        double phase) {
   const auto x = static_cast<float>(to_eye.x), z = static_cast<float>(to_eye.z);
   const auto sectors = static_cast<uint32_t>(2 * shape.directions);
-  const auto sector = static_cast<int32_t>(
-      view_sector(x, z, angle_steps(static_cast<float>(wrap(heading))), sectors));
+  const auto sector = static_cast<int32_t>(impostor::view_sector(
+      x, z, impostor::angle_steps(static_cast<float>(wrap(heading))), sectors));
   ViewChoice choice;
   choice.mirrored = sector >= shape.directions;
   choice.column = choice.mirrored ? 2 * shape.directions - 1 - sector : sector;
-  choice.row = static_cast<int32_t>(view_row(std::sqrt(x * x + z * z), static_cast<float>(to_eye.y),
-                                             static_cast<uint32_t>(shape.elevations)));
+  choice.row = static_cast<int32_t>(impostor::view_row(std::sqrt(x * x + z * z),
+                                                       static_cast<float>(to_eye.y),
+                                                       static_cast<uint32_t>(shape.elevations)));
   auto frame = static_cast<int32_t>(wrap(phase) * clip.frames + 0.5) % clip.frames;
   if (choice.mirrored) frame = (frame + clip.frames / 2) % clip.frames;
   choice.frame = clip.first_frame + frame;

@@ -9,7 +9,7 @@
 
 /// The arithmetic that chooses a view, for one avatar and for arrays. Angles are 65536 steps
 /// a turn, so that sums wrap by themselves.
-namespace throng {
+namespace throng::impostor {
 
 /// An angle in turns as steps; any finite turns in [-1e4, 1e4].
 inline uint32_t angle_steps(float turns) {
@@ -43,4 +43,4 @@ inline uint32_t view_row(float flat, float rise, uint32_t rows) {
   return fine_row(flat, rise, rows) >> 16;
 }
 
-}  // namespace throng
+}  // namespace throng::impostor

@@ -9,7 +9,7 @@
 // Source: [KDF]. A block is a base, a factor, and one of sixteen tables of eight steps.
 // For each table, the encoder tries the factors that just span the values, with a base that centres
 // them; the best of all is then moved by single steps while the error falls.
-namespace throng {
+namespace throng::impostor {
 namespace {
 
 using namespace etc2;
@@ -153,4 +153,4 @@ Bytes8 encode_eac11(const ChannelBlock& block, const TexelWeights& weights) {
 
 void decode_eac11(const Bytes8& bytes, WideChannelBlock& block) { decode(kEleven, bytes, block); }
 
-}  // namespace throng
+}  // namespace throng::impostor

@@ -10,7 +10,7 @@
 /// Blocks of 4 x 4 texels that the graphics cards of phones read: ETC2 for colours, EAC for one
 /// channel. RGBA8 is EAC of alpha before ETC2 of colour; RG11 is two EAC of 11 bits. Texels are
 /// given by row, though the blocks hold them by column. Source: [KDF].
-namespace throng {
+namespace throng::impostor {
 
 using WideChannelBlock = std::array<uint16_t, 16>;  ///< 11 bits each, by row.
 
@@ -28,4 +28,4 @@ void decode_eac(const Bytes8& bytes, ChannelBlock& block);
 [[nodiscard]] Bytes8 encode_eac11(const ChannelBlock& block, const TexelWeights& weights);
 void decode_eac11(const Bytes8& bytes, WideChannelBlock& block);
 
-}  // namespace throng
+}  // namespace throng::impostor

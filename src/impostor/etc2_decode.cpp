@@ -7,7 +7,7 @@
 // base may be stored as a difference from the first. If a component of the sum leaves the range of
 // five bits, which no encoder of the older ETC1 wrote, the bits mean another mode: red T, green H,
 // blue planar.
-namespace throng {
+namespace throng::impostor {
 namespace {
 
 using namespace etc2;
@@ -98,4 +98,4 @@ void decode_etc2(const Bytes8& bytes, bool holes, ColourBlock& block) {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::impostor

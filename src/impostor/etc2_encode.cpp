@@ -12,7 +12,7 @@
 // steps is fitted like k-means: texels choose steps, then each base becomes the mean of the texels
 // that chose it, less their steps; at last bases move by single steps of their quantised components
 // while the error falls. Source of the modes: [KDF].
-namespace throng {
+namespace throng::impostor {
 namespace {
 
 using namespace etc2;
@@ -501,4 +501,4 @@ Bytes8 encode_etc2(const ColourBlock& block, const TexelWeights& weights, bool h
   return bytes_of(best.word | hole_bits);
 }
 
-}  // namespace throng
+}  // namespace throng::impostor

@@ -10,7 +10,7 @@
 #include "impostor/block_codec.h"
 
 /// The tables of ETC2, and how its colours widen to 8 bits. Source: [KDF].
-namespace throng::etc2 {
+namespace throng::impostor::etc2 {
 
 using Colour = std::array<int32_t, 3>;
 
@@ -88,4 +88,4 @@ inline int32_t bits(uint64_t word, int32_t low, int32_t count) {
 }
 inline int32_t signed3(int32_t three) { return three < 4 ? three : three - 8; }
 
-}  // namespace throng::etc2
+}  // namespace throng::impostor::etc2

@@ -8,7 +8,7 @@
 #include "impostor/gait.h"
 
 // Poses all frames of all clips of a figure, on the spot, and measures them.
-namespace throng {
+namespace throng::impostor {
 
 Result<void> check_atlas_config(const AtlasConfig& config) {
   const auto bad = [](const std::string& what) {
@@ -73,4 +73,4 @@ Result<FigureFrames> pose_frames(const Character& character, const AtlasConfig& 
   return poses;
 }
 
-}  // namespace throng
+}  // namespace throng::impostor

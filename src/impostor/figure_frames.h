@@ -7,7 +7,7 @@
 #include "throng/base.h"
 #include "throng/impostor.h"
 
-namespace throng {
+namespace throng::impostor {
 
 /// Fails with kBadConfig.
 [[nodiscard]] Result<void> check_atlas_config(const AtlasConfig& config);
@@ -23,4 +23,4 @@ struct FigureFrames {
 [[nodiscard]] Result<FigureFrames> pose_frames(const Character& character,
                                                const AtlasConfig& config);
 
-}  // namespace throng
+}  // namespace throng::impostor

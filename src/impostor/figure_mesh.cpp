@@ -5,7 +5,7 @@
 #include "core/trig.h"
 
 // Builds tubes from rings of vertices.
-namespace throng {
+namespace throng::impostor {
 namespace {
 
 constexpr uint32_t kSides = 20;  // Even: left and right then mirror each other.
@@ -62,4 +62,4 @@ void add_tube(Character& character, const std::vector<BodyRing>& rings, uint8_t 
   }
 }
 
-}  // namespace throng
+}  // namespace throng::impostor

@@ -7,7 +7,7 @@
 #include "throng/impostor.h"
 
 /// Bodies from rings: a limb is a tube through ellipses that lie flat.
-namespace throng {
+namespace throng::impostor {
 
 /// An ellipse around `centre` that follows `bone`, and `other` by `share`.
 struct BodyRing {
@@ -21,4 +21,4 @@ struct BodyRing {
 /// Adds a closed tube through the rings, from below to above, with smooth normals.
 void add_tube(Character& character, const std::vector<BodyRing>& rings, uint8_t material);
 
-}  // namespace throng
+}  // namespace throng::impostor

@@ -41,8 +41,8 @@ uint16_t share_of(double value, double low, double high) {
 
 Result<FigureModel> create_figure_model(const Character& character, const AtlasConfig& config,
                                         Context& context) {
-  if (auto sound = check_atlas_config(config); !sound) return sound.error();
-  Result<FigureFrames> frames = pose_frames(character, config);
+  if (auto sound = impostor::check_atlas_config(config); !sound) return sound.error();
+  Result<impostor::FigureFrames> frames = impostor::pose_frames(character, config);
   if (!frames) return frames.error();
   FigureModel model;
   model.clips = std::move(frames->clips);
@@ -59,10 +59,10 @@ Result<FigureModel> create_figure_model(const Character& character, const AtlasC
       if (!is_new) continue;
       position_of.push_back(position);
       const CharacterMaterial& material = character.materials[character.material[t]];
-      model.paint.push_back(
-          {.colour = {encode_colour(material.colour.x), encode_colour(material.colour.y),
-                      encode_colour(material.colour.z)},
-           .part = static_cast<uint8_t>(material.part)});
+      model.paint.push_back({.colour = {impostor::encode_colour(material.colour.x),
+                                        impostor::encode_colour(material.colour.y),
+                                        impostor::encode_colour(material.colour.z)},
+                             .part = static_cast<uint8_t>(material.part)});
     }
     model.triangles.push_back(corners);
   }

@@ -12,7 +12,7 @@
 // Rasterises with a z-buffer of kSub x kSub samples a texel. It uses only sums and products of
 // doubles, so that every machine makes the same bytes; a graphics driver would be faster, but its
 // results differ between machines.
-namespace throng {
+namespace throng::impostor {
 namespace {
 
 constexpr int32_t kSub = 4;
@@ -143,4 +143,4 @@ void FigureRaster::resolve(const PosedMesh& mesh, const FigureCamera& camera,
   }
 }
 
-}  // namespace throng
+}  // namespace throng::impostor

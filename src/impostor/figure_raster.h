@@ -10,7 +10,7 @@
 #include "throng/impostor.h"
 
 /// One view of a figure, rasterised in software: the same texels on every machine, no driver.
-namespace throng {
+namespace throng::impostor {
 
 /// The camera of a view: parallel rays along -`towards`, onto a square around `centre`.
 struct FigureCamera {
@@ -54,4 +54,4 @@ class FigureRaster {
   std::vector<Vec3d> projected_;
 };
 
-}  // namespace throng
+}  // namespace throng::impostor

@@ -11,7 +11,7 @@
 // foot moves forward. So the speed at a moment is that of the low vertex that moves back fastest,
 // and the median over all moments is the speed of the walk: toes that scrape the ground and heels
 // that roll off it are few.
-namespace throng {
+namespace throng::impostor {
 namespace {
 
 constexpr int32_t kMoments = 96;
@@ -79,4 +79,4 @@ double stride_of_clip(const Character& character, size_t clip, const ClipPlace& 
   return stride < kStands * height ? 0 : stride;
 }
 
-}  // namespace throng
+}  // namespace throng::impostor

@@ -8,7 +8,7 @@
 #include "throng/impostor.h"
 
 /// How a clip moves its figure.
-namespace throng {
+namespace throng::impostor {
 
 /// A clip's frame of reference: what is subtracted from a vertex so that the figure walks on the
 /// spot, over the origin.
@@ -28,4 +28,4 @@ struct ClipPlace {
 void pose_in_place(const Character& character, size_t clip, const ClipPlace& place, double share,
                    PosedMesh& out);
 
-}  // namespace throng
+}  // namespace throng::impostor

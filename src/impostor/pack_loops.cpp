@@ -14,7 +14,7 @@
 // Loops without a branch, compiled once for each set of vector instructions: the compiler
 // vectorises them, and the results are those of choose_view.
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::impostor {
 namespace HWY_NAMESPACE {
 
 void FindSeen(const PackShared& s, const PackInput& in, PackBlock& block) {
@@ -64,11 +64,11 @@ void FindViews(const PackShared& shared, const PackInput& input, PackBlock& bloc
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::impostor
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace throng {
+namespace throng::impostor {
 
 HWY_EXPORT(FindViews);
 
@@ -76,5 +76,5 @@ void find_views(const PackShared& shared, const PackInput& input, PackBlock& blo
   HWY_DYNAMIC_DISPATCH(FindViews)(shared, input, block);
 }
 
-}  // namespace throng
+}  // namespace throng::impostor
 #endif

@@ -8,7 +8,7 @@
 
 /// The inner loops of packing: a block of avatars at a time, in arrays that fit the first-level
 /// cache.
-namespace throng {
+namespace throng::impostor {
 
 inline constexpr size_t kPackBlock = 1024;
 
@@ -49,4 +49,4 @@ struct PackBlock {
 /// Fills `seen` and `seen_any`, and `view` if any avatar is seen.
 void find_views(const PackShared& shared, const PackInput& input, PackBlock& block);
 
-}  // namespace throng
+}  // namespace throng::impostor

@@ -10,6 +10,8 @@
 namespace throng {
 namespace {
 
+using impostor::operator*;
+
 // The two keys around `time`, and the share of the second; constant before the first and after the
 // last.
 struct Between {
@@ -63,13 +65,14 @@ Transform without_scale(const Transform& rest, Vec3d scale) {
 
 Transform local_pose(const Joint& joint, const JointTrack& track, double time) {
   const Transform& rest = joint.rest;
-  Vec3d scale{length(column(rest, 0)), length(column(rest, 1)), length(column(rest, 2))};
+  Vec3d scale{length(impostor::column(rest, 0)), length(impostor::column(rest, 1)),
+              length(impostor::column(rest, 2))};
   const Transform rest_turn = without_scale(rest, scale);
   if (!track.scales.empty()) scale = value_at(track.scale_times, track.scales, time);
   const Vec3d position = track.positions.empty()
-                             ? column(rest, 3)
+                             ? impostor::column(rest, 3)
                              : value_at(track.position_times, track.positions, time);
-  if (!track.rotations.empty()) return compose(position, rotation_at(track, time), scale);
+  if (!track.rotations.empty()) return impostor::compose(position, rotation_at(track, time), scale);
   Transform t;
   const double by[3] = {scale.x, scale.y, scale.z};
   for (size_t r = 0; r < 3; ++r) {
@@ -126,7 +129,7 @@ void pose_character(const Character& character, size_t clip, double seconds, Pos
   for (size_t v = 0; v < character.positions.size(); ++v) {
     const Transform t = blend(bones, character.influences[v]);
     out.positions[v] = t(character.positions[v]);
-    const Vec3d normal = turn(t, character.normals[v]);
+    const Vec3d normal = impostor::turn(t, character.normals[v]);
     const double size = length(normal);
     out.normals[v] = size > 0 ? normal * (1 / size) : Vec3d{0, 1, 0};
   }

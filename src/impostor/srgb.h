@@ -8,7 +8,7 @@
 
 /// Colours as they are stored. The curve is a square root, not that of sRGB: a shader inverts it
 /// with one product, and its bytes are the same everywhere; the two differ by less than 0.04.
-namespace throng {
+namespace throng::impostor {
 
 inline uint8_t encode_colour(double linear) {
   const double root = std::sqrt(std::clamp(linear, 0.0, 1.0));
@@ -20,4 +20,4 @@ inline double decode_colour(uint8_t stored) {
   return root * root;
 }
 
-}  // namespace throng
+}  // namespace throng::impostor

@@ -8,7 +8,7 @@
 
 // Packs views in rows, tallest first: from one elevation, figures have nearly one height, so rows
 // waste little, and each view's place follows from the sizes alone.
-namespace throng {
+namespace throng::impostor {
 namespace {
 
 struct Row {
@@ -74,4 +74,4 @@ PageSize pack_views(std::span<AtlasView> views) {
   return size;
 }
 
-}  // namespace throng
+}  // namespace throng::impostor

@@ -8,7 +8,7 @@
 #include "throng/impostor.h"
 
 /// Where views lie on the pages of an atlas.
-namespace throng {
+namespace throng::impostor {
 
 inline constexpr int32_t kPageWidth = 1024;
 inline constexpr int32_t kPageHeight = 2048;  ///< Every WebGL 2 implementation allows it.
@@ -22,4 +22,4 @@ struct PageSize {
 /// about equal height, tallest first. Writes page, x and y. Pages have one size, as low as fits.
 [[nodiscard]] PageSize pack_views(std::span<AtlasView> views);
 
-}  // namespace throng
+}  // namespace throng::impostor

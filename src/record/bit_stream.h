@@ -9,7 +9,7 @@
 #include <vector>
 
 /// Numbers as runs of bits, the lowest bit of a byte first.
-namespace throng {
+namespace throng::record {
 
 /// Small numbers of either sign as small numbers: 0, -1, 1, -2 ... are 0, 1, 2, 3 ...
 constexpr uint32_t zigzag(int32_t v) {
@@ -126,4 +126,4 @@ class BitReader {
   uint64_t at_ = 0;  // bits
 };
 
-}  // namespace throng
+}  // namespace throng::record

@@ -15,7 +15,7 @@
 // an avatar that stands costs a bit a number. One large difference is likely to stay the only one,
 // so the parameter grows slowly. After a turn the expected move has the new direction. If the run
 // may lean, the changed axes follow; an added avatar starts upright. Time: linear in the avatars.
-namespace throng {
+namespace throng::record {
 namespace {
 
 constexpr double kMaxCoordinate = 2e6;  // from the origin [m]: millimetres fit 32 bits
@@ -358,4 +358,4 @@ bool FrameDecoder::decode(std::span<const uint8_t> bytes, uint32_t avatars) {
   return in.ok();
 }
 
-}  // namespace throng
+}  // namespace throng::record

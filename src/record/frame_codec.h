@@ -10,7 +10,7 @@
 #include "throng/recording.h"
 
 /// Frames as bits: differences from the expected positions, headings and axes.
-namespace throng {
+namespace throng::record {
 
 /// A direction: its point on an octahedron that stands on its tip, unfolded into a square; upright
 /// is (0, 0). [-kUpSteps to kUpSteps]
@@ -68,4 +68,4 @@ class FrameDecoder {
   std::vector<Track> tracks_, kept_, added_;
 };
 
-}  // namespace throng
+}  // namespace throng::record

@@ -27,9 +27,9 @@ flatbuffers::DetachedBuffer info_bytes(const RecordingInfo& info) {
   }
   // Without an origin, the older version, which programs without origins can read.
   const bool has_origin = info.origin != Vec3d{};
-  const uint32_t version = has_origin   ? kReplayVersionWithOrigin
-                           : info.leans ? kReplayVersionThatLeans
-                                        : kReplayVersion;
+  const uint32_t version = has_origin   ? record::kReplayVersionWithOrigin
+                           : info.leans ? record::kReplayVersionThatLeans
+                                        : record::kReplayVersion;
   const auto settings = builder.CreateString(info.settings);
   const auto model = builder.CreateString(info.model);
   const auto all_classes = builder.CreateVector(classes);
@@ -45,7 +45,7 @@ flatbuffers::DetachedBuffer info_bytes(const RecordingInfo& info) {
 
 Error bad_config(const std::string& what) { return {Errc::kBadConfig, "recording: " + what}; }
 
-bool is_origin(double v) { return std::fabs(v) <= kFarthestOrigin && v == std::floor(v); }
+bool is_origin(double v) { return std::fabs(v) <= record::kFarthestOrigin && v == std::floor(v); }
 
 }  // namespace
 
@@ -55,8 +55,8 @@ struct Recorder::State {
   size_t classes = 0;
   std::FILE* file = nullptr;
   int reason = 0;  // errno of the first failure
-  FrameEncoder encoder;
-  std::vector<FrameEntry> entries;
+  record::FrameEncoder encoder;
+  std::vector<record::FrameEntry> entries;
   std::vector<StepHash> hashes;
   std::vector<uint8_t> bits;   // of the frames of this chunk
   std::vector<uint8_t> chunk;  // as it is written
@@ -76,7 +76,8 @@ struct Recorder::State {
                            "; check the folder, its rights and the free space"};
   }
 
-  Result<void> write(ChunkHead head, std::initializer_list<std::span<const uint8_t>> parts) {
+  Result<void> write(record::ChunkHead head,
+                     std::initializer_list<std::span<const uint8_t>> parts) {
     chunk.resize(sizeof head);
     for (const auto& part : parts) chunk.insert(chunk.end(), part.begin(), part.end());
     chunk.resize((chunk.size() + 7) & ~size_t{7});
@@ -99,8 +100,9 @@ struct Recorder::State {
 
   Result<void> flush() {
     if (file == nullptr || (entries.empty() && hashes.empty())) return {};
-    ChunkHead head;
-    head.kind = static_cast<uint32_t>(key ? ChunkKind::kKeyFrames : ChunkKind::kFrames);
+    record::ChunkHead head;
+    head.kind =
+        static_cast<uint32_t>(key ? record::ChunkKind::kKeyFrames : record::ChunkKind::kFrames);
     head.first_frame = frames - entries.size();
     head.frames = static_cast<uint32_t>(entries.size());
     head.hashes = static_cast<uint32_t>(hashes.size());
@@ -161,15 +163,15 @@ Result<Recorder> Recorder::create(const std::string& path, const RecordingInfo& 
   state->path = path;
   state->config = config;
   state->classes = info.classes.size();
-  state->encoder = FrameEncoder(info.leans, info.origin);
+  state->encoder = record::FrameEncoder(info.leans, info.origin);
   state->file = std::fopen(path.c_str(), "wb");
   if (state->file == nullptr) {
     state->reason = errno;
     return state->io_error();
   }
   std::setvbuf(state->file, nullptr, _IONBF, 0);
-  ChunkHead head;
-  head.kind = static_cast<uint32_t>(ChunkKind::kRun);
+  record::ChunkHead head;
+  head.kind = static_cast<uint32_t>(record::ChunkKind::kRun);
   const auto bytes = info_bytes(info);
   if (auto ok = state->write(head, {{bytes.data(), bytes.size()}}); !ok) return ok.error();
   return Recorder(std::move(state));
@@ -228,8 +230,8 @@ Result<void> Recorder::flush() { return state_->flush(); }
 Result<void> Recorder::finish(std::string_view outcome) {
   State& s = *state_;
   if (auto ok = s.flush(); !ok) return ok;
-  ChunkHead head;
-  head.kind = static_cast<uint32_t>(ChunkKind::kEnd);
+  record::ChunkHead head;
+  head.kind = static_cast<uint32_t>(record::ChunkKind::kEnd);
   head.first_frame = s.frames;
   head.first_time = head.last_time = s.last_time;
   const auto* text = reinterpret_cast<const uint8_t*>(outcome.data());

@@ -25,7 +25,7 @@ constexpr const char* kBadSettings = "its settings are corrupt; record the run a
 
 // A chunk of frames, found by its head.
 struct Chunk {
-  ChunkHead head;
+  record::ChunkHead head;
   uint64_t at = 0;    // where its bytes begin
   uint64_t key = 0;   // the key chunk at or before it: its first frame needs none before it
   bool good = false;  // its bytes have been checked
@@ -48,7 +48,7 @@ struct Replay::State {
 
   // The decoder's state: the frame before `next_frame`, in chunk `chunk`.
   static constexpr uint64_t kNone = ~uint64_t{0};
-  FrameDecoder decoder;
+  record::FrameDecoder decoder;
   uint64_t next_frame = kNone;
   uint64_t next_at = 0;  // where its bytes begin
 
@@ -57,7 +57,7 @@ struct Replay::State {
   }
 
   [[nodiscard]] Error bad_chunk(const Chunk& chunk) const {
-    return bad("the chunk at byte " + std::to_string(chunk.at - sizeof(ChunkHead)) +
+    return bad("the chunk at byte " + std::to_string(chunk.at - sizeof(record::ChunkHead)) +
                " is corrupt; frames " + std::to_string(chunk.head.first_frame) + " to " +
                std::to_string(chunk.head.first_frame + chunk.head.frames) +
                " are lost, others can be read");
@@ -70,11 +70,11 @@ struct Replay::State {
     std::memcpy(&value, bytes.data() + at + index * sizeof(T), sizeof(T));
     return value;
   }
-  [[nodiscard]] FrameEntry entry(const Chunk& chunk, uint64_t frame) const {
-    return load<FrameEntry>(chunk.at, frame - chunk.head.first_frame);
+  [[nodiscard]] record::FrameEntry entry(const Chunk& chunk, uint64_t frame) const {
+    return load<record::FrameEntry>(chunk.at, frame - chunk.head.first_frame);
   }
   [[nodiscard]] static uint64_t hashes_at(const Chunk& chunk) {
-    return chunk.at + uint64_t{chunk.head.frames} * sizeof(FrameEntry);
+    return chunk.at + uint64_t{chunk.head.frames} * sizeof(record::FrameEntry);
   }
   [[nodiscard]] static uint64_t bits_at(const Chunk& chunk) {
     return hashes_at(chunk) + uint64_t{chunk.head.hashes} * sizeof(StepHash);
@@ -83,12 +83,12 @@ struct Replay::State {
   // Checks a chunk's bytes once: the checksum, and that its entries fit its head and each other.
   bool check(Chunk& chunk) {
     if (chunk.good) return true;
-    const ChunkHead& head = chunk.head;
+    const record::ChunkHead& head = chunk.head;
     if (hash_bytes(bytes.data() + chunk.at, head.bytes) != head.sum) return false;
     uint64_t sum = 0;
-    FrameEntry last;
+    record::FrameEntry last;
     for (uint64_t k = 0; k < head.frames; ++k) {
-      const FrameEntry now = load<FrameEntry>(chunk.at, k);
+      const record::FrameEntry now = load<record::FrameEntry>(chunk.at, k);
       if (k > 0 && !(now.time > last.time && now.step > last.step)) return false;
       if (!(now.time >= head.first_time && now.time <= head.last_time)) return false;
       sum += now.bytes;
@@ -112,12 +112,12 @@ struct Replay::State {
     return *after;
   }
 
-  Result<void> read_info(const ChunkHead& head, uint64_t at);
+  Result<void> read_info(const record::ChunkHead& head, uint64_t at);
   Result<void> walk();
   Result<void> decode_to(uint64_t index);
 };
 
-Result<void> Replay::State::read_info(const ChunkHead& head, uint64_t at) {
+Result<void> Replay::State::read_info(const record::ChunkHead& head, uint64_t at) {
   const uint8_t* data = bytes.data() + at;
   if (hash_bytes(data, head.bytes) != head.sum) return bad(kBadSettings);
   flatbuffers::Verifier verifier(data, head.bytes);
@@ -127,15 +127,16 @@ Result<void> Replay::State::read_info(const ChunkHead& head, uint64_t at) {
   }
   const format::Recording& root = *format::GetRecording(data);
   const uint32_t version = root.version();
-  if (version < kReplayVersion || version > kReplayVersionWithOrigin) {
+  if (version < record::kReplayVersion || version > record::kReplayVersionWithOrigin) {
     return bad("recording version " + std::to_string(version) + ", this program reads " +
-               std::to_string(kReplayVersion) + " to " + std::to_string(kReplayVersionWithOrigin) +
+               std::to_string(record::kReplayVersion) + " to " +
+               std::to_string(record::kReplayVersionWithOrigin) +
                "; open it with the program that recorded it");
   }
-  const bool has_origin = version == kReplayVersionWithOrigin;
+  const bool has_origin = version == record::kReplayVersionWithOrigin;
   if (has_origin) origin = {root.origin_x(), root.origin_y(), root.origin_z()};
   for (const int64_t v : origin) {
-    if (std::fabs(static_cast<double>(v)) > kFarthestOrigin) return bad(kBadSettings);
+    if (std::fabs(static_cast<double>(v)) > record::kFarthestOrigin) return bad(kBadSettings);
   }
   if (!root.classes() || root.classes()->size() == 0 || root.classes()->size() > 256 ||
       !(root.dt() >= 1e-6 && root.dt() <= 1e6)) {
@@ -147,10 +148,10 @@ Result<void> Replay::State::read_info(const ChunkHead& head, uint64_t at) {
           .classes = {},
           .model = text_of(root.model()),
           .settings = text_of(root.settings()),
-          .leans = has_origin ? root.leans() : version == kReplayVersionThatLeans,
+          .leans = has_origin ? root.leans() : version == record::kReplayVersionThatLeans,
           .origin = {static_cast<double>(origin[0]), static_cast<double>(origin[1]),
                      static_cast<double>(origin[2])}};
-  decoder = FrameDecoder(info.leans);
+  decoder = record::FrameDecoder(info.leans);
   for (const format::RecordedClass* c : *root.classes()) {
     info.classes.push_back({text_of(c->name()), c->height(), c->radius()});
     if (!std::isfinite(c->height()) || !std::isfinite(c->radius())) {
@@ -172,13 +173,13 @@ Result<void> Replay::State::walk() {
     }
     const uint64_t left = bytes.size() - at;
     Chunk chunk;
-    ChunkHead& head = chunk.head;
+    record::ChunkHead& head = chunk.head;
     if (left < sizeof head) {
       why = "breaks off in the head of a chunk";
       break;
     }
     std::memcpy(&head, bytes.data() + at, sizeof head);
-    if (head.mark != kChunkMark || head.head_sum != head.own_sum()) {
+    if (head.mark != record::kChunkMark || head.head_sum != head.own_sum()) {
       why = "is corrupt";
       break;
     }
@@ -187,11 +188,11 @@ Result<void> Replay::State::walk() {
       break;
     }
     chunk.at = at + sizeof head;
-    const auto kind = static_cast<ChunkKind>(head.kind);
+    const auto kind = static_cast<record::ChunkKind>(head.kind);
     if (at == 0) {
-      if (kind != ChunkKind::kRun) break;
+      if (kind != record::ChunkKind::kRun) break;
       if (auto ok = read_info(head, chunk.at); !ok) return ok;
-    } else if (kind == ChunkKind::kEnd) {
+    } else if (kind == record::ChunkKind::kEnd) {
       ended = hash_bytes(bytes.data() + chunk.at, head.bytes) == head.sum;
       if (!ended) {
         why = "is corrupt";
@@ -201,14 +202,15 @@ Result<void> Replay::State::walk() {
       outcome.assign(text, head.bytes);
       outcome.resize(outcome.find_last_not_of('\0') + 1);  // what it was padded with
     } else {
-      const bool key = kind == ChunkKind::kKeyFrames;
+      const bool key = kind == record::ChunkKind::kKeyFrames;
       const uint64_t table =
-          head.frames * sizeof(FrameEntry) + uint64_t{head.hashes} * sizeof(StepHash);
+          head.frames * sizeof(record::FrameEntry) + uint64_t{head.hashes} * sizeof(StepHash);
       const bool times = head.first_time <= head.last_time && std::isfinite(head.first_time) &&
                          std::isfinite(head.last_time) &&
                          (frames == 0 || head.frames == 0 || head.first_time > last_time);
-      if ((!key && (kind != ChunkKind::kFrames || frames == 0)) || head.first_frame != frames ||
-          head.frames > kMaxFrames || table > head.bytes || (head.frames > 0 && !times)) {
+      if ((!key && (kind != record::ChunkKind::kFrames || frames == 0)) ||
+          head.first_frame != frames || head.frames > kMaxFrames || table > head.bytes ||
+          (head.frames > 0 && !times)) {
         why = "is corrupt";
         break;
       }
@@ -220,14 +222,15 @@ Result<void> Replay::State::walk() {
     at = chunk.at + head.bytes;
   }
   if (at == 0) {
-    const bool ours = bytes.size() >= 4 && std::equal(kChunkMark.begin(), kChunkMark.end(),
-                                                      reinterpret_cast<const char*>(bytes.data()));
+    const bool ours =
+        bytes.size() >= 4 && std::equal(record::kChunkMark.begin(), record::kChunkMark.end(),
+                                        reinterpret_cast<const char*>(bytes.data()));
     return bad(ours ? kBadSettings : "not a recording; `throng run --record` writes one");
   }
   // After a crash of the system a head may be on disk without its contents: that chunk is lost too.
   while (!chunks.empty() && !check(chunks.back())) {
     frames -= chunks.back().head.frames;
-    at = chunks.back().at - sizeof(ChunkHead);
+    at = chunks.back().at - sizeof(record::ChunkHead);
     why = "is corrupt";
     chunks.pop_back();
   }
@@ -256,9 +259,9 @@ Result<void> Replay::State::decode_to(uint64_t index) {
     }
     if (next_frame == here.head.first_frame) {
       next_at = bits_at(here);
-      if (here.head.kind == static_cast<uint32_t>(ChunkKind::kKeyFrames)) decoder.forget();
+      if (here.head.kind == static_cast<uint32_t>(record::ChunkKind::kKeyFrames)) decoder.forget();
     }
-    const FrameEntry now = entry(here, next_frame);
+    const record::FrameEntry now = entry(here, next_frame);
     if (!decoder.decode(bytes.subspan(next_at, now.bytes), now.avatars)) {
       next_frame = kNone;
       return bad_chunk(here);
@@ -320,7 +323,7 @@ Result<FrameInfo> Replay::frame_info(uint64_t index) {
   THRONG_ASSERT(index < s.frames);
   Chunk& chunk = s.chunk_of(index);
   if (!s.check(chunk)) return s.bad_chunk(chunk);
-  const FrameEntry entry = s.entry(chunk, index);
+  const record::FrameEntry entry = s.entry(chunk, index);
   return FrameInfo{entry.step, entry.time, entry.avatars};
 }
 
@@ -329,7 +332,7 @@ Result<void> Replay::read(uint64_t index, RecordedFrame& frame) {
   THRONG_ASSERT(index < s.frames);
   if (auto ok = s.decode_to(index); !ok) return ok;
   const Chunk& chunk = s.chunk_of(index);
-  const FrameEntry entry = s.entry(chunk, index);
+  const record::FrameEntry entry = s.entry(chunk, index);
   frame.time = entry.time;
   frame.step = entry.step;
   frame.state_hash = 0;
@@ -337,11 +340,11 @@ Result<void> Replay::read(uint64_t index, RecordedFrame& frame) {
     const auto now = s.load<StepHash>(State::hashes_at(chunk), k);
     if (now.step == entry.step) frame.state_hash = now.state_hash;
   }
-  const std::span<const Track> tracks = s.decoder.tracks();
+  const std::span<const record::Track> tracks = s.decoder.tracks();
   frame.resize(tracks.size());
   frame.up_vectors.resize(s.info.leans ? tracks.size() : 0);
   for (size_t i = 0; i < tracks.size(); ++i) {
-    const Track& t = tracks[i];
+    const record::Track& t = tracks[i];
     frame.ids[i] = t.id;
     frame.classes[i] = t.avatar_class;
     // Summed in whole millimetres: the result is the double nearest to the sum.
@@ -350,8 +353,8 @@ Result<void> Replay::read(uint64_t index, RecordedFrame& frame) {
     };
     frame.positions[i] = {metres(0), metres(1), metres(2)};
     frame.radii[i] = static_cast<float>(t.radius) / 1000.0F;
-    frame.headings[i] = heading_of(t.heading);
-    if (s.info.leans) frame.up_vectors[i] = up_of(t.up);
+    frame.headings[i] = record::heading_of(t.heading);
+    if (s.info.leans) frame.up_vectors[i] = record::up_of(t.up);
     if (t.avatar_class >= s.info.classes.size()) return s.bad_chunk(chunk);
   }
   return {};

@@ -10,7 +10,7 @@
 #include "throng/recording.h"
 
 /// The layout of a recording: chunks, each a head of 64 bytes and its contents.
-namespace throng {
+namespace throng::record {
 
 inline constexpr uint32_t kReplayVersion = 1, kReplayVersionThatLeans = 2;
 inline constexpr uint32_t kReplayVersionWithOrigin = 3;  // `leans` is a field.
@@ -48,4 +48,4 @@ struct FrameEntry {
 };
 static_assert(sizeof(FrameEntry) == 24 && sizeof(StepHash) == 16);
 
-}  // namespace throng
+}  // namespace throng::record

@@ -6,7 +6,7 @@
 
 // Draws points by the weights of a density map: prefix sums of the pixels, and a binary search for
 // each point.
-namespace throng {
+namespace throng::scenario {
 
 DensityDraw::DensityDraw(const DensityMap& map) : map_(&map) {
   before_.reserve(map.weights.size() + 1);
@@ -28,4 +28,4 @@ std::array<double, 2> DensityDraw::point(double which, double along_x, double al
           map_->z0 + (row + along_z) * (map_->z1 - map_->z0) / map_->height};
 }
 
-}  // namespace throng
+}  // namespace throng::scenario

@@ -9,7 +9,7 @@
 #include "throng/scenario.h"
 
 /// Random points of the plane, distributed by a density map.
-namespace throng {
+namespace throng::scenario {
 
 class DensityDraw {
  public:
@@ -22,4 +22,4 @@ class DensityDraw {
   std::vector<uint64_t> before_;  // sum of the weights before each pixel, and of all at the end
 };
 
-}  // namespace throng
+}  // namespace throng::scenario

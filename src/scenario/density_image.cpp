@@ -17,7 +17,7 @@
 #pragma GCC diagnostic pop
 
 // Density maps from PNG files (stb_image) and from prisms painted on them.
-namespace throng {
+namespace throng::scenario {
 namespace {
 
 constexpr int kMaxPixels = 16384;  // of a side
@@ -60,4 +60,4 @@ void paint_density(DensityMap& map, std::span<const Prism> prisms, uint8_t weigh
   }
 }
 
-}  // namespace throng
+}  // namespace throng::scenario

@@ -8,7 +8,7 @@
 #include "throng/scenario.h"
 
 /// Density maps from images and painted areas.
-namespace throng {
+namespace throng::scenario {
 
 /// Reads a PNG's brightness into width, height and weights. Fails with kBadFile.
 [[nodiscard]] Result<void> read_density_image(const std::string& path, DensityMap& map);
@@ -16,4 +16,4 @@ namespace throng {
 /// Sets the weight of the pixels whose middles are in one of the prisms.
 void paint_density(DensityMap& map, std::span<const Prism> prisms, uint8_t weight);
 
-}  // namespace throng
+}  // namespace throng::scenario

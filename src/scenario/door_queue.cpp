@@ -10,7 +10,7 @@
 // Lindley's recursion for a queue with one server [Lindley52]: free(i) = max(free(i - 1),
 // arrival(i)) + service. Compositions of such steps again have the form max(x + a, b), so a tree
 // over the ticks stores them, and a change or query costs a path from a leaf to the root.
-namespace throng {
+namespace throng::scenario {
 
 uint32_t DoorQueue::tick(double time) {
   constexpr double kLast = 4e9;
@@ -86,4 +86,4 @@ double DoorQueue::pass_time(uint32_t tick, uint32_t now) const {
   return std::max(free, tick * kTick) + service_;
 }
 
-}  // namespace throng
+}  // namespace throng::scenario

@@ -10,7 +10,7 @@
 /// The time at which an avatar passes a door, from the arrival times of all that head there: they
 /// pass one after the other, in order of arrival, none before it arrives. Times are whole ticks.
 /// Memory: the ticks from the last forgotten one to the latest arrival.
-namespace throng {
+namespace throng::scenario {
 
 class DoorQueue {
  public:
@@ -56,4 +56,4 @@ class DoorQueue {
   std::vector<TickRange> tree_;  // of n leaves: 1 is the root, n + tick - first a leaf
 };
 
-}  // namespace throng
+}  // namespace throng::scenario

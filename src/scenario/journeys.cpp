@@ -192,9 +192,9 @@ void Simulation::State::set_door(ScenarioAvatar& p, int32_t area, double distanc
   if (p.area >= 0) doors[static_cast<size_t>(p.area)].remove(p.door_tick);
   p.area = area;
   if (area < 0) return;
-  DoorQueue& door = doors[static_cast<size_t>(area)];
-  door.forget_before(DoorQueue::tick(time()));
-  p.door_tick = door.add(DoorQueue::tick(time() + distance / p.speed));
+  scenario::DoorQueue& door = doors[static_cast<size_t>(area)];
+  door.forget_before(scenario::DoorQueue::tick(time()));
+  p.door_tick = door.add(scenario::DoorQueue::tick(time() + distance / p.speed));
 }
 
 // Puts the avatar in the queue by its present distance.
@@ -213,7 +213,7 @@ void Simulation::State::choose_area(ScenarioAvatar& p) {
   const std::vector<TargetId>& targets = targets_of(p);
   const int32_t before = p.doing == Doing::kWalking ? p.area : -1;
   set_door(p, -1, 0);
-  const uint32_t now = DoorQueue::tick(time());
+  const uint32_t now = scenario::DoorQueue::tick(time());
   constexpr double kNever = std::numeric_limits<double>::infinity();
   struct Exit {
     double distance = kNever, seconds = kNever;
@@ -223,9 +223,9 @@ void Simulation::State::choose_area(ScenarioAvatar& p) {
   for (size_t k = 0; k < targets.size(); ++k) {
     Exit exit{crowd.distance(p.id, targets[k]), kNever, k};
     if (std::isfinite(exit.distance)) {
-      const DoorQueue& door = doors[static_cast<size_t>(stage.areas[k])];
+      const scenario::DoorQueue& door = doors[static_cast<size_t>(stage.areas[k])];
       exit.seconds =
-          door.pass_time(DoorQueue::tick(time() + exit.distance / p.speed), now) - time();
+          door.pass_time(scenario::DoorQueue::tick(time() + exit.distance / p.speed), now) - time();
     }
     if (exit.seconds < best.seconds) best = exit;
     if (before < 0 ? exit.distance < present.distance : stage.areas[k] == before) present = exit;

@@ -495,7 +495,7 @@ void File::read_density(Reader& r) {
     std::string file;
     r.text("image", file);
     if (!r.ok()) return;
-    if (auto ok = read_density_image(path(file), map); !ok) {
+    if (auto ok = scenario::read_density_image(path(file), map); !ok) {
       return r.fail(*image, ok.error().message);
     }
   } else {
@@ -520,8 +520,8 @@ void File::read_density(Reader& r) {
       if (p.ok()) area = p.named(*p.find("area"), out_.areas, "area");
       keep(p);
       if (!p.ok()) return;
-      paint_density(map, out_.areas[static_cast<size_t>(area)].prisms,
-                    static_cast<uint8_t>(std::lround(weight)));
+      scenario::paint_density(map, out_.areas[static_cast<size_t>(area)].prisms,
+                              static_cast<uint8_t>(std::lround(weight)));
     }
   }
   if (r.ok() &&

@@ -261,7 +261,7 @@ bool Simulation::is_over() const {
   const State& s = *state_;
   return s.crowd.size() == 0 && s.pending.empty() && s.in_transit.empty() &&
          std::all_of(s.spawn_times.begin(), s.spawn_times.end(),
-                     [](const SpawnTimes& a) { return a.is_over(); });
+                     [](const scenario::SpawnTimes& a) { return a.is_over(); });
 }
 
 const Crowd& Simulation::crowd() const { return state_->crowd; }
@@ -312,7 +312,7 @@ Result<void> Simulation::set_density(const std::string& name, std::span<const ui
                    "density '" + name + "': all weights are 0; give at least one pixel a weight"};
     }
     map.weights.assign(weights.begin(), weights.end());
-    s.densities[d] = DensityDraw(map);
+    s.densities[d] = scenario::DensityDraw(map);
     return {};
   }
   return Error{Errc::kNotFound, "there is no density '" + name + "'"};

@@ -91,20 +91,20 @@ struct Simulation::State {
   std::vector<TargetId> area_target;  // by area
   // By journey and stage: one target for the union of the areas, or with `quickest` one for each.
   std::vector<std::vector<std::vector<TargetId>>> stage_targets;
-  std::vector<DensityDraw> densities;
+  std::vector<scenario::DensityDraw> densities;
   std::map<std::pair<TargetId, int32_t>, std::vector<Place>> places;  // by target and class
 
-  std::vector<SpawnTimes> spawn_times;        // by source
-  std::vector<uint64_t> spawn_counts;         // by source: avatars so far
-  std::deque<PendingSpawn> pending;           // out of sources, in order of due times
-  std::deque<PendingSpawn> in_transit;        // out of links, in order of exit
-  std::vector<Trip> trips;                    // by number
-  std::vector<uint32_t> slot_of;              // by number; kNoSlot: not in the crowd
-  std::vector<ScenarioAvatar> avatars;        // by slot
-  std::vector<WaitingLine> lines;             // by queue
-  std::vector<BoardingQueue> boarding;        // by link
-  std::vector<std::vector<uint64_t>> groups;  // numbers
-  std::vector<DoorQueue> doors;               // by area: avatars that chose it
+  std::vector<scenario::SpawnTimes> spawn_times;  // by source
+  std::vector<uint64_t> spawn_counts;             // by source: avatars so far
+  std::deque<PendingSpawn> pending;               // out of sources, in order of due times
+  std::deque<PendingSpawn> in_transit;            // out of links, in order of exit
+  std::vector<Trip> trips;                        // by number
+  std::vector<uint32_t> slot_of;                  // by number; kNoSlot: not in the crowd
+  std::vector<ScenarioAvatar> avatars;            // by slot
+  std::vector<WaitingLine> lines;                 // by queue
+  std::vector<BoardingQueue> boarding;            // by link
+  std::vector<std::vector<uint64_t>> groups;      // numbers
+  std::vector<scenario::DoorQueue> doors;         // by area: avatars that chose it
   std::vector<ObstacleId> obstacles;  // by obstacle; null before it begins and after it ends
   std::vector<ObstacleTimes> obstacle_times;
   uint64_t entered = 0, left = 0;

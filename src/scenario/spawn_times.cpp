@@ -6,7 +6,7 @@
 #include <cmath>
 
 // When a source spawns avatars, and how many at once: all at the beginning, or as its rates say.
-namespace throng {
+namespace throng::scenario {
 namespace {
 
 constexpr uint64_t kIntervals = 1, kSizes = 2;  // offsets of a source's two streams
@@ -50,4 +50,4 @@ uint64_t SpawnTimes::next_due(double time) {
   return members;
 }
 
-}  // namespace throng
+}  // namespace throng::scenario

@@ -7,7 +7,7 @@
 #include "throng/scenario.h"
 
 /// When avatars enter from a source.
-namespace throng {
+namespace throng::scenario {
 
 /// A Poisson process with piecewise constant rate, or evenly spaced times.
 class SpawnTimes {
@@ -28,4 +28,4 @@ class SpawnTimes {
   double next_ = 0;  // [s]
 };
 
-}  // namespace throng
+}  // namespace throng::scenario

@@ -7,7 +7,7 @@
 #include <numbers>
 
 // Eye and target by yaw, pitch and distance; each move keeps one of them or a point in the picture.
-namespace throng {
+namespace throng::view {
 namespace {
 
 constexpr double kSteepest = 1.55;  // [rad] Below pi / 2: straight down has no up.
@@ -103,4 +103,4 @@ Vec3d pixel_ray(const EyeCamera& camera, double x, double y, double width, doubl
   return ray * (1 / length(ray));
 }
 
-}  // namespace throng
+}  // namespace throng::view

@@ -8,7 +8,7 @@
 #include "throng/impostor.h"
 
 /// The eye, and how it is moved. Y is up.
-namespace throng {
+namespace throng::view {
 
 enum class CameraMode : uint8_t {
   kOrbit,  ///< Around a point.
@@ -47,4 +47,4 @@ struct CameraRig {
 [[nodiscard]] Vec3d pixel_ray(const EyeCamera& camera, double x, double y, double width,
                               double height);
 
-}  // namespace throng
+}  // namespace throng::view

@@ -18,9 +18,9 @@ constexpr double kSpeedStep = 1.4142135623730951;
 
 }  // namespace
 
-SightLine Viewer::State::sight_line(double x, double y) const {
+view::SightLine Viewer::State::sight_line(double x, double y) const {
   const EyeCamera camera = rig.camera(aspect);
-  return {camera.eye, pixel_ray(camera, x, y, picture_width, picture_height)};
+  return {camera.eye, view::pixel_ray(camera, x, y, picture_width, picture_height)};
 }
 
 void Viewer::handle(const ViewEvent& event) {
@@ -45,7 +45,7 @@ void Viewer::handle(const ViewEvent& event) {
       s.pressed_y = event.y;
       s.dragged = false;
       s.paints = event.button == MouseButton::kLeft && s.brush_paints() &&
-                 s.panel.mode != CameraMode::kWalk && !s.held(Key::kShift);
+                 s.panel.mode != view::CameraMode::kWalk && !s.held(Key::kShift);
       if (s.paints) s.paint_to(event.x, event.y);
       return;
     case ViewEventKind::kMouseUp:
@@ -65,7 +65,7 @@ void Viewer::handle(const ViewEvent& event) {
       return;
     case ViewEventKind::kWheel:
       if (is_for_panel) return;
-      if (s.panel.mode == CameraMode::kWalk) {
+      if (s.panel.mode == view::CameraMode::kWalk) {
         s.walk_distance = std::clamp(s.walk_distance * std::pow(0.85, event.y), 0.6, 30.0);
         return;
       }
@@ -116,23 +116,24 @@ void Viewer::State::press(Key key) {
     panel.settings.speed = std::clamp(panel.settings.speed * by, 0.05, 16.0);
   }
   if (key == Key::kHome) rig.show(bounds, aspect);
-  if (key == Key::kPageUp) step_cut(panel, 1);
-  if (key == Key::kPageDown) step_cut(panel, -1);
+  if (key == Key::kPageUp) view::step_cut(panel, 1);
+  if (key == Key::kPageDown) view::step_cut(panel, -1);
   if (key == Key::kEnd) panel.is_cut = false;
   if (letter('1') || letter('2')) {
     leave_walk();
-    panel.mode = letter('1') ? CameraMode::kOrbit : CameraMode::kFly;
+    panel.mode = letter('1') ? view::CameraMode::kOrbit : view::CameraMode::kFly;
   }
   if (letter('3')) begin_walk();
   constexpr char kOverlayKeys[] = "CLNKXHPBOG";  // In the order of Overlay.
-  for (size_t i = 0; i < kOverlays; ++i) {
+  for (size_t i = 0; i < view::kOverlays; ++i) {
     if (letter(kOverlayKeys[i])) panel.overlays[i] = !panel.overlays[i];
   }
   if (letter('T') && (panel.has_crowd || panel.scenario)) {
-    panel.tool = panel.tool == Tool::kPaint     ? Tool::kUnpaint
-                 : panel.tool == Tool::kUnpaint ? Tool::kPick
-                                                : Tool::kPaint;
-    if (panel.tool == Tool::kPaint) panel.overlays[static_cast<size_t>(Overlay::kPainted)] = true;
+    panel.tool = panel.tool == view::Tool::kPaint     ? view::Tool::kUnpaint
+                 : panel.tool == view::Tool::kUnpaint ? view::Tool::kPick
+                                                      : view::Tool::kPaint;
+    if (panel.tool == view::Tool::kPaint)
+      panel.overlays[static_cast<size_t>(view::Overlay::kPainted)] = true;
     show_brush(mouse_x, mouse_y);
   }
   if (letter('V')) first_person = !first_person;
@@ -146,7 +147,7 @@ void Viewer::State::press(Key key) {
   if (key == Key::kEscape) {
     if (panel.help) {
       panel.help = false;
-    } else if (panel.mode == CameraMode::kWalk) {
+    } else if (panel.mode == view::CameraMode::kWalk) {
       leave_walk();
     } else {
       panel.status.picked = -1;
@@ -157,7 +158,7 @@ void Viewer::State::press(Key key) {
 void Viewer::State::drag(double dx, double dy) {
   const double height = std::max(1, picture_height);
   const bool left = buttons[0], right = buttons[1], middle = buttons[2];
-  if (panel.mode == CameraMode::kWalk) {
+  if (panel.mode == view::CameraMode::kWalk) {
     if (requests.grab_mouse) {
       rig.turn_head(-dx, -dy, height);
     } else if (left || right) {
@@ -166,7 +167,7 @@ void Viewer::State::drag(double dx, double dy) {
     return;
   }
   if (paints || (!left && !right && !middle)) return;
-  if (panel.mode == CameraMode::kFly && (left || right) && !held(Key::kShift)) {
+  if (panel.mode == view::CameraMode::kFly && (left || right) && !held(Key::kShift)) {
     rig.turn_head(-dx, -dy, height);
   } else if (left && !held(Key::kShift)) {
     rig.orbit(dx, dy, height);
@@ -176,33 +177,34 @@ void Viewer::State::drag(double dx, double dy) {
 }
 
 void Viewer::State::click() {
-  if (panel.mode == CameraMode::kWalk) return;
-  const SightLine line = sight_line(pressed_x, pressed_y);
+  if (panel.mode == view::CameraMode::kWalk) return;
+  const view::SightLine line = sight_line(pressed_x, pressed_y);
   const double cut = panel.is_cut ? panel.cut - origin.y : std::numeric_limits<double>::infinity();
   const std::optional<Vec3d> ground = ground_under(pressed_x, pressed_y);
-  if (panel.tool != Tool::kPick) {
+  if (panel.tool != view::Tool::kPick) {
     if (!ground || !panel.has_crowd) return;
     const double radius = panel.brush_radius;
     const auto count = static_cast<uint32_t>(panel.brush_count);
-    const bool erases = panel.tool == Tool::kErase;
-    change_crowd([where = *ground, radius, count, erases](CrowdPlayer& player, Context& context) {
-      if (erases) {
-        player.erase(where, radius);
-      } else {
-        player.spawn(where, radius, count, context);
-      }
-    });
+    const bool erases = panel.tool == view::Tool::kErase;
+    change_crowd(
+        [where = *ground, radius, count, erases](view::CrowdPlayer& player, Context& context) {
+          if (erases) {
+            player.erase(where, radius);
+          } else {
+            player.spawn(where, radius, count, context);
+          }
+        });
     return;
   }
   // Avatars behind the ground at the pointer are hidden.
   const double farthest = ground ? length(*ground - origin - line.eye) + 1 : kFarthest;
-  const size_t i = avatar_on(crowd.now(), panel.class_heights, line, cut, farthest);
+  const size_t i = view::avatar_on(crowd.now(), panel.class_heights, line, cut, farthest);
   panel.status.picked =
       i < crowd.now().size() ? static_cast<int64_t>(crowd.now().ids[i]) : int64_t{-1};
 }
 
 void Viewer::State::move_eye(double seconds) {
-  if (panel.mode == CameraMode::kWalk) return;
+  if (panel.mode == view::CameraMode::kWalk) return;
   const auto axis = [&](Key more, Key other_more, Key less, Key other_less) {
     return (held(more) || held(other_more) ? 1.0 : 0.0) -
            (held(less) || held(other_less) ? 1.0 : 0.0);
@@ -213,11 +215,11 @@ void Viewer::State::move_eye(double seconds) {
   double up = axis(key_of('E'), Key::kNone, key_of('Q'), Key::kNone);
   rig.turn_head(gamepad.look_x * -800 * seconds, gamepad.look_y * -800 * seconds, 800);
   // Faster where the eye is far from its target.
-  double speed =
-      panel.mode == CameraMode::kFly ? panel.settings.fly_speed : std::max(2.0, 0.6 * rig.distance);
+  double speed = panel.mode == view::CameraMode::kFly ? panel.settings.fly_speed
+                                                      : std::max(2.0, 0.6 * rig.distance);
   if (held(Key::kShift) || gamepad.hurry) speed *= 3;
   const double by = speed * seconds;
-  if (panel.mode == CameraMode::kFly) {
+  if (panel.mode == view::CameraMode::kFly) {
     up -= ahead * std::sin(rig.pitch);  // Ahead is the direction of view.
     ahead *= std::cos(rig.pitch);
   }

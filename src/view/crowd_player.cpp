@@ -11,7 +11,7 @@
 
 // Adds avatars and gives them goals, all drawn from (seed, number), so that the same start gives
 // the same steps. With only_seen, generators add and remove avatars outside the eye's sight.
-namespace throng {
+namespace throng::view {
 namespace {
 
 constexpr double kStorey = 4;       // [m] Vertical tolerance of goals.
@@ -407,4 +407,4 @@ void CrowdPlayer::remove(uint64_t id) {
   if (id < avatars_.size()) crowd_.remove({&avatars_[id].id, 1});
 }
 
-}  // namespace throng
+}  // namespace throng::view

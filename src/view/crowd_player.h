@@ -17,7 +17,7 @@
 #include "view/eye_sight.h"
 #include "view/timeline_source.h"
 
-namespace throng {
+namespace throng::view {
 
 /// Details of one avatar, for the panel.
 struct AvatarDetail {
@@ -122,4 +122,4 @@ class CrowdPlayer final : public TimelinePlayer {
   std::shared_ptr<const TimelineFrame> last_;
 };
 
-}  // namespace throng
+}  // namespace throng::view

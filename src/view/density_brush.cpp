@@ -8,7 +8,7 @@
 
 // Density maps are painted pixel by pixel; points are drawn by binary search in the running sums of
 // the weights, in O(log pixels).
-namespace throng {
+namespace throng::view {
 namespace {
 
 constexpr double kPixel = 0.5;     // [m] Of maps made here; larger if a side would exceed kMaxSide.
@@ -106,4 +106,4 @@ uint8_t WeightedPlaces::weight_at(Vec3d point) const {
   return max_weight;
 }
 
-}  // namespace throng
+}  // namespace throng::view

@@ -10,7 +10,7 @@
 #include "throng/scenario.h"
 
 /// Density maps that a brush changes, and random points drawn from them.
-namespace throng {
+namespace throng::view {
 
 /// Sets the weight of all pixels whose middles are within `radius` of a point, if the map covers
 /// its height. Returns whether any changed.
@@ -42,4 +42,4 @@ class WeightedPlaces {
   std::vector<uint64_t> up_to_;  // Running sums of the weights, pixel after pixel, map after map.
 };
 
-}  // namespace throng
+}  // namespace throng::view

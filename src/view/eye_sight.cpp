@@ -14,7 +14,7 @@
 // however narrow the slit, and walls of few triangles hide nearly all that lies behind them.
 // Triangles are drawn as cones around the eye [Olano and Greer 1997, Triangle scan conversion using
 // 2D homogeneous coordinates], so none must be clipped. Time: triangles x pixels that they cover.
-namespace throng {
+namespace throng::view {
 namespace {
 
 constexpr double kEdgeOn = 1e-7;     // Cones of a smaller volume are seen edge-on. [m^3]
@@ -300,4 +300,4 @@ bool EyeSight::sees(const Box3d& box) const {
   return false;
 }
 
-}  // namespace throng
+}  // namespace throng::view

@@ -10,7 +10,7 @@
 #include "throng/base.h"
 #include "throng/scene.h"
 
-namespace throng {
+namespace throng::view {
 
 /// The opaque triangles of a scene, relative to an origin.
 struct Occluders {
@@ -69,4 +69,4 @@ class EyeSight {
   std::vector<float> nearness_;  // 1 / largest depth in a pixel, 0: open. Six faces.
 };
 
-}  // namespace throng
+}  // namespace throng::view

@@ -13,7 +13,7 @@
 // [CAACD] II: three concentric fields around each avatar, the probe ahead, and the state that
 // results from the other avatars, in O(n^2) for at most 300 avatars. The `sampled` model does not
 // use them.
-namespace throng {
+namespace throng::view {
 namespace {
 
 constexpr double kAbove = 0.05;                     // [m]
@@ -123,4 +123,4 @@ Marks field_marks(const TimelineFrame& crowd, size_t picked, Vec3d middle,
   return marks;
 }
 
-}  // namespace throng
+}  // namespace throng::view

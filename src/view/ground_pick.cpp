@@ -7,7 +7,7 @@
 
 // What is under the pointer. Ground: samples of the sight line, a place query each; avatars: one
 // distance of lines each.
-namespace throng {
+namespace throng::view {
 
 std::optional<Vec3d> ground_on(const World& world, const SightLine& line, double cut,
                                double farthest) {
@@ -54,4 +54,4 @@ size_t avatar_on(const TimelineFrame& crowd, const std::vector<double>& class_he
   return best;
 }
 
-}  // namespace throng
+}  // namespace throng::view

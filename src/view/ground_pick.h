@@ -8,7 +8,7 @@
 #include "throng/world.h"
 #include "view/timeline_frame.h"
 
-namespace throng {
+namespace throng::view {
 
 /// A ray from an eye. `direction` is a unit vector.
 struct SightLine {
@@ -25,4 +25,4 @@ struct SightLine {
 [[nodiscard]] size_t avatar_on(const TimelineFrame& crowd, const std::vector<double>& class_heights,
                                const SightLine& line, double cut, double farthest);
 
-}  // namespace throng
+}  // namespace throng::view

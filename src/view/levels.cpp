@@ -7,7 +7,7 @@
 #include <map>
 
 // Storeys are the peaks of a histogram of floor heights, largest first. Time: linear in cells.
-namespace throng {
+namespace throng::view {
 namespace {
 
 constexpr int32_t kBin = 250;           // [mm]
@@ -49,4 +49,4 @@ std::vector<double> storey_heights(const World& world, Context& context) {
   return heights;
 }
 
-}  // namespace throng
+}  // namespace throng::view

@@ -7,10 +7,10 @@
 #include "throng/base.h"
 #include "throng/world.h"
 
-namespace throng {
+namespace throng::view {
 
 /// Heights of the storeys of a world, lowest first: heights of large level areas, at least two
 /// metres apart. A landscape may have one or none. Reads every zone. [m]
 [[nodiscard]] std::vector<double> storey_heights(const World& world, Context& context);
 
-}  // namespace throng
+}  // namespace throng::view

@@ -8,7 +8,7 @@
 #include "view/viewer_state.h"
 
 // Orders overlays as the panel switches them on, and shows them when they are made.
-namespace throng {
+namespace throng::view {
 
 OverlayMaker::OverlayMaker(World world, std::optional<Nodes> nodes, Vec3d origin)
     : world_(std::move(world)), nodes_(std::move(nodes)), origin_(origin) {
@@ -100,10 +100,14 @@ OverlayMaker::Made OverlayMaker::make(const Order& order) {
   return made;
 }
 
+}  // namespace throng::view
+
+namespace throng {
+
 // Orders the overlays that are on and not made, and shows those that have been made.
 void Viewer::State::show_overlays() {
-  const auto slot = [](Overlay overlay) { return static_cast<size_t>(overlay); };
-  const auto set = [&](Overlay overlay, const Marks& marks) {
+  const auto slot = [](view::Overlay overlay) { return static_cast<size_t>(overlay); };
+  const auto set = [&](view::Overlay overlay, const Marks& marks) {
     if (auto ok = drawing.set_marks(slot(overlay), marks); !ok) {
       panel.status.error = ok.error().message;
     }
@@ -124,27 +128,27 @@ void Viewer::State::show_overlays() {
       }
     }
   }
-  for (size_t i = 0; i < kOverlays; ++i) {
-    const auto overlay = static_cast<Overlay>(i);
+  for (size_t i = 0; i < view::kOverlays; ++i) {
+    const auto overlay = static_cast<view::Overlay>(i);
     if (!panel.overlays[i]) {
       if (shown[i]) set(overlay, {});
       ordered[i] = false;
       continue;
     }
-    if (overlay == Overlay::kDensity) {
-      set(overlay, density_marks(crowd.now()));
-    } else if (overlay == Overlay::kFields) {
-      set(overlay, field_marks(crowd.now(), picked, rig.target, panel.class_radii));
-    } else if (overlay == Overlay::kNeighbours) {
-      set(overlay, has_picked ? neighbour_marks(crowd.now(), picked, 5) : Marks{});
+    if (overlay == view::Overlay::kDensity) {
+      set(overlay, view::density_marks(crowd.now()));
+    } else if (overlay == view::Overlay::kFields) {
+      set(overlay, view::field_marks(crowd.now(), picked, rig.target, panel.class_radii));
+    } else if (overlay == view::Overlay::kNeighbours) {
+      set(overlay, has_picked ? view::neighbour_marks(crowd.now(), picked, 5) : Marks{});
     } else if (overlay_maker && !overlay_maker->is_busy()) {
-      OverlayMaker::Order order{
+      view::OverlayMaker::Order order{
           .overlay = overlay, .height = 0, .avatar_class = 0, .from = {}, .to = {}, .maps = {}};
-      if (overlay == Overlay::kAir) {
+      if (overlay == view::Overlay::kAir) {
         order.height = (panel.is_cut ? panel.cut : panel.bounds.max.y) - 0.05;
         if (ordered[i] && order.height == air_height) continue;
         air_height = order.height;
-      } else if (overlay == Overlay::kPath) {
+      } else if (overlay == view::Overlay::kPath) {
         if (!has_picked || !panel.picked || !panel.picked->goal) {
           if (shown[i]) set(overlay, {});
           ordered[i] = false;
@@ -158,7 +162,7 @@ void Viewer::State::show_overlays() {
       } else if (ordered[i]) {
         continue;
       }
-      if (overlay == Overlay::kPainted) {
+      if (overlay == view::Overlay::kPainted) {
         order.maps = std::make_shared<const std::vector<DensityMap>>(painted);
       }
       ordered[i] = true;

@@ -14,7 +14,7 @@
 #include "view/overlays.h"
 #include "view/side_task.h"
 
-namespace throng {
+namespace throng::view {
 
 /// Makes overlays that take long on a task beside the window, one at a time.
 class OverlayMaker {
@@ -62,4 +62,4 @@ class OverlayMaker {
   std::optional<SideTask> task_;
 };
 
-}  // namespace throng
+}  // namespace throng::view

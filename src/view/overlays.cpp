@@ -14,7 +14,7 @@
 #include "throng/surface.h"
 
 // Each overlay is a list of triangles and lines, linear in cells, nodes or avatars.
-namespace throng {
+namespace throng::view {
 namespace {
 
 constexpr double kAbove = 0.04;      // [m] over the ground
@@ -364,4 +364,4 @@ Marks neighbour_marks(const TimelineFrame& crowd, size_t picked, double sight) {
   return marks;
 }
 
-}  // namespace throng
+}  // namespace throng::view

@@ -14,7 +14,7 @@
 #include "view/timeline_frame.h"
 
 /// Marks that are drawn over the scene to explain it. All are relative to `origin`.
-namespace throng {
+namespace throng::view {
 
 /// The value is the slot of the drawing.
 enum class Overlay : uint8_t {
@@ -66,4 +66,4 @@ inline constexpr size_t kOverlays = 10;
 /// The avatars within `sight` of one avatar, on its storey.
 [[nodiscard]] Marks neighbour_marks(const TimelineFrame& crowd, size_t picked, double sight);
 
-}  // namespace throng
+}  // namespace throng::view

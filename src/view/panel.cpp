@@ -9,7 +9,7 @@
 #include <limits>
 
 // The windows of the panel in Dear ImGui.
-namespace throng {
+namespace throng::view {
 namespace {
 
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
@@ -397,4 +397,4 @@ void step_cut(PanelState& s, int32_t by) {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::view

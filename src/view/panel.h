@@ -14,7 +14,7 @@
 #include "view/replay_player.h"
 #include "view/view_settings.h"
 
-namespace throng {
+namespace throng::view {
 
 /// The tool that a click on the ground uses.
 enum class Tool : uint8_t {
@@ -85,4 +85,4 @@ void draw_panel(PanelState& state, float scale, int32_t width, int32_t height);
 /// Moves the cut a storey up (1) or down (-1).
 void step_cut(PanelState& state, int32_t by);
 
-}  // namespace throng
+}  // namespace throng::view

@@ -8,7 +8,7 @@
 #include <utility>
 
 // A frame per frame of a recording.
-namespace throng {
+namespace throng::view {
 
 ReplayPlayer::ReplayPlayer(Replay replay, Vec3d origin)
     : replay_(std::move(replay)), origin_(origin) {}
@@ -69,4 +69,4 @@ ReplaySpan replay_span(Replay& replay) {
   return span;
 }
 
-}  // namespace throng
+}  // namespace throng::view

@@ -5,7 +5,7 @@
 #include "throng/recording.h"
 #include "view/timeline_source.h"
 
-namespace throng {
+namespace throng::view {
 
 /// Plays a recording, forwards; seeks by time.
 class ReplayPlayer final : public TimelinePlayer {
@@ -30,4 +30,4 @@ struct ReplaySpan {
 };
 [[nodiscard]] ReplaySpan replay_span(Replay& replay);
 
-}  // namespace throng
+}  // namespace throng::view

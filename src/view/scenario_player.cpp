@@ -6,7 +6,7 @@
 #include <utility>
 
 // A frame per step of a simulation; obstacles are shared between frames while they stay the same.
-namespace throng {
+namespace throng::view {
 namespace {
 
 bool are_alike(const std::vector<Prism>& a, const std::vector<Prism>& b) {
@@ -65,4 +65,4 @@ std::shared_ptr<const TimelineFrame> ScenarioPlayer::again() {
   return frame;
 }
 
-}  // namespace throng
+}  // namespace throng::view

@@ -10,7 +10,7 @@
 #include "throng/scenario.h"
 #include "view/timeline_source.h"
 
-namespace throng {
+namespace throng::view {
 
 /// Runs a scenario until its time is over or all avatars have left.
 class ScenarioPlayer final : public TimelinePlayer {
@@ -44,4 +44,4 @@ class ScenarioPlayer final : public TimelinePlayer {
   std::shared_ptr<const TimelineFrame> last_;
 };
 
-}  // namespace throng
+}  // namespace throng::view

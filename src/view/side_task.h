@@ -8,7 +8,7 @@
 
 /// Work beside a window, which must not wait for it: on a thread of its own or, without threads, on
 /// a fiber that gets a share of each drawn frame.
-namespace throng {
+namespace throng::view {
 
 class SideTask {
  public:
@@ -50,4 +50,4 @@ class SideSignal {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace throng
+}  // namespace throng::view

@@ -13,7 +13,7 @@
 // Tasks of a browser page without threads: the work has a stack of its own. It is left in the
 // middle of any call when its share of a frame is used up, and entered again in the next frame, by
 // means of Emscripten's Asyncify.
-namespace throng {
+namespace throng::view {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -125,4 +125,4 @@ void SideSignal::wait_for(SideTask& task, std::unique_lock<std::mutex>& lock,
   }
 }
 
-}  // namespace throng
+}  // namespace throng::view

@@ -8,7 +8,7 @@
 #include "view/side_task.h"
 
 // Tasks as threads: the functions for fibers do nothing.
-namespace throng {
+namespace throng::view {
 
 struct SideTask::State {
   std::thread thread;
@@ -42,4 +42,4 @@ void SideSignal::wait_for(SideTask&, std::unique_lock<std::mutex>& lock,
   state_->condition.wait(lock, is_so);
 }
 
-}  // namespace throng
+}  // namespace throng::view

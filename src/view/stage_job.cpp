@@ -11,7 +11,8 @@
 // Runs a LoadStage on a task and passes what it sets to the window through StageMail.
 namespace throng {
 
-StageJob::StageJob(std::string name, LoadStage load, int32_t workers, StageBefore before)
+view::StageJob::StageJob(std::string name, LoadStage load, int32_t workers,
+                         view::StageBefore before)
     : name_(std::move(name)), workers_(workers), before_(std::move(before)) {
   context_.on_progress = [this](const Progress& progress) {
     {
@@ -21,17 +22,17 @@ StageJob::StageJob(std::string name, LoadStage load, int32_t workers, StageBefor
                    ? static_cast<double>(progress.done) / static_cast<double>(progress.total)
                    : -1;
     }
-    SideTask::pause_if_due();
+    view::SideTask::pause_if_due();
   };
   task_.emplace([this, load = std::move(load)] { run(load); });
 }
 
-StageJob::~StageJob() {
+view::StageJob::~StageJob() {
   cancel();
   task_.reset();
 }
 
-void StageJob::run(const LoadStage& load) {
+void view::StageJob::run(const LoadStage& load) {
   Result<void> ok;
   try {
     StageParts parts(*this);
@@ -45,43 +46,44 @@ void StageJob::run(const LoadStage& load) {
   done_ = true;
 }
 
-Result<void> StageJob::start_player() {
+Result<void> view::StageJob::start_player() {
   if (!crowd_ && !scenario_) return {};
   context_.on_progress({"paths", 0, 0});
-  std::unique_ptr<TimelinePlayer> player;
+  std::unique_ptr<view::TimelinePlayer> player;
   if (scenario_) {
-    auto made = ScenarioPlayer::make(before_.world, *scenario_, workers_, before_.origin, context_);
+    auto made =
+        view::ScenarioPlayer::make(before_.world, *scenario_, workers_, before_.origin, context_);
     if (!made) return made.error();
     player = *std::move(made);
   } else {
-    auto made = CrowdPlayer::make(before_.world, before_.nodes, *crowd_, workers_, before_.origin,
-                                  before_.occluders, context_);
+    auto made = view::CrowdPlayer::make(before_.world, before_.nodes, *crowd_, workers_,
+                                        before_.origin, before_.occluders, context_);
     if (!made) return made.error();
     player = *std::move(made);
   }
-  auto source = std::make_unique<TimelineSource>(std::move(player));
+  auto source = std::make_unique<view::TimelineSource>(std::move(player));
   const std::lock_guard lock(mutex_);
   mail_.source = std::move(source);
   return {};
 }
 
-StageMail StageJob::take() {
+view::StageMail view::StageJob::take() {
   const std::lock_guard lock(mutex_);
   return std::exchange(mail_, {});
 }
 
-std::string StageJob::error() const {
+std::string view::StageJob::error() const {
   const std::lock_guard lock(mutex_);
   return error_;
 }
 
-std::pair<std::string, double> StageJob::progress() const {
+std::pair<std::string, double> view::StageJob::progress() const {
   const std::lock_guard lock(mutex_);
   return {stage_, share_};
 }
 
 Result<void> StageParts::set_scene(const Scene& scene) {
-  StageJob& job = job_;
+  view::StageJob& job = job_;
   const Box3d bounds = scene.bounds();
   const Vec3d middle = bounds.empty() ? Vec3d{} : (bounds.min + bounds.max) * 0.5;
   // Whole metres: relative positions then keep the decimals of the world's.
@@ -89,7 +91,7 @@ Result<void> StageParts::set_scene(const Scene& scene) {
                         std::round(middle.z)};
   Result<PreparedScene> prepared = PreparedScene::create(scene, job.before_.origin);
   if (!prepared) return prepared.error();
-  job.before_.occluders = occluders_of(scene, job.before_.origin);
+  job.before_.occluders = view::occluders_of(scene, job.before_.origin);
   const std::lock_guard lock(job.mutex_);
   job.mail_.occluders = job.before_.occluders;
   job.mail_.scene = *std::move(prepared);
@@ -97,7 +99,7 @@ Result<void> StageParts::set_scene(const Scene& scene) {
 }
 
 void StageParts::set_world(World world, std::optional<Nodes> nodes) {
-  StageJob& job = job_;
+  view::StageJob& job = job_;
   job.before_.world = world;
   job.before_.nodes = nodes ? *nodes : Nodes();
   {
@@ -105,7 +107,7 @@ void StageParts::set_world(World world, std::optional<Nodes> nodes) {
     job.mail_.world = world;
     job.mail_.nodes = std::move(nodes);
   }
-  std::vector<double> storeys = storey_heights(world, job.context_);
+  std::vector<double> storeys = view::storey_heights(world, job.context_);
   const std::lock_guard lock(job.mutex_);
   job.mail_.storeys = std::move(storeys);
 }
@@ -145,12 +147,12 @@ void StageParts::set_scenario(const Scenario& scenario) {
 }
 
 void StageParts::set_replay(Replay replay) {
-  StageJob& job = job_;
-  const ReplaySpan span = replay_span(replay);
+  view::StageJob& job = job_;
+  const view::ReplaySpan span = view::replay_span(replay);
   std::vector<std::string> names;
   for (const RecordedClass& c : replay.info().classes) names.push_back(c.name);
-  auto source = std::make_unique<TimelineSource>(
-      std::make_unique<ReplayPlayer>(std::move(replay), job.before_.origin));
+  auto source = std::make_unique<view::TimelineSource>(
+      std::make_unique<view::ReplayPlayer>(std::move(replay), job.before_.origin));
   const std::lock_guard lock(job.mutex_);
   job.mail_.replay = span;
   job.mail_.class_names = std::move(names);

@@ -17,7 +17,7 @@
 #include "view/side_task.h"
 #include "view/timeline_source.h"
 
-namespace throng {
+namespace throng::view {
 
 /// The parts of a stage that have been loaded and not yet taken.
 struct StageMail {
@@ -62,7 +62,7 @@ class StageJob {
   [[nodiscard]] std::pair<std::string, double> progress() const;
 
  private:
-  friend class StageParts;
+  friend class throng::StageParts;
   void run(const LoadStage& load);
   Result<void> start_player();
 
@@ -81,4 +81,4 @@ class StageJob {
   std::optional<SideTask> task_;  // Last: it ends before the members that it uses.
 };
 
-}  // namespace throng
+}  // namespace throng::view

@@ -11,7 +11,7 @@
 
 // Frames are matched by id and generation, as sorted lists; positions and headings are interpolated
 // linearly, headings of climbers after parallel transport between their axes. Time: linear.
-namespace throng {
+namespace throng::view {
 namespace {
 
 constexpr double kStands = 0.12;      // [m/s] Slower is standing.
@@ -188,4 +188,4 @@ void BlendedCrowd::put(size_t i, const Figures& figures) {
   group.look.push_back(static_cast<uint16_t>(random_unit(5, 2, id) * 2048));
 }
 
-}  // namespace throng
+}  // namespace throng::view

@@ -16,7 +16,7 @@
 #include "throng_draw/draw.h"
 
 /// The avatars at one time, and the blend of two such frames.
-namespace throng {
+namespace throng::view {
 
 /// How many avatars of a scenario entered, left, or do not get on.
 struct SceneFlow {
@@ -92,4 +92,4 @@ class BlendedCrowd {
   int64_t hidden_ = -1;
 };
 
-}  // namespace throng
+}  // namespace throng::view

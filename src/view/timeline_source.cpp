@@ -6,7 +6,7 @@
 #include <utility>
 
 // One producer (the player's task) and one consumer (the window) around a short queue of frames.
-namespace throng {
+namespace throng::view {
 
 TimelineSource::TimelineSource(std::unique_ptr<TimelinePlayer> player)
     : player_(std::move(player)) {
@@ -137,4 +137,4 @@ double TimelineSource::latest() const {
   return made_.empty() ? 0 : made_.back()->time;
 }
 
-}  // namespace throng
+}  // namespace throng::view

@@ -13,7 +13,7 @@
 #include "view/timeline_frame.h"
 
 /// Frames made beside the window, a little ahead of the time shown: drawing waits for no step.
-namespace throng {
+namespace throng::view {
 
 /// Makes the frames of a timeline: a crowd, a scenario or a recording. One thread at a time.
 class TimelinePlayer {
@@ -80,4 +80,4 @@ class TimelineSource {
   std::optional<SideTask> task_;  // Last: it ends before the members that it uses.
 };
 
-}  // namespace throng
+}  // namespace throng::view

@@ -11,7 +11,7 @@
 #include <utility>
 
 // Events become ImGui's input; its draw lists become one list of vertices, indices and runs.
-namespace throng {
+namespace throng::view {
 namespace {
 
 constexpr float kLetters = 15;  // [px at a pixel ratio of 1]
@@ -199,4 +199,4 @@ void Ui::set_layout(const std::string& layout) {
   ImGui::LoadIniSettingsFromMemory(layout.c_str(), layout.size());
 }
 
-}  // namespace throng
+}  // namespace throng::view

@@ -13,7 +13,7 @@
 struct ImGuiContext;
 
 /// Dear ImGui between events and a PanelView, without windows and graphics libraries.
-namespace throng {
+namespace throng::view {
 
 class Ui {
  public:
@@ -46,4 +46,4 @@ class Ui {
   std::vector<PanelRun> runs_;
 };
 
-}  // namespace throng
+}  // namespace throng::view

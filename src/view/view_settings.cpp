@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 // Settings as a JSON object.
-namespace throng {
+namespace throng::view {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -52,4 +52,4 @@ Result<ViewSettings> read_settings(const std::string& text) {
   return s;
 }
 
-}  // namespace throng
+}  // namespace throng::view

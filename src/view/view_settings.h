@@ -6,7 +6,7 @@
 
 #include "throng/base.h"
 
-namespace throng {
+namespace throng::view {
 
 /// Settings that are saved between starts.
 struct ViewSettings {
@@ -28,4 +28,4 @@ struct ViewSettings {
 /// text is not a JSON object.
 [[nodiscard]] Result<ViewSettings> read_settings(const std::string& text);
 
-}  // namespace throng
+}  // namespace throng::view

@@ -43,13 +43,13 @@ void Viewer::State::keep_error(const Result<void>& ok) {
 
 // A new scene: nothing of the stage before remains.
 void Viewer::State::take_scene(const PreparedScene& scene,
-                               std::shared_ptr<const Occluders> new_occluders) {
+                               std::shared_ptr<const view::Occluders> new_occluders) {
   source.reset();
   world = {};
   nodes.reset();
   overlay_maker.reset();
   ordered.fill(false);
-  for (size_t i = 0; i < kOverlays; ++i) {
+  for (size_t i = 0; i < view::kOverlays; ++i) {
     if (std::exchange(shown[i], false)) keep_error(drawing.set_marks(i, {}));
   }
   figures = {};
@@ -62,7 +62,7 @@ void Viewer::State::take_scene(const PreparedScene& scene,
   painted.clear();
   if (props) keep_error(drawing.set_props({}, {}));
   props.reset();
-  panel.tool = Tool::kPick;
+  panel.tool = view::Tool::kPick;
   panel.storeys.clear();
   panel.class_names.clear();
   panel.class_heights.clear();
@@ -83,7 +83,7 @@ void Viewer::State::take_world(const World& new_world, const std::optional<Nodes
   world = new_world;
   panel.has_world = true;
   nodes = new_nodes;
-  overlay_maker = std::make_unique<OverlayMaker>(world, new_nodes, origin);
+  overlay_maker = std::make_unique<view::OverlayMaker>(world, new_nodes, origin);
   for (const AvatarClass& c : world.summary().classes) {
     panel.class_names.push_back(c.name);
     panel.class_heights.push_back(c.height);
@@ -114,7 +114,7 @@ void Viewer::State::take_parts() {
   if (!job) return;
   job->run_slice();
   const bool done = job->done();  // Read first: parts that come later are taken in the next frame.
-  StageMail mail = job->take();
+  view::StageMail mail = job->take();
   if (mail.scene) take_scene(*mail.scene, std::move(mail.occluders));
   if (mail.world) take_world(*mail.world, mail.nodes);
   if (mail.storeys) panel.storeys = *std::move(mail.storeys);
@@ -136,7 +136,7 @@ void Viewer::State::take_parts() {
     panel.crowd.dt = scenario->dt;
     panel.scenario = {.seconds = scenario->seconds, .densities = {}, .painted = 0};
     for (const DensityMap& map : painted) panel.scenario->densities.push_back(map.name);
-    ordered[static_cast<size_t>(Overlay::kPainted)] = false;
+    ordered[static_cast<size_t>(view::Overlay::kPainted)] = false;
   }
   if (mail.source) {
     source = std::move(mail.source);
@@ -165,8 +165,9 @@ void Viewer::State::act_on_panel() {
     if (panel.crowd.only_seen) {
       panel.restart = true;  // Avatars must not appear or disappear in sight.
     } else {
-      change_crowd(
-          [count](CrowdPlayer& player, Context& context) { player.set_count(count, context); });
+      change_crowd([count](view::CrowdPlayer& player, Context& context) {
+        player.set_count(count, context);
+      });
     }
   }
   if (std::exchange(panel.unpaint_all, false)) {
@@ -188,17 +189,19 @@ void Viewer::State::act_on_panel() {
 // Sends the eye to a crowd that depends on it: only_seen or coarse_far.
 void Viewer::State::send_eye() {
   if (!panel.has_crowd || !(panel.crowd.only_seen || panel.crowd.coarse_far)) return;
-  const EyePlace place{.eye = rig.eye() + origin,
-                       .nearest = rig.camera(aspect).nearest,
-                       .cut = panel.is_cut ? panel.cut : 1e9};
+  const view::EyePlace place{.eye = rig.eye() + origin,
+                             .nearest = rig.camera(aspect).nearest,
+                             .cut = panel.is_cut ? panel.cut : 1e9};
   if (sent_eye && *sent_eye == place) return;
   sent_eye = place;
   source->post(
-      [place](TimelinePlayer& player) { static_cast<CrowdPlayer&>(player).look_from(place); },
+      [place](view::TimelinePlayer& player) {
+        static_cast<view::CrowdPlayer&>(player).look_from(place);
+      },
       /*at_once=*/false);
 }
 
-StageBefore Viewer::State::stage_before() const {
+view::StageBefore Viewer::State::stage_before() const {
   return {.origin = origin,
           .world = world,
           .nodes = nodes.value_or(Nodes()),
@@ -207,21 +210,21 @@ StageBefore Viewer::State::stage_before() const {
           .coarse_far = panel.settings.coarse_far};
 }
 
-void Viewer::State::change_crowd(std::function<void(CrowdPlayer&, Context&)> change) {
+void Viewer::State::change_crowd(std::function<void(view::CrowdPlayer&, Context&)> change) {
   if (!source || !panel.has_crowd) return;
   source->post(
-      [change = std::move(change)](TimelinePlayer& player) {
+      [change = std::move(change)](view::TimelinePlayer& player) {
         Context quiet;
-        change(static_cast<CrowdPlayer&>(player), quiet);
+        change(static_cast<view::CrowdPlayer&>(player), quiet);
       },
       !panel.playing);
 }
 
-void Viewer::State::change_scenario(std::function<Result<void>(ScenarioPlayer&)> change) {
+void Viewer::State::change_scenario(std::function<Result<void>(view::ScenarioPlayer&)> change) {
   if (!source || !panel.scenario) return;
   source->post(
-      [change = std::move(change), answers = answers](TimelinePlayer& player) {
-        const Result<void> ok = change(static_cast<ScenarioPlayer&>(player));
+      [change = std::move(change), answers = answers](view::TimelinePlayer& player) {
+        const Result<void> ok = change(static_cast<view::ScenarioPlayer&>(player));
         const std::lock_guard lock(answers->lock);
         answers->fault = ok ? std::string() : ok.error().message;
       },
@@ -237,7 +240,7 @@ void Viewer::State::restart_crowd() {
   start.density = painted;
   if (scenario) scenario->densities = painted;
   retire_job();
-  job = std::make_unique<StageJob>(
+  job = std::make_unique<view::StageJob>(
       panel.status.name,
       [start, again = scenario](StageParts& parts, Context&) -> Result<void> {
         if (again) {
@@ -259,7 +262,7 @@ void Viewer::State::retire_job() {
 void Viewer::State::step_once() {
   panel.playing = false;
   if (!source) return;
-  const FramePair pair = source->at(time);
+  const view::FramePair pair = source->at(time);
   // To the next frame if there is one, else by a step.
   if (pair.b) time = pair.share < 1 ? pair.b->time : pair.b->time + panel.crowd.dt;
 }
@@ -283,7 +286,7 @@ void Viewer::State::look_up_crowd() {
     return;
   }
   const auto start = std::chrono::steady_clock::now();
-  const FramePair pair = source->at(time);
+  const view::FramePair pair = source->at(time);
   source->run_slice();
   if (!pair.a) return;
   const double cut = panel.is_cut ? panel.cut - origin.y - 0.05 : 1e9;
@@ -297,7 +300,7 @@ void Viewer::State::look_up_crowd() {
   mean(panel.times.blend, seconds_since(start));
 }
 
-void Viewer::State::show_props(const TimelineFrame& frame) {
+void Viewer::State::show_props(const view::TimelineFrame& frame) {
   if (frame.obstacles == props) return;
   props = frame.obstacles;
   Scene scene;
@@ -366,7 +369,7 @@ Viewer::State::Frame Viewer::State::prepare(double now, int32_t width, int32_t h
   const auto start = std::chrono::steady_clock::now();
   if (config.panel) {
     ui->begin(seconds, width, height);
-    draw_panel(panel, ui->scale(), width, height);
+    view::draw_panel(panel, ui->scale(), width, height);
     frame.panel = ui->end();
     act_on_panel();
   }
@@ -396,11 +399,11 @@ Result<Viewer> Viewer::create(Drawing drawing, const ViewerConfig& config) {
     state->panel.settings.smooth = false;
   }
   if (!config.settings.empty()) {
-    const Result<ViewSettings> settings = read_settings(config.settings);
+    const Result<view::ViewSettings> settings = view::read_settings(config.settings);
     if (!settings) return settings.error();
     state->panel.settings = *settings;
   }
-  state->ui = std::make_unique<Ui>(config.font, config.pixel_ratio);
+  state->ui = std::make_unique<view::Ui>(config.font, config.pixel_ratio);
   if (auto ok = state->ui->set_texture(state->drawing); !ok) return ok.error();
   if (!state->panel.settings.layout.empty()) state->ui->set_layout(state->panel.settings.layout);
   return Viewer(std::move(state));
@@ -412,7 +415,8 @@ void Viewer::load(const std::string& name, LoadStage load) {
   s.panel.status.name = name;
   s.panel.status.error.clear();
   s.panel.status.loading = true;
-  s.job = std::make_unique<StageJob>(name, std::move(load), s.config.workers, s.stage_before());
+  s.job =
+      std::make_unique<view::StageJob>(name, std::move(load), s.config.workers, s.stage_before());
 }
 
 Result<void> Viewer::frame(double now, int32_t width, int32_t height) {
@@ -437,14 +441,15 @@ void Viewer::look_at(Vec3d eye, Vec3d target) {
 }
 
 void Viewer::show_overlay(const std::string& name) {
-  for (size_t i = 0; i < kOverlays; ++i) {
-    if (word_for(static_cast<Overlay>(i)) == name) state_->panel.overlays[i] = true;
+  for (size_t i = 0; i < view::kOverlays; ++i) {
+    if (view::word_for(static_cast<view::Overlay>(i)) == name) state_->panel.overlays[i] = true;
   }
 }
 
 std::vector<std::string> Viewer::overlay_names() {
   std::vector<std::string> names;
-  for (size_t i = 0; i < kOverlays; ++i) names.emplace_back(word_for(static_cast<Overlay>(i)));
+  for (size_t i = 0; i < view::kOverlays; ++i)
+    names.emplace_back(view::word_for(static_cast<view::Overlay>(i)));
   return names;
 }
 
@@ -453,13 +458,14 @@ void Viewer::pick(int64_t id) { state_->panel.status.picked = id; }
 void Viewer::wait_for_overlays() {
   State& s = *state_;
   if (!s.last_now) s.last_now = 0;
-  const auto is_missing = [&](Overlay overlay) {
+  const auto is_missing = [&](view::Overlay overlay) {
     const auto slot = static_cast<size_t>(overlay);
     if (!s.overlay_maker || !s.panel.overlays[slot] || s.ordered[slot]) return false;
-    const bool is_of_frame = overlay == Overlay::kDensity || overlay == Overlay::kNeighbours ||
-                             overlay == Overlay::kFields;
+    const bool is_of_frame = overlay == view::Overlay::kDensity ||
+                             overlay == view::Overlay::kNeighbours ||
+                             overlay == view::Overlay::kFields;
     if (is_of_frame) return false;
-    return overlay != Overlay::kPath || (s.panel.status.picked >= 0 && s.panel.has_crowd);
+    return overlay != view::Overlay::kPath || (s.panel.status.picked >= 0 && s.panel.has_crowd);
   };
   // The picked avatar may have no goal, so that no path is made.
   for (int32_t tries = 0; tries < 100 || (s.overlay_maker && s.overlay_maker->is_busy()); ++tries) {
@@ -468,9 +474,10 @@ void Viewer::wait_for_overlays() {
     if (s.source) s.source->finish_posted();
     s.show_overlays();
     bool missing = s.overlay_maker && s.overlay_maker->is_busy();
-    for (size_t i = 0; i < kOverlays; ++i) missing |= is_missing(static_cast<Overlay>(i));
+    for (size_t i = 0; i < view::kOverlays; ++i)
+      missing |= is_missing(static_cast<view::Overlay>(i));
     if (!missing) break;
-    SideTask::sleep_briefly();
+    view::SideTask::sleep_briefly();
   }
   s.show_overlays();  // Takes the last one made.
 }
@@ -478,7 +485,7 @@ void Viewer::wait_for_overlays() {
 void Viewer::wait_until_loaded() {
   while (state_->job) {
     state_->take_parts();
-    if (state_->job) SideTask::sleep_briefly();
+    if (state_->job) view::SideTask::sleep_briefly();
   }
   state_->panel.status.loading = false;
 }
@@ -517,9 +524,9 @@ ViewerStatus Viewer::status() const {
 }
 
 std::string Viewer::settings() const {
-  ViewSettings settings = state_->panel.settings;
+  view::ViewSettings settings = state_->panel.settings;
   settings.layout = state_->ui->layout();
-  return settings_text(settings);
+  return view::settings_text(settings);
 }
 
 }  // namespace throng

@@ -40,24 +40,25 @@ struct Viewer::State {
 
   Drawing drawing;
   ViewerConfig config;
-  std::unique_ptr<Ui> ui;
-  PanelState panel;
+  std::unique_ptr<view::Ui> ui;
+  view::PanelState panel;
   ViewerRequests requests;
 
   // The stage.
   Vec3d origin;
   Box3d bounds;  // Relative to the origin.
   World world;
-  Figures figures;
-  std::unique_ptr<StageJob> job;
-  std::vector<std::unique_ptr<StageJob>> retired;  // Cancelled, still running.
-  std::unique_ptr<TimelineSource> source;
-  std::shared_ptr<const Occluders> occluders;
-  std::optional<EyePlace> sent_eye;  // The last one sent to the crowd.
-  BlendedCrowd crowd;
+  view::Figures figures;
+  std::unique_ptr<view::StageJob> job;
+  std::vector<std::unique_ptr<view::StageJob>> retired;  // Cancelled, still running.
+  std::unique_ptr<view::TimelineSource> source;
+  std::shared_ptr<const view::Occluders> occluders;
+  std::optional<view::EyePlace> sent_eye;  // The last one sent to the crowd.
+  view::BlendedCrowd crowd;
   std::optional<Nodes> nodes;
-  std::unique_ptr<OverlayMaker> overlay_maker;
-  std::array<bool, kOverlays> shown{}, ordered{};  // In the drawing; ordered since switched on.
+  std::unique_ptr<view::OverlayMaker> overlay_maker;
+  std::array<bool, view::kOverlays> shown{},
+      ordered{};  // In the drawing; ordered since switched on.
   double air_height = 0;
   std::shared_ptr<const std::vector<Prism>> props;  // In the drawing.
   std::optional<Scenario> scenario;
@@ -67,7 +68,7 @@ struct Viewer::State {
   std::optional<double> path_ordered_at;  // [s]
 
   // The eye.
-  CameraRig rig;
+  view::CameraRig rig;
   std::optional<GivenCamera> camera_given;
   double aspect = 16.0 / 9;
   int32_t picture_width = 0, picture_height = 0;
@@ -92,27 +93,27 @@ struct Viewer::State {
   struct Answers {
     std::mutex lock;
     std::optional<int64_t> joined;
-    std::optional<AvatarDetail> detail;
+    std::optional<view::AvatarDetail> detail;
     std::string fault;
   };
   std::shared_ptr<Answers> answers = std::make_shared<Answers>();
   std::optional<double> last_asked;
 
   void take_parts();
-  void take_scene(const PreparedScene& scene, std::shared_ptr<const Occluders> new_occluders);
+  void take_scene(const PreparedScene& scene, std::shared_ptr<const view::Occluders> new_occluders);
   void take_world(const World& new_world, const std::optional<Nodes>& new_nodes);
   void take_figures(const std::vector<std::vector<ViewFigure>>& of_class);
   void keep_error(const Result<void>& ok);  // in the panel's status
   void reap();
   void retire_job();
   void restart_crowd();
-  void change_scenario(std::function<Result<void>(ScenarioPlayer&)> change);
-  void show_props(const TimelineFrame& frame);
+  void change_scenario(std::function<Result<void>(view::ScenarioPlayer&)> change);
+  void show_props(const view::TimelineFrame& frame);
   void send_painted();
-  void change_crowd(std::function<void(CrowdPlayer&, Context&)> change);
+  void change_crowd(std::function<void(view::CrowdPlayer&, Context&)> change);
   void act_on_panel();
   void send_eye();
-  [[nodiscard]] StageBefore stage_before() const;
+  [[nodiscard]] view::StageBefore stage_before() const;
   void advance_time(double seconds);
   void step_once();
   void look_up_crowd();
@@ -129,19 +130,19 @@ struct Viewer::State {
   void paint_to(double x, double y);
   void show_brush(double x, double y);
   [[nodiscard]] bool brush_paints() const {
-    return panel.tool == Tool::kPaint || panel.tool == Tool::kUnpaint;
+    return panel.tool == view::Tool::kPaint || panel.tool == view::Tool::kUnpaint;
   }
   [[nodiscard]] std::optional<Vec3d> ground_under(double x, double y) const;  // In the world.
   void move_eye(double seconds);
   [[nodiscard]] bool held(Key key) const { return keys[static_cast<size_t>(key)]; }
-  [[nodiscard]] SightLine sight_line(double x, double y) const;  // Relative to the origin.
+  [[nodiscard]] view::SightLine sight_line(double x, double y) const;  // Relative to the origin.
 
   void begin_walk();
   void leave_walk();
   void follow_external(double seconds);
   [[nodiscard]] double free_behind(Vec3d feet, int32_t avatar_class);
   [[nodiscard]] bool through_eyes() const {
-    return panel.mode == CameraMode::kWalk && first_person && panel.status.controlled >= 0;
+    return panel.mode == view::CameraMode::kWalk && first_person && panel.status.controlled >= 0;
   }
 };
 

@@ -17,7 +17,7 @@ constexpr double kWalk = 1.5, kHurry = 3.0;  // [m/s]
 constexpr double kBehind = 4;                // [m] From the eye to the controlled avatar.
 constexpr double kAsk = 0.2;                 // [s] Between two queries of the picked avatar.
 
-Vec3d head_of(const TimelineFrame& now, size_t i, double share_of_height,
+Vec3d head_of(const view::TimelineFrame& now, size_t i, double share_of_height,
               const std::vector<double>& class_heights) {
   const size_t c = now.classes[i];
   const double height = c < class_heights.size() ? class_heights[c] : 1.75;
@@ -27,16 +27,17 @@ Vec3d head_of(const TimelineFrame& now, size_t i, double share_of_height,
 }  // namespace
 
 void Viewer::State::begin_walk() {
-  if (!panel.has_crowd || panel.mode == CameraMode::kWalk) return;
-  const SightLine line = sight_line(0.5 * picture_width, 0.5 * picture_height);
+  if (!panel.has_crowd || panel.mode == view::CameraMode::kWalk) return;
+  const view::SightLine line = sight_line(0.5 * picture_width, 0.5 * picture_height);
   const double cut = panel.is_cut ? panel.cut : panel.bounds.max.y + 1;
-  std::optional<Vec3d> where = ground_on(world, {line.eye + origin, line.direction}, cut, 3000);
+  std::optional<Vec3d> where =
+      view::ground_on(world, {line.eye + origin, line.direction}, cut, 3000);
   // No ground in the middle of the picture: beside an avatar, or anywhere.
   if (!where && crowd.now().size() > 0) {
     where = head_of(crowd.now(), 0, 0, panel.class_heights) + origin;
   }
   if (!where) where = world.random_place(0, panel.crowd.seed, 0).position;
-  change_crowd([answers = answers, at = *where](CrowdPlayer& player, Context& context) {
+  change_crowd([answers = answers, at = *where](view::CrowdPlayer& player, Context& context) {
     const auto id = player.add_external(at, 0, kHurry, context);
     const std::lock_guard lock(answers->lock);
     if (id) answers->joined = static_cast<int64_t>(*id);
@@ -45,12 +46,13 @@ void Viewer::State::begin_walk() {
 }
 
 void Viewer::State::leave_walk() {
-  if (panel.mode == CameraMode::kWalk) panel.mode = CameraMode::kOrbit;
+  if (panel.mode == view::CameraMode::kWalk) panel.mode = view::CameraMode::kOrbit;
   requests.grab_mouse = false;
   const int64_t id = std::exchange(panel.status.controlled, -1);
   if (id < 0) return;
   rig.distance = std::max(rig.distance, 8.0);
-  change_crowd([id](CrowdPlayer& player, Context&) { player.remove(static_cast<uint64_t>(id)); });
+  change_crowd(
+      [id](view::CrowdPlayer& player, Context&) { player.remove(static_cast<uint64_t>(id)); });
 }
 
 void Viewer::State::follow_external(double seconds) {
@@ -58,7 +60,7 @@ void Viewer::State::follow_external(double seconds) {
     const std::lock_guard lock(answers->lock);
     if (const auto id = std::exchange(answers->joined, std::nullopt)) {
       panel.status.controlled = *id;
-      panel.mode = CameraMode::kWalk;
+      panel.mode = view::CameraMode::kWalk;
       walk_distance = kBehind;
       ground_query.reset();
       rig.pitch = 0.25;
@@ -81,10 +83,11 @@ void Viewer::State::follow_external(double seconds) {
   const Vec3d preferred = (flat * ahead + Vec3d{-flat.z, 0, flat.x} * right) * scale;
   if (!(preferred == last_preferred)) {
     last_preferred = preferred;
-    change_crowd(
-        [id, preferred](CrowdPlayer& player, Context&) { player.set_velocity(id, preferred); });
+    change_crowd([id, preferred](view::CrowdPlayer& player, Context&) {
+      player.set_velocity(id, preferred);
+    });
   }
-  const TimelineFrame& now = crowd.now();
+  const view::TimelineFrame& now = crowd.now();
   const size_t i = now.find(id);
   if (i == now.size()) return;
   if (first_person) {
@@ -119,19 +122,19 @@ void Viewer::State::look_up_picked() {
   panel.picked.reset();
   if (panel.status.picked < 0) return;
   const auto id = static_cast<uint64_t>(panel.status.picked);
-  const TimelineFrame& now = crowd.now();
+  const view::TimelineFrame& now = crowd.now();
   const size_t i = now.find(id);
   if (i == now.size()) {
     panel.status.picked = -1;
     return;
   }
-  AvatarDetail detail{.id = id,
-                      .avatar_class = now.classes[i],
-                      .position = {},
-                      .speed = 0,
-                      .goal = {},
-                      .goals_given = 0,
-                      .controlled = false};
+  view::AvatarDetail detail{.id = id,
+                            .avatar_class = now.classes[i],
+                            .position = {},
+                            .speed = 0,
+                            .goal = {},
+                            .goals_given = 0,
+                            .controlled = false};
   if (panel.has_crowd) {
     const std::lock_guard lock(answers->lock);
     if (answers->detail && answers->detail->id == id) detail = *answers->detail;
@@ -143,8 +146,8 @@ void Viewer::State::look_up_picked() {
   if (!panel.has_crowd || (last_asked && *last_now - *last_asked < kAsk)) return;
   last_asked = last_now;
   source->post(
-      [id, answers = answers](TimelinePlayer& player) {
-        const auto found = static_cast<CrowdPlayer&>(player).detail(id);
+      [id, answers = answers](view::TimelinePlayer& player) {
+        const auto found = static_cast<view::CrowdPlayer&>(player).detail(id);
         const std::lock_guard lock(answers->lock);
         answers->detail = found;
       },

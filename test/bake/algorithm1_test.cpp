@@ -24,7 +24,7 @@ using Cells = std::vector<std::vector<std::pair<int32_t, int32_t>>>;
 // Algorithm 1 as printed, but for the direction of its search, which never ends as printed: the
 // raised head is compared in cell A only.
 bool can_move_as_printed(const SliceSet& slices, size_t i, size_t a, size_t b,
-                         const SliceBody& body) {
+                         const papers::SliceBody& body) {
   const int32_t head_a = slices.kept[i].surface[a] + body.height;
   const int32_t head_b = slices.kept[i].surface[b] + body.height;
   if (std::abs(head_a - head_b) >= body.step) return false;
@@ -34,14 +34,14 @@ bool can_move_as_printed(const SliceSet& slices, size_t i, size_t a, size_t b,
   return slices.kept[i].surface[a] == slices.kept[j].surface[a];
 }
 
-SliceSet sweep(const naive::Columns& columns, const SweepConfig& config) {
+SliceSet sweep(const naive::Columns& columns, const papers::SweepConfig& config) {
   Context context;
-  return *sweep_slices(naive::make_tiles(columns), config, context);
+  return *papers::sweep_slices(naive::make_tiles(columns), config, context);
 }
 
-SliceSet sweep(const Cells& cells, int32_t avatar_height, SliceRule rule) {
+SliceSet sweep(const Cells& cells, int32_t avatar_height, papers::SliceRule rule) {
   const auto columns = naive::from_lists(static_cast<int32_t>(cells.size()), 1, cells);
-  SweepConfig config = naive::sweep_config(columns, avatar_height, 100);
+  papers::SweepConfig config = naive::sweep_config(columns, avatar_height, 100);
   config.rule = rule;
   return sweep(columns, config);
 }
@@ -78,10 +78,10 @@ naive::Columns rolling_world(uint64_t seed, int32_t width, int32_t depth) {
 
 // Where a body with its feet at `feet` in `from` gets to in `to`, or nothing.
 std::optional<int32_t> answer(const SliceSet& slices, size_t from, int32_t feet, size_t to,
-                              const SliceBody& body) {
-  const size_t slice = find_slice(slices, feet + body.height);
+                              const papers::SliceBody& body) {
+  const size_t slice = papers::find_slice(slices, feet + body.height);
   if (slices.kept[slice].surface[from] != feet) return {};
-  if (!can_move(slices, slice, from, to, body)) return {};
+  if (!papers::can_move(slices, slice, from, to, body)) return {};
   return slices.kept[slice].surface[to];
 }
 
@@ -121,16 +121,18 @@ naive::Columns crop(const naive::Columns& columns, int32_t tx, int32_t tz) {
 // Compares the moves inside each tile, by the whole world's slices and by the tile's own.
 template <class Compare>
 void for_each_tile_move(const naive::Columns& columns, const SliceSet& global,
-                        const SweepConfig& tile_config, const SliceBody& body, Compare compare) {
-  for (const SliceTile& tile : naive::make_tiles(columns)) {
+                        const papers::SweepConfig& tile_config, const papers::SliceBody& body,
+                        Compare compare) {
+  for (const papers::SliceTile& tile : naive::make_tiles(columns)) {
     const auto own = crop(columns, tile.tile_x, tile.tile_z);
-    SweepConfig config = tile_config;
+    papers::SweepConfig config = tile_config;
     if (config.heights.empty()) {
-      const SweepConfig bounds = naive::sweep_config(own, config.avatar_height, config.resolution);
+      const papers::SweepConfig bounds =
+          naive::sweep_config(own, config.avatar_height, config.resolution);
       config.min_y = bounds.min_y;
       config.max_y = bounds.max_y;
     }
-    const SliceSet local = slice_tile(tile, config);
+    const SliceSet local = papers::slice_tile(tile, config);
     const auto to_global = [&](size_t cell) {
       const int32_t x = tile.tile_x * kTileCells + static_cast<int32_t>(cell) % kTileCells;
       const int32_t z = tile.tile_z * kTileCells + static_cast<int32_t>(cell) / kTileCells;
@@ -154,61 +156,62 @@ TEST(Algorithm1, ThePrintedRuleAdmitsAHeadIntoACeilingAndOursRefuses) {
   // A: open floor. B: a step up under a roof at 5.7. C: makes the slice at 5.6 worth keeping.
   const SliceSet slices =
       sweep({{{1000, 1000}}, {{1300, 1300}, {5700, 5700}}, {{1000, 1000}, {5700, 5700}}}, 4500,
-            SliceRule::kDismissAndReplace);
+            papers::SliceRule::kDismissAndReplace);
   ASSERT_EQ(heights_of(slices.kept), (Ints{10300, 5600}));
-  const SliceBody body{.height = 4500, .step = 500};
-  const size_t slice = find_slice(slices, 1000 + body.height);
+  const papers::SliceBody body{.height = 4500, .step = 500};
+  const size_t slice = papers::find_slice(slices, 1000 + body.height);
   ASSERT_EQ(slice, 1u);
   ASSERT_GT(1300 + body.height, 5700) << "the head would be in the roof";
   EXPECT_TRUE(can_move_as_printed(slices, slice, 0, 1, body));
-  EXPECT_FALSE(can_move(slices, slice, 0, 1, body));
-  EXPECT_TRUE(can_move(slices, slice, 0, 2, body)) << "C is level with A, and free";
+  EXPECT_FALSE(papers::can_move(slices, slice, 0, 1, body));
+  EXPECT_TRUE(papers::can_move(slices, slice, 0, 2, body)) << "C is level with A, and free";
 }
 
 TEST(Algorithm1, AStepUpPastTheSliceIsLegalWhereBothColumnsAreFree) {
   const SliceSet slices = sweep({{{1000, 1000}}, {{1300, 1300}}, {{1000, 1000}, {5700, 5700}}},
-                                4500, SliceRule::kDismissAndReplace);
-  const SliceBody body{.height = 4500, .step = 500};
-  EXPECT_EQ(find_slice(slices, 5500), 1u);
-  EXPECT_TRUE(can_move(slices, 1, 0, 1, body));
-  EXPECT_FALSE(can_move(slices, 1, 2, 1, body)) << "the roof over C is at 5.7, the head at 5.8";
+                                4500, papers::SliceRule::kDismissAndReplace);
+  const papers::SliceBody body{.height = 4500, .step = 500};
+  EXPECT_EQ(papers::find_slice(slices, 5500), 1u);
+  EXPECT_TRUE(papers::can_move(slices, 1, 0, 1, body));
+  EXPECT_FALSE(papers::can_move(slices, 1, 2, 1, body))
+      << "the roof over C is at 5.7, the head at 5.8";
 }
 
 TEST(Algorithm1, StepsMustBeLowerThanTheBodysStepUpAndDown) {
   const SliceSet slices =
-      sweep({{{0, 0}}, {{399, 399}}, {{400, 400}}}, 1750, SliceRule::kDismissAndReplace);
-  const SliceBody body{.height = 1750, .step = 400};
-  EXPECT_TRUE(can_move(slices, 0, 0, 1, body));
-  EXPECT_TRUE(can_move(slices, 0, 1, 0, body));
-  EXPECT_FALSE(can_move(slices, 0, 0, 2, body));
-  EXPECT_FALSE(can_move(slices, 0, 2, 0, body));
+      sweep({{{0, 0}}, {{399, 399}}, {{400, 400}}}, 1750, papers::SliceRule::kDismissAndReplace);
+  const papers::SliceBody body{.height = 1750, .step = 400};
+  EXPECT_TRUE(papers::can_move(slices, 0, 0, 1, body));
+  EXPECT_TRUE(papers::can_move(slices, 0, 1, 0, body));
+  EXPECT_FALSE(papers::can_move(slices, 0, 0, 2, body));
+  EXPECT_FALSE(papers::can_move(slices, 0, 2, 0, body));
 }
 
 TEST(Algorithm1, NoBodyStandsOnTheFarPlaneOrWhereTheSliceIsTooLow) {
   const SliceSet slices =
-      sweep({{{0, 0}}, {}, {{0, 0}, {2000, 2000}}}, 1750, SliceRule::kDismissAndReplace);
+      sweep({{{0, 0}}, {}, {{0, 0}, {2000, 2000}}}, 1750, papers::SliceRule::kDismissAndReplace);
   ASSERT_EQ(slices.far_plane, -100);
-  const SliceBody body{.height = 1750, .step = 400};
-  EXPECT_FALSE(can_move(slices, 0, 0, 1, body));
-  EXPECT_FALSE(can_move(slices, 0, 1, 0, body));
+  const papers::SliceBody body{.height = 1750, .step = 400};
+  EXPECT_FALSE(papers::can_move(slices, 0, 0, 1, body));
+  EXPECT_FALSE(papers::can_move(slices, 0, 1, 0, body));
   ASSERT_EQ(slices.kept[1].height, 1900);
-  EXPECT_TRUE(can_move(slices, 1, 0, 2, body));
-  EXPECT_FALSE(can_move(slices, 1, 0, 2, {.height = 1901, .step = 400}));
+  EXPECT_TRUE(papers::can_move(slices, 1, 0, 2, body));
+  EXPECT_FALSE(papers::can_move(slices, 1, 0, 2, {.height = 1901, .step = 400}));
 }
 
 TEST(Algorithm1, WhereItSaysYesBothColumnsAreFreeFromTheHigherFloorToTheHead) {
   size_t legal = 0, printed_wrong = 0;
   for (uint64_t seed = 0; seed < 20; ++seed) {
     const auto columns = rolling_world(seed, 40, 20);
-    const SliceBody body{.height = 1750, .step = 300};
+    const papers::SliceBody body{.height = 1750, .step = 300};
     const SliceSet slices = sweep(columns, naive::sweep_config(columns, body.height, 100));
     for_each_move(columns, [&](size_t from, int32_t feet, size_t to) {
-      const size_t slice = find_slice(slices, feet + body.height);
+      const size_t slice = papers::find_slice(slices, feet + body.height);
       if (slices.kept[slice].surface[from] != feet) return;
       const int32_t feet_to = slices.kept[slice].surface[to];
       const int32_t free = std::min(ceiling(columns, from, feet), ceiling(columns, to, feet_to));
       const bool fits = int64_t{free} - std::max(feet, feet_to) >= body.height;
-      if (can_move(slices, slice, from, to, body)) {
+      if (papers::can_move(slices, slice, from, to, body)) {
         ++legal;
         EXPECT_TRUE(fits) << "seed " << seed << " cell " << from << " to " << to;
       }
@@ -222,13 +225,14 @@ TEST(Algorithm1, WhereItSaysYesBothColumnsAreFreeFromTheHigherFloorToTheHead) {
 TEST(Algorithm1, ReplacingASliceNeverLosesAPlaceToStandForTheSmallestClass) {
   for (uint64_t seed = 0; seed < 20; ++seed) {
     const auto columns = rolling_world(seed, 40, 20);
-    const SweepConfig config = naive::sweep_config(columns, 1750, 100);
+    const papers::SweepConfig config = naive::sweep_config(columns, 1750, 100);
     const SliceSet kept = sweep(columns, config);
     for (const Slice& taken : naive::slice(columns, config).taken) {
       for (size_t cell = 0; cell < taken.surface.size(); ++cell) {
         const int32_t feet = taken.surface[cell];
         if (taken.height - feet < config.avatar_height) continue;
-        EXPECT_EQ(kept.kept[find_slice(kept, feet + config.avatar_height)].surface[cell], feet);
+        EXPECT_EQ(kept.kept[papers::find_slice(kept, feet + config.avatar_height)].surface[cell],
+                  feet);
       }
     }
   }
@@ -239,11 +243,11 @@ TEST(Algorithm1, ReplacingASliceCanLoseAStepFromUnderTheSkyToUnderARoof) {
   // A body of 4.5 at A has its head at 7, below B's roof. The slice at 7.9 shows this. The one at
   // 5.9, which replaces it for C's sake, does not: at A the head is above it.
   const Cells cells = {{{2500, 2500}}, {{1000, 1000}, {8000, 8000}}, {{1000, 1000}, {6000, 6000}}};
-  const SliceBody body{.height = 4500, .step = 2000};
-  const SliceSet printed = sweep(cells, body.height, SliceRule::kDismissAndReplace);
+  const papers::SliceBody body{.height = 4500, .step = 2000};
+  const SliceSet printed = sweep(cells, body.height, papers::SliceRule::kDismissAndReplace);
   ASSERT_EQ(heights_of(printed.kept), (Ints{12600, 5900}));
   EXPECT_FALSE(answer(printed, 0, 2500, 1, body));
-  const SliceSet dismissed = sweep(cells, body.height, SliceRule::kDismissOnly);
+  const SliceSet dismissed = sweep(cells, body.height, papers::SliceRule::kDismissOnly);
   ASSERT_EQ(heights_of(dismissed.kept), (Ints{12600, 7900, 5900}));
   EXPECT_EQ(answer(dismissed, 0, 2500, 1, body), 1000);
 }
@@ -251,12 +255,12 @@ TEST(Algorithm1, ReplacingASliceCanLoseAStepFromUnderTheSkyToUnderARoof) {
 TEST(Algorithm1, DismissingSlicesLosesNoMove) {
   for (uint64_t seed = 0; seed < 10; ++seed) {
     const auto columns = rolling_world(seed, 40, 20);
-    const SliceBody body{.height = 1750, .step = 300};
-    SweepConfig config = naive::sweep_config(columns, body.height, 100);
+    const papers::SliceBody body{.height = 1750, .step = 300};
+    papers::SweepConfig config = naive::sweep_config(columns, body.height, 100);
     SliceSet all;
     all.far_plane = config.far_plane;
     all.kept = naive::slice(columns, config).taken;
-    config.rule = SliceRule::kDismissOnly;
+    config.rule = papers::SliceRule::kDismissOnly;
     const SliceSet dismissed = sweep(columns, config);
     ASSERT_LT(dismissed.kept.size(), all.kept.size());
     for_each_move(columns, [&](size_t from, int32_t feet, size_t to) {
@@ -269,25 +273,26 @@ TEST(TileLocalSlices, AtTheGlobalHeightsAnswerEveryMoveOfTheSmallestClassAlike) 
   size_t legal = 0, local_slices = 0, tiles = 0;
   for (uint64_t seed = 0; seed < 4; ++seed) {
     const auto columns = rolling_world(seed, 190, 70);
-    const SliceBody body{.height = 1750, .step = 300};
-    SweepConfig config = naive::sweep_config(columns, body.height, 100);
+    const papers::SliceBody body{.height = 1750, .step = 300};
+    papers::SweepConfig config = naive::sweep_config(columns, body.height, 100);
     // Whatever the world keeps, by either rule, a tile may dismiss what says nothing new *there*.
-    for (const SliceRule rule : {SliceRule::kDismissAndReplace, SliceRule::kDismissOnly}) {
+    for (const papers::SliceRule rule :
+         {papers::SliceRule::kDismissAndReplace, papers::SliceRule::kDismissOnly}) {
       config.rule = rule;
       config.heights = {};
       const SliceSet global = sweep(columns, config);
       const Ints heights =
-          rule == SliceRule::kDismissOnly ? global.taken_heights : heights_of(global.kept);
+          rule == papers::SliceRule::kDismissOnly ? global.taken_heights : heights_of(global.kept);
       config.heights = heights;
-      config.rule = SliceRule::kDismissOnly;
+      config.rule = papers::SliceRule::kDismissOnly;
       for_each_tile_move(
           columns, global, config, body,
           [&](const naive::Columns&, size_t, int32_t, size_t, auto world, auto tile) {
             EXPECT_EQ(world, tile);
             legal += world.has_value();
           });
-      for (const SliceTile& tile : naive::make_tiles(columns)) {
-        local_slices += slice_tile(tile, config).kept.size();
+      for (const papers::SliceTile& tile : naive::make_tiles(columns)) {
+        local_slices += papers::slice_tile(tile, config).kept.size();
         tiles += global.kept.size();
       }
     }
@@ -300,9 +305,9 @@ TEST(TileLocalSlices, AtTheirOwnHeightsDifferOnlyWhereSpareHeadroomIsBelowTheRes
   size_t same = 0, differ = 0;
   for (uint64_t seed = 0; seed < 4; ++seed) {
     const auto columns = rolling_world(seed, 190, 70);
-    const SliceBody body{.height = 1750, .step = 300};
-    SweepConfig config = naive::sweep_config(columns, body.height, 100);
-    config.rule = SliceRule::kDismissOnly;
+    const papers::SliceBody body{.height = 1750, .step = 300};
+    papers::SweepConfig config = naive::sweep_config(columns, body.height, 100);
+    config.rule = papers::SliceRule::kDismissOnly;
     const SliceSet global = sweep(columns, config);
     for_each_tile_move(
         columns, global, config, body,

@@ -18,9 +18,9 @@ namespace {
 using Ints = std::vector<int32_t>;
 using Cells = std::vector<std::vector<std::pair<int32_t, int32_t>>>;
 
-SliceSet sweep(const naive::Columns& columns, const SweepConfig& config) {
+SliceSet sweep(const naive::Columns& columns, const papers::SweepConfig& config) {
   Context context;
-  auto set = sweep_slices(naive::make_tiles(columns), config, context);
+  auto set = papers::sweep_slices(naive::make_tiles(columns), config, context);
   EXPECT_TRUE(set) << set.error().message;
   return *std::move(set);
 }
@@ -117,7 +117,7 @@ TEST(SliceSweep, ASliceThatTheNextOneDoesNotRepeatIsKept) {
 TEST(SliceSweep, ACutInsideAWallRecordsItsOwnHeightFromTheWallsFootToItsTop) {
   const auto columns = naive::from_lists(1, 1, {{{0, 0}, {1000, 3000}}});
   const Ints heights = {5000, 3000, 2999, 1000, 999};
-  SweepConfig config = naive::sweep_config(columns, 500, 100);
+  papers::SweepConfig config = naive::sweep_config(columns, 500, 100);
   config.heights = heights;
   const SliceSet set = sweep(columns, config);
   EXPECT_EQ(set.taken, 5);
@@ -143,7 +143,7 @@ TEST(SliceSweep, EqualsAlgorithms2And3CutByCutOnRandomWorlds) {
     const bool many_tiles = seed % 50 == 0;
     const auto columns =
         random_columns(seed, many_tiles ? 130 : 1 + roll(0, 12), many_tiles ? 70 : 1 + roll(1, 12));
-    SweepConfig config =
+    papers::SweepConfig config =
         naive::sweep_config(columns, 300 + roll(2, 4000), many_tiles ? 300 : 20 + roll(3, 500));
     const auto expected = naive::slice(columns, config);
     const SliceSet set = sweep(columns, config);
@@ -156,7 +156,7 @@ TEST(SliceSweep, EqualsAlgorithms2And3CutByCutOnRandomWorlds) {
       ASSERT_EQ(set.kept[i].height, expected.kept[i].height) << "seed " << seed;
       ASSERT_EQ(set.kept[i].surface, expected.kept[i].surface) << "seed " << seed;
     }
-    config.rule = SliceRule::kDismissOnly;
+    config.rule = papers::SliceRule::kDismissOnly;
     const size_t undismissed = sweep(columns, config).kept.size();
     replaced += undismissed - set.kept.size();
     dismissed += expected.taken.size() - undismissed;
@@ -167,7 +167,7 @@ TEST(SliceSweep, EqualsAlgorithms2And3CutByCutOnRandomWorlds) {
 
 TEST(SliceSweep, SameSlicesForAnyNumberOfWorkers) {
   const auto columns = random_columns(7, 200, 150);
-  SweepConfig config = naive::sweep_config(columns, 1200, 100);
+  papers::SweepConfig config = naive::sweep_config(columns, 1200, 100);
   config.workers = 1;
   const SliceSet one = sweep(columns, config);
   ASSERT_GT(one.kept.size(), 1u);
@@ -190,8 +190,8 @@ TEST(SliceSweep, StopsWhenCancelled) {
     EXPECT_LE(progress.done, progress.total);
     if (++calls == 3) context.cancel = true;
   };
-  const auto set =
-      sweep_slices(naive::make_tiles(columns), naive::sweep_config(columns, 1750, 100), context);
+  const auto set = papers::sweep_slices(naive::make_tiles(columns),
+                                        naive::sweep_config(columns, 1750, 100), context);
   ASSERT_FALSE(set);
   EXPECT_EQ(set.error().code, Errc::kCancelled);
   EXPECT_EQ(calls, 3);

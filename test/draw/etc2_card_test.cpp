@@ -27,8 +27,8 @@ std::vector<uint8_t> random_blocks(size_t bytes_each) {
   return bytes;
 }
 
-Bytes8 bytes_at(const std::vector<uint8_t>& from, size_t offset) {
-  Bytes8 out;
+impostor::Bytes8 bytes_at(const std::vector<uint8_t>& from, size_t offset) {
+  impostor::Bytes8 out;
   std::copy_n(from.begin() + static_cast<ptrdiff_t>(offset), 8, out.begin());
   return out;
 }
@@ -121,11 +121,11 @@ TEST(Etc2Card, ColoursOfRandomBlocksAreTheDrivers) {
         255);
     size_t differ = 0;
     for_each_texel(texels, [&](size_t block, size_t texel, const uint32_t* card) {
-      ColourBlock ours;
-      decode_etc2(bytes_at(blocks, block * bytes_each + bytes_each - 8), holes, ours);
+      impostor::ColourBlock ours;
+      impostor::decode_etc2(bytes_at(blocks, block * bytes_each + bytes_each - 8), holes, ours);
       if (!holes) {
-        ChannelBlock alpha;
-        decode_eac(bytes_at(blocks, block * bytes_each), alpha);
+        impostor::ChannelBlock alpha;
+        impostor::decode_eac(bytes_at(blocks, block * bytes_each), alpha);
         ours[texel][3] = alpha[texel];
       }
       for (size_t c = 0; c < 4; ++c) differ += ours[texel][c] != card[c] ? 1 : 0;
@@ -143,8 +143,8 @@ TEST(Etc2Card, ChannelsOfRandomBlocksAreTheDrivers) {
   size_t differ = 0;
   for_each_texel(texels, [&](size_t block, size_t texel, const uint32_t* card) {
     for (size_t c = 0; c < 2; ++c) {
-      WideChannelBlock ours;
-      decode_eac11(bytes_at(blocks, block * 16 + c * 8), ours);
+      impostor::WideChannelBlock ours;
+      impostor::decode_eac11(bytes_at(blocks, block * 16 + c * 8), ours);
       differ += ours[texel] != card[c] ? 1 : 0;
     }
   });

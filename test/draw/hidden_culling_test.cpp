@@ -31,12 +31,12 @@ TEST(DepthPyramid, HidesWhatEverySampleOfItsRectangleIsInFrontOf) {
       blocks[i] = static_cast<float>(0.2 + 0.3 * random_unit(n, i, 0));
       if (i == random_below(n, 0, 1, blocks.size())) blocks[i] = 1;
     }
-    DepthPyramid pyramid;
+    draw::DepthPyramid pyramid;
     pyramid.set(blocks, kWidth, kHeight);
     for (uint64_t k = 0; k < 500; ++k, ++asked) {
       const auto at = [&](uint64_t j) { return random_unit(n, k, j) * 2.4 - 1.2; };
       const double x = at(2), y = at(3), size = std::pow(random_unit(n, k, 4), 3);
-      const NdcBox box{x - size, x + size, y - size, y + size, random_unit(n, k, 5) * 2 - 1};
+      const draw::NdcBox box{x - size, x + size, y - size, y + size, random_unit(n, k, 5) * 2 - 1};
       bool all = true, any = false;
       for (int32_t sy = 0; sy < kHeight; ++sy) {
         for (int32_t sx = 0; sx < kWidth; ++sx) {
@@ -177,15 +177,15 @@ TEST(HiddenCulling, LeavesNothingOutThatAPictureOfARealCityShows) {
 TEST(SceneChunks, HoldEachTriangleOnceAndLeaveOutOnlyWhatIsNotInThePicture) {
   const auto scene = create_builtin_world({.name = "city", .triangles = 30'000});
   ASSERT_TRUE(scene);
-  auto corners = scene_corners(*scene, {});
+  auto corners = draw::scene_corners(*scene, {});
   ASSERT_TRUE(corners);
-  const auto key = [](const SceneCorner& c) { return std::pair(c.position, c.normal); };
+  const auto key = [](const draw::SceneCorner& c) { return std::pair(c.position, c.normal); };
   std::vector<std::pair<std::array<float, 3>, std::array<int8_t, 3>>> before, after;
-  for (const SceneCorner& c : corners->corners) before.push_back(key(c));
-  sort_into_chunks(*corners);
-  for (const SceneCorner& c : corners->corners) after.push_back(key(c));
+  for (const draw::SceneCorner& c : corners->corners) before.push_back(key(c));
+  draw::sort_into_chunks(*corners);
+  for (const draw::SceneCorner& c : corners->corners) after.push_back(key(c));
   uint32_t next = 0;
-  for (const SceneChunk& chunk : corners->chunks) {
+  for (const draw::SceneChunk& chunk : corners->chunks) {
     EXPECT_EQ(chunk.first, next);
     EXPECT_EQ(chunk.count % 3, 0U);
     next += chunk.count;
@@ -199,14 +199,14 @@ TEST(SceneChunks, HoldEachTriangleOnceAndLeaveOutOnlyWhatIsNotInThePicture) {
                   random_unit(3, n, 2) * 200};
     camera.target =
         camera.eye + Vec3d{random_unit(3, n, 3) - 0.5, -0.1, random_unit(3, n, 4) - 0.5};
-    const Matrix m = perspective(camera);
+    const draw::Matrix m = draw::perspective(camera);
     std::vector<uint8_t> kept(corners->chunks.size());
-    for (const uint32_t i : chunks_in_view(corners->chunks, m, camera.eye)) kept[i] = 1;
+    for (const uint32_t i : draw::chunks_in_view(corners->chunks, m, camera.eye)) kept[i] = 1;
     size_t left_out = 0;
     for (size_t i = 0; i < kept.size(); ++i) {
       if (kept[i] != 0) continue;
       ++left_out;
-      const SceneChunk& chunk = corners->chunks[i];
+      const draw::SceneChunk& chunk = corners->chunks[i];
       for (uint32_t c = chunk.first; c < chunk.first + chunk.count; ++c) {
         const auto& p = corners->corners[c].position;
         double at[4];

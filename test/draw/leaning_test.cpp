@@ -234,9 +234,9 @@ TEST(GlLeaning, OnlyAvatarsOutsideThePictureAreLeftOut) {
   const DrawnCrowd crowd{
       .atlas = 0, .clip = 0, .avatars = {x, y, z, heading, phase, look}, .up_vectors = ups};
   EyeCamera camera{.eye = {3, 5, 20}, .target = {-2, 1, -4}, .field_of_view = 0.7, .aspect = 1.5};
-  std::vector<LeaningInstance> views(x.size());
-  const LevelCounts counts = pack_leaning(*atlas, crowd, {.camera = camera, .from_direction = {}},
-                                          {}, {.meshes = {}, .views = views});
+  std::vector<draw::LeaningInstance> views(x.size());
+  const LevelCounts counts = draw::pack_leaning(
+      *atlas, crowd, {.camera = camera, .from_direction = {}}, {}, {.meshes = {}, .views = views});
   const CameraAxes axes = camera_axes(camera);
   const double slope = std::tan(0.35), reach = 0.5 * atlas->shape.side;
   size_t next = 0, inside = 0;

@@ -186,7 +186,7 @@ TEST(GlSurfaces, CullingChangesNoByteOfAPictureWithHoles) {
 
 TEST(TextureLayers, AreOfOneSizeWithinTheBudget) {
   Scene scene = sign(Opacity::kOpaque);
-  TextureLayers layers = make_texture_layers(scene, 1 << 20);
+  draw::TextureLayers layers = draw::make_texture_layers(scene, 1 << 20);
   EXPECT_EQ(layers.side, 16);
   EXPECT_EQ(layers.layers, 1);
   ASSERT_EQ(layers.levels.size(), 5U);
@@ -201,24 +201,24 @@ TEST(TextureLayers, AreOfOneSizeWithinTheBudget) {
   Texture large{.name = "large", .width = 300, .height = 5, .rgba = {}};
   large.rgba.assign(size_t{300} * 5 * 4, 77);
   scene.textures.push_back(large);
-  EXPECT_EQ(make_texture_layers(scene, 1 << 30).layers, 1);  // No part uses the other.
+  EXPECT_EQ(draw::make_texture_layers(scene, 1 << 30).layers, 1);  // No part uses the other.
   scene.materials[1].texture1 = 2;
-  layers = make_texture_layers(scene, 1 << 30);
+  layers = draw::make_texture_layers(scene, 1 << 30);
   EXPECT_EQ(layers.side, 512);
   EXPECT_EQ(layers.layers, 2);
   EXPECT_EQ(layers.levels[0].back(), 77);
-  EXPECT_EQ(make_texture_layers(scene, 2 * 64 * 64 * 4).side, 64);
-  EXPECT_EQ(make_texture_layers(scene, 0).side, 16);
+  EXPECT_EQ(draw::make_texture_layers(scene, 2 * 64 * 64 * 4).side, 64);
+  EXPECT_EQ(draw::make_texture_layers(scene, 0).side, 16);
 
   scene.textures[1].rgba.clear();  // Not of its size.
-  layers = make_texture_layers(scene, 1 << 30);
+  layers = draw::make_texture_layers(scene, 1 << 30);
   EXPECT_EQ(layers.layers, 1);
   EXPECT_EQ(layers.of_texture[1].layer1, 0U);
 }
 
 TEST(TextureLayers, MoreTexturesThanLayersGiveTheirMeans) {
   Scene scene = sign(Opacity::kOpaque);
-  for (size_t i = 0; i < kMaxLayers; ++i) {
+  for (size_t i = 0; i < draw::kMaxLayers; ++i) {
     scene.textures.push_back(quarters());
     scene.materials.push_back(
         {.name = {}, .texture1 = static_cast<uint32_t>(scene.textures.size())});
@@ -228,8 +228,8 @@ TEST(TextureLayers, MoreTexturesThanLayersGiveTheirMeans) {
                            .first_triangle = 4,
                            .material1 = static_cast<uint32_t>(scene.materials.size())});
   }
-  const TextureLayers layers = make_texture_layers(scene, 64 << 20);
-  EXPECT_EQ(layers.layers, static_cast<int32_t>(kMaxLayers));
+  const draw::TextureLayers layers = draw::make_texture_layers(scene, 64 << 20);
+  EXPECT_EQ(layers.layers, static_cast<int32_t>(draw::kMaxLayers));
   EXPECT_EQ(layers.of_texture.back().layer1, 0U);
   EXPECT_EQ(layers.of_texture.back().mean[3], 191);
   EXPECT_LT(layers.of_texture.back().mean[0], 140);

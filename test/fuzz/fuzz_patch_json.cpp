@@ -4,5 +4,5 @@
 #include "import/formats/patch_json.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
-  return throng::fuzz_reader(throng::read_patch_json, bytes, size);
+  return throng::fuzz_reader(throng::importer::read_patch_json, bytes, size);
 }

@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
     }
   }
   rings.push_back(static_cast<uint32_t>(points.size()));
-  throng::PolygonCutter cutter;
+  throng::importer::PolygonCutter cutter;
   std::vector<std::array<uint32_t, 3>> triangles;
   cutter.cut(points, rings, triangles);
   for (const auto& corners : triangles) {

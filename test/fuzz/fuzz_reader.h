@@ -10,10 +10,11 @@
 /// What all targets for readers do: read, cut patches, clean, check the result's order.
 namespace throng {
 
-inline int fuzz_reader(Result<RawScene> (*read)(std::string_view, const ReadOptions&, Context&),
+inline int fuzz_reader(Result<importer::RawScene> (*read)(std::string_view,
+                                                          const importer::ReadOptions&, Context&),
                        const uint8_t* bytes, size_t size) {
   Context context;
-  ReadOptions options;
+  importer::ReadOptions options;
   options.name = "fuzz";
   auto raw = read({reinterpret_cast<const char*>(bytes), size}, options, context);
   if (!raw) return 0;
@@ -23,7 +24,7 @@ inline int fuzz_reader(Result<RawScene> (*read)(std::string_view, const ReadOpti
     if (mesh && mesh->first.size() != patches.size() + 1) std::abort();
     if (!mesh && mesh.error().message.empty()) std::abort();
   }
-  if (!clean_scene(raw->scene, "fuzz", context)) return 0;
+  if (!importer::clean_scene(raw->scene, "fuzz", context)) return 0;
   const Scene& scene = raw->scene;
   if (scene.area.size() != scene.triangles.size()) std::abort();
   for (const auto& corners : scene.triangles) {

@@ -13,12 +13,11 @@
 namespace {
 
 void seal(std::vector<uint8_t>& bytes) {
-  using throng::ChunkHead;
-  for (size_t at = 0; at + sizeof(ChunkHead) <= bytes.size();) {
-    ChunkHead head;
+  for (size_t at = 0; at + sizeof(throng::record::ChunkHead) <= bytes.size();) {
+    throng::record::ChunkHead head;
     std::memcpy(&head, &bytes[at], sizeof head);
     const size_t left = bytes.size() - at - sizeof head;
-    head.mark = throng::kChunkMark;
+    head.mark = throng::record::kChunkMark;
     head.bytes = std::min<uint64_t>(head.bytes, left);
     head.sum = throng::hash_bytes(bytes.data() + at + sizeof head, head.bytes);
     head.head_sum = head.own_sum();

@@ -7,6 +7,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   const std::string text(reinterpret_cast<const char*>(bytes), size);
   const auto root = throng::parse_config(text, "fuzz");
   if (!root) return 0;
-  const auto read = throng::read_scene_config(*root, "fuzz", "");
+  const auto read = throng::importer::read_scene_config(*root, "fuzz", "");
   return read || !read.error().message.empty() ? 0 : -1;
 }

@@ -4,5 +4,5 @@
 #include "import/formats/plan.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
-  return throng::fuzz_reader(throng::read_wkt, bytes, size);
+  return throng::fuzz_reader(throng::importer::read_wkt, bytes, size);
 }

@@ -4,5 +4,5 @@
 #include "import/formats/zonel.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
-  return throng::fuzz_reader(throng::read_zonel, bytes, size);
+  return throng::fuzz_reader(throng::importer::read_zonel, bytes, size);
 }

@@ -14,7 +14,7 @@
 namespace throng {
 namespace {
 
-constexpr test::PatchReader kReader{read_bpt, "pot.bpt"};
+constexpr test::PatchReader kReader{importer::read_bpt, "pot.bpt"};
 
 // A bilinear square beside a quadratic one; the second direction is t.
 const char* const kTwo =
@@ -78,7 +78,7 @@ TEST_F(Teapot, IsABodyAHandleASpoutAndALidWithPoles) {
   for (uint32_t p = 0; p < set.size(); ++p) {
     for (int32_t e = 0; e < 4; ++e) {
       one += set.edges[p][static_cast<size_t>(e)].bind == EdgeBind::kOne ? 1 : 0;
-      collapsed += is_collapsed(set.patches[p].edge(e)) ? 1 : 0;
+      collapsed += importer::is_collapsed(set.patches[p].edge(e)) ? 1 : 0;
     }
     const Vec3d n = set.patches[p].normal(0.5, 0.5);
     EXPECT_NEAR(length(n), 1, 1e-12);

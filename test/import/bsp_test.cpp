@@ -14,11 +14,11 @@
 namespace throng {
 namespace {
 
-Result<RawScene> read(const std::string& bytes) {
+Result<importer::RawScene> read(const std::string& bytes) {
   Context context;
-  ReadOptions options;
+  importer::ReadOptions options;
   options.name = "level.bsp";
-  return read_bsp(bytes, options, context);
+  return importer::read_bsp(bytes, options, context);
 }
 
 TEST(Bsp, FloorPatchAndDoorAreReadAndWaterIsNot) {

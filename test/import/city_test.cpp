@@ -10,18 +10,18 @@
 namespace throng {
 namespace {
 
-Result<RawScene> json(const std::string& text) {
+Result<importer::RawScene> json(const std::string& text) {
   Context context;
-  ReadOptions options;
+  importer::ReadOptions options;
   options.name = "c.json";
-  return read_cityjson(text, options, context);
+  return importer::read_cityjson(text, options, context);
 }
 
-Result<RawScene> gml(const std::string& text) {
+Result<importer::RawScene> gml(const std::string& text) {
   Context context;
-  ReadOptions options;
+  importer::ReadOptions options;
   options.name = "c.gml";
-  return read_citygml(text, options, context);
+  return importer::read_citygml(text, options, context);
 }
 
 // Area by "node material": it shows what was read and what was counted twice.

@@ -17,7 +17,7 @@ namespace {
 
 Result<void> clean(Scene& scene) {
   Context context;
-  return clean_scene(scene, "m.obj", context);
+  return importer::clean_scene(scene, "m.obj", context);
 }
 
 Scene cube(double side = 10) {
@@ -143,19 +143,19 @@ TEST(Clean, SuspiciousUnitsAreReported) {
 }
 
 TEST(AreaRules, GlobsMatchAsAShellDoes) {
-  EXPECT_TRUE(glob_matches("", "anything"));
-  EXPECT_TRUE(glob_matches("IFCspace*", "IfcSpace|12"));
-  EXPECT_TRUE(glob_matches("*a*b*c*", "xxaxxbxxcxx"));
-  EXPECT_TRUE(glob_matches("a?c", "abc"));
-  EXPECT_TRUE(glob_matches("**", ""));
-  EXPECT_FALSE(glob_matches("a?c", "ac"));
-  EXPECT_FALSE(glob_matches("abc", "abcd"));
-  EXPECT_FALSE(glob_matches("*b", "abc"));
+  EXPECT_TRUE(importer::glob_matches("", "anything"));
+  EXPECT_TRUE(importer::glob_matches("IFCspace*", "IfcSpace|12"));
+  EXPECT_TRUE(importer::glob_matches("*a*b*c*", "xxaxxbxxcxx"));
+  EXPECT_TRUE(importer::glob_matches("a?c", "abc"));
+  EXPECT_TRUE(importer::glob_matches("**", ""));
+  EXPECT_FALSE(importer::glob_matches("a?c", "ac"));
+  EXPECT_FALSE(importer::glob_matches("abc", "abcd"));
+  EXPECT_FALSE(importer::glob_matches("*b", "abc"));
   // A pattern that takes a naive matcher exponential time.
-  EXPECT_FALSE(glob_matches("*a*a*a*a*a*a*a*a*a*a*b", std::string(5000, 'a')));
-  EXPECT_TRUE(glob_matches_path("level2", "House/Level2/Wall 7"));
-  EXPECT_TRUE(glob_matches_path("House/*7", "House/Level2/Wall 7"));
-  EXPECT_FALSE(glob_matches_path("Level", "House/Level2/Wall 7"));
+  EXPECT_FALSE(importer::glob_matches("*a*a*a*a*a*a*a*a*a*a*b", std::string(5000, 'a')));
+  EXPECT_TRUE(importer::glob_matches_path("level2", "House/Level2/Wall 7"));
+  EXPECT_TRUE(importer::glob_matches_path("House/*7", "House/Level2/Wall 7"));
+  EXPECT_FALSE(importer::glob_matches_path("Level", "House/Level2/Wall 7"));
 }
 
 TEST(AreaRules, RoomVolumesAreNotSolidButFurnitureInThemIs) {
@@ -171,23 +171,23 @@ TEST(AreaRules, RoomVolumesAreNotSolidButFurnitureInThemIs) {
     return scene;
   };
   Scene scene = make();
-  apply_rules(scene, {});
+  importer::apply_rules(scene, {});
   ASSERT_EQ(scene.parts.size(), 1u);
   EXPECT_EQ(scene.parts[0].node, "IfcBuilding/IfcSpace_Room/IfcFurnishingElement_Table");
   EXPECT_EQ(scene.report.ignored, 4u);
   EXPECT_EQ(scene.positions[scene.triangles[0][0]].x, 1);
   Scene kept = make();
   const AreaRule rule{.material = {}, .node = "IfcSpace|*", .kind = 9};
-  apply_rules(kept, {&rule, 1});
+  importer::apply_rules(kept, {&rule, 1});
   ASSERT_EQ(kept.parts.size(), 2u);
   EXPECT_EQ(kept.area[0], 9);
 }
 
 TEST(Obj, FacesOfAllKindsAndNames) {
   Context context;
-  ReadOptions options;
+  importer::ReadOptions options;
   options.name = "o.obj";
-  const auto raw = read_obj(
+  const auto raw = importer::read_obj(
       "v 0 0 0\r\nv 4 0 0\nv 4 0 4\nv 0 0 4\nv 2 0 1 # inner\n"
       "o Hall\ng Floor\nusemtl Oak \\\n wood\n"
       "f 1/1/1 2//2 3/3 4\n"      // a quad
@@ -218,15 +218,15 @@ TEST(Obj, FacesOfAllKindsAndNames) {
 
 TEST(Ply, ListsOtherPropertiesAndBothByteOrders) {
   Context context;
-  ReadOptions options;
+  importer::ReadOptions options;
   options.name = "p.ply";
   const std::string header =
       "element vertex 4\nproperty float x\nproperty uchar red\nproperty double y\nproperty short "
       "z\n"
       "element face 1\nproperty uchar flags\nproperty list uchar int vertex_index\nend_header\n";
-  const auto text = read_ply("ply\nformat ascii 1.0\ncomment made by hand\n" + header +
-                                 "0 9 0 0\n2 9 0 0\n2 9 1e-3 2 0 9 0 2\n7 4 0 1 2 3\n",
-                             options, context);
+  const auto text = importer::read_ply("ply\nformat ascii 1.0\ncomment made by hand\n" + header +
+                                           "0 9 0 0\n2 9 0 0\n2 9 1e-3 2 0 9 0 2\n7 4 0 1 2 3\n",
+                                       options, context);
   ASSERT_TRUE(text) << text.error().message;
   EXPECT_EQ(text->scene.triangles.size(), 2u);
   EXPECT_EQ(text->scene.positions[2], (Vec3d{2, 1e-3, 2}));
@@ -245,16 +245,17 @@ TEST(Ply, ListsOtherPropertiesAndBothByteOrders) {
   put(uint8_t{4});
   for (int32_t i = 0; i < 4; ++i) put(i);
   const std::string whole = "ply\nformat binary_big_endian 1.0\n" + header + body;
-  const auto binary = read_ply(whole, options, context);
+  const auto binary = importer::read_ply(whole, options, context);
   ASSERT_TRUE(binary) << binary.error().message;
   EXPECT_EQ(binary->scene.positions, text->scene.positions);
   EXPECT_EQ(binary->scene.triangles, text->scene.triangles);
-  EXPECT_EQ(read_ply(whole.substr(0, whole.size() - 1), options, context).error().message,
+  EXPECT_EQ(importer::read_ply(whole.substr(0, whole.size() - 1), options, context).error().message,
             "p.ply: ends in face 0 of 1; it is truncated or damaged");
-  EXPECT_EQ(read_ply("ply\nformat ascii 1.0\nelement x 1\nproperty long y\n", options, context)
-                .error()
-                .message,
-            "p.ply:4: unknown type 'long'");
+  EXPECT_EQ(
+      importer::read_ply("ply\nformat ascii 1.0\nelement x 1\nproperty long y\n", options, context)
+          .error()
+          .message,
+      "p.ply:4: unknown type 'long'");
 }
 
 }  // namespace

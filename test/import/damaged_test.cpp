@@ -49,13 +49,14 @@ void for_damaged(const std::string& whole, size_t stride, uint64_t flips,
   }
 }
 
-using Reader = Result<RawScene> (*)(std::string_view, const ReadOptions&, Context&);
+using Reader = Result<importer::RawScene> (*)(std::string_view, const importer::ReadOptions&,
+                                              Context&);
 
 void expect_survives(Reader read, const std::string& whole) {
   uint64_t kept = 0;
   for_damaged(whole, 1, 20000, [&](const std::string& bytes) {
     Context context;
-    ReadOptions options;
+    importer::ReadOptions options;
     options.name = "damaged";
     auto raw = read(bytes, options, context);
     if (!raw) {
@@ -64,7 +65,7 @@ void expect_survives(Reader read, const std::string& whole) {
     }
     Scene& scene = raw->scene;
     ASSERT_EQ(scene.area.size(), scene.triangles.size());
-    if (!clean_scene(scene, "damaged", context)) return;
+    if (!importer::clean_scene(scene, "damaged", context)) return;
     ++kept;
     for (const auto& corners : scene.triangles) {
       for (const uint32_t corner : corners) ASSERT_LT(corner, scene.positions.size());
@@ -77,16 +78,16 @@ void expect_survives(Reader read, const std::string& whole) {
             100u);  // Else damage is too heavy to test more than the first checks.
 }
 
-TEST(Damaged, ObjFiles) { expect_survives(&read_obj, data("box.obj")); }
+TEST(Damaged, ObjFiles) { expect_survives(&importer::read_obj, data("box.obj")); }
 TEST(Damaged, PlyFiles) {
-  expect_survives(&read_ply, data("box.ply"));
-  expect_survives(&read_ply, data("box_binary.ply"));
+  expect_survives(&importer::read_ply, data("box.ply"));
+  expect_survives(&importer::read_ply, data("box_binary.ply"));
 }
-TEST(Damaged, CityJsonFiles) { expect_survives(&read_cityjson, data("house.city.json")); }
-TEST(Damaged, CityGmlFiles) { expect_survives(&read_citygml, data("house.gml")); }
-TEST(Damaged, Levels) { expect_survives(&read_bsp, test::tiny_level()); }
-TEST(Damaged, WktPlans) { expect_survives(&read_wkt, data("plan.wkt")); }
-TEST(Damaged, GeoJsonPlans) { expect_survives(&read_geojson, data("plan.geojson")); }
+TEST(Damaged, CityJsonFiles) { expect_survives(&importer::read_cityjson, data("house.city.json")); }
+TEST(Damaged, CityGmlFiles) { expect_survives(&importer::read_citygml, data("house.gml")); }
+TEST(Damaged, Levels) { expect_survives(&importer::read_bsp, test::tiny_level()); }
+TEST(Damaged, WktPlans) { expect_survives(&importer::read_wkt, data("plan.wkt")); }
+TEST(Damaged, GeoJsonPlans) { expect_survives(&importer::read_geojson, data("plan.geojson")); }
 
 TEST(Damaged, SettingsFiles) {
   for (const char* name : {"scene.toml", "scene.json", "classes.toml", "classes.json"}) {
@@ -96,7 +97,7 @@ TEST(Damaged, SettingsFiles) {
         EXPECT_EQ(root.error().message.rfind(name, 0), 0u) << root.error().message;
         return;
       }
-      const auto config = read_scene_config(*root, name, "");
+      const auto config = importer::read_scene_config(*root, name, "");
       const auto classes = read_classes(*root, name);
       if (!config) {
         EXPECT_EQ(config.error().message.rfind(name, 0), 0u) << config.error().message;

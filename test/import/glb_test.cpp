@@ -30,11 +30,11 @@ std::string glb(const std::string& json, const std::string& binary) {
   return std::string(reinterpret_cast<const char*>(head), sizeof head) + chunks;
 }
 
-Result<RawScene> read(const std::string& bytes) {
+Result<importer::RawScene> read(const std::string& bytes) {
   Context context;
-  ReadOptions options;
+  importer::ReadOptions options;
   options.name = "some.glb";
-  return read_glb(bytes, options, context);
+  return importer::read_glb(bytes, options, context);
 }
 
 std::vector<Vec3d> corners_of(const Scene& scene) {
@@ -57,9 +57,9 @@ TEST(Glb, BuiltInWorldsAreReadAsAssimpReadsThem) {
     const auto ours = read(*bytes);
     ASSERT_TRUE(ours) << ours.error().message;
     Context context;
-    ReadOptions options;
+    importer::ReadOptions options;
     options.name = path;
-    const auto theirs = read_with_assimp(path, options, context);
+    const auto theirs = importer::read_with_assimp(path, options, context);
     ASSERT_TRUE(theirs) << theirs.error().message;
     EXPECT_EQ(ours->scene.area, theirs->scene.area) << name;
     const auto a = corners_of(ours->scene), b = corners_of(theirs->scene);
@@ -143,7 +143,7 @@ TEST(Glb, DamagedFilesNeverReachBeyondTheirEnd) {
     if (!made) continue;
     for (const auto& t : made->scene.triangles) {
       for (const uint32_t corner : t) {
-        ASSERT_TRUE(corner == kNoVertex || corner < made->scene.positions.size());
+        ASSERT_TRUE(corner == importer::kNoVertex || corner < made->scene.positions.size());
       }
     }
   }

@@ -153,12 +153,12 @@ TEST(Materials, GoThroughGlbAndBackWithTheirTextures) {
   const auto bytes = read_file(path);
   ASSERT_TRUE(bytes);
   Context context;
-  ReadOptions options;
+  importer::ReadOptions options;
   options.name = path;
   options.looks = SceneMaterials::kRead;
-  auto by_us = read_glb(*bytes, options, context);
+  auto by_us = importer::read_glb(*bytes, options, context);
   ASSERT_TRUE(by_us) << by_us.error().message;
-  ASSERT_TRUE(read_textures(*by_us, path, context));
+  ASSERT_TRUE(importer::read_textures(*by_us, path, context));
   expect_looks_of_textured_scene(by_us->scene);
 }
 
@@ -250,26 +250,26 @@ std::string png_of_size(uint32_t width, uint32_t height) {
 }
 
 TEST(Materials, TexturesThatAreDamagedOrTooLargeAreRefusedInAClause) {
-  EXPECT_EQ(decode_texture(png_of_size(20000, 20000), 2048).error().message,
+  EXPECT_EQ(importer::decode_texture(png_of_size(20000, 20000), 2048).error().message,
             "is no PNG, JPEG, TGA or BMP that can be read");
-  EXPECT_EQ(decode_texture(png_of_size(12000, 8000), 2048).error().message,
+  EXPECT_EQ(importer::decode_texture(png_of_size(12000, 8000), 2048).error().message,
             "has 12000 x 8000 texels, more than 67 million");
-  EXPECT_EQ(decode_texture("", 2048).error().message,
+  EXPECT_EQ(importer::decode_texture("", 2048).error().message,
             "is no PNG, JPEG, TGA or BMP that can be read");
-  EXPECT_EQ(decode_texture(std::string(100, 'x'), 2048).error().message,
+  EXPECT_EQ(importer::decode_texture(std::string(100, 'x'), 2048).error().message,
             "is no PNG, JPEG, TGA or BMP that can be read");
-  EXPECT_EQ(decode_texture(png_of_size(64, 64), 2048).error().message, "is damaged");
+  EXPECT_EQ(importer::decode_texture(png_of_size(64, 64), 2048).error().message, "is damaged");
   const std::string whole = tga(four_texels());
   for (size_t size = 0; size < whole.size(); ++size) {
-    (void)decode_texture(whole.substr(0, size), 2048);  // Any result, but no crash.
+    (void)importer::decode_texture(whole.substr(0, size), 2048);  // Any result, but no crash.
   }
-  const auto one = decode_texture(tga(1, 1, {9, 8, 7, 255}), 2048);
+  const auto one = importer::decode_texture(tga(1, 1, {9, 8, 7, 255}), 2048);
   ASSERT_TRUE(one) << one.error().message;
   EXPECT_EQ(one->rgba, (std::vector<uint8_t>{9, 8, 7, 255}));
 }
 
 // Faulty decoders, for which the child process exists; the texture's name selects the fault.
-Result<Texture> fragile_decoder(const TextureSource& source, const std::string& model,
+Result<Texture> fragile_decoder(const importer::TextureSource& source, const std::string& model,
                                 int32_t max_side) {
   if (source.name == "crash") std::raise(SIGSEGV);
   if (source.name == "abort") std::abort();
@@ -280,11 +280,11 @@ Result<Texture> fragile_decoder(const TextureSource& source, const std::string& 
   if (source.name == "greedy") {
     for (std::vector<std::vector<char>> all;;) all.emplace_back(size_t{16} << 20, 'x');
   }
-  return read_texture(source, model, max_side);
+  return importer::read_texture(source, model, max_side);
 }
 
-RawScene scene_with_textures(const std::vector<std::string>& names) {
-  RawScene raw;
+importer::RawScene scene_with_textures(const std::vector<std::string>& names) {
+  importer::RawScene raw;
   for (size_t i = 0; i < names.size(); ++i) {
     raw.textures.push_back({.name = names[i], .bytes = tga(four_texels())});
     raw.scene.add_triangle({0, 0, 0}, {1, 0, 0}, {0, 0, 1});
@@ -303,16 +303,16 @@ RawScene scene_with_textures(const std::vector<std::string>& names) {
   return raw;
 }
 
-constexpr TextureDecoding kFragile{
+constexpr importer::TextureDecoding kFragile{
     .read = &fragile_decoder, .bytes = uint64_t{256} << 20, .seconds = 1};
 
 TEST(Materials, ADecoderThatCrashesHangsOrEatsMemoryCostsOnlyThatTexture) {
   for (const char* bad : {"crash", "abort", "leave", "hang", "greedy"}) {
     SCOPED_TRACE(bad);
-    RawScene raw = scene_with_textures({"first", bad, "third"});
+    importer::RawScene raw = scene_with_textures({"first", bad, "third"});
     raw.scene.materials[1].colour = {0.2F, 0.6F, 0.1F, 1};  // One that can stand alone.
     Context context;
-    ASSERT_TRUE(read_textures(raw, "sign.dae", context, kFragile));
+    ASSERT_TRUE(importer::read_textures(raw, "sign.dae", context, kFragile));
     const Scene& scene = raw.scene;
     ASSERT_EQ(scene.textures.size(), 2U);
     EXPECT_EQ(scene.textures[0].name, "first");
@@ -336,9 +336,9 @@ TEST(Materials, TexturesThatAllCrashTheirDecoderAreGivenUpAfterSome) {
   std::vector<std::string> names(40, "crash");
   names[2] = "good";
   names[39] = "behind";
-  RawScene raw = scene_with_textures(names);
+  importer::RawScene raw = scene_with_textures(names);
   Context context;
-  ASSERT_TRUE(read_textures(raw, "sign.dae", context, kFragile));
+  ASSERT_TRUE(importer::read_textures(raw, "sign.dae", context, kFragile));
   ASSERT_EQ(raw.scene.textures.size(), 1U);
   EXPECT_EQ(raw.scene.textures[0].name, "good");
   EXPECT_EQ(raw.scene.parts[2].material1, 3U);
@@ -357,7 +357,7 @@ TEST(Materials, LargeTexturesAreHalvedUntilTheyFit) {
                                                       : std::array<uint8_t, 4>{0, 0, 0, 0};
     rgba.insert(rgba.end(), texel.begin(), texel.end());
   }
-  const auto small = decode_texture(tga(100, 40, rgba), 25);
+  const auto small = importer::decode_texture(tga(100, 40, rgba), 25);
   ASSERT_TRUE(small);
   EXPECT_EQ(small->width, 25);
   EXPECT_EQ(small->height, 10);
@@ -420,12 +420,12 @@ TEST(Materials, NamesSayWhatBuiltInWorldsAndCitiesAreMadeOf) {
   const auto garage = create_builtin_world({.name = "garage"});
   ASSERT_TRUE(garage);
   for (const ScenePart& part : garage->parts) EXPECT_NE(part.material1, 0U) << part.material;
-  const auto roof = name_colour("RoofSurface");
+  const auto roof = importer::name_colour("RoofSurface");
   ASSERT_TRUE(roof);
   EXPECT_GT((*roof)[0], 2 * (*roof)[2]);  // Red.
-  EXPECT_TRUE(name_colour("textures/gothic_floor/metalbridge06"));
-  EXPECT_FALSE(name_colour("ShapeGroup 7"));
-  EXPECT_FALSE(name_colour(""));
+  EXPECT_TRUE(importer::name_colour("textures/gothic_floor/metalbridge06"));
+  EXPECT_FALSE(importer::name_colour("ShapeGroup 7"));
+  EXPECT_FALSE(importer::name_colour(""));
 }
 
 }  // namespace

@@ -8,7 +8,8 @@ namespace throng {
 namespace {
 
 TEST(GridMap, DotsGrassAndSwampArePassable) {
-  const auto cells = read_grid_map("type octile\nheight 2\nwidth 4\nmap\n.G@T\nSWO.\n", "a.map");
+  const auto cells =
+      importer::read_grid_map("type octile\nheight 2\nwidth 4\nmap\n.G@T\nSWO.\n", "a.map");
   ASSERT_TRUE(cells) << cells.error().message;
   EXPECT_EQ(cells->width, 4);
   EXPECT_EQ(cells->depth, 2);
@@ -16,14 +17,15 @@ TEST(GridMap, DotsGrassAndSwampArePassable) {
 }
 
 TEST(GridMap, WindowsLinesAreRead) {
-  const auto cells = read_grid_map("type octile\r\nheight 1\r\nwidth 2\r\nmap\r\n.@\r\n", "a.map");
+  const auto cells =
+      importer::read_grid_map("type octile\r\nheight 1\r\nwidth 2\r\nmap\r\n.@\r\n", "a.map");
   ASSERT_TRUE(cells) << cells.error().message;
   EXPECT_EQ(cells->passable, (std::vector<uint8_t>{1, 0}));
 }
 
 TEST(GridMap, BadMapsAreRefusedAndTheLineIsNamed) {
   const auto message = [](std::string_view text) {
-    const auto cells = read_grid_map(text, "a.map");
+    const auto cells = importer::read_grid_map(text, "a.map");
     EXPECT_FALSE(cells);
     EXPECT_EQ(cells.error().code, Errc::kBadFile);
     return cells.error().message;
@@ -40,7 +42,7 @@ TEST(GridMap, BadMapsAreRefusedAndTheLineIsNamed) {
 }
 
 TEST(VoxelMap, ListsItsVoxels) {
-  const auto cells = read_voxel_map("voxel 4 5 6\n0 1 2\n3 4 5\n", "a.3dmap");
+  const auto cells = importer::read_voxel_map("voxel 4 5 6\n0 1 2\n3 4 5\n", "a.3dmap");
   ASSERT_TRUE(cells) << cells.error().message;
   EXPECT_EQ(cells->height, 5);
   ASSERT_EQ(cells->filled.size(), 2u);
@@ -49,7 +51,7 @@ TEST(VoxelMap, ListsItsVoxels) {
 
 TEST(VoxelMap, BadMapsAreRefusedAndTheLineIsNamed) {
   const auto message = [](std::string_view text) {
-    const auto cells = read_voxel_map(text, "a.3dmap");
+    const auto cells = importer::read_voxel_map(text, "a.3dmap");
     EXPECT_FALSE(cells);
     return cells.error().message;
   };

@@ -13,7 +13,7 @@
 namespace throng {
 namespace {
 
-constexpr test::PatchReader kReader{read_patch_json, "hills.patches.json"};
+constexpr test::PatchReader kReader{importer::read_patch_json, "hills.patches.json"};
 
 PatchSet sample() {
   PatchSet set = test::make_net({.side = 3, .jitter = 0.01, .seed = 3});

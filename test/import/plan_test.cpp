@@ -39,20 +39,20 @@ double wall_area(const Scene& scene, int up) {
   return area;
 }
 
-ReadOptions options(const char* name) {
-  ReadOptions out;
+importer::ReadOptions options(const char* name) {
+  importer::ReadOptions out;
   out.name = name;
   return out;
 }
 
-Result<RawScene> wkt(const std::string& text) {
+Result<importer::RawScene> wkt(const std::string& text) {
   Context context;
-  return read_wkt(text, options("p.wkt"), context);
+  return importer::read_wkt(text, options("p.wkt"), context);
 }
 
-Result<RawScene> geojson(const std::string& text) {
+Result<importer::RawScene> geojson(const std::string& text) {
   Context context;
-  return read_geojson(text, options("p.geojson"), context);
+  return importer::read_geojson(text, options("p.geojson"), context);
 }
 
 const Ring kSquare{{0, 0}, {10, 0}, {10, 10}, {0, 10}};

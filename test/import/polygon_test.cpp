@@ -13,25 +13,25 @@
 namespace throng {
 namespace {
 
-using Points = std::vector<Vec2d>;
+using Points = std::vector<importer::Vec2d>;
 using Rings = std::vector<Points>;
 
 double area_of(const Points& ring) {
   double sum = 0;
   for (size_t i = 0; i < ring.size(); ++i) {
-    const Vec2d a = ring[i];
-    const Vec2d b = ring[(i + 1) % ring.size()];
+    const importer::Vec2d a = ring[i];
+    const importer::Vec2d b = ring[(i + 1) % ring.size()];
     sum += a.x * b.y - a.y * b.x;
   }
   return std::fabs(sum) / 2;
 }
 
-bool contains(const Rings& rings, Vec2d p) {  // Even-odd.
+bool contains(const Rings& rings, importer::Vec2d p) {  // Even-odd.
   bool inside = false;
   for (const Points& ring : rings) {
     for (size_t i = 0; i < ring.size(); ++i) {
-      const Vec2d a = ring[i];
-      const Vec2d b = ring[(i + 1) % ring.size()];
+      const importer::Vec2d a = ring[i];
+      const importer::Vec2d b = ring[(i + 1) % ring.size()];
       if ((a.y > p.y) != (b.y > p.y) && p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x) {
         inside = !inside;
       }
@@ -52,10 +52,10 @@ Cut cut(const Rings& rings, Lift lift) {
   Cut out;
   std::vector<uint32_t> first{0};
   for (const Points& ring : rings) {
-    for (const Vec2d p : ring) out.points.push_back(lift(p));
+    for (const importer::Vec2d p : ring) out.points.push_back(lift(p));
     first.push_back(static_cast<uint32_t>(out.points.size()));
   }
-  PolygonCutter cutter;
+  importer::PolygonCutter cutter;
   out.exact = cutter.cut(out.points, first, out.triangles);
   for (const auto& [a, b, c] : out.triangles) {
     out.area += length(cross(out.points[b] - out.points[a], out.points[c] - out.points[a])) / 2;
@@ -64,7 +64,7 @@ Cut cut(const Rings& rings, Lift lift) {
 }
 
 Cut cut(const Rings& rings) {
-  return cut(rings, [](Vec2d p) { return Vec3d{p.x, p.y, 0}; });
+  return cut(rings, [](importer::Vec2d p) { return Vec3d{p.x, p.y, 0}; });
 }
 
 // Checks area, side and place of every triangle, which together exclude a wrong cut.
@@ -93,7 +93,7 @@ class Dice {
   uint64_t counter_ = 0;
 };
 
-Points star(Dice& dice, Vec2d centre, double radius, int corners, double roughness) {
+Points star(Dice& dice, importer::Vec2d centre, double radius, int corners, double roughness) {
   Points ring;
   for (int i = 0; i < corners; ++i) {
     const double angle = 2 * std::numbers::pi * (i + 0.8 * dice.unit()) / corners;
@@ -105,27 +105,27 @@ Points star(Dice& dice, Vec2d centre, double radius, int corners, double roughne
 
 TEST(Orient, AgreesWithWholeNumbersWhereDoublesDoNot) {
   // Points on and one unit in the last place off a line through far coordinates.
-  const Vec2d a{500000, 5000000};
-  const Vec2d b{500001, 5000001};
+  const importer::Vec2d a{500000, 5000000};
+  const importer::Vec2d b{500001, 5000001};
   for (int k = 2; k < 100; ++k) {
-    const Vec2d on{500000.0 + k, 5000000.0 + k};
-    EXPECT_EQ(orient(a, b, on), 0);
-    EXPECT_EQ(orient(a, b, {on.x, std::nextafter(on.y, 1e9)}), 1);
-    EXPECT_EQ(orient(a, b, {std::nextafter(on.x, 1e9), on.y}), -1);
+    const importer::Vec2d on{500000.0 + k, 5000000.0 + k};
+    EXPECT_EQ(importer::orient(a, b, on), 0);
+    EXPECT_EQ(importer::orient(a, b, {on.x, std::nextafter(on.y, 1e9)}), 1);
+    EXPECT_EQ(importer::orient(a, b, {std::nextafter(on.x, 1e9), on.y}), -1);
   }
   // A triangle of 1e-20 beside the origin: the filter cannot see it, the exact sum can.
-  EXPECT_EQ(orient({1e-9, 1e-9}, {2e-9, 2e-9}, {3e-9, std::nextafter(3e-9, 1)}), 1);
+  EXPECT_EQ(importer::orient({1e-9, 1e-9}, {2e-9, 2e-9}, {3e-9, std::nextafter(3e-9, 1)}), 1);
 }
 
 TEST(Orient, IsAntisymmetricAndCyclic) {
   Dice dice(3);
   for (int i = 0; i < 20000; ++i) {
     const auto coordinate = [&] { return 0.1 * dice.below(40) + 1e5; };
-    const Vec2d a{coordinate(), coordinate()};
-    const Vec2d b{coordinate(), coordinate()};
-    const Vec2d c{coordinate(), coordinate()};
-    EXPECT_EQ(orient(a, b, c), orient(b, c, a));
-    EXPECT_EQ(orient(a, b, c), -orient(b, a, c));
+    const importer::Vec2d a{coordinate(), coordinate()};
+    const importer::Vec2d b{coordinate(), coordinate()};
+    const importer::Vec2d c{coordinate(), coordinate()};
+    EXPECT_EQ(importer::orient(a, b, c), importer::orient(b, c, a));
+    EXPECT_EQ(importer::orient(a, b, c), -importer::orient(b, a, c));
   }
 }
 
@@ -141,8 +141,8 @@ TEST(Polygon, RandomStarsWithHolesKeepTheirArea) {
     const int cells = dice.below(5);
     for (int y = 0; y < cells; ++y) {
       for (int x = 0; x < cells; ++x) {
-        const Vec2d centre{(x - 0.5 * (cells - 1)) * 24.0 / cells,
-                           (y - 0.5 * (cells - 1)) * 24.0 / cells};
+        const importer::Vec2d centre{(x - 0.5 * (cells - 1)) * 24.0 / cells,
+                                     (y - 0.5 * (cells - 1)) * 24.0 / cells};
         rings.push_back(star(dice, centre, 11.0 / cells, 3 + dice.below(20), 0.8));
         // Either winding must do.
         if (dice.below(2) == 0) std::reverse(rings.back().begin(), rings.back().end());
@@ -210,7 +210,7 @@ TEST(Polygon, TiltedPlanesInNationalCoordinatesKeepTheirArea) {
     Vec3d v = cross(u, {dice.unit(), dice.unit(), dice.unit()});
     const Vec3d e = u * (1 / length(u));
     v = v * (1 / length(v));
-    const Cut out = cut(rings, [&](Vec2d p) {
+    const Cut out = cut(rings, [&](importer::Vec2d p) {
       return Vec3d{85000, 447000, 12} + e * p.x + v * p.y;
     });
     EXPECT_TRUE(out.exact);
@@ -232,7 +232,7 @@ TEST(Polygon, AStraightKerbKeepsTheHeightsOfItsCorners) {
     Points ring;
     for (int i = 0; i <= n; ++i) ring.push_back({1.0 * i, 0});
     for (int i = n; i >= 0; --i) ring.push_back({1.0 * i, 3});
-    const Cut out = cut({ring}, [&](Vec2d p) { return Vec3d{p.x, p.y, height(p.x)}; });
+    const Cut out = cut({ring}, [&](importer::Vec2d p) { return Vec3d{p.x, p.y, height(p.x)}; });
     EXPECT_TRUE(out.exact);
     std::vector<bool> used(ring.size(), false);
     double flat = 0;
@@ -245,11 +245,11 @@ TEST(Polygon, AStraightKerbKeepsTheHeightsOfItsCorners) {
         high = std::fmax(high, ring[corner].x);
       }
       EXPECT_LE(high - low, n + 0.5);
-      const Vec2d a = ring[triangle[0]];
-      const Vec2d b = ring[triangle[1]];
-      const Vec2d c = ring[triangle[2]];
+      const importer::Vec2d a = ring[triangle[0]];
+      const importer::Vec2d b = ring[triangle[1]];
+      const importer::Vec2d c = ring[triangle[2]];
       flat += ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
-      EXPECT_NE(orient(a, b, c), 0);  // No upright slivers: the surface itself bends.
+      EXPECT_NE(importer::orient(a, b, c), 0);  // No upright slivers: the surface itself bends.
     }
     EXPECT_NEAR(flat, 3 * n, 1e-9);
     EXPECT_EQ(out.triangles.size(), ring.size() - 2);
@@ -284,7 +284,9 @@ TEST(Polygon, AnyCornerThatBendsInSpaceIsUsed) {
                          {a, b + 1}});
       }
     }
-    const Cut out = cut(rings, [&](Vec2d p) { return Vec3d{p.x, p.y, 0.1 * dice.unit()}; });
+    const Cut out = cut(rings, [&](importer::Vec2d p) {
+      return Vec3d{p.x, p.y, 0.1 * dice.unit()};
+    });
     EXPECT_TRUE(out.exact) << seed;
     std::vector<bool> used(out.points.size(), false);
     double flat = 0;

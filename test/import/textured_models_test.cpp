@@ -90,13 +90,13 @@ TEST(TexturedModels, OurOwnReaderOfGlbAgrees) {
     const std::string path = model.write(folder);
     const auto bytes = read_file(path);
     ASSERT_TRUE(bytes);
-    ReadOptions options;
+    importer::ReadOptions options;
     options.name = path;
     options.looks = SceneMaterials::kRead;
     Context context;
-    auto raw = read_glb(*bytes, options, context);
+    auto raw = importer::read_glb(*bytes, options, context);
     ASSERT_TRUE(raw) << raw.error().message;
-    ASSERT_TRUE(read_textures(*raw, path, context));
+    ASSERT_TRUE(importer::read_textures(*raw, path, context));
     expect_quarters(std::move(raw->scene));
     ++read;
   }

@@ -21,7 +21,7 @@
 namespace throng {
 namespace {
 
-constexpr test::PatchReader kReader{read_zonel, "3_AC.zonel"};
+constexpr test::PatchReader kReader{importer::read_zonel, "3_AC.zonel"};
 
 Result<Scene> load(const std::vector<std::string>& paths, double tolerance = 0.02) {
   Context context;
@@ -42,9 +42,9 @@ size_t count_kind(const PatchSet& set, EdgeBind bind) {
 }
 
 TEST(Zonel, AZoneIsNamedByRowAndColumn) {
-  EXPECT_EQ(zone_name(514), "3_AC");
-  EXPECT_EQ(zone_name(0), "1_AA");
-  EXPECT_EQ(zone_name(256 * 6 + 27), "7_BB");
+  EXPECT_EQ(importer::zone_name(514), "3_AC");
+  EXPECT_EQ(importer::zone_name(0), "1_AA");
+  EXPECT_EQ(importer::zone_name(256 * 6 + 27), "7_BB");
 }
 
 TEST(Zonel, TwoZonesWithAllKindsOfNeighboursBecomeOneSurface) {
@@ -278,7 +278,7 @@ TEST_F(NelLandscape, HasNoCrackAndSharesWhatIsStoredTwice) {
   EXPECT_GE(test::expect_watertight(scene->patches, *mesh), 265u);
   // Across zones vertices are stored apart by up to 0.031 m; by index they are one.
   std::set<uint32_t> corners;
-  for (const uint32_t corner : weld_corners(scene->patches)) corners.insert(corner);
+  for (const uint32_t corner : importer::weld_corners(scene->patches)) corners.insert(corner);
   std::vector<uint64_t> numbers{corners.size(), mesh->positions.size(), mesh->triangles.size()};
   for (const auto& t : mesh->triangles) numbers.insert(numbers.end(), t.begin(), t.end());
   EXPECT_EQ(hash_span(std::span<const uint64_t>(numbers)), 0x26faef06455719a0);
@@ -297,8 +297,8 @@ TEST_F(NelLandscape, SurvivesDamageToARealFile) {
     }
     PatchSet set = raw->scene.patches;
     SceneReport report;
-    std::vector<PatchZone> zones{*raw->zone};
-    EXPECT_TRUE(join_zones(set, zones, report));
+    std::vector<importer::PatchZone> zones{*raw->zone};
+    EXPECT_TRUE(importer::join_zones(set, zones, report));
     Context context;
     const auto mesh = tessellate_patches(set, {.tolerance = 1}, context);
     if (mesh) ++kept;

@@ -90,22 +90,23 @@ TEST(Atlas, ViewsKeepToBlocksDoNotOverlapAndHaveAnEmptyBorder) {
 TEST(Atlas, EveryViewIsWhatItsCameraSees) {
   const Atlas& atlas = small_atlas();
   const Character character = built_in_character();
-  FigureRaster raster(character, 32);
-  FigureView view;
+  impostor::FigureRaster raster(character, 32);
+  impostor::FigureView view;
   PosedMesh mesh;
   // As an atlas is documented: over the origin, feet at 0, the first clip 1.75 m high.
   const size_t walk = *find_clip(character, "Walk"), idle = *find_clip(character, "Idle");
   Box3d bounds;
   for (int32_t i = 0; i < 4; ++i) {
-    pose_in_place(character, walk, place_of_clip(character, walk), i / 4.0, mesh);
+    impostor::pose_in_place(character, walk, impostor::place_of_clip(character, walk), i / 4.0,
+                            mesh);
     for (const Vec3d& p : mesh.positions) bounds.add(p);
   }
-  pose_in_place(character, idle, place_of_clip(character, idle), 0.25, mesh);
+  impostor::pose_in_place(character, idle, impostor::place_of_clip(character, idle), 0.25, mesh);
   const double scale = 1.75 / (bounds.max.y - bounds.min.y);
   for (Vec3d& p : mesh.positions) p = Vec3d{p.x, p.y - bounds.min.y, p.z} * scale;
   for (int32_t row = 0; row < 3; ++row) {
     for (int32_t column = 0; column < 6; ++column) {
-      FigureCamera camera = figure_camera(column, 6, row, 3);
+      impostor::FigureCamera camera = impostor::figure_camera(column, 6, row, 3);
       camera.centre = {0, atlas.shape.centre, 0};
       camera.side = atlas.shape.side;
       raster.draw(mesh, camera, view);
@@ -129,18 +130,18 @@ TEST(Atlas, EveryViewIsWhatItsCameraSees) {
 TEST(Atlas, AMirroredViewShowsWhatTheOtherSideLooksLike) {
   const Character character = built_in_character();
   const size_t walk = *find_clip(character, "Walk");
-  FigureRaster raster(character, 64);
-  FigureView there, here;
+  impostor::FigureRaster raster(character, 64);
+  impostor::FigureView there, here;
   PosedMesh mesh;
   for (const double share : {0.0, 0.2, 0.35}) {
     for (int32_t column = 0; column < 16; ++column) {
-      FigureCamera camera = figure_camera(column, 16, 2, 8);
+      impostor::FigureCamera camera = impostor::figure_camera(column, 16, 2, 8);
       camera.centre = {0, 0.9, 0};
       camera.side = 2.1;
       pose_character(character, walk, character.clips[walk].seconds * (share + 0.5), mesh);
       raster.draw(mesh, camera, here);
       // The column past the last half turn, which no atlas holds.
-      camera = figure_camera(31 - column, 16, 2, 8);
+      camera = impostor::figure_camera(31 - column, 16, 2, 8);
       camera.centre = {0, 0.9, 0};
       camera.side = 2.1;
       pose_character(character, walk, character.clips[walk].seconds * share, mesh);
@@ -165,7 +166,7 @@ TEST(Atlas, CodedViewsComeBackFromAllDirectionsElevationsAndFrames) {
   atlas.shape = {.pixels = 8, .directions = 16, .elevations = 8, .frames = 10, .side = 2};
   atlas.clips = {{.name = "Walk", .first_frame = 0, .frames = 10, .seconds = 1, .stride = 1.5}};
   atlas.views.assign(1280, {.width = 8, .height = 8});
-  const PageSize size = pack_views(atlas.views);
+  const impostor::PageSize size = impostor::pack_views(atlas.views);
   atlas.width = size.width, atlas.height = size.height, atlas.pages = size.pages;
   atlas.colour.resize(static_cast<size_t>(size.width) * size.height * size.pages * 4);
   for (size_t i = 0; i < atlas.views.size(); ++i) {
@@ -294,16 +295,16 @@ TEST_P(DamagedAtlas, IsRefusedWhereverItIsDamaged) {
   ASSERT_TRUE(save_atlas(convert_atlas(*tiny, GetParam()), path));
   std::ifstream file(path, std::ios::binary);
   std::vector<uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
-  const auto whole = read_atlas(bytes, "whole");
+  const auto whole = impostor::read_atlas(bytes, "whole");
   ASSERT_TRUE(whole);
   for (size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 500) {
-    EXPECT_FALSE(read_atlas(std::span(bytes.data(), size), "cut")) << size;
+    EXPECT_FALSE(impostor::read_atlas(std::span(bytes.data(), size), "cut")) << size;
   }
   size_t refused = 0, same = 0;
   for (size_t at = 0; at<bytes.size(); at += bytes.size()> 20000 && at > 600 ? 37 : 1) {
     for (const int flip : {1, 0x80, 0xff}) {
       bytes[at] = static_cast<uint8_t>(bytes[at] ^ flip);
-      const auto read = read_atlas(bytes, "damaged");
+      const auto read = impostor::read_atlas(bytes, "damaged");
       bytes[at] = static_cast<uint8_t>(bytes[at] ^ flip);
       if (!read) {
         EXPECT_NE(read.error().message.find("damaged: "), std::string::npos);
@@ -342,7 +343,7 @@ TEST(Atlas, OnlyFilesOfNewFormatsAreOfTheNewVersion) {
     EXPECT_EQ(table.GetField<uint32_t>(format::AtlasFile::VT_VERSION, 0), own);
     for (const uint32_t version : {0U, 1U, 2U, 3U}) {
       ASSERT_TRUE(set_version(version));
-      const auto read = read_atlas(bytes, "people");
+      const auto read = impostor::read_atlas(bytes, "people");
       EXPECT_EQ(static_cast<bool>(read), version == own) << word_for(format) << version;
       if (read || (version != 0 && version != 3)) continue;
       EXPECT_NE(read.error().message.find("reads 1 to 2"), std::string::npos);
@@ -398,7 +399,7 @@ TEST(ViewPacker, ManyViewsFillPagesWithLittleWaste) {
     views[i].height = static_cast<uint16_t>(40 + i * 5 % 9 * 4);
     area += uint64_t{views[i].width} * views[i].height;
   }
-  const PageSize size = pack_views(views);
+  const impostor::PageSize size = impostor::pack_views(views);
   EXPECT_GT(size.pages, 1);
   const uint64_t total = uint64_t(size.width) * size.height * size.pages;
   EXPECT_LT(total, area + area / 10);

@@ -133,21 +133,21 @@ TEST(BuiltInCharacter, HalfACycleOnIsTheMirrorImage) {
 TEST(BuiltInCharacter, FeetThatCarryWeightDoNotSkate) {
   const Character c = built_in_character();
   const size_t walk = *find_clip(c, "Walk");
-  const ClipPlace place = place_of_clip(c, walk);
-  const double stride = stride_of_clip(c, walk, place);
+  const impostor::ClipPlace place = impostor::place_of_clip(c, walk);
+  const double stride = impostor::stride_of_clip(c, walk, place);
   EXPECT_GT(stride, 1.2);
   EXPECT_LT(stride, 1.8);
   // In the middle of a stance the sole moves back as fast as the body moves on.
   PosedMesh now, next;
-  pose_in_place(c, walk, place, 0.24, now);
-  pose_in_place(c, walk, place, 0.26, next);
+  impostor::pose_in_place(c, walk, place, 0.24, now);
+  impostor::pose_in_place(c, walk, place, 0.26, next);
   size_t lowest = 0;
   for (size_t v = 0; v < now.positions.size(); ++v) {
     if (now.positions[v].y < now.positions[lowest].y) lowest = v;
   }
   EXPECT_NEAR((now.positions[lowest].z - next.positions[lowest].z) / 0.02, stride, 0.2 * stride);
   const size_t idle = *find_clip(c, "Idle");
-  EXPECT_EQ(stride_of_clip(c, idle, place_of_clip(c, idle)), 0);
+  EXPECT_EQ(impostor::stride_of_clip(c, idle, impostor::place_of_clip(c, idle)), 0);
 }
 
 TEST(LoadCharacter, WhatIsNoCharacterIsRefusedInOneSentence) {
@@ -174,13 +174,13 @@ TEST(SharedCharacters, AllHaveAWalkThatCarriesThem) {
     EXPECT_EQ(c->bones.size(), 31U) << entry.path();
     EXPECT_EQ(c->clips.size(), 11U) << entry.path();
     const size_t walk = *find_clip(*c, "Walk");
-    const ClipPlace place = place_of_clip(*c, walk);
+    const impostor::ClipPlace place = impostor::place_of_clip(*c, walk);
     PosedMesh mesh;
-    pose_in_place(*c, walk, place, 0, mesh);
+    impostor::pose_in_place(*c, walk, place, 0, mesh);
     Box3d bounds;
     for (const Vec3d& p : mesh.positions) bounds.add(p);
     const double height = bounds.max.y - bounds.min.y;
-    const double strides = stride_of_clip(*c, walk, place) / height;
+    const double strides = impostor::stride_of_clip(*c, walk, place) / height;
     EXPECT_GT(strides, 0.7) << entry.path();
     EXPECT_LT(strides, 1.2) << entry.path();
     // Upright: higher than wide, wider than deep or nearly so.

@@ -21,7 +21,8 @@ const AtlasClip kWalk{.name = "Walk", .first_frame = 0, .frames = 10, .seconds =
 // Where the viewer of a view stands, as the figure sees it; in a mirrored one, of its mirror image.
 Vec3d viewer_of(const AtlasShape& shape, const ViewChoice& choice) {
   Vec3d towards =
-      figure_camera(choice.column, shape.directions, choice.row, shape.elevations).towards;
+      impostor::figure_camera(choice.column, shape.directions, choice.row, shape.elevations)
+          .towards;
   if (choice.mirrored) towards.x = -towards.x;
   return towards;
 }

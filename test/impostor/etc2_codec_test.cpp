@@ -20,9 +20,9 @@ namespace {
 constexpr uint64_t kSeed = 23;
 
 // Any bits at all, or bytes of which many are extreme.
-Bytes8 random_bytes(uint64_t number) {
+impostor::Bytes8 random_bytes(uint64_t number) {
   constexpr uint8_t kExtreme[] = {0x00, 0xff, 0x80, 0x7f, 0xf8, 0x07, 0x04, 0xfb};
-  Bytes8 bytes;
+  impostor::Bytes8 bytes;
   for (uint64_t i = 0; i < 8; ++i) {
     bytes[i] = test::random_byte(kSeed, number, i);
     if (number % 4 == 0 && bytes[i] % 2 == 0) bytes[i] = kExtreme[bytes[i] / 32];
@@ -30,7 +30,7 @@ Bytes8 random_bytes(uint64_t number) {
   return bytes;
 }
 
-double mean_square(const ColourBlock& a, const ColourBlock& b) {
+double mean_square(const impostor::ColourBlock& a, const impostor::ColourBlock& b) {
   double sum = 0;
   for (size_t i = 0; i < 16; ++i) {
     for (size_t c = 0; c < 3; ++c) sum += (a[i][c] - b[i][c]) * (a[i][c] - b[i][c]);
@@ -38,21 +38,21 @@ double mean_square(const ColourBlock& a, const ColourBlock& b) {
   return sum / 48;
 }
 
-ColourBlock there_and_back(const ColourBlock& block) {
-  ColourBlock back = block;
-  decode_etc2(encode_etc2(block, test::all_texels(), false), false, back);
+impostor::ColourBlock there_and_back(const impostor::ColourBlock& block) {
+  impostor::ColourBlock back = block;
+  impostor::decode_etc2(impostor::encode_etc2(block, test::all_texels(), false), false, back);
   return back;
 }
 
 TEST(Etc2Codec, ReadsEveryBlockAsAPlainReaderOfTheStandardDoes) {
   std::map<std::string, int> modes;
   for (uint64_t number = 0; number < 60000; ++number) {
-    const Bytes8 bytes = random_bytes(number);
+    const impostor::Bytes8 bytes = random_bytes(number);
     for (const bool holes : {false, true}) {
       ++modes[test::plain_etc2_mode(bytes, holes) + (holes ? " with holes" : "")];
-      ColourBlock block;
+      impostor::ColourBlock block;
       for (auto& texel : block) texel[3] = 77;
-      decode_etc2(bytes, holes, block);
+      impostor::decode_etc2(bytes, holes, block);
       for (int i = 0; i < 16; ++i) {
         test::PlainTexel asked = test::plain_etc2(bytes, holes, i % 4, i / 4);
         if (!holes) asked.alpha = 77;  // Left as it was.
@@ -68,12 +68,12 @@ TEST(Etc2Codec, ReadsEveryBlockAsAPlainReaderOfTheStandardDoes) {
 
 TEST(Etc2Codec, ReadsEveryChannelAsAPlainReaderOfTheStandardDoes) {
   for (uint64_t number = 0; number < 20000; ++number) {
-    Bytes8 bytes = random_bytes(number);
+    impostor::Bytes8 bytes = random_bytes(number);
     bytes[1] = static_cast<uint8_t>(number);  // All factors and tables.
-    ChannelBlock eight;
-    WideChannelBlock eleven;
-    decode_eac(bytes, eight);
-    decode_eac11(bytes, eleven);
+    impostor::ChannelBlock eight;
+    impostor::WideChannelBlock eleven;
+    impostor::decode_eac(bytes, eight);
+    impostor::decode_eac11(bytes, eleven);
     for (int i = 0; i < 16; ++i) {
       const auto at = static_cast<size_t>(i);
       ASSERT_EQ(eight[at], test::plain_eac8(bytes, i % 4, i / 4)) << number;
@@ -87,7 +87,7 @@ TEST(Etc2Codec, WritesAllModesAndEachWhereItFits) {
   std::map<std::string, int> modes;
   for (uint64_t number = 0; number < 3000; ++number) {
     const bool holes = number % 3 == 0;
-    ColourBlock block = test::random_block(kSeed, number, 1 + number % 5, number % 30);
+    impostor::ColourBlock block = test::random_block(kSeed, number, 1 + number % 5, number % 30);
     for (uint64_t i = 0; i < 16 && number % 5 < 2; ++i) {
       const auto x = static_cast<int>(i % 4), y = static_cast<int>(i / 4);
       const int shade = test::random_byte(kSeed, number, 50 + i) / 8;
@@ -102,7 +102,7 @@ TEST(Etc2Codec, WritesAllModesAndEachWhereItFits) {
     if (number % 2 == 0) {
       for (uint64_t i = 0; i < 16; ++i) block[i][3] = test::random_byte(kSeed, number, 300 + i / 3);
     }
-    ++modes[test::plain_etc2_mode(encode_etc2(block, test::all_texels(), holes), holes)];
+    ++modes[test::plain_etc2_mode(impostor::encode_etc2(block, test::all_texels(), holes), holes)];
   }
   EXPECT_EQ(modes.size(), 5U);
   for (const auto& [mode, count] : modes) EXPECT_GT(count, 50) << mode;
@@ -110,7 +110,7 @@ TEST(Etc2Codec, WritesAllModesAndEachWhereItFits) {
 
 TEST(Etc2Codec, ASlopeIsKeptToThreeSteps) {
   for (uint64_t number = 0; number < 200; ++number) {
-    ColourBlock block;
+    impostor::ColourBlock block;
     for (uint64_t i = 0; i < 16; ++i) {
       for (uint64_t c = 0; c < 3; ++c) {
         const int across = test::random_byte(kSeed, number, c),
@@ -120,7 +120,7 @@ TEST(Etc2Codec, ASlopeIsKeptToThreeSteps) {
       }
       block[i][3] = 255;
     }
-    const ColourBlock back = there_and_back(block);
+    const impostor::ColourBlock back = there_and_back(block);
     for (size_t i = 0; i < 16; ++i) {
       for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(back[i][c], block[i][c], 3) << number;
     }
@@ -134,7 +134,7 @@ TEST(Etc2Codec, KeepsColoursWithinItsLimits) {
   for (const auto& [kinds, limit] : limits) {
     double sum = 0;
     for (uint64_t number = 0; number < 400; ++number) {
-      const ColourBlock block = test::random_block(kSeed, number * 7 + kinds, kinds, 6);
+      const impostor::ColourBlock block = test::random_block(kSeed, number * 7 + kinds, kinds, 6);
       sum += mean_square(block, there_and_back(block)) / 400;
     }
     EXPECT_LE(sum, limit) << kinds << " kinds of colour";
@@ -144,15 +144,15 @@ TEST(Etc2Codec, KeepsColoursWithinItsLimits) {
 
 TEST(Etc2Codec, TexelsWithoutWeightCostNothing) {
   for (uint64_t number = 0; number < 100; ++number) {
-    ColourBlock block = test::random_block(kSeed, number, 1, 0);
-    TexelWeights weights = test::all_texels();
+    impostor::ColourBlock block = test::random_block(kSeed, number, 1, 0);
+    impostor::TexelWeights weights = test::all_texels();
     for (size_t i = 0; i < 16; ++i) {
       if ((number + i * 7) % 16 < 8) continue;
       weights[i] = 0;
       block[i] = {255, 0, 255, 0};
     }
-    ColourBlock back = block;
-    decode_etc2(encode_etc2(block, weights, false), false, back);
+    impostor::ColourBlock back = block;
+    impostor::decode_etc2(impostor::encode_etc2(block, weights, false), false, back);
     for (size_t i = 0; i < 16; ++i) {
       if (weights[i] == 0) continue;
       for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(back[i][c], block[i][c], 2) << number;
@@ -163,12 +163,12 @@ TEST(Etc2Codec, TexelsWithoutWeightCostNothing) {
 TEST(Etc2Codec, HeavyTexelsAreKeptBetterThanLightOnes) {
   double with = 0, without = 0;
   for (uint64_t number = 0; number < 300; ++number) {
-    const ColourBlock block = test::random_block(kSeed, number, 4, 10);
-    TexelWeights weights = test::all_texels();
+    const impostor::ColourBlock block = test::random_block(kSeed, number, 4, 10);
+    impostor::TexelWeights weights = test::all_texels();
     for (size_t i = 0; i < 16; ++i) weights[i] = i * 7 % 16 < 8 ? 255 : 1;
-    const auto heavy_error = [&](const TexelWeights& given) {
-      ColourBlock back = block;
-      decode_etc2(encode_etc2(block, given, false), false, back);
+    const auto heavy_error = [&](const impostor::TexelWeights& given) {
+      impostor::ColourBlock back = block;
+      impostor::decode_etc2(impostor::encode_etc2(block, given, false), false, back);
       for (size_t i = 0; i < 16; ++i) {
         if (weights[i] == 1) back[i] = block[i];
       }
@@ -183,15 +183,15 @@ TEST(Etc2Codec, HeavyTexelsAreKeptBetterThanLightOnes) {
 
 TEST(Etc2Codec, HolesStayHolesAndNothingElseBecomesOne) {
   for (uint64_t number = 0; number < 1000; ++number) {
-    ColourBlock block = test::random_block(kSeed, number, 1 + number % 16, 40);
+    impostor::ColourBlock block = test::random_block(kSeed, number, 1 + number % 16, 40);
     for (uint64_t i = 0; i < 16; ++i) block[i][3] = test::random_byte(kSeed, number, 300 + i);
     if (number % 5 == 0) {
       for (auto& texel : block) texel[3] = number % 2 == 0 ? 255 : 0;
     }
-    TexelWeights weights = test::all_texels();
+    impostor::TexelWeights weights = test::all_texels();
     if (number % 7 == 0) weights.fill(0);
-    ColourBlock back;
-    decode_etc2(encode_etc2(block, weights, true), true, back);
+    impostor::ColourBlock back;
+    impostor::decode_etc2(impostor::encode_etc2(block, weights, true), true, back);
     for (size_t i = 0; i < 16; ++i) {
       // A block of which no texel counts keeps its holes; its colour is not visible.
       EXPECT_EQ(back[i][3], block[i][3] < 128 ? 0 : 255) << number;
@@ -201,15 +201,15 @@ TEST(Etc2Codec, HolesStayHolesAndNothingElseBecomesOne) {
 
 TEST(Etc2Codec, AlphaOfFewValuesIsKeptNearlyExactly) {
   for (uint64_t number = 0; number < 500; ++number) {
-    ChannelBlock block;
+    impostor::ChannelBlock block;
     const uint8_t one = test::random_byte(kSeed, number, 0);
     const uint8_t few[] = {0, 255, one};
     const uint64_t kinds = 1 + number % 3;
     for (uint64_t i = 0; i < 16; ++i) block[i] = few[2 - random_below(kSeed, number, i + 1, kinds)];
-    const Bytes8 bytes = encode_eac(block, test::all_texels());
+    const impostor::Bytes8 bytes = impostor::encode_eac(block, test::all_texels());
     EXPECT_NE(bytes[1] >> 4, 0) << "encoders must not write a factor of zero";
-    ChannelBlock back;
-    decode_eac(bytes, back);
+    impostor::ChannelBlock back;
+    impostor::decode_eac(bytes, back);
     for (size_t i = 0; i < 16; ++i) {
       EXPECT_NEAR(back[i], block[i], kinds == 1 ? 0 : kinds == 2 ? 2 : 12) << number;
     }
@@ -218,17 +218,17 @@ TEST(Etc2Codec, AlphaOfFewValuesIsKeptNearlyExactly) {
 
 TEST(Etc2Codec, AChannelIsNeverFurtherOffThanHalfAStepOfItsRange) {
   for (uint64_t number = 0; number < 500; ++number) {
-    ChannelBlock block;
+    impostor::ChannelBlock block;
     const uint64_t range = 1 + random_below(kSeed, number, 99, 255);
     int low = 255, high = 0;
     for (uint64_t i = 0; i < 16; ++i) {
       block[i] = static_cast<uint8_t>(random_below(kSeed, number, i, range));
       low = std::min<int>(low, block[i]), high = std::max<int>(high, block[i]);
     }
-    ChannelBlock eight;
-    WideChannelBlock eleven;
-    decode_eac(encode_eac(block, test::all_texels()), eight);
-    decode_eac11(encode_eac11(block, test::all_texels()), eleven);
+    impostor::ChannelBlock eight;
+    impostor::WideChannelBlock eleven;
+    impostor::decode_eac(impostor::encode_eac(block, test::all_texels()), eight);
+    impostor::decode_eac11(impostor::encode_eac11(block, test::all_texels()), eleven);
     double of_eight = 0, of_eleven = 0;
     for (size_t i = 0; i < 16; ++i) {
       of_eight += std::pow(eight[i] - block[i], 2);
@@ -243,15 +243,16 @@ TEST(Etc2Codec, AChannelIsNeverFurtherOffThanHalfAStepOfItsRange) {
 TEST(Etc2Codec, TheSameBytesEverywhere) {
   uint64_t sum = 0;
   for (uint64_t number = 0; number < 2000; ++number) {
-    ColourBlock block = test::random_block(kSeed, number, 1 + number % 6, number % 50);
-    TexelWeights weights;
-    ChannelBlock channel;
+    impostor::ColourBlock block = test::random_block(kSeed, number, 1 + number % 6, number % 50);
+    impostor::TexelWeights weights;
+    impostor::ChannelBlock channel;
     for (uint64_t i = 0; i < 16; ++i) {
       weights[i] = channel[i] = block[i][3] = test::random_byte(kSeed, number, 300 + i);
     }
-    for (const Bytes8& bytes :
-         {encode_etc2(block, weights, false), encode_etc2(block, weights, true),
-          encode_eac(channel, test::all_texels()), encode_eac11(channel, weights)}) {
+    for (const impostor::Bytes8& bytes :
+         {impostor::encode_etc2(block, weights, false), impostor::encode_etc2(block, weights, true),
+          impostor::encode_eac(channel, test::all_texels()),
+          impostor::encode_eac11(channel, weights)}) {
       sum = hash_bytes(bytes.data(), bytes.size(), sum);
     }
   }

@@ -176,7 +176,8 @@ void expect_same_axes(const RecordedFrame& wrote, const RecordedFrame& read) {
                 b = read.up_vectors[at - read.ids.begin()];
     EXPECT_NEAR(length(b), 1, 1e-12);
     EXPECT_LT(length(a - b), 0.06 * 3.14159265 / 180) << a.x << ' ' << a.y << ' ' << a.z;
-    EXPECT_EQ(up_of(up_code(wrote.up_vectors[i])), b);  // What was written, to the bit.
+    EXPECT_EQ(record::up_of(record::up_code(wrote.up_vectors[i])),
+              b);  // What was written, to the bit.
     if (wrote.ids[i] % 4 == 0) {
       EXPECT_EQ(b, (Vec3d{0, 1, 0}));
     }
@@ -255,7 +256,7 @@ TEST(Recording, WithoutLeaningAvatarsHasTheBytesOfVersion1) {
 
 // The file without its first chunk, the settings.
 std::string frames_of(const std::string& bytes) {
-  ChunkHead head;
+  record::ChunkHead head;
   std::memcpy(&head, bytes.data(), sizeof head);
   return bytes.substr(sizeof head + head.bytes);
 }
@@ -401,8 +402,8 @@ TEST(Recording, RefusesOtherVersionsAndSaysWhatToDo) {
         format::RecordingIdentifier());
     std::string bytes(reinterpret_cast<const char*>(builder.GetBufferPointer()), builder.GetSize());
     bytes.resize((bytes.size() + 7) / 8 * 8);
-    ChunkHead head;
-    head.kind = static_cast<uint32_t>(ChunkKind::kRun);
+    record::ChunkHead head;
+    head.kind = static_cast<uint32_t>(record::ChunkKind::kRun);
     head.bytes = bytes.size();
     head.sum = hash_bytes(bytes.data(), bytes.size());
     head.head_sum = head.own_sum();
@@ -692,17 +693,17 @@ TEST(Recording, ADestroyedRecorderLeavesAllFrames) {
 
 TEST(FrameCodec, HeadingsAreTheNearestOf256) {
   for (int32_t k = 0; k < 256; ++k) {
-    const Heading h = heading_of(static_cast<uint8_t>(k));
-    EXPECT_EQ(heading_code(h), k);
+    const Heading h = record::heading_of(static_cast<uint8_t>(k));
+    EXPECT_EQ(record::heading_code(h), k);
     EXPECT_NEAR(h.x * h.x + h.z * h.z, 1, 1e-6);
   }
-  EXPECT_EQ(heading_code({0, 0}), heading_code({0, 1}));
-  EXPECT_EQ(heading_code({NAN, 1}), heading_code({0, 1}));
+  EXPECT_EQ(record::heading_code({0, 0}), record::heading_code({0, 1}));
+  EXPECT_EQ(record::heading_code({NAN, 1}), record::heading_code({0, 1}));
 }
 
 // Avatars that walk straight at 1.34 m/s in the direction of their headings, ten frames a second.
 TEST(FrameCodec, AWalkerCostsAByteAFrame) {
-  FrameEncoder encoder;
+  record::FrameEncoder encoder;
   std::vector<uint8_t> bytes;
   RecordedFrame frame;
   constexpr size_t kWalkers = 1000, kFrames = 100;

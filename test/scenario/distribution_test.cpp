@@ -67,7 +67,7 @@ TEST(SpawnTimes, FollowTheRates) {
   source.group = Distribution::fixed(1);
   source.rates = {{10, 2}, {20, 0}, {30, 5}};
   source.end = 40;
-  SpawnTimes arrivals(source, 1, 0);
+  scenario::SpawnTimes arrivals(source, 1, 0);
   int before = 0, early = 0, pause = 0, late = 0;
   for (int step = 0; step <= 1000; ++step) {
     const double time = step * 0.1;
@@ -88,7 +88,7 @@ TEST(SpawnTimes, AreEvenOrAtOnceUpToTheCount) {
   source.rates = {{0, 4}};
   source.even = true;
   source.count = 10;
-  SpawnTimes even(source, 1, 0);
+  scenario::SpawnTimes even(source, 1, 0);
   std::vector<int> at;
   for (int step = 0; step < 100; ++step) {
     while (even.next_due(step * 0.125) > 0) at.push_back(step);
@@ -98,7 +98,7 @@ TEST(SpawnTimes, AreEvenOrAtOnceUpToTheCount) {
   source.rates.clear();
   source.begin = 5;
   source.group = Distribution::fixed(4);
-  SpawnTimes once(source, 1, 0);
+  scenario::SpawnTimes once(source, 1, 0);
   EXPECT_EQ(once.next_due(4.9), 0U);
   EXPECT_EQ(once.next_due(5), 4U);
   EXPECT_EQ(once.next_due(5), 4U);

@@ -20,29 +20,30 @@ double pass_time_by_events(std::vector<uint32_t> ticks, double flow, uint32_t ti
   double free = -1e9;
   for (const uint32_t t : ticks) {
     if (t > std::max(tick, now)) break;
-    free = std::max(free, t * DoorQueue::kTick) + 1 / flow;
+    free = std::max(free, t * scenario::DoorQueue::kTick) + 1 / flow;
   }
-  return std::max(free, std::max(tick, now) * DoorQueue::kTick) + 1 / flow;
+  return std::max(free, std::max(tick, now) * scenario::DoorQueue::kTick) + 1 / flow;
 }
 
 TEST(DoorQueue, ServesNoAvatarBeforeItsArrival) {
-  DoorQueue door(2);
-  EXPECT_DOUBLE_EQ(door.pass_time(DoorQueue::tick(10), 0), 10.5);
+  scenario::DoorQueue door(2);
+  EXPECT_DOUBLE_EQ(door.pass_time(scenario::DoorQueue::tick(10), 0), 10.5);
   // Four arrive at 20 s: an arrival at 10 s passes before them, one at 21 s after them.
-  for (int k = 0; k < 4; ++k) door.add(DoorQueue::tick(20));
-  EXPECT_DOUBLE_EQ(door.pass_time(DoorQueue::tick(10), 0), 10.5);
-  EXPECT_DOUBLE_EQ(door.pass_time(DoorQueue::tick(21), 0), 22.5);
-  EXPECT_DOUBLE_EQ(door.pass_time(DoorQueue::tick(30), 0), 30.5);
+  for (int k = 0; k < 4; ++k) door.add(scenario::DoorQueue::tick(20));
+  EXPECT_DOUBLE_EQ(door.pass_time(scenario::DoorQueue::tick(10), 0), 10.5);
+  EXPECT_DOUBLE_EQ(door.pass_time(scenario::DoorQueue::tick(21), 0), 22.5);
+  EXPECT_DOUBLE_EQ(door.pass_time(scenario::DoorQueue::tick(30), 0), 30.5);
   // At 25 s all four are late: they stand at the door.
-  EXPECT_DOUBLE_EQ(door.pass_time(DoorQueue::tick(21), DoorQueue::tick(25)), 27.5);
-  door.remove(DoorQueue::tick(20));
-  EXPECT_DOUBLE_EQ(door.pass_time(DoorQueue::tick(21), 0), 22);
+  EXPECT_DOUBLE_EQ(door.pass_time(scenario::DoorQueue::tick(21), scenario::DoorQueue::tick(25)),
+                   27.5);
+  door.remove(scenario::DoorQueue::tick(20));
+  EXPECT_DOUBLE_EQ(door.pass_time(scenario::DoorQueue::tick(21), 0), 22);
 }
 
 TEST(DoorQueue, ReturnsTheTimesOfASimulationOfAllEvents) {
   for (uint64_t seed = 0; seed < 30; ++seed) {
     const double flow = 0.2 + 4 * random_unit(seed, 1, 0);
-    DoorQueue door(flow);
+    scenario::DoorQueue door(flow);
     std::vector<uint32_t> ticks;
     uint64_t draws = 0;
     const auto below = [&](uint64_t end) { return random_below(seed, 2, draws++, end); };
@@ -69,7 +70,7 @@ TEST(DoorQueue, ReturnsTheTimesOfASimulationOfAllEvents) {
 TEST(DoorQueue, NeedsNoMoreMemoryOverDays) {
   for (uint64_t seed = 0; seed < 10; ++seed) {
     const double flow = 0.5 + 2 * random_unit(seed, 1, 0);
-    DoorQueue door(flow);
+    scenario::DoorQueue door(flow);
     std::vector<uint32_t> ticks;
     uint64_t draws = 0;
     const auto below = [&](uint64_t end) { return random_below(seed, 2, draws++, end); };
@@ -97,12 +98,12 @@ TEST(DoorQueue, NeedsNoMoreMemoryOverDays) {
 }
 
 TEST(DoorQueue, ClampsTimesOutOfRange) {
-  DoorQueue door(1);
-  EXPECT_EQ(DoorQueue::tick(-3), 0U);
-  const uint32_t last = DoorQueue::tick(INFINITY);
-  EXPECT_EQ(last, DoorQueue::tick(1e12));
+  scenario::DoorQueue door(1);
+  EXPECT_EQ(scenario::DoorQueue::tick(-3), 0U);
+  const uint32_t last = scenario::DoorQueue::tick(INFINITY);
+  EXPECT_EQ(last, scenario::DoorQueue::tick(1e12));
   const uint32_t kept = door.add(last);
-  EXPECT_EQ(kept, DoorQueue::tick(6 * 3600));
+  EXPECT_EQ(kept, scenario::DoorQueue::tick(6 * 3600));
   door.remove(kept);
   EXPECT_DOUBLE_EQ(door.pass_time(0, 0), 1);
 }

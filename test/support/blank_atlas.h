@@ -26,7 +26,7 @@ inline Atlas blank_atlas(int32_t frames) {
   atlas.clips = {{.name = "Walk", .first_frame = 0, .frames = frames, .seconds = 1, .stride = 1.5}};
   atlas.views.assign(static_cast<size_t>(16 * 8 * frames),
                      {.width = kBlankPixels, .height = kBlankPixels});
-  const PageSize size = pack_views(atlas.views);
+  const impostor::PageSize size = impostor::pack_views(atlas.views);
   atlas.width = size.width, atlas.height = size.height, atlas.pages = size.pages;
   const auto texels = static_cast<size_t>(size.width * size.height * size.pages);
   atlas.colour.assign(texels * 4, 255);

@@ -57,7 +57,7 @@ Slice cut(const Columns& columns, int32_t height, int32_t far_plane) {
   return slice;
 }
 
-SliceRun slice(const Columns& columns, const SweepConfig& config) {
+SliceRun slice(const Columns& columns, const papers::SweepConfig& config) {
   SliceRun run;
   std::vector<Slice>& slices = run.kept;
   slices.push_back(
@@ -81,11 +81,11 @@ SliceRun slice(const Columns& columns, const SweepConfig& config) {
   return run;
 }
 
-std::vector<SliceTile> make_tiles(const Columns& columns) {
-  std::vector<SliceTile> tiles;
+std::vector<papers::SliceTile> make_tiles(const Columns& columns) {
+  std::vector<papers::SliceTile> tiles;
   for (int32_t tz = 0; tz * kTileCells < columns.depth; ++tz) {
     for (int32_t tx = 0; tx * kTileCells < columns.width; ++tx) {
-      SliceTile tile{.tile_x = tx, .tile_z = tz, .first = {0}, .low = {}, .high = {}};
+      papers::SliceTile tile{.tile_x = tx, .tile_z = tz, .first = {0}, .low = {}, .high = {}};
       for (int32_t cell = 0; cell < kTileCells * kTileCells; ++cell) {
         const int32_t x = tx * kTileCells + cell % kTileCells;
         const int32_t z = tz * kTileCells + cell / kTileCells;
@@ -105,11 +105,11 @@ std::vector<SliceTile> make_tiles(const Columns& columns) {
   return tiles;
 }
 
-SweepConfig sweep_config(const Columns& columns, int32_t avatar_height, int32_t resolution) {
-  SweepConfig config{.width = columns.width,
-                     .depth = columns.depth,
-                     .avatar_height = avatar_height,
-                     .resolution = resolution};
+papers::SweepConfig sweep_config(const Columns& columns, int32_t avatar_height, int32_t resolution) {
+  papers::SweepConfig config{.width = columns.width,
+                             .depth = columns.depth,
+                             .avatar_height = avatar_height,
+                             .resolution = resolution};
   if (!columns.low.empty()) {
     config.min_y = *std::min_element(columns.low.begin(), columns.low.end());
     config.max_y = *std::max_element(columns.high.begin(), columns.high.end());

@@ -22,12 +22,12 @@ struct SliceRun {
 Slice cut(const Columns& columns, int32_t height, int32_t far_plane);
 
 /// Algorithm 3 with `config`'s avatar height, resolution and bounds.
-SliceRun slice(const Columns& columns, const SweepConfig& config);
+SliceRun slice(const Columns& columns, const papers::SweepConfig& config);
 
 /// Columns split into the 64 x 64 tiles that the sweep reads.
-std::vector<SliceTile> make_tiles(const Columns& columns);
+std::vector<papers::SliceTile> make_tiles(const Columns& columns);
 
 /// A config with the bounds and grid of `columns`; heights in mm.
-SweepConfig sweep_config(const Columns& columns, int32_t avatar_height, int32_t resolution);
+papers::SweepConfig sweep_config(const Columns& columns, int32_t avatar_height, int32_t resolution);
 
 }  // namespace throng::naive

@@ -10,9 +10,9 @@
 // Prefixes and single changed bytes of a file of patches.
 namespace throng::test {
 
-Result<RawScene> PatchReader::read(const std::string& bytes) const {
+Result<importer::RawScene> PatchReader::read(const std::string& bytes) const {
   Context context;
-  ReadOptions options;
+  importer::ReadOptions options;
   options.name = name;
   return read_bytes(bytes, options, context);
 }

@@ -13,10 +13,11 @@ namespace throng::test {
 
 /// A reader, and the file name that it gets.
 struct PatchReader {
-  Result<RawScene> (*read_bytes)(std::string_view, const ReadOptions&, Context&);
+  Result<importer::RawScene> (*read_bytes)(std::string_view, const importer::ReadOptions&,
+                                           Context&);
   const char* name;
 
-  [[nodiscard]] Result<RawScene> read(const std::string& bytes) const;
+  [[nodiscard]] Result<importer::RawScene> read(const std::string& bytes) const;
   /// The message with which the bytes are refused; empty, and a failed test, if they are not.
   [[nodiscard]] std::string fault_of(const std::string& bytes) const;
   /// Reads every `stride`-th prefix of the bytes, and `count` copies with one byte changed, to any

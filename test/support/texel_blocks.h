@@ -11,8 +11,8 @@
 /// Blocks of texels for the tests of codecs.
 namespace throng::test {
 
-inline TexelWeights all_texels() {
-  TexelWeights weights;
+inline impostor::TexelWeights all_texels() {
+  impostor::TexelWeights weights;
   weights.fill(1);
   return weights;
 }
@@ -22,8 +22,9 @@ inline uint8_t random_byte(uint64_t seed, uint64_t block, uint64_t i) {
 }
 
 /// `kinds` colours, assigned to texels at random, with some noise.
-inline ColourBlock random_block(uint64_t seed, uint64_t number, uint64_t kinds, uint64_t noise) {
-  ColourBlock block;
+inline impostor::ColourBlock random_block(uint64_t seed, uint64_t number, uint64_t kinds,
+                                          uint64_t noise) {
+  impostor::ColourBlock block;
   for (uint64_t i = 0; i < 16; ++i) {
     const uint64_t kind = random_below(seed, number, 100 + i, kinds);
     for (uint64_t c = 0; c < 3; ++c) {

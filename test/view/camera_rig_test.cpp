@@ -12,14 +12,14 @@ namespace {
 
 constexpr double kWidth = 1280, kHeight = 720;
 
-CameraRig some_rig() {
-  CameraRig rig;
+view::CameraRig some_rig() {
+  view::CameraRig rig;
   rig.look({10, 8, 20}, {1, 2, 3});
   return rig;
 }
 
 // The pixel of a point. [px]
-std::pair<double, double> pixel_of(const CameraRig& rig, Vec3d p) {
+std::pair<double, double> pixel_of(const view::CameraRig& rig, Vec3d p) {
   const EyeCamera camera = rig.camera(kWidth / kHeight);
   const CameraAxes axes = camera_axes(camera);
   const double deep = dot(p - camera.eye, axes.forward);
@@ -29,7 +29,7 @@ std::pair<double, double> pixel_of(const CameraRig& rig, Vec3d p) {
 }
 
 TEST(CameraRig, LooksAtTheGivenTarget) {
-  const CameraRig rig = some_rig();
+  const view::CameraRig rig = some_rig();
   EXPECT_NEAR(length(rig.eye() - Vec3d{10, 8, 20}), 0, 1e-9);
   const auto [x, y] = pixel_of(rig, {1, 2, 3});
   EXPECT_NEAR(x, 640, 1e-6);
@@ -37,20 +37,20 @@ TEST(CameraRig, LooksAtTheGivenTarget) {
 }
 
 TEST(CameraRig, ARayThroughAPixelMeetsWhatIsSeenThere) {
-  const CameraRig rig = some_rig();
+  const view::CameraRig rig = some_rig();
   const EyeCamera camera = rig.camera(kWidth / kHeight);
   for (const Vec3d p : {Vec3d{0, 0, 0}, {3, 1, 2}, {-4, 5, 6}}) {
     const auto [x, y] = pixel_of(rig, p);
-    const Vec3d ray = pixel_ray(camera, x, y, kWidth, kHeight);
+    const Vec3d ray = view::pixel_ray(camera, x, y, kWidth, kHeight);
     EXPECT_NEAR(length(cross(ray, p - camera.eye)), 0, 1e-6);
     EXPECT_GT(dot(ray, p - camera.eye), 0);
   }
 }
 
 TEST(CameraRig, ZoomKeepsWhatIsUnderThePointer) {
-  CameraRig rig = some_rig();
+  view::CameraRig rig = some_rig();
   const EyeCamera before = rig.camera(kWidth / kHeight);
-  const Vec3d ray = pixel_ray(before, 300, 500, kWidth, kHeight);
+  const Vec3d ray = view::pixel_ray(before, 300, 500, kWidth, kHeight);
   const double deep = rig.distance / dot(ray, camera_axes(before).forward);
   const Vec3d held = before.eye + ray * deep;
   const double distance = rig.distance;
@@ -64,7 +64,7 @@ TEST(CameraRig, ZoomKeepsWhatIsUnderThePointer) {
 }
 
 TEST(CameraRig, PanMovesTheTargetWithThePointer) {
-  CameraRig rig = some_rig();
+  view::CameraRig rig = some_rig();
   const Vec3d held = rig.target;
   rig.pan(40, -25, kHeight);
   const auto [x, y] = pixel_of(rig, held);
@@ -73,7 +73,7 @@ TEST(CameraRig, PanMovesTheTargetWithThePointer) {
 }
 
 TEST(CameraRig, OrbitKeepsTheTargetAndTurningTheHeadTheEye) {
-  CameraRig rig = some_rig();
+  view::CameraRig rig = some_rig();
   const Vec3d target = rig.target;
   const double distance = rig.distance;
   rig.orbit(100, 30, kHeight);
@@ -87,7 +87,7 @@ TEST(CameraRig, OrbitKeepsTheTargetAndTurningTheHeadTheEye) {
 }
 
 TEST(CameraRig, GoesOverTheGroundWhereItLooks) {
-  CameraRig rig;
+  view::CameraRig rig;
   rig.look({0, 5, 10}, {0, 0, 0});
   rig.go(0, 0, 2);
   EXPECT_NEAR(rig.target.z, -2, 1e-9);
@@ -101,7 +101,7 @@ TEST(CameraRig, ShowsAllOfABoxFromAnySide) {
   box.add({-10, 0, 5});
   box.add({60, 12, 45});
   for (const double aspect : {16.0 / 9, 0.5}) {
-    CameraRig rig;
+    view::CameraRig rig;
     for (double yaw = 0; yaw < 6.3; yaw += 0.7) {
       rig.yaw = yaw;
       rig.show(box, aspect);

@@ -17,17 +17,17 @@ const Box3d kBounds{{-10, 0, -4}, {30, 9, 16}};
 
 TEST(DensityBrush, PaintsADiscOfPixelsAndWipesItAway) {
   std::vector<DensityMap> maps;
-  DensityMap& map = map_at(maps, kBounds, 3);
-  EXPECT_TRUE(paint(map, {5, 3, 6}, 3, 200));
-  EXPECT_FALSE(paint(map, {5, 3, 6}, 3, 200));  // No change.
+  DensityMap& map = view::map_at(maps, kBounds, 3);
+  EXPECT_TRUE(view::paint(map, {5, 3, 6}, 3, 200));
+  EXPECT_FALSE(view::paint(map, {5, 3, 6}, 3, 200));  // No change.
   size_t painted = 0;
   for (const uint8_t weight : map.weights) painted += weight == 200 ? 1 : 0;
   const double area = (map.x1 - map.x0) / map.width * (map.z1 - map.z0) / map.height;
   EXPECT_NEAR(static_cast<double>(painted) * area, 3.14159 * 9, 1.5);
-  EXPECT_FALSE(paint(map, {5, 6, 6}, 3, 0));  // Another storey.
-  EXPECT_TRUE(paint(map, {5, 3, 6}, 4, 0));
-  EXPECT_TRUE(WeightedPlaces(maps).empty());
-  EXPECT_FALSE(paint(map, {200, 3, 6}, 4, 90));  // Beside the map.
+  EXPECT_FALSE(view::paint(map, {5, 6, 6}, 3, 0));  // Another storey.
+  EXPECT_TRUE(view::paint(map, {5, 3, 6}, 4, 0));
+  EXPECT_TRUE(view::WeightedPlaces(maps).empty());
+  EXPECT_FALSE(view::paint(map, {200, 3, 6}, 4, 90));  // Beside the map.
 }
 
 TEST(DensityBrush, ASmallBrushPaintsThePixelItIsOn) {
@@ -40,18 +40,19 @@ TEST(DensityBrush, ASmallBrushPaintsThePixelItIsOn) {
                  .height = 10,
                  .weights = {}};
   map.weights.assign(100, 0);
-  EXPECT_TRUE(paint(map, {34, 0, 76}, 0.1, 7));
+  EXPECT_TRUE(view::paint(map, {34, 0, 76}, 0.1, 7));
   EXPECT_EQ(map.weights[73], 7);
 }
 
 TEST(DensityBrush, StoreysHaveMapsOfTheirOwn) {
   std::vector<DensityMap> maps;
-  paint(map_at(maps, kBounds, 0), {0, 0, 0}, 1, 9);
-  paint(map_at(maps, kBounds, 3), {0, 3, 0}, 1, 90);
-  paint(map_at(maps, kBounds, 3.4), {9, 3.4, 9}, 1, 90);
-  paint(map_at(maps, kBounds, 1.5), {9, 1.5, 9}, 1, 50);  // Between the two: no overlap.
+  view::paint(view::map_at(maps, kBounds, 0), {0, 0, 0}, 1, 9);
+  view::paint(view::map_at(maps, kBounds, 3), {0, 3, 0}, 1, 90);
+  view::paint(view::map_at(maps, kBounds, 3.4), {9, 3.4, 9}, 1, 90);
+  view::paint(view::map_at(maps, kBounds, 1.5), {9, 1.5, 9}, 1,
+              50);  // Between the two: no overlap.
   ASSERT_EQ(maps.size(), 3U);
-  const WeightedPlaces places(maps);
+  const view::WeightedPlaces places(maps);
   EXPECT_EQ(places.weight_at({0, 0.2, 0}), 9);
   EXPECT_EQ(places.weight_at({0, 3, 0}), 90);
   EXPECT_EQ(places.weight_at({9, 1.5, 9}), 50);
@@ -83,7 +84,7 @@ TEST(DensityBrush, PlacesAreDrawnAsOftenAsTheirWeightsSay) {
              .height = 2,
              .weights = {}};
   maps[1].weights = {0, 4};
-  const WeightedPlaces places(maps);
+  const view::WeightedPlaces places(maps);
   std::map<std::array<int, 3>, int> seen;
   constexpr int kDraws = 80000;
   for (uint64_t n = 0; n < kDraws; ++n) {

@@ -47,10 +47,10 @@ Count compare(const Scene& scene, uint64_t seed, int32_t eyes, int32_t boxes, in
   Count out;
   const Box3d all = scene.bounds();
   const Vec3d origin{std::round(all.min.x), std::round(all.min.y), std::round(all.min.z)};
-  EyeSight sight(occluders_of(scene, origin), pixels);
+  view::EyeSight sight(view::occluders_of(scene, origin), pixels);
   uint64_t n = seed << 32;
   for (int32_t e = 0; e < eyes; ++e) {
-    const EyePlace place{.eye = point_in(all, n++), .nearest = 0.05, .cut = 1e9};
+    const view::EyePlace place{.eye = point_in(all, n++), .nearest = 0.05, .cut = 1e9};
     sight.look_from(place, 1e6);
     for (int32_t k = 0; k < boxes; ++k) {
       const Vec3d low = point_in(all, n++);
@@ -105,9 +105,9 @@ TEST(EyeSight, SeesThroughSlitsThinnerThanAPixelAndOverWhatIsCut) {
   Scene scene;  // Two walls, a millimetre apart.
   scene.add_box({-20, -5, 10}, {-0.0005, 8, 10.2});
   scene.add_box({0.0005, -5, 10}, {20, 8, 10.2});
-  EyeSight sight(occluders_of(scene, {}), 64);
+  view::EyeSight sight(view::occluders_of(scene, {}), 64);
   const Box3d behind{{-1, 0, 20}, {1, 2, 21}}, beside{{4, 0, 20}, {5, 2, 21}};
-  EyePlace place{.eye = {0, 1, 0}};
+  view::EyePlace place{.eye = {0, 1, 0}};
   sight.look_from(place, 100);
   EXPECT_TRUE(sight.sees(behind));
   EXPECT_FALSE(sight.sees(beside));

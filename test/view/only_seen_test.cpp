@@ -81,13 +81,13 @@ void watch(At at, int32_t steps) {
   Context context;
   const Vec3d origin{80, 0, 80};
   constexpr uint32_t kAll = 600;
-  auto made = CrowdPlayer::make(town().world, {}, start_with(kAll), 1, origin,
-                                occluders_of(town().scene, origin), context);
+  auto made = view::CrowdPlayer::make(town().world, {}, start_with(kAll), 1, origin,
+                                      view::occluders_of(town().scene, origin), context);
   ASSERT_TRUE(made) << made.error().message;
-  CrowdPlayer& player = **made;
+  view::CrowdPlayer& player = **made;
   EXPECT_EQ(player.next(), nullptr);  // It waits for look_from().
   using Id = std::pair<uint64_t, uint32_t>;
-  std::shared_ptr<const TimelineFrame> last;
+  std::shared_ptr<const view::TimelineFrame> last;
   uint64_t came = 0, went = 0, in_sight = 0, seen = 0, counted = 0;
   size_t min_seen = kAll, max_seen = 0, largest = 0;
   for (int32_t step = 0; step <= steps; ++step) {
@@ -97,12 +97,13 @@ void watch(At at, int32_t steps) {
     ASSERT_NE(now, nullptr);
     ASSERT_EQ(now->fault, "");
     ASSERT_EQ(now->generations.size(), now->size());
-    const auto ids_of = [](const TimelineFrame& m) {
+    const auto ids_of = [](const view::TimelineFrame& m) {
       std::set<Id> out;
       for (size_t i = 0; i < m.size(); ++i) out.insert({m.ids[i], m.generations[i]});
       return out;
     };
-    const auto count_seen = [&](const TimelineFrame& m, const std::set<Id>& others, uint64_t& all) {
+    const auto count_seen = [&](const view::TimelineFrame& m, const std::set<Id>& others,
+                                uint64_t& all) {
       for (size_t i = 0; i < m.size(); ++i) {
         if (others.count({m.ids[i], m.generations[i]}) > 0) continue;
         const Vec3d feet = origin + Vec3d{m.x[i], m.y[i], m.z[i]};
@@ -206,9 +207,9 @@ TEST(OnlySeenViewer, SendsTheEyeToTheCrowd) {
 }
 
 TEST(OnlySeenViewer, KeepsItAsASetting) {
-  ViewSettings settings;
+  view::ViewSettings settings;
   settings.only_seen = settings.coarse_far = true;
-  Viewer viewer = made_viewer(settings_text(settings));
+  Viewer viewer = made_viewer(view::settings_text(settings));
   CrowdStart start = start_with(600);
   start.only_seen = false;
   viewer.look_at({35, 1.7, 65}, {35, 1.7, 95});
@@ -217,7 +218,7 @@ TEST(OnlySeenViewer, KeepsItAsASetting) {
   viewer.play_for(0.5);
   ASSERT_TRUE(viewer.picture(0, 160, 120));
   EXPECT_LT(viewer.status().avatars, 500U);
-  const auto kept = read_settings(viewer.settings());
+  const auto kept = view::read_settings(viewer.settings());
   ASSERT_TRUE(kept);
   EXPECT_TRUE(kept->only_seen);
   EXPECT_TRUE(kept->coarse_far);
@@ -229,7 +230,7 @@ TEST(OnlySeen, FarAvatarsAreInLowDetailIfSet) {
     CrowdStart start;
     start.avatars = 100;
     start.coarse_far = coarse;
-    auto made = CrowdPlayer::make(town().world, {}, start, 1, {}, nullptr, context);
+    auto made = view::CrowdPlayer::make(town().world, {}, start, 1, {}, nullptr, context);
     ASSERT_TRUE(made);
     (*made)->look_from({.eye = {80, 900, 80}});
     (void)(*made)->next();

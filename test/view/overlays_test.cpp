@@ -69,8 +69,8 @@ Viewer made_viewer(const std::string& overlay) {
     start.near = 10;
     start.mix = {1, 0};
     if (overlay == "Painted") {
-      paint(map_at(start.density, hall().scene.bounds(), 0), {4, 0, 9}, 2.5, 90);
-      paint(map_at(start.density, hall().scene.bounds(), 3), {9, 3, 2}, 1.5, 255);
+      view::paint(view::map_at(start.density, hall().scene.bounds(), 0), {4, 0, 9}, 2.5, 90);
+      view::paint(view::map_at(start.density, hall().scene.bounds(), 3), {9, 3, 2}, 1.5, 255);
     }
     parts.set_crowd(start);
     return {};
@@ -126,7 +126,7 @@ double area_of(const Marks& marks) {
 
 TEST(OverlayMarks, FieldsAreColouredByTheStateOfTheAvatar) {
   // Two that walk towards each other, one far off, one on another storey.
-  TimelineFrame crowd;
+  view::TimelineFrame crowd;
   crowd.resize(4);
   crowd.ids = {1, 2, 3, 4};
   crowd.x = {0, 1, 50, 0};
@@ -134,7 +134,7 @@ TEST(OverlayMarks, FieldsAreColouredByTheStateOfTheAvatar) {
   crowd.z = {0, 0, 0, 0};
   crowd.heading = {0.25F, 0.75F, 0, 0};
   crowd.speed = {1, 1, 1, 0};
-  const Marks all = field_marks(crowd, 4, {}, {0.25});
+  const Marks all = view::field_marks(crowd, 4, {}, {0.25});
   const size_t each = 3 * 32 * 2;
   ASSERT_EQ(all.lines.size(), 4 * each);
   const auto rgb = [](Rgba colour) { return colour & 0xffffff; };
@@ -143,15 +143,16 @@ TEST(OverlayMarks, FieldsAreColouredByTheStateOfTheAvatar) {
   EXPECT_EQ(state_at(0), rgb(rgba(250, 130, 40)));
   EXPECT_EQ(state_at(2), rgb(rgba(90, 200, 110)));  // The storey above: nearer than the far one.
   EXPECT_EQ(state_at(3), rgb(rgba(90, 200, 110)));
-  EXPECT_EQ(field_marks(crowd, 0, {}, {0.25}).lines.size(), 3 * each);  // Without the far one.
+  EXPECT_EQ(view::field_marks(crowd, 0, {}, {0.25}).lines.size(),
+            3 * each);  // Without the far one.
   crowd.x[1] = 0.45F;
-  EXPECT_EQ(rgb(field_marks(crowd, 0, {}, {0.25}).lines[0].colour), rgb(rgba(230, 40, 40)));
+  EXPECT_EQ(rgb(view::field_marks(crowd, 0, {}, {0.25}).lines[0].colour), rgb(rgba(230, 40, 40)));
 }
 
 TEST(OverlayMarks, ClearanceCoversWhatAClassCanWalkOnAndNothingElse) {
   Context context;
   const World& world = hall().world;
-  const Marks marks = clearance_marks(world, 0, {}, context);
+  const Marks marks = view::clearance_marks(world, 0, {}, context);
   const double walkable = world.summary().walkable_area[0];
   EXPECT_NEAR(area_of(marks), walkable, 0.001 * walkable);
   // The middle of every triangle's box lies just over a place of the class.
@@ -164,7 +165,7 @@ TEST(OverlayMarks, ClearanceCoversWhatAClassCanWalkOnAndNothingElse) {
 }
 
 TEST(OverlayMarks, DensityCountsHeadsByStorey) {
-  TimelineFrame crowd;
+  view::TimelineFrame crowd;
   crowd.resize(9);
   for (size_t i = 0; i < 9; ++i) {
     crowd.ids[i] = i;
@@ -172,19 +173,19 @@ TEST(OverlayMarks, DensityCountsHeadsByStorey) {
     crowd.z[i] = 0.5F;
     crowd.y[i] = i < 8 ? 0.0F : 3.0F;
   }
-  const Marks marks = density_marks(crowd);
+  const Marks marks = view::density_marks(crowd);
   ASSERT_EQ(marks.triangles.size(), 12U);  // A square each.
   EXPECT_NE(marks.triangles[0].colour, marks.triangles[6].colour);
   EXPECT_NEAR(area_of(marks), 8, 1e-5);
 }
 
 TEST(OverlayMarks, NeighboursAreThoseInSightOnTheSameStorey) {
-  TimelineFrame crowd;
+  view::TimelineFrame crowd;
   crowd.resize(5);
   for (size_t i = 0; i < 5; ++i) crowd.ids[i] = i;
   crowd.x = {0, 3, 4.9F, 5.2F, 1};
   crowd.y = {0, 0, 0, 0, 3};
-  const Marks marks = neighbour_marks(crowd, 0, 5);
+  const Marks marks = view::neighbour_marks(crowd, 0, 5);
   EXPECT_EQ(marks.lines.size(), 2 * (48U + 2U));  // The circle, and two neighbours.
 }
 

@@ -18,8 +18,8 @@ struct Body {
   float x, z, heading;
 };
 
-TimelineFrame frame_of(double time, const std::vector<Body>& bodies) {
-  TimelineFrame m;
+view::TimelineFrame frame_of(double time, const std::vector<Body>& bodies) {
+  view::TimelineFrame m;
   m.time = time;
   m.resize(bodies.size());
   for (size_t i = 0; i < bodies.size(); ++i) {
@@ -31,8 +31,8 @@ TimelineFrame frame_of(double time, const std::vector<Body>& bodies) {
   return m;
 }
 
-Figures one_figure() {
-  Figures figures;
+view::Figures one_figure() {
+  view::Figures figures;
   figures.of_class = {{0}};
   figures.shapes.resize(1);
   figures.shapes[0].clips = {
@@ -42,34 +42,34 @@ Figures one_figure() {
 }
 
 TEST(TimelineFrame, FollowSumsTheDistanceOfEachAvatarWhileOthersComeAndGo) {
-  TimelineFrame a = frame_of(0, {{3, 0, 0, 0.25F}, {5, 9, 9, 0.1F}});
-  follow({}, a);
-  TimelineFrame b = frame_of(1, {{3, 3, 4, 0.25F}, {4, 1, 1, 0.5F}});
-  follow(a, b);
+  view::TimelineFrame a = frame_of(0, {{3, 0, 0, 0.25F}, {5, 9, 9, 0.1F}});
+  view::follow({}, a);
+  view::TimelineFrame b = frame_of(1, {{3, 3, 4, 0.25F}, {4, 1, 1, 0.5F}});
+  view::follow(a, b);
   EXPECT_NEAR(b.walked[0] - a.walked[0], 5, 1e-5);
   EXPECT_NEAR(b.speed[0], 5 * (1 - std::exp(-1 / 0.4)), 1e-4);
   EXPECT_EQ(b.speed[1], 0);
-  TimelineFrame back = frame_of(0, {{3, 0, 0, 0.25F}});
-  follow(b, back);  // Backwards in time: the distance shrinks again.
+  view::TimelineFrame back = frame_of(0, {{3, 0, 0, 0.25F}});
+  view::follow(b, back);  // Backwards in time: the distance shrinks again.
   EXPECT_NEAR(back.walked[0], a.walked[0], 1e-5);
 }
 
 TEST(TimelineFrame, FiguresTurnByTheSmallerAngleAndNotAtOnce) {
-  TimelineFrame a = frame_of(0, {{1, 0, 0, 0.95F}});
-  TimelineFrame b = frame_of(0.1, {{1, 0.2F, 0, 0.45F}});
-  follow(a, b);  // Half a turn is required; 0.9 turns a second are allowed.
+  view::TimelineFrame a = frame_of(0, {{1, 0, 0, 0.95F}});
+  view::TimelineFrame b = frame_of(0.1, {{1, 0.2F, 0, 0.45F}});
+  view::follow(a, b);  // Half a turn is required; 0.9 turns a second are allowed.
   const double turned = std::abs(std::remainder(b.heading[0] - 0.95, 1.0));
   EXPECT_NEAR(turned, 0.09, 1e-5);
-  TimelineFrame c = frame_of(0.2, {{1, 0.4F, 0, 0.02F}});
+  view::TimelineFrame c = frame_of(0.2, {{1, 0.4F, 0, 0.02F}});
   a.heading[0] = 0.97F;
-  follow(a, c);  // Over zero: 0.05 turns, within the limit of 0.18.
+  view::follow(a, c);  // Over zero: 0.05 turns, within the limit of 0.18.
   EXPECT_NEAR(c.heading[0], 0.02, 1e-5);
 }
 
 TEST(TimelineFrame, AStandingAvatarKeepsItsHeading) {
-  TimelineFrame a = frame_of(0, {{1, 0, 0, 0.4F}});
-  TimelineFrame b = frame_of(0.1, {{1, 0, 0, 0}});
-  follow(a, b);
+  view::TimelineFrame a = frame_of(0, {{1, 0, 0, 0.4F}});
+  view::TimelineFrame b = frame_of(0.1, {{1, 0, 0, 0}});
+  view::follow(a, b);
   EXPECT_NEAR(b.heading[0], 0.4, 1e-6);
 }
 
@@ -78,28 +78,28 @@ AvatarState climber(Vec3d at, Vec3d up, Vec3d goes) {
   return {.id = 1, .position = at, .heading_x = ahead.x, .heading_z = ahead.z, .up = up};
 }
 
-Vec3d looks(const TimelineFrame& m, size_t i) {
+Vec3d looks(const view::TimelineFrame& m, size_t i) {
   const double angle = 2 * std::numbers::pi * m.heading[i];
   return leaned({std::sin(angle), 0, std::cos(angle)}, m.up(i));
 }
 
 TEST(TimelineFrame, AClimberLeansAndFacesItsMove) {
   const double r = std::sqrt(0.5);
-  TimelineFrame a, b;
+  view::TimelineFrame a, b;
   a.time = 1;
   b.time = 1.5;
-  put_states({climber({0, 0, 0}, {0, 1, 0}, {-1, 0, 0})}, {}, a);
+  view::put_states({climber({0, 0, 0}, {0, 1, 0}, {-1, 0, 0})}, {}, a);
   EXPECT_TRUE(a.ups.empty());
   EXPECT_NEAR(length(looks(a, 0) - Vec3d{-1, 0, 0}), 0, 1e-6);
-  follow({}, a);
+  view::follow({}, a);
   // Against a wall that faces +X, and up.
-  put_states({climber({-0.3, 0.4, 0}, {1, 0, 0}, {0, 1, 0}), AvatarState{.id = 5, .position = {}}},
-             {}, b);
+  view::put_states(
+      {climber({-0.3, 0.4, 0}, {1, 0, 0}, {0, 1, 0}), AvatarState{.id = 5, .position = {}}}, {}, b);
   ASSERT_EQ(b.ups.size(), 2U);
-  follow(a, b);
+  view::follow(a, b);
   EXPECT_NEAR(length(looks(b, 0) - Vec3d{0, 1, 0}), 0, 1e-5) << "no turn but that over the edge";
   EXPECT_NEAR(b.walked[0] - a.walked[0], 0.5, 1e-5);
-  BlendedCrowd crowd;
+  view::BlendedCrowd crowd;
   crowd.blend(a, b, 0.5, one_figure(), 1e9);
   EXPECT_NEAR(length(crowd.now().ups[0] - Vec3d{r, r, 0}), 0, 1e-6);
   EXPECT_NEAR(length(looks(crowd.now(), 0) - Vec3d{-r, r, 0}), 0, 1e-5);
@@ -116,28 +116,28 @@ TEST(TimelineFrame, AClimberLeansAndFacesItsMove) {
 
 // Along a ceiling, with axes that tilt a little to all sides.
 TEST(TimelineFrame, AnAvatarUnderAnUnevenCeilingDoesNotSpin) {
-  TimelineFrame before;
+  view::TimelineFrame before;
   for (int step = 0; step < 40; ++step) {
     const double turn = 2.1 * step, lean = 0.05;
     const Vec3d up{lean * std::cos(turn), -std::sqrt(1 - lean * lean), lean * std::sin(turn)};
     Vec3d goes = Vec3d{0, 0, 1} - up * up.z;
     goes = goes * (1 / length(goes));
-    TimelineFrame now;
+    view::TimelineFrame now;
     now.time = 0.1 * step;
-    put_states({climber({0, 0, 0.1 * step}, up, goes)}, {}, now);
-    follow(before, now);
+    view::put_states({climber({0, 0, 0.1 * step}, up, goes)}, {}, now);
+    view::follow(before, now);
     EXPECT_TRUE(step < 7 || dot(looks(now, 0), goes) > 0.99) << step;  // (once it has turned)
     before = now;
   }
 }
 
 TEST(TimelineFrame, BlendsBetweenTwoFramesAndShowsNewAvatars) {
-  TimelineFrame a = frame_of(1, {{1, 0, 0, 0.9F}, {2, 5, 5, 0}});
-  TimelineFrame b = frame_of(2, {{1, 4, 8, 0.1F}, {7, 1, 2, 0.5F}});
+  view::TimelineFrame a = frame_of(1, {{1, 0, 0, 0.9F}, {2, 5, 5, 0}});
+  view::TimelineFrame b = frame_of(2, {{1, 4, 8, 0.1F}, {7, 1, 2, 0.5F}});
   b.speed = {1.2F, 0};
-  BlendedCrowd crowd;
+  view::BlendedCrowd crowd;
   crowd.blend(a, b, 0.25, one_figure(), 1e9);
-  const TimelineFrame& now = crowd.now();
+  const view::TimelineFrame& now = crowd.now();
   ASSERT_EQ(now.size(), 2U);
   EXPECT_NEAR(now.time, 1.25, 1e-12);
   EXPECT_NEAR(now.x[0], 1, 1e-6);
@@ -153,9 +153,9 @@ TEST(TimelineFrame, BlendsBetweenTwoFramesAndShowsNewAvatars) {
 }
 
 TEST(TimelineFrame, DoesNotDrawAvatarsAboveTheCutOrWithTheEye) {
-  TimelineFrame a = frame_of(0, {{1, 0, 0, 0}, {2, 1, 0, 0}, {3, 2, 0, 0}});
+  view::TimelineFrame a = frame_of(0, {{1, 0, 0, 0}, {2, 1, 0, 0}, {3, 2, 0, 0}});
   a.y = {0, 6, 0};
-  BlendedCrowd crowd;
+  view::BlendedCrowd crowd;
   crowd.hide(3);
   crowd.blend(a, a, 1, one_figure(), 5);
   ASSERT_EQ(crowd.crowds().size(), 1U);

@@ -342,10 +342,10 @@ TEST(CrowdPlayer, PeopleGoWhereItIsPainted) {
   Context context;
   CrowdStart start;
   start.avatars = 24;
-  auto player = CrowdPlayer::make(two_floors().world, {}, start, 1, {}, nullptr, context);
+  auto player = view::CrowdPlayer::make(two_floors().world, {}, start, 1, {}, nullptr, context);
   ASSERT_TRUE(player) << player.error().message;
   std::vector<DensityMap> maps;
-  const auto near = [](const TimelineFrame& moment, double x, double z, double within) {
+  const auto near = [](const view::TimelineFrame& moment, double x, double z, double within) {
     size_t count = 0;
     for (size_t i = 0; i < moment.size(); ++i) {
       count += std::hypot(moment.x[i] - x, moment.z[i] - z) < within ? 1 : 0;
@@ -358,7 +358,7 @@ TEST(CrowdPlayer, PeopleGoWhereItIsPainted) {
   };
   const auto at_first = after(2);
   const size_t before = near(*at_first, 3, 15, 4);
-  paint(map_at(maps, two_floors().scene.bounds(), 0), {3, 0, 15}, 3, 255);
+  view::paint(view::map_at(maps, two_floors().scene.bounds(), 0), {3, 0, 15}, 3, 255);
   (*player)->set_density(maps);
   const size_t there = near(*after(300), 3, 15, 4);
   EXPECT_LT(before, 10U);

@@ -7,7 +7,7 @@
 
 /// One builder for each world. The config has been checked and its zeros replaced by the world's
 /// defaults.
-namespace throng::builtin {
+namespace throng::importer::builtin {
 
 void build_cube(WorldBuilder& b, const BuiltinWorldConfig& config);
 void build_stairs(WorldBuilder& b, const BuiltinWorldConfig& config);
@@ -26,4 +26,4 @@ void build_maze(WorldBuilder& b, const BuiltinWorldConfig& config);
 double powerplant_size(uint64_t triangles, int32_t levels);
 double city_size(uint64_t triangles);
 
-}  // namespace throng::builtin
+}  // namespace throng::importer::builtin

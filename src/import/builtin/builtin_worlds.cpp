@@ -21,7 +21,7 @@ struct Entry {
   int32_t max_levels = 0;
   double (*size_for)(uint64_t triangles, int32_t levels) = nullptr;  // Null: does not grow.
   uint64_t max_triangles = 0;
-  void (*build)(WorldBuilder&, const BuiltinWorldConfig&) = nullptr;
+  void (*build)(importer::WorldBuilder&, const BuiltinWorldConfig&) = nullptr;
   PatchSet (*build_patches)(const BuiltinWorldConfig&) = nullptr;  // Instead of `build`.
 };
 
@@ -35,7 +35,7 @@ const std::array<Entry, 9> kWorlds = {{
      0,
      nullptr,
      0,
-     builtin::build_cube},
+     importer::builtin::build_cube},
     {{"stairs", "flights of all kinds up two terraces: easy, steep, too high, ramps, spirals", 44},
      44,
      4000,
@@ -43,7 +43,7 @@ const std::array<Entry, 9> kWorlds = {{
      0,
      nullptr,
      0,
-     builtin::build_stairs},
+     importer::builtin::build_stairs},
     {{"garage", "a car park: floors, ramps, pillars, cars, stairwells", 60},
      45,
      2000,
@@ -51,7 +51,7 @@ const std::array<Entry, 9> kWorlds = {{
      40,
      nullptr,
      0,
-     builtin::build_garage},
+     importer::builtin::build_garage},
     {{"bridge", "a road over a river and a road: arches, embankments, stairs, an underpass", 160},
      160,
      4000,
@@ -59,7 +59,7 @@ const std::array<Entry, 9> kWorlds = {{
      0,
      nullptr,
      0,
-     builtin::build_bridge},
+     importer::builtin::build_bridge},
     {{"church", "nave, arcades, galleries at two heights, spiral stairs, a tower", 42},
      30,
      400,
@@ -67,23 +67,23 @@ const std::array<Entry, 9> kWorlds = {{
      0,
      nullptr,
      0,
-     builtin::build_church},
+     importer::builtin::build_church},
     {{"powerplant", "a dense steel frame: gratings, stairs, pipes, tanks, ladders", 36},
      24,
      1200,
      22,
      22,
-     builtin::powerplant_size,
+     importer::builtin::powerplant_size,
      kMaxTriangles,
-     builtin::build_powerplant},
+     importer::builtin::build_powerplant},
     {{"city", "streets, kerbs, buildings with storeys inside, a canal, bridges, underpasses", 500},
      100,
      12000,
      0,
      0,
-     [](uint64_t triangles, int32_t) { return builtin::city_size(triangles); },
+     [](uint64_t triangles, int32_t) { return importer::builtin::city_size(triangles); },
      10'000'000,
-     builtin::build_city},
+     importer::builtin::build_city},
     {{"maze", "a perfect maze of 2 m corridors on levels joined by spiral stairs", 50},
      30,
      1500,
@@ -91,7 +91,7 @@ const std::array<Entry, 9> kWorlds = {{
      40,
      nullptr,
      0,
-     builtin::build_maze},
+     importer::builtin::build_maze},
     {{"landscape", "curved hills, cliffs, overhangs, sunken rocks and arches, as Bezier patches",
       320},
      64,
@@ -101,7 +101,7 @@ const std::array<Entry, 9> kWorlds = {{
      nullptr,
      0,
      nullptr,
-     builtin::build_landscape},
+     importer::builtin::build_landscape},
 }};
 
 const Entry* find_entry(const std::string& name) {
@@ -175,17 +175,17 @@ Result<Scene> create_builtin_world(const BuiltinWorldConfig& config) {
     scene.patches = entry->build_patches(full);
     Context context;
     SceneConfig how;
-    how.curve_tolerance = builtin::landscape_tolerance(full.size);
-    if (const auto cut = cut_patches(scene, how, context); !cut) {
+    how.curve_tolerance = importer::builtin::landscape_tolerance(full.size);
+    if (const auto cut = importer::cut_patches(scene, how, context); !cut) {
       return refuse(cut.error().message);
     }
-    add_named_materials(scene);
+    importer::add_named_materials(scene);
     return scene;
   }
-  WorldBuilder builder;
+  importer::WorldBuilder builder;
   entry->build(builder, full);
   Scene scene = builder.finish();
-  add_named_materials(scene);
+  importer::add_named_materials(scene);
   return scene;
 }
 

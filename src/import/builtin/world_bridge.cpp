@@ -13,7 +13,7 @@
 // cross a road, a river and footpaths; embankments with retaining walls carry it down to the ground
 // (about 11 %); a pedestrian underpass pierces the left one; stairs climb along the right one on
 // both sides.
-namespace throng::builtin {
+namespace throng::importer::builtin {
 namespace {
 
 using namespace shapes;
@@ -243,4 +243,4 @@ void build_bridge(WorldBuilder& b, const BuiltinWorldConfig& config) {
   add_stairs(b, gap0 - 0.2, gap1 + 0.2, kNear - 2.2);
 }
 
-}  // namespace throng::builtin
+}  // namespace throng::importer::builtin

@@ -7,7 +7,7 @@
 #include <utility>
 
 // The materials of built-in worlds, and the assembly of triangles into parts.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 constexpr std::array<MaterialInfo, static_cast<size_t>(Mat::kCount)> kMaterialTable = {{
@@ -127,4 +127,4 @@ std::array<double, 2> unit_circle(double turns) {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -14,7 +14,7 @@
 #include "throng/scene.h"
 
 /// Collects the triangles of a built-in world by node and material, with shared corners.
-namespace throng {
+namespace throng::importer {
 
 /// The materials of built-in worlds. Names and kinds: material_info.
 enum class Mat : uint8_t {
@@ -104,4 +104,4 @@ class WorldBuilder {
 /// Cosine and sine of an angle in turns, without libm: the same bits on every machine.
 std::array<double, 2> unit_circle(double turns);
 
-}  // namespace throng
+}  // namespace throng::importer

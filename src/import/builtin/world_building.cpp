@@ -7,7 +7,7 @@
 // A house: a corridor along x on every storey, rooms in front and behind, a staircase behind the
 // middle, the front door in the middle of the front. Outer walls are 0.25 m thick; floors and inner
 // walls are single surfaces, as in most models of cities.
-namespace throng::builtin {
+namespace throng::importer::builtin {
 namespace {
 
 using namespace shapes;
@@ -183,4 +183,4 @@ void add_building(WorldBuilder& b, const Building& h) {
   }
 }
 
-}  // namespace throng::builtin
+}  // namespace throng::importer::builtin

@@ -6,7 +6,7 @@
 
 #include "import/builtin/world_builder.h"
 
-namespace throng::builtin {
+namespace throng::importer::builtin {
 
 /// A house of the city. Its frame's origin is on the ground in the middle; the front faces -z.
 struct Building {
@@ -23,4 +23,4 @@ inline constexpr double kBuildingStorey = 3.2;
 /// Builds in the builder's current frame. About 150 triangles and 270 more for each storey inside.
 void add_building(WorldBuilder& b, const Building& building);
 
-}  // namespace throng::builtin
+}  // namespace throng::importer::builtin

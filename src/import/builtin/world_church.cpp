@@ -11,7 +11,7 @@
 // m. The nave runs along x between two arcades at z = +-4.5; side galleries lie over the aisles
 // at 5.2 m and an organ loft at 10.4 m. Two west towers hold spiral stairs to both; the one at +z
 // goes on to an open platform at 15.6 m.
-namespace throng::builtin {
+namespace throng::importer::builtin {
 namespace {
 
 using namespace shapes;
@@ -348,4 +348,4 @@ void build_church(WorldBuilder& b, const BuiltinWorldConfig& config) {
   add_roof(b, p);
 }
 
-}  // namespace throng::builtin
+}  // namespace throng::importer::builtin

@@ -14,7 +14,7 @@
 // same content, so that the triangles grow with the area: two squares, twelve blocks of eight
 // houses around a yard, a canal with a towpath, bridges and stairs, a pedestrian underpass. Above
 // 16 km2 some houses lose their inside, more of them the larger the city.
-namespace throng::builtin {
+namespace throng::importer::builtin {
 namespace {
 
 using namespace shapes;
@@ -328,4 +328,4 @@ void build_city(WorldBuilder& b, const BuiltinWorldConfig& config) {
   }
 }
 
-}  // namespace throng::builtin
+}  // namespace throng::importer::builtin

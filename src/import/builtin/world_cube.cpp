@@ -5,7 +5,7 @@
 
 // The cube of [ML06] table 2: six surfaces without thickness, closed on all sides. A 5.8 m one
 // gives 42 slices taken and 2 kept for an avatar of 1.75 m at a resolution of 0.1 m.
-namespace throng::builtin {
+namespace throng::importer::builtin {
 
 void build_cube(WorldBuilder& b, const BuiltinWorldConfig& config) {
   const double s = config.size;
@@ -22,4 +22,4 @@ void build_cube(WorldBuilder& b, const BuiltinWorldConfig& config) {
   b.quad(Mat::kWall, v[2], v[6], v[7], v[3]);
 }
 
-}  // namespace throng::builtin
+}  // namespace throng::importer::builtin

@@ -13,7 +13,7 @@
 // follows, 10.25 m. Storeys of 2.9 m; the roof is parked on as well, behind a parapet of 1.55 m.
 // The plan is made of modules of about 60 x 40 m: two parking aisles along x and, between them, a
 // strip with the ramp (2.9 m up in 24 m: 12 %) and two stairwells.
-namespace throng::builtin {
+namespace throng::importer::builtin {
 namespace {
 
 using namespace shapes;
@@ -264,4 +264,4 @@ void build_garage(WorldBuilder& b, const BuiltinWorldConfig& config) {
   }
 }
 
-}  // namespace throng::builtin
+}  // namespace throng::importer::builtin

@@ -12,7 +12,7 @@
 // lattice of cells of about 32 m, each one bicubic patch through its four vertices with slopes from
 // the vertices around (so that neighbours join smoothly), then cut into 1, 4 or 16 patches, whose
 // inner vertices get relief of their own: hence edges with 1, 2 and 4 neighbours.
-namespace throng::builtin {
+namespace throng::importer::builtin {
 namespace {
 
 constexpr double kCell = 32;
@@ -440,4 +440,4 @@ PatchSet build_landscape(const BuiltinWorldConfig& config) {
   return set;
 }
 
-}  // namespace throng::builtin
+}  // namespace throng::importer::builtin

@@ -12,7 +12,7 @@
 // A perfect maze a level (exactly one path between any two places), by Kruskal's algorithm on walls
 // in random order. Two rooms of 3 x 3 cells, at opposite corners, take turns in holding the spiral
 // stairs to the level above.
-namespace throng::builtin {
+namespace throng::importer::builtin {
 namespace {
 
 using namespace shapes;
@@ -152,4 +152,4 @@ void build_maze(WorldBuilder& b, const BuiltinWorldConfig& config) {
   }
 }
 
-}  // namespace throng::builtin
+}  // namespace throng::importer::builtin

@@ -14,7 +14,7 @@
 // vessels, shafts, ladders. Blocks of 6 x 6 bays repeat; each has a boiler with a chimney in its
 // middle and two staircases. 835 slices mean a height between 85.05 and 85.15 m; 85.125 m is exact
 // in float files.
-namespace throng::builtin {
+namespace throng::importer::builtin {
 namespace {
 
 using namespace shapes;
@@ -324,4 +324,4 @@ void build_powerplant(WorldBuilder& b, const BuiltinWorldConfig& config) {
   }
 }
 
-}  // namespace throng::builtin
+}  // namespace throng::importer::builtin

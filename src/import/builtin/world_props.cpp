@@ -6,7 +6,7 @@
 #include "import/builtin/world_shapes.h"
 
 // Furniture of the built-in worlds: railings, ladders, cars, trees.
-namespace throng::shapes {
+namespace throng::importer::shapes {
 namespace {
 
 using Profile = std::vector<std::array<double, 2>>;
@@ -135,4 +135,4 @@ void tree(WorldBuilder& b, Vec3d foot, uint64_t random) {
   frustum(b, Mat::kCrown, {crown.x, crown.y + 0.8 * r, crown.z}, r, 0, 1.2 * r, 6, false);
 }
 
-}  // namespace throng::shapes
+}  // namespace throng::importer::shapes

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace throng::shapes {
+namespace throng::importer::shapes {
 namespace {
 
 // Cuts a rectangle with holes into rectangles: strips along x between the holes' z edges.
@@ -311,4 +311,4 @@ void frustum(WorldBuilder& b, Mat material, Vec3d foot, double radius0, double r
   b.polygon(material, high);
 }
 
-}  // namespace throng::shapes
+}  // namespace throng::importer::shapes

@@ -12,7 +12,7 @@
 /// The parts of the built-in worlds: boxes, slabs with holes, walls with doors,
 /// flights of stairs, spirals, pipes, cars, trees. All in the builder's current frame, Y up, faces
 /// outward.
-namespace throng::shapes {
+namespace throng::importer::shapes {
 
 enum Face : uint32_t {
   kLowX = 1,
@@ -125,4 +125,4 @@ void car(WorldBuilder& b, uint32_t variant, CarDetail detail);
 /// A trunk and a crown; `random` picks its size and kind.
 void tree(WorldBuilder& b, Vec3d foot, uint64_t random);
 
-}  // namespace throng::shapes
+}  // namespace throng::importer::shapes

@@ -9,7 +9,7 @@
 // Two terraces, 3.06 m and 6.12 m over a yard. Every bay (4 m along z) has its own climb from the
 // yard (x = 0) to the first terrace (x = 12), and another one from there (x = 18) to the second
 // (x = 30). Some fit no avatar: 0.51 m risers, a 50 degree slope.
-namespace throng::builtin {
+namespace throng::importer::builtin {
 namespace {
 
 using namespace shapes;
@@ -205,4 +205,4 @@ void build_stairs(WorldBuilder& b, const BuiltinWorldConfig& config) {
   }
 }
 
-}  // namespace throng::builtin
+}  // namespace throng::importer::builtin

@@ -22,7 +22,7 @@
 // assimp parses untrusted files with raw pointers, and some files crash it, loop in it or make it
 // take all memory. So it runs in a child process, which sends mesh by mesh and frees each one that
 // is sent. The parent checks every count, index and number itself.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 enum class Tag : uint32_t { kConvention = 1, kMaterial, kTexture, kPart, kThin, kRefused, kDone };
@@ -564,4 +564,4 @@ Result<RawScene> read_with_assimp(const std::string& path, const ReadOptions& op
   return receiver.finish();
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -12,7 +12,7 @@
 // Format, as in the files that use it: the number of patches; then for each patch its two degrees
 // and the control points, one a line, those of the second direction next to each other. Lines that
 // begin with # are comments. Z is up.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 class BptReader {
@@ -121,4 +121,4 @@ Result<RawScene> read_bpt(std::string_view bytes, const ReadOptions& options, Co
   return BptReader(bytes, options, context).read();
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -7,7 +7,7 @@
 #include "import/raw/raw_scene.h"
 
 /// Lists of Bezier patches as text (.bpt), the format of the Utah teapot.
-namespace throng {
+namespace throng::importer {
 
 /// Reads patches of degree 1 to 3 in each direction, raised to 3. The file lists no neighbours: two
 /// patches are neighbours where their borders are the same numbers. Its second index is our t, so
@@ -15,4 +15,4 @@ namespace throng {
 [[nodiscard]] Result<RawScene> read_bpt(std::string_view bytes, const ReadOptions& options,
                                         Context& context);
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -13,7 +13,7 @@
 
 // Format: 17 lumps after a header of 8 bytes; little-endian 32-bit numbers throughout.
 // Source: K. Proudfoot. Unofficial Quake 3 map specs. 2000; flags after the game's surfaceflags.h.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
@@ -307,4 +307,4 @@ Result<RawScene> read_bsp(std::string_view bytes, const ReadOptions& options, Co
   return BspReader(bytes, options, context).read();
 }
 
-}  // namespace throng
+}  // namespace throng::importer

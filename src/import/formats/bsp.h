@@ -7,7 +7,7 @@
 #include "import/raw/raw_scene.h"
 
 /// Quake 3 levels (IBSP, version 46), curved patches included.
-namespace throng {
+namespace throng::importer {
 
 /// Reads the drawn faces that are solid: polygons and meshes as triangles, curved pieces as patches
 /// of raised degree that are neighbours where their borders are the same numbers. Water, sky, fog,
@@ -17,4 +17,4 @@ namespace throng {
 [[nodiscard]] Result<RawScene> read_bsp(std::string_view bytes, const ReadOptions& options,
                                         Context& context);
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -207,7 +207,7 @@ bool pass_character(Pipe& pipe, Character& c) {
 }
 
 struct Sending {
-  const PipeWriter& pipe;
+  const importer::PipeWriter& pipe;
   template <class T>
   bool value(T& v) const {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -231,7 +231,7 @@ struct Sending {
 };
 
 struct Receiving {
-  PipeReader& pipe;
+  importer::PipeReader& pipe;
   template <class T>
   bool value(T& v) const {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -264,7 +264,7 @@ struct Receiving {
 
 enum class Answer : uint32_t { kCharacter = 1, kRefused, kNoSkeleton, kTooManyBones };
 
-void refuse(const PipeWriter& pipe, std::string why) {
+void refuse(const importer::PipeWriter& pipe, std::string why) {
   why.resize(std::min<size_t>(why.size(), 1000));
   const Sending send{pipe};
   Answer answer = Answer::kRefused;
@@ -272,7 +272,7 @@ void refuse(const PipeWriter& pipe, std::string why) {
   send.array(why);
 }
 
-void read_and_send(const std::string& path, const PipeWriter& pipe) {
+void read_and_send(const std::string& path, const importer::PipeWriter& pipe) {
   try {
     auto* importer = new Assimp::Importer;  // Never destroyed: the child ends by _exit.
     importer->SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
@@ -416,14 +416,15 @@ Result<Character> load_character(const std::string& path, Context& context) {
   std::error_code failure;
   const uint64_t size = std::filesystem::file_size(path, failure);
   if (failure) return Error{Errc::kBadFile, path + ": no such file; check the path"};
-  const ChildLimits limits{.bytes = (uint64_t{2} << 30) + 100 * size, .seconds = 5 + size / 20'000};
+  const importer::ChildLimits limits{.bytes = (uint64_t{2} << 30) + 100 * size,
+                                     .seconds = 5 + size / 20'000};
   Character character;
   Answer answer = Answer::kCharacter;
   std::string refused;
   uint64_t bones = 0;
-  const auto done = run_in_child(
-      limits, context, [&](const PipeWriter& pipe) { read_and_send(path, pipe); },
-      [&](PipeReader& pipe) {
+  const auto done = importer::run_in_child(
+      limits, context, [&](const importer::PipeWriter& pipe) { read_and_send(path, pipe); },
+      [&](importer::PipeReader& pipe) {
         const Receiving receive{pipe};
         if (!receive.value(answer)) return false;
         if (answer == Answer::kRefused) return receive.array(refused);

@@ -7,7 +7,7 @@
 #include "import/raw/raw_scene.h"
 
 /// City models: CityJSON 1.0 to 2.0 and CityGML 2 and 3, read directly.
-namespace throng {
+namespace throng::importer {
 
 /// Nodes are "Type/id", materials are the semantic surface types. Of each object the highest level
 /// of detail is read; if its parts (BuildingPart ...) have more detail, they are read instead.
@@ -23,4 +23,4 @@ namespace throng {
 /// Is the unit of a named coordinate system the degree? Such files are refused.
 [[nodiscard]] bool names_degrees(std::string_view reference_system);
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -17,7 +17,7 @@
 // name the properties between them differently, but in all of them names that begin with a capital
 // are features or geometries, properties are `lodN...`, and faces are gml:Polygon or similar. So
 // the reader walks the tree and notes for each face its object, theme and detail.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 constexpr int kDeepest = 200;
@@ -346,4 +346,4 @@ Result<RawScene> read_citygml(std::string_view bytes, const ReadOptions& options
   return CityGmlReader(options, context).read(document);
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -12,7 +12,7 @@
 #include "import/formats/city.h"
 
 // Source: CityJSON specifications 1.0.3, 1.1.3 and 2.0.1 (cityjson.org/specs).
-namespace throng {
+namespace throng::importer {
 namespace {
 
 using simdjson::dom::array;
@@ -355,4 +355,4 @@ Result<RawScene> read_cityjson(std::string_view bytes, const ReadOptions& option
   return CityJsonReader(options, context).read(root);
 }
 
-}  // namespace throng
+}  // namespace throng::importer

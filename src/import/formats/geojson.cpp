@@ -8,7 +8,7 @@
 #include "import/formats/plan.h"
 
 // Reads GeoJSON (RFC 7946) as a plan.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 using simdjson::dom::array;
@@ -179,4 +179,4 @@ Result<RawScene> read_geojson(std::string_view bytes, const ReadOptions& options
   return RawScene{.scene = *std::move(scene), .up = 'z', .metres_per_unit = unit};
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -18,7 +18,7 @@
 // Khronos Group. glTF 2.0 Specification. 2021. Every number of the file is checked before it is
 // used; a value that is missing or of another type counts as its default, or as a fault if it has
 // no default.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 using Json = nlohmann::json;
@@ -407,4 +407,4 @@ Result<RawScene> read_glb(std::string_view bytes, const ReadOptions& options, Co
   return GlbReader(options).read(bytes, context);
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -182,7 +182,7 @@ struct Sizes {
 std::string material_json(const Scene& scene, std::string_view name, uint32_t material1,
                           bool textured) {
   const std::array<float, 4> c =
-      material1 > 0 ? scene.materials[material1 - 1].colour : any_colour(name);
+      material1 > 0 ? scene.materials[material1 - 1].colour : importer::any_colour(name);
   const std::string texture = textured ? fmt::format(",\"baseColorTexture\":{{\"index\":{}}}",
                                                      scene.materials[material1 - 1].texture1 - 1)
                                        : std::string();
@@ -295,7 +295,7 @@ std::string make_header(const Scene& scene, const std::vector<Run>& runs, const 
 }  // namespace
 
 Result<void> write_glb(const Scene& scene, const std::string& path) {
-  if (const auto fine = check_scene(scene, path); !fine) return fine;
+  if (const auto fine = importer::check_scene(scene, path); !fine) return fine;
   std::vector<Run> runs = split_into_runs(scene);
   Renumbering order(scene);
   Sizes sizes{.triangles = scene.triangles.size()};
@@ -317,7 +317,7 @@ Result<void> write_glb(const Scene& scene, const std::string& path) {
                     path, sizes.triangles, size)};
   }
 
-  SceneOutput out(path);
+  importer::SceneOutput out(path);
   const auto put_chunk = [&](const char* type, uint64_t length) {
     out.put(static_cast<uint32_t>(length));
     out.put_bytes(type, 4);

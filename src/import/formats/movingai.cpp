@@ -17,7 +17,7 @@ Error bad_map(const std::string& name, const std::string& what) {
 }
 
 // "NAME N": one line of the head.
-bool take_size(TextCursor& at, std::string_view name, int32_t& size) {
+bool take_size(importer::TextCursor& at, std::string_view name, int32_t& size) {
   long long value = 0;
   if (at.take_word() != name || !at.take(value) || value < 1 || value > kMaxCells) return false;
   size = static_cast<int32_t>(value);
@@ -26,8 +26,8 @@ bool take_size(TextCursor& at, std::string_view name, int32_t& size) {
 
 }  // namespace
 
-Result<FlatCells> read_grid_map(std::string_view text, const std::string& name) {
-  TextCursor at(text);
+Result<FlatCells> importer::read_grid_map(std::string_view text, const std::string& name) {
+  importer::TextCursor at(text);
   FlatCells cells;
   if (at.take_word() != "type" || at.take_word() != "octile") {
     return bad_map(name, "not a grid map; its first line must be `type octile`");
@@ -51,11 +51,11 @@ Result<FlatCells> read_grid_map(std::string_view text, const std::string& name) 
 Result<FlatCells> load_grid_map(const std::string& path) {
   const auto text = read_file(path);
   if (!text) return text.error();
-  return read_grid_map(*text, path);
+  return importer::read_grid_map(*text, path);
 }
 
-Result<VoxelCells> read_voxel_map(std::string_view text, const std::string& name) {
-  TextCursor at(text);
+Result<VoxelCells> importer::read_voxel_map(std::string_view text, const std::string& name) {
+  importer::TextCursor at(text);
   long long size[3];
   if (at.take_word() != "voxel") {
     return bad_map(name, "not a voxel map; its first line must be `voxel X Y Z`");
@@ -87,7 +87,7 @@ Result<VoxelCells> read_voxel_map(std::string_view text, const std::string& name
 Result<VoxelCells> load_voxel_map(const std::string& path) {
   const auto text = read_file(path);
   if (!text) return text.error();
-  return read_voxel_map(*text, path);
+  return importer::read_voxel_map(*text, path);
 }
 
 }  // namespace throng

@@ -8,10 +8,10 @@
 #include "throng/scene.h"
 
 /// Moving AI's benchmark maps.
-namespace throng {
+namespace throng::importer {
 
 /// `name` is for messages only. Fails with kBadFile and the line.
 Result<FlatCells> read_grid_map(std::string_view text, const std::string& name);
 Result<VoxelCells> read_voxel_map(std::string_view text, const std::string& name);
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -13,7 +13,7 @@
 
 // Reads of a material: Kd, d or Tr, map_Kd and map_d. Colours of such files are as a screen shows
 // them, so their squares are nearly linear light.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 constexpr float kBlack = 0.02F;
@@ -115,4 +115,4 @@ void MaterialLibrary::hand_over(RawScene& raw) {
       "{}: the materials of {} are not beside it; plain colours stand in", model_, missing_[0]));
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -10,7 +10,7 @@
 
 #include "import/raw/raw_scene.h"
 
-namespace throng {
+namespace throng::importer {
 
 /// The materials of a Wavefront OBJ, from the .mtl files beside it.
 class MaterialLibrary {
@@ -38,4 +38,4 @@ class MaterialLibrary {
   std::vector<std::string> missing_;
 };
 
-}  // namespace throng
+}  // namespace throng::importer

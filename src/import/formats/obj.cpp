@@ -13,7 +13,7 @@
 #include "import/formats/text_cursor.h"
 
 // Reads Wavefront OBJ in one pass over the lines.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -143,4 +143,4 @@ Result<RawScene> read_obj(std::string_view bytes, const ReadOptions& options, Co
   return ObjReader(options).read(bytes, context);
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -8,7 +8,7 @@
 
 /// Wavefront OBJ, read without assimp: in double precision (city tiles keep their millimetres),
 /// with `o`, `g` and `usemtl` names even where the material file is missing.
-namespace throng {
+namespace throng::importer {
 
 /// `o` and `g` names become the node "object/group". Lines and points are counted and skipped. A
 /// face with a bad index is dropped and counted. Never fails on content: load_scene refuses
@@ -16,4 +16,4 @@ namespace throng {
 [[nodiscard]] Result<RawScene> read_obj(std::string_view bytes, const ReadOptions& options,
                                         Context& context);
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -33,8 +33,8 @@ int digits(double metres) {
 }  // namespace
 
 Result<void> write_obj(const Scene& scene, const std::string& path) {
-  if (const auto fine = check_scene(scene, path); !fine) return fine;
-  SceneOutput out(path);
+  if (const auto fine = importer::check_scene(scene, path); !fine) return fine;
+  importer::SceneOutput out(path);
   fmt::memory_buffer line;
   const auto put = [&] {
     out.put_bytes(line.data(), line.size());

@@ -8,7 +8,7 @@
 #include <cmath>
 
 // Reads docs/file_format.md, "Patch files". Linear in the file.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 using simdjson::dom::array;
@@ -214,4 +214,4 @@ Result<RawScene> read_patch_json(std::string_view bytes, const ReadOptions& opti
   return raw;
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -7,10 +7,10 @@
 #include "import/raw/raw_scene.h"
 
 /// Our own landscape format, patches as JSON: docs/file_format.md.
-namespace throng {
+namespace throng::importer {
 
 /// Reads patches with all their neighbours. Fails with kBadFile and the group, patch and key.
 [[nodiscard]] Result<RawScene> read_patch_json(std::string_view bytes, const ReadOptions& options,
                                                Context& context);
 
-}  // namespace throng
+}  // namespace throng::importer

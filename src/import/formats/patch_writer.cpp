@@ -18,7 +18,7 @@ void append_side(std::string& out, PatchSide side) {
 }
 
 void append_edge(std::string& out, const PatchEdge& edge) {
-  const size_t count = neighbour_count(edge.bind);
+  const size_t count = importer::neighbour_count(edge.bind);
   if (count == 0) {
     out += "null";
   } else if (edge.bind == EdgeBind::kPart) {

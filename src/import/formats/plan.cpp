@@ -15,7 +15,7 @@ namespace {
 using Point = std::array<double, 2>;
 
 struct Segment {
-  Vec2d a, b;
+  importer::Vec2d a, b;
   size_t ring = 0;
 };
 
@@ -30,13 +30,13 @@ double ring_area(const Ring& ring) {
 }
 
 bool cross_each_other(const Segment& s, const Segment& t) {
-  return orient(s.a, s.b, t.a) * orient(s.a, s.b, t.b) < 0 &&
-         orient(t.a, t.b, s.a) * orient(t.a, t.b, s.b) < 0;
+  return importer::orient(s.a, s.b, t.a) * importer::orient(s.a, s.b, t.b) < 0 &&
+         importer::orient(t.a, t.b, s.a) * importer::orient(t.a, t.b, s.b) < 0;
 }
 
-Vec2d crossing_point(const Segment& s, const Segment& t) {
-  const Vec2d d{s.b.x - s.a.x, s.b.y - s.a.y};
-  const Vec2d e{t.b.x - t.a.x, t.b.y - t.a.y};
+importer::Vec2d crossing_point(const Segment& s, const Segment& t) {
+  const importer::Vec2d d{s.b.x - s.a.x, s.b.y - s.a.y};
+  const importer::Vec2d e{t.b.x - t.a.x, t.b.y - t.a.y};
   const double k = ((t.a.x - s.a.x) * e.y - (t.a.y - s.a.y) * e.x) / (d.x * e.y - d.y * e.x);
   return {s.a.x + k * d.x, s.a.y + k * d.y};
 }
@@ -71,7 +71,7 @@ std::string find_crossing(const Polygon& polygon) {
       if (std::min(t.a.y, t.b.y) > std::max(s.a.y, s.b.y)) continue;
       if (!cross_each_other(s, t)) continue;
       const char* fault = s.ring == t.ring ? "the outline crosses itself" : "two rings cross";
-      const Vec2d at = crossing_point(s, t);
+      const importer::Vec2d at = crossing_point(s, t);
       return fmt::format("{} near ({:.3f}, {:.3f})", fault, at.x, at.y);
     }
     active.push_back(i);
@@ -97,7 +97,8 @@ std::string find_fault(const Polygon& polygon) {
 
 class PlanWriter {
  public:
-  PlanWriter(PlanAxes axes, SceneWriter& writer) : axes_(axes), writer_(writer) {}
+  PlanWriter(importer::PlanAxes axes, importer::SceneWriter& writer)
+      : axes_(axes), writer_(writer) {}
 
   // False if the rings overlap without crossing: a hole outside, or inside another hole.
   bool flat(const Polygon& polygon, double height, AreaKind kind) {
@@ -134,13 +135,13 @@ class PlanWriter {
 
  private:
   [[nodiscard]] Vec3d lift(const Point& p, double height) const {
-    return axes_ == PlanAxes::kXZ ? Vec3d{p[0], height, p[1]} : Vec3d{p[0], p[1], height};
+    return axes_ == importer::PlanAxes::kXZ ? Vec3d{p[0], height, p[1]} : Vec3d{p[0], p[1], height};
   }
   void paint(AreaKind kind) { writer_.scene().area.resize(writer_.scene().triangles.size(), kind); }
 
-  PlanAxes axes_;
-  SceneWriter& writer_;
-  PolygonCutter cutter_;
+  importer::PlanAxes axes_;
+  importer::SceneWriter& writer_;
+  importer::PolygonCutter cutter_;
   std::vector<Vec3d> points_;
   std::vector<uint32_t> rings_;
   std::vector<std::array<uint32_t, 3>> cut_;
@@ -148,14 +149,15 @@ class PlanWriter {
 
 }  // namespace
 
-Result<void> write_plan(const Plan& plan, PlanAxes axes, double ground_height, double plate_height,
-                        SceneWriter& writer) {
+Result<void> importer::write_plan(const importer::Plan& plan, importer::PlanAxes axes,
+                                  double ground_height, double plate_height,
+                                  importer::SceneWriter& writer) {
   PlanWriter out(axes, writer);
-  const auto refuse = [](const Plan::Area& area, const std::string& why) {
+  const auto refuse = [](const importer::Plan::Area& area, const std::string& why) {
     return Error{Errc::kBadInput, fmt::format("{}: {}; draw it again", area.place, why)};
   };
   const char* overlap = "a hole lies outside the polygon or over another hole";
-  for (const Plan::Area& area : plan.ground) {
+  for (const importer::Plan::Area& area : plan.ground) {
     if (const std::string fault = find_fault(area.polygon); !fault.empty()) {
       return refuse(area, fault);
     }
@@ -167,7 +169,7 @@ Result<void> write_plan(const Plan& plan, PlanAxes axes, double ground_height, d
       out.flat({hole, {}}, ground_height + area.height, kAreaBlocked);
     }
   }
-  for (const Plan::Area& area : plan.obstacles) {
+  for (const importer::Plan::Area& area : plan.obstacles) {
     if (const std::string fault = find_fault(area.polygon); !fault.empty()) {
       return refuse(area, fault);
     }
@@ -179,7 +181,7 @@ Result<void> write_plan(const Plan& plan, PlanAxes axes, double ground_height, d
     for (const Ring& court : area.polygon.holes) out.walls(court, true, ground_height, top);
   }
   if (!plan.walls.empty()) writer.begin_part("wall", "wall");
-  for (const Plan::Wall& wall : plan.walls) {
+  for (const importer::Plan::Wall& wall : plan.walls) {
     out.walls(wall.line, false, ground_height, ground_height + wall.height);
   }
   return {};
@@ -190,17 +192,19 @@ Result<Scene> create_plane_scene(const PlaneConfig& config) {
         std::fabs(config.ground_height) <= 1e6)) {
     return Error{Errc::kBadConfig, "plane: need obstacle_height > 0 and a finite ground_height"};
   }
-  Plan plan;
+  importer::Plan plan;
   plan.ground.push_back({config.ground, config.obstacle_height, "plane: the ground"});
   for (size_t i = 0; i < config.obstacles.size(); ++i) {
     plan.obstacles.push_back(
         {config.obstacles[i], config.obstacle_height, fmt::format("plane: obstacle {}", i)});
   }
-  ReadOptions options;
+  importer::ReadOptions options;
   options.name = "plane";
-  SceneWriter writer(options);
+  importer::SceneWriter writer(options);
   constexpr double kPlate = 0.05;  // [m] No avatar fits below it.
-  if (auto done = write_plan(plan, PlanAxes::kXZ, config.ground_height, kPlate, writer); !done) {
+  if (auto done =
+          importer::write_plan(plan, importer::PlanAxes::kXZ, config.ground_height, kPlate, writer);
+      !done) {
     return done.error();
   }
   return writer.finish();

@@ -9,7 +9,7 @@
 #include "import/raw/raw_scene.h"
 
 /// Worlds from 2D plans: flat ground, and obstacles that rise from it.
-namespace throng {
+namespace throng::importer {
 
 /// The content of a plan, in its own two axes.
 struct Plan {
@@ -51,4 +51,4 @@ enum class PlanAxes {
 [[nodiscard]] Result<RawScene> read_geojson(std::string_view bytes, const ReadOptions& options,
                                             Context& context);
 
-}  // namespace throng
+}  // namespace throng::importer

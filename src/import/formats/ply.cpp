@@ -13,7 +13,7 @@
 #include "import/formats/text_cursor.h"
 
 // Source: G. Turk. The PLY polygon file format. 1994.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
@@ -244,4 +244,4 @@ Result<RawScene> read_ply(std::string_view bytes, const ReadOptions& options, Co
   return PlyReader(bytes, options, context).read();
 }
 
-}  // namespace throng
+}  // namespace throng::importer

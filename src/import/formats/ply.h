@@ -7,7 +7,7 @@
 #include "import/raw/raw_scene.h"
 
 /// Stanford PLY, text and binary, read without assimp, which never ends on a truncated text file.
-namespace throng {
+namespace throng::importer {
 
 /// Reads `x y z` of the element "vertex" and the list `vertex_indices` (or `vertex_index`) of the
 /// element "face"; skips everything else. A file that ends before its last face is refused; bad
@@ -15,4 +15,4 @@ namespace throng {
 [[nodiscard]] Result<RawScene> read_ply(std::string_view bytes, const ReadOptions& options,
                                         Context& context);
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -12,7 +12,7 @@
 #include "throng/impostor.h"
 
 // A build without assimp, pugixml and simdjson, and without child processes: a browser's.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 Error not_here(const std::string& name) {
@@ -60,6 +60,12 @@ Result<std::vector<Result<Texture>>> read_all_textures(const std::vector<Texture
   return all;
 }
 
-Result<Character> load_character(const std::string& path, Context&) { return not_here(path); }
+}  // namespace throng::importer
+
+namespace throng {
+
+Result<Character> load_character(const std::string& path, Context&) {
+  return importer::not_here(path);
+}
 
 }  // namespace throng

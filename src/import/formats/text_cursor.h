@@ -6,7 +6,7 @@
 #include <string_view>
 
 /// Reads numbers from text, with the same result on every machine and in every locale.
-namespace throng {
+namespace throng::importer {
 
 /// A position in a text, which advances as tokens are read.
 class TextCursor {
@@ -68,4 +68,4 @@ class TextCursor {
   const char* end_;
 };
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -6,7 +6,7 @@
 // Damaged files can crash decoders of pictures. So they run in a child process; if it ends early,
 // the next one goes on after the texture at which it ended. After kMaxEnds such textures the rest
 // is not decoded.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 struct TextureHeader {
@@ -93,4 +93,4 @@ Result<std::vector<Result<Texture>>> read_all_textures(const std::vector<Texture
   return all;
 }
 
-}  // namespace throng
+}  // namespace throng::importer

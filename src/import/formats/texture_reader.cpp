@@ -29,7 +29,7 @@
 #pragma GCC diagnostic pop
 
 // Finds the textures of a model, decodes them (stb_image) and halves them until they fit.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 namespace fs = std::filesystem;
@@ -214,4 +214,4 @@ Result<void> read_textures(RawScene& raw, const std::string& model, Context& con
   return {};
 }
 
-}  // namespace throng
+}  // namespace throng::importer

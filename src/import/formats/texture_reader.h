@@ -12,7 +12,7 @@
 #include "throng/scene.h"
 
 /// Pictures of surfaces, wherever a model keeps them.
-namespace throng {
+namespace throng::importer {
 
 /// PNG, JPEG, TGA, BMP. Halved until no side is longer than `max_side`; at most 2^26 texels before.
 /// Fails with kBadFile and a clause that names the fault.
@@ -40,4 +40,4 @@ struct TextureDecoding {
     const std::vector<TextureSource>& sources, const std::string& model, int32_t max_side,
     Context& context, const TextureDecoding& decoding);
 
-}  // namespace throng
+}  // namespace throng::importer

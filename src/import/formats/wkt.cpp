@@ -9,7 +9,7 @@
 
 // Reads well-known text, the plans of pedestrian simulators: a POLYGON is walkable ground, its
 // holes are obstacles.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 constexpr int kDeepest = 16;
@@ -172,4 +172,4 @@ Result<RawScene> read_wkt(std::string_view bytes, const ReadOptions& options, Co
   return RawScene{.scene = *std::move(scene), .up = 'z', .metres_per_unit = unit};
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -15,7 +15,7 @@
 // accounted for; what later versions add is skipped. Little-endian. A version is one byte, or 255
 // and 32 bits; a list is a 32-bit count and its elements. Source of the format: the NeL library,
 // which [PACS00] became part of.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
@@ -329,4 +329,4 @@ Result<void> join_zones(PatchSet& set, std::span<PatchZone> zones, SceneReport& 
   return {};
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -8,7 +8,7 @@
 #include "import/raw/raw_scene.h"
 
 /// Zones of a Bezier landscape (.zonel), the kind of world that [PACS00] was made for.
-namespace throng {
+namespace throng::importer {
 
 /// Reads one zone (version 3 to 5): its patches, with their neighbours in the same zone, and in
 /// RawScene::zone the edges and corners to other zones. The node is the zone's name, "3_AC". Fails
@@ -25,4 +25,4 @@ namespace throng {
 /// "3_AC" for 514: row 3, column AC.
 [[nodiscard]] std::string zone_name(uint16_t id);
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -8,7 +8,7 @@
 #include "core/disjoint_sets.h"
 #include "core/hash.h"
 
-namespace throng {
+namespace throng::importer {
 namespace {
 
 // The same for an edge and its neighbour. Adding zero makes -0 and 0 the same bits.
@@ -87,4 +87,4 @@ std::vector<uint32_t> weld_corners(const PatchSet& set) {
   return corner;
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -9,7 +9,7 @@
 #include "throng/scene.h"
 
 /// Neighbours along the edges of patches.
-namespace throng {
+namespace throng::importer {
 
 /// How many entries of PatchEdge::next an edge of this kind uses; 5 for a kind that does not exist.
 [[nodiscard]] constexpr size_t neighbour_count(EdgeBind bind) {
@@ -39,4 +39,4 @@ void bind_equal_edges(PatchSet& set, uint32_t first);
 /// the corners that bindings and collapsed edges identify. The set must pass check_patches.
 [[nodiscard]] std::vector<uint32_t> weld_corners(const PatchSet& set);
 
-}  // namespace throng
+}  // namespace throng::importer

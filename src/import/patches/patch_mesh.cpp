@@ -50,7 +50,7 @@ struct EdgePoint {
   double at = 0;  // along the edge
 };
 
-uint32_t along(Steps h, uint32_t edge) { return edge % 2 == 0 ? h.t : h.s; }
+uint32_t along(importer::Steps h, uint32_t edge) { return edge % 2 == 0 ? h.t : h.s; }
 
 // k of n pieces or steps.
 double share(uint32_t k, uint32_t n) { return static_cast<double>(k) / n; }
@@ -117,13 +117,13 @@ class Tessellator {
   void measure() {
     cuts_.resize(set_.size());
     for_each_patch([&](uint32_t p) {
-      cuts_[p] = cut_within(set_.patches[p], config_.tolerance - rounding());
+      cuts_[p] = importer::cut_within(set_.patches[p], config_.tolerance - rounding());
     });
   }
 
   // Corners that are one vertex get one number, in the order of their first patch.
   void number_corners() {
-    corner_ = weld_corners(set_);
+    corner_ = importer::weld_corners(set_);
     for (uint32_t i = 0; i < corner_.size(); ++i) {
       if (corner_[i] == i) {
         corner_[i] = static_cast<uint32_t>(corner_source_.size());
@@ -137,7 +137,7 @@ class Tessellator {
       if (pieces(p) > 1) continue;
       for (uint32_t e = 0; e < 4; ++e) {
         if (corner_[4 * p + e] != corner_[4 * p + (e + 1) % 4]) continue;
-        if (is_collapsed(set_.patches[p].edge(static_cast<int32_t>(e)))) continue;
+        if (importer::is_collapsed(set_.patches[p].edge(static_cast<int32_t>(e)))) continue;
         uint8_t& steps = e % 2 == 0 ? cuts_[p].steps[0].t : cuts_[p].steps[0].s;
         steps = std::max<uint8_t>(steps, 4);
       }
@@ -158,8 +158,8 @@ class Tessellator {
   }
 
   // The k-th piece along an edge of a patch, in the edge's direction.
-  [[nodiscard]] Steps piece_along(PatchSide side, uint32_t k) const {
-    const PatchCut& cut = cuts_[side.patch];
+  [[nodiscard]] importer::Steps piece_along(PatchSide side, uint32_t k) const {
+    const importer::PatchCut& cut = cuts_[side.patch];
     const uint32_t last = pieces(side.patch) - 1;
     switch (side.edge) {
       case 0:
@@ -189,9 +189,10 @@ class Tessellator {
         // The neighbour's edge is one, two or four such runs.
         const PatchSide next = edge.next[0];
         const bool is_open = edge.bind == EdgeBind::kOpen;
-        const uint32_t runs = edge.bind == EdgeBind::kPart
-                                  ? static_cast<uint32_t>(neighbour_count(edge_at(next).bind))
-                                  : 1;
+        const uint32_t runs =
+            edge.bind == EdgeBind::kPart
+                ? static_cast<uint32_t>(importer::neighbour_count(edge_at(next).bind))
+                : 1;
         Run run{.side = side, .first = static_cast<uint32_t>(seams_.size()), .count = pieces(p)};
         uint32_t which = 0;  // of the neighbour's runs, in its direction
         if (!is_open) {
@@ -203,7 +204,8 @@ class Tessellator {
           run_of_[4 * next.patch + next.edge] = run_of_[4 * p + e];
         }
         runs_.push_back(run);
-        const bool collapsed = is_collapsed(set_.patches[p].edge(static_cast<int32_t>(e)));
+        const bool collapsed =
+            importer::is_collapsed(set_.patches[p].edge(static_cast<int32_t>(e)));
         for (uint32_t k = 0; k < run.count; ++k) {
           Seam seam{.steps = steps_needed(side, k, run.count), .collapsed = collapsed};
           if (!is_open) {
@@ -223,7 +225,7 @@ class Tessellator {
     for (uint32_t p = 0; p < set_.size(); ++p) {
       inner_first_seam_[p] = static_cast<uint32_t>(seams_.size());
       const uint32_t n = pieces(p);
-      const PatchCut& cut = cuts_[p];
+      const importer::PatchCut& cut = cuts_[p];
       for (uint32_t i = 1; i < n; ++i) {
         for (uint32_t j = 0; j < n; ++j) {
           seams_.push_back({.steps = std::max(cut.at(i - 1, j).t, cut.at(i, j).t)});
@@ -280,7 +282,7 @@ class Tessellator {
     for (uint32_t p = 0; p < set_.size(); ++p) {
       const uint32_t n = pieces(p);
       for (uint32_t k = 0; k < n * n; ++k) {
-        const Steps h = inner_steps(p, k % n, k / n);
+        const importer::Steps h = inner_steps(p, k % n, k / n);
         inner_first_.push_back(static_cast<uint32_t>(next));
         next += uint64_t{h.s - 1u} * (h.t - 1u);
       }
@@ -322,7 +324,7 @@ class Tessellator {
     const PatchEdge& edge = edge_at(side);
     const uint32_t n = pieces(side.patch);
     const bool is_own = owns_run(side);
-    const auto count = std::max(1u, static_cast<uint32_t>(neighbour_count(edge.bind)));
+    const auto count = std::max(1u, static_cast<uint32_t>(importer::neighbour_count(edge.bind)));
     const uint32_t runs = is_own ? 1 : count;
     // In parts of the edge that end wherever a piece or a run does.
     const uint32_t parts = std::max(n, runs);
@@ -407,7 +409,7 @@ class Tessellator {
       }
       for (uint32_t piece = 0; piece < n * n; ++piece) {
         const uint32_t i = piece % n, j = piece / n;
-        const Steps h = inner_steps(p, i, j);
+        const importer::Steps h = inner_steps(p, i, j);
         uint32_t vertex = inner_first_[piece_first_[p] + piece];
         for (uint32_t b = 1; b < h.t; ++b) {
           for (uint32_t a = 1; a < h.s; ++a) {
@@ -439,7 +441,7 @@ class Tessellator {
 
   // No seam is coarser than the piece, so equal counts mean equal steps.
   [[nodiscard]] bool is_grid(uint32_t p, uint32_t i, uint32_t j) const {
-    const Steps h = cuts_[p].at(i, j);
+    const importer::Steps h = cuts_[p].at(i, j);
     for (uint32_t e = 0; e < 4; ++e) {
       uint32_t steps = 0;
       for_each_seam_of_piece(p, i, j, e, [&](const Seam& seam, bool) { steps += seam.steps; });
@@ -449,8 +451,8 @@ class Tessellator {
   }
 
   // A ring needs an inside.
-  [[nodiscard]] Steps inner_steps(uint32_t p, uint32_t i, uint32_t j) const {
-    const Steps h = cuts_[p].at(i, j);
+  [[nodiscard]] importer::Steps inner_steps(uint32_t p, uint32_t i, uint32_t j) const {
+    const importer::Steps h = cuts_[p].at(i, j);
     if (is_grid(p, i, j)) return h;
     return {std::max<uint8_t>(h.s, 2), std::max<uint8_t>(h.t, 2)};
   }
@@ -524,7 +526,7 @@ class Tessellator {
     for (uint32_t e = 0; e < 4; ++e) collect_edge(p, i, j, e, edges[e]);
     const uint32_t n = pieces(p);
     const bool grid = is_grid(p, i, j);
-    const Steps h = inner_steps(p, i, j);
+    const importer::Steps h = inner_steps(p, i, j);
     const uint32_t ns = h.s, nt = h.t, first = inner_first_[piece_first_[p] + j * n + i];
     const auto inner = [&](uint32_t a, uint32_t b) { return first + (b - 1) * (ns - 1) + (a - 1); };
     const auto cut_quads = [&](uint32_t a0, uint32_t a1, uint32_t b0, uint32_t b1, auto vertex) {
@@ -597,7 +599,7 @@ class Tessellator {
   const TessellationConfig& config_;
   Context& context_;
   double grid_;  // Vertices lie on whole 1 / grid_ of a metre.
-  std::vector<PatchCut> cuts_;
+  std::vector<importer::PatchCut> cuts_;
   std::vector<uint32_t> corner_;         // Vertex of corner 4 * patch + i.
   std::vector<uint32_t> corner_source_;  // The corner that places vertex i.
   std::vector<Run> runs_;

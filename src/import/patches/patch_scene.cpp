@@ -11,7 +11,7 @@
 #include "import/raw/area_rules.h"
 
 // Cuts the patches of a scene and appends their triangles. Linear in the triangles.
-namespace throng {
+namespace throng::importer {
 
 Result<void> cut_patches(Scene& scene, const SceneConfig& config, Context& context) {
   if (scene.patches.empty()) return {};
@@ -87,4 +87,4 @@ Result<void> cut_patches(Scene& scene, const SceneConfig& config, Context& conte
   return {};
 }
 
-}  // namespace throng
+}  // namespace throng::importer

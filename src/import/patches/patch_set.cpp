@@ -67,7 +67,7 @@ class PatchChecker {
 
   bool check_edge(PatchSide side) {
     const PatchEdge& edge = at(side);
-    const size_t used = neighbour_count(edge.bind);
+    const size_t used = importer::neighbour_count(edge.bind);
     if (used > 4) return fail("has a kind that does not exist; use 0, 1, 2, 4 or part");
     for (size_t k = 0; k < 4; ++k) {
       const PatchSide next = edge.next[k];

@@ -17,7 +17,7 @@
 // at most g, the deviation is at most the error's height plus g times the rest of the error. An
 // evenly cut patch is bounded in parts, at most 4 x 4, because g is small over a small part; steps
 // end where parts do, so that each triangle lies in one part.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 // Bounds of second derivatives over a piece, by what each adds to the deviation. [m]
@@ -184,4 +184,4 @@ PatchCut cut_within(const BezierPatch& patch, double tolerance) {
   return whole.steps[0].count() <= count ? whole : pieces;
 }
 
-}  // namespace throng
+}  // namespace throng::importer

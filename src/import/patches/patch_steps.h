@@ -8,7 +8,7 @@
 #include "throng/scene.h"
 
 /// How finely a patch must be cut.
-namespace throng {
+namespace throng::importer {
 
 /// Equal steps along s and t.
 struct Steps {
@@ -37,4 +37,4 @@ inline constexpr int32_t kMaxSteps = 128;  ///< Along a side of a whole patch.
 /// surface, or the finest allowed.
 [[nodiscard]] PatchCut cut_within(const BezierPatch& patch, double tolerance);
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -11,7 +11,7 @@
 
 // Gives triangles their area kinds by the names of their parts. Linear in parts and triangles;
 // patterns are matched with one place to return to, so a match needs pattern x text steps at most.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
@@ -109,4 +109,4 @@ void apply_rules(Scene& scene, std::span<const AreaRule> rules) {
   keep_triangles(scene, kept);
 }
 
-}  // namespace throng
+}  // namespace throng::importer

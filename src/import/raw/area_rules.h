@@ -8,7 +8,7 @@
 #include "throng/scene.h"
 
 /// Area kinds by name: which triangles are walkable, blocked or not solid.
-namespace throng {
+namespace throng::importer {
 
 /// Shell pattern (`*`, `?`), ASCII case ignored. An empty pattern matches everything. Linear in
 /// practice: never more than pattern x text steps.
@@ -25,4 +25,4 @@ namespace throng {
 /// parts are removed and counted in the report.
 void apply_rules(Scene& scene, std::span<const AreaRule> rules);
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -20,7 +20,7 @@
 #include <sys/prctl.h>
 #endif
 
-namespace throng {
+namespace throng::importer {
 namespace {
 
 // The data memory of this process, which a child inherits and which counts against its limit.
@@ -152,4 +152,4 @@ Result<void> run_in_child(const ChildLimits& limits, Context& context,
   return {};
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -9,7 +9,7 @@
 #include "throng/base.h"
 
 /// Runs code that may corrupt memory in a child process, which sends its results through a pipe.
-namespace throng {
+namespace throng::importer {
 
 /// How much a child may use before the system ends it.
 struct ChildLimits {
@@ -49,4 +49,4 @@ void allow_this_child(uint64_t seconds);
                                         const std::function<void(const PipeWriter&)>& child,
                                         const std::function<bool(PipeReader&)>& parent);
 
-}  // namespace throng
+}  // namespace throng::importer

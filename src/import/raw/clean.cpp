@@ -20,7 +20,7 @@
 
 // Removes what a bake cannot use and counts what is suspicious. Each test is one pass over the
 // triangles; only the search for duplicates sorts.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 constexpr double kFarthest = 1e9;      // [m] Beyond it a double keeps less than a micrometre.
@@ -344,4 +344,4 @@ Result<void> clean_scene(Scene& scene, const std::string& name, Context& context
   return {};
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -7,7 +7,7 @@
 #include <string>
 
 // Looks for known words in names of materials and nodes. Linear in the length of a name.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 struct Named {
@@ -118,4 +118,4 @@ void add_named_materials(Scene& scene) {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::importer

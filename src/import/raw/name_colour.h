@@ -9,7 +9,7 @@
 #include "throng/scene.h"
 
 /// Colours by name, for worlds that name their materials but give them no colours.
-namespace throng {
+namespace throng::importer {
 
 /// In linear light. Nothing if no part of the name is known.
 [[nodiscard]] std::optional<std::array<float, 4>> name_colour(std::string_view name);
@@ -21,4 +21,4 @@ namespace throng {
 /// name is known.
 void add_named_materials(Scene& scene);
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -9,7 +9,7 @@
 // determinant are summed without error as a list of non-overlapping terms.
 // Method: Shewchuk. Adaptive precision floating-point arithmetic and fast robust geometric
 // predicates. 1997.
-namespace throng {
+namespace throng::importer {
 namespace {
 
 // The exact sum of up to 12 terms: components in rising magnitude, no two overlapping.
@@ -62,4 +62,4 @@ int orient(Vec2d a, Vec2d b, Vec2d c) {
   return sum.sign();
 }
 
-}  // namespace throng
+}  // namespace throng::importer

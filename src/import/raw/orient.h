@@ -4,7 +4,7 @@
 
 /// On which side of a line a point lies, decided exactly: signs that contradict each other cause
 /// cracks and endless loops in polygon code.
-namespace throng {
+namespace throng::importer {
 
 struct Vec2d {
   double x = 0, y = 0;
@@ -15,4 +15,4 @@ struct Vec2d {
 /// whose products neither overflow nor underflow (1e-140 to 1e140).
 [[nodiscard]] int orient(Vec2d a, Vec2d b, Vec2d c);
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -12,7 +12,7 @@
 // test for an ear local: 100 000 corners take about a second.
 // Methods: Meisters. Polygons have ears. 1975. Held. FIST: fast industrial-strength triangulation.
 // 2001 (the grid).
-namespace throng {
+namespace throng::importer {
 namespace {
 
 constexpr uint32_t kNone = UINT32_MAX;
@@ -465,4 +465,4 @@ bool PolygonCutter::cut(std::span<const Vec3d> points, std::span<const uint32_t>
   return exact && std::fabs(cut_area_ - area) <= 1e-9 * std::fabs(whole);
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -11,7 +11,7 @@
 #include "throng/base.h"
 
 /// Polygons with holes, in space, cut into triangles.
-namespace throng {
+namespace throng::importer {
 
 /// Keeps its scratch memory from polygon to polygon: city models have millions of small ones.
 class PolygonCutter {
@@ -69,4 +69,4 @@ class PolygonCutter {
   int32_t grid_depth_ = 0;
 };
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 // Collects the triangles of a reader into parts and counts bad corners and faces.
-namespace throng {
+namespace throng::importer {
 
 void SceneWriter::begin_part(std::string_view node, std::string_view material, uint32_t material1) {
   const auto first = static_cast<uint32_t>(scene_.triangles.size());
@@ -104,4 +104,4 @@ Result<Scene> SceneWriter::finish() {
   return std::move(scene_);
 }
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -16,7 +16,7 @@
 
 /// What the readers of all formats share. A reader turns bytes into triangles as they are in the
 /// file: its units, its axes, nothing cleaned. load_scene does the rest.
-namespace throng {
+namespace throng::importer {
 
 /// A corner of a landscape zone that a corner of another zone meets.
 struct ZoneCorner {
@@ -112,4 +112,4 @@ class SceneWriter {
   uint64_t inexact_ = 0;
 };
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -8,7 +8,7 @@
 #include <utility>
 
 // Buffers what is written to a scene file, and checks the triangles before.
-namespace throng {
+namespace throng::importer {
 
 SceneOutput::SceneOutput(std::string path) : file_(std::move(path)) { buffer_.reserve(kBuffer); }
 
@@ -50,4 +50,4 @@ Result<void> check_scene(const Scene& scene, const std::string& path) {
   return {};
 }
 
-}  // namespace throng
+}  // namespace throng::importer

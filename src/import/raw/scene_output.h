@@ -11,7 +11,7 @@
 #include "throng/scene.h"
 
 /// What the writers of scenes share.
-namespace throng {
+namespace throng::importer {
 
 /// A PartFile that gathers what is written.
 class SceneOutput {
@@ -38,4 +38,4 @@ class SceneOutput {
 /// Fails with kBadInput if there are no triangles, or one that has no three finite corners.
 Result<void> check_scene(const Scene& scene, const std::string& path);
 
-}  // namespace throng
+}  // namespace throng::importer

@@ -7,7 +7,7 @@
 #include "throng/scene.h"
 
 /// Moves and removes triangles with all arrays that a scene keeps by the triangle.
-namespace throng {
+namespace throng::importer {
 
 /// Puts a triangle in the place of another.
 inline void move_triangle(Scene& scene, size_t from, size_t to) {
@@ -27,4 +27,4 @@ inline void keep_triangles(Scene& scene, size_t count) {
   if (!scene.texture_corners.empty()) scene.texture_corners.resize(count);
 }
 
-}  // namespace throng
+}  // namespace throng::importer

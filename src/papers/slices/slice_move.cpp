@@ -6,7 +6,7 @@
 
 // [ML06] algorithm 1 on slices: a move to the next cell reads two slices. Constant time, after a
 // search for the slice.
-namespace throng {
+namespace throng::papers {
 
 size_t find_slice(const SliceSet& slices, int32_t head) {
   size_t i = slices.kept.size() - 1;
@@ -31,4 +31,4 @@ bool can_move(const SliceSet& slices, size_t slice, size_t from, size_t to, cons
   return head <= above.height && above.surface[from] == feet_from && above.surface[to] == feet_to;
 }
 
-}  // namespace throng
+}  // namespace throng::papers

@@ -9,7 +9,7 @@
 
 /// [ML06] algorithm 1 in its conservative form, on the slices themselves. The crowd walks on level
 /// tiles instead; this is the seed's own method, and what the level tiles are held against.
-namespace throng {
+namespace throng::papers {
 
 /// A body on slices. [mm]
 struct SliceBody {
@@ -35,4 +35,4 @@ struct SliceBody {
 [[nodiscard]] bool can_move(const SliceSet& slices, size_t slice, size_t from, size_t to,
                             const SliceBody& body);
 
-}  // namespace throng
+}  // namespace throng::papers

@@ -24,7 +24,7 @@
 //   are the same and usable iff the highest of their values is an avatar's height below the cut.
 // So two numbers decide: is any cell fresh, and the highest value of the previous slice's fresh
 // cells.
-namespace throng {
+namespace throng::papers {
 namespace {
 
 constexpr int32_t kRow = kTileCells;
@@ -296,4 +296,4 @@ SliceSet slice_tile(const SliceTile& tile, const SweepConfig& config) {
   return *Sweep({&alone, 1}, one).run(silent);  // One tile never passes the limit.
 }
 
-}  // namespace throng
+}  // namespace throng::papers

@@ -11,7 +11,7 @@
 #include "throng/world.h"
 
 /// The sweep: all slices of a grid from columns that were filled once.
-namespace throng {
+namespace throng::papers {
 
 /// Columns of 64 x 64 cells: cell z * 64 + x owns the spans first[cell] to first[cell + 1], lowest
 /// first, neither overlapping nor touching. Heights in mm. Cells beyond the grid must be empty.
@@ -55,4 +55,4 @@ struct SweepConfig {
 /// Cuts one tile alone, as if it were the whole world: at given heights, or at its own.
 [[nodiscard]] SliceSet slice_tile(const SliceTile& tile, const SweepConfig& config);
 
-}  // namespace throng
+}  // namespace throng::papers

@@ -115,12 +115,13 @@ class Counter {
 
 // Columns of all tiles that hold a solid, in order. `low` and `high` bound the scene: the
 // rasteriser may add a millimetre, which must not reach beyond the world.
-std::vector<SliceTile> fill_tiles(std::span<const CellTriangle> triangles, const Grid& grid,
-                                  int32_t low, int32_t high, int32_t workers, Context& context) {
+std::vector<papers::SliceTile> fill_tiles(std::span<const CellTriangle> triangles, const Grid& grid,
+                                          int32_t low, int32_t high, int32_t workers,
+                                          Context& context) {
   const TriangleBins bins =
       bin_triangles(triangles, 0, 0, grid.tiles_x(), grid.tiles_z(), kTileSide, 0);
   const size_t count = bins.first.size() - 1;
-  std::vector<SliceTile> tiles(count);
+  std::vector<papers::SliceTile> tiles(count);
   std::vector<std::unique_ptr<TileColumns>> scratch(static_cast<size_t>(worker_count(workers)));
   Counter counter(context, "columns", count);
   parallel_for_worker(count, workers, [&](size_t i, int32_t worker) {
@@ -128,7 +129,7 @@ std::vector<SliceTile> fill_tiles(std::span<const CellTriangle> triangles, const
     if (begin != end && !context.cancel) {
       auto& columns = scratch[static_cast<size_t>(worker)];
       if (!columns) columns = std::make_unique<TileColumns>();
-      SliceTile& tile = tiles[i];
+      papers::SliceTile& tile = tiles[i];
       tile.tile_x = static_cast<int32_t>(i) % grid.tiles_x();
       tile.tile_z = static_cast<int32_t>(i) / grid.tiles_x();
       const int32_t x = tile.tile_x * kTileSide, z = tile.tile_z * kTileSide;
@@ -146,7 +147,7 @@ std::vector<SliceTile> fill_tiles(std::span<const CellTriangle> triangles, const
     }
     counter.add_one();
   });
-  std::erase_if(tiles, [](const SliceTile& tile) { return tile.low.empty(); });
+  std::erase_if(tiles, [](const papers::SliceTile& tile) { return tile.low.empty(); });
   return tiles;
 }
 
@@ -159,22 +160,22 @@ Result<SliceSet> slice_scene(const Scene& scene, const SliceConfig& config, Cont
   if (auto error = check_size(*box, config.cell)) return *std::move(error);
 
   const Grid grid = make_grid(*box, config.cell, 0);
-  SweepConfig sweep{.width = grid.width,
-                    .depth = grid.depth,
-                    .avatar_height = to_mm(config.avatar_height),
-                    .resolution = to_mm(config.resolution),
-                    .min_y = static_cast<int32_t>(std::floor(snap_mm(box->min.y))),
-                    .max_y = static_cast<int32_t>(std::ceil(snap_mm(box->max.y))),
-                    .workers = config.workers};
+  papers::SweepConfig sweep{.width = grid.width,
+                            .depth = grid.depth,
+                            .avatar_height = to_mm(config.avatar_height),
+                            .resolution = to_mm(config.resolution),
+                            .min_y = static_cast<int32_t>(std::floor(snap_mm(box->min.y))),
+                            .max_y = static_cast<int32_t>(std::ceil(snap_mm(box->max.y))),
+                            .workers = config.workers};
   sweep.far_plane = sweep.min_y - sweep.resolution;  // eq. 2
-  std::vector<SliceTile> tiles;
+  std::vector<papers::SliceTile> tiles;
   {
     const std::vector<CellTriangle> triangles = to_cells(scene, grid, config.workers);
     tiles = fill_tiles(triangles, grid, sweep.min_y, sweep.max_y, config.workers, context);
   }
   if (context.cancel) return Error{Errc::kCancelled, "slices: cancelled"};
 
-  Result<SliceSet> set = sweep_slices(tiles, sweep, context);
+  Result<SliceSet> set = papers::sweep_slices(tiles, sweep, context);
   if (!set) return set;
   set->cell = grid.cell;
   set->origin_x = grid.origin_x;

@@ -18,7 +18,7 @@
 // next is in its second and the one after that in its first, and what a stage prefetches arrives
 // before the next. The order in which moves are accepted (group, pass, place in the group) depends
 // on the run alone, because only the last stage reads or writes what groups share.
-namespace throng {
+namespace throng::papers {
 namespace {
 
 constexpr size_t kGroup = 64;
@@ -398,4 +398,4 @@ void move_runs(const StepInput& in, Avatar* avatars, std::span<const CrowdBlocks
   follow(begun + 1);
 }
 
-}  // namespace throng
+}  // namespace throng::papers

@@ -11,7 +11,7 @@
 #include "crowd/walk/crowd_blocks.h"
 
 /// One sub-step of all wanderers: moves are accepted in a fixed order.
-namespace throng {
+namespace throng::papers {
 
 struct StepCounts {
   uint64_t moved = 0, blocked_by_wall = 0, blocked_by_avatar = 0, waited = 0;
@@ -33,4 +33,4 @@ struct StepInput {
 void move_runs(const StepInput& input, Avatar* avatars, std::span<const CrowdBlocks::Run> runs,
                StepCounts& counts);
 
-}  // namespace throng
+}  // namespace throng::papers

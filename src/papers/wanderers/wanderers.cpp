@@ -151,13 +151,13 @@ WanderReport Wanderers::step() {
   WanderReport report;
   report.step = ++s.step;
   std::atomic<uint64_t> moved{0}, wall{0}, avatar{0}, waited{0};
-  StepInput input{.ground = &s.ground,
-                  .map = &*s.map,
-                  .seed = s.config.seed,
-                  .step_mm = step_mm(s.body),
-                  .is_short = s.stride <= LevelLine::kBlock << kUnitBits,
-                  .units_x = data_of(s.world)->width << kUnitBits,
-                  .units_z = data_of(s.world)->depth << kUnitBits};
+  papers::StepInput input{.ground = &s.ground,
+                          .map = &*s.map,
+                          .seed = s.config.seed,
+                          .step_mm = step_mm(s.body),
+                          .is_short = s.stride <= LevelLine::kBlock << kUnitBits,
+                          .units_x = data_of(s.world)->width << kUnitBits,
+                          .units_z = data_of(s.world)->depth << kUnitBits};
   for (int32_t i = 0; i < s.sub_steps; ++i) {
     if (s.drift + s.stride > s.max_drift) {
       const auto sort_start = Clock::now();
@@ -173,8 +173,9 @@ WanderReport Wanderers::step() {
       const uint64_t avatars_here = runs.empty() ? 1 : runs.back().last - runs.front().first;
       const size_t grain = std::max<size_t>(1, kGrain * runs.size() / avatars_here);
       parallel_ranges(runs.size(), grain, s.config.workers, [&](size_t begin, size_t end) {
-        StepCounts counts;
-        move_runs(input, s.avatars.data(), std::span(runs).subspan(begin, end - begin), counts);
+        papers::StepCounts counts;
+        papers::move_runs(input, s.avatars.data(), std::span(runs).subspan(begin, end - begin),
+                          counts);
         moved.fetch_add(counts.moved, std::memory_order_relaxed);
         wall.fetch_add(counts.blocked_by_wall, std::memory_order_relaxed);
         avatar.fetch_add(counts.blocked_by_avatar, std::memory_order_relaxed);

@@ -46,7 +46,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   tree.roots = bytes[2];
   tree.leaves.assign(bytes[3] % 8, 0x0123456789abcdef);
   tree.nodes.resize((size - 4) / 4);
-  if (!tree.nodes.empty()) std::memcpy(data_of(tree.nodes), bytes + 4, tree.nodes.size() * 4);
+  if (!tree.nodes.empty()) std::memcpy(tree.nodes.data(), bytes + 4, tree.nodes.size() * 4);
   throng::try_file(throng::air_zone_bytes(0, 0, 0, tree));
   return 0;
 }

@@ -24,7 +24,7 @@ struct BakeOptions {
   std::string output;
   std::string classes;
   bool coarse = false;
-  bool fresh = false;
+  bool rebuild = false;
   bool nodes = false;
   std::string off_mesh_links;
   bool fly = false;
@@ -179,12 +179,12 @@ Result<void> prepare(BakeOptions& options) {
   }
   if (options.fly) options.config.classes.push_back(flyer_class());
   options.config.fine = !options.coarse;
-  if (options.fresh) options.config.old_zones = OldZones::kBakeAgain;
+  if (options.rebuild) options.config.old_zones = OldZones::kBakeAgain;
   if (!wants_nodes(options)) return {};
   options.node_config.workers = options.config.workers;
   options.node_config.working_bytes = options.node_memory << 20;
-  options.node_config.fresh = options.fresh;
-  options.config.carry_nodes = !options.fresh;
+  options.node_config.rebuild = options.rebuild;
+  options.config.carry_nodes = !options.rebuild;
   if (!options.off_mesh_links.empty()) {
     Result<std::vector<NodeOffMeshLink>> off_mesh_links =
         read_off_mesh_links(options.off_mesh_links, options.config.classes);
@@ -277,7 +277,8 @@ void add_bake(CLI::App& parser, Session& session) {
                     "Solids as whole cells: faster, loses up to a cell beside walls");
   command->add_flag("--one-sided", config.one_sided,
                     "Trust windings: only triangles that face up are floor");
-  command->add_flag("--fresh", options->fresh, "Bake all zones, also those that have not changed");
+  command->add_flag("--rebuild", options->rebuild,
+                    "Bake all zones, also those that have not changed");
   command->add_flag("--nodes", options->nodes,
                     "Also make nodes and links; always done where a class climbs or drops, "
                     "and with --off-mesh-links");

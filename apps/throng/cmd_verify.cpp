@@ -37,7 +37,7 @@ struct ClassReport {
 };
 
 bool passes(const VerifyReport& report) {
-  return report.entered == 0 && report.unsupported == 0 && report.torn == 0 &&
+  return report.entered == 0 && report.unsupported == 0 && report.broken == 0 &&
          report.lost_grown <= kLostLimit;
 }
 
@@ -83,7 +83,7 @@ Json class_json(const Scene& scene, const ClassReport& entry) {
           {"surface_points", report.surface_points},
           {"entered", report.entered},
           {"unsupported", report.unsupported},
-          {"torn", report.torn},
+          {"broken", report.broken},
           {"no_surface_under_centre", report.no_surface_under_centre},
           {"feet_error", {{"mean", report.feet_error_mean}, {"p95", report.feet_error_p95}}},
           {"lost",
@@ -109,7 +109,7 @@ Json verify_json(const VerifyOptions& options, const Scene& scene,
     if (entry.flight) all.entered += entry.flight->entered;
     all.entered += report.entered;
     all.unsupported += report.unsupported;
-    all.torn += report.torn;
+    all.broken += report.broken;
     all.states += report.states;
     all.moves += report.moves;
     all.surface_points += report.surface_points;
@@ -128,7 +128,7 @@ Json verify_json(const VerifyOptions& options, const Scene& scene,
           {"surface_points", all.surface_points},
           {"entered", all.entered},
           {"unsupported", all.unsupported},
-          {"torn", all.torn},
+          {"broken", all.broken},
           {"feet_error", {{"mean", all.feet_error_mean}, {"p95", all.feet_error_p95}}},
           {"lost", {{"grown", all.lost_grown}, {"exact", all.lost_exact}}},
           {"classes", classes},
@@ -141,13 +141,13 @@ std::string class_text(const ClassReport& entry) {
   const VerifyReport& report = entry.report;
   std::string text = fmt::format(
       "{}: {} states, {} moves, {} points of surfaces in {:.1f} s\n"
-      "  entered {}, unsupported {}, torn {}\n"
+      "  entered {}, unsupported {}, broken {}\n"
       "  feet off by {:.1f} mm on average, {:.1f} mm at p95 ({} without a surface under the "
       "centre)\n"
       "  lost {:.3f} % +- {:.3f} of {:.0f} m2 for the body grown by a cell, isolated {:.3f} %\n"
       "  lost {:.3f} % +- {:.3f} of {:.0f} m2 for the body as it is, isolated {:.3f} %\n",
       entry.name, report.states, report.moves, report.surface_points, report.seconds,
-      report.entered, report.unsupported, report.torn, report.feet_error_mean * 1e3,
+      report.entered, report.unsupported, report.broken, report.feet_error_mean * 1e3,
       report.feet_error_p95 * 1e3, report.no_surface_under_centre, report.lost_grown * 100,
       report.lost_grown_error * 100, report.standable_area_grown, report.isolated_grown * 100,
       report.lost_exact * 100, report.lost_exact_error * 100, report.standable_area_exact,
@@ -251,11 +251,12 @@ int verify_all_nodes(Session& session, VerifyOptions& options, const std::vector
 }
 
 bool passes(const NodePathReport& report) {
-  return report.entered + report.unsupported + report.torn + report.disagree == 0;
+  return report.entered + report.unsupported + report.broken + report.disagree == 0;
 }
 
 bool passes(const PathReport& report) {
-  return report.illegal + report.entered + report.unsupported + report.torn + report.disagree == 0;
+  return report.illegal + report.entered + report.unsupported + report.broken + report.disagree ==
+         0;
 }
 
 // The verified paths of a class.
@@ -270,7 +271,7 @@ template <class Report>
 Json with_sums(Json json, const Report& report) {
   json.update({{"entered", report.entered},
                {"unsupported", report.unsupported},
-               {"torn", report.torn},
+               {"broken", report.broken},
                {"disagree", report.disagree},
                {"length", report.length},
                {"straight", report.straight},
@@ -293,7 +294,7 @@ ClassPaths paths_of(const std::string& name, const NodePathReport& report) {
                  {"over", "nodes"},
                  {"pairs", report.pairs},
                  {"reached", report.reached},
-                 {"disconnected", report.parted},
+                 {"disconnected", report.disconnected},
                  {"blocked", report.blocked},
                  {"segments", report.segments},
                  {"links", kinds},
@@ -303,10 +304,10 @@ ClassPaths paths_of(const std::string& name, const NodePathReport& report) {
       fmt::format(
           "{}, over nodes: {} pairs, {} reached, {} in different components, {} disconnected by "
           "--block; {} segments, {} links over holes, {} bodies on them in {:.1f} s\n"
-          "  entered {}, unsupported {}, torn {}, against the components {}\n",
-          name, report.pairs, report.reached, report.parted, report.blocked, report.segments,
+          "  entered {}, unsupported {}, broken {}, against the components {}\n",
+          name, report.pairs, report.reached, report.disconnected, report.blocked, report.segments,
           report.hole_links, report.poses, report.seconds, report.entered, report.unsupported,
-          report.torn, report.disagree) +
+          report.broken, report.disagree) +
           fault_lines(report.faults),
       passes(report)};
 }
@@ -317,7 +318,7 @@ ClassPaths paths_of(const std::string& name, const PathReport& report) {
                  {"over", "level tiles"},
                  {"pairs", report.pairs},
                  {"reached", report.reached},
-                 {"disconnected", report.parted},
+                 {"disconnected", report.disconnected},
                  {"segments", report.segments},
                  {"bodies", report.bodies},
                  {"illegal", report.illegal}},
@@ -325,9 +326,9 @@ ClassPaths paths_of(const std::string& name, const PathReport& report) {
       fmt::format(
           "{}: {} pairs, {} reached, {} in different components; {} segments, {} bodies on them in "
           "{:.1f} s\n"
-          "  illegal {}, entered {}, unsupported {}, torn {}, against the components {}\n",
-          name, report.pairs, report.reached, report.parted, report.segments, report.bodies,
-          report.seconds, report.illegal, report.entered, report.unsupported, report.torn,
+          "  illegal {}, entered {}, unsupported {}, broken {}, against the components {}\n",
+          name, report.pairs, report.reached, report.disconnected, report.segments, report.bodies,
+          report.seconds, report.illegal, report.entered, report.unsupported, report.broken,
           report.disagree) +
           fault_lines(report.faults),
       passes(report)};

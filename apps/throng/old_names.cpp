@@ -24,7 +24,8 @@ struct OldOption {
   std::string_view before, now;
 };
 
-constexpr OldOption kOptions[] = {{"bake", "--jumps", "--off-mesh-links"},
+constexpr OldOption kOptions[] = {{"bake", "--fresh", "--rebuild"},
+                                  {"bake", "--jumps", "--off-mesh-links"},
                                   {"path", "--jump", "--off-mesh-link"},
                                   {"path", "--reach", "--tolerance"},
                                   {"run", "--visits", "--trips"}};

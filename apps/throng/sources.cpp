@@ -140,14 +140,15 @@ void append_scene(Scene& scene, const Scene& other) {
                                other.report.warnings.end());
 }
 
-Result<Scene> read_sources(const SourceOptions& options, Context& context, SceneMaterials looks) {
+Result<Scene> read_sources(const SourceOptions& options, Context& context,
+                           SceneMaterials materials) {
   SceneConfig config;
   if (!options.scene.empty()) {
     Result<SceneConfig> loaded = load_scene_config(options.scene);
     if (!loaded) return loaded.error();
     config = *std::move(loaded);
   }
-  config.looks = looks;
+  config.materials = materials;
   std::vector<BuiltinWorldConfig> builtins;
   for (const std::string& file : options.files) {
     if (file.starts_with(kBuiltin)) {

@@ -34,7 +34,7 @@ void append_scene(Scene& scene, const Scene& other);
 /// Reads everything that the options name: the scene file's sources, then the files, then the
 /// built-in worlds. Prints the report's warnings as notes.
 Result<Scene> read_sources(const SourceOptions& options, Context& context,
-                           SceneMaterials looks = SceneMaterials::kLeaveOut);
+                           SceneMaterials materials = SceneMaterials::kLeaveOut);
 
 /// Prints a note if a model to draw or test with a world has another position or size than it: as
 /// one read in other units, or with another axis up. [world: WorldSummary::bounds]

@@ -194,8 +194,9 @@ struct Scenario {
 [[nodiscard]] THRONG_API Result<World> open_world(const Scenario& scenario, Context& context);
 /// Reads the triangles that a scenario's world is baked from. Fails as load_scene does, and with
 /// kBadConfig if the scenario opens a baked world, which keeps no triangles.
-[[nodiscard]] THRONG_API Result<Scene> load_scene(const Scenario& scenario, Context& context,
-                                                  SceneMaterials looks = SceneMaterials::kLeaveOut);
+[[nodiscard]] THRONG_API Result<Scene> load_scene(
+    const Scenario& scenario, Context& context,
+    SceneMaterials materials = SceneMaterials::kLeaveOut);
 /// Bakes a scenario's world from the scene that load_scene has read.
 [[nodiscard]] THRONG_API Result<World> bake_world(const Scenario& scenario, const Scene& scene,
                                                   Context& context);

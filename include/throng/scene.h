@@ -329,7 +329,7 @@ struct SceneConfig {
   std::vector<AreaVolume> volumes;
   double plan_height = 3.0;       ///< Height of obstacles of 2D plans. [m, > 0]
   double curve_tolerance = 0.02;  ///< Largest distance of a patch from its triangles. [m, > 0]
-  SceneMaterials looks = SceneMaterials::kLeaveOut;
+  SceneMaterials materials = SceneMaterials::kLeaveOut;
 };
 
 /// Reads all sources into one Scene. Bad triangles are dropped and counted; a file that cannot be

@@ -56,7 +56,7 @@ struct NodeConfig {
   std::vector<NodeOffMeshLink> off_mesh_links = {};
   int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
   /// Rebuild all zones, also those whose nodes in the world's folder are up to date.
-  bool fresh = false;
+  bool rebuild = false;
   /// Approximate memory limit while nodes are made: zones are made in as many batches as it takes,
   /// each with its surroundings. Never changes the result. [bytes]
   uint64_t working_bytes = uint64_t{1} << 30;

@@ -28,7 +28,7 @@ struct VerifyConfig {
 
 /// A place where a test failed.
 struct VerifyFault {
-  std::string what;  ///< "entered", "unsupported", "torn", "lost" ...
+  std::string what;  ///< "entered", "unsupported", "broken", "lost" ...
   Vec3d position;    ///< Feet. [m]
   /// Of the scene: the triangle inside the body, or the surface that was lost.
   uint32_t triangle = 0;
@@ -43,7 +43,7 @@ struct VerifyReport {
   /// Legal states or moves without a surface to stand on, within a cell and a step height. Must be
   /// 0.
   uint64_t unsupported = 0;
-  uint64_t torn = 0;  ///< Legal moves over a point with no legal place. Must be 0.
+  uint64_t broken = 0;  ///< Legal moves over a point with no legal place. Must be 0.
   uint64_t no_surface_under_centre = 0;  ///< States that feet_error excludes (cracks and rims).
   double feet_error_mean = 0;            ///< [m]
   double feet_error_p95 = 0;             ///< [m]
@@ -83,11 +83,11 @@ struct NodeVerifyReport {
 
 /// Results of verify_node_paths.
 struct NodePathReport {
-  uint64_t pairs = 0;     ///< Random pairs of places of the class.
-  uint64_t reached = 0;   ///< Of these, with a path.
-  uint64_t parted = 0;    ///< Of these, without a path and not connected by arcs.
-  uint64_t segments = 0;  ///< Of the paths, point to point.
-  uint64_t links = 0;     ///< Links that the paths use.
+  uint64_t pairs = 0;         ///< Random pairs of places of the class.
+  uint64_t reached = 0;       ///< Of these, with a path.
+  uint64_t disconnected = 0;  ///< Of these, without a path and not connected by arcs.
+  uint64_t segments = 0;      ///< Of the paths, point to point.
+  uint64_t links = 0;         ///< Links that the paths use.
   std::array<uint64_t, kLinkKinds> links_of_kind{};
   uint64_t hole_links = 0;  ///< Of these, over holes.
   uint64_t poses = 0;       ///< Tested poses of bodies, at most a quarter of a radius apart.
@@ -95,7 +95,7 @@ struct NodePathReport {
   /// Segments with no surface at the feet, except over holes. Must be 0.
   uint64_t unsupported = 0;
   /// Segments that leave their node, or do not begin where the last one ended. Must be 0.
-  uint64_t torn = 0;
+  uint64_t broken = 0;
   /// Without obstacles: pairs with a path but not connected by arcs, or the reverse. Must be 0.
   uint64_t disagree = 0;
   uint64_t blocked = 0;  ///< Pairs connected by arcs but without a path, because of the obstacles.
@@ -124,8 +124,9 @@ struct NodePathReport {
 /// Results of verify_paths.
 struct PathReport {
   uint64_t pairs = 0;  ///< Random pairs of places; every second pair is connected, if one is found.
-  uint64_t reached = 0;   ///< Of these, with a path.
-  uint64_t parted = 0;    ///< Of these, without a path and in different components of the graph.
+  uint64_t reached = 0;  ///< Of these, with a path.
+  uint64_t disconnected =
+      0;                  ///< Of these, without a path and in different components of the graph.
   uint64_t segments = 0;  ///< Of the paths, point to point.
   /// Tested bodies on the paths, at most half a cell and a quarter of a radius apart.
   uint64_t bodies = 0;
@@ -134,7 +135,7 @@ struct PathReport {
   uint64_t entered = 0;  ///< Paths on which the body meets a triangle. Must be 0.
   /// Paths on which it has no such surface. Must be 0.
   uint64_t unsupported = 0;
-  uint64_t torn = 0;  ///< Paths over a point with no legal place. Must be 0.
+  uint64_t broken = 0;  ///< Paths over a point with no legal place. Must be 0.
   /// Pairs with a path between different components, or the reverse. Must be 0.
   uint64_t disagree = 0;
   double length = 0;          ///< Of all paths, in the plane. [m]

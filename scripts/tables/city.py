@@ -52,7 +52,7 @@ def main():
     folder = WORK / "long.throng"
     bakes, paths = [], []
     for side in map(int, options.sides.split(",")):
-        report = run_json(PROGRAM, "bake", f"builtin:city,size={side}", "-o", folder, "--fresh", "--cell", 0.5, "--threads",
+        report = run_json(PROGRAM, "bake", f"builtin:city,size={side}", "-o", folder, "--rebuild", "--cell", 0.5, "--threads",
                           options.threads, "--json")
         lengths = distances(side)
         found = run_json(BENCH, folder, "--distances", ",".join(map(str, lengths)), "--judged", options.judged)

@@ -32,7 +32,7 @@ def classes_file(name, classes):
 def bake(model, words, classes, options):
     """The folder, and the report of one bake."""
     folder = WORK / "classes.throng"
-    run = run_json(PROGRAM, "bake", model, *words, "-o", folder, "--fresh", "--cell", 0.1, "--classes", classes, "--threads", options.threads, "--json")
+    run = run_json(PROGRAM, "bake", model, *words, "-o", folder, "--rebuild", "--cell", 0.1, "--classes", classes, "--threads", options.threads, "--json")
     run["graph_bytes"] += (folder / "graph.thm").stat().st_size  # the index
     return folder, run
 

@@ -33,7 +33,7 @@ def measure(options):
     folder = WORK / "cores.throng"
     rows = []
     for threads in options.threads:
-        bake = run_json(PROGRAM, "bake", f"builtin:city,size={options.side}", "-o", folder, "--fresh", "--cell", 0.5, "--nodes",
+        bake = run_json(PROGRAM, "bake", f"builtin:city,size={options.side}", "-o", folder, "--rebuild", "--cell", 0.5, "--nodes",
                         "--threads", threads, "--json")
         finder = run_json(FINDER, folder, "--pairs", 1, "--judged", 0, "--distances", 1000, "--threads", threads)
         crowd = run_json(CROWD, "--avatars", options.avatars, "--threads", threads)

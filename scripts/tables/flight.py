@@ -31,7 +31,7 @@ def rows_of(source, cell, share, classes, options):
     path = source if source.startswith("builtin:") else WORLDS / source
     name = source.split("/")[-1].replace("builtin:", "").replace(".obj", "")
     world = WORK / f"flight_{name}.throng"
-    bake = run_json(PROGRAM, "bake", path, "-o", world, "--classes", classes, "--cell", cell, "--fresh", "--json")
+    bake = run_json(PROGRAM, "bake", path, "-o", world, "--classes", classes, "--cell", cell, "--rebuild", "--json")
     air = run_json(PROGRAM, "info", world, "--json")["air"]
     pairs = -(-options.pairs * share // (2 * sum(run[2] for run in RUNS)))  # rounded up
     total = {"pairs": 0, "entered": 0}

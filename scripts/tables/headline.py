@@ -101,7 +101,7 @@ def picture():
     WORK.mkdir(parents=True, exist_ok=True)
     world, walk, image = WORK / "readme.throng", WORK / "readme.csv", ROOT / "docs/images/garage.png"
     image.parent.mkdir(exist_ok=True)
-    run_json(PROGRAM, "bake", "builtin:garage,size=60,levels=4", "-o", world, "--fresh", "--json")
+    run_json(PROGRAM, "bake", "builtin:garage,size=60,levels=4", "-o", world, "--rebuild", "--json")
     run_json(PROGRAM, "run", world, "--avatars", 1500, "--steps", 100, "--trajectories", walk, "--json")
     run_json(PROGRAM, "picture", world, "--avatars", walk, "--width", 1400, "--title", "garage", "-o", image, "--json")
     walk.unlink()

@@ -29,7 +29,7 @@ def main():
     crates, fields = [], []
     for side in options.sides:
         folder = WORK / "city.throng"
-        run_json(PROGRAM, "bake", f"builtin:city,size={side}", "-o", folder, "--fresh", "--cell", CELL, "--json")
+        run_json(PROGRAM, "bake", f"builtin:city,size={side}", "-o", folder, "--rebuild", "--cell", CELL, "--json")
         report = run_json(BENCH, folder, "--trials", options.trials)
         shutil.rmtree(folder)
         area = f"{side * side / 1e6:g}"
@@ -44,7 +44,7 @@ def main():
     air = []
     for side in options.air_sides:
         folder = WORK / "city.throng"
-        run_json(PROGRAM, "bake", f"builtin:city,size={side}", "-o", folder, "--fresh", "--cell", CELL, "--fly", "--air", AIR_CELL, "--json")
+        run_json(PROGRAM, "bake", f"builtin:city,size={side}", "-o", folder, "--rebuild", "--cell", CELL, "--fly", "--air", AIR_CELL, "--json")
         for standing in (0, 1000):
             report = run_json(AIR_BENCH, folder, "--trials", options.trials, "--standing", standing)
             made = report["crates"]

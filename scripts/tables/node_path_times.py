@@ -37,7 +37,7 @@ def main():
     for name, model, cell, size, distances in worlds():
         folder = WORK / "node_path_times.throng"
         run_json(PROGRAM, "bake", model, "-o", folder, "--cell", cell, "--node-size", size, "--classes", classes, "--threads",
-                 options.threads, "--nodes", "--fresh", "--json")
+                 options.threads, "--nodes", "--rebuild", "--json")
         for avatar in CLASSES:
             found = run_json(BENCH, folder, "--class", avatar["name"], "--distances", ",".join(map(str, distances)), "--pairs", options.pairs,
                              "--judged", options.pairs // 2, "--threads", options.threads)

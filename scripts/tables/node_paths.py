@@ -54,7 +54,7 @@ def main():
         for c in proof["classes"]:
             if c["pairs"] == 0:
                 continue
-            faults = sum(c[key] for key in ("entered", "unsupported", "torn", "disagree"))
+            faults = sum(c[key] for key in ("entered", "unsupported", "broken", "disagree"))
             pairs += c["pairs"]
             illegal += faults
             links = ", ".join(f"{count} {kind}" for kind, count in c["links"].items())

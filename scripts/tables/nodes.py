@@ -49,7 +49,7 @@ def classes_file(name, classes):
 def bake(model, cell, size, classes, threads):
     folder = WORK / "nodes.throng"
     return folder, run_json(PROGRAM, "bake", model, "-o", folder, "--cell", cell, "--node-size", size, "--classes", classes,
-                            "--threads", threads, "--nodes", "--fresh", "--json")
+                            "--threads", threads, "--nodes", "--rebuild", "--json")
 
 
 def everywhere(options):
@@ -57,7 +57,7 @@ def everywhere(options):
     rows = []
     for name, model, words in all_worlds.worlds():
         folder = WORK / "nodes.throng"
-        run = run_json(PROGRAM, "bake", model, *words, "-o", folder, "--cell", 0.1, "--nodes", "--threads", options.threads, "--fresh", "--json")
+        run = run_json(PROGRAM, "bake", model, *words, "-o", folder, "--cell", 0.1, "--nodes", "--threads", options.threads, "--rebuild", "--json")
         found = run_json(PROGRAM, "surface", folder, "--json")
         info = run_json(PROGRAM, "info", folder, "--json")
         shutil.rmtree(folder)

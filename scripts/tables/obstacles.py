@@ -20,7 +20,7 @@ def main():
     options = parser.parse_args()
     WORK.mkdir(parents=True, exist_ok=True)
     folder = WORK / "city.throng"
-    run_json(PROGRAM, "bake", f"builtin:city,size={SIDE}", "-o", folder, "--fresh", "--cell", CELL, "--json")
+    run_json(PROGRAM, "bake", f"builtin:city,size={SIDE}", "-o", folder, "--rebuild", "--cell", CELL, "--json")
     rows, hashes = [], set()
     avatar_steps = faults = 0
     for avatars in options.avatars:

@@ -11,13 +11,13 @@ from all_worlds import worlds
 from results_page import PROGRAM, WORK, machine, run_json, table, write_between
 
 CLASSES = 4  # The default ones.
-COUNTS = ("pairs", "reached", "disconnected", "segments", "bodies", "illegal", "entered", "unsupported", "torn", "disagree")
+COUNTS = ("pairs", "reached", "disconnected", "segments", "bodies", "illegal", "entered", "unsupported", "broken", "disagree")
 FAULTS = COUNTS[5:]
 
 
 def row_of(name, model, words, options):
     folder = WORK / "paths.throng"
-    run_json(PROGRAM, "bake", model, *words, "-o", folder, "--fresh", "--cell", 0.1, "--threads", options.threads, "--json")
+    run_json(PROGRAM, "bake", model, *words, "-o", folder, "--rebuild", "--cell", 0.1, "--threads", options.threads, "--json")
     found = run_json(PROGRAM, "verify", folder, "--source", model, *words, "--paths", "--samples",
                      -(-options.pairs // CLASSES), "--threads", options.threads, "--json")["classes"]
     shutil.rmtree(folder)

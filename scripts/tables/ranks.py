@@ -20,7 +20,7 @@ def measure(size, ranks, threads):
     folder = WORK / "ranks.throng"
     start = time.monotonic()
     report = run_json(*([*MPIRUN, "-n", ranks] if ranks else []), PROGRAM, "bake", f"builtin:city,size={size}", "-o", folder,
-                      "--fresh", "--nodes", "--threads", threads, "--json")
+                      "--rebuild", "--nodes", "--threads", threads, "--json")
     wall = time.monotonic() - start
     shutil.rmtree(folder)
     return report["seconds_total"], report["seconds_nodes"], wall, report["peak_bytes"]

@@ -46,7 +46,7 @@ def sample_more(report, words, samples):
             continue
         closer = run(*words, "--class", entry["class"], "--samples", CLOSER * samples)
         entry = report["classes"][at] = closer["classes"][0]
-        for count in ("states", "moves", "surface_points", "entered", "unsupported", "torn"):
+        for count in ("states", "moves", "surface_points", "entered", "unsupported", "broken"):
             report[count] += closer[count]
         report["seconds"] += closer["seconds"]
         say(f"  {entry['class']}: with {CLOSER} times the samples lost {entry['lost']['grown'] * 100:.2f} +- {entry['lost']['grown_error'] * 100:.2f} %")
@@ -58,7 +58,7 @@ def verify(name, model, options, samples, threads, coarse):
     """One row of the table, a note for each class that fails, and the number of tests."""
     folder = WORK / "verify.throng"
     try:
-        bake = run("bake", model, *options, "-o", folder, "--fresh", *coarse, "--cell", 0.1, "--resolution", 0.1, "--threads", threads)
+        bake = run("bake", model, *options, "-o", folder, "--rebuild", *coarse, "--cell", 0.1, "--resolution", 0.1, "--threads", threads)
         report = run("verify", folder, "--source", model, *options, "--samples", samples, "--threads", threads)
         sample_more(report, ["verify", folder, "--source", model, *options, "--threads", threads], samples)
     except Failed as failure:
@@ -72,7 +72,7 @@ def verify(name, model, options, samples, threads, coarse):
     tests = report["states"] + report["moves"] + report["surface_points"]
     feet = report["feet_error"]
     row = (name, report["triangles"], f"{bake['walkable_area'].get('adult', 0):.0f}", tests, report["entered"],
-           report["unsupported"], report["torn"], f"{feet['mean'] * 1e3:.1f} / {feet['p95'] * 1e3:.1f}",
+           report["unsupported"], report["broken"], f"{feet['mean'] * 1e3:.1f} / {feet['p95'] * 1e3:.1f}",
            f"{report['lost']['grown'] * 100:.2f}", f"{report['lost']['exact'] * 100:.1f}",
            f"{bake['seconds_total']:.1f} + {report['seconds']:.0f}", "NO" if notes else "yes")
     return row, notes, tests
@@ -85,7 +85,7 @@ def feet_are_right(entry):
 def note(name, entry):
     lost, feet = entry["lost"], entry["feet_error"]
     return (f"{name}, {entry['class']}: entered {entry['entered']}, unsupported {entry['unsupported']}, "
-            f"torn {entry['torn']}, feet off by {feet['mean'] * 1e3:.1f} / {feet['p95'] * 1e3:.1f} mm, lost {lost['grown'] * 100:.2f} +- {lost['grown_error'] * 100:.2f} % of "
+            f"broken {entry['broken']}, feet off by {feet['mean'] * 1e3:.1f} / {feet['p95'] * 1e3:.1f} mm, lost {lost['grown'] * 100:.2f} +- {lost['grown_error'] * 100:.2f} % of "
             f"{entry['standable_area']['grown']:.0f} m2")
 
 
@@ -113,7 +113,7 @@ def main():
     text = (f"`scripts/results verify {options.samples}{' --coarse' if options.coarse else ''}`. Machine: {machine()}. {tests} tests of {len(chosen)} worlds, "
             f"cells of 0.1 m, four classes: {sum(row[-1] == 'yes' for row in rows)} pass.\n"
             "Errors and losses are those of the worst class; counts are sums.\n\n")
-    text += table(["world", "triangles", "m2 adult", "tests", "entered", "unsupported", "torn",
+    text += table(["world", "triangles", "m2 adult", "tests", "entered", "unsupported", "broken",
                    "feet mean / p95 [mm]", "lost [%]", "lost exact [%]", "bake + verify [s]", "passes"], rows)
     if notes:
         text += "\n\nMissed:\n\n" + "\n".join(f"- {line}" for line in notes)

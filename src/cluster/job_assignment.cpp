@@ -279,6 +279,22 @@ Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context) {
   return all;
 }
 
+Result<void> agree(Ranks& ranks, const Result<void>& mine) {
+  const auto all = ranks.gather(mine ? 0 : 1);
+  const auto failed = std::find(all.begin(), all.end(), uint64_t{1});
+  if (failed == all.end()) return {};
+  const auto first = static_cast<int32_t>(failed - all.begin());
+  if (ranks.rank() == 0) {
+    if (first == 0) return mine;
+    while (true) {
+      if (const auto message = ranks.poll()) return unpacked(*message);
+      nap();
+    }
+  }
+  if (ranks.rank() == first) ranks.send(0, kFail, packed(mine.error()));
+  return Error{Errc::kCancelled, ""};  // Rank 0 says it.
+}
+
 }  // namespace throng::cluster
 
 namespace throng {
@@ -294,20 +310,7 @@ Result<void> agree_over_ranks(const Result<void>& mine) {
   if (rank_info().size == 1) return mine;
   auto joined = cluster::Ranks::join();
   if (!joined) return joined.error();
-  cluster::Ranks& ranks = **joined;
-  const auto all = ranks.gather(mine ? 0 : 1);
-  const auto failed = std::find(all.begin(), all.end(), uint64_t{1});
-  if (failed == all.end()) return {};
-  const auto first = static_cast<int32_t>(failed - all.begin());
-  if (ranks.rank() == 0) {
-    if (first == 0) return mine;
-    while (true) {
-      if (const auto message = ranks.poll()) return unpacked(*message);
-      nap();
-    }
-  }
-  if (ranks.rank() == first) ranks.send(0, kFail, packed(mine.error()));
-  return Error{Errc::kCancelled, ""};  // Rank 0 says it.
+  return cluster::agree(**joined, mine);
 }
 
 }  // namespace throng

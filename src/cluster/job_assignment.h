@@ -53,6 +53,8 @@ Result<void> same_over_ranks(Ranks& ranks, uint64_t input, const char* stage, co
 
 /// meet_over_ranks, for several ranks.
 Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context);
+/// agree_over_ranks, for several ranks.
+Result<void> agree(Ranks& ranks, const Result<void>& mine);
 
 /// Threads of a rank: the cores of its machine, shared among its ranks, unless a number is given.
 int32_t workers_of_rank(int32_t asked, const Ranks& ranks);

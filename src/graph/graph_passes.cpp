@@ -240,7 +240,8 @@ Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
     // Reused regions may differ from those of today if their file is forged.
     if (!fits(*links)) {
       return bad_file(region_file_name(entry.x(), entry.z()),
-                      "or one beside it, is not of this zone", "bake the world again with --fresh");
+                      "or one beside it, is not of this zone",
+                      "bake the world again with --rebuild");
     }
     if (files_ != nullptr) {
       if (auto ok = files_->write(name, links->bytes()); !ok) return ok.error();

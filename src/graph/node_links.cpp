@@ -37,12 +37,12 @@ void NodeLinker::add(uint32_t a, uint32_t b, uint16_t classes, LinkKind kind) {
   // Neighbours along a border mostly repeat the pair before them.
   for (size_t k = links_.size(); k-- > 0 && links_.size() - k <= 4;) {
     NodeLink& last = links_[k];
-    if (last.a == a && last.b == b && last.kind == kind && last.leap1 == leap1_) {
+    if (last.a == a && last.b == b && last.kind == kind && last.hole_link1 == hole_link1_) {
       last.classes |= classes;
       return;
     }
   }
-  links_.push_back({a, b, classes, kind, leap1_, turned, one_way_, spot_});
+  links_.push_back({a, b, classes, kind, hole_link1_, turned, one_way_, spot_});
 }
 
 void NodeLinker::link_chains(uint32_t patch_a, size_t cell_a, uint32_t patch_b, size_t cell_b,
@@ -153,13 +153,13 @@ void NodeLinker::link(const CellPair& pair) {
   const auto classes =
       static_cast<uint16_t>(forest_->trees[pair.patch_a].classes_on(pair.cell_a) &
                             forest_->trees[pair.patch_b].classes_on(pair.cell_b) & pair.classes);
-  leap1_ = pair.leap1;
+  hole_link1_ = pair.hole_link1;
   one_way_ = pair.one_way;
   spot_ = pair.spot;
   if (classes != 0) {
     link_chains(pair.patch_a, pair.cell_a, pair.patch_b, pair.cell_b, classes, pair.kind);
   }
-  leap1_ = 0;
+  hole_link1_ = 0;
   one_way_ = false;
   spot_ = 0;
 }
@@ -207,7 +207,7 @@ void drop_needless_steps(std::vector<NodeLink>& links) {
 
 void merge_node_links(std::vector<NodeLink>& links) {
   const auto before = [](const NodeLink& p, const NodeLink& q) {
-    return std::tie(p.a, p.b, p.kind, p.leap1) < std::tie(q.a, q.b, q.kind, q.leap1);
+    return std::tie(p.a, p.b, p.kind, p.hole_link1) < std::tie(q.a, q.b, q.kind, q.hole_link1);
   };
   // Of all patches these are two sorted lists, one behind the other.
   const auto second = std::is_sorted_until(links.begin(), links.end(), before);
@@ -222,11 +222,11 @@ void merge_node_links(std::vector<NodeLink>& links) {
     if (last == nullptr || last->a != link.a || last->b != link.b || last->kind != link.kind) {
       group = kept;
     }
-    if (kept > group && links[kept - 1].leap1 == link.leap1) {
+    if (kept > group && links[kept - 1].hole_link1 == link.hole_link1) {
       links[kept - 1].classes |= link.classes;
       continue;
     }
-    // A leap that serves no class that an earlier one does not serve is left out.
+    // A hole link that serves no class that an earlier one does not serve is left out.
     uint16_t served = 0;
     // (Off-mesh links are given one by one, and some are one-way: all are kept. Of drops one from
     // each spot is: a ledge may be long.)

@@ -34,7 +34,7 @@ struct CellPair {
   uint16_t classes = 0;
   LinkKind kind = LinkKind::kWalk;
   uint8_t side_a = 4, side_b = 4;  ///< Sides of the cells where they touch, like a patch's edges.
-  uint32_t leap1 = 0;              ///< If they do not touch: number of the leap, plus one.
+  uint32_t hole_link1 = 0;         ///< If they do not touch: number of the hole link, plus one.
   bool one_way = false;            ///< From a to b only.
   uint32_t spot = 0;               ///< Of a drop: where it begins, to some cells.
 };
@@ -44,18 +44,18 @@ struct NodeLink {
   uint32_t a = 0, b = 0;
   uint16_t classes = 0;
   LinkKind kind = LinkKind::kWalk;
-  uint32_t leap1 = 0;    ///< As of the pair of cells; 0: the nodes touch.
-  bool turned = false;   ///< The leap leads from b to a.
-  bool one_way = false;  ///< Only in the leap's direction.
-  uint32_t spot = 0;     ///< As of the pair of cells.
+  uint32_t hole_link1 = 0;  ///< As of the pair of cells; 0: the nodes touch.
+  bool turned = false;      ///< The hole link leads from b to a.
+  bool one_way = false;     ///< Only in the hole link's direction.
+  uint32_t spot = 0;        ///< As of the pair of cells.
 };
 
 /// Links nodes whose cells lie beside each other. Of the nodes around one cell, a node is linked to
 /// the largest around the other that is no more restrictive; where neither of two is, they are
 /// linked for what both allow. What a smaller node could reach by its parents is not linked again:
 /// a parent's classes go in and out of its children. Sorted by (a, b, kind), each pair once, or
-/// as often as its classes need different leaps; drops once for every spot that they lead from.
-/// A class that anywhere gets from one to the other without a step has no link over one.
+/// as often as its classes need different hole links; drops once for every spot that they lead
+/// from. A class that anywhere gets from one to the other without a step has no link over one.
 class NodeLinker {
  public:
   explicit NodeLinker(const NodeForest& forest) : forest_(&forest) {}
@@ -79,7 +79,7 @@ class NodeLinker {
 
   const NodeForest* forest_;
   std::vector<NodeLink> links_;
-  uint32_t leap1_ = 0;  // of the pair that is being linked
+  uint32_t hole_link1_ = 0;  // of the pair that is being linked
   bool one_way_ = false;
   uint32_t spot_ = 0;
 };

@@ -19,8 +19,8 @@
 // bit, the outermost. Inside one nothing blocks the class, so what is left to find is where two of
 // them touch. Within a patch that follows from the squares (and the tile's steps), over the edges
 // of Bezier patches from the doors that the bake proved, over tiles from the moves' own rule, and
-// over holes from the leaps. The arcs between nodes are not read for that; a test proves that both
-// agree.
+// over holes from the hole links. The arcs between nodes are not read for that; a test proves that
+// both agree.
 namespace throng {
 namespace {
 
@@ -71,7 +71,7 @@ Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_
     if (!context.cancel) lists[i] = mesh.over_tile(tile % tiles_x, tile / tiles_x);
   });
   mesh.portals_.add_all(lists);
-  mesh.add_leaps();
+  mesh.add_hole_links();
   if (context.cancel) return Error{Errc::kCancelled, "path: cancelled"};
   mesh.index_portals();
   return mesh;
@@ -481,8 +481,8 @@ PortalList NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) const {
   return found;
 }
 
-// Each direction has an arc of its own. A node around another may have the same leap.
-void NodeMesh::add_leaps() {
+// Each direction has an arc of its own. A node around another may have the same hole link.
+void NodeMesh::add_hole_links() {
   const NodeData& data = *data_of(nodes_);
   using Key = std::tuple<uint32_t, uint32_t, uint8_t, uint8_t, uint8_t, uint8_t>;
   std::map<Key, size_t> known;
@@ -492,26 +492,27 @@ void NodeMesh::add_leaps() {
     for (uint32_t n = 0; n < zone.nodes().size(); ++n) {
       for (const format::Arc& arc : zone.arcs(n)) {
         if ((arc.classes() >> avatar_class_ & 1) == 0) continue;
-        const auto* leap = zone.leap_of(static_cast<uint32_t>(&arc - zone.first_arc()));
-        if (leap == nullptr) continue;
+        const auto* hole_link = zone.hole_link_of(static_cast<uint32_t>(&arc - zone.first_arc()));
+        if (hole_link == nullptr) continue;
         const uint32_t pa = patch_of_node(first + n);
         const uint32_t pb = patch_of_node(data.target(s, zone, arc));
         const auto middle = [&](uint32_t patch, uint8_t cs, uint8_t ct) {
           const double side = 1 << patches_[patch].depth;
           return std::array{(cs + 0.5) / side, (ct + 0.5) / side};
         };
-        const auto from = middle(pa, leap->from_s(), leap->from_t());
-        const auto to = middle(pb, leap->to_s(), leap->to_t());
+        const auto from = middle(pa, hole_link->from_s(), hole_link->from_t());
+        const auto to = middle(pb, hole_link->to_s(), hole_link->to_t());
         const uint32_t a = block_at(pa, from[0], from[1]), b = block_at(pb, to[0], to[1]);
         if (a == kNoNode || b == kNoNode || a == b) continue;
-        const Key key{a, b, leap->from_s(), leap->from_t(), leap->to_s(), leap->to_t()};
+        const Key key{
+            a, b, hole_link->from_s(), hole_link->from_t(), hole_link->to_s(), hole_link->to_t()};
         if (!known.try_emplace(key, portals_.size()).second) continue;
         portals_.add({.a = a,
                       .b = b,
                       .on_a = {from[0], from[1], from[0], from[1]},
                       .on_b = {to[0], to[1], to[0], to[1]},
                       .kind = static_cast<LinkKind>(arc.kind()),
-                      .leaps = true,
+                      .over_hole = true,
                       .one_way = true});
       }
     }

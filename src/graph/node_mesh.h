@@ -83,7 +83,7 @@ class NodeMesh {
   [[nodiscard]] PortalList inside_patch(uint32_t patch) const;
   void open_doors();
   [[nodiscard]] PortalList over_tile(int32_t tile_x, int32_t tile_z) const;
-  void add_leaps();
+  void add_hole_links();
   void index_portals();
   [[nodiscard]] LinkKind kind_between(uint32_t a, uint32_t b) const;
 

@@ -156,16 +156,16 @@ std::vector<NodeArc> Nodes::arcs(uint32_t node) const {
     NodeArc& found = out.emplace_back(NodeArc{.to = state_->target(slot, *zone, arc),
                                               .classes = arc.classes(),
                                               .kind = static_cast<LinkKind>(arc.kind())});
-    const auto* leap = zone->leap_of(static_cast<uint32_t>(&arc - zone->first_arc()));
+    const auto* hole_link = zone->hole_link_of(static_cast<uint32_t>(&arc - zone->first_arc()));
     const auto [other, to] = state_->find(found.to);
-    if (leap == nullptr || other == nullptr) continue;
+    if (hole_link == nullptr || other == nullptr) continue;
     const double from_side = 1 << zone->patch_of(local).depth();
     const double to_side = 1 << other->patch_of(to).depth();
     found.over_hole = true;
-    found.from_s = (leap->from_s() + 0.5) / from_side;
-    found.from_t = (leap->from_t() + 0.5) / from_side;
-    found.to_s = (leap->to_s() + 0.5) / to_side;
-    found.to_t = (leap->to_t() + 0.5) / to_side;
+    found.from_s = (hole_link->from_s() + 0.5) / from_side;
+    found.from_t = (hole_link->from_t() + 0.5) / from_side;
+    found.to_s = (hole_link->to_s() + 0.5) / to_side;
+    found.to_t = (hole_link->to_t() + 0.5) / to_side;
   }
   return out;
 }

@@ -24,8 +24,9 @@ bool PortalList::pack(const std::array<double, 4>& line, std::array<uint8_t, 4>&
 
 void PortalList::add(const NodePortal& portal) {
   Packed packed{.a = portal.a, .b = portal.b, .on_a = {}, .on_b = {}, .kind = portal.kind};
-  packed.flags = static_cast<uint8_t>((portal.leaps ? kLeaps : 0) | (portal.one_way ? kOneWay : 0) |
-                                      (portal.inside ? kInside : 0));
+  packed.flags =
+      static_cast<uint8_t>((portal.over_hole ? kOverHole : 0) | (portal.one_way ? kOneWay : 0) |
+                           (portal.inside ? kInside : 0));
   if (!pack(portal.on_a, packed.on_a, packed.insets_a) ||
       !pack(portal.on_b, packed.on_b, packed.insets_b)) {
     packed.flags |= kWide;

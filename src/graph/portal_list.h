@@ -15,14 +15,14 @@ namespace throng {
 inline constexpr double kTileInset = 1e-5;
 
 /// Where the class gets from block a to block b: along a line that they share, by the parameters of
-/// each one's patch; of a leap both ends are the same.
+/// each one's patch; of a hole link both ends are the same.
 struct NodePortal {
   uint32_t a = 0, b = 0;
   std::array<double, 4> on_a{}, on_b{};  ///< (s, t) where it begins and where it ends.
   LinkKind kind = LinkKind::kWalk;
-  bool leaps = false;    ///< A body goes straight from a's point to b's, which do not touch.
-  bool one_way = false;  ///< From a to b only.
-  bool inside = false;   ///< Within one node: no link.
+  bool over_hole = false;  ///< A body goes straight from a's point to b's, which do not touch.
+  bool one_way = false;    ///< From a to b only.
+  bool inside = false;     ///< Within one node: no link.
 };
 
 /// The part of a portal that most callers need.
@@ -52,7 +52,7 @@ class PortalList {
             .on_a = line(packed.on_a, packed.insets_a),
             .on_b = line(packed.on_b, packed.insets_b),
             .kind = packed.kind,
-            .leaps = (packed.flags & kLeaps) != 0,
+            .over_hole = (packed.flags & kOverHole) != 0,
             .one_way = (packed.flags & kOneWay) != 0,
             .inside = (packed.flags & kInside) != 0};
   }
@@ -65,7 +65,7 @@ class PortalList {
   }
 
  private:
-  static constexpr uint8_t kLeaps = 1, kOneWay = 2, kInside = 4, kWide = 8;
+  static constexpr uint8_t kOverHole = 1, kOneWay = 2, kInside = 4, kWide = 8;
   static constexpr double kParts = 128;  // half cells of a side
 
   struct Packed {

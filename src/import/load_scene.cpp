@@ -221,7 +221,7 @@ Result<Scene> load_scene(const SceneConfig& config, Context& context) {
     options.curve_tolerance = config.curve_tolerance;
     options.plan_height = config.plan_height;
     options.metres_per_unit = source.scale;
-    options.looks = config.looks;
+    options.materials = config.materials;
     auto raw = read_source(source, options, context);
     if (!raw) return raw.error();
     if (auto ok = importer::read_textures(*raw, source.path, context); !ok) return ok.error();
@@ -256,7 +256,7 @@ Result<Scene> load_scene(const SceneConfig& config, Context& context) {
   const std::string name = sources->size() == 1 ? sources->front().path
                                                 : fmt::format("scene of {} files", sources->size());
   if (auto cleaned = importer::clean_scene(all, name, context); !cleaned) return cleaned.error();
-  if (config.looks == SceneMaterials::kRead) importer::add_named_materials(all);
+  if (config.materials == SceneMaterials::kRead) importer::add_named_materials(all);
   if (context.on_progress) {
     context.on_progress({"read", sources->size(), sources->size()});
   }

@@ -45,7 +45,7 @@ struct NodePathFinder::Shared {
         parts(mesh, config.workers) {
     for (size_t p = 0; p < mesh.portals().size(); ++p) {
       const NodePortal portal = mesh.portals()[p];
-      if (!portal.leaps) continue;
+      if (!portal.over_hole) continue;
       const Vec3d a = mesh.surface(portal.a).at(portal.on_a[0], portal.on_a[1]);
       const Vec3d b = mesh.surface(portal.b).at(portal.on_b[0], portal.on_b[1]);
       longest_hole_link = std::max(longest_hole_link, length(b - a));
@@ -215,7 +215,7 @@ class PathBuilder {
     path_.cost += portal_length(portal, crossing.out_at, crossing.in_at);
     const bool same_patch =
         view_.block(crossing.out.block).patch == view_.block(crossing.in.block).patch;
-    if (same_patch && !portal.leaps) {
+    if (same_patch && !portal.over_hole) {
       // One point of both blocks: it becomes the next one's.
       path_.points.back().place.node1 = node_of(crossing.in) + 1;
     } else {
@@ -225,7 +225,7 @@ class PathBuilder {
     last_ = crossing.in;
     if (portal.inside) return;
     path_.links.push_back(
-        {static_cast<uint32_t>(path_.points.size() - 1), portal.kind, portal.leaps});
+        {static_cast<uint32_t>(path_.points.size() - 1), portal.kind, portal.over_hole});
     path_.corridor.push_back(node_of(crossing.in));
   }
 

@@ -6,13 +6,13 @@
 // The world of a scenario: opened, or baked in memory from models, a built-in world or a plane.
 namespace throng {
 
-Result<Scene> load_scene(const Scenario& scenario, Context& context, SceneMaterials looks) {
+Result<Scene> load_scene(const Scenario& scenario, Context& context, SceneMaterials materials) {
   if (!scenario.world.empty()) {
     return Error{Errc::kBadConfig, scenario.world + ": a baked world keeps no triangles"};
   }
   if (!scenario.models.empty()) {
     SceneConfig config;
-    config.looks = looks;
+    config.materials = materials;
     for (const std::string& model : scenario.models) {
       config.sources.push_back({.path = model, .up = {}, .scale = {}, .transform = {}});
     }

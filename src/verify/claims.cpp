@@ -129,10 +129,10 @@ class Judge {
           ++report_.moves;
           report_.entered += r.segment.entered;
           report_.unsupported += r.segment.unsupported;
-          report_.torn += r.segment.torn;
+          report_.broken += r.segment.broken;
           if (r.segment.entered) fault("entered", r.segment.entered_at, r.segment.intruder);
           if (r.segment.unsupported) fault("unsupported", r.segment.unsupported_at, 0);
-          if (r.segment.torn) fault("torn", r.segment.torn_at, 0);
+          if (r.segment.broken) fault("broken", r.segment.broken_at, 0);
         });
   }
 

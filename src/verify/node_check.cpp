@@ -29,12 +29,12 @@ using verify::TriangleTree;
 
 constexpr size_t kFaultsOfAKind = 8;
 constexpr size_t kBatch = 4096;        // samples between two tests of `cancel`
-constexpr int kLeapParts = 24;         // poses tested on a link over a hole
+constexpr int kHoleLinkParts = 24;     // poses tested on a link over a hole
 constexpr double kAngleMargin = 1e-3;  // of slopes, for planes at exactly a limit [degrees]
 
 struct Sample {
   bool exists = false, entered = false, unsupported = false, steeper = false, lower = false;
-  uint32_t arcs = 0, leaps = 0, one_way = 0;
+  uint32_t arcs = 0, hole_links = 0, one_way = 0;
   Vec3d feet, entered_at;
   uint32_t triangle = 0;
 };
@@ -108,7 +108,7 @@ class NodeJudge {
     }
   }
 
-  // One arc of the node, drawn at random, and its leap if it has one. Off-mesh links are not
+  // One arc of the node, drawn at random, and its hole link if it has one. Off-mesh links are not
   // tested.
   void check_arcs(uint32_t node, uint64_t n, Sample& sample) const {
     std::vector<NodeArc> arcs = nodes_.arcs(node);
@@ -127,7 +127,7 @@ class NodeJudge {
       sample.one_way = returns ? 0 : 1;
     }
     if (!arc.over_hole) return;
-    sample.leaps = 1;
+    sample.hole_links = 1;
     const int32_t c = config_.avatar_class;
     const NodePlace from = nodes_.place(c, node, arc.from_s, arc.from_t);
     const NodePlace to = nodes_.place(c, arc.to, arc.to_s, arc.to_t);
@@ -149,8 +149,8 @@ class NodeJudge {
   }
 
   void look_between(const Pose& from, const Pose& to, Sample& sample) const {
-    for (int k = 0; k <= kLeapParts; ++k) {
-      const double t = static_cast<double>(k) / kLeapParts;
+    for (int k = 0; k <= kHoleLinkParts; ++k) {
+      const double t = static_cast<double>(k) / kHoleLinkParts;
       const Vec3d axis = from.axis * (1 - t) + to.axis * t;
       look({from.feet * (1 - t) + to.feet * t, axis * (1 / length(axis))}, sample);
     }
@@ -192,7 +192,7 @@ Result<NodeVerifyReport> verify_nodes(const Nodes& nodes, const Scene& source,
       };
       report.places += s.exists ? 1 : 0;
       report.arcs += s.arcs;
-      report.hole_links += s.leaps;
+      report.hole_links += s.hole_links;
       count(s.entered, report.entered, "entered", s.entered_at);
       count(s.unsupported, report.unsupported, "unsupported", s.feet);
       count(s.steeper, report.steeper, "steeper", s.feet);

@@ -36,10 +36,11 @@ double seconds_since(Clock::time_point start) {
 
 struct Walked {
   bool exists = false, reached = false, together = false;
-  uint64_t segments = 0, links = 0, leaps = 0, poses = 0, entered = 0, unsupported = 0, torn = 0;
+  uint64_t segments = 0, links = 0, hole_links = 0, poses = 0, entered = 0, unsupported = 0,
+           broken = 0;
   std::array<uint64_t, kLinkKinds> kinds{};
   double length = 0, straight = 0, seconds = 0;
-  Vec3d at, entered_at, unsupported_at, torn_at;
+  Vec3d at, entered_at, unsupported_at, broken_at;
   uint32_t triangle = 0;
 };
 
@@ -113,12 +114,12 @@ class Follower {
     if (path.points.empty()) return walked;
     if (length(path.points.front().place.feet - from.feet) > kSame ||
         (walked.reached && length(path.points.back().place.feet - to.feet) > kSame)) {
-      tear(walked, from.feet);
+      mark_broken(walked, from.feet);
     }
     for (const NodePathLink& link : path.links) {
       ++walked.links;
       ++walked.kinds[static_cast<size_t>(link.kind)];
-      walked.leaps += link.over_hole ? 1 : 0;
+      walked.hole_links += link.over_hole ? 1 : 0;
     }
     size_t next = 0;
     for (size_t i = 1; i < path.points.size(); ++i) {
@@ -126,13 +127,13 @@ class Follower {
       const bool linked = next < path.links.size() && path.links[next].point == i;
       // (Where a body begins to fall it is in the air.)
       const bool in_air = !path.points[i].place;
-      const bool leaps = in_air || (linked && path.links[next].over_hole);
+      const bool over_hole = in_air || (linked && path.links[next].over_hole);
       if (linked && path.links[next].kind == LinkKind::kDrop) {
         check_drop(path.points, i, walked);
       }
       // What an off-mesh link crosses is not tested.
       if (linked && path.links[next].kind == LinkKind::kOffMesh) continue;
-      segment(path.points[i - 1], path.points[i], leaps, walked);
+      segment(path.points[i - 1], path.points[i], over_hole, walked);
     }
     return walked;
   }
@@ -161,14 +162,14 @@ class Follower {
                        over.feet.x == to.feet.x && over.feet.z == to.feet.z &&
                        over.feet.y > to.feet.y &&
                        over.feet.y - to.feet.y <= avatar_.max_drop + kSame;
-    if (!sound) tear(walked, to.feet);
+    if (!sound) mark_broken(walked, to.feet);
   }
 
-  static void tear(Walked& walked, Vec3d at) {
-    if (walked.torn++ == 0) walked.torn_at = at;
+  static void mark_broken(Walked& walked, Vec3d at) {
+    if (walked.broken++ == 0) walked.broken_at = at;
   }
 
-  void segment(const NodePathPoint& from, const NodePathPoint& to, bool leaps,
+  void segment(const NodePathPoint& from, const NodePathPoint& to, bool over_hole,
                Walked& walked) const {
     ++walked.segments;
     const double moved = length(to.place.feet - from.place.feet) +
@@ -177,12 +178,12 @@ class Follower {
         1 + static_cast<int>(std::min(kMaxPoses, std::ceil(4 * moved / avatar_.radius)));
     // From one level tile to the next there may be a step.
     const Vec3d seam = to.place.feet - from.place.feet;
-    if (!to.on_surface && !leaps &&
+    if (!to.on_surface && !over_hole &&
         (std::hypot(seam.x, seam.z) > kSeam ||
          std::fabs(seam.y) > std::max(kSeam, avatar_.step + kSame))) {
-      tear(walked, to.place.feet);
+      mark_broken(walked, to.place.feet);
     }
-    bool entered = false, unsupported = false, torn = false;
+    bool entered = false, unsupported = false, broken = false;
     for (int k = 0; k <= parts; ++k) {
       const double f = static_cast<double>(k) / parts;
       verify::Pose pose;
@@ -191,8 +192,8 @@ class Follower {
         const NodePlace place =
             nodes_.place(config_.avatar_class, from.place.node1 - 1,
                          along(from.place.s, to.place.s), along(from.place.t, to.place.t));
-        torn |= !place || (k == 0 && length(place.feet - from.place.feet) > kSame) ||
-                (k == parts && length(place.feet - to.place.feet) > kSeam);
+        broken |= !place || (k == 0 && length(place.feet - from.place.feet) > kSame) ||
+                  (k == parts && length(place.feet - to.place.feet) > kSeam);
         if (!place) break;
         pose = {place.feet, place.axis};
       } else {
@@ -208,14 +209,14 @@ class Follower {
         entered = true;
       }
       // (A climber on a link over a hole has no ground there.)
-      if (!leaps && !verify::turned_support(tree_, avatar_, pose.feet)) {
+      if (!over_hole && !verify::turned_support(tree_, avatar_, pose.feet)) {
         if (walked.unsupported == 0 && !unsupported) walked.unsupported_at = pose.feet;
         unsupported = true;
       }
     }
     walked.entered += entered ? 1 : 0;
     walked.unsupported += unsupported ? 1 : 0;
-    if (torn) tear(walked, from.place.feet);
+    if (broken) mark_broken(walked, from.place.feet);
   }
 
   const Nodes& nodes_;
@@ -263,16 +264,16 @@ Result<NodePathReport> verify_node_paths(const Nodes& nodes, const Scene& source
       };
       ++report.pairs;
       report.reached += g.reached ? 1 : 0;
-      report.parted += !g.reached && !g.together ? 1 : 0;
+      report.disconnected += !g.reached && !g.together ? 1 : 0;
       const bool is_blocked = g.together && !g.reached && !config.obstacles.empty();
       report.blocked += is_blocked ? 1 : 0;
       count(g.reached != g.together && !is_blocked ? 1 : 0, report.disagree, "disagree", g.at);
       count(g.entered, report.entered, "entered", g.entered_at);
       count(g.unsupported, report.unsupported, "unsupported", g.unsupported_at);
-      count(g.torn, report.torn, "torn", g.torn_at);
+      count(g.broken, report.broken, "broken", g.broken_at);
       report.segments += g.segments;
       report.links += g.links;
-      report.hole_links += g.leaps;
+      report.hole_links += g.hole_links;
       report.poses += g.poses;
       report.length += g.length;
       report.straight += g.straight;

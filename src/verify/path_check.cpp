@@ -134,12 +134,12 @@ void add(const Walked& walked, PathReport& report) {
   };
   ++report.pairs;
   report.reached += walked.reached ? 1 : 0;
-  report.parted += !walked.reached && !walked.together ? 1 : 0;
+  report.disconnected += !walked.reached && !walked.together ? 1 : 0;
   count(walked.reached != walked.together, report.disagree, "disagree", walked.at);
   count(walked.illegal, report.illegal, "illegal", walked.illegal_at);
   count(walked.body.entered, report.entered, "entered", walked.body.entered_at);
   count(walked.body.unsupported, report.unsupported, "unsupported", walked.body.unsupported_at);
-  count(walked.body.torn, report.torn, "torn", walked.body.torn_at);
+  count(walked.body.broken, report.broken, "broken", walked.body.broken_at);
   report.segments += walked.segments;
   report.bodies += walked.body.bodies;
   report.length += walked.length;

@@ -39,9 +39,9 @@ void look(const BodyCheck& body, Vec3d feet, SegmentRecord& record) {
   }
 }
 
-void tear(Vec3d at, SegmentRecord& record) {
-  if (!record.torn) record.torn_at = at;
-  record.torn = true;
+void mark_broken(Vec3d at, SegmentRecord& record) {
+  if (!record.broken) record.broken_at = at;
+  record.broken = true;
 }
 
 }  // namespace
@@ -62,14 +62,14 @@ void check_segment(const Claims& claims, const BodyCheck& body, const Place& fro
     const Vec3d point{a.x + t * dx, y, a.z + t * dz};
     const Place place = place_on_segment(claims, point, reach);
     if (!place) {
-      tear(point, record);
+      mark_broken(point, record);
       return;
     }
     look(body, place.position, record);
     y = place.position.y;
   }
   look(body, {b.x, claims.feet(to), b.z}, record);
-  if (std::fabs(b.y - y) > reach) tear(b, record);
+  if (std::fabs(b.y - y) > reach) mark_broken(b, record);
 }
 
 }  // namespace throng::verify

@@ -12,7 +12,7 @@
 #include "world/ground.h"
 #include "world/region_data.h"
 
-// Reads and checks files of nodes, and looks up nodes, arcs and leaps in them.
+// Reads and checks files of nodes, and looks up nodes, arcs and hole links in them.
 namespace throng {
 namespace {
 
@@ -49,14 +49,15 @@ Result<void> NodeZone::attach(const std::string& name) {
     return bad_nodes(name, "node version " + std::to_string(root_->version()) +
                                ", this program reads " + std::to_string(kNodeVersion));
   }
-  if (!root_->patches() || !root_->nodes() || !root_->arcs() || !root_->far() || !root_->leaps() ||
-      !root_->doors() || !root_->points() || !root_->partial() || !is_aligned(*root_->points())) {
+  if (!root_->patches() || !root_->nodes() || !root_->arcs() || !root_->far() ||
+      !root_->hole_links() || !root_->doors() || !root_->points() || !root_->partial() ||
+      !is_aligned(*root_->points())) {
     return bad_nodes(name, "an array is missing");
   }
   patches_ = structs(*root_->patches());
   nodes_ = structs(*root_->nodes());
   arcs_ = structs(*root_->arcs());
-  leaps_ = structs(*root_->leaps());
+  hole_links_ = structs(*root_->hole_links());
   partial_ = structs(*root_->partial());
   far_ = structs(*root_->far());
   doors_ = structs(*root_->doors());
@@ -124,9 +125,10 @@ const char* NodeZone::fault() const {
     }
   }
   uint64_t next_arc = 0;
-  for (const format::Leap& leap : leaps_) {
-    if (leap.arc() < next_arc || leap.arc() >= arcs_.size()) return "its leaps are out of order";
-    next_arc = uint64_t{leap.arc()} + 1;
+  for (const format::HoleLink& hole_link : hole_links_) {
+    if (hole_link.arc() < next_arc || hole_link.arc() >= arcs_.size())
+      return "its hole links are out of order";
+    next_arc = uint64_t{hole_link.arc()} + 1;
   }
   for (const format::Door& door : doors_) {
     const bool is_far = (door.to() & kFarNode) != 0;
@@ -150,11 +152,11 @@ uint64_t NodeZone::cells_of(uint32_t node) const {
   return uint64_t{found->high()} << 32 | found->low();
 }
 
-const format::Leap* NodeZone::leap_of(uint32_t arc) const {
-  const auto found =
-      std::lower_bound(leaps_.begin(), leaps_.end(), arc,
-                       [](const format::Leap& leap, uint32_t a) { return leap.arc() < a; });
-  return found != leaps_.end() && found->arc() == arc ? &*found : nullptr;
+const format::HoleLink* NodeZone::hole_link_of(uint32_t arc) const {
+  const auto found = std::lower_bound(
+      hole_links_.begin(), hole_links_.end(), arc,
+      [](const format::HoleLink& hole_link, uint32_t a) { return hole_link.arc() < a; });
+  return found != hole_links_.end() && found->arc() == arc ? &*found : nullptr;
 }
 
 std::span<const format::Arc> NodeZone::arcs(uint32_t node) const {

@@ -45,8 +45,8 @@ class NodeZone : public ZoneFile<NodeZone> {
   [[nodiscard]] const format::Arc* first_arc() const { return arcs_.data(); }
   /// Which of its block's 8 x 8 cells a partial node is, bit 8 t + s; 0 if it is a whole block.
   [[nodiscard]] uint64_t cells_of(uint32_t node) const;
-  /// The leap of an arc, or null.
-  [[nodiscard]] const format::Leap* leap_of(uint32_t arc) const;
+  /// The hole link of an arc, or null.
+  [[nodiscard]] const format::HoleLink* hole_link_of(uint32_t arc) const;
   /// Patch of the zone that a node belongs to.
   [[nodiscard]] const format::NodePatch& patch_of(uint32_t node) const;
   /// The 48 numbers of a Bezier patch.
@@ -64,7 +64,7 @@ class NodeZone : public ZoneFile<NodeZone> {
   std::span<const format::Node> nodes_;
   std::span<const format::Arc> arcs_;
   std::span<const format::PartialCells> partial_;
-  std::span<const format::Leap> leaps_;
+  std::span<const format::HoleLink> hole_links_;
   std::span<const format::FarNode> far_;
   std::span<const format::Door> doors_;
   std::span<const double> points_;

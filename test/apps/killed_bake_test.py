@@ -78,7 +78,7 @@ def main():
             references[start] = (content(world), seconds)
             print(f"from {start.name}: {seconds:.2f} s, {report['zones_baked']} baked, {report['zones_reused']} reused")
         assert references[empty][0] == references[old][0], "what was there before shows in the bytes"
-        assert bake(new_model, world, "--fresh")["zones_reused"] == 0
+        assert bake(new_model, world, "--rebuild")["zones_reused"] == 0
         assert content(world) == references[empty][0]
         before = content(old)
         killed = resumed = in_graph = in_nodes = opened = refused = without_nodes = 0

@@ -24,11 +24,12 @@ class OldNames(ProgramCase):
             self.assertEqual(re.sub(seconds, "", before.stdout), re.sub(seconds, "", now.stdout))
         for words, note in ((("nodes", self.world), "'nodes' is now 'surface'"), (("run", self.world, "--visits", "v.csv"), "'--visits' is now '--trips'"),
                             (("bake", "builtin:cube", "-o", "x", "--jumps", "none.json"), "'--jumps' is now '--off-mesh-links'"),
+                            (("bake", "none.obj", "-o", "x", "--fresh"), "'--fresh' is now '--rebuild'"),
                             (("path", self.world, *ends, "--jump", "14,0,8,19,0,99"), "'--jump' is now '--off-mesh-link'")):
             done = self.run_throng(*words)
             self.assertEqual((done.returncode, done.stderr.splitlines()[0]), (2, f"throng: note: {note}"), done.stderr)
         for command, names in (((), ("nodes", "place", "region", "world")), (("path",), ("--reach", "--jump")), (("run",), ("--visits",)),
-                               (("bake",), ("--jumps",))):
+                               (("bake",), ("--jumps", "--fresh"))):
             shown = self.run_throng(*command, "--help").stdout
             for name in names:
                 self.assertNotRegex(shown, rf"(?m)^  {name}\b")

@@ -152,7 +152,7 @@ class ProgramPath(ProgramCase):
             self.assertEqual(entry["over"], "level tiles")
             self.assertEqual(entry["pairs"], 40)
             self.assertGreater(entry["reached"], 10)
-            self.assertEqual(sum(entry[fault] for fault in ("illegal", "entered", "unsupported", "torn", "disagree")), 0)
+            self.assertEqual(sum(entry[fault] for fault in ("illegal", "entered", "unsupported", "broken", "disagree")), 0)
         done = self.run_throng(*verify, "builtin:maze")
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertFalse(json.loads(done.stdout)["passed"])

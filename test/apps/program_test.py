@@ -706,7 +706,7 @@ class Program(ProgramCase):
             corners = ((0, 0, 0), (30, 0, 0), (30, 0, -30), (0, 0, -30), (10, 0, -5), (10, 3, -5), (20, 3, -25), (20, 0, -25))
             lines = [f"v {x + a} {y + b} {z + c}" for a, b, c in corners] + ["f 1 2 3 4", "f 5 6 7 8"]
             (self.path / "hall.obj").write_text("\n".join(lines) + "\n")
-            self.assertEqual(self.run_throng("bake", "hall.obj", "-o", "hall", "--cell", 0.125, "--fresh").returncode, 0)
+            self.assertEqual(self.run_throng("bake", "hall.obj", "-o", "hall", "--cell", 0.125, "--rebuild").returncode, 0)
             run = self.run_throng("run", "hall", "--avatars", 30, "--steps", 20, "--record", "hall.replay", "--trajectories", "hall.csv")
             self.assertEqual(run.returncode, 0, run.stderr)
             camera = f"{x + 40},{y + 14},{z + 20},{x + 15},{y},{z - 15}"
@@ -767,7 +767,7 @@ class Program(ProgramCase):
         self.assertEqual([file.name for file in self.path.iterdir()], ["city.throng"])
         self.assertEqual(self.run_throng("info", "city.throng", "--check").returncode, 0)
         # A killed bake holds no lock.
-        with subprocess.Popen(command[:-2] + ["--fresh"], cwd=self.path, stderr=subprocess.DEVNULL) as killed:
+        with subprocess.Popen(command[:-2] + ["--rebuild"], cwd=self.path, stderr=subprocess.DEVNULL) as killed:
             while not (self.path / "city.throng.part").exists():
                 time.sleep(0.005)
             killed.kill()

@@ -68,7 +68,7 @@ class ChangedNodes : public testing::Test {
     Context context;
     bake_config.old_zones = fresh ? OldZones::kBakeAgain : OldZones::kKeep;
     bake_config.carry_nodes = !fresh;
-    config.fresh = fresh;
+    config.rebuild = fresh;
     const auto report = bake_world_to(at(name), scene, bake_config, context);
     EXPECT_TRUE(report) << report.error().message;
     const auto world = World::open(at(name));

@@ -381,7 +381,7 @@ TEST_F(ChangedZones, WhileNodesAreMadeTheirWorldCannotBeReplaced) {
       EXPECT_NE(nodes.error().message.find(busy), std::string::npos) << nodes.error().message;
     };
     NodeConfig again = wanted;
-    again.fresh = true;
+    again.rebuild = true;
     const auto nodes = Nodes::create_in_folder(*world, scene, again, context);
     ASSERT_TRUE(nodes) << nodes.error().message;
     EXPECT_GT(tried, 0);

@@ -93,7 +93,7 @@ TEST(NearLimit, LittleIsLostOnGentlyRollingGround) {
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ(report->entered, 0u);
   EXPECT_EQ(report->unsupported, 0u);
-  EXPECT_EQ(report->torn, 0u);
+  EXPECT_EQ(report->broken, 0u);
   EXPECT_GT(report->standable_area_grown, 200);
   EXPECT_LE(report->lost_grown, 0.01);
 }

@@ -258,9 +258,9 @@ TEST(NodeDrops, EveryPathCanBeWalkedByItsBody) {
       own.avatar_class = c;
       const auto paths = verify_node_paths(nodes, scene, own, context);
       ASSERT_TRUE(paths) << paths.error().message;
-      EXPECT_EQ(paths->entered + paths->unsupported + paths->torn + paths->disagree, 0u)
+      EXPECT_EQ(paths->entered + paths->unsupported + paths->broken + paths->disagree, 0u)
           << name << ", class " << c << ": " << paths->entered << ' ' << paths->unsupported << ' '
-          << paths->torn << ' ' << paths->disagree;
+          << paths->broken << ' ' << paths->disagree;
       drops += paths->links_of_kind[static_cast<size_t>(LinkKind::kDrop)];
       own.samples = 20 * pairs;
       const auto places = verify_nodes(nodes, scene, own, context);

@@ -55,14 +55,14 @@ Scene shared_world(const char* model) {
   return scene ? *scene : Scene{};
 }
 
-// Returns how many leaps there are.
+// Returns how many hole links there are.
 size_t check_arcs(const std::string& name, const Nodes& nodes) {
-  size_t arcs = 0, leaps = 0, one_way = 0;
+  size_t arcs = 0, hole_links = 0, one_way = 0;
   for (uint32_t n = 0; n < nodes.node_count(); ++n) {
     const NodeInfo here = nodes.node(n);
     for (const NodeArc& arc : nodes.arcs(n)) {
       EXPECT_LT(arc.to, nodes.node_count()) << name;
-      if (arc.to >= nodes.node_count()) return leaps;
+      if (arc.to >= nodes.node_count()) return hole_links;
       const NodeInfo there = nodes.node(arc.to);
       EXPECT_EQ(arc.classes & ~here.classes & 0xffff, 0) << name;
       EXPECT_EQ(arc.classes & ~there.classes & 0xffff, 0) << name;
@@ -73,12 +73,12 @@ size_t check_arcs(const std::string& name, const Nodes& nodes) {
                b.over_hole == arc.over_hole && b.from_s == arc.to_s && b.to_t == arc.from_t;
       });
       ++arcs;
-      leaps += arc.over_hole ? 1 : 0;
+      hole_links += arc.over_hole ? 1 : 0;
     }
   }
   EXPECT_EQ(one_way, 0u) << name;
   EXPECT_GT(arcs, 500u) << name;
-  return leaps;
+  return hole_links;
 }
 
 TEST(Nodes, EveryArcLeadsBack) {

@@ -108,7 +108,7 @@ TEST(WallParts, ACorridorAtAnyAngleKeepsWhatAGrownBodyCanUse) {
     Context context;
     const auto report = verify_world(world, scene, {.samples = 6000}, context);
     ASSERT_TRUE(report) << report.error().message;
-    EXPECT_EQ(report->entered + report->unsupported + report->torn, 0u) << turn;
+    EXPECT_EQ(report->entered + report->unsupported + report->broken, 0u) << turn;
     EXPECT_GT(report->standable_area_grown, 60) << turn;
     EXPECT_LE(report->lost_grown, 0.005) << turn;
   }

@@ -176,7 +176,7 @@ TEST(FarWorld, PathsAreThoseNearTheCoordinateOrigin) {
     ASSERT_TRUE(report);
     EXPECT_EQ(report->entered, 0u);
     EXPECT_EQ(report->unsupported, 0u);
-    EXPECT_EQ(report->torn, 0u);
+    EXPECT_EQ(report->broken, 0u);
   }
 }
 
@@ -240,7 +240,7 @@ TEST(FarWorld, NodesAndTheirPathsAreThoseNearTheCoordinateOrigin) {
       ASSERT_TRUE(report) << report.error().message;
       EXPECT_EQ(report->entered, 0u);
       EXPECT_EQ(report->unsupported, 0u);
-      EXPECT_EQ(report->torn, 0u);
+      EXPECT_EQ(report->broken, 0u);
       EXPECT_EQ(report->disagree, 0u);
     }
   }

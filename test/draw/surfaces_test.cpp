@@ -113,7 +113,7 @@ TEST(GlSurfaces, TexturedModelsOfEveryFormatLookTheSame) {
     const test::ScratchFolder folder;
     SceneConfig load;
     load.sources.push_back({.path = model.write(folder), .up = {}, .scale = {}, .transform = {}});
-    load.looks = SceneMaterials::kRead;
+    load.materials = SceneMaterials::kRead;
     Context context;
     const auto scene = load_scene(load, context);
     ASSERT_TRUE(scene) << scene.error().message;

@@ -6,7 +6,8 @@
 #include "import/formats/movingai.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
-  const auto cells = throng::importer::read_grid_map({reinterpret_cast<const char*>(bytes), size}, "fuzz");
+  const auto cells =
+      throng::importer::read_grid_map({reinterpret_cast<const char*>(bytes), size}, "fuzz");
   if (!cells) {
     if (cells.error().message.empty()) std::abort();
     return 0;

@@ -21,8 +21,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
       const uint32_t to = arc.to() & ~kFarNode;
       const bool far = (arc.to() & kFarNode) != 0;
       sum = sum + (far ? (*zone)->far()[to].node() : (*zone)->nodes()[to].level());
-      const auto* leap = (*zone)->leap_of(static_cast<uint32_t>(&arc - (*zone)->first_arc()));
-      sum = sum + (leap != nullptr ? leap->to_s() : 0u);
+      const auto* hole_link =
+          (*zone)->hole_link_of(static_cast<uint32_t>(&arc - (*zone)->first_arc()));
+      sum = sum + (hole_link != nullptr ? hole_link->to_s() : 0u);
     }
   }
   for (const format::Door& door : (*zone)->doors()) {

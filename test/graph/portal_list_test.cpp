@@ -16,7 +16,7 @@ NodePortal random_portal(uint64_t n) {
   };
   NodePortal portal{.a = draw(0, 1u << 31), .b = draw(1, 1u << 31), .on_a = {}, .on_b = {}};
   portal.kind = static_cast<LinkKind>(draw(2, kLinkKinds));
-  portal.leaps = draw(3, 2) != 0;
+  portal.over_hole = draw(3, 2) != 0;
   portal.one_way = draw(4, 2) != 0;
   portal.inside = draw(5, 2) != 0;
   const bool odd = draw(6, 10) == 0;
@@ -39,7 +39,7 @@ void expect_same(const NodePortal& got, const NodePortal& want) {
   EXPECT_EQ(got.on_a, want.on_a);
   EXPECT_EQ(got.on_b, want.on_b);
   EXPECT_EQ(got.kind, want.kind);
-  EXPECT_EQ(got.leaps, want.leaps);
+  EXPECT_EQ(got.over_hole, want.over_hole);
   EXPECT_EQ(got.one_way, want.one_way);
   EXPECT_EQ(got.inside, want.inside);
 }

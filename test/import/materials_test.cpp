@@ -101,7 +101,7 @@ Scene textured_scene() {
 Result<Scene> load(const std::string& path, std::vector<AreaVolume> volumes = {}) {
   SceneConfig config;
   config.sources.push_back({.path = path, .up = {}, .scale = {}, .transform = {}});
-  config.looks = SceneMaterials::kRead;
+  config.materials = SceneMaterials::kRead;
   config.volumes = std::move(volumes);
   Context context;
   return load_scene(config, context);
@@ -155,7 +155,7 @@ TEST(Materials, GoThroughGlbAndBackWithTheirTextures) {
   Context context;
   importer::ReadOptions options;
   options.name = path;
-  options.looks = SceneMaterials::kRead;
+  options.materials = SceneMaterials::kRead;
   auto by_us = importer::read_glb(*bytes, options, context);
   ASSERT_TRUE(by_us) << by_us.error().message;
   ASSERT_TRUE(importer::read_textures(*by_us, path, context));
@@ -174,7 +174,7 @@ TEST(Materials, AreLeftOutUnlessRequested) {
   EXPECT_TRUE(scene->materials.empty());
   EXPECT_TRUE(scene->textures.empty());
   EXPECT_TRUE(scene->texture_corners.empty());
-  config.looks = SceneMaterials::kRead;
+  config.materials = SceneMaterials::kRead;
   const auto looks = load_scene(config, context);
   ASSERT_TRUE(looks);
   EXPECT_EQ(scene->positions, looks->positions);
@@ -403,7 +403,7 @@ TEST(Materials, TwoModelsKeepTheirOwn) {
   for (const std::string& one : {folder.write("looks.obj", kObj), path}) {
     config.sources.push_back({.path = one, .up = {}, .scale = {}, .transform = {}});
   }
-  config.looks = SceneMaterials::kRead;
+  config.materials = SceneMaterials::kRead;
   Context context;
   const auto scene = load_scene(config, context);
   ASSERT_TRUE(scene);

@@ -20,7 +20,7 @@ namespace {
 Result<Scene> load(const std::string& path) {
   SceneConfig config;
   config.sources.push_back({.path = path, .up = {}, .scale = {}, .transform = {}});
-  config.looks = SceneMaterials::kRead;
+  config.materials = SceneMaterials::kRead;
   Context context;
   return load_scene(config, context);
 }
@@ -92,7 +92,7 @@ TEST(TexturedModels, OurOwnReaderOfGlbAgrees) {
     ASSERT_TRUE(bytes);
     importer::ReadOptions options;
     options.name = path;
-    options.looks = SceneMaterials::kRead;
+    options.materials = SceneMaterials::kRead;
     Context context;
     auto raw = importer::read_glb(*bytes, options, context);
     ASSERT_TRUE(raw) << raw.error().message;

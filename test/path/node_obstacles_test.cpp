@@ -95,7 +95,7 @@ TEST(NodeObstacles, EveryPathAroundThemIsLegalForItsBody) {
         const auto report = verify_node_paths(world.nodes, world.scene, config, context);
         ASSERT_TRUE(report) << report.error().message;
         EXPECT_EQ(report->entered, 0u);
-        EXPECT_EQ(report->torn, 0u);
+        EXPECT_EQ(report->broken, 0u);
         EXPECT_EQ(report->disagree, 0u);
         for (const VerifyFault& fault : report->faults) {
           ADD_FAILURE() << world.scene.triangles.size() << ' ' << c << ' ' << fault.what << ' '

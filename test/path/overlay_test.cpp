@@ -76,7 +76,7 @@ double cost_along(const NodeView& mesh, const PieceCost& piece, const BlockPoint
 }
 
 TEST(Overlay, PathsOverEntrancesAreFoundIfAnyAndCostLittleMore) {
-  uint64_t reached = 0, unreachable = 0, drops = 0, leaps = 0, expanded = 0, plainly = 0;
+  uint64_t reached = 0, unreachable = 0, drops = 0, hole_links = 0, expanded = 0, plainly = 0;
   size_t overlay_levels = 0;
   for_each_mesh([&](const NodeMesh& mesh) {
     double sum = 0, worst = 0;
@@ -108,7 +108,7 @@ TEST(Overlay, PathsOverEntrancesAreFoundIfAnyAndCostLittleMore) {
         EXPECT_GE(cost, plain.cost() * (1 - 1e-9));
         for (const Crossing& crossing : crossings) {
           drops += mesh.portals()[crossing.portal].kind == LinkKind::kDrop;
-          leaps += mesh.portals()[crossing.portal].leaps;
+          hole_links += mesh.portals()[crossing.portal].over_hole;
         }
         if (plain.cost() < 5) continue;
         sum += cost / plain.cost();
@@ -130,7 +130,7 @@ TEST(Overlay, PathsOverEntrancesAreFoundIfAnyAndCostLittleMore) {
   EXPECT_GT(reached, 600u);
   EXPECT_GT(unreachable, 40u);
   EXPECT_GT(drops, 0u);
-  EXPECT_GT(leaps, drops);
+  EXPECT_GT(hole_links, drops);
   EXPECT_LT(2 * expanded, plainly);
 }
 

@@ -105,7 +105,8 @@ std::vector<papers::SliceTile> make_tiles(const Columns& columns) {
   return tiles;
 }
 
-papers::SweepConfig sweep_config(const Columns& columns, int32_t avatar_height, int32_t resolution) {
+papers::SweepConfig sweep_config(const Columns& columns, int32_t avatar_height,
+                                 int32_t resolution) {
   papers::SweepConfig config{.width = columns.width,
                              .depth = columns.depth,
                              .avatar_height = avatar_height,

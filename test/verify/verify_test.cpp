@@ -33,7 +33,7 @@ TEST(Verify, HonestWorldHasNoFault) {
   EXPECT_EQ(report.surface_points, 20000u);
   EXPECT_EQ(report.entered, 0u);
   EXPECT_EQ(report.unsupported, 0u);
-  EXPECT_EQ(report.torn, 0u);
+  EXPECT_EQ(report.broken, 0u);
   EXPECT_EQ(report.no_surface_under_centre, 0u);
   EXPECT_EQ(report.feet_error_mean, 0);
   EXPECT_EQ(report.lost_grown, 0);
@@ -71,7 +71,7 @@ TEST(Verify, WallThatOnlyMovesIgnoreIsEnteredInTheMove) {
   const VerifyReport report = judge(world);
   EXPECT_GT(report.entered, 100u);
   EXPECT_LE(report.entered, report.moves);
-  EXPECT_EQ(report.torn, 0u);
+  EXPECT_EQ(report.broken, 0u);
 }
 
 TEST(Verify, BodyIsTestedAlongTheMoveAndNotOnlyAtItsEnds) {
@@ -80,7 +80,7 @@ TEST(Verify, BodyIsTestedAlongTheMoveAndNotOnlyAtItsEnds) {
   world.floor_found = flat_world({}).floor;
   const VerifyReport report = judge(world);
   EXPECT_GT(report.entered, 20u);
-  EXPECT_EQ(report.torn, 0u);
+  EXPECT_EQ(report.broken, 0u);
 }
 
 TEST(Verify, MoveThatEndsOnAnotherFloorIsTorn) {
@@ -94,16 +94,16 @@ TEST(Verify, MoveThatEndsOnAnotherFloorIsTorn) {
   Context context;
   const auto report = verify_proposals(claims, world.scene, {.samples = 200}, context);
   ASSERT_TRUE(report);
-  EXPECT_EQ(report->torn, report->moves);
+  EXPECT_EQ(report->broken, report->moves);
 }
 
 TEST(Verify, MoveThatJumpsOverAWallIsTorn) {
   FakeWorld world = flat_world(one_wall());
   world.moves_look_at_ends_only = true;
   const VerifyReport report = judge(world);
-  EXPECT_GT(report.torn, 20u);
+  EXPECT_GT(report.broken, 20u);
   EXPECT_EQ(report.entered, 0u);
-  EXPECT_GT(faults(report, "torn"), 0u);
+  EXPECT_GT(faults(report, "broken"), 0u);
 }
 
 TEST(Verify, BodyOneMillimetreTooNearAWallIsEntered) {
@@ -228,7 +228,7 @@ TEST(Verify, RampIsFollowedByHonestFeet) {
   const VerifyReport report = judge(world);
   EXPECT_EQ(report.entered, 0u);
   EXPECT_EQ(report.unsupported, 0u);
-  EXPECT_EQ(report.torn, 0u);
+  EXPECT_EQ(report.broken, 0u);
   EXPECT_LT(report.feet_error_mean, 1e-9);
   EXPECT_EQ(report.lost_grown, 0);
   EXPECT_NEAR(report.standable_area_grown, 11.3 * 11.3 / std::cos(std::acos(-1) / 6), 5);

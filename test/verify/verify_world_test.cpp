@@ -58,7 +58,7 @@ TEST(VerifyWorld, BakedHallHoldsForEveryClass) {
     EXPECT_GT(report.moves, 4900u) << classes[c].name;
     EXPECT_EQ(report.entered, 0u) << classes[c].name;
     EXPECT_EQ(report.unsupported, 0u) << classes[c].name;
-    EXPECT_EQ(report.torn, 0u) << classes[c].name;
+    EXPECT_EQ(report.broken, 0u) << classes[c].name;
     EXPECT_LE(report.feet_error_mean, 0.01) << classes[c].name;
     EXPECT_LE(report.feet_error_p95, 0.03) << classes[c].name;
     EXPECT_LE(report.lost_grown, 0.03) << classes[c].name;  // A small hall is mostly rims.
@@ -80,7 +80,7 @@ TEST(VerifyWorld, BuiltInWorldsHoldForEveryClass) {
       EXPECT_EQ(report.states, 6000u) << name << c;
       EXPECT_EQ(report.entered, 0u) << name << c;
       EXPECT_EQ(report.unsupported, 0u) << name << c;
-      EXPECT_EQ(report.torn, 0u) << name << c;
+      EXPECT_EQ(report.broken, 0u) << name << c;
       EXPECT_LE(report.feet_error_mean, 0.01) << name << c;
       EXPECT_LE(report.feet_error_p95, 0.03) << name << c;
     }
@@ -142,11 +142,11 @@ TEST(VerifyPaths, EveryPathIsWalkedByLegalMovesAndItsBody) {
       const PathReport report = walk_paths(*world, *scene, c, 60);
       EXPECT_EQ(report.pairs, 60u) << name << c;
       EXPECT_GE(report.reached, 20u) << name << c;
-      EXPECT_EQ(report.reached + report.parted, report.pairs) << name << c;
+      EXPECT_EQ(report.reached + report.disconnected, report.pairs) << name << c;
       EXPECT_EQ(report.illegal, 0u) << name << c;
       EXPECT_EQ(report.entered, 0u) << name << c;
       EXPECT_EQ(report.unsupported, 0u) << name << c;
-      EXPECT_EQ(report.torn, 0u) << name << c;
+      EXPECT_EQ(report.broken, 0u) << name << c;
       EXPECT_EQ(report.disagree, 0u) << name << c;
       EXPECT_GE(report.length, report.straight) << name << c;
     }
@@ -158,7 +158,7 @@ TEST(VerifyPaths, PathsThroughAnotherModelAreDetected) {
   more.add_box({0, 0, 3.8}, {20, 2, 4});
   const PathReport entered = walk_paths(hall_world(), more, 0, 100);
   EXPECT_GT(entered.entered, 20u);
-  EXPECT_EQ(entered.illegal + entered.unsupported + entered.torn + entered.disagree, 0u);
+  EXPECT_EQ(entered.illegal + entered.unsupported + entered.broken + entered.disagree, 0u);
   ASSERT_FALSE(entered.faults.empty());
   EXPECT_EQ(entered.faults[0].what, "entered");
 

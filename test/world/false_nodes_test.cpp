@@ -58,8 +58,9 @@ TEST(FalseNodes, AreRefusedByNameOrUsedWithoutACrash) {
       for (const format::Arc& arc : found->arcs(n)) {
         const uint32_t to = arc.to() & ~kFarNode;
         sum += (arc.to() & kFarNode) != 0 ? found->far()[to].node() : found->nodes()[to].level();
-        const auto* leap = found->leap_of(static_cast<uint32_t>(&arc - found->first_arc()));
-        sum += leap != nullptr ? leap->to_s() : 0;
+        const auto* hole_link =
+            found->hole_link_of(static_cast<uint32_t>(&arc - found->first_arc()));
+        sum += hole_link != nullptr ? hole_link->to_s() : 0;
       }
     }
     for (const format::Door& door : found->doors()) {

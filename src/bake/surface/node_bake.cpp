@@ -82,7 +82,7 @@ uint64_t NodeBaker::input() const {
 }
 
 Result<void> NodeBaker::reuse_zones() {
-  if (data_.path.empty() || config_.fresh) return {};
+  if (data_.path.empty() || config_.rebuild) return {};
   const OldNodes old(data_.path);
   std::vector<std::optional<Error>> failed(plan_.zones.size());
   parallel_for(plan_.zones.size(), config_.workers, [&](size_t z) {

@@ -27,7 +27,7 @@ namespace {
 static_assert(kPartialLevel + kPartialDepth == kTileDepth);
 
 // Cells between which a body goes straight though they do not touch.
-struct Leap {
+struct HoleLink {
   uint32_t from_patch = 0, from_cell = 0, to_patch = 0, to_cell = 0;
 };
 
@@ -167,8 +167,8 @@ class NodeBatch {
         pair.patch_b = of_b[pair.patch_b];
         if (pair.patch_a == kNoNode || pair.patch_b == kNoNode) continue;  // Another zone's affair.
         if (pair.side_a == 4) {
-          leaps_.push_back({pair.patch_a, pair.cell_a, pair.patch_b, pair.cell_b});
-          pair.leap1 = static_cast<uint32_t>(leaps_.size());
+          hole_links_.push_back({pair.patch_a, pair.cell_a, pair.patch_b, pair.cell_b});
+          pair.hole_link1 = static_cast<uint32_t>(hole_links_.size());
         }
         pairs_.push_back(pair);
       }
@@ -228,14 +228,14 @@ class NodeBatch {
       // Of level tiles one every half metre will do.
       const bool on_tile = drop.from.kind == PatchKind::kLevelTile;
       const uint32_t block = drop.from.cell / 64 / wide * 64 + drop.from.cell % 64 / wide;
-      leaps_.push_back({patch_of(drop.from), drop.from.cell, patch_of(drop.to), drop.to.cell});
+      hole_links_.push_back({patch_of(drop.from), drop.from.cell, patch_of(drop.to), drop.to.cell});
       pairs_.push_back({.patch_a = patch_of(drop.from),
                         .cell_a = drop.from.cell,
                         .patch_b = patch_of(drop.to),
                         .cell_b = drop.to.cell,
                         .classes = drop.classes,
                         .kind = LinkKind::kDrop,
-                        .leap1 = static_cast<uint32_t>(leaps_.size()),
+                        .hole_link1 = static_cast<uint32_t>(hole_links_.size()),
                         .one_way = true,
                         .spot = on_tile ? block : drop.from.cell});
     }
@@ -300,14 +300,14 @@ class NodeBatch {
         return bad(classes[static_cast<size_t>(off_mesh_link.avatar_class)].name +
                    " has no place within a metre of where it " + (from ? "ends" : "begins"));
       }
-      leaps_.push_back({from->first, from->second, to->first, to->second});
+      hole_links_.push_back({from->first, from->second, to->first, to->second});
       pairs_.push_back({.patch_a = from->first,
                         .cell_a = from->second,
                         .patch_b = to->first,
                         .cell_b = to->second,
                         .classes = static_cast<uint16_t>(1u << off_mesh_link.avatar_class),
                         .kind = LinkKind::kOffMesh,
-                        .leap1 = static_cast<uint32_t>(leaps_.size()),
+                        .hole_link1 = static_cast<uint32_t>(hole_links_.size()),
                         .one_way = !off_mesh_link.two_way});
     }
     return {};
@@ -334,8 +334,9 @@ class NodeBatch {
     name_climbs(across_);
   }
 
-  // Pairs of different patches, in runs that are then merged two by two. A run drops a leap only
-  // for earlier ones that serve its classes, so what is left of all does not depend on the runs.
+  // Pairs of different patches, in runs that are then merged two by two. A run drops a hole link
+  // only for earlier ones that serve its classes, so what is left of all does not depend on the
+  // runs.
   [[nodiscard]] std::vector<NodeLink> link_across() const {
     constexpr size_t kRun = size_t{1} << 14;
     std::vector<std::vector<NodeLink>> runs(pairs_.size() / kRun + 1);
@@ -512,7 +513,7 @@ class NodeBatch {
             static_cast<float>(area_of(source, tree, node)),
             static_cast<uint32_t>(content.arcs.size()));
         for (const ArcRecord& arc : arcs.of(id - zone.first)) {
-          if (arc.leap1 != 0) add_leap(arc, content);
+          if (arc.hole_link1 != 0) add_hole_link(arc, content);
           const Promise least = worst({.a = arc.from, .b = arc.to});
           content.arcs.emplace_back(target(arc.to, zone, content), arc.classes,
                                     static_cast<uint8_t>(arc.kind),
@@ -535,18 +536,20 @@ class NodeBatch {
     }
   }
 
-  void add_leap(const ArcRecord& arc, ZoneContent& content) const {
-    Leap leap = leaps_[arc.leap1 - 1];
-    if (arc.backward) leap = {leap.to_patch, leap.to_cell, leap.from_patch, leap.from_cell};
+  void add_hole_link(const ArcRecord& arc, ZoneContent& content) const {
+    HoleLink hole_link = hole_links_[arc.hole_link1 - 1];
+    if (arc.backward)
+      hole_link = {hole_link.to_patch, hole_link.to_cell, hole_link.from_patch,
+                   hole_link.from_cell};
     const auto part = [&](uint32_t patch, uint32_t cell) {
       const int32_t depth = forest_.trees[patch].depth;
       return std::pair{static_cast<uint8_t>(cell & ((1u << depth) - 1)),
                        static_cast<uint8_t>(cell >> depth)};
     };
-    const auto [from_s, from_t] = part(leap.from_patch, leap.from_cell);
-    const auto [to_s, to_t] = part(leap.to_patch, leap.to_cell);
-    content.leaps.emplace_back(static_cast<uint32_t>(content.arcs.size()), from_s, from_t, to_s,
-                               to_t);
+    const auto [from_s, from_t] = part(hole_link.from_patch, hole_link.from_cell);
+    const auto [to_s, to_t] = part(hole_link.to_patch, hole_link.to_cell);
+    content.hole_links.emplace_back(static_cast<uint32_t>(content.arcs.size()), from_s, from_t,
+                                    to_s, to_t);
   }
 
   // An arc's end as the zone writes it.
@@ -576,7 +579,7 @@ class NodeBatch {
   std::vector<Promise> promises_;        // by node
   std::vector<CellPair> pairs_, edges_;  // (those over Bezier edges again, for drops)
   std::vector<PatchDoor> doors_;         // by patch of the scene
-  std::vector<Leap> leaps_;
+  std::vector<HoleLink> hole_links_;
   std::vector<std::vector<NodeLink>> inside_;  // links by patch of the forest
   std::vector<NodeLink> across_;               // all others
   std::vector<std::vector<double>> widths_;

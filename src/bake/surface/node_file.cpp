@@ -30,11 +30,11 @@ ZoneArcs arcs_of(std::span<const NodeLink> links, const ZoneRange& zone) {
   // Links are sorted, so a stable deal to `from` leaves each node's arcs sorted.
   for (const NodeLink& l : links) {
     if (!goes_down(l)) continue;
-    out.arcs[next[l.b - zone.first + 1]++] = {l.b, l.a, l.classes, l.kind, l.leap1, !l.turned};
+    out.arcs[next[l.b - zone.first + 1]++] = {l.b, l.a, l.classes, l.kind, l.hole_link1, !l.turned};
   }
   for (const NodeLink& l : links) {
     if (!goes_up(l)) continue;
-    out.arcs[next[l.a - zone.first + 1]++] = {l.a, l.b, l.classes, l.kind, l.leap1, l.turned};
+    out.arcs[next[l.a - zone.first + 1]++] = {l.a, l.b, l.classes, l.kind, l.hole_link1, l.turned};
   }
   return out;
 }
@@ -51,8 +51,9 @@ Result<std::unique_ptr<NodeData::Slot>> node_slot(const ZoneContent& content) {
   const uint64_t bytes =
       content.patches.size() * sizeof(format::NodePatch) +
       content.nodes.size() * sizeof(format::Node) + content.arcs.size() * sizeof(format::Arc) +
-      content.leaps.size() * sizeof(format::Leap) + content.far.size() * sizeof(format::FarNode) +
-      content.doors.size() * sizeof(format::Door) + content.points.size() * sizeof(double) +
+      content.hole_links.size() * sizeof(format::HoleLink) +
+      content.far.size() * sizeof(format::FarNode) + content.doors.size() * sizeof(format::Door) +
+      content.points.size() * sizeof(double) +
       content.partial.size() * sizeof(format::PartialCells);
   if (bytes > (uint64_t{1} << 31) - (1 << 20)) {
     return Error{Errc::kLimit, name + ": more than 2 GiB of nodes; use smaller zones"};
@@ -61,13 +62,13 @@ Result<std::unique_ptr<NodeData::Slot>> node_slot(const ZoneContent& content) {
   const auto patches = builder.CreateVectorOfStructs(content.patches);
   const auto nodes = builder.CreateVectorOfStructs(content.nodes);
   const auto arcs = builder.CreateVectorOfStructs(content.arcs);
-  const auto leaps = builder.CreateVectorOfStructs(content.leaps);
+  const auto hole_links = builder.CreateVectorOfStructs(content.hole_links);
   const auto far = builder.CreateVectorOfStructs(content.far);
   const auto doors = builder.CreateVectorOfStructs(content.doors);
   const auto points = builder.CreateVector(content.points);
   const auto partial = builder.CreateVectorOfStructs(content.partial);
   builder.Finish(format::CreateNodeZone(builder, kNodeVersion, content.x, content.z, patches, nodes,
-                                        arcs, far, leaps, doors, points, partial),
+                                        arcs, far, hole_links, doors, points, partial),
                  "THNZ");
   auto zone = NodeZone::from_bytes(builder.Release(), name);
   if (!zone) return zone.error();

@@ -21,8 +21,8 @@ struct ArcRecord {
   uint32_t from = 0, to = 0;
   uint16_t classes = 0;
   LinkKind kind = LinkKind::kWalk;
-  uint32_t leap1 = 0;
-  bool backward = false;  ///< Against the leap.
+  uint32_t hole_link1 = 0;
+  bool backward = false;  ///< Against the hole link.
 };
 
 /// Nodes [first, last) of all belong to a zone.
@@ -49,7 +49,7 @@ struct ZoneContent {
   std::vector<format::NodePatch> patches;
   std::vector<format::Node> nodes;
   std::vector<format::Arc> arcs;
-  std::vector<format::Leap> leaps;
+  std::vector<format::HoleLink> hole_links;
   std::vector<format::FarNode> far;
   std::vector<format::Door> doors;
   std::vector<double> points;

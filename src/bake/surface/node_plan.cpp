@@ -112,11 +112,12 @@ struct NodeReaches {
 
 NodeReaches reaches(const WorldData& world, const Scene& scene, const NodeConfig& config,
                     const NodePlan& plan) {
-  double body = 0, leap = 0;
+  double body = 0, hole_reach = 0;
   for (const AvatarClass& avatar : world.summary.classes) {
     body = std::max(body, avatar.height + avatar.radius + body_bottom(avatar));
-    leap = std::max(leap, patch_leap(avatar.radius, config.size));
-    leap = std::max(leap, drop_reach(avatar, std::max(world.summary.cell, config.size)));
+    hole_reach = std::max(hole_reach, hole_link_reach(avatar.radius, config.size));
+    hole_reach =
+        std::max(hole_reach, drop_reach(avatar, std::max(world.summary.cell, config.size)));
   }
   NodeReaches reach;
   double farthest = 0;
@@ -128,11 +129,11 @@ NodeReaches reaches(const WorldData& world, const Scene& scene, const NodeConfig
       across = std::max(across, cell_across(patch, config.size));
     }
     farthest = std::max(farthest, across);
-    reach.triangles.push_back(leap + 2 * body + 4 * across + kMargin);
+    reach.triangles.push_back(hole_reach + 2 * body + 4 * across + kMargin);
   }
   // A flood visits cells that come as near, and those beside them.
   const double widest = make_bins(world.summary.classes).width.back();
-  reach.nodes = std::max(widest, leap) + farthest + kMargin;
+  reach.nodes = std::max(widest, hole_reach) + farthest + kMargin;
   return reach;
 }
 

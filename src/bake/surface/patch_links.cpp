@@ -150,10 +150,10 @@ bool lacks_neighbour(const PatchCells& cells, uint32_t cell, uint16_t bit) {
 // How far from a cell's middle the motions of a link over a hole test triangles. [m]
 double motion_reach(const PatchBody& body, double size) {
   constexpr double kRounded = 0.01;  // cells' middles are kept in floats
-  return patch_leap(body.radius, size) + MotionJudge::reach_of(body) + kRounded;
+  return hole_link_reach(body.radius, size) + MotionJudge::reach_of(body) + kRounded;
 }
 
-// Leaps from one patch.
+// Hole links from one patch.
 class HoleLinker {
  public:
   HoleLinker(const PatchLinkInput& input, const std::vector<PatchBody>& bodies, uint32_t patch)
@@ -225,7 +225,7 @@ class HoleLinker {
     const PatchBody& body = bodies_[target.avatar_class];
     if ((here_.promise.cells[a].classes & body.bit) == 0) return;
     const Vec3d middle = middle_of(input_, patch_, a);
-    const double widest = patch_leap(body.radius, input_.size);
+    const double widest = hole_link_reach(body.radius, input_.size);
     if (distance2(target.whole, middle) > widest * widest) return;
     if (!lacks_neighbour(here_.promise, a, body.bit)) return;
     find_nearest(middle, target, widest);
@@ -260,7 +260,7 @@ class HoleLinker {
   double farthest_ = 0;  // from a cell's middle, that any such link tests triangles [m]
   std::vector<Target> targets_;
   std::vector<std::pair<double, uint32_t>> nearest_;
-  bool looked_closer_ = false;  // at the cell whose leaps are tried
+  bool looked_closer_ = false;  // at the cell whose hole links are tried
   std::vector<CellPair> pairs_;
 };
 

@@ -39,7 +39,9 @@ struct EdgeLinks {
 };
 
 /// The farthest that a class goes over a hole between patches, from cell to cell. [m]
-[[nodiscard]] inline double patch_leap(double radius, double size) { return 3 * size + 2 * radius; }
+[[nodiscard]] inline double hole_link_reach(double radius, double size) {
+  return 3 * size + 2 * radius;
+}
 
 /// Pairs of cells over all edges that patches share, and where exactly they touch. Where the
 /// surface has a crease, a climber must be able to turn over it.

@@ -94,10 +94,10 @@ int32_t area_of(const aiNode& node, int32_t above) {
 
 class Sender {
  public:
-  Sender(aiScene& scene, const std::string& path, SceneMaterials looks, const PipeWriter& pipe)
+  Sender(aiScene& scene, const std::string& path, SceneMaterials materials, const PipeWriter& pipe)
       : scene_(scene),
         pipe_(pipe),
-        looks_(looks == SceneMaterials::kRead),
+        has_materials_(materials == SceneMaterials::kRead),
         extension_(std::filesystem::path(path).extension().string()) {
     for (char& c : extension_) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     has_areas_ = extension_ == ".glb" || extension_ == ".gltf";
@@ -119,7 +119,7 @@ class Sender {
       if (scene_.mMetaData->Get("UpAxis", up) && up == 2) convention.material_size = 'z';
     }
     pipe_.write(&convention, sizeof convention);
-    if (looks_) send_materials();
+    if (has_materials_) send_materials();
     if (scene_.mRootNode != nullptr) {
       send_node(*scene_.mRootNode, {}, kNoArea, aiMatrix4x4t<double>());
     }
@@ -234,7 +234,7 @@ class Sender {
 
   // Of a mesh, if its material has a texture.
   [[nodiscard]] const aiVector3D* places_of(const aiMesh& mesh) const {
-    if (!looks_ || mesh.mMaterialIndex >= texture_sets_.size()) return nullptr;
+    if (!has_materials_ || mesh.mMaterialIndex >= texture_sets_.size()) return nullptr;
     if (texture_sets_[mesh.mMaterialIndex] < 0) return nullptr;
     const auto set = static_cast<size_t>(texture_sets_[mesh.mMaterialIndex]);
     if (set < AI_MAX_NUMBER_OF_TEXTURECOORDS && mesh.mTextureCoords[set] != nullptr) {
@@ -288,7 +288,7 @@ class Sender {
     if (part.triangles == 0) return;
     const aiVector3D* places = part.vertices > 0 ? places_of(mesh) : nullptr;
     part.has_places = places != nullptr ? 1 : 0;
-    if (looks_ && mesh.mMaterialIndex < scene_.mNumMaterials) {
+    if (has_materials_ && mesh.mMaterialIndex < scene_.mNumMaterials) {
       part.material1 = mesh.mMaterialIndex + 1;
     }
     pipe_.write(&part, sizeof part);
@@ -323,7 +323,7 @@ class Sender {
 
   aiScene& scene_;
   const PipeWriter& pipe_;
-  bool looks_;
+  bool has_materials_;
   std::string extension_;
   bool has_areas_ = false;  // In other formats "area" means something else.
   std::vector<uint32_t> uses_;
@@ -341,16 +341,16 @@ void refuse(const PipeWriter& pipe, std::string why) {
   pipe.write(why.data(), why.size());
 }
 
-void read_and_send(const std::string& path, SceneMaterials looks, const PipeWriter& pipe) {
+void read_and_send(const std::string& path, SceneMaterials materials, const PipeWriter& pipe) {
   try {
     auto* importer = new Assimp::Importer;  // Never destroyed: the child ends by _exit.
-    const int of_looks =
-        looks == SceneMaterials::kRead ? 0 : aiComponent_TEXCOORDS | aiComponent_TEXTURES;
+    const int of_materials =
+        materials == SceneMaterials::kRead ? 0 : aiComponent_TEXCOORDS | aiComponent_TEXTURES;
     importer->SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
                                  aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
                                      aiComponent_COLORS | aiComponent_BONEWEIGHTS |
                                      aiComponent_ANIMATIONS | aiComponent_LIGHTS |
-                                     aiComponent_CAMERAS | of_looks);
+                                     aiComponent_CAMERAS | of_materials);
     const aiScene* read =
         importer->ReadFile(path, aiProcess_Triangulate | aiProcess_RemoveComponent);
     if (read == nullptr) {
@@ -358,7 +358,7 @@ void read_and_send(const std::string& path, SceneMaterials looks, const PipeWrit
       return;
     }
     aiScene* scene = importer->GetOrphanedScene();
-    Sender(*scene, path, looks, pipe).send();
+    Sender(*scene, path, materials, pipe).send();
   } catch (const std::bad_alloc&) {
     refuse(pipe, "not enough memory");
   } catch (const std::exception& error) {
@@ -546,7 +546,8 @@ Result<RawScene> read_with_assimp(const std::string& path, const ReadOptions& op
   const ChildLimits limits{.bytes = (uint64_t{2} << 30) + 100 * size, .seconds = 5 + size / 20'000};
   Receiver receiver(options);
   const auto done = run_in_child(
-      limits, context, [&](const PipeWriter& pipe) { read_and_send(path, options.looks, pipe); },
+      limits, context,
+      [&](const PipeWriter& pipe) { read_and_send(path, options.materials, pipe); },
       [&](PipeReader& pipe) { return receiver.receive(pipe); });
   if (receiver.too_large) {
     return Error{Errc::kLimit, path + ": more than 4.29 thousand million corners; split the file"};

@@ -118,11 +118,13 @@ struct Elements {
 class GlbReader {
  public:
   explicit GlbReader(const ReadOptions& options)
-      : name_(options.name), looks_(options.looks == SceneMaterials::kRead), writer_(options) {}
+      : name_(options.name),
+        has_materials_(options.materials == SceneMaterials::kRead),
+        writer_(options) {}
 
   Result<RawScene> read(std::string_view bytes, Context& context) {
     if (auto ok = read_chunks(bytes); !ok) return ok.error();
-    if (looks_) read_materials();
+    if (has_materials_) read_materials();
     const Json* scene = element(file_, "scenes", whole(file_, "scene").value_or(0));
     const auto roots = scene == nullptr ? Json() : scene->value("nodes", Json());
     if (!roots.is_array()) return bad("names no scene with nodes");
@@ -391,7 +393,7 @@ class GlbReader {
   }
 
   std::string name_;
-  bool looks_;
+  bool has_materials_;
   SceneWriter writer_;
   std::vector<Material> materials_;
   std::vector<uint64_t> texture_set_;  // By material.

@@ -21,7 +21,9 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 class ObjReader {
  public:
   explicit ObjReader(const ReadOptions& options)
-      : writer_(options), looks_(options.looks == SceneMaterials::kRead), library_(options.name) {}
+      : writer_(options),
+        has_materials_(options.materials == SceneMaterials::kRead),
+        library_(options.name) {}
 
   Result<RawScene> read(std::string_view bytes, Context& context) {
     size_t lines = 0;
@@ -72,12 +74,12 @@ class ObjReader {
     } else if (word == "usemtl") {
       material_ = name(cursor);
       changed_ = true;
-    } else if (looks_ && word == "vt") {
+    } else if (has_materials_ && word == "vt") {
       std::array<double, 2> place{};
       if (!(cursor.take(place[0]) && cursor.take(place[1]))) place = {};
       // Files count upwards from the lower edge.
       places_.push_back({static_cast<float>(place[0]), static_cast<float>(1 - place[1])});
-    } else if (looks_ && word == "mtllib") {
+    } else if (has_materials_ && word == "mtllib") {
       library_.read(name(cursor));
     } else if (word == "l" || word == "p" || word == "curv") {
       writer_.count_points_and_lines(1);
@@ -100,7 +102,7 @@ class ObjReader {
       if (index < 0) index += count + 1;  // Negative ones count back from the last vertex.
       good = good && index >= 1 && index <= count;
       if (good) corners_.push_back(static_cast<uint32_t>(index - 1));
-      if (good && looks_) read_place(corner);
+      if (good && has_materials_) read_place(corner);
     }
     if (!good || corners_.size() < 3) {
       writer_.count_bad(corners_.size() > 3 ? corners_.size() - 2 : 1);
@@ -132,7 +134,7 @@ class ObjReader {
   std::string object_, group_, material_;
   bool changed_ = true;
   std::vector<uint32_t> corners_;
-  bool looks_;
+  bool has_materials_;
   MaterialLibrary library_;
   std::vector<std::array<float, 2>> places_, face_places_;
 };

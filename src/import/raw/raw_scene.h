@@ -68,7 +68,7 @@ struct ReadOptions {
   double curve_tolerance = 0.02;          ///< [m]
   double plan_height = 3;                 ///< [m]
   std::optional<double> metres_per_unit;  ///< The user's own, where given.
-  SceneMaterials looks = SceneMaterials::kLeaveOut;
+  SceneMaterials materials = SceneMaterials::kLeaveOut;
 };
 
 /// Adds meshes and polygons to a scene, and counts what cannot be solid.

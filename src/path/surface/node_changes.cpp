@@ -218,9 +218,9 @@ void NodeChanges::block_pieces(const Solid& solid, std::span<const uint32_t> nea
       const bool curved = mesh_->surface(portal.a).points != nullptr;
       const bool doors =
           mesh_->blocks()[portal.a].patch != mesh_->blocks()[portal.b].patch && curved;
-      if (!portal.leaps && !doors) continue;
+      if (!portal.over_hole && !doors) continue;
       uint16_t pieces = 0;
-      if (portal.leaps) {
+      if (portal.over_hole) {
         pieces = blocks_portal(solid, portal, 0, 0) ? 1 : 0;
       } else if (blocks_portal(solid, portal, 0, 1)) {
         for (int32_t k = 0; k < kPieces; ++k) {
@@ -494,7 +494,7 @@ void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& 
     const uint16_t mask = blocked == pieces.end() ? uint16_t{0} : blocked->second;
     if (mask == 0) {
       free.push_back({});
-    } else if (!portal.leaps) {
+    } else if (!portal.over_hole) {
       for (int32_t k = 0; k < kPieces; ++k) {
         if ((mask >> k & 1) != 0) continue;
         const double from = k * (1.0 / kPieces), to = (k + 1) * (1.0 / kPieces);
@@ -512,11 +512,11 @@ void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& 
         for (const Stretch& b : on_b) {
           const double from = std::max({piece.from, a.from, b.from});
           const double to = std::min({piece.to, a.to, b.to});
-          if (!portal.leaps && !(to - from > kWide)) continue;
+          if (!portal.over_hole && !(to - from > kWide)) continue;
           NodePortal left = portal;
           left.a = a.block;
           left.b = b.block;
-          if (!portal.leaps) {
+          if (!portal.over_hole) {
             left.on_a = cut_line(portal.on_a, from, to);
             left.on_b = cut_line(portal.on_b, from, to);
           }

@@ -77,7 +77,7 @@ void NodeStringPuller::pull(const BlockPoint& from, const BlockPoint& to,
       const size_t i = round % 2 == 0 ? k : out.size() - 1 - k;
       PulledCrossing& here = out[i];
       const NodePortal portal = view_->portal(here.crossing.portal);
-      if (portal.leaps) continue;
+      if (portal.over_hole) continue;
       if (here.settled) {
         all += here.around;
         continue;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -346,6 +347,41 @@ TEST(Crowd, BadSettingsAreNamed) {
   EXPECT_EQ(spawn({.radius = NAN}),
             "crowd: radius must be 0 (the class's) to 100 m, and at most 4000 cells");
   EXPECT_NE(spawn({.avatar_class = 9}), "accepted");
+}
+
+TEST(Crowd, SpeedsBoundTheMovesAndUnknownIdsAreIgnored) {
+  const World world = test::bake(test::builtin({.name = "garage", .seed = 3}), 0.1);
+  Crowd crowd = made(world, {.dt = 0.1});
+  const auto ids = scattered(crowd, 60);
+  crowd.set_goals(ids, random_goals(world, ids.size(), 5));
+  std::vector<double> speeds;
+  for (size_t i = 0; i < ids.size(); ++i) speeds.push_back(0.2 + 0.05 * static_cast<double>(i));
+  crowd.set_speeds(ids, speeds);
+  const AvatarId unknown[] = {{}, {.slot1 = 5, .generation = 77}, {.slot1 = 1000, .generation = 0}};
+  const double any[] = {50, 50, 50};
+  crowd.set_speeds(unknown, any);
+
+  std::vector<double> farthest(ids.size());
+  std::vector<Vec3d> before(ids.size());
+  for (int step = 0; step < 100; ++step) {
+    for (size_t i = 0; i < ids.size(); ++i) before[i] = crowd.read(ids[i])->position;
+    crowd.step();
+    for (size_t i = 0; i < ids.size(); ++i) {
+      const Vec3d d = crowd.read(ids[i])->position - before[i];
+      farthest[i] = std::max(farthest[i], std::hypot(d.x, d.z) / 0.1);
+    }
+  }
+  size_t near_their_speed = 0;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    EXPECT_LE(farthest[i], speeds[i] * 1.001 + 0.01) << i;
+    near_their_speed += farthest[i] > 0.9 * speeds[i] ? 1 : 0;
+  }
+  EXPECT_GT(near_their_speed, ids.size() / 2);
+  expect_no_faults(crowd);
+  const CrowdMemory memory = crowd.memory();
+  EXPECT_EQ(memory.total(), memory.avatars + memory.paths + memory.ground);
+  EXPECT_GT(memory.avatars, 0u);
+  EXPECT_FALSE(crowd.may_lean());
 }
 
 }  // namespace

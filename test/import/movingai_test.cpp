@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "scratch_folder.h"
+#include "throng/scene.h"
+
 namespace throng {
 namespace {
 
@@ -60,6 +63,27 @@ TEST(VoxelMap, BadMapsAreRefusedAndTheLineIsNamed) {
   EXPECT_NE(message("voxel 4 9999 6\n").find("4096"), std::string::npos);
   EXPECT_NE(message("voxel 4 5 6\n0 1 2\n4 1 2\n").find("line 3"), std::string::npos);
   EXPECT_NE(message("voxel 4 5 6\n0 1\n").find("line 2"), std::string::npos);
+}
+
+TEST(VoxelMap, FilesAreReadAndNamedWhereTheyCannotBe) {
+  const test::ScratchFolder folder;
+  const auto cells = load_voxel_map(folder.write("a.3dmap", "voxel 4 5 6\r\n0 1 2\r\n3 4 5"));
+  ASSERT_TRUE(cells) << cells.error().message;
+  EXPECT_EQ(cells->depth, 6);
+  ASSERT_EQ(cells->filled.size(), 2u);
+  EXPECT_EQ(cells->filled[0].y, 1);
+
+  const std::string bad = folder.write("b.3dmap", "voxel 4 5 6\n0 1 6\n");
+  const auto refused = load_voxel_map(bad);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::kBadFile);
+  EXPECT_EQ(refused.error().message.rfind(bad + ": line 2", 0), 0u) << refused.error().message;
+
+  const std::string nowhere = folder.path() + "/c.3dmap";
+  const auto missing = load_voxel_map(nowhere);
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code, Errc::kIo);
+  EXPECT_NE(missing.error().message.find(nowhere), std::string::npos) << missing.error().message;
 }
 
 }  // namespace

@@ -246,5 +246,31 @@ TEST(AvatarGenerators, RefuseBadSettings) {
   EXPECT_EQ(AvatarGenerators::create(town().world, config, context).error().code, Errc::kBadInput);
 }
 
+TEST(AvatarGenerators, PopulateAfterAJumpMovesOwnAvatarsAndLeavesOthers) {
+  const GeneratorConfig config = config_of(0.04);
+  Context context;
+  auto generators = AvatarGenerators::create(town().world, config, context);
+  auto crowd = Crowd::create(town().world, {.dt = 0.2, .seed = 3});
+  ASSERT_TRUE(generators && crowd);
+  const auto others = crowd->scatter(20, {}, context);
+  ASSERT_TRUE(others);
+
+  for (const Vec3d eye : {Vec3d{35, 1.7, 65}, Vec3d{125, 1.7, 95}}) {
+    const std::vector<AvatarId> before(generators->members().begin(), generators->members().end());
+    const auto sight = [&](const Box3d& box) { return can_see(eye, box); };
+    const auto report = generators->populate(*crowd, eye, sight, context);
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_EQ(report->removed, before.size());
+    EXPECT_EQ(report->added, generators->members().size());
+    EXPECT_EQ(crowd->size(), others->size() + generators->members().size());
+    const auto alive = [&](AvatarId id) { return crowd->is_alive(id); };
+    EXPECT_TRUE(std::none_of(before.begin(), before.end(), alive));
+    EXPECT_TRUE(std::all_of(others->begin(), others->end(), alive));
+    EXPECT_GT(report->seen_avatars, 10u);
+    EXPECT_NEAR(report->seen_avatars, config.density * report->seen_area,
+                0.2 * config.density * report->seen_area);
+  }
+}
+
 }  // namespace
 }  // namespace throng

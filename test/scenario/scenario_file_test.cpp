@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/random.h"
+#include "scratch_folder.h"
 #include "throng/scenario.h"
 
 namespace throng {
@@ -287,6 +288,24 @@ TEST(ScenarioFile, SurvivesDamagedFiles) {
     }
   }
   EXPECT_GT(refused, kFiles / 2);
+}
+
+TEST(ScenarioFile, IsReadFromDiskAndNamedWhereItCannotBe) {
+  const test::ScratchFolder folder;
+  const std::string path = folder.write("full.toml", kFull);
+  const auto read = load_scenario(path), parsed = parse_scenario(kFull, path);
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_TRUE(parsed);
+  EXPECT_EQ(read->areas.size(), parsed->areas.size());
+  EXPECT_EQ(read->seed, 7u);
+
+  const std::string bad = folder.write("bad.toml", "seconds = \"soon\"\n");
+  const auto refused = load_scenario(bad);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message.rfind(bad, 0), 0u) << refused.error().message;
+  const auto missing = load_scenario(folder.path() + "/nowhere.toml");
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code, Errc::kIo);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -470,6 +471,51 @@ TEST(Caacd, AnyInputGivesFiniteForcesWithinTheLimits) {
     }
   }
   EXPECT_GT(tested, 200000u);
+}
+
+TEST(Caacd, TheMoreUrgentThreatIsSoonerThenNearerThenOfTheSmallerId) {
+  Threat base;
+  base.level = State::kAlert, base.time = 4, base.distance = 3, base.id = 7;
+  Threat sooner = base, nearer = base, smaller = base;
+  sooner.time = 3, sooner.distance = 9, sooner.id = 9;
+  nearer.distance = 2, nearer.id = 9;
+  smaller.id = 6;
+  for (const Threat& more : {sooner, nearer, smaller}) {
+    EXPECT_TRUE(more_urgent(more, base));
+    EXPECT_FALSE(more_urgent(base, more));
+  }
+  EXPECT_FALSE(more_urgent(base, base));
+  EXPECT_TRUE(more_urgent(base, Threat{})) << "no threat is less urgent than any";
+}
+
+// The probe as a grid of points, 1 % of its size apart.
+TEST(Caacd, AProbeOverlapsADiscIfOneOfItsPointsIsInside) {
+  Model model = brisk();
+  model.probe_time = 3;
+  int both[2] = {0, 0};
+  for (uint64_t k = 0; k < 400; ++k) {
+    const auto draw = [&](uint64_t n) { return random_unit(31, k, n); };
+    const Body self = body(20 * draw(0), 20 * draw(1), draw(2) - 0.5, draw(3) - 0.5);
+    const Vec3d centre{self.position.x + 40 * (draw(4) - 0.5), 50 * draw(5),
+                       self.position.z + 40 * (draw(6) - 0.5)};
+    const double radius = 0.5 + 6 * draw(7);
+    const double reach = probe_length(self, model), half = kFields.repulsive;
+    const Vec3d right = right_of(self.forward);
+    double nearest = 1e300;
+    for (int a = 0; a <= 100; ++a) {
+      for (int b = -50; b <= 50; ++b) {
+        const Vec3d at = self.position + self.forward * (reach * a / 100) + right * (half * b / 50);
+        nearest = std::min(nearest, std::hypot(at.x - centre.x, at.z - centre.z));
+      }
+    }
+    const double apart = 0.01 * (reach + 2 * half);
+    if (nearest > radius && nearest < radius + apart) continue;  // Too near to say.
+    const bool overlaps = probe_overlaps(self, centre, radius, model);
+    EXPECT_EQ(overlaps, nearest <= radius) << k;
+    ++both[overlaps ? 1 : 0];
+  }
+  EXPECT_GT(both[0], 50);
+  EXPECT_GT(both[1], 50);
 }
 
 }  // namespace

@@ -184,8 +184,8 @@ struct Scenario {
   std::vector<ScenarioObstacle> obstacles;
 };
 
-/// Reads a scenario file. Fails with kNotFound, or with kBadFile and the line, the key and the
-/// reason.
+/// Reads a scenario file. Fails with kBadFile (missing, or the line, the key and the reason) or
+/// kIo.
 [[nodiscard]] THRONG_API Result<Scenario> load_scenario(const std::string& path);
 /// The same for a text. `name` is used in messages; relative paths start at its folder.
 [[nodiscard]] THRONG_API Result<Scenario> parse_scenario(const std::string& text,

@@ -82,7 +82,7 @@ TEST(VoxelMap, FilesAreReadAndNamedWhereTheyCannotBe) {
   const std::string nowhere = folder.path() + "/c.3dmap";
   const auto missing = load_voxel_map(nowhere);
   ASSERT_FALSE(missing);
-  EXPECT_EQ(missing.error().code, Errc::kIo);
+  EXPECT_EQ(missing.error().code, Errc::kBadFile);
   EXPECT_NE(missing.error().message.find(nowhere), std::string::npos) << missing.error().message;
 }
 

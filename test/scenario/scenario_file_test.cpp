@@ -305,7 +305,7 @@ TEST(ScenarioFile, IsReadFromDiskAndNamedWhereItCannotBe) {
   EXPECT_EQ(refused.error().message.rfind(bad, 0), 0u) << refused.error().message;
   const auto missing = load_scenario(folder.path() + "/nowhere.toml");
   ASSERT_FALSE(missing);
-  EXPECT_EQ(missing.error().code, Errc::kIo);
+  EXPECT_EQ(missing.error().code, Errc::kBadFile);
 }
 
 }  // namespace

@@ -125,8 +125,8 @@ struct NodePathReport {
 struct PathReport {
   uint64_t pairs = 0;  ///< Random pairs of places; every second pair is connected, if one is found.
   uint64_t reached = 0;  ///< Of these, with a path.
-  uint64_t disconnected =
-      0;                  ///< Of these, without a path and in different components of the graph.
+  /// Of these, without a path and in different components of the graph.
+  uint64_t disconnected = 0;
   uint64_t segments = 0;  ///< Of the paths, point to point.
   /// Tested bodies on the paths, at most half a cell and a quarter of a radius apart.
   uint64_t bodies = 0;

@@ -31,8 +31,8 @@ struct Options {
   double radius = 0.3, speed = 1.3;
   double view = -1;  // Radius of a view in the middle [m]; negative: none.
   double dt = 0.1;
-  int32_t low_detail_steps = CrowdConfig().low_detail_steps;
-  double low_detail_reaction = CrowdConfig().low_detail_reaction;
+  int32_t low_detail_steps = CrowdTuning().low_detail_steps;
+  double low_detail_reaction = CrowdTuning().low_detail_reaction;
 };
 
 Json fail(const Error& error) { return {{"error", error.message}}; }
@@ -52,8 +52,8 @@ Json run(const Options& o) {
                                       .seed = o.seed,
                                       .workers = o.threads,
                                       .routing = Routing::kStraight,
-                                      .low_detail_steps = o.low_detail_steps,
-                                      .low_detail_reaction = o.low_detail_reaction});
+                                      .tuning = {.low_detail_steps = o.low_detail_steps,
+                                                 .low_detail_reaction = o.low_detail_reaction}});
   if (!crowd) return fail(crowd.error());
   if (o.view >= 0) {
     const CrowdView view{{side / 2, 0, side / 2}, o.view};

@@ -101,41 +101,47 @@ enum class Routing {
   kStraight,
 };
 
-/// Settings for Crowd::create.
-struct CrowdConfig {
-  double dt = 0.1;  ///< Length of a step. [s, 0.001 to 1]
-  uint64_t seed = 1;
-  int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
-  Routing routing = Routing::kPaths;
-  /// How avatars on foot avoid each other. `reaction` and `deadlock_avoidance` apply to kSampled
-  /// alone: other models decide in each step.
-  SteeringModel model = SteeringModel::kSampled;
-  /// Of finding paths: kLabels for small worlds and many long paths, kZones for large worlds.
-  PathSpeedup speedup = PathSpeedup::kNone;
-  /// SearchBudget::max_bytes of each search for a path. As many searches as there are workers may
-  /// run at the same time. [bytes, >= 2^20]
-  uint64_t search_bytes = SearchBudget::kDefaultBytes;
+/// What trades quality of movement for time. The defaults were measured
+/// (docs/design/008-engine.md); only studies of the engine change them.
+struct CrowdTuning {
   double sight = 5;  ///< Avatars farther away are not avoided yet. [m, 1 to 50]
   /// An avatar that walks at its preferred velocity decides again after this time. In the steps
   /// between it keeps its velocity as long as no avatar and no wall blocks it. If a step is longer
   /// than this, all avatars decide in each step. Shorter times cost more and gain little. [s, 0 to
   /// 1]
   double reaction = 0.2;
-  /// In low detail (beyond all views, see set_views) an avatar makes one move for several steps: as
-  /// many steps as the radius of the narrowest body allows, at most this number. If that is more
-  /// than one, it ignores other avatars that it could not touch in this move. [1 to 16]
+  /// In low detail (beyond all views, see Crowd::set_views) an avatar makes one move for several
+  /// steps: as many steps as the radius of the narrowest body allows, at most this number. If that
+  /// is more than one, it ignores other avatars that it could not touch in this move. [1 to 16]
   int32_t low_detail_steps = 4;
   double low_detail_reaction = 0.4;  ///< `reaction` in low detail. [s, 0 to 10]
   int32_t rounds = 3;                ///< Conflict resolution rounds of a step. [1 to 100]
   /// An avatar that makes no progress tries a growing detour angle.
   bool deadlock_avoidance = true;
-  /// Time between two checks for progress. no_progress() returns the avatars that have a goal, have
-  /// not arrived and have come less than 0.3 m further since the last check. 0: no checks. Never
-  /// changes the steps. [s, 0 to 1e6]
+  /// Time between two checks for progress. Crowd::no_progress() returns the avatars that have a
+  /// goal, have not arrived and have come less than 0.3 m further since the last check. 0: no
+  /// checks. Never changes the steps. [s, 0 to 1e6]
   double no_progress_after = 0;
+};
+
+/// Settings for Crowd::create.
+struct CrowdConfig {
+  double dt = 0.1;  ///< Length of a step. [s, 0.001 to 1]
+  uint64_t seed = 1;
+  int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
+  Routing routing = Routing::kPaths;
+  /// How avatars on foot avoid each other. CrowdTuning::reaction and deadlock_avoidance
+  /// apply to kSampled alone: other models decide in each step.
+  SteeringModel model = SteeringModel::kSampled;
+  /// Of finding paths: kLabels for small worlds and many long paths, kZones for large worlds.
+  PathSpeedup speedup = PathSpeedup::kNone;
+  /// SearchBudget::max_bytes of each search for a path. As many searches as there are workers may
+  /// run at the same time. [bytes, >= 2^20]
+  uint64_t search_bytes = SearchBudget::kDefaultBytes;
   /// Nodes of the same world. Avatars of classes that climb or have a `max_drop`, and do not fly,
   /// walk over them; without nodes these walk on level tiles, as others do.
   Nodes nodes = {};
+  CrowdTuning tuning = {};  ///< Fine for most crowds as it is.
 };
 
 /// An avatar to add.

@@ -58,18 +58,20 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
     return bad_config("search_bytes must be 1048576 (1 MiB) or more");
   }
   if (config.workers < 0) return bad_config("workers must be 0 (all cores) or more");
-  if (!(config.sight >= 1 && config.sight <= 50)) return bad_config("sight must be 1 to 50 m");
-  if (!(config.reaction >= 0 && config.reaction <= 1)) {
+  if (!(config.tuning.sight >= 1 && config.tuning.sight <= 50))
+    return bad_config("sight must be 1 to 50 m");
+  if (!(config.tuning.reaction >= 0 && config.tuning.reaction <= 1)) {
     return bad_config("reaction must be 0 to 1 s");
   }
-  if (!(config.rounds >= 1 && config.rounds <= 100)) return bad_config("rounds must be 1 to 100");
-  if (!(config.low_detail_reaction >= 0 && config.low_detail_reaction <= 10)) {
+  if (!(config.tuning.rounds >= 1 && config.tuning.rounds <= 100))
+    return bad_config("rounds must be 1 to 100");
+  if (!(config.tuning.low_detail_reaction >= 0 && config.tuning.low_detail_reaction <= 10)) {
     return bad_config("low_detail_reaction must be 0 to 10 s");
   }
-  if (!(config.low_detail_steps >= 1 && config.low_detail_steps <= 16)) {
+  if (!(config.tuning.low_detail_steps >= 1 && config.tuning.low_detail_steps <= 16)) {
     return bad_config("low_detail_steps must be 1 to 16");
   }
-  if (!(config.no_progress_after >= 0 && config.no_progress_after <= 1e6)) {
+  if (!(config.tuning.no_progress_after >= 0 && config.tuning.no_progress_after <= 1e6)) {
     return bad_config("no_progress_after must be 0 to 1000000 s");
   }
   if (data_of(config.nodes) != nullptr && !is_same_world(config.nodes, world)) {
@@ -81,10 +83,10 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   steer::SampledSettings steering;
   if (!is_sampled) steering.neighbours = steer::kMaxNear;
   CrowdEngine engine({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
-                      .sight = static_cast<float>(config.sight),
-                      .rounds = config.rounds,
-                      .deadlock_avoidance = is_sampled && config.deadlock_avoidance,
-                      .reaction = is_sampled ? static_cast<float>(config.reaction) : 0,
+                      .sight = static_cast<float>(config.tuning.sight),
+                      .rounds = config.tuning.rounds,
+                      .deadlock_avoidance = is_sampled && config.tuning.deadlock_avoidance,
+                      .reaction = is_sampled ? static_cast<float>(config.tuning.reaction) : 0,
                       .seed = config.seed,
                       .workers = config.workers,
                       .model = config.model,
@@ -94,18 +96,18 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
                       .spacing = {}},
                      data.width, data.depth, data.summary.classes.size());
   FlyerEngine flyers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
-                      .sight = static_cast<float>(config.sight),
-                      .rounds = config.rounds,
-                      .deadlock_avoidance = config.deadlock_avoidance,
+                      .sight = static_cast<float>(config.tuning.sight),
+                      .rounds = config.tuning.rounds,
+                      .deadlock_avoidance = config.tuning.deadlock_avoidance,
                       .seed = config.seed,
                       .workers = config.workers,
                       .steering = {},
                       .deadlock_settings = {}},
                      data.summary.classes.size());
   ClimberEngine climbers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
-                          .sight = static_cast<float>(config.sight),
-                          .rounds = config.rounds,
-                          .deadlock_avoidance = config.deadlock_avoidance,
+                          .sight = static_cast<float>(config.tuning.sight),
+                          .rounds = config.tuning.rounds,
+                          .deadlock_avoidance = config.tuning.deadlock_avoidance,
                           .seed = config.seed,
                           .workers = config.workers,
                           .steering = {}},
@@ -538,8 +540,8 @@ CrowdReport Crowd::step() {
     s.plan(bodies, worker, planned);
   };
   s.engine.set_detail({.views = s.views,
-                       .steps = s.config.low_detail_steps,
-                       .reaction = static_cast<float>(s.config.low_detail_reaction),
+                       .steps = s.config.tuning.low_detail_steps,
+                       .reaction = static_cast<float>(s.config.tuning.low_detail_reaction),
                        .narrowest = s.narrowest});
   const bool has_paths = s.config.routing == Routing::kPaths || !s.flights.empty() || s.some_leave;
   for (int32_t i = 0; i < s.sub_steps; ++i) {

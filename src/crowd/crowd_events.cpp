@@ -39,8 +39,8 @@ void Crowd::State::find_events() {
   no_progress.clear();
   if (!watched.empty()) find_entries();
   const auto every =
-      static_cast<uint64_t>(std::max(1.0, std::round(config.no_progress_after / config.dt)));
-  if (config.no_progress_after > 0 && step % every == 0) find_no_progress();
+      static_cast<uint64_t>(std::max(1.0, std::round(config.tuning.no_progress_after / config.dt)));
+  if (config.tuning.no_progress_after > 0 && step % every == 0) find_no_progress();
 }
 
 void Crowd::State::find_entries() {

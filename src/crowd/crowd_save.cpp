@@ -145,14 +145,14 @@ Head head_of(const World& world, const CrowdConfig& config) {
   head.world = hash_of(world);
   head.seed = config.seed;
   head.dt = config.dt;
-  head.sight = config.sight;
-  head.reaction = config.reaction;
-  head.rounds = config.rounds;
+  head.sight = config.tuning.sight;
+  head.reaction = config.tuning.reaction;
+  head.rounds = config.tuning.rounds;
   head.routing = static_cast<int32_t>(config.routing);
-  head.deadlock_avoidance = config.deadlock_avoidance ? 1 : 0;
+  head.deadlock_avoidance = config.tuning.deadlock_avoidance ? 1 : 0;
   head.model = static_cast<int32_t>(config.model);
-  head.low_detail_steps = config.low_detail_steps;
-  head.low_detail_reaction = config.low_detail_reaction;
+  head.low_detail_steps = config.tuning.low_detail_steps;
+  head.low_detail_reaction = config.tuning.low_detail_reaction;
   return head;
 }
 

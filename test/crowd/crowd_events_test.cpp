@@ -74,7 +74,8 @@ TEST(CrowdEvents, ReportAvatarsThatEnterAreas) {
 TEST(CrowdEvents, WatchingChangesNothingAndHasLimits) {
   const World world = plane();
   Context context;
-  auto plain = Crowd::create(world, {}), watched = Crowd::create(world, {.no_progress_after = 1});
+  auto plain = Crowd::create(world, {}),
+       watched = Crowd::create(world, {.tuning = {.no_progress_after = 1}});
   ASSERT_TRUE(plain && watched);
   for (Crowd* crowd : {&*plain, &*watched}) {
     const auto ids = crowd->scatter(100, {}, context);
@@ -88,7 +89,7 @@ TEST(CrowdEvents, WatchingChangesNothingAndHasLimits) {
   EXPECT_EQ(watched->watch_area(box).error().code, Errc::kLimit);
   EXPECT_FALSE(plain->watch_area({}));
   EXPECT_FALSE(plain->watch_area(std::vector<Prism>(1)));
-  EXPECT_FALSE(Crowd::create(world, {.no_progress_after = -1}));
+  EXPECT_FALSE(Crowd::create(world, {.tuning = {.no_progress_after = -1}}));
   for (int step = 0; step < 50; ++step) {
     plain->step();
     watched->step();
@@ -101,7 +102,8 @@ TEST(CrowdEvents, WatchingChangesNothingAndHasLimits) {
 TEST(CrowdEvents, ReportAvatarsWithoutProgress) {
   const World world = plane();
   Context context;
-  auto crowd = Crowd::create(world, {.routing = Routing::kStraight, .no_progress_after = 2});
+  auto crowd =
+      Crowd::create(world, {.routing = Routing::kStraight, .tuning = {.no_progress_after = 2}});
   ASSERT_TRUE(crowd);
   const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 1); };
   const std::vector<AvatarSpawn> spawns = {

@@ -334,8 +334,8 @@ TEST(Crowd, BadSettingsAreNamed) {
   EXPECT_EQ(refused({.dt = 0}), "crowd: dt must be 0.001 to 1 s");
   EXPECT_EQ(refused({.dt = NAN}), "crowd: dt must be 0.001 to 1 s");
   EXPECT_EQ(refused({.workers = -1}), "crowd: workers must be 0 (all cores) or more");
-  EXPECT_EQ(refused({.sight = 0}), "crowd: sight must be 1 to 50 m");
-  EXPECT_EQ(refused({.rounds = 0}), "crowd: rounds must be 1 to 100");
+  EXPECT_EQ(refused({.tuning = {.sight = 0}}), "crowd: sight must be 1 to 50 m");
+  EXPECT_EQ(refused({.tuning = {.rounds = 0}}), "crowd: rounds must be 1 to 100");
   EXPECT_FALSE(Crowd::create({}, {}));
   Crowd crowd = made(world);
   Context context;

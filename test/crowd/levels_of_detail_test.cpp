@@ -41,7 +41,7 @@ TEST(LevelsOfDetail, NoAvatarTouchesAnotherWhileViewsMoveAtRandom) {
   for (const SteeringModel model : {SteeringModel::kSampled, SteeringModel::kSocialForce}) {
     for (const char* name : {"garage", "maze", "stairs"}) {
       const World world = test::bake(test::builtin({.name = name, .seed = 3}), 0.1);
-      Crowd crowd = made(world, {.dt = 0.05, .model = model, .low_detail_steps = 6});
+      Crowd crowd = made(world, {.dt = 0.05, .model = model, .tuning = {.low_detail_steps = 6}});
       const auto ids = scattered(crowd, 250);
       give_goals(crowd, world, ids, 1);
       const AvatarClass body = world.summary().classes[0];
@@ -116,13 +116,14 @@ TEST(LevelsOfDetail, StatesAreTheSameForAnyWorkersAndWhenRestored) {
   ASSERT_TRUE(restored) << restored.error().message;
   for (int step = 0; step < 30; ++step) restored->step();
   EXPECT_EQ(restored->state_hash(), hashes[0]);
-  EXPECT_FALSE(Crowd::restore(world, {.dt = 0.05, .low_detail_steps = 2}, saved, context));
+  EXPECT_FALSE(
+      Crowd::restore(world, {.dt = 0.05, .tuning = {.low_detail_steps = 2}}, saved, context));
 }
 
 // No avatar moves farther at once than the narrowest body is wide.
 TEST(LevelsOfDetail, NoAvatarJumpsThroughAnother) {
   const World world = test::bake(worlds::flat(30), 0.1);
-  Crowd crowd = made(world, {.dt = 0.05, .low_detail_steps = 16});
+  Crowd crowd = made(world, {.dt = 0.05, .tuning = {.low_detail_steps = 16}});
   const AvatarId id = added(crowd, world.find_place(0, {5, 0, 15}, 0.5), {.radius = 0.3});
   added(crowd, world.find_place(0, {25, 0, 25}, 0.5), {.radius = 0.2});
   const Place goal = world.find_place(0, {25, 0, 15}, 0.5);
@@ -147,9 +148,10 @@ TEST(LevelsOfDetail, LimitsAreNamed) {
     const auto crowd = Crowd::create(world, config);
     return crowd ? std::string() : crowd.error().message;
   };
-  EXPECT_EQ(why({.low_detail_steps = 0}), "crowd: low_detail_steps must be 1 to 16");
-  EXPECT_EQ(why({.low_detail_steps = 17}), "crowd: low_detail_steps must be 1 to 16");
-  EXPECT_EQ(why({.low_detail_reaction = -1}), "crowd: low_detail_reaction must be 0 to 10 s");
+  EXPECT_EQ(why({.tuning = {.low_detail_steps = 0}}), "crowd: low_detail_steps must be 1 to 16");
+  EXPECT_EQ(why({.tuning = {.low_detail_steps = 17}}), "crowd: low_detail_steps must be 1 to 16");
+  EXPECT_EQ(why({.tuning = {.low_detail_reaction = -1}}),
+            "crowd: low_detail_reaction must be 0 to 10 s");
 }
 
 }  // namespace

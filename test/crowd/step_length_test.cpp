@@ -119,9 +119,9 @@ TEST(StepLength, WanderersWhoseStepsAreTooShortToBeExactAreRefused) {
 TEST(StepLength, TimesThatAreDividedByItAreBounded) {
   const World world = open_ground(0.25);
   for (const double seconds : {-1.0, 1e300, double{NAN}, kInfinity}) {
-    EXPECT_FALSE(Crowd::create(world, {.no_progress_after = seconds})) << seconds;
+    EXPECT_FALSE(Crowd::create(world, {.tuning = {.no_progress_after = seconds}})) << seconds;
   }
-  EXPECT_TRUE(Crowd::create(world, {.dt = 1e-3, .no_progress_after = 1e6}));
+  EXPECT_TRUE(Crowd::create(world, {.dt = 1e-3, .tuning = {.no_progress_after = 1e6}}));
 }
 
 }  // namespace

@@ -71,6 +71,13 @@ struct CrowdCheck {
   uint64_t obstacle_entries = 0;  ///< Pairs of an avatar and an obstacle that overlap.
 };
 
+/// How an avatar moves at this moment.
+enum class MoveMode {
+  kWalk,   ///< On the ground of its class.
+  kFly,    ///< In the air, or in a take-off or landing.
+  kClimb,  ///< Over nodes.
+};
+
 /// The state of one avatar.
 struct AvatarState {
   uint32_t id = 0;
@@ -81,8 +88,7 @@ struct AvatarState {
   /// avatar.h gives the direction of its walk.
   double heading_x = 0;
   double heading_z = 0;
-  bool flies = false;   ///< It is in the air, or in a take-off or landing.
-  bool climbs = false;  ///< It walks over nodes.
+  MoveMode mode = MoveMode::kWalk;
   /// Unit vector along the body from the feet; for climbers the surface's normal.
   Vec3d up{0, 1, 0};
 };

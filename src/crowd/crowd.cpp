@@ -640,7 +640,7 @@ AvatarState Crowd::State::state_of(const Body& b) const {
             .radius = climb.radius,
             .heading_x = size > 0 ? displacement.x / size : 0,
             .heading_z = size > 0 ? displacement.z / size : 1,
-            .climbs = true,
+            .mode = MoveMode::kClimb,
             .up = climb.axis};
   }
   const double size = std::hypot(b.velocity.x, b.velocity.z);
@@ -650,7 +650,7 @@ AvatarState Crowd::State::state_of(const Body& b) const {
           .radius = b.radius * unit,
           .heading_x = size > 0 ? b.velocity.x / size : 0,
           .heading_z = size > 0 ? b.velocity.z / size : 1,
-          .flies = b.flies()};
+          .mode = b.flies() ? MoveMode::kFly : MoveMode::kWalk};
 }
 
 void Crowd::read(std::vector<AvatarState>& out) const {

@@ -128,7 +128,7 @@ class Stage {
     };
     for (size_t i = 0; i < states_.size(); ++i) {
       const AvatarState& a = states_[i];
-      if (!a.flies) {  // (flyers_test.cpp tests these)
+      if (a.mode != MoveMode::kFly) {  // (flyers_test.cpp tests these)
         const verify::Pose pose{a.position, a.up};
         faults.entered += verify::turned_intruder(tree_, of(a), pose).has_value() ? 1 : 0;
       }
@@ -241,7 +241,7 @@ Mixed mix(Stage& stage, uint32_t of_each, int steps, int every) {
     for (const AvatarId id : ids) {
       const AvatarState state = *crowd.read(id);
       const uint64_t n = goals++;
-      if (state.climbs) {
+      if (state.mode == MoveMode::kClimb) {
         const NodePlace goal = stage.place(state.avatar_class, 7, n);
         crowd.set_goals(std::span(&id, 1), std::span(&goal, 1));
       } else {
@@ -264,7 +264,7 @@ Mixed mix(Stage& stage, uint32_t of_each, int steps, int every) {
       EXPECT_LE(length(displacement), 0.8) << step << " " << i;
       // A climber looks in its direction of motion, as it leans: that of its last move, if it made
       // two.
-      if (!now[i].climbs || length(displacement) < 0.05) continue;
+      if (now[i].mode != MoveMode::kClimb || length(displacement) < 0.05) continue;
       const Vec3d heading = leaned({now[i].heading_x, 0, now[i].heading_z}, now[i].up);
       EXPECT_NEAR(length(heading), 1, 1e-6);
       EXPECT_NEAR(dot(heading, now[i].up), 0, 1e-6);

@@ -76,7 +76,7 @@ class Stage {
  private:
   [[nodiscard]] bool is_in_matter(const AvatarState& state, const AvatarClass& avatar) {
     double low = state.position.y;
-    if (!state.flies) {
+    if (state.mode != MoveMode::kFly) {
       low += body_bottom(avatar);
     } else if (!flight_->is_legal(state.position)) {  // between the ground and the air
       const Place place = world_.find_place(
@@ -382,15 +382,15 @@ TEST(Flyers, AnExternallyControlledOneTakesOffFliesAndLands) {
     EXPECT_EQ(faults.entered, 0u);
     return *crowd.read(id);
   };
-  EXPECT_FALSE(crowd.read(id)->flies);
+  EXPECT_EQ(crowd.read(id)->mode, MoveMode::kWalk);
   const AvatarState up = drive({0, 2, 0}, 30);
-  EXPECT_TRUE(up.flies);
+  EXPECT_EQ(up.mode, MoveMode::kFly);
   EXPECT_GT(up.position.y, 4);
   const AvatarState across = drive({2, 0, 0}, 20);
   EXPECT_NEAR(across.position.x, up.position.x + 4, 0.1);
   EXPECT_NEAR(across.position.y, up.position.y, 0.1);
   const AvatarState down = drive({0, -2, 0}, 60);
-  EXPECT_FALSE(down.flies);
+  EXPECT_EQ(down.mode, MoveMode::kWalk);
   EXPECT_NEAR(down.position.y, 0, 0.01);
 }
 
@@ -526,7 +526,7 @@ TEST(Flyers, AreSentToRegionsAndSeenToComeIn) {
     stage.look(crowd, faults);
   }
   EXPECT_EQ(entered, (std::set<uint32_t>{flyer.slot1, walker.slot1}));
-  EXPECT_FALSE(crowd.read(flyer)->flies);
+  EXPECT_EQ(crowd.read(flyer)->mode, MoveMode::kWalk);
   EXPECT_EQ(faults.overlaps + faults.entered, 0u);
 }
 

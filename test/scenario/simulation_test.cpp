@@ -542,9 +542,9 @@ box = [46, 2, 62, 62]
     ASSERT_EQ(found.overlaps + found.wall_entries, 0U) << "at " << report->time;
     simulation.read(states);
     for (const AvatarState& s : states) {
-      EXPECT_EQ(s.climbs, s.avatar_class == 1);
-      climbing += s.climbs ? 1 : 0;
-      leaning += s.climbs && s.up.y < 0.9 ? 1 : 0;
+      EXPECT_EQ(s.mode == MoveMode::kClimb, s.avatar_class == 1);
+      climbing += s.mode == MoveMode::kClimb ? 1 : 0;
+      leaning += s.mode == MoveMode::kClimb && s.up.y < 0.9 ? 1 : 0;
     }
     if (report->time >= 120) break;
   }

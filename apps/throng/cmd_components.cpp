@@ -26,7 +26,9 @@ struct ComponentsOptions {
 
 constexpr double kVerticalTolerance = 1.0;  // of the feet at --at [m]
 
-std::string where(const Vec3d& p) { return fmt::format("{:.2f}, {:.2f}, {:.2f}", p.x, p.y, p.z); }
+std::string place_text(const Vec3d& p) {
+  return fmt::format("{:.2f}, {:.2f}, {:.2f}", p.x, p.y, p.z);
+}
 
 double total_area(std::span<const Component> components) {
   double area = 0;
@@ -64,7 +66,7 @@ void describe(const World& world, const Graph& graph, const ComponentsOptions& o
   for (size_t i = 0; i < shown; ++i) {
     const Component& c = components[i];
     text += fmt::format("  {:>4}  {:>12.2f} m2  {:>6.2f} %  {:>8} regions, one place at {}\n", i,
-                        c.area, 100 * c.area / area, c.regions, where(c.place.position));
+                        c.area, 100 * c.area / area, c.regions, place_text(c.place.position));
   }
   if (shown < components.size())
     text += fmt::format("        and {} smaller ones (--limit)\n", components.size() - shown);
@@ -73,8 +75,8 @@ void describe(const World& world, const Graph& graph, const ComponentsOptions& o
     const int32_t found =
         graph.component_at(avatar_class, world.find_place(avatar_class, at, kVerticalTolerance));
     json["at"] = found >= 0 ? Json(found) : Json(nullptr);
-    text += found >= 0 ? fmt::format("  ({}) lies in component {}\n", where(at), found)
-                       : fmt::format("  ({}) is no place for this class\n", where(at));
+    text += found >= 0 ? fmt::format("  ({}) lies in component {}\n", place_text(at), found)
+                       : fmt::format("  ({}) is no place for this class\n", place_text(at));
   }
   classes.push_back(json);
 }

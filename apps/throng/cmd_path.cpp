@@ -43,7 +43,7 @@ struct PathOptions {
   }
 };
 
-const char* word_for(SpentBudget spent) {
+const char* path_word(SpentBudget spent) {
   switch (spent) {
     case SpentBudget::kNone:
       return "";
@@ -64,7 +64,7 @@ std::string text_for(const PathOptions& options, SpentBudget spent) {
                      options.search_bytes >> 20);
 }
 
-const char* word_for(PathEnd end) {
+const char* path_word(PathEnd end) {
   switch (end) {
     case PathEnd::kReached:
       return "reached";
@@ -129,14 +129,14 @@ Json path_json(const PathOptions& options, const Path& path, const Place& to, do
   // Without costs of ground, the cost is the length.
   Json json = {{"world", options.world},
                {"class", options.avatar_class},
-               {"end", word_for(path.end)},
+               {"end", path_word(path.end)},
                {"length", path.length},
                {"cost", options.is_live() ? path.cost : path.length},
                {"points", points},
                {"links", links},
                {"nodes", path.nodes},
                {"seconds", seconds}};
-  if (path.spent != SpentBudget::kNone) json["spent"] = word_for(path.spent);
+  if (path.spent != SpentBudget::kNone) json["spent"] = path_word(path.spent);
   if (options.is_live()) json["off_mesh_links"] = path.off_mesh_links;
   if (path.end == PathEnd::kUnreachable && !path.points.empty()) {
     const Vec3d& nearest = path.points.back().position;
@@ -164,7 +164,7 @@ std::string path_text(const PathOptions& options, const Path& path, const Place&
                        options.avatar_class, path.points.size() - 1, seconds * 1e3);
     if (options.is_live()) text += fmt::format("  costs {:.3f}\n", path.cost);
   } else {
-    text = fmt::format("no path for {}: {}\n", options.avatar_class, word_for(path.end)) +
+    text = fmt::format("no path for {}: {}\n", options.avatar_class, path_word(path.end)) +
            text_for(options, path.spent);
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d& nearest = path.points.back().position;
@@ -180,7 +180,7 @@ std::string path_text(const PathOptions& options, const Path& path, const Place&
   return text;
 }
 
-const char* word_for(SegmentKind kind) {
+const char* path_word(SegmentKind kind) {
   switch (kind) {
     case SegmentKind::kWalk:
       return "walk";
@@ -198,11 +198,11 @@ Json flight_json(const PathOptions& options, const FlightPath& path, const Vec3d
                  const FlightSummary& summary, double seconds) {
   Json points = Json::array(), segments = Json::array();
   for (const Vec3d& p : path.points) points.push_back(numbers(p));
-  for (const SegmentKind kind : path.segments) segments.push_back(word_for(kind));
+  for (const SegmentKind kind : path.segments) segments.push_back(path_word(kind));
   Json json = {
       {"world", options.world},
       {"class", options.avatar_class},
-      {"end", word_for(path.end)},
+      {"end", path_word(path.end)},
       {"length", path.length},
       {"cost", path.length},
       {"points", points},
@@ -210,7 +210,7 @@ Json flight_json(const PathOptions& options, const FlightPath& path, const Vec3d
       {"nodes", path.nodes},
       {"seconds", seconds},
       {"air", {{"boxes", summary.boxes}, {"bytes", summary.bytes}, {"seconds", summary.seconds}}}};
-  if (path.spent != SpentBudget::kNone) json["spent"] = word_for(path.spent);
+  if (path.spent != SpentBudget::kNone) json["spent"] = path_word(path.spent);
   if (path.end == PathEnd::kUnreachable && !path.points.empty()) {
     const Vec3d& nearest = path.points.back();
     json["nearest"] = {{"place", numbers(nearest)},
@@ -227,7 +227,7 @@ std::string flight_text(const PathOptions& options, const FlightPath& path, cons
     text = fmt::format("{:.3f} m for {}, {} segments, found in {:.3f} ms\n", path.length,
                        options.avatar_class, path.segments.size(), seconds * 1e3);
   } else {
-    text = fmt::format("no path for {}: {}\n", options.avatar_class, word_for(path.end)) +
+    text = fmt::format("no path for {}: {}\n", options.avatar_class, path_word(path.end)) +
            text_for(options, path.spent);
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d& nearest = path.points.back();
@@ -236,7 +236,7 @@ std::string flight_text(const PathOptions& options, const FlightPath& path, cons
   }
   for (size_t i = 0; i < path.points.size(); ++i) {
     text += fmt::format("  {}{}\n", where(path.points[i]),
-                        i == 0 ? "" : fmt::format("  {}", word_for(path.segments[i - 1])));
+                        i == 0 ? "" : fmt::format("  {}", path_word(path.segments[i - 1])));
   }
   return text;
 }
@@ -307,7 +307,7 @@ Json node_path_json(const PathOptions& options, const NodePath& path, const Node
   }
   Json json = {{"world", options.world},
                {"class", options.avatar_class},
-               {"end", word_for(path.end)},
+               {"end", path_word(path.end)},
                {"length", path.length},
                {"cost", path.cost},
                {"points", points},
@@ -321,7 +321,7 @@ Json node_path_json(const PathOptions& options, const NodePath& path, const Node
                  {"crossings", summary.crossings},
                  {"bytes", summary.bytes},
                  {"seconds", summary.seconds}}}};
-  if (path.spent != SpentBudget::kNone) json["spent"] = word_for(path.spent);
+  if (path.spent != SpentBudget::kNone) json["spent"] = path_word(path.spent);
   if (path.end == PathEnd::kUnreachable && !path.points.empty()) {
     const Vec3d nearest = path.points.back().place.feet;
     json["nearest"] = {{"place", numbers(nearest)},
@@ -342,7 +342,7 @@ std::string node_path_text(const PathOptions& options, const NodePath& path, con
     text = fmt::format("{:.3f} m for {} over {} nodes, found in {:.3f} ms\n", path.length,
                        options.avatar_class, path.corridor.size(), seconds * 1e3);
   } else {
-    text = fmt::format("no path for {}: {}\n", options.avatar_class, word_for(path.end)) +
+    text = fmt::format("no path for {}: {}\n", options.avatar_class, path_word(path.end)) +
            text_for(options, path.spent);
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d nearest = path.points.back().place.feet;

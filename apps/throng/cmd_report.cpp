@@ -121,7 +121,7 @@ ReportText report_text(const ReportOptions& options, const Replay& replay,
   return text;
 }
 
-Json report_json(const ReportOptions& options, const Replay& replay, const ReplaySummary& summary) {
+Json run_json(const ReportOptions& options, const Replay& replay, const ReplaySummary& summary) {
   Json lines = Json::array();
   for (size_t l = 0; l < summary.lines.size(); ++l) {
     lines.push_back({{"line", options.lines[l]},
@@ -169,7 +169,7 @@ int report(Session& session, ReportOptions& options) {
   file.write(*page);
   if (const auto ok = file.finish(); !ok) return fail(ok.error());
   if (!replay->damage().empty()) note(replay->damage());
-  print_result(session, report_json(options, *replay, *summary),
+  print_result(session, run_json(options, *replay, *summary),
                fmt::format("{}: {} frames, {} pictures; mean speed {:.3f} m/s, {} left\n",
                            options.output, summary->time.size(), pictures->size(),
                            summary->mean_speed, summary->left.back()));

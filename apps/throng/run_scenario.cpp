@@ -120,7 +120,7 @@ Result<void> write_obstacles(const std::string& path, const Scenario& scenario,
   return file.finish();
 }
 
-struct Totals {
+struct ScenarioTotals {
   uint64_t steps = 0, max_avatars = 0, checks = 0, out_of_memory = 0;
   double avatar_steps = 0, progress = 0;
   CrowdCheck found;
@@ -128,7 +128,7 @@ struct Totals {
 };
 
 void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
-           const Simulation& simulation, const Totals& t, const RunTimes& times) {
+           const Simulation& simulation, const ScenarioTotals& t, const RunTimes& times) {
   const Outcome outcome = outcome_of(scenario, simulation);
   const double progress = t.avatar_steps > 0 ? t.progress / t.avatar_steps : 0;
   Json exits = Json::object();
@@ -180,9 +180,9 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
                   t.found.overlaps, t.found.obstacle_entries, simulation.state_hash()));
 }
 
-Result<Totals> run_steps(Session& session, const ScenarioRun& run, const Scenario& scenario,
-                         Simulation& simulation, Sinks& sinks, RunTimes& times) {
-  Totals t;
+Result<ScenarioTotals> run_steps(Session& session, const ScenarioRun& run, const Scenario& scenario,
+                                 Simulation& simulation, Sinks& sinks, RunTimes& times) {
+  ScenarioTotals t;
   const uint64_t steps =
       run.steps.value_or(static_cast<uint64_t>(std::ceil(scenario.seconds / scenario.dt - 1e-9)));
   const uint64_t check_every =

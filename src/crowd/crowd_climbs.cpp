@@ -16,9 +16,8 @@
 namespace throng {
 namespace {
 
-constexpr double kSearchRadius = 0.5;      // [m] from a place to the place on nodes that it stands
+constexpr double kNodeRadius = 0.5;        // [m] from a place to the place on nodes that it stands
                                            // for
-constexpr double kNoSpacing = 1e9;         // [m] points of a path only at its corners
 constexpr float kMin = 1;                  // [s] of a path that does not lead to the goal
 constexpr float kExternal = 0.5f;          // [s] for which one that is externally controlled plans
                                            // ahead
@@ -157,7 +156,7 @@ void Crowd::State::cut_climbs(std::span<const uint32_t> slots) {
 NodePlace Crowd::State::place_on_nodes(int32_t number, const Place& place) const {
   if (!place || place.level1 == kAirLevel1) return {};
   return classes[static_cast<size_t>(number)]->node_finders[0].find_place(place.position,
-                                                                          kSearchRadius);
+                                                                          kNodeRadius);
 }
 
 NodePlace Crowd::State::draw_on_nodes(int32_t number, uint64_t n) const {

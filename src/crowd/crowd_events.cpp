@@ -14,9 +14,9 @@
 namespace throng {
 namespace {
 
-constexpr size_t kMaxAreas = 64;     // bits
-constexpr size_t kGrain = 4096;      // bodies
-constexpr double kNoProgress = 0.3;  // [m]
+constexpr size_t kMaxAreas = 64;      // bits
+constexpr size_t kEventGrain = 4096;  // bodies
+constexpr double kNoProgress = 0.3;   // [m]
 
 }  // namespace
 
@@ -46,23 +46,24 @@ void Crowd::State::find_events() {
 void Crowd::State::find_entries() {
   inside.resize(generation.size(), 0);
   std::mutex adding;
-  parallel_ranges(engine.bodies().size(), kGrain, config.workers, [&](size_t begin, size_t end) {
-    for (const Body& body : engine.bodies().subspan(begin, end - begin)) {
-      uint64_t now = 0;
-      const Body there = at_feet(body);
-      for (size_t area = 0; area < watched.size(); ++area) {
-        if (watched[area].contains(there)) now |= uint64_t{1} << area;
-      }
-      const uint64_t came = now & ~inside[body.slot];
-      inside[body.slot] = now;
-      if (came == 0) continue;
-      const std::lock_guard lock(adding);
-      for (size_t area = 0; area < watched.size(); ++area) {
-        if ((came >> area & 1) == 0) continue;
-        entered.push_back({id_of(body.slot), static_cast<WatchedArea>(area)});
-      }
-    }
-  });
+  parallel_ranges(engine.bodies().size(), kEventGrain, config.workers,
+                  [&](size_t begin, size_t end) {
+                    for (const Body& body : engine.bodies().subspan(begin, end - begin)) {
+                      uint64_t now = 0;
+                      const Body there = at_feet(body);
+                      for (size_t area = 0; area < watched.size(); ++area) {
+                        if (watched[area].contains(there)) now |= uint64_t{1} << area;
+                      }
+                      const uint64_t came = now & ~inside[body.slot];
+                      inside[body.slot] = now;
+                      if (came == 0) continue;
+                      const std::lock_guard lock(adding);
+                      for (size_t area = 0; area < watched.size(); ++area) {
+                        if ((came >> area & 1) == 0) continue;
+                        entered.push_back({id_of(body.slot), static_cast<WatchedArea>(area)});
+                      }
+                    }
+                  });
   std::sort(entered.begin(), entered.end(), [](const AreaEntry& a, const AreaEntry& b) {
     return a.id.slot1 != b.id.slot1 ? a.id.slot1 < b.id.slot1 : a.area < b.area;
   });

@@ -24,16 +24,14 @@ constexpr double kCheckRange = 3;        // [m] to a waypoint, to test whether t
                                          // visible
 constexpr double kAtLink = 0.3;          // [m] from the place of its take-off
 constexpr float kTries = 10;             // [s] there, before it gives up
-constexpr double kSearchRadius = 0.5;    // [m] from feet to the ground below them
-constexpr uint64_t kCheckInterval = 16;  // steps
+constexpr double kGroundRadius = 0.5;    // [m] from feet to the ground below them
+constexpr uint64_t kSightInterval = 16;  // steps
 constexpr float kWaits = 2;              // [s] over its landing place, before it takes another
 constexpr uint64_t kRooms = 0x726f6f6d;  // random stream
 constexpr uint64_t kMaxBoxes = 1 << 16;  // that a search may expand; then it passes over all
                                          // obstacles
 constexpr int32_t kPointTolerance = 20;  // [units, mm] so near to a waypoint that the rest does not
                                          // matter
-
-AirPosition here(const Body& body) { return {body.x, body.z, body.y}; }
 
 void turn_to(Body& body, Flight& flight) {
   const AirPosition& point = flight.points[flight.next];
@@ -118,7 +116,7 @@ void Crowd::State::drop_goal(Body& body) {
 }
 
 bool Crowd::State::take_off(Body& body, Flight& flight) const {
-  const auto high = air_of(body)->take_off(here(body));
+  const auto high = air_of(body)->take_off(feet_of(body));
   if (!high) return false;
   flight.in_link = 1;
   flight.descends = 0;
@@ -172,9 +170,9 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
   FlightPath& path = parts.flights[w];
-  parts.flight_finders[w].find({.from = parts.air->metres(here(body)),
+  parts.flight_finders[w].find({.from = parts.air->metres(feet_of(body)),
                                 .to = parts.air->metres(flight.goal),
-                                .vertical_tolerance = kSearchRadius,
+                                .vertical_tolerance = kGroundRadius,
                                 .max_nodes = kMaxBoxes,
                                 .max_bytes = config.search_bytes,
                                 .by_turns = false,
@@ -194,7 +192,7 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
     return true;
   }
   const Place ground_air_link =
-      world.find_place(body.avatar_class, path.points[walked], kSearchRadius);
+      world.find_place(body.avatar_class, path.points[walked], kGroundRadius);
   if (!ground_air_link) return false;
   routes[body.slot].goal = point_of(*data_of(world), ground_air_link);
   flight.to_link = 1;
@@ -273,7 +271,7 @@ std::optional<AirPosition> Crowd::State::open_position(const Body& body, const A
 bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker) const {
   ClassParts& parts = *classes[body.avatar_class];
   const FlyerAir& air = *parts.air;
-  AirPosition from = here(body), to = flight.goal;
+  AirPosition from = feet_of(body), to = flight.goal;
   if (flight.in_link != 0) from.y = std::max(from.y, flight.link_high);
   const bool lands = flight.goal_level != Flight::kInAir;
   const auto high = lands ? air.take_off(to) : std::nullopt;
@@ -291,7 +289,7 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
   const auto find = [&](const AirPosition& begin, const AirPosition& end) {
     parts.flight_finders[w].find({.from = air.metres(begin),
                                   .to = air.metres(end),
-                                  .vertical_tolerance = kSearchRadius,
+                                  .vertical_tolerance = kGroundRadius,
                                   .max_nodes = kMaxBoxes,
                                   .max_bytes = config.search_bytes,
                                   .by_turns = false,
@@ -350,7 +348,7 @@ void Crowd::State::find_landing_place(Body& body, const Flight& flight) const {
   const double far = FlyerEngine::landing_radius(flight) / unit;
   const AirPosition there{over.x + static_cast<int32_t>(far * steer::kEighths[side][0]),
                           over.z + static_cast<int32_t>(far * steer::kEighths[side][1]), over.y};
-  const bool sees = there.x >= 0 && there.z >= 0 && air.sees(here(body), there);
+  const bool sees = there.x >= 0 && there.z >= 0 && air.sees(feet_of(body), there);
   body.local_target_x = sees ? there.x : over.x;
   body.local_target_z = sees ? there.z : over.z;
 }
@@ -360,7 +358,7 @@ void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
   if (body.leaves && plan_exit_in_air(body, flight)) return;
   if (!body.has(Body::kHasGoal)) return;
   const FlyerAir& air = *air_of(body);
-  const AirPosition at = here(body);
+  const AirPosition at = feet_of(body);
   if (!body.has(Body::kNeedsPath) && flight.in_link == 0) {
     const double dx = (static_cast<double>(body.local_target_x) - body.x) * unit;
     const double dz = (static_cast<double>(body.local_target_z) - body.z) * unit;
@@ -380,7 +378,7 @@ void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
         turn_to(body, flight);
       }
     }
-    const bool checks_path = (sub_step + body.slot) % kCheckInterval == 0;
+    const bool checks_path = (sub_step + body.slot) % kSightInterval == 0;
     if (checks_path && config.routing == Routing::kPaths) {
       const AirPosition& local_target = flight.points[flight.next];
       if (!air.sees(at, local_target) || !is_clear_of_obstacles(body, at, local_target))
@@ -459,9 +457,9 @@ void Crowd::State::add_flyer_blockers(std::span<const uint32_t> slots,
     const Body& body = bodies[i];
     if (!body.has(Body::kFlying)) continue;
     const double radius = body.climbs ? body.radius * unit : body_class(body.avatar_class).radius;
-    passed.list_near(here(body), radius, near);
+    passed.list_near(feet_of(body), radius, near);
     for (const ObstacleGrid::Item* obstacle : near) {
-      if (obstacle->shape.holds(here(body), radius, body.height)) {
+      if (obstacle->shape.holds(feet_of(body), radius, body.height)) {
         found.emplace_back(obstacle->slot, i);
       }
     }

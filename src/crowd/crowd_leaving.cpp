@@ -20,12 +20,9 @@ namespace {
 constexpr double kMaxDetourFactor = 2;    // times the shortest exit, for a path that leads out
 constexpr double kMaxPath = 2;            // [m] more than that
 constexpr float kMaxDetourAngle = 0.4f;   // [radians] of a detour, before one gives its path up
-constexpr double kNoSpacing = 1e9;        // [m] points of a path only at its corners
 constexpr uint64_t kMaxExitNodes = 8000;  // crossings that a search for an exit may expand
-constexpr uint64_t kCheckInterval = 4;    // steps of one that finds no exit
+constexpr uint64_t kExitInterval = 4;     // steps of one that finds no exit
 constexpr std::array<double, 4> kSearchRadii = {1, 2, 4, 8};  // [m] to a node's free place
-
-AirPosition here(const Body& body) { return {body.x, body.z, body.y}; }
 
 // Of any height.
 AirObstacle column_of(const Prism& prism, const Vec3d& origin, double unit) {
@@ -45,10 +42,10 @@ bool Crowd::State::is_occupied(uint32_t slot,
     if (body.climbs) {
       const Climb& climb = climbs[body.slot];
       return climbers.meets_obstacle(*classes[body.avatar_class]->nodes,
-                                     {here(body), body.radius, body.height},
+                                     {feet_of(body), body.radius, body.height},
                                      {climb.feet, climb.axis}, climb.radius, solid, {prism, {}});
     }
-    AirPosition feet = here(body);
+    AirPosition feet = feet_of(body);
     int32_t height = body.height;
     if (!body.has(Body::kFlying)) {
       const auto bottom = static_cast<int32_t>(std::floor(body_bottom(avatar) * 1000));
@@ -252,7 +249,7 @@ bool Crowd::State::plan_exit_in_air(Body& body, Flight& flight) const {
   if (has_path && std::fabs(body.detour_angle) <= kMaxDetourAngle) return false;
   if (has_path) body.flags |= Body::kNeedsPath;
   const FlyerAir& air = *air_of(body);
-  const AirPosition at = here(body);
+  const AirPosition at = feet_of(body);
   body.clear(Body::kLast);
   body.local_target_x = body.x;
   body.local_target_z = body.z;
@@ -281,7 +278,7 @@ bool Crowd::State::plan_exit_on_nodes(Body& body, Climb& climb, int32_t worker) 
   const bool goes = climb.count > 0 && climb.at.next < climb.count;
   if (!rests && goes && !body.has(Body::kNeedsPath)) return false;  // on along its path
   if (rests && goes && climb.whole == 0) return true;               // on its exit
-  if ((sub_step + body.slot) % kCheckInterval != 0) return true;
+  if ((sub_step + body.slot) % kExitInterval != 0) return true;
   for (const double search_radius : kSearchRadii) {
     if (step_aside(body, climb, worker, search_radius)) return true;
   }
@@ -307,7 +304,7 @@ bool Crowd::State::find_exit_over_nodes(Body& body, Climb& climb, int32_t worker
       if (!obstacle.closes()) continue;
       const AirObstacle solid(obstacle.place, origin, unit);
       const bool is_in = climbers.meets_obstacle(
-          *parts.nodes, {here(body), body.radius, body.height}, {climb.feet, climb.axis},
+          *parts.nodes, {feet_of(body), body.radius, body.height}, {climb.feet, climb.axis},
           climb.radius, solid, {obstacle.place, {}});
       if (is_in) finder.set_active(obstacle.of_class[body.avatar_class].node_change, !lets);
     }

@@ -33,6 +33,10 @@
 /// The state of a crowd.
 namespace throng {
 
+inline constexpr double kNoSpacing = 1e9;  // [m] points of a path only at its corners
+
+inline AirPosition feet_of(const Body& body) { return {body.x, body.z, body.y}; }
+
 inline constexpr uint32_t kNoBody = UINT32_MAX;
 inline constexpr std::array<int32_t, 3> kNeverChecked = {INT32_MIN / 2, 0, 0};
 

@@ -15,8 +15,8 @@ namespace throng {
 namespace {
 
 constexpr size_t kMaxTargets = UINT16_MAX;
-constexpr size_t kGoals = 4096;  // places of a target that paths lead to, about
-constexpr size_t kGrain = 4096;  // bodies
+constexpr size_t kGoals = 4096;        // places of a target that paths lead to, about
+constexpr size_t kTargetGrain = 4096;  // bodies
 
 }  // namespace
 
@@ -163,17 +163,18 @@ void Crowd::State::renew_flows() {
 
 void Crowd::State::arrive_in_targets() {
   if (targets.empty()) return;
-  parallel_ranges(engine.bodies().size(), kGrain, config.workers, [&](size_t begin, size_t end) {
-    for (Body& body : engine.bodies().subspan(begin, end - begin)) {
-      if (body.target == 0 || !body.has(Body::kHasGoal) || body.has(Body::kArrived) ||
-          !targets[body.target - 1u].contains(at_feet(body))) {
-        continue;
-      }
-      body.flags |= Body::kArrived;
-      const std::lock_guard lock(goal_mutex);
-      arrived.push_back(id_of(body.slot));
-    }
-  });
+  parallel_ranges(
+      engine.bodies().size(), kTargetGrain, config.workers, [&](size_t begin, size_t end) {
+        for (Body& body : engine.bodies().subspan(begin, end - begin)) {
+          if (body.target == 0 || !body.has(Body::kHasGoal) || body.has(Body::kArrived) ||
+              !targets[body.target - 1u].contains(at_feet(body))) {
+            continue;
+          }
+          body.flags |= Body::kArrived;
+          const std::lock_guard lock(goal_mutex);
+          arrived.push_back(id_of(body.slot));
+        }
+      });
 }
 
 }  // namespace throng

@@ -6,7 +6,7 @@
 namespace throng::draw::shaders {
 namespace {
 
-constexpr const char* kHead = R"(#version 300 es
+constexpr const char* kFlatHead = R"(#version 300 es
 precision highp float;
 precision highp int;
 uniform mat4 clip_from_world;
@@ -17,7 +17,7 @@ uniform mat4 clip_from_world;
 // The corners of a line are moved apart across it, in pixels. All is drawn a little nearer than the
 // surface that it lies on.
 std::string mark_vertex() {
-  return std::string(kHead) + R"(
+  return std::string(kFlatHead) + R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 other;
 layout(location = 2) in vec4 paint;
@@ -50,7 +50,7 @@ void main() {
 }
 
 std::string mark_fragment() {
-  return std::string(kHead) + R"(
+  return std::string(kFlatHead) + R"(
 in vec4 tint;
 in float height;
 uniform float opacity;
@@ -64,7 +64,7 @@ void main() {
 }
 
 std::string panel_vertex() {
-  return std::string(kHead) + R"(
+  return std::string(kFlatHead) + R"(
 layout(location = 0) in vec2 position;
 layout(location = 1) in vec2 texel;
 layout(location = 2) in vec4 paint;
@@ -80,7 +80,7 @@ void main() {
 }
 
 std::string panel_fragment() {
-  return std::string(kHead) + R"(
+  return std::string(kFlatHead) + R"(
 in vec2 at;
 in vec4 tint;
 uniform sampler2D letters;

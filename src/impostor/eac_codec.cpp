@@ -30,20 +30,20 @@ int32_t value_of(const Kind& kind, int32_t base, int32_t factor, size_t table, s
                     kind.max_value);
 }
 
-struct Fit {
+struct EacFit {
   int32_t base = 0, factor = 1;
   size_t table = 13;
   int64_t error = INT64_MAX;
 };
 
 // Which texels count. Compilers vectorise loops over all sixteen in 16 bits.
-struct Seen {
+struct ChannelTexels {
   std::array<int16_t, 16> value{};
   std::array<int16_t, 16> counts{};  // 1 or 0.
   int32_t low = INT32_MAX, high = 0;
 };
 
-std::array<int16_t, 8> values_of(const Kind& kind, const Fit& fit) {
+std::array<int16_t, 8> values_of(const Kind& kind, const EacFit& fit) {
   std::array<int16_t, 8> values;
   for (size_t p = 0; p < 8; ++p) {
     values[p] = static_cast<int16_t>(value_of(kind, fit.base, fit.factor, fit.table, p));
@@ -51,10 +51,10 @@ std::array<int16_t, 8> values_of(const Kind& kind, const Fit& fit) {
   return values;
 }
 
-void try_fit(const Kind& kind, const Seen& seen, int32_t base, int32_t factor, size_t table,
-             Fit& best) {
+void try_fit(const Kind& kind, const ChannelTexels& seen, int32_t base, int32_t factor,
+             size_t table, EacFit& best) {
   if (base < 0 || base > 255 || factor < kind.factor || factor > 15) return;
-  Fit fit{.base = base, .factor = factor, .table = table, .error = 0};
+  EacFit fit{.base = base, .factor = factor, .table = table, .error = 0};
   const auto values = values_of(kind, fit);
   std::array<int16_t, 16> nearest;
   for (size_t i = 0; i < 16; ++i) {
@@ -71,8 +71,8 @@ void try_fit(const Kind& kind, const Seen& seen, int32_t base, int32_t factor, s
   if (fit.error < best.error) best = fit;
 }
 
-Fit fit_channel(const Kind& kind, const Seen& seen) {
-  Fit best;
+EacFit fit_channel(const Kind& kind, const ChannelTexels& seen) {
+  EacFit best;
   const int32_t range = seen.high - seen.low, middle = (seen.high + seen.low) / 2;
   for (size_t t = 0; t < 16 && best.error > 0; ++t) {
     const int32_t width = (-1 - 2 * kChannelSteps[t][3]) * kind.scale;  // Of the steps, by one.
@@ -93,7 +93,7 @@ Fit fit_channel(const Kind& kind, const Seen& seen) {
   }
   for (int64_t before = INT64_MAX; best.error > 0 && best.error < before;) {
     before = best.error;
-    const Fit from = best;
+    const EacFit from = best;
     for (int32_t f = -1; f <= 1; ++f) {
       for (int32_t b = -2; b <= 2; ++b) {
         try_fit(kind, seen, from.base + b, from.factor + f, from.table, best);
@@ -104,7 +104,7 @@ Fit fit_channel(const Kind& kind, const Seen& seen) {
 }
 
 Bytes8 encode(const Kind& kind, const ChannelBlock& block, const TexelWeights& weights) {
-  Seen seen;
+  ChannelTexels seen;
   for (size_t i = 0; i < 16; ++i) {
     const int32_t value = (2 * block[i] * kind.max_value + 255) / 510;
     seen.value[i] = static_cast<int16_t>(value);
@@ -113,7 +113,7 @@ Bytes8 encode(const Kind& kind, const ChannelBlock& block, const TexelWeights& w
     seen.low = std::min(seen.low, value);
     seen.high = std::max(seen.high, value);
   }
-  Fit fit{.base = 0, .factor = 1, .table = 13, .error = INT64_MAX};
+  EacFit fit{.base = 0, .factor = 1, .table = 13, .error = INT64_MAX};
   if (seen.high >= seen.low) fit = fit_channel(kind, seen);
   const auto values = values_of(kind, fit);
   auto word = static_cast<uint64_t>(fit.base << 8 | fit.factor << 4) | fit.table;

@@ -19,7 +19,7 @@ using namespace etc2;
 
 // The texels by component; those that do not count have no weight. Compilers vectorise loops over
 // all of them in whole numbers that a float stores exactly.
-struct Seen {
+struct BlockTexels {
   std::array<std::array<float, 16>, 3> part{};
   std::array<int32_t, 16> weight{};
   std::array<uint8_t, 16> place{};  // By column.
@@ -55,7 +55,7 @@ Colour quantise(const Exact& value, int32_t largest) {
 }
 
 // With `hole`, index 2 is not available.
-Choice choose(const Seen& seen, std::array<Colour, 4> colours, bool hole) {
+Choice choose(const BlockTexels& seen, std::array<Colour, 4> colours, bool hole) {
   if (hole) colours[2] = colours[0];  // Of two equal colours the first is chosen.
   std::array<std::array<float, 4>, 3> part{};
   for (size_t p = 0; p < 4; ++p) {
@@ -84,7 +84,7 @@ Choice choose(const Seen& seen, std::array<Colour, 4> colours, bool hole) {
 
 // The mean, less its step, of the texels that chose an index for which `mine` holds.
 template <class Mine>
-std::optional<Exact> mean_less_steps(const Seen& seen, const Choice& choice,
+std::optional<Exact> mean_less_steps(const BlockTexels& seen, const Choice& choice,
                                      const std::array<int32_t, 4>& steps, Mine mine) {
   Colour sum{};
   int32_t weight = 0;
@@ -103,7 +103,7 @@ std::optional<Exact> mean_less_steps(const Seen& seen, const Choice& choice,
 
 uint64_t field(int32_t value, int32_t low) { return static_cast<uint64_t>(value) << low; }
 
-uint64_t index_bits(const Seen& seen, const Choice& choice) {
+uint64_t index_bits(const BlockTexels& seen, const Choice& choice) {
   uint64_t word = 0;
   for (size_t i = 0; i < seen.count; ++i) {
     word |=
@@ -151,13 +151,13 @@ Bases near(const Colour& base, int32_t below, int32_t above) {
   return out;
 }
 
-void try_half(const Seen& seen, const Bases& bases, const Colour& base, size_t table, bool hole,
-              Half& best) {
+void try_half(const BlockTexels& seen, const Bases& bases, const Colour& base, size_t table,
+              bool hole, Half& best) {
   const Choice choice = choose(seen, half_colours(bases.wide(base), table, hole), hole);
   if (choice.error < best.choice.error) best = {base, table, choice};
 }
 
-Half fit_half(const Seen& seen, const Bases& bases, bool hole) {
+Half fit_half(const BlockTexels& seen, const Bases& bases, bool hole) {
   Half best;
   best.base = bases.low;
   if (seen.count == 0) {
@@ -191,17 +191,18 @@ Half fit_half(const Seen& seen, const Bases& bases, bool hole) {
   return best;
 }
 
-uint64_t half_bits(const Seen& first, const Seen& second, const Half& a, const Half& b, bool rows) {
+uint64_t half_bits(const BlockTexels& first, const BlockTexels& second, const Half& a,
+                   const Half& b, bool rows) {
   return index_bits(first, a.choice) | index_bits(second, b.choice) |
          field(static_cast<int32_t>(a.table), 37) | field(static_cast<int32_t>(b.table), 34) |
          field(rows ? 1 : 0, 32);
 }
 
 // Two halves beside each other or, with `rows`, one above the other. `hole`: some texel is one.
-Block fit_halves(const Seen& seen, bool holes, bool hole, bool rows) {
-  Seen first, second;
+Block fit_halves(const BlockTexels& seen, bool holes, bool hole, bool rows) {
+  BlockTexels first, second;
   for (size_t i = 0; i < seen.count; ++i) {
-    Seen& to = (rows ? seen.place[i] % 4 >= 2 : seen.place[i] >= 8) ? second : first;
+    BlockTexels& to = (rows ? seen.place[i] % 4 >= 2 : seen.place[i] >= 8) ? second : first;
     to.add({seen.value(i, 0), seen.value(i, 1), seen.value(i, 2)}, seen.weight[i], seen.place[i]);
   }
   Half a = fit_half(first, kAnyOf5, hole), b = fit_half(second, kAnyOf5, hole);
@@ -261,7 +262,7 @@ bool can_be_written(const Pair& pair, bool hole) {
   return !hole || (pair.a > pair.b) == (pair.distance % 2 == 1);
 }
 
-void try_pair(const Seen& seen, bool hole, Pair pair, Pair& best) {
+void try_pair(const BlockTexels& seen, bool hole, Pair pair, Pair& best) {
   if (!can_be_written(pair, hole)) return;
   const Colour a{widen4(pair.a[0]), widen4(pair.a[1]), widen4(pair.a[2])};
   const Colour b{widen4(pair.b[0]), widen4(pair.b[1]), widen4(pair.b[2])};
@@ -270,7 +271,7 @@ void try_pair(const Seen& seen, bool hole, Pair pair, Pair& best) {
   if (pair.choice.error < best.choice.error) best = pair;
 }
 
-void improve_pair(const Seen& seen, bool hole, Pair& best) {
+void improve_pair(const BlockTexels& seen, bool hole, Pair& best) {
   for (int32_t round = 0; round < 3 && best.choice.error > 0; ++round) {
     const int64_t before = best.choice.error;
     const auto of_a = [&](int32_t index) { return best.h ? index < 2 : index == 0; };
@@ -297,7 +298,7 @@ void improve_pair(const Seen& seen, bool hole, Pair& best) {
 
 // Two groups of texels, by which of the two that are furthest apart is nearer. `by_hue` ignores
 // lightness, along which the steps lie anyway.
-std::array<Exact, 2> two_groups(const Seen& seen, bool by_hue) {
+std::array<Exact, 2> two_groups(const BlockTexels& seen, bool by_hue) {
   std::array<Exact, 16> at{};
   for (size_t i = 0; i < seen.count; ++i) {
     for (size_t k = 0; k < 3; ++k) at[i][k] = seen.part[k][i];
@@ -369,7 +370,7 @@ uint64_t h_bits(const Pair& pair) {
   return word | stay(word, 56) | leave(word, 48);
 }
 
-Block fit_pair(const Seen& seen, bool hole, bool h) {
+Block fit_pair(const BlockTexels& seen, bool hole, bool h) {
   Pair best;
   for (const bool by_hue : {false, true}) {
     Pair own;
@@ -409,7 +410,7 @@ struct Slope {
   int64_t error = INT64_MAX;
 };
 
-int64_t slope_error(const Seen& seen, size_t k, const std::array<int32_t, 3>& end) {
+int64_t slope_error(const BlockTexels& seen, size_t k, const std::array<int32_t, 3>& end) {
   const auto widen = k == 1 ? widen7 : widen6;
   const int32_t corner = widen(end[0]), across = widen(end[1]), down = widen(end[2]);
   int64_t error = 0;
@@ -423,7 +424,7 @@ int64_t slope_error(const Seen& seen, size_t k, const std::array<int32_t, 3>& en
   return error;
 }
 
-Slope fit_slope(const Seen& seen, size_t k) {
+Slope fit_slope(const BlockTexels& seen, size_t k) {
   // The plane of least squares about the mean, regularised for blocks with too few texels.
   double weight = 0, mx = 0, my = 0, mc = 0;
   for (size_t i = 0; i < seen.count; ++i) {
@@ -463,7 +464,7 @@ Slope fit_slope(const Seen& seen, size_t k) {
   return best;
 }
 
-Block fit_planar(const Seen& seen) {
+Block fit_planar(const BlockTexels& seen) {
   const Slope r = fit_slope(seen, 0), g = fit_slope(seen, 1), b = fit_slope(seen, 2);
   uint64_t word = field(r.end[0], 57) | field(g.end[0] >> 6, 56) | field(g.end[0] & 63, 49) |
                   field(b.end[0] >> 5, 48) | field(b.end[0] >> 3 & 3, 43) |
@@ -477,7 +478,7 @@ Block fit_planar(const Seen& seen) {
 }  // namespace
 
 Bytes8 encode_etc2(const ColourBlock& block, const TexelWeights& weights, bool holes) {
-  Seen seen;
+  BlockTexels seen;
   uint64_t hole_bits = 0;
   for (size_t i = 0; i < 16; ++i) {
     const bool is_hole = holes && block[i][3] < 128;

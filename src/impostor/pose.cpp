@@ -14,12 +14,12 @@ using impostor::operator*;
 
 // The two keys around `time`, and the share of the second; constant before the first and after the
 // last.
-struct Between {
+struct Keys {
   size_t low = 0, high = 0;
   double share = 0;
 };
 
-Between find_keys(const std::vector<double>& times, double time) {
+Keys find_keys(const std::vector<double>& times, double time) {
   const auto after = std::upper_bound(times.begin(), times.end(), time);
   if (after == times.begin()) return {};
   const auto low = static_cast<size_t>(after - times.begin()) - 1;
@@ -29,14 +29,14 @@ Between find_keys(const std::vector<double>& times, double time) {
 }
 
 Vec3d value_at(const std::vector<double>& times, const std::vector<Vec3d>& values, double time) {
-  const Between b = find_keys(times, time);
+  const Keys b = find_keys(times, time);
   return values[b.low] + (values[b.high] - values[b.low]) * b.share;
 }
 
 // Interpolates linearly between two unit quaternions, on the shorter side, and normalises: with
 // keys as dense as those of a walk the difference to the arc is not visible.
 std::array<double, 4> rotation_at(const JointTrack& track, double time) {
-  const Between b = find_keys(track.rotation_times, time);
+  const Keys b = find_keys(track.rotation_times, time);
   const auto& low = track.rotations[b.low];
   const auto& high = track.rotations[b.high];
   double along = 0;

@@ -18,7 +18,7 @@ namespace {
 constexpr double kAcross = 0.80, kDown = 0.40;  // Of a metre along x or z, to the side and down.
 constexpr double kUpright = 0.75;               // Of a metre of height.
 constexpr double kSlab = 0.25;                  // Thickness of a floor at its rim. [m]
-constexpr int32_t kSamples = 3;
+constexpr int32_t kFanSamples = 3;
 constexpr int32_t kMaxTexels = 420;  // Along the longer side.
 
 // A storey reduced to few enough texels.
@@ -135,9 +135,9 @@ FanLayout lay_out_fan(std::span<const StoreyRaster> storeys, const RasterGrid& g
 void draw_fan(Canvas& canvas, int32_t x, int32_t y, const FanLayout& layout,
               std::span<const StoreyRaster> storeys, const RasterGrid& grid, double text,
               const HeightScale& scale, const PlacedMarks& marks) {
-  Canvas large(static_cast<int32_t>(std::ceil(layout.width)) * kSamples,
-               static_cast<int32_t>(std::ceil(layout.height)) * kSamples, kPaper);
-  const double factor = kSamples;
+  Canvas large(static_cast<int32_t>(std::ceil(layout.width)) * kFanSamples,
+               static_cast<int32_t>(std::ceil(layout.height)) * kFanSamples, kPaper);
+  const double factor = kFanSamples;
   for (size_t s = 0; s < storeys.size(); ++s) {
     const auto above = static_cast<double>(storeys.size() - 1 - s);
     const Point corner{layout.left, layout.top + above * layout.offset};
@@ -162,7 +162,7 @@ void draw_fan(Canvas& canvas, int32_t x, int32_t y, const FanLayout& layout,
       disc(placed.avatar.position, std::max(placed.avatar.radius * layout.scale, 1.0), kAvatar);
     }
   }
-  canvas.draw_reduced(large, kSamples, x, y);
+  canvas.draw_reduced(large, kFanSamples, x, y);
   if (storeys.size() < 2) return;
   for (size_t s = 0; s < storeys.size(); ++s) {
     // The left corner of the storey: x = 0 at its far end in z.

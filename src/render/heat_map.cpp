@@ -84,14 +84,14 @@ double tick_step(const HeatMap& map) {
 }
 
 // All digits: in a national grid coordinates are large and close to each other.
-std::string tick_text(double metres) { return fmt::format("{:.12g}", metres + 0.0); }
+std::string metres_text(double metres) { return fmt::format("{:.12g}", metres + 0.0); }
 
 // How far the ticks' texts along z reach to the left of the plot. [px]
 double left_of_plot(const HeatMap& map, double text) {
   const double step = tick_step(map), last = map.z0 + map.depth * map.cell;
   double widest = 0;
   for (double n = std::ceil(map.z0 / step - 1e-9); n * step <= last + 1e-9; ++n) {
-    widest = std::max(widest, text_width(tick_text(n * step), {.size = text}));
+    widest = std::max(widest, text_width(metres_text(n * step), {.size = text}));
   }
   return text * 0.8 + widest;
 }
@@ -102,13 +102,13 @@ void draw_ticks(Canvas& canvas, const Rect& plot, const HeatMap& map, double sca
   for (double n = std::ceil(map.x0 / step - 1e-9); n * step <= map.x0 + width + 1e-9; ++n) {
     const double x = plot.x + (n * step - map.x0) * scale;
     canvas.line({x, plot.y + plot.height}, {x, plot.y + plot.height + text * 0.4}, 1, kFaintInk);
-    draw_text(canvas, {x, plot.y + plot.height + text * 1.8}, tick_text(n * step),
+    draw_text(canvas, {x, plot.y + plot.height + text * 1.8}, metres_text(n * step),
               {.size = text, .align = Align::kCentre});
   }
   for (double n = std::ceil(map.z0 / step - 1e-9); n * step <= map.z0 + depth + 1e-9; ++n) {
     const double y = plot.y + (n * step - map.z0) * scale;
     canvas.line({plot.x - text * 0.4, y}, {plot.x, y}, 1, kFaintInk);
-    draw_text(canvas, {plot.x - text * 0.8, y + text / 2}, tick_text(n * step),
+    draw_text(canvas, {plot.x - text * 0.8, y + text / 2}, metres_text(n * step),
               {.size = text, .align = Align::kRight});
   }
   draw_text(canvas, {plot.x + plot.width, plot.y + plot.height + text * 3.6}, "x, z [m]",

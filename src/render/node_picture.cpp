@@ -27,7 +27,7 @@
 namespace throng {
 namespace {
 
-constexpr int32_t kSamples = 3;
+constexpr int32_t kPatchSamples = 3;
 constexpr double kTurn = 0.45;      // of the view around the vertical [radians]
 constexpr double kTilt = 0.82;      // of the view above the horizon [radians]
 constexpr double kCell = 1.0 / 64;  // of a tile
@@ -198,8 +198,8 @@ class NodePicture {
     }
     fit();
     find_links();
-    DepthCanvas large(static_cast<int32_t>(width_) * kSamples,
-                      static_cast<int32_t>(height_) * kSamples);
+    DepthCanvas large(static_cast<int32_t>(width_) * kPatchSamples,
+                      static_cast<int32_t>(height_) * kPatchSamples);
     for (const auto& [patch, node] : first_of_patch_) underlay(large, node);
     for (const uint32_t n : shown_) surface(large, n);
     const auto ground = config_.path.empty() ? DepthCanvas::Depths{} : large.depths();
@@ -210,7 +210,7 @@ class NodePicture {
     }
     if (!config_.path.empty()) path(large, ground);
     Canvas sheet(config_.width, static_cast<int32_t>(kHeader + height_ + kFooter), kPaper);
-    sheet.draw_reduced(large.canvas(), kSamples, static_cast<int32_t>(kMargin),
+    sheet.draw_reduced(large.canvas(), kPatchSamples, static_cast<int32_t>(kMargin),
                        static_cast<int32_t>(kHeader));
     letter(sheet);
     return std::move(sheet).take();
@@ -290,9 +290,9 @@ class NodePicture {
 
   [[nodiscard]] Seen at(Vec3d p, double nearer = 0) const {
     const Seen s = view_(p);
-    const double k = scale_ * kSamples;
-    const double left = (width_ - (high_x_ - low_x_) * scale_) / 2 * kSamples;
-    return {(s.x - low_x_) * k + left, (s.y - low_y_) * k + 4 * kSamples,
+    const double k = scale_ * kPatchSamples;
+    const double left = (width_ - (high_x_ - low_x_) * scale_) / 2 * kPatchSamples;
+    return {(s.x - low_x_) * k + left, (s.y - low_y_) * k + 4 * kPatchSamples,
             s.depth - depth_origin_ - nearer};
   }
 

@@ -111,9 +111,10 @@ Costs costs_of(const SampledSettings& settings, const Situation& s, const Trials
     const Plane v{trials.x[t], trials.z[t]};
     const float along = v.x * ahead.x + v.z * ahead.z;
     const float left = ahead.z * v.x - ahead.x * v.z;
-    float cost = (1 - settings.straightness) * size_of({v.x - s.preferred.x, v.z - s.preferred.z});
+    float cost =
+        (1 - settings.straightness) * size_of(Plane{v.x - s.preferred.x, v.z - s.preferred.z});
     cost = cost + settings.straightness * std::max(desired - along, 0.0f);
-    cost = cost + settings.keep * size_of({v.x - s.velocity.x, v.z - s.velocity.z});
+    cost = cost + settings.keep * size_of(Plane{v.x - s.velocity.x, v.z - s.velocity.z});
     cost = cost + settings.right * std::max(left, 0.0f);
     cost = cost / s.fastest;
     float soonest = 0;

@@ -158,7 +158,7 @@ Result<ValidationResult> bottleneck(const ValidationConfig& config, Context& con
   return result;
 }
 
-const std::array<Test, 1> kTests{Test{
+const std::array<Test, 1> kBottleneckTests{Test{
     {"bottleneck", "Flow through doors 0.8 to 2.5 m wide",
      "200 people wait at 3.3 /m2 before a door through a wall 1 m thick. Times at the line in its "
      "middle, without the first and the last tenth: people by time and width [SS10].",
@@ -167,6 +167,6 @@ const std::array<Test, 1> kTests{Test{
 
 }  // namespace
 
-std::span<const Test> bottleneck_tests() { return kTests; }
+std::span<const Test> bottleneck_tests() { return kBottleneckTests; }
 
 }  // namespace throng::validate

@@ -228,15 +228,15 @@ constexpr const char* kMethod =
     "After 30 s, over 30 s: classic density and mean speed along the ring in the 4 m around its "
     "middle line, each step [SS10].";
 
-const std::array<Test, 2> kTests{Test{{"fundamental", "Speed by density, 0.25 to 3.5 /m2", kMethod,
-                                       "[Weidmann93], mean error at most 10 %"},
-                                      fundamental},
-                                 Test{{"fundamental-dense", "Speed by density up to 6 /m2", kMethod,
-                                       "RiMEA 4: speed falls as density rises"},
-                                      fundamental_dense}};
+const std::array<Test, 2> kDensityTests{Test{{"fundamental", "Speed by density, 0.25 to 3.5 /m2",
+                                              kMethod, "[Weidmann93], mean error at most 10 %"},
+                                             fundamental},
+                                        Test{{"fundamental-dense", "Speed by density up to 6 /m2",
+                                              kMethod, "RiMEA 4: speed falls as density rises"},
+                                             fundamental_dense}};
 
 }  // namespace
 
-std::span<const Test> density_tests() { return kTests; }
+std::span<const Test> density_tests() { return kDensityTests; }
 
 }  // namespace throng::validate

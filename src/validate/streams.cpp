@@ -326,7 +326,7 @@ Result<ValidationResult> arch(const ValidationConfig& config, Context& context) 
   return result;
 }
 
-const std::array<Test, 3> kTests{
+const std::array<Test, 3> kStreamTests{
     Test{{"lanes", "Lanes in a counter-flow",
           "A corridor of 40 x 6 m, people start in either direction at random, mixed; those that "
           "leave at one end enter again at the other. Order of rows 0.6 m wide along the middle 20 "
@@ -349,6 +349,6 @@ const std::array<Test, 3> kTests{
 
 }  // namespace
 
-std::span<const Test> stream_tests() { return kTests; }
+std::span<const Test> stream_tests() { return kStreamTests; }
 
 }  // namespace throng::validate

@@ -11,6 +11,7 @@
 
 #include "core/parallel.h"
 #include "verify/body_check.h"
+#include "verify/check_limits.h"
 #include "verify/samples.h"
 #include "verify/surface_sampler.h"
 #include "verify/triangle_tree.h"
@@ -21,8 +22,7 @@
 namespace throng::verify {
 namespace {
 
-constexpr size_t kBatch = 8192;  ///< Samples between two tests of `cancel`.
-constexpr size_t kFaultsOfAKind = 8;
+constexpr size_t kBatch = 8192;                ///< Samples between two tests of `cancel`.
 constexpr uint64_t kSurfaceSalt = 0x73757266;  ///< Not the stream of the world's places.
 
 /// Share of one body's standable samples that were lost, from counts.

@@ -20,7 +20,7 @@ namespace {
 using verify::Cylinder;
 
 constexpr uint64_t kMaxFaults = 8;
-constexpr uint64_t kBatch = 4096;
+constexpr uint64_t kFlightBatch = 4096;
 constexpr uint64_t kPairsSalt = 0x7061697273;
 constexpr double kReach = 0.05;  // of the feet of a place on the ground [m]
 
@@ -31,9 +31,9 @@ struct Record {
   uint32_t triangle = 0;
 };
 
-class Judge {
+class FlightJudge {
  public:
-  Judge(const verify::TriangleTree& tree, const AvatarClass& avatar)
+  FlightJudge(const verify::TriangleTree& tree, const AvatarClass& avatar)
       : tree_(tree), avatar_(avatar), spacing_(std::min(avatar.radius / 2, avatar.height / 4)) {}
 
   // Does a solid meet the body whose feet go from `low` to `high` at one place?
@@ -98,7 +98,7 @@ Result<FlightReport> verify_flight(const World& world, const Scene& source,
   if (!finder) return finder.error();
   const AvatarClass avatar = world.summary().classes[static_cast<size_t>(config.avatar_class)];
   const verify::TriangleTree tree(source, config.workers);
-  const Judge judge(tree, avatar);
+  const FlightJudge judge(tree, avatar);
 
   FlightReport report;
   report.points = config.samples;
@@ -136,9 +136,9 @@ Result<FlightReport> verify_flight(const World& world, const Scene& source,
   };
   const uint64_t all = report.points + report.pairs;
   std::vector<Record> records;
-  for (uint64_t begin = 0; begin < all; begin += kBatch) {
+  for (uint64_t begin = 0; begin < all; begin += kFlightBatch) {
     if (context.on_progress) context.on_progress({"verify", begin, all});
-    records.assign(std::min(kBatch, all - begin), {});
+    records.assign(std::min(kFlightBatch, all - begin), {});
     parallel_for_worker(records.size(), config.workers, [&](size_t i, int32_t w) {
       if (!context.cancel) judge_one(begin + i, *workers[static_cast<size_t>(w)], records[i]);
     });

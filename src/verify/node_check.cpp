@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "throng/verify.h"
+#include "verify/check_limits.h"
 #include "verify/claims.h"
 #include "verify/cylinder.h"
 #include "verify/triangle_tree.h"
@@ -27,8 +28,7 @@ using verify::Corners;
 using verify::Pose;
 using verify::TriangleTree;
 
-constexpr size_t kFaultsOfAKind = 8;
-constexpr size_t kBatch = 4096;        // samples between two tests of `cancel`
+constexpr size_t kSampleBatch = 4096;  // samples between two tests of `cancel`
 constexpr int kHoleLinkParts = 24;     // poses tested on a link over a hole
 constexpr double kAngleMargin = 1e-3;  // of slopes, for planes at exactly a limit [degrees]
 
@@ -179,16 +179,16 @@ Result<NodeVerifyReport> verify_nodes(const Nodes& nodes, const Scene& source,
   const NodeJudge judge(nodes, source, config);
   NodeVerifyReport report;
   std::vector<Sample> samples;
-  for (uint64_t begin = 0; begin < config.samples; begin += kBatch) {
+  for (uint64_t begin = 0; begin < config.samples; begin += kSampleBatch) {
     if (context.cancel) return Error{Errc::kCancelled, "verify: cancelled"};
     if (context.on_progress) context.on_progress({"verify", begin, config.samples});
-    samples.assign(std::min<uint64_t>(kBatch, config.samples - begin), {});
+    samples.assign(std::min<uint64_t>(kSampleBatch, config.samples - begin), {});
     parallel_for(samples.size(), config.workers,
                  [&](size_t i) { samples[i] = judge.check(begin + i); });
     for (const Sample& s : samples) {
       const auto count = [&](bool bad, uint64_t& counter, const char* what, Vec3d at) {
         if (!bad) return;
-        if (++counter <= kFaultsOfAKind) report.faults.push_back({what, at, s.triangle});
+        if (++counter <= verify::kFaultsOfAKind) report.faults.push_back({what, at, s.triangle});
       };
       report.places += s.exists ? 1 : 0;
       report.arcs += s.arcs;

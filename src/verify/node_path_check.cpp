@@ -13,6 +13,7 @@
 #include "core/parallel.h"
 #include "throng/path.h"
 #include "throng/verify.h"
+#include "verify/check_limits.h"
 #include "verify/claims.h"
 #include "verify/turned_body.h"
 
@@ -22,19 +23,10 @@
 namespace throng {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr size_t kFaultsOfAKind = 8;
-constexpr size_t kBatch = 256;       // pairs between two tests of `cancel`
-constexpr double kSame = 1e-6;       // [m]
 constexpr double kSeam = 0.12;       // between neighbours' edges [m]
 constexpr double kMaxPoses = 20000;  // of a segment
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-struct Walked {
+struct NodeWalk {
   bool exists = false, reached = false, together = false;
   uint64_t segments = 0, links = 0, hole_links = 0, poses = 0, entered = 0, unsupported = 0,
            broken = 0;
@@ -91,17 +83,17 @@ class Follower {
     }
   }
 
-  Walked go(NodePathFinder& finder, NodePath& path, uint64_t n) const {
-    Walked walked;
+  NodeWalk go(NodePathFinder& finder, NodePath& path, uint64_t n) const {
+    NodeWalk walked;
     const NodePlace from = nodes_.random_place(config_.avatar_class, config_.seed, 2 * n);
     const NodePlace to = nodes_.random_place(config_.avatar_class, config_.seed, 2 * n + 1);
     if (!from || !to) return walked;
     walked.exists = true;
     walked.at = from.feet;
     walked.together = leads(part_[from.node1 - 1], part_[to.node1 - 1]);
-    const auto start = Clock::now();
+    const auto start = verify::Clock::now();
     finder.find(from, to, path);
-    walked.seconds = seconds_since(start);
+    walked.seconds = verify::seconds_since(start);
     // A place inside an added obstacle is no place.
     if (!config_.obstacles.empty() && path.end == PathEnd::kNoPlace) {
       walked.exists = false;
@@ -112,8 +104,8 @@ class Follower {
     walked.length = walked.reached ? path.length : 0;
     walked.straight = walked.reached ? length(to.feet - from.feet) : 0;
     if (path.points.empty()) return walked;
-    if (length(path.points.front().place.feet - from.feet) > kSame ||
-        (walked.reached && length(path.points.back().place.feet - to.feet) > kSame)) {
+    if (length(path.points.front().place.feet - from.feet) > verify::kSameLength ||
+        (walked.reached && length(path.points.back().place.feet - to.feet) > verify::kSameLength)) {
       mark_broken(walked, from.feet);
     }
     for (const NodePathLink& link : path.links) {
@@ -155,22 +147,23 @@ class Follower {
   }
 
   // Level out, upright, and straight down, as far as the class lets itself down and no farther.
-  void check_drop(const std::vector<NodePathPoint>& points, size_t landing, Walked& walked) const {
+  void check_drop(const std::vector<NodePathPoint>& points, size_t landing,
+                  NodeWalk& walked) const {
     const NodePlace &over = points[landing - 1].place, &to = points[landing].place;
     const bool sound = landing >= 2 && !over && over.axis.y == 1 &&
                        points[landing - 2].place.feet.y == over.feet.y &&
                        over.feet.x == to.feet.x && over.feet.z == to.feet.z &&
                        over.feet.y > to.feet.y &&
-                       over.feet.y - to.feet.y <= avatar_.max_drop + kSame;
+                       over.feet.y - to.feet.y <= avatar_.max_drop + verify::kSameLength;
     if (!sound) mark_broken(walked, to.feet);
   }
 
-  static void mark_broken(Walked& walked, Vec3d at) {
+  static void mark_broken(NodeWalk& walked, Vec3d at) {
     if (walked.broken++ == 0) walked.broken_at = at;
   }
 
   void segment(const NodePathPoint& from, const NodePathPoint& to, bool over_hole,
-               Walked& walked) const {
+               NodeWalk& walked) const {
     ++walked.segments;
     const double moved = length(to.place.feet - from.place.feet) +
                          avatar_.height * length(to.place.axis - from.place.axis);
@@ -180,7 +173,7 @@ class Follower {
     const Vec3d seam = to.place.feet - from.place.feet;
     if (!to.on_surface && !over_hole &&
         (std::hypot(seam.x, seam.z) > kSeam ||
-         std::fabs(seam.y) > std::max(kSeam, avatar_.step + kSame))) {
+         std::fabs(seam.y) > std::max(kSeam, avatar_.step + verify::kSameLength))) {
       mark_broken(walked, to.place.feet);
     }
     bool entered = false, unsupported = false, broken = false;
@@ -192,7 +185,8 @@ class Follower {
         const NodePlace place =
             nodes_.place(config_.avatar_class, from.place.node1 - 1,
                          along(from.place.s, to.place.s), along(from.place.t, to.place.t));
-        broken |= !place || (k == 0 && length(place.feet - from.place.feet) > kSame) ||
+        broken |= !place ||
+                  (k == 0 && length(place.feet - from.place.feet) > verify::kSameLength) ||
                   (k == parts && length(place.feet - to.place.feet) > kSeam);
         if (!place) break;
         pose = {place.feet, place.axis};
@@ -232,7 +226,7 @@ class Follower {
 
 Result<NodePathReport> verify_node_paths(const Nodes& nodes, const Scene& source,
                                          const VerifyConfig& config, Context& context) {
-  const auto start = Clock::now();
+  const auto start = verify::Clock::now();
   if (auto sound = verify::check_source(source, config); !sound) return sound.error();
   auto finder = NodePathFinder::create(
       nodes, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
@@ -246,20 +240,20 @@ Result<NodePathReport> verify_node_paths(const Nodes& nodes, const Scene& source
   report.finder_bytes = finder->summary().bytes;
   std::vector<NodePathFinder> finders(static_cast<size_t>(worker_count(config.workers)), *finder);
   std::vector<NodePath> paths(finders.size());
-  std::vector<Walked> walked;
-  for (uint64_t begin = 0; begin < config.samples; begin += kBatch) {
+  std::vector<NodeWalk> walked;
+  for (uint64_t begin = 0; begin < config.samples; begin += verify::kPairBatch) {
     if (context.cancel) return Error{Errc::kCancelled, "verify: cancelled"};
     if (context.on_progress) context.on_progress({"verify", begin, config.samples});
-    walked.assign(std::min<uint64_t>(kBatch, config.samples - begin), {});
+    walked.assign(std::min<uint64_t>(verify::kPairBatch, config.samples - begin), {});
     parallel_for_worker(walked.size(), config.workers, [&](size_t i, int32_t worker) {
       const auto w = static_cast<size_t>(worker);
       walked[i] = follower.go(finders[w], paths[w], begin + i);
     });
-    for (const Walked& g : walked) {
+    for (const NodeWalk& g : walked) {
       if (!g.exists) continue;
       const auto count = [&](uint64_t bad, uint64_t& counter, const char* what, Vec3d at) {
         if (bad == 0) return;
-        if (counter < kFaultsOfAKind) report.faults.push_back({what, at, g.triangle});
+        if (counter < verify::kFaultsOfAKind) report.faults.push_back({what, at, g.triangle});
         counter += bad;
       };
       ++report.pairs;
@@ -281,7 +275,7 @@ Result<NodePathReport> verify_node_paths(const Nodes& nodes, const Scene& source
       for (size_t k = 0; k < kLinkKinds; ++k) report.links_of_kind[k] += g.kinds[k];
     }
   }
-  report.seconds = seconds_since(start);
+  report.seconds = verify::seconds_since(start);
   return report;
 }
 

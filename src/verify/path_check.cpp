@@ -11,6 +11,7 @@
 #include "throng/verify.h"
 #include "throng/world.h"
 #include "verify/body_check.h"
+#include "verify/check_limits.h"
 #include "verify/claims.h"
 #include "verify/segment_check.h"
 #include "verify/triangle_tree.h"
@@ -22,17 +23,8 @@
 namespace throng {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr size_t kFaultsOfAKind = 8;
-constexpr size_t kBatch = 256;     // pairs between two tests of `cancel`
 constexpr uint64_t kDraws = 16;    // of a goal in the component of its start
-constexpr double kSame = 1e-6;     // [m]
 constexpr double kSlack = 1.0001;  // of a path's length, for the rounding of its points
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 double plan_distance(Vec3d a, Vec3d b) { return std::hypot(b.x - a.x, b.z - a.z); }
 
@@ -64,9 +56,9 @@ class Walker {
     walked.exists = true;
     walked.at = from.position;
     walked.together = part >= 0 && part == part_of(to);
-    const auto start = Clock::now();
+    const auto start = verify::Clock::now();
     finder.find(from, to, path);
-    walked.seconds = seconds_since(start);
+    walked.seconds = verify::seconds_since(start);
     walked.reached = path.end == PathEnd::kReached;
     if (!walked.reached) return walked;
     walked.length = path.length;
@@ -110,7 +102,7 @@ class Walker {
   }
 
   static bool same(const Place& a, const Place& b) {
-    return a.level1 == b.level1 && plan_distance(a.position, b.position) <= kSame;
+    return a.level1 == b.level1 && plan_distance(a.position, b.position) <= verify::kSameLength;
   }
 
   static void refuse(Walked& walked, Vec3d at) {
@@ -130,7 +122,8 @@ void add(const Walked& walked, PathReport& report) {
   if (!walked.exists) return;
   const auto count = [&](bool bad, uint64_t& counter, const char* what, Vec3d at) {
     if (!bad) return;
-    if (counter++ < kFaultsOfAKind) report.faults.push_back({what, at, walked.body.intruder});
+    if (counter++ < verify::kFaultsOfAKind)
+      report.faults.push_back({what, at, walked.body.intruder});
   };
   ++report.pairs;
   report.reached += walked.reached ? 1 : 0;
@@ -151,7 +144,7 @@ void add(const Walked& walked, PathReport& report) {
 
 Result<PathReport> verify_paths(const World& world, const Scene& source, const VerifyConfig& config,
                                 Context& context) {
-  const auto start = Clock::now();
+  const auto start = verify::Clock::now();
   const auto claims = verify::claims_of(world, config.avatar_class);
   if (!claims) return claims.error();
   if (auto sound = verify::check_source(source, config); !sound) return sound.error();
@@ -167,9 +160,9 @@ Result<PathReport> verify_paths(const World& world, const Scene& source, const V
   std::vector<PathFinder> finders(static_cast<size_t>(worker_count(config.workers)), *finder);
   std::vector<Path> paths(finders.size());
   std::vector<Walked> walked;
-  for (uint64_t begin = 0; begin < config.samples; begin += kBatch) {
+  for (uint64_t begin = 0; begin < config.samples; begin += verify::kPairBatch) {
     if (context.on_progress) context.on_progress({"verify", begin, config.samples});
-    walked.assign(std::min<uint64_t>(kBatch, config.samples - begin), {});
+    walked.assign(std::min<uint64_t>(verify::kPairBatch, config.samples - begin), {});
     parallel_for_worker(walked.size(), config.workers, [&](size_t i, int32_t worker) {
       if (context.cancel) return;
       const auto w = static_cast<size_t>(worker);
@@ -178,7 +171,7 @@ Result<PathReport> verify_paths(const World& world, const Scene& source, const V
     if (context.cancel) return Error{Errc::kCancelled, "verify: cancelled"};
     for (const Walked& g : walked) add(g, report);
   }
-  report.seconds = seconds_since(start);
+  report.seconds = verify::seconds_since(start);
   return report;
 }
 

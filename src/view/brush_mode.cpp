@@ -12,9 +12,9 @@
 namespace throng {
 namespace {
 
-constexpr double kFarthest = 3000;  // [m] From the eye.
-constexpr double kDab = 6;          // [px] Between two dabs of a stroke.
-constexpr double kMaxDabs = 24;     // Per move of the pointer.
+constexpr double kFarthestStroke = 3000;  // [m] From the eye.
+constexpr double kDab = 6;                // [px] Between two dabs of a stroke.
+constexpr double kMaxDabs = 24;           // Per move of the pointer.
 
 }  // namespace
 
@@ -22,7 +22,7 @@ std::optional<Vec3d> Viewer::State::ground_under(double x, double y) const {
   if (!panel.has_world) return std::nullopt;
   const view::SightLine line = sight_line(x, y);
   const double cut = panel.is_cut ? panel.cut : std::numeric_limits<double>::infinity();
-  return view::ground_on(world, {line.eye + origin, line.direction}, cut, kFarthest);
+  return view::ground_on(world, {line.eye + origin, line.direction}, cut, kFarthestStroke);
 }
 
 // Paints from the pointer's last position on, without gaps in fast strokes.

@@ -12,8 +12,8 @@
 namespace throng {
 namespace {
 
-constexpr double kClick = 5;        // [px] A pointer that moves less makes a click.
-constexpr double kFarthest = 3000;  // [m] From the eye to the picked avatar.
+constexpr double kClick = 5;            // [px] A pointer that moves less makes a click.
+constexpr double kFarthestPick = 3000;  // [m] From the eye to the picked avatar.
 constexpr double kSpeedStep = 1.4142135623730951;
 
 }  // namespace
@@ -197,7 +197,7 @@ void Viewer::State::click() {
     return;
   }
   // Avatars behind the ground at the pointer are hidden.
-  const double farthest = ground ? length(*ground - origin - line.eye) + 1 : kFarthest;
+  const double farthest = ground ? length(*ground - origin - line.eye) + 1 : kFarthestPick;
   const size_t i = view::avatar_on(crowd.now(), panel.class_heights, line, cut, farthest);
   panel.status.picked =
       i < crowd.now().size() ? static_cast<int64_t>(crowd.now().ids[i]) : int64_t{-1};

@@ -14,10 +14,10 @@
 namespace throng::view {
 namespace {
 
-constexpr double kStorey = 4;       // [m] Vertical tolerance of goals.
-constexpr uint64_t kTries = 24;     // To find a place.
-constexpr double kNearGround = 1;   // [m] Vertical tolerance of places on the ground.
-constexpr double kLookMargin = 10;  // [m] Beyond sight: bodies and tiles that begin within it.
+constexpr double kGoalTolerance = 4;  // [m] Vertical tolerance of goals.
+constexpr uint64_t kTries = 24;       // To find a place.
+constexpr double kNearGround = 1;     // [m] Vertical tolerance of places on the ground.
+constexpr double kLookMargin = 10;    // [m] Beyond sight: bodies and tiles that begin within it.
 
 }  // namespace
 
@@ -142,8 +142,8 @@ Place CrowdPlayer::goal_of(uint32_t slot, uint64_t nth, const Vec3d& from) const
     const auto offset = [&](uint64_t axis) {
       return start_.near * (2 * random_unit(start_.seed, stream, 2 * n + axis) - 1);
     };
-    const Place place =
-        world_.find_place(avatar_class, {from.x + offset(0), from.y, from.z + offset(1)}, kStorey);
+    const Place place = world_.find_place(
+        avatar_class, {from.x + offset(0), from.y, from.z + offset(1)}, kGoalTolerance);
     if (place) return place;
   }
   return world_.find_place(avatar_class, from, kNearGround);
@@ -286,7 +286,7 @@ Place CrowdPlayer::place_under(Vec3d eye, int32_t avatar_class) const {
     const auto offset = [&](uint64_t axis) {
       return n == 0 ? 0 : kAround * (2 * random_unit(start_.seed, 21, 2 * n + axis) - 1);
     };
-    for (double down = -kStorey; down < kDeep; down += kStep) {
+    for (double down = -kGoalTolerance; down < kDeep; down += kStep) {
       const Vec3d at{eye.x + offset(0), eye.y - down, eye.z + offset(1)};
       const Place place = world_.find_place(avatar_class, at, 0.6 * kStep);
       if (place && is_on_large_ground(avatar_class, place)) return place;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPixel = 0.5;     // [m] Of maps made here; larger if a side would exceed kMaxSide.
 constexpr double kMaxSide = 1024;  // [pixels]
-constexpr double kStorey = 1.25;   // [m] Half of the height that a map covers.
+constexpr double kHalfStorey = 1.25;  // [m] Half of the height that a map covers.
 
 size_t index_of(const DensityMap& map, int32_t row, int32_t column) {
   return static_cast<size_t>(row) * static_cast<size_t>(map.width) + static_cast<size_t>(column);
@@ -58,7 +58,7 @@ DensityMap& map_at(std::vector<DensityMap>& maps, const Box3d& bounds, double he
   const double pixel = std::max(kPixel, std::max(wide, deep) / kMaxSide);
   map.width = static_cast<int32_t>(std::ceil(wide / pixel));
   map.height = static_cast<int32_t>(std::ceil(deep / pixel));
-  map.low = height - kStorey, map.high = height + kStorey;
+  map.low = height - kHalfStorey, map.high = height + kHalfStorey;
   map.weights.assign(static_cast<size_t>(map.width) * static_cast<size_t>(map.height), 0);
   // Maps of nearby storeys do not overlap.
   for (const DensityMap& other : maps) {

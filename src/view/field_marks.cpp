@@ -16,9 +16,9 @@
 namespace throng::view {
 namespace {
 
-constexpr double kAbove = 0.05;                     // [m]
+constexpr double kMarkHeight = 0.05;                // [m]
 constexpr double kPrecaution = 0.25, kAlert = 0.7;  // [m] Beyond the body's radius.
-constexpr size_t kMax = 300;                        // Avatars that are shown, the nearest first.
+constexpr size_t kMaxAvatars = 300;                 // Avatars that are shown, the nearest first.
 constexpr double kAround = 8;                       // [m] Around the picked avatar.
 
 caacd::Model model_of_metres() {
@@ -73,7 +73,7 @@ caacd::Body body_of(const TimelineFrame& crowd, size_t i, const std::vector<doub
       radii.empty() ? 0.25 : radii[std::min<size_t>(crowd.classes[i], radii.size() - 1)];
   const double angle = 2 * std::numbers::pi * static_cast<double>(crowd.heading[i]);
   caacd::Body body;
-  body.position = {crowd.x[i], crowd.y[i] + kAbove, crowd.z[i]};
+  body.position = {crowd.x[i], crowd.y[i] + kMarkHeight, crowd.z[i]};
   body.forward = {std::sin(angle), 0, std::cos(angle)};
   body.velocity = body.forward * static_cast<double>(crowd.speed[i]);
   body.fields = {radius, radius + kPrecaution, radius + kAlert};
@@ -107,7 +107,7 @@ Marks field_marks(const TimelineFrame& crowd, size_t picked, Vec3d middle,
     if (!has_picked || away < kAround) near.emplace_back(away, i);
   }
   std::sort(near.begin(), near.end());
-  if (near.size() > kMax) near.resize(kMax);
+  if (near.size() > kMaxAvatars) near.resize(kMaxAvatars);
   std::vector<caacd::Body> bodies;
   for (const auto& [away, i] : near) bodies.push_back(body_of(crowd, i, radii));
   const caacd::Model model = model_of_metres();

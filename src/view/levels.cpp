@@ -11,7 +11,7 @@ namespace throng::view {
 namespace {
 
 constexpr int32_t kBin = 250;           // [mm]
-constexpr int32_t kStorey = 8;          // [bins] Smallest distance of two storeys.
+constexpr int32_t kStoreyBins = 8;      // [bins] Smallest distance of two storeys.
 constexpr double kShare = 0.08;         // Smallest area of a storey, as a share of the largest one.
 constexpr uint32_t kMaxTiles = 20'000;  // Of more tiles, every n-th is read.
 
@@ -38,7 +38,7 @@ std::vector<double> storey_heights(const World& world, Context& context) {
     if (static_cast<double>(count) < kShare * static_cast<double>(by_size.front().first)) break;
     const int32_t height = bin;
     const bool apart = std::all_of(storeys.begin(), storeys.end(), [height](int32_t other) {
-      return std::abs(other - height) >= kStorey;
+      return std::abs(other - height) >= kStoreyBins;
     });
     if (apart) storeys.push_back(height);
   }

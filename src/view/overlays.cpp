@@ -17,8 +17,8 @@
 namespace throng::view {
 namespace {
 
-constexpr double kAbove = 0.04;      // [m] over the ground
-constexpr size_t kMax = 12'000'000;  // Vertices; further marks are left out.
+constexpr double kOverlayHeight = 0.04;      // [m] over the ground
+constexpr size_t kMaxVertices = 12'000'000;  // Vertices; further marks are left out.
 
 MarkVertex at(Vec3d p, Rgba colour) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), colour};
@@ -56,7 +56,7 @@ template <class ColourOf>
 void add_tile(Marks& marks, const LevelTileContent& tile, const WorldSummary& summary, Vec3d origin,
               ColourOf colour_of) {
   const double cell = summary.cell;
-  const auto height = [&](size_t i) { return tile.floor[i] * 1e-3 + kAbove; };
+  const auto height = [&](size_t i) { return tile.floor[i] * 1e-3 + kOverlayHeight; };
   for (int32_t row = 0; row < kTileCells; ++row) {
     int32_t end = 0;
     for (int32_t begin = 0; begin < kTileCells; begin = std::max(end, begin + 1)) {
@@ -117,7 +117,7 @@ Marks clearance_marks(const World& world, int32_t avatar_class, Vec3d origin, Co
   Marks marks;
   const WorldSummary summary = world.summary();
   const uint32_t tiles = world.level_tile_count();
-  for (uint32_t t = 0; t < tiles && !context.cancel && marks.triangles.size() < kMax; ++t) {
+  for (uint32_t t = 0; t < tiles && !context.cancel && marks.triangles.size() < kMaxVertices; ++t) {
     const LevelTileContent tile = world.level_tile(t);
     const auto& clearance = tile.clearance[static_cast<size_t>(avatar_class)];
     add_tile(marks, tile, summary, origin,
@@ -132,7 +132,7 @@ Marks level_marks(const World& world, Vec3d origin, Context& context) {
   const WorldSummary summary = world.summary();
   const std::vector<int32_t> storeys = world.storeys();
   const uint32_t tiles = world.level_tile_count();
-  for (uint32_t t = 0; t < tiles && !context.cancel && marks.triangles.size() < kMax; ++t) {
+  for (uint32_t t = 0; t < tiles && !context.cancel && marks.triangles.size() < kMaxVertices; ++t) {
     const LevelTileContent tile = world.level_tile(t);
     const Rgba colour = own_colour(static_cast<uint64_t>(storeys[t]), 150);
     add_tile(marks, tile, summary, origin, [&](size_t i) {
@@ -160,10 +160,10 @@ double inclination_of(const std::array<Vec3d, 4>& c) {
 Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context) {
   Marks marks;
   const NodeBins bins = nodes.summary().bins;
-  const Vec3d lift{0, kAbove, 0};
+  const Vec3d lift{0, kOverlayHeight, 0};
   for (uint32_t n = 0; n < nodes.node_count() && !context.cancel; ++n) {
     const NodeInfo info = nodes.node(n);
-    if (!info.terminal || info.classes == 0 || marks.triangles.size() > kMax) continue;
+    if (!info.terminal || info.classes == 0 || marks.triangles.size() > kMaxVertices) continue;
     // The inclination of a node of a level tile is a limit of a class: the floor may be less steep.
     const auto add = [&](const std::array<Vec3d, 4>& c) {
       double steep = bins.inclination_of(info.inclination);
@@ -194,12 +194,12 @@ Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context) {
 
 Marks link_marks(const Nodes& nodes, Vec3d origin, Context& context) {
   Marks marks;
-  const Vec3d lift = Vec3d{0, 3 * kAbove, 0} - origin;
+  const Vec3d lift = Vec3d{0, 3 * kOverlayHeight, 0} - origin;
   for (uint32_t n = 0; n < nodes.node_count() && !context.cancel; ++n) {
     for (const NodeArc& arc : nodes.arcs(n)) {
       // An undirected link has two arcs: one is drawn. Drop links have one.
       const bool drops = arc.kind == LinkKind::kDrop;
-      if ((arc.to < n && !drops) || marks.lines.size() > kMax) continue;
+      if ((arc.to < n && !drops) || marks.lines.size() > kMaxVertices) continue;
       if (drops) {
         const Rgba colour = rgba(230, 40, 40, 255);
         const Vec3d from = nodes.point(n, arc.from_s, arc.from_t) + lift;
@@ -274,7 +274,7 @@ Marks density_marks(const TimelineFrame& crowd) {
   Marks marks;
   for (const auto& [key, square] : squares) {
     const double x = std::get<2>(key) * kSide, z = std::get<1>(key) * kSide;
-    const double y = square.lowest + kAbove, density = square.avatars / (kSide * kSide);
+    const double y = square.lowest + kOverlayHeight, density = square.avatars / (kSide * kSide);
     add_quad(marks, {x, y, z}, {x, y, z + kSide}, {x + kSide, y, z + kSide}, {x + kSide, y, z},
              ramp(1 - density / kMuch, 150));
   }
@@ -292,7 +292,7 @@ Marks painted_marks(const World& world, const std::vector<DensityMap>& maps, Vec
     const double high = std::min(map.high, world.summary().bounds.max.y + 1);
     const double middle = 0.5 * (low + high), tolerance = 0.5 * (high - low);
     for (size_t i = 0; i < map.weights.size() && !context.cancel; ++i) {
-      if (map.weights[i] == 0 || marks.triangles.size() > kMax) continue;
+      if (map.weights[i] == 0 || marks.triangles.size() > kMaxVertices) continue;
       const auto column = static_cast<double>(i % static_cast<size_t>(map.width));
       const auto row = static_cast<double>(i / static_cast<size_t>(map.width));
       const double x = map.x0 + column * wide, z = map.z0 + row * deep;
@@ -301,7 +301,7 @@ Marks painted_marks(const World& world, const std::vector<DensityMap>& maps, Vec
         place = world.find_place(c, {x + wide / 2, middle, z + deep / 2}, tolerance);
       }
       if (!place) continue;
-      const double y = place.position.y + kAbove;
+      const double y = place.position.y + kOverlayHeight;
       const Vec3d o = origin;
       const auto alpha = static_cast<uint32_t>(60 + 130 * map.weights[i] / 255);
       add_quad(marks, Vec3d{x, y, z} - o, Vec3d{x, y, z + deep} - o,

@@ -15,7 +15,7 @@
 namespace throng {
 namespace {
 
-constexpr const char* kZoneIdentifier = "THAZ";
+constexpr const char* kAirZoneIdentifier = "THAZ";
 constexpr const char* kManifestIdentifier = "THAM";
 uint64_t sum_of(uint64_t input, const AirTree& tree) {
   const uint64_t head[] = {input, static_cast<uint64_t>(tree.side),
@@ -33,14 +33,14 @@ flatbuffers::DetachedBuffer air_zone_bytes(int32_t x, int32_t z, uint64_t input,
   builder.Finish(
       format::CreateAirZone(builder, kAirVersion, x, z, input, sum_of(input, tree.view()),
                             tree.side, tree.base, tree.roots, nodes, leaves),
-      kZoneIdentifier);
+      kAirZoneIdentifier);
   return builder.Release();
 }
 
 Result<void> AirZone::attach(const std::string& name) {
   flatbuffers::Verifier verifier(bytes().data(), bytes().size());
-  if (bytes().size() < 8 || !flatbuffers::BufferHasIdentifier(bytes().data(), kZoneIdentifier) ||
-      !verifier.VerifyBuffer<format::AirZone>(kZoneIdentifier)) {
+  if (bytes().size() < 8 || !flatbuffers::BufferHasIdentifier(bytes().data(), kAirZoneIdentifier) ||
+      !verifier.VerifyBuffer<format::AirZone>(kAirZoneIdentifier)) {
     return bad_file(name, "not an air file, or truncated");
   }
   root_ = flatbuffers::GetRoot<format::AirZone>(bytes().data());

@@ -15,7 +15,7 @@ namespace throng {
 namespace {
 
 constexpr size_t kMaxClasses = kMaxAvatarClasses;
-constexpr uint64_t kMaxCells = uint64_t{1} << 50;  // of a component
+constexpr uint64_t kMaxComponentCells = uint64_t{1} << 50;  // of a component
 
 // The place of the last component that was read or written; the next is stored as the difference.
 struct LastPlace {
@@ -192,9 +192,9 @@ class Unpacker {
     int64_t cells = 0;
     for (const size_t c : first_) {
       const auto change = take_number(bytes_, at_);
-      if (!change || *change > 2 * kMaxCells) return "a component makes no sense";
+      if (!change || *change > 2 * kMaxComponentCells) return "a component makes no sense";
       cells = cells == 0 ? static_cast<int64_t>(*change) : cells + unfolded(*change);
-      if (cells <= 0 || cells > static_cast<int64_t>(kMaxCells)) {
+      if (cells <= 0 || cells > static_cast<int64_t>(kMaxComponentCells)) {
         return "a component makes no sense";
       }
       GraphComponent& of = found_[c].back();

@@ -16,8 +16,8 @@
 namespace throng {
 namespace {
 
-constexpr const char* kZoneIdentifier = "THNZ";
-constexpr const char* kIndexIdentifier = "THNI";
+constexpr const char* kNodeZoneIdentifier = "THNZ";
+constexpr const char* kNodeIndexIdentifier = "THNI";
 constexpr double kFarthest = 1e9;  // [m]
 
 constexpr const char* kRemedy = "bake the world again with --nodes";
@@ -41,7 +41,7 @@ bool ascending(const flatbuffers::Vector<double>& edges, double low, double high
 // As for zones: what is checked here need not be checked by any look-up.
 Result<void> NodeZone::attach(const std::string& name) {
   flatbuffers::Verifier verifier(bytes().data(), bytes().size());
-  if (bytes().size() < 8 || !verifier.VerifyBuffer<format::NodeZone>(kZoneIdentifier)) {
+  if (bytes().size() < 8 || !verifier.VerifyBuffer<format::NodeZone>(kNodeZoneIdentifier)) {
     return bad_nodes(name, "not a file of nodes, or truncated");
   }
   root_ = flatbuffers::GetRoot<format::NodeZone>(bytes().data());
@@ -292,14 +292,14 @@ std::vector<uint8_t> write_node_index(const NodeData& nodes) {
   builder.Finish(
       format::CreateNodeIndex(builder, kNodeVersion, nodes.world_hash, nodes.size, inclination,
                               height, width, nodes.summary.bezier_patches, zones, inputs),
-      kIndexIdentifier);
+      kNodeIndexIdentifier);
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
 
 Result<std::shared_ptr<NodeData>> read_node_index(std::span<const uint8_t> bytes,
                                                   const std::string& name) {
   flatbuffers::Verifier verifier(bytes.data(), bytes.size());
-  if (bytes.size() < 8 || !verifier.VerifyBuffer<format::NodeIndex>(kIndexIdentifier)) {
+  if (bytes.size() < 8 || !verifier.VerifyBuffer<format::NodeIndex>(kNodeIndexIdentifier)) {
     return bad_nodes(name, "not an index of nodes, or truncated");
   }
   const auto& root = *flatbuffers::GetRoot<format::NodeIndex>(bytes.data());

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kRegionIdentifier = "THRZ";
 constexpr const char* kLinkIdentifier = "THLZ";
-constexpr const char* kIndexIdentifier = "THGI";
+constexpr const char* kGroupIdentifier = "THGI";
 
 template <class T>
 std::span<const T> numbers(const flatbuffers::Vector<T>& values) {
@@ -358,7 +358,7 @@ std::vector<uint8_t> write_graph_index(const GraphData& graph, uint64_t world_ha
       format::CreateGraphIndexDirect(builder, kGraphVersion, world_hash,
                                      sum_of(world_hash, zones, graph.class_first, packed), &zones,
                                      &graph.class_first, &packed),
-      kIndexIdentifier);
+      kGroupIdentifier);
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
 
@@ -366,7 +366,7 @@ Result<std::shared_ptr<GraphData>> read_graph_index(std::span<const uint8_t> byt
                                                     const std::string& name, const WorldData& world,
                                                     uint64_t world_hash) {
   auto found =
-      checked_root<format::GraphIndex>(bytes, kIndexIdentifier, name, "the index of a graph");
+      checked_root<format::GraphIndex>(bytes, kGroupIdentifier, name, "the index of a graph");
   if (!found) return found.error();
   const format::GraphIndex& root = **found;
   if (root.world() != world_hash) return bad_file(name, "belongs to another bake of this world");

@@ -11,7 +11,7 @@
 namespace throng {
 namespace {
 
-constexpr int64_t kMaxCells = int64_t{1} << 40;         // of a component: sums fit 64 bits
+constexpr int64_t kMaxGroupCells = int64_t{1} << 40;    // of a component: sums fit 64 bits
 constexpr uint64_t kMaxFeetChange = uint64_t{1} << 34;  // folded [mm]
 
 uint32_t named_classes(const format::RegionGroup& group) {
@@ -35,10 +35,10 @@ bool BegunReader::next_place() {
 
 bool BegunReader::next_cells() {
   const auto change = take_number(bytes, at);
-  if (!change || *change > 2 * kMaxCells) return false;
+  if (!change || *change > 2 * kMaxGroupCells) return false;
   // The first as it is, the rest folded: where classes begin together they have about as many.
   cells = cells == 0 ? static_cast<int64_t>(*change) : cells + unfolded(*change);
-  return cells > 0 && cells <= kMaxCells;
+  return cells > 0 && cells <= kMaxGroupCells;
 }
 
 void GroupWriter::add(const Group& group) {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr uint32_t kArea = 4096;
 constexpr int32_t kHighest = 1'050'000'000;  // [mm]: more than is baked, differences fit 32 bits
-constexpr int32_t kMaxCells = 1 << 20;       // along a side
+constexpr int32_t kMaxSideCells = 1 << 20;   // along a side
 
 // Legal cells of a class on a level, or none if its sets do not lie within `words`.
 std::optional<uint32_t> legal_cells(const format::Clearance& entry,
@@ -227,8 +227,8 @@ Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
                      root.classes()->size() >= 1 && root.classes()->size() <= kMaxAvatarClasses &&
                      root.cell() >= 0.02 && root.cell() <= 5 && std::isfinite(root.resolution()) &&
                      std::fabs(root.origin_x()) < 1e12 && std::fabs(root.origin_z()) < 1e12 &&
-                     root.width() > 0 && root.depth() > 0 && root.width() <= kMaxCells &&
-                     root.depth() <= kMaxCells && root.tiles_per_zone() > 0 &&
+                     root.width() > 0 && root.depth() > 0 && root.width() <= kMaxSideCells &&
+                     root.depth() <= kMaxSideCells && root.tiles_per_zone() > 0 &&
                      root.tiles_per_zone() < 256;
   if (!sound) return bad_file(name, "its numbers make no sense");
   for (uint32_t i = 0; i < 6; ++i) {

@@ -6,13 +6,14 @@
 #include <cmath>
 #include <limits>
 
+#include "bake/surface/body_sweep.h"
+
 // Proves that a body may move between two poses: the body, grown by as far as any of its points
 // moves, enters no triangle; where it does, the motion is halved. Cost: triangles near, times
 // halvings.
 namespace throng {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kGrowth = 0.03;  // The least growth of a body between poses. [m]
 constexpr int kMaxSteps = 256;    // of a walker's move
 

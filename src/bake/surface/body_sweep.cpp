@@ -16,8 +16,6 @@
 namespace throng {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
-
 // A convex polygon with space for a triangle cut twice.
 struct Clipped {
   std::array<Vec3d, 6> corners;

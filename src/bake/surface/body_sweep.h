@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -13,6 +14,8 @@
 
 /// Where a body may be while its feet are anywhere in a sub-patch, against triangles.
 namespace throng {
+
+inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Right-handed axes around a point; `up` is the body's axis. Unit lengths.
 struct BodyFrame {

@@ -12,6 +12,7 @@
 #include <tuple>
 #include <utility>
 
+#include "bake/surface/body_sweep.h"
 #include "core/access.h"
 #include "core/parallel.h"
 #include "graph/ground_parts.h"
@@ -26,7 +27,6 @@
 namespace throng {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kNear2 = 1e8;
 constexpr double kUpright = 1 - 1e-12;  // of an axis' height
 

@@ -22,7 +22,6 @@
 namespace throng {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr int32_t kRegionHalvings = 4;  // of a region's cells, that look for triangles together
 constexpr int32_t kBlockHalvings = 2;   // of a block's, that choose among these together
 constexpr size_t kBlock = size_t{1} << (2 * kBlockHalvings);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "bake/surface/body_sweep.h"
+
 // Between two points of a part, S(s, t) and S(s + ds, t + dt), lies a ds + b dt, where a and b are
 // means of the derivatives along the straight line between their parameters. Means lie in the hulls
 // of the derivatives' control points, so a x b lies in the hull of the products of these. Where all
@@ -20,7 +22,6 @@
 namespace throng {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr int32_t kBeside = 24;  // 256ths on each side of the cells
 
 PatchPart widened(const PatchPart& cells) {

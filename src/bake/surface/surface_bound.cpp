@@ -204,8 +204,6 @@ HWY_EXPORT(BoundLaneCount);
 
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
-
 double sine_of(double cosine) { return std::sqrt(std::max(0.0, 1 - cosine * cosine)); }
 
 }  // namespace

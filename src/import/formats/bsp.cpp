@@ -20,7 +20,7 @@ static_assert(std::endian::native == std::endian::little,
               "the reader copies little-endian numbers");
 
 constexpr double kMetresPerUnit = 0.0254;
-constexpr int32_t kVersion = 46;
+constexpr int32_t kBspVersion = 46;
 // A damaged file can make many faces share the same corners, so the counts have a limit.
 constexpr size_t kMaxVertices = 20'000'000;
 constexpr size_t kMaxPatches = 500'000;
@@ -35,7 +35,7 @@ enum Lump {
   kLumps = 17
 };
 
-struct Texture {
+struct BspTexture {
   char name[64];
   int32_t surface;
   int32_t content;
@@ -55,7 +55,7 @@ struct Face {
   float normal[3];
   int32_t size[2];
 };
-static_assert(sizeof(Texture) == 72 && sizeof(Model) == 40 && sizeof(Vertex) == 44 &&
+static_assert(sizeof(BspTexture) == 72 && sizeof(Model) == 40 && sizeof(Vertex) == 44 &&
               sizeof(Face) == 104);
 
 enum FaceType { kPolygon = 1, kPatch = 2, kMesh = 3, kBillboard = 4 };
@@ -68,7 +68,7 @@ constexpr int32_t kSurfaceHint = 0x100;
 constexpr int32_t kSurfaceSkip = 0x200;
 constexpr int32_t kSurfaceNonSolid = 0x4000;
 
-bool is_solid(const Texture& texture) {
+bool is_solid(const BspTexture& texture) {
   if ((texture.content & kContentTrigger) != 0) return false;
   if ((texture.surface & (kSurfaceSky | kSurfaceHint | kSurfaceSkip | kSurfaceNonSolid)) != 0) {
     return false;
@@ -128,9 +128,9 @@ class BspReader {
     if (bytes_.substr(0, 4) != "IBSP") {
       return fail("not a Quake 3 level: it does not begin with IBSP");
     }
-    if (header[1] != kVersion) {
+    if (header[1] != kBspVersion) {
       return fail(
-          fmt::format("level of version {}; only {} (Quake 3) is read", header[1], kVersion));
+          fmt::format("level of version {}; only {} (Quake 3) is read", header[1], kBspVersion));
     }
     std::memcpy(lumps_, header + 2, sizeof lumps_);
     return read_lump(kTextures, "textures", textures_) && read_lump(kModels, "models", models_) &&
@@ -210,7 +210,7 @@ class BspReader {
       writer_.count_bad(1);
       return;
     }
-    const Texture& texture = textures_[static_cast<size_t>(face.texture)];
+    const BspTexture& texture = textures_[static_cast<size_t>(face.texture)];
     if (!is_solid(texture)) {
       ++left_out_;
       return;
@@ -291,7 +291,7 @@ class BspReader {
   SceneWriter writer_;
   std::string message_;
   int32_t lumps_[kLumps][2] = {};
-  std::vector<Texture> textures_;
+  std::vector<BspTexture> textures_;
   std::vector<Model> models_;
   std::vector<Vertex> vertices_;
   std::vector<int32_t> mesh_vertices_;

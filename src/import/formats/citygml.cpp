@@ -20,7 +20,7 @@
 namespace throng::importer {
 namespace {
 
-constexpr int kDeepest = 200;
+constexpr int kDeepestElement = 200;
 
 std::string_view local_name(const pugi::xml_node& node) {
   const std::string_view name = node.name();
@@ -119,8 +119,8 @@ class CityGmlReader {
   };
 
   void walk(const pugi::xml_node& node, Where where, int depth) {
-    if (depth > kDeepest) {
-      message_ = fmt::format("elements nest more than {} deep", kDeepest);
+    if (depth > kDeepestElement) {
+      message_ = fmt::format("elements nest more than {} deep", kDeepestElement);
       return;
     }
     const std::string_view name = local_name(node);
@@ -150,7 +150,7 @@ class CityGmlReader {
   }
 
   void index_ids(const pugi::xml_node& node, int depth) {
-    if (depth > kDeepest) return;
+    if (depth > kDeepestElement) return;
     if (const auto id = local_attribute(node, "id"); !id.empty()) by_id_.emplace(id, node);
     for (const pugi::xml_node& child : node.children()) index_ids(child, depth + 1);
   }
@@ -220,7 +220,7 @@ class CityGmlReader {
   }
 
   void write_faces_below(const pugi::xml_node& node, const Transform& place, bool once, int depth) {
-    if (!node || depth > kDeepest) return;
+    if (!node || depth > kDeepestElement) return;
     if (is_face(local_name(node))) {
       if (!once || written_.insert(node.internal_object()).second) write_face(node, place);
       return;
@@ -300,7 +300,7 @@ class CityGmlReader {
   }
 
   void add_points(const pugi::xml_node& node, const Transform& place, int depth) {
-    if (depth > kDeepest) return;
+    if (depth > kDeepestElement) return;
     for (const pugi::xml_node& child : node.children()) {
       const std::string_view name = local_name(child);
       if (name != "posList" && name != "pos" && name != "coordinates") {

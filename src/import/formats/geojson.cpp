@@ -15,7 +15,7 @@ using simdjson::dom::array;
 using simdjson::dom::element;
 using simdjson::dom::object;
 
-constexpr int kDeepest = 16;
+constexpr int kDeepestGeometry = 16;
 
 enum class Kind { kUnset, kGround, kObstacle };
 
@@ -40,7 +40,7 @@ class GeoJsonReader {
 
   bool read_any(const element& node, int depth) {
     place_ = fmt::format("{}: feature {}", name_, feature_);
-    if (depth > kDeepest) return fail("collections nest too deep");
+    if (depth > kDeepestGeometry) return fail("collections nest too deep");
     std::string_view type;
     if (node["type"].get(type) != simdjson::SUCCESS) return fail("has no \"type\"");
     array list;

@@ -26,12 +26,12 @@ using Json = nlohmann::json;
 constexpr uint32_t kMagic = 0x46546C67;        // "glTF"
 constexpr uint32_t kJsonChunk = 0x4E4F534A;    // "JSON"
 constexpr uint32_t kBinaryChunk = 0x004E4942;  // "BIN"
-constexpr size_t kDeepest = 256;               // Nodes below nodes.
+constexpr size_t kDeepestNode = 256;           // Nodes below nodes.
 
 enum Component : uint64_t { kByte = 5121, kShort = 5123, kInt = 5125, kFloat = 5126 };
 
 // An element of an array of the file, or nothing.
-const Json* element(const Json& file, const char* array, uint64_t index) {
+const Json* element_of(const Json& file, const char* array, uint64_t index) {
   const auto found = file.find(array);
   if (found == file.end() || !found->is_array() || index >= found->size()) return nullptr;
   const Json& one = (*found)[static_cast<size_t>(index)];
@@ -125,7 +125,7 @@ class GlbReader {
   Result<RawScene> read(std::string_view bytes, Context& context) {
     if (auto ok = read_chunks(bytes); !ok) return ok.error();
     if (has_materials_) read_materials();
-    const Json* scene = element(file_, "scenes", whole(file_, "scene").value_or(0));
+    const Json* scene = element_of(file_, "scenes", whole(file_, "scene").value_or(0));
     const auto roots = scene == nullptr ? Json() : scene->value("nodes", Json());
     if (!roots.is_array()) return bad("names no scene with nodes");
     for (const Json& root : roots) {
@@ -211,7 +211,7 @@ class GlbReader {
       }
       const auto texture = pbr->find("baseColorTexture");
       if (texture == pbr->end() || !texture->is_object()) continue;
-      const Json* found = element(file_, "textures", whole(*texture, "index").value_or(~0ULL));
+      const Json* found = element_of(file_, "textures", whole(*texture, "index").value_or(~0ULL));
       if (found == nullptr) continue;
       out.texture1 = image1(whole(*found, "source").value_or(~0ULL), numbers1);
       texture_set_.resize(materials_.size(), 0);
@@ -222,13 +222,14 @@ class GlbReader {
 
   // Number of an image of the file among textures_, 0 if there is no such image.
   uint32_t image1(uint64_t index, std::vector<uint32_t>& numbers1) {
-    const Json* image = element(file_, "images", index);
+    const Json* image = element_of(file_, "images", index);
     if (image == nullptr) return 0;
     if (numbers1.size() <= index) numbers1.resize(static_cast<size_t>(index) + 1, 0);
     uint32_t& number1 = numbers1[static_cast<size_t>(index)];
     if (number1 != 0) return number1;
     TextureSource source{.name = words(*image, "name"), .bytes = {}};
-    const Json* view = element(file_, "bufferViews", whole(*image, "bufferView").value_or(~0ULL));
+    const Json* view =
+        element_of(file_, "bufferViews", whole(*image, "bufferView").value_or(~0ULL));
     if (view != nullptr && whole(*view, "buffer").value_or(0) == 0) {
       const uint64_t from = whole(*view, "byteOffset").value_or(0);
       const uint64_t length = whole(*view, "byteLength").value_or(0);
@@ -246,9 +247,9 @@ class GlbReader {
   }
 
   Result<void> read_node(uint64_t index, const Above& above, size_t deep, Context& context) {
-    const Json* node = element(file_, "nodes", index);
+    const Json* node = element_of(file_, "nodes", index);
     if (node == nullptr) return bad("names a node that does not exist");
-    if (deep > kDeepest) return bad("has more than 256 nodes below each other");
+    if (deep > kDeepestNode) return bad("has more than 256 nodes below each other");
     // Each node is visited once, so that a small file cannot expand without limit.
     if (been_.size() <= index) been_.resize(static_cast<size_t>(index) + 1);
     if (been_[static_cast<size_t>(index)]) return bad("has a node below two others, or itself");
@@ -276,7 +277,7 @@ class GlbReader {
   }
 
   Result<void> read_mesh(uint64_t index, const Above& here) {
-    const Json* mesh = element(file_, "meshes", index);
+    const Json* mesh = element_of(file_, "meshes", index);
     const auto parts = mesh == nullptr ? Json() : mesh->value("primitives", Json());
     if (!parts.is_array()) return bad("names a mesh that does not exist");
     for (const Json& part : parts) {
@@ -297,7 +298,7 @@ class GlbReader {
       uint32_t material1 = 0;
       std::optional<Elements> places;
       if (const auto number = whole(part, "material")) {
-        const Json* found = element(file_, "materials", *number);
+        const Json* found = element_of(file_, "materials", *number);
         if (found != nullptr) material = words(*found, "name");
         if (*number < materials_.size()) {
           material1 = static_cast<uint32_t>(*number) + 1;
@@ -361,12 +362,12 @@ class GlbReader {
   // Nothing if the file does not hold them.
   std::optional<Elements> elements(uint64_t number, const char* type, uint64_t min_stride,
                                    uint64_t parts = 1) const {
-    const Json* accessor = element(file_, "accessors", number);
+    const Json* accessor = element_of(file_, "accessors", number);
     if (accessor == nullptr || words(*accessor, "type") != type || accessor->contains("sparse")) {
       return std::nullopt;
     }
     const Json* view =
-        element(file_, "bufferViews", whole(*accessor, "bufferView").value_or(~0ULL));
+        element_of(file_, "bufferViews", whole(*accessor, "bufferView").value_or(~0ULL));
     if (view == nullptr || whole(*view, "buffer").value_or(0) != 0) return std::nullopt;
     Elements out;
     out.component = whole(*accessor, "componentType").value_or(0);

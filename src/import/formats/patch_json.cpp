@@ -15,7 +15,7 @@ using simdjson::dom::array;
 using simdjson::dom::element;
 using simdjson::dom::object;
 
-constexpr int64_t kVersion = 1;
+constexpr int64_t kPatchVersion = 1;
 
 class PatchJsonReader {
  public:
@@ -58,8 +58,8 @@ class PatchJsonReader {
       return fail("not a patch file: \"format\" must be \"throng-patches\"");
     }
     if (top["version"].get(version) != simdjson::SUCCESS) return fail("has no whole \"version\"");
-    if (version != kVersion) {
-      return fail(fmt::format("patch file of version {}; only {} is read", version, kVersion));
+    if (version != kPatchVersion) {
+      return fail(fmt::format("patch file of version {}; only {} is read", version, kPatchVersion));
     }
     if (!only_keys(top, {"format", "version", "groups"})) return false;
     if (top["groups"].get(groups) != simdjson::SUCCESS) return fail("has no list \"groups\"");

@@ -12,7 +12,7 @@
 namespace throng::importer {
 namespace {
 
-constexpr int kDeepest = 16;
+constexpr int kDeepestCollection = 16;
 
 class WktReader {
  public:
@@ -83,7 +83,7 @@ class WktReader {
   }
 
   bool read_geometry(int depth) {
-    if (depth > kDeepest) return fail("collections nest too deep");
+    if (depth > kDeepestCollection) return fail("collections nest too deep");
     std::string kind = take_keyword();
     if (kind.empty()) return fail("expected a geometry such as POLYGON ((0 0, 9 0, 9 9, 0 0))");
     place_ = fmt::format("{}: {} {}", name_, kind, ++count_);

@@ -16,7 +16,7 @@ namespace throng {
 namespace {
 
 constexpr double kFar = 1e300;
-constexpr double kSame = 1e-9;
+constexpr double kSameLength = 1e-9;
 
 // Dijkstra's search with its memory.
 class DijkstraSearch {
@@ -212,7 +212,7 @@ Result<TwoHopLabels> label_graph(const PathGraph& graph, uint64_t samples, int32
     search.run(graph, root, [&](uint32_t node, double length, uint32_t before) {
       for (const auto& label : labels[node]) {
         // An earlier hub lies on a path that is as short.
-        if (to_root[label.hub] + label.length <= length + kSame) return false;
+        if (to_root[label.hub] + label.length <= length + kSameLength) return false;
       }
       labels[node].push_back({rank, 0, length});
       tree.add(node, before);

@@ -20,7 +20,6 @@ namespace {
 constexpr double kSmallestSide = 5;           // [m]
 constexpr size_t kMinOverlayCells = 8;        // An overlay level of fewer cells has none above.
 constexpr double kEntranceSpacing = 1.0 / 8;  // of a side
-constexpr double kNoPath = std::numeric_limits<double>::infinity();
 
 uint64_t square_key(int64_t x, int64_t z) {
   constexpr int64_t kMiddle = int64_t{1} << 31;

@@ -8,11 +8,7 @@
 // Dijkstra's algorithm over the arcs of one overlay cell, forward or backward. O(n log n) in the
 // arcs.
 namespace throng {
-namespace {
-
-constexpr double kNoPath = std::numeric_limits<double>::infinity();
-
-}  // namespace
+namespace {}  // namespace
 
 uint32_t OverlayGraph::place_of(uint32_t block) const {
   const auto at = std::lower_bound(blocks_.begin(), blocks_.end(), block);

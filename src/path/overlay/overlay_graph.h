@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,8 @@
 
 /// The arcs within one overlay cell of a mesh, with costs from one point or to one point.
 namespace throng {
+
+inline constexpr double kNoPath = std::numeric_limits<double>::infinity();
 
 class OverlayGraph {
  public:

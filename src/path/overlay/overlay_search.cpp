@@ -7,11 +7,7 @@
 
 // A* over entrances, then a search of each overlay cell crossed. Source: [BMS04], [DGPW11].
 namespace throng {
-namespace {
-
-constexpr double kNoPath = std::numeric_limits<double>::infinity();
-
-}  // namespace
+namespace {}  // namespace
 
 void OverlaySearch::begin() {
   states_.resize(2 * overlay_->entrances().size());

@@ -18,14 +18,13 @@
 namespace throng {
 namespace {
 
-constexpr float kNever = std::numeric_limits<float>::infinity();
 using Edges = std::vector<std::vector<PathGraph::Edge>>;
 
 // Joins every two of `count` nodes by their paths' lengths, without the paths that lead over
 // another.
 void add_edges(size_t count, const std::function<float(size_t, size_t)>& length_of,
                const std::function<uint32_t(size_t)>& node_of, Edges& edges) {
-  std::vector<float> lengths(count * count, kNever);
+  std::vector<float> lengths(count * count, kNeverReached);
   for (size_t a = 0; a < count; ++a) {
     for (size_t b = a + 1; b < count; ++b)
       lengths[a * count + b] = lengths[b * count + a] = length_of(a, b);
@@ -33,7 +32,7 @@ void add_edges(size_t count, const std::function<float(size_t, size_t)>& length_
   for (size_t a = 0; a < count; ++a) {
     for (size_t b = a + 1; b < count; ++b) {
       const float direct = lengths[a * count + b];
-      if (!(direct < kNever)) continue;
+      if (!(direct < kNeverReached)) continue;
       constexpr float kSlack = 1e-5f;  // of the length: floats
       const float* from = &lengths[a * count];
       const float* to = &lengths[b * count];

@@ -17,11 +17,10 @@
 namespace throng {
 namespace {
 
-constexpr float kNever = std::numeric_limits<float>::infinity();
-constexpr double kFar = 1e300;
+constexpr double kNoCrossing = 1e300;
 
 // A portal over a border of zones. Along the border: [begin, end) cells.
-struct Crossing {
+struct BorderCrossing {
   uint32_t zone[2];
   bool is_east;  // the other zone lies to the east, else above
   int32_t line, begin, end;
@@ -31,16 +30,16 @@ struct Crossing {
   [[nodiscard]] auto key() const {
     return std::tuple{zone[0], zone[1], is_east, line, level[0], level[1], begin};
   }
-  [[nodiscard]] bool is_continued_by(const Crossing& next) const {
+  [[nodiscard]] bool is_continued_by(const BorderCrossing& next) const {
     return zone[0] == next.zone[0] && zone[1] == next.zone[1] && is_east == next.is_east &&
            line == next.line && level[0] == next.level[0] && level[1] == next.level[1] &&
            end == next.begin && !ends_high && !next.ends_low;
   }
 };
 
-std::vector<Crossing> find_crossings(const PathMesh& mesh,
-                                     const std::vector<uint32_t>& zone_of_rect) {
-  std::vector<Crossing> crossings;
+std::vector<BorderCrossing> find_crossings(const PathMesh& mesh,
+                                           const std::vector<uint32_t>& zone_of_rect) {
+  std::vector<BorderCrossing> crossings;
   for (uint32_t r = 0; r + 1 < mesh.rects.size(); ++r) {
     const MeshRect& rect = mesh.rects[r];
     for (uint32_t p = rect.first_portal; p < mesh.rects[r + 1].first_portal; ++p) {
@@ -66,7 +65,7 @@ std::vector<Crossing> find_crossings(const PathMesh& mesh,
     }
   }
   std::sort(crossings.begin(), crossings.end(),
-            [](const Crossing& a, const Crossing& b) { return a.key() < b.key(); });
+            [](const BorderCrossing& a, const BorderCrossing& b) { return a.key() < b.key(); });
   return crossings;
 }
 
@@ -128,7 +127,7 @@ class EntranceSearch {
       : length(graph.first.size() - 1), next(graph.first.size() - 1), graph_(graph) {}
 
   void run(const std::vector<EntranceView>& seen) {
-    std::fill(length.begin(), length.end(), kFar);
+    std::fill(length.begin(), length.end(), kNoCrossing);
     for (const EntranceView& s : seen) relax(s.corner, s.distance, kStraight);
     while (!open_.empty()) {
       const auto [reached, corner] = open_.pop();
@@ -185,7 +184,7 @@ std::vector<uint32_t> zones_of_rects(const WorldData& world, const PathMesh& mes
 
 std::vector<Entrance> find_entrances(const WorldData& world, const PathMesh& mesh,
                                      const std::vector<uint32_t>& zone_of_rect) {
-  const std::vector<Crossing> crossings = find_crossings(mesh, zone_of_rect);
+  const std::vector<BorderCrossing> crossings = find_crossings(mesh, zone_of_rect);
   const int32_t apart = std::max(1, static_cast<int32_t>(world.tiles_per_zone) * kTileCells / 10);
   std::vector<Entrance> entrances;
   for (size_t i = 0; i < crossings.size();) {
@@ -196,7 +195,7 @@ std::vector<Entrance> find_entrances(const WorldData& world, const PathMesh& mes
     for (int32_t n = 0; n < count; ++n) {
       const int32_t cell = begin + static_cast<int32_t>((2 * n + 1) * int64_t{cells} / (2 * count));
       while (crossings[i].end <= cell) ++i;
-      const Crossing& c = crossings[i];
+      const BorderCrossing& c = crossings[i];
       const CellPoint at =
           c.is_east ? CellPoint{double(c.line), cell + 0.5} : CellPoint{cell + 0.5, double(c.line)};
       const size_t low = c.zone[0] < c.zone[1] ? 0 : 1;
@@ -222,7 +221,7 @@ bool find_zone_paths(const PathMesh& mesh, const std::vector<Entrance>& entrance
   paths.corners.erase(std::unique(paths.corners.begin(), paths.corners.end()), paths.corners.end());
   const size_t corners = paths.corners.size(), count = paths.entrances.size();
   if (corners >= kStraight) return false;
-  paths.length.assign((corners + count) * count, kNever);
+  paths.length.assign((corners + count) * count, kNeverReached);
   paths.next.assign(paths.length.size(), kStraight);
   const CornerGraph graph = see_corners(mesh, paths, sight);
   std::vector<std::vector<EntranceView>> seen(count);
@@ -258,7 +257,7 @@ void find_entrances_around(const PathMesh& mesh, const std::vector<Entrance>& en
                            uint32_t zone, const ZonePaths& paths, const Stop& from, Sight& sight,
                            std::vector<float>& length, std::vector<uint16_t>& next) {
   const size_t count = paths.entrances.size();
-  length.assign(count, kNever);
+  length.assign(count, kNeverReached);
   next.assign(count, kStraight);
   if (count == 0) return;
   sight.stay_within(paths.first_rect, paths.last_rect);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "path/ground/mesh.h"
@@ -12,6 +13,9 @@
 
 /// Paths inside one zone, between the entrances of its borders.
 namespace throng {
+
+/// The length of a path that does not exist.
+inline constexpr float kNeverReached = std::numeric_limits<float>::infinity();
 
 /// A point on the border of two zones through which paths between them are led.
 struct Entrance {

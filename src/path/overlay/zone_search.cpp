@@ -16,8 +16,6 @@
 namespace throng {
 namespace {
 
-constexpr float kNever = std::numeric_limits<float>::infinity();
-
 uint32_t zone_of(const WorldData& world, const PathMesh& mesh, uint32_t rect) {
   return static_cast<uint32_t>(world.slot_of_level(mesh.rects[rect].level));
 }
@@ -46,7 +44,7 @@ void place_corners(const PathMesh& mesh, std::vector<Waypoint>& path) {
 
 }  // namespace
 
-void ZoneSearch::Reached::begin(size_t hubs) { hubs_.assign(hubs, word(kNever, 0)); }
+void ZoneSearch::Reached::begin(size_t hubs) { hubs_.assign(hubs, word(kNeverReached, 0)); }
 
 void ZoneSearch::Reached::add(std::span<const TwoHopLabels::Label> labels, uint32_t from,
                               float length) {
@@ -68,12 +66,13 @@ void ZoneSearch::find_hubs(const WorldData& world, const PathMesh& mesh, const Z
     prefetched_.push_back(zone_cell.place_of_entrance(entrance));
   zone_cell.labels.ask_for(prefetched_);
   for (uint32_t g = 0; g < prefetched_.size(); ++g) {
-    if (end.length[g] < kNever) end.hubs.add(zone_cell.labels.of(prefetched_[g]), g, end.length[g]);
+    if (end.length[g] < kNeverReached)
+      end.hubs.add(zone_cell.labels.of(prefetched_[g]), g, end.length[g]);
   }
 }
 
 bool ZoneSearch::join(const ZoneGraph& graph, const Stop& from, const Stop& to, Best& best) {
-  best.length = kNever;
+  best.length = kNeverReached;
   if (start_.zone_cell == goal_.zone_cell) {
     const auto hubs = static_cast<uint32_t>(graph.zone_cells[start_.zone_cell].entrances.size());
     for (uint32_t hub = 0; hub < hubs; ++hub) {
@@ -82,7 +81,7 @@ bool ZoneSearch::join(const ZoneGraph& graph, const Stop& from, const Stop& to, 
     }
   }
   join_boundary_nodes(graph, from, to, best);
-  return best.length < kNever;
+  return best.length < kNeverReached;
 }
 
 // Finds how far a boundary node of an end's overlay cell is.
@@ -107,7 +106,8 @@ void ZoneSearch::join_boundary_nodes(const ZoneGraph& graph, const Stop& from, c
     for (size_t p = 0; p < end.boundary_nodes.size(); ++p) {
       const CellPoint at = zone_cell.boundary_node_at[p];
       const auto beyond = static_cast<float>(distance(at, there));
-      end.boundary_nodes[p] = {kNever, 0, beyond, static_cast<float>(distance(here, at)) + beyond};
+      end.boundary_nodes[p] = {kNeverReached, 0, beyond,
+                               static_cast<float>(distance(here, at)) + beyond};
     }
   };
   // The boundary node of the smallest bound that is reached.
@@ -117,11 +117,11 @@ void ZoneSearch::join_boundary_nodes(const ZoneGraph& graph, const Stop& from, c
       const auto least = std::min_element(
           boundary_nodes.begin(), boundary_nodes.end(),
           [](const End::BoundaryNode& a, const End::BoundaryNode& b) { return a.bound < b.bound; });
-      if (!(least->bound < kNever)) break;
+      if (!(least->bound < kNeverReached)) break;
       const auto place = static_cast<size_t>(least - boundary_nodes.begin());
       reach_boundary_node(graph, end, place);
-      if (least->length < kNever) return place;
-      least->bound = kNever;
+      if (least->length < kNeverReached) return place;
+      least->bound = kNeverReached;
     }
     return std::nullopt;
   };
@@ -269,7 +269,8 @@ void ZoneSearch::add_segments(const PathMesh& mesh, const ZoneGraph& graph) {
     const Segment* best = nullptr;
     for (; segment != segments_.end() && segment->to == i; ++segment) {
       const float length = segment->paths->length[segment->at];
-      if (length < (best == nullptr ? kNever : best->paths->length[best->at])) best = &*segment;
+      if (length < (best == nullptr ? kNeverReached : best->paths->length[best->at]))
+        best = &*segment;
     }
     if (best != nullptr)
       add_corners(mesh, *best->paths, best->paths->next[best->at], best->goal, path_);

@@ -13,24 +13,26 @@ using namespace throng;
 
 // A built-in world cut into tiles, one of which after the other is rasterised.
 struct Tiles {
-  Grid grid;
-  std::vector<CellTriangle> triangles;
-  TriangleBins bins;
+  bake::Grid grid;
+  std::vector<bake::CellTriangle> triangles;
+  bake::TriangleBins bins;
 
-  explicit Tiles(const Scene& scene) : grid(make_grid(scene.bounds(), 0.1, kGridPhase)) {
+  explicit Tiles(const Scene& scene)
+      : grid(bake::make_grid(scene.bounds(), 0.1, bake::kGridPhase)) {
     const std::vector<AvatarClass> classes = default_classes();
-    const SurfaceCoder coder(scene, classes, false, 1);
+    const bake::SurfaceCoder coder(scene, classes, false, 1);
     for (uint32_t t = 0; t < scene.triangles.size(); ++t) {
-      triangles.push_back(to_cell_triangle(scene, t, grid, coder.code(t)));
+      triangles.push_back(bake::to_cell_triangle(scene, t, grid, coder.code(t)));
     }
-    bins = bin_triangles(triangles, 0, 0, grid.tiles_x(), grid.tiles_z(), kTileSide, 0);
+    bins = bake::bin_triangles(triangles, 0, 0, grid.tiles_x(), grid.tiles_z(), bake::kTileSide, 0);
   }
 
-  void rasterise(size_t tile, TileColumns& columns) const {
+  void rasterise(size_t tile, bake::TileColumns& columns) const {
     const auto index = static_cast<int32_t>(tile);
-    rasterise_tile(
+    bake::rasterise_tile(
         triangles, {bins.items.data() + bins.first[tile], bins.first[tile + 1] - bins.first[tile]},
-        index % bins.squares_x * kTileSide, index / bins.squares_x * kTileSide, {}, 500, columns);
+        index % bins.squares_x * bake::kTileSide, index / bins.squares_x * bake::kTileSide, {}, 500,
+        columns);
   }
 };
 
@@ -39,7 +41,7 @@ void rasterise(benchmark::State& state, const char* name) {
   const auto scene = create_builtin_world({.name = name});
   if (!scene) return state.SkipWithError(scene.error().message.c_str());
   const Tiles tiles(*scene);
-  TileColumns columns;
+  bake::TileColumns columns;
   for (auto _ : state) {
     for (size_t tile = 0; tile + 1 < tiles.bins.first.size(); ++tile) {
       tiles.rasterise(tile, columns);
@@ -47,24 +49,24 @@ void rasterise(benchmark::State& state, const char* name) {
     }
   }
   state.SetItemsProcessed(state.iterations() * (static_cast<int64_t>(tiles.bins.first.size()) - 1) *
-                          kTileArea);
+                          bake::kTileArea);
 }
 
 void rasterise_and_find_free_spans(benchmark::State& state, const char* name) {
   const auto scene = create_builtin_world({.name = name});
   if (!scene) return state.SkipWithError(scene.error().message.c_str());
   const Tiles tiles(*scene);
-  TileColumns columns;
-  TileFreeSpans free_spans;
+  bake::TileColumns columns;
+  bake::TileFreeSpans free_spans;
   for (auto _ : state) {
     for (size_t tile = 0; tile + 1 < tiles.bins.first.size(); ++tile) {
       tiles.rasterise(tile, columns);
-      find_free_spans(columns, 500, free_spans);
+      bake::find_free_spans(columns, 500, free_spans);
       benchmark::DoNotOptimize(free_spans.count.data());
     }
   }
   state.SetItemsProcessed(state.iterations() * (static_cast<int64_t>(tiles.bins.first.size()) - 1) *
-                          kTileArea);
+                          bake::kTileArea);
 }
 
 BENCHMARK_CAPTURE(rasterise, garage, "garage");

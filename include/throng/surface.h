@@ -22,7 +22,9 @@ namespace throng {
 // graph for all avatar classes. Source: [PACS00] 1.2.3; docs/design/006-nodes.md.
 
 struct Scene;
+namespace world {
 struct NodeData;  // Internal: zones of nodes.
+}
 
 /// How a body moves from one node to another.
 enum class LinkKind : uint8_t {
@@ -222,8 +224,8 @@ class THRONG_API Nodes {
 
  private:
   friend struct Access;
-  explicit Nodes(std::shared_ptr<const NodeData> state) : state_(std::move(state)) {}
-  std::shared_ptr<const NodeData> state_;
+  explicit Nodes(std::shared_ptr<const world::NodeData> state) : state_(std::move(state)) {}
+  std::shared_ptr<const world::NodeData> state_;
 };
 
 /// Calls visit(s, t, count) for each run of cells in a row of a partial node (NodeInfo::cells,

@@ -18,7 +18,10 @@ namespace throng {
 // ----
 // The baked world: all queries and crowds read it. Opened by mapping its files.
 
+namespace world {
 struct WorldData;  // Internal: zones, tiles, planes.
+struct GraphData;  // Internal: regions and links.
+}  // namespace world
 
 /// A place for feet: a position on one level. A zero-initialised place is nowhere.
 struct Place {
@@ -125,8 +128,8 @@ class THRONG_API World {
 
  private:
   friend struct Access;
-  explicit World(std::shared_ptr<const WorldData> state) : state_(std::move(state)) {}
-  std::shared_ptr<const WorldData> state_;
+  explicit World(std::shared_ptr<const world::WorldData> state) : state_(std::move(state)) {}
+  std::shared_ptr<const world::WorldData> state_;
 };
 
 // ----
@@ -206,8 +209,6 @@ class THRONG_API GroundQuery {
 // The accessibility graph of a baked world: which places are connected, for every class. Source:
 // [PACS00], as docs/design/003-graph.md reads it for level tiles.
 
-struct GraphData;  // Internal: regions and links.
-
 /// Settings for Graph::create.
 struct GraphConfig {
   int32_t workers = 0;  ///< Threads, 0 for all cores; used if the graph is not on disk.
@@ -257,9 +258,9 @@ class THRONG_API Graph {
   [[nodiscard]] static Result<void> check_files(const World& world);
 
  private:
-  explicit Graph(std::shared_ptr<const GraphData> data) : data_(std::move(data)) {}
+  explicit Graph(std::shared_ptr<const world::GraphData> data) : data_(std::move(data)) {}
 
-  std::shared_ptr<const GraphData> data_;
+  std::shared_ptr<const world::GraphData> data_;
 };
 
 }  // namespace throng

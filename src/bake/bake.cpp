@@ -28,7 +28,8 @@ namespace {
 // null, into memory.
 class ZoneBaker {
  public:
-  ZoneBaker(const WorldBake& bake, const BakeConfig& config, Context& context, WorldFolder* folder)
+  ZoneBaker(const bake::WorldBake& bake, const BakeConfig& config, Context& context,
+            bake::WorldFolder* folder)
       : bake_(bake),
         context_(context),
         folder_(folder),
@@ -47,7 +48,7 @@ class ZoneBaker {
         },
         [&](size_t i, int32_t group) {
           auto& scratch = scratch_[static_cast<size_t>(group)];
-          if (!scratch) scratch = std::make_unique<ZoneScratch>(groups_.workers);
+          if (!scratch) scratch = std::make_unique<bake::ZoneScratch>(groups_.workers);
           return bake(i, *scratch);
         });
     if (!baked) return baked.error();
@@ -55,9 +56,9 @@ class ZoneBaker {
     return {};
   }
 
-  [[nodiscard]] const std::vector<ZoneFacts>& facts() const { return facts_; }
+  [[nodiscard]] const std::vector<bake::ZoneFacts>& facts() const { return facts_; }
   // In memory: in order of z, then x.
-  [[nodiscard]] std::vector<std::unique_ptr<Zone>> take_zones() {
+  [[nodiscard]] std::vector<std::unique_ptr<world::Zone>> take_zones() {
     std::erase(zones_, nullptr);
     return std::move(zones_);
   }
@@ -65,7 +66,7 @@ class ZoneBaker {
  private:
   static Error cancelled() { return {Errc::kCancelled, "bake: cancelled; nothing was written"}; }
 
-  Result<void> bake(size_t i, ZoneScratch& scratch) {
+  Result<void> bake(size_t i, bake::ZoneScratch& scratch) {
     const format::ZoneInput& input = bake_.zones()[i];
     if (folder_ != nullptr) {
       if (const auto reused = folder_->reuse(input.x(), input.z(), input.hash())) {
@@ -84,7 +85,8 @@ class ZoneBaker {
   Result<void> put(size_t i, flatbuffers::DetachedBuffer bytes) {
     const format::ZoneEntry& entry = facts_[i].entry;
     if (folder_ != nullptr) {
-      if (auto ok = WorldFolder::write_zone(folder_->path(), entry, {bytes.data(), bytes.size()});
+      if (auto ok =
+              bake::WorldFolder::write_zone(folder_->path(), entry, {bytes.data(), bytes.size()});
           !ok) {
         return ok;
       }
@@ -92,35 +94,35 @@ class ZoneBaker {
       return folder_->add(entry, bake_.zones()[i].hash());
     }
     if (entry.levels() == 0) return {};
-    auto zone = Zone::from_bytes(std::move(bytes), zone_file_name(entry.x(), entry.z()));
+    auto zone =
+        world::Zone::from_bytes(std::move(bytes), world::zone_file_name(entry.x(), entry.z()));
     if (!zone) return zone.error();
     zones_[i] = std::move(*zone);
     return {};
   }
 
-  const WorldBake& bake_;
+  const bake::WorldBake& bake_;
   Context& context_;
-  WorldFolder* folder_;
+  bake::WorldFolder* folder_;
   WorkerGroups groups_;
-  std::vector<std::unique_ptr<ZoneScratch>> scratch_;  // by group
-  std::vector<ZoneFacts> facts_;
-  std::vector<std::unique_ptr<Zone>> zones_;
+  std::vector<std::unique_ptr<bake::ZoneScratch>> scratch_;  // by group
+  std::vector<bake::ZoneFacts> facts_;
+  std::vector<std::unique_ptr<world::Zone>> zones_;
   std::mutex mutex_;  // of the folder's journal
 };
 
-Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConfig& config,
-                                              Context& context, BakeReport& report,
-                                              WorldFolder* folder,
-                                              std::vector<std::unique_ptr<Zone>>& in_memory) {
+Result<std::shared_ptr<world::WorldData>> bake_zones(
+    const Scene& scene, const BakeConfig& config, Context& context, BakeReport& report,
+    bake::WorldFolder* folder, std::vector<std::unique_ptr<world::Zone>>& in_memory) {
   const auto start = Clock::now();
-  const WorldData* old_world = folder != nullptr ? folder->old_world() : nullptr;
-  const auto begun = WorldBake::begin(scene, config, old_world, folder != nullptr);
+  const world::WorldData* old_world = folder != nullptr ? folder->old_world() : nullptr;
+  const auto begun = bake::WorldBake::begin(scene, config, old_world, folder != nullptr);
   if (!begun) return begun.error();
-  const WorldBake& bake = *begun;
+  const bake::WorldBake& bake = *begun;
   ZoneBaker zones(bake, config, context, folder);
   if (auto ok = zones.run(); !ok) return ok.error();
   in_memory = zones.take_zones();
-  const std::vector<ZoneFacts>& facts = zones.facts();
+  const std::vector<bake::ZoneFacts>& facts = zones.facts();
   auto world = bake.world(facts, report);
   if (!world) return world.error();
   if (auto ok = bake.add_air(folder, **world, context, report); !ok) return ok.error();
@@ -133,9 +135,9 @@ Result<std::shared_ptr<WorldData>> bake_zones(const Scene& scene, const BakeConf
 
 Result<World> bake_world(const Scene& scene, const BakeConfig& config, Context& context,
                          BakeReport* report) {
-  if (auto ok = check_bake(scene, config); !ok) return ok.error();
+  if (auto ok = bake::check_bake(scene, config); !ok) return ok.error();
   BakeReport local;
-  std::vector<std::unique_ptr<Zone>> zones;
+  std::vector<std::unique_ptr<world::Zone>> zones;
   auto world = bake_zones(scene, config, context, local, nullptr, zones);
   if (!world) return world.error();
   for (size_t i = 0; i < zones.size(); ++i) (*world)->slots[i]->zone = std::move(zones[i]);
@@ -145,17 +147,17 @@ Result<World> bake_world(const Scene& scene, const BakeConfig& config, Context& 
 
 Result<BakeReport> bake_world_to(const std::string& path, const Scene& scene,
                                  const BakeConfig& config, Context& context) {
-  if (auto ok = check_bake(scene, config); !ok) return ok.error();
-  auto folder = WorldFolder::begin(path, config.old_zones);
+  if (auto ok = bake::check_bake(scene, config); !ok) return ok.error();
+  auto folder = bake::WorldFolder::begin(path, config.old_zones);
   if (!folder) return folder.error();
-  std::vector<std::unique_ptr<Zone>> none;
+  std::vector<std::unique_ptr<world::Zone>> none;
   BakeReport report;
   const auto start = Clock::now();
   auto world = bake_zones(scene, config, context, report, &*folder, none);
   if (!world) return world.error();
-  const auto graph = bake_graph(*folder, **world, config.workers, context, report);
+  const auto graph = bake::bake_graph(*folder, **world, config.workers, context, report);
   if (!graph) return graph.error();
-  if (auto ok = finish_bake(*folder, **world, **graph, scene, config, context, report); !ok) {
+  if (auto ok = bake::finish_bake(*folder, **world, **graph, scene, config, context, report); !ok) {
     return ok.error();
   }
   report.seconds_total = seconds_since(start);

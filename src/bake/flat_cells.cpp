@@ -18,12 +18,13 @@ namespace {
 
 constexpr int32_t kFloor = 0;  // [mm]
 
-BitPlane passable_rows(const FlatCells& cells, int32_t tile_x, int32_t tile_z) {
-  BitPlane rows{};
-  for (int32_t z = 0; z < std::min(kTileSide, cells.depth - tile_z * kTileSide); ++z) {
-    const size_t row = static_cast<size_t>(tile_z * kTileSide + z) * cells.width;
-    for (int32_t x = 0; x < std::min(kTileSide, cells.width - tile_x * kTileSide); ++x) {
-      if (cells.passable[row + static_cast<size_t>(tile_x * kTileSide + x)] != 0) {
+bake::BitPlane passable_rows(const FlatCells& cells, int32_t tile_x, int32_t tile_z) {
+  bake::BitPlane rows{};
+  for (int32_t z = 0; z < std::min(bake::kTileSide, cells.depth - tile_z * bake::kTileSide); ++z) {
+    const size_t row = static_cast<size_t>(tile_z * bake::kTileSide + z) * cells.width;
+    for (int32_t x = 0; x < std::min(bake::kTileSide, cells.width - tile_x * bake::kTileSide);
+         ++x) {
+      if (cells.passable[row + static_cast<size_t>(tile_x * bake::kTileSide + x)] != 0) {
         rows[static_cast<size_t>(z)] |= uint64_t{1} << x;
       }
     }
@@ -31,23 +32,24 @@ BitPlane passable_rows(const FlatCells& cells, int32_t tile_x, int32_t tile_z) {
   return rows;
 }
 
-uint64_t pack_tile(uint32_t tile, const BitPlane& rows, const SurfaceCodes& codes, TilePack& pack) {
-  ClearancePlanes planes;
+uint64_t pack_tile(uint32_t tile, const bake::BitPlane& rows, const bake::SurfaceCodes& codes,
+                   bake::TilePack& pack) {
+  bake::ClearancePlanes planes;
   planes.legal = rows;
   for (const uint64_t row : rows) planes.cells += std::popcount(row);
   if (planes.cells == 0) return 0;
-  Layer layer;
-  clear_layer(layer);
-  layer.base = kFloor - Layer::kBelow;
-  for (size_t c = 0; c < kTileArea; ++c) {
-    if ((rows[c / kTileSide] >> (c % kTileSide) & 1) == 0) continue;
-    layer.top[c] = layer.feet[c] = static_cast<uint16_t>(Layer::kBelow);
-    layer.ceiling[c] = kNone16;
+  bake::Layer layer;
+  bake::clear_layer(layer);
+  layer.base = kFloor - bake::Layer::kBelow;
+  for (size_t c = 0; c < bake::kTileArea; ++c) {
+    if ((rows[c / bake::kTileSide] >> (c % bake::kTileSide) & 1) == 0) continue;
+    layer.top[c] = layer.feet[c] = static_cast<uint16_t>(bake::Layer::kBelow);
+    layer.ceiling[c] = bake::kNone16;
     layer.code[c] = 0;
   }
-  summarise(layer);
+  bake::summarise(layer);
   const uint8_t step_safe = 1;
-  pack_level(tile, layer, fit_plane(layer), {&planes, 1}, {&step_safe, 1}, codes, pack);
+  bake::pack_level(tile, layer, bake::fit_plane(layer), {&planes, 1}, {&step_safe, 1}, codes, pack);
   return static_cast<uint64_t>(planes.cells);
 }
 
@@ -65,49 +67,51 @@ Result<World> bake_flat_cells(const FlatCells& cells, double cell, int32_t worke
   }
   if (workers < 0) return Error{Errc::kBadConfig, "cells: workers must be 0 (all cores) or more"};
 
-  auto world = std::make_shared<WorldData>();
+  auto world = std::make_shared<world::WorldData>();
   WorldSummary& summary = world->summary;
   summary.cell = summary.resolution = cell;
   summary.bounds = {{0, 0, 0}, {cells.width * cell, 0, cells.depth * cell}};
-  summary.tiles_x = (cells.width + kTileSide - 1) / kTileSide;
-  summary.tiles_z = (cells.depth + kTileSide - 1) / kTileSide;
+  summary.tiles_x = (cells.width + bake::kTileSide - 1) / bake::kTileSide;
+  summary.tiles_z = (cells.depth + bake::kTileSide - 1) / bake::kTileSide;
   summary.classes = {AvatarClass{.name = "point", .height = 0.1, .radius = 0.01, .step = 0}};
   world->width = cells.width;
   world->depth = cells.depth;
-  world->class_index.push_back(std::make_unique<ClassIndex>());
+  world->class_index.push_back(std::make_unique<world::ClassIndex>());
   const int32_t side = std::clamp(std::max(summary.tiles_x, summary.tiles_z), 1, 255);
   world->tiles_per_zone = static_cast<uint32_t>(side);
   world->zones_x = (summary.tiles_x + side - 1) / side;
   world->zones_z = (summary.tiles_z + side - 1) / side;
 
-  const SurfaceCodes codes{.codes = {{.slope_bin = 0, .area = kAreaWalkable}}, .allowed = {1}};
+  const bake::SurfaceCodes codes{.codes = {{.slope_bin = 0, .area = kAreaWalkable}},
+                                 .allowed = {1}};
   uint64_t legal = 0;
   for (int32_t z = 0; z < world->zones_z; ++z) {
     for (int32_t x = 0; x < world->zones_x; ++x) {
-      std::vector<TilePack> packs(static_cast<size_t>(side) * static_cast<size_t>(side));
+      std::vector<bake::TilePack> packs(static_cast<size_t>(side) * static_cast<size_t>(side));
       std::vector<uint64_t> legal_of(packs.size(), 0);
       parallel_for(packs.size(), workers, [&](size_t t) {
         const auto tile = static_cast<int32_t>(t);
-        const BitPlane rows = passable_rows(cells, x * side + tile % side, z * side + tile / side);
+        const bake::BitPlane rows =
+            passable_rows(cells, x * side + tile % side, z * side + tile / side);
         legal_of[t] = pack_tile(static_cast<uint32_t>(t), rows, codes, packs[t]);
       });
       uint32_t levels = 0, tiles = 0;
-      for (const TilePack& pack : packs) {
+      for (const bake::TilePack& pack : packs) {
         levels += static_cast<uint32_t>(pack.levels.size());
         tiles += pack.levels.empty() ? 0 : 1;
       }
       for (const uint64_t count : legal_of) legal += count;
       world->slot_of_zone.push_back(levels == 0 ? -1 : static_cast<int32_t>(world->slots.size()));
       if (levels == 0) continue;
-      auto bytes = zone_bytes(
+      auto bytes = bake::zone_bytes(
           {.x = x, .z = z, .tiles_per_side = static_cast<uint32_t>(side), .class_count = 1}, packs,
           workers);
-      auto slot = std::make_unique<WorldData::Slot>();
+      auto slot = std::make_unique<world::WorldData::Slot>();
       slot->entry = format::ZoneEntry(x, z, levels, tiles, bytes.size(),
                                       hash_bytes(bytes.data(), bytes.size()));
       slot->first_level = world->level_count;
       summary.bytes += bytes.size();
-      auto zone = Zone::from_bytes(std::move(bytes), zone_file_name(x, z));
+      auto zone = world::Zone::from_bytes(std::move(bytes), world::zone_file_name(x, z));
       if (!zone) return zone.error();
       slot->zone = std::move(*zone);
       world->level_count += levels;

@@ -17,15 +17,16 @@
 namespace throng {
 namespace {
 
-Result<ZoneFacts> bake_and_write(const WorldBake& bake, const std::string& path, size_t zone,
-                                 ZoneScratch& scratch, Context& context) {
-  ZoneFacts facts;
+Result<bake::ZoneFacts> bake_and_write(const bake::WorldBake& bake, const std::string& path,
+                                       size_t zone, bake::ZoneScratch& scratch, Context& context) {
+  bake::ZoneFacts facts;
   flatbuffers::DetachedBuffer bytes;
   if (!bake.bake(zone, scratch, context, facts, bytes)) {
     return Error{Errc::kCancelled, "bake: cancelled"};
   }
   const auto start = Clock::now();
-  if (auto ok = WorldFolder::write_zone(path, facts.entry, {bytes.data(), bytes.size()}); !ok) {
+  if (auto ok = bake::WorldFolder::write_zone(path, facts.entry, {bytes.data(), bytes.size()});
+      !ok) {
     return ok.error();
   }
   facts.seconds_write = seconds_since(start);
@@ -35,7 +36,7 @@ Result<ZoneFacts> bake_and_write(const WorldBake& bake, const std::string& path,
 // Zones as jobs, and what rank 0 knows of them.
 class ZoneJobs {
  public:
-  ZoneJobs(const WorldBake& bake, const std::string& path, int32_t workers)
+  ZoneJobs(const bake::WorldBake& bake, const std::string& path, int32_t workers)
       : bake_(bake), path_(path), workers_(workers) {}
 
   // Of all ranks.
@@ -58,24 +59,24 @@ class ZoneJobs {
   }
 
   // Of rank 0: the facts of all zones, in their order.
-  Result<std::vector<ZoneFacts>> assign(cluster::Ranks& ranks, WorldFolder& folder,
-                                        Context& context);
+  Result<std::vector<bake::ZoneFacts>> assign(cluster::Ranks& ranks, bake::WorldFolder& folder,
+                                              Context& context);
 
  private:
   [[nodiscard]] std::string so_far() const {
     return std::to_string(done_) + " of " + std::to_string(facts_.size()) + " zones are finished";
   }
 
-  const WorldBake& bake_;
+  const bake::WorldBake& bake_;
   const std::string& path_;
   int32_t workers_;
-  std::optional<ZoneScratch> scratch_;  // made for the first zone
-  std::vector<ZoneFacts> facts_;
+  std::optional<bake::ZoneScratch> scratch_;  // made for the first zone
+  std::vector<bake::ZoneFacts> facts_;
   size_t done_ = 0;
 };
 
-Result<std::vector<ZoneFacts>> ZoneJobs::assign(cluster::Ranks& ranks, WorldFolder& folder,
-                                                Context& context) {
+Result<std::vector<bake::ZoneFacts>> ZoneJobs::assign(cluster::Ranks& ranks,
+                                                      bake::WorldFolder& folder, Context& context) {
   const auto zones = bake_.zones();
   facts_.resize(zones.size());
   std::vector<uint64_t> open;
@@ -94,7 +95,7 @@ Result<std::vector<ZoneFacts>> ZoneJobs::assign(cluster::Ranks& ranks, WorldFold
   for (const uint64_t zone : open) to_assign.jobs.push_back(cluster::bytes_of(zone));
   to_assign.enter = [&](size_t job, std::span<const uint8_t> result) {
     const auto zone = static_cast<size_t>(open[job]);
-    facts_[zone] = cluster::value_of<ZoneFacts>(result);
+    facts_[zone] = cluster::value_of<bake::ZoneFacts>(result);
     ++done_;
     return folder.add(facts_[zone].entry, zones[zone].hash());
   };
@@ -116,15 +117,15 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
   auto joined = cluster::Ranks::join();
   if (!joined) return joined.error();
   cluster::Ranks& ranks = **joined;
-  if (auto ok = agree_over_ranks(check_bake(scene, config)); !ok) return ok.error();
+  if (auto ok = agree_over_ranks(bake::check_bake(scene, config)); !ok) return ok.error();
 
   BakeConfig own = config;
   own.workers = cluster::workers_of_rank(config.workers, ranks);
   // The folder first: what is there decides on the grid.
-  std::optional<WorldFolder> folder;
+  std::optional<bake::WorldFolder> folder;
   Result<void> begun;
   if (ranks.rank() == 0) {
-    auto opened = WorldFolder::begin(path, config.old_zones);
+    auto opened = bake::WorldFolder::begin(path, config.old_zones);
     if (opened) {
       folder.emplace(*std::move(opened));
     } else {
@@ -132,10 +133,10 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
     }
   }
   if (auto ok = agree_over_ranks(begun); !ok) return ok.error();
-  std::shared_ptr<WorldData> read;
-  if (!folder && config.old_zones == OldZones::kKeep) read = WorldFolder::read_world(path);
-  const WorldData* old = folder ? folder->old_world() : read.get();
-  const auto bake = WorldBake::begin(scene, own, old, true);
+  std::shared_ptr<world::WorldData> read;
+  if (!folder && config.old_zones == OldZones::kKeep) read = bake::WorldFolder::read_world(path);
+  const world::WorldData* old = folder ? folder->old_world() : read.get();
+  const auto bake = bake::WorldBake::begin(scene, own, old, true);
   Result<void> planned;
   if (!bake) planned = bake.error();
   if (auto ok = agree_over_ranks(planned); !ok) return ok.error();
@@ -165,11 +166,11 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
     if (auto ok = bake->add_air(&*folder, **world, context, report); !ok) {
       return failed(ok.error(), "all zones' ground and some of their air are finished");
     }
-    const auto graph = bake_graph(*folder, **world, own.workers, context, report);
+    const auto graph = bake::bake_graph(*folder, **world, own.workers, context, report);
     if (!graph) {
       return failed(graph.error(), "all zones and some of their regions and links are finished");
     }
-    if (auto ok = finish_bake(*folder, **world, **graph, scene, own, context, report); !ok) {
+    if (auto ok = bake::finish_bake(*folder, **world, **graph, scene, own, context, report); !ok) {
       return failed(ok.error(), "all zones and their graph are finished");
     }
     report.seconds_total = seconds_since(start);

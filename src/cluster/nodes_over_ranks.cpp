@@ -17,8 +17,8 @@ namespace {
 
 // Small batches keep all ranks busy to the end, but what lies near each is made for it too: of a
 // few sizes the one that is done first, if all ranks are as fast.
-std::vector<std::vector<uint32_t>> choose_batches(const NodeBaker& baker, const NodeConfig& config,
-                                                  int32_t ranks) {
+std::vector<std::vector<uint32_t>> choose_batches(const bake::NodeBaker& baker,
+                                                  const NodeConfig& config, int32_t ranks) {
   std::vector<std::vector<uint32_t>> best;
   uint64_t min_time = UINT64_MAX;
   for (const uint64_t a_rank : {4, 2, 1, 0}) {
@@ -39,7 +39,7 @@ std::vector<std::vector<uint32_t>> choose_batches(const NodeBaker& baker, const 
   return best;
 }
 
-cluster::RankJobs jobs_of(NodeBaker& baker, const std::string& path) {
+cluster::RankJobs jobs_of(bake::NodeBaker& baker, const std::string& path) {
   return {
       .stage = "nodes",
       .work = [&](std::span<const uint8_t> job, Context& context) -> Result<cluster::RankBytes> {
@@ -55,18 +55,19 @@ cluster::RankJobs jobs_of(NodeBaker& baker, const std::string& path) {
             return (knows ? std::to_string(baker.zones_done()) + " of " +
                                 std::to_string(baker.zones()) + " zones are finished"
                           : std::string("finished zones are")) +
-                   " in " + path + "/" + kPartNodeFolder + ", and the next bake of " + path +
+                   " in " + path + "/" + world::kPartNodeFolder + ", and the next bake of " + path +
                    " goes on from there";
           }};
 }
 
-Result<NodeSummary> assign_nodes(cluster::Ranks& ranks, NodeBaker& baker, const NodeConfig& config,
-                                 const std::string& path, NodeFolder& folder, Context& context) {
+Result<NodeSummary> assign_nodes(cluster::Ranks& ranks, bake::NodeBaker& baker,
+                                 const NodeConfig& config, const std::string& path,
+                                 bake::NodeFolder& folder, Context& context) {
   const auto batches = choose_batches(baker, config, ranks.size());
   cluster::JobsToAssign to_assign;
   for (const auto& zones : batches) to_assign.jobs.push_back(cluster::bytes_of(zones));
   to_assign.enter = [&](size_t, std::span<const uint8_t> result) {
-    baker.enter(cluster::values_of<NodeBaker::Made>(result));
+    baker.enter(cluster::values_of<bake::NodeBaker::Made>(result));
     return baker.list();
   };
   to_assign.on_progress = [&] {
@@ -81,7 +82,7 @@ Result<NodeSummary> assign_nodes(cluster::Ranks& ranks, NodeBaker& baker, const 
   const auto nodes = baker.finish();
   if (!nodes) return nodes.error();
   if (auto ok = folder.finish(**nodes); !ok) return ok.error();
-  (*nodes)->path = path + "/" + kNodeFolder;
+  (*nodes)->path = path + "/" + world::kNodeFolder;
   return Access::create<Nodes>(*nodes).summary();
 }
 
@@ -98,16 +99,17 @@ Result<NodeSummary> nodes_over_ranks(const World& world, const Scene& scene,
   auto joined = cluster::Ranks::join();
   if (!joined) return joined.error();
   cluster::Ranks& ranks = **joined;
-  if (auto ok = agree_over_ranks(NodeBaker::check(world, scene, config)); !ok) return ok.error();
+  if (auto ok = agree_over_ranks(bake::NodeBaker::check(world, scene, config)); !ok)
+    return ok.error();
   const std::string& path = data_of(world)->path;
   NodeConfig own = config;
   own.workers = cluster::workers_of_rank(config.workers, ranks);
   Result<void> begun;
-  auto folder =
-      ranks.rank() == 0 ? NodeFolder::begin(path) : Result<NodeFolder>(NodeFolder::join(path));
+  auto folder = ranks.rank() == 0 ? bake::NodeFolder::begin(path)
+                                  : Result<bake::NodeFolder>(bake::NodeFolder::join(path));
   if (!folder) begun = folder.error();
   if (auto ok = agree_over_ranks(begun); !ok) return ok.error();
-  NodeBaker baker(world, scene, own, &*folder);
+  bake::NodeBaker baker(world, scene, own, &*folder);
   baker.plan();
   if (auto ok = cluster::same_over_ranks(ranks, baker.input(), "nodes", "opened another world");
       !ok) {

@@ -77,41 +77,42 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (data_of(config.nodes) != nullptr && !is_same_world(config.nodes, world)) {
     return bad_config("the nodes are of another world");
   }
-  const WorldData& data = *data_of(world);
-  const double unit = data.summary.cell / kUnitsPerCell;
+  const world::WorldData& data = *data_of(world);
+  const double unit = data.summary.cell / world::kUnitsPerCell;
   const bool is_sampled = config.model == SteeringModel::kSampled;
   steer::SampledSettings steering;
   if (!is_sampled) steering.neighbours = steer::kMaxNear;
-  CrowdEngine engine({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
-                      .sight = static_cast<float>(config.tuning.sight),
-                      .rounds = config.tuning.rounds,
-                      .deadlock_avoidance = is_sampled && config.tuning.deadlock_avoidance,
-                      .reaction = is_sampled ? static_cast<float>(config.tuning.reaction) : 0,
-                      .seed = config.seed,
-                      .workers = config.workers,
-                      .model = config.model,
-                      .steering = steering,
-                      .deadlock_settings = {},
-                      .lanes = {},
-                      .spacing = {}},
-                     data.width, data.depth, data.summary.classes.size());
-  FlyerEngine flyers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
-                      .sight = static_cast<float>(config.tuning.sight),
-                      .rounds = config.tuning.rounds,
-                      .deadlock_avoidance = config.tuning.deadlock_avoidance,
-                      .seed = config.seed,
-                      .workers = config.workers,
-                      .steering = {},
-                      .deadlock_settings = {}},
-                     data.summary.classes.size());
-  ClimberEngine climbers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
-                          .sight = static_cast<float>(config.tuning.sight),
-                          .rounds = config.tuning.rounds,
-                          .deadlock_avoidance = config.tuning.deadlock_avoidance,
-                          .seed = config.seed,
-                          .workers = config.workers,
-                          .steering = {}},
-                         data.summary.classes.size());
+  crowd::CrowdEngine engine(
+      {.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
+       .sight = static_cast<float>(config.tuning.sight),
+       .rounds = config.tuning.rounds,
+       .deadlock_avoidance = is_sampled && config.tuning.deadlock_avoidance,
+       .reaction = is_sampled ? static_cast<float>(config.tuning.reaction) : 0,
+       .seed = config.seed,
+       .workers = config.workers,
+       .model = config.model,
+       .steering = steering,
+       .deadlock_settings = {},
+       .lanes = {},
+       .spacing = {}},
+      data.width, data.depth, data.summary.classes.size());
+  crowd::FlyerEngine flyers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
+                             .sight = static_cast<float>(config.tuning.sight),
+                             .rounds = config.tuning.rounds,
+                             .deadlock_avoidance = config.tuning.deadlock_avoidance,
+                             .seed = config.seed,
+                             .workers = config.workers,
+                             .steering = {},
+                             .deadlock_settings = {}},
+                            data.summary.classes.size());
+  crowd::ClimberEngine climbers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
+                                 .sight = static_cast<float>(config.tuning.sight),
+                                 .rounds = config.tuning.rounds,
+                                 .deadlock_avoidance = config.tuning.deadlock_avoidance,
+                                 .seed = config.seed,
+                                 .workers = config.workers,
+                                 .steering = {}},
+                                data.summary.classes.size());
   auto state = std::make_unique<State>(world, config, std::move(engine), std::move(flyers),
                                        std::move(climbers));
   state->classes.resize(data.summary.classes.size());
@@ -121,12 +122,12 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
 void Crowd::State::find_bodies() const {
   if (!where_is_old) return;
   std::fill(where.begin(), where.end(), kNoBody);
-  const std::span<const Body> bodies = engine.bodies();
+  const std::span<const crowd::Body> bodies = engine.bodies();
   for (size_t i = 0; i < bodies.size(); ++i) where[bodies[i].slot] = static_cast<uint32_t>(i);
   where_is_old = false;
 }
 
-Body* Crowd::State::body(AvatarId id) const {
+crowd::Body* Crowd::State::body(AvatarId id) const {
   if (!id || id.slot1 > generation.size() || generation[id.slot1 - 1] != id.generation) {
     return nullptr;
   }
@@ -140,8 +141,8 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   std::unique_ptr<ClassParts>& parts = classes[static_cast<size_t>(number)];
   if (parts) return {};
   auto made = std::make_unique<ClassParts>();
-  const int32_t step_height = step_mm(body_class(number));
-  auto ground = CrowdGround::make(*data_of(world), number, step_height);
+  const int32_t step_height = world::step_mm(body_class(number));
+  auto ground = crowd::CrowdGround::make(*data_of(world), number, step_height);
   if (!ground) return ground.error();
   made->ground = std::move(*ground);
   const bool over_nodes = is_climber_class(number);
@@ -171,7 +172,7 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   for (uint32_t slot = 0; slot < obstacles.all().size(); ++slot) {
     sync_paths(slot, static_cast<size_t>(number));
   }
-  engine.set_ground(static_cast<size_t>(number), StrideGround(parts->ground, step_height));
+  engine.set_ground(static_cast<size_t>(number), crowd::StrideGround(parts->ground, step_height));
   if (auto ok = find_flows(number, context); !ok) {
     obstacles.close_class(static_cast<size_t>(number));
     parts.reset();
@@ -184,7 +185,7 @@ double Crowd::State::radius_of(const AvatarSpawn& spawn) const {
   return spawn.radius > 0 ? spawn.radius : body_class(spawn.avatar_class).radius;
 }
 
-Result<Body> Crowd::State::body_of(const AvatarSpawn& spawn) const {
+Result<crowd::Body> Crowd::State::body_of(const AvatarSpawn& spawn) const {
   const AvatarClass& avatar = body_class(spawn.avatar_class);
   const double radius = radius_of(spawn);
   const double speed = spawn.speed > 0 ? spawn.speed : avatar.speed;
@@ -197,7 +198,7 @@ Result<Body> Crowd::State::body_of(const AvatarSpawn& spawn) const {
   if (avatar.height > kMaxBodyHeight) {
     return bad_config("class " + avatar.name + " is higher than 65 m");
   }
-  Body body;
+  crowd::Body body;
   body.speed = static_cast<float>(speed);
   body.radius = static_cast<int32_t>(std::ceil(radius / unit - 1e-9));
   body.height = static_cast<uint16_t>(std::ceil(avatar.height * 1000 - 1e-6));
@@ -209,10 +210,10 @@ Result<Body> Crowd::State::body_of(const AvatarSpawn& spawn) const {
 }
 
 // No body moves further than the smallest radius at a time, so none passes through another.
-void Crowd::State::make_room(const Body& body) {
+void Crowd::State::make_room(const crowd::Body& body) {
   int32_t wide = body.radius, narrow = body.radius, tall = body.height;
   if (body.climbs) {  // It leans, so the cylinder that encloses it changes.
-    const ClimberGround& ground = *classes[body.avatar_class]->nodes;
+    const crowd::ClimberGround& ground = *classes[body.avatar_class]->nodes;
     const double radius = climbs[body.slot].radius;
     wide = ground.widest(radius);
     tall = ground.tallest(radius);
@@ -226,7 +227,7 @@ void Crowd::State::make_room(const Body& body) {
   fastest = std::max(fastest, body.speed);
   const double displacement = fastest * config.dt / unit;
   const double max_displacement =
-      std::min(narrowest, CrowdEngine::kLongestStep - 16);  // and what is rounded
+      std::min(narrowest, crowd::CrowdEngine::kLongestStep - 16);  // and what is rounded
   sub_steps = std::clamp(static_cast<int32_t>(std::ceil(displacement / max_displacement - 1e-9)), 1,
                          1 << 20);
   engine.fit(widest, fastest, static_cast<float>(config.dt / sub_steps));
@@ -236,14 +237,14 @@ void Crowd::State::make_room(const Body& body) {
 
 void Crowd::State::reserve(size_t more) {
   const size_t slots = generation.size() + more - std::min(more, free_slots.size());
-  const size_t room = grown(generation.capacity(), slots);
+  const size_t room = crowd::grown(generation.capacity(), slots);
   generation.reserve(room);
   routes.reserve(room);
   where.reserve(room);
   engine.reserve(engine.bodies().size() + more);
 }
 
-AvatarId Crowd::State::add(Body body, const Climb& climb) {
+AvatarId Crowd::State::add(crowd::Body body, const crowd::Climb& climb) {
   find_bodies();
   if (free_slots.empty()) {
     body.slot = static_cast<uint32_t>(generation.size());
@@ -272,7 +273,7 @@ AvatarId Crowd::State::add(Body body, const Climb& climb) {
 
 Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Context& context) {
   State& s = *state_;
-  std::vector<Body> bodies;
+  std::vector<crowd::Body> bodies;
   int32_t widest = s.widest;
   for (const AvatarSpawn& spawn : spawns) {
     if (auto ok = s.open_class(spawn.avatar_class, context); !ok) return ok.error();
@@ -282,11 +283,11 @@ Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Co
     const auto& nodes = s.classes[static_cast<size_t>(spawn.avatar_class)]->nodes;
     widest = std::max(widest, nodes ? nodes->widest(s.radius_of(spawn)) : body->radius);
   }
-  StandingMap map(s.engine.bodies(), widest, spawns.size());
+  crowd::StandingMap map(s.engine.bodies(), widest, spawns.size());
   s.reserve(spawns.size());
   std::vector<AvatarId> ids(spawns.size());
   for (size_t i = 0; i < spawns.size(); ++i) {
-    Body& body = bodies[i];
+    crowd::Body& body = bodies[i];
     if (spawns[i].place.level1 == kAirLevel1) {
       if (!s.put_in_air(body, spawns[i].place.position)) continue;
       if (map.add_if_clear(body)) ids[i] = s.add(body);
@@ -296,14 +297,15 @@ Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Co
       const NodePlace place = spawns[i].on_nodes
                                   ? spawns[i].on_nodes
                                   : s.place_on_nodes(spawns[i].avatar_class, spawns[i].place);
-      Climb climb;
+      crowd::Climb climb;
       if (!s.put_on_nodes(body, climb, place, s.radius_of(spawns[i]))) continue;
       if (map.add_if_clear(body)) ids[i] = s.add(body, climb);
       continue;
     }
-    const auto point = ground_point(*data_of(s.world), spawns[i].place);
+    const auto point = world::ground_point(*data_of(s.world), spawns[i].place);
     if (!point) continue;
-    const CrowdGround& ground = s.classes[static_cast<size_t>(spawns[i].avatar_class)]->ground;
+    const crowd::CrowdGround& ground =
+        s.classes[static_cast<size_t>(spawns[i].avatar_class)]->ground;
     body.x = static_cast<int32_t>(point->x);
     body.z = static_cast<int32_t>(point->z);
     body.level = spawns[i].place.level1 - 1;
@@ -330,13 +332,13 @@ Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& 
   const double radius = s.radius_of(like);
   const int32_t widest = parts.nodes ? parts.nodes->widest(radius) : body->radius;
   if (!parts.standing) parts.standing.emplace(parts.ground, s.config.seed);
-  StandingMap map(s.engine.bodies(), std::max(s.widest, widest), count);
-  std::vector<Body> placed;
-  std::vector<Climb> climbs(parts.nodes ? 1 : 0);  // of those placed, and one to try
+  crowd::StandingMap map(s.engine.bodies(), std::max(s.widest, widest), count);
+  std::vector<crowd::Body> placed;
+  std::vector<crowd::Climb> climbs(parts.nodes ? 1 : 0);  // of those placed, and one to try
   placed.reserve(count);
   // Until nine draws of ten fail over a while.
   uint64_t failed = 0, drawn = 0;
-  const auto draw = [&](Body& here) {
+  const auto draw = [&](crowd::Body& here) {
     if (in_air) {
       const auto point =
           parts.flight_finders[0].random_point(s.config.seed ^ kAirDraws, s.scattered++);
@@ -346,7 +348,7 @@ Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& 
       const NodePlace place = s.draw_on_nodes(like.avatar_class, s.scattered++);
       return place && s.put_on_nodes(here, climbs.back(), place, radius);
     }
-    const StandingDraw::Stand stand = parts.standing->draw(s.scattered++);
+    const crowd::StandingDraw::Stand stand = parts.standing->draw(s.scattered++);
     here.x = static_cast<int32_t>(stand.point.x);
     here.z = static_cast<int32_t>(stand.point.z);
     here.level = stand.level;
@@ -354,7 +356,7 @@ Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& 
     return true;
   };
   while (placed.size() < count && (in_air || parts.nodes || !parts.standing->is_empty())) {
-    Body here = *body;
+    crowd::Body here = *body;
     if (draw(here) && map.add_if_clear(here)) {
       placed.push_back(here);
       if (parts.nodes) climbs.emplace_back();
@@ -383,9 +385,9 @@ Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& 
 void Crowd::remove(std::span<const AvatarId> ids) {
   State& s = *state_;
   for (const AvatarId id : ids) {
-    Body* body = s.body(id);
+    crowd::Body* body = s.body(id);
     if (body == nullptr) continue;
-    Body& last = s.engine.bodies().back();
+    crowd::Body& last = s.engine.bodies().back();
     s.where[last.slot] = s.where[body->slot];
     s.where[body->slot] = kNoBody;
     ++s.generation[body->slot];
@@ -399,7 +401,7 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goal
   THRONG_ASSERT(ids.size() == goals.size());
   State& s = *state_;
   for (size_t i = 0; i < ids.size(); ++i) {
-    Body* body = s.body(ids[i]);
+    crowd::Body* body = s.body(ids[i]);
     if (body == nullptr) continue;
     body->target = 0;
     body->detour_angle = 0;
@@ -416,16 +418,17 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goal
       continue;
     }
     body->flags = 0;
-    const auto point = ground_point(*data_of(s.world), goals[i]);
+    const auto point = world::ground_point(*data_of(s.world), goals[i]);
     if (!point) continue;
-    Route& route = s.routes[body->slot];
+    crowd::Route& route = s.routes[body->slot];
     route = {};
     route.goal = {static_cast<int32_t>(point->x), static_cast<int32_t>(point->z),
                   goals[i].level1 - 1};
     body->local_target_x = route.goal.x;
     body->local_target_z = route.goal.z;
-    body->flags = s.config.routing == Routing::kPaths ? Body::kHasGoal | Body::kNeedsPath
-                                                      : Body::kHasGoal | Body::kLast;
+    body->flags = s.config.routing == Routing::kPaths
+                      ? crowd::Body::kHasGoal | crowd::Body::kNeedsPath
+                      : crowd::Body::kHasGoal | crowd::Body::kLast;
   }
 }
 
@@ -433,7 +436,7 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const NodePlace> 
   THRONG_ASSERT(ids.size() == goals.size());
   State& s = *state_;
   for (size_t i = 0; i < ids.size(); ++i) {
-    Body* body = s.body(ids[i]);
+    crowd::Body* body = s.body(ids[i]);
     if (body == nullptr || !body->climbs) continue;
     body->target = 0;
     body->detour_angle = 0;
@@ -448,7 +451,7 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const NodePlace> 
 void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d> velocities) {
   THRONG_ASSERT(ids.size() == velocities.size());
   for (size_t i = 0; i < ids.size(); ++i) {
-    Body* body = state_->body(ids[i]);
+    crowd::Body* body = state_->body(ids[i]);
     if (body == nullptr) continue;
     const Vec3d& v = velocities[i];
     const bool may_fly = state_->air_of(*body) != nullptr;
@@ -456,7 +459,7 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
     double size = std::sqrt(v.x * v.x + up * up + v.z * v.z);
     if (!std::isfinite(size)) size = INFINITY;
     const double part = size > body->speed ? body->speed / size : 1;
-    body->flags = (body->flags & Body::kFlying) | Body::kExternal;
+    body->flags = (body->flags & crowd::Body::kFlying) | crowd::Body::kExternal;
     body->target = 0;
     body->detour_angle = 0;
     body->preferred =
@@ -466,7 +469,7 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
       state_->flights[body->slot].preferred_up = part > 0 ? static_cast<float>(up * part) : 0;
     }
     if (body->climbs) {
-      Climb& climb = state_->climbs[body->slot];
+      crowd::Climb& climb = state_->climbs[body->slot];
       climb.external = {body->preferred.x, part > 0 ? static_cast<float>(up * part) : 0,
                         body->preferred.z};
       climb.detour = 0;
@@ -475,31 +478,33 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
 }
 
 // Follows paths, and finds those that are missing.
-void Crowd::State::plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned) {
+void Crowd::State::plan(std::span<crowd::Body> bodies, int32_t worker,
+                        std::atomic<uint64_t>& planned) {
   const auto metre = static_cast<float>(1 / unit);
   const uint64_t step_now = sub_step - 1;
   uint64_t asked = 0;
-  for (Body& body : bodies) {
-    if (body.has(Body::kFlying) || body.steps == 0) continue;
+  for (crowd::Body& body : bodies) {
+    if (body.has(crowd::Body::kFlying) || body.steps == 0) continue;
     const ClassParts& parts = *classes[body.avatar_class];
     if (body.leaves) {
       plan_exit(body);
       continue;
     }
-    if (parts.air && (body.has(Body::kHasGoal) || body.has(Body::kExternal)) &&
+    if (parts.air && (body.has(crowd::Body::kHasGoal) || body.has(crowd::Body::kExternal)) &&
         plan_on_foot(body, flights[body.slot], worker, planned)) {
-      body.clear(Body::kContinues);
+      body.clear(crowd::Body::kContinues);
       continue;
     }
-    if (!body.has(Body::kHasGoal) || body.has(Body::kContinues) ||
+    if (!body.has(crowd::Body::kHasGoal) || body.has(crowd::Body::kContinues) ||
         config.routing == Routing::kStraight)
       continue;
-    Route& route = routes[body.slot];
-    const StrideGround ground(parts.ground, step_mm(body_class(body.avatar_class)));
-    if (!body.has(Body::kNeedsPath)) {
-      follow(body, route, ground, (step_now + body.slot) / engine.steps_of_reaction(body), metre);
+    crowd::Route& route = routes[body.slot];
+    const crowd::StrideGround ground(parts.ground, world::step_mm(body_class(body.avatar_class)));
+    if (!body.has(crowd::Body::kNeedsPath)) {
+      crowd::follow(body, route, ground, (step_now + body.slot) / engine.steps_of_reaction(body),
+                    metre);
     }
-    if (!body.has(Body::kNeedsPath)) continue;
+    if (!body.has(crowd::Body::kNeedsPath)) continue;
     ++asked;
     if (plan_path(body, route, ground, worker)) continue;
     // A target that cannot be walked to may be flown to.
@@ -533,10 +538,10 @@ CrowdReport Crowd::step() {
   report.waiting = s.settle_obstacles(std::vector(waiting.begin(), waiting.end()), &s.blockers);
   s.renew_flows();
   report.seconds_obstacles = seconds_since(start);
-  EngineCounts counts;
-  CrowdEngine::Times times;
+  crowd::EngineCounts counts;
+  crowd::CrowdEngine::Times times;
   std::atomic<uint64_t> planned{0};
-  const CrowdEngine::Before before = [&](std::span<Body> bodies, int32_t worker) {
+  const crowd::CrowdEngine::Before before = [&](std::span<crowd::Body> bodies, int32_t worker) {
     s.plan(bodies, worker, planned);
   };
   s.engine.set_detail({.views = s.views,
@@ -545,7 +550,7 @@ CrowdReport Crowd::step() {
                        .narrowest = s.narrowest});
   const bool has_paths = s.config.routing == Routing::kPaths || !s.flights.empty() || s.some_leave;
   for (int32_t i = 0; i < s.sub_steps; ++i) {
-    s.engine.step(s.sub_step++, has_paths ? before : CrowdEngine::Before(), counts, times);
+    s.engine.step(s.sub_step++, has_paths ? before : crowd::CrowdEngine::Before(), counts, times);
     for (const uint32_t slot : s.engine.arrived()) {
       // An avatar that only reached where it takes off has not arrived.
       if (s.flights.empty() || s.flights[slot].to_link == 0) s.arrived.push_back(s.id_of(slot));
@@ -555,7 +560,7 @@ CrowdReport Crowd::step() {
   }
   s.where_is_old = true;
   if (!s.flights.empty() || !s.climbs.empty()) {
-    for (const Body& body : s.engine.bodies()) {
+    for (const crowd::Body& body : s.engine.bodies()) {
       report.flying += body.flies() ? 1 : 0;
       report.climbing += body.climbs ? 1 : 0;
     }
@@ -588,14 +593,14 @@ CrowdReport Crowd::step() {
 
 CrowdCheck Crowd::check() const {
   const State& s = *state_;
-  std::vector<CheckedBody> bodies;
+  std::vector<crowd::CheckedBody> bodies;
   bodies.reserve(s.engine.bodies().size());
-  for (const Body& b : s.engine.bodies()) {
+  for (const crowd::Body& b : s.engine.bodies()) {
     const double height = b.climbs ? b.height * 1e-3 : s.body_class(b.avatar_class).height;
     bodies.push_back(
         {b.x, b.z, b.y, b.level, b.avatar_class, b.radius * s.unit, height, b.flies(), b.climbs});
   }
-  CrowdCheck found = check_bodies(s.world, bodies, obstacles(), s.config.workers);
+  CrowdCheck found = crowd::check_bodies(s.world, bodies, obstacles(), s.config.workers);
   if (!s.climbs.empty()) {
     found.wall_entries += s.count_off_nodes();
     found.obstacle_entries += s.count_climbers_inside();
@@ -606,32 +611,32 @@ CrowdCheck Crowd::check() const {
 uint64_t Crowd::state_hash() const {
   const State& s = *state_;
   s.find_bodies();
-  std::vector<Body> by_slot;
+  std::vector<crowd::Body> by_slot;
   for (const uint32_t i : s.where) {
     if (i == kNoBody) continue;
-    Body body = s.engine.bodies()[i];
-    body.state = Body::kFree;  // of the step, not of the avatar
+    crowd::Body body = s.engine.bodies()[i];
+    body.state = crowd::Body::kFree;  // of the step, not of the avatar
     body.steps = 0;
     by_slot.push_back(body);
   }
-  uint64_t hash = hash_bytes(by_slot.data(), by_slot.size() * sizeof(Body));
+  uint64_t hash = hash_bytes(by_slot.data(), by_slot.size() * sizeof(crowd::Body));
   if (!s.flights.empty()) {
-    std::vector<Flight> flights;
-    for (const Body& body : by_slot) flights.push_back(s.flights[body.slot]);
-    hash = hash_bytes(flights.data(), flights.size() * sizeof(Flight), hash);
+    std::vector<crowd::Flight> flights;
+    for (const crowd::Body& body : by_slot) flights.push_back(s.flights[body.slot]);
+    hash = hash_bytes(flights.data(), flights.size() * sizeof(crowd::Flight), hash);
   }
   if (!s.climbs.empty()) {
-    std::vector<Climb> climbs;
-    for (const Body& body : by_slot) climbs.push_back(s.climbs[body.slot]);
-    hash = hash_bytes(climbs.data(), climbs.size() * sizeof(Climb), hash);
+    std::vector<crowd::Climb> climbs;
+    for (const crowd::Body& body : by_slot) climbs.push_back(s.climbs[body.slot]);
+    hash = hash_bytes(climbs.data(), climbs.size() * sizeof(crowd::Climb), hash);
   }
   return hash;
 }
 
-AvatarState Crowd::State::state_of(const Body& b) const {
+AvatarState Crowd::State::state_of(const crowd::Body& b) const {
   const Vec3d origin = data_of(world)->summary.origin;
   if (b.climbs) {
-    const Climb& climb = climbs[b.slot];
+    const crowd::Climb& climb = climbs[b.slot];
     const Vec3d displacement = unleaned({b.velocity.x, climb.rise, b.velocity.z}, climb.axis);
     const double size = std::hypot(displacement.x, displacement.z);
     return {.id = b.slot,
@@ -663,7 +668,7 @@ void Crowd::read(std::vector<AvatarState>& out) const {
 }
 
 std::optional<AvatarState> Crowd::read(AvatarId id) const {
-  const Body* body = state_->body(id);
+  const crowd::Body* body = state_->body(id);
   return body == nullptr ? std::nullopt : std::optional(state_->state_of(*body));
 }
 
@@ -687,8 +692,9 @@ CrowdMemory Crowd::memory() const {
                    (s.generation.capacity() + s.where.capacity() + s.free_slots.capacity()) * 4 +
                    s.inside.capacity() * sizeof(uint64_t) +
                    s.checked_at.capacity() * sizeof(s.checked_at[0]);
-  memory.paths = s.routes.capacity() * sizeof(Route) + s.flights.capacity() * sizeof(Flight) +
-                 s.climbs.capacity() * sizeof(Climb);
+  memory.paths = s.routes.capacity() * sizeof(crowd::Route) +
+                 s.flights.capacity() * sizeof(crowd::Flight) +
+                 s.climbs.capacity() * sizeof(crowd::Climb);
   for (const auto& parts : s.classes) memory.ground += parts ? parts->ground.bytes() : 0;
   memory.ground += s.obstacles.bytes();
   return memory;

@@ -16,7 +16,7 @@
 
 // Counts overlapping pairs, bodies off legal ground or air, and bodies in obstacles, by exact
 // distances: sorted along one axis of squares, so n log n unless the crowd is dense.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 // Square of the distance of a point from a convex polygon, 0 inside. [m2]
@@ -43,9 +43,9 @@ double square_to(const Prism& prism, double x, double z) {
 }
 
 // Pairs of a body and an obstacle that it is in.
-uint64_t count_inside(const WorldData& data, std::span<const CheckedBody> bodies,
+uint64_t count_inside(const world::WorldData& data, std::span<const CheckedBody> bodies,
                       std::span<const Prism> obstacles) {
-  const double unit = data.summary.cell / kUnitsPerCell;
+  const double unit = data.summary.cell / world::kUnitsPerCell;
   const Vec3d& origin = data.summary.origin;
   struct Entry {
     double x, z, y, radius, bottom, height;
@@ -86,18 +86,19 @@ uint64_t count_inside(const WorldData& data, std::span<const CheckedBody> bodies
 // the body is tall.
 class AirCheck {
  public:
-  AirCheck(const WorldData& data, int32_t avatar_class)
+  AirCheck(const world::WorldData& data, int32_t avatar_class)
       : data_(data),
         avatar_class_(avatar_class),
         height_(data.summary.classes[static_cast<size_t>(avatar_class)].height * 1e3) {
     if (data.air == nullptr) return;
-    body_ = air_body(data.summary.classes[static_cast<size_t>(avatar_class)], data.air->shape);
+    body_ =
+        world::air_body(data.summary.classes[static_cast<size_t>(avatar_class)], data.air->shape);
   }
 
   [[nodiscard]] bool allows(const CheckedBody& a) const {
     if (data_.air == nullptr || a.x < 0 || a.z < 0) return false;
-    const AirShape& shape = data_.air->shape;
-    const int32_t across = kUnitsPerCell * shape.multiple;
+    const world::AirShape& shape = data_.air->shape;
+    const int32_t across = world::kUnitsPerCell * shape.multiple;
     const int32_t x = a.x / across, z = a.z / across;
     const auto is_air = [&](int32_t layer) {
       return layer < shape.ceiling && data_.air->is_legal(body_, x, layer, z);
@@ -106,13 +107,13 @@ class AirCheck {
       return static_cast<int32_t>(std::floor((y - shape.origin_y) / double{1} / shape.cell));
     };
     if (is_air(layer_of(a.y))) return true;
-    const auto [cx, cz] = std::pair{a.x >> kUnitBits, a.z >> kUnitBits};
+    const auto [cx, cz] = std::pair{a.x >> world::kUnitBits, a.z >> world::kUnitBits};
     const auto tile = data_.tile_levels(cx >> 6, cz >> 6);
     for (uint32_t i = tile.first; i < tile.last; ++i) {
-      const GroundLevel level = ground_level(data_, i, avatar_class_);
+      const world::GroundLevel level = world::ground_level(data_, i, avatar_class_);
       if (level.zone == nullptr || !level.is_legal(cx & 63, cz & 63)) continue;
-      const int32_t feet =
-          level.view.feet(cx & 63, cz & 63, a.x & (kUnitsPerCell - 1), a.z & (kUnitsPerCell - 1));
+      const int32_t feet = level.view.feet(cx & 63, cz & 63, a.x & (world::kUnitsPerCell - 1),
+                                           a.z & (world::kUnitsPerCell - 1));
       if (feet > a.y) continue;
       for (int32_t layer = layer_of(a.y);; ++layer) {
         if (layer * shape.cell + shape.origin_y > feet + height_) break;
@@ -123,18 +124,18 @@ class AirCheck {
   }
 
  private:
-  const WorldData& data_;
+  const world::WorldData& data_;
   int32_t avatar_class_;
   double height_;  // [mm]
-  AirBody body_;
+  world::AirBody body_;
 };
 
 }  // namespace
 
 CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
                         std::span<const Prism> obstacles, int32_t workers) {
-  const WorldData& data = *data_of(world);
-  const double unit = data.summary.cell / kUnitsPerCell;
+  const world::WorldData& data = *data_of(world);
+  const double unit = data.summary.cell / world::kUnitsPerCell;
 
   std::vector<AirCheck> air;
   for (size_t c = 0; c < data.summary.classes.size(); ++c) {
@@ -150,14 +151,15 @@ CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
         found += air[static_cast<size_t>(a.avatar_class)].allows(a) ? 0 : 1;
         continue;
       }
-      const GroundLevel level = ground_level(data, a.level, a.avatar_class);
-      const auto [cx, cz] = std::pair{a.x >> kUnitBits, a.z >> kUnitBits};
+      const world::GroundLevel level = world::ground_level(data, a.level, a.avatar_class);
+      const auto [cx, cz] = std::pair{a.x >> world::kUnitBits, a.z >> world::kUnitBits};
       const auto tile = data.tile_levels(cx >> 6, cz >> 6);
       const bool on_tile = a.level >= tile.first && a.level < tile.last;
       const bool stands = on_tile && level.zone != nullptr && level.is_legal(cx & 63, cz & 63);
-      const int32_t feet = stands ? level.view.feet(cx & 63, cz & 63, a.x & (kUnitsPerCell - 1),
-                                                    a.z & (kUnitsPerCell - 1))
-                                  : 0;
+      const int32_t feet = stands
+                               ? level.view.feet(cx & 63, cz & 63, a.x & (world::kUnitsPerCell - 1),
+                                                 a.z & (world::kUnitsPerCell - 1))
+                               : 0;
       found += !stands || feet != a.y;
     }
     wall_entries += found;
@@ -212,4 +214,4 @@ CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
   return {wall_entries, overlaps, inside};
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

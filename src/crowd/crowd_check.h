@@ -10,7 +10,7 @@
 #include "throng/world.h"
 
 /// A check of a crowd that shares nothing with the step: exact distances, the world's own queries.
-namespace throng {
+namespace throng::crowd {
 
 struct CheckedBody {
   int32_t x = 0, z = 0;  // [units]
@@ -27,4 +27,4 @@ struct CheckedBody {
 CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
                         std::span<const Prism> obstacles, int32_t workers);
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -27,8 +27,8 @@ constexpr double kRoomy = 2;               // [m] of a node in which a body can 
 constexpr double kSearchMargin = 1;        // [m] more than a square of a node
 constexpr uint64_t kFew = 8000;            // crossings that a search for a detour may expand
 
-ClimbPoint point_of(const NodePathPoint& point, bool drops) {
-  ClimbPoint made;
+crowd::ClimbPoint point_of(const NodePathPoint& point, bool drops) {
+  crowd::ClimbPoint made;
   made.node1 = point.place.node1;
   made.s = made.node1 != 0 ? point.place.s : point.place.feet.y;
   made.t = made.node1 != 0 ? point.place.t : 0;
@@ -38,12 +38,13 @@ ClimbPoint point_of(const NodePathPoint& point, bool drops) {
 }
 
 // Where the rest of a path leads that does not fit: without its end, which is the goal.
-void set_stations(Climb& climb, const NodePath& path) {
+void set_stations(crowd::Climb& climb, const NodePath& path) {
   climb.station = climb.station_count = 0;
   const size_t first = climb.count, all = path.points.size();
   size_t next = first;
-  for (size_t k = 0; k < Climb::kStations; ++k) {
-    size_t i = std::max(next, first + (all - 1 - std::min(first, all - 1)) * k / Climb::kStations);
+  for (size_t k = 0; k < crowd::Climb::kStations; ++k) {
+    size_t i =
+        std::max(next, first + (all - 1 - std::min(first, all - 1)) * k / crowd::Climb::kStations);
     while (i < all && !path.points[i].place) ++i;
     if (i + 1 >= all) return;
     climb.stations[climb.station_count++] = point_of(path.points[i], false);
@@ -52,8 +53,8 @@ void set_stations(Climb& climb, const NodePath& path) {
 }
 
 // The body stays where it is.
-void clear_path(Climb& climb) {
-  const ClimbStance at = climb.at;
+void clear_path(crowd::Climb& climb) {
+  const crowd::ClimbStance at = climb.at;
   climb.count = 0;
   climb.whole = 0;
   climb.to_station = 0;
@@ -66,9 +67,9 @@ void clear_path(Climb& climb) {
 }  // namespace
 
 // As much of a path as fits: it ends on the ground.
-void Crowd::State::take_path(Climb& climb, const NodePath& path) {
+void Crowd::State::take_path(crowd::Climb& climb, const NodePath& path) {
   const size_t all = path.points.size();
-  size_t count = std::min(all, Climb::kPoints);
+  size_t count = std::min(all, crowd::Climb::kPoints);
   while (count > 0 && !path.points[count - 1].place) --count;
   for (size_t i = 0; i < count; ++i) {
     const bool falls = !path.points[i].place || (i > 0 && !path.points[i - 1].place);
@@ -100,9 +101,9 @@ Result<void> Crowd::State::open_nodes(int32_t number, ClassParts& parts, Context
   return {};
 }
 
-bool Crowd::State::put_on_nodes(Body& body, Climb& climb, const NodePlace& place,
+bool Crowd::State::put_on_nodes(crowd::Body& body, crowd::Climb& climb, const NodePlace& place,
                                 double radius) const {
-  const ClimberGround& ground = *classes[body.avatar_class]->nodes;
+  const crowd::ClimberGround& ground = *classes[body.avatar_class]->nodes;
   const auto pose = ground.pose(place.node1, place.s, place.t);
   const auto cylinder = pose ? ground.cylinder_of(*pose, radius) : std::nullopt;
   if (!cylinder || climbers.is_blocked(ground, *cylinder, *pose, radius)) return false;
@@ -119,37 +120,38 @@ bool Crowd::State::put_on_nodes(Body& body, Climb& climb, const NodePlace& place
   body.radius = cylinder->radius;
   body.height = static_cast<uint16_t>(cylinder->height);
   body.level = 0;
-  body.flags = Body::kFlying;
+  body.flags = crowd::Body::kFlying;
   body.climbs = true;
   return true;
 }
 
 // Climbers whose paths cross what became active need another path.
 void Crowd::State::cut_climbs(std::span<const uint32_t> slots) {
-  for (Body& body : engine.bodies()) {
-    if (!body.climbs || !body.has(Body::kHasGoal) || body.has(Body::kNeedsPath) || body.leaves)
+  for (crowd::Body& body : engine.bodies()) {
+    if (!body.climbs || !body.has(crowd::Body::kHasGoal) || body.has(crowd::Body::kNeedsPath) ||
+        body.leaves)
       continue;
-    const Climb& climb = climbs[body.slot];
-    const ClimberGround& ground = *classes[body.avatar_class]->nodes;
-    BodyRoom around;  // all that it occupies, whichever direction it faces
+    const crowd::Climb& climb = climbs[body.slot];
+    const crowd::ClimberGround& ground = *classes[body.avatar_class]->nodes;
+    path::BodyRoom around;  // all that it occupies, whichever direction it faces
     around.turns_far = true;
     around.top = body_class(body.avatar_class).height;
     around.radius = climb.radius;
     bool is_cut = false;
     Vec3d last = climb.feet;
     for (size_t i = climb.at.next; i < climb.count && !is_cut; ++i) {
-      const ClimbPoint& point = climb.points[i];
+      const crowd::ClimbPoint& point = climb.points[i];
       const auto pose = ground.pose(point.node1, point.s, point.t);
       if (!pose) continue;  // in the air: between two that are not
       around.feet = (last + pose->feet) * 0.5;
       around.spread = length(pose->feet - last) / 2;
       last = pose->feet;
       is_cut = std::any_of(slots.begin(), slots.end(), [&](uint32_t slot) {
-        const CrowdObstacle& obstacle = obstacles.all()[slot];
+        const crowd::CrowdObstacle& obstacle = obstacles.all()[slot];
         return obstacle.kind == ObstacleKind::kStatic && may_touch(around, {obstacle.place, {}});
       });
     }
-    if (is_cut) body.flags |= Body::kNeedsPath;
+    if (is_cut) body.flags |= crowd::Body::kNeedsPath;
   }
 }
 
@@ -163,8 +165,8 @@ NodePlace Crowd::State::draw_on_nodes(int32_t number, uint64_t n) const {
   return config.nodes.random_place(number, config.seed ^ kPlaces, n);
 }
 
-void Crowd::State::set_goal_of_climber(Body& body, const NodePlace& goal) {
-  Climb& climb = climbs[body.slot];
+void Crowd::State::set_goal_of_climber(crowd::Body& body, const NodePlace& goal) {
+  crowd::Climb& climb = climbs[body.slot];
   const bool exists =
       classes[body.avatar_class]->nodes->pose(goal.node1, goal.s, goal.t).has_value();
   climb.goal_node1 = exists ? goal.node1 : 0;
@@ -174,17 +176,17 @@ void Crowd::State::set_goal_of_climber(Body& body, const NodePlace& goal) {
   climb.waited = 0;
   climb.turns_aside = 0;
   climb.station = climb.station_count = 0;
-  body.flags = Body::kFlying | Body::kHasGoal | Body::kNeedsPath;
+  body.flags = crowd::Body::kFlying | crowd::Body::kHasGoal | crowd::Body::kNeedsPath;
 }
 
-void Crowd::State::stop_climber(Body& body) {
-  body.flags &= Body::kFlying;
-  Climb& climb = climbs[body.slot];
+void Crowd::State::stop_climber(crowd::Body& body) {
+  body.flags &= crowd::Body::kFlying;
+  crowd::Climb& climb = climbs[body.slot];
   if (climb.is_on_ground()) clear_path(climb);
 }
 
 // The nearest place of its target, in a straight line.
-void Crowd::State::head_to_target_place(const Body& body, Climb& climb) const {
+void Crowd::State::head_to_target_place(const crowd::Body& body, crowd::Climb& climb) const {
   const auto& places = classes[body.avatar_class]->landings[body.target - 1u];
   double min_distance = HUGE_VAL;
   const Place* nearest = nullptr;
@@ -202,13 +204,13 @@ void Crowd::State::head_to_target_place(const Body& body, Climb& climb) const {
 }
 
 // To another place for a while: a new path alone often meets the others again.
-void Crowd::State::turn_aside(Body& body, Climb& climb, int32_t worker) {
+void Crowd::State::turn_aside(crowd::Body& body, crowd::Climb& climb, int32_t worker) {
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
   const uint64_t stream = uint64_t{body.slot} << 2, seed = config.seed ^ kDetours;
   climb.turns_aside = 0;
   climb.detour = kMin + static_cast<float>(random_below(seed, stream, sub_step, 40)) * 0.1f;
-  body.clear(Body::kNeedsPath);
+  body.clear(crowd::Body::kNeedsPath);
   const NodePlace from =
       config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
   NodePath& path = parts.node_paths[w];
@@ -245,7 +247,8 @@ void Crowd::State::turn_aside(Body& body, Climb& climb, int32_t worker) {
 
 // An obstacle that came up beside it blocks a whole square of its node for its finder: on to the
 // nearest place of it that is left.
-bool Crowd::State::step_aside(Body& body, Climb& climb, int32_t worker, double beside) {
+bool Crowd::State::step_aside(crowd::Body& body, crowd::Climb& climb, int32_t worker,
+                              double beside) {
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
   const NodePlace from =
@@ -259,12 +262,12 @@ bool Crowd::State::step_aside(Body& body, Climb& climb, int32_t worker, double b
   path.points.push_back({.place = to, .on_surface = true});
   take_path(climb, path);
   climb.whole = 0;
-  body.clear(Body::kNeedsPath);
+  body.clear(crowd::Body::kNeedsPath);
   return true;
 }
 
 // An externally controlled climber heads to where it would be soon, by a path as any other.
-void Crowd::State::control_climber(const Body& body, Climb& climb, int32_t worker) {
+void Crowd::State::control_climber(const crowd::Body& body, crowd::Climb& climb, int32_t worker) {
   climb.detour -= static_cast<float>(config.dt / sub_steps);
   if (!climb.is_on_ground() || (climb.detour > 0 && climb.at.next < climb.count)) return;
   ClassParts& parts = *classes[body.avatar_class];
@@ -286,24 +289,24 @@ void Crowd::State::control_climber(const Body& body, Climb& climb, int32_t worke
   climb.whole = 0;
 }
 
-void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
+void Crowd::State::plan_climb(crowd::Body& body, crowd::Climb& climb, int32_t worker,
                               std::atomic<uint64_t>& planned) {
-  if (body.has(Body::kExternal)) return control_climber(body, climb, worker);
+  if (body.has(crowd::Body::kExternal)) return control_climber(body, climb, worker);
   if (body.leaves && plan_exit_on_nodes(body, climb, worker)) return;
-  if (!body.has(Body::kHasGoal)) return;
+  if (!body.has(crowd::Body::kHasGoal)) return;
   if (climb.detour > 0) {
     climb.detour -= static_cast<float>(config.dt / sub_steps);
-    if (climb.detour <= 0) body.flags |= Body::kNeedsPath;
+    if (climb.detour <= 0) body.flags |= crowd::Body::kNeedsPath;
   }
   const bool used_up = climb.at.next >= climb.count && climb.whole == 0;
   if (used_up) {
-    body.flags |= Body::kNeedsPath;
+    body.flags |= crowd::Body::kNeedsPath;
     climb.station += climb.to_station;
     climb.to_station = 0;
   }
   if (!climb.is_on_ground()) return;
   if (climb.turns_aside != 0) return turn_aside(body, climb, worker);
-  if (!body.has(Body::kNeedsPath)) return;
+  if (!body.has(crowd::Body::kNeedsPath)) return;
   planned.fetch_add(1, std::memory_order_relaxed);
   climb.detour = 0;
   if (body.target != 0) head_to_target_place(body, climb);
@@ -315,14 +318,14 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
   const NodePlace from = nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
   const auto is_found = [&] { return path.end == PathEnd::kReached && path.points.size() >= 2; };
   if (climb.station < climb.station_count) {
-    const ClimbPoint& station = climb.stations[climb.station];
+    const crowd::ClimbPoint& station = climb.stations[climb.station];
     const NodePlace to = nodes.place(body.avatar_class, station.node1 - 1, station.s, station.t);
     parts.node_finders[w].find(from, to, path, kNoSpacing, search_budget());
     note_spent(path.spent);
     if (is_found()) {
       take_path(climb, path);
       climb.to_station = std::exchange(climb.whole, uint8_t{0});
-      return body.clear(Body::kNeedsPath);
+      return body.clear(crowd::Body::kNeedsPath);
     }
   }
   if (climb.goal_node1 != 0) {
@@ -338,13 +341,14 @@ void Crowd::State::plan_climb(Body& body, Climb& climb, int32_t worker,
   }
   take_path(climb, path);
   set_stations(climb, path);
-  body.clear(Body::kNeedsPath);
+  body.clear(crowd::Body::kNeedsPath);
 }
 
 // The step of climbers, after those of walkers and flyers.
-void Crowd::State::move_climbers(EngineCounts& counts, CrowdEngine::Times& times,
+void Crowd::State::move_climbers(crowd::EngineCounts& counts, crowd::CrowdEngine::Times& times,
                                  std::atomic<uint64_t>& planned) {
-  const ClimberEngine::Before before = [&](Body& body, Climb& climb, int32_t worker) {
+  const crowd::ClimberEngine::Before before = [&](crowd::Body& body, crowd::Climb& climb,
+                                                  int32_t worker) {
     plan_climb(body, climb, worker, planned);
   };
   climbers.step(sub_step, engine.bodies(), climbs, flights, before, counts, times);
@@ -352,9 +356,9 @@ void Crowd::State::move_climbers(EngineCounts& counts, CrowdEngine::Times& times
 }
 
 // A body at its feet, to test whether it is in a region.
-Body Crowd::State::at_feet(const Body& body) const {
+crowd::Body Crowd::State::at_feet(const crowd::Body& body) const {
   if (!body.climbs) return body;
-  Body there = body;
+  crowd::Body there = body;
   const Vec3d& origin = data_of(world)->summary.origin;
   const Vec3d& feet = climbs[body.slot].feet;
   there.x = static_cast<int32_t>(std::floor((feet.x - origin.x) / unit));
@@ -363,20 +367,20 @@ Body Crowd::State::at_feet(const Body& body) const {
   return there;
 }
 
-bool Crowd::State::is_sound_climb(const Body& body) const {
+bool Crowd::State::is_sound_climb(const crowd::Body& body) const {
   const auto& parts = classes[body.avatar_class];
   if (!parts || !parts->nodes || body.slot >= climbs.size()) return false;
-  const Climb& climb = climbs[body.slot];
-  const ClimbStance& at = climb.at;
+  const crowd::Climb& climb = climbs[body.slot];
+  const crowd::ClimbStance& at = climb.at;
   const bool finite =
       std::isfinite(climb.rise + climb.preferred_up + climb.waited + climb.detour) &&
       std::isfinite(climb.external[0] + climb.external[1] + climb.external[2]) && climb.radius > 0;
-  if (!finite || climb.count > Climb::kPoints || at.next > climb.count || at.in_air > 1)
+  if (!finite || climb.count > crowd::Climb::kPoints || at.next > climb.count || at.in_air > 1)
     return false;
   if (at.in_air != 0 && (at.next == 0 || at.next == climb.count)) return false;
   if (climb.count > 0 && (climb.points[climb.count - 1u].node1 == 0 || at.next == 0)) return false;
   for (size_t i = 0; i < climb.count; ++i) {
-    const ClimbPoint& p = climb.points[i];
+    const crowd::ClimbPoint& p = climb.points[i];
     if (p.node1 != 0 && !parts->nodes->pose(p.node1, p.s, p.t)) return false;
     if (p.node1 == 0 && !std::isfinite(p.s)) return false;
     // A segment on the surface stays within the node of the point before.
@@ -384,9 +388,9 @@ bool Crowd::State::is_sound_climb(const Body& body) const {
                         parts->nodes->pose(climb.points[i - 1].node1, p.s, p.t).has_value();
     if (!joined) return false;
   }
-  if (climb.station_count > Climb::kStations || climb.to_station > 1) return false;
+  if (climb.station_count > crowd::Climb::kStations || climb.to_station > 1) return false;
   for (size_t i = 0; i < climb.station_count; ++i) {
-    const ClimbPoint& p = climb.stations[i];
+    const crowd::ClimbPoint& p = climb.stations[i];
     if (!parts->nodes->pose(p.node1, p.s, p.t)) return false;
   }
   const bool has_goal =
@@ -400,7 +404,7 @@ bool Crowd::State::is_sound_climb(const Body& body) const {
   if (!surfaced || !pose || !(pose->feet == climb.feet) || !(pose->axis == climb.axis))
     return false;
   const auto cylinder = parts->nodes->cylinder_of(*pose, climb.radius);
-  return cylinder && cylinder->low == AirPosition{body.x, body.z, body.y} &&
+  return cylinder && cylinder->low == crowd::AirPosition{body.x, body.z, body.y} &&
          cylinder->radius == body.radius && cylinder->height == body.height && at.node1 != 0 &&
          parts->nodes->pose(at.node1, at.s, at.t).has_value();
 }
@@ -408,11 +412,11 @@ bool Crowd::State::is_sound_climb(const Body& body) const {
 // Counts the climbers that are in an obstacle.
 uint64_t Crowd::State::count_climbers_inside() const {
   uint64_t found = 0;
-  for (const Body& body : engine.bodies()) {
+  for (const crowd::Body& body : engine.bodies()) {
     if (!body.climbs) continue;
-    const Climb& climb = climbs[body.slot];
-    const ClimberGround& ground = *classes[body.avatar_class]->nodes;
-    const ClimbCylinder cylinder{{body.x, body.z, body.y}, body.radius, body.height};
+    const crowd::Climb& climb = climbs[body.slot];
+    const crowd::ClimberGround& ground = *classes[body.avatar_class]->nodes;
+    const crowd::ClimbCylinder cylinder{{body.x, body.z, body.y}, body.radius, body.height};
     found += climbers.is_inside(ground, cylinder, {climb.feet, climb.axis}, climb.radius) ? 1 : 0;
   }
   return found;
@@ -423,10 +427,10 @@ uint64_t Crowd::State::count_climbers_inside() const {
 uint64_t Crowd::State::count_off_nodes() const {
   constexpr double kTouch = 1e-9;  // [m]
   uint64_t found = 0;
-  for (const Body& body : engine.bodies()) {
+  for (const crowd::Body& body : engine.bodies()) {
     if (!body.climbs) continue;
-    const Climb& climb = climbs[body.slot];
-    const ClimberGround& ground = *classes[body.avatar_class]->nodes;
+    const crowd::Climb& climb = climbs[body.slot];
+    const crowd::ClimberGround& ground = *classes[body.avatar_class]->nodes;
     const auto pose = ground.pose_of(climb, climb.at);
     bool sound =
         pose && length(pose->feet - climb.feet) < 1e-6 && length(pose->axis - climb.axis) < 1e-6;

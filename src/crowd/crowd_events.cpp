@@ -22,7 +22,7 @@ constexpr double kNoProgress = 0.3;   // [m]
 
 Result<WatchedArea> Crowd::watch_area(std::span<const Prism> prisms) {
   State& s = *state_;
-  auto made = Target::make(*data_of(s.world), prisms);
+  auto made = crowd::Target::make(*data_of(s.world), prisms);
   if (!made) return made.error();
   if (s.watched.size() >= kMaxAreas) {
     return Error{Errc::kLimit, "crowd: it watches 64 areas; watch fewer"};
@@ -48,9 +48,9 @@ void Crowd::State::find_entries() {
   std::mutex adding;
   parallel_ranges(engine.bodies().size(), kEventGrain, config.workers,
                   [&](size_t begin, size_t end) {
-                    for (const Body& body : engine.bodies().subspan(begin, end - begin)) {
+                    for (const crowd::Body& body : engine.bodies().subspan(begin, end - begin)) {
                       uint64_t now = 0;
-                      const Body there = at_feet(body);
+                      const crowd::Body there = at_feet(body);
                       for (size_t area = 0; area < watched.size(); ++area) {
                         if (watched[area].contains(there)) now |= uint64_t{1} << area;
                       }
@@ -72,11 +72,11 @@ void Crowd::State::find_entries() {
 void Crowd::State::find_no_progress() {
   checked_at.resize(generation.size(), kNeverChecked);
   const double min_progress = kNoProgress / unit;
-  for (const Body& body : engine.bodies()) {
+  for (const crowd::Body& body : engine.bodies()) {
     auto& [x, z, y] = checked_at[body.slot];
     const double dx = double{1} * body.x - x, dz = double{1} * body.z - z;
     const double dy = (double{1} * body.y - y) * 1e-3 / unit;
-    const bool walks = body.has(Body::kHasGoal) && !body.has(Body::kArrived);
+    const bool walks = body.has(crowd::Body::kHasGoal) && !body.has(crowd::Body::kArrived);
     if (walks && dx * dx + dy * dy + dz * dz < min_progress * min_progress)
       no_progress.push_back(id_of(body.slot));
     x = body.x;

@@ -33,19 +33,19 @@ constexpr uint64_t kMaxBoxes = 1 << 16;  // that a search may expand; then it pa
 constexpr int32_t kPointTolerance = 20;  // [units, mm] so near to a waypoint that the rest does not
                                          // matter
 
-void turn_to(Body& body, Flight& flight) {
-  const AirPosition& point = flight.points[flight.next];
+void turn_to(crowd::Body& body, crowd::Flight& flight) {
+  const crowd::AirPosition& point = flight.points[flight.next];
   body.local_target_x = point.x;
   body.local_target_z = point.z;
   flight.local_target_y = point.y;
-  body.flags =
-      static_cast<uint8_t>(flight.is_last() ? body.flags | Body::kLast : body.flags & ~Body::kLast);
+  body.flags = static_cast<uint8_t>(flight.is_last() ? body.flags | crowd::Body::kLast
+                                                     : body.flags & ~crowd::Body::kLast);
 }
 
-void set_path(Flight& flight, std::span<const AirPosition> points, bool lands) {
-  flight.count = static_cast<uint8_t>(std::min(points.size(), Flight::kPoints));
+void set_path(crowd::Flight& flight, std::span<const crowd::AirPosition> points, bool lands) {
+  flight.count = static_cast<uint8_t>(std::min(points.size(), crowd::Flight::kPoints));
   flight.next = 0;
-  flight.whole = points.size() <= Flight::kPoints ? 1 : 0;
+  flight.whole = points.size() <= crowd::Flight::kPoints ? 1 : 0;
   flight.lands = lands ? 1 : 0;
   std::copy_n(points.begin(), flight.count, flight.points.begin());
 }
@@ -59,41 +59,41 @@ Result<void> Crowd::State::open_air(int32_t number, ClassParts& parts, Context& 
   if (!finder) return finder.error();
   parts.flight_finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
   parts.flights.resize(parts.flight_finders.size());
-  parts.air.emplace(world, space_of(parts.flight_finders[0]), parts.ground, number);
+  parts.air.emplace(world, path::space_of(parts.flight_finders[0]), parts.ground, number);
   return {};
 }
 
-bool Crowd::State::put_in_air(Body& body, const Vec3d& feet) const {
-  const FlyerAir* air = air_of(body);
+bool Crowd::State::put_in_air(crowd::Body& body, const Vec3d& feet) const {
+  const crowd::FlyerAir* air = air_of(body);
   if (air == nullptr || !air->in_grid(feet)) return false;
-  const AirPosition position = air->position(feet);
+  const crowd::AirPosition position = air->position(feet);
   if (!air->is_legal(position) || flyers.is_obstructed(body, position)) return false;
   body.x = position.x;
   body.z = position.z;
   body.y = position.y;
   body.level = 0;
-  body.flags = Body::kFlying;
+  body.flags = crowd::Body::kFlying;
   return true;
 }
 
-bool Crowd::State::set_goal_of_flyer(Body& body, const Place& goal) {
-  const bool flies = body.has(Body::kFlying);
-  body.flags &= Body::kFlying;
-  Flight& flight = flights[body.slot];
+bool Crowd::State::set_goal_of_flyer(crowd::Body& body, const Place& goal) {
+  const bool flies = body.has(crowd::Body::kFlying);
+  body.flags &= crowd::Body::kFlying;
+  crowd::Flight& flight = flights[body.slot];
   flight.waited = 0;
   flight.descends = 0;
   flight.to_link = 0;
   flight.lands = 0;
   flight.count = flight.next = 0;
-  const FlyerAir& air = *air_of(body);
+  const crowd::FlyerAir& air = *air_of(body);
   if (goal.level1 == kAirLevel1) {
     if (!air.in_grid(goal.position)) return false;
     flight.goal = air.position(goal.position);
-    flight.goal_level = Flight::kInAir;
+    flight.goal_level = crowd::Flight::kInAir;
   } else {
-    const auto point = ground_point(*data_of(world), goal);
+    const auto point = world::ground_point(*data_of(world), goal);
     if (!point) return false;
-    const CrowdGround& ground = classes[body.avatar_class]->ground;
+    const crowd::CrowdGround& ground = classes[body.avatar_class]->ground;
     flight.goal = {static_cast<int32_t>(point->x), static_cast<int32_t>(point->z), 0};
     flight.goal_level = goal.level1 - 1;
     flight.goal.y = ground.feet(flight.goal_level, *point);
@@ -103,19 +103,20 @@ bool Crowd::State::set_goal_of_flyer(Body& body, const Place& goal) {
   body.local_target_x = flight.goal.x;
   body.local_target_z = flight.goal.z;
   flight.local_target_y = flight.goal.y;
-  const bool walks = !flies && flight.goal_level != Flight::kInAir;
-  body.flags |= Body::kHasGoal;
-  body.flags |= config.routing == Routing::kStraight && walks ? Body::kLast : Body::kNeedsPath;
+  const bool walks = !flies && flight.goal_level != crowd::Flight::kInAir;
+  body.flags |= crowd::Body::kHasGoal;
+  body.flags |=
+      config.routing == Routing::kStraight && walks ? crowd::Body::kLast : crowd::Body::kNeedsPath;
   return true;
 }
 
-void Crowd::State::drop_goal(Body& body) {
-  body.flags &= Body::kFlying;
+void Crowd::State::drop_goal(crowd::Body& body) {
+  body.flags &= crowd::Body::kFlying;
   const std::lock_guard lock(goal_mutex);
   goal_unreachable.push_back(id_of(body.slot));
 }
 
-bool Crowd::State::take_off(Body& body, Flight& flight) const {
+bool Crowd::State::take_off(crowd::Body& body, crowd::Flight& flight) const {
   const auto high = air_of(body)->take_off(feet_of(body));
   if (!high) return false;
   flight.in_link = 1;
@@ -128,20 +129,20 @@ bool Crowd::State::take_off(Body& body, Flight& flight) const {
   flight.lands = 0;
   flight.count = flight.next = 0;
   body.detour_angle = 0;
-  const bool has_goal = body.has(Body::kHasGoal);
-  body.flags &= Body::kExternal | Body::kHasGoal;
-  body.flags |= Body::kFlying;
-  if (has_goal) body.flags |= Body::kNeedsPath;
+  const bool has_goal = body.has(crowd::Body::kHasGoal);
+  body.flags &= crowd::Body::kExternal | crowd::Body::kHasGoal;
+  body.flags |= crowd::Body::kFlying;
+  if (has_goal) body.flags |= crowd::Body::kNeedsPath;
   return true;
 }
 
-bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
+bool Crowd::State::plan_on_foot(crowd::Body& body, crowd::Flight& flight, int32_t worker,
                                 std::atomic<uint64_t>& planned) {
-  if (body.has(Body::kExternal)) {
+  if (body.has(crowd::Body::kExternal)) {
     if (flight.preferred_up > 0) take_off(body, flight);
     return true;
   }
-  if (flight.to_link != 0 && body.has(Body::kLast)) {
+  if (flight.to_link != 0 && body.has(crowd::Body::kLast)) {
     const double dx = static_cast<double>(body.local_target_x) - body.x;
     const double dz = static_cast<double>(body.local_target_z) - body.z;
     const double near = kAtLink / unit;
@@ -154,15 +155,15 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
       }
     }
   }
-  if (!body.has(Body::kNeedsPath) || body.target != 0) return false;
+  if (!body.has(crowd::Body::kNeedsPath) || body.target != 0) return false;
   const bool is_straight = config.routing == Routing::kStraight;
-  const bool lands = flight.goal_level != Flight::kInAir;
+  const bool lands = flight.goal_level != crowd::Flight::kInAir;
   if (is_straight && lands) return false;
   if (take_off(body, flight)) {
     // Into the air from where it stands, unless it is shorter on foot.
     if (!lands) return true;
     flight.in_link = 0;
-    body.flags = Body::kHasGoal | Body::kNeedsPath;
+    body.flags = crowd::Body::kHasGoal | crowd::Body::kNeedsPath;
   } else if (is_straight) {
     drop_goal(body);
     return true;
@@ -194,14 +195,14 @@ bool Crowd::State::plan_on_foot(Body& body, Flight& flight, int32_t worker,
   const Place ground_air_link =
       world.find_place(body.avatar_class, path.points[walked], kGroundRadius);
   if (!ground_air_link) return false;
-  routes[body.slot].goal = point_of(*data_of(world), ground_air_link);
+  routes[body.slot].goal = crowd::point_of(*data_of(world), ground_air_link);
   flight.to_link = 1;
   return false;
 }
 
 // Is a straight line clear of all active obstacles?
-bool Crowd::State::is_clear_of_obstacles(const Body& body, const AirPosition& from,
-                                         const AirPosition& to) const {
+bool Crowd::State::is_clear_of_obstacles(const crowd::Body& body, const crowd::AirPosition& from,
+                                         const crowd::AirPosition& to) const {
   if (!flyers.has_obstacles()) return true;
   const double dx = static_cast<double>(to.x) - from.x, dz = static_cast<double>(to.z) - from.z;
   const double dy = static_cast<double>(to.y) - from.y;
@@ -209,25 +210,26 @@ bool Crowd::State::is_clear_of_obstacles(const Body& body, const AirPosition& fr
   const auto steps = static_cast<int32_t>(length / (body.radius * unit)) + 1;
   for (int32_t i = 1; i <= steps; ++i) {
     const double t = static_cast<double>(i) / steps;
-    const AirPosition position{from.x + static_cast<int32_t>(t * dx),
-                               from.z + static_cast<int32_t>(t * dz),
-                               from.y + static_cast<int32_t>(t * dy)};
+    const crowd::AirPosition position{from.x + static_cast<int32_t>(t * dx),
+                                      from.z + static_cast<int32_t>(t * dz),
+                                      from.y + static_cast<int32_t>(t * dy)};
     if (flyers.is_blocked(body, position)) return false;
   }
   return true;
 }
 
 // Straight up, across, and straight down: no search, but hardly ever short.
-bool Crowd::State::find_path_over(const Body& body, const AirPosition& from, const AirPosition& to,
-                                  std::vector<AirPosition>& points) const {
+bool Crowd::State::find_path_over(const crowd::Body& body, const crowd::AirPosition& from,
+                                  const crowd::AirPosition& to,
+                                  std::vector<crowd::AirPosition>& points) const {
   constexpr int32_t kRise = 3000;  // [mm] more at each attempt
-  const FlyerAir& air = *air_of(body);
-  const auto is_open = [&](const AirPosition& a, const AirPosition& b) {
+  const crowd::FlyerAir& air = *air_of(body);
+  const auto is_open = [&](const crowd::AirPosition& a, const crowd::AirPosition& b) {
     return air.sees(a, b) && is_clear_of_obstacles(body, a, b);
   };
   const int32_t ceiling = air.ceiling() - 1;
   for (int32_t y = std::max(from.y, to.y);; y = std::min(y + kRise, ceiling)) {
-    const AirPosition up{from.x, from.z, y}, down{to.x, to.z, y};
+    const crowd::AirPosition up{from.x, from.z, y}, down{to.x, to.z, y};
     if (is_open(from, up) && is_open(up, down) && is_open(down, to)) {
       points.assign({up, down, to});
       return true;
@@ -238,22 +240,23 @@ bool Crowd::State::find_path_over(const Body& body, const AirPosition& from, con
 
 // The nearest position beside obstacles that the path finder takes for open, straight on from `at`;
 // `at` itself if it is open.
-std::optional<AirPosition> Crowd::State::open_position(const Body& body, const AirPosition& at,
-                                                       int32_t worker) const {
+std::optional<crowd::AirPosition> Crowd::State::open_position(const crowd::Body& body,
+                                                              const crowd::AirPosition& at,
+                                                              int32_t worker) const {
   constexpr int32_t kCells = 2;  // to each side
   const ClassParts& parts = *classes[body.avatar_class];
-  const FlyerAir& air = *parts.air;
+  const crowd::FlyerAir& air = *parts.air;
   const FlightFinder& finder = parts.flight_finders[static_cast<size_t>(worker)];
   if (finder.is_legal(air.metres(at))) return at;
-  const int32_t high = space_of(finder).shape.cell;
+  const int32_t high = path::space_of(finder).shape.cell;
   const auto wide = static_cast<int32_t>(high * 1e-3 / unit);
-  std::optional<AirPosition> nearest;
+  std::optional<crowd::AirPosition> nearest;
   int32_t min_square = INT32_MAX;
   for (int32_t dy = -kCells; dy <= kCells; ++dy) {
     for (int32_t dz = -kCells; dz <= kCells; ++dz) {
       for (int32_t dx = -kCells; dx <= kCells; ++dx) {
         const int32_t square = dx * dx + dy * dy + dz * dz;
-        const AirPosition there{at.x + dx * wide, at.z + dz * wide, at.y + dy * high};
+        const crowd::AirPosition there{at.x + dx * wide, at.z + dz * wide, at.y + dy * high};
         if (square >= min_square || there.x < 0 || there.z < 0) continue;
         if (!finder.is_legal(air.metres(there)) || !air.sees(at, there) ||
             !is_clear_of_obstacles(body, at, there)) {
@@ -268,12 +271,13 @@ std::optional<AirPosition> Crowd::State::open_position(const Body& body, const A
 }
 
 // A path from where a flyer is to its goal. False: there is none.
-bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker) const {
+bool Crowd::State::find_flight(const crowd::Body& body, crowd::Flight& flight,
+                               int32_t worker) const {
   ClassParts& parts = *classes[body.avatar_class];
-  const FlyerAir& air = *parts.air;
-  AirPosition from = feet_of(body), to = flight.goal;
+  const crowd::FlyerAir& air = *parts.air;
+  crowd::AirPosition from = feet_of(body), to = flight.goal;
   if (flight.in_link != 0) from.y = std::max(from.y, flight.link_high);
-  const bool lands = flight.goal_level != Flight::kInAir;
+  const bool lands = flight.goal_level != crowd::Flight::kInAir;
   const auto high = lands ? air.take_off(to) : std::nullopt;
   if (high) to.y = *high;
   const bool ends_in_air = !lands || high;
@@ -286,7 +290,7 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
   if (config.routing == Routing::kStraight) return false;
   const auto w = static_cast<size_t>(worker);
   FlightPath& path = parts.flights[w];
-  const auto find = [&](const AirPosition& begin, const AirPosition& end) {
+  const auto find = [&](const crowd::AirPosition& begin, const crowd::AirPosition& end) {
     parts.flight_finders[w].find({.from = air.metres(begin),
                                   .to = air.metres(end),
                                   .vertical_tolerance = kGroundRadius,
@@ -298,8 +302,8 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
     note_spent(path.spent);
   };
   find(from, flight.goal);
-  std::vector<AirPosition> points;
-  std::optional<AirPosition> end;
+  std::vector<crowd::AirPosition> points;
+  std::optional<crowd::AirPosition> end;
   if (path.end == PathEnd::kNoPlace && flyers.has_obstacles()) {
     // Beside an obstacle the feet may be where the finder's whole cell is blocked.
     const auto out = open_position(body, from, worker);
@@ -318,12 +322,13 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
     if (points.empty()) points.push_back(from);
     // The finder does not know obstacles that move. If one blocks the path, a path over it may be
     // free.
-    std::vector<AirPosition> over;
-    AirPosition at = from;
-    const bool clear = std::all_of(points.begin(), points.end(), [&](const AirPosition& next) {
-      const AirPosition begin = std::exchange(at, next);
-      return is_clear_of_obstacles(body, begin, next);
-    });
+    std::vector<crowd::AirPosition> over;
+    crowd::AirPosition at = from;
+    const bool clear =
+        std::all_of(points.begin(), points.end(), [&](const crowd::AirPosition& next) {
+          const crowd::AirPosition begin = std::exchange(at, next);
+          return is_clear_of_obstacles(body, begin, next);
+        });
     const bool goes_over = !clear && ends_in_air && find_path_over(body, from, to, over);
     set_path(flight, goes_over ? over : points, lands);
     return true;
@@ -339,39 +344,40 @@ bool Crowd::State::find_flight(const Body& body, Flight& flight, int32_t worker)
 
 // Others are where it would land: it picks another place, the farther away the longer it has
 // waited.
-void Crowd::State::find_landing_place(Body& body, const Flight& flight) const {
-  const FlyerAir& air = *air_of(body);
-  const AirPosition& over = flight.points[flight.next];
+void Crowd::State::find_landing_place(crowd::Body& body, const crowd::Flight& flight) const {
+  const crowd::FlyerAir& air = *air_of(body);
+  const crowd::AirPosition& over = flight.points[flight.next];
   const auto window = static_cast<uint64_t>(static_cast<double>(step) * config.dt / kWaits);
   const uint64_t side =
       random_below(config.seed ^ kRooms, body.slot, window, steer::kEighths.size());
-  const double far = FlyerEngine::landing_radius(flight) / unit;
-  const AirPosition there{over.x + static_cast<int32_t>(far * steer::kEighths[side][0]),
-                          over.z + static_cast<int32_t>(far * steer::kEighths[side][1]), over.y};
+  const double far = crowd::FlyerEngine::landing_radius(flight) / unit;
+  const crowd::AirPosition there{over.x + static_cast<int32_t>(far * steer::kEighths[side][0]),
+                                 over.z + static_cast<int32_t>(far * steer::kEighths[side][1]),
+                                 over.y};
   const bool sees = there.x >= 0 && there.z >= 0 && air.sees(feet_of(body), there);
   body.local_target_x = sees ? there.x : over.x;
   body.local_target_z = sees ? there.z : over.z;
 }
 
-void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
+void Crowd::State::plan_flight(crowd::Body& body, crowd::Flight& flight, int32_t worker,
                                std::atomic<uint64_t>& planned) {
   if (body.leaves && plan_exit_in_air(body, flight)) return;
-  if (!body.has(Body::kHasGoal)) return;
-  const FlyerAir& air = *air_of(body);
-  const AirPosition at = feet_of(body);
-  if (!body.has(Body::kNeedsPath) && flight.in_link == 0) {
+  if (!body.has(crowd::Body::kHasGoal)) return;
+  const crowd::FlyerAir& air = *air_of(body);
+  const crowd::AirPosition at = feet_of(body);
+  if (!body.has(crowd::Body::kNeedsPath) && flight.in_link == 0) {
     const double dx = (static_cast<double>(body.local_target_x) - body.x) * unit;
     const double dz = (static_cast<double>(body.local_target_z) - body.z) * unit;
     const double dy = (static_cast<double>(flight.local_target_y) - body.y) * 1e-3;
     const bool is_near = dx * dx + dy * dy + dz * dz < kCheckRange * kCheckRange;
     if (is_near && !flight.is_last()) {
       const bool at_end = flight.next + 1 == flight.count;
-      const AirPosition& local_target = flight.points[flight.next];
+      const crowd::AirPosition& local_target = flight.points[flight.next];
       const bool there = std::abs(local_target.x - at.x) < kPointTolerance &&
                          std::abs(local_target.z - at.z) < kPointTolerance &&
                          std::abs(local_target.y - at.y) < kPointTolerance;
       if (at_end) {
-        if (there || dx * dx + dy * dy + dz * dz < 1) body.flags |= Body::kNeedsPath;
+        if (there || dx * dx + dy * dy + dz * dz < 1) body.flags |= crowd::Body::kNeedsPath;
       } else if (there || (air.sees(at, flight.points[flight.next + 1u]) &&
                            is_clear_of_obstacles(body, at, flight.points[flight.next + 1u]))) {
         ++flight.next;
@@ -380,21 +386,21 @@ void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
     }
     const bool checks_path = (sub_step + body.slot) % kSightInterval == 0;
     if (checks_path && config.routing == Routing::kPaths) {
-      const AirPosition& local_target = flight.points[flight.next];
+      const crowd::AirPosition& local_target = flight.points[flight.next];
       if (!air.sees(at, local_target) || !is_clear_of_obstacles(body, at, local_target))
-        body.flags |= Body::kNeedsPath;
+        body.flags |= crowd::Body::kNeedsPath;
     }
     if (flight.lands != 0 && flight.is_last() && flight.waited > kWaits)
       find_landing_place(body, flight);
   }
-  if (!body.has(Body::kNeedsPath)) return;
+  if (!body.has(crowd::Body::kNeedsPath)) return;
   planned.fetch_add(1, std::memory_order_relaxed);
   if (body.target != 0) {
     // The nearest place of its target, in a straight line.
     const auto& places = classes[body.avatar_class]->landings[body.target - 1u];
     double min_square = HUGE_VAL;
     for (const Place& place : places) {
-      const AirPosition position = air.position(place.position);
+      const crowd::AirPosition position = air.position(place.position);
       const double dx = static_cast<double>(position.x) - at.x,
                    dz = static_cast<double>(position.z) - at.z;
       const double dy = (static_cast<double>(position.y) - at.y) * 1e-3 / unit;
@@ -407,21 +413,22 @@ void Crowd::State::plan_flight(Body& body, Flight& flight, int32_t worker,
     if (places.empty()) return drop_goal(body);
   }
   if (!find_flight(body, flight, worker)) return drop_goal(body);
-  body.flags &= static_cast<uint8_t>(~Body::kNeedsPath);
+  body.flags &= static_cast<uint8_t>(~crowd::Body::kNeedsPath);
   turn_to(body, flight);
 }
 
 // The step of flyers in the air, after that of walkers.
-void Crowd::State::fly(EngineCounts& counts, CrowdEngine::Times& times,
+void Crowd::State::fly(crowd::EngineCounts& counts, crowd::CrowdEngine::Times& times,
                        std::atomic<uint64_t>& planned) {
-  const FlyerEngine::Before before = [&](Body& body, Flight& flight, int32_t worker) {
+  const crowd::FlyerEngine::Before before = [&](crowd::Body& body, crowd::Flight& flight,
+                                                int32_t worker) {
     plan_flight(body, flight, worker, planned);
   };
   flyers.step(sub_step, engine.bodies(), flights, before, counts, times);
   for (const uint32_t slot : flyers.arrived()) arrived.push_back(id_of(slot));
   for (const uint32_t i : flyers.landed()) {
-    Body& body = engine.bodies()[i];
-    Flight& flight = flights[body.slot];
+    crowd::Body& body = engine.bodies()[i];
+    crowd::Flight& flight = flights[body.slot];
     body.level = flight.link_level;
     body.velocity = {};
     body.detour_angle = 0;
@@ -429,11 +436,11 @@ void Crowd::State::fly(EngineCounts& counts, CrowdEngine::Times& times,
     flight.descends = 0;
     flight.lands = 0;
     flight.rise = 0;
-    const bool has_goal = body.has(Body::kHasGoal);
-    body.flags &= Body::kExternal | Body::kHasGoal;
+    const bool has_goal = body.has(crowd::Body::kHasGoal);
+    body.flags &= crowd::Body::kExternal | crowd::Body::kHasGoal;
     if (!has_goal) continue;
     const bool is_straight = config.routing == Routing::kStraight;
-    body.flags |= is_straight ? Body::kLast : Body::kNeedsPath;
+    body.flags |= is_straight ? crowd::Body::kLast : crowd::Body::kNeedsPath;
     body.local_target_x = flight.goal.x;
     body.local_target_z = flight.goal.z;
   }
@@ -442,23 +449,23 @@ void Crowd::State::fly(EngineCounts& counts, CrowdEngine::Times& times,
 void Crowd::State::add_flyer_blockers(std::span<const uint32_t> slots,
                                       std::vector<std::pair<uint32_t, uint32_t>>& found) const {
   const Vec3d& origin = data_of(world)->summary.origin;
-  ObstacleGrid passed(unit);
+  crowd::ObstacleGrid passed(unit);
   for (const uint32_t slot : slots) {
-    const CrowdObstacle& obstacle = obstacles.all()[slot];
+    const crowd::CrowdObstacle& obstacle = obstacles.all()[slot];
     if (!obstacle.waits()) continue;
     const Prism& prism =
-        obstacle.is_up ? hull_of(obstacle.place, obstacle.wanted) : obstacle.wanted;
-    passed.set(slot, AirObstacle(prism, origin, unit), {});
+        obstacle.is_up ? crowd::hull_of(obstacle.place, obstacle.wanted) : obstacle.wanted;
+    passed.set(slot, crowd::AirObstacle(prism, origin, unit), {});
   }
   if (passed.is_empty()) return;
-  const std::span<const Body> bodies = engine.bodies();
-  std::vector<const ObstacleGrid::Item*> near;
+  const std::span<const crowd::Body> bodies = engine.bodies();
+  std::vector<const crowd::ObstacleGrid::Item*> near;
   for (uint32_t i = 0; i < bodies.size(); ++i) {
-    const Body& body = bodies[i];
-    if (!body.has(Body::kFlying)) continue;
+    const crowd::Body& body = bodies[i];
+    if (!body.has(crowd::Body::kFlying)) continue;
     const double radius = body.climbs ? body.radius * unit : body_class(body.avatar_class).radius;
     passed.list_near(feet_of(body), radius, near);
-    for (const ObstacleGrid::Item* obstacle : near) {
+    for (const crowd::ObstacleGrid::Item* obstacle : near) {
       if (obstacle->shape.holds(feet_of(body), radius, body.height)) {
         found.emplace_back(obstacle->slot, i);
       }
@@ -470,12 +477,12 @@ void Crowd::State::add_flyer_blockers(std::span<const uint32_t> slots,
 void Crowd::State::update_obstacle_grid() {
   const Vec3d& origin = data_of(world)->summary.origin;
   for (const uint32_t slot : obstacles.take_changed()) {
-    const CrowdObstacle& obstacle = obstacles.at(slot);
+    const crowd::CrowdObstacle& obstacle = obstacles.at(slot);
     if (!obstacle.exists || !obstacle.has_cells) {
       obstacle_grid.erase(slot);
       continue;
     }
-    obstacle_grid.set(slot, AirObstacle(obstacle.place, origin, unit, obstacle.closes()),
+    obstacle_grid.set(slot, crowd::AirObstacle(obstacle.place, origin, unit, obstacle.closes()),
                       {obstacle.place, {}});
   }
 }

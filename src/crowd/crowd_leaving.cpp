@@ -25,7 +25,7 @@ constexpr uint64_t kExitInterval = 4;     // steps of one that finds no exit
 constexpr std::array<double, 4> kSearchRadii = {1, 2, 4, 8};  // [m] to a node's free place
 
 // Of any height.
-AirObstacle column_of(const Prism& prism, const Vec3d& origin, double unit) {
+crowd::AirObstacle column_of(const Prism& prism, const Vec3d& origin, double unit) {
   constexpr double kHigh = 1e5;  // [m]
   return {{prism.corners, -kHigh, kHigh}, origin, unit};
 }
@@ -35,19 +35,19 @@ AirObstacle column_of(const Prism& prism, const Vec3d& origin, double unit) {
 bool Crowd::State::is_occupied(uint32_t slot,
                                std::span<const std::pair<uint32_t, uint32_t>> found) const {
   const Prism& prism = obstacles.all()[slot].wanted;
-  const AirObstacle solid(prism, data_of(world)->summary.origin, unit);
+  const crowd::AirObstacle solid(prism, data_of(world)->summary.origin, unit);
   return std::any_of(found.begin(), found.end(), [&](const auto& pair) {
-    const Body& body = engine.bodies()[pair.second];
+    const crowd::Body& body = engine.bodies()[pair.second];
     const AvatarClass& avatar = body_class(body.avatar_class);
     if (body.climbs) {
-      const Climb& climb = climbs[body.slot];
+      const crowd::Climb& climb = climbs[body.slot];
       return climbers.meets_obstacle(*classes[body.avatar_class]->nodes,
                                      {feet_of(body), body.radius, body.height},
                                      {climb.feet, climb.axis}, climb.radius, solid, {prism, {}});
     }
-    AirPosition feet = feet_of(body);
+    crowd::AirPosition feet = feet_of(body);
     int32_t height = body.height;
-    if (!body.has(Body::kFlying)) {
+    if (!body.has(crowd::Body::kFlying)) {
       const auto bottom = static_cast<int32_t>(std::floor(body_bottom(avatar) * 1000));
       feet.y += bottom;
       height -= bottom;
@@ -66,7 +66,7 @@ void Crowd::State::mark_leaving(std::span<const std::pair<uint32_t, uint32_t>> f
   std::sort(by_body.begin(), by_body.end());
   if (all && some_leave) {
     for (uint32_t i = 0; i < engine.bodies().size(); ++i) {
-      Body& body = engine.bodies()[i];
+      crowd::Body& body = engine.bodies()[i];
       if (!body.leaves) continue;
       const auto at = std::lower_bound(by_body.begin(), by_body.end(), std::pair(i, uint32_t{0}));
       if (at == by_body.end() || at->first != i) end_leaving(body);
@@ -75,7 +75,7 @@ void Crowd::State::mark_leaving(std::span<const std::pair<uint32_t, uint32_t>> f
   some_leave = !by_body.empty() || (!all && some_leave);
   std::vector<uint32_t> slots;
   for (size_t n = 0; n < by_body.size();) {
-    Body& body = engine.bodies()[by_body[n].first];
+    crowd::Body& body = engine.bodies()[by_body[n].first];
     slots.clear();
     for (const uint32_t i = by_body[n].first; n < by_body.size() && by_body[n].first == i; ++n) {
       slots.push_back(by_body[n].second);
@@ -84,19 +84,20 @@ void Crowd::State::mark_leaving(std::span<const std::pair<uint32_t, uint32_t>> f
   }
 }
 
-void Crowd::State::begin_to_leave(Body& body, std::span<const uint32_t> slots) {
+void Crowd::State::begin_to_leave(crowd::Body& body, std::span<const uint32_t> slots) {
   body.leaves = true;
-  body.clear(Body::kContinues);
+  body.clear(crowd::Body::kContinues);
   body.detour_angle = 0;
-  constexpr uint8_t kAll = Body::kHasGoal | Body::kExternal | Body::kArrived | Body::kNeedsPath;
-  if ((body.flags & kAll) != Body::kHasGoal || body.climbs) return;
-  if (!leads_out(body, slots)) body.flags |= Body::kNeedsPath;
+  constexpr uint8_t kAll = crowd::Body::kHasGoal | crowd::Body::kExternal | crowd::Body::kArrived |
+                           crowd::Body::kNeedsPath;
+  if ((body.flags & kAll) != crowd::Body::kHasGoal || body.climbs) return;
+  if (!leads_out(body, slots)) body.flags |= crowd::Body::kNeedsPath;
 }
 
 // Does its path lead out of obstacles soon, and never back?
-bool Crowd::State::leads_out(const Body& body, std::span<const uint32_t> slots) const {
+bool Crowd::State::leads_out(const crowd::Body& body, std::span<const uint32_t> slots) const {
   const Vec3d& origin = data_of(world)->summary.origin;
-  std::vector<AirObstacle> columns;
+  std::vector<crowd::AirObstacle> columns;
   for (const uint32_t slot : slots) {
     columns.push_back(column_of(obstacles.all()[slot].wanted, origin, unit));
   }
@@ -104,20 +105,21 @@ bool Crowd::State::leads_out(const Body& body, std::span<const uint32_t> slots) 
   std::vector<std::pair<double, double>> points;  // [units]
   const auto add = [&](int32_t x, int32_t z) { points.emplace_back(x, z); };
   if (body.flies()) {
-    const Flight& flight = flights[body.slot];
+    const crowd::Flight& flight = flights[body.slot];
     for (size_t i = flight.next; i < flight.count; ++i) add(flight.points[i].x, flight.points[i].z);
   } else if (config.routing == Routing::kStraight) {
     add(body.local_target_x, body.local_target_z);
   } else {
-    const Route& route = routes[body.slot];
+    const crowd::Route& route = routes[body.slot];
     for (size_t i = route.next; i < route.count; ++i) add(route.corners[i].x, route.corners[i].z);
   }
-  const CrowdGround& ground = classes[body.avatar_class]->ground;
+  const crowd::CrowdGround& ground = classes[body.avatar_class]->ground;
   const uint16_t steps = body.flies()
                              ? uint16_t{0}
                              : ground.left().steps_out({body.level, body.point().cell_x() & 63,
                                                         body.point().cell_z() & 63});
-  const double least = steps == LeftCells::kNone ? HUGE_VAL : steps * data_of(world)->summary.cell;
+  const double least =
+      steps == crowd::LeftCells::kNone ? HUGE_VAL : steps * data_of(world)->summary.cell;
   const double limit = (kMaxDetourFactor * least + kMaxPath) / unit;
   const double step_size = radius / 2 / unit;
   double walked = 0, x = body.x, z = body.z;
@@ -127,11 +129,11 @@ bool Crowd::State::leads_out(const Body& body, std::span<const uint32_t> slots) 
     const auto count = static_cast<int64_t>(size / step_size) + 1;
     for (int64_t i = 1; i <= count; ++i) {
       const double part = static_cast<double>(i) / static_cast<double>(count);
-      const AirPosition position{static_cast<int32_t>(x + part * dx),
-                                 static_cast<int32_t>(z + part * dz), 0};
-      const bool is_inside =
-          std::any_of(columns.begin(), columns.end(),
-                      [&](const AirObstacle& column) { return column.holds(position, radius, 1); });
+      const crowd::AirPosition position{static_cast<int32_t>(x + part * dx),
+                                        static_cast<int32_t>(z + part * dz), 0};
+      const bool is_inside = std::any_of(
+          columns.begin(), columns.end(),
+          [&](const crowd::AirObstacle& column) { return column.holds(position, radius, 1); });
       if (is_out && is_inside) return false;
       is_out = is_out || !is_inside;
       if (!is_out && walked + part * size > limit) return false;
@@ -143,94 +145,95 @@ bool Crowd::State::leads_out(const Body& body, std::span<const uint32_t> slots) 
   return is_out;
 }
 
-void Crowd::State::end_leaving(Body& body) {
+void Crowd::State::end_leaving(crowd::Body& body) {
   body.leaves = false;
-  if (body.has(Body::kExternal)) return;
+  if (body.has(crowd::Body::kExternal)) return;
   if (body.climbs) {
-    Climb& climb = climbs[body.slot];
-    const bool rests = !body.has(Body::kHasGoal) || body.has(Body::kArrived);
+    crowd::Climb& climb = climbs[body.slot];
+    const bool rests = !body.has(crowd::Body::kHasGoal) || body.has(crowd::Body::kArrived);
     if (!rests || !climb.is_on_ground()) return;
     climb.count = 0;
     climb.at.next = 0;
-    climb.whole = body.has(Body::kArrived) ? 1 : 0;
+    climb.whole = body.has(crowd::Body::kArrived) ? 1 : 0;
     return;
   }
-  if (!body.has(Body::kHasGoal)) return;
-  if (body.has(Body::kArrived)) {  // It stays where it is now.
-    body.flags |= Body::kLast;
+  if (!body.has(crowd::Body::kHasGoal)) return;
+  if (body.has(crowd::Body::kArrived)) {  // It stays where it is now.
+    body.flags |= crowd::Body::kLast;
     body.local_target_x = body.x;
     body.local_target_z = body.z;
     if (body.flies()) flights[body.slot].local_target_y = body.y;
     return;
   }
   const bool walks_straight = config.routing == Routing::kStraight && !body.flies();
-  if (!walks_straight || !body.has(Body::kNeedsPath)) return;  // It needs a path.
-  PathPoint goal = routes[body.slot].goal;
+  if (!walks_straight || !body.has(crowd::Body::kNeedsPath)) return;  // It needs a path.
+  crowd::PathPoint goal = routes[body.slot].goal;
   if (air_of(body) != nullptr) {
-    const Flight& flight = flights[body.slot];
-    if (flight.goal_level == Flight::kInAir) return;
+    const crowd::Flight& flight = flights[body.slot];
+    if (flight.goal_level == crowd::Flight::kInAir) return;
     goal = {flight.goal.x, flight.goal.z, flight.goal_level};
   }
   body.local_target_x = goal.x;
   body.local_target_z = goal.z;
-  body.clear(Body::kNeedsPath);
-  body.flags |= Body::kLast;
+  body.clear(crowd::Body::kNeedsPath);
+  body.flags |= crowd::Body::kLast;
 }
 
 // Does it take its path again, since it makes no progress towards the nearest exit either?
-bool Crowd::State::tries_path_again(Body& body) const {
-  constexpr uint8_t kAll = Body::kHasGoal | Body::kArrived | Body::kNeedsPath;
-  if ((body.flags & kAll) != (Body::kHasGoal | Body::kNeedsPath)) return false;
-  const Route& route = routes[body.slot];
+bool Crowd::State::tries_path_again(crowd::Body& body) const {
+  constexpr uint8_t kAll = crowd::Body::kHasGoal | crowd::Body::kArrived | crowd::Body::kNeedsPath;
+  if ((body.flags & kAll) != (crowd::Body::kHasGoal | crowd::Body::kNeedsPath)) return false;
+  const crowd::Route& route = routes[body.slot];
   if (std::fabs(body.detour_angle) <= kMaxDetourAngle || route.next >= route.count) return false;
   body.detour_angle = 0;
   std::vector<uint32_t> slots;
-  const GroundPoint at = body.point();
+  const world::GroundPoint at = body.point();
   classes[body.avatar_class]->ground.left().list_obstacles(
       {body.level, at.cell_x() & 63, at.cell_z() & 63}, slots);
   if (slots.empty() || !leads_out(body, slots)) return false;
-  const PathPoint& corner = route.corners[route.next];
+  const crowd::PathPoint& corner = route.corners[route.next];
   body.local_target_x = corner.x;
   body.local_target_z = corner.z;
-  body.clear(Body::kNeedsPath);
-  if (route.whole && route.next + 1 == route.count) body.flags |= Body::kLast;
+  body.clear(crowd::Body::kNeedsPath);
+  if (route.whole && route.next + 1 == route.count) body.flags |= crowd::Body::kLast;
   return true;
 }
 
-void Crowd::State::plan_exit(Body& body) {
-  if (body.has(Body::kExternal)) return;
-  const CrowdGround& cells = classes[body.avatar_class]->ground;
-  const int32_t step_height = step_mm(body_class(body.avatar_class));
-  const StrideGround ground(cells, step_height);
-  const bool has_path =
-      body.has(Body::kHasGoal) && !body.has(Body::kArrived) && !body.has(Body::kNeedsPath);
+void Crowd::State::plan_exit(crowd::Body& body) {
+  if (body.has(crowd::Body::kExternal)) return;
+  const crowd::CrowdGround& cells = classes[body.avatar_class]->ground;
+  const int32_t step_height = world::step_mm(body_class(body.avatar_class));
+  const crowd::StrideGround ground(cells, step_height);
+  const bool has_path = body.has(crowd::Body::kHasGoal) && !body.has(crowd::Body::kArrived) &&
+                        !body.has(crowd::Body::kNeedsPath);
   if (has_path) {
-    if (config.routing == Routing::kPaths && !body.has(Body::kContinues)) {
+    if (config.routing == Routing::kPaths && !body.has(crowd::Body::kContinues)) {
       const uint64_t nth = (sub_step - 1 + body.slot) / engine.steps_of_reaction(body);
-      follow(body, routes[body.slot], ground, nth, static_cast<float>(1 / unit));
+      crowd::follow(body, routes[body.slot], ground, nth, static_cast<float>(1 / unit));
     }
     if (std::fabs(body.detour_angle) > kMaxDetourAngle) {
-      body.flags |= Body::kNeedsPath;
+      body.flags |= crowd::Body::kNeedsPath;
       body.detour_angle = 0;
     }
-    if (!body.has(Body::kNeedsPath)) return;
+    if (!body.has(crowd::Body::kNeedsPath)) return;
   } else if (tries_path_again(body)) {
     return;
   }
-  body.clear(Body::kLast);
-  body.clear(Body::kContinues);
-  const GroundPoint from = body.point();
-  if (!is_leaving(cells, body.level, from.cell_x(), from.cell_z())) return;  // It is out.
+  body.clear(crowd::Body::kLast);
+  body.clear(crowd::Body::kContinues);
+  const world::GroundPoint from = body.point();
+  if (!crowd::is_leaving(cells, body.level, from.cell_x(), from.cell_z())) return;  // It is out.
   body.local_target_x = body.x;
   body.local_target_z = body.z;
-  constexpr int32_t kHalf = kUnitsPerCell / 2;
+  constexpr int32_t kHalf = world::kUnitsPerCell / 2;
   for (uint32_t max_steps =
            cells.left().steps_out({body.level, from.cell_x() & 63, from.cell_z() & 63});
-       max_steps > 0 && max_steps != LeftCells::kNone; max_steps /= 2) {
+       max_steps > 0 && max_steps != crowd::LeftCells::kNone; max_steps /= 2) {
     uint32_t level = body.level;
     int32_t x = from.cell_x(), z = from.cell_z();
-    if (!find_exit(cells, step_height, max_steps, level, x, z)) return;
-    const GroundPoint to{(int64_t{x} << kUnitBits) + kHalf, (int64_t{z} << kUnitBits) + kHalf};
+    if (!crowd::find_exit(cells, step_height, max_steps, level, x, z)) return;
+    const world::GroundPoint to{(int64_t{x} << world::kUnitBits) + kHalf,
+                                (int64_t{z} << world::kUnitBits) + kHalf};
     if (max_steps > 1 && !ground.sees(body.level, from, to, level, HUGE_VALF)) continue;
     body.local_target_x = static_cast<int32_t>(to.x);
     body.local_target_z = static_cast<int32_t>(to.z);
@@ -238,26 +241,26 @@ void Crowd::State::plan_exit(Body& body) {
   }
 }
 
-bool Crowd::State::plan_exit_in_air(Body& body, Flight& flight) const {
-  if (body.has(Body::kExternal)) return false;
+bool Crowd::State::plan_exit_in_air(crowd::Body& body, crowd::Flight& flight) const {
+  if (body.has(crowd::Body::kExternal)) return false;
   if (flight.in_link != 0) {
     flight.descends = 0;  // It may not stand there.
     return true;
   }
-  const bool has_path =
-      body.has(Body::kHasGoal) && !body.has(Body::kArrived) && !body.has(Body::kNeedsPath);
+  const bool has_path = body.has(crowd::Body::kHasGoal) && !body.has(crowd::Body::kArrived) &&
+                        !body.has(crowd::Body::kNeedsPath);
   if (has_path && std::fabs(body.detour_angle) <= kMaxDetourAngle) return false;
-  if (has_path) body.flags |= Body::kNeedsPath;
-  const FlyerAir& air = *air_of(body);
-  const AirPosition at = feet_of(body);
-  body.clear(Body::kLast);
+  if (has_path) body.flags |= crowd::Body::kNeedsPath;
+  const crowd::FlyerAir& air = *air_of(body);
+  const crowd::AirPosition at = feet_of(body);
+  body.clear(crowd::Body::kLast);
   body.local_target_x = body.x;
   body.local_target_z = body.z;
   flight.local_target_y = body.y;
-  std::vector<AirPosition> exits;
+  std::vector<crowd::AirPosition> exits;
   flyers.list_exits(body, exits);
   double least = HUGE_VAL;
-  for (const AirPosition& exit : exits) {
+  for (const crowd::AirPosition& exit : exits) {
     const double dx = (static_cast<double>(exit.x) - at.x) * unit;
     const double dz = (static_cast<double>(exit.z) - at.z) * unit;
     const double dy = (static_cast<double>(exit.y) - at.y) * 1e-3;
@@ -272,12 +275,12 @@ bool Crowd::State::plan_exit_in_air(Body& body, Flight& flight) const {
   return true;
 }
 
-bool Crowd::State::plan_exit_on_nodes(Body& body, Climb& climb, int32_t worker) {
+bool Crowd::State::plan_exit_on_nodes(crowd::Body& body, crowd::Climb& climb, int32_t worker) {
   if (!climb.is_on_ground()) return false;
-  const bool rests = !body.has(Body::kHasGoal) || body.has(Body::kArrived);
+  const bool rests = !body.has(crowd::Body::kHasGoal) || body.has(crowd::Body::kArrived);
   const bool goes = climb.count > 0 && climb.at.next < climb.count;
-  if (!rests && goes && !body.has(Body::kNeedsPath)) return false;  // on along its path
-  if (rests && goes && climb.whole == 0) return true;               // on its exit
+  if (!rests && goes && !body.has(crowd::Body::kNeedsPath)) return false;  // on along its path
+  if (rests && goes && climb.whole == 0) return true;                      // on its exit
   if ((sub_step + body.slot) % kExitInterval != 0) return true;
   for (const double search_radius : kSearchRadii) {
     if (step_aside(body, climb, worker, search_radius)) return true;
@@ -286,7 +289,7 @@ bool Crowd::State::plan_exit_on_nodes(Body& body, Climb& climb, int32_t worker) 
 }
 
 // To the nearest place that is left, by a finder that does not mind what closes around it.
-bool Crowd::State::find_exit_over_nodes(Body& body, Climb& climb, int32_t worker) {
+bool Crowd::State::find_exit_over_nodes(crowd::Body& body, crowd::Climb& climb, int32_t worker) {
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
   NodePathFinder& finder = parts.node_finders[w];
@@ -300,9 +303,9 @@ bool Crowd::State::find_exit_over_nodes(Body& body, Climb& climb, int32_t worker
   const Vec3d& origin = data_of(world)->summary.origin;
   const auto let_through = [&](bool lets) {
     for (const uint32_t slot : obstacles.waiting()) {  // One that closes waits.
-      const CrowdObstacle& obstacle = obstacles.all()[slot];
+      const crowd::CrowdObstacle& obstacle = obstacles.all()[slot];
       if (!obstacle.closes()) continue;
-      const AirObstacle solid(obstacle.place, origin, unit);
+      const crowd::AirObstacle solid(obstacle.place, origin, unit);
       const bool is_in = climbers.meets_obstacle(
           *parts.nodes, {feet_of(body), body.radius, body.height}, {climb.feet, climb.axis},
           climb.radius, solid, {obstacle.place, {}});
@@ -316,7 +319,7 @@ bool Crowd::State::find_exit_over_nodes(Body& body, Climb& climb, int32_t worker
   if (path.end != PathEnd::kReached || path.points.size() < 2) return true;
   take_path(climb, path);
   climb.whole = 0;
-  body.clear(Body::kNeedsPath);
+  body.clear(crowd::Body::kNeedsPath);
   return true;
 }
 

@@ -17,7 +17,7 @@ namespace {
 // Updates what the finders of a class, one a worker, know of an obstacle: a new one is added, else
 // it is switched. All copies give the same id.
 template <class Finder>
-void sync(std::vector<Finder>& finders, const CrowdObstacle& obstacle, bool is_new,
+void sync(std::vector<Finder>& finders, const crowd::CrowdObstacle& obstacle, bool is_new,
           ChangeId& change) {
   const ChangeId old = change;
   for (Finder& finder : finders) {
@@ -67,7 +67,7 @@ bool Crowd::set_obstacle_active(ObstacleId id, bool active) {
   State& s = *state_;
   if (s.obstacles.find(id) == nullptr) return false;
   const uint32_t slot = id.slot1 - 1;
-  const CrowdObstacle& obstacle = s.obstacles.at(slot);
+  const crowd::CrowdObstacle& obstacle = s.obstacles.at(slot);
   const bool had_cells = obstacle.has_cells, was_wanted = obstacle.wanted_up;
   s.obstacles.request_active(slot, active);
   if (active && !was_wanted) s.obstacles.at(slot).requested_step = s.step;
@@ -86,7 +86,7 @@ bool Crowd::remove_obstacle(ObstacleId id) {
   s.flows_are_old = true;
   for (size_t c = 0; c < s.classes.size(); ++c) {
     if (!s.classes[c]) continue;
-    const CrowdObstacle::OfClass& synced = s.obstacles.at(slot).of_class[c];
+    const crowd::CrowdObstacle::OfClass& synced = s.obstacles.at(slot).of_class[c];
     remove_change(s.classes[c]->lives, synced.change);
     remove_change(s.classes[c]->flight_finders, synced.air_change);
     remove_change(s.classes[c]->node_finders, synced.node_change);
@@ -96,10 +96,11 @@ bool Crowd::remove_obstacle(ObstacleId id) {
 }
 
 Result<ObstacleState> Crowd::obstacle(ObstacleId id) const {
-  const CrowdObstacle* found = state_->obstacles.find(id);
+  const crowd::CrowdObstacle* found = state_->obstacles.find(id);
   if (found == nullptr) return no_obstacle();
   const auto seconds = [&](uint64_t step) {
-    return step == CrowdObstacle::kNever ? -1 : static_cast<double>(step) * state_->config.dt;
+    return step == crowd::CrowdObstacle::kNever ? -1
+                                                : static_cast<double>(step) * state_->config.dt;
   };
   return ObstacleState{found->place,
                        found->is_up,
@@ -113,7 +114,7 @@ Result<ObstacleState> Crowd::obstacle(ObstacleId id) const {
 
 std::vector<Prism> Crowd::obstacles() const {
   std::vector<Prism> prisms;
-  for (const CrowdObstacle& obstacle : state_->obstacles.all()) {
+  for (const crowd::CrowdObstacle& obstacle : state_->obstacles.all()) {
     if (obstacle.exists && obstacle.is_up) prisms.push_back(obstacle.place);
   }
   return prisms;
@@ -136,7 +137,7 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
   std::vector<std::pair<uint32_t, uint32_t>> leaving;
   bool changed = false;
   for (const uint32_t slot : slots) {
-    const CrowdObstacle& obstacle = obstacles.at(slot);
+    const crowd::CrowdObstacle& obstacle = obstacles.at(slot);
     const auto first = std::lower_bound(found.begin(), found.end(), std::pair(slot, uint32_t{0}));
     const auto last =
         std::lower_bound(found.begin(), found.end(), std::pair(slot + 1, uint32_t{0}));
@@ -151,7 +152,7 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
     if (!here.empty() && (refuses || obstacle.is_exit_only)) {
       leaving.insert(leaving.end(), here.begin(), here.end());
       const auto walks = [&](const auto& pair) {
-        return !engine.bodies()[pair.second].has(Body::kFlying);
+        return !engine.bodies()[pair.second].has(crowd::Body::kFlying);
       };
       obstacles.set_exit_only(slot, std::any_of(here.begin(), here.end(), walks));
       if (refuses) {
@@ -163,7 +164,7 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
     }
     if (waited && comes) {
       obstacles.settle(slot);
-      if (obstacle.up_step == CrowdObstacle::kNever) {
+      if (obstacle.up_step == crowd::CrowdObstacle::kNever) {
         obstacles.at(slot).up_step = begins_step ? step - 1 : step;
       }
     }
@@ -205,10 +206,10 @@ void Crowd::State::sync_paths(uint32_t slot) {
 }
 
 void Crowd::State::sync_paths(uint32_t slot, size_t number) {
-  CrowdObstacle& obstacle = obstacles.at(slot);
+  crowd::CrowdObstacle& obstacle = obstacles.at(slot);
   if (obstacle.kind != ObstacleKind::kStatic || !obstacle.exists || !classes[number]) return;
   ClassParts& parts = *classes[number];
-  CrowdObstacle::OfClass& synced = obstacle.of_class[number];
+  crowd::CrowdObstacle::OfClass& synced = obstacle.of_class[number];
   const bool is_new =
       obstacle.has_cells && (!synced.is_synced || synced.synced_version != obstacle.version);
   if (is_new) {
@@ -227,16 +228,16 @@ void Crowd::State::sync_paths(uint32_t slot, size_t number) {
 void Crowd::State::cut_paths(std::span<const uint32_t> slots) {
   if (!climbs.empty()) cut_climbs(slots);
   if (config.routing != Routing::kPaths) return;
-  const WorldData& data = *data_of(world);
+  const world::WorldData& data = *data_of(world);
   double widest_class = 0;
   for (const AvatarClass& avatar : data.summary.classes) {
-    widest_class = std::max(widest_class, taking_reach(avatar));
+    widest_class = std::max(widest_class, path::taking_reach(avatar));
   }
-  std::vector<PlanBox> boxes;
+  std::vector<crowd::PlanBox> boxes;
   for (const uint32_t slot : slots) {
-    const CrowdObstacle& obstacle = obstacles.at(slot);
+    const crowd::CrowdObstacle& obstacle = obstacles.at(slot);
     if (obstacle.kind != ObstacleKind::kStatic) continue;
-    PlanBox box{1e300, 1e300, -1e300, -1e300};
+    crowd::PlanBox box{1e300, 1e300, -1e300, -1e300};
     const double around = widest_class + data.summary.cell;
     for (const auto& [x, z] : obstacle.place.corners) {
       box = {std::min(box.x0, x - around), std::min(box.z0, z - around),
@@ -247,17 +248,17 @@ void Crowd::State::cut_paths(std::span<const uint32_t> slots) {
                      (box.x1 - origin.x) / unit, (box.z1 - origin.z) / unit});
   }
   if (boxes.empty()) return;
-  const std::span<Body> bodies = engine.bodies();
+  const std::span<crowd::Body> bodies = engine.bodies();
   parallel_ranges(bodies.size(), 4096, config.workers, [&](size_t begin, size_t end) {
-    for (Body& body : bodies.subspan(begin, end - begin)) {
-      if (!body.has(Body::kHasGoal) || body.has(Body::kNeedsPath) || body.has(Body::kFlying) ||
-          body.leaves) {
+    for (crowd::Body& body : bodies.subspan(begin, end - begin)) {
+      if (!body.has(crowd::Body::kHasGoal) || body.has(crowd::Body::kNeedsPath) ||
+          body.has(crowd::Body::kFlying) || body.leaves) {
         continue;
       }
-      const bool is_cut = std::any_of(boxes.begin(), boxes.end(), [&](const PlanBox& box) {
-        return leads_through(body, routes[body.slot], box);
+      const bool is_cut = std::any_of(boxes.begin(), boxes.end(), [&](const crowd::PlanBox& box) {
+        return crowd::leads_through(body, routes[body.slot], box);
       });
-      if (is_cut) body.flags |= Body::kNeedsPath;
+      if (is_cut) body.flags |= crowd::Body::kNeedsPath;
     }
   });
 }

@@ -37,7 +37,8 @@ struct Head {
   double low_detail_reaction = 0;
 };
 static_assert(sizeof(Head) == 23 * 8 && std::is_trivially_copyable_v<Head>);
-static_assert(std::is_trivially_copyable_v<Route> && sizeof(Route) == 16 + 12 * Route::kCorners);
+static_assert(std::is_trivially_copyable_v<crowd::Route> &&
+              sizeof(crowd::Route) == 16 + 12 * crowd::Route::kCorners);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`.
 struct SavedObstacle {
@@ -50,10 +51,10 @@ struct SavedObstacle {
 };
 static_assert(sizeof(SavedObstacle) == 72 && std::is_trivially_copyable_v<SavedObstacle>);
 
-std::vector<SavedObstacle> saved_obstacles(std::span<const CrowdObstacle> all,
+std::vector<SavedObstacle> saved_obstacles(std::span<const crowd::CrowdObstacle> all,
                                            std::vector<std::array<double, 2>>& corners) {
   std::vector<SavedObstacle> saved;
-  for (const CrowdObstacle& o : all) {
+  for (const crowd::CrowdObstacle& o : all) {
     saved.push_back({.low = o.place.low,
                      .high = o.place.high,
                      .wanted_low = o.wanted.low,
@@ -80,15 +81,15 @@ std::vector<SavedObstacle> saved_obstacles(std::span<const CrowdObstacle> all,
 }
 
 // None if they are not as an ObstacleSet holds them.
-std::optional<std::vector<CrowdObstacle>> obstacles_of(
+std::optional<std::vector<crowd::CrowdObstacle>> obstacles_of(
     std::span<const SavedObstacle> saved, std::span<const std::array<double, 2>> corners) {
-  std::vector<CrowdObstacle> obstacles;
+  std::vector<crowd::CrowdObstacle> obstacles;
   size_t at = 0;
   for (const SavedObstacle& s : saved) {
     if (corners.size() - at < size_t{s.corners} + s.wanted_corners || s.kind > 1 || s.policy > 1) {
       return {};
     }
-    CrowdObstacle& o = obstacles.emplace_back();
+    crowd::CrowdObstacle& o = obstacles.emplace_back();
     const auto take = [&](size_t count) {
       const auto first = corners.begin() + static_cast<ptrdiff_t>(at);
       at += count;
@@ -119,16 +120,16 @@ std::optional<std::vector<CrowdObstacle>> obstacles_of(
 
 // Size in bytes of a crowd with the numbers of this header.
 uint64_t size_of(const Head& head) {
-  return sizeof head + head.bodies * sizeof(Body) + head.slots * (sizeof(Route) + 4) +
+  return sizeof head + head.bodies * sizeof(crowd::Body) + head.slots * (sizeof(crowd::Route) + 4) +
          (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
          head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 +
-         head.flights * sizeof(Flight) + head.climbs * sizeof(Climb) +
-         head.views * sizeof(EngineDetail::View) + 8;
+         head.flights * sizeof(crowd::Flight) + head.climbs * sizeof(crowd::Climb) +
+         head.views * sizeof(crowd::EngineDetail::View) + 8;
 }
 
 // A world that was never written has no hash of its own.
 uint64_t hash_of(const World& world) {
-  const WorldData& data = *data_of(world);
+  const world::WorldData& data = *data_of(world);
   const Vec3d& origin = data.summary.origin;
   const double facts[] = {data.summary.cell,
                           origin.x,
@@ -166,44 +167,46 @@ void put(std::vector<uint8_t>& out, const T* values, size_t count) {
 Error bad(const std::string& what) { return {Errc::kBadFile, "crowd: what was saved " + what}; }
 
 // Can a step use it without reading out of bounds?
-bool is_sound(const Route& route, uint32_t levels) {
-  if (route.count > Route::kCorners || (route.count > 0 && route.next >= route.count)) return false;
+bool is_sound(const crowd::Route& route, uint32_t levels) {
+  if (route.count > crowd::Route::kCorners || (route.count > 0 && route.next >= route.count))
+    return false;
   for (size_t i = 0; i < route.count; ++i) {
     if (route.corners[i].level >= levels) return false;
   }
   return route.goal.level < levels;
 }
 
-bool is_sound(const Body& b, const WorldData& data) {
+bool is_sound(const crowd::Body& b, const world::WorldData& data) {
   const bool finite =
       std::isfinite(b.velocity.x + b.velocity.z + b.preferred.x + b.preferred.z + b.detour_angle) &&
       std::isfinite(b.speed);
   if (!finite || !(b.speed > 0) || b.radius <= 0 || b.avatar_class >= data.summary.classes.size()) {
     return false;
   }
-  if (b.x < 0 || b.z < 0 || !in_grid(data, b.point())) return false;
-  if (b.climbs) return b.has(Body::kFlying) && b.level == 0;  // is_sound_climb tests the rest
+  if (b.x < 0 || b.z < 0 || !world::in_grid(data, b.point())) return false;
+  if (b.climbs)
+    return b.has(crowd::Body::kFlying) && b.level == 0;  // is_sound_climb tests the rest
   if (b.level >= data.level_count) return false;
-  if (b.has(Body::kFlying)) return true;  // it has no level; is_sound of its flight
-  const auto tile = data.tile_levels(b.x >> (kUnitBits + 6), b.z >> (kUnitBits + 6));
+  if (b.has(crowd::Body::kFlying)) return true;  // it has no level; is_sound of its flight
+  const auto tile = data.tile_levels(b.x >> (world::kUnitBits + 6), b.z >> (world::kUnitBits + 6));
   return b.level >= tile.first && b.level < tile.last;
 }
 
-bool is_sound(const Flight& flight, const Body& body, uint32_t levels) {
+bool is_sound(const crowd::Flight& flight, const crowd::Body& body, uint32_t levels) {
   const bool finite = std::isfinite(flight.rise + flight.preferred_up + flight.waited);
-  const bool counts = flight.count <= Flight::kPoints && flight.next <= flight.count &&
+  const bool counts = flight.count <= crowd::Flight::kPoints && flight.next <= flight.count &&
                       (flight.count == 0 || flight.next < flight.count);
-  const bool has_path =
-      !body.flies() || !body.has(Body::kHasGoal) || body.has(Body::kNeedsPath) || flight.count > 0;
-  const bool goal = flight.goal_level == Flight::kInAir || flight.goal_level < levels;
+  const bool has_path = !body.flies() || !body.has(crowd::Body::kHasGoal) ||
+                        body.has(crowd::Body::kNeedsPath) || flight.count > 0;
+  const bool goal = flight.goal_level == crowd::Flight::kInAir || flight.goal_level < levels;
   return finite && counts && has_path && goal && flight.link_low <= flight.link_high &&
          (flight.in_link == 0 || flight.link_level < levels);
 }
 
 // Targets as numbers: how many prisms, of each the number of corners, low, high and the corners.
-std::vector<double> values_of(const std::vector<Target>& targets) {
+std::vector<double> values_of(const std::vector<crowd::Target>& targets) {
   std::vector<double> out;
-  for (const Target& target : targets) {
+  for (const crowd::Target& target : targets) {
     out.push_back(static_cast<double>(target.prisms.size()));
     for (const Prism& prism : target.prisms) {
       out.insert(out.end(), {static_cast<double>(prism.corners.size()), prism.low, prism.high});
@@ -274,13 +277,13 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
 
 // The arrays behind the head that are not the state's own.
 struct SavedArrays {
-  std::vector<Body> bodies;
+  std::vector<crowd::Body> bodies;
   std::vector<SavedObstacle> obstacles;
   std::vector<std::array<double, 2>> corners;
   std::vector<uint32_t> free_obstacles;
   std::vector<double> targets;
-  std::vector<Flight> flights;
-  std::vector<Climb> climbs;
+  std::vector<crowd::Flight> flights;
+  std::vector<crowd::Climb> climbs;
 };
 
 // Reads all arrays, in the order of Crowd::save.
@@ -309,7 +312,8 @@ SavedArrays read_arrays(const Head& head, const uint8_t* at, State& s) {
 
 // Does each slot belong to one body or to the free ones, and is what each body holds possible?
 template <class State>
-bool are_sound(const SavedArrays& saved, const Head& head, const WorldData& data, const State& s) {
+bool are_sound(const SavedArrays& saved, const Head& head, const world::WorldData& data,
+               const State& s) {
   std::vector<bool> taken(head.slots, false);
   const auto use_slot = [&](uint32_t slot) {
     const bool is_new = slot < head.slots && !taken[slot];
@@ -318,9 +322,9 @@ bool are_sound(const SavedArrays& saved, const Head& head, const WorldData& data
   };
   bool sound = head.bodies + head.free_slots == head.slots;
   for (const uint32_t slot : s.free_slots) sound = sound && use_slot(slot);
-  for (const Body& body : saved.bodies) {
+  for (const crowd::Body& body : saved.bodies) {
     sound = sound && is_sound(body, data) && use_slot(body.slot) &&
-            (!body.has(Body::kHasGoal) || body.climbs ||
+            (!body.has(crowd::Body::kHasGoal) || body.climbs ||
              is_sound(s.routes[body.slot], data.level_count));
     sound = sound && (!body.climbs || !saved.climbs.empty());
     const bool flies = body.flies();
@@ -381,31 +385,31 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   if (!read) return read.error();
   const Head& head = *read;
   SavedArrays arrays = read_arrays(head, saved.data() + sizeof head, s);
-  const std::vector<Body>& bodies = arrays.bodies;
+  const std::vector<crowd::Body>& bodies = arrays.bodies;
   s.where.assign(head.slots, kNoBody);
   bool sound = are_sound(arrays, head, *data_of(s.world), s);
   auto all = obstacles_of(arrays.obstacles, arrays.corners);
   sound = sound && all && s.obstacles.restore(std::move(*all), std::move(arrays.free_obstacles));
   sound = sound && add_targets(*made, arrays.targets, context);
-  for (const Body& body : bodies) sound = sound && body.target <= s.targets.size();
+  for (const crowd::Body& body : bodies) sound = sound && body.target <= s.targets.size();
   if (!sound) return bad("is not sound; save the crowd again");
   s.ground_changed();
   s.engine.reserve(bodies.size());
-  for (const Body& body : bodies) {
+  for (const crowd::Body& body : bodies) {
     if (auto ok = s.open_class(body.avatar_class, context); !ok) return ok.error();
     if (body.climbs != s.is_climber_class(body.avatar_class)) {
       return bad("has other settings; give the nodes that it was made with");
     }
   }
   if (!arrays.climbs.empty()) s.climbs = std::move(arrays.climbs);
-  for (const Body& body : bodies) {
+  for (const crowd::Body& body : bodies) {
     if (body.climbs && !s.is_sound_climb(body)) return bad("is not sound; save the crowd again");
     s.make_room(body);
     s.engine.add(body);
   }
   if (!arrays.flights.empty()) s.flights = std::move(arrays.flights);
-  for (const Body& body : bodies) {
-    const FlyerAir* air = s.air_of(body);
+  for (const crowd::Body& body : bodies) {
+    const crowd::FlyerAir* air = s.air_of(body);
     const bool flies = body.flies();
     if (flies && (air == nullptr || (!air->is_legal({body.x, body.z, body.y}) &&
                                      s.flights[body.slot].in_link == 0))) {
@@ -413,7 +417,8 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
     }
   }
   s.where_is_old = true;
-  s.some_leave = std::any_of(bodies.begin(), bodies.end(), [](const Body& b) { return b.leaves; });
+  s.some_leave =
+      std::any_of(bodies.begin(), bodies.end(), [](const crowd::Body& b) { return b.leaves; });
   s.flows_are_old = head.flows_are_old != 0;  // opening a class made them from the current ground
   s.step = head.step;
   s.sub_step = head.sub_step;

@@ -35,27 +35,27 @@ namespace throng {
 
 inline constexpr double kNoSpacing = 1e9;  // [m] points of a path only at its corners
 
-inline AirPosition feet_of(const Body& body) { return {body.x, body.z, body.y}; }
+inline crowd::AirPosition feet_of(const crowd::Body& body) { return {body.x, body.z, body.y}; }
 
 inline constexpr uint32_t kNoBody = UINT32_MAX;
 inline constexpr std::array<int32_t, 3> kNeverChecked = {INT32_MIN / 2, 0, 0};
 
 // What is needed for each class in use.
 struct ClassParts {
-  CrowdGround ground;
-  std::optional<StandingDraw> standing;  // none: the ground has changed since
-  std::vector<PathFinder> finders;       // one a worker
-  std::vector<LiveGround> lives;         // one a worker, once paths avoid obstacles or lead to
-                                         // targets
+  crowd::CrowdGround ground;
+  std::optional<crowd::StandingDraw> standing;  // none: the ground has changed since
+  std::vector<PathFinder> finders;              // one a worker
+  std::vector<LiveGround> lives;  // one a worker, once paths avoid obstacles or lead to
+                                  // targets
   std::vector<Path> paths;
-  std::vector<RepairScratch> repairs;
-  std::vector<FlowPoints> flows;  // by target
+  std::vector<crowd::RepairScratch> repairs;
+  std::vector<path::FlowPoints> flows;  // by target
   // Of a class that flies, in a world with air.
-  std::optional<FlyerAir> air;
+  std::optional<crowd::FlyerAir> air;
   std::vector<FlightFinder> flight_finders;  // one a worker
   std::vector<FlightPath> flights;
   // Of a class of climbers.
-  std::optional<ClimberGround> nodes;
+  std::optional<crowd::ClimberGround> nodes;
   std::vector<NodePathFinder> node_finders;  // one a worker
   std::vector<NodePath> node_paths;
   // Of flyers and climbers, by target: where to land, or to climb to.
@@ -65,9 +65,9 @@ struct ClassParts {
 struct Crowd::State {
   World world;
   CrowdConfig config;
-  CrowdEngine engine;
-  FlyerEngine flyers;
-  ClimberEngine climbers;
+  crowd::CrowdEngine engine;
+  crowd::FlyerEngine flyers;
+  crowd::ClimberEngine climbers;
   std::vector<std::unique_ptr<ClassParts>> classes;
   double unit = 0;  // [m]
   int32_t widest = 0, narrowest = INT32_MAX, tallest = 0;
@@ -75,39 +75,39 @@ struct Crowd::State {
   int32_t sub_steps = 1;
   uint64_t step = 0, sub_step = 0;
   uint64_t scattered = 0;  // draws of `scatter`
-  ObstacleSet obstacles;
-  ObstacleGrid obstacle_grid;  // those that are active or close
-  bool some_leave = false;     // Body::leaves is set for some
+  crowd::ObstacleSet obstacles;
+  crowd::ObstacleGrid obstacle_grid;  // those that are active or close
+  bool some_leave = false;            // Body::leaves is set for some
 
   // By slot.
   std::vector<uint32_t> generation;
-  std::vector<Route> routes;
-  std::vector<Flight> flights;  // empty, if no class that is in use flies
-  std::vector<Climb> climbs;    // empty, if there is no climber
+  std::vector<crowd::Route> routes;
+  std::vector<crowd::Flight> flights;  // empty, if no class that is in use flies
+  std::vector<crowd::Climb> climbs;    // empty, if there is no climber
   std::vector<uint32_t> free_slots;
   mutable std::vector<uint32_t> where;  // which of the engine's bodies; kNoBody: none
   mutable bool where_is_old = false;
   // Events: what is watched, and by slot where each avatar was.
-  std::vector<Target> watched;
+  std::vector<crowd::Target> watched;
   std::vector<uint64_t> inside;                    // a bit for each watched area
   std::vector<std::array<int32_t, 3>> checked_at;  // [units, mm]
-  std::vector<EngineDetail::View> views;
+  std::vector<crowd::EngineDetail::View> views;
   std::vector<AreaEntry> entered;
   std::vector<AvatarId> no_progress;
-  std::vector<Target> targets;  // TargetId less one
-  bool flows_are_old = false;   // the ground has changed since
+  std::vector<crowd::Target> targets;  // TargetId less one
+  bool flows_are_old = false;          // the ground has changed since
   std::vector<AvatarId> arrived, goal_unreachable, blockers;
   std::mutex goal_mutex;
   mutable std::atomic<uint64_t> out_of_memory{0};  // searches of this step
 
-  State(const World& a_world, const CrowdConfig& a_config, CrowdEngine&& an_engine,
-        FlyerEngine&& a_flyer_engine, ClimberEngine&& a_climber_engine)
+  State(const World& a_world, const CrowdConfig& a_config, crowd::CrowdEngine&& an_engine,
+        crowd::FlyerEngine&& a_flyer_engine, crowd::ClimberEngine&& a_climber_engine)
       : world(a_world),
         config(a_config),
         engine(std::move(an_engine)),
         flyers(std::move(a_flyer_engine)),
         climbers(std::move(a_climber_engine)),
-        unit(data_of(a_world)->summary.cell / kUnitsPerCell),
+        unit(data_of(a_world)->summary.cell / world::kUnitsPerCell),
         obstacles(a_world, data_of(a_world)->summary.classes.size()),
         obstacle_grid(unit) {
     flyers.set_obstacles(&obstacle_grid);
@@ -118,16 +118,16 @@ struct Crowd::State {
     return data_of(world)->summary.classes[static_cast<size_t>(number)];
   }
   [[nodiscard]] AvatarId id_of(uint32_t slot) const { return {slot + 1, generation[slot]}; }
-  [[nodiscard]] Body* body(AvatarId id) const;
+  [[nodiscard]] crowd::Body* body(AvatarId id) const;
   void find_bodies() const;
   Result<void> open_class(int32_t number, Context& context);
-  Result<Body> body_of(const AvatarSpawn& spawn) const;
+  Result<crowd::Body> body_of(const AvatarSpawn& spawn) const;
   /// The avatar's own radius, or its class's. [m]
   [[nodiscard]] double radius_of(const AvatarSpawn& spawn) const;
-  void make_room(const Body& body);
+  void make_room(const crowd::Body& body);
   /// Reserves memory for so many more avatars.
   void reserve(size_t more);
-  AvatarId add(Body body, const Climb& climb = {});
+  AvatarId add(crowd::Body body, const crowd::Climb& climb = {});
   /// Activates or moves the waiting obstacles that no avatar blocks. Returns how many still wait.
   size_t settle_obstacles(std::span<const uint32_t> slots, std::vector<AvatarId>* in_their_path);
   /// Is any of these bodies in an obstacle that is to become active?
@@ -138,17 +138,17 @@ struct Crowd::State {
   /// These (obstacle, index of the body) are in obstacles that they must leave; with `all`, no
   /// others are.
   void mark_leaving(std::span<const std::pair<uint32_t, uint32_t>> found, bool all);
-  void begin_to_leave(Body& body, std::span<const uint32_t> slots);
-  void end_leaving(Body& body);
+  void begin_to_leave(crowd::Body& body, std::span<const uint32_t> slots);
+  void end_leaving(crowd::Body& body);
   /// Of a walker: along its path, or to the nearest exit.
-  void plan_exit(Body& body);
-  bool tries_path_again(Body& body) const;
-  [[nodiscard]] bool leads_out(const Body& body, std::span<const uint32_t> slots) const;
+  void plan_exit(crowd::Body& body);
+  bool tries_path_again(crowd::Body& body) const;
+  [[nodiscard]] bool leads_out(const crowd::Body& body, std::span<const uint32_t> slots) const;
   /// Of a flyer. True: its path is not followed.
-  bool plan_exit_in_air(Body& body, Flight& flight) const;
+  bool plan_exit_in_air(crowd::Body& body, crowd::Flight& flight) const;
   /// Of a climber.
-  bool plan_exit_on_nodes(Body& body, Climb& climb, int32_t worker);
-  bool find_exit_over_nodes(Body& body, Climb& climb, int32_t worker);
+  bool plan_exit_on_nodes(crowd::Body& body, crowd::Climb& climb, int32_t worker);
+  bool find_exit_over_nodes(crowd::Body& body, crowd::Climb& climb, int32_t worker);
 
   /// Updates the path finders of a class, or of all, to the obstacle's state.
   void sync_paths(uint32_t slot, size_t number);
@@ -160,15 +160,16 @@ struct Crowd::State {
   void make_lives(size_t number);
   /// Makes the flow fields of the targets that a class lacks.
   Result<void> find_flows(int32_t number, Context& context);
-  bool plan_path(Body& body, Route& route, const StrideGround& ground, int32_t worker);
+  bool plan_path(crowd::Body& body, crowd::Route& route, const crowd::StrideGround& ground,
+                 int32_t worker);
   void renew_flows();
   void arrive_in_targets();
   void find_events();
   void find_entries();
   void find_no_progress();
-  [[nodiscard]] AvatarState state_of(const Body& body) const;
-  void plan(std::span<Body> bodies, int32_t worker, std::atomic<uint64_t>& planned);
-  void drop_goal(Body& body);
+  [[nodiscard]] AvatarState state_of(const crowd::Body& body) const;
+  void plan(std::span<crowd::Body> bodies, int32_t worker, std::atomic<uint64_t>& planned);
+  void drop_goal(crowd::Body& body);
   /// Counts a search that exhausted its memory.
   void note_spent(SpentBudget spent) const {
     if (spent == SpentBudget::kMemory) out_of_memory.fetch_add(1, std::memory_order_relaxed);
@@ -180,27 +181,32 @@ struct Crowd::State {
   // crowd_flights.cpp
   /// What a class needs beside its ground if it flies, and the world has air.
   Result<void> open_air(int32_t number, ClassParts& parts, Context& context) const;
-  [[nodiscard]] const FlyerAir* air_of(const Body& body) const {
+  [[nodiscard]] const crowd::FlyerAir* air_of(const crowd::Body& body) const {
     const auto& air = classes[body.avatar_class]->air;
     return air ? &*air : nullptr;
   }
   /// Puts a body into the air; false if it may not be there.
-  [[nodiscard]] bool put_in_air(Body& body, const Vec3d& feet) const;
+  [[nodiscard]] bool put_in_air(crowd::Body& body, const Vec3d& feet) const;
   /// Sets any kind of goal of a body that flies or can fly. False: the goal is not valid.
-  bool set_goal_of_flyer(Body& body, const Place& goal);
+  bool set_goal_of_flyer(crowd::Body& body, const Place& goal);
   /// What a flyer on the ground does before it walks. True: it needs no path to walk.
-  bool plan_on_foot(Body& body, Flight& flight, int32_t worker, std::atomic<uint64_t>& planned);
-  bool take_off(Body& body, Flight& flight) const;
-  void find_landing_place(Body& body, const Flight& flight) const;
-  [[nodiscard]] bool is_clear_of_obstacles(const Body& body, const AirPosition& from,
-                                           const AirPosition& to) const;
-  bool find_path_over(const Body& body, const AirPosition& from, const AirPosition& to,
-                      std::vector<AirPosition>& points) const;
-  void plan_flight(Body& body, Flight& flight, int32_t worker, std::atomic<uint64_t>& planned);
-  [[nodiscard]] std::optional<AirPosition> open_position(const Body& body, const AirPosition& at,
-                                                         int32_t worker) const;
-  [[nodiscard]] bool find_flight(const Body& body, Flight& flight, int32_t worker) const;
-  void fly(EngineCounts& counts, CrowdEngine::Times& times, std::atomic<uint64_t>& planned);
+  bool plan_on_foot(crowd::Body& body, crowd::Flight& flight, int32_t worker,
+                    std::atomic<uint64_t>& planned);
+  bool take_off(crowd::Body& body, crowd::Flight& flight) const;
+  void find_landing_place(crowd::Body& body, const crowd::Flight& flight) const;
+  [[nodiscard]] bool is_clear_of_obstacles(const crowd::Body& body, const crowd::AirPosition& from,
+                                           const crowd::AirPosition& to) const;
+  bool find_path_over(const crowd::Body& body, const crowd::AirPosition& from,
+                      const crowd::AirPosition& to, std::vector<crowd::AirPosition>& points) const;
+  void plan_flight(crowd::Body& body, crowd::Flight& flight, int32_t worker,
+                   std::atomic<uint64_t>& planned);
+  [[nodiscard]] std::optional<crowd::AirPosition> open_position(const crowd::Body& body,
+                                                                const crowd::AirPosition& at,
+                                                                int32_t worker) const;
+  [[nodiscard]] bool find_flight(const crowd::Body& body, crowd::Flight& flight,
+                                 int32_t worker) const;
+  void fly(crowd::EngineCounts& counts, crowd::CrowdEngine::Times& times,
+           std::atomic<uint64_t>& planned);
   /// Updates what flyers and climbers test.
   void update_obstacle_grid();
   /// Adds flyers where obstacles would appear or pass to the walkers that stand there, in order.
@@ -212,26 +218,27 @@ struct Crowd::State {
   /// What a class of climbers needs.
   Result<void> open_nodes(int32_t number, ClassParts& parts, Context& context) const;
   /// Puts a body there; false if it may not be there. [m]
-  [[nodiscard]] bool put_on_nodes(Body& body, Climb& climb, const NodePlace& place,
+  [[nodiscard]] bool put_on_nodes(crowd::Body& body, crowd::Climb& climb, const NodePlace& place,
                                   double radius) const;
   /// The place of a climber nearest to a place on the ground; none if there is none near.
   [[nodiscard]] NodePlace place_on_nodes(int32_t number, const Place& place) const;
   [[nodiscard]] NodePlace draw_on_nodes(int32_t number, uint64_t n) const;
-  void set_goal_of_climber(Body& body, const NodePlace& goal);
-  void stop_climber(Body& body);
-  void head_to_target_place(const Body& body, Climb& climb) const;
-  void turn_aside(Body& body, Climb& climb, int32_t worker);
-  void control_climber(const Body& body, Climb& climb, int32_t worker);
-  void plan_climb(Body& body, Climb& climb, int32_t worker, std::atomic<uint64_t>& planned);
-  void move_climbers(EngineCounts& counts, CrowdEngine::Times& times,
+  void set_goal_of_climber(crowd::Body& body, const NodePlace& goal);
+  void stop_climber(crowd::Body& body);
+  void head_to_target_place(const crowd::Body& body, crowd::Climb& climb) const;
+  void turn_aside(crowd::Body& body, crowd::Climb& climb, int32_t worker);
+  void control_climber(const crowd::Body& body, crowd::Climb& climb, int32_t worker);
+  void plan_climb(crowd::Body& body, crowd::Climb& climb, int32_t worker,
+                  std::atomic<uint64_t>& planned);
+  void move_climbers(crowd::EngineCounts& counts, crowd::CrowdEngine::Times& times,
                      std::atomic<uint64_t>& planned);
-  [[nodiscard]] Body at_feet(const Body& body) const;
+  [[nodiscard]] crowd::Body at_feet(const crowd::Body& body) const;
   /// Can a step use the saved state of this body without reading out of bounds?
-  [[nodiscard]] bool is_sound_climb(const Body& body) const;
+  [[nodiscard]] bool is_sound_climb(const crowd::Body& body) const;
   [[nodiscard]] uint64_t count_off_nodes() const;
   [[nodiscard]] uint64_t count_climbers_inside() const;
-  static void take_path(Climb& climb, const NodePath& path);
-  bool step_aside(Body& body, Climb& climb, int32_t worker, double beside);
+  static void take_path(crowd::Climb& climb, const NodePath& path);
+  bool step_aside(crowd::Body& body, crowd::Climb& climb, int32_t worker, double beside);
   void cut_climbs(std::span<const uint32_t> slots);
 };
 

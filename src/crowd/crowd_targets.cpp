@@ -25,7 +25,7 @@ Result<TargetId> Crowd::add_target(std::span<const Prism> areas, Context& contex
   if (s.config.routing != Routing::kPaths) {
     return Error{Errc::kBadConfig, "crowd: Routing::kStraight supports no targets; give goals"};
   }
-  auto made = Target::make(*data_of(s.world), areas);
+  auto made = crowd::Target::make(*data_of(s.world), areas);
   if (!made) return made.error();
   if (s.targets.size() >= kMaxTargets) {
     return Error{Errc::kLimit, "crowd: it has 65535 targets; use those that it has again"};
@@ -57,10 +57,10 @@ Result<void> Crowd::State::find_flows(int32_t number, Context& context) {
   ClassParts& parts = *classes[static_cast<size_t>(number)];
   if (!targets.empty()) make_lives(static_cast<size_t>(number));
   while (parts.flows.size() < targets.size()) {
-    const Target& target = targets[parts.flows.size()];
-    const std::vector<Place> goals =
-        places_inside(*data_of(world), parts.ground, target.regions, kGoals, &parts.lives[0]);
-    auto flow = FlowPoints::make(parts.lives[0], goals, FlowPoints::kNever, context);
+    const crowd::Target& target = targets[parts.flows.size()];
+    const std::vector<Place> goals = crowd::places_inside(*data_of(world), parts.ground,
+                                                          target.regions, kGoals, &parts.lives[0]);
+    auto flow = path::FlowPoints::make(parts.lives[0], goals, path::FlowPoints::kNever, context);
     if (!flow) return Error{Errc::kCancelled, "crowd: cancelled"};
     parts.flows.push_back(std::move(*flow));
     if (parts.air || parts.nodes) parts.landings.push_back(goals);
@@ -72,7 +72,7 @@ void Crowd::set_targets(std::span<const AvatarId> ids, TargetId target) {
   State& s = *state_;
   THRONG_ASSERT(target >= 1 && target <= s.targets.size());
   for (const AvatarId id : ids) {
-    Body* body = s.body(id);
+    crowd::Body* body = s.body(id);
     if (body == nullptr) continue;
     s.routes[body->slot] = {};
     body->detour_angle = 0;
@@ -81,7 +81,8 @@ void Crowd::set_targets(std::span<const AvatarId> ids, TargetId target) {
     body->local_target_z = body->z;
     if (s.air_of(*body) != nullptr) s.set_goal_of_flyer(*body, {});
     if (body->climbs) s.set_goal_of_climber(*body, {});
-    body->flags = (body->flags & Body::kFlying) | Body::kHasGoal | Body::kNeedsPath;
+    body->flags =
+        (body->flags & crowd::Body::kFlying) | crowd::Body::kHasGoal | crowd::Body::kNeedsPath;
   }
 }
 
@@ -89,12 +90,12 @@ double Crowd::distance(AvatarId id, TargetId target) const {
   State& s = *state_;
   THRONG_ASSERT(target >= 1 && target <= s.targets.size());
   s.renew_flows();
-  const Body* body = s.body(id);
-  if (body == nullptr || body->has(Body::kFlying)) {
+  const crowd::Body* body = s.body(id);
+  if (body == nullptr || body->has(crowd::Body::kFlying)) {
     return std::numeric_limits<double>::infinity();
   }
   ClassParts& parts = *s.classes[body->avatar_class];
-  const Place place = place_of(*data_of(s.world), *body, {body->x, body->z, body->level});
+  const Place place = crowd::place_of(*data_of(s.world), *body, {body->x, body->z, body->level});
   return parts.flows[target - 1u].distance(parts.lives[0], place);
 }
 
@@ -103,8 +104,9 @@ Result<std::vector<Place>> Crowd::places(TargetId target, int32_t avatar_class, 
   State& s = *state_;
   THRONG_ASSERT(target >= 1 && target <= s.targets.size());
   if (auto ok = s.open_class(avatar_class, context); !ok) return ok.error();
-  return places_inside(*data_of(s.world), s.classes[static_cast<size_t>(avatar_class)]->ground,
-                       s.targets[target - 1u].regions, std::max<size_t>(1, max_count));
+  return crowd::places_inside(*data_of(s.world),
+                              s.classes[static_cast<size_t>(avatar_class)]->ground,
+                              s.targets[target - 1u].regions, std::max<size_t>(1, max_count));
 }
 
 void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> speeds) {
@@ -112,7 +114,7 @@ void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> sp
   State& s = *state_;
   for (size_t i = 0; i < ids.size(); ++i) {
     THRONG_ASSERT(speeds[i] > 0 && speeds[i] <= 100);
-    Body* body = s.body(ids[i]);
+    crowd::Body* body = s.body(ids[i]);
     if (body == nullptr) continue;
     body->speed = static_cast<float>(speeds[i]);
     s.make_room(*body);
@@ -120,27 +122,28 @@ void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> sp
 }
 
 // A path from where the body is to its target or goal. False: there is none.
-bool Crowd::State::plan_path(Body& body, Route& route, const StrideGround& ground, int32_t worker) {
+bool Crowd::State::plan_path(crowd::Body& body, crowd::Route& route,
+                             const crowd::StrideGround& ground, int32_t worker) {
   const auto w = static_cast<size_t>(worker);
-  const WorldData& data = *data_of(world);
+  const world::WorldData& data = *data_of(world);
   ClassParts& parts = *classes[body.avatar_class];
   Path& path = parts.paths[w];
-  const PathPoint here{body.x, body.z, body.level};
-  const Place from = place_of(data, body, here);
+  const crowd::PathPoint here{body.x, body.z, body.level};
+  const Place from = crowd::place_of(data, body, here);
   if (body.target != 0) {
     parts.flows[body.target - 1u].find_path(parts.lives[w], from, path);
     route.goal = here;  // if it stands there already
   } else {
-    const Place to = place_of(data, body, route.goal);
+    const Place to = crowd::place_of(data, body, route.goal);
     parts.finders[w].find(from, to, path, search_budget());
     SpentBudget spent = path.spent;
     if (obstacles.cuts_paths() && path.end == PathEnd::kReached) {
-      lead_around(data, parts.lives[w], ground, search_budget(), path, parts.repairs[w]);
+      crowd::lead_around(data, parts.lives[w], ground, search_budget(), path, parts.repairs[w]);
       if (path.spent != SpentBudget::kNone) spent = path.spent;
     }
     note_spent(spent);
   }
-  return use_path(data, path, ground, body, route);
+  return crowd::use_path(data, path, ground, body, route);
 }
 
 // The flow fields refer to rectangles of the ground as it was.
@@ -155,26 +158,27 @@ void Crowd::State::renew_flows() {
     const auto ok = find_flows(static_cast<int32_t>(c), context);
     THRONG_ASSERT(ok);  // It was possible before, and nothing cancels it.
   }
-  for (Body& body : engine.bodies()) {
-    if (body.target != 0 && body.has(Body::kHasGoal) && !body.leaves)
-      body.flags |= Body::kNeedsPath;
+  for (crowd::Body& body : engine.bodies()) {
+    if (body.target != 0 && body.has(crowd::Body::kHasGoal) && !body.leaves)
+      body.flags |= crowd::Body::kNeedsPath;
   }
 }
 
 void Crowd::State::arrive_in_targets() {
   if (targets.empty()) return;
-  parallel_ranges(
-      engine.bodies().size(), kTargetGrain, config.workers, [&](size_t begin, size_t end) {
-        for (Body& body : engine.bodies().subspan(begin, end - begin)) {
-          if (body.target == 0 || !body.has(Body::kHasGoal) || body.has(Body::kArrived) ||
-              !targets[body.target - 1u].contains(at_feet(body))) {
-            continue;
-          }
-          body.flags |= Body::kArrived;
-          const std::lock_guard lock(goal_mutex);
-          arrived.push_back(id_of(body.slot));
-        }
-      });
+  parallel_ranges(engine.bodies().size(), kTargetGrain, config.workers,
+                  [&](size_t begin, size_t end) {
+                    for (crowd::Body& body : engine.bodies().subspan(begin, end - begin)) {
+                      if (body.target == 0 || !body.has(crowd::Body::kHasGoal) ||
+                          body.has(crowd::Body::kArrived) ||
+                          !targets[body.target - 1u].contains(at_feet(body))) {
+                        continue;
+                      }
+                      body.flags |= crowd::Body::kArrived;
+                      const std::lock_guard lock(goal_mutex);
+                      arrived.push_back(id_of(body.slot));
+                    }
+                  });
 }
 
 }  // namespace throng

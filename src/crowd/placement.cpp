@@ -9,7 +9,7 @@
 
 // Random points of the ground, uniform by cell: a binary search among the levels, then the row of
 // the cell. Logarithmic in the levels.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 // The cell of a level that has `rank` legal cells before it.
@@ -43,10 +43,12 @@ StandingDraw::Stand StandingDraw::draw(uint64_t n) const {
   const auto [x, z] =
       nth_legal(ground_->legal(level), static_cast<uint32_t>(pick - before_[level]));
   const auto& record = ground_->records()[level];
-  const auto unit = [](uint64_t bits) { return static_cast<int64_t>(bits & (kUnitsPerCell - 1)); };
+  const auto unit = [](uint64_t bits) {
+    return static_cast<int64_t>(bits & (world::kUnitsPerCell - 1));
+  };
   return {level,
-          {(int64_t{record.tile_x * 64 + x} << kUnitBits) + unit(within),
-           (int64_t{record.tile_z * 64 + z} << kUnitBits) + unit(within >> 32)}};
+          {(int64_t{record.tile_x * 64 + x} << world::kUnitBits) + unit(within),
+           (int64_t{record.tile_z * 64 + z} << world::kUnitBits) + unit(within >> 32)}};
 }
 
 std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uint64_t seed,
@@ -56,7 +58,7 @@ std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uin
   std::vector<Avatar> avatars;
   if (standing.is_empty()) return avatars;
   avatars.reserve(count);
-  const auto try_place = [&](uint32_t level, GroundPoint p) {
+  const auto try_place = [&](uint32_t level, world::GroundPoint p) {
     const int32_t y = ground.feet(level, p);
     const CollisionMap::Mark mark = map.mark(p, y);
     if (!map.is_free(mark)) return false;
@@ -85,12 +87,12 @@ std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uin
       for (; row != 0 && avatars.size() < count; row &= row - 1) {
         const int64_t x = records[level].tile_x * 64 + std::countr_zero(row);
         const int64_t cell_z = records[level].tile_z * 64 + z;
-        try_place(level, {(x << kUnitBits) + kUnitsPerCell / 2,
-                          (cell_z << kUnitBits) + kUnitsPerCell / 2});
+        try_place(level, {(x << world::kUnitBits) + world::kUnitsPerCell / 2,
+                          (cell_z << world::kUnitBits) + world::kUnitsPerCell / 2});
       }
     }
   }
   return avatars;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

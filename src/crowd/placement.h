@@ -9,7 +9,7 @@
 #include "crowd/walk/collision_map.h"
 
 /// The first places of a crowd.
-namespace throng {
+namespace throng::crowd {
 
 /// Points where a class can stand, drawn at random, uniform over the ground.
 class StandingDraw {
@@ -19,7 +19,7 @@ class StandingDraw {
   [[nodiscard]] bool is_empty() const { return before_.back() == 0; }
   struct Stand {
     uint32_t level;
-    GroundPoint point;
+    world::GroundPoint point;
   };
   /// The n-th point of the stream.
   [[nodiscard]] Stand draw(uint64_t n) const;
@@ -35,4 +35,4 @@ class StandingDraw {
 std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uint64_t seed,
                                   CollisionMap& map);
 
-}  // namespace throng
+}  // namespace throng::crowd

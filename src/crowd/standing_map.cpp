@@ -10,7 +10,7 @@
 
 // A hash table of squares with a list of bodies each. Constant time for each body unless a square
 // is crowded.
-namespace throng {
+namespace throng::crowd {
 
 StandingMap::StandingMap(std::span<const Body> bodies, int32_t widest, size_t more)
     : width_(std::max(1, 2 * widest)) {
@@ -46,4 +46,4 @@ bool StandingMap::add_if_clear(const Body& body) {
   return true;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

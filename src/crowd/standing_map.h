@@ -10,7 +10,7 @@
 #include "crowd/walk/body.h"
 
 /// Where bodies stand, to place more.
-namespace throng {
+namespace throng::crowd {
 
 /// Squares as wide as the widest body, hashed into a table; a list each.
 class StandingMap {
@@ -35,4 +35,4 @@ class StandingMap {
   std::vector<Entry> entries_;
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -9,7 +9,7 @@
 
 // Targets in the units of bodies, and the legal cells inside: a raster of each prism's bounds,
 // linear in its cells.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 int32_t millimetres(double metres) {
@@ -18,9 +18,9 @@ int32_t millimetres(double metres) {
 
 }  // namespace
 
-TargetRegion::TargetRegion(const WorldData& world, const Prism& prism)
+TargetRegion::TargetRegion(const world::WorldData& world, const Prism& prism)
     : low_(millimetres(prism.low)), high_(millimetres(prism.high)) {
-  const double scale = kUnitsPerCell / world.summary.cell;
+  const double scale = world::kUnitsPerCell / world.summary.cell;
   const Vec3d& origin = world.summary.origin;
   const size_t count = prism.corners.size();
   bounds_ = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
@@ -50,7 +50,7 @@ bool TargetRegion::contains(int32_t x, int32_t z, int32_t y) const {
   });
 }
 
-Result<Target> Target::make(const WorldData& world, std::span<const Prism> areas) {
+Result<Target> Target::make(const world::WorldData& world, std::span<const Prism> areas) {
   if (areas.empty()) return Error{Errc::kBadInput, "crowd: a region needs at least one prism"};
   Target made;
   for (const Prism& prism : areas) {
@@ -66,20 +66,20 @@ bool Target::contains(const Body& body) const {
                      [&](const TargetRegion& r) { return r.contains(body.x, body.z, body.y); });
 }
 
-std::vector<Place> places_inside(const WorldData& world, const CrowdGround& ground,
+std::vector<Place> places_inside(const world::WorldData& world, const CrowdGround& ground,
                                  std::span<const TargetRegion> regions, size_t max_count,
                                  LiveGround* live) {
   const auto cell_of = [](double units, int32_t cells) {
     return static_cast<int32_t>(
-        std::clamp<double>(std::floor(units / kUnitsPerCell), 0, cells - 1));
+        std::clamp<double>(std::floor(units / world::kUnitsPerCell), 0, cells - 1));
   };
   const auto is_legal = [&](uint32_t level, int32_t x, int32_t z) {
-    const CellRows* baked = live != nullptr ? ground.baked_legal(level) : nullptr;
+    const world::CellRows* baked = live != nullptr ? ground.baked_legal(level) : nullptr;
     if (baked == nullptr) return ground.is_legal(level, x, z);
     return (((*baked)[static_cast<size_t>(z)] >> x) & 1) != 0;
   };
-  const auto place_of = [&](uint32_t level, GroundPoint p, int32_t feet) {
-    const double unit = world.summary.cell / kUnitsPerCell;
+  const auto place_of = [&](uint32_t level, world::GroundPoint p, int32_t feet) {
+    const double unit = world.summary.cell / world::kUnitsPerCell;
     const Vec3d& origin = world.summary.origin;
     return Place{{origin.x + (static_cast<double>(p.x) + 0.5) * unit, feet * 1e-3,
                   origin.z + (static_cast<double>(p.z) + 0.5) * unit},
@@ -98,8 +98,9 @@ std::vector<Place> places_inside(const WorldData& world, const CrowdGround& grou
               if (z % stride != 0) continue;
               for (int32_t x = std::max(x0, tx * 64); x <= std::min(x1, tx * 64 + 63); ++x) {
                 if (x % stride != 0 || !is_legal(level, x & 63, z & 63)) continue;
-                const GroundPoint middle{(int64_t{x} << kUnitBits) + kUnitsPerCell / 2,
-                                         (int64_t{z} << kUnitBits) + kUnitsPerCell / 2};
+                const world::GroundPoint middle{
+                    (int64_t{x} << world::kUnitBits) + world::kUnitsPerCell / 2,
+                    (int64_t{z} << world::kUnitBits) + world::kUnitsPerCell / 2};
                 const auto mx = static_cast<int32_t>(middle.x), mz = static_cast<int32_t>(middle.z);
                 const int32_t feet = ground.feet(level, middle);
                 if (!region.contains(mx, mz, feet)) continue;
@@ -117,7 +118,7 @@ std::vector<Place> places_inside(const WorldData& world, const CrowdGround& grou
   for (const TargetRegion& r : regions) {
     area += (r.bounds().x1 - r.bounds().x0) * (r.bounds().z1 - r.bounds().z0);
   }
-  const double cells = area / kUnitsPerCell / kUnitsPerCell;
+  const double cells = area / world::kUnitsPerCell / world::kUnitsPerCell;
   auto stride = static_cast<int32_t>(
       std::clamp(std::ceil(std::sqrt(cells / static_cast<double>(max_count))), 1.0, 1e6));
   std::vector<Place> places;
@@ -127,4 +128,4 @@ std::vector<Place> places_inside(const WorldData& world, const CrowdGround& grou
   }
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

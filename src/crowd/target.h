@@ -14,12 +14,12 @@
 #include "throng/world.h"
 
 /// Targets: regions that many avatars head to.
-namespace throng {
+namespace throng::crowd {
 
 /// A prism in the units of bodies. A body whose centre is inside, or on the border, is inside.
 class TargetRegion {
  public:
-  TargetRegion(const WorldData& world, const Prism& prism);
+  TargetRegion(const world::WorldData& world, const Prism& prism);
   [[nodiscard]] bool contains(int32_t x, int32_t z, int32_t y) const;
 
   /// Points whose cells may be inside. [units, of the world]
@@ -45,15 +45,15 @@ struct Target {
   std::vector<TargetRegion> regions;
 
   /// Fails with kBadInput: no prism, or an invalid one.
-  static Result<Target> make(const WorldData& world, std::span<const Prism> areas);
+  static Result<Target> make(const world::WorldData& world, std::span<const Prism> areas);
   [[nodiscard]] bool contains(const Body& body) const;
 };
 
 /// Legal cells whose centres are inside, by region, level and row: all, or every n-th of a row and
 /// every n-th row, so that they are not many more than `max_count`. Y at the feet. With `live`:
 /// those that are legal there, whatever else is blocked in `ground`.
-std::vector<Place> places_inside(const WorldData& world, const CrowdGround& ground,
+std::vector<Place> places_inside(const world::WorldData& world, const CrowdGround& ground,
                                  std::span<const TargetRegion> regions, size_t max_count,
                                  LiveGround* live = nullptr);
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -8,7 +8,7 @@
 // Connected parts of rows of bits. From one cell: fills of whole rows until nothing changes. All
 // parts: runs of a row are joined with those of the row above by union-find [RP66]. Linear in the
 // runs.
-namespace throng {
+namespace throng::graph {
 namespace {
 
 // Fills up and down from the seeds by doubling; `up` and `down` are the bits that may be entered
@@ -37,10 +37,10 @@ uint64_t spread_runs(uint64_t seed, uint64_t open) {
 
 class Filler {
  public:
-  Filler(const CellRows& open, const StepCuts* cuts) : open_(open), cuts_(cuts) {}
+  Filler(const world::CellRows& open, const StepCuts* cuts) : open_(open), cuts_(cuts) {}
 
-  CellRows fill(int32_t x, int32_t z) {
-    CellRows filled{};
+  world::CellRows fill(int32_t x, int32_t z) {
+    world::CellRows filled{};
     const auto first = static_cast<size_t>(z);
     filled[first] = row(first, uint64_t{1} << x);
     // Sweeps down and up until one of them finds nothing: a part that winds k times takes about k.
@@ -61,14 +61,14 @@ class Filler {
     return spread(seed, open_[z] & ~(cut << 1), open_[z] & ~cut);
   }
 
-  bool enter(CellRows& filled, size_t z, uint64_t from) const {
+  bool enter(world::CellRows& filled, size_t z, uint64_t from) const {
     const uint64_t seed = from & open_[z] & ~filled[z];
     if (seed == 0) return false;
     filled[z] |= row(z, seed);
     return true;
   }
 
-  const CellRows& open_;
+  const world::CellRows& open_;
   const StepCuts* cuts_;
 };
 
@@ -81,15 +81,15 @@ uint32_t length(uint64_t run) {
 
 }  // namespace
 
-CellRows flood(const CellRows& open, const StepCuts* cuts, int32_t x, int32_t z) {
+world::CellRows flood(const world::CellRows& open, const StepCuts* cuts, int32_t x, int32_t z) {
   return Filler(open, cuts).fill(x, z);
 }
 
-void PartFinder::find(const CellRows& open, const StepCuts* cuts, PartList& list) {
+void PartFinder::find(const world::CellRows& open, const StepCuts* cuts, PartList& list) {
   add_parts(open, cuts, find_bands(open, cuts), list);
 }
 
-bool PartFinder::find_few(const CellRows& open, PartList& list) {
+bool PartFinder::find_few(const world::CellRows& open, PartList& list) {
   constexpr size_t kFewBands = 12;
   const bool is_chain = find_bands(open, nullptr);
   if (!is_chain && band_count_ > kFewBands) return false;
@@ -97,7 +97,7 @@ bool PartFinder::find_few(const CellRows& open, PartList& list) {
   return true;
 }
 
-void PartFinder::add_parts(const CellRows& open, const StepCuts* cuts, bool is_chain,
+void PartFinder::add_parts(const world::CellRows& open, const StepCuts* cuts, bool is_chain,
                            PartList& list) {
   const auto start = static_cast<uint32_t>(list.rows.size());
   if (band_count_ == 0) return;
@@ -158,7 +158,7 @@ uint16_t PartFinder::root(uint16_t run) {
 
 // From the first row that is open to the last. True if it is seen at a glance that all is one part,
 // as most are: bands of one run each that meet the one above.
-bool PartFinder::find_bands(const CellRows& open, const StepCuts* cuts) {
+bool PartFinder::find_bands(const world::CellRows& open, const StepCuts* cuts) {
   band_count_ = 0;
   size_t z = 0, end = 64;
   while (z < 64 && open[z] == 0) ++z;
@@ -177,7 +177,7 @@ bool PartFinder::find_bands(const CellRows& open, const StepCuts* cuts) {
   return cuts == nullptr && meets && split == 0;
 }
 
-void PartFinder::find_runs(const CellRows& open, const StepCuts* cuts) {
+void PartFinder::find_runs(const world::CellRows& open, const StepCuts* cuts) {
   cells_.clear();
   parent_.clear();
   for (size_t b = 0; b < band_count_; ++b) {
@@ -205,4 +205,4 @@ void PartFinder::find_runs(const CellRows& open, const StepCuts* cuts) {
   bands_[band_count_].first_run = static_cast<uint16_t>(cells_.size());
 }
 
-}  // namespace throng
+}  // namespace throng::graph

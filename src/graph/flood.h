@@ -10,17 +10,17 @@
 #include "world/cell_blocks.h"
 
 /// Connected parts of one level tile, whole rows of cells at a time.
-namespace throng {
+namespace throng::graph {
 
 /// Where no step leads from a cell to the next: bit x of `across` row z between (x, z) and
 /// (x + 1, z), of `along` row z between (x, z) and (x, z + 1).
 struct StepCuts {
-  CellRows across{}, along{};
+  world::CellRows across{}, along{};
 };
 
 /// The cells of `open` that are connected to cell (x, z), which must be open. Neighbours share a
 /// side. `cuts` may be null.
-CellRows flood(const CellRows& open, const StepCuts* cuts, int32_t x, int32_t z);
+world::CellRows flood(const world::CellRows& open, const StepCuts* cuts, int32_t x, int32_t z);
 
 enum TileSide : size_t { kWest, kEast, kNorth, kSouth };
 
@@ -51,9 +51,9 @@ class PartFinder {
  public:
   /// Adds all connected parts of `open` to a list, in the order of their first cells, row by row.
   /// `cuts` may be null.
-  void find(const CellRows& open, const StepCuts* cuts, PartList& list);
+  void find(const world::CellRows& open, const StepCuts* cuts, PartList& list);
   /// The same without cuts, but only if it takes little time: false if not, and then adds nothing.
-  bool find_few(const CellRows& open, PartList& list);
+  bool find_few(const world::CellRows& open, PartList& list);
 
  private:
   // Rows one after the other that are alike. Where walls run along the grid that are nearly all: 9
@@ -63,9 +63,9 @@ class PartFinder {
     uint16_t first_run = 0;
   };
 
-  bool find_bands(const CellRows& open, const StepCuts* cuts);
-  void add_parts(const CellRows& open, const StepCuts* cuts, bool is_chain, PartList& list);
-  void find_runs(const CellRows& open, const StepCuts* cuts);
+  bool find_bands(const world::CellRows& open, const StepCuts* cuts);
+  void add_parts(const world::CellRows& open, const StepCuts* cuts, bool is_chain, PartList& list);
+  void find_runs(const world::CellRows& open, const StepCuts* cuts);
   static void add_run(uint64_t run, const Band& band, PartList::Part& part);
   uint16_t root(uint16_t run);
 
@@ -78,4 +78,4 @@ class PartFinder {
   std::vector<uint32_t> part_;  // of the roots
 };
 
-}  // namespace throng
+}  // namespace throng::graph

@@ -17,25 +17,25 @@ namespace throng {
 namespace {
 
 // Null where the bake has left none.
-Result<std::shared_ptr<GraphData>> read_index(const WorldData& world) {
-  if (world.path.empty()) return std::shared_ptr<GraphData>();
-  const std::string name = world.path + "/" + kGraphIndexName;
+Result<std::shared_ptr<world::GraphData>> read_index(const world::WorldData& world) {
+  if (world.path.empty()) return std::shared_ptr<world::GraphData>();
+  const std::string name = world.path + "/" + world::kGraphIndexName;
   const auto map = FileMap::open(name);
-  if (!map) return std::shared_ptr<GraphData>();
-  auto graph = read_graph_index(map->bytes(), name, world, world.manifest_hash);
+  if (!map) return std::shared_ptr<world::GraphData>();
+  auto graph = world::read_graph_index(map->bytes(), name, world, world.manifest_hash);
   if (!graph) return graph.error();
-  if (const auto whole = unsealed(map->bytes(), name); !whole) return whole.error();
+  if (const auto whole = world::unsealed(map->bytes(), name); !whole) return whole.error();
   (*graph)->path = world.path;
   (*graph)->summary.on_disk = true;
   return graph;
 }
 
-Result<std::shared_ptr<GraphData>> read_or_make(const World& world, int32_t workers,
-                                                Context& context) {
+Result<std::shared_ptr<world::GraphData>> read_or_make(const World& world, int32_t workers,
+                                                       Context& context) {
   auto graph = read_index(*data_of(world));
   if (!graph || *graph != nullptr) return graph;
   if (auto ok = world.check_ground(); !ok) return ok.error();
-  auto made = make_graph(*data_of(world), nullptr, workers, context);
+  auto made = graph::make_graph(*data_of(world), nullptr, workers, context);
   if (!made) return made.error();
   return std::move(made->graph);
 }
@@ -68,17 +68,17 @@ std::span<const Component> Graph::components(int32_t avatar_class) const {
 
 int32_t Graph::component_at(int32_t avatar_class, const Place& place) const {
   THRONG_ASSERT(data_);
-  const WorldData& world = *data_of(data_->world);
+  const world::WorldData& world = *data_of(data_->world);
   if (components(avatar_class).empty()) return -1;
-  const auto at = ground_point(world, place);
+  const auto at = world::ground_point(world, place);
   if (!at) return -1;
   const uint32_t level = place.level1 - 1;
   const size_t slot = world.slot_of_level(level);
-  const RegionZone* zone = data_->zone(world, slot);
+  const world::RegionZone* zone = data_->zone(world, slot);
   if (zone == nullptr) return -1;
   const uint32_t region =
-      region_at(world, *zone, level, avatar_class, at->cell_x() & 63, at->cell_z() & 63);
-  if (region == kNoRegion) return -1;
+      graph::region_at(world, *zone, level, avatar_class, at->cell_x() & 63, at->cell_z() & 63);
+  if (region == graph::kNoRegion) return -1;
   const uint32_t component = zone->component(region, static_cast<uint32_t>(avatar_class));
   return static_cast<int32_t>(
       data_->component_of[data_->slots[slot]->entry.first_component() + component]);
@@ -86,12 +86,12 @@ int32_t Graph::component_at(int32_t avatar_class, const Place& place) const {
 
 Result<void> Graph::check_at(Vec3d position) const {
   THRONG_ASSERT(data_);
-  const WorldData& world = *data_of(data_->world);
+  const world::WorldData& world = *data_of(data_->world);
   if (!std::isfinite(position.x + position.z)) return {};
-  const GroundPoint at = to_ground(world, position.x, position.z);
-  if (!in_grid(world, at)) return {};
+  const world::GroundPoint at = world::to_ground(world, position.x, position.z);
+  if (!world::in_grid(world, at)) return {};
   const auto cells = static_cast<int32_t>(world.tiles_per_zone) * kTileCells;
-  const int32_t found = slot_at(world, at.cell_x() / cells, at.cell_z() / cells);
+  const int32_t found = world::slot_at(world, at.cell_x() / cells, at.cell_z() / cells);
   if (found < 0) return {};
   const auto slot = static_cast<size_t>(found);
   if (world.zone(slot) == nullptr) return Error{Errc::kBadFile, world.slots[slot]->error};

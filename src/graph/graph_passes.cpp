@@ -20,7 +20,7 @@
 // its western and northern neighbours. A step leads over sides of cells only, so zones that touch
 // at a corner have no link; and a zone is as high as the world, so there is none over or under it.
 // Components are joined over borders from those within zones: pass 2 reads no single parts.
-namespace throng {
+namespace throng::graph {
 namespace {
 
 constexpr uint64_t kMaxZoneBytes = (uint64_t{1} << 31) - (1 << 20);  // FlatBuffers' limit
@@ -43,12 +43,12 @@ format::GraphZone with(const format::GraphZone& entry, uint32_t first_component,
 
 class Passes {
  public:
-  Passes(const WorldData& world, GraphFiles* files, int32_t workers, Context& context)
+  Passes(const world::WorldData& world, GraphFiles* files, int32_t workers, Context& context)
       : world_(world),
         files_(files),
         groups_(assign_workers(world.slots.size(), workers)),
         context_(context) {
-    made_.graph = std::make_shared<GraphData>();
+    made_.graph = std::make_shared<world::GraphData>();
     made_.graph->slots.resize(world.slots.size());
     inputs_.resize(world.slots.size());
   }
@@ -59,7 +59,7 @@ class Passes {
   // A slot, or none.
   struct Side {
     int32_t slot = -1;
-    const RegionZone* zone = nullptr;
+    const world::RegionZone* zone = nullptr;
   };
   struct Around {
     Side own, east, south;
@@ -71,15 +71,15 @@ class Passes {
   Result<void> number_parts();
   Result<void> find_links(size_t slot, DisjointSets& sets);
   Result<flatbuffers::DetachedBuffer> make_links(size_t slot, uint64_t input, const Around& around);
-  [[nodiscard]] GraphComponent place_of(size_t slot, const ZoneComponent& part,
-                                        const RegionZone& zone) const;
+  [[nodiscard]] world::GraphComponent place_of(size_t slot, const world::ZoneComponent& part,
+                                               const world::RegionZone& zone) const;
   void number_components(DisjointSets& sets);
   [[nodiscard]] uint64_t region_input(size_t slot) const;
   [[nodiscard]] Result<Side> side(int32_t slot) const;
   [[nodiscard]] uint64_t link_input(const Around& around) const;
   [[nodiscard]] Result<void> usable(int32_t slot) const;
 
-  const WorldData& world_;
+  const world::WorldData& world_;
   GraphFiles* files_;
   WorkerGroups groups_;
   Context& context_;
@@ -105,9 +105,9 @@ Result<void> Passes::over_zones(const char* stage, Pass pass) {
 
 // All that regions are made from: the zone's bytes and what they leave out, the steps of classes.
 uint64_t Passes::region_input(size_t slot) const {
-  std::vector<uint64_t> words{kGraphVersion, world_.slots[slot]->entry.hash()};
+  std::vector<uint64_t> words{world::kGraphVersion, world_.slots[slot]->entry.hash()};
   for (const AvatarClass& avatar : world_.summary.classes) {
-    words.push_back(static_cast<uint64_t>(step_mm(avatar)));
+    words.push_back(static_cast<uint64_t>(world::step_mm(avatar)));
   }
   return hash_span(std::span<const uint64_t>(words));
 }
@@ -118,7 +118,7 @@ Result<void> Passes::usable(int32_t slot) const {
 }
 
 uint64_t Passes::link_input(const Around& around) const {
-  std::vector<uint64_t> words{kGraphVersion};
+  std::vector<uint64_t> words{world::kGraphVersion};
   for (const Side& of : {around.own, around.east, around.south}) {
     words.push_back(of.slot < 0 ? 0 : inputs_[static_cast<size_t>(of.slot)]);
   }
@@ -127,7 +127,7 @@ uint64_t Passes::link_input(const Around& around) const {
 
 Result<Passes::Side> Passes::side(int32_t slot) const {
   if (slot < 0) return Side{};
-  const RegionZone* zone = made_.graph->zone(world_, static_cast<size_t>(slot));
+  const world::RegionZone* zone = made_.graph->zone(world_, static_cast<size_t>(slot));
   if (zone != nullptr) return Side{slot, zone};
   return Error{Errc::kBadFile, made_.graph->slots[static_cast<size_t>(slot)]->error};
 }
@@ -136,16 +136,16 @@ Result<void> Passes::find_regions(size_t slot) {
   const format::ZoneEntry& entry = world_.slots[slot]->entry;
   const uint64_t input = region_input(slot);
   inputs_[slot] = input;
-  std::unique_ptr<RegionZone> zone;
+  std::unique_ptr<world::RegionZone> zone;
   if (files_ != nullptr) {
     zone = files_->reuse_regions(entry.x(), entry.z(), input);
-    if (zone && !is_of_slot(*zone, world_, slot)) zone = nullptr;
+    if (zone && !world::is_of_slot(*zone, world_, slot)) zone = nullptr;
   }
   if (zone == nullptr) {
     if (auto ok = usable(static_cast<int32_t>(slot)); !ok) return ok.error();
     const auto tables = find_zone_regions(world_, slot, groups_.workers, context_);
     if (!tables) return cancelled();
-    const std::string name = region_file_name(entry.x(), entry.z());
+    const std::string name = world::region_file_name(entry.x(), entry.z());
     const uint64_t bytes =
         tables->first.size() * sizeof(uint32_t) + tables->regions.size() * sizeof(format::Region) +
         tables->groups.groups.size() * 5 + tables->groups.names.size() +
@@ -153,15 +153,15 @@ Result<void> Passes::find_regions(size_t slot) {
     if (bytes > kMaxZoneBytes) {
       return Error{Errc::kLimit, name + ": more than 2 GiB of regions; use smaller zones"};
     }
-    auto made =
-        RegionZone::from_bytes(region_zone_bytes(entry.x(), entry.z(), input, *tables), name);
+    auto made = world::RegionZone::from_bytes(
+        world::region_zone_bytes(entry.x(), entry.z(), input, *tables), name);
     if (!made) return made.error();
     zone = std::move(*made);
     if (files_ != nullptr) {
       if (auto ok = files_->write(name, zone->bytes()); !ok) return ok.error();
     }
   }
-  auto own = std::make_unique<GraphData::Slot>();
+  auto own = std::make_unique<world::GraphData::Slot>();
   own->entry = {entry.x(),
                 entry.z(),
                 static_cast<uint32_t>(zone->regions().size()),
@@ -208,24 +208,24 @@ Result<flatbuffers::DetachedBuffer> Passes::make_links(size_t slot, uint64_t inp
     const std::lock_guard lock(mutex_);
     ++made_.zones_relinked;
   }
-  return link_zone_bytes(entry.x(), entry.z(), input, links[0], links[1]);
+  return world::link_zone_bytes(entry.x(), entry.z(), input, links[0], links[1]);
 }
 
 Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
   const format::GraphZone& entry = made_.graph->slots[slot]->entry;
   const auto own = side(static_cast<int32_t>(slot)),
-             east = side(slot_at(world_, entry.x() + 1, entry.z())),
-             south = side(slot_at(world_, entry.x(), entry.z() + 1));
+             east = side(world::slot_at(world_, entry.x() + 1, entry.z())),
+             south = side(world::slot_at(world_, entry.x(), entry.z() + 1));
   for (const auto* zone : {&own, &east, &south}) {
     if (!*zone) return zone->error();
   }
   const Around around{*own, *east, *south};
   const uint64_t input = link_input(around);
-  const auto fits = [&](const LinkZone& made) {
+  const auto fits = [&](const world::LinkZone& made) {
     return made.root().x() == entry.x() && made.root().z() == entry.z() &&
            made.fits(*own->zone, east->zone, south->zone);
   };
-  std::unique_ptr<LinkZone> links;
+  std::unique_ptr<world::LinkZone> links;
   if (files_ != nullptr) {
     links = files_->reuse_links(entry.x(), entry.z(), input);
     if (links && !fits(*links)) links = nullptr;
@@ -233,15 +233,15 @@ Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
   if (links == nullptr) {
     auto bytes = make_links(slot, input, around);
     if (!bytes) return bytes.error();
-    const std::string name = link_file_name(entry.x(), entry.z());
-    auto made = LinkZone::from_bytes(*std::move(bytes), name);
+    const std::string name = world::link_file_name(entry.x(), entry.z());
+    auto made = world::LinkZone::from_bytes(*std::move(bytes), name);
     if (!made) return made.error();
     links = std::move(*made);
     // Reused regions may differ from those of today if their file is forged.
     if (!fits(*links)) {
-      return bad_file(region_file_name(entry.x(), entry.z()),
-                      "or one beside it, is not of this zone",
-                      "bake the world again with --rebuild");
+      return world::bad_file(world::region_file_name(entry.x(), entry.z()),
+                             "or one beside it, is not of this zone",
+                             "bake the world again with --rebuild");
     }
     if (files_ != nullptr) {
       if (auto ok = files_->write(name, links->bytes()); !ok) return ok.error();
@@ -269,8 +269,8 @@ Result<void> Passes::find_links(size_t slot, DisjointSets& sets) {
 }
 
 // A component of the world that begins with one of a zone, without what it is made of.
-GraphComponent Passes::place_of(size_t slot, const ZoneComponent& part,
-                                const RegionZone& zone) const {
+world::GraphComponent Passes::place_of(size_t slot, const world::ZoneComponent& part,
+                                       const world::RegionZone& zone) const {
   const uint32_t key = zone.regions()[part.first_region].key();
   const auto cell = [&](int32_t of_zone, uint32_t tile, uint32_t in_tile) {
     return (of_zone * static_cast<int32_t>(world_.tiles_per_zone) + static_cast<int32_t>(tile)) *
@@ -286,15 +286,15 @@ GraphComponent Passes::place_of(size_t slot, const ZoneComponent& part,
 // The components of each class, the largest first, then by their first region: the roots of the
 // sets are in that order.
 void Passes::number_components(DisjointSets& sets) {
-  GraphData& graph = *made_.graph;
+  world::GraphData& graph = *made_.graph;
   const size_t classes = world_.summary.classes.size();
-  std::vector<std::vector<GraphComponent>> found(classes);
+  std::vector<std::vector<world::GraphComponent>> found(classes);
   std::vector<uint8_t> class_of(components_);  // of the components of zones
   std::vector<uint32_t> of_root(components_, 0), component_of(components_, 0);
   for (size_t s = 0; s < graph.slots.size(); ++s) {
-    const RegionZone& zone = *graph.zone(world_, s);
+    const world::RegionZone& zone = *graph.zone(world_, s);
     uint32_t i = graph.slots[s]->entry.first_component();
-    for (const ZoneComponent& part : zone.components()) {
+    for (const world::ZoneComponent& part : zone.components()) {
       auto& of_class = found[part.avatar_class];
       const uint32_t root = sets.find(i);
       class_of[i] = static_cast<uint8_t>(part.avatar_class);
@@ -302,14 +302,14 @@ void Passes::number_components(DisjointSets& sets) {
         of_root[i] = static_cast<uint32_t>(of_class.size());
         of_class.push_back(place_of(s, part, zone));
       }
-      GraphComponent& all = of_class[of_root[root]];
+      world::GraphComponent& all = of_class[of_root[root]];
       all.cells += part.cells;
       all.regions += part.regions;
       ++i;
     }
     zone.give_back();
   }
-  const auto rank = rank_components(found, graph);
+  const auto rank = world::rank_components(found, graph);
   for (uint32_t i = 0; i < components_; ++i) {
     component_of[i] = rank[class_of[i]][of_root[sets.find(i)]];
   }
@@ -318,7 +318,7 @@ void Passes::number_components(DisjointSets& sets) {
 }
 
 Result<GraphMade> Passes::run() {
-  GraphData& graph = *made_.graph;
+  world::GraphData& graph = *made_.graph;
   auto ok = over_zones("regions", [&](size_t slot) { return find_regions(slot); });
   if (ok) ok = number_parts();
   if (!ok) return ok.error();
@@ -338,9 +338,9 @@ Result<GraphMade> Passes::run() {
 
 }  // namespace
 
-Result<GraphMade> make_graph(const WorldData& world, GraphFiles* files, int32_t workers,
+Result<GraphMade> make_graph(const world::WorldData& world, GraphFiles* files, int32_t workers,
                              Context& context) {
   return Passes(world, files, workers, context).run();
 }
 
-}  // namespace throng
+}  // namespace throng::graph

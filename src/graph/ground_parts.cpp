@@ -8,22 +8,23 @@
 
 // Unpacks where a class may stand on a level, and finds steps between its cells. Linear in the
 // cells.
-namespace throng {
+namespace throng::graph {
 
-CellRows legal_rows(const GroundLevel& level) {
-  CellRows rows{};
+world::CellRows legal_rows(const world::GroundLevel& level) {
+  world::CellRows rows{};
   if (level.kind == format::CellsKind::All) rows.fill(~uint64_t{0});
-  if (level.legal != nullptr) unpack_bits(level.legal, rows);
+  if (level.legal != nullptr) world::unpack_bits(level.legal, rows);
   return rows;
 }
 
-std::optional<StepCuts> step_cuts(const GroundLevel& level, const CellRows& legal, int32_t step) {
+std::optional<StepCuts> step_cuts(const world::GroundLevel& level, const world::CellRows& legal,
+                                  int32_t step) {
   if (level.step_safe || level.kind == format::CellsKind::None) return std::nullopt;
   StepCuts cuts;
-  std::array<uint16_t, kBlocks * 64> samples;
-  LevelView view = level.view;
+  std::array<uint16_t, world::kBlocks * 64> samples;
+  world::LevelView view = level.view;
   if (view.floor != nullptr && view.samples == nullptr) {
-    unpack_floor(view, samples.data());
+    world::unpack_floor(view, samples.data());
     view.samples = samples.data();
   }
   const auto is_high = [&](int32_t x, int32_t z, int32_t nx, int32_t nz) {
@@ -44,4 +45,4 @@ std::optional<StepCuts> step_cuts(const GroundLevel& level, const CellRows& lega
   return cuts;
 }
 
-}  // namespace throng
+}  // namespace throng::graph

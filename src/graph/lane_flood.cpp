@@ -14,7 +14,7 @@
 // free: each round fills, in every lane, the part that holds the first cell of what is left. By
 // integers, and so the same for every width.
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::graph {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -147,7 +147,7 @@ class Round {
 
 size_t LaneCount() { return hn::Lanes(D()); }
 
-void FindParts(std::span<const CellRows* const> sets, LaneScratch& scratch) {
+void FindParts(std::span<const world::CellRows* const> sets, LaneScratch& scratch) {
   const D d;
   const size_t lanes = hn::Lanes(d);
   for (size_t z = 0; z < 64; ++z) {
@@ -170,17 +170,17 @@ void FindParts(std::span<const CellRows* const> sets, LaneScratch& scratch) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::graph
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace throng {
+namespace throng::graph {
 
 HWY_EXPORT(LaneCount);
 HWY_EXPORT(FindParts);
 
-void find_parts_of(std::span<const CellRows* const> sets, LaneScratch& scratch, PartList& list,
-                   std::span<uint32_t> first) {
+void find_parts_of(std::span<const world::CellRows* const> sets, LaneScratch& scratch,
+                   PartList& list, std::span<uint32_t> first) {
   const size_t lanes = HWY_DYNAMIC_DISPATCH(LaneCount)();
   for (size_t s = 0; s < sets.size(); s += lanes) {
     const size_t count = std::min(lanes, sets.size() - s);
@@ -199,5 +199,5 @@ void find_parts_of(std::span<const CellRows* const> sets, LaneScratch& scratch, 
   first[sets.size()] = static_cast<uint32_t>(list.parts.size());
 }
 
-}  // namespace throng
+}  // namespace throng::graph
 #endif

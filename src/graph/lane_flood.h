@@ -8,7 +8,7 @@
 #include "graph/flood.h"
 
 /// Connected parts of several sets of cells of a tile at once.
-namespace throng {
+namespace throng::graph {
 
 /// What finding parts in lanes takes beside its results, kept from one time to the next.
 struct LaneScratch {
@@ -20,7 +20,7 @@ struct LaneScratch {
 
 /// Adds to a list the parts of each set, as PartFinder finds them without cuts; `first` gets where
 /// those of each begin, and where the last end. [first.size() == sets.size() + 1]
-void find_parts_of(std::span<const CellRows* const> sets, LaneScratch& scratch, PartList& list,
-                   std::span<uint32_t> first);
+void find_parts_of(std::span<const world::CellRows* const> sets, LaneScratch& scratch,
+                   PartList& list, std::span<uint32_t> first);
 
-}  // namespace throng
+}  // namespace throng::graph

@@ -40,7 +40,7 @@ uint8_t length_code(const std::vector<double>& edges, double metres) {
 
 }  // namespace
 
-NodeBins make_bins(std::span<const AvatarClass> classes) {
+NodeBins graph::make_bins(std::span<const AvatarClass> classes) {
   std::vector<double> slopes, heights, widths;
   for (const AvatarClass& avatar : classes) {
     slopes.push_back(avatar.max_slope);

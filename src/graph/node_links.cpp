@@ -10,7 +10,7 @@
 
 // Makes links of nodes from pairs of cells that touch: for each class between the nodes that hold
 // the two cells. Linear, after sorting.
-namespace throng {
+namespace throng::graph {
 namespace {
 
 constexpr size_t kLongestChain = 24;  // a patch is halved at most 6 times, classes are at most 16
@@ -241,4 +241,4 @@ void merge_node_links(std::vector<NodeLink>& links) {
   drop_needless_steps(links);
 }
 
-}  // namespace throng
+}  // namespace throng::graph

@@ -10,7 +10,7 @@
 #include "throng/surface.h"
 
 /// Links between nodes, from which cells lie beside each other. Source: [PACS00] 1.2.3.6.
-namespace throng {
+namespace throng::graph {
 
 /// Trees of all patches; node n of patch p is node first[p] + n of all.
 struct NodeForest {
@@ -90,4 +90,4 @@ void merge_cell_pairs(std::vector<CellPair>& pairs);
 /// Merges and sorts links.
 void merge_node_links(std::vector<NodeLink>& links);
 
-}  // namespace throng
+}  // namespace throng::graph

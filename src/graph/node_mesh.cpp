@@ -21,7 +21,7 @@
 // of Bezier patches from the doors that the bake proved, over tiles from the moves' own rule, and
 // over holes from the hole links. The arcs between nodes are not read for that; a test proves that
 // both agree.
-namespace throng {
+namespace throng::graph {
 namespace {
 
 // Each list is given back once it is copied: of a large world all of them take gigabytes.
@@ -48,7 +48,7 @@ Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_
                                 Context& context) {
   if (auto ok = nodes.check_all(); !ok) return ok.error();
   NodeMesh mesh(nodes, avatar_class);
-  const NodeData& data = *data_of(nodes);
+  const world::NodeData& data = *data_of(nodes);
   double steepest = 0;
   for (const AvatarClass& avatar : data_of(data.world)->summary.classes) {
     steepest = std::max(steepest, avatar.max_slope);
@@ -61,7 +61,7 @@ Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_
   });
   mesh.portals_.add_all(lists);
   mesh.open_doors();
-  const WorldData& world = *data_of(data.world);
+  const world::WorldData& world = *data_of(data.world);
   const bool tiles = std::any_of(mesh.patches_.begin(), mesh.patches_.end(),
                                  [](const NodeSurface& p) { return p.points == nullptr; });
   const int32_t tiles_x = world.summary.tiles_x, tiles_z = world.summary.tiles_z;
@@ -82,8 +82,9 @@ namespace {
 // The squares of one patch for a class, in the order of its quadtree.
 class BlockCutter {
  public:
-  BlockCutter(const NodeData& data, const NodeZone& zone, const format::NodePatch& patch,
-              const NodeSurface& surface, uint32_t first_node, uint32_t place, int32_t avatar_class)
+  BlockCutter(const world::NodeData& data, const world::NodeZone& zone,
+              const format::NodePatch& patch, const NodeSurface& surface, uint32_t first_node,
+              uint32_t place, int32_t avatar_class)
       : data_(data),
         zone_(zone),
         patch_(patch),
@@ -107,7 +108,9 @@ class BlockCutter {
   }
 
  private:
-  static bool is_partial(const format::Node& node) { return (node.flags() & kPartialFlag) != 0; }
+  static bool is_partial(const format::Node& node) {
+    return (node.flags() & world::kPartialFlag) != 0;
+  }
 
   [[nodiscard]] bool stands(const format::Node& node) const {
     return (node.classes() >> class_ & 1) != 0;
@@ -198,9 +201,9 @@ class BlockCutter {
 
   void read_ground() {
     if (ground_) return;
-    ground_ = ground_level(*data_of(data_.world), surface_.source, class_);
+    ground_ = world::ground_level(*data_of(data_.world), surface_.source, class_);
     const auto& avatar = data_of(data_.world)->summary.classes[static_cast<size_t>(class_)];
-    cuts_ = step_cuts(*ground_, legal_rows(*ground_), step_mm(avatar));
+    cuts_ = step_cuts(*ground_, legal_rows(*ground_), world::step_mm(avatar));
   }
 
   [[nodiscard]] uint64_t legal_in(uint32_t s, uint32_t t) {
@@ -211,7 +214,7 @@ class BlockCutter {
   // Steps from cells of the 8 x 8 around a square that are too high, along s or along t.
   [[nodiscard]] uint64_t cuts_in(const NodeBlock& square, bool along_s) {
     if (!cuts_) return 0;
-    const CellRows& rows = along_s ? cuts_->across : cuts_->along;
+    const world::CellRows& rows = along_s ? cuts_->across : cuts_->along;
     const size_t s0 = size_t{square.s} * (64 >> square.level) & ~size_t{7};
     const size_t t0 = size_t{square.t} * (64 >> square.level) & ~size_t{7};
     uint64_t cells = 0;
@@ -219,8 +222,8 @@ class BlockCutter {
     return cells;
   }
 
-  const NodeData& data_;
-  const NodeZone& zone_;
+  const world::NodeData& data_;
+  const world::NodeZone& zone_;
   const format::NodePatch& patch_;
   const NodeSurface& surface_;
   uint32_t first_node_;  // of the zone, of all
@@ -232,7 +235,7 @@ class BlockCutter {
   };
 
   std::vector<Piece> pieces_;  // of the class, of the partial nodes of one block
-  std::optional<GroundLevel> ground_;
+  std::optional<world::GroundLevel> ground_;
   std::optional<StepCuts> cuts_;
   std::vector<NodeBlock> blocks_;
 };
@@ -240,16 +243,16 @@ class BlockCutter {
 }  // namespace
 
 void NodeMesh::list_blocks(int32_t workers) {
-  const NodeData& data = *data_of(nodes_);
+  const world::NodeData& data = *data_of(nodes_);
   of_level_.assign(data_of(data.world)->level_count, kNoNode);
   struct Source {
-    const NodeZone* zone;
+    const world::NodeZone* zone;
     const format::NodePatch* patch;
     uint32_t first;
   };
   std::vector<Source> sources;
   for (size_t s = 0; s < data.slots.size(); ++s) {
-    const NodeZone& zone = *data.zone(s);
+    const world::NodeZone& zone = *data.zone(s);
     const uint32_t first = data.slots[s]->first_node;
     for (const format::NodePatch& patch : zone.patches()) {
       const auto p = static_cast<uint32_t>(patches_.size());
@@ -377,10 +380,10 @@ PortalList NodeMesh::inside_patch(uint32_t patch) const {
 
 // A door is cut where the blocks on either side end.
 void NodeMesh::open_doors() {
-  const NodeData& data = *data_of(nodes_);
+  const world::NodeData& data = *data_of(nodes_);
   uint32_t first_patch = 0;
   for (size_t s = 0; s < data.slots.size(); ++s) {
-    const NodeZone& zone = *data.zone(s);
+    const world::NodeZone& zone = *data.zone(s);
     for (const format::Door& door : zone.doors()) {
       if ((door.classes() >> avatar_class_ & 1) == 0) continue;
       const uint32_t a_patch = first_patch + door.patch();
@@ -388,10 +391,12 @@ void NodeMesh::open_doors() {
       if (patches_[b_patch].points == nullptr) continue;  // A foreign file may say so.
       const double scale =
           static_cast<double>(door.to_last() - door.to_first()) / (door.last() - door.first());
-      const auto on_a = [&](double at) { return edge_parameters(door.edge(), at / kEdgeUnits); };
+      const auto on_a = [&](double at) {
+        return edge_parameters(door.edge(), at / world::kEdgeUnits);
+      };
       const auto on_b = [&](double at) {
         return edge_parameters(door.to_edge(),
-                               (door.to_first() + (at - door.first()) * scale) / kEdgeUnits);
+                               (door.to_first() + (at - door.first()) * scale) / world::kEdgeUnits);
       };
       NodePortal open{.a = kNoNode, .b = kNoNode, .on_a = {}, .on_b = {}};
       const auto close = [&] {
@@ -483,11 +488,11 @@ PortalList NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) const {
 
 // Each direction has an arc of its own. A node around another may have the same hole link.
 void NodeMesh::add_hole_links() {
-  const NodeData& data = *data_of(nodes_);
+  const world::NodeData& data = *data_of(nodes_);
   using Key = std::tuple<uint32_t, uint32_t, uint8_t, uint8_t, uint8_t, uint8_t>;
   std::map<Key, size_t> known;
   for (size_t s = 0; s < data.slots.size(); ++s) {
-    const NodeZone& zone = *data.zone(s);
+    const world::NodeZone& zone = *data.zone(s);
     const uint32_t first = data.slots[s]->first_node;
     for (uint32_t n = 0; n < zone.nodes().size(); ++n) {
       for (const format::Arc& arc : zone.arcs(n)) {
@@ -544,4 +549,4 @@ uint64_t NodeMesh::bytes() const {
              sizeof(uint32_t);
 }
 
-}  // namespace throng
+}  // namespace throng::graph

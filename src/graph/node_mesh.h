@@ -16,7 +16,7 @@
 
 /// Nodes as one class sees them: where it can stand, as squares of patches, and where exactly it
 /// gets from one to the next. Source: [PACS00] 1.2.3; docs/design/006-nodes.md.
-namespace throng {
+namespace throng::graph {
 
 /// A square of a patch on all of which the class may stand, and go straight by parameters: one of
 /// the largest nodes that hold the class, or a part of it no larger than kLargestBlock; of a
@@ -99,4 +99,4 @@ class NodeMesh {
   std::vector<uint32_t> first_portal_, portal_of_;
 };
 
-}  // namespace throng
+}  // namespace throng::graph

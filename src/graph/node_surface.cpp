@@ -9,7 +9,7 @@
 #include "world/place.h"
 
 // Points and normals of a patch: of the Bezier surface, or of a level tile's floor.
-namespace throng {
+namespace throng::graph {
 namespace {
 
 BezierPatch patch_of(const double* at) {
@@ -22,17 +22,17 @@ BezierPatch patch_of(const double* at) {
 }
 
 // The ground of a level tile at parameters (s, t).
-Vec3d on_tile(const WorldData& world, uint32_t level, double s, double t) {
-  const GroundLevel ground = ground_level(world, level, 0);
+Vec3d on_tile(const world::WorldData& world, uint32_t level, double s, double t) {
+  const world::GroundLevel ground = world::ground_level(world, level, 0);
   if (ground.zone == nullptr) return {};
-  const auto [tile_x, tile_z] = tile_of(world, *ground.zone, *ground.view.record);
+  const auto [tile_x, tile_z] = world::tile_of(world, *ground.zone, *ground.view.record);
   const auto unit = [](int32_t tile, double at) {
     const double cells = std::clamp(at, 0.0, 1.0) * 64;
-    const auto units =
-        static_cast<int64_t>(std::min(cells * kUnitsPerCell, 64.0 * kUnitsPerCell - 1));
-    return (int64_t{tile} * 64 << kUnitBits) + units;
+    const auto units = static_cast<int64_t>(
+        std::min(cells * world::kUnitsPerCell, 64.0 * world::kUnitsPerCell - 1));
+    return (int64_t{tile} * 64 << world::kUnitBits) + units;
   };
-  return place_at(world, ground, {unit(tile_x, s), unit(tile_z, t)}).position;
+  return world::place_at(world, ground, {unit(tile_x, s), unit(tile_z, t)}).position;
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ Vec3d NodeSurface::normal(double s, double t) const {
   return points != nullptr ? patch_of(points).normal(s, t) : Vec3d{0, 1, 0};
 }
 
-NodeSurface surface_of(const NodeData& nodes, const NodeZone& zone,
+NodeSurface surface_of(const world::NodeData& nodes, const world::NodeZone& zone,
                        const format::NodePatch& patch) {
   const auto kind = static_cast<PatchKind>(patch.kind());
   return {.kind = kind,
@@ -59,4 +59,4 @@ NodeSurface surface_of(const NodeData& nodes, const NodeZone& zone,
           .world = data_of(nodes.world).get()};
 }
 
-}  // namespace throng
+}  // namespace throng::graph

@@ -9,7 +9,7 @@
 #include "world/node_data.h"
 
 /// The ground of a node's patch.
-namespace throng {
+namespace throng::graph {
 
 /// A Bezier patch or a level tile, by parameters from 0 to 1. Points into the nodes' data.
 struct NodeSurface {
@@ -17,7 +17,7 @@ struct NodeSurface {
   uint8_t depth = 0;               ///< 2^depth x 2^depth cells.
   uint32_t source = 0;             ///< Bezier patch of the scene, or level of the world.
   const double* points = nullptr;  ///< A Bezier patch's 48 numbers.
-  const WorldData* world = nullptr;
+  const world::WorldData* world = nullptr;
 
   /// False of a level tile whose zone cannot be used.
   [[nodiscard]] bool is_there() const;
@@ -27,7 +27,7 @@ struct NodeSurface {
   [[nodiscard]] Vec3d normal(double s, double t) const;
 };
 
-[[nodiscard]] NodeSurface surface_of(const NodeData& nodes, const NodeZone& zone,
+[[nodiscard]] NodeSurface surface_of(const world::NodeData& nodes, const world::NodeZone& zone,
                                      const format::NodePatch& patch);
 
-}  // namespace throng
+}  // namespace throng::graph

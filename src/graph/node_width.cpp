@@ -13,7 +13,7 @@
 
 // The width of a node: how far its middle is from the nearest cell that is more restrictive, by a
 // flood over cells from its middle.
-namespace throng {
+namespace throng::graph {
 namespace {
 
 uint64_t key_of(uint32_t patch, uint32_t cell) { return uint64_t{patch} << 32 | cell; }
@@ -160,7 +160,7 @@ class Flood {
   // line there crosses none that is. Is that nearer than the tile's rim, beyond which only the
   // flood finds it? The middle is the corner before cell (s, t). [0 < s, t < 64]
   bool ends_on_tile(const PatchTree& tree, int32_t s, int32_t t) {
-    const CellRows& open = open_rows(tree);
+    const world::CellRows& open = open_rows(tree);
     for (int32_t beyond = 0; beyond < 64; ++beyond) {
       bool any = false;
       for (const int32_t row : {t - 1 - beyond, t + beyond}) {
@@ -194,11 +194,11 @@ class Flood {
   }
 
   // The cells of the patch that promise what the node does.
-  const CellRows& open_rows(const PatchTree& tree) {
+  const world::CellRows& open_rows(const PatchTree& tree) {
     for (const auto& [promise, rows] : open_) {
       if (promise == promise_) return rows;
     }
-    CellRows rows{};
+    world::CellRows rows{};
     const int32_t blocks = 1 << tree.leaf_depth, size = 64 / blocks;
     for (int32_t t = 0; t < blocks; ++t) {
       for (int32_t s = 0; s < blocks; ++s) {
@@ -287,7 +287,7 @@ class Flood {
   const CrossCells& cross_;
   double max_width_;
   std::span<const CellBalls> balls_;
-  std::vector<std::pair<Promise, CellRows>> open_;  // by what is promised
+  std::vector<std::pair<Promise, world::CellRows>> open_;  // by what is promised
   CellBall middle_;
   Promise promise_;
   double nearest_ = 0;
@@ -310,4 +310,4 @@ std::vector<double> node_widths(const NodeForest& forest, uint32_t patch, const 
   return widths;
 }
 
-}  // namespace throng
+}  // namespace throng::graph

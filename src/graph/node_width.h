@@ -10,7 +10,7 @@
 #include "throng/base.h"
 
 /// How far around its middle nothing is more restrictive than a node: the seed's cylinder width.
-namespace throng {
+namespace throng::graph {
 
 /// The middle of a cell, from an origin close enough for floats, and the radius around it that
 /// holds the cell, for floods.
@@ -72,4 +72,4 @@ class CrossCells {
                                               const CrossCells& cross, double max_width,
                                               std::span<const CellBalls> balls);
 
-}  // namespace throng
+}  // namespace throng::graph

@@ -6,7 +6,7 @@
 
 // Pairs of finest sub-patches that touch over the edges of Bezier patches: one to one, or one to
 // two or four. Linear in the sub-patches along the edges.
-namespace throng {
+namespace throng::graph {
 namespace {
 
 // Cell k of 2^depth along an edge, from its first vertex on.
@@ -82,4 +82,4 @@ std::vector<EdgePair> edge_pairs(const PatchSet& set, std::span<const int32_t> d
   return pairs;
 }
 
-}  // namespace throng
+}  // namespace throng::graph

@@ -10,7 +10,7 @@
 #include "throng/scene.h"
 
 /// Which finest sub-patches of Bezier patches lie beside each other over patches' edges.
-namespace throng {
+namespace throng::graph {
 
 /// Where a pair touches: the edge of the first patch, and the parameter of the middle along it.
 struct EdgePair {
@@ -28,4 +28,4 @@ struct EdgePair {
 /// Parameters (s, t) of a point along an edge, from the edge's first vertex on.
 [[nodiscard]] std::array<double, 2> edge_parameters(uint32_t edge, double at);
 
-}  // namespace throng
+}  // namespace throng::graph

@@ -5,7 +5,7 @@
 #include <cmath>
 
 // Portals packed to 20 bytes where their ends are multiples of 1/128; others are stored in full.
-namespace throng {
+namespace throng::graph {
 
 bool PortalList::pack(const std::array<double, 4>& line, std::array<uint8_t, 4>& at,
                       uint8_t& insets) {
@@ -56,4 +56,4 @@ void PortalList::add_all(std::vector<PortalList>& lists) {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::graph

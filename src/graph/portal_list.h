@@ -9,7 +9,7 @@
 #include "throng/surface.h"
 
 /// Portals between blocks of nodes, in little memory: a city of 100 km2 has 67 million.
-namespace throng {
+namespace throng::graph {
 
 /// Lines on level tiles keep that far inside cells, whose far border is the next cell's. [s and t]
 inline constexpr double kTileInset = 1e-5;
@@ -98,4 +98,4 @@ class PortalList {
   std::vector<NodePortal> wide_;
 };
 
-}  // namespace throng
+}  // namespace throng::graph

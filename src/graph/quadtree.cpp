@@ -9,7 +9,7 @@
 // From the cells up: what a block promises is the worst of its quarters, less the classes that
 // cannot step between them. Then from the patch down: nodes where a promise gets better. Every cell
 // is judged on its own, so a class has the same cells whichever other classes there are.
-namespace throng {
+namespace throng::graph {
 namespace {
 
 struct Block {
@@ -306,4 +306,4 @@ class TreeBuilder {
 
 PatchTree build_tree(const PatchCells& cells) { return TreeBuilder(cells).build(); }
 
-}  // namespace throng
+}  // namespace throng::graph

@@ -9,7 +9,7 @@
 
 /// Nodes of one patch, Bezier patch or level tile alike: a quadtree over its finest sub-patches,
 /// the *cells*, from what each of them promises. Source: [PACS00] 1.2.3.
-namespace throng {
+namespace throng::graph {
 
 /// What a body may rely on anywhere in a sub-patch, always on the safe side. Codes are bins whose
 /// edges stand in NodeBins.
@@ -157,4 +157,4 @@ struct PatchTree {
 /// node holds: as few as possible, with each class's cells in one connected. Linear in the cells.
 [[nodiscard]] PatchTree build_tree(const PatchCells& cells);
 
-}  // namespace throng
+}  // namespace throng::graph

@@ -10,7 +10,7 @@
 // A piece is a patch of its own, by de Casteljau's construction, and lies in the hull of its
 // control points. Its derivatives are means of differences of these, so its normals lie in the cone
 // that the products of all pairs of such differences span.
-namespace throng {
+namespace throng::graph {
 
 SurfacePiece surface_piece(const NodeSurface& surface, double s0, double t0, double s1, double t1) {
   BezierPatch patch;
@@ -48,4 +48,4 @@ SurfacePiece surface_piece(const NodeSurface& surface, double s0, double t0, dou
   return piece;
 }
 
-}  // namespace throng
+}  // namespace throng::graph

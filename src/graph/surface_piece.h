@@ -5,7 +5,7 @@
 #include "graph/node_surface.h"
 
 /// Bounds of a part of a curved patch.
-namespace throng {
+namespace throng::graph {
 
 /// All points of a piece are no farther than `spread` from `middle`, and all its normals lean from
 /// `normal` by no more than an angle of this sine and cosine; without `leans`, nothing is known.
@@ -21,4 +21,4 @@ struct SurfacePiece {
 [[nodiscard]] SurfacePiece surface_piece(const NodeSurface& surface, double s0, double t0,
                                          double s1, double t1);
 
-}  // namespace throng
+}  // namespace throng::graph

@@ -15,7 +15,7 @@
 
 // The cells of a level tile as those of a patch: what bodies may rely on in each, steps between
 // them, and pairs over the tile's borders. Linear in the cells and classes.
-namespace throng {
+namespace throng::graph {
 namespace {
 
 constexpr size_t kArea = 4096;
@@ -40,7 +40,8 @@ namespace {
 // Rows of what each class may stand on, merged: calls visit(first cell, count, classes) for runs of
 // cells on which the same ones stand.
 template <class Visit>
-void for_runs(const std::array<CellRows, kMaxAvatarClasses>& legal, size_t classes, Visit visit) {
+void for_runs(const std::array<world::CellRows, kMaxAvatarClasses>& legal, size_t classes,
+              Visit visit) {
   for (size_t z = 0; z < 64; ++z) {
     uint64_t any = 0, changes = 1;
     for (size_t c = 0; c < classes; ++c) {
@@ -62,41 +63,41 @@ void for_runs(const std::array<CellRows, kMaxAvatarClasses>& legal, size_t class
 }
 
 // Ceilings of a level above its floors, kNoValue for none.
-std::optional<std::array<uint16_t, kArea>> unpack_ceilings(const Zone& zone,
+std::optional<std::array<uint16_t, kArea>> unpack_ceilings(const world::Zone& zone,
                                                            const format::Level& level) {
   if (level.ceiling_kind() != format::HeightKind::Blocks) return std::nullopt;
   std::array<uint16_t, kArea> ceilings;
-  unpack_values(zone.words(level.ceiling_offset()), ceilings.data());
+  world::unpack_values(zone.words(level.ceiling_offset()), ceilings.data());
   return ceilings;
 }
 
 }  // namespace
 
 PatchCells tile_cells(const World& world, uint32_t level, uint16_t wanted, const NodeBins& bins) {
-  const WorldData& data = *data_of(world);
+  const world::WorldData& data = *data_of(world);
   const std::vector<AvatarClass>& classes = data.summary.classes;
   PatchCells patch;
   patch.depth = kTileDepth;
   patch.partial = true;
   patch.cells.assign(kArea, {.classes = 0, .inclination = 15, .height = 0, .headroom = 0});
-  GroundLevel ground = ground_level(data, level, 0);
+  world::GroundLevel ground = world::ground_level(data, level, 0);
   if (ground.zone == nullptr) return patch;
   const uint32_t zone_level = level - data.slots[data.slot_of_level(level)]->first_level;
   std::array<uint16_t, kArea> samples;
   if (ground.view.floor != nullptr) {
-    unpack_floor(ground.view, samples.data());
+    world::unpack_floor(ground.view, samples.data());
     ground.view.samples = samples.data();
   }
-  std::array<CellRows, kMaxAvatarClasses> legal;
+  std::array<world::CellRows, kMaxAvatarClasses> legal;
   for (size_t c = 0; c < classes.size(); ++c) {
     legal[c] = {};
     if ((wanted & bit_of(c)) == 0) continue;
-    set_class(ground, zone_level, static_cast<int32_t>(c));
+    world::set_class(ground, zone_level, static_cast<int32_t>(c));
     legal[c] = legal_rows(ground);
     if (ground.kind == format::CellsKind::None) continue;
-    const auto cuts = step_cuts(ground, legal[c], step_mm(classes[c]));
+    const auto cuts = step_cuts(ground, legal[c], world::step_mm(classes[c]));
     if (!cuts) continue;
-    const auto note = [&](const CellRows& rows, std::vector<uint16_t>& out) {
+    const auto note = [&](const world::CellRows& rows, std::vector<uint16_t>& out) {
       for (size_t z = 0; z < 64; ++z) {
         for (uint64_t left = rows[z]; left != 0; left &= left - 1) {
           if (patch.cut_s.empty()) patch.cut_s.assign(kArea, 0);
@@ -121,12 +122,12 @@ PatchCells tile_cells(const World& world, uint32_t level, uint16_t wanted, const
   const auto open = static_cast<uint8_t>(bins.height.size());
   // A body on a level tile stands upright: its height is the headroom.
   const auto headroom_over = [&](size_t cell) {
-    if (!is_flat && (!ceilings || (*ceilings)[cell] == kNoValue)) return open;
+    if (!is_flat && (!ceilings || (*ceilings)[cell] == world::kNoValue)) return open;
     const int32_t ceiling = record.ceiling_base() + (is_flat ? 0 : (*ceilings)[cell]);
     // Feet slant evenly over a cell: the highest are at a corner.
     int32_t feet = INT32_MIN;
-    for (const int32_t u : {0, kUnitsPerCell - 1}) {
-      for (const int32_t v : {0, kUnitsPerCell - 1}) {
+    for (const int32_t u : {0, world::kUnitsPerCell - 1}) {
+      for (const int32_t v : {0, world::kUnitsPerCell - 1}) {
         feet = std::max(feet, ground.view.feet(static_cast<int32_t>(cell % 64),
                                                static_cast<int32_t>(cell / 64), u, v));
       }
@@ -154,12 +155,13 @@ struct Rim {
   std::array<int32_t, 64> feet{};  // of cells where some class may [mm]
 };
 
-Rim rim_of(const WorldData& world, GroundLevel level, uint32_t zone_level, TileSide side) {
+Rim rim_of(const world::WorldData& world, world::GroundLevel level, uint32_t zone_level,
+           TileSide side) {
   Rim rim;
   const bool across = side == kWest || side == kEast, far = side == kEast || side == kSouth;
   const uint32_t in = far ? 7 : 0;  // block, and cell in it
   for (size_t c = 0; c < world.summary.classes.size(); ++c) {
-    set_class(level, zone_level, static_cast<int32_t>(c));
+    world::set_class(level, zone_level, static_cast<int32_t>(c));
     if (level.kind == format::CellsKind::None) continue;
     for (uint32_t b = 0; b < 8; ++b) {
       const uint64_t cells = level.legal_in(across ? b * 8 + in : in * 8 + b);
@@ -183,9 +185,10 @@ Rim rim_of(const WorldData& world, GroundLevel level, uint32_t zone_level, TileS
 // of the levels on which the class may stand, the one whose floor is nearest, if within a step.
 class PairFinder {
  public:
-  PairFinder(const WorldData& world, int32_t tile_x, int32_t tile_z)
+  PairFinder(const world::WorldData& world, int32_t tile_x, int32_t tile_z)
       : world_(world), tile_x_(tile_x), tile_z_(tile_z), here_(levels_of(tile_x, tile_z)) {
-    for (const AvatarClass& avatar : world.summary.classes) steps_.push_back(step_mm(avatar));
+    for (const AvatarClass& avatar : world.summary.classes)
+      steps_.push_back(world::step_mm(avatar));
     limits_ = step_limits(world.summary.classes, world.summary.cell);
   }
 
@@ -199,7 +202,7 @@ class PairFinder {
 
  private:
   struct TileLevel {
-    GroundLevel ground;  // of class 0
+    world::GroundLevel ground;  // of class 0
     uint32_t zone_level = 0;
   };
 
@@ -208,7 +211,7 @@ class PairFinder {
     const auto tile = world_.tile_levels(x, z);
     for (uint32_t l = tile.first; l < tile.last; ++l) {
       const uint32_t zone_level = tile.zone_first + l - tile.first;
-      levels.push_back({ground_level(*tile.zone, zone_level, l, 0), zone_level});
+      levels.push_back({world::ground_level(*tile.zone, zone_level, l, 0), zone_level});
     }
     return levels;
   }
@@ -271,14 +274,14 @@ class PairFinder {
     std::array<uint16_t, kArea> samples;
     for (size_t c = 0; c < steps_.size(); ++c) {
       for (size_t l = 0; l < here_.size(); ++l) {
-        GroundLevel level = here_[l].ground;
-        set_class(level, here_[l].zone_level, static_cast<int32_t>(c));
+        world::GroundLevel level = here_[l].ground;
+        world::set_class(level, here_[l].zone_level, static_cast<int32_t>(c));
         legal_[l] = legal_rows(level);
         safe_[l] = level.step_safe ? 1 : 0;
       }
       for (uint32_t l = 0; l < here_.size(); ++l) {
-        const CellRows& own = legal_[l];
-        CellRows others{};
+        const world::CellRows& own = legal_[l];
+        world::CellRows others{};
         for (size_t o = 0; o < here_.size(); ++o) {
           for (size_t z = 0; z < 64 && o != l; ++z) others[z] |= legal_[o][z];
         }
@@ -287,10 +290,10 @@ class PairFinder {
           beside |= own[z] & (others[z] >> 1 | (z < 63 ? others[z + 1] : 0));
         }
         if (beside == 0) continue;
-        GroundLevel level = here_[l].ground;
-        set_class(level, here_[l].zone_level, static_cast<int32_t>(c));
+        world::GroundLevel level = here_[l].ground;
+        world::set_class(level, here_[l].zone_level, static_cast<int32_t>(c));
         if (level.view.floor != nullptr && !level.step_safe) {
-          unpack_floor(level.view, samples.data());
+          world::unpack_floor(level.view, samples.data());
           level.view.samples = samples.data();
         }
         const auto cuts = step_cuts(level, own, steps_[c]);
@@ -335,8 +338,8 @@ class PairFinder {
     add(here_[from].ground, here_[to].ground, bit_of(c), x, z, east);
   }
 
-  void add(const GroundLevel& from, const GroundLevel& to, uint16_t classes, int32_t x, int32_t z,
-           bool east) {
+  void add(const world::GroundLevel& from, const world::GroundLevel& to, uint16_t classes,
+           int32_t x, int32_t z, bool east) {
     const int32_t nx = x + (east ? 1 : 0), nz = z + (east ? 0 : 1);
     const bool steps = is_step(from.view, x, z, to.view, nx & 63, nz & 63, limits_);
     pairs_.push_back({.patch_a = from.world_level,
@@ -349,22 +352,22 @@ class PairFinder {
                       .side_b = static_cast<uint8_t>(east ? 0 : 3)});
   }
 
-  const WorldData& world_;
+  const world::WorldData& world_;
   int32_t tile_x_, tile_z_;
   std::vector<TileLevel> here_;
   std::vector<int32_t> steps_;  // per class [mm]
   StepLimits limits_;
-  std::vector<CellRows> legal_;  // of a class, by level of the tile
-  std::vector<uint8_t> safe_;    // likewise: no step on the level is too high
+  std::vector<world::CellRows> legal_;  // of a class, by level of the tile
+  std::vector<uint8_t> safe_;           // likewise: no step on the level is too high
   std::vector<CellPair> pairs_;
 };
 
 }  // namespace
 
-std::vector<CellPair> tile_pairs(const WorldData& world, int32_t tile_x, int32_t tile_z) {
+std::vector<CellPair> tile_pairs(const world::WorldData& world, int32_t tile_x, int32_t tile_z) {
   std::vector<CellPair> pairs = PairFinder(world, tile_x, tile_z).find();
   merge_cell_pairs(pairs);                                   // one for all its classes
   return std::vector<CellPair>(pairs.begin(), pairs.end());  // no room to grow: these are many
 }
 
-}  // namespace throng
+}  // namespace throng::graph

@@ -11,7 +11,7 @@
 #include "world/zone_data.h"
 
 /// Level tiles as patches: their 64 x 64 cells are the finest sub-patches, s along x, t along z.
-namespace throng {
+namespace throng::graph {
 
 inline constexpr int32_t kTileDepth = 6;
 
@@ -23,7 +23,7 @@ inline constexpr int32_t kTileDepth = 6;
 /// Cells of different levels between which a class steps there and back, by the rule of moves: over
 /// the east and south borders of a tile, and over the seams of its level tiles. Levels count as
 /// patches: level l is patch l.
-[[nodiscard]] std::vector<CellPair> tile_pairs(const WorldData& world, int32_t tile_x,
+[[nodiscard]] std::vector<CellPair> tile_pairs(const world::WorldData& world, int32_t tile_x,
                                                int32_t tile_z);
 
-}  // namespace throng
+}  // namespace throng::graph

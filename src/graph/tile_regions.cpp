@@ -16,13 +16,14 @@
 // The parts of every level for every class are found; parts of several classes that are the same
 // place share a region; and parts of different levels of the tile are linked where level tiles
 // meet. Tiles are linked over their borders by what each part shows there.
-namespace throng {
+namespace throng::graph {
 namespace {
 
 using Part = PartList::Part;
 
 // Cells of a row of a list's part that are not occupied.
-uint64_t row_without(const PartList& list, const Part& part, size_t z, const CellRows* occupied) {
+uint64_t row_without(const PartList& list, const Part& part, size_t z,
+                     const world::CellRows* occupied) {
   if (z < part.begin || z >= part.end) return 0;
   return list.row(part, z) & ~(occupied != nullptr ? (*occupied)[z] : 0);
 }
@@ -48,18 +49,18 @@ uint32_t shared_cells(const PartList& a, const Part& p, const PartList& b, const
   uint32_t count = 0;
   for (size_t z = range.begin; z < range.end; ++z) {
     const uint64_t both = a.row(p, z) & b.row(q, z);
-    if (both != 0) count += count_ones(both);
+    if (both != 0) count += world::count_ones(both);
   }
   return count;
 }
 
-CellRows without(CellRows cells, const CellRows& occupied) {
+world::CellRows without(world::CellRows cells, const world::CellRows& occupied) {
   for (size_t z = 0; z < 64; ++z) cells[z] &= ~occupied[z];
   return cells;
 }
 
 // Is any cell of `a` beside one of `b`?
-bool is_beside(const CellRows& a, const CellRows& b) {
+bool is_beside(const world::CellRows& a, const world::CellRows& b) {
   uint64_t found = (a[0] << 1 | a[0] >> 1 | a[1]) & b[0];
   for (size_t z = 1; z < 63; ++z) {
     found |= (a[z] << 1 | a[z] >> 1 | a[z - 1] | a[z + 1]) & b[z];
@@ -159,7 +160,7 @@ void add_link(std::vector<RegionLink>& links, const RegionLink& link) {
 // only if it is needed.
 class BorderLevels {
  public:
-  BorderLevels(const WorldData::TileLevels& levels, const TileParts& tile, TileSide side,
+  BorderLevels(const world::WorldData::TileLevels& levels, const TileParts& tile, TileSide side,
                size_t classes, TileScratch::Border& kept)
       : levels_(tile.levels), classes_(classes), side_(side), kept_(kept) {
     kept.views.clear();
@@ -220,9 +221,9 @@ class BorderLevels {
 
 }  // namespace
 
-TileRegions::TileRegions(const WorldData& world) : world_(world) {
+TileRegions::TileRegions(const world::WorldData& world) : world_(world) {
   for (const AvatarClass& avatar : world.summary.classes) {
-    steps_.push_back(step_mm(avatar));
+    steps_.push_back(world::step_mm(avatar));
     longest_ = std::max(longest_, steps_.back());
     shortest_ = std::min(shortest_, steps_.back());
   }
@@ -245,9 +246,9 @@ TileParts TileRegions::parts(int32_t tile_x, int32_t tile_z, TileScratch& scratc
   // Nearly half the time to unpack a set was the wait for its first word: prefetch all in time.
   for (uint32_t l = 0; l < tile.levels; ++l) {
     const uint32_t zone_level = levels.zone_first + l;
-    GroundLevel ground = ground_level(*levels.zone, zone_level, levels.first + l, 0);
+    world::GroundLevel ground = world::ground_level(*levels.zone, zone_level, levels.first + l, 0);
     for (size_t c = 0; c < steps_.size(); ++c) {
-      set_class(ground, zone_level, static_cast<int32_t>(c));
+      world::set_class(ground, zone_level, static_cast<int32_t>(c));
       scratch.grounds[l * steps_.size() + c] = ground;
       if (ground.legal == nullptr) continue;
       prefetch(ground.legal);
@@ -255,7 +256,7 @@ TileParts TileRegions::parts(int32_t tile_x, int32_t tile_z, TileScratch& scratc
     }
   }
   for (uint32_t l = 0; l < tile.levels; ++l) {
-    tile.heights.push_back(floor_range(levels.zone->view(levels.zone_first + l)));
+    tile.heights.push_back(world::floor_range(levels.zone->view(levels.zone_first + l)));
     tile.first.push_back(static_cast<uint32_t>(tile.regions.size()));
     find_level(l, tile, scratch);
   }
@@ -269,14 +270,14 @@ TileParts TileRegions::linked_parts(int32_t tile_x, int32_t tile_z, TileScratch&
   scratch.any_class.assign(tile.levels, {});
   for (size_t at = 0; at < tile.classes.size(); ++at) {
     if (tile.classes[at].first == tile.classes[at].last || scratch.alike[at] != 0) continue;
-    CellRows& any_class = scratch.any_class[at / steps_.size()];
+    world::CellRows& any_class = scratch.any_class[at / steps_.size()];
     for (size_t z = 0; z < 64; ++z) any_class[z] |= scratch.legal[at][z];
   }
   for (uint32_t a = 0; a < tile.levels; ++a) {
     for (uint32_t b = a + 1; b < tile.levels; ++b) {
       if (!tile.heights[a].is_near(tile.heights[b], longest_)) continue;
       if (!is_beside(scratch.any_class[a], scratch.any_class[b])) continue;
-      for (CellRows& rows : scratch.rises.known) rows.fill(0);
+      for (world::CellRows& rows : scratch.rises.known) rows.fill(0);
       for (size_t c = 0; c < steps_.size(); ++c) {
         link_seam({tile_x, tile_z, c, a, b}, tile, scratch);
       }
@@ -346,13 +347,13 @@ void TileRegions::find_shapes(uint32_t l, TileScratch& scratch) const {
   const auto shape_count = [&] { return static_cast<uint32_t>(shapes.parts.size()); };
   scratch.together.clear();
   for (size_t at = begin; at < begin + steps_.size(); ++at) {
-    const GroundLevel& ground = scratch.grounds[at];
+    const world::GroundLevel& ground = scratch.grounds[at];
     uint32_t& alike = scratch.alike[at] = 0;
     scratch.shapes_of[at] = {};
     if (ground.kind == format::CellsKind::None) continue;
     // A set that classes share is in the zone's file once.
     for (size_t other = begin; ground.step_safe && other < at; ++other) {
-      const GroundLevel& its = scratch.grounds[other];
+      const world::GroundLevel& its = scratch.grounds[other];
       const bool is_same = its.kind == ground.kind && its.legal == ground.legal && its.step_safe;
       if (is_same) alike |= uint32_t{1} << (other - begin);
     }
@@ -360,7 +361,7 @@ void TileRegions::find_shapes(uint32_t l, TileScratch& scratch) const {
       scratch.legal[at] = scratch.legal[begin + static_cast<size_t>(std::countr_zero(alike))];
       continue;
     }
-    CellRows& legal = scratch.legal[at] = legal_rows(ground);
+    world::CellRows& legal = scratch.legal[at] = legal_rows(ground);
     const auto cuts = step_cuts(ground, legal, steps_[at - begin]);
     const uint32_t first = shape_count();
     if (cuts || steps_.size() == 1) {
@@ -375,7 +376,7 @@ void TileRegions::find_shapes(uint32_t l, TileScratch& scratch) const {
     scratch.finder.find(scratch.legal[scratch.together[0]], nullptr, shapes);
     scratch.shapes_of[scratch.together[0]] = {first, shape_count()};
   } else if (!scratch.together.empty()) {
-    std::array<const CellRows*, kMaxAvatarClasses> sets{};
+    std::array<const world::CellRows*, kMaxAvatarClasses> sets{};
     std::array<uint32_t, kMaxAvatarClasses + 1> first{};
     const size_t count = scratch.together.size();
     for (size_t i = 0; i < count; ++i) sets[i] = &scratch.legal[scratch.together[i]];
@@ -410,12 +411,13 @@ void TileRegions::find_level(uint32_t l, TileParts& tile, TileScratch& scratch) 
 
 // True if a class steps from cell (x, z) of the grid on level `a` to (nx, nz) on level `b`, and
 // back.
-bool TileRegions::steps_in_both_directions(size_t c, const GroundLevel& a, const GroundLevel& b,
-                                           int32_t x, int32_t z, int32_t nx, int32_t nz) const {
-  const WorldGround ground{world_, static_cast<int32_t>(c)};
-  const auto there = step_to(ground, a, x, z, nx, nz, steps_[c]);
+bool TileRegions::steps_in_both_directions(size_t c, const world::GroundLevel& a,
+                                           const world::GroundLevel& b, int32_t x, int32_t z,
+                                           int32_t nx, int32_t nz) const {
+  const world::WorldGround ground{world_, static_cast<int32_t>(c)};
+  const auto there = world::step_to(ground, a, x, z, nx, nz, steps_[c]);
   if (!there || there->world_level != b.world_level) return false;
-  const auto back = step_to(ground, b, nx, nz, x, z, steps_[c]);
+  const auto back = world::step_to(ground, b, nx, nz, x, z, steps_[c]);
   return back && back->world_level == a.world_level;
 }
 
@@ -425,14 +427,14 @@ void TileRegions::link_seam(const Seam& seam, TileParts& tile, TileScratch& scra
   const size_t at_a = seam.a * steps_.size() + c, at_b = seam.b * steps_.size() + c;
   const TileParts::ClassParts as = tile.classes[at_a], bs = tile.classes[at_b];
   if (as.first == as.last || bs.first == bs.last) return;
-  const GroundLevel &level_a = scratch.grounds[at_a], &level_b = scratch.grounds[at_b];
+  const world::GroundLevel &level_a = scratch.grounds[at_a], &level_b = scratch.grounds[at_b];
   // A body stays on its level where that continues: it changes to the other only over cells where
   // its own has nothing, unless a step may be too high.
-  const CellRows &all_a = scratch.legal[at_a], &all_b = scratch.legal[at_b];
-  const CellRows* occupied_a = level_a.step_safe ? &all_a : nullptr;
-  const CellRows* occupied_b = level_b.step_safe ? &all_b : nullptr;
-  const CellRows from_any = occupied_b != nullptr ? without(all_a, *occupied_b) : all_a;
-  const CellRows to_any = occupied_a != nullptr ? without(all_b, *occupied_a) : all_b;
+  const world::CellRows &all_a = scratch.legal[at_a], &all_b = scratch.legal[at_b];
+  const world::CellRows* occupied_a = level_a.step_safe ? &all_a : nullptr;
+  const world::CellRows* occupied_b = level_b.step_safe ? &all_b : nullptr;
+  const world::CellRows from_any = occupied_b != nullptr ? without(all_a, *occupied_b) : all_a;
+  const world::CellRows to_any = occupied_a != nullptr ? without(all_b, *occupied_a) : all_b;
   if (!is_beside(from_any, to_any)) return;
 
   const PartList& shapes = scratch.shapes;
@@ -494,4 +496,4 @@ void merge_links(std::vector<RegionLink>& links) {
   links.resize(kept);
 }
 
-}  // namespace throng
+}  // namespace throng::graph

@@ -13,7 +13,7 @@
 
 /// Regions of single tiles: connected parts of level tiles, shared by classes, and the links
 /// between them. See docs/design/003-graph.md.
-namespace throng {
+namespace throng::graph {
 
 /// A connected part of a level tile. Its classes may see parts of different shape; `key` lies in
 /// all of them.
@@ -42,11 +42,11 @@ struct TileParts {
     uint32_t first = 0, last = 0;
   };
 
-  uint32_t first_level = 0, levels = 0;  // of the world
-  std::vector<Region> regions;           // in order of levels
-  std::vector<FloorRange> heights;       // per level
-  std::vector<uint32_t> first;           // per level: its first region; one more at the end
-  std::vector<ClassParts> classes;       // per level and class
+  uint32_t first_level = 0, levels = 0;    // of the world
+  std::vector<Region> regions;             // in order of levels
+  std::vector<world::FloorRange> heights;  // per level
+  std::vector<uint32_t> first;             // per level: its first region; one more at the end
+  std::vector<ClassParts> classes;         // per level and class
   std::vector<RegionPart> parts;
   std::vector<RegionLink> links;  // a < b, maybe several for a pair
 };
@@ -55,11 +55,12 @@ struct TileParts {
 struct TileScratch {
   // What is known of steps from cells of one level to those beside them of another, for any class.
   struct Rises {
-    std::array<CellRows, 4> known, low;  // per direction; low: no higher than any class's step
+    std::array<world::CellRows, 4> known,
+        low;  // per direction; low: no higher than any class's step
   };
   // The levels of a tile along one of its borders.
   struct Border {
-    std::vector<LevelView> views;                  // per level
+    std::vector<world::LevelView> views;           // per level
     std::vector<uint64_t> known;                   // per level: bit per cell whose height is known
     std::vector<std::array<int32_t, 64>> heights;  // [mm]
     std::vector<uint64_t> legal;                   // per level and class
@@ -71,10 +72,10 @@ struct TileScratch {
   PartList shapes;  // of the tile's parts; sets that are alike have the same
   std::vector<TileParts::ClassParts> shapes_of;  // per level and class: which of them
   std::vector<size_t> together;                  // sets of a level that are left to find in lanes
-  std::vector<GroundLevel> grounds;              // per level and class
-  std::vector<uint32_t> alike;      // the same: classes before it that may stand on the same cells
-  std::vector<CellRows> legal;      // per level and class
-  std::vector<CellRows> any_class;  // per level: legal for any class
+  std::vector<world::GroundLevel> grounds;       // per level and class
+  std::vector<uint32_t> alike;  // the same: classes before it that may stand on the same cells
+  std::vector<world::CellRows> legal;      // per level and class
+  std::vector<world::CellRows> any_class;  // per level: legal for any class
   PartList common;  // per region of a level: cells that all its classes' parts share
   Rises rises;
   Border from, to;
@@ -84,7 +85,7 @@ struct TileScratch {
 /// given must be usable.
 class TileRegions {
  public:
-  explicit TileRegions(const WorldData& world);
+  explicit TileRegions(const world::WorldData& world);
 
   /// The regions of a tile, without links.
   [[nodiscard]] TileParts parts(int32_t tile_x, int32_t tile_z, TileScratch& scratch) const;
@@ -106,11 +107,12 @@ class TileRegions {
 
   void find_shapes(uint32_t l, TileScratch& scratch) const;
   void find_level(uint32_t l, TileParts& tile, TileScratch& scratch) const;
-  [[nodiscard]] bool steps_in_both_directions(size_t c, const GroundLevel& a, const GroundLevel& b,
-                                              int32_t x, int32_t z, int32_t nx, int32_t nz) const;
+  [[nodiscard]] bool steps_in_both_directions(size_t c, const world::GroundLevel& a,
+                                              const world::GroundLevel& b, int32_t x, int32_t z,
+                                              int32_t nx, int32_t nz) const;
   void link_seam(const Seam& seam, TileParts& tile, TileScratch& scratch) const;
 
-  const WorldData& world_;
+  const world::WorldData& world_;
   std::vector<int32_t> steps_;                  // per class [mm]
   int32_t longest_ = 0, shortest_ = INT32_MAX;  // of them
 };
@@ -118,4 +120,4 @@ class TileRegions {
 /// Makes one link for all classes of a pair, and sorts by a, then b.
 void merge_links(std::vector<RegionLink>& links);
 
-}  // namespace throng
+}  // namespace throng::graph

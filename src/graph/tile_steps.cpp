@@ -10,7 +10,7 @@
 #include "world/place.h"
 
 // Distinguishes steps from slopes by the rises of three cells in a row. Constant time.
-namespace throng {
+namespace throng::graph {
 namespace {
 
 constexpr int32_t kRounding = 3;  // of differences of floors in whole millimetres [mm]
@@ -21,7 +21,7 @@ StepLimits step_limits(std::span<const AvatarClass> classes, double cell) {
   StepLimits limits{.step = INT32_MAX};
   double steepest = 0;
   for (const AvatarClass& avatar : classes) {
-    limits.step = std::min(limits.step, step_mm(avatar));
+    limits.step = std::min(limits.step, world::step_mm(avatar));
     steepest = std::max(steepest, avatar.max_slope);
   }
   limits.slope =
@@ -29,14 +29,14 @@ StepLimits step_limits(std::span<const AvatarClass> classes, double cell) {
   return limits;
 }
 
-bool is_step(const LevelView& a, int32_t x, int32_t z, const LevelView& b, int32_t nx, int32_t nz,
-             const StepLimits& limits) {
+bool is_step(const world::LevelView& a, int32_t x, int32_t z, const world::LevelView& b, int32_t nx,
+             int32_t nz, const StepLimits& limits) {
   const int32_t here = a.sample(x, z), next = b.sample(nx, nz);
   const int32_t rise = std::abs(next - here);
   if (rise <= limits.step + kRounding) return false;
   const int32_t dx = z == nz ? 1 : 0, dz = 1 - dx, sign = next > here ? 1 : -1;
   // By how much the floor rises on from a cell to the next of its level, away from the border.
-  const auto goes_on = [&](const LevelView& level, int32_t from_x, int32_t from_z,
+  const auto goes_on = [&](const world::LevelView& level, int32_t from_x, int32_t from_z,
                            int32_t direction) {
     const int32_t to_x = from_x + direction * dx, to_z = from_z + direction * dz;
     const auto is_there = [&](int32_t i, int32_t k) {
@@ -53,7 +53,7 @@ bool is_step(const LevelView& a, int32_t x, int32_t z, const LevelView& b, int32
   return rise - slope > limits.step + kRounding;
 }
 
-std::optional<TileSteps> tile_steps(const LevelView& view, const StepLimits& limits) {
+std::optional<TileSteps> tile_steps(const world::LevelView& view, const StepLimits& limits) {
   if (view.floor == nullptr) return std::nullopt;  // one plane
   std::optional<TileSteps> steps;
   const auto look = [&](int32_t x, int32_t z, int32_t nx, int32_t nz) {
@@ -78,4 +78,4 @@ std::optional<TileSteps> tile_steps(const LevelView& view, const StepLimits& lim
   return steps;
 }
 
-}  // namespace throng
+}  // namespace throng::graph

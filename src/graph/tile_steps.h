@@ -10,7 +10,7 @@
 #include "world/level_view.h"
 
 /// Where the floor of level tiles rises by a step, and not by a slope.
-namespace throng {
+namespace throng::graph {
 
 /// What is a step, and how steep a slope may be.
 struct StepLimits {
@@ -24,15 +24,17 @@ struct StepLimits {
 /// slope as far as it continues for three cells, of which these may be any. Where that is not
 /// known, because the floor or the tile ends, a slope that some class walks on is assumed to be
 /// one.
-[[nodiscard]] bool is_step(const LevelView& a, int32_t x, int32_t z, const LevelView& b, int32_t nx,
-                           int32_t nz, const StepLimits& limits);
+[[nodiscard]] bool is_step(const world::LevelView& a, int32_t x, int32_t z,
+                           const world::LevelView& b, int32_t nx, int32_t nz,
+                           const StepLimits& limits);
 
 /// Bit x of `across` row z: a step between (x, z) and (x + 1, z), of `along` between (x, z) and
 /// (x, z + 1).
 struct TileSteps {
-  CellRows across{}, along{};
+  world::CellRows across{}, along{};
 };
 /// All steps of a level, or none if it has none. [view.samples, if it has a floor in blocks]
-[[nodiscard]] std::optional<TileSteps> tile_steps(const LevelView& view, const StepLimits& limits);
+[[nodiscard]] std::optional<TileSteps> tile_steps(const world::LevelView& view,
+                                                  const StepLimits& limits);
 
-}  // namespace throng
+}  // namespace throng::graph

@@ -13,14 +13,15 @@
 // A part is one class's share of a region, and belongs to no other class: one forest serves all.
 // Its roots are the first of their components, so that what a region belongs to is the list of the
 // roots of its parts; regions with the same classes and the same list are a group.
-namespace throng {
+namespace throng::graph {
 namespace {
 
 // Which of the regions so far has the same list. Numbers are given in the order of regions, so
 // nothing depends on the order of the table.
 class GroupTable {
  public:
-  GroupTable(const RegionTables& tables, const ZoneParts& parts, std::span<const uint32_t> roots)
+  GroupTable(const world::RegionTables& tables, const ZoneParts& parts,
+             std::span<const uint32_t> roots)
       : tables_(tables), parts_(parts), roots_(roots) {
     slots_.assign(std::bit_ceil(2 * tables.regions.size() + 1), kFree);
   }
@@ -46,14 +47,14 @@ class GroupTable {
     return roots_.subspan(parts_.first[region], parts_.first[region + 1] - parts_.first[region]);
   }
 
-  const RegionTables& tables_;
+  const world::RegionTables& tables_;
   const ZoneParts& parts_;
   std::span<const uint32_t> roots_;
   std::vector<uint32_t> slots_;
 };
 
 // Roots of all parts, by the links.
-std::vector<uint32_t> find_roots(const ZoneParts& parts, const RegionTables& tables) {
+std::vector<uint32_t> find_roots(const ZoneParts& parts, const world::RegionTables& tables) {
   DisjointSets sets(parts.cells.size());
   const auto part_of = [&](uint32_t region, uint32_t below) {
     return parts.first[region] +
@@ -72,8 +73,8 @@ std::vector<uint32_t> find_roots(const ZoneParts& parts, const RegionTables& tab
 
 }  // namespace
 
-void find_components(const WorldData& world, size_t slot, const ZoneParts& parts,
-                     RegionTables& tables) {
+void find_components(const world::WorldData& world, size_t slot, const ZoneParts& parts,
+                     world::RegionTables& tables) {
   const std::vector<uint32_t> roots = find_roots(parts, tables);
   std::vector<uint64_t> cells(roots.size(), 0);  // of the components, at their roots
   for (size_t part = 0; part < roots.size(); ++part) cells[roots[part]] += parts.cells[part];
@@ -83,7 +84,7 @@ void find_components(const WorldData& world, size_t slot, const ZoneParts& parts
   std::vector<uint32_t> of_group;
   std::vector<uint64_t> begun;
   GroupTable like(tables, parts, roots);
-  GroupWriter writer;
+  world::GroupWriter writer;
   uint32_t groups = 0;
   for (uint32_t level = 0; level + 1 < tables.first.size(); ++level) {
     for (uint32_t r = tables.first[level]; r < tables.first[level + 1]; ++r) {
@@ -102,10 +103,11 @@ void find_components(const WorldData& world, size_t slot, const ZoneParts& parts
         }
         of_group.push_back(begins_in[roots[part]]);
       }
-      GroupWriter::Group added{.classes = region.classes(), .begins_in = of_group, .cells = begun};
+      world::GroupWriter::Group added{
+          .classes = region.classes(), .begins_in = of_group, .cells = begun};
       if (!begun.empty()) {
-        const GroundLevel ground = ground_level(world, first_level + level, 0);
-        constexpr int32_t kMiddle = kUnitsPerCell / 2;
+        const world::GroundLevel ground = world::ground_level(world, first_level + level, 0);
+        constexpr int32_t kMiddle = world::kUnitsPerCell / 2;
         added.tile = ground.view.record->tile();
         added.feet = ground.view.feet(region.key() % kTileCells, region.key() / kTileCells, kMiddle,
                                       kMiddle);
@@ -116,4 +118,4 @@ void find_components(const WorldData& world, size_t slot, const ZoneParts& parts
   tables.groups = writer.take();
 }
 
-}  // namespace throng
+}  // namespace throng::graph

@@ -9,7 +9,7 @@
 #include "world/region_data.h"
 
 /// The connected components within a zone, by its links.
-namespace throng {
+namespace throng::graph {
 
 /// The parts of a zone's regions: one for each class that a region has, region by region, in order
 /// of bits.
@@ -19,7 +19,7 @@ struct ZoneParts {
 };
 
 /// Fills the groups of a zone whose regions, without their groups, and links are known.
-void find_components(const WorldData& world, size_t slot, const ZoneParts& parts,
-                     RegionTables& tables);
+void find_components(const world::WorldData& world, size_t slot, const ZoneParts& parts,
+                     world::RegionTables& tables);
 
-}  // namespace throng
+}  // namespace throng::graph

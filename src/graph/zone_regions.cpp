@@ -12,7 +12,7 @@
 
 // Runs tile_regions over a zone's tiles and over the borders between zones, in parallel; numbers
 // regions in order of tiles.
-namespace throng {
+namespace throng::graph {
 namespace {
 
 // The tiles of a zone and their regions, numbered through the zone.
@@ -30,7 +30,7 @@ std::vector<format::RegionLink> to_format(const std::vector<RegionLink>& links) 
 }
 
 // Regions in the zone's numbers, with their parts counted; `cells` gets those of each part.
-void number_regions(const WorldData& world, ZoneTiles& zone, RegionTables& tables,
+void number_regions(const world::WorldData& world, ZoneTiles& zone, world::RegionTables& tables,
                     std::vector<uint32_t>& first_part, std::vector<uint32_t>& cells) {
   const size_t classes = world.summary.classes.size();
   tables.classes = static_cast<uint32_t>(classes);
@@ -43,7 +43,7 @@ void number_regions(const WorldData& world, ZoneTiles& zone, RegionTables& table
     for (const Region& region : tile.regions) {
       tables.regions.emplace_back(0, static_cast<uint16_t>(region.key),
                                   static_cast<uint16_t>(region.classes));
-      first_part.push_back(first_part.back() + count_ones(region.classes));
+      first_part.push_back(first_part.back() + world::count_ones(region.classes));
     }
   }
   cells.assign(first_part.back(), 0);
@@ -53,7 +53,7 @@ void number_regions(const WorldData& world, ZoneTiles& zone, RegionTables& table
       const uint32_t below = (uint32_t{1} << i % classes) - 1;
       for (uint32_t p = tile.classes[i].first; p < tile.classes[i].last; ++p) {
         const uint32_t region = zone.base[t] + tile.parts[p].region;
-        const uint32_t before = count_ones(tables.regions[region].classes() & below);
+        const uint32_t before = world::count_ones(tables.regions[region].classes() & below);
         cells[first_part[region] + before] = tile.parts[p].cells;
       }
     }
@@ -62,8 +62,8 @@ void number_regions(const WorldData& world, ZoneTiles& zone, RegionTables& table
 
 }  // namespace
 
-std::optional<RegionTables> find_zone_regions(const WorldData& world, size_t slot, int32_t workers,
-                                              const Context& context) {
+std::optional<world::RegionTables> find_zone_regions(const world::WorldData& world, size_t slot,
+                                                     int32_t workers, const Context& context) {
   const format::ZoneEntry& entry = world.slots[slot]->entry;
   ZoneTiles zone;
   zone.side = static_cast<int32_t>(world.tiles_per_zone);
@@ -82,7 +82,7 @@ std::optional<RegionTables> find_zone_regions(const WorldData& world, size_t slo
                                         scratch[static_cast<size_t>(worker)]);
   });
   if (context.cancel) return std::nullopt;
-  RegionTables tables;
+  world::RegionTables tables;
   std::vector<uint32_t> first_part, cells;
   number_regions(world, zone, tables, first_part, cells);
 
@@ -113,8 +113,9 @@ std::optional<RegionTables> find_zone_regions(const WorldData& world, size_t slo
   return tables;
 }
 
-std::vector<format::RegionLink> find_zone_links(const WorldData& world, const ZoneBorder& from,
-                                                const ZoneBorder& to, int32_t workers) {
+std::vector<format::RegionLink> find_zone_links(const world::WorldData& world,
+                                                const ZoneBorder& from, const ZoneBorder& to,
+                                                int32_t workers) {
   const format::ZoneEntry& a = world.slots[from.slot]->entry;
   const format::ZoneEntry& b = world.slots[to.slot]->entry;
   const TileSide side = b.x() > a.x() ? kEast : kSouth;
@@ -147,9 +148,9 @@ std::vector<format::RegionLink> find_zone_links(const WorldData& world, const Zo
   return to_format(links);
 }
 
-uint32_t region_at(const WorldData& world, const RegionZone& regions, uint32_t level,
+uint32_t region_at(const world::WorldData& world, const world::RegionZone& regions, uint32_t level,
                    int32_t avatar_class, int32_t x, int32_t z) {
-  const GroundLevel ground = ground_level(world, level, avatar_class);
+  const world::GroundLevel ground = world::ground_level(world, level, avatar_class);
   if (ground.zone == nullptr || !ground.is_legal(x, z)) return kNoRegion;
   const auto has_class = [&](uint32_t r) {
     return (regions.regions()[r].classes() >> avatar_class & 1) != 0;
@@ -163,10 +164,10 @@ uint32_t region_at(const WorldData& world, const RegionZone& regions, uint32_t l
     ++count;
   }
   if (count <= 1) return only;
-  const CellRows legal = legal_rows(ground);
-  const auto cuts =
-      step_cuts(ground, legal, step_mm(world.summary.classes[static_cast<size_t>(avatar_class)]));
-  const CellRows part = flood(legal, cuts ? &*cuts : nullptr, x, z);
+  const world::CellRows legal = legal_rows(ground);
+  const auto cuts = step_cuts(
+      ground, legal, world::step_mm(world.summary.classes[static_cast<size_t>(avatar_class)]));
+  const world::CellRows part = flood(legal, cuts ? &*cuts : nullptr, x, z);
   for (uint32_t r = first; r < last; ++r) {
     const uint32_t key = regions.regions()[r].key();
     if (has_class(r) && (part[key / 64] >> key % 64 & 1) != 0) return r;
@@ -174,4 +175,4 @@ uint32_t region_at(const WorldData& world, const RegionZone& regions, uint32_t l
   return kNoRegion;
 }
 
-}  // namespace throng
+}  // namespace throng::graph

@@ -68,47 +68,48 @@ void add_walk(const Path& ground, size_t first, FlightPath& path) {
 
 // A point of the air, or a place with the nearest place to take off or to land.
 struct FlightFinder::End {
-  std::optional<AirPoint> air;
+  std::optional<path::AirPoint> air;
   Place ground, ground_air_link;
 };
 
 struct FlightFinder::Shared {
   World world;
   int32_t avatar_class = 0;
-  AirBody body;
-  FlightSpace space;
+  world::AirBody body;
+  path::FlightSpace space;
   std::vector<uint64_t> cells_before;  // per box, and of all
   std::optional<PathFinder> walker;    // none where the class has no ground
-  GroundAirLinks ground_air_links;
+  path::GroundAirLinks ground_air_links;
   FlightSummary summary;
 
-  [[nodiscard]] FlightEndpoints ends(const AirView& air) const {
+  [[nodiscard]] path::FlightEndpoints ends(const path::AirView& air) const {
     return {*data_of(world), air, avatar_class};
   }
   // The component of the ground at a place.
   [[nodiscard]] uint32_t ground_of(const Place& place) const {
-    const auto at = ground_point(*data_of(world), place);
-    if (!walker || !at) return kNoRect;
-    const PathMesh& mesh = mesh_of(*walker);
+    const auto at = world::ground_point(*data_of(world), place);
+    if (!walker || !at) return path::kNoRect;
+    const path::PathMesh& mesh = path::mesh_of(*walker);
     const uint32_t rect = mesh.rect_at(place.level1 - 1, at->cell_x(), at->cell_z());
-    return rect == kNoRect ? kNoRect : mesh.rects[rect].component;
+    return rect == path::kNoRect ? path::kNoRect : mesh.rects[rect].component;
   }
-  [[nodiscard]] GroundAirLinks::Part part_of(const End& end) const {
+  [[nodiscard]] path::GroundAirLinks::Part part_of(const End& end) const {
     if (end.air) return {space.component[space.box_at(*end.air)], true};
     return {ground_of(end.ground), false};
   }
   // The middle of a cell.
-  [[nodiscard]] Place place_of(const GroundAirLinks::Cell& cell) const {
-    return place_at(*data_of(world), ground_level(*data_of(world), cell.level, avatar_class),
-                    {(int64_t{cell.x} << kUnitBits) + kUnitsPerCell / 2,
-                     (int64_t{cell.z} << kUnitBits) + kUnitsPerCell / 2});
+  [[nodiscard]] Place place_of(const path::GroundAirLinks::Cell& cell) const {
+    return world::place_at(*data_of(world),
+                           world::ground_level(*data_of(world), cell.level, avatar_class),
+                           {(int64_t{cell.x} << world::kUnitBits) + world::kUnitsPerCell / 2,
+                            (int64_t{cell.z} << world::kUnitBits) + world::kUnitsPerCell / 2});
   }
   [[nodiscard]] Place nearest_ground(uint32_t component, Vec3d at) const {
     Place nearest;
     double least = std::numeric_limits<double>::infinity();
     if (!walker) return nearest;
-    const GroundPoint to = to_ground(*data_of(world), at.x, at.z);
-    for (const MeshRect& rect : mesh_of(*walker).rects) {
+    const world::GroundPoint to = world::to_ground(*data_of(world), at.x, at.z);
+    for (const path::MeshRect& rect : path::mesh_of(*walker).rects) {
       if (rect.component != component) continue;
       const Place place =
           place_of({rect.level, std::clamp(to.cell_x(), rect.x, rect.x + rect.width - 1),
@@ -126,15 +127,15 @@ struct FlightFinder::Scratch {
   explicit Scratch(const Shared& shared) : walker(shared.walker) {}
 
   [[nodiscard]] bool is_changed() const { return changes && changes->any(); }
-  [[nodiscard]] AirView air(const Shared& shared) const {
+  [[nodiscard]] path::AirView air(const Shared& shared) const {
     return {shared.space, is_changed() ? &*changes : nullptr};
   }
-  AirChanges& changes_of(const Shared& shared) {
+  path::AirChanges& changes_of(const Shared& shared) {
     if (!changes) changes.emplace(*data_of(shared.world), shared.space, shared.avatar_class);
     return *changes;
   }
-  ChangeId add(const Shared& shared, Solid solid) {
-    if (live) live_ids.push_back(AirChanges::add_to(*live, solid));
+  ChangeId add(const Shared& shared, path::Solid solid) {
+    if (live) live_ids.push_back(path::AirChanges::add_to(*live, solid));
     return changes_of(shared).add(std::move(solid));
   }
   // The ground with all changes; made on the first walk.
@@ -149,47 +150,47 @@ struct FlightFinder::Scratch {
   }
 
   // From the ground into the air: into this component of it, or any (kNoBox). False: none is found.
-  bool find_link(const Shared& shared, const AirView& air, End& end, uint32_t component,
+  bool find_link(const Shared& shared, const path::AirView& air, End& end, uint32_t component,
                  bool& budget_exhausted);
   // A component of the air over the ground at both ends: if there is more than one, the one that is
   // nearest to both, as far as a flood around them shows. kNoBox: none.
-  uint32_t common_air(const Shared& shared, const AirView& air, const End& a, const End& b,
+  uint32_t common_air(const Shared& shared, const path::AirView& air, const End& a, const End& b,
                       const std::atomic<bool>* cancel, bool& budget_exhausted);
 
-  FlightSearch search;
+  path::FlightSearch search;
   SpentBudget spent = SpentBudget::kNone;  // the budget that the last search exhausted
-  FlightStringPuller pull;
-  CircleFlood flood;
+  path::FlightStringPuller pull;
+  path::CircleFlood flood;
   std::optional<PathFinder> walker;
-  std::vector<AirPoint> air_path;
+  std::vector<path::AirPoint> air_path;
   Path walk_there, walk_on, walk_all;
   std::vector<uint32_t> over_from, over_to, common;  // components of the air
-  AirView::ZoneOrder zone_order;
-  GroundAirLinks::Scratch parts;
-  std::vector<GroundAirLinks::Part> route;
-  std::vector<GroundAirLinks::Pair> banned;
+  path::AirView::ZoneOrder zone_order;
+  path::GroundAirLinks::Scratch parts;
+  std::vector<path::GroundAirLinks::Part> route;
+  std::vector<path::GroundAirLinks::Pair> banned;
   // Made with the first obstacle; none before.
-  std::optional<AirChanges> changes;
+  std::optional<path::AirChanges> changes;
   std::optional<LiveGround> live;
   std::vector<ChangeId> live_ids;  // by id of a change - 1
   // Of a search that found no path between ends that could be connected: the point that it reached
   // in the air that is nearest to where the query leads.
-  std::optional<AirPoint> reached;
+  std::optional<path::AirPoint> reached;
 };
 
-bool FlightFinder::Scratch::find_link(const Shared& shared, const AirView& air_now, End& end,
+bool FlightFinder::Scratch::find_link(const Shared& shared, const path::AirView& air_now, End& end,
                                       uint32_t component, bool& budget_exhausted) {
   if (!end.ground) return end.air.has_value();
-  const FlightEndpoints ends = shared.ends(air_now);
+  const path::FlightEndpoints ends = shared.ends(air_now);
   end.ground_air_link = end.ground;
   end.air = ends.take_off(end.ground_air_link);
   if (end.air &&
-      (component == kNoBox || air_now.component(air_now.box_at(*end.air)) == component)) {
+      (component == path::kNoBox || air_now.component(air_now.box_at(*end.air)) == component)) {
     return true;
   }
   end.air.reset();
   const uint32_t ground_part = shared.ground_of(end.ground);
-  const bool leads = component == kNoBox
+  const bool leads = component == path::kNoBox
                          ? !shared.ground_air_links.air_over(ground_part).empty()
                          : shared.ground_air_links.joins(ground_part, air_now.baked(component));
   if (!leads) return false;
@@ -200,22 +201,22 @@ bool FlightFinder::Scratch::find_link(const Shared& shared, const AirView& air_n
   return end.air.has_value();
 }
 
-uint32_t FlightFinder::Scratch::common_air(const Shared& shared, const AirView& air_now,
+uint32_t FlightFinder::Scratch::common_air(const Shared& shared, const path::AirView& air_now,
                                            const End& a, const End& b,
                                            const std::atomic<bool>* cancel,
                                            bool& budget_exhausted) {
-  const FlightEndpoints ends = shared.ends(air_now);
+  const path::FlightEndpoints ends = shared.ends(air_now);
   const auto over_a = shared.ground_air_links.air_over(shared.ground_of(a.ground));
   const auto over_b = shared.ground_air_links.air_over(shared.ground_of(b.ground));
   common.clear();
   std::set_intersection(over_a.begin(), over_a.end(), over_b.begin(), over_b.end(),
                         std::back_inserter(common));
-  if (common.empty()) return kNoBox;
+  if (common.empty()) return path::kNoBox;
   if (common.size() < 2 && !is_changed()) return common[0];
   for (const auto& [end, over] : {std::pair{&a, &over_from}, std::pair{&b, &over_to}}) {
     if (cancel != nullptr && *cancel) {
       budget_exhausted = true;
-      return kNoBox;
+      return path::kNoBox;
     }
     ends.components_over(end->ground, kMaxIslandCells, flood, *over);
   }
@@ -247,8 +248,8 @@ FlightFinder::~FlightFinder() = default;
 Result<FlightFinder> FlightFinder::create(const World& world, const FlightConfig& config,
                                           Context& context) {
   if (data_of(world) == nullptr) return Error{Errc::kBadInput, "flight: the world is empty"};
-  const WorldData& data = *data_of(world);
-  if (auto ok = check_air_index(data); !ok) return ok.error();
+  const world::WorldData& data = *data_of(world);
+  if (auto ok = world::check_air_index(data); !ok) return ok.error();
   if (data.air == nullptr) {
     return Error{Errc::kNotFound,
                  "flight: the world was baked without air; bake it with --air or with a class that "
@@ -265,15 +266,16 @@ Result<FlightFinder> FlightFinder::create(const World& world, const FlightConfig
   const auto start = std::chrono::steady_clock::now();
   if (auto ok = world.check_all(); !ok) return ok.error();
   auto shared = std::make_shared<Shared>();
-  shared->body = air_body(avatar, data.air->shape);
-  auto space = build_flight_space(*data.air, shared->body, kLargestBox, config.workers, context);
+  shared->body = world::air_body(avatar, data.air->shape);
+  auto space =
+      path::build_flight_space(*data.air, shared->body, kLargestBox, config.workers, context);
   if (!space) return space.error();
   shared->world = world;
   shared->avatar_class = config.avatar_class;
   shared->space = std::move(*space);
   shared->cells_before.reserve(shared->space.boxes.size() + 1);
   shared->cells_before.push_back(0);
-  for (const AirCube& box : shared->space.boxes) {
+  for (const world::AirCube& box : shared->space.boxes) {
     const auto side = static_cast<uint64_t>(box.side);
     shared->cells_before.push_back(shared->cells_before.back() + side * side * side);
   }
@@ -283,7 +285,7 @@ Result<FlightFinder> FlightFinder::create(const World& world, const FlightConfig
     if (!walker) return walker.error();
     shared->walker = std::move(*walker);
     shared->ground_air_links =
-        GroundAirLinks(data, mesh_of(*shared->walker), shared->space, config.workers);
+        path::GroundAirLinks(data, path::mesh_of(*shared->walker), shared->space, config.workers);
   }
   shared->summary.boxes = shared->space.boxes.size();
   shared->summary.bytes = shared->space.bytes() + shared->cells_before.size() * sizeof(uint64_t) +
@@ -295,17 +297,19 @@ Result<FlightFinder> FlightFinder::create(const World& world, const FlightConfig
 }
 
 FlightSummary FlightFinder::summary() const { return state_->summary; }
-const FlightSpace& space_of(const FlightFinder& finder) { return Access::state(finder)->space; }
+const path::FlightSpace& path::space_of(const FlightFinder& finder) {
+  return Access::state(finder)->space;
+}
 
 Result<ChangeId> FlightFinder::add_obstacle(const Prism& prism) {
-  auto solid = make_solid(prism);
+  auto solid = path::make_solid(prism);
   if (!solid) return solid.error();
   return scratch_->add(*state_, std::move(*solid));
 }
 
 Result<ChangeId> FlightFinder::add_obstacle(std::span<const Vec3d> corners,
                                             std::span<const std::array<uint32_t, 3>> triangles) {
-  auto solid = make_solid(corners, triangles);
+  auto solid = path::make_solid(corners, triangles);
   if (!solid) return solid.error();
   return scratch_->add(*state_, std::move(*solid));
 }
@@ -331,13 +335,13 @@ bool FlightFinder::is_legal(Vec3d feet) const {
 std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const {
   const std::vector<uint64_t>& before = state_->cells_before;
   if (before.back() == 0) return {};
-  const AirView air = scratch_->air(*state_);
-  const FlightEndpoints ends = state_->ends(air);
-  const auto draw = [&](const AirCube& cube, uint64_t first) {
+  const path::AirView air = scratch_->air(*state_);
+  const path::FlightEndpoints ends = state_->ends(air);
+  const auto draw = [&](const world::AirCube& cube, uint64_t first) {
     const auto part = [&](uint64_t i) {
-      return kAirSkin + random_unit(seed, n, first + i) * (cube.side - 2 * kAirSkin);
+      return path::kAirSkin + random_unit(seed, n, first + i) * (cube.side - 2 * path::kAirSkin);
     };
-    return AirPoint{cube.x + part(1), cube.y + part(2), cube.z + part(3)};
+    return path::AirPoint{cube.x + part(1), cube.y + part(2), cube.z + part(3)};
   };
   // What obstacles have blocked is drawn again. Where hardly anything is left, it is searched.
   constexpr uint64_t kDraws = 256;
@@ -346,10 +350,10 @@ std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const
     const uint64_t pick = random_below(seed, n, 4 * i, before.back());
     box = static_cast<size_t>(std::upper_bound(before.begin(), before.end(), pick) -
                               before.begin() - 1);
-    const AirPoint p = draw(state_->space.boxes[box], 4 * i);
-    if (air.changes() == nullptr || air.box_at(p) != kNoBox) return ends.to_metres(p);
+    const path::AirPoint p = draw(state_->space.boxes[box], 4 * i);
+    if (air.changes() == nullptr || air.box_at(p) != path::kNoBox) return ends.to_metres(p);
   }
-  std::optional<AirPoint> found;
+  std::optional<path::AirPoint> found;
   for (size_t i = 0; i < state_->space.boxes.size() && !found; ++i) {
     air.for_pieces(static_cast<uint32_t>((box + i) % state_->space.boxes.size()),
                    [&](uint32_t piece) {
@@ -361,14 +365,14 @@ std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const
 }
 
 std::optional<Vec3d> FlightFinder::take_off(const Place& place) const {
-  const FlightEndpoints ends = state_->ends(scratch_->air(*state_));
+  const path::FlightEndpoints ends = state_->ends(scratch_->air(*state_));
   const auto up = ends.take_off(place);
   if (!up) return {};
   return ends.to_metres(*up);
 }
 
 Place FlightFinder::landing(Vec3d feet) const {
-  const FlightEndpoints ends = state_->ends(scratch_->air(*state_));
+  const path::FlightEndpoints ends = state_->ends(scratch_->air(*state_));
   const auto point = ends.in_air(feet);
   if (!point) return {};
   return ends.best_landing(ends.lowest_box(*point));
@@ -387,7 +391,7 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
 }
 
 bool FlightFinder::locate(Vec3d at, double vertical_tolerance, End& end) const {
-  const FlightEndpoints ends = state_->ends(scratch_->air(*state_));
+  const path::FlightEndpoints ends = state_->ends(scratch_->air(*state_));
   end.air = ends.in_air(at);
   if (end.air) return true;
   end.ground = state_->world.find_place(state_->avatar_class, at, vertical_tolerance);
@@ -396,7 +400,7 @@ bool FlightFinder::locate(Vec3d at, double vertical_tolerance, End& end) const {
 
 PathEnd FlightFinder::walk(const FlightQuery& query, const Place& from, const Place& to,
                            Path& path) {
-  reset(path);
+  path::reset(path);
   if (query.cancel != nullptr && *query.cancel) return PathEnd::kBudgetExhausted;
   if (!scratch_->is_changed()) {
     scratch_->walker->find(from, to, path, {query.max_nodes, nullptr, query.max_bytes});
@@ -415,13 +419,13 @@ PathEnd FlightFinder::walk(const FlightQuery& query, const Place& from, const Pl
 // One flight, or a walk.
 void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
   Scratch& scratch = *scratch_;
-  const AirView air = scratch.air(*state_);
-  const FlightEndpoints ends = state_->ends(air);
+  const path::AirView air = scratch.air(*state_);
+  const path::FlightEndpoints ends = state_->ends(air);
   clear(path);
   path.nodes = 0;
   scratch.reached.reset();
   bool budget_exhausted = false;  // somewhere: then what was not found may exist all the same
-  const auto component_of = [&](AirPoint p) { return air.component(air.box_at(p)); };
+  const auto component_of = [&](path::AirPoint p) { return air.component(air.box_at(p)); };
   const auto to_link = [&](End& end, uint32_t component) {
     return scratch.find_link(*state_, air, end, component, budget_exhausted);
   };
@@ -431,10 +435,10 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     if (!a.ground && !b.ground) return true;
     if (!a.ground) return to_link(b, component_of(*a.air));
     if (!b.ground) return to_link(a, component_of(*b.air));
-    if (!to_link(a, kNoBox) || !to_link(b, kNoBox)) return false;
+    if (!to_link(a, path::kNoBox) || !to_link(b, path::kNoBox)) return false;
     if (air.same_component(*a.air, *b.air)) return true;
     const uint32_t common = scratch.common_air(*state_, air, a, b, query.cancel, budget_exhausted);
-    return common != kNoBox && to_link(a, common) && to_link(b, common);
+    return common != path::kNoBox && to_link(a, common) && to_link(b, common);
   };
   const auto find_on_foot = [&](const Place& a, const Place& b, Path& ground) {
     const PathEnd end = walk(query, a, b, ground);
@@ -456,19 +460,19 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
     }
   }
   const bool ground_air_links = to_links(from, to);
-  SearchResult result = SearchResult::kNone;
+  path::SearchResult result = path::SearchResult::kNone;
   if (ground_air_links && air.same_component(*from.air, *to.air)) {
     result = scratch.search.find(air, *from.air, *to.air, budget_of(query), scratch.air_path);
     path.nodes = scratch.search.expanded();
-    if (result == SearchResult::kBudget) {
+    if (result == path::SearchResult::kBudget) {
       scratch.spent = budget_of(query).spent(path.nodes);
       budget_exhausted = true;
     }
-    if (result == SearchResult::kNone) {
+    if (result == path::SearchResult::kNone) {
       scratch.reached = scratch.search.nearest_reached(ends.to_air(query.to));
     }
   }
-  if (result == SearchResult::kFound) {
+  if (result == path::SearchResult::kFound) {
     scratch.pull.pull(air, scratch.air_path);
     bool walked = true;
     if (from.ground) {
@@ -514,12 +518,13 @@ void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
   if (!locate(query.from, query.vertical_tolerance, from) ||
       !locate(query.to, query.vertical_tolerance, to))
     return;
-  const GroundAirLinks::Part start = state_->part_of(from), goal = state_->part_of(to);
+  const path::GroundAirLinks::Part start = state_->part_of(from), goal = state_->part_of(to);
   scratch.banned.clear();
   for (int32_t tries = 0; tries < (scratch.is_changed() ? kMaxTries : 1); ++tries) {
     // Air that an obstacle has cut in two is one part: then over some ground under it.
     const bool returns = start == goal && scratch.is_changed() && goal.is_air;
-    const GroundAirLinks::Part last = returns ? GroundAirLinks::Part{kNoBox, true} : goal;
+    const path::GroundAirLinks::Part last =
+        returns ? path::GroundAirLinks::Part{path::kNoBox, true} : goal;
     state_->ground_air_links.search(start, last, scratch.banned, scratch.parts);
     const auto& steps = scratch.parts.steps;
     if (steps.size() < 2 || (!returns && steps.back().part != goal)) return;
@@ -535,8 +540,8 @@ void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
     }
     const size_t stuck = follow_route(query, from, to, path);
     if (path.end != PathEnd::kUnreachable) return;
-    const GroundAirLinks::Part& a = scratch.route[stuck - 1];
-    const GroundAirLinks::Part& b = scratch.route[stuck];
+    const path::GroundAirLinks::Part& a = scratch.route[stuck - 1];
+    const path::GroundAirLinks::Part& b = scratch.route[stuck];
     scratch.banned.emplace_back(a.is_air ? b.component : a.component,
                                 a.is_air ? a.component : b.component);
   }
@@ -546,31 +551,31 @@ void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
 size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, const End& to,
                                   FlightPath& path) {
   Scratch& scratch = *scratch_;
-  const AirView view = scratch.air(*state_);
-  const FlightEndpoints ends = state_->ends(view);
+  const path::AirView view = scratch.air(*state_);
+  const path::FlightEndpoints ends = state_->ends(view);
   PathEnd end = PathEnd::kReached;
   Place feet = from.ground;  // where the path is by now, or
-  AirPoint air = from.air.value_or(AirPoint{});
+  path::AirPoint air = from.air.value_or(path::AirPoint{});
   const auto go = [&](const Place& there) {
     if (end != PathEnd::kReached) return;
     end = walk(query, feet, there, scratch.walk_all);
     add_walk(scratch.walk_all, 1, path);
     feet = there;
   };
-  const auto fly = [&](AirPoint there) {
+  const auto fly = [&](path::AirPoint there) {
     if (end != PathEnd::kReached) return;
     if (view.changes() != nullptr && !view.same_component(air, there)) {
       end = PathEnd::kUnreachable;
       return;
     }
-    const SearchResult result =
+    const path::SearchResult result =
         scratch.search.find(view, air, there, budget_of(query), scratch.air_path);
     path.nodes += scratch.search.expanded();
-    if (result == SearchResult::kBudget)
+    if (result == path::SearchResult::kBudget)
       scratch.spent = budget_of(query).spent(scratch.search.expanded());
-    end = result == SearchResult::kFound    ? PathEnd::kReached
-          : result == SearchResult::kBudget ? PathEnd::kBudgetExhausted
-                                            : PathEnd::kUnreachable;
+    end = result == path::SearchResult::kFound    ? PathEnd::kReached
+          : result == path::SearchResult::kBudget ? PathEnd::kBudgetExhausted
+                                                  : PathEnd::kUnreachable;
     scratch.pull.pull(view, scratch.air_path);
     for (size_t i = 1; i < scratch.air_path.size(); ++i) {
       add(ends.to_metres(scratch.air_path[i]), SegmentKind::kFly, path);
@@ -578,8 +583,8 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
     air = there;
   };
   // A place of some ground under some air: it leads into this component of that.
-  const auto link_near = [&](const Place& at, GroundAirLinks::Part ground,
-                             GroundAirLinks::Part over, uint32_t component) {
+  const auto link_near = [&](const Place& at, path::GroundAirLinks::Part ground,
+                             path::GroundAirLinks::Part over, uint32_t component) {
     const Place near =
         at ? ends.nearest_take_off(at, kMaxFloodCells, component, scratch.flood).place : Place{};
     if (near) return near;
@@ -593,7 +598,7 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
   const size_t count = scratch.route.size();
   size_t k = 1;
   for (; k < count && end == PathEnd::kReached; ++k) {
-    const GroundAirLinks::Part here = scratch.route[k - 1], next = scratch.route[k];
+    const path::GroundAirLinks::Part here = scratch.route[k - 1], next = scratch.route[k];
     const bool last = k + 1 == count;
     if (next.is_air) {
       const bool known = last && to.air;
@@ -634,14 +639,14 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
 // ground, of the ground: there, of each rectangle, the cell that is nearest in the plane.
 void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   Scratch& scratch = *scratch_;
-  const AirView air = scratch.air(*state_);
-  const FlightEndpoints ends = state_->ends(air);
-  const std::optional<AirPoint> reached = scratch.reached;
+  const path::AirView air = scratch.air(*state_);
+  const path::FlightEndpoints ends = state_->ends(air);
+  const std::optional<path::AirPoint> reached = scratch.reached;
   const bool is_changed = scratch.is_changed();
   End from;
   if (!locate(query.from, query.vertical_tolerance, from)) return;
-  const GroundAirLinks::Part start = state_->part_of(from);
-  state_->ground_air_links.search(start, {kNoBox, true}, {}, scratch.parts);
+  const path::GroundAirLinks::Part start = state_->part_of(from);
+  state_->ground_air_links.search(start, {path::kNoBox, true}, {}, scratch.parts);
   std::vector<uint32_t>& airs = scratch.common;
   airs.clear();
   for (const auto& step : scratch.parts.steps) {
@@ -656,12 +661,12 @@ void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   }
   std::sort(airs.begin(), airs.end());
   airs.erase(std::unique(airs.begin(), airs.end()), airs.end());
-  const AirPoint goal = ends.to_air(query.to);
-  std::optional<AirPoint> nearest;
+  const path::AirPoint goal = ends.to_air(query.to);
+  std::optional<path::AirPoint> nearest;
   for (int32_t tries = 0; tries < kMaxTries; ++tries) {
     nearest = reached && tries == 0 ? reached : air.nearest_in(airs, goal, scratch.zone_order);
     if (!nearest) break;
-    const AirPoint at = off_faces(*nearest);
+    const path::AirPoint at = path::off_faces(*nearest);
     FlightQuery nearer = query;
     nearer.to = ends.to_metres(at);
     find_flight(nearer, path);
@@ -678,8 +683,8 @@ void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   path.end = PathEnd::kUnreachable;
   path.obstacle = Obstacle::kNone;
   if (path.points.empty()) return;
-  path.obstacle =
-      air_obstacle(*data_of(state_->world)->air, state_->body, air, off_faces(*nearest), goal);
+  path.obstacle = path::air_obstacle(*data_of(state_->world)->air, state_->body, air,
+                                     path::off_faces(*nearest), goal);
   // Air that begins right there and leads nowhere else: only a corner is between.
   if (path.obstacle == Obstacle::kNone) path.obstacle = Obstacle::kNarrow;
 }
@@ -708,13 +713,13 @@ void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& f
 
 Result<AirSummary> air_summary(const World& world) {
   if (data_of(world) != nullptr) {
-    if (auto ok = check_air_index(*data_of(world)); !ok) return ok.error();
+    if (auto ok = world::check_air_index(*data_of(world)); !ok) return ok.error();
   }
   if (data_of(world) == nullptr || data_of(world)->air == nullptr) {
     return Error{Errc::kNotFound, "the world was baked without air"};
   }
-  const AirData& air = *data_of(world)->air;
-  const AirShape& shape = air.shape;
+  const world::AirData& air = *data_of(world)->air;
+  const world::AirShape& shape = air.shape;
   const auto height = [&](int32_t layer) {
     return (static_cast<double>(layer) * shape.cell + shape.origin_y) * 1e-3;
   };
@@ -724,14 +729,14 @@ Result<AirSummary> air_summary(const World& world) {
                      .zones = air.slots.size(),
                      .bytes = air.bytes};
   for (const auto& slot : air.slots) {
-    const AirData::ZoneAir zone = air.zone(slot->entry.x(), slot->entry.z());
+    const world::AirData::ZoneAir zone = air.zone(slot->entry.x(), slot->entry.z());
     if (!zone.usable) return Error{Errc::kBadFile, slot->error};
-    zone.tree->for_each([&](const AirCube& cube, uint32_t word) {
-      if (air_kind(word) == AirKind::kFull) return;
+    zone.tree->for_each([&](const world::AirCube& cube, uint32_t word) {
+      if (world::air_kind(word) == world::AirKind::kFull) return;
       ++summary.nodes;
-      if (air_kind(word) == AirKind::kLeaf) {
+      if (world::air_kind(word) == world::AirKind::kLeaf) {
         summary.free_cells +=
-            static_cast<uint64_t>(std::popcount(zone.tree->leaves[air_number(word)]));
+            static_cast<uint64_t>(std::popcount(zone.tree->leaves[world::air_number(word)]));
         return;
       }
       const int32_t layers =

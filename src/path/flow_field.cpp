@@ -12,7 +12,7 @@ namespace throng {
 
 struct FlowField::State {
   LiveGround ground;
-  std::shared_ptr<const FlowPoints> points;
+  std::shared_ptr<const path::FlowPoints> points;
   double seconds = 0;
 };
 
@@ -32,13 +32,13 @@ Result<FlowField> FlowField::create(const LiveGround& ground, std::span<const Pl
     return Error{Errc::kBadConfig, "flow field: max_distance must be above 0"};
   const auto start = Clock::now();
   auto state = std::make_unique<State>(State{ground, nullptr, 0});
-  auto points = FlowPoints::make(state->ground, goals, config.max_distance, context);
+  auto points = path::FlowPoints::make(state->ground, goals, config.max_distance, context);
   if (!points) return Error{Errc::kCancelled, "flow field: cancelled"};
   if (points->empty()) {
     return Error{Errc::kBadInput, "flow field: none of " + std::to_string(goals.size()) +
                                       " goals is a place where the class can stand"};
   }
-  state->points = std::make_shared<const FlowPoints>(std::move(*points));
+  state->points = std::make_shared<const path::FlowPoints>(std::move(*points));
   state->seconds = seconds_since(start);
   return FlowField(std::move(state));
 }

@@ -20,8 +20,8 @@
 // Checks and converts what callers give, for the live mesh and its search.
 namespace throng {
 
-bool LiveGround::State::locate(const Place& place, LiveStop& stop) {
-  const auto at = ground_point(mesh.world(), place);
+bool LiveGround::State::locate(const Place& place, path::LiveStop& stop) {
+  const auto at = world::ground_point(mesh.world(), place);
   if (!at) return false;
   stop.at = *at;
   stop.level = place.level1 - 1;
@@ -29,13 +29,13 @@ bool LiveGround::State::locate(const Place& place, LiveStop& stop) {
 }
 
 void LiveGround::State::give(Path& path) {
-  const WorldData& world = mesh.world();
+  const world::WorldData& world = mesh.world();
   double length = 0, cost = 0;
   for (size_t i = 0; i < stops.size(); ++i) {
-    path.points.push_back(place_at(world, mesh.level(stops[i].level)->ground, stops[i].at));
+    path.points.push_back(world::place_at(world, mesh.level(stops[i].level)->ground, stops[i].at));
     if (i == 0) continue;
-    length += distance_of(stops[i - 1].at, stops[i].at);
-    cost += cost_to(mesh, stops[i - 1], stops[i]);
+    length += path::distance_of(stops[i - 1].at, stops[i].at);
+    cost += path::cost_to(mesh, stops[i - 1], stops[i]);
     if (stops[i].off_mesh_link > 0) path.off_mesh_links.push_back(static_cast<uint32_t>(i));
   }
   path.length = length * world.summary.cell;
@@ -43,15 +43,16 @@ void LiveGround::State::give(Path& path) {
 }
 
 Obstacle LiveGround::State::blocker() {
-  const LiveLevel* level = mesh.level(stops.back().level);
-  const WalkStop stop = walk_far(mesh.ground(), level, stops.back().at, to.at, mesh.step());
+  const path::LiveLevel* level = mesh.level(stops.back().level);
+  const world::WalkStop stop =
+      world::walk_far(mesh.ground(), level, stops.back().at, to.at, mesh.step());
   if (stop.arrived) return Obstacle::kGap;  // under or over the goal
   // Obstacles placed since the bake are not in its floors.
-  const WorldGround baked{mesh.world(), mesh.avatar_class()};
-  const Obstacle found = obstacle_beyond(baked, level->ground, stop);
-  const GroundLevel& ground = level->ground;
-  const bool was_free = step_to(baked, ground, stop.x, stop.z, stop.x + stop.toward_x,
-                                stop.z + stop.toward_z, mesh.step())
+  const world::WorldGround baked{mesh.world(), mesh.avatar_class()};
+  const Obstacle found = path::obstacle_beyond(baked, level->ground, stop);
+  const world::GroundLevel& ground = level->ground;
+  const bool was_free = world::step_to(baked, ground, stop.x, stop.z, stop.x + stop.toward_x,
+                                       stop.z + stop.toward_z, mesh.step())
                             .has_value();
   return was_free ? Obstacle::kNarrow : found;
 }
@@ -75,22 +76,22 @@ Result<LiveGround> LiveGround::create(const World& world, const LiveConfig& conf
   if (!(config.slope_cost >= 0 && config.slope_cost <= 1000)) {
     return Error{Errc::kBadConfig, "live ground: slope_cost must be 0 to 1000"};
   }
-  return LiveGround(std::make_unique<State>(LiveMesh(world, config)));
+  return LiveGround(std::make_unique<State>(path::LiveMesh(world, config)));
 }
 
 Result<ChangeId> LiveGround::add_obstacle(const Prism& prism) {
-  auto solid = make_solid(prism);
+  auto solid = path::make_solid(prism);
   if (!solid) return solid.error();
-  LiveMesh::Change change;
+  path::LiveMesh::Change change;
   change.solid = std::move(*solid);
   return state_->mesh.add(std::move(change));
 }
 
 Result<ChangeId> LiveGround::add_obstacle(std::span<const Vec3d> corners,
                                           std::span<const std::array<uint32_t, 3>> triangles) {
-  auto solid = make_solid(corners, triangles);
+  auto solid = path::make_solid(corners, triangles);
   if (!solid) return solid.error();
-  LiveMesh::Change change;
+  path::LiveMesh::Change change;
   change.solid = std::move(*solid);
   return state_->mesh.add(std::move(change));
 }
@@ -100,7 +101,7 @@ Result<ChangeId> LiveGround::add_area(const Prism& prism, uint8_t kind) {
     return Error{Errc::kBadConfig, "area: kind " + std::to_string(kind) + " is not one of 1 to 63"};
   }
   if (auto ok = check_prism(prism); !ok) return ok.error();
-  LiveMesh::Change change;
+  path::LiveMesh::Change change;
   change.solid.prism = prism;
   change.is_area = true;
   change.kind = kind;
@@ -109,14 +110,14 @@ Result<ChangeId> LiveGround::add_area(const Prism& prism, uint8_t kind) {
 
 Result<ChangeId> LiveGround::add_off_mesh_link(const OffMeshLink& off_mesh_link) {
   State& s = *state_;
-  LiveStop from, to;
+  path::LiveStop from, to;
   if (!s.locate(off_mesh_link.from, from) || !s.locate(off_mesh_link.to, to)) {
     return Error{
         Errc::kBadInput,
         std::string("off-mesh link: it must lead from a place of the class to ") + "another"};
   }
   const double cell = s.mesh.world().summary.cell;
-  const double length = distance_of(from.at, to.at);
+  const double length = path::distance_of(from.at, to.at);
   if (!std::isfinite(off_mesh_link.cost) || !(off_mesh_link.cost > 0) ||
       off_mesh_link.cost < length * cell - 1e-6) {
     return Error{Errc::kBadInput,
@@ -147,7 +148,7 @@ Result<void> LiveGround::set_area_cost(uint8_t kind, double cost) {
 }
 
 bool LiveGround::is_free(const Place& place) {
-  LiveStop stop;
+  path::LiveStop stop;
   return state_->locate(place, stop);
 }
 
@@ -161,20 +162,20 @@ void LiveGround::begin(const Place& from, const Place& to) {
 }
 
 bool LiveGround::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& path) {
-  reset(path);
+  path::reset(path);
   if (!searching) return true;
-  const LiveSearch::State result = search.advance(mesh, max_nodes, max_bytes);
+  const path::LiveSearch::State result = search.advance(mesh, max_nodes, max_bytes);
   path.nodes = search.expanded();
   path.end = PathEnd::kBudgetExhausted;
   path.spent = SpentBudget::kNodes;
-  if (result == LiveSearch::State::kSearching) return false;
+  if (result == path::LiveSearch::State::kSearching) return false;
   searching = false;
-  if (result == LiveSearch::State::kFull) {
+  if (result == path::LiveSearch::State::kFull) {
     path.spent = SpentBudget::kMemory;
     search.give_back();
     return true;
   }
-  path.end = result == LiveSearch::State::kFound ? PathEnd::kReached : PathEnd::kUnreachable;
+  path.end = result == path::LiveSearch::State::kFound ? PathEnd::kReached : PathEnd::kUnreachable;
   path.spent = SpentBudget::kNone;
   search.trace(mesh, stops);
   search.give_back();
@@ -199,7 +200,7 @@ void LiveGround::find(const Place& from, const Place& to, Path& path, const Sear
     return;
   }
   constexpr uint64_t kSlice = 64;
-  reset(path);
+  path::reset(path);
   path.end = PathEnd::kBudgetExhausted;
   path.spent = SpentBudget::kNodes;
   for (uint64_t left = budget.max_nodes; left > 0;) {

@@ -38,36 +38,36 @@ constexpr uint64_t kNearCrossings = 2048;
 }  // namespace
 
 struct NodePathFinder::Shared {
-  Shared(NodeMesh made, const NodePathConfig& config)
+  Shared(graph::NodeMesh made, const NodePathConfig& config)
       : mesh(std::move(made)),
         slope_cost(config.slope_cost),
         squares(mesh),
         parts(mesh, config.workers) {
     for (size_t p = 0; p < mesh.portals().size(); ++p) {
-      const NodePortal portal = mesh.portals()[p];
+      const graph::NodePortal portal = mesh.portals()[p];
       if (!portal.over_hole) continue;
       const Vec3d a = mesh.surface(portal.a).at(portal.on_a[0], portal.on_a[1]);
       const Vec3d b = mesh.surface(portal.b).at(portal.on_b[0], portal.on_b[1]);
       longest_hole_link = std::max(longest_hole_link, length(b - a));
     }
     if (config.overlay && mesh.portals().size() >= kManyCrossings) {
-      const NodeView baked(mesh);
-      overlay = Overlay(mesh, PieceCost(baked, slope_cost), config.workers);
+      const path::NodeView baked(mesh);
+      overlay = path::Overlay(mesh, path::PieceCost(baked, slope_cost), config.workers);
     }
   }
   Shared(const Shared&) = delete;  // `squares` may point to `mesh`
   Shared& operator=(const Shared&) = delete;
-  NodeMesh mesh;
+  graph::NodeMesh mesh;
   double slope_cost;
-  BlockSquares squares;
-  NodeParts parts;
-  Overlay overlay;
+  path::BlockSquares squares;
+  path::NodeParts parts;
+  path::Overlay overlay;
   double longest_hole_link = 0;  // [m]
   double seconds = 0;
 };
 
 struct NodePathFinder::Scratch {
-  Scratch(const Shared& of, NodeChanges made)
+  Scratch(const Shared& of, path::NodeChanges made)
       : shared(of),
         changes(std::move(made)),
         view(of.mesh, &changes),
@@ -76,24 +76,24 @@ struct NodePathFinder::Scratch {
         far_search(view, cost, of.overlay),
         pull(view, cost) {}
   explicit Scratch(const Shared& of)
-      : Scratch(of, NodeChanges(of.mesh, of.squares, of.longest_hole_link)) {}
+      : Scratch(of, path::NodeChanges(of.mesh, of.squares, of.longest_hole_link)) {}
   Scratch(const Scratch&) = delete;  // its parts point to each other
   Scratch& operator=(const Scratch&) = delete;
 
   const Shared& shared;
-  NodeChanges changes;
+  path::NodeChanges changes;
   uint64_t version = 0;  // of the changes that searches know
-  NodeView view;
-  PieceCost cost;
-  NodeSearch search;
-  OverlaySearch far_search;
-  NodeParts::Reached reached;
-  NodeIsland islands;
-  NodeStringPuller pull;
-  std::vector<Crossing> crossings;
-  std::optional<BlockPoint>
+  path::NodeView view;
+  path::PieceCost cost;
+  path::NodeSearch search;
+  path::OverlaySearch far_search;
+  path::NodeParts::Reached reached;
+  path::NodeIsland islands;
+  path::NodeStringPuller pull;
+  std::vector<path::Crossing> crossings;
+  std::optional<path::BlockPoint>
       nearest;  // where `crossings` ends, if not where its last crossing leads to
-  std::vector<PulledCrossing> pulled;
+  std::vector<path::PulledCrossing> pulled;
 
   void update() {
     if (version == changes.version()) return;
@@ -101,12 +101,12 @@ struct NodePathFinder::Scratch {
     changes.update();
     far_search.update();
   }
-  PathEnd find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
+  PathEnd find(const path::BlockPoint& from, const path::BlockPoint& to, const SearchBudget& budget,
                NodePath& path);
-  PathEnd find_all(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-                   NodePath& path);
-  PathEnd find_nearest(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-                       NodePath& path);
+  PathEnd find_all(const path::BlockPoint& from, const path::BlockPoint& to,
+                   const SearchBudget& budget, NodePath& path);
+  PathEnd find_nearest(const path::BlockPoint& from, const path::BlockPoint& to,
+                       const SearchBudget& budget, NodePath& path);
 };
 
 namespace {
@@ -118,7 +118,7 @@ SearchBudget what_is_left(const SearchBudget& budget, const NodePath& path) {
 }  // namespace
 
 // Over crossings nearby if the ends are near, else over the overlay; if that finds none, over all.
-PathEnd NodePathFinder::Scratch::find(const BlockPoint& from, const BlockPoint& to,
+PathEnd NodePathFinder::Scratch::find(const path::BlockPoint& from, const path::BlockPoint& to,
                                       const SearchBudget& budget, NodePath& path) {
   const auto take = [&](auto&& searched, PathEnd end) {
     path.nodes += searched.expanded();
@@ -126,7 +126,7 @@ PathEnd NodePathFinder::Scratch::find(const BlockPoint& from, const BlockPoint& 
     return end;
   };
   if (!shared.overlay.empty()) {
-    const double far = length(position(view, to) - position(view, from));
+    const double far = length(path::position(view, to) - path::position(view, from));
     if (far <= kNearSides * shared.overlay.overlay_levels().front().side) {
       SearchBudget near = what_is_left(budget, path);
       near.max_nodes = std::min(near.max_nodes, kNearCrossings);
@@ -142,7 +142,7 @@ PathEnd NodePathFinder::Scratch::find(const BlockPoint& from, const BlockPoint& 
 }
 
 // Of all crossings; where none leads there, to the one that comes nearest.
-PathEnd NodePathFinder::Scratch::find_all(const BlockPoint& from, const BlockPoint& to,
+PathEnd NodePathFinder::Scratch::find_all(const path::BlockPoint& from, const path::BlockPoint& to,
                                           const SearchBudget& budget, NodePath& path) {
   const PathEnd end = search.find(from, to, what_is_left(budget, path), crossings);
   path.nodes += search.expanded();
@@ -152,16 +152,17 @@ PathEnd NodePathFinder::Scratch::find_all(const BlockPoint& from, const BlockPoi
 
 // To the reachable place that comes nearest to one that is not. A place that seems near may itself
 // be cut off.
-PathEnd NodePathFinder::Scratch::find_nearest(const BlockPoint& from, const BlockPoint& to,
+PathEnd NodePathFinder::Scratch::find_nearest(const path::BlockPoint& from,
+                                              const path::BlockPoint& to,
                                               const SearchBudget& budget, NodePath& path) {
   constexpr int kMaxPockets = 16;
-  const Vec3d goal = position(view, to);
-  if (islands.close(view, from.block, to.block, NodeIsland::Direction::kOut))
+  const Vec3d goal = path::position(view, to);
+  if (islands.close(view, from.block, to.block, path::NodeIsland::Direction::kOut))
     return find_all(from, to, budget, path);
   for (int i = 0; i < kMaxPockets; ++i) {
     const auto is_cut_off = [&](uint32_t block) { return islands.holds(block); };
-    const BlockPoint last = shared.parts.nearest(view, from, goal, reached, is_cut_off);
-    if (islands.close(view, last.block, from.block, NodeIsland::Direction::kIn)) continue;
+    const path::BlockPoint last = shared.parts.nearest(view, from, goal, reached, is_cut_off);
+    if (islands.close(view, last.block, from.block, path::NodeIsland::Direction::kIn)) continue;
     const PathEnd end = find(from, last, budget, path);
     if (end == PathEnd::kReached) nearest = last;
     if (end != PathEnd::kUnreachable) return end;
@@ -175,23 +176,24 @@ namespace {
 // Builds the path that is returned: points along the surface, links, corridor.
 class PathBuilder {
  public:
-  PathBuilder(const NodeView& view, const PieceCost& cost, double spacing, NodePath& path)
+  PathBuilder(const path::NodeView& view, const path::PieceCost& cost, double spacing,
+              NodePath& path)
       : view_(view), cost_(cost), spacing_(spacing), path_(path) {}
 
-  void begin(const BlockPoint& at) {
+  void begin(const path::BlockPoint& at) {
     add(at, true);
     last_ = at;
     path_.corridor.push_back(node_of(at));
   }
 
-  void go_on(const BlockPoint& to) {
+  void go_on(const path::BlockPoint& to) {
     // Where a path leads through the corner of a block it covers no distance, and adds no point.
     if (to.s == last_.s && to.t == last_.t) {
       last_ = to;
       return;
     }
     const Vec3d from_at = path_.points.back().place.feet;
-    const NodeSurface& surface = view_.surface(to.block);
+    const graph::NodeSurface& surface = view_.surface(to.block);
     const Vec3d to_at = surface.at(to.s, to.t);
     const auto piece = cost_(last_.block, last_.s, last_.t, from_at, to.s, to.t, to_at);
     path_.cost += piece.cost;
@@ -210,9 +212,9 @@ class PathBuilder {
     if (path_.points.size() == 1) path_.points.push_back(path_.points.front());
   }
 
-  void cross(const PulledCrossing& crossing) {
-    const NodePortal portal = view_.portal(crossing.crossing.portal);
-    path_.cost += portal_length(portal, crossing.out_at, crossing.in_at);
+  void cross(const path::PulledCrossing& crossing) {
+    const graph::NodePortal portal = view_.portal(crossing.crossing.portal);
+    path_.cost += graph::portal_length(portal, crossing.out_at, crossing.in_at);
     const bool same_patch =
         view_.block(crossing.out.block).patch == view_.block(crossing.in.block).patch;
     if (same_patch && !portal.over_hole) {
@@ -230,7 +232,9 @@ class PathBuilder {
   }
 
  private:
-  [[nodiscard]] uint32_t node_of(const BlockPoint& at) const { return view_.block(at.block).node; }
+  [[nodiscard]] uint32_t node_of(const path::BlockPoint& at) const {
+    return view_.block(at.block).node;
+  }
 
   // Level with the last point, above where the body drops to.
   void add_over(Vec3d to) {
@@ -240,8 +244,8 @@ class PathBuilder {
         {.place = {.feet = feet, .axis = up, .normal = up}, .on_surface = false});
   }
 
-  void add(const BlockPoint& at, bool on_surface) {
-    const NodeSurface& surface = view_.surface(at.block);
+  void add(const path::BlockPoint& at, bool on_surface) {
+    const graph::NodeSurface& surface = view_.surface(at.block);
     const auto& classes = data_of(data_of(view_.mesh().nodes())->world)->summary.classes;
     const bool climbs = classes[static_cast<size_t>(view_.mesh().avatar_class())].climb_slope > 0;
     const Vec3d normal = surface.normal(at.s, at.t), feet = surface.at(at.s, at.t);
@@ -251,33 +255,34 @@ class PathBuilder {
          .on_surface = on_surface});
   }
 
-  const NodeView& view_;
-  const PieceCost& cost_;
+  const path::NodeView& view_;
+  const path::PieceCost& cost_;
   double spacing_;
   NodePath& path_;
-  BlockPoint last_;
+  path::BlockPoint last_;
 };
 
 // A block of a node in or on whose border a point lies, and that is accepted; or kNoNode.
 template <class Accept>
-uint32_t block_around(const NodeMesh& mesh, uint32_t node, double s, double t, Accept accept) {
+uint32_t block_around(const graph::NodeMesh& mesh, uint32_t node, double s, double t,
+                      Accept accept) {
   constexpr double kLittle = 1e-9;
   const uint32_t patch = mesh.patch_of_node(node);
   for (const double j : {kLittle, -kLittle}) {
     for (const double i : {kLittle, -kLittle}) {
       const uint32_t block = mesh.block_at(patch, s + i, t + j);
-      if (block == kNoNode || mesh.blocks()[block].node != node) continue;
+      if (block == graph::kNoNode || mesh.blocks()[block].node != node) continue;
       if (accept(mesh.blocks()[block])) return block;
     }
   }
-  return kNoNode;
+  return graph::kNoNode;
 }
 
 // What blocks the class from a block towards a position.
-Obstacle obstacle_towards(const NodeView& view, const BlockPoint& from, Vec3d goal) {
-  const NodeMesh& mesh = view.mesh();
-  const NodeBlock& block = view.block(from.block);
-  const NodeSurface& surface = view.surface(from.block);
+Obstacle obstacle_towards(const path::NodeView& view, const path::BlockPoint& from, Vec3d goal) {
+  const graph::NodeMesh& mesh = view.mesh();
+  const graph::NodeBlock& block = view.block(from.block);
+  const graph::NodeSurface& surface = view.surface(from.block);
   const auto& classes = data_of(data_of(mesh.nodes())->world)->summary.classes;
   const AvatarClass& avatar = classes[static_cast<size_t>(mesh.avatar_class())];
   // Just beyond the side of the block that lies nearest to the goal.
@@ -299,18 +304,20 @@ Obstacle obstacle_towards(const NodeView& view, const BlockPoint& from, Vec3d go
   if (!view.is_as_baked() && !outside) {
     // A body could stand there, were it not for an obstacle.
     const uint32_t next = mesh.block_at(block.patch, s, t);
-    if (next != kNoNode && view.changes()->part_at(next, s, t) == kNoNode) return Obstacle::kNarrow;
+    if (next != graph::kNoNode && view.changes()->part_at(next, s, t) == graph::kNoNode)
+      return Obstacle::kNarrow;
   }
   if (surface.points == nullptr) {
     // What blocks a straight walk, as over level tiles without nodes.
-    const WorldData& world = *surface.world;
-    const WorldGround ground{world, mesh.avatar_class()};
-    GroundLevel level = ground_level(world, surface.source, mesh.avatar_class());
+    const world::WorldData& world = *surface.world;
+    const world::WorldGround ground{world, mesh.avatar_class()};
+    world::GroundLevel level = world::ground_level(world, surface.source, mesh.avatar_class());
     const Vec3d feet = surface.at(std::clamp(from.s, s0 + kEdgeStep, s0 + side - kEdgeStep),
                                   std::clamp(from.t, t0 + kEdgeStep, t0 + side - kEdgeStep));
-    const WalkStop stop = walk_far(ground, level, to_ground(world, feet.x, feet.z),
-                                   to_ground(world, goal.x, goal.z), step_mm(avatar));
-    return stop.arrived ? Obstacle::kGap : obstacle_beyond(ground, level, stop);
+    const world::WalkStop stop =
+        world::walk_far(ground, level, world::to_ground(world, feet.x, feet.z),
+                        world::to_ground(world, goal.x, goal.z), world::step_mm(avatar));
+    return stop.arrived ? Obstacle::kGap : path::obstacle_beyond(ground, level, stop);
   }
   if (outside) return Obstacle::kGap;
   const double limit = avatar.climb_slope > 0 ? avatar.climb_slope : avatar.max_slope;
@@ -341,17 +348,18 @@ Obstacle obstacle_towards(const NodeView& view, const BlockPoint& from, Vec3d go
 // Calls visit(block, s, t) for the parts and blocks of level tiles within `radius`: with the point
 // that lies nearest in the plane.
 template <class Visit>
-void for_each_level_part(const NodeView& view, Vec3d position, double radius, Visit visit) {
-  const NodeMesh& mesh = view.mesh();
-  const WorldData& world = *data_of(data_of(mesh.nodes())->world);
+void for_each_level_part(const path::NodeView& view, Vec3d position, double radius, Visit visit) {
+  const graph::NodeMesh& mesh = view.mesh();
+  const world::WorldData& world = *data_of(data_of(mesh.nodes())->world);
   const std::array<double, 2> plan{position.x, position.z};
-  const SquareRange tiles = tiles_near(world, std::span(&plan, 1), std::min(radius, 1e6));
+  const path::SquareRange tiles =
+      path::tiles_near(world, std::span(&plan, 1), std::min(radius, 1e6));
   const double tile = world.summary.cell * kTileCells;
   const auto consider = [&](uint32_t block, double s, double t) {
     const double side = view.block(block).side(), low_s = view.block(block).s * side,
                  low_t = view.block(block).t * side;
     const auto inside = [&](double at, double low) {
-      return std::clamp(at, low + kTileInset, low + side - kTileInset);
+      return std::clamp(at, low + graph::kTileInset, low + side - graph::kTileInset);
     };
     visit(block, inside(s, low_s), inside(t, low_t));
   };
@@ -362,7 +370,7 @@ void for_each_level_part(const NodeView& view, Vec3d position, double radius, Vi
       const auto levels = world.tile_levels(x, z);
       for (uint32_t level = levels.first; level < levels.last; ++level) {
         const uint32_t patch = mesh.patch_of_level(level);
-        if (patch == kNoNode) continue;
+        if (patch == graph::kNoNode) continue;
         const auto count = static_cast<uint32_t>(mesh.blocks_of(patch).size());
         for (uint32_t b = mesh.first_block(patch); b < mesh.first_block(patch) + count; ++b) {
           const auto parts = view.changes()->parts_of(b);
@@ -379,21 +387,21 @@ void for_each_level_part(const NodeView& view, Vec3d position, double radius, Vi
 // The nearest place to a goal, of a crossing into a block and all places of that block; and if that
 // is near, of all blocks that are reached.
 template <class IsReached>
-BlockPoint nearest_place(const NodeView& view, const BlockSquares& squares,
-                         const BlockPoint& crossing, Vec3d goal, IsReached is_reached) {
+path::BlockPoint nearest_place(const path::NodeView& view, const path::BlockSquares& squares,
+                               const path::BlockPoint& crossing, Vec3d goal, IsReached is_reached) {
   constexpr double kNear = 25;  // There are too many blocks around a farther goal. [m]
-  BlockPoint best = crossing;
-  double least = length(goal - position(view, best));
+  path::BlockPoint best = crossing;
+  double least = length(goal - path::position(view, best));
   const auto consider = [&](uint32_t block, double s, double t) {
-    const BlockPoint at{block, s, t};
-    const double far = length(goal - position(view, at));
+    const path::BlockPoint at{block, s, t};
+    const double far = length(goal - path::position(view, at));
     if (far < least) {
       least = far;
       best = at;
     }
   };
   const auto consider_nearest = [&](uint32_t block) {
-    const auto [s, t] = nearest_in(view.surface(block), view.block(block), goal);
+    const auto [s, t] = path::nearest_in(view.surface(block), view.block(block), goal);
     consider(block, s, t);
   };
   consider_nearest(crossing.block);
@@ -435,7 +443,7 @@ Result<NodePathFinder> NodePathFinder::create(const Nodes& nodes, const NodePath
     return Error{Errc::kBadConfig, "path: slope_cost must be 0 to 1000"};
   }
   if (config.workers < 0) return Error{Errc::kBadConfig, "path: workers must be 0 or more"};
-  auto mesh = NodeMesh::make(nodes, config.avatar_class, config.workers, context);
+  auto mesh = graph::NodeMesh::make(nodes, config.avatar_class, config.workers, context);
   if (!mesh) return mesh.error();
   auto shared = std::make_shared<Shared>(std::move(*mesh), config);
   shared->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -443,7 +451,7 @@ Result<NodePathFinder> NodePathFinder::create(const Nodes& nodes, const NodePath
 }
 
 NodePathSummary NodePathFinder::summary() const {
-  const NodeMesh& mesh = state_->mesh;
+  const graph::NodeMesh& mesh = state_->mesh;
   return {.blocks = mesh.blocks().size(),
           .crossings = mesh.portals().size(),
           .bytes = mesh.bytes() + state_->squares.bytes() + state_->parts.bytes() +
@@ -453,31 +461,32 @@ NodePathSummary NodePathFinder::summary() const {
 
 std::optional<NodeSquare> NodePathFinder::square(uint32_t node, double from_s, double from_t,
                                                  double to_s, double to_t) const {
-  const NodeMesh& mesh = state_->mesh;
+  const graph::NodeMesh& mesh = state_->mesh;
   THRONG_ASSERT(node < mesh.nodes().node_count());
-  const auto square_of = [&](const NodeBlock& b) {
+  const auto square_of = [&](const graph::NodeBlock& b) {
     const double side = b.side();
     return NodeSquare{b.s * side, b.t * side, (b.s + 1) * side, (b.t + 1) * side};
   };
-  const uint32_t found = block_around(mesh, node, from_s, from_t, [&](const NodeBlock& block) {
-    constexpr double kRounded = 1e-12;
-    const NodeSquare square = square_of(block);
-    const auto holds = [&](double s, double t) {
-      return s >= square.s0 - kRounded && s <= square.s1 + kRounded && t >= square.t0 - kRounded &&
-             t <= square.t1 + kRounded;
-    };
-    return holds(from_s, from_t) && holds(to_s, to_t);
-  });
-  if (found == kNoNode) return std::nullopt;
+  const uint32_t found =
+      block_around(mesh, node, from_s, from_t, [&](const graph::NodeBlock& block) {
+        constexpr double kRounded = 1e-12;
+        const NodeSquare square = square_of(block);
+        const auto holds = [&](double s, double t) {
+          return s >= square.s0 - kRounded && s <= square.s1 + kRounded &&
+                 t >= square.t0 - kRounded && t <= square.t1 + kRounded;
+        };
+        return holds(from_s, from_t) && holds(to_s, to_t);
+      });
+  if (found == graph::kNoNode) return std::nullopt;
   return square_of(mesh.blocks()[found]);
 }
 
 NodePlace NodePathFinder::find_place(Vec3d position, double search_radius) const {
-  const NodeMesh& mesh = state_->mesh;
+  const graph::NodeMesh& mesh = state_->mesh;
   if (!std::isfinite(position.x + position.y + position.z) || !(search_radius >= 0)) return {};
   scratch_->update();
-  const NodeChanges& changes = scratch_->changes;
-  const NodeView& view = scratch_->view;
+  const path::NodeChanges& changes = scratch_->changes;
+  const path::NodeView& view = scratch_->view;
   double nearest = search_radius;
   uint64_t best_rank = 0;  // Of places as near as each other it is the first: level ground, then
                            // blocks in their order.
@@ -492,21 +501,23 @@ NodePlace NodePathFinder::find_place(Vec3d position, double search_radius) const
     best = place;
   };
   const auto consider_curved = [&](uint32_t block) {
-    const auto [s, t] = nearest_in(mesh.surface(block), view.block(block), position);
+    const auto [s, t] = path::nearest_in(mesh.surface(block), view.block(block), position);
     consider(block, s, t, uint64_t{block} + 1);
   };
   const World& world = data_of(mesh.nodes())->world;
   if (const Place place = world.find_place(mesh.avatar_class(), position, search_radius)) {
-    if (const uint32_t patch = mesh.patch_of_level(place.level1 - 1); patch != kNoNode) {
-      const GroundPoint at = to_ground(*data_of(world), place.position.x, place.position.z);
+    if (const uint32_t patch = mesh.patch_of_level(place.level1 - 1); patch != graph::kNoNode) {
+      const world::GroundPoint at =
+          world::to_ground(*data_of(world), place.position.x, place.position.z);
       const auto along = [](int64_t unit) {
-        return (static_cast<double>(unit & (64 * kUnitsPerCell - 1)) + 0.5) / (64 * kUnitsPerCell);
+        return (static_cast<double>(unit & (64 * world::kUnitsPerCell - 1)) + 0.5) /
+               (64 * world::kUnitsPerCell);
       };
       const double s = along(at.x), t = along(at.z);
       const uint32_t block = mesh.block_at(patch, s, t);
-      const uint32_t part = block == kNoNode ? kNoNode : changes.part_at(block, s, t);
-      if (part != kNoNode) consider(part, s, t, 0);
-      if (part == kNoNode && block != kNoNode) {
+      const uint32_t part = block == graph::kNoNode ? graph::kNoNode : changes.part_at(block, s, t);
+      if (part != graph::kNoNode) consider(part, s, t, 0);
+      if (part == graph::kNoNode && block != graph::kNoNode) {
         // The nearest is used. No level tile's place is nearer than in one of its parts.
         for_each_level_part(view, position, nearest, [&](uint32_t other, double u, double v) {
           consider(other, u, v, uint64_t{other} + 1);
@@ -518,7 +529,7 @@ NodePlace NodePathFinder::find_place(Vec3d position, double search_radius) const
     const auto parts = changes.parts_of(block);
     if (!parts) return consider_curved(block);
     for (uint32_t p = parts->first; p < parts->second; ++p) {
-      const auto [s, t] = nearest_in(view.surface(p), view.block(p), position);
+      const auto [s, t] = path::nearest_in(view.surface(p), view.block(p), position);
       consider(p, s, t, uint64_t{p} + 1);
     }
   });
@@ -526,14 +537,14 @@ NodePlace NodePathFinder::find_place(Vec3d position, double search_radius) const
 }
 
 Result<ChangeId> NodePathFinder::add_obstacle(const Prism& prism) {
-  auto solid = make_solid(prism);
+  auto solid = path::make_solid(prism);
   if (!solid) return solid.error();
   return scratch_->changes.add(*solid);
 }
 
 Result<ChangeId> NodePathFinder::add_obstacle(std::span<const Vec3d> corners,
                                               std::span<const std::array<uint32_t, 3>> triangles) {
-  auto solid = make_solid(corners, triangles);
+  auto solid = path::make_solid(corners, triangles);
   if (!solid) return solid.error();
   return scratch_->changes.add(*solid);
 }
@@ -548,7 +559,7 @@ bool NodePathFinder::set_active(ChangeId change, bool active) {
 void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& path,
                           double spacing, const SearchBudget& budget) {
   THRONG_ASSERT(spacing > 0);
-  const NodeMesh& mesh = state_->mesh;
+  const graph::NodeMesh& mesh = state_->mesh;
   path.end = PathEnd::kNoPlace;
   path.points.clear();
   path.links.clear();
@@ -558,15 +569,15 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
   path.nodes = 0;
   path.spent = SpentBudget::kNone;
   const auto block_of = [&](const NodePlace& place) {
-    BlockPoint at{kNoNode, place.s, place.t};
+    path::BlockPoint at{graph::kNoNode, place.s, place.t};
     if (!place || place.node1 > mesh.nodes().node_count()) return at;
     if (!(place.s >= 0 && place.s <= 1 && place.t >= 0 && place.t <= 1)) return at;
     at.block = mesh.block_at(mesh.patch_of_node(place.node1 - 1), place.s, place.t);
     // On the border of a cell the other cell may be meant.
-    if (at.block == kNoNode || mesh.blocks()[at.block].node != place.node1 - 1) {
+    if (at.block == graph::kNoNode || mesh.blocks()[at.block].node != place.node1 - 1) {
       const uint32_t own = block_around(mesh, place.node1 - 1, place.s, place.t,
-                                        [](const NodeBlock&) { return true; });
-      if (own != kNoNode) {
+                                        [](const graph::NodeBlock&) { return true; });
+      if (own != graph::kNoNode) {
         at.block = own;
         return at;
       }
@@ -575,7 +586,7 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
       const double s = std::clamp(place.s, info.s * side + in, (info.s + 1) * side - in);
       const double t = std::clamp(place.t, info.t * side + in, (info.t + 1) * side - in);
       const uint32_t other = mesh.block_at(mesh.patch_of_node(place.node1 - 1), s, t);
-      if (other != kNoNode && std::fabs(s - place.s) + std::fabs(t - place.t) < 1e-6) {
+      if (other != graph::kNoNode && std::fabs(s - place.s) + std::fabs(t - place.t) < 1e-6) {
         at.block = other;
       }
     }
@@ -583,20 +594,20 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
   };
   Scratch& scratch = *scratch_;
   scratch.update();
-  const NodeView& view = scratch.view;
-  const auto part_of = [&](BlockPoint at) {
-    if (at.block != kNoNode) at.block = scratch.changes.part_at(at.block, at.s, at.t);
+  const path::NodeView& view = scratch.view;
+  const auto part_of = [&](path::BlockPoint at) {
+    if (at.block != graph::kNoNode) at.block = scratch.changes.part_at(at.block, at.s, at.t);
     return at;
   };
-  const BlockPoint start = part_of(block_of(from)), goal = part_of(block_of(to));
-  if (start.block == kNoNode || goal.block == kNoNode) return;
+  const path::BlockPoint start = part_of(block_of(from)), goal = part_of(block_of(to));
+  if (start.block == graph::kNoNode || goal.block == graph::kNoNode) return;
   state_->parts.reach(view.base_of(start.block), scratch.reached);
   bool reachable = scratch.reached.holds(state_->parts.of_block(view.base_of(goal.block)));
   scratch.nearest.reset();
   if (view.is_as_baked()) {
     if (!reachable) {
-      const BlockPoint crossing = state_->parts.nearest(view, start, to.feet, scratch.reached,
-                                                        [](uint32_t) { return false; });
+      const path::BlockPoint crossing = state_->parts.nearest(view, start, to.feet, scratch.reached,
+                                                              [](uint32_t) { return false; });
       scratch.nearest = nearest_place(
           view, state_->squares, crossing, to.feet,
           [&](uint32_t block) { return scratch.reached.holds(state_->parts.of_block(block)); });
@@ -605,8 +616,8 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
   } else {
     // If no obstacle blocks, parts decide what is reachable.
     scratch.islands.clear(view);
-    reachable = reachable &&
-                !scratch.islands.close(view, goal.block, start.block, NodeIsland::Direction::kIn);
+    reachable = reachable && !scratch.islands.close(view, goal.block, start.block,
+                                                    path::NodeIsland::Direction::kIn);
     path.end = reachable ? scratch.find(start, goal, budget, path)
                          : scratch.find_nearest(start, goal, budget, path);
     reachable = reachable && path.end == PathEnd::kReached;
@@ -615,9 +626,9 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
     path.spent = budget.spent(path.nodes);
     return;
   }
-  BlockPoint last = goal;
+  path::BlockPoint last = goal;
   if (!reachable) {
-    last = scratch.crossings.empty() ? start : ends_of(view, scratch.crossings.back()).in;
+    last = scratch.crossings.empty() ? start : path::ends_of(view, scratch.crossings.back()).in;
     last = scratch.nearest.value_or(
         nearest_place(view, state_->squares, last, to.feet, [](uint32_t) { return false; }));
     path.end = PathEnd::kUnreachable;
@@ -626,7 +637,7 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
   scratch.pull.pull(start, last, scratch.crossings, scratch.pulled);
   PathBuilder path_builder(view, scratch.cost, spacing, path);
   path_builder.begin(start);
-  for (const PulledCrossing& crossing : scratch.pulled) {
+  for (const path::PulledCrossing& crossing : scratch.pulled) {
     path_builder.go_on(crossing.out);
     path_builder.cross(crossing);
   }

@@ -23,14 +23,15 @@ namespace throng {
 namespace {
 
 // Feet mostly wait for the ground's bytes: all are prefetched before any is read.
-void add_places(const WorldData& world, const PathMesh& mesh, const std::vector<Stop>& stops,
-                std::vector<LevelView>& views, Path& path) {
+void add_places(const world::WorldData& world, const path::PathMesh& mesh,
+                const std::vector<path::Stop>& stops, std::vector<world::LevelView>& views,
+                Path& path) {
   views.clear();
-  for (const Stop& stop : stops) {
+  for (const path::Stop& stop : stops) {
     const uint32_t level = mesh.rects[stop.rect].level;
     const size_t slot = world.slot_of_level(level);
-    const Zone* zone = world.zone(slot);
-    views.push_back(zone == nullptr ? LevelView{}
+    const world::Zone* zone = world.zone(slot);
+    views.push_back(zone == nullptr ? world::LevelView{}
                                     : zone->view(level - world.slots[slot]->first_level));
     views.back().ask_for_heads(stop.at.cell_x() & 63, stop.at.cell_z() & 63);
   }
@@ -38,7 +39,8 @@ void add_places(const WorldData& world, const PathMesh& mesh, const std::vector<
     views[i].ask_for_cells(stops[i].at.cell_x() & 63, stops[i].at.cell_z() & 63);
   }
   for (size_t i = 0; i < stops.size(); ++i) {
-    path.points.push_back(place_at(world, mesh.rects[stops[i].rect].level, views[i], stops[i].at));
+    path.points.push_back(
+        world::place_at(world, mesh.rects[stops[i].rect].level, views[i], stops[i].at));
   }
 }
 
@@ -46,20 +48,20 @@ void add_places(const WorldData& world, const PathMesh& mesh, const std::vector<
 
 struct PathFinder::Shared {
   World world;
-  PathMesh mesh;
-  std::optional<HubLabels> labels;
-  std::optional<ZoneGraph> zones;
+  path::PathMesh mesh;
+  std::optional<path::HubLabels> labels;
+  std::optional<path::ZoneGraph> zones;
   PathSummary summary;
 };
 
 struct PathFinder::Scratch {
-  PathSearch search;
-  LabelSearch label_search;
-  ZoneSearch over_zones;
-  PortalSearch portals;
+  path::PathSearch search;
+  path::LabelSearch label_search;
+  path::ZoneSearch over_zones;
+  path::PortalSearch portals;
   std::vector<uint32_t> corners;
-  std::vector<Stop> stops;
-  std::vector<LevelView> views;  // of the stops
+  std::vector<path::Stop> stops;
+  std::vector<world::LevelView> views;  // of the stops
 };
 
 PathFinder::PathFinder(std::shared_ptr<const Shared> shared)
@@ -82,7 +84,7 @@ Result<PathFinder> PathFinder::create(const World& world, const PathConfig& conf
   if (config.workers < 0) return Error{Errc::kBadConfig, "path: workers must be 0 or more"};
   const auto start = std::chrono::steady_clock::now();
   if (auto ok = world.check_ground(); !ok) return ok.error();
-  auto mesh = build_mesh(*data_of(world), config.avatar_class, config.workers, context);
+  auto mesh = path::build_mesh(*data_of(world), config.avatar_class, config.workers, context);
   if (!mesh) return mesh.error();
   auto shared = std::make_shared<Shared>();
   shared->world = world;
@@ -96,14 +98,14 @@ Result<PathFinder> PathFinder::create(const World& world, const PathConfig& conf
              shared->mesh.bytes(),
              0};
   if (config.speedup == PathSpeedup::kLabels) {
-    auto labels = build_labels(shared->mesh, config.workers, context);
+    auto labels = path::build_labels(shared->mesh, config.workers, context);
     if (!labels) return labels.error();
     shared->labels = std::move(*labels);
     summary.labels = shared->labels->labels.size();
     summary.bytes += shared->labels->bytes();
   }
   if (config.speedup == PathSpeedup::kZones) {
-    auto zones = build_zone_graph(*data_of(world), shared->mesh, config.workers, context);
+    auto zones = path::build_zone_graph(*data_of(world), shared->mesh, config.workers, context);
     if (!zones) return zones.error();
     shared->zones = std::move(*zones);
     summary.entrances = shared->zones->entrances.size();
@@ -115,20 +117,22 @@ Result<PathFinder> PathFinder::create(const World& world, const PathConfig& conf
 }
 
 PathSummary PathFinder::summary() const { return state_->summary; }
-const PathMesh& mesh_of(const PathFinder& finder) { return Access::state(finder)->mesh; }
+const path::PathMesh& path::mesh_of(const PathFinder& finder) {
+  return Access::state(finder)->mesh;
+}
 
 void PathFinder::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget) {
-  const WorldData& world = *data_of(state_->world);
-  const PathMesh& mesh = state_->mesh;
-  reset(path);
-  const auto locate = [&](const Place& place, Stop& end) {
-    const auto at = ground_point(world, place);
+  const world::WorldData& world = *data_of(state_->world);
+  const path::PathMesh& mesh = state_->mesh;
+  path::reset(path);
+  const auto locate = [&](const Place& place, path::Stop& end) {
+    const auto at = world::ground_point(world, place);
     if (!at) return false;
     end.at = *at;
     end.rect = mesh.rect_at(place.level1 - 1, end.at.cell_x(), end.at.cell_z());
-    return end.rect != kNoRect;
+    return end.rect != path::kNoRect;
   };
-  Stop start, goal;
+  path::Stop start, goal;
   if (!locate(from, start) || !locate(to, goal)) return;
 
   if (mesh.rects[start.rect].component != mesh.rects[goal.rect].component) {
@@ -136,14 +140,14 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, const Sear
     return;
   }
   double length = 0;
-  SearchResult result = SearchResult::kNone;
+  path::SearchResult result = path::SearchResult::kNone;
   if (state_->labels) {
     if (scratch_->label_search.find(mesh, *state_->labels, start, goal, scratch_->corners,
                                     length)) {
-      result = SearchResult::kFound;
+      result = path::SearchResult::kFound;
     }
   } else if (state_->zones) {
-    ZoneSearch& search = scratch_->over_zones;
+    path::ZoneSearch& search = scratch_->over_zones;
     result =
         search.find(world, mesh, *state_->zones, start, goal, budget, scratch_->corners, length);
     path.nodes = search.expanded();
@@ -153,20 +157,22 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, const Sear
   }
   // Both are of one component: a path exists, even if none can be drawn over corners.
   const auto is_drawn = [&] {
-    SegmentWalker walker(world, mesh);
+    path::SegmentWalker walker(world, mesh);
     return walker.walk(start, scratch_->corners, goal.at, scratch_->stops) &&
            scratch_->stops.back().rect == goal.rect;
   };
-  if (result == SearchResult::kBudget) path.spent = budget.spent(path.nodes);
-  if (result == SearchResult::kNone || (result == SearchResult::kFound && !is_drawn())) {
+  if (result == path::SearchResult::kBudget) path.spent = budget.spent(path.nodes);
+  if (result == path::SearchResult::kNone ||
+      (result == path::SearchResult::kFound && !is_drawn())) {
     const SearchBudget rest = budget.after(path.nodes);
     result = scratch_->portals.find(mesh, start, goal, rest, scratch_->stops, length);
     const uint64_t nodes = scratch_->portals.expanded();
-    if (result == SearchResult::kBudget) path.spent = rest.spent(nodes);
+    if (result == path::SearchResult::kBudget) path.spent = rest.spent(nodes);
     path.nodes += nodes;
   }
-  if (result != SearchResult::kFound) {
-    path.end = result == SearchResult::kNone ? PathEnd::kUnreachable : PathEnd::kBudgetExhausted;
+  if (result != path::SearchResult::kFound) {
+    path.end =
+        result == path::SearchResult::kNone ? PathEnd::kUnreachable : PathEnd::kBudgetExhausted;
     return;
   }
   path.end = PathEnd::kReached;

@@ -15,7 +15,7 @@
 // The free air boxes of the octree, as they are stored for all classes together. Two are linked
 // where they share a part of a face. Of the neighbours at a face only the one behind its middle is
 // drawn, from the smaller box to the larger, so every line is drawn once. Source: [PACS00] 1.2.3.7.
-namespace throng {
+namespace throng::render {
 namespace {
 
 constexpr std::array<std::array<int32_t, 3>, 6> kFaces = {
@@ -23,26 +23,26 @@ constexpr std::array<std::array<int32_t, 3>, 6> kFaces = {
 
 class LineFinder {
  public:
-  LineFinder(const WorldData& world, const Box3d& area)
+  LineFinder(const world::WorldData& world, const Box3d& area)
       : world_(world), air_(*world.air), area_(area) {}
 
   // The free air box that holds a cell of the world, cut to the layers that may be flown in.
-  [[nodiscard]] std::optional<AirCube> cube_at(int32_t x, int32_t y, int32_t z) const {
+  [[nodiscard]] std::optional<world::AirCube> cube_at(int32_t x, int32_t y, int32_t z) const {
     if (x < 0 || z < 0 || x >= air_.width || z >= air_.depth || y < air_.shape.floor ||
         y >= air_.shape.ceiling) {
       return {};
     }
     const int32_t zone_x = x / air_.zone_side, zone_z = z / air_.zone_side;
-    const AirData::ZoneAir zone = air_.zone(zone_x, zone_z);
+    const world::AirData::ZoneAir zone = air_.zone(zone_x, zone_z);
     if (!zone.usable || zone.tree == nullptr) return {};
-    const AirTree::Place place =
+    const world::AirTree::Place place =
         zone.tree->find(x - zone_x * air_.zone_side, y, z - zone_z * air_.zone_side);
-    if (air_kind(place.word) != AirKind::kFree) return {};
-    return AirCube{place.cube.x + zone_x * air_.zone_side, place.cube.y,
-                   place.cube.z + zone_z * air_.zone_side, place.cube.side};
+    if (world::air_kind(place.word) != world::AirKind::kFree) return {};
+    return world::AirCube{place.cube.x + zone_x * air_.zone_side, place.cube.y,
+                          place.cube.z + zone_z * air_.zone_side, place.cube.side};
   }
 
-  [[nodiscard]] Vec3d middle(const AirCube& cube) const {
+  [[nodiscard]] Vec3d middle(const world::AirCube& cube) const {
     const double low = std::max(cube.y, air_.shape.floor);
     const double high = std::min(cube.y + cube.side, air_.shape.ceiling);
     return metres(cube.x + cube.side * 0.5, (low + high) / 2, cube.z + cube.side * 0.5);
@@ -59,7 +59,7 @@ class LineFinder {
            (p.x >= area_.min.x && p.x <= area_.max.x && p.z >= area_.min.z && p.z <= area_.max.z);
   }
 
-  void add_links(const AirCube& cube, std::vector<AirLine>& lines) const {
+  void add_links(const world::AirCube& cube, std::vector<AirLine>& lines) const {
     const Vec3d here = middle(cube);
     for (const auto& face : kFaces) {
       const auto beyond = [&](int32_t at, int32_t direction) {
@@ -75,7 +75,7 @@ class LineFinder {
   }
 
   // To the best ground under an air box that has no air below it.
-  void add_ground(const AirCube& cube, const FlightFinder& flight,
+  void add_ground(const world::AirCube& cube, const FlightFinder& flight,
                   std::vector<AirLine>& lines) const {
     const int32_t x = cube.x + cube.side / 2, z = cube.z + cube.side / 2;
     if (cube_at(x, cube.y - 1, z)) return;
@@ -94,23 +94,23 @@ class LineFinder {
   void for_cubes(Visit visit) const {
     for (const auto& slot : air_.slots) {
       const int32_t x = slot->entry.x(), z = slot->entry.z();
-      const AirData::ZoneAir zone = air_.zone(x, z);
+      const world::AirData::ZoneAir zone = air_.zone(x, z);
       if (!zone.usable || zone.tree == nullptr) continue;
-      zone.tree->for_each([&](const AirCube& cube, uint32_t word) {
-        if (air_kind(word) != AirKind::kFree || cube.y >= air_.shape.ceiling ||
+      zone.tree->for_each([&](const world::AirCube& cube, uint32_t word) {
+        if (world::air_kind(word) != world::AirKind::kFree || cube.y >= air_.shape.ceiling ||
             cube.y + cube.side <= air_.shape.floor) {
           return;
         }
-        const AirCube found{cube.x + x * air_.zone_side, cube.y, cube.z + z * air_.zone_side,
-                            cube.side};
+        const world::AirCube found{cube.x + x * air_.zone_side, cube.y, cube.z + z * air_.zone_side,
+                                   cube.side};
         if (is_wanted(middle(found))) visit(found);
       });
     }
   }
 
  private:
-  const WorldData& world_;
-  const AirData& air_;
+  const world::WorldData& world_;
+  const world::AirData& air_;
   const Box3d& area_;
 };
 
@@ -118,7 +118,7 @@ class LineFinder {
 
 Result<std::vector<AirLine>> air_lines(const World& world, const Box3d& area) {
   if (data_of(world) != nullptr) {
-    if (auto ok = check_air_index(*data_of(world)); !ok) return ok.error();
+    if (auto ok = world::check_air_index(*data_of(world)); !ok) return ok.error();
   }
   if (data_of(world) == nullptr || data_of(world)->air == nullptr) {
     return Error{Errc::kNotFound,
@@ -136,11 +136,11 @@ Result<std::vector<AirLine>> air_lines(const World& world, const Box3d& area) {
   }
   const LineFinder finder(*data_of(world), area);
   std::vector<AirLine> lines;
-  finder.for_cubes([&](const AirCube& cube) {
+  finder.for_cubes([&](const world::AirCube& cube) {
     finder.add_links(cube, lines);
     if (flight) finder.add_ground(cube, *flight, lines);
   });
   return lines;
 }
 
-}  // namespace throng
+}  // namespace throng::render

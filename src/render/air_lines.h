@@ -9,7 +9,7 @@
 #include "throng/world.h"
 
 /// The links of a world's air as lines to draw, like the last figures of [PACS00].
-namespace throng {
+namespace throng::render {
 
 /// From the middle of a free air box to the middle of one that shares a face with it, or to the
 /// ground elected for it.
@@ -22,4 +22,4 @@ struct AirLine {
 /// is linked for the first class that flies. Fails with kNotFound: the world has no air.
 [[nodiscard]] Result<std::vector<AirLine>> air_lines(const World& world, const Box3d& area);
 
-}  // namespace throng
+}  // namespace throng::render

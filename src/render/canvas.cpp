@@ -8,7 +8,7 @@
 
 // Draws lines and discs by the distance of a pixel's centre to the shape: coverage falls from full
 // to none within half a pixel on either side of the edge.
-namespace throng {
+namespace throng::render {
 namespace {
 
 int32_t pixel_floor(double v, int32_t limit) {
@@ -163,4 +163,4 @@ bool on_hatch(int32_t x, int32_t y, double spacing) {
   return (x + y) % period == 0;
 }
 
-}  // namespace throng
+}  // namespace throng::render

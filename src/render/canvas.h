@@ -11,7 +11,7 @@
 
 /// A picture under construction. Coordinates in pixels from the top left corner; the centre of the
 /// first pixel is (0.5, 0.5). Whatever lies outside is left out.
-namespace throng {
+namespace throng::render {
 
 struct Point {
   double x = 0, y = 0;
@@ -52,4 +52,4 @@ class Canvas {
 /// Is (x, y) on a stripe of the diagonal hatching? The same pattern for areas, swatches and maps.
 [[nodiscard]] bool on_hatch(int32_t x, int32_t y, double spacing);
 
-}  // namespace throng
+}  // namespace throng::render

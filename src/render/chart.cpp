@@ -17,14 +17,14 @@ namespace throng {
 namespace {
 
 // Distinct for colour-blind readers. Source: M. Okabe, K. Ito. Color Universal Design. 2008.
-constexpr std::array<Rgb, 6> kColours{
+constexpr std::array<render::Rgb, 6> kColours{
     {{213, 94, 0}, {0, 114, 178}, {0, 158, 115}, {204, 121, 167}, {230, 159, 0}, {86, 180, 233}}};
 
 struct Frame {
   double unit = 1;
-  Rect plot;
+  render::Rect plot;
   double x_low = 0, x_high = 1, y_high = 1;
-  [[nodiscard]] Point at(double x, double y) const {
+  [[nodiscard]] render::Point at(double x, double y) const {
     return {plot.x + (x - x_low) / (x_high - x_low) * plot.width,
             plot.y + plot.height - y / y_high * plot.height};
   }
@@ -32,45 +32,47 @@ struct Frame {
 
 // The smallest round step that makes at most `max_ticks` ticks.
 double tick_step(double range, double max_ticks) {
-  double step = round_below(range / max_ticks);
+  double step = render::round_below(range / max_ticks);
   if (!(step > 0)) return range;  // hardly more than the smallest number
-  while (range / step > max_ticks + 1e-9) step = round_below(step * 2.5 * (1 + 1e-9));
+  while (range / step > max_ticks + 1e-9) step = render::round_below(step * 2.5 * (1 + 1e-9));
   return step;
 }
 
 std::string tick_text(double value) { return fmt::format("{:g}", value); }
 
-void draw_axes(Canvas& canvas, const Frame& frame, const Chart& chart) {
+void draw_axes(render::Canvas& canvas, const Frame& frame, const Chart& chart) {
   const double u = frame.unit, text = 12 * u;
-  const Rect& p = frame.plot;
+  const render::Rect& p = frame.plot;
   const double y_step = tick_step(frame.y_high, 8);
   for (int32_t i = 0; i * y_step <= frame.y_high * (1 + 1e-9); ++i) {
-    const Point at = frame.at(frame.x_low, i * y_step);
-    canvas.line(at, {p.x + p.width, at.y}, std::max(1.0, u), kRule);
-    draw_text(canvas, {p.x - 10 * u, at.y + text / 2}, tick_text(i * y_step),
-              {.size = text, .align = Align::kRight});
+    const render::Point at = frame.at(frame.x_low, i * y_step);
+    canvas.line(at, {p.x + p.width, at.y}, std::max(1.0, u), render::kRule);
+    render::draw_text(canvas, {p.x - 10 * u, at.y + text / 2}, tick_text(i * y_step),
+                      {.size = text, .align = render::Align::kRight});
   }
   const double x_step = tick_step(frame.x_high - frame.x_low, 12);
   const double first = std::ceil(frame.x_low / x_step);
   const double range = frame.x_high - frame.x_low;
   for (int32_t i = 0; (first + i) * x_step <= frame.x_high + 1e-9 * range; ++i) {
     const double x = (first + i) * x_step + 0.0;  // never -0
-    const Point at = frame.at(x, 0);
-    canvas.line(at, {at.x, at.y + 6 * u}, std::max(1.0, u), kFaintInk);
-    draw_text(canvas, {at.x, at.y + 12 * u + text}, tick_text(x),
-              {.size = text, .align = Align::kCentre});
+    const render::Point at = frame.at(x, 0);
+    canvas.line(at, {at.x, at.y + 6 * u}, std::max(1.0, u), render::kFaintInk);
+    render::draw_text(canvas, {at.x, at.y + 12 * u + text}, tick_text(x),
+                      {.size = text, .align = render::Align::kCentre});
   }
-  canvas.line(frame.at(frame.x_low, 0), frame.at(frame.x_high, 0), std::max(1.0, 1.5 * u), kInk);
-  draw_text(canvas, {p.x + p.width / 2, p.y + p.height + 54 * u}, chart.x_title,
-            {.size = text, .colour = kFaintInk, .align = Align::kCentre});
-  draw_text(canvas, {p.x, p.y - 14 * u}, chart.y_title, {.size = text, .colour = kFaintInk});
+  canvas.line(frame.at(frame.x_low, 0), frame.at(frame.x_high, 0), std::max(1.0, 1.5 * u),
+              render::kInk);
+  render::draw_text(canvas, {p.x + p.width / 2, p.y + p.height + 54 * u}, chart.x_title,
+                    {.size = text, .colour = render::kFaintInk, .align = render::Align::kCentre});
+  render::draw_text(canvas, {p.x, p.y - 14 * u}, chart.y_title,
+                    {.size = text, .colour = render::kFaintInk});
 }
 
-void draw_dashes(Canvas& canvas, const std::vector<Point>& points, double width, double dash,
-                 Rgb colour) {
+void draw_dashes(render::Canvas& canvas, const std::vector<render::Point>& points, double width,
+                 double dash, render::Rgb colour) {
   double walked = 0;  // Along the whole line, so that dashes continue around corners.
   for (size_t i = 1; i < points.size(); ++i) {
-    const Point a = points[i - 1], b = points[i];
+    const render::Point a = points[i - 1], b = points[i];
     const double size = std::hypot(b.x - a.x, b.y - a.y);
     double from = 0;
     while (from < size) {
@@ -78,7 +80,7 @@ void draw_dashes(Canvas& canvas, const std::vector<Point>& points, double width,
       const bool inked = in_period < dash;
       const double to = std::min(size, from + (inked ? dash : 2 * dash) - in_period + 1e-6);
       const auto point = [&](double s) {
-        return Point{a.x + (b.x - a.x) * s / size, a.y + (b.y - a.y) * s / size};
+        return render::Point{a.x + (b.x - a.x) * s / size, a.y + (b.y - a.y) * s / size};
       };
       if (inked) canvas.line(point(from), point(to), width, colour);
       from = to;
@@ -88,9 +90,9 @@ void draw_dashes(Canvas& canvas, const std::vector<Point>& points, double width,
 }
 
 // The pieces of a line that lie below the top of the plot.
-std::vector<std::vector<Point>> pieces_of(const Frame& frame, const std::vector<double>& x,
-                                          const std::vector<double>& y) {
-  std::vector<std::vector<Point>> pieces;
+std::vector<std::vector<render::Point>> pieces_of(const Frame& frame, const std::vector<double>& x,
+                                                  const std::vector<double>& y) {
+  std::vector<std::vector<render::Point>> pieces;
   bool inside = false;
   for (size_t i = 0; i < x.size(); ++i) {
     const bool now = y[i] <= frame.y_high;
@@ -106,13 +108,13 @@ std::vector<std::vector<Point>> pieces_of(const Frame& frame, const std::vector<
   return pieces;
 }
 
-void draw_band(Canvas& canvas, const Frame& frame, const Chart& chart, const ChartLine& line,
-               Rgb colour) {
+void draw_band(render::Canvas& canvas, const Frame& frame, const Chart& chart,
+               const ChartLine& line, render::Rgb colour) {
   for (size_t i = 1; i < chart.x.size(); ++i) {
     const auto edge = [&](size_t k, double side) {
       return frame.at(chart.x[k], std::max(0.0, line.values[k] + side * line.spread[k]));
     };
-    const Point a = edge(i - 1, 1), b = edge(i, 1), c = edge(i, -1), d = edge(i - 1, -1);
+    const render::Point a = edge(i - 1, 1), b = edge(i, 1), c = edge(i, -1), d = edge(i - 1, -1);
     // Column by column, so that neighbouring pieces share no pixel.
     for (auto x = static_cast<int32_t>(std::ceil(a.x - 0.5)); x + 0.5 < b.x; ++x) {
       const double t = (x + 0.5 - a.x) / (b.x - a.x);
@@ -127,7 +129,7 @@ void draw_band(Canvas& canvas, const Frame& frame, const Chart& chart, const Cha
 
 struct Drawn {
   const ChartLine* line = nullptr;
-  Rgb colour;
+  render::Rgb colour;
   double width = 1;
 };
 
@@ -137,9 +139,9 @@ std::vector<Drawn> styled(const Chart& chart, double unit) {
   size_t next = 0;
   for (const ChartLine& line : chart.lines) {
     const bool grey = line.kind == LineKind::kFaint || line.kind == LineKind::kDashed;
-    const Rgb colour = line.kind == LineKind::kFaint ? kHatch
-                       : grey                        ? kInk
-                                                     : kColours[next++ % kColours.size()];
+    const render::Rgb colour = line.kind == LineKind::kFaint ? render::kHatch
+                               : grey                        ? render::kInk
+                                                             : kColours[next++ % kColours.size()];
     const double width = line.kind == LineKind::kStrong  ? 5
                          : line.kind == LineKind::kPlain ? 2.5
                                                          : 1.2;
@@ -152,22 +154,22 @@ std::vector<Drawn> styled(const Chart& chart, double unit) {
   return drawn;
 }
 
-void draw_legend(Canvas& canvas, const Frame& frame, const std::vector<Drawn>& drawn) {
+void draw_legend(render::Canvas& canvas, const Frame& frame, const std::vector<Drawn>& drawn) {
   const double u = frame.unit, text = 12 * u;
   double y = frame.plot.y + 16 * u;
   for (const Drawn& d : drawn) {
     if (d.line->name.empty()) continue;
-    const Point a{frame.plot.x + 20 * u, y}, b{frame.plot.x + 64 * u, y};
+    const render::Point a{frame.plot.x + 20 * u, y}, b{frame.plot.x + 64 * u, y};
     // On a paper background, so that the grid does not cross the words.
-    canvas.fill(
-        {a.x - 6 * u, y - 11 * u, 78 * u + text_width(d.line->name, {.size = text}), 22 * u},
-        kPaper);
+    canvas.fill({a.x - 6 * u, y - 11 * u, 78 * u + render::text_width(d.line->name, {.size = text}),
+                 22 * u},
+                render::kPaper);
     if (d.line->kind == LineKind::kDashed) {
       draw_dashes(canvas, {a, b}, d.width, 7 * u, d.colour);
     } else {
       canvas.line(a, b, d.width, d.colour);
     }
-    draw_text(canvas, {b.x + 10 * u, y + text / 2}, d.line->name, {.size = text});
+    render::draw_text(canvas, {b.x + 10 * u, y + text / 2}, d.line->name, {.size = text});
     y += 24 * u;
   }
 }
@@ -217,12 +219,12 @@ Result<Image> draw_chart(const Chart& chart) {
   }
   frame.y_high = top;
 
-  Canvas canvas(chart.width, static_cast<int32_t>(frame.plot.y + frame.plot.height + 78 * u),
-                kPaper);
-  draw_text(canvas, {frame.plot.x, 50 * u}, chart.title, {.size = 19 * u, .bold = true});
+  render::Canvas canvas(
+      chart.width, static_cast<int32_t>(frame.plot.y + frame.plot.height + 78 * u), render::kPaper);
+  render::draw_text(canvas, {frame.plot.x, 50 * u}, chart.title, {.size = 19 * u, .bold = true});
   for (size_t i = 0; i < chart.notes.size(); ++i) {
-    draw_text(canvas, {frame.plot.x, (80 + 22 * static_cast<double>(i)) * u}, chart.notes[i],
-              {.size = 11 * u, .colour = kFaintInk});
+    render::draw_text(canvas, {frame.plot.x, (80 + 22 * static_cast<double>(i)) * u},
+                      chart.notes[i], {.size = 11 * u, .colour = render::kFaintInk});
   }
   draw_axes(canvas, frame, chart);
   const std::vector<Drawn> drawn = styled(chart, u);
@@ -230,7 +232,7 @@ Result<Image> draw_chart(const Chart& chart) {
     if (!d.line->spread.empty()) draw_band(canvas, frame, chart, *d.line, d.colour);
   }
   for (const Drawn& d : drawn) {
-    for (const std::vector<Point>& points : pieces_of(frame, chart.x, d.line->values)) {
+    for (const std::vector<render::Point>& points : pieces_of(frame, chart.x, d.line->values)) {
       if (d.line->kind == LineKind::kDashed) {
         draw_dashes(canvas, points, d.width, 7 * u, d.colour);
       } else {

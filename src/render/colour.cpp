@@ -7,7 +7,7 @@
 #include <cmath>
 
 // Colour ramps through Oklab: B. Ottosson, A perceptual color space for image processing, 2020.
-namespace throng {
+namespace throng::render {
 namespace {
 
 uint8_t to_byte(double v) { return static_cast<uint8_t>(std::lround(std::clamp(v, 0.0, 255.0))); }
@@ -56,4 +56,4 @@ Rgb shade(Rgb colour, double factor) {
   return {to_byte(colour.r * factor), to_byte(colour.g * factor), to_byte(colour.b * factor)};
 }
 
-}  // namespace throng
+}  // namespace throng::render

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 /// Colours of all pictures, chosen to be distinct for colour-blind readers and in grey print.
-namespace throng {
+namespace throng::render {
 
 struct Rgb {
   uint8_t r = 0, g = 0, b = 0;
@@ -34,4 +34,4 @@ Rgb mix(Rgb a, Rgb b, double t);
 /// Darker (< 1) or lighter (> 1).
 Rgb shade(Rgb colour, double factor);
 
-}  // namespace throng
+}  // namespace throng::render

@@ -12,7 +12,7 @@
 // Draws the storeys apart from each other and seen at a slant. Every texel is a small block: a top
 // and the two sides that face the eye. Blocks are drawn from back to front and storeys from the
 // lowest to the highest (painter's algorithm), three times too large and then averaged.
-namespace throng {
+namespace throng::render {
 namespace {
 
 constexpr double kAcross = 0.80, kDown = 0.40;  // Of a metre along x or z, to the side and down.
@@ -175,4 +175,4 @@ void draw_fan(Canvas& canvas, int32_t x, int32_t y, const FanLayout& layout,
   }
 }
 
-}  // namespace throng
+}  // namespace throng::render

@@ -16,7 +16,9 @@ namespace throng {
 namespace {
 
 // Light for low values, dark for high ones: zero is white paper.
-Rgb heat_colour(double t) { return height_colour(0.98 - 0.93 * std::clamp(t, 0.0, 1.0)); }
+render::Rgb heat_colour(double t) {
+  return render::height_colour(0.98 - 0.93 * std::clamp(t, 0.0, 1.0));
+}
 
 Result<void> check_map(const HeatMap& map) {
   constexpr int32_t kMax = 1'000'000;
@@ -58,28 +60,30 @@ double value_at(const HeatMap& map, double pixel, int32_t px, int32_t py) {
   return sum / static_cast<double>((i1 - i0 + 1) * (k1 - k0 + 1));
 }
 
-void draw_bar(Canvas& canvas, const Rect& bar, double top, const std::string& unit, double text) {
+void draw_bar(render::Canvas& canvas, const render::Rect& bar, double top, const std::string& unit,
+              double text) {
   const auto rows = static_cast<int32_t>(bar.height);
   for (int32_t row = 0; row < rows; ++row) {
     canvas.fill({bar.x, bar.y + row, bar.width, 1}, heat_colour(1 - (row + 0.5) / rows));
   }
-  canvas.frame(bar, 1, kFaintInk);
-  double tick = round_below(top / 5);
-  while (top / tick > 6.001) tick = round_below(tick * 2.5);
+  canvas.frame(bar, 1, render::kFaintInk);
+  double tick = render::round_below(top / 5);
+  while (top / tick > 6.001) tick = render::round_below(tick * 2.5);
   for (int32_t i = 0; i * tick <= top * (1 + 1e-9); ++i) {
     const double y = bar.y + bar.height * (1 - i * tick / top);
-    canvas.line({bar.x + bar.width, y}, {bar.x + bar.width + text * 0.35, y}, 1, kFaintInk);
-    draw_text(canvas, {bar.x + bar.width + text * 0.7, y + text / 2}, fmt::format("{:g}", i * tick),
-              {.size = text});
+    canvas.line({bar.x + bar.width, y}, {bar.x + bar.width + text * 0.35, y}, 1, render::kFaintInk);
+    render::draw_text(canvas, {bar.x + bar.width + text * 0.7, y + text / 2},
+                      fmt::format("{:g}", i * tick), {.size = text});
   }
-  draw_text(canvas, {bar.x, bar.y - text}, unit, {.size = text, .colour = kFaintInk});
+  render::draw_text(canvas, {bar.x, bar.y - text}, unit,
+                    {.size = text, .colour = render::kFaintInk});
 }
 
 // Between ticks. [m]
 double tick_step(const HeatMap& map) {
   const double longer = std::max(map.width, map.depth) * map.cell;
-  double step = round_below(longer / 6);
-  while (longer / step > 10) step = round_below(step * 2.5);
+  double step = render::round_below(longer / 6);
+  while (longer / step > 10) step = render::round_below(step * 2.5);
   return step;
 }
 
@@ -91,28 +95,30 @@ double left_of_plot(const HeatMap& map, double text) {
   const double step = tick_step(map), last = map.z0 + map.depth * map.cell;
   double widest = 0;
   for (double n = std::ceil(map.z0 / step - 1e-9); n * step <= last + 1e-9; ++n) {
-    widest = std::max(widest, text_width(metres_text(n * step), {.size = text}));
+    widest = std::max(widest, render::text_width(metres_text(n * step), {.size = text}));
   }
   return text * 0.8 + widest;
 }
 
-void draw_ticks(Canvas& canvas, const Rect& plot, const HeatMap& map, double scale, double text) {
+void draw_ticks(render::Canvas& canvas, const render::Rect& plot, const HeatMap& map, double scale,
+                double text) {
   const double width = map.width * map.cell, depth = map.depth * map.cell;
   const double step = tick_step(map);
   for (double n = std::ceil(map.x0 / step - 1e-9); n * step <= map.x0 + width + 1e-9; ++n) {
     const double x = plot.x + (n * step - map.x0) * scale;
-    canvas.line({x, plot.y + plot.height}, {x, plot.y + plot.height + text * 0.4}, 1, kFaintInk);
-    draw_text(canvas, {x, plot.y + plot.height + text * 1.8}, metres_text(n * step),
-              {.size = text, .align = Align::kCentre});
+    canvas.line({x, plot.y + plot.height}, {x, plot.y + plot.height + text * 0.4}, 1,
+                render::kFaintInk);
+    render::draw_text(canvas, {x, plot.y + plot.height + text * 1.8}, metres_text(n * step),
+                      {.size = text, .align = render::Align::kCentre});
   }
   for (double n = std::ceil(map.z0 / step - 1e-9); n * step <= map.z0 + depth + 1e-9; ++n) {
     const double y = plot.y + (n * step - map.z0) * scale;
-    canvas.line({plot.x - text * 0.4, y}, {plot.x, y}, 1, kFaintInk);
-    draw_text(canvas, {plot.x - text * 0.8, y + text / 2}, metres_text(n * step),
-              {.size = text, .align = Align::kRight});
+    canvas.line({plot.x - text * 0.4, y}, {plot.x, y}, 1, render::kFaintInk);
+    render::draw_text(canvas, {plot.x - text * 0.8, y + text / 2}, metres_text(n * step),
+                      {.size = text, .align = render::Align::kRight});
   }
-  draw_text(canvas, {plot.x + plot.width, plot.y + plot.height + text * 3.6}, "x, z [m]",
-            {.size = text, .colour = kFaintInk, .align = Align::kRight});
+  render::draw_text(canvas, {plot.x + plot.width, plot.y + plot.height + text * 3.6}, "x, z [m]",
+                    {.size = text, .colour = render::kFaintInk, .align = render::Align::kRight});
 }
 
 }  // namespace
@@ -126,14 +132,15 @@ Result<Image> draw_heat_map(const HeatMap& map) {
   const double left = std::max(80 * u, std::ceil(left_of_plot(map, text) + 8 * u));
   const double room = map.picture_width - 140 * u - left;
   const double scale = std::min(room / width, room / depth);
-  const Rect plot{left, head + 20 * u, std::max(1.0, std::floor(width * scale)),
-                  std::max(1.0, std::floor(depth * scale))};
+  const render::Rect plot{left, head + 20 * u, std::max(1.0, std::floor(width * scale)),
+                          std::max(1.0, std::floor(depth * scale))};
   const double tall = std::max(plot.height, 160 * u);
-  Canvas canvas(map.picture_width, static_cast<int32_t>(plot.y + tall + 70 * u), kPaper);
-  draw_text(canvas, {plot.x, 50 * u}, map.title, {.size = 19 * u, .bold = true});
+  render::Canvas canvas(map.picture_width, static_cast<int32_t>(plot.y + tall + 70 * u),
+                        render::kPaper);
+  render::draw_text(canvas, {plot.x, 50 * u}, map.title, {.size = 19 * u, .bold = true});
   for (size_t i = 0; i < map.notes.size(); ++i) {
-    draw_text(canvas, {plot.x, (80 + 22 * static_cast<double>(i)) * u}, map.notes[i],
-              {.size = 11 * u, .colour = kFaintInk});
+    render::draw_text(canvas, {plot.x, (80 + 22 * static_cast<double>(i)) * u}, map.notes[i],
+                      {.size = 11 * u, .colour = render::kFaintInk});
   }
   double top = map.max > 0 ? map.max : *std::ranges::max_element(map.values);
   if (!(top > 0)) top = 1;
@@ -142,10 +149,10 @@ Result<Image> draw_heat_map(const HeatMap& map) {
   for (int32_t y = 0; y < static_cast<int32_t>(plot.height); ++y) {
     for (int32_t x = 0; x < static_cast<int32_t>(plot.width); ++x) {
       const double value = value_at(map, pixel, x, y);
-      canvas.set(x0 + x, y0 + y, value > 0 ? heat_colour(value / top) : kPaper);
+      canvas.set(x0 + x, y0 + y, value > 0 ? heat_colour(value / top) : render::kPaper);
     }
   }
-  canvas.frame({plot.x - 1, plot.y - 1, plot.width + 2, plot.height + 2}, 1, kRule);
+  canvas.frame({plot.x - 1, plot.y - 1, plot.width + 2, plot.height + 2}, 1, render::kRule);
   draw_ticks(canvas, plot, map, scale, text);
   draw_bar(canvas, {map.picture_width - 110 * u, plot.y + 30 * u, 22 * u, tall - 40 * u}, top,
            map.unit, text);

@@ -9,7 +9,7 @@
 
 #include "render/text.h"
 
-namespace throng {
+namespace throng::render {
 namespace {
 
 // The number of decimals that a tick needs.
@@ -72,4 +72,4 @@ void draw_height_bar(Canvas& canvas, const Rect& bar, double low, double high, d
   }
 }
 
-}  // namespace throng
+}  // namespace throng::render

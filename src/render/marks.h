@@ -8,7 +8,7 @@
 #include "render/canvas.h"
 
 /// What makes a picture readable: scale bars, height bars, round numbers with units.
-namespace throng {
+namespace throng::render {
 
 /// The largest 1, 2 or 5 times a power of ten that is at most `value`.
 [[nodiscard]] double round_below(double value);
@@ -24,4 +24,4 @@ void draw_scale_bar(Canvas& canvas, Point at, double width, double pixels_per_me
 void draw_height_bar(Canvas& canvas, const Rect& bar, double low, double high, double text,
                      const std::function<Rgb(double)>& colour);
 
-}  // namespace throng
+}  // namespace throng::render

@@ -36,7 +36,7 @@ constexpr double kHeader = 64, kFooter = 58, kMargin = 24;  // [px]
 
 struct InclinationColour {
   double degrees;
-  Rgb colour;
+  render::Rgb colour;
 };
 // Green flat, yellow steep, red overhanging, as in [PACS00]; light enough for lines above.
 constexpr std::array<InclinationColour, 6> kRamp{{{0, {62, 158, 84}},
@@ -45,16 +45,16 @@ constexpr std::array<InclinationColour, 6> kRamp{{{0, {62, 158, 84}},
                                                   {90, {246, 190, 52}},
                                                   {91, {232, 106, 66}},
                                                   {180, {176, 34, 46}}}};
-constexpr Rgb kWalkLink{24, 92, 52}, kStepLink{196, 74, 8}, kSteepLink{150, 104, 8},
+constexpr render::Rgb kWalkLink{24, 92, 52}, kStepLink{196, 74, 8}, kSteepLink{150, 104, 8},
     kOverLink{140, 20, 32};
-constexpr Rgb kAirLink{146, 84, 206}, kGroundAirLink{32, 120, 236};
-constexpr Rgb kHoleLink{20, 20, 26}, kDropLink{214, 40, 40}, kUnderlay{226, 228, 232};
+constexpr render::Rgb kAirLink{146, 84, 206}, kGroundAirLink{32, 120, 236};
+constexpr render::Rgb kHoleLink{20, 20, 26}, kDropLink{214, 40, 40}, kUnderlay{226, 228, 232};
 
-Rgb inclination_colour(double degrees) {
+render::Rgb inclination_colour(double degrees) {
   for (size_t i = 1; i < kRamp.size(); ++i) {
     if (degrees > kRamp[i].degrees) continue;
     const InclinationColour &a = kRamp[i - 1], &b = kRamp[i];
-    return mix(a.colour, b.colour, (degrees - a.degrees) / (b.degrees - a.degrees));
+    return render::mix(a.colour, b.colour, (degrees - a.degrees) / (b.degrees - a.degrees));
   }
   return kRamp.back().colour;
 }
@@ -81,12 +81,12 @@ class View {
 class DepthCanvas {
  public:
   DepthCanvas(int32_t width, int32_t height)
-      : canvas_(width, height, kPaper),
+      : canvas_(width, height, render::kPaper),
         depth_(static_cast<size_t>(width) * static_cast<size_t>(height),
                std::numeric_limits<float>::infinity()) {}
 
   // Corners in pixels and metres of depth.
-  void triangle(const std::array<Seen, 3>& c, Rgb colour) {
+  void triangle(const std::array<Seen, 3>& c, render::Rgb colour) {
     const double area =
         (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[2].x - c[0].x) * (c[1].y - c[0].y);
     if (!(std::fabs(area) > 1e-9)) return;
@@ -110,7 +110,7 @@ class DepthCanvas {
     }
   }
 
-  void line(Seen a, Seen b, double thick, Rgb colour) {
+  void line(Seen a, Seen b, double thick, render::Rgb colour) {
     if (!clip(a, b, thick)) return;
     const double length = std::hypot(b.x - a.x, b.y - a.y);
     const int32_t steps = static_cast<int32_t>(std::min(20000.0, std::ceil(length / 0.7))) + 1;
@@ -127,7 +127,7 @@ class DepthCanvas {
     }
   }
 
-  [[nodiscard]] const Canvas& canvas() const { return canvas_; }
+  [[nodiscard]] const render::Canvas& canvas() const { return canvas_; }
   /// The depth of what is drawn so far. Set again, it lets later strokes cover all drawn since.
   using Depths = std::vector<float>;
   [[nodiscard]] const Depths& depths() const { return depth_; }
@@ -159,7 +159,7 @@ class DepthCanvas {
     if (last < 1) b = at(last);
     return true;
   }
-  void put(int32_t x, int32_t y, double depth, Rgb colour) {
+  void put(int32_t x, int32_t y, double depth, render::Rgb colour) {
     if (x < 0 || y < 0 || x >= canvas_.width() || y >= canvas_.height()) return;
     float& there = depth_[static_cast<size_t>(y) * static_cast<size_t>(canvas_.width()) +
                           static_cast<size_t>(x)];
@@ -168,7 +168,7 @@ class DepthCanvas {
     canvas_.set(x, y, colour);
   }
 
-  Canvas canvas_;
+  render::Canvas canvas_;
   Depths depth_;
 };
 
@@ -188,10 +188,10 @@ class NodePicture {
       return Error{Errc::kNotFound, "picture: no node of the area, storey and class asked for"};
     }
     if (config_.air) {
-      auto lines = air_lines(data_of(nodes_)->world, config_.area);
+      auto lines = render::air_lines(data_of(nodes_)->world, config_.area);
       if (!lines) return lines.error();
       air_ = *std::move(lines);
-      for (const AirLine& line : air_) {
+      for (const render::AirLine& line : air_) {
         include(view_(line.a));
         include(view_(line.b));
       }
@@ -204,12 +204,13 @@ class NodePicture {
     for (const uint32_t n : shown_) surface(large, n);
     const auto ground = config_.path.empty() ? DepthCanvas::Depths{} : large.depths();
     for (const Link& link : links_) draw(large, link);
-    for (const AirLine& line : air_) {
+    for (const render::AirLine& line : air_) {
       large.line(at(line.a), at(line.b, line.to_ground ? 0.3 : 0), line.to_ground ? 4 : 2,
                  line.to_ground ? kGroundAirLink : kAirLink);
     }
     if (!config_.path.empty()) path(large, ground);
-    Canvas sheet(config_.width, static_cast<int32_t>(kHeader + height_ + kFooter), kPaper);
+    render::Canvas sheet(config_.width, static_cast<int32_t>(kHeader + height_ + kFooter),
+                         render::kPaper);
     sheet.draw_reduced(large.canvas(), kPatchSamples, static_cast<int32_t>(kMargin),
                        static_cast<int32_t>(kHeader));
     letter(sheet);
@@ -316,13 +317,13 @@ class NodePicture {
     }
   }
 
-  void fill(DepthCanvas& canvas, const std::array<Vec3d, 4>& c, Vec3d normal, Rgb colour,
+  void fill(DepthCanvas& canvas, const std::array<Vec3d, 4>& c, Vec3d normal, render::Rgb colour,
             double nearer) const {
     // Light from the upper left, so that forms are seen where the colour is one.
     const double size = length(normal);
     const Vec3d light{-0.35, 0.85, 0.39};
     const double lit = size > 0 ? std::fabs(dot(normal, light)) / size : 1;
-    const Rgb shaded = shade(colour, 0.72 + 0.30 * lit);
+    const render::Rgb shaded = render::shade(colour, 0.72 + 0.30 * lit);
     const std::array<Seen, 4> p = {at(c[0], nearer), at(c[1], nearer), at(c[2], nearer),
                                    at(c[3], nearer)};
     canvas.triangle({p[0], p[1], p[2]}, shaded);
@@ -361,7 +362,8 @@ class NodePicture {
     const double whole = 1.0 / (1 << info.level);
     const double side = whole - (info.kind == PatchKind::kLevelTile ? kInset : 0);
     const double s0 = info.s * whole, t0 = info.t * whole;
-    const Rgb colour = inclination_colour(summary_.bins.inclination_of(inclination(node, info)));
+    const render::Rgb colour =
+        inclination_colour(summary_.bins.inclination_of(inclination(node, info)));
     const int32_t parts = info.kind == PatchKind::kBezier ? std::max(1, 16 >> info.level) : 1;
     const double nearer = 0.01 * info.level;
     const auto paint = [&](const Block& block) {
@@ -369,7 +371,7 @@ class NodePicture {
         fill(canvas, c, normal, colour, nearer);
       });
     };
-    const Rgb rim = shade(colour, 0.62);
+    const render::Rgb rim = render::shade(colour, 0.62);
     if (info.cells != 0) {
       const uint64_t cells = cells_of(node, info);
       for_partial_runs(cells, [&](int32_t first, int32_t row, int32_t count) {
@@ -402,7 +404,7 @@ class NodePicture {
 
   // Sides of cells that border no other cell of the node.
   void rim_of_cells(DepthCanvas& canvas, const NodeInfo& info, uint32_t node, uint64_t cells,
-                    Rgb colour, double nearer) const {
+                    render::Rgb colour, double nearer) const {
     constexpr double kSide = kCell - kInset;
     const auto is_in = [&](int32_t s, int32_t t) {
       return s >= 0 && t >= 0 && s < 8 && t < 8 && (cells >> (8 * t + s) & 1) != 0;
@@ -457,7 +459,7 @@ class NodePicture {
     }
     const double steepest = summary_.bins.inclination_of(
         std::max(nodes_.node(link.from).inclination, nodes_.node(arc.to).inclination));
-    Rgb colour = steepest > 90 ? kOverLink : steepest > 45 ? kSteepLink : kWalkLink;
+    render::Rgb colour = steepest > 90 ? kOverLink : steepest > 45 ? kSteepLink : kWalkLink;
     if (arc.kind == LinkKind::kStep) colour = kStepLink;
     if (arc.over_hole) colour = kHoleLink;
     canvas.line(at(a, 0.6), at(b, 0.6), arc.over_hole ? 3 : 2, colour);
@@ -487,22 +489,22 @@ class NodePicture {
 
   // Above all links, with the rim behind the path; only ground hides it.
   void path(DepthCanvas& canvas, const DepthCanvas::Depths& ground) const {
-    const auto stroke = [&](double thick, Rgb colour) {
+    const auto stroke = [&](double thick, render::Rgb colour) {
       canvas.set_depths(ground);
       for (size_t i = 1; i < config_.path.size(); ++i) {
         Vec3d a = config_.path[i - 1], b = config_.path[i];
         if (clip_to_map(a, b)) canvas.line(at(a, 1.2), at(b, 1.2), thick, colour);
       }
     };
-    stroke(9, kPaper);
-    stroke(5, kPath);
+    stroke(9, render::kPaper);
+    stroke(5, render::kPath);
   }
 
-  void letter(Canvas& sheet) const {
-    draw_text(sheet, {kMargin, 30}, config_.title, {.size = 15, .bold = true});
+  void letter(render::Canvas& sheet) const {
+    render::draw_text(sheet, {kMargin, 30}, config_.title, {.size = 15, .bold = true});
     const std::string line = fmt::format("{} nodes ({} of them terminal), {} in all; {} links",
                                          shown_.size(), terminal_, summary_.nodes, link_count_);
-    draw_text(sheet, {kMargin, 52}, line, {.size = 9, .colour = kFaintInk});
+    render::draw_text(sheet, {kMargin, 52}, line, {.size = 9, .colour = render::kFaintInk});
     double y = kHeader + height_ + 20;
     const double right = config_.width - kMargin;
     double end = right - draw_scale(sheet, right, y) - 24;
@@ -519,21 +521,21 @@ class NodePicture {
     if (edges.empty() || edges.back() < 180) edges.push_back(180);
     for (const double edge : edges) {
       const std::string label = fmt::format("{:.0f}-{:.0f}", last, edge);
-      const double width = 38 + text_width(label, {.size = 8});
+      const double width = 38 + render::text_width(label, {.size = 8});
       make_room(width);
       sheet.fill({x, y, 22, 12}, inclination_colour(edge));
-      draw_text(sheet, {x + 27, y + 10}, label, {.size = 8});
+      render::draw_text(sheet, {x + 27, y + 10}, label, {.size = 8});
       x += width;
       last = edge;
     }
     make_room(70);
-    draw_text(sheet, {x, y + 10}, "degrees", {.size = 8});
+    render::draw_text(sheet, {x, y + 10}, "degrees", {.size = 8});
     x += 70;
-    const auto key = [&](Rgb colour, const char* label) {
-      const double width = 40 + text_width(label, {.size = 8});
+    const auto key = [&](render::Rgb colour, const char* label) {
+      const double width = 40 + render::text_width(label, {.size = 8});
       make_room(width);
       sheet.line({x, y + 6}, {x + 20, y + 6}, 2, colour);
-      draw_text(sheet, {x + 26, y + 10}, label, {.size = 8});
+      render::draw_text(sheet, {x + 26, y + 10}, label, {.size = 8});
       x += width;
     };
     if (config_.links) {
@@ -555,16 +557,16 @@ class NodePicture {
   }
 
   // A length of 1, 2 or 5 times a power of ten, along the slanted x axis. Returns what it takes.
-  double draw_scale(Canvas& sheet, double right, double y) const {
+  double draw_scale(render::Canvas& sheet, double right, double y) const {
     double metres = 1;
     for (const double step : {2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0}) {
       if (step * scale_ < 120) metres = step;
     }
     const std::string label = fmt::format("{:g} m", metres);
-    sheet.line({right - metres * scale_, y + 6}, {right, y + 6}, 2, kInk);
-    draw_text(sheet, {right - metres * scale_ - 8, y + 10}, label,
-              {.size = 8, .align = Align::kRight});
-    return metres * scale_ + 8 + text_width(label, {.size = 8});
+    sheet.line({right - metres * scale_, y + 6}, {right, y + 6}, 2, render::kInk);
+    render::draw_text(sheet, {right - metres * scale_ - 8, y + 10}, label,
+                      {.size = 8, .align = render::Align::kRight});
+    return metres * scale_ + 8 + render::text_width(label, {.size = 8});
   }
 
   const Nodes& nodes_;
@@ -576,8 +578,8 @@ class NodePicture {
   std::vector<Link> links_;  // to draw
   uint64_t link_count_ = 0;
   Box3d plan_;  // around what is drawn
-  TileSlopes slopes_;
-  std::vector<AirLine> air_;
+  render::TileSlopes slopes_;
+  std::vector<render::AirLine> air_;
   std::map<uint32_t, uint32_t> first_of_patch_;  // a node of each Bezier patch
   uint64_t terminal_ = 0;
   double low_x_ = 1e30, high_x_ = -1e30, low_y_ = 1e30, high_y_ = -1e30;

@@ -20,7 +20,7 @@ Result<Image> draw_world(const World& world, std::span<const PictureAvatar> avat
   }
   const auto index = static_cast<size_t>(config.avatar_class);
   const AvatarClass& avatar = summary.classes[index];
-  PictureWorld source;
+  render::PictureWorld source;
   source.cell = summary.cell;
   source.origin = summary.origin;
   source.bounds = summary.bounds;
@@ -32,7 +32,7 @@ Result<Image> draw_world(const World& world, std::span<const PictureAvatar> avat
   source.class_name = avatar.name;
 
   const Vec3d size = summary.bounds.max - summary.bounds.min;
-  PosterText text;
+  render::PosterText text;
   text.title = config.title.empty() ? "A walkable world" : config.title;
   text.lines.push_back(
       fmt::format("{:.1f} x {:.1f} m, {:.1f} m high, cells of {:g} m, {} triangles", size.x, size.z,
@@ -42,7 +42,7 @@ Result<Image> draw_world(const World& world, std::span<const PictureAvatar> avat
                   avatar.height, avatar.radius, avatar.step, summary.walkable_area[index]);
   if (!avatars.empty()) walkers += fmt::format("; {} avatars", avatars.size());
   text.lines.push_back(walkers);
-  return draw_poster(source, text, avatars, config);
+  return render::draw_poster(source, text, avatars, config);
 }
 
 }  // namespace throng

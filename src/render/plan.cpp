@@ -9,7 +9,7 @@
 
 // Draws a plan: floors coloured by height, shaded by slope as if lit from the upper left, a little
 // darker close to walls; grey hatching where there is floor but the class cannot stand.
-namespace throng {
+namespace throng::render {
 namespace {
 
 constexpr double kHatchSpacing = 5;  // px
@@ -233,4 +233,4 @@ void draw_plan(Canvas& canvas, int32_t x0, int32_t y0, double pixels_per_texel,
   draw_avatars(canvas, x0, y0, pixels_per_texel / metres, index, grid, marks.avatars);
 }
 
-}  // namespace throng
+}  // namespace throng::render

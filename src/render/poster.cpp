@@ -12,7 +12,7 @@
 #include "render/views.h"
 
 // Lays out and draws a poster. All lengths are for one 1600 pixels wide and grow with it.
-namespace throng {
+namespace throng::render {
 namespace {
 
 constexpr size_t kMaxStoreys = 12;
@@ -312,4 +312,4 @@ Result<Image> draw_poster(const PictureWorld& world, const PosterText& text,
   return std::move(canvas).take();
 }
 
-}  // namespace throng
+}  // namespace throng::render

@@ -11,7 +11,7 @@
 #include "throng/picture.h"
 
 /// The whole picture: title, plans, fan, section, legend, laid out as a poster.
-namespace throng {
+namespace throng::render {
 
 struct PosterText {
   std::string title;
@@ -23,4 +23,4 @@ struct PosterText {
                                         std::span<const PictureAvatar> avatars,
                                         const PictureConfig& config);
 
-}  // namespace throng
+}  // namespace throng::render

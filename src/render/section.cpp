@@ -11,7 +11,7 @@
 
 // Draws a section: the world cut along x. Solid is dark, free space light, and floors are coloured
 // lines.
-namespace throng {
+namespace throng::render {
 namespace {
 
 constexpr Rgb kMatter{176, 180, 187};
@@ -92,4 +92,4 @@ void draw_section(Canvas& canvas, const Rect& rect, const Section& section, doub
   }
 }
 
-}  // namespace throng
+}  // namespace throng::render

@@ -7,7 +7,7 @@
 #include <numeric>
 
 // Finds the storeys of a world and chooses those to show. Reads each level tile once.
-namespace throng {
+namespace throng::render {
 namespace {
 
 constexpr double kCrumb = 0.01;  // Storeys with less than this share of all floor are not shown.
@@ -90,4 +90,4 @@ StoreyChoice StoreyIndex::choose(int32_t wanted, size_t max_count) const {
   return choice;
 }
 
-}  // namespace throng
+}  // namespace throng::render

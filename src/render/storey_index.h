@@ -13,7 +13,7 @@
 #include "throng/world.h"
 
 /// Which storeys a world has, how large they are, and how high they lie around a tile.
-namespace throng {
+namespace throng::render {
 
 /// What a picture needs of a world, so that it can be drawn from anything that has level tiles.
 struct PictureWorld {
@@ -71,4 +71,4 @@ class StoreyIndex {
   std::vector<uint64_t> row_floors_;  // of each row of cells
 };
 
-}  // namespace throng
+}  // namespace throng::render

@@ -11,7 +11,7 @@
 
 // Averages the floors of level tiles into one image a storey. Linear in the cells of all level
 // tiles.
-namespace throng {
+namespace throng::render {
 namespace {
 
 constexpr size_t kNotShown = SIZE_MAX;
@@ -331,4 +331,4 @@ StoreyRasters rasterise_storeys(const PictureWorld& world, const StoreyIndex& in
   return out;
 }
 
-}  // namespace throng
+}  // namespace throng::render

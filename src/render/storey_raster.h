@@ -9,7 +9,7 @@
 #include "render/storey_index.h"
 
 /// A world's storeys as small images of heights: what the plans and the fan are drawn from.
-namespace throng {
+namespace throng::render {
 
 /// How the cells of a world fall on texels: one each, or several averaged in one.
 struct RasterGrid {
@@ -61,4 +61,4 @@ struct StoreyRasters {
                                               std::span<const int32_t> shown,
                                               const RasterGrid& grid);
 
-}  // namespace throng
+}  // namespace throng::render

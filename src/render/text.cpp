@@ -13,7 +13,7 @@
 // ...), and strokes are separated by blanks. A stroke that begins with '~' is rounded by cutting
 // its corners (Chaikin, 1974), three times; a corner on a straight run limits how far the rounding
 // reaches.
-namespace throng {
+namespace throng::render {
 namespace {
 
 constexpr double kCapital = 12;  // Grid units from the baseline to the top of a capital.
@@ -187,4 +187,4 @@ std::string fit_text(std::string_view text, double width, const TextStyle& style
   return text.empty() ? std::string() : std::string(text) + "..";
 }
 
-}  // namespace throng
+}  // namespace throng::render

@@ -8,7 +8,7 @@
 #include "render/canvas.h"
 
 /// Text in a built-in stroke font, sharp at any size. ASCII; other bytes draw as a box.
-namespace throng {
+namespace throng::render {
 
 enum class Align { kLeft, kCentre, kRight };
 
@@ -28,4 +28,4 @@ void draw_text(Canvas& canvas, Point at, std::string_view text, const TextStyle&
 /// The longest beginning of `text` that fits, followed by ".." if it was cut.
 [[nodiscard]] std::string fit_text(std::string_view text, double width, const TextStyle& style);
 
-}  // namespace throng
+}  // namespace throng::render

@@ -7,7 +7,7 @@
 
 #include "world/surface.h"
 
-namespace throng {
+namespace throng::render {
 namespace {
 
 // The slope of a cell along a row: the smaller of the two differences around it, or, if one of them
@@ -17,7 +17,7 @@ int32_t slope_along(int32_t i, Sample sample, Has has) {
   const auto is_there = [&](int32_t k) { return k >= 0 && k < kTileCells && has(k); };
   for (const int32_t middle : {i, i + 1, i - 1}) {
     if (!is_there(middle - 1) || !is_there(middle) || !is_there(middle + 1)) continue;
-    return minmod(sample(middle) - sample(middle - 1), sample(middle + 1) - sample(middle));
+    return world::minmod(sample(middle) - sample(middle - 1), sample(middle + 1) - sample(middle));
   }
   return 0;
 }
@@ -27,13 +27,13 @@ int32_t slope_along(int32_t i, Sample sample, Has has) {
 double TileSlopes::at(uint32_t level, int32_t x, int32_t z) {
   if (level != level_) {
     level_ = level;
-    ground_ = ground_level(*world_, level, 0);
+    ground_ = world::ground_level(*world_, level, 0);
     if (ground_.zone != nullptr && ground_.view.floor != nullptr) {
-      unpack_floor(ground_.view, samples_.data());
+      world::unpack_floor(ground_.view, samples_.data());
       ground_.view.samples = samples_.data();
     }
   }
-  const LevelView& view = ground_.view;
+  const world::LevelView& view = ground_.view;
   if (ground_.zone == nullptr || !view.has(x, z)) return 0;
   const int32_t gx = slope_along(
       x, [&](int32_t i) { return view.sample(i, z); }, [&](int32_t i) { return view.has(i, z); });
@@ -43,4 +43,4 @@ double TileSlopes::at(uint32_t level, int32_t x, int32_t z) {
   return std::atan(rise / world_->summary.cell) * 180 / std::numbers::pi;
 }
 
-}  // namespace throng
+}  // namespace throng::render

@@ -11,7 +11,7 @@
 #include "throng/picture.h"
 
 /// The three views of a world: plan, section, fan. Each draws into a part of a canvas.
-namespace throng {
+namespace throng::render {
 
 /// The colour of a height, the same in all views of a picture.
 struct HeightScale {
@@ -102,4 +102,4 @@ void draw_fan(Canvas& canvas, int32_t x, int32_t y, const FanLayout& layout,
               std::span<const StoreyRaster> storeys, const RasterGrid& grid, double text,
               const HeightScale& scale, const PlacedMarks& marks);
 
-}  // namespace throng
+}  // namespace throng::render

@@ -12,7 +12,7 @@
 #include "world/zone_data.h"
 
 // Reads and checks files of air, and queries them: is a cell free, and may a body be in it.
-namespace throng {
+namespace throng::world {
 namespace {
 
 constexpr const char* kAirZoneIdentifier = "THAZ";
@@ -225,4 +225,4 @@ std::vector<uint8_t> write_air_manifest(const AirData& air, uint64_t world_hash)
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
 
-}  // namespace throng
+}  // namespace throng::world

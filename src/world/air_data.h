@@ -18,7 +18,7 @@
 #include "world/zone_file.h"
 
 /// The air of a world: which cells over and between its zones' solids are free.
-namespace throng {
+namespace throng::world {
 
 struct WorldData;
 
@@ -118,4 +118,4 @@ Result<std::shared_ptr<AirData>> read_air_manifest(std::span<const uint8_t> byte
                                                    uint64_t world_hash);
 std::vector<uint8_t> write_air_manifest(const AirData& air, uint64_t world_hash);
 
-}  // namespace throng
+}  // namespace throng::world

@@ -7,7 +7,7 @@
 #include <bit>
 
 // Builds an octree of free cells from rows of bits. Linear in the cells / 64.
-namespace throng {
+namespace throng::world {
 
 AirRows::AirRows(int32_t w, int32_t h, int32_t d, bool free)
     : width(w), height(h), depth(d), words((w + 63) / 64) {
@@ -117,4 +117,4 @@ AirTreeData build_air_tree(const AirTreeSource& source) {
   return tree;
 }
 
-}  // namespace throng
+}  // namespace throng::world

@@ -8,7 +8,7 @@
 #include "world/air_tree.h"
 
 /// A box of air cells as bits, while a tree is made: set bits are free cells.
-namespace throng {
+namespace throng::world {
 
 /// Cells [0, width) x [0, height) x [0, depth); rows along x, 64 cells a word.
 struct AirRows {
@@ -51,4 +51,4 @@ struct AirTreeSource {
 /// Free cubes get the number 0. Linear in the cells / 64.
 AirTreeData build_air_tree(const AirTreeSource& source);
 
-}  // namespace throng
+}  // namespace throng::world

@@ -5,7 +5,7 @@
 #include <bit>
 
 // Checks an octree of a file, so that look-ups need no checks. Linear in its words.
-namespace throng {
+namespace throng::world {
 
 // Each group is named once and stands before the group that names it, so a walk over the tree ends
 // after as many steps as there are words. The side of a group's cubes is noted when it is named.
@@ -45,4 +45,4 @@ std::string AirTree::fault() const {
   return {};
 }
 
-}  // namespace throng
+}  // namespace throng::world

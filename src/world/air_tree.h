@@ -9,7 +9,7 @@
 #include <vector>
 
 /// An octree over cubes of air cells: what is free in a zone, or where a class may be.
-namespace throng {
+namespace throng::world {
 
 /// A word of a tree: what fills a cube of cells. The two low bits say how, the rest is a number.
 enum class AirKind : uint32_t {
@@ -116,4 +116,4 @@ struct AirTreeData {
   [[nodiscard]] AirTree view() const { return {side, base, roots, nodes, leaves}; }
 };
 
-}  // namespace throng
+}  // namespace throng::world

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 // Counts, unpacks and checks blocks of 8 x 8 cells: sets of bits, and values.
-namespace throng {
+namespace throng::world {
 
 uint32_t count_bits(const uint64_t* words) {
   auto cells = count_ones(words[1] & ~words[0]) * 64;
@@ -108,4 +108,4 @@ bool values_fit(std::span<const uint64_t> words, uint64_t offset) {
   });
 }
 
-}  // namespace throng
+}  // namespace throng::world

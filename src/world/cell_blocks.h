@@ -15,7 +15,7 @@
 /// and, in as few bits as it takes, what differs from it.
 ///
 /// Block b holds cells (8 (b % 8) + i % 8, 8 (b / 8) + i / 8) for i in [0, 64).
-namespace throng {
+namespace throng::world {
 
 inline constexpr size_t kBlocks = 64;        ///< Of a level tile.
 inline constexpr uint16_t kNoValue = 65535;  ///< No floor, or no ceiling.
@@ -177,4 +177,4 @@ std::optional<size_t> end_of_bits(std::span<const uint64_t> words, uint64_t offs
 /// True if a tile's values at `offset` lie within `words`.
 bool values_fit(std::span<const uint64_t> words, uint64_t offset);
 
-}  // namespace throng
+}  // namespace throng::world

@@ -11,7 +11,7 @@
 
 // Packs the components of a world into bytes: 7 bits a byte, as differences from the one before.
 // Linear.
-namespace throng {
+namespace throng::world {
 namespace {
 
 constexpr size_t kMaxClasses = kMaxAvatarClasses;
@@ -236,4 +236,4 @@ const char* unpack_components(std::span<const uint8_t> packed, const WorldData& 
   return nullptr;
 }
 
-}  // namespace throng
+}  // namespace throng::world

@@ -12,7 +12,7 @@
 /// so they are packed as numbers of 7 bits a byte, in the order in which zones have them, by what
 /// changes from one to the next. What several classes have in one place is stored once; their order
 /// in the graph, the largest first, then as here, is found again.
-namespace throng {
+namespace throng::world {
 
 /// Puts the components of each class, in the order in which zones have them, into a graph: the
 /// largest first, then as they are. Where each went, by class, from that class's first on.
@@ -26,4 +26,4 @@ std::vector<uint8_t> pack_components(const GraphData& graph);
 const char* unpack_components(std::span<const uint8_t> packed, const WorldData& world,
                               GraphData& graph);
 
-}  // namespace throng
+}  // namespace throng::world

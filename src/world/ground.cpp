@@ -7,7 +7,7 @@
 #include <utility>
 
 // Ground of one class on a level, the range of a floor's heights, and floors unpacked row by row.
-namespace throng {
+namespace throng::world {
 namespace {
 
 // By how much a cell of the block differs from the slopes at most.
@@ -100,4 +100,4 @@ void unpack_floor(const LevelView& view, uint16_t* samples) {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::world

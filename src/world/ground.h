@@ -8,7 +8,7 @@
 #include "world/zone_data.h"
 
 /// The ground of a mapped world for one class, as world/walk.h needs it.
-namespace throng {
+namespace throng::world {
 
 /// One level of the world with what a class needs to walk on it.
 struct GroundLevel {
@@ -75,4 +75,4 @@ struct WorldGround {
   }
 };
 
-}  // namespace throng
+}  // namespace throng::world

@@ -10,7 +10,7 @@
 #include "world/zone_generated.h"
 
 /// One level tile as the moves read it: pointers into a mapped zone, nothing copied.
-namespace throng {
+namespace throng::world {
 
 struct LevelView {
   const format::Level* record = nullptr;
@@ -95,4 +95,4 @@ struct LevelView {
   }
 };
 
-}  // namespace throng
+}  // namespace throng::world

@@ -13,7 +13,7 @@
 #include "world/region_data.h"
 
 // Reads and checks files of nodes, and looks up nodes, arcs and hole links in them.
-namespace throng {
+namespace throng::world {
 namespace {
 
 constexpr const char* kNodeZoneIdentifier = "THNZ";
@@ -191,7 +191,7 @@ const NodeZone* NodeData::zone(size_t slot) const {
             const size_t other = slot_at(far.x(), far.z());
             belongs = belongs && other < slots.size() && far.node() < slots[other]->entry.nodes();
           }
-          const int32_t ground = throng::slot_at(*data_of(world), found.x(), found.z());
+          const int32_t ground = throng::world::slot_at(*data_of(world), found.x(), found.z());
           const uint32_t levels =
               ground < 0 ? 0 : data_of(world)->slots[static_cast<size_t>(ground)]->entry.levels();
           for (const format::NodePatch& patch : found.patches()) {
@@ -222,7 +222,7 @@ size_t NodeData::slot_at(int32_t x, int32_t z) const {
 uint32_t NodeData::source_of(const NodeZone& from, const format::NodePatch& patch) const {
   if (patch.kind() == static_cast<uint8_t>(PatchKind::kBezier)) return patch.source();
   const WorldData& ground = *data_of(world);
-  const auto slot = static_cast<size_t>(throng::slot_at(ground, from.x(), from.z()));
+  const auto slot = static_cast<size_t>(throng::world::slot_at(ground, from.x(), from.z()));
   return ground.slots[slot]->first_level + patch.source();
 }
 
@@ -357,4 +357,4 @@ Result<std::shared_ptr<NodeData>> read_node_index(std::span<const uint8_t> bytes
   return nodes;
 }
 
-}  // namespace throng
+}  // namespace throng::world

@@ -19,7 +19,7 @@
 #include "world/zone_file.h"
 
 /// Nodes in memory: zones mapped from files, or owned after they were made.
-namespace throng {
+namespace throng::world {
 
 inline constexpr uint32_t kNodeVersion = 4;
 inline constexpr const char* kNodeIndexName = "index.thn";
@@ -124,4 +124,4 @@ std::vector<uint8_t> write_node_index(const NodeData& nodes);
 Result<std::shared_ptr<NodeData>> read_node_index(std::span<const uint8_t> bytes,
                                                   const std::string& name);
 
-}  // namespace throng
+}  // namespace throng::world

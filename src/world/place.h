@@ -10,7 +10,7 @@
 #include "world/ground.h"
 
 /// Between metres and points of the grid, levels and places.
-namespace throng {
+namespace throng::world {
 
 /// Far off the grid is off the grid, whether or not it fits an integer. [m, finite]
 inline GroundPoint to_ground(const WorldData& world, double x, double z) {
@@ -75,4 +75,4 @@ inline int32_t step_mm(const AvatarClass& avatar) {
   return static_cast<int32_t>(std::floor(avatar.step * 1000 + 1e-6));
 }
 
-}  // namespace throng
+}  // namespace throng::world

@@ -12,7 +12,7 @@
 #include "world/place.h"
 
 // Reads, checks and writes files of regions, links between zones, and the index of the graph.
-namespace throng {
+namespace throng::world {
 namespace {
 
 constexpr const char* kRegionIdentifier = "THRZ";
@@ -406,4 +406,4 @@ Result<std::shared_ptr<GraphData>> read_graph_index(std::span<const uint8_t> byt
   return graph;
 }
 
-}  // namespace throng
+}  // namespace throng::world

@@ -20,7 +20,7 @@
 
 /// The accessibility graph in memory: files of zones, mapped, or owned after they were made, and
 /// what is known of the whole world. See docs/design/003-graph.md.
-namespace throng {
+namespace throng::world {
 
 inline constexpr uint32_t kGraphVersion = 3;
 inline constexpr const char* kGraphIndexName = "graph.thm";
@@ -157,4 +157,4 @@ Result<std::shared_ptr<GraphData>> read_graph_index(std::span<const uint8_t> byt
                                                     const std::string& name, const WorldData& world,
                                                     uint64_t world_hash);
 
-}  // namespace throng
+}  // namespace throng::world

@@ -8,7 +8,7 @@
 #include "world/cell_blocks.h"
 
 // Packs and reads the groups of a zone's regions and where their components begin. Linear.
-namespace throng {
+namespace throng::world {
 namespace {
 
 constexpr int64_t kMaxGroupCells = int64_t{1} << 40;    // of a component: sums fit 64 bits
@@ -134,4 +134,4 @@ uint32_t RegionGroups::component(uint32_t group, uint32_t avatar_class) const {
   return number + count_ones(groups[in].begins() & below(avatar_class));
 }
 
-}  // namespace throng
+}  // namespace throng::world

@@ -12,7 +12,7 @@
 /// the same classes have and that belong, for each of these, to the same component: that is stored
 /// once for all its regions. A component is named by the group in which it begins, that of its
 /// first region; most begin where others of the same place do, and need no name.
-namespace throng {
+namespace throng::world {
 
 /// The groups as their file has them. docs/file_format.md explains every field.
 struct GroupTables {
@@ -80,4 +80,4 @@ struct RegionGroups {
   [[nodiscard]] uint32_t begins_in(uint32_t group, uint32_t avatar_class) const;
 };
 
-}  // namespace throng
+}  // namespace throng::world

@@ -6,7 +6,7 @@
 #include "world/zone_file.h"
 
 // Appends an XXH3 sum to a file's bytes, and checks it.
-namespace throng {
+namespace throng::world {
 namespace {
 
 constexpr size_t kSum = 8;  // bytes
@@ -30,4 +30,4 @@ Result<std::span<const uint8_t>> unsealed(std::span<const uint8_t> file, const s
   return bad_file(name, "its sum is wrong, or it was written when it had none");
 }
 
-}  // namespace throng
+}  // namespace throng::world

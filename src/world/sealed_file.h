@@ -11,7 +11,7 @@
 
 /// Files whose sum no other file knows, and that end in their own: XXH3 of all before, 8 bytes, the
 /// low one first.
-namespace throng {
+namespace throng::world {
 
 [[nodiscard]] std::vector<uint8_t> sealed(std::span<const uint8_t> content);
 
@@ -19,4 +19,4 @@ namespace throng {
 [[nodiscard]] Result<std::span<const uint8_t>> unsealed(std::span<const uint8_t> file,
                                                         const std::string& name);
 
-}  // namespace throng
+}  // namespace throng::world

@@ -21,23 +21,23 @@ namespace {
 
 struct LevelInfo {
   int32_t tile_x = 0, tile_z = 0;
-  LevelView view;
+  world::LevelView view;
   int32_t cells = 0;
   double mean = 0;  // [mm]
 };
 
-CellRows rows_of(const LevelView& view) {
-  CellRows rows;
+world::CellRows rows_of(const world::LevelView& view) {
+  world::CellRows rows;
   if (view.present == nullptr) {
     rows.fill(~uint64_t{0});
   } else {
-    unpack_bits(view.present, rows);
+    world::unpack_bits(view.present, rows);
   }
   return rows;
 }
 
-bool overlap(const LevelView& a, const LevelView& b) {
-  const CellRows p = rows_of(a), q = rows_of(b);
+bool overlap(const world::LevelView& a, const world::LevelView& b) {
+  const world::CellRows p = rows_of(a), q = rows_of(b);
   for (size_t z = 0; z < 64; ++z) {
     if ((p[z] & q[z]) != 0) return true;
   }
@@ -45,7 +45,8 @@ bool overlap(const LevelView& a, const LevelView& b) {
 }
 
 // Border cells over which two levels of tiles side by side continue each other.
-int32_t shared_cells(const LevelView& a, const LevelView& b, int32_t side, int32_t max_step) {
+int32_t shared_cells(const world::LevelView& a, const world::LevelView& b, int32_t side,
+                     int32_t max_step) {
   int32_t count = 0;
   for (int32_t i = 0; i < 64; ++i) {
     const std::array<std::array<int32_t, 4>, 4> ends{
@@ -65,7 +66,7 @@ struct Seam {
   double weight = 0;
 };
 
-std::vector<Seam> find_seams(const WorldData& world, const std::vector<LevelInfo>& levels,
+std::vector<Seam> find_seams(const world::WorldData& world, const std::vector<LevelInfo>& levels,
                              int32_t max_step) {
   constexpr std::array<std::array<int32_t, 3>, 2> kSides{{{1, 0, 1}, {0, 1, 3}}};
   std::vector<Seam> seams;
@@ -146,7 +147,7 @@ class Groups {
   std::set<std::pair<uint32_t, uint32_t>> clashing_;
 };
 
-std::vector<std::vector<uint32_t>> group_levels(const WorldData& world,
+std::vector<std::vector<uint32_t>> group_levels(const world::WorldData& world,
                                                 const std::vector<LevelInfo>& levels,
                                                 int32_t max_step) {
   Groups groups(levels);
@@ -162,17 +163,17 @@ std::vector<std::vector<uint32_t>> group_levels(const WorldData& world,
 }
 
 // Each level with its mean height, over samples a few cells apart.
-std::vector<LevelInfo> levels_of(const WorldData& world) {
+std::vector<LevelInfo> levels_of(const world::WorldData& world) {
   std::vector<LevelInfo> levels(world.level_count);
   for (size_t s = 0; s < world.slots.size(); ++s) {
-    const Zone* zone = world.zone(s);
+    const world::Zone* zone = world.zone(s);
     if (zone == nullptr) continue;
     for (uint32_t i = 0; i < zone->level_count(); ++i) {
       LevelInfo& level = levels[world.slots[s]->first_level + i];
       level.view = zone->view(i);
-      std::tie(level.tile_x, level.tile_z) = tile_of(world, *zone, *level.view.record);
+      std::tie(level.tile_x, level.tile_z) = world::tile_of(world, *zone, *level.view.record);
       double sum = 0;
-      const CellRows rows = rows_of(level.view);
+      const world::CellRows rows = rows_of(level.view);
       for (int32_t z = 0; z < 64; z += 4) {
         for (int32_t x = 0; x < 64; x += 4) {
           if (((rows[static_cast<size_t>(z)] >> x) & 1) == 0) continue;
@@ -272,7 +273,7 @@ class Storeys {
 }  // namespace
 
 std::vector<int32_t> World::storeys() const {
-  const WorldData& world = *state_;
+  const world::WorldData& world = *state_;
   double max_step = 0;
   for (const AvatarClass& avatar : world.summary.classes)
     max_step = std::max(max_step, avatar.step);

@@ -8,7 +8,7 @@
 /// How feet follow a level tile between the centres of its cells: a plane through the cell's sample
 /// whose slope is the gentler of the two that its neighbours suggest (minmod, van Leer's limiter),
 /// so that planes are met exactly and stairs stay stairs. Bake and moves share this rule.
-namespace throng {
+namespace throng::world {
 
 /// The smaller in size of two differences, 0 if they disagree in sign.
 constexpr int32_t minmod(int32_t a, int32_t b) {
@@ -25,4 +25,4 @@ constexpr int32_t sheet_slope(int32_t i, Sample sample, Has has) {
   return minmod(sample(middle) - sample(middle - 1), sample(middle + 1) - sample(middle));
 }
 
-}  // namespace throng
+}  // namespace throng::world

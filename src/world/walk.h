@@ -14,7 +14,7 @@
 ///   bool step_safe(Level)                           legal neighbours never differ by more than the
 ///   step void for_tile(int32_t tile_x, int32_t tile_z, int32_t low, int32_t high, Visit)   visits
 ///   the levels of a tile of the world; those without a floor from low to high may be left out
-namespace throng {
+namespace throng::world {
 
 /// Positions on the ground: 1/2048 cell from the corner of the world's grid.
 inline constexpr int32_t kUnitBits = 11;
@@ -116,4 +116,4 @@ bool walk(const Ground& ground, typename Ground::Level& level, GroundPoint from,
   return true;
 }
 
-}  // namespace throng
+}  // namespace throng::world

@@ -23,17 +23,17 @@ namespace {
 
 constexpr int32_t kTileSquare = kTileCells * kTileCells;
 
-bool good_class(const WorldData& world, int32_t avatar_class) {
+bool good_class(const world::WorldData& world, int32_t avatar_class) {
   return avatar_class >= 0 && static_cast<size_t>(avatar_class) < world.summary.classes.size();
 }
 
 // Legal cells of a class before each level, and in all at the end.
-const std::vector<uint64_t>& cells_before(const WorldData& world, int32_t avatar_class) {
-  ClassIndex& index = *world.class_index[static_cast<size_t>(avatar_class)];
+const std::vector<uint64_t>& cells_before(const world::WorldData& world, int32_t avatar_class) {
+  world::ClassIndex& index = *world.class_index[static_cast<size_t>(avatar_class)];
   std::call_once(index.once, [&] {
     index.cells_before.push_back(0);
     for (size_t s = 0; s < world.slots.size(); ++s) {
-      const Zone* zone = world.zone(s);
+      const world::Zone* zone = world.zone(s);
       for (uint32_t i = 0; i < world.slots[s]->entry.levels(); ++i) {
         const uint64_t cells =
             zone == nullptr ? 0
@@ -56,19 +56,21 @@ Result<World> World::open(const std::string& path, const WorldConfig& config) {
                                      "`throng bake MODEL -o " +
                                      path + "`"};
   }
-  auto world = read_manifest(map->bytes(), name);
+  auto world = world::read_manifest(map->bytes(), name);
   if (!world) return world.error();
   (*world)->path = path;
   (*world)->budget = config.resident_bytes;
-  const auto manifest = unsealed(map->bytes(), name);
+  const auto manifest = world::unsealed(map->bytes(), name);
   if (!manifest) return manifest.error();
   (*world)->manifest_hash = hash_span(*manifest);
   (*world)->summary.hash = (*world)->manifest_hash;
-  const std::string air_name = path + "/" + kAirManifest;
+  const std::string air_name = path + "/" + world::kAirManifest;
   if (const auto air_map = FileMap::open(air_name)) {
-    auto air = read_air_manifest(air_map->bytes(), air_name, **world, (*world)->manifest_hash);
+    auto air =
+        world::read_air_manifest(air_map->bytes(), air_name, **world, (*world)->manifest_hash);
     if (!air) return air.error();
-    if (const auto whole = unsealed(air_map->bytes(), air_name); !whole) return whole.error();
+    if (const auto whole = world::unsealed(air_map->bytes(), air_name); !whole)
+      return whole.error();
     (*air)->path = path;
     for (size_t c = 0; c < (*world)->summary.classes.size(); ++c) {
       (*world)->summary.classes[c].flies = ((*air)->shape.flies >> c & 1) != 0;
@@ -88,7 +90,7 @@ Result<void> World::check_ground() const {
 
 Result<void> World::check_all() const {
   if (auto ok = check_ground(); !ok) return ok;
-  if (state_->air == nullptr) return check_air_index(*state_);
+  if (state_->air == nullptr) return world::check_air_index(*state_);
   for (const auto& slot : state_->air->slots) {
     if (!state_->air->zone(slot->entry.x(), slot->entry.z()).usable) {
       return Error{Errc::kBadFile, slot->error};
@@ -126,12 +128,12 @@ LevelTileContent World::level_tile(uint32_t index) const {
   out.area.assign(kTileSquare, 0);
   out.clearance.assign(state_->summary.classes.size(), std::vector<uint8_t>(kTileSquare, 0));
   const size_t slot = state_->slot_of_level(index);
-  const Zone* zone = state_->zone(slot);
+  const world::Zone* zone = state_->zone(slot);
   if (zone == nullptr) return out;
   const uint32_t local = index - state_->slots[slot]->first_level;
   const format::Level& level = zone->level(local);
-  std::tie(out.tile_x, out.tile_z) = tile_of(*state_, *zone, level);
-  const LevelView view = zone->view(local);
+  std::tie(out.tile_x, out.tile_z) = world::tile_of(*state_, *zone, level);
+  const world::LevelView view = zone->view(local);
   const uint64_t* ceilings = level.ceiling_kind() == format::HeightKind::Blocks
                                  ? zone->words(level.ceiling_offset())
                                  : nullptr;
@@ -142,22 +144,23 @@ LevelTileContent World::level_tile(uint32_t index) const {
     const size_t i = static_cast<size_t>(c);
     if (!view.has(x, z)) continue;
     out.floor[i] = view.sample(x, z);
-    out.area[i] = areas != nullptr ? static_cast<uint8_t>(value_at(areas, x, z) & kLastAreaKind)
-                                   : level.area_value();
+    out.area[i] = areas != nullptr
+                      ? static_cast<uint8_t>(world::value_at(areas, x, z) & world::kLastAreaKind)
+                      : level.area_value();
     if (level.ceiling_kind() == format::HeightKind::Constant) out.ceiling[i] = level.ceiling_base();
     if (ceilings == nullptr) continue;
-    const uint16_t ceiling = value_at(ceilings, x, z);
-    if (ceiling != kNoValue) out.ceiling[i] = level.ceiling_base() + ceiling;
+    const uint16_t ceiling = world::value_at(ceilings, x, z);
+    if (ceiling != world::kNoValue) out.ceiling[i] = level.ceiling_base() + ceiling;
   }
   for (size_t k = 0; k < out.clearance.size(); ++k) {
     const format::Clearance& clearance = zone->clearance(local, static_cast<uint32_t>(k));
     if (clearance.kind() == format::CellsKind::All) out.clearance[k].assign(kTileSquare, 8);
     if (clearance.kind() != format::CellsKind::Blocks) continue;
-    std::array<CellRows, 4> sets;  // legal, and the three bits of the margin
+    std::array<world::CellRows, 4> sets;  // legal, and the three bits of the margin
     const uint64_t* words = zone->words(clearance.offset());
-    for (CellRows& rows : sets) {
-      unpack_bits(words, rows);
-      words += bit_words(words);
+    for (world::CellRows& rows : sets) {
+      world::unpack_bits(words, rows);
+      words += world::bit_words(words);
     }
     for (size_t c = 0; c < kTileSquare; ++c) {
       const auto bit = [&](size_t set) {
@@ -174,16 +177,16 @@ LevelTileContent World::level_tile(uint32_t index) const {
 Place World::find_place(int32_t avatar_class, Vec3d position, double vertical_tolerance) const {
   if (!good_class(*state_, avatar_class) || !std::isfinite(position.x + position.y + position.z))
     return {};
-  const GroundPoint p = to_ground(*state_, position.x, position.z);
-  if (!in_grid(*state_, p)) return {};
+  const world::GroundPoint p = world::to_ground(*state_, position.x, position.z);
+  if (!world::in_grid(*state_, p)) return {};
   const auto tile = state_->tile_levels(p.cell_x() >> 6, p.cell_z() >> 6);
   Place best;
   double best_distance = vertical_tolerance;
   for (uint32_t i = tile.first; i < tile.last; ++i) {
-    const GroundLevel level =
-        ground_level(*tile.zone, tile.zone_first + i - tile.first, i, avatar_class);
+    const world::GroundLevel level =
+        world::ground_level(*tile.zone, tile.zone_first + i - tile.first, i, avatar_class);
     if (!level.is_legal(p.cell_x() & 63, p.cell_z() & 63)) continue;
-    const double feet_height = feet_at(level, p);
+    const double feet_height = world::feet_at(level, p);
     const double distance = std::fabs(feet_height - position.y);
     if (distance > best_distance) continue;
     best_distance = distance;
@@ -200,40 +203,42 @@ Place World::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const
   const auto level_index = static_cast<uint32_t>(
       std::upper_bound(before.begin(), before.end(), pick) - before.begin() - 1);
   auto rank = static_cast<uint32_t>(pick - before[level_index]);
-  const GroundLevel level = ground_level(*state_, level_index, avatar_class);
-  if (level.legal != nullptr) rank = nth_bit(level.legal, rank);
+  const world::GroundLevel level = world::ground_level(*state_, level_index, avatar_class);
+  if (level.legal != nullptr) rank = world::nth_bit(level.legal, rank);
   const int32_t x = static_cast<int32_t>(rank % 64), z = static_cast<int32_t>(rank / 64);
-  const auto [tile_x, tile_z] = tile_of(*state_, *level.zone, *level.view.record);
+  const auto [tile_x, tile_z] = world::tile_of(*state_, *level.zone, *level.view.record);
   const int64_t cell_x = int64_t{tile_x} * 64 + x, cell_z = int64_t{tile_z} * 64 + z;
-  const GroundPoint p{
-      (cell_x << kUnitBits) + static_cast<int64_t>(random_below(seed, n, 1, kUnitsPerCell)),
-      (cell_z << kUnitBits) + static_cast<int64_t>(random_below(seed, n, 2, kUnitsPerCell))};
-  return place_at(*state_, level, p);
+  const world::GroundPoint p{(cell_x << world::kUnitBits) + static_cast<int64_t>(random_below(
+                                                                seed, n, 1, world::kUnitsPerCell)),
+                             (cell_z << world::kUnitBits) + static_cast<int64_t>(random_below(
+                                                                seed, n, 2, world::kUnitsPerCell))};
+  return world::place_at(*state_, level, p);
 }
 
 MoveResult World::move(int32_t avatar_class, const Place& from, double dx, double dz) const {
   MoveResult result{from, MoveEnd::kBlocked};
   if (!good_class(*state_, avatar_class) || !std::isfinite(dx + dz)) return result;
-  const auto start = ground_point(*state_, from);
+  const auto start = world::ground_point(*state_, from);
   if (!start) return result;
   const Vec3d goal{from.position.x + dx, 0, from.position.z + dz};
-  const GroundPoint end = to_ground(*state_, goal.x, goal.z);
-  if (!in_grid(*state_, end)) return result;
-  GroundLevel level = ground_level(*state_, from.level1 - 1, avatar_class);
+  const world::GroundPoint end = world::to_ground(*state_, goal.x, goal.z);
+  if (!world::in_grid(*state_, end)) return result;
+  world::GroundLevel level = world::ground_level(*state_, from.level1 - 1, avatar_class);
   if (!level.is_legal(start->cell_x() & 63, start->cell_z() & 63)) return result;
-  const int32_t step = step_mm(state_->summary.classes[static_cast<size_t>(avatar_class)]);
-  if (!walk(WorldGround{*state_, avatar_class}, level, *start, end, step)) return result;
-  result.place = {{goal.x, feet_at(level, end), goal.z}, level.world_level + 1};
+  const int32_t step = world::step_mm(state_->summary.classes[static_cast<size_t>(avatar_class)]);
+  if (!world::walk(world::WorldGround{*state_, avatar_class}, level, *start, end, step))
+    return result;
+  result.place = {{goal.x, world::feet_at(level, end), goal.z}, level.world_level + 1};
   result.end = MoveEnd::kArrived;
   return result;
 }
 
 double World::feet(const Place& place) const {
   if (!place || place.level1 > state_->level_count) return place.position.y;
-  const GroundLevel level = ground_level(*state_, place.level1 - 1, 0);
-  const GroundPoint p = to_ground(*state_, place.position.x, place.position.z);
-  if (level.zone == nullptr || !in_grid(*state_, p)) return place.position.y;
-  return feet_at(level, p);
+  const world::GroundLevel level = world::ground_level(*state_, place.level1 - 1, 0);
+  const world::GroundPoint p = world::to_ground(*state_, place.position.x, place.position.z);
+  if (level.zone == nullptr || !world::in_grid(*state_, p)) return place.position.y;
+  return world::feet_at(level, p);
 }
 
 }  // namespace throng

@@ -11,7 +11,7 @@
 
 // Opens and checks zone files, and keeps those in memory that are in use: a clock removes others at
 // their second pass.
-namespace throng {
+namespace throng::world {
 namespace {
 
 constexpr uint32_t kArea = 4096;
@@ -326,4 +326,4 @@ std::vector<uint8_t> write_manifest(const WorldData& world) {
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
 
-}  // namespace throng
+}  // namespace throng::world

@@ -18,7 +18,7 @@
 #include "world/zone_generated.h"
 
 /// Zones in memory: mapped from files, or owned by a world that was baked in memory.
-namespace throng {
+namespace throng::world {
 
 inline constexpr uint32_t kZoneVersion = 2;
 inline constexpr uint32_t kManifestVersion = 2;
@@ -126,4 +126,4 @@ Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
                                                  const std::string& name);
 std::vector<uint8_t> write_manifest(const WorldData& world);
 
-}  // namespace throng
+}  // namespace throng::world

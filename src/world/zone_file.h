@@ -16,7 +16,7 @@
 #include "throng/base.h"
 
 /// What the files of a world's zones share: the ground's, the air's, the nodes'.
-namespace throng {
+namespace throng::world {
 
 /// A zone's bytes, mapped or owned, and whatever `Zone` finds in them: it has a private
 ///   Result<void> attach(const std::string& name)
@@ -120,4 +120,4 @@ bool is_aligned(const flatbuffers::Vector<T>& values) {
   return values.size() == 0 || reinterpret_cast<uintptr_t>(values.Data()) % 8 == 0;
 }
 
-}  // namespace throng
+}  // namespace throng::world

@@ -12,9 +12,9 @@ namespace throng {
 namespace {
 
 // Posts and beams here and there, and none in the highest layer.
-AirRows litter(int32_t side, int32_t height, int32_t apron, uint64_t seed) {
+world::AirRows litter(int32_t side, int32_t height, int32_t apron, uint64_t seed) {
   const int32_t across = side + 2 * apron;
-  AirRows rows(across, height, across, true);
+  world::AirRows rows(across, height, across, true);
   for (uint64_t i = 0; i < 14; ++i) {
     const auto dice = [&](uint64_t k, int32_t max_value) {
       return static_cast<int32_t>(random_unit(seed, i, k) * max_value);
@@ -29,7 +29,8 @@ AirRows litter(int32_t side, int32_t height, int32_t apron, uint64_t seed) {
 }
 
 // Cell by cell: how far a solid is from an air box's footprint in a layer of the world.
-int32_t distance(const AirTreeSource& source, int32_t max_value, const AirCube& cube, int32_t y) {
+int32_t distance(const world::AirTreeSource& source, int32_t max_value, const world::AirCube& cube,
+                 int32_t y) {
   const int32_t height = source.rows->height;
   const int32_t row = y < source.base || y >= source.base + height ? height - 1 : y - source.base;
   for (int32_t r = 0; r <= max_value; ++r) {
@@ -47,28 +48,28 @@ TEST(AirClearance, IsWhatATestOfEveryCellFinds) {
   for (uint64_t seed = 1; seed <= 24; ++seed) {
     const int32_t apron = seed % 3 == 0 ? 16 : seed % 3 == 1 ? 4 : 7;
     const int32_t side = seed % 2 == 0 ? 64 : 40, height = 12;
-    const AirRows rows = litter(side, height, apron, seed);
-    const AirTreeSource source{.rows = &rows,
-                               .x = apron,
-                               .z = apron,
-                               .side = side,
-                               .width = side,
-                               .depth = side,
-                               .base = -8,
-                               .largest = 16,
-                               .free_beyond = true};
-    AirTreeData data = build_air_tree(source);
-    measure_clearance(source, apron, 2, data);
-    const AirTree tree = data.view();
-    const int32_t max_value = std::min(apron, kMaxAirClearance);
-    tree.for_each([&](const AirCube& cube, uint32_t word) {
-      if (air_kind(word) != AirKind::kFree) return;
-      const AirClearance room = air_clearance(air_number(word));
-      int32_t width = kMaxAirClearance, free = 0;
+    const world::AirRows rows = litter(side, height, apron, seed);
+    const world::AirTreeSource source{.rows = &rows,
+                                      .x = apron,
+                                      .z = apron,
+                                      .side = side,
+                                      .width = side,
+                                      .depth = side,
+                                      .base = -8,
+                                      .largest = 16,
+                                      .free_beyond = true};
+    world::AirTreeData data = world::build_air_tree(source);
+    bake::measure_clearance(source, apron, 2, data);
+    const world::AirTree tree = data.view();
+    const int32_t max_value = std::min(apron, world::kMaxAirClearance);
+    tree.for_each([&](const world::AirCube& cube, uint32_t word) {
+      if (world::air_kind(word) != world::AirKind::kFree) return;
+      const world::AirClearance room = world::air_clearance(world::air_number(word));
+      int32_t width = world::kMaxAirClearance, free = 0;
       for (int32_t y = cube.y; y < cube.y + cube.side; ++y) {
         width = std::min(width, distance(source, max_value, cube, y) - 1);
       }
-      while (free < kMaxAirClearance &&
+      while (free < world::kMaxAirClearance &&
              distance(source, max_value, cube, cube.y + cube.side + free) > width) {
         ++free;
       }

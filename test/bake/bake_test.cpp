@@ -43,13 +43,13 @@ Scene builtin(const std::string& name) {
 // Every byte that would be written, but for the hashes of the zones' inputs: a world in memory does
 // not know them.
 uint64_t hash_of(const World& world) {
-  const auto data = std::const_pointer_cast<WorldData>(data_of(world));
+  const auto data = std::const_pointer_cast<world::WorldData>(data_of(world));
   const auto inputs = std::exchange(data->inputs, {});
   uint64_t hash = 0;
   for (size_t s = 0; s < data_of(world)->slots.size(); ++s) {
     hash = hash_span(data_of(world)->zone(s)->bytes(), hash);
   }
-  hash = hash_span(std::span<const uint8_t>(write_manifest(*data)), hash);
+  hash = hash_span(std::span<const uint8_t>(world::write_manifest(*data)), hash);
   data->inputs = inputs;
   return hash;
 }
@@ -218,7 +218,7 @@ TEST(Bake, AFlatFloorIsAFewBytesATile) {
   ASSERT_TRUE(world);
   EXPECT_EQ(report.level_tiles, 256u);
   EXPECT_EQ(report.constant_level_tiles, 256u);
-  const Zone& zone = *data_of(*world)->zone(0);
+  const world::Zone& zone = *data_of(*world)->zone(0);
   // Only tiles at the rim need clearance cell by cell: four sides and four corners, shared.
   std::set<uint32_t> rims;
   for (const format::Clearance* c : *zone.root().clearance()) {

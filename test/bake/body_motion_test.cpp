@@ -20,8 +20,8 @@ Scene strip(AreaKind middle) {
 TEST(MotionJudge, OnlyGroundThatIsNotBlockedCarries) {
   for (const AreaKind kind : {kAreaWalkable, kAreaBlocked}) {
     const Scene scene = strip(kind);
-    const TriangleSquares triangles(scene, 1);
-    MotionJudge judge(triangles);
+    const bake::TriangleSquares triangles(scene, 1);
+    bake::MotionJudge judge(triangles);
     EXPECT_TRUE(judge.is_supported({0.5, 0, 1}, {1.5, 0, 1}, 0.1, 0.1));
     EXPECT_EQ(judge.is_supported({0.5, 0, 1}, {5.5, 0, 1}, 0.1, 0.1), kind == kAreaWalkable);
     EXPECT_FALSE(judge.is_supported({4.5, 0, 1}, {6.5, 0, 1}, 0.1, 0.1));  // beyond the end

@@ -16,7 +16,7 @@ namespace {
 
 struct Soup {
   Scene scene;
-  Grid grid;
+  bake::Grid grid;
 };
 
 void add(Scene& scene, Vec3d a, Vec3d b, Vec3d c) {
@@ -59,10 +59,10 @@ Soup random_soup(uint64_t seed, double cell, int32_t count) {
   return soup;
 }
 
-std::vector<CellTriangle> cell_triangles(const Soup& soup) {
-  std::vector<CellTriangle> out;
+std::vector<bake::CellTriangle> cell_triangles(const Soup& soup) {
+  std::vector<bake::CellTriangle> out;
   for (uint32_t t = 0; t < soup.scene.triangles.size(); ++t) {
-    out.push_back(to_cell_triangle(soup.scene, t, soup.grid, 0));
+    out.push_back(bake::to_cell_triangle(soup.scene, t, soup.grid, 0));
   }
   return out;
 }
@@ -73,17 +73,17 @@ std::vector<uint32_t> all_items(size_t count) {
   return items;
 }
 
-TileSpans fast_spans(const Soup& soup, int32_t join) {
+bake::TileSpans fast_spans(const Soup& soup, int32_t join) {
   const auto triangles = cell_triangles(soup);
-  auto columns = std::make_unique<TileColumns>();
-  rasterise_tile(triangles, all_items(triangles.size()), 0, 0, {}, join, *columns);
-  TileSpans spans;
-  sort_spans(*columns, spans);
+  auto columns = std::make_unique<bake::TileColumns>();
+  bake::rasterise_tile(triangles, all_items(triangles.size()), 0, 0, {}, join, *columns);
+  bake::TileSpans spans;
+  bake::sort_spans(*columns, spans);
   return spans;
 }
 
-naive::Columns as_naive(const TileSpans& spans) {
-  return {kTileSide, kTileSide, spans.first, spans.low, spans.high};
+naive::Columns as_naive(const bake::TileSpans& spans) {
+  return {bake::kTileSide, bake::kTileSide, spans.first, spans.low, spans.high};
 }
 
 naive::Columns naive_columns(const Soup& soup, double widen) {
@@ -134,7 +134,7 @@ TEST(Columns, AFarTriangleKeepsItsPrecision) {
 TEST(Columns, FlatSurfacesAreExact) {
   Soup soup = random_soup(7, 0.1, 0);
   add(soup.scene, {-10, 1.1, -10}, {30, 1.1, -10}, {-10, 1.1, 40});
-  const TileSpans spans = fast_spans(soup, 0);
+  const bake::TileSpans spans = fast_spans(soup, 0);
   ASSERT_EQ(spans.low.size(), 4096u);
   for (size_t i = 0; i < spans.low.size(); ++i) {
     ASSERT_EQ(spans.low[i], 1100);
@@ -148,17 +148,17 @@ TEST(Columns, DeepColumnsSpillAndStaySorted) {
     const double y = ((i * 137) % 300) * 2.0;
     add(soup.scene, {-10, y, -10}, {30, y, -10}, {-10, y, 40});
   }
-  const TileSpans spans = fast_spans(soup, 0);
+  const bake::TileSpans spans = fast_spans(soup, 0);
   ASSERT_EQ(spans.low.size(), 4096u * 300);
   for (size_t i = 0; i < 300; ++i) EXPECT_EQ(spans.low[i], static_cast<int32_t>(i) * 2000);
 
   const auto triangles = cell_triangles(soup);
-  auto columns = std::make_unique<TileColumns>();
-  rasterise_tile(triangles, all_items(triangles.size()), 0, 0, {}, 0, *columns);
-  auto gaps = std::make_unique<TileFreeSpans>();
-  find_free_spans(*columns, 1500, *gaps);
+  auto columns = std::make_unique<bake::TileColumns>();
+  bake::rasterise_tile(triangles, all_items(triangles.size()), 0, 0, {}, 0, *columns);
+  auto gaps = std::make_unique<bake::TileFreeSpans>();
+  bake::find_free_spans(*columns, 1500, *gaps);
   EXPECT_EQ(gaps->count[17], 300);
-  EXPECT_EQ(gaps->layers[299]->ceiling[17], kOpenSkyMm);
+  EXPECT_EQ(gaps->layers[299]->ceiling[17], bake::kOpenSkyMm);
 }
 
 TEST(Columns, FreeSpansAreWhatJoinedSpansLeave) {
@@ -166,26 +166,27 @@ TEST(Columns, FreeSpansAreWhatJoinedSpansLeave) {
     const Soup soup = random_soup(seed, 0.2, static_cast<int32_t>(seed % 60) + 2);
     const int32_t min_free_span = 700 + static_cast<int32_t>(seed) * 10;
     const auto triangles = cell_triangles(soup);
-    auto columns = std::make_unique<TileColumns>();
-    rasterise_tile(triangles, all_items(triangles.size()), 0, 0, {}, min_free_span - 1, *columns);
-    auto gaps = std::make_unique<TileFreeSpans>();
-    find_free_spans(*columns, min_free_span, *gaps);
-    const TileSpans spans = fast_spans(soup, 0);
+    auto columns = std::make_unique<bake::TileColumns>();
+    bake::rasterise_tile(triangles, all_items(triangles.size()), 0, 0, {}, min_free_span - 1,
+                         *columns);
+    auto gaps = std::make_unique<bake::TileFreeSpans>();
+    bake::find_free_spans(*columns, min_free_span, *gaps);
+    const bake::TileSpans spans = fast_spans(soup, 0);
     for (size_t c = 0; c < 4096; ++c) {
       std::vector<std::pair<int32_t, int32_t>> expected;  // top, ceiling
       for (size_t i = spans.first[c]; i < spans.first[c + 1]; ++i) {
         const bool last = i + 1 == spans.first[c + 1];
         if (!last && spans.low[i + 1] - spans.high[i] < min_free_span) continue;
-        expected.emplace_back(spans.high[i], last ? kOpenSkyMm : spans.low[i + 1]);
+        expected.emplace_back(spans.high[i], last ? bake::kOpenSkyMm : spans.low[i + 1]);
       }
       ASSERT_EQ(gaps->count[c], static_cast<int32_t>(expected.size())) << "seed " << seed;
       for (size_t k = 0; k < expected.size(); ++k) {
-        const FreeSpanLayer& layer = *gaps->layers[k];
+        const bake::FreeSpanLayer& layer = *gaps->layers[k];
         ASSERT_EQ(layer.top[c] + gaps->base, expected[k].first);
         const int32_t ceiling = layer.ceiling[c];
-        ASSERT_EQ(ceiling == kOpenSkyMm ? ceiling : ceiling + gaps->base, expected[k].second);
+        ASSERT_EQ(ceiling == bake::kOpenSkyMm ? ceiling : ceiling + gaps->base, expected[k].second);
         // The support is no higher than the solid, and not below the run's lowest span.
-        if (layer.support[c] != kNoSupport) {
+        if (layer.support[c] != bake::kNoSupport) {
           ASSERT_LE(layer.support[c] >> 8, layer.top[c]);
         }
       }
@@ -197,9 +198,9 @@ TEST(Columns, SupportIsTheSurfaceUnderTheCentre) {
   for (uint64_t seed = 1; seed <= 200; ++seed) {
     const Soup soup = random_soup(seed, 0.1, 1);
     const auto triangles = cell_triangles(soup);
-    auto columns = std::make_unique<TileColumns>();
-    rasterise_tile(triangles, all_items(1), 0, 0, {}, 0, *columns);
-    const CellTriangle& t = triangles[0];
+    auto columns = std::make_unique<bake::TileColumns>();
+    bake::rasterise_tile(triangles, all_items(1), 0, 0, {}, 0, *columns);
+    const bake::CellTriangle& t = triangles[0];
     const double area =
         (t.x[1] - t.x[0]) * (t.z[2] - t.z[0]) - (t.x[2] - t.x[0]) * (t.z[1] - t.z[0]);
     if (std::fabs(area) < 1e-3) continue;
@@ -213,7 +214,7 @@ TEST(Columns, SupportIsTheSurfaceUnderTheCentre) {
         const size_t c = static_cast<size_t>(z * 64 + x);
         const size_t at = columns->place(c);
         const bool supported =
-            columns->holds(0, c) && columns->layers[0]->support[at] != kNoSupport;
+            columns->holds(0, c) && columns->layers[0]->support[at] != bake::kNoSupport;
         if (std::min({w0, w1, w2}) > 1e-4) {
           ASSERT_TRUE(supported) << "seed " << seed << " cell " << x << " " << z;
           const double y = w0 * t.y[0] + w1 * t.y[1] + w2 * t.y[2];
@@ -230,17 +231,17 @@ uint64_t hash_columns() {
   uint64_t hash = 0;
   for (uint64_t seed = 1; seed <= 40; ++seed) {
     const Soup soup = random_soup(seed, 0.1, 40);
-    const TileSpans spans = fast_spans(soup, 0);
+    const bake::TileSpans spans = fast_spans(soup, 0);
     hash = hash_span(std::span<const int32_t>(spans.low), hash);
     hash = hash_span(std::span<const int32_t>(spans.high), hash);
     const auto triangles = cell_triangles(soup);
-    auto columns = std::make_unique<TileColumns>();
-    rasterise_tile(triangles, all_items(triangles.size()), 0, 0, {}, 999, *columns);
-    auto gaps = std::make_unique<TileFreeSpans>();
-    find_free_spans(*columns, 1000, *gaps);
+    auto columns = std::make_unique<bake::TileColumns>();
+    bake::rasterise_tile(triangles, all_items(triangles.size()), 0, 0, {}, 999, *columns);
+    auto gaps = std::make_unique<bake::TileFreeSpans>();
+    bake::find_free_spans(*columns, 1000, *gaps);
     for (size_t c = 0; c < 4096; ++c) {
       for (int32_t k = 0; k < gaps->count[c]; ++k) {
-        const FreeSpanLayer& layer = *gaps->layers[static_cast<size_t>(k)];
+        const bake::FreeSpanLayer& layer = *gaps->layers[static_cast<size_t>(k)];
         const int32_t values[3] = {layer.top[c], layer.ceiling[c], layer.support[c]};
         hash = hash_bytes(values, sizeof values, hash);
       }

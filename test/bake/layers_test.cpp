@@ -15,14 +15,14 @@
 namespace throng {
 namespace {
 
-SurfaceCodes three_codes(size_t classes) {
+bake::SurfaceCodes three_codes(size_t classes) {
   const uint32_t all = (1u << classes) - 1;
   return {.codes = {{0, kAreaWalkable}, {1, kAreaWalkable}, {2, kAreaBlocked}},
           .allowed = {all, all & ~1u, 0}};
 }
 
-BodyLimits limits_of(const std::vector<AvatarClass>& classes, double cell = 0.1) {
-  return body_limits(classes, three_codes(classes.size()), cell);
+bake::BodyLimits limits_of(const std::vector<AvatarClass>& classes, double cell = 0.1) {
+  return bake::body_limits(classes, three_codes(classes.size()), cell);
 }
 
 constexpr int32_t kBlockedCode = 2;
@@ -45,12 +45,12 @@ struct Expected {
   std::vector<Group> groups;
 };
 
-bool joined(const naive::FreeSpan& a, const naive::FreeSpan& b, const BodyLimits& limits) {
+bool joined(const naive::FreeSpan& a, const naive::FreeSpan& b, const bake::BodyLimits& limits) {
   const int64_t step = std::abs(int64_t{a.top} - b.top);
   const int64_t room = int64_t{std::min(a.ceiling, b.ceiling)} - std::max(a.top, b.top);
-  const int32_t least = limits.min_free_span < BodyLimits::kHighFreeSpan
+  const int32_t least = limits.min_free_span < bake::BodyLimits::kHighFreeSpan
                             ? limits.low_free_span
-                            : BodyLimits::kHighFreeSpan;
+                            : bake::BodyLimits::kHighFreeSpan;
   return step <= limits.link_step && room >= least;
 }
 
@@ -69,12 +69,12 @@ naive::FreeSpanBlock by_height(const naive::FreeSpanBlock& high, const naive::Fr
 
 // Every free span of the middle tile, and which of them are connected: a flood fill over all pairs
 // of free spans in neighbouring columns.
-Expected expect(const naive::FreeSpanBlock& block, const BodyLimits& limits) {
+Expected expect(const naive::FreeSpanBlock& block, const bake::BodyLimits& limits) {
   Expected out;
-  std::vector<std::vector<size_t>> of_cell(kTileArea);
-  for (int32_t c = 0; c < kTileArea; ++c) {
+  std::vector<std::vector<size_t>> of_cell(bake::kTileArea);
+  for (int32_t c = 0; c < bake::kTileArea; ++c) {
     for (const naive::FreeSpan& free_span : block.at(c % 64, c / 64)) {
-      const bool surface = free_span.support != kNoSupport && free_span.code != kBlockedCode;
+      const bool surface = free_span.support != bake::kNoSupport && free_span.code != kBlockedCode;
       const bool usable = surface &&
                           int64_t{free_span.top} - free_span.support <= limits.max_bottom &&
                           int64_t{free_span.ceiling} - free_span.support >= limits.min_height;
@@ -110,24 +110,25 @@ Expected expect(const naive::FreeSpanBlock& block, const BodyLimits& limits) {
 }
 
 // What an assignment must be, whatever its choices.
-void expect_good_layers(const naive::FreeSpanBlock& block, const BodyLimits& limits,
+void expect_good_layers(const naive::FreeSpanBlock& block, const bake::BodyLimits& limits,
                         const std::string& what) {
-  LayerPool pool;
-  TileLayers layers;
+  bake::LayerPool pool;
+  bake::TileLayers layers;
   naive::assign_tile(block, 0, 0, limits, pool, layers);
   const naive::FreeSpanBlock high = naive::high_free_spans(block),
                              lent = naive::with_lent_supports(block);
-  const Expected expected = expect(
-      limits.min_free_span < BodyLimits::kHighFreeSpan ? by_height(high, lent) : high, limits);
+  const Expected expected =
+      expect(limits.min_free_span < bake::BodyLimits::kHighFreeSpan ? by_height(high, lent) : high,
+             limits);
 
   std::map<std::pair<int32_t, int32_t>, int32_t> assigned;  // cell and top: how often
   for (size_t s = 0; s < layers.size(); ++s) {
-    const Layer& layer = *layers[s];
+    const bake::Layer& layer = *layers[s];
     int32_t cells = 0, present = 0, low_feet = INT32_MAX, high_feet = INT32_MIN;
-    for (int32_t c = 0; c < kTileArea; ++c) {
+    for (int32_t c = 0; c < bake::kTileArea; ++c) {
       const auto cell = static_cast<size_t>(c);
-      if (layer.top[cell] == kNone16) {
-        ASSERT_EQ(layer.feet[cell], kNone16) << what;
+      if (layer.top[cell] == bake::kNone16) {
+        ASSERT_EQ(layer.feet[cell], bake::kNone16) << what;
         ASSERT_EQ(layer.ceiling[cell], 0) << what << ": a ceiling where there is no free span";
         continue;
       }
@@ -138,21 +139,21 @@ void expect_good_layers(const naive::FreeSpanBlock& block, const BodyLimits& lim
       const auto free_span = std::find_if(column.begin(), column.end(),
                                           [&](const naive::FreeSpan& g) { return g.top == top; });
       ASSERT_NE(free_span, column.end()) << what << ": layer " << s << " invents a top";
-      ASSERT_GE(layer.top[cell], Layer::kBelow) << what;
-      ASSERT_LE(layer.top[cell], Layer::kHighest) << what;
-      if (free_span->ceiling == kOpenSkyMm) {
-        ASSERT_EQ(layer.ceiling[cell], kNone16) << what;
+      ASSERT_GE(layer.top[cell], bake::Layer::kBelow) << what;
+      ASSERT_LE(layer.top[cell], bake::Layer::kHighest) << what;
+      if (free_span->ceiling == bake::kOpenSkyMm) {
+        ASSERT_EQ(layer.ceiling[cell], bake::kNone16) << what;
       } else {  // exact, or the highest of 16 bits
         ASSERT_EQ(layer.ceiling[cell], std::min(free_span->ceiling - layer.base, 65534)) << what;
       }
-      const bool surface = free_span->support != kNoSupport;
+      const bool surface = free_span->support != bake::kNoSupport;
       const bool deep = surface && int64_t{free_span->top} - free_span->support > limits.max_bottom;
       const bool low =
           surface && int64_t{free_span->ceiling} - free_span->support < limits.min_height;
       const bool useful = surface && free_span->code != kBlockedCode && !deep && !low;
       ASSERT_EQ(layer.useful[cell / 64] >> cell % 64 & 1, useful ? 1u : 0u) << what;
       if (!surface || free_span->support < layer.base) {  // nothing to stand on, or out of range
-        ASSERT_EQ(layer.feet[cell], kNone16) << what;
+        ASSERT_EQ(layer.feet[cell], bake::kNone16) << what;
         continue;
       }
       ++present;
@@ -195,7 +196,7 @@ naive::RandomBlock random_block(uint64_t seed) {
 TEST(Layers, EveryFreeSpanThatAClassCanUseIsInExactlyOneLayerButCrumbs) {
   for (uint64_t seed = 1; seed <= 40; ++seed) {
     const auto classes = default_classes();
-    const BodyLimits limits = limits_of(classes, seed % 2 == 0 ? 0.1 : 0.3);
+    const bake::BodyLimits limits = limits_of(classes, seed % 2 == 0 ? 0.1 : 0.3);
     const naive::FreeSpanBlock block =
         naive::free_spans_of(naive::random_solids(random_block(seed)), limits.min_free_span);
     ASSERT_NO_FATAL_FAILURE(expect_good_layers(block, limits, "seed " + std::to_string(seed)));
@@ -203,9 +204,10 @@ TEST(Layers, EveryFreeSpanThatAClassCanUseIsInExactlyOneLayerButCrumbs) {
 }
 
 // Free spans at random heights, as many as fit: no floor continues for long.
-naive::FreeSpanBlock noise(uint64_t seed, const BodyLimits& limits, int32_t layers, double spread) {
+naive::FreeSpanBlock noise(uint64_t seed, const bake::BodyLimits& limits, int32_t layers,
+                           double spread) {
   naive::FreeSpanBlock block;
-  for (int32_t c = 0; c < kTileArea; ++c) {
+  for (int32_t c = 0; c < bake::kTileArea; ++c) {
     uint64_t n = 0;
     const auto unit = [&] { return random_unit(seed, static_cast<uint64_t>(c), n++); };
     auto& column = block.at(c % 64, c / 64);
@@ -214,7 +216,7 @@ naive::FreeSpanBlock noise(uint64_t seed, const BodyLimits& limits, int32_t laye
     for (int32_t k = 0; k < count; ++k) {
       const auto room = limits.min_free_span + static_cast<int32_t>(unit() * spread);
       naive::FreeSpan free_span{static_cast<int32_t>(top), static_cast<int32_t>(top + room)};
-      if (k + 1 == count) free_span.ceiling = kOpenSkyMm;
+      if (k + 1 == count) free_span.ceiling = bake::kOpenSkyMm;
       if (unit() < 0.8)
         free_span.support = free_span.top - static_cast<int32_t>(unit() * unit() * 1000);
       free_span.code = static_cast<int32_t>(unit() * 3);
@@ -226,7 +228,7 @@ naive::FreeSpanBlock noise(uint64_t seed, const BodyLimits& limits, int32_t laye
 }
 
 TEST(Layers, NoiseOfManyLayersIsAssignedWithoutLoss) {
-  const BodyLimits limits = limits_of(default_classes());
+  const bake::BodyLimits limits = limits_of(default_classes());
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     const double spread = seed % 2 == 0 ? 300 : 3000;
     const naive::FreeSpanBlock block = noise(seed, limits, 2 + static_cast<int32_t>(seed), spread);
@@ -235,10 +237,10 @@ TEST(Layers, NoiseOfManyLayersIsAssignedWithoutLoss) {
 }
 
 TEST(Layers, HeightsKilometresApartAreExactAndTakeMoreLayers) {
-  const BodyLimits limits = limits_of(default_classes());
+  const bake::BodyLimits limits = limits_of(default_classes());
   for (uint64_t seed = 1; seed <= 6; ++seed) {
     naive::FreeSpanBlock block;
-    for (int32_t c = 0; c < kTileArea; ++c) {
+    for (int32_t c = 0; c < bake::kTileArea; ++c) {
       const int32_t x = c % 64, z = c / 64;
       auto& column = block.at(x, z);
       // Floors at -1 km, 1 km and 2 km; a cliff of 90 m across the lowest.
@@ -247,11 +249,11 @@ TEST(Layers, HeightsKilometresApartAreExactAndTakeMoreLayers) {
       const int32_t low = -1'000'000 + rough + (x > 30 ? 90'000 : 0);
       column.push_back({low, 999'000, low, 0});
       column.push_back({1'000'000 + rough, 1'999'000, 1'000'000, 0});
-      column.push_back({2'000'000 + rough, kOpenSkyMm, 2'000'000, 1});
+      column.push_back({2'000'000 + rough, bake::kOpenSkyMm, 2'000'000, 1});
     }
     ASSERT_NO_FATAL_FAILURE(expect_good_layers(block, limits, std::to_string(seed)));
-    LayerPool pool;
-    TileLayers layers;
+    bake::LayerPool pool;
+    bake::TileLayers layers;
     naive::assign_tile(block, 0, 0, limits, pool, layers);
     EXPECT_EQ(layers.size(), 4u);
   }
@@ -259,13 +261,13 @@ TEST(Layers, HeightsKilometresApartAreExactAndTakeMoreLayers) {
 
 TEST(Layers, AStairOfMoreHeightThanSixteenBitsHoldIsCutNotBent) {
   // 4096 cells along a line that winds through the tile, a step up at each: one component, 120 m.
-  const BodyLimits limits = limits_of({AvatarClass{}});
+  const bake::BodyLimits limits = limits_of({AvatarClass{}});
   for (const int32_t rise : {13, 14, 15, 30, 90, 390}) {
     naive::FreeSpanBlock block;
     for (int32_t z = 0; z < 64; ++z) {
       for (int32_t i = 0; i < 64; ++i) {
         const int32_t top = (z * 64 + i) * rise;
-        block.at(z % 2 == 0 ? i : 63 - i, z).push_back({top, kOpenSkyMm, top, 0});
+        block.at(z % 2 == 0 ? i : 63 - i, z).push_back({top, bake::kOpenSkyMm, top, 0});
       }
     }
     ASSERT_NO_FATAL_FAILURE(expect_good_layers(block, limits, std::to_string(rise)));
@@ -273,17 +275,17 @@ TEST(Layers, AStairOfMoreHeightThanSixteenBitsHoldIsCutNotBent) {
 }
 
 TEST(Layers, ALevelFloorUnderALevelFloorIsTwoLayersLowestFirst) {
-  const BodyLimits limits = limits_of(default_classes());
+  const bake::BodyLimits limits = limits_of(default_classes());
   naive::FreeSpanBlock block;
-  for (int32_t c = 0; c < kTileArea; ++c) {
-    block.at(c % 64, c / 64) = {{0, 2800, 0, 0}, {3000, kOpenSkyMm, 3000, 1}};
+  for (int32_t c = 0; c < bake::kTileArea; ++c) {
+    block.at(c % 64, c / 64) = {{0, 2800, 0, 0}, {3000, bake::kOpenSkyMm, 3000, 1}};
   }
-  LayerPool pool;
-  TileLayers layers;
+  bake::LayerPool pool;
+  bake::TileLayers layers;
   naive::assign_tile(block, 0, 0, limits, pool, layers);
   ASSERT_EQ(layers.size(), 2u);
   for (size_t s = 0; s < 2; ++s) {
-    EXPECT_EQ(layers[s]->present, kTileArea);
+    EXPECT_EQ(layers[s]->present, bake::kTileArea);
     EXPECT_EQ(layers[s]->base + layers[s]->low_feet, s == 0 ? 0 : 3000);
     EXPECT_FALSE(layers[s]->seams);
     EXPECT_TRUE(layers[s]->one_code);
@@ -291,28 +293,29 @@ TEST(Layers, ALevelFloorUnderALevelFloorIsTwoLayersLowestFirst) {
 }
 
 TEST(Layers, TheTopsOfPillarsAreCrumbsUnlessTheyReachTheBorder) {
-  const BodyLimits limits = limits_of({AvatarClass{}});
+  const bake::BodyLimits limits = limits_of({AvatarClass{}});
   naive::FreeSpanBlock block;
-  for (int32_t c = 0; c < kTileArea; ++c) block.at(c % 64, c / 64) = {{0, kOpenSkyMm, 0, 0}};
-  block.at(20, 20) = {{1500, kOpenSkyMm, 1500, 0}};
-  block.at(63, 40) = {{1500, kOpenSkyMm, 1500, 0}};
+  for (int32_t c = 0; c < bake::kTileArea; ++c)
+    block.at(c % 64, c / 64) = {{0, bake::kOpenSkyMm, 0, 0}};
+  block.at(20, 20) = {{1500, bake::kOpenSkyMm, 1500, 0}};
+  block.at(63, 40) = {{1500, bake::kOpenSkyMm, 1500, 0}};
   for (const auto& [x, z] : {std::pair{20, 20}, {63, 40}})
-    block.at(x, z).insert(block.at(x, z).begin(), {-9000, -7000, kNoSupport, 0});
-  LayerPool pool;
-  TileLayers layers;
+    block.at(x, z).insert(block.at(x, z).begin(), {-9000, -7000, bake::kNoSupport, 0});
+  bake::LayerPool pool;
+  bake::TileLayers layers;
   naive::assign_tile(block, 0, 0, limits, pool, layers);
   int32_t inside = 0, border = 0;
   for (const auto& layer : layers) {
-    inside += layer->top[20 * 64 + 20] != kNone16 ? 1 : 0;
-    border += layer->top[40 * 64 + 63] != kNone16 ? 1 : 0;
+    inside += layer->top[20 * 64 + 20] != bake::kNone16 ? 1 : 0;
+    border += layer->top[40 * 64 + 63] != bake::kNone16 ? 1 : 0;
   }
   EXPECT_EQ(inside, 0);
   EXPECT_EQ(border, 1);
 }
 
 TEST(Layers, AnEmptyTileHasNone) {
-  LayerPool pool;
-  TileLayers layers;
+  bake::LayerPool pool;
+  bake::TileLayers layers;
   naive::assign_tile({}, 0, 0, limits_of(default_classes()), pool, layers);
   EXPECT_TRUE(layers.empty());
 }
@@ -320,14 +323,14 @@ TEST(Layers, AnEmptyTileHasNone) {
 TEST(Layers, SameLayersForEverySimdWidth) {
   const auto hash_all = [] {
     uint64_t hash = 0;
-    const BodyLimits limits = limits_of(default_classes());
-    LayerPool pool;
+    const bake::BodyLimits limits = limits_of(default_classes());
+    bake::LayerPool pool;
     for (uint64_t seed = 1; seed <= 12; ++seed) {
       const naive::FreeSpanBlock block =
           seed % 3 == 0 ? noise(seed, limits, 5, 1000)
                         : naive::free_spans_of(naive::random_solids(random_block(seed)),
                                                limits.min_free_span);
-      TileLayers layers;
+      bake::TileLayers layers;
       naive::assign_tile(block, 0, 0, limits, pool, layers);
       for (auto& layer : layers) {
         hash = hash_span(std::span<const uint16_t>(layer->top), hash);
@@ -336,8 +339,8 @@ TEST(Layers, SameLayersForEverySimdWidth) {
         const int32_t numbers[] = {layer->base, layer->cells, layer->present, layer->some_code,
                                    layer->one_code};
         hash = hash_bytes(numbers, sizeof numbers, hash);
-        for (size_t c = 0; c < kTileArea; ++c) {
-          if (layer->feet[c] != kNone16) hash = hash_bytes(&layer->code[c], 1, hash);
+        for (size_t c = 0; c < bake::kTileArea; ++c) {
+          if (layer->feet[c] != bake::kNone16) hash = hash_bytes(&layer->code[c], 1, hash);
         }
         pool.give(std::move(layer));
       }

@@ -18,9 +18,9 @@
 namespace throng {
 namespace {
 
-constexpr int32_t kLast = kTileSide - 1;
+constexpr int32_t kLast = bake::kTileSide - 1;
 
-SurfaceCodes make_codes(uint32_t all) {
+bake::SurfaceCodes make_codes(uint32_t all) {
   // All classes', all but the first class's, no class's.
   return {.codes = {{0, kAreaWalkable}, {1, kAreaWalkable}, {2, kAreaBlocked}},
           .allowed = {all, all & ~1u, 0}};
@@ -31,10 +31,10 @@ struct AssignedBlock {
   AssignedBlock(const naive::SolidBlock& solids, std::vector<AvatarClass> of, double cell_size)
       : classes(std::move(of)), cell(cell_size) {
     codes = make_codes((1u << classes.size()) - 1);
-    limits = body_limits(classes, codes, cell);
+    limits = bake::body_limits(classes, codes, cell);
     free_spans = naive::free_spans_of(solids, limits.min_free_span);
     for (size_t c = 0; c < classes.size(); ++c) {
-      bodies.push_back(body_window(classes[c], static_cast<int32_t>(c), cell));
+      bodies.push_back(bake::body_window(classes[c], static_cast<int32_t>(c), cell));
       reach = std::max(reach, bodies.back().reach);
     }
     for (size_t i = 0; i < 9; ++i) {
@@ -52,44 +52,44 @@ struct AssignedBlock {
   }
 
   double cell;
-  SurfaceCodes codes;
-  BodyLimits limits;
+  bake::SurfaceCodes codes;
+  bake::BodyLimits limits;
   naive::FreeSpanBlock free_spans;
-  std::vector<BodyWindow> bodies;
+  std::vector<bake::BodyWindow> bodies;
   int32_t reach = 0;
-  LayerPool pool;
-  std::array<TileLayers, 9> tiles;
-  std::array<LayerList, 9> lists;
-  Neighbourhood around;
+  bake::LayerPool pool;
+  std::array<bake::TileLayers, 9> tiles;
+  std::array<bake::LayerList, 9> lists;
+  bake::Neighbourhood around;
 };
 
 struct Verdict {
-  BitPlane window;  // by the window alone
-  BitPlane legal;
+  bake::BitPlane window;  // by the window alone
+  bake::BitPlane legal;
 };
 
 Verdict judge(const AssignedBlock& world, size_t layer, size_t avatar_class) {
-  LegalityScratch scratch;
+  bake::LegalityScratch scratch;
   scratch.window.assemble(world.around, layer, world.reach, world.limits);
-  make_tilt(*world.tiles[4][layer], scratch.tilt);
-  LegalCells cells;
-  const BodyWindow& body = world.bodies[avatar_class];
-  BitPlane may;
-  may_stand(*world.tiles[4][layer], body, world.limits, may);
-  legal_cells(*world.tiles[4][layer], body, may, scratch, cells);
+  bake::make_tilt(*world.tiles[4][layer], scratch.tilt);
+  bake::LegalCells cells;
+  const bake::BodyWindow& body = world.bodies[avatar_class];
+  bake::BitPlane may;
+  bake::may_stand(*world.tiles[4][layer], body, world.limits, may);
+  bake::legal_cells(*world.tiles[4][layer], body, may, scratch, cells);
   Verdict out;
   out.window = cells.legal;
-  recheck_slopes(*world.tiles[4][layer], body, scratch, cells);
-  recheck_seams(world.around, layer, body, world.limits, scratch, cells);
+  bake::recheck_slopes(*world.tiles[4][layer], body, scratch, cells);
+  bake::recheck_seams(world.around, layer, body, world.limits, scratch, cells);
   out.legal = cells.legal;
   return out;
 }
 
-bool has(const BitPlane& plane, int32_t x, int32_t z) {
+bool has(const bake::BitPlane& plane, int32_t x, int32_t z) {
   return ((plane[static_cast<size_t>(z)] >> x) & 1) != 0;
 }
 
-int32_t count(const BitPlane& plane) {
+int32_t count(const bake::BitPlane& plane) {
   int32_t cells = 0;
   for (const uint64_t row : plane) cells += __builtin_popcountll(row);
   return cells;
@@ -97,9 +97,9 @@ int32_t count(const BitPlane& plane) {
 
 // Feet of a layer, absolute, or nothing.
 constexpr double kNowhere = 1e18;
-double sample(const Layer& layer, int32_t x, int32_t z) {
-  const uint16_t feet = layer.feet[static_cast<size_t>(z * kTileSide + x)];
-  return feet == kNone16 ? kNowhere : layer.base + feet;
+double sample(const bake::Layer& layer, int32_t x, int32_t z) {
+  const uint16_t feet = layer.feet[static_cast<size_t>(z * bake::kTileSide + x)];
+  return feet == bake::kNone16 ? kNowhere : layer.base + feet;
 }
 
 // The gentler of the rises to both sides, nought if they disagree; at the rim as one cell inside.
@@ -120,7 +120,7 @@ struct Plane {
   }
 };
 
-Plane feet_plane(const Layer& layer, int32_t x, int32_t z) {
+Plane feet_plane(const bake::Layer& layer, int32_t x, int32_t z) {
   const int32_t ix = std::clamp(x, 1, kLast - 1), iz = std::clamp(z, 1, kLast - 1);
   return {
       sample(layer, x, z),
@@ -155,12 +155,13 @@ bool column_holds(const naive::FreeSpanBlock& free_spans, int32_t x, int32_t z, 
 }
 
 // Is the body of a class safe at every one of some points of the cell?
-bool body_is_safe(const AssignedBlock& world, const Layer& layer, size_t c, int32_t x, int32_t z) {
+bool body_is_safe(const AssignedBlock& world, const bake::Layer& layer, size_t c, int32_t x,
+                  int32_t z) {
   const AvatarClass& avatar = world.classes[c];
   const Plane plane = feet_plane(layer, x, z);
   const double radius = avatar.radius / world.cell, bottom = true_bottom(avatar);
   const auto reach = static_cast<int32_t>(std::ceil(radius)) + 1;
-  const auto odd = static_cast<uint64_t>(z * kTileSide + x);
+  const auto odd = static_cast<uint64_t>(z * bake::kTileSide + x);
   const double u3 = random_unit(c, odd, 1), v3 = random_unit(c, odd, 2);
   for (const auto& [u, v] : {std::pair{0.0, 0.0},
                              {1.0, 0.0},
@@ -186,18 +187,20 @@ bool body_is_safe(const AssignedBlock& world, const Layer& layer, size_t c, int3
 }
 
 // The free span of the cell's own column on which the layer stands, if the class may stand there.
-bool stands(const AssignedBlock& world, const Layer& layer, size_t c, int32_t x, int32_t z) {
+bool stands(const AssignedBlock& world, const bake::Layer& layer, size_t c, int32_t x, int32_t z) {
   const double feet = sample(layer, x, z);
   for (const naive::FreeSpan& free_span : world.free_spans.at(x, z)) {
-    if (free_span.support == kNoSupport || free_span.support != feet) continue;
-    if (free_span.top != layer.base + layer.top[static_cast<size_t>(z * kTileSide + x)]) continue;
+    if (free_span.support == bake::kNoSupport || free_span.support != feet) continue;
+    if (free_span.top != layer.base + layer.top[static_cast<size_t>(z * bake::kTileSide + x)])
+      continue;
     return (world.codes.allowed[static_cast<size_t>(free_span.code)] >> c & 1) != 0;
   }
   return false;
 }
 
 // The rule of the window, word by word, on columns of one free span each.
-bool window_rule(const AssignedBlock& world, const Layer& layer, size_t c, int32_t x, int32_t z) {
+bool window_rule(const AssignedBlock& world, const bake::Layer& layer, size_t c, int32_t x,
+                 int32_t z) {
   if (sample(layer, x, z) == kNowhere || !stands(world, layer, c, x, z)) return false;
   const AvatarClass& avatar = world.classes[c];
   const Plane plane = feet_plane(layer, x, z);
@@ -225,14 +228,14 @@ struct Tally {
 
 void expect_safe(const AssignedBlock& world, const std::string& what, Tally& tally) {
   for (size_t s = 0; s < world.tiles[4].size(); ++s) {
-    const Layer& layer = *world.tiles[4][s];
+    const bake::Layer& layer = *world.tiles[4][s];
     ++tally.layers;
     for (size_t c = 0; c < world.classes.size(); ++c) {
       const Verdict verdict = judge(world, s, c);
       tally.legal += count(verdict.legal);
       tally.rechecked += count(verdict.legal) - count(verdict.window);
-      for (int32_t z = 0; z < kTileSide; ++z) {
-        for (int32_t x = 0; x < kTileSide; ++x) {
+      for (int32_t z = 0; z < bake::kTileSide; ++z) {
+        for (int32_t x = 0; x < bake::kTileSide; ++x) {
           if (!has(verdict.legal, x, z)) continue;
           ASSERT_TRUE(stands(world, layer, c, x, z))
               << what << ": " << world.classes[c].name << " has no floor at " << x << " " << z;
@@ -305,7 +308,7 @@ TEST(Legality, OnASingleLayerTheWindowFindsExactlyWhatTheDefinitionSays) {
           for (naive::FreeSpan& free_span : plain.free_spans.at(x, z)) {
             const auto slab = static_cast<uint64_t>((z + 64) / 23 * 10 + (x + 64) / 17);
             if (random_unit(seed, 3, slab) > 0.4) continue;
-            free_span.ceiling = free_span.top + BodyLimits::kHighFreeSpan +
+            free_span.ceiling = free_span.top + bake::BodyLimits::kHighFreeSpan +
                                 static_cast<int32_t>(2000 * random_unit(seed, 4, slab));
           }
         }
@@ -319,12 +322,12 @@ TEST(Legality, OnASingleLayerTheWindowFindsExactlyWhatTheDefinitionSays) {
     }
     ASSERT_LE(plain.tiles[4].size(), 1u) << words(block);
     if (plain.tiles[4].empty()) continue;
-    const Layer& layer = *plain.tiles[4][0];
+    const bake::Layer& layer = *plain.tiles[4][0];
     for (size_t c = 0; c < plain.classes.size(); ++c) {
       const Verdict verdict = judge(plain, 0, c);
       legal += count(verdict.window);
-      for (int32_t z = 0; z < kTileSide; ++z) {
-        for (int32_t x = 0; x < kTileSide; ++x) {
+      for (int32_t z = 0; z < bake::kTileSide; ++z) {
+        for (int32_t x = 0; x < bake::kTileSide; ++x) {
           ASSERT_EQ(has(verdict.window, x, z), window_rule(plain, layer, c, x, z))
               << words(block) << " " << plain.classes[c].name << " at " << x << " " << z;
           if (has(verdict.window, x, z)) {
@@ -347,7 +350,7 @@ TEST(Legality, ABodyThatJustTouchesAColumnIsNotStoppedByIt) {
   // The radius is 3 cells: from the near side of a cell 3 cells away, a pillar is just touched.
   const AvatarClass avatar{.name = "a", .height = 1.8, .radius = 0.3};
   naive::SolidBlock solids = flat_block(0);
-  solids.at(30, 30).push_back({0, 2500, kNoSupport, 0});
+  solids.at(30, 30).push_back({0, 2500, bake::kNoSupport, 0});
   const AssignedBlock world(solids, {avatar}, 0.1);
   const Verdict verdict = judge(world, 0, 0);
   for (int32_t x = 27; x <= 33; ++x) EXPECT_FALSE(has(verdict.legal, x, 30)) << x;
@@ -377,7 +380,8 @@ TEST(Legality, EvenSlopesUpToTheClasssLimitAreLegalAllOver) {
       }
       const AssignedBlock world(solids, {adult}, 0.1);
       ASSERT_EQ(world.tiles[4].size(), 1u);
-      EXPECT_EQ(count(judge(world, 0, 0).legal), kTileArea) << degrees << " degrees, " << turn;
+      EXPECT_EQ(count(judge(world, 0, 0).legal), bake::kTileArea)
+          << degrees << " degrees, " << turn;
     }
   }
 }
@@ -395,7 +399,7 @@ TEST(Legality, WhatAllLegalPassesEveryCellPasses) {
     if (seed % 3 == 0) {  // A ceiling over one cell, too low for some or for all.
       const auto at = static_cast<size_t>(random_below(seed, 6, 0, solids.cells.size()));
       const auto room = 900 + static_cast<int32_t>(random_below(seed, 7, 0, 2500));
-      solids.cells[at].push_back({1000 + room, 1000 + room + 50, kNoSupport, 0});
+      solids.cells[at].push_back({1000 + room, 1000 + room + 50, bake::kNoSupport, 0});
     }
     if (seed % 2 == 0) {  // A neighbour that could block, or just not.
       const auto at = static_cast<size_t>(random_below(seed, 4, 0, solids.cells.size()));
@@ -403,13 +407,14 @@ TEST(Legality, WhatAllLegalPassesEveryCellPasses) {
     }
     const AssignedBlock world(solids, default_classes(), 0.1);
     for (size_t c = 0; c < world.classes.size(); ++c) {
-      if (!all_legal(world.around, 0, world.bodies[c], world.limits)) {
+      if (!bake::all_legal(world.around, 0, world.bodies[c], world.limits)) {
         ++stopped;
         continue;
       }
       ++passed;
-      for (int32_t i = static_cast<int32_t>(seed % 7); i < kTileArea; i += 7) {
-        ASSERT_TRUE(body_is_safe(world, *world.tiles[4][0], c, i % kTileSide, i / kTileSide))
+      for (int32_t i = static_cast<int32_t>(seed % 7); i < bake::kTileArea; i += 7) {
+        ASSERT_TRUE(
+            body_is_safe(world, *world.tiles[4][0], c, i % bake::kTileSide, i / bake::kTileSide))
             << "seed " << seed << " " << world.classes[c].name;
       }
     }
@@ -419,24 +424,24 @@ TEST(Legality, WhatAllLegalPassesEveryCellPasses) {
 }
 
 TEST(Legality, StepSafeIsTrueIffNoTwoLegalNeighboursDifferByMoreThanTheStep) {
-  const auto layer = std::make_unique<Layer>();
+  const auto layer = std::make_unique<bake::Layer>();
   int32_t safe = 0;
   for (uint64_t seed = 1; seed <= 400; ++seed) {
     const auto range = 1 + random_below(seed, 0, 0, 500);
-    BitPlane legal{};
-    for (size_t c = 0; c < kTileArea; ++c) {
+    bake::BitPlane legal{};
+    for (size_t c = 0; c < bake::kTileArea; ++c) {
       layer->feet[c] = static_cast<uint16_t>(4000 + random_below(seed, 1, c, range));
-      if (random_unit(seed, 2, c) < 0.02) layer->feet[c] = kNone16;
-      const bool stands = layer->feet[c] != kNone16 && random_unit(seed, 3, c) < 0.9;
+      if (random_unit(seed, 2, c) < 0.02) layer->feet[c] = bake::kNone16;
+      const bool stands = layer->feet[c] != bake::kNone16 && random_unit(seed, 3, c) < 0.9;
       legal[c / 64] |= static_cast<uint64_t>(stands) << (c % 64);
     }
     if (seed % 2 == 0) {  // One step that is too high, somewhere: also along the rim.
-      const size_t at = random_below(seed, 4, 0, kTileArea);
+      const size_t at = random_below(seed, 4, 0, bake::kTileArea);
       layer->feet[at] = static_cast<uint16_t>(5000 + range);
     }
     const auto step = static_cast<int32_t>(range) - 1 + static_cast<int32_t>(seed % 3) - 1;
     bool expected = true;
-    for (int32_t i = 0; i < kTileArea; ++i) {
+    for (int32_t i = 0; i < bake::kTileArea; ++i) {
       const int32_t x = i % 64, z = i / 64;
       if (!has(legal, x, z)) continue;
       for (const auto& [nx, nz] : {std::pair{x + 1, z}, {x, z + 1}}) {
@@ -446,20 +451,21 @@ TEST(Legality, StepSafeIsTrueIffNoTwoLegalNeighboursDifferByMoreThanTheStep) {
       }
     }
     safe += expected ? 1 : 0;
-    ASSERT_EQ(step_safe(*layer, legal, step), expected) << "seed " << seed;
+    ASSERT_EQ(bake::step_safe(*layer, legal, step), expected) << "seed " << seed;
   }
   // Each pair of neighbours alone.
-  for (int32_t i = 0; i < kTileArea; ++i) {
+  for (int32_t i = 0; i < bake::kTileArea; ++i) {
     const int32_t x = i % 64, z = i / 64;
     for (const auto& [nx, nz] : {std::pair{x + 1, z}, {x, z + 1}}) {
       if (nx > kLast || nz > kLast) continue;
       layer->feet.fill(4000);
       layer->feet[static_cast<size_t>(i)] = 4300;
-      BitPlane legal{};
+      bake::BitPlane legal{};
       legal[static_cast<size_t>(z)] |= uint64_t{1} << x;
       legal[static_cast<size_t>(nz)] |= uint64_t{1} << nx;
-      ASSERT_TRUE(step_safe(*layer, legal, 300)) << x << " " << z;
-      ASSERT_FALSE(step_safe(*layer, legal, 299)) << x << " " << z << " to " << nx << " " << nz;
+      ASSERT_TRUE(bake::step_safe(*layer, legal, 300)) << x << " " << z;
+      ASSERT_FALSE(bake::step_safe(*layer, legal, 299))
+          << x << " " << z << " to " << nx << " " << nz;
     }
   }
   EXPECT_GT(safe, 50);
@@ -475,7 +481,7 @@ TEST(Legality, ATallBodyUnderAFarCeilingOfATallTileKeepsItsHead) {
     for (int32_t x = -64; x < 128; ++x) {
       const int32_t floor = std::clamp(x, 0, 60) * 900;
       solids.at(x, z).push_back({floor - 500, floor, floor, 0});
-      if (x > 56) solids.at(x, z).push_back({floor + 12000, floor + 12500, kNoSupport, 0});
+      if (x > 56) solids.at(x, z).push_back({floor + 12000, floor + 12500, bake::kNoSupport, 0});
     }
   }
   Tally tally;
@@ -492,7 +498,8 @@ TEST(Legality, ABodyThatStepsFarDownDoesNotStepOverADeeperEdge) {
       for (int32_t x = 64; x < 128; ++x) {
         solids.at(x, z)[0] = {-drop - 500, -drop, -drop, 0};
         // A second floor there, so that its layers are chosen line by line.
-        if (drop == 40000) solids.at(x, z).push_back({-drop - 61000, -drop - 60500, kNoSupport, 0});
+        if (drop == 40000)
+          solids.at(x, z).push_back({-drop - 61000, -drop - 60500, bake::kNoSupport, 0});
       }
     }
     Tally tally;
@@ -516,7 +523,8 @@ TEST(Legality, SameBitsForEverySimdWidth) {
         for (size_t c = 0; c < world.classes.size(); ++c) {
           const Verdict verdict = judge(world, s, c);
           hash = hash_span(std::span<const uint64_t>(verdict.legal), hash);
-          const bool safe = step_safe(*world.tiles[4][s], verdict.legal, world.bodies[c].step);
+          const bool safe =
+              bake::step_safe(*world.tiles[4][s], verdict.legal, world.bodies[c].step);
           hash = hash_bytes(&safe, sizeof safe, hash);
         }
       }

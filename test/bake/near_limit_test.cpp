@@ -104,24 +104,25 @@ struct Soup {
     const auto classes = default_classes();
     codes.codes = {{0, kAreaWalkable}, {1, kAreaBlocked}};
     codes.allowed = {15, 0};
-    limits = body_limits(classes, codes, 0.1);
-    body = body_window(classes[kWheelchair], kWheelchair, 0.1);
+    limits = bake::body_limits(classes, codes, 0.1);
+    body = bake::body_window(classes[kWheelchair], kWheelchair, 0.1);
     for (uint64_t n = 0; n < 260; ++n) triangles.push_back(make(seed, n));
-    bins = bin_triangles(triangles, -kTileSide, -kTileSide, 3, 3, kTileSide, 0);
+    bins = bake::bin_triangles(triangles, -bake::kTileSide, -bake::kTileSide, 3, 3, bake::kTileSide,
+                               0);
     for (size_t i = 0; i < 9; ++i) {
       const auto n = static_cast<int32_t>(i);
       const auto items =
           std::span(bins.items).subspan(bins.first[i], bins.first[i + 1] - bins.first[i]);
-      TileColumns columns;
-      TileFreeSpans free_spans, high;
-      rasterise_tile(triangles, items, (n % 3 - 1) * kTileSide, (n / 3 - 1) * kTileSide, {},
-                     limits.min_free_span - 1, columns);
-      find_free_spans(columns, limits.min_free_span, free_spans);
-      find_free_spans(columns, BodyLimits::kHighFreeSpan, high);
-      lend_supports(free_spans);
-      assign_free_spans({.high = high, .all = &free_spans}, limits, pool, tiles[i]);
+      bake::TileColumns columns;
+      bake::TileFreeSpans free_spans, high;
+      bake::rasterise_tile(triangles, items, (n % 3 - 1) * bake::kTileSide,
+                           (n / 3 - 1) * bake::kTileSide, {}, limits.min_free_span - 1, columns);
+      bake::find_free_spans(columns, limits.min_free_span, free_spans);
+      bake::find_free_spans(columns, bake::BodyLimits::kHighFreeSpan, high);
+      bake::lend_supports(free_spans);
+      bake::assign_free_spans({.high = high, .all = &free_spans}, limits, pool, tiles[i]);
       for (const auto& layer : tiles[i]) {
-        find_useful(limits, *layer);
+        bake::find_useful(limits, *layer);
         lists[i].add(layer.get());
       }
       around[i] = &lists[i];
@@ -131,7 +132,7 @@ struct Soup {
   }
 
   // Ground in large triangles, patches of it, slivers, upright ones and far ones.
-  static CellTriangle make(uint64_t seed, uint64_t n) {
+  static bake::CellTriangle make(uint64_t seed, uint64_t n) {
     const uint64_t kind = n < 8 ? 0 : random_below(seed, 1, n, 5);
     const double size = std::array{300.0, 40.0, 3.0, 12.0, 0.6}[kind];
     const double rise = kind == 3 ? 100 : (kind == 4 ? 30 : 0.02 * size * 10);
@@ -147,7 +148,7 @@ struct Soup {
       if (n % 7 == 0) p[i].x = std::floor(p[i].x);
     }
     std::sort(p.begin(), p.end(), [](const Vec3d& a, const Vec3d& b) { return a.z < b.z; });
-    CellTriangle t;
+    bake::CellTriangle t;
     for (size_t i = 0; i < 3; ++i) t.x[i] = p[i].x, t.y[i] = p[i].y, t.z[i] = p[i].z;
     t.low = static_cast<int32_t>(std::floor(std::min({p[0].y, p[1].y, p[2].y})));
     t.high = static_cast<int32_t>(std::ceil(std::max({p[0].y, p[1].y, p[2].y})));
@@ -155,34 +156,34 @@ struct Soup {
     return t;
   }
 
-  SurfaceCodes codes;
-  BodyLimits limits;
-  BodyWindow body;
-  std::vector<CellTriangle> triangles;
-  TriangleBins bins;
-  LayerPool pool;
-  std::array<TileLayers, 9> tiles;
-  std::array<LayerList, 9> lists;
-  Neighbourhood around{};
-  TileTriangles of_tiles;
+  bake::SurfaceCodes codes;
+  bake::BodyLimits limits;
+  bake::BodyWindow body;
+  std::vector<bake::CellTriangle> triangles;
+  bake::TriangleBins bins;
+  bake::LayerPool pool;
+  std::array<bake::TileLayers, 9> tiles;
+  std::array<bake::LayerList, 9> lists;
+  bake::Neighbourhood around{};
+  bake::TileTriangles of_tiles;
 };
 
 TEST(SurfacePlanes, NoSolidBelowTheFreeSpanIsAboveThePlaneByMoreThanTheExcess) {
   int64_t points = 0, planes = 0, raised = 0;
   for (uint64_t seed = 1; seed <= 60; ++seed) {
     const Soup soup(seed);
-    BitPlane asked;
-    for (size_t z = 0; z < kTileSide; ++z) {
+    bake::BitPlane asked;
+    for (size_t z = 0; z < bake::kTileSide; ++z) {
       asked[z] = seed % 3 != 0 ? ~uint64_t{0} : (z % 9 < 5 ? random_u64(seed, 5, z) : 0);
     }
-    CellPlanes planes_of;
-    LayerWindow window;
+    bake::CellPlanes planes_of;
+    bake::LayerWindow window;
     for (size_t s = 0; s < soup.tiles[4].size(); ++s) {
       const int32_t base = soup.tiles[4][s]->base;
       window.assemble(soup.around, s, soup.body.reach, soup.limits);
-      find_surface_planes(window, base, asked, soup.body, soup.of_tiles, planes_of);
+      bake::find_surface_planes(window, base, asked, soup.body, soup.of_tiles, planes_of);
       for (uint64_t n = 0; n < soup.triangles.size(); ++n) {
-        const CellTriangle& t = soup.triangles[n];
+        const bake::CellTriangle& t = soup.triangles[n];
         for (uint64_t k = 0; k < 300; ++k) {
           // Inside, on sides and at corners.
           double a = random_unit(seed + s, 6 + n, 2 * k),
@@ -196,10 +197,10 @@ TEST(SurfacePlanes, NoSolidBelowTheFreeSpanIsAboveThePlaneByMoreThanTheExcess) {
           const double z = t.z[0] + a * (t.z[1] - t.z[0]) + b * (t.z[2] - t.z[0]);
           const auto cx = static_cast<int32_t>(std::floor(x));
           const auto cz = static_cast<int32_t>(std::floor(z));
-          if (cx < 0 || cz < 0 || cx >= kTileSide || cz >= kTileSide) continue;
+          if (cx < 0 || cz < 0 || cx >= bake::kTileSide || cz >= bake::kTileSide) continue;
           if ((asked[static_cast<size_t>(cz)] >> cx & 1) == 0) continue;
           const size_t i = window.index(cx, cz);
-          if (window.top[i] == kNone16 || y > window.top[i]) continue;
+          if (window.top[i] == bake::kNone16 || y > window.top[i]) continue;
           ++points;
           planes += planes_of.excess[i] >= 0;
           raised += planes_of.excess[i] > 1;

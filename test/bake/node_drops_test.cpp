@@ -82,15 +82,15 @@ Nodes make(const World& world, const Scene& scene, NodeConfig config = {}) {
 
 // Every cell against every other, by the world's own moves and by bodies every few millimetres of
 // the move: it uses nothing of the bake but the world.
-std::map<std::pair<DropEnd, DropEnd>, uint16_t> plain_drops(const World& world,
-                                                            const Scene& scene) {
+std::map<std::pair<bake::DropEnd, bake::DropEnd>, uint16_t> plain_drops(const World& world,
+                                                                        const Scene& scene) {
   struct Standing {
-    DropEnd end;
+    bake::DropEnd end;
     Place place;
   };
   const WorldSummary summary = world.summary();
   const verify::TriangleTree tree(scene, 1);
-  std::map<std::pair<DropEnd, DropEnd>, uint16_t> drops;
+  std::map<std::pair<bake::DropEnd, bake::DropEnd>, uint16_t> drops;
   for (size_t c = 0; c < summary.classes.size(); ++c) {
     const AvatarClass& avatar = summary.classes[c];
     const auto id = static_cast<int32_t>(c);
@@ -135,7 +135,7 @@ std::map<std::pair<DropEnd, DropEnd>, uint16_t> plain_drops(const World& world,
       }
       return true;
     };
-    const double reach = 2 * avatar.radius + kDropCells * summary.cell;
+    const double reach = 2 * avatar.radius + bake::kDropCells * summary.cell;
     for (const Standing& from : all) {
       if (!is_edge(from.place)) continue;
       const Vec3d a = from.place.position;
@@ -167,22 +167,22 @@ std::map<std::pair<DropEnd, DropEnd>, uint16_t> plain_drops(const World& world,
 TEST(NodeDrops, AreThoseOfAPlainSearchOverAllPairs) {
   const auto check = [](const char* name, const Scene& scene, double cell) {
     const World world = bake(scene, cell, divers());
-    const TriangleSquares triangles(scene, 1);
+    const bake::TriangleSquares triangles(scene, 1);
     const auto plain = plain_drops(world, scene);
     for (const int32_t workers : {1, 3}) {
-      std::map<std::pair<DropEnd, DropEnd>, uint16_t> found;
+      std::map<std::pair<bake::DropEnd, bake::DropEnd>, uint16_t> found;
       std::vector<uint32_t> levels(world.level_tile_count());
       std::iota(levels.begin(), levels.end(), 0u);
-      const auto drops = find_drops({.links = {.triangles = &triangles,
-                                               .world = &world,
-                                               .classes = world.summary().classes,
-                                               .cells = {},
-                                               .size = 1},
-                                     .edges = {},
-                                     .tiles = true,
-                                     .levels = levels},
-                                    workers);
-      for (const NodeDrop& drop : drops) found[{drop.from, drop.to}] |= drop.classes;
+      const auto drops = bake::find_drops({.links = {.triangles = &triangles,
+                                                     .world = &world,
+                                                     .classes = world.summary().classes,
+                                                     .cells = {},
+                                                     .size = 1},
+                                           .edges = {},
+                                           .tiles = true,
+                                           .levels = levels},
+                                          workers);
+      for (const bake::NodeDrop& drop : drops) found[{drop.from, drop.to}] |= drop.classes;
       EXPECT_EQ(found.size(), drops.size()) << name;
       EXPECT_GT(found.size(), 20u) << name;
       EXPECT_TRUE(found == plain) << name << ": " << found.size() << " and " << plain.size();
@@ -315,10 +315,10 @@ TEST(NodeDrops, AreStoredByAWorldAndItsNodes) {
   EXPECT_GT(drops, 10u);
   // A class that does not drop is stored as before.
   const std::vector<AvatarClass> plain = default_classes();
-  const auto manifest = write_manifest(*data_of(bake(scene, 0.2, plain)));
+  const auto manifest = world::write_manifest(*data_of(bake(scene, 0.2, plain)));
   std::vector<AvatarClass> changed = plain;
   changed[0].max_drop = 2;
-  EXPECT_GT(write_manifest(*data_of(bake(scene, 0.2, changed))).size(), manifest.size());
+  EXPECT_GT(world::write_manifest(*data_of(bake(scene, 0.2, changed))).size(), manifest.size());
 }
 
 }  // namespace

@@ -37,11 +37,12 @@ class Naive {
       : scene_(scene), classes_(classes), bins_(bins) {}
 
   // Heights as promised, and the classes that no triangle stops, whatever the inclination.
-  Promise judge(const SurfaceBound& along, const SurfaceBound& upright) const {
-    Promise promise;
-    for (const PatchBody& body : patch_bodies(classes_)) {
-      const SurfaceBound& surface = body.climbs ? along : upright;
-      if (entry(surface.frame, sweep_of(surface, body)) == kNever) promise.classes |= body.bit;
+  graph::Promise judge(const bake::SurfaceBound& along, const bake::SurfaceBound& upright) const {
+    graph::Promise promise;
+    for (const bake::PatchBody& body : bake::patch_bodies(classes_)) {
+      const bake::SurfaceBound& surface = body.climbs ? along : upright;
+      if (entry(surface.frame, bake::sweep_of(surface, body)) == kNever)
+        promise.classes |= body.bit;
     }
     promise.height = height(along);
     promise.headroom = height(upright);
@@ -49,37 +50,38 @@ class Naive {
   }
 
   // Patches but `beside` that come into the surface.
-  void add_makers(const SurfaceBound& along, const std::set<uint32_t>& beside,
+  void add_makers(const bake::SurfaceBound& along, const std::set<uint32_t>& beside,
                   std::set<uint32_t>& makers) const {
-    const BodySweep sweep{along.radius, along.low, along.high};
+    const bake::BodySweep sweep{along.radius, along.low, along.high};
     for (size_t t = 0; t < scene_.triangles.size(); ++t) {
       const uint32_t patch = scene_.patch_of_triangle[t];
       if (patch == kNoPatch || beside.contains(patch)) continue;
-      if (lowest_entry(local(along.frame, t), sweep) < kNever) makers.insert(patch);
+      if (bake::lowest_entry(local(along.frame, t), sweep) < kNever) makers.insert(patch);
     }
   }
 
  private:
-  LocalTriangle local(const BodyFrame& frame, size_t triangle) const {
-    LocalTriangle corners;
+  bake::LocalTriangle local(const bake::BodyFrame& frame, size_t triangle) const {
+    bake::LocalTriangle corners;
     for (size_t i = 0; i < 3; ++i) {
       corners[i] = frame.local(scene_.positions[scene_.triangles[triangle][i]]);
     }
     return corners;
   }
 
-  double entry(const BodyFrame& frame, const BodySweep& sweep) const {
+  double entry(const bake::BodyFrame& frame, const bake::BodySweep& sweep) const {
     double lowest = kNever;
     for (size_t t = 0; t < scene_.triangles.size(); ++t) {
-      lowest = std::min(lowest, lowest_entry(local(frame, t), sweep));
+      lowest = std::min(lowest, bake::lowest_entry(local(frame, t), sweep));
     }
     return lowest;
   }
 
-  uint8_t height(const SurfaceBound& surface) const {
+  uint8_t height(const bake::SurfaceBound& surface) const {
     const double tallest = bins_.height.back();
     double bottom = 0;
-    for (const PatchBody& body : patch_bodies(classes_)) bottom = std::max(bottom, body.bottom);
+    for (const bake::PatchBody& body : bake::patch_bodies(classes_))
+      bottom = std::max(bottom, body.bottom);
     const double free =
         entry(surface.frame, {surface.radius + tallest * surface.sine,
                               surface.low + bottom * surface.cosine, surface.high + tallest});
@@ -120,7 +122,7 @@ std::vector<AvatarClass> four_classes() {
 // others.
 TEST(PatchCells, PromiseWhatATestOfEveryTriangleOfTheSceneFinds) {
   const std::vector<AvatarClass> classes = four_classes();
-  const NodeBins bins = make_bins(classes);
+  const NodeBins bins = graph::make_bins(classes);
   size_t stopped = 0, stands = 0, low = 0, made = 0;
   for (const bool rocks : {false, true}) {
     Scene scene = rocks ? test::builtin({.name = "landscape", .size = 64})
@@ -128,37 +130,38 @@ TEST(PatchCells, PromiseWhatATestOfEveryTriangleOfTheSceneFinds) {
     scene.patch_part.clear();
     scene.patch_off.clear();
     ASSERT_GT(scene.patches.size(), 0u);
-    const TriangleSquares triangles(scene, 1);
+    const bake::TriangleSquares triangles(scene, 1);
     const Naive naive(scene, classes, bins);
-    PatchJudge judge(triangles, classes, bins, 1.5);
+    bake::PatchJudge judge(triangles, classes, bins, 1.5);
     // The landscape's rocks come last: few cells each, and all pierce the ground.
     for (uint32_t p = rocks ? 22 : 0; p < scene.patches.size(); p += 2) {
-      const BezierCells cells = judge.judge(p);
+      const bake::BezierCells cells = judge.judge(p);
       const auto around = beside(scene.patches, p);
       std::set<uint32_t> makers;
       for (int32_t t = 0; t < cells.promise.side(); ++t) {
         for (int32_t s = 0; s < cells.promise.side(); ++s) {
           const BezierPatch part = cell_of(scene.patches.patches[p], cells.promise.depth, s, t);
-          const Promise& found = cells.promise.cells[cells.promise.index(s, t)];
-          const auto along = bound_surface(part);
+          const graph::Promise& found = cells.promise.cells[cells.promise.index(s, t)];
+          const auto along = bake::bound_surface(part);
           if (!along) {
             EXPECT_EQ(found.classes, 0);
             continue;
           }
           naive.add_makers(*along, around, makers);
           if ((s + t + static_cast<int32_t>(p)) % 3 != 0) continue;  // The rest takes long.
-          const SurfaceBound upright = upright_bound(part, *along);
-          const Promise expected = naive.judge(*along, upright);
+          const bake::SurfaceBound upright = bake::upright_bound(part, *along);
+          const graph::Promise expected = naive.judge(*along, upright);
           EXPECT_EQ(found.height, expected.height);
-          const double steepest = std::max(along->steepest_cosine(), steepest_cosine(part, *along));
+          const double steepest =
+              std::max(along->steepest_cosine(), bake::steepest_cosine(part, *along));
           double walked = 1;
-          for (const PatchBody& body : patch_bodies(classes)) {
+          for (const bake::PatchBody& body : bake::patch_bodies(classes)) {
             if (!body.climbs) walked = std::min(walked, body.steepest);
           }
           const bool leans = along->frame.up.y <= along->sine || steepest < walked;
           EXPECT_EQ(found.headroom, leans ? 0 : expected.headroom);
           uint16_t allowed = 0;  // by inclination
-          for (const PatchBody& body : patch_bodies(classes)) {
+          for (const bake::PatchBody& body : bake::patch_bodies(classes)) {
             if (steepest >= body.steepest && (body.climbs || !leans)) allowed |= body.bit;
           }
           EXPECT_EQ(found.classes, expected.classes & allowed);
@@ -181,8 +184,8 @@ TEST(PatchCells, PromiseWhatATestOfEveryTriangleOfTheSceneFinds) {
 // on them meets any triangle of the scene.
 TEST(PatchCells, NoBodyMeetsTheGroundThatItWasNotTestedAgainst) {
   const std::vector<AvatarClass> classes = four_classes();
-  const std::vector<PatchBody> bodies = patch_bodies(classes);
-  const NodeBins bins = make_bins(classes);
+  const std::vector<bake::PatchBody> bodies = bake::patch_bodies(classes);
+  const NodeBins bins = graph::make_bins(classes);
   size_t posed = 0, more = 0, entered = 0;
   for (uint64_t seed = 1; seed <= 8; ++seed) {
     const bool rocks = seed > 6;
@@ -195,16 +198,16 @@ TEST(PatchCells, NoBodyMeetsTheGroundThatItWasNotTestedAgainst) {
     Scene blind = scene;
     blind.patch_part.clear();
     blind.patch_off.clear();
-    const TriangleSquares triangles(scene, 1), without(blind, 1);
+    const bake::TriangleSquares triangles(scene, 1), without(blind, 1);
     const verify::TriangleTree tree(scene, 1);
-    PatchJudge judge(triangles, classes, bins, 1), strict(without, classes, bins, 1);
+    bake::PatchJudge judge(triangles, classes, bins, 1), strict(without, classes, bins, 1);
     for (uint32_t p = 0; p < scene.patches.size(); ++p) {
-      const BezierCells cells = judge.judge(p), least = strict.judge(p);
+      const bake::BezierCells cells = judge.judge(p), least = strict.judge(p);
       EXPECT_EQ(cells.makers, least.makers);
       const double side = cells.promise.side();
       for (size_t i = 0; i < cells.promise.cells.size(); ++i) {
-        const Promise& found = cells.promise.cells[i];
-        const Promise& expected = least.promise.cells[i];
+        const graph::Promise& found = cells.promise.cells[i];
+        const graph::Promise& expected = least.promise.cells[i];
         ASSERT_EQ(found.classes & expected.classes, expected.classes);
         ASSERT_EQ(found.inclination, expected.inclination);
         ASSERT_GE(found.height, expected.height);
@@ -244,9 +247,9 @@ TEST(PatchCells, APatchInTheSurfaceIsAMakerThoughItLiesBelowAllBodies) {
   }
   const Scene scene = test::patch_scene(set);
   const std::vector<AvatarClass> classes{{.name = "adult"}};
-  const NodeBins bins = make_bins(classes);
-  const TriangleSquares triangles(scene, 1);
-  PatchJudge judge(triangles, classes, bins, 1);
+  const NodeBins bins = graph::make_bins(classes);
+  const bake::TriangleSquares triangles(scene, 1);
+  bake::PatchJudge judge(triangles, classes, bins, 1);
   EXPECT_EQ(judge.judge(0).makers, std::vector<uint32_t>{1});
   EXPECT_EQ(judge.judge(1).makers, std::vector<uint32_t>{0});
 }

@@ -29,8 +29,8 @@ TEST(SelfSupport, NoTriangleRisesAboveTheBound) {
       const BezierPatch& patch = scene.patches.patches[p];
       const auto from_s = static_cast<uint8_t>(random_below(seed, p, 0, 4) * 64);
       const auto from_t = static_cast<uint8_t>(random_below(seed, p, 1, 4) * 64);
-      const SelfSupport own(patch, {from_s, static_cast<uint8_t>(from_s + 63), from_t,
-                                    static_cast<uint8_t>(from_t + 63)});
+      const bake::SelfSupport own(patch, {from_s, static_cast<uint8_t>(from_s + 63), from_t,
+                                          static_cast<uint8_t>(from_t + 63)});
       int32_t span_s = 0, span_t = 0;
       for (size_t t = 0; t < scene.triangles.size(); ++t) {
         const PatchPart& part = scene.patch_part[t];
@@ -80,10 +80,10 @@ TEST(SelfSupport, NothingIsKnownOfWhatFolds) {
     const double s = static_cast<double>(k % 4), t = static_cast<double>(k / 4);
     patch.points[k] = {s < 2 ? 4 * s : 4 * (3 - s), s, t};
   }
-  const SelfSupport own(patch, {0, 255, 0, 255});
+  const bake::SelfSupport own(patch, {0, 255, 0, 255});
   EXPECT_FALSE(std::isfinite(own.rise(true, 0.3, 0.01)));
   EXPECT_FALSE(std::isfinite(own.rise(false, 0.3, 0.01)));
-  const SelfSupport lower(patch, {0, 15, 0, 255});
+  const bake::SelfSupport lower(patch, {0, 15, 0, 255});
   EXPECT_TRUE(std::isfinite(lower.rise(false, 0.3, 0.01)));
 }
 

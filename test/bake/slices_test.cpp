@@ -63,27 +63,30 @@ Ints kept_heights(const SliceSet& set) {
 naive::Columns rasterised(const Scene& scene, double cell) {
   Box3d box;
   for (const Vec3d& p : scene.positions) box.add(p);
-  const Grid grid = make_grid(box, cell, 0);
-  std::vector<CellTriangle> triangles;
+  const bake::Grid grid = bake::make_grid(box, cell, 0);
+  std::vector<bake::CellTriangle> triangles;
   for (uint32_t t = 0; t < scene.triangles.size(); ++t) {
-    triangles.push_back(to_cell_triangle(scene, t, grid, 0));
+    triangles.push_back(bake::to_cell_triangle(scene, t, grid, 0));
   }
-  const auto bins = bin_triangles(triangles, 0, 0, grid.tiles_x(), grid.tiles_z(), kTileSide, 0);
+  const auto bins =
+      bake::bin_triangles(triangles, 0, 0, grid.tiles_x(), grid.tiles_z(), bake::kTileSide, 0);
   const int32_t low = naive::floor_mm(box.min.y), high = naive::ceil_mm(box.max.y);
   std::vector<std::vector<std::pair<int32_t, int32_t>>> cells(
       static_cast<size_t>(grid.width * grid.depth));
-  auto columns = std::make_unique<TileColumns>();
+  auto columns = std::make_unique<bake::TileColumns>();
   for (int32_t tz = 0; tz < grid.tiles_z(); ++tz) {
     for (int32_t tx = 0; tx < grid.tiles_x(); ++tx) {
       const auto square = static_cast<size_t>(tz * grid.tiles_x() + tx);
       const auto items =
           std::span(bins.items)
               .subspan(bins.first[square], bins.first[square + 1] - bins.first[square]);
-      rasterise_tile(triangles, items, tx * kTileSide, tz * kTileSide, {}, 0, *columns);
-      TileSpans spans;
-      sort_spans(*columns, spans);
-      for (int32_t c = 0; c < kTileArea; ++c) {
-        const int32_t x = tx * kTileSide + c % kTileSide, z = tz * kTileSide + c / kTileSide;
+      bake::rasterise_tile(triangles, items, tx * bake::kTileSide, tz * bake::kTileSide, {}, 0,
+                           *columns);
+      bake::TileSpans spans;
+      bake::sort_spans(*columns, spans);
+      for (int32_t c = 0; c < bake::kTileArea; ++c) {
+        const int32_t x = tx * bake::kTileSide + c % bake::kTileSide,
+                      z = tz * bake::kTileSide + c / bake::kTileSide;
         if (x >= grid.width || z >= grid.depth) continue;
         for (uint32_t i = spans.first[static_cast<size_t>(c)];
              i < spans.first[static_cast<size_t>(c) + 1]; ++i) {

@@ -31,14 +31,14 @@ std::vector<BezierPatch> patches(size_t count) {
   return all;
 }
 
-PatchParts side_by_side(const std::vector<BezierPatch>& patches) {
-  PatchParts parts;
+bake::PatchParts side_by_side(const std::vector<BezierPatch>& patches) {
+  bake::PatchParts parts;
   parts.resize(patches.size());
   for (size_t p = 0; p < patches.size(); ++p) parts.set(p, patches[p]);
   return parts;
 }
 
-void expect_same(const SurfaceBound& a, const SurfaceBound& b) {
+void expect_same(const bake::SurfaceBound& a, const bake::SurfaceBound& b) {
   EXPECT_EQ(a.frame.centre, b.frame.centre);
   EXPECT_EQ(a.frame.side, b.frame.side);
   EXPECT_EQ(a.frame.front, b.frame.front);
@@ -55,16 +55,16 @@ TEST(SurfaceBound, ManyAtOnceHaveTheSameBitsAsOneByOne) {
   test::for_every_simd_target([](const char* target) {
     SCOPED_TRACE(target);
     const std::vector<BezierPatch> parts = patches(1003);
-    std::vector<CellBounds> bounds(parts.size());
-    bound_cells_of(side_by_side(parts), bounds);
+    std::vector<bake::CellBounds> bounds(parts.size());
+    bake::bound_cells_of(side_by_side(parts), bounds);
     size_t valid = 0;
     for (size_t p = 0; p < parts.size(); ++p) {
-      const auto along = bound_surface(parts[p]);
+      const auto along = bake::bound_surface(parts[p]);
       ASSERT_EQ(bounds[p].valid, along.has_value()) << p;
       if (!along) continue;
       ++valid;
       expect_same(bounds[p].along, *along);
-      expect_same(bounds[p].upright, upright_bound(parts[p], *along));
+      expect_same(bounds[p].upright, bake::upright_bound(parts[p], *along));
     }
     EXPECT_GT(valid, 300u);
     EXPECT_LT(valid, 950u);
@@ -76,8 +76,8 @@ TEST(SurfaceBound, QuartersOfManyHaveTheSameBitsAsHalvesOfHalves) {
     SCOPED_TRACE(target);
     for (const size_t count : {1u, 4u, 7u, 203u}) {
       const std::vector<BezierPatch> whole = patches(count);
-      PatchParts quarters;
-      quarter_parts(side_by_side(whole), quarters);
+      bake::PatchParts quarters;
+      bake::quarter_parts(side_by_side(whole), quarters);
       ASSERT_EQ(quarters.count, 4 * count);
       for (size_t p = 0; p < count; ++p) {
         for (size_t i = 0; i < 2; ++i) {

@@ -30,19 +30,19 @@ struct Dice {
 // A body somewhere near the origin, and triangles of all sizes around it: slivers, points, and such
 // as touch the body's lid or bottom as closely as numbers go.
 struct Case {
-  BodyFrame frame;
-  std::vector<FilterTube> tubes;
-  std::vector<LocalTriangle> triangles;  // in the world
-  FilterQuery question;
+  bake::BodyFrame frame;
+  std::vector<bake::FilterTube> tubes;
+  std::vector<bake::LocalTriangle> triangles;  // in the world
+  bake::FilterQuery question;
 
   explicit Case(Dice& dice) {
     Vec3d up = dice.point(1);
     if (length(up) < 0.1 || dice.between(0, 1) < 0.3) up = {0, 1, 0};
-    frame = BodyFrame::around(dice.point(5), up * (1 / length(up)));
-    BodySweep all{.radius = 0, .low = kNever, .high = -kNever};
+    frame = bake::BodyFrame::around(dice.point(5), up * (1 / length(up)));
+    bake::BodySweep all{.radius = 0, .low = kNever, .high = -kNever};
     for (int i = 0; i < 4; ++i) {
       const double low = dice.between(-0.5, 1);
-      const BodySweep body{dice.between(0.1, 1.5), low, low + dice.between(0.1, 2)};
+      const bake::BodySweep body{dice.between(0.1, 1.5), low, low + dice.between(0.1, 2)};
       all = {std::max(all.radius, body.radius), std::min(all.low, body.low),
              std::max(all.high, body.high)};
       tubes.push_back({body, body});
@@ -52,10 +52,10 @@ struct Case {
     for (int i = 0; i < 37; ++i) {
       const double size = std::pow(10, dice.between(-3, 1.5));
       Vec3d at = dice.point(2.5);
-      const BodySweep& body = tubes[static_cast<size_t>(dice.between(0, 4))].whole;
+      const bake::BodySweep& body = tubes[static_cast<size_t>(dice.between(0, 4))].whole;
       const double kind = dice.between(0, 1);
       if (kind < 0.2) at.z = kind < 0.1 ? body.high : body.low;
-      LocalTriangle local{at, at + dice.point(size), at + dice.point(size)};
+      bake::LocalTriangle local{at, at + dice.point(size), at + dice.point(size)};
       if (kind < 0.2) {
         for (Vec3d& p : local) p.z = at.z + dice.between(-1e-7, 1e-7);
       } else if (kind < 0.3) {
@@ -72,10 +72,10 @@ struct Case {
     }
   }
 
-  [[nodiscard]] bool enters(size_t triangle, const BodySweep& body) const {
-    LocalTriangle local = triangles[triangle];
+  [[nodiscard]] bool enters(size_t triangle, const bake::BodySweep& body) const {
+    bake::LocalTriangle local = triangles[triangle];
     for (Vec3d& p : local) p = frame.local(p);
-    return lowest_entry(local, body) < kNever;
+    return bake::lowest_entry(local, body) < kNever;
   }
 };
 
@@ -83,17 +83,17 @@ TEST(TriangleFilter, LosesNoTriangleThatEntersAndAnswersOnlyWhatIsSo) {
   test::for_every_simd_target([](const char* target) {
     SCOPED_TRACE(target);
     Dice dice{.seed = 3};
-    FilterHits hits;
+    bake::FilterHits hits;
     size_t answers = 0, kept = 0, entered = 0;
     for (int round = 0; round < 3000; ++round) {
       const Case c(dice);
-      FilterList list;
+      bake::FilterList list;
       list.clear(c.frame.centre + dice.point(20));
       for (size_t i = 0; i < c.triangles.size(); ++i) {
         list.add(static_cast<uint32_t>(i), c.triangles[i]);
       }
       list.close();
-      const uint32_t answered = filter(list, c.question, hits);
+      const uint32_t answered = bake::filter(list, c.question, hits);
       const bool all = answered == (1u << c.tubes.size()) - 1;
       kept += hits.count;
       for (size_t b = 0; b < c.tubes.size(); ++b) {
@@ -125,17 +125,18 @@ TEST(TriangleFilter, AGlanceOverlooksNoTubeThatATriangleEnters) {
     size_t met = 0, entered = 0, passed = 0;
     for (int round = 0; round < 3000; ++round) {
       const Case c(dice);
-      FilterList list;
+      bake::FilterList list;
       list.clear(c.frame.centre + dice.point(20));
       const size_t few = 1 + static_cast<size_t>(round) % 20;  // else hardly a tube stays empty
       for (size_t i = 0; i < few; ++i) list.add(static_cast<uint32_t>(i), c.triangles[i]);
       list.close();
-      std::vector<BodySweep> tubes;
-      for (const FilterTube& tube : c.tubes) tubes.push_back(tube.whole);
+      std::vector<bake::BodySweep> tubes;
+      for (const bake::FilterTube& tube : c.tubes) tubes.push_back(tube.whole);
       const uint32_t all = (1u << tubes.size()) - 1, some = static_cast<uint32_t>(round) & all;
-      const uint32_t found = glance(list, c.frame, tubes, all);
+      const uint32_t found = bake::glance(list, c.frame, tubes, all);
       // Others may grow the margin, but a tube that is not queried gets no answer.
-      ASSERT_EQ(glance(list, c.frame, tubes, some) & ~(found & some), 0u) << "round " << round;
+      ASSERT_EQ(bake::glance(list, c.frame, tubes, some) & ~(found & some), 0u)
+          << "round " << round;
       for (size_t b = 0; b < tubes.size(); ++b) {
         bool enters = false;
         for (size_t i = 0; i < few; ++i) enters |= c.enters(i, tubes[b]);
@@ -159,19 +160,20 @@ TEST(TriangleFilter, WhatSurelyEntersAnUprightTubeDoesSo) {
     for (int round = 0; round < 3000; ++round) {
       const Case c(dice);
       if (c.frame.up.y != 1) continue;
-      FilterList list;
+      bake::FilterList list;
       list.clear(c.frame.centre + dice.point(20));
       const size_t few = 1 + static_cast<size_t>(round) % 20;
       for (size_t i = 0; i < few; ++i) list.add(static_cast<uint32_t>(i), c.triangles[i]);
       list.close();
-      for (const FilterTube& tube : c.tubes) {
+      for (const bake::FilterTube& tube : c.tubes) {
         bool enters = false;
         for (size_t i = 0; i < few; ++i) enters |= c.enters(i, tube.whole);
-        const bool surely = surely_enters(list, c.frame.centre, tube.whole);
+        const bool surely = bake::surely_enters(list, c.frame.centre, tube.whole);
         ASSERT_TRUE(enters || !surely) << "round " << round;
         sure += surely;
         entered += enters;
-        const bool uphill = surely_enters_uphill(list, c.frame.centre, {&tube.whole, 1}, 1) != 0;
+        const bool uphill =
+            bake::surely_enters_uphill(list, c.frame.centre, {&tube.whole, 1}, 1) != 0;
         ASSERT_TRUE(enters || !uphill) << "round " << round;
         rims += uphill;
       }
@@ -186,10 +188,10 @@ TEST(TriangleFilter, NarrowKeepsAllThatOverlapsTheBoxAndLittleElse) {
   test::for_every_simd_target([](const char* target) {
     SCOPED_TRACE(target);
     Dice dice{.seed = 4};
-    FilterList near;
+    bake::FilterList near;
     for (int round = 0; round < 300; ++round) {
       const Case c(dice);
-      FilterList list;
+      bake::FilterList list;
       list.clear(dice.point(5));
       for (size_t i = 0; i < c.triangles.size(); ++i) {
         list.add(static_cast<uint32_t>(i), c.triangles[i]);
@@ -198,7 +200,7 @@ TEST(TriangleFilter, NarrowKeepsAllThatOverlapsTheBoxAndLittleElse) {
       Box3d box;
       box.add(c.frame.centre + dice.point(1));
       box.add(c.frame.centre + dice.point(1));
-      narrow(list, box, near);
+      bake::narrow(list, box, near);
       const auto gap = [&](size_t i) {  // between the boxes; negative: they overlap
         Box3d b;
         for (const Vec3d& p : c.triangles[i]) b.add(p);

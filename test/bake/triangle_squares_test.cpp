@@ -34,7 +34,7 @@ Scene soup(double size, double spread, uint64_t seed) {
 TEST(TriangleSquares, FindEachTriangleWhoseBoxOverlapsOnceWhateverTheOrder) {
   for (const auto& [spread, seed] : {std::pair{0.2, 1}, {0.2, 2}, {900.0, 3}, {900.0, 4}}) {
     const Scene scene = soup(0.9, spread, static_cast<uint64_t>(seed));
-    const TriangleSquares triangles(scene, 2);
+    const bake::TriangleSquares triangles(scene, 2);
     std::vector<uint32_t> found;
     for (uint64_t round = 0; round < 60; ++round) {
       const auto dice = [&](uint64_t k) { return random_unit(8, round, k); };

@@ -32,10 +32,11 @@ struct PrintedMap {
 
 TEST(CollisionMap, AnswersLikeThePrintedMap) {
   constexpr int kSide = 20;
-  CollisionMap map(kSide, kSide, PixelGrid(1), 0, 3000, 1750);
+  crowd::CollisionMap map(kSide, kSide, crowd::PixelGrid(1), 0, 3000, 1750);
   PrintedMap printed;
   const auto mark = [&](int x, int z) {
-    return map.mark({(int64_t{x} << kUnitBits) + 7, (int64_t{z} << kUnitBits) + 2000}, 120);
+    return map.mark({(int64_t{x} << world::kUnitBits) + 7, (int64_t{z} << world::kUnitBits) + 2000},
+                    120);
   };
   std::vector<std::pair<int, int>> bodies;
   uint64_t n = 0;
@@ -69,14 +70,14 @@ TEST(CollisionMap, AnswersLikeThePrintedMap) {
 }
 
 TEST(CollisionMap, BodiesOnFloorsAboveEachOtherDoNotCollide) {
-  CollisionMap map(10, 10, PixelGrid(1), 0, 200000, 1750);
-  const GroundPoint p{5 << kUnitBits, 5 << kUnitBits};
+  crowd::CollisionMap map(10, 10, crowd::PixelGrid(1), 0, 200000, 1750);
+  const world::GroundPoint p{5 << world::kUnitBits, 5 << world::kUnitBits};
   for (int32_t y = 0; y < 200000; y += 2250) {  // words of 16 m are crossed many times
     ASSERT_TRUE(map.is_free(map.mark(p, y))) << y;
     map.set(map.mark(p, y));
     ASSERT_FALSE(map.is_free(map.mark(p, y + 1749))) << y;
-    ASSERT_FALSE(map.is_free(map.mark({p.x + kUnitsPerCell, p.z}, y))) << y;
-    ASSERT_TRUE(map.is_free(map.mark({p.x + 2 * kUnitsPerCell, p.z}, y))) << y;
+    ASSERT_FALSE(map.is_free(map.mark({p.x + world::kUnitsPerCell, p.z}, y))) << y;
+    ASSERT_TRUE(map.is_free(map.mark({p.x + 2 * world::kUnitsPerCell, p.z}, y))) << y;
   }
 }
 
@@ -85,12 +86,12 @@ TEST(CollisionMap, BodiesOnFloorsAboveEachOtherDoNotCollide) {
 TEST(CollisionMap, TestingOnlyTheNewPixelsIsEnough) {
   constexpr int32_t kSide = 12;
   constexpr int32_t kStorey = 2600;
-  CollisionMap quick(kSide, kSide, PixelGrid(3), 0, 40000, 1750);
-  CollisionMap simple(kSide, kSide, PixelGrid(3), 0, 40000, 1750);
+  crowd::CollisionMap quick(kSide, kSide, crowd::PixelGrid(3), 0, 40000, 1750);
+  crowd::CollisionMap simple(kSide, kSide, crowd::PixelGrid(3), 0, 40000, 1750);
   struct Body {
     int32_t x, z, y;  // pixel
-    [[nodiscard]] GroundPoint point() const {
-      return {int64_t{x * 3 + 1} << kUnitBits, int64_t{z * 3 + 2} << kUnitBits};
+    [[nodiscard]] world::GroundPoint point() const {
+      return {int64_t{x * 3 + 1} << world::kUnitBits, int64_t{z * 3 + 2} << world::kUnitBits};
     }
   };
   std::vector<Body> bodies;
@@ -117,8 +118,9 @@ TEST(CollisionMap, TestingOnlyTheNewPixelsIsEnough) {
     simple.clear(from);
     const bool is_free = simple.is_free(to);
     simple.set(is_free ? to : from);
-    ASSERT_EQ(quick.move_by_one(from.slices, from.pixel, CollisionMap::direction_index(dx, dz)),
-              is_free);
+    ASSERT_EQ(
+        quick.move_by_one(from.slices, from.pixel, crowd::CollisionMap::direction_index(dx, dz)),
+        is_free);
     if (is_free) body = next;
     ++(is_free ? moved : refused);
   }
@@ -128,7 +130,7 @@ TEST(CollisionMap, TestingOnlyTheNewPixelsIsEnough) {
 
 TEST(PixelGrid, DividesExactlyUpToTheLastCell) {
   for (int32_t cells : {1, 2, 3, 5, 7, 10, 50, 4095, 4096}) {
-    const PixelGrid grid(cells);
+    const crowd::PixelGrid grid(cells);
     for (int32_t cell = 0; cell < (1 << 20); cell += 1 + cell / 4096) {
       ASSERT_EQ(grid.pixel(cell), cell / cells) << cells;
     }

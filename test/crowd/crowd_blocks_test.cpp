@@ -14,15 +14,15 @@ namespace {
 
 constexpr int32_t kPixelCells = 5;
 constexpr int32_t kBlockPixels = 4;
-constexpr int32_t kBlockUnits = (kPixelCells * kBlockPixels) << kUnitBits;
+constexpr int32_t kBlockUnits = (kPixelCells * kBlockPixels) << world::kUnitBits;
 
-HugeArray<Avatar> scattered(uint32_t count, int32_t width, int32_t depth) {
-  HugeArray<Avatar> avatars(count);
+HugeArray<crowd::Avatar> scattered(uint32_t count, int32_t width, int32_t depth) {
+  HugeArray<crowd::Avatar> avatars(count);
   for (uint32_t i = 0; i < count; ++i) {
-    avatars[i].x =
-        static_cast<int32_t>(random_below(1, i, 0, static_cast<uint64_t>(width) << kUnitBits));
-    avatars[i].z =
-        static_cast<int32_t>(random_below(1, i, 1, static_cast<uint64_t>(depth) << kUnitBits));
+    avatars[i].x = static_cast<int32_t>(
+        random_below(1, i, 0, static_cast<uint64_t>(width) << world::kUnitBits));
+    avatars[i].z = static_cast<int32_t>(
+        random_below(1, i, 1, static_cast<uint64_t>(depth) << world::kUnitBits));
     avatars[i].level = static_cast<uint32_t>(random_below(1, i, 2, 3));
     avatars[i].id = i;
   }
@@ -31,15 +31,15 @@ HugeArray<Avatar> scattered(uint32_t count, int32_t width, int32_t depth) {
 
 TEST(CrowdBlocks, BlocksOfOneColourLieABlockApartAndHoldAllAvatars) {
   constexpr int32_t kWidth = 333, kDepth = 170;
-  CrowdBlocks blocks(kWidth, kDepth, PixelGrid(kPixelCells), kBlockPixels);
-  HugeArray<Avatar> avatars = scattered(2000, kWidth, kDepth), scratch(2000);
+  crowd::CrowdBlocks blocks(kWidth, kDepth, crowd::PixelGrid(kPixelCells), kBlockPixels);
+  HugeArray<crowd::Avatar> avatars = scattered(2000, kWidth, kDepth), scratch(2000);
   blocks.sort(avatars, scratch, 2);
   std::vector<int> seen(2000, 0);
-  for (uint32_t colour = 0; colour < CrowdBlocks::kColours; ++colour) {
+  for (uint32_t colour = 0; colour < crowd::CrowdBlocks::kColours; ++colour) {
     std::vector<std::pair<int32_t, int32_t>> corners;
     for (const auto& run : blocks.runs(colour)) {
       ASSERT_LT(run.first, run.last);
-      const Avatar& first = avatars[run.first];
+      const crowd::Avatar& first = avatars[run.first];
       corners.emplace_back(first.x / kBlockUnits, first.z / kBlockUnits);
       for (uint32_t i = run.first; i < run.last; ++i) {
         EXPECT_EQ(std::pair(avatars[i].x / kBlockUnits, avatars[i].z / kBlockUnits),
@@ -59,13 +59,15 @@ TEST(CrowdBlocks, BlocksOfOneColourLieABlockApartAndHoldAllAvatars) {
 }
 
 TEST(CrowdBlocks, TheOrderDoesNotDependOnTheThreads) {
-  CrowdBlocks one(500, 500, PixelGrid(kPixelCells), kBlockPixels);
-  CrowdBlocks many(500, 500, PixelGrid(kPixelCells), kBlockPixels);
-  HugeArray<Avatar> a = scattered(5000, 500, 500), b = scattered(5000, 500, 500), scratch(5000);
+  crowd::CrowdBlocks one(500, 500, crowd::PixelGrid(kPixelCells), kBlockPixels);
+  crowd::CrowdBlocks many(500, 500, crowd::PixelGrid(kPixelCells), kBlockPixels);
+  HugeArray<crowd::Avatar> a = scattered(5000, 500, 500), b = scattered(5000, 500, 500),
+                           scratch(5000);
   one.sort(a, scratch, 1);
   many.sort(b, scratch, 8);
-  EXPECT_TRUE(std::ranges::equal(a.span(), b.span(),
-                                 [](const Avatar& p, const Avatar& q) { return p.id == q.id; }));
+  EXPECT_TRUE(std::ranges::equal(
+      a.span(), b.span(),
+      [](const crowd::Avatar& p, const crowd::Avatar& q) { return p.id == q.id; }));
 }
 
 }  // namespace

@@ -22,22 +22,22 @@ namespace {
 // An engine on level ground, and the same bodies in the reference step of the tests.
 struct Pair {
   test::PlainCrowd plain;
-  CrowdEngine engine;
+  crowd::CrowdEngine engine;
   uint64_t steps = 0;
 
   // Steps both and names the first body that differs.
   std::string step() {
     plain.step();
-    EngineCounts counts;
-    CrowdEngine::Times times;
+    crowd::EngineCounts counts;
+    crowd::CrowdEngine::Times times;
     engine.step(steps++, {}, counts, times);
-    std::vector<const Body*> by_slot(engine.bodies().size());
-    for (const Body& body : engine.bodies()) by_slot[body.slot] = &body;
+    std::vector<const crowd::Body*> by_slot(engine.bodies().size());
+    for (const crowd::Body& body : engine.bodies()) by_slot[body.slot] = &body;
     for (size_t i = 0; i < by_slot.size(); ++i) {
       const test::PlainBody& p = plain.bodies()[i];
-      const Body& b = *by_slot[i];
+      const crowd::Body& b = *by_slot[i];
       if (b.x != p.at.x || b.z != p.at.z || b.detour_angle != p.turn ||
-          b.has(Body::kArrived) != (p.arrived >= 0)) {
+          b.has(crowd::Body::kArrived) != (p.arrived >= 0)) {
         return "body " + std::to_string(i) + " in step " + std::to_string(steps);
       }
     }
@@ -47,42 +47,43 @@ struct Pair {
 
 struct LevelGround {
   World world;
-  CrowdGround ground;
+  crowd::CrowdGround ground;
 
   explicit LevelGround(double side)
       : world(test::bake(worlds::flat(side), 0.1)),
-        ground(*CrowdGround::make(*data_of(world), 0, 400)) {}
+        ground(*crowd::CrowdGround::make(*data_of(world), 0, 400)) {}
 
   [[nodiscard]] Pair pair(const std::vector<test::PlainBody>& bodies,
                           const test::PlainConfig& config, int32_t workers) const {
-    const WorldData& data = *data_of(world);
+    const world::WorldData& data = *data_of(world);
     int32_t widest = 0;
     float fastest = 0;
     for (const test::PlainBody& b : bodies) {
       widest = std::max(widest, b.radius);
       fastest = std::max(fastest, b.speed);
     }
-    CrowdEngine engine({.units = config.units,
-                        .sight = config.sight,
-                        .rounds = config.rounds,
-                        .deadlock_avoidance = config.deadlock_avoidance,
-                        .reaction = config.reaction,
-                        .seed = config.seed,
-                        .workers = workers,
-                        .model = config.model,
-                        .steering = config.steering,
-                        .deadlock_settings = config.deadlock_settings,
-                        .lanes = config.lanes,
-                        .spacing = {}},
-                       data.width, data.depth, 1);
-    engine.set_ground(0, StrideGround(ground, 400));
+    crowd::CrowdEngine engine({.units = config.units,
+                               .sight = config.sight,
+                               .rounds = config.rounds,
+                               .deadlock_avoidance = config.deadlock_avoidance,
+                               .reaction = config.reaction,
+                               .seed = config.seed,
+                               .workers = workers,
+                               .model = config.model,
+                               .steering = config.steering,
+                               .deadlock_settings = config.deadlock_settings,
+                               .lanes = config.lanes,
+                               .spacing = {}},
+                              data.width, data.depth, 1);
+    engine.set_ground(0, crowd::StrideGround(ground, 400));
     engine.fit(widest, fastest, config.units.dt);
     for (size_t i = 0; i < bodies.size(); ++i) {
       const test::PlainBody& p = bodies[i];
-      Body body;
+      crowd::Body body;
       body.x = p.at.x;
       body.z = p.at.z;
-      const auto tile = data.tile_levels(p.at.x >> (kUnitBits + 6), p.at.z >> (kUnitBits + 6));
+      const auto tile =
+          data.tile_levels(p.at.x >> (world::kUnitBits + 6), p.at.z >> (world::kUnitBits + 6));
       EXPECT_EQ(tile.last, tile.first + 1) << "level ground has one level";
       body.level = tile.first;
       body.y = ground.feet(body.level, body.point());
@@ -92,7 +93,7 @@ struct LevelGround {
       body.radius = p.radius;
       body.slot = static_cast<uint32_t>(i);
       body.height = 1750;
-      body.flags = Body::kHasGoal | Body::kLast;
+      body.flags = crowd::Body::kHasGoal | crowd::Body::kLast;
       engine.add(body);
     }
     return {test::PlainCrowd(bodies, config), std::move(engine)};

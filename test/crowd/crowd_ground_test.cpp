@@ -25,19 +25,19 @@ World baked(const Scene& scene) {
 }
 
 // The same ground, straight from the zones.
-WorldGround zones(const World& world) { return {*data_of(world), 0}; }
+world::WorldGround zones(const World& world) { return {*data_of(world), 0}; }
 
-GroundLevel zone_level(const World& world, uint32_t level) {
-  return ground_level(*data_of(world), level, 0);
+world::GroundLevel zone_level(const World& world, uint32_t level) {
+  return world::ground_level(*data_of(world), level, 0);
 }
 
 TEST(CrowdGround, LegalCellsAreThoseOfTheZones) {
   for (const Scene& scene : {worlds::two_floors(), worlds::flat(20), worlds::ramp(20, 8)}) {
     const World world = baked(scene);
-    const auto ground = CrowdGround::make(*data_of(world), 0, kStep);
+    const auto ground = crowd::CrowdGround::make(*data_of(world), 0, kStep);
     ASSERT_TRUE(ground);
     for (uint32_t level = 0; level < world.level_tile_count(); ++level) {
-      const GroundLevel expected = zone_level(world, level);
+      const world::GroundLevel expected = zone_level(world, level);
       for (int32_t cell = 0; cell < 4096; ++cell) {
         ASSERT_EQ(ground->is_legal(level, cell % 64, cell / 64),
                   expected.is_legal(cell % 64, cell / 64));
@@ -69,7 +69,7 @@ TEST(CrowdGround, AWalkOverFlatCellsEndsOnTheSameLevelAtTheSameHeight) {
        {worlds::two_floors(), worlds::steps(0.17, 0.3, 12), worlds::ramp(20, 8), worlds::doorway(1),
         slope_over_the_edge(true), slope_over_the_edge(false)}) {
     const World world = baked(scene);
-    const auto ground = CrowdGround::make(*data_of(world), 0, kStep);
+    const auto ground = crowd::CrowdGround::make(*data_of(world), 0, kStep);
     ASSERT_TRUE(ground);
     uint64_t n = 0, plain_walks = 0;
     const auto draw = [&](uint64_t below) {
@@ -87,13 +87,14 @@ TEST(CrowdGround, AWalkOverFlatCellsEndsOnTheSameLevelAtTheSameHeight) {
       ++plain_walks;
       const auto& record = ground->records()[level];
       const auto point = [&](int32_t x, int32_t z) {
-        return GroundPoint{(int64_t{record.tile_x * 64 + x} << kUnitBits) + draw(kUnitsPerCell),
-                           (int64_t{record.tile_z * 64 + z} << kUnitBits) + draw(kUnitsPerCell)};
+        return world::GroundPoint{
+            (int64_t{record.tile_x * 64 + x} << world::kUnitBits) + draw(world::kUnitsPerCell),
+            (int64_t{record.tile_z * 64 + z} << world::kUnitBits) + draw(world::kUnitsPerCell)};
       };
-      GroundPoint from = point(x0, z1), to = point(x1, z0);
+      world::GroundPoint from = point(x0, z1), to = point(x1, z0);
       if (i % 2 == 0) std::swap(from, to);
-      GroundLevel reached = zone_level(world, level);
-      ASSERT_TRUE(walk(zones(world), reached, from, to, kStep));
+      world::GroundLevel reached = zone_level(world, level);
+      ASSERT_TRUE(world::walk(zones(world), reached, from, to, kStep));
       ASSERT_EQ(reached.world_level, level);
       ASSERT_EQ(ground->feet(level, from), ground->feet(level, to));
     }
@@ -112,7 +113,7 @@ TEST(CrowdGround, AStepOverAJoinEndsWhereAWalkDoesAtTheSameHeight) {
   for (const Scene& scene : {worlds::two_floors(), worlds::flat(20), slope_over_the_edge(true),
                              slope_over_the_edge(false), garage()}) {
     const World world = baked(scene);
-    const auto ground = CrowdGround::make(*data_of(world), 0, kStep);
+    const auto ground = crowd::CrowdGround::make(*data_of(world), 0, kStep);
     ASSERT_TRUE(ground);
     uint64_t n = 0, crossed = 0;
     const auto draw = [&](uint64_t below) {
@@ -125,15 +126,16 @@ TEST(CrowdGround, AStepOverAJoinEndsWhereAWalkDoesAtTheSameHeight) {
       const int32_t x = record.tile_x * 64 + (i % 2 == 0 ? rim : along);
       const int32_t z = record.tile_z * 64 + (i % 2 == 0 ? along : rim);
       const uint32_t beyond = ground->line(level).cross(x, z, x + dx, z + dz);
-      if (beyond == LevelLine::kNone) continue;
+      if (beyond == crowd::LevelLine::kNone) continue;
       ++crossed;
       const auto point = [&](int32_t cell_x, int32_t cell_z) {
-        return GroundPoint{(int64_t{cell_x} << kUnitBits) + draw(kUnitsPerCell),
-                           (int64_t{cell_z} << kUnitBits) + draw(kUnitsPerCell)};
+        return world::GroundPoint{
+            (int64_t{cell_x} << world::kUnitBits) + draw(world::kUnitsPerCell),
+            (int64_t{cell_z} << world::kUnitBits) + draw(world::kUnitsPerCell)};
       };
-      const GroundPoint from = point(x, z), to = point(x + dx, z + dz);
-      GroundLevel reached = zone_level(world, level);
-      ASSERT_TRUE(walk(zones(world), reached, from, to, kStep));
+      const world::GroundPoint from = point(x, z), to = point(x + dx, z + dz);
+      world::GroundLevel reached = zone_level(world, level);
+      ASSERT_TRUE(world::walk(zones(world), reached, from, to, kStep));
       ASSERT_EQ(reached.world_level, beyond);
       ASSERT_EQ(ground->feet(level, from), ground->feet(beyond, to));
     }
@@ -143,17 +145,17 @@ TEST(CrowdGround, AStepOverAJoinEndsWhereAWalkDoesAtTheSameHeight) {
 
 TEST(CrowdGround, ALoneLevelIsTheOnlyOneWithinAStepInItsTile) {
   const World world = baked(worlds::two_floors());
-  const auto ground = CrowdGround::make(*data_of(world), 0, kStep);
+  const auto ground = crowd::CrowdGround::make(*data_of(world), 0, kStep);
   ASSERT_TRUE(ground);
   int32_t lone = 0;
   for (uint32_t level = 0; level < world.level_tile_count(); ++level) {
     if (!ground->walk(level).is_isolated) continue;
     ++lone;
     const auto& record = ground->records()[level];
-    const GroundLevel here = zone_level(world, level);
+    const world::GroundLevel here = zone_level(world, level);
     ground->for_tile(record.tile_x, record.tile_z, INT32_MIN, INT32_MAX, [&](uint32_t other) {
       if (other == level) return;
-      const GroundLevel there = zone_level(world, other);
+      const world::GroundLevel there = zone_level(world, other);
       for (int32_t a = 0; a < 4096; a += 7) {
         for (int32_t b = 0; b < 4096; b += 13) {
           if (!here.view.has(a % 64, a / 64) || !there.view.has(b % 64, b / 64)) continue;
@@ -168,11 +170,11 @@ TEST(CrowdGround, ALoneLevelIsTheOnlyOneWithinAStepInItsTile) {
 
 TEST(CrowdGround, FloorsOutsideTheGivenHeightsMayBeLeftOutButNoOther) {
   const World world = baked(worlds::two_floors());
-  const auto ground = CrowdGround::make(*data_of(world), 0, kStep);
+  const auto ground = crowd::CrowdGround::make(*data_of(world), 0, kStep);
   ASSERT_TRUE(ground);
   for (uint32_t level = 0; level < world.level_tile_count(); ++level) {
     const auto& record = ground->records()[level];
-    const LevelView view = zone_level(world, level).view;
+    const world::LevelView view = zone_level(world, level).view;
     for (int32_t cell = 0; cell < 4096; cell += 5) {
       if (!view.has(cell % 64, cell / 64)) continue;
       const int32_t y = view.sample(cell % 64, cell / 64);

@@ -341,14 +341,15 @@ TEST(CrowdObstacles, TheCheckCountsAvatarsInAnObstacle) {
   const double unit = 0.1 / 2048, radius = world.summary().classes[0].radius;
   const Vec3d origin = world.summary().origin;
   const auto entries = [&](double x, double z, double feet, const Prism& prism) {
-    const CheckedBody body{.x = static_cast<int32_t>((x - origin.x) / unit),
-                           .z = static_cast<int32_t>((z - origin.z) / unit),
-                           .y = static_cast<int32_t>(feet * 1000),
-                           .level = 0,
-                           .avatar_class = 0,
-                           .radius = radius,
-                           .height = 1.75};
-    return check_bodies(world, std::span(&body, 1), std::span(&prism, 1), 1).obstacle_entries;
+    const crowd::CheckedBody body{.x = static_cast<int32_t>((x - origin.x) / unit),
+                                  .z = static_cast<int32_t>((z - origin.z) / unit),
+                                  .y = static_cast<int32_t>(feet * 1000),
+                                  .level = 0,
+                                  .avatar_class = 0,
+                                  .radius = radius,
+                                  .height = 1.75};
+    return crowd::check_bodies(world, std::span(&body, 1), std::span(&prism, 1), 1)
+        .obstacle_entries;
   };
   const Prism box = Prism::box({5, 0, 5}, {7, 1, 7});
   Prism reversed = box;

@@ -29,39 +29,39 @@ struct Bend {
     AvatarClass walker;
     walker.radius = 0.19;
     world = test::bake(*scene, 0.05, {walker});
-    ground = *CrowdGround::make(*data_of(world), 0, 400);
-    stride = StrideGround(ground, 400);
-    metre = static_cast<float>(kUnitsPerCell / 0.05);
+    ground = *crowd::CrowdGround::make(*data_of(world), 0, 400);
+    stride = crowd::StrideGround(ground, 400);
+    metre = static_cast<float>(world::kUnitsPerCell / 0.05);
     corner = point_at({10.22, 0, width - 0.22});
     next = point_at({10.4, 0, 12});
     body.radius = static_cast<int32_t>(0.19 * metre);
   }
-  [[nodiscard]] PathPoint point_at(Vec3d position) const {
+  [[nodiscard]] crowd::PathPoint point_at(Vec3d position) const {
     const Place place = world.find_place(0, position, 0.2);
     EXPECT_TRUE(place) << position.x << " " << position.z;
-    return point_of(*data_of(world), place);
+    return crowd::point_of(*data_of(world), place);
   }
   // Of a body in the first corridor, at this distance from its inner wall (at z = width). [m]
-  PathPoint own(double x, double z) {
-    const PathPoint at = point_at({x, 0, z});
+  crowd::PathPoint own(double x, double z) {
+    const crowd::PathPoint at = point_at({x, 0, z});
     body.x = at.x;
     body.z = at.z;
     body.level = at.level;
-    Route route;
+    crowd::Route route;
     route.corners[0] = corner;
     route.corners[1] = next;
     route.count = 2;
-    return lane_offset(body, route, stride, metre);
+    return crowd::lane_offset(body, route, stride, metre);
   }
-  [[nodiscard]] double off(const PathPoint& place) const {  // from the corner [m]
+  [[nodiscard]] double off(const crowd::PathPoint& place) const {  // from the corner [m]
     return std::hypot(place.x - corner.x, place.z - corner.z) / metre;
   }
 
   World world;
-  CrowdGround ground;
-  StrideGround stride;
-  PathPoint corner, next;
-  Body body;
+  crowd::CrowdGround ground;
+  crowd::StrideGround stride;
+  crowd::PathPoint corner, next;
+  crowd::Body body;
   float metre = 1;
 };
 
@@ -83,8 +83,8 @@ TEST(LaneOffset, IsSeenFromHereAndSeesTheNextCorner) {
   uint64_t others = 0;
   for (int n = 0; n < 200; ++n) {
     const double x = 2 + 0.04 * n, z = 0.25 + 0.007 * ((n * 37) % 200);
-    const PathPoint place = bend.own(x, z);
-    const GroundPoint at{place.x, place.z}, body = bend.body.point();
+    const crowd::PathPoint place = bend.own(x, z);
+    const world::GroundPoint at{place.x, place.z}, body = bend.body.point();
     if (bend.off(place) == 0) continue;
     EXPECT_TRUE(bend.stride.sees(bend.body.level, body, at, place.level, 3 * bend.metre)) << n;
     EXPECT_TRUE(bend.stride.sees(place.level, at, {bend.next.x, bend.next.z}, bend.next.level,
@@ -99,7 +99,7 @@ TEST(LaneOffset, IsTheCornerWhereFewFitOrNothingBends) {
   Bend narrow(1.2);  // Centres have 0.82 m: two abreast, not three.
   EXPECT_EQ(narrow.off(narrow.own(5, 0.4)), 0);
   Bend bend(2);
-  const PathPoint ahead = bend.next;
+  const crowd::PathPoint ahead = bend.next;
   bend.next = bend.point_at({10.9, 0, 1.8});  // straight on
   EXPECT_EQ(bend.off(bend.own(5, 1.6)), 0);
   bend.next = ahead;

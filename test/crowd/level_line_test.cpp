@@ -32,7 +32,7 @@ bool is_set(const Rows& rows, int32_t x, int32_t z) {
 TEST(LevelLine, ABlockIsFullIfItsSixteenCellsAre) {
   for (uint64_t seed = 0; seed < 20; ++seed) {
     const Rows rows = rows_with_holes(seed, 40);
-    const auto blocks = full_blocks(rows.data());
+    const auto blocks = crowd::full_blocks(rows.data());
     for (int32_t block = 0; block < 256; ++block) {
       bool full = true;
       for (int32_t cell = 0; cell < 16; ++cell) {
@@ -47,8 +47,8 @@ TEST(LevelLine, AllCellsOfAFlatBoxAreSetWhereverItsTileLies) {
   int flat = 0;
   for (uint64_t seed = 0; seed < 50; ++seed) {
     const Rows rows = rows_with_holes(seed, 30);
-    LevelLine line;
-    line.flat = full_blocks(rows.data());
+    crowd::LevelLine line;
+    line.flat = crowd::full_blocks(rows.data());
     const auto draw = [&](uint64_t n, uint64_t below) {
       return static_cast<int32_t>(random_below(seed, 2, n, below));
     };
@@ -68,17 +68,18 @@ TEST(LevelLine, AllCellsOfAFlatBoxAreSetWhereverItsTileLies) {
 }
 
 TEST(LevelLine, CrossesOneSideWhereBothBlocksAreJoined) {
-  LevelLine line;
+  crowd::LevelLine line;
   line.beyond = {10, 11, 12, 13};
   line.joined = {0b0110, 0b0110, 0b0110, 0b0110};  // blocks 1 and 2: cells 4 to 11
   EXPECT_EQ(line.cross(64, 64 + 5, 63, 64 + 8), 10u);
   EXPECT_EQ(line.cross(127, 64 + 11, 128, 64 + 9), 11u);
   EXPECT_EQ(line.cross(64 + 4, 64, 64 + 4, 62), 12u);
   EXPECT_EQ(line.cross(64 + 4, 127, 64 + 7, 129), 13u);
-  EXPECT_EQ(line.cross(64, 64 + 11, 63, 64 + 12), LevelLine::kNone);  // block 3 is not joined
-  EXPECT_EQ(line.cross(64, 64 + 3, 63, 64 + 4), LevelLine::kNone);    // nor is block 0
-  EXPECT_EQ(line.cross(64, 64, 63, 63), LevelLine::kNone);            // two sides at once
-  EXPECT_EQ(line.cross(70, 70, 71, 71), LevelLine::kNone);            // none
+  EXPECT_EQ(line.cross(64, 64 + 11, 63, 64 + 12),
+            crowd::LevelLine::kNone);                                      // block 3 is not joined
+  EXPECT_EQ(line.cross(64, 64 + 3, 63, 64 + 4), crowd::LevelLine::kNone);  // nor is block 0
+  EXPECT_EQ(line.cross(64, 64, 63, 63), crowd::LevelLine::kNone);          // two sides at once
+  EXPECT_EQ(line.cross(70, 70, 71, 71), crowd::LevelLine::kNone);          // none
 }
 
 }  // namespace

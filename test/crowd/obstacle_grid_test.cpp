@@ -16,11 +16,11 @@ namespace {
 constexpr double kUnit = 0.2 / 2048;  // [m]
 constexpr int32_t kHeight = 1800;     // [mm]
 
-void set(ObstacleGrid& grid, uint32_t slot, const Prism& prism) {
-  grid.set(slot, AirObstacle(prism, Vec3d{}, kUnit), {prism, {}});
+void set(crowd::ObstacleGrid& grid, uint32_t slot, const Prism& prism) {
+  grid.set(slot, crowd::AirObstacle(prism, Vec3d{}, kUnit), {prism, {}});
 }
 
-AirPosition position(double x, double y, double z) {
+crowd::AirPosition position(double x, double y, double z) {
   return {static_cast<int32_t>(x / kUnit), static_cast<int32_t>(z / kUnit),
           static_cast<int32_t>(y * 1000)};
 }
@@ -34,8 +34,8 @@ struct Draws {
 
 TEST(ObstacleGrid, FindsWhatALoopOverAllFindsAndInOrderOfSlot) {
   Draws draw;
-  ObstacleGrid grid(kUnit);
-  std::map<uint32_t, AirObstacle> all;
+  crowd::ObstacleGrid grid(kUnit);
+  std::map<uint32_t, crowd::AirObstacle> all;
   uint64_t held = 0;
   for (int round = 0; round < 3000; ++round) {
     const auto slot = static_cast<uint32_t>(draw(0, 150));
@@ -48,22 +48,22 @@ TEST(ObstacleGrid, FindsWhatALoopOverAllFindsAndInOrderOfSlot) {
       const Vec3d at{draw(-20, 120), draw(-1, 3), draw(-20, 120)};
       const Prism prism = Prism::circle(at, size, draw(0.1, 4), 3 + static_cast<int>(draw(0, 9)));
       set(grid, slot, prism);
-      all.insert_or_assign(slot, AirObstacle(prism, Vec3d{}, kUnit));
+      all.insert_or_assign(slot, crowd::AirObstacle(prism, Vec3d{}, kUnit));
     }
     ASSERT_EQ(grid.is_empty(), all.empty());
-    const AirPosition feet = position(draw(0, 100), draw(0, 4), draw(0, 100));
+    const crowd::AirPosition feet = position(draw(0, 100), draw(0, 4), draw(0, 100));
     const double radius = 0.05 * std::pow(10, draw(0, 2.5));
     std::vector<uint32_t> expected, found;
     for (const auto& [number, shape] : all) {
       if (shape.holds(feet, radius, kHeight)) expected.push_back(number);
     }
-    std::vector<const ObstacleGrid::Item*> near;
+    std::vector<const crowd::ObstacleGrid::Item*> near;
     grid.list_near(feet, radius, near);
-    for (const ObstacleGrid::Item* item : near) {
+    for (const crowd::ObstacleGrid::Item* item : near) {
       if (item->shape.holds(feet, radius, kHeight)) found.push_back(item->slot);
     }
     ASSERT_EQ(found, expected) << round;
-    const bool any = grid.any_near(feet, radius, [&](const ObstacleGrid::Item& item) {
+    const bool any = grid.any_near(feet, radius, [&](const crowd::ObstacleGrid::Item& item) {
       return item.shape.holds(feet, radius, kHeight);
     });
     ASSERT_EQ(any, !expected.empty());
@@ -73,10 +73,10 @@ TEST(ObstacleGrid, FindsWhatALoopOverAllFindsAndInOrderOfSlot) {
 }
 
 TEST(ObstacleGrid, TestsFewHoweverManyStandElsewhere) {
-  ObstacleGrid grid(kUnit);
+  crowd::ObstacleGrid grid(kUnit);
   const auto tested = [&] {
     uint64_t count = 0;
-    (void)grid.any_near(position(30, 0, 30), 0.3, [&](const ObstacleGrid::Item&) {
+    (void)grid.any_near(position(30, 0, 30), 0.3, [&](const crowd::ObstacleGrid::Item&) {
       ++count;
       return false;
     });

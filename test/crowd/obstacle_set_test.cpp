@@ -25,10 +25,10 @@ namespace {
 constexpr int32_t kStep = 400;  // mm
 
 // All that a step reads of the ground.
-uint64_t hash_of(const CrowdGround& ground) {
+uint64_t hash_of(const crowd::CrowdGround& ground) {
   uint64_t hash = 1;
   for (uint32_t level = 0; level < ground.records().size(); ++level) {
-    const LevelLine& line = ground.line(level);
+    const crowd::LevelLine& line = ground.line(level);
     const auto add = [&](const void* data, size_t bytes) { hash = hash_bytes(data, bytes, hash); };
     add(ground.legal(level), 512);
     add(ground.flat(level), 512);
@@ -36,7 +36,7 @@ uint64_t hash_of(const CrowdGround& ground) {
     add(line.beyond.data(), sizeof line.beyond);
     add(line.joined.data(), sizeof line.joined);
     add(&ground.records()[level].legal_cells, 4);
-    const CrowdGround::Walk walk = ground.walk(level);
+    const crowd::CrowdGround::Walk walk = ground.walk(level);
     const bool flags[] = {walk.is_step_safe, walk.is_isolated};
     add(flags, sizeof flags);
   }
@@ -45,13 +45,13 @@ uint64_t hash_of(const CrowdGround& ground) {
 
 struct Fixture {
   World world;
-  CrowdGround ground;
-  ObstacleSet obstacle_set;
+  crowd::CrowdGround ground;
+  crowd::ObstacleSet obstacle_set;
   uint64_t n = 0;
 
   explicit Fixture(World of)
       : world(std::move(of)),
-        ground(*CrowdGround::make(*data_of(world), 0, kStep)),
+        ground(*crowd::CrowdGround::make(*data_of(world), 0, kStep)),
         obstacle_set(world, world.summary().classes.size()) {
     obstacle_set.open_class(0, ground);
   }
@@ -93,7 +93,7 @@ TEST(ObstacleSet, BlocksTheCellsOnWhichABodyCouldTouchAndFewMore) {
   uint64_t blocked = 0, left = 0;
   for (const Scene& scene : {worlds::two_floors(), worlds::ramp(20, 8), worlds::flat(14)}) {
     Fixture f(test::bake(scene, 0.1));
-    const CrowdGround baked = *CrowdGround::make(*data_of(f.world), 0, kStep);
+    const crowd::CrowdGround baked = *crowd::CrowdGround::make(*data_of(f.world), 0, kStep);
     const AvatarClass avatar = f.world.summary().classes[0];
     const double bottom = body_bottom(avatar), cell = f.world.summary().cell;
     const Vec3d origin = f.world.summary().origin;
@@ -112,11 +112,11 @@ TEST(ObstacleSet, BlocksTheCellsOnWhichABodyCouldTouchAndFewMore) {
           const bool is_blocked = !f.ground.is_legal(level, x, z);
           bool touches = false, could = false;
           for (int k = 0; k < 3; ++k) {
-            const GroundPoint p{(int64_t{record.tile_x * 64 + x} << kUnitBits) +
-                                    static_cast<int64_t>(f.draw() * kUnitsPerCell),
-                                (int64_t{record.tile_z * 64 + z} << kUnitBits) +
-                                    static_cast<int64_t>(f.draw() * kUnitsPerCell)};
-            const double unit = cell / kUnitsPerCell;
+            const world::GroundPoint p{(int64_t{record.tile_x * 64 + x} << world::kUnitBits) +
+                                           static_cast<int64_t>(f.draw() * world::kUnitsPerCell),
+                                       (int64_t{record.tile_z * 64 + z} << world::kUnitBits) +
+                                           static_cast<int64_t>(f.draw() * world::kUnitsPerCell)};
+            const double unit = cell / world::kUnitsPerCell;
             const double far =
                 square_from(prism, origin.x + (static_cast<double>(p.x) + 0.5) * unit,
                             origin.z + (static_cast<double>(p.z) + 0.5) * unit);
@@ -165,8 +165,8 @@ TEST(ObstacleSet, FreesToTheBitWhatItBlocked) {
     }
     EXPECT_NE(hash_of(f.ground), baked);
     // What is left must equal what the same obstacles leave of a new ground.
-    CrowdGround rebuilt = *CrowdGround::make(*data_of(f.world), 0, kStep);
-    ObstacleSet again(f.world, f.world.summary().classes.size());
+    crowd::CrowdGround rebuilt = *crowd::CrowdGround::make(*data_of(f.world), 0, kStep);
+    crowd::ObstacleSet again(f.world, f.world.summary().classes.size());
     again.open_class(0, rebuilt);
     for (const uint32_t slot : slots) {
       again.settle(again.add(f.obstacle_set.at(slot).place, ObstacleKind::kStatic, true));
@@ -219,7 +219,7 @@ void change_at_random(Fixture f, const std::function<Prism(Fixture&)>& draw_pris
     std::vector<uint32_t> waiting;
     bool cuts_paths = false;
     for (const uint32_t one : slots) {
-      const CrowdObstacle& obstacle = f.obstacle_set.at(one);
+      const crowd::CrowdObstacle& obstacle = f.obstacle_set.at(one);
       if (obstacle.waits() || obstacle.is_exit_only) waiting.push_back(one);
       cuts_paths |= obstacle.has_cells;
     }
@@ -229,7 +229,7 @@ void change_at_random(Fixture f, const std::function<Prism(Fixture&)>& draw_pris
     ASSERT_EQ(f.obstacle_set.cuts_paths(), cuts_paths);
     waited += waiting.size();
     const std::vector<uint16_t> counted = exits();
-    left += find_exits(f.ground, kStep, all_levels);
+    left += crowd::find_exits(f.ground, kStep, all_levels);
     ASSERT_EQ(counted, exits()) << round;
   }
   EXPECT_GT(waited, 500u);
@@ -267,7 +267,7 @@ TEST(ObstacleSet, AChangeTouchesNothingElsewhereHoweverManyStandThere) {
     f.obstacle_set.remove(slot);
     f.obstacle_set.block_cells();
     const std::array<uint32_t, 1> first{0};  // the level of a tile
-    counted.push_back(find_exits(f.ground, kStep, first));
+    counted.push_back(crowd::find_exits(f.ground, kStep, first));
   }
   EXPECT_EQ(changed, (std::vector<size_t>{1, 1, 1, 1}));
   EXPECT_GT(counted[0], 0u);
@@ -290,9 +290,9 @@ TEST(ObstacleSet, MemoryDoesNotGrowAsObstaclesComeAndGo) {
 // The ground as it was baked, without the cells blocked in `now`: uses none of its lines, sets or
 // joins.
 struct PlainGround {
-  using Level = GroundLevel;
-  WorldGround baked;
-  const CrowdGround& now;
+  using Level = world::GroundLevel;
+  world::WorldGround baked;
+  const crowd::CrowdGround& now;
   [[nodiscard]] bool is_legal(const Level& level, int32_t x, int32_t z) const {
     return baked.is_legal(level, x, z) && now.is_legal(level.world_level, x, z);
   }
@@ -311,19 +311,21 @@ TEST(ObstacleSet, FastMovesAreThoseOfThePlainGround) {
   for (const char* name : {"garage", "church", "stairs", "landscape"}) {
     Fixture f(test::bake(test::builtin({.name = name, .seed = 3}), 0.1));
     for (int i = 0; i < 60; ++i) f.put_up(f.random_prism());
-    const StrideGround stride(f.ground, kStep);
+    const crowd::StrideGround stride(f.ground, kStep);
     const PlainGround plain{{*data_of(f.world), 0}, f.ground};
     for (int i = 0; i < 30000; ++i) {
       const Place place = f.world.random_place(0, 31, static_cast<uint64_t>(i));
-      const auto from = *ground_point(*data_of(f.world), place);
+      const auto from = *world::ground_point(*data_of(f.world), place);
       uint32_t level = place.level1 - 1;
       if (!f.ground.is_legal(level, from.cell_x() & 63, from.cell_z() & 63)) continue;
-      const auto offset = [&] { return static_cast<int64_t>((f.draw() * 8 - 4) * kUnitsPerCell); };
-      const GroundPoint to{from.x + offset(), from.z + offset()};
-      StrideGround::Landing landing;
+      const auto offset = [&] {
+        return static_cast<int64_t>((f.draw() * 8 - 4) * world::kUnitsPerCell);
+      };
+      const world::GroundPoint to{from.x + offset(), from.z + offset()};
+      crowd::StrideGround::Landing landing;
       const bool moved = stride.move(level, f.ground.feet(level, from), from, to, landing);
-      GroundLevel on = ground_level(*data_of(f.world), level, 0);
-      const bool expected = walk(plain, on, from, to, kStep);
+      world::GroundLevel on = world::ground_level(*data_of(f.world), level, 0);
+      const bool expected = world::walk(plain, on, from, to, kStep);
       ASSERT_EQ(moved, expected) << name << ' ' << i;
       ++moves;
       legal_moves += expected;
@@ -350,7 +352,7 @@ TEST(ObstacleSet, TheHullOfTwoPrismsHoldsAllBetween) {
       z += dz;
     }
     b.low -= draw();
-    const Prism hull = hull_of(a, b);
+    const Prism hull = crowd::hull_of(a, b);
     ASSERT_TRUE(check_prism(hull)) << check_prism(hull).error().message;
     EXPECT_LE(hull.low, std::min(a.low, b.low));
     EXPECT_GE(hull.high, std::max(a.high, b.high));

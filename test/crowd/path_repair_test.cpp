@@ -21,14 +21,14 @@ constexpr int32_t kStep = 400;  // mm
 // The same crates on the ground of a crowd and on a live ground.
 struct Crated {
   World world;
-  CrowdGround ground;
-  ObstacleSet book;
+  crowd::CrowdGround ground;
+  crowd::ObstacleSet book;
   LiveGround live;
   PathFinder finder;
 
   Crated(World of, PathFinder a_finder)
       : world(std::move(of)),
-        ground(*CrowdGround::make(*data_of(world), 0, kStep)),
+        ground(*crowd::CrowdGround::make(*data_of(world), 0, kStep)),
         book(world, world.summary().classes.size()),
         live(*LiveGround::create(world, {})),
         finder(std::move(a_finder)) {
@@ -53,9 +53,9 @@ bool is_open(const Crated& c, const Path& path) {
   for (size_t i = 1; i < path.points.size(); ++i) {
     const Place &a = path.points[i - 1], &b = path.points[i];
     uint32_t level = a.level1 - 1;
-    const GroundPoint from = *ground_point(*data_of(c.world), a),
-                      to = *ground_point(*data_of(c.world), b);
-    if (!walk(c.ground, level, from, to, kStep) || level != b.level1 - 1) return false;
+    const world::GroundPoint from = *world::ground_point(*data_of(c.world), a),
+                             to = *world::ground_point(*data_of(c.world), b);
+    if (!world::walk(c.ground, level, from, to, kStep) || level != b.level1 - 1) return false;
   }
   return true;
 }
@@ -69,8 +69,8 @@ TEST(Detours, LeadAroundCratesAndAreHardlyLongerThanTheBest) {
       const Vec3d at = c.world.random_place(0, 8, i).position;
       c.put_up(Prism::circle(at, 0.2 + random_unit(8, 1, i), 1));
     }
-    const StrideGround ground(c.ground, kStep);
-    RepairScratch scratch;
+    const crowd::StrideGround ground(c.ground, kStep);
+    crowd::RepairScratch scratch;
     Path path, best;
     for (uint64_t i = 0; i < 150; ++i) {
       const Place from = c.world.random_place(0, 5, 2 * i),
@@ -80,7 +80,7 @@ TEST(Detours, LeadAroundCratesAndAreHardlyLongerThanTheBest) {
       if (path.end != PathEnd::kReached) continue;
       const double least = path.length;
       const bool was_open = is_open(c, path);
-      lead_around(*data_of(c.world), c.live, ground, {}, path, scratch);
+      crowd::lead_around(*data_of(c.world), c.live, ground, {}, path, scratch);
       c.live.find(from, to, best);
       ASSERT_EQ(path.end, best.end) << name << ' ' << i;
       if (was_open) {
@@ -104,7 +104,7 @@ TEST(Detours, LeadAroundCratesAndAreHardlyLongerThanTheBest) {
   EXPECT_GT(covered, 100u);
   EXPECT_GT(searched_in_vain, 5u);
   EXPECT_LT(ratios / static_cast<double>(reached), 1.03);
-  EXPECT_LT(worst, 2 * kMaxRepairDetour);
+  EXPECT_LT(worst, 2 * crowd::kMaxRepairDetour);
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ TEST(PlainCrowd, OfTwoThatHeadToOnePlaceOneArrivesFirst) {
   }
   const auto near = [&](size_t i) {
     const Spot at = crowd.bodies()[i].at;
-    return nearer_than(at.x, at.z, config.to_units(0.3));
+    return crowd::nearer_than(at.x, at.z, config.to_units(0.3));
   };
   EXPECT_FALSE(near(0) && near(1));
   EXPECT_TRUE(crowd.bodies()[0].arrived >= 0 || crowd.bodies()[1].arrived >= 0);

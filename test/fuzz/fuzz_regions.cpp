@@ -14,8 +14,8 @@ namespace {
 
 volatile uint64_t seen = 0;
 
-void ask(const RegionZone& zone) {
-  const std::vector<ZoneComponent> components = zone.components();
+void ask(const world::RegionZone& zone) {
+  const std::vector<world::ZoneComponent> components = zone.components();
   for (uint32_t level = 0; level < zone.level_count(); ++level) {
     const auto [first, last] = zone.level_regions(level);
     for (uint32_t r = first; r < last; ++r) {
@@ -33,16 +33,17 @@ void ask(const RegionZone& zone) {
 }
 
 void try_regions(flatbuffers::DetachedBuffer bytes) {
-  const auto zone = RegionZone::from_bytes(std::move(bytes), "fuzz");
+  const auto zone = world::RegionZone::from_bytes(std::move(bytes), "fuzz");
   if (!zone) return;
   ask(**zone);
   std::vector<format::RegionLink> links((*zone)->links().begin(), (*zone)->links().end());
-  const auto between = LinkZone::from_bytes(link_zone_bytes(0, 0, 0, links, {}), "fuzz");
+  const auto between =
+      world::LinkZone::from_bytes(world::link_zone_bytes(0, 0, 0, links, {}), "fuzz");
   if (between && !(*between)->fits(**zone, zone->get(), nullptr)) std::abort();
 }
 
 void try_links(flatbuffers::DetachedBuffer bytes) {
-  const auto zone = LinkZone::from_bytes(std::move(bytes), "fuzz");
+  const auto zone = world::LinkZone::from_bytes(std::move(bytes), "fuzz");
   if (!zone) return;
   for (const auto links : {(*zone)->east(), (*zone)->south()}) {
     for (const format::RegionLink& link : links) seen = seen + link.a() + link.b();
@@ -60,23 +61,23 @@ std::vector<T> take(const uint8_t*& at, const uint8_t* end, size_t count) {
 // As the numbers of an index, of a world with the zones and classes that it names.
 void try_index(const uint8_t* bytes, size_t size) {
   const uint8_t *at = bytes + 6, *end = bytes + size;
-  GraphData graph;
-  WorldData world;
+  world::GraphData graph;
+  world::WorldData world;
   for (const format::GraphZone& entry : take<format::GraphZone>(at, end, bytes[0])) {
-    graph.slots.push_back(std::make_unique<GraphData::Slot>());
+    graph.slots.push_back(std::make_unique<world::GraphData::Slot>());
     graph.slots.back()->entry = entry;
-    world.slots.push_back(std::make_unique<WorldData::Slot>());
+    world.slots.push_back(std::make_unique<world::WorldData::Slot>());
     world.slots.back()->entry = format::ZoneEntry(entry.x(), entry.z(), 1, 1, 0, 0);
   }
   graph.class_first = take<uint32_t>(at, end, bytes[1]);
-  graph.components = take<GraphComponent>(at, end, bytes[2]);
+  graph.components = take<world::GraphComponent>(at, end, bytes[2]);
   graph.component_of = take<uint32_t>(at, end, bytes[3]);
   graph.class_of.assign(graph.component_of.size(), 0);
   if (graph.class_first.empty()) return;
   world.summary.classes.resize(std::max<size_t>(graph.class_first.size(), 1) - 1);
   world.level_count = bytes[4];
   world.width = world.depth = 1000;
-  const auto found = read_graph_index(write_graph_index(graph, 7), "fuzz", world, 7);
+  const auto found = world::read_graph_index(world::write_graph_index(graph, 7), "fuzz", world, 7);
   if (!found) return;
   for (const auto& of_class : (*found)->by_class) {
     for (const Component& component : of_class) seen = seen + component.regions;
@@ -86,15 +87,15 @@ void try_index(const uint8_t* bytes, size_t size) {
 // As the packed components of an index.
 void try_packed(const uint8_t* bytes, size_t size) {
   if (size < 4) return;
-  GraphData graph;
+  world::GraphData graph;
   graph.class_first = {0, bytes[0], uint32_t{bytes[0]} + bytes[1]};
-  WorldData world;
+  world::WorldData world;
   world.level_count = world.width = world.depth = 1000;
-  if (unpack_components({bytes + 2, size - 2}, world, graph)) return;
-  const std::vector<uint8_t> packed = pack_components(graph);
-  GraphData again;
+  if (world::unpack_components({bytes + 2, size - 2}, world, graph)) return;
+  const std::vector<uint8_t> packed = world::pack_components(graph);
+  world::GraphData again;
   again.class_first = graph.class_first;
-  if (unpack_components(packed, world, again) || again.component_of != graph.component_of) {
+  if (world::unpack_components(packed, world, again) || again.component_of != graph.component_of) {
     std::abort();
   }
 }
@@ -111,12 +112,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   };
   try_regions(owned());
   try_links(owned());
-  (void)read_graph_index({bytes, size}, "fuzz", WorldData{}, 0);
+  (void)world::read_graph_index({bytes, size}, "fuzz", world::WorldData{}, 0);
   try_packed(bytes, size);
   if (size < 8) return 0;
   // The first bytes give the lengths of the arrays.
   const uint8_t *at = bytes + 8, *end = bytes + size;
-  RegionTables t;
+  world::RegionTables t;
   t.classes = bytes[4];
   t.first = take<uint32_t>(at, end, bytes[0]);
   t.regions = take<format::Region>(at, end, bytes[1]);
@@ -125,7 +126,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   t.groups.names = take<uint8_t>(at, end, bytes[5]);
   t.groups.begun = take<uint8_t>(at, end, bytes[6]);
   t.links = take<format::RegionLink>(at, end, bytes[7]);
-  try_regions(region_zone_bytes(0, 0, 0, t));
+  try_regions(world::region_zone_bytes(0, 0, 0, t));
   try_index(bytes, size);
   return 0;
 }

@@ -11,11 +11,11 @@ namespace throng {
 namespace {
 
 uint32_t ask_values(const uint64_t* words) {
-  uint16_t values[kBlocks * 64];
-  unpack_values(words, values);
+  uint16_t values[world::kBlocks * 64];
+  world::unpack_values(words, values);
   uint32_t sum = 0;
   for (int32_t c = 0; c < 4096; ++c) {
-    const uint16_t value = value_at(words, c % 64, c / 64);
+    const uint16_t value = world::value_at(words, c % 64, c / 64);
     if (value != values[c]) std::abort();
     sum += value;
   }
@@ -23,22 +23,22 @@ uint32_t ask_values(const uint64_t* words) {
 }
 
 uint32_t ask_set(const uint64_t* words) {
-  CellRows rows;
-  unpack_bits(words, rows);
+  world::CellRows rows;
+  world::unpack_bits(words, rows);
   uint32_t count = 0;
   for (int32_t c = 0; c < 4096; ++c) {
-    const bool has = bit_at(words, c % 64, c / 64);
+    const bool has = world::bit_at(words, c % 64, c / 64);
     if (has != ((rows[static_cast<size_t>(c / 64)] >> (c % 64) & 1) != 0)) std::abort();
     count += has ? 1 : 0;
   }
-  if (count != count_bits(words)) std::abort();
-  if (count > 0 && nth_bit(words, count - 1) > 4095) std::abort();
+  if (count != world::count_bits(words)) std::abort();
+  if (count > 0 && world::nth_bit(words, count - 1) > 4095) std::abort();
   return count;
 }
 
-uint32_t ask_level(const Zone& zone, uint32_t index) {
+uint32_t ask_level(const world::Zone& zone, uint32_t index) {
   const format::Level& level = zone.level(index);
-  const LevelView view = zone.view(index);
+  const world::LevelView view = zone.view(index);
   uint32_t sum = 0;
   if (view.floor != nullptr) sum += ask_values(view.floor);
   if (view.present != nullptr) sum += ask_set(view.present);
@@ -57,7 +57,7 @@ uint32_t ask_level(const Zone& zone, uint32_t index) {
     const uint64_t* words = zone.words(clearance.offset());
     if (ask_set(words) != clearance.legal_cells()) std::abort();
     for (int32_t set = 1; set < 4; ++set) {
-      words += bit_words(words);
+      words += world::bit_words(words);
       sum += ask_set(words);
     }
   }
@@ -70,7 +70,7 @@ uint32_t ask_level(const Zone& zone, uint32_t index) {
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   auto* copy = new uint8_t[size];
   std::copy_n(bytes, size, copy);
-  const auto zone = throng::Zone::from_bytes(
+  const auto zone = throng::world::Zone::from_bytes(
       flatbuffers::DetachedBuffer(nullptr, false, copy, size, copy, size), "fuzz");
   if (!zone) return 0;
   static volatile uint32_t sum = 0;

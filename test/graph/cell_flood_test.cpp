@@ -12,14 +12,17 @@
 namespace throng {
 namespace {
 
-bool has(const CellRows& rows, int32_t x, int32_t z) {
+bool has(const world::CellRows& rows, int32_t x, int32_t z) {
   return ((rows[static_cast<size_t>(z)] >> x) & 1) != 0;
 }
-void set(CellRows& rows, int32_t x, int32_t z) { rows[static_cast<size_t>(z)] |= uint64_t{1} << x; }
+void set(world::CellRows& rows, int32_t x, int32_t z) {
+  rows[static_cast<size_t>(z)] |= uint64_t{1} << x;
+}
 
 // Cell by cell.
-CellRows naive_flood(const CellRows& open, const StepCuts* cuts, int32_t x, int32_t z) {
-  CellRows filled{};
+world::CellRows naive_flood(const world::CellRows& open, const graph::StepCuts* cuts, int32_t x,
+                            int32_t z) {
+  world::CellRows filled{};
   std::queue<std::pair<int32_t, int32_t>> queue;
   set(filled, x, z);
   queue.push({x, z});
@@ -47,8 +50,8 @@ CellRows naive_flood(const CellRows& open, const StepCuts* cuts, int32_t x, int3
 }
 
 // About `share` of 256 bits set.
-CellRows random_rows(uint64_t seed, uint64_t n, uint32_t share) {
-  CellRows rows{};
+world::CellRows random_rows(uint64_t seed, uint64_t n, uint32_t share) {
+  world::CellRows rows{};
   for (uint64_t cell = 0; cell < 4096; ++cell) {
     if (random_below(seed, n * 4096 + cell, 0, 256) < share)
       set(rows, static_cast<int32_t>(cell % 64), static_cast<int32_t>(cell / 64));
@@ -59,13 +62,13 @@ CellRows random_rows(uint64_t seed, uint64_t n, uint32_t share) {
 // By the same finder, as its scratch is used again, behind what the list holds.
 class Parts {
  public:
-  std::vector<CellRows> of(const CellRows& open, const StepCuts* cuts) {
+  std::vector<world::CellRows> of(const world::CellRows& open, const graph::StepCuts* cuts) {
     const size_t before = list_.parts.size();
     finder_.find(open, cuts, list_);
-    std::vector<CellRows> found;
+    std::vector<world::CellRows> found;
     for (size_t p = before; p < list_.parts.size(); ++p) {
-      const PartList::Part& part = list_.parts[p];
-      CellRows rows{};
+      const graph::PartList::Part& part = list_.parts[p];
+      world::CellRows rows{};
       uint32_t cells = 0;
       uint64_t west = 0, east = 0;
       for (size_t z = part.begin; z < part.end; ++z) {
@@ -83,18 +86,19 @@ class Parts {
   }
 
  private:
-  PartFinder finder_;
-  PartList list_;
+  graph::PartFinder finder_;
+  graph::PartList list_;
 };
 
-std::vector<CellRows> connected_parts(const CellRows& open, const StepCuts* cuts) {
+std::vector<world::CellRows> connected_parts(const world::CellRows& open,
+                                             const graph::StepCuts* cuts) {
   return Parts().of(open, cuts);
 }
 
-void expect_parts_as_naive(const CellRows& open, const StepCuts* cuts) {
+void expect_parts_as_naive(const world::CellRows& open, const graph::StepCuts* cuts) {
   const auto parts = connected_parts(open, cuts);
-  CellRows together{};
-  for (const CellRows& part : parts) {
+  world::CellRows together{};
+  for (const world::CellRows& part : parts) {
     int32_t x = 0, z = 0;
     while (!has(part, x, z)) {
       x = (x + 1) % 64;
@@ -109,7 +113,7 @@ void expect_parts_as_naive(const CellRows& open, const StepCuts* cuts) {
   ASSERT_EQ(together, open);
   // In the order of their first cells, also where the finder and its list were used before.
   uint32_t last = 0;
-  for (const CellRows& part : parts) {
+  for (const world::CellRows& part : parts) {
     uint32_t cell = 0;
     while (!has(part, static_cast<int32_t>(cell % 64), static_cast<int32_t>(cell / 64))) ++cell;
     ASSERT_TRUE(last == 0 || cell > last);
@@ -122,9 +126,10 @@ void expect_parts_as_naive(const CellRows& open, const StepCuts* cuts) {
 TEST(CellFlood, FindsTheSamePartsAsCellByCell) {
   for (uint64_t n = 0; n < 60; ++n) {
     for (const uint32_t share : {20u, 110u, 150u, 170u, 200u, 250u}) {
-      const CellRows open = random_rows(share, n, share);
+      const world::CellRows open = random_rows(share, n, share);
       expect_parts_as_naive(open, nullptr);
-      const StepCuts cuts{random_rows(share + 1, n, share / 3), random_rows(share + 2, n, 40)};
+      const graph::StepCuts cuts{random_rows(share + 1, n, share / 3),
+                                 random_rows(share + 2, n, 40)};
       expect_parts_as_naive(open, &cuts);
     }
   }
@@ -133,39 +138,40 @@ TEST(CellFlood, FindsTheSamePartsAsCellByCell) {
 TEST(CellFlood, FindsTheSamePartsWhereRowsAreAlike) {
   for (uint64_t n = 0; n < 60; ++n) {
     for (const uint32_t share : {20u, 110u, 170u, 250u}) {
-      CellRows open = random_rows(share, n, share);
+      world::CellRows open = random_rows(share, n, share);
       for (size_t z = 1; z < 64; ++z) {
         if (random_below(n, z, 0, 4) != 0) open[z] = open[z - 1];
       }
       expect_parts_as_naive(open, nullptr);
       // Cuts are not alike.
-      const StepCuts cuts{random_rows(share + 1, n, share / 3), random_rows(share + 2, n, 40)};
+      const graph::StepCuts cuts{random_rows(share + 1, n, share / 3),
+                                 random_rows(share + 2, n, 40)};
       expect_parts_as_naive(open, &cuts);
     }
   }
 }
 
 TEST(CellFlood, FindsTheSamePartsOfSeveralSetsAtOnce) {
-  LaneScratch scratch;
-  PartFinder finder;
-  PartList list;
+  graph::LaneScratch scratch;
+  graph::PartFinder finder;
+  graph::PartList list;
   for (uint64_t n = 0; n < 40; ++n) {
-    std::vector<CellRows> rows;
+    std::vector<world::CellRows> rows;
     for (size_t set = 0; set <= n % 17; ++set) {
       const auto share = static_cast<uint32_t>(random_below(n, set, 1, 257));
       rows.push_back(random_rows(n, set, share));
     }
-    std::vector<const CellRows*> sets;
-    for (const CellRows& of_set : rows) sets.push_back(&of_set);
+    std::vector<const world::CellRows*> sets;
+    for (const world::CellRows& of_set : rows) sets.push_back(&of_set);
     std::vector<uint32_t> first(sets.size() + 1);
-    find_parts_of(sets, scratch, list, first);
+    graph::find_parts_of(sets, scratch, list, first);
     ASSERT_EQ(first.back(), list.parts.size());
     for (size_t set = 0; set < sets.size(); ++set) {
-      PartList alone;
+      graph::PartList alone;
       finder.find(rows[set], nullptr, alone);
       ASSERT_EQ(first[set + 1] - first[set], alone.parts.size());
       for (size_t i = 0; i < alone.parts.size(); ++i) {
-        const PartList::Part &part = list.parts[first[set] + i], &same = alone.parts[i];
+        const graph::PartList::Part &part = list.parts[first[set] + i], &same = alone.parts[i];
         ASSERT_EQ(part.begin, same.begin);
         ASSERT_EQ(part.end, same.end);
         ASSERT_EQ(part.cells, same.cells);
@@ -179,9 +185,9 @@ TEST(CellFlood, FindsTheSamePartsOfSeveralSetsAtOnce) {
 }
 
 TEST(CellFlood, FindsFewPartsOrNone) {
-  PartFinder finder;
-  PartList list;
-  CellRows rows{};
+  graph::PartFinder finder;
+  graph::PartList list;
+  world::CellRows rows{};
   EXPECT_TRUE(finder.find_few(rows, list));
   EXPECT_TRUE(list.parts.empty());
   rows.fill(5);  // two columns, all rows alike
@@ -193,12 +199,12 @@ TEST(CellFlood, FindsFewPartsOrNone) {
 }
 
 TEST(CellFlood, FollowsSpiralsAndFullAndEmptyTiles) {
-  CellRows full;
+  world::CellRows full;
   full.fill(~uint64_t{0});
-  EXPECT_EQ(connected_parts(full, nullptr), std::vector<CellRows>{full});
-  EXPECT_TRUE(connected_parts(CellRows{}, nullptr).empty());
+  EXPECT_EQ(connected_parts(full, nullptr), std::vector<world::CellRows>{full});
+  EXPECT_TRUE(connected_parts(world::CellRows{}, nullptr).empty());
   // A corridor one cell wide that winds from the rim to the middle.
-  CellRows spiral{};
+  world::CellRows spiral{};
   int32_t x = 0, z = 0, dx = 1, dz = 0;
   for (int32_t turn = 0, length = 63; length > 0; ++turn) {
     for (int32_t i = 0; i < length; ++i) {
@@ -215,7 +221,7 @@ TEST(CellFlood, FollowsSpiralsAndFullAndEmptyTiles) {
   EXPECT_EQ(connected_parts(spiral, nullptr).size(), 1u);
   expect_parts_as_naive(spiral, nullptr);
   // Cuts between all rows: each row is a part.
-  StepCuts cuts;
+  graph::StepCuts cuts;
   cuts.along.fill(~uint64_t{0});
   EXPECT_EQ(connected_parts(full, &cuts).size(), 64u);
 }

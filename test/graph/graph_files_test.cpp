@@ -74,25 +74,25 @@ void write_text(const std::string& name, const std::string& bytes) {
 // Regions, links and components of the files of a world, put together, are those of the oracle.
 // Returns how many links lead over borders.
 size_t expect_whole(const World& opened, const std::string& path) {
-  const WorldData& world = *data_of(opened);
+  const world::WorldData& world = *data_of(opened);
   const WholeGraph whole = test::whole_graph(opened);
-  std::vector<std::unique_ptr<RegionZone>> zones;
+  std::vector<std::unique_ptr<world::RegionZone>> zones;
   std::vector<uint32_t> base{0};
   for (const auto& slot : world.slots) {
-    zones.push_back(
-        read<RegionZone>(path + "/" + region_file_name(slot->entry.x(), slot->entry.z())));
+    zones.push_back(read<world::RegionZone>(
+        path + "/" + world::region_file_name(slot->entry.x(), slot->entry.z())));
     base.push_back(base.back() + static_cast<uint32_t>(zones.back()->regions().size()));
   }
   EXPECT_EQ(base.back(), whole.regions.size());
   if (base.back() != whole.regions.size()) return 0;
   size_t wrong = 0, over = 0;
-  std::vector<RegionLink> links;
+  std::vector<graph::RegionLink> links;
   for (size_t s = 0; s < zones.size(); ++s) {
     const auto regions = zones[s]->regions();
     for (uint32_t level = 0; level < zones[s]->level_count(); ++level) {
       const auto [first, last] = zones[s]->level_regions(level);
       for (uint32_t r = first; r < last; ++r) {
-        const Region& same = whole.regions[base[s] + r];
+        const graph::Region& same = whole.regions[base[s] + r];
         wrong += level + world.slots[s]->first_level != same.level ||
                  regions[r].classes() != same.classes || regions[r].key() != same.key;
       }
@@ -104,16 +104,17 @@ size_t expect_whole(const World& opened, const std::string& path) {
     };
     add(zones[s]->links(), s);
     const auto& entry = world.slots[s]->entry;
-    const auto between = read<LinkZone>(path + "/" + link_file_name(entry.x(), entry.z()));
+    const auto between =
+        read<world::LinkZone>(path + "/" + world::link_file_name(entry.x(), entry.z()));
     const auto next = [&](int32_t x, int32_t z) {
-      return static_cast<size_t>(std::max(slot_at(world, x, z), 0));
+      return static_cast<size_t>(std::max(world::slot_at(world, x, z), 0));
     };
     add(between->east(), next(entry.x() + 1, entry.z()));
     add(between->south(), next(entry.x(), entry.z() + 1));
     over += between->east().size() + between->south().size();
   }
   EXPECT_EQ(wrong, 0u);
-  merge_links(links);
+  graph::merge_links(links);
   EXPECT_EQ(links.size(), whole.links.size());
   for (size_t i = 0; i < std::min(links.size(), whole.links.size()); ++i) {
     wrong += links[i].a != whole.links[i].a || links[i].b != whole.links[i].b ||
@@ -142,13 +143,13 @@ size_t expect_whole(const World& opened, const std::string& path) {
     // Every region, at its key.
     for (uint32_t r = 0; r < whole.regions.size(); ++r) {
       if (whole.component[c][r] < 0) continue;
-      const Region& region = whole.regions[r];
-      const GroundLevel level = ground_level(world, region.level, 0);
-      const auto [tile_x, tile_z] = tile_of(world, *level.zone, *level.view.record);
+      const graph::Region& region = whole.regions[r];
+      const world::GroundLevel level = world::ground_level(world, region.level, 0);
+      const auto [tile_x, tile_z] = world::tile_of(world, *level.zone, *level.view.record);
       const auto middle = [](int32_t tile, uint32_t cell) {
-        return ((int64_t{tile} * 64 + cell) << kUnitBits) + kUnitsPerCell / 2;
+        return ((int64_t{tile} * 64 + cell) << world::kUnitBits) + world::kUnitsPerCell / 2;
       };
-      const Place place = place_at(
+      const Place place = world::place_at(
           world, level, {middle(tile_x, region.key % 64), middle(tile_z, region.key / 64)});
       wrong += graph->component_at(static_cast<int32_t>(c), place) != whole.component[c][r];
     }
@@ -222,7 +223,7 @@ TEST_F(GraphOnDisk, WithoutThemTheGraphIsMadeInMemoryAndTheSame) {
   ASSERT_TRUE(on_disk);
   const std::string bare = folder_.path() + "/bare.throng";
   fs::copy(path(), bare);
-  fs::remove(bare + "/" + kGraphIndexName);
+  fs::remove(bare + "/" + world::kGraphIndexName);
   for (const auto& entry : fs::directory_iterator(path())) {
     const std::string kind = entry.path().extension().string();
     if (kind == ".thr" || kind == ".thl") fs::remove(bare / entry.path().filename());
@@ -319,7 +320,7 @@ TEST_P(DamagedGraphFile, IsRefusedByName) {
     bytes[at] = static_cast<char>(bytes[at] ^ static_cast<char>(1 + random_below(5, n, 1, 255)));
     write_text(name_, bytes);
     // The index has no list with its checksum: what fills it up may change.
-    if (name_.ends_with(kGraphIndexName) && said().empty()) continue;
+    if (name_.ends_with(world::kGraphIndexName) && said().empty()) continue;
     expect_named("flipped at " + std::to_string(at));
   }
   EXPECT_GT(refused, 50u);

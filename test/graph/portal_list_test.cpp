@@ -10,11 +10,11 @@ namespace throng {
 namespace {
 
 // Lines as meshes have them, on borders and middles of cells and an inset beside them, and any.
-NodePortal random_portal(uint64_t n) {
+graph::NodePortal random_portal(uint64_t n) {
   const auto draw = [&](uint64_t k, uint64_t below) {
     return static_cast<uint32_t>(random_below(5, n, k, below));
   };
-  NodePortal portal{.a = draw(0, 1u << 31), .b = draw(1, 1u << 31), .on_a = {}, .on_b = {}};
+  graph::NodePortal portal{.a = draw(0, 1u << 31), .b = draw(1, 1u << 31), .on_a = {}, .on_b = {}};
   portal.kind = static_cast<LinkKind>(draw(2, kLinkKinds));
   portal.over_hole = draw(3, 2) != 0;
   portal.one_way = draw(4, 2) != 0;
@@ -25,7 +25,9 @@ NodePortal random_portal(uint64_t n) {
       const double plain = draw(key, 129) / 128.0;
       if (odd && draw(key + 1, 3) == 0) return random_unit(6, n, key);
       const uint32_t inset = draw(key + 2, 3);
-      return inset == 0 ? plain - kTileInset : inset == 1 ? plain : plain + kTileInset;
+      return inset == 0   ? plain - graph::kTileInset
+             : inset == 1 ? plain
+                          : plain + graph::kTileInset;
     };
     portal.on_a[k] = at(10 + 10 * k);
     portal.on_b[k] = at(60 + 10 * k);
@@ -33,7 +35,7 @@ NodePortal random_portal(uint64_t n) {
   return portal;
 }
 
-void expect_same(const NodePortal& got, const NodePortal& want) {
+void expect_same(const graph::NodePortal& got, const graph::NodePortal& want) {
   EXPECT_EQ(got.a, want.a);
   EXPECT_EQ(got.b, want.b);
   EXPECT_EQ(got.on_a, want.on_a);
@@ -45,11 +47,11 @@ void expect_same(const NodePortal& got, const NodePortal& want) {
 }
 
 TEST(PortalList, GivesBackWhatWasAddedToTheBit) {
-  PortalList all;
-  std::vector<NodePortal> plain;
-  std::vector<PortalList> lists;
+  graph::PortalList all;
+  std::vector<graph::NodePortal> plain;
+  std::vector<graph::PortalList> lists;
   for (uint64_t part = 0; part < 20; ++part) {
-    std::vector<NodePortal> some;
+    std::vector<graph::NodePortal> some;
     for (uint64_t n = 0; n < 500; ++n) some.push_back(random_portal(part << 20 | n));
     lists.emplace_back(some);
     plain.insert(plain.end(), some.begin(), some.end());
@@ -61,12 +63,12 @@ TEST(PortalList, GivesBackWhatWasAddedToTheBit) {
   ASSERT_EQ(all.size(), plain.size());
   for (size_t p = 0; p < plain.size(); ++p) {
     expect_same(all[p], plain[p]);
-    const PortalSides sides = all.sides(p);
+    const graph::PortalSides sides = all.sides(p);
     EXPECT_EQ(sides.a, plain[p].a);
     EXPECT_EQ(sides.b, plain[p].b);
     EXPECT_EQ(sides.one_way, plain[p].one_way);
   }
-  EXPECT_LT(all.bytes(), plain.size() * sizeof(NodePortal) / 2);
+  EXPECT_LT(all.bytes(), plain.size() * sizeof(graph::NodePortal) / 2);
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ namespace {
 constexpr uint16_t kClasses = 0b1111;
 
 // Blotches of promises, so that there are blocks of all sizes, and cuts between some cells.
-PatchCells random_cells(int32_t depth, uint64_t seed, bool with_cuts) {
-  PatchCells patch;
+graph::PatchCells random_cells(int32_t depth, uint64_t seed, bool with_cuts) {
+  graph::PatchCells patch;
   patch.depth = depth;
   const auto count = size_t{1} << (2 * depth);
   patch.cells.resize(count, {kClasses, 1, 3, 3});
@@ -33,12 +33,12 @@ PatchCells random_cells(int32_t depth, uint64_t seed, bool with_cuts) {
                   t0 = draw(1, static_cast<uint64_t>(side));
     const int32_t s1 = std::min(side, s0 + 1 + draw(2, 5)),
                   t1 = std::min(side, t0 + 1 + draw(3, 5));
-    const Promise worse{static_cast<uint16_t>(draw(4, 16)), static_cast<uint8_t>(draw(5, 4)),
-                        static_cast<uint8_t>(draw(6, 4)), static_cast<uint8_t>(draw(7, 4))};
+    const graph::Promise worse{static_cast<uint16_t>(draw(4, 16)), static_cast<uint8_t>(draw(5, 4)),
+                               static_cast<uint8_t>(draw(6, 4)), static_cast<uint8_t>(draw(7, 4))};
     for (int32_t t = t0; t < t1; ++t) {
       for (int32_t s = s0; s < s1; ++s) {
-        Promise& cell = patch.cells[patch.index(s, t)];
-        cell = both(cell, worse);
+        graph::Promise& cell = patch.cells[patch.index(s, t)];
+        cell = graph::both(cell, worse);
       }
     }
   }
@@ -58,7 +58,7 @@ PatchCells random_cells(int32_t depth, uint64_t seed, bool with_cuts) {
 
 // Calls visit(s, t) for the cells of a node.
 template <class Visit>
-void for_cells(const PatchTree& tree, const PatchNode& node, Visit visit) {
+void for_cells(const graph::PatchTree& tree, const graph::PatchNode& node, Visit visit) {
   const int32_t size = 1 << (tree.depth - node.level);
   for (int32_t t = node.t * size; t < (node.t + 1) * size; ++t) {
     for (int32_t s = node.s * size; s < (node.s + 1) * size; ++s) visit(s, t);
@@ -67,15 +67,16 @@ void for_cells(const PatchTree& tree, const PatchNode& node, Visit visit) {
 
 TEST(Quadtree, ANodePromisesTheWorstOfItsCells) {
   for (uint64_t seed = 1; seed <= 60; ++seed) {
-    const PatchCells cells = random_cells(static_cast<int32_t>(seed % 5), seed, seed % 2 == 0);
-    const PatchTree tree = build_tree(cells);
+    const graph::PatchCells cells =
+        random_cells(static_cast<int32_t>(seed % 5), seed, seed % 2 == 0);
+    const graph::PatchTree tree = graph::build_tree(cells);
     std::vector<bool> has_child(tree.nodes.size(), false);
-    for (const PatchNode& node : tree.nodes) {
-      Promise worst{0xffff, 0, 255, 255};
+    for (const graph::PatchNode& node : tree.nodes) {
+      graph::Promise worst{0xffff, 0, 255, 255};
       uint16_t cut = 0;
       const int32_t size = 1 << (tree.depth - node.level);
       for_cells(tree, node, [&](int32_t s, int32_t t) {
-        worst = both(worst, cells.cells[cells.index(s, t)]);
+        worst = graph::both(worst, cells.cells[cells.index(s, t)]);
         if (cells.cut_s.empty()) return;
         if (s + 1 < (node.s + 1) * size) cut |= cells.cut_s[cells.index(s, t)];
         if (t + 1 < (node.t + 1) * size) cut |= cells.cut_t[cells.index(s, t)];
@@ -83,9 +84,9 @@ TEST(Quadtree, ANodePromisesTheWorstOfItsCells) {
       worst.classes = static_cast<uint16_t>(worst.classes & ~cut);
       EXPECT_EQ(node.promise, worst) << "seed " << seed;
       EXPECT_NE(node.promise.classes, 0);
-      if (node.parent == kNoNode) continue;
+      if (node.parent == graph::kNoNode) continue;
       has_child[node.parent] = true;
-      EXPECT_TRUE(covers(node.promise, tree.nodes[node.parent].promise));
+      EXPECT_TRUE(graph::covers(node.promise, tree.nodes[node.parent].promise));
       EXPECT_NE(node.promise, tree.nodes[node.parent].promise);
     }
     for (size_t n = 0; n < tree.nodes.size(); ++n) {
@@ -96,10 +97,10 @@ TEST(Quadtree, ANodePromisesTheWorstOfItsCells) {
 
 TEST(Quadtree, EveryClassHasTheCellsThatItHasAlone) {
   for (uint64_t seed = 1; seed <= 60; ++seed) {
-    const PatchCells cells = random_cells(4, seed, seed % 2 == 0);
-    const PatchTree tree = build_tree(cells);
+    const graph::PatchCells cells = random_cells(4, seed, seed % 2 == 0);
+    const graph::PatchTree tree = graph::build_tree(cells);
     std::vector<uint16_t> covered(cells.cells.size(), 0);
-    std::vector<uint32_t> smallest(cells.cells.size(), kNoNode);
+    std::vector<uint32_t> smallest(cells.cells.size(), graph::kNoNode);
     for (uint32_t n = 0; n < tree.nodes.size(); ++n) {
       for_cells(tree, tree.nodes[n], [&](int32_t s, int32_t t) {
         covered[cells.index(s, t)] |= tree.nodes[n].promise.classes;
@@ -114,7 +115,7 @@ TEST(Quadtree, EveryClassHasTheCellsThatItHasAlone) {
 }
 
 // The cells of a partial node on which a class stands.
-uint64_t own_cells(const PatchCells& cells, const PatchNode& node, uint16_t bit) {
+uint64_t own_cells(const graph::PatchCells& cells, const graph::PatchNode& node, uint16_t bit) {
   uint64_t own = 0;
   for (uint64_t left = node.cells; left != 0; left &= left - 1) {
     const int32_t at = std::countr_zero(left);
@@ -125,7 +126,8 @@ uint64_t own_cells(const PatchCells& cells, const PatchNode& node, uint16_t bit)
 }
 
 // Those of some cells of a block that are connected to the first, step by step.
-uint64_t first_piece(const PatchCells& cells, const PatchNode& node, uint64_t own, uint16_t bit) {
+uint64_t first_piece(const graph::PatchCells& cells, const graph::PatchNode& node, uint64_t own,
+                     uint16_t bit) {
   std::vector<int32_t> reached{std::countr_zero(own)};
   uint64_t piece = own & (~own + 1);
   const auto is_cut = [&](const std::vector<uint16_t>& cuts, int32_t at) {
@@ -152,17 +154,17 @@ uint64_t first_piece(const PatchCells& cells, const PatchNode& node, uint64_t ow
 TEST(Quadtree, PartialNodesAreThePiecesOfEachClass) {
   size_t tested = 0, shared = 0;
   for (uint64_t seed = 1; seed <= 120; ++seed) {
-    PatchCells cells = random_cells(4 + static_cast<int32_t>(seed % 3), seed, seed % 2 == 0);
+    graph::PatchCells cells = random_cells(4 + static_cast<int32_t>(seed % 3), seed, seed % 2 == 0);
     for (uint64_t k = 0; k < seed % 4 * 40; ++k) {  // And single cells.
       const size_t i = random_below(seed, k, 50, cells.cells.size());
       cells.cells[i].classes &= static_cast<uint16_t>(random_below(seed, k, 51, 16));
     }
     cells.partial = true;
-    const PatchTree tree = build_tree(cells);
+    const graph::PatchTree tree = graph::build_tree(cells);
     std::vector<uint16_t> covered(cells.cells.size(), 0);
-    for (const PatchNode& node : tree.nodes) {
+    for (const graph::PatchNode& node : tree.nodes) {
       const uint16_t from_parent =
-          node.parent == kNoNode ? uint16_t{0} : tree.nodes[node.parent].promise.classes;
+          node.parent == graph::kNoNode ? uint16_t{0} : tree.nodes[node.parent].promise.classes;
       ASSERT_LE(node.level, tree.leaf_depth);
       if (node.cells == 0) {
         for_cells(tree, node, [&](int32_t s, int32_t t) {
@@ -186,7 +188,7 @@ TEST(Quadtree, PartialNodesAreThePiecesOfEachClass) {
           const size_t cell = cells.index(node.s * 8 + at % 8, node.t * 8 + at / 8);
           EXPECT_EQ(covered[cell] & bit, 0) << "seed " << seed;
           covered[cell] |= bit;
-          const Promise& is = cells.cells[cell];
+          const graph::Promise& is = cells.cells[cell];
           EXPECT_LE(is.inclination, node.promise.inclination);
           EXPECT_GE(is.height, node.promise.height);
           EXPECT_GE(is.headroom, node.promise.headroom);
@@ -199,13 +201,13 @@ TEST(Quadtree, PartialNodesAreThePiecesOfEachClass) {
       ASSERT_EQ(tree.classes_on(i), cells.cells[i].classes) << "seed " << seed << " cell " << i;
       // All nodes around a cell, the smallest first.
       std::vector<uint32_t> around;
-      for (uint32_t n = tree.nodes.empty() ? kNoNode : tree.leaf_of(i); n != kNoNode;
+      for (uint32_t n = tree.nodes.empty() ? graph::kNoNode : tree.leaf_of(i); n != graph::kNoNode;
            n = tree.next_around(n, i)) {
         around.push_back(n);
       }
       std::vector<uint32_t> all;
       for (uint32_t n = 0; n < tree.nodes.size(); ++n) {
-        const PatchNode& node = tree.nodes[n];
+        const graph::PatchNode& node = tree.nodes[n];
         const int32_t up = tree.depth - node.level;
         const auto s = static_cast<int32_t>(i) & (cells.side() - 1);
         const auto t = static_cast<int32_t>(i) >> tree.depth;
@@ -216,15 +218,15 @@ TEST(Quadtree, PartialNodesAreThePiecesOfEachClass) {
       ASSERT_EQ(around, all) << "seed " << seed << " cell " << i;
     }
     // Alone.
-    PatchCells alone = cells;
-    for (Promise& cell : alone.cells) cell.classes &= 1;
+    graph::PatchCells alone = cells;
+    for (graph::Promise& cell : alone.cells) cell.classes &= 1;
     for (auto* cuts : {&alone.cut_s, &alone.cut_t}) {
       for (uint16_t& cut : *cuts) cut &= 1;
     }
     // (A class that goes anywhere in a block has a node there that is not partial.)
-    const auto pieces = [&](const PatchTree& of) {
+    const auto pieces = [&](const graph::PatchTree& of) {
       size_t count = 0;
-      for (const PatchNode& node : of.nodes) {
+      for (const graph::PatchNode& node : of.nodes) {
         if (node.cells == 0 || (node.promise.classes & 1) == 0) continue;
         bool cut = false;
         for (int32_t at = 0; at < 64 && !cells.cut_s.empty(); ++at) {
@@ -236,21 +238,21 @@ TEST(Quadtree, PartialNodesAreThePiecesOfEachClass) {
       }
       return count;
     };
-    EXPECT_EQ(pieces(build_tree(alone)), pieces(tree)) << "seed " << seed;
+    EXPECT_EQ(pieces(graph::build_tree(alone)), pieces(tree)) << "seed " << seed;
   }
   EXPECT_GT(tested, 2000u);
   EXPECT_GT(shared, 300u);
 }
 
 TEST(Quadtree, AnEvenPatchIsOneNode) {
-  PatchCells cells{.depth = 6, .cells = {}, .cut_s = {}, .cut_t = {}};
+  graph::PatchCells cells{.depth = 6, .cells = {}, .cut_s = {}, .cut_t = {}};
   cells.cells.assign(4096, {1, 2, 3, 4});
-  const PatchTree tree = build_tree(cells);
+  const graph::PatchTree tree = graph::build_tree(cells);
   ASSERT_EQ(tree.nodes.size(), 1u);
   EXPECT_TRUE(tree.nodes[0].terminal);
   EXPECT_TRUE(tree.leaf.empty());
   cells.cells[77].inclination = 3;  // One steeper cell: the whole is as steep, and its rest less.
-  EXPECT_GT(build_tree(cells).nodes.size(), 6u);
+  EXPECT_GT(graph::build_tree(cells).nodes.size(), 6u);
 }
 
 class Sets {
@@ -271,8 +273,8 @@ class Sets {
 TEST(NodeLinks, NodesConnectWhatCellsConnect) {
   size_t tested = 0, steps = 0;
   for (uint64_t seed = 1; seed <= 160; ++seed) {
-    std::array<PatchCells, 2> cells = {random_cells(4, seed, seed % 2 == 0),
-                                       random_cells(3, seed + 1000, seed % 3 == 0)};
+    std::array<graph::PatchCells, 2> cells = {random_cells(4, seed, seed % 2 == 0),
+                                              random_cells(3, seed + 1000, seed % 3 == 0)};
     cells[0].partial = seed % 4 > 1;
     cells[1].partial = seed % 8 > 3;
     // Steps divide nodes, but no class's paths.
@@ -290,9 +292,9 @@ TEST(NodeLinks, NodesConnectWhatCellsConnect) {
         cells[p].step_t.push_back(some(60));
       }
     }
-    NodeForest forest;
-    for (const PatchCells& patch : cells) forest.add(build_tree(patch));
-    std::vector<CellPair> pairs;
+    graph::NodeForest forest;
+    for (const graph::PatchCells& patch : cells) forest.add(graph::build_tree(patch));
+    std::vector<graph::CellPair> pairs;
     for (uint32_t i = 0; i < 16; ++i) {
       pairs.push_back({.patch_a = 0,
                        .cell_a = i * 16 + 15,
@@ -300,10 +302,10 @@ TEST(NodeLinks, NodesConnectWhatCellsConnect) {
                        .cell_b = i / 2 * 8,
                        .classes = static_cast<uint16_t>(random_below(seed, i, 40, 16))});
     }
-    NodeLinker linker(forest);
+    graph::NodeLinker linker(forest);
     for (uint32_t p = 0; p < 2; ++p) linker.link_inside(p, cells[p]);
-    for (const CellPair& pair : pairs) linker.link(pair);
-    const std::vector<NodeLink> links = linker.take();
+    for (const graph::CellPair& pair : pairs) linker.link(pair);
+    const std::vector<graph::NodeLink> links = linker.take();
     for (size_t i = 0; i < links.size(); ++i) {
       EXPECT_LT(links[i].a, links[i].b);
       steps += links[i].kind == LinkKind::kStep ? 1 : 0;
@@ -315,7 +317,7 @@ TEST(NodeLinks, NodesConnectWhatCellsConnect) {
       const uint16_t bit = static_cast<uint16_t>(1u << c);
       Sets naive(256 + 64), nodes(forest.size());
       for (uint32_t p = 0; p < 2; ++p) {
-        const PatchCells& patch = cells[p];
+        const graph::PatchCells& patch = cells[p];
         const uint32_t base = p == 0 ? 0 : 256;
         const auto join = [&](size_t a, size_t b, const std::vector<uint16_t>& cuts) {
           const uint16_t cut = cuts.empty() ? uint16_t{0} : cuts[a];
@@ -329,20 +331,20 @@ TEST(NodeLinks, NodesConnectWhatCellsConnect) {
             if (t + 1 < patch.side()) join(i, i + static_cast<size_t>(patch.side()), patch.cut_t);
           }
         }
-        const PatchTree& tree = forest.trees[p];
+        const graph::PatchTree& tree = forest.trees[p];
         for (uint32_t n = 0; n < tree.nodes.size(); ++n) {
           const uint32_t parent = tree.nodes[n].parent;
-          if (parent != kNoNode && (tree.nodes[parent].promise.classes & bit) != 0) {
+          if (parent != graph::kNoNode && (tree.nodes[parent].promise.classes & bit) != 0) {
             nodes.join(forest.first[p] + n, forest.first[p] + parent);
           }
         }
       }
-      for (const CellPair& pair : pairs) {
+      for (const graph::CellPair& pair : pairs) {
         const bool stands = (cells[0].cells[pair.cell_a].classes &
                              cells[1].cells[pair.cell_b].classes & pair.classes & bit) != 0;
         if (stands) naive.join(pair.cell_a, 256 + pair.cell_b);
       }
-      for (const NodeLink& link : links) {
+      for (const graph::NodeLink& link : links) {
         if ((link.classes & bit) != 0) nodes.join(link.a, link.b);
       }
       std::map<uint32_t, uint32_t> part_of;  // naive part -> part of nodes, and back
@@ -351,12 +353,12 @@ TEST(NodeLinks, NodesConnectWhatCellsConnect) {
         const uint32_t p = i < 256 ? 0 : 1, cell = i < 256 ? i : i - 256;
         if ((cells[p].cells[cell].classes & bit) == 0) continue;
         // Of the nodes around the cell one in which the class stands.
-        const PatchTree& tree = forest.trees[p];
+        const graph::PatchTree& tree = forest.trees[p];
         uint32_t node = tree.leaf_of(cell);
-        while (node != kNoNode && (tree.nodes[node].promise.classes & bit) == 0) {
+        while (node != graph::kNoNode && (tree.nodes[node].promise.classes & bit) == 0) {
           node = tree.next_around(node, cell);
         }
-        ASSERT_NE(node, kNoNode);
+        ASSERT_NE(node, graph::kNoNode);
         const uint32_t a = naive.find(i), b = nodes.find(forest.first[p] + node);
         EXPECT_EQ(part_of.try_emplace(a, b).first->second, b) << "seed " << seed;
         EXPECT_EQ(back.try_emplace(b, a).first->second, a) << "seed " << seed;
@@ -370,19 +372,20 @@ TEST(NodeLinks, NodesConnectWhatCellsConnect) {
 
 TEST(NodeLinks, PairsOfTheSameCellsAndSidesAreOneInAnyOrder) {
   const auto pair = [](uint32_t cell_b, uint16_t classes, uint8_t side_a) {
-    return CellPair{.patch_a = 1,
-                    .cell_a = 5,
-                    .patch_b = 2,
-                    .cell_b = cell_b,
-                    .classes = classes,
-                    .side_a = side_a};
+    return graph::CellPair{.patch_a = 1,
+                           .cell_a = 5,
+                           .patch_b = 2,
+                           .cell_b = cell_b,
+                           .classes = classes,
+                           .side_a = side_a};
   };
-  const std::vector<CellPair> given{pair(7, 1, 2), pair(7, 2, 3), pair(6, 8, 2), pair(7, 4, 2)};
+  const std::vector<graph::CellPair> given{pair(7, 1, 2), pair(7, 2, 3), pair(6, 8, 2),
+                                           pair(7, 4, 2)};
   std::vector<size_t> order{0, 1, 2, 3};
   do {
-    std::vector<CellPair> pairs;
+    std::vector<graph::CellPair> pairs;
     for (const size_t i : order) pairs.push_back(given[i]);
-    merge_cell_pairs(pairs);
+    graph::merge_cell_pairs(pairs);
     ASSERT_EQ(pairs.size(), 3u);
     EXPECT_EQ(pairs[0].cell_b, 6u);
     EXPECT_EQ(pairs[1].side_a, 2);
@@ -394,16 +397,16 @@ TEST(NodeLinks, PairsOfTheSameCellsAndSidesAreOneInAnyOrder) {
 
 TEST(NodeLinks, LinkTheLargestThatIsNoMoreRestrictive) {
   // A gentle half and a steep half, side by side: the whole is one steep node, the gentle half two.
-  PatchCells cells{.depth = 2, .cells = {}, .cut_s = {}, .cut_t = {}};
+  graph::PatchCells cells{.depth = 2, .cells = {}, .cut_s = {}, .cut_t = {}};
   cells.cells.assign(16, {1, 2, 1, 1});
   for (int32_t t = 0; t < 4; ++t) {
     for (int32_t s = 0; s < 2; ++s) cells.cells[cells.index(s, t)].inclination = 0;
   }
-  NodeForest forest;
-  forest.add(build_tree(cells));
+  graph::NodeForest forest;
+  forest.add(graph::build_tree(cells));
   ASSERT_EQ(forest.size(), 3u);
   EXPECT_FALSE(forest.trees[0].nodes[0].terminal);
-  NodeLinker linker(forest);
+  graph::NodeLinker linker(forest);
   linker.link_inside(0, cells);
   const auto links = linker.take();
   ASSERT_EQ(links.size(), 1u);  // The two gentle ones; the steep one holds both.

@@ -24,8 +24,8 @@ struct Floor {
       }
     }
   }
-  [[nodiscard]] LevelView view() const {
-    LevelView view;
+  [[nodiscard]] world::LevelView view() const {
+    world::LevelView view;
     view.floor = &block;
     view.samples = samples.data();
     return view;
@@ -34,10 +34,11 @@ struct Floor {
   uint64_t block = 0;
 };
 
-constexpr StepLimits kLimits{.step = 20, .slope = 100};  // a wheelchair; 45 degrees in cells of 0.1
+constexpr graph::StepLimits kLimits{.step = 20,
+                                    .slope = 100};  // a wheelchair; 45 degrees in cells of 0.1
 
 TEST(TileSteps, LimitsAreTheLeastStepAndTheSteepestSlope) {
-  const StepLimits limits = step_limits(default_classes(), 0.25);
+  const graph::StepLimits limits = graph::step_limits(default_classes(), 0.25);
   EXPECT_EQ(limits.step, 20);
   EXPECT_NEAR(limits.slope, 250, 1);
 }
@@ -51,12 +52,12 @@ TEST(TileSteps, SlopesHaveNone) {
     const Floor floor([&](double x, double z) {
       return steep * std::clamp(x * std::cos(turn) + z * std::sin(turn) - begin, 0.0, end - begin);
     });
-    EXPECT_FALSE(tile_steps(floor.view(), kLimits)) << "seed " << seed;
+    EXPECT_FALSE(graph::tile_steps(floor.view(), kLimits)) << "seed " << seed;
     // Hills.
     const double high = 300 + 500 * random_unit(seed, 1, 3);
     const Floor hills(
         [&](double x, double z) { return high * std::sin(x / 9 + turn) * std::cos(z / 11); });
-    EXPECT_FALSE(tile_steps(hills.view(), kLimits)) << "seed " << seed;
+    EXPECT_FALSE(graph::tile_steps(hills.view(), kLimits)) << "seed " << seed;
   }
 }
 
@@ -65,8 +66,8 @@ TEST(TileSteps, RisersAreStepsWhereverTheyAre) {
     for (const double riser : {30.0, 170.0, -250.0}) {
       const Floor stairs([&](double x, double) { return riser * std::floor(x / tread); });
       const Floor turned([&](double, double z) { return riser * std::floor(z / tread); });
-      const auto across = tile_steps(stairs.view(), kLimits);
-      const auto along = tile_steps(turned.view(), kLimits);
+      const auto across = graph::tile_steps(stairs.view(), kLimits);
+      const auto along = graph::tile_steps(turned.view(), kLimits);
       ASSERT_TRUE(across && along);
       // At a tile's rim, where the floor beyond is not known, a slope is taken for one.
       for (int32_t x = 2; x < 61; ++x) {
@@ -85,7 +86,7 @@ TEST(TileSteps, RisersAreStepsWhereverTheyAre) {
 TEST(TileSteps, AStepOnASlopeIsMoreThanTheSlope) {
   for (const double slope : {-60.0, -10.0, 10.0, 60.0}) {
     const Floor floor([&](double x, double) { return slope * x + (x > 30 ? 40 : 0); });
-    const auto steps = tile_steps(floor.view(), kLimits);
+    const auto steps = graph::tile_steps(floor.view(), kLimits);
     // Where the ground falls away a step up may be less than none: 60 down and 40 up are 20 down.
     if (slope == -60) {
       EXPECT_FALSE(steps);
@@ -102,11 +103,11 @@ TEST(TileSteps, BordersOfTilesAreAskedOnBothSides) {
   const Floor kerb([](double, double) { return 60.0; });
   const Floor ramp([](double x, double) { return 80 * x; });
   const Floor below([](double x, double) { return 80 * (x - 64); });
-  EXPECT_TRUE(is_step(level.view(), 63, 5, kerb.view(), 0, 5, kLimits));
-  EXPECT_TRUE(is_step(kerb.view(), 63, 5, level.view(), 0, 5, kLimits));
-  EXPECT_FALSE(is_step(level.view(), 63, 5, level.view(), 0, 5, kLimits));
-  EXPECT_FALSE(is_step(level.view(), 63, 5, ramp.view(), 0, 5, kLimits));
-  EXPECT_FALSE(is_step(below.view(), 63, 5, ramp.view(), 0, 5, kLimits));
+  EXPECT_TRUE(graph::is_step(level.view(), 63, 5, kerb.view(), 0, 5, kLimits));
+  EXPECT_TRUE(graph::is_step(kerb.view(), 63, 5, level.view(), 0, 5, kLimits));
+  EXPECT_FALSE(graph::is_step(level.view(), 63, 5, level.view(), 0, 5, kLimits));
+  EXPECT_FALSE(graph::is_step(level.view(), 63, 5, ramp.view(), 0, 5, kLimits));
+  EXPECT_FALSE(graph::is_step(below.view(), 63, 5, ramp.view(), 0, 5, kLimits));
 }
 
 }  // namespace

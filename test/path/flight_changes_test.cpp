@@ -118,7 +118,7 @@ std::vector<Prism> random_prisms(uint64_t seed, double width) {
 class Cells {
  public:
   explicit Cells(const World& world, const FlightFinder& flight)
-      : space_(space_of(flight)), ends_(*data_of(world), space_of(flight), 0) {
+      : space_(path::space_of(flight)), ends_(*data_of(world), path::space_of(flight), 0) {
     const int32_t layers = space_.shape.ceiling - space_.shape.floor;
     label_.assign(static_cast<size_t>(space_.width * space_.depth * layers), -1);
     for_all([&](int32_t x, int32_t y, int32_t z) {
@@ -163,7 +163,7 @@ class Cells {
   [[nodiscard]] double side() const { return space_.shape.cell * 1e-3; }
   /// -1: no body may be there.
   [[nodiscard]] int32_t label(Vec3d feet) const {
-    const AirPoint p = ends_.to_air(feet);
+    const path::AirPoint p = ends_.to_air(feet);
     const auto x = static_cast<int32_t>(std::floor(p.x)), y = static_cast<int32_t>(std::floor(p.y)),
                z = static_cast<int32_t>(std::floor(p.z));
     return is_in(x, y, z) ? label_[at(x, y, z)] : -1;
@@ -194,8 +194,8 @@ class Cells {
     return static_cast<size_t>(((y - space_.shape.floor) * space_.depth + z) * space_.width + x);
   }
 
-  const FlightSpace& space_;
-  FlightEndpoints ends_;
+  const path::FlightSpace& space_;
+  path::FlightEndpoints ends_;
   std::vector<int32_t> label_;
 };
 
@@ -605,17 +605,17 @@ TEST(FlightChanges, AWallThroughALargeWorldIsFoundBySearching) {
   ASSERT_TRUE(world) << world.error().message;
   FlightFinder flight = finder(*world);
   ASSERT_GT(flight.summary().boxes, 90'000u);
-  const FlightEndpoints ends(*data_of(*world), space_of(flight), 0);
+  const path::FlightEndpoints ends(*data_of(*world), path::space_of(flight), 0);
   const auto component_of = [&](Vec3d p) {
-    const uint32_t at = space_of(flight).box_at(ends.to_air(p));
-    return at == kNoBox ? kNoBox : space_of(flight).component[at];
+    const uint32_t at = path::space_of(flight).box_at(ends.to_air(p));
+    return at == path::kNoBox ? path::kNoBox : path::space_of(flight).component[at];
   };
   std::vector<Vec3d> left, right;
   const uint32_t most = component_of([&] {
     for (uint64_t n = 0;; ++n) {
       const Vec3d p = *flight.random_point(4, n);
-      if (std::count(space_of(flight).component.begin(), space_of(flight).component.end(),
-                     component_of(p)) > 50'000) {
+      if (std::count(path::space_of(flight).component.begin(),
+                     path::space_of(flight).component.end(), component_of(p)) > 50'000) {
         return p;
       }
     }

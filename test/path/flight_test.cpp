@@ -127,8 +127,8 @@ TEST(Flight, KnowsWhichGroundLeadsIntoWhichAir) {
   for (const bool yard : {true, false}) {
     const World world = bake(yard ? yards : church, 0.2);
     FlightFinder flight = finder(world);
-    const FlightEndpoints ends(*data_of(world), space_of(flight), 0);
-    CircleFlood flood;
+    const path::FlightEndpoints ends(*data_of(world), path::space_of(flight), 0);
+    path::CircleFlood flood;
     FlightPath path;
     std::vector<uint32_t> over;
     for (uint64_t n = 0; n < 60; ++n) {
@@ -138,7 +138,7 @@ TEST(Flight, KnowsWhichGroundLeadsIntoWhichAir) {
       const auto air = ends.in_air(*point);
       ASSERT_TRUE(air);
       EXPECT_FALSE(ends.components_over(place, UINT64_MAX, flood, over));
-      const uint32_t of_air = space_of(flight).component[space_of(flight).box_at(*air)];
+      const uint32_t of_air = path::space_of(flight).component[path::space_of(flight).box_at(*air)];
       const bool together = std::find(over.begin(), over.end(), of_air) != over.end();
       (together ? reached : parted) += 1;
       const PathEnd expected = together ? PathEnd::kReached : PathEnd::kUnreachable;
@@ -222,9 +222,10 @@ TEST(Flight, LandsAndTakesOffAgainWhereOnlyTheGroundLeadsFromAirToAir) {
   const World world = bake(scene);
   FlightFinder flight = finder(world);
   const Vec3d here{3, 2, 4}, there{16, 3, 3};
-  const FlightEndpoints ends(*data_of(world), space_of(flight), 0);
+  const path::FlightEndpoints ends(*data_of(world), path::space_of(flight), 0);
   ASSERT_TRUE(ends.in_air(here) && ends.in_air(there));
-  ASSERT_FALSE(AirView(space_of(flight)).same_component(*ends.in_air(here), *ends.in_air(there)));
+  ASSERT_FALSE(path::AirView(path::space_of(flight))
+                   .same_component(*ends.in_air(here), *ends.in_air(there)));
   FlightPath path;
   flight.find({.from = here, .to = there}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
@@ -262,12 +263,12 @@ TEST(Flight, ReportsHowNearItComesAndTheBlocker) {
     EXPECT_NEAR(length(path.points.front() - here), 0, 0.01);
     // As near as the air comes, of all boxes, by many points of each.
     double least = INFINITY;
-    const FlightEndpoints ends(*data_of(world), space_of(flight), 0);
+    const path::FlightEndpoints ends(*data_of(world), path::space_of(flight), 0);
     const uint32_t part =
-        space_of(flight).component[space_of(flight).box_at(*ends.in_air({3, 2, 4}))];
-    for (size_t b = 0; b < space_of(flight).boxes.size(); ++b) {
-      if (space_of(flight).component[b] != part) continue;
-      const AirCube& box = space_of(flight).boxes[b];
+        path::space_of(flight).component[path::space_of(flight).box_at(*ends.in_air({3, 2, 4}))];
+    for (size_t b = 0; b < path::space_of(flight).boxes.size(); ++b) {
+      if (path::space_of(flight).component[b] != part) continue;
+      const world::AirCube& box = path::space_of(flight).boxes[b];
       for (int i = 0; i < 27; ++i) {
         const auto at = [&](int32_t low, int k) { return low + box.side * (0.01 + 0.49 * k); };
         const Vec3d p = ends.to_metres({at(box.x, i % 3), at(box.y, i / 3 % 3), at(box.z, i / 9)});

@@ -27,41 +27,42 @@ class MeshedWorld {
  public:
   MeshedWorld(const World& world, int32_t avatar_class) : world_(world), class_(avatar_class) {
     Context context;
-    auto made = build_mesh(*data_of(world), avatar_class, 0, context);
+    auto made = path::build_mesh(*data_of(world), avatar_class, 0, context);
     EXPECT_TRUE(made);
     mesh = *std::move(made);
   }
 
-  [[nodiscard]] Stop random_stop(uint64_t seed, uint64_t n) const {
+  [[nodiscard]] path::Stop random_stop(uint64_t seed, uint64_t n) const {
     const Place place = world_.random_place(class_, seed, n);
-    Stop stop;
-    stop.at = to_ground(*data_of(world_), place.position.x, place.position.z);
+    path::Stop stop;
+    stop.at = world::to_ground(*data_of(world_), place.position.x, place.position.z);
     stop.rect = mesh.rect_at(place.level1 - 1, stop.at.cell_x(), stop.at.cell_z());
-    EXPECT_NE(stop.rect, kNoRect);
+    EXPECT_NE(stop.rect, path::kNoRect);
     return stop;
   }
-  [[nodiscard]] bool together(const Stop& a, const Stop& b) const {
+  [[nodiscard]] bool together(const path::Stop& a, const path::Stop& b) const {
     return mesh.rects[a.rect].component == mesh.rects[b.rect].component;
   }
   // Of the shortest path.
-  double search(const Stop& from, const Stop& to, std::vector<uint32_t>& corners) {
+  double search(const path::Stop& from, const path::Stop& to, std::vector<uint32_t>& corners) {
     double length = 0;
-    EXPECT_EQ(search_.find(mesh, from, to, UINT64_MAX, corners, length), SearchResult::kFound);
+    EXPECT_EQ(search_.find(mesh, from, to, UINT64_MAX, corners, length),
+              path::SearchResult::kFound);
     return length;
   }
-  [[nodiscard]] bool is_legal(const Stop& from, const std::vector<uint32_t>& corners,
-                              const Stop& to) const {
-    std::vector<Stop> stops;
-    return SegmentWalker(*data_of(world_), mesh).walk(from, corners, to.at, stops) &&
+  [[nodiscard]] bool is_legal(const path::Stop& from, const std::vector<uint32_t>& corners,
+                              const path::Stop& to) const {
+    std::vector<path::Stop> stops;
+    return path::SegmentWalker(*data_of(world_), mesh).walk(from, corners, to.at, stops) &&
            stops.back().rect == to.rect;
   }
 
-  PathMesh mesh;
+  path::PathMesh mesh;
 
  private:
   const World& world_;
   int32_t class_;
-  PathSearch search_;
+  path::PathSearch search_;
 };
 
 std::vector<World> some_worlds() {
@@ -77,19 +78,19 @@ TEST(Labels, AStringOverAThirdPlacePullsTaut) {
   int pulled = 0, shortest = 0;
   for (const World& world : some_worlds()) {
     MeshedWorld meshed(world, 0);
-    StringPuller puller;
+    path::StringPuller puller;
     std::vector<uint32_t> first, second, corners, exact;
     for (uint64_t n = 0; n < 150; ++n) {
-      const Stop from = meshed.random_stop(1, 3 * n), over = meshed.random_stop(1, 3 * n + 1);
-      const Stop to = meshed.random_stop(1, 3 * n + 2);
+      const path::Stop from = meshed.random_stop(1, 3 * n), over = meshed.random_stop(1, 3 * n + 1);
+      const path::Stop to = meshed.random_stop(1, 3 * n + 2);
       if (!meshed.together(from, to) || !meshed.together(from, over)) continue;
       SCOPED_TRACE(testing::Message() << n);
       const double both = meshed.search(from, over, first) + meshed.search(over, to, second);
-      std::vector<Waypoint> path{{in_cells(from.at), from.rect}};
-      for (const uint32_t c : first) path.push_back(waypoint(meshed.mesh, c));
-      path.push_back({in_cells(over.at), over.rect});
-      for (const uint32_t c : second) path.push_back(waypoint(meshed.mesh, c));
-      path.push_back({in_cells(to.at), to.rect});
+      std::vector<path::Waypoint> path{{path::in_cells(from.at), from.rect}};
+      for (const uint32_t c : first) path.push_back(path::waypoint(meshed.mesh, c));
+      path.push_back({path::in_cells(over.at), over.rect});
+      for (const uint32_t c : second) path.push_back(path::waypoint(meshed.mesh, c));
+      path.push_back({path::in_cells(to.at), to.rect});
       double length = 0;
       ASSERT_TRUE(puller.pull(meshed.mesh, path, corners, length));
       EXPECT_TRUE(meshed.is_legal(from, corners, to));
@@ -100,8 +101,8 @@ TEST(Labels, AStringOverAThirdPlacePullsTaut) {
       shortest += length < least + 1e-6;
       // A taut path stays as it is.
       double again = 0;
-      std::vector<Waypoint> taut{path.front()};
-      for (const uint32_t c : corners) taut.push_back(waypoint(meshed.mesh, c));
+      std::vector<path::Waypoint> taut{path.front()};
+      for (const uint32_t c : corners) taut.push_back(path::waypoint(meshed.mesh, c));
       taut.push_back(path.back());
       ASSERT_TRUE(puller.pull(meshed.mesh, taut, exact, again));
       EXPECT_EQ(exact, corners);
@@ -115,15 +116,15 @@ TEST(Labels, PathsOverMiddlesAreHardlyLonger) {
   int pairs = 0, exact = 0;
   for (const World& world : some_worlds()) {
     MeshedWorld meshed(world, 0);
-    cut_into_blocks(meshed.mesh, kLargeBlock);
+    path::cut_into_blocks(meshed.mesh, path::kLargeBlock);
     Context context;
-    const auto labels = build_labels(meshed.mesh, 0, context);
+    const auto labels = path::build_labels(meshed.mesh, 0, context);
     ASSERT_TRUE(labels);
     ASSERT_FALSE(labels->by_middle.first.empty());
-    LabelSearch label_search;
+    path::LabelSearch label_search;
     std::vector<uint32_t> corners, shortest;
     for (uint64_t n = 0; n < 250; ++n) {
-      const Stop from = meshed.random_stop(2, 2 * n), to = meshed.random_stop(2, 2 * n + 1);
+      const path::Stop from = meshed.random_stop(2, 2 * n), to = meshed.random_stop(2, 2 * n + 1);
       if (!meshed.together(from, to)) continue;
       SCOPED_TRACE(testing::Message() << n);
       double length = 0;
@@ -145,14 +146,14 @@ TEST(Labels, PathsOverMiddlesAreHardlyLonger) {
 TEST(Labels, NoCornerIsLostToRounding) {
   const World world = test::bake(test::builtin({.name = "maze", .size = 30, .levels = 2}), 0.15);
   MeshedWorld meshed(world, 0);
-  cut_into_blocks(meshed.mesh, kLargeBlock);
+  path::cut_into_blocks(meshed.mesh, path::kLargeBlock);
   Context context;
-  const auto labels = build_labels(meshed.mesh, 0, context);
+  const auto labels = path::build_labels(meshed.mesh, 0, context);
   ASSERT_TRUE(labels);
-  LabelSearch label_search;
+  path::LabelSearch label_search;
   std::vector<uint32_t> corners;
   for (uint64_t n = 47000; n < 60000; ++n) {
-    const Stop from = meshed.random_stop(2, 2 * n), to = meshed.random_stop(2, 2 * n + 1);
+    const path::Stop from = meshed.random_stop(2, 2 * n), to = meshed.random_stop(2, 2 * n + 1);
     ASSERT_TRUE(meshed.together(from, to));
     double length = 0;
     ASSERT_TRUE(label_search.find(meshed.mesh, *labels, from, to, corners, length)) << n;
@@ -161,17 +162,20 @@ TEST(Labels, NoCornerIsLostToRounding) {
 }
 
 // The middle of a cell, or another point of it.
-Stop stop_in(const World& world, const PathMesh& mesh, int32_t x, int32_t z,
-             GroundPoint within = {kUnitsPerCell / 2, kUnitsPerCell / 2}) {
-  Stop stop{{(int64_t{x} << kUnitBits) + within.x, (int64_t{z} << kUnitBits) + within.z}, kNoRect};
+path::Stop stop_in(const World& world, const path::PathMesh& mesh, int32_t x, int32_t z,
+                   world::GroundPoint within = {world::kUnitsPerCell / 2,
+                                                world::kUnitsPerCell / 2}) {
+  path::Stop stop{
+      {(int64_t{x} << world::kUnitBits) + within.x, (int64_t{z} << world::kUnitBits) + within.z},
+      path::kNoRect};
   const Place place = world.find_place(0, {x + 0.5, 0, z + 0.5}, 0.1);
   if (place) stop.rect = mesh.rect_at(place.level1 - 1, x, z);
   return stop;
 }
 
-HubLabels labels_of(const PathMesh& mesh) {
+path::HubLabels labels_of(const path::PathMesh& mesh) {
   Context context;
-  auto labels = build_labels(mesh, 0, context);
+  auto labels = path::build_labels(mesh, 0, context);
   EXPECT_TRUE(labels);
   return *std::move(labels);
 }
@@ -195,16 +199,17 @@ TEST(Labels, StraightLinesThroughPointsOfFourCellsAreFound) {
   ASSERT_TRUE(world);
   const test::GridOracle oracle(cells);
   MeshedWorld meshed(*world, 0);
-  for (const int32_t side : {kSmallBlock, kLargeBlock}) {
-    cut_into_blocks(meshed.mesh, side);
-    const HubLabels labels = labels_of(meshed.mesh);
-    LabelSearch label_search;
+  for (const int32_t side : {path::kSmallBlock, path::kLargeBlock}) {
+    path::cut_into_blocks(meshed.mesh, side);
+    const path::HubLabels labels = labels_of(meshed.mesh);
+    path::LabelSearch label_search;
     std::vector<uint32_t> corners;
     for (const int32_t half : {1, 0}) {
       for (int32_t n = 0; n < kWindow * kWindow * kWindow * kWindow; ++n) {
         const int32_t from = n / (kWindow * kWindow), to = n % (kWindow * kWindow);
         const auto stop_at = [&](int32_t cell) {
-          const GroundPoint within{half * kUnitsPerCell / 2, half * kUnitsPerCell / 2};
+          const world::GroundPoint within{half * world::kUnitsPerCell / 2,
+                                          half * world::kUnitsPerCell / 2};
           return stop_in(*world, meshed.mesh, kFirst + cell % kWindow, kFirst + cell / kWindow,
                          within);
         };
@@ -212,13 +217,13 @@ TEST(Labels, StraightLinesThroughPointsOfFourCellsAreFound) {
           return test::HalfPoint{2 * (kFirst + cell % kWindow) + half,
                                  2 * (kFirst + cell / kWindow) + half};
         };
-        const Stop a = stop_at(from), b = stop_at(to);
-        if (a.rect == kNoRect || b.rect == kNoRect) continue;
+        const path::Stop a = stop_at(from), b = stop_at(to);
+        if (a.rect == path::kNoRect || b.rect == path::kNoRect) continue;
         double length = 0;
         ASSERT_TRUE(label_search.find(meshed.mesh, labels, a, b, corners, length));
         const auto best = oracle.shortest(point(from), point(to), length * (1 + 1e-9) + 1e-9);
         ASSERT_TRUE(best) << from << " to " << to;
-        EXPECT_LE(length, *best * (side == kSmallBlock ? 1 : 1.02) + 1e-6)
+        EXPECT_LE(length, *best * (side == path::kSmallBlock ? 1 : 1.02) + 1e-6)
             << from << " to " << to << ", half " << half << ", side " << side;
       }
     }
@@ -236,11 +241,11 @@ TEST(Labels, AreAsShortAsTheSearchOverRandomCells) {
     const auto world = bake_flat_cells(cells, 1);
     ASSERT_TRUE(world);
     MeshedWorld meshed(*world, 0);
-    for (const int32_t side : {kSmallBlock, kLargeBlock}) {
-      cut_into_blocks(meshed.mesh, side);
-      const HubLabels labels = labels_of(meshed.mesh);
-      ASSERT_EQ(labels.by_middle.first.empty(), side == kSmallBlock);
-      LabelSearch label_search;
+    for (const int32_t side : {path::kSmallBlock, path::kLargeBlock}) {
+      path::cut_into_blocks(meshed.mesh, side);
+      const path::HubLabels labels = labels_of(meshed.mesh);
+      ASSERT_EQ(labels.by_middle.first.empty(), side == path::kSmallBlock);
+      path::LabelSearch label_search;
       std::vector<uint32_t> corners, exact;
       for (uint64_t n = 0; n < 400; ++n) {
         const auto random_stop = [&](uint64_t use) {
@@ -248,20 +253,21 @@ TEST(Labels, AreAsShortAsTheSearchOverRandomCells) {
             const auto count = static_cast<uint64_t>(most);
             return static_cast<int32_t>(random_below(seed, n + 1, 8 * use + more, count));
           };
-          const int32_t parts = 1 << std::min(below(0, 14), kUnitBits);
-          const int32_t part = kUnitsPerCell / parts;
-          const GroundPoint within{below(1, parts) * part, below(2, parts) * part};
+          const int32_t parts = 1 << std::min(below(0, 14), world::kUnitBits);
+          const int32_t part = world::kUnitsPerCell / parts;
+          const world::GroundPoint within{below(1, parts) * part, below(2, parts) * part};
           return stop_in(*world, meshed.mesh, below(3, width), below(4, depth), within);
         };
-        const Stop from = random_stop(0), to = random_stop(1);
-        if (from.rect == kNoRect || to.rect == kNoRect || !meshed.together(from, to)) continue;
+        const path::Stop from = random_stop(0), to = random_stop(1);
+        if (from.rect == path::kNoRect || to.rect == path::kNoRect || !meshed.together(from, to))
+          continue;
         SCOPED_TRACE(testing::Message() << "seed " << seed << ", pair " << n << ", side " << side);
         double length = 0;
         ASSERT_TRUE(label_search.find(meshed.mesh, labels, from, to, corners, length));
         EXPECT_TRUE(meshed.is_legal(from, corners, to));
         const double least = meshed.search(from, to, exact);
         EXPECT_GE(length, least - 1e-5);
-        EXPECT_LE(length, least * (side == kSmallBlock ? 1 : 1.02) + 1e-5);
+        EXPECT_LE(length, least * (side == path::kSmallBlock ? 1 : 1.02) + 1e-5);
         ++pairs;
         straight += exact.empty();
       }
@@ -302,9 +308,9 @@ TEST(Labels, PathsAreHardlyLongerWhereMiddlesSeeEachOther) {
     const auto world = bake_flat_cells(cells, 1);
     ASSERT_TRUE(world);
     MeshedWorld meshed(*world, 0);
-    cut_into_blocks(meshed.mesh, kLargeBlock);
-    const HubLabels labels = labels_of(meshed.mesh);
-    LabelSearch label_search;
+    path::cut_into_blocks(meshed.mesh, path::kLargeBlock);
+    const path::HubLabels labels = labels_of(meshed.mesh);
+    path::LabelSearch label_search;
     std::vector<uint32_t> corners, exact;
     for (uint64_t n = 0; n < 2000; ++n) {
       const auto random_stop = [&](uint64_t use) {
@@ -312,8 +318,9 @@ TEST(Labels, PathsAreHardlyLongerWhereMiddlesSeeEachOther) {
                        static_cast<int32_t>(random_below(seed, 100 + n, use, kWidth)),
                        static_cast<int32_t>(random_below(seed, 100 + n, use + 1, kDepth)));
       };
-      const Stop from = random_stop(0), to = random_stop(2);
-      if (from.rect == kNoRect || to.rect == kNoRect || !meshed.together(from, to)) continue;
+      const path::Stop from = random_stop(0), to = random_stop(2);
+      if (from.rect == path::kNoRect || to.rect == path::kNoRect || !meshed.together(from, to))
+        continue;
       double length = 0;
       ASSERT_TRUE(label_search.find(meshed.mesh, labels, from, to, corners, length));
       EXPECT_LE(length, meshed.search(from, to, exact) * 1.02 + 1e-5) << seed << ", " << n;

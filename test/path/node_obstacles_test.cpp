@@ -115,10 +115,10 @@ TEST(NodeObstacles, EveryPathAroundThemIsLegalForItsBody) {
   EXPECT_GE(pairs, reached + blocked);
 }
 
-BlockPoint point_of(const NodeView& view, const NodePlace& place) {
-  const NodeMesh& mesh = view.mesh();
+path::BlockPoint point_of(const path::NodeView& view, const NodePlace& place) {
+  const graph::NodeMesh& mesh = view.mesh();
   const uint32_t block = mesh.block_at(mesh.patch_of_node(place.node1 - 1), place.s, place.t);
-  if (block == kNoNode) return {};
+  if (block == graph::kNoNode) return {};
   return {view.changes()->part_at(block, place.s, place.t), place.s, place.t};
 }
 
@@ -128,10 +128,10 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftFindsTheSame) {
   for_each_world([&](const TestWorld& world) {
     Context context;
     for (int32_t c = 0; c < 4; ++c) {
-      const auto mesh = NodeMesh::make(world.nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::make(world.nodes, c, 1, context);
       ASSERT_TRUE(mesh);
-      const BlockSquares squares(*mesh);
-      NodeChanges changes(*mesh, squares, 20);
+      const path::BlockSquares squares(*mesh);
+      path::NodeChanges changes(*mesh, squares, 20);
       auto finder = NodePathFinder::create(world.nodes, {.avatar_class = c, .workers = 1}, context);
       ASSERT_TRUE(finder);
       for (const Prism& prism : random_prisms(world.nodes, 77, 50)) {
@@ -148,17 +148,17 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftFindsTheSame) {
         ASSERT_TRUE(finder->add_obstacle(wall));
       }
       changes.update();
-      const NodeView view(*mesh, &changes);
-      const PieceCost piece(view, 0);
-      NodeSearch plain(view, piece);
-      std::vector<Crossing> best;
+      const path::NodeView view(*mesh, &changes);
+      const path::PieceCost piece(view, 0);
+      path::NodeSearch plain(view, piece);
+      std::vector<path::Crossing> best;
       NodePath path;
       for (uint64_t n = 0; n < 40; ++n) {
         const NodePlace from = world.nodes.random_place(c, 5, n < 10 && n % 2 == 0 ? 0 : 2 * n);
         const NodePlace to = world.nodes.random_place(c, 5, n < 10 && n % 2 != 0 ? 0 : 2 * n + 1);
-        const BlockPoint a = point_of(view, from), b = point_of(view, to);
+        const path::BlockPoint a = point_of(view, from), b = point_of(view, to);
         finder->find(from, to, path);
-        if (a.block == kNoNode || b.block == kNoNode) {
+        if (a.block == graph::kNoNode || b.block == graph::kNoNode) {
           ++nowhere;
           EXPECT_EQ(path.end, PathEnd::kNoPlace);
           continue;
@@ -172,10 +172,10 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftFindsTheSame) {
         }
         ++unreachable;
         islands += n < 10 ? 1 : 0;
-        const BlockPoint last = best.empty() ? a : ends_of(view, best.back()).in;
+        const path::BlockPoint last = best.empty() ? a : path::ends_of(view, best.back()).in;
         // As near as the nearest crossing, or nearer in the block that it leads into.
         EXPECT_LE(length(path.points.back().place.feet - to.feet),
-                  length(position(view, last) - to.feet) + 1e-9);
+                  length(path::position(view, last) - to.feet) + 1e-9);
         EXPECT_NE(path.obstacle, Obstacle::kNone);
       }
     }
@@ -193,28 +193,28 @@ TEST(NodeObstacles, LongPathsLeadOverWhatIsLeft) {
   for_each_world([&](const TestWorld& world) {
     Context context;
     for (const int32_t c : {0, 2, 3}) {
-      const auto mesh = NodeMesh::make(world.nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::make(world.nodes, c, 1, context);
       ASSERT_TRUE(mesh);
-      const BlockSquares squares(*mesh);
-      NodeChanges changes(*mesh, squares, 20);
-      const NodeView view(*mesh, &changes);
-      const PieceCost piece(view, 0);
-      const NodeView baked(*mesh);
-      const PieceCost baked_piece(baked, 0);
-      const Overlay overlay(*mesh, baked_piece, 1, 48);
+      const path::BlockSquares squares(*mesh);
+      path::NodeChanges changes(*mesh, squares, 20);
+      const path::NodeView view(*mesh, &changes);
+      const path::PieceCost piece(view, 0);
+      const path::NodeView baked(*mesh);
+      const path::PieceCost baked_piece(baked, 0);
+      const path::Overlay overlay(*mesh, baked_piece, 1, 48);
       ASSERT_FALSE(overlay.empty());
-      OverlaySearch search(view, piece, overlay);
-      NodeSearch plain(view, piece), blocks(view, piece);
-      std::vector<Crossing> best, crossings;
+      path::OverlaySearch search(view, piece, overlay);
+      path::NodeSearch plain(view, piece), blocks(view, piece);
+      std::vector<path::Crossing> best, crossings;
       for (uint64_t round = 0; round < 3; ++round) {
         for (const Prism& prism : random_prisms(world.nodes, 100 + round, 25))
           changes.add({prism, {}});
         changes.update();
         search.update();
         for (uint64_t n = 0; n < 30; ++n) {
-          const BlockPoint from = point_of(view, world.nodes.random_place(c, 9, 2 * n));
-          const BlockPoint to = point_of(view, world.nodes.random_place(c, 9, 2 * n + 1));
-          if (from.block == kNoNode || to.block == kNoNode) continue;
+          const path::BlockPoint from = point_of(view, world.nodes.random_place(c, 9, 2 * n));
+          const path::BlockPoint to = point_of(view, world.nodes.random_place(c, 9, 2 * n + 1));
+          if (from.block == graph::kNoNode || to.block == graph::kNoNode) continue;
           const PathEnd end = plain.find(from, to, {}, best);
           const PathEnd over_entrances = search.find(from, to, {}, blocks, crossings);
           if (end != PathEnd::kReached) {
@@ -227,9 +227,9 @@ TEST(NodeObstacles, LongPathsLeadOverWhatIsLeft) {
           ++reached;
           EXPECT_GE(search.cost(), plain.cost() * (1 - 1e-9));
           sum += search.cost() / plain.cost();
-          BlockPoint at = from;
-          for (const Crossing& crossing : crossings) {
-            const auto [out, in] = ends_of(view, crossing);
+          path::BlockPoint at = from;
+          for (const path::Crossing& crossing : crossings) {
+            const auto [out, in] = path::ends_of(view, crossing);
             ASSERT_EQ(out.block, at.block);
             at = in;
           }
@@ -315,28 +315,28 @@ TEST(NodeObstacles, BlockNoMoreThanNeeded) {
   for_each_world([&](const TestWorld& world) {
     Context context;
     for (int32_t c = 0; c < 4; ++c) {
-      const auto mesh = NodeMesh::make(world.nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::make(world.nodes, c, 1, context);
       ASSERT_TRUE(mesh);
-      const BlockSquares squares(*mesh);
-      NodeChanges changes(*mesh, squares, 20);
+      const path::BlockSquares squares(*mesh);
+      path::NodeChanges changes(*mesh, squares, 20);
       const std::vector<Prism> prisms = random_prisms(world.nodes, 11, 40);
       for (const Prism& prism : prisms) changes.add({prism, {}});
       changes.update();
-      const NodeView view(*mesh, &changes);
+      const path::NodeView view(*mesh, &changes);
       const AvatarClass avatar = classes()[static_cast<size_t>(c)];
       for (uint64_t n = 0; n < 4000; ++n) {
         const NodePlace place = world.nodes.random_place(c, 21, n);
-        const bool is_blocked = point_of(view, place).block == kNoNode;
+        const bool is_blocked = point_of(view, place).block == graph::kNoNode;
         // Along its axis, grown by a cell of half a metre.
         bool is_near = false;
         for (const Prism& prism : prisms) {
-          BodyRoom body;
+          path::BodyRoom body;
           body.feet = place.feet;
           body.axis = place.axis;
           body.spread = 0.5;
           body.top = avatar.height;
           body.radius = avatar.radius;
-          is_near = is_near || may_touch(body, {prism, {}});
+          is_near = is_near || path::may_touch(body, {prism, {}});
         }
         blocked += is_blocked ? 1 : 0;
         blocked_near += is_blocked && is_near ? 1 : 0;

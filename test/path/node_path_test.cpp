@@ -108,10 +108,10 @@ TEST(NodePath, SearchFindsTheCheapestCrossings) {
   for (const double slope_cost : {0.0, 3.0}) {
     const Nodes nodes = make(net_scene(7), 0.25, 1);
     for (const int32_t c : {0, 4}) {
-      const auto mesh = NodeMesh::make(nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::make(nodes, c, 1, context);
       ASSERT_TRUE(mesh);
-      const NodeView view(*mesh);
-      const PieceCost piece(view, slope_cost);
+      const path::NodeView view(*mesh);
+      const path::PieceCost piece(view, slope_cost);
       NodePathFinder found = finder(nodes, c, slope_cost);
       for (uint64_t n = 0; n < 20; ++n) {
         const NodePlace from = nodes.random_place(c, 3, 2 * n),
@@ -120,7 +120,7 @@ TEST(NodePath, SearchFindsTheCheapestCrossings) {
           return mesh->block_at(mesh->patch_of_node(place.node1 - 1), place.s, place.t);
         };
         const uint32_t first = block_of(from), last = block_of(to);
-        ASSERT_NE(first, kNoNode);
+        ASSERT_NE(first, graph::kNoNode);
         // A state is a block as it is entered by a portal, 2 p + (1 if backward), or the start.
         const size_t states = 2 * mesh->portals().size() + 1;
         std::vector<double> cost(states, std::numeric_limits<double>::infinity());
@@ -136,7 +136,7 @@ TEST(NodePath, SearchFindsTheCheapestCrossings) {
           uint32_t block = first;
           double s = from.s, t = from.t;
           if (state + 1 < states) {
-            const NodePortal portal = mesh->portals()[state / 2];
+            const graph::NodePortal portal = mesh->portals()[state / 2];
             const auto& in = state % 2 != 0 ? portal.on_a : portal.on_b;
             block = state % 2 != 0 ? portal.a : portal.b;
             s = (in[0] + in[2]) / 2;
@@ -147,7 +147,7 @@ TEST(NodePath, SearchFindsTheCheapestCrossings) {
             best = std::min(best, so_far + piece(block, s, t, at, to.s, to.t, to.feet).cost);
           }
           for (const uint32_t p : mesh->portals_of(block)) {
-            const NodePortal portal = mesh->portals()[p];
+            const graph::NodePortal portal = mesh->portals()[p];
             const bool backward = portal.a != block;
             if (backward && portal.one_way) continue;
             const auto& out = backward ? portal.on_b : portal.on_a;
@@ -257,11 +257,11 @@ TEST(NodePath, EndsAtTheNearestPlaceThatIsReached) {
         {make(builtin({.name = "landscape", .size = 100}), 0.5, 2), 0},
         {make(builtin({.name = "landscape", .size = 100}), 0.5, 2), 5}}) {
     NodePathFinder found = finder(nodes, avatar_class);
-    const auto mesh = NodeMesh::make(nodes, avatar_class, 1, context);
+    const auto mesh = graph::NodeMesh::make(nodes, avatar_class, 1, context);
     ASSERT_TRUE(mesh);
-    const NodeView view(*mesh);
-    const NodeParts parts(*mesh, 1);
-    NodeParts::Reached reached;
+    const path::NodeView view(*mesh);
+    const path::NodeParts parts(*mesh, 1);
+    path::NodeParts::Reached reached;
     NodePath path;
     for (uint64_t n = 0; n < 150; ++n) {
       const NodePlace from = nodes.random_place(avatar_class, 5, 2 * n);
@@ -273,7 +273,7 @@ TEST(NodePath, EndsAtTheNearestPlaceThatIsReached) {
       double nearest = std::numeric_limits<double>::infinity();
       for (uint32_t b = 0; b < mesh->blocks().size(); ++b) {
         if (!reached.holds(parts.of_block(b))) continue;
-        const auto [s, t] = nearest_in(view.surface(b), view.block(b), to.feet);
+        const auto [s, t] = path::nearest_in(view.surface(b), view.block(b), to.feet);
         nearest = std::min(nearest, length(view.surface(b).at(s, t) - to.feet));
       }
       const double ends = length(path.points.back().place.feet - to.feet);
@@ -363,7 +363,7 @@ TEST(NodePath, FindPlaceFindsWhatASearchThroughAllBlocksFinds) {
     const Nodes nodes = rocks ? make(builtin({.name = "landscape", .size = 64}), 0.5, 2)
                               : make(net_scene(6), 0.25, 1);
     const NodePathFinder found = finder(nodes, 4);
-    const auto mesh = NodeMesh::make(nodes, 4, 1, context);
+    const auto mesh = graph::NodeMesh::make(nodes, 4, 1, context);
     ASSERT_TRUE(mesh);
     size_t places = 0;
     for (uint64_t n = 0; n < 300; ++n) {
@@ -373,7 +373,7 @@ TEST(NodePath, FindPlaceFindsWhatASearchThroughAllBlocksFinds) {
       double nearest = reach;
       std::optional<Vec3d> best;
       for (uint32_t b = 0; b < mesh->blocks().size(); ++b) {
-        const auto [s, t] = nearest_in(mesh->surface(b), mesh->blocks()[b], near);
+        const auto [s, t] = path::nearest_in(mesh->surface(b), mesh->blocks()[b], near);
         const Vec3d feet = mesh->surface(b).at(s, t);
         const double far = length(feet - near);
         if (far > nearest || (best && far == nearest)) continue;

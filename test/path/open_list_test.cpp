@@ -25,7 +25,7 @@ struct Entry {
 };
 
 TEST(OpenList, GivesTheLeastCostFirstAndOfEqualCostsTheLowerNumber) {
-  OpenList<Entry> open;
+  path::OpenList<Entry> open;
   for (const auto& [cost, node] : {std::pair{3.0, 1u}, {1.0, 7u}, {2.0, 0u}, {1.0, 2u}}) {
     open.push({cost, node});
   }
@@ -36,7 +36,7 @@ TEST(OpenList, GivesTheLeastCostFirstAndOfEqualCostsTheLowerNumber) {
 }
 
 TEST(OpenList, ServesAnyOrderThatIsGiven) {
-  OpenList<std::pair<double, uint32_t>, std::greater<>> open;
+  path::OpenList<std::pair<double, uint32_t>, std::greater<>> open;
   open.push({2, 5});
   open.push({1, 9});
   open.push({1, 3});
@@ -46,7 +46,7 @@ TEST(OpenList, ServesAnyOrderThatIsGiven) {
 
 // Random pushes and pops with many equal costs, beside the standard library's queue.
 TEST(OpenList, AgreesWithAPriorityQueue) {
-  OpenList<Entry> open;
+  path::OpenList<Entry> open;
   std::priority_queue<Entry> queue;
   uint32_t number = 0;
   for (uint64_t n = 0; n < 20000; ++n) {
@@ -64,7 +64,7 @@ TEST(OpenList, AgreesWithAPriorityQueue) {
 }
 
 TEST(OpenList, KeepsTheOrderOfWhatStaysAndAsksForEachEntryOnce) {
-  OpenList<Entry> open;
+  path::OpenList<Entry> open;
   for (uint32_t n = 0; n < 1000; ++n) open.push({static_cast<double>(n * 7919 % 97), n});
   std::vector<int> asked(1000, 0);
   open.keep_if([&](const Entry& entry) {
@@ -83,7 +83,7 @@ TEST(OpenList, KeepsTheOrderOfWhatStaysAndAsksForEachEntryOnce) {
 }
 
 TEST(OpenList, CountsWhatItUsesAndGivesBackWhatItAllocated) {
-  OpenList<Entry> open;
+  path::OpenList<Entry> open;
   for (uint32_t n = 0; n < 100; ++n) open.push({1, n});
   EXPECT_EQ(open.used_bytes(), 3 * 100 * sizeof(Entry));
   EXPECT_GE(open.allocated_bytes(), 100 * sizeof(Entry));

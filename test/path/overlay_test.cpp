@@ -41,34 +41,36 @@ void for_each_mesh(Check check) {
     const auto nodes = Nodes::create(bake(scene, 0.25, classes()), scene, {.size = 1}, context);
     ASSERT_TRUE(nodes) << nodes.error().message;
     for (const int32_t c : {0, 3, 4, 5}) {
-      const auto mesh = NodeMesh::make(*nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::make(*nodes, c, 1, context);
       ASSERT_TRUE(mesh);
       check(*mesh);
     }
   }
 }
 
-BlockPoint random_point(const NodeMesh& mesh, uint64_t n) {
+path::BlockPoint random_point(const graph::NodeMesh& mesh, uint64_t n) {
   const NodePlace place = mesh.nodes().random_place(mesh.avatar_class(), 7, n);
   return {mesh.block_at(mesh.patch_of_node(place.node1 - 1), place.s, place.t), place.s, place.t};
 }
 
 // What a path costs from middle to middle; it must be connected.
-double cost_along(const NodeView& mesh, const PieceCost& piece, const BlockPoint& from,
-                  const std::vector<Crossing>& crossings, const BlockPoint& to) {
+double cost_along(const path::NodeView& mesh, const path::PieceCost& piece,
+                  const path::BlockPoint& from, const std::vector<path::Crossing>& crossings,
+                  const path::BlockPoint& to) {
   double cost = 0;
-  BlockPoint at = from;
-  const auto go = [&](const BlockPoint& next) {
+  path::BlockPoint at = from;
+  const auto go = [&](const path::BlockPoint& next) {
     EXPECT_EQ(next.block, at.block);
-    cost +=
-        piece(at.block, at.s, at.t, position(mesh, at), next.s, next.t, position(mesh, next)).cost;
+    cost += piece(at.block, at.s, at.t, path::position(mesh, at), next.s, next.t,
+                  path::position(mesh, next))
+                .cost;
   };
-  for (const Crossing& crossing : crossings) {
-    const NodePortal portal = mesh.portal(crossing.portal);
+  for (const path::Crossing& crossing : crossings) {
+    const graph::NodePortal portal = mesh.portal(crossing.portal);
     EXPECT_FALSE(crossing.backward && portal.one_way);
-    const auto [out, in] = ends_of(mesh, crossing);
+    const auto [out, in] = path::ends_of(mesh, crossing);
     go(out);
-    cost += portal_length(portal, position(mesh, out), position(mesh, in));
+    cost += graph::portal_length(portal, path::position(mesh, out), path::position(mesh, in));
     at = in;
   }
   go(to);
@@ -78,21 +80,21 @@ double cost_along(const NodeView& mesh, const PieceCost& piece, const BlockPoint
 TEST(Overlay, PathsOverEntrancesAreFoundIfAnyAndCostLittleMore) {
   uint64_t reached = 0, unreachable = 0, drops = 0, hole_links = 0, expanded = 0, plainly = 0;
   size_t overlay_levels = 0;
-  for_each_mesh([&](const NodeMesh& mesh) {
+  for_each_mesh([&](const graph::NodeMesh& mesh) {
     double sum = 0, worst = 0;
     int count = 0;
     for (const size_t per_cell : {24, 192}) {
-      const NodeView view(mesh);
-      const PieceCost piece(view, per_cell == 24 ? 2 : 0);
-      const Overlay overlay(mesh, piece, 2, per_cell);
+      const path::NodeView view(mesh);
+      const path::PieceCost piece(view, per_cell == 24 ? 2 : 0);
+      const path::Overlay overlay(mesh, piece, 2, per_cell);
       ASSERT_FALSE(overlay.empty());
       overlay_levels = std::max(overlay_levels, overlay.overlay_levels().size());
-      OverlaySearch search(view, piece, overlay);
-      NodeSearch plain(view, piece), blocks(view, piece);
+      path::OverlaySearch search(view, piece, overlay);
+      path::NodeSearch plain(view, piece), blocks(view, piece);
       for (uint64_t n = 0; n < 40; ++n) {
-        const BlockPoint from = random_point(mesh, 2 * n), to = random_point(mesh, 2 * n + 1);
-        ASSERT_TRUE(from.block != kNoNode && to.block != kNoNode);
-        std::vector<Crossing> best, crossings;
+        const path::BlockPoint from = random_point(mesh, 2 * n), to = random_point(mesh, 2 * n + 1);
+        ASSERT_TRUE(from.block != graph::kNoNode && to.block != graph::kNoNode);
+        std::vector<path::Crossing> best, crossings;
         const PathEnd end = plain.find(from, to, {}, best);
         ASSERT_EQ(search.find(from, to, {}, blocks, crossings), end);
         if (end != PathEnd::kReached) {
@@ -106,7 +108,7 @@ TEST(Overlay, PathsOverEntrancesAreFoundIfAnyAndCostLittleMore) {
         const double cost = cost_along(view, piece, from, crossings, to);
         EXPECT_NEAR(search.cost(), cost, 1e-9 * cost);
         EXPECT_GE(cost, plain.cost() * (1 - 1e-9));
-        for (const Crossing& crossing : crossings) {
+        for (const path::Crossing& crossing : crossings) {
           drops += mesh.portals()[crossing.portal].kind == LinkKind::kDrop;
           hole_links += mesh.portals()[crossing.portal].over_hole;
         }
@@ -138,39 +140,40 @@ TEST(Overlay, PathsOverEntrancesAreFoundIfAnyAndCostLittleMore) {
 // or a little more.
 TEST(Overlay, HoldsTheCostsOfCrossing) {
   uint64_t through = 0, none = 0;
-  for_each_mesh([&](const NodeMesh& mesh) {
-    const NodeView view(mesh);
-    const PieceCost piece(view, 1);
-    const Overlay overlay(mesh, piece, 1, 48);
-    NodeSearch search(view, piece);
+  for_each_mesh([&](const graph::NodeMesh& mesh) {
+    const path::NodeView view(mesh);
+    const path::PieceCost piece(view, 1);
+    const path::Overlay overlay(mesh, piece, 1, 48);
+    path::NodeSearch search(view, piece);
     std::vector<uint32_t> of_block = overlay.of_block();
-    std::vector<Crossing> crossings;
+    std::vector<path::Crossing> crossings;
     double sum = 0;
     int count = 0;
-    for (const Overlay::OverlayLevel& overlay_level : overlay.overlay_levels()) {
+    for (const path::Overlay::OverlayLevel& overlay_level : overlay.overlay_levels()) {
       uint64_t looked = 0;
       const uint64_t stride = overlay_level.costs.size() / 300 + 1;
       for (uint32_t d = 0; d + 1 < overlay_level.first.size(); ++d) {
         const auto entries = overlay_level.entries_of(d);
         for (const uint32_t entry : entries) {
-          const Crossing crossing = overlay.crossing(entry);
+          const path::Crossing crossing = overlay.crossing(entry);
           const auto costs = overlay_level.costs_from(entry);
           for (size_t j = 0; j < entries.size(); ++j) {
             if (entries[j] == entry || looked++ % stride != 0) continue;
-            const Crossing out = overlay.crossing(entries[j] ^ 1);
-            const NodePortal portal = mesh.portals()[out.portal];
+            const path::Crossing out = overlay.crossing(entries[j] ^ 1);
+            const graph::NodePortal portal = mesh.portals()[out.portal];
             const bool closed = (crossing.backward && mesh.portals()[crossing.portal].one_way) ||
                                 (out.backward && portal.one_way);
-            const auto ends = ends_of(view, out);
-            const PathEnd end = search.find(ends_of(view, crossing).in, ends.out, {}, crossings,
-                                            {of_block.data(), d});
+            const auto ends = path::ends_of(view, out);
+            const PathEnd end = search.find(path::ends_of(view, crossing).in, ends.out, {},
+                                            crossings, {of_block.data(), d});
             if (closed || end != PathEnd::kReached) {
               EXPECT_TRUE(std::isinf(costs[j]));
               ++none;
               continue;
             }
-            const double least = search.cost() + portal_length(portal, position(view, ends.out),
-                                                               position(view, ends.in));
+            const double least =
+                search.cost() + graph::portal_length(portal, path::position(view, ends.out),
+                                                     path::position(view, ends.in));
             ASSERT_FALSE(std::isinf(costs[j]));
             EXPECT_GE(costs[j], least * (1 - 1e-6));
             if (&overlay_level == &overlay.overlay_levels().front()) {
@@ -192,10 +195,10 @@ TEST(Overlay, HoldsTheCostsOfCrossing) {
 }
 
 TEST(Overlay, AreTheSameForAnyNumberOfWorkers) {
-  for_each_mesh([&](const NodeMesh& mesh) {
-    const NodeView view(mesh);
-    const PieceCost piece(view, 0);
-    const Overlay one(mesh, piece, 1), four(mesh, piece, 4);
+  for_each_mesh([&](const graph::NodeMesh& mesh) {
+    const path::NodeView view(mesh);
+    const path::PieceCost piece(view, 0);
+    const path::Overlay one(mesh, piece, 1), four(mesh, piece, 4);
     EXPECT_EQ(one.bytes(), four.bytes());
     ASSERT_EQ(one.overlay_levels().size(), four.overlay_levels().size());
     for (size_t k = 0; k < one.overlay_levels().size(); ++k) {
@@ -207,15 +210,15 @@ TEST(Overlay, AreTheSameForAnyNumberOfWorkers) {
 
 TEST(NodeParts, FindWhatIsReachableAndWhatComesNearest) {
   uint64_t reached = 0, unreachable = 0;
-  for_each_mesh([&](const NodeMesh& mesh) {
-    const NodeView view(mesh);
-    const PieceCost piece(view, 0);
-    const NodeParts parts(mesh, 2);
-    NodeParts::Reached marks;
-    NodeSearch plain(view, piece);
-    std::vector<Crossing> crossings;
+  for_each_mesh([&](const graph::NodeMesh& mesh) {
+    const path::NodeView view(mesh);
+    const path::PieceCost piece(view, 0);
+    const path::NodeParts parts(mesh, 2);
+    path::NodeParts::Reached marks;
+    path::NodeSearch plain(view, piece);
+    std::vector<path::Crossing> crossings;
     for (uint64_t n = 0; n < 60; ++n) {
-      const BlockPoint from = random_point(mesh, 3 * n), to = random_point(mesh, 3 * n + 1);
+      const path::BlockPoint from = random_point(mesh, 3 * n), to = random_point(mesh, 3 * n + 1);
       const PathEnd end = plain.find(from, to, {}, crossings);
       parts.reach(from.block, marks);
       EXPECT_EQ(marks.holds(parts.of_block(to.block)), end == PathEnd::kReached);
@@ -224,11 +227,13 @@ TEST(NodeParts, FindWhatIsReachableAndWhatComesNearest) {
         continue;
       }
       ++unreachable;
-      const Vec3d goal = position(view, to);
-      const BlockPoint searched = crossings.empty() ? from : ends_of(view, crossings.back()).in;
-      const BlockPoint reported =
+      const Vec3d goal = path::position(view, to);
+      const path::BlockPoint searched =
+          crossings.empty() ? from : path::ends_of(view, crossings.back()).in;
+      const path::BlockPoint reported =
           parts.nearest(view, from, goal, marks, [](uint32_t) { return false; });
-      EXPECT_EQ(length(position(view, reported) - goal), length(position(view, searched) - goal));
+      EXPECT_EQ(length(path::position(view, reported) - goal),
+                length(path::position(view, searched) - goal));
       EXPECT_EQ(plain.find(from, reported, {}, crossings), PathEnd::kReached);
     }
   });

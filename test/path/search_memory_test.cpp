@@ -49,13 +49,13 @@ PathFinder finder() {
 }
 
 // The middle of a random rectangle.
-Stop random_stop(const PathMesh& mesh, uint64_t n) {
+path::Stop random_stop(const path::PathMesh& mesh, uint64_t n) {
   const auto r = static_cast<uint32_t>(random_below(3, 1, n, mesh.rects.size() - 1));
-  const MeshRect& rect = mesh.rects[r];
+  const path::MeshRect& rect = mesh.rects[r];
   const auto middle = [](int64_t first, int64_t cells) {
-    return (2 * first + cells) << (kUnitBits - 1);
+    return (2 * first + cells) << (world::kUnitBits - 1);
   };
-  Stop stop;
+  path::Stop stop;
   stop.at = {middle(rect.x, rect.width), middle(rect.z, rect.depth)};
   stop.rect = r;
   return stop;
@@ -92,28 +92,28 @@ TEST(SearchMemory, APathIsTheSameWhateverMemoryIsLeftAsLongAsItIsEnough) {
 
 TEST(SearchMemory, WhatIsAllocatedKeepsToTheBudget) {
   const PathFinder paths = finder();
-  const PathMesh& mesh = mesh_of(paths);
-  PathSearch search;
-  PortalSearch portals;
+  const path::PathMesh& mesh = path::mesh_of(paths);
+  path::PathSearch search;
+  path::PortalSearch portals;
   std::vector<uint32_t> corners;
-  std::vector<Stop> stops;
+  std::vector<path::Stop> stops;
   double length = 0;
   uint64_t most = 0, stopped = 0;
   for (uint64_t n = 0; n < 100; ++n) {
-    const Stop from = random_stop(mesh, 2 * n), to = random_stop(mesh, 2 * n + 1);
+    const path::Stop from = random_stop(mesh, 2 * n), to = random_stop(mesh, 2 * n + 1);
     if (mesh.rects[from.rect].component != mesh.rects[to.rect].component) continue;
     const uint64_t bytes = uint64_t{1} << (12 + n % 8);
-    PathSearch rebuilt;
-    const SearchResult result =
+    path::PathSearch rebuilt;
+    const path::SearchResult result =
         rebuilt.find(mesh, from, to, {UINT64_MAX, nullptr, bytes}, corners, length);
-    stopped += result == SearchResult::kBudget ? 1 : 0;
+    stopped += result == path::SearchResult::kBudget ? 1 : 0;
     // Chunks of 1024 roots and nodes, and what one expansion adds.
     EXPECT_LT(rebuilt.allocated_bytes(), bytes + (uint64_t{1} << 18)) << n;
     search.find(mesh, from, to, {}, corners, length);
     most = std::max(most, search.allocated_bytes());
     portals.find(mesh, from, to, {}, stops, length);
-    EXPECT_LE(search.allocated_bytes(), PathSearch::kKeptBytes);
-    EXPECT_LE(portals.allocated_bytes(), PortalSearch::kKeptBytes);
+    EXPECT_LE(search.allocated_bytes(), path::PathSearch::kKeptBytes);
+    EXPECT_LE(portals.allocated_bytes(), path::PortalSearch::kKeptBytes);
   }
   EXPECT_GT(stopped, 5u);
   EXPECT_GT(most, 0u);

@@ -18,7 +18,7 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 struct RandomGraph {
-  PathGraph paths;
+  path::PathGraph paths;
   std::vector<double> edge;      // count x count; infinite: none
   std::vector<double> shortest;  // count x count
 
@@ -71,7 +71,8 @@ TEST(TwoHop, LooksUpTheShortestPathsAndTheirNodes) {
     const auto edges = static_cast<uint32_t>(random_below(seed, 0, 4, 3 * count));
     const RandomGraph graph(seed, count, edges, seed % 2 == 0);
     Context context;
-    const auto labels = label_graph(graph.paths, 16, 1 + static_cast<int32_t>(seed % 3), context);
+    const auto labels =
+        path::label_graph(graph.paths, 16, 1 + static_cast<int32_t>(seed % 3), context);
     ASSERT_TRUE(labels);
     for (uint32_t a = 0; a < count; ++a) {
       for (uint32_t b = 0; b < count; ++b) {
@@ -89,7 +90,7 @@ TEST(TwoHop, LooksUpTheShortestPathsAndTheirNodes) {
           continue;
         }
         EXPECT_NEAR(best, wanted, 1e-4);
-        const Meeting met = meet(labels->of(a), labels->of(b));
+        const path::Meeting met = path::meet(labels->of(a), labels->of(b));
         EXPECT_EQ(met.length, best);
         EXPECT_EQ(labels->of(a)[met.first].hub, met.hub);
         EXPECT_EQ(labels->of(b)[met.last].hub, met.hub);
@@ -105,8 +106,9 @@ TEST(TwoHop, LooksUpTheShortestPathsAndTheirNodes) {
       }
     }
     // Every node of a hub's tree lies in the trees once.
-    const auto nodes = std::count_if(labels->trees.begin(), labels->trees.end(),
-                                     [](uint32_t word) { return word < TwoHopLabels::kGoesOn; });
+    const auto nodes = std::count_if(labels->trees.begin(), labels->trees.end(), [](uint32_t word) {
+      return word < path::TwoHopLabels::kGoesOn;
+    });
     EXPECT_EQ(static_cast<size_t>(nodes), labels->labels.size());
   }
   EXPECT_GT(joined, 10000U);
@@ -115,10 +117,10 @@ TEST(TwoHop, LooksUpTheShortestPathsAndTheirNodes) {
 }
 
 TEST(TwoHop, AGraphWithoutNodesHasNoLabels) {
-  PathGraph none;
+  path::PathGraph none;
   none.first = {0};
   Context context;
-  const auto labels = label_graph(none, 16, 2, context);
+  const auto labels = path::label_graph(none, 16, 2, context);
   ASSERT_TRUE(labels);
   EXPECT_TRUE(labels->labels.empty());
   EXPECT_TRUE(labels->trees.empty());

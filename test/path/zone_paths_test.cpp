@@ -13,7 +13,7 @@ namespace throng {
 namespace {
 
 // Pillars of one cell, one cell apart: each has four corners.
-PathMesh among_pillars(int32_t a_side) {
+path::PathMesh among_pillars(int32_t a_side) {
   const int32_t side = 2 * a_side + 1;
   FlatCells cells{.width = side, .depth = side, .passable = {}};
   for (int32_t z = 0; z < side; ++z) {
@@ -22,21 +22,21 @@ PathMesh among_pillars(int32_t a_side) {
   Context context;
   const auto world = bake_flat_cells(cells, 0.5, 0);
   EXPECT_TRUE(world);
-  auto mesh = build_mesh(*data_of(*world), 0, 0, context);
+  auto mesh = path::build_mesh(*data_of(*world), 0, 0, context);
   EXPECT_TRUE(mesh);
   return *std::move(mesh);
 }
 
 // Paths name corners by 16 bits, of which one number says that there is none.
 TEST(ZonePaths, AZoneOfMoreCornersThanTheyCanNameIsRefused) {
-  const std::vector<Entrance> entrances{{.at = {0, 0.5}, .zone = {0, 1}, .rect = {0, 0}}};
-  Sight sight;
+  const std::vector<path::Entrance> entrances{{.at = {0, 0.5}, .zone = {0, 1}, .rect = {0, 0}}};
+  path::Sight sight;
   const auto fits = [&](int32_t pillars, size_t corners) {
-    const PathMesh mesh = among_pillars(pillars);
-    ZonePaths paths;
+    const path::PathMesh mesh = among_pillars(pillars);
+    path::ZonePaths paths;
     paths.last_rect = static_cast<uint32_t>(mesh.rects.size() - 1);
     paths.entrances = {0};
-    const bool found = find_zone_paths(mesh, entrances, 0, sight, paths);
+    const bool found = path::find_zone_paths(mesh, entrances, 0, sight, paths);
     EXPECT_EQ(paths.corners.size(), corners);
     return found;
   };

@@ -17,7 +17,7 @@ namespace {
 // A world of hand-made level tiles. `floor(level, x, z)` gives a height in mm or kNoFloor.
 struct HandMade {
   std::vector<LevelTileContent> tiles;
-  PictureWorld world;
+  render::PictureWorld world;
 
   HandMade(int32_t tiles_x, int32_t tiles_z, int32_t levels,
            const std::function<int32_t(int32_t, int32_t, int32_t)>& floor,
@@ -49,10 +49,10 @@ struct HandMade {
   }
   HandMade(const HandMade&) = delete;
 
-  std::vector<StoreyRaster> rasters(int32_t size) const {
-    const StoreyIndex index(world);
-    return rasterise_storeys(world, index, index.choose(-1, 12).shown,
-                             make_raster_grid(world, size, size))
+  std::vector<render::StoreyRaster> rasters(int32_t size) const {
+    const render::StoreyIndex index(world);
+    return render::rasterise_storeys(world, index, index.choose(-1, 12).shown,
+                                     render::make_raster_grid(world, size, size))
         .storeys;
   }
 };
@@ -75,11 +75,11 @@ TEST(StoreyRaster, WallsShaftsAndTheOutsideAreDistinguished) {
   const auto storeys = house.rasters(64);
   ASSERT_EQ(storeys.size(), 2u);
   const auto kind = [&](size_t s, size_t x, size_t z) { return storeys[s].kind[z * 64 + x]; };
-  EXPECT_EQ(kind(0, 20, 20), TexelKind::kFloor);
-  EXPECT_EQ(kind(0, 12, 12), TexelKind::kObstacle);
-  EXPECT_EQ(kind(1, 12, 12), TexelKind::kObstacle);
-  EXPECT_EQ(kind(1, 35, 35), TexelKind::kOpenBelow);
-  EXPECT_EQ(kind(1, 55, 20), TexelKind::kOutside);
+  EXPECT_EQ(kind(0, 20, 20), render::TexelKind::kFloor);
+  EXPECT_EQ(kind(0, 12, 12), render::TexelKind::kObstacle);
+  EXPECT_EQ(kind(1, 12, 12), render::TexelKind::kObstacle);
+  EXPECT_EQ(kind(1, 35, 35), render::TexelKind::kOpenBelow);
+  EXPECT_EQ(kind(1, 55, 20), render::TexelKind::kOutside);
   EXPECT_EQ(storeys[0].low, 0);
   EXPECT_EQ(storeys[1].high, 3);
   EXPECT_DOUBLE_EQ(storeys[0].floor_area, (4096 - 16) * 0.25);
@@ -105,7 +105,7 @@ TEST(StoreyRaster, APieceOfAnotherStoreyInALevelTileIsAssignedToIt) {
     const bool swapped = in(x, 130, 170) && in(z, 20, 40);
     return (swapped ? 1 - level : level) * 3000;
   });
-  for (const StoreyRaster& storey : mixed.rasters(320)) {
+  for (const render::StoreyRaster& storey : mixed.rasters(320)) {
     EXPECT_EQ(storey.low, storey.storey * 3.0);
     EXPECT_EQ(storey.high, storey.storey * 3.0);
     for (const float floor : storey.floor) ASSERT_EQ(floor, static_cast<float>(storey.storey * 3));
@@ -116,7 +116,7 @@ TEST(StoreyRaster, CrumbsAreLeftOutUnlessTheyAreRequested) {
   const HandMade crumbs(2, 2, 3, [](int32_t level, int32_t x, int32_t z) {
     return level == 1 && (x > 3 || z > 3) ? kNoFloor : level * 3000;
   });
-  const StoreyIndex index(crumbs.world);
+  const render::StoreyIndex index(crumbs.world);
   EXPECT_EQ(index.choose(-1, 12).shown, (std::vector<int32_t>{0, 2}));
   EXPECT_EQ(index.choose(-1, 12).left_out, 1);
   EXPECT_EQ(index.choose(1, 12).shown, (std::vector<int32_t>{0, 1, 2}));
@@ -130,9 +130,9 @@ TEST(StoreyRaster, CrumbsJoinAStoreyThatIsNearAndFreeThere) {
     if (level == 0) return landing ? kNoFloor : 0;
     return level == 1 ? (landing ? 1200 : kNoFloor) : (perch ? 9000 : kNoFloor);
   });
-  const StoreyIndex index(crumbs.world);
-  const auto rasters = rasterise_storeys(crumbs.world, index, index.choose(-1, 12).shown,
-                                         make_raster_grid(crumbs.world, 128, 128));
+  const render::StoreyIndex index(crumbs.world);
+  const auto rasters = render::rasterise_storeys(crumbs.world, index, index.choose(-1, 12).shown,
+                                                 render::make_raster_grid(crumbs.world, 128, 128));
   ASSERT_EQ(rasters.storeys.size(), 1u);
   EXPECT_EQ(rasters.storeys[0].floor[22 * 128 + 22], 1.2f);
   EXPECT_EQ(rasters.storeys[0].floor[42 * 128 + 42], 0);
@@ -142,13 +142,13 @@ TEST(StoreyRaster, CrumbsJoinAStoreyThatIsNearAndFreeThere) {
 TEST(Views, AvatarsAreDrawnOnTheNearestFloor) {
   const HandMade house(1, 1, 2, house_floor, house_ceiling);
   const auto storeys = house.rasters(64);
-  const RasterGrid grid = make_raster_grid(house.world, 64, 64);
+  const render::RasterGrid grid = render::make_raster_grid(house.world, 64, 64);
   const std::vector<PictureAvatar> avatars = {{{10, 0.02, 10}, 0.25},
                                               {{10, 2.9, 10}, 0.25},
                                               {{30, 2.9, 10}, 0.25},  // the upper floor ends before
                                               {{-1, 0, 10}, 0.25},    // outside
                                               {{6, 0, 6}, 0.25}};     // in the pillar
-  const auto placed = place_avatars(avatars, storeys, grid);
+  const auto placed = render::place_avatars(avatars, storeys, grid);
   ASSERT_EQ(placed.size(), 3u);
   EXPECT_EQ(placed[0].storey, 0u);
   EXPECT_EQ(placed[1].storey, 1u);
@@ -157,8 +157,8 @@ TEST(Views, AvatarsAreDrawnOnTheNearestFloor) {
 
 TEST(Views, TheSectionShowsFreeSpansAndFloors) {
   const HandMade house(1, 1, 2, house_floor, house_ceiling);
-  const RasterGrid grid = make_raster_grid(house.world, 64, 64);
-  const Section section = cut_section(house.world, grid, 35, 64);
+  const render::RasterGrid grid = render::make_raster_grid(house.world, 64, 64);
+  const render::Section section = render::cut_section(house.world, grid, 35, 64);
   EXPECT_DOUBLE_EQ(section.z, 17.75);
   ASSERT_EQ(section.free_spans[20].size(), 2u);
   EXPECT_EQ(section.free_spans[20][0].ceiling, 2.8);
@@ -171,7 +171,7 @@ TEST(Views, TheSectionShowsFreeSpansAndFloors) {
 TEST(Views, TheSectionLeavesTheMiddleOnlyForMuchMoreFloor) {
   const auto row_of = [](const std::function<int32_t(int32_t, int32_t, int32_t)>& floor) {
     const HandMade world(1, 1, 2, floor);
-    return StoreyIndex(world.world).section_row(0, 64);
+    return render::StoreyIndex(world.world).section_row(0, 64);
   };
   EXPECT_EQ(row_of([](int32_t level, int32_t, int32_t) { return level * 3000; }), 32);
   EXPECT_EQ(row_of([](int32_t level, int32_t, int32_t z) {
@@ -181,10 +181,10 @@ TEST(Views, TheSectionLeavesTheMiddleOnlyForMuchMoreFloor) {
 }
 
 // Pixels of one colour in an image.
-size_t count_colour(const Image& image, Rgb colour) {
+size_t count_colour(const Image& image, render::Rgb colour) {
   size_t count = 0;
   for (size_t i = 0; i < image.rgb.size(); i += 3) {
-    count += Rgb{image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]} == colour;
+    count += render::Rgb{image.rgb[i], image.rgb[i + 1], image.rgb[i + 2]} == colour;
   }
   return count;
 }
@@ -194,15 +194,15 @@ TEST(Poster, ShowsFloorsWallsAndAvatars) {
   const std::vector<PictureAvatar> avatars = {{{20, 0, 20}, 0.5}};
   PictureConfig config;
   config.width = 900;
-  const auto image = draw_poster(house.world, {"House", {"a line"}}, avatars, config);
+  const auto image = render::draw_poster(house.world, {"House", {"a line"}}, avatars, config);
   ASSERT_TRUE(image) << image.error().message;
   EXPECT_EQ(image->width, 900);
   EXPECT_EQ(image->rgb.size(), static_cast<size_t>(image->height) * 2700);
-  EXPECT_GT(count_colour(*image, height_colour(0)), 10000u);
-  EXPECT_GT(count_colour(*image, height_colour(1)), 10000u);
-  EXPECT_GT(count_colour(*image, kSolid), 500u);
-  EXPECT_GT(count_colour(*image, kAvatar), 60u);
-  const auto again = draw_poster(house.world, {"House", {"a line"}}, avatars, config);
+  EXPECT_GT(count_colour(*image, render::height_colour(0)), 10000u);
+  EXPECT_GT(count_colour(*image, render::height_colour(1)), 10000u);
+  EXPECT_GT(count_colour(*image, render::kSolid), 500u);
+  EXPECT_GT(count_colour(*image, render::kAvatar), 60u);
+  const auto again = render::draw_poster(house.world, {"House", {"a line"}}, avatars, config);
   EXPECT_EQ(again->rgb, image->rgb) << "the same bytes each time";
 }
 
@@ -213,9 +213,9 @@ TEST(Poster, DrawsAPathOnTheStoreyWhoseFloorItIsOn) {
     config.storey = storey;
     config.width = 900;
     config.path = {{4, height, 4}, {20, height, 4}, {20, height, 12}};
-    const auto image = draw_poster(house.world, {}, {}, config);
+    const auto image = render::draw_poster(house.world, {}, {}, config);
     EXPECT_TRUE(image);
-    return image ? count_colour(*image, kPath) : 0;
+    return image ? count_colour(*image, render::kPath) : 0;
   };
   const size_t in_legend = count_on(0, 3);
   EXPECT_GT(in_legend, 0u);
@@ -227,11 +227,11 @@ TEST(Poster, DrawsAPathOnTheStoreyWhoseFloorItIsOn) {
 
 TEST(Poster, OneStoreyIsDrawnLargerAndAlone) {
   const HandMade house(1, 1, 2, house_floor, house_ceiling);
-  const auto one =
-      draw_poster(house.world, {}, {}, {.avatar_class = 0, .storey = 1, .width = 900, .title = {}});
+  const auto one = render::draw_poster(house.world, {}, {},
+                                       {.avatar_class = 0, .storey = 1, .width = 900, .title = {}});
   ASSERT_TRUE(one) << one.error().message;
-  EXPECT_GT(count_colour(*one, height_colour(1)), 100000u);
-  EXPECT_LT(count_colour(*one, height_colour(0)), 5000u) << "in legend and section only";
+  EXPECT_GT(count_colour(*one, render::height_colour(1)), 100000u);
+  EXPECT_LT(count_colour(*one, render::height_colour(0)), 5000u) << "in legend and section only";
 }
 
 TEST(Poster, HoldsAnyShapeOfWorldAtAnyWidth) {
@@ -241,7 +241,7 @@ TEST(Poster, HoldsAnyShapeOfWorldAtAnyWidth) {
       const HandMade world(x, z, 1, hill);
       PictureConfig config;
       config.width = width;
-      const auto image = draw_poster(world.world, {"Hill", {}}, {}, config);
+      const auto image = render::draw_poster(world.world, {"Hill", {}}, {}, config);
       ASSERT_TRUE(image) << image.error().message;
       EXPECT_EQ(image->width, width);
       EXPECT_LT(image->height, width * 3);
@@ -251,16 +251,16 @@ TEST(Poster, HoldsAnyShapeOfWorldAtAnyWidth) {
 
 TEST(Poster, WhatCannotBeDrawnIsRefused) {
   const HandMade house(1, 1, 2, house_floor);
-  const auto message = [](const PictureWorld& world, int32_t storey, int32_t width) {
+  const auto message = [](const render::PictureWorld& world, int32_t storey, int32_t width) {
     PictureConfig config;
     config.storey = storey;
     config.width = width;
-    const auto image = draw_poster(world, {}, {}, config);
+    const auto image = render::draw_poster(world, {}, {}, config);
     return image ? std::string("accepted") : image.error().message;
   };
   EXPECT_EQ(message(house.world, -1, 199), "picture: width is 199; it must be 200 to 16000 pixels");
   EXPECT_EQ(message(house.world, 2, 800), "picture: no storey 2; this world has 0 to 1");
-  EXPECT_EQ(message(PictureWorld{}, -1, 800),
+  EXPECT_EQ(message(render::PictureWorld{}, -1, 800),
             "picture: this world has no floor; bake a model with surfaces");
 }
 

@@ -93,7 +93,7 @@ FreeSpanBlock free_spans_of(const SolidBlock& solids, int32_t min_free_span) {
               [](const Solid& a, const Solid& b) { return a.low < b.low; });
     std::vector<FreeSpan>& out = free_spans.cells[c];
     for (size_t i = 0; i < column.size();) {
-      FreeSpan free_span{column[i].high, kOpenSkyMm, column[i].support, column[i].code};
+      FreeSpan free_span{column[i].high, bake::kOpenSkyMm, column[i].support, column[i].code};
       for (++i; i < column.size(); ++i) {
         if (column[i].low - free_span.top >= min_free_span) {
           free_span.ceiling = column[i].low;
@@ -142,8 +142,9 @@ FreeSpanBlock high_free_spans(const FreeSpanBlock& free_spans) {
     std::vector<FreeSpan> joined = free_spans.cells[c];
     for (FreeSpan& free_span : joined) {
       if (below != nullptr) lend(*below, free_span);
-      const bool is_low = free_span.ceiling != kOpenSkyMm &&
-                          int64_t{free_span.ceiling} - free_span.top < BodyLimits::kHighFreeSpan;
+      const bool is_low =
+          free_span.ceiling != bake::kOpenSkyMm &&
+          int64_t{free_span.ceiling} - free_span.top < bake::BodyLimits::kHighFreeSpan;
       below = is_low ? &free_span : nullptr;
       if (!is_low) out.cells[c].push_back(free_span);
     }
@@ -152,40 +153,44 @@ FreeSpanBlock high_free_spans(const FreeSpanBlock& free_spans) {
 }
 
 void assign_tile(const FreeSpanBlock& free_spans, int32_t tile_x, int32_t tile_z,
-                 const BodyLimits& limits, LayerPool& pool, TileLayers& layers) {
-  const auto all = std::make_unique<TileFreeSpans>(), high = std::make_unique<TileFreeSpans>();
+                 const bake::BodyLimits& limits, bake::LayerPool& pool, bake::TileLayers& layers) {
+  const auto all = std::make_unique<bake::TileFreeSpans>(),
+             high = std::make_unique<bake::TileFreeSpans>();
   fill_tile(high_free_spans(free_spans), tile_x, tile_z, *high);
   fill_tile(with_lent_supports(free_spans), tile_x, tile_z, *all);
-  const bool low_too = limits.min_free_span < BodyLimits::kHighFreeSpan;
-  assign_free_spans({.high = *high, .all = low_too ? all.get() : nullptr}, limits, pool, layers);
-  for (const auto& layer : layers) find_useful(limits, *layer);
+  const bool low_too = limits.min_free_span < bake::BodyLimits::kHighFreeSpan;
+  bake::assign_free_spans({.high = *high, .all = low_too ? all.get() : nullptr}, limits, pool,
+                          layers);
+  for (const auto& layer : layers) bake::find_useful(limits, *layer);
 }
 
-void fill_tile(const FreeSpanBlock& block, int32_t tile_x, int32_t tile_z, TileFreeSpans& out) {
+void fill_tile(const FreeSpanBlock& block, int32_t tile_x, int32_t tile_z,
+               bake::TileFreeSpans& out) {
   const auto column = [&](int32_t cell) -> const std::vector<FreeSpan>& {
-    return block.at(tile_x * kTileSide + cell % kTileSide, tile_z * kTileSide + cell / kTileSide);
+    return block.at(tile_x * bake::kTileSide + cell % bake::kTileSide,
+                    tile_z * bake::kTileSide + cell / bake::kTileSide);
   };
   out.base = INT32_MAX;
   out.max_count = 0;
-  for (int32_t c = 0; c < kTileArea; ++c) {
+  for (int32_t c = 0; c < bake::kTileArea; ++c) {
     for (const FreeSpan& free_span : column(c)) out.base = std::min(out.base, free_span.top - 1000);
     out.count[static_cast<size_t>(c)] = static_cast<int32_t>(column(c).size());
     out.max_count = std::max(out.max_count, out.count[static_cast<size_t>(c)]);
   }
   if (out.max_count == 0) out.base = 0;
   while (out.layers.size() < static_cast<size_t>(out.max_count)) {
-    out.layers.push_back(std::make_unique<FreeSpanLayer>());
+    out.layers.push_back(std::make_unique<bake::FreeSpanLayer>());
   }
-  for (int32_t c = 0; c < kTileArea; ++c) {
+  for (int32_t c = 0; c < bake::kTileArea; ++c) {
     const auto cell = static_cast<size_t>(c);
     for (size_t k = 0; k < column(c).size(); ++k) {
       const FreeSpan& free_span = column(c)[k];
-      FreeSpanLayer& layer = *out.layers[k];
+      bake::FreeSpanLayer& layer = *out.layers[k];
       layer.top[cell] = free_span.top - out.base;
       layer.ceiling[cell] =
-          free_span.ceiling == kOpenSkyMm ? kOpenSkyMm : free_span.ceiling - out.base;
-      layer.support[cell] = free_span.support == kNoSupport
-                                ? kNoSupport
+          free_span.ceiling == bake::kOpenSkyMm ? bake::kOpenSkyMm : free_span.ceiling - out.base;
+      layer.support[cell] = free_span.support == bake::kNoSupport
+                                ? bake::kNoSupport
                                 : (free_span.support - out.base) * 256 + free_span.code;
     }
   }
@@ -248,7 +253,7 @@ SolidBlock random_solids(const RandomBlock& config) {
       }
     }
     for (auto& column : block.cells) {  // cracks: solids without a surface under the centre
-      if (!column.empty() && dice.unit() < 0.001) column.front().support = kNoSupport;
+      if (!column.empty() && dice.unit() < 0.001) column.front().support = bake::kNoSupport;
     }
   }
   return block;

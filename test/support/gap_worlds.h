@@ -15,21 +15,22 @@ namespace throng::naive {
 /// The solid spans of one cell. Absolute heights. [mm]
 struct Solid {
   int32_t low = 0, high = 0;
-  int32_t support = kNoSupport;  // highest surface under the cell's centre
+  int32_t support = bake::kNoSupport;  // highest surface under the cell's centre
   int32_t code = 0;
 };
 
 /// Free spans of one cell. Absolute heights; ceiling kOpenSkyMm under the open sky. [mm]
 struct FreeSpan {
-  int32_t top = 0, ceiling = kOpenSkyMm;
-  int32_t support = kNoSupport;
+  int32_t top = 0, ceiling = bake::kOpenSkyMm;
+  int32_t support = bake::kNoSupport;
   int32_t code = 0;
 };
 
 /// Cells [-64, 128) in x and in z: the tile under test, and its neighbours.
 template <class T>
 struct Block {
-  static constexpr int32_t kFirst = -kTileSide, kEnd = 2 * kTileSide, kSide = kEnd - kFirst;
+  static constexpr int32_t kFirst = -bake::kTileSide, kEnd = 2 * bake::kTileSide,
+                           kSide = kEnd - kFirst;
   std::vector<std::vector<T>> cells = std::vector<std::vector<T>>(size_t{kSide} * kSide);
 
   [[nodiscard]] bool inside(int32_t x, int32_t z) const {
@@ -50,7 +51,8 @@ using FreeSpanBlock = Block<FreeSpan>;
 FreeSpanBlock free_spans_of(const SolidBlock& solids, int32_t min_free_span);
 
 /// One tile of a block as the bake stores it. Tile (0, 0) is the middle one.
-void fill_tile(const FreeSpanBlock& block, int32_t tile_x, int32_t tile_z, TileFreeSpans& out);
+void fill_tile(const FreeSpanBlock& block, int32_t tile_x, int32_t tile_z,
+               bake::TileFreeSpans& out);
 
 /// The same free spans, each with the highest support under it in its column.
 FreeSpanBlock with_lent_supports(const FreeSpanBlock& free_spans);
@@ -60,7 +62,7 @@ FreeSpanBlock high_free_spans(const FreeSpanBlock& free_spans);
 
 /// Assigns the free spans of a tile to layers as the bake does.
 void assign_tile(const FreeSpanBlock& free_spans, int32_t tile_x, int32_t tile_z,
-                 const BodyLimits& limits, LayerPool& pool, TileLayers& layers);
+                 const bake::BodyLimits& limits, bake::LayerPool& pool, bake::TileLayers& layers);
 
 struct RandomBlock {
   uint64_t seed = 1;

@@ -103,12 +103,12 @@ void PlainCrowd::sense() {
         for (const uint32_t j :
              grid.bodies[grid.at((x + grid.width) % grid.width, (z + grid.depth) % grid.depth)]) {
           const Spot at = between(bodies_[i].at, bodies_[j].at);
-          if (j != i && near_square(at.x, at.z) < sight_square) near_[i].push_back({j, at});
+          if (j != i && crowd::near_square(at.x, at.z) < sight_square) near_[i].push_back({j, at});
         }
       }
     }
     std::sort(near_[i].begin(), near_[i].end(), [](const Near& a, const Near& b) {
-      const float da = near_square(a.at.x, a.at.z), db = near_square(b.at.x, b.at.z);
+      const float da = crowd::near_square(a.at.x, a.at.z), db = crowd::near_square(b.at.x, b.at.z);
       return da != db ? da < db : a.other < b.other;
     });
   }
@@ -159,12 +159,12 @@ void PlainCrowd::steer_all() {
       // A body that has arrived yields to others, of which it assumes that they move as preferred.
       const bool yields = body.arrived >= 0 && other.arrived < 0;
       const auto bound = [](const PlainBody& b, uint32_t slot) {
-        return Bound{b.at.x, b.at.z, b.goal.x, b.goal.z, b.radius, slot};
+        return crowd::Bound{b.at.x, b.at.z, b.goal.x, b.goal.z, b.radius, slot};
       };
       if (body.arrived < 0 && other.arrived < 0 &&
           goes_first(bound(other, n.other), bound(body, i))) {
         waits = true;
-        situation.preferred = preferred_of_waiting(
+        situation.preferred = crowd::preferred_of_waiting(
             config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z), body.speed,
             static_cast<float>(body.radius + other.radius) * config_.units.unit);
       }
@@ -206,7 +206,7 @@ bool PlainCrowd::can_touch(uint32_t i, const Near& n) const {
   const PlainBody &a = bodies_[i], &b = bodies_[n.other];
   const int64_t distance =
       int64_t{a.radius} + b.radius + config_.units.stride(a.speed) + config_.units.stride(b.speed);
-  return nearer_than(n.at.x, n.at.z, distance);
+  return crowd::nearer_than(n.at.x, n.at.z, distance);
 }
 
 void PlainCrowd::resolve_conflicts() {
@@ -214,18 +214,19 @@ void PlainCrowd::resolve_conflicts() {
   std::vector<Spot> now(count);
   for (size_t i = 0; i < count; ++i) now[i] = bodies_[i].at;
   std::vector<uint8_t> decided(count, 0);
-  const uint64_t every = steps_of_reaction(config_.reaction, config_.units.dt);
+  const uint64_t every = crowd::steps_of_reaction(config_.reaction, config_.units.dt);
   // Goes on as before; first choice still possible; moves by its first choice.
   std::vector<uint8_t> keeping(count), first(count, 1), keeps(count, 0);
   for (uint32_t i = 0; i < count; ++i) {
     const PlainBody& b = bodies_[i];
-    keeping[i] = b.keeps && !decides(every, steps_, i) &&
-                 !is_before({b.goal.x - b.at.x, b.goal.z - b.at.z}, config_.units.stride(b.speed));
+    keeping[i] =
+        b.keeps && !crowd::decides(every, steps_, i) &&
+        !crowd::is_before({b.goal.x - b.at.x, b.goal.z - b.at.z}, config_.units.stride(b.speed));
   }
   std::vector<std::optional<Spot>> proposed(count);
   const auto is_clear = [&](uint32_t i, uint32_t j, Spot a, Spot b) {
     const Spot d = between(a, b);
-    return !nearer_than(d.x, d.z, int64_t{bodies_[i].radius} + bodies_[j].radius);
+    return !crowd::nearer_than(d.x, d.z, int64_t{bodies_[i].radius} + bodies_[j].radius);
   };
   const auto order = [&](uint32_t i) { return std::pair(random_u64(config_.seed, i, steps_), i); };
   for (int32_t round = 0; round < config_.rounds; ++round) {
@@ -281,7 +282,7 @@ void PlainCrowd::resolve_conflicts() {
 void PlainCrowd::settle(const std::vector<Spot>& now, const std::vector<uint8_t>& keeps) {
   progress_ = 0;
   ++steps_;
-  const StepUnits& units = config_.units;
+  const crowd::StepUnits& units = config_.units;
   for (size_t i = 0; i < bodies_.size(); ++i) {
     PlainBody& body = bodies_[i];
     const Plane to_goal = units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
@@ -330,7 +331,7 @@ uint64_t PlainCrowd::overlaps() const {
   for (size_t i = 0; i < bodies_.size(); ++i) {
     for (size_t j = i + 1; j < bodies_.size(); ++j) {
       const Spot d = between(bodies_[i].at, bodies_[j].at);
-      found += nearer_than(d.x, d.z, int64_t{bodies_[i].radius} + bodies_[j].radius);
+      found += crowd::nearer_than(d.x, d.z, int64_t{bodies_[i].radius} + bodies_[j].radius);
     }
   }
   return found;
@@ -356,8 +357,8 @@ std::vector<PlainBody> random_bodies(const PlainConfig& config, uint32_t count, 
     };
     body.at = {below_side(2 * n), below_side(2 * n + 1)};
     const bool clear = std::none_of(bodies.begin(), bodies.end(), [&](const PlainBody& other) {
-      return nearer_than(wrapped(other.at.x - body.at.x, side),
-                         wrapped(other.at.z - body.at.z, side), 2 * int64_t{body.radius});
+      return crowd::nearer_than(wrapped(other.at.x - body.at.x, side),
+                                wrapped(other.at.z - body.at.z, side), 2 * int64_t{body.radius});
     });
     if (!clear) continue;
     body.goal = next_goal(config, body, seed, static_cast<uint32_t>(bodies.size()), 0);

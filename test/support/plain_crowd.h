@@ -32,7 +32,7 @@ struct PlainBody {
 };
 
 struct PlainConfig {
-  StepUnits units{.unit = 0.1f / 2048, .dt = 0.1f};
+  crowd::StepUnits units{.unit = 0.1f / 2048, .dt = 0.1f};
   int32_t side = 0;  // period of the plane [units]; 0: not periodic
   float sight = 5;   // [m]
   int32_t rounds = 3;

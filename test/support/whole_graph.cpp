@@ -14,27 +14,27 @@ namespace {
 
 struct Tiles {
   int32_t wide = 0, deep = 0;
-  std::vector<TileParts> parts;
+  std::vector<graph::TileParts> parts;
   std::vector<uint32_t> base;  // per tile: its first region of the world
 };
 
-Tiles find_tiles(const WorldData& world, const TileRegions& finder) {
+Tiles find_tiles(const world::WorldData& world, const graph::TileRegions& finder) {
   Tiles tiles;
-  TileScratch scratch;
+  graph::TileScratch scratch;
   tiles.wide = world.summary.tiles_x;
   tiles.deep = world.summary.tiles_z;
   std::vector<uint32_t> of_level(world.level_count + 1, 0);
   for (int32_t z = 0; z < tiles.deep; ++z) {
     for (int32_t x = 0; x < tiles.wide; ++x) {
       tiles.parts.push_back(finder.linked_parts(x, z, scratch));
-      const TileParts& tile = tiles.parts.back();
+      const graph::TileParts& tile = tiles.parts.back();
       for (uint32_t l = 0; l < tile.levels; ++l) {
         of_level[tile.first_level + l + 1] = tile.first[l + 1] - tile.first[l];
       }
     }
   }
   for (size_t l = 0; l < world.level_count; ++l) of_level[l + 1] += of_level[l];
-  for (const TileParts& tile : tiles.parts) {
+  for (const graph::TileParts& tile : tiles.parts) {
     tiles.base.push_back(tile.levels > 0 ? of_level[tile.first_level] : 0);
   }
   return tiles;
@@ -44,7 +44,7 @@ Tiles find_tiles(const WorldData& world, const TileRegions& finder) {
 void find_components(WholeGraph& graph, const std::vector<std::map<uint32_t, uint32_t>>& cells) {
   for (size_t c = 0; c < cells.size(); ++c) {
     std::vector<std::vector<uint32_t>> next(graph.regions.size());
-    for (const RegionLink& link : graph.links) {
+    for (const graph::RegionLink& link : graph.links) {
       if ((link.classes >> c & 1) == 0) continue;
       next[link.a].push_back(link.b);
       next[link.b].push_back(link.a);
@@ -87,22 +87,22 @@ void find_components(WholeGraph& graph, const std::vector<std::map<uint32_t, uin
 }  // namespace
 
 WholeGraph whole_graph(const World& of_world) {
-  const WorldData& world = *data_of(of_world);
-  const TileRegions finder(world);
+  const world::WorldData& world = *data_of(of_world);
+  const graph::TileRegions finder(world);
   const Tiles tiles = find_tiles(world, finder);
   const size_t classes = world.summary.classes.size();
   WholeGraph graph;
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> links;
   std::vector<std::map<uint32_t, uint32_t>> cells(classes);  // per class: cells of a region
-  const auto add = [&](const std::vector<RegionLink>& found, uint32_t a, uint32_t b) {
-    for (const RegionLink& link : found) {
+  const auto add = [&](const std::vector<graph::RegionLink>& found, uint32_t a, uint32_t b) {
+    for (const graph::RegionLink& link : found) {
       const uint32_t from = link.a + a, to = link.b + b;
       links[{std::min(from, to), std::max(from, to)}] |= link.classes;
     }
   };
-  TileScratch scratch;
+  graph::TileScratch scratch;
   for (size_t t = 0; t < tiles.parts.size(); ++t) {
-    const TileParts& tile = tiles.parts[t];
+    const graph::TileParts& tile = tiles.parts[t];
     if (tile.levels == 0) continue;
     const uint32_t base = tiles.base[t];
     graph.regions.resize(std::max(graph.regions.size(), base + tile.regions.size()));
@@ -116,10 +116,12 @@ WholeGraph whole_graph(const World& of_world) {
     const size_t south = t + static_cast<size_t>(tiles.wide);
     add(tile.links, base, base);
     if (x + 1 < tiles.wide) {
-      add(finder.border(x, z, kEast, tile, tiles.parts[t + 1], scratch), base, tiles.base[t + 1]);
+      add(finder.border(x, z, graph::kEast, tile, tiles.parts[t + 1], scratch), base,
+          tiles.base[t + 1]);
     }
     if (z + 1 < tiles.deep) {
-      add(finder.border(x, z, kSouth, tile, tiles.parts[south], scratch), base, tiles.base[south]);
+      add(finder.border(x, z, graph::kSouth, tile, tiles.parts[south], scratch), base,
+          tiles.base[south]);
     }
   }
   for (const auto& [ends, bits] : links) graph.links.push_back({ends.first, ends.second, bits});

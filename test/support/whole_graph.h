@@ -18,8 +18,8 @@ struct WholeGraph {
     uint32_t first_region = 0;
   };
 
-  std::vector<Region> regions;                     // in order of levels
-  std::vector<RegionLink> links;                   // a < b, by a, then b
+  std::vector<graph::Region> regions;              // in order of levels
+  std::vector<graph::RegionLink> links;            // a < b, by a, then b
   std::vector<std::vector<int64_t>> component;     // per class and region; -1: illegal there
   std::vector<std::vector<Component>> components;  // per class, the largest first
 };

@@ -85,7 +85,7 @@ bool cuts_box(const verify::Corners& triangle, const Box3d& box) {
   return !polygon.empty();
 }
 
-Box3d box_of(const World& world, const AirData& air, int32_t x, int32_t y, int32_t z,
+Box3d box_of(const World& world, const world::AirData& air, int32_t x, int32_t y, int32_t z,
              double grown) {
   const Vec3d origin = world.summary().origin;
   const double cell = air.shape.cell * 1e-3;
@@ -108,7 +108,7 @@ TEST(Air, CellsAreFreeWhereNoTriangleTouchesThemAndOnlyThere) {
   for (uint64_t seed = 0; seed < 3; ++seed) {
     const Scene scene = litter(seed);
     const World world = bake(scene, 0.4, 6.4);
-    const AirData& air = *data_of(world)->air;
+    const world::AirData& air = *data_of(world)->air;
     ASSERT_GT(air.zones_x, 1);
     uint64_t free = 0, full = 0;
     for (int32_t y = air.shape.floor; y < air.shape.ceiling; ++y) {
@@ -133,11 +133,11 @@ TEST(Air, CellsAreFreeWhereNoTriangleTouchesThemAndOnlyThere) {
 TEST(Air, ACellIsLegalIfTheBodyIsFreeWhereverInItItsFeetAre) {
   for (const double cell : {0.1, 0.2, 0.8}) {
     const World world = bake(litter(7), cell, 6.4);
-    const AirData& air = *data_of(world)->air;
+    const world::AirData& air = *data_of(world)->air;
     for (const AvatarClass& avatar : flyers()) {
-      const AirBody body = air_body(avatar, air.shape);
+      const world::AirBody body = world::air_body(avatar, air.shape);
       Context context;
-      const auto space = build_flight_space(air, body, 32, 2, context);
+      const auto space = path::build_flight_space(air, body, 32, 2, context);
       ASSERT_TRUE(space) << space.error().message;
       const double size = air.shape.cell * 1e-3;
       const auto reach = static_cast<int32_t>(avatar.radius / size) + 2;
@@ -167,7 +167,8 @@ TEST(Air, ACellIsLegalIfTheBodyIsFreeWhereverInItItsFeetAre) {
               continue;
             const bool expected = y >= air.shape.floor && y < air.shape.ceiling && naive(x, y, z);
             ASSERT_EQ(air.is_legal(body, x, y, z), expected) << x << "," << y << "," << z;
-            ASSERT_EQ(space->box_at(x, y, z) != kNoBox, expected) << x << "," << y << "," << z;
+            ASSERT_EQ(space->box_at(x, y, z) != path::kNoBox, expected)
+                << x << "," << y << "," << z;
             legal += expected ? 1 : 0;
             ++seen;
           }
@@ -181,13 +182,13 @@ TEST(Air, ACellIsLegalIfTheBodyIsFreeWhereverInItItsFeetAre) {
 
 TEST(Air, NoAirBoxPromisesMoreClearanceThanThereIs) {
   const World world = bake(litter(3), 0.2, 6.4);
-  const AirData& air = *data_of(world)->air;
+  const world::AirData& air = *data_of(world)->air;
   uint64_t wide = 0;
   for (const auto& slot : air.slots) {
     const int32_t x0 = slot->entry.x() * air.zone_side, z0 = slot->entry.z() * air.zone_side;
-    slot->zone->tree().for_each([&](const AirCube& cube, uint32_t word) {
-      if (air_kind(word) != AirKind::kFree || cube.side > 8) return;
-      const AirClearance clearance = air_clearance(air_number(word));
+    slot->zone->tree().for_each([&](const world::AirCube& cube, uint32_t word) {
+      if (world::air_kind(word) != world::AirKind::kFree || cube.side > 8) return;
+      const world::AirClearance clearance = world::air_clearance(world::air_number(word));
       wide += clearance.width > 0 && clearance.height > 0 ? 1 : 0;
       for (int32_t y = cube.y; y < cube.y + cube.side + clearance.height; ++y) {
         if (y < air.shape.floor || y >= air.shape.ceiling) continue;
@@ -211,40 +212,40 @@ TEST(Air, TheNearestPointOfSomeComponentsIsFoundZoneByZone) {
   uint64_t asked = 0;
   for (uint64_t seed = 0; seed < 4; ++seed) {
     const World world = bake(litter(seed), 0.2, 6.4);
-    const AirData& air = *data_of(world)->air;
+    const world::AirData& air = *data_of(world)->air;
     ASSERT_GT(air.zones_x, 1);
     Context context;
     const auto space =
-        build_flight_space(air, air_body(flyers().front(), air.shape), 32, 2, context);
+        path::build_flight_space(air, world::air_body(flyers().front(), air.shape), 32, 2, context);
     ASSERT_TRUE(space) << space.error().message;
     std::vector<uint32_t> all(space->component);
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
-    AirView::ZoneOrder order;
+    path::AirView::ZoneOrder order;
     for (uint64_t n = 0; n < 300; ++n) {
       const auto real = [&](uint64_t i, double low, double high) {
         return low + (high - low) * random_unit(seed, n, i);
       };
-      const AirPoint goal{real(0, -100, 150), real(1, -30, 40), real(2, -100, 150)};
+      const path::AirPoint goal{real(0, -100, 150), real(1, -30, 40), real(2, -100, 150)};
       std::vector<uint32_t> some{all[random_below(seed, n, 3, all.size())]};
       for (const uint32_t component : all) {
         if (random_below(seed, n, 4 + component, 3) == 0) some.push_back(component);
       }
       std::sort(some.begin(), some.end());
       double least = std::numeric_limits<double>::infinity();
-      AirPoint nearest;
+      path::AirPoint nearest;
       for (size_t b = 0; b < space->boxes.size(); ++b) {
         if (!std::binary_search(some.begin(), some.end(), space->component[b])) continue;
-        const AirCube& box = space->boxes[b];
+        const world::AirCube& box = space->boxes[b];
         const auto into = [&](double at, int32_t low) {
-          return std::clamp(at, low + kAirSkin, low + box.side - kAirSkin);
+          return std::clamp(at, low + path::kAirSkin, low + box.side - path::kAirSkin);
         };
-        const AirPoint p{into(goal.x, box.x), into(goal.y, box.y), into(goal.z, box.z)};
-        if (air_distance(p, goal) >= least) continue;
-        least = air_distance(p, goal);
+        const path::AirPoint p{into(goal.x, box.x), into(goal.y, box.y), into(goal.z, box.z)};
+        if (path::air_distance(p, goal) >= least) continue;
+        least = path::air_distance(p, goal);
         nearest = p;
       }
-      const AirPoint found = AirView(*space).nearest_in(some, goal, order).value();
+      const path::AirPoint found = path::AirView(*space).nearest_in(some, goal, order).value();
       EXPECT_EQ(found.x, nearest.x);
       EXPECT_EQ(found.y, nearest.y);
       EXPECT_EQ(found.z, nearest.z);
@@ -322,7 +323,7 @@ TEST_F(DamagedAir, IsOpenedAgainAsItWasBaked) {
   EXPECT_TRUE(world->check_all());
   EXPECT_TRUE(world->summary().classes[0].flies);
   const World memory = bake(litter(2), 0.4, 6.4);
-  const AirData &a = *data_of(*world)->air, &b = *data_of(memory)->air;
+  const world::AirData &a = *data_of(*world)->air, &b = *data_of(memory)->air;
   for (int32_t y = a.shape.floor; y < a.shape.ceiling; ++y) {
     for (int32_t z = 0; z < a.depth; ++z) {
       for (int32_t x = 0; x < a.width; ++x) {
@@ -425,24 +426,24 @@ TEST_F(DamagedAir, OfAnotherBakeIsRefused) {
 
 // Forged files, whose sums are right: no tree leads out of its arrays or in circles.
 TEST(Air, ForgedTreesAreRefused) {
-  AirTreeData tree{.side = 16, .base = 0, .roots = 1, .nodes = {}, .leaves = {}};
-  const auto refused = [](const AirTreeData& t) {
-    return !AirZone::from_bytes(air_zone_bytes(0, 0, 0, t), "forged.tha");
+  world::AirTreeData tree{.side = 16, .base = 0, .roots = 1, .nodes = {}, .leaves = {}};
+  const auto refused = [](const world::AirTreeData& t) {
+    return !world::AirZone::from_bytes(world::air_zone_bytes(0, 0, 0, t), "forged.tha");
   };
-  tree.nodes = {air_word(AirKind::kFree, 0)};
+  tree.nodes = {world::air_word(world::AirKind::kFree, 0)};
   EXPECT_FALSE(refused(tree));
-  tree.nodes = {air_word(AirKind::kLeaf, 0)};
+  tree.nodes = {world::air_word(world::AirKind::kLeaf, 0)};
   EXPECT_TRUE(refused(tree));  // a leaf of 16 cells
-  tree.nodes.assign(9, air_word(AirKind::kFree, 0));
+  tree.nodes.assign(9, world::air_word(world::AirKind::kFree, 0));
   EXPECT_TRUE(refused(tree));  // a group that nothing names
-  tree.nodes[0] = air_word(AirKind::kInner, 1);
+  tree.nodes[0] = world::air_word(world::AirKind::kInner, 1);
   EXPECT_FALSE(refused(tree));
-  tree.nodes[3] = air_word(AirKind::kInner, 1);
+  tree.nodes[3] = world::air_word(world::AirKind::kInner, 1);
   EXPECT_TRUE(refused(tree));  // in a circle
-  tree.nodes[3] = air_word(AirKind::kLeaf, 0);
+  tree.nodes[3] = world::air_word(world::AirKind::kLeaf, 0);
   EXPECT_TRUE(refused(tree));  // a leaf of 8 cells
   tree.nodes[3] = 0;
-  tree.nodes[0] = air_word(AirKind::kInner, 2);
+  tree.nodes[0] = world::air_word(world::AirKind::kInner, 2);
   EXPECT_TRUE(refused(tree));  // beyond the end
   tree.nodes = {0};
   tree.side = 12;
@@ -451,11 +452,11 @@ TEST(Air, ForgedTreesAreRefused) {
   tree.roots = 2;
   EXPECT_TRUE(refused(tree));
   // Heights must fit 32 bits.
-  tree = {.side = AirTree::kMaxSide, .base = 0, .roots = 256, .nodes = {}, .leaves = {}};
-  tree.nodes.assign(tree.roots, air_word(AirKind::kFree, 0));
+  tree = {.side = world::AirTree::kMaxSide, .base = 0, .roots = 256, .nodes = {}, .leaves = {}};
+  tree.nodes.assign(tree.roots, world::air_word(world::AirKind::kFree, 0));
   EXPECT_FALSE(refused(tree));
   tree.roots = 1 << 17;
-  tree.nodes.assign(tree.roots, air_word(AirKind::kFree, 0));
+  tree.nodes.assign(tree.roots, world::air_word(world::AirKind::kFree, 0));
   EXPECT_TRUE(refused(tree));
 }
 

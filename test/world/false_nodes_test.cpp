@@ -22,14 +22,15 @@ Nodes make_small(Scene& scene) {
   return nodes ? *nodes : Nodes{};
 }
 
-std::unique_ptr<NodeZone> changed(std::span<const uint8_t> bytes, uint64_t seed, std::string& why) {
+std::unique_ptr<world::NodeZone> changed(std::span<const uint8_t> bytes, uint64_t seed,
+                                         std::string& why) {
   auto* copy = new uint8_t[bytes.size()];
   std::copy(bytes.begin(), bytes.end(), copy);
   const uint64_t changes = 1 + random_below(seed, 0, 0, 3);
   for (uint64_t k = 0; k < changes; ++k) {
     copy[random_below(seed, k, 1, bytes.size())] = static_cast<uint8_t>(random_u64(seed, k, 2));
   }
-  auto zone = NodeZone::from_bytes(
+  auto zone = world::NodeZone::from_bytes(
       flatbuffers::DetachedBuffer(nullptr, false, copy, bytes.size(), copy, bytes.size()), "it");
   if (!zone) why = zone.error().message;
   return zone ? std::move(*zone) : nullptr;
@@ -40,7 +41,7 @@ TEST(FalseNodes, AreRefusedByNameOrUsedWithoutACrash) {
   const Nodes nodes = make_small(scene);
   size_t refused = 0, used = 0;
   for (uint64_t seed = 0; seed < 1500; ++seed) {
-    const NodeZone& zone = *data_of(nodes)->zone(seed % data_of(nodes)->slots.size());
+    const world::NodeZone& zone = *data_of(nodes)->zone(seed % data_of(nodes)->slots.size());
     std::string why;
     const auto found = changed(zone.bytes(), seed, why);
     if (found == nullptr) {
@@ -53,19 +54,21 @@ TEST(FalseNodes, AreRefusedByNameOrUsedWithoutACrash) {
       const format::NodePatch& patch = found->patch_of(n);
       EXPECT_GE(n, patch.first_node());
       EXPECT_LT(n, patch.first_node() + patch.nodes());
-      EXPECT_EQ(found->cells_of(n) != 0, (found->nodes()[n].flags() & kPartialFlag) != 0);
+      EXPECT_EQ(found->cells_of(n) != 0, (found->nodes()[n].flags() & world::kPartialFlag) != 0);
       if (patch.kind() == 0) sum += static_cast<uint64_t>(found->points(patch)[47] != 0);
       for (const format::Arc& arc : found->arcs(n)) {
-        const uint32_t to = arc.to() & ~kFarNode;
-        sum += (arc.to() & kFarNode) != 0 ? found->far()[to].node() : found->nodes()[to].level();
+        const uint32_t to = arc.to() & ~world::kFarNode;
+        sum += (arc.to() & world::kFarNode) != 0 ? found->far()[to].node()
+                                                 : found->nodes()[to].level();
         const auto* hole_link =
             found->hole_link_of(static_cast<uint32_t>(&arc - found->first_arc()));
         sum += hole_link != nullptr ? hole_link->to_s() : 0;
       }
     }
     for (const format::Door& door : found->doors()) {
-      const uint32_t to = door.to() & ~kFarNode;
-      sum += (door.to() & kFarNode) != 0 ? found->far()[to].node() : found->nodes()[to].level();
+      const uint32_t to = door.to() & ~world::kFarNode;
+      sum +=
+          (door.to() & world::kFarNode) != 0 ? found->far()[to].node() : found->nodes()[to].level();
       sum += found->patches()[door.patch()].depth();
     }
     used += sum > 0 ? 1 : 0;
@@ -81,18 +84,18 @@ TEST(FalseNodes, ATruncatedOrForeignFileIsRefused) {
   for (size_t size = 0; size < bytes.size(); size += 1 + size / 3) {
     auto* copy = new uint8_t[size + 1];
     std::copy_n(bytes.data(), size, copy);
-    EXPECT_FALSE(NodeZone::from_bytes(
+    EXPECT_FALSE(world::NodeZone::from_bytes(
         flatbuffers::DetachedBuffer(nullptr, false, copy, size + 1, copy, size), "it"));
   }
-  const std::vector<uint8_t> index = write_node_index(*data_of(nodes));
-  EXPECT_TRUE(read_node_index(index, "it"));
-  EXPECT_FALSE(read_node_index(std::span(index).first(index.size() / 2), "it"));
-  EXPECT_FALSE(read_node_index(bytes, "it"));  // A zone is no index.
+  const std::vector<uint8_t> index = world::write_node_index(*data_of(nodes));
+  EXPECT_TRUE(world::read_node_index(index, "it"));
+  EXPECT_FALSE(world::read_node_index(std::span(index).first(index.size() / 2), "it"));
+  EXPECT_FALSE(world::read_node_index(bytes, "it"));  // A zone is no index.
   size_t refused = 0;
   for (uint64_t seed = 0; seed < 500; ++seed) {
     std::vector<uint8_t> copy = index;
     copy[random_below(seed, 0, 5, copy.size())] = static_cast<uint8_t>(random_u64(seed, 0, 6));
-    refused += read_node_index(copy, "it") ? 0 : 1;
+    refused += world::read_node_index(copy, "it") ? 0 : 1;
   }
   EXPECT_GT(refused, 20u);
 }

@@ -18,10 +18,14 @@ namespace throng {
 namespace {
 
 // Keeps the bytes of the zones' files.
-class FilesInMemory : public GraphFiles {
+class FilesInMemory : public graph::GraphFiles {
  public:
-  std::unique_ptr<RegionZone> reuse_regions(int32_t, int32_t, uint64_t) override { return nullptr; }
-  std::unique_ptr<LinkZone> reuse_links(int32_t, int32_t, uint64_t) override { return nullptr; }
+  std::unique_ptr<world::RegionZone> reuse_regions(int32_t, int32_t, uint64_t) override {
+    return nullptr;
+  }
+  std::unique_ptr<world::LinkZone> reuse_links(int32_t, int32_t, uint64_t) override {
+    return nullptr;
+  }
   Result<void> write(const std::string& name, std::span<const uint8_t> bytes) override {
     files.emplace_back(name, std::vector<uint8_t>(bytes.begin(), bytes.end()));
     return write_file(folder.path() + "/" + name, bytes);
@@ -39,7 +43,7 @@ flatbuffers::DetachedBuffer owned(std::span<const uint8_t> bytes) {
 
 struct Made {
   World world;
-  std::shared_ptr<GraphData> graph;
+  std::shared_ptr<world::GraphData> graph;
   std::vector<std::vector<uint8_t>> regions, links;
 };
 
@@ -47,10 +51,10 @@ Made make_small(FilesInMemory& files) {
   Made made;
   made.world = test::bake(test::builtin({.name = "garage", .size = 60, .levels = 2}), 0.2);
   // The passes read the files back from where they have put them.
-  auto* world = const_cast<WorldData*>(data_of(made.world).get());
+  auto* world = const_cast<world::WorldData*>(data_of(made.world).get());
   world->path = files.folder.path();
   Context context;
-  auto graph = make_graph(*world, &files, 1, context);
+  auto graph = graph::make_graph(*world, &files, 1, context);
   world->path.clear();
   EXPECT_TRUE(graph) << graph.error().message;
   if (!graph) return made;
@@ -61,8 +65,8 @@ Made make_small(FilesInMemory& files) {
   return made;
 }
 
-RegionTables tables_of(const RegionZone& zone) {
-  RegionTables t;
+world::RegionTables tables_of(const world::RegionZone& zone) {
+  world::RegionTables t;
   const auto copy = [](auto& to, const auto& from) { to.assign(from.begin(), from.end()); };
   t.classes = zone.class_count();
   copy(t.first, *zone.root().first());
@@ -87,7 +91,7 @@ void change(std::vector<T>& values, uint64_t seed) {
 }
 
 // Everything that may be asked of it.
-uint64_t use(const RegionZone& zone) {
+uint64_t use(const world::RegionZone& zone) {
   uint64_t sum = 0;
   const auto components = zone.components();
   std::vector<uint32_t> regions(components.size(), 0);
@@ -122,9 +126,10 @@ TEST(FalseRegions, AreRefusedByNameOrUsedWithoutACrash) {
   const Made made = make_small(files);
   size_t refused = 0, used = 0;
   for (uint64_t seed = 0; seed < 4000; ++seed) {
-    const auto zone = RegionZone::from_bytes(owned(made.regions[seed % made.regions.size()]), "it");
+    const auto zone =
+        world::RegionZone::from_bytes(owned(made.regions[seed % made.regions.size()]), "it");
     ASSERT_TRUE(zone);
-    RegionTables t = tables_of(**zone);
+    world::RegionTables t = tables_of(**zone);
     for (uint64_t k = 0; k <= seed % 2; ++k) {
       const uint64_t n = seed * 2 + k;
       switch (random_below(n, 0, 0, 8)) {
@@ -153,7 +158,7 @@ TEST(FalseRegions, AreRefusedByNameOrUsedWithoutACrash) {
           change(t.links, n);
       }
     }
-    const auto found = RegionZone::from_bytes(region_zone_bytes(0, 0, 0, t), "it");
+    const auto found = world::RegionZone::from_bytes(world::region_zone_bytes(0, 0, 0, t), "it");
     if (found) {
       used += use(**found) > 0 ? 1 : 0;
       continue;
@@ -170,8 +175,9 @@ TEST(FalseRegions, ChangedBytesAndCutFilesAreRefusedByTheSum) {
   const Made made = make_small(files);
   size_t refused = 0, filling = 0;
   const auto expect_refused = [&](const std::vector<uint8_t>& bytes, bool regions) {
-    const bool sound = regions ? static_cast<bool>(RegionZone::from_bytes(owned(bytes), "it"))
-                               : static_cast<bool>(LinkZone::from_bytes(owned(bytes), "it"));
+    const bool sound = regions
+                           ? static_cast<bool>(world::RegionZone::from_bytes(owned(bytes), "it"))
+                           : static_cast<bool>(world::LinkZone::from_bytes(owned(bytes), "it"));
     ++(sound ? filling : refused);
   };
   for (const auto* kind : {&made.regions, &made.links}) {
@@ -191,33 +197,34 @@ TEST(FalseRegions, ChangedBytesAndCutFilesAreRefusedByTheSum) {
   }
   EXPECT_GT(refused, 1500u);
   EXPECT_LT(filling, 80u);  // What fills up words, or encodes the same numbers differently.
-  EXPECT_FALSE(RegionZone::from_bytes(owned(made.links[0]), "it"));
-  EXPECT_FALSE(LinkZone::from_bytes(owned(made.regions[0]), "it"));
+  EXPECT_FALSE(world::RegionZone::from_bytes(owned(made.links[0]), "it"));
+  EXPECT_FALSE(world::LinkZone::from_bytes(owned(made.regions[0]), "it"));
 }
 
 TEST(FalseRegions, LinksThatLeadNowhereDoNotFit) {
   FilesInMemory files;
   const Made made = make_small(files);
-  const WorldData& world = *data_of(made.world);
+  const world::WorldData& world = *data_of(made.world);
   size_t fitting = 0, refused = 0;
   for (uint64_t seed = 0; seed < 3000; ++seed) {
     const size_t s = seed % made.links.size();
-    const auto links = LinkZone::from_bytes(owned(made.links[s]), "it");
+    const auto links = world::LinkZone::from_bytes(owned(made.links[s]), "it");
     ASSERT_TRUE(links);
     const auto& entry = world.slots[s]->entry;
-    const auto zone = [&](int32_t x, int32_t z) -> const RegionZone* {
-      const int32_t slot = slot_at(world, x, z);
+    const auto zone = [&](int32_t x, int32_t z) -> const world::RegionZone* {
+      const int32_t slot = world::slot_at(world, x, z);
       return slot < 0 ? nullptr : made.graph->zone(world, static_cast<size_t>(slot));
     };
-    const RegionZone* own = zone(entry.x(), entry.z());
-    const RegionZone *to_east = zone(entry.x() + 1, entry.z()),
-                     *to_south = zone(entry.x(), entry.z() + 1);
+    const world::RegionZone* own = zone(entry.x(), entry.z());
+    const world::RegionZone *to_east = zone(entry.x() + 1, entry.z()),
+                            *to_south = zone(entry.x(), entry.z() + 1);
     ASSERT_NE(own, nullptr);
     EXPECT_TRUE((*links)->fits(*own, to_east, to_south));
     std::vector<format::RegionLink> east((*links)->east().begin(), (*links)->east().end());
     std::vector<format::RegionLink> south((*links)->south().begin(), (*links)->south().end());
     change(random_below(seed, 5, 0, 2) == 0 ? east : south, seed);
-    const auto found = LinkZone::from_bytes(link_zone_bytes(0, 0, 0, east, south), "it");
+    const auto found =
+        world::LinkZone::from_bytes(world::link_zone_bytes(0, 0, 0, east, south), "it");
     if (!found || !(*found)->fits(*own, to_east, to_south)) {
       ++refused;
       continue;
@@ -236,17 +243,17 @@ TEST(FalseRegions, LinksThatLeadNowhereDoNotFit) {
 TEST(FalseRegions, AFalseIndexIsRefusedOrNamesWhatIsThere) {
   FilesInMemory files;
   const Made made = make_small(files);
-  const WorldData& world = *data_of(made.world);
-  const std::vector<uint8_t> whole = write_graph_index(*made.graph, 7);
-  ASSERT_TRUE(read_graph_index(whole, "it", world, 7));
-  EXPECT_FALSE(read_graph_index(whole, "it", world, 8));  // Of another bake.
+  const world::WorldData& world = *data_of(made.world);
+  const std::vector<uint8_t> whole = world::write_graph_index(*made.graph, 7);
+  ASSERT_TRUE(world::read_graph_index(whole, "it", world, 7));
+  EXPECT_FALSE(world::read_graph_index(whole, "it", world, 8));  // Of another bake.
   for (size_t size = 0; size < whole.size(); size += 1 + size / 5) {
-    EXPECT_FALSE(read_graph_index(std::span(whole).first(size), "it", world, 7)) << size;
+    EXPECT_FALSE(world::read_graph_index(std::span(whole).first(size), "it", world, 7)) << size;
   }
   size_t refused = 0, used = 0;
   for (uint64_t seed = 0; seed < 2000; ++seed) {
-    const auto own = read_graph_index(whole, "it", world, 7);
-    GraphData& graph = **own;
+    const auto own = world::read_graph_index(whole, "it", world, 7);
+    world::GraphData& graph = **own;
     std::vector<format::GraphZone> zones;
     for (const auto& slot : graph.slots) zones.push_back(slot->entry);
     switch (random_below(seed, 0, 0, 4)) {
@@ -263,7 +270,7 @@ TEST(FalseRegions, AFalseIndexIsRefusedOrNamesWhatIsThere) {
         change(graph.component_of, seed);
     }
     for (size_t s = 0; s < zones.size(); ++s) graph.slots[s]->entry = zones[s];
-    const auto found = read_graph_index(write_graph_index(graph, 7), "it", world, 7);
+    const auto found = world::read_graph_index(world::write_graph_index(graph, 7), "it", world, 7);
     if (!found) {
       EXPECT_EQ(found.error().message.substr(0, 4), "it: ");
       ++refused;
@@ -272,11 +279,11 @@ TEST(FalseRegions, AFalseIndexIsRefusedOrNamesWhatIsThere) {
     (*found)->path = files.folder.path();
     bool usable = true;
     for (size_t s = 0; s < world.slots.size(); ++s) {
-      const RegionZone* zone = (*found)->zone(world, s);
+      const world::RegionZone* zone = (*found)->zone(world, s);
       usable = usable && zone != nullptr;
       if (zone == nullptr) continue;
       uint32_t i = (*found)->slots[s]->entry.first_component();
-      for (const ZoneComponent& part : zone->components()) {
+      for (const world::ZoneComponent& part : zone->components()) {
         ASSERT_LT((*found)->component_of[i++], (*found)->by_class[part.avatar_class].size());
       }
     }

@@ -34,8 +34,8 @@ Baked bake_small() {
   auto world = bake_world(scene, {.cell = 0.2, .zone = 12.8}, context);
   EXPECT_TRUE(world);
   Baked baked;
-  const WorldData& data = *data_of(*world);
-  baked.manifest = write_manifest(data);
+  const world::WorldData& data = *data_of(*world);
+  baked.manifest = world::write_manifest(data);
   for (size_t s = 0; s < data.slots.size(); ++s) {
     const auto bytes = data.zone(s)->bytes();
     baked.zones.emplace_back(bytes.begin(), bytes.end());
@@ -52,7 +52,7 @@ int32_t false_height(uint64_t seed, uint64_t n) {
   return kHeights[random_below(seed, n, 0, near)];
 }
 
-std::unique_ptr<Zone> with_false_heights(std::vector<uint8_t> bytes, uint64_t seed) {
+std::unique_ptr<world::Zone> with_false_heights(std::vector<uint8_t> bytes, uint64_t seed) {
   auto* root = flatbuffers::GetMutableRoot<format::Zone>(bytes.data());
   auto* words = const_cast<uint64_t*>(root->words()->data());
   auto* levels = reinterpret_cast<format::Level*>(const_cast<uint8_t*>(root->levels()->Data()));
@@ -63,7 +63,8 @@ std::unique_ptr<Zone> with_false_heights(std::vector<uint8_t> bytes, uint64_t se
     format::HeightKind kind = level.floor_kind();
     if (random_below(seed, i, 2, 2) == 0) base = false_height(seed, i);
     if (kind == format::HeightKind::Blocks) {
-      for (uint32_t b = 0; b < kBlocks; ++b) {  // Not the width: the values still lie in the file.
+      for (uint32_t b = 0; b < world::kBlocks;
+           ++b) {  // Not the width: the values still lie in the file.
         words[level.floor_offset() + b] ^=
             random_below(seed, i * 64 + b, 3, uint64_t{1} << (seed % 2 == 0 ? 8 : 48));
       }
@@ -80,7 +81,7 @@ std::unique_ptr<Zone> with_false_heights(std::vector<uint8_t> bytes, uint64_t se
   }
   auto* copy = new uint8_t[bytes.size()];
   std::copy(bytes.begin(), bytes.end(), copy);
-  auto zone = Zone::from_bytes(
+  auto zone = world::Zone::from_bytes(
       flatbuffers::DetachedBuffer(nullptr, false, copy, bytes.size(), copy, bytes.size()), "z.thz");
   return zone ? std::move(*zone) : nullptr;
 }
@@ -119,7 +120,7 @@ TEST(FalseZones, WithAnyHeightsAnswerAndDoNotCrash) {
   ASSERT_GT(baked.zones.size(), 1u);
   int32_t unread = 0, refused = 0, run = 0;
   for (uint64_t seed = 0; seed < 200; ++seed) {
-    const auto data = read_manifest(baked.manifest, "m.thm");
+    const auto data = world::read_manifest(baked.manifest, "m.thm");
     ASSERT_TRUE(data);
     bool sound = true;
     for (size_t s = 0; s < baked.zones.size(); ++s) {
@@ -153,7 +154,7 @@ TEST(FalseZones, OfAKindThatIsNoneAreRefused) {
                       level.area_kind(), kind, level.present_offset(), level.area_offset());
     auto* copy = new uint8_t[bytes.size()];
     std::copy(bytes.begin(), bytes.end(), copy);
-    const auto zone = Zone::from_bytes(
+    const auto zone = world::Zone::from_bytes(
         flatbuffers::DetachedBuffer(nullptr, false, copy, bytes.size(), copy, bytes.size()),
         "z.thz");
     EXPECT_EQ(static_cast<bool>(zone), kind <= 63);

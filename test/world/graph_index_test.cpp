@@ -12,15 +12,15 @@
 namespace throng {
 namespace {
 
-void make_small(WorldData& world) {
+void make_small(world::WorldData& world) {
   world.level_count = 1000;
   world.width = world.depth = 5000;
 }
 
 // Components of three classes, each made of one to four of zones, often where another class has
 // one.
-GraphData random_graph(uint64_t seed, uint32_t count) {
-  GraphData graph;
+world::GraphData random_graph(uint64_t seed, uint32_t count) {
+  world::GraphData graph;
   std::vector<std::pair<uint32_t, uint32_t>> of_zones;  // class, component
   for (uint32_t c = 0; c < 3; ++c) {
     graph.class_first.push_back(static_cast<uint32_t>(graph.components.size()));
@@ -30,14 +30,14 @@ GraphData random_graph(uint64_t seed, uint32_t count) {
         return static_cast<uint32_t>(random_below(seed, c * 1000 + i, n, end));
       };
       cells -= draw(0, 5) == 0 ? 0 : draw(1, 1 << 20);
-      GraphComponent of{cells,
-                        1 + draw(2, 300),
-                        draw(3, 1000),
-                        static_cast<int32_t>(draw(4, 5000)),
-                        static_cast<int32_t>(draw(5, 5000)),
-                        static_cast<int32_t>(draw(6, UINT32_MAX))};
+      world::GraphComponent of{cells,
+                               1 + draw(2, 300),
+                               draw(3, 1000),
+                               static_cast<int32_t>(draw(4, 5000)),
+                               static_cast<int32_t>(draw(5, 5000)),
+                               static_cast<int32_t>(draw(6, UINT32_MAX))};
       if (c > 0 && draw(7, 2) == 0) {
-        const GraphComponent& other = graph.components[i];
+        const world::GraphComponent& other = graph.components[i];
         of = {cells, of.regions, other.level, other.cell_x, other.cell_z, other.feet};
       }
       graph.components.push_back(of);
@@ -61,7 +61,7 @@ GraphData random_graph(uint64_t seed, uint32_t count) {
     const auto first = graph.components.begin() + c * count;
     std::stable_sort(order.begin(), order.end(),
                      [&](uint32_t a, uint32_t b) { return first[a].cells > first[b].cells; });
-    const std::vector<GraphComponent> before(first, first + count);
+    const std::vector<world::GraphComponent> before(first, first + count);
     for (uint32_t i = 0; i < count; ++i) {
       first[i] = before[order[i]];
       number[order[i]] = i;
@@ -74,19 +74,19 @@ GraphData random_graph(uint64_t seed, uint32_t count) {
 }
 
 TEST(GraphIndex, ComponentsComeBackAsTheyWere) {
-  WorldData world;
+  world::WorldData world;
   make_small(world);
   for (uint64_t seed = 0; seed < 20; ++seed) {
-    const GraphData graph = random_graph(seed, seed == 0 ? 0 : 100);
-    const std::vector<uint8_t> packed = pack_components(graph);
-    GraphData again;
+    const world::GraphData graph = random_graph(seed, seed == 0 ? 0 : 100);
+    const std::vector<uint8_t> packed = world::pack_components(graph);
+    world::GraphData again;
     again.class_first = graph.class_first;
-    ASSERT_EQ(unpack_components(packed, world, again), nullptr);
+    ASSERT_EQ(world::unpack_components(packed, world, again), nullptr);
     EXPECT_EQ(again.component_of, graph.component_of);
     EXPECT_EQ(again.class_of, graph.class_of);
     ASSERT_EQ(again.components.size(), graph.components.size());
     for (size_t i = 0; i < graph.components.size(); ++i) {
-      const GraphComponent &a = again.components[i], &b = graph.components[i];
+      const world::GraphComponent &a = again.components[i], &b = graph.components[i];
       EXPECT_TRUE(a.cells == b.cells && a.regions == b.regions && a.level == b.level &&
                   a.cell_x == b.cell_x && a.cell_z == b.cell_z && a.feet == b.feet);
     }
@@ -94,14 +94,14 @@ TEST(GraphIndex, ComponentsComeBackAsTheyWere) {
 }
 
 TEST(GraphIndex, FalseComponentsAreRefusedOrLieInTheWorld) {
-  WorldData world;
+  world::WorldData world;
   make_small(world);
-  const GraphData graph = random_graph(7, 60);
-  const std::vector<uint8_t> whole = pack_components(graph);
+  const world::GraphData graph = random_graph(7, 60);
+  const std::vector<uint8_t> whole = world::pack_components(graph);
   size_t refused = 0, used = 0;
   for (uint64_t seed = 0; seed < 4000; ++seed) {
     std::vector<uint8_t> bytes = whole;
-    GraphData found;
+    world::GraphData found;
     found.class_first = graph.class_first;
     const size_t at = random_below(seed, 0, 0, bytes.size());
     switch (random_below(seed, 1, 0, 8)) {
@@ -115,7 +115,7 @@ TEST(GraphIndex, FalseComponentsAreRefusedOrLieInTheWorld) {
       default:
         bytes[at] = static_cast<uint8_t>(random_u64(seed, 3, 0));
     }
-    if (unpack_components(bytes, world, found) != nullptr) {
+    if (world::unpack_components(bytes, world, found) != nullptr) {
       ++refused;
       continue;
     }
@@ -126,7 +126,7 @@ TEST(GraphIndex, FalseComponentsAreRefusedOrLieInTheWorld) {
       ASSERT_LT(found.class_first[found.class_of[i]] + found.component_of[i],
                 found.class_first[found.class_of[i] + 1u]);
     }
-    for (const GraphComponent& of : found.components) {
+    for (const world::GraphComponent& of : found.components) {
       ASSERT_TRUE(of.cells > 0 && of.regions > 0 && of.level < world.level_count);
       ASSERT_TRUE(of.cell_x >= 0 && of.cell_x < world.width);
       ASSERT_TRUE(of.cell_z >= 0 && of.cell_z < world.depth);

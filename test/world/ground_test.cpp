@@ -19,11 +19,11 @@ TEST(Ground, FloorsLieWithinTheRangeOfTheirBlocks) {
     if (config.name == "landscape") config.size = 80;
     if (config.name == "garage") config.levels = 2;
     const World world = test::bake(test::builtin(config), 0.25);
-    const WorldData& data = *data_of(world);
+    const world::WorldData& data = *data_of(world);
     int32_t lowest = INT32_MAX;
     for (uint32_t l = 0; l < data.level_count; ++l) {
-      const LevelView view = ground_level(data, l, 0).view;
-      const FloorRange range = floor_range(view);
+      const world::LevelView view = world::ground_level(data, l, 0).view;
+      const world::FloorRange range = world::floor_range(view);
       int32_t low = INT32_MAX, high = INT32_MIN;
       for (int32_t cell = 0; cell < 4096; ++cell) {
         if (!view.has(cell % 64, cell / 64)) continue;
@@ -44,13 +44,14 @@ TEST(Ground, FloorsLieWithinTheRangeOfTheirBlocks) {
 }
 
 TEST(Ground, RangesAreNearIfAStepLeadsFromOneToTheOther) {
-  const FloorRange a{100, 200};
+  const world::FloorRange a{100, 200};
   EXPECT_TRUE(a.is_near({150, 160}, 0));
   EXPECT_TRUE(a.is_near({250, 300}, 50));
   EXPECT_FALSE(a.is_near({251, 300}, 50));
   EXPECT_TRUE(a.is_near({0, 50}, 50));
   EXPECT_FALSE(a.is_near({0, 49}, 50));
-  EXPECT_FALSE((FloorRange{INT32_MIN, INT32_MIN}.is_near({INT32_MAX, INT32_MAX}, INT32_MAX)));
+  EXPECT_FALSE(
+      (world::FloorRange{INT32_MIN, INT32_MIN}.is_near({INT32_MAX, INT32_MAX}, INT32_MAX)));
 }
 
 }  // namespace

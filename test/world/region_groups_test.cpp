@@ -32,9 +32,9 @@ struct PlainGroups {
 
 struct Made {
   PlainGroups plain;
-  GroupTables tables;
+  world::GroupTables tables;
 
-  [[nodiscard]] RegionGroups view() const {
+  [[nodiscard]] world::RegionGroups view() const {
     return {tables.groups, tables.blocks, tables.names, tables.begun};
   }
 };
@@ -42,7 +42,7 @@ struct Made {
 // Groups whose classes begin components, or go on with some of those that there are.
 Made make_groups(uint64_t seed, uint32_t count) {
   Made made;
-  GroupWriter writer;
+  world::GroupWriter writer;
   for (uint32_t g = 0; g < count; ++g) {
     const auto draw = [&](uint64_t n, uint64_t end) {
       return static_cast<uint32_t>(random_below(seed, g, n, end));
@@ -82,7 +82,7 @@ TEST(RegionGroups, NameTheComponentsOfAPlainList) {
   for (uint64_t seed = 0; seed < 20; ++seed) {
     const uint32_t count = std::array{0u, 1u, 31u, 32u, 33u, 300u}[seed % 6];
     const Made made = make_groups(seed, count);
-    const RegionGroups groups = made.view();
+    const world::RegionGroups groups = made.view();
     std::vector<uint32_t> begins_in;
     ASSERT_EQ(groups.fault(kClasses, begins_in), nullptr);
     EXPECT_EQ(groups.component_count(), made.plain.components.size());
@@ -97,7 +97,7 @@ TEST(RegionGroups, NameTheComponentsOfAPlainList) {
 
 TEST(RegionGroups, GiveWhereComponentsBeginAndHowLargeTheyAre) {
   const Made made = make_groups(3, 500);
-  BegunReader reader{made.tables.begun};
+  world::BegunReader reader{made.tables.begun};
   size_t next = 0;
   for (const format::RegionGroup& group : made.tables.groups) {
     if (group.begins() != 0) {
@@ -119,14 +119,14 @@ TEST(RegionGroups, GiveWhereComponentsBeginAndHowLargeTheyAre) {
 // Where all classes have the same roof, it is named once.
 TEST(RegionGroups, PlacesThatClassesShareAreStoredOnce) {
   const std::vector<uint64_t> cells(6, 900);
-  GroupWriter six, one;
+  world::GroupWriter six, one;
   for (uint32_t g = 0; g < 320; ++g) {
     const std::vector<uint32_t> own(6, g);
     const auto tile = static_cast<uint16_t>(g / 4);
     six.add({0x3f, own, cells, 3000, tile});
     one.add({1, std::span(own).first(1), std::span(cells).first(1), 3000, tile});
   }
-  const GroupTables a = six.take(), b = one.take();
+  const world::GroupTables a = six.take(), b = one.take();
   EXPECT_EQ(a.groups.size(), b.groups.size());
   EXPECT_TRUE(a.names.empty());
   EXPECT_EQ(a.begun.size(), b.begun.size() + 320 * 5);  // a byte a class: as many cells
@@ -136,7 +136,7 @@ TEST(RegionGroups, FalseOnesAreRefusedOrLeadSomewhere) {
   const Made made = make_groups(5, 100);
   size_t refused = 0, used = 0;
   for (uint64_t seed = 0; seed < 4000; ++seed) {
-    GroupTables t = made.tables;
+    world::GroupTables t = made.tables;
     const auto change = [&](auto& values) {
       auto* bytes = reinterpret_cast<uint8_t*>(values.data());
       const size_t size = values.size() * sizeof(values[0]);
@@ -161,7 +161,7 @@ TEST(RegionGroups, FalseOnesAreRefusedOrLeadSomewhere) {
       default:
         t.begun.resize(random_below(seed, 3, 0, t.begun.size()));
     }
-    const RegionGroups groups{t.groups, t.blocks, t.names, t.begun};
+    const world::RegionGroups groups{t.groups, t.blocks, t.names, t.begun};
     std::vector<uint32_t> begins_in;
     if (groups.fault(kClasses, begins_in) != nullptr) {
       ++refused;

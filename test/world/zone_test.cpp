@@ -51,10 +51,10 @@ void write_bytes(const std::string& path, const Bytes& bytes) {
 }
 
 // Bytes as a zone would own them; the copy is exact, so that a read past it is seen.
-Result<std::unique_ptr<Zone>> as_zone(const Bytes& bytes) {
+Result<std::unique_ptr<world::Zone>> as_zone(const Bytes& bytes) {
   auto* copy = new uint8_t[bytes.size()];
   std::copy(bytes.begin(), bytes.end(), copy);
-  return Zone::from_bytes(
+  return world::Zone::from_bytes(
       flatbuffers::DetachedBuffer(nullptr, false, copy, bytes.size(), copy, bytes.size()), "z.thz");
 }
 
@@ -133,10 +133,10 @@ TEST_F(ZoneFiles, AManifestOfAnyOtherLengthIsRefused) {
     EXPECT_EQ(opened.error().code, Errc::kBadFile);
     EXPECT_NE(opened.error().message.find("manifest.thm"), std::string::npos);
     // And none is read past its end, whatever its sum.
-    const auto world = read_manifest(cut, "m.thm");
+    const auto world = world::read_manifest(cut, "m.thm");
     if (world) {
       ASSERT_GT(length + 8, content.size());  // Only what fills up the last word may be missing.
-      EXPECT_EQ(write_manifest(**world), content);
+      EXPECT_EQ(world::write_manifest(**world), content);
     }
   }
   Bytes longer = manifest_;
@@ -185,15 +185,15 @@ TEST(FuzzSeeds, RegionsAndLinksAreOfThisVersion) {
     EXPECT_TRUE(file);
     return file ? *std::move(file) : FileMap{};
   };
-  EXPECT_TRUE(RegionZone::from_file(map("small.thr"), "small.thr"));
-  EXPECT_TRUE(LinkZone::from_file(map("small.thl"), "small.thl"));
+  EXPECT_TRUE(world::RegionZone::from_file(map("small.thr"), "small.thr"));
+  EXPECT_TRUE(world::LinkZone::from_file(map("small.thl"), "small.thl"));
 }
 
 // Of the built-in cube at cells of 0.2 m, baked with --nodes.
 TEST(FuzzSeeds, TheNodesAreOfThisVersion) {
   auto file = FileMap::open(THRONG_TEST_DATA "/../fuzz/seeds/nodes/small.thn");
   ASSERT_TRUE(file);
-  const auto zone = NodeZone::from_file(*std::move(file), "small.thn");
+  const auto zone = world::NodeZone::from_file(*std::move(file), "small.thn");
   ASSERT_TRUE(zone) << zone.error().message;
   EXPECT_GT((*zone)->nodes().size(), 0u);
 }
@@ -222,7 +222,7 @@ TEST_F(ZoneFiles, AFlippedByteBehindTheChecksumIsRefusedOrHarmless) {
           (*zone)->level_count() != (*whole)->level_count()) {
         continue;  // WorldData::zone refuses these: "belongs to another world".
       }
-      const auto data = read_manifest(manifest_, "m.thm");
+      const auto data = world::read_manifest(manifest_, "m.thm");
       ASSERT_TRUE(data);
       ASSERT_EQ((*data)->slots.size(), 1u);
       (*data)->slots[0]->zone = std::move(*zone);
@@ -239,7 +239,7 @@ TEST_F(ZoneFiles, AFlippedByteOfTheManifestIsRefusedOrHarmless) {
     for (const int mask : {0x01, 0x10, 0x80, 0xff}) {
       Bytes bytes = manifest_;
       bytes[at] = static_cast<uint8_t>(bytes[at] ^ mask);
-      const auto data = read_manifest(bytes, "m.thm");
+      const auto data = world::read_manifest(bytes, "m.thm");
       if (!data) {
         ++refused;
         continue;

@@ -13,18 +13,18 @@
 // 64 cells at a time, and reach the cells in order of distance; squares of 4 x 4 cells keep the
 // smallest, as no air box is smaller or lies across them. The same distances as the sweeps of
 // [RP66], which go from cell to cell.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 // Per layer and square: the distance from its cells to the nearest one that is not free; 0 if one
 // of them is not, 1 if one beside them. At most 1 more than the clearance that can be promised.
 class Distances {
  public:
-  Distances(const AirTreeSource& source, int32_t apron, int32_t workers)
+  Distances(const world::AirTreeSource& source, int32_t apron, int32_t workers)
       : side_(source.side / 4), height_(source.rows->height), base_(source.base) {
     distances_.resize(static_cast<size_t>(side_) * static_cast<size_t>(side_) *
                       static_cast<size_t>(height_));
-    max_distance_ = std::min(apron, kMaxAirClearance);
+    max_distance_ = std::min(apron, world::kMaxAirClearance);
     pad_ = (max_distance_ + 3) & -4;
     words_ = static_cast<size_t>((source.side + 2 * pad_ + 63) / 64);
     rows_ = static_cast<size_t>(source.side + 2 * max_distance_);
@@ -36,7 +36,7 @@ class Distances {
 
   /// Over all cells of an air box's footprint, in one layer of the world. Layers over and under the
   /// rows are like the highest of them: without a solid, but no wider than what is known.
-  [[nodiscard]] int32_t distance(const AirCube& cube, int32_t y) const {
+  [[nodiscard]] int32_t distance(const world::AirCube& cube, int32_t y) const {
     const int32_t row = y < base_ || y >= base_ + height_ ? height_ - 1 : y - base_;
     int32_t min_distance = max_distance_ + 1;
     for (int32_t z = cube.z / 4; z < (cube.z + cube.side) / 4; ++z) {
@@ -62,7 +62,7 @@ class Distances {
   };
 
   // 64 columns from x on; what lies beside the rows is free.
-  static uint64_t solid_at(const AirRows& rows, const uint64_t* row, int32_t x) {
+  static uint64_t solid_at(const world::AirRows& rows, const uint64_t* row, int32_t x) {
     const auto word = [&](int32_t w) {
       if (w < 0 || w >= rows.words) return uint64_t{0};
       const int32_t left = rows.width - 64 * w;
@@ -72,8 +72,8 @@ class Distances {
     return off == 0 ? word(first) : word(first) >> off | word(first + 1) << (64 - off);
   }
 
-  void grow(const AirTreeSource& source, int32_t y, Layer& layer) {
-    const AirRows& rows = *source.rows;
+  void grow(const world::AirTreeSource& source, int32_t y, Layer& layer) {
+    const world::AirRows& rows = *source.rows;
     layer.solid.resize(rows_ * words_);
     layer.wide.resize(rows_ * words_);
     uint64_t any = 0;
@@ -149,30 +149,31 @@ class Distances {
 
 class ClearanceWriter {
  public:
-  ClearanceWriter(const Distances& distances, AirTreeData& tree)
+  ClearanceWriter(const Distances& distances, world::AirTreeData& tree)
       : distances_(distances), tree_(tree) {}
 
-  void write(const AirCube& cube, size_t node) {
+  void write(const world::AirCube& cube, size_t node) {
     const uint32_t word = tree_.nodes[node];
-    if (air_kind(word) == AirKind::kFree) {
-      tree_.nodes[node] = air_word(AirKind::kFree, air_clearance_number(clearance(cube)));
+    if (world::air_kind(word) == world::AirKind::kFree) {
+      tree_.nodes[node] =
+          world::air_word(world::AirKind::kFree, world::air_clearance_number(clearance(cube)));
     }
-    if (air_kind(word) != AirKind::kInner) return;
+    if (world::air_kind(word) != world::AirKind::kInner) return;
     const int32_t half = cube.side / 2;
     for (int32_t c = 0; c < 8; ++c) {
       write({cube.x + (c & 1) * half, cube.y + (c >> 1 & 1) * half, cube.z + (c >> 2) * half, half},
-            air_number(word) + static_cast<size_t>(c));
+            world::air_number(word) + static_cast<size_t>(c));
     }
   }
 
  private:
-  [[nodiscard]] AirClearance clearance(const AirCube& cube) const {
-    AirClearance found{.width = kMaxAirClearance, .height = 0};
+  [[nodiscard]] world::AirClearance clearance(const world::AirCube& cube) const {
+    world::AirClearance found{.width = world::kMaxAirClearance, .height = 0};
     for (int32_t y = cube.y; y < cube.y + cube.side; ++y) {
       found.width = std::min(found.width, distances_.distance(cube, y) - 1);
     }
     const int32_t top = cube.y + cube.side;
-    while (found.height < kMaxAirClearance &&
+    while (found.height < world::kMaxAirClearance &&
            distances_.distance(cube, top + found.height) > found.width) {
       ++found.height;
     }
@@ -180,13 +181,13 @@ class ClearanceWriter {
   }
 
   const Distances& distances_;
-  AirTreeData& tree_;
+  world::AirTreeData& tree_;
 };
 
 }  // namespace
 
-void measure_clearance(const AirTreeSource& source, int32_t apron, int32_t workers,
-                       AirTreeData& tree) {
+void measure_clearance(const world::AirTreeSource& source, int32_t apron, int32_t workers,
+                       world::AirTreeData& tree) {
   const Distances distances(source, apron, workers);
   ClearanceWriter writer(distances, tree);
   for (uint32_t r = 0; r < tree.roots; ++r) {
@@ -194,4 +195,4 @@ void measure_clearance(const AirTreeSource& source, int32_t apron, int32_t worke
   }
 }
 
-}  // namespace throng
+}  // namespace throng::bake

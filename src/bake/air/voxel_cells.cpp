@@ -36,7 +36,7 @@ Result<World> bake_voxel_cells(const VoxelCells& cells, double cell) {
   if (!(cell >= 0.02 && cell <= 5) || std::fabs(mm - std::round(mm)) > 1e-6) {
     return Error{Errc::kBadConfig, "cells: the cell must be 0.02 to 5 m, in whole millimetres"};
   }
-  auto world = std::make_shared<WorldData>();
+  auto world = std::make_shared<world::WorldData>();
   WorldSummary& summary = world->summary;
   summary.cell = summary.resolution = cell;
   summary.bounds = {{0, 0, 0}, {cells.width * cell, cells.height * cell, cells.depth * cell}};
@@ -47,12 +47,12 @@ Result<World> bake_voxel_cells(const VoxelCells& cells, double cell) {
   summary.walkable_area = {0};
   world->width = cells.width;
   world->depth = cells.depth;
-  world->class_index.push_back(std::make_unique<ClassIndex>());
+  world->class_index.push_back(std::make_unique<world::ClassIndex>());
   world->tiles_per_zone = static_cast<uint32_t>(std::max(summary.tiles_x, summary.tiles_z));
   world->zones_x = world->zones_z = 1;
   world->slot_of_zone = {-1};
 
-  auto air = std::make_shared<AirData>();
+  auto air = std::make_shared<world::AirData>();
   air->shape = {.multiple = 1,
                 .cell = static_cast<int32_t>(std::lround(mm)),
                 .origin_y = 0,
@@ -62,21 +62,23 @@ Result<World> bake_voxel_cells(const VoxelCells& cells, double cell) {
                 .points = true};
   air->fit(*world);
   // Whole blocks and words of the map, not of the zone around it: that is square.
-  AirRows rows((cells.width + 63) & -64, (cells.height + 3) & -4, (cells.depth + 3) & -4, true);
+  world::AirRows rows((cells.width + 63) & -64, (cells.height + 3) & -4, (cells.depth + 3) & -4,
+                      true);
   for (const VoxelCells::Cube& c : cells.filled) rows.fill(c.x, c.x + 1, c.y, c.z, false);
-  const AirTreeSource source{.rows = &rows,
-                             .x = 0,
-                             .z = 0,
-                             .side = air->zone_side,
-                             .width = cells.width,
-                             .depth = cells.depth,
-                             .base = 0,
-                             .largest = AirTree::kMaxSide,
-                             .free_beyond = true};
-  AirTreeData tree = build_air_tree(source);
-  auto zone = AirZone::from_bytes(air_zone_bytes(0, 0, 0, tree), air_file_name(0, 0));
+  const world::AirTreeSource source{.rows = &rows,
+                                    .x = 0,
+                                    .z = 0,
+                                    .side = air->zone_side,
+                                    .width = cells.width,
+                                    .depth = cells.depth,
+                                    .base = 0,
+                                    .largest = world::AirTree::kMaxSide,
+                                    .free_beyond = true};
+  world::AirTreeData tree = world::build_air_tree(source);
+  auto zone =
+      world::AirZone::from_bytes(world::air_zone_bytes(0, 0, 0, tree), world::air_file_name(0, 0));
   if (!zone) return zone.error();
-  auto slot = std::make_unique<AirData::Slot>();
+  auto slot = std::make_unique<world::AirData::Slot>();
   const auto bytes = (*zone)->bytes();
   slot->entry = format::AirEntry(0, 0, bytes.size(), hash_bytes(bytes.data(), bytes.size()));
   slot->zone = std::move(*zone);

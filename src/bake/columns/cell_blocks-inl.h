@@ -17,7 +17,7 @@
 /// The cells that one vector of spans holds; compiled once for each target, so it is included after
 /// <hwy/highway.h> by files that use foreach_target.
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::bake {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -41,7 +41,7 @@ HWY_INLINE VI row_in_block() {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::bake
 HWY_AFTER_NAMESPACE();
 
 #endif  // the toggle

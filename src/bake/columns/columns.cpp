@@ -23,7 +23,7 @@
 #include "bake/columns/cell_blocks-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::bake {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -646,11 +646,11 @@ void RasteriseTile(std::span<const CellTriangle> triangles, std::span<const uint
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::bake
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace throng {
+namespace throng::bake {
 
 HWY_EXPORT(RasteriseTile);
 
@@ -699,5 +699,5 @@ void sort_spans(const TileColumns& columns, TileSpans& spans) {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::bake
 #endif  // HWY_ONCE

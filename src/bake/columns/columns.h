@@ -13,7 +13,7 @@
 #include "bake/columns/triangles.h"
 
 /// Columns of solid spans over the 64 x 64 cells of a tile, by conservative rasterisation.
-namespace throng {
+namespace throng::bake {
 
 inline constexpr int32_t kNoSupport = INT32_MIN;
 inline constexpr int32_t kNoSpan = INT32_MAX;  // as the low end of one that is not there
@@ -81,4 +81,4 @@ struct TileSpans {
 /// Sorts and merges spans that touch or overlap.
 void sort_spans(const TileColumns& columns, TileSpans& spans);
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -16,7 +16,7 @@
 #include "bake/columns/cell_blocks-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::bake {
 namespace HWY_NAMESPACE {
 
 // Spans of one vector of columns, while they are sorted.
@@ -285,11 +285,11 @@ void LendSupports(TileFreeSpans& free_spans) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::bake
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace throng {
+namespace throng::bake {
 
 HWY_EXPORT(FindFreeSpans);
 HWY_EXPORT(LendSupports);
@@ -307,5 +307,5 @@ std::array<uint64_t, kTileSide> bare_columns(const TileFreeSpans& free_spans) {
   return bare;
 }
 
-}  // namespace throng
+}  // namespace throng::bake
 #endif  // HWY_ONCE

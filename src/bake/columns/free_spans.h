@@ -10,7 +10,7 @@
 #include "bake/columns/columns.h"
 
 /// What is free above the solid spans of a tile's columns.
-namespace throng {
+namespace throng::bake {
 
 /// The free spans of one rank, at most one per cell. Heights from the columns' base.
 struct FreeSpanLayer {
@@ -40,4 +40,4 @@ void find_free_spans(const TileColumns& columns, int32_t min_free_span, TileFree
 /// nearest free span below that has one.
 void lend_supports(TileFreeSpans& free_spans);
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 /// The world's grid of cells: cell (0, 0) begins at the origin, heights are whole millimetres.
-namespace throng {
+namespace throng::bake {
 
 inline constexpr int32_t kTileSide = 64;  // cells
 inline constexpr int32_t kTileArea = kTileSide * kTileSide;
@@ -27,4 +27,4 @@ struct Grid {
   [[nodiscard]] int32_t tiles_z() const { return (depth + kTileSide - 1) / kTileSide; }
 };
 
-}  // namespace throng
+}  // namespace throng::bake

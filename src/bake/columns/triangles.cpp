@@ -10,7 +10,7 @@
 
 // Puts a scene's triangles on the grid and gives each its surface code: slope bin and area kind,
 // ordered by how much they restrict.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
@@ -157,4 +157,4 @@ CellBox scene_box(const Scene& scene, uint32_t triangle, const Grid& grid) {
   return box;
 }
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -17,7 +17,7 @@
 #include "throng/scene.h"
 
 /// Triangles as the rasteriser needs them: in cells and millimetres, corners sorted by z.
-namespace throng {
+namespace throng::bake {
 
 struct CellTriangle {
   std::array<double, 3> x;  // cells from the grid's origin
@@ -145,4 +145,4 @@ TriangleBins bin_triangles(std::span<const CellTriangle> triangles, int32_t cell
 /// Box of a triangle of a scene on a grid.
 CellBox scene_box(const Scene& scene, uint32_t triangle, const Grid& grid);
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -14,7 +14,7 @@
 /// Small vector helpers that all kernels of the bake share; compiled once for each target, so it is
 /// included after <hwy/highway.h> by files that use foreach_target.
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::bake {
 namespace HWY_NAMESPACE {
 
 /// Bit i is lane i of the mask; bits past the lanes are 0. [at most 64 lanes]
@@ -59,7 +59,7 @@ HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> counting_from(D d, hwy::HWY_NAMESPACE::TFr
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::bake
 HWY_AFTER_NAMESPACE();
 
 #endif  // the toggle

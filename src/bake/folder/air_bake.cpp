@@ -15,7 +15,7 @@
 // Columns are filled again, as for the ground, and what of a column lies in an air cell fills it:
 // an air cell is free only if no solid, over-covered as it is, touches it anywhere. A ring of tiles
 // around the zone shows how wide its free cubes are.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 constexpr int32_t kAirBakeVersion = 1;
@@ -39,7 +39,7 @@ double asked_cell(const BakeConfig& config) {
 struct Layers {
   int32_t first, last;
 };
-Layers layers_of(const AirShape& shape, int64_t low, int64_t high) {
+Layers layers_of(const world::AirShape& shape, int64_t low, int64_t high) {
   return {floor_div(low - shape.origin_y - 1, shape.cell),
           floor_div(high - shape.origin_y, shape.cell)};
 }
@@ -72,8 +72,8 @@ Result<void> check_air(const BakeConfig& config) {
   return {};
 }
 
-AirShape air_shape(const BakePlan& plan, const Box3d& bounds) {
-  AirShape shape;
+world::AirShape air_shape(const BakePlan& plan, const Box3d& bounds) {
+  world::AirShape shape;
   const double cell = asked_cell(*plan.config);
   shape.multiple = static_cast<int32_t>(std::lround(cell / plan.config->cell));
   shape.cell = static_cast<int32_t>(std::lround(cell * 1000));
@@ -90,9 +90,9 @@ AirShape air_shape(const BakePlan& plan, const Box3d& bounds) {
 
 namespace {
 
-std::unique_ptr<AirData::Slot> slot_of(int32_t x, int32_t z, std::span<const uint8_t> bytes,
-                                       std::unique_ptr<AirZone> zone) {
-  auto slot = std::make_unique<AirData::Slot>();
+std::unique_ptr<world::AirData::Slot> slot_of(int32_t x, int32_t z, std::span<const uint8_t> bytes,
+                                              std::unique_ptr<world::AirZone> zone) {
+  auto slot = std::make_unique<world::AirData::Slot>();
   slot->entry = format::AirEntry(x, z, bytes.size(), hash_bytes(bytes.data(), bytes.size()));
   slot->zone = std::move(zone);
   return slot;
@@ -112,7 +112,7 @@ struct AirBaker::TileAir {
   std::vector<Layers> layers;
 };
 
-AirBaker::AirBaker(const BakePlan& plan, const AirShape& shape, const WorldFolder* folder,
+AirBaker::AirBaker(const BakePlan& plan, const world::AirShape& shape, const WorldFolder* folder,
                    int32_t workers)
     : plan_(plan), shape_(shape), folder_(folder) {
   for (int32_t i = 0; i < workers; ++i) workers_.push_back(std::make_unique<Worker>());
@@ -194,7 +194,8 @@ std::vector<AirBaker::TileAir> AirBaker::rasterise_ring(int32_t zone_x, int32_t 
 
 // Makes the air cells with solids not free, and those beside the world and where nothing is known.
 void AirBaker::fill_solids(const ZoneCells& c, int32_t zone_x, int32_t zone_z, int32_t base,
-                           int32_t height, const std::vector<TileAir>& air, AirRows& rows) const {
+                           int32_t height, const std::vector<TileAir>& air,
+                           world::AirRows& rows) const {
   const auto workers = static_cast<int32_t>(workers_.size());
   parallel_for(static_cast<size_t>(c.across), workers, [&](size_t i) {
     const auto z = static_cast<int32_t>(i);
@@ -223,11 +224,11 @@ void AirBaker::fill_solids(const ZoneCells& c, int32_t zone_x, int32_t zone_z, i
   });
 }
 
-Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zone_z,
-                                                      std::span<const uint32_t> triangles,
-                                                      uint64_t input, Context& context) {
+Result<std::unique_ptr<world::AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zone_z,
+                                                             std::span<const uint32_t> triangles,
+                                                             uint64_t input, Context& context) {
   const auto workers = static_cast<int32_t>(workers_.size());
-  if (shape_.floor <= -kMaxAirLayers || shape_.ceiling >= kMaxAirLayers) {
+  if (shape_.floor <= -world::kMaxAirLayers || shape_.ceiling >= world::kMaxAirLayers) {
     return Error{Errc::kLimit,
                  "bake: the air reaches over 2 million air cells above or below height 0; use a "
                  "larger air cell"};
@@ -272,7 +273,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
       own = own || !beside;
     }
   }
-  if (!own) return std::unique_ptr<AirData::Slot>();  // nothing but air
+  if (!own) return std::unique_ptr<world::AirData::Slot>();  // nothing but air
   // The highest layer stays free: it stands for all that is higher or lower.
   const int32_t base = low & -4, height = ((high - base + 2) + 3) & -4;
   if (static_cast<double>(height) * across * across / 8 > static_cast<double>(kMaxBytes)) {
@@ -280,7 +281,7 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
                                    std::to_string(zone_z) + " takes more than 2 GiB while it is " +
                                    "baked; use a larger air cell or smaller zones"};
   }
-  AirRows rows(across, height, across, true);
+  world::AirRows rows(across, height, across, true);
   const ZoneCells cells{.per_tile = per_tile,
                         .apron = apron,
                         .known = known,
@@ -290,33 +291,34 @@ Result<std::unique_ptr<AirData::Slot>> AirBaker::bake(int32_t zone_x, int32_t zo
                         .grid_x = grid_x,
                         .grid_z = grid_z};
   fill_solids(cells, zone_x, zone_z, base, height, air, rows);
-  const AirTreeSource source{.rows = &rows,
-                             .x = apron,
-                             .z = apron,
-                             .side = side,
-                             .width = std::min(side, grid_x - zone_x * side),
-                             .depth = std::min(side, grid_z - zone_z * side),
-                             .base = base,
-                             .largest = AirTree::kMaxSide,
-                             .free_beyond = true};
-  AirTreeData tree = build_air_tree(source);
+  const world::AirTreeSource source{.rows = &rows,
+                                    .x = apron,
+                                    .z = apron,
+                                    .side = side,
+                                    .width = std::min(side, grid_x - zone_x * side),
+                                    .depth = std::min(side, grid_z - zone_z * side),
+                                    .base = base,
+                                    .largest = world::AirTree::kMaxSide,
+                                    .free_beyond = true};
+  world::AirTreeData tree = world::build_air_tree(source);
   measure_clearance(source, apron, workers, tree);
-  auto bytes = air_zone_bytes(zone_x, zone_z, key, tree);
+  auto bytes = world::air_zone_bytes(zone_x, zone_z, key, tree);
   const std::span<const uint8_t> view(bytes.data(), bytes.size());
   if (folder_ != nullptr) {
-    if (auto ok = folder_->write_file_of_zone(air_file_name(zone_x, zone_z), view); !ok)
+    if (auto ok = folder_->write_file_of_zone(world::air_file_name(zone_x, zone_z), view); !ok)
       return ok.error();
     return slot_of(zone_x, zone_z, view, nullptr);
   }
-  auto zone = AirZone::from_bytes(std::move(bytes), air_file_name(zone_x, zone_z));
+  auto zone = world::AirZone::from_bytes(std::move(bytes), world::air_file_name(zone_x, zone_z));
   if (!zone) return zone.error();
   const auto reused = (*zone)->bytes();
   return slot_of(zone_x, zone_z, reused, std::move(*zone));
 }
 
-std::shared_ptr<AirData> gather_air(const AirShape& shape, const WorldData& world,
-                                    std::vector<std::unique_ptr<AirData::Slot>> zones) {
-  auto air = std::make_shared<AirData>();
+std::shared_ptr<world::AirData> gather_air(
+    const world::AirShape& shape, const world::WorldData& world,
+    std::vector<std::unique_ptr<world::AirData::Slot>> zones) {
+  auto air = std::make_shared<world::AirData>();
   air->shape = shape;
   air->fit(world);
   for (auto& slot : zones) {
@@ -330,4 +332,4 @@ std::shared_ptr<AirData> gather_air(const AirShape& shape, const WorldData& worl
   return air;
 }
 
-}  // namespace throng
+}  // namespace throng::bake

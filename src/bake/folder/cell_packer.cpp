@@ -18,7 +18,7 @@
 #include "bake/columns/vector_bits-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::bake {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -274,17 +274,17 @@ struct RowPlan {
   bool sloped = false;  // a slope may help one
 };
 
-HWY_INLINE bool may_slope(const ValueBlock& block, const BlockRow& row, size_t b) {
+HWY_INLINE bool may_slope(const world::ValueBlock& block, const BlockRow& row, size_t b) {
   return block.width > 1 && row.high[8 * b] - row.low[8 * b] < kSteepest;
 }
 
-HWY_INLINE RowPlan plan_row(const BlockRow& row, uint16_t low, ValueBlock* blocks) {
+HWY_INLINE RowPlan plan_row(const BlockRow& row, uint16_t low, world::ValueBlock* blocks) {
   RowPlan plan;
   for (size_t b = 0; b < 8; ++b) {
     const size_t i = 8 * b;
     const bool hole = row.hole[i] != 0;
     if (row.low[i] == kNone16) {  // no values: only holes, or nothing
-      blocks[b].base = hole ? kNoValue : 0;
+      blocks[b].base = hole ? world::kNoValue : 0;
       continue;
     }
     const uint32_t range = static_cast<uint32_t>(row.high[i] - row.low[i]);
@@ -300,7 +300,7 @@ HWY_INLINE RowPlan plan_row(const BlockRow& row, uint16_t low, ValueBlock* block
 }
 
 // Fills in the slopes that blocks may take.
-HWY_INLINE void choose_slopes(const ValueBlock* blocks, bool whole, BlockRow& row) {
+HWY_INLINE void choose_slopes(const world::ValueBlock* blocks, bool whole, BlockRow& row) {
   // Sums may wrap round at odd shapes: then the slope is a bad one, and not taken.
   const auto slope = [](int32_t rise, int32_t pairs) {
     const int32_t mean = pairs == 56 ? rise * 64 / 56 : rise * 64 / std::max(pairs, 1);
@@ -318,7 +318,7 @@ HWY_INLINE void choose_slopes(const ValueBlock* blocks, bool whole, BlockRow& ro
 }
 
 // Keeps the slopes of blocks that take fewer bits with them.
-HWY_INLINE void keep_slopes(ValueBlock* blocks, BlockRow& row) {
+HWY_INLINE void keep_slopes(world::ValueBlock* blocks, BlockRow& row) {
   for (size_t b = 0; b < 8; ++b) {
     const size_t i = 8 * b;
     if ((row.slope_x[i] | row.slope_z[i]) != 0) {
@@ -350,7 +350,7 @@ HWY_INLINE size_t pack_row(const uint16_t* values, const uint16_t* feet, bool al
   const DU du;
   const DI di;
   BlockRow row;
-  ValueBlock blocks[8];
+  world::ValueBlock blocks[8];
   bool all_held = all_stand;
   if (all_stand) {
     for_strips(values, feet, row, [&](const Strip& strip) { all_held &= strip.find_range(); });
@@ -405,13 +405,13 @@ HWY_INLINE size_t pack_row(const uint16_t* values, const uint16_t* feet, bool al
   for (size_t b = 0; b < 8; ++b) {
     if (blocks[b].width != 0) blocks[b].first = static_cast<uint32_t>(out - payload);
     out = append_rest(row, b, blocks[b].width, out);
-    heads[b] = pack_head(blocks[b]);
+    heads[b] = world::pack_head(blocks[b]);
   }
   return static_cast<size_t>(out - payload);
 }
 
-size_t PackBlocks(const uint16_t* values, const uint16_t* feet, const CellRows* has, uint16_t low,
-                  uint64_t* heads, uint64_t* payload) {
+size_t PackBlocks(const uint16_t* values, const uint16_t* feet, const world::CellRows* has,
+                  uint16_t low, uint64_t* heads, uint64_t* payload) {
   size_t used = 0;
   for (size_t z = 0; z < 8; ++z, values += 512, feet += 512, heads += 8) {
     uint64_t any = ~uint64_t{0}, all = any;
@@ -432,20 +432,20 @@ size_t PackBlocks(const uint16_t* values, const uint16_t* feet, const CellRows* 
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::bake
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace throng {
+namespace throng::bake {
 
 HWY_EXPORT(PackBlocks);
 
-void pack_values(const uint16_t* values, const uint16_t* feet, const CellRows* has, uint16_t low,
-                 std::vector<uint64_t>& words) {
-  uint64_t packed[kValueHead + kBlocks * 16];  // as much as values can take
+void pack_values(const uint16_t* values, const uint16_t* feet, const world::CellRows* has,
+                 uint16_t low, std::vector<uint64_t>& words) {
+  uint64_t packed[world::kValueHead + world::kBlocks * 16];  // as much as values can take
   const size_t used =
-      HWY_DYNAMIC_DISPATCH(PackBlocks)(values, feet, has, low, packed, packed + kValueHead);
-  words.insert(words.end(), packed, packed + kValueHead + used);
+      HWY_DYNAMIC_DISPATCH(PackBlocks)(values, feet, has, low, packed, packed + world::kValueHead);
+  words.insert(words.end(), packed, packed + world::kValueHead + used);
 }
 
 namespace {
@@ -459,9 +459,9 @@ uint64_t bytes_with_bits(uint64_t word) {
 
 }  // namespace
 
-void pack_bits(const CellRows& rows, std::vector<uint64_t>& words) {
-  uint64_t packed[kBitHead + kBlocks];
-  uint64_t* next = packed + kBitHead;
+void pack_bits(const world::CellRows& rows, std::vector<uint64_t>& words) {
+  uint64_t packed[world::kBitHead + world::kBlocks];
+  uint64_t* next = packed + world::kBitHead;
   uint64_t mixed = 0, full = 0;
   for (size_t z = 0; z < 8; ++z) {
     const uint64_t* row = &rows[8 * z];
@@ -491,5 +491,5 @@ void pack_bits(const CellRows& rows, std::vector<uint64_t>& words) {
   words.insert(words.end(), packed, next);
 }
 
-}  // namespace throng
+}  // namespace throng::bake
 #endif

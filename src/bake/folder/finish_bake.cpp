@@ -11,11 +11,11 @@
 
 // Replaces the old world by the complete one in NAME.part, after a check of the off-mesh links of
 // its nodes.
-namespace throng {
+namespace throng::bake {
 
-Result<void> finish_bake(WorldFolder& folder, const WorldData& world, const GraphData& graph,
-                         const Scene& scene, const BakeConfig& config, Context& context,
-                         BakeReport& report) {
+Result<void> finish_bake(WorldFolder& folder, const world::WorldData& world,
+                         const world::GraphData& graph, const Scene& scene,
+                         const BakeConfig& config, Context& context, BakeReport& report) {
   if (auto ok = folder.complete(world, graph, config.carry_nodes); !ok) return ok;
   if (config.nodes != nullptr && !config.nodes->off_mesh_links.empty()) {
     const auto made = World::open(folder.part());
@@ -30,4 +30,4 @@ Result<void> finish_bake(WorldFolder& folder, const WorldData& world, const Grap
   return {};
 }
 
-}  // namespace throng
+}  // namespace throng::bake

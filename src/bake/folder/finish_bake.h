@@ -8,13 +8,13 @@
 #include "throng/scene.h"
 
 /// The end of a bake into a folder, by one process or by many.
-namespace throng {
+namespace throng::bake {
 
 /// Puts a world whose zones, air and graph are all in the folder into its place, if what will be
 /// made of it can be: else nothing of the old world is lost. Fails with kIo, kBadInput (off-mesh
 /// links), kBadFile or kCancelled.
-Result<void> finish_bake(WorldFolder& folder, const WorldData& world, const GraphData& graph,
-                         const Scene& scene, const BakeConfig& config, Context& context,
-                         BakeReport& report);
+Result<void> finish_bake(WorldFolder& folder, const world::WorldData& world,
+                         const world::GraphData& graph, const Scene& scene,
+                         const BakeConfig& config, Context& context, BakeReport& report);
 
-}  // namespace throng
+}  // namespace throng::bake

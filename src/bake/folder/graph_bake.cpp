@@ -8,18 +8,18 @@
 
 // Runs the passes of graph/graph_passes.h on a world's folder, which lends their files of an
 // earlier bake.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 constexpr uint64_t kResident = uint64_t{8} << 20;  // of zones in use [bytes]
 
-class FilesInFolder : public GraphFiles {
+class FilesInFolder : public graph::GraphFiles {
  public:
   explicit FilesInFolder(WorldFolder& folder) : folder_(folder) {}
-  std::unique_ptr<RegionZone> reuse_regions(int32_t x, int32_t z, uint64_t input) override {
+  std::unique_ptr<world::RegionZone> reuse_regions(int32_t x, int32_t z, uint64_t input) override {
     return folder_.reuse_regions(x, z, input);
   }
-  std::unique_ptr<LinkZone> reuse_links(int32_t x, int32_t z, uint64_t input) override {
+  std::unique_ptr<world::LinkZone> reuse_links(int32_t x, int32_t z, uint64_t input) override {
     return folder_.reuse_links(x, z, input);
   }
   Result<void> write(const std::string& name, std::span<const uint8_t> bytes) override {
@@ -32,14 +32,14 @@ class FilesInFolder : public GraphFiles {
 
 }  // namespace
 
-Result<std::shared_ptr<GraphData>> bake_graph(WorldFolder& folder, WorldData& world,
-                                              int32_t workers, Context& context,
-                                              BakeReport& report) {
+Result<std::shared_ptr<world::GraphData>> bake_graph(WorldFolder& folder, world::WorldData& world,
+                                                     int32_t workers, Context& context,
+                                                     BakeReport& report) {
   const auto start = std::chrono::steady_clock::now();
   world.path = folder.part();
   world.budget = kResident;
   FilesInFolder files(folder);
-  auto made = make_graph(world, &files, workers, context);
+  auto made = graph::make_graph(world, &files, workers, context);
   if (!made) {
     if (made.error().code != Errc::kCancelled) return made.error();
     return Error{Errc::kCancelled, "bake: cancelled; nothing was written"};
@@ -53,4 +53,4 @@ Result<std::shared_ptr<GraphData>> bake_graph(WorldFolder& folder, WorldData& wo
   return std::move(made->graph);
 }
 
-}  // namespace throng
+}  // namespace throng::bake

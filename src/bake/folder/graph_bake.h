@@ -9,13 +9,13 @@
 #include "throng/base.h"
 
 /// The graph of a baked world, into its folder.
-namespace throng {
+namespace throng::bake {
 
 /// Makes what graph/graph_passes.h makes of a world whose zones are all in the folder, but for what
 /// a killed bake or the old world has made of the same. Fails with kBadFile, kIo, kLimit or
 /// kCancelled.
-Result<std::shared_ptr<GraphData>> bake_graph(WorldFolder& folder, WorldData& world,
-                                              int32_t workers, Context& context,
-                                              BakeReport& report);
+Result<std::shared_ptr<world::GraphData>> bake_graph(WorldFolder& folder, world::WorldData& world,
+                                                     int32_t workers, Context& context,
+                                                     BakeReport& report);
 
-}  // namespace throng
+}  // namespace throng::bake

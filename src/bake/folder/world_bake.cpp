@@ -21,7 +21,7 @@
 
 // Plans a bake: checks it, lays the grid, sorts triangles into zones, hashes each zone's input, and
 // puts baked zones together into a world.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 constexpr double kMaxCells = 1 << 20;  // along a side: positions are 1/2048 cell in 31 bits
@@ -77,7 +77,7 @@ Result<BakePlan> make_plan(const Scene& scene, const BakeConfig& config, const B
                      std::to_string(static_cast<int64_t>(std::max(width, depth))) +
                      " cells across, at most 1048512 fit; use a larger cell or check the units"};
   }
-  if (std::max(std::fabs(bounds.min.y), std::fabs(bounds.max.y)) > kMaxHeight) {
+  if (std::max(std::fabs(bounds.min.y), std::fabs(bounds.max.y)) > world::kMaxHeight) {
     return Error{Errc::kLimit, "bake: heights reach beyond 1000 km; check the units"};
   }
   BakePlan plan;
@@ -156,7 +156,8 @@ bool have_a_zone_in_common(std::span<const format::ZoneInput> a,
 
 // The grid of the world that is there, if the scene begins on it: else every zone would be another
 // once a triangle at the rim moves.
-std::optional<Grid> old_grid(const BakePlan& plan, const Box3d& bounds, const WorldData* old) {
+std::optional<Grid> old_grid(const BakePlan& plan, const Box3d& bounds,
+                             const world::WorldData* old) {
   if (old == nullptr || old->summary.cell != plan.config->cell) return std::nullopt;
   Grid grid = plan.grid;
   grid.origin_x = old->summary.origin.x;
@@ -179,7 +180,8 @@ std::optional<Grid> old_grid(const BakePlan& plan, const Box3d& bounds, const Wo
 }
 
 // Puts the plan on the old world's grid if that spares a zone.
-ZoneInputs choose_grid(BakePlan& plan, const Box3d& bounds, const WorldData* old, bool hashed) {
+ZoneInputs choose_grid(BakePlan& plan, const Box3d& bounds, const world::WorldData* old,
+                       bool hashed) {
   if (const auto grid = old_grid(plan, bounds, old)) {
     const Grid own = plan.grid;
     plan.put_on(*grid);
@@ -209,7 +211,7 @@ WorldBake::WorldBake(WorldBake&&) noexcept = default;
 WorldBake::~WorldBake() = default;
 
 Result<WorldBake> WorldBake::begin(const Scene& scene, const BakeConfig& config,
-                                   const WorldData* old_world, bool hashed) {
+                                   const world::WorldData* old_world, bool hashed) {
   auto plan = std::make_unique<Plan>(scene, config);
   auto made = make_plan(scene, config, plan->bounds, plan->coder);
   if (!made) return made.error();
@@ -280,11 +282,11 @@ ZoneFacts WorldBake::facts_of(const WorldFolder::Reused& reused) const {
   return facts;
 }
 
-Result<std::shared_ptr<WorldData>> WorldBake::world(std::span<const ZoneFacts> facts,
-                                                    BakeReport& report) const {
+Result<std::shared_ptr<world::WorldData>> WorldBake::world(std::span<const ZoneFacts> facts,
+                                                           BakeReport& report) const {
   const BakePlan& plan = plan_->plan;
   const BakeConfig& config = *plan.config;
-  auto world = std::make_shared<WorldData>();
+  auto world = std::make_shared<world::WorldData>();
   WorldSummary& summary = world->summary;
   summary.cell = config.cell;
   summary.resolution = config.resolution;
@@ -321,7 +323,7 @@ Result<std::shared_ptr<WorldData>> WorldBake::world(std::span<const ZoneFacts> f
     report.constant_level_tiles += f.flat_levels;
     report.bytes += f.entry.bytes();
     ++report.zones;
-    auto slot = std::make_unique<WorldData::Slot>();
+    auto slot = std::make_unique<world::WorldData::Slot>();
     slot->entry = f.entry;
     slot->first_level = world->level_count;
     if (uint64_t{world->level_count} + levels >= UINT32_MAX) {
@@ -334,7 +336,7 @@ Result<std::shared_ptr<WorldData>> WorldBake::world(std::span<const ZoneFacts> f
   if (plan_->hashed) world->inputs = plan_->zones.inputs;
   for (const uint64_t cells : legal_cells) {
     summary.walkable_area.push_back(static_cast<double>(cells) * config.cell * config.cell);
-    world->class_index.push_back(std::make_unique<ClassIndex>());
+    world->class_index.push_back(std::make_unique<world::ClassIndex>());
   }
   report.walkable_area = summary.walkable_area;
   summary.zones = world->slots.size();
@@ -343,18 +345,18 @@ Result<std::shared_ptr<WorldData>> WorldBake::world(std::span<const ZoneFacts> f
   return world;
 }
 
-Result<void> WorldBake::add_air(WorldFolder* folder, WorldData& world, Context& context,
+Result<void> WorldBake::add_air(WorldFolder* folder, world::WorldData& world, Context& context,
                                 BakeReport& report) const {
   const BakePlan& plan = plan_->plan;
   if (!wants_air(*plan.config)) return {};
   const auto start = std::chrono::steady_clock::now();
-  const AirShape shape = air_shape(plan, plan_->bounds);
+  const world::AirShape shape = air_shape(plan, plan_->bounds);
   const WorkerGroups assigned = assign_workers(zones().size(), plan.config->workers);
   std::vector<AirBaker> air;
   for (int32_t group = 0; group < assigned.groups; ++group) {
     air.emplace_back(plan, shape, folder, assigned.workers);
   }
-  std::vector<std::unique_ptr<AirData::Slot>> slots(zones().size());
+  std::vector<std::unique_ptr<world::AirData::Slot>> slots(zones().size());
   const auto baked = side_by_side(
       zones().size(), assigned, context,
       [&](size_t zone) {
@@ -384,4 +386,4 @@ Result<void> check_bake(const Scene& scene, const BakeConfig& config) {
   return check_scene(scene);
 }
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -18,7 +18,7 @@
 
 /// A world's bake as zones that know nothing of each other: what a bake by one process and one by
 /// many share.
-namespace throng {
+namespace throng::bake {
 
 /// Fails with kBadConfig or kBadInput.
 Result<void> check_bake(const Scene& scene, const BakeConfig& config);
@@ -39,7 +39,7 @@ class WorldBake {
   /// Scene and config must outlive it. `old_world` may be null; without `hashed` no zone can be
   /// kept. Fails with kLimit.
   static Result<WorldBake> begin(const Scene& scene, const BakeConfig& config,
-                                 const WorldData* old_world, bool hashed);
+                                 const world::WorldData* old_world, bool hashed);
   WorldBake(WorldBake&& other) noexcept;
   WorldBake& operator=(WorldBake&&) = delete;
   ~WorldBake();
@@ -60,11 +60,11 @@ class WorldBake {
 
   /// The world of all zones, in their order, and what its bake did but for the time it took. Fails
   /// with kLimit.
-  [[nodiscard]] Result<std::shared_ptr<WorldData>> world(std::span<const ZoneFacts> facts,
-                                                         BakeReport& report) const;
+  [[nodiscard]] Result<std::shared_ptr<world::WorldData>> world(std::span<const ZoneFacts> facts,
+                                                                BakeReport& report) const;
   /// The air of a world of all zones, if the config requires any: into the folder, or into memory
   /// if it is null. Fails with kIo, kLimit or kCancelled.
-  Result<void> add_air(WorldFolder* folder, WorldData& world, Context& context,
+  Result<void> add_air(WorldFolder* folder, world::WorldData& world, Context& context,
                        BakeReport& report) const;
 
  private:
@@ -74,4 +74,4 @@ class WorldBake {
   std::unique_ptr<Plan> plan_;
 };
 
-}  // namespace throng
+}  // namespace throng::bake

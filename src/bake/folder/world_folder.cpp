@@ -23,7 +23,7 @@
 // are linked there, so the world NAME stays as it is until both change names. What has been baked
 // is listed by a journal in NAME.part, one record a zone, written after the zone's file. A record
 // that was cut short or a file that is not what its record says is as good as none.
-namespace throng {
+namespace throng::bake {
 namespace fs = std::filesystem;
 namespace {
 
@@ -126,12 +126,12 @@ Result<WorldFolder> WorldFolder::begin(std::string path, OldZones old_zones) {
   return folder;
 }
 
-std::shared_ptr<WorldData> WorldFolder::read_world(const std::string& path) {
+std::shared_ptr<world::WorldData> WorldFolder::read_world(const std::string& path) {
   const std::string name = (fs::path(path) / kManifest).string();
   const auto map = FileMap::open(name);
   if (!map) return nullptr;
-  auto world = read_manifest(map->bytes(), name);
-  if (!unsealed(map->bytes(), name)) return nullptr;
+  auto world = world::read_manifest(map->bytes(), name);
+  if (!world::unsealed(map->bytes(), name)) return nullptr;
   return world ? std::move(*world) : nullptr;
 }
 
@@ -179,14 +179,14 @@ std::optional<WorldFolder::Reused> WorldFolder::reuse(int32_t x, int32_t z, uint
     const format::ZoneEntry& entry = source->second.entry;
     if (source->second.input != input) continue;
     if (entry.bytes() == 0) return Reused{nullptr, entry};
-    const std::string file = zone_file_name(x, z);
+    const std::string file = world::zone_file_name(x, z);
     const fs::path from = (source->second.is_part ? part_ : fs::path(path_)) / file;
     auto map = FileMap::open(from.string());
     if (!map || map->bytes().size() != entry.bytes() ||
         hash_bytes(map->bytes().data(), map->bytes().size()) != entry.hash()) {
       continue;
     }
-    auto zone = Zone::from_file(std::move(*map), from.string());
+    auto zone = world::Zone::from_file(std::move(*map), from.string());
     if (!zone) continue;
     if (!source->second.is_part) {
       std::error_code error;
@@ -203,7 +203,7 @@ Result<void> WorldFolder::write_zone(const std::string& path, const format::Zone
                                      std::span<const uint8_t> bytes) {
   if (bytes.empty()) return {};
   const fs::path part(without_slash(path) + ".part");
-  return write_file((part / zone_file_name(entry.x(), entry.z())).string(), bytes);
+  return write_file((part / world::zone_file_name(entry.x(), entry.z())).string(), bytes);
 }
 
 Result<void> WorldFolder::add(const format::ZoneEntry& entry, uint64_t input) {
@@ -245,16 +245,18 @@ std::unique_ptr<File> WorldFolder::reuse_file(const std::string& name, uint64_t 
   return nullptr;
 }
 
-std::unique_ptr<AirZone> WorldFolder::reuse_air(int32_t x, int32_t z, uint64_t input) const {
-  return reuse_file<AirZone>(air_file_name(x, z), input);
+std::unique_ptr<world::AirZone> WorldFolder::reuse_air(int32_t x, int32_t z, uint64_t input) const {
+  return reuse_file<world::AirZone>(world::air_file_name(x, z), input);
 }
 
-std::unique_ptr<RegionZone> WorldFolder::reuse_regions(int32_t x, int32_t z, uint64_t input) const {
-  return reuse_file<RegionZone>(region_file_name(x, z), input);
+std::unique_ptr<world::RegionZone> WorldFolder::reuse_regions(int32_t x, int32_t z,
+                                                              uint64_t input) const {
+  return reuse_file<world::RegionZone>(world::region_file_name(x, z), input);
 }
 
-std::unique_ptr<LinkZone> WorldFolder::reuse_links(int32_t x, int32_t z, uint64_t input) const {
-  return reuse_file<LinkZone>(link_file_name(x, z), input);
+std::unique_ptr<world::LinkZone> WorldFolder::reuse_links(int32_t x, int32_t z,
+                                                          uint64_t input) const {
+  return reuse_file<world::LinkZone>(world::link_file_name(x, z), input);
 }
 
 Result<void> WorldFolder::write_file_of_zone(const std::string& name,
@@ -262,18 +264,18 @@ Result<void> WorldFolder::write_file_of_zone(const std::string& name,
   return write_file((part_ / name).string(), bytes);
 }
 
-Result<void> WorldFolder::complete(const WorldData& world, const GraphData& graph,
+Result<void> WorldFolder::complete(const world::WorldData& world, const world::GraphData& graph,
                                    bool carry_nodes) {
   std::set<std::string> names;
   if (world.air != nullptr) {
     for (const auto& slot : world.air->slots) {
-      names.insert(air_file_name(slot->entry.x(), slot->entry.z()));
+      names.insert(world::air_file_name(slot->entry.x(), slot->entry.z()));
     }
   }
   for (const auto& slot : world.slots) {
     const int32_t x = slot->entry.x(), z = slot->entry.z();
-    for (const std::string& name :
-         {zone_file_name(x, z), region_file_name(x, z), link_file_name(x, z)}) {
+    for (const std::string& name : {world::zone_file_name(x, z), world::region_file_name(x, z),
+                                    world::link_file_name(x, z)}) {
       names.insert(name);
     }
   }
@@ -284,22 +286,23 @@ Result<void> WorldFolder::complete(const WorldData& world, const GraphData& grap
     if (name != kJournal && !names.contains(name)) stale.push_back(file.path());
   }
   for (const fs::path& file : stale) fs::remove_all(file, error);
-  const std::vector<uint8_t> manifest = write_manifest(world);
+  const std::vector<uint8_t> manifest = world::write_manifest(world);
   const uint64_t hash = hash_bytes(manifest.data(), manifest.size());
   if (world.air != nullptr) {
-    const auto air = write_air_manifest(*world.air, hash);
-    if (auto ok = write_file((part_ / kAirManifest).string(), sealed(air)); !ok) return ok.error();
+    const auto air = world::write_air_manifest(*world.air, hash);
+    if (auto ok = write_file((part_ / world::kAirManifest).string(), world::sealed(air)); !ok)
+      return ok.error();
   }
-  const auto index = write_graph_index(graph, hash);
-  if (auto ok = write_file((part_ / kGraphIndexName).string(), sealed(index)); !ok) {
+  const auto index = world::write_graph_index(graph, hash);
+  if (auto ok = write_file((part_ / world::kGraphIndexName).string(), world::sealed(index)); !ok) {
     return ok.error();
   }
-  const auto whole = sealed(manifest);
+  const auto whole = world::sealed(manifest);
   if (auto ok = write_file((part_ / kManifest).string(), whole); !ok) return ok.error();
   if (carry_nodes && old_ != nullptr) {
     const auto before = FileMap::open((fs::path(path_) / kManifest).string());
     const bool is_same = before && std::ranges::equal(before->bytes(), whole);
-    throng::carry_nodes(path_, part_.string(), is_same);
+    throng::bake::carry_nodes(path_, part_.string(), is_same);
   }
   return {};
 }
@@ -315,4 +318,4 @@ Result<FolderLock> WorldFolder::finish() {
   return std::move(part_lock_);
 }
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -21,7 +21,7 @@
 
 /// The folder of a world while it is baked: zones are taken over from the world that is there and
 /// from a bake that was killed, and the new world replaces the old one at once.
-namespace throng {
+namespace throng::bake {
 
 class WorldFolder {
  public:
@@ -35,7 +35,7 @@ class WorldFolder {
 
   /// The world at `path`, without its zones; null if there is none that can be read. For ranks that
   /// do not own the folder.
-  static std::shared_ptr<WorldData> read_world(const std::string& path);
+  static std::shared_ptr<world::WorldData> read_world(const std::string& path);
   /// Writes the file of a baked zone, if a class can stand there; `add` makes it count.
   static Result<void> write_zone(const std::string& path, const format::ZoneEntry& entry,
                                  std::span<const uint8_t> bytes);
@@ -45,14 +45,14 @@ class WorldFolder {
   void leave() { part_.clear(); }
 
   /// The world that is there, without its zones; null if there is none that can be read.
-  [[nodiscard]] const WorldData* old_world() const { return old_.get(); }
+  [[nodiscard]] const world::WorldData* old_world() const { return old_.get(); }
 
   // Reused zones and files of zones: from several threads, of different zones.
 
   /// A zone that need not be baked; it is then in the new world. `zone` is null where no class
   /// stands.
   struct Reused {
-    std::unique_ptr<Zone> zone;
+    std::unique_ptr<world::Zone> zone;
     format::ZoneEntry entry;
   };
   std::optional<Reused> reuse(int32_t x, int32_t z, uint64_t input) const;
@@ -60,9 +60,9 @@ class WorldFolder {
   /// A file of a zone (of its air, regions or links) that need not be made, from the killed bake or
   /// the old world; it is then in the new world. These files carry their input and a sum, so no
   /// journal names them. Null if there is none with this input.
-  std::unique_ptr<AirZone> reuse_air(int32_t x, int32_t z, uint64_t input) const;
-  std::unique_ptr<RegionZone> reuse_regions(int32_t x, int32_t z, uint64_t input) const;
-  std::unique_ptr<LinkZone> reuse_links(int32_t x, int32_t z, uint64_t input) const;
+  std::unique_ptr<world::AirZone> reuse_air(int32_t x, int32_t z, uint64_t input) const;
+  std::unique_ptr<world::RegionZone> reuse_regions(int32_t x, int32_t z, uint64_t input) const;
+  std::unique_ptr<world::LinkZone> reuse_links(int32_t x, int32_t z, uint64_t input) const;
   /// Adds such a file. Fails with kIo.
   Result<void> write_file_of_zone(const std::string& name, std::span<const uint8_t> bytes) const;
   /// The folder of the world in the making: the files of all zones added are there.
@@ -71,7 +71,8 @@ class WorldFolder {
 
   /// Writes the manifest, and that of the air if there is any, and the index of the graph: then
   /// part() is a world that can be opened. `carry_nodes`: see BakeConfig. Fails with kIo.
-  Result<void> complete(const WorldData& world, const GraphData& graph, bool carry_nodes);
+  Result<void> complete(const world::WorldData& world, const world::GraphData& graph,
+                        bool carry_nodes);
   /// Puts the complete world in its place. What it returns keeps other bakes out, but those that
   /// make nodes of it. Fails with kIo.
   Result<FolderLock> finish();
@@ -93,8 +94,8 @@ class WorldFolder {
   std::string path_;
   std::filesystem::path part_;  // empty: finished or moved from
   FolderLock part_lock_, old_lock_;
-  std::shared_ptr<WorldData> old_;
+  std::shared_ptr<world::WorldData> old_;
   std::multimap<std::pair<int32_t, int32_t>, Source> sources_;  // by zone, the newest last
 };
 
-}  // namespace throng
+}  // namespace throng::bake

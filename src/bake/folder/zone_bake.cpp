@@ -20,7 +20,7 @@
 // while a band's columns are assigned to layers, legality is judged one row behind it, because it
 // looks into the next tiles, and clearance is eroded one row behind that. A ring of tiles around
 // the zone is rasterised as far as the zone looks, so that no zone depends on another's result.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 constexpr int32_t kBand = 8;  // tile rows
@@ -350,12 +350,12 @@ bool ZoneJob::is_open(int32_t column, int32_t row, size_t avatar_class) const {
 
 // Feet of a layer that are stored: where some class may stand, and beside the cells where a class
 // is legal, whose tilt comes from there (world/surface.h).
-void forget_feet(const CellRows& legal, Layer& layer) {
+void forget_feet(const world::CellRows& legal, Layer& layer) {
   if (layer.all_useful) return;
   // Nor is anything forgotten where a class may stand everywhere; those around such a tile read its
   // heights meanwhile (is_open).
   if (std::all_of(legal.begin(), legal.end(), [](uint64_t row) { return ~row == 0; })) return;
-  CellRows kept = layer.useful;
+  world::CellRows kept = layer.useful;
   const auto keep = [&](size_t z, uint64_t row) {
     const uint64_t rims = (row & 1) << 2 | (row & uint64_t{1} << 63) >> 2;
     kept[z] |= row | row << 1 | row >> 1 | rims;
@@ -390,7 +390,7 @@ void ZoneJob::clear(int32_t column, int32_t row, ZoneScratch::Worker& worker) {
     const bool used = std::any_of(legality.classes.begin(), legality.classes.end(),
                                   [](const auto& verdict) { return verdict.any; });
     if (!used) continue;
-    CellRows needed{};
+    world::CellRows needed{};
     for (size_t c = 0; c < classes; ++c) {
       ClearancePlanes& planes = worker.clearance[c];
       planes.all = false;
@@ -487,4 +487,4 @@ bool bake_zone(const BakePlan& plan, int32_t zone_x, int32_t zone_z,
   return ZoneJob(plan, zone_x, zone_z, scratch).run(triangles, zone_x, zone_z, context, result);
 }
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -15,7 +15,7 @@
 #include "throng/base.h"
 
 /// One zone, from its triangles to its file's bytes.
-namespace throng {
+namespace throng::bake {
 
 /// What all zones of a bake share.
 struct BakePlan {
@@ -68,4 +68,4 @@ class ZoneScratch {
   std::vector<CellTriangle> triangles;
 };
 
-}  // namespace throng
+}  // namespace throng::bake

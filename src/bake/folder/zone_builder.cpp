@@ -15,7 +15,7 @@
 
 // Packs finished layers into a zone file: constants, planes or blocks of values for floors, and
 // sets of bits for the classes. Equal runs of words are stored once.
-namespace throng {
+namespace throng::bake {
 FloorPlane fit_plane(Layer& layer) {
   FloorPlane plane;
   if (layer.present == 0) return plane;
@@ -43,7 +43,7 @@ FloorPlane fit_plane(Layer& layer) {
     ends([&](int32_t z) { return feet(i, z); }, rise_z, run_z);
   }
   const double gx = run_x > 0 ? rise_x / run_x : 0, gz = run_z > 0 ? rise_z / run_z : 0;
-  constexpr double kSteepest = kMaxSlope / 1024 - 1;
+  constexpr double kSteepest = world::kMaxSlope / 1024 - 1;
   if (!(std::fabs(gx) < kSteepest && std::fabs(gz) < kSteepest)) return plane;
   // The mean of every fourth cell's distance to a plane through nought.
   int64_t sum = 0, sum_x = 0, sum_z = 0, counted = 0;
@@ -94,8 +94,8 @@ uint32_t add_bits(const BitPlane& bits, TilePack& pack) {
   return close_run(first, pack);
 }
 
-uint32_t add_values(const uint16_t* values, const Layer& layer, const CellRows* has, uint16_t low,
-                    TilePack& pack) {
+uint32_t add_values(const uint16_t* values, const Layer& layer, const world::CellRows* has,
+                    uint16_t low, TilePack& pack) {
   const size_t first = pack.words.size();
   pack_values(values, layer.feet.data(), has, low, pack.words);
   return close_run(first, pack);
@@ -129,7 +129,7 @@ void pack_level(uint32_t tile, const Layer& layer, const FloorPlane& plane,
   const bool all_present = layer.present == kTileArea;
   uint32_t present_offset = 0;
   BitPlane present;
-  const CellRows* has = all_present ? nullptr : &present;
+  const world::CellRows* has = all_present ? nullptr : &present;
   if (!all_present) {
     present_bits(layer, present);
     present_offset = add_bits(present, pack);
@@ -301,10 +301,11 @@ flatbuffers::DetachedBuffer zone_bytes(const ZoneShape& shape, std::span<TilePac
     }
     pack = {};
   });
-  builder.Finish(format::CreateZone(builder, kZoneVersion, shape.x, shape.z, shape.tiles_per_side,
-                                    shape.class_count, first_at, levels_at, clearance_at, words_at),
-                 format::ZoneIdentifier());
+  builder.Finish(
+      format::CreateZone(builder, world::kZoneVersion, shape.x, shape.z, shape.tiles_per_side,
+                         shape.class_count, first_at, levels_at, clearance_at, words_at),
+      format::ZoneIdentifier());
   return builder.Release();
 }
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -12,7 +12,7 @@
 
 /// Packs the layers of a zone into a zone file's arrays: constants and planes where they serve, and
 /// blocks of cells (world/cell_blocks.h), of which the zone holds each only once.
-namespace throng {
+namespace throng::bake {
 
 /// Replaces a layer's feet by a plane if that changes no height by more than 1 mm. Run before
 /// legality is judged, so that everything after sees the feet that the moves will see.
@@ -53,4 +53,4 @@ struct ZoneShape {
 flatbuffers::DetachedBuffer zone_bytes(const ZoneShape& shape, std::span<TilePack> packs,
                                        int32_t workers);
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -12,7 +12,7 @@
 #include "world/zone_data.h"
 
 // The XXH3 hash of all that a zone's bytes depend on. Linear in its triangles.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 constexpr size_t kChunk = 512;  // triangles
@@ -55,7 +55,7 @@ uint64_t zone_input(const BakePlan& plan, int32_t zone_x, int32_t zone_z,
     return std::min((zone + 1) * side + 1, tiles);
   };
   std::vector<uint64_t> words{kBakeVersion,
-                              kZoneVersion,
+                              world::kZoneVersion,
                               static_cast<uint64_t>(zone_x),
                               static_cast<uint64_t>(zone_z),
                               static_cast<uint64_t>(side),
@@ -78,4 +78,4 @@ uint64_t zone_input(const BakePlan& plan, int32_t zone_x, int32_t zone_z,
   return hash_span(std::span<const uint64_t>(words));
 }
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -8,7 +8,7 @@
 #include "bake/folder/zone_bake.h"
 
 /// What a zone's bytes depend on, as one number: zones whose number is the same need no new bake.
-namespace throng {
+namespace throng::bake {
 
 /// Of the program. Raise it with every change of what a bake makes of the same triangles: a golden
 /// hash of bake_test.cpp that changes says so.
@@ -20,4 +20,4 @@ inline constexpr uint32_t kBakeVersion = 3;
 uint64_t zone_input(const BakePlan& plan, int32_t zone_x, int32_t zone_z,
                     std::span<const uint32_t> triangles);
 
-}  // namespace throng
+}  // namespace throng::bake

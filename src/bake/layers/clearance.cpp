@@ -10,7 +10,7 @@
 // cells at (dx, dz) are max(|dx| - 1, 0), max(|dz| - 1, 0) apart, and the offsets nearer than k
 // are, for k = 1 to 7, exactly the sums of these squares S and crosses P: S, S, S, P, P, S, P. So
 // each margin is one more erosion of the last, a row of bits at a time.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 using Row = unsigned __int128;  // bit x + kApronBits is column x
@@ -149,4 +149,4 @@ void erode(const std::array<const TileLegality*, 9>& tiles, size_t layer, size_t
   out.all = full;
 }
 
-}  // namespace throng
+}  // namespace throng::bake

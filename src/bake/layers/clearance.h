@@ -10,7 +10,7 @@
 #include "bake/layers/legality.h"
 
 /// How far around a legal cell everything stays legal, by word-wide erosion across tiles.
-namespace throng {
+namespace throng::bake {
 
 inline constexpr int32_t kMaxMargin = 7;  // cells
 inline constexpr int32_t kApronBits = 8;  // columns and rows that erosion looks past a tile
@@ -50,4 +50,4 @@ struct ClearancePlanes {
 void erode(const std::array<const TileLegality*, 9>& tiles, size_t layer, size_t avatar_class,
            int32_t step, ClearancePlanes& out);
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -15,7 +15,7 @@
 #include "bake/columns/vector_bits-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::bake {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -35,7 +35,7 @@ HWY_INLINE hn::Mask<DI> linked(hn::Vec<DI> top_a, hn::Vec<DI> ceiling_a, hn::Vec
 }
 
 void LinkFreeSpans(const TileFreeSpans& free_spans, int32_t free_layer, const LinkRule& rule,
-                   const CellRows* only, FreeSpanLinks& links) {
+                   const world::CellRows* only, FreeSpanLinks& links) {
   const DI di;
   const int32_t lanes = static_cast<int32_t>(hn::Lanes(di));
   const FreeSpanLayer& g = *free_spans.layers[static_cast<size_t>(free_layer)];
@@ -79,7 +79,7 @@ void LinkFreeSpans(const TileFreeSpans& free_spans, int32_t free_layer, const Li
 }
 
 void LowFreeSpans(const TileFreeSpans& free_spans, int32_t free_layer, int32_t height,
-                  CellRows& rows) {
+                  world::CellRows& rows) {
   const DI di;
   const FreeSpanLayer& g = *free_spans.layers[static_cast<size_t>(free_layer)];
   const auto k = hn::Set(di, free_layer), least = hn::Set(di, height),
@@ -292,7 +292,7 @@ void MakeTilt(const Layer& layer, std::array<uint16_t, kTileArea>& tilt) {
   }
 }
 
-void KeepFeet(const CellRows& rows, Layer& layer) {
+void KeepFeet(const world::CellRows& rows, Layer& layer) {
   const DU du;
   const auto none = hn::Set(du, kNone16);
   auto low = none, high = hn::Zero(du);
@@ -314,7 +314,7 @@ void KeepFeet(const CellRows& rows, Layer& layer) {
   layer.high_feet = hn::GetLane(hn::MaxOfLanes(du, high));
 }
 
-bool UsefulCells(const Layer& layer, const BodyNeed& need, CellRows& rows) {
+bool UsefulCells(const Layer& layer, const BodyNeed& need, world::CellRows& rows) {
   const DU du;
   const DC dc;
   const auto none = hn::Set(du, kNone16);
@@ -463,7 +463,7 @@ void LinkTops(const Layer& layer, int32_t step, TopLinks& links) {
   for (size_t z = 0; z + 1 < kTileSide; ++z) links.down[z] &= links.has[z + 1];
 }
 
-void EvenRuns(const Layer& layer, const LinkRule& rule, CellRows& rows) {
+void EvenRuns(const Layer& layer, const LinkRule& rule, world::CellRows& rows) {
   const DU du;
   const auto step = hn::Set(du, static_cast<uint16_t>(rule.step));
   const auto free_span = hn::Set(du, static_cast<uint16_t>(rule.free_span)),
@@ -499,11 +499,11 @@ void AddFreeSpanBits(const Layer& layer, std::array<uint64_t, kTileSide>& rows) 
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::bake
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace throng {
+namespace throng::bake {
 
 HWY_EXPORT(LinkFreeSpans);
 HWY_EXPORT(LowFreeSpans);
@@ -526,12 +526,12 @@ HWY_EXPORT(PlaneFits);
 HWY_EXPORT(PutOnPlane);
 
 void link_free_spans(const TileFreeSpans& free_spans, int32_t free_layer, const LinkRule& rule,
-                     const CellRows* only, FreeSpanLinks& links) {
+                     const world::CellRows* only, FreeSpanLinks& links) {
   HWY_DYNAMIC_DISPATCH(LinkFreeSpans)(free_spans, free_layer, rule, only, links);
 }
 
 void low_free_spans(const TileFreeSpans& free_spans, int32_t free_layer, int32_t height,
-                    CellRows& rows) {
+                    world::CellRows& rows) {
   HWY_DYNAMIC_DISPATCH(LowFreeSpans)(free_spans, free_layer, height, rows);
 }
 
@@ -557,11 +557,13 @@ void make_tilt(const Layer& layer, std::array<uint16_t, kTileArea>& tilt) {
   HWY_DYNAMIC_DISPATCH(MakeTilt)(layer, tilt);
 }
 
-bool useful_cells(const Layer& layer, const BodyNeed& need, CellRows& rows) {
+bool useful_cells(const Layer& layer, const BodyNeed& need, world::CellRows& rows) {
   return HWY_DYNAMIC_DISPATCH(UsefulCells)(layer, need, rows);
 }
 
-void keep_feet(const CellRows& rows, Layer& layer) { HWY_DYNAMIC_DISPATCH(KeepFeet)(rows, layer); }
+void keep_feet(const world::CellRows& rows, Layer& layer) {
+  HWY_DYNAMIC_DISPATCH(KeepFeet)(rows, layer);
+}
 
 void present_bits(const Layer& layer, std::array<uint64_t, kTileSide>& rows) {
   HWY_DYNAMIC_DISPATCH(PresentBits)(layer, rows);
@@ -586,7 +588,7 @@ void link_tops(const Layer& layer, int32_t step, TopLinks& links) {
   HWY_DYNAMIC_DISPATCH(LinkTops)(layer, step, links);
 }
 
-void even_runs(const Layer& layer, const LinkRule& rule, CellRows& rows) {
+void even_runs(const Layer& layer, const LinkRule& rule, world::CellRows& rows) {
   HWY_DYNAMIC_DISPATCH(EvenRuns)(layer, rule, rows);
 }
 
@@ -594,5 +596,5 @@ void add_free_span_bits(const Layer& layer, std::array<uint64_t, kTileSide>& row
   HWY_DYNAMIC_DISPATCH(AddFreeSpanBits)(layer, rows);
 }
 
-}  // namespace throng
+}  // namespace throng::bake
 #endif  // HWY_ONCE

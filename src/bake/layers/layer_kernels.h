@@ -10,7 +10,7 @@
 #include "world/cell_blocks.h"
 
 /// The vector loops of layers. Rows of 64 cells are words of bits: bit x is cell x.
-namespace throng {
+namespace throng::bake {
 
 /// Which free spans of one free-span layer continue each other, row by row.
 struct FreeSpanLinks {
@@ -27,11 +27,11 @@ struct LinkRule {
 
 /// `only`, unless null: the free spans of the free-span layer that count.
 void link_free_spans(const TileFreeSpans& free_spans, int32_t free_layer, const LinkRule& rule,
-                     const CellRows* only, FreeSpanLinks& links);
+                     const world::CellRows* only, FreeSpanLinks& links);
 
 /// Cells of a free-span layer whose free span is lower than `height`. [mm]
 void low_free_spans(const TileFreeSpans& free_spans, int32_t free_layer, int32_t height,
-                    CellRows& rows);
+                    world::CellRows& rows);
 
 /// Lowest and highest top over the cells of a free-span layer that have one.
 struct TopRange {
@@ -67,10 +67,10 @@ struct BodyNeed {
 };
 
 /// Cells with feet whose own columns have that, whatever is around. False if there are none.
-bool useful_cells(const Layer& layer, const BodyNeed& need, CellRows& rows);
+bool useful_cells(const Layer& layer, const BodyNeed& need, world::CellRows& rows);
 
 /// Removes the feet of all other cells, and counts feet again.
-void keep_feet(const CellRows& rows, Layer& layer);
+void keep_feet(const world::CellRows& rows, Layer& layer);
 
 /// Which cells have feet: 64 rows of 64 bits.
 void present_bits(const Layer& layer, std::array<uint64_t, kTileSide>& rows);
@@ -113,9 +113,9 @@ void link_tops(const Layer& layer, int32_t step, TopLinks& links);
 
 /// Bit x of row z: both it and the next cell have a free span, tops are at most `rule.step` apart,
 /// and `rule.free_span` is free over both.
-void even_runs(const Layer& layer, const LinkRule& rule, CellRows& rows);
+void even_runs(const Layer& layer, const LinkRule& rule, world::CellRows& rows);
 
 /// Adds the cells that have a free span to `rows`.
 void add_free_span_bits(const Layer& layer, std::array<uint64_t, kTileSide>& rows);
 
-}  // namespace throng
+}  // namespace throng::bake

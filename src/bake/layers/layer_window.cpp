@@ -9,7 +9,7 @@
 // The window of a layer: its own cells, and around them the cells of the neighbouring layers that
 // continue it. Which layer a cell is taken from decides how much is found to be legal, never
 // whether what is found is safe: any free span that holds the body proves its column free.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 // The top of another layer on this layer's scale. Out of range is no free span: were it drawn to
@@ -50,8 +50,8 @@ const Layer* nearest_layer(const LayerList& tile, size_t cell, int32_t near_top)
 
 // Adds the holes of a layer that another one's free spans continue by a step. Returns 0 if there
 // are none.
-uint64_t add_steps(const Layer& own, const CellRows& own_free_spans, const Layer& other,
-                   const CellRows& other_free_spans, int32_t step, CellRows& holes) {
+uint64_t add_steps(const Layer& own, const world::CellRows& own_free_spans, const Layer& other,
+                   const world::CellRows& other_free_spans, int32_t step, world::CellRows& holes) {
   // Most of the other layers are other storeys.
   if (own.base + own.low_top - step > other.base + other.high_top ||
       own.base + own.high_top + step < other.base + other.low_top) {
@@ -287,7 +287,7 @@ class HoleFiller {
     uint64_t any = 0;
     for (const Layer* other : tile_) {
       if (other == &own_) continue;
-      CellRows free_spans{};
+      world::CellRows free_spans{};
       add_free_span_bits(*other, free_spans);
       for (size_t z = 0; z < kTileSide; ++z) others_[z] |= free_spans[z];
       any |= add_steps(own_, filled_, *other, free_spans, limits_.link_step, hopeful_);
@@ -379,7 +379,7 @@ class HoleFiller {
   // hopeful nor beside one that was filled would be asked in vain.
   void fill_row(int32_t z) {
     const auto r = static_cast<size_t>(z);
-    const auto beside = [&](const CellRows& rows) {
+    const auto beside = [&](const world::CellRows& rows) {
       const uint64_t above = z > 0 ? rows[r - 1] : 0;
       const uint64_t below = z + 1 < kTileSide ? rows[r + 1] : 0;
       return above | below | rows[r] << 1 | rows[r] >> 1;
@@ -404,11 +404,11 @@ class HoleFiller {
   const Layer& own_;
   const BodyLimits& limits_;
   int32_t surely_nearest_;
-  size_t last_;                 // layer that the last hole was filled from
-  std::vector<CellRows> even_;  // by layer, once known
+  size_t last_;                        // layer that the last hole was filled from
+  std::vector<world::CellRows> even_;  // by layer, once known
   std::vector<uint8_t> known_;
-  CellRows filled_{}, others_{}, hopeful_{};
-  CellRows fresh_{};  // filled here
+  world::CellRows filled_{}, others_{}, hopeful_{};
+  world::CellRows fresh_{};  // filled here
 };
 
 }  // namespace
@@ -444,4 +444,4 @@ bool all_legal(const Neighbourhood& tiles, size_t layer, const BodyWindow& body,
   return true;
 }
 
-}  // namespace throng
+}  // namespace throng::bake

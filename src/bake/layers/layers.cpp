@@ -16,13 +16,13 @@
 // where ranks shift, at walls and edges, are columns compared one by one. A component that lies
 // over itself, like a spiral ramp, is split along its breadth-first order; then components are
 // packed first-fit into layers.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 constexpr int32_t kSide = kTileSide;
 constexpr int32_t kMaxRange = Layer::kHighest - Layer::kBelow;  // of tops in a layer [mm]
 
-using Rows = CellRows;
+using Rows = world::CellRows;
 
 uint64_t run_mask(int32_t first, int32_t last) {
   return (~uint64_t{0} >> (63 - (last - first))) << first;
@@ -591,4 +591,4 @@ void assign_free_spans(const FreeSpansToAssign& free_spans, const BodyLimits& li
                    [](const auto& a, const auto& b) { return a->base < b->base; });
 }
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -16,7 +16,7 @@
 
 /// Layers: the free spans of a tile, assigned to layers of at most one free span per column, so
 /// that a layer follows one floor. A finished layer is a level tile.
-namespace throng {
+namespace throng::bake {
 
 inline constexpr uint16_t kNone16 = 65535;         // no free span, no feet; for ceilings: open sky
 inline constexpr uint16_t kHighCeiling16 = 65534;  // a ceiling that high or more
@@ -112,4 +112,4 @@ struct FreeSpansToAssign {
 void assign_free_spans(const FreeSpansToAssign& free_spans, const BodyLimits& limits,
                        LayerPool& pool, TileLayers& layers);
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -17,7 +17,7 @@
 #include "bake/columns/vector_bits-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::bake {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -236,11 +236,11 @@ bool StepSafe(const Layer& layer, const BitPlane& legal, int32_t step) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::bake
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace throng {
+namespace throng::bake {
 
 HWY_EXPORT(GroundOf);
 HWY_EXPORT(LegalCellsOf);
@@ -268,5 +268,5 @@ bool step_safe(const Layer& layer, const BitPlane& legal, int32_t step) {
   return HWY_DYNAMIC_DISPATCH(StepSafe)(layer, legal, step);
 }
 
-}  // namespace throng
+}  // namespace throng::bake
 #endif  // HWY_ONCE

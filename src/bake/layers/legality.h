@@ -11,7 +11,7 @@
 #include "bake/layers/layers.h"
 
 /// Where a class may stand: one bit per cell of a layer.
-namespace throng {
+namespace throng::bake {
 
 /// 64 rows of 64 bits; bit x of row z is cell (x, z).
 using BitPlane = std::array<uint64_t, kTileSide>;
@@ -144,4 +144,4 @@ void recheck_seams(const Neighbourhood& tiles, size_t layer, const BodyWindow& b
 /// True if any two legal neighbours on the layer differ by at most the step.
 bool step_safe(const Layer& layer, const BitPlane& legal, int32_t step);
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -10,7 +10,7 @@
 // is cut, and near the cut a window may have followed the lower floor where the body walks on the
 // upper. Any free span that holds the body proves a column free, so there all free spans are
 // tested.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 constexpr int32_t kLast = kTileSide - 1;
@@ -148,4 +148,4 @@ void recheck_seams(const Neighbourhood& tiles, size_t layer, const BodyWindow& b
   }
 }
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -23,7 +23,7 @@
 #include "bake/columns/vector_bits-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::bake {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -261,11 +261,11 @@ void RecheckPlanes(const Layer& layer, const BodyWindow& body, const CellPlanes&
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::bake
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace throng {
+namespace throng::bake {
 
 HWY_EXPORT(RecheckSlopes);
 HWY_EXPORT(RecheckPlanes);
@@ -280,5 +280,5 @@ void recheck_planes(const Layer& layer, const BodyWindow& body, const CellPlanes
   HWY_DYNAMIC_DISPATCH(RecheckPlanes)(layer, body, planes, scratch, cells);
 }
 
-}  // namespace throng
+}  // namespace throng::bake
 #endif  // HWY_ONCE

@@ -24,7 +24,7 @@
 
 #ifndef THRONG_SURFACE_PLANES_ONCE
 #define THRONG_SURFACE_PLANES_ONCE
-namespace throng {
+namespace throng::bake {
 
 struct CellRun {
   int32_t first, last;
@@ -50,11 +50,11 @@ struct SurfaceSide {
 // Floats may err by that much: heights are up to 2^16 mm from their base. [mm]
 inline constexpr float kPlaneMargin = 0.03f;
 
-}  // namespace throng
+}  // namespace throng::bake
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::bake {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -260,11 +260,11 @@ void FindExcess(const SurfaceSide& side) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::bake
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace throng {
+namespace throng::bake {
 
 HWY_EXPORT(FindPlanes);
 HWY_EXPORT(FindExcess);
@@ -359,5 +359,5 @@ void find_surface_planes(const LayerWindow& window, int32_t base, const BitPlane
   }
 }
 
-}  // namespace throng
+}  // namespace throng::bake
 #endif  // HWY_ONCE

@@ -12,7 +12,7 @@
 
 /// The ground around a layer as one plane per cell, taken from the triangles themselves: what a
 /// body that barely clears its own slope needs, which whole millimetres of whole cells cannot show.
-namespace throng {
+namespace throng::bake {
 
 /// Per cell, at LayerWindow::index: the highest surface below the free span at the cell's centre,
 /// and its plane. Where no triangle is under the centre: a level plane at the window's top.
@@ -44,4 +44,4 @@ void find_surface_planes(const LayerWindow& window, int32_t base, const BitPlane
 void recheck_planes(const Layer& layer, const BodyWindow& body, const CellPlanes& planes,
                     const LegalityScratch& scratch, LegalCells& cells);
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -11,7 +11,7 @@
 
 /// A triangle as surface planes see it: which cells it touches, its plane, and exactly how far it
 /// stands above another plane inside a cell.
-namespace throng {
+namespace throng::bake {
 
 /// Cells are widened by that much, far more than doubles err. [cells]
 inline constexpr double kTouch = 1e-6;
@@ -121,4 +121,4 @@ struct SurfaceTriangle {
   }
 };
 
-}  // namespace throng
+}  // namespace throng::bake

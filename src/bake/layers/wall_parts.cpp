@@ -22,7 +22,7 @@
 
 #ifndef THRONG_WALL_PARTS_ONCE
 #define THRONG_WALL_PARTS_ONCE
-namespace throng {
+namespace throng::bake {
 
 // An edge of a polygon in plan, upward in z. [cells]
 struct PlanEdge {
@@ -56,11 +56,11 @@ inline uint64_t bits_between(int32_t first, int32_t last) {
   return ~uint64_t{0} >> (63 - last) & ~uint64_t{0} << first;
 }
 
-}  // namespace throng
+}  // namespace throng::bake
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::bake {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -267,11 +267,11 @@ bool PassFree(std::span<const WallScratch::Asked> asked, const LayerWindow& wind
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::bake
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace throng {
+namespace throng::bake {
 
 HWY_EXPORT(FillParts);
 HWY_EXPORT(KeepClosed);
@@ -651,5 +651,5 @@ bool recheck_walls(const Neighbourhood& tiles, size_t layer, const BodyWindow& b
   return WallCheck(tiles, layer, body, triangles, legality, scratch).run(cells);
 }
 
-}  // namespace throng
+}  // namespace throng::bake
 #endif  // HWY_ONCE

@@ -11,7 +11,7 @@
 
 /// Which of the 8 x 8 parts of a cell its solids fill: a second test of cells beside walls, where
 /// whole cells deny up to a cell and a half of floor that a body fits on.
-namespace throng {
+namespace throng::bake {
 
 /// Memory of recheck_walls.
 struct WallScratch {
@@ -52,4 +52,4 @@ bool recheck_walls(const Neighbourhood& tiles, size_t layer, const BodyWindow& b
                    const TileTriangles& triangles, const LegalityScratch& legality,
                    WallScratch& scratch, LegalCells& cells);
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -11,7 +11,7 @@
 // Proves that a body may move between two poses: the body, grown by as far as any of its points
 // moves, enters no triangle; where it does, the motion is halved. Cost: triangles near, times
 // halvings.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 constexpr double kGrowth = 0.03;  // The least growth of a body between poses. [m]
@@ -143,4 +143,4 @@ bool MotionJudge::is_supported(Vec3d from, Vec3d to, double reach, double spacin
   return true;
 }
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -5,7 +5,7 @@
 #include "bake/surface/patch_cells.h"
 
 /// Motions of bodies between two places, against triangles.
-namespace throng {
+namespace throng::bake {
 
 /// A place of a body: its feet and its axis, of unit length.
 struct BodyPose {
@@ -51,4 +51,4 @@ class MotionJudge {
   FilterHits hits_;
 };
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -13,7 +13,7 @@
 // Exact tests of one triangle against an upright cylinder, a prism or a cylinder that moves: the
 // triangle is clipped to the heights, then its distance to the axis is compared. Also clusters of a
 // scene's triangles by squares of the ground, to find those near a box.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 // A convex polygon with space for a triangle cut twice.
@@ -351,4 +351,4 @@ LocalTriangle TriangleSquares::corners(uint32_t triangle) const {
   return {scene_->positions[a], scene_->positions[b], scene_->positions[c]};
 }
 
-}  // namespace throng
+}  // namespace throng::bake

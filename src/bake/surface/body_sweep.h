@@ -13,7 +13,7 @@
 #include "throng/scene.h"
 
 /// Where a body may be while its feet are anywhere in a sub-patch, against triangles.
-namespace throng {
+namespace throng::bake {
 
 inline constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -85,4 +85,4 @@ class TriangleSquares {
   int32_t squares_x_ = 0, squares_z_ = 0;
 };
 
-}  // namespace throng
+}  // namespace throng::bake

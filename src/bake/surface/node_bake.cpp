@@ -32,16 +32,17 @@ Result<void> first_failure(std::span<const std::optional<Error>> failed) {
 
 }  // namespace
 
-NodeBaker::NodeBaker(const World& world, const Scene& scene, const NodeConfig& config,
-                     const NodeFolder* folder)
+bake::NodeBaker::NodeBaker(const World& world, const Scene& scene, const NodeConfig& config,
+                           const bake::NodeFolder* folder)
     : world_(world),
       data_(*data_of(world)),
       scene_(scene),
       config_(config),
       folder_(folder),
-      bins_(make_bins(data_.summary.classes)) {}
+      bins_(graph::make_bins(data_.summary.classes)) {}
 
-Result<void> NodeBaker::check(const World& world, const Scene& scene, const NodeConfig& config) {
+Result<void> bake::NodeBaker::check(const World& world, const Scene& scene,
+                                    const NodeConfig& config) {
   if (data_of(world) == nullptr) return Error{Errc::kBadInput, "nodes: the world is empty"};
   if (auto ok = check_node_config(config); !ok) return ok.error();
   if (scene.triangles.size() != world.summary().source_triangles) {
@@ -53,40 +54,40 @@ Result<void> NodeBaker::check(const World& world, const Scene& scene, const Node
   return {};
 }
 
-Result<void> NodeBaker::check_off_mesh_links(const World& world, const Scene& scene,
-                                             const NodeConfig& config, Context& context) {
-  NodeBaker baker(world, scene, config, nullptr);
+Result<void> bake::NodeBaker::check_off_mesh_links(const World& world, const Scene& scene,
+                                                   const NodeConfig& config, Context& context) {
+  bake::NodeBaker baker(world, scene, config, nullptr);
   baker.plan();
   std::vector<uint32_t> zones;
   for (uint32_t z = 0; z < baker.plan_.zones.size(); ++z) {
     if (!baker.plan_.zones[z].off_mesh_links.empty()) zones.push_back(z);
   }
-  return check_batch_links(baker.batch_input(true, context), zones);
+  return bake::check_batch_links(baker.batch_input(true, context), zones);
 }
 
 // A world in memory does not know what it was made from.
-void NodeBaker::plan() {
-  plan_ = plan_nodes(data_, scene_, config_);
+void bake::NodeBaker::plan() {
+  plan_ = bake::plan_nodes(data_, scene_, config_);
   if (plan_.needs_triangles()) triangles_.emplace(scene_, config_.workers);
   is_done_.assign(plan_.zones.size(), 0);
   slots_.resize(plan_.zones.size());
   if (!data_.path.empty()) {
-    find_node_inputs(data_, scene_, config_, triangles_ ? &*triangles_ : nullptr, plan_);
+    bake::find_node_inputs(data_, scene_, config_, triangles_ ? &*triangles_ : nullptr, plan_);
   }
 }
 
-uint64_t NodeBaker::input() const {
+uint64_t bake::NodeBaker::input() const {
   std::vector<uint64_t> inputs;
-  for (const NodePlanZone& zone : plan_.zones) inputs.push_back(zone.input);
+  for (const bake::NodePlanZone& zone : plan_.zones) inputs.push_back(zone.input);
   return hash_span<uint64_t>(inputs);
 }
 
-Result<void> NodeBaker::reuse_zones() {
+Result<void> bake::NodeBaker::reuse_zones() {
   if (data_.path.empty() || config_.rebuild) return {};
-  const OldNodes old(data_.path);
+  const bake::OldNodes old(data_.path);
   std::vector<std::optional<Error>> failed(plan_.zones.size());
   parallel_for(plan_.zones.size(), config_.workers, [&](size_t z) {
-    const NodePlanZone& zone = plan_.zones[z];
+    const bake::NodePlanZone& zone = plan_.zones[z];
     auto reused = old.reuse(zone.x, zone.z, zone.input);
     if (!reused) return;
     is_done_[z] = 1;
@@ -99,19 +100,19 @@ Result<void> NodeBaker::reuse_zones() {
   return first_failure(failed);
 }
 
-uint64_t NodeBaker::zones_done() const {
+uint64_t bake::NodeBaker::zones_done() const {
   return std::accumulate(is_done_.begin(), is_done_.end(), uint64_t{0});
 }
 
-std::vector<std::vector<uint32_t>> NodeBaker::batches(uint64_t max_bytes) const {
+std::vector<std::vector<uint32_t>> bake::NodeBaker::batches(uint64_t max_bytes) const {
   std::vector<uint32_t> left;
   for (uint32_t z = 0; z < is_done_.size(); ++z) {
     if (is_done_[z] == 0) left.push_back(z);
   }
-  return node_batches(scene_, config_, plan_, std::move(left), max_bytes);
+  return bake::node_batches(scene_, config_, plan_, std::move(left), max_bytes);
 }
 
-NodeBatchInput NodeBaker::batch_input(bool is_last, Context& context) {
+bake::NodeBatchInput bake::NodeBaker::batch_input(bool is_last, Context& context) {
   return {.world = world_,
           .scene = scene_,
           .config = config_,
@@ -122,12 +123,13 @@ NodeBatchInput NodeBaker::batch_input(bool is_last, Context& context) {
           .context = context};
 }
 
-Result<NodeSlots> NodeBaker::make(std::span<const uint32_t> zones, bool is_last, Context& context) {
-  return make_node_batch(batch_input(is_last, context), zones);
+Result<bake::NodeSlots> bake::NodeBaker::make(std::span<const uint32_t> zones, bool is_last,
+                                              Context& context) {
+  return bake::make_node_batch(batch_input(is_last, context), zones);
 }
 
-Result<std::vector<NodeBaker::Made>> NodeBaker::write(std::span<const uint32_t> zones,
-                                                      NodeSlots& made) const {
+Result<std::vector<bake::NodeBaker::Made>> bake::NodeBaker::write(std::span<const uint32_t> zones,
+                                                                  bake::NodeSlots& made) const {
   std::vector<Made> made_entries(zones.size());
   std::vector<std::optional<Error>> failed(zones.size());
   parallel_for(zones.size(), config_.workers, [&](size_t i) {
@@ -143,33 +145,33 @@ Result<std::vector<NodeBaker::Made>> NodeBaker::write(std::span<const uint32_t> 
   return made_entries;
 }
 
-void NodeBaker::enter(std::span<const Made> made, NodeSlots* slots) {
+void bake::NodeBaker::enter(std::span<const Made> made, bake::NodeSlots* slots) {
   for (size_t i = 0; i < made.size(); ++i) {
     is_done_[made[i].zone] = 1;
     if (made[i].has_nodes == 0) continue;
     auto& slot = slots_[made[i].zone];
-    slot = slots != nullptr ? std::move((*slots)[i]) : std::make_unique<NodeData::Slot>();
+    slot = slots != nullptr ? std::move((*slots)[i]) : std::make_unique<world::NodeData::Slot>();
     slot->entry = made[i].entry;
   }
 }
 
-Result<void> NodeBaker::list() {
+Result<void> bake::NodeBaker::list() {
   return folder_ != nullptr ? folder_->list(*gather()) : Result<void>();
 }
 
-Result<std::shared_ptr<NodeData>> NodeBaker::finish() {
+Result<std::shared_ptr<world::NodeData>> bake::NodeBaker::finish() {
   auto nodes = gather();
-  if (nodes->node_count >= kFarNode) return too_many_nodes();
+  if (nodes->node_count >= world::kFarNode) return bake::too_many_nodes();
   nodes->summary.zones_reused = reused_;
   nodes->summary.zones_made = plan_.zones.size() - reused_;
   return nodes;
 }
 
 // What is done so far. Where nodes stay in memory they are in it, and no longer here.
-std::shared_ptr<NodeData> NodeBaker::gather() {
-  auto nodes = std::make_shared<NodeData>();
+std::shared_ptr<world::NodeData> bake::NodeBaker::gather() {
+  auto nodes = std::make_shared<world::NodeData>();
   nodes->world = world_;
-  nodes->world_hash = world_hash(data_);
+  nodes->world_hash = bake::world_hash(data_);
   nodes->size = config_.size;
   nodes->summary.bins = bins_;
   nodes->summary.bezier_patches = scene_.patches.size();
@@ -180,11 +182,11 @@ std::shared_ptr<NodeData> NodeBaker::gather() {
       nodes->inputs.emplace_back(plan_.zones[z].x, plan_.zones[z].z, plan_.zones[z].input);
     }
     if (slots_[z] == nullptr) continue;
-    auto slot = std::make_unique<NodeData::Slot>();
+    auto slot = std::make_unique<world::NodeData::Slot>();
     slot->entry = slots_[z]->entry;
     slot->zone = std::move(slots_[z]->zone);
     slot->first_node = static_cast<uint32_t>(count);
-    count = std::min<uint64_t>(count + slot->entry.nodes(), kFarNode);
+    count = std::min<uint64_t>(count + slot->entry.nodes(), world::kFarNode);
     nodes->summary.bytes += slot->entry.bytes();
     nodes->summary.patches += slot->entry.patches();
     nodes->slots.push_back(std::move(slot));
@@ -198,11 +200,11 @@ std::shared_ptr<NodeData> NodeBaker::gather() {
 namespace {
 
 // By this process alone.
-Result<std::shared_ptr<NodeData>> make_all(const World& world, const Scene& scene,
-                                           const NodeConfig& config, Context& context,
-                                           const NodeFolder* folder) {
+Result<std::shared_ptr<world::NodeData>> make_all(const World& world, const Scene& scene,
+                                                  const NodeConfig& config, Context& context,
+                                                  const bake::NodeFolder* folder) {
   const auto start = Clock::now();
-  NodeBaker baker(world, scene, config, folder);
+  bake::NodeBaker baker(world, scene, config, folder);
   baker.plan();
   if (auto ok = baker.reuse_zones(); !ok) return ok.error();
   // Off-mesh links are checked even if nothing has to be made.
@@ -242,7 +244,7 @@ Result<void> check_node_config(const NodeConfig& config) {
 
 Result<Nodes> Nodes::create(const World& world, const Scene& scene, const NodeConfig& config,
                             Context& context) {
-  if (auto ok = NodeBaker::check(world, scene, config); !ok) return ok.error();
+  if (auto ok = bake::NodeBaker::check(world, scene, config); !ok) return ok.error();
   auto nodes = make_all(world, scene, config, context, nullptr);
   if (!nodes) return nodes.error();
   return Nodes(*std::move(nodes));
@@ -250,11 +252,11 @@ Result<Nodes> Nodes::create(const World& world, const Scene& scene, const NodeCo
 
 Result<Nodes> Nodes::create_in_folder(const World& world, const Scene& scene,
                                       const NodeConfig& config, Context& context) {
-  if (auto ok = NodeBaker::check(world, scene, config); !ok) return ok.error();
+  if (auto ok = bake::NodeBaker::check(world, scene, config); !ok) return ok.error();
   if (data_of(world)->path.empty()) {
     return Error{Errc::kBadInput, "nodes: the world is in no folder"};
   }
-  auto folder = NodeFolder::begin(data_of(world)->path);
+  auto folder = bake::NodeFolder::begin(data_of(world)->path);
   if (!folder) return folder.error();
   const auto made = make_all(world, scene, config, context, &*folder);
   if (!made) {
@@ -262,7 +264,7 @@ Result<Nodes> Nodes::create_in_folder(const World& world, const Scene& scene,
     return made.error();
   }
   if (auto ok = folder->finish(**made); !ok) return ok.error();
-  (*made)->path = data_of(world)->path + "/" + kNodeFolder;
+  (*made)->path = data_of(world)->path + "/" + world::kNodeFolder;
   return Nodes(*made);
 }
 
@@ -273,11 +275,11 @@ Result<void> Nodes::write(const std::string& world_path, int32_t workers) const 
   if (world->summary().hash != state_->world_hash) {
     return Error{Errc::kBadFile, world_path + ": holds another world than these nodes' own"};
   }
-  auto folder = NodeFolder::begin(world_path);
+  auto folder = bake::NodeFolder::begin(world_path);
   if (!folder) return folder.error();
   std::vector<std::optional<Error>> failed(state_->slots.size());
   parallel_for(failed.size(), workers, [&](size_t s) {
-    const NodeZone* zone = state_->zone(s);
+    const world::NodeZone* zone = state_->zone(s);
     if (zone == nullptr) {
       failed[s] = Error{Errc::kBadFile, state_->slots[s]->error};
     } else if (auto ok = folder->write(*zone); !ok) {

@@ -14,7 +14,7 @@
 
 /// Which zones' nodes have to be made, in which batches, and where they go; by one process or by
 /// several of which each makes batches of its own.
-namespace throng {
+namespace throng::bake {
 
 class NodeBaker {
  public:
@@ -62,14 +62,14 @@ class NodeBaker {
   /// Writes for the next bake what is in the folder so far.
   Result<void> list();
   /// All of them, once they are made. Fails with kLimit: too many.
-  Result<std::shared_ptr<NodeData>> finish();
+  Result<std::shared_ptr<world::NodeData>> finish();
 
  private:
   [[nodiscard]] NodeBatchInput batch_input(bool is_last, Context& context);
-  [[nodiscard]] std::shared_ptr<NodeData> gather();
+  [[nodiscard]] std::shared_ptr<world::NodeData> gather();
 
   const World& world_;
-  const WorldData& data_;
+  const world::WorldData& data_;
   const Scene& scene_;
   const NodeConfig& config_;
   const NodeFolder* folder_;  // may be null
@@ -81,4 +81,4 @@ class NodeBaker {
   uint64_t reused_ = 0;
 };
 
-}  // namespace throng
+}  // namespace throng::bake

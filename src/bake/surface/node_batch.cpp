@@ -21,10 +21,10 @@
 
 // What decides is per cell and class; everything after that only groups cells, so it is the same
 // for Bezier patches and level tiles.
-namespace throng {
+namespace throng::bake {
 namespace {
 
-static_assert(kPartialLevel + kPartialDepth == kTileDepth);
+static_assert(world::kPartialLevel + graph::kPartialDepth == graph::kTileDepth);
 
 // Cells between which a body goes straight though they do not touch.
 struct HoleLink {
@@ -63,7 +63,7 @@ class NodeBatch {
     judge_patches();
     if (context_.cancel) return cancelled();
     grow_trees();
-    if (forest_.size() >= kFarNode) return too_many_nodes();
+    if (forest_.size() >= world::kFarNode) return too_many_nodes();
     find_pairs();
     if (context_.cancel) return cancelled();
     add_drops();
@@ -80,8 +80,8 @@ class NodeBatch {
   static Error cancelled() { return {Errc::kCancelled, "nodes: cancelled"}; }
 
   Result<void> list_patches() {
-    bezier_.assign(plan_.has_patches ? scene_.patches.size() : 0, kNoNode);
-    level_.assign(plan_.has_tiles ? data_.level_count : 0, kNoNode);
+    bezier_.assign(plan_.has_patches ? scene_.patches.size() : 0, graph::kNoNode);
+    level_.assign(plan_.has_tiles ? data_.level_count : 0, graph::kNoNode);
     for (uint32_t z = 0; z < plan_.zones.size(); ++z) {
       if (is_seen_[z] == 0) continue;
       const NodePlanZone& zone = plan_.zones[z];
@@ -94,7 +94,7 @@ class NodeBatch {
         if (source.kind == PatchKind::kLevelTile) levels_.push_back(source.source);
         sources_.push_back(source);
       }
-      const int32_t slot = plan_.has_tiles ? slot_at(data_, zone.x, zone.z) : -1;
+      const int32_t slot = plan_.has_tiles ? world::slot_at(data_, zone.x, zone.z) : -1;
       if (slot < 0) continue;
       slots_.push_back(static_cast<size_t>(slot));
       if (data_.zone(slots_.back()) == nullptr) {
@@ -117,9 +117,9 @@ class NodeBatch {
         static_cast<size_t>(worker_count(config_.workers)),
         PatchJudge(*triangles_, data_.summary.classes, bins_, config_.size));
     parallel_for_worker(cells_.size(), config_.workers, [&](size_t p, int32_t worker) {
-      if (context_.cancel || bezier_[p] == kNoNode) return;
+      if (context_.cancel || bezier_[p] == graph::kNoNode) return;
       cells_[p] = judges[static_cast<size_t>(worker)].judge(static_cast<uint32_t>(p));
-      for (Promise& cell : cells_[p].promise.cells) {
+      for (graph::Promise& cell : cells_[p].promise.cells) {
         cell.classes = blocked[p] != 0 ? uint16_t{0} : cell.classes & plan_.on_patches;
       }
     });
@@ -127,45 +127,46 @@ class NodeBatch {
 
   // And links within each patch, while its cells are at hand: all of them would fill the memory.
   void grow_trees() {
-    std::vector<PatchTree> trees(sources_.size());
+    std::vector<graph::PatchTree> trees(sources_.size());
     inside_.resize(sources_.size());
     parallel_for(sources_.size(), config_.workers, [&](size_t p) {
       if (context_.cancel) return;
       const PatchSource& source = sources_[p];
-      PatchCells of_tile;
+      graph::PatchCells of_tile;
       if (source.kind != PatchKind::kBezier) {
-        of_tile = tile_cells(world_, source.source, config_.classes, bins_);
+        of_tile = graph::tile_cells(world_, source.source, config_.classes, bins_);
       }
-      const PatchCells& cells =
+      const graph::PatchCells& cells =
           source.kind == PatchKind::kBezier ? cells_[source.source].promise : of_tile;
-      NodeForest alone;
-      alone.add(build_tree(cells));
-      NodeLinker linker(alone);
+      graph::NodeForest alone;
+      alone.add(graph::build_tree(cells));
+      graph::NodeLinker linker(alone);
       linker.link_inside(0, cells);
       inside_[p] = linker.take();
       trees[p] = std::move(alone.trees[0]);
     });
     forest_.first = {0};
     for (size_t p = 0; p < trees.size(); ++p) {
-      for (NodeLink& link : inside_[p]) {
+      for (graph::NodeLink& link : inside_[p]) {
         link.a += forest_.size();
         link.b += forest_.size();
       }
       forest_.add(std::move(trees[p]));
     }
     promises_.reserve(forest_.size());
-    for (const PatchTree& tree : forest_.trees) {
-      for (const PatchNode& node : tree.nodes) promises_.push_back(node.promise);
+    for (const graph::PatchTree& tree : forest_.trees) {
+      for (const graph::PatchNode& node : tree.nodes) promises_.push_back(node.promise);
     }
   }
 
   void find_pairs() {
-    const auto take = [&](std::vector<CellPair> list, const std::vector<uint32_t>& of_a,
+    const auto take = [&](std::vector<graph::CellPair> list, const std::vector<uint32_t>& of_a,
                           const std::vector<uint32_t>& of_b) {
-      for (CellPair& pair : list) {
+      for (graph::CellPair& pair : list) {
         pair.patch_a = of_a[pair.patch_a];
         pair.patch_b = of_b[pair.patch_b];
-        if (pair.patch_a == kNoNode || pair.patch_b == kNoNode) continue;  // Another zone's affair.
+        if (pair.patch_a == graph::kNoNode || pair.patch_b == graph::kNoNode)
+          continue;  // Another zone's affair.
         if (pair.side_a == 4) {
           hole_links_.push_back({pair.patch_a, pair.cell_a, pair.patch_b, pair.cell_b});
           pair.hole_link1 = static_cast<uint32_t>(hole_links_.size());
@@ -193,9 +194,9 @@ class NodeBatch {
         for (int32_t x = entry.x() * side; x < end_x; ++x) tiles.push_back({x, z});
       }
     }
-    std::vector<std::vector<CellPair>> lists(tiles.size());
+    std::vector<std::vector<graph::CellPair>> lists(tiles.size());
     parallel_for(lists.size(), config_.workers, [&](size_t i) {
-      if (!context_.cancel) lists[i] = tile_pairs(data_, tiles[i].first, tiles[i].second);
+      if (!context_.cancel) lists[i] = graph::tile_pairs(data_, tiles[i].first, tiles[i].second);
     });
     size_t count = pairs_.size();
     for (const auto& list : lists) count += list.size();
@@ -224,7 +225,7 @@ class NodeBatch {
       const auto patch_of = [&](const DropEnd& end) {
         return (end.kind == PatchKind::kBezier ? bezier_ : level_)[end.source];
       };
-      if (patch_of(drop.from) == kNoNode || patch_of(drop.to) == kNoNode) continue;
+      if (patch_of(drop.from) == graph::kNoNode || patch_of(drop.to) == graph::kNoNode) continue;
       // Of level tiles one every half metre will do.
       const bool on_tile = drop.from.kind == PatchKind::kLevelTile;
       const uint32_t block = drop.from.cell / 64 / wide * 64 + drop.from.cell % 64 / wide;
@@ -249,8 +250,8 @@ class NodeBatch {
     double nearest = kReach * kReach;
     if (plan_.has_tiles) {
       const Place place = world_.find_place(avatar_class, at, kReach);
-      if (place && level_[place.level1 - 1] != kNoNode) {
-        const GroundPoint p = to_ground(data_, place.position.x, place.position.z);
+      if (place && level_[place.level1 - 1] != graph::kNoNode) {
+        const world::GroundPoint p = world::to_ground(data_, place.position.x, place.position.z);
         best = {level_[place.level1 - 1],
                 static_cast<uint32_t>((p.cell_z() & 63) * 64 + (p.cell_x() & 63))};
         nearest = (place.position.y - at.y) * (place.position.y - at.y);
@@ -320,14 +321,14 @@ class NodeBatch {
       steepest = std::max(steepest, avatar.max_slope);
     }
     const uint8_t code = bins_.inclination_code(steepest);
-    const auto name_climbs = [&](std::vector<NodeLink>& links) {
+    const auto name_climbs = [&](std::vector<graph::NodeLink>& links) {
       bool changed = false;
-      for (NodeLink& l : links) {
+      for (graph::NodeLink& l : links) {
         if (l.kind != LinkKind::kWalk || worst(l).inclination <= code) continue;
         l.kind = LinkKind::kClimb;
         changed = true;
       }
-      if (changed) merge_node_links(links);
+      if (changed) graph::merge_node_links(links);
     };
     parallel_for(sources_.size(), config_.workers, [&](size_t p) { name_climbs(inside_[p]); });
     across_ = link_across();
@@ -337,11 +338,11 @@ class NodeBatch {
   // Pairs of different patches, in runs that are then merged two by two. A run drops a hole link
   // only for earlier ones that serve its classes, so what is left of all does not depend on the
   // runs.
-  [[nodiscard]] std::vector<NodeLink> link_across() const {
+  [[nodiscard]] std::vector<graph::NodeLink> link_across() const {
     constexpr size_t kRun = size_t{1} << 14;
-    std::vector<std::vector<NodeLink>> runs(pairs_.size() / kRun + 1);
+    std::vector<std::vector<graph::NodeLink>> runs(pairs_.size() / kRun + 1);
     parallel_for(runs.size(), config_.workers, [&](size_t r) {
-      NodeLinker linker(forest_);
+      graph::NodeLinker linker(forest_);
       const size_t end = std::min(pairs_.size(), (r + 1) * kRun);
       for (size_t i = r * kRun; i < end; ++i) linker.link(pairs_[i]);
       runs[r] = linker.take();
@@ -352,25 +353,25 @@ class NodeBatch {
         if (high >= runs.size()) return;
         runs[low].insert(runs[low].end(), runs[high].begin(), runs[high].end());
         runs[high] = {};
-        merge_node_links(runs[low]);
+        graph::merge_node_links(runs[low]);
       });
     }
     return std::move(runs[0]);
   }
 
-  [[nodiscard]] Promise worst(const NodeLink& l) const {
-    return both(promises_[l.a], promises_[l.b]);
+  [[nodiscard]] graph::Promise worst(const graph::NodeLink& l) const {
+    return graph::both(promises_[l.a], promises_[l.b]);
   }
 
   void measure() {
     std::vector<std::pair<int32_t, int32_t>> tile_place(level_.size());
     for (const size_t s : slots_) {
-      const Zone& zone = *data_.zone(s);
+      const world::Zone& zone = *data_.zone(s);
       for (uint32_t l = 0; l < zone.level_count(); ++l) {
-        tile_place[data_.slots[s]->first_level + l] = tile_of(data_, zone, zone.level(l));
+        tile_place[data_.slots[s]->first_level + l] = world::tile_of(data_, zone, zone.level(l));
       }
     }
-    std::vector<CellBalls> balls;
+    std::vector<graph::CellBalls> balls;
     for (const PatchSource& source : sources_) {
       if (source.kind == PatchKind::kBezier) {
         const BezierCells& cells = cells_[source.source];
@@ -381,17 +382,17 @@ class NodeBatch {
       balls.push_back(
           {.listed = {}, .origin = {}, .x = x * 64.0, .z = z * 64.0, .side = data_.summary.cell});
     }
-    const CrossCells cross(pairs_, sources_.size(), config_.workers);
+    const graph::CrossCells cross(pairs_, sources_.size(), config_.workers);
     const double max_width = bins_.width.back();
     widths_.resize(forest_.trees.size());
     parallel_for(widths_.size(), config_.workers, [&](size_t p) {
       if (context_.cancel) return;
-      widths_[p] = node_widths(forest_, static_cast<uint32_t>(p), cross, max_width, balls);
+      widths_[p] = graph::node_widths(forest_, static_cast<uint32_t>(p), cross, max_width, balls);
     });
   }
 
-  [[nodiscard]] double area_of(const PatchSource& source, const PatchTree& tree,
-                               const PatchNode& n) const {
+  [[nodiscard]] double area_of(const PatchSource& source, const graph::PatchTree& tree,
+                               const graph::PatchNode& n) const {
     const int32_t size = 1 << (tree.depth - n.level);
     if (source.kind == PatchKind::kLevelTile) {
       const int32_t cells = n.cells != 0 ? std::popcount(n.cells) : size * size;
@@ -449,37 +450,37 @@ class NodeBatch {
   }
 
   // All links with an end in a zone.
-  [[nodiscard]] std::vector<NodeLink> links_of(size_t z) const {
+  [[nodiscard]] std::vector<graph::NodeLink> links_of(size_t z) const {
     const ZoneRange& zone = zones_[z];
     const auto first_from = [&](uint32_t node) {
       return std::lower_bound(across_.begin(), across_.end(), node,
-                              [](const NodeLink& l, uint32_t n) { return l.a < n; });
+                              [](const graph::NodeLink& l, uint32_t n) { return l.a < n; });
     };
     const auto begin = first_from(zone.first), end = first_from(zone.last);
     size_t count = from_before_[z].size() + static_cast<size_t>(end - begin);
     for (size_t p = begins_[z]; p < begins_[z + 1]; ++p) count += inside_[p].size();
-    std::vector<NodeLink> links;
+    std::vector<graph::NodeLink> links;
     links.reserve(count);
     for (const size_t l : from_before_[z]) links.push_back(across_[l]);
     links.insert(links.end(), begin, end);
     for (size_t p = begins_[z]; p < begins_[z + 1]; ++p) {
       links.insert(links.end(), inside_[p].begin(), inside_[p].end());
     }
-    merge_node_links(links);
+    graph::merge_node_links(links);
     return links;
   }
 
-  Result<std::unique_ptr<NodeData::Slot>> pack_zone(size_t z) const {
+  Result<std::unique_ptr<world::NodeData::Slot>> pack_zone(size_t z) const {
     const ZoneRange& zone = zones_[z];
     const ZoneArcs arcs = arcs_of(links_of(z), zone);
-    const int32_t slot = slot_at(data_, zone.x, zone.z);
+    const int32_t slot = world::slot_at(data_, zone.x, zone.z);
     const uint32_t first_level = slot < 0 ? 0 : data_.slots[static_cast<size_t>(slot)]->first_level;
     ZoneContent content;
     content.x = zone.x;
     content.z = zone.z;
     for (size_t p = begins_[z]; p < begins_[z + 1]; ++p) {
       const PatchSource& source = sources_[p];
-      const PatchTree& tree = forest_.trees[p];
+      const graph::PatchTree& tree = forest_.trees[p];
       if (tree.nodes.empty()) continue;
       const uint32_t first = forest_.first[p] - zone.first;
       const bool bezier = source.kind == PatchKind::kBezier;
@@ -495,7 +496,7 @@ class NodeBatch {
         add_doors(source.source, zone, content);
       }
       for (size_t n = 0; n < tree.nodes.size(); ++n) {
-        const PatchNode& node = tree.nodes[n];
+        const graph::PatchNode& node = tree.nodes[n];
         const uint32_t id = forest_.first[p] + static_cast<uint32_t>(n);
         const uint8_t width = bins_.width_code(widths_[p][n]);
         if (node.cells != 0) {
@@ -507,14 +508,14 @@ class NodeBatch {
             node.promise.classes, node.level, node.s, node.t,
             static_cast<uint8_t>(node.promise.inclination << 4 | node.promise.height),
             static_cast<uint8_t>(node.promise.headroom << 4 | width),
-            static_cast<uint8_t>((node.terminal ? kTerminalFlag : 0) |
-                                 (node.cells != 0 ? kPartialFlag : 0)),
-            node.parent == kNoNode ? UINT32_MAX : first + node.parent,
+            static_cast<uint8_t>((node.terminal ? world::kTerminalFlag : 0) |
+                                 (node.cells != 0 ? world::kPartialFlag : 0)),
+            node.parent == graph::kNoNode ? UINT32_MAX : first + node.parent,
             static_cast<float>(area_of(source, tree, node)),
             static_cast<uint32_t>(content.arcs.size()));
         for (const ArcRecord& arc : arcs.of(id - zone.first)) {
           if (arc.hole_link1 != 0) add_hole_link(arc, content);
-          const Promise least = worst({.a = arc.from, .b = arc.to});
+          const graph::Promise least = worst({.a = arc.from, .b = arc.to});
           content.arcs.emplace_back(target(arc.to, zone, content), arc.classes,
                                     static_cast<uint8_t>(arc.kind),
                                     static_cast<uint8_t>(least.inclination << 4 | least.height));
@@ -560,7 +561,7 @@ class NodeBatch {
   }
 
   const World& world_;
-  const WorldData& data_;
+  const world::WorldData& data_;
   const Scene& scene_;
   const NodeConfig& config_;
   Context& context_;
@@ -575,13 +576,13 @@ class NodeBatch {
   std::vector<uint32_t> bezier_, level_;  // where they are in the forest, or kNoNode
   std::vector<uint32_t> levels_;          // those of the forest
   std::vector<size_t> slots_;             // of the world, whose levels these are
-  NodeForest forest_;
-  std::vector<Promise> promises_;        // by node
-  std::vector<CellPair> pairs_, edges_;  // (those over Bezier edges again, for drops)
-  std::vector<PatchDoor> doors_;         // by patch of the scene
+  graph::NodeForest forest_;
+  std::vector<graph::Promise> promises_;        // by node
+  std::vector<graph::CellPair> pairs_, edges_;  // (those over Bezier edges again, for drops)
+  std::vector<PatchDoor> doors_;                // by patch of the scene
   std::vector<HoleLink> hole_links_;
-  std::vector<std::vector<NodeLink>> inside_;  // links by patch of the forest
-  std::vector<NodeLink> across_;               // all others
+  std::vector<std::vector<graph::NodeLink>> inside_;  // links by patch of the forest
+  std::vector<graph::NodeLink> across_;               // all others
   std::vector<std::vector<double>> widths_;
   std::vector<ZoneRange> zones_;       // that are seen
   std::vector<uint32_t> zone_places_;  // where they are in the plan
@@ -603,4 +604,4 @@ Result<void> check_batch_links(const NodeBatchInput& input, std::span<const uint
   return NodeBatch(input, zones).check_off_mesh_links();
 }
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -17,7 +17,7 @@
 
 /// From patches and level tiles to nodes, links and widths, so many zones at a time as fit in
 /// memory.
-namespace throng {
+namespace throng::bake {
 
 struct NodeBatchInput {
   const World& world;
@@ -31,7 +31,7 @@ struct NodeBatchInput {
 };
 
 /// Nodes of zones; null where there are none.
-using NodeSlots = std::vector<std::unique_ptr<NodeData::Slot>>;
+using NodeSlots = std::vector<std::unique_ptr<world::NodeData::Slot>>;
 
 /// Makes the nodes of some zones of the plan, given in ascending order, and returns them in it.
 /// What lies near these is read, so the results do not depend on which are made together. Fails
@@ -47,4 +47,4 @@ using NodeSlots = std::vector<std::unique_ptr<NodeData::Slot>>;
 /// What is said of a world with more nodes than numbers.
 [[nodiscard]] Error too_many_nodes();
 
-}  // namespace throng
+}  // namespace throng::bake

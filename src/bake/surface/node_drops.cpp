@@ -24,7 +24,7 @@
 // that moves level and upright sweeps a prism over a stadium, one that falls a cylinder: both are
 // compared with the triangles as they are, so nothing is lost to growth between poses. Only a body
 // that has to turn, a climber on a Bezier patch, is proved pose by pose.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 constexpr double kNear2 = 1e8;
@@ -48,7 +48,7 @@ class BezierSpots {
     const double gentle =
         std::round(std::cos(avatar.max_slope * std::numbers::pi / 180) * 1e9) / 1e9;
     for (uint32_t p = 0; p < input.links.cells.size(); ++p) {
-      const PatchCells& cells = input.links.cells[p].promise;
+      const graph::PatchCells& cells = input.links.cells[p].promise;
       const double cells_along = 1 << cells.depth;
       for (uint32_t i = 0; i < cells.cells.size(); ++i) {
         if ((cells.cells[i].classes & body.bit) == 0) continue;
@@ -99,7 +99,7 @@ class DropFinder {
         ground_{world_, static_cast<int32_t>(avatar_class)},
         avatar_(input.links.classes[avatar_class]),
         body_(body),
-        step_(step_mm(avatar_)),
+        step_(world::step_mm(avatar_)),
         bottom_(body_bottom(avatar_)),
         motion_(*input.links.triangles) {}
 
@@ -108,10 +108,10 @@ class DropFinder {
   }
 
   void drop_from_level(uint32_t level, std::vector<NodeDrop>& out) {
-    const GroundLevel ground = ground_level(world_, level, ground_.avatar_class);
+    const world::GroundLevel ground = world::ground_level(world_, level, ground_.avatar_class);
     if (ground.zone == nullptr || ground.kind == format::CellsKind::None) return;
-    const CellRows legal = legal_rows(ground);
-    const auto [tile_x, tile_z] = tile_of(world_, *ground.zone, *ground.view.record);
+    const world::CellRows legal = graph::legal_rows(ground);
+    const auto [tile_x, tile_z] = world::tile_of(world_, *ground.zone, *ground.view.record);
     for (int32_t z = 0; z < 64; ++z) {
       for (int32_t x = 0; x < 64; ++x) {
         if ((legal[static_cast<size_t>(z)] >> x & 1) == 0) continue;
@@ -131,26 +131,26 @@ class DropFinder {
     Spot spot;
   };
 
-  static GroundPoint middle_of(int32_t x, int32_t z) {
-    constexpr int64_t kMiddle = kUnitsPerCell / 2;
-    return {(int64_t{x} << kUnitBits) + kMiddle, (int64_t{z} << kUnitBits) + kMiddle};
+  static world::GroundPoint middle_of(int32_t x, int32_t z) {
+    constexpr int64_t kMiddle = world::kUnitsPerCell / 2;
+    return {(int64_t{x} << world::kUnitBits) + kMiddle, (int64_t{z} << world::kUnitBits) + kMiddle};
   }
 
-  [[nodiscard]] Spot spot_on(const GroundLevel& level, int32_t x, int32_t z) const {
+  [[nodiscard]] Spot spot_on(const world::GroundLevel& level, int32_t x, int32_t z) const {
     return {
         {PatchKind::kLevelTile, level.world_level, static_cast<uint32_t>((z & 63) * 64 + (x & 63))},
-        place_at(world_, level, middle_of(x, z)).position};
+        world::place_at(world_, level, middle_of(x, z)).position};
   }
 
   // Is there a side over which the class cannot step and come back?
-  [[nodiscard]] bool is_edge(const GroundLevel& level, int32_t x, int32_t z) const {
+  [[nodiscard]] bool is_edge(const world::GroundLevel& level, int32_t x, int32_t z) const {
     constexpr std::array<std::array<int32_t, 2>, 4> kBeside = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
     return std::any_of(kBeside.begin(), kBeside.end(), [&](const auto& d) {
       const int32_t i = x + d[0], j = z + d[1];
       if (i < 0 || j < 0) return true;
-      const auto to = step_to(ground_, level, x, z, i, j, step_);
+      const auto to = world::step_to(ground_, level, x, z, i, j, step_);
       if (!to) return true;
-      const auto back = step_to(ground_, *to, i, j, x, z, step_);
+      const auto back = world::step_to(ground_, *to, i, j, x, z, step_);
       return !back || back->world_level != level.world_level;
     });
   }
@@ -163,7 +163,7 @@ class DropFinder {
   }
 
   // The place that a body drops to. `level`: of a place on a level tile.
-  [[nodiscard]] std::optional<Spot> lower_place(const Spot& from, const GroundLevel* level) {
+  [[nodiscard]] std::optional<Spot> lower_place(const Spot& from, const world::GroundLevel* level) {
     lower_.clear();
     const double cell = world_.summary.cell;
     const double far = drop_reach(avatar_, std::max(cell, input_.links.size));
@@ -194,7 +194,7 @@ class DropFinder {
     const int32_t x0 = columns.first, x1 = columns.second, z0 = rows.first, z1 = rows.second;
     for (int32_t tile_z = z0 >> 6; tile_z <= z1 >> 6; ++tile_z) {
       for (int32_t tile_x = x0 >> 6; tile_x <= x1 >> 6; ++tile_x) {
-        ground_.for_tile(tile_x, tile_z, 0, 0, [&](const GroundLevel& level) {
+        ground_.for_tile(tile_x, tile_z, 0, 0, [&](const world::GroundLevel& level) {
           if (level.kind == format::CellsKind::None) return;
           for (int32_t z = std::max(z0, tile_z * 64); z <= std::min(z1, tile_z * 64 + 63); ++z) {
             for (int32_t x = std::max(x0, tile_x * 64); x <= std::min(x1, tile_x * 64 + 63); ++x) {
@@ -210,14 +210,16 @@ class DropFinder {
     }
   }
 
-  [[nodiscard]] bool walks_to(const GroundLevel& level, const Spot& from, const Spot& to) const {
+  [[nodiscard]] bool walks_to(const world::GroundLevel& level, const Spot& from,
+                              const Spot& to) const {
     if (to.end.kind != PatchKind::kLevelTile) return false;
     const auto point = [&](const Spot& spot) {
-      const GroundPoint p = to_ground(world_, spot.feet.x, spot.feet.z);
+      const world::GroundPoint p = world::to_ground(world_, spot.feet.x, spot.feet.z);
       return middle_of(p.cell_x(), p.cell_z());
     };
-    GroundLevel at = level;
-    return walk(ground_, at, point(from), point(to), step_) && at.world_level == to.end.source;
+    world::GroundLevel at = level;
+    return world::walk(ground_, at, point(from), point(to), step_) &&
+           at.world_level == to.end.source;
   }
 
   // Corners as seen from the place where the drop begins, heights last.
@@ -271,8 +273,8 @@ class DropFinder {
 
   const DropInput& input_;
   const BezierSpots& patches_;
-  const WorldData& world_;
-  WorldGround ground_;
+  const world::WorldData& world_;
+  world::WorldGround ground_;
   const AvatarClass& avatar_;
   PatchBody body_;
   int32_t step_;   // [mm]
@@ -285,9 +287,9 @@ class DropFinder {
 };
 
 // Is there a side of a patch's cell over which the class has no neighbour?
-bool is_patch_edge(const DropInput& input, const CrossCells& cross, const DropEnd& at,
+bool is_patch_edge(const DropInput& input, const graph::CrossCells& cross, const DropEnd& at,
                    uint16_t bit) {
-  const PatchCells& cells = input.links.cells[at.source].promise;
+  const graph::PatchCells& cells = input.links.cells[at.source].promise;
   const int32_t side = cells.side();
   const int32_t s = static_cast<int32_t>(at.cell) % side, t = static_cast<int32_t>(at.cell) / side;
   constexpr std::array<std::array<int32_t, 2>, 4> kBeside = {{{-1, 0}, {0, 1}, {1, 0}, {0, -1}}};
@@ -296,7 +298,7 @@ bool is_patch_edge(const DropInput& input, const CrossCells& cross, const DropEn
     const int32_t i = s + kBeside[edge][0], j = t + kBeside[edge][1];
     if (i >= 0 && j >= 0 && i < side && j < side) {
       if ((cells.cells[cells.index(i, j)].classes & bit) == 0) return true;
-    } else if (std::none_of(beyond.begin(), beyond.end(), [&](const CrossCells::Cell& next) {
+    } else if (std::none_of(beyond.begin(), beyond.end(), [&](const graph::CrossCells::Cell& next) {
                  return next.side == edge && (next.classes & bit) != 0;
                })) {
       return true;
@@ -308,9 +310,9 @@ bool is_patch_edge(const DropInput& input, const CrossCells& cross, const DropEn
 }  // namespace
 
 std::vector<NodeDrop> find_drops(const DropInput& input, int32_t workers) {
-  const WorldData& world = *data_of(*input.links.world);
+  const world::WorldData& world = *data_of(*input.links.world);
   const std::vector<PatchBody> bodies = patch_bodies(input.links.classes);
-  const CrossCells cross(input.edges, input.links.cells.size(), workers);
+  const graph::CrossCells cross(input.edges, input.links.cells.size(), workers);
   std::vector<NodeDrop> drops;
   for (size_t c = 0; c < bodies.size(); ++c) {
     const AvatarClass& avatar = input.links.classes[c];
@@ -349,4 +351,4 @@ std::vector<NodeDrop> find_drops(const DropInput& input, int32_t workers) {
   return drops;
 }
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -11,7 +11,7 @@
 
 /// One-way drops: where a class with a `max_drop` goes out over an edge of its ground and straight
 /// down to lower ground.
-namespace throng {
+namespace throng::bake {
 
 /// A cell of a Bezier patch of the scene, or of a level of the world.
 struct DropEnd {
@@ -40,7 +40,8 @@ inline constexpr double kDropCells = 3;
 
 struct DropInput {
   PatchLinkInput links;
-  std::span<const CellPair> edges;   ///< Over the edges of Bezier patches, by patch of the scene.
+  std::span<const graph::CellPair>
+      edges;                         ///< Over the edges of Bezier patches, by patch of the scene.
   bool tiles = false;                ///< Whether level tiles carry a class.
   std::span<const uint32_t> levels;  ///< Of the world: those from which drops are looked for.
   uint16_t wanted = 0xffff;          ///< Classes.
@@ -53,4 +54,4 @@ struct DropInput {
 /// against the triangles. By where they begin and end, each pair of places once.
 [[nodiscard]] std::vector<NodeDrop> find_drops(const DropInput& input, int32_t workers);
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -9,30 +9,32 @@
 
 // Packs the nodes of one zone, their arcs and what these need into a NodeZone buffer. Linear, after
 // sorting.
-namespace throng {
+namespace throng::bake {
 
-ZoneArcs arcs_of(std::span<const NodeLink> links, const ZoneRange& zone) {
+ZoneArcs arcs_of(std::span<const graph::NodeLink> links, const ZoneRange& zone) {
   const auto is_here = [&](uint32_t node) { return node >= zone.first && node < zone.last; };
-  const auto goes_up = [&](const NodeLink& l) { return (!l.one_way || !l.turned) && is_here(l.a); };
-  const auto goes_down = [&](const NodeLink& l) {
+  const auto goes_up = [&](const graph::NodeLink& l) {
+    return (!l.one_way || !l.turned) && is_here(l.a);
+  };
+  const auto goes_down = [&](const graph::NodeLink& l) {
     return (!l.one_way || l.turned) && is_here(l.b);
   };
   ZoneArcs out;
   // Counted two entries ahead: dealing then leaves at n + 1 where the arcs of node n end.
   std::vector<size_t>& next = out.first;
   next.assign(size_t{zone.last - zone.first} + 2, 0);
-  for (const NodeLink& l : links) {
+  for (const graph::NodeLink& l : links) {
     if (goes_up(l)) ++next[l.a - zone.first + 2];
     if (goes_down(l)) ++next[l.b - zone.first + 2];
   }
   for (size_t n = 2; n < next.size(); ++n) next[n] += next[n - 1];
   out.arcs.resize(next.back());
   // Links are sorted, so a stable deal to `from` leaves each node's arcs sorted.
-  for (const NodeLink& l : links) {
+  for (const graph::NodeLink& l : links) {
     if (!goes_down(l)) continue;
     out.arcs[next[l.b - zone.first + 1]++] = {l.b, l.a, l.classes, l.kind, l.hole_link1, !l.turned};
   }
-  for (const NodeLink& l : links) {
+  for (const graph::NodeLink& l : links) {
     if (!goes_up(l)) continue;
     out.arcs[next[l.a - zone.first + 1]++] = {l.a, l.b, l.classes, l.kind, l.hole_link1, l.turned};
   }
@@ -43,11 +45,11 @@ uint32_t ZoneContent::far_node(const format::FarNode& node) {
   const auto [entry, is_new] = far_known.try_emplace(std::tuple(node.x(), node.z(), node.node()),
                                                      static_cast<uint32_t>(far.size()));
   if (is_new) far.push_back(node);
-  return kFarNode | entry->second;
+  return world::kFarNode | entry->second;
 }
 
-Result<std::unique_ptr<NodeData::Slot>> node_slot(const ZoneContent& content) {
-  const std::string name = node_file_name(content.x, content.z);
+Result<std::unique_ptr<world::NodeData::Slot>> node_slot(const ZoneContent& content) {
+  const std::string name = world::node_file_name(content.x, content.z);
   const uint64_t bytes =
       content.patches.size() * sizeof(format::NodePatch) +
       content.nodes.size() * sizeof(format::Node) + content.arcs.size() * sizeof(format::Arc) +
@@ -67,12 +69,12 @@ Result<std::unique_ptr<NodeData::Slot>> node_slot(const ZoneContent& content) {
   const auto doors = builder.CreateVectorOfStructs(content.doors);
   const auto points = builder.CreateVector(content.points);
   const auto partial = builder.CreateVectorOfStructs(content.partial);
-  builder.Finish(format::CreateNodeZone(builder, kNodeVersion, content.x, content.z, patches, nodes,
-                                        arcs, far, hole_links, doors, points, partial),
+  builder.Finish(format::CreateNodeZone(builder, world::kNodeVersion, content.x, content.z, patches,
+                                        nodes, arcs, far, hole_links, doors, points, partial),
                  "THNZ");
-  auto zone = NodeZone::from_bytes(builder.Release(), name);
+  auto zone = world::NodeZone::from_bytes(builder.Release(), name);
   if (!zone) return zone.error();
-  auto slot = std::make_unique<NodeData::Slot>();
+  auto slot = std::make_unique<world::NodeData::Slot>();
   const auto span = (*zone)->bytes();
   slot->entry =
       format::NodeZoneEntry(content.x, content.z, static_cast<uint32_t>(content.nodes.size()),
@@ -82,10 +84,10 @@ Result<std::unique_ptr<NodeData::Slot>> node_slot(const ZoneContent& content) {
   return slot;
 }
 
-uint64_t world_hash(const WorldData& world) {
+uint64_t world_hash(const world::WorldData& world) {
   if (!world.path.empty()) return world.manifest_hash;
-  const std::vector<uint8_t> bytes = write_manifest(world);
+  const std::vector<uint8_t> bytes = world::write_manifest(world);
   return hash_bytes(bytes.data(), bytes.size());
 }
 
-}  // namespace throng
+}  // namespace throng::bake

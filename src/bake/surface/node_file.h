@@ -14,7 +14,7 @@
 #include "world/zone_data.h"
 
 /// Packs nodes into the files of zones.
-namespace throng {
+namespace throng::bake {
 
 /// One direction of a link.
 struct ArcRecord {
@@ -42,7 +42,7 @@ struct ZoneArcs {
 };
 
 /// Of links that are sorted as merge_node_links() does, among them all with an end in the zone.
-[[nodiscard]] ZoneArcs arcs_of(std::span<const NodeLink> links, const ZoneRange& zone);
+[[nodiscard]] ZoneArcs arcs_of(std::span<const graph::NodeLink> links, const ZoneRange& zone);
 
 struct ZoneContent {
   int32_t x = 0, z = 0;
@@ -61,9 +61,9 @@ struct ZoneContent {
 };
 
 /// The zone's bytes, read back and checked. Fails with kLimit.
-[[nodiscard]] Result<std::unique_ptr<NodeData::Slot>> node_slot(const ZoneContent& content);
+[[nodiscard]] Result<std::unique_ptr<world::NodeData::Slot>> node_slot(const ZoneContent& content);
 
 /// XXH3 of the manifest of a world: of its file, or of what would be written.
-[[nodiscard]] uint64_t world_hash(const WorldData& world);
+[[nodiscard]] uint64_t world_hash(const world::WorldData& world);
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -14,7 +14,7 @@
 
 // The nodes' folder of a world: files of earlier bakes that can be reused, and a folder of new ones
 // that replaces it at once.
-namespace throng {
+namespace throng::bake {
 namespace fs = std::filesystem;
 namespace {
 
@@ -30,13 +30,13 @@ bool link_or_copy(const fs::path& from, const fs::path& to) {
 
 OldNodes::OldNodes(const std::string& world_path) {
   if (world_path.empty()) return;
-  for (const char* folder : {kNodeFolder, kOldNodeFolder, kPartNodeFolder}) {
+  for (const char* folder : {world::kNodeFolder, world::kOldNodeFolder, world::kPartNodeFolder}) {
     const std::string path = (fs::path(world_path) / folder).string();
-    const std::string name = path + "/" + kNodeIndexName;
+    const std::string name = path + "/" + world::kNodeIndexName;
     const auto map = FileMap::open(name);
     if (!map) continue;
-    auto index = read_node_index(map->bytes(), name);
-    if (!index || !unsealed(map->bytes(), name)) continue;
+    auto index = world::read_node_index(map->bytes(), name);
+    if (!index || !world::unsealed(map->bytes(), name)) continue;
     (*index)->path = path;
     folders_.push_back(std::move(*index));
   }
@@ -56,11 +56,11 @@ std::optional<OldNodes::Reused> OldNodes::reuse(int32_t x, int32_t z, uint64_t i
     const size_t place = index->slot_at(x, z);
     if (place == index->slots.size()) return Reused{};
     const format::NodeZoneEntry& entry = index->slots[place]->entry;
-    const std::string file = index->path + "/" + node_file_name(x, z);
-    auto zone = open_listed<NodeZone>(
+    const std::string file = index->path + "/" + world::node_file_name(x, z);
+    auto zone = world::open_listed<world::NodeZone>(
         {.name = file, .bytes = entry.bytes(), .hash = entry.hash(), .whose = "the index's"});
     if (!zone || (*zone)->nodes().size() != entry.nodes()) continue;
-    auto slot = std::make_unique<NodeData::Slot>();
+    auto slot = std::make_unique<world::NodeData::Slot>();
     slot->entry = entry;
     slot->zone = std::move(*zone);
     return Reused{std::move(slot), file};
@@ -69,7 +69,7 @@ std::optional<OldNodes::Reused> OldNodes::reuse(int32_t x, int32_t z, uint64_t i
 }
 
 NodeFolder::NodeFolder(std::string world_path)
-    : world_path_(std::move(world_path)), part_(fs::path(world_path_) / kPartNodeFolder) {}
+    : world_path_(std::move(world_path)), part_(fs::path(world_path_) / world::kPartNodeFolder) {}
 
 NodeFolder::NodeFolder(NodeFolder&& other) noexcept
     : world_path_(std::move(other.world_path_)),
@@ -87,7 +87,7 @@ NodeFolder::~NodeFolder() {
 Result<NodeFolder> NodeFolder::begin(const std::string& world_path) {
   auto world_lock = FolderLock::take(world_path, FolderLock::Kind::kShared, world_path);
   if (!world_lock) return world_lock.error();
-  const std::string part = (fs::path(world_path) / kPartNodeFolder).string();
+  const std::string part = (fs::path(world_path) / world::kPartNodeFolder).string();
   auto part_lock = FolderLock::make(part, world_path);
   if (!part_lock) return part_lock.error();
   NodeFolder folder(world_path);
@@ -102,12 +102,12 @@ NodeFolder NodeFolder::join(const std::string& world_path) {
   return folder;
 }
 
-Result<void> NodeFolder::write(const NodeZone& zone) const {
-  return write_file((part_ / node_file_name(zone.x(), zone.z())).string(), zone.bytes());
+Result<void> NodeFolder::write(const world::NodeZone& zone) const {
+  return write_file((part_ / world::node_file_name(zone.x(), zone.z())).string(), zone.bytes());
 }
 
-Result<void> NodeFolder::take_over(const NodeZone& zone, const std::string& file) const {
-  const fs::path to = part_ / node_file_name(zone.x(), zone.z());
+Result<void> NodeFolder::take_over(const world::NodeZone& zone, const std::string& file) const {
+  const fs::path to = part_ / world::node_file_name(zone.x(), zone.z());
   if (fs::path(file) == to) return {};
   std::error_code error;
   fs::remove(to, error);
@@ -115,14 +115,15 @@ Result<void> NodeFolder::take_over(const NodeZone& zone, const std::string& file
   return write(zone);
 }
 
-Result<void> NodeFolder::list(const NodeData& nodes) const {
-  return write_file((part_ / kNodeIndexName).string(), sealed(write_node_index(nodes)));
+Result<void> NodeFolder::list(const world::NodeData& nodes) const {
+  return write_file((part_ / world::kNodeIndexName).string(),
+                    world::sealed(world::write_node_index(nodes)));
 }
 
-Result<void> NodeFolder::finish(const NodeData& nodes) {
-  std::set<std::string> names{kNodeIndexName};
+Result<void> NodeFolder::finish(const world::NodeData& nodes) {
+  std::set<std::string> names{world::kNodeIndexName};
   for (const auto& slot : nodes.slots) {
-    names.insert(node_file_name(slot->entry.x(), slot->entry.z()));
+    names.insert(world::node_file_name(slot->entry.x(), slot->entry.z()));
   }
   std::error_code error;
   std::vector<fs::path>
@@ -132,12 +133,12 @@ Result<void> NodeFolder::finish(const NodeData& nodes) {
   }
   for (const fs::path& file : stale) fs::remove_all(file, error);
   if (auto ok = list(nodes); !ok) return ok;
-  const fs::path target = fs::path(world_path_) / kNodeFolder;
+  const fs::path target = fs::path(world_path_) / world::kNodeFolder;
   fs::remove_all(target, error);
   fs::rename(part_, target, error);
   if (error) return Error{Errc::kIo, target.string() + ": cannot be written: " + error.message()};
   part_.clear();
-  fs::remove_all(fs::path(world_path_) / kOldNodeFolder, error);
+  fs::remove_all(fs::path(world_path_) / world::kOldNodeFolder, error);
   return {};
 }
 
@@ -146,7 +147,7 @@ namespace {
 // If it has any nodes.
 bool reuse_folder(const fs::path& source, const fs::path& target) {
   std::error_code error;
-  if (!fs::exists(source / kNodeIndexName, error)) return false;
+  if (!fs::exists(source / world::kNodeIndexName, error)) return false;
   fs::remove_all(target, error);
   fs::create_directory(target, error);
   for (const auto& file : fs::directory_iterator(source, error)) {
@@ -159,11 +160,12 @@ bool reuse_folder(const fs::path& source, const fs::path& target) {
 
 void carry_nodes(const std::string& from, const std::string& to, bool is_same_world) {
   const fs::path source(from), target(to);
-  reuse_folder(source / kPartNodeFolder, target / kPartNodeFolder);
-  if (reuse_folder(source / kNodeFolder, target / (is_same_world ? kNodeFolder : kOldNodeFolder))) {
+  reuse_folder(source / world::kPartNodeFolder, target / world::kPartNodeFolder);
+  if (reuse_folder(source / world::kNodeFolder,
+                   target / (is_same_world ? world::kNodeFolder : world::kOldNodeFolder))) {
     return;
   }
-  reuse_folder(source / kOldNodeFolder, target / kOldNodeFolder);
+  reuse_folder(source / world::kOldNodeFolder, target / world::kOldNodeFolder);
 }
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -20,7 +20,7 @@
 // from it, could meet. Its trees depend on nothing else. Its links, and how they number the nodes
 // of other zones, depend also on the trees of the zones around it, and so do its widths: the sum of
 // the inputs of all zones near is what its file depends on.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 constexpr uint64_t kNodeBakeVersion = 2;  // To be raised when equal inputs give other nodes.
@@ -30,7 +30,7 @@ constexpr double kHighest = 1e7;          // above and below all [m]
 
 // Where all ground is Bezier patches, they carry all classes. Where there is other ground too,
 // level tiles carry walkers and patches carry climbers.
-void choose_layers(const WorldData& world, const Scene& scene, const NodeConfig& config,
+void choose_layers(const world::WorldData& world, const Scene& scene, const NodeConfig& config,
                    NodePlan& plan) {
   const auto& classes = world.summary.classes;
   const auto& of = scene.patch_of_triangle;
@@ -46,7 +46,7 @@ void choose_layers(const WorldData& world, const Scene& scene, const NodeConfig&
 }
 
 // Bezier patches by their middles, level tiles as the ground's zones.
-void list_sources(const WorldData& world, const Scene& scene, NodePlan& plan) {
+void list_sources(const world::WorldData& world, const Scene& scene, NodePlan& plan) {
   const auto per_zone = static_cast<int32_t>(world.tiles_per_zone);
   const auto zone = [&](double at, double origin, int32_t zones) {
     const double tile = (at - origin) / world.summary.cell / 64;
@@ -69,7 +69,7 @@ void list_sources(const WorldData& world, const Scene& scene, NodePlan& plan) {
   std::sort(plan.sources.begin(), plan.sources.end());
 }
 
-void list_zones(const WorldData& world, const Scene& scene, NodePlan& plan) {
+void list_zones(const world::WorldData& world, const Scene& scene, NodePlan& plan) {
   const double side = world.tiles_per_zone * 64 * world.summary.cell;
   for (uint32_t s = 0; s < plan.sources.size(); ++s) {
     const PatchSource& source = plan.sources[s];
@@ -110,7 +110,7 @@ struct NodeReaches {
   std::vector<double> triangles;  // by zone
 };
 
-NodeReaches reaches(const WorldData& world, const Scene& scene, const NodeConfig& config,
+NodeReaches reaches(const world::WorldData& world, const Scene& scene, const NodeConfig& config,
                     const NodePlan& plan) {
   double body = 0, hole_reach = 0;
   for (const AvatarClass& avatar : world.summary.classes) {
@@ -132,7 +132,7 @@ NodeReaches reaches(const WorldData& world, const Scene& scene, const NodeConfig
     reach.triangles.push_back(hole_reach + 2 * body + 4 * across + kMargin);
   }
   // A flood visits cells that come as near, and those beside them.
-  const double widest = make_bins(world.summary.classes).width.back();
+  const double widest = graph::make_bins(world.summary.classes).width.back();
   reach.nodes = std::max(widest, hole_reach) + farthest + kMargin;
   return reach;
 }
@@ -198,11 +198,11 @@ class Words {
 };
 
 // What all zones depend on.
-uint64_t common_input(const WorldData& world, const Scene& scene, const NodeConfig& config,
+uint64_t common_input(const world::WorldData& world, const Scene& scene, const NodeConfig& config,
                       const NodePlan& plan) {
   Words words;
   words.add(kNodeBakeVersion);
-  words.add(uint64_t{kNodeVersion});
+  words.add(uint64_t{world::kNodeVersion});
   words.add(uint64_t{config.classes});
   words.add(config.size);
   words.add(uint64_t{plan.on_patches});
@@ -271,7 +271,7 @@ void add_triangles(const TriangleSquares& triangles, const Box3d& zone, double r
 
 }  // namespace
 
-NodePlan plan_nodes(const WorldData& world, const Scene& scene, const NodeConfig& config) {
+NodePlan plan_nodes(const world::WorldData& world, const Scene& scene, const NodeConfig& config) {
   NodePlan plan;
   choose_layers(world, scene, config, plan);
   list_sources(world, scene, plan);
@@ -279,7 +279,7 @@ NodePlan plan_nodes(const WorldData& world, const Scene& scene, const NodeConfig
   return plan;
 }
 
-void find_node_inputs(const WorldData& world, const Scene& scene, const NodeConfig& config,
+void find_node_inputs(const world::WorldData& world, const Scene& scene, const NodeConfig& config,
                       const TriangleSquares* triangles, NodePlan& plan) {
   const NodeReaches reach = reaches(world, scene, config, plan);
   const uint64_t common = common_input(world, scene, config, plan);
@@ -417,4 +417,4 @@ uint64_t batch_working_bytes(const Scene& scene, const NodeConfig& config, const
   return sum;
 }
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -13,7 +13,7 @@
 #include "world/zone_data.h"
 
 /// Which patches nodes are made of, zone by zone, and what each zone's nodes depend on.
-namespace throng {
+namespace throng::bake {
 
 /// A patch of the forest: where it comes from and which zone keeps it.
 struct PatchSource {
@@ -48,12 +48,12 @@ struct NodePlan {
 };
 
 /// Lists patches and zones, by zones, then kinds, then sources.
-[[nodiscard]] NodePlan plan_nodes(const WorldData& world, const Scene& scene,
+[[nodiscard]] NodePlan plan_nodes(const world::WorldData& world, const Scene& scene,
                                   const NodeConfig& config);
 
 /// Finds which zones depend on which, and `input` of each: equal inputs give equal bytes. Needs the
 /// triangles if the plan does. A zone that has to be made reads its `near` zones.
-void find_node_inputs(const WorldData& world, const Scene& scene, const NodeConfig& config,
+void find_node_inputs(const world::WorldData& world, const Scene& scene, const NodeConfig& config,
                       const TriangleSquares* triangles, NodePlan& plan);
 
 /// Splits zones, given in ascending order, into batches whose nodes are made together: nearly
@@ -71,4 +71,4 @@ void find_node_inputs(const WorldData& world, const Scene& scene, const NodeConf
 [[nodiscard]] uint64_t batch_working_bytes(const Scene& scene, const NodeConfig& config,
                                            const NodePlan& plan, std::span<const uint32_t> batch);
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -19,7 +19,7 @@
 // any body. The neighbours' triangles are tested like all others. So are the patch's own, unless
 // they are known to rise by less than a body's bottom around any feet (own_ground): a cylinder that
 // holds bodies all over a cell meets the cell's own slope where none of the bodies does.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 constexpr int32_t kRegionHalvings = 4;  // of a region's cells, that look for triangles together
@@ -110,7 +110,7 @@ int32_t patch_depth(const BezierPatch& patch, double size) {
                                     length(curve[3] - curve[2]));
   }
   int32_t depth = 0;
-  while (depth < kDeepestPatch && longest > size * (1 << depth)) ++depth;
+  while (depth < world::kDeepestPatch && longest > size * (1 << depth)) ++depth;
   return depth;
 }
 
@@ -184,9 +184,9 @@ void PatchJudge::bound_cells(BezierCells& out) {
   block_at_.clear();
   for (size_t i = 0; i < parts_.count; ++i) {
     if (i % kBlock == 0) block_at_.push_back(bounded_.size());
-    Promise& promise = out.promise.cells[part_cell_[i]];
+    graph::Promise& promise = out.promise.cells[part_cell_[i]];
     promise = {.classes = 0, .inclination = 15, .height = 0, .headroom = 0};
-    CellShape& shape = out.shape[part_cell_[i]];
+    graph::CellShape& shape = out.shape[part_cell_[i]];
     if (!bounds_[i].valid) {
       const Box3d box = parts_.patch(i).bounds();
       const Vec3d middle = (box.min + box.max) * 0.5, at = middle - out.origin;
@@ -333,7 +333,7 @@ void PatchJudge::judge_block(std::span<const Bounded> cells, const Box3d& box, B
       continue;
     }
     for (const Pending& cell : square) {
-      Promise& promise = out.promise.cells[cell.cell];
+      graph::Promise& promise = out.promise.cells[cell.cell];
       judge_posture(cell, 0, promise);
       if (cell.postures > 1) judge_posture(cell, 1, promise);
     }
@@ -470,7 +470,7 @@ uint32_t PatchJudge::too_steep(const Pending& cell) const {
 }
 
 // Tests the classes of one posture, and the free height along it.
-void PatchJudge::judge_posture(const Pending& cell, size_t posture, Promise& promise) {
+void PatchJudge::judge_posture(const Pending& cell, size_t posture, graph::Promise& promise) {
   sweeps_.clear();
   tube_bit_.clear();
   sweeps_.push_back(cell.prism[posture]);
@@ -500,7 +500,7 @@ void PatchJudge::judge_posture(const Pending& cell, size_t posture, Promise& pro
 
 // Those bodies of sweeps_ that a triangle enters.
 uint32_t PatchJudge::judge_against(const FilterList& list, const Pending& cell, size_t posture,
-                                   uint32_t asked, Promise& promise) {
+                                   uint32_t asked, graph::Promise& promise) {
   if (list.count == 0) return 0;
   const BodyFrame& frame = cell.surface(posture).frame;
   uint32_t stopped = 0, steep = 0;
@@ -526,7 +526,7 @@ uint32_t PatchJudge::judge_against(const FilterList& list, const Pending& cell, 
 
 // Those of sweeps_ that a plane comes into; returns those that a triangle does.
 uint32_t PatchJudge::judge_met(const FilterList& list, const Pending& cell, size_t posture,
-                               uint32_t met, Promise& promise) {
+                               uint32_t met, graph::Promise& promise) {
   const SurfaceBound& surface = cell.surface(posture);
   const BodyFrame& frame = surface.frame;
   const BodySweep& prism = cell.prism[posture];
@@ -575,4 +575,4 @@ uint32_t PatchJudge::judge_met(const FilterList& list, const Pending& cell, size
   return stopped;
 }
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -18,7 +18,7 @@
 #include "throng/surface.h"
 
 /// What the finest sub-patches of Bezier patches promise, proved against all triangles.
-namespace throng {
+namespace throng::bake {
 
 /// One class's body on a patch. A climber's axis is the surface's normal, a walker's straight up.
 struct PatchBody {
@@ -48,9 +48,9 @@ void find_patches_around(const PatchSet& set, uint32_t patch, std::vector<uint32
 }
 
 struct BezierCells {
-  PatchCells promise;
+  graph::PatchCells promise;
   Vec3d origin;  ///< What `shape` is relative to: near the patch.
-  std::vector<CellShape> shape;
+  std::vector<graph::CellShape> shape;
   std::vector<uint32_t> makers;  ///< Patches that pierce this one, ascending.
 };
 
@@ -104,11 +104,11 @@ class PatchJudge {
   void stand_on(const Bounded& cell, BezierCells& out) const;
   void set_spared(const SelfSupport& own, double deviation);
   void find_makers(std::span<const Pending> cells, BezierCells& out);
-  void judge_posture(const Pending& cell, size_t posture, Promise& promise);
+  void judge_posture(const Pending& cell, size_t posture, graph::Promise& promise);
   uint32_t judge_against(const FilterList& list, const Pending& cell, size_t posture,
-                         uint32_t asked, Promise& promise);
+                         uint32_t asked, graph::Promise& promise);
   uint32_t judge_met(const FilterList& list, const Pending& cell, size_t posture, uint32_t met,
-                     Promise& promise);
+                     graph::Promise& promise);
   [[nodiscard]] uint32_t too_steep(const Pending& cell) const;
   /// A solid in here leaves no height.
   [[nodiscard]] BodySweep headroom_sweep(const Pending& cell, size_t posture) const;
@@ -150,4 +150,4 @@ class PatchJudge {
   std::vector<FilterTube> tubes_;   // of these, those that a solid may enter
 };
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -14,7 +14,7 @@
 
 // Links between cells of Bezier patches: over shared edges where bodies pass, over a hole from a
 // cell to those near that a body can move to. Every link is proved by body_motion.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 constexpr double kSmooth = 0.9962;    // cosine of 5 degrees: no crease
@@ -44,8 +44,10 @@ bool goes(MotionJudge& judge, const PatchBody& body, const BodyPose& from, const
 }
 
 // The part of the edges that a pair touches along, as a door of its own or the end of the last one.
-void add_door(const EdgePair& pair, uint16_t classes, std::vector<PatchDoor>& doors) {
-  const auto along = [](double at) { return static_cast<uint16_t>(std::lround(at * kEdgeUnits)); };
+void add_door(const graph::EdgePair& pair, uint16_t classes, std::vector<PatchDoor>& doors) {
+  const auto along = [](double at) {
+    return static_cast<uint16_t>(std::lround(at * world::kEdgeUnits));
+  };
   const PatchDoor door{.patch = pair.side_a.patch,
                        .to_patch = pair.side_b.patch,
                        .edge = static_cast<uint8_t>(pair.side_a.edge),
@@ -67,10 +69,10 @@ void add_door(const EdgePair& pair, uint16_t classes, std::vector<PatchDoor>& do
   doors.push_back(door);
 }
 
-std::vector<CellPair> merged(std::vector<std::vector<CellPair>>& lists) {
-  std::vector<CellPair> all;
+std::vector<graph::CellPair> merged(std::vector<std::vector<graph::CellPair>>& lists) {
+  std::vector<graph::CellPair> all;
   for (auto& list : lists) all.insert(all.end(), list.begin(), list.end());
-  merge_cell_pairs(all);
+  graph::merge_cell_pairs(all);
   return all;
 }
 
@@ -81,19 +83,19 @@ EdgeLinks link_edges(const PatchLinkInput& input, int32_t workers) {
   const std::vector<PatchBody> bodies = patch_bodies(input.classes);
   std::vector<int32_t> depth;
   for (const BezierCells& cells : input.cells) depth.push_back(cells.promise.depth);
-  std::vector<std::vector<CellPair>> lists(set.size());
+  std::vector<std::vector<graph::CellPair>> lists(set.size());
   std::vector<std::vector<PatchDoor>> doors(set.size());
   parallel_for(set.size(), workers, [&](size_t p) {
     if (!input.is_judged(static_cast<uint32_t>(p))) return;
     MotionJudge judge(*input.triangles);
-    for (const EdgePair& pair : edge_pairs(set, depth, static_cast<uint32_t>(p))) {
-      CellPair cells = pair.cells;
+    for (const graph::EdgePair& pair : graph::edge_pairs(set, depth, static_cast<uint32_t>(p))) {
+      graph::CellPair cells = pair.cells;
       if (!input.is_judged(cells.patch_b)) continue;
       const uint16_t both = input.cells[cells.patch_a].promise.cells[cells.cell_a].classes &
                             input.cells[cells.patch_b].promise.cells[cells.cell_b].classes;
       if (both == 0) continue;
       const auto at = [&](PatchSide side, double along) {
-        const auto [s, t] = edge_parameters(side.edge, along);
+        const auto [s, t] = graph::edge_parameters(side.edge, along);
         const BezierPatch& patch = set.patches[side.patch];
         return BodyPose{patch.at(s, t), patch.normal(s, t)};
       };
@@ -136,7 +138,7 @@ double distance2(const Box3d& box, Vec3d p) {
 }
 
 // Does a neighbour within the patch, or whatever lies over its border, lack the class?
-bool lacks_neighbour(const PatchCells& cells, uint32_t cell, uint16_t bit) {
+bool lacks_neighbour(const graph::PatchCells& cells, uint32_t cell, uint16_t bit) {
   const int32_t side = cells.side(), s = static_cast<int32_t>(cell) % side,
                 t = static_cast<int32_t>(cell) / side;
   constexpr std::array<std::array<int32_t, 2>, 4> kBeside = {{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
@@ -169,12 +171,12 @@ class HoleLinker {
       for (const uint32_t maker : here_.makers) add_target(c, maker);
     }
     Box3d box;
-    for (const CellShape& cell : here_.shape) box.add(cell.middle(here_.origin));
+    for (const graph::CellShape& cell : here_.shape) box.add(cell.middle(here_.origin));
     judge_.look_around({.min = box.min - Vec3d{farthest_, farthest_, farthest_},
                         .max = box.max + Vec3d{farthest_, farthest_, farthest_}});
   }
 
-  std::vector<CellPair> link() {
+  std::vector<graph::CellPair> link() {
     for (uint32_t a = 0; a < here_.promise.cells.size(); ++a) {
       looked_closer_ = false;
       for (const Target& target : targets_) link_cell(a, target);
@@ -261,14 +263,14 @@ class HoleLinker {
   std::vector<Target> targets_;
   std::vector<std::pair<double, uint32_t>> nearest_;
   bool looked_closer_ = false;  // at the cell whose hole links are tried
-  std::vector<CellPair> pairs_;
+  std::vector<graph::CellPair> pairs_;
 };
 
 }  // namespace
 
-std::vector<CellPair> link_holes(const PatchLinkInput& input, int32_t workers) {
+std::vector<graph::CellPair> link_holes(const PatchLinkInput& input, int32_t workers) {
   const std::vector<PatchBody> bodies = patch_bodies(input.classes);
-  std::vector<std::vector<CellPair>> lists(input.cells.size());
+  std::vector<std::vector<graph::CellPair>> lists(input.cells.size());
   parallel_for(input.cells.size(), workers, [&](size_t p) {
     if (input.cells[p].makers.empty()) return;
     lists[p] = HoleLinker(input, bodies, static_cast<uint32_t>(p)).link();
@@ -276,10 +278,10 @@ std::vector<CellPair> link_holes(const PatchLinkInput& input, int32_t workers) {
   return merged(lists);
 }
 
-std::vector<CellPair> link_tiles(const PatchLinkInput& input, int32_t workers) {
+std::vector<graph::CellPair> link_tiles(const PatchLinkInput& input, int32_t workers) {
   const std::vector<PatchBody> bodies = patch_bodies(input.classes);
-  const WorldData& data = *data_of(*input.world);
-  std::vector<std::vector<CellPair>> lists(input.cells.size());
+  const world::WorldData& data = *data_of(*input.world);
+  std::vector<std::vector<graph::CellPair>> lists(input.cells.size());
   parallel_for(input.cells.size(), workers, [&](size_t p) {
     MotionJudge judge(*input.triangles);
     for (size_t c = 0; c < bodies.size(); ++c) {
@@ -290,7 +292,7 @@ std::vector<CellPair> link_tiles(const PatchLinkInput& input, int32_t workers) {
         const double step = input.classes[c].step;
         const Place place = input.world->find_place(static_cast<int32_t>(c), on.feet, step);
         if (!place || !judge.is_free(body, {place.position, {0, 1, 0}}, on)) continue;
-        const GroundPoint at = to_ground(data, place.position.x, place.position.z);
+        const world::GroundPoint at = world::to_ground(data, place.position.x, place.position.z);
         lists[p].push_back(
             {.patch_a = static_cast<uint32_t>(p),
              .cell_a = a,
@@ -304,4 +306,4 @@ std::vector<CellPair> link_tiles(const PatchLinkInput& input, int32_t workers) {
   return merged(lists);
 }
 
-}  // namespace throng
+}  // namespace throng::bake

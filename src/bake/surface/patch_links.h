@@ -12,7 +12,7 @@
 
 /// Which classes go from a Bezier patch's cells to those of others: over shared edges, over the
 /// holes that patches make in each other, and onto level tiles.
-namespace throng {
+namespace throng::bake {
 
 struct PatchLinkInput {
   const TriangleSquares* triangles = nullptr;
@@ -34,7 +34,7 @@ struct PatchDoor {
 };
 
 struct EdgeLinks {
-  std::vector<CellPair> pairs;
+  std::vector<graph::CellPair> pairs;
   std::vector<PatchDoor> doors;  ///< By patch.
 };
 
@@ -49,10 +49,10 @@ struct EdgeLinks {
 
 /// For each class, each cell of a patch with holes that lacks a neighbour, and each patch that made
 /// the holes: the nearest of its cells to which the body can go straight. Source: [PACS00] 1.2.3.6.
-[[nodiscard]] std::vector<CellPair> link_holes(const PatchLinkInput& input, int32_t workers);
+[[nodiscard]] std::vector<graph::CellPair> link_holes(const PatchLinkInput& input, int32_t workers);
 
 /// Cells on which a climber also finds a place on a level tile, and can straighten up there.
 /// `patch_b` counts levels of the world.
-[[nodiscard]] std::vector<CellPair> link_tiles(const PatchLinkInput& input, int32_t workers);
+[[nodiscard]] std::vector<graph::CellPair> link_tiles(const PatchLinkInput& input, int32_t workers);
 
-}  // namespace throng
+}  // namespace throng::bake

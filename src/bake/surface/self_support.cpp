@@ -19,7 +19,7 @@
 //
 // A triangle's point is at most `deviation` from the surface's at the same parameters, by the bound
 // of import/patches/patch_steps.cpp and because its corners are that near to the surface.
-namespace throng {
+namespace throng::bake {
 namespace {
 
 constexpr int32_t kBeside = 24;  // 256ths on each side of the cells
@@ -104,4 +104,4 @@ double SelfSupport::rise(bool upright, double radius, double deviation) const {
   return (upright ? upright_slope_ : along_slope_) * (radius + deviation) + deviation;
 }
 
-}  // namespace throng
+}  // namespace throng::bake

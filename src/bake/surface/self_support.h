@@ -7,7 +7,7 @@
 #include "throng/scene.h"
 
 /// How far a patch's own triangles may come up towards bodies that stand on it.
-namespace throng {
+namespace throng::bake {
 
 /// A part of a Bezier patch around some of its cells. A body that stands on it need not be tested
 /// against the triangles of the same part if these rise by less than its bottom.
@@ -38,4 +38,4 @@ class SelfSupport {
   double ss_ = 0, st_ = 0, tt_ = 0;     // Second derivatives by 256ths, at most. [m]
 };
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -17,7 +17,7 @@
 
 #ifndef THRONG_SURFACE_BOUND_ONCE
 #define THRONG_SURFACE_BOUND_ONCE
-namespace throng {
+namespace throng::bake {
 
 constexpr double kWidestCone = 0.94;  // sine of its half angle
 constexpr size_t kBoundLanes = 8;     // at most, in a vector
@@ -29,11 +29,11 @@ struct BoundLanes {
       upright_high;
 };
 
-}  // namespace throng
+}  // namespace throng::bake
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::bake {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -192,11 +192,11 @@ void BoundLanesOf(const double* parts, size_t stride, size_t first, BoundLanes& 
 size_t BoundLaneCount() { return hn::Lanes(DD()); }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::bake
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace throng {
+namespace throng::bake {
 
 HWY_EXPORT(Quarter);
 HWY_EXPORT(BoundLanesOf);
@@ -362,5 +362,5 @@ void bound_cells_of(const PatchParts& parts, std::span<CellBounds> out) {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::bake
 #endif  // HWY_ONCE

@@ -10,7 +10,7 @@
 #include "throng/scene.h"
 
 /// Where sub-patches of Bezier patches lie and how far they are inclined.
-namespace throng {
+namespace throng::bake {
 
 inline constexpr size_t kPatchDoubles = 48;  // of a patch's control points
 
@@ -62,4 +62,4 @@ void quarter_parts(const PatchParts& parts, PatchParts& out);
 /// Both for each of some cells, eight at a time or so; the same bits as one by one. Linear.
 void bound_cells_of(const PatchParts& parts, std::span<CellBounds> out);
 
-}  // namespace throng
+}  // namespace throng::bake

@@ -19,7 +19,7 @@
 
 #ifndef THRONG_TRIANGLE_FILTER_ONCE
 #define THRONG_TRIANGLE_FILTER_ONCE
-namespace throng {
+namespace throng::bake {
 
 constexpr size_t kFilterLanes = 16;  // at most, in a vector
 
@@ -43,11 +43,11 @@ struct FilterView {
   size_t count;
 };
 
-}  // namespace throng
+}  // namespace throng::bake
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::bake {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -478,11 +478,11 @@ uint32_t Filter(const FilterList& list, const FilterView& view, FilterHits& hits
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::bake
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace throng {
+namespace throng::bake {
 
 HWY_EXPORT(FindPlanes);
 HWY_EXPORT(Glance);
@@ -654,5 +654,5 @@ uint32_t filter(const FilterList& list, const FilterQuery& question, FilterHits&
   return HWY_DYNAMIC_DISPATCH(Filter)(list, view, hits);
 }
 
-}  // namespace throng
+}  // namespace throng::bake
 #endif  // HWY_ONCE

@@ -12,7 +12,7 @@
 /// Triangles near some bodies in single precision, tested a vector at a time: which of them surely
 /// stay outside, and which bodies are surely entered. Each comparison allows more than its rounding
 /// error, so an exact test of the rest finds the same as one of all.
-namespace throng {
+namespace throng::bake {
 
 /// Triangles around an origin. Coordinate k of corner c of triangle i is
 /// corner[(3 * c + k) * stride + i]; its normal is plane[k * stride + i], along which it lies from
@@ -74,4 +74,4 @@ struct FilterHits {
 [[nodiscard]] uint32_t filter(const FilterList& list, const FilterQuery& question,
                               FilterHits& hits);
 
-}  // namespace throng
+}  // namespace throng::bake

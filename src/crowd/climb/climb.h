@@ -10,7 +10,7 @@
 #include "throng/base.h"
 
 /// What a climber has beside its Body, by slot. docs/design/013-climbers.md.
-namespace throng {
+namespace throng::crowd {
 
 /// A point of a path over nodes.
 struct ClimbPoint {
@@ -70,4 +70,4 @@ static_assert(sizeof(Climb) ==
                   32 + 48 + 24 + 24 * (Climb::kPoints + Climb::kStations) + 4 + 8 + 12 + 8 + 8 &&
               std::is_trivially_copyable_v<Climb>);
 
-}  // namespace throng
+}  // namespace throng::crowd

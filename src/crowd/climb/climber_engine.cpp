@@ -13,7 +13,7 @@
 // The step of climbers: docs/design/013-climbers.md. Walkers and flyers have moved clear of the
 // cylinders that enclose climbers; then climbers move, clear of where all bodies are. Linear in the
 // climbers and their neighbours.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 using steer::Space;
@@ -66,7 +66,7 @@ void ClimberEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt
 
 bool ClimberEngine::meets_obstacle(const ClimberGround& ground, const ClimbCylinder& cylinder,
                                    const ClimbPose& pose, double radius,
-                                   const AirObstacle& obstacle, const Solid& solid) const {
+                                   const AirObstacle& obstacle, const path::Solid& solid) const {
   return obstacle.holds(cylinder.low, cylinder.radius * double{config_.units.unit},
                         cylinder.height) &&
          may_touch(ground.body_room_of(pose, radius), solid);
@@ -397,4 +397,4 @@ void ClimberEngine::settle(uint32_t c, uint64_t step, EngineCounts& counts) {
 
 uint64_t ClimberEngine::bytes() const { return grid_.bytes() + rounds_.bytes(); }
 
-}  // namespace throng
+}  // namespace throng::crowd

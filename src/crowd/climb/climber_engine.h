@@ -21,7 +21,7 @@
 
 /// The step of climbers, after those of walkers and flyers: sense, steer, resolve conflicts,
 /// settle. docs/design/013-climbers.md.
-namespace throng {
+namespace throng::crowd {
 
 struct ClimberConfig {
   StepUnits units;
@@ -59,7 +59,7 @@ class ClimberEngine {
   /// Does a body meet an obstacle?
   [[nodiscard]] bool meets_obstacle(const ClimberGround& ground, const ClimbCylinder& cylinder,
                                     const ClimbPose& pose, double radius,
-                                    const AirObstacle& obstacle, const Solid& solid) const;
+                                    const AirObstacle& obstacle, const path::Solid& solid) const;
 
   /// Called first for each climber, on any worker: it finds and follows the path.
   using Before = std::function<void(Body&, Climb&, int32_t worker)>;
@@ -117,4 +117,4 @@ class ClimberEngine {
   std::vector<uint32_t> arrived_;
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

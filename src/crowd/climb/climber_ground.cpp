@@ -12,7 +12,7 @@
 // Moves over nodes. All poses lie on the path that the finder proved, or in a square all of which
 // the class may stand on: docs/design/013-climbers.md. Additions, products and square roots only,
 // so that the result is the same everywhere. Constant time, but for the points that a move passes.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 constexpr double kLittle = 1e-9;    // [m]
@@ -24,18 +24,18 @@ constexpr int kShorter = 8;         // attempts to make a move short enough
 ClimberGround::ClimberGround(const World& world, const Nodes& nodes, const NodePathFinder& finder,
                              int32_t avatar_class)
     : nodes_(&nodes), finder_(&finder), avatar_class_(avatar_class) {
-  const WorldData& data = *data_of(world);
+  const world::WorldData& data = *data_of(world);
   const AvatarClass& avatar = data.summary.classes[static_cast<size_t>(avatar_class)];
   origin_ = data.summary.origin;
-  unit_ = data.summary.cell / kUnitsPerCell;
+  unit_ = data.summary.cell / world::kUnitsPerCell;
   const auto units = [](int32_t cells) {
-    return static_cast<int32_t>(std::min<int64_t>(int64_t{cells} << kUnitBits, INT32_MAX));
+    return static_cast<int32_t>(std::min<int64_t>(int64_t{cells} << world::kUnitBits, INT32_MAX));
   };
   width_ = units(data.width);
   depth_ = units(data.depth);
   tile_ = 64 * data.summary.cell;
   height_ = avatar.height;
-  reach_ = reach_of(avatar);
+  reach_ = path::reach_of(avatar);
   bottom_ = body_bottom(avatar);
   leaning_bottom_ = avatar.climb_slope > 0 ? avatar.step : bottom_;
 }
@@ -110,8 +110,8 @@ double ClimberGround::travel(const ClimbPose& from, const ClimbPose& to) const {
   return length(to.feet - from.feet) + reach_ * length(to.axis - from.axis);
 }
 
-BodyRoom ClimberGround::body_room_of(const ClimbPose& pose, double radius) const {
-  BodyRoom room;
+path::BodyRoom ClimberGround::body_room_of(const ClimbPose& pose, double radius) const {
+  path::BodyRoom room;
   room.feet = pose.feet;
   room.axis = pose.axis;
   room.bottom = pose.axis.y > 1 - 1e-12 ? bottom_ : leaning_bottom_;
@@ -375,4 +375,4 @@ std::optional<ClimberGround::Step> ClimberGround::shift(const Climb& climb, Vec3
   return std::nullopt;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -13,7 +13,7 @@
 #include "throng/world.h"
 
 /// The nodes of a class, as climbers move over them.
-namespace throng {
+namespace throng::crowd {
 
 /// A body stands at `feet` along `axis`. [m]
 struct ClimbPose {
@@ -46,7 +46,7 @@ class ClimberGround {
   [[nodiscard]] double travel(const ClimbPose& from, const ClimbPose& to) const;
 
   /// The space that a body occupies in a pose. [m]
-  [[nodiscard]] BodyRoom body_room_of(const ClimbPose& pose, double radius) const;
+  [[nodiscard]] path::BodyRoom body_room_of(const ClimbPose& pose, double radius) const;
 
   struct Step {
     ClimbStance at;
@@ -107,4 +107,4 @@ class ClimberGround {
   double bottom_ = 0, leaning_bottom_ = 0;  // of its body above its feet, upright and not [m]
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -10,7 +10,7 @@
 #include "crowd/ground/air_position.h"
 
 /// What a flyer has beside its Body, by slot.
-namespace throng {
+namespace throng::crowd {
 
 struct Flight {
   static constexpr size_t kPoints = 10;
@@ -40,4 +40,4 @@ struct Flight {
 static_assert(sizeof(Flight) == 16 + 12 * Flight::kPoints + 7 * 4 + 8 &&
               std::is_trivially_copyable_v<Flight>);
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -10,24 +10,24 @@
 
 // The air of a class in a step's integer units: conversions, lines of sight, and ground-air links.
 // Each costs a descent in the air's octree for each air box that a line crosses.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 int32_t floor_div(int32_t a, int32_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
 }  // namespace
 
-FlyerAir::FlyerAir(const World& world, const FlightSpace& space, const CrowdGround& ground,
+FlyerAir::FlyerAir(const World& world, const path::FlightSpace& space, const CrowdGround& ground,
                    int32_t avatar_class)
     : space_(&space),
       ground_(&ground),
       origin_(data_of(world)->summary.origin),
-      unit_(data_of(world)->summary.cell / kUnitsPerCell),
-      per_unit_(1.0 / (static_cast<double>(kUnitsPerCell) * space.shape.multiple)),
+      unit_(data_of(world)->summary.cell / world::kUnitsPerCell),
+      per_unit_(1.0 / (static_cast<double>(world::kUnitsPerCell) * space.shape.multiple)),
       width_(static_cast<int32_t>(
-          std::min<int64_t>(int64_t{data_of(world)->width} << kUnitBits, INT32_MAX))),
+          std::min<int64_t>(int64_t{data_of(world)->width} << world::kUnitBits, INT32_MAX))),
       depth_(static_cast<int32_t>(
-          std::min<int64_t>(int64_t{data_of(world)->depth} << kUnitBits, INT32_MAX))),
+          std::min<int64_t>(int64_t{data_of(world)->depth} << world::kUnitBits, INT32_MAX))),
       origin_y_(space.shape.origin_y),
       cell_(space.shape.cell) {
   const AvatarClass& avatar = data_of(world)->summary.classes[static_cast<size_t>(avatar_class)];
@@ -35,10 +35,10 @@ FlyerAir::FlyerAir(const World& world, const FlightSpace& space, const CrowdGrou
 }
 
 bool FlyerAir::is_open_around(const AirPosition& position, float distance) const {
-  const AirPoint p = point(position);
+  const path::AirPoint p = point(position);
   const uint32_t index = space_->box_at(p);
-  if (index == kNoBox) return false;
-  const AirCube& box = space_->boxes[index];
+  if (index == path::kNoBox) return false;
+  const world::AirCube& box = space_->boxes[index];
   const double cells = static_cast<double>(distance) * 1e3 / cell_;
   const auto inside = [&](double v, int32_t low) {
     return v - cells >= low && v + cells <= low + box.side;
@@ -48,18 +48,18 @@ bool FlyerAir::is_open_around(const AirPosition& position, float distance) const
 
 // As FlightEndpoints::take_off computes it, in whole millimetres.
 std::optional<int32_t> FlyerAir::take_off(const AirPosition& feet) const {
-  const AirPoint p = point(feet);
+  const path::AirPoint p = point(feet);
   const auto x = static_cast<int32_t>(std::floor(p.x)), z = static_cast<int32_t>(std::floor(p.z));
   const int32_t head = feet.y + height_;
   for (int32_t layer = floor_div(feet.y - origin_y_, cell_);; ++layer) {
     const int32_t y = std::max(feet.y, layer * cell_ + origin_y_);
     if (y > head) return {};
-    if (space_->box_at(x, layer, z) != kNoBox) return y;
+    if (space_->box_at(x, layer, z) != path::kNoBox) return y;
   }
 }
 
 std::optional<FlyerAir::GroundAirLink> FlyerAir::link_below(const AirPosition& position) const {
-  const GroundPoint p{position.x, position.z};
+  const world::GroundPoint p{position.x, position.z};
   std::optional<GroundAirLink> best;
   const auto range = ground_->feet_range();
   ground_->for_tile(p.cell_x() >> 6, p.cell_z() >> 6, range.low, position.y, [&](uint32_t level) {
@@ -95,4 +95,4 @@ bool FlyerAir::in_grid(const Vec3d& metres) const {
 
 int32_t FlyerAir::ceiling() const { return space_->shape.ceiling * cell_ + origin_y_; }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -11,17 +11,17 @@
 #include "throng/world.h"
 
 /// The air of a class as a step reads it, and its links to the ground.
-namespace throng {
+namespace throng::crowd {
 
 class FlyerAir {
  public:
   /// The space and the ground outlive it.
-  FlyerAir(const World& world, const FlightSpace& space, const CrowdGround& ground,
+  FlyerAir(const World& world, const path::FlightSpace& space, const CrowdGround& ground,
            int32_t avatar_class);
 
   /// May feet be at this position in the air?
   [[nodiscard]] bool is_legal(const AirPosition& position) const {
-    return space_->box_at(point(position)) != kNoBox;
+    return space_->box_at(point(position)) != path::kNoBox;
   }
   /// Is the straight line legal, with both ends?
   [[nodiscard]] bool sees(const AirPosition& from, const AirPosition& to) const {
@@ -43,7 +43,8 @@ class FlyerAir {
 
   /// Is the ground of a level legal at this position now?
   [[nodiscard]] bool may_stand(uint32_t level, const AirPosition& position) const {
-    return ground_->is_legal(level, (position.x >> kUnitBits) & 63, (position.z >> kUnitBits) & 63);
+    return ground_->is_legal(level, (position.x >> world::kUnitBits) & 63,
+                             (position.z >> world::kUnitBits) & 63);
   }
 
   [[nodiscard]] AirPosition position(const Vec3d& metres) const;
@@ -54,12 +55,12 @@ class FlyerAir {
   [[nodiscard]] int32_t ceiling() const;
 
  private:
-  [[nodiscard]] AirPoint point(const AirPosition& position) const {
+  [[nodiscard]] path::AirPoint point(const AirPosition& position) const {
     return {(position.x + 0.5) * per_unit_, static_cast<double>(position.y - origin_y_) / cell_,
             (position.z + 0.5) * per_unit_};
   }
 
-  const FlightSpace* space_;
+  const path::FlightSpace* space_;
   const CrowdGround* ground_;
   Vec3d origin_;
   double unit_, per_unit_;            // [m], [air cells]
@@ -67,4 +68,4 @@ class FlyerAir {
   int32_t origin_y_, cell_, height_;  // [mm]
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

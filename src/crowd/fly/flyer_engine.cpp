@@ -12,7 +12,7 @@
 
 // The step of flyers: docs/design/012-flyers.md. Walkers have moved clear of where all flyers are;
 // then flyers move, clear of where all bodies are. Linear in the flyers and their neighbours.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 using steer::Space;
@@ -506,4 +506,4 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
 
 uint64_t FlyerEngine::bytes() const { return grid_.bytes() + rounds_.bytes(); }
 
-}  // namespace throng
+}  // namespace throng::crowd

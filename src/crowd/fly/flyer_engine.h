@@ -21,7 +21,7 @@
 
 /// The step of flyers in the air, after that of walkers: sense, steer, resolve conflicts, settle.
 /// docs/design/012-flyers.md.
-namespace throng {
+namespace throng::crowd {
 
 struct FlyerConfig {
   StepUnits units;
@@ -113,4 +113,4 @@ class FlyerEngine {
   std::vector<uint32_t> arrived_, landed_;
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -6,7 +6,7 @@
 #include <numeric>
 
 // Fills the grid of cubes with a counting sort. Linear in the bodies and cubes.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 int32_t square_of(int32_t a, int32_t b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
@@ -68,4 +68,4 @@ uint64_t FlyerGrid::bytes() const {
          entries_.capacity() * sizeof(Entry);
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -9,7 +9,7 @@
 #include "crowd/walk/body.h"
 
 /// The bodies near those that the engine of flyers or of climbers moves.
-namespace throng {
+namespace throng::crowd {
 
 /// Cubes half as wide as the sight, in a table rolled up along all three axes: so it is as large as
 /// the crowd, not as the world. Of the walkers it holds only those that a flyer could see.
@@ -88,4 +88,4 @@ class FlyerGrid {
   std::vector<Entry> entries_;
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

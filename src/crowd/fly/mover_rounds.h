@@ -21,7 +21,7 @@
 
 /// What the engines of flyers and of climbers have in common: their bodies move after all others,
 /// in conflict resolution rounds.
-namespace throng {
+namespace throng::crowd {
 
 /// The nearest few neighbours; of equally near ones, the lowest slots.
 class NearestInAir {
@@ -240,4 +240,4 @@ void MoverRounds<Contest, Move>::step(std::span<const Body> bodies, const Parts&
   lap(times.settle);
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

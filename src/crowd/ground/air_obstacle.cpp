@@ -7,7 +7,7 @@
 
 // A cylinder against an upright prism: the disc of its feet against the polygon, its height against
 // the prism's. Linear in the polygon's corners.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 constexpr double kBeyond = 8;  // [units] farther than needed
@@ -83,4 +83,4 @@ void AirObstacle::list_exits(const AirPosition& feet, double radius, int32_t hei
   exits.push_back({feet.x, feet.z, low_ - height});
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -10,7 +10,7 @@
 #include "throng/base.h"
 
 /// An obstacle against which upright cylinders are tested.
-namespace throng {
+namespace throng::crowd {
 
 /// A body that is up to two units away counts as inside.
 class AirObstacle {
@@ -37,4 +37,4 @@ class AirObstacle {
   bool closes_;
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 /// A point in space, in the units that a step calculates in.
-namespace throng {
+namespace throng::crowd {
 
 /// A point of the air.
 struct AirPosition {
@@ -14,4 +14,4 @@ struct AirPosition {
   friend bool operator==(const AirPosition&, const AirPosition&) = default;
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -8,7 +8,7 @@
 #include "world/walk.h"
 
 /// Avatars as a step reads and writes them.
-namespace throng {
+namespace throng::crowd {
 
 /// Two to a cache line. A wanderer is handled alone, so its fields lie together; arrays of fields
 /// would touch seven lines where this touches one.
@@ -20,8 +20,8 @@ struct Avatar {
   uint32_t id = 0;
   uint32_t reserved = 0;
 
-  [[nodiscard]] GroundPoint point() const { return {x, z}; }
+  [[nodiscard]] world::GroundPoint point() const { return {x, z}; }
 };
 static_assert(sizeof(Avatar) == 32 && std::has_unique_object_representations_v<Avatar>);
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -13,7 +13,7 @@
 
 // Copies the ground of one class out of the zones: rows of legal and of flat cells, a line for each
 // level, and samples. Linear in the level tiles.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 constexpr size_t kRows = 64;
@@ -21,7 +21,7 @@ constexpr size_t kRows = 64;
 using Heights = CrowdGround::Heights;
 
 // Heights between which the floors of a level's legal cells lie. [mm]
-Heights heights_of(const LevelView& view, const uint64_t* legal) {
+Heights heights_of(const world::LevelView& view, const uint64_t* legal) {
   if (view.is_constant()) return {view.floor_base, view.floor_base};
   int32_t low = INT32_MAX, high = INT32_MIN;
   for (int32_t z = 0; z < static_cast<int32_t>(kRows); ++z) {
@@ -35,26 +35,27 @@ Heights heights_of(const LevelView& view, const uint64_t* legal) {
 }
 
 // How far feet can be above or below the sample of their cell, anywhere on the level. [mm]
-int32_t max_rise(const LevelView& view) {
+int32_t max_rise(const world::LevelView& view) {
   if (view.is_constant()) return 0;
   if (view.samples == nullptr) return (std::abs(view.slope_x) + std::abs(view.slope_z)) / 1024 + 2;
-  int32_t low = kNoValue, high = 0;
+  int32_t low = world::kNoValue, high = 0;
   for (size_t i = 0; i < kRows * 64; ++i) {
     const int32_t sample = view.samples[i];
     low = std::min(low, sample);
-    high = std::max(high, sample == kNoValue ? 0 : sample);
+    high = std::max(high, sample == world::kNoValue ? 0 : sample);
   }
   return std::max(0, high - low) + 1;
 }
 
 // Heights between which the feet on a level's legal cells lie. [mm]
-Heights feet_of(const LevelView& view, const uint64_t* legal) {
+Heights feet_of(const world::LevelView& view, const uint64_t* legal) {
   Heights feet{INT32_MAX, INT32_MIN};
   for (int32_t z = 0; z < static_cast<int32_t>(kRows); ++z) {
     for (uint64_t row = legal[z]; row != 0; row &= row - 1) {
       const int32_t x = std::countr_zero(row);
-      for (const int32_t u : {0, kUnitsPerCell}) {  // They are highest and lowest at the corners.
-        for (const int32_t v : {0, kUnitsPerCell}) {
+      for (const int32_t u :
+           {0, world::kUnitsPerCell}) {  // They are highest and lowest at the corners.
+        for (const int32_t v : {0, world::kUnitsPerCell}) {
           const int32_t height = view.feet(x, z, u, v);
           feet = {std::min(feet.low, height), std::max(feet.high, height)};
         }
@@ -85,7 +86,7 @@ uint64_t same(const uint16_t* row, const uint16_t* other) {
 
 // Legal cells that are as high as the four beside them, as far as those are on the tile. Slopes
 // there are 0 (surface.h). False if there are none.
-bool find_flat(const LevelView& view, const uint64_t* legal, uint64_t* flat) {
+bool find_flat(const world::LevelView& view, const uint64_t* legal, uint64_t* flat) {
   if (view.samples == nullptr) return false;
   const uint64_t left_rim = 1, right_rim = uint64_t{1} << 63;
   uint64_t any = 0, above = ~uint64_t{0};
@@ -101,12 +102,12 @@ bool find_flat(const LevelView& view, const uint64_t* legal, uint64_t* flat) {
 }
 
 // True for levels with legal cells whose floor is stored cell by cell.
-bool is_sampled(const Zone& zone, uint32_t level, int32_t avatar_class) {
+bool is_sampled(const world::Zone& zone, uint32_t level, int32_t avatar_class) {
   return zone.level(level).floor_kind() == format::HeightKind::Blocks &&
          zone.clearance(level, static_cast<uint32_t>(avatar_class)).kind() !=
              format::CellsKind::None;
 }
-size_t count_rough(const Zone& zone, int32_t avatar_class) {
+size_t count_rough(const world::Zone& zone, int32_t avatar_class) {
   size_t count = 0;
   for (uint32_t i = 0; i < zone.level_count(); ++i)
     count += is_sampled(zone, i, avatar_class) ? 1 : 0;
@@ -115,7 +116,7 @@ size_t count_rough(const Zone& zone, int32_t avatar_class) {
 
 }  // namespace
 
-Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_class,
+Result<CrowdGround> CrowdGround::make(const world::WorldData& world, int32_t avatar_class,
                                       int32_t step_mm) {
   CrowdGround ground;
   ground.tiles_x_ = world.summary.tiles_x;
@@ -124,7 +125,7 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
   ground.tiles_.resize(static_cast<size_t>(ground.tiles_x_) * static_cast<size_t>(ground.tiles_z_));
   ground.records_.resize(world.level_count);
   ground.heights_.resize(world.level_count);
-  ground.views_ = HugeArray<LevelView>(world.level_count);
+  ground.views_ = HugeArray<world::LevelView>(world.level_count);
   ground.lines_ = HugeArray<LevelLine>(world.level_count);
   ground.open_ = HugeArray<OpenLine>(world.level_count);
   // Capacity for all levels; the system allocates only what is written.
@@ -136,30 +137,30 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
   ground.feet_range_ = bounds;
   size_t rough = 0;
   for (size_t s = 0; s < world.slots.size(); ++s) {
-    const Zone* zone = world.zone(s);
+    const world::Zone* zone = world.zone(s);
     if (zone == nullptr) return Error{Errc::kBadFile, world.slots[s]->error};
     rough += count_rough(*zone, avatar_class);
   }
-  ground.samples_ = HugeArray<uint16_t>(rough * kBlocks * 64);
+  ground.samples_ = HugeArray<uint16_t>(rough * world::kBlocks * 64);
   for (size_t s = 0; s < world.slots.size(); ++s) {
-    const Zone* zone = world.zone(s);
+    const world::Zone* zone = world.zone(s);
     const uint32_t base = world.slots[s]->first_level;
     for (uint32_t i = 0; i < zone->level_count(); ++i) {
-      const GroundLevel level = ground_level(*zone, i, base + i, avatar_class);
+      const world::GroundLevel level = world::ground_level(*zone, i, base + i, avatar_class);
       Record& record = ground.records_[base + i];
       record.legal_cells = zone->clearance(i, static_cast<uint32_t>(avatar_class)).legal_cells();
       uint32_t set = level.kind == format::CellsKind::All ? kAllLegal : kNoneLegal;
       if (level.kind == format::CellsKind::Blocks) {
         set = sets++;
-        CellRows legal;
-        unpack_bits(level.legal, legal);
+        world::CellRows legal;
+        world::unpack_bits(level.legal, legal);
         std::copy_n(legal.data(), kRows, ground.rows_.data() + size_t{set} * kRows);
       }
-      LevelView& view = ground.views_[base + i];
+      world::LevelView& view = ground.views_[base + i];
       view = level.view;
       if (is_sampled(*zone, i, avatar_class)) {
-        uint16_t* samples = ground.samples_.data() + ground.sample_sets_++ * kBlocks * 64;
-        unpack_floor(view, samples);
+        uint16_t* samples = ground.samples_.data() + ground.sample_sets_++ * world::kBlocks * 64;
+        world::unpack_floor(view, samples);
         view.samples = samples;
       }
       LevelLine& line = ground.lines_[base + i];
@@ -177,7 +178,7 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
       ground.heights_[base + i] = heights;
       if (set != kNoneLegal && heights.low <= heights.high) {
         if (heights.low < bounds.low || heights.high > bounds.high) {
-          return Error{Errc::kBadFile, zone_file_name(zone->root().x(), zone->root().z()) +
+          return Error{Errc::kBadFile, world::zone_file_name(zone->root().x(), zone->root().z()) +
                                            ": has floors where the world has no triangles; bake "
                                            "the world again"};
         }
@@ -188,9 +189,9 @@ Result<CrowdGround> CrowdGround::make(const WorldData& world, int32_t avatar_cla
                                 std::max(ground.feet_range_.high, feet.high)};
         }
       }
-      std::tie(record.tile_x, record.tile_z) = tile_of(world, *zone, *level.view.record);
+      std::tie(record.tile_x, record.tile_z) = world::tile_of(world, *zone, *level.view.record);
       if (record.tile_x >= ground.tiles_x_ || record.tile_z >= ground.tiles_z_) {
-        return Error{Errc::kBadFile, zone_file_name(zone->root().x(), zone->root().z()) +
+        return Error{Errc::kBadFile, world::zone_file_name(zone->root().x(), zone->root().z()) +
                                          ": has levels outside the world; bake the world again"};
       }
       Range& range =
@@ -218,4 +219,4 @@ void CrowdGround::find_isolated(int32_t step_mm) {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -14,7 +14,7 @@
 #include "world/ground.h"
 
 /// The ground as a step reads it: for each level a line and 64 rows of legal cells.
-namespace throng {
+namespace throng::crowd {
 
 class CrowdGround {
  public:
@@ -22,7 +22,8 @@ class CrowdGround {
 
   /// Opens every zone of the world. Fails with kBadFile, also where floors are not between the
   /// world's lowest and highest triangle.
-  static Result<CrowdGround> make(const WorldData& world, int32_t avatar_class, int32_t step_mm);
+  static Result<CrowdGround> make(const world::WorldData& world, int32_t avatar_class,
+                                  int32_t step_mm);
 
   [[nodiscard]] bool is_legal(Level level, int32_t x, int32_t z) const {
     return ((rows(lines_[level].legal_set)[z] >> x) & 1) != 0;
@@ -69,7 +70,7 @@ class CrowdGround {
   /// Prefetches what a step from a cell of a level reads, and what is cached around it.
   void prefetch_cell(Level level, int32_t x, int32_t z) const {
     throng::prefetch(&rows(lines_[level].legal_set)[z & 63]);
-    const LevelView& view = views_[level];
+    const world::LevelView& view = views_[level];
     if (view.samples == nullptr) return;
     const uint16_t* sample = &view.samples[(z & 63) * 64 + (x & 63)];
     throng::prefetch(sample - 64);
@@ -92,25 +93,25 @@ class CrowdGround {
     throng::prefetch(&heights_[range->first]);
     throng::prefetch(&lines_[range->first]);
   }
-  [[nodiscard]] int32_t feet(Level level, GroundPoint p) const {
-    const LevelView& view = views_[level];
+  [[nodiscard]] int32_t feet(Level level, world::GroundPoint p) const {
+    const world::LevelView& view = views_[level];
     if (view.is_constant()) return view.floor_base;
     return view.feet(p.cell_x() & 63, p.cell_z() & 63,
-                     static_cast<int32_t>(p.x & (kUnitsPerCell - 1)),
-                     static_cast<int32_t>(p.z & (kUnitsPerCell - 1)));
+                     static_cast<int32_t>(p.x & (world::kUnitsPerCell - 1)),
+                     static_cast<int32_t>(p.z & (world::kUnitsPerCell - 1)));
   }
 
   /// Blocks exactly these cells of a level, of all cells that were baked: an empty set frees all
   /// that were blocked before. Call join_tile then. Not while others read.
-  void set_blocked(Level level, const CellRows& blocked);
+  void set_blocked(Level level, const world::CellRows& blocked);
   /// Updates what lies level beyond the edges of a tile, from both sides.
   void join_tile(int32_t x, int32_t z);
   /// Legal cells of a level of which some are blocked, as they were baked; null: none is blocked.
-  [[nodiscard]] const CellRows* baked_legal(Level level) const;
+  [[nodiscard]] const world::CellRows* baked_legal(Level level) const;
   /// The blocked cells that bodies on them may leave.
   [[nodiscard]] LeftCells& left() { return left_; }
   [[nodiscard]] const LeftCells& left() const { return left_; }
-  [[nodiscard]] const LevelView& view(Level level) const { return views_[level]; }
+  [[nodiscard]] const world::LevelView& view(Level level) const { return views_[level]; }
 
   /// 64 rows of legal cells.
   [[nodiscard]] const uint64_t* legal(Level level) const { return rows(lines_[level].legal_set); }
@@ -122,8 +123,8 @@ class CrowdGround {
   };
   [[nodiscard]] const std::vector<Record>& records() const { return records_; }
   [[nodiscard]] uint64_t bytes() const {
-    const uint64_t level =
-        sizeof(Record) + sizeof(Heights) + sizeof(LevelView) + sizeof(LevelLine) + sizeof(OpenLine);
+    const uint64_t level = sizeof(Record) + sizeof(Heights) + sizeof(world::LevelView) +
+                           sizeof(LevelLine) + sizeof(OpenLine);
     return records_.size() * level + tiles_.size() * sizeof(Range) +
            row_sets_ * 64 * sizeof(uint64_t) + sample_sets_ * 4096 * sizeof(uint16_t) +
            baked_.size() * sizeof(Baked);
@@ -151,7 +152,7 @@ class CrowdGround {
   // Of a level with blocked cells, before these were.
   struct Baked {
     uint32_t legal_word = 0, flat_set = 0;
-    CellRows legal{}, flat{};
+    world::CellRows legal{}, flat{};
   };
   void keep_baked(Level level, Baked& baked);
 
@@ -179,7 +180,7 @@ class CrowdGround {
   // are neighbours. Set 0 is empty and set 1 is full, for all such levels.
   HugeArray<LevelLine> lines_;
   HugeArray<OpenLine> open_;
-  HugeArray<LevelView> views_;
+  HugeArray<world::LevelView> views_;
   HugeArray<uint64_t> rows_;
   uint32_t row_sets_ = 0;
   std::unordered_map<Level, Baked> baked_;  // looked up only
@@ -191,4 +192,4 @@ class CrowdGround {
   size_t sample_sets_ = 0;
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -10,7 +10,7 @@
 // the edge needs no search. A step from a flat cell to an equally high one rises by 0, which no
 // other level of the tile can better; world/walk.h takes the first of those that rise least. So a
 // join is right if no earlier level of the tile is legal at that height in a cell of the block.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 constexpr int32_t kLast = 15;  // block of a row or column
@@ -104,8 +104,8 @@ void CrowdGround::find_beyond(Level level, LevelLine::Side side) {
     const int32_t x = record.tile_x * 64 + (along_x ? rim : i);
     const int32_t z = record.tile_z * 64 + (along_x ? i : rim);
     const auto next = is_legal(level, x & 63, z & 63)
-                          ? step_to(*this, level, x, z, x + (along_x ? toward : 0),
-                                    z + (along_x ? 0 : toward), step_mm_)
+                          ? world::step_to(*this, level, x, z, x + (along_x ? toward : 0),
+                                           z + (along_x ? 0 : toward), step_mm_)
                           : std::nullopt;
     steps[i] = next ? *next : LevelLine::kNone;
   }
@@ -141,4 +141,4 @@ void CrowdGround::join_open_side(Level level, LevelLine::Side side) {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

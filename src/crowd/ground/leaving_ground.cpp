@@ -12,7 +12,7 @@
 
 // A breadth-first search from outside: in cells, along the axes, backwards over steps that a body
 // on such a cell may make.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 using Level = CrowdGround::Level;
@@ -100,7 +100,7 @@ class ExitSearch {
     const LeavingGround leaving(ground_, cell.level, cell.x, cell.z);
     for (const auto& [dx, dz] : kSides) {
       const auto to =
-          step_to(leaving, cell.level, cell.x, cell.z, cell.x + dx, cell.z + dz, step_mm_);
+          world::step_to(leaving, cell.level, cell.x, cell.z, cell.x + dx, cell.z + dz, step_mm_);
       if (to && is_out(ground_, *to, cell.x + dx, cell.z + dz)) return true;
     }
     return false;
@@ -115,7 +115,7 @@ class ExitSearch {
           return;
         }
         const LeavingGround leaving(ground_, level, x, z);
-        const auto there = step_to(leaving, level, x, z, to.x, to.z, step_mm_);
+        const auto there = world::step_to(leaving, level, x, z, to.x, to.z, step_mm_);
         if (!there || *there != to.level) return;
         steps(from) = count;
         found.push_back(from);
@@ -126,7 +126,7 @@ class ExitSearch {
   CrowdGround& ground_;
   int32_t step_mm_;
   std::vector<WorldCell> cells_;
-  std::unordered_map<Level, CellRows> listed_;  // which of a level are; looked up only
+  std::unordered_map<Level, world::CellRows> listed_;  // which of a level are; looked up only
 };
 
 size_t find_exits(CrowdGround& ground, int32_t step_mm, std::span<const Level> changed) {
@@ -141,7 +141,7 @@ bool find_exit(const CrowdGround& ground, int32_t step_mm, uint32_t max_steps, L
     const uint16_t here = ground.left().steps_out({level, x & 63, z & 63});
     bool found = false;
     for (const auto& [dx, dz] : kSides) {
-      const auto to = step_to(leaving, level, x, z, x + dx, z + dz, step_mm);
+      const auto to = world::step_to(leaving, level, x, z, x + dx, z + dz, step_mm);
       if (!to) continue;
       const int32_t nx = x + dx, nz = z + dz;
       found = is_out(ground, *to, nx, nz) ||
@@ -157,4 +157,4 @@ bool find_exit(const CrowdGround& ground, int32_t step_mm, uint32_t max_steps, L
   return true;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -9,7 +9,7 @@
 #include "crowd/ground/left_cells.h"
 
 /// The ground for a body that stands on blocked cells which it may leave.
-namespace throng {
+namespace throng::crowd {
 
 /// A Ground of walk.h.
 class LeavingGround {
@@ -20,7 +20,7 @@ class LeavingGround {
 
   [[nodiscard]] bool is_legal(Level level, int32_t x, int32_t z) const {
     if (ground_->is_legal(level, x, z)) return true;
-    const CellRows* baked = ground_->baked_legal(level);
+    const world::CellRows* baked = ground_->baked_legal(level);
     return baked != nullptr && ((*baked)[static_cast<size_t>(z)] >> x & 1) != 0 &&
            ground_->left().may_cross(from_, {level, x, z});
   }
@@ -54,4 +54,4 @@ size_t find_exits(CrowdGround& ground, int32_t step_mm,
 bool find_exit(const CrowdGround& ground, int32_t step_mm, uint32_t max_steps,
                CrowdGround::Level& level, int32_t& x, int32_t& z);
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -9,10 +9,10 @@
 
 // Which blocked cells a body may cross on its exit: by the obstacles whose cells it stands on.
 // Linear in the obstacles of a level.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
-bool has(const CellRows& rows, const LeftCells::Cell& cell) {
+bool has(const world::CellRows& rows, const LeftCells::Cell& cell) {
   return (rows[static_cast<size_t>(cell.z & 63)] >> (cell.x & 63) & 1) != 0;
 }
 
@@ -20,14 +20,14 @@ bool has(const CellRows& rows, const LeftCells::Cell& cell) {
 
 void LeftCells::begin(const WorldSummary& summary, const AvatarClass& avatar) {
   origin_ = summary.origin;
-  unit_ = summary.cell / kUnitsPerCell;
+  unit_ = summary.cell / world::kUnitsPerCell;
   radius_ = avatar.radius;
   // As Crowd::State::is_occupied tests it: what may become active is what may no longer be entered.
   bottom_ = static_cast<int32_t>(std::floor(body_bottom(avatar) * 1000));
   height_ = static_cast<int32_t>(std::ceil(avatar.height * 1000 - 1e-6));
 }
 
-void LeftCells::set_level(Level level, std::vector<Part> parts, const CellRows& kept) {
+void LeftCells::set_level(Level level, std::vector<Part> parts, const world::CellRows& kept) {
   if (parts.empty()) {
     levels_.erase(level);
     return;
@@ -96,4 +96,4 @@ uint16_t LeftCells::steps_out(const Cell& cell) const {
   return of == nullptr ? kNone : of->steps[static_cast<size_t>((cell.z & 63) * 64 + (cell.x & 63))];
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

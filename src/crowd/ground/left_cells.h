@@ -15,7 +15,7 @@
 /// Cells that obstacles block for a class while bodies stand on them: such a body may continue over
 /// the cells of the obstacles in which it stands, and leave them. For all others these cells are
 /// walls.
-namespace throng {
+namespace throng::crowd {
 
 class LeftCells {
  public:
@@ -24,7 +24,7 @@ class LeftCells {
   /// An obstacle, and its cells on a level.
   struct Part {
     uint32_t obstacle = 0;
-    CellRows rows{};
+    world::CellRows rows{};
     AirObstacle solid;
   };
   struct Cell {
@@ -34,12 +34,13 @@ class LeftCells {
 
   /// For which bodies, in which world; levels stay.
   void begin(const WorldSummary& summary, const AvatarClass& avatar);
-  [[nodiscard]] Part part(uint32_t obstacle, const Prism& prism, const CellRows& rows) const {
+  [[nodiscard]] Part part(uint32_t obstacle, const Prism& prism,
+                          const world::CellRows& rows) const {
     return {obstacle, rows, AirObstacle(prism, origin_, unit_)};
   }
   /// `kept`: the cells that other obstacles block there. Without parts: the level has no such
   /// cells.
-  void set_level(Level level, std::vector<Part> parts, const CellRows& kept);
+  void set_level(Level level, std::vector<Part> parts, const world::CellRows& kept);
 
   [[nodiscard]] bool is_empty() const { return levels_.empty(); }
   [[nodiscard]] bool holds(const Cell& cell) const;
@@ -59,8 +60,8 @@ class LeftCells {
   friend class ExitSearch;
   struct OfLevel {
     std::vector<Part> parts;
-    CellRows held{};  // the cells of all parts
-    CellRows kept{};
+    world::CellRows held{};  // the cells of all parts
+    world::CellRows kept{};
     std::array<uint16_t, 4096> steps{};
   };
   [[nodiscard]] const OfLevel* find(Level level) const {
@@ -74,4 +75,4 @@ class LeftCells {
   int32_t bottom_ = 0, height_ = 0;  // of a body, above its feet [mm]
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 // Bits of 4 x 4 blocks out of 64 rows of cells. Constant time.
-namespace throng {
+namespace throng::crowd {
 
 std::array<uint16_t, 16> full_blocks(const uint64_t* rows) {
   std::array<uint16_t, 16> blocks{};
@@ -20,4 +20,4 @@ std::array<uint16_t, 16> full_blocks(const uint64_t* rows) {
   return blocks;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -8,7 +8,7 @@
 #include <cstdint>
 
 /// What a step reads first of a level.
-namespace throng {
+namespace throng::crowd {
 
 /// One cache line a level tile, instead of the eight that its 64 rows fill. A block is 4 x 4 cells;
 /// it is flat if all its cells are (see CrowdGround::flat), and then they are all equally high.
@@ -93,4 +93,4 @@ static_assert(sizeof(OpenLine) == 128 && std::endian::native == std::endian::lit
 /// The blocks whose cells are all set in 64 rows.
 std::array<uint16_t, 16> full_blocks(const uint64_t* rows);
 
-}  // namespace throng
+}  // namespace throng::crowd

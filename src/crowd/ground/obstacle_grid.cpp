@@ -5,7 +5,7 @@
 #include <algorithm>
 
 // A hierarchical grid of boxes. Constant time, but for the obstacles that share a square.
-namespace throng {
+namespace throng::crowd {
 
 ObstacleGrid::Squares ObstacleGrid::squares(size_t level, const std::array<double, 4>& box) {
   const double side = std::ldexp(1.0, kBaseBits + static_cast<int>(level));
@@ -25,7 +25,7 @@ size_t ObstacleGrid::level_of(const std::array<double, 4>& box) {
   return level;
 }
 
-void ObstacleGrid::set(uint32_t slot, AirObstacle shape, Solid solid) {
+void ObstacleGrid::set(uint32_t slot, AirObstacle shape, path::Solid solid) {
   erase(slot);
   if (item_of_.size() <= slot) item_of_.resize(slot + size_t{1}, kNoItem);
   item_of_[slot] = static_cast<uint32_t>(items_.size());
@@ -74,4 +74,4 @@ void ObstacleGrid::list_near(const AirPosition& at, double radius,
   found.erase(std::unique(found.begin(), found.end()), found.end());
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -13,7 +13,7 @@
 #include "path/edits/solid.h"
 
 /// The obstacles that flyers and climbers test, by where they are.
-namespace throng {
+namespace throng::crowd {
 
 /// Squares of the plan in levels, each twice as wide as the one below. An obstacle is on the lowest
 /// level whose squares are at least as wide as its box, in up to four of them: so to add one, to
@@ -25,11 +25,11 @@ class ObstacleGrid {
 
   struct Item {
     AirObstacle shape;
-    Solid solid;  // the same
+    path::Solid solid;  // the same
     uint32_t slot = 0;
   };
   /// Replaces what is known of the slot.
-  void set(uint32_t slot, AirObstacle shape, Solid solid);
+  void set(uint32_t slot, AirObstacle shape, path::Solid solid);
   void erase(uint32_t slot);
   [[nodiscard]] bool is_empty() const { return items_.empty(); }
 
@@ -98,4 +98,4 @@ bool ObstacleGrid::any_near(const AirPosition& at, double radius, Test test) con
   return false;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -7,7 +7,7 @@
 #include "world/walk.h"
 
 /// The squares of the collision map, without the map.
-namespace throng {
+namespace throng::crowd {
 
 /// Pixels are a whole number of cells wide: at least two radii, so that bodies whose pixels do not
 /// touch cannot touch.
@@ -26,11 +26,11 @@ class PixelGrid {
   }
   [[nodiscard]] int32_t cells() const { return cells_; }
   [[nodiscard]] uint64_t magic() const { return magic_; }
-  [[nodiscard]] int64_t units() const { return int64_t{cells_} << kUnitBits; }
+  [[nodiscard]] int64_t units() const { return int64_t{cells_} << world::kUnitBits; }
 
  private:
   int32_t cells_;
   uint64_t magic_;  // 2^32 / cells, rounded up
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -12,7 +12,7 @@
 
 // The step of a vector of avatars over flat blocks, without branches. Constant time an avatar.
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::crowd {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -69,7 +69,7 @@ HWY_INLINE U pixel(U cell, U magic) {
 HWY_INLINE U blocks_at(const LevelLine* lines, I level, I z) {
   const DI d;
   const DU du;
-  const I row = hn::ShiftRight<kUnitBits + 2>(z);
+  const I row = hn::ShiftRight<world::kUnitBits + 2>(z);
   const I pair = hn::ShiftLeft<1>(hn::And(row, hn::Set(d, 14)));
   const auto* base = reinterpret_cast<const int32_t*>(lines);
   const I words = hn::GatherOffset(d, base, hn::Add(hn::ShiftLeft<6>(level), pair));
@@ -96,16 +96,16 @@ PlannedSteps PlanSteps(const LevelLine* lines, PixelGrid grid, Avatar* avatars, 
     const I x1 = hn::Add(f.x, f.vx), z1 = hn::Add(f.z, f.vz);
     // LevelLine::box_is_flat, word by word
     const U common = hn::And(blocks_at(lines, f.level, f.z), blocks_at(lines, f.level, z1));
-    const I bx0 = hn::And(hn::ShiftRight<kUnitBits + 2>(f.x), fifteen);
-    const I bx1 = hn::And(hn::ShiftRight<kUnitBits + 2>(x1), fifteen);
+    const I bx0 = hn::And(hn::ShiftRight<world::kUnitBits + 2>(f.x), fifteen);
+    const I bx1 = hn::And(hn::ShiftRight<world::kUnitBits + 2>(x1), fifteen);
     const U both =
         hn::And(hn::Shr(common, hn::BitCast(du, bx0)), hn::Shr(common, hn::BitCast(du, bx1)));
     const I moved = hn::Or(hn::Xor(f.x, x1), hn::Xor(f.z, z1));
-    const auto on_tile = hn::Eq(hn::ShiftRight<kUnitBits + 6>(moved), hn::Zero(d));
+    const auto on_tile = hn::Eq(hn::ShiftRight<world::kUnitBits + 6>(moved), hn::Zero(d));
     const auto is_flat = hn::And(on_tile, hn::TestBit(hn::BitCast(d, both), hn::Set(d, 1)));
 
     const auto pixel_of = [&](I v) {
-      return pixel(hn::BitCast(du, hn::ShiftRight<kUnitBits>(v)), magic);
+      return pixel(hn::BitCast(du, hn::ShiftRight<world::kUnitBits>(v)), magic);
     };
     const U across =
         hn::Or(hn::Xor(pixel_of(f.x), pixel_of(x1)), hn::Xor(pixel_of(f.z), pixel_of(z1)));
@@ -124,11 +124,11 @@ PlannedSteps PlanSteps(const LevelLine* lines, PixelGrid grid, Avatar* avatars, 
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::crowd
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace throng {
+namespace throng::crowd {
 
 HWY_EXPORT(PlanSteps);
 
@@ -136,5 +136,5 @@ PlannedSteps plan_steps(const LevelLine* lines, PixelGrid grid, Avatar* avatars,
   return HWY_DYNAMIC_DISPATCH(PlanSteps)(lines, grid, avatars, size);
 }
 
-}  // namespace throng
+}  // namespace throng::crowd
 #endif

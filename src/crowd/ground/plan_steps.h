@@ -10,7 +10,7 @@
 #include "crowd/ground/pixel_grid.h"
 
 /// Steps that a level's line decides, several avatars at a time.
-namespace throng {
+namespace throng::crowd {
 
 /// Which of up to 64 avatars step within flat blocks of their tile, a bit each.
 struct PlannedSteps {
@@ -27,4 +27,4 @@ inline bool can_plan(PixelGrid grid, size_t levels) {
 /// Moves the avatars that stay in their pixel. No step may be longer than a block.
 PlannedSteps plan_steps(const LevelLine* lines, PixelGrid grid, Avatar* avatars, size_t size);
 
-}  // namespace throng
+}  // namespace throng::crowd

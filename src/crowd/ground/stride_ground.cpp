@@ -11,9 +11,9 @@
 
 // Moves and lines of sight over the ground: block by block where blocks decide, else row by row,
 // else cell by cell ([ML06], algorithm 1). Linear in the blocks, rows or cells crossed.
-namespace throng {
+namespace throng::crowd {
 
-bool StrideGround::move(uint32_t level, int32_t y, GroundPoint from, GroundPoint to,
+bool StrideGround::move(uint32_t level, int32_t y, world::GroundPoint from, world::GroundPoint to,
                         Landing& landing) const {
   const int32_t x0 = from.cell_x(), z0 = from.cell_z(), x1 = to.cell_x(), z1 = to.cell_z();
   if (std::abs(x1 - x0) <= LevelLine::kBlock && std::abs(z1 - z0) <= LevelLine::kBlock) {
@@ -30,22 +30,22 @@ bool StrideGround::move(uint32_t level, int32_t y, GroundPoint from, GroundPoint
   }
   if (leaves(level, from)) return leave(level, y, from, to, landing);
   uint32_t end = level;
-  if (!walk_open(end, from, to) && !walk(*ground_, end, from, to, step_mm_)) return false;
+  if (!walk_open(end, from, to) && !world::walk(*ground_, end, from, to, step_mm_)) return false;
   landing = {end, ground_->feet(end, to)};
   return true;
 }
 
-bool StrideGround::leaves(uint32_t level, GroundPoint from) const {
+bool StrideGround::leaves(uint32_t level, world::GroundPoint from) const {
   return is_leaving(*ground_, level, from.cell_x(), from.cell_z());
 }
 
-bool StrideGround::leave(uint32_t level, int32_t y, GroundPoint from, GroundPoint to,
+bool StrideGround::leave(uint32_t level, int32_t y, world::GroundPoint from, world::GroundPoint to,
                          Landing& landing) const {
   const LeavingGround leaving(*ground_, level, from.cell_x(), from.cell_z());
   uint32_t end = level;
-  if (!walk(leaving, end, from, to, step_mm_)) return false;
+  if (!world::walk(leaving, end, from, to, step_mm_)) return false;
   landing = {end, ground_->feet(end, to)};
-  const auto position = [](GroundPoint p, int32_t feet) {
+  const auto position = [](world::GroundPoint p, int32_t feet) {
     return AirPosition{static_cast<int32_t>(p.x), static_cast<int32_t>(p.z), feet};
   };
   return !ground_->left().enters({level, from.cell_x() & 63, from.cell_z() & 63}, position(from, y),
@@ -75,7 +75,7 @@ uint32_t StrideGround::beyond(uint32_t level, LevelLine::Side side, int32_t low,
   return (line.joined[side] & wanted) == wanted ? line.beyond[side] : LevelLine::kNone;
 }
 
-bool StrideGround::is_open_around(uint32_t level, GroundPoint from, int32_t range) const {
+bool StrideGround::is_open_around(uint32_t level, world::GroundPoint from, int32_t range) const {
   if (range > 31) return false;  // of a tile's 64
   const int32_t x = from.cell_x(), z = from.cell_z();
   const int32_t x0 = x - range, z0 = z - range, x1 = x + range, z1 = z + range;
@@ -109,8 +109,9 @@ bool StrideGround::is_open_around(uint32_t level, GroundPoint from, int32_t rang
 }
 
 // As throng::walk_far, block by block. False, and the level is unchanged: blocks cannot decide.
-bool StrideGround::walk_open(uint32_t& level, GroundPoint from, GroundPoint to) const {
-  constexpr int32_t kShift = kUnitBits + 2;  // units of a block
+bool StrideGround::walk_open(uint32_t& level, world::GroundPoint from,
+                             world::GroundPoint to) const {
+  constexpr int32_t kShift = world::kUnitBits + 2;  // units of a block
   auto x = static_cast<int32_t>(from.x >> kShift), z = static_cast<int32_t>(from.z >> kShift);
   const auto end_x = static_cast<int32_t>(to.x >> kShift);
   const auto end_z = static_cast<int32_t>(to.z >> kShift);
@@ -173,7 +174,7 @@ uint32_t even_bits(uint64_t v) {
 
 }  // namespace
 
-StrideGround::Around StrideGround::query_walls(uint32_t level, int32_t y, GroundPoint from,
+StrideGround::Around StrideGround::query_walls(uint32_t level, int32_t y, world::GroundPoint from,
                                                int32_t range, int32_t rise,
                                                WallWindow& window) const {
   const int32_t x = from.cell_x(), z = from.cell_z();
@@ -202,9 +203,9 @@ StrideGround::Around StrideGround::query_walls(uint32_t level, int32_t y, Ground
   if (all == wanted) return Around::kOpen;
   const CrowdGround::Walk walk = ground_->walk(level);
   if (!walk.is_step_safe || !walk.is_isolated) return Around::kSteps;
-  window.shift = kUnitBits + scale - 1;
-  window.x = static_cast<int32_t>(from.x - (int64_t{x0} << kUnitBits));
-  window.z = static_cast<int32_t>(from.z - (int64_t{z0} << kUnitBits));
+  window.shift = world::kUnitBits + scale - 1;
+  window.x = static_cast<int32_t>(from.x - (int64_t{x0} << world::kUnitBits));
+  window.z = static_cast<int32_t>(from.z - (int64_t{z0} << world::kUnitBits));
   for (int32_t row = 0; row < WallWindow::kSize; ++row) {
     if (scale == 1) {
       window.rows[row] = static_cast<uint32_t>(cells[row]);
@@ -218,7 +219,8 @@ StrideGround::Around StrideGround::query_walls(uint32_t level, int32_t y, Ground
 
 // As throng::walk_far, row by row: of a row the line crosses some adjacent cells, which is one test
 // of its bits. Lines through a corner of cells are left to walk_far.
-WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint to) const {
+world::WalkStop StrideGround::walk_rows(uint32_t& level, world::GroundPoint from,
+                                        world::GroundPoint to) const {
   int32_t x = from.cell_x(), z = from.cell_z();
   const uint32_t start = level;
   const int32_t end_x = to.cell_x(), end_z = to.cell_z();
@@ -238,7 +240,7 @@ WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint 
     } else if (walk.is_isolated && (walk.legal[nz & 63] >> (nx & 63) & 1) == 0) {
       return false;
     }
-    const auto next = step_to(*ground_, level, x, z, nx, nz, step_mm_);
+    const auto next = world::step_to(*ground_, level, x, z, nx, nz, step_mm_);
     if (!next) return false;
     level = *next;
     walk = ground_->walk(level);
@@ -247,16 +249,17 @@ WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint 
   for (;; z += sz) {
     int32_t last = end_x;
     if (z != end_z) {  // where the line leaves the row
-      const int64_t border = int64_t{sz > 0 ? z + 1 : z} << kUnitBits;
+      const int64_t border = int64_t{sz > 0 ? z + 1 : z} << world::kUnitBits;
       // The product is exact, and so is a whole quotient.
       const double at =
           static_cast<double>(from.x) + static_cast<double>(border - from.z) * dx / dz;
       const auto whole = static_cast<int64_t>(at);
-      if (static_cast<double>(whole) == at && (whole & (kUnitsPerCell - 1)) == 0 && dx != 0) {
+      if (static_cast<double>(whole) == at && (whole & (world::kUnitsPerCell - 1)) == 0 &&
+          dx != 0) {
         level = start;
-        return walk_far(*ground_, level, from, to, step_mm_);
+        return world::walk_far(*ground_, level, from, to, step_mm_);
       }
-      last = static_cast<int32_t>(whole >> kUnitBits);
+      last = static_cast<int32_t>(whole >> world::kUnitBits);
       last = sx > 0 ? std::clamp(last, x, std::max(x, end_x))
                     : std::clamp(last, std::min(x, end_x), x);
     }
@@ -282,8 +285,8 @@ WalkStop StrideGround::walk_rows(uint32_t& level, GroundPoint from, GroundPoint 
   }
 }
 
-bool StrideGround::sees(uint32_t level, GroundPoint from, GroundPoint to, uint32_t end,
-                        float max_range) const {
+bool StrideGround::sees(uint32_t level, world::GroundPoint from, world::GroundPoint to,
+                        uint32_t end, float max_range) const {
   const auto dx = static_cast<float>(to.x - from.x), dz = static_cast<float>(to.z - from.z);
   const float far = std::sqrt(dx * dx + dz * dz);
   if (far > max_range) {
@@ -292,20 +295,20 @@ bool StrideGround::sees(uint32_t level, GroundPoint from, GroundPoint to, uint32
   }
   if (leaves(level, from)) {
     const LeavingGround leaving(*ground_, level, from.cell_x(), from.cell_z());
-    return walk(leaving, level, from, to, step_mm_) && (far > max_range || level == end);
+    return world::walk(leaving, level, from, to, step_mm_) && (far > max_range || level == end);
   }
   const bool arrives = walk_open(level, from, to) || walk_rows(level, from, to).arrived;
   return arrives && (far > max_range || level == end);
 }
 
-float StrideGround::free_distance(uint32_t level, GroundPoint from, steer::Plane direction,
+float StrideGround::free_distance(uint32_t level, world::GroundPoint from, steer::Plane direction,
                                   float max_range) const {
-  const GroundPoint to{from.x + std::lrint(direction.x * max_range),
-                       from.z + std::lrint(direction.z * max_range)};
-  WalkStop stop;
+  const world::GroundPoint to{from.x + std::lrint(direction.x * max_range),
+                              from.z + std::lrint(direction.z * max_range)};
+  world::WalkStop stop;
   if (leaves(level, from)) {
     const LeavingGround leaving(*ground_, level, from.cell_x(), from.cell_z());
-    stop = walk_far(leaving, level, from, to, step_mm_);
+    stop = world::walk_far(leaving, level, from, to, step_mm_);
   } else {
     if (walk_open(level, from, to)) return max_range;
     stop = walk_rows(level, from, to);
@@ -313,7 +316,7 @@ float StrideGround::free_distance(uint32_t level, GroundPoint from, steer::Plane
   if (stop.arrived) return max_range;
   // To the border of the last cell that could not be crossed.
   const auto part = [](int32_t cell, int32_t toward, int64_t begin, int64_t end) {
-    const int64_t border = int64_t{cell + (toward > 0 ? 1 : 0)} << kUnitBits;
+    const int64_t border = int64_t{cell + (toward > 0 ? 1 : 0)} << world::kUnitBits;
     return static_cast<float>(border - begin) / static_cast<float>(end - begin);
   };
   float part_free = 1;
@@ -324,4 +327,4 @@ float StrideGround::free_distance(uint32_t level, GroundPoint from, steer::Plane
   return std::max(part_free, 0.0f) * max_range;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -15,7 +15,7 @@
 // since squares are free where a body's centre may be, so none is stepped over. In integers, hence
 // the same for every vector width.
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::crowd {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -80,11 +80,11 @@ void FindFreeDistances(const WallWindow& window, const steer::Fan& fan, float qu
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::crowd
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace throng {
+namespace throng::crowd {
 
 HWY_EXPORT(FindFreeDistances);
 
@@ -93,5 +93,5 @@ void find_free_distances(const WallWindow& window, const steer::Fan& fan, float 
   HWY_DYNAMIC_DISPATCH(FindFreeDistances)(window, fan, query_range, distances);
 }
 
-}  // namespace throng
+}  // namespace throng::crowd
 #endif

@@ -8,7 +8,7 @@
 #include "steer/sampled.h"
 
 /// Distances to walls, in all directions of a fan at a time.
-namespace throng {
+namespace throng::crowd {
 
 /// Where a body could stand around its place: 32 x 32 squares of 2^shift units, bit x of row z.
 struct WallWindow {
@@ -32,4 +32,4 @@ using FreeDistances = std::array<float, steer::kDirections>;
 void find_free_distances(const WallWindow& window, const steer::Fan& fan, float query_range,
                          FreeDistances& distances);
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -7,7 +7,7 @@
 
 // Cells that obstacles block, and free again. While some cells of a level are blocked, what was
 // baked is kept aside, so that it comes back to the bit. Linear in the level's cells.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 constexpr size_t kRows = 64;
@@ -34,7 +34,7 @@ void CrowdGround::keep_baked(Level level, Baked& baked) {
   line.legal_set = own | (line.legal_set & ~kSetBits);
 }
 
-void CrowdGround::set_blocked(Level level, const CellRows& blocked) {
+void CrowdGround::set_blocked(Level level, const world::CellRows& blocked) {
   const bool any =
       std::any_of(blocked.begin(), blocked.end(), [](uint64_t row) { return row != 0; });
   auto kept = baked_.find(level);
@@ -45,7 +45,7 @@ void CrowdGround::set_blocked(Level level, const CellRows& blocked) {
   }
   const Baked& baked = kept->second;
   LevelLine& line = lines_[level];
-  const auto write = [&](uint32_t set, const CellRows& rows) {
+  const auto write = [&](uint32_t set, const world::CellRows& rows) {
     uint64_t* to = rows_.data() + size_t{set & kSetBits} * kRows;
     for (size_t z = 0; z < kRows; ++z) to[z] = rows[z] & ~blocked[z];
   };
@@ -66,7 +66,7 @@ void CrowdGround::set_blocked(Level level, const CellRows& blocked) {
   baked_.erase(kept);
 }
 
-const CellRows* CrowdGround::baked_legal(Level level) const {
+const world::CellRows* CrowdGround::baked_legal(Level level) const {
   const auto kept = baked_.find(level);
   return kept == baked_.end() ? nullptr : &kept->second.legal;
 }
@@ -91,4 +91,4 @@ void CrowdGround::join_tile(int32_t x, int32_t z) {
   for_sides([&](Level level, LevelLine::Side side) { join_open_side(level, side); });
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -16,10 +16,10 @@
 // What obstacles block in the grounds of all classes: the union of their cells by level, so that
 // they overlap and are removed in any order. An update is linear in the cells of the levels that
 // changed.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
-bool has(const CellRows& rows, int32_t x, int32_t z) {
+bool has(const world::CellRows& rows, int32_t x, int32_t z) {
   return ((rows[static_cast<size_t>(z & 63)] >> (x & 63)) & 1) != 0;
 }
 
@@ -164,7 +164,7 @@ std::vector<std::pair<uint32_t, uint32_t>> ObstacleSet::blockers(std::span<const
                                                                  int32_t workers) const {
   struct Asked {
     uint32_t slot;
-    const CellRows* rows;
+    const world::CellRows* rows;
   };
   // By class and level; looked up only.
   std::unordered_map<uint64_t, std::vector<Asked>> lists;
@@ -252,16 +252,17 @@ std::vector<LevelCells> ObstacleSet::cells_under(size_t number, const Prism& pri
   std::vector<LevelCells> found;
   const CrowdGround* ground = classes_[number].ground;
   if (ground == nullptr) return found;
-  const WorldData& world = *data_of(world_);
+  const world::WorldData& world = *data_of(world_);
   const AvatarClass& avatar = world.summary.classes[number];
-  const SquareRange tiles = tiles_near(world, prism.corners, taking_reach(avatar));
+  const path::SquareRange tiles =
+      path::tiles_near(world, prism.corners, path::taking_reach(avatar));
   for (int32_t z = tiles.first_z; z <= tiles.last_z; ++z) {
     for (int32_t x = tiles.first_x; x <= tiles.last_x; ++x) {
       ground->for_tile(x, z, INT32_MIN, INT32_MAX, [&](uint32_t level) {
-        const CellRows* baked = ground->baked_legal(level);
+        const world::CellRows* baked = ground->baked_legal(level);
         const uint64_t* legal = baked != nullptr ? baked->data() : ground->legal(level);
-        const TileFloor floor{world.summary, ground->view(level), x, z};
-        const CellRows blocked = blocked_cells(floor, avatar, prism, {}, legal);
+        const path::TileFloor floor{world.summary, ground->view(level), x, z};
+        const world::CellRows blocked = path::blocked_cells(floor, avatar, prism, {}, legal);
         const bool any =
             std::any_of(blocked.begin(), blocked.end(), [](uint64_t row) { return row != 0; });
         if (any) found.push_back({level, blocked});
@@ -321,7 +322,7 @@ void ObstacleSet::block_levels(size_t number, ClassGround& of) {
   LeftCells& left = of.ground->left();
   left.begin(summary, summary.classes[number]);
   for (const uint32_t level : of.touched) {
-    CellRows blocked{}, kept{};
+    world::CellRows blocked{}, kept{};
     std::vector<LeftCells::Part> parts;
     const auto cell_blockers = of.cell_blockers.find(level);
     if (cell_blockers != of.cell_blockers.end()) {
@@ -343,7 +344,7 @@ void ObstacleSet::block_levels(size_t number, ClassGround& of) {
   std::sort(tiles.begin(), tiles.end());
   tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
   for (const auto& [x, z] : tiles) of.ground->join_tile(x, z);
-  find_exits(*of.ground, step_mm(summary.classes[number]), of.touched);
+  find_exits(*of.ground, world::step_mm(summary.classes[number]), of.touched);
 }
 
 bool ObstacleSet::restore(std::vector<CrowdObstacle> obstacles, std::vector<uint32_t> free_slots) {
@@ -385,4 +386,4 @@ uint64_t ObstacleSet::bytes() const {
   return bytes;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -15,12 +15,12 @@
 #include "throng/world.h"
 
 /// The obstacles of a crowd, and what each blocks of the grounds of the classes.
-namespace throng {
+namespace throng::crowd {
 
 /// Cells of a level.
 struct LevelCells {
   uint32_t level = 0;
-  CellRows rows{};
+  world::CellRows rows{};
 };
 
 struct CrowdObstacle {
@@ -112,7 +112,7 @@ class ObstacleSet {
  private:
   struct CellBlocker {
     uint32_t slot;
-    CellRows rows;
+    world::CellRows rows;
   };
   struct ClassGround {
     CrowdGround* ground = nullptr;  // null: the class is not in use
@@ -140,4 +140,4 @@ class ObstacleSet {
   size_t path_cutters_ = 0;        // kStatic ones with cells
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -8,14 +8,14 @@
 
 // Repairs a path piece by piece: for each stretch that obstacles cover, a bounded search for a
 // detour; a full search only if that fails.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 constexpr uint64_t kMaxNodes = 1000;  // of a detour's search
 
 class PathRepair {
  public:
-  PathRepair(const WorldData& world, LiveGround& live, const StrideGround& ground)
+  PathRepair(const world::WorldData& world, LiveGround& live, const StrideGround& ground)
       : world_(world), live_(live), ground_(ground) {}
 
   [[nodiscard]] bool is_open(const Place& from, const Place& to) const {
@@ -63,22 +63,22 @@ class PathRepair {
   }
 
  private:
-  [[nodiscard]] GroundPoint point(const Place& place) const {
-    return to_ground(world_, place.position.x, place.position.z);
+  [[nodiscard]] world::GroundPoint point(const Place& place) const {
+    return world::to_ground(world_, place.position.x, place.position.z);
   }
   static double distance(const Place& a, const Place& b) {
     const double dx = a.position.x - b.position.x, dz = a.position.z - b.position.z;
     return std::sqrt(dx * dx + dz * dz);
   }
 
-  const WorldData& world_;
+  const world::WorldData& world_;
   LiveGround& live_;
   const StrideGround& ground_;
 };
 
 }  // namespace
 
-void lead_around(const WorldData& world, LiveGround& live, const StrideGround& ground,
+void lead_around(const world::WorldData& world, LiveGround& live, const StrideGround& ground,
                  const SearchBudget& budget, Path& path, RepairScratch& scratch) {
   if (path.points.size() < 2) return;
   const PathRepair repair(world, live, ground);
@@ -88,4 +88,4 @@ void lead_around(const WorldData& world, LiveGround& live, const StrideGround& g
   live.find(from, to, path, budget);
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

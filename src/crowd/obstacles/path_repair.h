@@ -9,7 +9,7 @@
 #include "world/zone_data.h"
 
 /// Repair of paths that obstacles cut.
-namespace throng {
+namespace throng::crowd {
 
 /// Scratch memory: reused, so that nothing is allocated after warm-up.
 struct RepairScratch {
@@ -21,9 +21,9 @@ struct RepairScratch {
 /// cells, so a path that none cuts stays, and is still the shortest. Where some cut it, short
 /// detours are put in, each at most kMaxRepairDetour longer than what it replaces; if that fails,
 /// the whole path is searched on the live ground. [path: reached]
-void lead_around(const WorldData& world, LiveGround& live, const StrideGround& ground,
+void lead_around(const world::WorldData& world, LiveGround& live, const StrideGround& ground,
                  const SearchBudget& budget, Path& path, RepairScratch& scratch);
 
 inline constexpr double kMaxRepairDetour = 10;  // [m]
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -9,7 +9,7 @@
 #include "world/walk.h"
 
 /// An avatar of a crowd with goals, as a step reads and writes it.
-namespace throng {
+namespace throng::crowd {
 
 /// The position of a body on the ground.
 struct Stand {
@@ -67,7 +67,7 @@ struct Body {
   // A stream came towards it when it last sensed.
   bool in_counterflow : 1 = false;
 
-  [[nodiscard]] GroundPoint point() const { return {x, z}; }
+  [[nodiscard]] world::GroundPoint point() const { return {x, z}; }
   [[nodiscard]] Stand stand() const { return {x, z, y, level}; }
   [[nodiscard]] bool has(Flag flag) const { return (flags & flag) != 0; }
   /// Does FlyerEngine move it?
@@ -76,4 +76,4 @@ struct Body {
 };
 static_assert(sizeof(Body) == 64 && std::is_trivially_copyable_v<Body>);
 
-}  // namespace throng
+}  // namespace throng::crowd

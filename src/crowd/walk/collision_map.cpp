@@ -7,7 +7,7 @@
 
 // The bits of the collision map of [TC00]: made in time linear in the pixels; a test or a move of a
 // body is constant time.
-namespace throng {
+namespace throng::crowd {
 
 CollisionMap::CollisionMap(int32_t width, int32_t depth, PixelGrid grid, int32_t low, int32_t high,
                            int32_t body_height, Pages pages)
@@ -35,4 +35,4 @@ CollisionMap::CollisionMap(int32_t width, int32_t depth, PixelGrid grid, int32_t
   }
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

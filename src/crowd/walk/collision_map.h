@@ -11,7 +11,7 @@
 
 /// The collision map: where bodies are, on a grid of its own. Source: [TC00] section 3; the bit per
 /// cell and level of [ML06] section 3.1.
-namespace throng {
+namespace throng::crowd {
 
 /// [TC00] adds 1 to nine pixels and requires a 0; setting bits in one pixel and reading nine is the
 /// same, with a ninth of the writes. A pixel's bits are slices of kSlab height, so bodies on
@@ -38,7 +38,7 @@ class CollisionMap {
   CollisionMap(int32_t width, int32_t depth, PixelGrid grid, int32_t low, int32_t high,
                int32_t body_height, Pages pages = Pages::kSmall);
 
-  [[nodiscard]] Mark mark(GroundPoint p, int32_t feet) const {
+  [[nodiscard]] Mark mark(world::GroundPoint p, int32_t feet) const {
     return {pixels().number(grid_.pixel(p.cell_x()), grid_.pixel(p.cell_z())), slices(feet)};
   }
   /// How the pixels of the map are numbered, as a value that a loop keeps in registers.
@@ -85,7 +85,7 @@ class CollisionMap {
     throng::prefetch(w + ring.ahead[4]);
   }
   /// Prefetches the words that is_free will read around a point.
-  void prefetch(GroundPoint p, int32_t feet) const {
+  void prefetch(world::GroundPoint p, int32_t feet) const {
     const Mark m = mark(p, feet);
     const uint64_t* w = &word(m.slices.plane, m.pixel);
     throng::prefetch(w - stride_);
@@ -151,4 +151,4 @@ class CollisionMap {
   HugeArray<uint64_t> words_;
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

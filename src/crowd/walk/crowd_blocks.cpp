@@ -9,7 +9,7 @@
 
 // Sorts avatars by block with a counting sort, then each block by level and id. Linear in the
 // avatars and blocks, but for the sorts of single blocks.
-namespace throng {
+namespace throng::crowd {
 
 CrowdBlocks::CrowdBlocks(int32_t width, int32_t depth, PixelGrid grid, int32_t block_pixels)
     : grid_(grid), block_pixels_(block_pixels) {
@@ -52,4 +52,4 @@ uint64_t CrowdBlocks::bytes() const {
   return bytes;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -11,7 +11,7 @@
 #include "crowd/ground/pixel_grid.h"
 
 /// Which avatars move at the same time.
-namespace throng {
+namespace throng::crowd {
 
 /// The world in square blocks of pixels. Blocks of one colour (of four) lie a whole block apart, so
 /// an avatar that moves in one of them reads and writes nothing that an avatar in another touches,
@@ -26,8 +26,8 @@ class CrowdBlocks {
 
   /// Blocks are numbered by colour, then row by row: what moves at the same time lies together.
   [[nodiscard]] uint32_t block(const Avatar& avatar) const {
-    const auto x = static_cast<uint32_t>(grid_.pixel(avatar.x >> kUnitBits) / block_pixels_);
-    const auto z = static_cast<uint32_t>(grid_.pixel(avatar.z >> kUnitBits) / block_pixels_);
+    const auto x = static_cast<uint32_t>(grid_.pixel(avatar.x >> world::kUnitBits) / block_pixels_);
+    const auto z = static_cast<uint32_t>(grid_.pixel(avatar.z >> world::kUnitBits) / block_pixels_);
     const uint32_t colour = (z & 1) * 2 + (x & 1);
     return (colour * half_z_ + z / 2) * half_x_ + x / 2;
   }
@@ -49,4 +49,4 @@ class CrowdBlocks {
   std::array<std::vector<Run>, kColours> runs_;
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

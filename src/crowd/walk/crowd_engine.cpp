@@ -19,7 +19,7 @@
 // The step of a crowd: docs/design/008-engine.md. A body that can touch no other within the step
 // takes its first move at once; only the others go through conflict resolution rounds. Linear in
 // the bodies and their neighbours.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 using steer::Plane;
@@ -87,7 +87,7 @@ void CrowdEngine::fit(int32_t widest, float fastest, float dt) {
   config_.units.dt = dt;
   widest_ = widest;
   fastest_ = fastest;
-  every_ = throng::steps_of_reaction(config_.reaction, dt);
+  every_ = throng::crowd::steps_of_reaction(config_.reaction, dt);
   sight_ = 0;
   fit_grid();
 }
@@ -470,7 +470,7 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
 // Where a body would stand after a move, if the ground permits it.
 bool CrowdEngine::try_displacement(const Body& body, Displacement displacement,
                                    Stand& place) const {
-  const GroundPoint to{int64_t{body.x} + displacement.x, int64_t{body.z} + displacement.z};
+  const world::GroundPoint to{int64_t{body.x} + displacement.x, int64_t{body.z} + displacement.z};
   StrideGround::Landing landing;
   if (!grounds_[body.avatar_class].move(body.level, body.y, body.point(), to, landing)) {
     return false;
@@ -674,4 +674,4 @@ uint64_t CrowdEngine::bytes() const {
   return bytes;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -22,7 +22,7 @@
 
 /// The step of a crowd with goals as passes over arrays: sort, sense and steer, resolve conflicts,
 /// settle. test/support/plain_crowd.h does the same in the simplest code.
-namespace throng {
+namespace throng::crowd {
 
 /// The capacity for `needed` elements in an array of `capacity`: doubling, as vectors do, would
 /// leave up to half of the memory unused.
@@ -32,7 +32,7 @@ inline size_t grown(size_t capacity, size_t needed) {
 
 /// How many cells to each side a query range covers.
 inline int32_t cells_of(float query_range) {
-  return static_cast<int32_t>(query_range) / kUnitsPerCell + 1;
+  return static_cast<int32_t>(query_range) / world::kUnitsPerCell + 1;
 }
 
 /// Which bodies are in low detail, and what that means. docs/design/008-engine.md, "Levels of
@@ -280,4 +280,4 @@ class CrowdEngine {
   std::vector<uint32_t> arrived_;
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -9,7 +9,7 @@
 // Levels of detail: docs/design/008-engine.md. A body in low detail makes several steps at once
 // when its turn comes, and stands in between. Each move goes through conflict resolution as ever,
 // so no body touches another, whatever its level of detail and when that changes.
-namespace throng {
+namespace throng::crowd {
 
 bool CrowdEngine::is_near(const Body& body) const {
   const float unit = config_.units.unit;
@@ -32,8 +32,8 @@ uint64_t CrowdEngine::steps_in_low_detail(const Body& body) const {
 uint64_t CrowdEngine::steps_of_reaction(const Body& body) const {
   if (!body.has(Body::kLowDetail)) return every_;
   const uint64_t steps = steps_in_low_detail(body);
-  return steps *
-         throng::steps_of_reaction(detail_.reaction, config_.units.dt * static_cast<float>(steps));
+  return steps * throng::crowd::steps_of_reaction(detail_.reaction,
+                                                  config_.units.dt * static_cast<float>(steps));
 }
 
 // Low detail or full? And in low detail, does it move in this step?
@@ -50,4 +50,4 @@ void CrowdEngine::choose_detail(Body& body, uint64_t step) const {
   body.steps = ((step + body.slot) % steps == 0 ? steps : 0) & 63;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

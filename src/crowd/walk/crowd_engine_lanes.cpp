@@ -9,7 +9,7 @@
 
 // Counterflow: lanes, and the right half of narrow places. docs/design/008-engine.md. Constant time
 // for each body and its neighbours.
-namespace throng {
+namespace throng::crowd {
 
 using steer::Plane;
 
@@ -100,4 +100,4 @@ bool CrowdEngine::choose_lane(uint32_t i, Worker& worker, const NeighbourGrid::A
   return true;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

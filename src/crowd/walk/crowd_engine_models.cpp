@@ -9,7 +9,7 @@
 
 // Bodies that are steered by another model than steer/sampled.h: the model gives a velocity, which
 // replaces the preferred velocity as if that were open. Rounds and walls are the same for all.
-namespace throng {
+namespace throng::crowd {
 
 using steer::Plane;
 
@@ -63,4 +63,4 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
   situation.preferred = steer::preferred_velocity(config_.model, view, units_of(body).dt);
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

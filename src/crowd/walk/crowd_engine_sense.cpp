@@ -10,7 +10,7 @@
 
 // What a body senses of its neighbours before it decides: docs/design/008-engine.md. Linear in the
 // bodies of the squares around it.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 using steer::Plane;
@@ -166,4 +166,4 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
                                                   situation.preferred, body.speed);
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -6,7 +6,7 @@
 #include <cmath>
 
 // Lane offsets at corners: docs/design/008-engine.md, "Lane offset at corners". Constant time.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 using steer::Plane;
@@ -17,7 +17,7 @@ constexpr float kWidest = 10;    // radii of an opening, beyond which width is n
 constexpr float kWallRange = 3;  // [m] for the walls on both sides
 constexpr int32_t kTries = 3;    // each half as far from the corner
 
-Plane towards(GroundPoint from, GroundPoint to) {
+Plane towards(world::GroundPoint from, world::GroundPoint to) {
   const Plane displacement{static_cast<float>(to.x - from.x), static_cast<float>(to.z - from.z)};
   const float size = steer::size_of(displacement);
   return size > 0 ? Plane{displacement.x / size, displacement.z / size} : Plane{};
@@ -38,7 +38,7 @@ PathPoint lane_offset(const Body& body, const Route& route, const StrideGround& 
   const PathPoint corner = route.corners[route.next];
   if (route.next + 1 >= route.count) return corner;
   const PathPoint& next = route.corners[route.next + 1u];
-  const GroundPoint at{corner.x, corner.z}, beyond{next.x, next.z};
+  const world::GroundPoint at{corner.x, corner.z}, beyond{next.x, next.z};
   const Plane in = towards(body.point(), at), out = towards(at, beyond);
   if (in.x * out.x + in.z * out.z > kHardly) return corner;
   // Away from the wall that the path bends around.
@@ -62,7 +62,7 @@ PathPoint lane_offset(const Body& body, const Route& route, const StrideGround& 
   for (int32_t i = 0; i < kTries; ++i, off *= 0.5f) {
     const PathPoint own{corner.x + static_cast<int32_t>(std::lrint(away.x * off)),
                         corner.z + static_cast<int32_t>(std::lrint(away.z * off)), corner.level};
-    const GroundPoint place{own.x, own.z};
+    const world::GroundPoint place{own.x, own.z};
     if (ground.sees(corner.level, at, place, corner.level, 2 * widest) &&
         ground.sees(body.level, body.point(), place, corner.level, query_range) &&
         ground.sees(corner.level, place, beyond, next.level, query_range)) {
@@ -72,4 +72,4 @@ PathPoint lane_offset(const Body& body, const Route& route, const StrideGround& 
   return corner;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

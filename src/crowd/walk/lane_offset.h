@@ -8,7 +8,7 @@
 
 /// Where in an opening an avatar walks, so that not all crowd at the corner that shortest paths
 /// touch.
-namespace throng {
+namespace throng::crowd {
 
 /// The place beside the next corner of a body's path: its distance from the corner, relative to the
 /// width of the opening there, is the body's distance from the wall on the inner side, relative to
@@ -18,4 +18,4 @@ namespace throng {
 PathPoint lane_offset(const Body& body, const Route& route, const StrideGround& ground,
                       float metre);
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -8,7 +8,7 @@
 #include "core/parallel.h"
 
 // Sorts bodies by square with a counting sort, in parallel parts. Linear in the bodies and squares.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 constexpr size_t kSpare = 64;    // entries that a vector may read past the end
@@ -22,7 +22,8 @@ uint32_t squares_of(int32_t cells, int32_t square) {
 }  // namespace
 
 NeighbourGrid::NeighbourGrid(int32_t width, int32_t depth, int64_t sight, size_t bodies)
-    : squares_(std::clamp(static_cast<int32_t>(((sight + 1) / kRange >> kUnitBits) + 1), 1, 4096)) {
+    : squares_(std::clamp(static_cast<int32_t>(((sight + 1) / kRange >> world::kUnitBits) + 1), 1,
+                          4096)) {
   uint32_t across = squares_of(width, squares_.cells()), down = squares_of(depth, squares_.cells());
   const size_t max_squares = std::max(kMin, std::bit_floor(bodies - bodies / 4));
   while (size_t{across} * down > max_squares && across * down > 64) {
@@ -90,4 +91,4 @@ uint64_t NeighbourGrid::bytes() const {
   return bytes;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -13,7 +13,7 @@
 #include "crowd/walk/sense_kernel.h"
 
 /// Which bodies are near each other: bodies in order of the square that they stand on.
-namespace throng {
+namespace throng::crowd {
 
 /// The plane in squares, rolled up: square (x, z) is the one of (x mod 2^a, z mod 2^b), so that a
 /// table of as many entries as there are bodies is enough for a world of any size. A query also
@@ -51,8 +51,8 @@ class NeighbourGrid {
   /// Of a square. [units]
   [[nodiscard]] float width() const { return static_cast<float>(squares_.units()); }
   [[nodiscard]] uint32_t square(const Body& body) const {
-    const auto x = static_cast<uint32_t>(squares_.pixel(body.x >> kUnitBits));
-    const auto z = static_cast<uint32_t>(squares_.pixel(body.z >> kUnitBits));
+    const auto x = static_cast<uint32_t>(squares_.pixel(body.x >> world::kUnitBits));
+    const auto z = static_cast<uint32_t>(squares_.pixel(body.z >> world::kUnitBits));
     return ((z & mask_z_) << bits_x_) | (x & mask_x_);
   }
 
@@ -71,4 +71,4 @@ class NeighbourGrid {
   HugeArray<int32_t> x_, z_, y_;
 };
 
-}  // namespace throng
+}  // namespace throng::crowd

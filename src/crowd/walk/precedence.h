@@ -7,7 +7,7 @@
 #include "crowd/walk/step_units.h"
 
 /// Which avatar goes first, of those that head to one place.
-namespace throng {
+namespace throng::crowd {
 
 /// A body on its last segment, not at its end yet.
 struct Bound {
@@ -54,4 +54,4 @@ inline bool gives_precedence(const Bound& other, const Bound& self, float far, f
   return far < room + kClose && far > 1e-6f && speed < kStands && goes_first(other, self);
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -11,7 +11,7 @@
 /// When an avatar decides. It need not sense sixty times a second: an avatar that could make its
 /// preferred move repeats it until its turn comes again, as long as the move is free.
 /// docs/design/008-engine.md, "Reaction".
-namespace throng {
+namespace throng::crowd {
 
 /// Whole steps, at least one.
 inline uint64_t steps_of_reaction(float reaction, float dt) {
@@ -25,9 +25,9 @@ inline bool decides(uint64_t every, uint64_t step, uint32_t slot) {
 
 /// Just before its local target, where it must not overshoot. `displacement`: to the target.
 /// `stride`: of a step.
-inline bool is_before(GroundPoint displacement, int32_t stride) {
+inline bool is_before(world::GroundPoint displacement, int32_t stride) {
   const int64_t range = int64_t{2} * stride;
   return displacement.x * displacement.x + displacement.z * displacement.z < range * range;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -11,7 +11,7 @@
 
 // Follows the corners of a path: heads to the next corner once it is visible, and requests the rest
 // of the path. Constant time but for the line of sight.
-namespace throng {
+namespace throng::crowd {
 namespace {
 
 constexpr uint64_t kCheckInterval = 16;  // decisions
@@ -94,19 +94,19 @@ bool leads_through(const Body& body, const Route& route, const PlanBox& box) {
   return false;
 }
 
-Place place_of(const WorldData& world, const Body& body, const PathPoint& position) {
-  const GroundLevel level = ground_level(world, position.level, body.avatar_class);
-  return place_at(world, level, {position.x, position.z});
+Place place_of(const world::WorldData& world, const Body& body, const PathPoint& position) {
+  const world::GroundLevel level = world::ground_level(world, position.level, body.avatar_class);
+  return world::place_at(world, level, {position.x, position.z});
 }
 
-PathPoint point_of(const WorldData& world, const Place& place) {
-  const GroundPoint point = to_ground(world, place.position.x, place.position.z);
+PathPoint point_of(const world::WorldData& world, const Place& place) {
+  const world::GroundPoint point = world::to_ground(world, place.position.x, place.position.z);
   return {static_cast<int32_t>(point.x), static_cast<int32_t>(point.z), place.level1 - 1};
 }
 
-bool use_path(const WorldData& world, const Path& path, const StrideGround& ground, Body& body,
-              Route& route) {
-  const float metre = kUnitsPerCell / static_cast<float>(world.summary.cell);
+bool use_path(const world::WorldData& world, const Path& path, const StrideGround& ground,
+              Body& body, Route& route) {
+  const float metre = world::kUnitsPerCell / static_cast<float>(world.summary.cell);
   body.flags = static_cast<uint8_t>(body.flags & ~Body::kNeedsPath);
   if (path.end != PathEnd::kReached) return false;
   if (path.points.size() < 2) {  // It stands on its goal.
@@ -128,4 +128,4 @@ bool use_path(const WorldData& world, const Path& path, const StrideGround& grou
   return true;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -12,7 +12,7 @@
 #include "throng/world.h"
 
 /// Where avatars head to, and the corners of their paths.
-namespace throng {
+namespace throng::crowd {
 
 /// A point of the ground.
 struct PathPoint {
@@ -36,12 +36,12 @@ struct Route {
 void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float metre);
 
 /// The place of a body that heads to `position`.
-Place place_of(const WorldData& world, const Body& body, const PathPoint& position);
-PathPoint point_of(const WorldData& world, const Place& place);
+Place place_of(const world::WorldData& world, const Body& body, const PathPoint& position);
+PathPoint point_of(const world::WorldData& world, const Place& place);
 
 /// Takes the next corners of a path that was found, from where the body is. False: none was found.
-bool use_path(const WorldData& world, const Path& path, const StrideGround& ground, Body& body,
-              Route& route);
+bool use_path(const world::WorldData& world, const Path& path, const StrideGround& ground,
+              Body& body, Route& route);
 
 /// A rectangle of the plane. [units]
 struct PlanBox {
@@ -50,4 +50,4 @@ struct PlanBox {
 /// Do the corners that a body heads to lead through a box?
 bool leads_through(const Body& body, const Route& route, const PlanBox& box);
 
-}  // namespace throng
+}  // namespace throng::crowd

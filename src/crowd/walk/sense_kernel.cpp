@@ -10,7 +10,7 @@
 // Finds the bodies within sight, and the nearest of them, a vector at a time. The first is linear
 // in the bodies around, the second quadratic in those within sight.
 HWY_BEFORE_NAMESPACE();
-namespace throng {
+namespace throng::crowd {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -95,11 +95,11 @@ size_t KeepNearest(SeenLists& lists, size_t max_count) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace throng
+}  // namespace throng::crowd
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace throng {
+namespace throng::crowd {
 
 HWY_EXPORT(FindSeen);
 HWY_EXPORT(KeepNearest);
@@ -112,5 +112,5 @@ size_t keep_nearest(SeenLists& lists, size_t max_count) {
   return lists.seen <= max_count ? lists.seen : HWY_DYNAMIC_DISPATCH(KeepNearest)(lists, max_count);
 }
 
-}  // namespace throng
+}  // namespace throng::crowd
 #endif

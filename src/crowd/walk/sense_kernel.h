@@ -7,7 +7,7 @@
 #include <span>
 
 /// Which bodies are within sight, many at a time.
-namespace throng {
+namespace throng::crowd {
 
 /// Where the other bodies are. [units, units, mm]
 struct Places {
@@ -45,4 +45,4 @@ void find_seen(const Places& places, std::span<const Entries> around, const Eye&
 /// as the farthest of these. Returns how many.
 size_t keep_nearest(SeenLists& lists, size_t max_count);
 
-}  // namespace throng
+}  // namespace throng::crowd

@@ -8,7 +8,7 @@
 #include "steer/sampled.h"
 
 /// Converts between velocities and the units of the grid that a body moves by in a step.
-namespace throng {
+namespace throng::crowd {
 
 struct StepUnits {
   float unit = 1;  ///< [m]
@@ -50,4 +50,4 @@ inline bool nearer_than(int32_t x, int32_t z, int64_t range) {
   return int64_t{x} * x + int64_t{z} * z < range * range;
 }
 
-}  // namespace throng
+}  // namespace throng::crowd

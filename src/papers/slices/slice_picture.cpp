@@ -44,14 +44,14 @@ Image draw_slice(const SliceSet& slices, size_t index) {
   constexpr int32_t kMargin = 24, kHead = 58, kBar = 116;
   const int32_t map_width = columns * block, map_height = rows * block;
   const int32_t width = std::max(map_width + 2 * kMargin + kBar, 420);
-  Canvas canvas(width, std::max(map_height, 160) + kHead + kMargin + 40, kPaper);
-  draw_text(canvas, {kMargin, 28},
-            fmt::format("Slice {} of {}, cut at {:.3f} m", index + 1, slices.kept.size(),
-                        slice.height / 1000.0),
-            {.size = 13, .bold = true});
-  draw_text(canvas, {kMargin, 47},
-            "highest surface below the cut: darker is higher, white is nothing",
-            {.size = 8, .colour = kFaintInk});
+  render::Canvas canvas(width, std::max(map_height, 160) + kHead + kMargin + 40, render::kPaper);
+  render::draw_text(canvas, {kMargin, 28},
+                    fmt::format("Slice {} of {}, cut at {:.3f} m", index + 1, slices.kept.size(),
+                                slice.height / 1000.0),
+                    {.size = 13, .bold = true});
+  render::draw_text(canvas, {kMargin, 47},
+                    "highest surface below the cut: darker is higher, white is nothing",
+                    {.size = 8, .colour = render::kFaintInk});
 
   for (int32_t row = 0; row < rows; ++row) {
     for (int32_t column = 0; column < columns; ++column) {
@@ -69,18 +69,18 @@ Image draw_slice(const SliceSet& slices, size_t index) {
       canvas.fill({x, y, static_cast<double>(block), static_cast<double>(block)}, {g, g, g});
     }
   }
-  canvas.frame({kMargin - 1.0, kHead - 1.0, map_width + 2.0, map_height + 2.0}, 1, kRule);
-  draw_scale_bar(canvas, {kMargin, kHead + map_height + 16.0}, map_width * 0.4,
-                 block / (slices.cell * share), 8);
+  canvas.frame({kMargin - 1.0, kHead - 1.0, map_width + 2.0, map_height + 2.0}, 1, render::kRule);
+  render::draw_scale_bar(canvas, {kMargin, kHead + map_height + 16.0}, map_width * 0.4,
+                         block / (slices.cell * share), 8);
   if (low <= high) {
     const auto colour = [](double t) {
       const uint8_t g = grey(static_cast<int32_t>(t * 1000), 0, 1000);
-      return Rgb{g, g, g};
+      return render::Rgb{g, g, g};
     };
     const double bar_height = std::min(std::max(map_height, 140), 300);
-    draw_height_bar(canvas,
-                    {kMargin + map_width + 20.0, static_cast<double>(kHead), 14, bar_height},
-                    low / 1000.0, high / 1000.0, 8, colour);
+    render::draw_height_bar(
+        canvas, {kMargin + map_width + 20.0, static_cast<double>(kHead), 14, bar_height},
+        low / 1000.0, high / 1000.0, 8, colour);
   }
   return std::move(canvas).take();
 }

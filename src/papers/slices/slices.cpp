@@ -84,11 +84,12 @@ std::optional<Error> check_size(const Box3d& box, double cell) {
 
 int32_t to_mm(double metres) { return static_cast<int32_t>(std::lround(metres * 1000)); }
 
-std::vector<CellTriangle> to_cells(const Scene& scene, const Grid& grid, int32_t workers) {
-  std::vector<CellTriangle> triangles(scene.triangles.size());
+std::vector<bake::CellTriangle> to_cells(const Scene& scene, const bake::Grid& grid,
+                                         int32_t workers) {
+  std::vector<bake::CellTriangle> triangles(scene.triangles.size());
   parallel_ranges(triangles.size(), 4096, workers, [&](size_t begin, size_t end) {
     for (size_t t = begin; t < end; ++t) {
-      triangles[t] = to_cell_triangle(scene, static_cast<uint32_t>(t), grid, 0);
+      triangles[t] = bake::to_cell_triangle(scene, static_cast<uint32_t>(t), grid, 0);
     }
   });
   return triangles;
@@ -115,30 +116,31 @@ class Counter {
 
 // Columns of all tiles that hold a solid, in order. `low` and `high` bound the scene: the
 // rasteriser may add a millimetre, which must not reach beyond the world.
-std::vector<papers::SliceTile> fill_tiles(std::span<const CellTriangle> triangles, const Grid& grid,
-                                          int32_t low, int32_t high, int32_t workers,
-                                          Context& context) {
-  const TriangleBins bins =
-      bin_triangles(triangles, 0, 0, grid.tiles_x(), grid.tiles_z(), kTileSide, 0);
+std::vector<papers::SliceTile> fill_tiles(std::span<const bake::CellTriangle> triangles,
+                                          const bake::Grid& grid, int32_t low, int32_t high,
+                                          int32_t workers, Context& context) {
+  const bake::TriangleBins bins =
+      bake::bin_triangles(triangles, 0, 0, grid.tiles_x(), grid.tiles_z(), bake::kTileSide, 0);
   const size_t count = bins.first.size() - 1;
   std::vector<papers::SliceTile> tiles(count);
-  std::vector<std::unique_ptr<TileColumns>> scratch(static_cast<size_t>(worker_count(workers)));
+  std::vector<std::unique_ptr<bake::TileColumns>> scratch(
+      static_cast<size_t>(worker_count(workers)));
   Counter counter(context, "columns", count);
   parallel_for_worker(count, workers, [&](size_t i, int32_t worker) {
     const uint32_t begin = bins.first[i], end = bins.first[i + 1];
     if (begin != end && !context.cancel) {
       auto& columns = scratch[static_cast<size_t>(worker)];
-      if (!columns) columns = std::make_unique<TileColumns>();
+      if (!columns) columns = std::make_unique<bake::TileColumns>();
       papers::SliceTile& tile = tiles[i];
       tile.tile_x = static_cast<int32_t>(i) % grid.tiles_x();
       tile.tile_z = static_cast<int32_t>(i) / grid.tiles_x();
-      const int32_t x = tile.tile_x * kTileSide, z = tile.tile_z * kTileSide;
-      const TileRect rect{.x1 = std::min(kTileSide, grid.width - x),
-                          .z1 = std::min(kTileSide, grid.depth - z)};
-      rasterise_tile(triangles, std::span(bins.items).subspan(begin, end - begin), x, z, rect, 0,
-                     *columns);
-      TileSpans spans;
-      sort_spans(*columns, spans);
+      const int32_t x = tile.tile_x * bake::kTileSide, z = tile.tile_z * bake::kTileSide;
+      const bake::TileRect rect{.x1 = std::min(bake::kTileSide, grid.width - x),
+                                .z1 = std::min(bake::kTileSide, grid.depth - z)};
+      bake::rasterise_tile(triangles, std::span(bins.items).subspan(begin, end - begin), x, z, rect,
+                           0, *columns);
+      bake::TileSpans spans;
+      bake::sort_spans(*columns, spans);
       for (int32_t& v : spans.low) v = std::clamp(v, low, high);
       for (int32_t& v : spans.high) v = std::clamp(v, low, high);
       tile.first = std::move(spans.first);
@@ -159,18 +161,18 @@ Result<SliceSet> slice_scene(const Scene& scene, const SliceConfig& config, Cont
   if (!box) return box.error();
   if (auto error = check_size(*box, config.cell)) return *std::move(error);
 
-  const Grid grid = make_grid(*box, config.cell, 0);
+  const bake::Grid grid = bake::make_grid(*box, config.cell, 0);
   papers::SweepConfig sweep{.width = grid.width,
                             .depth = grid.depth,
                             .avatar_height = to_mm(config.avatar_height),
                             .resolution = to_mm(config.resolution),
-                            .min_y = static_cast<int32_t>(std::floor(snap_mm(box->min.y))),
-                            .max_y = static_cast<int32_t>(std::ceil(snap_mm(box->max.y))),
+                            .min_y = static_cast<int32_t>(std::floor(bake::snap_mm(box->min.y))),
+                            .max_y = static_cast<int32_t>(std::ceil(bake::snap_mm(box->max.y))),
                             .workers = config.workers};
   sweep.far_plane = sweep.min_y - sweep.resolution;  // eq. 2
   std::vector<papers::SliceTile> tiles;
   {
-    const std::vector<CellTriangle> triangles = to_cells(scene, grid, config.workers);
+    const std::vector<bake::CellTriangle> triangles = to_cells(scene, grid, config.workers);
     tiles = fill_tiles(triangles, grid, sweep.min_y, sweep.max_y, config.workers, context);
   }
   if (context.cancel) return Error{Errc::kCancelled, "slices: cancelled"};

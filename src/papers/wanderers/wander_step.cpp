@@ -51,7 +51,7 @@ struct Proposal {
   uint16_t n;
 };
 
-using Pixels = CollisionMap::Pixels;
+using Pixels = crowd::CollisionMap::Pixels;
 
 class Group {
  public:
@@ -59,7 +59,7 @@ class Group {
 
   // The three stages: each avatar, or each of a list, makes one step, or is put on another list. Up
   // to `readable`, avatars may be read ahead of their turn.
-  void start_all(Avatar* avatars, size_t size, const Avatar* readable) {
+  void start_all(crowd::Avatar* avatars, size_t size, const crowd::Avatar* readable) {
     avatars_ = avatars;
     proposals_size_ = prefetched_ = walls_ = 0;
     for (List* list : {&undecided_, &uneven_, &slopes_, &walks_}) list->clear();
@@ -68,7 +68,7 @@ class Group {
     prefetch_walk_levels();
     prefetch_pixels();
   }
-  void start(Avatar* avatars, const List& todo) {
+  void start(crowd::Avatar* avatars, const List& todo) {
     avatars_ = avatars;
     plan(todo.span());
     prefetch_walk_levels();
@@ -85,17 +85,17 @@ class Group {
     climb(blocked);
     walk_on(blocked);
   }
-  [[nodiscard]] Avatar* avatars() const { return avatars_; }
+  [[nodiscard]] crowd::Avatar* avatars() const { return avatars_; }
   [[nodiscard]] uint64_t walls() const { return walls_; }
 
  private:
-  void prefetch_levels_ahead(size_t size, const Avatar* last_readable) const;
+  void prefetch_levels_ahead(size_t size, const crowd::Avatar* last_readable) const;
   void plan_all(size_t size);
   void plan(std::span<const uint16_t> todo);
   void prefetch_walk_levels() const;
   void plan_by_cells();
-  bool move_or_propose(const Pixels& pixels, Avatar& a, bool condition, uint32_t level, uint16_t n,
-                       size_t& proposed);
+  bool move_or_propose(const Pixels& pixels, crowd::Avatar& a, bool condition, uint32_t level,
+                       uint16_t n, size_t& proposed);
   void prefetch_pixels();
   void prefetch_ground_cells() const;
   void proposal(List& blocked);
@@ -104,9 +104,9 @@ class Group {
   void walk_on(List& blocked);
 
   const StepInput& in_;
-  Avatar* avatars_ = nullptr;
+  crowd::Avatar* avatars_ = nullptr;
   std::array<Proposal, kGroup> proposals_;
-  std::array<CollisionMap::Slices, kGroup> slices_;  // of the proposed moves
+  std::array<crowd::CollisionMap::Slices, kGroup> slices_;  // of the proposed moves
   size_t proposals_size_ = 0;
   size_t prefetched_ = 0;  // proposed moves whose pixels were prefetched
   List undecided_;         // not within flat blocks
@@ -147,16 +147,17 @@ int32_t mask(bool condition) { return -static_cast<int32_t>(condition); }
 // other can be in conflict; the others propose a move. Returns whether it moved. Arithmetic instead
 // of branches: the direction of an avatar is as good as random, and a mispredicted branch costs 20
 // cycles.
-[[gnu::always_inline]] inline bool Group::move_or_propose(const Pixels& pixels, Avatar& a,
+[[gnu::always_inline]] inline bool Group::move_or_propose(const Pixels& pixels, crowd::Avatar& a,
                                                           bool condition, uint32_t level,
                                                           uint16_t n, size_t& proposed) {
   const int32_t x = a.x, z = a.z, vx = a.vx, vz = a.vz;
-  const int32_t px = pixels.grid.pixel(x >> kUnitBits), pz = pixels.grid.pixel(z >> kUnitBits);
-  const int32_t dx = pixels.grid.pixel((x + vx) >> kUnitBits) - px;
-  const int32_t dz = pixels.grid.pixel((z + vz) >> kUnitBits) - pz;
+  const int32_t px = pixels.grid.pixel(x >> world::kUnitBits),
+                pz = pixels.grid.pixel(z >> world::kUnitBits);
+  const int32_t dx = pixels.grid.pixel((x + vx) >> world::kUnitBits) - px;
+  const int32_t dz = pixels.grid.pixel((z + vz) >> world::kUnitBits) - pz;
   const bool stays = (dx | dz) == 0;
   proposals_[proposed] = {pixels.number(px, pz), level,
-                          static_cast<uint16_t>(CollisionMap::direction_index(dx, dz)), n};
+                          static_cast<uint16_t>(crowd::CollisionMap::direction_index(dx, dz)), n};
   proposed += condition & !stays;
   const bool goes = condition & stays;
   a.x = x + (vx & mask(goes));
@@ -164,9 +165,9 @@ int32_t mask(bool condition) { return -static_cast<int32_t>(condition); }
   return goes;
 }
 
-void Group::prefetch_levels_ahead(size_t size, const Avatar* last_readable) const {
-  const LevelLine* lines = in_.ground->lines();
-  for (const Avatar* a = avatars_; a < avatars_ + size; ++a) {
+void Group::prefetch_levels_ahead(size_t size, const crowd::Avatar* last_readable) const {
+  const crowd::LevelLine* lines = in_.ground->lines();
+  for (const crowd::Avatar* a = avatars_; a < avatars_ + size; ++a) {
     throng::prefetch(a + kAheadAvatar);
     throng::prefetch(&lines[std::min(a + kAheadLevel, last_readable)->level]);
   }
@@ -175,9 +176,10 @@ void Group::prefetch_levels_ahead(size_t size, const Avatar* last_readable) cons
 // The line of their level alone decides most of them.
 void Group::plan_all(size_t size) {
   const Pixels pixels = in_.map->pixels();
-  if (!in_.is_short || !can_plan(pixels.grid, in_.ground->records().size()))
+  if (!in_.is_short || !crowd::can_plan(pixels.grid, in_.ground->records().size()))
     return plan(all_of_group().first(size));
-  const PlannedSteps planned = plan_steps(in_.ground->lines(), pixels.grid, avatars_, size);
+  const crowd::PlannedSteps planned =
+      crowd::plan_steps(in_.ground->lines(), pixels.grid, avatars_, size);
   const uint64_t here = ~uint64_t{0} >> (kGroup - size);
   for (uint64_t bits = here & ~(planned.stays | planned.leaves); bits != 0; bits &= bits - 1) {
     undecided_.add_if(true, static_cast<uint16_t>(std::countr_zero(bits)));
@@ -191,14 +193,15 @@ void Group::plan_all(size_t size) {
 }
 
 void Group::plan(std::span<const uint16_t> todo) {
-  const LevelLine* lines = in_.ground->lines();
+  const crowd::LevelLine* lines = in_.ground->lines();
   const Pixels pixels = in_.map->pixels();
   size_t proposed = 0;
   for (const uint16_t n : todo) {
-    Avatar& a = avatars_[n];
-    const bool is_flat = in_.is_short & lines[a.level].box_is_flat(
-                                            a.x >> kUnitBits, a.z >> kUnitBits,
-                                            (a.x + a.vx) >> kUnitBits, (a.z + a.vz) >> kUnitBits);
+    crowd::Avatar& a = avatars_[n];
+    const bool is_flat =
+        in_.is_short & lines[a.level].box_is_flat(a.x >> world::kUnitBits, a.z >> world::kUnitBits,
+                                                  (a.x + a.vx) >> world::kUnitBits,
+                                                  (a.z + a.vz) >> world::kUnitBits);
     undecided_.add_if(!is_flat, n);
     move_or_propose(pixels, a, is_flat, a.level, n, proposed);
   }
@@ -207,9 +210,9 @@ void Group::plan(std::span<const uint16_t> todo) {
 
 void Group::prefetch_walk_levels() const {
   for (const uint16_t n : undecided_.span()) {
-    const Avatar& a = avatars_[n];
-    const int32_t x = (a.x + a.vx) >> kUnitBits, z = (a.z + a.vz) >> kUnitBits;
-    in_.ground->prefetch_level(a.level, a.z >> kUnitBits, z);
+    const crowd::Avatar& a = avatars_[n];
+    const int32_t x = (a.x + a.vx) >> world::kUnitBits, z = (a.z + a.vz) >> world::kUnitBits;
+    in_.ground->prefetch_level(a.level, a.z >> world::kUnitBits, z);
     in_.ground->prefetch_tile(x >> 6, z >> 6);
   }
 }
@@ -219,12 +222,12 @@ void Group::plan_by_cells() {
   const Pixels pixels = in_.map->pixels();
   size_t proposed = proposals_size_;
   for (const uint16_t n : undecided_.span()) {
-    Avatar& a = avatars_[n];
-    const int32_t x0 = a.x >> kUnitBits, z0 = a.z >> kUnitBits;
-    const int32_t x1 = (a.x + a.vx) >> kUnitBits, z1 = (a.z + a.vz) >> kUnitBits;
+    crowd::Avatar& a = avatars_[n];
+    const int32_t x0 = a.x >> world::kUnitBits, z0 = a.z >> world::kUnitBits;
+    const int32_t x1 = (a.x + a.vx) >> world::kUnitBits, z1 = (a.z + a.vz) >> world::kUnitBits;
     const uint32_t beyond =
-        in_.is_short ? in_.ground->line(a.level).cross(x0, z0, x1, z1) : LevelLine::kNone;
-    const bool crosses = beyond != LevelLine::kNone;
+        in_.is_short ? in_.ground->line(a.level).cross(x0, z0, x1, z1) : crowd::LevelLine::kNone;
+    const bool crosses = beyond != crowd::LevelLine::kNone;
     const bool is_flat = crosses | box_is_set(in_.ground->flat(a.level), x0, z0, x1, z1);
     uneven_.add_if(!is_flat, n);
     const uint32_t level = crosses ? beyond : a.level;
@@ -235,7 +238,7 @@ void Group::plan_by_cells() {
 }
 
 void Group::prefetch_pixels() {
-  const CollisionMap& map = *in_.map;
+  const crowd::CollisionMap& map = *in_.map;
   for (; prefetched_ < proposals_size_; ++prefetched_) {
     const Proposal& c = proposals_[prefetched_];
     slices_[prefetched_] = map.slices(avatars_[c.n].y);
@@ -244,10 +247,10 @@ void Group::prefetch_pixels() {
 }
 
 void Group::proposal(List& blocked) {
-  CollisionMap& map = *in_.map;
+  crowd::CollisionMap& map = *in_.map;
   for (size_t i = 0; i < proposals_size_; ++i) {
     const Proposal& c = proposals_[i];
-    Avatar& a = avatars_[c.n];
+    crowd::Avatar& a = avatars_[c.n];
     const bool moved = map.move_by_one(slices_[i], c.from, c.direction_index);
     a.x += a.vx & mask(moved);
     a.z += a.vz & mask(moved);
@@ -271,9 +274,10 @@ struct LoneLevel {
 };
 
 // Puts the body at `to` if no other is there.
-bool try_move(CollisionMap& map, Avatar& a, GroundPoint to, uint32_t level, int32_t y) {
-  const CollisionMap::Mark old_mark = map.mark(a.point(), a.y);
-  const CollisionMap::Mark mark = map.mark(to, y);
+bool try_move(crowd::CollisionMap& map, crowd::Avatar& a, world::GroundPoint to, uint32_t level,
+              int32_t y) {
+  const crowd::CollisionMap::Mark old_mark = map.mark(a.point(), a.y);
+  const crowd::CollisionMap::Mark mark = map.mark(to, y);
   if (!(mark == old_mark)) {
     map.clear(old_mark);
     if (!map.is_free(mark)) {
@@ -289,12 +293,14 @@ bool try_move(CollisionMap& map, Avatar& a, GroundPoint to, uint32_t level, int3
   return true;
 }
 
-GroundPoint target(const Avatar& a) { return {int64_t{a.x} + a.vx, int64_t{a.z} + a.vz}; }
+world::GroundPoint target(const crowd::Avatar& a) {
+  return {int64_t{a.x} + a.vx, int64_t{a.z} + a.vz};
+}
 
 void Group::prefetch_ground_cells() const {
   for (const uint16_t n : uneven_.span()) {
-    const Avatar& a = avatars_[n];
-    const int32_t x = (a.x + a.vx) >> kUnitBits, z = (a.z + a.vz) >> kUnitBits;
+    const crowd::Avatar& a = avatars_[n];
+    const int32_t x = (a.x + a.vx) >> world::kUnitBits, z = (a.z + a.vz) >> world::kUnitBits;
     in_.ground->prefetch_cell(a.level, x, z);
     in_.ground->prefetch_levels(x >> 6, z >> 6);
     in_.map->prefetch(a.point(), a.y);
@@ -303,20 +309,21 @@ void Group::prefetch_ground_cells() const {
 
 // Separates slopes, where every cell in range is legal, from walls, steps and edges of tiles.
 void Group::sort_uneven() {
-  const CrowdGround& ground = *in_.ground;
+  const crowd::CrowdGround& ground = *in_.ground;
   for (const uint16_t n : uneven_.span()) {
-    const Avatar& a = avatars_[n];
-    const int32_t x0 = a.x >> kUnitBits, z0 = a.z >> kUnitBits;
-    const int32_t x1 = (a.x + a.vx) >> kUnitBits, z1 = (a.z + a.vz) >> kUnitBits;
-    const CrowdGround::Walk level = ground.walk(a.level);
+    const crowd::Avatar& a = avatars_[n];
+    const int32_t x0 = a.x >> world::kUnitBits, z0 = a.z >> world::kUnitBits;
+    const int32_t x1 = (a.x + a.vx) >> world::kUnitBits, z1 = (a.z + a.vz) >> world::kUnitBits;
+    const crowd::CrowdGround::Walk level = ground.walk(a.level);
     const bool is_slope = level.is_step_safe & box_is_set(level.legal, x0, z0, x1, z1);
     slopes_.add_if(is_slope, n);
     walks_.add_if(!is_slope, n);
   }
   for (const uint16_t n : walks_.span()) {
-    const Avatar& a = avatars_[n];
-    const int32_t x = (a.x + a.vx) >> kUnitBits, z = (a.z + a.vz) >> kUnitBits;
-    if ((x >> 6) == (a.x >> (kUnitBits + 6)) && (z >> 6) == (a.z >> (kUnitBits + 6))) continue;
+    const crowd::Avatar& a = avatars_[n];
+    const int32_t x = (a.x + a.vx) >> world::kUnitBits, z = (a.z + a.vz) >> world::kUnitBits;
+    if ((x >> 6) == (a.x >> (world::kUnitBits + 6)) && (z >> 6) == (a.z >> (world::kUnitBits + 6)))
+      continue;
     ground.for_tile(x >> 6, z >> 6, a.y - in_.step_mm, a.y + in_.step_mm,
                     [&](uint32_t level) { ground.prefetch_cell(level, x, z); });
   }
@@ -324,22 +331,22 @@ void Group::sort_uneven() {
 
 void Group::climb(List& blocked) {
   for (const uint16_t n : slopes_.span()) {
-    Avatar& a = avatars_[n];
-    const GroundPoint to = target(a);
+    crowd::Avatar& a = avatars_[n];
+    const world::GroundPoint to = target(a);
     blocked.add_if(!try_move(*in_.map, a, to, a.level, in_.ground->feet(a.level, to)), n);
   }
 }
 
 void Group::walk_on(List& blocked) {
-  const CrowdGround& ground = *in_.ground;
+  const crowd::CrowdGround& ground = *in_.ground;
   for (const uint16_t n : walks_.span()) {
-    Avatar& a = avatars_[n];
-    const GroundPoint from = a.point(), to = target(a);
+    crowd::Avatar& a = avatars_[n];
+    const world::GroundPoint from = a.point(), to = target(a);
     uint32_t level = a.level;
-    const CrowdGround::Walk here = ground.walk(level);
-    const bool on_tile = ((from.x ^ to.x) | (from.z ^ to.z)) >> (kUnitBits + 6) == 0;
+    const crowd::CrowdGround::Walk here = ground.walk(level);
+    const bool on_tile = ((from.x ^ to.x) | (from.z ^ to.z)) >> (world::kUnitBits + 6) == 0;
     const bool is_open = here.is_isolated && on_tile
-                             ? walk(LoneLevel{here.legal}, level, from, to, in_.step_mm)
+                             ? world::walk(LoneLevel{here.legal}, level, from, to, in_.step_mm)
                              : to.x >= 0 && to.z >= 0 && to.x < in_.units_x && to.z < in_.units_z &&
                                    walk(ground, level, from, to, in_.step_mm);
     const bool moved = is_open && try_move(*in_.map, a, to, level, ground.feet(level, to));
@@ -349,7 +356,7 @@ void Group::walk_on(List& blocked) {
 }
 
 // To the left or to the right, at random.
-void turn(const StepInput& in, Avatar& a) {
+void turn(const StepInput& in, crowd::Avatar& a) {
   const bool left = (random_u64(in.seed, a.id, in.step) & 1) != 0;
   const int32_t vx = left ? -a.vz : a.vz;
   a.vz = left ? a.vx : -a.vx;
@@ -360,7 +367,7 @@ void turn(const StepInput& in, Avatar& a) {
 void finish(const StepInput& in, Group& straight, size_t size, StepCounts& counts) {
   List blocked, waits;
   straight.finish(blocked);
-  Avatar* a = straight.avatars();
+  crowd::Avatar* a = straight.avatars();
   for (const uint16_t n : blocked.span()) turn(in, a[n]);
   Group turned(in);
   turned.start(a, blocked);
@@ -374,10 +381,10 @@ void finish(const StepInput& in, Group& straight, size_t size, StepCounts& count
 
 }  // namespace
 
-void move_runs(const StepInput& in, Avatar* avatars, std::span<const CrowdBlocks::Run> runs,
-               StepCounts& counts) {
+void move_runs(const StepInput& in, crowd::Avatar* avatars,
+               std::span<const crowd::CrowdBlocks::Run> runs, StepCounts& counts) {
   if (runs.empty()) return;
-  const Avatar* readable = avatars + runs.back().last;
+  const crowd::Avatar* readable = avatars + runs.back().last;
   std::array<Group, 3> groups = {Group(in), Group(in), Group(in)};
   std::array<size_t, 3> sizes{};
   size_t begun = 0;
@@ -386,7 +393,7 @@ void move_runs(const StepInput& in, Avatar* avatars, std::span<const CrowdBlocks
     if (g >= 1 && g - 1 < begun) groups[(g - 1) % 3].prefetch_cells();
     if (g >= 2) finish(in, groups[(g - 2) % 3], sizes[(g - 2) % 3], counts);
   };
-  for (const CrowdBlocks::Run& run : runs) {
+  for (const crowd::CrowdBlocks::Run& run : runs) {
     for (uint32_t first = run.first; first < run.last; first += kGroup) {
       const size_t size = std::min<size_t>(kGroup, run.last - first);
       sizes[begun % 3] = size;

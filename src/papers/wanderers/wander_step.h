@@ -18,8 +18,8 @@ struct StepCounts {
 };
 
 struct StepInput {
-  const CrowdGround* ground = nullptr;
-  CollisionMap* map = nullptr;
+  const crowd::CrowdGround* ground = nullptr;
+  crowd::CollisionMap* map = nullptr;
   uint64_t seed = 0;
   uint64_t step = 0;  // number of the sub-step: with seed and id, the random stream
   int32_t step_mm = 0;
@@ -30,7 +30,7 @@ struct StepInput {
 /// Moves the avatars of some runs of one colour, run by run. Straight on; if that is blocked, one
 /// random turn to the left or right is tried; if that is blocked too, the avatar waits, turned.
 /// Source: [ML06] section 4.
-void move_runs(const StepInput& input, Avatar* avatars, std::span<const CrowdBlocks::Run> runs,
-               StepCounts& counts);
+void move_runs(const StepInput& input, crowd::Avatar* avatars,
+               std::span<const crowd::CrowdBlocks::Run> runs, StepCounts& counts);
 
 }  // namespace throng::papers

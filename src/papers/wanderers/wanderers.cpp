@@ -48,11 +48,11 @@ struct Wanderers::State {
   World world;
   WanderConfig config;
   AvatarClass body;
-  CrowdGround ground;
-  std::optional<CollisionMap> map;
-  std::optional<CrowdBlocks> blocks;
-  HugeArray<Avatar> avatars;  // by block
-  HugeArray<Avatar> scratch;
+  crowd::CrowdGround ground;
+  std::optional<crowd::CollisionMap> map;
+  std::optional<crowd::CrowdBlocks> blocks;
+  HugeArray<crowd::Avatar> avatars;  // by block
+  HugeArray<crowd::Avatar> scratch;
   double unit = 0;  // metres
   int32_t sub_steps = 1;
   uint64_t step = 0;
@@ -72,7 +72,7 @@ Result<Wanderers> Wanderers::create(const World& world, const WanderConfig& conf
     return Error{Errc::kBadConfig, "crowd: " + what};
   };
   if (!data_of(world)) return bad("there is no world");
-  const WorldData& data = *data_of(world);
+  const world::WorldData& data = *data_of(world);
   if (config.avatar_class < 0 ||
       static_cast<size_t>(config.avatar_class) >= data.summary.classes.size()) {
     return Error{Errc::kNotFound, "crowd: class " + std::to_string(config.avatar_class) +
@@ -88,7 +88,7 @@ Result<Wanderers> Wanderers::create(const World& world, const WanderConfig& conf
   state->config = config;
   state->body = data.summary.classes[static_cast<size_t>(config.avatar_class)];
   const AvatarClass& body = state->body;
-  auto ground = CrowdGround::make(data, config.avatar_class, step_mm(body));
+  auto ground = crowd::CrowdGround::make(data, config.avatar_class, world::step_mm(body));
   if (!ground) return ground.error();
   state->ground = std::move(*ground);
 
@@ -96,16 +96,16 @@ Result<Wanderers> Wanderers::create(const World& world, const WanderConfig& conf
   const auto pixel_cells = static_cast<int32_t>(std::ceil(2 * body.radius / cell - 1e-9));
   const auto body_mm = static_cast<int32_t>(std::ceil(body.height * 1000 - 1e-6));
   const auto [low, high] = state->ground.feet_range();
-  const PixelGrid grid(pixel_cells);
+  const crowd::PixelGrid grid(pixel_cells);
   const int64_t pixels = int64_t{data.width / pixel_cells + 1} * (data.depth / pixel_cells + 1);
   const Pages pages = pixels / kSparse < config.avatars ? Pages::kHuge : Pages::kSmall;
-  const double planes = (static_cast<double>(high) - low) / (64 * CollisionMap::kSlab) + 2;
+  const double planes = (static_cast<double>(high) - low) / (64 * crowd::CollisionMap::kSlab) + 2;
   if (static_cast<double>(pixels) * planes > kMaxPixels) {
     return Error{Errc::kLimit, "crowd: the world is too large and too high for a crowd of class " +
                                    body.name + "; bake it in parts"};
   }
   state->map.emplace(data.width, data.depth, grid, low, high, body_mm, pages);
-  state->unit = cell / kUnitsPerCell;
+  state->unit = cell / world::kUnitsPerCell;
 
   // No avatar moves further than a radius at a time.
   const double speed = config.speed > 0 ? config.speed : body.speed;
@@ -125,18 +125,18 @@ Result<Wanderers> Wanderers::create(const World& world, const WanderConfig& conf
   state->max_drift = (kBlockPixels / 2 - 2) * grid.units();
   state->blocks.emplace(data.width, data.depth, grid, kBlockPixels);
 
-  const std::vector<Avatar> placed =
-      place_avatars(state->ground, config.avatars, config.seed, *state->map);
+  const std::vector<crowd::Avatar> placed =
+      crowd::place_avatars(state->ground, config.avatars, config.seed, *state->map);
   if (placed.size() < config.avatars) {
     return Error{Errc::kLimit, "crowd: " + std::to_string(placed.size()) + " avatars of class " +
                                    body.name + " fit in this world, " +
                                    std::to_string(config.avatars) +
                                    " were asked for; ask for fewer or take a larger world"};
   }
-  state->avatars = HugeArray<Avatar>(placed.size());
-  state->scratch = HugeArray<Avatar>(placed.size());
+  state->avatars = HugeArray<crowd::Avatar>(placed.size());
+  state->scratch = HugeArray<crowd::Avatar>(placed.size());
   std::copy(placed.begin(), placed.end(), state->avatars.data());
-  for (Avatar& avatar : state->avatars.span()) {
+  for (crowd::Avatar& avatar : state->avatars.span()) {
     const auto [dx, dz] = random_direction(config.seed ^ 0x68656164, avatar.id);
     avatar.vx = static_cast<int32_t>(std::lround(dx * units));
     avatar.vz = static_cast<int32_t>(std::lround(dz * units));
@@ -154,10 +154,10 @@ WanderReport Wanderers::step() {
   papers::StepInput input{.ground = &s.ground,
                           .map = &*s.map,
                           .seed = s.config.seed,
-                          .step_mm = step_mm(s.body),
-                          .is_short = s.stride <= LevelLine::kBlock << kUnitBits,
-                          .units_x = data_of(s.world)->width << kUnitBits,
-                          .units_z = data_of(s.world)->depth << kUnitBits};
+                          .step_mm = world::step_mm(s.body),
+                          .is_short = s.stride <= crowd::LevelLine::kBlock << world::kUnitBits,
+                          .units_x = data_of(s.world)->width << world::kUnitBits,
+                          .units_z = data_of(s.world)->depth << world::kUnitBits};
   for (int32_t i = 0; i < s.sub_steps; ++i) {
     if (s.drift + s.stride > s.max_drift) {
       const auto sort_start = Clock::now();
@@ -167,7 +167,7 @@ WanderReport Wanderers::step() {
     }
     const auto move_start = Clock::now();
     input.step = ++s.sub_step;
-    for (uint32_t turn = 0; turn < CrowdBlocks::kColours; ++turn) {
+    for (uint32_t turn = 0; turn < crowd::CrowdBlocks::kColours; ++turn) {
       // Each colour is first in turn.
       const auto& runs = s.blocks->runs((turn + static_cast<uint32_t>(input.step)) & 3);
       const uint64_t avatars_here = runs.empty() ? 1 : runs.back().last - runs.front().first;
@@ -195,18 +195,18 @@ WanderReport Wanderers::step() {
 
 CrowdCheck Wanderers::check() const {
   const State& s = *state_;
-  std::vector<CheckedBody> bodies;
+  std::vector<crowd::CheckedBody> bodies;
   bodies.reserve(s.avatars.size());
-  for (const Avatar& a : s.avatars.span()) {
+  for (const crowd::Avatar& a : s.avatars.span()) {
     bodies.push_back({a.x, a.z, a.y, a.level, s.config.avatar_class, s.body.radius, s.body.height});
   }
-  return check_bodies(s.world, bodies, {}, s.config.workers);
+  return crowd::check_bodies(s.world, bodies, {}, s.config.workers);
 }
 
 uint64_t Wanderers::state_hash() const {
-  std::vector<Avatar> by_id(state_->avatars.size());
-  for (const Avatar& avatar : state_->avatars.span()) by_id[avatar.id] = avatar;
-  return hash_span(std::span<const Avatar>(by_id));
+  std::vector<crowd::Avatar> by_id(state_->avatars.size());
+  for (const crowd::Avatar& avatar : state_->avatars.span()) by_id[avatar.id] = avatar;
+  return hash_span(std::span<const crowd::Avatar>(by_id));
 }
 
 void Wanderers::read(std::vector<AvatarState>& out) const {
@@ -215,7 +215,7 @@ void Wanderers::read(std::vector<AvatarState>& out) const {
   const Vec3d origin = data_of(s.world)->summary.origin;
   const double radius =
       data_of(s.world)->summary.classes[static_cast<size_t>(s.config.avatar_class)].radius;
-  for (const Avatar& avatar : s.avatars.span()) {
+  for (const crowd::Avatar& avatar : s.avatars.span()) {
     AvatarState& state = out[avatar.id];
     state.id = avatar.id;
     state.avatar_class = s.config.avatar_class;
@@ -231,7 +231,7 @@ void Wanderers::read(std::vector<AvatarState>& out) const {
 uint32_t Wanderers::size() const { return static_cast<uint32_t>(state_->avatars.size()); }
 
 uint64_t Wanderers::bytes() const {
-  return (state_->avatars.size() + state_->scratch.size()) * sizeof(Avatar) +
+  return (state_->avatars.size() + state_->scratch.size()) * sizeof(crowd::Avatar) +
          state_->ground.bytes() + state_->map->bytes() + state_->blocks->bytes();
 }
 

@@ -11,19 +11,20 @@
 
 // Active obstacles by box of the space and by tile of the ground: a change cuts again only the
 // boxes and tiles that it touches.
-namespace throng {
+namespace throng::path {
 namespace {
 
 int64_t tile_key(int32_t x, int32_t z) { return (int64_t{z} << 32) | static_cast<uint32_t>(x); }
 
-bool holds(const AirCube& outer, const AirCube& inner) {
+bool holds(const world::AirCube& outer, const world::AirCube& inner) {
   return inner.x >= outer.x && inner.x < outer.x + outer.side && inner.y >= outer.y &&
          inner.y < outer.y + outer.side && inner.z >= outer.z && inner.z < outer.z + outer.side;
 }
 
 }  // namespace
 
-AirChanges::AirChanges(const WorldData& world, const FlightSpace& space, int32_t avatar_class)
+AirChanges::AirChanges(const world::WorldData& world, const FlightSpace& space,
+                       int32_t avatar_class)
     : world_(&world),
       space_(&space),
       class_(avatar_class),
@@ -86,7 +87,7 @@ void AirChanges::touch(ChangeId id) {
   space_->boxes_in(change.near, near_);
   touched_.clear();
   for (const uint32_t box : near_) {
-    const AirCube& cube = space_->boxes[box];
+    const world::AirCube& cube = space_->boxes[box];
     CubeCells blocked;
     if (!block_air(grid_, cube, change.near, change.solid.prism, change.solid.triangles, blocked))
       continue;
@@ -124,7 +125,7 @@ void AirChanges::label_pieces(uint32_t box) {
   const AirView air(*space_, this);
   air.for_pieces(box, [&](uint32_t piece) {
     uint32_t label = kNoBox;
-    const AirCube& cube = air.cube(piece);
+    const world::AirCube& cube = air.cube(piece);
     for (const Old& old : old_) {
       if (!holds(old.cube, cube) && !holds(cube, old.cube)) continue;
       label = old.label;
@@ -139,15 +140,16 @@ void AirChanges::block_ground(int64_t tile, std::span<const ChangeId> here) {
   const auto x = static_cast<int32_t>(tile), z = static_cast<int32_t>(tile >> 32);
   const auto levels = world_->tile_levels(x, z);
   for (uint32_t i = levels.first; i < levels.last; ++i) {
-    const GroundLevel level = ground_level(*world_, i, class_);
+    const world::GroundLevel level = world::ground_level(*world_, i, class_);
     if (level.zone == nullptr) continue;
-    const CellRows legal = legal_rows(level);
-    CellRows blocked{};
+    const world::CellRows legal = graph::legal_rows(level);
+    world::CellRows blocked{};
     uint64_t any = 0;
     for (const ChangeId id : here) {
       const Change& change = changes_[id - 1];
-      const CellRows own = blocked_cells({world_->summary, level.view, x, z}, *avatar_,
-                                         change.solid.prism, change.solid.triangles, legal.data());
+      const world::CellRows own =
+          blocked_cells({world_->summary, level.view, x, z}, *avatar_, change.solid.prism,
+                        change.solid.triangles, legal.data());
       for (size_t row = 0; row < own.size(); ++row) any |= blocked[row] |= own[row];
     }
     if (any != 0) {
@@ -189,4 +191,4 @@ ChangeId AirChanges::add_to(LiveGround& ground, const Solid& solid) {
   return *added;
 }
 
-}  // namespace throng
+}  // namespace throng::path

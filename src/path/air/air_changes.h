@@ -19,14 +19,14 @@
 #include "world/ground.h"
 
 /// Obstacles placed in the air of a class since it was made.
-namespace throng {
+namespace throng::path {
 
 /// The space itself stays as it is. An AirView shows both. A change cuts again only the boxes that
 /// it touches.
 class AirChanges {
  public:
   /// The world and the space outlive it.
-  AirChanges(const WorldData& world, const FlightSpace& space, int32_t avatar_class);
+  AirChanges(const world::WorldData& world, const FlightSpace& space, int32_t avatar_class);
 
   ChangeId add(Solid solid);
   /// False if there is none of that id.
@@ -59,7 +59,7 @@ class AirChanges {
   void label_pieces(uint32_t box);
   void block_ground(int64_t tile, std::span<const ChangeId> here);
 
-  const WorldData* world_;
+  const world::WorldData* world_;
   const FlightSpace* space_;
   int32_t class_;
   const AvatarClass* avatar_;
@@ -71,13 +71,14 @@ class AirChanges {
   // Active ones, by box of the space and by tile of the ground; looked up only.
   std::unordered_map<uint32_t, std::vector<ChangeId>> of_box_;
   std::unordered_map<int64_t, std::vector<ChangeId>> of_tile_;
-  std::unordered_map<uint32_t, CellRows> blocked_;  // by level of the world that has such cells
-  std::vector<uint32_t> near_, touched_;            // boxes
+  std::unordered_map<uint32_t, world::CellRows>
+      blocked_;                           // by level of the world that has such cells
+  std::vector<uint32_t> near_, touched_;  // boxes
   struct Old {
-    AirCube cube;
+    world::AirCube cube;
     uint32_t label;
   };
   std::vector<Old> old_;  // pieces of a box before a change
 };
 
-}  // namespace throng
+}  // namespace throng::path

@@ -11,7 +11,7 @@
 // each as a piece of its own; pieces that meet are merged. They take turns, box by box, and stop
 // when only one piece is left of what was connected: a piece that runs out of boxes before that is
 // an island. Around a crate all pieces have met after a few turns.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr size_t kMaxBoxes = 1 << 16;  // that are visited for one change
@@ -172,4 +172,4 @@ void AirIslands::join(const AirView& air, std::span<const uint32_t> boxes) {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -11,7 +11,7 @@
 #include "path/air/flight_space.h"
 
 /// What obstacles have cut off from the air that it was connected to.
-namespace throng {
+namespace throng::path {
 
 class AirView;
 
@@ -69,4 +69,4 @@ class AirIslands {
   std::vector<std::pair<uint32_t, uint32_t>> left_;  // label: pieces not known to be islands
 };
 
-}  // namespace throng
+}  // namespace throng::path

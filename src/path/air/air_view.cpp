@@ -8,7 +8,7 @@
 
 // Queries of the air as it is: the boxes of the space, or their parts where obstacles have cut
 // them.
-namespace throng {
+namespace throng::path {
 
 namespace {
 
@@ -75,4 +75,4 @@ std::optional<AirPoint> AirView::nearest_in(std::span<const uint32_t> components
   return nearest;
 }
 
-}  // namespace throng
+}  // namespace throng::path

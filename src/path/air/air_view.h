@@ -14,7 +14,7 @@
 #include "path/air/flight_space.h"
 
 /// The air of a class as it is now.
-namespace throng {
+namespace throng::path {
 
 /// A space, and what obstacles leave of its boxes; a copy is two pointers. Without changes it is
 /// the space. Parts of boxes are boxes here, too (see SplitBoxes).
@@ -42,7 +42,7 @@ class AirView {
     return changes_ == nullptr ? static_cast<uint32_t>(space_->boxes.size())
                                : changes_->splits().end();
   }
-  [[nodiscard]] const AirCube& cube(uint32_t box) const {
+  [[nodiscard]] const world::AirCube& cube(uint32_t box) const {
     return box < space_->boxes.size() ? space_->boxes[box] : changes_->splits().cube(box);
   }
   /// The same for boxes that are connected. For a whole box of the space it is its component there,
@@ -66,7 +66,7 @@ class AirView {
   }
   /// As FlightSpace has it; the cube may be any that lies within a box of the space.
   template <class Visit>
-  void for_neighbours(const AirCube& cube, Visit&& visit, int32_t min_side = 1) const;
+  void for_neighbours(const world::AirCube& cube, Visit&& visit, int32_t min_side = 1) const;
   /// Calls visit(box) for what is left of a box of the space: itself, or its parts.
   template <class Visit>
   void for_pieces(uint32_t box, Visit visit) const {
@@ -93,7 +93,7 @@ class AirView {
 };
 
 /// The point of a cube that is nearest to another, a skin off its faces.
-inline AirPoint nearest_of(const AirCube& cube, AirPoint goal) {
+inline AirPoint nearest_of(const world::AirCube& cube, AirPoint goal) {
   const auto into = [&](double at, int32_t low) {
     return std::clamp(at, low + kAirSkin, low + cube.side - kAirSkin);
   };
@@ -101,7 +101,7 @@ inline AirPoint nearest_of(const AirCube& cube, AirPoint goal) {
 }
 
 template <class Visit>
-void AirView::for_neighbours(const AirCube& cube, Visit&& visit, int32_t min_side) const {
+void AirView::for_neighbours(const world::AirCube& cube, Visit&& visit, int32_t min_side) const {
   if (changes_ == nullptr) {
     space_->for_neighbours(cube, visit, min_side);
     return;
@@ -128,4 +128,4 @@ void AirView::for_neighbours(const AirCube& cube, Visit&& visit, int32_t min_sid
   face(2, cube.z - 1, cube.x, cube.y);
 }
 
-}  // namespace throng
+}  // namespace throng::path

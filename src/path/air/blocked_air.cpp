@@ -11,7 +11,7 @@
 
 // Which voxels an obstacle blocks: those in which a body, grown by rounding, could touch its prism
 // or triangles. Linear in voxels times triangles.
-namespace throng {
+namespace throng::path {
 namespace {
 
 // Layers in which the feet may be of a body that could touch what lies between two heights.
@@ -24,7 +24,8 @@ std::pair<int32_t, int32_t> layers_near(const AirGrid& grid, double low, double 
 
 }  // namespace
 
-AirGrid::AirGrid(const WorldData& world, const AirShape& shape, const AvatarClass& avatar)
+AirGrid::AirGrid(const world::WorldData& world, const world::AirShape& shape,
+                 const AvatarClass& avatar)
     : x(world.summary.origin.x),
       y(shape.origin_y * 1e-3),
       z(world.summary.origin.z),
@@ -32,7 +33,7 @@ AirGrid::AirGrid(const WorldData& world, const AirShape& shape, const AvatarClas
       radius(avatar.radius),
       height(avatar.height),
       // Whatever follows paths rounds feet to units of the ground and to millimetres.
-      spare(std::max(kHeightRounding, 4 * world.summary.cell / kUnitsPerCell)) {}
+      spare(std::max(kHeightRounding, 4 * world.summary.cell / world::kUnitsPerCell)) {}
 
 AirRange air_near(const AirGrid& grid, const FlightSpace& space, const Prism& prism) {
   const double radius = grid.radius + grid.spare;
@@ -55,8 +56,9 @@ AirRange air_near(const AirGrid& grid, const FlightSpace& space, const Prism& pr
            std::min(cell(z1 + radius, grid.z, space.depth), space.depth - 1)}};
 }
 
-bool block_air(const AirGrid& grid, const AirCube& cube, const AirRange& near, const Prism& prism,
-               std::span<const std::array<Vec3d, 3>> triangles, CubeCells& blocked) {
+bool block_air(const AirGrid& grid, const world::AirCube& cube, const AirRange& near,
+               const Prism& prism, std::span<const std::array<Vec3d, 3>> triangles,
+               CubeCells& blocked) {
   const double radius = grid.radius + grid.spare;
   bool any = false;
   const auto take = [&](int32_t x, int32_t z, double low, double high) {
@@ -95,4 +97,4 @@ bool block_air(const AirGrid& grid, const AirCube& cube, const AirRange& near, c
   return any;
 }
 
-}  // namespace throng
+}  // namespace throng::path

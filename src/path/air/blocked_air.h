@@ -12,7 +12,7 @@
 #include "world/zone_data.h"
 
 /// What an obstacle blocks in the air of a class: the voxels from which a body could touch it.
-namespace throng {
+namespace throng::path {
 
 /// The grid of the voxels, and the body that is in them. [m]
 struct AirGrid {
@@ -21,7 +21,7 @@ struct AirGrid {
   double radius = 0, height = 0;
   double spare = 0;  ///< Obstacles count as so much wider, higher and lower.
 
-  AirGrid(const WorldData& world, const AirShape& shape, const AvatarClass& avatar);
+  AirGrid(const world::WorldData& world, const world::AirShape& shape, const AvatarClass& avatar);
 };
 
 /// Voxels of a cube: bit x of row y * kSide + z, from its corner.
@@ -43,7 +43,8 @@ AirRange air_near(const AirGrid& grid, const FlightSpace& space, const Prism& pr
 /// Adds those voxels of a cube of at most 32 a side in which a body, wherever in the voxel its feet
 /// are, could touch the prism (its polygon convex, of any number of corners); with triangles, one
 /// of those that the prism encloses. False if there are none.
-bool block_air(const AirGrid& grid, const AirCube& cube, const AirRange& near, const Prism& prism,
-               std::span<const std::array<Vec3d, 3>> triangles, CubeCells& blocked);
+bool block_air(const AirGrid& grid, const world::AirCube& cube, const AirRange& near,
+               const Prism& prism, std::span<const std::array<Vec3d, 3>> triangles,
+               CubeCells& blocked);
 
-}  // namespace throng
+}  // namespace throng::path

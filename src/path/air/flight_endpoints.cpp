@@ -10,26 +10,27 @@
 
 // Where bodies take off and land, and the flood fills that search for such places. Linear in the
 // cells visited.
-namespace throng {
+namespace throng::path {
 namespace {
 
 // Cells around in which everything is legal, as the bake has stored it: 0 to 7. [legal cell]
-int32_t margin_at(const GroundLevel& level, uint32_t zone_level, int32_t avatar_class, int32_t x,
-                  int32_t z) {
+int32_t margin_at(const world::GroundLevel& level, uint32_t zone_level, int32_t avatar_class,
+                  int32_t x, int32_t z) {
   const format::Clearance& clearance =
       level.zone->clearance(zone_level, static_cast<uint32_t>(avatar_class));
   if (clearance.kind() != format::CellsKind::Blocks) return 7;
   const uint64_t* words = level.zone->words(clearance.offset());
   int32_t margin = 0;
   for (int32_t bit = 0; bit < 3; ++bit) {
-    words += bit_words(words);
-    if (bit_at(words, x, z)) margin |= 1 << bit;
+    words += world::bit_words(words);
+    if (world::bit_at(words, x, z)) margin |= 1 << bit;
   }
   return margin;
 }
 
 // Layers from that of the feet on in which there is room for the whole width of a body.
-int32_t free_layers(const AirData& air, const AirBody& body, int32_t x, int32_t y, int32_t z) {
+int32_t free_layers(const world::AirData& air, const world::AirBody& body, int32_t x, int32_t y,
+                    int32_t z) {
   for (int32_t dy = 0; dy <= body.up; ++dy) {
     for (int32_t dz = -body.reach; dz <= body.reach; ++dz) {
       const int32_t half = body.half_width[static_cast<size_t>(std::abs(dz))];
@@ -43,8 +44,8 @@ int32_t free_layers(const AirData& air, const AirBody& body, int32_t x, int32_t 
 
 }  // namespace
 
-Obstacle air_obstacle(const AirData& air, const AirBody& body, const AirView& view, AirPoint from,
-                      AirPoint to) {
+Obstacle air_obstacle(const world::AirData& air, const world::AirBody& body, const AirView& view,
+                      AirPoint from, AirPoint to) {
   constexpr double kStep = 0.25;  // [voxels]
   const AirPoint delta = to - from;
   const double far = air_distance(from, to);
@@ -60,7 +61,8 @@ Obstacle air_obstacle(const AirData& air, const AirBody& body, const AirView& vi
   return Obstacle::kNone;
 }
 
-FlightEndpoints::FlightEndpoints(const WorldData& world, const AirView& air, int32_t avatar_class)
+FlightEndpoints::FlightEndpoints(const world::WorldData& world, const AirView& air,
+                                 int32_t avatar_class)
     : world_(world),
       air_(air),
       ground_{world, avatar_class},
@@ -102,35 +104,37 @@ std::optional<AirPoint> FlightEndpoints::take_off(const Place& place) const {
 
 bool FlightEndpoints::may_stand(const Place& place) const {
   if (air_.changes() == nullptr) return true;
-  const auto at = ground_point(world_, place);
+  const auto at = world::ground_point(world_, place);
   return at && air_.changes()->may_stand(place.level1 - 1, at->cell_x(), at->cell_z());
 }
 
 template <class Visit>
 bool FlightEndpoints::for_places(const Place& from, uint64_t max_cells, CircleFlood& flood,
                                  Visit visit) const {
-  const auto start = ground_point(world_, from);
+  const auto start = world::ground_point(world_, from);
   if (!start) return false;
-  const GroundLevel level = ground_level(world_, from.level1 - 1, ground_.avatar_class);
+  const world::GroundLevel level =
+      world::ground_level(world_, from.level1 - 1, ground_.avatar_class);
   if (!level.is_legal(start->cell_x() & 63, start->cell_z() & 63)) return false;
   const AirChanges* changes = air_.changes();
   uint64_t seen = 0;
   bool more = true, budget_exhausted = false;
   flood.start(level, start->cell_x(), start->cell_z());
   flood.run(
-      ground_, step_mm(avatar_),
+      ground_, world::step_mm(avatar_),
       [&](int32_t, int32_t) {
         budget_exhausted = more && seen == max_cells;
         return more && !budget_exhausted;
       },
       [&](const CircleFlood::Cell& cell) {
         ++seen;
-        more = visit(place_at(world_, cell.level,
-                              {(int64_t{cell.x} << kUnitBits) + kUnitsPerCell / 2,
-                               (int64_t{cell.z} << kUnitBits) + kUnitsPerCell / 2}));
+        more = visit(
+            world::place_at(world_, cell.level,
+                            {(int64_t{cell.x} << world::kUnitBits) + world::kUnitsPerCell / 2,
+                             (int64_t{cell.z} << world::kUnitBits) + world::kUnitsPerCell / 2}));
       },
       [](const CircleFlood::Cell&, int32_t, int32_t) {},
-      [&](const GroundLevel& to, int32_t x, int32_t z) {
+      [&](const world::GroundLevel& to, int32_t x, int32_t z) {
         return changes == nullptr || changes->may_stand(to.world_level, x, z);
       });
   return budget_exhausted;
@@ -186,7 +190,7 @@ bool FlightEndpoints::components_over(const Place& from, uint64_t max_cells, Cir
 uint32_t FlightEndpoints::lowest_box(AirPoint p) const {
   uint32_t box = air_.box_at(p);
   while (box != kNoBox) {
-    const AirCube& cube = air_.cube(box);
+    const world::AirCube& cube = air_.cube(box);
     const uint32_t below = air_.box_at(static_cast<int32_t>(std::floor(p.x)), cube.y - 1,
                                        static_cast<int32_t>(std::floor(p.z)));
     if (below == kNoBox) return box;
@@ -197,7 +201,7 @@ uint32_t FlightEndpoints::lowest_box(AirPoint p) const {
 
 // Most accessible first, most aligned with the box's axis next. Source: [PACS00] 1.2.3.7.
 Place FlightEndpoints::best_landing(uint32_t box) const {
-  const AirCube& cube = air_.cube(box);
+  const world::AirCube& cube = air_.cube(box);
   const int32_t multiple = air_.space().shape.multiple;
   Place best;
   int32_t best_margin = -1;
@@ -205,7 +209,7 @@ Place FlightEndpoints::best_landing(uint32_t box) const {
   const double bottom = to_metres({0, static_cast<double>(cube.y), 0}).y;
   struct Floor {
     uint32_t zone_level;
-    GroundLevel ground;
+    world::GroundLevel ground;
   };
   std::vector<Floor> floors;  // of a tile
   const int32_t end_x = std::min((cube.x + cube.side) * multiple, world_.width);
@@ -218,9 +222,10 @@ Place FlightEndpoints::best_landing(uint32_t box) const {
     const double dz = (z + 0.5) / multiple - (cube.z + cube.side * 0.5);
     const double off = dx * dx + dz * dz;
     if (margin < best_margin || (margin == best_margin && off >= best_off)) return;
-    const Place place = place_at(world_, floor.ground,
-                                 {(int64_t{x} << kUnitBits) + kUnitsPerCell / 2,
-                                  (int64_t{z} << kUnitBits) + kUnitsPerCell / 2});
+    const Place place =
+        world::place_at(world_, floor.ground,
+                        {(int64_t{x} << world::kUnitBits) + world::kUnitsPerCell / 2,
+                         (int64_t{z} << world::kUnitBits) + world::kUnitsPerCell / 2});
     if (place.position.y > bottom) return;
     const auto up = take_off(place);
     if (!up || air_.box_at(*up) != box) return;
@@ -235,7 +240,7 @@ Place FlightEndpoints::best_landing(uint32_t box) const {
       for (uint32_t i = tile.first; i < tile.last; ++i) {
         const uint32_t zone_level = tile.zone_first + i - tile.first;
         floors.push_back(
-            {zone_level, ground_level(*tile.zone, zone_level, i, ground_.avatar_class)});
+            {zone_level, world::ground_level(*tile.zone, zone_level, i, ground_.avatar_class)});
       }
       for (const int32_t tile_end = std::min((x | 63) + 1, end_x); x < tile_end; ++x) {
         for (const Floor& floor : floors) try_cell(floor, x, z);
@@ -245,4 +250,4 @@ Place FlightEndpoints::best_landing(uint32_t box) const {
   return best;
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -10,17 +10,17 @@
 #include "throng/world.h"
 
 /// Between the ground and the air: where a body that stands comes into the air, and where it lands.
-namespace throng {
+namespace throng::path {
 
 /// What a body meets first on the straight line from where it may be: kLow where it would fit if it
 /// were less tall, else kNarrow, as where an obstacle was placed; kNone if it meets nothing. Linear
 /// in the voxels on the line.
-[[nodiscard]] Obstacle air_obstacle(const AirData& air, const AirBody& body, const AirView& view,
-                                    AirPoint from, AirPoint to);
+[[nodiscard]] Obstacle air_obstacle(const world::AirData& air, const world::AirBody& body,
+                                    const AirView& view, AirPoint from, AirPoint to);
 
 class FlightEndpoints {
  public:
-  FlightEndpoints(const WorldData& world, const AirView& air, int32_t avatar_class);
+  FlightEndpoints(const world::WorldData& world, const AirView& air, int32_t avatar_class);
 
   [[nodiscard]] AirPoint to_air(Vec3d p) const;
   [[nodiscard]] Vec3d to_metres(AirPoint p) const;
@@ -63,11 +63,11 @@ class FlightEndpoints {
   template <class Visit>
   bool for_take_offs(const Place& from, uint64_t max_cells, CircleFlood& flood, Visit visit) const;
 
-  const WorldData& world_;
+  const world::WorldData& world_;
   AirView air_;
-  WorldGround ground_;
+  world::WorldGround ground_;
   const AvatarClass& avatar_;
   double cell_;  // of the air [m]
 };
 
-}  // namespace throng
+}  // namespace throng::path

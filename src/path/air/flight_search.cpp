@@ -7,7 +7,7 @@
 
 // A* over the free boxes of the air's octree, from face to face; the path's points lie on the
 // faces. Source: [PACS00]. Cost: n log n in the boxes that are expanded.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr double kShorter = 1e-9;
@@ -43,7 +43,7 @@ struct Door {
   double skin = 0;  // what leads from the plane into the second box
 };
 
-Door door_between(const AirCube& a, const AirCube& b) {
+Door door_between(const world::AirCube& a, const world::AirCube& b) {
   const int32_t low_a[3] = {a.x, a.y, a.z}, low_b[3] = {b.x, b.y, b.z};
   for (int i = 0; i < 3; ++i) {
     if (low_a[i] + a.side == low_b[i]) return {i, static_cast<double>(low_b[i]), kAirSkin};
@@ -54,7 +54,7 @@ Door door_between(const AirCube& a, const AirCube& b) {
 
 // Where the path from `from` to `to` best passes from one box into another: on the face that they
 // share, where the straight line crosses its plane (mirrored, if both lie on one side of it).
-AirPoint pass(const AirCube& a, const AirCube& b, AirPoint from, AirPoint to) {
+AirPoint pass(const world::AirCube& a, const world::AirCube& b, AirPoint from, AirPoint to) {
   const int32_t low_a[3] = {a.x, a.y, a.z}, low_b[3] = {b.x, b.y, b.z};
   const auto [axis, plane, skin] = door_between(a, b);
   const double inside = plane + skin;
@@ -133,7 +133,7 @@ SearchResult FlightSearch::find(const AirView& air, AirPoint from, AirPoint to,
   return SearchResult::kFound;
 }
 
-int32_t FlightSearch::min_around(const AirCube& box) const {
+int32_t FlightSearch::min_around(const world::AirCube& box) const {
   if (!large_) return 1;
   const auto off = [&](AirPoint p) {
     return std::max({box.x - p.x, p.x - (box.x + box.side), box.y - p.y, p.y - (box.y + box.side),
@@ -220,7 +220,7 @@ void FlightSearch::trace(uint32_t node, std::vector<AirPoint>& path) const {
 }
 
 void FlightSearch::open(uint32_t node) {
-  const AirCube& box = air_->cube(nodes_[node].box);
+  const world::AirCube& box = air_->cube(nodes_[node].box);
   air_->for_neighbours(
       box, [&](uint32_t next) { reach(node, next); }, min_around(box));
 }
@@ -251,4 +251,4 @@ void FlightSearch::reach(uint32_t from, uint32_t box) {
   push(mark.node);
 }
 
-}  // namespace throng
+}  // namespace throng::path

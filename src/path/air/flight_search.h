@@ -14,7 +14,7 @@
 #include "throng/path.h"
 
 /// A short path through the air, over boxes.
-namespace throng {
+namespace throng::path {
 
 /// Lazy Theta* [NKH10] over boxes of any size: where the path enters a box is computed for each,
 /// where the straight line from the last waypoint to the goal would, and a waypoint is assumed to
@@ -39,7 +39,7 @@ class FlightSearch {
   SearchResult search(AirPoint from, uint32_t start, const SearchBudget& budget,
                       std::vector<AirPoint>& path);
   [[nodiscard]] uint64_t used_bytes() const;
-  [[nodiscard]] int32_t min_around(const AirCube& box) const;
+  [[nodiscard]] int32_t min_around(const world::AirCube& box) const;
   struct Node {
     AirPoint point;       // where the path enters the box
     double length = 0;    // to there
@@ -79,4 +79,4 @@ class FlightSearch {
   std::vector<AirPoint> large_path_;  // through large boxes
 };
 
-}  // namespace throng
+}  // namespace throng::path

@@ -9,7 +9,7 @@
 
 // The free air eroded by the body, word by word, then cut into the boxes of an octree per zone,
 // whose connected components are numbered. Linear in the voxels times the body's width.
-namespace throng {
+namespace throng::path {
 
 double off_faces(double v) {
   const double low = std::floor(v);
@@ -29,7 +29,7 @@ bool FlightSpace::sees(AirPoint from, AirPoint to) const { return air_sees(*this
 
 void FlightSpace::boxes_in(const AirRange& range, std::vector<uint32_t>& found) const {
   found.clear();
-  const auto is_in = [&](const AirCube& cube) {
+  const auto is_in = [&](const world::AirCube& cube) {
     const int32_t low[3] = {cube.x, cube.y, cube.z};
     for (int a = 0; a < 3; ++a) {
       if (low[a] > range.last[a] || low[a] + cube.side <= range.first[a]) return false;
@@ -41,14 +41,14 @@ void FlightSpace::boxes_in(const AirRange& range, std::vector<uint32_t>& found) 
     for (int32_t zx = std::max(range.first[0], 0) / zone_side;
          zx <= std::min(range.last[0] / zone_side, zones_x - 1); ++zx) {
       const auto zone = static_cast<size_t>(zz * zones_x + zx);
-      const AirTreeData& tree = zones[zone];
+      const world::AirTreeData& tree = zones[zone];
       // Cubes are given in cells of the world.
-      const auto descend = [&](auto&& self, const AirCube& cube, uint32_t word) -> void {
-        if (air_kind(word) == AirKind::kFull || !is_in(cube)) return;
-        if (air_kind(word) == AirKind::kFree) {
-          found.push_back(air_number(word));
-        } else if (air_kind(word) == AirKind::kLeaf) {
-          const Leaf& leaf = leaves[zone][air_number(word)];
+      const auto descend = [&](auto&& self, const world::AirCube& cube, uint32_t word) -> void {
+        if (world::air_kind(word) == world::AirKind::kFull || !is_in(cube)) return;
+        if (world::air_kind(word) == world::AirKind::kFree) {
+          found.push_back(world::air_number(word));
+        } else if (world::air_kind(word) == world::AirKind::kLeaf) {
+          const Leaf& leaf = leaves[zone][world::air_number(word)];
           for (int32_t i = 0; i < std::popcount(leaf.starts); ++i) {
             const uint32_t box = leaf.first_box + static_cast<uint32_t>(i);
             if (is_in(boxes[box])) found.push_back(box);
@@ -59,7 +59,7 @@ void FlightSpace::boxes_in(const AirRange& range, std::vector<uint32_t>& found) 
             self(self,
                  {cube.x + (c & 1) * half, cube.y + (c >> 1 & 1) * half, cube.z + (c >> 2) * half,
                   half},
-                 tree.nodes[air_number(word) + static_cast<uint32_t>(c)]);
+                 tree.nodes[world::air_number(word) + static_cast<uint32_t>(c)]);
           }
         }
       };
@@ -74,8 +74,9 @@ void FlightSpace::boxes_in(const AirRange& range, std::vector<uint32_t>& found) 
 }
 
 uint64_t FlightSpace::bytes() const {
-  uint64_t sum = boxes.size() * (sizeof(AirCube) + sizeof(uint32_t));
-  for (const AirTreeData& tree : zones) sum += tree.nodes.size() * 4 + tree.leaves.size() * 8;
+  uint64_t sum = boxes.size() * (sizeof(world::AirCube) + sizeof(uint32_t));
+  for (const world::AirTreeData& tree : zones)
+    sum += tree.nodes.size() * 4 + tree.leaves.size() * 8;
   for (const auto& of_zone : leaves) sum += of_zone.size() * sizeof(Leaf);
   return sum;
 }
@@ -101,15 +102,15 @@ void and_shifted(uint64_t* dst, const uint64_t* src, int32_t words, int32_t cell
 }
 
 // Free voxels of all zones around one, by rows of the window.
-bool fill_window(const AirData& air, int32_t first_x, int32_t first_z, int32_t base,
-                 AirRows& rows) {
+bool fill_window(const world::AirData& air, int32_t first_x, int32_t first_z, int32_t base,
+                 world::AirRows& rows) {
   const int32_t side = air.zone_side;
   const int32_t zx0 = std::max(first_x, 0) / side, zz0 = std::max(first_z, 0) / side;
   const int32_t zx1 = std::min((first_x + rows.width - 1) / side, air.zones_x - 1);
   const int32_t zz1 = std::min((first_z + rows.depth - 1) / side, air.zones_z - 1);
   for (int32_t zz = zz0; zz <= zz1; ++zz) {
     for (int32_t zx = zx0; zx <= zx1; ++zx) {
-      const AirData::ZoneAir zone = air.zone(zx, zz);
+      const world::AirData::ZoneAir zone = air.zone(zx, zz);
       if (!zone.usable) return false;
       const int32_t x0 = zx * side - first_x, z0 = zz * side - first_z;
       const int32_t x1 = std::min(x0 + side, air.width - first_x);
@@ -128,11 +129,11 @@ bool fill_window(const AirData& air, int32_t first_x, int32_t first_z, int32_t b
       const int32_t under = zone.tree->base - base;
       fill(0, under);
       fill(under + zone.tree->side * static_cast<int32_t>(zone.tree->roots), rows.height);
-      zone.tree->for_each([&](const AirCube& cube, uint32_t word) {
-        if (air_kind(word) == AirKind::kFull) return;
+      zone.tree->for_each([&](const world::AirCube& cube, uint32_t word) {
+        if (world::air_kind(word) == world::AirKind::kFull) return;
         const int32_t y0 = cube.y - base;
         const int32_t cx1 = std::min(x0 + cube.x + cube.side, x1);
-        if (air_kind(word) == AirKind::kFree) {
+        if (world::air_kind(word) == world::AirKind::kFree) {
           for (int32_t y = std::max(y0, 0); y < std::min(y0 + cube.side, rows.height); ++y) {
             for (int32_t z = std::max(z0 + cube.z, 0);
                  z < std::min(z0 + cube.z + cube.side, std::min(z1, rows.depth)); ++z) {
@@ -141,7 +142,7 @@ bool fill_window(const AirData& air, int32_t first_x, int32_t first_z, int32_t b
           }
           return;
         }
-        const uint64_t cells = zone.tree->leaves[air_number(word)];
+        const uint64_t cells = zone.tree->leaves[world::air_number(word)];
         for (uint64_t rest = cells; rest != 0; rest &= rest - 1) {
           const int32_t bit = std::countr_zero(rest);
           const int32_t x = x0 + cube.x + (bit & 3), z = z0 + cube.z + (bit >> 4);
@@ -154,17 +155,18 @@ bool fill_window(const AirData& air, int32_t first_x, int32_t first_z, int32_t b
 }
 
 // Numbers the free cubes and the boxes of leaves.
-void number_boxes(AirTreeData& tree, std::vector<FlightSpace::Leaf>& leaves,
-                  std::vector<AirCube>& boxes) {
+void number_boxes(world::AirTreeData& tree, std::vector<FlightSpace::Leaf>& leaves,
+                  std::vector<world::AirCube>& boxes) {
   leaves.resize(tree.leaves.size());
-  const auto number = [&](auto&& self, const AirCube& cube, size_t node) -> void {
+  const auto number = [&](auto&& self, const world::AirCube& cube, size_t node) -> void {
     const uint32_t word = tree.nodes[node];
-    if (air_kind(word) == AirKind::kFree) {
-      tree.nodes[node] = air_word(AirKind::kFree, static_cast<uint32_t>(boxes.size()));
+    if (world::air_kind(word) == world::AirKind::kFree) {
+      tree.nodes[node] =
+          world::air_word(world::AirKind::kFree, static_cast<uint32_t>(boxes.size()));
       boxes.push_back(cube);
-    } else if (air_kind(word) == AirKind::kLeaf) {
-      const uint64_t cells = tree.leaves[air_number(word)];
-      FlightSpace::Leaf& leaf = leaves[air_number(word)];
+    } else if (world::air_kind(word) == world::AirKind::kLeaf) {
+      const uint64_t cells = tree.leaves[world::air_number(word)];
+      FlightSpace::Leaf& leaf = leaves[world::air_number(word)];
       leaf.first_box = static_cast<uint32_t>(boxes.size());
       for (uint64_t rest = cells; rest != 0; rest &= rest - 1) {
         const auto bit = static_cast<uint32_t>(std::countr_zero(rest));
@@ -176,13 +178,13 @@ void number_boxes(AirTreeData& tree, std::vector<FlightSpace::Leaf>& leaves,
         boxes.push_back(
             {cube.x + (b & 3), cube.y + (b >> 2 & 3), cube.z + (b >> 4), whole ? 2 : 1});
       }
-    } else if (air_kind(word) == AirKind::kInner) {
+    } else if (world::air_kind(word) == world::AirKind::kInner) {
       const int32_t half = cube.side / 2;
       for (int32_t c = 0; c < 8; ++c) {
         self(
             self,
             {cube.x + (c & 1) * half, cube.y + (c >> 1 & 1) * half, cube.z + (c >> 2) * half, half},
-            air_number(word) + static_cast<size_t>(c));
+            world::air_number(word) + static_cast<size_t>(c));
       }
     }
   };
@@ -212,7 +214,7 @@ void find_components(FlightSpace& space) {
 
 }  // namespace
 
-void erode_air(const AirBody& body, const AirRows& free, AirRows& legal) {
+void erode_air(const world::AirBody& body, const world::AirRows& free, world::AirRows& legal) {
   legal = free;
   for (int32_t y = 0; y < free.height; ++y) {
     for (int32_t z = 0; z < free.depth; ++z) {
@@ -223,7 +225,7 @@ void erode_air(const AirBody& body, const AirRows& free, AirRows& legal) {
     }
   }
   if (body.reach == 0) return;
-  const AirRows tall = legal;
+  const world::AirRows tall = legal;
   for (int32_t y = 0; y < free.height; ++y) {
     for (int32_t z = 0; z < free.depth; ++z) {
       uint64_t* out = legal.row(y, z);
@@ -241,8 +243,8 @@ void erode_air(const AirBody& body, const AirRows& free, AirRows& legal) {
   }
 }
 
-Result<FlightSpace> build_flight_space(const AirData& air, const AirBody& body, int32_t largest,
-                                       int32_t workers, Context& context) {
+Result<FlightSpace> build_flight_space(const world::AirData& air, const world::AirBody& body,
+                                       int32_t largest, int32_t workers, Context& context) {
   FlightSpace space;
   space.shape = air.shape;
   space.width = air.width;
@@ -253,7 +255,7 @@ Result<FlightSpace> build_flight_space(const AirData& air, const AirBody& body, 
   const auto count = static_cast<size_t>(air.zones_x) * static_cast<size_t>(air.zones_z);
   space.zones.resize(count);
   space.leaves.resize(count);
-  std::vector<std::vector<AirCube>> boxes(count);
+  std::vector<std::vector<world::AirCube>> boxes(count);
   std::vector<uint8_t> failed(count, 0);
   const int32_t pad = (body.reach + 3) & -4, base = air.shape.floor & -4;
   const int32_t height = ((air.shape.ceiling - base) + 3) & -4;
@@ -262,7 +264,7 @@ Result<FlightSpace> build_flight_space(const AirData& air, const AirBody& body, 
     const auto zx = static_cast<int32_t>(i) % air.zones_x,
                zz = static_cast<int32_t>(i) / air.zones_x;
     const int32_t across = air.zone_side + 2 * pad;
-    AirRows free(across, height, across, false), legal;
+    world::AirRows free(across, height, across, false), legal;
     if (!fill_window(air, zx * air.zone_side - pad, zz * air.zone_side - pad, base, free)) {
       failed[i] = 1;
       return;
@@ -275,15 +277,15 @@ Result<FlightSpace> build_flight_space(const AirData& air, const AirBody& body, 
       if (base + y < air.shape.ceiling) continue;
       for (int32_t z = 0; z < across; ++z) legal.fill(0, across, y, z, false);
     }
-    space.zones[i] = build_air_tree({.rows = &legal,
-                                     .x = pad,
-                                     .z = pad,
-                                     .side = air.zone_side,
-                                     .width = air.zone_side,
-                                     .depth = air.zone_side,
-                                     .base = base,
-                                     .largest = largest,
-                                     .free_beyond = false});
+    space.zones[i] = world::build_air_tree({.rows = &legal,
+                                            .x = pad,
+                                            .z = pad,
+                                            .side = air.zone_side,
+                                            .width = air.zone_side,
+                                            .depth = air.zone_side,
+                                            .base = base,
+                                            .largest = largest,
+                                            .free_beyond = false});
     number_boxes(space.zones[i], space.leaves[i], boxes[i]);
   });
   if (context.cancel) return Error{Errc::kCancelled, "path: cancelled"};
@@ -294,11 +296,11 @@ Result<FlightSpace> build_flight_space(const AirData& air, const AirBody& body, 
     const auto first = static_cast<uint32_t>(space.boxes.size());
     space.first_box.push_back(first);
     for (uint32_t& word : space.zones[i].nodes) {
-      if (air_kind(word) == AirKind::kFree)
-        word = air_word(AirKind::kFree, air_number(word) + first);
+      if (world::air_kind(word) == world::AirKind::kFree)
+        word = world::air_word(world::AirKind::kFree, world::air_number(word) + first);
     }
     for (FlightSpace::Leaf& leaf : space.leaves[i]) leaf.first_box += first;
-    for (AirCube box : boxes[i]) {
+    for (world::AirCube box : boxes[i]) {
       box.x += zx * air.zone_side;
       box.z += zz * air.zone_side;
       space.boxes.push_back(box);
@@ -310,4 +312,4 @@ Result<FlightSpace> build_flight_space(const AirData& air, const AirBody& body, 
   return space;
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -16,8 +16,10 @@
 
 /// Where one class may fly, as boxes: what flight search runs on.
 namespace throng {
-
 class FlightFinder;
+}
+
+namespace throng::path {
 
 inline constexpr uint32_t kNoBox = UINT32_MAX;
 
@@ -50,17 +52,17 @@ double off_faces(double v);
 AirPoint off_faces(AirPoint p);
 
 struct FlightSpace {
-  AirShape shape;
+  world::AirShape shape;
   int32_t width = 0, depth = 0;  // [voxels]
   int32_t zone_side = 0, zones_x = 0, zones_z = 0;
   /// A zone's tree: the number of a free cube is its box, of a leaf its index in the arrays below.
-  std::vector<AirTreeData> zones;
+  std::vector<world::AirTreeData> zones;
   struct Leaf {
     uint64_t starts = 0;     // lowest voxel of each box
     uint32_t first_box = 0;  // boxes follow in the order of these
   };
   std::vector<std::vector<Leaf>> leaves;  // per zone
-  std::vector<AirCube> boxes;             // zone by zone
+  std::vector<world::AirCube> boxes;      // zone by zone
   std::vector<uint32_t> first_box;        // by zone, and the end
   std::vector<uint32_t> component;        // per box: the first box of its connected component
 
@@ -70,13 +72,13 @@ struct FlightSpace {
   /// Is the straight line legal over its whole length? Points lie within boxes, a skin off their
   /// faces.
   [[nodiscard]] bool sees(AirPoint from, AirPoint to) const;
-  [[nodiscard]] const AirCube& cube(uint32_t box) const { return boxes[box]; }
+  [[nodiscard]] const world::AirCube& cube(uint32_t box) const { return boxes[box]; }
   /// The boxes with voxels in a range, rising zone by zone.
   void boxes_in(const AirRange& range, std::vector<uint32_t>& found) const;
   /// Calls visit(box) for each box of at least `min_side` voxels a side (1 or 4) that shares a part
   /// of a face with this one.
   template <class Visit>
-  void for_neighbours(const AirCube& box, Visit&& visit, int32_t min_side = 1) const;
+  void for_neighbours(const world::AirCube& box, Visit&& visit, int32_t min_side = 1) const;
   /// The same for a square of voxels of a plane: at `plane` along the axis, from u and v on along
   /// the other two, the one of y first, else that of x.
   template <class Visit>
@@ -86,19 +88,20 @@ struct FlightSpace {
 
  private:
   /// Of a voxel of a zone, and of the node of the zone's tree that holds it.
-  [[nodiscard]] uint32_t box_in(size_t zone, const AirTree& tree, const AirTree::Place& place,
-                                int32_t x, int32_t y, int32_t z) const;
+  [[nodiscard]] uint32_t box_in(size_t zone, const world::AirTree& tree,
+                                const world::AirTree::Place& place, int32_t x, int32_t y,
+                                int32_t z) const;
 };
 
 /// The voxels where the body may be, given the free ones. Boxes have at most `largest` voxels a
 /// side. Fails with kBadFile (a zone cannot be used) or kCancelled. The same for any number of
 /// workers.
-Result<FlightSpace> build_flight_space(const AirData& air, const AirBody& body, int32_t largest,
-                                       int32_t workers, Context& context);
+Result<FlightSpace> build_flight_space(const world::AirData& air, const world::AirBody& body,
+                                       int32_t largest, int32_t workers, Context& context);
 
 /// Clears every voxel of `free` around which the body is not free; layers over the rows count as
 /// free, voxels beside them do not. Word by word.
-void erode_air(const AirBody& body, const AirRows& free, AirRows& legal);
+void erode_air(const world::AirBody& body, const world::AirRows& free, world::AirRows& legal);
 
 namespace flight_detail {
 /// Bits of the 2 x 2 x 2 octant that holds bit b of a leaf, and the lowest of them.
@@ -108,11 +111,12 @@ constexpr uint64_t octant(uint32_t b) {
 }
 }  // namespace flight_detail
 
-inline uint32_t FlightSpace::box_in(size_t zone, const AirTree& tree, const AirTree::Place& place,
-                                    int32_t x, int32_t y, int32_t z) const {
-  if (air_kind(place.word) == AirKind::kFree) return air_number(place.word);
-  if (air_kind(place.word) != AirKind::kLeaf) return kNoBox;
-  const uint32_t index = air_number(place.word), bit = air_bit(x, y - tree.base, z);
+inline uint32_t FlightSpace::box_in(size_t zone, const world::AirTree& tree,
+                                    const world::AirTree::Place& place, int32_t x, int32_t y,
+                                    int32_t z) const {
+  if (world::air_kind(place.word) == world::AirKind::kFree) return world::air_number(place.word);
+  if (world::air_kind(place.word) != world::AirKind::kLeaf) return kNoBox;
+  const uint32_t index = world::air_number(place.word), bit = world::air_bit(x, y - tree.base, z);
   const uint64_t cells = tree.leaves[index];
   if ((cells >> bit & 1) == 0) return kNoBox;
   const uint64_t all = flight_detail::octant(bit);
@@ -126,7 +130,7 @@ inline uint32_t FlightSpace::box_at(int32_t x, int32_t y, int32_t z) const {
   if (x < 0 || z < 0 || x >= width || z >= depth) return kNoBox;
   const int32_t zx = x / zone_side, zz = z / zone_side;
   const auto zone = static_cast<size_t>(zz * zones_x + zx);
-  const AirTree tree = zones[zone].view();
+  const world::AirTree tree = zones[zone].view();
   x -= zx * zone_side;
   z -= zz * zone_side;
   return box_in(zone, tree, tree.find(x, y, z), x, y, z);
@@ -141,17 +145,18 @@ void FlightSpace::visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, 
   if (x < 0 || z < 0 || x >= width || z >= depth) return;
   const int32_t zx = x / zone_side, zz = z / zone_side;
   const auto zone = static_cast<size_t>(zz * zones_x + zx);
-  const AirTree tree = zones[zone].view();
+  const world::AirTree tree = zones[zone].view();
   const int32_t own_x = x - zx * zone_side, own_z = z - zz * zone_side;
   const auto place = tree.find(own_x, y, own_z);
-  const AirKind kind = air_kind(place.word);
-  if (kind == AirKind::kFull && (place.cube.side == 0 || place.cube.side >= side)) return;
-  if (kind == AirKind::kFree && place.cube.side >= side) {
-    visit(air_number(place.word));
+  const world::AirKind kind = world::air_kind(place.word);
+  if (kind == world::AirKind::kFull && (place.cube.side == 0 || place.cube.side >= side)) return;
+  if (kind == world::AirKind::kFree && place.cube.side >= side) {
+    visit(world::air_number(place.word));
     return;
   }
-  if (kind == AirKind::kLeaf && min_side > 2) return;  // boxes of leaves have 1 or 2 cells a side
-  if (kind == AirKind::kLeaf && side <= 2) {
+  if (kind == world::AirKind::kLeaf && min_side > 2)
+    return;  // boxes of leaves have 1 or 2 cells a side
+  if (kind == world::AirKind::kLeaf && side <= 2) {
     const uint32_t box = box_in(zone, tree, place, own_x, y, own_z);
     if (side == 1 || (box != kNoBox && boxes[box].side == 2)) {
       if (box != kNoBox) visit(box);
@@ -167,7 +172,7 @@ void FlightSpace::visit_face(int32_t axis, int32_t plane, int32_t u, int32_t v, 
 }
 
 template <class Visit>
-void FlightSpace::for_neighbours(const AirCube& box, Visit&& visit, int32_t min_side) const {
+void FlightSpace::for_neighbours(const world::AirCube& box, Visit&& visit, int32_t min_side) const {
   visit_face(0, box.x + box.side, box.y, box.z, box.side, min_side, visit);
   visit_face(0, box.x - 1, box.y, box.z, box.side, min_side, visit);
   visit_face(1, box.y + box.side, box.x, box.z, box.side, min_side, visit);
@@ -192,7 +197,7 @@ bool air_sees(const Air& air, AirPoint from, AirPoint to) {
   for (;;) {
     const uint32_t index = air.box_at(cell[0], cell[1], cell[2]);
     if (index == kNoBox) return false;
-    const AirCube& box = air.cube(index);
+    const world::AirCube& box = air.cube(index);
     const int32_t low[3] = {box.x, box.y, box.z};
     double leave = std::numeric_limits<double>::infinity();
     int axis = -1;
@@ -221,4 +226,4 @@ bool air_sees(const Air& air, AirPoint from, AirPoint to) {
 /// The legal air of a finder as it was baked. It lives as long as the finder or a copy of it.
 const FlightSpace& space_of(const FlightFinder& finder);
 
-}  // namespace throng
+}  // namespace throng::path

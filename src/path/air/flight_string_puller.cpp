@@ -9,7 +9,7 @@
 // A taut path turns at edges of blockers, and its angles to the edge are alike on both sides. Edges
 // run along the axes, so a waypoint is slid along one axis at a time to where that is so; a
 // waypoint that hangs in the air is cut off, which makes two of it that lie on the edges.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr int32_t kRounds = 6;
@@ -122,4 +122,4 @@ void FlightStringPuller::slide(size_t waypoint) {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -8,7 +8,7 @@
 #include "path/air/air_view.h"
 
 /// Pulls a path through the air taut.
-namespace throng {
+namespace throng::path {
 
 /// Leaves out waypoints that are not needed and slides the others to where the path is shortest, as
 /// far as the lines to their neighbours stay legal. Never makes a path longer. Owns its memory.
@@ -26,4 +26,4 @@ class FlightStringPuller {
   std::vector<AirPoint> next_;
 };
 
-}  // namespace throng
+}  // namespace throng::path

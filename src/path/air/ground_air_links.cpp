@@ -11,7 +11,7 @@
 
 // Sorted pairs of ground and air, from one pass over all legal cells; turns between ground and air
 // are counted by a breadth-first search.
-namespace throng {
+namespace throng::path {
 namespace {
 
 // Ground, air, and where the one leads into the other.
@@ -34,7 +34,7 @@ void sort_once(std::vector<Junction>& pairs) {
 
 }  // namespace
 
-GroundAirLinks::GroundAirLinks(const WorldData& world, const PathMesh& mesh,
+GroundAirLinks::GroundAirLinks(const world::WorldData& world, const PathMesh& mesh,
                                const FlightSpace& space, int32_t workers) {
   const FlightEndpoints ends(world, space, mesh.avatar_class);
   std::vector<std::vector<Junction>> of_level(mesh.first.size() - 1);
@@ -42,14 +42,15 @@ GroundAirLinks::GroundAirLinks(const WorldData& world, const PathMesh& mesh,
     std::vector<Junction>& pairs = of_level[l];
     const auto level = static_cast<uint32_t>(l);
     if (mesh.first[l] == mesh.first[l + 1]) return;
-    const GroundLevel ground = ground_level(world, level, mesh.avatar_class);
+    const world::GroundLevel ground = world::ground_level(world, level, mesh.avatar_class);
     for (uint32_t r = mesh.first[l]; r < mesh.first[l + 1]; ++r) {
       const MeshRect& rect = mesh.rects[r];
       for (int32_t z = rect.z; z < rect.z + rect.depth; ++z) {
         for (int32_t x = rect.x; x < rect.x + rect.width; ++x) {
-          const Place place = place_at(world, ground,
-                                       {(int64_t{x} << kUnitBits) + kUnitsPerCell / 2,
-                                        (int64_t{z} << kUnitBits) + kUnitsPerCell / 2});
+          const Place place =
+              world::place_at(world, ground,
+                              {(int64_t{x} << world::kUnitBits) + world::kUnitsPerCell / 2,
+                               (int64_t{z} << world::kUnitBits) + world::kUnitsPerCell / 2});
           const auto up = ends.take_off(place);
           if (!up) continue;
           const Junction pair{rect.component, space.component[space.box_at(*up)], {level, x, z}};
@@ -143,4 +144,4 @@ void GroundAirLinks::search(Part from, Part goal, std::span<const Pair> banned,
   }
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -12,7 +12,7 @@
 
 /// Which ground leads into which air: a query between ends that are not connected is answered
 /// without a search.
-namespace throng {
+namespace throng::path {
 
 /// Pairs of a component of the ground (MeshRect::component) and one of the air
 /// (FlightSpace::component) that a take-off joins.
@@ -20,7 +20,7 @@ class GroundAirLinks {
  public:
   GroundAirLinks() = default;
   /// Tries every legal cell of the class. The same for any number of workers. Linear in the cells.
-  GroundAirLinks(const WorldData& world, const PathMesh& mesh, const FlightSpace& space,
+  GroundAirLinks(const world::WorldData& world, const PathMesh& mesh, const FlightSpace& space,
                  int32_t workers);
 
   /// The air over some ground, ascending.
@@ -73,4 +73,4 @@ class GroundAirLinks {
   std::vector<uint32_t> under_;        // places in ground_, ascending
 };
 
-}  // namespace throng
+}  // namespace throng::path

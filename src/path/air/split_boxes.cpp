@@ -3,7 +3,7 @@
 #include "path/air/split_boxes.h"
 
 // Each box with blocked cells becomes an octree of free parts. Linear in the box's cells.
-namespace throng {
+namespace throng::path {
 
 SplitBoxes::SplitBoxes(const FlightSpace& space)
     : space_(&space),
@@ -12,17 +12,17 @@ SplitBoxes::SplitBoxes(const FlightSpace& space)
 
 uint32_t SplitBoxes::part_at(uint32_t box, int32_t x, int32_t y, int32_t z) const {
   const Nodes& nodes = nodes_.find(box)->second;
-  const AirCube& cube = space_->boxes[box];
+  const world::AirCube& cube = space_->boxes[box];
   x -= cube.x;
   y -= cube.y;
   z -= cube.z;
   uint32_t word = nodes[0];
-  for (int32_t side = cube.side / 2; air_kind(word) == AirKind::kInner; side /= 2) {
+  for (int32_t side = cube.side / 2; world::air_kind(word) == world::AirKind::kInner; side /= 2) {
     const int child =
         ((x & side) != 0 ? 1 : 0) | ((y & side) != 0 ? 2 : 0) | ((z & side) != 0 ? 4 : 0);
-    word = nodes[air_number(word) + static_cast<uint32_t>(child)];
+    word = nodes[world::air_number(word) + static_cast<uint32_t>(child)];
   }
-  return air_kind(word) == AirKind::kFree ? first_ + air_number(word) : kNoBox;
+  return world::air_kind(word) == world::AirKind::kFree ? first_ + world::air_number(word) : kNoBox;
 }
 
 void SplitBoxes::cut(uint32_t box, const CubeCells& blocked) {
@@ -32,7 +32,7 @@ void SplitBoxes::cut(uint32_t box, const CubeCells& blocked) {
     split_[box / 64] &= ~(uint64_t{1} << (box % 64));
   }
   Nodes nodes(1);
-  const AirCube& cube = space_->boxes[box];
+  const world::AirCube& cube = space_->boxes[box];
   const int32_t side = cube.side;
   uint32_t any = 0;
   for (int32_t y = 0; y < side; ++y) {
@@ -44,7 +44,7 @@ void SplitBoxes::cut(uint32_t box, const CubeCells& blocked) {
   nodes_.emplace(box, std::move(nodes));
 }
 
-uint32_t SplitBoxes::build(Nodes& nodes, const AirCube& cube, const AirCube& box,
+uint32_t SplitBoxes::build(Nodes& nodes, const world::AirCube& cube, const world::AirCube& box,
                            const CubeCells& blocked) {
   const uint32_t columns = (~uint32_t{0} >> (32 - cube.side)) << cube.x;
   uint32_t any = 0, all = columns;
@@ -54,7 +54,7 @@ uint32_t SplitBoxes::build(Nodes& nodes, const AirCube& cube, const AirCube& box
       all &= blocked.row(y, z);
     }
   }
-  if (all == columns) return air_word(AirKind::kFull, 0);
+  if (all == columns) return world::air_word(world::AirKind::kFull, 0);
   if ((any & columns) == 0) {
     uint32_t part = static_cast<uint32_t>(cubes_.size());
     if (spare_.empty()) {
@@ -64,7 +64,7 @@ uint32_t SplitBoxes::build(Nodes& nodes, const AirCube& cube, const AirCube& box
       spare_.pop_back();
     }
     cubes_[part] = {box.x + cube.x, box.y + cube.y, box.z + cube.z, cube.side};
-    return air_word(AirKind::kFree, part);
+    return world::air_word(world::AirKind::kFree, part);
   }
   const size_t first = nodes.size();
   nodes.resize(first + 8);
@@ -76,7 +76,7 @@ uint32_t SplitBoxes::build(Nodes& nodes, const AirCube& cube, const AirCube& box
         box, blocked);
     nodes[first + static_cast<size_t>(c)] = word;
   }
-  return air_word(AirKind::kInner, static_cast<uint32_t>(first));
+  return world::air_word(world::AirKind::kInner, static_cast<uint32_t>(first));
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -11,7 +11,7 @@
 
 // Which cells of a tile an obstacle blocks: those on which a body could touch its prism or
 // triangles. Linear in cells times triangles.
-namespace throng {
+namespace throng::path {
 namespace {
 
 PlanSquare box_of(std::span<const PlanPoint> corners) {
@@ -30,8 +30,8 @@ PlanPoint corner_of(const TileFloor& floor) {
 }
 
 // The height of a body on a cell, from its lowest feet to its highest head. [m]
-std::pair<double, double> body_heights(const LevelView& view, const AvatarClass& avatar, int32_t x,
-                                       int32_t z) {
+std::pair<double, double> body_heights(const world::LevelView& view, const AvatarClass& avatar,
+                                       int32_t x, int32_t z) {
   const auto [gx, gz] = rise_at(view, x, z);
   const double feet = view.sample(x, z) * 1e-3;
   const double tilt = (std::abs(gx) + std::abs(gz)) * 0.5e-3 + kHeightRounding;
@@ -40,7 +40,8 @@ std::pair<double, double> body_heights(const LevelView& view, const AvatarClass&
 
 }  // namespace
 
-SquareRange tiles_near(const WorldData& world, std::span<const PlanPoint> polygon, double radius) {
+SquareRange tiles_near(const world::WorldData& world, std::span<const PlanPoint> polygon,
+                       double radius) {
   const PlanSquare box = box_of(polygon);
   const double side = world.summary.cell * kTileCells;
   const auto tile = [&](double at, double origin, int32_t cells) {
@@ -68,19 +69,20 @@ SquareRange cells_near(const TileFloor& floor, std::span<const PlanPoint> polygo
   };
 }
 
-std::pair<int32_t, int32_t> rise_at(const LevelView& view, int32_t x, int32_t z) {
+std::pair<int32_t, int32_t> rise_at(const world::LevelView& view, int32_t x, int32_t z) {
   if (view.is_constant()) return {0, 0};
-  return {sheet_slope(
+  return {world::sheet_slope(
               x, [&](int32_t i) { return view.sample(i, z); },
               [&](int32_t i) { return view.has(i, z); }),
-          sheet_slope(
+          world::sheet_slope(
               z, [&](int32_t k) { return view.sample(x, k); },
               [&](int32_t k) { return view.has(x, k); })};
 }
 
-CellRows blocked_cells(const TileFloor& floor, const AvatarClass& avatar, const Prism& prism,
-                       std::span<const std::array<Vec3d, 3>> triangles, const uint64_t* legal) {
-  CellRows blocked{};
+world::CellRows blocked_cells(const TileFloor& floor, const AvatarClass& avatar, const Prism& prism,
+                              std::span<const std::array<Vec3d, 3>> triangles,
+                              const uint64_t* legal) {
+  world::CellRows blocked{};
   const double radius = taking_reach(avatar);
   const auto [first_x, last_x, first_z, last_z] = cells_near(floor, prism.corners, radius);
   if (first_x > last_x) return blocked;
@@ -118,4 +120,4 @@ CellRows blocked_cells(const TileFloor& floor, const AvatarClass& avatar, const 
   return blocked;
 }
 
-}  // namespace throng
+}  // namespace throng::path

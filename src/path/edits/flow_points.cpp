@@ -13,7 +13,7 @@
 #include "world/place.h"
 
 // Dijkstra's search outwards from all goals over the points of portals of a LiveMesh.
-namespace throng {
+namespace throng::path {
 namespace {
 
 bool lies_before(const LiveStop& a, const LiveStop& b) {
@@ -46,11 +46,11 @@ class Outwards {
       const LiveNode node = nodes_.nodes[index];
       const LiveLevel& level = *mesh_.level_with_portals(node.stop.level);
       const double factor = mesh_.factor(level.rects[node.stop.rect]);
-      for_portal_points(mesh_, node.stop, [&](GroundPoint side, const LiveStop& beyond) {
+      for_portal_points(mesh_, node.stop, [&](world::GroundPoint side, const LiveStop& beyond) {
         const double there = mesh_.factor(mesh_.level(beyond.level)->rects[beyond.rect]);
         if (!std::isfinite(there)) return;
         push(beyond, index,
-             node.cost + distance_of(node.stop.at, side) * factor + there / kUnitsPerCell);
+             node.cost + distance_of(node.stop.at, side) * factor + there / world::kUnitsPerCell);
       });
     }
     return true;
@@ -117,7 +117,7 @@ std::pair<uint32_t, double> FlowPoints::leave_by(LiveMesh& mesh, const LiveStop&
 LiveStop FlowPoints::across(LiveMesh& mesh, const Point& point) const {
   const LiveStop& on = points_[point.next].stop;
   LiveStop other = on;
-  for_portal_points(mesh, on, [&](GroundPoint side, const LiveStop& beyond) {
+  for_portal_points(mesh, on, [&](world::GroundPoint side, const LiveStop& beyond) {
     if (beyond.level == point.stop.level && beyond.at.x == point.stop.at.x &&
         beyond.at.z == point.stop.at.z) {
       other.at = side;
@@ -156,7 +156,7 @@ Place FlowPoints::next(LiveGround& of, const Place& place) const {
   LiveStop to = best->stop;
   const bool is_there = to.level == from.level && to.at.x == from.at.x && to.at.z == from.at.z;
   if (is_there && best->next != kNoPoint) to = across(ground.mesh, *best);
-  return place_at(ground.mesh.world(), ground.mesh.level(to.level)->ground, to.at);
+  return world::place_at(ground.mesh.world(), ground.mesh.level(to.level)->ground, to.at);
 }
 
 void FlowPoints::find_path(LiveGround& of, const Place& place, Path& path) const {
@@ -177,4 +177,4 @@ void FlowPoints::find_path(LiveGround& of, const Place& place, Path& path) const
   path.end = PathEnd::kReached;
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -15,7 +15,7 @@
 
 /// The distances of a FlowField, apart from the ground: one table serves many workers, each with
 /// its own copy of the ground.
-namespace throng {
+namespace throng::path {
 
 class FlowPoints {
  public:
@@ -54,4 +54,4 @@ class FlowPoints {
   double max_distance_ = kNever;  // [cells]
 };
 
-}  // namespace throng
+}  // namespace throng::path

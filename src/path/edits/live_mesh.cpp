@@ -16,7 +16,7 @@
 
 // Rectangles and portals of one level tile after the other, cut from its cells less those that
 // obstacles block; a change makes the levels of its tiles again.
-namespace throng {
+namespace throng::path {
 namespace {
 
 int64_t tile_key(int32_t x, int32_t z) { return (int64_t{z} << 32) | static_cast<uint32_t>(x); }
@@ -32,7 +32,8 @@ uint16_t LiveLevel::rect_at(int32_t x, int32_t z) const {
 LiveMesh::LiveMesh(World world, const LiveConfig& config)
     : world_(std::move(world)),
       config_(config),
-      step_(step_mm(data_of(world_)->summary.classes[static_cast<size_t>(config.avatar_class)])),
+      step_(world::step_mm(
+          data_of(world_)->summary.classes[static_cast<size_t>(config.avatar_class)])),
       levels_(data_of(world_)->level_count) {
   area_cost_.fill(1);
   for (size_t s = 0; s < slope_factor_.size(); ++s) {
@@ -128,7 +129,7 @@ void LiveMesh::switch_link(const LevelLinkEnd& link, bool active) {
   }
 }
 
-bool LiveMesh::stand(uint32_t index, GroundPoint at, uint16_t& rect) {
+bool LiveMesh::stand(uint32_t index, world::GroundPoint at, uint16_t& rect) {
   const LiveLevel& of = *level(index);
   const int32_t x = at.cell_x(), z = at.cell_z();
   if (of.ground.zone == nullptr || x >> 6 != of.tile_x || z >> 6 != of.tile_z ||
@@ -172,7 +173,7 @@ const LiveLevel* LiveMesh::level_with_portals(uint32_t index) {
 }
 
 void LiveMesh::make(uint32_t index, LiveLevel& level) const {
-  level.ground = ground_level(world(), index, config_.avatar_class);
+  level.ground = world::ground_level(world(), index, config_.avatar_class);
   if (level.ground.zone == nullptr) {  // no avatar stands there
     level.ground.world_level = index;
     level.rects.emplace_back();
@@ -180,8 +181,8 @@ void LiveMesh::make(uint32_t index, LiveLevel& level) const {
     return;
   }
   std::tie(level.tile_x, level.tile_z) =
-      tile_of(world(), *level.ground.zone, *level.ground.view.record);
-  level.legal = legal_rows(level.ground);
+      world::tile_of(world(), *level.ground.zone, *level.ground.view.record);
+  level.legal = graph::legal_rows(level.ground);
   block_cells(level);
   cut(level);
 }
@@ -195,8 +196,8 @@ void LiveMesh::block_cells(LiveLevel& level) const {
   for (const ChangeId id : found->second) {
     const Change& change = changes_[id - 1];
     if (!change.active || change.is_area) continue;
-    const CellRows blocked = blocked_cells(floor, avatar, change.solid.prism,
-                                           change.solid.triangles, level.legal.data());
+    const world::CellRows blocked = blocked_cells(floor, avatar, change.solid.prism,
+                                                  change.solid.triangles, level.legal.data());
     for (size_t z = 0; z < blocked.size(); ++z) level.legal[z] &= ~blocked[z];
   }
 }
@@ -207,9 +208,9 @@ std::array<uint8_t, 4096> LiveMesh::kinds_of(const LiveLevel& level) const {
   kinds.fill(record.area_value());
   if (record.area_kind() == format::CellsKind::Blocks) {
     std::array<uint16_t, 4096> values;
-    unpack_values(level.ground.zone->words(record.area_offset()), values.data());
+    world::unpack_values(level.ground.zone->words(record.area_offset()), values.data());
     for (size_t c = 0; c < kinds.size(); ++c)
-      kinds[c] = static_cast<uint8_t>(values[c] & kLastAreaKind);
+      kinds[c] = static_cast<uint8_t>(values[c] & world::kLastAreaKind);
   }
   const auto found = changes_of_tile_.find(tile_key(level.tile_x, level.tile_z));
   if (found == changes_of_tile_.end()) return kinds;
@@ -250,7 +251,7 @@ std::array<uint8_t, 4096> LiveMesh::slopes_of(const LiveLevel& level) const {
 
 // Rectangles of one kind of ground each.
 void LiveMesh::cut(LiveLevel& level) const {
-  const auto cuts = step_cuts(level.ground, level.legal, step_);
+  const auto cuts = graph::step_cuts(level.ground, level.legal, step_);
   const std::array<uint8_t, 4096> kinds = kinds_of(level), slopes = slopes_of(level);
   std::array<bool, 64 * kSlopeClasses> done{};
   for (size_t c = 0; c < kinds.size(); ++c) {
@@ -258,7 +259,7 @@ void LiveMesh::cut(LiveLevel& level) const {
     if (done[sort] || !level.is_legal(static_cast<int32_t>(c % 64), static_cast<int32_t>(c / 64)))
       continue;
     done[sort] = true;
-    CellRows same{};
+    world::CellRows same{};
     for (size_t k = c; k < kinds.size(); ++k) {
       if (kinds[k] == kinds[c] && slopes[k] == slopes[c]) same[k / 64] |= uint64_t{1} << (k % 64);
     }
@@ -288,9 +289,9 @@ void LiveMesh::find_portals(LiveLevel& level) {
         const int32_t z = level.tile_z * kTileCells + (dz == 0  ? i
                                                        : dz > 0 ? rect.z1 - 1
                                                                 : rect.z0);
-        const auto there = step_to(ground, &level, x, z, x + dx, z + dz, step_);
+        const auto there = world::step_to(ground, &level, x, z, x + dx, z + dz, step_);
         const auto back =
-            there ? step_to(ground, *there, x + dx, z + dz, x, z, step_) : std::nullopt;
+            there ? world::step_to(ground, *there, x + dx, z + dz, x, z, step_) : std::nullopt;
         if (!back || *back != &level) {
           joined = false;
           continue;
@@ -317,4 +318,4 @@ void LiveMesh::find_portals(LiveLevel& level) {
   level.has_portals = true;
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -15,7 +15,7 @@
 #include "world/ground.h"
 
 /// The ground of a LiveGround, level by level, made on first use.
-namespace throng {
+namespace throng::path {
 
 inline constexpr int32_t kSlopeClasses = 6;
 inline constexpr std::array<double, kSlopeClasses> kSteepestOf{0.05, 0.1, 0.2, 0.35, 0.6, 1.2};
@@ -36,9 +36,9 @@ struct LivePortal {
 };
 
 struct LiveLevel {
-  GroundLevel ground;
+  world::GroundLevel ground;
   int32_t tile_x = 0, tile_z = 0;
-  CellRows legal{};
+  world::CellRows legal{};
   bool has_portals = false;
   std::vector<LiveRect> rects;  // one more at the end, once there are portals
   std::vector<LivePortal> portals;
@@ -55,7 +55,7 @@ class LiveMesh {
   LiveMesh(World world, const LiveConfig& config);
   LiveMesh(const LiveMesh& other);
 
-  [[nodiscard]] const WorldData& world() const { return *data_of(world_); }
+  [[nodiscard]] const world::WorldData& world() const { return *data_of(world_); }
   [[nodiscard]] int32_t avatar_class() const { return config_.avatar_class; }
   [[nodiscard]] int32_t step() const { return step_; }
 
@@ -75,7 +75,7 @@ class LiveMesh {
   /// An off-mesh link in one direction, as long as the change is active.
   struct OffMeshLinkEnd {
     ChangeId change = 0;
-    GroundPoint from, to;
+    world::GroundPoint from, to;
     uint32_t to_level = 0;
     double cost = 0;  // [cells]
   };
@@ -97,7 +97,7 @@ class LiveMesh {
   /// Those that are active now.
   [[nodiscard]] const std::vector<OffMeshLinkEnd>& links_from(uint32_t level) const;
   /// Can the class stand at a point of a level now? In which rectangle?
-  bool stand(uint32_t level, GroundPoint at, uint16_t& rect);
+  bool stand(uint32_t level, world::GroundPoint at, uint16_t& rect);
   bool set_active(ChangeId change, bool active, bool remove);
 
   /// As world/walk.h needs it.
@@ -145,4 +145,4 @@ class LiveMesh {
       off_mesh_links_;  // active ones, by level, in order of change
 };
 
-}  // namespace throng
+}  // namespace throng::path

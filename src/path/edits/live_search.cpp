@@ -8,7 +8,7 @@
 
 // A* over points of portals at area costs, then string pulling by doubling, halving and moving
 // stops.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -95,17 +95,18 @@ double segment_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
     if (mesh.is_plain()) return;
     double at = t;
     if (x != before_x) {
-      const int64_t line = int64_t{std::max(x, before_x)} << kUnitBits;
+      const int64_t line = int64_t{std::max(x, before_x)} << world::kUnitBits;
       at = static_cast<double>(line - from.at.x) / dx;
     } else if (z != before_z) {
-      const int64_t line = int64_t{std::max(z, before_z)} << kUnitBits;
+      const int64_t line = int64_t{std::max(z, before_z)} << world::kUnitBits;
       at = static_cast<double>(line - from.at.z) / dz;
     }
     cost += (at - t) * length * factor;
     t = at;
     factor = factor_at(mesh, *next, x, z);
   };
-  const WalkStop stop = walk_far(mesh.ground(), level, from.at, to.at, mesh.step(), enter);
+  const world::WalkStop stop =
+      world::walk_far(mesh.ground(), level, from.at, to.at, mesh.step(), enter);
   if (!stop.arrived || level->ground.world_level != to.level) return kNever;
   if (mesh.is_plain()) return length;
   cost += (1 - t) * length * factor;
@@ -152,7 +153,7 @@ void LiveStringPuller::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops) {
       const auto uz = static_cast<double>(b.at.z - a.at.z);
       const double size = ux * ux + uz * uz;
       if (!(size > 0)) continue;
-      const GroundPoint from = stops[i].at;
+      const world::GroundPoint from = stops[i].at;
       const double along = std::clamp(
           (static_cast<double>(from.x - a.at.x) * ux + static_cast<double>(from.z - a.at.z) * uz) /
               size,
@@ -163,11 +164,12 @@ void LiveStringPuller::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops) {
       for (int h = 0; h < kHalvings; ++h, step /= 2) {
         const double t = low + step;
         if (t > 1) continue;
-        const GroundPoint at{from.x + std::llround(t * (foot_x - static_cast<double>(from.x))),
-                             from.z + std::llround(t * (foot_z - static_cast<double>(from.z)))};
+        const world::GroundPoint at{
+            from.x + std::llround(t * (foot_x - static_cast<double>(from.x))),
+            from.z + std::llround(t * (foot_z - static_cast<double>(from.z)))};
         // On whichever level the segment there leads to.
         const LiveLevel* level = mesh.level(a.level);
-        if (!walk_far(mesh.ground(), level, a.at, at, mesh.step()).arrived) continue;
+        if (!world::walk_far(mesh.ground(), level, a.at, at, mesh.step()).arrived) continue;
         const LiveStop moved{level->ground.world_level,
                              level->rect_at(at.cell_x() & 63, at.cell_z() & 63), at};
         const double cost = segment_cost(mesh, a, moved) + segment_cost(mesh, moved, b);
@@ -230,11 +232,12 @@ void LiveSearch::note_nearest(LiveMesh& mesh, const LiveLevel& level, uint32_t i
   const LiveRect& rect = level.rects[stop.rect];
   const auto clamped = [](int64_t at, int32_t tile, int32_t first, int32_t end) {
     const int64_t cell = int64_t{tile} * kTileCells;
-    return std::clamp(at, (cell + first) << kUnitBits, ((cell + end) << kUnitBits) - 1);
+    return std::clamp(at, (cell + first) << world::kUnitBits,
+                      ((cell + end) << world::kUnitBits) - 1);
   };
-  const GroundPoint at{clamped(to_.at.x, level.tile_x, rect.x0, rect.x1),
-                       clamped(to_.at.z, level.tile_z, rect.z0, rect.z1)};
-  const auto feet = [](const LiveLevel& of, GroundPoint p) {
+  const world::GroundPoint at{clamped(to_.at.x, level.tile_x, rect.x0, rect.x1),
+                              clamped(to_.at.z, level.tile_z, rect.z0, rect.z1)};
+  const auto feet = [](const LiveLevel& of, world::GroundPoint p) {
     return of.ground.view.sample(p.cell_x() & 63, p.cell_z() & 63);
   };
   const double rise =
@@ -290,11 +293,11 @@ LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t max_nodes, uint64
     if (node.stop.level == to_.level && node.stop.rect == to_.rect)
       push(mesh, to_, index, node.cost + away * factor);
     push_links(mesh, node, index, factor);
-    for_portal_points(mesh, node.stop, [&](GroundPoint side, const LiveStop& beyond) {
+    for_portal_points(mesh, node.stop, [&](world::GroundPoint side, const LiveStop& beyond) {
       const double beyond_factor = mesh.factor(mesh.level(beyond.level)->rects[beyond.rect]);
       if (!std::isfinite(beyond_factor)) return;
-      const double cost =
-          node.cost + distance_of(node.stop.at, side) * factor + beyond_factor / kUnitsPerCell;
+      const double cost = node.cost + distance_of(node.stop.at, side) * factor +
+                          beyond_factor / world::kUnitsPerCell;
       push(mesh, beyond, index, cost);
     });
   }
@@ -316,11 +319,11 @@ void LiveSearch::trace(LiveMesh& mesh, std::vector<LiveStop>& stops) const {
       continue;
     }
     if (before.level == node.stop.level && before.rect == node.stop.rect) continue;
-    for_portal_points(mesh, before, [&](GroundPoint side, const LiveStop& beyond) {
+    for_portal_points(mesh, before, [&](world::GroundPoint side, const LiveStop& beyond) {
       if (same(beyond, node.stop)) stops.push_back({before.level, before.rect, side});
     });
   }
   std::reverse(stops.begin(), stops.end());
 }
 
-}  // namespace throng
+}  // namespace throng::path

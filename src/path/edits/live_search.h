@@ -10,13 +10,13 @@
 #include "path/ground/open_list.h"
 
 /// Paths of low cost over a LiveMesh: a search over points of portals, pulled taut afterwards.
-namespace throng {
+namespace throng::path {
 
 /// A point of a path, standing in a rectangle.
 struct LiveStop {
   uint32_t level = 0;  // of the world
   uint16_t rect = 0;
-  GroundPoint at;
+  world::GroundPoint at;
   double off_mesh_link =
       0;  // cost of the off-mesh link that leads there, 0 if a segment does [cells]
 };
@@ -25,8 +25,8 @@ struct LiveStop {
 struct LiveNode {
   LiveStop stop;
   uint32_t parent = UINT32_MAX;
-  double cost = 0;        // so far [cells]
-  GroundPoint link_from;  // if stop.off_mesh_link > 0: in the parent's rectangle
+  double cost = 0;               // so far [cells]
+  world::GroundPoint link_from;  // if stop.off_mesh_link > 0: in the parent's rectangle
   bool done = false;
 };
 
@@ -116,9 +116,9 @@ class LiveSearch {
   uint64_t expanded_ = 0;
 };
 
-inline double distance_of(GroundPoint a, GroundPoint b) {  // [cells]
+inline double distance_of(world::GroundPoint a, world::GroundPoint b) {  // [cells]
   const auto dx = static_cast<double>(a.x - b.x), dz = static_cast<double>(a.z - b.z);
-  return std::sqrt(dx * dx + dz * dz) * (1.0 / kUnitsPerCell);
+  return std::sqrt(dx * dx + dz * dz) * (1.0 / world::kUnitsPerCell);
 }
 
 template <class Visit>
@@ -128,7 +128,7 @@ void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit) {
   const LiveRect& rect = level.rects[from.rect];
   const uint32_t end = level.rects[from.rect + size_t{1}].first_portal;
   const auto unit = [](int32_t tile, int32_t cell) {
-    return (int64_t{tile} * kTileCells + cell) << kUnitBits;
+    return (int64_t{tile} * kTileCells + cell) << world::kUnitBits;
   };
   for (uint32_t p = rect.first_portal; p < end; ++p) {
     const LivePortal portal = level.portals[p];
@@ -141,9 +141,11 @@ void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit) {
       const int64_t border = along_x ? border_z : border_x;
       const int64_t inside = toward > 0 ? border - 1 : border;
       const int64_t outside = toward > 0 ? border : border - 1;
-      const LiveStop beyond{portal.to_level, portal.to_rect,
-                            along_x ? GroundPoint{along, outside} : GroundPoint{outside, along}};
-      visit(along_x ? GroundPoint{along, inside} : GroundPoint{inside, along}, beyond);
+      const LiveStop beyond{
+          portal.to_level, portal.to_rect,
+          along_x ? world::GroundPoint{along, outside} : world::GroundPoint{outside, along}};
+      visit(along_x ? world::GroundPoint{along, inside} : world::GroundPoint{inside, along},
+            beyond);
     };
     const int32_t tile = along_x ? level.tile_x : level.tile_z;
     // A unit from its ends, so that nothing beside it is grazed; the same points from both sides.
@@ -154,4 +156,4 @@ void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit) {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -12,9 +12,9 @@
 namespace throng {
 
 struct LiveGround::State {
-  explicit State(LiveMesh of) : mesh(std::move(of)) {}
+  explicit State(path::LiveMesh of) : mesh(std::move(of)) {}
 
-  bool locate(const Place& place, LiveStop& stop);
+  bool locate(const Place& place, path::LiveStop& stop);
   /// False: the search has more to expand.
   bool advance(uint64_t max_nodes, uint64_t max_bytes, Path& path);
   /// Of `stops`.
@@ -22,14 +22,14 @@ struct LiveGround::State {
   /// What a straight line from its end to the goal meets first.
   Obstacle blocker();
 
-  LiveMesh mesh;
-  LiveSearch search;
-  LiveStringPuller straight;
+  path::LiveMesh mesh;
+  path::LiveSearch search;
+  path::LiveStringPuller straight;
   Place from_place, to_place;
-  LiveStop from, to;
+  path::LiveStop from, to;
   uint64_t version = 0;
   bool searching = false;
-  std::vector<LiveStop> stops;
+  std::vector<path::LiveStop> stops;
 };
 
 }  // namespace throng

@@ -11,24 +11,24 @@
 #include "world/place.h"
 
 // What blocks a straight walk: rays over the cells around its end.
-namespace throng {
+namespace throng::path {
 namespace {
 
-int32_t ceiling_at(const GroundLevel& level, int32_t x, int32_t z) {
+int32_t ceiling_at(const world::GroundLevel& level, int32_t x, int32_t z) {
   const format::Level& record = *level.view.record;
   if (record.ceiling_kind() == format::HeightKind::None) return kOpenSky;
   if (record.ceiling_kind() == format::HeightKind::Constant) return record.ceiling_base();
-  const uint16_t above = value_at(level.zone->words(record.ceiling_offset()), x, z);
-  return above == kNoValue ? kOpenSky : record.ceiling_base() + above;
+  const uint16_t above = world::value_at(level.zone->words(record.ceiling_offset()), x, z);
+  return above == world::kNoValue ? kOpenSky : record.ceiling_base() + above;
 }
 
 // The floor nearest to a height over a cell of the grid, on any level.
-std::optional<GroundLevel> nearest_floor(const WorldGround& ground, int32_t x, int32_t z,
-                                         int32_t feet) {
-  std::optional<GroundLevel> best;
+std::optional<world::GroundLevel> nearest_floor(const world::WorldGround& ground, int32_t x,
+                                                int32_t z, int32_t feet) {
+  std::optional<world::GroundLevel> best;
   int32_t best_rise = INT32_MAX;
   if (x < 0 || z < 0 || x >= ground.world.width || z >= ground.world.depth) return best;
-  ground.for_tile(x >> 6, z >> 6, feet, feet, [&](const GroundLevel& level) {
+  ground.for_tile(x >> 6, z >> 6, feet, feet, [&](const world::GroundLevel& level) {
     if (!level.view.has(x & 63, z & 63)) return;
     const int32_t rise = std::abs(ground.sample(level, x & 63, z & 63) - feet);
     if (rise >= best_rise) return;
@@ -39,12 +39,12 @@ std::optional<GroundLevel> nearest_floor(const WorldGround& ground, int32_t x, i
 }
 
 // Rise of a level's floor over a cell of it. [mm per cell]
-double slope_at(const GroundLevel& level, int32_t x, int32_t z) {
+double slope_at(const world::GroundLevel& level, int32_t x, int32_t z) {
   const auto sample = [&](int32_t i, int32_t k) { return level.view.sample(i, k); };
   const auto has = [&](int32_t i, int32_t k) { return level.view.has(i, k); };
-  const int32_t gx = sheet_slope(
+  const int32_t gx = world::sheet_slope(
       x, [&](int32_t i) { return sample(i, z); }, [&](int32_t i) { return has(i, z); });
-  const int32_t gz = sheet_slope(
+  const int32_t gz = world::sheet_slope(
       z, [&](int32_t k) { return sample(x, k); }, [&](int32_t k) { return has(x, k); });
   return std::sqrt(static_cast<double>(gx) * gx + static_cast<double>(gz) * gz);
 }
@@ -59,12 +59,12 @@ struct Around {
 // blocks a body is inferred from what is seen where its own floor ends.
 class Surroundings {
  public:
-  Surroundings(const WorldGround& ground, int32_t x, int32_t z, int32_t feet)
+  Surroundings(const world::WorldGround& ground, int32_t x, int32_t z, int32_t feet)
       : ground_(ground),
         x_(x),
         z_(z),
         feet_(feet),
-        step_(step_mm(avatar())),
+        step_(world::step_mm(avatar())),
         height_(static_cast<int32_t>(std::ceil(avatar().height * 1000))),
         cell_(ground.world.summary.cell * 1000),
         steepest_(std::tan(avatar().max_slope * std::numbers::pi / 180) * cell_) {}
@@ -106,7 +106,7 @@ class Surroundings {
         found = {sight, floor};
       }
     };
-    ground_.for_tile(x >> 6, z >> 6, feet, feet, [&](const GroundLevel& level) {
+    ground_.for_tile(x >> 6, z >> 6, feet, feet, [&](const world::GroundLevel& level) {
       if (!level.view.has(x & 63, z & 63)) return;
       const int32_t floor = ground_.sample(level, x & 63, z & 63);
       const int32_t rise = floor - feet;
@@ -213,15 +213,15 @@ class Surroundings {
 
   static constexpr double kThickWall = 600;  // [mm]
 
-  const WorldGround& ground_;
+  const world::WorldGround& ground_;
   int32_t x_, z_, feet_, step_, height_;
   double cell_, steepest_;  // [mm; mm per cell]
 };
 
 }  // namespace
 
-Obstacle obstacle_beyond(const WorldGround& ground, const GroundLevel& level,
-                         const WalkStop& stop) {
+Obstacle obstacle_beyond(const world::WorldGround& ground, const world::GroundLevel& level,
+                         const world::WalkStop& stop) {
   const int32_t feet = ground.sample(level, stop.x & 63, stop.z & 63);
   const AvatarClass& avatar =
       ground.world.summary.classes[static_cast<size_t>(ground.avatar_class)];
@@ -230,7 +230,7 @@ Obstacle obstacle_beyond(const WorldGround& ground, const GroundLevel& level,
     const auto floor = nearest_floor(ground, stop.x + dx, stop.z + dz, feet);
     if (floor && floor->is_legal((stop.x + dx) & 63, (stop.z + dz) & 63)) {
       const int32_t there = ground.sample(*floor, (stop.x + dx) & 63, (stop.z + dz) & 63);
-      if (std::abs(there - feet) <= step_mm(avatar)) return Obstacle::kNone;
+      if (std::abs(there - feet) <= world::step_mm(avatar)) return Obstacle::kNone;
     }
     const Around around = Surroundings(ground, stop.x, stop.z, feet).cast_ahead(dx, dz);
     if (around.low) return Obstacle::kLow;
@@ -248,4 +248,4 @@ Obstacle obstacle_beyond(const WorldGround& ground, const GroundLevel& level,
   return found == Obstacle::kNone ? Obstacle::kStep : found;
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -6,9 +6,10 @@
 #include "world/ground.h"
 
 /// What blocks a class.
-namespace throng {
+namespace throng::path {
 
 /// What stopped a straight walk on `level`.
-Obstacle obstacle_beyond(const WorldGround& ground, const GroundLevel& level, const WalkStop& stop);
+Obstacle obstacle_beyond(const world::WorldGround& ground, const world::GroundLevel& level,
+                         const world::WalkStop& stop);
 
-}  // namespace throng
+}  // namespace throng::path

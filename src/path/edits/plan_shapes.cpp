@@ -6,7 +6,7 @@
 #include <cmath>
 
 // Distances of convex polygons, and heights of a triangle over a square.
-namespace throng {
+namespace throng::path {
 namespace {
 
 // Convex, of either order.
@@ -81,4 +81,4 @@ std::optional<std::pair<double, double>> heights_over(const PlanSquare& square,
   return heights;
 }
 
-}  // namespace throng
+}  // namespace throng::path

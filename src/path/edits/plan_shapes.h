@@ -11,7 +11,7 @@
 #include "throng/base.h"
 
 /// Squares of the ground's plane against polygons and triangles: which cells obstacles block.
-namespace throng {
+namespace throng::path {
 
 /// A square of the ground's plane. [m]
 struct PlanSquare {
@@ -28,4 +28,4 @@ bool is_nearer(const PlanSquare& square, std::span<const PlanPoint> polygon, dou
 std::optional<std::pair<double, double>> heights_over(const PlanSquare& square,
                                                       const std::array<Vec3d, 3>& triangle);
 
-}  // namespace throng
+}  // namespace throng::path

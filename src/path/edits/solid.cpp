@@ -13,7 +13,7 @@
 // stays clear of either stays clear of the cylinder. The distance of a convex solid from a point of
 // the axis is a convex function of the point's place on the axis, so its minimum is found by
 // ternary search.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr int kThirds = 24;  // of an axis: what is left of it is below a ten thousandth
@@ -152,4 +152,4 @@ double reach_of(const AvatarClass& avatar) {
   return std::sqrt(avatar.height * avatar.height + avatar.radius * avatar.radius);
 }
 
-}  // namespace throng
+}  // namespace throng::path

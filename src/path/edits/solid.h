@@ -12,7 +12,7 @@
 #include "throng/base.h"
 
 /// A solid that is placed in a world at run time, and whether a body touches it.
-namespace throng {
+namespace throng::path {
 
 struct Solid {
   Prism prism;  ///< Of triangles: the box around them.
@@ -45,4 +45,4 @@ struct BodyRoom {
 /// The maximum distance of points of such bodies from their feet. [m]
 [[nodiscard]] double reach_of(const AvatarClass& avatar);
 
-}  // namespace throng
+}  // namespace throng::path

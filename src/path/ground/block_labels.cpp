@@ -14,7 +14,7 @@
 
 // Hub labels merged per block, after [DSC23]: entries that no point of the block can need are left
 // out. Linear in the labels of the corners that the blocks see.
-namespace throng {
+namespace throng::path {
 namespace {
 
 struct Entry {
@@ -169,9 +169,11 @@ bool are_too_many(const HubLabels& labels) {
 
 }  // namespace
 
-GroundPoint middle_of(const MeshRect& block) {
-  return {((int64_t{block.x} << kUnitBits) * 2 + (int64_t{block.width} << kUnitBits)) / 2,
-          ((int64_t{block.z} << kUnitBits) * 2 + (int64_t{block.depth} << kUnitBits)) / 2};
+world::GroundPoint middle_of(const MeshRect& block) {
+  return {
+      ((int64_t{block.x} << world::kUnitBits) * 2 + (int64_t{block.width} << world::kUnitBits)) / 2,
+      ((int64_t{block.z} << world::kUnitBits) * 2 + (int64_t{block.depth} << world::kUnitBits)) /
+          2};
 }
 
 BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, int32_t workers,
@@ -231,4 +233,4 @@ MiddleLabels build_middle_labels(const PathMesh& mesh, const HubLabels& labels, 
   return out;
 }
 
-}  // namespace throng
+}  // namespace throng::path

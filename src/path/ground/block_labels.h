@@ -10,7 +10,7 @@
 #include "path/ground/two_hop.h"
 
 /// Labels of blocks: the hub labels that the points of each need, prepared.
-namespace throng {
+namespace throng::path {
 
 struct HubLabels;
 
@@ -47,7 +47,7 @@ struct MiddleLabels {
 };
 
 /// The middle of a block.
-GroundPoint middle_of(const MeshRect& block);
+world::GroundPoint middle_of(const MeshRect& block);
 
 /// An entry is left out if its corner cannot be on a shortest path from any point of the block to
 /// the hub, judged by the hub's distance from the middle. Empty if there would be more than
@@ -58,4 +58,4 @@ BlockLabels build_block_labels(const PathMesh& mesh, const HubLabels& labels, in
 /// A label is left out if the path over another hub is as short.
 MiddleLabels build_middle_labels(const PathMesh& mesh, const HubLabels& labels, int32_t workers);
 
-}  // namespace throng
+}  // namespace throng::path

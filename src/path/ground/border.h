@@ -10,7 +10,7 @@
 
 /// Geometry of rectangles and what is seen of them. Distances around a rectangle run from its
 /// south-west corner with the inside on the left, as its portals do. [cells]
-namespace throng {
+namespace throng::path {
 
 inline constexpr double kSame = 1e-9;  // cells
 
@@ -96,4 +96,4 @@ inline void rects_around(const PathMesh& mesh, uint32_t rect, CellPoint point,
   }
 }
 
-}  // namespace throng
+}  // namespace throng::path

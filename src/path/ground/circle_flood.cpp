@@ -5,7 +5,7 @@
 #include <algorithm>
 
 // The visited cells of a flood fill: a hash table with linear probing, emptied run by run.
-namespace throng {
+namespace throng::path {
 namespace {
 
 // Never 0: levels count from 1 here.
@@ -19,7 +19,7 @@ size_t slot_of(uint64_t key, size_t mask) {
 
 }  // namespace
 
-void CircleFlood::start(const GroundLevel& level, int32_t x, int32_t z) {
+void CircleFlood::start(const world::GroundLevel& level, int32_t x, int32_t z) {
   if (seen_.empty()) seen_.resize(1024);
   if (cells_.size() * 8 < seen_.size()) {  // few: it is faster to erase them one by one
     for (const Cell& cell : cells_) {
@@ -62,4 +62,4 @@ void CircleFlood::grow() {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -9,25 +9,25 @@
 #include "world/place.h"
 
 /// The cells around a place that are connected to it.
-namespace throng {
+namespace throng::path {
 
 /// Cells that are connected to a first one over cells that touch a circle, each once, nearest first
 /// in number of cells crossed. Owns its memory: no allocation once it has grown.
 class CircleFlood {
  public:
   struct Cell {
-    GroundLevel level;
+    world::GroundLevel level;
     int32_t x = 0, z = 0;  // of the grid
   };
 
   /// Restarts at a cell that is legal for the ground's class. The circle may shrink meanwhile.
-  void start(const GroundLevel& level, int32_t x, int32_t z);
+  void start(const world::GroundLevel& level, int32_t x, int32_t z);
   /// Calls visit(cell) for every cell, then blocked(cell, toward_x, toward_z) for each side of it
   /// over which no step leads. within(x, z): is that cell of the grid still wanted? open(level, x,
   /// z): may this legal one be stood on?
   template <class Within, class Visit, class Blocked, class Open>
-  void run(const WorldGround& ground, int32_t step, Within within, Visit visit, Blocked blocked,
-           Open open) {
+  void run(const world::WorldGround& ground, int32_t step, Within within, Visit visit,
+           Blocked blocked, Open open) {
     constexpr int32_t kSides[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     for (size_t i = 0; i < cells_.size(); ++i) {
       const Cell cell = cells_[i];
@@ -35,7 +35,7 @@ class CircleFlood {
       visit(cell);
       for (const auto& side : kSides) {
         const int32_t x = cell.x + side[0], z = cell.z + side[1];
-        const auto next = step_to(ground, cell.level, cell.x, cell.z, x, z, step);
+        const auto next = world::step_to(ground, cell.level, cell.x, cell.z, x, z, step);
         if (!next) {
           blocked(cell, side[0], side[1]);
         } else if (within(x, z) && open(*next, x, z) && add_once(next->world_level, x, z)) {
@@ -46,9 +46,10 @@ class CircleFlood {
   }
 
   template <class Within, class Visit, class Blocked>
-  void run(const WorldGround& ground, int32_t step, Within within, Visit visit, Blocked blocked) {
+  void run(const world::WorldGround& ground, int32_t step, Within within, Visit visit,
+           Blocked blocked) {
     run(ground, step, within, visit, blocked,
-        [](const GroundLevel&, int32_t, int32_t) { return true; });
+        [](const world::GroundLevel&, int32_t, int32_t) { return true; });
   }
 
  private:
@@ -59,4 +60,4 @@ class CircleFlood {
   std::vector<uint64_t> seen_;  // open addressing; 0 is free
 };
 
-}  // namespace throng
+}  // namespace throng::path

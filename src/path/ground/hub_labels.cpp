@@ -8,7 +8,7 @@
 #include "core/parallel.h"
 
 // Casts from every corner, then labels the visibility graph of the corners ([LPW79]) by hubs.
-namespace throng {
+namespace throng::path {
 namespace {
 
 // Turns "what each corner sees" into "by which corners each block is seen".
@@ -86,4 +86,4 @@ Result<HubLabels> build_labels(const PathMesh& mesh, int32_t workers, Context& c
   return out;
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -12,7 +12,7 @@
 #include "path/ground/two_hop.h"
 
 /// Shortest paths between corners, by look-up.
-namespace throng {
+namespace throng::path {
 
 /// Labels of corners, and the corners that the blocks of a mesh see.
 struct HubLabels : TwoHopLabels {
@@ -37,4 +37,4 @@ struct HubLabels : TwoHopLabels {
 /// workers.
 Result<HubLabels> build_labels(const PathMesh& mesh, int32_t workers, Context& context);
 
-}  // namespace throng
+}  // namespace throng::path

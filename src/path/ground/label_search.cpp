@@ -10,7 +10,7 @@
 
 // The shortest path by hub labels: the ends see corners, and the smallest sum of two labels of one
 // hub is the length. Linear in the labels that are read.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr float kFarthest = 3e38f;
@@ -91,8 +91,8 @@ bool LabelSearch::join(const PathMesh& mesh, const HubLabels& labels, Best& best
 
 namespace {
 
-GroundPoint middle_of(const PathMesh& mesh, uint32_t rect, uint32_t block) {
-  return throng::middle_of(mesh.block(rect, block - mesh.rects[rect].first_block));
+world::GroundPoint middle_of(const PathMesh& mesh, uint32_t rect, uint32_t block) {
+  return throng::path::middle_of(mesh.block(rect, block - mesh.rects[rect].first_block));
 }
 
 // A block whose middle is seen from an end, and how far that is.
@@ -111,13 +111,13 @@ SeenMiddle middle_behind(const PathMesh& mesh, const Stop& end, CellPoint turn, 
   // The farther, the less it matters that a middle is not straight behind.
   for (const double offset : {128.0, 48.0, 24.0, 12.0}) {  // cells
     const auto behind = [&](double from, double to) {
-      return std::llround((from + (from - to) * (offset / length)) * kUnitsPerCell);
+      return std::llround((from + (from - to) * (offset / length)) * world::kUnitsPerCell);
     };
-    const GroundPoint there{behind(at.x, turn.x), behind(at.z, turn.z)};
+    const world::GroundPoint there{behind(at.x, turn.x), behind(at.z, turn.z)};
     const uint32_t rect = mesh_ray(mesh, end.rect, end.at, there);
     if (rect == kNoRect) continue;
     const uint32_t block = mesh.block_at(rect, there.cell_x(), there.cell_z());
-    const GroundPoint middle = middle_of(mesh, rect, block);
+    const world::GroundPoint middle = middle_of(mesh, rect, block);
     if (mesh_ray(mesh, end.rect, end.at, middle) != rect) continue;
     return {block, {middle, rect}, distance(at, in_cells(middle))};
   }
@@ -296,4 +296,4 @@ bool LabelSearch::find(const PathMesh& mesh, const HubLabels& labels, const Stop
   return true;
 }
 
-}  // namespace throng
+}  // namespace throng::path

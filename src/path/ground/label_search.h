@@ -11,7 +11,7 @@
 #include "path/ground/string_puller.h"
 
 /// Shortest paths looked up in hub labels.
-namespace throng {
+namespace throng::path {
 
 /// The path between two ends over the corners that they see. Owns its memory: one per thread.
 class LabelSearch {
@@ -56,4 +56,4 @@ class LabelSearch {
   uint32_t search_ = 0;
 };
 
-}  // namespace throng
+}  // namespace throng::path

@@ -15,7 +15,7 @@
 
 // Cuts all level tiles into rectangles, then finds their portals, corners and components. Linear in
 // the cells, parallel by level tile.
-namespace throng {
+namespace throng::path {
 namespace {
 
 // A corner before it has its number: the point, and the level of the cell across from the missing
@@ -34,17 +34,17 @@ struct FoundPortal {
 
 class Builder {
  public:
-  Builder(const WorldData& world, int32_t avatar_class)
+  Builder(const world::WorldData& world, int32_t avatar_class)
       : ground_{world, avatar_class},
-        step_(step_mm(world.summary.classes[static_cast<size_t>(avatar_class)])) {}
+        step_(world::step_mm(world.summary.classes[static_cast<size_t>(avatar_class)])) {}
 
   [[nodiscard]] int32_t step() const { return step_; }
 
   [[nodiscard]] std::vector<MeshRect> find_rects(uint32_t level) const {
-    const GroundLevel ground = level_of(level);
-    const CellRows legal = legal_rows(ground);
-    const auto cuts = step_cuts(ground, legal, step_);
-    const auto [tile_x, tile_z] = tile_of(ground_.world, *ground.zone, *ground.view.record);
+    const world::GroundLevel ground = level_of(level);
+    const world::CellRows legal = graph::legal_rows(ground);
+    const auto cuts = graph::step_cuts(ground, legal, step_);
+    const auto [tile_x, tile_z] = world::tile_of(ground_.world, *ground.zone, *ground.view.record);
     std::vector<MeshRect> rects;
     for (const CellRect& r : tile_with_rects(legal, cuts ? &*cuts : nullptr)) {
       rects.push_back({level, tile_x * kTileCells + r.x0, tile_z * kTileCells + r.z0, r.x1 - r.x0,
@@ -56,7 +56,7 @@ class Builder {
   // The portals of a rectangle, around it.
   void find_portals(const PathMesh& mesh, const MeshRect& rect,
                     std::vector<FoundPortal>& portals) const {
-    const GroundLevel level = level_of(rect.level);
+    const world::GroundLevel level = level_of(rect.level);
     const int32_t w = rect.width, d = rect.depth;
     const auto side = [&](int32_t begin, int32_t length, auto cell_at, int32_t dx, int32_t dz) {
       uint32_t last = kNoRect;
@@ -100,30 +100,32 @@ class Builder {
   }
 
   void find_corners(const MeshRect& rect, FoundPortal& found) const {
-    const GroundLevel level = level_of(rect.level);
+    const world::GroundLevel level = level_of(rect.level);
     found.from_corner = corner_at(level, rect, found.portal.from, found.portal.from);
     found.to_corner = corner_at(level, rect, found.portal.to, found.portal.to - 1);
   }
 
  private:
-  [[nodiscard]] GroundLevel level_of(uint32_t level) const {
-    return ground_level(ground_.world, level, ground_.avatar_class);
+  [[nodiscard]] world::GroundLevel level_of(uint32_t level) const {
+    return world::ground_level(ground_.world, level, ground_.avatar_class);
   }
 
   // The level on the other side of a step that leads there and back.
-  [[nodiscard]] std::optional<GroundLevel> step_both(const GroundLevel& from, int32_t x, int32_t z,
-                                                     int32_t nx, int32_t nz) const {
+  [[nodiscard]] std::optional<world::GroundLevel> step_both(const world::GroundLevel& from,
+                                                            int32_t x, int32_t z, int32_t nx,
+                                                            int32_t nz) const {
     if (nx < 0 || nz < 0 || nx >= ground_.world.width || nz >= ground_.world.depth) return {};
-    const auto there = step_to(ground_, from, x, z, nx, nz, step_);
+    const auto there = world::step_to(ground_, from, x, z, nx, nz, step_);
     if (!there) return {};
-    const auto back = step_to(ground_, *there, nx, nz, x, z, step_);
+    const auto back = world::step_to(ground_, *there, nx, nz, x, z, step_);
     if (!back || back->world_level != from.world_level) return {};
     return there;
   }
 
   // The corner at `at` cells around the rectangle, seen from the border cell `cell` around.
-  [[nodiscard]] std::optional<CornerKey> corner_at(const GroundLevel& level, const MeshRect& rect,
-                                                   int32_t at, int32_t cell) const {
+  [[nodiscard]] std::optional<CornerKey> corner_at(const world::GroundLevel& level,
+                                                   const MeshRect& rect, int32_t at,
+                                                   int32_t cell) const {
     const int32_t w = rect.width, d = rect.depth;
     int32_t px = 0, pz = 0;  // the point
     int32_t cx = 0, cz = 0;  // a cell of the rectangle that touches it
@@ -143,7 +145,7 @@ class Builder {
     const int32_t ox = cx == px ? px - 1 : px, oz = cz == pz ? pz - 1 : pz;
     const auto beside_x = step_both(level, cx, cz, ox, cz);
     const auto beside_z = step_both(level, cx, cz, cx, oz);
-    std::optional<GroundLevel> across_x, across_z;
+    std::optional<world::GroundLevel> across_x, across_z;
     if (beside_x) across_x = step_both(*beside_x, ox, cz, ox, oz);
     if (beside_z) across_z = step_both(*beside_z, cx, oz, ox, oz);
     const auto key = [&](int32_t missing_x, int32_t missing_z, uint32_t across_level) {
@@ -160,7 +162,7 @@ class Builder {
     return {};
   }
 
-  WorldGround ground_;
+  world::WorldGround ground_;
   int32_t step_;
 };
 
@@ -248,7 +250,7 @@ uint64_t PathMesh::bytes() const {
          corner_rects.size() * sizeof(uint32_t);
 }
 
-Result<PathMesh> build_mesh(const WorldData& world, int32_t avatar_class, int32_t workers,
+Result<PathMesh> build_mesh(const world::WorldData& world, int32_t avatar_class, int32_t workers,
                             Context& context) {
   const Builder builder(world, avatar_class);
   PathMesh mesh;
@@ -315,4 +317,4 @@ Result<PathMesh> build_mesh(const WorldData& world, int32_t avatar_class, int32_
   return mesh;
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -12,8 +12,10 @@
 /// The walkable ground of one class as rectangles of cells joined by portals: what path search runs
 /// on.
 namespace throng {
-
 class PathFinder;
+}
+
+namespace throng::path {
 
 inline constexpr uint32_t kNoRect = UINT32_MAX;
 inline constexpr uint32_t kNoCorner = UINT32_MAX;
@@ -55,19 +57,20 @@ struct MeshCorner {
 
 /// A point of a path, in a rectangle.
 struct Stop {
-  GroundPoint at;
+  world::GroundPoint at;
   uint32_t rect = kNoRect;
 };
 
 /// A unit beside a corner, away from what is missing there.
-inline GroundPoint beside(const MeshCorner& corner) {
-  return {(int64_t{corner.x} << kUnitBits) + corner.away_x,
-          (int64_t{corner.z} << kUnitBits) + corner.away_z};
+inline world::GroundPoint beside(const MeshCorner& corner) {
+  return {(int64_t{corner.x} << world::kUnitBits) + corner.away_x,
+          (int64_t{corner.z} << world::kUnitBits) + corner.away_z};
 }
 
 /// Where the search sees a point.
-inline CellPoint in_cells(GroundPoint p) {
-  return {static_cast<double>(p.x) / kUnitsPerCell, static_cast<double>(p.z) / kUnitsPerCell};
+inline CellPoint in_cells(world::GroundPoint p) {
+  return {static_cast<double>(p.x) / world::kUnitsPerCell,
+          static_cast<double>(p.z) / world::kUnitsPerCell};
 }
 
 struct PathMesh {
@@ -101,10 +104,10 @@ uint32_t cut_into_blocks(PathMesh& mesh, int32_t side);
 
 /// Of a world whose zones can all be used. Fails with kCancelled. The same for any number of
 /// workers.
-Result<PathMesh> build_mesh(const WorldData& world, int32_t avatar_class, int32_t workers,
+Result<PathMesh> build_mesh(const world::WorldData& world, int32_t avatar_class, int32_t workers,
                             Context& context);
 
 /// The rectangles and portals of a finder. They live as long as it or a copy of it.
 const PathMesh& mesh_of(const PathFinder& finder);
 
-}  // namespace throng
+}  // namespace throng::path

@@ -7,7 +7,7 @@
 
 // A ray from rectangle to rectangle: constant time each, in whole units, so it agrees with walk()
 // over cells.
-namespace throng {
+namespace throng::path {
 namespace {
 
 // What lies beyond the border of a rectangle at a cell counted around it.
@@ -54,7 +54,8 @@ uint32_t diagonal(const PathMesh& mesh, uint32_t rect, int32_t x, int32_t z, int
 
 }  // namespace
 
-uint32_t mesh_ray(const PathMesh& mesh, uint32_t rect, GroundPoint from, GroundPoint to) {
+uint32_t mesh_ray(const PathMesh& mesh, uint32_t rect, world::GroundPoint from,
+                  world::GroundPoint to) {
   const int64_t dx = std::llabs(to.x - from.x), dz = std::llabs(to.z - from.z);
   const bool east = to.x > from.x, up = to.z > from.z;
   const int32_t step_x = east ? 1 : -1, step_z = up ? 1 : -1;
@@ -66,18 +67,20 @@ uint32_t mesh_ray(const PathMesh& mesh, uint32_t rect, GroundPoint from, GroundP
     if (in_x && in_z) return rect;
     // Distances to the sides that it may leave by, each times the other axis' length: the smaller
     // one is met first.
-    const int64_t to_x = std::llabs((int64_t{east ? r.x + r.width : r.x} << kUnitBits) - from.x);
-    const int64_t to_z = std::llabs((int64_t{up ? r.z + r.depth : r.z} << kUnitBits) - from.z);
+    const int64_t to_x =
+        std::llabs((int64_t{east ? r.x + r.width : r.x} << world::kUnitBits) - from.x);
+    const int64_t to_z =
+        std::llabs((int64_t{up ? r.z + r.depth : r.z} << world::kUnitBits) - from.z);
     if (!in_x && !in_z && to_x * dz == to_z * dx) {
       const int32_t x = east ? r.x + r.width - 1 : r.x, z = up ? r.z + r.depth - 1 : r.z;
       rect = diagonal(mesh, rect, x, z, x + step_x, z + step_z);
     } else if (in_z || (!in_x && to_x * dz < to_z * dx)) {
       const int64_t rise = to_x * dz;
       const int64_t at = from.z + (up ? rise / dx : -((rise + dx - 1) / dx));
-      auto z = static_cast<int32_t>(at >> kUnitBits);
+      auto z = static_cast<int32_t>(at >> world::kUnitBits);
       // The point lies before the cell: then the ray goes from one row into the next, if it gets
       // that far.
-      if ((at & (kUnitsPerCell - 1)) == 0 && rise % dx == 0 && (rise > 0 || !up)) {
+      if ((at & (world::kUnitsPerCell - 1)) == 0 && rise % dx == 0 && (rise > 0 || !up)) {
         if (up) --z;
         if (z != end_z) {
           const int32_t x = east ? r.x + r.width - 1 : r.x;
@@ -90,8 +93,8 @@ uint32_t mesh_ray(const PathMesh& mesh, uint32_t rect, GroundPoint from, GroundP
     } else {
       const int64_t rise = to_z * dx;
       const int64_t at = from.x + (east ? rise / dz : -((rise + dz - 1) / dz));
-      auto x = static_cast<int32_t>(at >> kUnitBits);
-      if ((at & (kUnitsPerCell - 1)) == 0 && rise % dz == 0 && (rise > 0 || !east)) {
+      auto x = static_cast<int32_t>(at >> world::kUnitBits);
+      if ((at & (world::kUnitsPerCell - 1)) == 0 && rise % dz == 0 && (rise > 0 || !east)) {
         if (east) --x;
         if (x != end_x) {
           const int32_t z = up ? r.z + r.depth - 1 : r.z;
@@ -114,4 +117,4 @@ bool sees_corner(const PathMesh& mesh, const Stop& from, uint32_t corner) {
   return std::find(first, stop, rect) != stop;
 }
 
-}  // namespace throng
+}  // namespace throng::path

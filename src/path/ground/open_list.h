@@ -10,7 +10,7 @@
 
 /// The open list of a best-first search (A*, Dijkstra, Theta*): what was reached and is not
 /// expanded yet. All searches of src/path use it.
-namespace throng {
+namespace throng::path {
 
 /// Entries leave it in the order of `Later`, a strict weak order that is true if the first of two
 /// entries leaves after the second. Order equal costs by a number, too: then the order of leaving
@@ -57,4 +57,4 @@ class OpenList {
   std::vector<Entry> entries_;
 };
 
-}  // namespace throng
+}  // namespace throng::path

@@ -9,10 +9,12 @@
 #include "path/ground/mesh_ray.h"
 
 // A* over the ends and middles of portals, then string pulling over the stops.
-namespace throng {
+namespace throng::path {
 namespace {
 
-double between(GroundPoint a, GroundPoint b) { return distance(in_cells(a), in_cells(b)); }
+double between(world::GroundPoint a, world::GroundPoint b) {
+  return distance(in_cells(a), in_cells(b));
+}
 
 }  // namespace
 
@@ -86,7 +88,7 @@ SearchResult PortalSearch::search(const Stop& from, const Stop& to, const Search
 PortalSearch::Crossing PortalSearch::crossing(uint32_t rect, uint32_t point) const {
   const MeshRect& r = mesh_->rects[rect];
   const MeshPortal& portal = mesh_->portals[point / kPoints];
-  const auto units = [](int64_t cells) { return cells << kUnitBits; };
+  const auto units = [](int64_t cells) { return cells << world::kUnitBits; };
   const int64_t first = units(portal.from) + 1, last = units(portal.to) - 2;
   const int64_t along = point % kPoints == 0   ? first
                         : point % kPoints == 1 ? (first + last) / 2
@@ -110,7 +112,7 @@ PortalSearch::Crossing PortalSearch::crossing(uint32_t rect, uint32_t point) con
 void PortalSearch::expand(const Stop& at, double cost, uint32_t before) {
   const uint32_t end = mesh_->rects[at.rect + size_t{1}].first_portal * kPoints;
   for (uint32_t p = mesh_->rects[at.rect].first_portal * kPoints; p < end; ++p) {
-    const GroundPoint to = crossing(at.rect, p).beyond;
+    const world::GroundPoint to = crossing(at.rect, p).beyond;
     const double whole = cost + between(at.at, to);
     Reached& reached = reached_[p];
     if (reached.search == search_ && reached.cost <= whole) continue;
@@ -146,4 +148,4 @@ void PortalSearch::draw(uint32_t last, const Stop& from, const Stop& to, std::ve
   }
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -11,7 +11,7 @@
 #include "path/ground/search.h"
 
 /// Paths over a mesh from portal to portal: none is the shortest, but every segment is legal.
-namespace throng {
+namespace throng::path {
 
 /// Where neighbouring cells that can both be stood on lie a step apart, two sides of one line touch
 /// and a shortest path over corners may be drawn across it: nothing is missing there from which it
@@ -48,7 +48,7 @@ class PortalSearch {
     }
   };
   struct Crossing {
-    GroundPoint inside, beyond;
+    world::GroundPoint inside, beyond;
   };
 
   [[nodiscard]] Crossing crossing(uint32_t rect, uint32_t point) const;
@@ -60,7 +60,7 @@ class PortalSearch {
   void draw(uint32_t last, const Stop& from, const Stop& to, std::vector<Stop>& stops);
 
   const PathMesh* mesh_ = nullptr;
-  GroundPoint goal_;
+  world::GroundPoint goal_;
   uint32_t search_ = 0;
   uint64_t expanded_ = 0;
   uint64_t met_ = 0;  // points that this search has reached
@@ -69,4 +69,4 @@ class PortalSearch {
   std::vector<Stop> all_;
 };
 
-}  // namespace throng
+}  // namespace throng::path

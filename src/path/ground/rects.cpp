@@ -7,11 +7,11 @@
 
 // Greedy: runs of cells, stacked while they are alike, by rows and by columns; the fewer rectangles
 // win.
-namespace throng {
+namespace throng::path {
 namespace {
 
-CellRows transposed(const CellRows& rows) {
-  CellRows out{};
+world::CellRows transposed(const world::CellRows& rows) {
+  world::CellRows out{};
   for (size_t z = 0; z < 64; ++z) {
     for (uint64_t left = rows[z]; left != 0; left &= left - 1)
       out[static_cast<size_t>(std::countr_zero(left))] |= uint64_t{1} << z;
@@ -20,7 +20,7 @@ CellRows transposed(const CellRows& rows) {
 }
 
 // The run of row z that begins at x, cut where no step leads on.
-uint64_t run_from(const CellRows& open, const StepCuts* cuts, size_t z, int32_t x) {
+uint64_t run_from(const world::CellRows& open, const graph::StepCuts* cuts, size_t z, int32_t x) {
   uint64_t ends = ~open[z];
   // A cut after cell i ends the run before cell i + 1.
   if (cuts != nullptr) ends |= cuts->across[z] << 1;
@@ -31,7 +31,7 @@ uint64_t run_from(const CellRows& open, const StepCuts* cuts, size_t z, int32_t 
 }
 
 // True if the row's run that begins where `run` does is `run` itself.
-bool continues(const CellRows& open, const StepCuts* cuts, size_t z, uint64_t run) {
+bool continues(const world::CellRows& open, const graph::StepCuts* cuts, size_t z, uint64_t run) {
   const int32_t x = std::countr_zero(run);
   const uint64_t before = x > 0 ? uint64_t{1} << (x - 1) : 0;
   if ((open[z] & run) != run) return false;
@@ -40,9 +40,9 @@ bool continues(const CellRows& open, const StepCuts* cuts, size_t z, uint64_t ru
   return !joined && run_from(open, cuts, z, x) == run;
 }
 
-std::vector<CellRect> stack_rows(const CellRows& open, const StepCuts* cuts) {
+std::vector<CellRect> stack_rows(const world::CellRows& open, const graph::StepCuts* cuts) {
   std::vector<CellRect> rects;
-  CellRows left = open;
+  world::CellRows left = open;
   for (size_t z = 0; z < 64; ++z) {
     while (left[z] != 0) {
       const uint64_t run = run_from(left, cuts, z, std::countr_zero(left[z]));
@@ -62,10 +62,10 @@ std::vector<CellRect> stack_rows(const CellRows& open, const StepCuts* cuts) {
 
 }  // namespace
 
-std::vector<CellRect> tile_with_rects(const CellRows& open, const StepCuts* cuts) {
+std::vector<CellRect> tile_with_rects(const world::CellRows& open, const graph::StepCuts* cuts) {
   std::vector<CellRect> rects = stack_rows(open, cuts);
   if (rects.size() < 2) return rects;
-  StepCuts turned;
+  graph::StepCuts turned;
   if (cuts != nullptr) turned = {transposed(cuts->along), transposed(cuts->across)};
   std::vector<CellRect> columns = stack_rows(transposed(open), cuts != nullptr ? &turned : nullptr);
   if (columns.size() >= rects.size()) return rects;
@@ -76,4 +76,4 @@ std::vector<CellRect> tile_with_rects(const CellRows& open, const StepCuts* cuts
   return columns;
 }
 
-}  // namespace throng
+}  // namespace throng::path

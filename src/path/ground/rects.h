@@ -7,7 +7,7 @@
 #include "graph/flood.h"
 
 /// Rectangles that tile the legal cells of a level.
-namespace throng {
+namespace throng::path {
 
 /// Cells [x0, x1) x [z0, z1) of a tile.
 struct CellRect {
@@ -16,6 +16,6 @@ struct CellRect {
 
 /// Tiles `open` with rectangles that no cut crosses, in the order of their first cells: stacks of
 /// equal runs of rows, or of columns where that takes fewer. `cuts` may be null.
-std::vector<CellRect> tile_with_rects(const CellRows& open, const StepCuts* cuts);
+std::vector<CellRect> tile_with_rects(const world::CellRows& open, const graph::StepCuts* cuts);
 
-}  // namespace throng
+}  // namespace throng::path

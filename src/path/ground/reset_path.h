@@ -5,7 +5,7 @@
 #include "throng/path.h"
 
 /// What every finder does to a path before it fills it.
-namespace throng {
+namespace throng::path {
 
 /// Nothing found, from no place; the memory stays.
 inline void reset(Path& path) {
@@ -18,4 +18,4 @@ inline void reset(Path& path) {
   path.spent = SpentBudget::kNone;
 }
 
-}  // namespace throng
+}  // namespace throng::path

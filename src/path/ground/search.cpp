@@ -10,7 +10,7 @@
 // Distances around a rectangle run from its south-west corner with the inside on the left, as its
 // portals do. Of a node that sees [right, left] of a portal, what lies from `right` on comes first,
 // then what the root sees, then what lies beyond `left`.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr size_t kDropFrom = 1 << 16;        // open intervals, before it pays to drop any
@@ -309,4 +309,4 @@ void PathSearch::expand(const Node& node) {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -11,7 +11,7 @@
 #include "throng/path.h"
 
 /// The shortest path over a mesh, by search over intervals.
-namespace throng {
+namespace throng::path {
 
 enum class SearchResult { kFound, kNone, kBudget };
 
@@ -95,4 +95,4 @@ class PathSearch {
   std::vector<uint32_t> around_;  // rectangles around the start
 };
 
-}  // namespace throng
+}  // namespace throng::path

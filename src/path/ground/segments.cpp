@@ -11,22 +11,22 @@
 
 // Turns corners into stops that a body can walk between, each segment tested on the mesh or cell by
 // cell.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr int32_t kMaxGrazed = 64;  // corners past which one segment is led
 constexpr double kGrazes = 0.02;    // cells
 
-bool is_same(GroundPoint a, GroundPoint b) { return a.x == b.x && a.z == b.z; }
+bool is_same(world::GroundPoint a, world::GroundPoint b) { return a.x == b.x && a.z == b.z; }
 
 // The point a unit beside a corner in one of the four cells around it, counted around.
-GroundPoint quadrant(const CellCorner& corner, size_t i) {
-  return {(int64_t{corner.x} << kUnitBits) + (i == 0 || i == 3 ? 1 : -1),
-          (int64_t{corner.z} << kUnitBits) + (i < 2 ? 1 : -1)};
+world::GroundPoint quadrant(const CellCorner& corner, size_t i) {
+  return {(int64_t{corner.x} << world::kUnitBits) + (i == 0 || i == 3 ? 1 : -1),
+          (int64_t{corner.z} << world::kUnitBits) + (i < 2 ? 1 : -1)};
 }
 
 // From a corner to the line that a segment lies on. [cells]
-double distance(const CellCorner& corner, GroundPoint from, GroundPoint to) {
+double distance(const CellCorner& corner, world::GroundPoint from, world::GroundPoint to) {
   const CellPoint a = in_cells(from), b = in_cells(to);
   const double dx = b.x - a.x, dz = b.z - a.z;
   return std::fabs((corner.x - a.x) * dz - (corner.z - a.z) * dx) / std::hypot(dx, dz);
@@ -34,8 +34,8 @@ double distance(const CellCorner& corner, GroundPoint from, GroundPoint to) {
 
 }  // namespace
 
-bool SegmentWalker::walk(const Stop& from, const std::vector<uint32_t>& corners, GroundPoint to,
-                         std::vector<Stop>& stops) {
+bool SegmentWalker::walk(const Stop& from, const std::vector<uint32_t>& corners,
+                         world::GroundPoint to, std::vector<Stop>& stops) {
   stops.clear();
   stops.push_back(from);
   for (const uint32_t c : corners) {
@@ -45,7 +45,7 @@ bool SegmentWalker::walk(const Stop& from, const std::vector<uint32_t>& corners,
 }
 
 // Adds the stops after the last one up to `to`.
-bool SegmentWalker::segment(GroundPoint to, int32_t depth, std::vector<Stop>& stops) {
+bool SegmentWalker::segment(world::GroundPoint to, int32_t depth, std::vector<Stop>& stops) {
   const Stop from = stops.back();
   const uint32_t rect = mesh_ray(*mesh_, from.rect, from.at, to);
   if (rect != kNoRect) {
@@ -53,10 +53,10 @@ bool SegmentWalker::segment(GroundPoint to, int32_t depth, std::vector<Stop>& st
     return true;
   }
   // Only the cells can decide.
-  const GroundLevel level =
-      ground_level(ground_.world, mesh_->rects[from.rect].level, ground_.avatar_class);
-  GroundLevel end = level;
-  if (throng::walk(ground_, end, from.at, to, mesh_->step)) {
+  const world::GroundLevel level =
+      world::ground_level(ground_.world, mesh_->rects[from.rect].level, ground_.avatar_class);
+  world::GroundLevel end = level;
+  if (throng::world::walk(ground_, end, from.at, to, mesh_->step)) {
     stops.push_back({to, mesh_->rect_at(end.world_level, to.cell_x(), to.cell_z())});
     return stops.back().rect != kNoRect;
   }
@@ -72,10 +72,10 @@ bool SegmentWalker::segment(GroundPoint to, int32_t depth, std::vector<Stop>& st
 // can continue. Between two cells on which it may stand the ground may rise by more than the step
 // height: nothing is missing there, and a body at the end of such a rise has to go around it, from
 // one side of one point to the other.
-bool SegmentWalker::slip_by(const GroundLevel& level, GroundPoint from, GroundPoint to,
-                            std::vector<Stop>& stops) {
-  GroundLevel end = level;
-  const WalkStop stop = walk_far(ground_, end, from, to, mesh_->step);
+bool SegmentWalker::slip_by(const world::GroundLevel& level, world::GroundPoint from,
+                            world::GroundPoint to, std::vector<Stop>& stops) {
+  world::GroundLevel end = level;
+  const world::WalkStop stop = world::walk_far(ground_, end, from, to, mesh_->step);
   // Both ends of the border that stops it, or the corner that does.
   std::array<CellCorner, 2> corners;
   for (int32_t i = 0; i < 2; ++i) {
@@ -105,10 +105,11 @@ bool SegmentWalker::slip_by(const GroundLevel& level, GroundPoint from, GroundPo
 }
 
 // Does a straight line from a stop lead out of the four cells around a corner, or to its end?
-bool SegmentWalker::gets_past(const CellCorner& corner, const Stop& from, GroundPoint to) const {
-  GroundLevel level =
-      ground_level(ground_.world, mesh_->rects[from.rect].level, ground_.avatar_class);
-  const WalkStop stop = walk_far(ground_, level, from.at, to, mesh_->step);
+bool SegmentWalker::gets_past(const CellCorner& corner, const Stop& from,
+                              world::GroundPoint to) const {
+  world::GroundLevel level =
+      world::ground_level(ground_.world, mesh_->rects[from.rect].level, ground_.avatar_class);
+  const world::WalkStop stop = world::walk_far(ground_, level, from.at, to, mesh_->step);
   const auto is_beside = [](int32_t cell, int32_t line) {
     return cell == line || cell == line - 1;
   };
@@ -116,12 +117,13 @@ bool SegmentWalker::gets_past(const CellCorner& corner, const Stop& from, Ground
 }
 
 // The point beside the corner of the first blocking cell, if the segment just grazes it.
-std::optional<GroundPoint> SegmentWalker::grazed(GroundLevel level, GroundPoint from,
-                                                 GroundPoint to) const {
-  const double fx = static_cast<double>(from.x) / kUnitsPerCell;
-  const double fz = static_cast<double>(from.z) / kUnitsPerCell;
-  const double dx = static_cast<double>(to.x) / kUnitsPerCell - fx;
-  const double dz = static_cast<double>(to.z) / kUnitsPerCell - fz;
+std::optional<world::GroundPoint> SegmentWalker::grazed(world::GroundLevel level,
+                                                        world::GroundPoint from,
+                                                        world::GroundPoint to) const {
+  const double fx = static_cast<double>(from.x) / world::kUnitsPerCell;
+  const double fz = static_cast<double>(from.z) / world::kUnitsPerCell;
+  const double dx = static_cast<double>(to.x) / world::kUnitsPerCell - fx;
+  const double dz = static_cast<double>(to.z) / world::kUnitsPerCell - fz;
   const double length = std::sqrt(dx * dx + dz * dz);
   if (!(length > 0)) return {};
   // The segment is legal up to the first border of cells at which it is not: halving could miss
@@ -130,25 +132,27 @@ std::optional<GroundPoint> SegmentWalker::grazed(GroundLevel level, GroundPoint 
   const int32_t sx = to.x > from.x ? 1 : -1, sz = to.z > from.z ? 1 : -1;
   const int64_t ux = std::llabs(to.x - from.x), uz = std::llabs(to.z - from.z);
   while (x != to.cell_x() || z != to.cell_z()) {
-    const int64_t line_x = int64_t{sx > 0 ? x + 1 : x} << kUnitBits;
-    const int64_t line_z = int64_t{sz > 0 ? z + 1 : z} << kUnitBits;
+    const int64_t line_x = int64_t{sx > 0 ? x + 1 : x} << world::kUnitBits;
+    const int64_t line_z = int64_t{sz > 0 ? z + 1 : z} << world::kUnitBits;
     const int64_t ax = std::llabs(line_x - from.x) * uz, az = std::llabs(line_z - from.z) * ux;
     const bool cross_x = x != to.cell_x() && (z == to.cell_z() || ax <= az);
     const bool cross_z = z != to.cell_z() && (x == to.cell_x() || az <= ax);
     const int32_t nx = cross_x ? x + sx : x, nz = cross_z ? z + sz : z;
-    GroundLevel next = level;
-    const GroundPoint here{(int64_t{x} << kUnitBits) + 1024, (int64_t{z} << kUnitBits) + 1024};
-    const GroundPoint there{(int64_t{nx} << kUnitBits) + 1024, (int64_t{nz} << kUnitBits) + 1024};
-    if (!throng::walk(ground_, next, here, there, mesh_->step)) {
+    world::GroundLevel next = level;
+    const world::GroundPoint here{(int64_t{x} << world::kUnitBits) + 1024,
+                                  (int64_t{z} << world::kUnitBits) + 1024};
+    const world::GroundPoint there{(int64_t{nx} << world::kUnitBits) + 1024,
+                                   (int64_t{nz} << world::kUnitBits) + 1024};
+    if (!throng::world::walk(ground_, next, here, there, mesh_->step)) {
       // Of the cells that may block, the corner that the segment passes closest.
       double nearest = kGrazes;
-      std::optional<GroundPoint> best;
+      std::optional<world::GroundPoint> best;
       // The cells beside the segment first: a diagonal one that can be stood on shares their
       // corner, but it is not what is missing there.
       const std::array<std::array<int32_t, 2>, 3> cells{{{nx, z}, {x, nz}, {nx, nz}}};
       for (const auto& [cx, cz] : cells) {
         if (cx == x && cz == z) continue;
-        const auto stands = step_to(ground_, level, x, z, cx, cz, mesh_->step);
+        const auto stands = world::step_to(ground_, level, x, z, cx, cz, mesh_->step);
         if (stands && (cx == x || cz == z)) continue;  // not this one
         for (const int32_t px : {cx, cx + 1}) {
           for (const int32_t pz : {cz, cz + 1}) {
@@ -170,4 +174,4 @@ std::optional<GroundPoint> SegmentWalker::grazed(GroundLevel level, GroundPoint 
   return {};
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -9,7 +9,7 @@
 #include "world/ground.h"
 
 /// From the corners of a path to segments that a body can walk.
-namespace throng {
+namespace throng::path {
 
 /// A point that four cells of the grid share.
 struct CellCorner {
@@ -20,21 +20,23 @@ struct CellCorner {
 /// corner that a segment would graze. False if a segment is blocked for another reason.
 class SegmentWalker {
  public:
-  SegmentWalker(const WorldData& world, const PathMesh& mesh)
+  SegmentWalker(const world::WorldData& world, const PathMesh& mesh)
       : ground_{world, mesh.avatar_class}, mesh_(&mesh) {}
 
-  bool walk(const Stop& from, const std::vector<uint32_t>& corners, GroundPoint to,
+  bool walk(const Stop& from, const std::vector<uint32_t>& corners, world::GroundPoint to,
             std::vector<Stop>& stops);
 
  private:
-  bool segment(GroundPoint to, int32_t depth, std::vector<Stop>& stops);
-  std::optional<GroundPoint> grazed(GroundLevel level, GroundPoint from, GroundPoint to) const;
-  bool slip_by(const GroundLevel& level, GroundPoint from, GroundPoint to,
+  bool segment(world::GroundPoint to, int32_t depth, std::vector<Stop>& stops);
+  std::optional<world::GroundPoint> grazed(world::GroundLevel level, world::GroundPoint from,
+                                           world::GroundPoint to) const;
+  bool slip_by(const world::GroundLevel& level, world::GroundPoint from, world::GroundPoint to,
                std::vector<Stop>& stops);
-  [[nodiscard]] bool gets_past(const CellCorner& corner, const Stop& from, GroundPoint to) const;
+  [[nodiscard]] bool gets_past(const CellCorner& corner, const Stop& from,
+                               world::GroundPoint to) const;
 
-  WorldGround ground_;
+  world::WorldGround ground_;
   const PathMesh* mesh_;
 };
 
-}  // namespace throng
+}  // namespace throng::path

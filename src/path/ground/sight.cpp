@@ -10,7 +10,7 @@
 
 // The search of path/ground/search.cpp without its turns: intervals of portals are pushed on as
 // long as something is seen through them.
-namespace throng {
+namespace throng::path {
 
 void Sight::begin(const PathMesh& mesh, CellPoint from, uint32_t goal, CellPoint goal_point) {
   mesh_ = &mesh;
@@ -237,4 +237,4 @@ void Sight::expand(const View& view) {
   }
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -9,7 +9,7 @@
 #include "path/ground/mesh.h"
 
 /// The corners and blocks that are seen from a point of the ground.
-namespace throng {
+namespace throng::path {
 
 /// A block of which something may be seen; `whole` if all of it is.
 struct SeenBlock {
@@ -93,4 +93,4 @@ class Sight {
   std::vector<View> entered_;  // views that have led into a rectangle
 };
 
-}  // namespace throng
+}  // namespace throng::path

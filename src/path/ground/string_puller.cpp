@@ -11,7 +11,7 @@
 
 // Removes waypoint after waypoint that is not a taut turn, replacing it by the convex chain of
 // corners in its triangle.
-namespace throng {
+namespace throng::path {
 namespace {
 
 // Towards the missing cell, seen from a corner on a line along (dx, dz): positive if to the left.
@@ -33,19 +33,20 @@ bool holds(const PathMesh& mesh, CellPoint before, const Waypoint& at, CellPoint
 
 // Where a ray may begin or end: the point of a rectangle, or the one beside a corner.
 Stop stop_of(const PathMesh& mesh, const Waypoint& p) {
-  const auto inside = [&](uint32_t rect, GroundPoint at) {
+  const auto inside = [&](uint32_t rect, world::GroundPoint at) {
     const MeshRect& r = mesh.rects[rect];
-    return Stop{
-        {std::clamp(at.x, int64_t{r.x} << kUnitBits, (int64_t{r.x + r.width} << kUnitBits) - 1),
-         std::clamp(at.z, int64_t{r.z} << kUnitBits, (int64_t{r.z + r.depth} << kUnitBits) - 1)},
-        rect};
+    return Stop{{std::clamp(at.x, int64_t{r.x} << world::kUnitBits,
+                            (int64_t{r.x + r.width} << world::kUnitBits) - 1),
+                 std::clamp(at.z, int64_t{r.z} << world::kUnitBits,
+                            (int64_t{r.z + r.depth} << world::kUnitBits) - 1)},
+                rect};
   };
   if (p.corner == kNoCorner) {
-    return inside(p.rect, {static_cast<int64_t>(std::floor(p.at.x * kUnitsPerCell)),
-                           static_cast<int64_t>(std::floor(p.at.z * kUnitsPerCell))});
+    return inside(p.rect, {static_cast<int64_t>(std::floor(p.at.x * world::kUnitsPerCell)),
+                           static_cast<int64_t>(std::floor(p.at.z * world::kUnitsPerCell))});
   }
   const MeshCorner& corner = mesh.corners[p.corner];
-  const GroundPoint at = beside(corner);
+  const world::GroundPoint at = beside(corner);
   for (uint32_t i = corner.first_rect; i < mesh.corners[p.corner + 1].first_rect; ++i) {
     const Stop stop = inside(mesh.corner_rects[i], at);
     if (stop.at.x == at.x && stop.at.z == at.z) return stop;
@@ -165,4 +166,4 @@ bool StringPuller::pull(const PathMesh& mesh, const std::vector<Waypoint>& path,
   return true;
 }
 
-}  // namespace throng
+}  // namespace throng::path

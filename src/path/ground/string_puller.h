@@ -9,7 +9,7 @@
 #include "path/ground/sight.h"
 
 /// Pulls a path taut.
-namespace throng {
+namespace throng::path {
 
 /// A point that a path leads over: a corner, or anywhere in a rectangle.
 struct Waypoint {
@@ -44,4 +44,4 @@ class StringPuller {
   std::vector<Waypoint> chain_;       // what stands between two points
 };
 
-}  // namespace throng
+}  // namespace throng::path

@@ -12,7 +12,7 @@
 
 // Pruned landmark labelling [AIY13]: a Dijkstra search from each hub, pruned where earlier hubs
 // give as short a path.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr double kFar = 1e300;
@@ -234,4 +234,4 @@ Result<TwoHopLabels> label_graph(const PathGraph& graph, uint64_t samples, int32
   return out;
 }
 
-}  // namespace throng
+}  // namespace throng::path

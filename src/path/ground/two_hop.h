@@ -11,7 +11,7 @@
 #include "throng/base.h"
 
 /// Two-hop labels of any graph: shortest paths by look-up.
-namespace throng {
+namespace throng::path {
 
 /// An undirected graph.
 struct PathGraph {
@@ -83,4 +83,4 @@ Meeting meet(std::span<const TwoHopLabels::Label> from, std::span<const TwoHopLa
 Result<TwoHopLabels> label_graph(const PathGraph& graph, uint64_t samples, int32_t workers,
                                  Context& context);
 
-}  // namespace throng
+}  // namespace throng::path

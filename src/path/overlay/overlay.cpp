@@ -14,7 +14,7 @@
 
 // Chooses the entrances of a mesh's overlay, after [BMS04], and the costs between them from the
 // lowest level up, after [DGPW11].
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr double kSmallestSide = 5;           // [m]
@@ -48,7 +48,8 @@ uint32_t place_in(const std::vector<uint64_t>& keys, uint64_t key) {
 
 }  // namespace
 
-Overlay::Overlay(const NodeMesh& mesh, const PieceCost& cost, int32_t workers, size_t crossings) {
+Overlay::Overlay(const graph::NodeMesh& mesh, const PieceCost& cost, int32_t workers,
+                 size_t crossings) {
   choose_sides(mesh, workers, crossings);
   if (overlay_levels_.empty()) return;
   choose_entrances(mesh, workers);
@@ -64,10 +65,10 @@ Overlay::Overlay(const NodeMesh& mesh, const PieceCost& cost, int32_t workers, s
   for (size_t k = 1; k < overlay_levels_.size(); ++k) join_up(k, workers);
 }
 
-void Overlay::choose_sides(const NodeMesh& mesh, int32_t workers, size_t crossings) {
+void Overlay::choose_sides(const graph::NodeMesh& mesh, int32_t workers, size_t crossings) {
   std::vector<uint64_t> of_block(mesh.blocks().size());
   parallel_for(of_block.size(), workers, [&](size_t b) {
-    const NodeBlock& block = mesh.blocks()[b];
+    const graph::NodeBlock& block = mesh.blocks()[b];
     const Vec3d at = mesh.surface(static_cast<uint32_t>(b))
                          .at((block.s + 0.5) * block.side(), (block.t + 0.5) * block.side());
     of_block[b] = square_key(static_cast<int64_t>(std::floor(at.x / kSmallestSide)),
@@ -108,7 +109,7 @@ void Overlay::choose_sides(const NodeMesh& mesh, int32_t workers, size_t crossin
   }
 }
 
-void Overlay::choose_entrances(const NodeMesh& mesh, int32_t workers) {
+void Overlay::choose_entrances(const graph::NodeMesh& mesh, int32_t workers) {
   // Components of each overlay cell by itself.
   std::vector<uint32_t> part_of(of_block_.size());
   std::vector<uint32_t> counts(first_block_.size() - 1);
@@ -118,7 +119,7 @@ void Overlay::choose_entrances(const NodeMesh& mesh, int32_t workers) {
         static_cast<uint32_t>(blocks.size()),
         [&](uint32_t b) { return static_cast<uint32_t>(mesh.portals_of(blocks[b]).size()); },
         [&](uint32_t b, uint32_t k) {
-          const PortalSides portal = mesh.portals().sides(mesh.portals_of(blocks[b])[k]);
+          const graph::PortalSides portal = mesh.portals().sides(mesh.portals_of(blocks[b])[k]);
           if (portal.one_way && portal.b == blocks[b]) return UINT32_MAX;
           const uint32_t to = portal.a == blocks[b] ? portal.b : portal.a;
           if (of_block_[to] != d) return UINT32_MAX;
@@ -137,7 +138,7 @@ void Overlay::choose_entrances(const NodeMesh& mesh, int32_t workers) {
   };
   std::vector<Candidate> candidates;
   for (uint32_t p = 0; p < mesh.portals().size(); ++p) {
-    const PortalSides portal = mesh.portals().sides(p);
+    const graph::PortalSides portal = mesh.portals().sides(p);
     const uint32_t a = of_block_[portal.a], b = of_block_[portal.b];
     if (a == b) continue;
     uint32_t from = counts[a] + part_of[portal.a], to = counts[b] + part_of[portal.b];
@@ -152,7 +153,7 @@ void Overlay::choose_entrances(const NodeMesh& mesh, int32_t workers) {
   std::vector<Vec3d> chosen;
   for (size_t i = 0; i < candidates.size(); ++i) {
     if (i == 0 || candidates[i].group() != candidates[i - 1].group()) chosen.clear();
-    const PortalSides portal = mesh.portals().sides(candidates[i].portal);
+    const graph::PortalSides portal = mesh.portals().sides(candidates[i].portal);
     uint32_t a = of_block_[portal.a], b = of_block_[portal.b];
     uint8_t top = 0;
     while (top + size_t{1} < overlay_levels_.size()) {
@@ -174,8 +175,8 @@ void Overlay::choose_entrances(const NodeMesh& mesh, int32_t workers) {
             [](const Entrance& a, const Entrance& b) { return a.portal < b.portal; });
 }
 
-void Overlay::list_entries(const NodeMesh& mesh, OverlayLevel& overlay_level, uint8_t k) {
-  overlay_level.of_entry.assign(2 * entrances_.size(), kNoNode);
+void Overlay::list_entries(const graph::NodeMesh& mesh, OverlayLevel& overlay_level, uint8_t k) {
+  overlay_level.of_entry.assign(2 * entrances_.size(), graph::kNoNode);
   overlay_level.place.assign(2 * entrances_.size(), 0);
   const size_t overlay = overlay_level.first.size() - 1;
   const NodeView view(mesh);
@@ -193,7 +194,7 @@ void Overlay::list_entries(const NodeMesh& mesh, OverlayLevel& overlay_level, ui
   std::vector<uint32_t> next(overlay_level.first.begin(), overlay_level.first.end() - 1);
   for (uint32_t entry = 0; entry < overlay_level.of_entry.size(); ++entry) {
     const uint32_t overlay_cell = overlay_level.of_entry[entry];
-    if (overlay_cell == kNoNode) continue;
+    if (overlay_cell == graph::kNoNode) continue;
     overlay_level.place[entry] = next[overlay_cell] - overlay_level.first[overlay_cell];
     overlay_level.entries[next[overlay_cell]++] = entry;
   }
@@ -207,7 +208,7 @@ void Overlay::list_entries(const NodeMesh& mesh, OverlayLevel& overlay_level, ui
 }
 
 // An entry into a one-way portal from its far side leads nowhere: no path comes to it.
-void Overlay::measure_costs(const NodeMesh& mesh, const PieceCost& cost, int32_t workers) {
+void Overlay::measure_costs(const graph::NodeMesh& mesh, const PieceCost& cost, int32_t workers) {
   OverlayLevel& overlay_level = overlay_levels_.front();
   const NodeView view(mesh);
   std::vector<OverlayGraph> graphs(static_cast<size_t>(worker_count(workers)), {view, cost});
@@ -221,9 +222,9 @@ void Overlay::measure_costs(const NodeMesh& mesh, const PieceCost& cost, int32_t
     std::vector<std::pair<uint32_t, uint32_t>> columns;
     for (uint32_t w = 0; w < graph.arcs().size(); ++w) {
       const OverlayGraph::Arc& arc = graph.arcs()[w];
-      if (arc.into != kNoNode) continue;
+      if (arc.into != graph::kNoNode) continue;
       const uint32_t entry = entry_of(arc.crossing);
-      if (entry != kNoNode) columns.emplace_back(w, overlay_level.place[entry ^ 1]);
+      if (entry != graph::kNoNode) columns.emplace_back(w, overlay_level.place[entry ^ 1]);
     }
     for (size_t i = 0; i < entries.size(); ++i) {
       const Crossing in = crossing(entries[i]);
@@ -301,7 +302,7 @@ uint32_t Overlay::entry_of(const Crossing& crossing) const {
   const auto at = std::lower_bound(
       entrances_.begin(), entrances_.end(), crossing.portal,
       [](const Entrance& entrance, uint32_t portal) { return entrance.portal < portal; });
-  if (at == entrances_.end() || at->portal != crossing.portal) return kNoNode;
+  if (at == entrances_.end() || at->portal != crossing.portal) return graph::kNoNode;
   return 2 * static_cast<uint32_t>(at - entrances_.begin()) + (crossing.backward ? 1 : 0);
 }
 
@@ -318,4 +319,4 @@ uint64_t Overlay::bytes() const {
   return bytes;
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -12,7 +12,7 @@
 /// Overlay cells, squares of ground on overlay levels: the cost of crossing each is known, so that
 /// a long path need not be searched block by block. Source: [BMS04], [DGPW11];
 /// docs/design/006-nodes.md.
-namespace throng {
+namespace throng::path {
 
 class OverlayGraph;
 
@@ -57,7 +57,8 @@ class Overlay {
   Overlay() = default;
   /// The lowest overlay cells are the smallest squares that hold so many crossings on average. The
   /// same for any number of workers. Empty if the mesh would have only one overlay cell.
-  Overlay(const NodeMesh& mesh, const PieceCost& cost, int32_t workers, size_t crossings = 192);
+  Overlay(const graph::NodeMesh& mesh, const PieceCost& cost, int32_t workers,
+          size_t crossings = 192);
 
   [[nodiscard]] bool empty() const { return overlay_levels_.empty(); }
   [[nodiscard]] const std::vector<OverlayLevel>& overlay_levels() const { return overlay_levels_; }
@@ -78,10 +79,10 @@ class Overlay {
   [[nodiscard]] uint64_t bytes() const;
 
  private:
-  void choose_sides(const NodeMesh& mesh, int32_t workers, size_t crossings);
-  void choose_entrances(const NodeMesh& mesh, int32_t workers);
-  void list_entries(const NodeMesh& mesh, OverlayLevel& overlay_level, uint8_t k);
-  void measure_costs(const NodeMesh& mesh, const PieceCost& cost, int32_t workers);
+  void choose_sides(const graph::NodeMesh& mesh, int32_t workers, size_t crossings);
+  void choose_entrances(const graph::NodeMesh& mesh, int32_t workers);
+  void list_entries(const graph::NodeMesh& mesh, OverlayLevel& overlay_level, uint8_t k);
+  void measure_costs(const graph::NodeMesh& mesh, const PieceCost& cost, int32_t workers);
   void join_up(size_t overlay_level, int32_t workers);
 
   std::vector<uint32_t> of_block_;
@@ -91,4 +92,4 @@ class Overlay {
   std::vector<Vec3d> at_;            // by entry
 };
 
-}  // namespace throng
+}  // namespace throng::path

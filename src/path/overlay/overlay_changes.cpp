@@ -7,14 +7,14 @@
 
 // Marks the overlay cells that obstacles touch, moves their entrances, and computes their rows of
 // costs when a search first needs them.
-namespace throng {
+namespace throng::path {
 
 void OverlayChanges::update() {
   if (overlay_->empty()) return;
   blocks_.clear();
   moved_.clear();
   rows_.clear();
-  in_graph_ = kNoNode;
+  in_graph_ = graph::kNoNode;
   const auto& overlay_levels = overlay_->overlay_levels();
   if (stale_.empty()) {
     if (view_->is_as_baked()) return;
@@ -48,15 +48,15 @@ void OverlayChanges::update() {
   }
   for (const NodeChanges::Replaced& replaced : changes.replaced()) {
     const uint32_t entry = overlay_->entry_of({replaced.portal, false});
-    if (entry != kNoNode) move_entrance(entry / 2, replaced.first, replaced.last);
+    if (entry != graph::kNoNode) move_entrance(entry / 2, replaced.first, replaced.last);
   }
 }
 
 void OverlayChanges::move_entrance(uint32_t entrance, uint32_t first, uint32_t last) {
-  const NodePortal old = view_->mesh().portals()[overlay_->entrances()[entrance].portal];
+  const graph::NodePortal old = view_->mesh().portals()[overlay_->entrances()[entrance].portal];
   Entrance moved;
-  const auto size = [&](const NodePortal& portal) {
-    const NodeSurface& surface = view_->surface(portal.a);
+  const auto size = [&](const graph::NodePortal& portal) {
+    const graph::NodeSurface& surface = view_->surface(portal.a);
     return length(surface.at(portal.on_a[2], portal.on_a[3]) -
                   surface.at(portal.on_a[0], portal.on_a[1]));
   };
@@ -67,14 +67,14 @@ void OverlayChanges::move_entrance(uint32_t entrance, uint32_t first, uint32_t l
     longest = long_as;
     moved.portal = p;
   }
-  if (moved.portal == kNoNode) {
+  if (moved.portal == graph::kNoNode) {
     const std::vector<uint32_t>& of_block = overlay_->of_block();
     const uint32_t from = of_block[old.a], to = of_block[old.b];
     const Vec3d was = overlay_->at(2 * entrance);
     double nearest = std::numeric_limits<double>::infinity();
     for (const uint32_t block : blocks_.at(from)) {
       for (const uint32_t p : view_->portals_of(block)) {
-        const PortalSides portal = view_->sides(p);
+        const graph::PortalSides portal = view_->sides(p);
         const bool turned = portal.a != block;
         if (portal.one_way != old.one_way || (portal.one_way && turned)) continue;
         if (of_block[view_->base_of(turned ? portal.a : portal.b)] != to) continue;
@@ -86,7 +86,7 @@ void OverlayChanges::move_entrance(uint32_t entrance, uint32_t first, uint32_t l
       }
     }
   }
-  if (moved.portal != kNoNode) {
+  if (moved.portal != graph::kNoNode) {
     for (const bool backward : {false, true}) {
       const Crossing crossing{moved.portal, backward != moved.turned};
       moved.at[backward ? 1 : 0] = position(*view_, ends_of(*view_, crossing).in);
@@ -111,9 +111,9 @@ std::span<const float> OverlayChanges::costs_from(uint32_t entry) {
     const uint32_t out = entries[j] ^ 1;
     if (entries[j] == entry || is_closed(out)) continue;
     const uint32_t arc = graph_.arc_of(crossing(out));
-    if (arc != kNoNode) row[j] = static_cast<float>(costs[arc]);
+    if (arc != graph::kNoNode) row[j] = static_cast<float>(costs[arc]);
   }
   return row;
 }
 
-}  // namespace throng
+}  // namespace throng::path

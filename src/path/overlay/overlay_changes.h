@@ -13,7 +13,7 @@
 
 /// The overlay of a mesh on which obstacles stand: where the obstacles are, costs differ from those
 /// of the overlay.
-namespace throng {
+namespace throng::path {
 
 /// An overlay cell is *stale* if a block of it is cut or has other portals, and so is each that
 /// holds it. On the lowest overlay level the rows of costs of stale cells are computed again when
@@ -34,7 +34,7 @@ class OverlayChanges {
   }
   [[nodiscard]] bool is_closed(uint32_t entry) const {
     const Entrance* moved = moved_entrance(entry);
-    return moved != nullptr && moved->portal == kNoNode;
+    return moved != nullptr && moved->portal == graph::kNoNode;
   }
   /// [not closed]
   [[nodiscard]] Crossing crossing(uint32_t entry) const {
@@ -44,7 +44,7 @@ class OverlayChanges {
   }
   [[nodiscard]] Vec3d at(uint32_t entry) const {
     const Entrance* moved = moved_entrance(entry);
-    if (moved == nullptr || moved->portal == kNoNode) return overlay_->at(entry);
+    if (moved == nullptr || moved->portal == graph::kNoNode) return overlay_->at(entry);
     return moved->at[entry % 2];
   }
   /// Of the lowest overlay level, as they are now: rising.
@@ -58,7 +58,7 @@ class OverlayChanges {
 
  private:
   struct Entrance {
-    uint32_t portal = kNoNode;
+    uint32_t portal = graph::kNoNode;
     bool turned = false;  // Its portal's a and b are swapped.
     Vec3d at[2];
   };
@@ -72,7 +72,7 @@ class OverlayChanges {
   const NodeView* view_;
   const Overlay* overlay_;
   OverlayGraph graph_;
-  uint32_t in_graph_ = kNoNode;  // the stale overlay cell that is in graph_
+  uint32_t in_graph_ = graph::kNoNode;  // the stale overlay cell that is in graph_
   std::vector<std::vector<uint8_t>>
       stale_;  // by overlay level and cell; empty: nothing has changed yet
   std::vector<std::vector<uint32_t>> stale_of_level_;
@@ -82,4 +82,4 @@ class OverlayChanges {
   std::unordered_map<uint32_t, std::vector<float>> rows_;  // by entry; looked up only
 };
 
-}  // namespace throng
+}  // namespace throng::path

@@ -7,22 +7,22 @@
 
 // Dijkstra's algorithm over the arcs of one overlay cell, forward or backward. O(n log n) in the
 // arcs.
-namespace throng {
+namespace throng::path {
 namespace {}  // namespace
 
 uint32_t OverlayGraph::place_of(uint32_t block) const {
   const auto at = std::lower_bound(blocks_.begin(), blocks_.end(), block);
-  if (at == blocks_.end() || *at != block) return kNoNode;
+  if (at == blocks_.end() || *at != block) return graph::kNoNode;
   return static_cast<uint32_t>(at - blocks_.begin());
 }
 
 uint32_t OverlayGraph::arc_of(const Crossing& crossing) const {
   const uint32_t from = place_of(ends_of(*view_, crossing).out.block);
-  if (from == kNoNode) return kNoNode;
+  if (from == graph::kNoNode) return graph::kNoNode;
   for (uint32_t w = first_arc_[from]; w < first_arc_[from + 1]; ++w) {
     if (arcs_[w].crossing == crossing) return w;
   }
-  return kNoNode;
+  return graph::kNoNode;
 }
 
 void OverlayGraph::set(std::span<const uint32_t> blocks, bool keep) {
@@ -32,10 +32,10 @@ void OverlayGraph::set(std::span<const uint32_t> blocks, bool keep) {
   arcs_.clear();
   for (const uint32_t block : blocks_) {
     for_each_arc_out(*view_, block, [&](const Crossing& crossing) {
-      const NodePortal portal = view_->portal(crossing.portal);
+      const graph::NodePortal portal = view_->portal(crossing.portal);
       const auto [out, in] = ends_of(portal, crossing.backward);
       Arc arc{crossing, out, in, position(*view_, out), position(*view_, in)};
-      arc.through = portal_length(portal, arc.out_at, arc.in_at);
+      arc.through = graph::portal_length(portal, arc.out_at, arc.in_at);
       arc.into = place_of(in.block);
       arcs_.push_back(arc);
     });
@@ -43,13 +43,13 @@ void OverlayGraph::set(std::span<const uint32_t> blocks, bool keep) {
   }
   first_in_.assign(blocks_.size() + 1, 0);
   for (const Arc& arc : arcs_) {
-    if (arc.into != kNoNode) ++first_in_[arc.into + 1];
+    if (arc.into != graph::kNoNode) ++first_in_[arc.into + 1];
   }
   for (size_t b = 0; b < blocks_.size(); ++b) first_in_[b + 1] += first_in_[b];
   in_of_.resize(first_in_.back());
   for (size_t w = arcs_.size(); w-- > 0;) {
     const uint32_t into = arcs_[w].into;
-    if (into == kNoNode) continue;
+    if (into == graph::kNoNode) continue;
     // Filled from the end of each block's own: what is left of them is counted in `first_in_`.
     in_of_[--first_in_[into + 1]] = static_cast<uint32_t>(w);
   }
@@ -61,7 +61,7 @@ void OverlayGraph::set(std::span<const uint32_t> blocks, bool keep) {
   if (!keep) return;
   for (const Arc& arc : arcs_) {
     first_kept_.push_back(kept_.size());
-    if (arc.into == kNoNode) continue;
+    if (arc.into == graph::kNoNode) continue;
     for (uint32_t w = first_arc_[arc.into]; w < first_arc_[arc.into + 1]; ++w) {
       kept_.push_back(piece(arc.in, arc.in_at, arcs_[w].out, arcs_[w].out_at));
     }
@@ -94,7 +94,7 @@ const std::vector<double>& OverlayGraph::run(const BlockPoint& from) {
   }
   for (Open top; next(top);) {
     const Arc& arc = arcs_[top.arc];
-    if (arc.into == kNoNode) continue;
+    if (arc.into == graph::kNoNode) continue;
     const uint32_t first = first_arc_[arc.into], last = first_arc_[arc.into + 1];
     for (uint32_t w = first; w < last; ++w) {
       if (cost_[w] <= top.cost) continue;
@@ -135,10 +135,10 @@ double OverlayGraph::rest(const BlockPoint& from) const {
   const uint32_t start = place_of(from.block);
   for (uint32_t w = first_arc_[start]; w < first_arc_[start + 1]; ++w) {
     const Arc& arc = arcs_[w];
-    if (arc.into == kNoNode || cost_[w] >= least) continue;
+    if (arc.into == graph::kNoNode || cost_[w] >= least) continue;
     least = std::min(least, piece(from, at, arc.out, arc.out_at) + arc.through + cost_[w]);
   }
   return least;
 }
 
-}  // namespace throng
+}  // namespace throng::path

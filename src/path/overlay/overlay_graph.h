@@ -11,7 +11,7 @@
 #include "path/surface/node_search.h"
 
 /// The arcs within one overlay cell of a mesh, with costs from one point or to one point.
-namespace throng {
+namespace throng::path {
 
 inline constexpr double kNoPath = std::numeric_limits<double>::infinity();
 
@@ -24,8 +24,9 @@ class OverlayGraph {
     Crossing crossing;
     BlockPoint out, in;
     Vec3d out_at, in_at;
-    double through = 0;       ///< From `out` to `in`. [m]
-    uint32_t into = kNoNode;  ///< Place of its block in the overlay cell; none: it leads out.
+    double through = 0;  ///< From `out` to `in`. [m]
+    uint32_t into =
+        graph::kNoNode;  ///< Place of its block in the overlay cell; none: it leads out.
   };
 
   /// Of these blocks, rising; `keep` stores the costs of all pieces, for many calls of run().
@@ -76,4 +77,4 @@ class OverlayGraph {
   uint64_t expanded_ = 0;
 };
 
-}  // namespace throng
+}  // namespace throng::path

@@ -6,7 +6,7 @@
 #include <limits>
 
 // A* over entrances, then a search of each overlay cell crossed. Source: [BMS04], [DGPW11].
-namespace throng {
+namespace throng::path {
 namespace {}  // namespace
 
 void OverlaySearch::begin() {
@@ -68,7 +68,8 @@ PathEnd OverlaySearch::find(const BlockPoint& from, const BlockPoint& to,
     if (end != PathEnd::kReached) return end;
     joints_.push_back(crossings.size());
     crossings.push_back(crossing);
-    cost_ += portal_length(view_->portal(crossing.portal), position(*view_, out), now_.at(entry));
+    cost_ +=
+        graph::portal_length(view_->portal(crossing.portal), position(*view_, out), now_.at(entry));
     at = in;
     return end;
   };
@@ -114,8 +115,8 @@ void OverlaySearch::straighten(const BlockPoint& from, const BlockPoint& to,
     if (ends) break;
     straightened_.push_back(crossings[last]);
     const auto [out, in] = ends_of(*view_, crossings[last]);
-    cost_ += portal_length(view_->portal(crossings[last].portal), position(*view_, out),
-                           position(*view_, in));
+    cost_ += graph::portal_length(view_->portal(crossings[last].portal), position(*view_, out),
+                                  position(*view_, in));
     begin = in;
     first = last + 1;
   }
@@ -136,7 +137,7 @@ double OverlaySearch::cost_of(const BlockPoint& from, const BlockPoint& to, cons
     const auto [out, in] = ends_of(*view_, *first);
     go(out);
     const Vec3d beyond = position(*view_, in);
-    cost += portal_length(view_->portal(first->portal), here, beyond);
+    cost += graph::portal_length(view_->portal(first->portal), here, beyond);
     at = in;
     here = beyond;
   }
@@ -181,7 +182,7 @@ PathEnd OverlaySearch::over_entrances(const BlockPoint& from, const BlockPoint& 
     const uint32_t out = entry ^ 1;
     if (now_.is_closed(out)) continue;
     const uint32_t arc = graph_.arc_of(now_.crossing(out));
-    if (arc != kNoNode) reach(out, kNoEntry, costs[arc], 0, goal);
+    if (arc != graph::kNoNode) reach(out, kNoEntry, costs[arc], 0, goal);
   }
   // By overlay level: the cell of the goal.
   std::array<uint32_t, 32> holds_goal{};
@@ -274,4 +275,4 @@ PathEnd OverlaySearch::within(uint32_t overlay_cell, const BlockPoint& from, con
   return end;
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -13,7 +13,7 @@
 
 /// Long paths over a mesh: first over the entrances of overlay cells, on high overlay levels
 /// between far places, then within one overlay cell after the other.
-namespace throng {
+namespace throng::path {
 
 class OverlaySearch {
  public:
@@ -88,4 +88,4 @@ class OverlaySearch {
   uint64_t expanded_ = 0;
 };
 
-}  // namespace throng
+}  // namespace throng::path

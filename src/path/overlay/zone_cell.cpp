@@ -15,7 +15,7 @@
 
 // Builds the graph of zones: tables of each zone, labels of the entrances of each overlay cell,
 // labels of the boundary nodes between them.
-namespace throng {
+namespace throng::path {
 namespace {
 
 using Edges = std::vector<std::vector<PathGraph::Edge>>;
@@ -104,7 +104,7 @@ std::vector<uint32_t> components_of(const PathGraph& graph) {
 // Of the entrances between two overlay cells that join the same components of them, one every so
 // many cells of the border is a boundary node. `components` has, for each overlay cell, the
 // component of each entrance.
-void choose_boundary_nodes(const WorldData& world,
+void choose_boundary_nodes(const world::WorldData& world,
                            const std::vector<std::vector<uint32_t>>& components, ZoneGraph& graph) {
   struct Candidate {
     std::array<uint32_t, 2> zone_cells, parts;
@@ -146,7 +146,7 @@ void choose_boundary_nodes(const WorldData& world,
 }
 
 // Per overlay cell its zones.
-std::vector<std::vector<uint32_t>> group_zones(const WorldData& world, ZoneGraph& graph) {
+std::vector<std::vector<uint32_t>> group_zones(const world::WorldData& world, ZoneGraph& graph) {
   std::map<std::pair<int32_t, int32_t>, std::vector<uint32_t>> groups;
   for (uint32_t slot = 0; slot < world.slots.size(); ++slot) {
     const format::ZoneEntry& entry = world.slots[slot]->entry;
@@ -188,8 +188,8 @@ uint64_t ZoneGraph::label_count() const {
   return count;
 }
 
-Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh, int32_t workers,
-                                   Context& context) {
+Result<ZoneGraph> build_zone_graph(const world::WorldData& world, const PathMesh& mesh,
+                                   int32_t workers, Context& context) {
   const Error cancelled{Errc::kCancelled, "path: cancelled"};
   ZoneGraph graph;
   graph.entrances = find_entrances(world, mesh, zones_of_rects(world, mesh));
@@ -269,4 +269,4 @@ Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh,
   return graph;
 }
 
-}  // namespace throng
+}  // namespace throng::path

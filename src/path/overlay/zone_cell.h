@@ -13,7 +13,7 @@
 
 /// Overlay cells group zones ([PACS00]): paths inside one are looked up in labels of its entrances,
 /// paths between them in labels of boundary nodes, a few of the entrances of their borders.
-namespace throng {
+namespace throng::path {
 
 inline constexpr int32_t kZonesPerCell = 8;  // along a side
 
@@ -42,7 +42,7 @@ struct ZoneGraph {
 
 /// Fails with kBadConfig (a zone has too many corners) or kCancelled. The same for any number of
 /// workers.
-Result<ZoneGraph> build_zone_graph(const WorldData& world, const PathMesh& mesh, int32_t workers,
-                                   Context& context);
+Result<ZoneGraph> build_zone_graph(const world::WorldData& world, const PathMesh& mesh,
+                                   int32_t workers, Context& context);
 
-}  // namespace throng
+}  // namespace throng::path

@@ -14,7 +14,7 @@
 #include "path/ground/open_list.h"
 
 // Tables of a zone: a Dijkstra search over its visible corners from each entrance.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr double kNoCrossing = 1e300;
@@ -70,9 +70,11 @@ std::vector<BorderCrossing> find_crossings(const PathMesh& mesh,
 }
 
 // A unit inside the zone: where rays to the entrance end.
-GroundPoint inside(const Entrance& entrance, const MeshRect& rect) {
-  const auto units = [](double cells) { return static_cast<int64_t>(cells * kUnitsPerCell); };
-  GroundPoint p{units(entrance.at.x), units(entrance.at.z)};
+world::GroundPoint inside(const Entrance& entrance, const MeshRect& rect) {
+  const auto units = [](double cells) {
+    return static_cast<int64_t>(cells * world::kUnitsPerCell);
+  };
+  world::GroundPoint p{units(entrance.at.x), units(entrance.at.z)};
   if (entrance.at.x == rect.x + rect.width) --p.x;
   if (entrance.at.z == rect.z + rect.depth) --p.z;
   return p;
@@ -171,7 +173,7 @@ size_t ZonePaths::place_of_entrance(uint32_t entrance) const {
                              entrances.begin());
 }
 
-std::vector<uint32_t> zones_of_rects(const WorldData& world, const PathMesh& mesh) {
+std::vector<uint32_t> zones_of_rects(const world::WorldData& world, const PathMesh& mesh) {
   std::vector<uint32_t> zones(mesh.rects.size() - 1);
   for (size_t slot = 0; slot < world.slots.size(); ++slot) {
     const uint32_t first = world.slots[slot]->first_level;
@@ -182,7 +184,7 @@ std::vector<uint32_t> zones_of_rects(const WorldData& world, const PathMesh& mes
   return zones;
 }
 
-std::vector<Entrance> find_entrances(const WorldData& world, const PathMesh& mesh,
+std::vector<Entrance> find_entrances(const world::WorldData& world, const PathMesh& mesh,
                                      const std::vector<uint32_t>& zone_of_rect) {
   const std::vector<BorderCrossing> crossings = find_crossings(mesh, zone_of_rect);
   const int32_t apart = std::max(1, static_cast<int32_t>(world.tiles_per_zone) * kTileCells / 10);
@@ -242,7 +244,8 @@ bool find_zone_paths(const PathMesh& mesh, const std::vector<Entrance>& entrance
       const Entrance& from = entrances[paths.entrances[other]];
       const size_t at = paths.row(corners + other) + g;
       const uint32_t rect = from.rect_in(zone), goal = to.rect_in(zone);
-      const GroundPoint begin = inside(from, mesh.rects[rect]), end = inside(to, mesh.rects[goal]);
+      const world::GroundPoint begin = inside(from, mesh.rects[rect]),
+                               end = inside(to, mesh.rects[goal]);
       if (mesh_ray(mesh, rect, begin, end) == goal)
         take_shorter(distance(from.at, to.at), kStraight, paths.length[at], paths.next[at]);
       for (const EntranceView& s : seen[other])
@@ -291,4 +294,4 @@ void find_entrances_around(const PathMesh& mesh, const std::vector<Entrance>& en
   }
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -12,7 +12,7 @@
 #include "throng/base.h"
 
 /// Paths inside one zone, between the entrances of its borders.
-namespace throng {
+namespace throng::path {
 
 /// The length of a path that does not exist.
 inline constexpr float kNeverReached = std::numeric_limits<float>::infinity();
@@ -49,11 +49,11 @@ struct ZonePaths {
 };
 
 /// Slot of the zone of each rectangle.
-std::vector<uint32_t> zones_of_rects(const WorldData& world, const PathMesh& mesh);
+std::vector<uint32_t> zones_of_rects(const world::WorldData& world, const PathMesh& mesh);
 
 /// The entrances of a world: one in the middle of each run of border over which steps lead, more of
 /// them on long runs, about a tenth of a zone's side apart.
-std::vector<Entrance> find_entrances(const WorldData& world, const PathMesh& mesh,
+std::vector<Entrance> find_entrances(const world::WorldData& world, const PathMesh& mesh,
                                      const std::vector<uint32_t>& zone_of_rect);
 
 /// `paths` has its rectangles and entrances; finds the rest. `sight` is scratch. False if the zone
@@ -66,4 +66,4 @@ void find_entrances_around(const PathMesh& mesh, const std::vector<Entrance>& en
                            uint32_t zone, const ZonePaths& paths, const Stop& from, Sight& sight,
                            std::vector<float>& length, std::vector<uint16_t>& next);
 
-}  // namespace throng
+}  // namespace throng::path

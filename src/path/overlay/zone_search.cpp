@@ -13,14 +13,14 @@
 #include "path/ground/mesh_ray.h"
 
 // Joins the tables and labels of the zones of both ends, then pulls the path taut.
-namespace throng {
+namespace throng::path {
 namespace {
 
-uint32_t zone_of(const WorldData& world, const PathMesh& mesh, uint32_t rect) {
+uint32_t zone_of(const world::WorldData& world, const PathMesh& mesh, uint32_t rect) {
   return static_cast<uint32_t>(world.slot_of_level(mesh.rects[rect].level));
 }
 
-bool touch(const WorldData& world, uint32_t a, uint32_t b) {
+bool touch(const world::WorldData& world, uint32_t a, uint32_t b) {
   const format::ZoneEntry &p = world.slots[a]->entry, &q = world.slots[b]->entry;
   return std::abs(p.x() - q.x()) <= 1 && std::abs(p.z() - q.z()) <= 1;
 }
@@ -53,8 +53,8 @@ void ZoneSearch::Reached::add(std::span<const TwoHopLabels::Label> labels, uint3
 }
 
 // From an end to the entrances of its zone, and on to the hubs of its overlay cell.
-void ZoneSearch::find_hubs(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
-                           const Stop& stop, End& end) {
+void ZoneSearch::find_hubs(const world::WorldData& world, const PathMesh& mesh,
+                           const ZoneGraph& graph, const Stop& stop, End& end) {
   end.zone = zone_of(world, mesh, stop.rect);
   end.zone_cell = graph.cell_of_zone[end.zone];
   const ZonePaths& paths = graph.zones[end.zone];
@@ -300,9 +300,10 @@ bool ZoneSearch::lead(const PathMesh& mesh, const ZoneGraph& graph, const Stop& 
   return pull_.pull(mesh, path_, corners, length);
 }
 
-SearchResult ZoneSearch::find(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
-                              const Stop& from, const Stop& to, const SearchBudget& budget,
-                              std::vector<uint32_t>& corners, double& length) {
+SearchResult ZoneSearch::find(const world::WorldData& world, const PathMesh& mesh,
+                              const ZoneGraph& graph, const Stop& from, const Stop& to,
+                              const SearchBudget& budget, std::vector<uint32_t>& corners,
+                              double& length) {
   expanded_ = 0;
   if (mesh_ray(mesh, from.rect, from.at, to.at) == to.rect) {
     corners.clear();
@@ -329,4 +330,4 @@ SearchResult ZoneSearch::find(const WorldData& world, const PathMesh& mesh, cons
   return led ? SearchResult::kFound : result;
 }
 
-}  // namespace throng
+}  // namespace throng::path

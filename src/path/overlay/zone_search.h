@@ -16,14 +16,14 @@
 
 /// Paths over large worlds: inside zones by their tables, inside overlay cells by labels of their
 /// entrances, between them by labels of their boundary nodes.
-namespace throng {
+namespace throng::path {
 
 /// Finds paths by a zone graph. Owns its memory: one per thread, no allocation once it has grown.
 class ZoneSearch {
  public:
   /// As PathSearch::find. Between zones that touch, the shortest path if that is found within a
   /// budget; else the shortest of its kind (path/ground/string_puller.h), led through entrances.
-  SearchResult find(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
+  SearchResult find(const world::WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
                     const Stop& from, const Stop& to, const SearchBudget& budget,
                     std::vector<uint32_t>& corners, double& length);
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
@@ -76,7 +76,7 @@ class ZoneSearch {
     size_t goal, at;  // its place in them, and that of the path
   };
 
-  void find_hubs(const WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
+  void find_hubs(const world::WorldData& world, const PathMesh& mesh, const ZoneGraph& graph,
                  const Stop& stop, End& end);
   bool join(const ZoneGraph& graph, const Stop& from, const Stop& to, Best& best);
   void join_boundary_nodes(const ZoneGraph& graph, const Stop& from, const Stop& to, Best& best);
@@ -104,4 +104,4 @@ class ZoneSearch {
   uint64_t expanded_ = 0;
 };
 
-}  // namespace throng
+}  // namespace throng::path

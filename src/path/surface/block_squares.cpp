@@ -9,14 +9,14 @@
 
 // Balls around the blocks of Bezier patches, in a uniform grid of about one ball a square. The
 // nearest point of a block is found by Gauss-Newton steps.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr int kNewtonSteps = 12;
 constexpr double kEdgeStep = 1e-4;  // of a patch's parameters, for derivatives
 
 // A patch's longest derivatives, by the hulls of its control points. [m]
-std::pair<double, double> longest_derivatives(const NodeSurface& surface) {
+std::pair<double, double> longest_derivatives(const graph::NodeSurface& surface) {
   const auto point = [&](size_t k) {
     return Vec3d{surface.points[3 * k], surface.points[3 * k + 1], surface.points[3 * k + 2]};
   };
@@ -32,14 +32,14 @@ std::pair<double, double> longest_derivatives(const NodeSurface& surface) {
 
 }  // namespace
 
-std::pair<double, double> nearest_in(const NodeSurface& surface, const NodeBlock& block,
-                                     Vec3d position) {
+std::pair<double, double> nearest_in(const graph::NodeSurface& surface,
+                                     const graph::NodeBlock& block, Vec3d position) {
   const double side = block.side(), s0 = block.s * side, t0 = block.t * side;
   if (surface.points == nullptr) {
     const Vec3d corner = surface.at(0, 0);
     const double tile = surface.world->summary.cell * kTileCells;
     const auto inside = [&](double at, double low) {
-      return std::clamp(at, low + kTileInset, low + side - kTileInset);
+      return std::clamp(at, low + graph::kTileInset, low + side - graph::kTileInset);
     };
     return {inside((position.x - corner.x) / tile, s0), inside((position.z - corner.z) / tile, t0)};
   }
@@ -61,11 +61,11 @@ std::pair<double, double> nearest_in(const NodeSurface& surface, const NodeBlock
   return {s, t};
 }
 
-BlockSquares::BlockSquares(const NodeMesh& mesh) {
+BlockSquares::BlockSquares(const graph::NodeMesh& mesh) {
   std::vector<Ball> balls;
   Box3d box;
   for (uint32_t p = 0; p < mesh.patches().size(); ++p) {
-    const NodeSurface& surface = mesh.patches()[p];
+    const graph::NodeSurface& surface = mesh.patches()[p];
     if (surface.points == nullptr) continue;
     const auto [by_s, by_t] = longest_derivatives(surface);
     const auto blocks = mesh.blocks_of(p);
@@ -110,4 +110,4 @@ uint64_t BlockSquares::bytes() const {
   return first_.size() * sizeof(uint32_t) + balls_.size() * sizeof(Ball);
 }
 
-}  // namespace throng
+}  // namespace throng::path

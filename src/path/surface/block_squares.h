@@ -12,17 +12,17 @@
 #include "throng/base.h"
 
 /// Which blocks of Bezier patches lie near a point.
-namespace throng {
+namespace throng::path {
 
 /// The parameters of a block's point nearest to a position: from its middle by Gauss-Newton steps,
 /// kept inside; on a level tile the nearest in the plane.
-[[nodiscard]] std::pair<double, double> nearest_in(const NodeSurface& surface,
-                                                   const NodeBlock& block, Vec3d position);
+[[nodiscard]] std::pair<double, double> nearest_in(const graph::NodeSurface& surface,
+                                                   const graph::NodeBlock& block, Vec3d position);
 
 /// Balls around the blocks of Bezier patches, by the square of the ground that holds their middle.
 class BlockSquares {
  public:
-  explicit BlockSquares(const NodeMesh& mesh);
+  explicit BlockSquares(const graph::NodeMesh& mesh);
 
   /// Calls visit(block) for each block that may have a point no farther than `radius`, which the
   /// calls may reduce. In no order.
@@ -65,4 +65,4 @@ class BlockSquares {
   std::vector<Ball> balls_;      // by square
 };
 
-}  // namespace throng
+}  // namespace throng::path

@@ -12,7 +12,7 @@
 
 // Which blocks and portals of a mesh of nodes obstacles block, found by halving blocks and motions.
 // Time by the blocks near an obstacle.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr double kFinest = 0.35;  // [m] across a square of curved ground that is cut no further
@@ -125,30 +125,30 @@ bool NodeChanges::set_active(ChangeId id, bool active, bool remove) {
 // Blocked cells, and blocks within `around`.
 void NodeChanges::block_tiles(const Solid& solid, double around, Change& change,
                               std::vector<uint32_t>& near) const {
-  const WorldData& world = *data_of(data_of(mesh_->nodes())->world);
+  const world::WorldData& world = *data_of(data_of(mesh_->nodes())->world);
   const AvatarClass& avatar = world.summary.classes[static_cast<size_t>(mesh_->avatar_class())];
   const SquareRange tiles = tiles_near(world, solid.prism.corners, around);
-  CellRows all;
+  world::CellRows all;
   all.fill(~uint64_t{0});
   for (int32_t z = tiles.first_z; z <= tiles.last_z; ++z) {
     for (int32_t x = tiles.first_x; x <= tiles.last_x; ++x) {
       const auto levels = world.tile_levels(x, z);
       for (uint32_t level = levels.first; level < levels.last; ++level) {
         const uint32_t patch = mesh_->patch_of_level(level);
-        if (patch == kNoNode) continue;
-        const GroundLevel ground = ground_level(world, level, mesh_->avatar_class());
+        if (patch == graph::kNoNode) continue;
+        const world::GroundLevel ground = world::ground_level(world, level, mesh_->avatar_class());
         if (ground.zone == nullptr) continue;
         const TileFloor floor{world.summary, ground.view, x, z};
         // Legal cells alone need their heights.
-        CellRows legal{};
+        world::CellRows legal{};
         const auto blocks = mesh_->blocks_of(patch);
-        for (const NodeBlock& block : blocks) {
+        for (const graph::NodeBlock& block : blocks) {
           const int32_t side = 64 >> block.level;
           const uint64_t row = (~uint64_t{0} >> (64 - side)) << (block.s * side);
           for (int32_t k = block.t * side; k < (block.t + 1) * side; ++k)
             legal[static_cast<size_t>(k)] |= row;
         }
-        const CellRows rows =
+        const world::CellRows rows =
             blocked_cells(floor, avatar, solid.prism, solid.triangles, legal.data());
         if (std::any_of(rows.begin(), rows.end(), [](uint64_t row) { return row != 0; })) {
           change.tiles.push_back({patch, rows});
@@ -167,8 +167,8 @@ void NodeChanges::block_tiles(const Solid& solid, double around, Change& change,
   }
 }
 
-uint8_t NodeChanges::finest_level(const NodeBlock& block) const {
-  const NodeSurface& surface = mesh_->patches()[block.patch];
+uint8_t NodeChanges::finest_level(const graph::NodeBlock& block) const {
+  const graph::NodeSurface& surface = mesh_->patches()[block.patch];
   const double side = block.side(), s = block.s * side, t = block.t * side;
   double across = 2 * surface_piece(surface, s, t, s + side, t + side).spread;
   uint8_t level = block.level;
@@ -177,16 +177,16 @@ uint8_t NodeChanges::finest_level(const NodeBlock& block) const {
 }
 
 void NodeChanges::block_squares(const Solid& solid, uint32_t block, Change& change) const {
-  const NodeBlock& whole = mesh_->blocks()[block];
-  const NodeSurface& surface = mesh_->surface(block);
+  const graph::NodeBlock& whole = mesh_->blocks()[block];
+  const graph::NodeSurface& surface = mesh_->surface(block);
   const auto& classes = data_of(data_of(mesh_->nodes())->world)->summary.classes;
   const AvatarClass& avatar = classes[static_cast<size_t>(mesh_->avatar_class())];
   const bool climbs = avatar.climb_slope > 0;
   const uint8_t finest = finest_level(whole);
   const auto descend = [&](auto&& self, uint8_t level, uint32_t s, uint32_t t) -> void {
     const double side = 1.0 / (1 << level);
-    const SurfacePiece piece =
-        surface_piece(surface, s * side, t * side, (s + 1) * side, (t + 1) * side);
+    const graph::SurfacePiece piece =
+        graph::surface_piece(surface, s * side, t * side, (s + 1) * side, (t + 1) * side);
     BodyRoom body = body_of(avatar, climbs);
     body.feet = piece.middle;
     body.spread = piece.spread;
@@ -199,7 +199,7 @@ void NodeChanges::block_squares(const Solid& solid, uint32_t block, Change& chan
     }
     if (!may_touch(body, solid)) return;
     if (level == finest) {
-      change.squares.push_back({block, quad_order(s, t, level)});
+      change.squares.push_back({block, graph::quad_order(s, t, level)});
       return;
     }
     for (uint32_t q = 0; q < 4; ++q)
@@ -213,7 +213,7 @@ void NodeChanges::block_pieces(const Solid& solid, std::span<const uint32_t> nea
                                Change& change) const {
   for (const uint32_t block : near) {
     for (const uint32_t p : mesh_->portals_of(block)) {
-      const NodePortal portal = mesh_->portals()[p];
+      const graph::NodePortal portal = mesh_->portals()[p];
       if (portal.a != block) continue;
       const bool curved = mesh_->surface(portal.a).points != nullptr;
       const bool doors =
@@ -233,7 +233,7 @@ void NodeChanges::block_pieces(const Solid& solid, std::span<const uint32_t> nea
   }
 }
 
-bool NodeChanges::blocks_portal(const Solid& solid, const NodePortal& portal, double from,
+bool NodeChanges::blocks_portal(const Solid& solid, const graph::NodePortal& portal, double from,
                                 double to) const {
   const auto& classes = data_of(data_of(mesh_->nodes())->world)->summary.classes;
   const AvatarClass& avatar = classes[static_cast<size_t>(mesh_->avatar_class())];
@@ -242,7 +242,7 @@ bool NodeChanges::blocks_portal(const Solid& solid, const NodePortal& portal, do
   double spread = 0;
   double sine = 0;  // of how far bodies along the line lean from the one of a strip's middle
   bool leans_far = false;
-  const auto pose = [&](const NodeSurface& surface, const std::array<double, 4>& on) {
+  const auto pose = [&](const graph::NodeSurface& surface, const std::array<double, 4>& on) {
     const double s = on[0] + middle * (on[2] - on[0]), t = on[1] + middle * (on[3] - on[1]);
     Pose found{surface.at(s, t), {0, 1, 0}};
     if (surface.points == nullptr) return found;
@@ -261,7 +261,7 @@ bool NodeChanges::blocks_portal(const Solid& solid, const NodePortal& portal, do
     };
     const auto [s0, s1] = range(0);
     const auto [t0, t1] = range(1);
-    const SurfacePiece piece = surface_piece(surface, s0, t0, s1, t1);
+    const graph::SurfacePiece piece = graph::surface_piece(surface, s0, t0, s1, t1);
     spread = std::max(spread, piece.spread + length(piece.middle - found.feet));
     if (climbs) {
       leans_far |= !piece.leans || piece.cosine < 0.71;
@@ -326,13 +326,13 @@ void NodeChanges::update() {
 // The largest free squares of a block. blocked(level, s, t): 0 free, 1 partly blocked, 2 blocked.
 template <class IsBlocked>
 void NodeChanges::cut(uint32_t block, const IsBlocked& blocked) {
-  const NodeBlock& whole = mesh_->blocks()[block];
+  const graph::NodeBlock& whole = mesh_->blocks()[block];
   Cut made{static_cast<uint32_t>(parts_.size()), 0};
   const auto descend = [&](auto&& self, uint8_t level, uint32_t s, uint32_t t) -> void {
     const int some = blocked(level, s, t);
     if (some == 2) return;
     if (some == 0) {
-      NodeBlock part = whole;
+      graph::NodeBlock part = whole;
       part.level = level;
       part.s = static_cast<uint8_t>(s);
       part.t = static_cast<uint8_t>(t);
@@ -379,7 +379,7 @@ void NodeChanges::cut_squares(const std::vector<BlockedSquare>& blocked) {
     const auto end = blocked.begin() + static_cast<ptrdiff_t>(j);
     cut(blocked[i].block, [&](uint8_t level, uint32_t s, uint32_t t) {
       const uint32_t up = 2u * (finest - level);
-      const uint32_t first = quad_order(s, t, level) << up, count = 1u << up;
+      const uint32_t first = graph::quad_order(s, t, level) << up, count = 1u << up;
       const auto before = [](const BlockedSquare& square, uint32_t order) {
         return square.order < order;
       };
@@ -396,7 +396,7 @@ void NodeChanges::join_parts(uint32_t block) {
   const auto [first, last] = cuts_.at(block);
   const auto base = static_cast<uint32_t>(mesh_->blocks().size());
   const bool tile = mesh_->surface(block).points == nullptr;
-  const double inset = tile ? kTileInset : 0;
+  const double inset = tile ? graph::kTileInset : 0;
   struct Side {
     double at, from, to;
     uint32_t part;
@@ -404,7 +404,7 @@ void NodeChanges::join_parts(uint32_t block) {
   for (const bool by_s : {true, false}) {
     std::vector<Side> lows, highs;
     for (uint32_t p = first; p < last; ++p) {
-      const NodeBlock& part = parts_[p];
+      const graph::NodeBlock& part = parts_[p];
       const double side = part.side();
       const double along = (by_s ? part.s : part.t) * side,
                    across = (by_s ? part.t : part.s) * side;
@@ -427,7 +427,8 @@ void NodeChanges::join_parts(uint32_t block) {
         const double begin = std::max(high.from, lows[k].from) + inset;
         const double end = std::min(high.to, lows[k].to) - inset;
         if (!(end > begin)) continue;
-        NodePortal portal{.a = base + high.part, .b = base + lows[k].part, .on_a = {}, .on_b = {}};
+        graph::NodePortal portal{
+            .a = base + high.part, .b = base + lows[k].part, .on_a = {}, .on_b = {}};
         portal.kind =
             parts_[high.part].inclination > mesh_->walking() ? LinkKind::kClimb : LinkKind::kWalk;
         portal.inside = true;
@@ -461,10 +462,10 @@ void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& 
       out.push_back({0, 1, block});
       return;
     }
-    const double inset = mesh_->surface(block).points == nullptr ? kTileInset : 0;
+    const double inset = mesh_->surface(block).points == nullptr ? graph::kTileInset : 0;
     const Line line = line_of(on);
     for (uint32_t p = cut->second.first; p < cut->second.last; ++p) {
-      const NodeBlock& part = parts_[p];
+      const graph::NodeBlock& part = parts_[p];
       const double side = part.side();
       double from = 0, to = 1;
       const auto clip = [&](double at, double delta, double low, double high) {
@@ -487,7 +488,7 @@ void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& 
               [](const Stretch& a, const Stretch& b) { return a.from < b.from; });
   };
   for (const uint32_t p : closed) {
-    const NodePortal portal = mesh_->portals()[p];
+    const graph::NodePortal portal = mesh_->portals()[p];
     Replaced made{p, static_cast<uint32_t>(mesh_->portals().size() + portals_.size()), 0};
     free.clear();
     const auto blocked = pieces.find(p);
@@ -513,7 +514,7 @@ void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& 
           const double from = std::max({piece.from, a.from, b.from});
           const double to = std::min({piece.to, a.to, b.to});
           if (!portal.over_hole && !(to - from > kWide)) continue;
-          NodePortal left = portal;
+          graph::NodePortal left = portal;
           left.a = a.block;
           left.b = b.block;
           if (!portal.over_hole) {
@@ -533,7 +534,7 @@ void NodeChanges::list_portals() {
   const auto base = static_cast<uint32_t>(mesh_->blocks().size());
   touched_ = cut_blocks_;
   for (const Replaced& r : replaced_) {
-    const PortalSides portal = mesh_->portals().sides(r.portal);
+    const graph::PortalSides portal = mesh_->portals().sides(r.portal);
     touched_.push_back(portal.a);
     touched_.push_back(portal.b);
   }
@@ -593,15 +594,16 @@ uint32_t NodeChanges::part_at(uint32_t block, double s, double t) const {
   const auto parts = parts_of(block);
   if (!parts) return block;
   for (uint32_t p = parts->first; p < parts->second; ++p) {
-    const NodeBlock& part = parts_[p - mesh_->blocks().size()];
+    const graph::NodeBlock& part = parts_[p - mesh_->blocks().size()];
     const double side = part.side(), ds = s - part.s * side, dt = t - part.t * side;
     if (std::min(ds, dt) >= -kRounded && std::max(ds, dt) <= side + kRounded) return p;
   }
-  return kNoNode;
+  return graph::kNoNode;
 }
 
 uint64_t NodeChanges::bytes() const {
-  uint64_t bytes = parts_.size() * sizeof(NodeBlock) + portals_.size() * sizeof(NodePortal) +
+  uint64_t bytes = parts_.size() * sizeof(graph::NodeBlock) +
+                   portals_.size() * sizeof(graph::NodePortal) +
                    (base_of_part_.size() + touched_.size() + first_portal_.size() +
                     portal_of_.size() + cut_blocks_.size()) *
                        sizeof(uint32_t);
@@ -613,4 +615,4 @@ uint64_t NodeChanges::bytes() const {
   return bytes;
 }
 
-}  // namespace throng
+}  // namespace throng::path

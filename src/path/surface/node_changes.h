@@ -16,7 +16,7 @@
 #include "world/cell_blocks.h"
 
 /// Obstacles placed on a mesh of nodes since the bake.
-namespace throng {
+namespace throng::path {
 
 /// Where a body could touch a solid its block is cut: level tiles by their cells, curved patches by
 /// squares of about a quarter of a metre. What is left of a block are *parts*. What a solid blocks
@@ -25,7 +25,7 @@ namespace throng {
 class NodeChanges {
  public:
   /// No link over a hole of the mesh is longer. [m]
-  NodeChanges(const NodeMesh& mesh, const BlockSquares& squares, double longest_hole_link)
+  NodeChanges(const graph::NodeMesh& mesh, const BlockSquares& squares, double longest_hole_link)
       : mesh_(&mesh), squares_(&squares), longest_hole_link_(longest_hole_link) {}
 
   ChangeId add(Solid solid);
@@ -37,8 +37,8 @@ class NodeChanges {
   void update();
 
   [[nodiscard]] bool empty() const { return touched_.empty(); }
-  [[nodiscard]] std::span<const NodeBlock> parts() const { return parts_; }
-  [[nodiscard]] std::span<const NodePortal> portals() const { return portals_; }
+  [[nodiscard]] std::span<const graph::NodeBlock> parts() const { return parts_; }
+  [[nodiscard]] std::span<const graph::NodePortal> portals() const { return portals_; }
   /// Of a part, or of a block whose portals have changed; none: they are as they were.
   [[nodiscard]] std::optional<std::span<const uint32_t>> portals_of(uint32_t block) const;
   [[nodiscard]] uint32_t base_of(uint32_t part) const {
@@ -63,7 +63,7 @@ class NodeChanges {
  private:
   struct BlockedTile {
     uint32_t patch = 0;
-    CellRows rows{};
+    world::CellRows rows{};
   };
   // Of a curved block: a square of its finest ones, in the order of a quadtree.
   struct BlockedSquare {
@@ -87,9 +87,9 @@ class NodeChanges {
                    std::vector<uint32_t>& near) const;
   void block_squares(const Solid& solid, uint32_t block, Change& change) const;
   void block_pieces(const Solid& solid, std::span<const uint32_t> near, Change& change) const;
-  [[nodiscard]] bool blocks_portal(const Solid& solid, const NodePortal& portal, double from,
+  [[nodiscard]] bool blocks_portal(const Solid& solid, const graph::NodePortal& portal, double from,
                                    double to) const;
-  [[nodiscard]] uint8_t finest_level(const NodeBlock& block) const;
+  [[nodiscard]] uint8_t finest_level(const graph::NodeBlock& block) const;
   void cut_tiles(const std::vector<BlockedTile>& blocked);
   void cut_squares(const std::vector<BlockedSquare>& blocked);
   template <class IsBlocked>
@@ -98,7 +98,7 @@ class NodeChanges {
   void replace_portals(const std::unordered_map<uint32_t, uint16_t>& pieces);
   void list_portals();
 
-  const NodeMesh* mesh_;
+  const graph::NodeMesh* mesh_;
   const BlockSquares* squares_;
   double longest_hole_link_;  // [m]
   uint64_t version_ = 0, updated_ = 0;
@@ -110,13 +110,13 @@ class NodeChanges {
   };
   std::unordered_map<uint32_t, Cut> cuts_;  // by block; looked up only
   std::vector<uint32_t> cut_blocks_, cut_patches_;
-  std::vector<NodeBlock> parts_;
+  std::vector<graph::NodeBlock> parts_;
   std::vector<uint32_t> base_of_part_;
-  std::vector<NodePortal> portals_;
+  std::vector<graph::NodePortal> portals_;
   std::vector<Replaced> replaced_;
   std::vector<uint32_t> touched_;
   std::unordered_map<uint32_t, uint32_t> place_of_touched_;  // looked up only
   std::vector<uint32_t> first_portal_, portal_of_;           // of those touched, then of parts
 };
 
-}  // namespace throng
+}  // namespace throng::path

@@ -3,7 +3,7 @@
 #include "path/surface/node_island.h"
 
 // A breadth-first flood over crossings, at most kMax blocks.
-namespace throng {
+namespace throng::path {
 
 void NodeIsland::clear(const NodeView& view) {
   marks_.resize(view.block_count());
@@ -22,7 +22,7 @@ bool NodeIsland::close(const NodeView& view, uint32_t from, uint32_t other, Dire
     const uint32_t block = found_[i];
     bool meets = false;
     const auto add = [&](const Crossing& crossing) {
-      const PortalSides portal = view.sides(crossing.portal);
+      const graph::PortalSides portal = view.sides(crossing.portal);
       const uint32_t next = portal.a == block ? portal.b : portal.a;
       meets |= next == other;
       if (holds(next)) return;
@@ -41,4 +41,4 @@ bool NodeIsland::close(const NodeView& view, uint32_t from, uint32_t other, Dire
   return true;
 }
 
-}  // namespace throng
+}  // namespace throng::path

@@ -9,7 +9,7 @@
 #include "path/surface/node_view.h"
 
 /// Blocks that are cut off from the rest by obstacles.
-namespace throng {
+namespace throng::path {
 
 class NodeIsland {
  public:
@@ -30,4 +30,4 @@ class NodeIsland {
   std::vector<uint32_t> found_;
 };
 
-}  // namespace throng
+}  // namespace throng::path

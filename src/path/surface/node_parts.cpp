@@ -8,13 +8,13 @@
 #include "core/strong_parts.h"
 
 // Strongly connected components of the blocks, and the graph between them. Linear in the portals.
-namespace throng {
-NodeParts::NodeParts(const NodeMesh& mesh, int32_t workers) : boxes_(mesh.patches().size()) {
+namespace throng::path {
+NodeParts::NodeParts(const graph::NodeMesh& mesh, int32_t workers) : boxes_(mesh.patches().size()) {
   StrongParts parts = strong_parts(
       static_cast<uint32_t>(mesh.blocks().size()),
       [&](uint32_t block) { return static_cast<uint32_t>(mesh.portals_of(block).size()); },
       [&](uint32_t block, uint32_t k) {
-        const PortalSides portal = mesh.portals().sides(mesh.portals_of(block)[k]);
+        const graph::PortalSides portal = mesh.portals().sides(mesh.portals_of(block)[k]);
         if (portal.a == block) return portal.b;
         return portal.one_way ? UINT32_MAX : portal.a;
       });
@@ -22,7 +22,7 @@ NodeParts::NodeParts(const NodeMesh& mesh, int32_t workers) : boxes_(mesh.patche
   count_ = parts.count;
   std::vector<std::pair<uint32_t, uint32_t>> arcs;
   for (size_t p = 0; p < mesh.portals().size(); ++p) {
-    const PortalSides portal = mesh.portals().sides(p);
+    const graph::PortalSides portal = mesh.portals().sides(p);
     const uint32_t from = part_of_[portal.a], to = part_of_[portal.b];
     if (from != to) arcs.emplace_back(from, to);
   }
@@ -78,4 +78,4 @@ uint64_t NodeParts::bytes() const {
          boxes_.size() * sizeof(Box3d);
 }
 
-}  // namespace throng
+}  // namespace throng::path

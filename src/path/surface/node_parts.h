@@ -9,13 +9,13 @@
 #include "path/surface/node_view.h"
 
 /// What of a mesh can be reached from where, without a search over its portals.
-namespace throng {
+namespace throng::path {
 
 /// Blocks of one part (a strongly connected component) can reach each other; one-way portals lead
 /// from part to part.
 class NodeParts {
  public:
-  explicit NodeParts(const NodeMesh& mesh, int32_t workers);
+  explicit NodeParts(const graph::NodeMesh& mesh, int32_t workers);
 
   /// A query's memory: which parts are reached.
   class Reached {
@@ -62,7 +62,7 @@ class NodeParts {
 template <class IsOut>
 BlockPoint NodeParts::nearest(const NodeView& view, const BlockPoint& from, Vec3d goal,
                               Reached& reached, IsOut is_out) const {
-  const NodeMesh& mesh = view.mesh();
+  const graph::NodeMesh& mesh = view.mesh();
   BlockPoint best = from;
   double least = length(goal - position(view, from));
   auto& near = reached.near_;
@@ -103,4 +103,4 @@ BlockPoint NodeParts::nearest(const NodeView& view, const BlockPoint& from, Vec3
   return best;
 }
 
-}  // namespace throng
+}  // namespace throng::path

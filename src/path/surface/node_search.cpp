@@ -13,7 +13,7 @@
 // 1968. A path leads from the middle of one portal to the middle of the next, straight in the
 // parameters of their block; a piece is measured over its middle, so it is never shorter than the
 // straight line, and the straight line to the goal never overestimates.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr double kShort = 1;  // Pieces up to here count as straight. [m]
@@ -33,7 +33,7 @@ PieceCost::PieceCost(const NodeView& view, double slope_cost)
 
 PieceCost::Piece PieceCost::operator()(uint32_t block, double s0, double t0, Vec3d from, double s1,
                                        double t1, Vec3d to) const {
-  const NodeSurface& surface = view_->surface(block);
+  const graph::NodeSurface& surface = view_->surface(block);
   const double straight = length(to - from);
   if (surface.points == nullptr) {
     return {straight, straight * by_code_[view_->block(block).inclination]};
@@ -54,7 +54,7 @@ void NodeSearch::expand(const BlockPoint& from, Vec3d at, double cost, uint32_t 
   for_each_arc_out(*view_, from.block, [&](const Crossing& crossing) {
     const uint32_t id = 2 * crossing.portal + (crossing.backward ? 1 : 0);
     if ((id ^ 1) == parent || id == parent) return;
-    const PortalSides sides = view_->sides(crossing.portal);
+    const graph::PortalSides sides = view_->sides(crossing.portal);
     const uint32_t into = crossing.backward ? sides.a : sides.b;
     if (within_.overlay_cell_of_block != nullptr &&
         within_.overlay_cell_of_block[view_->base_of(into)] != within_.overlay_cell) {
@@ -62,13 +62,13 @@ void NodeSearch::expand(const BlockPoint& from, Vec3d at, double cost, uint32_t 
     }
     State& state = states_[id];
     if (state.query == query_ && state.cost <= cost) return;
-    const NodePortal portal = view_->portal(crossing.portal);
+    const graph::NodePortal portal = view_->portal(crossing.portal);
     const auto [out, in] = ends_of(portal, crossing.backward);
     const Vec3d here = position(*view_, out);
     double next = cost + (*cost_)(out.block, from.s, from.t, at, out.s, out.t, here).cost;
     if (state.query == query_ && state.cost <= next) return;
     const Vec3d there = position(*view_, in);
-    next += portal_length(portal, here, there);
+    next += graph::portal_length(portal, here, there);
     if (state.query == query_ && state.cost <= next) return;
     met_ += state.query == query_ ? 0 : 1;
     state = {query_, parent, next, there, false};
@@ -160,4 +160,4 @@ void NodeSearch::trace(uint32_t state, std::vector<Crossing>& crossings) {
   std::reverse(crossings.begin(), crossings.end());
 }
 
-}  // namespace throng
+}  // namespace throng::path

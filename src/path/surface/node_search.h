@@ -12,7 +12,7 @@
 #include "throng/path.h"
 
 /// A* over the portals between blocks of nodes.
-namespace throng {
+namespace throng::path {
 
 /// The cost of a straight piece within a block.
 class PieceCost {
@@ -90,4 +90,4 @@ class NodeSearch {
   uint64_t met_ = 0;  // states that this query has reached
 };
 
-}  // namespace throng
+}  // namespace throng::path

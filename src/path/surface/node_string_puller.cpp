@@ -8,7 +8,7 @@
 // One crossing after the other moves to where the straight lines from the one before it and to the
 // one after it, unfolded around the portal, meet it; forward and back along the path, until its
 // cost no longer falls. The result lies in the same blocks, so it is as legal as the input.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr int kMaxRounds = 48;
@@ -28,7 +28,7 @@ double unfolded(Vec3d p, Vec3d q, Vec3d a, Vec3d b) {
 }  // namespace
 
 void NodeStringPuller::place(PulledCrossing& crossing, double along) const {
-  const NodePortal portal = view_->portal(crossing.crossing.portal);
+  const graph::NodePortal portal = view_->portal(crossing.crossing.portal);
   const bool backward = crossing.crossing.backward;
   const auto on = [&](const std::array<double, 4>& line, uint32_t block) {
     return BlockPoint{block, line[0] + along * (line[2] - line[0]),
@@ -50,7 +50,8 @@ double NodeStringPuller::cost_around(const std::vector<PulledCrossing>& crossing
   return (*cost_)(crossing.out.block, before.s, before.t, i > 0 ? crossings[i - 1].in_at : from_at,
                   crossing.out.s, crossing.out.t, crossing.out_at)
              .cost +
-         portal_length(view_->portal(crossing.crossing.portal), crossing.out_at, crossing.in_at) +
+         graph::portal_length(view_->portal(crossing.crossing.portal), crossing.out_at,
+                              crossing.in_at) +
          (*cost_)(crossing.in.block, crossing.in.s, crossing.in.t, crossing.in_at, after.s, after.t,
                   i + 1 < crossings.size() ? crossings[i + 1].out_at : to_at)
              .cost;
@@ -76,7 +77,7 @@ void NodeStringPuller::pull(const BlockPoint& from, const BlockPoint& to,
     for (size_t k = 0; k < out.size(); ++k) {
       const size_t i = round % 2 == 0 ? k : out.size() - 1 - k;
       PulledCrossing& here = out[i];
-      const NodePortal portal = view_->portal(here.crossing.portal);
+      const graph::NodePortal portal = view_->portal(here.crossing.portal);
       if (portal.over_hole) continue;
       if (here.settled) {
         all += here.around;
@@ -104,4 +105,4 @@ void NodeStringPuller::pull(const BlockPoint& from, const BlockPoint& to,
   }
 }
 
-}  // namespace throng
+}  // namespace throng::path

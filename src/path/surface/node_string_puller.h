@@ -7,7 +7,7 @@
 #include "path/surface/node_search.h"
 
 /// Pulls a path over blocks of nodes taut.
-namespace throng {
+namespace throng::path {
 
 /// A portal of a path, and where the path crosses it.
 struct PulledCrossing {
@@ -38,4 +38,4 @@ class NodeStringPuller {
   const PieceCost* cost_;
 };
 
-}  // namespace throng
+}  // namespace throng::path

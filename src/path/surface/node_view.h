@@ -9,32 +9,32 @@
 #include "path/surface/node_changes.h"
 
 /// A mesh of nodes as it is now: as it was baked, less what obstacles block since.
-namespace throng {
+namespace throng::path {
 
 /// Blocks and portals have the mesh's numbers. Above these are parts of the blocks that obstacles
 /// cut, to which no portal leads any more, and portals between parts.
 class NodeView {
  public:
   /// As it was baked, if `changes` are null.
-  explicit NodeView(const NodeMesh& mesh, const NodeChanges* changes = nullptr)
+  explicit NodeView(const graph::NodeMesh& mesh, const NodeChanges* changes = nullptr)
       : mesh_(&mesh), changes_(changes) {}
 
-  [[nodiscard]] const NodeMesh& mesh() const { return *mesh_; }
+  [[nodiscard]] const graph::NodeMesh& mesh() const { return *mesh_; }
   [[nodiscard]] const NodeChanges* changes() const { return changes_; }
   [[nodiscard]] bool is_as_baked() const { return changes_ == nullptr || changes_->empty(); }
 
-  [[nodiscard]] const NodeBlock& block(uint32_t b) const {
+  [[nodiscard]] const graph::NodeBlock& block(uint32_t b) const {
     const auto blocks = mesh_->blocks();
     return b < blocks.size() ? blocks[b] : changes_->parts()[b - blocks.size()];
   }
-  [[nodiscard]] NodePortal portal(uint32_t p) const {
-    const PortalList& portals = mesh_->portals();
+  [[nodiscard]] graph::NodePortal portal(uint32_t p) const {
+    const graph::PortalList& portals = mesh_->portals();
     return p < portals.size() ? portals[p] : changes_->portals()[p - portals.size()];
   }
-  [[nodiscard]] PortalSides sides(uint32_t p) const {
-    const PortalList& portals = mesh_->portals();
+  [[nodiscard]] graph::PortalSides sides(uint32_t p) const {
+    const graph::PortalList& portals = mesh_->portals();
     if (p < portals.size()) return portals.sides(p);
-    const NodePortal& portal = changes_->portals()[p - portals.size()];
+    const graph::NodePortal& portal = changes_->portals()[p - portals.size()];
     return {portal.a, portal.b, portal.one_way};
   }
   [[nodiscard]] size_t block_count() const {
@@ -43,7 +43,7 @@ class NodeView {
   [[nodiscard]] size_t portal_count() const {
     return mesh_->portals().size() + (changes_ != nullptr ? changes_->portals().size() : 0);
   }
-  [[nodiscard]] const NodeSurface& surface(uint32_t b) const {
+  [[nodiscard]] const graph::NodeSurface& surface(uint32_t b) const {
     return mesh_->patches()[block(b).patch];
   }
   [[nodiscard]] std::span<const uint32_t> portals_of(uint32_t b) const {
@@ -58,13 +58,13 @@ class NodeView {
   }
 
  private:
-  const NodeMesh* mesh_;
+  const graph::NodeMesh* mesh_;
   const NodeChanges* changes_;
 };
 
 /// Somewhere in a block.
 struct BlockPoint {
-  uint32_t block = kNoNode;
+  uint32_t block = graph::kNoNode;
   double s = 0, t = 0;
 };
 
@@ -80,7 +80,7 @@ struct CrossingEnds {
   BlockPoint out, in;
 };
 
-inline CrossingEnds ends_of(const NodePortal& portal, bool backward) {
+inline CrossingEnds ends_of(const graph::NodePortal& portal, bool backward) {
   const auto middle = [](uint32_t block, const std::array<double, 4>& on) {
     return BlockPoint{block, (on[0] + on[2]) / 2, (on[1] + on[3]) / 2};
   };
@@ -100,7 +100,7 @@ inline Vec3d position(const NodeView& view, const BlockPoint& at) {
 template <class Visit>
 void for_each_arc_out(const NodeView& view, uint32_t block, Visit visit) {
   for (const uint32_t p : view.portals_of(block)) {
-    const PortalSides portal = view.sides(p);
+    const graph::PortalSides portal = view.sides(p);
     const bool backward = portal.a != block;
     if (!(backward && portal.one_way)) visit(Crossing{p, backward});
   }
@@ -110,10 +110,10 @@ void for_each_arc_out(const NodeView& view, uint32_t block, Visit visit) {
 template <class Visit>
 void for_each_arc_in(const NodeView& view, uint32_t block, Visit visit) {
   for (const uint32_t p : view.portals_of(block)) {
-    const PortalSides portal = view.sides(p);
+    const graph::PortalSides portal = view.sides(p);
     const bool backward = portal.a == block;
     if (!(backward && portal.one_way)) visit(Crossing{p, backward});
   }
 }
 
-}  // namespace throng
+}  // namespace throng::path

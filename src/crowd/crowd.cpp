@@ -18,6 +18,7 @@
 #include "throng/avatar.h"
 #include "world/node_data.h"
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // The public face of a crowd: configuration, avatars and their goals, the order of a step's parts,
 // and reports. What classes, targets, obstacles, flyers and climbers need lies in the files beside.
@@ -309,7 +310,9 @@ Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Co
     body.x = static_cast<int32_t>(point->x);
     body.z = static_cast<int32_t>(point->z);
     body.level = spawns[i].place.level1 - 1;
-    if (!ground.is_legal(body.level, point->cell_x() & 63, point->cell_z() & 63)) continue;
+    if (!ground.is_legal(body.level, world::in_tile(point->cell_x()),
+                         world::in_tile(point->cell_z())))
+      continue;
     body.y = ground.feet(body.level, *point);
     if (map.add_if_clear(body)) ids[i] = s.add(body);
   }

@@ -13,6 +13,7 @@
 #include "core/parallel.h"
 #include "world/air_data.h"
 #include "world/ground.h"
+#include "world/tile_grid.h"
 
 // Counts overlapping pairs, bodies off legal ground or air, and bodies in obstacles, by exact
 // distances: sorted along one axis of squares, so n log n unless the crowd is dense.
@@ -108,12 +109,14 @@ class AirCheck {
     };
     if (is_air(layer_of(a.y))) return true;
     const auto [cx, cz] = std::pair{a.x >> world::kUnitBits, a.z >> world::kUnitBits};
-    const auto tile = data_.tile_levels(cx >> 6, cz >> 6);
+    const auto tile = data_.tile_levels(world::tile_along(cx), world::tile_along(cz));
     for (uint32_t i = tile.first; i < tile.last; ++i) {
       const world::GroundLevel level = world::ground_level(data_, i, avatar_class_);
-      if (level.zone == nullptr || !level.is_legal(cx & 63, cz & 63)) continue;
-      const int32_t feet = level.view.feet(cx & 63, cz & 63, a.x & (world::kUnitsPerCell - 1),
-                                           a.z & (world::kUnitsPerCell - 1));
+      if (level.zone == nullptr || !level.is_legal(world::in_tile(cx), world::in_tile(cz)))
+        continue;
+      const int32_t feet =
+          level.view.feet(world::in_tile(cx), world::in_tile(cz), a.x & (world::kUnitsPerCell - 1),
+                          a.z & (world::kUnitsPerCell - 1));
       if (feet > a.y) continue;
       for (int32_t layer = layer_of(a.y);; ++layer) {
         if (layer * shape.cell + shape.origin_y > feet + height_) break;
@@ -153,13 +156,14 @@ CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
       }
       const world::GroundLevel level = world::ground_level(data, a.level, a.avatar_class);
       const auto [cx, cz] = std::pair{a.x >> world::kUnitBits, a.z >> world::kUnitBits};
-      const auto tile = data.tile_levels(cx >> 6, cz >> 6);
+      const auto tile = data.tile_levels(world::tile_along(cx), world::tile_along(cz));
       const bool on_tile = a.level >= tile.first && a.level < tile.last;
-      const bool stands = on_tile && level.zone != nullptr && level.is_legal(cx & 63, cz & 63);
-      const int32_t feet = stands
-                               ? level.view.feet(cx & 63, cz & 63, a.x & (world::kUnitsPerCell - 1),
-                                                 a.z & (world::kUnitsPerCell - 1))
-                               : 0;
+      const bool stands = on_tile && level.zone != nullptr &&
+                          level.is_legal(world::in_tile(cx), world::in_tile(cz));
+      const int32_t feet = stands ? level.view.feet(world::in_tile(cx), world::in_tile(cz),
+                                                    a.x & (world::kUnitsPerCell - 1),
+                                                    a.z & (world::kUnitsPerCell - 1))
+                                  : 0;
       found += !stands || feet != a.y;
     }
     wall_entries += found;

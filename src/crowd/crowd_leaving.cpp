@@ -10,6 +10,7 @@
 #include "crowd/ground/leaving_ground.h"
 #include "throng/crowd.h"
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // Avatars that are in an obstacle when it closes leave it: along their paths if these lead out
 // soon, else by the shortest exit. Which moves are allowed, StrideGround::move and the other
@@ -114,10 +115,10 @@ bool Crowd::State::leads_out(const crowd::Body& body, std::span<const uint32_t> 
     for (size_t i = route.next; i < route.count; ++i) add(route.corners[i].x, route.corners[i].z);
   }
   const crowd::CrowdGround& ground = classes[body.avatar_class]->ground;
-  const uint16_t steps = body.flies()
-                             ? uint16_t{0}
-                             : ground.left().steps_out({body.level, body.point().cell_x() & 63,
-                                                        body.point().cell_z() & 63});
+  const uint16_t steps =
+      body.flies() ? uint16_t{0}
+                   : ground.left().steps_out({body.level, world::in_tile(body.point().cell_x()),
+                                              world::in_tile(body.point().cell_z())});
   const double least =
       steps == crowd::LeftCells::kNone ? HUGE_VAL : steps * data_of(world)->summary.cell;
   const double limit = (kMaxDetourFactor * least + kMaxPath) / unit;
@@ -189,7 +190,7 @@ bool Crowd::State::tries_path_again(crowd::Body& body) const {
   std::vector<uint32_t> slots;
   const world::GroundPoint at = body.point();
   classes[body.avatar_class]->ground.left().list_obstacles(
-      {body.level, at.cell_x() & 63, at.cell_z() & 63}, slots);
+      {body.level, world::in_tile(at.cell_x()), world::in_tile(at.cell_z())}, slots);
   if (slots.empty() || !leads_out(body, slots)) return false;
   const crowd::PathPoint& corner = route.corners[route.next];
   body.local_target_x = corner.x;
@@ -226,8 +227,8 @@ void Crowd::State::plan_exit(crowd::Body& body) {
   body.local_target_x = body.x;
   body.local_target_z = body.z;
   constexpr int32_t kHalf = world::kUnitsPerCell / 2;
-  for (uint32_t max_steps =
-           cells.left().steps_out({body.level, from.cell_x() & 63, from.cell_z() & 63});
+  for (uint32_t max_steps = cells.left().steps_out(
+           {body.level, world::in_tile(from.cell_x()), world::in_tile(from.cell_z())});
        max_steps > 0 && max_steps != crowd::LeftCells::kNone; max_steps /= 2) {
     uint32_t level = body.level;
     int32_t x = from.cell_x(), z = from.cell_z();

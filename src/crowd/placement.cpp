@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "core/random.h"
+#include "world/tile_grid.h"
 
 // Random points of the ground, uniform by cell: a binary search among the levels, then the row of
 // the cell. Logarithmic in the levels.
@@ -46,9 +47,10 @@ StandingDraw::Stand StandingDraw::draw(uint64_t n) const {
   const auto unit = [](uint64_t bits) {
     return static_cast<int64_t>(bits & (world::kUnitsPerCell - 1));
   };
-  return {level,
-          {(int64_t{record.tile_x * 64 + x} << world::kUnitBits) + unit(within),
-           (int64_t{record.tile_z * 64 + z} << world::kUnitBits) + unit(within >> 32)}};
+  return {
+      level,
+      {(int64_t{world::first_cell(record.tile_x) + x} << world::kUnitBits) + unit(within),
+       (int64_t{world::first_cell(record.tile_z) + z} << world::kUnitBits) + unit(within >> 32)}};
 }
 
 std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uint64_t seed,
@@ -85,8 +87,8 @@ std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uin
     for (int32_t z = 0; z < 64 && avatars.size() < count; ++z) {
       uint64_t row = ground.legal(level)[z];
       for (; row != 0 && avatars.size() < count; row &= row - 1) {
-        const int64_t x = records[level].tile_x * 64 + std::countr_zero(row);
-        const int64_t cell_z = records[level].tile_z * 64 + z;
+        const int64_t x = world::first_cell(records[level].tile_x) + std::countr_zero(row);
+        const int64_t cell_z = world::first_cell(records[level].tile_z) + z;
         try_place(level, {(x << world::kUnitBits) + world::kUnitsPerCell / 2,
                           (cell_z << world::kUnitBits) + world::kUnitsPerCell / 2});
       }

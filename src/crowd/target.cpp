@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // Targets in the units of bodies, and the legal cells inside: a raster of each prism's bounds,
 // linear in its cells.
@@ -91,13 +92,16 @@ std::vector<Place> places_inside(const world::WorldData& world, const CrowdGroun
                     x1 = cell_of(region.bounds().x1, world.width),
                     z0 = cell_of(region.bounds().z0, world.depth),
                     z1 = cell_of(region.bounds().z1, world.depth);
-      for (int32_t tz = z0 >> 6; tz <= z1 >> 6; ++tz) {
-        for (int32_t tx = x0 >> 6; tx <= x1 >> 6; ++tx) {
+      for (int32_t tz = world::tile_along(z0); tz <= world::tile_along(z1); ++tz) {
+        for (int32_t tx = world::tile_along(x0); tx <= world::tile_along(x1); ++tx) {
           ground.for_tile(tx, tz, region.low(), region.high(), [&](uint32_t level) {
-            for (int32_t z = std::max(z0, tz * 64); z <= std::min(z1, tz * 64 + 63); ++z) {
+            for (int32_t z = std::max(z0, world::first_cell(tz));
+                 z <= std::min(z1, world::last_cell(tz)); ++z) {
               if (z % stride != 0) continue;
-              for (int32_t x = std::max(x0, tx * 64); x <= std::min(x1, tx * 64 + 63); ++x) {
-                if (x % stride != 0 || !is_legal(level, x & 63, z & 63)) continue;
+              for (int32_t x = std::max(x0, world::first_cell(tx));
+                   x <= std::min(x1, world::last_cell(tx)); ++x) {
+                if (x % stride != 0 || !is_legal(level, world::in_tile(x), world::in_tile(z)))
+                  continue;
                 const world::GroundPoint middle{
                     (int64_t{x} << world::kUnitBits) + world::kUnitsPerCell / 2,
                     (int64_t{z} << world::kUnitBits) + world::kUnitsPerCell / 2};

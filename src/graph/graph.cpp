@@ -11,6 +11,7 @@
 #include "world/place.h"
 #include "world/region_data.h"
 #include "world/sealed_file.h"
+#include "world/tile_grid.h"
 
 // The public queries of a graph: components, and the component of a place.
 namespace throng {
@@ -77,7 +78,8 @@ int32_t Graph::component_at(int32_t avatar_class, const Place& place) const {
   const world::RegionZone* zone = data_->zone(world, slot);
   if (zone == nullptr) return -1;
   const uint32_t region =
-      graph::region_at(world, *zone, level, avatar_class, at->cell_x() & 63, at->cell_z() & 63);
+      graph::region_at(world, *zone, level, avatar_class, world::in_tile(at->cell_x()),
+                       world::in_tile(at->cell_z()));
   if (region == graph::kNoRegion) return -1;
   const uint32_t component = zone->component(region, static_cast<uint32_t>(avatar_class));
   return static_cast<int32_t>(

@@ -14,6 +14,7 @@
 #include "graph/patch_pairs.h"
 #include "graph/tile_cells.h"
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // The class's largest nodes tile all that it can stand on: of the nodes around a cell that hold its
 // bit, the outermost. Inside one nothing blocks the class, so what is left to find is where two of
@@ -452,8 +453,7 @@ PortalList NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) const {
     const auto [bs, bt] = middle(pair.cell_b);
     const uint32_t a = block_at(pa, as, at), b = block_at(pb, bs, bt);
     if (a == kNoNode || b == kNoNode) continue;
-    const auto s = static_cast<int32_t>(pair.cell_a % 64),
-               t = static_cast<int32_t>(pair.cell_a / 64);
+    const auto s = world::x_of_cell(pair.cell_a), t = world::z_of_cell(pair.cell_a);
     const bool by_s = pair.side_a == 2;
     const LinkKind kind = std::max(kind_between(a, b), pair.kind);  // climbs before steps
     touches.push_back({a, b, pair.side_a, (by_s ? s : t) + 1, by_s ? t : s, kind});

@@ -12,6 +12,7 @@
 #include "graph/ground_parts.h"
 #include "graph/tile_steps.h"
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // The cells of a level tile as those of a patch: what bodies may rely on in each, steps between
 // them, and pairs over the tile's borders. Linear in the cells and classes.
@@ -128,8 +129,8 @@ PatchCells tile_cells(const World& world, uint32_t level, uint16_t wanted, const
     int32_t feet = INT32_MIN;
     for (const int32_t u : {0, world::kUnitsPerCell - 1}) {
       for (const int32_t v : {0, world::kUnitsPerCell - 1}) {
-        feet = std::max(feet, ground.view.feet(static_cast<int32_t>(cell % 64),
-                                               static_cast<int32_t>(cell / 64), u, v));
+        feet =
+            std::max(feet, ground.view.feet(world::x_of_cell(cell), world::z_of_cell(cell), u, v));
       }
     }
     return bins.height_code((static_cast<double>(ceiling) - feet) * 1e-3);
@@ -341,15 +342,17 @@ class PairFinder {
   void add(const world::GroundLevel& from, const world::GroundLevel& to, uint16_t classes,
            int32_t x, int32_t z, bool east) {
     const int32_t nx = x + (east ? 1 : 0), nz = z + (east ? 0 : 1);
-    const bool steps = is_step(from.view, x, z, to.view, nx & 63, nz & 63, limits_);
-    pairs_.push_back({.patch_a = from.world_level,
-                      .cell_a = static_cast<uint32_t>(z * 64 + x),
-                      .patch_b = to.world_level,
-                      .cell_b = static_cast<uint32_t>((nz & 63) * 64 + (nx & 63)),
-                      .classes = classes,
-                      .kind = steps ? LinkKind::kStep : LinkKind::kWalk,
-                      .side_a = static_cast<uint8_t>(east ? 2 : 1),
-                      .side_b = static_cast<uint8_t>(east ? 0 : 3)});
+    const bool steps =
+        is_step(from.view, x, z, to.view, world::in_tile(nx), world::in_tile(nz), limits_);
+    pairs_.push_back(
+        {.patch_a = from.world_level,
+         .cell_a = static_cast<uint32_t>(z * 64 + x),
+         .patch_b = to.world_level,
+         .cell_b = static_cast<uint32_t>(world::cell_index(world::in_tile(nx), world::in_tile(nz))),
+         .classes = classes,
+         .kind = steps ? LinkKind::kStep : LinkKind::kWalk,
+         .side_a = static_cast<uint8_t>(east ? 2 : 1),
+         .side_b = static_cast<uint8_t>(east ? 0 : 3)});
   }
 
   const world::WorldData& world_;

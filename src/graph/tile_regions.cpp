@@ -12,6 +12,7 @@
 #include "core/prefetch.h"
 #include "graph/ground_parts.h"
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // The parts of every level for every class are found; parts of several classes that are the same
 // place share a region; and parts of different levels of the tile are linked where level tiles
@@ -455,7 +456,8 @@ void TileRegions::link_seam(const Seam& seam, TileParts& tile, TileScratch& scra
         low = (low & ~bit) | (std::abs(rise) <= longest_ ? bit : 0);
       }
       if ((low & bit) == 0) continue;
-      const int32_t gx = seam.tile_x * 64 + x, gz = seam.tile_z * 64 + row;
+      const int32_t gx = world::first_cell(seam.tile_x) + x,
+                    gz = world::first_cell(seam.tile_z) + row;
       if (steps_in_both_directions(c, level_a, level_b, gx, gz, gx + dx, gz + dz)) return true;
     }
     return false;

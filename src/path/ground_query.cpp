@@ -13,6 +13,7 @@
 #include "path/edits/obstacle.h"
 #include "path/ground/circle_flood.h"
 #include "throng/world.h"
+#include "world/tile_grid.h"
 
 // Queries of the ground around a place, cell by cell: the nearest place, rays, slides, walls,
 // random places. Linear in the cells within the radius.
@@ -59,7 +60,7 @@ struct GroundQuery::State {
     if (!found) return false;
     point = *found;
     level = world::ground_level(data(), place.level1 - 1, avatar_class);
-    return level.is_legal(point.cell_x() & 63, point.cell_z() & 63);
+    return level.is_legal(world::in_tile(point.cell_x()), world::in_tile(point.cell_z()));
   }
   // Where a push from a place leads. One longer than the grid ends a cell beside it: farther off,
   // products of lengths would not fit 64 bits.

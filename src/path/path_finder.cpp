@@ -17,6 +17,7 @@
 #include "path/overlay/zone_search.h"
 #include "throng/path.h"
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // Chooses between labels, zones and search, and turns corners into places.
 namespace throng {
@@ -33,10 +34,11 @@ void add_places(const world::WorldData& world, const path::PathMesh& mesh,
     const world::Zone* zone = world.zone(slot);
     views.push_back(zone == nullptr ? world::LevelView{}
                                     : zone->view(level - world.slots[slot]->first_level));
-    views.back().ask_for_heads(stop.at.cell_x() & 63, stop.at.cell_z() & 63);
+    views.back().ask_for_heads(world::in_tile(stop.at.cell_x()), world::in_tile(stop.at.cell_z()));
   }
   for (size_t i = 0; i < stops.size(); ++i) {
-    views[i].ask_for_cells(stops[i].at.cell_x() & 63, stops[i].at.cell_z() & 63);
+    views[i].ask_for_cells(world::in_tile(stops[i].at.cell_x()),
+                           world::in_tile(stops[i].at.cell_z()));
   }
   for (size_t i = 0; i < stops.size(); ++i) {
     path.points.push_back(

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "world/ground.h"
+#include "world/tile_grid.h"
 
 /// Between metres and points of the grid, levels and places.
 namespace throng::world {
@@ -34,7 +35,7 @@ inline std::optional<GroundPoint> ground_point(const WorldData& world, const Pla
     return std::nullopt;
   const GroundPoint point = to_ground(world, place.position.x, place.position.z);
   if (!in_grid(world, point)) return std::nullopt;
-  const auto tile = world.tile_levels(point.cell_x() >> 6, point.cell_z() >> 6);
+  const auto tile = world.tile_levels(tile_along(point.cell_x()), tile_along(point.cell_z()));
   if (place.level1 <= tile.first || place.level1 > tile.last) return std::nullopt;
   return point;
 }
@@ -49,7 +50,7 @@ inline std::pair<int32_t, int32_t> tile_of(const WorldData& world, const Zone& z
 
 /// Height of the feet on a level. [m]
 inline double feet_at(const LevelView& view, GroundPoint p) {
-  return view.feet(p.cell_x() & 63, p.cell_z() & 63,
+  return view.feet(in_tile(p.cell_x()), in_tile(p.cell_z()),
                    static_cast<int32_t>(p.x & (kUnitsPerCell - 1)),
                    static_cast<int32_t>(p.z & (kUnitsPerCell - 1))) *
          1e-3;

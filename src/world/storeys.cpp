@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "world/place.h"
+#include "world/tile_grid.h"
 #include "world/zone_data.h"
 
 // Storeys: level tiles of neighbouring tiles that continue each other are joined into groups, the
@@ -183,8 +184,8 @@ std::vector<LevelInfo> levels_of(const world::WorldData& world) {
       }
       if (level.cells == 0) {  // a few cells between the samples
         for (int32_t c = 0; c < 4096; ++c) {
-          if (!level.view.has(c % 64, c / 64)) continue;
-          sum += level.view.sample(c % 64, c / 64);
+          if (!level.view.has(world::x_of_cell(c), world::z_of_cell(c))) continue;
+          sum += level.view.sample(world::x_of_cell(c), world::z_of_cell(c));
           ++level.cells;
         }
       }

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <optional>
 
+#include "world/tile_grid.h"
+
 /// Walking on level tiles: the conservative form of [ML06] algorithm 1, for any storage of levels.
 ///
 /// A Ground has a type Level (a handle), and
@@ -35,10 +37,10 @@ std::optional<typename Ground::Level> step_to(const Ground& ground,
                                               const typename Ground::Level& from, int32_t x,
                                               int32_t z, int32_t nx, int32_t nz, int32_t step_mm) {
   using Level = typename Ground::Level;
-  const int32_t lx = nx & 63, lz = nz & 63;
-  const bool same_tile = (x >> 6) == (nx >> 6) && (z >> 6) == (nz >> 6);
+  const int32_t lx = in_tile(nx), lz = in_tile(nz);
+  const bool same_tile = tile_along(x) == tile_along(nx) && tile_along(z) == tile_along(nz);
   if (same_tile && ground.step_safe(from) && ground.is_legal(from, lx, lz)) return from;
-  const int32_t feet = ground.sample(from, x & 63, z & 63);
+  const int32_t feet = ground.sample(from, in_tile(x), in_tile(z));
   const auto rise_to = [&](const Level& level) {
     return ground.is_legal(level, lx, lz) ? std::abs(ground.sample(level, lx, lz) - feet)
                                           : INT32_MAX;
@@ -46,12 +48,13 @@ std::optional<typename Ground::Level> step_to(const Ground& ground,
   if (same_tile && rise_to(from) <= step_mm) return from;
   std::optional<Level> best;
   int32_t best_rise = INT32_MAX;
-  ground.for_tile(nx >> 6, nz >> 6, feet - step_mm, feet + step_mm, [&](const Level& level) {
-    const int32_t rise = rise_to(level);
-    if (rise > step_mm || rise >= best_rise) return;
-    best_rise = rise;
-    best = level;
-  });
+  ground.for_tile(tile_along(nx), tile_along(nz), feet - step_mm, feet + step_mm,
+                  [&](const Level& level) {
+                    const int32_t rise = rise_to(level);
+                    if (rise > step_mm || rise >= best_rise) return;
+                    best_rise = rise;
+                    best = level;
+                  });
   return best;
 }
 

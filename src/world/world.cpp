@@ -15,6 +15,7 @@
 #include "world/ground.h"
 #include "world/place.h"
 #include "world/sealed_file.h"
+#include "world/tile_grid.h"
 #include "world/zone_data.h"
 
 // The public queries of a world: places, moves, levels, random places.
@@ -140,7 +141,7 @@ LevelTileContent World::level_tile(uint32_t index) const {
   const uint64_t* areas =
       level.area_kind() == format::CellsKind::Blocks ? zone->words(level.area_offset()) : nullptr;
   for (int32_t c = 0; c < kTileSquare; ++c) {
-    const int32_t x = c % 64, z = c / 64;
+    const int32_t x = world::x_of_cell(c), z = world::z_of_cell(c);
     const size_t i = static_cast<size_t>(c);
     if (!view.has(x, z)) continue;
     out.floor[i] = view.sample(x, z);
@@ -179,13 +180,14 @@ Place World::find_place(int32_t avatar_class, Vec3d position, double vertical_to
     return {};
   const world::GroundPoint p = world::to_ground(*state_, position.x, position.z);
   if (!world::in_grid(*state_, p)) return {};
-  const auto tile = state_->tile_levels(p.cell_x() >> 6, p.cell_z() >> 6);
+  const auto tile =
+      state_->tile_levels(world::tile_along(p.cell_x()), world::tile_along(p.cell_z()));
   Place best;
   double best_distance = vertical_tolerance;
   for (uint32_t i = tile.first; i < tile.last; ++i) {
     const world::GroundLevel level =
         world::ground_level(*tile.zone, tile.zone_first + i - tile.first, i, avatar_class);
-    if (!level.is_legal(p.cell_x() & 63, p.cell_z() & 63)) continue;
+    if (!level.is_legal(world::in_tile(p.cell_x()), world::in_tile(p.cell_z()))) continue;
     const double feet_height = world::feet_at(level, p);
     const double distance = std::fabs(feet_height - position.y);
     if (distance > best_distance) continue;
@@ -205,7 +207,7 @@ Place World::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const
   auto rank = static_cast<uint32_t>(pick - before[level_index]);
   const world::GroundLevel level = world::ground_level(*state_, level_index, avatar_class);
   if (level.legal != nullptr) rank = world::nth_bit(level.legal, rank);
-  const int32_t x = static_cast<int32_t>(rank % 64), z = static_cast<int32_t>(rank / 64);
+  const int32_t x = world::x_of_cell(rank), z = world::z_of_cell(rank);
   const auto [tile_x, tile_z] = world::tile_of(*state_, *level.zone, *level.view.record);
   const int64_t cell_x = int64_t{tile_x} * 64 + x, cell_z = int64_t{tile_z} * 64 + z;
   const world::GroundPoint p{(cell_x << world::kUnitBits) + static_cast<int64_t>(random_below(
@@ -224,7 +226,8 @@ MoveResult World::move(int32_t avatar_class, const Place& from, double dx, doubl
   const world::GroundPoint end = world::to_ground(*state_, goal.x, goal.z);
   if (!world::in_grid(*state_, end)) return result;
   world::GroundLevel level = world::ground_level(*state_, from.level1 - 1, avatar_class);
-  if (!level.is_legal(start->cell_x() & 63, start->cell_z() & 63)) return result;
+  if (!level.is_legal(world::in_tile(start->cell_x()), world::in_tile(start->cell_z())))
+    return result;
   const int32_t step = world::step_mm(state_->summary.classes[static_cast<size_t>(avatar_class)]);
   if (!world::walk(world::WorldGround{*state_, avatar_class}, level, *start, end, step))
     return result;

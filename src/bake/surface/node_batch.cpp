@@ -18,6 +18,7 @@
 #include "graph/tile_cells.h"
 #include "world/place.h"
 #include "world/region_data.h"
+#include "world/tile_grid.h"
 
 // What decides is per cell and class; everything after that only groups cells, so it is the same
 // for Bezier patches and level tiles.
@@ -253,7 +254,8 @@ class NodeBatch {
       if (place && level_[place.level1 - 1] != graph::kNoNode) {
         const world::GroundPoint p = world::to_ground(data_, place.position.x, place.position.z);
         best = {level_[place.level1 - 1],
-                static_cast<uint32_t>((p.cell_z() & 63) * 64 + (p.cell_x() & 63))};
+                static_cast<uint32_t>(
+                    world::cell_index(world::in_tile(p.cell_x()), world::in_tile(p.cell_z())))};
         nearest = (place.position.y - at.y) * (place.position.y - at.y);
       }
     }

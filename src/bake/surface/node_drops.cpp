@@ -19,6 +19,7 @@
 #include "graph/node_width.h"
 #include "world/node_data.h"
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // Finds drop links: from each node's rim out over the edge and down to the ground below. A body
 // that moves level and upright sweeps a prism over a stadium, one that falls a cylinder: both are
@@ -112,10 +113,10 @@ class DropFinder {
     if (ground.zone == nullptr || ground.kind == format::CellsKind::None) return;
     const world::CellRows legal = graph::legal_rows(ground);
     const auto [tile_x, tile_z] = world::tile_of(world_, *ground.zone, *ground.view.record);
-    for (int32_t z = 0; z < 64; ++z) {
-      for (int32_t x = 0; x < 64; ++x) {
+    for (int32_t z = 0; z < kTileCells; ++z) {
+      for (int32_t x = 0; x < kTileCells; ++x) {
         if ((legal[static_cast<size_t>(z)] >> x & 1) == 0) continue;
-        const int32_t gx = tile_x * 64 + x, gz = tile_z * 64 + z;
+        const int32_t gx = world::first_cell(tile_x) + x, gz = world::first_cell(tile_z) + z;
         if (!is_edge(ground, gx, gz)) continue;
         const Spot from = spot_on(ground, gx, gz);
         if (const auto to = lower_place(from, &ground)) {
@@ -137,9 +138,9 @@ class DropFinder {
   }
 
   [[nodiscard]] Spot spot_on(const world::GroundLevel& level, int32_t x, int32_t z) const {
-    return {
-        {PatchKind::kLevelTile, level.world_level, static_cast<uint32_t>((z & 63) * 64 + (x & 63))},
-        world::place_at(world_, level, middle_of(x, z)).position};
+    return {{PatchKind::kLevelTile, level.world_level,
+             static_cast<uint32_t>(world::cell_index(world::in_tile(x), world::in_tile(z)))},
+            world::place_at(world_, level, middle_of(x, z)).position};
   }
 
   // Is there a side over which the class cannot step and come back?
@@ -192,15 +193,18 @@ class DropFinder {
     const auto columns = range(from.feet.x, world_.summary.origin.x, world_.width);
     const auto rows = range(from.feet.z, world_.summary.origin.z, world_.depth);
     const int32_t x0 = columns.first, x1 = columns.second, z0 = rows.first, z1 = rows.second;
-    for (int32_t tile_z = z0 >> 6; tile_z <= z1 >> 6; ++tile_z) {
-      for (int32_t tile_x = x0 >> 6; tile_x <= x1 >> 6; ++tile_x) {
+    for (int32_t tile_z = world::tile_along(z0); tile_z <= world::tile_along(z1); ++tile_z) {
+      for (int32_t tile_x = world::tile_along(x0); tile_x <= world::tile_along(x1); ++tile_x) {
         ground_.for_tile(tile_x, tile_z, 0, 0, [&](const world::GroundLevel& level) {
           if (level.kind == format::CellsKind::None) return;
-          for (int32_t z = std::max(z0, tile_z * 64); z <= std::min(z1, tile_z * 64 + 63); ++z) {
-            for (int32_t x = std::max(x0, tile_x * 64); x <= std::min(x1, tile_x * 64 + 63); ++x) {
-              if (!level.is_legal(x & 63, z & 63)) continue;
+          for (int32_t z = std::max(z0, world::first_cell(tile_z));
+               z <= std::min(z1, world::last_cell(tile_z)); ++z) {
+            for (int32_t x = std::max(x0, world::first_cell(tile_x));
+                 x <= std::min(x1, world::last_cell(tile_x)); ++x) {
+              if (!level.is_legal(world::in_tile(x), world::in_tile(z))) continue;
               // Feet in the middle of a cell are at its sample.
-              const double down = from.feet.y - level.view.sample(x & 63, z & 63) * 1e-3;
+              const double down =
+                  from.feet.y - level.view.sample(world::in_tile(x), world::in_tile(z)) * 1e-3;
               if (!(down > avatar_.step && down <= avatar_.max_drop)) continue;
               consider(from, spot_on(level, x, z), reach);
             }

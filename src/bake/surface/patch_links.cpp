@@ -11,6 +11,7 @@
 #include "graph/patch_pairs.h"
 #include "world/node_data.h"
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // Links between cells of Bezier patches: over shared edges where bodies pass, over a hole from a
 // cell to those near that a body can move to. Every link is proved by body_motion.
@@ -293,13 +294,13 @@ std::vector<graph::CellPair> link_tiles(const PatchLinkInput& input, int32_t wor
         const Place place = input.world->find_place(static_cast<int32_t>(c), on.feet, step);
         if (!place || !judge.is_free(body, {place.position, {0, 1, 0}}, on)) continue;
         const world::GroundPoint at = world::to_ground(data, place.position.x, place.position.z);
-        lists[p].push_back(
-            {.patch_a = static_cast<uint32_t>(p),
-             .cell_a = a,
-             .patch_b = place.level1 - 1,
-             .cell_b = static_cast<uint32_t>((at.cell_z() & 63) * 64 + (at.cell_x() & 63)),
-             .classes = body.bit,
-             .kind = LinkKind::kClimb});
+        lists[p].push_back({.patch_a = static_cast<uint32_t>(p),
+                            .cell_a = a,
+                            .patch_b = place.level1 - 1,
+                            .cell_b = static_cast<uint32_t>(world::cell_index(
+                                world::in_tile(at.cell_x()), world::in_tile(at.cell_z()))),
+                            .classes = body.bit,
+                            .kind = LinkKind::kClimb});
       }
     }
   });

@@ -7,6 +7,7 @@
 
 #include "core/access.h"
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // The air of a class in a step's integer units: conversions, lines of sight, and ground-air links.
 // Each costs a descent in the air's octree for each air box that a line crosses.
@@ -62,14 +63,17 @@ std::optional<FlyerAir::GroundAirLink> FlyerAir::link_below(const AirPosition& p
   const world::GroundPoint p{position.x, position.z};
   std::optional<GroundAirLink> best;
   const auto range = ground_->feet_range();
-  ground_->for_tile(p.cell_x() >> 6, p.cell_z() >> 6, range.low, position.y, [&](uint32_t level) {
-    if (!ground_->is_legal(level, p.cell_x() & 63, p.cell_z() & 63)) return;
-    const int32_t feet = ground_->feet(level, p);
-    if (feet > position.y || (best && feet <= best->low)) return;
-    const auto high = take_off({position.x, position.z, feet});
-    if (!high || *high > position.y || !sees(position, {position.x, position.z, *high})) return;
-    best = GroundAirLink{feet, *high, level};
-  });
+  ground_->for_tile(
+      world::tile_along(p.cell_x()), world::tile_along(p.cell_z()), range.low, position.y,
+      [&](uint32_t level) {
+        if (!ground_->is_legal(level, world::in_tile(p.cell_x()), world::in_tile(p.cell_z())))
+          return;
+        const int32_t feet = ground_->feet(level, p);
+        if (feet > position.y || (best && feet <= best->low)) return;
+        const auto high = take_off({position.x, position.z, feet});
+        if (!high || *high > position.y || !sees(position, {position.x, position.z, *high})) return;
+        best = GroundAirLink{feet, *high, level};
+      });
   return best;
 }
 

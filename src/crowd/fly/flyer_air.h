@@ -9,6 +9,7 @@
 #include "crowd/ground/crowd_ground.h"
 #include "path/air/flight_space.h"
 #include "throng/world.h"
+#include "world/tile_grid.h"
 
 /// The air of a class as a step reads it, and its links to the ground.
 namespace throng::crowd {
@@ -43,8 +44,8 @@ class FlyerAir {
 
   /// Is the ground of a level legal at this position now?
   [[nodiscard]] bool may_stand(uint32_t level, const AirPosition& position) const {
-    return ground_->is_legal(level, (position.x >> world::kUnitBits) & 63,
-                             (position.z >> world::kUnitBits) & 63);
+    return ground_->is_legal(level, world::in_tile(position.x >> world::kUnitBits),
+                             world::in_tile(position.z >> world::kUnitBits));
   }
 
   [[nodiscard]] AirPosition position(const Vec3d& metres) const;

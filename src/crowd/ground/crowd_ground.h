@@ -12,6 +12,7 @@
 #include "crowd/ground/level_line.h"
 #include "throng/base.h"
 #include "world/ground.h"
+#include "world/tile_grid.h"
 
 /// The ground as a step reads it: for each level a line and 64 rows of legal cells.
 namespace throng::crowd {
@@ -63,16 +64,16 @@ class CrowdGround {
   }
   /// Prefetches what is read of a level where its line gives no answer.
   void prefetch_level(Level level, int32_t z0, int32_t z1) const {
-    throng::prefetch(&flat(level)[z0 & 63]);
-    throng::prefetch(&flat(level)[z1 & 63]);
+    throng::prefetch(&flat(level)[world::in_tile(z0)]);
+    throng::prefetch(&flat(level)[world::in_tile(z1)]);
     throng::prefetch(&views_[level]);
   }
   /// Prefetches what a step from a cell of a level reads, and what is cached around it.
   void prefetch_cell(Level level, int32_t x, int32_t z) const {
-    throng::prefetch(&rows(lines_[level].legal_set)[z & 63]);
+    throng::prefetch(&rows(lines_[level].legal_set)[world::in_tile(z)]);
     const world::LevelView& view = views_[level];
     if (view.samples == nullptr) return;
-    const uint16_t* sample = &view.samples[(z & 63) * 64 + (x & 63)];
+    const uint16_t* sample = &view.samples[world::cell_index(world::in_tile(x), world::in_tile(z))];
     throng::prefetch(sample - 64);
     throng::prefetch(sample);
     throng::prefetch(sample + 64);
@@ -96,7 +97,7 @@ class CrowdGround {
   [[nodiscard]] int32_t feet(Level level, world::GroundPoint p) const {
     const world::LevelView& view = views_[level];
     if (view.is_constant()) return view.floor_base;
-    return view.feet(p.cell_x() & 63, p.cell_z() & 63,
+    return view.feet(world::in_tile(p.cell_x()), world::in_tile(p.cell_z()),
                      static_cast<int32_t>(p.x & (world::kUnitsPerCell - 1)),
                      static_cast<int32_t>(p.z & (world::kUnitsPerCell - 1)));
   }

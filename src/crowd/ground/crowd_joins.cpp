@@ -4,6 +4,7 @@
 #include <array>
 
 #include "crowd/ground/crowd_ground.h"
+#include "world/tile_grid.h"
 #include "world/walk.h"
 
 // Which flat blocks continue, level, beyond the edge of their tile: found once, so that a step over
@@ -100,10 +101,10 @@ void CrowdGround::find_beyond(Level level, LevelLine::Side side) {
   if ((lines_[level].legal_set & kSetBits) == kNoneLegal) return;
   std::array<Level, 64> steps;  // where the step from each cell leads
   for (int32_t i = 0; i < 64; ++i) {
-    const int32_t rim = toward > 0 ? 63 : 0;
-    const int32_t x = record.tile_x * 64 + (along_x ? rim : i);
-    const int32_t z = record.tile_z * 64 + (along_x ? i : rim);
-    const auto next = is_legal(level, x & 63, z & 63)
+    const int32_t rim = toward > 0 ? world::kInTile : 0;
+    const int32_t x = world::first_cell(record.tile_x) + (along_x ? rim : i);
+    const int32_t z = world::first_cell(record.tile_z) + (along_x ? i : rim);
+    const auto next = is_legal(level, world::in_tile(x), world::in_tile(z))
                           ? world::step_to(*this, level, x, z, x + (along_x ? toward : 0),
                                            z + (along_x ? 0 : toward), step_mm_)
                           : std::nullopt;

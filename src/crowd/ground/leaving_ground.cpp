@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "world/tile_grid.h"
 #include "world/walk.h"
 
 // A breadth-first search from outside: in cells, along the axes, backwards over steps that a body
@@ -25,7 +26,7 @@ struct WorldCell {
 };
 
 bool is_out(const CrowdGround& ground, Level level, int32_t x, int32_t z) {
-  return ground.is_legal(level, x & 63, z & 63);
+  return ground.is_legal(level, world::in_tile(x), world::in_tile(z));
 }
 
 }  // namespace
@@ -64,37 +65,41 @@ class ExitSearch {
         const LeftCells::OfLevel* of = left.find(level);
         for (int32_t z = first; of != nullptr && z <= last; ++z) {
           for (uint64_t row = of->held[static_cast<size_t>(z)] & columns; row != 0; row &= row - 1)
-            add({level, tile_x * 64 + std::countr_zero(row), tile_z * 64 + z});
+            add({level, world::first_cell(tile_x) + std::countr_zero(row),
+                 world::first_cell(tile_z) + z});
         }
       });
     };
     for (const Level level : changed) {
       const auto& [legal_cells, x, z] = ground_.records()[level];
-      add_rows(x, z, 0, 63, kAll);
-      add_rows(x - 1, z, 0, 63, uint64_t{1} << 63);
-      add_rows(x + 1, z, 0, 63, 1);
-      add_rows(x, z - 1, 63, 63, kAll);
+      add_rows(x, z, 0, world::kInTile, kAll);
+      add_rows(x - 1, z, 0, world::kInTile, uint64_t{1} << world::kInTile);
+      add_rows(x + 1, z, 0, world::kInTile, 1);
+      add_rows(x, z - 1, world::kInTile, world::kInTile, kAll);
       add_rows(x, z + 1, 0, 0, kAll);
     }
     for (size_t i = 0; i < cells_.size(); ++i) {
       for (const auto& [dx, dz] : kSides) {
         const int32_t x = cells_[i].x + dx, z = cells_[i].z + dz;
-        ground_.for_tile(x >> 6, z >> 6, INT32_MIN, INT32_MAX, [&](Level level) {
-          if (left.holds({level, x & 63, z & 63})) add({level, x, z});
-        });
+        ground_.for_tile(world::tile_along(x), world::tile_along(z), INT32_MIN, INT32_MAX,
+                         [&](Level level) {
+                           if (left.holds({level, world::in_tile(x), world::in_tile(z)}))
+                             add({level, x, z});
+                         });
       }
     }
   }
   void add(const WorldCell& cell) {
-    uint64_t& row = listed_[cell.level][static_cast<size_t>(cell.z & 63)];
-    const uint64_t bit = uint64_t{1} << (cell.x & 63);
+    uint64_t& row = listed_[cell.level][static_cast<size_t>(world::in_tile(cell.z))];
+    const uint64_t bit = uint64_t{1} << world::in_tile(cell.x);
     if ((row & bit) == 0) cells_.push_back(cell);
     row |= bit;
   }
   [[nodiscard]] uint16_t& steps(const WorldCell& cell) {
     return ground_.left()
         .levels_.at(cell.level)
-        .steps[static_cast<size_t>((cell.z & 63) * 64 + (cell.x & 63))];
+        .steps[static_cast<size_t>(
+            world::cell_index(world::in_tile(cell.x), world::in_tile(cell.z)))];
   }
   [[nodiscard]] bool leads_out(const WorldCell& cell) const {
     const LeavingGround leaving(ground_, cell.level, cell.x, cell.z);
@@ -106,20 +111,23 @@ class ExitSearch {
     return false;
   }
   void look_back(const WorldCell& to, uint16_t count, std::vector<WorldCell>& found) {
-    const int32_t feet = ground_.sample(to.level, to.x & 63, to.z & 63);
+    const int32_t feet = ground_.sample(to.level, world::in_tile(to.x), world::in_tile(to.z));
     for (const auto& [dx, dz] : kSides) {
       const int32_t x = to.x + dx, z = to.z + dz;
-      ground_.for_tile(x >> 6, z >> 6, feet - step_mm_, feet + step_mm_, [&](Level level) {
-        const WorldCell from{level, x, z};
-        if (!ground_.left().holds({level, x & 63, z & 63}) || steps(from) != LeftCells::kNone) {
-          return;
-        }
-        const LeavingGround leaving(ground_, level, x, z);
-        const auto there = world::step_to(leaving, level, x, z, to.x, to.z, step_mm_);
-        if (!there || *there != to.level) return;
-        steps(from) = count;
-        found.push_back(from);
-      });
+      ground_.for_tile(world::tile_along(x), world::tile_along(z), feet - step_mm_, feet + step_mm_,
+                       [&](Level level) {
+                         const WorldCell from{level, x, z};
+                         if (!ground_.left().holds({level, world::in_tile(x), world::in_tile(z)}) ||
+                             steps(from) != LeftCells::kNone) {
+                           return;
+                         }
+                         const LeavingGround leaving(ground_, level, x, z);
+                         const auto there =
+                             world::step_to(leaving, level, x, z, to.x, to.z, step_mm_);
+                         if (!there || *there != to.level) return;
+                         steps(from) = count;
+                         found.push_back(from);
+                       });
     }
   }
 
@@ -135,17 +143,18 @@ size_t find_exits(CrowdGround& ground, int32_t step_mm, std::span<const Level> c
 
 bool find_exit(const CrowdGround& ground, int32_t step_mm, uint32_t max_steps, Level& level,
                int32_t& x, int32_t& z) {
-  if (ground.left().steps_out({level, x & 63, z & 63}) == LeftCells::kNone) return false;
+  if (ground.left().steps_out({level, world::in_tile(x), world::in_tile(z)}) == LeftCells::kNone)
+    return false;
   for (uint32_t n = 0; n < max_steps && !is_out(ground, level, x, z); ++n) {
     const LeavingGround leaving(ground, level, x, z);
-    const uint16_t here = ground.left().steps_out({level, x & 63, z & 63});
+    const uint16_t here = ground.left().steps_out({level, world::in_tile(x), world::in_tile(z)});
     bool found = false;
     for (const auto& [dx, dz] : kSides) {
       const auto to = world::step_to(leaving, level, x, z, x + dx, z + dz, step_mm);
       if (!to) continue;
       const int32_t nx = x + dx, nz = z + dz;
       found = is_out(ground, *to, nx, nz) ||
-              ground.left().steps_out({*to, nx & 63, nz & 63}) + 1 == here;
+              ground.left().steps_out({*to, world::in_tile(nx), world::in_tile(nz)}) + 1 == here;
       if (!found) continue;
       level = *to;
       x = nx;

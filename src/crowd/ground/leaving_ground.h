@@ -7,6 +7,7 @@
 
 #include "crowd/ground/crowd_ground.h"
 #include "crowd/ground/left_cells.h"
+#include "world/tile_grid.h"
 
 /// The ground for a body that stands on blocked cells which it may leave.
 namespace throng::crowd {
@@ -16,7 +17,7 @@ class LeavingGround {
  public:
   using Level = CrowdGround::Level;
   LeavingGround(const CrowdGround& ground, Level level, int32_t x, int32_t z)
-      : ground_(&ground), from_{level, x & 63, z & 63} {}
+      : ground_(&ground), from_{level, world::in_tile(x), world::in_tile(z)} {}
 
   [[nodiscard]] bool is_legal(Level level, int32_t x, int32_t z) const {
     if (ground_->is_legal(level, x, z)) return true;
@@ -40,7 +41,7 @@ class LeavingGround {
 
 /// Does a body at this place stand on a cell which it may leave?
 inline bool is_leaving(const CrowdGround& ground, CrowdGround::Level level, int32_t x, int32_t z) {
-  return !ground.left().is_empty() && !ground.is_legal(level, x & 63, z & 63);
+  return !ground.left().is_empty() && !ground.is_legal(level, world::in_tile(x), world::in_tile(z));
 }
 
 /// For each blocked cell that may be left, counts the steps to an exit, after some levels changed.

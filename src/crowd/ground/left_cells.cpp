@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "world/tile_grid.h"
 #include "world/walk.h"
 
 // Which blocked cells a body may cross on its exit: by the obstacles whose cells it stands on.
@@ -13,7 +14,7 @@ namespace throng::crowd {
 namespace {
 
 bool has(const world::CellRows& rows, const LeftCells::Cell& cell) {
-  return (rows[static_cast<size_t>(cell.z & 63)] >> (cell.x & 63) & 1) != 0;
+  return (rows[static_cast<size_t>(world::in_tile(cell.z))] >> world::in_tile(cell.x) & 1) != 0;
 }
 
 }  // namespace
@@ -93,7 +94,9 @@ bool LeftCells::enters(const Cell& cell, const AirPosition& from, const AirPosit
 
 uint16_t LeftCells::steps_out(const Cell& cell) const {
   const OfLevel* of = find(cell.level);
-  return of == nullptr ? kNone : of->steps[static_cast<size_t>((cell.z & 63) * 64 + (cell.x & 63))];
+  return of == nullptr ? kNone
+                       : of->steps[static_cast<size_t>(
+                             world::cell_index(world::in_tile(cell.x), world::in_tile(cell.z)))];
 }
 
 }  // namespace throng::crowd

@@ -7,6 +7,8 @@
 #include <bit>
 #include <cstdint>
 
+#include "world/tile_grid.h"
+
 /// What a step reads first of a level.
 namespace throng::crowd {
 
@@ -42,7 +44,8 @@ struct alignas(64) LevelLine {
 
   /// The level beyond one side of the tile on which a step over flat blocks arrives, or kNone.
   [[nodiscard]] uint32_t cross(int32_t x0, int32_t z0, int32_t x1, int32_t z1) const {
-    const int32_t tiles_x = (x1 >> 6) - (x0 >> 6), tiles_z = (z1 >> 6) - (z0 >> 6);
+    const int32_t tiles_x = world::tile_along(x1) - world::tile_along(x0),
+                  tiles_z = world::tile_along(z1) - world::tile_along(z0);
     if ((tiles_x != 0) == (tiles_z != 0)) return kNone;
     const Side side = LevelLine::side(tiles_x != 0, tiles_x + tiles_z > 0);
     const int32_t from = tiles_x != 0 ? z0 : x0, to = tiles_x != 0 ? z1 : x1;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "crowd/ground/leaving_ground.h"
+#include "world/tile_grid.h"
 #include "world/walk.h"
 
 // Moves and lines of sight over the ground: block by block where blocks decide, else row by row,
@@ -48,8 +49,9 @@ bool StrideGround::leave(uint32_t level, int32_t y, world::GroundPoint from, wor
   const auto position = [](world::GroundPoint p, int32_t feet) {
     return AirPosition{static_cast<int32_t>(p.x), static_cast<int32_t>(p.z), feet};
   };
-  return !ground_->left().enters({level, from.cell_x() & 63, from.cell_z() & 63}, position(from, y),
-                                 position(to, landing.y));
+  return !ground_->left().enters(
+      {level, world::in_tile(from.cell_x()), world::in_tile(from.cell_z())}, position(from, y),
+      position(to, landing.y));
 }
 
 namespace {
@@ -79,9 +81,11 @@ bool StrideGround::is_open_around(uint32_t level, world::GroundPoint from, int32
   if (range > 31) return false;  // of a tile's 64
   const int32_t x = from.cell_x(), z = from.cell_z();
   const int32_t x0 = x - range, z0 = z - range, x1 = x + range, z1 = z + range;
-  const bool is_wide = (x0 ^ x1) >> 6 != 0, is_deep = (z0 ^ z1) >> 6 != 0;
+  const bool is_wide = world::tile_along(x0) != world::tile_along(x1),
+             is_deep = world::tile_along(z0) != world::tile_along(z1);
   // Of the body's tile, and of the other one across and down.
-  const int32_t edge_x = is_wide ? x1 & ~63 : x1 + 1, edge_z = is_deep ? z1 & ~63 : z1 + 1;
+  const int32_t edge_x = is_wide ? world::tile_begin(x1) : x1 + 1,
+                edge_z = is_deep ? world::tile_begin(z1) : z1 + 1;
   const bool is_right = x >= edge_x, is_low = z >= edge_z;
   const int32_t own_x0 = is_right ? edge_x : x0, own_x1 = is_right ? x1 : edge_x - 1;
   const int32_t own_z0 = is_low ? edge_z : z0, own_z1 = is_low ? z1 : edge_z - 1;
@@ -153,8 +157,8 @@ namespace {
 
 // 64 rows of cells as far as they lie in the window: those of a tile that begins at (x, z) of it.
 void add_rows(const uint64_t* legal, int32_t x, int32_t z, int32_t size,
-              std::array<uint64_t, 64>& window) {
-  const int32_t first = std::max(z, 0), last = std::min(z + 64, size);
+              std::array<uint64_t, kTileCells>& window) {
+  const int32_t first = std::max(z, 0), last = std::min(z + kTileCells, size);
   if (x >= 0) {
     for (int32_t row = first; row < last; ++row) window[row] |= legal[row - z] << x;
   } else {
@@ -184,13 +188,16 @@ StrideGround::Around StrideGround::query_walls(uint32_t level, int32_t y, world:
   if (range >= 2 * WallWindow::kMiddle) return Around::kSteps;
   const int32_t size = scale * WallWindow::kSize, middle = scale * WallWindow::kMiddle;
   const int32_t x0 = x - middle, z0 = z - middle;
-  std::array<uint64_t, 64> cells{};  // rows of the window
-  for (int32_t tile_z = z0 >> 6; tile_z <= (z0 + size - 1) >> 6; ++tile_z) {
-    for (int32_t tile_x = x0 >> 6; tile_x <= (x0 + size - 1) >> 6; ++tile_x) {
+  std::array<uint64_t, kTileCells> cells{};  // rows of the window
+  for (int32_t tile_z = world::tile_along(z0); tile_z <= world::tile_along(z0 + size - 1);
+       ++tile_z) {
+    for (int32_t tile_x = world::tile_along(x0); tile_x <= world::tile_along(x0 + size - 1);
+         ++tile_x) {
       const auto add = [&](uint32_t on) {
-        add_rows(ground_->legal(on), tile_x * 64 - x0, tile_z * 64 - z0, size, cells);
+        add_rows(ground_->legal(on), world::first_cell(tile_x) - x0, world::first_cell(tile_z) - z0,
+                 size, cells);
       };
-      if (tile_x == x >> 6 && tile_z == z >> 6) {
+      if (tile_x == world::tile_along(x) && tile_z == world::tile_along(z)) {
         add(level);
       } else {
         ground_->for_tile(tile_x, tile_z, y - step_mm_ - rise, y + step_mm_ + rise, add);
@@ -228,16 +235,18 @@ world::WalkStop StrideGround::walk_rows(uint32_t& level, world::GroundPoint from
   const auto dx = static_cast<double>(to.x - from.x), dz = static_cast<double>(to.z - from.z);
   CrowdGround::Walk walk = ground_->walk(level);
   const auto step = [&](int32_t nx, int32_t nz) {
-    const bool across_x = (x ^ nx) >> 6 != 0, across_z = (z ^ nz) >> 6 != 0;
+    const bool across_x = world::tile_along(x) != world::tile_along(nx),
+               across_z = world::tile_along(z) != world::tile_along(nz);
     if (across_x || across_z) {
       const auto side = LevelLine::side(across_x, (across_x ? sx : sz) > 0);
       const OpenLine& line = ground_->open_line(level);
-      if ((line.cells[side] >> ((across_x ? z : x) & 63) & 1) != 0) {
+      if ((line.cells[side] >> world::in_tile(across_x ? z : x) & 1) != 0) {
         level = line.beyond[side];
         walk = ground_->walk(level);
         return true;
       }
-    } else if (walk.is_isolated && (walk.legal[nz & 63] >> (nx & 63) & 1) == 0) {
+    } else if (walk.is_isolated &&
+               (walk.legal[world::in_tile(nz)] >> world::in_tile(nx) & 1) == 0) {
       return false;
     }
     const auto next = world::step_to(*ground_, level, x, z, nx, nz, step_mm_);
@@ -265,22 +274,25 @@ world::WalkStop StrideGround::walk_rows(uint32_t& level, world::GroundPoint from
     }
     while (x != last) {
       if (walk.is_step_safe) {  // on this level as far as it goes
-        const int32_t edge = sx > 0 ? std::min(last, x | 63) : std::max(last, x & ~63);
-        const int32_t low = std::min(x, edge) & 63, high = std::max(x, edge) & 63;
+        const int32_t edge =
+            sx > 0 ? std::min(last, world::tile_last(x)) : std::max(last, world::tile_begin(x));
+        const int32_t low = world::in_tile(std::min(x, edge)),
+                      high = world::in_tile(std::max(x, edge));
         const uint64_t wanted = (~uint64_t{0} >> (63 - high)) & (~uint64_t{0} << low);
-        const uint64_t missing = wanted & ~walk.legal[z & 63];
-        const int32_t first = missing == 0 ? (edge & 63) + sx
+        const uint64_t missing = wanted & ~walk.legal[world::in_tile(z)];
+        const int32_t first = missing == 0 ? world::in_tile(edge) + sx
                               : sx > 0     ? std::countr_zero(missing)
                                            : 63 - std::countl_zero(missing);
-        x = (x & ~63) + first - sx;
+        x = world::tile_begin(x) + first - sx;
         if (x == last) break;
       }
       if (!step(x + sx, z)) return {false, x, z, sx, 0};
       x += sx;
     }
     if (z == end_z) return {true, x, z, 0, 0};
-    const bool stays = walk.is_step_safe && (z & 63) != (sz > 0 ? 63 : 0);
-    const bool is_free = stays && (walk.legal[(z + sz) & 63] >> (x & 63) & 1) != 0;
+    const bool stays = walk.is_step_safe && world::in_tile(z) != (sz > 0 ? world::kInTile : 0);
+    const bool is_free =
+        stays && (walk.legal[world::in_tile(z + sz)] >> world::in_tile(x) & 1) != 0;
     if (!is_free && !step(x, z + sz)) return {false, x, z, 0, sz};
   }
 }

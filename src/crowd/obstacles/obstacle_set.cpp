@@ -12,6 +12,7 @@
 #include "crowd/ground/leaving_ground.h"
 #include "path/edits/blocked_cells.h"
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // What obstacles block in the grounds of all classes: the union of their cells by level, so that
 // they overlap and are removed in any order. An update is linear in the cells of the levels that
@@ -20,7 +21,7 @@ namespace throng::crowd {
 namespace {
 
 bool has(const world::CellRows& rows, int32_t x, int32_t z) {
-  return ((rows[static_cast<size_t>(z & 63)] >> (x & 63)) & 1) != 0;
+  return ((rows[static_cast<size_t>(world::in_tile(z))] >> world::in_tile(x)) & 1) != 0;
 }
 
 // Andrew's monotone chain: lower side, then upper.

@@ -11,6 +11,7 @@
 #include "core/prefetch.h"
 #include "core/random.h"
 #include "crowd/ground/plan_steps.h"
+#include "world/tile_grid.h"
 
 // A run is moved in groups, and a group in passes, so that no pass waits for memory or mispredicts
 // a branch: what nearly all avatars need is computed without one, and those that need more are put
@@ -137,9 +138,10 @@ int32_t mask(bool condition) { return -static_cast<int32_t>(condition); }
                     (static_cast<uint32_t>(x1 - x0 + kShort) <= 2 * kShort) &
                     (static_cast<uint32_t>(z1 - z0 + kShort) <= 2 * kShort);
   // Of two cells that are at most two apart, the middle one is all that lies between.
-  const uint64_t common = rows[z0 & 63] & rows[((z0 + z1) >> 1) & 63] & rows[z1 & 63];
-  const uint64_t all = (common >> (x0 & 63)) & (common >> (((x0 + x1) >> 1) & 63)) &
-                       (common >> (x1 & 63)) & static_cast<uint64_t>(near);
+  const uint64_t common =
+      rows[world::in_tile(z0)] & rows[world::in_tile((z0 + z1) >> 1)] & rows[world::in_tile(z1)];
+  const uint64_t all = (common >> world::in_tile(x0)) & (common >> world::in_tile((x0 + x1) >> 1)) &
+                       (common >> world::in_tile(x1)) & static_cast<uint64_t>(near);
   return all != 0;
 }
 
@@ -213,7 +215,7 @@ void Group::prefetch_walk_levels() const {
     const crowd::Avatar& a = avatars_[n];
     const int32_t x = (a.x + a.vx) >> world::kUnitBits, z = (a.z + a.vz) >> world::kUnitBits;
     in_.ground->prefetch_level(a.level, a.z >> world::kUnitBits, z);
-    in_.ground->prefetch_tile(x >> 6, z >> 6);
+    in_.ground->prefetch_tile(world::tile_along(x), world::tile_along(z));
   }
 }
 
@@ -302,7 +304,7 @@ void Group::prefetch_ground_cells() const {
     const crowd::Avatar& a = avatars_[n];
     const int32_t x = (a.x + a.vx) >> world::kUnitBits, z = (a.z + a.vz) >> world::kUnitBits;
     in_.ground->prefetch_cell(a.level, x, z);
-    in_.ground->prefetch_levels(x >> 6, z >> 6);
+    in_.ground->prefetch_levels(world::tile_along(x), world::tile_along(z));
     in_.map->prefetch(a.point(), a.y);
   }
 }
@@ -322,10 +324,11 @@ void Group::sort_uneven() {
   for (const uint16_t n : walks_.span()) {
     const crowd::Avatar& a = avatars_[n];
     const int32_t x = (a.x + a.vx) >> world::kUnitBits, z = (a.z + a.vz) >> world::kUnitBits;
-    if ((x >> 6) == (a.x >> (world::kUnitBits + 6)) && (z >> 6) == (a.z >> (world::kUnitBits + 6)))
+    if (world::tile_along(x) == (a.x >> (world::kUnitBits + world::kTileBits)) &&
+        world::tile_along(z) == (a.z >> (world::kUnitBits + world::kTileBits)))
       continue;
-    ground.for_tile(x >> 6, z >> 6, a.y - in_.step_mm, a.y + in_.step_mm,
-                    [&](uint32_t level) { ground.prefetch_cell(level, x, z); });
+    ground.for_tile(world::tile_along(x), world::tile_along(z), a.y - in_.step_mm,
+                    a.y + in_.step_mm, [&](uint32_t level) { ground.prefetch_cell(level, x, z); });
   }
 }
 
@@ -344,7 +347,8 @@ void Group::walk_on(List& blocked) {
     const world::GroundPoint from = a.point(), to = target(a);
     uint32_t level = a.level;
     const crowd::CrowdGround::Walk here = ground.walk(level);
-    const bool on_tile = ((from.x ^ to.x) | (from.z ^ to.z)) >> (world::kUnitBits + 6) == 0;
+    const bool on_tile =
+        ((from.x ^ to.x) | (from.z ^ to.z)) >> (world::kUnitBits + world::kTileBits) == 0;
     const bool is_open = here.is_isolated && on_tile
                              ? world::walk(LoneLevel{here.legal}, level, from, to, in_.step_mm)
                              : to.x >= 0 && to.z >= 0 && to.x < in_.units_x && to.z < in_.units_z &&

@@ -17,6 +17,7 @@
 #include "throng/path.h"
 #include "world/cell_blocks.h"
 #include "world/ground.h"
+#include "world/tile_grid.h"
 
 /// Obstacles placed in the air of a class since it was made.
 namespace throng::path {
@@ -40,7 +41,7 @@ class AirChanges {
   [[nodiscard]] bool may_stand(uint32_t level, int32_t x, int32_t z) const {
     const auto found = blocked_.find(level);
     return found == blocked_.end() ||
-           (found->second[static_cast<size_t>(z & 63)] >> (x & 63) & 1) == 0;
+           (found->second[static_cast<size_t>(world::in_tile(z))] >> world::in_tile(x) & 1) == 0;
   }
   /// Adds one obstacle to a ground; returns its id there.
   static ChangeId add_to(LiveGround& ground, const Solid& solid);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // Where bodies take off and land, and the flood fills that search for such places. Linear in the
 // cells visited.
@@ -115,7 +116,8 @@ bool FlightEndpoints::for_places(const Place& from, uint64_t max_cells, CircleFl
   if (!start) return false;
   const world::GroundLevel level =
       world::ground_level(world_, from.level1 - 1, ground_.avatar_class);
-  if (!level.is_legal(start->cell_x() & 63, start->cell_z() & 63)) return false;
+  if (!level.is_legal(world::in_tile(start->cell_x()), world::in_tile(start->cell_z())))
+    return false;
   const AirChanges* changes = air_.changes();
   uint64_t seen = 0;
   bool more = true, budget_exhausted = false;
@@ -215,9 +217,9 @@ Place FlightEndpoints::best_landing(uint32_t box) const {
   const int32_t end_x = std::min((cube.x + cube.side) * multiple, world_.width);
   const int32_t end_z = std::min((cube.z + cube.side) * multiple, world_.depth);
   const auto try_cell = [&](const Floor& floor, int32_t x, int32_t z) {
-    if (!floor.ground.is_legal(x & 63, z & 63)) return;
-    const int32_t margin =
-        margin_at(floor.ground, floor.zone_level, ground_.avatar_class, x & 63, z & 63);
+    if (!floor.ground.is_legal(world::in_tile(x), world::in_tile(z))) return;
+    const int32_t margin = margin_at(floor.ground, floor.zone_level, ground_.avatar_class,
+                                     world::in_tile(x), world::in_tile(z));
     const double dx = (x + 0.5) / multiple - (cube.x + cube.side * 0.5);
     const double dz = (z + 0.5) / multiple - (cube.z + cube.side * 0.5);
     const double off = dx * dx + dz * dz;
@@ -235,14 +237,14 @@ Place FlightEndpoints::best_landing(uint32_t box) const {
   };
   for (int32_t z = cube.z * multiple; z < end_z; ++z) {
     for (int32_t x = cube.x * multiple; x < end_x;) {
-      const auto tile = world_.tile_levels(x >> 6, z >> 6);
+      const auto tile = world_.tile_levels(world::tile_along(x), world::tile_along(z));
       floors.clear();
       for (uint32_t i = tile.first; i < tile.last; ++i) {
         const uint32_t zone_level = tile.zone_first + i - tile.first;
         floors.push_back(
             {zone_level, world::ground_level(*tile.zone, zone_level, i, ground_.avatar_class)});
       }
-      for (const int32_t tile_end = std::min((x | 63) + 1, end_x); x < tile_end; ++x) {
+      for (const int32_t tile_end = std::min(world::tile_last(x) + 1, end_x); x < tile_end; ++x) {
         for (const Floor& floor : floors) try_cell(floor, x, z);
       }
     }

@@ -13,6 +13,7 @@
 #include "path/edits/plan_shapes.h"
 #include "path/ground/rects.h"
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // Rectangles and portals of one level tile after the other, cut from its cells less those that
 // obstacles block; a change makes the levels of its tiles again.
@@ -132,10 +133,10 @@ void LiveMesh::switch_link(const LevelLinkEnd& link, bool active) {
 bool LiveMesh::stand(uint32_t index, world::GroundPoint at, uint16_t& rect) {
   const LiveLevel& of = *level(index);
   const int32_t x = at.cell_x(), z = at.cell_z();
-  if (of.ground.zone == nullptr || x >> 6 != of.tile_x || z >> 6 != of.tile_z ||
-      !of.is_legal(x & 63, z & 63))
+  if (of.ground.zone == nullptr || world::tile_along(x) != of.tile_x ||
+      world::tile_along(z) != of.tile_z || !of.is_legal(world::in_tile(x), world::in_tile(z)))
     return false;
-  rect = of.rect_at(x & 63, z & 63);
+  rect = of.rect_at(world::in_tile(x), world::in_tile(z));
   return std::isfinite(factor(of.rects[rect]));
 }
 
@@ -240,7 +241,7 @@ std::array<uint8_t, 4096> LiveMesh::slopes_of(const LiveLevel& level) const {
   if (config_.slope_cost == 0) return slopes;
   const double cell = world().summary.cell * 1000;
   for (size_t c = 0; c < slopes.size(); ++c) {
-    const auto x = static_cast<int32_t>(c % 64), z = static_cast<int32_t>(c / 64);
+    const auto x = world::x_of_cell(c), z = world::z_of_cell(c);
     if (!level.is_legal(x, z)) continue;
     const auto [gx, gz] = rise_at(level.ground.view, x, z);
     const double rise = std::sqrt(static_cast<double>(gx) * gx + static_cast<double>(gz) * gz);
@@ -256,8 +257,7 @@ void LiveMesh::cut(LiveLevel& level) const {
   std::array<bool, 64 * kSlopeClasses> done{};
   for (size_t c = 0; c < kinds.size(); ++c) {
     const size_t sort = kinds[c] * size_t{kSlopeClasses} + slopes[c];
-    if (done[sort] || !level.is_legal(static_cast<int32_t>(c % 64), static_cast<int32_t>(c / 64)))
-      continue;
+    if (done[sort] || !level.is_legal(world::x_of_cell(c), world::z_of_cell(c))) continue;
     done[sort] = true;
     world::CellRows same{};
     for (size_t k = c; k < kinds.size(); ++k) {
@@ -296,7 +296,7 @@ void LiveMesh::find_portals(LiveLevel& level) {
           joined = false;
           continue;
         }
-        const uint16_t to_rect = (*there)->rect_at((x + dx) & 63, (z + dz) & 63);
+        const uint16_t to_rect = (*there)->rect_at(world::in_tile(x + dx), world::in_tile(z + dz));
         const uint32_t to_level = (*there)->ground.world_level;
         if (joined && level.portals.back().to_level == to_level &&
             level.portals.back().to_rect == to_rect) {

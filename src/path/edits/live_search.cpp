@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "world/tile_grid.h"
+
 // A* over points of portals at area costs, then string pulling by doubling, halving and moving
 // stops.
 namespace throng::path {
@@ -26,7 +28,7 @@ bool same(const LiveStop& a, const LiveStop& b) {
 
 // Cost of a metre on the ground of a cell.
 double factor_at(LiveMesh& mesh, const LiveLevel& level, int32_t x, int32_t z) {
-  return mesh.factor(level.rects[level.rect_at(x & 63, z & 63)]);
+  return mesh.factor(level.rects[level.rect_at(world::in_tile(x), world::in_tile(z))]);
 }
 
 }  // namespace
@@ -170,8 +172,9 @@ void LiveStringPuller::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops) {
         // On whichever level the segment there leads to.
         const LiveLevel* level = mesh.level(a.level);
         if (!world::walk_far(mesh.ground(), level, a.at, at, mesh.step()).arrived) continue;
-        const LiveStop moved{level->ground.world_level,
-                             level->rect_at(at.cell_x() & 63, at.cell_z() & 63), at};
+        const LiveStop moved{
+            level->ground.world_level,
+            level->rect_at(world::in_tile(at.cell_x()), world::in_tile(at.cell_z())), at};
         const double cost = segment_cost(mesh, a, moved) + segment_cost(mesh, moved, b);
         if (cost >= best) continue;
         best = cost;
@@ -238,7 +241,7 @@ void LiveSearch::note_nearest(LiveMesh& mesh, const LiveLevel& level, uint32_t i
   const world::GroundPoint at{clamped(to_.at.x, level.tile_x, rect.x0, rect.x1),
                               clamped(to_.at.z, level.tile_z, rect.z0, rect.z1)};
   const auto feet = [](const LiveLevel& of, world::GroundPoint p) {
-    return of.ground.view.sample(p.cell_x() & 63, p.cell_z() & 63);
+    return of.ground.view.sample(world::in_tile(p.cell_x()), world::in_tile(p.cell_z()));
   };
   const double rise =
       (feet(level, at) - feet(*mesh.level(to_.level), to_.at)) * 1e-3 / mesh.world().summary.cell;

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // What blocks a straight walk: rays over the cells around its end.
 namespace throng::path {
@@ -28,13 +29,15 @@ std::optional<world::GroundLevel> nearest_floor(const world::WorldGround& ground
   std::optional<world::GroundLevel> best;
   int32_t best_rise = INT32_MAX;
   if (x < 0 || z < 0 || x >= ground.world.width || z >= ground.world.depth) return best;
-  ground.for_tile(x >> 6, z >> 6, feet, feet, [&](const world::GroundLevel& level) {
-    if (!level.view.has(x & 63, z & 63)) return;
-    const int32_t rise = std::abs(ground.sample(level, x & 63, z & 63) - feet);
-    if (rise >= best_rise) return;
-    best_rise = rise;
-    best = level;
-  });
+  ground.for_tile(world::tile_along(x), world::tile_along(z), feet, feet,
+                  [&](const world::GroundLevel& level) {
+                    if (!level.view.has(world::in_tile(x), world::in_tile(z))) return;
+                    const int32_t rise =
+                        std::abs(ground.sample(level, world::in_tile(x), world::in_tile(z)) - feet);
+                    if (rise >= best_rise) return;
+                    best_rise = rise;
+                    best = level;
+                  });
   return best;
 }
 
@@ -106,27 +109,29 @@ class Surroundings {
         found = {sight, floor};
       }
     };
-    ground_.for_tile(x >> 6, z >> 6, feet, feet, [&](const world::GroundLevel& level) {
-      if (!level.view.has(x & 63, z & 63)) return;
-      const int32_t floor = ground_.sample(level, x & 63, z & 63);
-      const int32_t rise = floor - feet;
-      if (std::abs(rise) <= step_) {
-        take(Sight::kFloor, floor);
-      } else if (rise > 0) {
-        take(rise > height_        ? Sight::kRaised
-             : 2 * rise <= height_ ? Sight::kStep
-                                   : Sight::kWall,
-             floor);
-      } else {
-        const int32_t ceiling = ceiling_at(level, x & 63, z & 63);
-        const bool is_open = ceiling == kOpenSky || int64_t{ceiling} - feet >= height_;
-        if (is_open) {
-          take(-2 * rise <= height_ ? Sight::kStep : Sight::kEdge, floor);
-        } else if (ceiling - feet > step_) {
-          take(Sight::kWall, ceiling);
-        }
-      }
-    });
+    ground_.for_tile(
+        world::tile_along(x), world::tile_along(z), feet, feet,
+        [&](const world::GroundLevel& level) {
+          if (!level.view.has(world::in_tile(x), world::in_tile(z))) return;
+          const int32_t floor = ground_.sample(level, world::in_tile(x), world::in_tile(z));
+          const int32_t rise = floor - feet;
+          if (std::abs(rise) <= step_) {
+            take(Sight::kFloor, floor);
+          } else if (rise > 0) {
+            take(rise > height_        ? Sight::kRaised
+                 : 2 * rise <= height_ ? Sight::kStep
+                                       : Sight::kWall,
+                 floor);
+          } else {
+            const int32_t ceiling = ceiling_at(level, world::in_tile(x), world::in_tile(z));
+            const bool is_open = ceiling == kOpenSky || int64_t{ceiling} - feet >= height_;
+            if (is_open) {
+              take(-2 * rise <= height_ ? Sight::kStep : Sight::kEdge, floor);
+            } else if (ceiling - feet > step_) {
+              take(Sight::kWall, ceiling);
+            }
+          }
+        });
     return found;
   }
 
@@ -187,12 +192,12 @@ class Surroundings {
   [[nodiscard]] bool is_low_at(int32_t x, int32_t z, int32_t feet) const {
     const auto floor = nearest_floor(ground_, x, z, feet);
     if (!floor) return false;
-    const int32_t ceiling = ceiling_at(*floor, x & 63, z & 63);
+    const int32_t ceiling = ceiling_at(*floor, world::in_tile(x), world::in_tile(z));
     return ceiling != kOpenSky && int64_t{ceiling} - feet < height_;
   }
   [[nodiscard]] bool is_too_steep(int32_t x, int32_t z, int32_t feet) const {
     const auto floor = nearest_floor(ground_, x, z, feet);
-    return floor && slope_at(*floor, x & 63, z & 63) > steepest_;
+    return floor && slope_at(*floor, world::in_tile(x), world::in_tile(z)) > steepest_;
   }
 
   // Is the rise to a cell, too steep for the class, that of a slope, and not of a step, after which
@@ -205,7 +210,8 @@ class Surroundings {
     if (std::abs(rise) <= steepest_ * run || std::abs(rise) > kSteepest * cell_ * run) return false;
     const auto next = nearest_floor(ground_, x + dx, z + dz, to + rise);
     if (!next) return true;
-    const int32_t goes_on = ground_.sample(*next, (x + dx) & 63, (z + dz) & 63) - to;
+    const int32_t goes_on =
+        ground_.sample(*next, world::in_tile(x + dx), world::in_tile(z + dz)) - to;
     return std::abs(goes_on - rise) <= std::abs(rise) / 2;
   }
 
@@ -222,14 +228,15 @@ class Surroundings {
 
 Obstacle obstacle_beyond(const world::WorldGround& ground, const world::GroundLevel& level,
                          const world::WalkStop& stop) {
-  const int32_t feet = ground.sample(level, stop.x & 63, stop.z & 63);
+  const int32_t feet = ground.sample(level, world::in_tile(stop.x), world::in_tile(stop.z));
   const AvatarClass& avatar =
       ground.world.summary.classes[static_cast<size_t>(ground.avatar_class)];
   const auto toward = [&](int32_t dx, int32_t dz) {
     if (dx == 0 && dz == 0) return Obstacle::kNone;
     const auto floor = nearest_floor(ground, stop.x + dx, stop.z + dz, feet);
-    if (floor && floor->is_legal((stop.x + dx) & 63, (stop.z + dz) & 63)) {
-      const int32_t there = ground.sample(*floor, (stop.x + dx) & 63, (stop.z + dz) & 63);
+    if (floor && floor->is_legal(world::in_tile(stop.x + dx), world::in_tile(stop.z + dz))) {
+      const int32_t there =
+          ground.sample(*floor, world::in_tile(stop.x + dx), world::in_tile(stop.z + dz));
       if (std::abs(there - feet) <= world::step_mm(avatar)) return Obstacle::kNone;
     }
     const Around around = Surroundings(ground, stop.x, stop.z, feet).cast_ahead(dx, dz);

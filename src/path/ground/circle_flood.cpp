@@ -4,13 +4,16 @@
 
 #include <algorithm>
 
+#include "world/tile_grid.h"
+
 // The visited cells of a flood fill: a hash table with linear probing, emptied run by run.
 namespace throng::path {
 namespace {
 
 // Never 0: levels count from 1 here.
 uint64_t key_of(uint32_t level, int32_t x, int32_t z) {
-  return (uint64_t{level} + 1) << 12 | static_cast<uint64_t>((z & 63) * 64 + (x & 63));
+  return (uint64_t{level} + 1) << 12 |
+         static_cast<uint64_t>(world::cell_index(world::in_tile(x), world::in_tile(z)));
 }
 
 size_t slot_of(uint64_t key, size_t mask) {

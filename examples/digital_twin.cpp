@@ -64,7 +64,7 @@ int main(int argc, char** argv) {
   GroundQuery query = need(GroundQuery::create(world, wheelchair));
   const Place pavement = query.nearest_place(low + Vec3d{6, 0, 50}, 20);
   const GroundRay ray = query.ray(pavement, -5, 0);
-  if (ray.obstacle != Obstacle::kStep) return std::puts("no step stops it"), 0;
+  if (ray.blocked_by != Blocker::kStep) return std::puts("no step stops it"), 0;
   // A ramp of 3 x 2 m down to the street, against the wall's normal. Other zones are reused.
   const Vec3d kerb = ray.place.position;
   const Vec3d out{-ray.normal_x, 0, -ray.normal_z}, side{ray.normal_z, 0, -ray.normal_x};

@@ -143,7 +143,7 @@ Json path_json(const PathOptions& options, const Path& path, const Place& to, do
     json["nearest"] = {{"place", numbers(nearest)},
                        {"distance", plan_distance(nearest, to.position)},
                        {"below", to.position.y - nearest.y},
-                       {"obstacle", app::word_for(path.obstacle)}};
+                       {"blocked_by", app::word_for(path.blocked_by)}};
   }
   return json;
 }
@@ -169,7 +169,7 @@ std::string path_text(const PathOptions& options, const Path& path, const Place&
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d& nearest = path.points.back().position;
     text += fmt::format("  gets to ({}), {}; blocked by: {}\n", where(nearest),
-                        how_near(nearest, to.position), app::word_for(path.obstacle));
+                        how_near(nearest, to.position), app::word_for(path.blocked_by));
   }
   size_t link = 0;
   for (size_t i = 0; i < path.points.size(); ++i) {
@@ -215,7 +215,7 @@ Json flight_json(const PathOptions& options, const FlightPath& path, const Vec3d
     const Vec3d& nearest = path.points.back();
     json["nearest"] = {{"place", numbers(nearest)},
                        {"distance", length(to - nearest)},
-                       {"obstacle", app::word_for(path.obstacle)}};
+                       {"blocked_by", app::word_for(path.blocked_by)}};
   }
   return json;
 }
@@ -232,7 +232,7 @@ std::string flight_text(const PathOptions& options, const FlightPath& path, cons
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d& nearest = path.points.back();
     text += fmt::format("  gets to ({}), {:.3f} m from there; blocked by: {}\n", where(nearest),
-                        length(to - nearest), app::word_for(path.obstacle));
+                        length(to - nearest), app::word_for(path.blocked_by));
   }
   for (size_t i = 0; i < path.points.size(); ++i) {
     text += fmt::format("  {}{}\n", where(path.points[i]),
@@ -326,7 +326,7 @@ Json node_path_json(const PathOptions& options, const NodePath& path, const Node
     const Vec3d nearest = path.points.back().place.feet;
     json["nearest"] = {{"place", numbers(nearest)},
                        {"distance", length(nearest - to.feet)},
-                       {"obstacle", app::word_for(path.obstacle)}};
+                       {"blocked_by", app::word_for(path.blocked_by)}};
   }
   return json;
 }
@@ -347,7 +347,7 @@ std::string node_path_text(const PathOptions& options, const NodePath& path, con
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d nearest = path.points.back().place.feet;
     text += fmt::format("  gets to ({}), {:.3f} m from there; blocked by: {}\n", where(nearest),
-                        length(nearest - to.feet), app::word_for(path.obstacle));
+                        length(nearest - to.feet), app::word_for(path.blocked_by));
   }
   size_t link = 0;
   for (size_t i = 0; i < path.points.size(); ++i) {

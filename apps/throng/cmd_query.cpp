@@ -49,13 +49,13 @@ void describe_ray(GroundQuery& query, const Place& place, const std::vector<doub
   const Place slid = query.slide(place, toward[0], toward[1]);
   json["toward"] = {{"arrived", ray.arrived},
                     {"place", numbers(ray.place.position)},
-                    {"obstacle", ray.arrived ? Json(nullptr) : Json(word_for(ray.obstacle))},
+                    {"blocked_by", ray.arrived ? Json(nullptr) : Json(word_for(ray.blocked_by))},
                     {"slides_to", numbers(slid.position)}};
   text += fmt::format("  straight on by {}, {}: to ({})", toward[0], toward[1],
                       where(ray.place.position));
   if (!ray.arrived) {
     text +=
-        fmt::format(", then {}; sliding, to ({})", word_for(ray.obstacle), where(slid.position));
+        fmt::format(", then {}; sliding, to ({})", word_for(ray.blocked_by), where(slid.position));
   }
   text += "\n";
 }

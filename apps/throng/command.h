@@ -66,7 +66,7 @@ Result<int32_t> class_named(const World& world, const std::string& name);
 std::string note_of_nodes(const AvatarClass& avatar);
 
 /// "nothing", "too low", ...
-const char* word_for(Obstacle obstacle);
+const char* word_for(Blocker blocker);
 /// "walk", "climb", "off-mesh link", ...
 const char* word_for(LinkKind kind);
 

@@ -268,19 +268,19 @@ std::string human_bytes(uint64_t bytes) {
   return fmt::format("{:.2f} GB", value / 1e9);
 }
 
-const char* word_for(Obstacle obstacle) {
-  switch (obstacle) {
-    case Obstacle::kNone:
+const char* word_for(Blocker blocker) {
+  switch (blocker) {
+    case Blocker::kNone:
       return "nothing";
-    case Obstacle::kGap:
+    case Blocker::kGap:
       return "a gap";
-    case Obstacle::kStep:
+    case Blocker::kStep:
       return "too high a step";
-    case Obstacle::kLow:
+    case Blocker::kLow:
       return "too low";
-    case Obstacle::kSteep:
+    case Blocker::kSteep:
       return "too steep";
-    case Obstacle::kNarrow:
+    case Blocker::kNarrow:
       return "a wall, or too narrow";
   }
   return "";

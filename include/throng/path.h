@@ -112,7 +112,7 @@ struct Path {
   std::vector<uint32_t> off_mesh_links;
   double cost = 0;  ///< Of LiveGround: metres times their costs.
   /// Of LiveGround: what blocks the path to an unreachable goal.
-  Obstacle obstacle = Obstacle::kNone;
+  Blocker blocked_by = Blocker::kNone;
   uint64_t nodes = 0;  ///< Intervals that the search expanded; 0 with labels.
   /// Which part of the budget was exhausted, if one was.
   SpentBudget spent = SpentBudget::kNone;
@@ -296,7 +296,7 @@ struct FlightPath {
   double length = 0;                  ///< Of all segments. [m]
   /// What blocks the straight line on to an unreachable goal: kLow where a lower body would pass,
   /// or where the avatar cannot take off, else kNarrow.
-  Obstacle obstacle = Obstacle::kNone;
+  Blocker blocked_by = Blocker::kNone;
   uint64_t nodes = 0;                      ///< Air boxes that the search expanded.
   SpentBudget spent = SpentBudget::kNone;  ///< Which part of the budget was exhausted, if one was.
 };
@@ -427,7 +427,7 @@ struct NodePath {
   /// What blocks the path to an unreachable goal. Then `points` lead to the nearest reachable
   /// place, in three dimensions; if that is more than 25 m from the goal, or obstacles are up, to
   /// the nearest place in the block whose border comes nearest.
-  Obstacle obstacle = Obstacle::kNone;
+  Blocker blocked_by = Blocker::kNone;
   /// Crossings, and boundary nodes of overlay cells, that the search expanded.
   uint64_t nodes = 0;
   SpentBudget spent = SpentBudget::kNone;  ///< Which part of the budget was exhausted, if one was.

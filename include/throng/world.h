@@ -138,9 +138,9 @@ class THRONG_API World {
 // solid, a step that is too high, a slope that is too steep, an edge. All lengths are of the
 // body's middle, in the ground's plane: the solid of a wall is a radius farther.
 
-/// What makes a cell illegal for a class, as far as a baked world knows: it stores floors and
-/// ceilings, not walls. There, or within the class's radius,
-enum class Obstacle {
+/// What stops a class: what makes a cell illegal, as far as a baked world knows. It stores floors
+/// and ceilings, not walls. There, or within the class's radius,
+enum class Blocker {
   kNone,
   kGap,     ///< is no floor near the height of the feet on which any class could stand.
   kStep,    ///< is a floor more than the step height up or down, but not the top of a wall.
@@ -155,7 +155,7 @@ struct GroundRay {
   bool arrived = false;  ///< The walk reached the end of the line.
   /// Normal of the wall that stopped it, towards the body. [unit]
   double normal_x = 0, normal_z = 0;
-  Obstacle obstacle = Obstacle::kNone;  ///< What stopped it.
+  Blocker blocked_by = Blocker::kNone;  ///< What stopped it.
 };
 
 /// The nearest wall around a place.

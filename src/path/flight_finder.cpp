@@ -42,7 +42,7 @@ void clear(FlightPath& path) {
   path.points.clear();
   path.segments.clear();
   path.length = 0;
-  path.obstacle = Obstacle::kNone;
+  path.blocked_by = Blocker::kNone;
   path.spent = SpentBudget::kNone;
 }
 
@@ -681,12 +681,12 @@ void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
   }
   if (path.end != PathEnd::kReached) clear(path);
   path.end = PathEnd::kUnreachable;
-  path.obstacle = Obstacle::kNone;
+  path.blocked_by = Blocker::kNone;
   if (path.points.empty()) return;
-  path.obstacle = path::air_obstacle(*data_of(state_->world)->air, state_->body, air,
-                                     path::off_faces(*nearest), goal);
+  path.blocked_by = path::air_blocker(*data_of(state_->world)->air, state_->body, air,
+                                      path::off_faces(*nearest), goal);
   // Air that begins right there and leads nowhere else: only a corner is between.
-  if (path.obstacle == Obstacle::kNone) path.obstacle = Obstacle::kNarrow;
+  if (path.blocked_by == Blocker::kNone) path.blocked_by = Blocker::kNarrow;
 }
 
 // Over the ground, where no avatar can take off.
@@ -707,8 +707,8 @@ void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& f
   // To what comes nearest, if the finder of paths on foot knows it.
   if (end != PathEnd::kReached && !(scratch.is_changed() && end == PathEnd::kUnreachable)) return;
   add_walk(scratch.walk_all, 0, path);
-  path.obstacle =
-      state_->ground_air_links.air_over(ground).empty() ? Obstacle::kLow : Obstacle::kNarrow;
+  path.blocked_by =
+      state_->ground_air_links.air_over(ground).empty() ? Blocker::kLow : Blocker::kNarrow;
 }
 
 Result<AirSummary> air_summary(const World& world) {

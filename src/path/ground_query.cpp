@@ -10,7 +10,7 @@
 #include "core/access.h"
 #include "core/check_class.h"
 #include "core/random.h"
-#include "path/edits/obstacle.h"
+#include "path/edits/blocker.h"
 #include "path/ground/circle_flood.h"
 #include "throng/world.h"
 #include "world/tile_grid.h"
@@ -203,7 +203,7 @@ GroundRay GroundQuery::ray(const Place& from, double dx, double dz) {
   const double sides = std::sqrt(std::abs(stop.toward_x) + std::abs(stop.toward_z));
   result.normal_x = -stop.toward_x / sides;
   result.normal_z = -stop.toward_z / sides;
-  result.obstacle = path::obstacle_beyond(ground, last, stop);
+  result.blocked_by = path::blocker_beyond(ground, last, stop);
   // Where the line meets the border, inside the cell. Rounding may take the line there over
   // another corner than the one to the goal; then less of it is safe.
   const auto along_x = static_cast<double>(goal.x - start.x);

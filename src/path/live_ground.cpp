@@ -7,10 +7,10 @@
 
 #include "core/access.h"
 #include "core/check_class.h"
+#include "path/edits/blocker.h"
 #include "path/edits/live_mesh.h"
 #include "path/edits/live_search.h"
 #include "path/edits/live_state.h"
-#include "path/edits/obstacle.h"
 #include "path/edits/plan_shapes.h"
 #include "path/edits/solid.h"
 #include "path/ground/reset_path.h"
@@ -42,19 +42,19 @@ void LiveGround::State::give(Path& path) {
   path.cost = cost * world.summary.cell;
 }
 
-Obstacle LiveGround::State::blocker() {
+Blocker LiveGround::State::blocker() {
   const path::LiveLevel* level = mesh.level(stops.back().level);
   const world::WalkStop stop =
       world::walk_far(mesh.ground(), level, stops.back().at, to.at, mesh.step());
-  if (stop.arrived) return Obstacle::kGap;  // under or over the goal
+  if (stop.arrived) return Blocker::kGap;  // under or over the goal
   // Obstacles placed since the bake are not in its floors.
   const world::WorldGround baked{mesh.world(), mesh.avatar_class()};
-  const Obstacle found = path::obstacle_beyond(baked, level->ground, stop);
+  const Blocker found = path::blocker_beyond(baked, level->ground, stop);
   const world::GroundLevel& ground = level->ground;
   const bool was_free = world::step_to(baked, ground, stop.x, stop.z, stop.x + stop.toward_x,
                                        stop.z + stop.toward_z, mesh.step())
                             .has_value();
-  return was_free ? Obstacle::kNarrow : found;
+  return was_free ? Blocker::kNarrow : found;
 }
 
 LiveGround::LiveGround(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -181,7 +181,7 @@ bool LiveGround::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& pa
   search.give_back();
   straight.draw(mesh, stops);
   give(path);
-  if (path.end == PathEnd::kUnreachable) path.obstacle = blocker();
+  if (path.end == PathEnd::kUnreachable) path.blocked_by = blocker();
   return true;
 }
 

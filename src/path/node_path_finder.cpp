@@ -8,7 +8,7 @@
 
 #include "core/access.h"
 #include "path/edits/blocked_cells.h"
-#include "path/edits/obstacle.h"
+#include "path/edits/blocker.h"
 #include "path/edits/solid.h"
 #include "path/overlay/overlay_search.h"
 #include "path/surface/block_squares.h"
@@ -279,7 +279,7 @@ uint32_t block_around(const graph::NodeMesh& mesh, uint32_t node, double s, doub
 }
 
 // What blocks the class from a block towards a position.
-Obstacle obstacle_towards(const path::NodeView& view, const path::BlockPoint& from, Vec3d goal) {
+Blocker blocker_towards(const path::NodeView& view, const path::BlockPoint& from, Vec3d goal) {
   const graph::NodeMesh& mesh = view.mesh();
   const graph::NodeBlock& block = view.block(from.block);
   const graph::NodeSurface& surface = view.surface(from.block);
@@ -305,7 +305,7 @@ Obstacle obstacle_towards(const path::NodeView& view, const path::BlockPoint& fr
     // A body could stand there, were it not for an obstacle.
     const uint32_t next = mesh.block_at(block.patch, s, t);
     if (next != graph::kNoNode && view.changes()->part_at(next, s, t) == graph::kNoNode)
-      return Obstacle::kNarrow;
+      return Blocker::kNarrow;
   }
   if (surface.points == nullptr) {
     // What blocks a straight walk, as over level tiles without nodes.
@@ -317,16 +317,16 @@ Obstacle obstacle_towards(const path::NodeView& view, const path::BlockPoint& fr
     const world::WalkStop stop =
         world::walk_far(ground, level, world::to_ground(world, feet.x, feet.z),
                         world::to_ground(world, goal.x, goal.z), world::step_mm(avatar));
-    return stop.arrived ? Obstacle::kGap : path::obstacle_beyond(ground, level, stop);
+    return stop.arrived ? Blocker::kGap : path::blocker_beyond(ground, level, stop);
   }
-  if (outside) return Obstacle::kGap;
+  if (outside) return Blocker::kGap;
   const double limit = avatar.climb_slope > 0 ? avatar.climb_slope : avatar.max_slope;
   const double slope =
       std::acos(std::clamp(surface.normal(s, t).y, -1.0, 1.0)) * 180 / std::numbers::pi;
-  if (slope > limit) return Obstacle::kSteep;
+  if (slope > limit) return Blocker::kSteep;
   // Classes that can stand there show which measure of this one is too large.
   const Nodes& nodes = mesh.nodes();
-  Obstacle found = Obstacle::kNarrow;
+  Blocker found = Blocker::kNarrow;
   for (uint32_t node = block.node; node < nodes.node_count(); ++node) {
     const NodeInfo info = nodes.node(node);
     if (info.kind != PatchKind::kBezier || info.source != surface.source) break;
@@ -338,7 +338,7 @@ Obstacle obstacle_towards(const path::NodeView& view, const path::BlockPoint& fr
     for (size_t c = 0; c < classes.size(); ++c) {
       if ((info.classes >> c & 1) == 0) continue;
       if (classes[c].radius >= avatar.radius && classes[c].height < avatar.height) {
-        found = Obstacle::kLow;
+        found = Blocker::kLow;
       }
     }
   }
@@ -565,7 +565,7 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
   path.links.clear();
   path.corridor.clear();
   path.length = path.cost = path.searched_cost = 0;
-  path.obstacle = Obstacle::kNone;
+  path.blocked_by = Blocker::kNone;
   path.nodes = 0;
   path.spent = SpentBudget::kNone;
   const auto block_of = [&](const NodePlace& place) {
@@ -632,7 +632,7 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& 
     last = scratch.nearest.value_or(
         nearest_place(view, state_->squares, last, to.feet, [](uint32_t) { return false; }));
     path.end = PathEnd::kUnreachable;
-    path.obstacle = obstacle_towards(view, last, to.feet);
+    path.blocked_by = blocker_towards(view, last, to.feet);
   }
   scratch.pull.pull(start, last, scratch.crossings, scratch.pulled);
   PathBuilder path_builder(view, scratch.cost, spacing, path);

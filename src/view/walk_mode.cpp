@@ -113,7 +113,7 @@ double Viewer::State::free_behind(Vec3d feet, int32_t avatar_class) {
   const GroundRay ray =
       ground_query->ray(place, flat * std::sin(rig.yaw), flat * std::cos(rig.yaw));
   // An edge does not block the view.
-  if (ray.arrived || ray.obstacle == Obstacle::kGap) return walk_distance;
+  if (ray.arrived || ray.blocked_by == Blocker::kGap) return walk_distance;
   const double clear = std::hypot(ray.place.position.x - feet.x, ray.place.position.z - feet.z);
   return std::max(kMin, clear / std::max(0.2, std::cos(rig.pitch)));
 }

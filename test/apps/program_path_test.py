@@ -51,7 +51,7 @@ class ProgramPath(ProgramCase):
         done = self.run_throng(*path, "--json")
         self.assertEqual(done.returncode, 1, done.stderr)
         found = json.loads(done.stdout)
-        self.assertEqual((found["end"], found["nearest"]["obstacle"]), ("unreachable", "a wall, or too narrow"))
+        self.assertEqual((found["end"], found["nearest"]["blocked_by"]), ("unreachable", "a wall, or too narrow"))
         self.assertEqual(found["points"][-1], found["nearest"]["place"])
         self.assertGreater(found["nearest"]["distance"], 3)  # Over the roof.
         self.assertLess(found["nearest"]["distance"], 4.5)
@@ -73,12 +73,12 @@ class ProgramPath(ProgramCase):
         self.assertGreater(max(z for _, _, z in around["points"]), 9.2)
         code, shut = path("20,0,8", "--block", "16,0,0,17,2,40")
         self.assertEqual((code, shut["end"]), (1, "unreachable"))
-        self.assertEqual(shut["nearest"]["obstacle"], "a wall, or too narrow")
+        self.assertEqual(shut["nearest"]["blocked_by"], "a wall, or too narrow")
         self.assertLess(shut["points"][-1][0], 16)
         code, link = path("20,0,8", "--block", "16,0,0,17,2,40", "--off-mesh-link", "15,0,8,18,0,8")
         self.assertEqual((code, len(link["off_mesh_links"])), (0, 1))
         code, up = path("30,2.9,30", "--class", "wheelchair")
-        self.assertEqual((code, up["end"], up["nearest"]["obstacle"]), (1, "unreachable", "a gap"))
+        self.assertEqual((code, up["end"], up["nearest"]["blocked_by"]), (1, "unreachable", "a gap"))
         ends = ["path", self.world, "--from", "14,0,8", "--to", "20,0,8"]
         self.assert_refused(self.run_throng(*ends, "--block", "13,0,7,15,2,9"), "--from", "--block")
         self.assert_refused(self.run_throng(*ends, "--block", "13,0,7,13,2,9"), "--block", "opposite corners")

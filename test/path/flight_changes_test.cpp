@@ -240,7 +240,7 @@ std::vector<ChangeId> put_up(FlightFinder& flight, const std::vector<Prism>& pri
 void expect_same(const FlightPath& a, const FlightPath& b) {
   EXPECT_EQ(a.end, b.end);
   EXPECT_EQ(a.length, b.length);
-  EXPECT_EQ(a.obstacle, b.obstacle);
+  EXPECT_EQ(a.blocked_by, b.blocked_by);
   EXPECT_EQ(a.segments, b.segments);
   ASSERT_EQ(a.points.size(), b.points.size());
   for (size_t i = 0; i < a.points.size(); ++i) EXPECT_EQ(length(a.points[i] - b.points[i]), 0);
@@ -334,7 +334,7 @@ TEST(FlightChanges, PathsExistWhereCellsAreConnectedAndNoBodyTouchesAPrism) {
         }
         if (path.end == PathEnd::kUnreachable && a > 0) {
           ASSERT_FALSE(path.points.empty()) << seed << ", " << n;
-          ASSERT_NE(path.obstacle, Obstacle::kNone);
+          ASSERT_NE(path.blocked_by, Blocker::kNone);
           const double far = length(path.points.back() - to);
           ASSERT_LT(far, cells.nearest(a, to) + 0.002) << seed << ", " << n;
           ASSERT_GT(far, cells.nearest(0, to) - 0.002);
@@ -577,7 +577,7 @@ TEST(FlightChanges, ABoxedInGoalIsReportedWithTheNearestPoint) {
   for (const Vec3d from : {Vec3d{3, 3, 4}, Vec3d{3, 0, 4}}) {
     flight.find({.from = from, .to = goal}, path);
     ASSERT_EQ(path.end, PathEnd::kUnreachable);
-    EXPECT_EQ(path.obstacle, Obstacle::kNarrow);
+    EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
     ASSERT_GE(path.points.size(), 2u);
     EXPECT_LT(length(path.points.back() - goal), 3.5);
   }
@@ -636,7 +636,7 @@ TEST(FlightChanges, AWallThroughALargeWorldIsFoundBySearching) {
       flight.find({.from = from, .to = to}, path);
       ASSERT_EQ(path.end, PathEnd::kUnreachable);
       ASSERT_FALSE(path.points.empty());
-      EXPECT_EQ(path.obstacle, Obstacle::kNarrow);
+      EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
       for (const Vec3d& p : path.points) EXPECT_EQ(p.x < 48.3, from.x < 48.3);
       // Beyond the wall it would be nearer; on this side it comes close to it.
       EXPECT_NEAR(path.points.back().x, 48.3, 5);

@@ -257,7 +257,7 @@ TEST(Flight, ReportsHowNearItComesAndTheBlocker) {
   for (const Vec3d here : {Vec3d{3, 2, 4}, Vec3d{3, 0, 6}}) {
     flight.find({.from = here, .to = there}, path);
     ASSERT_EQ(path.end, PathEnd::kUnreachable);
-    EXPECT_EQ(path.obstacle, Obstacle::kNarrow);
+    EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
     ASSERT_GE(path.points.size(), 2u);
     EXPECT_EQ(path.points.size(), path.segments.size() + 1);
     EXPECT_NEAR(length(path.points.front() - here), 0, 0.01);
@@ -287,7 +287,7 @@ TEST(Flight, ReportsHowNearItComesAndTheBlocker) {
   FlightFinder in_cellar = finder(cellar);
   in_cellar.find({.from = {2, 0, 4}, .to = {32, 3, 4}}, path);
   if (path.end == PathEnd::kUnreachable) {
-    EXPECT_EQ(path.obstacle, Obstacle::kLow);
+    EXPECT_EQ(path.blocked_by, Blocker::kLow);
     ASSERT_FALSE(path.points.empty());
     EXPECT_GT(path.points.back().x, 6.5);
     EXPECT_NEAR(path.points.back().y, 0, 0.01);
@@ -317,7 +317,7 @@ TEST(Flight, DistinguishesHolesThatAreTooLowFromTooNarrow) {
     for (const double from : {3.0, 17.0}) {
       flight.find({.from = {from, 2.5, 4}, .to = {20 - from, 2.25, 4}}, path);
       ASSERT_EQ(path.end, PathEnd::kUnreachable);
-      EXPECT_EQ(path.obstacle, is_low ? Obstacle::kLow : Obstacle::kNarrow);
+      EXPECT_EQ(path.blocked_by, is_low ? Blocker::kLow : Blocker::kNarrow);
       ASSERT_FALSE(path.points.empty());
       EXPECT_NEAR(path.points.back().x, from < 10 ? 9.3 : 10.5, 0.8);
     }

@@ -117,7 +117,7 @@ TEST(GroundQuery, RaysEndWhereMovesEnd) {
       const MoveResult move = world.move(0, from, moved.x, moved.z);
       ASSERT_EQ(move.end, MoveEnd::kArrived);
       EXPECT_EQ(move.place.level1, ray.place.level1);
-      EXPECT_EQ(ray.obstacle == Obstacle::kNone, arrives);
+      EXPECT_EQ(ray.blocked_by == Blocker::kNone, arrives);
       if (arrives) continue;
       ++stopped;
       const double whole = std::hypot(dx, dz);
@@ -273,26 +273,26 @@ TEST(GroundQuery, SaysWhatBlocks) {
                          int32_t avatar_class = 0) {
     const Place from = world.find_place(avatar_class, at, 0.5);
     EXPECT_TRUE(from);
-    return query(world, avatar_class).ray(from, dx, dz).obstacle;
+    return query(world, avatar_class).ray(from, dx, dz).blocked_by;
   };
-  EXPECT_EQ(toward(bake(worlds::low_ceiling(1.5), 0.1), {2, 0, 2}, 4, 0), Obstacle::kLow);
-  EXPECT_EQ(toward(bake(worlds::doorway(0.2), 0.1), {2, 0, 3}, 4, 0), Obstacle::kNarrow);
+  EXPECT_EQ(toward(bake(worlds::low_ceiling(1.5), 0.1), {2, 0, 2}, 4, 0), Blocker::kLow);
+  EXPECT_EQ(toward(bake(worlds::doorway(0.2), 0.1), {2, 0, 3}, 4, 0), Blocker::kNarrow);
   // Of a slope that no class of a world climbs, the world knows no more than its first cell.
-  EXPECT_EQ(toward(bake(worlds::ramp(50, 2), 0.1), {1, 0, 1.5}, 4, 0), Obstacle::kSteep);
+  EXPECT_EQ(toward(bake(worlds::ramp(50, 2), 0.1), {1, 0, 1.5}, 4, 0), Blocker::kSteep);
   const std::vector<AvatarClass> classes = {
       {.name = "adult"},
       {.name = "climber", .max_slope = 70},
       {.name = "wheelchair", .height = 1.35, .radius = 0.4, .step = 0.02, .max_slope = 3.44}};
   const World ramp = bake(worlds::ramp(30, 2), 0.1, classes);
-  EXPECT_EQ(toward(ramp, {1, 0, 1.5}, 4, 0, 2), Obstacle::kSteep);
-  EXPECT_EQ(toward(ramp, {6, 1.155, 1.5}, -4, 0, 2), Obstacle::kSteep);
-  EXPECT_EQ(toward(ramp, {1, 0, 1.5}, 4, 0), Obstacle::kNone);
-  EXPECT_EQ(toward(bake(worlds::ramp(60, 2), 0.1, classes), {1, 0, 1.5}, 4, 0), Obstacle::kSteep);
-  EXPECT_EQ(toward(bake(worlds::flat(6), 0.1), {3, 0, 3}, 10, 0), Obstacle::kGap);
-  EXPECT_EQ(toward(bake(worlds::steps(0.5, 1.5, 3), 0.1), {1, 0, 1.5}, 4, 0), Obstacle::kStep);
-  EXPECT_EQ(toward(bake(worlds::two_floors(), 0.1), {9, 3, 4}, -4, 0), Obstacle::kGap);
-  EXPECT_EQ(toward(bake(worlds::doorway(0.9), 0.1), {2, 0, 1}, 4, 0), Obstacle::kNarrow);
-  EXPECT_EQ(toward(bake(worlds::doorway(0.9), 0.1), {2, 0, 3}, 4, 0), Obstacle::kNone);
+  EXPECT_EQ(toward(ramp, {1, 0, 1.5}, 4, 0, 2), Blocker::kSteep);
+  EXPECT_EQ(toward(ramp, {6, 1.155, 1.5}, -4, 0, 2), Blocker::kSteep);
+  EXPECT_EQ(toward(ramp, {1, 0, 1.5}, 4, 0), Blocker::kNone);
+  EXPECT_EQ(toward(bake(worlds::ramp(60, 2), 0.1, classes), {1, 0, 1.5}, 4, 0), Blocker::kSteep);
+  EXPECT_EQ(toward(bake(worlds::flat(6), 0.1), {3, 0, 3}, 10, 0), Blocker::kGap);
+  EXPECT_EQ(toward(bake(worlds::steps(0.5, 1.5, 3), 0.1), {1, 0, 1.5}, 4, 0), Blocker::kStep);
+  EXPECT_EQ(toward(bake(worlds::two_floors(), 0.1), {9, 3, 4}, -4, 0), Blocker::kGap);
+  EXPECT_EQ(toward(bake(worlds::doorway(0.9), 0.1), {2, 0, 1}, 4, 0), Blocker::kNarrow);
+  EXPECT_EQ(toward(bake(worlds::doorway(0.9), 0.1), {2, 0, 3}, 4, 0), Blocker::kNone);
   // A block is a step or a wall from below, however high it is, and a step or a gap from above. (It
   // is hollow: one a bit lower than a body is a low room if no cell of its side is seen.)
   for (const double cell : {0.1, 0.2, 0.25}) {
@@ -301,9 +301,9 @@ TEST(GroundQuery, SaysWhatBlocks) {
       scene.add_box({3.05, 0, 0}, {5.95, height, 8});
       const World block = bake(scene, cell);
       const bool is_step = height < 0.9;
-      EXPECT_EQ(toward(block, {1, 0, 4}, 4, 0), is_step ? Obstacle::kStep : Obstacle::kNarrow)
+      EXPECT_EQ(toward(block, {1, 0, 4}, 4, 0), is_step ? Blocker::kStep : Blocker::kNarrow)
           << cell << ' ' << height;
-      EXPECT_EQ(toward(block, {4.5, height, 4}, 4, 0), is_step ? Obstacle::kStep : Obstacle::kGap)
+      EXPECT_EQ(toward(block, {4.5, height, 4}, 4, 0), is_step ? Blocker::kStep : Blocker::kGap)
           << cell << ' ' << height;
     }
   }
@@ -322,7 +322,7 @@ TEST(GroundQuery, APushFarBeyondTheWorldIsOneToItsRim) {
     for (const double length : {1e4, 1e7, 1e9, 1e12, 1e300}) {
       const GroundRay ray = ask.ray(from, length * dx, length * dz);
       EXPECT_FALSE(ray.arrived);
-      EXPECT_EQ(ray.obstacle, rim.obstacle);
+      EXPECT_EQ(ray.blocked_by, rim.blocked_by);
       EXPECT_LT(::throng::length(ray.place.position - rim.place.position), 1e-3) << length;
       EXPECT_NE(ask.slide(from, length * dx, length * dz).position, from.position);
     }

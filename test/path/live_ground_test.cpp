@@ -205,7 +205,7 @@ TEST(LiveGround, PathsLeadAroundACrateAndStraightAfterItsRemoval) {
   ASSERT_TRUE(door);
   ground.find(from, to, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
-  EXPECT_EQ(path.obstacle, Obstacle::kNarrow);
+  EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
   expect_walkable(world, 0, path);
   EXPECT_NEAR(path.points.back().position.x, 3.7, 0.15);
   ASSERT_TRUE(ground.set_active(*door, false));
@@ -391,10 +391,10 @@ TEST(LiveGround, NothingOfAnOldPathIsLeft) {
   PathFinder finder = exact(world);
   Path path;
   ground.find(at(1, 1), at(7, 5), path);
-  ASSERT_NE(path.obstacle, Obstacle::kNone);
+  ASSERT_NE(path.blocked_by, Blocker::kNone);
   finder.find(at(1, 1), at(2, 5), path);
   ASSERT_EQ(path.end, PathEnd::kReached);
-  EXPECT_EQ(path.obstacle, Obstacle::kNone);
+  EXPECT_EQ(path.blocked_by, Blocker::kNone);
   ASSERT_TRUE(ground.add_off_mesh_link({at(3.5, 3), at(4.5, 3), 1.5, false}));
   ground.find(at(1, 1), at(7, 5), path);
   ASSERT_EQ(path.off_mesh_links.size(), 1u);

@@ -176,7 +176,7 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftFindsTheSame) {
         // As near as the nearest crossing, or nearer in the block that it leads into.
         EXPECT_LE(length(path.points.back().place.feet - to.feet),
                   length(path::position(view, last) - to.feet) + 1e-9);
-        EXPECT_NE(path.obstacle, Obstacle::kNone);
+        EXPECT_NE(path.blocked_by, Blocker::kNone);
       }
     }
   });

@@ -226,7 +226,7 @@ TEST(NodePath, ReportsWhereItEnds) {
   NodePath path;
   found.find(from, to, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
-  EXPECT_EQ(path.obstacle, Obstacle::kGap);
+  EXPECT_EQ(path.blocked_by, Blocker::kGap);
   ASSERT_FALSE(path.points.empty());
   EXPECT_GT(path.points.back().place.feet.x, 5.5);
   EXPECT_LT(path.points.back().place.feet.x, 6);
@@ -235,7 +235,7 @@ TEST(NodePath, ReportsWhereItEnds) {
   for (const double x : {1.0, 4.0}) {
     found.find(from, found.find_place({x, 3, 3}, 0.5), path);
     EXPECT_EQ(path.end, PathEnd::kUnreachable);
-    EXPECT_EQ(path.obstacle, Obstacle::kGap) << x;
+    EXPECT_EQ(path.blocked_by, Blocker::kGap) << x;
   }
   found.find({}, to, path);
   EXPECT_EQ(path.end, PathEnd::kNoPlace);

@@ -158,11 +158,11 @@ void PlainCrowd::steer_all() {
       const PlainBody& other = bodies_[n.other];
       // A body that has arrived yields to others, of which it assumes that they move as preferred.
       const bool yields = body.arrived >= 0 && other.arrived < 0;
-      const auto bound = [](const PlainBody& b, uint32_t slot) {
-        return crowd::Bound{b.at.x, b.at.z, b.goal.x, b.goal.z, b.radius, slot};
+      const auto contender = [](const PlainBody& b, uint32_t slot) {
+        return crowd::Contender{b.at.x, b.at.z, b.goal.x, b.goal.z, b.radius, slot};
       };
       if (body.arrived < 0 && other.arrived < 0 &&
-          goes_first(bound(other, n.other), bound(body, i))) {
+          goes_first(contender(other, n.other), contender(body, i))) {
         waits = true;
         situation.preferred = crowd::preferred_of_waiting(
             config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z), body.speed,

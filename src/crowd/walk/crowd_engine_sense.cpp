@@ -40,7 +40,7 @@ bool leads(Plane apart, Plane preferred, Plane others) {
   return apart.x * preferred.x + apart.z * preferred.z > 0 && same > 0 && 2 * same * same > both;
 }
 
-Bound bound(const Body& body) {
+Contender contender(const Body& body) {
   return {body.x, body.z, body.local_target_x, body.local_target_z, body.radius, body.slot};
 }
 
@@ -138,14 +138,14 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     worker.in_counterflow = worker.in_counterflow ||
                             (other.in_counterflow && leads(apart, body.preferred, other.preferred));
     const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
-    if (may_wait && is_on_last_segment(other) && goes_first(bound(other), bound(body))) {
+    if (may_wait && is_on_last_segment(other) && goes_first(contender(other), contender(body))) {
       worker.waits = true;
       situation.preferred = preferred_of_waiting(
           config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z),
           body.speed, room);
     }
     if (turns && turns_corner(other) &&
-        gives_precedence(bound(other), bound(body), size_of(apart), room,
+        gives_precedence(contender(other), contender(body), size_of(apart), room,
                          size_of(other.velocity) / other.speed)) {
       worker.waits = true;
       const float back = -0.5f * body.speed / size_of(apart);

@@ -10,7 +10,7 @@
 namespace throng::crowd {
 
 /// A body on its last segment, not at its end yet.
-struct Bound {
+struct Contender {
   int32_t x = 0, z = 0;                            // [units]
   int32_t local_target_x = 0, local_target_z = 0;  // [units]
   int32_t radius = 0;                              // [units]
@@ -24,7 +24,7 @@ struct Bound {
 
 /// Must `self` wait for `other`? Their goals cannot hold both, and the other is nearer to its own.
 /// Only near the goal: a column that heads to one place keeps walking.
-inline bool goes_first(const Bound& other, const Bound& self) {
+inline bool goes_first(const Contender& other, const Contender& self) {
   constexpr int64_t kNear = 6;  // times what both need
   const int64_t room = int64_t{other.radius} + self.radius;
   if (!nearer_than(other.local_target_x - self.local_target_x,
@@ -47,7 +47,7 @@ inline steer::Plane preferred_of_waiting(steer::Plane displacement, float speed,
 /// Must `self` step back for `other`, which would turn the same corner first, and stands? `far`,
 /// `room`: between their centres, and the sum of the radii. [m] `speed`: the other's, as a fraction
 /// of its desired speed.
-inline bool gives_precedence(const Bound& other, const Bound& self, float far, float room,
+inline bool gives_precedence(const Contender& other, const Contender& self, float far, float room,
                              float speed) {
   constexpr float kClose = 0.1f;   // [m] between the bodies
   constexpr float kStands = 0.2f;  // of its desired speed

@@ -45,21 +45,21 @@ int32_t free_layers(const world::AirData& air, const world::AirBody& body, int32
 
 }  // namespace
 
-Obstacle air_obstacle(const world::AirData& air, const world::AirBody& body, const AirView& view,
-                      AirPoint from, AirPoint to) {
+Blocker air_blocker(const world::AirData& air, const world::AirBody& body, const AirView& view,
+                    AirPoint from, AirPoint to) {
   constexpr double kStep = 0.25;  // [voxels]
   const AirPoint delta = to - from;
   const double far = air_distance(from, to);
   for (double at = 0; at < far; at += kStep) {
     const AirPoint p = from + (at / far) * delta;
     if (view.box_at(p) != kNoBox) continue;
-    if (view.space().box_at(p) != kNoBox) return Obstacle::kNarrow;  // placed since
+    if (view.space().box_at(p) != kNoBox) return Blocker::kNarrow;  // placed since
     const int32_t layers =
         free_layers(air, body, static_cast<int32_t>(std::floor(p.x)),
                     static_cast<int32_t>(std::floor(p.y)), static_cast<int32_t>(std::floor(p.z)));
-    return layers > 0 ? Obstacle::kLow : Obstacle::kNarrow;
+    return layers > 0 ? Blocker::kLow : Blocker::kNarrow;
   }
-  return Obstacle::kNone;
+  return Blocker::kNone;
 }
 
 FlightEndpoints::FlightEndpoints(const world::WorldData& world, const AirView& air,

@@ -15,8 +15,8 @@ namespace throng::path {
 /// What a body meets first on the straight line from where it may be: kLow where it would fit if it
 /// were less tall, else kNarrow, as where an obstacle was placed; kNone if it meets nothing. Linear
 /// in the voxels on the line.
-[[nodiscard]] Obstacle air_obstacle(const world::AirData& air, const world::AirBody& body,
-                                    const AirView& view, AirPoint from, AirPoint to);
+[[nodiscard]] Blocker air_blocker(const world::AirData& air, const world::AirBody& body,
+                                  const AirView& view, AirPoint from, AirPoint to);
 
 class FlightEndpoints {
  public:

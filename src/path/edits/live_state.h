@@ -20,7 +20,7 @@ struct LiveGround::State {
   /// Of `stops`.
   void give(Path& path);
   /// What a straight line from its end to the goal meets first.
-  Obstacle blocker();
+  Blocker blocker();
 
   path::LiveMesh mesh;
   path::LiveSearch search;

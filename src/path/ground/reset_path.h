@@ -13,7 +13,7 @@ inline void reset(Path& path) {
   path.points.clear();
   path.off_mesh_links.clear();
   path.length = path.cost = 0;
-  path.obstacle = Obstacle::kNone;
+  path.blocked_by = Blocker::kNone;
   path.nodes = 0;
   path.spent = SpentBudget::kNone;
 }

@@ -9,7 +9,7 @@
 namespace throng::path {
 
 /// What stopped a straight walk on `level`.
-Obstacle obstacle_beyond(const world::WorldGround& ground, const world::GroundLevel& level,
-                         const world::WalkStop& stop);
+Blocker blocker_beyond(const world::WorldGround& ground, const world::GroundLevel& level,
+                       const world::WalkStop& stop);
 
 }  // namespace throng::path

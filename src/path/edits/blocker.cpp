@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/edits/obstacle.h"
+#include "path/edits/blocker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -226,33 +226,33 @@ class Surroundings {
 
 }  // namespace
 
-Obstacle obstacle_beyond(const world::WorldGround& ground, const world::GroundLevel& level,
-                         const world::WalkStop& stop) {
+Blocker blocker_beyond(const world::WorldGround& ground, const world::GroundLevel& level,
+                       const world::WalkStop& stop) {
   const int32_t feet = ground.sample(level, world::in_tile(stop.x), world::in_tile(stop.z));
   const AvatarClass& avatar =
       ground.world.summary.classes[static_cast<size_t>(ground.avatar_class)];
   const auto toward = [&](int32_t dx, int32_t dz) {
-    if (dx == 0 && dz == 0) return Obstacle::kNone;
+    if (dx == 0 && dz == 0) return Blocker::kNone;
     const auto floor = nearest_floor(ground, stop.x + dx, stop.z + dz, feet);
     if (floor && floor->is_legal(world::in_tile(stop.x + dx), world::in_tile(stop.z + dz))) {
       const int32_t there =
           ground.sample(*floor, world::in_tile(stop.x + dx), world::in_tile(stop.z + dz));
-      if (std::abs(there - feet) <= world::step_mm(avatar)) return Obstacle::kNone;
+      if (std::abs(there - feet) <= world::step_mm(avatar)) return Blocker::kNone;
     }
     const Around around = Surroundings(ground, stop.x, stop.z, feet).cast_ahead(dx, dz);
-    if (around.low) return Obstacle::kLow;
-    if (around.steep) return Obstacle::kSteep;
-    if (around.step && !around.wall) return Obstacle::kStep;
-    if (around.wall) return Obstacle::kNarrow;
-    if (around.edge) return Obstacle::kGap;
+    if (around.low) return Blocker::kLow;
+    if (around.steep) return Blocker::kSteep;
+    if (around.step && !around.wall) return Blocker::kStep;
+    if (around.wall) return Blocker::kNarrow;
+    if (around.edge) return Blocker::kGap;
     // A floor higher up most likely stands on a solid; and where the floor continues, something
     // stands on it.
-    return around.raised || !around.unknown ? Obstacle::kNarrow : Obstacle::kGap;
+    return around.raised || !around.unknown ? Blocker::kNarrow : Blocker::kGap;
   };
-  Obstacle found = toward(stop.toward_x, 0);
-  if (found == Obstacle::kNone) found = toward(0, stop.toward_z);
-  if (found == Obstacle::kNone) found = toward(stop.toward_x, stop.toward_z);
-  return found == Obstacle::kNone ? Obstacle::kStep : found;
+  Blocker found = toward(stop.toward_x, 0);
+  if (found == Blocker::kNone) found = toward(0, stop.toward_z);
+  if (found == Blocker::kNone) found = toward(stop.toward_x, stop.toward_z);
+  return found == Blocker::kNone ? Blocker::kStep : found;
 }
 
 }  // namespace throng::path

@@ -15,4 +15,15 @@ void add_blocks(CLI::App* command, std::vector<double>& blocks);
 /// The boxes of --block. Fails with kBadInput and a sentence.
 Result<std::vector<Prism>> boxes_of(const std::vector<double>& blocks);
 
+/// Puts the boxes of --block up as obstacles of a finder.
+template <class Finder>
+Result<void> add_boxes(const std::vector<double>& blocks, Finder& finder) {
+  const auto boxes = boxes_of(blocks);
+  if (!boxes) return boxes.error();
+  for (const Prism& box : *boxes) {
+    if (auto added = finder.add_obstacle(box); !added) return added.error();
+  }
+  return {};
+}
+
 }  // namespace throng::app

@@ -35,7 +35,7 @@ Json crates(FlightFinder& finder, int64_t trials, int64_t standing, double away,
   }
   std::vector<double> before, added, after, both, removed;
   int64_t longer = 0, shut = 0;
-  FlightPath path;
+  Path path;
   for (uint64_t n = 0; added.size() < static_cast<size_t>(trials) && n < 100000; ++n) {
     const auto from = finder.random_point(41, n);
     if (!from) stop("there is no air");
@@ -48,12 +48,12 @@ Json crates(FlightFinder& finder, int64_t trials, int64_t standing, double away,
     const double first = milliseconds_since(start);
     if (path.end != PathEnd::kReached || path.length > 2 * away) continue;
     before.push_back(first);
-    Vec3d middle = path.points[0];
+    Vec3d middle = path.points[0].position;
     double left = path.length / 2;
     for (size_t i = 1; i < path.points.size(); ++i) {
-      const Vec3d segment = path.points[i] - path.points[i - 1];
+      const Vec3d segment = path.points[i].position - path.points[i - 1].position;
       if (left <= length(segment)) {
-        middle = path.points[i - 1] + segment * (left / length(segment));
+        middle = path.points[i - 1].position + segment * (left / length(segment));
         break;
       }
       left -= length(segment);

@@ -70,7 +70,7 @@ Json measure(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder,
   std::vector<double> reached_ms, other_ms, search_ms, looked, searched;
   double length_sum = 0, ours = 0, best = 0, worst = 0;
   int differ = 0;
-  NodePath path, shortest;
+  Path path, shortest;
   for (size_t i = 0; i < pairs.size(); ++i) {
     double start = now();
     finder.find(pairs[i].from, pairs[i].to, path);
@@ -121,7 +121,7 @@ Json put_crates(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder
   std::vector<double> before_ms, add_ms, find_ms, both_ms, without_ms;
   double ours = 0, best = 0, worst = 0;
   int shut = 0, differ = 0;
-  NodePath path, shortest;
+  Path path, shortest;
   const auto timed = [](std::vector<double>& list, auto&& call) {
     const double start = now();
     call();
@@ -134,7 +134,7 @@ Json put_crates(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder
     const double before = (now() - start) * 1e3;
     if (path.end != PathEnd::kReached || path.points.size() < 3) continue;
     before_ms.push_back(before);
-    const Vec3d at = path.points[path.points.size() / 2].place.feet;
+    const Vec3d at = path.node_places[path.points.size() / 2].feet;
     const Prism crate =
         Prism::box({at.x - 0.5, at.y, at.z - 0.5}, {at.x + 0.5, at.y + 1, at.z + 0.5});
     ChangeId id = 0;

@@ -68,9 +68,9 @@ double at_share(std::vector<double> values, double share) {
                          static_cast<size_t>(share * static_cast<double>(values.size())))];
 }
 
-bool is_legal(const test::VoxelOracle& oracle, const FlightPath& path) {
+bool is_legal(const test::VoxelOracle& oracle, const Path& path) {
   for (size_t i = 1; i < path.points.size(); ++i) {
-    if (!oracle.is_clear(path.points[i - 1], path.points[i])) return false;
+    if (!oracle.is_clear(path.points[i - 1].position, path.points[i].position)) return false;
   }
   return true;
 }
@@ -115,7 +115,7 @@ Json measure(const Options& options) {
   if (!finder) stop(finder.error().message);
   const test::VoxelOracle oracle(*cells);
   std::vector<Query> queries = read_queries(options.map + ".3dscen");
-  FlightPath path;
+  Path path;
   int reached = 0, longer = 0, illegal = 0;
   double by_published = 0, nodes = 0;
   for (Query& q : queries) {

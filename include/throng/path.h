@@ -103,19 +103,54 @@ enum class PathEnd {
   kBudgetExhausted,  ///< The budget was exhausted: `spent` names the part.
 };
 
-/// A path, or why there is none.
+/// How an avatar moves along a segment of a path.
+enum class SegmentKind : uint8_t {
+  kWalk,     ///< On the ground, or on the surface of one patch, straight by its parameters.
+  kCross,    ///< Over nodes: straight through the air while the axis turns evenly. Over the edge of
+             ///< a patch, where both points are (nearly) the same place by the parameters of two
+             ///< patches; along a link over a hole; or out over an edge and then down.
+  kOffMesh,  ///< Along an off-mesh link of LiveGround.
+  kTakeOff,
+  kFly,
+  kLand,
+};
+
+/// A link that a path uses: it leads from the point before to `point`.
+struct PathLink {
+  uint32_t point = 0;
+  LinkKind kind = LinkKind::kWalk;
+  bool over_hole = false;  ///< Over a hole: between places that do not touch.
+};
+
+/// A path of any finder, or why there is none.
 struct Path {
   PathEnd end = PathEnd::kNoPlace;
-  std::vector<Place> points;  ///< From the start to the goal; each segment is a legal move.
-  double length = 0;          ///< Along the ground's plane. [m]
-  /// Of LiveGround: indices of points that an off-mesh link leads to, not a move.
-  std::vector<uint32_t> off_mesh_links;
-  double cost = 0;  ///< Of LiveGround: metres times their costs.
-  /// Of LiveGround: what blocks the path to an unreachable goal.
+  /// Feet, from the start to the goal. They are places of level ground except over nodes and in the
+  /// air, where `position` alone counts. If the goal is unreachable: to the reached place nearest
+  /// to it (not of PathFinder, which then gives none).
+  std::vector<Place> points;
+  /// Over nodes: the place of each point, with its axis; else empty. In the air above the place of
+  /// a drop it is nowhere, but has feet and axis.
+  std::vector<NodePlace> node_places;
+  std::vector<SegmentKind> segments;  ///< One fewer than the points.
+  std::vector<PathLink> links;        ///< Over nodes and off-mesh links, in order of their points.
+  std::vector<uint32_t> corridor;     ///< Over nodes: those from the start's to the goal's.
+  /// Of all segments; along the ground's plane where a path is only on foot. [m]
+  double length = 0;
+  double cost = 0;  ///< Metres times their costs.
+  /// Over nodes: cost of the search's path over crossings, before string pulling.
+  double searched_cost = 0;
+  /// What blocks the path to an unreachable goal, at its last point.
   Blocker blocked_by = Blocker::kNone;
-  uint64_t nodes = 0;  ///< Intervals that the search expanded; 0 with labels.
-  /// Which part of the budget was exhausted, if one was.
-  SpentBudget spent = SpentBudget::kNone;
+  /// What the search expanded: intervals (0 with labels), points, air boxes, or crossings and
+  /// boundary nodes of overlay cells.
+  uint64_t nodes = 0;
+  SpentBudget spent = SpentBudget::kNone;  ///< Which part of the budget was exhausted, if one was.
+
+  /// From the feet to the head at a point. [unit]
+  [[nodiscard]] Vec3d up(size_t point) const {
+    return node_places.empty() ? Vec3d{0, 1, 0} : node_places[point].axis;
+  }
 };
 
 /// Sizes of a PathFinder.
@@ -226,7 +261,7 @@ class THRONG_API LiveGround {
   /// Finds a path of low cost; each segment is a legal move. The search goes over points on the
   /// borders of rectangles, and the path is pulled taut afterwards: on average within 1 % of the
   /// best. If no path leads to the goal (kUnreachable), `path` leads to the reached place nearest
-  /// to it, and Path::obstacle says what blocks it. Stops when the budget of points or memory is
+  /// to it, and Path::blocked_by says what blocks it. Stops when the budget of points or memory is
   /// exhausted (Path::spent). No allocation once it is warm.
   void find(const Place& from, const Place& to, Path& path, const SearchBudget& budget = {});
   /// The same search in parts: call begin, then advance with some points per frame until it returns
@@ -265,9 +300,6 @@ struct FlightConfig {
   int32_t workers = 0;       ///< Threads for making the finder, 0 for all cores.
 };
 
-/// How an avatar moves along a segment of a path.
-enum class SegmentKind : uint8_t { kWalk, kTakeOff, kFly, kLand };
-
 /// Input of FlightFinder::find.
 struct FlightQuery {
   /// Feet. In the air, or on the ground within `vertical_tolerance` above or below. [m]
@@ -284,21 +316,6 @@ struct FlightQuery {
   /// If no path leads to the goal, find the path to the point that comes nearest. Linear in the air
   /// boxes.
   bool nearest = true;
-};
-
-/// A path through the air and over the ground, or why there is none.
-struct FlightPath {
-  PathEnd end = PathEnd::kNoPlace;
-  /// Feet, from the start to the goal. If the goal is unreachable: to the nearest point of the air,
-  /// or of the ground where the avatar cannot take off. [m]
-  std::vector<Vec3d> points;
-  std::vector<SegmentKind> segments;  ///< One fewer than the points.
-  double length = 0;                  ///< Of all segments. [m]
-  /// What blocks the straight line on to an unreachable goal: kLow where a lower body would pass,
-  /// or where the avatar cannot take off, else kNarrow.
-  Blocker blocked_by = Blocker::kNone;
-  uint64_t nodes = 0;                      ///< Air boxes that the search expanded.
-  SpentBudget spent = SpentBudget::kNone;  ///< Which part of the budget was exhausted, if one was.
 };
 
 /// Sizes of a FlightFinder.
@@ -328,8 +345,11 @@ class THRONG_API FlightFinder {
   /// where it can. If the air at the start is connected with the air at the goal only over the
   /// ground, the path lands and walks in between, as few times as possible, by the first place
   /// found on each ground. The whole body passes everywhere. Paths through the air are taut, but
-  /// not always the shortest (docs/results.md). `path` is reused: its memory stays.
-  void find(const FlightQuery& query, FlightPath& path);
+  /// not always the shortest (docs/results.md). An unreachable goal is approached to the nearest
+  /// point of the air, or of the ground where the avatar cannot take off; Path::blocked_by is kLow
+  /// where a lower body would pass, or where the avatar cannot take off, else kNarrow. `path` is
+  /// reused: its memory stays.
+  void find(const FlightQuery& query, Path& path);
 
   /// Puts up an obstacle: no path leads where the body could touch the prism; on the ground, as in
   /// LiveGround, the body counts from body_bottom() up. A start or goal inside is no place. Fails
@@ -367,11 +387,11 @@ class THRONG_API FlightFinder {
   explicit FlightFinder(std::shared_ptr<const Shared> shared);
 
   bool locate(Vec3d at, double vertical_tolerance, End& end) const;
-  void find_flight(const FlightQuery& query, FlightPath& path);
-  void find_by_turns(const FlightQuery& query, FlightPath& path);
-  size_t follow_route(const FlightQuery& query, const End& from, const End& to, FlightPath& path);
-  void find_nearest(const FlightQuery& query, FlightPath& path);
-  void find_nearest_on_foot(const FlightQuery& query, const Place& from, FlightPath& path);
+  void find_flight(const FlightQuery& query, Path& path);
+  void find_by_turns(const FlightQuery& query, Path& path);
+  size_t follow_route(const FlightQuery& query, const End& from, const End& to, Path& path);
+  void find_nearest(const FlightQuery& query, Path& path);
+  void find_nearest_on_foot(const FlightQuery& query, const Place& from, Path& path);
   PathEnd walk(const FlightQuery& query, const Place& from, const Place& to, Path& path);
 
   std::shared_ptr<const Shared> state_;
@@ -393,44 +413,6 @@ struct NodePathConfig {
   /// Making it takes as long as a few searches of the whole world.
   bool overlay = true;
   int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores.
-};
-
-/// A point of a path, and how the body moves to it from the point before.
-struct NodePathPoint {
-  /// In its node, which also holds the next point if that is reached on the surface. In the air
-  /// above the place of a drop it is nowhere, but has feet and axis.
-  NodePlace place;
-  /// True: on the surface, straight by the parameters of the last point's patch, whose node holds
-  /// both points. False: the feet move straight through the air, and the axis turns evenly: over
-  /// the edge of a patch, where both points are (nearly) the same place by the parameters of two
-  /// patches; along a link over a hole; or out over an edge and then down.
-  bool on_surface = true;
-};
-
-/// A link that a path uses: it leads from another node to `point`.
-struct NodePathLink {
-  uint32_t point = 0;
-  LinkKind kind = LinkKind::kWalk;
-  bool over_hole = false;  ///< Over a hole: between places that do not touch.
-};
-
-/// A path over nodes, or why there is none.
-struct NodePath {
-  PathEnd end = PathEnd::kNoPlace;
-  std::vector<NodePathPoint> points;
-  std::vector<NodePathLink> links;  ///< In order of their points.
-  std::vector<uint32_t> corridor;   ///< Nodes from the start's to the goal's.
-  double length = 0;                ///< Of the line through the points. [m]
-  double cost = 0;                  ///< Metres times their costs.
-  /// Cost of the search's path over crossings, before string pulling.
-  double searched_cost = 0;
-  /// What blocks the path to an unreachable goal. Then `points` lead to the nearest reachable
-  /// place, in three dimensions; if that is more than 25 m from the goal, or obstacles are up, to
-  /// the nearest place in the block whose border comes nearest.
-  Blocker blocked_by = Blocker::kNone;
-  /// Crossings, and boundary nodes of overlay cells, that the search expanded.
-  uint64_t nodes = 0;
-  SpentBudget spent = SpentBudget::kNone;  ///< Which part of the budget was exhausted, if one was.
 };
 
 /// Sizes of a NodePathFinder.
@@ -474,8 +456,10 @@ class THRONG_API NodePathFinder {
   /// Finds a path of low cost: A* over the middles of the lines along which nodes touch, or over
   /// the overlay if the path is long, then string pulling within the nodes of the corridor.
   /// `spacing` is the largest distance between points of the path on curved ground. [m, > 0] `path`
-  /// is reused: its memory stays. Stops when the budget is exhausted.
-  void find(const NodePlace& from, const NodePlace& to, NodePath& path, double spacing = 0.25,
+  /// is reused: its memory stays. Stops when the budget is exhausted. A path to an unreachable goal
+  /// leads to the nearest reachable place, in three dimensions; if that is more than 25 m from the
+  /// goal, or obstacles are up, to the nearest place in the block whose border comes nearest.
+  void find(const NodePlace& from, const NodePlace& to, Path& path, double spacing = 0.25,
             const SearchBudget& budget = {});
 
   /// Puts up an obstacle: no path leads where the body could touch the prism, whatever its axis.

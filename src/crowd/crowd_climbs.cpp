@@ -27,27 +27,40 @@ constexpr double kRoomy = 2;               // [m] of a node in which a body can 
 constexpr double kSearchMargin = 1;        // [m] more than a square of a node
 constexpr uint64_t kFew = 8000;            // crossings that a search for a detour may expand
 
-crowd::ClimbPoint point_of(const NodePathPoint& point, bool drops) {
+crowd::ClimbPoint point_of(const Path& path, size_t i, bool drops) {
+  const NodePlace& place = path.node_places[i];
+  const bool on_surface = i == 0 || path.segments[i - 1] == SegmentKind::kWalk;
   crowd::ClimbPoint made;
-  made.node1 = point.place.node1;
-  made.s = made.node1 != 0 ? point.place.s : point.place.feet.y;
-  made.t = made.node1 != 0 ? point.place.t : 0;
-  made.on_surface = point.on_surface && made.node1 != 0 ? 1 : 0;
+  made.node1 = place.node1;
+  made.s = made.node1 != 0 ? place.s : place.feet.y;
+  made.t = made.node1 != 0 ? place.t : 0;
+  made.on_surface = on_surface && made.node1 != 0 ? 1 : 0;
   made.drops = drops ? 1 : 0;
   return made;
 }
 
+// One segment over one node, or only its start if there is no end.
+void set_segment(Path& path, const NodePlace& from, const NodePlace& to) {
+  path.points.assign(1, {from.feet});
+  path.node_places.assign(1, from);
+  path.segments.clear();
+  if (!to) return;
+  path.points.push_back({to.feet});
+  path.node_places.push_back(to);
+  path.segments.push_back(SegmentKind::kWalk);
+}
+
 // Where the rest of a path leads that does not fit: without its end, which is the goal.
-void set_stations(crowd::Climb& climb, const NodePath& path) {
+void set_stations(crowd::Climb& climb, const Path& path) {
   climb.station = climb.station_count = 0;
   const size_t first = climb.count, all = path.points.size();
   size_t next = first;
   for (size_t k = 0; k < crowd::Climb::kStations; ++k) {
     size_t i =
         std::max(next, first + (all - 1 - std::min(first, all - 1)) * k / crowd::Climb::kStations);
-    while (i < all && !path.points[i].place) ++i;
+    while (i < all && !path.node_places[i]) ++i;
     if (i + 1 >= all) return;
-    climb.stations[climb.station_count++] = point_of(path.points[i], false);
+    climb.stations[climb.station_count++] = point_of(path, i, false);
     next = i + 1;
   }
 }
@@ -67,13 +80,13 @@ void clear_path(crowd::Climb& climb) {
 }  // namespace
 
 // As much of a path as fits: it ends on the ground.
-void Crowd::State::take_path(crowd::Climb& climb, const NodePath& path) {
+void Crowd::State::take_path(crowd::Climb& climb, const Path& path) {
   const size_t all = path.points.size();
   size_t count = std::min(all, crowd::Climb::kPoints);
-  while (count > 0 && !path.points[count - 1].place) --count;
+  while (count > 0 && !path.node_places[count - 1]) --count;
   for (size_t i = 0; i < count; ++i) {
-    const bool falls = !path.points[i].place || (i > 0 && !path.points[i - 1].place);
-    climb.points[i] = point_of(path.points[i], falls);
+    const bool falls = !path.node_places[i] || (i > 0 && !path.node_places[i - 1]);
+    climb.points[i] = point_of(path, i, falls);
   }
   climb.count = static_cast<uint8_t>(count);
   climb.whole = count == all ? 1 : 0;
@@ -213,7 +226,7 @@ void Crowd::State::turn_aside(crowd::Body& body, crowd::Climb& climb, int32_t wo
   body.clear(crowd::Body::kNeedsPath);
   const NodePlace from =
       config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
-  NodePath& path = parts.node_paths[w];
+  Path& path = parts.node_paths[w];
   path.points.clear();
   // Either to a random place of the graph, or to one of the same node.
   const NodeInfo info = config.nodes.node(climb.at.node1 - 1);
@@ -237,9 +250,7 @@ void Crowd::State::turn_aside(crowd::Body& body, crowd::Climb& climb, int32_t wo
     const NodePlace to = config.nodes.place(body.avatar_class, climb.at.node1 - 1,
                                             within(square.s0, square.s1, 2 * sub_step),
                                             within(square.t0, square.t1, 2 * sub_step + 1));
-    path.points.clear();
-    path.points.push_back({.place = from, .on_surface = true});
-    if (to) path.points.push_back({.place = to, .on_surface = true});
+    set_segment(path, from, to);
   }
   take_path(climb, path);
   climb.whole = 0;
@@ -256,10 +267,8 @@ bool Crowd::State::step_aside(crowd::Body& body, crowd::Climb& climb, int32_t wo
   if (obstacles.all().empty() || !from) return false;
   const NodePlace to = parts.node_finders[w].find_place(climb.feet, beside);
   if (to.node1 != from.node1 || to.feet == from.feet) return false;
-  NodePath& path = parts.node_paths[w];
-  path.points.clear();
-  path.points.push_back({.place = from, .on_surface = true});
-  path.points.push_back({.place = to, .on_surface = true});
+  Path& path = parts.node_paths[w];
+  set_segment(path, from, to);
   take_path(climb, path);
   climb.whole = 0;
   body.clear(crowd::Body::kNeedsPath);
@@ -281,7 +290,7 @@ void Crowd::State::control_climber(const crowd::Body& body, crowd::Climb& climb,
   const NodePlace from =
       config.nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);
   if (!to || !from) return clear_path(climb);
-  NodePath& path = parts.node_paths[w];
+  Path& path = parts.node_paths[w];
   parts.node_finders[w].find(from, to, path, kNoSpacing, search_budget(kFew));
   // A long detour does not lead in the direction that it is given.
   if (path.end != PathEnd::kReached || path.length > 3 * far) return clear_path(climb);
@@ -312,7 +321,7 @@ void Crowd::State::plan_climb(crowd::Body& body, crowd::Climb& climb, int32_t wo
   if (body.target != 0) head_to_target_place(body, climb);
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
-  NodePath& path = parts.node_paths[w];
+  Path& path = parts.node_paths[w];
   path.end = PathEnd::kNoPlace;
   const Nodes& nodes = config.nodes;
   const NodePlace from = nodes.place(body.avatar_class, climb.at.node1 - 1, climb.at.s, climb.at.t);

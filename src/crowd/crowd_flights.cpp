@@ -170,7 +170,7 @@ bool Crowd::State::plan_on_foot(crowd::Body& body, crowd::Flight& flight, int32_
   }
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
-  FlightPath& path = parts.flights[w];
+  Path& path = parts.flights[w];
   parts.flight_finders[w].find({.from = parts.air->metres(feet_of(body)),
                                 .to = parts.air->metres(flight.goal),
                                 .vertical_tolerance = kGroundRadius,
@@ -193,7 +193,7 @@ bool Crowd::State::plan_on_foot(crowd::Body& body, crowd::Flight& flight, int32_
     return true;
   }
   const Place ground_air_link =
-      world.find_place(body.avatar_class, path.points[walked], kGroundRadius);
+      world.find_place(body.avatar_class, path.points[walked].position, kGroundRadius);
   if (!ground_air_link) return false;
   routes[body.slot].goal = crowd::point_of(*data_of(world), ground_air_link);
   flight.to_link = 1;
@@ -289,7 +289,7 @@ bool Crowd::State::find_flight(const crowd::Body& body, crowd::Flight& flight,
   }
   if (config.routing == Routing::kStraight) return false;
   const auto w = static_cast<size_t>(worker);
-  FlightPath& path = parts.flights[w];
+  Path& path = parts.flights[w];
   const auto find = [&](const crowd::AirPosition& begin, const crowd::AirPosition& end) {
     parts.flight_finders[w].find({.from = air.metres(begin),
                                   .to = air.metres(end),
@@ -315,7 +315,8 @@ bool Crowd::State::find_flight(const crowd::Body& body, crowd::Flight& flight,
     // The path on foot after the landing is searched for then.
     bool walks_then = false;
     for (size_t i = 0; i < path.segments.size() && !walks_then; ++i) {
-      if (path.segments[i] == SegmentKind::kFly) points.push_back(air.position(path.points[i + 1]));
+      if (path.segments[i] == SegmentKind::kFly)
+        points.push_back(air.position(path.points[i + 1].position));
       walks_then = path.segments[i] == SegmentKind::kLand;
     }
     if (end && !lands) points.push_back(to);

@@ -313,7 +313,7 @@ bool Crowd::State::find_exit_over_nodes(crowd::Body& body, crowd::Climb& climb, 
       if (is_in) finder.set_active(obstacle.of_class[body.avatar_class].node_change, !lets);
     }
   };
-  NodePath& path = parts.node_paths[w];
+  Path& path = parts.node_paths[w];
   let_through(true);
   finder.find(from, to, path, kNoSpacing, kMaxExitNodes);
   let_through(false);

@@ -53,11 +53,11 @@ struct ClassParts {
   // Of a class that flies, in a world with air.
   std::optional<crowd::FlyerAir> air;
   std::vector<FlightFinder> flight_finders;  // one a worker
-  std::vector<FlightPath> flights;
+  std::vector<Path> flights;
   // Of a class of climbers.
   std::optional<crowd::ClimberGround> nodes;
   std::vector<NodePathFinder> node_finders;  // one a worker
-  std::vector<NodePath> node_paths;
+  std::vector<Path> node_paths;
   // Of flyers and climbers, by target: where to land, or to climb to.
   std::vector<std::vector<Place>> landings;
 };
@@ -237,7 +237,7 @@ struct Crowd::State {
   [[nodiscard]] bool is_sound_climb(const crowd::Body& body) const;
   [[nodiscard]] uint64_t count_off_nodes() const;
   [[nodiscard]] uint64_t count_climbers_inside() const;
-  static void take_path(crowd::Climb& climb, const NodePath& path);
+  static void take_path(crowd::Climb& climb, const Path& path);
   bool step_aside(crowd::Body& body, crowd::Climb& climb, int32_t worker, double beside);
   void cut_climbs(std::span<const uint32_t> slots);
 };

@@ -37,30 +37,29 @@ double distance(Vec3d a, Vec3d b) {
   return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
 }
 
-void clear(FlightPath& path) {
-  path.end = PathEnd::kNoPlace;
-  path.points.clear();
-  path.segments.clear();
-  path.length = 0;
-  path.blocked_by = Blocker::kNone;
-  path.spent = SpentBudget::kNone;
+// All but the nodes, which count what all parts of a search expand.
+void clear(Path& path) {
+  const uint64_t nodes = path.nodes;
+  path::reset(path);
+  path.nodes = nodes;
 }
 
 SearchBudget budget_of(const FlightQuery& query) {
   return {query.max_nodes, query.cancel, query.max_bytes};
 }
 
-void add(Vec3d point, SegmentKind kind, FlightPath& path) {
+void add(Vec3d point, SegmentKind kind, Path& path) {
   if (!path.points.empty()) {
-    path.length += distance(path.points.back(), point);
+    path.length += distance(path.points.back().position, point);
     path.segments.push_back(kind);
   }
-  path.points.push_back(point);
+  path.points.push_back({point});
 }
 
-void add_walk(const Path& ground, size_t first, FlightPath& path) {
+void add_walk(const Path& ground, size_t first, Path& path) {
   for (size_t i = first; i < ground.points.size(); ++i) {
     add(ground.points[i].position, SegmentKind::kWalk, path);
+    path.points.back() = ground.points[i];
   }
 }
 
@@ -378,7 +377,7 @@ Place FlightFinder::landing(Vec3d feet) const {
   return ends.best_landing(ends.lowest_box(*point));
 }
 
-void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
+void FlightFinder::find(const FlightQuery& query, Path& path) {
   scratch_->spent = SpentBudget::kNodes;
   find_flight(query, path);
   if (query.by_turns && path.end == PathEnd::kUnreachable) find_by_turns(query, path);
@@ -387,6 +386,7 @@ void FlightFinder::find(const FlightQuery& query, FlightPath& path) {
     const bool stopped = query.cancel != nullptr && *query.cancel;
     path.spent = stopped ? SpentBudget::kCancelled : scratch_->spent;
   }
+  path.cost = path.length;
   scratch_->search.give_back();
 }
 
@@ -417,7 +417,7 @@ PathEnd FlightFinder::walk(const FlightQuery& query, const Place& from, const Pl
 }
 
 // One flight, or a walk.
-void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
+void FlightFinder::find_flight(const FlightQuery& query, Path& path) {
   Scratch& scratch = *scratch_;
   const path::AirView air = scratch.air(*state_);
   const path::FlightEndpoints ends = state_->ends(air);
@@ -512,7 +512,7 @@ void FlightFinder::find_flight(const FlightQuery& query, FlightPath& path) {
 // the place nearest to where the path stands, or to the goal, else at the one that is known of the
 // two. Parts are those of the world as it was baked: where an obstacle blocks the path from one to
 // the next, another path that does without that pair is searched for.
-void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
+void FlightFinder::find_by_turns(const FlightQuery& query, Path& path) {
   Scratch& scratch = *scratch_;
   End from, to;
   if (!locate(query.from, query.vertical_tolerance, from) ||
@@ -549,7 +549,7 @@ void FlightFinder::find_by_turns(const FlightQuery& query, FlightPath& path) {
 
 // If it does not lead on: the place in the route of the part that it did not reach.
 size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, const End& to,
-                                  FlightPath& path) {
+                                  Path& path) {
   Scratch& scratch = *scratch_;
   const path::AirView view = scratch.air(*state_);
   const path::FlightEndpoints ends = state_->ends(view);
@@ -637,7 +637,7 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
 
 // To the point of all reachable air that is nearest to the goal; if no avatar can take off from the
 // ground, of the ground: there, of each rectangle, the cell that is nearest in the plane.
-void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
+void FlightFinder::find_nearest(const FlightQuery& query, Path& path) {
   Scratch& scratch = *scratch_;
   const path::AirView air = scratch.air(*state_);
   const path::FlightEndpoints ends = state_->ends(air);
@@ -690,8 +690,7 @@ void FlightFinder::find_nearest(const FlightQuery& query, FlightPath& path) {
 }
 
 // Over the ground, where no avatar can take off.
-void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& from,
-                                        FlightPath& path) {
+void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& from, Path& path) {
   Scratch& scratch = *scratch_;
   clear(path);
   path.end = PathEnd::kUnreachable;

@@ -36,7 +36,9 @@ void LiveGround::State::give(Path& path) {
     if (i == 0) continue;
     length += path::distance_of(stops[i - 1].at, stops[i].at);
     cost += path::cost_to(mesh, stops[i - 1], stops[i]);
-    if (stops[i].off_mesh_link > 0) path.off_mesh_links.push_back(static_cast<uint32_t>(i));
+    const bool is_off_mesh = stops[i].off_mesh_link > 0;
+    path.segments.push_back(is_off_mesh ? SegmentKind::kOffMesh : SegmentKind::kWalk);
+    if (is_off_mesh) path.links.push_back({static_cast<uint32_t>(i), LinkKind::kOffMesh});
   }
   path.length = length * world.summary.cell;
   path.cost = cost * world.summary.cell;

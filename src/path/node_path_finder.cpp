@@ -10,6 +10,7 @@
 #include "path/edits/blocked_cells.h"
 #include "path/edits/blocker.h"
 #include "path/edits/solid.h"
+#include "path/ground/reset_path.h"
 #include "path/overlay/overlay_search.h"
 #include "path/surface/block_squares.h"
 #include "path/surface/node_changes.h"
@@ -102,16 +103,16 @@ struct NodePathFinder::Scratch {
     far_search.update();
   }
   PathEnd find(const path::BlockPoint& from, const path::BlockPoint& to, const SearchBudget& budget,
-               NodePath& path);
+               Path& path);
   PathEnd find_all(const path::BlockPoint& from, const path::BlockPoint& to,
-                   const SearchBudget& budget, NodePath& path);
+                   const SearchBudget& budget, Path& path);
   PathEnd find_nearest(const path::BlockPoint& from, const path::BlockPoint& to,
-                       const SearchBudget& budget, NodePath& path);
+                       const SearchBudget& budget, Path& path);
 };
 
 namespace {
 
-SearchBudget what_is_left(const SearchBudget& budget, const NodePath& path) {
+SearchBudget what_is_left(const SearchBudget& budget, const Path& path) {
   return budget.after(path.nodes);
 }
 
@@ -119,7 +120,7 @@ SearchBudget what_is_left(const SearchBudget& budget, const NodePath& path) {
 
 // Over crossings nearby if the ends are near, else over the overlay; if that finds none, over all.
 PathEnd NodePathFinder::Scratch::find(const path::BlockPoint& from, const path::BlockPoint& to,
-                                      const SearchBudget& budget, NodePath& path) {
+                                      const SearchBudget& budget, Path& path) {
   const auto take = [&](auto&& searched, PathEnd end) {
     path.nodes += searched.expanded();
     path.searched_cost = searched.cost();
@@ -143,7 +144,7 @@ PathEnd NodePathFinder::Scratch::find(const path::BlockPoint& from, const path::
 
 // Of all crossings; where none leads there, to the one that comes nearest.
 PathEnd NodePathFinder::Scratch::find_all(const path::BlockPoint& from, const path::BlockPoint& to,
-                                          const SearchBudget& budget, NodePath& path) {
+                                          const SearchBudget& budget, Path& path) {
   const PathEnd end = search.find(from, to, what_is_left(budget, path), crossings);
   path.nodes += search.expanded();
   path.searched_cost = search.cost();
@@ -154,7 +155,7 @@ PathEnd NodePathFinder::Scratch::find_all(const path::BlockPoint& from, const pa
 // be cut off.
 PathEnd NodePathFinder::Scratch::find_nearest(const path::BlockPoint& from,
                                               const path::BlockPoint& to,
-                                              const SearchBudget& budget, NodePath& path) {
+                                              const SearchBudget& budget, Path& path) {
   constexpr int kMaxPockets = 16;
   const Vec3d goal = path::position(view, to);
   if (islands.close(view, from.block, to.block, path::NodeIsland::Direction::kOut))
@@ -176,12 +177,11 @@ namespace {
 // Builds the path that is returned: points along the surface, links, corridor.
 class PathBuilder {
  public:
-  PathBuilder(const path::NodeView& view, const path::PieceCost& cost, double spacing,
-              NodePath& path)
+  PathBuilder(const path::NodeView& view, const path::PieceCost& cost, double spacing, Path& path)
       : view_(view), cost_(cost), spacing_(spacing), path_(path) {}
 
   void begin(const path::BlockPoint& at) {
-    add(at, true);
+    add(at, SegmentKind::kWalk);
     last_ = at;
     path_.corridor.push_back(node_of(at));
   }
@@ -192,7 +192,7 @@ class PathBuilder {
       last_ = to;
       return;
     }
-    const Vec3d from_at = path_.points.back().place.feet;
+    const Vec3d from_at = path_.points.back().position;
     const graph::NodeSurface& surface = view_.surface(to.block);
     const Vec3d to_at = surface.at(to.s, to.t);
     const auto piece = cost_(last_.block, last_.s, last_.t, from_at, to.s, to.t, to_at);
@@ -202,14 +202,17 @@ class PathBuilder {
     for (size_t k = 1; k <= parts; ++k) {
       const double f = static_cast<double>(k) / static_cast<double>(parts);
       const auto along = [&](double a, double b) { return k == parts ? b : a + (b - a) * f; };
-      add({to.block, along(last_.s, to.s), along(last_.t, to.t)}, true);
+      add({to.block, along(last_.s, to.s), along(last_.t, to.t)}, SegmentKind::kWalk);
     }
     last_ = to;
   }
 
   // A path of length 0 has two ends, too.
   void end() {
-    if (path_.points.size() == 1) path_.points.push_back(path_.points.front());
+    if (path_.points.size() != 1) return;
+    path_.points.push_back(path_.points.front());
+    path_.node_places.push_back(path_.node_places.front());
+    path_.segments.push_back(SegmentKind::kWalk);
   }
 
   void cross(const path::PulledCrossing& crossing) {
@@ -219,10 +222,10 @@ class PathBuilder {
         view_.block(crossing.out.block).patch == view_.block(crossing.in.block).patch;
     if (same_patch && !portal.over_hole) {
       // One point of both blocks: it becomes the next one's.
-      path_.points.back().place.node1 = node_of(crossing.in) + 1;
+      path_.node_places.back().node1 = node_of(crossing.in) + 1;
     } else {
       if (portal.kind == LinkKind::kDrop) add_over(crossing.in_at);
-      add(crossing.in, false);
+      add(crossing.in, SegmentKind::kCross);
     }
     last_ = crossing.in;
     if (portal.inside) return;
@@ -238,27 +241,30 @@ class PathBuilder {
 
   // Level with the last point, above where the body drops to.
   void add_over(Vec3d to) {
-    const Vec3d last = path_.points.back().place.feet, feet{to.x, last.y, to.z}, up{0, 1, 0};
+    const Vec3d last = path_.points.back().position, feet{to.x, last.y, to.z}, up{0, 1, 0};
     path_.length += length(feet - last);
-    path_.points.push_back(
-        {.place = {.feet = feet, .axis = up, .normal = up}, .on_surface = false});
+    put({.feet = feet, .axis = up, .normal = up}, SegmentKind::kCross);
   }
 
-  void add(const path::BlockPoint& at, bool on_surface) {
+  void add(const path::BlockPoint& at, SegmentKind kind) {
     const graph::NodeSurface& surface = view_.surface(at.block);
     const auto& classes = data_of(data_of(view_.mesh().nodes())->world)->summary.classes;
     const bool climbs = classes[static_cast<size_t>(view_.mesh().avatar_class())].climb_slope > 0;
     const Vec3d normal = surface.normal(at.s, at.t), feet = surface.at(at.s, at.t);
-    if (!path_.points.empty()) path_.length += length(feet - path_.points.back().place.feet);
-    path_.points.push_back(
-        {.place = {node_of(at) + 1, feet, climbs ? normal : Vec3d{0, 1, 0}, normal, at.s, at.t},
-         .on_surface = on_surface});
+    if (!path_.points.empty()) path_.length += length(feet - path_.points.back().position);
+    put({node_of(at) + 1, feet, climbs ? normal : Vec3d{0, 1, 0}, normal, at.s, at.t}, kind);
+  }
+
+  void put(const NodePlace& place, SegmentKind kind) {
+    if (!path_.points.empty()) path_.segments.push_back(kind);
+    path_.points.push_back({place.feet});
+    path_.node_places.push_back(place);
   }
 
   const path::NodeView& view_;
   const path::PieceCost& cost_;
   double spacing_;
-  NodePath& path_;
+  Path& path_;
   path::BlockPoint last_;
 };
 
@@ -556,18 +562,11 @@ bool NodePathFinder::set_active(ChangeId change, bool active) {
   return scratch_->changes.set_active(change, active, false);
 }
 
-void NodePathFinder::find(const NodePlace& from, const NodePlace& to, NodePath& path,
-                          double spacing, const SearchBudget& budget) {
+void NodePathFinder::find(const NodePlace& from, const NodePlace& to, Path& path, double spacing,
+                          const SearchBudget& budget) {
   THRONG_ASSERT(spacing > 0);
   const graph::NodeMesh& mesh = state_->mesh;
-  path.end = PathEnd::kNoPlace;
-  path.points.clear();
-  path.links.clear();
-  path.corridor.clear();
-  path.length = path.cost = path.searched_cost = 0;
-  path.blocked_by = Blocker::kNone;
-  path.nodes = 0;
-  path.spent = SpentBudget::kNone;
+  path::reset(path);
   const auto block_of = [&](const NodePlace& place) {
     path::BlockPoint at{graph::kNoNode, place.s, place.t};
     if (!place || place.node1 > mesh.nodes().node_count()) return at;

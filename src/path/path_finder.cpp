@@ -178,8 +178,9 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, const Sear
     return;
   }
   path.end = PathEnd::kReached;
-  path.length = length * world.summary.cell;
+  path.length = path.cost = length * world.summary.cell;
   add_places(world, mesh, scratch_->stops, scratch_->views, path);
+  path.segments.assign(path.points.size() - 1, SegmentKind::kWalk);
 }
 
 }  // namespace throng

@@ -52,9 +52,9 @@ class FlightJudge {
     if (meets(feet, feet.y + avatar_.height, record)) ++record.entered;
   }
 
-  void judge_path(const FlightPath& path, Record& record) const {
+  void judge_path(const Path& path, Record& record) const {
     for (size_t i = 1; i < path.points.size(); ++i) {
-      const Vec3d a = path.points[i - 1], b = path.points[i];
+      const Vec3d a = path.points[i - 1].position, b = path.points[i].position;
       const SegmentKind kind = path.segments[i - 1];
       if (kind == SegmentKind::kWalk) continue;  // legal moves: verify_world tests these
       ++record.segments;
@@ -105,7 +105,7 @@ Result<FlightReport> verify_flight(const World& world, const Scene& source,
   report.pairs = config.samples / 10;
   struct Worker {
     FlightFinder finder;
-    FlightPath path;
+    Path path;
   };
   std::vector<std::unique_ptr<Worker>> workers;
   for (int32_t i = 0; i < worker_count(config.workers); ++i) {

@@ -83,7 +83,7 @@ class Follower {
     }
   }
 
-  NodeWalk go(NodePathFinder& finder, NodePath& path, uint64_t n) const {
+  NodeWalk go(NodePathFinder& finder, Path& path, uint64_t n) const {
     NodeWalk walked;
     const NodePlace from = nodes_.random_place(config_.avatar_class, config_.seed, 2 * n);
     const NodePlace to = nodes_.random_place(config_.avatar_class, config_.seed, 2 * n + 1);
@@ -104,11 +104,11 @@ class Follower {
     walked.length = walked.reached ? path.length : 0;
     walked.straight = walked.reached ? length(to.feet - from.feet) : 0;
     if (path.points.empty()) return walked;
-    if (length(path.points.front().place.feet - from.feet) > verify::kSameLength ||
-        (walked.reached && length(path.points.back().place.feet - to.feet) > verify::kSameLength)) {
+    if (length(path.points.front().position - from.feet) > verify::kSameLength ||
+        (walked.reached && length(path.points.back().position - to.feet) > verify::kSameLength)) {
       mark_broken(walked, from.feet);
     }
-    for (const NodePathLink& link : path.links) {
+    for (const PathLink& link : path.links) {
       ++walked.links;
       ++walked.kinds[static_cast<size_t>(link.kind)];
       walked.hole_links += link.over_hole ? 1 : 0;
@@ -118,14 +118,15 @@ class Follower {
       while (next < path.links.size() && path.links[next].point < i) ++next;
       const bool linked = next < path.links.size() && path.links[next].point == i;
       // (Where a body begins to fall it is in the air.)
-      const bool in_air = !path.points[i].place;
+      const bool in_air = !path.node_places[i];
       const bool over_hole = in_air || (linked && path.links[next].over_hole);
       if (linked && path.links[next].kind == LinkKind::kDrop) {
-        check_drop(path.points, i, walked);
+        check_drop(path.node_places, i, walked);
       }
       // What an off-mesh link crosses is not tested.
       if (linked && path.links[next].kind == LinkKind::kOffMesh) continue;
-      segment(path.points[i - 1], path.points[i], over_hole, walked);
+      segment(path.node_places[i - 1], path.node_places[i], path.segments[i - 1], over_hole,
+              walked);
     }
     return walked;
   }
@@ -147,13 +148,11 @@ class Follower {
   }
 
   // Level out, upright, and straight down, as far as the class lets itself down and no farther.
-  void check_drop(const std::vector<NodePathPoint>& points, size_t landing,
-                  NodeWalk& walked) const {
-    const NodePlace &over = points[landing - 1].place, &to = points[landing].place;
+  void check_drop(const std::vector<NodePlace>& places, size_t landing, NodeWalk& walked) const {
+    const NodePlace &over = places[landing - 1], &to = places[landing];
     const bool sound = landing >= 2 && !over && over.axis.y == 1 &&
-                       points[landing - 2].place.feet.y == over.feet.y &&
-                       over.feet.x == to.feet.x && over.feet.z == to.feet.z &&
-                       over.feet.y > to.feet.y &&
+                       places[landing - 2].feet.y == over.feet.y && over.feet.x == to.feet.x &&
+                       over.feet.z == to.feet.z && over.feet.y > to.feet.y &&
                        over.feet.y - to.feet.y <= avatar_.max_drop + verify::kSameLength;
     if (!sound) mark_broken(walked, to.feet);
   }
@@ -162,37 +161,35 @@ class Follower {
     if (walked.broken++ == 0) walked.broken_at = at;
   }
 
-  void segment(const NodePathPoint& from, const NodePathPoint& to, bool over_hole,
+  void segment(const NodePlace& from, const NodePlace& to, SegmentKind kind, bool over_hole,
                NodeWalk& walked) const {
+    const bool on_surface = kind == SegmentKind::kWalk;
     ++walked.segments;
-    const double moved = length(to.place.feet - from.place.feet) +
-                         avatar_.height * length(to.place.axis - from.place.axis);
+    const double moved = length(to.feet - from.feet) + avatar_.height * length(to.axis - from.axis);
     const int parts =
         1 + static_cast<int>(std::min(kMaxPoses, std::ceil(4 * moved / avatar_.radius)));
     // From one level tile to the next there may be a step.
-    const Vec3d seam = to.place.feet - from.place.feet;
-    if (!to.on_surface && !over_hole &&
+    const Vec3d seam = to.feet - from.feet;
+    if (!on_surface && !over_hole &&
         (std::hypot(seam.x, seam.z) > kSeam ||
          std::fabs(seam.y) > std::max(kSeam, avatar_.step + verify::kSameLength))) {
-      mark_broken(walked, to.place.feet);
+      mark_broken(walked, to.feet);
     }
     bool entered = false, unsupported = false, broken = false;
     for (int k = 0; k <= parts; ++k) {
       const double f = static_cast<double>(k) / parts;
       verify::Pose pose;
-      if (to.on_surface) {
+      if (on_surface) {
         const auto along = [&](double a, double b) { return k == parts ? b : a + (b - a) * f; };
-        const NodePlace place =
-            nodes_.place(config_.avatar_class, from.place.node1 - 1,
-                         along(from.place.s, to.place.s), along(from.place.t, to.place.t));
-        broken |= !place ||
-                  (k == 0 && length(place.feet - from.place.feet) > verify::kSameLength) ||
-                  (k == parts && length(place.feet - to.place.feet) > kSeam);
+        const NodePlace place = nodes_.place(config_.avatar_class, from.node1 - 1,
+                                             along(from.s, to.s), along(from.t, to.t));
+        broken |= !place || (k == 0 && length(place.feet - from.feet) > verify::kSameLength) ||
+                  (k == parts && length(place.feet - to.feet) > kSeam);
         if (!place) break;
         pose = {place.feet, place.axis};
       } else {
-        const Vec3d axis = from.place.axis * (1 - f) + to.place.axis * f;
-        pose = {from.place.feet * (1 - f) + to.place.feet * f, axis * (1 / length(axis))};
+        const Vec3d axis = from.axis * (1 - f) + to.axis * f;
+        pose = {from.feet * (1 - f) + to.feet * f, axis * (1 / length(axis))};
       }
       ++walked.poses;
       if (const auto triangle = verify::turned_intruder(tree_, avatar_, pose)) {
@@ -210,7 +207,7 @@ class Follower {
     }
     walked.entered += entered ? 1 : 0;
     walked.unsupported += unsupported ? 1 : 0;
-    if (broken) mark_broken(walked, from.place.feet);
+    if (broken) mark_broken(walked, from.feet);
   }
 
   const Nodes& nodes_;
@@ -239,7 +236,7 @@ Result<NodePathReport> verify_node_paths(const Nodes& nodes, const Scene& source
   report.make_seconds = finder->summary().seconds;
   report.finder_bytes = finder->summary().bytes;
   std::vector<NodePathFinder> finders(static_cast<size_t>(worker_count(config.workers)), *finder);
-  std::vector<NodePath> paths(finders.size());
+  std::vector<Path> paths(finders.size());
   std::vector<NodeWalk> walked;
   for (uint64_t begin = 0; begin < config.samples; begin += verify::kPairBatch) {
     if (context.cancel) return Error{Errc::kCancelled, "verify: cancelled"};

@@ -76,7 +76,8 @@ class ProgramPath(ProgramCase):
         self.assertEqual(shut["nearest"]["blocked_by"], "a wall, or too narrow")
         self.assertLess(shut["points"][-1][0], 16)
         code, link = path("20,0,8", "--block", "16,0,0,17,2,40", "--off-mesh-link", "15,0,8,18,0,8")
-        self.assertEqual((code, len(link["off_mesh_links"])), (0, 1))
+        self.assertEqual((code, [one["kind"] for one in link["links"]]), (0, ["off-mesh link"]))
+        self.assertEqual(link["segments"][link["links"][0]["point"] - 1], "off-mesh link")
         code, up = path("30,2.9,30", "--class", "wheelchair")
         self.assertEqual((code, up["end"], up["nearest"]["blocked_by"]), (1, "unreachable", "a gap"))
         ends = ["path", self.world, "--from", "14,0,8", "--to", "20,0,8"]

@@ -222,17 +222,17 @@ TEST(NodeDrops, LeadDownOnlyForClassesThatDrop) {
     const NodePlace below = finder->find_place({1, 0, 1}, 0.2);
     ASSERT_TRUE(top);
     ASSERT_TRUE(below);
-    NodePath path;
+    Path path;
     finder->find(top, below, path);
     EXPECT_EQ(path.end, c == 1 ? PathEnd::kReached : PathEnd::kUnreachable) << c;
     if (c == 1) {
       ASSERT_EQ(std::count_if(path.links.begin(), path.links.end(),
-                              [](const NodePathLink& l) { return l.kind == LinkKind::kDrop; }),
+                              [](const PathLink& l) { return l.kind == LinkKind::kDrop; }),
                 1);
       const auto drop = std::find_if(path.links.begin(), path.links.end(),
                                      [](const auto& l) { return l.kind == LinkKind::kDrop; });
-      const NodePlace& over = path.points[drop->point - 1].place;
-      const NodePlace& down = path.points[drop->point].place;
+      const NodePlace& over = path.node_places[drop->point - 1];
+      const NodePlace& down = path.node_places[drop->point];
       EXPECT_FALSE(over);
       EXPECT_EQ(over.feet, (Vec3d{down.feet.x, 2, down.feet.z}));
       EXPECT_EQ(down.feet.y, 0);

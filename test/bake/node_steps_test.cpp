@@ -150,20 +150,20 @@ TEST(NodeSteps, APathUpstairsNamesEveryRiser) {
   const Nodes nodes = make(test::builtin({.name = "stairs"}), 0.1);
   auto finder = NodePathFinder::create(nodes, {}, context);
   ASSERT_TRUE(finder) << finder.error().message;
-  NodePath path;
+  Path path;
   finder->find(finder->find_place({2, 0, 2}, 10), finder->find_place({12, 3.06, 2}, 1), path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   double risen = 0;
   size_t steps = 0;
-  for (const NodePathLink& link : path.links) {
+  for (const PathLink& link : path.links) {
     if (link.kind != LinkKind::kStep) continue;
     ++steps;
     // (The point of a link may lie just before or just beyond the riser.)
     const size_t before = link.point - 1,
                  after = std::min<size_t>(link.point + 1, path.points.size() - 1);
-    risen += std::min(0.17, path.points[after].place.feet.y - path.points[before].place.feet.y);
+    risen += std::min(0.17, path.node_places[after].feet.y - path.node_places[before].feet.y);
   }
-  const double rise = path.points.back().place.feet.y - path.points.front().place.feet.y;
+  const double rise = path.node_places.back().feet.y - path.node_places.front().feet.y;
   EXPECT_GT(rise, 1.5);
   EXPECT_EQ(static_cast<double>(steps), std::round(rise / 0.17));
   EXPECT_NEAR(risen, rise, 0.02);

@@ -53,8 +53,8 @@ TEST(Finders, CopiesAnswerTheSameInManyThreadsAtOnce) {
     GroundQuery query = need(GroundQuery::create(world, 0));
     Answers answers;
     Path path;
-    NodePath node_path;
-    FlightPath flown;
+    Path node_path;
+    Path flown;
     if (crate) {
       const Vec3d at = from(0).position;
       const Prism box = Prism::box({at.x, at.y + 0.1, at.z}, {at.x + 2, at.y + 2, at.z + 2});
@@ -72,10 +72,10 @@ TEST(Finders, CopiesAnswerTheSameInManyThreadsAtOnce) {
       on_nodes.find(on_nodes.find_place(from(n).position, 1),
                     on_nodes.find_place(to(n).position, 1), node_path);
       answers.push_back(node_path.cost);
-      for (const NodePathPoint& p : node_path.points) add(answers, p.place.feet);
+      for (const NodePlace& p : node_path.node_places) add(answers, p.feet);
       in_air.find({.from = from(n).position, .to = to(n).position}, flown);
       answers.push_back(flown.length);
-      for (const Vec3d& p : flown.points) add(answers, p);
+      for (const Place& p : flown.points) add(answers, p.position);
       add(answers, query.ray(from(n), 3, 2).place.position);
       add(answers, query.slide(from(n), 3, 2).position);
       answers.push_back(query.nearest_wall(from(n), 3).distance);
@@ -99,6 +99,54 @@ TEST(Finders, CopiesAnswerTheSameInManyThreadsAtOnce) {
   }
   for (std::thread& thread : threads) thread.join();
   for (size_t t = 0; t < kThreads; ++t) EXPECT_EQ(found[t], t == 0 ? crated : alone) << t;
+}
+
+// One Path is reused for all finders: what one gives does not show in what the next gives.
+TEST(Finders, APathHasTheSameShapeWhicheverFinderGivesIt) {
+  Context context;
+  const Scene scene = test::builtin({.name = "garage", .size = 45, .levels = 2});
+  std::vector<AvatarClass> classes = {{.name = "adult"}, flyer_class()};
+  const World world = test::bake(scene, 0.25, classes);
+  const Nodes nodes = need(Nodes::create(world, scene, {}, context));
+  PathFinder search = need(PathFinder::create(world, {}, context));
+  LiveGround live = need(LiveGround::create(world, {}));
+  NodePathFinder over_nodes = need(NodePathFinder::create(nodes, {}, context));
+  FlightFinder flight = need(FlightFinder::create(world, {.avatar_class = 1}, context));
+  Path path;
+  uint64_t reached = 0;
+  const auto check = [&](const Vec3d& from, const Vec3d& to, double off, bool on_nodes) {
+    if (path.end != PathEnd::kReached) return;
+    ++reached;
+    ASSERT_EQ(path.segments.size() + 1, path.points.size());
+    ASSERT_EQ(path.node_places.size(), on_nodes ? path.points.size() : 0);
+    EXPECT_EQ(path.corridor.empty(), !on_nodes);
+    EXPECT_LT(length(path.points.front().position - from), off);
+    EXPECT_LT(length(path.points.back().position - to), off);
+    EXPECT_GE(path.cost, path.length - 1e-9);
+    EXPECT_EQ(path.blocked_by, Blocker::kNone);
+    EXPECT_EQ(path.spent, SpentBudget::kNone);
+    for (size_t i = 0; i < path.points.size(); ++i) {
+      EXPECT_NEAR(length(path.up(i)), 1, 1e-9);
+      if (!on_nodes) continue;
+      EXPECT_EQ(path.points[i].position, path.node_places[i].feet);
+    }
+  };
+  for (uint64_t n = 0; n < kPairs; ++n) {
+    const Place from = world.random_place(0, 7, 2 * n), to = world.random_place(0, 7, 2 * n + 1);
+    over_nodes.find(over_nodes.find_place(from.position, 1), over_nodes.find_place(to.position, 1),
+                    path);
+    check(from.position, to.position, 0.1, true);
+    search.find(from, to, path);
+    check(from.position, to.position, 0.01, false);
+    for (const Place& place : path.points) EXPECT_TRUE(place);
+    EXPECT_EQ(path.cost, path.length);
+    flight.find({.from = from.position, .to = to.position}, path);
+    check(from.position, to.position, 0.1, false);
+    live.find(from, to, path);
+    check(from.position, to.position, 0.01, false);
+    EXPECT_TRUE(path.links.empty());
+  }
+  EXPECT_GT(reached, 3 * kPairs);
 }
 
 }  // namespace

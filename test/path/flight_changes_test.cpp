@@ -200,7 +200,7 @@ class Cells {
 };
 
 // Places on a path where the body touches a prism.
-int faults(const std::vector<Prism>& prisms, const FlightPath& path) {
+int faults(const std::vector<Prism>& prisms, const Path& path) {
   const AvatarClass avatar = flyer_class();
   int found = 0;
   const auto look = [&](Vec3d feet, double low, double high) {
@@ -209,7 +209,7 @@ int faults(const std::vector<Prism>& prisms, const FlightPath& path) {
     }
   };
   for (size_t i = 1; i < path.points.size(); ++i) {
-    const Vec3d a = path.points[i - 1], b = path.points[i];
+    const Vec3d a = path.points[i - 1].position, b = path.points[i].position;
     const SegmentKind kind = path.segments[i - 1];
     if (kind == SegmentKind::kTakeOff || kind == SegmentKind::kLand) {
       const Vec3d &low = kind == SegmentKind::kTakeOff ? a : b,
@@ -237,13 +237,14 @@ std::vector<ChangeId> put_up(FlightFinder& flight, const std::vector<Prism>& pri
   return ids;
 }
 
-void expect_same(const FlightPath& a, const FlightPath& b) {
+void expect_same(const Path& a, const Path& b) {
   EXPECT_EQ(a.end, b.end);
   EXPECT_EQ(a.length, b.length);
   EXPECT_EQ(a.blocked_by, b.blocked_by);
   EXPECT_EQ(a.segments, b.segments);
   ASSERT_EQ(a.points.size(), b.points.size());
-  for (size_t i = 0; i < a.points.size(); ++i) EXPECT_EQ(length(a.points[i] - b.points[i]), 0);
+  for (size_t i = 0; i < a.points.size(); ++i)
+    EXPECT_EQ(length(a.points[i].position - b.points[i].position), 0);
 }
 
 // Ends for queries, in the air and on the ground, whatever stands there.
@@ -310,7 +311,7 @@ TEST(FlightChanges, PathsExistWhereCellsAreConnectedAndNoBodyTouchesAPrism) {
       FlightFinder flight = baked;
       put_up(flight, prisms);
       const Cells cells(world, flight);
-      FlightPath path;
+      Path path;
       for (uint64_t n = 0; n < 30; ++n) {
         const Vec3d from = end_of(world, baked, seed, 2 * n),
                     to = end_of(world, baked, seed, 5 * n + 1);
@@ -328,14 +329,14 @@ TEST(FlightChanges, PathsExistWhereCellsAreConnectedAndNoBodyTouchesAPrism) {
           }
         }
         if (path.end == PathEnd::kReached) {
-          ASSERT_LT(length(path.points.front() - from), 0.1);
-          ASSERT_LT(length(path.points.back() - to), 0.1);
+          ASSERT_LT(length(path.points.front().position - from), 0.1);
+          ASSERT_LT(length(path.points.back().position - to), 0.1);
           if (path.segments.empty() || path.segments.front() != SegmentKind::kFly) ++on_ground;
         }
         if (path.end == PathEnd::kUnreachable && a > 0) {
           ASSERT_FALSE(path.points.empty()) << seed << ", " << n;
           ASSERT_NE(path.blocked_by, Blocker::kNone);
-          const double far = length(path.points.back() - to);
+          const double far = length(path.points.back().position - to);
           ASSERT_LT(far, cells.nearest(a, to) + 0.002) << seed << ", " << n;
           ASSERT_GT(far, cells.nearest(0, to) - 0.002);
           ++nearest;
@@ -353,7 +354,7 @@ TEST(FlightChanges, RemovedObstaclesLeaveNoTraceAndTheOrderDoesNotMatter) {
   const World world = bake(two_halls(true));
   FlightFinder baked = finder(world);
   FlightFinder used = baked;
-  FlightPath a, b;
+  Path a, b;
   for (uint64_t seed = 20; seed < 28; ++seed) {
     const std::vector<Prism> prisms = random_prisms(seed, 20);
     std::vector<Prism> shuffled = prisms;
@@ -399,7 +400,7 @@ TEST(FlightChanges, ClosedAndReopenedRoomsAreKnown) {
   const World world = bake(open_floor());
   const FlightFinder baked = finder(world);
   FlightFinder flight = baked;
-  FlightPath path;
+  Path path;
   std::vector<Prism> prisms;
   for (uint64_t n = 0; n < 5; ++n) {
     for (const Prism& side : cage({3.0 + 4 * static_cast<double>(n), 2, 4}, 1.5, 4)) {
@@ -438,7 +439,7 @@ TEST(FlightChanges, AtAnyTimeAnswersAreThoseOfANewFinder) {
     const World world = bake(seed % 2 != 0 ? open_floor() : two_halls(true));
     const FlightFinder baked = finder(world);
     FlightFinder flight = baked;
-    FlightPath path, other;
+    Path path, other;
     std::vector<Prism> prisms;
     for (uint64_t k = 0; k < 6; ++k) {
       const std::vector<Prism> more = random_prisms(seed * 100 + k, 20);
@@ -483,7 +484,7 @@ TEST(FlightChanges, EndsInAnObstacleAreNoPlacesAndPathsLeadAroundAWall) {
   const World world = bake(open_floor());
   FlightFinder flight = finder(world);
   const Vec3d here{3, 3, 4}, there{21, 3, 4};
-  FlightPath path;
+  Path path;
   flight.find({.from = here, .to = there}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   const double straight = path.length;
@@ -518,7 +519,7 @@ TEST(FlightChanges, WalksAndTakeOffsAvoidThemToo) {
   FlightFinder flight = finder(world);
   const std::vector<Prism> prisms{box({7, 0, -1}, {7.2, 3, 6}), box({2, 1.9, 1}, {6, 2.2, 7})};
   put_up(flight, prisms);
-  FlightPath path;
+  Path path;
   for (const Vec3d to : {Vec3d{10, 0, 4}, Vec3d{10, 4, 4}, Vec3d{4, 0, 1.5}}) {
     flight.find({.from = {4, 0, 4}, .to = to}, path);
     ASSERT_EQ(path.end, PathEnd::kReached);
@@ -531,7 +532,7 @@ TEST(FlightChanges, GroundBetweenTwoComponentsOfAirIsLeftOutUnderAnObstacle) {
   const World world = bake(two_halls());
   FlightFinder flight = finder(world);
   const FlightQuery query{.from = {3, 2, 4}, .to = {16, 3, 3}};
-  FlightPath path;
+  Path path;
   flight.find(query, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   // The path lands elsewhere than where a crate is, and leads around it.
@@ -546,7 +547,7 @@ TEST(FlightChanges, GroundBetweenTwoComponentsOfAirIsLeftOutUnderAnObstacle) {
   flight.find(query, path);
   ASSERT_EQ(path.end, PathEnd::kUnreachable);
   ASSERT_FALSE(path.points.empty());
-  EXPECT_NEAR(path.points.back().x, 9.1, 0.5);
+  EXPECT_NEAR(path.points.back().position.x, 9.1, 0.5);
   flight.set_active(*door, false);
   flight.find(query, path);
   EXPECT_EQ(path.end, PathEnd::kReached);
@@ -559,7 +560,7 @@ TEST(FlightChanges, UnderACurtainPathsWalk) {
   const Prism curtain = box({9.7, 2.0, 4.5}, {10.1, 6, 8});
   const Prism low = box({9.7, -0.5, 5.6}, {10.1, 3, 8});
   put_up(flight, {curtain, low});
-  FlightPath path;
+  Path path;
   flight.find({.from = {3, 2, 4}, .to = {16, 3, 3}}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   EXPECT_NE(std::count(path.segments.begin(), path.segments.end(), SegmentKind::kLand), 0);
@@ -573,18 +574,18 @@ TEST(FlightChanges, ABoxedInGoalIsReportedWithTheNearestPoint) {
   const Vec3d goal{18, 3, 4};
   put_up(flight, cage(goal, 1.2, 3));
   ASSERT_TRUE(flight.is_legal(goal));
-  FlightPath path;
+  Path path;
   for (const Vec3d from : {Vec3d{3, 3, 4}, Vec3d{3, 0, 4}}) {
     flight.find({.from = from, .to = goal}, path);
     ASSERT_EQ(path.end, PathEnd::kUnreachable);
     EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
     ASSERT_GE(path.points.size(), 2u);
-    EXPECT_LT(length(path.points.back() - goal), 3.5);
+    EXPECT_LT(length(path.points.back().position - goal), 3.5);
   }
   flight.find({.from = goal, .to = {3, 3, 4}}, path);
   ASSERT_EQ(path.end, PathEnd::kUnreachable);
   ASSERT_FALSE(path.points.empty());
-  EXPECT_LT(length(path.points.back() - goal), 1.2);
+  EXPECT_LT(length(path.points.back().position - goal), 1.2);
   // It keeps to its budget.
   flight.find({.from = {15, 3, 4}, .to = {21, 3, 4}, .max_nodes = 2}, path);
   EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
@@ -626,7 +627,7 @@ TEST(FlightChanges, AWallThroughALargeWorldIsFoundBySearching) {
     if (p.x < 40 && left.size() < 4) left.push_back(p);
     if (p.x > 56 && right.size() < 4) right.push_back(p);
   }
-  FlightPath path;
+  Path path;
   flight.find({.from = left[0], .to = right[0]}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   const auto wall = flight.add_obstacle(box({48.2, -10, -10}, {48.4, 60, 90}));
@@ -637,9 +638,9 @@ TEST(FlightChanges, AWallThroughALargeWorldIsFoundBySearching) {
       ASSERT_EQ(path.end, PathEnd::kUnreachable);
       ASSERT_FALSE(path.points.empty());
       EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
-      for (const Vec3d& p : path.points) EXPECT_EQ(p.x < 48.3, from.x < 48.3);
+      for (const Place& p : path.points) EXPECT_EQ(p.position.x < 48.3, from.x < 48.3);
       // Beyond the wall it would be nearer; on this side it comes close to it.
-      EXPECT_NEAR(path.points.back().x, 48.3, 5);
+      EXPECT_NEAR(path.points.back().position.x, 48.3, 5);
     }
   }
   flight.find({.from = left[0], .to = right[0], .max_nodes = 500}, path);
@@ -665,7 +666,7 @@ TEST(FlightChanges, TrianglesAreObstaclesAndBlockOnlyWhatTheyCover) {
   EXPECT_TRUE(flight.is_legal({13, 1, 2}));      // beside it
   EXPECT_TRUE(flight.is_legal({8.5, 3, 6}));     // over it
   EXPECT_TRUE(flight.is_legal({12.6, 1, 6.6}));  // under it
-  FlightPath path;
+  Path path;
   flight.find({.from = {4, 1, 7}, .to = {12.6, 1, 6.6}}, path);
   EXPECT_EQ(path.end, PathEnd::kReached);
   flight.remove(*id);

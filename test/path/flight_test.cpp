@@ -48,7 +48,7 @@ Scene two_floors() {
 TEST(Flight, LeadsFromTheGroundThroughTheAirToTheGround) {
   const World world = bake(two_floors());
   FlightFinder flight = finder(world);
-  FlightPath path;
+  Path path;
   flight.find({.from = {4, 0, 4}, .to = {32, 3, 4}}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   ASSERT_GE(path.segments.size(), 3u);
@@ -57,15 +57,15 @@ TEST(Flight, LeadsFromTheGroundThroughTheAirToTheGround) {
   for (size_t i = 1; i + 1 < path.segments.size(); ++i)
     EXPECT_EQ(path.segments[i], SegmentKind::kFly);
   EXPECT_EQ(path.points.size(), path.segments.size() + 1);
-  EXPECT_NEAR(path.points.front().y, 0, 1e-6);
-  EXPECT_NEAR(path.points.back().y, 3, 1e-6);
+  EXPECT_NEAR(path.points.front().position.y, 0, 1e-6);
+  EXPECT_NEAR(path.points.back().position.y, 3, 1e-6);
   EXPECT_LT(path.length, 1.1 * std::hypot(28, 3));
 }
 
 TEST(Flight, WalksWhereThatIsShorter) {
   const World world = bake(two_floors());
   FlightFinder flight = finder(world);
-  FlightPath path;
+  Path path;
   flight.find({.from = {2, 0, 4}, .to = {6, 0, 4}}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   EXPECT_EQ(path.segments, (std::vector<SegmentKind>{SegmentKind::kWalk}));
@@ -79,7 +79,7 @@ TEST(Flight, WalksToATakeOff) {
   const World world = bake(scene);
   FlightFinder flight = finder(world);
   EXPECT_FALSE(flight.take_off(world.find_place(0, {4, 0, 4}, 0.1)));
-  FlightPath path;
+  Path path;
   flight.find({.from = {4, 0, 4}, .to = {32, 3, 4}}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   EXPECT_EQ(path.segments.front(), SegmentKind::kWalk);
@@ -103,7 +103,7 @@ TEST(Flight, LeavesAClosedIslandOfAirOnFoot) {
   ASSERT_TRUE(flight.take_off(world.find_place(0, inside, 0.1)));
   ASSERT_TRUE(flight.is_legal(above));
   const auto find = [&](Vec3d from, Vec3d to) {
-    FlightPath path;
+    Path path;
     flight.find({.from = from, .to = to}, path);
     EXPECT_EQ(path.end, PathEnd::kReached);
     return path.segments.empty() ? std::vector<SegmentKind>{SegmentKind::kFly} : path.segments;
@@ -129,7 +129,7 @@ TEST(Flight, KnowsWhichGroundLeadsIntoWhichAir) {
     FlightFinder flight = finder(world);
     const path::FlightEndpoints ends(*data_of(world), path::space_of(flight), 0);
     path::CircleFlood flood;
-    FlightPath path;
+    Path path;
     std::vector<uint32_t> over;
     for (uint64_t n = 0; n < 60; ++n) {
       const Place place = world.random_place(0, 5, n);
@@ -168,7 +168,7 @@ TEST(Flight, EndsInSolidsOrOutsideOrNowhereAreNoPlaces) {
   scene.add_box({3, 0, 3}, {5, 4, 5});
   const World world = bake(scene);
   FlightFinder flight = finder(world);
-  FlightPath path;
+  Path path;
   const Vec3d good{32, 6, 4};
   for (const Vec3d bad :
        {Vec3d{4, 2, 4}, Vec3d{2.9, 2, 4}, Vec3d{-5, 3, 4}, Vec3d{1e30, 3, 4}, Vec3d{4, 1e6, 4},
@@ -187,7 +187,7 @@ TEST(Flight, ReportsUnreachableGoalsAndKeepsToItsBudget) {
   scene.add_box({10, 0, 0}, {20, 8, 8});  // hollow: inside is air, too
   const World world = bake(scene);
   FlightFinder flight = finder(world);
-  FlightPath path;
+  Path path;
   ASSERT_TRUE(flight.is_legal({15, 4, 4}));
   flight.find({.from = {15, 4, 4}, .to = {32, 6, 4}}, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
@@ -226,7 +226,7 @@ TEST(Flight, LandsAndTakesOffAgainWhereOnlyTheGroundLeadsFromAirToAir) {
   ASSERT_TRUE(ends.in_air(here) && ends.in_air(there));
   ASSERT_FALSE(path::AirView(path::space_of(flight))
                    .same_component(*ends.in_air(here), *ends.in_air(there)));
-  FlightPath path;
+  Path path;
   flight.find({.from = here, .to = there}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   ASSERT_EQ(path.points.size(), path.segments.size() + 1);
@@ -234,11 +234,11 @@ TEST(Flight, LandsAndTakesOffAgainWhereOnlyTheGroundLeadsFromAirToAir) {
   kinds.erase(std::unique(kinds.begin(), kinds.end()), kinds.end());
   EXPECT_EQ(kinds, (std::vector{SegmentKind::kFly, SegmentKind::kLand, SegmentKind::kWalk,
                                 SegmentKind::kTakeOff, SegmentKind::kFly}));
-  EXPECT_NEAR(length(path.points.front() - here), 0, 0.01);
-  EXPECT_NEAR(length(path.points.back() - there), 0, 0.01);
+  EXPECT_NEAR(length(path.points.front().position - here), 0, 0.01);
+  EXPECT_NEAR(length(path.points.back().position - there), 0, 0.01);
   double sum = 0;
   for (size_t i = 1; i < path.points.size(); ++i)
-    sum += length(path.points[i] - path.points[i - 1]);
+    sum += length(path.points[i].position - path.points[i - 1].position);
   EXPECT_NEAR(path.length, sum, 1e-9);
   // Without the nearest point, or with too small a budget for it.
   flight.find({.from = here, .to = there, .by_turns = false, .nearest = false}, path);
@@ -252,7 +252,7 @@ TEST(Flight, ReportsHowNearItComesAndTheBlocker) {
   const Scene scene = two_halls(false);
   const World world = bake(scene);
   FlightFinder flight = finder(world);
-  FlightPath path;
+  Path path;
   const Vec3d there{16, 3, 3};
   for (const Vec3d here : {Vec3d{3, 2, 4}, Vec3d{3, 0, 6}}) {
     flight.find({.from = here, .to = there}, path);
@@ -260,7 +260,7 @@ TEST(Flight, ReportsHowNearItComesAndTheBlocker) {
     EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
     ASSERT_GE(path.points.size(), 2u);
     EXPECT_EQ(path.points.size(), path.segments.size() + 1);
-    EXPECT_NEAR(length(path.points.front() - here), 0, 0.01);
+    EXPECT_NEAR(length(path.points.front().position - here), 0, 0.01);
     // As near as the air comes, of all boxes, by many points of each.
     double least = INFINITY;
     const path::FlightEndpoints ends(*data_of(world), path::space_of(flight), 0);
@@ -275,10 +275,10 @@ TEST(Flight, ReportsHowNearItComesAndTheBlocker) {
         least = std::min(least, length(p - there));
       }
     }
-    const double far = length(path.points.back() - there);
+    const double far = length(path.points.back().position - there);
     EXPECT_LE(far, least + 1e-6);
     EXPECT_GT(far, 6.2);  // The wall, and half of the body, are in between.
-    EXPECT_TRUE(flight.is_legal(path.points.back()));
+    EXPECT_TRUE(flight.is_legal(path.points.back().position));
   }
   // Under a ceiling that leaves no room to take off.
   Scene low = two_floors();
@@ -289,8 +289,8 @@ TEST(Flight, ReportsHowNearItComesAndTheBlocker) {
   if (path.end == PathEnd::kUnreachable) {
     EXPECT_EQ(path.blocked_by, Blocker::kLow);
     ASSERT_FALSE(path.points.empty());
-    EXPECT_GT(path.points.back().x, 6.5);
-    EXPECT_NEAR(path.points.back().y, 0, 0.01);
+    EXPECT_GT(path.points.back().position.x, 6.5);
+    EXPECT_NEAR(path.points.back().position.y, 0, 0.01);
   } else {
     ADD_FAILURE() << "it takes off";
   }
@@ -313,13 +313,13 @@ TEST(Flight, DistinguishesHolesThatAreTooLowFromTooNarrow) {
     }
     const World world = bake(scene);
     FlightFinder flight = finder(world);
-    FlightPath path;
+    Path path;
     for (const double from : {3.0, 17.0}) {
       flight.find({.from = {from, 2.5, 4}, .to = {20 - from, 2.25, 4}}, path);
       ASSERT_EQ(path.end, PathEnd::kUnreachable);
       EXPECT_EQ(path.blocked_by, is_low ? Blocker::kLow : Blocker::kNarrow);
       ASSERT_FALSE(path.points.empty());
-      EXPECT_NEAR(path.points.back().x, from < 10 ? 9.3 : 10.5, 0.8);
+      EXPECT_NEAR(path.points.back().position.x, from < 10 ? 9.3 : 10.5, 0.8);
     }
   }
 }
@@ -333,7 +333,7 @@ TEST(Flight, AnExhaustedBudgetOnFootIsNoProofThatNoPathExists) {
   scene.add_box({7, 0, 2}, {7.5, 1.9, 9});
   const World world = bake(scene);
   FlightFinder flight = finder(world);
-  FlightPath path;
+  Path path;
   FlightQuery query{.from = {2, 0, 2}, .to = {10, 0, 4}};
   ASSERT_FALSE(flight.take_off(world.find_place(0, query.from, 0.1)));
   flight.find(query, path);
@@ -363,7 +363,7 @@ TEST(Flight, NeedsAirAndAClassThatFlies) {
 TEST(Flight, CopiesAndSecondQueriesFindTheSame) {
   const World world = bake(two_floors());
   FlightFinder a = finder(world), b = a;
-  FlightPath first, second;
+  Path first, second;
   for (uint64_t n = 0; n < 20; ++n) {
     const auto from = a.random_point(1, 2 * n), to = a.random_point(1, 2 * n + 1);
     ASSERT_TRUE(from && to && a.is_legal(*from) && a.is_legal(*to));
@@ -432,7 +432,7 @@ TEST(VoxelCells, PathsAreLegalAndNotMuchLongerThanBruteForceFinds) {
     ASSERT_TRUE(world) << world.error().message;
     FlightFinder flight = finder(*world);
     const test::VoxelOracle oracle(cells);
-    FlightPath path;
+    Path path;
     for (uint64_t n = 0; n < 12; ++n) {
       int32_t at[6];
       const int32_t side[3] = {cells.width, cells.height, cells.depth};
@@ -456,7 +456,8 @@ TEST(VoxelCells, PathsAreLegalAndNotMuchLongerThanBruteForceFinds) {
         continue;
       }
       for (size_t i = 1; i < path.points.size(); ++i) {
-        ASSERT_TRUE(oracle.is_clear(path.points[i - 1], path.points[i])) << seed << ", " << n;
+        ASSERT_TRUE(oracle.is_clear(path.points[i - 1].position, path.points[i].position))
+            << seed << ", " << n;
       }
       ++compared;
       const double ratio = *best.length > 0 ? path.length / *best.length : 1;
@@ -500,11 +501,11 @@ TEST(VoxelCells, FarEndsAreFoundThroughLargeBoxesOrAroundThem) {
       ASSERT_TRUE(world) << world.error().message;
       FlightFinder flight = finder(*world);
       const test::VoxelOracle oracle(cells);
-      FlightPath path;
+      Path path;
       flight.find({.from = {3.5, 2.5, 28.5}, .to = {340.5, 12.5, 4.5}}, path);
       ASSERT_EQ(path.end, PathEnd::kReached);
       for (size_t i = 1; i < path.points.size(); ++i) {
-        ASSERT_TRUE(oracle.is_clear(path.points[i - 1], path.points[i])) << seed;
+        ASSERT_TRUE(oracle.is_clear(path.points[i - 1].position, path.points[i].position)) << seed;
       }
       const auto best =
           oracle.shortest(test::middle(3, 2, 28), test::middle(340, 12, 4), 2000, 100000);

@@ -152,7 +152,7 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftFindsTheSame) {
       const path::PieceCost piece(view, 0);
       path::NodeSearch plain(view, piece);
       std::vector<path::Crossing> best;
-      NodePath path;
+      Path path;
       for (uint64_t n = 0; n < 40; ++n) {
         const NodePlace from = world.nodes.random_place(c, 5, n < 10 && n % 2 == 0 ? 0 : 2 * n);
         const NodePlace to = world.nodes.random_place(c, 5, n < 10 && n % 2 != 0 ? 0 : 2 * n + 1);
@@ -174,7 +174,7 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftFindsTheSame) {
         islands += n < 10 ? 1 : 0;
         const path::BlockPoint last = best.empty() ? a : path::ends_of(view, best.back()).in;
         // As near as the nearest crossing, or nearer in the block that it leads into.
-        EXPECT_LE(length(path.points.back().place.feet - to.feet),
+        EXPECT_LE(length(path.node_places.back().feet - to.feet),
                   length(path::position(view, last) - to.feet) + 1e-9);
         EXPECT_NE(path.blocked_by, Blocker::kNone);
       }
@@ -243,10 +243,10 @@ TEST(NodeObstacles, LongPathsLeadOverWhatIsLeft) {
   EXPECT_LE(sum / static_cast<double>(reached), 1.03);
 }
 
-bool is_same(const NodePath& a, const NodePath& b) {
+bool is_same(const Path& a, const Path& b) {
   if (a.end != b.end || a.points.size() != b.points.size() || a.cost != b.cost) return false;
   for (size_t i = 0; i < a.points.size(); ++i) {
-    if (!(a.points[i].place.feet == b.points[i].place.feet)) return false;
+    if (!(a.node_places[i].feet == b.node_places[i].feet)) return false;
   }
   return true;
 }
@@ -274,7 +274,7 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
       }
     }
     NodePathFinder copy = one;
-    NodePath a, b, d, e;
+    Path a, b, d, e;
     for (uint64_t n = 0; n < 25; ++n) {
       const NodePlace from = world.nodes.random_place(c, 2, 2 * n),
                       to = world.nodes.random_place(c, 2, 2 * n + 1);
@@ -368,7 +368,7 @@ TEST(NodeObstacles, MeshesBlockWhatTheirTrianglesTouch) {
     }
     const verify::TriangleTree tree(scene, 1);
     const AvatarClass avatar = classes()[static_cast<size_t>(c)];
-    NodePath path, other;
+    Path path, other;
     for (uint64_t n = 0; n < 40; ++n) {
       const NodePlace from = world.nodes.random_place(c, 8, 2 * n),
                       to = world.nodes.random_place(c, 8, 2 * n + 1);
@@ -377,10 +377,10 @@ TEST(NodeObstacles, MeshesBlockWhatTheirTrianglesTouch) {
       // A body in a closed shell of triangles is not in one.
       EXPECT_TRUE(other.end == PathEnd::kNoPlace || path.end != PathEnd::kNoPlace);
       EXPECT_TRUE(other.end != PathEnd::kReached || path.end == PathEnd::kReached);
-      for (const NodePathPoint& point : path.points) {
-        if (!point.place) continue;
+      for (const NodePlace& place : path.node_places) {
+        if (!place) continue;
         ++bodies;
-        EXPECT_FALSE(verify::turned_intruder(tree, avatar, {point.place.feet, point.place.axis}));
+        EXPECT_FALSE(verify::turned_intruder(tree, avatar, {place.feet, place.axis}));
       }
       rebuilt.find(from, to, other);
       around += !is_same(path, other) ? 1 : 0;

@@ -87,12 +87,12 @@ TEST(NodePath, NoPointOnASurfaceRepeatsTheOneBefore) {
     size_t points = 0;
     for (int32_t c = 0; c < 4; ++c) {
       NodePathFinder paths = finder(nodes, c);
-      NodePath path;
+      Path path;
       for (uint64_t n = 0; n < 60; ++n) {
         paths.find(nodes.random_place(c, 9, 2 * n), nodes.random_place(c, 9, 2 * n + 1), path);
         for (size_t i = 1; i < path.points.size() && path.length > 0; ++i) {
-          const NodePathPoint &last = path.points[i - 1], &here = path.points[i];
-          EXPECT_FALSE(here.on_surface && here.place.feet == last.place.feet)
+          const NodePlace &last = path.node_places[i - 1], &here = path.node_places[i];
+          EXPECT_FALSE(path.segments[i - 1] == SegmentKind::kWalk && here.feet == last.feet)
               << name << ", class " << c << ", path " << n << ", point " << i;
         }
         points += path.points.size();
@@ -164,7 +164,7 @@ TEST(NodePath, SearchFindsTheCheapestCrossings) {
             queue.push({next, to_state});
           }
         }
-        NodePath path;
+        Path path;
         found.find(from, to, path);
         EXPECT_EQ(path.end == PathEnd::kReached, best < std::numeric_limits<double>::infinity());
         if (path.end != PathEnd::kReached) continue;
@@ -192,13 +192,13 @@ TEST(NodePath, OnLevelTilesPathsAreNearlyTheShortest) {
                       to = nodes.random_place(0, 1, 2 * n + 1);
       Path shortest;
       exact->find(world.find_place(0, from.feet, 0.1), world.find_place(0, to.feet, 0.1), shortest);
-      NodePath path;
+      Path path;
       found.find(from, to, path, 1e9);
       ASSERT_EQ(path.end == PathEnd::kReached, shortest.end == PathEnd::kReached) << name;
       if (path.end != PathEnd::kReached || shortest.length < 2) continue;
       double plan = 0;
       for (size_t i = 1; i < path.points.size(); ++i) {
-        const Vec3d d = path.points[i].place.feet - path.points[i - 1].place.feet;
+        const Vec3d d = path.node_places[i].feet - path.node_places[i - 1].feet;
         plan += std::hypot(d.x, d.z);
       }
       sum += plan / shortest.length;
@@ -223,14 +223,14 @@ TEST(NodePath, ReportsWhereItEnds) {
   const NodePlace from = found.find_place({1, 0, 3}, 1), to = found.find_place({13, 0, 3}, 1);
   ASSERT_TRUE(from);
   ASSERT_TRUE(to);
-  NodePath path;
+  Path path;
   found.find(from, to, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
   EXPECT_EQ(path.blocked_by, Blocker::kGap);
   ASSERT_FALSE(path.points.empty());
-  EXPECT_GT(path.points.back().place.feet.x, 5.5);
-  EXPECT_LT(path.points.back().place.feet.x, 6);
-  EXPECT_NEAR(path.points.back().place.feet.z, 3, 1e-3);
+  EXPECT_GT(path.node_places.back().feet.x, 5.5);
+  EXPECT_LT(path.node_places.back().feet.x, 6);
+  EXPECT_NEAR(path.node_places.back().feet.z, 3, 1e-3);
   // Right over it, and to the side: nothing stops it, and yet it does not get there.
   for (const double x : {1.0, 4.0}) {
     found.find(from, found.find_place({x, 3, 3}, 0.5), path);
@@ -262,7 +262,7 @@ TEST(NodePath, EndsAtTheNearestPlaceThatIsReached) {
     const path::NodeView view(*mesh);
     const path::NodeParts parts(*mesh, 1);
     path::NodeParts::Reached reached;
-    NodePath path;
+    Path path;
     for (uint64_t n = 0; n < 150; ++n) {
       const NodePlace from = nodes.random_place(avatar_class, 5, 2 * n);
       const NodePlace to = nodes.random_place(avatar_class, 5, 2 * n + 1);
@@ -276,7 +276,7 @@ TEST(NodePath, EndsAtTheNearestPlaceThatIsReached) {
         const auto [s, t] = path::nearest_in(view.surface(b), view.block(b), to.feet);
         nearest = std::min(nearest, length(view.surface(b).at(s, t) - to.feet));
       }
-      const double ends = length(path.points.back().place.feet - to.feet);
+      const double ends = length(path.node_places.back().feet - to.feet);
       EXPECT_GE(ends, nearest - 1e-6) << n;
       if (ends > 25) continue;  // Farther off it may be the nearest crossing.
       ++unreachable;
@@ -299,16 +299,16 @@ TEST(NodePath, OffMeshLinksLeadOnlyWhereTheyAreGiven) {
   ASSERT_TRUE(nodes);
   NodePathFinder found = finder(*nodes, 0);
   const NodePlace here = found.find_place({1, 0, 3}, 1), there = found.find_place({13, 0, 3}, 1);
-  NodePath path;
+  Path path;
   found.find(here, there, path);
   EXPECT_EQ(path.end, PathEnd::kReached);
   EXPECT_NEAR(path.length, 12, 0.05);
   const auto off_mesh_link =
       std::find_if(path.links.begin(), path.links.end(),
-                   [](const NodePathLink& l) { return l.kind == LinkKind::kOffMesh; });
+                   [](const PathLink& l) { return l.kind == LinkKind::kOffMesh; });
   ASSERT_NE(off_mesh_link, path.links.end());
   EXPECT_TRUE(off_mesh_link->over_hole);
-  EXPECT_NEAR(path.points[off_mesh_link->point].place.feet.x, 10, 0.21);
+  EXPECT_NEAR(path.node_places[off_mesh_link->point].feet.x, 10, 0.21);
   found.find(there, here, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
 }
@@ -316,17 +316,17 @@ TEST(NodePath, OffMeshLinksLeadOnlyWhereTheyAreGiven) {
 TEST(NodePath, SteepGroundIsAvoidedForACost) {
   const Nodes nodes = make(net_scene(8), 0.25, 0.7);
   NodePathFinder straight = finder(nodes, 4), level = finder(nodes, 4, 20);
-  const auto rise = [](const NodePath& path) {
+  const auto rise = [](const Path& path) {
     double sum = 0;
     for (size_t i = 1; i < path.points.size(); ++i) {
-      const NodePlace &a = path.points[i - 1].place, &b = path.points[i].place;
+      const NodePlace &a = path.node_places[i - 1], &b = path.node_places[i];
       sum += length(b.feet - a.feet) * (2 - a.normal.y - b.normal.y) / 2;
     }
     return sum;
   };
   double steep = 0, gentle = 0, length_straight = 0, length_gentle = 0;
   for (uint64_t n = 0; n < 60; ++n) {
-    NodePath a, b;
+    Path a, b;
     const NodePlace from = nodes.random_place(4, 9, 2 * n),
                     to = nodes.random_place(4, 9, 2 * n + 1);
     straight.find(from, to, a);
@@ -401,12 +401,12 @@ TEST(NodePath, PathsAreTheSameForCopiesAndAnyThreads) {
     ASSERT_TRUE(made);
     NodePathFinder copy = *made;
     std::vector<double> all;
-    NodePath path;
+    Path path;
     for (uint64_t n = 0; n < 20; ++n) {
       (n % 2 == 0 ? *made : copy)
           .find(nodes.random_place(4, 1, 2 * n), nodes.random_place(4, 1, 2 * n + 1), path);
       all.push_back(path.cost);
-      for (const NodePathPoint& p : path.points) all.push_back(p.place.s + p.place.feet.y);
+      for (const NodePlace& p : path.node_places) all.push_back(p.s + p.feet.y);
     }
     if (first.empty()) first = all;
     EXPECT_EQ(all, first);

@@ -55,7 +55,7 @@ int run() {
   });
   const Nodes nodes = need(Nodes::create(world, scene, {}, context));
   NodePathFinder over_nodes = need(NodePathFinder::create(nodes, {}, context));
-  NodePath node_path;
+  Path node_path;
   sum += late("nodes", [&](uint64_t n) {
     over_nodes.find(over_nodes.find_place(from(n).position, 1),
                     over_nodes.find_place(to(n).position, 1), node_path);
@@ -63,7 +63,7 @@ int run() {
   });
   FlightFinder flight = need(FlightFinder::create(
       world, {.avatar_class = static_cast<int32_t>(classes.size()) - 1}, context));
-  FlightPath flown;
+  Path flown;
   sum += late("flight", [&](uint64_t n) {
     flight.find({.from = from(n).position, .to = to(n).position}, flown);
     reached += flown.end == PathEnd::kReached;

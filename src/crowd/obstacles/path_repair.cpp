@@ -84,7 +84,10 @@ void lead_around(const world::WorldData& world, LiveGround& live, const StrideGr
   const PathRepair repair(world, live, ground);
   if (repair.is_whole(path.points)) return;
   const Place from = path.points.front(), to = path.points.back();
-  if (repair.insert_detours(path.points, path.length, scratch)) return;
+  if (repair.insert_detours(path.points, path.length, scratch)) {
+    path.segments.assign(path.points.size() - 1, SegmentKind::kWalk);
+    return;
+  }
   live.find(from, to, path, budget);
 }
 

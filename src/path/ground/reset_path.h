@@ -11,8 +11,11 @@ namespace throng::path {
 inline void reset(Path& path) {
   path.end = PathEnd::kNoPlace;
   path.points.clear();
-  path.off_mesh_links.clear();
-  path.length = path.cost = 0;
+  path.node_places.clear();
+  path.segments.clear();
+  path.links.clear();
+  path.corridor.clear();
+  path.length = path.cost = path.searched_cost = 0;
   path.blocked_by = Blocker::kNone;
   path.nodes = 0;
   path.spent = SpentBudget::kNone;

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "throng/path.h"
+
+namespace throng::app {
+
+/// The options of `throng path`.
+struct PathOptions {
+  std::string world;
+  std::string avatar_class = "adult";
+  std::vector<double> from, to;
+  double tolerance = 1.0;
+  int32_t threads = 0;
+  bool fly = false;
+  bool nodes = false;
+  std::vector<double> blocks;          // six numbers a box
+  std::vector<double> off_mesh_links;  // six numbers a link
+  std::vector<double> area_costs;      // a kind and its cost
+  double slope_cost = 0;
+  uint64_t search_bytes = SearchBudget::kDefaultBytes;
+
+  [[nodiscard]] bool is_live() const {
+    return !blocks.empty() || !off_mesh_links.empty() || !area_costs.empty() || slope_cost > 0;
+  }
+};
+
+void add_path_options(CLI::App& command, PathOptions& options);
+
+/// Refuses options that do not go together. [kBadConfig]
+[[nodiscard]] Result<void> check_options(const PathOptions& options, bool over_nodes);
+
+}  // namespace throng::app

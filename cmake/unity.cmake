@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-option(THRONG_UNITY "Compile files of a folder together: faster from nothing, slower after a change" OFF)
+set(THRONG_UNITY OFF CACHE STRING
+    "Compile files of a folder together, faster from nothing and slower after a change: OFF, TESTS, ON")
 
 # The names that a file defines at the left margin, among them those of its unnamed namespace, and
 # those that it takes from another namespace.
@@ -29,7 +30,7 @@ endfunction()
 # never put together. Alone stay loops that are compiled for each SIMD width and files that open a
 # namespace by a using-directive. CMake leaves out files with definitions of their own.
 function(throng_unity target)
-  if(NOT THRONG_UNITY)
+  if(NOT THRONG_UNITY OR (THRONG_UNITY STREQUAL TESTS AND NOT target MATCHES "_tests$"))
     return()
   endif()
   get_target_property(sources ${target} SOURCES)

@@ -224,6 +224,7 @@ TEST(Flyers, TakeOffAndLandWhereNoPathOnFootLeads) {
   scene.add_box({1, 1.9, 1}, {3.5, 2.5, 5.5});  // no take-off under this table
   Stage stage(scene);
   Crowd crowd = made(stage.world());
+  EXPECT_EQ(crowd.flight_finder(kFlyer), nullptr) << "no flyer yet";
   std::vector<AvatarSpawn> spawns;
   std::vector<Place> goals;
   for (int i = 0; i < 12; ++i) {
@@ -232,6 +233,9 @@ TEST(Flyers, TakeOffAndLandWhereNoPathOnFootLeads) {
     goals.push_back(stage.ground({here.x + 27.5, 3, here.z}));
   }
   const auto ids = added(crowd, spawns);
+  ASSERT_NE(crowd.flight_finder(kFlyer), nullptr);
+  EXPECT_TRUE(crowd.flight_finder(kFlyer)->take_off(goals[0]));
+  EXPECT_EQ(crowd.flight_finder(kAdult), nullptr) << "adults do not fly";
   crowd.set_goals(ids, goals);
   const Trip<Stage> flown = go(crowd, stage, spawns.size(), 600);
   expect_all(flown, spawns.size());

@@ -63,6 +63,17 @@ TEST(CaacdStudy, TheNamedSetsComeOutInThePapersOrder) {
   EXPECT_GT(studied(blind).at(0, 0).mean, 4 * study.at(2, 0).mean);
 }
 
+TEST(CaacdStudy, AModelWithASetDiffersInItsThreeNumbersOnly) {
+  Model model;
+  model.mass = 7;
+  model.trigger = Trigger::kNever;
+  const Model made = with_set(model, {1.5, 0.8, 0.1});
+  EXPECT_EQ(made.mass, 1.5);
+  EXPECT_EQ(made.max_speed, 0.8);
+  EXPECT_EQ(made.max_force, 0.1);
+  EXPECT_EQ(made.trigger, Trigger::kNever);
+}
+
 TEST(CaacdStudy, SetsAreNamedAsThePaperDoes) {
   EXPECT_EQ(name_of({2, 0.4, 0.06}), "2.0/0.4/0.06");
   EXPECT_EQ(name_of({1, 1, 0.2}), "1.0/1.0/0.20");

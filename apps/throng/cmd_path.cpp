@@ -71,8 +71,7 @@ int fly(Session& session, const PathOptions& options, const World& world, int32_
     finder->find({.from = *from,
                   .to = *to,
                   .vertical_tolerance = options.tolerance,
-                  .max_bytes = options.search_bytes,
-                  .cancel = &session.context.cancel},
+                  .budget = {UINT64_MAX, &session.context.cancel, options.search_bytes}},
                  found);
   });
   if (found.end == PathEnd::kNoPlace) {

@@ -42,7 +42,7 @@ Json crates(FlightFinder& finder, int64_t trials, int64_t standing, double away,
     const double angle = static_cast<double>(n % 360) * 0.0174533;
     const Vec3d to{from->x + away * std::cos(angle), from->y, from->z + away * std::sin(angle)};
     if (!finder.is_legal(to)) continue;
-    const FlightQuery query{.from = *from, .to = to, .max_nodes = 20000, .nearest = false};
+    const FlightQuery query{.from = *from, .to = to, .budget = 20000, .nearest = false};
     auto start = Clock::now();
     finder.find(query, path);
     const double first = milliseconds_since(start);

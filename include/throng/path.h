@@ -88,11 +88,22 @@ enum class PathSpeedup : uint8_t {
   kZones,
 };
 
-/// Settings for PathFinder::create.
+/// Settings for making a finder. One that has no use for a setting refuses other values than the
+/// default with kBadConfig.
 struct PathConfig {
   int32_t avatar_class = 0;
-  int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores.
-  PathSpeedup speedup = PathSpeedup::kNone;
+  /// Not of PathFinder and FlightFinder. Cost of a metre on level tiles: 1 + slope_cost * rise.
+  /// Rises are rounded up to 5, 10, 20, 35, 60 or 120 %; the gentlest class counts as level ground,
+  /// the steepest holds all steeper slopes, too. Over nodes, on ground with an inclination a: 1 +
+  /// slope_cost * (1 - cos a), so level ground 1, a wall 1 + slope_cost, a ceiling 1 + 2
+  /// slope_cost. [0 to 1000]
+  double slope_cost = 0;
+  /// Of NodePathFinder: makes an overlay where there are many crossings (2^15), over which long
+  /// paths are searched: it knows the costs of crossing squares of ground. Its paths are seldom
+  /// much longer than the best. Making it takes as long as a few searches of the whole world.
+  bool overlay = true;
+  int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores. [>= 0]
+  PathSpeedup speedup = PathSpeedup::kNone;  ///< Of PathFinder.
 };
 
 /// How a search ended.
@@ -168,8 +179,8 @@ struct PathSummary {
 /// searching: give every thread one. No allocation once it is warm.
 class THRONG_API PathFinder {
  public:
-  /// Makes a finder. Reads every zone once. Fails with kBadConfig (no such class, or zones with too
-  /// many corners for kZones), kBadFile (a zone cannot be used) or kCancelled.
+  /// Makes a finder. Reads every zone once. Fails with kBadConfig (no such class, a slope cost, or
+  /// zones with too many corners for kZones), kBadFile (a zone cannot be used) or kCancelled.
   [[nodiscard]] static Result<PathFinder> create(const World& world, const PathConfig& config,
                                                  Context& context);
   PathFinder(const PathFinder& other);
@@ -204,15 +215,6 @@ class THRONG_API PathFinder {
 // discards only the tiles that it touches. Use it for large worlds that change; for many paths
 // over a world that does not change, use a PathFinder.
 
-/// Settings for LiveGround::create.
-struct LiveConfig {
-  int32_t avatar_class = 0;
-  /// Cost of a metre on a slope is 1 + slope_cost * rise. Rises are rounded up to 5, 10, 20, 35, 60
-  /// or 120 %; the gentlest class counts as level ground, the steepest holds all steeper slopes,
-  /// too. [>= 0]
-  double slope_cost = 0;
-};
-
 /// An off-mesh link, see LiveGround::add_off_mesh_link.
 struct OffMeshLink {
   Place from, to;
@@ -229,7 +231,7 @@ using ChangeId = uint32_t;
 class THRONG_API LiveGround {
  public:
   /// Makes the ground of a class; reads nothing yet. Fails with kBadConfig.
-  [[nodiscard]] static Result<LiveGround> create(const World& world, const LiveConfig& config);
+  [[nodiscard]] static Result<LiveGround> create(const World& world, const PathConfig& config);
   LiveGround(const LiveGround&);
   LiveGround& operator=(const LiveGround&);
   LiveGround(LiveGround&&) noexcept;
@@ -294,23 +296,14 @@ struct AirSummary {
 /// without air) or kBadFile.
 [[nodiscard]] THRONG_API Result<AirSummary> air_summary(const World& world);
 
-/// Settings for FlightFinder::create.
-struct FlightConfig {
-  int32_t avatar_class = 0;  ///< A class that flies.
-  int32_t workers = 0;       ///< Threads for making the finder, 0 for all cores.
-};
-
 /// Input of FlightFinder::find.
 struct FlightQuery {
   /// Feet. In the air, or on the ground within `vertical_tolerance` above or below. [m]
   Vec3d from, to;
   double vertical_tolerance = 0.5;  ///< [m, >= 0]
-  /// Limit of air boxes expanded; of nodes, for each path on foot.
-  uint64_t max_nodes = UINT64_MAX;
-  /// SearchBudget::max_bytes of each flight and of each path on foot. [bytes]
-  uint64_t max_bytes = SearchBudget::kDefaultBytes;
-  /// Set from any thread to stop the search. A search on foot ends before it is read.
-  const std::atomic<bool>* cancel = nullptr;
+  /// Counts air boxes, and for each path on foot its nodes. A search on foot ends before `cancel`
+  /// is read.
+  SearchBudget budget = {};
   /// If no single flight leads to the goal, search paths that land, walk and take off again.
   bool by_turns = true;
   /// If no path leads to the goal, find the path to the point that comes nearest. Linear in the air
@@ -332,7 +325,7 @@ class THRONG_API FlightFinder {
  public:
   /// Makes a finder. Reads every zone once. Fails with kNotFound (a world without air), kBadConfig
   /// (no such class, or it does not fly), kBadFile or kCancelled.
-  [[nodiscard]] static Result<FlightFinder> create(const World& world, const FlightConfig& config,
+  [[nodiscard]] static Result<FlightFinder> create(const World& world, const PathConfig& config,
                                                    Context& context);
   FlightFinder(const FlightFinder& other);
   FlightFinder& operator=(const FlightFinder& other);
@@ -402,19 +395,6 @@ class THRONG_API FlightFinder {
 // Paths over nodes, for every class and in particular for climbers: over walls and under ceilings.
 // Source: [PACS00] 1.2.3; docs/design/006-nodes.md.
 
-/// Settings for NodePathFinder::create.
-struct NodePathConfig {
-  int32_t avatar_class = 0;
-  /// Cost of a metre on ground with an inclination a is 1 + slope_cost * (1 - cos a): level ground
-  /// 1, a wall 1 + slope_cost, a ceiling 1 + 2 slope_cost. [>= 0]
-  double slope_cost = 0;
-  /// Makes an overlay where there are many crossings (2^15), over which long paths are searched: it
-  /// knows the costs of crossing squares of ground. Its paths are seldom much longer than the best.
-  /// Making it takes as long as a few searches of the whole world.
-  bool overlay = true;
-  int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores.
-};
-
 /// Sizes of a NodePathFinder.
 struct NodePathSummary {
   uint64_t blocks = 0;     ///< Squares of patches where the class can stand.
@@ -434,8 +414,7 @@ class THRONG_API NodePathFinder {
  public:
   /// Makes a finder. Reads all nodes once. Fails with kBadConfig, kBadFile (a zone cannot be used)
   /// or kCancelled.
-  [[nodiscard]] static Result<NodePathFinder> create(const Nodes& nodes,
-                                                     const NodePathConfig& config,
+  [[nodiscard]] static Result<NodePathFinder> create(const Nodes& nodes, const PathConfig& config,
                                                      Context& context);
   NodePathFinder(const NodePathFinder& other);
   NodePathFinder& operator=(const NodePathFinder& other);

@@ -44,10 +44,6 @@ void clear(Path& path) {
   path.nodes = nodes;
 }
 
-SearchBudget budget_of(const FlightQuery& query) {
-  return {query.max_nodes, query.cancel, query.max_bytes};
-}
-
 void add(Vec3d point, SegmentKind kind, Path& path) {
   if (!path.points.empty()) {
     path.length += distance(path.points.back().position, point);
@@ -244,7 +240,7 @@ FlightFinder::FlightFinder(FlightFinder&&) noexcept = default;
 FlightFinder& FlightFinder::operator=(FlightFinder&&) noexcept = default;
 FlightFinder::~FlightFinder() = default;
 
-Result<FlightFinder> FlightFinder::create(const World& world, const FlightConfig& config,
+Result<FlightFinder> FlightFinder::create(const World& world, const PathConfig& config,
                                           Context& context) {
   if (data_of(world) == nullptr) return Error{Errc::kBadInput, "flight: the world is empty"};
   const world::WorldData& data = *data_of(world);
@@ -257,6 +253,7 @@ Result<FlightFinder> FlightFinder::create(const World& world, const FlightConfig
   if (auto ok = check_class(data.summary.classes, config.avatar_class, "flight"); !ok)
     return ok.error();
   if (config.workers < 0) return Error{Errc::kBadConfig, "flight: workers must be 0 or more"};
+  if (auto ok = path::refuse_settings(config, "flight", false); !ok) return ok.error();
   const AvatarClass& avatar = data.summary.classes[static_cast<size_t>(config.avatar_class)];
   if (!avatar.flies) {
     return Error{Errc::kBadConfig, "flight: class " + avatar.name +
@@ -383,7 +380,7 @@ void FlightFinder::find(const FlightQuery& query, Path& path) {
   if (query.by_turns && path.end == PathEnd::kUnreachable) find_by_turns(query, path);
   if (query.nearest && path.end == PathEnd::kUnreachable) find_nearest(query, path);
   if (path.end == PathEnd::kBudgetExhausted) {
-    const bool stopped = query.cancel != nullptr && *query.cancel;
+    const bool stopped = query.budget.cancel != nullptr && *query.budget.cancel;
     path.spent = stopped ? SpentBudget::kCancelled : scratch_->spent;
   }
   path.cost = path.length;
@@ -401,16 +398,17 @@ bool FlightFinder::locate(Vec3d at, double vertical_tolerance, End& end) const {
 PathEnd FlightFinder::walk(const FlightQuery& query, const Place& from, const Place& to,
                            Path& path) {
   path::reset(path);
-  if (query.cancel != nullptr && *query.cancel) return PathEnd::kBudgetExhausted;
+  if (query.budget.cancel != nullptr && *query.budget.cancel) return PathEnd::kBudgetExhausted;
   if (!scratch_->is_changed()) {
-    scratch_->walker->find(from, to, path, {query.max_nodes, nullptr, query.max_bytes});
+    scratch_->walker->find(from, to, path,
+                           {query.budget.max_nodes, nullptr, query.budget.max_bytes});
     if (path.end == PathEnd::kBudgetExhausted) scratch_->spent = path.spent;
     return path.end;
   }
   if (state_->ground_of(from) != state_->ground_of(to)) {
     path.end = PathEnd::kUnreachable;
   } else {
-    scratch_->ground(*state_).find(from, to, path, budget_of(query));
+    scratch_->ground(*state_).find(from, to, path, query.budget);
     if (path.end == PathEnd::kBudgetExhausted) scratch_->spent = path.spent;
   }
   return path.end;
@@ -437,7 +435,8 @@ void FlightFinder::find_flight(const FlightQuery& query, Path& path) {
     if (!b.ground) return to_link(a, component_of(*b.air));
     if (!to_link(a, path::kNoBox) || !to_link(b, path::kNoBox)) return false;
     if (air.same_component(*a.air, *b.air)) return true;
-    const uint32_t common = scratch.common_air(*state_, air, a, b, query.cancel, budget_exhausted);
+    const uint32_t common =
+        scratch.common_air(*state_, air, a, b, query.budget.cancel, budget_exhausted);
     return common != path::kNoBox && to_link(a, common) && to_link(b, common);
   };
   const auto find_on_foot = [&](const Place& a, const Place& b, Path& ground) {
@@ -462,10 +461,10 @@ void FlightFinder::find_flight(const FlightQuery& query, Path& path) {
   const bool ground_air_links = to_links(from, to);
   path::SearchResult result = path::SearchResult::kNone;
   if (ground_air_links && air.same_component(*from.air, *to.air)) {
-    result = scratch.search.find(air, *from.air, *to.air, budget_of(query), scratch.air_path);
+    result = scratch.search.find(air, *from.air, *to.air, query.budget, scratch.air_path);
     path.nodes = scratch.search.expanded();
     if (result == path::SearchResult::kBudget) {
-      scratch.spent = budget_of(query).spent(path.nodes);
+      scratch.spent = query.budget.spent(path.nodes);
       budget_exhausted = true;
     }
     if (result == path::SearchResult::kNone) {
@@ -569,10 +568,10 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
       return;
     }
     const path::SearchResult result =
-        scratch.search.find(view, air, there, budget_of(query), scratch.air_path);
+        scratch.search.find(view, air, there, query.budget, scratch.air_path);
     path.nodes += scratch.search.expanded();
     if (result == path::SearchResult::kBudget)
-      scratch.spent = budget_of(query).spent(scratch.search.expanded());
+      scratch.spent = query.budget.spent(scratch.search.expanded());
     end = result == path::SearchResult::kFound    ? PathEnd::kReached
           : result == path::SearchResult::kBudget ? PathEnd::kBudgetExhausted
                                                   : PathEnd::kUnreachable;

@@ -70,7 +70,7 @@ LiveGround::LiveGround(LiveGround&&) noexcept = default;
 LiveGround& LiveGround::operator=(LiveGround&&) noexcept = default;
 LiveGround::~LiveGround() = default;
 
-Result<LiveGround> LiveGround::create(const World& world, const LiveConfig& config) {
+Result<LiveGround> LiveGround::create(const World& world, const PathConfig& config) {
   if (data_of(world) == nullptr) return Error{Errc::kBadInput, "live ground: the world is empty"};
   if (auto ok = check_class(data_of(world)->summary.classes, config.avatar_class, "live ground");
       !ok)
@@ -78,6 +78,7 @@ Result<LiveGround> LiveGround::create(const World& world, const LiveConfig& conf
   if (!(config.slope_cost >= 0 && config.slope_cost <= 1000)) {
     return Error{Errc::kBadConfig, "live ground: slope_cost must be 0 to 1000"};
   }
+  if (auto ok = path::refuse_settings(config, "live ground", true); !ok) return ok.error();
   return LiveGround(std::make_unique<State>(path::LiveMesh(world, config)));
 }
 

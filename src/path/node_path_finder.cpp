@@ -39,7 +39,7 @@ constexpr uint64_t kNearCrossings = 2048;
 }  // namespace
 
 struct NodePathFinder::Shared {
-  Shared(graph::NodeMesh made, const NodePathConfig& config)
+  Shared(graph::NodeMesh made, const PathConfig& config)
       : mesh(std::move(made)),
         slope_cost(config.slope_cost),
         squares(mesh),
@@ -435,7 +435,7 @@ NodePathFinder::NodePathFinder(NodePathFinder&&) noexcept = default;
 NodePathFinder& NodePathFinder::operator=(NodePathFinder&&) noexcept = default;
 NodePathFinder::~NodePathFinder() = default;
 
-Result<NodePathFinder> NodePathFinder::create(const Nodes& nodes, const NodePathConfig& config,
+Result<NodePathFinder> NodePathFinder::create(const Nodes& nodes, const PathConfig& config,
                                               Context& context) {
   const auto start = std::chrono::steady_clock::now();
   if (data_of(nodes) == nullptr) return Error{Errc::kBadInput, "path: there are no nodes"};
@@ -449,6 +449,7 @@ Result<NodePathFinder> NodePathFinder::create(const Nodes& nodes, const NodePath
     return Error{Errc::kBadConfig, "path: slope_cost must be 0 to 1000"};
   }
   if (config.workers < 0) return Error{Errc::kBadConfig, "path: workers must be 0 or more"};
+  if (auto ok = path::refuse_settings(config, "path", true); !ok) return ok.error();
   auto mesh = graph::NodeMesh::make(nodes, config.avatar_class, config.workers, context);
   if (!mesh) return mesh.error();
   auto shared = std::make_shared<Shared>(std::move(*mesh), config);

@@ -84,6 +84,9 @@ Result<PathFinder> PathFinder::create(const World& world, const PathConfig& conf
   if (auto ok = check_class(data_of(world)->summary.classes, config.avatar_class, "path"); !ok)
     return ok.error();
   if (config.workers < 0) return Error{Errc::kBadConfig, "path: workers must be 0 or more"};
+  if (config.slope_cost != 0) {
+    return Error{Errc::kBadConfig, "path: PathFinder has no slope_cost; LiveGround has"};
+  }
   const auto start = std::chrono::steady_clock::now();
   if (auto ok = world.check_ground(); !ok) return ok.error();
   auto mesh = path::build_mesh(*data_of(world), config.avatar_class, config.workers, context);

@@ -226,7 +226,7 @@ Result<Marks> air_marks(const World& world, double height, Vec3d origin, Context
   if (flyer == summary.classes.end()) {
     return Error{Errc::kNotFound, "air: no class of this world flies; bake it with one that does"};
   }
-  FlightConfig config;
+  PathConfig config;
   config.avatar_class = static_cast<int32_t>(flyer - summary.classes.begin());
   const Result<FlightFinder> finder = FlightFinder::create(world, config, context);
   if (!finder) return finder.error();

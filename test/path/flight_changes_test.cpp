@@ -587,7 +587,7 @@ TEST(FlightChanges, ABoxedInGoalIsReportedWithTheNearestPoint) {
   ASSERT_FALSE(path.points.empty());
   EXPECT_LT(length(path.points.back().position - goal), 1.2);
   // It keeps to its budget.
-  flight.find({.from = {15, 3, 4}, .to = {21, 3, 4}, .max_nodes = 2}, path);
+  flight.find({.from = {15, 3, 4}, .to = {21, 3, 4}, .budget = 2}, path);
   EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
 }
 
@@ -643,10 +643,10 @@ TEST(FlightChanges, AWallThroughALargeWorldIsFoundBySearching) {
       EXPECT_NEAR(path.points.back().position.x, 48.3, 5);
     }
   }
-  flight.find({.from = left[0], .to = right[0], .max_nodes = 500}, path);
+  flight.find({.from = left[0], .to = right[0], .budget = 500}, path);
   EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
   const std::atomic<bool> cancel = true;
-  flight.find({.from = left[0], .to = right[0], .cancel = &cancel}, path);
+  flight.find({.from = left[0], .to = right[0], .budget = {UINT64_MAX, &cancel}}, path);
   EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
   flight.remove(*wall);
   flight.find({.from = left[0], .to = right[0]}, path);

@@ -191,7 +191,7 @@ TEST(Flight, ReportsUnreachableGoalsAndKeepsToItsBudget) {
   ASSERT_TRUE(flight.is_legal({15, 4, 4}));
   flight.find({.from = {15, 4, 4}, .to = {32, 6, 4}}, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
-  flight.find({.from = {5, 5, 4}, .to = {32, 5, 4}, .max_nodes = 3}, path);
+  flight.find({.from = {5, 5, 4}, .to = {32, 5, 4}, .budget = 3}, path);
   EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
   flight.find({.from = {5, 5, 4}, .to = {32, 5, 4}}, path);
   EXPECT_EQ(path.end, PathEnd::kReached);
@@ -244,7 +244,7 @@ TEST(Flight, LandsAndTakesOffAgainWhereOnlyTheGroundLeadsFromAirToAir) {
   flight.find({.from = here, .to = there, .by_turns = false, .nearest = false}, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
   EXPECT_TRUE(path.points.empty());
-  flight.find({.from = here, .to = there, .max_nodes = 1}, path);
+  flight.find({.from = here, .to = there, .budget = 1}, path);
   EXPECT_NE(path.end, PathEnd::kReached);
 }
 
@@ -339,12 +339,12 @@ TEST(Flight, AnExhaustedBudgetOnFootIsNoProofThatNoPathExists) {
   flight.find(query, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   ASSERT_EQ(path.segments.back(), SegmentKind::kWalk);
-  query.max_nodes = 1;
+  query.budget.max_nodes = 1;
   flight.find(query, path);
   EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
-  query.max_nodes = UINT64_MAX;
+  query.budget.max_nodes = UINT64_MAX;
   const std::atomic<bool> cancel = true;
-  query.cancel = &cancel;
+  query.budget.cancel = &cancel;
   flight.find(query, path);
   EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
 }

@@ -415,7 +415,7 @@ TEST(NodePath, PathsAreTheSameForCopiesAndAnyThreads) {
 
 TEST(NodePath, BadInputIsRefusedAndNamed) {
   Context context;
-  const auto message = [&](const Nodes& nodes, const NodePathConfig& config) {
+  const auto message = [&](const Nodes& nodes, const PathConfig& config) {
     const auto made = NodePathFinder::create(nodes, config, context);
     EXPECT_FALSE(made);
     return made ? std::string() : made.error().message;
@@ -425,6 +425,8 @@ TEST(NodePath, BadInputIsRefusedAndNamed) {
   EXPECT_EQ(message(nodes, {.avatar_class = 9}), "path: the world has no avatar class 9; it has 6");
   EXPECT_EQ(message(nodes, {.slope_cost = -1}), "path: slope_cost must be 0 to 1000");
   EXPECT_EQ(message(nodes, {.workers = -1}), "path: workers must be 0 or more");
+  EXPECT_EQ(message(nodes, {.speedup = PathSpeedup::kLabels}),
+            "path: only PathFinder has a speedup");
   context.cancel = true;
   EXPECT_EQ(message(nodes, {}), "path: cancelled");
 }

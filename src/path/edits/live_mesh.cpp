@@ -30,7 +30,7 @@ uint16_t LiveLevel::rect_at(int32_t x, int32_t z) const {
   return static_cast<uint16_t>(r);
 }
 
-LiveMesh::LiveMesh(World world, const LiveConfig& config)
+LiveMesh::LiveMesh(World world, const PathConfig& config)
     : world_(std::move(world)),
       config_(config),
       step_(world::step_mm(

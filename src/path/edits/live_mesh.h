@@ -52,7 +52,7 @@ struct LiveLevel {
 /// Levels and the changes made to them. Copies share nothing.
 class LiveMesh {
  public:
-  LiveMesh(World world, const LiveConfig& config);
+  LiveMesh(World world, const PathConfig& config);
   LiveMesh(const LiveMesh& other);
 
   [[nodiscard]] const world::WorldData& world() const { return *data_of(world_); }
@@ -131,7 +131,7 @@ class LiveMesh {
   [[nodiscard]] std::array<uint8_t, 4096> slopes_of(const LiveLevel& level) const;
 
   World world_;
-  LiveConfig config_;
+  PathConfig config_;
   int32_t step_ = 0;  // [mm]
   std::array<double, 64> area_cost_{};
   std::array<double, kSlopeClasses> slope_factor_{};

@@ -2,10 +2,24 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
+
 #include "throng/path.h"
 
-/// What every finder does to a path before it fills it.
+/// What finders have in common: what they do to a path before they fill it, and what they refuse.
 namespace throng::path {
+
+/// Refuses settings that only PathFinder has, and a slope cost where there is none. [kBadConfig]
+inline Result<void> refuse_settings(const PathConfig& config, const std::string& finder,
+                                    bool has_slope_cost) {
+  if (config.speedup != PathSpeedup::kNone) {
+    return Error{Errc::kBadConfig, finder + ": only PathFinder has a speedup"};
+  }
+  if (!has_slope_cost && config.slope_cost != 0) {
+    return Error{Errc::kBadConfig, finder + ": there is no slope_cost"};
+  }
+  return {};
+}
 
 /// Nothing found, from no place; the memory stays.
 inline void reset(Path& path) {

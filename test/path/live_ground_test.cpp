@@ -410,7 +410,7 @@ TEST(LiveGround, NothingOfAnOldPathIsLeft) {
   ASSERT_EQ(path.links.size(), 1u);
   finder.find(at(1, 1), at(2, 5), path);
   EXPECT_TRUE(path.links.empty());
-  EXPECT_EQ(path.cost, 0);
+  EXPECT_EQ(path.cost, path.length);
 }
 
 TEST(LiveGround, SearchesInSlicesAndStartsAgainWhenTheGroundChanges) {

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
 set(THRONG_UNITY OFF CACHE STRING
-    "Compile files of a folder together, faster from nothing and slower after a change: OFF, TESTS, ON")
+    "Compile files of a folder together, faster from nothing and slower after a change: OFF; PROGRAMS, tests and commands; ON")
 
 # The names that a file defines at the left margin, among them those of its unnamed namespace, and
 # those that it takes from another namespace.
@@ -25,13 +25,17 @@ function(throng_names_of source defined_out used_out)
   set(${used_out} "${used}" PARENT_SCOPE)
 endfunction()
 
-# throng_unity(TARGET): compiles up to eight source files of one folder as one, so that their headers
-# are parsed once. Names in unnamed namespaces then meet, so two files that define the same name are
-# never put together. Alone stay loops that are compiled for each SIMD width and files that open a
-# namespace by a using-directive. CMake leaves out files with definitions of their own.
+# throng_unity(TARGET [MOST]): compiles up to eight source files of one folder as one, or MOST, so that
+# their headers are parsed once. Names in unnamed namespaces then meet, so two files that define the
+# same name are never put together. Alone stay loops that are compiled for each SIMD width and files
+# that open a namespace by a using-directive. CMake leaves out files with definitions of their own.
 function(throng_unity target)
-  if(NOT THRONG_UNITY OR (THRONG_UNITY STREQUAL TESTS AND NOT target MATCHES "_tests$"))
+  if(NOT THRONG_UNITY OR (THRONG_UNITY STREQUAL PROGRAMS AND NOT target MATCHES "_(tests|commands)$"))
     return()
+  endif()
+  set(most 8)
+  if(ARGC GREATER 1)
+    set(most ${ARGV1})
   endif()
   get_target_property(sources ${target} SOURCES)
   list(FILTER sources INCLUDE REGEX "\\.cpp$")
@@ -58,7 +62,7 @@ function(throng_unity target)
         endif()
       endforeach()
       list(LENGTH ${id}_files count)
-      if(NOT meets AND count LESS 8)
+      if(NOT meets AND count LESS ${most})
         break()
       endif()
       math(EXPR group "${group} + 1")

@@ -33,6 +33,11 @@ function(throng_unity target)
   if(NOT THRONG_UNITY OR (THRONG_UNITY STREQUAL PROGRAMS AND NOT target MATCHES "_(tests|commands)$"))
     return()
   endif()
+  # Tests that a preset chooses meet otherwise: their unnamed namespaces hide names of headers that
+  # the next file includes first.
+  if(target STREQUAL throng_tests AND CMAKE_CXX_FLAGS MATCHES "-fsanitize=address")
+    return()
+  endif()
   set(most 8)
   if(ARGC GREATER 1)
     set(most ${ARGV1})

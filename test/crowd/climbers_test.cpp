@@ -183,7 +183,7 @@ TEST(Climbers, ManyThatCrossANetAllArrive) {
   Stage stage(net());
   Crowd crowd = on_net(stage, 80);
   EXPECT_GE(crowd.size(), 60u);
-  const Trip<Stage> climbed = go(crowd, stage, crowd.size(), 9000, 10);
+  const TripRun<Stage> climbed = go(crowd, stage, crowd.size(), 9000, 10);
   expect_all(climbed, crowd.size());
   EXPECT_GT(climbed.faults.leaning, 0u);
   EXPECT_GT(climbed.faults.pairs, 0u);

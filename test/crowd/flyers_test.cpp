@@ -237,7 +237,7 @@ TEST(Flyers, TakeOffAndLandWhereNoPathOnFootLeads) {
   EXPECT_TRUE(crowd.flight_finder(kFlyer)->take_off(goals[0]));
   EXPECT_EQ(crowd.flight_finder(kAdult), nullptr) << "adults do not fly";
   crowd.set_goals(ids, goals);
-  const Trip<Stage> flown = go(crowd, stage, spawns.size(), 600);
+  const TripRun<Stage> flown = go(crowd, stage, spawns.size(), 600);
   expect_all(flown, spawns.size());
   EXPECT_EQ(crowd.step().flying, 0u);
 }

@@ -15,7 +15,7 @@ namespace throng {
 
 /// `Stage`: has Faults (overlaps, entered, bodies, pairs) and look(crowd, faults).
 template <class Stage>
-struct Trip {
+struct TripRun {
   size_t arrived = 0;
   int steps = 0;
   typename Stage::Faults faults;
@@ -23,8 +23,8 @@ struct Trip {
 
 /// Steps until `all` have arrived, at most `max_steps`; checks each `every`-th step.
 template <class Stage>
-Trip<Stage> go(Crowd& crowd, Stage& stage, size_t all, int max_steps, int every = 1) {
-  Trip<Stage> trip;
+TripRun<Stage> go(Crowd& crowd, Stage& stage, size_t all, int max_steps, int every = 1) {
+  TripRun<Stage> trip;
   std::set<uint32_t> there;
   for (; trip.steps < max_steps && there.size() < all; ++trip.steps) {
     crowd.step();
@@ -39,7 +39,7 @@ Trip<Stage> go(Crowd& crowd, Stage& stage, size_t all, int max_steps, int every 
 }
 
 template <class Stage>
-void expect_all(const Trip<Stage>& trip, size_t all) {
+void expect_all(const TripRun<Stage>& trip, size_t all) {
   EXPECT_EQ(trip.arrived, all);
   EXPECT_EQ(trip.faults.overlaps, 0u);
   EXPECT_EQ(trip.faults.entered, 0u);

@@ -88,8 +88,8 @@ enum class PathSpeedup : uint8_t {
   kZones,
 };
 
-/// Settings for making a finder. One that has no use for a setting refuses other values than the
-/// default with kBadConfig.
+/// Settings for making a finder. A speedup or a slope cost that a finder does not have is refused
+/// with kBadConfig.
 struct PathConfig {
   int32_t avatar_class = 0;
   /// Not of PathFinder and FlightFinder. Cost of a metre on level tiles: 1 + slope_cost * rise.
@@ -102,7 +102,8 @@ struct PathConfig {
   /// paths are searched: it knows the costs of crossing squares of ground. Its paths are seldom
   /// much longer than the best. Making it takes as long as a few searches of the whole world.
   bool overlay = true;
-  int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores. [>= 0]
+  int32_t workers =
+      0;  ///< Threads for making the finder, 0 for all cores; not of LiveGround. [>= 0]
   PathSpeedup speedup = PathSpeedup::kNone;  ///< Of PathFinder.
 };
 

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #pragma once
-#include <chrono>
 #include <cstddef>
 
 /// What the oracles of paths and of nodes share.
@@ -10,11 +9,5 @@ namespace throng::verify {
 inline constexpr size_t kFaultsOfAKind = 8;  ///< As many faults of one kind are listed.
 inline constexpr size_t kPairBatch = 256;    ///< Pairs between two tests of `cancel`.
 inline constexpr double kSameLength = 1e-6;  ///< [m]
-
-using Clock = std::chrono::steady_clock;
-
-inline double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 }  // namespace throng::verify

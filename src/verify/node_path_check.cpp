@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "throng/path.h"
 #include "throng/verify.h"
 #include "verify/check_limits.h"
@@ -91,9 +92,9 @@ class Follower {
     walked.exists = true;
     walked.at = from.feet;
     walked.together = leads(part_[from.node1 - 1], part_[to.node1 - 1]);
-    const auto start = verify::Clock::now();
+    const auto start = Clock::now();
     finder.find(from, to, path);
-    walked.seconds = verify::seconds_since(start);
+    walked.seconds = seconds_since(start);
     // A place inside an added obstacle is no place.
     if (!config_.obstacles.empty() && path.end == PathEnd::kNoPlace) {
       walked.exists = false;
@@ -223,7 +224,7 @@ class Follower {
 
 Result<NodePathReport> verify_node_paths(const Nodes& nodes, const Scene& source,
                                          const VerifyConfig& config, Context& context) {
-  const auto start = verify::Clock::now();
+  const auto start = Clock::now();
   if (auto sound = verify::check_source(source, config); !sound) return sound.error();
   auto finder = NodePathFinder::create(
       nodes, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
@@ -272,7 +273,7 @@ Result<NodePathReport> verify_node_paths(const Nodes& nodes, const Scene& source
       for (size_t k = 0; k < kLinkKinds; ++k) report.links_of_kind[k] += g.kinds[k];
     }
   }
-  report.seconds = verify::seconds_since(start);
+  report.seconds = seconds_since(start);
   return report;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "throng/path.h"
 #include "throng/verify.h"
 #include "throng/world.h"
@@ -56,9 +57,9 @@ class Walker {
     walked.exists = true;
     walked.at = from.position;
     walked.together = part >= 0 && part == part_of(to);
-    const auto start = verify::Clock::now();
+    const auto start = Clock::now();
     finder.find(from, to, path);
-    walked.seconds = verify::seconds_since(start);
+    walked.seconds = seconds_since(start);
     walked.reached = path.end == PathEnd::kReached;
     if (!walked.reached) return walked;
     walked.length = path.length;
@@ -144,7 +145,7 @@ void add(const Walked& walked, PathReport& report) {
 
 Result<PathReport> verify_paths(const World& world, const Scene& source, const VerifyConfig& config,
                                 Context& context) {
-  const auto start = verify::Clock::now();
+  const auto start = Clock::now();
   const auto claims = verify::claims_of(world, config.avatar_class);
   if (!claims) return claims.error();
   if (auto sound = verify::check_source(source, config); !sound) return sound.error();
@@ -171,7 +172,7 @@ Result<PathReport> verify_paths(const World& world, const Scene& source, const V
     if (context.cancel) return Error{Errc::kCancelled, "verify: cancelled"};
     for (const Walked& g : walked) add(g, report);
   }
-  report.seconds = verify::seconds_since(start);
+  report.seconds = seconds_since(start);
   return report;
 }
 

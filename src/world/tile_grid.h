@@ -11,6 +11,7 @@ namespace throng::world {
 
 inline constexpr int32_t kTileBits = 6;
 inline constexpr int32_t kInTile = kTileCells - 1;  ///< Bits of a cell that say where in its tile.
+inline constexpr int32_t kTileArea = kTileCells * kTileCells;  ///< Cells of a tile.
 static_assert(kTileCells == 1 << kTileBits);
 
 /// The tile in which a cell lies.

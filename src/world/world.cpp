@@ -22,8 +22,6 @@
 namespace throng {
 namespace {
 
-constexpr int32_t kTileSquare = kTileCells * kTileCells;
-
 bool good_class(const world::WorldData& world, int32_t avatar_class) {
   return avatar_class >= 0 && static_cast<size_t>(avatar_class) < world.summary.classes.size();
 }
@@ -124,10 +122,10 @@ uint32_t World::level_tile_count() const { return state_->level_count; }
 LevelTileContent World::level_tile(uint32_t index) const {
   THRONG_ASSERT(index < state_->level_count);
   LevelTileContent out;
-  out.floor.assign(kTileSquare, kNoFloor);
-  out.ceiling.assign(kTileSquare, kOpenSky);
-  out.area.assign(kTileSquare, 0);
-  out.clearance.assign(state_->summary.classes.size(), std::vector<uint8_t>(kTileSquare, 0));
+  out.floor.assign(world::kTileArea, kNoFloor);
+  out.ceiling.assign(world::kTileArea, kOpenSky);
+  out.area.assign(world::kTileArea, 0);
+  out.clearance.assign(state_->summary.classes.size(), std::vector<uint8_t>(world::kTileArea, 0));
   const size_t slot = state_->slot_of_level(index);
   const world::Zone* zone = state_->zone(slot);
   if (zone == nullptr) return out;
@@ -140,7 +138,7 @@ LevelTileContent World::level_tile(uint32_t index) const {
                                  : nullptr;
   const uint64_t* areas =
       level.area_kind() == format::CellsKind::Blocks ? zone->words(level.area_offset()) : nullptr;
-  for (int32_t c = 0; c < kTileSquare; ++c) {
+  for (int32_t c = 0; c < world::kTileArea; ++c) {
     const int32_t x = world::x_of_cell(c), z = world::z_of_cell(c);
     const size_t i = static_cast<size_t>(c);
     if (!view.has(x, z)) continue;
@@ -155,7 +153,7 @@ LevelTileContent World::level_tile(uint32_t index) const {
   }
   for (size_t k = 0; k < out.clearance.size(); ++k) {
     const format::Clearance& clearance = zone->clearance(local, static_cast<uint32_t>(k));
-    if (clearance.kind() == format::CellsKind::All) out.clearance[k].assign(kTileSquare, 8);
+    if (clearance.kind() == format::CellsKind::All) out.clearance[k].assign(world::kTileArea, 8);
     if (clearance.kind() != format::CellsKind::Blocks) continue;
     std::array<world::CellRows, 4> sets;  // legal, and the three bits of the margin
     const uint64_t* words = zone->words(clearance.offset());
@@ -163,7 +161,7 @@ LevelTileContent World::level_tile(uint32_t index) const {
       world::unpack_bits(words, rows);
       words += world::bit_words(words);
     }
-    for (size_t c = 0; c < kTileSquare; ++c) {
+    for (size_t c = 0; c < world::kTileArea; ++c) {
       const auto bit = [&](size_t set) {
         return static_cast<uint8_t>((sets[set][c / 64] >> (c % 64)) & 1);
       };

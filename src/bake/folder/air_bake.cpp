@@ -8,6 +8,7 @@
 
 #include "bake/air/air_clearance.h"
 #include "bake/columns/columns.h"
+#include "core/floor_div.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "world/air_rows.h"
@@ -24,10 +25,6 @@ constexpr int32_t kSkyLayers = 16;             // flown in over the highest soli
 constexpr double kDefaultAirCell = 0.4;        // minimum for flyers by default [m]
 constexpr size_t kMaxBytes = size_t{1} << 31;  // of the rows of one zone
 
-int32_t floor_div(int64_t a, int64_t b) {
-  return static_cast<int32_t>(a / b - (a % b != 0 && (a < 0) != (b < 0) ? 1 : 0));
-}
-
 double asked_cell(const BakeConfig& config) {
   if (config.air > 0) return config.air;
   double cell = config.cell;
@@ -40,8 +37,10 @@ struct Layers {
   int32_t first, last;
 };
 Layers layers_of(const world::AirShape& shape, int64_t low, int64_t high) {
-  return {floor_div(low - shape.origin_y - 1, shape.cell),
-          floor_div(high - shape.origin_y, shape.cell)};
+  const auto layer = [&](int64_t height) {
+    return static_cast<int32_t>(floor_div(height - shape.origin_y, int64_t{shape.cell}));
+  };
+  return {layer(low - 1), layer(high)};
 }
 
 }  // namespace

@@ -6,17 +6,13 @@
 #include <cmath>
 
 #include "core/access.h"
+#include "core/floor_div.h"
 #include "world/place.h"
 #include "world/tile_grid.h"
 
 // The air of a class in a step's integer units: conversions, lines of sight, and ground-air links.
 // Each costs a descent in the air's octree for each air box that a line crosses.
 namespace throng::crowd {
-namespace {
-
-int32_t floor_div(int32_t a, int32_t b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
-
-}  // namespace
 
 FlyerAir::FlyerAir(const World& world, const path::FlightSpace& space, const CrowdGround& ground,
                    int32_t avatar_class)

@@ -5,13 +5,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/floor_div.h"
+
 // Fills the grid of cubes with a counting sort. Linear in the bodies and cubes.
 namespace throng::crowd {
-namespace {
-
-int32_t square_of(int32_t a, int32_t b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
-
-}  // namespace
 
 void FlyerGrid::fit(int32_t width, int32_t height) {
   width_ = std::max(width, 1);
@@ -19,7 +16,7 @@ void FlyerGrid::fit(int32_t width, int32_t height) {
 }
 
 FlyerGrid::Cube FlyerGrid::cube(int32_t x, int32_t z, int32_t y) const {
-  return {square_of(x, width_), square_of(z, width_), square_of(y, height_)};
+  return {floor_div(x, width_), floor_div(z, width_), floor_div(y, height_)};
 }
 
 void FlyerGrid::build(std::span<const Body> bodies, std::span<const uint32_t> flyers,

@@ -30,12 +30,6 @@ struct Ring {
 };
 constexpr Ring kRings[] = {{64, 1}, {256, 4}, {1024, 8}, {HUGE_VAL, 16}};
 
-double length_of(const std::vector<AirPoint>& path) {
-  double sum = 0;
-  for (size_t i = 1; i < path.size(); ++i) sum += air_distance(path[i - 1], path[i]);
-  return sum;
-}
-
 // The plane between two boxes that share a part of a face.
 struct Door {
   int axis = 0;

@@ -34,6 +34,12 @@ inline double air_distance(AirPoint a, AirPoint b) {
   const AirPoint d = a - b;
   return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
 }
+/// Of the straight segments between points. [voxels]
+inline double length_of(const std::vector<AirPoint>& path) {
+  double sum = 0;
+  for (size_t i = 1; i < path.size(); ++i) sum += air_distance(path[i - 1], path[i]);
+  return sum;
+}
 inline double& axis_of(AirPoint& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 inline double axis_of(const AirPoint& p, int axis) {
   return axis == 0 ? p.x : axis == 1 ? p.y : p.z;

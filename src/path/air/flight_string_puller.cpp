@@ -16,12 +16,6 @@ constexpr int32_t kRounds = 6;
 constexpr int32_t kHalvings = 8;
 constexpr double kGain = 1e-3;  // less is not worth a round, of the whole length
 
-double sum_of(const std::vector<AirPoint>& path) {
-  double sum = 0;
-  for (size_t i = 1; i < path.size(); ++i) sum += air_distance(path[i - 1], path[i]);
-  return sum;
-}
-
 }  // namespace
 
 void FlightStringPuller::pull(const AirView& air, std::vector<AirPoint>& path) {
@@ -29,12 +23,12 @@ void FlightStringPuller::pull(const AirView& air, std::vector<AirPoint>& path) {
   path_ = &path;
   if (path.size() <= 2) return;
   shortcut();
-  double length = sum_of(path);
+  double length = length_of(path);
   for (int32_t round = 0; round < kRounds && path.size() > 2; ++round) {
     if (round < 3) cut_corners();
     for (size_t i = 1; i + 1 < path.size(); ++i) slide(i);
     shortcut();
-    const double now = sum_of(path);
+    const double now = length_of(path);
     if (now > length * (1 - kGain)) break;
     length = now;
   }

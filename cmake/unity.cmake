@@ -5,53 +5,64 @@ set(THRONG_UNITY OFF CACHE STRING
 
 # The names that a file defines at the left margin, among them those of its unnamed namespace, and
 # those that it takes from another namespace.
-function(throng_names_of source defined_out used_out)
+function(throng_names_of source defined_out used_out types_out)
   file(READ ${source} text)
   string(REGEX MATCHALL "\n[A-Za-z][^][\n({=;]*" lines "${text}")
   set(defined)
   set(used)
+  set(types)
   foreach(line IN LISTS lines)
     if(line MATCHES "^\n(namespace|template) ")
       continue()
     elseif(line MATCHES "^\nusing [A-Za-z0-9_:]+::([A-Za-z0-9_]+)$")
       list(APPEND used ${CMAKE_MATCH_1})
-    elseif(line MATCHES "^\n(struct|class|enum class|enum|using) ([A-Za-z0-9_]+)")
-      list(APPEND defined ${CMAKE_MATCH_2})
+    elseif(line MATCHES "^\n(struct|class|enum class|enum|using) (THRONG_API )?([A-Za-z0-9_]+)")
+      list(APPEND defined ${CMAKE_MATCH_3})
+      list(APPEND types ${CMAKE_MATCH_3})
     elseif(line MATCHES "[ *&]([A-Za-z0-9_]+) ?$")
       list(APPEND defined ${CMAKE_MATCH_1})
     endif()
   endforeach()
   set(${defined_out} "${defined}" PARENT_SCOPE)
   set(${used_out} "${used}" PARENT_SCOPE)
+  set(${types_out} "${types}" PARENT_SCOPE)
 endfunction()
 
 # throng_unity(TARGET [MOST]): compiles up to eight source files of one folder as one, or MOST, so that
 # their headers are parsed once. Names in unnamed namespaces then meet, so two files that define the
-# same name are never put together. Alone stay loops that are compiled for each SIMD width and files
-# that open a namespace by a using-directive. CMake leaves out files with definitions of their own.
+# same name are never put together. Alone stay loops that are compiled for each SIMD width, files that
+# open a namespace by a using-directive, and files with a type of their own whose name a public header
+# has, too: the next file may be the first to include it. CMake leaves out files with definitions of
+# their own.
 function(throng_unity target)
   if(NOT THRONG_UNITY OR (THRONG_UNITY STREQUAL PROGRAMS AND NOT target MATCHES "_(tests|commands)$"))
-    return()
-  endif()
-  # Tests that a preset chooses meet otherwise: their unnamed namespaces hide names of headers that
-  # the next file includes first.
-  if(target STREQUAL throng_tests AND CMAKE_CXX_FLAGS MATCHES "-fsanitize=address")
     return()
   endif()
   set(most 8)
   if(ARGC GREATER 1)
     set(most ${ARGV1})
   endif()
+  file(GLOB headers ${PROJECT_SOURCE_DIR}/include/*/*.h)
+  set(public)
+  foreach(header IN LISTS headers)
+    throng_names_of(${header} defined used types)
+    list(APPEND public ${types})
+  endforeach()
   get_target_property(sources ${target} SOURCES)
   list(FILTER sources INCLUDE REGEX "\\.cpp$")
   foreach(source IN LISTS sources)
     file(STRINGS ${source} alone REGEX "foreach_target\\.h|^using namespace " LIMIT_COUNT 1)
+    throng_names_of(${source} defined used types)
+    foreach(type IN LISTS types)
+      if(type IN_LIST public)
+        set(alone ${type})
+      endif()
+    endforeach()
     if(alone)
       continue()
     endif()
     get_filename_component(folder ${source} DIRECTORY)
     string(MAKE_C_IDENTIFIER "${folder}" folder)
-    throng_names_of(${source} defined used)
     set(group 0)
     while(TRUE)
       set(id ${folder}_${group})

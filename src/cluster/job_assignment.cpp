@@ -160,6 +160,7 @@ Result<void> JobAssigner::run() {
     if (context_.cancel) {
       own_context_.cancel = true;
       ranks_.abandon();
+      beside.join();  // Its job writes where on_cancel leaves off.
       jobs_.on_cancel();
       return stopped_error(ranks_, what_);
     }

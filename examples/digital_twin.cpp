@@ -34,8 +34,9 @@ double report(const World& world, int32_t wheelchair, Vec3d exit_a, Vec3d exit_b
   if (components.empty()) std::puts("no place for a wheelchair"), std::exit(1);
   GroundQuery query = need(GroundQuery::create(world, wheelchair));
   const Place exits[] = {query.nearest_place(exit_a, 20), query.nearest_place(exit_b, 20)};
-  const LiveGround ground = need(LiveGround::create(world, {.avatar_class = wheelchair}));
-  FlowField flow = need(FlowField::create(ground, exits, {}, context));
+  const PathConfig config{.avatar_class = wheelchair, .speedup = PathSpeedup::kOnDemand};
+  const PathFinder finder = need(PathFinder::create(world, config, context));
+  FlowField flow = need(FlowField::create(finder, exits, {}, context));
   double sum = 0, reached = 0;
   for (uint64_t n = 0; n < 1000; ++n) {
     const double distance = flow.distance(world.random_place(wheelchair, /*seed=*/1, n));

@@ -35,9 +35,10 @@ int main(int argc, char** argv) {
   const Vec3d line = to.position - from.position;
   GroundQuery query = need(GroundQuery::create(world, 0));
   const double seen = length(query.ray(from, line.x, line.z).place.position - from.position);
-  LiveGround ground = need(LiveGround::create(world, {.avatar_class = 0}));
+  Edits edits;
+  PathFinder finder = need(PathFinder::create(world, {.edits = edits}, context));
   Path path;
-  ground.find(from, to, path);
+  finder.find(from, to, path);
   if (path.end != PathEnd::kReached) return std::puts("game: no path to the goal"), 1;
   std::printf("%.1f m to the goal: ray %.1f m, path %.1f m", length(line), seen, path.length);
 
@@ -45,10 +46,10 @@ int main(int argc, char** argv) {
   const Vec3d corner = path.points[path.points.size() / 2].position;
   const Prism door = Prism::box(corner - Vec3d{2, 0, 2}, corner + Vec3d{2, 2, 2});
   const Prism crate = Prism::circle(from.position + line * 0.1, 0.6, 1);
-  for (const Prism& obstacle : {door, crate}) need(ground.add_obstacle(obstacle));
-  ground.find(from, to, path);
+  for (const Prism& obstacle : {door, crate}) need(edits.add_obstacle(obstacle));
+  finder.find(from, to, path);
   std::printf(", with crate and shut door %.1f m\n", path.length);
-  FlowField guide = need(FlowField::create(ground, {&to, 1}, {}, context));
+  FlowField guide = need(FlowField::create(finder, {&to, 1}, {}, context));
 
   // The crowd: a player, and 500 avatars with goals. It has obstacles of its own.
   Crowd crowd = need(Crowd::create(world, {.dt = 0.1}));

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -24,12 +23,27 @@
 namespace throng::app {
 namespace {
 
-Json mesh_json(const PathSummary& summary) {
-  return {{"rectangles", summary.rectangles},
-          {"portals", summary.portals},
-          {"corners", summary.corners},
-          {"bytes", summary.bytes},
-          {"seconds", summary.seconds}};
+// What was made for a search: nothing where its data is made on demand.
+void add_summary(const PathSummary& summary, PathSpace space, Json& json) {
+  Json made;
+  const char* name = "mesh";
+  if (space == PathSpace::kAir) {
+    name = "air";
+    made["boxes"] = summary.boxes;
+  } else if (space == PathSpace::kNodes) {
+    name = "finder";
+    made["blocks"] = summary.blocks;
+    made["crossings"] = summary.crossings;
+  } else if (summary.bytes == 0) {
+    return;
+  } else {
+    made["rectangles"] = summary.rectangles;
+    made["portals"] = summary.portals;
+    made["corners"] = summary.corners;
+  }
+  made["bytes"] = summary.bytes;
+  made["seconds"] = summary.seconds;
+  json[name] = std::move(made);
 }
 
 // What is printed of a path that was found in so many seconds.
@@ -48,104 +62,120 @@ double seconds_of(const Find& find) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-int fly(Session& session, const PathOptions& options, const World& world, int32_t avatar_class) {
-  const auto from = position_of(world, options, options.from, "--from");
-  if (!from) return fail(from.error());
-  const auto to = position_of(world, options, options.to, "--to");
-  if (!to) return fail(to.error());
-  Result<FlightFinder> finder = FlightFinder::create(
-      world, {.avatar_class = avatar_class, .workers = options.threads}, session.context);
-  if (!finder) return fail(finder.error());
-  for (const auto& [position, option] : {std::pair{*from, "--from"}, std::pair{*to, "--to"}}) {
-    if (finder->is_legal(position) || world.find_place(avatar_class, position, options.tolerance)) {
-      continue;
-    }
-    return fail(bad_end(options, position, option,
-                        fmt::format("is neither in the air nor on the ground for class {}: its "
-                                    "body would touch a solid, or it lies above or below the air",
-                                    options.avatar_class)));
+// What both ends of a path are asked for.
+struct End {
+  PathPoint at;
+  Vec3d position;
+  const char* option;
+};
+
+// The end of a path in its space. Fails with a sentence if the class cannot be there.
+Result<End> end_of(const World& world, const PathOptions& options, int32_t avatar_class,
+                   PathSpace space, PathFinder& finder, const std::vector<double>& at,
+                   const char* option) {
+  const auto position = position_of(world, options, at, option);
+  if (!position) return position.error();
+  End end{.at = *position, .position = *position, .option = option};
+  if (space == PathSpace::kAir) return end;
+  if (space == PathSpace::kGround) {
+    const auto place = place_of(world, options, avatar_class, at, option);
+    if (!place) return place.error();
+    end.at = *place;
+    return end;
   }
-  if (auto ok = add_boxes(options.blocks, *finder); !ok) return fail(ok.error());
-  Path found;
-  const double seconds = seconds_of([&] {
-    finder->find({.from = *from,
-                  .to = *to,
-                  .vertical_tolerance = options.tolerance,
-                  .budget = {UINT64_MAX, &session.context.cancel, options.search_bytes}},
-                 found);
-  });
-  if (found.end == PathEnd::kNoPlace) {
-    // Find out which end is blocked: a path from an end to itself.
-    for (const auto& [position, option] : {std::pair{*from, "--from"}, std::pair{*to, "--to"}}) {
-      finder->find({.from = position, .to = position, .vertical_tolerance = options.tolerance},
-                   found);
-      if (found.end != PathEnd::kNoPlace) continue;
-      return fail(bad_end(options, position, option, "is blocked: a --block is there"));
-    }
+  // A class that only walks: the ground above or below; if there is none, the nearest place.
+  const bool climbs = goes_over_nodes(world.summary().classes[static_cast<size_t>(avatar_class)]);
+  const Place ground =
+      climbs ? Place{} : world.find_place(avatar_class, *position, options.tolerance);
+  const NodePlace place =
+      finder.find_node_place(ground ? ground.position : *position, options.tolerance);
+  if (!place) {
+    return bad_end(options, *position, option,
+                   fmt::format("is no place on nodes where class {} can be, within {} m; see "
+                               "`throng picture --nodes`, or give a larger --tolerance",
+                               options.avatar_class, options.tolerance));
   }
-  const PathRun run = run_of(options, *to, seconds);
-  const FlightSummary summary = finder->summary();
-  Json json = path_json(run, found);
-  json["air"] = {{"boxes", summary.boxes}, {"bytes", summary.bytes}, {"seconds", summary.seconds}};
-  print_result(session, json, path_text(run, found));
-  return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;
+  end.at = place;
+  return end;
+}
+
+Vec3d feet_of(const End& end) {
+  if (const auto* place = std::get_if<NodePlace>(&end.at)) return place->feet;
+  if (const auto* place = std::get_if<Place>(&end.at)) return place->position;
+  return end.position;
 }
 
 constexpr double kMaxOffset = 0.01;  // of an end in the plane; larger ones are printed [m]
 
-int find_over_nodes(Session& session, const PathOptions& options, const World& world,
-                    int32_t avatar_class) {
-  const auto from_position = position_of(world, options, options.from, "--from");
-  if (!from_position) return fail(from_position.error());
-  const auto to_position = position_of(world, options, options.to, "--to");
-  if (!to_position) return fail(to_position.error());
-  const Result<Nodes> nodes = Nodes::open(options.world);
-  if (!nodes) return fail(nodes.error());
-  auto finder = NodePathFinder::create(*nodes,
-                                       {.avatar_class = avatar_class,
-                                        .slope_cost = options.slope_cost,
-                                        .overlay = false,  // One query does not repay its time.
-                                        .workers = options.threads},
-                                       session.context);
+// How far ends over nodes are beside what was asked for.
+void add_offset(const End& end, const char* name, Json& json, std::string& text) {
+  const Vec3d feet = feet_of(end);
+  const double offset = std::hypot(feet.x - end.position.x, feet.z - end.position.z);
+  json["beside"][name] = offset;
+  if (offset < kMaxOffset) return;
+  text += fmt::format("  --{} is {:.3f} m beside, at ({})\n", name, offset, where(feet));
+}
+
+int find(Session& session, const PathOptions& options, const World& world, int32_t avatar_class,
+         PathSpace space) {
+  const bool on_ground = space == PathSpace::kGround;
+  if (on_ground) {
+    // Data that is made on demand takes a damaged zone for empty: check all first.
+    if (auto ok = world.check_ground(); !ok) return fail(ok.error());
+    for (const auto& [at, option] :
+         {std::pair{&options.from, "--from"}, std::pair{&options.to, "--to"}}) {
+      if (auto place = place_of(world, options, avatar_class, *at, option); !place) {
+        return fail(place.error());
+      }
+    }
+  }
+  Edits edits;
+  const bool on_demand = on_ground && options.is_live();
+  auto finder =
+      PathFinder::create(world,
+                         {.avatar_class = avatar_class,
+                          .slope_cost = options.slope_cost,
+                          .overlay = false,  // One query does not repay its time.
+                          .workers = options.threads,
+                          .speedup = on_demand ? PathSpeedup::kOnDemand : PathSpeedup::kNone,
+                          .space = space,
+                          .edits = edits},
+                         session.context);
   if (!finder) return fail(finder.error());
-  if (auto ok = add_boxes(options.blocks, *finder); !ok) return fail(ok.error());
-  // A class that only walks: the ground above or below; if there is none, the nearest place.
-  const bool climbs = goes_over_nodes(world.summary().classes[static_cast<size_t>(avatar_class)]);
-  const auto find_place = [&](const Vec3d& position) {
-    const Place ground =
-        climbs ? Place{} : world.find_place(avatar_class, position, options.tolerance);
-    return finder->find_place(ground ? ground.position : position, options.tolerance);
-  };
-  const NodePlace from = find_place(*from_position);
-  const NodePlace to = find_place(*to_position);
-  for (const auto& [place, position, option] :
-       {std::tuple{from, *from_position, "--from"}, std::tuple{to, *to_position, "--to"}}) {
-    if (place) continue;
-    return fail(bad_end(options, position, option,
-                        fmt::format("is no place on nodes where class {} can be, within {} m; see "
-                                    "`throng picture --nodes`, or give a larger --tolerance",
-                                    options.avatar_class, options.tolerance)));
+  const auto from = end_of(world, options, avatar_class, space, *finder, options.from, "--from");
+  if (!from) return fail(from.error());
+  const auto to = end_of(world, options, avatar_class, space, *finder, options.to, "--to");
+  if (!to) return fail(to.error());
+  for (const End& end : {*from, *to}) {
+    if (space != PathSpace::kAir || finder->is_free(end.at, options.tolerance)) continue;
+    return fail(bad_end(options, end.position, end.option,
+                        fmt::format("is neither in the air nor on the ground for class {}: its "
+                                    "body would touch a solid, or it lies above or below the air",
+                                    options.avatar_class)));
+  }
+  if (auto ok = put_up(world, options, avatar_class, edits); !ok) return fail(ok.error());
+  for (const End& end : {*from, *to}) {
+    if (finder->is_free(end.at, options.tolerance)) continue;
+    return fail(bad_end(options, end.position, end.option,
+                        on_ground ? "is blocked: a --block stands there, or its ground is closed"
+                                  : "is blocked: a --block is there"));
   }
   Path found;
   const double seconds = seconds_of([&] {
-    finder->find(from, to, found, 0.25,
-                 {UINT64_MAX, &session.context.cancel, options.search_bytes});
+    finder->find({.from = from->at,
+                  .to = to->at,
+                  .tolerance = options.tolerance,
+                  .budget = {UINT64_MAX, &session.context.cancel, options.search_bytes}},
+                 found);
   });
   if (found.spent == SpentBudget::kCancelled) return fail({Errc::kCancelled, "path: interrupted"});
-  const PathRun run = run_of(options, to.feet, seconds);
-  const NodePathSummary summary = finder->summary();
+  const PathRun run = run_of(options, feet_of(*to), seconds);
   Json json = path_json(run, found);
-  json["finder"] = {{"blocks", summary.blocks},
-                    {"crossings", summary.crossings},
-                    {"bytes", summary.bytes},
-                    {"seconds", summary.seconds}};
   std::string text = path_text(run, found);
-  for (const auto& [place, position, end] :
-       {std::tuple{from, *from_position, "from"}, std::tuple{to, *to_position, "to"}}) {
-    const double offset = std::hypot(place.feet.x - position.x, place.feet.z - position.z);
-    json["beside"][end] = offset;
-    if (offset < kMaxOffset) continue;
-    text += fmt::format("  --{} is {:.3f} m beside, at ({})\n", end, offset, where(place.feet));
+  add_summary(finder->summary(), space, json);
+  if (space == PathSpace::kNodes) {
+    add_offset(*from, "from", json, text);
+    add_offset(*to, "to", json, text);
   }
   print_result(session, json, text);
   return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;
@@ -159,44 +189,10 @@ int path(Session& session, const PathOptions& options) {
   const AvatarClass avatar = world->summary().classes[static_cast<size_t>(*avatar_class)];
   const bool over_nodes = options.nodes || (!options.fly && goes_over_nodes(avatar));
   if (auto ok = check_options(options, over_nodes); !ok) return fail(ok.error());
-  if (options.fly) return fly(session, options, *world, *avatar_class);
-  if (over_nodes) return find_over_nodes(session, options, *world, *avatar_class);
-  if (options.is_live()) {
-    // A LiveGround reads zones on demand and takes a damaged one for empty: check all first.
-    if (auto ok = world->check_ground(); !ok) return fail(ok.error());
-  }
-  const auto from = place_of(*world, options, *avatar_class, options.from, "--from");
-  if (!from) return fail(from.error());
-  const auto to = place_of(*world, options, *avatar_class, options.to, "--to");
-  if (!to) return fail(to.error());
-  const SearchBudget budget(UINT64_MAX, &session.context.cancel, options.search_bytes);
-  Path found;
-  Json mesh;
-  double seconds = 0;
-  if (!options.is_live()) {
-    Result<PathFinder> finder = PathFinder::create(
-        *world, {.avatar_class = *avatar_class, .workers = options.threads}, session.context);
-    if (!finder) return fail(finder.error());
-    mesh = mesh_json(finder->summary());
-    seconds += seconds_of([&] { finder->find(*from, *to, found, budget); });
-  }
-  // Only LiveGround finds the nearest point and its blocker.
-  if (options.is_live() || found.end == PathEnd::kUnreachable) {
-    auto ground = live_ground(*world, options, *avatar_class);
-    if (!ground) return fail(ground.error());
-    for (const auto& [place, option] : {std::pair{*from, "--from"}, std::pair{*to, "--to"}}) {
-      if (ground->is_free(place)) continue;
-      return fail(bad_end(options, place.position, option,
-                          "is blocked: a --block stands there, or its ground is closed"));
-    }
-    seconds += seconds_of([&] { ground->find(*from, *to, found, budget); });
-  }
-  if (found.spent == SpentBudget::kCancelled) return fail({Errc::kCancelled, "path: interrupted"});
-  const PathRun run = run_of(options, to->position, seconds);
-  Json json = path_json(run, found);
-  if (!mesh.is_null()) json["mesh"] = mesh;
-  print_result(session, json, path_text(run, found));
-  return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;
+  const PathSpace space = options.fly  ? PathSpace::kAir
+                          : over_nodes ? PathSpace::kNodes
+                                       : PathSpace::kGround;
+  return find(session, options, *world, *avatar_class, space);
 }
 
 }  // namespace

@@ -41,12 +41,9 @@ Result<Place> place_of(const World& world, const PathOptions& options, int32_t a
   return place;
 }
 
-Result<LiveGround> live_ground(const World& world, const PathOptions& options,
-                               int32_t avatar_class) {
-  auto ground =
-      LiveGround::create(world, {.avatar_class = avatar_class, .slope_cost = options.slope_cost});
-  if (!ground) return ground.error();
-  if (auto ok = add_boxes(options.blocks, *ground); !ok) return ok.error();
+Result<void> put_up(const World& world, const PathOptions& options, int32_t avatar_class,
+                    Edits& edits) {
+  if (auto ok = add_boxes(options.blocks, edits); !ok) return ok.error();
   for (size_t i = 0; i < options.area_costs.size(); i += 2) {
     const double kind = options.area_costs[i];
     if (!(kind >= 0 && kind <= 255 && kind == std::floor(kind))) {
@@ -55,8 +52,7 @@ Result<LiveGround> live_ground(const World& world, const PathOptions& options,
           fmt::format("--area-cost: {} is no kind of ground; kinds are whole numbers from 0 to 255",
                       kind)};
     }
-    if (auto ok = ground->set_area_cost(static_cast<uint8_t>(kind), options.area_costs[i + 1]);
-        !ok) {
+    if (auto ok = edits.set_area_cost(static_cast<uint8_t>(kind), options.area_costs[i + 1]); !ok) {
       return Error{ok.error().code, "--area-cost: " + ok.error().message};
     }
   }
@@ -70,11 +66,11 @@ Result<LiveGround> live_ground(const World& world, const PathOptions& options,
       *end = *place;
     }
     link.cost = length(link.to.position - link.from.position);
-    if (auto added = ground->add_off_mesh_link(link); !added) {
+    if (auto added = edits.add_off_mesh_link(link); !added) {
       return Error{Errc::kBadInput, "--off-mesh-link: " + added.error().message};
     }
   }
-  return ground;
+  return {};
 }
 
 }  // namespace throng::app

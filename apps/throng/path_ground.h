@@ -24,8 +24,8 @@ namespace throng::app {
                                      int32_t avatar_class, const std::vector<double>& at,
                                      const char* option);
 
-/// The ground with the boxes, costs and off-mesh links of the options.
-[[nodiscard]] Result<LiveGround> live_ground(const World& world, const PathOptions& options,
-                                             int32_t avatar_class);
+/// Adds what the options put up in the world.
+[[nodiscard]] Result<void> put_up(const World& world, const PathOptions& options,
+                                  int32_t avatar_class, Edits& edits);
 
 }  // namespace throng::app

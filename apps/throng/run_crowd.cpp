@@ -177,6 +177,10 @@ Result<void> GoalCrowd::scatter(const std::string& class_name, uint32_t count, C
   return {};
 }
 
+bool GoalCrowd::flies(int32_t avatar_class) const {
+  return world_.summary().classes[static_cast<size_t>(avatar_class)].flies;
+}
+
 bool GoalCrowd::goes_over_nodes(int32_t avatar_class) const {
   const AvatarClass avatar = world_.summary().classes[static_cast<size_t>(avatar_class)];
   return run_.config.nodes && !avatar.flies && throng::goes_over_nodes(avatar);
@@ -200,8 +204,7 @@ Result<void> GoalCrowd::read_places() {
     if (!at) return bad(n, "is no goal; write x,y,z in metres");
     // The crowd uses the position alone of a climber's goal.
     const Place place = over_nodes ? Place{*at, 1} : query->nearest_place(*at, kNearGround);
-    const FlightFinder* flight = crowd_.flight_finder(avatar_class);
-    const bool in_air = !place && flight != nullptr && flight->is_legal(*at);
+    const bool in_air = !place && crowd_.may_fly(avatar_class, *at);
     if (!place && !in_air) {
       return bad(n, "no avatar of this class can stand within 2 m of it; move it");
     }
@@ -211,12 +214,13 @@ Result<void> GoalCrowd::read_places() {
   return {};
 }
 
-// A random goal in the air; null if none was found.
+// A random goal in the air; null if none was found or the class does not fly.
 Place GoalCrowd::goal_in_air(uint32_t slot, uint64_t nth, const Vec3d& from) const {
-  const FlightFinder& flight = *crowd_.flight_finder(class_of_[slot]);
+  if (!flies(class_of_[slot])) return {};
+  const int32_t avatar_class = class_of_[slot];
   const uint64_t seed = run_.config.seed ^ kAir;
   if (run_.near <= 0) {
-    const auto point = flight.random_point(seed, uint64_t{slot} << 32 | nth);
+    const auto point = crowd_.random_air_point(avatar_class, seed, uint64_t{slot} << 32 | nth);
     return point ? air_place(*point) : Place{};
   }
   for (uint64_t n = nth * kTries; n < (nth + 1) * kTries; ++n) {
@@ -224,7 +228,7 @@ Place GoalCrowd::goal_in_air(uint32_t slot, uint64_t nth, const Vec3d& from) con
       return run_.near * (2 * random_number(seed, 3 * uint64_t{slot} + stream, n) - 1);
     };
     const Vec3d at{from.x + offset(0), from.y + offset(1), from.z + offset(2)};
-    if (flight.is_legal(at)) return air_place(at);
+    if (crowd_.may_fly(avatar_class, at)) return air_place(at);
   }
   return {};
 }
@@ -233,7 +237,7 @@ Place GoalCrowd::goal_in_air(uint32_t slot, uint64_t nth, const Vec3d& from) con
 Place GoalCrowd::goal(uint32_t slot, uint64_t nth, const Vec3d& from) const {
   if (!places_.empty()) return places_[(slot + nth) % places_.size()];
   const int32_t avatar_class = class_of_[slot];
-  if ((slot + nth) % 2 == 0 && crowd_.flight_finder(avatar_class) != nullptr) {
+  if ((slot + nth) % 2 == 0) {
     const Place place = goal_in_air(slot, nth, from);
     if (place) return place;
   }

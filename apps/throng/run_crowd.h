@@ -51,6 +51,7 @@ class GoalCrowd {
   Result<void> scatter(const std::string& class_name, uint32_t count, Context& context);
   Result<void> read_places();
   [[nodiscard]] bool goes_over_nodes(int32_t avatar_class) const;
+  [[nodiscard]] bool flies(int32_t avatar_class) const;
   [[nodiscard]] Place goal(uint32_t slot, uint64_t nth, const Vec3d& from) const;
   [[nodiscard]] NodePlace goal_on_nodes(uint32_t slot, uint64_t nth, const Vec3d& from) const;
   [[nodiscard]] Place goal_in_air(uint32_t slot, uint64_t nth, const Vec3d& from) const;

@@ -53,7 +53,6 @@ Json run_random(const Options& o) {
   Context context;
   const auto ids = crowd->scatter(o.avatars, {.place = air_place({})}, context);
   if (!ids) return fail(ids.error());
-  const FlightFinder flight = *crowd->flight_finder(0);
   std::vector<uint64_t> given(o.avatars, 0);
   std::vector<Place> goals;
   const auto give = [&](std::span<const AvatarId> to) {
@@ -68,7 +67,7 @@ Json run_random(const Options& o) {
         };
         const Vec3d at{from.x + along(0), from.y + along(1), from.z + along(2)};
         ++given[slot];
-        if (!flight.is_legal(at)) continue;
+        if (!crowd->may_fly(0, at)) continue;
         goal = air_place(at);
         break;
       }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "crate_times.h"
+#include "path/flight_finder.h"
 #include "throng/path.h"
 
 // Time until paths through the air avoid a crate that is put onto one, on a world of any size; with
@@ -28,7 +29,8 @@ Prism crate_around(Vec3d p, double side) {
   return Prism::box(p - half, p + half);
 }
 
-Json crates(FlightFinder& finder, int64_t trials, int64_t standing, double away, double side) {
+Json crates(path::FlightFinder& finder, int64_t trials, int64_t standing, double away,
+            double side) {
   for (int64_t n = 0; n < standing; ++n) {
     const auto at = finder.random_point(7, static_cast<uint64_t>(n));
     if (at && !finder.add_obstacle(crate_around(*at, side))) stop("a crate was refused");
@@ -42,7 +44,7 @@ Json crates(FlightFinder& finder, int64_t trials, int64_t standing, double away,
     const double angle = static_cast<double>(n % 360) * 0.0174533;
     const Vec3d to{from->x + away * std::cos(angle), from->y, from->z + away * std::sin(angle)};
     if (!finder.is_legal(to)) continue;
-    const FlightQuery query{.from = *from, .to = to, .budget = 20000, .nearest = false};
+    const path::FlightQuery query{.from = *from, .to = to, .budget = 20000, .nearest = false};
     auto start = Clock::now();
     finder.find(query, path);
     const double first = milliseconds_since(start);
@@ -108,7 +110,7 @@ int main(int argc, char** argv) {
                                   [&](const auto& avatar) { return avatar.name == name; });
   if (found == classes.end()) stop("there is no class " + name);
   throng::Context context;
-  auto finder = throng::FlightFinder::create(
+  auto finder = throng::path::FlightFinder::create(
       *world, {.avatar_class = static_cast<int32_t>(found - classes.begin())}, context);
   if (!finder) stop(finder.error().message);
   const Json report = {{"world", folder},

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "crate_times.h"
+#include "path/edits/live_finder.h"
 #include "throng/path.h"
 #include "throng/world.h"
 
@@ -41,7 +42,7 @@ bool avoids(const Path& path, const Vec3d& low, const Vec3d& high, double radius
 }
 
 Json crates(const World& world, int64_t trials, double away) {
-  auto ground = LiveGround::create(world, {});
+  auto ground = path::LiveFinder::create(world, {});
   if (!ground) stop(ground.error().message);
   const double radius = world.summary().classes[0].radius;
   std::vector<double> first, added, found, both, removed;
@@ -98,11 +99,11 @@ Json crates(const World& world, int64_t trials, double away) {
 }
 
 Json fields(const World& world, double most) {
-  auto ground = LiveGround::create(world, {});
-  if (!ground) stop(ground.error().message);
-  const std::vector<Place> goals{world.random_place(0, 43, 0)};
   Context context;
-  auto flow = FlowField::create(*ground, goals, {.max_distance = most}, context);
+  const auto finder = PathFinder::create(world, {.speedup = PathSpeedup::kOnDemand}, context);
+  if (!finder) stop(finder.error().message);
+  const std::vector<Place> goals{world.random_place(0, 43, 0)};
+  auto flow = FlowField::create(*finder, goals, {.max_distance = most}, context);
   if (!flow) stop(flow.error().message);
   const FlowSummary summary = flow->summary();
   constexpr uint64_t kPlaces = 20000;

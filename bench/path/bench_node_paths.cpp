@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "path/edits/solid.h"
+#include "path/node_finder.h"
 #include "throng/path.h"
 #include "throng/surface.h"
 
@@ -64,8 +66,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-Json measure(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder,
-             NodePathFinder& search, double apart, const Options& options) {
+Json measure(const Nodes& nodes, int32_t avatar_class, path::NodeFinder& finder,
+             path::NodeFinder& search, double apart, const Options& options) {
   const std::vector<Pair> pairs = find_pairs(nodes, avatar_class, apart, options.pairs);
   std::vector<double> reached_ms, other_ms, search_ms, looked, searched;
   double length_sum = 0, ours = 0, best = 0, worst = 0;
@@ -116,8 +118,8 @@ Json measure(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder,
 
 // A crate of a metre in the middle of each path: the time until it is avoided, and how much longer
 // the path around it is than what a search of all crossings finds.
-Json put_crates(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder,
-                NodePathFinder& search, double apart, const Options& options) {
+Json put_crates(const Nodes& nodes, int32_t avatar_class, path::NodeFinder& finder,
+                path::NodeFinder& search, double apart, const Options& options) {
   std::vector<double> before_ms, add_ms, find_ms, both_ms, without_ms;
   double ours = 0, best = 0, worst = 0;
   int shut = 0, differ = 0;
@@ -137,11 +139,11 @@ Json put_crates(const Nodes& nodes, int32_t avatar_class, NodePathFinder& finder
     const Vec3d at = path.node_places[path.points.size() / 2].feet;
     const Prism crate =
         Prism::box({at.x - 0.5, at.y, at.z - 0.5}, {at.x + 0.5, at.y + 1, at.z + 0.5});
-    ChangeId id = 0;
+    path::ChangeId id = 0;
     timed(add_ms, [&] { id = *finder.add_obstacle(crate); });
     timed(find_ms, [&] { finder.find(from, to, path); });
     both_ms.push_back(add_ms.back() + find_ms.back());
-    const ChangeId other = *search.add_obstacle(crate);
+    const path::ChangeId other = *search.add_obstacle(crate);
     search.find(from, to, shortest);
     search.remove(other);
     differ += shortest.end != path.end;
@@ -180,14 +182,14 @@ Json run(const Options& options) {
   if (found == classes.end()) stop("there is no class " + options.avatar_class);
   const auto avatar_class = static_cast<int32_t>(found - classes.begin());
   const auto make = [&](bool overlay) {
-    auto made = NodePathFinder::create(
+    auto made = path::NodeFinder::create(
         *nodes, {.avatar_class = avatar_class, .overlay = overlay, .workers = options.threads},
         context);
     if (!made) stop(made.error().message);
     return *std::move(made);
   };
-  NodePathFinder finder = make(true), search = make(false);
-  const NodePathSummary made = finder.summary(), plain = search.summary();
+  path::NodeFinder finder = make(true), search = make(false);
+  const PathSummary made = finder.summary(), plain = search.summary();
   Json paths = Json::array(), crates = Json::array();
   for (const double apart : options.distances) {
     paths.push_back(measure(*nodes, avatar_class, finder, search, apart, options));

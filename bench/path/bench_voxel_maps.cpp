@@ -111,7 +111,7 @@ Json measure(const Options& options) {
   const auto world = bake_voxel_cells(*cells, 1);
   if (!world) stop(world.error().message);
   Context context;
-  auto finder = FlightFinder::create(*world, {}, context);
+  auto finder = PathFinder::create(*world, {.space = PathSpace::kAir}, context);
   if (!finder) stop(finder.error().message);
   const test::VoxelOracle oracle(*cells);
   std::vector<Query> queries = read_queries(options.map + ".3dscen");
@@ -143,7 +143,7 @@ Json measure(const Options& options) {
   }
   double total = 0;
   for (const double t : times) total += t;
-  const FlightSummary summary = finder->summary();
+  const PathSummary summary = finder->summary();
   const auto air = air_summary(*world);
   if (!air) stop(air.error().message);
   return {{"map", options.map},

@@ -74,8 +74,6 @@ struct AvatarId {
   friend bool operator==(AvatarId, AvatarId) = default;
 };
 
-class FlightFinder;
-
 /// Place::level1 of places in the air.
 inline constexpr uint32_t kAirLevel1 = UINT32_MAX;
 /// A place in the air, as the start or the goal of an avatar that flies. Y is at the feet.
@@ -318,9 +316,13 @@ class THRONG_API Crowd {
   [[nodiscard]] bool is_alive(AvatarId id) const;
   /// Has the crowd nodes, so that avatars may lean (AvatarState::up)?
   [[nodiscard]] bool may_lean() const;
-  /// The path finder of a class through the air, to query or to copy. Null if there was no avatar
-  /// of the class yet, it does not fly, or the world has no air.
-  [[nodiscard]] const FlightFinder* flight_finder(int32_t avatar_class) const;
+  /// May the feet of a class be at a point of the air now? False also if there was no avatar of the
+  /// class yet or it does not fly.
+  [[nodiscard]] bool may_fly(int32_t avatar_class, const Vec3d& feet) const;
+  /// The n-th of a reproducible stream of points, uniform over the air where the class may fly now.
+  /// Empty only if there is no such air, as above.
+  [[nodiscard]] std::optional<Vec3d> random_air_point(int32_t avatar_class, uint64_t seed,
+                                                      uint64_t n) const;
 
   /// Saves the whole state. A restored crowd makes the same steps, bit for bit, with any number of
   /// workers. In this machine's byte order; the format may change with every version.

@@ -9,14 +9,15 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "throng/base.h"
 #include "throng/surface.h"
 #include "throng/world.h"
 
-/// Paths: on foot, on changing ground, over nodes, through the air; flow fields; budgets of
-/// searches.
+/// Paths: on foot, over nodes, through the air, around what is put up at run time; flow fields;
+/// budgets of searches.
 namespace throng {
 
 // ----
@@ -73,9 +74,9 @@ struct SearchBudget {
 // ----
 // Shortest paths for a class over the ground of a baked world.
 
-/// What a PathFinder prepares so that queries are faster.
+/// What a PathFinder prepares so that queries are faster. Only on the ground.
 enum class PathSpeedup : uint8_t {
-  kNone,  ///< Nothing: queries search.
+  kNone,  ///< The rectangles of the whole ground: queries search over them.
   /// Hub labels of all corners: queries look paths up and do not search. For many queries. Labels
   /// take time and memory when the finder is made: about 10 kB per square metre of small worlds, 1
   /// kB of large ones (over some 2^23 cells). In large worlds a path may pass an obstacle on the
@@ -86,25 +87,90 @@ enum class PathSpeedup : uint8_t {
   /// for long paths over large worlds. A path between zones that do not touch is then the shortest
   /// that passes every obstacle on the same side, but it may pass one on the wrong side.
   kZones,
+  /// Nothing, not even the ground: data is made where a query needs it. For few queries in large
+  /// worlds, or in worlds that change all the time. Paths are on average within 1 % of the best.
+  kOnDemand,
 };
 
-/// Settings for making a finder. A speedup or a slope cost that a finder does not have is refused
-/// with kBadConfig.
+/// What a PathFinder searches.
+enum class PathSpace : uint8_t {
+  kOfClass,  ///< kAir if the class flies, kNodes if it climbs or drops, else kGround.
+  kGround,   ///< Level tiles, on foot.
+  kNodes,    ///< The nodes of all surfaces.
+  kAir,      ///< The air, and the ground for walks between flights.
+};
+
+/// An off-mesh link, see Edits::add_off_mesh_link.
+struct OffMeshLink {
+  Place from, to;
+  double cost = 0;  ///< [m]
+  bool two_way = true;
+};
+
+/// Names an edit; 0 names none.
+using EditId = uint32_t;
+
+namespace path {
+struct EditList;  // Internal.
+}
+
+/// What is put up in a world at run time, in one place for all finders: obstacles, doors, kinds of
+/// ground and their costs, off-mesh links. Copies of a handle share one list; a PathFinder that was
+/// made with it sees every edit at its next query. Edits only remove ground: an avatar can stand on
+/// a crate only if it was baked. No edit may be made while another thread uses a handle of the same
+/// list or a finder that has one.
+class THRONG_API Edits {
+ public:
+  Edits();
+
+  /// Puts up an obstacle: a class is illegal where its body could touch the prism; on the ground
+  /// the body counts from body_bottom() up. Fails with kBadInput. Time: constant; each finder pays
+  /// at its next query for what the obstacle touches.
+  [[nodiscard]] Result<EditId> add_obstacle(const Prism& prism);
+  /// The same for triangles. Only these are solid: a closed shell is hollow.
+  [[nodiscard]] Result<EditId> add_obstacle(std::span<const Vec3d> corners,
+                                            std::span<const std::array<uint32_t, 3>> triangles);
+  /// Gives level tiles inside a prism an area kind; where several overlap, the last one counts.
+  /// Only for paths on the ground. Fails with kBadInput or kBadConfig.
+  [[nodiscard]] Result<EditId> add_area(const Prism& prism, uint8_t kind);
+  /// Adds an off-mesh link, which no move finds: over a ditch, up a ladder, by a lift. It leads
+  /// from one place to another, and back if `two_way`; what lies between is not tested. Its cost
+  /// counts as metres and is at least its length in the plane. Only for paths on the ground, of
+  /// classes that can stand at both ends. Fails with kBadInput.
+  [[nodiscard]] Result<EditId> add_off_mesh_link(const OffMeshLink& link);
+  /// Removes an edit, or switches it off and on, as a door. False if there is none of this id.
+  bool remove(EditId edit);
+  bool set_active(EditId edit, bool active);
+  /// Sets the cost of a metre on ground of an area kind; infinity closes it. All kinds begin
+  /// with 1. Fails with kBadConfig. [kind 1 to 63, 0.01 to 10000 or infinity]
+  [[nodiscard]] Result<void> set_area_cost(uint8_t kind, double cost);
+
+  /// Rises with every change of the list.
+  [[nodiscard]] uint64_t version() const;
+
+ private:
+  friend struct Access;
+  std::shared_ptr<path::EditList> state_;
+};
+
+/// Settings of a PathFinder. A setting that its space does not have is refused with kBadConfig.
 struct PathConfig {
   int32_t avatar_class = 0;
-  /// Not of PathFinder and FlightFinder. Cost of a metre on level tiles: 1 + slope_cost * rise.
-  /// Rises are rounded up to 5, 10, 20, 35, 60 or 120 %; the gentlest class counts as level ground,
-  /// the steepest holds all steeper slopes, too. Over nodes, on ground with an inclination a: 1 +
-  /// slope_cost * (1 - cos a), so level ground 1, a wall 1 + slope_cost, a ceiling 1 + 2
-  /// slope_cost. [0 to 1000]
+  /// On the ground, cost of a metre on level tiles: 1 + slope_cost * rise. Rises are rounded up to
+  /// 5, 10, 20, 35, 60 or 120 %; the gentlest class counts as level ground, the steepest holds all
+  /// steeper slopes, too. Only with PathSpeedup kNone or kOnDemand. Over nodes, on ground with an
+  /// inclination a: 1 + slope_cost * (1 - cos a), so level ground 1, a wall 1 + slope_cost, a
+  /// ceiling 1 + 2 slope_cost. Not in the air. [0 to 1000]
   double slope_cost = 0;
-  /// Of NodePathFinder: makes an overlay where there are many crossings (2^15), over which long
-  /// paths are searched: it knows the costs of crossing squares of ground. Its paths are seldom
-  /// much longer than the best. Making it takes as long as a few searches of the whole world.
+  /// Over nodes: makes an overlay where there are many crossings (2^15), over which long paths are
+  /// searched: it knows the costs of crossing squares of ground. Its paths are seldom much longer
+  /// than the best. Making it takes as long as a few searches of the whole world.
   bool overlay = true;
-  int32_t workers =
-      0;  ///< Threads for making the finder, 0 for all cores; not of LiveGround. [>= 0]
-  PathSpeedup speedup = PathSpeedup::kNone;  ///< Of PathFinder.
+  int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores. [>= 0]
+  PathSpeedup speedup = PathSpeedup::kNone;
+  PathSpace space = PathSpace::kOfClass;
+  Nodes nodes = {};  ///< Over nodes: these, or those in the world's folder if it has none.
+  Edits edits = {};  ///< What paths lead around.
 };
 
 /// How a search ended.
@@ -121,7 +187,7 @@ enum class SegmentKind : uint8_t {
   kCross,    ///< Over nodes: straight through the air while the axis turns evenly. Over the edge of
              ///< a patch, where both points are (nearly) the same place by the parameters of two
              ///< patches; along a link over a hole; or out over an edge and then down.
-  kOffMesh,  ///< Along an off-mesh link of LiveGround.
+  kOffMesh,  ///< Along an off-mesh link of Edits.
   kTakeOff,
   kFly,
   kLand,
@@ -139,7 +205,7 @@ struct Path {
   PathEnd end = PathEnd::kNoPlace;
   /// Feet, from the start to the goal. They are places of level ground except over nodes and in the
   /// air, where `position` alone counts. If the goal is unreachable: to the reached place nearest
-  /// to it (not of PathFinder, which then gives none).
+  /// to it, if the query asks for it.
   std::vector<Place> points;
   /// Over nodes: the place of each point, with its axis; else empty. In the air above the place of
   /// a drop it is nowhere, but has feet and axis.
@@ -165,23 +231,49 @@ struct Path {
   }
 };
 
-/// Sizes of a PathFinder.
+/// Sizes of a PathFinder; 0 for what it does not have.
 struct PathSummary {
-  uint64_t rectangles = 0;
-  uint64_t portals = 0;
-  uint64_t corners = 0;
-  uint64_t entrances = 0;  ///< Of zones; 0 without kZones.
-  uint64_t labels = 0;     ///< 0 without kLabels.
-  uint64_t bytes = 0;      ///< Of all.
-  double seconds = 0;      ///< To make them.
+  uint64_t rectangles = 0;  ///< Of the ground.
+  uint64_t portals = 0;     ///< Between rectangles.
+  uint64_t corners = 0;     ///< Around which the shortest paths turn.
+  uint64_t entrances = 0;   ///< Of zones, with kZones.
+  uint64_t labels = 0;      ///< With kLabels or kZones.
+  uint64_t blocks = 0;      ///< Over nodes: squares of patches where the class can stand.
+  uint64_t crossings = 0;   ///< Over nodes: connections between blocks.
+  uint64_t boxes = 0;       ///< Of the air, that are legal.
+  uint64_t bytes = 0;       ///< Of all.
+  double seconds = 0;       ///< To make them.
 };
 
-/// Finds paths for one class. All copies share the ground; each copy has its own memory for
-/// searching: give every thread one. No allocation once it is warm.
+/// An end of a path: a position, near which a place is looked for, or a place.
+using PathPoint = std::variant<Vec3d, Place, NodePlace>;
+
+/// Input of PathFinder::find.
+struct PathQuery {
+  PathPoint from, to;
+  /// Of an end that is a position: a place is looked for so far above and below; over nodes in all
+  /// directions. [m, >= 0]
+  double tolerance = 0.5;
+  /// Over nodes: largest distance between points of the path on curved ground. [m, > 0]
+  double spacing = 0.25;
+  /// In the air: if no single flight leads to the goal, search paths that land, walk and take off
+  /// again.
+  bool by_turns = true;
+  /// If no path leads to the goal, find the path to what is reachable and nearest to it. On the
+  /// ground that searches all that is reachable; over nodes it is always done.
+  bool nearest = true;
+  SearchBudget budget = {};
+};
+
+/// Finds paths for one class: on foot, over nodes or through the air, as the class does. All copies
+/// share what was made of the world; each has its own memory for searching and follows the edits by
+/// itself: give every thread one. No allocation once it is warm. Results are the same on every
+/// machine and for any number of threads.
 class THRONG_API PathFinder {
  public:
-  /// Makes a finder. Reads every zone once. Fails with kBadConfig (no such class, a slope cost, or
-  /// zones with too many corners for kZones), kBadFile (a zone cannot be used) or kCancelled.
+  /// Makes a finder. Reads every zone once, but with kOnDemand. Fails with kBadConfig (no such
+  /// class, or a setting that its space does not have), kNotFound (no air, no nodes), kBadFile (a
+  /// zone cannot be used) or kCancelled.
   [[nodiscard]] static Result<PathFinder> create(const World& world, const PathConfig& config,
                                                  Context& context);
   PathFinder(const PathFinder& other);
@@ -190,92 +282,60 @@ class THRONG_API PathFinder {
   PathFinder& operator=(PathFinder&&) noexcept;
   ~PathFinder();
 
-  /// Finds the shortest any-angle path over all legal cells: no legal path is shorter by more than
-  /// 1/1000 of a cell per corner. If the places are connected, a path is found; where legal cells
-  /// side by side lie more than a step height apart, it may go from portal to portal and be a
-  /// little longer. `path` is reused: its memory stays. When the budget is exhausted the search
-  /// stops (Path::spent); with labels there is none. Between queries a finder keeps up to 64 MiB of
-  /// search memory, and 16 bytes per corner.
+  /// Finds a path and says why there is none. `path` is reused: its memory stays.
+  ///
+  /// On the ground, where no edit is in force and nothing but length counts: the shortest any-angle
+  /// path over all legal cells; no legal path is shorter by more than 1/1000 of a cell per corner.
+  /// If the places are connected, one is found; where legal cells side by side lie more than a step
+  /// height apart, it may go from portal to portal and be a little longer. With labels there is no
+  /// search. Otherwise: a search over points on the borders of rectangles, pulled taut afterwards,
+  /// on average within 1 % of the best.
+  ///
+  /// Over nodes: A* over the middles of the lines along which nodes touch, or over the overlay if
+  /// the path is long, then string pulling within the nodes of the corridor. If obstacles are up or
+  /// the nearest reachable place is more than 25 m from an unreachable goal, the path leads to the
+  /// nearest place in the block whose border comes nearest.
+  ///
+  /// In the air: over the ground where that is shorter, else straight up, through the air and
+  /// straight down; from a place where it cannot take off, it walks to one where it can. If the air
+  /// at both ends is connected only over the ground, the path lands and walks in between, as few
+  /// times as possible. The whole body passes everywhere. Flights are taut, but not always the
+  /// shortest (docs/results.md).
+  ///
+  /// When the budget is exhausted the search stops (Path::spent). Between queries a finder keeps up
+  /// to 64 MiB of search memory.
+  void find(const PathQuery& query, Path& path);
   void find(const Place& from, const Place& to, Path& path, const SearchBudget& budget = {});
+  /// The same search in parts: call begin, then advance with some nodes a frame until it returns
+  /// true. If edits change meanwhile, it begins again. On the ground the search is that for
+  /// kOnDemand; over nodes and in the air the first call of advance does all. Stops where it would
+  /// take more than SearchBudget::kDefaultBytes.
+  void begin(const PathQuery& query);
+  bool advance(uint64_t max_nodes, Path& path);
+
+  /// Could a path begin or end there now? `tolerance` as in PathQuery. [m]
+  [[nodiscard]] bool is_free(const PathPoint& end, double tolerance = 0.5);
+  /// The place of the class on nodes nearest to a position in three dimensions, or nowhere if none
+  /// is within `search_radius` or the finder has no nodes. [m, m]
+  [[nodiscard]] NodePlace find_node_place(const Vec3d& position, double search_radius);
+  /// The n-th of a reproducible stream of points: in the air uniform over what is legal, else
+  /// places of the class as it was baked. Empty only if there is none.
+  [[nodiscard]] std::optional<Vec3d> random_point(uint64_t seed, uint64_t n);
+
+  /// In the air: the end of the take-off from a place on the ground, where the feet come into the
+  /// air, straight up. Empty if a solid blocks it, or out of the air.
+  [[nodiscard]] std::optional<Vec3d> take_off(const Place& place);
+  /// In the air: the place of a landing from a point of it: straight down to the lowest air box,
+  /// and there the best place: the one with the largest clearance, then the nearest to the box's
+  /// axis [PACS00]. Nowhere if there is none, or out of the air.
+  [[nodiscard]] Place landing(const Vec3d& feet);
 
   [[nodiscard]] PathSummary summary() const;
 
  private:
   friend struct Access;
-  struct Shared;
-  struct Scratch;
-  explicit PathFinder(std::shared_ptr<const Shared> shared);
-
-  std::shared_ptr<const Shared> state_;
-  std::unique_ptr<Scratch> scratch_;
-};
-
-// ----
-// The ground of a baked world for one class as it is now: with obstacles, doors, areas and area
-// costs that have changed since the bake. Data is made when a query needs it, and a change
-// discards only the tiles that it touches. Use it for large worlds that change; for many paths
-// over a world that does not change, use a PathFinder.
-
-/// An off-mesh link, see LiveGround::add_off_mesh_link.
-struct OffMeshLink {
-  Place from, to;
-  double cost = 0;  ///< [m]
-  bool two_way = true;
-};
-
-/// Names a change; 0 names none.
-using ChangeId = uint32_t;
-
-/// The ground of one class with changes. Obstacles only remove ground: an avatar can stand on a
-/// crate only if it was baked. Changes and queries are for one thread at a time; copies are
-/// independent. Results are the same on every machine.
-class THRONG_API LiveGround {
- public:
-  /// Makes the ground of a class; reads nothing yet. Fails with kBadConfig.
-  [[nodiscard]] static Result<LiveGround> create(const World& world, const PathConfig& config);
-  LiveGround(const LiveGround&);
-  LiveGround& operator=(const LiveGround&);
-  LiveGround(LiveGround&&) noexcept;
-  LiveGround& operator=(LiveGround&&) noexcept;
-  ~LiveGround();
-
-  /// Puts up an obstacle: the class is illegal where its body, from body_bottom() up, could touch
-  /// the prism. Fails with kBadInput. Time: the tiles that it touches.
-  [[nodiscard]] Result<ChangeId> add_obstacle(const Prism& prism);
-  /// The same for triangles. Only these are solid: a closed shell is hollow.
-  [[nodiscard]] Result<ChangeId> add_obstacle(std::span<const Vec3d> corners,
-                                              std::span<const std::array<uint32_t, 3>> triangles);
-  /// Gives floors inside a prism an area kind; where several overlap, the last one counts.
-  [[nodiscard]] Result<ChangeId> add_area(const Prism& prism, uint8_t kind);
-  /// Adds an off-mesh link, which no move finds: over a ditch, up a ladder, by a lift. It leads
-  /// from one place of the class to another, and back if `two_way`; what lies between is not
-  /// tested. Its cost counts as metres and is at least its length in the plane. Fails with
-  /// kBadInput.
-  [[nodiscard]] Result<ChangeId> add_off_mesh_link(const OffMeshLink& off_mesh_link);
-  /// Removes a change, or switches it off and on, as a door. False if there is none of this id.
-  bool remove(ChangeId change);
-  bool set_active(ChangeId change, bool active);
-  /// Sets the cost of a metre on ground of an area kind; infinity closes it. All kinds begin with
-  /// 1. Fails with kBadConfig. [kind 1 to 63, 0.01 to 10000 or infinity]
-  [[nodiscard]] Result<void> set_area_cost(uint8_t kind, double cost);
-
-  /// Is the place legal for the class now?
-  [[nodiscard]] bool is_free(const Place& place);
-  /// Finds a path of low cost; each segment is a legal move. The search goes over points on the
-  /// borders of rectangles, and the path is pulled taut afterwards: on average within 1 % of the
-  /// best. If no path leads to the goal (kUnreachable), `path` leads to the reached place nearest
-  /// to it, and Path::blocked_by says what blocks it. Stops when the budget of points or memory is
-  /// exhausted (Path::spent). No allocation once it is warm.
-  void find(const Place& from, const Place& to, Path& path, const SearchBudget& budget = {});
-  /// The same search in parts: call begin, then advance with some points per frame until it returns
-  /// true. Stops where it would take more than SearchBudget::kDefaultBytes.
-  void begin(const Place& from, const Place& to);
-  bool advance(uint64_t max_nodes, Path& path);
-
- private:
-  friend struct Access;
   struct State;
-  explicit LiveGround(std::unique_ptr<State> state);
+  explicit PathFinder(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 
@@ -297,177 +357,6 @@ struct AirSummary {
 /// without air) or kBadFile.
 [[nodiscard]] THRONG_API Result<AirSummary> air_summary(const World& world);
 
-/// Input of FlightFinder::find.
-struct FlightQuery {
-  /// Feet. In the air, or on the ground within `vertical_tolerance` above or below. [m]
-  Vec3d from, to;
-  double vertical_tolerance = 0.5;  ///< [m, >= 0]
-  /// Counts air boxes, and for each path on foot its nodes. A search on foot ends before `cancel`
-  /// is read.
-  SearchBudget budget = {};
-  /// If no single flight leads to the goal, search paths that land, walk and take off again.
-  bool by_turns = true;
-  /// If no path leads to the goal, find the path to the point that comes nearest. Linear in the air
-  /// boxes.
-  bool nearest = true;
-};
-
-/// Sizes of a FlightFinder.
-struct FlightSummary {
-  uint64_t boxes = 0;  ///< Air boxes that are legal.
-  uint64_t bytes = 0;  ///< Of the boxes and their index.
-  double seconds = 0;  ///< To make them.
-};
-
-/// Finds paths for one class that flies. All copies share the legal air as it was baked; each copy
-/// has its own obstacles and its own memory for searching, so give every thread one. Queries do not
-/// allocate once they are warm.
-class THRONG_API FlightFinder {
- public:
-  /// Makes a finder. Reads every zone once. Fails with kNotFound (a world without air), kBadConfig
-  /// (no such class, or it does not fly), kBadFile or kCancelled.
-  [[nodiscard]] static Result<FlightFinder> create(const World& world, const PathConfig& config,
-                                                   Context& context);
-  FlightFinder(const FlightFinder& other);
-  FlightFinder& operator=(const FlightFinder& other);
-  FlightFinder(FlightFinder&&) noexcept;
-  FlightFinder& operator=(FlightFinder&&) noexcept;
-  ~FlightFinder();
-
-  /// Finds a short path: over the ground where that is shorter, else straight up from the ground,
-  /// through the air and straight down; from a place where it cannot take off, it walks to one
-  /// where it can. If the air at the start is connected with the air at the goal only over the
-  /// ground, the path lands and walks in between, as few times as possible, by the first place
-  /// found on each ground. The whole body passes everywhere. Paths through the air are taut, but
-  /// not always the shortest (docs/results.md). An unreachable goal is approached to the nearest
-  /// point of the air, or of the ground where the avatar cannot take off; Path::blocked_by is kLow
-  /// where a lower body would pass, or where the avatar cannot take off, else kNarrow. `path` is
-  /// reused: its memory stays.
-  void find(const FlightQuery& query, Path& path);
-
-  /// Puts up an obstacle: no path leads where the body could touch the prism; on the ground, as in
-  /// LiveGround, the body counts from body_bottom() up. A start or goal inside is no place. Fails
-  /// with kBadInput. Time: the air boxes that it touches and those of what it cuts off, up to 65
-  /// 536.
-  [[nodiscard]] Result<ChangeId> add_obstacle(const Prism& prism);
-  /// The same for triangles. Only these are solid: a closed shell is hollow.
-  [[nodiscard]] Result<ChangeId> add_obstacle(std::span<const Vec3d> corners,
-                                              std::span<const std::array<uint32_t, 3>> triangles);
-  /// Removes an obstacle, or switches it off and on, as a door. False if there is none of this id.
-  bool remove(ChangeId change);
-  bool set_active(ChangeId change, bool active);
-
-  /// Is a point of the air legal for the feet? Constant time.
-  [[nodiscard]] bool is_legal(Vec3d feet) const;
-  /// The n-th of a reproducible stream of points, uniform over the legal air. Empty only if there
-  /// is no legal air.
-  [[nodiscard]] std::optional<Vec3d> random_point(uint64_t seed, uint64_t n) const;
-
-  /// The end of the take-off from a place on the ground: where the feet come into the air, straight
-  /// up. Empty if a solid blocks it.
-  [[nodiscard]] std::optional<Vec3d> take_off(const Place& place) const;
-  /// The place of a landing from a point of the air: straight down to the lowest air box, and there
-  /// the best place: the one with the largest clearance, then the nearest to the box's axis
-  /// [PACS00]. Nowhere if there is none.
-  [[nodiscard]] Place landing(Vec3d feet) const;
-
-  [[nodiscard]] FlightSummary summary() const;
-
- private:
-  friend struct Access;
-  struct Shared;
-  struct Scratch;
-  struct End;
-  explicit FlightFinder(std::shared_ptr<const Shared> shared);
-
-  bool locate(Vec3d at, double vertical_tolerance, End& end) const;
-  void find_flight(const FlightQuery& query, Path& path);
-  void find_by_turns(const FlightQuery& query, Path& path);
-  size_t follow_route(const FlightQuery& query, const End& from, const End& to, Path& path);
-  void find_nearest(const FlightQuery& query, Path& path);
-  void find_nearest_on_foot(const FlightQuery& query, const Place& from, Path& path);
-  PathEnd walk(const FlightQuery& query, const Place& from, const Place& to, Path& path);
-
-  std::shared_ptr<const Shared> state_;
-  std::unique_ptr<Scratch> scratch_;
-};
-
-// ----
-// Paths over nodes, for every class and in particular for climbers: over walls and under ceilings.
-// Source: [PACS00] 1.2.3; docs/design/006-nodes.md.
-
-/// Sizes of a NodePathFinder.
-struct NodePathSummary {
-  uint64_t blocks = 0;     ///< Squares of patches where the class can stand.
-  uint64_t crossings = 0;  ///< Connections between blocks.
-  uint64_t bytes = 0;
-  double seconds = 0;  ///< To make them.
-};
-
-/// A rectangle of a patch's parameters.
-struct NodeSquare {
-  double s0 = 0, t0 = 0, s1 = 0, t1 = 0;
-};
-
-/// Finds paths for one class over nodes. All copies share the nodes; each copy has its own memory
-/// for searching: give every thread one. No allocation once it is warm.
-class THRONG_API NodePathFinder {
- public:
-  /// Makes a finder. Reads all nodes once. Fails with kBadConfig, kBadFile (a zone cannot be used)
-  /// or kCancelled.
-  [[nodiscard]] static Result<NodePathFinder> create(const Nodes& nodes, const PathConfig& config,
-                                                     Context& context);
-  NodePathFinder(const NodePathFinder& other);
-  NodePathFinder& operator=(const NodePathFinder& other);
-  NodePathFinder(NodePathFinder&&) noexcept;
-  NodePathFinder& operator=(NodePathFinder&&) noexcept;
-  ~NodePathFinder();
-
-  /// The place of the class nearest to a position in three dimensions, or nowhere if none is within
-  /// `search_radius`. Queries of one finder are for one thread at a time. [m, m]
-  [[nodiscard]] NodePlace find_place(Vec3d position, double search_radius) const;
-
-  /// A rectangle of a node's patch that contains two of its places, the ends of a segment, and
-  /// inside which the class may move straight between any two points. Empty if the finder knows
-  /// none. [s and t 0 to 1]
-  [[nodiscard]] std::optional<NodeSquare> square(uint32_t node, double from_s, double from_t,
-                                                 double to_s, double to_t) const;
-
-  /// Finds a path of low cost: A* over the middles of the lines along which nodes touch, or over
-  /// the overlay if the path is long, then string pulling within the nodes of the corridor.
-  /// `spacing` is the largest distance between points of the path on curved ground. [m, > 0] `path`
-  /// is reused: its memory stays. Stops when the budget is exhausted. A path to an unreachable goal
-  /// leads to the nearest reachable place, in three dimensions; if that is more than 25 m from the
-  /// goal, or obstacles are up, to the nearest place in the block whose border comes nearest.
-  void find(const NodePlace& from, const NodePlace& to, Path& path, double spacing = 0.25,
-            const SearchBudget& budget = {});
-
-  /// Puts up an obstacle: no path leads where the body could touch the prism, whatever its axis.
-  /// Blocks are cut there, by cells of level tiles and by squares of about a quarter of a metre of
-  /// curved ground. Paths lead around it over the rest; long ones still use the overlay, but for
-  /// the overlay cells that the obstacle touches. Holds for this finder and for copies made later.
-  /// Fails with kBadInput. Time: here what lies within a body's size of it; at the next query all
-  /// obstacles that are up.
-  [[nodiscard]] Result<ChangeId> add_obstacle(const Prism& prism);
-  /// The same for triangles. Only these are solid: a closed shell is hollow.
-  [[nodiscard]] Result<ChangeId> add_obstacle(std::span<const Vec3d> corners,
-                                              std::span<const std::array<uint32_t, 3>> triangles);
-  /// Removes an obstacle, or switches it off and on, as a door; paths are then the same as without
-  /// it. False if there is none of this id.
-  bool remove(ChangeId change);
-  bool set_active(ChangeId change, bool active);
-
-  [[nodiscard]] NodePathSummary summary() const;
-
- private:
-  struct Shared;
-  struct Scratch;
-  explicit NodePathFinder(std::shared_ptr<const Shared> shared);
-
-  std::shared_ptr<const Shared> state_;
-  std::unique_ptr<Scratch> scratch_;
-};
-
 // ----
 // Flow fields: the distance to the nearest of some goals from everywhere, by one search for all
 // avatars that share these goals.
@@ -485,14 +374,14 @@ struct FlowSummary {
   double seconds = 0;  ///< To make it.
 };
 
-/// Distances to goals over points on the borders of rectangles, as LiveGround searches them. It
-/// describes the ground at the time when it was made; if the ground changes, make another one.
-/// Off-mesh links are ignored. Each copy has its own memory for queries; give every thread one.
+/// Distances to goals over points on the borders of rectangles of the ground. It describes the
+/// ground and its edits at the time when it was made; if they change, make another one. Off-mesh
+/// links are ignored. Each copy has its own memory for queries; give every thread one.
 class THRONG_API FlowField {
  public:
-  /// Makes a field by one Dijkstra search. Goals that are no places of the class are ignored. Fails
-  /// with kBadInput (no goal is left) or kCancelled.
-  [[nodiscard]] static Result<FlowField> create(const LiveGround& ground,
+  /// Makes a field by one Dijkstra search over the ground of a finder's class. Goals that are no
+  /// places of the class are ignored. Fails with kBadInput (no goal is left) or kCancelled.
+  [[nodiscard]] static Result<FlowField> create(const PathFinder& finder,
                                                 std::span<const Place> goals,
                                                 const FlowConfig& config, Context& context);
   FlowField(const FlowField&);

@@ -188,6 +188,8 @@ class THRONG_API Nodes {
   [[nodiscard]] static bool exist(const World& world);
   /// The same for a world that was opened from its folder.
   [[nodiscard]] static Result<Nodes> open(const World& world);
+  /// The world that they were made for. [not of an empty handle]
+  [[nodiscard]] const World& world() const;
   /// Writes them into the folder of the world that they were made for, in place of those there, on
   /// `workers` threads (0: all cores). Fails with kIo or, if the folder holds another world,
   /// kBadFile.

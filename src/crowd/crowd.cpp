@@ -148,7 +148,7 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   made->ground = std::move(*ground);
   const bool over_nodes = is_climber_class(number);
   if (config.routing == Routing::kPaths && !over_nodes) {
-    auto finder = PathFinder::create(
+    auto finder = path::MeshFinder::create(
         world, {.avatar_class = number, .workers = config.workers, .speedup = config.speedup},
         context);
     if (!finder) return finder.error();
@@ -679,12 +679,23 @@ bool Crowd::may_lean() const { return data_of(state_->config.nodes) != nullptr; 
 
 std::span<const AvatarId> Crowd::arrived() const { return state_->arrived; }
 std::span<const AvatarId> Crowd::goal_unreachable() const { return state_->goal_unreachable; }
-const FlightFinder* Crowd::flight_finder(int32_t avatar_class) const {
-  const State& s = *state_;
-  if (avatar_class < 0 || static_cast<size_t>(avatar_class) >= s.classes.size()) return nullptr;
-  const auto& parts = s.classes[static_cast<size_t>(avatar_class)];
+const path::FlightFinder* Crowd::State::flight_finder(int32_t avatar_class) const {
+  if (avatar_class < 0 || static_cast<size_t>(avatar_class) >= classes.size()) return nullptr;
+  const auto& parts = classes[static_cast<size_t>(avatar_class)];
   return parts && parts->air ? &parts->flight_finders[0] : nullptr;
 }
+
+bool Crowd::may_fly(int32_t avatar_class, const Vec3d& feet) const {
+  const path::FlightFinder* finder = state_->flight_finder(avatar_class);
+  return finder != nullptr && finder->is_legal(feet);
+}
+
+std::optional<Vec3d> Crowd::random_air_point(int32_t avatar_class, uint64_t seed,
+                                             uint64_t n) const {
+  const path::FlightFinder* finder = state_->flight_finder(avatar_class);
+  return finder == nullptr ? std::nullopt : finder->random_point(seed, n);
+}
+
 bool Crowd::is_alive(AvatarId id) const { return state_->body(id) != nullptr; }
 uint32_t Crowd::size() const { return static_cast<uint32_t>(state_->engine.bodies().size()); }
 

@@ -105,7 +105,7 @@ bool Crowd::State::is_climber_class(int32_t number) const {
 }
 
 Result<void> Crowd::State::open_nodes(int32_t number, ClassParts& parts, Context& context) const {
-  auto finder = NodePathFinder::create(
+  auto finder = path::NodeFinder::create(
       config.nodes, {.avatar_class = number, .workers = config.workers}, context);
   if (!finder) return finder.error();
   parts.node_finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
@@ -238,11 +238,11 @@ void Crowd::State::turn_aside(crowd::Body& body, crowd::Climb& climb, int32_t wo
   }
   if (path.points.size() < 2) {
     const double side = 1.0 / (1 << info.level);
-    NodeSquare square{info.s * side, info.t * side, (info.s + 1) * side, (info.t + 1) * side};
+    path::NodeSquare square{info.s * side, info.t * side, (info.s + 1) * side, (info.t + 1) * side};
     if (info.cells != 0) {
       square = parts.node_finders[w]
                    .square(climb.at.node1 - 1, climb.at.s, climb.at.t, climb.at.s, climb.at.t)
-                   .value_or(NodeSquare{climb.at.s, climb.at.t, climb.at.s, climb.at.t});
+                   .value_or(path::NodeSquare{climb.at.s, climb.at.t, climb.at.s, climb.at.t});
     }
     const auto within = [&](double low, double high, uint64_t draw) {
       return low + random_unit(seed, stream | 2, draw) * (high - low);

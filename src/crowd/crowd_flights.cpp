@@ -10,6 +10,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "crowd/crowd_state.h"
+#include "path/air/flight_space.h"
 #include "steer/air.h"
 #include "throng/crowd.h"
 #include "world/place.h"
@@ -54,12 +55,12 @@ void set_path(crowd::Flight& flight, std::span<const crowd::AirPosition> points,
 
 Result<void> Crowd::State::open_air(int32_t number, ClassParts& parts, Context& context) const {
   if (!body_class(number).flies || data_of(world)->air == nullptr) return {};
-  auto finder =
-      FlightFinder::create(world, {.avatar_class = number, .workers = config.workers}, context);
+  auto finder = path::FlightFinder::create(
+      world, {.avatar_class = number, .workers = config.workers}, context);
   if (!finder) return finder.error();
   parts.flight_finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
   parts.flights.resize(parts.flight_finders.size());
-  parts.air.emplace(world, path::space_of(parts.flight_finders[0]), parts.ground, number);
+  parts.air.emplace(world, parts.flight_finders[0].space(), parts.ground, number);
   return {};
 }
 
@@ -245,9 +246,9 @@ std::optional<crowd::AirPosition> Crowd::State::open_position(const crowd::Body&
   constexpr int32_t kCells = 2;  // to each side
   const ClassParts& parts = *classes[body.avatar_class];
   const crowd::FlyerAir& air = *parts.air;
-  const FlightFinder& finder = parts.flight_finders[static_cast<size_t>(worker)];
+  const path::FlightFinder& finder = parts.flight_finders[static_cast<size_t>(worker)];
   if (finder.is_legal(air.metres(at))) return at;
-  const int32_t high = path::space_of(finder).shape.cell;
+  const int32_t high = finder.space().shape.cell;
   const auto wide = static_cast<int32_t>(high * 1e-3 / unit);
   std::optional<crowd::AirPosition> nearest;
   int32_t min_square = INT32_MAX;

@@ -293,7 +293,7 @@ bool Crowd::State::plan_exit_on_nodes(crowd::Body& body, crowd::Climb& climb, in
 bool Crowd::State::find_exit_over_nodes(crowd::Body& body, crowd::Climb& climb, int32_t worker) {
   ClassParts& parts = *classes[body.avatar_class];
   const auto w = static_cast<size_t>(worker);
-  NodePathFinder& finder = parts.node_finders[w];
+  path::NodeFinder& finder = parts.node_finders[w];
   NodePlace to;
   for (size_t i = 0; i < kSearchRadii.size() && !to; ++i) {
     to = finder.find_place(climb.feet, kSearchRadii[i]);

@@ -18,8 +18,8 @@ namespace {
 // it is switched. All copies give the same id.
 template <class Finder>
 void sync(std::vector<Finder>& finders, const crowd::CrowdObstacle& obstacle, bool is_new,
-          ChangeId& change) {
-  const ChangeId old = change;
+          path::ChangeId& change) {
+  const path::ChangeId old = change;
   for (Finder& finder : finders) {
     if (!is_new) {
       finder.set_active(old, obstacle.has_cells);
@@ -33,7 +33,7 @@ void sync(std::vector<Finder>& finders, const crowd::CrowdObstacle& obstacle, bo
 }
 
 template <class Finder>
-void remove_change(std::vector<Finder>& finders, ChangeId change) {
+void remove_change(std::vector<Finder>& finders, path::ChangeId change) {
   for (Finder& finder : finders) finder.remove(change);
 }
 

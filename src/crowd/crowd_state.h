@@ -27,6 +27,10 @@
 #include "crowd/walk/crowd_engine.h"
 #include "crowd/walk/routes.h"
 #include "path/edits/flow_points.h"
+#include "path/edits/live_finder.h"
+#include "path/flight_finder.h"
+#include "path/mesh_finder.h"
+#include "path/node_finder.h"
 #include "throng/crowd.h"
 #include "throng/path.h"
 
@@ -44,19 +48,19 @@ inline constexpr std::array<int32_t, 3> kNeverChecked = {INT32_MIN / 2, 0, 0};
 struct ClassParts {
   crowd::CrowdGround ground;
   std::optional<crowd::StandingDraw> standing;  // none: the ground has changed since
-  std::vector<PathFinder> finders;              // one a worker
-  std::vector<LiveGround> lives;  // one a worker, once paths avoid obstacles or lead to
-                                  // targets
+  std::vector<path::MeshFinder> finders;        // one a worker
+  std::vector<path::LiveFinder> lives;  // one a worker, once paths avoid obstacles or lead to
+                                        // targets
   std::vector<Path> paths;
   std::vector<crowd::RepairScratch> repairs;
   std::vector<path::FlowPoints> flows;  // by target
   // Of a class that flies, in a world with air.
   std::optional<crowd::FlyerAir> air;
-  std::vector<FlightFinder> flight_finders;  // one a worker
+  std::vector<path::FlightFinder> flight_finders;  // one a worker
   std::vector<Path> flights;
   // Of a class of climbers.
   std::optional<crowd::ClimberGround> nodes;
-  std::vector<NodePathFinder> node_finders;  // one a worker
+  std::vector<path::NodeFinder> node_finders;  // one a worker
   std::vector<Path> node_paths;
   // Of flyers and climbers, by target: where to land, or to climb to.
   std::vector<std::vector<Place>> landings;
@@ -119,6 +123,8 @@ struct Crowd::State {
   }
   [[nodiscard]] AvatarId id_of(uint32_t slot) const { return {slot + 1, generation[slot]}; }
   [[nodiscard]] crowd::Body* body(AvatarId id) const;
+  /// Null if the class does not fly or has no avatar yet.
+  [[nodiscard]] const path::FlightFinder* flight_finder(int32_t avatar_class) const;
   void find_bodies() const;
   Result<void> open_class(int32_t number, Context& context);
   Result<crowd::Body> body_of(const AvatarSpawn& spawn) const;

@@ -46,9 +46,9 @@ Result<TargetId> Crowd::add_target(std::span<const Prism> areas, Context& contex
 }
 
 void Crowd::State::make_lives(size_t number) {
-  std::vector<LiveGround>& lives = classes[number]->lives;
+  std::vector<path::LiveFinder>& lives = classes[number]->lives;
   if (!lives.empty()) return;
-  auto made = LiveGround::create(world, {.avatar_class = static_cast<int32_t>(number)});
+  auto made = path::LiveFinder::create(world, {.avatar_class = static_cast<int32_t>(number)});
   THRONG_ASSERT(made);  // The class is one of the world's.
   lives.assign(static_cast<size_t>(worker_count(config.workers)), *made);
 }

@@ -9,6 +9,7 @@
 
 #include "crowd/ground/crowd_ground.h"
 #include "crowd/walk/body.h"
+#include "path/edits/live_finder.h"
 #include "throng/base.h"
 #include "throng/path.h"
 #include "throng/world.h"
@@ -54,6 +55,6 @@ struct Target {
 /// those that are legal there, whatever else is blocked in `ground`.
 std::vector<Place> places_inside(const world::WorldData& world, const CrowdGround& ground,
                                  std::span<const TargetRegion> regions, size_t max_count,
-                                 LiveGround* live = nullptr);
+                                 path::LiveFinder* live = nullptr);
 
 }  // namespace throng::crowd

@@ -113,6 +113,8 @@ Result<void> Nodes::check_all() const {
   return state_->world.check_ground();
 }
 
+const World& Nodes::world() const { return state_->world; }
+
 NodeSummary Nodes::summary() const {
   THRONG_ASSERT(state_);
   NodeSummary summary = state_->summary;

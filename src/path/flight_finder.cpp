@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
+#include "path/flight_finder.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -15,14 +17,15 @@
 #include "path/air/flight_search.h"
 #include "path/air/flight_string_puller.h"
 #include "path/air/ground_air_links.h"
+#include "path/edits/live_finder.h"
 #include "path/edits/solid.h"
 #include "path/ground/mesh.h"
 #include "path/ground/reset_path.h"
-#include "throng/path.h"
+#include "path/mesh_finder.h"
 #include "world/place.h"
 
 // Joins the parts of a flight: walks, take-offs, flight search, landings and string pulling.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr int32_t kLargestBox = 32;           // voxels: larger ones hide good paths
@@ -40,7 +43,7 @@ double distance(Vec3d a, Vec3d b) {
 // All but the nodes, which count what all parts of a search expand.
 void clear(Path& path) {
   const uint64_t nodes = path.nodes;
-  path::reset(path);
+  reset(path);
   path.nodes = nodes;
 }
 
@@ -63,7 +66,7 @@ void add_walk(const Path& ground, size_t first, Path& path) {
 
 // A point of the air, or a place with the nearest place to take off or to land.
 struct FlightFinder::End {
-  std::optional<path::AirPoint> air;
+  std::optional<AirPoint> air;
   Place ground, ground_air_link;
 };
 
@@ -71,29 +74,29 @@ struct FlightFinder::Shared {
   World world;
   int32_t avatar_class = 0;
   world::AirBody body;
-  path::FlightSpace space;
+  FlightSpace space;
   std::vector<uint64_t> cells_before;  // per box, and of all
-  std::optional<PathFinder> walker;    // none where the class has no ground
-  path::GroundAirLinks ground_air_links;
-  FlightSummary summary;
+  std::optional<MeshFinder> walker;    // none where the class has no ground
+  GroundAirLinks ground_air_links;
+  PathSummary summary;
 
-  [[nodiscard]] path::FlightEndpoints ends(const path::AirView& air) const {
+  [[nodiscard]] FlightEndpoints ends(const AirView& air) const {
     return {*data_of(world), air, avatar_class};
   }
   // The component of the ground at a place.
   [[nodiscard]] uint32_t ground_of(const Place& place) const {
     const auto at = world::ground_point(*data_of(world), place);
-    if (!walker || !at) return path::kNoRect;
-    const path::PathMesh& mesh = path::mesh_of(*walker);
+    if (!walker || !at) return kNoRect;
+    const PathMesh& mesh = walker->mesh();
     const uint32_t rect = mesh.rect_at(place.level1 - 1, at->cell_x(), at->cell_z());
-    return rect == path::kNoRect ? path::kNoRect : mesh.rects[rect].component;
+    return rect == kNoRect ? kNoRect : mesh.rects[rect].component;
   }
-  [[nodiscard]] path::GroundAirLinks::Part part_of(const End& end) const {
+  [[nodiscard]] GroundAirLinks::Part part_of(const End& end) const {
     if (end.air) return {space.component[space.box_at(*end.air)], true};
     return {ground_of(end.ground), false};
   }
   // The middle of a cell.
-  [[nodiscard]] Place place_of(const path::GroundAirLinks::Cell& cell) const {
+  [[nodiscard]] Place place_of(const GroundAirLinks::Cell& cell) const {
     return world::place_at(*data_of(world),
                            world::ground_level(*data_of(world), cell.level, avatar_class),
                            {(int64_t{cell.x} << world::kUnitBits) + world::kUnitsPerCell / 2,
@@ -104,7 +107,7 @@ struct FlightFinder::Shared {
     double least = std::numeric_limits<double>::infinity();
     if (!walker) return nearest;
     const world::GroundPoint to = world::to_ground(*data_of(world), at.x, at.z);
-    for (const path::MeshRect& rect : path::mesh_of(*walker).rects) {
+    for (const MeshRect& rect : walker->mesh().rects) {
       if (rect.component != component) continue;
       const Place place =
           place_of({rect.level, std::clamp(to.cell_x(), rect.x, rect.x + rect.width - 1),
@@ -122,21 +125,21 @@ struct FlightFinder::Scratch {
   explicit Scratch(const Shared& shared) : walker(shared.walker) {}
 
   [[nodiscard]] bool is_changed() const { return changes && changes->any(); }
-  [[nodiscard]] path::AirView air(const Shared& shared) const {
+  [[nodiscard]] AirView air(const Shared& shared) const {
     return {shared.space, is_changed() ? &*changes : nullptr};
   }
-  path::AirChanges& changes_of(const Shared& shared) {
+  AirChanges& changes_of(const Shared& shared) {
     if (!changes) changes.emplace(*data_of(shared.world), shared.space, shared.avatar_class);
     return *changes;
   }
-  ChangeId add(const Shared& shared, path::Solid solid) {
-    if (live) live_ids.push_back(path::AirChanges::add_to(*live, solid));
+  ChangeId add(const Shared& shared, Solid solid) {
+    if (live) live_ids.push_back(AirChanges::add_to(*live, solid));
     return changes_of(shared).add(std::move(solid));
   }
   // The ground with all changes; made on the first walk.
-  LiveGround& ground(const Shared& shared) {
+  LiveFinder& ground(const Shared& shared) {
     if (!live) {
-      auto made = LiveGround::create(shared.world, {.avatar_class = shared.avatar_class});
+      auto made = LiveFinder::create(shared.world, {.avatar_class = shared.avatar_class});
       THRONG_ASSERT(made);  // The class was checked.
       changes->add_all_to(*made, live_ids);
       live = std::move(*made);
@@ -145,47 +148,47 @@ struct FlightFinder::Scratch {
   }
 
   // From the ground into the air: into this component of it, or any (kNoBox). False: none is found.
-  bool find_link(const Shared& shared, const path::AirView& air, End& end, uint32_t component,
+  bool find_link(const Shared& shared, const AirView& air, End& end, uint32_t component,
                  bool& budget_exhausted);
   // A component of the air over the ground at both ends: if there is more than one, the one that is
   // nearest to both, as far as a flood around them shows. kNoBox: none.
-  uint32_t common_air(const Shared& shared, const path::AirView& air, const End& a, const End& b,
+  uint32_t common_air(const Shared& shared, const AirView& air, const End& a, const End& b,
                       const std::atomic<bool>* cancel, bool& budget_exhausted);
 
-  path::FlightSearch search;
+  FlightSearch search;
   SpentBudget spent = SpentBudget::kNone;  // the budget that the last search exhausted
-  path::FlightStringPuller pull;
-  path::CircleFlood flood;
-  std::optional<PathFinder> walker;
-  std::vector<path::AirPoint> air_path;
+  FlightStringPuller pull;
+  CircleFlood flood;
+  std::optional<MeshFinder> walker;
+  std::vector<AirPoint> air_path;
   Path walk_there, walk_on, walk_all;
   std::vector<uint32_t> over_from, over_to, common;  // components of the air
-  path::AirView::ZoneOrder zone_order;
-  path::GroundAirLinks::Scratch parts;
-  std::vector<path::GroundAirLinks::Part> route;
-  std::vector<path::GroundAirLinks::Pair> banned;
+  AirView::ZoneOrder zone_order;
+  GroundAirLinks::Scratch parts;
+  std::vector<GroundAirLinks::Part> route;
+  std::vector<GroundAirLinks::Pair> banned;
   // Made with the first obstacle; none before.
-  std::optional<path::AirChanges> changes;
-  std::optional<LiveGround> live;
+  std::optional<AirChanges> changes;
+  std::optional<LiveFinder> live;
   std::vector<ChangeId> live_ids;  // by id of a change - 1
   // Of a search that found no path between ends that could be connected: the point that it reached
   // in the air that is nearest to where the query leads.
-  std::optional<path::AirPoint> reached;
+  std::optional<AirPoint> reached;
 };
 
-bool FlightFinder::Scratch::find_link(const Shared& shared, const path::AirView& air_now, End& end,
+bool FlightFinder::Scratch::find_link(const Shared& shared, const AirView& air_now, End& end,
                                       uint32_t component, bool& budget_exhausted) {
   if (!end.ground) return end.air.has_value();
-  const path::FlightEndpoints ends = shared.ends(air_now);
+  const FlightEndpoints ends = shared.ends(air_now);
   end.ground_air_link = end.ground;
   end.air = ends.take_off(end.ground_air_link);
   if (end.air &&
-      (component == path::kNoBox || air_now.component(air_now.box_at(*end.air)) == component)) {
+      (component == kNoBox || air_now.component(air_now.box_at(*end.air)) == component)) {
     return true;
   }
   end.air.reset();
   const uint32_t ground_part = shared.ground_of(end.ground);
-  const bool leads = component == path::kNoBox
+  const bool leads = component == kNoBox
                          ? !shared.ground_air_links.air_over(ground_part).empty()
                          : shared.ground_air_links.joins(ground_part, air_now.baked(component));
   if (!leads) return false;
@@ -196,22 +199,22 @@ bool FlightFinder::Scratch::find_link(const Shared& shared, const path::AirView&
   return end.air.has_value();
 }
 
-uint32_t FlightFinder::Scratch::common_air(const Shared& shared, const path::AirView& air_now,
+uint32_t FlightFinder::Scratch::common_air(const Shared& shared, const AirView& air_now,
                                            const End& a, const End& b,
                                            const std::atomic<bool>* cancel,
                                            bool& budget_exhausted) {
-  const path::FlightEndpoints ends = shared.ends(air_now);
+  const FlightEndpoints ends = shared.ends(air_now);
   const auto over_a = shared.ground_air_links.air_over(shared.ground_of(a.ground));
   const auto over_b = shared.ground_air_links.air_over(shared.ground_of(b.ground));
   common.clear();
   std::set_intersection(over_a.begin(), over_a.end(), over_b.begin(), over_b.end(),
                         std::back_inserter(common));
-  if (common.empty()) return path::kNoBox;
+  if (common.empty()) return kNoBox;
   if (common.size() < 2 && !is_changed()) return common[0];
   for (const auto& [end, over] : {std::pair{&a, &over_from}, std::pair{&b, &over_to}}) {
     if (cancel != nullptr && *cancel) {
       budget_exhausted = true;
-      return path::kNoBox;
+      return kNoBox;
     }
     ends.components_over(end->ground, kMaxIslandCells, flood, *over);
   }
@@ -253,7 +256,7 @@ Result<FlightFinder> FlightFinder::create(const World& world, const PathConfig& 
   if (auto ok = check_class(data.summary.classes, config.avatar_class, "flight"); !ok)
     return ok.error();
   if (config.workers < 0) return Error{Errc::kBadConfig, "flight: workers must be 0 or more"};
-  if (auto ok = path::refuse_settings(config, "flight", false); !ok) return ok.error();
+  if (auto ok = refuse_settings(config, "flight", false); !ok) return ok.error();
   const AvatarClass& avatar = data.summary.classes[static_cast<size_t>(config.avatar_class)];
   if (!avatar.flies) {
     return Error{Errc::kBadConfig, "flight: class " + avatar.name +
@@ -263,8 +266,7 @@ Result<FlightFinder> FlightFinder::create(const World& world, const PathConfig& 
   if (auto ok = world.check_all(); !ok) return ok.error();
   auto shared = std::make_shared<Shared>();
   shared->body = world::air_body(avatar, data.air->shape);
-  auto space =
-      path::build_flight_space(*data.air, shared->body, kLargestBox, config.workers, context);
+  auto space = build_flight_space(*data.air, shared->body, kLargestBox, config.workers, context);
   if (!space) return space.error();
   shared->world = world;
   shared->avatar_class = config.avatar_class;
@@ -276,12 +278,12 @@ Result<FlightFinder> FlightFinder::create(const World& world, const PathConfig& 
     shared->cells_before.push_back(shared->cells_before.back() + side * side * side);
   }
   if (data.level_count > 0) {
-    auto walker = PathFinder::create(
+    auto walker = MeshFinder::create(
         world, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
     if (!walker) return walker.error();
     shared->walker = std::move(*walker);
     shared->ground_air_links =
-        path::GroundAirLinks(data, path::mesh_of(*shared->walker), shared->space, config.workers);
+        GroundAirLinks(data, shared->walker->mesh(), shared->space, config.workers);
   }
   shared->summary.boxes = shared->space.boxes.size();
   shared->summary.bytes = shared->space.bytes() + shared->cells_before.size() * sizeof(uint64_t) +
@@ -292,22 +294,22 @@ Result<FlightFinder> FlightFinder::create(const World& world, const PathConfig& 
   return FlightFinder(std::move(shared));
 }
 
-FlightSummary FlightFinder::summary() const { return state_->summary; }
-const path::FlightSpace& path::space_of(const FlightFinder& finder) {
-  return Access::state(finder)->space;
-}
+PathSummary FlightFinder::summary() const { return state_->summary; }
+const FlightSpace& FlightFinder::space() const { return state_->space; }
+
+ChangeId FlightFinder::add_obstacle(const Solid& solid) { return scratch_->add(*state_, solid); }
 
 Result<ChangeId> FlightFinder::add_obstacle(const Prism& prism) {
-  auto solid = path::make_solid(prism);
+  const auto solid = make_solid(prism);
   if (!solid) return solid.error();
-  return scratch_->add(*state_, std::move(*solid));
+  return add_obstacle(*solid);
 }
 
 Result<ChangeId> FlightFinder::add_obstacle(std::span<const Vec3d> corners,
                                             std::span<const std::array<uint32_t, 3>> triangles) {
-  auto solid = path::make_solid(corners, triangles);
+  const auto solid = make_solid(corners, triangles);
   if (!solid) return solid.error();
-  return scratch_->add(*state_, std::move(*solid));
+  return add_obstacle(*solid);
 }
 
 bool FlightFinder::set_active(ChangeId change, bool active) {
@@ -324,6 +326,11 @@ bool FlightFinder::remove(ChangeId change) {
   return true;
 }
 
+bool FlightFinder::is_end(Vec3d at, double vertical_tolerance) const {
+  End end;
+  return locate(at, vertical_tolerance, end);
+}
+
 bool FlightFinder::is_legal(Vec3d feet) const {
   return state_->ends(scratch_->air(*state_)).in_air(feet).has_value();
 }
@@ -331,13 +338,13 @@ bool FlightFinder::is_legal(Vec3d feet) const {
 std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const {
   const std::vector<uint64_t>& before = state_->cells_before;
   if (before.back() == 0) return {};
-  const path::AirView air = scratch_->air(*state_);
-  const path::FlightEndpoints ends = state_->ends(air);
+  const AirView air = scratch_->air(*state_);
+  const FlightEndpoints ends = state_->ends(air);
   const auto draw = [&](const world::AirCube& cube, uint64_t first) {
     const auto part = [&](uint64_t i) {
-      return path::kAirSkin + random_unit(seed, n, first + i) * (cube.side - 2 * path::kAirSkin);
+      return kAirSkin + random_unit(seed, n, first + i) * (cube.side - 2 * kAirSkin);
     };
-    return path::AirPoint{cube.x + part(1), cube.y + part(2), cube.z + part(3)};
+    return AirPoint{cube.x + part(1), cube.y + part(2), cube.z + part(3)};
   };
   // What obstacles have blocked is drawn again. Where hardly anything is left, it is searched.
   constexpr uint64_t kDraws = 256;
@@ -346,10 +353,10 @@ std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const
     const uint64_t pick = random_below(seed, n, 4 * i, before.back());
     box = static_cast<size_t>(std::upper_bound(before.begin(), before.end(), pick) -
                               before.begin() - 1);
-    const path::AirPoint p = draw(state_->space.boxes[box], 4 * i);
-    if (air.changes() == nullptr || air.box_at(p) != path::kNoBox) return ends.to_metres(p);
+    const AirPoint p = draw(state_->space.boxes[box], 4 * i);
+    if (air.changes() == nullptr || air.box_at(p) != kNoBox) return ends.to_metres(p);
   }
-  std::optional<path::AirPoint> found;
+  std::optional<AirPoint> found;
   for (size_t i = 0; i < state_->space.boxes.size() && !found; ++i) {
     air.for_pieces(static_cast<uint32_t>((box + i) % state_->space.boxes.size()),
                    [&](uint32_t piece) {
@@ -361,14 +368,14 @@ std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const
 }
 
 std::optional<Vec3d> FlightFinder::take_off(const Place& place) const {
-  const path::FlightEndpoints ends = state_->ends(scratch_->air(*state_));
+  const FlightEndpoints ends = state_->ends(scratch_->air(*state_));
   const auto up = ends.take_off(place);
   if (!up) return {};
   return ends.to_metres(*up);
 }
 
 Place FlightFinder::landing(Vec3d feet) const {
-  const path::FlightEndpoints ends = state_->ends(scratch_->air(*state_));
+  const FlightEndpoints ends = state_->ends(scratch_->air(*state_));
   const auto point = ends.in_air(feet);
   if (!point) return {};
   return ends.best_landing(ends.lowest_box(*point));
@@ -388,7 +395,7 @@ void FlightFinder::find(const FlightQuery& query, Path& path) {
 }
 
 bool FlightFinder::locate(Vec3d at, double vertical_tolerance, End& end) const {
-  const path::FlightEndpoints ends = state_->ends(scratch_->air(*state_));
+  const FlightEndpoints ends = state_->ends(scratch_->air(*state_));
   end.air = ends.in_air(at);
   if (end.air) return true;
   end.ground = state_->world.find_place(state_->avatar_class, at, vertical_tolerance);
@@ -397,7 +404,7 @@ bool FlightFinder::locate(Vec3d at, double vertical_tolerance, End& end) const {
 
 PathEnd FlightFinder::walk(const FlightQuery& query, const Place& from, const Place& to,
                            Path& path) {
-  path::reset(path);
+  reset(path);
   if (query.budget.cancel != nullptr && *query.budget.cancel) return PathEnd::kBudgetExhausted;
   if (!scratch_->is_changed()) {
     scratch_->walker->find(from, to, path,
@@ -417,13 +424,13 @@ PathEnd FlightFinder::walk(const FlightQuery& query, const Place& from, const Pl
 // One flight, or a walk.
 void FlightFinder::find_flight(const FlightQuery& query, Path& path) {
   Scratch& scratch = *scratch_;
-  const path::AirView air = scratch.air(*state_);
-  const path::FlightEndpoints ends = state_->ends(air);
+  const AirView air = scratch.air(*state_);
+  const FlightEndpoints ends = state_->ends(air);
   clear(path);
   path.nodes = 0;
   scratch.reached.reset();
   bool budget_exhausted = false;  // somewhere: then what was not found may exist all the same
-  const auto component_of = [&](path::AirPoint p) { return air.component(air.box_at(p)); };
+  const auto component_of = [&](AirPoint p) { return air.component(air.box_at(p)); };
   const auto to_link = [&](End& end, uint32_t component) {
     return scratch.find_link(*state_, air, end, component, budget_exhausted);
   };
@@ -433,11 +440,11 @@ void FlightFinder::find_flight(const FlightQuery& query, Path& path) {
     if (!a.ground && !b.ground) return true;
     if (!a.ground) return to_link(b, component_of(*a.air));
     if (!b.ground) return to_link(a, component_of(*b.air));
-    if (!to_link(a, path::kNoBox) || !to_link(b, path::kNoBox)) return false;
+    if (!to_link(a, kNoBox) || !to_link(b, kNoBox)) return false;
     if (air.same_component(*a.air, *b.air)) return true;
     const uint32_t common =
         scratch.common_air(*state_, air, a, b, query.budget.cancel, budget_exhausted);
-    return common != path::kNoBox && to_link(a, common) && to_link(b, common);
+    return common != kNoBox && to_link(a, common) && to_link(b, common);
   };
   const auto find_on_foot = [&](const Place& a, const Place& b, Path& ground) {
     const PathEnd end = walk(query, a, b, ground);
@@ -459,19 +466,19 @@ void FlightFinder::find_flight(const FlightQuery& query, Path& path) {
     }
   }
   const bool ground_air_links = to_links(from, to);
-  path::SearchResult result = path::SearchResult::kNone;
+  SearchResult result = SearchResult::kNone;
   if (ground_air_links && air.same_component(*from.air, *to.air)) {
     result = scratch.search.find(air, *from.air, *to.air, query.budget, scratch.air_path);
     path.nodes = scratch.search.expanded();
-    if (result == path::SearchResult::kBudget) {
+    if (result == SearchResult::kBudget) {
       scratch.spent = query.budget.spent(path.nodes);
       budget_exhausted = true;
     }
-    if (result == path::SearchResult::kNone) {
+    if (result == SearchResult::kNone) {
       scratch.reached = scratch.search.nearest_reached(ends.to_air(query.to));
     }
   }
-  if (result == path::SearchResult::kFound) {
+  if (result == SearchResult::kFound) {
     scratch.pull.pull(air, scratch.air_path);
     bool walked = true;
     if (from.ground) {
@@ -517,13 +524,12 @@ void FlightFinder::find_by_turns(const FlightQuery& query, Path& path) {
   if (!locate(query.from, query.vertical_tolerance, from) ||
       !locate(query.to, query.vertical_tolerance, to))
     return;
-  const path::GroundAirLinks::Part start = state_->part_of(from), goal = state_->part_of(to);
+  const GroundAirLinks::Part start = state_->part_of(from), goal = state_->part_of(to);
   scratch.banned.clear();
   for (int32_t tries = 0; tries < (scratch.is_changed() ? kMaxTries : 1); ++tries) {
     // Air that an obstacle has cut in two is one part: then over some ground under it.
     const bool returns = start == goal && scratch.is_changed() && goal.is_air;
-    const path::GroundAirLinks::Part last =
-        returns ? path::GroundAirLinks::Part{path::kNoBox, true} : goal;
+    const GroundAirLinks::Part last = returns ? GroundAirLinks::Part{kNoBox, true} : goal;
     state_->ground_air_links.search(start, last, scratch.banned, scratch.parts);
     const auto& steps = scratch.parts.steps;
     if (steps.size() < 2 || (!returns && steps.back().part != goal)) return;
@@ -539,8 +545,8 @@ void FlightFinder::find_by_turns(const FlightQuery& query, Path& path) {
     }
     const size_t stuck = follow_route(query, from, to, path);
     if (path.end != PathEnd::kUnreachable) return;
-    const path::GroundAirLinks::Part& a = scratch.route[stuck - 1];
-    const path::GroundAirLinks::Part& b = scratch.route[stuck];
+    const GroundAirLinks::Part& a = scratch.route[stuck - 1];
+    const GroundAirLinks::Part& b = scratch.route[stuck];
     scratch.banned.emplace_back(a.is_air ? b.component : a.component,
                                 a.is_air ? a.component : b.component);
   }
@@ -550,31 +556,31 @@ void FlightFinder::find_by_turns(const FlightQuery& query, Path& path) {
 size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, const End& to,
                                   Path& path) {
   Scratch& scratch = *scratch_;
-  const path::AirView view = scratch.air(*state_);
-  const path::FlightEndpoints ends = state_->ends(view);
+  const AirView view = scratch.air(*state_);
+  const FlightEndpoints ends = state_->ends(view);
   PathEnd end = PathEnd::kReached;
   Place feet = from.ground;  // where the path is by now, or
-  path::AirPoint air = from.air.value_or(path::AirPoint{});
+  AirPoint air = from.air.value_or(AirPoint{});
   const auto go = [&](const Place& there) {
     if (end != PathEnd::kReached) return;
     end = walk(query, feet, there, scratch.walk_all);
     add_walk(scratch.walk_all, 1, path);
     feet = there;
   };
-  const auto fly = [&](path::AirPoint there) {
+  const auto fly = [&](AirPoint there) {
     if (end != PathEnd::kReached) return;
     if (view.changes() != nullptr && !view.same_component(air, there)) {
       end = PathEnd::kUnreachable;
       return;
     }
-    const path::SearchResult result =
+    const SearchResult result =
         scratch.search.find(view, air, there, query.budget, scratch.air_path);
     path.nodes += scratch.search.expanded();
-    if (result == path::SearchResult::kBudget)
+    if (result == SearchResult::kBudget)
       scratch.spent = query.budget.spent(scratch.search.expanded());
-    end = result == path::SearchResult::kFound    ? PathEnd::kReached
-          : result == path::SearchResult::kBudget ? PathEnd::kBudgetExhausted
-                                                  : PathEnd::kUnreachable;
+    end = result == SearchResult::kFound    ? PathEnd::kReached
+          : result == SearchResult::kBudget ? PathEnd::kBudgetExhausted
+                                            : PathEnd::kUnreachable;
     scratch.pull.pull(view, scratch.air_path);
     for (size_t i = 1; i < scratch.air_path.size(); ++i) {
       add(ends.to_metres(scratch.air_path[i]), SegmentKind::kFly, path);
@@ -582,8 +588,8 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
     air = there;
   };
   // A place of some ground under some air: it leads into this component of that.
-  const auto link_near = [&](const Place& at, path::GroundAirLinks::Part ground,
-                             path::GroundAirLinks::Part over, uint32_t component) {
+  const auto link_near = [&](const Place& at, GroundAirLinks::Part ground,
+                             GroundAirLinks::Part over, uint32_t component) {
     const Place near =
         at ? ends.nearest_take_off(at, kMaxFloodCells, component, scratch.flood).place : Place{};
     if (near) return near;
@@ -597,7 +603,7 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
   const size_t count = scratch.route.size();
   size_t k = 1;
   for (; k < count && end == PathEnd::kReached; ++k) {
-    const path::GroundAirLinks::Part here = scratch.route[k - 1], next = scratch.route[k];
+    const GroundAirLinks::Part here = scratch.route[k - 1], next = scratch.route[k];
     const bool last = k + 1 == count;
     if (next.is_air) {
       const bool known = last && to.air;
@@ -638,14 +644,14 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
 // ground, of the ground: there, of each rectangle, the cell that is nearest in the plane.
 void FlightFinder::find_nearest(const FlightQuery& query, Path& path) {
   Scratch& scratch = *scratch_;
-  const path::AirView air = scratch.air(*state_);
-  const path::FlightEndpoints ends = state_->ends(air);
-  const std::optional<path::AirPoint> reached = scratch.reached;
+  const AirView air = scratch.air(*state_);
+  const FlightEndpoints ends = state_->ends(air);
+  const std::optional<AirPoint> reached = scratch.reached;
   const bool is_changed = scratch.is_changed();
   End from;
   if (!locate(query.from, query.vertical_tolerance, from)) return;
-  const path::GroundAirLinks::Part start = state_->part_of(from);
-  state_->ground_air_links.search(start, {path::kNoBox, true}, {}, scratch.parts);
+  const GroundAirLinks::Part start = state_->part_of(from);
+  state_->ground_air_links.search(start, {kNoBox, true}, {}, scratch.parts);
   std::vector<uint32_t>& airs = scratch.common;
   airs.clear();
   for (const auto& step : scratch.parts.steps) {
@@ -660,12 +666,12 @@ void FlightFinder::find_nearest(const FlightQuery& query, Path& path) {
   }
   std::sort(airs.begin(), airs.end());
   airs.erase(std::unique(airs.begin(), airs.end()), airs.end());
-  const path::AirPoint goal = ends.to_air(query.to);
-  std::optional<path::AirPoint> nearest;
+  const AirPoint goal = ends.to_air(query.to);
+  std::optional<AirPoint> nearest;
   for (int32_t tries = 0; tries < kMaxTries; ++tries) {
     nearest = reached && tries == 0 ? reached : air.nearest_in(airs, goal, scratch.zone_order);
     if (!nearest) break;
-    const path::AirPoint at = path::off_faces(*nearest);
+    const AirPoint at = off_faces(*nearest);
     FlightQuery nearer = query;
     nearer.to = ends.to_metres(at);
     find_flight(nearer, path);
@@ -682,8 +688,8 @@ void FlightFinder::find_nearest(const FlightQuery& query, Path& path) {
   path.end = PathEnd::kUnreachable;
   path.blocked_by = Blocker::kNone;
   if (path.points.empty()) return;
-  path.blocked_by = path::air_blocker(*data_of(state_->world)->air, state_->body, air,
-                                      path::off_faces(*nearest), goal);
+  path.blocked_by =
+      air_blocker(*data_of(state_->world)->air, state_->body, air, off_faces(*nearest), goal);
   // Air that begins right there and leads nowhere else: only a corner is between.
   if (path.blocked_by == Blocker::kNone) path.blocked_by = Blocker::kNarrow;
 }
@@ -708,6 +714,10 @@ void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& f
   path.blocked_by =
       state_->ground_air_links.air_over(ground).empty() ? Blocker::kLow : Blocker::kNarrow;
 }
+
+}  // namespace throng::path
+
+namespace throng {
 
 Result<AirSummary> air_summary(const World& world) {
   if (data_of(world) != nullptr) {

@@ -3,15 +3,16 @@
 #include <string>
 #include <utility>
 
+#include "core/access.h"
 #include "core/stopwatch.h"
 #include "path/edits/flow_points.h"
-#include "throng/path.h"
+#include "path/path_finder_state.h"
 
 // A FlowField is a table of FlowPoints with a ground of its own.
 namespace throng {
 
 struct FlowField::State {
-  LiveGround ground;
+  path::LiveFinder ground;
   std::shared_ptr<const path::FlowPoints> points;
   double seconds = 0;
 };
@@ -26,12 +27,13 @@ FlowField::FlowField(FlowField&&) noexcept = default;
 FlowField& FlowField::operator=(FlowField&&) noexcept = default;
 FlowField::~FlowField() = default;
 
-Result<FlowField> FlowField::create(const LiveGround& ground, std::span<const Place> goals,
+Result<FlowField> FlowField::create(const PathFinder& finder, std::span<const Place> goals,
                                     const FlowConfig& config, Context& context) {
   if (!(config.max_distance > 0))
     return Error{Errc::kBadConfig, "flow field: max_distance must be above 0"};
   const auto start = Clock::now();
-  auto state = std::make_unique<State>(State{ground, nullptr, 0});
+  auto state =
+      std::make_unique<State>(State{Access::state(finder)->ground_of_its_own(), nullptr, 0});
   auto points = path::FlowPoints::make(state->ground, goals, config.max_distance, context);
   if (!points) return Error{Errc::kCancelled, "flow field: cancelled"};
   if (points->empty()) {

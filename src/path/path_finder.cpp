@@ -1,77 +1,79 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include <algorithm>
-#include <chrono>
-#include <optional>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "core/access.h"
 #include "core/check_class.h"
-#include "path/ground/hub_labels.h"
-#include "path/ground/label_search.h"
-#include "path/ground/mesh.h"
-#include "path/ground/portal_search.h"
 #include "path/ground/reset_path.h"
-#include "path/ground/search.h"
-#include "path/ground/segments.h"
-#include "path/overlay/zone_search.h"
-#include "throng/path.h"
-#include "world/place.h"
-#include "world/tile_grid.h"
+#include "path/path_finder_state.h"
+#include "world/zone_data.h"
 
-// Chooses between labels, zones and search, and turns corners into places.
+// Chooses the search that fits a class and what is put up in its world.
 namespace throng {
 namespace {
 
-// Feet mostly wait for the ground's bytes: all are prefetched before any is read.
-void add_places(const world::WorldData& world, const path::PathMesh& mesh,
-                const std::vector<path::Stop>& stops, std::vector<world::LevelView>& views,
-                Path& path) {
-  views.clear();
-  for (const path::Stop& stop : stops) {
-    const uint32_t level = mesh.rects[stop.rect].level;
-    const size_t slot = world.slot_of_level(level);
-    const world::Zone* zone = world.zone(slot);
-    views.push_back(zone == nullptr ? world::LevelView{}
-                                    : zone->view(level - world.slots[slot]->first_level));
-    views.back().ask_for_heads(world::in_tile(stop.at.cell_x()), world::in_tile(stop.at.cell_z()));
-  }
-  for (size_t i = 0; i < stops.size(); ++i) {
-    views[i].ask_for_cells(world::in_tile(stops[i].at.cell_x()),
-                           world::in_tile(stops[i].at.cell_z()));
-  }
-  for (size_t i = 0; i < stops.size(); ++i) {
-    path.points.push_back(
-        world::place_at(world, mesh.rects[stops[i].rect].level, views[i], stops[i].at));
-  }
+Vec3d position_of(const PathPoint& point) {
+  if (const auto* place = std::get_if<Place>(&point)) return place->position;
+  if (const auto* place = std::get_if<NodePlace>(&point)) return place->feet;
+  return std::get<Vec3d>(point);
+}
+
+// A place that is nowhere.
+bool is_nowhere(const PathPoint& point) {
+  if (const auto* place = std::get_if<Place>(&point)) return !*place;
+  if (const auto* place = std::get_if<NodePlace>(&point)) return !*place;
+  return false;
+}
+
+PathSpace space_of(const AvatarClass& avatar, PathSpace asked) {
+  if (asked != PathSpace::kOfClass) return asked;
+  if (avatar.flies) return PathSpace::kAir;
+  return goes_over_nodes(avatar) ? PathSpace::kNodes : PathSpace::kGround;
+}
+
+// For a path on the ground between places: no search of the mesh knows costs.
+bool needs_mesh(const PathConfig& config) {
+  return config.speedup != PathSpeedup::kOnDemand &&
+         (config.slope_cost == 0 || config.speedup != PathSpeedup::kNone);
+}
+
+// Of the finder of ground with edits, whose data is made on demand.
+PathConfig live_config(const PathConfig& config) {
+  return {.avatar_class = config.avatar_class, .slope_cost = config.slope_cost};
 }
 
 }  // namespace
 
-struct PathFinder::Shared {
-  World world;
-  path::PathMesh mesh;
-  std::optional<path::HubLabels> labels;
-  std::optional<path::ZoneGraph> zones;
-  PathSummary summary;
-};
+const path::EditList& PathFinder::State::edits() const { return *Access::state(config.edits); }
 
-struct PathFinder::Scratch {
-  path::PathSearch search;
-  path::LabelSearch label_search;
-  path::ZoneSearch over_zones;
-  path::PortalSearch portals;
-  std::vector<uint32_t> corners;
-  std::vector<path::Stop> stops;
-  std::vector<world::LevelView> views;  // of the stops
-};
+path::LiveFinder& PathFinder::State::ground() {
+  if (!live) {
+    auto made = path::LiveFinder::create(world, live_config(config));
+    THRONG_ASSERT(made);  // The settings were checked.
+    live = *std::move(made);
+  }
+  applied.follow(edits(), *live);
+  return *live;
+}
 
-PathFinder::PathFinder(std::shared_ptr<const Shared> shared)
-    : state_(std::move(shared)), scratch_(std::make_unique<Scratch>()) {}
-PathFinder::PathFinder(const PathFinder& other) : PathFinder(other.state_) {}
+path::LiveFinder PathFinder::State::ground_of_its_own() const {
+  const bool on_ground = config.space == PathSpace::kGround;
+  PathConfig settings = live_config(config);
+  if (!on_ground) settings.slope_cost = 0;
+  auto made = on_ground && live ? Result<path::LiveFinder>(*live)
+                                : path::LiveFinder::create(world, settings);
+  THRONG_ASSERT(made);
+  path::AppliedEdits known = on_ground && live ? applied : path::AppliedEdits();
+  known.follow(edits(), *made);
+  return *std::move(made);
+}
+
+PathFinder::PathFinder(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PathFinder::PathFinder(const PathFinder& other) : state_(std::make_unique<State>(*other.state_)) {}
 PathFinder& PathFinder::operator=(const PathFinder& other) {
-  state_ = other.state_;
-  if (scratch_ == nullptr) scratch_ = std::make_unique<Scratch>();  // it was moved from
+  if (this != &other) state_ = std::make_unique<State>(*other.state_);
   return *this;
 }
 PathFinder::PathFinder(PathFinder&&) noexcept = default;
@@ -81,109 +83,174 @@ PathFinder::~PathFinder() = default;
 Result<PathFinder> PathFinder::create(const World& world, const PathConfig& config,
                                       Context& context) {
   if (data_of(world) == nullptr) return Error{Errc::kBadInput, "path: the world is empty"};
-  if (auto ok = check_class(data_of(world)->summary.classes, config.avatar_class, "path"); !ok)
-    return ok.error();
-  if (config.workers < 0) return Error{Errc::kBadConfig, "path: workers must be 0 or more"};
-  if (config.slope_cost != 0) {
-    return Error{Errc::kBadConfig, "path: PathFinder has no slope_cost; LiveGround has"};
+  const auto& classes = data_of(world)->summary.classes;
+  if (auto ok = check_class(classes, config.avatar_class, "path"); !ok) return ok.error();
+  auto state = std::make_unique<State>();
+  State& s = *state;
+  s.world = world;
+  s.config = config;
+  s.config.space = space_of(classes[static_cast<size_t>(config.avatar_class)], config.space);
+  if (s.config.space == PathSpace::kAir) {
+    auto made = path::FlightFinder::create(world, config, context);
+    if (!made) return made.error();
+    s.flight = *std::move(made);
+    s.summary = s.flight->summary();
+  } else if (s.config.space == PathSpace::kNodes) {
+    if (!s.config.nodes) {
+      auto nodes = Nodes::open(world);
+      if (!nodes) return nodes.error();
+      s.config.nodes = *std::move(nodes);
+    }
+    auto made = path::NodeFinder::create(s.config.nodes, config, context);
+    if (!made) return made.error();
+    s.nodes = *std::move(made);
+    s.summary = s.nodes->summary();
+  } else {
+    auto live = path::LiveFinder::create(world, live_config(config));  // Reads nothing yet.
+    if (!live) return live.error();
+    if (needs_mesh(config)) {
+      auto made = path::MeshFinder::create(world, config, context);
+      if (!made) return made.error();
+      s.mesh = *std::move(made);
+      s.summary = s.mesh->summary();
+    } else {
+      s.live = *std::move(live);
+    }
   }
-  const auto start = std::chrono::steady_clock::now();
-  if (auto ok = world.check_ground(); !ok) return ok.error();
-  auto mesh = path::build_mesh(*data_of(world), config.avatar_class, config.workers, context);
-  if (!mesh) return mesh.error();
-  auto shared = std::make_shared<Shared>();
-  shared->world = world;
-  shared->mesh = std::move(*mesh);
-  PathSummary& summary = shared->summary;
-  summary = {shared->mesh.rects.size() - 1,
-             shared->mesh.portals.size(),
-             shared->mesh.corner_count(),
-             0,
-             0,
-             shared->mesh.bytes(),
-             0};
-  if (config.speedup == PathSpeedup::kLabels) {
-    auto labels = path::build_labels(shared->mesh, config.workers, context);
-    if (!labels) return labels.error();
-    shared->labels = std::move(*labels);
-    summary.labels = shared->labels->labels.size();
-    summary.bytes += shared->labels->bytes();
-  }
-  if (config.speedup == PathSpeedup::kZones) {
-    auto zones = path::build_zone_graph(*data_of(world), shared->mesh, config.workers, context);
-    if (!zones) return zones.error();
-    shared->zones = std::move(*zones);
-    summary.entrances = shared->zones->entrances.size();
-    summary.labels = shared->zones->label_count();
-    summary.bytes += shared->zones->bytes();
-  }
-  summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return PathFinder(std::move(shared));
+  return PathFinder(std::move(state));
 }
 
 PathSummary PathFinder::summary() const { return state_->summary; }
-const path::PathMesh& path::mesh_of(const PathFinder& finder) {
-  return Access::state(finder)->mesh;
+
+Place PathFinder::State::place_of(const PathPoint& point, double tolerance) const {
+  if (const auto* place = std::get_if<Place>(&point)) return *place;
+  if (is_nowhere(point)) return {};
+  return world.find_place(config.avatar_class, position_of(point), tolerance);
+}
+
+NodePlace PathFinder::State::node_place_of(const PathPoint& point, double tolerance) {
+  if (const auto* place = std::get_if<NodePlace>(&point)) return *place;
+  if (is_nowhere(point)) return {};
+  return nodes->find_place(position_of(point), tolerance);
+}
+
+void PathFinder::State::find_on_ground(const Place& from, const Place& to, bool nearest,
+                                       const SearchBudget& budget, Path& path) {
+  uint64_t nodes_before = 0;
+  if (mesh && !edits().bears_on_ground()) {
+    mesh->find(from, to, path, budget);
+    if (path.end != PathEnd::kUnreachable || !nearest) return;
+    nodes_before = path.nodes;
+  }
+  ground().find(from, to, path, budget.after(nodes_before));
+  path.nodes += nodes_before;
+  if (path.end != PathEnd::kUnreachable || nearest) return;
+  const uint64_t expanded = path.nodes;
+  path::reset(path);
+  path.end = PathEnd::kUnreachable;
+  path.nodes = expanded;
+}
+
+void PathFinder::State::find_over_nodes(const PathQuery& query, Path& path) {
+  applied.follow(edits(), *nodes);
+  nodes->find(node_place_of(query.from, query.tolerance), node_place_of(query.to, query.tolerance),
+              path, query.spacing, query.budget);
+}
+
+void PathFinder::State::find_in_air(const PathQuery& query, Path& path) {
+  applied.follow(edits(), *flight);
+  path::reset(path);
+  if (is_nowhere(query.from) || is_nowhere(query.to)) return;
+  flight->find({.from = position_of(query.from),
+                .to = position_of(query.to),
+                .vertical_tolerance = query.tolerance,
+                .budget = query.budget,
+                .by_turns = query.by_turns,
+                .nearest = query.nearest},
+               path);
+}
+
+void PathFinder::find(const PathQuery& query, Path& path) {
+  State& s = *state_;
+  THRONG_ASSERT(query.tolerance >= 0 && query.spacing > 0);
+  if (s.config.space == PathSpace::kAir) return s.find_in_air(query, path);
+  if (s.config.space == PathSpace::kNodes) return s.find_over_nodes(query, path);
+  s.find_on_ground(s.place_of(query.from, query.tolerance), s.place_of(query.to, query.tolerance),
+                   query.nearest, query.budget, path);
 }
 
 void PathFinder::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget) {
-  const world::WorldData& world = *data_of(state_->world);
-  const path::PathMesh& mesh = state_->mesh;
-  path::reset(path);
-  const auto locate = [&](const Place& place, path::Stop& end) {
-    const auto at = world::ground_point(world, place);
-    if (!at) return false;
-    end.at = *at;
-    end.rect = mesh.rect_at(place.level1 - 1, end.at.cell_x(), end.at.cell_z());
-    return end.rect != path::kNoRect;
-  };
-  path::Stop start, goal;
-  if (!locate(from, start) || !locate(to, goal)) return;
+  if (state_->config.space == PathSpace::kGround) {
+    return state_->find_on_ground(from, to, true, budget, path);
+  }
+  find({.from = from, .to = to, .budget = budget}, path);
+}
 
-  if (mesh.rects[start.rect].component != mesh.rects[goal.rect].component) {
-    path.end = PathEnd::kUnreachable;
-    return;
+void PathFinder::begin(const PathQuery& query) {
+  State& s = *state_;
+  s.begun = query;
+  if (s.config.space != PathSpace::kGround) return;
+  s.ground().begin(s.place_of(query.from, query.tolerance), s.place_of(query.to, query.tolerance));
+}
+
+bool PathFinder::advance(uint64_t max_nodes, Path& path) {
+  State& s = *state_;
+  if (s.config.space == PathSpace::kGround) return s.ground().advance(max_nodes, path);
+  find(s.begun, path);
+  return true;
+}
+
+bool PathFinder::is_free(const PathPoint& end, double tolerance) {
+  State& s = *state_;
+  if (is_nowhere(end)) return false;
+  if (s.flight) {
+    s.applied.follow(s.edits(), *s.flight);
+    return s.flight->is_end(position_of(end), tolerance);
   }
-  double length = 0;
-  path::SearchResult result = path::SearchResult::kNone;
-  if (state_->labels) {
-    if (scratch_->label_search.find(mesh, *state_->labels, start, goal, scratch_->corners,
-                                    length)) {
-      result = path::SearchResult::kFound;
-    }
-  } else if (state_->zones) {
-    path::ZoneSearch& search = scratch_->over_zones;
-    result =
-        search.find(world, mesh, *state_->zones, start, goal, budget, scratch_->corners, length);
-    path.nodes = search.expanded();
-  } else {
-    result = scratch_->search.find(mesh, start, goal, budget, scratch_->corners, length);
-    path.nodes = scratch_->search.expanded();
+  if (s.nodes) {
+    s.applied.follow(s.edits(), *s.nodes);
+    const NodePlace place = s.node_place_of(end, tolerance);
+    Path there;
+    s.nodes->find(place, place, there);
+    return there.end != PathEnd::kNoPlace;
   }
-  // Both are of one component: a path exists, even if none can be drawn over corners.
-  const auto is_drawn = [&] {
-    path::SegmentWalker walker(world, mesh);
-    return walker.walk(start, scratch_->corners, goal.at, scratch_->stops) &&
-           scratch_->stops.back().rect == goal.rect;
-  };
-  if (result == path::SearchResult::kBudget) path.spent = budget.spent(path.nodes);
-  if (result == path::SearchResult::kNone ||
-      (result == path::SearchResult::kFound && !is_drawn())) {
-    const SearchBudget rest = budget.after(path.nodes);
-    result = scratch_->portals.find(mesh, start, goal, rest, scratch_->stops, length);
-    const uint64_t nodes = scratch_->portals.expanded();
-    if (result == path::SearchResult::kBudget) path.spent = rest.spent(nodes);
-    path.nodes += nodes;
+  const Place place = s.place_of(end, tolerance);
+  return place && s.ground().is_free(place);
+}
+
+NodePlace PathFinder::find_node_place(const Vec3d& position, double search_radius) {
+  State& s = *state_;
+  if (!s.nodes) return {};
+  s.applied.follow(s.edits(), *s.nodes);
+  return s.nodes->find_place(position, search_radius);
+}
+
+std::optional<Vec3d> PathFinder::take_off(const Place& place) {
+  State& s = *state_;
+  if (!s.flight || !place) return {};
+  s.applied.follow(s.edits(), *s.flight);
+  return s.flight->take_off(place);
+}
+
+Place PathFinder::landing(const Vec3d& feet) {
+  State& s = *state_;
+  if (!s.flight) return {};
+  s.applied.follow(s.edits(), *s.flight);
+  return s.flight->landing(feet);
+}
+
+std::optional<Vec3d> PathFinder::random_point(uint64_t seed, uint64_t n) {
+  State& s = *state_;
+  if (s.flight) {
+    s.applied.follow(s.edits(), *s.flight);
+    return s.flight->random_point(seed, n);
   }
-  if (result != path::SearchResult::kFound) {
-    path.end =
-        result == path::SearchResult::kNone ? PathEnd::kUnreachable : PathEnd::kBudgetExhausted;
-    return;
+  if (s.nodes) {
+    const NodePlace place = s.config.nodes.random_place(s.config.avatar_class, seed, n);
+    return place ? std::optional(place.feet) : std::nullopt;
   }
-  path.end = PathEnd::kReached;
-  path.length = path.cost = length * world.summary.cell;
-  add_places(world, mesh, scratch_->stops, scratch_->views, path);
-  path.segments.assign(path.points.size() - 1, SegmentKind::kWalk);
+  const Place place = s.world.random_place(s.config.avatar_class, seed, n);
+  return place ? std::optional(place.position) : std::nullopt;
 }
 
 }  // namespace throng

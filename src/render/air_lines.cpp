@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/access.h"
+#include "path/flight_finder.h"
 #include "throng/path.h"
 #include "world/air_data.h"
 #include "world/zone_data.h"
@@ -75,7 +76,7 @@ class LineFinder {
   }
 
   // To the best ground under an air box that has no air below it.
-  void add_ground(const world::AirCube& cube, const FlightFinder& flight,
+  void add_ground(const world::AirCube& cube, const path::FlightFinder& flight,
                   std::vector<AirLine>& lines) const {
     const int32_t x = cube.x + cube.side / 2, z = cube.z + cube.side / 2;
     if (cube_at(x, cube.y - 1, z)) return;
@@ -126,11 +127,12 @@ Result<std::vector<AirLine>> air_lines(const World& world, const Box3d& area) {
   }
   if (auto ok = world.check_all(); !ok) return ok.error();
   const std::vector<AvatarClass> classes = world.summary().classes;
-  std::optional<FlightFinder> flight;
+  std::optional<path::FlightFinder> flight;
   for (size_t c = 0; c < classes.size() && !flight; ++c) {
     if (!classes[c].flies) continue;
     Context context;
-    auto made = FlightFinder::create(world, {.avatar_class = static_cast<int32_t>(c)}, context);
+    auto made =
+        path::FlightFinder::create(world, {.avatar_class = static_cast<int32_t>(c)}, context);
     if (!made) return made.error();
     flight = *std::move(made);
   }

@@ -93,8 +93,10 @@ Result<FlightReport> verify_flight(const World& world, const Scene& source,
                                    const VerifyConfig& config, Context& context) {
   const auto start = std::chrono::steady_clock::now();
   if (auto sound = verify::check_source(source, config); !sound) return sound.error();
-  auto finder = FlightFinder::create(
-      world, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
+  auto finder = PathFinder::create(
+      world,
+      {.avatar_class = config.avatar_class, .workers = config.workers, .space = PathSpace::kAir},
+      context);
   if (!finder) return finder.error();
   const AvatarClass avatar = world.summary().classes[static_cast<size_t>(config.avatar_class)];
   const verify::TriangleTree tree(source, config.workers);
@@ -104,7 +106,7 @@ Result<FlightReport> verify_flight(const World& world, const Scene& source,
   report.points = config.samples;
   report.pairs = config.samples / 10;
   struct Worker {
-    FlightFinder finder;
+    PathFinder finder;
     Path path;
   };
   std::vector<std::unique_ptr<Worker>> workers;
@@ -112,7 +114,7 @@ Result<FlightReport> verify_flight(const World& world, const Scene& source,
     workers.push_back(std::make_unique<Worker>(Worker{*finder, {}}));
   }
   // Half of the ends are on the ground, where there is any.
-  const auto end_of = [&](const FlightFinder& from, uint64_t n, uint64_t which) {
+  const auto end_of = [&](PathFinder& from, uint64_t n, uint64_t which) {
     if ((n >> which & 1) != 0) {
       const Place place =
           world.random_place(config.avatar_class, config.seed ^ kPairsSalt, 2 * n + which);
@@ -129,7 +131,7 @@ Result<FlightReport> verify_flight(const World& world, const Scene& source,
     const uint64_t n = i - report.points;
     const auto from = end_of(worker.finder, n, 0), to = end_of(worker.finder, n, 1);
     if (!from || !to) return;
-    worker.finder.find({.from = *from, .to = *to, .vertical_tolerance = kReach, .nearest = false},
+    worker.finder.find({.from = *from, .to = *to, .tolerance = kReach, .nearest = false},
                        worker.path);
     record.reached = worker.path.end == PathEnd::kReached;
     if (record.reached) judge.judge_path(worker.path, record);

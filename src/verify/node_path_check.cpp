@@ -84,7 +84,7 @@ class Follower {
     }
   }
 
-  NodeWalk go(NodePathFinder& finder, Path& path, uint64_t n) const {
+  NodeWalk go(PathFinder& finder, Path& path, uint64_t n) const {
     NodeWalk walked;
     const NodePlace from = nodes_.random_place(config_.avatar_class, config_.seed, 2 * n);
     const NodePlace to = nodes_.random_place(config_.avatar_class, config_.seed, 2 * n + 1);
@@ -93,7 +93,7 @@ class Follower {
     walked.at = from.feet;
     walked.together = leads(part_[from.node1 - 1], part_[to.node1 - 1]);
     const auto start = Clock::now();
-    finder.find(from, to, path);
+    finder.find({.from = from, .to = to}, path);
     walked.seconds = seconds_since(start);
     // A place inside an added obstacle is no place.
     if (!config_.obstacles.empty() && path.end == PathEnd::kNoPlace) {
@@ -226,17 +226,20 @@ Result<NodePathReport> verify_node_paths(const Nodes& nodes, const Scene& source
                                          const VerifyConfig& config, Context& context) {
   const auto start = Clock::now();
   if (auto sound = verify::check_source(source, config); !sound) return sound.error();
-  auto finder = NodePathFinder::create(
-      nodes, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
-  if (!finder) return finder.error();
+  PathConfig settings{.avatar_class = config.avatar_class,
+                      .workers = config.workers,
+                      .space = PathSpace::kNodes,
+                      .nodes = nodes};
   for (const Prism& prism : config.obstacles) {
-    if (auto added = finder->add_obstacle(prism); !added) return added.error();
+    if (auto added = settings.edits.add_obstacle(prism); !added) return added.error();
   }
+  const auto finder = PathFinder::create(nodes.world(), settings, context);
+  if (!finder) return finder.error();
   const Follower follower(nodes, source, config);
   NodePathReport report;
   report.make_seconds = finder->summary().seconds;
   report.finder_bytes = finder->summary().bytes;
-  std::vector<NodePathFinder> finders(static_cast<size_t>(worker_count(config.workers)), *finder);
+  std::vector<PathFinder> finders(static_cast<size_t>(worker_count(config.workers)), *finder);
   std::vector<Path> paths(finders.size());
   std::vector<NodeWalk> walked;
   for (uint64_t begin = 0; begin < config.samples; begin += verify::kPairBatch) {

@@ -58,7 +58,7 @@ class Walker {
     walked.at = from.position;
     walked.together = part >= 0 && part == part_of(to);
     const auto start = Clock::now();
-    finder.find(from, to, path);
+    finder.find({.from = from, .to = to, .nearest = false}, path);
     walked.seconds = seconds_since(start);
     walked.reached = path.end == PathEnd::kReached;
     if (!walked.reached) return walked;
@@ -152,7 +152,9 @@ Result<PathReport> verify_paths(const World& world, const Scene& source, const V
   const auto graph = Graph::create(world, {.workers = config.workers}, context);
   if (!graph) return graph.error();
   const auto finder = PathFinder::create(
-      world, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
+      world,
+      {.avatar_class = config.avatar_class, .workers = config.workers, .space = PathSpace::kGround},
+      context);
   if (!finder) return finder.error();
   const Walker walker(*claims, *graph, source, config);
   PathReport report;

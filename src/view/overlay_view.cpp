@@ -40,18 +40,19 @@ std::optional<OverlayMaker::Made> OverlayMaker::take() {
 
 Result<std::vector<Vec3d>> OverlayMaker::find_path(const Order& order) {
   if (!finder_ || finder_class_ != order.avatar_class) {
-    Result<PathFinder> finder =
-        PathFinder::create(world_, {.avatar_class = order.avatar_class}, context_);
+    PathConfig config{.avatar_class = order.avatar_class};
+    Result<PathFinder> finder = PathFinder::create(world_, config, context_);
+    if (!finder && finder.error().code != Errc::kCancelled) {
+      config.space = PathSpace::kGround;  // The world has no air or no nodes.
+      finder = PathFinder::create(world_, config, context_);
+    }
     if (!finder) return finder.error();
     finder_.emplace(*std::move(finder));
     finder_class_ = order.avatar_class;
   }
-  const Place from = world_.find_place(order.avatar_class, order.from, 0.5);
-  const Place to = world_.find_place(order.avatar_class, order.to, 0.5);
   std::vector<Vec3d> points;
-  if (!from || !to) return points;
   Path path;
-  finder_->find(from, to, path);
+  finder_->find({.from = order.from, .to = order.to, .nearest = false}, path);
   if (path.end != PathEnd::kReached) return points;
   for (const Place& place : path.points) points.push_back(place.position);
   return points;

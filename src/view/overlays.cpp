@@ -228,7 +228,7 @@ Result<Marks> air_marks(const World& world, double height, Vec3d origin, Context
   }
   PathConfig config;
   config.avatar_class = static_cast<int32_t>(flyer - summary.classes.begin());
-  const Result<FlightFinder> finder = FlightFinder::create(world, config, context);
+  Result<PathFinder> finder = PathFinder::create(world, config, context);
   if (!finder) return finder.error();
   const Result<AirSummary> air = air_summary(world);
   if (!air) return air.error();
@@ -242,7 +242,8 @@ Result<Marks> air_marks(const World& world, double height, Vec3d origin, Context
     double begin = box.min.x;
     bool open = false;
     for (double x = box.min.x; x < box.max.x + cell; x += cell) {
-      const bool legal = x < box.max.x && finder->is_legal({x + cell / 2, height, z + cell / 2});
+      const bool legal =
+          x < box.max.x && finder->is_free(Vec3d{x + cell / 2, height, z + cell / 2}, 0);
       if (legal && !open) begin = x;
       if (!legal && open) {
         const double x0 = begin - origin.x, x1 = x - origin.x, z0 = z - origin.z;

@@ -45,7 +45,7 @@ inline constexpr size_t kOverlays = 10;
 [[nodiscard]] Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context);
 /// Arcs between nodes: white walk, orange step, magenta climb, blue off-mesh link, red drop link.
 [[nodiscard]] Marks link_marks(const Nodes& nodes, Vec3d origin, Context& context);
-/// Where a flyer's feet may be at one height [m, world]. Fails as FlightFinder::create does.
+/// Where a flyer's feet may be at one height [m, world]. Fails as PathFinder::create does.
 [[nodiscard]] Result<Marks> air_marks(const World& world, double height, Vec3d origin,
                                       Context& context);
 /// Avatars per square metre, over squares of two metres: blue few, red four and more.

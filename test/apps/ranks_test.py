@@ -24,6 +24,7 @@ MPIRUN = ["mpirun", "--oversubscribe", *(["--allow-run-as-root"] if os.geteuid()
 # Ranks that wait give their core away: there are more of them than cores.
 ENVIRONMENT = {**os.environ, "OMPI_MCA_odls_base_sigkill_timeout": "3", "OMPI_MCA_mpi_yield_when_idle": "1",
                **({} if shutil.which("ssh") else {"OMPI_MCA_plm_rsh_agent": "/bin/false"})}
+SESSIONS = tempfile.TemporaryDirectory()  # of Open MPI: two that start at once may not share a folder
 RECORD = 48  # bytes of the journal for each zone
 
 
@@ -31,8 +32,12 @@ def bake_words(world, model=MODEL, options=()):
     return [PROGRAM, "bake", model, "-o", world, *OPTIONS, *options]
 
 
+def environment():
+    return {**ENVIRONMENT, "TMPDIR": tempfile.mkdtemp(dir=SESSIONS.name)}
+
+
 def run(words):
-    return subprocess.run(words, capture_output=True, text=True, check=False, env=ENVIRONMENT)
+    return subprocess.run(words, capture_output=True, text=True, check=False, env=environment())
 
 
 def ours(text):
@@ -63,7 +68,7 @@ def kill_a_rank(folder, rank, ranks, files=0, kind="tha", options=()):
     part = folder / "killed.throng.part"
     journal = part / "journal"
     words = bake_words(world, options=["--threads", "1", *options])
-    with subprocess.Popen([*MPIRUN, "-n", str(ranks), *words], env=ENVIRONMENT,
+    with subprocess.Popen([*MPIRUN, "-n", str(ranks), *words], env=environment(),
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         while process.poll() is None:
             if journal.exists() and journal.stat().st_size >= 5 * RECORD and \
@@ -77,6 +82,7 @@ def kill_a_rank(folder, rank, ranks, files=0, kind="tha", options=()):
         out, err = process.communicate(timeout=60)
         assert process.returncode != 0, "a rank was killed and mpirun does not say so"
         assert not world.exists() and not out.strip(), out
+        assert journal.exists(), err
     return err, journal.stat().st_size // RECORD
 
 
@@ -165,7 +171,7 @@ def kill_amid_nodes(world, rank, ranks, options):
     """Bakes until some zones' nodes are made, kills one rank. Returns standard error, or None if all were made before."""
     part = world / "nodes.part"
     words = bake_words(world, options=["--threads", "1", *options])
-    with subprocess.Popen([*MPIRUN, "-n", str(ranks), *words], env=ENVIRONMENT,
+    with subprocess.Popen([*MPIRUN, "-n", str(ranks), *words], env=environment(),
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         killed = False
         while process.poll() is None:

@@ -13,6 +13,7 @@
 #include "core/access.h"
 #include "core/random.h"
 #include "patch_nets.h"
+#include "path/node_finder.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
 #include "throng/path.h"
@@ -216,7 +217,7 @@ TEST(NodeDrops, LeadDownOnlyForClassesThatDrop) {
   EXPECT_GT(drops[1], 10u);
   EXPECT_GT(drops[2], 0u);  // The kid: from what is 1.5 m high.
   for (int32_t c = 0; c < 3; ++c) {
-    auto finder = NodePathFinder::create(nodes, {.avatar_class = c}, context);
+    auto finder = path::NodeFinder::create(nodes, {.avatar_class = c}, context);
     ASSERT_TRUE(finder);
     const NodePlace top = finder->find_place({6, 2, 6}, 0.2);
     const NodePlace below = finder->find_place({1, 0, 1}, 0.2);

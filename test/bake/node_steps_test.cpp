@@ -7,6 +7,7 @@
 
 #include "baked.h"
 #include "core/disjoint_sets.h"
+#include "path/node_finder.h"
 #include "throng/path.h"
 #include "throng/surface.h"
 
@@ -148,7 +149,7 @@ TEST(NodeSteps, AClassThatCanGoAroundNeedsNone) {
 TEST(NodeSteps, APathUpstairsNamesEveryRiser) {
   Context context;
   const Nodes nodes = make(test::builtin({.name = "stairs"}), 0.1);
-  auto finder = NodePathFinder::create(nodes, {}, context);
+  auto finder = path::NodeFinder::create(nodes, {}, context);
   ASSERT_TRUE(finder) << finder.error().message;
   Path path;
   finder->find(finder->find_place({2, 0, 2}, 10), finder->find_place({12, 3.06, 2}, 1), path);

@@ -10,6 +10,7 @@
 #include "baked.h"
 #include "crowds.h"
 #include "patch_nets.h"
+#include "path/node_finder.h"
 #include "prism_shell.h"
 #include "simd_targets.h"
 #include "throng/avatar.h"
@@ -492,7 +493,7 @@ TEST(Climbers, AnExternallyControlledOneMovesAsItIsControlled) {
   Stage stage(test::net_scene({.side = 2, .cell = 8, .relief = 0, .sideways = 0}));
   Crowd crowd = stage.crowd();
   Context context;
-  const auto finder = NodePathFinder::create(stage.nodes(), {.avatar_class = kGecko}, context);
+  const auto finder = path::NodeFinder::create(stage.nodes(), {.avatar_class = kGecko}, context);
   ASSERT_TRUE(finder);
   const AvatarId id = added_on(crowd, finder->find_place({8, 0, 8}, 2), kGecko);
   ASSERT_TRUE(id);

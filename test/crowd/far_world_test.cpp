@@ -9,6 +9,7 @@
 #include "baked.h"
 #include "crowds.h"
 #include "patch_nets.h"
+#include "path/mesh_finder.h"
 #include "scratch_folder.h"
 #include "throng/papers.h"
 #include "throng/path.h"
@@ -152,12 +153,12 @@ TEST(FarWorld, ACrowdWithGoalsWalksAsNearTheCoordinateOrigin) {
 TEST(FarWorld, PathsAreThoseNearTheCoordinateOrigin) {
   Context context;
   const World near = test::bake(garage(), kCell);
-  auto a = PathFinder::create(near, {}, context);
+  auto a = path::MeshFinder::create(near, {}, context);
   ASSERT_TRUE(a);
   for (const Vec3d& by : translations()) {
     const Scene scene = moved(garage(), by);
     const World far = test::bake(scene, kCell);
-    auto b = PathFinder::create(far, {}, context);
+    auto b = path::MeshFinder::create(far, {}, context);
     ASSERT_TRUE(b);
     Path near_path, far_path;
     for (uint64_t n = 0; n < 40; ++n) {

@@ -9,6 +9,7 @@
 
 #include "baked.h"
 #include "crowds.h"
+#include "path/flight_finder.h"
 #include "simd_targets.h"
 #include "throng/crowd.h"
 #include "throng/path.h"
@@ -32,12 +33,12 @@ class Stage {
         tree_(scene_, 0),
         world_(test::bake(scene, cell, {flyer_class(), default_classes()[0]})) {
     Context context;
-    auto made = FlightFinder::create(world_, {.avatar_class = kFlyer}, context);
+    auto made = path::FlightFinder::create(world_, {.avatar_class = kFlyer}, context);
     EXPECT_TRUE(made) << made.error().message;
     if (made) flight_.emplace(std::move(*made));
   }
   [[nodiscard]] const World& world() const { return world_; }
-  [[nodiscard]] FlightFinder& flight() { return *flight_; }
+  [[nodiscard]] path::FlightFinder& flight() { return *flight_; }
   [[nodiscard]] Place ground(Vec3d at, int32_t avatar_class = kFlyer) const {
     const Place place = world_.find_place(avatar_class, at, 1);
     EXPECT_TRUE(place) << at.x << ' ' << at.y << ' ' << at.z;
@@ -99,7 +100,7 @@ class Stage {
   Scene scene_;
   verify::TriangleTree tree_;
   World world_;
-  std::optional<FlightFinder> flight_;
+  std::optional<path::FlightFinder> flight_;
   std::vector<AvatarState> states_;
 };
 
@@ -224,7 +225,7 @@ TEST(Flyers, TakeOffAndLandWhereNoPathOnFootLeads) {
   scene.add_box({1, 1.9, 1}, {3.5, 2.5, 5.5});  // no take-off under this table
   Stage stage(scene);
   Crowd crowd = made(stage.world());
-  EXPECT_EQ(crowd.flight_finder(kFlyer), nullptr) << "no flyer yet";
+  EXPECT_FALSE(crowd.random_air_point(kFlyer, 1, 0)) << "no flyer yet";
   std::vector<AvatarSpawn> spawns;
   std::vector<Place> goals;
   for (int i = 0; i < 12; ++i) {
@@ -233,9 +234,13 @@ TEST(Flyers, TakeOffAndLandWhereNoPathOnFootLeads) {
     goals.push_back(stage.ground({here.x + 27.5, 3, here.z}));
   }
   const auto ids = added(crowd, spawns);
-  ASSERT_NE(crowd.flight_finder(kFlyer), nullptr);
-  EXPECT_TRUE(crowd.flight_finder(kFlyer)->take_off(goals[0]));
-  EXPECT_EQ(crowd.flight_finder(kAdult), nullptr) << "adults do not fly";
+  const auto point = crowd.random_air_point(kFlyer, 1, 0);
+  ASSERT_TRUE(point);
+  EXPECT_TRUE(crowd.may_fly(kFlyer, *point));
+  EXPECT_FALSE(crowd.may_fly(kFlyer, {2, 2.2, 3})) << "in the table";
+  EXPECT_FALSE(crowd.may_fly(kFlyer, {1e9, 0, 0}));
+  EXPECT_FALSE(crowd.random_air_point(kAdult, 1, 0)) << "adults do not fly";
+  EXPECT_FALSE(crowd.may_fly(kAdult, *point) || crowd.may_fly(-1, *point));
   crowd.set_goals(ids, goals);
   const TripRun<Stage> flown = go(crowd, stage, spawns.size(), 600);
   expect_all(flown, spawns.size());

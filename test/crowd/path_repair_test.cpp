@@ -10,6 +10,8 @@
 #include "core/access.h"
 #include "core/random.h"
 #include "crowd/obstacles/obstacle_set.h"
+#include "path/edits/live_finder.h"
+#include "path/mesh_finder.h"
 #include "world/place.h"
 #include "worlds.h"
 
@@ -23,14 +25,14 @@ struct Crated {
   World world;
   crowd::CrowdGround ground;
   crowd::ObstacleSet book;
-  LiveGround live;
-  PathFinder finder;
+  path::LiveFinder live;
+  path::MeshFinder finder;
 
-  Crated(World of, PathFinder a_finder)
+  Crated(World of, path::MeshFinder a_finder)
       : world(std::move(of)),
         ground(*crowd::CrowdGround::make(*data_of(world), 0, kStep)),
         book(world, world.summary().classes.size()),
-        live(*LiveGround::create(world, {})),
+        live(*path::LiveFinder::create(world, {})),
         finder(std::move(a_finder)) {
     book.open_class(0, ground);
   }
@@ -43,7 +45,7 @@ struct Crated {
 
 Crated crated(World world) {
   Context context;
-  auto finder = PathFinder::create(world, {}, context);
+  auto finder = path::MeshFinder::create(world, {}, context);
   EXPECT_TRUE(finder);
   return {std::move(world), *finder};
 }

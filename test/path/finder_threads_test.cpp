@@ -6,6 +6,10 @@
 #include <vector>
 
 #include "baked.h"
+#include "path/edits/live_finder.h"
+#include "path/flight_finder.h"
+#include "path/mesh_finder.h"
+#include "path/node_finder.h"
 #include "throng/path.h"
 #include "throng/world.h"
 
@@ -40,16 +44,18 @@ TEST(Finders, CopiesAnswerTheSameInManyThreadsAtOnce) {
   std::vector<AvatarClass> classes = {{.name = "adult"}, flyer_class()};
   const World world = test::bake(scene, 0.25, classes);
   const Nodes nodes = need(Nodes::create(world, scene, {}, context));
-  PathFinder search = need(PathFinder::create(world, {}, context));
-  PathFinder labels = need(PathFinder::create(world, {.speedup = PathSpeedup::kLabels}, context));
-  LiveGround live = need(LiveGround::create(world, {}));
-  NodePathFinder over_nodes = need(NodePathFinder::create(nodes, {}, context));
-  FlightFinder flight = need(FlightFinder::create(world, {.avatar_class = 1}, context));
+  path::MeshFinder search = need(path::MeshFinder::create(world, {}, context));
+  path::MeshFinder labels =
+      need(path::MeshFinder::create(world, {.speedup = PathSpeedup::kLabels}, context));
+  path::LiveFinder live = need(path::LiveFinder::create(world, {}));
+  path::NodeFinder over_nodes = need(path::NodeFinder::create(nodes, {}, context));
+  path::FlightFinder flight = need(path::FlightFinder::create(world, {.avatar_class = 1}, context));
   const auto from = [&](uint64_t n) { return world.random_place(0, 7, 2 * n); };
   const auto to = [&](uint64_t n) { return world.random_place(0, 7, 2 * n + 1); };
   // The first thread to get here adds a crate to its own copy: the others must not see it.
-  const auto ask_all = [&](PathFinder by_search, PathFinder by_labels, LiveGround on_live,
-                           NodePathFinder on_nodes, FlightFinder in_air, bool crate) {
+  const auto ask_all = [&](path::MeshFinder by_search, path::MeshFinder by_labels,
+                           path::LiveFinder on_live, path::NodeFinder on_nodes,
+                           path::FlightFinder in_air, bool crate) {
     GroundQuery query = need(GroundQuery::create(world, 0));
     Answers answers;
     Path path;
@@ -108,10 +114,10 @@ TEST(Finders, APathHasTheSameShapeWhicheverFinderGivesIt) {
   std::vector<AvatarClass> classes = {{.name = "adult"}, flyer_class()};
   const World world = test::bake(scene, 0.25, classes);
   const Nodes nodes = need(Nodes::create(world, scene, {}, context));
-  PathFinder search = need(PathFinder::create(world, {}, context));
-  LiveGround live = need(LiveGround::create(world, {}));
-  NodePathFinder over_nodes = need(NodePathFinder::create(nodes, {}, context));
-  FlightFinder flight = need(FlightFinder::create(world, {.avatar_class = 1}, context));
+  path::MeshFinder search = need(path::MeshFinder::create(world, {}, context));
+  path::LiveFinder live = need(path::LiveFinder::create(world, {}));
+  path::NodeFinder over_nodes = need(path::NodeFinder::create(nodes, {}, context));
+  path::FlightFinder flight = need(path::FlightFinder::create(world, {.avatar_class = 1}, context));
   Path path;
   uint64_t reached = 0;
   const auto check = [&](const Vec3d& from, const Vec3d& to, double off, bool on_nodes) {

@@ -4,6 +4,7 @@
 
 #include "core/random.h"
 #include "grid_oracle.h"
+#include "path/mesh_finder.h"
 #include "throng/bake.h"
 #include "throng/path.h"
 
@@ -48,7 +49,7 @@ TEST(FlatCells, PathsAreAsShortAsBruteForceFinds) {
   for (uint64_t seed = 0; seed < 24; ++seed) {
     const FlatCells cells = random_cells(24, 24, 5 + 2 * seed, seed);
     const World world = bake(cells);
-    auto finder = PathFinder::create(world, {}, context);
+    auto finder = path::MeshFinder::create(world, {}, context);
     ASSERT_TRUE(finder) << finder.error().message;
     const test::GridOracle oracle(cells);
     Path path;

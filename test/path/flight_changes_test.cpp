@@ -13,6 +13,8 @@
 #include "exact_prism.h"
 #include "path/air/flight_endpoints.h"
 #include "path/air/flight_space.h"
+#include "path/edits/solid.h"
+#include "path/flight_finder.h"
 #include "throng/bake.h"
 #include "throng/path.h"
 #include "throng/scene.h"
@@ -29,9 +31,9 @@ World bake(const Scene& scene, double cell = 0.2) {
   return *world;
 }
 
-FlightFinder finder(const World& world) {
+path::FlightFinder finder(const World& world) {
   Context context;
-  auto made = FlightFinder::create(world, {}, context);
+  auto made = path::FlightFinder::create(world, {}, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -117,8 +119,8 @@ std::vector<Prism> random_prisms(uint64_t seed, double width) {
 // The cells of the air of a finder as it is now, and their connected components.
 class Cells {
  public:
-  explicit Cells(const World& world, const FlightFinder& flight)
-      : space_(path::space_of(flight)), ends_(*data_of(world), path::space_of(flight), 0) {
+  explicit Cells(const World& world, const path::FlightFinder& flight)
+      : space_(flight.space()), ends_(*data_of(world), flight.space(), 0) {
     const int32_t layers = space_.shape.ceiling - space_.shape.floor;
     label_.assign(static_cast<size_t>(space_.width * space_.depth * layers), -1);
     for_all([&](int32_t x, int32_t y, int32_t z) {
@@ -227,8 +229,8 @@ int faults(const std::vector<Prism>& prisms, const Path& path) {
   return found;
 }
 
-std::vector<ChangeId> put_up(FlightFinder& flight, const std::vector<Prism>& prisms) {
-  std::vector<ChangeId> ids;
+std::vector<path::ChangeId> put_up(path::FlightFinder& flight, const std::vector<Prism>& prisms) {
+  std::vector<path::ChangeId> ids;
   for (const Prism& prism : prisms) {
     const auto id = flight.add_obstacle(prism);
     EXPECT_TRUE(id) << id.error().message;
@@ -248,20 +250,20 @@ void expect_same(const Path& a, const Path& b) {
 }
 
 // Ends for queries, in the air and on the ground, whatever stands there.
-Vec3d end_of(const World& world, const FlightFinder& baked, uint64_t seed, uint64_t n) {
+Vec3d end_of(const World& world, const path::FlightFinder& baked, uint64_t seed, uint64_t n) {
   if (n % 3 == 0) return world.random_place(0, seed, n).position;
   return *baked.random_point(seed, n);
 }
 
 TEST(FlightChanges, CellsAreClosedWhereABodyCouldTouchThePrismAndNowhereElse) {
   const World world = bake(open_floor());
-  const FlightFinder baked = finder(world);
+  const path::FlightFinder baked = finder(world);
   const Cells before(world, baked);
   const AvatarClass avatar = flyer_class();
   uint64_t closed = 0, open = 0;
   for (uint64_t seed = 0; seed < 6; ++seed) {
     const std::vector<Prism> prisms = random_prisms(seed, 24);
-    FlightFinder flight = baked;
+    path::FlightFinder flight = baked;
     put_up(flight, prisms);
     const Cells now(world, flight);
     now.for_all([&](int32_t x, int32_t y, int32_t z) {
@@ -305,10 +307,10 @@ TEST(FlightChanges, PathsExistWhereCellsAreConnectedAndNoBodyTouchesAPrism) {
   uint64_t reached = 0, parted = 0, nearest = 0, on_ground = 0;
   for (const Scene& scene : {open_floor(), two_halls(), two_halls(true)}) {
     const World world = bake(scene);
-    const FlightFinder baked = finder(world);
+    const path::FlightFinder baked = finder(world);
     for (uint64_t seed = 0; seed < 20; ++seed) {
       const std::vector<Prism> prisms = random_prisms(seed, 20);
-      FlightFinder flight = baked;
+      path::FlightFinder flight = baked;
       put_up(flight, prisms);
       const Cells cells(world, flight);
       Path path;
@@ -352,8 +354,8 @@ TEST(FlightChanges, PathsExistWhereCellsAreConnectedAndNoBodyTouchesAPrism) {
 
 TEST(FlightChanges, RemovedObstaclesLeaveNoTraceAndTheOrderDoesNotMatter) {
   const World world = bake(two_halls(true));
-  FlightFinder baked = finder(world);
-  FlightFinder used = baked;
+  path::FlightFinder baked = finder(world);
+  path::FlightFinder used = baked;
   Path a, b;
   for (uint64_t seed = 20; seed < 28; ++seed) {
     const std::vector<Prism> prisms = random_prisms(seed, 20);
@@ -361,17 +363,17 @@ TEST(FlightChanges, RemovedObstaclesLeaveNoTraceAndTheOrderDoesNotMatter) {
     for (size_t i = shuffled.size(); i > 1; --i) {
       std::swap(shuffled[i - 1], shuffled[random_below(seed, i, 7, i)]);
     }
-    FlightFinder rebuilt = baked;
-    std::vector<ChangeId> ids = put_up(used, prisms);
+    path::FlightFinder rebuilt = baked;
+    std::vector<path::ChangeId> ids = put_up(used, prisms);
     // Some are removed, and come back.
-    for (const ChangeId id : ids) {
+    for (const path::ChangeId id : ids) {
       EXPECT_TRUE(used.set_active(id, id % 2 != 0));
     }
-    for (const ChangeId id : ids) EXPECT_TRUE(used.set_active(id, true));
+    for (const path::ChangeId id : ids) EXPECT_TRUE(used.set_active(id, true));
     put_up(rebuilt, shuffled);
     for (uint64_t n = 0; n < 20; ++n) {
-      const FlightQuery query{.from = end_of(world, baked, seed, 2 * n),
-                              .to = end_of(world, baked, seed, 5 * n + 1)};
+      const path::FlightQuery query{.from = end_of(world, baked, seed, 2 * n),
+                                    .to = end_of(world, baked, seed, 5 * n + 1)};
       used.find(query, a);
       rebuilt.find(query, b);
       expect_same(a, b);
@@ -385,8 +387,8 @@ TEST(FlightChanges, RemovedObstaclesLeaveNoTraceAndTheOrderDoesNotMatter) {
       EXPECT_FALSE(used.set_active(ids[last], true));
     }
     for (uint64_t n = 0; n < 20; ++n) {
-      const FlightQuery query{.from = end_of(world, baked, seed, 2 * n),
-                              .to = end_of(world, baked, seed, 5 * n + 1)};
+      const path::FlightQuery query{.from = end_of(world, baked, seed, 2 * n),
+                                    .to = end_of(world, baked, seed, 5 * n + 1)};
       used.find(query, a);
       baked.find(query, b);
       expect_same(a, b);
@@ -398,8 +400,8 @@ TEST(FlightChanges, RemovedObstaclesLeaveNoTraceAndTheOrderDoesNotMatter) {
 // What is left of the obstacles must cut off just what they do, whatever was there in between.
 TEST(FlightChanges, ClosedAndReopenedRoomsAreKnown) {
   const World world = bake(open_floor());
-  const FlightFinder baked = finder(world);
-  FlightFinder flight = baked;
+  const path::FlightFinder baked = finder(world);
+  path::FlightFinder flight = baked;
   Path path;
   std::vector<Prism> prisms;
   for (uint64_t n = 0; n < 5; ++n) {
@@ -407,7 +409,7 @@ TEST(FlightChanges, ClosedAndReopenedRoomsAreKnown) {
       prisms.push_back(side);
     }
   }
-  const std::vector<ChangeId> ids = put_up(flight, prisms);
+  const std::vector<path::ChangeId> ids = put_up(flight, prisms);
   std::vector<bool> up(ids.size(), true);
   uint64_t shut = 0;
   for (uint64_t n = 0; n < 60; ++n) {
@@ -437,15 +439,15 @@ TEST(FlightChanges, AtAnyTimeAnswersAreThoseOfANewFinder) {
   uint64_t open = 0, shut = 0;
   for (uint64_t seed = 1; seed < 4; ++seed) {
     const World world = bake(seed % 2 != 0 ? open_floor() : two_halls(true));
-    const FlightFinder baked = finder(world);
-    FlightFinder flight = baked;
+    const path::FlightFinder baked = finder(world);
+    path::FlightFinder flight = baked;
     Path path, other;
     std::vector<Prism> prisms;
     for (uint64_t k = 0; k < 6; ++k) {
       const std::vector<Prism> more = random_prisms(seed * 100 + k, 20);
       prisms.insert(prisms.end(), more.begin(), more.end());
     }
-    const std::vector<ChangeId> ids = put_up(flight, prisms);
+    const std::vector<path::ChangeId> ids = put_up(flight, prisms);
     std::vector<bool> up(ids.size(), true);
     for (uint64_t n = 0; n < 12; ++n) {
       for (uint64_t m = 0; m < 3; ++m) {
@@ -457,7 +459,7 @@ TEST(FlightChanges, AtAnyTimeAnswersAreThoseOfANewFinder) {
       for (size_t i = 0; i < ids.size(); ++i) {
         if (up[i]) standing.push_back(prisms[i]);
       }
-      FlightFinder rebuilt = baked;
+      path::FlightFinder rebuilt = baked;
       put_up(rebuilt, standing);
       const Cells cells(world, flight);
       for (uint64_t k = 0; k < 12; ++k) {
@@ -482,7 +484,7 @@ TEST(FlightChanges, AtAnyTimeAnswersAreThoseOfANewFinder) {
 
 TEST(FlightChanges, EndsInAnObstacleAreNoPlacesAndPathsLeadAroundAWall) {
   const World world = bake(open_floor());
-  FlightFinder flight = finder(world);
+  path::FlightFinder flight = finder(world);
   const Vec3d here{3, 3, 4}, there{21, 3, 4};
   Path path;
   flight.find({.from = here, .to = there}, path);
@@ -505,7 +507,7 @@ TEST(FlightChanges, EndsInAnObstacleAreNoPlacesAndPathsLeadAroundAWall) {
     flight.find({.from = bad, .to = here}, path);
     EXPECT_EQ(path.end, PathEnd::kNoPlace);
   }
-  FlightFinder copy = flight;
+  path::FlightFinder copy = flight;
   ASSERT_TRUE(flight.remove(*id));
   EXPECT_TRUE(flight.is_legal({7.1, 3, 4}));
   EXPECT_FALSE(copy.is_legal({7.1, 3, 4}));
@@ -516,7 +518,7 @@ TEST(FlightChanges, EndsInAnObstacleAreNoPlacesAndPathsLeadAroundAWall) {
 // Over the ground, as well: a wall of which one cannot fly over the end.
 TEST(FlightChanges, WalksAndTakeOffsAvoidThemToo) {
   const World world = bake(open_floor());
-  FlightFinder flight = finder(world);
+  path::FlightFinder flight = finder(world);
   const std::vector<Prism> prisms{box({7, 0, -1}, {7.2, 3, 6}), box({2, 1.9, 1}, {6, 2.2, 7})};
   put_up(flight, prisms);
   Path path;
@@ -530,15 +532,15 @@ TEST(FlightChanges, WalksAndTakeOffsAvoidThemToo) {
 
 TEST(FlightChanges, GroundBetweenTwoComponentsOfAirIsLeftOutUnderAnObstacle) {
   const World world = bake(two_halls());
-  FlightFinder flight = finder(world);
-  const FlightQuery query{.from = {3, 2, 4}, .to = {16, 3, 3}};
+  path::FlightFinder flight = finder(world);
+  const path::FlightQuery query{.from = {3, 2, 4}, .to = {16, 3, 3}};
   Path path;
   flight.find(query, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   // The path lands elsewhere than where a crate is, and leads around it.
   const std::vector<Prism> crates{box({8, 0, 3.4}, {8.6, 1, 5}),
                                   box({11.5, 0, 3.4}, {12.5, 3, 4.4})};
-  std::vector<ChangeId> ids = put_up(flight, crates);
+  std::vector<path::ChangeId> ids = put_up(flight, crates);
   flight.find(query, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   EXPECT_EQ(faults(crates, path), 0);
@@ -556,7 +558,7 @@ TEST(FlightChanges, GroundBetweenTwoComponentsOfAirIsLeftOutUnderAnObstacle) {
 // Air that an obstacle has cut in two, over a floor that leads under it.
 TEST(FlightChanges, UnderACurtainPathsWalk) {
   const World world = bake(two_halls(true));
-  FlightFinder flight = finder(world);
+  path::FlightFinder flight = finder(world);
   const Prism curtain = box({9.7, 2.0, 4.5}, {10.1, 6, 8});
   const Prism low = box({9.7, -0.5, 5.6}, {10.1, 3, 8});
   put_up(flight, {curtain, low});
@@ -570,7 +572,7 @@ TEST(FlightChanges, UnderACurtainPathsWalk) {
 
 TEST(FlightChanges, ABoxedInGoalIsReportedWithTheNearestPoint) {
   const World world = bake(open_floor());
-  FlightFinder flight = finder(world);
+  path::FlightFinder flight = finder(world);
   const Vec3d goal{18, 3, 4};
   put_up(flight, cage(goal, 1.2, 3));
   ASSERT_TRUE(flight.is_legal(goal));
@@ -604,19 +606,19 @@ TEST(FlightChanges, AWallThroughALargeWorldIsFoundBySearching) {
   }
   const auto world = bake_voxel_cells(cells, 1);
   ASSERT_TRUE(world) << world.error().message;
-  FlightFinder flight = finder(*world);
+  path::FlightFinder flight = finder(*world);
   ASSERT_GT(flight.summary().boxes, 90'000u);
-  const path::FlightEndpoints ends(*data_of(*world), path::space_of(flight), 0);
+  const path::FlightEndpoints ends(*data_of(*world), flight.space(), 0);
   const auto component_of = [&](Vec3d p) {
-    const uint32_t at = path::space_of(flight).box_at(ends.to_air(p));
-    return at == path::kNoBox ? path::kNoBox : path::space_of(flight).component[at];
+    const uint32_t at = flight.space().box_at(ends.to_air(p));
+    return at == path::kNoBox ? path::kNoBox : flight.space().component[at];
   };
   std::vector<Vec3d> left, right;
   const uint32_t most = component_of([&] {
     for (uint64_t n = 0;; ++n) {
       const Vec3d p = *flight.random_point(4, n);
-      if (std::count(path::space_of(flight).component.begin(),
-                     path::space_of(flight).component.end(), component_of(p)) > 50'000) {
+      if (std::count(flight.space().component.begin(), flight.space().component.end(),
+                     component_of(p)) > 50'000) {
         return p;
       }
     }
@@ -655,7 +657,7 @@ TEST(FlightChanges, AWallThroughALargeWorldIsFoundBySearching) {
 
 TEST(FlightChanges, TrianglesAreObstaclesAndBlockOnlyWhatTheyCover) {
   const World world = bake(open_floor());
-  FlightFinder flight = finder(world);
+  path::FlightFinder flight = finder(world);
   // A sail from the floor on one side up to 6 m on the other.
   const std::array<Vec3d, 3> corners{Vec3d{8, 0, 0}, Vec3d{8, 0, 8}, Vec3d{14, 6, 8}};
   const std::array<std::array<uint32_t, 3>, 1> triangles{{{0, 1, 2}}};
@@ -678,7 +680,7 @@ TEST(FlightChanges, TrianglesAreObstaclesAndBlockOnlyWhatTheyCover) {
 
 TEST(FlightChanges, BadPrismsAreRefusedAndUnknownOnesAreNoChanges) {
   const World world = bake(open_floor());
-  FlightFinder flight = finder(world);
+  path::FlightFinder flight = finder(world);
   EXPECT_FALSE(flight.remove(1));
   EXPECT_FALSE(flight.set_active(0, true));
   Prism bad = box({1, 1, 1}, {2, 2, 2});
@@ -692,8 +694,8 @@ TEST(FlightChanges, BadPrismsAreRefusedAndUnknownOnesAreNoChanges) {
 
 TEST(FlightChanges, RandomPointsAreLegal) {
   const World world = bake(open_floor());
-  const FlightFinder baked = finder(world);
-  FlightFinder flight = baked;
+  const path::FlightFinder baked = finder(world);
+  path::FlightFinder flight = baked;
   put_up(flight, {box({4, -1, -1}, {30, 40, 10})});
   uint64_t same = 0;
   for (uint64_t n = 0; n < 500; ++n) {

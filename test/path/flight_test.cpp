@@ -11,6 +11,7 @@
 #include "path/air/air_view.h"
 #include "path/air/flight_endpoints.h"
 #include "path/air/flight_space.h"
+#include "path/flight_finder.h"
 #include "path/ground/circle_flood.h"
 #include "throng/bake.h"
 #include "throng/path.h"
@@ -30,9 +31,9 @@ World bake(const Scene& scene, double cell = 0.1) {
   return *world;
 }
 
-FlightFinder finder(const World& world) {
+path::FlightFinder finder(const World& world) {
   Context context;
-  auto made = FlightFinder::create(world, {}, context);
+  auto made = path::FlightFinder::create(world, {}, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -47,7 +48,7 @@ Scene two_floors() {
 
 TEST(Flight, LeadsFromTheGroundThroughTheAirToTheGround) {
   const World world = bake(two_floors());
-  FlightFinder flight = finder(world);
+  path::FlightFinder flight = finder(world);
   Path path;
   flight.find({.from = {4, 0, 4}, .to = {32, 3, 4}}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
@@ -64,7 +65,7 @@ TEST(Flight, LeadsFromTheGroundThroughTheAirToTheGround) {
 
 TEST(Flight, WalksWhereThatIsShorter) {
   const World world = bake(two_floors());
-  FlightFinder flight = finder(world);
+  path::FlightFinder flight = finder(world);
   Path path;
   flight.find({.from = {2, 0, 4}, .to = {6, 0, 4}}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
@@ -77,7 +78,7 @@ TEST(Flight, WalksToATakeOff) {
   Scene scene = two_floors();
   scene.add_box({1, 1.9, 1}, {7, 2.5, 7});
   const World world = bake(scene);
-  FlightFinder flight = finder(world);
+  path::FlightFinder flight = finder(world);
   EXPECT_FALSE(flight.take_off(world.find_place(0, {4, 0, 4}, 0.1)));
   Path path;
   flight.find({.from = {4, 0, 4}, .to = {32, 3, 4}}, path);
@@ -98,7 +99,7 @@ TEST(Flight, LeavesAClosedIslandOfAirOnFoot) {
   scene.add_box({6.8, 2, 3}, {7, 6, 5});
   scene.add_box({1, 5.8, 1}, {7, 6, 7});
   const World world = bake(scene);
-  FlightFinder flight = finder(world);
+  path::FlightFinder flight = finder(world);
   const Vec3d inside{3, 0, 3}, beyond{32, 3, 4}, above{32, 6, 4};
   ASSERT_TRUE(flight.take_off(world.find_place(0, inside, 0.1)));
   ASSERT_TRUE(flight.is_legal(above));
@@ -126,8 +127,8 @@ TEST(Flight, KnowsWhichGroundLeadsIntoWhichAir) {
   const Scene church = *create_builtin_world({.name = "church"});
   for (const bool yard : {true, false}) {
     const World world = bake(yard ? yards : church, 0.2);
-    FlightFinder flight = finder(world);
-    const path::FlightEndpoints ends(*data_of(world), path::space_of(flight), 0);
+    path::FlightFinder flight = finder(world);
+    const path::FlightEndpoints ends(*data_of(world), flight.space(), 0);
     path::CircleFlood flood;
     Path path;
     std::vector<uint32_t> over;
@@ -138,7 +139,7 @@ TEST(Flight, KnowsWhichGroundLeadsIntoWhichAir) {
       const auto air = ends.in_air(*point);
       ASSERT_TRUE(air);
       EXPECT_FALSE(ends.components_over(place, UINT64_MAX, flood, over));
-      const uint32_t of_air = path::space_of(flight).component[path::space_of(flight).box_at(*air)];
+      const uint32_t of_air = flight.space().component[flight.space().box_at(*air)];
       const bool together = std::find(over.begin(), over.end(), of_air) != over.end();
       (together ? reached : parted) += 1;
       const PathEnd expected = together ? PathEnd::kReached : PathEnd::kUnreachable;
@@ -154,7 +155,7 @@ TEST(Flight, KnowsWhichGroundLeadsIntoWhichAir) {
 
 TEST(Flight, LandsOnTheMostOpenGroundBelow) {
   const World world = bake(two_floors());
-  const FlightFinder flight = finder(world);
+  const path::FlightFinder flight = finder(world);
   const Place place = flight.landing({4, 6, 4});
   ASSERT_TRUE(place);
   EXPECT_NEAR(place.position.y, 0, 1e-6);
@@ -167,7 +168,7 @@ TEST(Flight, EndsInSolidsOrOutsideOrNowhereAreNoPlaces) {
   Scene scene = two_floors();
   scene.add_box({3, 0, 3}, {5, 4, 5});
   const World world = bake(scene);
-  FlightFinder flight = finder(world);
+  path::FlightFinder flight = finder(world);
   Path path;
   const Vec3d good{32, 6, 4};
   for (const Vec3d bad :
@@ -186,7 +187,7 @@ TEST(Flight, ReportsUnreachableGoalsAndKeepsToItsBudget) {
   Scene scene = two_floors();
   scene.add_box({10, 0, 0}, {20, 8, 8});  // hollow: inside is air, too
   const World world = bake(scene);
-  FlightFinder flight = finder(world);
+  path::FlightFinder flight = finder(world);
   Path path;
   ASSERT_TRUE(flight.is_legal({15, 4, 4}));
   flight.find({.from = {15, 4, 4}, .to = {32, 6, 4}}, path);
@@ -220,12 +221,12 @@ Scene two_halls(bool door) {
 TEST(Flight, LandsAndTakesOffAgainWhereOnlyTheGroundLeadsFromAirToAir) {
   const Scene scene = two_halls(true);
   const World world = bake(scene);
-  FlightFinder flight = finder(world);
+  path::FlightFinder flight = finder(world);
   const Vec3d here{3, 2, 4}, there{16, 3, 3};
-  const path::FlightEndpoints ends(*data_of(world), path::space_of(flight), 0);
+  const path::FlightEndpoints ends(*data_of(world), flight.space(), 0);
   ASSERT_TRUE(ends.in_air(here) && ends.in_air(there));
-  ASSERT_FALSE(path::AirView(path::space_of(flight))
-                   .same_component(*ends.in_air(here), *ends.in_air(there)));
+  ASSERT_FALSE(
+      path::AirView(flight.space()).same_component(*ends.in_air(here), *ends.in_air(there)));
   Path path;
   flight.find({.from = here, .to = there}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
@@ -251,7 +252,7 @@ TEST(Flight, LandsAndTakesOffAgainWhereOnlyTheGroundLeadsFromAirToAir) {
 TEST(Flight, ReportsHowNearItComesAndTheBlocker) {
   const Scene scene = two_halls(false);
   const World world = bake(scene);
-  FlightFinder flight = finder(world);
+  path::FlightFinder flight = finder(world);
   Path path;
   const Vec3d there{16, 3, 3};
   for (const Vec3d here : {Vec3d{3, 2, 4}, Vec3d{3, 0, 6}}) {
@@ -263,12 +264,11 @@ TEST(Flight, ReportsHowNearItComesAndTheBlocker) {
     EXPECT_NEAR(length(path.points.front().position - here), 0, 0.01);
     // As near as the air comes, of all boxes, by many points of each.
     double least = INFINITY;
-    const path::FlightEndpoints ends(*data_of(world), path::space_of(flight), 0);
-    const uint32_t part =
-        path::space_of(flight).component[path::space_of(flight).box_at(*ends.in_air({3, 2, 4}))];
-    for (size_t b = 0; b < path::space_of(flight).boxes.size(); ++b) {
-      if (path::space_of(flight).component[b] != part) continue;
-      const world::AirCube& box = path::space_of(flight).boxes[b];
+    const path::FlightEndpoints ends(*data_of(world), flight.space(), 0);
+    const uint32_t part = flight.space().component[flight.space().box_at(*ends.in_air({3, 2, 4}))];
+    for (size_t b = 0; b < flight.space().boxes.size(); ++b) {
+      if (flight.space().component[b] != part) continue;
+      const world::AirCube& box = flight.space().boxes[b];
       for (int i = 0; i < 27; ++i) {
         const auto at = [&](int32_t low, int k) { return low + box.side * (0.01 + 0.49 * k); };
         const Vec3d p = ends.to_metres({at(box.x, i % 3), at(box.y, i / 3 % 3), at(box.z, i / 9)});
@@ -284,7 +284,7 @@ TEST(Flight, ReportsHowNearItComesAndTheBlocker) {
   Scene low = two_floors();
   low.add_quad({0, 1.85, 0}, {8, 1.85, 0}, {8, 1.85, 8}, {0, 1.85, 8});
   const World cellar = bake(low);
-  FlightFinder in_cellar = finder(cellar);
+  path::FlightFinder in_cellar = finder(cellar);
   in_cellar.find({.from = {2, 0, 4}, .to = {32, 3, 4}}, path);
   if (path.end == PathEnd::kUnreachable) {
     EXPECT_EQ(path.blocked_by, Blocker::kLow);
@@ -312,7 +312,7 @@ TEST(Flight, DistinguishesHolesThatAreTooLowFromTooNarrow) {
       scene.add_box({9.8, -0.1, 4.2}, {10, 6, 8});
     }
     const World world = bake(scene);
-    FlightFinder flight = finder(world);
+    path::FlightFinder flight = finder(world);
     Path path;
     for (const double from : {3.0, 17.0}) {
       flight.find({.from = {from, 2.5, 4}, .to = {20 - from, 2.25, 4}}, path);
@@ -332,9 +332,9 @@ TEST(Flight, AnExhaustedBudgetOnFootIsNoProofThatNoPathExists) {
   scene.add_box({5, 0, -1}, {5.5, 1.9, 6});
   scene.add_box({7, 0, 2}, {7.5, 1.9, 9});
   const World world = bake(scene);
-  FlightFinder flight = finder(world);
+  path::FlightFinder flight = finder(world);
   Path path;
-  FlightQuery query{.from = {2, 0, 2}, .to = {10, 0, 4}};
+  path::FlightQuery query{.from = {2, 0, 2}, .to = {10, 0, 4}};
   ASSERT_FALSE(flight.take_off(world.find_place(0, query.from, 0.1)));
   flight.find(query, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
@@ -353,16 +353,16 @@ TEST(Flight, NeedsAirAndAClassThatFlies) {
   Context context;
   const Scene scene = two_floors();
   const auto ground = bake_world(scene, {.cell = 0.2}, context);
-  EXPECT_EQ(FlightFinder::create(*ground, {}, context).error().code, Errc::kNotFound);
+  EXPECT_EQ(path::FlightFinder::create(*ground, {}, context).error().code, Errc::kNotFound);
   const auto air = bake_world(scene, {.cell = 0.2, .air = 0.4}, context);
-  EXPECT_EQ(FlightFinder::create(*air, {}, context).error().code, Errc::kBadConfig);
-  EXPECT_EQ(FlightFinder::create(*air, {.avatar_class = 9}, context).error().code,
+  EXPECT_EQ(path::FlightFinder::create(*air, {}, context).error().code, Errc::kBadConfig);
+  EXPECT_EQ(path::FlightFinder::create(*air, {.avatar_class = 9}, context).error().code,
             Errc::kBadConfig);
 }
 
 TEST(Flight, CopiesAndSecondQueriesFindTheSame) {
   const World world = bake(two_floors());
-  FlightFinder a = finder(world), b = a;
+  path::FlightFinder a = finder(world), b = a;
   Path first, second;
   for (uint64_t n = 0; n < 20; ++n) {
     const auto from = a.random_point(1, 2 * n), to = a.random_point(1, 2 * n + 1);
@@ -430,7 +430,7 @@ TEST(VoxelCells, PathsAreLegalAndNotMuchLongerThanBruteForceFinds) {
     const VoxelCells cells = random_voxels(seed, 4 + 7 * seed);
     const auto world = bake_voxel_cells(cells, 1);
     ASSERT_TRUE(world) << world.error().message;
-    FlightFinder flight = finder(*world);
+    path::FlightFinder flight = finder(*world);
     const test::VoxelOracle oracle(cells);
     Path path;
     for (uint64_t n = 0; n < 12; ++n) {
@@ -499,7 +499,7 @@ TEST(VoxelCells, FarEndsAreFoundThroughLargeBoxesOrAroundThem) {
       const VoxelCells cells = hall_of_walls(seed, least);
       const auto world = bake_voxel_cells(cells, 1);
       ASSERT_TRUE(world) << world.error().message;
-      FlightFinder flight = finder(*world);
+      path::FlightFinder flight = finder(*world);
       const test::VoxelOracle oracle(cells);
       Path path;
       flight.find({.from = {3.5, 2.5, 28.5}, .to = {340.5, 12.5, 4.5}}, path);

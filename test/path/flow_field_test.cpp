@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "baked.h"
+#include "path/mesh_finder.h"
 #include "throng/path.h"
 #include "worlds.h"
 
@@ -17,16 +18,18 @@ namespace {
 
 using test::bake;
 
-LiveGround live(const World& world, int32_t avatar_class = 0) {
-  auto made = LiveGround::create(world, {.avatar_class = avatar_class});
+PathFinder finder_of(const World& world, const Edits& edits = {}) {
+  Context context;
+  auto made =
+      PathFinder::create(world, {.speedup = PathSpeedup::kOnDemand, .edits = edits}, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
 
-FlowField field(const LiveGround& ground, const std::vector<Place>& goals,
+FlowField field(const PathFinder& finder, const std::vector<Place>& goals,
                 double max_distance = 1e9) {
   Context context;
-  auto made = FlowField::create(ground, goals, {.max_distance = max_distance}, context);
+  auto made = FlowField::create(finder, goals, {.max_distance = max_distance}, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -38,11 +41,11 @@ TEST(FlowField, IsAsFarAsTheNearestGoalByTheExactSearch) {
        {bake(test::builtin({.name = "garage"}), 0.2), bake(test::builtin({.name = "church"}), 0.15),
         bake(test::builtin({.name = "maze"}), 0.2), bake(worlds::random_soup(7, 400, 12), 0.15)}) {
     Context context;
-    auto exact = PathFinder::create(world, {.avatar_class = 0}, context);
+    auto exact = path::MeshFinder::create(world, {.avatar_class = 0}, context);
     ASSERT_TRUE(exact);
     std::vector<Place> goals;
     for (uint64_t n = 0; n < 3; ++n) goals.push_back(world.random_place(0, 77, n));
-    FlowField flow = field(live(world), goals);
+    FlowField flow = field(finder_of(world), goals);
     Path best, path;
     for (uint64_t n = 0; n < 150; ++n) {
       const Place from = world.random_place(0, 78, n);
@@ -87,10 +90,11 @@ TEST(FlowField, FollowingItArrives) {
        {bake(test::builtin({.name = "garage"}), 0.2), bake(worlds::two_floors(), 0.1),
         bake(worlds::random_soup(7, 400, 12), 0.15)}) {
     const Place goal = world.random_place(0, 5, 0);
-    LiveGround ground = live(world);
-    ASSERT_TRUE(ground.add_obstacle(Prism::box({2, 0, 2}, {2.5, 2, 2.5})));
-    if (!ground.is_free(goal)) continue;
-    FlowField flow = field(ground, {goal});
+    Edits edits;
+    PathFinder finder = finder_of(world, edits);
+    ASSERT_TRUE(edits.add_obstacle(Prism::box({2, 0, 2}, {2.5, 2, 2.5})));
+    if (!finder.is_free(goal)) continue;
+    FlowField flow = field(finder, {goal});
     for (uint64_t n = 0; n < 100; ++n) {
       Place at = world.random_place(0, 6, n);
       const double distance = flow.distance(at);
@@ -119,7 +123,7 @@ TEST(FlowField, FollowingItArrives) {
 TEST(FlowField, StopsWhereAsked) {
   const World world = bake(worlds::flat(30), 0.2);
   const Place goal = world.find_place(0, {3, 0, 3}, 0.5);
-  FlowField near = field(live(world), {goal}, 5), far = field(live(world), {goal});
+  FlowField near = field(finder_of(world), {goal}, 5), far = field(finder_of(world), {goal});
   const Place close = world.find_place(0, {5, 0, 3}, 0.5),
               off = world.find_place(0, {27, 0, 27}, 0.5);
   EXPECT_NEAR(near.distance(close), 2, 1e-3);
@@ -140,17 +144,17 @@ TEST(FlowField, StopsWhereAsked) {
 
 TEST(FlowField, RefusesNonsense) {
   const World world = bake(worlds::flat(6), 0.2);
-  LiveGround ground = live(world);
+  const PathFinder finder = finder_of(world);
   Context context;
-  EXPECT_FALSE(FlowField::create(ground, {}, {}, context));
+  EXPECT_FALSE(FlowField::create(finder, {}, {}, context));
   const std::vector<Place> nowhere(2);
-  EXPECT_FALSE(FlowField::create(ground, nowhere, {}, context));
+  EXPECT_FALSE(FlowField::create(finder, nowhere, {}, context));
   const std::vector<Place> goals{world.find_place(0, {3, 0, 3}, 0.5)};
-  EXPECT_FALSE(FlowField::create(ground, goals, {.max_distance = -1}, context));
+  EXPECT_FALSE(FlowField::create(finder, goals, {.max_distance = -1}, context));
   context.cancel = true;
-  EXPECT_FALSE(FlowField::create(ground, goals, {}, context));
+  EXPECT_FALSE(FlowField::create(finder, goals, {}, context));
   context.cancel = false;
-  auto flow = FlowField::create(ground, goals, {}, context);
+  auto flow = FlowField::create(finder, goals, {}, context);
   ASSERT_TRUE(flow);
   EXPECT_FALSE(flow->next({}));
   EXPECT_FALSE(std::isfinite(flow->distance({{1e300, 0, 0}, 1})));

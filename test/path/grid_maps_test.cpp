@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "path/mesh_finder.h"
 #include "throng/bake.h"
 #include "throng/path.h"
 #include "throng/scene.h"
@@ -19,9 +20,9 @@ namespace {
 
 class GridMaps : public testing::TestWithParam<const char*> {};
 
-PathFinder finder(const World& world, const PathConfig& config) {
+path::MeshFinder finder(const World& world, const PathConfig& config) {
   Context context;
-  auto made = PathFinder::create(world, config, context);
+  auto made = path::MeshFinder::create(world, config, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -33,9 +34,9 @@ TEST_P(GridMaps, LabelsAndZonesAreAsShortAsTheSearchInSharedWorlds) {
   ASSERT_TRUE(cells) << cells.error().message;
   const auto world = bake_flat_cells(*cells, 1);
   ASSERT_TRUE(world) << world.error().message;
-  PathFinder search = finder(*world, {}),
-             labels = finder(*world, {.speedup = PathSpeedup::kLabels});
-  PathFinder zones = finder(*world, {.speedup = PathSpeedup::kZones});
+  path::MeshFinder search = finder(*world, {}),
+                   labels = finder(*world, {.speedup = PathSpeedup::kLabels});
+  path::MeshFinder zones = finder(*world, {.speedup = PathSpeedup::kZones});
 
   std::ifstream scenario(map + ".scen");
   std::string line;

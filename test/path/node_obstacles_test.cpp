@@ -7,6 +7,8 @@
 
 #include "baked.h"
 #include "core/random.h"
+#include "path/edits/solid.h"
+#include "path/node_finder.h"
 #include "path/overlay/overlay_search.h"
 #include "path/surface/node_changes.h"
 #include "path/surface/node_view.h"
@@ -132,7 +134,8 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftFindsTheSame) {
       ASSERT_TRUE(mesh);
       const path::BlockSquares squares(*mesh);
       path::NodeChanges changes(*mesh, squares, 20);
-      auto finder = NodePathFinder::create(world.nodes, {.avatar_class = c, .workers = 1}, context);
+      auto finder =
+          path::NodeFinder::create(world.nodes, {.avatar_class = c, .workers = 1}, context);
       ASSERT_TRUE(finder);
       for (const Prism& prism : random_prisms(world.nodes, 77, 50)) {
         changes.add({prism, {}});
@@ -256,15 +259,15 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
   Context context;
   uint64_t changed = 0;
   for (int32_t c = 0; c < 4; ++c) {
-    auto made = NodePathFinder::create(world.nodes, {.avatar_class = c, .workers = 1}, context);
+    auto made = path::NodeFinder::create(world.nodes, {.avatar_class = c, .workers = 1}, context);
     ASSERT_TRUE(made);
-    NodePathFinder rebuilt = *made, one = *made, other = *made;
+    path::NodeFinder rebuilt = *made, one = *made, other = *made;
     const std::vector<Prism> prisms = random_prisms(world.nodes, 3, 30);
-    std::vector<ChangeId> ids;
+    std::vector<path::ChangeId> ids;
     for (const Prism& prism : prisms) ids.push_back(*one.add_obstacle(prism));
     for (size_t i = prisms.size(); i-- > 0;) {
       // An obstacle that is removed later, or switched off, does not count.
-      const ChangeId spare = *other.add_obstacle(prisms[(i * 7 + 3) % prisms.size()]);
+      const path::ChangeId spare = *other.add_obstacle(prisms[(i * 7 + 3) % prisms.size()]);
       ASSERT_TRUE(other.add_obstacle(prisms[i]));
       if (i % 2 == 0) {
         EXPECT_TRUE(other.remove(spare));
@@ -273,7 +276,7 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
         EXPECT_TRUE(other.set_active(spare, false));
       }
     }
-    NodePathFinder copy = one;
+    path::NodeFinder copy = one;
     Path a, b, d, e;
     for (uint64_t n = 0; n < 25; ++n) {
       const NodePlace from = world.nodes.random_place(c, 2, 2 * n),
@@ -356,9 +359,9 @@ TEST(NodeObstacles, MeshesBlockWhatTheirTrianglesTouch) {
   Context context;
   uint64_t around = 0, bodies = 0;
   for (int32_t c = 0; c < 4; ++c) {
-    auto made = NodePathFinder::create(world.nodes, {.avatar_class = c, .workers = 1}, context);
+    auto made = path::NodeFinder::create(world.nodes, {.avatar_class = c, .workers = 1}, context);
     ASSERT_TRUE(made);
-    NodePathFinder rebuilt = *made, solid = *made, shells = *made;
+    path::NodeFinder rebuilt = *made, solid = *made, shells = *made;
     Scene scene;
     for (const Prism& prism : random_prisms(world.nodes, 31, 40)) {
       const test::PrismShell shell = test::shell_of(prism);
@@ -393,7 +396,7 @@ TEST(NodeObstacles, MeshesBlockWhatTheirTrianglesTouch) {
 TEST(NodeObstacles, BadOnesAreRefusedAndNamed) {
   const TestWorld world = make({.name = "stairs"}, 0.25, 1);
   Context context;
-  auto finder = NodePathFinder::create(world.nodes, {.workers = 1}, context);
+  auto finder = path::NodeFinder::create(world.nodes, {.workers = 1}, context);
   ASSERT_TRUE(finder);
   EXPECT_FALSE(finder->add_obstacle(Prism{{{0, 0}, {1, 0}}, 0, 1}));
   EXPECT_FALSE(finder->add_obstacle(Prism::box({0, 1, 0}, {1, 0, 1})));

@@ -12,6 +12,8 @@
 #include "core/random.h"
 #include "graph/node_mesh.h"
 #include "patch_nets.h"
+#include "path/mesh_finder.h"
+#include "path/node_finder.h"
 #include "path/surface/block_squares.h"
 #include "path/surface/node_parts.h"
 #include "path/surface/node_search.h"
@@ -43,9 +45,9 @@ Nodes make(const Scene& scene, double cell, double size) {
   return nodes ? *nodes : Nodes{};
 }
 
-NodePathFinder finder(const Nodes& nodes, int32_t avatar_class, double slope_cost = 0) {
+path::NodeFinder finder(const Nodes& nodes, int32_t avatar_class, double slope_cost = 0) {
   Context context;
-  auto made = NodePathFinder::create(
+  auto made = path::NodeFinder::create(
       nodes, {.avatar_class = avatar_class, .slope_cost = slope_cost}, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
@@ -86,7 +88,7 @@ TEST(NodePath, NoPointOnASurfaceRepeatsTheOneBefore) {
     const Nodes nodes = make(builtin({.name = name, .size = size}), 0.25, 1);
     size_t points = 0;
     for (int32_t c = 0; c < 4; ++c) {
-      NodePathFinder paths = finder(nodes, c);
+      path::NodeFinder paths = finder(nodes, c);
       Path path;
       for (uint64_t n = 0; n < 60; ++n) {
         paths.find(nodes.random_place(c, 9, 2 * n), nodes.random_place(c, 9, 2 * n + 1), path);
@@ -112,7 +114,7 @@ TEST(NodePath, SearchFindsTheCheapestCrossings) {
       ASSERT_TRUE(mesh);
       const path::NodeView view(*mesh);
       const path::PieceCost piece(view, slope_cost);
-      NodePathFinder found = finder(nodes, c, slope_cost);
+      path::NodeFinder found = finder(nodes, c, slope_cost);
       for (uint64_t n = 0; n < 20; ++n) {
         const NodePlace from = nodes.random_place(c, 3, 2 * n),
                         to = nodes.random_place(c, 3, 2 * n + 1);
@@ -182,9 +184,9 @@ TEST(NodePath, OnLevelTilesPathsAreNearlyTheShortest) {
     const Scene scene = builtin({.name = name});
     const Nodes nodes = make(scene, 0.2, 1);
     const World world = data_of(nodes)->world;
-    auto exact = PathFinder::create(world, {.avatar_class = 0}, context);
+    auto exact = path::MeshFinder::create(world, {.avatar_class = 0}, context);
     ASSERT_TRUE(exact);
-    NodePathFinder found = finder(nodes, 0);
+    path::NodeFinder found = finder(nodes, 0);
     double sum = 0, worst = 0;
     int count = 0;
     for (uint64_t n = 0; n < 200; ++n) {
@@ -219,7 +221,7 @@ TEST(NodePath, ReportsWhereItEnds) {
   scene.add_quad({8, 0, 0}, {8, 0, 6}, {14, 0, 6}, {14, 0, 0});
   scene.add_quad({0, 3, 0}, {0, 3, 6}, {6, 3, 6}, {6, 3, 0});  // and a deck
   const Nodes nodes = make(scene, 0.2, 1);
-  NodePathFinder found = finder(nodes, 0);
+  path::NodeFinder found = finder(nodes, 0);
   const NodePlace from = found.find_place({1, 0, 3}, 1), to = found.find_place({13, 0, 3}, 1);
   ASSERT_TRUE(from);
   ASSERT_TRUE(to);
@@ -256,7 +258,7 @@ TEST(NodePath, EndsAtTheNearestPlaceThatIsReached) {
        {std::pair{make(floors, 0.2, 1), 0},
         {make(builtin({.name = "landscape", .size = 100}), 0.5, 2), 0},
         {make(builtin({.name = "landscape", .size = 100}), 0.5, 2), 5}}) {
-    NodePathFinder found = finder(nodes, avatar_class);
+    path::NodeFinder found = finder(nodes, avatar_class);
     const auto mesh = graph::NodeMesh::make(nodes, avatar_class, 1, context);
     ASSERT_TRUE(mesh);
     const path::NodeView view(*mesh);
@@ -297,7 +299,7 @@ TEST(NodePath, OffMeshLinksLeadOnlyWhereTheyAreGiven) {
            {{.from = {4, 0, 3}, .to = {10, 0, 3}, .avatar_class = 0, .two_way = false}}},
       context);
   ASSERT_TRUE(nodes);
-  NodePathFinder found = finder(*nodes, 0);
+  path::NodeFinder found = finder(*nodes, 0);
   const NodePlace here = found.find_place({1, 0, 3}, 1), there = found.find_place({13, 0, 3}, 1);
   Path path;
   found.find(here, there, path);
@@ -315,7 +317,7 @@ TEST(NodePath, OffMeshLinksLeadOnlyWhereTheyAreGiven) {
 
 TEST(NodePath, SteepGroundIsAvoidedForACost) {
   const Nodes nodes = make(net_scene(8), 0.25, 0.7);
-  NodePathFinder straight = finder(nodes, 4), level = finder(nodes, 4, 20);
+  path::NodeFinder straight = finder(nodes, 4), level = finder(nodes, 4, 20);
   const auto rise = [](const Path& path) {
     double sum = 0;
     for (size_t i = 1; i < path.points.size(); ++i) {
@@ -343,7 +345,7 @@ TEST(NodePath, SteepGroundIsAvoidedForACost) {
 
 TEST(NodePath, TheNearestPlaceIsFound) {
   const Nodes nodes = make(net_scene(6), 0.25, 1);
-  const NodePathFinder found = finder(nodes, 4);
+  const path::NodeFinder found = finder(nodes, 4);
   for (uint64_t n = 0; n < 100; ++n) {
     const NodePlace place = nodes.random_place(4, 2, n);
     const Vec3d near = place.feet + place.normal * 0.2;
@@ -362,7 +364,7 @@ TEST(NodePath, FindPlaceFindsWhatASearchThroughAllBlocksFinds) {
   for (const bool rocks : {false, true}) {
     const Nodes nodes = rocks ? make(builtin({.name = "landscape", .size = 64}), 0.5, 2)
                               : make(net_scene(6), 0.25, 1);
-    const NodePathFinder found = finder(nodes, 4);
+    const path::NodeFinder found = finder(nodes, 4);
     const auto mesh = graph::NodeMesh::make(nodes, 4, 1, context);
     ASSERT_TRUE(mesh);
     size_t places = 0;
@@ -397,9 +399,9 @@ TEST(NodePath, PathsAreTheSameForCopiesAndAnyThreads) {
   const Nodes nodes = make(builtin({.name = "landscape", .size = 100}), 0.5, 2);
   std::vector<double> first;
   for (const int32_t workers : {1, 2, 0}) {
-    auto made = NodePathFinder::create(nodes, {.avatar_class = 4, .workers = workers}, context);
+    auto made = path::NodeFinder::create(nodes, {.avatar_class = 4, .workers = workers}, context);
     ASSERT_TRUE(made);
-    NodePathFinder copy = *made;
+    path::NodeFinder copy = *made;
     std::vector<double> all;
     Path path;
     for (uint64_t n = 0; n < 20; ++n) {
@@ -416,7 +418,7 @@ TEST(NodePath, PathsAreTheSameForCopiesAndAnyThreads) {
 TEST(NodePath, BadInputIsRefusedAndNamed) {
   Context context;
   const auto message = [&](const Nodes& nodes, const PathConfig& config) {
-    const auto made = NodePathFinder::create(nodes, config, context);
+    const auto made = path::NodeFinder::create(nodes, config, context);
     EXPECT_FALSE(made);
     return made ? std::string() : made.error().message;
   };
@@ -426,7 +428,7 @@ TEST(NodePath, BadInputIsRefusedAndNamed) {
   EXPECT_EQ(message(nodes, {.slope_cost = -1}), "path: slope_cost must be 0 to 1000");
   EXPECT_EQ(message(nodes, {.workers = -1}), "path: workers must be 0 or more");
   EXPECT_EQ(message(nodes, {.speedup = PathSpeedup::kLabels}),
-            "path: only PathFinder has a speedup");
+            "path: a speedup is only for paths on the ground");
   context.cancel = true;
   EXPECT_EQ(message(nodes, {}), "path: cancelled");
 }

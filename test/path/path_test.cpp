@@ -11,6 +11,8 @@
 
 #include "baked.h"
 #include "core/random.h"
+#include "path/edits/live_finder.h"
+#include "path/mesh_finder.h"
 #include "throng/bake.h"
 #include "throng/world.h"
 #include "worlds.h"
@@ -25,9 +27,9 @@ World builtin(const BuiltinWorldConfig& config, double cell) {
   return bake(test::builtin(config), cell);
 }
 
-PathFinder finder(const World& world, int32_t avatar_class, bool labels = false) {
+path::MeshFinder finder(const World& world, int32_t avatar_class, bool labels = false) {
   Context context;
-  auto made = PathFinder::create(
+  auto made = path::MeshFinder::create(
       world,
       {.avatar_class = avatar_class, .speedup = labels ? PathSpeedup::kLabels : PathSpeedup::kNone},
       context);
@@ -162,7 +164,7 @@ TEST(Path, NoLegalPathIsShorterOnRandomFloors) {
   int reached = 0, bent = 0;
   for (uint64_t seed = 0; seed < 24; ++seed) {
     const World world = bake(boxes(seed), seed % 2 == 0 ? 0.15 : 0.1, {AvatarClass{}});
-    PathFinder paths = finder(world, 0), looked_up = finder(world, 0, true);
+    path::MeshFinder paths = finder(world, 0), looked_up = finder(world, 0, true);
     const Visibility oracle(world, 0);
     Path path, label_path;
     for (uint64_t n = 0; n < 12; ++n) {
@@ -211,9 +213,9 @@ void expect_as_graph(const World& world, uint64_t pairs) {
   const auto classes = static_cast<int32_t>(world.summary().classes.size());
   for (int32_t c = 0; c < classes; ++c) {
     SCOPED_TRACE(world.summary().classes[static_cast<size_t>(c)].name);
-    PathFinder paths = finder(world, c), looked_up = finder(world, c, true);
-    auto over_zones =
-        PathFinder::create(world, {.avatar_class = c, .speedup = PathSpeedup::kZones}, context);
+    path::MeshFinder paths = finder(world, c), looked_up = finder(world, c, true);
+    auto over_zones = path::MeshFinder::create(
+        world, {.avatar_class = c, .speedup = PathSpeedup::kZones}, context);
     ASSERT_TRUE(over_zones);
     EXPECT_EQ(looked_up.summary().corners == 0, looked_up.summary().labels == 0);
     Path path, label_path, zone_path;
@@ -289,10 +291,10 @@ TEST(Path, LeadsAroundTheEndsOfRisesThatAreTooHigh) {
     const auto graph = Graph::create(world, {}, context);
     ASSERT_TRUE(graph);
     for (const int32_t c : {0, 1}) {
-      PathFinder paths = finder(world, c), looked_up = finder(world, c, true);
-      auto over_zones =
-          PathFinder::create(world, {.avatar_class = c, .speedup = PathSpeedup::kZones}, context);
-      auto live = LiveGround::create(world, {.avatar_class = c});
+      path::MeshFinder paths = finder(world, c), looked_up = finder(world, c, true);
+      auto over_zones = path::MeshFinder::create(
+          world, {.avatar_class = c, .speedup = PathSpeedup::kZones}, context);
+      auto live = path::LiveFinder::create(world, {.avatar_class = c});
       ASSERT_TRUE(over_zones && live);
       Path path, live_path;
       for (uint64_t n = 0; n < 60; ++n) {
@@ -302,7 +304,7 @@ TEST(Path, LeadsAroundTheEndsOfRisesThatAreTooHigh) {
         if (!from || !to) break;
         const bool can = graph->component_at(c, from) == graph->component_at(c, to);
         ++(can ? together : apart);
-        for (PathFinder* finder : {&paths, &looked_up, &*over_zones}) {
+        for (path::MeshFinder* finder : {&paths, &looked_up, &*over_zones}) {
           finder->find(from, to, path);
           ASSERT_EQ(path.end, can ? PathEnd::kReached : PathEnd::kUnreachable);
           if (can) expect_walkable(world, c, from, to, path);
@@ -331,10 +333,10 @@ TEST(Path, PathsOverManyZonesAreHardlyLonger) {
   double sum = 0, shortest = 0;
   for (int32_t c = 0; c < classes; ++c) {
     SCOPED_TRACE(world->summary().classes[static_cast<size_t>(c)].name);
-    auto made =
-        PathFinder::create(*world, {.avatar_class = c, .speedup = PathSpeedup::kZones}, context);
+    auto made = path::MeshFinder::create(
+        *world, {.avatar_class = c, .speedup = PathSpeedup::kZones}, context);
     ASSERT_TRUE(made);
-    PathFinder over_zones = *std::move(made), exact = finder(*world, c);
+    path::MeshFinder over_zones = *std::move(made), exact = finder(*world, c);
     EXPECT_GT(over_zones.summary().entrances, 100u);
     Path path, best;
     for (uint64_t n = 0; n < 150; ++n) {
@@ -367,10 +369,10 @@ TEST(Path, StraightLinesOverManyZonesAreFound) {
   const WorldSummary summary = world.summary();
   const double cell = summary.cell;
   Context context;
-  auto made = PathFinder::create(world, {.speedup = PathSpeedup::kZones}, context);
+  auto made = path::MeshFinder::create(world, {.speedup = PathSpeedup::kZones}, context);
   ASSERT_TRUE(made);
-  PathFinder over_zones = *std::move(made), search = finder(world, 0),
-             labels = finder(world, 0, true);
+  path::MeshFinder over_zones = *std::move(made), search = finder(world, 0),
+                   labels = finder(world, 0, true);
   Path path;
   uint64_t straight = 0;
   for (uint64_t n = 0; n < 4000; ++n) {
@@ -394,7 +396,7 @@ TEST(Path, StraightLinesOverManyZonesAreFound) {
     if (from.end != MoveEnd::kArrived || to.end != MoveEnd::kArrived) continue;
     SCOPED_TRACE(testing::Message() << "pair " << n);
     const double length = plan_distance(from.place.position, to.place.position);
-    for (PathFinder* by : {&search, &labels, &over_zones}) {
+    for (path::MeshFinder* by : {&search, &labels, &over_zones}) {
       SCOPED_TRACE(by == &search ? "search" : by == &labels ? "labels" : "zones");
       by->find(from.place, to.place, path);
       ASSERT_EQ(path.end, PathEnd::kReached);
@@ -412,8 +414,8 @@ TEST(Path, ZonesAreTheSameForAnyNumberOfWorkers) {
   ASSERT_TRUE(world);
   std::vector<double> lengths;
   for (const int32_t workers : {1, 2, 7}) {
-    auto made =
-        PathFinder::create(*world, {.workers = workers, .speedup = PathSpeedup::kZones}, context);
+    auto made = path::MeshFinder::create(
+        *world, {.workers = workers, .speedup = PathSpeedup::kZones}, context);
     ASSERT_TRUE(made);
     Path path;
     for (uint64_t n = 0; n < 40; ++n) {
@@ -427,10 +429,10 @@ TEST(Path, ZonesAreTheSameForAnyNumberOfWorkers) {
 TEST(Path, StopsWhenCancelled) {
   const World world = builtin({.name = "garage", .size = 45, .levels = 3}, 0.2);
   Context context;
-  auto over_zones = PathFinder::create(world, {.speedup = PathSpeedup::kZones}, context);
-  auto live = LiveGround::create(world, {});
+  auto over_zones = path::MeshFinder::create(world, {.speedup = PathSpeedup::kZones}, context);
+  auto live = path::LiveFinder::create(world, {});
   ASSERT_TRUE(over_zones && live);
-  PathFinder search = finder(world, 0);
+  path::MeshFinder search = finder(world, 0);
   std::atomic<bool> stop{true}, go{false};
   uint64_t stopped = 0;
   Path whole, path;
@@ -461,7 +463,7 @@ TEST(Path, StopsWhenCancelled) {
 
 TEST(Path, SaysWhyThereIsNone) {
   const World world = bake(worlds::doorway(0.45), 0.1, {AvatarClass{}});
-  PathFinder paths = finder(world, 0);
+  path::MeshFinder paths = finder(world, 0);
   Path path;
   const Place left = world.find_place(0, {1, 0, 3}, 0.5);
   ASSERT_TRUE(left);
@@ -477,26 +479,26 @@ TEST(Path, SaysWhyThereIsNone) {
   paths.find({left.position, 4000000000u}, left, path);
   EXPECT_EQ(path.end, PathEnd::kNoPlace);
   const World maze = builtin({.name = "maze", .size = 30, .levels = 1}, 0.1);
-  PathFinder through = finder(maze, 0);
+  path::MeshFinder through = finder(maze, 0);
   const Place from = maze.random_place(0, 1, 1), to = maze.random_place(0, 1, 2);
   ASSERT_TRUE(from && to);
   through.find(from, to, path, 3);
   EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
   through.find(from, to, path);
   EXPECT_EQ(path.end, PathEnd::kReached);
-  PathFinder copy = through;
+  path::MeshFinder copy = through;
   Path again;
   copy.find(from, to, again);
   EXPECT_EQ(again.length, path.length);
-  PathFinder moved = std::move(copy);
+  path::MeshFinder moved = std::move(copy);
   copy = through;
   copy.find(from, to, again);
   EXPECT_EQ(again.length, path.length);
   Context context;
-  EXPECT_FALSE(PathFinder::create(world, {.avatar_class = 1}, context));
-  EXPECT_FALSE(PathFinder::create(World{}, {}, context));
+  EXPECT_FALSE(path::MeshFinder::create(world, {.avatar_class = 1}, context));
+  EXPECT_FALSE(path::MeshFinder::create(World{}, {}, context));
   context.cancel = true;
-  EXPECT_FALSE(PathFinder::create(world, {}, context));
+  EXPECT_FALSE(path::MeshFinder::create(world, {}, context));
 }
 
 }  // namespace

@@ -4,6 +4,10 @@
 #include <functional>
 #include <string>
 
+#include "path/edits/live_finder.h"
+#include "path/flight_finder.h"
+#include "path/mesh_finder.h"
+#include "path/node_finder.h"
 #include "support/counted_allocations.h"
 #include "throng/bake.h"
 #include "throng/path.h"
@@ -39,7 +43,7 @@ int run() {
   Path path;
   for (const PathConfig& config : {PathConfig{}, PathConfig{.speedup = PathSpeedup::kLabels},
                                    PathConfig{.speedup = PathSpeedup::kZones}}) {
-    PathFinder finder = need(PathFinder::create(world, config, context));
+    path::MeshFinder finder = need(path::MeshFinder::create(world, config, context));
     sum += late(config.speedup == PathSpeedup::kLabels  ? "labels"
                 : config.speedup == PathSpeedup::kZones ? "zones"
                                                         : "search",
@@ -48,20 +52,20 @@ int run() {
                   reached += path.end == PathEnd::kReached;
                 });
   }
-  LiveGround live = need(LiveGround::create(world, {}));
+  path::LiveFinder live = need(path::LiveFinder::create(world, {}));
   sum += late("live ground", [&](uint64_t n) {
     live.find(from(n), to(n), path);
     reached += path.end == PathEnd::kReached;
   });
   const Nodes nodes = need(Nodes::create(world, scene, {}, context));
-  NodePathFinder over_nodes = need(NodePathFinder::create(nodes, {}, context));
+  path::NodeFinder over_nodes = need(path::NodeFinder::create(nodes, {}, context));
   Path node_path;
   sum += late("nodes", [&](uint64_t n) {
     over_nodes.find(over_nodes.find_place(from(n).position, 1),
                     over_nodes.find_place(to(n).position, 1), node_path);
     reached += node_path.end == PathEnd::kReached;
   });
-  FlightFinder flight = need(FlightFinder::create(
+  path::FlightFinder flight = need(path::FlightFinder::create(
       world, {.avatar_class = static_cast<int32_t>(classes.size()) - 1}, context));
   Path flown;
   sum += late("flight", [&](uint64_t n) {

@@ -7,9 +7,11 @@
 
 #include "baked.h"
 #include "core/random.h"
+#include "path/edits/live_finder.h"
 #include "path/ground/mesh.h"
 #include "path/ground/portal_search.h"
 #include "path/ground/search.h"
+#include "path/mesh_finder.h"
 #include "throng/crowd.h"
 #include "throng/path.h"
 
@@ -41,9 +43,9 @@ const World& maze() {
   return world;
 }
 
-PathFinder finder() {
+path::MeshFinder finder() {
   Context context;
-  auto made = PathFinder::create(maze(), {}, context);
+  auto made = path::MeshFinder::create(maze(), {}, context);
   EXPECT_TRUE(made);
   return *std::move(made);
 }
@@ -62,7 +64,7 @@ path::Stop random_stop(const path::PathMesh& mesh, uint64_t n) {
 }
 
 TEST(SearchMemory, APathIsTheSameWhateverMemoryIsLeftAsLongAsItIsEnough) {
-  PathFinder paths = finder();
+  path::MeshFinder paths = finder();
   Path whole, path;
   uint64_t found = 0, budget_exhausted = 0;
   for (uint64_t n = 0; n < 60; ++n) {
@@ -91,8 +93,8 @@ TEST(SearchMemory, APathIsTheSameWhateverMemoryIsLeftAsLongAsItIsEnough) {
 }
 
 TEST(SearchMemory, WhatIsAllocatedKeepsToTheBudget) {
-  const PathFinder paths = finder();
-  const path::PathMesh& mesh = path::mesh_of(paths);
+  const path::MeshFinder paths = finder();
+  const path::PathMesh& mesh = paths.mesh();
   path::PathSearch search;
   path::PortalSearch portals;
   std::vector<uint32_t> corners;
@@ -120,7 +122,7 @@ TEST(SearchMemory, WhatIsAllocatedKeepsToTheBudget) {
 }
 
 TEST(SearchMemory, LiveGroundSaysThatItHadTooLittle) {
-  auto ground = LiveGround::create(maze(), {});
+  auto ground = path::LiveFinder::create(maze(), {});
   ASSERT_TRUE(ground);
   Path path, whole;
   uint64_t budget_exhausted = 0;

@@ -15,6 +15,8 @@
 #include "core/random.h"
 #include "path/air/air_view.h"
 #include "path/air/flight_space.h"
+#include "path/flight_finder.h"
+#include "path/mesh_finder.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
 #include "throng/path.h"
@@ -388,8 +390,8 @@ TEST_F(DamagedAir, DoesNotConcernTheGround) {
   EXPECT_TRUE(world->check_ground());
   EXPECT_FALSE(world->check_all());
   Context context;
-  EXPECT_TRUE(PathFinder::create(*world, {}, context));
-  EXPECT_EQ(FlightFinder::create(*world, {}, context).error().code, Errc::kBadFile);
+  EXPECT_TRUE(path::MeshFinder::create(*world, {}, context));
+  EXPECT_EQ(path::FlightFinder::create(*world, {}, context).error().code, Errc::kBadFile);
 }
 
 TEST_F(DamagedAir, FilesAreRefusedByName) {

@@ -6,6 +6,7 @@
 
 #include "core/access.h"
 #include "core/random.h"
+#include "path/mesh_finder.h"
 #include "throng/bake.h"
 #include "throng/papers.h"
 #include "throng/path.h"
@@ -99,7 +100,7 @@ bool use(const World& world) {
   EXPECT_TRUE(std::isfinite(sum));
   EXPECT_EQ(world.storeys().size(), world.level_tile_count());
   EXPECT_TRUE(Graph::create(world, {}, context));
-  auto finder = PathFinder::create(world, {}, context);
+  auto finder = path::MeshFinder::create(world, {}, context);
   EXPECT_TRUE(finder);
   Path path;
   for (uint64_t n = 0; n < 20; ++n) {

@@ -21,7 +21,7 @@ constexpr int kShorter = 8;         // attempts to make a move short enough
 
 }  // namespace
 
-ClimberGround::ClimberGround(const World& world, const Nodes& nodes, const NodePathFinder& finder,
+ClimberGround::ClimberGround(const World& world, const Nodes& nodes, const path::NodeFinder& finder,
                              int32_t avatar_class)
     : nodes_(&nodes), finder_(&finder), avatar_class_(avatar_class) {
   const world::WorldData& data = *data_of(world);
@@ -132,7 +132,7 @@ ClimberGround::Square ClimberGround::square_of(const ClimbStance& at, double s, 
   Square square = square_of(at.node1);
   if (!square.partial) return square;
   const auto known = finder_->square(at.node1 - 1, at.s, at.t, s, t);
-  const NodeSquare free = known ? *known : NodeSquare{at.s, at.t, at.s, at.t};
+  const path::NodeSquare free = known ? *known : path::NodeSquare{at.s, at.t, at.s, at.t};
   square.s0 = free.s0;
   square.t0 = free.t0;
   square.s1 = free.s1;

@@ -8,6 +8,7 @@
 #include "crowd/climb/climb.h"
 #include "crowd/fly/flight.h"
 #include "path/edits/solid.h"
+#include "path/node_finder.h"
 #include "throng/path.h"
 #include "throng/surface.h"
 #include "throng/world.h"
@@ -30,7 +31,7 @@ struct ClimbCylinder {
 class ClimberGround {
  public:
   /// [the finder is of this class, and outlives this]
-  ClimberGround(const World& world, const Nodes& nodes, const NodePathFinder& finder,
+  ClimberGround(const World& world, const Nodes& nodes, const path::NodeFinder& finder,
                 int32_t avatar_class);
 
   /// How the class stands on a node; none where it may not.
@@ -97,7 +98,7 @@ class ClimberGround {
   bool advance_through_air(const Climb& climb, Step& step, double& max_travel) const;
 
   const Nodes* nodes_;
-  const NodePathFinder* finder_;
+  const path::NodeFinder* finder_;
   int32_t avatar_class_;
   Vec3d origin_;
   double unit_ = 0;                         // [m]

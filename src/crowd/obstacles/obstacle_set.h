@@ -10,6 +10,7 @@
 
 #include "crowd/ground/crowd_ground.h"
 #include "crowd/walk/body.h"
+#include "path/edits/solid.h"
 #include "throng/crowd.h"
 #include "throng/path.h"
 #include "throng/world.h"
@@ -46,7 +47,7 @@ struct CrowdObstacle {
     std::vector<LevelCells> swept;  // that must be clear before it may become active or move on
     // Its ids in the class's live grounds and in its finders through the air and over nodes; synced
     // to `synced_version` of its place.
-    ChangeId change = 0, air_change = 0, node_change = 0;
+    path::ChangeId change = 0, air_change = 0, node_change = 0;
     bool is_synced = false;
     uint32_t synced_version = 0;
   };

@@ -15,10 +15,6 @@
 #include "world/zone_data.h"
 
 /// Where one class may fly, as boxes: what flight search runs on.
-namespace throng {
-class FlightFinder;
-}
-
 namespace throng::path {
 
 inline constexpr uint32_t kNoBox = UINT32_MAX;
@@ -228,8 +224,5 @@ bool air_sees(const Air& air, AirPoint from, AirPoint to) {
     }
   }
 }
-
-/// The legal air of a finder as it was baked. It lives as long as the finder or a copy of it.
-const FlightSpace& space_of(const FlightFinder& finder);
 
 }  // namespace throng::path

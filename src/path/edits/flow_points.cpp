@@ -69,9 +69,9 @@ class Outwards {
 
 bool FlowPoints::before(const Point& a, const Point& b) { return lies_before(a.stop, b.stop); }
 
-std::optional<FlowPoints> FlowPoints::make(LiveGround& of, std::span<const Place> goals,
+std::optional<FlowPoints> FlowPoints::make(LiveFinder& of, std::span<const Place> goals,
                                            double max_distance, Context& context) {
-  auto& ground = *Access::state(of);
+  auto& ground = of.state();
   max_distance /= ground.mesh.world().summary.cell;
   Outwards search(ground.mesh, max_distance);
   for (const Place& goal : goals) {
@@ -126,15 +126,15 @@ LiveStop FlowPoints::across(LiveMesh& mesh, const Point& point) const {
   return other;
 }
 
-double FlowPoints::distance(LiveGround& of, const Place& place) const {
-  auto& ground = *Access::state(of);
+double FlowPoints::distance(LiveFinder& of, const Place& place) const {
+  auto& ground = of.state();
   LiveStop stop;
   if (!ground.locate(place, stop)) return kNever;
   return leave_by(ground.mesh, stop).second * ground.mesh.world().summary.cell;
 }
 
-Place FlowPoints::next(LiveGround& of, const Place& place) const {
-  auto& ground = *Access::state(of);
+Place FlowPoints::next(LiveFinder& of, const Place& place) const {
+  auto& ground = of.state();
   LiveStop from;
   if (!ground.locate(place, from)) return {};
   const auto [first, total] = leave_by(ground.mesh, from);
@@ -159,8 +159,8 @@ Place FlowPoints::next(LiveGround& of, const Place& place) const {
   return world::place_at(ground.mesh.world(), ground.mesh.level(to.level)->ground, to.at);
 }
 
-void FlowPoints::find_path(LiveGround& of, const Place& place, Path& path) const {
-  auto& ground = *Access::state(of);
+void FlowPoints::find_path(LiveFinder& of, const Place& place, Path& path) const {
+  auto& ground = of.state();
   reset(path);
   LiveStop stop;
   if (!ground.locate(place, stop)) return;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "path/edits/live_finder.h"
 #include "path/edits/live_search.h"
 #include "throng/base.h"
 #include "throng/path.h"
@@ -23,15 +24,15 @@ class FlowPoints {
 
   /// Searches outwards from all goals that are places of the class, up to a cost of `max_distance`
   /// metres. None if it was cancelled; without any points if no goal is a place.
-  static std::optional<FlowPoints> make(LiveGround& ground, std::span<const Place> goals,
+  static std::optional<FlowPoints> make(LiveFinder& ground, std::span<const Place> goals,
                                         double max_distance, Context& context);
   [[nodiscard]] bool empty() const { return points_.empty(); }
 
   // `ground` is that of which they were made, or a copy of it, here and below.
   /// As FlowField::distance, next, find_path.
-  [[nodiscard]] double distance(LiveGround& ground, const Place& place) const;
-  [[nodiscard]] Place next(LiveGround& ground, const Place& place) const;
-  void find_path(LiveGround& ground, const Place& place, Path& path) const;
+  [[nodiscard]] double distance(LiveFinder& ground, const Place& place) const;
+  [[nodiscard]] Place next(LiveFinder& ground, const Place& place) const;
+  void find_path(LiveFinder& ground, const Place& place, Path& path) const;
 
   [[nodiscard]] size_t size() const { return points_.size(); }
   [[nodiscard]] uint64_t bytes() const { return points_.size() * sizeof(Point); }

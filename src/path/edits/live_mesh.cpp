@@ -51,6 +51,7 @@ LiveMesh::LiveMesh(const LiveMesh& other)
       area_cost_(other.area_cost_),
       slope_factor_(other.slope_factor_),
       min_factor_(other.min_factor_),
+      min_link_factor_(other.min_link_factor_),
       plain_(other.plain_),
       levels_(other.levels_.size()),  // rebuilt when first used
       changes_(other.changes_),
@@ -91,6 +92,7 @@ bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
     change.active = active;
     for (const int64_t tile : change.tiles) forget(tile);
     for (const LevelLinkEnd& link : change.links) switch_link(link, active);
+    if (!change.links.empty()) find_min_link_factor();
   }
   if (remove) {
     for (const int64_t tile : change.tiles) std::erase(changes_of_tile_[tile], id);
@@ -104,7 +106,18 @@ bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
 void LiveMesh::add_off_mesh_link(uint32_t level, const OffMeshLinkEnd& off_mesh_link) {
   changes_[off_mesh_link.change - 1].links.push_back({level, off_mesh_link});
   off_mesh_links_[level].push_back(off_mesh_link);
+  find_min_link_factor();
   ++version_;
+}
+
+void LiveMesh::find_min_link_factor() {
+  min_link_factor_ = 1;
+  for (const auto& [level, links] : off_mesh_links_) {
+    for (const OffMeshLinkEnd& link : links) {
+      const double length = distance_of(link.from, link.to);
+      if (link.cost < length) min_link_factor_ = std::min(min_link_factor_, link.cost / length);
+    }
+  }
 }
 
 const std::vector<LiveMesh::OffMeshLinkEnd>& LiveMesh::links_from(uint32_t level) const {

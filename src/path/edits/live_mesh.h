@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <unordered_map>
@@ -14,7 +16,7 @@
 #include "throng/path.h"
 #include "world/ground.h"
 
-/// The ground of a LiveGround, level by level, made on first use.
+/// The ground of a LiveFinder, level by level, made on first use.
 namespace throng::path {
 
 inline constexpr int32_t kSlopeClasses = 6;
@@ -49,6 +51,11 @@ struct LiveLevel {
   [[nodiscard]] uint16_t rect_at(int32_t x, int32_t z) const;  // cell of the tile, legal
 };
 
+inline double distance_of(world::GroundPoint a, world::GroundPoint b) {  // [cells]
+  const auto dx = static_cast<double>(a.x - b.x), dz = static_cast<double>(a.z - b.z);
+  return std::sqrt(dx * dx + dz * dz) * (1.0 / world::kUnitsPerCell);
+}
+
 /// Levels and the changes made to them. Copies share nothing.
 class LiveMesh {
  public:
@@ -69,7 +76,8 @@ class LiveMesh {
     return area_cost_[rect.area] * slope_factor_[rect.slope];
   }
   [[nodiscard]] bool is_plain() const { return plain_; }  // a metre costs 1 everywhere
-  [[nodiscard]] double min_factor() const { return min_factor_; }
+  /// No path costs less than its length in the plane times this.
+  [[nodiscard]] double min_factor() const { return std::min(min_factor_, min_link_factor_); }
   void set_area_cost(uint8_t kind, double cost);
 
   /// An off-mesh link in one direction, as long as the change is active.
@@ -127,6 +135,7 @@ class LiveMesh {
   void find_portals(LiveLevel& level);
   void forget(int64_t tile);
   void switch_link(const LevelLinkEnd& link, bool active);
+  void find_min_link_factor();
   [[nodiscard]] std::array<uint8_t, 4096> kinds_of(const LiveLevel& level) const;
   [[nodiscard]] std::array<uint8_t, 4096> slopes_of(const LiveLevel& level) const;
 
@@ -136,6 +145,7 @@ class LiveMesh {
   std::array<double, 64> area_cost_{};
   std::array<double, kSlopeClasses> slope_factor_{};
   double min_factor_ = 1;
+  double min_link_factor_ = 1;  // of active off-mesh links that cost less than their length
   bool plain_ = true;
   uint64_t version_ = 0;
   std::vector<std::unique_ptr<LiveLevel>> levels_;  // of the world; null: not made yet

@@ -116,11 +116,6 @@ class LiveSearch {
   uint64_t expanded_ = 0;
 };
 
-inline double distance_of(world::GroundPoint a, world::GroundPoint b) {  // [cells]
-  const auto dx = static_cast<double>(a.x - b.x), dz = static_cast<double>(a.z - b.z);
-  return std::sqrt(dx * dx + dz * dz) * (1.0 / world::kUnitsPerCell);
-}
-
 template <class Visit>
 void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit) {
   constexpr int32_t kSpacing = 8;  // cells

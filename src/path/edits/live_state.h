@@ -5,16 +5,17 @@
 #include <utility>
 #include <vector>
 
+#include "path/edits/live_finder.h"
 #include "path/edits/live_mesh.h"
 #include "path/edits/live_search.h"
 
-/// What a LiveGround holds.
-namespace throng {
+/// What a LiveFinder holds.
+namespace throng::path {
 
-struct LiveGround::State {
-  explicit State(path::LiveMesh of) : mesh(std::move(of)) {}
+struct LiveFinder::State {
+  explicit State(LiveMesh of) : mesh(std::move(of)) {}
 
-  bool locate(const Place& place, path::LiveStop& stop);
+  bool locate(const Place& place, LiveStop& stop);
   /// False: the search has more to expand.
   bool advance(uint64_t max_nodes, uint64_t max_bytes, Path& path);
   /// Of `stops`.
@@ -22,14 +23,14 @@ struct LiveGround::State {
   /// What a straight line from its end to the goal meets first.
   Blocker blocker();
 
-  path::LiveMesh mesh;
-  path::LiveSearch search;
-  path::LiveStringPuller straight;
+  LiveMesh mesh;
+  LiveSearch search;
+  LiveStringPuller straight;
   Place from_place, to_place;
-  path::LiveStop from, to;
+  LiveStop from, to;
   uint64_t version = 0;
   bool searching = false;
-  std::vector<path::LiveStop> stops;
+  std::vector<LiveStop> stops;
 };
 
-}  // namespace throng
+}  // namespace throng::path

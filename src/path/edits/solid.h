@@ -14,6 +14,9 @@
 /// A solid that is placed in a world at run time, and whether a body touches it.
 namespace throng::path {
 
+/// Names a change of one finder; 0 names none.
+using ChangeId = uint32_t;
+
 struct Solid {
   Prism prism;  ///< Of triangles: the box around them.
   std::vector<std::array<Vec3d, 3>> triangles;

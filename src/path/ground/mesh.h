@@ -11,10 +11,6 @@
 
 /// The walkable ground of one class as rectangles of cells joined by portals: what path search runs
 /// on.
-namespace throng {
-class PathFinder;
-}
-
 namespace throng::path {
 
 inline constexpr uint32_t kNoRect = UINT32_MAX;
@@ -106,8 +102,5 @@ uint32_t cut_into_blocks(PathMesh& mesh, int32_t side);
 /// workers.
 Result<PathMesh> build_mesh(const world::WorldData& world, int32_t avatar_class, int32_t workers,
                             Context& context);
-
-/// The rectangles and portals of a finder. They live as long as it or a copy of it.
-const PathMesh& mesh_of(const PathFinder& finder);
 
 }  // namespace throng::path

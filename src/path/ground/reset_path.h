@@ -9,14 +9,14 @@
 /// What finders have in common: what they do to a path before they fill it, and what they refuse.
 namespace throng::path {
 
-/// Refuses settings that only PathFinder has, and a slope cost where there is none. [kBadConfig]
+/// Refuses a speedup, which only the ground has, and a slope cost where there is none. [kBadConfig]
 inline Result<void> refuse_settings(const PathConfig& config, const std::string& finder,
                                     bool has_slope_cost) {
   if (config.speedup != PathSpeedup::kNone) {
-    return Error{Errc::kBadConfig, finder + ": only PathFinder has a speedup"};
+    return Error{Errc::kBadConfig, finder + ": a speedup is only for paths on the ground"};
   }
   if (!has_slope_cost && config.slope_cost != 0) {
-    return Error{Errc::kBadConfig, finder + ": there is no slope_cost"};
+    return Error{Errc::kBadConfig, finder + ": there is no slope_cost in the air"};
   }
   return {};
 }

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
+#include "path/node_finder.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -19,12 +21,11 @@
 #include "path/surface/node_search.h"
 #include "path/surface/node_string_puller.h"
 #include "path/surface/node_view.h"
-#include "throng/path.h"
 #include "world/place.h"
 
 // Finds paths over nodes: places the ends, searches (blocks when near, the overlay when far), pulls
 // the path taut, and reports what blocks it.
-namespace throng {
+namespace throng::path {
 namespace {
 
 constexpr double kEdgeStep = 1e-4;  // of a patch's parameters, for derivatives
@@ -38,7 +39,7 @@ constexpr uint64_t kNearCrossings = 2048;
 
 }  // namespace
 
-struct NodePathFinder::Shared {
+struct NodeFinder::Shared {
   Shared(graph::NodeMesh made, const PathConfig& config)
       : mesh(std::move(made)),
         slope_cost(config.slope_cost),
@@ -52,23 +53,23 @@ struct NodePathFinder::Shared {
       longest_hole_link = std::max(longest_hole_link, length(b - a));
     }
     if (config.overlay && mesh.portals().size() >= kManyCrossings) {
-      const path::NodeView baked(mesh);
-      overlay = path::Overlay(mesh, path::PieceCost(baked, slope_cost), config.workers);
+      const NodeView baked(mesh);
+      overlay = Overlay(mesh, PieceCost(baked, slope_cost), config.workers);
     }
   }
   Shared(const Shared&) = delete;  // `squares` may point to `mesh`
   Shared& operator=(const Shared&) = delete;
   graph::NodeMesh mesh;
   double slope_cost;
-  path::BlockSquares squares;
-  path::NodeParts parts;
-  path::Overlay overlay;
+  BlockSquares squares;
+  NodeParts parts;
+  Overlay overlay;
   double longest_hole_link = 0;  // [m]
   double seconds = 0;
 };
 
-struct NodePathFinder::Scratch {
-  Scratch(const Shared& of, path::NodeChanges made)
+struct NodeFinder::Scratch {
+  Scratch(const Shared& of, NodeChanges made)
       : shared(of),
         changes(std::move(made)),
         view(of.mesh, &changes),
@@ -77,24 +78,24 @@ struct NodePathFinder::Scratch {
         far_search(view, cost, of.overlay),
         pull(view, cost) {}
   explicit Scratch(const Shared& of)
-      : Scratch(of, path::NodeChanges(of.mesh, of.squares, of.longest_hole_link)) {}
+      : Scratch(of, NodeChanges(of.mesh, of.squares, of.longest_hole_link)) {}
   Scratch(const Scratch&) = delete;  // its parts point to each other
   Scratch& operator=(const Scratch&) = delete;
 
   const Shared& shared;
-  path::NodeChanges changes;
+  NodeChanges changes;
   uint64_t version = 0;  // of the changes that searches know
-  path::NodeView view;
-  path::PieceCost cost;
-  path::NodeSearch search;
-  path::OverlaySearch far_search;
-  path::NodeParts::Reached reached;
-  path::NodeIsland islands;
-  path::NodeStringPuller pull;
-  std::vector<path::Crossing> crossings;
-  std::optional<path::BlockPoint>
+  NodeView view;
+  PieceCost cost;
+  NodeSearch search;
+  OverlaySearch far_search;
+  NodeParts::Reached reached;
+  NodeIsland islands;
+  NodeStringPuller pull;
+  std::vector<Crossing> crossings;
+  std::optional<BlockPoint>
       nearest;  // where `crossings` ends, if not where its last crossing leads to
-  std::vector<path::PulledCrossing> pulled;
+  std::vector<PulledCrossing> pulled;
 
   void update() {
     if (version == changes.version()) return;
@@ -102,12 +103,12 @@ struct NodePathFinder::Scratch {
     changes.update();
     far_search.update();
   }
-  PathEnd find(const path::BlockPoint& from, const path::BlockPoint& to, const SearchBudget& budget,
+  PathEnd find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
                Path& path);
-  PathEnd find_all(const path::BlockPoint& from, const path::BlockPoint& to,
-                   const SearchBudget& budget, Path& path);
-  PathEnd find_nearest(const path::BlockPoint& from, const path::BlockPoint& to,
-                       const SearchBudget& budget, Path& path);
+  PathEnd find_all(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
+                   Path& path);
+  PathEnd find_nearest(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
+                       Path& path);
 };
 
 namespace {
@@ -119,15 +120,15 @@ SearchBudget what_is_left(const SearchBudget& budget, const Path& path) {
 }  // namespace
 
 // Over crossings nearby if the ends are near, else over the overlay; if that finds none, over all.
-PathEnd NodePathFinder::Scratch::find(const path::BlockPoint& from, const path::BlockPoint& to,
-                                      const SearchBudget& budget, Path& path) {
+PathEnd NodeFinder::Scratch::find(const BlockPoint& from, const BlockPoint& to,
+                                  const SearchBudget& budget, Path& path) {
   const auto take = [&](auto&& searched, PathEnd end) {
     path.nodes += searched.expanded();
     path.searched_cost = searched.cost();
     return end;
   };
   if (!shared.overlay.empty()) {
-    const double far = length(path::position(view, to) - path::position(view, from));
+    const double far = length(position(view, to) - position(view, from));
     if (far <= kNearSides * shared.overlay.overlay_levels().front().side) {
       SearchBudget near = what_is_left(budget, path);
       near.max_nodes = std::min(near.max_nodes, kNearCrossings);
@@ -143,8 +144,8 @@ PathEnd NodePathFinder::Scratch::find(const path::BlockPoint& from, const path::
 }
 
 // Of all crossings; where none leads there, to the one that comes nearest.
-PathEnd NodePathFinder::Scratch::find_all(const path::BlockPoint& from, const path::BlockPoint& to,
-                                          const SearchBudget& budget, Path& path) {
+PathEnd NodeFinder::Scratch::find_all(const BlockPoint& from, const BlockPoint& to,
+                                      const SearchBudget& budget, Path& path) {
   const PathEnd end = search.find(from, to, what_is_left(budget, path), crossings);
   path.nodes += search.expanded();
   path.searched_cost = search.cost();
@@ -153,17 +154,16 @@ PathEnd NodePathFinder::Scratch::find_all(const path::BlockPoint& from, const pa
 
 // To the reachable place that comes nearest to one that is not. A place that seems near may itself
 // be cut off.
-PathEnd NodePathFinder::Scratch::find_nearest(const path::BlockPoint& from,
-                                              const path::BlockPoint& to,
-                                              const SearchBudget& budget, Path& path) {
+PathEnd NodeFinder::Scratch::find_nearest(const BlockPoint& from, const BlockPoint& to,
+                                          const SearchBudget& budget, Path& path) {
   constexpr int kMaxPockets = 16;
-  const Vec3d goal = path::position(view, to);
-  if (islands.close(view, from.block, to.block, path::NodeIsland::Direction::kOut))
+  const Vec3d goal = position(view, to);
+  if (islands.close(view, from.block, to.block, NodeIsland::Direction::kOut))
     return find_all(from, to, budget, path);
   for (int i = 0; i < kMaxPockets; ++i) {
     const auto is_cut_off = [&](uint32_t block) { return islands.holds(block); };
-    const path::BlockPoint last = shared.parts.nearest(view, from, goal, reached, is_cut_off);
-    if (islands.close(view, last.block, from.block, path::NodeIsland::Direction::kIn)) continue;
+    const BlockPoint last = shared.parts.nearest(view, from, goal, reached, is_cut_off);
+    if (islands.close(view, last.block, from.block, NodeIsland::Direction::kIn)) continue;
     const PathEnd end = find(from, last, budget, path);
     if (end == PathEnd::kReached) nearest = last;
     if (end != PathEnd::kUnreachable) return end;
@@ -177,16 +177,16 @@ namespace {
 // Builds the path that is returned: points along the surface, links, corridor.
 class PathBuilder {
  public:
-  PathBuilder(const path::NodeView& view, const path::PieceCost& cost, double spacing, Path& path)
+  PathBuilder(const NodeView& view, const PieceCost& cost, double spacing, Path& path)
       : view_(view), cost_(cost), spacing_(spacing), path_(path) {}
 
-  void begin(const path::BlockPoint& at) {
+  void begin(const BlockPoint& at) {
     add(at, SegmentKind::kWalk);
     last_ = at;
     path_.corridor.push_back(node_of(at));
   }
 
-  void go_on(const path::BlockPoint& to) {
+  void go_on(const BlockPoint& to) {
     // Where a path leads through the corner of a block it covers no distance, and adds no point.
     if (to.s == last_.s && to.t == last_.t) {
       last_ = to;
@@ -215,7 +215,7 @@ class PathBuilder {
     path_.segments.push_back(SegmentKind::kWalk);
   }
 
-  void cross(const path::PulledCrossing& crossing) {
+  void cross(const PulledCrossing& crossing) {
     const graph::NodePortal portal = view_.portal(crossing.crossing.portal);
     path_.cost += graph::portal_length(portal, crossing.out_at, crossing.in_at);
     const bool same_patch =
@@ -235,9 +235,7 @@ class PathBuilder {
   }
 
  private:
-  [[nodiscard]] uint32_t node_of(const path::BlockPoint& at) const {
-    return view_.block(at.block).node;
-  }
+  [[nodiscard]] uint32_t node_of(const BlockPoint& at) const { return view_.block(at.block).node; }
 
   // Level with the last point, above where the body drops to.
   void add_over(Vec3d to) {
@@ -246,7 +244,7 @@ class PathBuilder {
     put({.feet = feet, .axis = up, .normal = up}, SegmentKind::kCross);
   }
 
-  void add(const path::BlockPoint& at, SegmentKind kind) {
+  void add(const BlockPoint& at, SegmentKind kind) {
     const graph::NodeSurface& surface = view_.surface(at.block);
     const auto& classes = data_of(data_of(view_.mesh().nodes())->world)->summary.classes;
     const bool climbs = classes[static_cast<size_t>(view_.mesh().avatar_class())].climb_slope > 0;
@@ -261,11 +259,11 @@ class PathBuilder {
     path_.node_places.push_back(place);
   }
 
-  const path::NodeView& view_;
-  const path::PieceCost& cost_;
+  const NodeView& view_;
+  const PieceCost& cost_;
   double spacing_;
   Path& path_;
-  path::BlockPoint last_;
+  BlockPoint last_;
 };
 
 // A block of a node in or on whose border a point lies, and that is accepted; or kNoNode.
@@ -285,7 +283,7 @@ uint32_t block_around(const graph::NodeMesh& mesh, uint32_t node, double s, doub
 }
 
 // What blocks the class from a block towards a position.
-Blocker blocker_towards(const path::NodeView& view, const path::BlockPoint& from, Vec3d goal) {
+Blocker blocker_towards(const NodeView& view, const BlockPoint& from, Vec3d goal) {
   const graph::NodeMesh& mesh = view.mesh();
   const graph::NodeBlock& block = view.block(from.block);
   const graph::NodeSurface& surface = view.surface(from.block);
@@ -323,7 +321,7 @@ Blocker blocker_towards(const path::NodeView& view, const path::BlockPoint& from
     const world::WalkStop stop =
         world::walk_far(ground, level, world::to_ground(world, feet.x, feet.z),
                         world::to_ground(world, goal.x, goal.z), world::step_mm(avatar));
-    return stop.arrived ? Blocker::kGap : path::blocker_beyond(ground, level, stop);
+    return stop.arrived ? Blocker::kGap : blocker_beyond(ground, level, stop);
   }
   if (outside) return Blocker::kGap;
   const double limit = avatar.climb_slope > 0 ? avatar.climb_slope : avatar.max_slope;
@@ -354,12 +352,11 @@ Blocker blocker_towards(const path::NodeView& view, const path::BlockPoint& from
 // Calls visit(block, s, t) for the parts and blocks of level tiles within `radius`: with the point
 // that lies nearest in the plane.
 template <class Visit>
-void for_each_level_part(const path::NodeView& view, Vec3d position, double radius, Visit visit) {
+void for_each_level_part(const NodeView& view, Vec3d position, double radius, Visit visit) {
   const graph::NodeMesh& mesh = view.mesh();
   const world::WorldData& world = *data_of(data_of(mesh.nodes())->world);
   const std::array<double, 2> plan{position.x, position.z};
-  const path::SquareRange tiles =
-      path::tiles_near(world, std::span(&plan, 1), std::min(radius, 1e6));
+  const SquareRange tiles = tiles_near(world, std::span(&plan, 1), std::min(radius, 1e6));
   const double tile = world.summary.cell * kTileCells;
   const auto consider = [&](uint32_t block, double s, double t) {
     const double side = view.block(block).side(), low_s = view.block(block).s * side,
@@ -393,21 +390,21 @@ void for_each_level_part(const path::NodeView& view, Vec3d position, double radi
 // The nearest place to a goal, of a crossing into a block and all places of that block; and if that
 // is near, of all blocks that are reached.
 template <class IsReached>
-path::BlockPoint nearest_place(const path::NodeView& view, const path::BlockSquares& squares,
-                               const path::BlockPoint& crossing, Vec3d goal, IsReached is_reached) {
+BlockPoint nearest_place(const NodeView& view, const BlockSquares& squares,
+                         const BlockPoint& crossing, Vec3d goal, IsReached is_reached) {
   constexpr double kNear = 25;  // There are too many blocks around a farther goal. [m]
-  path::BlockPoint best = crossing;
-  double least = length(goal - path::position(view, best));
+  BlockPoint best = crossing;
+  double least = length(goal - position(view, best));
   const auto consider = [&](uint32_t block, double s, double t) {
-    const path::BlockPoint at{block, s, t};
-    const double far = length(goal - path::position(view, at));
+    const BlockPoint at{block, s, t};
+    const double far = length(goal - position(view, at));
     if (far < least) {
       least = far;
       best = at;
     }
   };
   const auto consider_nearest = [&](uint32_t block) {
-    const auto [s, t] = path::nearest_in(view.surface(block), view.block(block), goal);
+    const auto [s, t] = nearest_in(view.surface(block), view.block(block), goal);
     consider(block, s, t);
   };
   consider_nearest(crossing.block);
@@ -423,20 +420,20 @@ path::BlockPoint nearest_place(const path::NodeView& view, const path::BlockSqua
 
 }  // namespace
 
-NodePathFinder::NodePathFinder(std::shared_ptr<const Shared> shared)
+NodeFinder::NodeFinder(std::shared_ptr<const Shared> shared)
     : state_(std::move(shared)), scratch_(std::make_unique<Scratch>(*state_)) {}
-NodePathFinder::NodePathFinder(const NodePathFinder& other)
+NodeFinder::NodeFinder(const NodeFinder& other)
     : state_(other.state_), scratch_(std::make_unique<Scratch>(*state_, other.scratch_->changes)) {}
-NodePathFinder& NodePathFinder::operator=(const NodePathFinder& other) {
-  if (this != &other) *this = NodePathFinder(other);
+NodeFinder& NodeFinder::operator=(const NodeFinder& other) {
+  if (this != &other) *this = NodeFinder(other);
   return *this;
 }
-NodePathFinder::NodePathFinder(NodePathFinder&&) noexcept = default;
-NodePathFinder& NodePathFinder::operator=(NodePathFinder&&) noexcept = default;
-NodePathFinder::~NodePathFinder() = default;
+NodeFinder::NodeFinder(NodeFinder&&) noexcept = default;
+NodeFinder& NodeFinder::operator=(NodeFinder&&) noexcept = default;
+NodeFinder::~NodeFinder() = default;
 
-Result<NodePathFinder> NodePathFinder::create(const Nodes& nodes, const PathConfig& config,
-                                              Context& context) {
+Result<NodeFinder> NodeFinder::create(const Nodes& nodes, const PathConfig& config,
+                                      Context& context) {
   const auto start = std::chrono::steady_clock::now();
   if (data_of(nodes) == nullptr) return Error{Errc::kBadInput, "path: there are no nodes"};
   const size_t classes = data_of(data_of(nodes)->world)->summary.classes.size();
@@ -449,15 +446,15 @@ Result<NodePathFinder> NodePathFinder::create(const Nodes& nodes, const PathConf
     return Error{Errc::kBadConfig, "path: slope_cost must be 0 to 1000"};
   }
   if (config.workers < 0) return Error{Errc::kBadConfig, "path: workers must be 0 or more"};
-  if (auto ok = path::refuse_settings(config, "path", true); !ok) return ok.error();
+  if (auto ok = refuse_settings(config, "path", true); !ok) return ok.error();
   auto mesh = graph::NodeMesh::make(nodes, config.avatar_class, config.workers, context);
   if (!mesh) return mesh.error();
   auto shared = std::make_shared<Shared>(std::move(*mesh), config);
   shared->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return NodePathFinder(std::move(shared));
+  return NodeFinder(std::move(shared));
 }
 
-NodePathSummary NodePathFinder::summary() const {
+PathSummary NodeFinder::summary() const {
   const graph::NodeMesh& mesh = state_->mesh;
   return {.blocks = mesh.blocks().size(),
           .crossings = mesh.portals().size(),
@@ -466,8 +463,8 @@ NodePathSummary NodePathFinder::summary() const {
           .seconds = state_->seconds};
 }
 
-std::optional<NodeSquare> NodePathFinder::square(uint32_t node, double from_s, double from_t,
-                                                 double to_s, double to_t) const {
+std::optional<NodeSquare> NodeFinder::square(uint32_t node, double from_s, double from_t,
+                                             double to_s, double to_t) const {
   const graph::NodeMesh& mesh = state_->mesh;
   THRONG_ASSERT(node < mesh.nodes().node_count());
   const auto square_of = [&](const graph::NodeBlock& b) {
@@ -488,12 +485,12 @@ std::optional<NodeSquare> NodePathFinder::square(uint32_t node, double from_s, d
   return square_of(mesh.blocks()[found]);
 }
 
-NodePlace NodePathFinder::find_place(Vec3d position, double search_radius) const {
+NodePlace NodeFinder::find_place(Vec3d position, double search_radius) const {
   const graph::NodeMesh& mesh = state_->mesh;
   if (!std::isfinite(position.x + position.y + position.z) || !(search_radius >= 0)) return {};
   scratch_->update();
-  const path::NodeChanges& changes = scratch_->changes;
-  const path::NodeView& view = scratch_->view;
+  const NodeChanges& changes = scratch_->changes;
+  const NodeView& view = scratch_->view;
   double nearest = search_radius;
   uint64_t best_rank = 0;  // Of places as near as each other it is the first: level ground, then
                            // blocks in their order.
@@ -508,7 +505,7 @@ NodePlace NodePathFinder::find_place(Vec3d position, double search_radius) const
     best = place;
   };
   const auto consider_curved = [&](uint32_t block) {
-    const auto [s, t] = path::nearest_in(mesh.surface(block), view.block(block), position);
+    const auto [s, t] = nearest_in(mesh.surface(block), view.block(block), position);
     consider(block, s, t, uint64_t{block} + 1);
   };
   const World& world = data_of(mesh.nodes())->world;
@@ -536,40 +533,42 @@ NodePlace NodePathFinder::find_place(Vec3d position, double search_radius) const
     const auto parts = changes.parts_of(block);
     if (!parts) return consider_curved(block);
     for (uint32_t p = parts->first; p < parts->second; ++p) {
-      const auto [s, t] = path::nearest_in(view.surface(p), view.block(p), position);
+      const auto [s, t] = nearest_in(view.surface(p), view.block(p), position);
       consider(p, s, t, uint64_t{p} + 1);
     }
   });
   return best;
 }
 
-Result<ChangeId> NodePathFinder::add_obstacle(const Prism& prism) {
-  auto solid = path::make_solid(prism);
+ChangeId NodeFinder::add_obstacle(const Solid& solid) { return scratch_->changes.add(solid); }
+
+Result<ChangeId> NodeFinder::add_obstacle(const Prism& prism) {
+  const auto solid = make_solid(prism);
   if (!solid) return solid.error();
-  return scratch_->changes.add(*solid);
+  return add_obstacle(*solid);
 }
 
-Result<ChangeId> NodePathFinder::add_obstacle(std::span<const Vec3d> corners,
-                                              std::span<const std::array<uint32_t, 3>> triangles) {
-  auto solid = path::make_solid(corners, triangles);
+Result<ChangeId> NodeFinder::add_obstacle(std::span<const Vec3d> corners,
+                                          std::span<const std::array<uint32_t, 3>> triangles) {
+  const auto solid = make_solid(corners, triangles);
   if (!solid) return solid.error();
-  return scratch_->changes.add(*solid);
+  return add_obstacle(*solid);
 }
 
-bool NodePathFinder::remove(ChangeId change) {
+bool NodeFinder::remove(ChangeId change) {
   return scratch_->changes.set_active(change, false, true);
 }
-bool NodePathFinder::set_active(ChangeId change, bool active) {
+bool NodeFinder::set_active(ChangeId change, bool active) {
   return scratch_->changes.set_active(change, active, false);
 }
 
-void NodePathFinder::find(const NodePlace& from, const NodePlace& to, Path& path, double spacing,
-                          const SearchBudget& budget) {
+void NodeFinder::find(const NodePlace& from, const NodePlace& to, Path& path, double spacing,
+                      const SearchBudget& budget) {
   THRONG_ASSERT(spacing > 0);
   const graph::NodeMesh& mesh = state_->mesh;
-  path::reset(path);
+  reset(path);
   const auto block_of = [&](const NodePlace& place) {
-    path::BlockPoint at{graph::kNoNode, place.s, place.t};
+    BlockPoint at{graph::kNoNode, place.s, place.t};
     if (!place || place.node1 > mesh.nodes().node_count()) return at;
     if (!(place.s >= 0 && place.s <= 1 && place.t >= 0 && place.t <= 1)) return at;
     at.block = mesh.block_at(mesh.patch_of_node(place.node1 - 1), place.s, place.t);
@@ -594,20 +593,20 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, Path& path
   };
   Scratch& scratch = *scratch_;
   scratch.update();
-  const path::NodeView& view = scratch.view;
-  const auto part_of = [&](path::BlockPoint at) {
+  const NodeView& view = scratch.view;
+  const auto part_of = [&](BlockPoint at) {
     if (at.block != graph::kNoNode) at.block = scratch.changes.part_at(at.block, at.s, at.t);
     return at;
   };
-  const path::BlockPoint start = part_of(block_of(from)), goal = part_of(block_of(to));
+  const BlockPoint start = part_of(block_of(from)), goal = part_of(block_of(to));
   if (start.block == graph::kNoNode || goal.block == graph::kNoNode) return;
   state_->parts.reach(view.base_of(start.block), scratch.reached);
   bool reachable = scratch.reached.holds(state_->parts.of_block(view.base_of(goal.block)));
   scratch.nearest.reset();
   if (view.is_as_baked()) {
     if (!reachable) {
-      const path::BlockPoint crossing = state_->parts.nearest(view, start, to.feet, scratch.reached,
-                                                              [](uint32_t) { return false; });
+      const BlockPoint crossing = state_->parts.nearest(view, start, to.feet, scratch.reached,
+                                                        [](uint32_t) { return false; });
       scratch.nearest = nearest_place(
           view, state_->squares, crossing, to.feet,
           [&](uint32_t block) { return scratch.reached.holds(state_->parts.of_block(block)); });
@@ -616,8 +615,8 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, Path& path
   } else {
     // If no obstacle blocks, parts decide what is reachable.
     scratch.islands.clear(view);
-    reachable = reachable && !scratch.islands.close(view, goal.block, start.block,
-                                                    path::NodeIsland::Direction::kIn);
+    reachable = reachable &&
+                !scratch.islands.close(view, goal.block, start.block, NodeIsland::Direction::kIn);
     path.end = reachable ? scratch.find(start, goal, budget, path)
                          : scratch.find_nearest(start, goal, budget, path);
     reachable = reachable && path.end == PathEnd::kReached;
@@ -626,9 +625,9 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, Path& path
     path.spent = budget.spent(path.nodes);
     return;
   }
-  path::BlockPoint last = goal;
+  BlockPoint last = goal;
   if (!reachable) {
-    last = scratch.crossings.empty() ? start : path::ends_of(view, scratch.crossings.back()).in;
+    last = scratch.crossings.empty() ? start : ends_of(view, scratch.crossings.back()).in;
     last = scratch.nearest.value_or(
         nearest_place(view, state_->squares, last, to.feet, [](uint32_t) { return false; }));
     path.end = PathEnd::kUnreachable;
@@ -637,7 +636,7 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, Path& path
   scratch.pull.pull(start, last, scratch.crossings, scratch.pulled);
   PathBuilder path_builder(view, scratch.cost, spacing, path);
   path_builder.begin(start);
-  for (const path::PulledCrossing& crossing : scratch.pulled) {
+  for (const PulledCrossing& crossing : scratch.pulled) {
     path_builder.go_on(crossing.out);
     path_builder.cross(crossing);
   }
@@ -645,4 +644,4 @@ void NodePathFinder::find(const NodePlace& from, const NodePlace& to, Path& path
   path_builder.end();
 }
 
-}  // namespace throng
+}  // namespace throng::path

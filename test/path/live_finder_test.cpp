@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
+#include "path/edits/live_finder.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +12,8 @@
 
 #include "baked.h"
 #include "core/random.h"
+#include "path/edits/solid.h"
+#include "path/mesh_finder.h"
 #include "throng/path.h"
 #include "worlds.h"
 
@@ -19,15 +23,16 @@ namespace {
 
 using test::bake;
 
-LiveGround live(const World& world, int32_t avatar_class = 0, double slope_cost = 0) {
-  auto made = LiveGround::create(world, {.avatar_class = avatar_class, .slope_cost = slope_cost});
+path::LiveFinder live(const World& world, int32_t avatar_class = 0, double slope_cost = 0) {
+  auto made =
+      path::LiveFinder::create(world, {.avatar_class = avatar_class, .slope_cost = slope_cost});
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
 
-PathFinder exact(const World& world, int32_t avatar_class = 0) {
+path::MeshFinder exact(const World& world, int32_t avatar_class = 0) {
   Context context;
-  auto made = PathFinder::create(world, {.avatar_class = avatar_class}, context);
+  auto made = path::MeshFinder::create(world, {.avatar_class = avatar_class}, context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -63,15 +68,15 @@ void expect_walkable(const World& world, int32_t avatar_class, const Path& path)
 }
 
 // Unchanged, it finds what the exact search finds, at most a little longer.
-TEST(LiveGround, FindsWhatTheExactSearchFinds) {
+TEST(LiveFinder, FindsWhatTheExactSearchFinds) {
   uint64_t found = 0, none = 0;
   double sum = 0;
   for (const World& world :
        {bake(test::builtin({.name = "garage"}), 0.2), bake(test::builtin({.name = "church"}), 0.15),
         bake(test::builtin({.name = "maze"}), 0.2), bake(worlds::random_soup(7, 400, 12), 0.15)}) {
     for (const int32_t c : {0, 1}) {
-      LiveGround ground = live(world, c);
-      PathFinder finder = exact(world, c);
+      path::LiveFinder ground = live(world, c);
+      path::MeshFinder finder = exact(world, c);
       Path path, best;
       for (uint64_t n = 0; n < 150; ++n) {
         const Place from = world.random_place(c, 3, 2 * n);
@@ -132,14 +137,14 @@ Prism random_prism(uint64_t seed, uint64_t n, const Box3d& box) {
   return prism;
 }
 
-TEST(LiveGround, NoPlaceIsInAnObstacleAndLittleElseIsLost) {
+TEST(LiveFinder, NoPlaceIsInAnObstacleAndLittleElseIsLost) {
   uint64_t blocked = 0, free = 0, entered = 0;
   for (const World& world : {bake(worlds::two_floors(), 0.1), bake(worlds::ramp(20, 4), 0.1),
                              bake(test::builtin({.name = "garage"}), 0.2)}) {
     const WorldSummary summary = world.summary();
     for (int32_t c = 0; c < static_cast<int32_t>(summary.classes.size()); ++c) {
       const AvatarClass& body = summary.classes[static_cast<size_t>(c)];
-      LiveGround ground = live(world, c);
+      path::LiveFinder ground = live(world, c);
       std::vector<Prism> prisms;
       for (uint64_t n = 0; n < 40; ++n) {
         prisms.push_back(random_prism(17, n, summary.bounds));
@@ -175,9 +180,9 @@ TEST(LiveGround, NoPlaceIsInAnObstacleAndLittleElseIsLost) {
   EXPECT_GT(free, 10000u);
 }
 
-TEST(LiveGround, MeshesBlockWhatTheirTrianglesTouch) {
+TEST(LiveFinder, MeshesBlockWhatTheirTrianglesTouch) {
   const World world = bake(worlds::flat(8), 0.1);
-  LiveGround by_mesh = live(world), by_prism = live(world);
+  path::LiveFinder by_mesh = live(world), by_prism = live(world);
   Scene crate;
   crate.add_box({3, 0, 3}, {3.4, 1, 3.6});
   ASSERT_TRUE(by_mesh.add_obstacle(crate.positions, crate.triangles));
@@ -189,9 +194,9 @@ TEST(LiveGround, MeshesBlockWhatTheirTrianglesTouch) {
   }
 }
 
-TEST(LiveGround, PathsLeadAroundACrateAndStraightAfterItsRemoval) {
+TEST(LiveFinder, PathsLeadAroundACrateAndStraightAfterItsRemoval) {
   const World world = bake(worlds::doorway(1.2), 0.1);
-  LiveGround ground = live(world);
+  path::LiveFinder ground = live(world);
   const Place from = world.find_place(0, {2, 0, 3}, 0.5), to = world.find_place(0, {6, 0, 3}, 0.5);
   Path path;
   ground.find(from, to, path);
@@ -230,10 +235,10 @@ TEST(LiveGround, PathsLeadAroundACrateAndStraightAfterItsRemoval) {
 }
 
 // Any sequence of changes leaves the ground as if the last ones had been made on a fresh one.
-TEST(LiveGround, ChangesAreUndoneWithoutATrace) {
+TEST(LiveFinder, ChangesAreUndoneWithoutATrace) {
   const World world = bake(test::builtin({.name = "garage"}), 0.2);
-  LiveGround changed = live(world);
-  std::vector<std::pair<ChangeId, Prism>> active;
+  path::LiveFinder changed = live(world);
+  std::vector<std::pair<path::ChangeId, Prism>> active;
   Path path, rebuilt_path;
   for (uint64_t n = 0; n < 60; ++n) {
     if (active.size() > 12 || (!active.empty() && random_below(3, n, 0, 3) == 0)) {
@@ -247,7 +252,7 @@ TEST(LiveGround, ChangesAreUndoneWithoutATrace) {
       ASSERT_TRUE(id);
       active.push_back({*id, prism});
     }
-    LiveGround rebuilt = live(world);
+    path::LiveFinder rebuilt = live(world);
     for (const auto& [id, prism] : active) ASSERT_TRUE(rebuilt.add_obstacle(prism));
     for (uint64_t k = 0; k < 5; ++k) {
       const Place from = world.random_place(0, n, 2 * k), to = world.random_place(0, n, 2 * k + 1);
@@ -260,9 +265,9 @@ TEST(LiveGround, ChangesAreUndoneWithoutATrace) {
   }
 }
 
-TEST(LiveGround, DearGroundIsAvoidedAndClosedGroundNeverEntered) {
+TEST(LiveFinder, DearGroundIsAvoidedAndClosedGroundNeverEntered) {
   const World world = bake(worlds::flat(12), 0.1);
-  LiveGround ground = live(world);
+  path::LiveFinder ground = live(world);
   const Prism lawn = Prism::box({4, -1, 0}, {8, 1, 9});
   ASSERT_TRUE(ground.add_area(lawn, 7));
   const Place from = world.find_place(0, {2, 0, 4}, 0.5), to = world.find_place(0, {10, 0, 4}, 0.5);
@@ -292,9 +297,9 @@ TEST(LiveGround, DearGroundIsAvoidedAndClosedGroundNeverEntered) {
 }
 
 // The path over a refracting border: by Snell's law, found by trying all places to cross.
-TEST(LiveGround, CrossesBordersOfAreasWhereItIsCheapest) {
+TEST(LiveFinder, CrossesBordersOfAreasWhereItIsCheapest) {
   const World world = bake(worlds::flat(12), 0.1);
-  LiveGround ground = live(world);
+  path::LiveFinder ground = live(world);
   ASSERT_TRUE(ground.add_area(Prism::box({6, -1, -1}, {13, 1, 13}), 3));
   ASSERT_TRUE(ground.set_area_cost(3, 2.5));
   Path path;
@@ -314,12 +319,12 @@ TEST(LiveGround, CrossesBordersOfAreasWhereItIsCheapest) {
   }
 }
 
-TEST(LiveGround, SlopesCostMoreIfSet) {
+TEST(LiveFinder, SlopesCostMoreIfSet) {
   const World world = bake(worlds::ramp(20, 4), 0.1);
   const Place from = world.find_place(0, {1, 0, 1.5}, 0.5),
               to = world.find_place(0, {9, 2, 1.5}, 3);
   ASSERT_TRUE(to);
-  LiveGround plain = live(world), dear = live(world, 0, 3);
+  path::LiveFinder plain = live(world), dear = live(world, 0, 3);
   Path path;
   plain.find(from, to, path);
   const double length = path.length;
@@ -330,15 +335,17 @@ TEST(LiveGround, SlopesCostMoreIfSet) {
   EXPECT_NEAR(path.cost, length + 4 * 3 * 0.6, 1.2);
 }
 
-TEST(LiveGround, OffMeshLinksLeadWhereMovesDoNot) {
+TEST(LiveFinder, OffMeshLinksLeadWhereMovesDoNot) {
   const World world = bake(worlds::doorway(0.2), 0.1);  // too narrow for an adult: two rooms
-  LiveGround ground = live(world);
+  path::LiveFinder ground = live(world);
   const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
   const Place from = at(1, 1), to = at(7, 5);
   Path path;
   ground.find(from, to, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
-  EXPECT_FALSE(ground.add_off_mesh_link({at(3.5, 3), at(4.5, 3), 0.5}));  // shorter than it is
+  for (const double cost : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
+    EXPECT_FALSE(ground.add_off_mesh_link({at(3.5, 3), at(4.5, 3), cost}));
+  }
   EXPECT_FALSE(ground.add_off_mesh_link({at(3.5, 3), {}, 2}));
   const auto off_mesh_link = ground.add_off_mesh_link({at(3.5, 3), at(4.5, 3), 1.5, false});
   ASSERT_TRUE(off_mesh_link);
@@ -356,7 +363,7 @@ TEST(LiveGround, OffMeshLinksLeadWhereMovesDoNot) {
   ground.find(to, from, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   EXPECT_EQ(path.links.size(), 1u);
-  LiveGround copy = ground;
+  path::LiveFinder copy = ground;
   ASSERT_TRUE(ground.set_active(*lift, false));
   ground.find(to, from, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
@@ -374,12 +381,12 @@ TEST(LiveGround, OffMeshLinksLeadWhereMovesDoNot) {
 }
 
 // Two off-mesh links to one place: the path uses the cheaper, and stands where that one begins.
-TEST(LiveGround, OfTwoOffMeshLinksToOnePlaceTheCheaperIsUsed) {
+TEST(LiveFinder, OfTwoOffMeshLinksToOnePlaceTheCheaperIsUsed) {
   const World world = bake(worlds::doorway(0.2), 0.1);
   const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
   const Place from = at(1, 3), to = at(7, 3);
   for (const bool cheap_first : {true, false}) {
-    LiveGround ground = live(world);
+    path::LiveFinder ground = live(world);
     const OffMeshLink cheap{at(3.3, 3), at(4.7, 3), 2, false},
         dear{at(3.3, 4.5), at(4.7, 3), 9, false};
     ASSERT_TRUE(ground.add_off_mesh_link(cheap_first ? cheap : dear));
@@ -393,12 +400,37 @@ TEST(LiveGround, OfTwoOffMeshLinksToOnePlaceTheCheaperIsUsed) {
   }
 }
 
+// An off-mesh link that costs less than its length, and begins away from the goal, beyond the
+// border of a tile: a search that took the straight line for a bound would stop at the direct path.
+TEST(LiveFinder, ACheapOffMeshLinkIsUsedThoughItLeadsAwayFirst) {
+  const World world = bake(worlds::flat(40), 0.2);
+  const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
+  path::LiveFinder ground = live(world);
+  Path path;
+  ground.find(at(14, 5), at(27, 5), path);
+  EXPECT_NEAR(path.cost, 13, 0.1);
+  const auto link = ground.add_off_mesh_link({at(11, 5), at(27, 6), 0.5});
+  ASSERT_TRUE(link);
+  ground.find(at(14, 5), at(27, 5), path);
+  ASSERT_EQ(path.end, PathEnd::kReached);
+  EXPECT_EQ(path.links.size(), 1u);
+  EXPECT_NEAR(path.cost, 3 + 0.5 + 1, 0.2);
+  ground.find(at(27, 5), at(14, 5), path);
+  EXPECT_NEAR(path.cost, 3 + 0.5 + 1, 0.2);
+  path::LiveFinder copy = ground;
+  copy.find(at(14, 5), at(27, 5), path);
+  EXPECT_NEAR(path.cost, 3 + 0.5 + 1, 0.2);
+  ASSERT_TRUE(ground.set_active(*link, false));
+  ground.find(at(14, 5), at(27, 5), path);
+  EXPECT_NEAR(path.cost, 13, 0.1);
+}
+
 // A path is used again and again, by one finder after the other.
-TEST(LiveGround, NothingOfAnOldPathIsLeft) {
+TEST(LiveFinder, NothingOfAnOldPathIsLeft) {
   const World world = bake(worlds::doorway(0.2), 0.1);
   const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
-  LiveGround ground = live(world);
-  PathFinder finder = exact(world);
+  path::LiveFinder ground = live(world);
+  path::MeshFinder finder = exact(world);
   Path path;
   ground.find(at(1, 1), at(7, 5), path);
   ASSERT_NE(path.blocked_by, Blocker::kNone);
@@ -413,9 +445,9 @@ TEST(LiveGround, NothingOfAnOldPathIsLeft) {
   EXPECT_EQ(path.cost, path.length);
 }
 
-TEST(LiveGround, SearchesInSlicesAndStartsAgainWhenTheGroundChanges) {
+TEST(LiveFinder, SearchesInSlicesAndStartsAgainWhenTheGroundChanges) {
   const World world = bake(test::builtin({.name = "garage"}), 0.2);
-  LiveGround ground = live(world);
+  path::LiveFinder ground = live(world);
   Path path, whole;
   uint64_t slices = 0;
   for (uint64_t n = 0; n < 20; ++n) {
@@ -441,12 +473,12 @@ TEST(LiveGround, SearchesInSlicesAndStartsAgainWhenTheGroundChanges) {
   EXPECT_GT(slices, 50u);
 }
 
-TEST(LiveGround, RefusesNonsense) {
+TEST(LiveFinder, RefusesNonsense) {
   const World world = bake(worlds::flat(6), 0.1);
-  EXPECT_FALSE(LiveGround::create(World(), {}));
-  EXPECT_FALSE(LiveGround::create(world, {.avatar_class = 9}));
-  EXPECT_FALSE(LiveGround::create(world, {.slope_cost = -1}));
-  LiveGround ground = live(world);
+  EXPECT_FALSE(path::LiveFinder::create(World(), {}));
+  EXPECT_FALSE(path::LiveFinder::create(world, {.avatar_class = 9}));
+  EXPECT_FALSE(path::LiveFinder::create(world, {.slope_cost = -1}));
+  path::LiveFinder ground = live(world);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(ground.add_obstacle(Prism{}));
   EXPECT_FALSE(ground.add_obstacle(Prism{{{0, 0}, {1, 0}, {1, nan}}, 0, 1}));

@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "path/edits/live_finder.h"
+#include "path/edits/solid.h"
+#include "throng/path.h"
+
+/// What handles of Edits share, and how finders follow it.
+namespace throng::path {
+
+struct EditList {
+  enum class Kind : uint8_t { kObstacle, kArea, kOffMeshLink };
+  struct Edit {
+    Kind kind = Kind::kObstacle;
+    uint8_t area = 0;
+    bool active = true, removed = false;
+    Solid solid;  // of an area: its prism
+    OffMeshLink link;
+  };
+  struct Changed {
+    EditId edit = 0;  // 0: an area's cost
+    uint8_t area = 0;
+  };
+
+  EditList() { area_costs.fill(1); }
+
+  [[nodiscard]] uint64_t version() const { return first_version + changed.size(); }
+  /// May paths on the ground differ from those of the baked ground?
+  [[nodiscard]] bool bears_on_ground() const {
+    return active_solids + active_links > 0 || (active_areas > 0 && costs_differ);
+  }
+  EditId add(Edit edit);
+  bool set_active(EditId id, bool active, bool remove);
+  void set_area_cost(uint8_t kind, double cost);
+
+  std::vector<Edit> edits;  // by id - 1
+  std::array<double, 64> area_costs{};
+  size_t active_solids = 0, active_areas = 0, active_links = 0;
+  bool costs_differ = false;  // of areas, from 1
+
+  /// What has changed from `first_version` on, in order. What is older was forgotten.
+  std::vector<Changed> changed;
+  uint64_t first_version = 0;
+
+ private:
+  void note(Changed what);
+  void count(const Edit& edit, int by);
+};
+
+/// The edits that one finder has applied.
+class AppliedEdits {
+ public:
+  /// Applies what has changed since the last call, to the same finder or a copy of it.
+  template <class Finder>
+  void follow(const EditList& list, Finder& finder) {
+    if (version_ == list.version()) return;
+    while (ids_.size() < list.edits.size()) add(list.edits[ids_.size()], finder);
+    if (version_ < list.first_version) {
+      for (EditId id = 1; id <= ids_.size(); ++id) apply(list, id, finder);
+      for (uint8_t kind = 1; kind < list.area_costs.size(); ++kind) {
+        set_cost(finder, kind, list.area_costs[kind]);
+      }
+    } else {
+      for (size_t i = version_ - list.first_version; i < list.changed.size(); ++i) {
+        const EditList::Changed& what = list.changed[i];
+        if (what.edit != 0) apply(list, what.edit, finder);
+        if (what.edit == 0) set_cost(finder, what.area, list.area_costs[what.area]);
+      }
+    }
+    version_ = list.version();
+  }
+
+ private:
+  // Also one that is not active: of areas that overlap the last one counts.
+  template <class Finder>
+  void add(const EditList::Edit& edit, Finder& finder) {
+    const ChangeId id = edit.removed ? 0 : id_of_new(edit, finder);
+    if (id != 0 && !edit.active) finder.set_active(id, false);
+    ids_.push_back(id);
+  }
+
+  template <class Finder>
+  void apply(const EditList& list, EditId id, Finder& finder) {
+    const EditList::Edit& edit = list.edits[id - 1];
+    ChangeId& own = ids_[id - 1];
+    // The class can perhaps stand by now where the off-mesh link ends.
+    if (own == 0 && edit.active && !edit.removed) own = id_of_new(edit, finder);
+    if (own == 0) return;
+    if (!edit.removed) {
+      finder.set_active(own, edit.active);
+      return;
+    }
+    finder.remove(own);
+    own = 0;
+  }
+
+  // 0: the finder does not know edits of this kind.
+  template <class Finder>
+  static ChangeId id_of_new(const EditList::Edit& edit, Finder& finder) {
+    return edit.kind == EditList::Kind::kObstacle ? finder.add_obstacle(edit.solid) : 0;
+  }
+  static ChangeId id_of_new(const EditList::Edit& edit, LiveFinder& finder);
+  template <class Finder>
+  static void set_cost(Finder& /*finder*/, uint8_t /*kind*/, double /*cost*/) {}
+  static void set_cost(LiveFinder& finder, uint8_t kind, double cost);
+
+  std::vector<ChangeId> ids_;  // of the finder, by id of the edit - 1; 0: none
+  uint64_t version_ = 0;
+};
+
+}  // namespace throng::path

@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/edits/live_finder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/access.h"
+#include "core/check_class.h"
+#include "path/edits/blocker.h"
+#include "path/edits/live_mesh.h"
+#include "path/edits/live_search.h"
+#include "path/edits/live_state.h"
+#include "path/edits/plan_shapes.h"
+#include "path/edits/solid.h"
+#include "path/ground/reset_path.h"
+#include "world/place.h"
+
+// Checks and converts what callers give, for the live mesh and its search.
+namespace throng::path {
+
+bool LiveFinder::State::locate(const Place& place, LiveStop& stop) {
+  const auto at = world::ground_point(mesh.world(), place);
+  if (!at) return false;
+  stop.at = *at;
+  stop.level = place.level1 - 1;
+  return mesh.stand(stop.level, stop.at, stop.rect);
+}
+
+void LiveFinder::State::give(Path& path) {
+  const world::WorldData& world = mesh.world();
+  double length = 0, cost = 0;
+  for (size_t i = 0; i < stops.size(); ++i) {
+    path.points.push_back(world::place_at(world, mesh.level(stops[i].level)->ground, stops[i].at));
+    if (i == 0) continue;
+    length += distance_of(stops[i - 1].at, stops[i].at);
+    cost += cost_to(mesh, stops[i - 1], stops[i]);
+    const bool is_off_mesh = stops[i].off_mesh_link > 0;
+    path.segments.push_back(is_off_mesh ? SegmentKind::kOffMesh : SegmentKind::kWalk);
+    if (is_off_mesh) path.links.push_back({static_cast<uint32_t>(i), LinkKind::kOffMesh});
+  }
+  path.length = length * world.summary.cell;
+  path.cost = cost * world.summary.cell;
+}
+
+Blocker LiveFinder::State::blocker() {
+  const LiveLevel* level = mesh.level(stops.back().level);
+  const world::WalkStop stop =
+      world::walk_far(mesh.ground(), level, stops.back().at, to.at, mesh.step());
+  if (stop.arrived) return Blocker::kGap;  // under or over the goal
+  // Obstacles placed since the bake are not in its floors.
+  const world::WorldGround baked{mesh.world(), mesh.avatar_class()};
+  const Blocker found = blocker_beyond(baked, level->ground, stop);
+  const world::GroundLevel& ground = level->ground;
+  const bool was_free = world::step_to(baked, ground, stop.x, stop.z, stop.x + stop.toward_x,
+                                       stop.z + stop.toward_z, mesh.step())
+                            .has_value();
+  return was_free ? Blocker::kNarrow : found;
+}
+
+LiveFinder::LiveFinder(std::unique_ptr<State> state) : state_(std::move(state)) {}
+LiveFinder::LiveFinder(const LiveFinder& other)
+    : LiveFinder(std::make_unique<State>(other.state_->mesh)) {}
+LiveFinder& LiveFinder::operator=(const LiveFinder& other) {
+  if (this != &other) state_ = std::make_unique<State>(other.state_->mesh);
+  return *this;
+}
+LiveFinder::LiveFinder(LiveFinder&&) noexcept = default;
+LiveFinder& LiveFinder::operator=(LiveFinder&&) noexcept = default;
+LiveFinder::~LiveFinder() = default;
+
+Result<LiveFinder> LiveFinder::create(const World& world, const PathConfig& config) {
+  if (data_of(world) == nullptr) return Error{Errc::kBadInput, "live ground: the world is empty"};
+  if (auto ok = check_class(data_of(world)->summary.classes, config.avatar_class, "live ground");
+      !ok)
+    return ok.error();
+  if (!(config.slope_cost >= 0 && config.slope_cost <= 1000)) {
+    return Error{Errc::kBadConfig, "live ground: slope_cost must be 0 to 1000"};
+  }
+  if (auto ok = refuse_settings(config, "live ground", true); !ok) return ok.error();
+  return LiveFinder(std::make_unique<State>(LiveMesh(world, config)));
+}
+
+ChangeId LiveFinder::add_obstacle(const Solid& solid) {
+  LiveMesh::Change change;
+  change.solid = solid;
+  return state_->mesh.add(std::move(change));
+}
+
+Result<ChangeId> LiveFinder::add_obstacle(const Prism& prism) {
+  const auto solid = make_solid(prism);
+  if (!solid) return solid.error();
+  return add_obstacle(*solid);
+}
+
+Result<ChangeId> LiveFinder::add_obstacle(std::span<const Vec3d> corners,
+                                          std::span<const std::array<uint32_t, 3>> triangles) {
+  const auto solid = make_solid(corners, triangles);
+  if (!solid) return solid.error();
+  return add_obstacle(*solid);
+}
+
+Result<void> check_area(uint8_t kind) {
+  if (kind >= 1 && kind <= 63) return {};
+  return Error{Errc::kBadConfig, "area: kind " + std::to_string(kind) + " is not one of 1 to 63"};
+}
+
+Result<void> check_area_cost(uint8_t kind, double cost) {
+  if (auto ok = check_area(kind); !ok) return ok;
+  if (cost >= 0.01 && (cost <= 10000 || std::isinf(cost))) return {};
+  return Error{Errc::kBadConfig, "area: a cost must be 0.01 to 10000, or infinite"};
+}
+
+Result<void> check_link(const OffMeshLink& link) {
+  if (!link.from || !link.to) {
+    return Error{Errc::kBadInput, "off-mesh link: it must lead from a place to another"};
+  }
+  if (link.cost > 0 && std::isfinite(link.cost)) return {};
+  return Error{Errc::kBadInput, "off-mesh link: its cost must be above 0"};
+}
+
+Result<ChangeId> LiveFinder::add_area(const Prism& prism, uint8_t kind) {
+  if (auto ok = check_area(kind); !ok) return ok.error();
+  if (auto ok = check_prism(prism); !ok) return ok.error();
+  LiveMesh::Change change;
+  change.solid.prism = prism;
+  change.is_area = true;
+  change.kind = kind;
+  return state_->mesh.add(std::move(change));
+}
+
+Result<ChangeId> LiveFinder::add_off_mesh_link(const OffMeshLink& link) {
+  if (auto ok = check_link(link); !ok) return ok.error();
+  State& s = *state_;
+  const world::WorldData& world = s.mesh.world();
+  // As the ground was baked: what stands there now may be removed.
+  const auto end_of = [&](const Place& place) -> std::optional<world::GroundPoint> {
+    const auto at = world::ground_point(world, place);
+    if (!at) return {};
+    const world::GroundLevel level =
+        world::ground_level(world, place.level1 - 1, s.mesh.avatar_class());
+    const int32_t x = at->cell_x(), z = at->cell_z();
+    const bool legal = world::WorldGround{world, s.mesh.avatar_class()}.is_legal(level, x, z);
+    return legal ? at : std::nullopt;
+  };
+  const auto from = end_of(link.from), to = end_of(link.to);
+  if (!from || !to) {
+    return Error{Errc::kBadInput,
+                 "off-mesh link: it must lead from a place of the class to another"};
+  }
+  const uint32_t from_level = link.from.level1 - 1, to_level = link.to.level1 - 1;
+  const ChangeId id = s.mesh.add({});
+  const double cost = link.cost / world.summary.cell;
+  s.mesh.add_off_mesh_link(from_level, {id, *from, *to, to_level, cost});
+  if (link.two_way) s.mesh.add_off_mesh_link(to_level, {id, *to, *from, from_level, cost});
+  return id;
+}
+
+bool LiveFinder::remove(ChangeId change) { return state_->mesh.set_active(change, false, true); }
+bool LiveFinder::set_active(ChangeId change, bool active) {
+  return state_->mesh.set_active(change, active, false);
+}
+
+Result<void> LiveFinder::set_area_cost(uint8_t kind, double cost) {
+  if (auto ok = check_area_cost(kind, cost); !ok) return ok;
+  state_->mesh.set_area_cost(kind, cost);
+  return {};
+}
+
+bool LiveFinder::is_free(const Place& place) {
+  LiveStop stop;
+  return state_->locate(place, stop);
+}
+
+void LiveFinder::begin(const Place& from, const Place& to) {
+  State& s = *state_;
+  s.from_place = from;
+  s.to_place = to;
+  s.searching = s.locate(from, s.from) && s.locate(to, s.to);
+  s.version = s.mesh.version();
+  if (s.searching) s.search.begin(s.mesh, s.from, s.to);
+}
+
+bool LiveFinder::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& path) {
+  reset(path);
+  if (!searching) return true;
+  const LiveSearch::State result = search.advance(mesh, max_nodes, max_bytes);
+  path.nodes = search.expanded();
+  path.end = PathEnd::kBudgetExhausted;
+  path.spent = SpentBudget::kNodes;
+  if (result == LiveSearch::State::kSearching) return false;
+  searching = false;
+  if (result == LiveSearch::State::kFull) {
+    path.spent = SpentBudget::kMemory;
+    search.give_back();
+    return true;
+  }
+  path.end = result == LiveSearch::State::kFound ? PathEnd::kReached : PathEnd::kUnreachable;
+  path.spent = SpentBudget::kNone;
+  search.trace(mesh, stops);
+  search.give_back();
+  straight.draw(mesh, stops);
+  give(path);
+  if (path.end == PathEnd::kUnreachable) path.blocked_by = blocker();
+  return true;
+}
+
+bool LiveFinder::advance(uint64_t max_nodes, Path& path) {
+  State& s = *state_;
+  // What the search has reached may no longer exist.
+  if (s.searching && s.version != s.mesh.version()) begin(s.from_place, s.to_place);
+  return s.advance(max_nodes, SearchBudget::kDefaultBytes, path);
+}
+
+void LiveFinder::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget) {
+  begin(from, to);
+  State& s = *state_;
+  if (budget.cancel == nullptr) {
+    s.advance(budget.max_nodes, budget.max_bytes, path);
+    return;
+  }
+  constexpr uint64_t kSlice = 64;
+  reset(path);
+  path.end = PathEnd::kBudgetExhausted;
+  path.spent = SpentBudget::kNodes;
+  for (uint64_t left = budget.max_nodes; left > 0;) {
+    if (*budget.cancel) {
+      path.spent = SpentBudget::kCancelled;
+      return;
+    }
+    const uint64_t slice = std::min(left, kSlice);
+    if (s.advance(slice, budget.max_bytes, path)) return;
+    left -= slice;
+  }
+}
+
+}  // namespace throng::path

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "path/edits/solid.h"
+#include "throng/path.h"
+
+/// Paths over ground with edits. Data is made when a query needs it, and a change discards only the
+/// tiles that it touches.
+namespace throng::path {
+
+/// Fail with kBadConfig or kBadInput.
+[[nodiscard]] Result<void> check_area(uint8_t kind);
+[[nodiscard]] Result<void> check_area_cost(uint8_t kind, double cost);
+[[nodiscard]] Result<void> check_link(const OffMeshLink& link);
+
+/// The ground of one class with changes. Obstacles only remove ground: an avatar can stand on a
+/// crate only if it was baked. Changes and queries are for one thread at a time; copies are
+/// independent. Results are the same on every machine.
+class LiveFinder {
+ public:
+  /// Makes the ground of a class; reads nothing yet. Fails with kBadConfig.
+  [[nodiscard]] static Result<LiveFinder> create(const World& world, const PathConfig& config);
+  LiveFinder(const LiveFinder&);
+  LiveFinder& operator=(const LiveFinder&);
+  LiveFinder(LiveFinder&&) noexcept;
+  LiveFinder& operator=(LiveFinder&&) noexcept;
+  ~LiveFinder();
+
+  /// Puts up an obstacle: the class is illegal where its body, from body_bottom() up, could touch
+  /// the prism. Fails with kBadInput. Time: the tiles that it touches.
+  [[nodiscard]] Result<ChangeId> add_obstacle(const Prism& prism);
+  ChangeId add_obstacle(const Solid& solid);
+  /// The same for triangles. Only these are solid: a closed shell is hollow.
+  [[nodiscard]] Result<ChangeId> add_obstacle(std::span<const Vec3d> corners,
+                                              std::span<const std::array<uint32_t, 3>> triangles);
+  /// Gives floors inside a prism an area kind; where several overlap, the last one counts.
+  [[nodiscard]] Result<ChangeId> add_area(const Prism& prism, uint8_t kind);
+  /// Adds an off-mesh link, which no move finds: over a ditch, up a ladder, by a lift. It leads
+  /// from one place of the class to another, and back if `two_way`; what lies between is not
+  /// tested. Its cost counts as metres and may be less than its length. Fails with kBadInput.
+  [[nodiscard]] Result<ChangeId> add_off_mesh_link(const OffMeshLink& off_mesh_link);
+  /// Removes a change, or switches it off and on, as a door. False if there is none of this id.
+  bool remove(ChangeId change);
+  bool set_active(ChangeId change, bool active);
+  /// Sets the cost of a metre on ground of an area kind; infinity closes it. All kinds begin with
+  /// 1. Fails with kBadConfig. [kind 1 to 63, 0.01 to 10000 or infinity]
+  [[nodiscard]] Result<void> set_area_cost(uint8_t kind, double cost);
+
+  /// Is the place legal for the class now?
+  [[nodiscard]] bool is_free(const Place& place);
+  /// Finds a path of low cost; each segment is a legal move. The search goes over points on the
+  /// borders of rectangles, and the path is pulled taut afterwards: on average within 1 % of the
+  /// best. If no path leads to the goal (kUnreachable), `path` leads to the reached place nearest
+  /// to it, and Path::blocked_by says what blocks it. Stops when the budget of points or memory is
+  /// exhausted (Path::spent). No allocation once it is warm.
+  void find(const Place& from, const Place& to, Path& path, const SearchBudget& budget = {});
+  /// The same search in parts: call begin, then advance with some points per frame until it returns
+  /// true. Stops where it would take more than SearchBudget::kDefaultBytes.
+  void begin(const Place& from, const Place& to);
+  bool advance(uint64_t max_nodes, Path& path);
+
+  struct State;
+  /// For what works on the same ground (FlowPoints).
+  [[nodiscard]] State& state() { return *state_; }
+
+ private:
+  explicit LiveFinder(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace throng::path

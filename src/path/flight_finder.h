@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "path/edits/solid.h"
+#include "throng/path.h"
+
+/// Paths through the air of a baked world, from the ground and back to it.
+namespace throng::path {
+
+struct FlightSpace;
+
+/// Input of FlightFinder::find.
+struct FlightQuery {
+  /// Feet. In the air, or on the ground within `vertical_tolerance` above or below. [m]
+  Vec3d from, to;
+  double vertical_tolerance = 0.5;  ///< [m, >= 0]
+  /// Counts air boxes, and for each path on foot its nodes. A search on foot ends before `cancel`
+  /// is read.
+  SearchBudget budget = {};
+  /// If no single flight leads to the goal, search paths that land, walk and take off again.
+  bool by_turns = true;
+  /// If no path leads to the goal, find the path to the point that comes nearest. Linear in the air
+  /// boxes.
+  bool nearest = true;
+};
+
+/// Finds paths for one class that flies. All copies share the legal air as it was baked; each copy
+/// has its own obstacles and its own memory for searching, so give every thread one. Queries do not
+/// allocate once they are warm.
+class FlightFinder {
+ public:
+  /// Makes a finder. Reads every zone once. Fails with kNotFound (a world without air), kBadConfig
+  /// (no such class, or it does not fly), kBadFile or kCancelled.
+  [[nodiscard]] static Result<FlightFinder> create(const World& world, const PathConfig& config,
+                                                   Context& context);
+  FlightFinder(const FlightFinder& other);
+  FlightFinder& operator=(const FlightFinder& other);
+  FlightFinder(FlightFinder&&) noexcept;
+  FlightFinder& operator=(FlightFinder&&) noexcept;
+  ~FlightFinder();
+
+  /// Finds a short path: over the ground where that is shorter, else straight up from the ground,
+  /// through the air and straight down; from a place where it cannot take off, it walks to one
+  /// where it can. If the air at the start is connected with the air at the goal only over the
+  /// ground, the path lands and walks in between, as few times as possible, by the first place
+  /// found on each ground. The whole body passes everywhere. Paths through the air are taut, but
+  /// not always the shortest (docs/results.md). An unreachable goal is approached to the nearest
+  /// point of the air, or of the ground where the avatar cannot take off; Path::blocked_by is kLow
+  /// where a lower body would pass, or where the avatar cannot take off, else kNarrow. `path` is
+  /// reused: its memory stays.
+  void find(const FlightQuery& query, Path& path);
+
+  /// Puts up an obstacle: no path leads where the body could touch the prism; on the ground, as in
+  /// LiveFinder, the body counts from body_bottom() up. A start or goal inside is no place. Fails
+  /// with kBadInput. Time: the air boxes that it touches and those of what it cuts off, up to 65
+  /// 536.
+  [[nodiscard]] Result<ChangeId> add_obstacle(const Prism& prism);
+  ChangeId add_obstacle(const Solid& solid);
+  /// The same for triangles. Only these are solid: a closed shell is hollow.
+  [[nodiscard]] Result<ChangeId> add_obstacle(std::span<const Vec3d> corners,
+                                              std::span<const std::array<uint32_t, 3>> triangles);
+  /// Removes an obstacle, or switches it off and on, as a door. False if there is none of this id.
+  bool remove(ChangeId change);
+  bool set_active(ChangeId change, bool active);
+
+  /// Could a path begin or end at a position, in the air or on the ground near it? [m]
+  [[nodiscard]] bool is_end(Vec3d at, double vertical_tolerance) const;
+  /// Is a point of the air legal for the feet? Constant time.
+  [[nodiscard]] bool is_legal(Vec3d feet) const;
+  /// The n-th of a reproducible stream of points, uniform over the legal air. Empty only if there
+  /// is no legal air.
+  [[nodiscard]] std::optional<Vec3d> random_point(uint64_t seed, uint64_t n) const;
+
+  /// The end of the take-off from a place on the ground: where the feet come into the air, straight
+  /// up. Empty if a solid blocks it.
+  [[nodiscard]] std::optional<Vec3d> take_off(const Place& place) const;
+  /// The place of a landing from a point of the air: straight down to the lowest air box, and there
+  /// the best place: the one with the largest clearance, then the nearest to the box's axis
+  /// [PACS00]. Nowhere if there is none.
+  [[nodiscard]] Place landing(Vec3d feet) const;
+
+  [[nodiscard]] PathSummary summary() const;
+  [[nodiscard]] const FlightSpace& space() const;
+
+ private:
+  struct Shared;
+  struct Scratch;
+  struct End;
+  explicit FlightFinder(std::shared_ptr<const Shared> shared);
+
+  bool locate(Vec3d at, double vertical_tolerance, End& end) const;
+  void find_flight(const FlightQuery& query, Path& path);
+  void find_by_turns(const FlightQuery& query, Path& path);
+  size_t follow_route(const FlightQuery& query, const End& from, const End& to, Path& path);
+  void find_nearest(const FlightQuery& query, Path& path);
+  void find_nearest_on_foot(const FlightQuery& query, const Place& from, Path& path);
+  PathEnd walk(const FlightQuery& query, const Place& from, const Place& to, Path& path);
+
+  std::shared_ptr<const Shared> state_;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+}  // namespace throng::path

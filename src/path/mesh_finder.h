@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+
+#include "throng/path.h"
+
+/// Paths over the ground as it was baked.
+namespace throng::path {
+
+struct PathMesh;
+
+/// Finds paths for one class. All copies share the ground; each copy has its own memory for
+/// searching: give every thread one. No allocation once it is warm.
+class MeshFinder {
+ public:
+  /// Makes a finder. Reads every zone once. Fails with kBadConfig (no such class, a slope cost, or
+  /// zones with too many corners for kZones), kBadFile (a zone cannot be used) or kCancelled.
+  [[nodiscard]] static Result<MeshFinder> create(const World& world, const PathConfig& config,
+                                                 Context& context);
+  MeshFinder(const MeshFinder& other);
+  MeshFinder& operator=(const MeshFinder& other);
+  MeshFinder(MeshFinder&&) noexcept;
+  MeshFinder& operator=(MeshFinder&&) noexcept;
+  ~MeshFinder();
+
+  /// Finds the shortest any-angle path over all legal cells: no legal path is shorter by more than
+  /// 1/1000 of a cell per corner. If the places are connected, a path is found; where legal cells
+  /// side by side lie more than a step height apart, it may go from portal to portal and be a
+  /// little longer. `path` is reused: its memory stays. When the budget is exhausted the search
+  /// stops (Path::spent); with labels there is none. Between queries a finder keeps up to 64 MiB of
+  /// search memory, and 16 bytes per corner.
+  void find(const Place& from, const Place& to, Path& path, const SearchBudget& budget = {});
+
+  [[nodiscard]] PathSummary summary() const;
+  [[nodiscard]] const PathMesh& mesh() const;
+
+ private:
+  struct Shared;
+  struct Scratch;
+  explicit MeshFinder(std::shared_ptr<const Shared> shared);
+
+  std::shared_ptr<const Shared> state_;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+}  // namespace throng::path

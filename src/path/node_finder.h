@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "path/edits/solid.h"
+#include "throng/path.h"
+#include "throng/surface.h"
+
+/// Paths over nodes, for every class and in particular for climbers: over walls and under ceilings.
+/// Source: [PACS00] 1.2.3; docs/design/006-nodes.md.
+namespace throng::path {
+
+/// A rectangle of a patch's parameters.
+struct NodeSquare {
+  double s0 = 0, t0 = 0, s1 = 0, t1 = 0;
+};
+
+/// Finds paths for one class over nodes. All copies share the nodes; each copy has its own memory
+/// for searching: give every thread one. No allocation once it is warm.
+class NodeFinder {
+ public:
+  /// Makes a finder. Reads all nodes once. Fails with kBadConfig, kBadFile (a zone cannot be used)
+  /// or kCancelled.
+  [[nodiscard]] static Result<NodeFinder> create(const Nodes& nodes, const PathConfig& config,
+                                                 Context& context);
+  NodeFinder(const NodeFinder& other);
+  NodeFinder& operator=(const NodeFinder& other);
+  NodeFinder(NodeFinder&&) noexcept;
+  NodeFinder& operator=(NodeFinder&&) noexcept;
+  ~NodeFinder();
+
+  /// The place of the class nearest to a position in three dimensions, or nowhere if none is within
+  /// `search_radius`. Queries of one finder are for one thread at a time. [m, m]
+  [[nodiscard]] NodePlace find_place(Vec3d position, double search_radius) const;
+
+  /// A rectangle of a node's patch that contains two of its places, the ends of a segment, and
+  /// inside which the class may move straight between any two points. Empty if the finder knows
+  /// none. [s and t 0 to 1]
+  [[nodiscard]] std::optional<NodeSquare> square(uint32_t node, double from_s, double from_t,
+                                                 double to_s, double to_t) const;
+
+  /// Finds a path of low cost: A* over the middles of the lines along which nodes touch, or over
+  /// the overlay if the path is long, then string pulling within the nodes of the corridor.
+  /// `spacing` is the largest distance between points of the path on curved ground. [m, > 0] `path`
+  /// is reused: its memory stays. Stops when the budget is exhausted. A path to an unreachable goal
+  /// leads to the nearest reachable place, in three dimensions; if that is more than 25 m from the
+  /// goal, or obstacles are up, to the nearest place in the block whose border comes nearest.
+  void find(const NodePlace& from, const NodePlace& to, Path& path, double spacing = 0.25,
+            const SearchBudget& budget = {});
+
+  /// Puts up an obstacle: no path leads where the body could touch the prism, whatever its axis.
+  /// Blocks are cut there, by cells of level tiles and by squares of about a quarter of a metre of
+  /// curved ground. Paths lead around it over the rest; long ones still use the overlay, but for
+  /// the overlay cells that the obstacle touches. Holds for this finder and for copies made later.
+  /// Fails with kBadInput. Time: here what lies within a body's size of it; at the next query all
+  /// obstacles that are up.
+  [[nodiscard]] Result<ChangeId> add_obstacle(const Prism& prism);
+  ChangeId add_obstacle(const Solid& solid);
+  /// The same for triangles. Only these are solid: a closed shell is hollow.
+  [[nodiscard]] Result<ChangeId> add_obstacle(std::span<const Vec3d> corners,
+                                              std::span<const std::array<uint32_t, 3>> triangles);
+  /// Removes an obstacle, or switches it off and on, as a door; paths are then the same as without
+  /// it. False if there is none of this id.
+  bool remove(ChangeId change);
+  bool set_active(ChangeId change, bool active);
+
+  [[nodiscard]] PathSummary summary() const;
+
+ private:
+  struct Shared;
+  struct Scratch;
+  explicit NodeFinder(std::shared_ptr<const Shared> shared);
+
+  std::shared_ptr<const Shared> state_;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+}  // namespace throng::path

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+#include "path/edits/edit_list.h"
+#include "path/edits/live_finder.h"
+#include "path/flight_finder.h"
+#include "path/mesh_finder.h"
+#include "path/node_finder.h"
+#include "throng/path.h"
+
+/// What a PathFinder holds.
+namespace throng {
+
+struct PathFinder::State {
+  World world;
+  PathConfig config;  // its space is not kOfClass
+  PathSummary summary;
+
+  // Of the space. On the ground `live` has edits and costs; made when a query needs it.
+  std::optional<path::MeshFinder> mesh;
+  std::optional<path::LiveFinder> live;
+  std::optional<path::NodeFinder> nodes;
+  std::optional<path::FlightFinder> flight;
+  path::AppliedEdits applied;  // by `live`, `nodes` or `flight`
+
+  PathQuery begun;  // the search in parts
+
+  [[nodiscard]] const path::EditList& edits() const;
+  /// The finder of ground with edits, up to date.
+  path::LiveFinder& ground();
+  /// The same apart from this finder, of any class that has ground.
+  [[nodiscard]] path::LiveFinder ground_of_its_own() const;
+  [[nodiscard]] Place place_of(const PathPoint& point, double tolerance) const;
+  [[nodiscard]] NodePlace node_place_of(const PathPoint& point, double tolerance);
+  void find_on_ground(const Place& from, const Place& to, bool nearest, const SearchBudget& budget,
+                      Path& path);
+  void find_over_nodes(const PathQuery& query, Path& path);
+  void find_in_air(const PathQuery& query, Path& path);
+};
+
+}  // namespace throng

@@ -1,0 +1,340 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "baked.h"
+#include "core/random.h"
+#include "path/edits/live_finder.h"
+#include "path/flight_finder.h"
+#include "path/mesh_finder.h"
+#include "path/node_finder.h"
+#include "throng/path.h"
+#include "worlds.h"
+
+// One finder for all classes, and edits in one place: against the searches that it chooses from,
+// and against finders that see only what is left of the edits.
+namespace throng {
+namespace {
+
+using test::bake;
+
+constexpr int32_t kAdult = 0, kFlyer = 1, kClimber = 2;
+
+template <class T>
+T need(Result<T> made) {
+  EXPECT_TRUE(made) << made.error().message;
+  if constexpr (!std::is_void_v<T>) return *std::move(made);
+}
+
+// A garage for classes that walk, fly and climb.
+struct Stage {
+  Scene scene = test::builtin({.name = "garage", .size = 45, .levels = 2});
+  World world = bake(scene, 0.25,
+                     {{.name = "adult"},
+                      flyer_class(),
+                      {.name = "climber", .height = 1.0, .radius = 0.3, .climb_slope = 180}});
+  Context context;
+  Nodes nodes = need(Nodes::create(world, scene, {}, context));
+
+  PathFinder finder(PathConfig config) {
+    config.nodes = nodes;
+    return need(PathFinder::create(world, config, context));
+  }
+  [[nodiscard]] Place place(int32_t avatar_class, uint64_t n) const {
+    return world.random_place(avatar_class, 7, n);
+  }
+};
+
+void expect_same(const Path& a, const Path& b) {
+  EXPECT_EQ(a.end, b.end);
+  EXPECT_EQ(a.blocked_by, b.blocked_by);
+  EXPECT_EQ(a.length, b.length);
+  EXPECT_EQ(a.cost, b.cost);
+  EXPECT_EQ(a.segments, b.segments);
+  ASSERT_EQ(a.points.size(), b.points.size());
+  for (size_t i = 0; i < a.points.size(); ++i) {
+    EXPECT_EQ(a.points[i].position.x, b.points[i].position.x);
+    EXPECT_EQ(a.points[i].position.y, b.points[i].position.y);
+    EXPECT_EQ(a.points[i].position.z, b.points[i].position.z);
+  }
+}
+
+TEST(PathFinder, SearchesAsTheClassMoves) {
+  Stage s;
+  path::MeshFinder mesh = need(path::MeshFinder::create(s.world, {}, s.context));
+  path::NodeFinder nodes =
+      need(path::NodeFinder::create(s.nodes, {.avatar_class = kClimber}, s.context));
+  path::FlightFinder flight =
+      need(path::FlightFinder::create(s.world, {.avatar_class = kFlyer}, s.context));
+  PathFinder walks = s.finder({}), flies = s.finder({.avatar_class = kFlyer}),
+             climbs = s.finder({.avatar_class = kClimber}),
+             on_foot = s.finder({.avatar_class = kFlyer, .space = PathSpace::kGround});
+  EXPECT_GT(walks.summary().corners, 0u);
+  EXPECT_GT(flies.summary().boxes, 0u);
+  EXPECT_GT(climbs.summary().blocks, 0u);
+  Path path, other;
+  for (uint64_t n = 0; n < 10; ++n) {
+    const Place from = s.place(kAdult, 2 * n), to = s.place(kAdult, 2 * n + 1);
+    walks.find(from, to, path);
+    mesh.find(from, to, other);
+    expect_same(path, other);
+    // By positions it is the same path.
+    walks.find({.from = from.position, .to = to.position, .tolerance = 0.05}, path);
+    expect_same(path, other);
+    const Vec3d up = s.place(kFlyer, n).position, there = *flies.random_point(3, n);
+    flies.find({.from = up, .to = there}, path);
+    flight.find({.from = up, .to = there}, other);
+    expect_same(path, other);
+    EXPECT_EQ(flies.take_off(s.place(kFlyer, n)).has_value(),
+              flight.take_off(s.place(kFlyer, n)).has_value());
+    EXPECT_EQ(flies.landing(there).level1, flight.landing(there).level1);
+    EXPECT_FALSE(walks.take_off(from));
+    EXPECT_FALSE(walks.landing(there));
+    on_foot.find(s.place(kFlyer, n), s.place(kFlyer, n + 1), path);
+    for (const SegmentKind kind : path.segments) EXPECT_EQ(kind, SegmentKind::kWalk);
+    const NodePlace on = s.nodes.random_place(kClimber, 1, 2 * n),
+                    off = s.nodes.random_place(kClimber, 1, 2 * n + 1);
+    climbs.find({.from = on, .to = off}, path);
+    nodes.find(on, off, other);
+    expect_same(path, other);
+    EXPECT_TRUE(climbs.is_free(on) && walks.is_free(from) && flies.is_free(there));
+  }
+}
+
+TEST(PathFinder, LeadsToTheNearestPlaceIfAsked) {
+  const World world = bake(worlds::doorway(0.2), 0.1);  // too narrow for an adult: two rooms
+  Context context;
+  PathFinder finder = need(PathFinder::create(world, {}, context));
+  const Vec3d from{1, 0, 1}, to{7, 0, 5};
+  Path path;
+  finder.find({.from = from, .to = to, .nearest = false}, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
+  EXPECT_TRUE(path.points.empty());
+  finder.find({.from = from, .to = to}, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
+  ASSERT_FALSE(path.points.empty());
+  EXPECT_LT(path.points.back().position.x, 4);
+  EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
+  finder.find({.from = from, .to = Vec3d{100, 0, 0}}, path);
+  EXPECT_EQ(path.end, PathEnd::kNoPlace);
+  finder.find({.from = from, .to = Place{}}, path);
+  EXPECT_EQ(path.end, PathEnd::kNoPlace);
+  EXPECT_FALSE(finder.is_free(Place{}));
+  EXPECT_FALSE(finder.is_free(Vec3d{100, 0, 0}));
+  EXPECT_FALSE(finder.find_node_place(from, 1)) << "there are no nodes";
+}
+
+TEST(PathFinder, RefusesWhatItsSpaceDoesNotHave) {
+  const World world = bake(worlds::flat(6), 0.2);
+  Context context;
+  const auto refused = [&](const PathConfig& config, Errc code) {
+    const auto made = PathFinder::create(world, config, context);
+    ASSERT_FALSE(made);
+    EXPECT_EQ(made.error().code, code) << made.error().message;
+  };
+  refused({.avatar_class = 9}, Errc::kBadConfig);
+  refused({.avatar_class = -1}, Errc::kBadConfig);
+  refused({.slope_cost = -1}, Errc::kBadConfig);
+  refused({.slope_cost = std::nan("")}, Errc::kBadConfig);
+  refused({.slope_cost = 1, .speedup = PathSpeedup::kLabels}, Errc::kBadConfig);
+  refused({.workers = -1}, Errc::kBadConfig);
+  refused({.space = PathSpace::kAir}, Errc::kNotFound);
+  EXPECT_FALSE(PathFinder::create(world, {.space = PathSpace::kNodes}, context)) << "no nodes";
+  EXPECT_FALSE(PathFinder::create(World(), {}, context));
+  context.cancel = true;
+  refused({}, Errc::kCancelled);
+}
+
+TEST(PathFinder, InPartsItIsTheSamePath) {
+  Stage s;
+  for (const PathConfig& config :
+       {PathConfig{.speedup = PathSpeedup::kOnDemand}, PathConfig{.slope_cost = 2},
+        PathConfig{.avatar_class = kFlyer}, PathConfig{.avatar_class = kClimber}}) {
+    PathFinder finder = s.finder(config);
+    Path whole, parts;
+    for (uint64_t n = 0; n < 6; ++n) {
+      const PathQuery query{.from = s.place(config.avatar_class, n).position,
+                            .to = s.place(config.avatar_class, n + 1).position};
+      finder.find(query, whole);
+      finder.begin(query);
+      while (!finder.advance(3, parts)) EXPECT_EQ(parts.end, PathEnd::kBudgetExhausted);
+      expect_same(whole, parts);
+    }
+  }
+}
+
+// Random edits, among them thousands of a door: finders that have followed all along find what one
+// does that sees the edits that are left for the first time.
+TEST(Edits, AFinderThatFollowsFindsWhatANewOneFinds) {
+  Stage s;
+  constexpr uint64_t kSeed = 11;
+  Edits edits;
+  PathFinder walks = s.finder({.edits = edits}),
+             labels = s.finder({.speedup = PathSpeedup::kLabels, .edits = edits}),
+             flies = s.finder({.avatar_class = kFlyer, .edits = edits}),
+             climbs = s.finder({.avatar_class = kClimber, .edits = edits});
+  struct Put {
+    EditId id;
+    int kind;
+    Prism prism;
+    bool active = true;
+  };
+  std::vector<Put> put;
+  Path path, other;
+  uint64_t different = 0;
+  for (uint64_t round = 0; round < 24; ++round) {
+    for (uint64_t i = 0; i < 4; ++i) {
+      const uint64_t n = 4 * round + i;
+      const uint64_t what = random_below(kSeed, n, 0, put.size() < 4 ? 2 : 5);
+      if (what < 2) {
+        const Vec3d at = s.place(kAdult, 100 + n).position;
+        const Prism prism = Prism::box(at - Vec3d{0.7, 0.1, 0.7}, at + Vec3d{0.7, 1.5, 0.7});
+        const auto id = what == 0 ? edits.add_obstacle(prism) : edits.add_area(prism, 3);
+        put.push_back({need(id), static_cast<int>(what), prism});
+      } else {
+        const size_t which = random_below(kSeed, n, 1, put.size());
+        if (what == 2) {
+          EXPECT_TRUE(edits.remove(put[which].id));
+          EXPECT_FALSE(edits.set_active(put[which].id, true));
+          put.erase(put.begin() + static_cast<ptrdiff_t>(which));
+        } else {
+          put[which].active = !put[which].active;
+          EXPECT_TRUE(edits.set_active(put[which].id, put[which].active));
+        }
+      }
+    }
+    if (round == 8) need(edits.set_area_cost(3, 5));
+    if (round == 12) {  // More than is kept of what has changed.
+      for (int i = 0; i < 10000; ++i) EXPECT_TRUE(edits.set_active(put[0].id, i % 2 == 0));
+      put[0].active = false;
+    }
+    Edits left;
+    for (const Put& one : put) {
+      const auto id = one.kind == 0 ? left.add_obstacle(one.prism) : left.add_area(one.prism, 3);
+      need(id);
+      if (!one.active) left.set_active(*id, false);
+    }
+    if (round >= 8) need(left.set_area_cost(3, 5));
+    PathFinder new_walks = s.finder({.edits = left}),
+               new_labels = s.finder({.speedup = PathSpeedup::kLabels, .edits = left}),
+               new_flies = s.finder({.avatar_class = kFlyer, .edits = left}),
+               new_climbs = s.finder({.avatar_class = kClimber, .edits = left});
+    const auto compare = [&](PathFinder& follows, PathFinder& begins, const PathQuery& query) {
+      follows.find(query, path);
+      begins.find(query, other);
+      expect_same(path, other);
+    };
+    PathFinder plain = s.finder({});
+    for (uint64_t n = 4 * round; n < 4 * round + 4; ++n) {
+      const PathQuery query{.from = s.place(kAdult, n), .to = s.place(kAdult, n + 1)};
+      compare(labels, new_labels, query);
+      compare(walks, new_walks, query);
+      plain.find(query, other);
+      different += path.length != other.length ? 1 : 0;
+      compare(flies, new_flies, {.from = *new_flies.random_point(3, n), .to = s.place(kFlyer, n)});
+      compare(climbs, new_climbs,
+              {.from = s.nodes.random_place(kClimber, 1, n),
+               .to = s.nodes.random_place(kClimber, 1, n + 1)});
+    }
+    // A copy follows by itself.
+    if (round % 8 == 5) walks = PathFinder(walks);
+  }
+  EXPECT_GT(different, 10u) << "the edits change no path";
+}
+
+TEST(Edits, LeadAroundAndBackAgain) {
+  const World world = bake(worlds::flat(20), 0.2);
+  Context context;
+  Edits edits;
+  PathFinder finder = need(PathFinder::create(world, {.edits = edits}, context));
+  const PathQuery query{.from = Vec3d{2, 0, 10}, .to = Vec3d{18, 0, 10}};
+  Path path;
+  finder.find(query, path);
+  EXPECT_NEAR(path.length, 16, 1e-6);
+  const auto wall = edits.add_obstacle(Prism::box({9, 0, 0}, {10, 2, 18}));
+  ASSERT_TRUE(wall);
+  finder.find(query, path);
+  ASSERT_EQ(path.end, PathEnd::kReached);
+  EXPECT_GT(path.length, 22);
+  ASSERT_TRUE(edits.set_active(*wall, false));
+  finder.find(query, path);
+  EXPECT_NEAR(path.length, 16, 1e-6);
+  // Triangles, an area that is closed, and a link through it.
+  const std::vector<Vec3d> corners{{9.5, 0, -1}, {9.5, 0, 21}, {9.5, 2, 21}, {9.5, 2, -1}};
+  const std::vector<std::array<uint32_t, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
+  const auto sheet = edits.add_obstacle(corners, triangles);
+  ASSERT_TRUE(sheet);
+  finder.find(query, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
+  ASSERT_TRUE(edits.remove(*sheet));
+  const auto area = edits.add_area(Prism::box({8, -1, -1}, {12, 1, 21}), 7);
+  ASSERT_TRUE(area);
+  finder.find(query, path);
+  EXPECT_NEAR(path.length, 16, 1e-6);
+  ASSERT_TRUE(edits.set_area_cost(7, std::numeric_limits<double>::infinity()));
+  finder.find(query, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
+  const auto link = edits.add_off_mesh_link(
+      {world.find_place(0, {7, 0, 10}, 1), world.find_place(0, {13, 0, 10}, 1), 0.5});
+  ASSERT_TRUE(link);
+  finder.find(query, path);
+  ASSERT_EQ(path.end, PathEnd::kReached);
+  EXPECT_EQ(path.links.size(), 1u);
+  EXPECT_NEAR(path.cost, 5 + 0.5 + 5, 0.1);
+  const uint64_t version = edits.version();
+  ASSERT_TRUE(edits.set_area_cost(7, 1));
+  EXPECT_GT(edits.version(), version);
+  ASSERT_TRUE(edits.remove(*link));
+  finder.find(query, path);
+  EXPECT_NEAR(path.length, 16, 1e-6);
+}
+
+// A link that was added while a crate stood at its end works once the crate is removed.
+TEST(Edits, AnOffMeshLinkOutlivesACrateAtItsEnd) {
+  const World world = bake(worlds::doorway(0.2), 0.1);
+  Context context;
+  const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
+  Edits edits;
+  PathFinder finder = need(PathFinder::create(world, {.edits = edits}, context));
+  const auto crate = edits.add_obstacle(Prism::box({4.4, 0, 2.9}, {4.6, 1, 3.1}));
+  ASSERT_TRUE(crate);
+  ASSERT_TRUE(edits.add_off_mesh_link({at(3.5, 3), at(4.5, 3), 1.5, false}));
+  Path path;
+  finder.find(at(1, 1), at(7, 5), path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
+  ASSERT_TRUE(edits.remove(*crate));
+  finder.find(at(1, 1), at(7, 5), path);
+  EXPECT_EQ(path.end, PathEnd::kReached);
+}
+
+TEST(Edits, RefuseNonsense) {
+  const World world = bake(worlds::flat(6), 0.2);
+  const Place place = world.find_place(0, {3, 0, 3}, 0.5);
+  Edits edits;
+  const uint64_t version = edits.version();
+  const double nan = std::nan("");
+  EXPECT_FALSE(edits.add_obstacle(Prism{}));
+  EXPECT_FALSE(edits.add_obstacle(Prism::box({nan, 0, 0}, {1, 1, 1})));
+  EXPECT_FALSE(edits.add_obstacle(std::vector<Vec3d>{}, {}));
+  const std::vector<std::array<uint32_t, 3>> beyond{{0, 1, 5}};
+  EXPECT_FALSE(edits.add_obstacle(std::vector<Vec3d>(3), beyond));
+  EXPECT_FALSE(edits.add_area(Prism::box({0, 0, 0}, {1, 1, 1}), 0));
+  EXPECT_FALSE(edits.add_area(Prism::box({0, 0, 0}, {1, 1, 1}), 64));
+  EXPECT_FALSE(edits.add_area(Prism{}, 1));
+  EXPECT_FALSE(edits.add_off_mesh_link({place, {}, 1}));
+  EXPECT_FALSE(edits.add_off_mesh_link({{}, place, 1}));
+  for (const double cost : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()}) {
+    EXPECT_FALSE(edits.add_off_mesh_link({place, place, cost}));
+  }
+  EXPECT_FALSE(edits.set_area_cost(0, 2));
+  EXPECT_FALSE(edits.set_area_cost(1, nan));
+  EXPECT_FALSE(edits.set_area_cost(1, 0));
+  EXPECT_FALSE(edits.remove(0) || edits.remove(1) || edits.set_active(7, true));
+  EXPECT_EQ(edits.version(), version) << "what was refused is no change";
+}
+
+}  // namespace
+}  // namespace throng

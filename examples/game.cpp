@@ -44,37 +44,36 @@ int main(int argc, char** argv) {
 
   // A door around the path's middle corner, a crate before the player, and the path past both.
   const Vec3d corner = path.points[path.points.size() / 2].position;
-  const Prism door = Prism::box(corner - Vec3d{2, 0, 2}, corner + Vec3d{2, 2, 2});
-  const Prism crate = Prism::circle(from.position + line * 0.1, 0.6, 1);
-  for (const Prism& obstacle : {door, crate}) need(edits.add_obstacle(obstacle));
+  const Prism shut = Prism::box(corner - Vec3d{2, 0, 2}, corner + Vec3d{2, 2, 2});
+  const EditId door = need(edits.add_obstacle(shut));
+  need(edits.add_obstacle(Prism::circle(from.position + line * 0.1, 0.6, 1)));
   finder.find(from, to, path);
   std::printf(", with crate and shut door %.1f m\n", path.length);
   FlowField guide = need(FlowField::create(finder, {&to, 1}, {}, context));
 
-  // The crowd: a player, and 500 avatars with goals. It has obstacles of its own.
-  Crowd crowd = need(Crowd::create(world, {.dt = 0.1}));
-  need(crowd.add_obstacle(crate));
+  // The crowd: a player, and 500 avatars with goals. It reads the same edits; the door is open.
+  edits.set_active(door, false);
+  Crowd crowd = need(Crowd::create(world, {.dt = 0.1, .edits = edits}));
   const std::vector<AvatarSpawn> spawns = {{.place = from, .speed = 2}};
   const auto player = need(crowd.add(spawns, context));
   const auto others = need(crowd.scatter(500, {}, context));
-  std::vector<Place> goals;
-  for (uint64_t n = 0; n < 500; ++n) goals.push_back(world.random_place(0, /*seed=*/1, n));
+  std::vector<Place> goals(500);
+  for (size_t n = 0; n < 500; ++n) goals[n] = world.random_place(0, /*seed=*/1, n);
   crowd.set_goals(others, goals);
 
   // Until the player is there: a velocity for it, as from its keys, and a step of all.
-  uint64_t arrived = 0, faults = 0;
-  int step = 0;
+  int arrived = 0, faults = 0, step = 0;
   for (Vec3d here = from.position; step < 1200 && length(to.position - here) > 0.5; ++step) {
-    if (step == 50) need(crowd.add_obstacle(door));  // It shuts as soon as no avatar is inside.
+    if (step == 50) edits.set_active(door, true);  // It shuts as soon as no avatar is inside.
     const Vec3d ahead = guide.next(world.find_place(0, here, 0.5)).position - here;
     const Vec3d velocity = ahead * (2 / length(ahead));
     crowd.set_velocities(player, {&velocity, 1});
-    arrived += crowd.step().arrived;
+    arrived += static_cast<int>(crowd.step().arrived);
     const CrowdCheck check = crowd.check();
-    faults += check.overlaps + check.wall_entries + check.obstacle_entries;
+    faults += static_cast<int>(check.overlaps + check.wall_entries + check.obstacle_entries);
     here = crowd.read(player[0])->position;
   }
   std::printf("the player arrives after %.1f s; %d of 500 avatars have arrived; %d faults\n",
-              step * 0.1, static_cast<int>(arrived), static_cast<int>(faults));
+              step * 0.1, arrived, faults);
   return step < 1200 && faults == 0 ? 0 : 1;
 }

@@ -140,6 +140,13 @@ struct CrowdConfig {
   /// walk over them; without nodes these walk on level tiles, as others do.
   Nodes nodes = {};
   CrowdTuning tuning = {};  ///< Fine for most crowds as it is.
+  /// What is put up in the world, also for finders. Before each step, and before avatars are added,
+  /// the crowd puts up the obstacles as add_obstacle does (static; of triangles their box), and
+  /// avatars on foot plan over areas with the costs that these have. Off-mesh links are for classes
+  /// that go over nodes (NodeConfig::off_mesh_links).
+  Edits edits = {};
+  /// PathConfig::slope_cost of avatars that walk or climb. [0 to 1000]
+  double slope_cost = 0;
 };
 
 /// An avatar to add.
@@ -244,6 +251,9 @@ class THRONG_API Crowd {
   bool remove_obstacle(ObstacleId id);
   /// The state of an obstacle. Fails with kNotFound.
   [[nodiscard]] Result<ObstacleState> obstacle(ObstacleId id) const;
+  /// The obstacle of an edit of CrowdConfig::edits; its state may still wait for avatars. None if
+  /// the edit is none, no obstacle, or was never active since the crowd last looked.
+  [[nodiscard]] ObstacleId obstacle_of(EditId edit) const;
   /// All obstacles that are up, in order of slot.
   [[nodiscard]] std::vector<Prism> obstacles() const;
   /// The avatars that blocked waiting obstacles when the last step began, in order of slot. Among
@@ -327,7 +337,8 @@ class THRONG_API Crowd {
   /// Saves the whole state. A restored crowd makes the same steps, bit for bit, with any number of
   /// workers. In this machine's byte order; the format may change with every version.
   [[nodiscard]] std::vector<uint8_t> save() const;
-  /// Restores a saved crowd. World and settings must be the same, except for `workers`. Fails with
+  /// Restores a saved crowd. World and settings must be the same, except for `workers`;
+  /// edits must have been made by the same calls. Fails with
   /// kBadFile (truncated, corrupt, of another world or version), and as `add` does.
   [[nodiscard]] static Result<Crowd> restore(const World& world, const CrowdConfig& config,
                                              std::span<const uint8_t> saved, Context& context);
@@ -338,6 +349,7 @@ class THRONG_API Crowd {
  private:
   struct State;
   explicit Crowd(std::unique_ptr<State> state);
+  void follow_edits();
   std::unique_ptr<State> state_;
 };
 

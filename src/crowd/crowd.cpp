@@ -75,6 +75,12 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (!(config.tuning.no_progress_after >= 0 && config.tuning.no_progress_after <= 1e6)) {
     return bad_config("no_progress_after must be 0 to 1000000 s");
   }
+  if (!(config.slope_cost >= 0 && config.slope_cost <= 1000)) {
+    return bad_config("slope_cost must be 0 to 1000");
+  }
+  if (config.speedup == PathSpeedup::kOnDemand) {
+    return bad_config("it searches the whole ground: PathSpeedup::kOnDemand is not for crowds");
+  }
   if (data_of(config.nodes) != nullptr && !is_same_world(config.nodes, world)) {
     return bad_config("the nodes are of another world");
   }
@@ -168,6 +174,9 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   if (parts->air) {
     flyers.set_air(static_cast<size_t>(number), &*parts->air, body_class(number).radius);
     flights.resize(generation.size());
+  }
+  if (has_costs() && config.routing == Routing::kPaths && !over_nodes) {
+    make_lives(static_cast<size_t>(number));
   }
   obstacles.open_class(static_cast<size_t>(number), parts->ground);
   for (uint32_t slot = 0; slot < obstacles.all().size(); ++slot) {
@@ -273,6 +282,7 @@ AvatarId Crowd::State::add(crowd::Body body, const crowd::Climb& climb) {
 }
 
 Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Context& context) {
+  follow_edits();
   State& s = *state_;
   std::vector<crowd::Body> bodies;
   int32_t widest = s.widest;
@@ -321,6 +331,7 @@ Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Co
 
 Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& like,
                                              Context& context) {
+  follow_edits();
   State& s = *state_;
   if (auto ok = s.open_class(like.avatar_class, context); !ok) return ok.error();
   const auto body = s.body_of(like);
@@ -528,8 +539,9 @@ void Crowd::set_views(std::span<const CrowdView> views) {
 }
 
 CrowdReport Crowd::step() {
-  State& s = *state_;
   const auto start = Clock::now();
+  follow_edits();
+  State& s = *state_;
   CrowdReport report;
   report.step = ++s.step;
   report.avatars = s.engine.bodies().size();

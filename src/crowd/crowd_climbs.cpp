@@ -106,7 +106,9 @@ bool Crowd::State::is_climber_class(int32_t number) const {
 
 Result<void> Crowd::State::open_nodes(int32_t number, ClassParts& parts, Context& context) const {
   auto finder = path::NodeFinder::create(
-      config.nodes, {.avatar_class = number, .workers = config.workers}, context);
+      config.nodes,
+      {.avatar_class = number, .slope_cost = config.slope_cost, .workers = config.workers},
+      context);
   if (!finder) return finder.error();
   parts.node_finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
   parts.node_paths.resize(parts.node_finders.size());

@@ -37,6 +37,16 @@ void remove_change(std::vector<Finder>& finders, path::ChangeId change) {
   for (Finder& finder : finders) finder.remove(change);
 }
 
+// Of triangles the box around them, which may be flat.
+Prism prism_of(const path::Solid& solid) {
+  if (solid.triangles.empty()) return solid.prism;
+  constexpr double kThin = 0.001;  // [m]
+  const Prism& box = solid.prism;
+  const auto [low, high] = std::minmax_element(box.corners.begin(), box.corners.end());
+  return Prism::box({(*low)[0] - kThin, box.low - kThin, (*low)[1] - kThin},
+                    {(*high)[0] + kThin, box.high + kThin, (*high)[1] + kThin});
+}
+
 Error no_obstacle() { return {Errc::kNotFound, "crowd: there is no obstacle of that id"}; }
 
 }  // namespace
@@ -110,6 +120,39 @@ Result<ObstacleState> Crowd::obstacle(ObstacleId id) const {
                        seconds(found->requested_step),
                        seconds(found->up_step),
                        found->occupants};
+}
+
+// Obstacles of edits are those of add_obstacle. One that is not active is not added, so that it
+// costs nothing.
+void Crowd::follow_edits() {
+  State& s = *state_;
+  const path::EditList& list = s.edits();
+  if (s.edits_version == list.version()) return;
+  bool areas_changed = false;
+  s.of_edit.resize(std::max(s.of_edit.size(), list.edits.size()));
+  list.for_changed(s.edits_version, [&](const path::EditList::Changed& what) {
+    if (what.edit == 0 || list.edits[what.edit - 1].kind != path::EditList::Kind::kObstacle) {
+      areas_changed = true;
+      return;
+    }
+    const path::EditList::Edit& edit = list.edits[what.edit - 1];
+    ObstacleId& own = s.of_edit[what.edit - 1];
+    if (edit.removed) {
+      remove_obstacle(own);
+      own = {};
+    } else if (own) {
+      set_obstacle_active(own, edit.active);
+    } else if (edit.active) {
+      const auto added = add_obstacle(prism_of(edit.solid));
+      if (added) own = *added;  // Edits has checked it.
+    }
+  });
+  s.edits_version = list.version();
+  if (areas_changed) s.areas_changed();
+}
+
+ObstacleId Crowd::obstacle_of(EditId edit) const {
+  return edit >= 1 && edit <= state_->of_edit.size() ? state_->of_edit[edit - 1] : ObstacleId{};
 }
 
 std::vector<Prism> Crowd::obstacles() const {

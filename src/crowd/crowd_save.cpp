@@ -18,7 +18,7 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kMagic = 0x38305744574f5243;  // "CROWDW08"
+constexpr uint64_t kMagic = 0x39305744574f5243;  // "CROWDW09"
 
 struct Head {
   uint64_t magic = kMagic;
@@ -34,9 +34,10 @@ struct Head {
   int32_t rounds = 0, routing = 0, deadlock_avoidance = 0, flows_are_old = 0;
   int32_t model = 0, low_detail_steps = 0;
   uint64_t views = 0;
-  double low_detail_reaction = 0;
+  double low_detail_reaction = 0, slope_cost = 0;
+  uint64_t edits = 0, edits_version = 0;
 };
-static_assert(sizeof(Head) == 23 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 26 * 8 && std::is_trivially_copyable_v<Head>);
 static_assert(std::is_trivially_copyable_v<crowd::Route> &&
               sizeof(crowd::Route) == 16 + 12 * crowd::Route::kCorners);
 
@@ -124,7 +125,7 @@ uint64_t size_of(const Head& head) {
          (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
          head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 +
          head.flights * sizeof(crowd::Flight) + head.climbs * sizeof(crowd::Climb) +
-         head.views * sizeof(crowd::EngineDetail::View) + 8;
+         head.views * sizeof(crowd::EngineDetail::View) + head.edits * sizeof(ObstacleId) + 8;
 }
 
 // A world that was never written has no hash of its own.
@@ -154,6 +155,7 @@ Head head_of(const World& world, const CrowdConfig& config) {
   head.model = static_cast<int32_t>(config.model);
   head.low_detail_steps = config.tuning.low_detail_steps;
   head.low_detail_reaction = config.tuning.low_detail_reaction;
+  head.slope_cost = config.slope_cost;
   return head;
 }
 
@@ -256,13 +258,14 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
       head.reaction != expected.reaction || head.rounds != expected.rounds ||
       head.routing != expected.routing || head.deadlock_avoidance != expected.deadlock_avoidance ||
       head.model != expected.model || head.low_detail_steps != expected.low_detail_steps ||
-      head.low_detail_reaction != expected.low_detail_reaction) {
+      head.low_detail_reaction != expected.low_detail_reaction ||
+      head.slope_cost != expected.slope_cost) {
     return bad("has other settings; give those that it was made with");
   }
   constexpr uint64_t kMax = uint64_t{1} << 32;
   if (head.bodies >= kMax || head.slots >= kMax || head.free_slots >= kMax ||
       head.obstacles >= kMax || head.corners >= kMax || head.free_obstacles >= kMax ||
-      head.target_values >= kMax || head.views >= kMax ||
+      head.target_values >= kMax || head.views >= kMax || head.edits >= kMax ||
       (head.flights != 0 && head.flights != head.slots) ||
       (head.climbs != 0 && head.climbs != head.slots) || saved.size() != size_of(head)) {
     return bad("is cut short; save the crowd again");
@@ -307,6 +310,7 @@ SavedArrays read_arrays(const Head& head, const uint8_t* at, State& s) {
   take(saved.flights, head.flights);
   take(saved.climbs, head.climbs);
   take(s.views, head.views);
+  take(s.of_edit, head.edits);
   return saved;
 }
 
@@ -357,6 +361,8 @@ std::vector<uint8_t> Crowd::save() const {
   head.flights = s.flights.size();
   head.climbs = s.climbs.size();
   head.views = s.views.size();
+  head.edits = s.of_edit.size();
+  head.edits_version = s.edits_version;
   std::vector<uint8_t> out;
   out.reserve(size_of(head));
   put(out, &head, 1);
@@ -371,6 +377,7 @@ std::vector<uint8_t> Crowd::save() const {
   put(out, s.flights.data(), s.flights.size());
   put(out, s.climbs.data(), s.climbs.size());
   put(out, s.views.data(), s.views.size());
+  put(out, s.of_edit.data(), s.of_edit.size());
   const uint64_t sum = hash_bytes(out.data(), out.size());
   put(out, &sum, 1);
   return out;
@@ -423,6 +430,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   s.step = head.step;
   s.sub_step = head.sub_step;
   s.scattered = head.scattered;
+  s.edits_version = head.edits_version;
   return made;
 }
 

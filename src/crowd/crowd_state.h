@@ -26,6 +26,7 @@
 #include "crowd/target.h"
 #include "crowd/walk/crowd_engine.h"
 #include "crowd/walk/routes.h"
+#include "path/edits/edit_list.h"
 #include "path/edits/flow_points.h"
 #include "path/edits/live_finder.h"
 #include "path/flight_finder.h"
@@ -49,8 +50,9 @@ struct ClassParts {
   crowd::CrowdGround ground;
   std::optional<crowd::StandingDraw> standing;  // none: the ground has changed since
   std::vector<path::MeshFinder> finders;        // one a worker
-  std::vector<path::LiveFinder> lives;  // one a worker, once paths avoid obstacles or lead to
-                                        // targets
+  std::vector<path::LiveFinder> lives;    // one a worker, once paths avoid obstacles or lead to
+                                          // targets
+  std::vector<path::AppliedEdits> areas;  // of `lives`
   std::vector<Path> paths;
   std::vector<crowd::RepairScratch> repairs;
   std::vector<path::FlowPoints> flows;  // by target
@@ -100,6 +102,8 @@ struct Crowd::State {
   std::vector<AvatarId> no_progress;
   std::vector<crowd::Target> targets;  // TargetId less one
   bool flows_are_old = false;          // the ground has changed since
+  uint64_t edits_version = 0;          // that is followed
+  std::vector<ObstacleId> of_edit;     // by id - 1
   std::vector<AvatarId> arrived, goal_unreachable, blockers;
   std::mutex goal_mutex;
   mutable std::atomic<uint64_t> out_of_memory{0};  // searches of this step
@@ -160,6 +164,11 @@ struct Crowd::State {
   void sync_paths(uint32_t slot, size_t number);
   void sync_paths(uint32_t slot);
   void cut_paths(std::span<const uint32_t> slots);
+  [[nodiscard]] const path::EditList& edits() const { return *Access::state(config.edits); }
+  /// Do paths on foot need a search that knows costs?
+  [[nodiscard]] bool has_costs() const { return config.slope_cost > 0 || edits().has_costs(); }
+  /// Kinds of ground or their costs have changed.
+  void areas_changed();
   /// Updates the grounds to the obstacles.
   void ground_changed();
   /// Creates the live grounds of a class, if there are none yet.

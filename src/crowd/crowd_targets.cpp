@@ -48,9 +48,32 @@ Result<TargetId> Crowd::add_target(std::span<const Prism> areas, Context& contex
 void Crowd::State::make_lives(size_t number) {
   std::vector<path::LiveFinder>& lives = classes[number]->lives;
   if (!lives.empty()) return;
-  auto made = path::LiveFinder::create(world, {.avatar_class = static_cast<int32_t>(number)});
+  auto made = path::LiveFinder::create(
+      world, {.avatar_class = static_cast<int32_t>(number), .slope_cost = config.slope_cost});
   THRONG_ASSERT(made);  // The class is one of the world's.
   lives.assign(static_cast<size_t>(worker_count(config.workers)), *made);
+  std::vector<path::AppliedEdits>& areas = classes[number]->areas;
+  areas.assign(lives.size(), path::AppliedEdits(path::AppliedEdits::Which::kAreas));
+  for (size_t w = 0; w < lives.size(); ++w) areas[w].follow(edits(), lives[w]);
+}
+
+// All avatars on foot search again.
+void Crowd::State::areas_changed() {
+  if (config.routing != Routing::kPaths) return;
+  for (size_t c = 0; c < classes.size(); ++c) {
+    if (!classes[c]) continue;
+    ClassParts& parts = *classes[c];
+    if (!has_costs() && parts.lives.empty()) continue;
+    make_lives(c);
+    for (size_t w = 0; w < parts.lives.size(); ++w) parts.areas[w].follow(edits(), parts.lives[w]);
+  }
+  flows_are_old = true;
+  for (crowd::Body& body : engine.bodies()) {
+    if (body.has(crowd::Body::kHasGoal) && !body.has(crowd::Body::kFlying) && !body.climbs &&
+        !body.leaves) {
+      body.flags |= crowd::Body::kNeedsPath;
+    }
+  }
 }
 
 Result<void> Crowd::State::find_flows(int32_t number, Context& context) {
@@ -135,9 +158,11 @@ bool Crowd::State::plan_path(crowd::Body& body, crowd::Route& route,
     route.goal = here;  // if it stands there already
   } else {
     const Place to = crowd::place_of(data, body, route.goal);
-    parts.finders[w].find(from, to, path, search_budget());
+    const bool by_cost = has_costs();
+    if (by_cost) parts.lives[w].find(from, to, path, search_budget());
+    if (!by_cost) parts.finders[w].find(from, to, path, search_budget());
     SpentBudget spent = path.spent;
-    if (obstacles.cuts_paths() && path.end == PathEnd::kReached) {
+    if (!by_cost && obstacles.cuts_paths() && path.end == PathEnd::kReached) {
       crowd::lead_around(data, parts.lives[w], ground, search_budget(), path, parts.repairs[w]);
       if (path.spent != SpentBudget::kNone) spent = path.spent;
     }

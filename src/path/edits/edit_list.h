@@ -32,7 +32,19 @@ struct EditList {
   [[nodiscard]] uint64_t version() const { return first_version + changed.size(); }
   /// May paths on the ground differ from those of the baked ground?
   [[nodiscard]] bool bears_on_ground() const {
-    return active_solids + active_links > 0 || (active_areas > 0 && costs_differ);
+    return active_solids + active_links > 0 || has_costs();
+  }
+  /// Do areas have another cost than the ground around them?
+  [[nodiscard]] bool has_costs() const { return active_areas > 0 && costs_differ; }
+  /// Calls visit(Changed) for what has changed since a version, or may have.
+  template <class Visit>
+  void for_changed(uint64_t since, Visit visit) const {
+    if (since >= first_version) {
+      for (size_t i = since - first_version; i < changed.size(); ++i) visit(changed[i]);
+      return;
+    }
+    for (EditId id = 1; id <= edits.size(); ++id) visit(Changed{.edit = id});
+    for (uint8_t kind = 1; kind < area_costs.size(); ++kind) visit(Changed{.area = kind});
   }
   EditId add(Edit edit);
   bool set_active(EditId id, bool active, bool remove);
@@ -55,23 +67,18 @@ struct EditList {
 /// The edits that one finder has applied.
 class AppliedEdits {
  public:
+  enum class Which : uint8_t { kAll, kAreas };
+  explicit AppliedEdits(Which which = Which::kAll) : which_(which) {}
+
   /// Applies what has changed since the last call, to the same finder or a copy of it.
   template <class Finder>
   void follow(const EditList& list, Finder& finder) {
     if (version_ == list.version()) return;
     while (ids_.size() < list.edits.size()) add(list.edits[ids_.size()], finder);
-    if (version_ < list.first_version) {
-      for (EditId id = 1; id <= ids_.size(); ++id) apply(list, id, finder);
-      for (uint8_t kind = 1; kind < list.area_costs.size(); ++kind) {
-        set_cost(finder, kind, list.area_costs[kind]);
-      }
-    } else {
-      for (size_t i = version_ - list.first_version; i < list.changed.size(); ++i) {
-        const EditList::Changed& what = list.changed[i];
-        if (what.edit != 0) apply(list, what.edit, finder);
-        if (what.edit == 0) set_cost(finder, what.area, list.area_costs[what.area]);
-      }
-    }
+    list.for_changed(version_, [&](const EditList::Changed& what) {
+      if (what.edit != 0) apply(list, what.edit, finder);
+      if (what.edit == 0) set_cost(finder, what.area, list.area_costs[what.area]);
+    });
     version_ = list.version();
   }
 
@@ -79,7 +86,7 @@ class AppliedEdits {
   // Also one that is not active: of areas that overlap the last one counts.
   template <class Finder>
   void add(const EditList::Edit& edit, Finder& finder) {
-    const ChangeId id = edit.removed ? 0 : id_of_new(edit, finder);
+    const ChangeId id = edit.removed || !is_wanted(edit) ? 0 : id_of_new(edit, finder);
     if (id != 0 && !edit.active) finder.set_active(id, false);
     ids_.push_back(id);
   }
@@ -89,7 +96,7 @@ class AppliedEdits {
     const EditList::Edit& edit = list.edits[id - 1];
     ChangeId& own = ids_[id - 1];
     // The class can perhaps stand by now where the off-mesh link ends.
-    if (own == 0 && edit.active && !edit.removed) own = id_of_new(edit, finder);
+    if (own == 0 && edit.active && !edit.removed && is_wanted(edit)) own = id_of_new(edit, finder);
     if (own == 0) return;
     if (!edit.removed) {
       finder.set_active(own, edit.active);
@@ -97,6 +104,10 @@ class AppliedEdits {
     }
     finder.remove(own);
     own = 0;
+  }
+
+  [[nodiscard]] bool is_wanted(const EditList::Edit& edit) const {
+    return which_ == Which::kAll || edit.kind == EditList::Kind::kArea;
   }
 
   // 0: the finder does not know edits of this kind.
@@ -109,6 +120,7 @@ class AppliedEdits {
   static void set_cost(Finder& /*finder*/, uint8_t /*kind*/, double /*cost*/) {}
   static void set_cost(LiveFinder& finder, uint8_t kind, double cost);
 
+  Which which_;
   std::vector<ChangeId> ids_;  // of the finder, by id of the edit - 1; 0: none
   uint64_t version_ = 0;
 };

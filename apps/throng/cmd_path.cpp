@@ -187,12 +187,9 @@ int path(Session& session, const PathOptions& options) {
   const Result<int32_t> avatar_class = class_named(*world, options.avatar_class);
   if (!avatar_class) return fail(avatar_class.error());
   const AvatarClass avatar = world->summary().classes[static_cast<size_t>(*avatar_class)];
-  const bool over_nodes = options.nodes || (!options.fly && goes_over_nodes(avatar));
-  if (auto ok = check_options(options, over_nodes); !ok) return fail(ok.error());
-  const PathSpace space = options.fly  ? PathSpace::kAir
-                          : over_nodes ? PathSpace::kNodes
-                                       : PathSpace::kGround;
-  return find(session, options, *world, *avatar_class, space);
+  const auto space = space_of(options, *world, avatar);
+  if (!space) return fail(space.error());
+  return find(session, options, *world, *avatar_class, *space);
 }
 
 }  // namespace
@@ -204,7 +201,7 @@ void add_path(CLI::App& parser, Session& session) {
                   "throng path garage.throng --from 14,0,8 --to 30,8.7,30 --class adult\n"
                   "throng path garage.throng --from 14,0,8 --to 20,0,8 --block 16,0,0,17,2,9\n"
                   "throng bake builtin:bridge --fly -o bridge.throng\n"
-                  "throng path bridge.throng --from 10,9,10 --to 30,9,30 --class flyer --fly\n"
+                  "throng path bridge.throng --from 10,9,10 --to 30,9,30 --class flyer\n"
                   "throng bake builtin:landscape,size=160 -o hills.throng --cell 0.5 --nodes\n"
                   "throng path hills.throng --from 20,5,20 --to 120,5,90 --tolerance 20 --nodes");
   const auto options = std::make_shared<PathOptions>();

@@ -26,9 +26,12 @@ void add_path_options(CLI::App& command, PathOptions& options) {
       ->check(at_least(0))
       ->capture_default_str();
   command.add_flag("--fly", options.fly,
-                   "Path through the air, for a class that flies; an end may be on the ground");
+                   "Path through the air, for a class that flies, as if the world has air and no "
+                   "option changes the ground; an end may be on the ground");
   command.add_flag("--nodes", options.nodes,
                    "Path over the world's nodes, as always for classes that climb");
+  command.add_flag("--on-foot", options.on_foot,
+                   "Path over level ground, also for a class that climbs or flies");
   const auto add_list = [&](const char* name, std::vector<double>& list, const char* what,
                             char between, int count, const char* type) {
     command.add_option(name, list, what)
@@ -53,22 +56,48 @@ void add_path_options(CLI::App& command, PathOptions& options) {
       ->capture_default_str();
 }
 
+namespace {
+
+bool has_ground_costs(const PathOptions& options) {
+  return !options.off_mesh_links.empty() || !options.area_costs.empty();
+}
+
 Result<void> check_options(const PathOptions& options, bool over_nodes) {
-  const bool has_costs = !options.off_mesh_links.empty() || !options.area_costs.empty();
-  if (options.fly && options.nodes) {
-    return Error{Errc::kBadConfig, "--fly finds paths through the air, --nodes over the ground"};
+  if (options.fly + options.nodes + options.on_foot > 1) {
+    return Error{
+        Errc::kBadConfig,
+        "--fly finds paths through the air, --nodes over all surfaces, --on-foot over level "
+        "ground: give one of them"};
   }
-  if (options.fly && (has_costs || options.slope_cost > 0)) {
+  if (options.fly && (has_ground_costs(options) || options.slope_cost > 0)) {
     return Error{Errc::kBadConfig,
                  "--off-mesh-link, --area-cost and --slope-cost change the ground; paths through "
                  "the air (--fly) take only --block"};
   }
-  if (over_nodes && has_costs) {
+  if (over_nodes && has_ground_costs(options)) {
     return Error{Errc::kBadConfig,
                  "--off-mesh-link and --area-cost change the ground of level tiles; paths over "
                  "nodes take off-mesh links from `throng bake --off-mesh-links`"};
   }
   return {};
+}
+
+}  // namespace
+
+Result<PathSpace> space_of(const PathOptions& options, const World& world,
+                           const AvatarClass& avatar) {
+  const bool by_class = !options.fly && !options.nodes && !options.on_foot;
+  const bool over_nodes = options.nodes || (by_class && !avatar.flies && goes_over_nodes(avatar));
+  if (auto ok = check_options(options, over_nodes); !ok) return ok.error();
+  if (options.fly) return PathSpace::kAir;
+  if (over_nodes) return PathSpace::kNodes;
+  if (!by_class || !avatar.flies || has_ground_costs(options) || options.slope_cost > 0) {
+    return PathSpace::kGround;
+  }
+  const auto air = air_summary(world);
+  if (!air && air.error().code != Errc::kNotFound) return air.error();
+  if (air) return PathSpace::kAir;
+  return goes_over_nodes(avatar) ? PathSpace::kNodes : PathSpace::kGround;
 }
 
 }  // namespace throng::app

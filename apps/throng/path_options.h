@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "throng/path.h"
+#include "throng/world.h"
 
 namespace throng::app {
 
@@ -20,6 +21,7 @@ struct PathOptions {
   int32_t threads = 0;
   bool fly = false;
   bool nodes = false;
+  bool on_foot = false;
   std::vector<double> blocks;          // six numbers a box
   std::vector<double> off_mesh_links;  // six numbers a link
   std::vector<double> area_costs;      // a kind and its cost
@@ -33,7 +35,9 @@ struct PathOptions {
 
 void add_path_options(CLI::App& command, PathOptions& options);
 
-/// Refuses options that do not go together. [kBadConfig]
-[[nodiscard]] Result<void> check_options(const PathOptions& options, bool over_nodes);
+/// What is searched: what the options name, else what the class moves over, as far as the world has
+/// it. Fails with kBadConfig if options do not go together, and as air_summary does.
+[[nodiscard]] Result<PathSpace> space_of(const PathOptions& options, const World& world,
+                                         const AvatarClass& avatar);
 
 }  // namespace throng::app

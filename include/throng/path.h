@@ -254,7 +254,8 @@ struct PathQuery {
   /// Of an end that is a position: a place is looked for so far above and below; over nodes in all
   /// directions. [m, >= 0]
   double tolerance = 0.5;
-  /// Over nodes: largest distance between points of the path on curved ground. [m, > 0]
+  /// Over nodes: largest distance between points of the path on curved ground; less is 0.01.
+  /// [m, >= 0.01]
   double spacing = 0.25;
   /// In the air: if no single flight leads to the goal, search paths that land, walk and take off
   /// again.

@@ -169,9 +169,11 @@ class THRONG_API Drawing {
   /// Sets props: temporary parts of the scene, such as crates and barriers. Replaces all; an empty
   /// scene removes them. `origin` as of the scene. Fails with kLimit.
   [[nodiscard]] Result<void> set_props(const Scene& props, Vec3d origin);
-  /// Sets the marks of a slot < kMarkSlots; lower slots are drawn first. Fails with kLimit.
+  /// Sets the marks of a slot < kMarkSlots; lower slots are drawn first. Fails with kBadInput (no
+  /// such slot, or vertices that are no whole triangles or lines) or kLimit.
   [[nodiscard]] Result<void> set_marks(size_t slot, const Marks& marks);
-  /// Sets the panel's texture: the opacity of each texel, rows from the top.
+  /// Sets the panel's texture: the opacity of each texel, rows from the top. Fails with kBadInput
+  /// (other than width * height bytes) or kLimit.
   [[nodiscard]] Result<void> set_panel_texture(int32_t width, int32_t height,
                                                std::span<const uint8_t> alpha);
   /// Adds a copy of an atlas and returns its number. Colours in blocks that the card reads (S3TC,
@@ -188,7 +190,8 @@ class THRONG_API Drawing {
   void clear_atlases();  ///< Removes all: the next one is number 0.
   /// Checks the settings. Fails with kBadConfig if draw() would.
   [[nodiscard]] static Result<void> check(const DrawingConfig& config);
-  /// Draws a picture. Fails with kBadConfig, or kLimit: a picture larger than the card draws.
+  /// Draws a picture. Fails with kBadConfig, kBadInput (a crowd of no such atlas or clip, or with
+  /// arrays of different lengths), or kLimit: a picture larger than the card draws.
   [[nodiscard]] Result<Image> draw(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
                                    DrawingReport* report = nullptr, const PanelView& panel = {});
   /// Draws into the window of the current context, which is `config.width` by `config.height`

@@ -81,7 +81,8 @@ struct ViewEvent {
   std::string path = {};
 };
 
-/// Sticks of a gamepad now. [-1 to 1, right and down are positive]
+/// Sticks of a gamepad now. Others are clamped, and what is no number is 0. [-1 to 1, right and
+/// down are positive]
 struct GamepadState {
   double walk_x = 0, walk_y = 0;
   double look_x = 0, look_y = 0;

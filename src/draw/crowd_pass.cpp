@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "core/parallel.h"
@@ -149,6 +150,28 @@ void CrowdPass::Level<Instance>::upload() {
   if (instances.size() < whole) instances.resize(whole);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, first_row, kInstancesWide, rows(), GL_RGBA_INTEGER,
                   GL_UNSIGNED_INT, instances.data());
+}
+
+Result<void> CrowdPass::check(std::span<const DrawnCrowd> crowds) const {
+  for (const DrawnCrowd& crowd : crowds) {
+    if (crowd.atlas >= atlases_.size()) {
+      return Error{Errc::kBadInput, "drawing: a crowd is of atlas " + std::to_string(crowd.atlas) +
+                                        ", and there are " + std::to_string(atlases_.size())};
+    }
+    const size_t clips = atlases_[crowd.atlas].shape.clips.size();
+    if (crowd.clip >= clips) {
+      return Error{Errc::kBadInput, "drawing: a crowd is of clip " + std::to_string(crowd.clip) +
+                                        ", and its atlas has " + std::to_string(clips)};
+    }
+    const ImpostorArrays& a = crowd.avatars;
+    const size_t count = a.x.size();
+    if (a.y.size() != count || a.z.size() != count || a.heading.size() != count ||
+        a.phase.size() != count || a.appearance.size() != count ||
+        (!crowd.up_vectors.empty() && crowd.up_vectors.size() != count)) {
+      return Error{Errc::kBadInput, "drawing: a crowd's arrays have different lengths"};
+    }
+  }
+  return {};
 }
 
 void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,

@@ -35,7 +35,9 @@ class CrowdPass {
   /// Fails with kBadInput (other clips than the atlas), kLimit.
   [[nodiscard]] Result<void> set_model(size_t atlas, const FigureModel& model);
 
-  /// Finds which avatars the eye sees, and which the sun.
+  /// Fails with kBadInput: no such atlas or clip, or arrays of different lengths.
+  [[nodiscard]] Result<void> check(std::span<const DrawnCrowd> crowds) const;
+  /// Finds which avatars the eye sees, and which the sun. [check]
   void pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& config, Vec3d to_sun);
   /// After pack(), leaves out the avatars behind the depths of the same view.
   void drop_hidden(const DrawingConfig& config, const DepthPyramid& depths);

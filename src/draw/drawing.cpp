@@ -370,13 +370,23 @@ Result<void> Drawing::set_props(const Scene& props, Vec3d origin) {
 }
 
 Result<void> Drawing::set_marks(size_t slot, const Marks& marks) {
-  THRONG_ASSERT(slot < kMarkSlots);
+  if (slot >= kMarkSlots) {
+    return Error{Errc::kBadInput, "drawing: marks have " + std::to_string(kMarkSlots) +
+                                      " slots, and none is " + std::to_string(slot)};
+  }
+  if (marks.triangles.size() % 3 != 0 || marks.lines.size() % 2 != 0) {
+    return Error{Errc::kBadInput, "drawing: marks have 3 vertices a triangle and 2 a line"};
+  }
   state_->make_current();
   return state_->marks[slot].set(marks);
 }
 
 Result<void> Drawing::set_panel_texture(int32_t width, int32_t height,
                                         std::span<const uint8_t> alpha) {
+  if (width < 1 || height < 1 ||
+      alpha.size() != static_cast<size_t>(width) * static_cast<size_t>(height)) {
+    return Error{Errc::kBadInput, "drawing: the panel's texture needs width * height bytes"};
+  }
   state_->make_current();
   return state_->panel.set_texture(width, height, alpha);
 }
@@ -460,6 +470,7 @@ SunView sun_view(const Box3d& bounds, const EyeCamera& camera, const Vec3d& to_s
 
 Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const DrawingConfig& config,
                                    bool into_window, DrawingReport& report) {
+  if (auto ok = crowd.check(crowds); !ok) return ok.error();
   const GLsizei wide = config.width * config.samples, high = config.height * config.samples;
   if (!into_window) {
     if (auto fits = fit_target(wide, high); !fits) return fits.error();

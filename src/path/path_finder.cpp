@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -13,6 +14,8 @@
 // Chooses the search that fits a class and what is put up in its world.
 namespace throng {
 namespace {
+
+constexpr double kMinSpacing = 0.01;  // [m]
 
 Vec3d position_of(const PathPoint& point) {
   if (const auto* place = std::get_if<Place>(&point)) return place->position;
@@ -154,7 +157,7 @@ void PathFinder::State::find_on_ground(const Place& from, const Place& to, bool 
 void PathFinder::State::find_over_nodes(const PathQuery& query, Path& path) {
   applied.follow(edits(), *nodes);
   nodes->find(node_place_of(query.from, query.tolerance), node_place_of(query.to, query.tolerance),
-              path, query.spacing, query.budget);
+              path, std::max(kMinSpacing, query.spacing), query.budget);
 }
 
 void PathFinder::State::find_in_air(const PathQuery& query, Path& path) {
@@ -172,7 +175,6 @@ void PathFinder::State::find_in_air(const PathQuery& query, Path& path) {
 
 void PathFinder::find(const PathQuery& query, Path& path) {
   State& s = *state_;
-  THRONG_ASSERT(query.tolerance >= 0 && query.spacing > 0);
   if (s.config.space == PathSpace::kAir) return s.find_in_air(query, path);
   if (s.config.space == PathSpace::kNodes) return s.find_over_nodes(query, path);
   s.find_on_ground(s.place_of(query.from, query.tolerance), s.place_of(query.to, query.tolerance),

@@ -94,7 +94,13 @@ void Viewer::State::move_pointer(double x, double y) {
   drag(dx, dy);
 }
 
-void Viewer::set_gamepad(const GamepadState& state) { state_->gamepad = state; }
+void Viewer::set_gamepad(const GamepadState& state) {
+  const auto stick = [](double value) {
+    return std::isnan(value) ? 0 : std::clamp(value, -1.0, 1.0);
+  };
+  state_->gamepad = {stick(state.walk_x), stick(state.walk_y), stick(state.look_x),
+                     stick(state.look_y), state.hurry};
+}
 
 void Viewer::State::press(Key key) {
   const auto letter = [key](char upper) { return key == key_of(upper); };

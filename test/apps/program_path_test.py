@@ -24,6 +24,10 @@ class ProgramPath(ProgramCase):
 
         found = json.loads(fly("2,3,2", "4,3,4", "--json").stdout)
         self.assertEqual((found["end"], found["segments"]), ("reached", ["fly"]))
+        ends = ("path", "cube.throng", "--from", "2,3,2", "--to", "4,3,4", "--class", "flyer", "--json")
+        self.assertEqual(json.loads(self.run_throng(*ends).stdout)["segments"], ["fly"])
+        self.assert_refused(self.run_throng(*ends, "--on-foot"), "--from", "can stand")
+        self.assert_refused(self.run_throng(*ends, "--on-foot", "--fly"), "--on-foot")
         self.assert_refused(fly("nan,3,2", "4,3,4"), "--from", "finite")
         self.assert_refused(fly("2,3,2", "400,3,4"), "--to", "outside")
         self.assert_refused(fly("2,3,2", "4,900,4"), "--to", "neither in the air nor on the ground")

@@ -348,6 +348,88 @@ TEST(GlDrawing, ABuiltInWorldIsDrawnAndBadSettingsAreRefused) {
   EXPECT_EQ(refused([](Config c) { c.to_sun = {1, 0, 0}; }), Errc::kBadConfig);
 }
 
+TEST(GlDrawing, PropsAndMarksAreShownUntilTheyAreReplaced) {
+  Drawing drawing = made_drawing();
+  Scene floor;
+  floor.add_box({-20, -0.2, -20}, {20, 0, 20});
+  ASSERT_TRUE(drawing.set_scene(floor, {}));
+  const DrawingConfig config = stage_config();
+  const auto shown = [&] {
+    auto image = drawing.draw({}, config);
+    EXPECT_TRUE(image) << image.error().message;
+    return *std::move(image);
+  };
+  const Image empty = shown();
+  Scene crate;
+  crate.add_box({-1, 0, -1}, {1, 2, 1});
+  ASSERT_TRUE(drawing.set_props(crate, {}));
+  const Image with_crate = shown();
+  EXPECT_GT(pixels_that_differ(empty, with_crate), 100u);
+  ASSERT_TRUE(drawing.set_props({}, {}));
+  EXPECT_EQ(pixels_that_differ(empty, shown()), 0u);
+  const Rgba red = rgba(255, 0, 0);
+  Marks marks;
+  marks.triangles = {{-2, 0.1F, -2, red}, {2, 0.1F, 2, red}, {2, 0.1F, -2, red}};
+  ASSERT_TRUE(drawing.set_marks(3, marks));
+  EXPECT_GT(pixels_that_differ(empty, shown()), 100u);
+  EXPECT_FALSE(drawing.set_marks(kMarkSlots, marks));
+  marks.triangles.pop_back();
+  EXPECT_FALSE(drawing.set_marks(3, marks)) << "no whole triangle";
+  Marks line;
+  line.lines.resize(3);
+  EXPECT_FALSE(drawing.set_marks(3, line));
+  ASSERT_TRUE(drawing.set_marks(3, {}));
+  EXPECT_EQ(pixels_that_differ(empty, shown()), 0u);
+}
+
+TEST(GlDrawing, APanelIsDrawnWithItsTexture) {
+  Drawing drawing = made_drawing();
+  const DrawingConfig config = stage_config();
+  const std::vector<uint8_t> half{255, 0, 255, 0};  // the left column
+  ASSERT_TRUE(drawing.set_panel_texture(2, 2, half));
+  const Rgba green = rgba(0, 255, 0);
+  const std::vector<PanelVertex> corners{
+      {0, 0, 0, 0, green}, {64, 0, 1, 0, green}, {64, 64, 1, 1, green}, {0, 64, 0, 1, green}};
+  const std::vector<uint32_t> indices{0, 1, 2, 0, 2, 3};
+  const std::vector<PanelRun> runs{{0, 6, 0, 0, 64, 64}};
+  const auto image = drawing.draw({}, config, nullptr, {corners, indices, runs});
+  ASSERT_TRUE(image) << image.error().message;
+  const auto green_at = [&](size_t x, size_t y) {
+    const uint8_t* pixel = &image->rgb[3 * (y * static_cast<size_t>(config.width) + x)];
+    return pixel[1] > 250 && pixel[0] < 5 && pixel[2] < 5;
+  };
+  EXPECT_TRUE(green_at(4, 32));
+  EXPECT_FALSE(green_at(60, 32)) << "its texels there are clear";
+  EXPECT_FALSE(green_at(4, 80)) << "below the panel";
+  EXPECT_FALSE(drawing.set_panel_texture(2, 2, std::span(half).first(3)));
+  EXPECT_FALSE(drawing.set_panel_texture(0, 0, {}));
+  EXPECT_FALSE(drawing.set_panel_texture(-2, -2, half));
+}
+
+TEST(GlDrawing, AtlasesThatAreClearedAreNumberedAgain) {
+  Drawing drawing = made_drawing();
+  EXPECT_EQ(*drawing.add_atlas(coded_atlas()), 0u);
+  EXPECT_EQ(*drawing.add_atlas(coded_atlas()), 1u);
+  Avatars avatars;
+  avatars.add({0, 0, 0}, 0, 0, 0);
+  const DrawnCrowd crowd = avatars.crowd(1);
+  EXPECT_TRUE(drawing.draw({&crowd, 1}, stage_config()));
+  drawing.clear_atlases();
+  const auto refused = [&](const DrawnCrowd& one) {
+    const auto image = drawing.draw({&one, 1}, stage_config());
+    EXPECT_FALSE(image);
+    return image ? Errc::kOk : image.error().code;
+  };
+  EXPECT_EQ(refused(crowd), Errc::kBadInput);
+  EXPECT_EQ(*drawing.add_atlas(coded_atlas()), 0u);
+  DrawnCrowd bad = avatars.crowd();
+  bad.clip = 99;
+  EXPECT_EQ(refused(bad), Errc::kBadInput);
+  bad = avatars.crowd();
+  bad.avatars.phase = {};
+  EXPECT_EQ(refused(bad), Errc::kBadInput);
+}
+
 // One avatar, nearer and nearer: point, view, mesh. Neighbours in size look alike, and in a fade
 // both are there.
 TEST(GlDrawing, LevelsOfDetailLookAlike) {

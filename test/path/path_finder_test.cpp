@@ -100,6 +100,14 @@ TEST(PathFinder, SearchesAsTheClassMoves) {
     climbs.find({.from = on, .to = off}, path);
     nodes.find(on, off, other);
     expect_same(path, other);
+    if (n == 0) {
+      for (const double spacing : {0.0, -1.0, std::nan("")}) {
+        climbs.find({.from = on, .to = off, .spacing = spacing}, other);
+        EXPECT_EQ(other.end, path.end);
+      }
+      walks.find({.from = from.position, .to = to.position, .tolerance = -1}, other);
+      EXPECT_EQ(other.end, PathEnd::kNoPlace);
+    }
     EXPECT_TRUE(climbs.is_free(on) && walks.is_free(from) && flies.is_free(there));
   }
 }

@@ -179,6 +179,30 @@ TEST(Viewer, KeysAndMouseMoveTheEyeAsInOtherPrograms) {
   EXPECT_NEAR(length(viewer.status().camera.target - after), 0, 1e-9);
 }
 
+TEST(Viewer, AGamepadMovesTheEyeAndNonsenseDoesNot) {
+  Viewer viewer = made_viewer({.settings = {}, .font = {}, .panel = false});
+  viewer.load("two floors", stage_with(5));
+  viewer.wait_until_loaded();
+  double now = 0;
+  const auto moved_by = [&](const GamepadState& state) {
+    (void)picture(viewer, now += 0.1);
+    const Vec3d before = viewer.status().camera.target;
+    viewer.set_gamepad(state);
+    (void)picture(viewer, now += 0.2);
+    viewer.set_gamepad({});
+    return viewer.status().camera.target - before;
+  };
+  const Vec3d ahead = moved_by({.walk_y = -1}), back = moved_by({.walk_y = 1});
+  EXPECT_GT(length(ahead), 0.1);
+  EXPECT_LT(length(ahead + back), 0.2 * length(ahead));
+  EXPECT_GT(length(moved_by({.walk_y = -1, .hurry = true})), 2 * length(ahead));
+  EXPECT_LT(length(moved_by({.walk_x = 1e300})), 2 * length(ahead)) << "a stick has an end";
+  EXPECT_EQ(length(moved_by({.walk_x = std::nan(""), .walk_y = std::nan("")})), 0);
+  const Vec3d eye = viewer.status().camera.eye;
+  (void)moved_by({.look_x = 1});
+  EXPECT_GT(length(viewer.status().camera.eye - eye), 0.01);
+}
+
 // All events of a drag between two frames, without a move, as from a fast hand on a slow machine.
 TEST(Viewer, ADragWithinOneFrameCounts) {
   Viewer viewer = made_viewer();

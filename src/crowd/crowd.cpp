@@ -86,43 +86,21 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   }
   const world::WorldData& data = *data_of(world);
   const double unit = data.summary.cell / world::kUnitsPerCell;
-  const bool is_sampled = config.model == SteeringModel::kSampled;
-  steer::SampledSettings steering;
-  if (!is_sampled) steering.neighbours = steer::kMaxNear;
-  crowd::CrowdEngine engine(
-      {.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
-       .sight = static_cast<float>(config.tuning.sight),
-       .rounds = config.tuning.rounds,
-       .deadlock_avoidance = is_sampled && config.tuning.deadlock_avoidance,
-       .reaction = is_sampled ? static_cast<float>(config.tuning.reaction) : 0,
-       .seed = config.seed,
-       .workers = config.workers,
-       .model = config.model,
-       .steering = steering,
-       .deadlock_settings = {},
-       .lanes = {},
-       .spacing = {}},
-      data.width, data.depth, data.summary.classes.size());
-  crowd::FlyerEngine flyers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
-                             .sight = static_cast<float>(config.tuning.sight),
-                             .rounds = config.tuning.rounds,
-                             .deadlock_avoidance = config.tuning.deadlock_avoidance,
-                             .seed = config.seed,
-                             .workers = config.workers,
-                             .steering = {},
-                             .deadlock_settings = {}},
-                            data.summary.classes.size());
-  crowd::ClimberEngine climbers({.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
-                                 .sight = static_cast<float>(config.tuning.sight),
-                                 .rounds = config.tuning.rounds,
-                                 .deadlock_avoidance = config.tuning.deadlock_avoidance,
-                                 .seed = config.seed,
-                                 .workers = config.workers,
-                                 .steering = {}},
-                                data.summary.classes.size());
+  const crowd::MoveConfig move{.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
+                               .sight = static_cast<float>(config.tuning.sight),
+                               .rounds = config.tuning.rounds,
+                               .deadlock_avoidance = config.tuning.deadlock_avoidance,
+                               .reaction = static_cast<float>(config.tuning.reaction),
+                               .seed = config.seed,
+                               .workers = config.workers,
+                               .model = config.model};
+  const size_t classes = data.summary.classes.size();
+  crowd::CrowdEngine engine(move, data.width, data.depth, classes);
+  crowd::FlyerEngine flyers(move, classes);
+  crowd::ClimberEngine climbers(move, classes);
   auto state = std::make_unique<State>(world, config, std::move(engine), std::move(flyers),
                                        std::move(climbers));
-  state->classes.resize(data.summary.classes.size());
+  state->classes.resize(classes);
   return Crowd(std::move(state));
 }
 

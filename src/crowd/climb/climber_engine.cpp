@@ -42,7 +42,7 @@ Space space_of(Vec3d v) {
 
 }  // namespace
 
-ClimberEngine::ClimberEngine(const ClimberConfig& config, size_t classes)
+ClimberEngine::ClimberEngine(const MoveConfig& config, size_t classes)
     : config_(config), grounds_(classes, nullptr) {
   rounds_.workers.resize(static_cast<size_t>(worker_count(config.workers)));
 }
@@ -50,7 +50,7 @@ ClimberEngine::ClimberEngine(const ClimberConfig& config, size_t classes)
 void ClimberEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt) {
   config_.units.dt = dt;
   const float unit = config_.units.unit, stride = fastest * dt;
-  sight_metres_ = std::max(config_.sight, config_.steering.horizon * fastest);
+  sight_metres_ = std::max(config_.sight, config_.air_steering.horizon * fastest);
   // The largest distance between the centres of two cylinders whose bodies could touch after a
   // step.
   const float touched = 2 * static_cast<float>(widest) * unit + 2 * stride;
@@ -267,13 +267,13 @@ void ClimberEngine::find_candidates(const Body& body, const Climb& climb,
     if (climb.waited > kRetreatDelay) add(ground.retreat(climb, max_travel), false);
     return;
   }
-  if (!yields && steer::preferred_is_open(config_.steering, situation)) {
+  if (!yields && steer::preferred_is_open(config_.air_steering, situation)) {
     if (!goes) return;
     for (const double part : {1.0, 0.5, 0.25}) add(ground.advance(climb, part * desired), true);
     return;
   }
   const Space up = space_of(ground.normal_at(climb));
-  for (const Space& v : steer::best_along(config_.steering, situation, up)) {
+  for (const Space& v : steer::best_along(config_.air_steering, situation, up)) {
     const float speed = steer::size_of(v), preferred = steer::size_of(situation.preferred);
     if (!(speed > 1e-3f)) return;  // nothing is better than to stand
     const bool ahead =

@@ -23,20 +23,10 @@
 /// settle. docs/design/013-climbers.md.
 namespace throng::crowd {
 
-struct ClimberConfig {
-  StepUnits units;
-  float sight = 5;  // [m]
-  int32_t rounds = 3;
-  bool deadlock_avoidance = true;
-  uint64_t seed = 1;
-  int32_t workers = 0;
-  steer::AirSettings steering;
-};
-
 class ClimberEngine {
  public:
   /// `classes`: of the world.
-  ClimberEngine(const ClimberConfig& config, size_t classes);
+  ClimberEngine(const MoveConfig& config, size_t classes);
 
   /// Required for each class of which there is a climber.
   void set_ground(size_t avatar_class, const ClimberGround* ground) {
@@ -104,7 +94,7 @@ class ClimberEngine {
   bool propose(const Contest& contest, const Worker& owner);
   void settle(uint32_t climber, uint64_t step, EngineCounts& counts);
 
-  ClimberConfig config_;
+  MoveConfig config_;
   std::vector<const ClimberGround*> grounds_;  // by class
   const ObstacleGrid* obstacles_ = nullptr;
   float sight_metres_ = 5, near_metres_ = 5, fastest_ = 0;

@@ -42,7 +42,7 @@ AirPosition position_of(const Body& body) { return {body.x, body.z, body.y}; }
 
 }  // namespace
 
-FlyerEngine::FlyerEngine(const FlyerConfig& config, size_t classes)
+FlyerEngine::FlyerEngine(const MoveConfig& config, size_t classes)
     : config_(config), classes_(classes) {
   rounds_.workers.resize(static_cast<size_t>(worker_count(config.workers)));
 }
@@ -57,7 +57,7 @@ void FlyerEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt) 
   // directions.
   const float unit = config_.units.unit;
   const float stride = fastest * dt;
-  sight_metres_ = std::max(config_.sight, config_.steering.horizon * fastest);
+  sight_metres_ = std::max(config_.sight, config_.air_steering.horizon * fastest);
   const float touched = 2 * static_cast<float>(widest) * unit + 2 * stride;
   const float high = 2 * static_cast<float>(tallest) * 1e-3f + 2 * stride;
   near_metres_ = std::max({sight_metres_ / 2, touched, high + kLowOver * 1e-3f}) + 0.01f;
@@ -293,7 +293,7 @@ bool FlyerEngine::gives_precedence(const Body& body, const Flight& flight, const
 bool FlyerEngine::query_walls(const Body& body, steer::AirSituation& situation) const {
   const FlyerAir& air = *classes_[body.avatar_class].air;
   const AirPosition here = position_of(body);
-  const float query_range = body.speed * config_.steering.wall_horizon;
+  const float query_range = body.speed * config_.air_steering.wall_horizon;
   const auto free_distance = [&](Space direction) {
     const auto sees = [&](float far) {
       const AirPosition there{here.x + static_cast<int32_t>(direction.x * far / config_.units.unit),
@@ -310,7 +310,7 @@ bool FlyerEngine::query_walls(const Body& body, steer::AirSituation& situation) 
   situation.has_walls = !air.is_open_around(here, query_range);
   const steer::AirFan fan = steer::air_fan(situation.preferred);
   if (situation.has_walls) situation.free_distance[0] = free_distance(fan[0]);
-  if (steer::preferred_is_open(config_.steering, situation)) return true;
+  if (steer::preferred_is_open(config_.air_steering, situation)) return true;
   if (!situation.has_walls) return false;
   for (size_t d = 1; d < fan.size(); ++d) situation.free_distance[d] = free_distance(fan[d]);
   return false;
@@ -329,7 +329,7 @@ void FlyerEngine::find_candidates(const steer::AirSituation& situation, bool ope
   if (open) {
     add(best);
   } else {
-    const steer::AirChoices choices = steer::best_of(config_.steering, situation);
+    const steer::AirChoices choices = steer::best_of(config_.air_steering, situation);
     for (const Space& v : choices) add(v);
     best = choices[0];
   }

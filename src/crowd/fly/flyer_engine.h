@@ -23,21 +23,10 @@
 /// docs/design/012-flyers.md.
 namespace throng::crowd {
 
-struct FlyerConfig {
-  StepUnits units;
-  float sight = 5;  // [m]
-  int32_t rounds = 3;
-  bool deadlock_avoidance = true;
-  uint64_t seed = 1;
-  int32_t workers = 0;
-  steer::AirSettings steering;
-  steer::DeadlockAvoidance deadlock_settings;
-};
-
 class FlyerEngine {
  public:
   /// `classes`: of the world.
-  FlyerEngine(const FlyerConfig& config, size_t classes);
+  FlyerEngine(const MoveConfig& config, size_t classes);
 
   /// Required for each class of which there is a flyer. `radius`: the distance that the class keeps
   /// from walls. [m]
@@ -98,7 +87,7 @@ class FlyerEngine {
   bool propose(const Contest& contest, const Worker& owner);
   void settle(uint32_t flyer, EngineCounts& counts);
 
-  FlyerConfig config_;
+  MoveConfig config_;
   struct OfClass {
     const FlyerAir* air = nullptr;
     double radius = 0;  // [m]

@@ -74,8 +74,13 @@ void EngineCounts::add(const EngineCounts& other) {
   skipped += other.skipped;
 }
 
-CrowdEngine::CrowdEngine(const EngineConfig& config, int32_t width, int32_t depth, size_t classes)
+CrowdEngine::CrowdEngine(const MoveConfig& config, int32_t width, int32_t depth, size_t classes)
     : config_(config), grounds_(classes), width_(width), depth_(depth) {
+  if (config.model != SteeringModel::kSampled) {
+    config_.reaction = 0;
+    config_.deadlock_avoidance = false;
+    config_.steering.neighbours = steer::kMaxNear;
+  }
   workers_.resize(static_cast<size_t>(worker_count(config.workers)));
 }
 

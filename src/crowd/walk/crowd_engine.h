@@ -14,6 +14,7 @@
 #include "core/huge_array.h"
 #include "crowd/ground/stride_ground.h"
 #include "crowd/walk/body.h"
+#include "crowd/walk/move_config.h"
 #include "crowd/walk/neighbour_grid.h"
 #include "crowd/walk/step_units.h"
 #include "steer/lanes.h"
@@ -48,21 +49,6 @@ struct EngineDetail {
   int32_t narrowest = 0;        ///< No move is longer. [units]
 };
 
-struct EngineConfig {
-  StepUnits units;
-  float sight = 5;  ///< [m]
-  int32_t rounds = 3;
-  bool deadlock_avoidance = true;
-  float reaction = 0.2f;  ///< A body that continues decides again after that. [s]
-  uint64_t seed = 1;
-  int32_t workers = 0;
-  SteeringModel model = SteeringModel::kSampled;
-  steer::SampledSettings steering;
-  steer::DeadlockAvoidance deadlock_settings;
-  steer::LaneSettings lanes;
-  steer::SpacingSettings spacing;
-};
-
 /// What a step did, summed over all bodies.
 struct EngineCounts {
   uint64_t contested = 0;  // those that could touch another
@@ -77,7 +63,7 @@ struct EngineCounts {
 class CrowdEngine {
  public:
   /// For a world of width x depth cells and classes; grounds of those that are used must be set.
-  CrowdEngine(const EngineConfig& config, int32_t width, int32_t depth, size_t classes);
+  CrowdEngine(const MoveConfig& config, int32_t width, int32_t depth, size_t classes);
 
   void set_ground(size_t avatar_class, const StrideGround& ground);
   /// No body may be wider or faster. To be called before the first such body is added.
@@ -262,7 +248,7 @@ class CrowdEngine {
     return static_cast<Proposal*>(static_cast<void*>(spare_.data()));
   }
 
-  EngineConfig config_;
+  MoveConfig config_;
   uint64_t step_ = 0;                  // the current one
   std::vector<StrideGround> grounds_;  // by class
   int32_t width_, depth_;

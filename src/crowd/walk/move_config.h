@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+
+#include "crowd/walk/step_units.h"
+#include "steer/air.h"
+#include "steer/lanes.h"
+#include "steer/models.h"
+#include "steer/sampled.h"
+
+namespace throng::crowd {
+
+/// How the avatars of a crowd move, whichever engine moves them.
+struct MoveConfig {
+  StepUnits units = {};
+  float sight = 5;                 ///< [m]
+  int32_t rounds = 3;              ///< Of conflict resolution.
+  bool deadlock_avoidance = true;  ///< Of walkers with kSampled, flyers and climbers.
+  /// A walker that continues decides again after that; only with kSampled. [s]
+  float reaction = 0.2f;
+  uint64_t seed = 1;
+  int32_t workers = 0;
+  SteeringModel model = SteeringModel::kSampled;  ///< Of walkers.
+  steer::SampledSettings steering = {};
+  steer::DeadlockAvoidance deadlock_settings = {};
+  steer::LaneSettings lanes = {};
+  steer::SpacingSettings spacing = {};
+  steer::AirSettings air_steering = {};  ///< Of flyers and climbers.
+};
+
+}  // namespace throng::crowd

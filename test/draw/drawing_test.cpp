@@ -398,9 +398,9 @@ TEST(GlDrawing, APanelIsDrawnWithItsTexture) {
     const uint8_t* pixel = &image->rgb[3 * (y * static_cast<size_t>(config.width) + x)];
     return pixel[1] > 250 && pixel[0] < 5 && pixel[2] < 5;
   };
-  EXPECT_TRUE(green_at(4, 32));
-  EXPECT_FALSE(green_at(60, 32)) << "its texels there are clear";
-  EXPECT_FALSE(green_at(4, 80)) << "below the panel";
+  EXPECT_TRUE(green_at(16, 32));
+  EXPECT_FALSE(green_at(48, 32)) << "its texels there are clear";
+  EXPECT_FALSE(green_at(16, 80)) << "below the panel";
   EXPECT_FALSE(drawing.set_panel_texture(2, 2, std::span(half).first(3)));
   EXPECT_FALSE(drawing.set_panel_texture(0, 0, {}));
   EXPECT_FALSE(drawing.set_panel_texture(-2, -2, half));

@@ -198,9 +198,7 @@ TEST(Viewer, AGamepadMovesTheEyeAndNonsenseDoesNot) {
   EXPECT_GT(length(moved_by({.walk_y = -1, .hurry = true})), 2 * length(ahead));
   EXPECT_LT(length(moved_by({.walk_x = 1e300})), 2 * length(ahead)) << "a stick has an end";
   EXPECT_EQ(length(moved_by({.walk_x = std::nan(""), .walk_y = std::nan("")})), 0);
-  const Vec3d eye = viewer.status().camera.eye;
-  (void)moved_by({.look_x = 1});
-  EXPECT_GT(length(viewer.status().camera.eye - eye), 0.01);
+  EXPECT_GT(length(moved_by({.look_x = 1})), 0.01);
 }
 
 // All events of a drag between two frames, without a move, as from a fast hand on a slow machine.

@@ -25,9 +25,10 @@ void add_path_options(CLI::App& command, PathOptions& options) {
           "without ground above or below [m]")
       ->check(at_least(0))
       ->capture_default_str();
-  command.add_flag("--fly", options.fly,
-                   "Path through the air, for a class that flies, as if the world has air and no "
-                   "option changes the ground; an end may be on the ground");
+  command.add_flag(
+      "--fly", options.fly,
+      "Path through the air, for a class that flies, as always if the world has air and no "
+      "option changes the ground; an end may be on the ground");
   command.add_flag("--nodes", options.nodes,
                    "Path over the world's nodes, as always for classes that climb");
   command.add_flag("--on-foot", options.on_foot,

@@ -131,10 +131,10 @@ void Crowd::follow_edits() {
   bool areas_changed = false;
   s.of_edit.resize(std::max(s.of_edit.size(), list.edits.size()));
   list.for_changed(s.edits_version, [&](const path::EditList::Changed& what) {
-    if (what.edit == 0 || list.edits[what.edit - 1].kind != path::EditList::Kind::kObstacle) {
-      areas_changed = true;
-      return;
-    }
+    using Kind = path::EditList::Kind;
+    const Kind kind = what.edit == 0 ? Kind::kArea : list.edits[what.edit - 1].kind;
+    areas_changed = areas_changed || kind == Kind::kArea;
+    if (kind != Kind::kObstacle) return;
     const path::EditList::Edit& edit = list.edits[what.edit - 1];
     ObstacleId& own = s.of_edit[what.edit - 1];
     if (edit.removed) {

@@ -36,6 +36,13 @@ EditId EditList::add(Edit edit) {
   return id;
 }
 
+Result<EditId> EditList::add_obstacle(Result<Solid> solid) {
+  if (!solid) return solid.error();
+  Edit edit;
+  edit.solid = *std::move(solid);
+  return add(std::move(edit));
+}
+
 bool EditList::set_active(EditId id, bool active, bool remove) {
   if (id == 0 || id > edits.size() || edits[id - 1].removed) return false;
   Edit& edit = edits[id - 1];
@@ -72,20 +79,12 @@ void AppliedEdits::set_cost(LiveFinder& finder, uint8_t kind, double cost) {
 Edits::Edits() : state_(std::make_shared<path::EditList>()) {}
 
 Result<EditId> Edits::add_obstacle(const Prism& prism) {
-  auto solid = path::make_solid(prism);
-  if (!solid) return solid.error();
-  path::EditList::Edit edit;
-  edit.solid = *std::move(solid);
-  return state_->add(std::move(edit));
+  return state_->add_obstacle(path::make_solid(prism));
 }
 
 Result<EditId> Edits::add_obstacle(std::span<const Vec3d> corners,
                                    std::span<const std::array<uint32_t, 3>> triangles) {
-  auto solid = path::make_solid(corners, triangles);
-  if (!solid) return solid.error();
-  path::EditList::Edit edit;
-  edit.solid = *std::move(solid);
-  return state_->add(std::move(edit));
+  return state_->add_obstacle(path::make_solid(corners, triangles));
 }
 
 Result<EditId> Edits::add_area(const Prism& prism, uint8_t kind) {

@@ -47,6 +47,7 @@ struct EditList {
     for (uint8_t kind = 1; kind < area_costs.size(); ++kind) visit(Changed{.area = kind});
   }
   EditId add(Edit edit);
+  Result<EditId> add_obstacle(Result<Solid> solid);
   bool set_active(EditId id, bool active, bool remove);
   void set_area_cost(uint8_t kind, double cost);
 
@@ -95,8 +96,6 @@ class AppliedEdits {
   void apply(const EditList& list, EditId id, Finder& finder) {
     const EditList::Edit& edit = list.edits[id - 1];
     ChangeId& own = ids_[id - 1];
-    // The class can perhaps stand by now where the off-mesh link ends.
-    if (own == 0 && edit.active && !edit.removed && is_wanted(edit)) own = id_of_new(edit, finder);
     if (own == 0) return;
     if (!edit.removed) {
       finder.set_active(own, edit.active);

@@ -20,6 +20,12 @@
 namespace throng::path {
 namespace {
 
+// Of one that costs less than its length: the cost of a metre of the straight line; else 1.
+double link_factor(const LiveMesh::OffMeshLinkEnd& link) {
+  const double length = distance_of(link.from, link.to);
+  return link.cost < length ? link.cost / length : 1;
+}
+
 int64_t tile_key(int32_t x, int32_t z) { return (int64_t{z} << 32) | static_cast<uint32_t>(x); }
 
 }  // namespace
@@ -92,7 +98,11 @@ bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
     change.active = active;
     for (const int64_t tile : change.tiles) forget(tile);
     for (const LevelLinkEnd& link : change.links) switch_link(link, active);
-    if (!change.links.empty()) find_min_link_factor();
+    for (const LevelLinkEnd& link : change.links) {
+      const double factor = link_factor(link.end);
+      if (active) min_link_factor_ = std::min(min_link_factor_, factor);
+      if (!active && factor < 1 && factor == min_link_factor_) find_min_link_factor();
+    }
   }
   if (remove) {
     for (const int64_t tile : change.tiles) std::erase(changes_of_tile_[tile], id);
@@ -106,7 +116,7 @@ bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
 void LiveMesh::add_off_mesh_link(uint32_t level, const OffMeshLinkEnd& off_mesh_link) {
   changes_[off_mesh_link.change - 1].links.push_back({level, off_mesh_link});
   off_mesh_links_[level].push_back(off_mesh_link);
-  find_min_link_factor();
+  min_link_factor_ = std::min(min_link_factor_, link_factor(off_mesh_link));
   ++version_;
 }
 
@@ -114,8 +124,7 @@ void LiveMesh::find_min_link_factor() {
   min_link_factor_ = 1;
   for (const auto& [level, links] : off_mesh_links_) {
     for (const OffMeshLinkEnd& link : links) {
-      const double length = distance_of(link.from, link.to);
-      if (link.cost < length) min_link_factor_ = std::min(min_link_factor_, link.cost / length);
+      min_link_factor_ = std::min(min_link_factor_, link_factor(link));
     }
   }
 }

@@ -9,6 +9,7 @@
 
 #include "core/access.h"
 #include "core/check_class.h"
+#include "path/ground/baked_cells.h"
 #include "path/ground/hub_labels.h"
 #include "path/ground/label_search.h"
 #include "path/ground/mesh.h"
@@ -157,7 +158,8 @@ void MeshFinder::find(const Place& from, const Place& to, Path& path, const Sear
   }
   // Both are of one component: a path exists, even if none can be drawn over corners.
   const auto is_drawn = [&] {
-    SegmentWalker walker(world, mesh);
+    const BakedCells cells(world, mesh);
+    SegmentWalker walker(cells, mesh);
     return walker.walk(start, scratch_->corners, goal.at, scratch_->stops) &&
            scratch_->stops.back().rect == goal.rect;
   };

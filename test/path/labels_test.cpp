@@ -10,6 +10,7 @@
 #include "core/access.h"
 #include "core/random.h"
 #include "grid_oracle.h"
+#include "path/ground/baked_cells.h"
 #include "path/ground/label_search.h"
 #include "path/ground/mesh.h"
 #include "path/ground/search.h"
@@ -53,7 +54,8 @@ class MeshedWorld {
   [[nodiscard]] bool is_legal(const path::Stop& from, const std::vector<uint32_t>& corners,
                               const path::Stop& to) const {
     std::vector<path::Stop> stops;
-    return path::SegmentWalker(*data_of(world_), mesh).walk(from, corners, to.at, stops) &&
+    const path::BakedCells cells(*data_of(world_), mesh);
+    return path::SegmentWalker(cells, mesh).walk(from, corners, to.at, stops) &&
            stops.back().rect == to.rect;
   }
 

@@ -80,12 +80,11 @@ inline void rects_around(const PathMesh& mesh, uint32_t rect, CellPoint point,
                          std::vector<uint32_t>& around_it) {
   around_it.assign(1, rect);
   for (size_t i = 0; i < around_it.size(); ++i) {
+    const auto portals = mesh.portals_of(around_it[i]);
     const MeshRect& r = mesh.rects[around_it[i]];
     if (point.x > r.x && point.x < r.x + r.width && point.z > r.z && point.z < r.z + r.depth)
       continue;
-    const uint32_t end = mesh.rects[around_it[i] + 1].first_portal;
-    for (uint32_t p = r.first_portal; p < end; ++p) {
-      const MeshPortal& portal = mesh.portals[p];
+    for (const MeshPortal& portal : portals) {
       const CellPoint a = point_around(r, portal.from), b = point_around(r, portal.to);
       const bool touches =
           std::fabs(cross(a, b, point)) <= kSame &&

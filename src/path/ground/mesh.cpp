@@ -10,6 +10,8 @@
 
 #include "core/parallel.h"
 #include "graph/ground_parts.h"
+#include "path/ground/baked_cells.h"
+#include "path/ground/mesh_border.h"
 #include "path/ground/rects.h"
 #include "world/place.h"
 
@@ -18,30 +20,16 @@
 namespace throng::path {
 namespace {
 
-// A corner before it has its number: the point, and the level of the cell across from the missing
-// one, which distinguishes corners above each other.
-struct CornerKey {
-  int32_t x = 0, z = 0;
-  uint32_t level = 0;
-  int8_t away_x = 0, away_z = 0;
-  auto operator<=>(const CornerKey&) const = default;
-};
-
-struct FoundPortal {
-  MeshPortal portal;
-  std::optional<CornerKey> from_corner, to_corner;
-};
-
 class Builder {
  public:
   Builder(const world::WorldData& world, int32_t avatar_class)
-      : ground_{world, avatar_class},
+      : ground_{{world, avatar_class}},
         step_(world::step_mm(world.summary.classes[static_cast<size_t>(avatar_class)])) {}
 
   [[nodiscard]] int32_t step() const { return step_; }
 
   [[nodiscard]] std::vector<MeshRect> find_rects(uint32_t level) const {
-    const world::GroundLevel ground = level_of(level);
+    const world::GroundLevel ground = ground_.level(level);
     const world::CellRows legal = graph::legal_rows(ground);
     const auto cuts = graph::step_cuts(ground, legal, step_);
     const auto [tile_x, tile_z] = world::tile_of(ground_.world, *ground.zone, *ground.view.record);
@@ -53,116 +41,20 @@ class Builder {
     return rects;
   }
 
-  // The portals of a rectangle, around it.
   void find_portals(const PathMesh& mesh, const MeshRect& rect,
                     std::vector<FoundPortal>& portals) const {
-    const world::GroundLevel level = level_of(rect.level);
-    const int32_t w = rect.width, d = rect.depth;
-    const auto side = [&](int32_t begin, int32_t length, auto cell_at, int32_t dx, int32_t dz) {
-      uint32_t last = kNoRect;
-      for (int32_t i = 0; i < length; ++i) {
-        const auto [x, z] = cell_at(i);
-        const auto beyond = step_both(level, x, z, x + dx, z + dz);
-        const uint32_t to = beyond ? mesh.rect_at(beyond->world_level, x + dx, z + dz) : kNoRect;
-        if (to != kNoRect && to == last) {
-          ++portals.back().portal.to;
-        } else if (to != kNoRect) {
-          portals.push_back({{to, begin + i, begin + i + 1, kNoCorner, kNoCorner}, {}, {}});
-        }
-        last = to;
-      }
+    const world::GroundLevel level = ground_.level(rect.level);
+    const MeshBorder border(ground_, step_);
+    const auto rect_at = [&](const world::GroundLevel& of, int32_t x, int32_t z) {
+      return mesh.rect_at(of.world_level, x, z);
     };
-    const int32_t x1 = rect.x + w - 1, z1 = rect.z + d - 1;
-    side(
-        0, w,
-        [&](int32_t i) {
-          return std::pair{rect.x + i, rect.z};
-        },
-        0, -1);
-    side(
-        w, d,
-        [&](int32_t i) {
-          return std::pair{x1, rect.z + i};
-        },
-        1, 0);
-    side(
-        w + d, w,
-        [&](int32_t i) {
-          return std::pair{x1 - i, z1};
-        },
-        0, 1);
-    side(
-        2 * w + d, d,
-        [&](int32_t i) {
-          return std::pair{rect.x, z1 - i};
-        },
-        -1, 0);
-  }
-
-  void find_corners(const MeshRect& rect, FoundPortal& found) const {
-    const world::GroundLevel level = level_of(rect.level);
-    found.from_corner = corner_at(level, rect, found.portal.from, found.portal.from);
-    found.to_corner = corner_at(level, rect, found.portal.to, found.portal.to - 1);
+    const size_t before = portals.size();
+    border.find_portals(level, rect, rect_at, portals);
+    for (size_t p = before; p < portals.size(); ++p) border.find_corners(level, rect, portals[p]);
   }
 
  private:
-  [[nodiscard]] world::GroundLevel level_of(uint32_t level) const {
-    return world::ground_level(ground_.world, level, ground_.avatar_class);
-  }
-
-  // The level on the other side of a step that leads there and back.
-  [[nodiscard]] std::optional<world::GroundLevel> step_both(const world::GroundLevel& from,
-                                                            int32_t x, int32_t z, int32_t nx,
-                                                            int32_t nz) const {
-    if (nx < 0 || nz < 0 || nx >= ground_.world.width || nz >= ground_.world.depth) return {};
-    const auto there = world::step_to(ground_, from, x, z, nx, nz, step_);
-    if (!there) return {};
-    const auto back = world::step_to(ground_, *there, nx, nz, x, z, step_);
-    if (!back || back->world_level != from.world_level) return {};
-    return there;
-  }
-
-  // The corner at `at` cells around the rectangle, seen from the border cell `cell` around.
-  [[nodiscard]] std::optional<CornerKey> corner_at(const world::GroundLevel& level,
-                                                   const MeshRect& rect, int32_t at,
-                                                   int32_t cell) const {
-    const int32_t w = rect.width, d = rect.depth;
-    int32_t px = 0, pz = 0;  // the point
-    int32_t cx = 0, cz = 0;  // a cell of the rectangle that touches it
-    const int32_t side = cell < w ? 0 : cell < w + d ? 1 : cell < 2 * w + d ? 2 : 3;
-    if (side == 0) {
-      px = rect.x + at, pz = rect.z, cx = rect.x + cell, cz = rect.z;
-    } else if (side == 1) {
-      px = rect.x + w, pz = rect.z + at - w, cx = px - 1, cz = rect.z + cell - w;
-    } else if (side == 2) {
-      px = rect.x + w - (at - w - d), pz = rect.z + d;
-      cx = rect.x + w - 1 - (cell - w - d), cz = pz - 1;
-    } else {
-      px = rect.x, pz = rect.z + d - (at - 2 * w - d);
-      cx = px, cz = rect.z + d - 1 - (cell - 2 * w - d);
-    }
-    // The other three cells around the point.
-    const int32_t ox = cx == px ? px - 1 : px, oz = cz == pz ? pz - 1 : pz;
-    const auto beside_x = step_both(level, cx, cz, ox, cz);
-    const auto beside_z = step_both(level, cx, cz, cx, oz);
-    std::optional<world::GroundLevel> across_x, across_z;
-    if (beside_x) across_x = step_both(*beside_x, ox, cz, ox, oz);
-    if (beside_z) across_z = step_both(*beside_z, cx, oz, ox, oz);
-    const auto key = [&](int32_t missing_x, int32_t missing_z, uint32_t across_level) {
-      return CornerKey{px, pz, across_level, static_cast<int8_t>(missing_x < px ? 1 : -1),
-                       static_cast<int8_t>(missing_z < pz ? 1 : -1)};
-    };
-    if (beside_x && beside_z) {
-      // The fourth is missing, or a step to it is, or two levels part there.
-      if (across_x && across_z && across_x->world_level == across_z->world_level) return {};
-      return key(ox, oz, level.world_level);
-    }
-    if (across_x) return key(cx, oz, beside_x->world_level);
-    if (across_z) return key(ox, cz, beside_z->world_level);
-    return {};
-  }
-
-  world::WorldGround ground_;
+  BakedGround ground_;
   int32_t step_;
 };
 
@@ -277,8 +169,6 @@ Result<PathMesh> build_mesh(const world::WorldData& world, int32_t avatar_class,
         const size_t before = portals[l].size();
         builder.find_portals(mesh, rect, portals[l]);
         rect.first_portal = static_cast<uint32_t>(portals[l].size() - before);  // count, for now
-        for (size_t p = before; p < portals[l].size(); ++p)
-          builder.find_corners(rect, portals[l][p]);
       }
     }
   });

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "throng/base.h"
@@ -69,6 +70,19 @@ inline CellPoint in_cells(world::GroundPoint p) {
           static_cast<double>(p.z) / world::kUnitsPerCell};
 }
 
+/// Makes portals when a search comes to them, for a mesh that is made on demand.
+class PortalSource {
+ public:
+  /// Of a rectangle. Rectangles may move, their numbers stay.
+  virtual void make_portals(uint32_t rect) = 0;
+
+ protected:
+  PortalSource() = default;
+  PortalSource(const PortalSource&) = default;
+  PortalSource& operator=(const PortalSource&) = default;
+  ~PortalSource() = default;
+};
+
 struct PathMesh {
   int32_t avatar_class = 0;
   int32_t step = 0;             // [mm]
@@ -77,7 +91,14 @@ struct PathMesh {
   std::vector<MeshPortal> portals;
   std::vector<MeshCorner> corners;     // one more at the end, for its first_rect
   std::vector<uint32_t> corner_rects;  // rectangles around each corner
+  PortalSource* source = nullptr;      // null: all portals are made
 
+  /// In the order in which they go around it. Take references to rectangles after this.
+  [[nodiscard]] std::span<const MeshPortal> portals_of(uint32_t rect) const {
+    if (source != nullptr) source->make_portals(rect);
+    const uint32_t begin = rects[rect].first_portal;
+    return {portals.data() + begin, rects[rect + size_t{1}].first_portal - begin};
+  }
   [[nodiscard]] uint32_t rect_at(uint32_t level, int32_t x, int32_t z) const;  // cell of the grid
   /// Rectangles are cut into blocks of at most so many cells along a side, small enough for lists
   /// of what may matter to any of their points.

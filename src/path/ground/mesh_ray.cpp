@@ -12,9 +12,7 @@ namespace {
 
 // What lies beyond the border of a rectangle at a cell counted around it.
 uint32_t beyond(const PathMesh& mesh, uint32_t rect, int32_t cell) {
-  const uint32_t end = mesh.rects[rect + 1].first_portal;
-  for (uint32_t p = mesh.rects[rect].first_portal; p < end; ++p) {
-    const MeshPortal& portal = mesh.portals[p];
+  for (const MeshPortal& portal : mesh.portals_of(rect)) {
     if (cell < portal.from) break;  // They come in order.
     if (cell < portal.to) return portal.rect;
   }

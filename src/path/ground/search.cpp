@@ -21,20 +21,24 @@ constexpr uint32_t kMaxPushed = 0xf0000000;  // numbers of pushes that are disti
 SearchResult PathSearch::find(const PathMesh& mesh, const Stop& from, const Stop& to,
                               const SearchBudget& budget, std::vector<uint32_t>& corners,
                               double& length, double longest) {
+  begin(mesh, from, to, longest);
+  const SearchResult result = advance(budget, corners, length);
+  give_back();
+  return result;
+}
+
+void PathSearch::begin(const PathMesh& mesh, const Stop& from, const Stop& to, double longest) {
   mesh_ = &mesh;
   goal_rect_ = to.rect;
   goal_ = in_cells(to.at);
   expanded_ = 0;
-  corners.clear();
-  if (from.rect == to.rect) {
-    length = distance(in_cells(from.at), goal_);
-    return SearchResult::kFound;
-  }
-  if (best_.size() != mesh.corners.size()) best_.assign(mesh.corners.size(), {});
+  if (best_.size() < mesh.corners.size()) best_.resize(mesh.corners.size());
   if (++search_ == 0) {
-    best_.assign(mesh.corners.size(), {});
+    best_.assign(best_.size(), {});
     search_ = 1;
   }
+  was_spent_ = false;
+  drop_at_ = kDropFrom;
   roots_.clear();
   nodes_.clear();
   free_.clear();
@@ -42,38 +46,48 @@ SearchResult PathSearch::find(const PathMesh& mesh, const Stop& from, const Stop
   pushed_ = 0;
   found_length_ = longest;
   found_root_ = UINT32_MAX;
-  start(from.rect, in_cells(from.at));
+  if (from.rect != to.rect) return start(from.rect, in_cells(from.at));
+  roots_.push_back({in_cells(from.at), 0, kNoCorner, 0});
+  found_length_ = distance(in_cells(from.at), goal_);
+  found_root_ = 0;
+}
+
+SearchResult PathSearch::advance(const SearchBudget& budget, std::vector<uint32_t>& corners,
+                                 double& length) {
+  corners.clear();
+  if (was_spent_) --expanded_;  // The one that was too many is expanded now.
   const SearchResult result = run(budget);
+  was_spent_ = result == SearchResult::kBudget && budget.spent(expanded_) == SpentBudget::kNodes;
   if (result == SearchResult::kFound) {
     length = found_length_;
     for (uint32_t r = found_root_; roots_[r].corner != kNoCorner; r = roots_[r].before)
       corners.push_back(roots_[r].corner);
     std::reverse(corners.begin(), corners.end());
   }
-  give_back();
+  if (!was_spent_) give_back();
   return result;
 }
 
 // An interval is forgotten as soon as it is expanded. When the memory is used up, so are those that
 // can lead to nothing shorter; those are seldom worth expanding.
 SearchResult PathSearch::run(const SearchBudget& budget) {
-  size_t drop_at = kDropFrom;
   while (!open_.empty()) {
-    if (open_.size() >= drop_at || used_bytes() > budget.max_bytes || pushed_ > kMaxPushed) {
+    if (open_.size() >= drop_at_ || used_bytes() > budget.max_bytes || pushed_ > kMaxPushed) {
       drop_useless();
-      drop_at = std::max(kDropFrom, 2 * open_.size());
+      drop_at_ = std::max(kDropFrom, 2 * open_.size());
       // So much must be free that it takes a while until the memory is full again.
       if (used_bytes() > budget.max_bytes - budget.max_bytes / 8 || pushed_ > kMaxPushed)
         return SearchResult::kBudget;
       if (open_.empty()) break;
     }
-    const Entry entry = open_.pop();
+    const Entry entry = open_.first();
     if (entry.estimate >= found_length_) break;
     const Node node = nodes_[entry.node];
+    const bool is_useful = !is_stale(node.root);
+    if (is_useful && budget.is_spent(++expanded_)) return SearchResult::kBudget;
+    open_.pop();
     free_.push_back(entry.node);
-    if (is_stale(node.root)) continue;
-    if (budget.is_spent(++expanded_)) return SearchResult::kBudget;
-    expand(node);
+    if (is_useful) expand(node);
   }
   return found_root_ == UINT32_MAX ? SearchResult::kNone : SearchResult::kFound;
 }
@@ -117,12 +131,9 @@ void PathSearch::start(uint32_t start_rect, CellPoint from) {
       found_length_ = distance(from, goal_);
       found_root_ = 0;
     }
+    const auto portals = mesh_->portals_of(r);
     const MeshRect& rect = mesh_->rects[r];
-    const uint32_t end = mesh_->rects[r + 1].first_portal;
-    for (uint32_t p = rect.first_portal; p < end; ++p) {
-      const MeshPortal& portal = mesh_->portals[p];
-      add_piece(rect, portal, portal.from, portal.to, 0);
-    }
+    for (const MeshPortal& portal : portals) add_piece(rect, portal, portal.from, portal.to, 0);
   }
 }
 
@@ -136,6 +147,7 @@ bool PathSearch::is_stale(uint32_t root) const {
 // there.
 uint32_t PathSearch::turn(uint32_t root, CellPoint at, uint32_t corner) {
   const double length = roots_[root].length + distance(roots_[root].point, at);
+  if (corner >= best_.size()) best_.resize(mesh_->corners.size());  // made meanwhile
   Best& best = best_[corner];
   if (best.search == search_ && best.length < length - kSame) return UINT32_MAX;
   best = {search_, length};
@@ -228,6 +240,7 @@ void PathSearch::look_at_goal(const Node& node, bool on_line, uint32_t seen_root
 
 void PathSearch::expand(const Node& node) {
   const CellPoint root = roots_[node.root].point;
+  const auto portals = mesh_->portals_of(node.rect);
   const MeshRect& rect = mesh_->rects[node.rect];
   const double base = around(rect, node.right);
   const double whole = perimeter(rect);
@@ -281,9 +294,7 @@ void PathSearch::expand(const Node& node) {
     return made;
   };
 
-  const uint32_t end = mesh_->rects[node.rect + 1].first_portal;
-  for (uint32_t p = rect.first_portal; p < end; ++p) {
-    const MeshPortal& portal = mesh_->portals[p];
+  for (const MeshPortal& portal : portals) {
     double first = from_base(portal.from), stop = first + (portal.to - portal.from);
     // A portal may hold the interval itself: what lies on either side of it counts apart.
     const auto add = [&](double a, double b) {

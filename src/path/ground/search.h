@@ -28,6 +28,10 @@ class PathSearch {
                     const SearchBudget& budget, std::vector<uint32_t>& corners, double& length,
                     double longest = kAnyLength);
   static constexpr double kAnyLength = 1e300;  // cells
+  /// The same in parts: after kBudget for its nodes, calls with a larger budget continue. A mesh
+  /// that is made on demand may grow in between; it must not change.
+  void begin(const PathMesh& mesh, const Stop& from, const Stop& to, double longest = kAnyLength);
+  SearchResult advance(const SearchBudget& budget, std::vector<uint32_t>& corners, double& length);
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
   /// What it has allocated for queries by now, without references to the mesh. [bytes]
   [[nodiscard]] uint64_t allocated_bytes() const;
@@ -86,6 +90,8 @@ class PathSearch {
   uint64_t expanded_ = 0;
   uint32_t found_root_ = 0;
   double found_length_ = 0;
+  bool was_spent_ = false;  // the nodes of the last advance()
+  size_t drop_at_ = 0;  // open intervals, at which useless ones are dropped
   ChunkedArray<Root> roots_;
   ChunkedArray<Node> nodes_;    // of entries of open_, and free places
   std::vector<uint32_t> free_;  // places of nodes_

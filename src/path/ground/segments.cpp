@@ -39,7 +39,7 @@ bool SegmentWalker::walk(const Stop& from, const std::vector<uint32_t>& corners,
   stops.clear();
   stops.push_back(from);
   for (const uint32_t c : corners) {
-    if (!segment(beside(mesh_->corners[c]), kMaxGrazed, stops)) return false;
+    if (!segment(beside(mesh_.corners[c]), kMaxGrazed, stops)) return false;
   }
   return segment(to, kMaxGrazed, stops);
 }
@@ -47,17 +47,16 @@ bool SegmentWalker::walk(const Stop& from, const std::vector<uint32_t>& corners,
 // Adds the stops after the last one up to `to`.
 bool SegmentWalker::segment(world::GroundPoint to, int32_t depth, std::vector<Stop>& stops) {
   const Stop from = stops.back();
-  const uint32_t rect = mesh_ray(*mesh_, from.rect, from.at, to);
+  const uint32_t rect = mesh_ray(mesh_, from.rect, from.at, to);
   if (rect != kNoRect) {
     stops.push_back({to, rect});
     return true;
   }
   // Only the cells can decide.
-  const world::GroundLevel level =
-      world::ground_level(ground_.world, mesh_->rects[from.rect].level, ground_.avatar_class);
-  world::GroundLevel end = level;
-  if (throng::world::walk(ground_, end, from.at, to, mesh_->step)) {
-    stops.push_back({to, mesh_->rect_at(end.world_level, to.cell_x(), to.cell_z())});
+  const uint32_t level = mesh_.rects[from.rect].level;
+  uint32_t end = level;
+  if (cells_.walk(end, from.at, to)) {
+    stops.push_back({to, cells_.rect_at(end, to.cell_x(), to.cell_z())});
     return stops.back().rect != kNoRect;
   }
   if (depth == 0) return false;
@@ -72,10 +71,9 @@ bool SegmentWalker::segment(world::GroundPoint to, int32_t depth, std::vector<St
 // can continue. Between two cells on which it may stand the ground may rise by more than the step
 // height: nothing is missing there, and a body at the end of such a rise has to go around it, from
 // one side of one point to the other.
-bool SegmentWalker::slip_by(const world::GroundLevel& level, world::GroundPoint from,
-                            world::GroundPoint to, std::vector<Stop>& stops) {
-  world::GroundLevel end = level;
-  const world::WalkStop stop = world::walk_far(ground_, end, from, to, mesh_->step);
+bool SegmentWalker::slip_by(uint32_t level, world::GroundPoint from, world::GroundPoint to,
+                            std::vector<Stop>& stops) {
+  const world::WalkStop stop = cells_.walk_far(level, from, to);
   // Both ends of the border that stops it, or the corner that does.
   std::array<CellCorner, 2> corners;
   for (int32_t i = 0; i < 2; ++i) {
@@ -107,9 +105,7 @@ bool SegmentWalker::slip_by(const world::GroundLevel& level, world::GroundPoint 
 // Does a straight line from a stop lead out of the four cells around a corner, or to its end?
 bool SegmentWalker::gets_past(const CellCorner& corner, const Stop& from,
                               world::GroundPoint to) const {
-  world::GroundLevel level =
-      world::ground_level(ground_.world, mesh_->rects[from.rect].level, ground_.avatar_class);
-  const world::WalkStop stop = world::walk_far(ground_, level, from.at, to, mesh_->step);
+  const world::WalkStop stop = cells_.walk_far(mesh_.rects[from.rect].level, from.at, to);
   const auto is_beside = [](int32_t cell, int32_t line) {
     return cell == line || cell == line - 1;
   };
@@ -117,8 +113,7 @@ bool SegmentWalker::gets_past(const CellCorner& corner, const Stop& from,
 }
 
 // The point beside the corner of the first blocking cell, if the segment just grazes it.
-std::optional<world::GroundPoint> SegmentWalker::grazed(world::GroundLevel level,
-                                                        world::GroundPoint from,
+std::optional<world::GroundPoint> SegmentWalker::grazed(uint32_t level, world::GroundPoint from,
                                                         world::GroundPoint to) const {
   const double fx = static_cast<double>(from.x) / world::kUnitsPerCell;
   const double fz = static_cast<double>(from.z) / world::kUnitsPerCell;
@@ -138,12 +133,11 @@ std::optional<world::GroundPoint> SegmentWalker::grazed(world::GroundLevel level
     const bool cross_x = x != to.cell_x() && (z == to.cell_z() || ax <= az);
     const bool cross_z = z != to.cell_z() && (x == to.cell_x() || az <= ax);
     const int32_t nx = cross_x ? x + sx : x, nz = cross_z ? z + sz : z;
-    world::GroundLevel next = level;
     const world::GroundPoint here{(int64_t{x} << world::kUnitBits) + 1024,
                                   (int64_t{z} << world::kUnitBits) + 1024};
     const world::GroundPoint there{(int64_t{nx} << world::kUnitBits) + 1024,
                                    (int64_t{nz} << world::kUnitBits) + 1024};
-    if (!throng::world::walk(ground_, next, here, there, mesh_->step)) {
+    if (!cells_.walk(level, here, there)) {
       // Of the cells that may block, the corner that the segment passes closest.
       double nearest = kGrazes;
       std::optional<world::GroundPoint> best;
@@ -152,8 +146,8 @@ std::optional<world::GroundPoint> SegmentWalker::grazed(world::GroundLevel level
       const std::array<std::array<int32_t, 2>, 3> cells{{{nx, z}, {x, nz}, {nx, nz}}};
       for (const auto& [cx, cz] : cells) {
         if (cx == x && cz == z) continue;
-        const auto stands = world::step_to(ground_, level, x, z, cx, cz, mesh_->step);
-        if (stands && (cx == x || cz == z)) continue;  // not this one
+        const bool is_beside = cx == x || cz == z;
+        if (is_beside && cells_.has_step(level, x, z, cx, cz)) continue;  // not this one
         for (const int32_t px : {cx, cx + 1}) {
           for (const int32_t pz : {cz, cz + 1}) {
             const double along = ((px - fx) * dx + (pz - fz) * dz) / length;
@@ -167,7 +161,6 @@ std::optional<world::GroundPoint> SegmentWalker::grazed(world::GroundLevel level
       }
       return best;
     }
-    level = next;
     x = nx;
     z = nz;
   }

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "path/ground/cells.h"
 #include "path/ground/mesh.h"
-#include "world/ground.h"
 
 /// From the corners of a path to segments that a body can walk.
 namespace throng::path {
@@ -20,23 +20,22 @@ struct CellCorner {
 /// corner that a segment would graze. False if a segment is blocked for another reason.
 class SegmentWalker {
  public:
-  SegmentWalker(const world::WorldData& world, const PathMesh& mesh)
-      : ground_{world, mesh.avatar_class}, mesh_(&mesh) {}
+  SegmentWalker(const Cells& cells, const PathMesh& mesh) : cells_(cells), mesh_(mesh) {}
 
   bool walk(const Stop& from, const std::vector<uint32_t>& corners, world::GroundPoint to,
             std::vector<Stop>& stops);
 
  private:
   bool segment(world::GroundPoint to, int32_t depth, std::vector<Stop>& stops);
-  std::optional<world::GroundPoint> grazed(world::GroundLevel level, world::GroundPoint from,
+  std::optional<world::GroundPoint> grazed(uint32_t level, world::GroundPoint from,
                                            world::GroundPoint to) const;
-  bool slip_by(const world::GroundLevel& level, world::GroundPoint from, world::GroundPoint to,
+  bool slip_by(uint32_t level, world::GroundPoint from, world::GroundPoint to,
                std::vector<Stop>& stops);
   [[nodiscard]] bool gets_past(const CellCorner& corner, const Stop& from,
                                world::GroundPoint to) const;
 
-  world::WorldGround ground_;
-  const PathMesh* mesh_;
+  const Cells& cells_;
+  const PathMesh& mesh_;
 };
 
 }  // namespace throng::path

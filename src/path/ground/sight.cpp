@@ -77,15 +77,14 @@ bool Sight::is_outside(CellPoint right, CellPoint left) const {
 
 void Sight::start(uint32_t rect_index) {
   if (is_kept_out(rect_index)) return;
+  const auto portals = mesh_->portals_of(rect_index);
   const MeshRect& rect = mesh_->rects[rect_index];
   if (rect_index == goal_) sees_goal_ = true;
   if (with_blocks_) {
     for (uint32_t b = rect.first_block; b < mesh_->rects[rect_index + 1].first_block; ++b)
       blocks_.push_back({b, true});
   }
-  const uint32_t end = mesh_->rects[rect_index + 1].first_portal;
-  for (uint32_t p = rect.first_portal; p < end; ++p)
-    add(rect, mesh_->portals[p], mesh_->portals[p].from, mesh_->portals[p].to);
+  for (const MeshPortal& portal : portals) add(rect, portal, portal.from, portal.to);
 }
 
 // Most of the time is the wait for the mesh's bytes: they are prefetched as soon as it is known
@@ -201,6 +200,7 @@ void Sight::add(const MeshRect& rect, const MeshPortal& portal, double from, dou
 }
 
 void Sight::expand(const View& view) {
+  const auto portals = mesh_->portals_of(view.rect);
   const MeshRect& rect = mesh_->rects[view.rect];
   const double whole = perimeter(rect);
   const double width = distance(view.left, view.right);
@@ -223,9 +223,7 @@ void Sight::expand(const View& view) {
     sees_goal_ = cross(from_, view.right, goal_point_) >= -kSame &&
                  cross(from_, view.left, goal_point_) <= kSame;
   }
-  const uint32_t end = mesh_->rects[view.rect + 1].first_portal;
-  for (uint32_t p = rect.first_portal; p < end; ++p) {
-    const MeshPortal& portal = mesh_->portals[p];
+  for (const MeshPortal& portal : portals) {
     const double first = from_base(portal.from), stop = first + (portal.to - portal.from);
     const auto piece = [&](double a, double b, double offset) {
       a = std::max({a, 0.0, first_seen});

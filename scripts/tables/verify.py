@@ -7,7 +7,7 @@ The default of 10 000 000 samples takes a minute or two on two cores.
 scripts/results verify [SAMPLES] [--coarse] [--only TEXT] [--threads T] [--print]
 
 SAMPLES are distributed evenly over the worlds, their classes, and states, moves and points of surfaces.
-Exit code 1 if any world fails to bake or to pass."""
+Exit code 1 if any world fails to bake or to pass; those whose losses are known may lose so much and no more."""
 import argparse
 import json
 import shutil
@@ -20,6 +20,11 @@ from results_page import PROGRAM, WORK, machine, say, table, write_between
 CLASSES = 4  # The default ones.
 FEET_MEAN, FEET_P95 = 0.010, 0.030  # Limits of feet_error at 0.1 m cells. [m]
 MAX_LOST = 0.01  # Of the places of a body that is grown by a cell and a resolution.
+KNOWN_LOSSES = {  # Missed, as the table says. Beyond these a class has got worse.
+    ("cities/rotterdam_subset.city.json", "child"): 0.012,
+    ("bezier/teapot.bpt", "child"): 0.17,
+    ("bezier/teapot.bpt", "giant"): 0.06,
+}
 SURE, CLOSER = 3, 4  # Errors beyond the limit that make a miss certain; else CLOSER times the samples are taken.
 
 
@@ -55,17 +60,19 @@ def sample_more(report, words, samples):
 
 
 def verify(name, model, options, samples, threads, coarse):
-    """One row of the table, a note for each class that fails, and the number of tests."""
+    """One row of the table, a note for each class that fails, the number of tests, and is that as good as known?"""
     folder = WORK / "verify.throng"
     try:
         bake = run("bake", model, *options, "-o", folder, "--rebuild", *coarse, "--cell", 0.1, "--resolution", 0.1, "--threads", threads)
         report = run("verify", folder, "--source", model, *options, "--samples", samples, "--threads", threads)
         sample_more(report, ["verify", folder, "--source", model, *options, "--threads", threads], samples)
     except Failed as failure:
-        return (name, "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "FAILED"), [f"{name}: {failure}"], 0
+        return (name, "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "FAILED"), [f"{name}: {failure}"], 0, False
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-    notes = [note(name, entry) for entry in report["classes"] if not entry["passed"] or not feet_are_right(entry)]
+    missed = [entry for entry in report["classes"] if not entry["passed"] or not feet_are_right(entry)]
+    notes = [note(name, entry) for entry in missed]
+    good = all(is_known(name, entry) for entry in missed)
     for entry in report["classes"]:
         for fault in entry["faults"]:
             say(f"  {entry['class']}: {fault['what']} at {fault['feet']}")
@@ -75,7 +82,12 @@ def verify(name, model, options, samples, threads, coarse):
            report["unsupported"], report["broken"], f"{feet['mean'] * 1e3:.1f} / {feet['p95'] * 1e3:.1f}",
            f"{report['lost']['grown'] * 100:.2f}", f"{report['lost']['exact'] * 100:.1f}",
            f"{bake['seconds_total']:.1f} + {report['seconds']:.0f}", "NO" if notes else "yes")
-    return row, notes, tests
+    return row, notes, tests, good
+
+
+def is_known(name, entry):
+    faults = entry["entered"] + entry["unsupported"] + entry["broken"]
+    return faults == 0 and feet_are_right(entry) and entry["lost"]["grown"] <= KNOWN_LOSSES.get((name, entry["class"]), 0)
 
 
 def feet_are_right(entry):
@@ -103,12 +115,13 @@ def main():
     if not chosen:
         sys.exit(f"verify: no world's name has '{options.only}' in it")
     samples = max(1, options.samples // (3 * CLASSES * len(everything)))
-    rows, notes, tests = [], [], 0
+    rows, notes, tests, good = [], [], 0, True
     for name, model, arguments in chosen:
-        row, missed, count = verify(name, model, arguments, samples, options.threads, ["--coarse"] if options.coarse else [])
+        row, missed, count, is_good = verify(name, model, arguments, samples, options.threads, ["--coarse"] if options.coarse else [])
         rows.append(row)
         notes += missed
         tests += count
+        good = good and is_good
 
     text = (f"`scripts/results verify {options.samples}{' --coarse' if options.coarse else ''}`. Machine: {machine()}. {tests} tests of {len(chosen)} worlds, "
             f"cells of 0.1 m, four classes: {sum(row[-1] == 'yes' for row in rows)} pass.\n"
@@ -121,7 +134,7 @@ def main():
         print(text)
     else:
         write_between("verify_table", text)
-    return 0 if all(row[-1] == "yes" for row in rows) else 1
+    return 0 if good else 1
 
 
 sys.exit(main())

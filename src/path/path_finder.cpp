@@ -140,9 +140,15 @@ NodePlace PathFinder::State::node_place_of(const PathPoint& point, double tolera
 void PathFinder::State::find_on_ground(const Place& from, const Place& to, bool nearest,
                                        const SearchBudget& budget, Path& path) {
   uint64_t nodes_before = 0;
-  if (mesh && !edits().bears_on_ground()) {
+  if (mesh && !edits().may_shorten_paths()) {
+    // Obstacles only remove ground: the shortest path of the baked ground that can still be walked
+    // is the shortest, and what was never reached is not reached now.
     mesh->find(from, to, path, budget);
-    if (path.end != PathEnd::kUnreachable || !nearest) return;
+    const bool is_bare = !edits().bears_on_ground();
+    if (path.end == PathEnd::kReached && (is_bare || ground().allows(path))) return;
+    const bool may_stand = is_bare || (ground().is_free(from) && ground().is_free(to));
+    if (path.end == PathEnd::kUnreachable && !nearest && may_stand) return;
+    if (path.end == PathEnd::kBudgetExhausted) return;
     nodes_before = path.nodes;
   }
   ground().find(from, to, path, budget.after(nodes_before));

@@ -4,6 +4,7 @@
 
 #include "core/random.h"
 #include "grid_oracle.h"
+#include "path/edits/live_finder.h"
 #include "path/mesh_finder.h"
 #include "throng/bake.h"
 #include "throng/path.h"
@@ -76,6 +77,68 @@ TEST(FlatCells, PathsAreAsShortAsBruteForceFinds) {
   }
   EXPECT_GT(compared, 300u);
   EXPECT_GT(unreachable, 30u);
+}
+
+// The cells on which the finder lets an avatar stand now.
+FlatCells free_cells(path::LiveFinder& finder, const World& world, const FlatCells& baked) {
+  FlatCells now = baked;
+  for (int32_t z = 0; z < baked.depth; ++z) {
+    for (int32_t x = 0; x < baked.width; ++x) {
+      const Place place = world.find_place(0, {x + 0.5, 0, z + 0.5}, 0.1);
+      now.passable[static_cast<size_t>(z * baked.width + x)] = finder.is_free(place) ? 1 : 0;
+    }
+  }
+  return now;
+}
+
+// Crates come and go on both sides of a border of tiles; after each change paths are as short as
+// brute force finds them among the cells that are left.
+TEST(FlatCells, PathsAroundCratesAreAsShortAsBruteForceFinds) {
+  uint64_t compared = 0, unreachable = 0, longer = 0;
+  for (uint64_t seed = 0; seed < 12; ++seed) {
+    const FlatCells cells = random_cells(80, 18, 2 + 3 * seed, seed);
+    const World world = bake(cells);
+    auto finder = path::LiveFinder::create(world, {});
+    ASSERT_TRUE(finder) << finder.error().message;
+    const test::GridOracle baked(cells);
+    std::vector<path::ChangeId> crates;
+    Path path;
+    for (uint64_t n = 0; n < 24; ++n) {
+      const auto draw = [&](uint64_t counter, uint64_t below) {
+        return static_cast<int32_t>(random_below(seed, 100 + n, counter, below));
+      };
+      if (n % 3 == 2) {
+        finder->remove(crates[static_cast<size_t>(draw(0, crates.size()))]);
+      } else {
+        const double x = draw(1, 78), z = draw(2, 16), wide = 0.5 + draw(3, 4);
+        const auto crate = finder->add_obstacle(Prism::box({x, 0, z}, {x + wide, 2, z + 2.5}));
+        ASSERT_TRUE(crate) << crate.error().message;
+        crates.push_back(*crate);
+      }
+      const FlatCells now = free_cells(*finder, world, cells);
+      const test::GridOracle oracle(now);
+      for (uint64_t q = 0; q < 4; ++q) {
+        const int32_t ax = draw(8 * q + 10, 80), az = draw(8 * q + 11, 18);
+        const int32_t bx = draw(8 * q + 12, 80), bz = draw(8 * q + 13, 18);
+        if (!oracle.is_open(ax, az) || !oracle.is_open(bx, bz)) continue;
+        const Place from = world.find_place(0, {ax + 0.5, 0, az + 0.5}, 0.1);
+        finder->find(from, world.find_place(0, {bx + 0.5, 0, bz + 0.5}, 0.1), path);
+        const auto a = test::middle(ax, az), b = test::middle(bx, bz);
+        const auto best = oracle.shortest(a, b, 1e9);
+        ASSERT_EQ(path.end == PathEnd::kReached, best.has_value()) << seed << ", " << n;
+        if (!best) {
+          ++unreachable;
+          continue;
+        }
+        ++compared;
+        ASSERT_NEAR(path.length, *best, 1e-9) << seed << ", " << n << ", " << q;
+        if (*best > baked.shortest(a, b, 1e9).value_or(0) + 1e-6) ++longer;
+      }
+    }
+  }
+  EXPECT_GT(compared, 400u);
+  EXPECT_GT(unreachable, 10u);
+  EXPECT_GT(longer, 100u);  // A crate stood in the way.
 }
 
 TEST(FlatCells, MapsThatDoNotFitAreRefused) {

@@ -253,6 +253,50 @@ TEST(Edits, AFinderThatFollowsFindsWhatANewOneFinds) {
   EXPECT_GT(different, 10u) << "the edits change no path";
 }
 
+// With crates in the world, labels and searches of the whole mesh find the same as what is made on
+// demand: paths that no crate cuts are kept.
+TEST(Edits, WithCratesEverySpeedupFindsTheShortest) {
+  const World world = bake(test::builtin({.name = "garage"}), 0.2);
+  Context context;
+  Edits edits;
+  PathFinder on_demand =
+      need(PathFinder::create(world, {.speedup = PathSpeedup::kOnDemand, .edits = edits}, context));
+  PathFinder by_mesh = need(PathFinder::create(world, {.edits = edits}, context));
+  PathFinder by_labels =
+      need(PathFinder::create(world, {.speedup = PathSpeedup::kLabels, .edits = edits}, context));
+  PathFinder bare = need(PathFinder::create(world, {}, context));
+  Path path, other, best;
+  uint64_t reached = 0, led_around = 0, blocked = 0;
+  for (uint64_t n = 0; n < 120; ++n) {
+    const Vec3d at = world.random_place(0, 5, n).position;
+    const double half = 0.3 + 0.1 * static_cast<double>(n % 20);
+    const auto crate = edits.add_obstacle(
+        Prism::box({at.x - half, at.y, at.z - 0.4}, {at.x + half, at.y + 1, at.z + 0.4}));
+    ASSERT_TRUE(crate);
+    if (n % 4 == 3) {
+      ASSERT_TRUE(edits.remove(static_cast<EditId>(1 + n / 2)));
+    }
+    for (uint64_t q = 0; q < 6; ++q) {
+      const PathQuery query{.from = world.random_place(0, 6, 12 * n + 2 * q),
+                            .to = world.random_place(0, 6, 12 * n + 2 * q + 1)};
+      on_demand.find(query, best);
+      for (PathFinder* finder : {&by_mesh, &by_labels}) {
+        finder->find(query, path);
+        ASSERT_EQ(path.end, best.end) << n << ", " << q;
+        const double slack = 2e-4 * static_cast<double>(best.points.size() + path.points.size());
+        ASSERT_NEAR(path.length, best.length, best.end == PathEnd::kReached ? slack : 1e9);
+      }
+      bare.find(query, other);
+      reached += best.end == PathEnd::kReached ? 1 : 0;
+      blocked += best.end == PathEnd::kUnreachable ? 1 : 0;
+      led_around += best.end == PathEnd::kReached && best.length > other.length + 1e-3 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(reached, 300u);
+  EXPECT_GT(led_around, 50u);
+  EXPECT_GT(blocked, 10u);
+}
+
 TEST(Edits, LeadAroundAndBackAgain) {
   const World world = bake(worlds::flat(20), 0.2);
   Context context;

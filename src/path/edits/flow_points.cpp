@@ -45,9 +45,9 @@ class Outwards {
       nodes_.nodes[index].done = true;
       const LiveNode node = nodes_.nodes[index];
       const LiveLevel& level = *mesh_.level_with_portals(node.stop.level);
-      const double factor = mesh_.factor(level.rects[node.stop.rect]);
+      const double factor = mesh_.factor(level, node.stop.rect);
       for_portal_points(mesh_, node.stop, [&](world::GroundPoint side, const LiveStop& beyond) {
-        const double there = mesh_.factor(mesh_.level(beyond.level)->rects[beyond.rect]);
+        const double there = mesh_.factor(*mesh_.level(beyond.level), beyond.rect);
         if (!std::isfinite(there)) return;
         push(beyond, index,
              node.cost + distance_of(node.stop.at, side) * factor + there / world::kUnitsPerCell);
@@ -101,7 +101,7 @@ std::optional<FlowPoints> FlowPoints::make(LiveFinder& of, std::span<const Place
 
 // The point of a stop's rectangle by which it is nearest to a goal, none if that costs too much.
 std::pair<uint32_t, double> FlowPoints::leave_by(LiveMesh& mesh, const LiveStop& stop) const {
-  const double factor = mesh.factor(mesh.level(stop.level)->rects[stop.rect]);
+  const double factor = mesh.factor(*mesh.level(stop.level), stop.rect);
   const auto [first, last] =
       std::equal_range(points_.begin(), points_.end(), Point{stop, kNoPoint, 0}, before);
   std::pair<uint32_t, double> best{kNoPoint, kNever};

@@ -16,6 +16,7 @@
 #include "path/edits/plan_shapes.h"
 #include "path/edits/solid.h"
 #include "path/ground/reset_path.h"
+#include "path/ground/segments.h"
 #include "world/place.h"
 
 // Checks and converts what callers give, for the live mesh and its search.
@@ -80,7 +81,7 @@ Result<LiveFinder> LiveFinder::create(const World& world, const PathConfig& conf
     return Error{Errc::kBadConfig, "live ground: slope_cost must be 0 to 1000"};
   }
   if (auto ok = refuse_settings(config, "live ground", true); !ok) return ok.error();
-  return LiveFinder(std::make_unique<State>(LiveMesh(world, config)));
+  return LiveFinder(std::make_unique<State>(world, config));
 }
 
 ChangeId LiveFinder::add_obstacle(const Solid& solid) {
@@ -174,20 +175,92 @@ bool LiveFinder::is_free(const Place& place) {
   return state_->locate(place, stop);
 }
 
-void LiveFinder::begin(const Place& from, const Place& to) {
+bool LiveFinder::allows(const Path& path) {
   State& s = *state_;
-  s.from_place = from;
-  s.to_place = to;
-  s.searching = s.locate(from, s.from) && s.locate(to, s.to);
-  s.version = s.mesh.version();
-  if (s.searching) s.search.begin(s.mesh, s.from, s.to);
+  LiveMesh& mesh = s.mesh;
+  LiveStop stop;
+  if (path.points.empty() || !s.locate(path.points.front(), stop)) return false;
+  const LiveCells cells(mesh);
+  for (size_t i = 1; i < path.points.size(); ++i) {
+    const auto from = world::ground_point(mesh.world(), path.points[i - 1]);
+    const auto to = world::ground_point(mesh.world(), path.points[i]);
+    if (!from || !to) return false;
+    if (!mesh.is_changed_on(*from, *to)) continue;
+    uint32_t level = path.points[i - 1].level1 - 1;
+    if (!cells.walk(level, *from, *to) || level != path.points[i].level1 - 1) return false;
+  }
+  return true;
+}
+
+void LiveFinder::begin(const Place& from, const Place& to) { state_->begin(from, to); }
+
+void LiveFinder::State::begin(const Place& start, const Place& goal) {
+  from_place = start;
+  to_place = goal;
+  searching = locate(start, from) && locate(goal, to);
+  version = mesh.version();
+  is_exact = mesh.is_plain() && !mesh.has_links();
+  exact_nodes = nodes_before = 0;
+  if (!searching) return;
+  if (is_exact) exact.begin(mesh.rects(), exact_stop(from), exact_stop(to));
+  if (!is_exact) search.begin(mesh, from, to);
+}
+
+void LiveFinder::State::begin_portals() {
+  is_exact = false;
+  nodes_before = exact.expanded();
+  search.begin(mesh, from, to);
+}
+
+Stop LiveFinder::State::exact_stop(const LiveStop& stop) {
+  return {stop.at, mesh.level(stop.level)->first_rect + stop.rect};
+}
+
+bool LiveFinder::State::give_exactly(double length, Path& path) {
+  const LiveCells cells(mesh);
+  SegmentWalker walker(cells, mesh.rects());
+  const Stop goal = exact_stop(to);
+  if (!walker.walk(exact_stop(from), corners, goal.at, exact_stops) ||
+      exact_stops.back().rect != goal.rect)
+    return false;
+  const world::WorldData& world = mesh.world();
+  for (const Stop& stop : exact_stops) {
+    const uint32_t level = mesh.rects().rects[stop.rect].level;
+    path.points.push_back(world::place_at(world, mesh.level(level)->ground, stop.at));
+  }
+  path.segments.assign(path.points.size() - 1, SegmentKind::kWalk);
+  path.length = path.cost = length * world.summary.cell;
+  path.end = PathEnd::kReached;
+  return true;
+}
+
+std::optional<bool> LiveFinder::State::advance_exactly(uint64_t max_bytes, Path& path) {
+  const SearchBudget budget(exact_nodes, nullptr, max_bytes);
+  double length = 0;
+  const SearchResult result = exact.advance(budget, corners, length);
+  path.nodes = std::min(exact.expanded(), exact_nodes);
+  if (result == SearchResult::kBudget && budget.spent(exact.expanded()) == SpentBudget::kNodes) {
+    path.end = PathEnd::kBudgetExhausted;
+    path.spent = SpentBudget::kNodes;
+    return false;
+  }
+  if (result != SearchResult::kFound || !give_exactly(length, path)) return {};
+  searching = false;
+  return true;
 }
 
 bool LiveFinder::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& path) {
   reset(path);
   if (!searching) return true;
+  if (is_exact) {
+    exact_nodes += std::min(max_nodes, UINT64_MAX - exact_nodes);
+    if (const auto ended = advance_exactly(max_bytes, path)) return *ended;
+    // The goal is not reached, or not over corners, or that takes too much memory.
+    begin_portals();
+    max_nodes = exact_nodes - std::min(exact_nodes, nodes_before);
+  }
   const LiveSearch::State result = search.advance(mesh, max_nodes, max_bytes);
-  path.nodes = search.expanded();
+  path.nodes = nodes_before + search.expanded();
   path.end = PathEnd::kBudgetExhausted;
   path.spent = SpentBudget::kNodes;
   if (result == LiveSearch::State::kSearching) return false;

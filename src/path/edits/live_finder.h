@@ -54,7 +54,10 @@ class LiveFinder {
 
   /// Is the place legal for the class now?
   [[nodiscard]] bool is_free(const Place& place);
-  /// Finds a path of low cost; each segment is a legal move. The search goes over points on the
+  /// Can a path over the baked ground still be walked? Looks at cells of changed tiles only.
+  bool allows(const Path& path);
+  /// Finds a path of low cost; each segment is a legal move. Where every metre costs the same and
+  /// no off-mesh link is in force, it is the shortest. Else the search goes over points on the
   /// borders of rectangles, and the path is pulled taut afterwards: on average within 1 % of the
   /// best. If no path leads to the goal (kUnreachable), `path` leads to the reached place nearest
   /// to it, and Path::blocked_by says what blocks it. Stops when the budget of points or memory is

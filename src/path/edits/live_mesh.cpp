@@ -30,10 +30,19 @@ int64_t tile_key(int32_t x, int32_t z) { return (int64_t{z} << 32) | static_cast
 
 }  // namespace
 
-uint16_t LiveLevel::rect_at(int32_t x, int32_t z) const {
-  size_t r = 0;
-  while (x < rects[r].x0 || x >= rects[r].x1 || z < rects[r].z0 || z >= rects[r].z1) ++r;
-  return static_cast<uint16_t>(r);
+size_t LiveMesh::HashCorner::operator()(const CornerKey& key) const {
+  uint64_t hash = static_cast<uint32_t>(key.x) * uint64_t{0x9e3779b97f4a7c15};
+  hash = (hash ^ static_cast<uint32_t>(key.z)) * 0xbf58476d1ce4e5b9;
+  hash ^= uint64_t{key.level} << 4 ^ (key.away_x > 0 ? 2U : 0U) ^ (key.away_z > 0 ? 1U : 0U);
+  return static_cast<size_t>(hash ^ hash >> 29);
+}
+
+uint32_t LiveMesh::rect_at(const LiveLevel& level, int32_t x, int32_t z) const {
+  for (uint32_t r = level.first_rect; r < level.first_rect + level.rect_count; ++r) {
+    const MeshRect& rect = mesh_.rects[r];
+    if (x >= rect.x && x < rect.x + rect.width && z >= rect.z && z < rect.z + rect.depth) return r;
+  }
+  return kNoRect;
 }
 
 LiveMesh::LiveMesh(World world, const PathConfig& config)
@@ -48,6 +57,9 @@ LiveMesh::LiveMesh(World world, const PathConfig& config)
     slope_factor_[s] = 1 + (s == 0 ? 0 : config.slope_cost * kSteepestOf[s]);
   }
   plain_ = config.slope_cost == 0;
+  mesh_.avatar_class = config.avatar_class;
+  mesh_.step = step_;
+  mesh_.source = this;
 }
 
 LiveMesh::LiveMesh(const LiveMesh& other)
@@ -59,10 +71,15 @@ LiveMesh::LiveMesh(const LiveMesh& other)
       min_factor_(other.min_factor_),
       min_link_factor_(other.min_link_factor_),
       plain_(other.plain_),
+      active_links_(other.active_links_),
       levels_(other.levels_.size()),  // rebuilt when first used
       changes_(other.changes_),
       changes_of_tile_(other.changes_of_tile_),
-      off_mesh_links_(other.off_mesh_links_) {}
+      off_mesh_links_(other.off_mesh_links_) {
+  mesh_.avatar_class = config_.avatar_class;
+  mesh_.step = step_;
+  mesh_.source = this;
+}
 
 void LiveMesh::set_area_cost(uint8_t kind, double cost) {
   ++version_;
@@ -116,6 +133,7 @@ bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
 void LiveMesh::add_off_mesh_link(uint32_t level, const OffMeshLinkEnd& off_mesh_link) {
   changes_[off_mesh_link.change - 1].links.push_back({level, off_mesh_link});
   off_mesh_links_[level].push_back(off_mesh_link);
+  ++active_links_;
   min_link_factor_ = std::min(min_link_factor_, link_factor(off_mesh_link));
   ++version_;
 }
@@ -146,9 +164,11 @@ void LiveMesh::switch_link(const LevelLinkEnd& link, bool active) {
                        [](ChangeId id, const OffMeshLinkEnd& other) { return id < other.change; });
   if (active) {
     here.insert(after, link.end);
+    ++active_links_;
   } else {
     // Of a link in both directions on one level, both are erased; the second time there is none.
-    std::erase_if(here, [&](const OffMeshLinkEnd& other) { return other.change == change; });
+    active_links_ -=
+        std::erase_if(here, [&](const OffMeshLinkEnd& other) { return other.change == change; });
   }
 }
 
@@ -158,8 +178,32 @@ bool LiveMesh::stand(uint32_t index, world::GroundPoint at, uint16_t& rect) {
   if (of.ground.zone == nullptr || world::tile_along(x) != of.tile_x ||
       world::tile_along(z) != of.tile_z || !of.is_legal(world::in_tile(x), world::in_tile(z)))
     return false;
-  rect = of.rect_at(world::in_tile(x), world::in_tile(z));
-  return std::isfinite(factor(of.rects[rect]));
+  const uint32_t number = rect_at(of, x, z);
+  rect = static_cast<uint16_t>(number - of.first_rect);
+  return std::isfinite(factor(number));
+}
+
+// Row by row of tiles, those between the ends of the line's part in the row.
+bool LiveMesh::is_changed_on(world::GroundPoint from, world::GroundPoint to) const {
+  if (changes_of_tile_.empty()) return false;
+  constexpr int64_t kSide = int64_t{kTileCells} << world::kUnitBits, kMargin = 2;  // units
+  if (to.z < from.z) std::swap(from, to);
+  const double slope =
+      to.z > from.z ? static_cast<double>(to.x - from.x) / static_cast<double>(to.z - from.z) : 0;
+  for (int64_t z = from.z / kSide; z <= to.z / kSide; ++z) {
+    int64_t first = from.x, last = to.x;
+    if (z * kSide > from.z) first += std::llround(slope * static_cast<double>(z * kSide - from.z));
+    if ((z + 1) * kSide < to.z)
+      last = from.x + std::llround(slope * static_cast<double>((z + 1) * kSide - from.z));
+    if (last < first) std::swap(first, last);
+    const int64_t end = (last + kMargin) / kSide;
+    for (int64_t x = std::max<int64_t>(first - kMargin, 0) / kSide; x <= end; ++x) {
+      const auto tile = tile_key(static_cast<int32_t>(x), static_cast<int32_t>(z));
+      const auto found = changes_of_tile_.find(tile);
+      if (found != changes_of_tile_.end() && !found->second.empty()) return true;
+    }
+  }
+  return false;
 }
 
 // The tile's levels are rebuilt; those beside it find their portals again.
@@ -171,9 +215,11 @@ void LiveMesh::forget(int64_t key) {
       if (std::abs(dx) + std::abs(dz) > 1) continue;
       const auto tile = world().tile_levels(x + dx, z + dz);
       for (uint32_t i = tile.first; i < tile.last; ++i) {
-        if (dx == 0 && dz == 0) levels_[i].reset();
         if (levels_[i] == nullptr) continue;
-        levels_[i]->has_portals = false;
+        drop_portals(*levels_[i]);
+        if (dx != 0 || dz != 0) continue;
+        drop(*levels_[i]);
+        levels_[i].reset();
       }
     }
   }
@@ -191,16 +237,14 @@ const LiveLevel* LiveMesh::level(uint32_t index) {
 const LiveLevel* LiveMesh::level_with_portals(uint32_t index) {
   level(index);
   LiveLevel& level = *levels_[index];
-  if (!level.has_portals) find_portals(level);
+  if (!level.has_portals && level.ground.zone != nullptr) find_portals(level);
   return &level;
 }
 
-void LiveMesh::make(uint32_t index, LiveLevel& level) const {
+void LiveMesh::make(uint32_t index, LiveLevel& level) {
   level.ground = world::ground_level(world(), index, config_.avatar_class);
   if (level.ground.zone == nullptr) {  // no avatar stands there
     level.ground.world_level = index;
-    level.rects.emplace_back();
-    level.has_portals = true;
     return;
   }
   std::tie(level.tile_x, level.tile_z) =
@@ -273,10 +317,12 @@ std::array<uint8_t, 4096> LiveMesh::slopes_of(const LiveLevel& level) const {
 }
 
 // Rectangles of one kind of ground each.
-void LiveMesh::cut(LiveLevel& level) const {
+void LiveMesh::cut(LiveLevel& level) {
   const auto cuts = graph::step_cuts(level.ground, level.legal, step_);
   const std::array<uint8_t, 4096> kinds = kinds_of(level), slopes = slopes_of(level);
   std::array<bool, 64 * kSlopeClasses> done{};
+  new_rects_.clear();
+  new_kinds_.clear();
   for (size_t c = 0; c < kinds.size(); ++c) {
     const size_t sort = kinds[c] * size_t{kSlopeClasses} + slopes[c];
     if (done[sort] || !level.is_legal(world::x_of_cell(c), world::z_of_cell(c))) continue;
@@ -287,57 +333,86 @@ void LiveMesh::cut(LiveLevel& level) const {
     }
     for (size_t z = 0; z < same.size(); ++z) same[z] &= level.legal[z];
     for (const CellRect& r : tile_with_rects(same, cuts ? &*cuts : nullptr)) {
-      level.rects.push_back({static_cast<int16_t>(r.x0), static_cast<int16_t>(r.z0),
-                             static_cast<int16_t>(r.x1), static_cast<int16_t>(r.z1), kinds[c],
-                             slopes[c], 0});
+      new_rects_.push_back({level.ground.world_level, level.tile_x * kTileCells + r.x0,
+                            level.tile_z * kTileCells + r.z0, r.x1 - r.x0, r.z1 - r.z0});
+      new_kinds_.push_back({kinds[c], slopes[c]});
     }
   }
-  level.rects.emplace_back();
+  level.rect_count = static_cast<uint32_t>(new_rects_.size());
+  level.first_rect = rect_blocks_.take(level.rect_count + 1);
+  mesh_.rects.resize(rect_blocks_.end());
+  rect_kinds_.resize(rect_blocks_.end());
+  std::copy(new_rects_.begin(), new_rects_.end(), mesh_.rects.begin() + level.first_rect);
+  std::copy(new_kinds_.begin(), new_kinds_.end(), rect_kinds_.begin() + level.first_rect);
 }
 
+// Those of all its rectangles, which lie one after the other.
 void LiveMesh::find_portals(LiveLevel& level) {
-  level.portals.clear();
-  const Ground ground{*this};
-  for (size_t r = 0; r + 1 < level.rects.size(); ++r) {
-    LiveRect& rect = level.rects[r];
-    rect.first_portal = static_cast<uint32_t>(level.portals.size());
-    const auto side = [&](int32_t dx, int32_t dz) {
-      const int32_t begin = dx == 0 ? rect.x0 : rect.z0, end = dx == 0 ? rect.x1 : rect.z1;
-      bool joined = false;
-      for (int32_t i = begin; i < end; ++i) {
-        const int32_t x = level.tile_x * kTileCells + (dx == 0  ? i
-                                                       : dx > 0 ? rect.x1 - 1
-                                                                : rect.x0);
-        const int32_t z = level.tile_z * kTileCells + (dz == 0  ? i
-                                                       : dz > 0 ? rect.z1 - 1
-                                                                : rect.z0);
-        const auto there = world::step_to(ground, &level, x, z, x + dx, z + dz, step_);
-        const auto back =
-            there ? world::step_to(ground, *there, x + dx, z + dz, x, z, step_) : std::nullopt;
-        if (!back || *back != &level) {
-          joined = false;
-          continue;
-        }
-        const uint16_t to_rect = (*there)->rect_at(world::in_tile(x + dx), world::in_tile(z + dz));
-        const uint32_t to_level = (*there)->ground.world_level;
-        if (joined && level.portals.back().to_level == to_level &&
-            level.portals.back().to_rect == to_rect) {
-          ++level.portals.back().to;
-        } else {
-          level.portals.push_back({to_level, to_rect, static_cast<int8_t>(dx),
-                                   static_cast<int8_t>(dz), static_cast<int16_t>(i),
-                                   static_cast<int16_t>(i + 1)});
-        }
-        joined = true;
-      }
-    };
-    side(0, -1);
-    side(1, 0);
-    side(0, 1);
-    side(-1, 0);
-  }
-  level.rects.back().first_portal = static_cast<uint32_t>(level.portals.size());
   level.has_portals = true;
+  const Ground ground{*this};
+  const MeshBorder border(world(), ground, step_);
+  const auto rect_at = [&](const LiveLevel* of, int32_t x, int32_t z) {
+    return this->rect_at(*of, x, z);
+  };
+  new_portals_.clear();
+  for (uint32_t r = level.first_rect; r < level.first_rect + level.rect_count; ++r) {
+    mesh_.rects[r].first_portal = static_cast<uint32_t>(new_portals_.size());
+    const MeshRect rect = mesh_.rects[r];  // Others may be made now.
+    size_t p = new_portals_.size();
+    border.find_portals(&level, rect, rect_at, new_portals_);
+    for (; p < new_portals_.size(); ++p) border.find_corners(&level, rect, new_portals_[p]);
+  }
+  const auto count = static_cast<uint32_t>(new_portals_.size());
+  const uint32_t first = count > 0 ? portal_blocks_.take(count) : 0;
+  mesh_.portals.resize(portal_blocks_.end());
+  for (uint32_t p = 0; p < count; ++p) {
+    MeshPortal portal = new_portals_[p].portal;
+    portal.from_corner = number_of(new_portals_[p].from_corner);
+    portal.to_corner = number_of(new_portals_[p].to_corner);
+    mesh_.portals[first + p] = portal;
+  }
+  const uint32_t last = level.first_rect + level.rect_count;
+  for (uint32_t r = level.first_rect; r < last; ++r) mesh_.rects[r].first_portal += first;
+  mesh_.rects[last].first_portal = first + count;
+}
+
+uint32_t LiveMesh::number_of(const std::optional<CornerKey>& corner) {
+  if (!corner) return kNoCorner;
+  const auto [at, is_new] = corner_numbers_.try_emplace(*corner, kNoCorner);
+  if (is_new) {
+    if (free_corners_.empty()) {
+      free_corners_.push_back(static_cast<uint32_t>(mesh_.corners.size()));
+      mesh_.corners.emplace_back();
+      corner_keys_.emplace_back();
+      corner_uses_.push_back(0);
+    }
+    at->second = free_corners_.back();
+    free_corners_.pop_back();
+    mesh_.corners[at->second] = {corner->x, corner->z, corner->away_x, corner->away_z};
+    corner_keys_[at->second] = *corner;
+  }
+  ++corner_uses_[at->second];
+  return at->second;
+}
+
+void LiveMesh::drop_portals(LiveLevel& level) {
+  if (!level.has_portals) return;
+  level.has_portals = false;
+  const uint32_t first = mesh_.rects[level.first_rect].first_portal;
+  const uint32_t end = mesh_.rects[level.first_rect + size_t{level.rect_count}].first_portal;
+  if (first == end) return;
+  for (uint32_t p = first; p < end; ++p) {
+    for (const uint32_t c : {mesh_.portals[p].from_corner, mesh_.portals[p].to_corner}) {
+      if (c == kNoCorner || --corner_uses_[c] > 0) continue;
+      corner_numbers_.erase(corner_keys_[c]);
+      free_corners_.push_back(c);
+    }
+  }
+  portal_blocks_.give_back(first, end - first);
+}
+
+void LiveMesh::drop(LiveLevel& level) {
+  if (level.ground.zone != nullptr) rect_blocks_.give_back(level.first_rect, level.rect_count + 1);
 }
 
 }  // namespace throng::path

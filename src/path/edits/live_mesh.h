@@ -7,12 +7,17 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
 #include "core/access.h"
 #include "graph/ground_parts.h"
+#include "path/edits/index_blocks.h"
 #include "path/edits/solid.h"
+#include "path/ground/cells.h"
+#include "path/ground/mesh.h"
+#include "path/ground/mesh_border.h"
 #include "throng/path.h"
 #include "world/ground.h"
 
@@ -22,33 +27,17 @@ namespace throng::path {
 inline constexpr int32_t kSlopeClasses = 6;
 inline constexpr std::array<double, kSlopeClasses> kSteepestOf{0.05, 0.1, 0.2, 0.35, 0.6, 1.2};
 
-/// Cells [x0, x1) x [z0, z1) of a level tile, of one area kind and one class of inclination.
-struct LiveRect {
-  int16_t x0 = 0, z0 = 0, x1 = 0, z1 = 0;
-  uint8_t area = 0, slope = 0;
-  uint32_t first_portal = 0;  // its portals end where the next rectangle's begin
-};
-
-/// A stretch of a rectangle's side over which a step leads to another, and back.
-struct LivePortal {
-  uint32_t to_level = 0;  // of the world
-  uint16_t to_rect = 0;
-  int8_t toward_x = 0, toward_z = 0;  // the side
-  int16_t from = 0, to = 0;           // cells along the side, of the tile: x, or z
-};
-
+/// A level tile as it is now.
 struct LiveLevel {
   world::GroundLevel ground;
   int32_t tile_x = 0, tile_z = 0;
   world::CellRows legal{};
+  uint32_t first_rect = 0, rect_count = 0;  // of the mesh; one more follows, for its first_portal
   bool has_portals = false;
-  std::vector<LiveRect> rects;  // one more at the end, once there are portals
-  std::vector<LivePortal> portals;
 
   [[nodiscard]] bool is_legal(int32_t x, int32_t z) const {
     return ((legal[static_cast<size_t>(z)] >> x) & 1) != 0;
   }
-  [[nodiscard]] uint16_t rect_at(int32_t x, int32_t z) const;  // cell of the tile, legal
 };
 
 inline double distance_of(world::GroundPoint a, world::GroundPoint b) {  // [cells]
@@ -56,11 +45,16 @@ inline double distance_of(world::GroundPoint a, world::GroundPoint b) {  // [cel
   return std::sqrt(dx * dx + dz * dz) * (1.0 / world::kUnitsPerCell);
 }
 
-/// Levels and the changes made to them. Copies share nothing.
-class LiveMesh {
+/// Levels and the changes made to them, as a mesh whose parts are made when they are needed. Copies
+/// share nothing.
+class LiveMesh final : public PortalSource {
  public:
   LiveMesh(World world, const PathConfig& config);
   LiveMesh(const LiveMesh& other);
+  LiveMesh(LiveMesh&&) = delete;
+  LiveMesh& operator=(const LiveMesh&) = delete;
+  LiveMesh& operator=(LiveMesh&&) = delete;
+  ~LiveMesh() = default;
 
   [[nodiscard]] const world::WorldData& world() const { return *data_of(world_); }
   [[nodiscard]] int32_t avatar_class() const { return config_.avatar_class; }
@@ -71,11 +65,24 @@ class LiveMesh {
   /// Without legal cells if its zone cannot be used.
   const LiveLevel* level(uint32_t index);
   const LiveLevel* level_with_portals(uint32_t index);
-  /// Cost of a metre.
-  [[nodiscard]] double factor(const LiveRect& rect) const {
-    return area_cost_[rect.area] * slope_factor_[rect.slope];
+  /// The rectangles of the levels that were made, of one area kind and one class of inclination
+  /// each. Their numbers are valid until the next change.
+  [[nodiscard]] const PathMesh& rects() const { return mesh_; }
+  [[nodiscard]] const MeshRect& rect(const LiveLevel& level, uint32_t n) const {
+    return mesh_.rects[level.first_rect + size_t{n}];
+  }
+  /// Of a legal cell of the grid that lies on the level.
+  [[nodiscard]] uint32_t rect_at(const LiveLevel& level, int32_t x, int32_t z) const;
+  void make_portals(uint32_t rect) override { level_with_portals(mesh_.rects[rect].level); }
+  /// Cost of a metre on a rectangle.
+  [[nodiscard]] double factor(uint32_t rect) const {
+    return area_cost_[rect_kinds_[rect].area] * slope_factor_[rect_kinds_[rect].slope];
+  }
+  [[nodiscard]] double factor(const LiveLevel& level, uint32_t n) const {
+    return factor(level.first_rect + n);
   }
   [[nodiscard]] bool is_plain() const { return plain_; }  // a metre costs 1 everywhere
+  [[nodiscard]] bool has_links() const { return active_links_ > 0; }
   /// No path costs less than its length in the plane times this.
   [[nodiscard]] double min_factor() const { return std::min(min_factor_, min_link_factor_); }
   void set_area_cost(uint8_t kind, double cost);
@@ -107,11 +114,15 @@ class LiveMesh {
   /// Can the class stand at a point of a level now? In which rectangle?
   bool stand(uint32_t level, world::GroundPoint at, uint16_t& rect);
   bool set_active(ChangeId change, bool active, bool remove);
+  /// Does a line lead over a tile that a change touches, active or not?
+  [[nodiscard]] bool is_changed_on(world::GroundPoint from, world::GroundPoint to) const;
 
   /// As world/walk.h needs it.
   struct Ground {
     using Level = const LiveLevel*;
     LiveMesh& mesh;
+    [[nodiscard]] Level level(uint32_t number) const { return mesh.level(number); }
+    [[nodiscard]] static uint32_t number(Level level) { return level->ground.world_level; }
     [[nodiscard]] static bool is_legal(Level level, int32_t x, int32_t z) {
       return level->is_legal(x, z);
     }
@@ -129,10 +140,21 @@ class LiveMesh {
   [[nodiscard]] Ground ground() { return {*this}; }
 
  private:
-  void make(uint32_t index, LiveLevel& level) const;
+  /// The ground of a rectangle.
+  struct RectKind {
+    uint8_t area = 0, slope = 0;
+  };
+  struct HashCorner {
+    size_t operator()(const CornerKey& key) const;
+  };
+
+  void make(uint32_t index, LiveLevel& level);
   void block_cells(LiveLevel& level) const;
-  void cut(LiveLevel& level) const;
+  void cut(LiveLevel& level);
   void find_portals(LiveLevel& level);
+  uint32_t number_of(const std::optional<CornerKey>& corner);
+  void drop_portals(LiveLevel& level);
+  void drop(LiveLevel& level);
   void forget(int64_t tile);
   void switch_link(const LevelLinkEnd& link, bool active);
   void find_min_link_factor();
@@ -148,11 +170,36 @@ class LiveMesh {
   double min_link_factor_ = 1;  // of active off-mesh links that cost less than their length
   bool plain_ = true;
   uint64_t version_ = 0;
+  size_t active_links_ = 0;
   std::vector<std::unique_ptr<LiveLevel>> levels_;  // of the world; null: not made yet
+
+  PathMesh mesh_;
+  std::vector<RectKind> rect_kinds_;  // by rectangle
+  IndexBlocks rect_blocks_, portal_blocks_;
+  std::unordered_map<CornerKey, uint32_t, HashCorner> corner_numbers_;  // looked up only
+  std::vector<CornerKey> corner_keys_;
+  std::vector<uint32_t> corner_uses_;  // by portals
+  std::vector<uint32_t> free_corners_;
+  std::vector<MeshRect> new_rects_;  // scratch
+  std::vector<RectKind> new_kinds_;
+  std::vector<FoundPortal> new_portals_;
+
   std::vector<Change> changes_;
   std::unordered_map<int64_t, std::vector<ChangeId>> changes_of_tile_;  // in order; looked up only
   std::unordered_map<uint32_t, std::vector<OffMeshLinkEnd>>
       off_mesh_links_;  // active ones, by level, in order of change
+};
+
+/// The cells behind its rectangles.
+class LiveCells final : public CellsOf<LiveMesh::Ground> {
+ public:
+  explicit LiveCells(LiveMesh& mesh) : CellsOf(mesh.ground(), mesh.step()), mesh_(mesh) {}
+  [[nodiscard]] uint32_t rect_at(uint32_t level, int32_t x, int32_t z) const override {
+    return mesh_.rect_at(*mesh_.level(level), x, z);
+  }
+
+ private:
+  LiveMesh& mesh_;
 };
 
 }  // namespace throng::path

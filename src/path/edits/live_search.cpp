@@ -27,8 +27,8 @@ bool same(const LiveStop& a, const LiveStop& b) {
 }
 
 // Cost of a metre on the ground of a cell.
-double factor_at(LiveMesh& mesh, const LiveLevel& level, int32_t x, int32_t z) {
-  return mesh.factor(level.rects[level.rect_at(world::in_tile(x), world::in_tile(z))]);
+double factor_at(const LiveMesh& mesh, const LiveLevel& level, int32_t x, int32_t z) {
+  return mesh.factor(mesh.rect_at(level, x, z));
 }
 
 }  // namespace
@@ -172,9 +172,9 @@ void LiveStringPuller::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops) {
         // On whichever level the segment there leads to.
         const LiveLevel* level = mesh.level(a.level);
         if (!world::walk_far(mesh.ground(), level, a.at, at, mesh.step()).arrived) continue;
-        const LiveStop moved{
-            level->ground.world_level,
-            level->rect_at(world::in_tile(at.cell_x()), world::in_tile(at.cell_z())), at};
+        const uint32_t rect = mesh.rect_at(*level, at.cell_x(), at.cell_z());
+        const LiveStop moved{level->ground.world_level,
+                             static_cast<uint16_t>(rect - level->first_rect), at};
         const double cost = segment_cost(mesh, a, moved) + segment_cost(mesh, moved, b);
         if (cost >= best) continue;
         best = cost;
@@ -230,16 +230,16 @@ LiveNode* LiveSearch::push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent
 
 // Of the node's rectangle, the point nearest to the goal; heights count, so a point below the goal
 // is not at it.
-void LiveSearch::note_nearest(LiveMesh& mesh, const LiveLevel& level, uint32_t index) {
+void LiveSearch::note_nearest(LiveMesh& mesh, uint32_t index) {
   const LiveStop& stop = nodes_.nodes[index].stop;
-  const LiveRect& rect = level.rects[stop.rect];
-  const auto clamped = [](int64_t at, int32_t tile, int32_t first, int32_t end) {
-    const int64_t cell = int64_t{tile} * kTileCells;
-    return std::clamp(at, (cell + first) << world::kUnitBits,
-                      ((cell + end) << world::kUnitBits) - 1);
+  const LiveLevel& level = *mesh.level(stop.level);
+  const MeshRect& rect = mesh.rect(level, stop.rect);
+  const auto clamped = [](int64_t at, int32_t first, int32_t cells) {
+    return std::clamp(at, int64_t{first} << world::kUnitBits,
+                      (int64_t{first + cells} << world::kUnitBits) - 1);
   };
-  const world::GroundPoint at{clamped(to_.at.x, level.tile_x, rect.x0, rect.x1),
-                              clamped(to_.at.z, level.tile_z, rect.z0, rect.z1)};
+  const world::GroundPoint at{clamped(to_.at.x, rect.x, rect.width),
+                              clamped(to_.at.z, rect.z, rect.depth)};
   const auto feet = [](const LiveLevel& of, world::GroundPoint p) {
     return of.ground.view.sample(world::in_tile(p.cell_x()), world::in_tile(p.cell_z()));
   };
@@ -290,14 +290,14 @@ LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t max_nodes, uint64
       return State::kFound;
     }
     const LiveLevel& level = *mesh.level_with_portals(node.stop.level);
-    note_nearest(mesh, level, index);
+    note_nearest(mesh, index);
     const double away = distance_of(node.stop.at, to_.at);
-    const double factor = mesh.factor(level.rects[node.stop.rect]);
+    const double factor = mesh.factor(level, node.stop.rect);
     if (node.stop.level == to_.level && node.stop.rect == to_.rect)
       push(mesh, to_, index, node.cost + away * factor);
     push_links(mesh, node, index, factor);
     for_portal_points(mesh, node.stop, [&](world::GroundPoint side, const LiveStop& beyond) {
-      const double beyond_factor = mesh.factor(mesh.level(beyond.level)->rects[beyond.rect]);
+      const double beyond_factor = mesh.factor(*mesh.level(beyond.level), beyond.rect);
       if (!std::isfinite(beyond_factor)) return;
       const double cost = node.cost + distance_of(node.stop.at, side) * factor +
                           beyond_factor / world::kUnitsPerCell;

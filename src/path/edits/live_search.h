@@ -15,7 +15,7 @@ namespace throng::path {
 /// A point of a path, standing in a rectangle.
 struct LiveStop {
   uint32_t level = 0;  // of the world
-  uint16_t rect = 0;
+  uint16_t rect = 0;   // of the level's
   world::GroundPoint at;
   double off_mesh_link =
       0;  // cost of the off-mesh link that leads there, 0 if a segment does [cells]
@@ -106,7 +106,7 @@ class LiveSearch {
   LiveNode* push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, double cost);
   void push_links(LiveMesh& mesh, const LiveNode& node, uint32_t index, double factor);
 
-  void note_nearest(LiveMesh& mesh, const LiveLevel& level, uint32_t index);
+  void note_nearest(LiveMesh& mesh, uint32_t index);
 
   LiveStop to_, nearest_stop_;
   LiveNodes nodes_;
@@ -120,34 +120,44 @@ template <class Visit>
 void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit) {
   constexpr int32_t kSpacing = 8;  // cells
   const LiveLevel& level = *mesh.level_with_portals(from.level);
-  const LiveRect& rect = level.rects[from.rect];
-  const uint32_t end = level.rects[from.rect + size_t{1}].first_portal;
-  const auto unit = [](int32_t tile, int32_t cell) {
-    return (int64_t{tile} * kTileCells + cell) << world::kUnitBits;
-  };
+  const PathMesh& rects = mesh.rects();
+  const uint32_t number = level.first_rect + from.rect;
+  const MeshRect rect = rects.rects[number];
+  const int32_t w = rect.width, d = rect.depth;
+  const auto unit = [](int32_t cell) { return int64_t{cell} << world::kUnitBits; };
+  // By number: what visit() does may make more of the mesh.
+  const uint32_t end = rects.rects[number + size_t{1}].first_portal;
   for (uint32_t p = rect.first_portal; p < end; ++p) {
-    const LivePortal portal = level.portals[p];
-    const bool along_x = portal.toward_x == 0;
-    const int64_t border_x = unit(level.tile_x, portal.toward_x > 0 ? rect.x1 : rect.x0);
-    const int64_t border_z = unit(level.tile_z, portal.toward_z > 0 ? rect.z1 : rect.z0);
+    const MeshPortal portal = rects.portals[p];
+    const uint32_t to_level = rects.rects[portal.rect].level;
+    const auto to_rect = static_cast<uint16_t>(portal.rect - mesh.level(to_level)->first_rect);
+    // The side, and cells along it.
+    const bool south = portal.from < w, east = !south && portal.from < w + d;
+    const bool north = !south && !east && portal.from < 2 * w + d;
+    const bool along_x = south || north;
+    int32_t first = rect.x + portal.from, last = rect.x + portal.to;
+    if (east) {
+      first = rect.z + portal.from - w, last = rect.z + portal.to - w;
+    } else if (north) {
+      first = rect.x + w - (portal.to - w - d), last = rect.x + w - (portal.from - w - d);
+    } else if (!south) {
+      first = rect.z + 2 * d - (portal.to - 2 * w), last = rect.z + 2 * d - (portal.from - 2 * w);
+    }
+    // A border's units belong to the cells after it.
+    const int64_t border = unit(south ? rect.z : east ? rect.x + w : north ? rect.z + d : rect.x);
+    const int64_t inside = east || north ? border - 1 : border;
+    const int64_t outside = east || north ? border : border - 1;
     const auto point = [&](int64_t along) {
-      // A border's units belong to the cells after it.
-      const int32_t toward = along_x ? portal.toward_z : portal.toward_x;
-      const int64_t border = along_x ? border_z : border_x;
-      const int64_t inside = toward > 0 ? border - 1 : border;
-      const int64_t outside = toward > 0 ? border : border - 1;
       const LiveStop beyond{
-          portal.to_level, portal.to_rect,
+          to_level, to_rect,
           along_x ? world::GroundPoint{along, outside} : world::GroundPoint{outside, along}};
       visit(along_x ? world::GroundPoint{along, inside} : world::GroundPoint{inside, along},
             beyond);
     };
-    const int32_t tile = along_x ? level.tile_x : level.tile_z;
     // A unit from its ends, so that nothing beside it is grazed; the same points from both sides.
-    point(unit(tile, portal.from) + 1);
-    for (int32_t i = (portal.from / kSpacing + 1) * kSpacing; i < portal.to; i += kSpacing)
-      point(unit(tile, i));
-    point(unit(tile, portal.to) - 2);
+    point(unit(first) + 1);
+    for (int32_t i = (first / kSpacing + 1) * kSpacing; i < last; i += kSpacing) point(unit(i));
+    point(unit(last) - 2);
   }
 }
 

@@ -2,22 +2,31 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <utility>
+#include <optional>
 #include <vector>
 
 #include "path/edits/live_finder.h"
 #include "path/edits/live_mesh.h"
 #include "path/edits/live_search.h"
+#include "path/ground/search.h"
 
 /// What a LiveFinder holds.
 namespace throng::path {
 
 struct LiveFinder::State {
-  explicit State(LiveMesh of) : mesh(std::move(of)) {}
+  State(const World& world, const PathConfig& config) : mesh(world, config) {}
+  explicit State(const LiveMesh& of) : mesh(of) {}
 
   bool locate(const Place& place, LiveStop& stop);
+  void begin(const Place& start, const Place& goal);
   /// False: the search has more to expand.
   bool advance(uint64_t max_nodes, uint64_t max_bytes, Path& path);
+  /// The exact search. None if points of portals have to be searched instead.
+  std::optional<bool> advance_exactly(uint64_t max_bytes, Path& path);
+  void begin_portals();
+  [[nodiscard]] Stop exact_stop(const LiveStop& stop);
+  /// Of the corners that the exact search has found. False if no path can be drawn over them.
+  bool give_exactly(double length, Path& path);
   /// Of `stops`.
   void give(Path& path);
   /// What a straight line from its end to the goal meets first.
@@ -31,6 +40,14 @@ struct LiveFinder::State {
   uint64_t version = 0;
   bool searching = false;
   std::vector<LiveStop> stops;
+
+  // While no metre costs more than another, and no off-mesh link is in force.
+  PathSearch exact;
+  bool is_exact = false;
+  uint64_t exact_nodes = 0;   // that it may expand
+  uint64_t nodes_before = 0;  // that it has expanded, before points of portals are searched
+  std::vector<uint32_t> corners;
+  std::vector<Stop> exact_stops;
 };
 
 }  // namespace throng::path

@@ -44,7 +44,7 @@ class Builder {
   void find_portals(const PathMesh& mesh, const MeshRect& rect,
                     std::vector<FoundPortal>& portals) const {
     const world::GroundLevel level = ground_.level(rect.level);
-    const MeshBorder border(ground_, step_);
+    const MeshBorder border(ground_.world, ground_, step_);
     const auto rect_at = [&](const world::GroundLevel& of, int32_t x, int32_t z) {
       return mesh.rect_at(of.world_level, x, z);
     };

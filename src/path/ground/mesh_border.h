@@ -11,6 +11,7 @@
 
 #include "path/ground/mesh.h"
 #include "world/walk.h"
+#include "world/zone_data.h"
 
 /// What lies beyond the borders of a mesh's rectangles: portals and corners.
 namespace throng::path {
@@ -30,13 +31,13 @@ struct FoundPortal {
 };
 
 /// The borders of rectangles of cells. A Ground is one of world/walk.h, and has
-///   WorldData world                            its bounds
-///   uint32_t number(Level)                     the level's number in the world
+///   uint32_t number(Level)     the level's number in the world
 template <class Ground>
 class MeshBorder {
  public:
   using Level = typename Ground::Level;
-  MeshBorder(const Ground& ground, int32_t step) : ground_(ground), step_(step) {}
+  MeshBorder(const world::WorldData& world, const Ground& ground, int32_t step)
+      : width_(world.width), depth_(world.depth), ground_(ground), step_(step) {}
 
   /// Appends the portals of a rectangle, around it. `rect_at(level, x, z)` is the rectangle of a
   /// cell that is legal.
@@ -95,7 +96,7 @@ class MeshBorder {
   // The level on the other side of a step that leads there and back.
   [[nodiscard]] std::optional<Level> step_both(const Level& from, int32_t x, int32_t z, int32_t nx,
                                                int32_t nz) const {
-    if (nx < 0 || nz < 0 || nx >= ground_.world.width || nz >= ground_.world.depth) return {};
+    if (nx < 0 || nz < 0 || nx >= width_ || nz >= depth_) return {};
     const auto there = world::step_to(ground_, from, x, z, nx, nz, step_);
     if (!there) return {};
     const auto back = world::step_to(ground_, *there, nx, nz, x, z, step_);
@@ -142,6 +143,7 @@ class MeshBorder {
     return {};
   }
 
+  int32_t width_, depth_;  // of the world [cells]
   const Ground& ground_;
   int32_t step_;
 };

@@ -138,7 +138,7 @@ TEST(FlatCells, PathsAroundCratesAreAsShortAsBruteForceFinds) {
   }
   EXPECT_GT(compared, 400u);
   EXPECT_GT(unreachable, 10u);
-  EXPECT_GT(longer, 100u);  // A crate stood in the way.
+  EXPECT_GT(longer, 100u);  // A crate stood between.
 }
 
 TEST(FlatCells, MapsThatDoNotFitAreRefused) {

@@ -91,7 +91,7 @@ class PathSearch {
   uint32_t found_root_ = 0;
   double found_length_ = 0;
   bool was_spent_ = false;  // the nodes of the last advance()
-  size_t drop_at_ = 0;  // open intervals, at which useless ones are dropped
+  size_t drop_at_ = 0;      // open intervals, at which useless ones are dropped
   ChunkedArray<Root> roots_;
   ChunkedArray<Node> nodes_;    // of entries of open_, and free places
   std::vector<uint32_t> free_;  // places of nodes_

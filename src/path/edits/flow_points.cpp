@@ -44,7 +44,7 @@ class Outwards {
       if (nodes_.nodes[index].done) continue;
       nodes_.nodes[index].done = true;
       const LiveNode node = nodes_.nodes[index];
-      const LiveLevel& level = *mesh_.level_with_portals(node.stop.level);
+      const LiveLevel& level = *mesh_.level(node.stop.level);
       const double factor = mesh_.factor(level, node.stop.rect);
       for_portal_points(mesh_, node.stop, [&](world::GroundPoint side, const LiveStop& beyond) {
         const double there = mesh_.factor(*mesh_.level(beyond.level), beyond.rect);

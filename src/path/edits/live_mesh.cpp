@@ -206,23 +206,26 @@ bool LiveMesh::is_changed_on(world::GroundPoint from, world::GroundPoint to) con
   return false;
 }
 
-// The tile's levels are rebuilt; those beside it find their portals again.
+// The tile's levels are rebuilt; what touches it in those around it finds its portals again: a
+// corner of the mesh depends on all four cells that share its point.
 void LiveMesh::forget(int64_t key) {
   ++version_;
   const auto x = static_cast<int32_t>(key), z = static_cast<int32_t>(key >> 32);
   for (int32_t dz = -1; dz <= 1; ++dz) {
     for (int32_t dx = -1; dx <= 1; ++dx) {
-      if (std::abs(dx) + std::abs(dz) > 1) continue;
       const auto tile = world().tile_levels(x + dx, z + dz);
       for (uint32_t i = tile.first; i < tile.last; ++i) {
         if (levels_[i] == nullptr) continue;
-        drop_portals(*levels_[i]);
-        if (dx != 0 || dz != 0) continue;
+        if (dx != 0 || dz != 0) {
+          drop_border(*levels_[i], -dx, -dz);
+          continue;
+        }
         drop(*levels_[i]);
         levels_[i].reset();
       }
     }
   }
+  if (corner_numbers_.size() > max_corners_) drop_unused_corners();
 }
 
 const LiveLevel* LiveMesh::level(uint32_t index) {
@@ -232,13 +235,6 @@ const LiveLevel* LiveMesh::level(uint32_t index) {
     make(index, *level);
   }
   return level.get();
-}
-
-const LiveLevel* LiveMesh::level_with_portals(uint32_t index) {
-  level(index);
-  LiveLevel& level = *levels_[index];
-  if (!level.has_portals && level.ground.zone != nullptr) find_portals(level);
-  return &level;
 }
 
 void LiveMesh::make(uint32_t index, LiveLevel& level) {
@@ -322,7 +318,7 @@ void LiveMesh::cut(LiveLevel& level) {
   const std::array<uint8_t, 4096> kinds = kinds_of(level), slopes = slopes_of(level);
   std::array<bool, 64 * kSlopeClasses> done{};
   new_rects_.clear();
-  new_kinds_.clear();
+  new_states_.clear();
   for (size_t c = 0; c < kinds.size(); ++c) {
     const size_t sort = kinds[c] * size_t{kSlopeClasses} + slopes[c];
     if (done[sort] || !level.is_legal(world::x_of_cell(c), world::z_of_cell(c))) continue;
@@ -335,33 +331,29 @@ void LiveMesh::cut(LiveLevel& level) {
     for (const CellRect& r : tile_with_rects(same, cuts ? &*cuts : nullptr)) {
       new_rects_.push_back({level.ground.world_level, level.tile_x * kTileCells + r.x0,
                             level.tile_z * kTileCells + r.z0, r.x1 - r.x0, r.z1 - r.z0});
-      new_kinds_.push_back({kinds[c], slopes[c]});
+      new_states_.push_back({kinds[c], slopes[c], false, {}});
     }
   }
   level.rect_count = static_cast<uint32_t>(new_rects_.size());
-  level.first_rect = rect_blocks_.take(level.rect_count + 1);
+  if (level.rect_count == 0) return;
+  level.first_rect = rect_blocks_.take(level.rect_count);
   mesh_.rects.resize(rect_blocks_.end());
-  rect_kinds_.resize(rect_blocks_.end());
+  rect_states_.resize(rect_blocks_.end());
   std::copy(new_rects_.begin(), new_rects_.end(), mesh_.rects.begin() + level.first_rect);
-  std::copy(new_kinds_.begin(), new_kinds_.end(), rect_kinds_.begin() + level.first_rect);
+  std::copy(new_states_.begin(), new_states_.end(), rect_states_.begin() + level.first_rect);
 }
 
-// Those of all its rectangles, which lie one after the other.
-void LiveMesh::find_portals(LiveLevel& level) {
-  level.has_portals = true;
+void LiveMesh::find_portals(uint32_t number) {
+  const MeshRect rect = mesh_.rects[number];  // Others may be made now.
+  const LiveLevel* of = level(rect.level);
   const Ground ground{*this};
   const MeshBorder border(world(), ground, step_);
-  const auto rect_at = [&](const LiveLevel* of, int32_t x, int32_t z) {
-    return this->rect_at(*of, x, z);
+  const auto rect_at = [&](const LiveLevel* beyond, int32_t x, int32_t z) {
+    return this->rect_at(*beyond, x, z);
   };
   new_portals_.clear();
-  for (uint32_t r = level.first_rect; r < level.first_rect + level.rect_count; ++r) {
-    mesh_.rects[r].first_portal = static_cast<uint32_t>(new_portals_.size());
-    const MeshRect rect = mesh_.rects[r];  // Others may be made now.
-    size_t p = new_portals_.size();
-    border.find_portals(&level, rect, rect_at, new_portals_);
-    for (; p < new_portals_.size(); ++p) border.find_corners(&level, rect, new_portals_[p]);
-  }
+  border.find_portals(of, rect, rect_at, new_portals_);
+  for (FoundPortal& found : new_portals_) border.find_corners(of, rect, found);
   const auto count = static_cast<uint32_t>(new_portals_.size());
   const uint32_t first = count > 0 ? portal_blocks_.take(count) : 0;
   mesh_.portals.resize(portal_blocks_.end());
@@ -371,9 +363,8 @@ void LiveMesh::find_portals(LiveLevel& level) {
     portal.to_corner = number_of(new_portals_[p].to_corner);
     mesh_.portals[first + p] = portal;
   }
-  const uint32_t last = level.first_rect + level.rect_count;
-  for (uint32_t r = level.first_rect; r < last; ++r) mesh_.rects[r].first_portal += first;
-  mesh_.rects[last].first_portal = first + count;
+  rect_states_[number].portals = {first, count};
+  rect_states_[number].has_portals = true;
 }
 
 uint32_t LiveMesh::number_of(const std::optional<CornerKey>& corner) {
@@ -384,35 +375,65 @@ uint32_t LiveMesh::number_of(const std::optional<CornerKey>& corner) {
       free_corners_.push_back(static_cast<uint32_t>(mesh_.corners.size()));
       mesh_.corners.emplace_back();
       corner_keys_.emplace_back();
-      corner_uses_.push_back(0);
     }
     at->second = free_corners_.back();
     free_corners_.pop_back();
     mesh_.corners[at->second] = {corner->x, corner->z, corner->away_x, corner->away_z};
     corner_keys_[at->second] = *corner;
   }
-  ++corner_uses_[at->second];
   return at->second;
 }
 
-void LiveMesh::drop_portals(LiveLevel& level) {
-  if (!level.has_portals) return;
-  level.has_portals = false;
-  const uint32_t first = mesh_.rects[level.first_rect].first_portal;
-  const uint32_t end = mesh_.rects[level.first_rect + size_t{level.rect_count}].first_portal;
-  if (first == end) return;
-  for (uint32_t p = first; p < end; ++p) {
-    for (const uint32_t c : {mesh_.portals[p].from_corner, mesh_.portals[p].to_corner}) {
-      if (c == kNoCorner || --corner_uses_[c] > 0) continue;
-      corner_numbers_.erase(corner_keys_[c]);
-      free_corners_.push_back(c);
-    }
+void LiveMesh::drop_portals(uint32_t rect) {
+  RectState& state = rect_states_[rect];
+  if (!state.has_portals) return;
+  state.has_portals = false;
+  if (state.portals.count > 0) portal_blocks_.give_back(state.portals.first, state.portals.count);
+}
+
+// The portals of rectangles that touch the side of a level, or the corner, if toward both.
+void LiveMesh::drop_border(const LiveLevel& level, int32_t toward_x, int32_t toward_z) {
+  const auto touches = [](int32_t toward, int32_t tile, int32_t first, int32_t cells) {
+    return toward == 0 ||
+           (toward < 0 ? first == tile * kTileCells : first + cells == (tile + 1) * kTileCells);
+  };
+  for (uint32_t r = level.first_rect; r < level.first_rect + level.rect_count; ++r) {
+    const MeshRect& rect = mesh_.rects[r];
+    if (touches(toward_x, level.tile_x, rect.x, rect.width) &&
+        touches(toward_z, level.tile_z, rect.z, rect.depth))
+      drop_portals(r);
   }
-  portal_blocks_.give_back(first, end - first);
 }
 
 void LiveMesh::drop(LiveLevel& level) {
-  if (level.ground.zone != nullptr) rect_blocks_.give_back(level.first_rect, level.rect_count + 1);
+  if (level.rect_count == 0) return;
+  for (uint32_t r = level.first_rect; r < level.first_rect + level.rect_count; ++r) drop_portals(r);
+  rect_blocks_.give_back(level.first_rect, level.rect_count);
+}
+
+// Those that no portal has any more. Their numbers are used again.
+void LiveMesh::drop_unused_corners() {
+  constexpr size_t kLeast = 256;
+  used_corners_.assign(mesh_.corners.size(), false);
+  for (const std::unique_ptr<LiveLevel>& level : levels_) {
+    if (level == nullptr) continue;
+    for (uint32_t r = level->first_rect; r < level->first_rect + level->rect_count; ++r) {
+      const RectState& state = rect_states_[r];
+      if (!state.has_portals) continue;
+      for (uint32_t p = state.portals.first; p < state.portals.first + state.portals.count; ++p) {
+        for (const uint32_t c : {mesh_.portals[p].from_corner, mesh_.portals[p].to_corner})
+          if (c != kNoCorner) used_corners_[c] = true;
+      }
+    }
+  }
+  for (uint32_t c = 0; c < mesh_.corners.size(); ++c) {
+    if (used_corners_[c]) continue;
+    const auto found = corner_numbers_.find(corner_keys_[c]);
+    if (found == corner_numbers_.end() || found->second != c) continue;  // It is free.
+    corner_numbers_.erase(found);
+    free_corners_.push_back(c);
+  }
+  max_corners_ = std::max(kLeast, 2 * corner_numbers_.size());
 }
 
 }  // namespace throng::path

@@ -32,8 +32,7 @@ struct LiveLevel {
   world::GroundLevel ground;
   int32_t tile_x = 0, tile_z = 0;
   world::CellRows legal{};
-  uint32_t first_rect = 0, rect_count = 0;  // of the mesh; one more follows, for its first_portal
-  bool has_portals = false;
+  uint32_t first_rect = 0, rect_count = 0;  // of the mesh
 
   [[nodiscard]] bool is_legal(int32_t x, int32_t z) const {
     return ((legal[static_cast<size_t>(z)] >> x) & 1) != 0;
@@ -64,7 +63,6 @@ class LiveMesh final : public PortalSource {
   [[nodiscard]] uint64_t version() const { return version_; }
   /// Without legal cells if its zone cannot be used.
   const LiveLevel* level(uint32_t index);
-  const LiveLevel* level_with_portals(uint32_t index);
   /// The rectangles of the levels that were made, of one area kind and one class of inclination
   /// each. Their numbers are valid until the next change.
   [[nodiscard]] const PathMesh& rects() const { return mesh_; }
@@ -73,10 +71,21 @@ class LiveMesh final : public PortalSource {
   }
   /// Of a legal cell of the grid that lies on the level.
   [[nodiscard]] uint32_t rect_at(const LiveLevel& level, int32_t x, int32_t z) const;
-  void make_portals(uint32_t rect) override { level_with_portals(mesh_.rects[rect].level); }
+  std::span<const MeshPortal> portals_of(uint32_t rect) override {
+    const IndexRange at = portal_range(rect);
+    return {mesh_.portals.data() + at.first, at.count};
+  }
+  /// Of the mesh's portals, those of a rectangle, which are made now if they are not yet.
+  struct IndexRange {
+    uint32_t first = 0, count = 0;
+  };
+  IndexRange portal_range(uint32_t rect) {
+    if (!rect_states_[rect].has_portals) find_portals(rect);
+    return rect_states_[rect].portals;
+  }
   /// Cost of a metre on a rectangle.
   [[nodiscard]] double factor(uint32_t rect) const {
-    return area_cost_[rect_kinds_[rect].area] * slope_factor_[rect_kinds_[rect].slope];
+    return area_cost_[rect_states_[rect].area] * slope_factor_[rect_states_[rect].slope];
   }
   [[nodiscard]] double factor(const LiveLevel& level, uint32_t n) const {
     return factor(level.first_rect + n);
@@ -140,9 +149,11 @@ class LiveMesh final : public PortalSource {
   [[nodiscard]] Ground ground() { return {*this}; }
 
  private:
-  /// The ground of a rectangle.
-  struct RectKind {
-    uint8_t area = 0, slope = 0;
+  /// What a rectangle has beside its cells.
+  struct RectState {
+    uint8_t area = 0, slope = 0;  // its kind of ground
+    bool has_portals = false;
+    IndexRange portals;
   };
   struct HashCorner {
     size_t operator()(const CornerKey& key) const;
@@ -151,10 +162,12 @@ class LiveMesh final : public PortalSource {
   void make(uint32_t index, LiveLevel& level);
   void block_cells(LiveLevel& level) const;
   void cut(LiveLevel& level);
-  void find_portals(LiveLevel& level);
+  void find_portals(uint32_t rect);
   uint32_t number_of(const std::optional<CornerKey>& corner);
-  void drop_portals(LiveLevel& level);
+  void drop_portals(uint32_t rect);
+  void drop_border(const LiveLevel& level, int32_t toward_x, int32_t toward_z);
   void drop(LiveLevel& level);
+  void drop_unused_corners();
   void forget(int64_t tile);
   void switch_link(const LevelLinkEnd& link, bool active);
   void find_min_link_factor();
@@ -174,15 +187,16 @@ class LiveMesh final : public PortalSource {
   std::vector<std::unique_ptr<LiveLevel>> levels_;  // of the world; null: not made yet
 
   PathMesh mesh_;
-  std::vector<RectKind> rect_kinds_;  // by rectangle
+  std::vector<RectState> rect_states_;  // by rectangle
   IndexBlocks rect_blocks_, portal_blocks_;
   std::unordered_map<CornerKey, uint32_t, HashCorner> corner_numbers_;  // looked up only
   std::vector<CornerKey> corner_keys_;
-  std::vector<uint32_t> corner_uses_;  // by portals
   std::vector<uint32_t> free_corners_;
+  size_t max_corners_ = 0;           // until unused ones are dropped
   std::vector<MeshRect> new_rects_;  // scratch
-  std::vector<RectKind> new_kinds_;
+  std::vector<RectState> new_states_;
   std::vector<FoundPortal> new_portals_;
+  std::vector<bool> used_corners_;
 
   std::vector<Change> changes_;
   std::unordered_map<int64_t, std::vector<ChangeId>> changes_of_tile_;  // in order; looked up only

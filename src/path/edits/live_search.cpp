@@ -289,7 +289,7 @@ LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t max_nodes, uint64
       goal_ = index;
       return State::kFound;
     }
-    const LiveLevel& level = *mesh.level_with_portals(node.stop.level);
+    const LiveLevel& level = *mesh.level(node.stop.level);
     note_nearest(mesh, index);
     const double away = distance_of(node.stop.at, to_.at);
     const double factor = mesh.factor(level, node.stop.rect);

@@ -119,15 +119,15 @@ class LiveSearch {
 template <class Visit>
 void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit) {
   constexpr int32_t kSpacing = 8;  // cells
-  const LiveLevel& level = *mesh.level_with_portals(from.level);
+  const LiveLevel& level = *mesh.level(from.level);
   const PathMesh& rects = mesh.rects();
   const uint32_t number = level.first_rect + from.rect;
   const MeshRect rect = rects.rects[number];
   const int32_t w = rect.width, d = rect.depth;
   const auto unit = [](int32_t cell) { return int64_t{cell} << world::kUnitBits; };
   // By number: what visit() does may make more of the mesh.
-  const uint32_t end = rects.rects[number + size_t{1}].first_portal;
-  for (uint32_t p = rect.first_portal; p < end; ++p) {
+  const auto [begin, count] = mesh.portal_range(number);
+  for (uint32_t p = begin; p < begin + count; ++p) {
     const MeshPortal portal = rects.portals[p];
     const uint32_t to_level = rects.rects[portal.rect].level;
     const auto to_rect = static_cast<uint16_t>(portal.rect - mesh.level(to_level)->first_rect);

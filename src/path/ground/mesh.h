@@ -73,8 +73,8 @@ inline CellPoint in_cells(world::GroundPoint p) {
 /// Makes portals when a search comes to them, for a mesh that is made on demand.
 class PortalSource {
  public:
-  /// Of a rectangle. Rectangles may move, their numbers stay.
-  virtual void make_portals(uint32_t rect) = 0;
+  /// Of a rectangle. Rectangles may move, their numbers stay. Valid until the next call.
+  virtual std::span<const MeshPortal> portals_of(uint32_t rect) = 0;
 
  protected:
   PortalSource() = default;
@@ -95,7 +95,7 @@ struct PathMesh {
 
   /// In the order in which they go around it. Take references to rectangles after this.
   [[nodiscard]] std::span<const MeshPortal> portals_of(uint32_t rect) const {
-    if (source != nullptr) source->make_portals(rect);
+    if (source != nullptr) return source->portals_of(rect);
     const uint32_t begin = rects[rect].first_portal;
     return {portals.data() + begin, rects[rect + size_t{1}].first_portal - begin};
   }

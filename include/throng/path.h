@@ -88,7 +88,7 @@ enum class PathSpeedup : uint8_t {
   /// that passes every obstacle on the same side, but it may pass one on the wrong side.
   kZones,
   /// Nothing, not even the ground: data is made where a query needs it. For few queries in large
-  /// worlds, or in worlds that change all the time. Paths are on average within 1 % of the best.
+  /// worlds, or in worlds that change all the time. Paths are as short as with kNone.
   kOnDemand,
 };
 
@@ -285,12 +285,13 @@ class THRONG_API PathFinder {
 
   /// Finds a path and says why there is none. `path` is reused: its memory stays.
   ///
-  /// On the ground, where no edit is in force and nothing but length counts: the shortest any-angle
-  /// path over all legal cells; no legal path is shorter by more than 1/1000 of a cell per corner.
-  /// If the places are connected, one is found; where legal cells side by side lie more than a step
-  /// height apart, it may go from portal to portal and be a little longer. With labels there is no
-  /// search. Otherwise: a search over points on the borders of rectangles, pulled taut afterwards,
-  /// on average within 1 % of the best.
+  /// On the ground, where nothing but length counts: the shortest any-angle path over all cells
+  /// that are legal now, around obstacles too; no legal path is shorter by more than 1/1000 of a
+  /// cell per corner. If the places are connected, one is found; where legal cells side by side lie
+  /// more than a step height apart, it may go from portal to portal and be a little longer. With
+  /// labels there is no search, unless an obstacle cuts the path. Where areas or slopes cost more
+  /// or an off-mesh link is in force: a search over points on the borders of rectangles, pulled
+  /// taut afterwards, on average within 1 % of the best.
   ///
   /// Over nodes: A* over the middles of the lines along which nodes touch, or over the overlay if
   /// the path is long, then string pulling within the nodes of the corridor. If obstacles are up or

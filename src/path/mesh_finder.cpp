@@ -9,11 +9,11 @@
 
 #include "core/access.h"
 #include "core/check_class.h"
+#include "path/edits/live_finder.h"
 #include "path/ground/baked_cells.h"
 #include "path/ground/hub_labels.h"
 #include "path/ground/label_search.h"
 #include "path/ground/mesh.h"
-#include "path/ground/portal_search.h"
 #include "path/ground/reset_path.h"
 #include "path/ground/search.h"
 #include "path/ground/segments.h"
@@ -61,7 +61,7 @@ struct MeshFinder::Scratch {
   PathSearch search;
   LabelSearch label_search;
   ZoneSearch over_zones;
-  PortalSearch portals;
+  std::optional<LiveFinder> over_points;  // made when a path cannot be drawn over corners
   std::vector<uint32_t> corners;
   std::vector<Stop> stops;
   std::vector<world::LevelView> views;  // of the stops
@@ -165,11 +165,7 @@ void MeshFinder::find(const Place& from, const Place& to, Path& path, const Sear
   };
   if (result == SearchResult::kBudget) path.spent = budget.spent(path.nodes);
   if (result == SearchResult::kNone || (result == SearchResult::kFound && !is_drawn())) {
-    const SearchBudget rest = budget.after(path.nodes);
-    result = scratch_->portals.find(mesh, start, goal, rest, scratch_->stops, length);
-    const uint64_t nodes = scratch_->portals.expanded();
-    if (result == SearchResult::kBudget) path.spent = rest.spent(nodes);
-    path.nodes += nodes;
+    return find_over_points(from, to, budget.after(path.nodes), path);
   }
   if (result != SearchResult::kFound) {
     path.end = result == SearchResult::kNone ? PathEnd::kUnreachable : PathEnd::kBudgetExhausted;
@@ -179,6 +175,19 @@ void MeshFinder::find(const Place& from, const Place& to, Path& path, const Sear
   path.length = path.cost = length * world.summary.cell;
   add_places(world, mesh, scratch_->stops, scratch_->views, path);
   path.segments.assign(path.points.size() - 1, SegmentKind::kWalk);
+}
+
+void MeshFinder::find_over_points(const Place& from, const Place& to, const SearchBudget& budget,
+                                  Path& path) {
+  const uint64_t nodes_before = path.nodes;
+  std::optional<LiveFinder>& finder = scratch_->over_points;
+  if (!finder) {
+    auto made = LiveFinder::create(state_->world, {.avatar_class = state_->mesh.avatar_class});
+    THRONG_ASSERT(made);  // The class was checked.
+    finder = *std::move(made);
+  }
+  finder->find_over_points(from, to, path, budget);
+  path.nodes += nodes_before;
 }
 
 }  // namespace throng::path

@@ -40,6 +40,7 @@ class MeshFinder {
   struct Shared;
   struct Scratch;
   explicit MeshFinder(std::shared_ptr<const Shared> shared);
+  void find_over_points(const Place& from, const Place& to, const SearchBudget& budget, Path& path);
 
   std::shared_ptr<const Shared> state_;
   std::unique_ptr<Scratch> scratch_;

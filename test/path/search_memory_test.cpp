@@ -9,7 +9,6 @@
 #include "core/random.h"
 #include "path/edits/live_finder.h"
 #include "path/ground/mesh.h"
-#include "path/ground/portal_search.h"
 #include "path/ground/search.h"
 #include "path/mesh_finder.h"
 #include "throng/crowd.h"
@@ -96,9 +95,7 @@ TEST(SearchMemory, WhatIsAllocatedKeepsToTheBudget) {
   const path::MeshFinder paths = finder();
   const path::PathMesh& mesh = paths.mesh();
   path::PathSearch search;
-  path::PortalSearch portals;
   std::vector<uint32_t> corners;
-  std::vector<path::Stop> stops;
   double length = 0;
   uint64_t most = 0, stopped = 0;
   for (uint64_t n = 0; n < 100; ++n) {
@@ -113,9 +110,7 @@ TEST(SearchMemory, WhatIsAllocatedKeepsToTheBudget) {
     EXPECT_LT(rebuilt.allocated_bytes(), bytes + (uint64_t{1} << 18)) << n;
     search.find(mesh, from, to, {}, corners, length);
     most = std::max(most, search.allocated_bytes());
-    portals.find(mesh, from, to, {}, stops, length);
     EXPECT_LE(search.allocated_bytes(), path::PathSearch::kKeptBytes);
-    EXPECT_LE(portals.allocated_bytes(), path::PortalSearch::kKeptBytes);
   }
   EXPECT_GT(stopped, 5u);
   EXPECT_GT(most, 0u);

@@ -194,19 +194,19 @@ bool LiveFinder::allows(const Path& path) {
 
 void LiveFinder::begin(const Place& from, const Place& to) { state_->begin(from, to); }
 
-void LiveFinder::State::begin(const Place& start, const Place& goal) {
+void LiveFinder::State::begin(const Place& start, const Place& goal, bool over_points) {
   from_place = start;
   to_place = goal;
   searching = locate(start, from) && locate(goal, to);
   version = mesh.version();
-  is_exact = mesh.is_plain() && !mesh.has_links();
+  is_exact = !over_points && mesh.is_plain() && !mesh.has_links();
   exact_nodes = nodes_before = 0;
   if (!searching) return;
   if (is_exact) exact.begin(mesh.rects(), exact_stop(from), exact_stop(to));
   if (!is_exact) search.begin(mesh, from, to);
 }
 
-void LiveFinder::State::begin_portals() {
+void LiveFinder::State::begin_over_points() {
   is_exact = false;
   nodes_before = exact.expanded();
   search.begin(mesh, from, to);
@@ -256,7 +256,7 @@ bool LiveFinder::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& pa
     exact_nodes += std::min(max_nodes, UINT64_MAX - exact_nodes);
     if (const auto ended = advance_exactly(max_bytes, path)) return *ended;
     // The goal is not reached, or not over corners, or that takes too much memory.
-    begin_portals();
+    begin_over_points();
     max_nodes = exact_nodes - std::min(exact_nodes, nodes_before);
   }
   const LiveSearch::State result = search.advance(mesh, max_nodes, max_bytes);
@@ -288,10 +288,19 @@ bool LiveFinder::advance(uint64_t max_nodes, Path& path) {
 }
 
 void LiveFinder::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget) {
-  begin(from, to);
-  State& s = *state_;
+  state_->begin(from, to);
+  state_->run(budget, path);
+}
+
+void LiveFinder::find_over_points(const Place& from, const Place& to, Path& path,
+                                  const SearchBudget& budget) {
+  state_->begin(from, to, true);
+  state_->run(budget, path);
+}
+
+void LiveFinder::State::run(const SearchBudget& budget, Path& path) {
   if (budget.cancel == nullptr) {
-    s.advance(budget.max_nodes, budget.max_bytes, path);
+    advance(budget.max_nodes, budget.max_bytes, path);
     return;
   }
   constexpr uint64_t kSlice = 64;
@@ -304,7 +313,7 @@ void LiveFinder::find(const Place& from, const Place& to, Path& path, const Sear
       return;
     }
     const uint64_t slice = std::min(left, kSlice);
-    if (s.advance(slice, budget.max_bytes, path)) return;
+    if (advance(slice, budget.max_bytes, path)) return;
     left -= slice;
   }
 }

@@ -63,6 +63,11 @@ class LiveFinder {
   /// to it, and Path::blocked_by says what blocks it. Stops when the budget of points or memory is
   /// exhausted (Path::spent). No allocation once it is warm.
   void find(const Place& from, const Place& to, Path& path, const SearchBudget& budget = {});
+  /// As find, by the search over points even where the shortest path could be searched: for what
+  /// cannot be drawn over corners, because neighbouring cells that are both legal lie more than a
+  /// step height apart and a shortest path may lead along the line between them.
+  void find_over_points(const Place& from, const Place& to, Path& path,
+                        const SearchBudget& budget = {});
   /// The same search in parts: call begin, then advance with some points per frame until it returns
   /// true. Stops where it would take more than SearchBudget::kDefaultBytes.
   void begin(const Place& from, const Place& to);

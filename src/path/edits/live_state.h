@@ -18,12 +18,14 @@ struct LiveFinder::State {
   explicit State(const LiveMesh& of) : mesh(of) {}
 
   bool locate(const Place& place, LiveStop& stop);
-  void begin(const Place& start, const Place& goal);
+  void begin(const Place& start, const Place& goal, bool over_points = false);
+  /// To the end of what has begun, or of the budget.
+  void run(const SearchBudget& budget, Path& path);
   /// False: the search has more to expand.
   bool advance(uint64_t max_nodes, uint64_t max_bytes, Path& path);
   /// The exact search. None if points of portals have to be searched instead.
   std::optional<bool> advance_exactly(uint64_t max_bytes, Path& path);
-  void begin_portals();
+  void begin_over_points();
   [[nodiscard]] Stop exact_stop(const LiveStop& stop);
   /// Of the corners that the exact search has found. False if no path can be drawn over them.
   bool give_exactly(double length, Path& path);
@@ -45,7 +47,7 @@ struct LiveFinder::State {
   PathSearch exact;
   bool is_exact = false;
   uint64_t exact_nodes = 0;   // that it may expand
-  uint64_t nodes_before = 0;  // that it has expanded, before points of portals are searched
+  uint64_t nodes_before = 0;  // that it has expanded, before points are searched
   std::vector<uint32_t> corners;
   std::vector<Stop> exact_stops;
 };

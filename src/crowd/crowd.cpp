@@ -532,7 +532,7 @@ CrowdReport Crowd::step() {
   s.renew_flows();
   report.seconds_obstacles = seconds_since(start);
   crowd::EngineCounts counts;
-  crowd::CrowdEngine::Times times;
+  crowd::EngineTimes times;
   std::atomic<uint64_t> planned{0};
   const crowd::CrowdEngine::Before before = [&](std::span<crowd::Body> bodies, int32_t worker) {
     s.plan(bodies, worker, planned);

@@ -356,7 +356,7 @@ void Crowd::State::plan_climb(crowd::Body& body, crowd::Climb& climb, int32_t wo
 }
 
 // The step of climbers, after those of walkers and flyers.
-void Crowd::State::move_climbers(crowd::EngineCounts& counts, crowd::CrowdEngine::Times& times,
+void Crowd::State::move_climbers(crowd::EngineCounts& counts, crowd::EngineTimes& times,
                                  std::atomic<uint64_t>& planned) {
   const crowd::ClimberEngine::Before before = [&](crowd::Body& body, crowd::Climb& climb,
                                                   int32_t worker) {

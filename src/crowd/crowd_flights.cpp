@@ -418,7 +418,7 @@ void Crowd::State::plan_flight(crowd::Body& body, crowd::Flight& flight, int32_t
 }
 
 // The step of flyers in the air, after that of walkers.
-void Crowd::State::fly(crowd::EngineCounts& counts, crowd::CrowdEngine::Times& times,
+void Crowd::State::fly(crowd::EngineCounts& counts, crowd::EngineTimes& times,
                        std::atomic<uint64_t>& planned) {
   const crowd::FlyerEngine::Before before = [&](crowd::Body& body, crowd::Flight& flight,
                                                 int32_t worker) {

@@ -20,10 +20,10 @@
 #include "crowd/fly/flyer_engine.h"
 #include "crowd/ground/crowd_ground.h"
 #include "crowd/ground/obstacle_grid.h"
+#include "crowd/ground/standing_draw.h"
+#include "crowd/ground/target.h"
 #include "crowd/obstacles/obstacle_set.h"
 #include "crowd/obstacles/path_repair.h"
-#include "crowd/placement.h"
-#include "crowd/target.h"
 #include "crowd/walk/crowd_engine.h"
 #include "crowd/walk/routes.h"
 #include "path/edits/edit_list.h"
@@ -220,8 +220,7 @@ struct Crowd::State {
                                                                 int32_t worker) const;
   [[nodiscard]] bool find_flight(const crowd::Body& body, crowd::Flight& flight,
                                  int32_t worker) const;
-  void fly(crowd::EngineCounts& counts, crowd::CrowdEngine::Times& times,
-           std::atomic<uint64_t>& planned);
+  void fly(crowd::EngineCounts& counts, crowd::EngineTimes& times, std::atomic<uint64_t>& planned);
   /// Updates what flyers and climbers test.
   void update_obstacle_grid();
   /// Adds flyers where obstacles would appear or pass to the walkers that stand there, in order.
@@ -245,7 +244,7 @@ struct Crowd::State {
   void control_climber(const crowd::Body& body, crowd::Climb& climb, int32_t worker);
   void plan_climb(crowd::Body& body, crowd::Climb& climb, int32_t worker,
                   std::atomic<uint64_t>& planned);
-  void move_climbers(crowd::EngineCounts& counts, crowd::CrowdEngine::Times& times,
+  void move_climbers(crowd::EngineCounts& counts, crowd::EngineTimes& times,
                      std::atomic<uint64_t>& planned);
   [[nodiscard]] crowd::Body at_feet(const crowd::Body& body) const;
   /// Can a step use the saved state of this body without reading out of bounds?

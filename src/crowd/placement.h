@@ -11,25 +11,6 @@
 /// The first places of a crowd.
 namespace throng::crowd {
 
-/// Points where a class can stand, drawn at random, uniform over the ground.
-class StandingDraw {
- public:
-  StandingDraw(const CrowdGround& ground, uint64_t seed);
-  /// Can the class stand nowhere?
-  [[nodiscard]] bool is_empty() const { return before_.back() == 0; }
-  struct Stand {
-    uint32_t level;
-    world::GroundPoint point;
-  };
-  /// The n-th point of the stream.
-  [[nodiscard]] Stand draw(uint64_t n) const;
-
- private:
-  const CrowdGround* ground_;
-  uint64_t seed_;
-  std::vector<uint64_t> before_;  // legal cells of the levels before
-};
-
 /// Places `count` avatars on legal cells, clear of each other in `map`: at random, uniform over the
 /// ground, and when random points no longer fit, cell by cell. Returns fewer if no more fit.
 std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uint64_t seed,

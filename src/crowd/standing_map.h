@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "crowd/walk/body.h"
+#include "crowd/ground/body.h"
 
 /// Where bodies stand, to place more.
 namespace throng::crowd {

@@ -29,7 +29,7 @@ struct Pair {
   std::string step() {
     plain.step();
     crowd::EngineCounts counts;
-    crowd::CrowdEngine::Times times;
+    crowd::EngineTimes times;
     engine.step(steps++, {}, counts, times);
     std::vector<const crowd::Body*> by_slot(engine.bodies().size());
     for (const crowd::Body& body : engine.bodies()) by_slot[body.slot] = &body;

@@ -108,7 +108,7 @@ bool ClimberEngine::is_blocked(const ClimberGround& ground, const Body& body, co
 
 void ClimberEngine::step(uint64_t step, std::span<Body> bodies, std::span<Climb> climbs,
                          std::span<const Flight> flights, const Before& before,
-                         EngineCounts& counts, CrowdEngine::Times& times) {
+                         EngineCounts& counts, EngineTimes& times) {
   arrived_.clear();
   bodies_ = bodies;
   climbs_ = climbs;

@@ -14,7 +14,7 @@
 #include "crowd/fly/flyer_engine.h"
 #include "crowd/fly/flyer_grid.h"
 #include "crowd/fly/mover_rounds.h"
-#include "crowd/walk/body.h"
+#include "crowd/ground/body.h"
 #include "crowd/walk/crowd_engine.h"
 #include "crowd/walk/step_units.h"
 #include "steer/air.h"
@@ -57,7 +57,7 @@ class ClimberEngine {
   /// places.
   void step(uint64_t step, std::span<Body> bodies, std::span<Climb> climbs,
             std::span<const Flight> flights, const Before& before, EngineCounts& counts,
-            CrowdEngine::Times& times);
+            EngineTimes& times);
   /// Slots of the climbers that arrived in the last step.
   [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
   [[nodiscard]] uint64_t bytes() const;

@@ -99,7 +99,7 @@ void FlyerEngine::list_exits(const Body& body, std::vector<AirPosition>& exits) 
 }
 
 void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> flights,
-                       const Before& before, EngineCounts& counts, CrowdEngine::Times& times) {
+                       const Before& before, EngineCounts& counts, EngineTimes& times) {
   arrived_.clear();
   landed_.clear();
   bodies_ = bodies;

@@ -12,8 +12,8 @@
 #include "crowd/fly/flyer_air.h"
 #include "crowd/fly/flyer_grid.h"
 #include "crowd/fly/mover_rounds.h"
+#include "crowd/ground/body.h"
 #include "crowd/ground/obstacle_grid.h"
-#include "crowd/walk/body.h"
 #include "crowd/walk/crowd_engine.h"
 #include "crowd/walk/step_units.h"
 #include "steer/air.h"
@@ -52,7 +52,7 @@ class FlyerEngine {
   using Before = std::function<void(Body&, Flight&, int32_t worker)>;
   /// One step of all bodies that fly; `flights` by slot. Other bodies keep their places.
   void step(uint64_t step, std::span<Body> bodies, std::span<Flight> flights, const Before& before,
-            EngineCounts& counts, CrowdEngine::Times& times);
+            EngineCounts& counts, EngineTimes& times);
   /// Slots of the bodies that arrived in the last step, and the bodies that reached the ground.
   /// These are still flying.
   [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "crowd/walk/body.h"
+#include "crowd/ground/body.h"
 
 /// The bodies near those that the engine of flyers or of climbers moves.
 namespace throng::crowd {

@@ -15,7 +15,7 @@
 #include "core/random.h"
 #include "core/stopwatch.h"
 #include "crowd/fly/flyer_grid.h"
-#include "crowd/walk/body.h"
+#include "crowd/ground/body.h"
 #include "crowd/walk/crowd_engine.h"
 #include "steer/air.h"
 
@@ -119,7 +119,7 @@ class MoverRounds {
   /// of proposed moves.
   void step(std::span<const Body> bodies, const Parts& parts, FlyerGrid& grid, size_t grain,
             int32_t threads, int32_t rounds, std::pair<uint64_t, uint64_t> seed_and_step,
-            EngineCounts& counts, CrowdEngine::Times& times);
+            EngineCounts& counts, EngineTimes& times);
 
   [[nodiscard]] uint64_t bytes() const {
     uint64_t bytes =
@@ -193,7 +193,7 @@ template <class Contest, class Move>
 void MoverRounds<Contest, Move>::step(std::span<const Body> bodies, const Parts& parts,
                                       FlyerGrid& grid, size_t grain, int32_t threads,
                                       int32_t rounds, std::pair<uint64_t, uint64_t> seed_and_step,
-                                      EngineCounts& counts, CrowdEngine::Times& times) {
+                                      EngineCounts& counts, EngineTimes& times) {
   auto start = Clock::now();
   const auto lap = [&](double& seconds) {
     seconds += seconds_since(start);

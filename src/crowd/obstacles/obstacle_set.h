@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "crowd/ground/body.h"
 #include "crowd/ground/crowd_ground.h"
-#include "crowd/walk/body.h"
 #include "path/edits/solid.h"
 #include "throng/crowd.h"
 #include "throng/path.h"

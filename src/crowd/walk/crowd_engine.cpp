@@ -66,14 +66,6 @@ int64_t progress_of(const Body& body, Plane displacement) {
 
 }  // namespace
 
-void EngineCounts::add(const EngineCounts& other) {
-  contested += other.contested;
-  stood += other.stood;
-  progress += other.progress;
-  low_detail += other.low_detail;
-  skipped += other.skipped;
-}
-
 CrowdEngine::CrowdEngine(const MoveConfig& config, int32_t width, int32_t depth, size_t classes)
     : config_(config), grounds_(classes), width_(width), depth_(depth) {
   if (config.model != SteeringModel::kSampled) {
@@ -136,7 +128,8 @@ void CrowdEngine::add(const Body& body) {
   bodies_[size_++] = body;
 }
 
-void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts, Times& times) {
+void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts,
+                       EngineTimes& times) {
   if (size_ == 0) return;
   step_ = step;
   auto start = Clock::now();

@@ -12,8 +12,9 @@
 #include <vector>
 
 #include "core/huge_array.h"
+#include "crowd/ground/body.h"
 #include "crowd/ground/stride_ground.h"
-#include "crowd/walk/body.h"
+#include "crowd/mode/engine_counts.h"
 #include "crowd/walk/move_config.h"
 #include "crowd/walk/neighbour_grid.h"
 #include "crowd/walk/step_units.h"
@@ -49,17 +50,6 @@ struct EngineDetail {
   int32_t narrowest = 0;        ///< No move is longer. [units]
 };
 
-/// What a step did, summed over all bodies.
-struct EngineCounts {
-  uint64_t contested = 0;  // those that could touch another
-  uint64_t stood = 0;
-  uint64_t low_detail = 0;  // those in low detail
-  uint64_t skipped = 0;     // of these, those that took no step
-  int64_t progress = 0;     // speeds towards local targets over desired speeds, millionths
-
-  void add(const EngineCounts& other);
-};
-
 class CrowdEngine {
  public:
   /// For a world of width x depth cells and classes; grounds of those that are used must be set.
@@ -79,13 +69,10 @@ class CrowdEngine {
   /// Removes the last bodies.
   void shrink(size_t size) { size_ = size; }
 
-  struct Times {
-    double plan = 0, sort = 0, steer = 0, resolve = 0, settle = 0;  // [s]
-  };
   /// One step. `step`: its number, for the order of proposed moves. `before` is called first for
   /// all bodies, some at a time, on any worker.
   using Before = std::function<void(std::span<Body>, int32_t worker)>;
-  void step(uint64_t step, const Before& before, EngineCounts& counts, Times& times);
+  void step(uint64_t step, const Before& before, EngineCounts& counts, EngineTimes& times);
   /// After how many steps a body that continues decides again.
   [[nodiscard]] uint64_t steps_of_reaction(const Body& body) const;
   /// Slots of the bodies that arrived in the last step, in no order.

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "crowd/ground/body.h"
 #include "crowd/ground/stride_ground.h"
-#include "crowd/walk/body.h"
 #include "crowd/walk/routes.h"
 
 /// Where in an opening an avatar walks, so that not all crowd at the corner that shortest paths

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/huge_array.h"
+#include "crowd/ground/body.h"
 #include "crowd/ground/pixel_grid.h"
-#include "crowd/walk/body.h"
 #include "crowd/walk/sense_kernel.h"
 
 /// Which bodies are near each other: bodies in order of the square that they stand on.

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "crowd/ground/body.h"
 #include "crowd/ground/stride_ground.h"
-#include "crowd/walk/body.h"
 #include "throng/path.h"
 #include "throng/world.h"
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "crowd/ground/body.h"
 #include "crowd/ground/crowd_ground.h"
-#include "crowd/walk/body.h"
 #include "path/edits/live_finder.h"
 #include "throng/base.h"
 #include "throng/path.h"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "crowd/target.h"
+#include "crowd/ground/target.h"
 
 #include <algorithm>
 #include <cmath>

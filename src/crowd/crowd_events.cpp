@@ -22,7 +22,7 @@ constexpr double kNoProgress = 0.3;   // [m]
 
 Result<WatchedArea> Crowd::watch_area(std::span<const Prism> prisms) {
   State& s = *state_;
-  auto made = crowd::Target::make(*data_of(s.world), prisms);
+  auto made = crowd::Target::make(*data_of(s.shared.world), prisms);
   if (!made) return made.error();
   if (s.watched.size() >= kMaxAreas) {
     return Error{Errc::kLimit, "crowd: it watches 64 areas; watch fewer"};
@@ -38,47 +38,47 @@ void Crowd::State::find_events() {
   entered.clear();
   no_progress.clear();
   if (!watched.empty()) find_entries();
-  const auto every =
-      static_cast<uint64_t>(std::max(1.0, std::round(config.tuning.no_progress_after / config.dt)));
-  if (config.tuning.no_progress_after > 0 && step % every == 0) find_no_progress();
+  const auto every = static_cast<uint64_t>(
+      std::max(1.0, std::round(shared.config.tuning.no_progress_after / shared.config.dt)));
+  if (shared.config.tuning.no_progress_after > 0 && shared.step % every == 0) find_no_progress();
 }
 
 void Crowd::State::find_entries() {
-  inside.resize(generation.size(), 0);
+  inside.resize(shared.generation.size(), 0);
   std::mutex adding;
-  parallel_ranges(engine.bodies().size(), kEventGrain, config.workers,
-                  [&](size_t begin, size_t end) {
-                    for (const crowd::Body& body : engine.bodies().subspan(begin, end - begin)) {
-                      uint64_t now = 0;
-                      const crowd::Body there = at_feet(body);
-                      for (size_t area = 0; area < watched.size(); ++area) {
-                        if (watched[area].contains(there)) now |= uint64_t{1} << area;
-                      }
-                      const uint64_t came = now & ~inside[body.slot];
-                      inside[body.slot] = now;
-                      if (came == 0) continue;
-                      const std::lock_guard lock(adding);
-                      for (size_t area = 0; area < watched.size(); ++area) {
-                        if ((came >> area & 1) == 0) continue;
-                        entered.push_back({id_of(body.slot), static_cast<WatchedArea>(area)});
-                      }
-                    }
-                  });
+  parallel_ranges(
+      walk.bodies().size(), kEventGrain, shared.config.workers, [&](size_t begin, size_t end) {
+        for (const crowd::Body& body : walk.bodies().subspan(begin, end - begin)) {
+          uint64_t now = 0;
+          const crowd::Body there = at_feet(body);
+          for (size_t area = 0; area < watched.size(); ++area) {
+            if (watched[area].contains(there)) now |= uint64_t{1} << area;
+          }
+          const uint64_t came = now & ~inside[body.slot];
+          inside[body.slot] = now;
+          if (came == 0) continue;
+          const std::lock_guard lock(adding);
+          for (size_t area = 0; area < watched.size(); ++area) {
+            if ((came >> area & 1) == 0) continue;
+            entered.push_back({shared.id_of(body.slot), static_cast<WatchedArea>(area)});
+          }
+        }
+      });
   std::sort(entered.begin(), entered.end(), [](const AreaEntry& a, const AreaEntry& b) {
     return a.id.slot1 != b.id.slot1 ? a.id.slot1 < b.id.slot1 : a.area < b.area;
   });
 }
 
 void Crowd::State::find_no_progress() {
-  checked_at.resize(generation.size(), kNeverChecked);
-  const double min_progress = kNoProgress / unit;
-  for (const crowd::Body& body : engine.bodies()) {
+  checked_at.resize(shared.generation.size(), kNeverChecked);
+  const double min_progress = kNoProgress / shared.unit;
+  for (const crowd::Body& body : walk.bodies()) {
     auto& [x, z, y] = checked_at[body.slot];
     const double dx = double{1} * body.x - x, dz = double{1} * body.z - z;
-    const double dy = (double{1} * body.y - y) * 1e-3 / unit;
+    const double dy = (double{1} * body.y - y) * 1e-3 / shared.unit;
     const bool walks = body.has(crowd::Body::kHasGoal) && !body.has(crowd::Body::kArrived);
     if (walks && dx * dx + dy * dy + dz * dz < min_progress * min_progress)
-      no_progress.push_back(id_of(body.slot));
+      no_progress.push_back(shared.id_of(body.slot));
     x = body.x;
     z = body.z;
     y = body.y;

@@ -4,38 +4,13 @@
 #include <string>
 
 #include "core/access.h"
-#include "core/parallel.h"
 #include "crowd/crowd_state.h"
-#include "path/edits/blocked_cells.h"
 #include "throng/crowd.h"
 
 // Obstacles that are added, moved and removed while a crowd walks. Between two steps all avatars
 // stand; an obstacle appears only where none does, so it stays true that no avatar enters a wall.
 namespace throng {
 namespace {
-
-// Updates what the finders of a class, one a worker, know of an obstacle: a new one is added, else
-// it is switched. All copies give the same id.
-template <class Finder>
-void sync(std::vector<Finder>& finders, const crowd::CrowdObstacle& obstacle, bool is_new,
-          path::ChangeId& change) {
-  const path::ChangeId old = change;
-  for (Finder& finder : finders) {
-    if (!is_new) {
-      finder.set_active(old, obstacle.has_cells);
-      continue;
-    }
-    finder.remove(old);
-    const auto added = finder.add_obstacle(obstacle.place);
-    THRONG_ASSERT(added);  // The prism was checked.
-    change = *added;
-  }
-}
-
-template <class Finder>
-void remove_change(std::vector<Finder>& finders, path::ChangeId change) {
-  for (Finder& finder : finders) finder.remove(change);
-}
 
 // Of triangles the box around them, which may be flat.
 Prism prism_of(const path::Solid& solid) {
@@ -55,32 +30,32 @@ Result<ObstacleId> Crowd::add_obstacle(const Prism& prism, ObstacleKind kind,
                                        ObstaclePolicy policy) {
   if (auto ok = check_prism(prism); !ok) return ok.error();
   State& s = *state_;
-  const uint32_t slot = s.obstacles.add(prism, kind, /*wanted_up=*/true, policy);
-  s.obstacles.at(slot).requested_step = s.step;
+  const uint32_t slot = s.shared.obstacles.add(prism, kind, /*wanted_up=*/true, policy);
+  s.shared.obstacles.at(slot).requested_step = s.shared.step;
   s.settle_obstacles(std::span(&slot, 1), nullptr);
-  return ObstacleId{slot + 1, s.obstacles.at(slot).generation};
+  return ObstacleId{slot + 1, s.shared.obstacles.at(slot).generation};
 }
 
 Result<void> Crowd::move_obstacle(ObstacleId id, const Prism& prism) {
   if (auto ok = check_prism(prism); !ok) return ok.error();
   State& s = *state_;
-  if (s.obstacles.find(id) == nullptr) return no_obstacle();
+  if (s.shared.obstacles.find(id) == nullptr) return no_obstacle();
   const uint32_t slot = id.slot1 - 1;
-  const bool closed = s.obstacles.at(slot).closes();
-  s.obstacles.request_move(slot, prism);
+  const bool closed = s.shared.obstacles.at(slot).closes();
+  s.shared.obstacles.request_move(slot, prism);
   s.settle_obstacles(std::span(&slot, 1), nullptr);
-  if (closed && !s.obstacles.at(slot).has_cells) s.ground_changed();
+  if (closed && !s.shared.obstacles.at(slot).has_cells) s.ground_changed();
   return {};
 }
 
 bool Crowd::set_obstacle_active(ObstacleId id, bool active) {
   State& s = *state_;
-  if (s.obstacles.find(id) == nullptr) return false;
+  if (s.shared.obstacles.find(id) == nullptr) return false;
   const uint32_t slot = id.slot1 - 1;
-  const crowd::CrowdObstacle& obstacle = s.obstacles.at(slot);
+  const crowd::CrowdObstacle& obstacle = s.shared.obstacles.at(slot);
   const bool had_cells = obstacle.has_cells, was_wanted = obstacle.wanted_up;
-  s.obstacles.request_active(slot, active);
-  if (active && !was_wanted) s.obstacles.at(slot).requested_step = s.step;
+  s.shared.obstacles.request_active(slot, active);
+  if (active && !was_wanted) s.shared.obstacles.at(slot).requested_step = s.shared.step;
   s.settle_obstacles(std::span(&slot, 1), nullptr);
   if (had_cells && !active) {
     s.ground_changed();
@@ -93,24 +68,18 @@ bool Crowd::remove_obstacle(ObstacleId id) {
   State& s = *state_;
   if (!set_obstacle_active(id, false)) return false;
   const uint32_t slot = id.slot1 - 1;
-  s.flows_are_old = true;
-  for (size_t c = 0; c < s.classes.size(); ++c) {
-    if (!s.classes[c]) continue;
-    const crowd::CrowdObstacle::OfClass& synced = s.obstacles.at(slot).of_class[c];
-    remove_change(s.classes[c]->lives, synced.change);
-    remove_change(s.classes[c]->flight_finders, synced.air_change);
-    remove_change(s.classes[c]->node_finders, synced.node_change);
-  }
-  s.obstacles.remove(slot);
+  for (crowd::Mode* mode : s.modes) mode->forget_obstacle(s.shared.obstacles.at(slot));
+  s.shared.obstacles.remove(slot);
   return true;
 }
 
 Result<ObstacleState> Crowd::obstacle(ObstacleId id) const {
-  const crowd::CrowdObstacle* found = state_->obstacles.find(id);
+  const crowd::CrowdObstacle* found = state_->shared.obstacles.find(id);
   if (found == nullptr) return no_obstacle();
   const auto seconds = [&](uint64_t step) {
-    return step == crowd::CrowdObstacle::kNever ? -1
-                                                : static_cast<double>(step) * state_->config.dt;
+    return step == crowd::CrowdObstacle::kNever
+               ? -1
+               : static_cast<double>(step) * state_->shared.config.dt;
   };
   return ObstacleState{found->place,
                        found->is_up,
@@ -126,7 +95,7 @@ Result<ObstacleState> Crowd::obstacle(ObstacleId id) const {
 // costs nothing.
 void Crowd::follow_edits() {
   State& s = *state_;
-  const path::EditList& list = s.edits();
+  const path::EditList& list = s.shared.edits();
   if (s.edits_version == list.version()) return;
   bool areas_changed = false;
   s.of_edit.resize(std::max(s.of_edit.size(), list.edits.size()));
@@ -148,7 +117,8 @@ void Crowd::follow_edits() {
     }
   });
   s.edits_version = list.version();
-  if (areas_changed) s.areas_changed();
+  if (!areas_changed) return;
+  for (crowd::Mode* mode : s.modes) mode->areas_changed(s.walk.bodies());
 }
 
 ObstacleId Crowd::obstacle_of(EditId edit) const {
@@ -157,7 +127,7 @@ ObstacleId Crowd::obstacle_of(EditId edit) const {
 
 std::vector<Prism> Crowd::obstacles() const {
   std::vector<Prism> prisms;
-  for (const crowd::CrowdObstacle& obstacle : state_->obstacles.all()) {
+  for (const crowd::CrowdObstacle& obstacle : state_->shared.obstacles.all()) {
     if (obstacle.exists && obstacle.is_up) prisms.push_back(obstacle.place);
   }
   return prisms;
@@ -170,17 +140,19 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
   if (in_their_path != nullptr) in_their_path->clear();
   const bool begins_step = in_their_path != nullptr;
   if (slots.empty()) {
-    if (begins_step && some_leave) mark_leaving({}, begins_step);
+    if (begins_step && shared.some_leave) mark_leaving({}, begins_step);
     return 0;
   }
-  auto found = obstacles.blockers(slots, engine.bodies(), config.workers);
-  if (!flights.empty() || !climbs.empty()) add_flyer_blockers(slots, found);
+  const std::span<const crowd::Body> bodies = walk.bodies();
+  crowd::BlockerPairs found;
+  for (const crowd::Mode* mode : modes) mode->add_blockers(slots, bodies, found);
+  std::sort(found.begin(), found.end());
   size_t waiting = 0;
   std::vector<uint32_t> cut;
   std::vector<std::pair<uint32_t, uint32_t>> leaving;
   bool changed = false;
   for (const uint32_t slot : slots) {
-    const crowd::CrowdObstacle& obstacle = obstacles.at(slot);
+    const crowd::CrowdObstacle& obstacle = shared.obstacles.at(slot);
     const auto first = std::lower_bound(found.begin(), found.end(), std::pair(slot, uint32_t{0}));
     const auto last =
         std::lower_bound(found.begin(), found.end(), std::pair(slot + 1, uint32_t{0}));
@@ -195,31 +167,31 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
     if (!here.empty() && (refuses || obstacle.is_exit_only)) {
       leaving.insert(leaving.end(), here.begin(), here.end());
       const auto walks = [&](const auto& pair) {
-        return !engine.bodies()[pair.second].has(crowd::Body::kFlying);
+        return !bodies[pair.second].has(crowd::Body::kFlying);
       };
-      obstacles.set_exit_only(slot, std::any_of(here.begin(), here.end(), walks));
+      shared.obstacles.set_exit_only(slot, std::any_of(here.begin(), here.end(), walks));
       if (refuses) {
-        obstacles.close(slot);
+        shared.obstacles.close(slot);
         comes = !is_occupied(slot, here);
       }
     } else if (here.empty()) {
-      obstacles.set_exit_only(slot, false);
+      shared.obstacles.set_exit_only(slot, false);
     }
     if (waited && comes) {
-      obstacles.settle(slot);
+      shared.obstacles.settle(slot);
       if (obstacle.up_step == crowd::CrowdObstacle::kNever) {
-        obstacles.at(slot).up_step = begins_step ? step - 1 : step;
+        shared.obstacles.at(slot).up_step = begins_step ? shared.step - 1 : shared.step;
       }
     }
     changed = changed || (waited && comes) || was_exit_only != obstacle.is_exit_only ||
               had_cells != obstacle.has_cells;
     if (obstacle.has_cells && !had_cells) cut.push_back(slot);
-    obstacles.at(slot).occupants = obstacle.waits() ? static_cast<uint32_t>(here.size()) : 0;
+    shared.obstacles.at(slot).occupants = obstacle.waits() ? static_cast<uint32_t>(here.size()) : 0;
     if (!obstacle.waits()) continue;
     ++waiting;
     if (!begins_step) continue;
     for (const auto& pair : here) {
-      in_their_path->push_back(id_of(engine.bodies()[pair.second].slot));
+      in_their_path->push_back(shared.id_of(bodies[pair.second].slot));
     }
   }
   if (begins_step) {
@@ -232,26 +204,34 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
   mark_leaving(leaving, begins_step);
   if (cut.empty()) return waiting;
   for (const uint32_t slot : cut) sync_paths(slot);
-  cut_paths(cut);
+  for (crowd::Mode* mode : modes) mode->cut_paths(cut, walk.bodies());
   return waiting;
 }
 
 void Crowd::State::ground_changed() {
-  obstacles.block_cells();
-  for (const auto& parts : classes) {
-    if (parts) parts->standing.reset();
+  shared.obstacles.block_cells();
+  for (crowd::Mode* mode : modes) mode->ground_changed();
+  // What flyers and climbers test.
+  const Vec3d& origin = shared.origin();
+  for (const uint32_t slot : shared.obstacles.take_changed()) {
+    const crowd::CrowdObstacle& obstacle = shared.obstacles.at(slot);
+    if (!obstacle.exists || !obstacle.has_cells) {
+      shared.obstacle_grid.erase(slot);
+      continue;
+    }
+    shared.obstacle_grid.set(
+        slot, crowd::AirObstacle(obstacle.place, origin, shared.unit, obstacle.closes()),
+        {obstacle.place, {}});
   }
-  update_obstacle_grid();
 }
 
 void Crowd::State::sync_paths(uint32_t slot) {
-  for (size_t c = 0; c < classes.size(); ++c) sync_paths(slot, c);
+  for (size_t c = 0; c < shared.classes.size(); ++c) sync_paths(slot, c);
 }
 
 void Crowd::State::sync_paths(uint32_t slot, size_t number) {
-  crowd::CrowdObstacle& obstacle = obstacles.at(slot);
-  if (obstacle.kind != ObstacleKind::kStatic || !obstacle.exists || !classes[number]) return;
-  ClassParts& parts = *classes[number];
+  crowd::CrowdObstacle& obstacle = shared.obstacles.at(slot);
+  if (obstacle.kind != ObstacleKind::kStatic || !obstacle.exists || !shared.classes[number]) return;
   crowd::CrowdObstacle::OfClass& synced = obstacle.of_class[number];
   const bool is_new =
       obstacle.has_cells && (!synced.is_synced || synced.synced_version != obstacle.version);
@@ -259,51 +239,7 @@ void Crowd::State::sync_paths(uint32_t slot, size_t number) {
     synced.is_synced = true;
     synced.synced_version = obstacle.version;
   }
-  sync(parts.node_finders, obstacle, is_new, synced.node_change);
-  if (config.routing != Routing::kPaths) return;
-  if (obstacle.has_cells) make_lives(number);
-  flows_are_old = true;
-  sync(parts.lives, obstacle, is_new, synced.change);
-  sync(parts.flight_finders, obstacle, is_new, synced.air_change);
-}
-
-// Avatars whose paths lead over cells that some obstacles have just blocked need another path.
-void Crowd::State::cut_paths(std::span<const uint32_t> slots) {
-  if (!climbs.empty()) cut_climbs(slots);
-  if (config.routing != Routing::kPaths) return;
-  const world::WorldData& data = *data_of(world);
-  double widest_class = 0;
-  for (const AvatarClass& avatar : data.summary.classes) {
-    widest_class = std::max(widest_class, path::taking_reach(avatar));
-  }
-  std::vector<crowd::PlanBox> boxes;
-  for (const uint32_t slot : slots) {
-    const crowd::CrowdObstacle& obstacle = obstacles.at(slot);
-    if (obstacle.kind != ObstacleKind::kStatic) continue;
-    crowd::PlanBox box{1e300, 1e300, -1e300, -1e300};
-    const double around = widest_class + data.summary.cell;
-    for (const auto& [x, z] : obstacle.place.corners) {
-      box = {std::min(box.x0, x - around), std::min(box.z0, z - around),
-             std::max(box.x1, x + around), std::max(box.z1, z + around)};
-    }
-    const Vec3d& origin = data.summary.origin;
-    boxes.push_back({(box.x0 - origin.x) / unit, (box.z0 - origin.z) / unit,
-                     (box.x1 - origin.x) / unit, (box.z1 - origin.z) / unit});
-  }
-  if (boxes.empty()) return;
-  const std::span<crowd::Body> bodies = engine.bodies();
-  parallel_ranges(bodies.size(), 4096, config.workers, [&](size_t begin, size_t end) {
-    for (crowd::Body& body : bodies.subspan(begin, end - begin)) {
-      if (!body.has(crowd::Body::kHasGoal) || body.has(crowd::Body::kNeedsPath) ||
-          body.has(crowd::Body::kFlying) || body.leaves) {
-        continue;
-      }
-      const bool is_cut = std::any_of(boxes.begin(), boxes.end(), [&](const crowd::PlanBox& box) {
-        return crowd::leads_through(body, routes[body.slot], box);
-      });
-      if (is_cut) body.flags |= crowd::Body::kNeedsPath;
-    }
-  });
+  for (crowd::Mode* mode : modes) mode->sync_obstacle(obstacle, number, is_new);
 }
 
 }  // namespace throng

@@ -10,6 +10,7 @@
 #include "core/access.h"
 #include "core/hash.h"
 #include "crowd/crowd_state.h"
+#include "crowd/mode/saved_rows.h"
 #include "throng/crowd.h"
 #include "world/place.h"
 
@@ -17,6 +18,9 @@
 // crowd.
 namespace throng {
 namespace {
+
+using crowd::put_rows;
+using crowd::take_rows;
 
 constexpr uint64_t kMagic = 0x39305744574f5243;  // "CROWDW09"
 
@@ -38,8 +42,6 @@ struct Head {
   uint64_t edits = 0, edits_version = 0;
 };
 static_assert(sizeof(Head) == 26 * 8 && std::is_trivially_copyable_v<Head>);
-static_assert(std::is_trivially_copyable_v<crowd::Route> &&
-              sizeof(crowd::Route) == 16 + 12 * crowd::Route::kCorners);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`.
 struct SavedObstacle {
@@ -121,10 +123,11 @@ std::optional<std::vector<crowd::CrowdObstacle>> obstacles_of(
 
 // Size in bytes of a crowd with the numbers of this header.
 uint64_t size_of(const Head& head) {
-  return sizeof head + head.bodies * sizeof(crowd::Body) + head.slots * (sizeof(crowd::Route) + 4) +
+  return sizeof head + head.bodies * sizeof(crowd::Body) +
+         head.slots * (crowd::WalkMode::kRowBytes + 4) +
          (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
          head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 +
-         head.flights * sizeof(crowd::Flight) + head.climbs * sizeof(crowd::Climb) +
+         head.flights * crowd::FlyMode::kRowBytes + head.climbs * crowd::ClimbMode::kRowBytes +
          head.views * sizeof(crowd::EngineDetail::View) + head.edits * sizeof(ObstacleId) + 8;
 }
 
@@ -159,25 +162,9 @@ Head head_of(const World& world, const CrowdConfig& config) {
   return head;
 }
 
-template <class T>
-void put(std::vector<uint8_t>& out, const T* values, size_t count) {
-  const size_t begin = out.size(), bytes = count * sizeof(T);
-  out.resize(begin + bytes);
-  if (bytes > 0) std::memcpy(out.data() + begin, values, bytes);
-}
-
 Error bad(const std::string& what) { return {Errc::kBadFile, "crowd: what was saved " + what}; }
 
-// Can a step use it without reading out of bounds?
-bool is_sound(const crowd::Route& route, uint32_t levels) {
-  if (route.count > crowd::Route::kCorners || (route.count > 0 && route.next >= route.count))
-    return false;
-  for (size_t i = 0; i < route.count; ++i) {
-    if (route.corners[i].level >= levels) return false;
-  }
-  return route.goal.level < levels;
-}
-
+// Can a step use it without reading out of bounds? What its modes have of it, they test.
 bool is_sound(const crowd::Body& b, const world::WorldData& data) {
   const bool finite =
       std::isfinite(b.velocity.x + b.velocity.z + b.preferred.x + b.preferred.z + b.detour_angle) &&
@@ -186,23 +173,11 @@ bool is_sound(const crowd::Body& b, const world::WorldData& data) {
     return false;
   }
   if (b.x < 0 || b.z < 0 || !world::in_grid(data, b.point())) return false;
-  if (b.climbs)
-    return b.has(crowd::Body::kFlying) && b.level == 0;  // is_sound_climb tests the rest
+  if (b.climbs) return b.has(crowd::Body::kFlying) && b.level == 0;
   if (b.level >= data.level_count) return false;
-  if (b.has(crowd::Body::kFlying)) return true;  // it has no level; is_sound of its flight
+  if (b.has(crowd::Body::kFlying)) return true;  // it has no level
   const auto tile = data.tile_levels(b.x >> (world::kUnitBits + 6), b.z >> (world::kUnitBits + 6));
   return b.level >= tile.first && b.level < tile.last;
-}
-
-bool is_sound(const crowd::Flight& flight, const crowd::Body& body, uint32_t levels) {
-  const bool finite = std::isfinite(flight.rise + flight.preferred_up + flight.waited);
-  const bool counts = flight.count <= crowd::Flight::kPoints && flight.next <= flight.count &&
-                      (flight.count == 0 || flight.next < flight.count);
-  const bool has_path = !body.flies() || !body.has(crowd::Body::kHasGoal) ||
-                        body.has(crowd::Body::kNeedsPath) || flight.count > 0;
-  const bool goal = flight.goal_level == crowd::Flight::kInAir || flight.goal_level < levels;
-  return finite && counts && has_path && goal && flight.link_low <= flight.link_high &&
-         (flight.in_link == 0 || flight.link_level < levels);
 }
 
 // Targets as numbers: how many prisms, of each the number of corners, low, high and the corners.
@@ -285,56 +260,42 @@ struct SavedArrays {
   std::vector<std::array<double, 2>> corners;
   std::vector<uint32_t> free_obstacles;
   std::vector<double> targets;
-  std::vector<crowd::Flight> flights;
-  std::vector<crowd::Climb> climbs;
 };
 
 // Reads all arrays, in the order of Crowd::save.
 template <class State>
 SavedArrays read_arrays(const Head& head, const uint8_t* at, State& s) {
-  const auto take = [&](auto& values, size_t count) {
-    values.resize(count);
-    const size_t bytes = count * sizeof(values[0]);
-    if (bytes > 0) std::memcpy(values.data(), at, bytes);
-    at += bytes;
-  };
   SavedArrays saved;
-  take(saved.bodies, head.bodies);
-  take(s.generation, head.slots);
-  take(s.routes, head.slots);
-  take(s.free_slots, head.free_slots);
-  take(saved.obstacles, head.obstacles);
-  take(saved.corners, head.corners);
-  take(saved.free_obstacles, head.free_obstacles);
-  take(saved.targets, head.target_values);
-  take(saved.flights, head.flights);
-  take(saved.climbs, head.climbs);
-  take(s.views, head.views);
-  take(s.of_edit, head.edits);
+  at = take_rows(at, head.bodies, saved.bodies);
+  at = take_rows(at, head.slots, s.shared.generation);
+  at = s.walk.restore(at, head.slots);
+  at = take_rows(at, head.free_slots, s.free_slots);
+  at = take_rows(at, head.obstacles, saved.obstacles);
+  at = take_rows(at, head.corners, saved.corners);
+  at = take_rows(at, head.free_obstacles, saved.free_obstacles);
+  at = take_rows(at, head.target_values, saved.targets);
+  at = s.fly.restore(at, head.flights);
+  at = s.climb.restore(at, head.climbs);
+  at = take_rows(at, head.views, s.views);
+  take_rows(at, head.edits, s.of_edit);
   return saved;
 }
 
 // Does each slot belong to one body or to the free ones, and is what each body holds possible?
 template <class State>
-bool are_sound(const SavedArrays& saved, const Head& head, const world::WorldData& data,
-               const State& s) {
+bool are_sound(std::span<const crowd::Body> bodies, const Head& head, const State& s) {
   std::vector<bool> taken(head.slots, false);
   const auto use_slot = [&](uint32_t slot) {
     const bool is_new = slot < head.slots && !taken[slot];
     if (is_new) taken[slot] = true;
     return is_new;
   };
+  const world::WorldData& data = *data_of(s.shared.world);
   bool sound = head.bodies + head.free_slots == head.slots;
   for (const uint32_t slot : s.free_slots) sound = sound && use_slot(slot);
-  for (const crowd::Body& body : saved.bodies) {
-    sound = sound && is_sound(body, data) && use_slot(body.slot) &&
-            (!body.has(crowd::Body::kHasGoal) || body.climbs ||
-             is_sound(s.routes[body.slot], data.level_count));
-    sound = sound && (!body.climbs || !saved.climbs.empty());
-    const bool flies = body.flies();
-    sound = sound &&
-            (saved.flights.empty() ? !flies
-                                   : is_sound(saved.flights[body.slot], body, data.level_count));
+  for (const crowd::Body& body : bodies) {
+    sound = sound && is_sound(body, data) && use_slot(body.slot);
+    for (const crowd::Mode* mode : s.modes) sound = sound && mode->is_sound(body);
   }
   return sound;
 }
@@ -343,43 +304,43 @@ bool are_sound(const SavedArrays& saved, const Head& head, const world::WorldDat
 
 std::vector<uint8_t> Crowd::save() const {
   const State& s = *state_;
-  Head head = head_of(s.world, s.config);
-  head.step = s.step;
-  head.flows_are_old = s.flows_are_old ? 1 : 0;
-  head.sub_step = s.sub_step;
+  Head head = head_of(s.shared.world, s.shared.config);
+  head.step = s.shared.step;
+  head.flows_are_old = s.walk.flows_are_old() ? 1 : 0;
+  head.sub_step = s.shared.sub_step;
   head.scattered = s.scattered;
-  head.bodies = s.engine.bodies().size();
-  head.slots = s.generation.size();
+  head.bodies = s.walk.bodies().size();
+  head.slots = s.shared.generation.size();
   head.free_slots = s.free_slots.size();
   std::vector<std::array<double, 2>> corners;
-  const std::vector<SavedObstacle> obstacles = saved_obstacles(s.obstacles.all(), corners);
+  const std::vector<SavedObstacle> obstacles = saved_obstacles(s.shared.obstacles.all(), corners);
   head.obstacles = obstacles.size();
   head.corners = corners.size();
-  head.free_obstacles = s.obstacles.free_slots().size();
-  const std::vector<double> targets = values_of(s.targets);
+  head.free_obstacles = s.shared.obstacles.free_slots().size();
+  const std::vector<double> targets = values_of(s.shared.targets);
   head.target_values = targets.size();
-  head.flights = s.flights.size();
-  head.climbs = s.climbs.size();
+  head.flights = s.fly.row_count();
+  head.climbs = s.climb.row_count();
   head.views = s.views.size();
   head.edits = s.of_edit.size();
   head.edits_version = s.edits_version;
   std::vector<uint8_t> out;
   out.reserve(size_of(head));
-  put(out, &head, 1);
-  put(out, s.engine.bodies().data(), head.bodies);
-  put(out, s.generation.data(), head.slots);
-  put(out, s.routes.data(), head.slots);
-  put(out, s.free_slots.data(), head.free_slots);
-  put(out, obstacles.data(), head.obstacles);
-  put(out, corners.data(), head.corners);
-  put(out, s.obstacles.free_slots().data(), head.free_obstacles);
-  put(out, targets.data(), targets.size());
-  put(out, s.flights.data(), s.flights.size());
-  put(out, s.climbs.data(), s.climbs.size());
-  put(out, s.views.data(), s.views.size());
-  put(out, s.of_edit.data(), s.of_edit.size());
+  put_rows(out, &head, 1);
+  put_rows(out, s.walk.bodies().data(), head.bodies);
+  put_rows(out, s.shared.generation.data(), head.slots);
+  s.walk.save(out);
+  put_rows(out, s.free_slots.data(), head.free_slots);
+  put_rows(out, obstacles.data(), head.obstacles);
+  put_rows(out, corners.data(), head.corners);
+  put_rows(out, s.shared.obstacles.free_slots().data(), head.free_obstacles);
+  put_rows(out, targets.data(), targets.size());
+  s.fly.save(out);
+  s.climb.save(out);
+  put_rows(out, s.views.data(), s.views.size());
+  put_rows(out, s.of_edit.data(), s.of_edit.size());
   const uint64_t sum = hash_bytes(out.data(), out.size());
-  put(out, &sum, 1);
+  put_rows(out, &sum, 1);
   return out;
 }
 
@@ -394,41 +355,35 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   SavedArrays arrays = read_arrays(head, saved.data() + sizeof head, s);
   const std::vector<crowd::Body>& bodies = arrays.bodies;
   s.where.assign(head.slots, kNoBody);
-  bool sound = are_sound(arrays, head, *data_of(s.world), s);
+  bool sound = are_sound(bodies, head, s);
   auto all = obstacles_of(arrays.obstacles, arrays.corners);
-  sound = sound && all && s.obstacles.restore(std::move(*all), std::move(arrays.free_obstacles));
+  sound =
+      sound && all && s.shared.obstacles.restore(std::move(*all), std::move(arrays.free_obstacles));
   sound = sound && add_targets(*made, arrays.targets, context);
-  for (const crowd::Body& body : bodies) sound = sound && body.target <= s.targets.size();
+  for (const crowd::Body& body : bodies) sound = sound && body.target <= s.shared.targets.size();
   if (!sound) return bad("is not sound; save the crowd again");
   s.ground_changed();
-  s.engine.reserve(bodies.size());
+  s.walk.engine().reserve(bodies.size());
   for (const crowd::Body& body : bodies) {
     if (auto ok = s.open_class(body.avatar_class, context); !ok) return ok.error();
-    if (body.climbs != s.is_climber_class(body.avatar_class)) {
+    if (body.climbs != s.shared.climbs(body.avatar_class)) {
       return bad("has other settings; give the nodes that it was made with");
     }
   }
-  if (!arrays.climbs.empty()) s.climbs = std::move(arrays.climbs);
   for (const crowd::Body& body : bodies) {
-    if (body.climbs && !s.is_sound_climb(body)) return bad("is not sound; save the crowd again");
-    s.make_room(body);
-    s.engine.add(body);
-  }
-  if (!arrays.flights.empty()) s.flights = std::move(arrays.flights);
-  for (const crowd::Body& body : bodies) {
-    const crowd::FlyerAir* air = s.air_of(body);
-    const bool flies = body.flies();
-    if (flies && (air == nullptr || (!air->is_legal({body.x, body.z, body.y}) &&
-                                     s.flights[body.slot].in_link == 0))) {
-      return bad("is not sound; save the crowd again");
-    }
+    for (const crowd::Mode* mode : s.modes) sound = sound && mode->is_in_place(body);
+    if (!sound) return bad("is not sound; save the crowd again");
+    const crowd::Mode& mode = s.mode_of(body);
+    s.fit(mode.extent_of(body, mode.state_of(body).radius), body.speed);
+    s.walk.engine().add(body);
   }
   s.where_is_old = true;
-  s.some_leave =
+  s.shared.some_leave =
       std::any_of(bodies.begin(), bodies.end(), [](const crowd::Body& b) { return b.leaves; });
-  s.flows_are_old = head.flows_are_old != 0;  // opening a class made them from the current ground
-  s.step = head.step;
-  s.sub_step = head.sub_step;
+  // (Opening a class made them from the current ground.)
+  s.walk.set_flows_old(head.flows_are_old != 0);
+  s.shared.step = head.step;
+  s.shared.sub_step = head.sub_step;
   s.scattered = head.scattered;
   s.edits_version = head.edits_version;
   return made;

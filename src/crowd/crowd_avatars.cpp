@@ -1,0 +1,295 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "core/access.h"
+#include "core/check_class.h"
+#include "crowd/crowd_state.h"
+#include "crowd/standing_map.h"
+#include "throng/crowd.h"
+#include "world/place.h"
+
+// Avatars of a crowd: how they are added, found by their ids, and removed, and what they are to do.
+// The mode of their class decides where they may be and what a goal is.
+namespace throng {
+namespace {
+
+constexpr double kMaxSpeed = 100;      // [m/s]
+constexpr double kMaxRadius = 100;     // [m]
+constexpr double kMaxBodyHeight = 65;  // [m]
+constexpr int32_t kMaxSubSteps = 1000;
+
+Error bad_config(const std::string& what) { return {Errc::kBadConfig, "crowd: " + what}; }
+
+}  // namespace
+
+void Crowd::State::find_bodies() const {
+  if (!where_is_old) return;
+  std::fill(where.begin(), where.end(), kNoBody);
+  const std::span<const crowd::Body> bodies = walk.bodies();
+  for (size_t i = 0; i < bodies.size(); ++i) where[bodies[i].slot] = static_cast<uint32_t>(i);
+  where_is_old = false;
+}
+
+crowd::Body* Crowd::State::body(AvatarId id) const {
+  const std::vector<uint32_t>& generation = shared.generation;
+  if (!id || id.slot1 > generation.size() || generation[id.slot1 - 1] != id.generation) {
+    return nullptr;
+  }
+  find_bodies();
+  const uint32_t i = where[id.slot1 - 1];
+  return i == kNoBody ? nullptr : &walk.bodies()[i];
+}
+
+crowd::Mode& Crowd::State::mode_of(const AvatarSpawn& spawn) {
+  if (spawn.place.level1 == kAirLevel1) return fly;
+  return *mode_of_class[static_cast<size_t>(spawn.avatar_class)];
+}
+
+Result<void> Crowd::State::open_class(int32_t number, Context& context) {
+  const world::WorldData& data = *data_of(shared.world);
+  if (auto ok = check_class(data.summary.classes, number, "crowd"); !ok) return ok;
+  const auto c = static_cast<size_t>(number);
+  if (mode_of_class[c] != nullptr) return {};
+  auto ground = crowd::CrowdGround::make(data, number, world::step_mm(shared.body_class(c)));
+  if (!ground) return ground.error();
+  shared.classes[c] = std::make_unique<crowd::SharedClass>();
+  shared.classes[c]->ground = std::move(*ground);
+  Result<void> ok;
+  for (crowd::Mode* mode : modes) {
+    if (ok) ok = mode->open_class(c, context);
+  }
+  if (ok) {
+    shared.obstacles.open_class(c, shared.classes[c]->ground);
+    for (uint32_t slot = 0; slot < shared.obstacles.all().size(); ++slot) sync_paths(slot, c);
+    ok = walk.find_flows(c, context);
+    if (!ok) shared.obstacles.close_class(c);
+  }
+  if (!ok) {
+    for (crowd::Mode* mode : modes) mode->close_class(c);
+    shared.classes[c].reset();
+    return ok;
+  }
+  mode_of_class[c] = &walk;
+  if (shared.flies(c)) mode_of_class[c] = &fly;
+  if (shared.climbs(c)) mode_of_class[c] = &climb;
+  return {};
+}
+
+Result<crowd::NewAvatar> Crowd::State::avatar_of(const AvatarSpawn& spawn) const {
+  const AvatarClass& avatar = shared.body_class(static_cast<size_t>(spawn.avatar_class));
+  const double radius = spawn.radius > 0 ? spawn.radius : avatar.radius;
+  const double speed = spawn.speed > 0 ? spawn.speed : avatar.speed;
+  if (!(spawn.radius >= 0 && radius <= std::min(kMaxRadius, 4000 * 2048 * shared.unit / 2))) {
+    return bad_config("radius must be 0 (the class's) to 100 m, and at most 4000 cells");
+  }
+  if (!(spawn.speed >= 0 && speed <= kMaxSpeed)) {
+    return bad_config("speed must be 0 (the class's) to 100 m/s");
+  }
+  if (avatar.height > kMaxBodyHeight) {
+    return bad_config("class " + avatar.name + " is higher than 65 m");
+  }
+  crowd::NewAvatar made;
+  made.radius = radius;
+  made.body.speed = static_cast<float>(speed);
+  made.body.radius = static_cast<int32_t>(std::ceil(radius / shared.unit - 1e-9));
+  made.body.height = static_cast<uint16_t>(std::ceil(avatar.height * 1000 - 1e-6));
+  made.body.avatar_class = static_cast<uint8_t>(spawn.avatar_class);
+  if (speed * shared.config.dt > kMaxSubSteps * radius) {
+    return bad_config("speed times dt is over 1000 radii; take shorter steps");
+  }
+  return made;
+}
+
+// No body moves further than the smallest radius at a time, so none passes through another.
+void Crowd::State::fit(const crowd::BodyExtent& of_body, float speed) {
+  if (of_body.widest <= extent.widest && speed <= fastest &&
+      of_body.narrowest >= extent.narrowest && of_body.tallest <= extent.tallest) {
+    return;
+  }
+  extent = {std::max(extent.widest, of_body.widest), std::min(extent.narrowest, of_body.narrowest),
+            std::max(extent.tallest, of_body.tallest)};
+  fastest = std::max(fastest, speed);
+  const double displacement = fastest * shared.config.dt / shared.unit;
+  const double max_displacement =
+      std::min(extent.narrowest, crowd::CrowdEngine::kLongestStep - 16);  // and what is rounded
+  shared.sub_steps = std::clamp(
+      static_cast<int32_t>(std::ceil(displacement / max_displacement - 1e-9)), 1, 1 << 20);
+  for (crowd::Mode* mode : modes) mode->fit(extent, fastest);
+}
+
+void Crowd::State::reserve(size_t more) {
+  std::vector<uint32_t>& generation = shared.generation;
+  const size_t slots = generation.size() + more - std::min(more, free_slots.size());
+  const size_t room = crowd::grown(generation.capacity(), slots);
+  generation.reserve(room);
+  where.reserve(room);
+  walk.reserve(walk.bodies().size() + more, room);
+}
+
+AvatarId Crowd::State::add(crowd::NewAvatar avatar) {
+  find_bodies();
+  crowd::Body& body = avatar.body;
+  if (free_slots.empty()) {
+    body.slot = static_cast<uint32_t>(shared.generation.size());
+    shared.generation.push_back(1);
+    where.push_back(kNoBody);
+  } else {
+    body.slot = free_slots.back();
+    free_slots.pop_back();
+  }
+  for (crowd::Mode* mode : modes) mode->add(avatar);
+  where[body.slot] = static_cast<uint32_t>(walk.bodies().size());
+  if (body.slot < inside.size()) inside[body.slot] = 0;
+  if (body.slot < checked_at.size()) checked_at[body.slot] = kNeverChecked;
+  fit(mode_of(body).extent_of(body, avatar.radius), body.speed);
+  walk.engine().add(body);
+  return shared.id_of(body.slot);
+}
+
+Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Context& context) {
+  follow_edits();
+  State& s = *state_;
+  std::vector<crowd::NewAvatar> avatars;
+  int32_t widest = s.extent.widest;
+  for (const AvatarSpawn& spawn : spawns) {
+    if (auto ok = s.open_class(spawn.avatar_class, context); !ok) return ok.error();
+    auto avatar = s.avatar_of(spawn);
+    if (!avatar) return avatar.error();
+    avatars.push_back(*avatar);
+    const crowd::Body& body = avatar->body;
+    widest = std::max(widest, s.mode_of(body).extent_of(body, avatar->radius).widest);
+  }
+  crowd::StandingMap map(s.walk.bodies(), widest, spawns.size());
+  s.reserve(spawns.size());
+  std::vector<AvatarId> ids(spawns.size());
+  for (size_t i = 0; i < spawns.size(); ++i) {
+    if (!s.mode_of(spawns[i]).put(avatars[i], spawns[i])) continue;
+    if (map.add_if_clear(avatars[i].body)) ids[i] = s.add(avatars[i]);
+  }
+  return ids;
+}
+
+Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& like,
+                                             Context& context) {
+  follow_edits();
+  State& s = *state_;
+  if (auto ok = s.open_class(like.avatar_class, context); !ok) return ok.error();
+  const auto avatar = s.avatar_of(like);
+  if (!avatar) return avatar.error();
+  crowd::Mode& mode = s.mode_of(like);
+  const auto has_places = mode.begin_draws(like);
+  if (!has_places) return has_places.error();
+  const crowd::Body& body = avatar->body;
+  const int32_t widest = s.mode_of(body).extent_of(body, avatar->radius).widest;
+  crowd::StandingMap map(s.walk.bodies(), std::max(s.extent.widest, widest), count);
+  std::vector<crowd::NewAvatar> placed;
+  placed.reserve(count);
+  // Until nine draws of ten fail over a while.
+  uint64_t failed = 0, drawn = 0;
+  while (placed.size() < count && *has_places) {
+    crowd::NewAvatar here = *avatar;
+    if (mode.draw(here, like, s.scattered++) && map.add_if_clear(here.body)) {
+      placed.push_back(here);
+    } else {
+      ++failed;
+    }
+    if (++drawn % 4096 != 0) continue;
+    if (failed > 4096 * 99 / 100) break;
+    failed = 0;
+  }
+  if (placed.size() < count) {
+    return Error{Errc::kLimit, "crowd: " + std::to_string(placed.size()) + " avatars of class " +
+                                   s.shared.body_class(body.avatar_class).name +
+                                   " find room at random places, " + std::to_string(count) +
+                                   " were asked for; ask for fewer or take a larger world"};
+  }
+  s.reserve(count);
+  std::vector<AvatarId> ids;
+  ids.reserve(count);
+  for (const crowd::NewAvatar& one : placed) ids.push_back(s.add(one));
+  return ids;
+}
+
+void Crowd::remove(std::span<const AvatarId> ids) {
+  State& s = *state_;
+  for (const AvatarId id : ids) {
+    crowd::Body* body = s.body(id);
+    if (body == nullptr) continue;
+    crowd::Body& last = s.walk.bodies().back();
+    s.where[last.slot] = s.where[body->slot];
+    s.where[body->slot] = kNoBody;
+    ++s.shared.generation[body->slot];
+    s.free_slots.push_back(body->slot);
+    *body = last;
+    s.walk.engine().shrink(s.walk.bodies().size() - 1);
+  }
+}
+
+void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goals) {
+  THRONG_ASSERT(ids.size() == goals.size());
+  State& s = *state_;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    crowd::Body* body = s.body(ids[i]);
+    if (body == nullptr) continue;
+    body->target = 0;
+    body->detour_angle = 0;
+    s.mode_of(*body).set_goal(*body, goals[i]);
+  }
+}
+
+void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const NodePlace> goals) {
+  THRONG_ASSERT(ids.size() == goals.size());
+  State& s = *state_;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    crowd::Body* body = s.body(ids[i]);
+    if (body == nullptr || !body->climbs) continue;
+    body->target = 0;
+    body->detour_angle = 0;
+    s.climb.set_goal(*body, goals[i]);
+  }
+}
+
+void Crowd::set_targets(std::span<const AvatarId> ids, TargetId target) {
+  State& s = *state_;
+  THRONG_ASSERT(target >= 1 && target <= s.shared.targets.size());
+  for (const AvatarId id : ids) {
+    crowd::Body* body = s.body(id);
+    if (body == nullptr) continue;
+    body->detour_angle = 0;
+    body->target = target;
+    for (crowd::Mode* mode : s.modes) mode->set_target(*body);
+    body->flags =
+        (body->flags & crowd::Body::kFlying) | crowd::Body::kHasGoal | crowd::Body::kNeedsPath;
+  }
+}
+
+void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d> velocities) {
+  THRONG_ASSERT(ids.size() == velocities.size());
+  State& s = *state_;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    crowd::Body* body = s.body(ids[i]);
+    if (body == nullptr) continue;
+    body->target = 0;
+    body->detour_angle = 0;
+    s.mode_of(*body).set_velocity(*body, velocities[i]);
+  }
+}
+
+void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> speeds) {
+  THRONG_ASSERT(ids.size() == speeds.size());
+  State& s = *state_;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    THRONG_ASSERT(speeds[i] > 0 && speeds[i] <= 100);
+    crowd::Body* body = s.body(ids[i]);
+    if (body == nullptr) continue;
+    body->speed = static_cast<float>(speeds[i]);
+    s.fit({}, body->speed);  // Its size is known.
+  }
+}
+
+}  // namespace throng

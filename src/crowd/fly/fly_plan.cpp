@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include "core/random.h"
+#include "crowd/fly/fly_mode.h"
+#include "crowd/mode/leaving.h"
+#include "steer/air.h"
+
+// When flyers take off, and how they follow their paths. A step without a search is constant time.
+namespace throng::crowd {
+namespace {
+
+constexpr double kCheckRange = 3;        // [m] to a waypoint, to test whether the next one is
+                                         // visible
+constexpr double kAtLink = 0.3;          // [m] from the place of its take-off
+constexpr float kTries = 10;             // [s] there, before it gives up
+constexpr double kLinkRadius = 0.5;      // [m] from a link to the ground below
+constexpr uint64_t kSightInterval = 16;  // steps
+constexpr float kWaits = 2;              // [s] over its landing place, before it takes another
+constexpr uint64_t kRooms = 0x726f6f6d;  // random stream
+constexpr int32_t kPointTolerance = 20;  // [units, mm] so near to a waypoint that the rest does not
+                                         // matter
+
+void turn_to(Body& body, Flight& flight) {
+  const AirPosition& point = flight.points[flight.next];
+  body.local_target_x = point.x;
+  body.local_target_z = point.z;
+  flight.local_target_y = point.y;
+  body.flags =
+      static_cast<uint8_t>(flight.is_last() ? body.flags | Body::kLast : body.flags & ~Body::kLast);
+}
+
+}  // namespace
+
+bool FlyMode::take_off(Body& body) {
+  Flight& flight = flights_[body.slot];
+  const auto high = air_of(body).take_off(feet_of(body));
+  if (!high) return false;
+  flight.in_link = 1;
+  flight.descends = 0;
+  flight.link_low = body.y;
+  flight.link_high = *high;
+  flight.link_level = body.level;
+  flight.rise = 0;
+  flight.to_link = 0;
+  flight.lands = 0;
+  flight.count = flight.next = 0;
+  body.detour_angle = 0;
+  const bool has_goal = body.has(Body::kHasGoal);
+  body.flags &= Body::kExternal | Body::kHasGoal;
+  body.flags |= Body::kFlying;
+  if (has_goal) body.flags |= Body::kNeedsPath;
+  return true;
+}
+
+// What a flyer on the ground does before it walks.
+bool FlyMode::plan_on_foot(Body& body, int32_t worker) {
+  Flight& flight = flights_[body.slot];
+  if (body.has(Body::kExternal)) {
+    if (flight.preferred_up > 0) take_off(body);
+    return true;
+  }
+  if (flight.to_link != 0 && body.has(Body::kLast)) {
+    const double dx = static_cast<double>(body.local_target_x) - body.x;
+    const double dz = static_cast<double>(body.local_target_z) - body.z;
+    const double near = kAtLink / shared_.unit;
+    if (dx * dx + dz * dz < near * near) {
+      if (take_off(body)) return true;
+      flight.waited += shared_.sub_dt();
+      if (flight.waited > kTries) {
+        shared_.drop_goal(body);
+        return true;
+      }
+    }
+  }
+  if (!body.has(Body::kNeedsPath) || body.target != 0) return false;
+  const bool is_straight = shared_.config.routing == Routing::kStraight;
+  const bool lands = flight.goal_level != Flight::kInAir;
+  if (is_straight && lands) return false;
+  if (take_off(body)) {
+    // Into the air from where it stands, unless it is shorter on foot.
+    if (!lands) return true;
+    flight.in_link = 0;
+    body.flags = Body::kHasGoal | Body::kNeedsPath;
+  } else if (is_straight) {
+    shared_.drop_goal(body);
+    return true;
+  }
+  OfClass& parts = *classes_[body.avatar_class];
+  const auto w = static_cast<size_t>(worker);
+  search(parts, w, feet_of(body), flight.goal);
+  const Path& path = parts.paths[w];
+  flight.to_link = 0;
+  if (lands) walk_.route(body.slot).goal = {flight.goal.x, flight.goal.z, flight.goal_level};
+  if (path.end != PathEnd::kReached) return false;  // as a walker
+  const auto walked = static_cast<size_t>(
+      std::find_if(path.segments.begin(), path.segments.end(),
+                   [](SegmentKind segment) { return segment != SegmentKind::kWalk; }) -
+      path.segments.begin());
+  if (walked == path.segments.size()) return false;
+  if (walked == 0 && take_off(body)) {
+    shared_.note_planned();
+    return true;
+  }
+  const Place ground_air_link =
+      shared_.world.find_place(body.avatar_class, path.points[walked].position, kLinkRadius);
+  if (!ground_air_link) return false;
+  walk_.route(body.slot).goal = point_of(*data_of(shared_.world), ground_air_link);
+  flight.to_link = 1;
+  return false;
+}
+
+// Others are where it would land: it picks another place, the farther away the longer it has
+// waited.
+void FlyMode::find_landing_place(Body& body, const Flight& flight) const {
+  const FlyerAir& air = air_of(body);
+  const AirPosition& over = flight.points[flight.next];
+  const auto window =
+      static_cast<uint64_t>(static_cast<double>(shared_.step) * shared_.config.dt / kWaits);
+  const uint64_t side =
+      random_below(shared_.config.seed ^ kRooms, body.slot, window, steer::kEighths.size());
+  const double far = FlyerEngine::landing_radius(flight) / shared_.unit;
+  const AirPosition there{over.x + static_cast<int32_t>(far * steer::kEighths[side][0]),
+                          over.z + static_cast<int32_t>(far * steer::kEighths[side][1]), over.y};
+  const bool sees = there.x >= 0 && there.z >= 0 && air.sees(feet_of(body), there);
+  body.local_target_x = sees ? there.x : over.x;
+  body.local_target_z = sees ? there.z : over.z;
+}
+
+// Heads to the next waypoint once it is visible, and looks whether the path is still free.
+void FlyMode::follow_flight(Body& body, Flight& flight) const {
+  const FlyerAir& air = air_of(body);
+  const AirPosition at = feet_of(body);
+  const double dx = (static_cast<double>(body.local_target_x) - body.x) * shared_.unit;
+  const double dz = (static_cast<double>(body.local_target_z) - body.z) * shared_.unit;
+  const double dy = (static_cast<double>(flight.local_target_y) - body.y) * 1e-3;
+  const bool is_near = dx * dx + dy * dy + dz * dz < kCheckRange * kCheckRange;
+  if (is_near && !flight.is_last()) {
+    const bool at_end = flight.next + 1 == flight.count;
+    const AirPosition& local_target = flight.points[flight.next];
+    const bool there = std::abs(local_target.x - at.x) < kPointTolerance &&
+                       std::abs(local_target.z - at.z) < kPointTolerance &&
+                       std::abs(local_target.y - at.y) < kPointTolerance;
+    if (at_end) {
+      if (there || dx * dx + dy * dy + dz * dz < 1) body.flags |= Body::kNeedsPath;
+    } else if (there || (air.sees(at, flight.points[flight.next + 1u]) &&
+                         is_clear_of_obstacles(body, at, flight.points[flight.next + 1u]))) {
+      ++flight.next;
+      turn_to(body, flight);
+    }
+  }
+  const bool checks_path = (shared_.sub_step + body.slot) % kSightInterval == 0;
+  if (checks_path && shared_.config.routing == Routing::kPaths) {
+    const AirPosition& local_target = flight.points[flight.next];
+    if (!air.sees(at, local_target) || !is_clear_of_obstacles(body, at, local_target))
+      body.flags |= Body::kNeedsPath;
+  }
+  if (flight.lands != 0 && flight.is_last() && flight.waited > kWaits)
+    find_landing_place(body, flight);
+}
+
+// The nearest place of its target, in a straight line. False: it has none.
+bool FlyMode::head_to_nearest_landing(const Body& body, Flight& flight) const {
+  const FlyerAir& air = air_of(body);
+  const AirPosition at = feet_of(body);
+  const auto& places = shared_.classes[body.avatar_class]->landings[body.target - 1u];
+  double min_square = HUGE_VAL;
+  for (const Place& place : places) {
+    const AirPosition position = air.position(place.position);
+    const double dx = static_cast<double>(position.x) - at.x,
+                 dz = static_cast<double>(position.z) - at.z;
+    const double dy = (static_cast<double>(position.y) - at.y) * 1e-3 / shared_.unit;
+    const double square = dx * dx + dy * dy + dz * dz;
+    if (square >= min_square) continue;
+    min_square = square;
+    flight.goal = position;
+    flight.goal_level = place.level1 - 1;
+  }
+  return !places.empty();
+}
+
+void FlyMode::plan(Body& body, Flight& flight, int32_t worker) {
+  if (body.leaves && plan_exit(body, flight)) return;
+  if (!body.has(Body::kHasGoal)) return;
+  if (!body.has(Body::kNeedsPath) && flight.in_link == 0) follow_flight(body, flight);
+  if (!body.has(Body::kNeedsPath)) return;
+  shared_.note_planned();
+  if (body.target != 0 && !head_to_nearest_landing(body, flight)) return shared_.drop_goal(body);
+  if (!find_flight(body, flight, worker)) return shared_.drop_goal(body);
+  body.flags &= static_cast<uint8_t>(~Body::kNeedsPath);
+  turn_to(body, flight);
+}
+
+bool FlyMode::plan_exit(Body& body, Flight& flight) const {
+  if (body.has(Body::kExternal)) return false;
+  if (flight.in_link != 0) {
+    flight.descends = 0;  // It may not stand there.
+    return true;
+  }
+  const bool has_path = follows_path(body);
+  if (has_path && std::fabs(body.detour_angle) <= kMaxDetourAngle) return false;
+  if (has_path) body.flags |= Body::kNeedsPath;
+  const FlyerAir& air = air_of(body);
+  const AirPosition at = feet_of(body);
+  body.clear(Body::kLast);
+  body.local_target_x = body.x;
+  body.local_target_z = body.z;
+  flight.local_target_y = body.y;
+  std::vector<AirPosition> exits;
+  engine_.list_exits(body, exits);
+  double least = HUGE_VAL;
+  for (const AirPosition& exit : exits) {
+    const double dx = (static_cast<double>(exit.x) - at.x) * shared_.unit;
+    const double dz = (static_cast<double>(exit.z) - at.z) * shared_.unit;
+    const double dy = (static_cast<double>(exit.y) - at.y) * 1e-3;
+    const double square = dx * dx + dy * dy + dz * dz;
+    if (square >= least || !air.is_legal(exit) || !air.sees(at, exit)) continue;
+    if (engine_.is_obstructed(body, exit) || !is_clear_of_obstacles(body, at, exit)) continue;
+    least = square;
+    body.local_target_x = exit.x;
+    body.local_target_z = exit.z;
+    flight.local_target_y = exit.y;
+  }
+  return true;
+}
+
+}  // namespace throng::crowd

@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "core/access.h"
+#include "crowd/ground/air_position.h"
+#include "crowd/ground/body.h"
+#include "crowd/ground/crowd_ground.h"
+#include "crowd/ground/obstacle_grid.h"
+#include "crowd/ground/target.h"
+#include "crowd/obstacles/obstacle_set.h"
+#include "path/edits/edit_list.h"
+#include "throng/avatar.h"
+#include "throng/crowd.h"
+#include "throng/path.h"
+#include "throng/world.h"
+
+/// What the modes of a crowd share, so that none sees the others' tables.
+namespace throng::crowd {
+
+/// A class in use, whatever modes its avatars have.
+struct SharedClass {
+  CrowdGround ground;
+  /// By target: places of it, where avatars land or climb to. None if the class only walks.
+  std::vector<std::vector<Place>> landings;
+};
+
+struct SharedState {
+  SharedState(const World& a_world, const CrowdConfig& a_config);
+
+  World world;
+  CrowdConfig config;
+  double unit = 0;  // [m]
+  int32_t sub_steps = 1;
+  uint64_t step = 0;
+  uint64_t sub_step = 0;  // while avatars move: the number of the next one
+  std::vector<std::unique_ptr<SharedClass>> classes;  // null: not in use
+  ObstacleSet obstacles;
+  ObstacleGrid obstacle_grid;        // those that are active or close
+  bool some_leave = false;           // Body::leaves is set for some
+  std::vector<uint32_t> generation;  // by slot
+  std::vector<Target> targets;       // TargetId less one
+
+  // Of the step.
+  std::vector<AvatarId> arrived, goal_unreachable;
+  std::atomic<uint64_t> planned{0}, out_of_memory{0};  // searches
+  std::mutex goal_mutex;
+
+  [[nodiscard]] const AvatarClass& body_class(size_t number) const {
+    return data_of(world)->summary.classes[number];
+  }
+  [[nodiscard]] const CrowdGround& ground_of(const Body& body) const {
+    return classes[body.avatar_class]->ground;
+  }
+  [[nodiscard]] const Vec3d& origin() const { return data_of(world)->summary.origin; }
+  /// Does a class fly in this world?
+  [[nodiscard]] bool flies(size_t number) const;
+  /// Does a class walk over nodes? It never flies.
+  [[nodiscard]] bool climbs(size_t number) const;
+
+  [[nodiscard]] AvatarId id_of(uint32_t slot) const { return {slot + 1, generation[slot]}; }
+  [[nodiscard]] const path::EditList& edits() const { return *Access::state(config.edits); }
+  /// Do paths on foot need a search that knows costs?
+  [[nodiscard]] bool has_costs() const { return config.slope_cost > 0 || edits().has_costs(); }
+  [[nodiscard]] SearchBudget search_budget(uint64_t max_nodes = UINT64_MAX) const {
+    return {max_nodes, nullptr, config.search_bytes};
+  }
+  /// The length of a sub-step. [s]
+  [[nodiscard]] float sub_dt() const { return static_cast<float>(config.dt / sub_steps); }
+
+  /// Counts a search that exhausted its memory.
+  void note_spent(SpentBudget spent) {
+    if (spent == SpentBudget::kMemory) out_of_memory.fetch_add(1, std::memory_order_relaxed);
+  }
+  void note_planned(uint64_t searches = 1) {
+    planned.fetch_add(searches, std::memory_order_relaxed);
+  }
+  /// No path leads to the body's goal. On any worker.
+  void drop_goal(Body& body);
+};
+
+inline AirPosition feet_of(const Body& body) { return {body.x, body.z, body.y}; }
+
+}  // namespace throng::crowd

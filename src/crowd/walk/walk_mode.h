@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "crowd/ground/standing_draw.h"
+#include "crowd/ground/stride_ground.h"
+#include "crowd/mode/mode.h"
+#include "crowd/obstacles/path_repair.h"
+#include "crowd/walk/crowd_engine.h"
+#include "crowd/walk/routes.h"
+#include "path/edits/flow_points.h"
+#include "path/edits/live_finder.h"
+#include "path/mesh_finder.h"
+
+/// Avatars on foot: paths over the ground and flow fields to targets. docs/design/008-engine.md.
+namespace throng::crowd {
+
+/// What avatars of classes that fly do on foot beside walking: FlyMode.
+class TakesOff {
+ public:
+  virtual ~TakesOff() = default;
+  /// Called for each of them, before it walks. True: it needs no path to walk. On any worker.
+  virtual bool plan_on_foot(Body& body, int32_t worker) = 0;
+  /// False: a solid blocks it.
+  virtual bool take_off(Body& body) = 0;
+  /// Has an avatar of any class that reached the end of its path on foot only come to where it can
+  /// take off?
+  [[nodiscard]] virtual bool is_at_link(uint32_t slot) const = 0;
+};
+
+class WalkMode final : public Mode {
+ public:
+  static constexpr size_t kRowBytes = sizeof(Route);
+
+  WalkMode(SharedState& shared, const MoveConfig& config);
+  /// What decides for classes that fly; it outlives all steps.
+  void set_takes_off(TakesOff& flyers) { takes_off_ = &flyers; }
+
+  // The bodies of all modes.
+  [[nodiscard]] CrowdEngine& engine() { return engine_; }
+  [[nodiscard]] const CrowdEngine& engine() const { return engine_; }
+  [[nodiscard]] std::span<Body> bodies() const { return engine_.bodies(); }
+  /// Reserves memory for so many bodies and rows.
+  void reserve(size_t bodies, size_t rows);
+
+  [[nodiscard]] Route& route(uint32_t slot) { return routes_[slot]; }
+
+  // Flow fields to targets, and places of these for those that land or climb there.
+  /// Makes those that a class lacks. Fails with kCancelled.
+  Result<void> find_flows(size_t number, Context& context);
+  /// Forgets those of targets that are no more.
+  void drop_flows();
+  /// Makes all again if the ground has changed. True: it had.
+  bool renew_flows();
+  /// Length of the path of a body on foot to a target. [m]
+  [[nodiscard]] double distance(const Body& body, TargetId target);
+  [[nodiscard]] bool flows_are_old() const { return flows_are_old_; }
+  void set_flows_old(bool old) { flows_are_old_ = old; }
+
+  Result<void> open_class(size_t number, Context& context) override;
+  void close_class(size_t number) override;
+  [[nodiscard]] bool put(NewAvatar& avatar, const AvatarSpawn& spawn) const override;
+  Result<bool> begin_draws(const AvatarSpawn& like) override;
+  [[nodiscard]] bool draw(NewAvatar& avatar, const AvatarSpawn& like, uint64_t n) const override;
+  void add(const NewAvatar& avatar) override;
+  void fit(const BodyExtent& all, float fastest) override;
+  void set_goal(Body& body, const Place& goal) override;
+  void set_target(Body& body) override;
+  void set_velocity(Body& body, const Vec3d& velocity) override;
+  void step(std::span<Body> bodies, EngineCounts& counts, EngineTimes& times) override;
+  void ground_changed() override;
+  void areas_changed(std::span<Body> bodies) override;
+  void sync_obstacle(CrowdObstacle& obstacle, size_t number, bool is_new) override;
+  void forget_obstacle(const CrowdObstacle& obstacle) override;
+  void cut_paths(std::span<const uint32_t> slots, std::span<Body> bodies) override;
+  void add_blockers(std::span<const uint32_t> slots, std::span<const Body> bodies,
+                    BlockerPairs& found) const override;
+  [[nodiscard]] bool is_inside(const Body& body, const ObstacleGrid::Item& obstacle) const override;
+  [[nodiscard]] bool leads_out(const Body& body, std::span<const uint32_t> slots) const override;
+  void end_leaving(Body& body) override;
+  [[nodiscard]] AvatarState state_of(const Body& body) const override;
+  void add_memory(CrowdMemory& memory) const override;
+  [[nodiscard]] size_t row_count() const override { return routes_.size(); }
+  void save(std::vector<uint8_t>& out) const override;
+  const uint8_t* restore(const uint8_t* saved, size_t rows) override;
+  [[nodiscard]] bool is_sound(const Body& body) const override;
+
+ private:
+  struct OfClass {
+    bool flies = false;                     // too: asks takes_off_
+    std::vector<path::MeshFinder> finders;  // one a worker
+    std::vector<path::LiveFinder> lives;    // one a worker, once paths avoid obstacles or lead to
+                                            // targets
+    std::vector<path::AppliedEdits> areas;  // of `lives`
+    std::vector<Path> paths;
+    std::vector<RepairScratch> repairs;
+    std::vector<path::FlowPoints> flows;   // by target
+    std::optional<StandingDraw> standing;  // none: the ground has changed since
+  };
+  [[nodiscard]] StrideGround stride_ground(const Body& body) const;
+  /// Creates the live grounds of a class, if there are none yet.
+  void make_lives(size_t number);
+
+  // walk_plan.cpp
+  void plan(std::span<Body> bodies, int32_t worker);
+  bool plan_path(Body& body, Route& route, const StrideGround& ground, int32_t worker);
+
+  // walk_leaving.cpp
+  /// Along its path, or to the nearest exit.
+  void plan_exit(Body& body);
+  [[nodiscard]] bool tries_path_again(Body& body);
+
+  CrowdEngine engine_;
+  TakesOff* takes_off_ = nullptr;
+  std::vector<std::unique_ptr<OfClass>> classes_;  // null: not in use
+  std::vector<Route> routes_;                      // by slot
+  bool some_fly_ = false;                          // OfClass::flies, of some
+  bool flows_are_old_ = false;                     // the ground has changed since
+};
+
+}  // namespace throng::crowd

@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "core/parallel.h"
+#include "crowd/walk/walk_mode.h"
+
+// How avatars on foot find and follow their paths. A target has a flow field for each class: one
+// Dijkstra search outwards from it.
+namespace throng::crowd {
+namespace {
+
+constexpr size_t kGoals = 4096;  // places of a target that paths lead to, about
+
+}  // namespace
+
+// Follows paths, and finds those that are missing.
+void WalkMode::plan(std::span<Body> bodies, int32_t worker) {
+  const auto metre = static_cast<float>(1 / shared_.unit);
+  const uint64_t step_now = shared_.sub_step - 1;
+  uint64_t asked = 0;
+  for (Body& body : bodies) {
+    if (body.has(Body::kFlying) || body.steps == 0) continue;
+    const OfClass& parts = *classes_[body.avatar_class];
+    if (body.leaves) {
+      plan_exit(body);
+      continue;
+    }
+    if (parts.flies && (body.has(Body::kHasGoal) || body.has(Body::kExternal)) &&
+        takes_off_->plan_on_foot(body, worker)) {
+      body.clear(Body::kContinues);
+      continue;
+    }
+    if (!body.has(Body::kHasGoal) || body.has(Body::kContinues) ||
+        shared_.config.routing == Routing::kStraight)
+      continue;
+    Route& route = routes_[body.slot];
+    const StrideGround ground = stride_ground(body);
+    if (!body.has(Body::kNeedsPath)) {
+      follow(body, route, ground, (step_now + body.slot) / engine_.steps_of_reaction(body), metre);
+    }
+    if (!body.has(Body::kNeedsPath)) continue;
+    ++asked;
+    if (plan_path(body, route, ground, worker)) continue;
+    // A target that cannot be walked to may be flown to.
+    const bool takes_off = parts.flies && body.target != 0 && takes_off_->take_off(body);
+    if (!takes_off) shared_.drop_goal(body);
+  }
+  if (asked > 0) shared_.note_planned(asked);
+}
+
+// A path from where the body is to its target or goal. False: there is none.
+bool WalkMode::plan_path(Body& body, Route& route, const StrideGround& ground, int32_t worker) {
+  const auto w = static_cast<size_t>(worker);
+  const world::WorldData& data = *data_of(shared_.world);
+  OfClass& parts = *classes_[body.avatar_class];
+  Path& path = parts.paths[w];
+  const PathPoint here{body.x, body.z, body.level};
+  const Place from = place_of(data, body, here);
+  if (body.target != 0) {
+    parts.flows[body.target - 1u].find_path(parts.lives[w], from, path);
+    route.goal = here;  // if it stands there already
+  } else {
+    const Place to = place_of(data, body, route.goal);
+    const bool by_cost = shared_.has_costs();
+    if (by_cost) parts.lives[w].find(from, to, path, shared_.search_budget());
+    if (!by_cost) parts.finders[w].find(from, to, path, shared_.search_budget());
+    SpentBudget spent = path.spent;
+    if (!by_cost && shared_.obstacles.cuts_paths() && path.end == PathEnd::kReached) {
+      lead_around(data, parts.lives[w], ground, shared_.search_budget(), path, parts.repairs[w]);
+      if (path.spent != SpentBudget::kNone) spent = path.spent;
+    }
+    shared_.note_spent(spent);
+  }
+  return use_path(data, path, ground, body, route);
+}
+
+void WalkMode::make_lives(size_t number) {
+  std::vector<path::LiveFinder>& lives = classes_[number]->lives;
+  if (!lives.empty()) return;
+  auto made = path::LiveFinder::create(shared_.world, {.avatar_class = static_cast<int32_t>(number),
+                                                       .slope_cost = shared_.config.slope_cost});
+  THRONG_ASSERT(made);  // The class is one of the world's.
+  lives.assign(static_cast<size_t>(worker_count(shared_.config.workers)), *made);
+  std::vector<path::AppliedEdits>& areas = classes_[number]->areas;
+  areas.assign(lives.size(), path::AppliedEdits(path::AppliedEdits::Which::kAreas));
+  for (size_t w = 0; w < lives.size(); ++w) areas[w].follow(shared_.edits(), lives[w]);
+}
+
+Result<void> WalkMode::find_flows(size_t number, Context& context) {
+  OfClass& parts = *classes_[number];
+  if (!shared_.targets.empty()) make_lives(number);
+  SharedClass& shared = *shared_.classes[number];
+  while (parts.flows.size() < shared_.targets.size()) {
+    const Target& target = shared_.targets[parts.flows.size()];
+    const std::vector<Place> goals = places_inside(*data_of(shared_.world), shared.ground,
+                                                   target.regions, kGoals, &parts.lives[0]);
+    auto flow = path::FlowPoints::make(parts.lives[0], goals, path::FlowPoints::kNever, context);
+    if (!flow) return Error{Errc::kCancelled, "crowd: cancelled"};
+    parts.flows.push_back(std::move(*flow));
+    if (parts.flies || shared_.climbs(number)) shared.landings.push_back(goals);
+  }
+  return {};
+}
+
+// The flow fields refer to rectangles of the ground as it was.
+bool WalkMode::renew_flows() {
+  if (!flows_are_old_) return false;
+  flows_are_old_ = false;
+  Context context;
+  for (size_t c = 0; c < classes_.size(); ++c) {
+    if (!classes_[c] || classes_[c]->flows.empty()) continue;
+    classes_[c]->flows.clear();
+    shared_.classes[c]->landings.clear();
+    const auto ok = find_flows(c, context);
+    THRONG_ASSERT(ok);  // It was possible before, and nothing cancels it.
+  }
+  return true;
+}
+
+void WalkMode::drop_flows() {
+  const size_t count = shared_.targets.size();
+  for (size_t c = 0; c < classes_.size(); ++c) {
+    if (!classes_[c]) continue;
+    std::vector<std::vector<Place>>& landings = shared_.classes[c]->landings;
+    if (classes_[c]->flows.size() > count) classes_[c]->flows.pop_back();
+    if (landings.size() > count) landings.pop_back();
+  }
+}
+
+double WalkMode::distance(const Body& body, TargetId target) {
+  OfClass& parts = *classes_[body.avatar_class];
+  const Place place = place_of(*data_of(shared_.world), body, {body.x, body.z, body.level});
+  return parts.flows[target - 1u].distance(parts.lives[0], place);
+}
+
+}  // namespace throng::crowd

@@ -23,7 +23,7 @@ void LeftCells::begin(const WorldSummary& summary, const AvatarClass& avatar) {
   origin_ = summary.origin;
   unit_ = summary.cell / world::kUnitsPerCell;
   radius_ = avatar.radius;
-  // As Crowd::State::is_occupied tests it: what may become active is what may no longer be entered.
+  // As WalkMode::is_inside tests it: what may become active is what may no longer be entered.
   bottom_ = static_cast<int32_t>(std::floor(body_bottom(avatar) * 1000));
   height_ = static_cast<int32_t>(std::ceil(avatar.height * 1000 - 1e-6));
 }

@@ -38,14 +38,15 @@ struct BodyExtent {
 using BlockerPairs = std::vector<std::pair<uint32_t, uint32_t>>;
 
 /// How avatars of some classes move: what is known of these classes, a table by slot, and an
-/// engine. Each class in use has one mode, which the crowd looks up once and then calls for its
-/// avatars: climb for those over nodes, fly for those with air, else walk. Beside this, calls that
-/// say "of any class" go to all modes, in the order walk, fly, climb:
+/// engine. Each class in use has one mode, which the crowd looks up once: climb for those over
+/// nodes, fly for those with air, else walk. Calls for one avatar go to the mode of its class.
+/// Those that say "of any class", and those for a class, an obstacle or the whole crowd, go to all
+/// modes, in the order walk, fly, climb. What each has:
 /// - Walk has the ground and the flow fields of every class, and its engine holds all bodies.
 /// - Fly has a WalkMode: on foot its avatars are walkers, and it decides when they take off.
 /// - Climb is alone: its avatars never walk on level tiles.
-/// Calls are for a class, a step, an obstacle, or an avatar in what happens rarely: the engines
-/// call their own mode without this contract.
+/// The engines call their own mode without this contract, so what is virtual here is never called
+/// for each avatar of a step.
 class Mode {
  public:
   explicit Mode(SharedState& shared) : shared_(shared) {}

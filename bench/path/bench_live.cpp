@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "crate_times.h"
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "throng/path.h"
 #include "throng/world.h"
 
@@ -42,7 +42,7 @@ bool avoids(const Path& path, const Vec3d& low, const Vec3d& high, double radius
 }
 
 Json crates(const World& world, int64_t trials, double away) {
-  auto ground = path::LiveFinder::create(world, {});
+  auto ground = path::GroundFinder::create(world, {});
   if (!ground) stop(ground.error().message);
   const double radius = world.summary().classes[0].radius;
   std::vector<double> first, added, found, both, removed;

@@ -10,7 +10,7 @@
 namespace throng {
 
 struct Access {
-  /// What a handle holds: World, Nodes, LiveFinder, PreparedScene.
+  /// What a handle holds: World, Nodes, GroundFinder, PreparedScene.
   template <class Handle>
   [[nodiscard]] static auto& state(Handle& handle) {
     return handle.state_;

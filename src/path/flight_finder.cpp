@@ -17,7 +17,7 @@
 #include "path/air/flight_search.h"
 #include "path/air/flight_string_puller.h"
 #include "path/air/ground_air_links.h"
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "path/edits/solid.h"
 #include "path/ground/mesh.h"
 #include "path/ground/reset_path.h"
@@ -137,9 +137,9 @@ struct FlightFinder::Scratch {
     return changes_of(shared).add(std::move(solid));
   }
   // The ground with all changes; made on the first walk.
-  LiveFinder& ground(const Shared& shared) {
+  GroundFinder& ground(const Shared& shared) {
     if (!live) {
-      auto made = LiveFinder::create(shared.world, {.avatar_class = shared.avatar_class});
+      auto made = GroundFinder::create(shared.world, {.avatar_class = shared.avatar_class});
       THRONG_ASSERT(made);  // The class was checked.
       changes->add_all_to(*made, live_ids);
       live = std::move(*made);
@@ -169,7 +169,7 @@ struct FlightFinder::Scratch {
   std::vector<GroundAirLinks::Pair> banned;
   // Made with the first obstacle; none before.
   std::optional<AirChanges> changes;
-  std::optional<LiveFinder> live;
+  std::optional<GroundFinder> live;
   std::vector<ChangeId> live_ids;  // by id of a change - 1
   // Of a search that found no path between ends that could be connected: the point that it reached
   // in the air that is nearest to where the query leads.

@@ -58,7 +58,7 @@ class FlightFinder {
   void find(const FlightQuery& query, Path& path);
 
   /// Puts up an obstacle: no path leads where the body could touch the prism; on the ground, as in
-  /// LiveFinder, the body counts from body_bottom() up. A start or goal inside is no place. Fails
+  /// GroundFinder, the body counts from body_bottom() up. A start or goal inside is no place. Fails
   /// with kBadInput. Time: the air boxes that it touches and those of what it cuts off, up to 65
   /// 536.
   [[nodiscard]] Result<ChangeId> add_obstacle(const Prism& prism);

@@ -12,7 +12,7 @@
 namespace throng {
 
 struct FlowField::State {
-  path::LiveFinder ground;
+  path::GroundFinder ground;
   std::shared_ptr<const path::FlowPoints> points;
   double seconds = 0;
 };

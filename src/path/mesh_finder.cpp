@@ -9,7 +9,7 @@
 
 #include "core/access.h"
 #include "core/check_class.h"
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "path/ground/baked_cells.h"
 #include "path/ground/hub_labels.h"
 #include "path/ground/label_search.h"
@@ -61,7 +61,7 @@ struct MeshFinder::Scratch {
   PathSearch search;
   LabelSearch label_search;
   ZoneSearch over_zones;
-  std::optional<LiveFinder> over_points;  // made when a path cannot be drawn over corners
+  std::optional<GroundFinder> over_points;  // made when a path cannot be drawn over corners
   std::vector<uint32_t> corners;
   std::vector<Stop> stops;
   std::vector<world::LevelView> views;  // of the stops
@@ -180,9 +180,9 @@ void MeshFinder::find(const Place& from, const Place& to, Path& path, const Sear
 void MeshFinder::find_over_points(const Place& from, const Place& to, const SearchBudget& budget,
                                   Path& path) {
   const uint64_t nodes_before = path.nodes;
-  std::optional<LiveFinder>& finder = scratch_->over_points;
+  std::optional<GroundFinder>& finder = scratch_->over_points;
   if (!finder) {
-    auto made = LiveFinder::create(state_->world, {.avatar_class = state_->mesh.avatar_class});
+    auto made = GroundFinder::create(state_->world, {.avatar_class = state_->mesh.avatar_class});
     THRONG_ASSERT(made);  // The class was checked.
     finder = *std::move(made);
   }

@@ -51,9 +51,9 @@ PathConfig live_config(const PathConfig& config) {
 
 const path::EditList& PathFinder::State::edits() const { return *Access::state(config.edits); }
 
-path::LiveFinder& PathFinder::State::ground() {
+path::GroundFinder& PathFinder::State::ground() {
   if (!live) {
-    auto made = path::LiveFinder::create(world, live_config(config));
+    auto made = path::GroundFinder::create(world, live_config(config));
     THRONG_ASSERT(made);  // The settings were checked.
     live = *std::move(made);
   }
@@ -61,12 +61,12 @@ path::LiveFinder& PathFinder::State::ground() {
   return *live;
 }
 
-path::LiveFinder PathFinder::State::ground_of_its_own() const {
+path::GroundFinder PathFinder::State::ground_of_its_own() const {
   const bool on_ground = config.space == PathSpace::kGround;
   PathConfig settings = live_config(config);
   if (!on_ground) settings.slope_cost = 0;
-  auto made = on_ground && live ? Result<path::LiveFinder>(*live)
-                                : path::LiveFinder::create(world, settings);
+  auto made = on_ground && live ? Result<path::GroundFinder>(*live)
+                                : path::GroundFinder::create(world, settings);
   THRONG_ASSERT(made);
   path::AppliedEdits known = on_ground && live ? applied : path::AppliedEdits();
   known.follow(edits(), *made);
@@ -109,7 +109,7 @@ Result<PathFinder> PathFinder::create(const World& world, const PathConfig& conf
     s.nodes = *std::move(made);
     s.summary = s.nodes->summary();
   } else {
-    auto live = path::LiveFinder::create(world, live_config(config));  // Reads nothing yet.
+    auto live = path::GroundFinder::create(world, live_config(config));  // Reads nothing yet.
     if (!live) return live.error();
     if (needs_mesh(config)) {
       auto made = path::MeshFinder::create(world, config, context);

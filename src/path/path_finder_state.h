@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "path/edits/edit_list.h"
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "path/flight_finder.h"
 #include "path/mesh_finder.h"
 #include "path/node_finder.h"
@@ -21,7 +21,7 @@ struct PathFinder::State {
 
   // Of the space. On the ground `live` has edits and costs; made when a query needs it.
   std::optional<path::MeshFinder> mesh;
-  std::optional<path::LiveFinder> live;
+  std::optional<path::GroundFinder> live;
   std::optional<path::NodeFinder> nodes;
   std::optional<path::FlightFinder> flight;
   path::AppliedEdits applied;  // by `live`, `nodes` or `flight`
@@ -30,9 +30,9 @@ struct PathFinder::State {
 
   [[nodiscard]] const path::EditList& edits() const;
   /// The finder of ground with edits, up to date.
-  path::LiveFinder& ground();
+  path::GroundFinder& ground();
   /// The same apart from this finder, of any class that has ground.
-  [[nodiscard]] path::LiveFinder ground_of_its_own() const;
+  [[nodiscard]] path::GroundFinder ground_of_its_own() const;
   [[nodiscard]] Place place_of(const PathPoint& point, double tolerance) const;
   [[nodiscard]] NodePlace node_place_of(const PathPoint& point, double tolerance);
   void find_on_ground(const Place& from, const Place& to, bool nearest, const SearchBudget& budget,

@@ -10,7 +10,7 @@
 #include "core/access.h"
 #include "core/random.h"
 #include "crowd/obstacles/obstacle_set.h"
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "path/mesh_finder.h"
 #include "world/place.h"
 #include "worlds.h"
@@ -25,14 +25,14 @@ struct Crated {
   World world;
   crowd::CrowdGround ground;
   crowd::ObstacleSet book;
-  path::LiveFinder live;
+  path::GroundFinder live;
   path::MeshFinder finder;
 
   Crated(World of, path::MeshFinder a_finder)
       : world(std::move(of)),
         ground(*crowd::CrowdGround::make(*data_of(world), 0, kStep)),
         book(world, world.summary().classes.size()),
-        live(*path::LiveFinder::create(world, {})),
+        live(*path::GroundFinder::create(world, {})),
         finder(std::move(a_finder)) {
     book.open_class(0, ground);
   }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "baked.h"
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "path/flight_finder.h"
 #include "path/mesh_finder.h"
 #include "path/node_finder.h"
@@ -47,14 +47,14 @@ TEST(Finders, CopiesAnswerTheSameInManyThreadsAtOnce) {
   path::MeshFinder search = need(path::MeshFinder::create(world, {}, context));
   path::MeshFinder labels =
       need(path::MeshFinder::create(world, {.speedup = PathSpeedup::kLabels}, context));
-  path::LiveFinder live = need(path::LiveFinder::create(world, {}));
+  path::GroundFinder live = need(path::GroundFinder::create(world, {}));
   path::NodeFinder over_nodes = need(path::NodeFinder::create(nodes, {}, context));
   path::FlightFinder flight = need(path::FlightFinder::create(world, {.avatar_class = 1}, context));
   const auto from = [&](uint64_t n) { return world.random_place(0, 7, 2 * n); };
   const auto to = [&](uint64_t n) { return world.random_place(0, 7, 2 * n + 1); };
   // The first thread to get here adds a crate to its own copy: the others must not see it.
   const auto ask_all = [&](path::MeshFinder by_search, path::MeshFinder by_labels,
-                           path::LiveFinder on_live, path::NodeFinder on_nodes,
+                           path::GroundFinder on_live, path::NodeFinder on_nodes,
                            path::FlightFinder in_air, bool crate) {
     GroundQuery query = need(GroundQuery::create(world, 0));
     Answers answers;
@@ -115,7 +115,7 @@ TEST(Finders, APathHasTheSameShapeWhicheverFinderGivesIt) {
   const World world = test::bake(scene, 0.25, classes);
   const Nodes nodes = need(Nodes::create(world, scene, {}, context));
   path::MeshFinder search = need(path::MeshFinder::create(world, {}, context));
-  path::LiveFinder live = need(path::LiveFinder::create(world, {}));
+  path::GroundFinder live = need(path::GroundFinder::create(world, {}));
   path::NodeFinder over_nodes = need(path::NodeFinder::create(nodes, {}, context));
   path::FlightFinder flight = need(path::FlightFinder::create(world, {.avatar_class = 1}, context));
   Path path;

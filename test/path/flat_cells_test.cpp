@@ -4,7 +4,7 @@
 
 #include "core/random.h"
 #include "grid_oracle.h"
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "path/mesh_finder.h"
 #include "throng/bake.h"
 #include "throng/path.h"
@@ -80,7 +80,7 @@ TEST(FlatCells, PathsAreAsShortAsBruteForceFinds) {
 }
 
 // The cells on which the finder lets an avatar stand now.
-FlatCells free_cells(path::LiveFinder& finder, const World& world, const FlatCells& baked) {
+FlatCells free_cells(path::GroundFinder& finder, const World& world, const FlatCells& baked) {
   FlatCells now = baked;
   for (int32_t z = 0; z < baked.depth; ++z) {
     for (int32_t x = 0; x < baked.width; ++x) {
@@ -102,7 +102,7 @@ TEST(FlatCells, PathsAroundCratesAreAsShortAsBruteForceFinds) {
       if (c % kWidth < kFirst || c / kWidth < kFirst) cells.passable[c] = 0;
     }
     const World world = bake(cells);
-    auto finder = path::LiveFinder::create(world, {});
+    auto finder = path::GroundFinder::create(world, {});
     ASSERT_TRUE(finder) << finder.error().message;
     const test::GridOracle baked(cells);
     std::vector<path::ChangeId> crates;

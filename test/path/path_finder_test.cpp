@@ -7,7 +7,7 @@
 
 #include "baked.h"
 #include "core/random.h"
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "path/flight_finder.h"
 #include "path/mesh_finder.h"
 #include "path/node_finder.h"

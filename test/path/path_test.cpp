@@ -11,7 +11,7 @@
 
 #include "baked.h"
 #include "core/random.h"
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "path/mesh_finder.h"
 #include "throng/bake.h"
 #include "throng/world.h"
@@ -294,7 +294,7 @@ TEST(Path, LeadsAroundTheEndsOfRisesThatAreTooHigh) {
       path::MeshFinder paths = finder(world, c), looked_up = finder(world, c, true);
       auto over_zones = path::MeshFinder::create(
           world, {.avatar_class = c, .speedup = PathSpeedup::kZones}, context);
-      auto live = path::LiveFinder::create(world, {.avatar_class = c});
+      auto live = path::GroundFinder::create(world, {.avatar_class = c});
       ASSERT_TRUE(over_zones && live);
       Path path, live_path;
       for (uint64_t n = 0; n < 60; ++n) {
@@ -430,7 +430,7 @@ TEST(Path, StopsWhenCancelled) {
   const World world = builtin({.name = "garage", .size = 45, .levels = 3}, 0.2);
   Context context;
   auto over_zones = path::MeshFinder::create(world, {.speedup = PathSpeedup::kZones}, context);
-  auto live = path::LiveFinder::create(world, {});
+  auto live = path::GroundFinder::create(world, {});
   ASSERT_TRUE(over_zones && live);
   path::MeshFinder search = finder(world, 0);
   std::atomic<bool> stop{true}, go{false};

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "path/flight_finder.h"
 #include "path/mesh_finder.h"
 #include "path/node_finder.h"
@@ -52,7 +52,7 @@ int run() {
                   reached += path.end == PathEnd::kReached;
                 });
   }
-  path::LiveFinder live = need(path::LiveFinder::create(world, {}));
+  path::GroundFinder live = need(path::GroundFinder::create(world, {}));
   sum += late("live ground", [&](uint64_t n) {
     live.find(from(n), to(n), path);
     reached += path.end == PathEnd::kReached;

@@ -7,7 +7,7 @@
 
 #include "baked.h"
 #include "core/random.h"
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "path/ground/mesh.h"
 #include "path/ground/search.h"
 #include "path/mesh_finder.h"
@@ -116,8 +116,8 @@ TEST(SearchMemory, WhatIsAllocatedKeepsToTheBudget) {
   EXPECT_GT(most, 0u);
 }
 
-TEST(SearchMemory, LiveGroundSaysThatItHadTooLittle) {
-  auto ground = path::LiveFinder::create(maze(), {});
+TEST(SearchMemory, GroundWithEditsSaysThatItHadTooLittle) {
+  auto ground = path::GroundFinder::create(maze(), {});
   ASSERT_TRUE(ground);
   Path path, whole;
   uint64_t budget_exhausted = 0;

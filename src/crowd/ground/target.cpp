@@ -69,7 +69,7 @@ bool Target::contains(const Body& body) const {
 
 std::vector<Place> places_inside(const world::WorldData& world, const CrowdGround& ground,
                                  std::span<const TargetRegion> regions, size_t max_count,
-                                 path::LiveFinder* live) {
+                                 path::GroundFinder* live) {
   const auto cell_of = [](double units, int32_t cells) {
     return static_cast<int32_t>(
         std::clamp<double>(std::floor(units / world::kUnitsPerCell), 0, cells - 1));

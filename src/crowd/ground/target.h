@@ -9,7 +9,7 @@
 
 #include "crowd/ground/body.h"
 #include "crowd/ground/crowd_ground.h"
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "throng/base.h"
 #include "throng/path.h"
 #include "throng/world.h"
@@ -55,6 +55,6 @@ struct Target {
 /// those that are legal there, whatever else is blocked in `ground`.
 std::vector<Place> places_inside(const world::WorldData& world, const CrowdGround& ground,
                                  std::span<const TargetRegion> regions, size_t max_count,
-                                 path::LiveFinder* live = nullptr);
+                                 path::GroundFinder* live = nullptr);
 
 }  // namespace throng::crowd

@@ -15,7 +15,7 @@ constexpr uint64_t kMaxNodes = 1000;  // of a detour's search
 
 class PathRepair {
  public:
-  PathRepair(const world::WorldData& world, path::LiveFinder& live, const StrideGround& ground)
+  PathRepair(const world::WorldData& world, path::GroundFinder& live, const StrideGround& ground)
       : world_(world), live_(live), ground_(ground) {}
 
   [[nodiscard]] bool is_open(const Place& from, const Place& to) const {
@@ -72,14 +72,15 @@ class PathRepair {
   }
 
   const world::WorldData& world_;
-  path::LiveFinder& live_;
+  path::GroundFinder& live_;
   const StrideGround& ground_;
 };
 
 }  // namespace
 
-void lead_around(const world::WorldData& world, path::LiveFinder& live, const StrideGround& ground,
-                 const SearchBudget& budget, Path& path, RepairScratch& scratch) {
+void lead_around(const world::WorldData& world, path::GroundFinder& live,
+                 const StrideGround& ground, const SearchBudget& budget, Path& path,
+                 RepairScratch& scratch) {
   if (path.points.size() < 2) return;
   const PathRepair repair(world, live, ground);
   if (repair.is_whole(path.points)) return;

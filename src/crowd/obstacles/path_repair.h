@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "crowd/ground/stride_ground.h"
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "throng/path.h"
 #include "world/zone_data.h"
 
@@ -22,8 +22,9 @@ struct RepairScratch {
 /// cells, so a path that none cuts stays, and is still the shortest. Where some cut it, short
 /// detours are put in, each at most kMaxRepairDetour longer than what it replaces; if that fails,
 /// the whole path is searched on the live ground. [path: reached]
-void lead_around(const world::WorldData& world, path::LiveFinder& live, const StrideGround& ground,
-                 const SearchBudget& budget, Path& path, RepairScratch& scratch);
+void lead_around(const world::WorldData& world, path::GroundFinder& live,
+                 const StrideGround& ground, const SearchBudget& budget, Path& path,
+                 RepairScratch& scratch);
 
 inline constexpr double kMaxRepairDetour = 10;  // [m]
 

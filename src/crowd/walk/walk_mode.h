@@ -16,7 +16,7 @@
 #include "crowd/walk/crowd_engine.h"
 #include "crowd/walk/routes.h"
 #include "path/edits/flow_points.h"
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "path/mesh_finder.h"
 
 /// Avatars on foot: paths over the ground and flow fields to targets. docs/design/008-engine.md.
@@ -96,7 +96,7 @@ class WalkMode final : public Mode {
   struct OfClass {
     bool flies = false;                     // too: asks takes_off_
     std::vector<path::MeshFinder> finders;  // one a worker
-    std::vector<path::LiveFinder> lives;    // one a worker, once paths avoid obstacles or lead to
+    std::vector<path::GroundFinder> lives;  // one a worker, once paths avoid obstacles or lead to
                                             // targets
     std::vector<path::AppliedEdits> areas;  // of `lives`
     std::vector<Path> paths;

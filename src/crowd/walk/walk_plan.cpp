@@ -74,10 +74,11 @@ bool WalkMode::plan_path(Body& body, Route& route, const StrideGround& ground, i
 }
 
 void WalkMode::make_lives(size_t number) {
-  std::vector<path::LiveFinder>& lives = classes_[number]->lives;
+  std::vector<path::GroundFinder>& lives = classes_[number]->lives;
   if (!lives.empty()) return;
-  auto made = path::LiveFinder::create(shared_.world, {.avatar_class = static_cast<int32_t>(number),
-                                                       .slope_cost = shared_.config.slope_cost});
+  auto made = path::GroundFinder::create(
+      shared_.world,
+      {.avatar_class = static_cast<int32_t>(number), .slope_cost = shared_.config.slope_cost});
   THRONG_ASSERT(made);  // The class is one of the world's.
   lives.assign(static_cast<size_t>(worker_count(shared_.config.workers)), *made);
   std::vector<path::AppliedEdits>& areas = classes_[number]->areas;

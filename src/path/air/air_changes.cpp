@@ -160,7 +160,7 @@ void AirChanges::block_ground(int64_t tile, std::span<const ChangeId> here) {
   }
 }
 
-void AirChanges::add_all_to(LiveFinder& ground, std::vector<ChangeId>& ids) const {
+void AirChanges::add_all_to(GroundFinder& ground, std::vector<ChangeId>& ids) const {
   ids.clear();
   for (const Change& change : changes_) {
     if (change.removed) {
@@ -172,7 +172,7 @@ void AirChanges::add_all_to(LiveFinder& ground, std::vector<ChangeId>& ids) cons
   }
 }
 
-ChangeId AirChanges::add_to(LiveFinder& ground, const Solid& solid) {
+ChangeId AirChanges::add_to(GroundFinder& ground, const Solid& solid) {
   const auto& [prism, triangles] = solid;
   if (triangles.empty()) {
     const auto added = ground.add_obstacle(prism);

@@ -13,7 +13,7 @@
 #include "path/air/air_islands.h"
 #include "path/air/blocked_air.h"
 #include "path/air/split_boxes.h"
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "path/edits/solid.h"
 #include "throng/path.h"
 #include "world/cell_blocks.h"
@@ -45,10 +45,10 @@ class AirChanges {
            (found->second[static_cast<size_t>(world::in_tile(z))] >> world::in_tile(x) & 1) == 0;
   }
   /// Adds one obstacle to a ground; returns its id there.
-  static ChangeId add_to(LiveFinder& ground, const Solid& solid);
+  static ChangeId add_to(GroundFinder& ground, const Solid& solid);
   /// Adds all obstacles to a ground of the class that has none of them yet; `ids`: their ids there,
   /// by id - 1.
-  void add_all_to(LiveFinder& ground, std::vector<ChangeId>& ids) const;
+  void add_all_to(GroundFinder& ground, std::vector<ChangeId>& ids) const;
 
  private:
   struct Change {

@@ -61,7 +61,7 @@ void EditList::set_area_cost(uint8_t kind, double cost) {
   note({.area = kind});
 }
 
-ChangeId AppliedEdits::id_of_new(const EditList::Edit& edit, LiveFinder& finder) {
+ChangeId AppliedEdits::id_of_new(const EditList::Edit& edit, GroundFinder& finder) {
   if (edit.kind == EditList::Kind::kObstacle) return finder.add_obstacle(edit.solid);
   const auto added = edit.kind == EditList::Kind::kArea
                          ? finder.add_area(edit.solid.prism, edit.area)
@@ -69,7 +69,7 @@ ChangeId AppliedEdits::id_of_new(const EditList::Edit& edit, LiveFinder& finder)
   return added ? *added : 0;
 }
 
-void AppliedEdits::set_cost(LiveFinder& finder, uint8_t kind, double cost) {
+void AppliedEdits::set_cost(GroundFinder& finder, uint8_t kind, double cost) {
   const auto set = finder.set_area_cost(kind, cost);
   THRONG_ASSERT(set);  // Edits has checked it.
 }

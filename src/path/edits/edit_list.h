@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 #include "path/edits/solid.h"
 #include "throng/path.h"
 
@@ -116,10 +116,10 @@ class AppliedEdits {
   static ChangeId id_of_new(const EditList::Edit& edit, Finder& finder) {
     return edit.kind == EditList::Kind::kObstacle ? finder.add_obstacle(edit.solid) : 0;
   }
-  static ChangeId id_of_new(const EditList::Edit& edit, LiveFinder& finder);
+  static ChangeId id_of_new(const EditList::Edit& edit, GroundFinder& finder);
   template <class Finder>
   static void set_cost(Finder& /*finder*/, uint8_t /*kind*/, double /*cost*/) {}
-  static void set_cost(LiveFinder& finder, uint8_t kind, double cost);
+  static void set_cost(GroundFinder& finder, uint8_t kind, double cost);
 
   Which which_;
   std::vector<ChangeId> ids_;  // of the finder, by id of the edit - 1; 0: none

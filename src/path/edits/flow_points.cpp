@@ -7,30 +7,30 @@
 #include <functional>
 
 #include "core/access.h"
-#include "path/edits/live_state.h"
+#include "path/edits/ground_finder_state.h"
 #include "path/ground/open_list.h"
 #include "path/ground/reset_path.h"
 #include "world/place.h"
 
-// Dijkstra's search outwards from all goals over the points of portals of a LiveMesh.
+// Dijkstra's search outwards from all goals over the points of portals of a GroundView.
 namespace throng::path {
 namespace {
 
-bool lies_before(const LiveStop& a, const LiveStop& b) {
+bool lies_before(const ViewStop& a, const ViewStop& b) {
   return a.level != b.level ? a.level < b.level : a.rect < b.rect;
 }
 
 // The search outwards from all goals.
 class Outwards {
  public:
-  Outwards(LiveMesh& mesh, double max_distance) : mesh_(mesh), max_distance_(max_distance) {
+  Outwards(GroundView& mesh, double max_distance) : mesh_(mesh), max_distance_(max_distance) {
     nodes_.clear();
   }
 
-  void push(const LiveStop& stop, uint32_t parent, double cost) {
+  void push(const ViewStop& stop, uint32_t parent, double cost) {
     if (cost > max_distance_) return;
     const auto [index, is_new] = nodes_.node_of(stop);
-    LiveNode& node = nodes_.nodes[index];
+    ReachedPoint& node = nodes_.nodes[index];
     if (!is_new && (node.done || node.cost <= cost)) return;
     node.cost = cost;
     node.parent = parent;
@@ -43,10 +43,10 @@ class Outwards {
       const uint32_t index = open_.pop().second;
       if (nodes_.nodes[index].done) continue;
       nodes_.nodes[index].done = true;
-      const LiveNode node = nodes_.nodes[index];
-      const LiveLevel& level = *mesh_.level(node.stop.level);
+      const ReachedPoint node = nodes_.nodes[index];
+      const ViewLevel& level = *mesh_.level(node.stop.level);
       const double factor = mesh_.factor(level, node.stop.rect);
-      for_portal_points(mesh_, node.stop, [&](world::GroundPoint side, const LiveStop& beyond) {
+      for_portal_points(mesh_, node.stop, [&](world::GroundPoint side, const ViewStop& beyond) {
         const double there = mesh_.factor(*mesh_.level(beyond.level), beyond.rect);
         if (!std::isfinite(there)) return;
         push(beyond, index,
@@ -56,12 +56,12 @@ class Outwards {
     return true;
   }
 
-  [[nodiscard]] const ChunkedArray<LiveNode>& nodes() const { return nodes_.nodes; }
+  [[nodiscard]] const ChunkedArray<ReachedPoint>& nodes() const { return nodes_.nodes; }
 
  private:
-  LiveMesh& mesh_;
+  GroundView& mesh_;
   double max_distance_;
-  LiveNodes nodes_;
+  ReachedPoints nodes_;
   OpenList<std::pair<double, uint32_t>, std::greater<>> open_;
 };
 
@@ -69,21 +69,21 @@ class Outwards {
 
 bool FlowPoints::before(const Point& a, const Point& b) { return lies_before(a.stop, b.stop); }
 
-std::optional<FlowPoints> FlowPoints::make(LiveFinder& of, std::span<const Place> goals,
+std::optional<FlowPoints> FlowPoints::make(GroundFinder& of, std::span<const Place> goals,
                                            double max_distance, Context& context) {
   auto& ground = of.state();
   max_distance /= ground.mesh.world().summary.cell;
   Outwards search(ground.mesh, max_distance);
   for (const Place& goal : goals) {
-    LiveStop stop;
+    ViewStop stop;
     if (ground.locate(goal, stop)) search.push(stop, UINT32_MAX, 0);
   }
   if (!search.run(context)) return {};
-  const ChunkedArray<LiveNode>& nodes = search.nodes();
+  const ChunkedArray<ReachedPoint>& nodes = search.nodes();
   std::vector<uint32_t> order(nodes.size());
   for (uint32_t n = 0; n < order.size(); ++n) order[n] = n;
   std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-    const LiveStop &p = nodes[a].stop, &q = nodes[b].stop;
+    const ViewStop &p = nodes[a].stop, &q = nodes[b].stop;
     return lies_before(p, q) || (!lies_before(q, p) && a < b);
   });
   std::vector<uint32_t> number(order.size());
@@ -92,7 +92,7 @@ std::optional<FlowPoints> FlowPoints::make(LiveFinder& of, std::span<const Place
   made.max_distance_ = max_distance;
   made.points_.reserve(order.size());
   for (const uint32_t n : order) {
-    const LiveNode& node = nodes[n];
+    const ReachedPoint& node = nodes[n];
     made.points_.push_back(
         {node.stop, node.parent == UINT32_MAX ? kNoPoint : number[node.parent], node.cost});
   }
@@ -100,7 +100,7 @@ std::optional<FlowPoints> FlowPoints::make(LiveFinder& of, std::span<const Place
 }
 
 // The point of a stop's rectangle by which it is nearest to a goal, none if that costs too much.
-std::pair<uint32_t, double> FlowPoints::leave_by(LiveMesh& mesh, const LiveStop& stop) const {
+std::pair<uint32_t, double> FlowPoints::leave_by(GroundView& mesh, const ViewStop& stop) const {
   const double factor = mesh.factor(*mesh.level(stop.level), stop.rect);
   const auto [first, last] =
       std::equal_range(points_.begin(), points_.end(), Point{stop, kNoPoint, 0}, before);
@@ -114,10 +114,10 @@ std::pair<uint32_t, double> FlowPoints::leave_by(LiveMesh& mesh, const LiveStop&
 }
 
 // The other side of the border that a point lies at: its path continues there. [it has a next]
-LiveStop FlowPoints::across(LiveMesh& mesh, const Point& point) const {
-  const LiveStop& on = points_[point.next].stop;
-  LiveStop other = on;
-  for_portal_points(mesh, on, [&](world::GroundPoint side, const LiveStop& beyond) {
+ViewStop FlowPoints::across(GroundView& mesh, const Point& point) const {
+  const ViewStop& on = points_[point.next].stop;
+  ViewStop other = on;
+  for_portal_points(mesh, on, [&](world::GroundPoint side, const ViewStop& beyond) {
     if (beyond.level == point.stop.level && beyond.at.x == point.stop.at.x &&
         beyond.at.z == point.stop.at.z) {
       other.at = side;
@@ -126,16 +126,16 @@ LiveStop FlowPoints::across(LiveMesh& mesh, const Point& point) const {
   return other;
 }
 
-double FlowPoints::distance(LiveFinder& of, const Place& place) const {
+double FlowPoints::distance(GroundFinder& of, const Place& place) const {
   auto& ground = of.state();
-  LiveStop stop;
+  ViewStop stop;
   if (!ground.locate(place, stop)) return kNever;
   return leave_by(ground.mesh, stop).second * ground.mesh.world().summary.cell;
 }
 
-Place FlowPoints::next(LiveFinder& of, const Place& place) const {
+Place FlowPoints::next(GroundFinder& of, const Place& place) const {
   auto& ground = of.state();
-  LiveStop from;
+  ViewStop from;
   if (!ground.locate(place, from)) return {};
   const auto [first, total] = leave_by(ground.mesh, from);
   if (first == kNoPoint) return {};
@@ -153,16 +153,16 @@ Place FlowPoints::next(LiveFinder& of, const Place& place) const {
       ++missed;
     }
   }
-  LiveStop to = best->stop;
+  ViewStop to = best->stop;
   const bool is_there = to.level == from.level && to.at.x == from.at.x && to.at.z == from.at.z;
   if (is_there && best->next != kNoPoint) to = across(ground.mesh, *best);
   return world::place_at(ground.mesh.world(), ground.mesh.level(to.level)->ground, to.at);
 }
 
-void FlowPoints::find_path(LiveFinder& of, const Place& place, Path& path) const {
+void FlowPoints::find_path(GroundFinder& of, const Place& place, Path& path) const {
   auto& ground = of.state();
   reset(path);
-  LiveStop stop;
+  ViewStop stop;
   if (!ground.locate(place, stop)) return;
   const uint32_t first = leave_by(ground.mesh, stop).first;
   path.end = PathEnd::kUnreachable;

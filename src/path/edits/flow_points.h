@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "path/edits/live_finder.h"
-#include "path/edits/live_search.h"
+#include "path/edits/ground_finder.h"
+#include "path/edits/point_search.h"
 #include "throng/base.h"
 #include "throng/path.h"
 
@@ -24,15 +24,15 @@ class FlowPoints {
 
   /// Searches outwards from all goals that are places of the class, up to a cost of `max_distance`
   /// metres. None if it was cancelled; without any points if no goal is a place.
-  static std::optional<FlowPoints> make(LiveFinder& ground, std::span<const Place> goals,
+  static std::optional<FlowPoints> make(GroundFinder& ground, std::span<const Place> goals,
                                         double max_distance, Context& context);
   [[nodiscard]] bool empty() const { return points_.empty(); }
 
   // `ground` is that of which they were made, or a copy of it, here and below.
   /// As FlowField::distance, next, find_path.
-  [[nodiscard]] double distance(LiveFinder& ground, const Place& place) const;
-  [[nodiscard]] Place next(LiveFinder& ground, const Place& place) const;
-  void find_path(LiveFinder& ground, const Place& place, Path& path) const;
+  [[nodiscard]] double distance(GroundFinder& ground, const Place& place) const;
+  [[nodiscard]] Place next(GroundFinder& ground, const Place& place) const;
+  void find_path(GroundFinder& ground, const Place& place, Path& path) const;
 
   [[nodiscard]] size_t size() const { return points_.size(); }
   [[nodiscard]] uint64_t bytes() const { return points_.size() * sizeof(Point); }
@@ -41,14 +41,14 @@ class FlowPoints {
   static constexpr uint32_t kNoPoint = UINT32_MAX;
   // A goal, or a point just inside a rectangle where the path to a goal leaves it.
   struct Point {
-    LiveStop stop;
+    ViewStop stop;
     uint32_t next = kNoPoint;  // on the path; none at a goal
     double cost = 0;           // [cells]
   };
 
   static bool before(const Point& a, const Point& b);
-  [[nodiscard]] std::pair<uint32_t, double> leave_by(LiveMesh& mesh, const LiveStop& stop) const;
-  [[nodiscard]] LiveStop across(LiveMesh& mesh, const Point& point) const;
+  [[nodiscard]] std::pair<uint32_t, double> leave_by(GroundView& mesh, const ViewStop& stop) const;
+  [[nodiscard]] ViewStop across(GroundView& mesh, const Point& point) const;
 
   // By level and rectangle, so that those of one lie together.
   std::vector<Point> points_;

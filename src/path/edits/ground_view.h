@@ -21,14 +21,14 @@
 #include "throng/path.h"
 #include "world/ground.h"
 
-/// The ground of a LiveFinder, level by level, made on first use.
+/// The ground of a GroundFinder, level by level, made on first use.
 namespace throng::path {
 
 inline constexpr int32_t kSlopeClasses = 6;
 inline constexpr std::array<double, kSlopeClasses> kSteepestOf{0.05, 0.1, 0.2, 0.35, 0.6, 1.2};
 
 /// A level tile as it is now.
-struct LiveLevel {
+struct ViewLevel {
   world::GroundLevel ground;
   int32_t tile_x = 0, tile_z = 0;
   world::CellRows legal{};
@@ -46,14 +46,14 @@ inline double distance_of(world::GroundPoint a, world::GroundPoint b) {  // [cel
 
 /// Levels and the changes made to them, as a mesh whose parts are made when they are needed. Copies
 /// share nothing.
-class LiveMesh final : public PortalSource {
+class GroundView final : public PortalSource {
  public:
-  LiveMesh(World world, const PathConfig& config);
-  LiveMesh(const LiveMesh& other);
-  LiveMesh(LiveMesh&&) = delete;
-  LiveMesh& operator=(const LiveMesh&) = delete;
-  LiveMesh& operator=(LiveMesh&&) = delete;
-  ~LiveMesh() = default;
+  GroundView(World world, const PathConfig& config);
+  GroundView(const GroundView& other);
+  GroundView(GroundView&&) = delete;
+  GroundView& operator=(const GroundView&) = delete;
+  GroundView& operator=(GroundView&&) = delete;
+  ~GroundView() = default;
 
   [[nodiscard]] const world::WorldData& world() const { return *data_of(world_); }
   [[nodiscard]] int32_t avatar_class() const { return config_.avatar_class; }
@@ -62,15 +62,15 @@ class LiveMesh final : public PortalSource {
   /// Rises with every change.
   [[nodiscard]] uint64_t version() const { return version_; }
   /// Without legal cells if its zone cannot be used.
-  const LiveLevel* level(uint32_t index);
+  const ViewLevel* level(uint32_t index);
   /// The rectangles of the levels that were made, of one area kind and one class of inclination
   /// each. Their numbers are valid until the next change.
   [[nodiscard]] const PathMesh& rects() const { return mesh_; }
-  [[nodiscard]] const MeshRect& rect(const LiveLevel& level, uint32_t n) const {
+  [[nodiscard]] const MeshRect& rect(const ViewLevel& level, uint32_t n) const {
     return mesh_.rects[level.first_rect + size_t{n}];
   }
   /// Of a legal cell of the grid that lies on the level.
-  [[nodiscard]] uint32_t rect_at(const LiveLevel& level, int32_t x, int32_t z) const;
+  [[nodiscard]] uint32_t rect_at(const ViewLevel& level, int32_t x, int32_t z) const;
   std::span<const MeshPortal> portals_of(uint32_t rect) override {
     const IndexRange at = portal_range(rect);
     return {mesh_.portals.data() + at.first, at.count};
@@ -87,7 +87,7 @@ class LiveMesh final : public PortalSource {
   [[nodiscard]] double factor(uint32_t rect) const {
     return area_cost_[rect_states_[rect].area] * slope_factor_[rect_states_[rect].slope];
   }
-  [[nodiscard]] double factor(const LiveLevel& level, uint32_t n) const {
+  [[nodiscard]] double factor(const ViewLevel& level, uint32_t n) const {
     return factor(level.first_rect + n);
   }
   [[nodiscard]] bool is_plain() const { return plain_; }  // a metre costs 1 everywhere
@@ -128,8 +128,8 @@ class LiveMesh final : public PortalSource {
 
   /// As world/walk.h needs it.
   struct Ground {
-    using Level = const LiveLevel*;
-    LiveMesh& mesh;
+    using Level = const ViewLevel*;
+    GroundView& mesh;
     [[nodiscard]] Level level(uint32_t number) const { return mesh.level(number); }
     [[nodiscard]] static uint32_t number(Level level) { return level->ground.world_level; }
     [[nodiscard]] static bool is_legal(Level level, int32_t x, int32_t z) {
@@ -159,20 +159,20 @@ class LiveMesh final : public PortalSource {
     size_t operator()(const CornerKey& key) const;
   };
 
-  void make(uint32_t index, LiveLevel& level);
-  void block_cells(LiveLevel& level) const;
-  void cut(LiveLevel& level);
+  void make(uint32_t index, ViewLevel& level);
+  void block_cells(ViewLevel& level) const;
+  void cut(ViewLevel& level);
   void find_portals(uint32_t rect);
   uint32_t number_of(const std::optional<CornerKey>& corner);
   void drop_portals(uint32_t rect);
-  void drop_border(const LiveLevel& level, int32_t toward_x, int32_t toward_z);
-  void drop(LiveLevel& level);
+  void drop_border(const ViewLevel& level, int32_t toward_x, int32_t toward_z);
+  void drop(ViewLevel& level);
   void drop_unused_corners();
   void forget(int64_t tile);
   void switch_link(const LevelLinkEnd& link, bool active);
   void find_min_link_factor();
-  [[nodiscard]] std::array<uint8_t, 4096> kinds_of(const LiveLevel& level) const;
-  [[nodiscard]] std::array<uint8_t, 4096> slopes_of(const LiveLevel& level) const;
+  [[nodiscard]] std::array<uint8_t, 4096> kinds_of(const ViewLevel& level) const;
+  [[nodiscard]] std::array<uint8_t, 4096> slopes_of(const ViewLevel& level) const;
 
   World world_;
   PathConfig config_;
@@ -184,7 +184,7 @@ class LiveMesh final : public PortalSource {
   bool plain_ = true;
   uint64_t version_ = 0;
   size_t active_links_ = 0;
-  std::vector<std::unique_ptr<LiveLevel>> levels_;  // of the world; null: not made yet
+  std::vector<std::unique_ptr<ViewLevel>> levels_;  // of the world; null: not made yet
 
   PathMesh mesh_;
   std::vector<RectState> rect_states_;  // by rectangle
@@ -205,15 +205,15 @@ class LiveMesh final : public PortalSource {
 };
 
 /// The cells behind its rectangles.
-class LiveCells final : public CellsOf<LiveMesh::Ground> {
+class ViewCells final : public CellsOf<GroundView::Ground> {
  public:
-  explicit LiveCells(LiveMesh& mesh) : CellsOf(mesh.ground(), mesh.step()), mesh_(mesh) {}
+  explicit ViewCells(GroundView& mesh) : CellsOf(mesh.ground(), mesh.step()), mesh_(mesh) {}
   [[nodiscard]] uint32_t rect_at(uint32_t level, int32_t x, int32_t z) const override {
     return mesh_.rect_at(*mesh_.level(level), x, z);
   }
 
  private:
-  LiveMesh& mesh_;
+  GroundView& mesh_;
 };
 
 }  // namespace throng::path

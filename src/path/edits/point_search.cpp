@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/edits/live_search.h"
+#include "path/edits/point_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,25 +15,25 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-size_t slot_of(const LiveStop& stop, size_t mask) {
+size_t slot_of(const ViewStop& stop, size_t mask) {
   const auto x = static_cast<uint64_t>(stop.at.x), z = static_cast<uint64_t>(stop.at.z);
   uint64_t hash = (x * 0x9e3779b97f4a7c15 ^ z) * 0xbf58476d1ce4e5b9 + stop.level;
   hash = (hash ^ hash >> 29) * 0x94d049bb133111eb;
   return static_cast<size_t>(hash >> 20) & mask;
 }
 
-bool same(const LiveStop& a, const LiveStop& b) {
+bool same(const ViewStop& a, const ViewStop& b) {
   return a.level == b.level && a.at.x == b.at.x && a.at.z == b.at.z;
 }
 
 // Cost of a metre on the ground of a cell.
-double factor_at(const LiveMesh& mesh, const LiveLevel& level, int32_t x, int32_t z) {
+double factor_at(const GroundView& mesh, const ViewLevel& level, int32_t x, int32_t z) {
   return mesh.factor(mesh.rect_at(level, x, z));
 }
 
 }  // namespace
 
-void LiveNodes::clear() {
+void ReachedPoints::clear() {
   if (table_.empty()) table_.resize(1 << 12);
   if (nodes.size() * 16 < table_.size()) {
     for (size_t n = 0; n < nodes.size(); ++n) {
@@ -48,22 +48,22 @@ void LiveNodes::clear() {
   nodes.clear();
 }
 
-void LiveNodes::give_back() {
+void ReachedPoints::give_back() {
   nodes.clear();
   nodes.shrink(0);
   std::vector<uint32_t>().swap(table_);
 }
 
 // Beside itself a node takes up to eight places of the table, and two of the old one as it grows.
-uint64_t LiveNodes::used_bytes() const {
-  return nodes.size() * (sizeof(LiveNode) + 10 * sizeof(uint32_t));
+uint64_t ReachedPoints::used_bytes() const {
+  return nodes.size() * (sizeof(ReachedPoint) + 10 * sizeof(uint32_t));
 }
 
-uint64_t LiveNodes::allocated_bytes() const {
+uint64_t ReachedPoints::allocated_bytes() const {
   return nodes.allocated_bytes() + table_.capacity() * sizeof(uint32_t);
 }
 
-std::pair<uint32_t, bool> LiveNodes::node_of(const LiveStop& stop) {
+std::pair<uint32_t, bool> ReachedPoints::node_of(const ViewStop& stop) {
   size_t slot = slot_of(stop, table_.size() - 1);
   for (; table_[slot] != 0; slot = (slot + 1) & (table_.size() - 1)) {
     if (same(nodes[table_[slot] - 1].stop, stop)) return {table_[slot] - 1, false};
@@ -76,7 +76,7 @@ std::pair<uint32_t, bool> LiveNodes::node_of(const LiveStop& stop) {
   return {index, true};
 }
 
-void LiveNodes::grow() {
+void ReachedPoints::grow() {
   table_.assign(table_.size() * 4, 0);
   for (uint32_t n = 0; n < nodes.size(); ++n) {
     size_t slot = slot_of(nodes[n].stop, table_.size() - 1);
@@ -85,14 +85,14 @@ void LiveNodes::grow() {
   }
 }
 
-double segment_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
-  const LiveLevel* level = mesh.level(from.level);
+double segment_cost(GroundView& mesh, const ViewStop& from, const ViewStop& to) {
+  const ViewLevel* level = mesh.level(from.level);
   const double length = distance_of(from.at, to.at);
   double cost = 0, t = 0;
   double factor = mesh.is_plain() ? 1 : factor_at(mesh, *level, from.at.cell_x(), from.at.cell_z());
   const auto dx = static_cast<double>(to.at.x - from.at.x);
   const auto dz = static_cast<double>(to.at.z - from.at.z);
-  const auto enter = [&](const LiveLevel* next, int32_t x, int32_t z, int32_t before_x,
+  const auto enter = [&](const ViewLevel* next, int32_t x, int32_t z, int32_t before_x,
                          int32_t before_z) {
     if (mesh.is_plain()) return;
     double at = t;
@@ -117,7 +117,7 @@ double segment_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
 
 // From each stop to the farthest that a straight segment reaches at no more cost, found by doubling
 // and halving: it need not be the farthest of all.
-void LiveStringPuller::leave_out(LiveMesh& mesh, std::vector<LiveStop>& stops) {
+void PointStringPuller::leave_out(GroundView& mesh, std::vector<ViewStop>& stops) {
   constexpr double kSlack = 1 + 1e-9;
   if (stops.size() < 3) return;
   before_.assign(stops.size(), 0);
@@ -125,7 +125,7 @@ void LiveStringPuller::leave_out(LiveMesh& mesh, std::vector<LiveStop>& stops) {
     before_[i] = before_[i - 1] + segment_cost(mesh, stops[i - 1], stops[i]);
   size_t kept = 1;
   for (size_t i = 0; i + 1 < before_.size();) {
-    const LiveStop from = stops[kept - 1];
+    const ViewStop from = stops[kept - 1];
     const auto reaches = [&](size_t to) {
       return segment_cost(mesh, from, stops[to]) <= (before_[to] - before_[i]) * kSlack;
     };
@@ -143,13 +143,13 @@ void LiveStringPuller::leave_out(LiveMesh& mesh, std::vector<LiveStop>& stops) {
   stops.resize(kept);
 }
 
-void LiveStringPuller::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops) {
+void PointStringPuller::draw_walk(GroundView& mesh, std::vector<ViewStop>& stops) {
   leave_out(mesh, stops);
   // Waypoints move towards the straight line between their neighbours as far as the ground permits.
   constexpr int kSweeps = 2, kHalvings = 6;
   for (int sweep = 0; sweep < kSweeps && stops.size() > 2; ++sweep) {
     for (size_t i = 1; i + 1 < stops.size(); ++i) {
-      const LiveStop a = stops[i - 1], b = stops[i + 1];
+      const ViewStop a = stops[i - 1], b = stops[i + 1];
       double best = segment_cost(mesh, a, stops[i]) + segment_cost(mesh, stops[i], b);
       const auto ux = static_cast<double>(b.at.x - a.at.x);
       const auto uz = static_cast<double>(b.at.z - a.at.z);
@@ -170,10 +170,10 @@ void LiveStringPuller::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops) {
             from.x + std::llround(t * (foot_x - static_cast<double>(from.x))),
             from.z + std::llround(t * (foot_z - static_cast<double>(from.z)))};
         // On whichever level the segment there leads to.
-        const LiveLevel* level = mesh.level(a.level);
+        const ViewLevel* level = mesh.level(a.level);
         if (!world::walk_far(mesh.ground(), level, a.at, at, mesh.step()).arrived) continue;
         const uint32_t rect = mesh.rect_at(*level, at.cell_x(), at.cell_z());
-        const LiveStop moved{level->ground.world_level,
+        const ViewStop moved{level->ground.world_level,
                              static_cast<uint16_t>(rect - level->first_rect), at};
         const double cost = segment_cost(mesh, a, moved) + segment_cost(mesh, moved, b);
         if (cost >= best) continue;
@@ -186,9 +186,9 @@ void LiveStringPuller::draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops) {
   }
 }
 
-void LiveStringPuller::draw(LiveMesh& mesh, std::vector<LiveStop>& stops) {
+void PointStringPuller::draw(GroundView& mesh, std::vector<ViewStop>& stops) {
   if (std::none_of(stops.begin(), stops.end(),
-                   [](const LiveStop& stop) { return stop.off_mesh_link > 0; }))
+                   [](const ViewStop& stop) { return stop.off_mesh_link > 0; }))
     return draw_walk(mesh, stops);
   whole_.clear();
   walk_.clear();
@@ -197,7 +197,7 @@ void LiveStringPuller::draw(LiveMesh& mesh, std::vector<LiveStop>& stops) {
     whole_.insert(whole_.end(), walk_.begin(), walk_.end());
     walk_.clear();
   };
-  for (const LiveStop& stop : stops) {
+  for (const ViewStop& stop : stops) {
     if (stop.off_mesh_link > 0) end_walk();
     walk_.push_back(stop);
   }
@@ -205,7 +205,7 @@ void LiveStringPuller::draw(LiveMesh& mesh, std::vector<LiveStop>& stops) {
   stops.swap(whole_);
 }
 
-void LiveSearch::begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
+void PointSearch::begin(GroundView& mesh, const ViewStop& from, const ViewStop& to) {
   to_ = to;
   nodes_.clear();
   open_.clear();
@@ -216,9 +216,10 @@ void LiveSearch::begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to)
   push(mesh, from, UINT32_MAX, 0);
 }
 
-LiveNode* LiveSearch::push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, double cost) {
+ReachedPoint* PointSearch::push(GroundView& mesh, const ViewStop& stop, uint32_t parent,
+                                double cost) {
   const auto [index, is_new] = nodes_.node_of(stop);
-  LiveNode& node = nodes_.nodes[index];
+  ReachedPoint& node = nodes_.nodes[index];
   if (!is_new && (node.done || node.cost <= cost)) return nullptr;
   node.stop = stop;  // by an off-mesh link, or not
   node.cost = cost;
@@ -230,9 +231,9 @@ LiveNode* LiveSearch::push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent
 
 // Of the node's rectangle, the point nearest to the goal; heights count, so a point below the goal
 // is not at it.
-void LiveSearch::note_nearest(LiveMesh& mesh, uint32_t index) {
-  const LiveStop& stop = nodes_.nodes[index].stop;
-  const LiveLevel& level = *mesh.level(stop.level);
+void PointSearch::note_nearest(GroundView& mesh, uint32_t index) {
+  const ViewStop& stop = nodes_.nodes[index].stop;
+  const ViewLevel& level = *mesh.level(stop.level);
   const MeshRect& rect = mesh.rect(level, stop.rect);
   const auto clamped = [](int64_t at, int32_t first, int32_t cells) {
     return std::clamp(at, int64_t{first} << world::kUnitBits,
@@ -240,7 +241,7 @@ void LiveSearch::note_nearest(LiveMesh& mesh, uint32_t index) {
   };
   const world::GroundPoint at{clamped(to_.at.x, rect.x, rect.width),
                               clamped(to_.at.z, rect.z, rect.depth)};
-  const auto feet = [](const LiveLevel& of, world::GroundPoint p) {
+  const auto feet = [](const ViewLevel& of, world::GroundPoint p) {
     return of.ground.view.sample(world::in_tile(p.cell_x()), world::in_tile(p.cell_z()));
   };
   const double rise =
@@ -253,29 +254,30 @@ void LiveSearch::note_nearest(LiveMesh& mesh, uint32_t index) {
   nearest_stop_ = {stop.level, stop.rect, at};
 }
 
-void LiveSearch::push_links(LiveMesh& mesh, const LiveNode& node, uint32_t index, double factor) {
-  for (const LiveMesh::OffMeshLinkEnd& off_mesh_link : mesh.links_from(node.stop.level)) {
-    LiveStop from{node.stop.level, 0, off_mesh_link.from},
+void PointSearch::push_links(GroundView& mesh, const ReachedPoint& node, uint32_t index,
+                             double factor) {
+  for (const GroundView::OffMeshLinkEnd& off_mesh_link : mesh.links_from(node.stop.level)) {
+    ViewStop from{node.stop.level, 0, off_mesh_link.from},
         to{off_mesh_link.to_level, 0, off_mesh_link.to, off_mesh_link.cost};
     if (!mesh.stand(from.level, from.at, from.rect) || from.rect != node.stop.rect) continue;
     if (!mesh.stand(to.level, to.at, to.rect)) continue;
     const double cost =
         node.cost + distance_of(node.stop.at, from.at) * factor + off_mesh_link.cost;
-    if (LiveNode* there = push(mesh, to, index, cost)) there->link_from = from.at;
+    if (ReachedPoint* there = push(mesh, to, index, cost)) there->link_from = from.at;
   }
 }
 
-uint64_t LiveSearch::allocated_bytes() const {
+uint64_t PointSearch::allocated_bytes() const {
   return nodes_.allocated_bytes() + open_.allocated_bytes();
 }
 
-void LiveSearch::give_back() {
+void PointSearch::give_back() {
   if (allocated_bytes() <= kKeptBytes) return;
   nodes_.give_back();
   open_.give_back();
 }
 
-LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t max_nodes, uint64_t max_bytes) {
+PointSearch::State PointSearch::advance(GroundView& mesh, uint64_t max_nodes, uint64_t max_bytes) {
   for (uint64_t n = 0; n < max_nodes;) {
     if (open_.empty()) return State::kNone;
     if (nodes_.used_bytes() + open_.used_bytes() > max_bytes) return State::kFull;
@@ -284,19 +286,19 @@ LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t max_nodes, uint64
     ++n;
     ++expanded_;
     nodes_.nodes[index].done = true;
-    const LiveNode node = nodes_.nodes[index];
+    const ReachedPoint node = nodes_.nodes[index];
     if (same(node.stop, to_)) {
       goal_ = index;
       return State::kFound;
     }
-    const LiveLevel& level = *mesh.level(node.stop.level);
+    const ViewLevel& level = *mesh.level(node.stop.level);
     note_nearest(mesh, index);
     const double away = distance_of(node.stop.at, to_.at);
     const double factor = mesh.factor(level, node.stop.rect);
     if (node.stop.level == to_.level && node.stop.rect == to_.rect)
       push(mesh, to_, index, node.cost + away * factor);
     push_links(mesh, node, index, factor);
-    for_portal_points(mesh, node.stop, [&](world::GroundPoint side, const LiveStop& beyond) {
+    for_portal_points(mesh, node.stop, [&](world::GroundPoint side, const ViewStop& beyond) {
       const double beyond_factor = mesh.factor(*mesh.level(beyond.level), beyond.rect);
       if (!std::isfinite(beyond_factor)) return;
       const double cost = node.cost + distance_of(node.stop.at, side) * factor +
@@ -307,22 +309,22 @@ LiveSearch::State LiveSearch::advance(LiveMesh& mesh, uint64_t max_nodes, uint64
   return State::kSearching;
 }
 
-void LiveSearch::trace(LiveMesh& mesh, std::vector<LiveStop>& stops) const {
+void PointSearch::trace(GroundView& mesh, std::vector<ViewStop>& stops) const {
   stops.clear();
   uint32_t index = goal_ != UINT32_MAX ? goal_ : nearest_;
   if (goal_ == UINT32_MAX) stops.push_back(nearest_stop_);
   for (; index != UINT32_MAX; index = nodes_.nodes[index].parent) {
-    const LiveNode& node = nodes_.nodes[index];
+    const ReachedPoint& node = nodes_.nodes[index];
     stops.push_back(node.stop);
     if (node.parent == UINT32_MAX) break;
     // A stop beyond a portal was reached straight across from its other side.
-    const LiveStop& before = nodes_.nodes[node.parent].stop;
+    const ViewStop& before = nodes_.nodes[node.parent].stop;
     if (node.stop.off_mesh_link > 0) {
       stops.push_back({before.level, before.rect, node.link_from});
       continue;
     }
     if (before.level == node.stop.level && before.rect == node.stop.rect) continue;
-    for_portal_points(mesh, before, [&](world::GroundPoint side, const LiveStop& beyond) {
+    for_portal_points(mesh, before, [&](world::GroundPoint side, const ViewStop& beyond) {
       if (same(beyond, node.stop)) stops.push_back({before.level, before.rect, side});
     });
   }

@@ -22,15 +22,15 @@ namespace throng::path {
 /// The ground of one class with changes. Obstacles only remove ground: an avatar can stand on a
 /// crate only if it was baked. Changes and queries are for one thread at a time; copies are
 /// independent. Results are the same on every machine.
-class LiveFinder {
+class GroundFinder {
  public:
   /// Makes the ground of a class; reads nothing yet. Fails with kBadConfig.
-  [[nodiscard]] static Result<LiveFinder> create(const World& world, const PathConfig& config);
-  LiveFinder(const LiveFinder&);
-  LiveFinder& operator=(const LiveFinder&);
-  LiveFinder(LiveFinder&&) noexcept;
-  LiveFinder& operator=(LiveFinder&&) noexcept;
-  ~LiveFinder();
+  [[nodiscard]] static Result<GroundFinder> create(const World& world, const PathConfig& config);
+  GroundFinder(const GroundFinder&);
+  GroundFinder& operator=(const GroundFinder&);
+  GroundFinder(GroundFinder&&) noexcept;
+  GroundFinder& operator=(GroundFinder&&) noexcept;
+  ~GroundFinder();
 
   /// Puts up an obstacle: the class is illegal where its body, from body_bottom() up, could touch
   /// the prism. Fails with kBadInput. Time: the tiles that it touches.
@@ -78,7 +78,7 @@ class LiveFinder {
   [[nodiscard]] State& state() { return *state_; }
 
  private:
-  explicit LiveFinder(std::unique_ptr<State> state);
+  explicit GroundFinder(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 

@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "core/chunked_array.h"
-#include "path/edits/live_mesh.h"
+#include "path/edits/ground_view.h"
 #include "path/ground/open_list.h"
 
-/// Paths of low cost over a LiveMesh: a search over points of portals, pulled taut afterwards.
+/// Paths of low cost over a GroundView: a search over points of portals, pulled taut afterwards.
 namespace throng::path {
 
 /// A point of a path, standing in a rectangle.
-struct LiveStop {
+struct ViewStop {
   uint32_t level = 0;  // of the world
   uint16_t rect = 0;   // of the level's
   world::GroundPoint at;
@@ -22,8 +22,8 @@ struct LiveStop {
 };
 
 /// A point that the search has reached.
-struct LiveNode {
-  LiveStop stop;
+struct ReachedPoint {
+  ViewStop stop;
   uint32_t parent = UINT32_MAX;
   double cost = 0;               // so far [cells]
   world::GroundPoint link_from;  // if stop.off_mesh_link > 0: in the parent's rectangle
@@ -31,7 +31,7 @@ struct LiveNode {
 };
 
 /// Hash map from a stop to its node. Owns its memory.
-class LiveNodes {
+class ReachedPoints {
  public:
   void clear();
   /// Frees what was allocated.
@@ -40,8 +40,8 @@ class LiveNodes {
   [[nodiscard]] uint64_t used_bytes() const;
   [[nodiscard]] uint64_t allocated_bytes() const;
   /// The node of a stop, and whether it is new.
-  std::pair<uint32_t, bool> node_of(const LiveStop& stop);
-  ChunkedArray<LiveNode> nodes;
+  std::pair<uint32_t, bool> node_of(const ViewStop& stop);
+  ChunkedArray<ReachedPoint> nodes;
 
  private:
   void grow();
@@ -51,46 +51,46 @@ class LiveNodes {
 /// Calls visit(on_this_side, beyond) for points of all portals of a rectangle; beyond is a stop in
 /// the next rectangle, straight across.
 template <class Visit>
-void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit);
+void for_portal_points(GroundView& mesh, const ViewStop& from, Visit visit);
 
 /// Cost of the straight segment between two stops, in cells; infinite if it is no legal move to
 /// that very level.
-double segment_cost(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
+double segment_cost(GroundView& mesh, const ViewStop& from, const ViewStop& to);
 
 /// As segment_cost, or the cost of the off-mesh link.
-inline double cost_to(LiveMesh& mesh, const LiveStop& from, const LiveStop& to) {
+inline double cost_to(GroundView& mesh, const ViewStop& from, const ViewStop& to) {
   return to.off_mesh_link > 0 ? to.off_mesh_link : segment_cost(mesh, from, to);
 }
 
 /// Leaves out stops where a straight segment costs no more, and moves the others towards a straight
 /// line; off-mesh links stay. Owns its memory: no allocation once it has grown.
-class LiveStringPuller {
+class PointStringPuller {
  public:
-  void draw(LiveMesh& mesh, std::vector<LiveStop>& stops);
+  void draw(GroundView& mesh, std::vector<ViewStop>& stops);
 
  private:
-  void draw_walk(LiveMesh& mesh, std::vector<LiveStop>& stops);
-  void leave_out(LiveMesh& mesh, std::vector<LiveStop>& stops);
+  void draw_walk(GroundView& mesh, std::vector<ViewStop>& stops);
+  void leave_out(GroundView& mesh, std::vector<ViewStop>& stops);
 
-  std::vector<LiveStop> whole_, walk_;
+  std::vector<ViewStop> whole_, walk_;
   std::vector<double> before_;  // cost up to each stop
 };
 
 /// A*, best first. Owns its memory: no allocation once it has grown; what a large query allocated
 /// beyond kKeptBytes is freed when the next one begins.
-class LiveSearch {
+class PointSearch {
  public:
   enum class State { kSearching, kFound, kNone, kFull };
   static constexpr uint64_t kKeptBytes = uint64_t{32} << 20;
 
-  void begin(LiveMesh& mesh, const LiveStop& from, const LiveStop& to);
+  void begin(GroundView& mesh, const ViewStop& from, const ViewStop& to);
   /// Expands up to `max_nodes` points more; kFull if it would need more than `max_bytes`.
-  State advance(LiveMesh& mesh, uint64_t max_nodes, uint64_t max_bytes);
+  State advance(GroundView& mesh, uint64_t max_nodes, uint64_t max_bytes);
   /// Frees what is allocated beyond kKeptBytes: after a search.
   void give_back();
   [[nodiscard]] uint64_t allocated_bytes() const;
   /// The path to the goal, or to the reached point that is nearest to it; not yet pulled taut.
-  void trace(LiveMesh& mesh, std::vector<LiveStop>& stops) const;
+  void trace(GroundView& mesh, std::vector<ViewStop>& stops) const;
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
 
  private:
@@ -103,13 +103,13 @@ class LiveSearch {
     }
   };
   /// The node now reached from `parent`, or null if the known cost is no higher.
-  LiveNode* push(LiveMesh& mesh, const LiveStop& stop, uint32_t parent, double cost);
-  void push_links(LiveMesh& mesh, const LiveNode& node, uint32_t index, double factor);
+  ReachedPoint* push(GroundView& mesh, const ViewStop& stop, uint32_t parent, double cost);
+  void push_links(GroundView& mesh, const ReachedPoint& node, uint32_t index, double factor);
 
-  void note_nearest(LiveMesh& mesh, uint32_t index);
+  void note_nearest(GroundView& mesh, uint32_t index);
 
-  LiveStop to_, nearest_stop_;
-  LiveNodes nodes_;
+  ViewStop to_, nearest_stop_;
+  ReachedPoints nodes_;
   OpenList<Open> open_;
   uint32_t nearest_ = 0, goal_ = UINT32_MAX;
   double nearest_distance_ = 0;
@@ -117,9 +117,9 @@ class LiveSearch {
 };
 
 template <class Visit>
-void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit) {
+void for_portal_points(GroundView& mesh, const ViewStop& from, Visit visit) {
   constexpr int32_t kSpacing = 8;  // cells
-  const LiveLevel& level = *mesh.level(from.level);
+  const ViewLevel& level = *mesh.level(from.level);
   const PathMesh& rects = mesh.rects();
   const uint32_t number = level.first_rect + from.rect;
   const MeshRect rect = rects.rects[number];
@@ -148,7 +148,7 @@ void for_portal_points(LiveMesh& mesh, const LiveStop& from, Visit visit) {
     const int64_t inside = east || north ? border - 1 : border;
     const int64_t outside = east || north ? border : border - 1;
     const auto point = [&](int64_t along) {
-      const LiveStop beyond{
+      const ViewStop beyond{
           to_level, to_rect,
           along_x ? world::GroundPoint{along, outside} : world::GroundPoint{outside, along}};
       visit(along_x ? world::GroundPoint{along, inside} : world::GroundPoint{inside, along},

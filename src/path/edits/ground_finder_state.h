@@ -5,19 +5,19 @@
 #include <optional>
 #include <vector>
 
-#include "path/edits/live_finder.h"
-#include "path/edits/live_mesh.h"
-#include "path/edits/live_search.h"
+#include "path/edits/ground_finder.h"
+#include "path/edits/ground_view.h"
+#include "path/edits/point_search.h"
 #include "path/ground/search.h"
 
-/// What a LiveFinder holds.
+/// What a GroundFinder holds.
 namespace throng::path {
 
-struct LiveFinder::State {
+struct GroundFinder::State {
   State(const World& world, const PathConfig& config) : mesh(world, config) {}
-  explicit State(const LiveMesh& of) : mesh(of) {}
+  explicit State(const GroundView& of) : mesh(of) {}
 
-  bool locate(const Place& place, LiveStop& stop);
+  bool locate(const Place& place, ViewStop& stop);
   void begin(const Place& start, const Place& goal, bool over_points = false);
   /// To the end of what has begun, or of the budget.
   void run(const SearchBudget& budget, Path& path);
@@ -26,7 +26,7 @@ struct LiveFinder::State {
   /// The exact search. None if points of portals have to be searched instead.
   std::optional<bool> advance_exactly(uint64_t max_bytes, Path& path);
   void begin_over_points();
-  [[nodiscard]] Stop exact_stop(const LiveStop& stop);
+  [[nodiscard]] Stop exact_stop(const ViewStop& stop);
   /// Of the corners that the exact search has found. False if no path can be drawn over them.
   bool give_exactly(double length, Path& path);
   /// Of `stops`.
@@ -34,14 +34,14 @@ struct LiveFinder::State {
   /// What a straight line from its end to the goal meets first.
   Blocker blocker();
 
-  LiveMesh mesh;
-  LiveSearch search;
-  LiveStringPuller straight;
+  GroundView mesh;
+  PointSearch search;
+  PointStringPuller straight;
   Place from_place, to_place;
-  LiveStop from, to;
+  ViewStop from, to;
   uint64_t version = 0;
   bool searching = false;
-  std::vector<LiveStop> stops;
+  std::vector<ViewStop> stops;
 
   // While no metre costs more than another, and no off-mesh link is in force.
   PathSearch exact;

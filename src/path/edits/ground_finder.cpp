@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +10,10 @@
 #include "core/access.h"
 #include "core/check_class.h"
 #include "path/edits/blocker.h"
-#include "path/edits/live_mesh.h"
-#include "path/edits/live_search.h"
-#include "path/edits/live_state.h"
+#include "path/edits/ground_finder_state.h"
+#include "path/edits/ground_view.h"
 #include "path/edits/plan_shapes.h"
+#include "path/edits/point_search.h"
 #include "path/edits/solid.h"
 #include "path/ground/reset_path.h"
 #include "path/ground/segments.h"
@@ -22,7 +22,7 @@
 // Checks and converts what callers give, for the live mesh and its search.
 namespace throng::path {
 
-bool LiveFinder::State::locate(const Place& place, LiveStop& stop) {
+bool GroundFinder::State::locate(const Place& place, ViewStop& stop) {
   const auto at = world::ground_point(mesh.world(), place);
   if (!at) return false;
   stop.at = *at;
@@ -30,7 +30,7 @@ bool LiveFinder::State::locate(const Place& place, LiveStop& stop) {
   return mesh.stand(stop.level, stop.at, stop.rect);
 }
 
-void LiveFinder::State::give(Path& path) {
+void GroundFinder::State::give(Path& path) {
   const world::WorldData& world = mesh.world();
   double length = 0, cost = 0;
   for (size_t i = 0; i < stops.size(); ++i) {
@@ -46,8 +46,8 @@ void LiveFinder::State::give(Path& path) {
   path.cost = cost * world.summary.cell;
 }
 
-Blocker LiveFinder::State::blocker() {
-  const LiveLevel* level = mesh.level(stops.back().level);
+Blocker GroundFinder::State::blocker() {
+  const ViewLevel* level = mesh.level(stops.back().level);
   const world::WalkStop stop =
       world::walk_far(mesh.ground(), level, stops.back().at, to.at, mesh.step());
   if (stop.arrived) return Blocker::kGap;  // under or over the goal
@@ -61,18 +61,18 @@ Blocker LiveFinder::State::blocker() {
   return was_free ? Blocker::kNarrow : found;
 }
 
-LiveFinder::LiveFinder(std::unique_ptr<State> state) : state_(std::move(state)) {}
-LiveFinder::LiveFinder(const LiveFinder& other)
-    : LiveFinder(std::make_unique<State>(other.state_->mesh)) {}
-LiveFinder& LiveFinder::operator=(const LiveFinder& other) {
+GroundFinder::GroundFinder(std::unique_ptr<State> state) : state_(std::move(state)) {}
+GroundFinder::GroundFinder(const GroundFinder& other)
+    : GroundFinder(std::make_unique<State>(other.state_->mesh)) {}
+GroundFinder& GroundFinder::operator=(const GroundFinder& other) {
   if (this != &other) state_ = std::make_unique<State>(other.state_->mesh);
   return *this;
 }
-LiveFinder::LiveFinder(LiveFinder&&) noexcept = default;
-LiveFinder& LiveFinder::operator=(LiveFinder&&) noexcept = default;
-LiveFinder::~LiveFinder() = default;
+GroundFinder::GroundFinder(GroundFinder&&) noexcept = default;
+GroundFinder& GroundFinder::operator=(GroundFinder&&) noexcept = default;
+GroundFinder::~GroundFinder() = default;
 
-Result<LiveFinder> LiveFinder::create(const World& world, const PathConfig& config) {
+Result<GroundFinder> GroundFinder::create(const World& world, const PathConfig& config) {
   if (data_of(world) == nullptr) return Error{Errc::kBadInput, "live ground: the world is empty"};
   if (auto ok = check_class(data_of(world)->summary.classes, config.avatar_class, "live ground");
       !ok)
@@ -81,23 +81,23 @@ Result<LiveFinder> LiveFinder::create(const World& world, const PathConfig& conf
     return Error{Errc::kBadConfig, "live ground: slope_cost must be 0 to 1000"};
   }
   if (auto ok = refuse_settings(config, "live ground", true); !ok) return ok.error();
-  return LiveFinder(std::make_unique<State>(world, config));
+  return GroundFinder(std::make_unique<State>(world, config));
 }
 
-ChangeId LiveFinder::add_obstacle(const Solid& solid) {
-  LiveMesh::Change change;
+ChangeId GroundFinder::add_obstacle(const Solid& solid) {
+  GroundView::Change change;
   change.solid = solid;
   return state_->mesh.add(std::move(change));
 }
 
-Result<ChangeId> LiveFinder::add_obstacle(const Prism& prism) {
+Result<ChangeId> GroundFinder::add_obstacle(const Prism& prism) {
   const auto solid = make_solid(prism);
   if (!solid) return solid.error();
   return add_obstacle(*solid);
 }
 
-Result<ChangeId> LiveFinder::add_obstacle(std::span<const Vec3d> corners,
-                                          std::span<const std::array<uint32_t, 3>> triangles) {
+Result<ChangeId> GroundFinder::add_obstacle(std::span<const Vec3d> corners,
+                                            std::span<const std::array<uint32_t, 3>> triangles) {
   const auto solid = make_solid(corners, triangles);
   if (!solid) return solid.error();
   return add_obstacle(*solid);
@@ -122,17 +122,17 @@ Result<void> check_link(const OffMeshLink& link) {
   return Error{Errc::kBadInput, "off-mesh link: its cost must be above 0"};
 }
 
-Result<ChangeId> LiveFinder::add_area(const Prism& prism, uint8_t kind) {
+Result<ChangeId> GroundFinder::add_area(const Prism& prism, uint8_t kind) {
   if (auto ok = check_area(kind); !ok) return ok.error();
   if (auto ok = check_prism(prism); !ok) return ok.error();
-  LiveMesh::Change change;
+  GroundView::Change change;
   change.solid.prism = prism;
   change.is_area = true;
   change.kind = kind;
   return state_->mesh.add(std::move(change));
 }
 
-Result<ChangeId> LiveFinder::add_off_mesh_link(const OffMeshLink& link) {
+Result<ChangeId> GroundFinder::add_off_mesh_link(const OffMeshLink& link) {
   if (auto ok = check_link(link); !ok) return ok.error();
   State& s = *state_;
   const world::WorldData& world = s.mesh.world();
@@ -159,28 +159,28 @@ Result<ChangeId> LiveFinder::add_off_mesh_link(const OffMeshLink& link) {
   return id;
 }
 
-bool LiveFinder::remove(ChangeId change) { return state_->mesh.set_active(change, false, true); }
-bool LiveFinder::set_active(ChangeId change, bool active) {
+bool GroundFinder::remove(ChangeId change) { return state_->mesh.set_active(change, false, true); }
+bool GroundFinder::set_active(ChangeId change, bool active) {
   return state_->mesh.set_active(change, active, false);
 }
 
-Result<void> LiveFinder::set_area_cost(uint8_t kind, double cost) {
+Result<void> GroundFinder::set_area_cost(uint8_t kind, double cost) {
   if (auto ok = check_area_cost(kind, cost); !ok) return ok;
   state_->mesh.set_area_cost(kind, cost);
   return {};
 }
 
-bool LiveFinder::is_free(const Place& place) {
-  LiveStop stop;
+bool GroundFinder::is_free(const Place& place) {
+  ViewStop stop;
   return state_->locate(place, stop);
 }
 
-bool LiveFinder::allows(const Path& path) {
+bool GroundFinder::allows(const Path& path) {
   State& s = *state_;
-  LiveMesh& mesh = s.mesh;
-  LiveStop stop;
+  GroundView& mesh = s.mesh;
+  ViewStop stop;
   if (path.points.empty() || !s.locate(path.points.front(), stop)) return false;
-  const LiveCells cells(mesh);
+  const ViewCells cells(mesh);
   for (size_t i = 1; i < path.points.size(); ++i) {
     const auto from = world::ground_point(mesh.world(), path.points[i - 1]);
     const auto to = world::ground_point(mesh.world(), path.points[i]);
@@ -192,9 +192,9 @@ bool LiveFinder::allows(const Path& path) {
   return true;
 }
 
-void LiveFinder::begin(const Place& from, const Place& to) { state_->begin(from, to); }
+void GroundFinder::begin(const Place& from, const Place& to) { state_->begin(from, to); }
 
-void LiveFinder::State::begin(const Place& start, const Place& goal, bool over_points) {
+void GroundFinder::State::begin(const Place& start, const Place& goal, bool over_points) {
   from_place = start;
   to_place = goal;
   searching = locate(start, from) && locate(goal, to);
@@ -206,18 +206,18 @@ void LiveFinder::State::begin(const Place& start, const Place& goal, bool over_p
   if (!is_exact) search.begin(mesh, from, to);
 }
 
-void LiveFinder::State::begin_over_points() {
+void GroundFinder::State::begin_over_points() {
   is_exact = false;
   nodes_before = exact.expanded();
   search.begin(mesh, from, to);
 }
 
-Stop LiveFinder::State::exact_stop(const LiveStop& stop) {
+Stop GroundFinder::State::exact_stop(const ViewStop& stop) {
   return {stop.at, mesh.level(stop.level)->first_rect + stop.rect};
 }
 
-bool LiveFinder::State::give_exactly(double length, Path& path) {
-  const LiveCells cells(mesh);
+bool GroundFinder::State::give_exactly(double length, Path& path) {
+  const ViewCells cells(mesh);
   SegmentWalker walker(cells, mesh.rects());
   const Stop goal = exact_stop(to);
   if (!walker.walk(exact_stop(from), corners, goal.at, exact_stops) ||
@@ -234,7 +234,7 @@ bool LiveFinder::State::give_exactly(double length, Path& path) {
   return true;
 }
 
-std::optional<bool> LiveFinder::State::advance_exactly(uint64_t max_bytes, Path& path) {
+std::optional<bool> GroundFinder::State::advance_exactly(uint64_t max_bytes, Path& path) {
   const SearchBudget budget(exact_nodes, nullptr, max_bytes);
   double length = 0;
   const SearchResult result = exact.advance(budget, corners, length);
@@ -249,7 +249,7 @@ std::optional<bool> LiveFinder::State::advance_exactly(uint64_t max_bytes, Path&
   return true;
 }
 
-bool LiveFinder::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& path) {
+bool GroundFinder::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& path) {
   reset(path);
   if (!searching) return true;
   if (is_exact) {
@@ -259,18 +259,18 @@ bool LiveFinder::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& pa
     begin_over_points();
     max_nodes = exact_nodes - std::min(exact_nodes, nodes_before);
   }
-  const LiveSearch::State result = search.advance(mesh, max_nodes, max_bytes);
+  const PointSearch::State result = search.advance(mesh, max_nodes, max_bytes);
   path.nodes = nodes_before + search.expanded();
   path.end = PathEnd::kBudgetExhausted;
   path.spent = SpentBudget::kNodes;
-  if (result == LiveSearch::State::kSearching) return false;
+  if (result == PointSearch::State::kSearching) return false;
   searching = false;
-  if (result == LiveSearch::State::kFull) {
+  if (result == PointSearch::State::kFull) {
     path.spent = SpentBudget::kMemory;
     search.give_back();
     return true;
   }
-  path.end = result == LiveSearch::State::kFound ? PathEnd::kReached : PathEnd::kUnreachable;
+  path.end = result == PointSearch::State::kFound ? PathEnd::kReached : PathEnd::kUnreachable;
   path.spent = SpentBudget::kNone;
   search.trace(mesh, stops);
   search.give_back();
@@ -280,25 +280,26 @@ bool LiveFinder::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& pa
   return true;
 }
 
-bool LiveFinder::advance(uint64_t max_nodes, Path& path) {
+bool GroundFinder::advance(uint64_t max_nodes, Path& path) {
   State& s = *state_;
   // What the search has reached may no longer exist.
   if (s.searching && s.version != s.mesh.version()) begin(s.from_place, s.to_place);
   return s.advance(max_nodes, SearchBudget::kDefaultBytes, path);
 }
 
-void LiveFinder::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget) {
+void GroundFinder::find(const Place& from, const Place& to, Path& path,
+                        const SearchBudget& budget) {
   state_->begin(from, to);
   state_->run(budget, path);
 }
 
-void LiveFinder::find_over_points(const Place& from, const Place& to, Path& path,
-                                  const SearchBudget& budget) {
+void GroundFinder::find_over_points(const Place& from, const Place& to, Path& path,
+                                    const SearchBudget& budget) {
   state_->begin(from, to, true);
   state_->run(budget, path);
 }
 
-void LiveFinder::State::run(const SearchBudget& budget, Path& path) {
+void GroundFinder::State::run(const SearchBudget& budget, Path& path) {
   if (budget.cancel == nullptr) {
     advance(budget.max_nodes, budget.max_bytes, path);
     return;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/edits/live_finder.h"
+#include "path/edits/ground_finder.h"
 
 #include <gtest/gtest.h>
 
@@ -23,9 +23,9 @@ namespace {
 
 using test::bake;
 
-path::LiveFinder live(const World& world, int32_t avatar_class = 0, double slope_cost = 0) {
+path::GroundFinder live(const World& world, int32_t avatar_class = 0, double slope_cost = 0) {
   auto made =
-      path::LiveFinder::create(world, {.avatar_class = avatar_class, .slope_cost = slope_cost});
+      path::GroundFinder::create(world, {.avatar_class = avatar_class, .slope_cost = slope_cost});
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -68,14 +68,14 @@ void expect_walkable(const World& world, int32_t avatar_class, const Path& path)
 }
 
 // Unchanged, it finds what the exact search finds.
-TEST(LiveFinder, FindsWhatTheExactSearchFinds) {
+TEST(GroundFinder, FindsWhatTheExactSearchFinds) {
   uint64_t found = 0, none = 0;
   double sum = 0;
   for (const World& world :
        {bake(test::builtin({.name = "garage"}), 0.2), bake(test::builtin({.name = "church"}), 0.15),
         bake(test::builtin({.name = "maze"}), 0.2), bake(worlds::random_soup(7, 400, 12), 0.15)}) {
     for (const int32_t c : {0, 1}) {
-      path::LiveFinder ground = live(world, c);
+      path::GroundFinder ground = live(world, c);
       path::MeshFinder finder = exact(world, c);
       Path path, best;
       for (uint64_t n = 0; n < 150; ++n) {
@@ -137,14 +137,14 @@ Prism random_prism(uint64_t seed, uint64_t n, const Box3d& box) {
   return prism;
 }
 
-TEST(LiveFinder, NoPlaceIsInAnObstacleAndLittleElseIsLost) {
+TEST(GroundFinder, NoPlaceIsInAnObstacleAndLittleElseIsLost) {
   uint64_t blocked = 0, free = 0, entered = 0;
   for (const World& world : {bake(worlds::two_floors(), 0.1), bake(worlds::ramp(20, 4), 0.1),
                              bake(test::builtin({.name = "garage"}), 0.2)}) {
     const WorldSummary summary = world.summary();
     for (int32_t c = 0; c < static_cast<int32_t>(summary.classes.size()); ++c) {
       const AvatarClass& body = summary.classes[static_cast<size_t>(c)];
-      path::LiveFinder ground = live(world, c);
+      path::GroundFinder ground = live(world, c);
       std::vector<Prism> prisms;
       for (uint64_t n = 0; n < 40; ++n) {
         prisms.push_back(random_prism(17, n, summary.bounds));
@@ -180,9 +180,9 @@ TEST(LiveFinder, NoPlaceIsInAnObstacleAndLittleElseIsLost) {
   EXPECT_GT(free, 10000u);
 }
 
-TEST(LiveFinder, MeshesBlockWhatTheirTrianglesTouch) {
+TEST(GroundFinder, MeshesBlockWhatTheirTrianglesTouch) {
   const World world = bake(worlds::flat(8), 0.1);
-  path::LiveFinder by_mesh = live(world), by_prism = live(world);
+  path::GroundFinder by_mesh = live(world), by_prism = live(world);
   Scene crate;
   crate.add_box({3, 0, 3}, {3.4, 1, 3.6});
   ASSERT_TRUE(by_mesh.add_obstacle(crate.positions, crate.triangles));
@@ -194,9 +194,9 @@ TEST(LiveFinder, MeshesBlockWhatTheirTrianglesTouch) {
   }
 }
 
-TEST(LiveFinder, PathsLeadAroundACrateAndStraightAfterItsRemoval) {
+TEST(GroundFinder, PathsLeadAroundACrateAndStraightAfterItsRemoval) {
   const World world = bake(worlds::doorway(1.2), 0.1);
-  path::LiveFinder ground = live(world);
+  path::GroundFinder ground = live(world);
   const Place from = world.find_place(0, {2, 0, 3}, 0.5), to = world.find_place(0, {6, 0, 3}, 0.5);
   Path path;
   ground.find(from, to, path);
@@ -235,9 +235,9 @@ TEST(LiveFinder, PathsLeadAroundACrateAndStraightAfterItsRemoval) {
 }
 
 // Any sequence of changes leaves the ground as if the last ones had been made on a fresh one.
-TEST(LiveFinder, ChangesAreUndoneWithoutATrace) {
+TEST(GroundFinder, ChangesAreUndoneWithoutATrace) {
   const World world = bake(test::builtin({.name = "garage"}), 0.2);
-  path::LiveFinder changed = live(world);
+  path::GroundFinder changed = live(world);
   std::vector<std::pair<path::ChangeId, Prism>> active;
   Path path, rebuilt_path;
   for (uint64_t n = 0; n < 60; ++n) {
@@ -252,7 +252,7 @@ TEST(LiveFinder, ChangesAreUndoneWithoutATrace) {
       ASSERT_TRUE(id);
       active.push_back({*id, prism});
     }
-    path::LiveFinder rebuilt = live(world);
+    path::GroundFinder rebuilt = live(world);
     for (const auto& [id, prism] : active) ASSERT_TRUE(rebuilt.add_obstacle(prism));
     for (uint64_t k = 0; k < 5; ++k) {
       const Place from = world.random_place(0, n, 2 * k), to = world.random_place(0, n, 2 * k + 1);
@@ -265,9 +265,9 @@ TEST(LiveFinder, ChangesAreUndoneWithoutATrace) {
   }
 }
 
-TEST(LiveFinder, DearGroundIsAvoidedAndClosedGroundNeverEntered) {
+TEST(GroundFinder, DearGroundIsAvoidedAndClosedGroundNeverEntered) {
   const World world = bake(worlds::flat(12), 0.1);
-  path::LiveFinder ground = live(world);
+  path::GroundFinder ground = live(world);
   const Prism lawn = Prism::box({4, -1, 0}, {8, 1, 9});
   ASSERT_TRUE(ground.add_area(lawn, 7));
   const Place from = world.find_place(0, {2, 0, 4}, 0.5), to = world.find_place(0, {10, 0, 4}, 0.5);
@@ -297,9 +297,9 @@ TEST(LiveFinder, DearGroundIsAvoidedAndClosedGroundNeverEntered) {
 }
 
 // The path over a refracting border: by Snell's law, found by trying all places to cross.
-TEST(LiveFinder, CrossesBordersOfAreasWhereItIsCheapest) {
+TEST(GroundFinder, CrossesBordersOfAreasWhereItIsCheapest) {
   const World world = bake(worlds::flat(12), 0.1);
-  path::LiveFinder ground = live(world);
+  path::GroundFinder ground = live(world);
   ASSERT_TRUE(ground.add_area(Prism::box({6, -1, -1}, {13, 1, 13}), 3));
   ASSERT_TRUE(ground.set_area_cost(3, 2.5));
   Path path;
@@ -319,12 +319,12 @@ TEST(LiveFinder, CrossesBordersOfAreasWhereItIsCheapest) {
   }
 }
 
-TEST(LiveFinder, SlopesCostMoreIfSet) {
+TEST(GroundFinder, SlopesCostMoreIfSet) {
   const World world = bake(worlds::ramp(20, 4), 0.1);
   const Place from = world.find_place(0, {1, 0, 1.5}, 0.5),
               to = world.find_place(0, {9, 2, 1.5}, 3);
   ASSERT_TRUE(to);
-  path::LiveFinder plain = live(world), dear = live(world, 0, 3);
+  path::GroundFinder plain = live(world), dear = live(world, 0, 3);
   Path path;
   plain.find(from, to, path);
   const double length = path.length;
@@ -335,9 +335,9 @@ TEST(LiveFinder, SlopesCostMoreIfSet) {
   EXPECT_NEAR(path.cost, length + 4 * 3 * 0.6, 1.2);
 }
 
-TEST(LiveFinder, OffMeshLinksLeadWhereMovesDoNot) {
+TEST(GroundFinder, OffMeshLinksLeadWhereMovesDoNot) {
   const World world = bake(worlds::doorway(0.2), 0.1);  // too narrow for an adult: two rooms
-  path::LiveFinder ground = live(world);
+  path::GroundFinder ground = live(world);
   const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
   const Place from = at(1, 1), to = at(7, 5);
   Path path;
@@ -363,7 +363,7 @@ TEST(LiveFinder, OffMeshLinksLeadWhereMovesDoNot) {
   ground.find(to, from, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   EXPECT_EQ(path.links.size(), 1u);
-  path::LiveFinder copy = ground;
+  path::GroundFinder copy = ground;
   ASSERT_TRUE(ground.set_active(*lift, false));
   ground.find(to, from, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
@@ -381,12 +381,12 @@ TEST(LiveFinder, OffMeshLinksLeadWhereMovesDoNot) {
 }
 
 // Two off-mesh links to one place: the path uses the cheaper, and stands where that one begins.
-TEST(LiveFinder, OfTwoOffMeshLinksToOnePlaceTheCheaperIsUsed) {
+TEST(GroundFinder, OfTwoOffMeshLinksToOnePlaceTheCheaperIsUsed) {
   const World world = bake(worlds::doorway(0.2), 0.1);
   const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
   const Place from = at(1, 3), to = at(7, 3);
   for (const bool cheap_first : {true, false}) {
-    path::LiveFinder ground = live(world);
+    path::GroundFinder ground = live(world);
     const OffMeshLink cheap{at(3.3, 3), at(4.7, 3), 2, false},
         dear{at(3.3, 4.5), at(4.7, 3), 9, false};
     ASSERT_TRUE(ground.add_off_mesh_link(cheap_first ? cheap : dear));
@@ -402,10 +402,10 @@ TEST(LiveFinder, OfTwoOffMeshLinksToOnePlaceTheCheaperIsUsed) {
 
 // An off-mesh link that costs less than its length, and begins away from the goal, beyond the
 // border of a tile: a search that took the straight line for a bound would stop at the direct path.
-TEST(LiveFinder, ACheapOffMeshLinkIsUsedThoughItLeadsAwayFirst) {
+TEST(GroundFinder, ACheapOffMeshLinkIsUsedThoughItLeadsAwayFirst) {
   const World world = bake(worlds::flat(40), 0.2);
   const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
-  path::LiveFinder ground = live(world);
+  path::GroundFinder ground = live(world);
   Path path;
   ground.find(at(14, 5), at(27, 5), path);
   EXPECT_NEAR(path.cost, 13, 0.1);
@@ -417,7 +417,7 @@ TEST(LiveFinder, ACheapOffMeshLinkIsUsedThoughItLeadsAwayFirst) {
   EXPECT_NEAR(path.cost, 3 + 0.5 + 1, 0.2);
   ground.find(at(27, 5), at(14, 5), path);
   EXPECT_NEAR(path.cost, 3 + 0.5 + 1, 0.2);
-  path::LiveFinder copy = ground;
+  path::GroundFinder copy = ground;
   copy.find(at(14, 5), at(27, 5), path);
   EXPECT_NEAR(path.cost, 3 + 0.5 + 1, 0.2);
   ASSERT_TRUE(ground.set_active(*link, false));
@@ -426,10 +426,10 @@ TEST(LiveFinder, ACheapOffMeshLinkIsUsedThoughItLeadsAwayFirst) {
 }
 
 // A path is used again and again, by one finder after the other.
-TEST(LiveFinder, NothingOfAnOldPathIsLeft) {
+TEST(GroundFinder, NothingOfAnOldPathIsLeft) {
   const World world = bake(worlds::doorway(0.2), 0.1);
   const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
-  path::LiveFinder ground = live(world);
+  path::GroundFinder ground = live(world);
   path::MeshFinder finder = exact(world);
   Path path;
   ground.find(at(1, 1), at(7, 5), path);
@@ -445,9 +445,9 @@ TEST(LiveFinder, NothingOfAnOldPathIsLeft) {
   EXPECT_EQ(path.cost, path.length);
 }
 
-TEST(LiveFinder, SearchesInSlicesAndStartsAgainWhenTheGroundChanges) {
+TEST(GroundFinder, SearchesInSlicesAndStartsAgainWhenTheGroundChanges) {
   const World world = bake(test::builtin({.name = "garage"}), 0.2);
-  path::LiveFinder ground = live(world);
+  path::GroundFinder ground = live(world);
   Path path, whole;
   uint64_t slices = 0;
   for (uint64_t n = 0; n < 20; ++n) {
@@ -473,12 +473,12 @@ TEST(LiveFinder, SearchesInSlicesAndStartsAgainWhenTheGroundChanges) {
   EXPECT_GT(slices, 50u);
 }
 
-TEST(LiveFinder, RefusesNonsense) {
+TEST(GroundFinder, RefusesNonsense) {
   const World world = bake(worlds::flat(6), 0.1);
-  EXPECT_FALSE(path::LiveFinder::create(World(), {}));
-  EXPECT_FALSE(path::LiveFinder::create(world, {.avatar_class = 9}));
-  EXPECT_FALSE(path::LiveFinder::create(world, {.slope_cost = -1}));
-  path::LiveFinder ground = live(world);
+  EXPECT_FALSE(path::GroundFinder::create(World(), {}));
+  EXPECT_FALSE(path::GroundFinder::create(world, {.avatar_class = 9}));
+  EXPECT_FALSE(path::GroundFinder::create(world, {.slope_cost = -1}));
+  path::GroundFinder ground = live(world);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(ground.add_obstacle(Prism{}));
   EXPECT_FALSE(ground.add_obstacle(Prism{{{0, 0}, {1, 0}, {1, nan}}, 0, 1}));

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/edits/live_mesh.h"
+#include "path/edits/ground_view.h"
 
 #include <algorithm>
 #include <bit>
@@ -21,7 +21,7 @@ namespace throng::path {
 namespace {
 
 // Of one that costs less than its length: the cost of a metre of the straight line; else 1.
-double link_factor(const LiveMesh::OffMeshLinkEnd& link) {
+double link_factor(const GroundView::OffMeshLinkEnd& link) {
   const double length = distance_of(link.from, link.to);
   return link.cost < length ? link.cost / length : 1;
 }
@@ -30,14 +30,14 @@ int64_t tile_key(int32_t x, int32_t z) { return (int64_t{z} << 32) | static_cast
 
 }  // namespace
 
-size_t LiveMesh::HashCorner::operator()(const CornerKey& key) const {
+size_t GroundView::HashCorner::operator()(const CornerKey& key) const {
   uint64_t hash = static_cast<uint32_t>(key.x) * uint64_t{0x9e3779b97f4a7c15};
   hash = (hash ^ static_cast<uint32_t>(key.z)) * 0xbf58476d1ce4e5b9;
   hash ^= uint64_t{key.level} << 4 ^ (key.away_x > 0 ? 2U : 0U) ^ (key.away_z > 0 ? 1U : 0U);
   return static_cast<size_t>(hash ^ hash >> 29);
 }
 
-uint32_t LiveMesh::rect_at(const LiveLevel& level, int32_t x, int32_t z) const {
+uint32_t GroundView::rect_at(const ViewLevel& level, int32_t x, int32_t z) const {
   for (uint32_t r = level.first_rect; r < level.first_rect + level.rect_count; ++r) {
     const MeshRect& rect = mesh_.rects[r];
     if (x >= rect.x && x < rect.x + rect.width && z >= rect.z && z < rect.z + rect.depth) return r;
@@ -45,7 +45,7 @@ uint32_t LiveMesh::rect_at(const LiveLevel& level, int32_t x, int32_t z) const {
   return kNoRect;
 }
 
-LiveMesh::LiveMesh(World world, const PathConfig& config)
+GroundView::GroundView(World world, const PathConfig& config)
     : world_(std::move(world)),
       config_(config),
       step_(world::step_mm(
@@ -62,7 +62,7 @@ LiveMesh::LiveMesh(World world, const PathConfig& config)
   mesh_.source = this;
 }
 
-LiveMesh::LiveMesh(const LiveMesh& other)
+GroundView::GroundView(const GroundView& other)
     : world_(other.world_),
       config_(other.config_),
       step_(other.step_),
@@ -81,7 +81,7 @@ LiveMesh::LiveMesh(const LiveMesh& other)
   mesh_.source = this;
 }
 
-void LiveMesh::set_area_cost(uint8_t kind, double cost) {
+void GroundView::set_area_cost(uint8_t kind, double cost) {
   ++version_;
   area_cost_[kind] = cost;
   min_factor_ = *std::min_element(area_cost_.begin(), area_cost_.end());
@@ -89,7 +89,7 @@ void LiveMesh::set_area_cost(uint8_t kind, double cost) {
            std::all_of(area_cost_.begin(), area_cost_.end(), [](double c) { return c == 1; });
 }
 
-ChangeId LiveMesh::add(Change change) {
+ChangeId GroundView::add(Change change) {
   const WorldSummary& summary = world().summary;
   const AvatarClass& avatar = summary.classes[static_cast<size_t>(config_.avatar_class)];
   const SquareRange near =
@@ -108,7 +108,7 @@ ChangeId LiveMesh::add(Change change) {
   return id;
 }
 
-bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
+bool GroundView::set_active(ChangeId id, bool active, bool remove) {
   if (id == 0 || id > changes_.size() || changes_[id - 1].removed) return false;
   Change& change = changes_[id - 1];
   if (change.active != active) {
@@ -130,7 +130,7 @@ bool LiveMesh::set_active(ChangeId id, bool active, bool remove) {
   return true;
 }
 
-void LiveMesh::add_off_mesh_link(uint32_t level, const OffMeshLinkEnd& off_mesh_link) {
+void GroundView::add_off_mesh_link(uint32_t level, const OffMeshLinkEnd& off_mesh_link) {
   changes_[off_mesh_link.change - 1].links.push_back({level, off_mesh_link});
   off_mesh_links_[level].push_back(off_mesh_link);
   ++active_links_;
@@ -138,7 +138,7 @@ void LiveMesh::add_off_mesh_link(uint32_t level, const OffMeshLinkEnd& off_mesh_
   ++version_;
 }
 
-void LiveMesh::find_min_link_factor() {
+void GroundView::find_min_link_factor() {
   min_link_factor_ = 1;
   for (const auto& [level, links] : off_mesh_links_) {
     for (const OffMeshLinkEnd& link : links) {
@@ -147,7 +147,7 @@ void LiveMesh::find_min_link_factor() {
   }
 }
 
-const std::vector<LiveMesh::OffMeshLinkEnd>& LiveMesh::links_from(uint32_t level) const {
+const std::vector<GroundView::OffMeshLinkEnd>& GroundView::links_from(uint32_t level) const {
   static const std::vector<OffMeshLinkEnd> none;
   const auto found = off_mesh_links_.find(level);
   return found == off_mesh_links_.end() ? none : found->second;
@@ -155,7 +155,7 @@ const std::vector<LiveMesh::OffMeshLinkEnd>& LiveMesh::links_from(uint32_t level
 
 // Links are kept in the order in which they were made: paths must not depend on when each was
 // switched.
-void LiveMesh::switch_link(const LevelLinkEnd& link, bool active) {
+void GroundView::switch_link(const LevelLinkEnd& link, bool active) {
   ++version_;
   std::vector<OffMeshLinkEnd>& here = off_mesh_links_[link.level];
   const ChangeId change = link.end.change;
@@ -172,8 +172,8 @@ void LiveMesh::switch_link(const LevelLinkEnd& link, bool active) {
   }
 }
 
-bool LiveMesh::stand(uint32_t index, world::GroundPoint at, uint16_t& rect) {
-  const LiveLevel& of = *level(index);
+bool GroundView::stand(uint32_t index, world::GroundPoint at, uint16_t& rect) {
+  const ViewLevel& of = *level(index);
   const int32_t x = at.cell_x(), z = at.cell_z();
   if (of.ground.zone == nullptr || world::tile_along(x) != of.tile_x ||
       world::tile_along(z) != of.tile_z || !of.is_legal(world::in_tile(x), world::in_tile(z)))
@@ -184,7 +184,7 @@ bool LiveMesh::stand(uint32_t index, world::GroundPoint at, uint16_t& rect) {
 }
 
 // Row by row of tiles, those between the ends of the line's part in the row.
-bool LiveMesh::is_changed_on(world::GroundPoint from, world::GroundPoint to) const {
+bool GroundView::is_changed_on(world::GroundPoint from, world::GroundPoint to) const {
   if (changes_of_tile_.empty()) return false;
   constexpr int64_t kSide = int64_t{kTileCells} << world::kUnitBits, kMargin = 2;  // units
   if (to.z < from.z) std::swap(from, to);
@@ -208,7 +208,7 @@ bool LiveMesh::is_changed_on(world::GroundPoint from, world::GroundPoint to) con
 
 // The tile's levels are rebuilt; what touches it in those around it finds its portals again: a
 // corner of the mesh depends on all four cells that share its point.
-void LiveMesh::forget(int64_t key) {
+void GroundView::forget(int64_t key) {
   ++version_;
   const auto x = static_cast<int32_t>(key), z = static_cast<int32_t>(key >> 32);
   for (int32_t dz = -1; dz <= 1; ++dz) {
@@ -228,16 +228,16 @@ void LiveMesh::forget(int64_t key) {
   if (corner_numbers_.size() > max_corners_) drop_unused_corners();
 }
 
-const LiveLevel* LiveMesh::level(uint32_t index) {
-  std::unique_ptr<LiveLevel>& level = levels_[index];
+const ViewLevel* GroundView::level(uint32_t index) {
+  std::unique_ptr<ViewLevel>& level = levels_[index];
   if (level == nullptr) {
-    level = std::make_unique<LiveLevel>();
+    level = std::make_unique<ViewLevel>();
     make(index, *level);
   }
   return level.get();
 }
 
-void LiveMesh::make(uint32_t index, LiveLevel& level) {
+void GroundView::make(uint32_t index, ViewLevel& level) {
   level.ground = world::ground_level(world(), index, config_.avatar_class);
   if (level.ground.zone == nullptr) {  // no avatar stands there
     level.ground.world_level = index;
@@ -250,7 +250,7 @@ void LiveMesh::make(uint32_t index, LiveLevel& level) {
   cut(level);
 }
 
-void LiveMesh::block_cells(LiveLevel& level) const {
+void GroundView::block_cells(ViewLevel& level) const {
   const auto found = changes_of_tile_.find(tile_key(level.tile_x, level.tile_z));
   if (found == changes_of_tile_.end()) return;
   const WorldSummary& summary = world().summary;
@@ -265,7 +265,7 @@ void LiveMesh::block_cells(LiveLevel& level) const {
   }
 }
 
-std::array<uint8_t, 4096> LiveMesh::kinds_of(const LiveLevel& level) const {
+std::array<uint8_t, 4096> GroundView::kinds_of(const ViewLevel& level) const {
   std::array<uint8_t, 4096> kinds;
   const format::Level& record = *level.ground.view.record;
   kinds.fill(record.area_value());
@@ -298,7 +298,7 @@ std::array<uint8_t, 4096> LiveMesh::kinds_of(const LiveLevel& level) const {
   return kinds;
 }
 
-std::array<uint8_t, 4096> LiveMesh::slopes_of(const LiveLevel& level) const {
+std::array<uint8_t, 4096> GroundView::slopes_of(const ViewLevel& level) const {
   std::array<uint8_t, 4096> slopes{};
   if (config_.slope_cost == 0) return slopes;
   const double cell = world().summary.cell * 1000;
@@ -313,7 +313,7 @@ std::array<uint8_t, 4096> LiveMesh::slopes_of(const LiveLevel& level) const {
 }
 
 // Rectangles of one kind of ground each.
-void LiveMesh::cut(LiveLevel& level) {
+void GroundView::cut(ViewLevel& level) {
   const auto cuts = graph::step_cuts(level.ground, level.legal, step_);
   const std::array<uint8_t, 4096> kinds = kinds_of(level), slopes = slopes_of(level);
   std::array<bool, 64 * kSlopeClasses> done{};
@@ -343,12 +343,12 @@ void LiveMesh::cut(LiveLevel& level) {
   std::copy(new_states_.begin(), new_states_.end(), rect_states_.begin() + level.first_rect);
 }
 
-void LiveMesh::find_portals(uint32_t number) {
+void GroundView::find_portals(uint32_t number) {
   const MeshRect rect = mesh_.rects[number];  // Others may be made now.
-  const LiveLevel* of = level(rect.level);
+  const ViewLevel* of = level(rect.level);
   const Ground ground{*this};
   const MeshBorder border(world(), ground, step_);
-  const auto rect_at = [&](const LiveLevel* beyond, int32_t x, int32_t z) {
+  const auto rect_at = [&](const ViewLevel* beyond, int32_t x, int32_t z) {
     return this->rect_at(*beyond, x, z);
   };
   new_portals_.clear();
@@ -367,7 +367,7 @@ void LiveMesh::find_portals(uint32_t number) {
   rect_states_[number].has_portals = true;
 }
 
-uint32_t LiveMesh::number_of(const std::optional<CornerKey>& corner) {
+uint32_t GroundView::number_of(const std::optional<CornerKey>& corner) {
   if (!corner) return kNoCorner;
   const auto [at, is_new] = corner_numbers_.try_emplace(*corner, kNoCorner);
   if (is_new) {
@@ -384,7 +384,7 @@ uint32_t LiveMesh::number_of(const std::optional<CornerKey>& corner) {
   return at->second;
 }
 
-void LiveMesh::drop_portals(uint32_t rect) {
+void GroundView::drop_portals(uint32_t rect) {
   RectState& state = rect_states_[rect];
   if (!state.has_portals) return;
   state.has_portals = false;
@@ -392,7 +392,7 @@ void LiveMesh::drop_portals(uint32_t rect) {
 }
 
 // The portals of rectangles that touch the side of a level, or the corner, if toward both.
-void LiveMesh::drop_border(const LiveLevel& level, int32_t toward_x, int32_t toward_z) {
+void GroundView::drop_border(const ViewLevel& level, int32_t toward_x, int32_t toward_z) {
   const auto touches = [](int32_t toward, int32_t tile, int32_t first, int32_t cells) {
     return toward == 0 ||
            (toward < 0 ? first == tile * kTileCells : first + cells == (tile + 1) * kTileCells);
@@ -405,17 +405,17 @@ void LiveMesh::drop_border(const LiveLevel& level, int32_t toward_x, int32_t tow
   }
 }
 
-void LiveMesh::drop(LiveLevel& level) {
+void GroundView::drop(ViewLevel& level) {
   if (level.rect_count == 0) return;
   for (uint32_t r = level.first_rect; r < level.first_rect + level.rect_count; ++r) drop_portals(r);
   rect_blocks_.give_back(level.first_rect, level.rect_count);
 }
 
 // Those that no portal has any more. Their numbers are used again.
-void LiveMesh::drop_unused_corners() {
+void GroundView::drop_unused_corners() {
   constexpr size_t kLeast = 256;
   used_corners_.assign(mesh_.corners.size(), false);
-  for (const std::unique_ptr<LiveLevel>& level : levels_) {
+  for (const std::unique_ptr<ViewLevel>& level : levels_) {
     if (level == nullptr) continue;
     for (uint32_t r = level->first_rect; r < level->first_rect + level->rect_count; ++r) {
       const RectState& state = rect_states_[r];

@@ -473,6 +473,39 @@ TEST(GroundFinder, SearchesInSlicesAndStartsAgainWhenTheGroundChanges) {
   EXPECT_GT(slices, 50u);
 }
 
+// All of the ground is not searched over intervals for a goal that is walled in.
+TEST(GroundFinder, SeesEarlyThatAGoalIsWalledIn) {
+  const World world = bake(worlds::flat(60), 0.2);
+  path::GroundFinder ground = live(world);
+  for (uint64_t n = 0; n < 400; ++n) {
+    const double x = real(8, n, 0, 2, 58), z = real(8, n, 1, 2, 40);
+    ASSERT_TRUE(ground.add_obstacle(Prism::box({x, 0, z}, {x + 0.5, 1, z + 0.3})));
+  }
+  const Place from = world.find_place(0, {1, 0, 1}, 1), to = world.find_place(0, {50, 0, 50}, 1);
+  Path path, over_points;
+  ground.find(from, to, path);
+  ASSERT_EQ(path.end, PathEnd::kReached);
+  const Prism walls[] = {
+      Prism::box({48, 0, 48}, {52, 2, 48.2}), Prism::box({48, 0, 51.8}, {52, 2, 52}),
+      Prism::box({48, 0, 48}, {48.2, 2, 52}), Prism::box({51.8, 0, 48}, {52, 2, 52})};
+  for (const Prism& wall : walls) ASSERT_TRUE(ground.add_obstacle(wall));
+  ground.find_over_points(from, to, over_points);
+  ground.find(from, to, path);
+  ASSERT_EQ(path.end, PathEnd::kUnreachable);
+  EXPECT_EQ(path.length, over_points.length);
+  EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
+  EXPECT_GT(path.nodes, over_points.nodes + 4000);  // else this proves nothing
+  EXPECT_LT(path.nodes, over_points.nodes + 4200);
+  // In parts it is the same.
+  uint64_t parts = 0;
+  Path in_parts;
+  for (ground.begin(from, to); !ground.advance(500, in_parts);) ++parts;
+  EXPECT_GT(parts, 8u);
+  EXPECT_EQ(in_parts.end, path.end);
+  EXPECT_EQ(in_parts.length, path.length);
+  EXPECT_EQ(in_parts.nodes, path.nodes);
+}
+
 TEST(GroundFinder, RefusesNonsense) {
   const World world = bake(worlds::flat(6), 0.1);
   EXPECT_FALSE(path::GroundFinder::create(World(), {}));

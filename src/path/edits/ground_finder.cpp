@@ -201,6 +201,7 @@ void GroundFinder::State::begin(const Place& start, const Place& goal, bool over
   version = mesh.version();
   is_exact = !over_points && mesh.is_plain() && !mesh.has_links();
   exact_nodes = nodes_before = 0;
+  was_flooded = false;
   if (!searching) return;
   if (is_exact) exact.begin(mesh.rects(), exact_stop(from), exact_stop(to));
   if (!is_exact) search.begin(mesh, from, to);
@@ -234,10 +235,62 @@ bool GroundFinder::State::give_exactly(double length, Path& path) {
   return true;
 }
 
+// Rectangle by rectangle, around both in turn.
+bool GroundFinder::State::is_cut_off() {
+  constexpr size_t kMaxRects = 1 << 14;  // around each
+  flooded[0].assign(1, exact_stop(from).rect);
+  flooded[1].assign(1, exact_stop(to).rect);
+  const auto mark = [&](uint32_t rect, uint8_t side) {
+    if (flooded_by.size() <= rect) flooded_by.resize(mesh.rects().rects.size());
+    flooded_by[rect] = side;
+  };
+  mark(flooded[0][0], 1);
+  mark(flooded[1][0], 2);
+  bool ends = false, meets = flooded[0][0] == flooded[1][0];
+  for (size_t n = 0; n < kMaxRects && !ends && !meets; ++n) {
+    for (uint8_t side = 1; side <= 2; ++side) {
+      std::vector<uint32_t>& around = flooded[side - 1u];
+      ends = ends || n == around.size();
+      if (ends) break;
+      for (const MeshPortal& portal : mesh.portals_of(around[n])) {
+        const uint8_t by = portal.rect < flooded_by.size() ? flooded_by[portal.rect] : uint8_t{0};
+        meets = meets || (by != 0 && by != side);
+        if (by != 0) continue;
+        mark(portal.rect, side);
+        around.push_back(portal.rect);
+      }
+    }
+  }
+  for (const std::vector<uint32_t>& around : flooded) {
+    for (const uint32_t rect : around) flooded_by[rect] = 0;
+  }
+  return ends && !meets;
+}
+
 std::optional<bool> GroundFinder::State::advance_exactly(uint64_t max_bytes, Path& path) {
-  const SearchBudget budget(exact_nodes, nullptr, max_bytes);
+  // A goal that cannot be reached would have all of the ground searched, which takes several times
+  // as long over intervals as over points.
+  constexpr uint64_t kNodesBefore = 4096;
   double length = 0;
+  if (!was_flooded) {
+    const SearchBudget first(std::min(exact_nodes, kNodesBefore), nullptr, max_bytes);
+    const SearchResult result = exact.advance(first, corners, length);
+    const bool is_spent =
+        result == SearchResult::kBudget && first.spent(exact.expanded()) == SpentBudget::kNodes;
+    if (!is_spent || exact.expanded() <= kNodesBefore) {
+      return end_exactly(result, first, length, path);
+    }
+    was_flooded = true;
+    if (is_cut_off()) return {};
+  }
+  const SearchBudget budget(exact_nodes, nullptr, max_bytes);
   const SearchResult result = exact.advance(budget, corners, length);
+  return end_exactly(result, budget, length, path);
+}
+
+std::optional<bool> GroundFinder::State::end_exactly(SearchResult result,
+                                                     const SearchBudget& budget, double length,
+                                                     Path& path) {
   path.nodes = std::min(exact.expanded(), exact_nodes);
   if (result == SearchResult::kBudget && budget.spent(exact.expanded()) == SpentBudget::kNodes) {
     path.end = PathEnd::kBudgetExhausted;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -25,7 +27,11 @@ struct GroundFinder::State {
   bool advance(uint64_t max_nodes, uint64_t max_bytes, Path& path);
   /// The exact search. None if points of portals have to be searched instead.
   std::optional<bool> advance_exactly(uint64_t max_bytes, Path& path);
+  std::optional<bool> end_exactly(SearchResult result, const SearchBudget& budget, double length,
+                                  Path& path);
   void begin_over_points();
+  /// Is the ground around the start or the goal known to end before it comes to the other?
+  bool is_cut_off();
   [[nodiscard]] Stop exact_stop(const ViewStop& stop);
   /// Of the corners that the exact search has found. False if no path can be drawn over them.
   bool give_exactly(double length, Path& path);
@@ -46,8 +52,11 @@ struct GroundFinder::State {
   // While no metre costs more than another, and no off-mesh link is in force.
   PathSearch exact;
   bool is_exact = false;
-  uint64_t exact_nodes = 0;   // that it may expand
-  uint64_t nodes_before = 0;  // that it has expanded, before points are searched
+  uint64_t exact_nodes = 0;                      // that it may expand
+  uint64_t nodes_before = 0;                     // that it has expanded, before points are searched
+  bool was_flooded = false;                      // is_cut_off() was asked
+  std::array<std::vector<uint32_t>, 2> flooded;  // rectangles around the start, and the goal
+  std::vector<uint8_t> flooded_by;               // by rectangle: 1, 2, or 0 for none
   std::vector<uint32_t> corners;
   std::vector<Stop> exact_stops;
 };

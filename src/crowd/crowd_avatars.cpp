@@ -25,6 +25,12 @@ constexpr int32_t kMaxSubSteps = 1000;
 
 Error bad_config(const std::string& what) { return {Errc::kBadConfig, "crowd: " + what}; }
 
+// Before it is given another.
+void forget_goal(crowd::Body& body) {
+  body.target = 0;
+  body.detour_angle = 0;
+}
+
 }  // namespace
 
 void Crowd::State::find_bodies() const {
@@ -236,8 +242,7 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goal
   for (size_t i = 0; i < ids.size(); ++i) {
     crowd::Body* body = s.body(ids[i]);
     if (body == nullptr) continue;
-    body->target = 0;
-    body->detour_angle = 0;
+    forget_goal(*body);
     s.mode_of(*body).set_goal(*body, goals[i]);
   }
 }
@@ -248,8 +253,7 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const NodePlace> 
   for (size_t i = 0; i < ids.size(); ++i) {
     crowd::Body* body = s.body(ids[i]);
     if (body == nullptr || !body->climbs) continue;
-    body->target = 0;
-    body->detour_angle = 0;
+    forget_goal(*body);
     s.climb.set_goal(*body, goals[i]);
   }
 }
@@ -274,8 +278,7 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
   for (size_t i = 0; i < ids.size(); ++i) {
     crowd::Body* body = s.body(ids[i]);
     if (body == nullptr) continue;
-    body->target = 0;
-    body->detour_angle = 0;
+    forget_goal(*body);
     s.mode_of(*body).set_velocity(*body, velocities[i]);
   }
 }

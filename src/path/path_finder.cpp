@@ -146,8 +146,9 @@ void PathFinder::State::find_on_ground(const Place& from, const Place& to, bool 
     mesh->find(from, to, path, budget);
     const bool is_bare = !edits().bears_on_ground();
     if (path.end == PathEnd::kReached && (is_bare || ground().allows(path))) return;
-    const bool may_stand = is_bare || (ground().is_free(from) && ground().is_free(to));
-    if (path.end == PathEnd::kUnreachable && !nearest && may_stand) return;
+    if (path.end == PathEnd::kUnreachable && !nearest &&
+        (is_bare || (ground().is_free(from) && ground().is_free(to))))
+      return;
     if (path.end == PathEnd::kBudgetExhausted) return;
     nodes_before = path.nodes;
   }

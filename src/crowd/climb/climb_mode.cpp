@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/hash.h"
 #include "core/parallel.h"
 #include "crowd/climb/climb_path.h"
 #include "crowd/fly/air_blockers.h"
@@ -261,10 +260,7 @@ Body ClimbMode::at_feet(const Body& body) const {
 }
 
 uint64_t ClimbMode::hash(std::span<const Body> by_slot, uint64_t hash) const {
-  if (climbs_.empty()) return hash;
-  std::vector<Climb> rows;
-  for (const Body& body : by_slot) rows.push_back(climbs_[body.slot]);
-  return hash_bytes(rows.data(), rows.size() * kRowBytes, hash);
+  return hash_rows(by_slot, climbs_, hash);
 }
 
 void ClimbMode::add_memory(CrowdMemory& memory) const {

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "core/hash.h"
 #include "core/parallel.h"
 #include "crowd/fly/air_blockers.h"
 #include "crowd/mode/finder_changes.h"
@@ -231,10 +230,7 @@ AvatarState FlyMode::state_of(const Body& body) const {
 }
 
 uint64_t FlyMode::hash(std::span<const Body> by_slot, uint64_t hash) const {
-  if (flights_.empty()) return hash;
-  std::vector<Flight> rows;
-  for (const Body& body : by_slot) rows.push_back(flights_[body.slot]);
-  return hash_bytes(rows.data(), rows.size() * kRowBytes, hash);
+  return hash_rows(by_slot, flights_, hash);
 }
 
 void FlyMode::add_memory(CrowdMemory& memory) const {

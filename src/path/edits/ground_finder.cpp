@@ -19,7 +19,8 @@
 #include "path/ground/segments.h"
 #include "world/place.h"
 
-// Checks and converts what callers give, for the live mesh and its search.
+// Checks and converts what callers give, and searches: exactly while every metre costs the same and
+// no off-mesh link is in force, else over points of portals.
 namespace throng::path {
 
 bool GroundFinder::State::locate(const Place& place, ViewStop& stop) {

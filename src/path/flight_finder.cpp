@@ -12,10 +12,10 @@
 #include "core/access.h"
 #include "core/check_class.h"
 #include "core/random.h"
+#include "path/air/air_string.h"
 #include "path/air/air_view.h"
 #include "path/air/flight_endpoints.h"
 #include "path/air/flight_search.h"
-#include "path/air/flight_string_puller.h"
 #include "path/air/ground_air_links.h"
 #include "path/edits/ground_finder.h"
 #include "path/edits/solid.h"
@@ -157,7 +157,7 @@ struct FlightFinder::Scratch {
 
   FlightSearch search;
   SpentBudget spent = SpentBudget::kNone;  // the budget that the last search exhausted
-  FlightStringPuller pull;
+  AirString pull;
   CircleFlood flood;
   std::optional<MeshFinder> walker;
   std::vector<AirPoint> air_path;

@@ -19,7 +19,7 @@
 #include "path/surface/node_island.h"
 #include "path/surface/node_parts.h"
 #include "path/surface/node_search.h"
-#include "path/surface/node_string_puller.h"
+#include "path/surface/node_string.h"
 #include "path/surface/node_view.h"
 #include "world/place.h"
 
@@ -91,7 +91,7 @@ struct NodeFinder::Scratch {
   OverlaySearch far_search;
   NodeParts::Reached reached;
   NodeIsland islands;
-  NodeStringPuller pull;
+  NodeString pull;
   std::vector<Crossing> crossings;
   std::optional<BlockPoint>
       nearest;  // where `crossings` ends, if not where its last crossing leads to

@@ -172,7 +172,7 @@ void FlowPoints::find_path(GroundFinder& of, const Place& place, Path& path) con
     ground.stops.push_back(points_[p].stop);
     if (points_[p].next != kNoPoint) ground.stops.push_back(across(ground.mesh, points_[p]));
   }
-  ground.straight.draw(ground.mesh, ground.stops);
+  ground.string.pull(ground.mesh, ground.stops);
   ground.give(path);
   path.end = PathEnd::kReached;
 }

@@ -74,14 +74,13 @@ GroundFinder& GroundFinder::operator=(GroundFinder&&) noexcept = default;
 GroundFinder::~GroundFinder() = default;
 
 Result<GroundFinder> GroundFinder::create(const World& world, const PathConfig& config) {
-  if (data_of(world) == nullptr) return Error{Errc::kBadInput, "live ground: the world is empty"};
-  if (auto ok = check_class(data_of(world)->summary.classes, config.avatar_class, "live ground");
-      !ok)
+  if (data_of(world) == nullptr) return Error{Errc::kBadInput, "path: the world is empty"};
+  if (auto ok = check_class(data_of(world)->summary.classes, config.avatar_class, "path"); !ok)
     return ok.error();
   if (!(config.slope_cost >= 0 && config.slope_cost <= 1000)) {
-    return Error{Errc::kBadConfig, "live ground: slope_cost must be 0 to 1000"};
+    return Error{Errc::kBadConfig, "path: slope_cost must be 0 to 1000"};
   }
-  if (auto ok = refuse_settings(config, "live ground", true); !ok) return ok.error();
+  if (auto ok = refuse_settings(config, "path", true); !ok) return ok.error();
   return GroundFinder(std::make_unique<State>(world, config));
 }
 
@@ -253,7 +252,8 @@ bool GroundFinder::State::is_cut_off() {
       std::vector<uint32_t>& around = flooded[side - 1u];
       ends = ends || n == around.size();
       if (ends) break;
-      for (const MeshPortal& portal : mesh.portals_of(around[n])) {
+      const auto [first, count] = mesh.portal_range(around[n]);
+      for (const MeshPortal& portal : std::span(mesh.rects().portals).subspan(first, count)) {
         const uint8_t by = portal.rect < flooded_by.size() ? flooded_by[portal.rect] : uint8_t{0};
         meets = meets || (by != 0 && by != side);
         if (by != 0) continue;
@@ -328,7 +328,7 @@ bool GroundFinder::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& 
   path.spent = SpentBudget::kNone;
   search.trace(mesh, stops);
   search.give_back();
-  straight.draw(mesh, stops);
+  string.pull(mesh, stops);
   give(path);
   if (path.end == PathEnd::kUnreachable) path.blocked_by = blocker();
   return true;

@@ -42,7 +42,7 @@ struct GroundFinder::State {
 
   GroundView mesh;
   PointSearch search;
-  PointStringPuller straight;
+  CostString string;
   Place from_place, to_place;
   ViewStop from, to;
   uint64_t version = 0;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "path/ground/pull_string.h"
 #include "world/tile_grid.h"
 
 // A* over points of portals at area costs, then string pulling by doubling, halving and moving
@@ -115,85 +116,68 @@ double segment_cost(GroundView& mesh, const ViewStop& from, const ViewStop& to) 
   return std::isfinite(cost) ? cost : kNever;
 }
 
-// From each stop to the farthest that a straight segment reaches at no more cost, found by doubling
-// and halving: it need not be the farthest of all.
-void PointStringPuller::leave_out(GroundView& mesh, std::vector<ViewStop>& stops) {
+void CostString::leave_out(std::vector<ViewStop>& walk) {
   constexpr double kSlack = 1 + 1e-9;
-  if (stops.size() < 3) return;
-  before_.assign(stops.size(), 0);
-  for (size_t i = 1; i < stops.size(); ++i)
-    before_[i] = before_[i - 1] + segment_cost(mesh, stops[i - 1], stops[i]);
-  size_t kept = 1;
-  for (size_t i = 0; i + 1 < before_.size();) {
-    const ViewStop from = stops[kept - 1];
-    const auto reaches = [&](size_t to) {
-      return segment_cost(mesh, from, stops[to]) <= (before_[to] - before_[i]) * kSlack;
-    };
-    size_t good = i + 1, stride = 1;
-    while (good + stride < before_.size() && reaches(good + stride)) {
-      good += stride;
-      stride *= 2;
-    }
-    for (; stride > 0; stride /= 2) {
-      if (good + stride < before_.size() && reaches(good + stride)) good += stride;
-    }
-    stops[kept++] = stops[good];
-    i = good;
-  }
-  stops.resize(kept);
+  if (walk.size() < 3) return;
+  before_.assign(walk.size(), 0);
+  for (size_t i = 1; i < walk.size(); ++i)
+    before_[i] = before_[i - 1] + segment_cost(*mesh_, walk[i - 1], walk[i]);
+  path::leave_out<LeaveOut::kDoubling>(walk, [&](const ViewStop& from, size_t at, size_t to) {
+    return segment_cost(*mesh_, from, walk[to]) <= (before_[to] - before_[at]) * kSlack;
+  });
 }
 
-void PointStringPuller::draw_walk(GroundView& mesh, std::vector<ViewStop>& stops) {
-  leave_out(mesh, stops);
-  // Waypoints move towards the straight line between their neighbours as far as the ground permits.
-  constexpr int kSweeps = 2, kHalvings = 6;
-  for (int sweep = 0; sweep < kSweeps && stops.size() > 2; ++sweep) {
-    for (size_t i = 1; i + 1 < stops.size(); ++i) {
-      const ViewStop a = stops[i - 1], b = stops[i + 1];
-      double best = segment_cost(mesh, a, stops[i]) + segment_cost(mesh, stops[i], b);
-      const auto ux = static_cast<double>(b.at.x - a.at.x);
-      const auto uz = static_cast<double>(b.at.z - a.at.z);
-      const double size = ux * ux + uz * uz;
-      if (!(size > 0)) continue;
-      const world::GroundPoint from = stops[i].at;
-      const double along = std::clamp(
-          (static_cast<double>(from.x - a.at.x) * ux + static_cast<double>(from.z - a.at.z) * uz) /
-              size,
-          0.0, 1.0);
-      const double foot_x = static_cast<double>(a.at.x) + along * ux;
-      const double foot_z = static_cast<double>(a.at.z) + along * uz;
-      double low = 0, step = 1;
-      for (int h = 0; h < kHalvings; ++h, step /= 2) {
-        const double t = low + step;
-        if (t > 1) continue;
-        const world::GroundPoint at{
-            from.x + std::llround(t * (foot_x - static_cast<double>(from.x))),
-            from.z + std::llround(t * (foot_z - static_cast<double>(from.z)))};
-        // On whichever level the segment there leads to.
-        const ViewLevel* level = mesh.level(a.level);
-        if (!world::walk_far(mesh.ground(), level, a.at, at, mesh.step()).arrived) continue;
-        const uint32_t rect = mesh.rect_at(*level, at.cell_x(), at.cell_z());
-        const ViewStop moved{level->ground.world_level,
-                             static_cast<uint16_t>(rect - level->first_rect), at};
-        const double cost = segment_cost(mesh, a, moved) + segment_cost(mesh, moved, b);
-        if (cost >= best) continue;
-        best = cost;
-        stops[i] = moved;
-        low = t;
-      }
-    }
-    leave_out(mesh, stops);
+bool CostString::move(std::vector<ViewStop>& walk, int) {
+  for (size_t i = 1; i + 1 < walk.size(); ++i) move_stop(walk, i);
+  return true;
+}
+
+// Towards the straight line between its neighbours as far as the ground permits.
+void CostString::move_stop(std::vector<ViewStop>& walk, size_t i) {
+  constexpr int kHalvings = 6;
+  GroundView& mesh = *mesh_;
+  const ViewStop a = walk[i - 1], b = walk[i + 1];
+  double best = segment_cost(mesh, a, walk[i]) + segment_cost(mesh, walk[i], b);
+  const auto ux = static_cast<double>(b.at.x - a.at.x);
+  const auto uz = static_cast<double>(b.at.z - a.at.z);
+  const double size = ux * ux + uz * uz;
+  if (!(size > 0)) return;
+  const world::GroundPoint from = walk[i].at;
+  const double along = std::clamp(
+      (static_cast<double>(from.x - a.at.x) * ux + static_cast<double>(from.z - a.at.z) * uz) /
+          size,
+      0.0, 1.0);
+  const double foot_x = static_cast<double>(a.at.x) + along * ux;
+  const double foot_z = static_cast<double>(a.at.z) + along * uz;
+  double low = 0, step = 1;
+  for (int h = 0; h < kHalvings; ++h, step /= 2) {
+    const double t = low + step;
+    if (t > 1) continue;
+    const world::GroundPoint at{from.x + std::llround(t * (foot_x - static_cast<double>(from.x))),
+                                from.z + std::llround(t * (foot_z - static_cast<double>(from.z)))};
+    // On whichever level the segment there leads to.
+    const ViewLevel* level = mesh.level(a.level);
+    if (!world::walk_far(mesh.ground(), level, a.at, at, mesh.step()).arrived) continue;
+    const uint32_t rect = mesh.rect_at(*level, at.cell_x(), at.cell_z());
+    const ViewStop moved{level->ground.world_level, static_cast<uint16_t>(rect - level->first_rect),
+                         at};
+    const double cost = segment_cost(mesh, a, moved) + segment_cost(mesh, moved, b);
+    if (cost >= best) continue;
+    best = cost;
+    walk[i] = moved;
+    low = t;
   }
 }
 
-void PointStringPuller::draw(GroundView& mesh, std::vector<ViewStop>& stops) {
+void CostString::pull(GroundView& mesh, std::vector<ViewStop>& stops) {
+  mesh_ = &mesh;
   if (std::none_of(stops.begin(), stops.end(),
                    [](const ViewStop& stop) { return stop.off_mesh_link > 0; }))
-    return draw_walk(mesh, stops);
+    return pull_string(*this, stops);
   whole_.clear();
   walk_.clear();
   const auto end_walk = [&] {
-    draw_walk(mesh, walk_);
+    pull_string(*this, walk_);
     whole_.insert(whole_.end(), walk_.begin(), walk_.end());
     walk_.clear();
   };

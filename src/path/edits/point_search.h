@@ -62,16 +62,23 @@ inline double cost_to(GroundView& mesh, const ViewStop& from, const ViewStop& to
   return to.off_mesh_link > 0 ? to.off_mesh_link : segment_cost(mesh, from, to);
 }
 
-/// Leaves out stops where a straight segment costs no more, and moves the others towards a straight
-/// line; off-mesh links stay. Owns its memory: no allocation once it has grown.
-class PointStringPuller {
+/// A string over a GroundView whose metres differ in cost: leaves out stops where a straight
+/// segment costs no more, and moves the others towards a straight line; off-mesh links stay. Owns
+/// its memory: no allocation once it has grown.
+class CostString {
  public:
-  void draw(GroundView& mesh, std::vector<ViewStop>& stops);
+  /// Pulls the path taut.
+  void pull(GroundView& mesh, std::vector<ViewStop>& stops);
+
+  static constexpr int kRounds = 2;
+  static constexpr size_t kEnds = 2;
+  void leave_out(std::vector<ViewStop>& walk);
+  bool move(std::vector<ViewStop>& walk, int round);
 
  private:
-  void draw_walk(GroundView& mesh, std::vector<ViewStop>& stops);
-  void leave_out(GroundView& mesh, std::vector<ViewStop>& stops);
+  void move_stop(std::vector<ViewStop>& walk, size_t i);
 
+  GroundView* mesh_ = nullptr;
   std::vector<ViewStop> whole_, walk_;
   std::vector<double> before_;  // cost up to each stop
 };

@@ -7,23 +7,28 @@
 
 #include "path/air/air_view.h"
 
-/// Pulls a path through the air taut.
+/// A string in the air.
 namespace throng::path {
 
 /// Leaves out waypoints that are not needed and slides the others to where the path is shortest, as
 /// far as the lines to their neighbours stay legal. Never makes a path longer. Owns its memory.
-class FlightStringPuller {
+class AirString {
  public:
+  /// Pulls the path taut.
   void pull(const AirView& air, std::vector<AirPoint>& path);
 
+  static constexpr int kRounds = 6;
+  static constexpr size_t kEnds = 2;
+  void leave_out(std::vector<AirPoint>& path) const;
+  bool move(std::vector<AirPoint>& path, int round);
+
  private:
-  void shortcut();
-  void cut_corners();
-  void slide(size_t waypoint);
+  void cut_corners(std::vector<AirPoint>& path);
+  void slide(std::vector<AirPoint>& path, size_t waypoint) const;
 
   std::optional<AirView> air_;
-  std::vector<AirPoint>* path_ = nullptr;
   std::vector<AirPoint> next_;
+  double length_ = 0;  // when the round before began
 };
 
 }  // namespace throng::path

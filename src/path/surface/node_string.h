@@ -6,7 +6,7 @@
 
 #include "path/surface/node_search.h"
 
-/// Pulls a path over blocks of nodes taut.
+/// A string over blocks of nodes.
 namespace throng::path {
 
 /// A portal of a path, and where the path crosses it.
@@ -20,22 +20,29 @@ struct PulledCrossing {
   bool settled = false;     ///< It and its neighbours lie where they did when it was last moved.
 };
 
-class NodeStringPuller {
+/// Moves where a path crosses each portal, as long as that lowers its cost.
+class NodeString {
  public:
-  NodeStringPuller(const NodeView& view, const PieceCost& cost) : view_(&view), cost_(&cost) {}
+  NodeString(const NodeView& view, const PieceCost& cost) : view_(&view), cost_(&cost) {}
 
-  /// Moves where the path crosses each portal, as long as that lowers its cost.
+  /// Pulls the path from one point to the other over `crossings` taut; `out` is where it crosses.
   void pull(const BlockPoint& from, const BlockPoint& to, const std::vector<Crossing>& crossings,
-            std::vector<PulledCrossing>& out) const;
+            std::vector<PulledCrossing>& out);
+
+  static constexpr int kRounds = 48;
+  static constexpr size_t kEnds = 0;
+  void leave_out(std::vector<PulledCrossing>&) const {}  // All are needed: each is in its portal.
+  bool move(std::vector<PulledCrossing>& crossings, int round) const;
 
  private:
   void place(PulledCrossing& crossing, double along) const;
   [[nodiscard]] double cost_around(const std::vector<PulledCrossing>& crossings, size_t i,
-                                   const PulledCrossing& crossing, const BlockPoint& from,
-                                   Vec3d from_at, const BlockPoint& to, Vec3d to_at) const;
+                                   const PulledCrossing& crossing) const;
 
   const NodeView* view_;
   const PieceCost* cost_;
+  BlockPoint from_, to_;
+  Vec3d from_at_, to_at_;
 };
 
 }  // namespace throng::path

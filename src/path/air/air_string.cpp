@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/air/flight_string_puller.h"
+#include "path/air/air_string.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "path/ground/pull_string.h"
 
 // A taut path turns at edges of blockers, and its angles to the edge are alike on both sides. Edges
 // run along the axes, so a waypoint is slid along one axis at a time to where that is so; a
@@ -12,50 +14,32 @@
 namespace throng::path {
 namespace {
 
-constexpr int32_t kRounds = 6;
 constexpr int32_t kHalvings = 8;
 constexpr double kGain = 1e-3;  // less is not worth a round, of the whole length
 
 }  // namespace
 
-void FlightStringPuller::pull(const AirView& air, std::vector<AirPoint>& path) {
+void AirString::pull(const AirView& air, std::vector<AirPoint>& path) {
   air_ = air;
-  path_ = &path;
-  if (path.size() <= 2) return;
-  shortcut();
-  double length = length_of(path);
-  for (int32_t round = 0; round < kRounds && path.size() > 2; ++round) {
-    if (round < 3) cut_corners();
-    for (size_t i = 1; i + 1 < path.size(); ++i) slide(i);
-    shortcut();
-    const double now = length_of(path);
-    if (now > length * (1 - kGain)) break;
-    length = now;
-  }
+  pull_string(*this, path);
 }
 
-// From each point on to the last one that it sees.
-void FlightStringPuller::shortcut() {
-  std::vector<AirPoint>& path = *path_;
-  next_.clear();
-  next_.push_back(path[0]);
-  for (size_t at = 0; at + 1 < path.size();) {
-    size_t to = at + 1;
-    for (size_t far = path.size() - 1; far > at + 1; --far) {
-      if (air_->sees(path[at], path[far])) {
-        to = far;
-        break;
-      }
-    }
-    next_.push_back(path[to]);
-    at = to;
-  }
-  path.swap(next_);
+void AirString::leave_out(std::vector<AirPoint>& path) const {
+  path::leave_out<LeaveOut::kFarthestFirst>(
+      path, [&](AirPoint from, size_t, size_t to) { return air_->sees(from, path[to]); });
+}
+
+bool AirString::move(std::vector<AirPoint>& path, int round) {
+  const double length = length_of(path);
+  if (round > 0 && length > length_ * (1 - kGain)) return false;
+  length_ = length;
+  if (round < 3) cut_corners(path);
+  for (size_t i = 1; i + 1 < path.size(); ++i) slide(path, i);
+  return true;
 }
 
 // Two points on the segments of a waypoint, as far out as they see each other, instead of it.
-void FlightStringPuller::cut_corners() {
-  std::vector<AirPoint>& path = *path_;
+void AirString::cut_corners(std::vector<AirPoint>& path) {
   next_.clear();
   next_.push_back(path[0]);
   for (size_t i = 1; i + 1 < path.size(); ++i) {
@@ -81,9 +65,9 @@ void FlightStringPuller::cut_corners() {
   path.swap(next_);
 }
 
-void FlightStringPuller::slide(size_t waypoint) {
-  AirPoint& here = (*path_)[waypoint];
-  const AirPoint before = (*path_)[waypoint - 1], after = (*path_)[waypoint + 1];
+void AirString::slide(std::vector<AirPoint>& path, size_t waypoint) const {
+  AirPoint& here = path[waypoint];
+  const AirPoint before = path[waypoint - 1], after = path[waypoint + 1];
   for (int axis = 0; axis < 3; ++axis) {
     // Where the angles are alike: the other two coordinates give the distance of either end.
     double across[2] = {0, 0};

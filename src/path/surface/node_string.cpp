@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/surface/node_string_puller.h"
+#include "path/surface/node_string.h"
 
 #include <algorithm>
 #include <cmath>
+
+#include "path/ground/pull_string.h"
 
 // One crossing after the other moves to where the straight lines from the one before it and to the
 // one after it, unfolded around the portal, meet it; forward and back along the path, until its
@@ -11,7 +13,6 @@
 namespace throng::path {
 namespace {
 
-constexpr int kMaxRounds = 48;
 constexpr double kLittle = 1e-4;  // Of the whole cost: a round that gains less is the last.
 
 // Where the shortest path from p to q over the line from a to b meets it, 0 at a and 1 at b.
@@ -27,7 +28,7 @@ double unfolded(Vec3d p, Vec3d q, Vec3d a, Vec3d b) {
 
 }  // namespace
 
-void NodeStringPuller::place(PulledCrossing& crossing, double along) const {
+void NodeString::place(PulledCrossing& crossing, double along) const {
   const graph::NodePortal portal = view_->portal(crossing.crossing.portal);
   const bool backward = crossing.crossing.backward;
   const auto on = [&](const std::array<double, 4>& line, uint32_t block) {
@@ -42,24 +43,22 @@ void NodeStringPuller::place(PulledCrossing& crossing, double along) const {
   crossing.in_at = view_->surface(crossing.in.block).at(crossing.in.s, crossing.in.t);
 }
 
-double NodeStringPuller::cost_around(const std::vector<PulledCrossing>& crossings, size_t i,
-                                     const PulledCrossing& crossing, const BlockPoint& from,
-                                     Vec3d from_at, const BlockPoint& to, Vec3d to_at) const {
-  const BlockPoint& before = i > 0 ? crossings[i - 1].in : from;
-  const BlockPoint& after = i + 1 < crossings.size() ? crossings[i + 1].out : to;
-  return (*cost_)(crossing.out.block, before.s, before.t, i > 0 ? crossings[i - 1].in_at : from_at,
+double NodeString::cost_around(const std::vector<PulledCrossing>& crossings, size_t i,
+                               const PulledCrossing& crossing) const {
+  const BlockPoint& before = i > 0 ? crossings[i - 1].in : from_;
+  const BlockPoint& after = i + 1 < crossings.size() ? crossings[i + 1].out : to_;
+  return (*cost_)(crossing.out.block, before.s, before.t, i > 0 ? crossings[i - 1].in_at : from_at_,
                   crossing.out.s, crossing.out.t, crossing.out_at)
              .cost +
          graph::portal_length(view_->portal(crossing.crossing.portal), crossing.out_at,
                               crossing.in_at) +
          (*cost_)(crossing.in.block, crossing.in.s, crossing.in.t, crossing.in_at, after.s, after.t,
-                  i + 1 < crossings.size() ? crossings[i + 1].out_at : to_at)
+                  i + 1 < crossings.size() ? crossings[i + 1].out_at : to_at_)
              .cost;
 }
 
-void NodeStringPuller::pull(const BlockPoint& from, const BlockPoint& to,
-                            const std::vector<Crossing>& crossings,
-                            std::vector<PulledCrossing>& out) const {
+void NodeString::pull(const BlockPoint& from, const BlockPoint& to,
+                      const std::vector<Crossing>& crossings, std::vector<PulledCrossing>& out) {
   out.clear();
   for (const Crossing& crossing : crossings) {
     out.emplace_back().crossing = crossing;
@@ -70,39 +69,43 @@ void NodeStringPuller::pull(const BlockPoint& from, const BlockPoint& to,
     place(out.back(), 0.5);
   }
   if (out.empty()) return;
-  const Vec3d from_at = view_->surface(from.block).at(from.s, from.t);
-  const Vec3d to_at = view_->surface(to.block).at(to.s, to.t);
-  for (int round = 0; round < kMaxRounds; ++round) {
-    double gained = 0, all = 0;
-    for (size_t k = 0; k < out.size(); ++k) {
-      const size_t i = round % 2 == 0 ? k : out.size() - 1 - k;
-      PulledCrossing& here = out[i];
-      const graph::NodePortal portal = view_->portal(here.crossing.portal);
-      if (portal.over_hole) continue;
-      if (here.settled) {
-        all += here.around;
-        continue;
-      }
-      here.settled = true;
-      const double before = cost_around(out, i, here, from, from_at, to, to_at);
-      all += before;
-      here.around = before;
-      const double along =
-          unfolded(i > 0 ? out[i - 1].in_at : from_at,
-                   i + 1 < out.size() ? out[i + 1].out_at : to_at, here.first_at, here.last_at);
-      if (std::fabs(along - here.along) < 1e-6) continue;
-      PulledCrossing moved = here;
-      place(moved, along);
-      const double after = cost_around(out, i, moved, from, from_at, to, to_at);
-      if (!(after < before)) continue;
-      gained += before - after;
-      here = moved;
-      here.settled = false;
-      if (i > 0) out[i - 1].settled = false;
-      if (i + 1 < out.size()) out[i + 1].settled = false;
+  from_ = from;
+  to_ = to;
+  from_at_ = view_->surface(from.block).at(from.s, from.t);
+  to_at_ = view_->surface(to.block).at(to.s, to.t);
+  pull_string(*this, out);
+}
+
+bool NodeString::move(std::vector<PulledCrossing>& crossings, int round) const {
+  double gained = 0, all = 0;
+  for (size_t k = 0; k < crossings.size(); ++k) {
+    const size_t i = round % 2 == 0 ? k : crossings.size() - 1 - k;
+    PulledCrossing& here = crossings[i];
+    const graph::NodePortal portal = view_->portal(here.crossing.portal);
+    if (portal.over_hole) continue;
+    if (here.settled) {
+      all += here.around;
+      continue;
     }
-    if (gained <= kLittle * all) break;
+    here.settled = true;
+    const double before = cost_around(crossings, i, here);
+    all += before;
+    here.around = before;
+    const double along = unfolded(i > 0 ? crossings[i - 1].in_at : from_at_,
+                                  i + 1 < crossings.size() ? crossings[i + 1].out_at : to_at_,
+                                  here.first_at, here.last_at);
+    if (std::fabs(along - here.along) < 1e-6) continue;
+    PulledCrossing moved = here;
+    place(moved, along);
+    const double after = cost_around(crossings, i, moved);
+    if (!(after < before)) continue;
+    gained += before - after;
+    here = moved;
+    here.settled = false;
+    if (i > 0) crossings[i - 1].settled = false;
+    if (i + 1 < crossings.size()) crossings[i + 1].settled = false;
   }
+  return gained > kLittle * all;
 }
 
 }  // namespace throng::path

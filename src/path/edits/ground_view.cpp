@@ -331,7 +331,7 @@ void GroundView::cut(ViewLevel& level) {
     for (const CellRect& r : tile_with_rects(same, cuts ? &*cuts : nullptr)) {
       new_rects_.push_back({level.ground.world_level, level.tile_x * kTileCells + r.x0,
                             level.tile_z * kTileCells + r.z0, r.x1 - r.x0, r.z1 - r.z0});
-      new_states_.push_back({kinds[c], slopes[c], false, {}});
+      new_states_.push_back({kinds[c], slopes[c], false, false, {}});
     }
   }
   level.rect_count = static_cast<uint32_t>(new_rects_.size());
@@ -353,18 +353,27 @@ void GroundView::find_portals(uint32_t number) {
   };
   new_portals_.clear();
   border.find_portals(of, rect, rect_at, new_portals_);
-  for (FoundPortal& found : new_portals_) border.find_corners(of, rect, found);
   const auto count = static_cast<uint32_t>(new_portals_.size());
   const uint32_t first = count > 0 ? portal_blocks_.take(count) : 0;
   mesh_.portals.resize(portal_blocks_.end());
-  for (uint32_t p = 0; p < count; ++p) {
-    MeshPortal portal = new_portals_[p].portal;
-    portal.from_corner = number_of(new_portals_[p].from_corner);
-    portal.to_corner = number_of(new_portals_[p].to_corner);
-    mesh_.portals[first + p] = portal;
-  }
+  for (uint32_t p = 0; p < count; ++p) mesh_.portals[first + p] = new_portals_[p].portal;
   rect_states_[number].portals = {first, count};
   rect_states_[number].has_portals = true;
+}
+
+void GroundView::find_corners(uint32_t number) {
+  const auto [first, count] = portal_range(number);
+  const MeshRect rect = mesh_.rects[number];  // Others may be made now.
+  const ViewLevel* of = level(rect.level);
+  const Ground ground{*this};
+  const MeshBorder border(world(), ground, step_);
+  for (uint32_t p = first; p < first + count; ++p) {
+    FoundPortal found{mesh_.portals[p], {}, {}};
+    border.find_corners(of, rect, found);
+    mesh_.portals[p].from_corner = number_of(found.from_corner);
+    mesh_.portals[p].to_corner = number_of(found.to_corner);
+  }
+  rect_states_[number].has_corners = true;
 }
 
 uint32_t GroundView::number_of(const std::optional<CornerKey>& corner) {
@@ -387,7 +396,7 @@ uint32_t GroundView::number_of(const std::optional<CornerKey>& corner) {
 void GroundView::drop_portals(uint32_t rect) {
   RectState& state = rect_states_[rect];
   if (!state.has_portals) return;
-  state.has_portals = false;
+  state.has_portals = state.has_corners = false;
   if (state.portals.count > 0) portal_blocks_.give_back(state.portals.first, state.portals.count);
 }
 
@@ -419,7 +428,7 @@ void GroundView::drop_unused_corners() {
     if (level == nullptr) continue;
     for (uint32_t r = level->first_rect; r < level->first_rect + level->rect_count; ++r) {
       const RectState& state = rect_states_[r];
-      if (!state.has_portals) continue;
+      if (!state.has_corners) continue;
       for (uint32_t p = state.portals.first; p < state.portals.first + state.portals.count; ++p) {
         for (const uint32_t c : {mesh_.portals[p].from_corner, mesh_.portals[p].to_corner})
           if (c != kNoCorner) used_corners_[c] = true;

@@ -72,10 +72,12 @@ class GroundView final : public PortalSource {
   /// Of a legal cell of the grid that lies on the level.
   [[nodiscard]] uint32_t rect_at(const ViewLevel& level, int32_t x, int32_t z) const;
   std::span<const MeshPortal> portals_of(uint32_t rect) override {
-    const IndexRange at = portal_range(rect);
+    if (!rect_states_[rect].has_corners) find_corners(rect);
+    const IndexRange at = rect_states_[rect].portals;
     return {mesh_.portals.data() + at.first, at.count};
   }
-  /// Of the mesh's portals, those of a rectangle, which are made now if they are not yet.
+  /// Of the mesh's portals, those of a rectangle, which are made now if they are not yet. Their
+  /// corners may be missing: only paths over corners need them, and each takes some ten steps.
   struct IndexRange {
     uint32_t first = 0, count = 0;
   };
@@ -152,7 +154,7 @@ class GroundView final : public PortalSource {
   /// What a rectangle has beside its cells.
   struct RectState {
     uint8_t area = 0, slope = 0;  // its kind of ground
-    bool has_portals = false;
+    bool has_portals = false, has_corners = false;
     IndexRange portals;
   };
   struct HashCorner {
@@ -163,6 +165,7 @@ class GroundView final : public PortalSource {
   void block_cells(ViewLevel& level) const;
   void cut(ViewLevel& level);
   void find_portals(uint32_t rect);
+  void find_corners(uint32_t rect);
   uint32_t number_of(const std::optional<CornerKey>& corner);
   void drop_portals(uint32_t rect);
   void drop_border(const ViewLevel& level, int32_t toward_x, int32_t toward_z);

@@ -165,6 +165,7 @@ int find(Session& session, const PathOptions& options, const World& world, int32
     finder->find({.from = from->at,
                   .to = to->at,
                   .tolerance = options.tolerance,
+                  .nearest = true,
                   .budget = {UINT64_MAX, &session.context.cancel, options.search_bytes}},
                  found);
   });

@@ -260,9 +260,10 @@ struct PathQuery {
   /// In the air: if no single flight leads to the goal, search paths that land, walk and take off
   /// again.
   bool by_turns = true;
-  /// If no path leads to the goal, find the path to what is reachable and nearest to it. On the
-  /// ground that searches all that is reachable; over nodes it is always done.
-  bool nearest = true;
+  /// If no path leads to the goal, find the path to what is reachable and nearest to it, and what
+  /// blocks it there. On the ground that searches all that is reachable, which takes up to a second
+  /// in a city; over nodes it is always done.
+  bool nearest = false;
   SearchBudget budget = {};
 };
 

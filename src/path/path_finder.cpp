@@ -36,6 +36,14 @@ PathSpace space_of(const AvatarClass& avatar, PathSpace asked) {
   return goes_over_nodes(avatar) ? PathSpace::kNodes : PathSpace::kGround;
 }
 
+// Of a path that leads to the nearest place, if that was not asked for.
+void forget_points(Path& path) {
+  const uint64_t nodes = path.nodes;
+  path::reset(path);
+  path.end = PathEnd::kUnreachable;
+  path.nodes = nodes;
+}
+
 // For a path on the ground between places: no search of the mesh knows costs.
 bool needs_mesh(const PathConfig& config) {
   return config.speedup != PathSpeedup::kOnDemand &&
@@ -154,11 +162,7 @@ void PathFinder::State::find_on_ground(const Place& from, const Place& to, bool 
   }
   ground().find(from, to, path, budget.after(nodes_before));
   path.nodes += nodes_before;
-  if (path.end != PathEnd::kUnreachable || nearest) return;
-  const uint64_t expanded = path.nodes;
-  path::reset(path);
-  path.end = PathEnd::kUnreachable;
-  path.nodes = expanded;
+  if (path.end == PathEnd::kUnreachable && !nearest) forget_points(path);
 }
 
 void PathFinder::State::find_over_nodes(const PathQuery& query, Path& path) {
@@ -190,7 +194,7 @@ void PathFinder::find(const PathQuery& query, Path& path) {
 
 void PathFinder::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget) {
   if (state_->config.space == PathSpace::kGround) {
-    return state_->find_on_ground(from, to, true, budget, path);
+    return state_->find_on_ground(from, to, false, budget, path);
   }
   find({.from = from, .to = to, .budget = budget}, path);
 }
@@ -204,7 +208,11 @@ void PathFinder::begin(const PathQuery& query) {
 
 bool PathFinder::advance(uint64_t max_nodes, Path& path) {
   State& s = *state_;
-  if (s.config.space == PathSpace::kGround) return s.ground().advance(max_nodes, path);
+  if (s.config.space == PathSpace::kGround) {
+    if (!s.ground().advance(max_nodes, path)) return false;
+    if (path.end == PathEnd::kUnreachable && !s.begun.nearest) forget_points(path);
+    return true;
+  }
   find(s.begun, path);
   return true;
 }

@@ -89,6 +89,34 @@ double min_of(const std::vector<double>& values) {
   return *std::min_element(values.begin(), values.end());
 }
 
+DrawingConfig config_of(const Options& options, const Box3d& bounds, const Crowd& crowd) {
+  DrawingConfig config;
+  config.width = options.width, config.height = options.height;
+  config.samples = options.samples;
+  config.avatar_shadows = options.shadows;
+  config.sun_pixels = 1024;
+  config.soft_shadows = !options.hard;
+  config.point_pixels = options.point_pixels;
+  config.view_blend = options.view_blend;
+  config.workers = options.workers;
+  // All of the city is in the picture.
+  const double half = 0.5 * std::max(bounds.max.x - bounds.min.x, bounds.max.z - bounds.min.z);
+  config.camera.eye = {0.35 * half, 1.5 * half, 1.75 * half};
+  config.camera.target = {0, 0, 0.1 * half};
+  config.camera.furthest = 20 * half;
+  config.camera.nearest = 0.002 * half;
+  if (options.street) {  // From an avatar near the middle, along the street.
+    size_t middle = 0;
+    for (size_t i = 0; i < crowd.x.size(); ++i) {
+      if (std::hypot(crowd.x[i], crowd.z[i]) < std::hypot(crowd.x[middle], crowd.z[middle]))
+        middle = i;
+    }
+    config.camera = EyeCamera{.eye = {crowd.x[middle], crowd.y[middle] + 1.7, crowd.z[middle]},
+                              .target = {crowd.x[middle] + 10.0, 1.5, crowd.z[middle] + 1.0}};
+  }
+  return config;
+}
+
 int run(const Options& options) {
   const auto fail = [](const Error& error) {
     std::fprintf(stderr, "bench_draw: %s\n", error.message.c_str());
@@ -123,31 +151,7 @@ int run(const Options& options) {
       .atlas = *number,
       .clip = 0,
       .avatars = {crowd.x, crowd.y, crowd.z, crowd.heading, crowd.phase, crowd.look}};
-  DrawingConfig config;
-  config.width = options.width, config.height = options.height;
-  config.samples = options.samples;
-  config.avatar_shadows = options.shadows;
-  config.sun_pixels = 1024;
-  config.soft_shadows = !options.hard;
-  config.point_pixels = options.point_pixels;
-  config.view_blend = options.view_blend;
-  config.workers = options.workers;
-  // All of the city is in the picture.
-  const double half = 0.5 * std::max(bounds.max.x - bounds.min.x, bounds.max.z - bounds.min.z);
-  config.camera.eye = {0.35 * half, 1.5 * half, 1.75 * half};
-  config.camera.target = {0, 0, 0.1 * half};
-  config.camera.furthest = 20 * half;
-  config.camera.nearest = 0.002 * half;
-  if (options.street) {  // From an avatar near the middle, along the street.
-    size_t middle = 0;
-    for (size_t i = 0; i < crowd.x.size(); ++i) {
-      if (std::hypot(crowd.x[i], crowd.z[i]) < std::hypot(crowd.x[middle], crowd.z[middle]))
-        middle = i;
-    }
-    config.camera = EyeCamera{.eye = {crowd.x[middle], crowd.y[middle] + 1.7, crowd.z[middle]},
-                              .target = {crowd.x[middle] + 10.0, 1.5, crowd.z[middle] + 1.0}};
-  }
-
+  DrawingConfig config = config_of(options, bounds, crowd);
   std::vector<double> people, quads, without_avatars, whole, pack, cull, ratio;
   DrawingReport last, seen, uncut;
   const auto frame = [&](AvatarStyle style, bool with, double& packing) -> double {

@@ -115,6 +115,27 @@ Json spread(const std::vector<double>& values) {
           {"max", *std::max_element(values.begin(), values.end())}};
 }
 
+// Of places of Detour's mesh that are ours, too.
+std::vector<std::array<End, 2>> random_pairs(const Options& options, Detour& detour,
+                                             const dtNavMesh& mesh, const World& world) {
+  std::vector<std::array<End, 2>> pairs;
+  uint64_t not_ours = 0;
+  while (pairs.size() < static_cast<size_t>(options.pairs)) {
+    std::array<End, 2> pair;
+    for (End& end : pair) {
+      for (;;) {
+        if (!detour.random_end(mesh, next_random, end)) stop("Detour's mesh is empty");
+        end.place = world.find_place(0, {end.position[0], end.position[1], end.position[2]}, 0.5);
+        if (end.place) break;
+        if (++not_ours > 100 * static_cast<uint64_t>(options.pairs))
+          stop("the two meshes have too little in common");
+      }
+    }
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
 Json compare(const Scene& scene, const Options& options) {
   const RecastInput input = make_recast_input(scene);
   const RecastConfig config{.cell = 0.3f, .cell_height = 0.2f, .avatar = AvatarClass{}, .tile = 64};
@@ -131,22 +152,7 @@ Json compare(const Scene& scene, const Options& options) {
       *world, {.speedup = options.labels ? PathSpeedup::kLabels : PathSpeedup::kNone}, context);
   if (!finder) stop(finder.error().message);
 
-  // Places of Detour's mesh that are ours, too.
-  std::vector<std::array<End, 2>> pairs;
-  uint64_t not_ours = 0;
-  while (pairs.size() < static_cast<size_t>(options.pairs)) {
-    std::array<End, 2> pair;
-    for (End& end : pair) {
-      for (;;) {
-        if (!detour.random_end(*mesh, next_random, end)) stop("Detour's mesh is empty");
-        end.place = world->find_place(0, {end.position[0], end.position[1], end.position[2]}, 0.5);
-        if (end.place) break;
-        if (++not_ours > 100 * static_cast<uint64_t>(options.pairs))
-          stop("the two meshes have too little in common");
-      }
-    }
-    pairs.push_back(pair);
-  }
+  const std::vector<std::array<End, 2>> pairs = random_pairs(options, detour, *mesh, *world);
 
   // What both find, and how long it is; and whether Detour's path is legal.
   Path path;

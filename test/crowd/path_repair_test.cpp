@@ -20,7 +20,7 @@ namespace {
 
 constexpr int32_t kStep = 400;  // mm
 
-// The same crates on the ground of a crowd and on a live ground.
+// The same crates on the ground of a crowd and on the ground of a GroundFinder.
 struct Crated {
   World world;
   crowd::CrowdGround ground;

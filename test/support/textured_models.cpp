@@ -234,40 +234,17 @@ std::string dae(const ScratchFolder& folder, bool z_up) {
   return folder.write("sign.dae", out);
 }
 
-// The picture of another machine's path, or within the file.
-std::string fbx(const ScratchFolder& folder, bool holds_picture) {
-  if (!holds_picture) folder.write("wall.png", png_of_quarters());
+std::string fbx_square() {
   std::string positions = numbers(false), places = numbers(true);
   for (std::string* text : {&positions, &places}) {
     text->pop_back();
     for (char& c : *text) c = c == ' ' ? ',' : c;
   }
-  const std::string content =
-      holds_picture ? "    Content: , \"" + base64(png_of_quarters()) + "\"\n" : "";
-  const std::string file_names =
-      "    FileName: \"C:\\models\\wall.png\"\n    RelativeFilename: \"..\\models\\wall.png\"\n";
-  return folder.write("sign.fbx",
-                      R"(; FBX 7.4.0 project file
-FBXHeaderExtension:  {
-  FBXHeaderVersion: 1003
-  FBXVersion: 7400
-}
-GlobalSettings:  {
-  Version: 1000
-  Properties70:  {
-    P: "UpAxis", "int", "Integer", "",1
-    P: "UpAxisSign", "int", "Integer", "",1
-    P: "FrontAxis", "int", "Integer", "",2
-    P: "FrontAxisSign", "int", "Integer", "",1
-    P: "CoordAxis", "int", "Integer", "",0
-    P: "CoordAxisSign", "int", "Integer", "",1
-    P: "UnitScaleFactor", "double", "Number", "",100
-  }
-}
-Objects:  {
+  return R"(Objects:  {
   Geometry: 10, "Geometry::square", "Mesh" {
     Vertices: *12 {
-      a: )" + positions + R"(
+      a: )" +
+         positions + R"(
     }
     PolygonVertexIndex: *4 {
       a: 0,1,2,-4
@@ -279,7 +256,8 @@ Objects:  {
       MappingInformationType: "ByPolygonVertex"
       ReferenceInformationType: "IndexToDirect"
       UV: *8 {
-        a: )" + places + R"(
+        a: )" +
+         places + R"(
       }
       UVIndex: *4 {
         a: 0,1,2,3
@@ -306,7 +284,35 @@ Objects:  {
       }
     }
   }
-  Model: 20, "Model::sign", "Mesh" {
+)";
+}
+
+// The picture of another machine's path, or within the file.
+std::string fbx(const ScratchFolder& folder, bool holds_picture) {
+  if (!holds_picture) folder.write("wall.png", png_of_quarters());
+  const std::string content =
+      holds_picture ? "    Content: , \"" + base64(png_of_quarters()) + "\"\n" : "";
+  const std::string file_names =
+      "    FileName: \"C:\\models\\wall.png\"\n    RelativeFilename: \"..\\models\\wall.png\"\n";
+  return folder.write("sign.fbx",
+                      R"(; FBX 7.4.0 project file
+FBXHeaderExtension:  {
+  FBXHeaderVersion: 1003
+  FBXVersion: 7400
+}
+GlobalSettings:  {
+  Version: 1000
+  Properties70:  {
+    P: "UpAxis", "int", "Integer", "",1
+    P: "UpAxisSign", "int", "Integer", "",1
+    P: "FrontAxis", "int", "Integer", "",2
+    P: "FrontAxisSign", "int", "Integer", "",1
+    P: "CoordAxis", "int", "Integer", "",0
+    P: "CoordAxisSign", "int", "Integer", "",1
+    P: "UnitScaleFactor", "double", "Number", "",100
+  }
+}
+)" + fbx_square() + R"(  Model: 20, "Model::sign", "Mesh" {
     Version: 232
     Shading: W
     Culling: "CullingOff"

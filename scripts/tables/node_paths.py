@@ -7,16 +7,7 @@ import argparse
 import json
 import shutil
 
-from results_page import PROGRAM, WORK, WORLDS, human, machine, run_json, table, write_between
-
-CLASSES = [
-    {"name": "adult"},
-    {"name": "child", "height": 1.1, "radius": 0.18, "step": 0.3},
-    {"name": "wheelchair", "height": 1.35, "radius": 0.4, "step": 0.02, "max_slope": 3.4336303624505224},
-    {"name": "giant", "height": 3.0, "radius": 0.5, "step": 0.8},
-    {"name": "climber", "climb_slope": 120},
-    {"name": "gecko", "height": 0.5, "radius": 0.2, "step": 0.25, "climb_slope": 180},
-]
+from results_page import PROGRAM, SIX_CLASSES, WORK, WORLDS, human, machine, run_json, table, write_between
 
 
 def worlds():
@@ -39,7 +30,7 @@ def main():
     options = parser.parse_args()
     WORK.mkdir(parents=True, exist_ok=True)
     classes = WORK / "node_paths.json"
-    classes.write_text(json.dumps({"class": CLASSES}))
+    classes.write_text(json.dumps({"class": SIX_CLASSES}))
     rows = []
     pairs = illegal = 0
     for name, model, cell, size, samples in worlds():

@@ -10,16 +10,7 @@ import json
 import shutil
 
 import all_worlds
-from results_page import PROGRAM, WORK, WORLDS, human, machine, rows_between, run_json, table, write_between
-
-CLASSES = [
-    {"name": "adult"},
-    {"name": "child", "height": 1.1, "radius": 0.18, "step": 0.3},
-    {"name": "wheelchair", "height": 1.35, "radius": 0.4, "step": 0.02, "max_slope": 3.4336303624505224},
-    {"name": "giant", "height": 3.0, "radius": 0.5, "step": 0.8},
-    {"name": "climber", "climb_slope": 120},
-    {"name": "gecko", "height": 0.5, "radius": 0.2, "step": 0.25, "climb_slope": 180},
-]
+from results_page import PROGRAM, SIX_CLASSES, WORK, WORLDS, human, machine, rows_between, run_json, table, write_between
 
 
 def worlds():
@@ -89,8 +80,8 @@ def main():
     if options.everywhere:
         everywhere(options)
         return
-    together = classes_file("together", CLASSES)
-    alone = [classes_file(c["name"], [c]) for c in CLASSES]
+    together = classes_file("together", SIX_CLASSES)
+    alone = [classes_file(c["name"], [c]) for c in SIX_CLASSES]
     rows = []
     for name, model, area, cell, size in worlds():
         if name in options.but:

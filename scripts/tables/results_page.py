@@ -12,6 +12,15 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "build/release/throng"
 WORLDS = ROOT.parent / "shared/worlds"
 WORK = ROOT / "build/results"
+# Four default classes, and two that climb.
+SIX_CLASSES = [
+    {"name": "adult"},
+    {"name": "child", "height": 1.1, "radius": 0.18, "step": 0.3},
+    {"name": "wheelchair", "height": 1.35, "radius": 0.4, "step": 0.02, "max_slope": 3.4336303624505224},
+    {"name": "giant", "height": 3.0, "radius": 0.5, "step": 0.8},
+    {"name": "climber", "climb_slope": 120},
+    {"name": "gecko", "height": 0.5, "radius": 0.2, "step": 0.25, "climb_slope": 180},
+]
 
 
 def say(text):

@@ -379,7 +379,7 @@ struct FlowSummary {
 
 /// Distances to goals over points on the borders of rectangles of the ground. It describes the
 /// ground and its edits at the time when it was made; if they change, make another one. Off-mesh
-/// links are ignored. Each copy has its own memory for queries; give every thread one.
+/// links count as in paths. Each copy has its own memory for queries; give every thread one.
 class THRONG_API FlowField {
  public:
   /// Makes a field by one Dijkstra search over the ground of a finder's class. Goals that are no
@@ -397,7 +397,7 @@ class THRONG_API FlowField {
   /// Infinite if no path leads there, or none within `max_distance`. [m]
   [[nodiscard]] double distance(const Place& place);
   /// The next local target: the farthest point of the path to the nearest goal to which a straight
-  /// line leads. At last the goal itself; nowhere if no path leads there.
+  /// line or a link leads. At last the goal itself; nowhere if no path leads there.
   [[nodiscard]] Place next(const Place& place);
   /// Finds the whole path to the nearest goal, pulled taut.
   void find_path(const Place& place, Path& path);

@@ -135,8 +135,8 @@ class THRONG_API Edits {
   [[nodiscard]] Result<EditId> add_area(const Prism& prism, uint8_t kind);
   /// Adds an off-mesh link, which no move finds: over a ditch, up a ladder, by a lift. It leads
   /// from one place to another, and back if `two_way`; what lies between is not tested. Its cost
-  /// counts as metres and is at least its length in the plane. Only for paths on the ground, of
-  /// classes that can stand at both ends. Fails with kBadInput.
+  /// counts as metres and may be less than its length. Only for paths on the ground and walkers of
+  /// crowds, of classes that can stand at both ends. Fails with kBadInput.
   [[nodiscard]] Result<EditId> add_off_mesh_link(const OffMeshLink& link);
   /// Removes an edit, or switches it off and on, as a door. False if there is none of this id.
   bool remove(EditId edit);

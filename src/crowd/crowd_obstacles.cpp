@@ -102,7 +102,7 @@ void Crowd::follow_edits() {
   list.for_changed(s.edits_version, [&](const path::EditList::Changed& what) {
     using Kind = path::EditList::Kind;
     const Kind kind = what.edit == 0 ? Kind::kArea : list.edits[what.edit - 1].kind;
-    areas_changed = areas_changed || kind == Kind::kArea;
+    areas_changed = areas_changed || kind != Kind::kObstacle;
     if (kind != Kind::kObstacle) return;
     const path::EditList::Edit& edit = list.edits[what.edit - 1];
     ObstacleId& own = s.of_edit[what.edit - 1];

@@ -22,7 +22,7 @@ namespace {
 using crowd::put_rows;
 using crowd::take_rows;
 
-constexpr uint64_t kMagic = 0x39305744574f5243;  // "CROWDW09"
+constexpr uint64_t kMagic = 0x30315744574f5243;  // "CROWDW10"
 
 struct Head {
   uint64_t magic = kMagic;
@@ -35,13 +35,14 @@ struct Head {
   uint64_t target_values = 0;  // doubles
   uint64_t flights = 0;        // by slot, or none
   uint64_t climbs = 0;         // by slot, or none
+  uint64_t link_uses = 0;      // by slot, or none
   int32_t rounds = 0, routing = 0, deadlock_avoidance = 0, flows_are_old = 0;
   int32_t model = 0, low_detail_steps = 0;
   uint64_t views = 0;
   double low_detail_reaction = 0, slope_cost = 0;
   uint64_t edits = 0, edits_version = 0;
 };
-static_assert(sizeof(Head) == 26 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 27 * 8 && std::is_trivially_copyable_v<Head>);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`.
 struct SavedObstacle {
@@ -128,6 +129,7 @@ uint64_t size_of(const Head& head) {
          (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
          head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 +
          head.flights * crowd::FlyMode::kRowBytes + head.climbs * crowd::ClimbMode::kRowBytes +
+         head.link_uses * crowd::LinkMode::kRowBytes +
          head.views * sizeof(crowd::EngineDetail::View) + head.edits * sizeof(ObstacleId) + 8;
 }
 
@@ -242,7 +244,8 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
       head.obstacles >= kMax || head.corners >= kMax || head.free_obstacles >= kMax ||
       head.target_values >= kMax || head.views >= kMax || head.edits >= kMax ||
       (head.flights != 0 && head.flights != head.slots) ||
-      (head.climbs != 0 && head.climbs != head.slots) || saved.size() != size_of(head)) {
+      (head.climbs != 0 && head.climbs != head.slots) ||
+      (head.link_uses != 0 && head.link_uses != head.slots) || saved.size() != size_of(head)) {
     return bad("is cut short; save the crowd again");
   }
   uint64_t sum = 0;
@@ -276,6 +279,7 @@ SavedArrays read_arrays(const Head& head, const uint8_t* at, State& s) {
   at = take_rows(at, head.target_values, saved.targets);
   at = s.fly.restore(at, head.flights);
   at = s.climb.restore(at, head.climbs);
+  at = s.link.restore(at, head.link_uses);
   at = take_rows(at, head.views, s.views);
   take_rows(at, head.edits, s.of_edit);
   return saved;
@@ -321,6 +325,7 @@ std::vector<uint8_t> Crowd::save() const {
   head.target_values = targets.size();
   head.flights = s.fly.row_count();
   head.climbs = s.climb.row_count();
+  head.link_uses = s.link.row_count();
   head.views = s.views.size();
   head.edits = s.of_edit.size();
   head.edits_version = s.edits_version;
@@ -337,6 +342,7 @@ std::vector<uint8_t> Crowd::save() const {
   put_rows(out, targets.data(), targets.size());
   s.fly.save(out);
   s.climb.save(out);
+  s.link.save(out);
   put_rows(out, s.views.data(), s.views.size());
   put_rows(out, s.of_edit.data(), s.of_edit.size());
   const uint64_t sum = hash_bytes(out.data(), out.size());

@@ -123,7 +123,8 @@ void LinkMode::set_velocity(Body& body, const Vec3d& velocity) {
 
 void LinkMode::areas_changed(std::span<Body> /*bodies*/) { read_links(); }
 
-// The rest of the line counts, so that no obstacle ever comes up before a body that cannot turn.
+// The rest of the line counts, so that no obstacle ever comes up before a body that cannot turn;
+// and the cell at its end, because obstacles block whole cells.
 void LinkMode::add_blockers(std::span<const uint32_t> slots, std::span<const Body> bodies,
                             BlockerPairs& found) const {
   if (users_.empty()) return;
@@ -135,14 +136,25 @@ void LinkMode::add_blockers(std::span<const uint32_t> slots, std::span<const Bod
       if (!obstacle.waits()) continue;
       const Prism& passed =
           obstacle.is_up ? hull_of(obstacle.place, obstacle.wanted) : obstacle.wanted;
-      if (meets(line, passed)) found.emplace_back(slot, i);
+      if (meets(line, passed) || lands_on(bodies[i], obstacle)) found.emplace_back(slot, i);
     }
   }
 }
 
 bool LinkMode::is_inside(const Body& body, const ObstacleGrid::Item& obstacle) const {
   if (!body.on_link) return walk_.is_inside(body, obstacle);
-  return meets(rest_of_line(body), obstacle.solid.prism);
+  return meets(rest_of_line(body), obstacle.solid.prism) ||
+         lands_on(body, shared_.obstacles.all()[obstacle.slot]);
+}
+
+bool LinkMode::lands_on(const Body& body, const CrowdObstacle& obstacle) const {
+  const Stand& to = uses_[body.slot].to;
+  const world::GroundPoint p{to.x, to.z};
+  const std::vector<LevelCells>& swept = obstacle.of_class[body.avatar_class].swept;
+  return std::any_of(swept.begin(), swept.end(), [&](const LevelCells& cells) {
+    const uint64_t row = cells.rows[static_cast<size_t>(world::in_tile(p.cell_z()))];
+    return cells.level == to.level && (row >> world::in_tile(p.cell_x()) & 1) != 0;
+  });
 }
 
 bool LinkMode::must_leave(const Body& body, const Prism& obstacle) const {

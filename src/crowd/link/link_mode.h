@@ -86,6 +86,8 @@ class LinkMode final : public Mode, public TakesLinks {
   /// The rest of the line of a body that is on a link.
   [[nodiscard]] LinkLine rest_of_line(const Body& body) const;
   [[nodiscard]] LinkLine line_of(const Body& body, const Stand& from, const Stand& to) const;
+  /// Does an obstacle that waits block the cell where a body on a link lands?
+  [[nodiscard]] bool lands_on(const Body& body, const CrowdObstacle& obstacle) const;
 
   // link_turns.cpp
   [[nodiscard]] int32_t room_of(const Body& body) const;

@@ -8,6 +8,7 @@
 #include "crowd/link/link_mode.h"
 #include "crowd/walk/step_units.h"
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // The step of avatars on off-mesh links. Walkers have moved clear of where these are; then they
 // move one after the other in order of slots, each along its straight line as far as no cylinder of
@@ -156,6 +157,13 @@ void LinkMode::land(Body& body, LinkUse& use) const {
   body.clear(Body::kLast);
   body.local_target_x = body.x;
   body.local_target_z = body.z;
+  // An obstacle that closes there lets it out.
+  const world::GroundPoint at = body.point();
+  if (!shared_.ground_of(body).is_legal(body.level, world::in_tile(at.cell_x()),
+                                        world::in_tile(at.cell_z()))) {
+    body.leaves = true;
+    shared_.some_leave = true;
+  }
   use = {};
 }
 

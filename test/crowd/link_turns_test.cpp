@@ -61,5 +61,25 @@ TEST(CrowdLinkTurns, OneThatLandsInAClosingObstacleKeepsItsGoal) {
   }
 }
 
+TEST(CrowdLinkTurns, OneThatLeavesAnObstacleLearnsThatItsLinkIsOff) {
+  const World world = gap();
+  Edits edits;
+  Oracle oracle{world, {{at(world, 9, 5), at(world, 13, 5), 4, false}}};
+  const EditId link = add_link(edits, oracle.links[0]);
+  Crowd crowd = made(world, {.edits = edits});
+  const AvatarId id = walker(crowd, at(world, 4, 5), at(world, 19, 5));
+  for (int step = 0; step < 5; ++step) crowd.step();
+  const Vec3d here = crowd.read(id)->position;
+  ASSERT_TRUE(crowd.add_obstacle(Prism::circle({here.x, 0, here.z}, 0.5, 1)));
+  crowd.step();
+  EXPECT_TRUE(edits.set_active(link, false));
+  uint64_t lost = 0;
+  for (int step = 0; step < 150; ++step) {
+    lost += crowd.step().no_path;
+    oracle.look(crowd, step);
+  }
+  EXPECT_EQ(lost, 1u);
+}
+
 }  // namespace
 }  // namespace throng::links

@@ -40,6 +40,8 @@ void WalkMode::plan(std::span<Body> bodies, int32_t worker) {
       if (takes_links && takes_links_->plan_at_start(body, route, ground, nth)) continue;
       if (!body.has(Body::kNeedsPath)) follow(body, route, ground, nth, metre);
     }
+    // The link was switched off while it could not search.
+    if (!takes_links && leads_to_link(route)) body.flags |= Body::kNeedsPath;
     if (!body.has(Body::kNeedsPath)) continue;
     if (takes_links) takes_links_->forget(body);
     ++asked;

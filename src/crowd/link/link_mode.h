@@ -115,6 +115,7 @@ class LinkMode final : public Mode, public TakesLinks {
   std::vector<uint32_t> bodies_;  // of these, indices; of the step
   std::mutex adding_;
   std::vector<uint32_t> came_;    // slots that have begun to wait in this sub-step, in no order
+  std::vector<uint32_t> merged_;  // scratch: the old and the new users
   std::vector<bool> is_user_;     // by slot
   std::vector<uint8_t> on_link_;  // by edit: how a link is used now
   std::vector<uint32_t> order_;   // those that wait, as they take turns

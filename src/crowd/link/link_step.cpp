@@ -31,9 +31,9 @@ bool overlaps_with(const Body& a, const Stand& at, const Body& b) {
 void LinkMode::find_users(std::span<Body> bodies) {
   constexpr uint32_t kNone = UINT32_MAX;
   std::sort(came_.begin(), came_.end());
-  const auto middle = static_cast<std::ptrdiff_t>(users_.size());
-  users_.insert(users_.end(), came_.begin(), came_.end());
-  std::inplace_merge(users_.begin(), users_.begin() + middle, users_.end());
+  merged_.resize(users_.size() + came_.size());
+  std::merge(users_.begin(), users_.end(), came_.begin(), came_.end(), merged_.begin());
+  users_.swap(merged_);
   users_.erase(std::unique(users_.begin(), users_.end()), users_.end());
   came_.clear();
   is_user_.assign(shared_.generation.size(), false);

@@ -18,6 +18,12 @@
 namespace throng::links {
 namespace {
 
+std::vector<EditId> add_links(Edits& edits, const Oracle& oracle) {
+  std::vector<EditId> ids;
+  for (const OffMeshLink& one : oracle.links) ids.push_back(add_link(edits, one));
+  return ids;
+}
+
 // Obstacles block whole cells: the one at the end, though the body would not touch the box.
 TEST(CrowdLinkTurns, AnObstacleBesideTheEndWaitsForTheOneOnTheLink) {
   const World world = gap();
@@ -79,6 +85,54 @@ TEST(CrowdLinkTurns, OneThatLeavesAnObstacleLearnsThatItsLinkIsOff) {
     oracle.look(crowd, step);
   }
   EXPECT_EQ(lost, 1u);
+}
+
+// A link straight up through the floor above.
+TEST(CrowdLinkTurns, OnAVerticalLinkAnAvatarKeepsItsHeading) {
+  Scene scene;
+  scene.add_box({0, -0.5, 0}, {10, 0, 10});
+  scene.add_box({4, 2.8, 0}, {10, 3, 10});
+  const World world = test::bake(scene, 0.1);
+  Edits edits;
+  Oracle oracle{world, {{at(world, 6, 5), at(world, 6, 5, 3), 3, true}}};
+  add_links(edits, oracle);
+  Crowd crowd = made(world, {.edits = edits});
+  const AvatarId id = walker(crowd, at(world, 1, 5), at(world, 9, 5, 3));
+  EXPECT_GT(step_until_riding(crowd, id).heading_x, 0.9);
+  crowd.step();
+  EXPECT_GT(crowd.read(id)->heading_x, 0.9);
+  walker(crowd, at(world, 9, 2, 3), at(world, 1, 2));
+  EXPECT_GT(steps_until(crowd, oracle, 2, 800), 0);
+  EXPECT_GT(oracle.riding, 30u);
+}
+
+// A fast one behind a slow one, both so flat that a whole step would lead over it.
+TEST(CrowdLinkTurns, FlatBodiesDoNotPassThroughEachOther) {
+  Scene scene;
+  scene.add_box({0, 0, 0}, {10, 3, 10});
+  scene.add_box({10, -0.5, 0}, {20, 0, 10});
+  const AvatarClass flat{
+      .name = "flat", .height = 0.1, .radius = 0.5, .step = 0.05, .max_slope = 5};
+  const World world = test::bake(scene, 0.1, {flat});
+  Edits edits;
+  Oracle oracle{world, {{at(world, 9.2, 5, 3), at(world, 10.8, 5), 3.4, false}}};
+  add_links(edits, oracle);
+  Crowd crowd = made(world, {.edits = edits});
+  const AvatarId slow = added(crowd, at(world, 8, 5, 3), {.speed = 0.4});
+  const AvatarId fast = added(crowd, at(world, 2, 5, 3), {.speed = 5});
+  const Place goals[] = {at(world, 18, 3), at(world, 18, 7)};
+  const AvatarId ids[] = {slow, fast};
+  crowd.set_goals(ids, goals);
+  int both = 0;
+  for (int step = 0; step < 300; ++step) {
+    crowd.step();
+    const AvatarState a = *crowd.read(slow), b = *crowd.read(fast);
+    if (a.mode != MoveMode::kLink || b.mode != MoveMode::kLink) continue;
+    ++both;
+    ASSERT_GT(b.position.y, a.position.y) << step;
+  }
+  EXPECT_GT(both, 3);
+  EXPECT_GT(crowd.read(fast)->position.x, 17);
 }
 
 }  // namespace

@@ -17,6 +17,11 @@ namespace throng::crowd {
 
 LinkMode::LinkMode(SharedState& shared, WalkMode& walk) : Mode(shared), walk_(walk) {
   walk_.set_takes_links(*this);
+  double lowest = HUGE_VAL;
+  for (const AvatarClass& avatar : data_of(shared.world)->summary.classes) {
+    lowest = std::min(lowest, avatar.height);
+  }
+  lowest_ = std::max(1, static_cast<int32_t>(std::min(lowest, 1e5) * 1000));  // [100 km]
 }
 
 // Whether a class can stand at both ends, its finders know: they lead to no other link.
@@ -68,13 +73,14 @@ double LinkMode::part_of(const LinkUse& use) const {
 
 // Of a walker, so that it counts as one where it leaves the ground and where it comes back.
 LinkLine LinkMode::line_of(const Body& body, const Stand& from, const Stand& to) const {
-  constexpr double kRounded = 2;  // [units]
+  constexpr double kRounded = 2;           // [units]
+  constexpr double kRoundedHeight = 1e-3;  // [m]
   const AvatarClass& avatar = shared_.body_class(body.avatar_class);
   return {.from = point_of(from),
           .to = point_of(to),
           .radius = avatar.radius + kRounded * shared_.unit,
-          .bottom = body_bottom(avatar),
-          .top = body.height * 1e-3};
+          .bottom = body_bottom(avatar) - kRoundedHeight,
+          .top = body.height * 1e-3 + kRoundedHeight};
 }
 
 LinkLine LinkMode::rest_of_line(const Body& body) const {
@@ -171,7 +177,15 @@ void LinkMode::end_leaving(Body& body) {
 
 AvatarState LinkMode::state_of(const Body& body) const {
   AvatarState state = walk_.state_of(body);
-  if (body.on_link) state.mode = MoveMode::kLink;
+  if (!body.on_link) return state;
+  state.mode = MoveMode::kLink;
+  // On a vertical link it keeps its heading.
+  const auto& [x, z] = uses_[body.slot].heading;
+  const double size = std::hypot(x, z);
+  if (body.velocity.x == 0 && body.velocity.z == 0 && size > 0) {
+    state.heading_x = x / size;
+    state.heading_z = z / size;
+  }
   return state;
 }
 

@@ -111,6 +111,7 @@ class LinkMode final : public Mode, public TakesLinks {
   std::vector<Link> links_;       // in force, by edit
   std::vector<LinkUse> uses_;     // by slot; empty, if no link was ever in force
   int32_t widest_ = 0;            // of all bodies [units]
+  int32_t lowest_ = 0;            // of all classes [mm]
   std::vector<uint32_t> users_;   // slots with another state than kNone, rising
   std::vector<uint32_t> bodies_;  // of these, indices; of the step
   std::mutex adding_;

@@ -111,6 +111,11 @@ void LinkMode::enter(std::span<const Body> bodies, Body& body, LinkUse& use) con
   body.on_link = true;
   body.flags = (body.flags & (Body::kHasGoal | Body::kArrived)) | Body::kFlying;
   body.detour_angle = 0;
+  const double size = std::hypot(body.velocity.x, body.velocity.z);
+  const auto component = [&](float velocity) {
+    return static_cast<int16_t>(size > 0 ? std::lrint(velocity / size * INT16_MAX) : 0);
+  };
+  use.heading = {component(body.velocity.x), component(body.velocity.z)};
 }
 
 void LinkMode::ride(std::span<Body> bodies, uint32_t index, EngineCounts& counts) {
@@ -119,12 +124,21 @@ void LinkMode::ride(std::span<Body> bodies, uint32_t index, EngineCounts& counts
   const double dt = shared_.sub_dt(), speed = double{body.speed} * use.factor;
   const double size = length(point_of(use.to) - point_of(use.from));
   const Stand before = body.stand();
-  const auto displace = [&](double along) {
-    const Stand at = along >= size ? use.to : stand_at(use, along / size);
-    const bool is_clear = !near_.any_near(before.x, before.z, [&](uint32_t j) {
+  const auto is_clear = [&](const Stand& at) {
+    return !near_.any_near(before.x, before.z, [&](uint32_t j) {
       return j != index && overlaps_with(body, at, bodies[j]);
     });
-    if (!is_clear) return false;
+  };
+  // In parts that rise no more than the lowest body is high, so that it passes through none.
+  const double rise = std::fabs(double{1} * use.to.y - use.from.y);
+  const auto displace = [&](double along) {
+    const Stand at = along >= size ? use.to : stand_at(use, along / size);
+    const double parts = size > 0 ? std::floor(rise * (along - use.along) / size / lowest_) + 1 : 1;
+    for (double part = 1; part < parts; ++part) {
+      const double there = use.along + (along - use.along) * part / parts;
+      if (!is_clear(stand_at(use, there / size))) return false;
+    }
+    if (!is_clear(at)) return false;
     counts.progress += std::lrint((along - use.along) / (double{body.speed} * dt) * 1e6);
     use.along = along;
     body.x = at.x;

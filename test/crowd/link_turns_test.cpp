@@ -67,6 +67,98 @@ TEST(CrowdLinkTurns, OneThatLandsInAClosingObstacleKeepsItsGoal) {
   }
 }
 
+// Goals are set, or costs, or what flow fields lead around, in each step.
+TEST(CrowdLinkTurns, OneThatSearchesInEachStepKeepsItsTurn) {
+  const World world = gap();
+  for (const char* what : {"goals", "costs", "flows"}) {
+    Edits edits;
+    Oracle oracle{world, {{at(world, 9, 5), at(world, 13, 5), 4, true}}};
+    add_link(edits, oracle.links[0]);
+    const auto area = edits.add_area(Prism::box({0, -1, 0}, {2, 1, 2}), 1);
+    const auto crate = edits.add_obstacle(Prism::box({0.5, 0, 9}, {1, 1, 9.5}));
+    ASSERT_TRUE(area && crate);
+    Crowd crowd = made(world, {.edits = edits});
+    Context context;
+    const Prism left = Prism::box({1, -1, 1}, {5, 1, 9}),
+                right = Prism::box({17, -1, 1}, {21, 1, 9});
+    const auto to_left = crowd.add_target({&left, 1}, context);
+    const auto to_right = crowd.add_target({&right, 1}, context);
+    ASSERT_TRUE(to_left && to_right);
+    std::vector<AvatarId> ids;
+    std::vector<Place> goals;
+    for (int i = 0; i < 4; ++i) {
+      const double z = 2 + i * 1.5;
+      ids.push_back(added(crowd, at(world, 4, z)));
+      goals.push_back(at(world, 18, z + 0.5));
+      ids.push_back(added(crowd, at(world, 18, z)));
+      goals.push_back(at(world, 4, z + 0.5));
+    }
+    const bool by_flow = what[0] == 'f';
+    crowd.set_goals(ids, goals);
+    for (size_t i = 0; by_flow && i < ids.size(); ++i) {
+      crowd.set_targets({&ids[i], 1}, i % 2 == 0 ? *to_right : *to_left);
+    }
+    for (int step = 0; step < 1200; ++step) {
+      if (what[0] == 'g') crowd.set_goals(ids, goals);
+      if (what[0] == 'c') {
+        EXPECT_TRUE(edits.set_area_cost(1, 1.5 + step % 2));
+      }
+      if (by_flow) edits.set_active(*crate, step % 2 == 0);
+      crowd.step();
+      oracle.look(crowd, step);
+      if (HasFatalFailure()) return;
+    }
+    for (size_t i = 0; i < ids.size(); ++i) {
+      EXPECT_EQ(crowd.read(ids[i])->position.x > 11, i % 2 == 0) << what << ' ' << i;
+    }
+  }
+}
+
+// The later one has the lower slot.
+TEST(CrowdLinkTurns, ASearchDoesNotChangeTheOrderOfComing) {
+  const World world = gap();
+  Edits edits;
+  Oracle oracle{world, {{at(world, 9, 5), at(world, 13, 5), 4, false}}};
+  add_link(edits, oracle.links[0]);
+  Crowd crowd = made(world, {.edits = edits});
+  const AvatarId later = walker(crowd, at(world, 3, 6), at(world, 19, 6));
+  const AvatarId first = walker(crowd, at(world, 7, 4), at(world, 19, 4));
+  const AvatarId blocker = added(crowd, at(world, 13, 5));
+  for (int step = 0; step < 120; ++step) crowd.step();
+  const Place goal = at(world, 18, 3);
+  crowd.set_goals({&first, 1}, {&goal, 1});
+  crowd.step();
+  crowd.remove({&blocker, 1});
+  for (int step = 0; step < 100; ++step) {
+    crowd.step();
+    EXPECT_NE(crowd.read(later)->mode, MoveMode::kLink);
+    if (crowd.read(first)->mode == MoveMode::kLink) break;
+  }
+  EXPECT_GT(steps_until(crowd, oracle, 2, 600), 0);
+}
+
+// One that waits at a link and gets a goal on its own side goes there.
+TEST(CrowdLinkTurns, AnotherPathEndsTheWait) {
+  const World world = gap();
+  Edits edits;
+  Oracle oracle{world, {{at(world, 9, 5), at(world, 13, 5), 4, false}}};
+  add_link(edits, oracle.links[0]);
+  Crowd crowd = made(world, {.edits = edits});
+  const AvatarId id = walker(crowd, at(world, 7, 5), at(world, 19, 5));
+  const AvatarId blocker = added(crowd, at(world, 13, 5));
+  for (int step = 0; step < 60; ++step) crowd.step();
+  const Place here = at(world, 2, 2), nowhere = {};
+  crowd.set_goals({&id, 1}, {&here, 1});
+  EXPECT_GT(steps_until(crowd, oracle, 1, 200), 0);
+  EXPECT_NEAR(crowd.read(id)->position.x, 2, 0.5);
+  const Place there = at(world, 19, 5);
+  crowd.set_goals({&id, 1}, {&there, 1});
+  for (int step = 0; step < 120; ++step) crowd.step();
+  crowd.set_goals({&id, 1}, {&nowhere, 1});
+  crowd.remove({&blocker, 1});
+  for (int step = 0; step < 60; ++step) EXPECT_EQ(crowd.step().on_links, 0u);
+}
+
 TEST(CrowdLinkTurns, OneThatLeavesAnObstacleLearnsThatItsLinkIsOff) {
   const World world = gap();
   Edits edits;

@@ -45,6 +45,12 @@ void LinkMode::read_links() {
   if (!links_.empty()) uses_.resize(shared_.generation.size());
 }
 
+const LinkMode::Link* LinkMode::find_link(EditId edit) const {
+  const auto at = std::lower_bound(links_.begin(), links_.end(), edit,
+                                   [](const Link& link, EditId id) { return link.edit < id; });
+  return at != links_.end() && at->edit == edit ? &*at : nullptr;
+}
+
 uint64_t LinkMode::count_riding() const {
   return static_cast<uint64_t>(std::count_if(users_.begin(), users_.end(), [&](uint32_t slot) {
     return uses_[slot].state == LinkUse::kRides;
@@ -110,16 +116,25 @@ void LinkMode::add(const NewAvatar& avatar) {
 
 void LinkMode::fit(const BodyExtent& all, float /*fastest*/) { widest_ = all.widest; }
 
-// One that is on a link arrives at its end first.
+// One that is on a link arrives at its end first. One that waits keeps its turn until it knows
+// whether its new path takes the same link.
 void LinkMode::set_goal(Body& body, const Place& goal) {
-  const bool rides = body.on_link;
-  if (!rides && !uses_.empty()) uses_[body.slot] = {};
   walk_.set_goal(body, goal);
-  if (rides) body.flags = (body.flags & Body::kHasGoal) | Body::kFlying;
+  if (body.on_link) {
+    body.flags = (body.flags & Body::kHasGoal) | Body::kFlying;
+    head_to_end(body);
+  } else if (!uses_.empty() && !body.has(Body::kHasGoal)) {
+    uses_[body.slot] = {};
+  }
 }
 
 void LinkMode::set_target(Body& body) {
-  if (!body.on_link && !uses_.empty()) uses_[body.slot] = {};
+  if (body.on_link) head_to_end(body);
+}
+
+void LinkMode::head_to_end(Body& body) const {
+  body.local_target_x = uses_[body.slot].to.x;
+  body.local_target_z = uses_[body.slot].to.z;
 }
 
 void LinkMode::set_velocity(Body& body, const Vec3d& velocity) {

@@ -36,7 +36,8 @@ class LinkMode final : public Mode, public TakesLinks {
   bool begin_step() override;
   bool plan_at_start(Body& body, const Route& route, const StrideGround& ground,
                      uint64_t nth) override;
-  void forget(Body& body) override;
+  void begin_search(Body& body) override;
+  void end_search(Body& body, const Route* found) override;
 
   Result<void> open_class(size_t number, Context& context) override;
   void close_class(size_t /*number*/) override {}
@@ -79,7 +80,10 @@ class LinkMode final : public Mode, public TakesLinks {
     std::array<uint32_t, 2> waiting{};  // to go there, and back
   };
   void read_links();
+  /// Null: it is not in force.
+  [[nodiscard]] const Link* find_link(EditId edit) const;
   [[nodiscard]] Vec3d point_of(const Stand& stand) const;
+  void head_to_end(Body& body) const;
   /// Where an avatar is on its link after that part of the line. [0 to 1]
   static Stand stand_at(const LinkUse& use, double part);
   [[nodiscard]] double part_of(const LinkUse& use) const;
@@ -94,6 +98,7 @@ class LinkMode final : public Mode, public TakesLinks {
   bool begin_to_wait(Body& body, const PathPoint& start, const PathPoint& end);
   [[nodiscard]] bool is_beside_a_link(int32_t x, int32_t z, int32_t range) const;
   void stand_aside(Body& body, LinkUse& use) const;
+  void stop_standing(Body& body, const LinkUse& use) const;
   void give_turn(Body& body, LinkUse& use) const;
   void end_use(Body& body, LinkUse& use) const;
   [[nodiscard]] bool end_is_free(std::span<const Body> bodies, const Body& body,

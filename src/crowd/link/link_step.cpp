@@ -88,7 +88,8 @@ void LinkMode::step(std::span<Body> bodies, EngineCounts& counts, EngineTimes& t
 
 // One whose turn it is leaves the ground once it is at the start and the end is free.
 void LinkMode::enter(std::span<const Body> bodies, Body& body, LinkUse& use) const {
-  if (body.has(Body::kNeedsPath)) return;  // It has lost its path, and searches again.
+  // It has lost its path, or its link, and searches again.
+  if (body.has(Body::kNeedsPath) || find_link(use.link) == nullptr) return;
   const auto near = static_cast<int64_t>(kAtStart / shared_.unit);
   const StrideGround ground(shared_.ground_of(body),
                             world::step_mm(shared_.body_class(body.avatar_class)));
@@ -111,6 +112,7 @@ void LinkMode::enter(std::span<const Body> bodies, Body& body, LinkUse& use) con
   body.on_link = true;
   body.flags = (body.flags & (Body::kHasGoal | Body::kArrived)) | Body::kFlying;
   body.detour_angle = 0;
+  head_to_end(body);
   const double size = std::hypot(body.velocity.x, body.velocity.z);
   const auto component = [&](float velocity) {
     return static_cast<int16_t>(size > 0 ? std::lrint(velocity / size * INT16_MAX) : 0);

@@ -26,7 +26,8 @@ constexpr uint64_t kSightChecks = 16;  // decisions
 constexpr double kEndMargin = 0.02;    // [m] around one that lands
 constexpr uint8_t kForward = 1, kBack = 2, kEntered = 4, kClosed = 8;  // of on_link_
 
-bool same(const PathPoint& a, const PathPoint& b) {
+template <class Point>
+bool same(const Point& a, const PathPoint& b) {
   constexpr int32_t kRounded = 2;  // [units]
   return a.level == b.level && std::abs(a.x - b.x) <= kRounded && std::abs(a.z - b.z) <= kRounded;
 }
@@ -85,13 +86,14 @@ bool LinkMode::begin_to_wait(Body& body, const PathPoint& start, const PathPoint
 
 bool LinkMode::plan_at_start(Body& body, const Route& route, const StrideGround& ground,
                              uint64_t nth) {
-  if (!leads_to_link(route)) return false;
   const LinkUse& use = uses_[body.slot];
+  const bool leads = leads_to_link(route);
+  if (use.state == LinkUse::kWaits && !leads) return true;
+  if (!leads || use.state == LinkUse::kEnters) return false;
   const PathPoint& start = route.corners[route.next];
   const auto sees = [&] {
     return ground.sees(body.level, body.point(), {start.x, start.z}, start.level, HUGE_VALF);
   };
-  if (use.state == LinkUse::kEnters) return false;
   if (use.state == LinkUse::kWaits) {
     if (nth % kSightChecks != 0 || sees()) return true;
     body.flags |= Body::kNeedsPath;
@@ -114,14 +116,32 @@ bool LinkMode::plan_at_start(Body& body, const Route& route, const StrideGround&
   return false;  // If it is its turn at once, it does not stop.
 }
 
-void LinkMode::forget(Body& body) { end_use(body, uses_[body.slot]); }
+void LinkMode::begin_search(Body& body) { stop_standing(body, uses_[body.slot]); }
+
+// One that searches in each step, because its goal moves or costs change, keeps its turn and the
+// place where it waits, as long as it takes the same link.
+void LinkMode::end_search(Body& body, const Route* found) {
+  LinkUse& use = uses_[body.slot];
+  if (use.state == LinkUse::kNone) return;
+  const bool stays = found != nullptr && found->by_link != 0 && find_link(use.link) != nullptr &&
+                     same(use.from, found->corners[found->count - 2u]) &&
+                     same(use.to, found->corners[found->count - 1u]);
+  if (!stays) {
+    use = {};
+  } else if (use.state == LinkUse::kWaits && use.stands != 0) {
+    stand_aside(body, use);
+  }
+}
 
 void LinkMode::end_use(Body& body, LinkUse& use) const {
-  if (use.state == LinkUse::kWaits && use.stands != 0) {
-    body.clear(Body::kLast);
-    if (use.arrived == 0) body.clear(Body::kArrived);
-  }
+  stop_standing(body, use);
   use = {};
+}
+
+void LinkMode::stop_standing(Body& body, const LinkUse& use) const {
+  if (use.state != LinkUse::kWaits || use.stands == 0) return;
+  body.clear(Body::kLast);
+  if (use.arrived == 0) body.clear(Body::kArrived);
 }
 
 // Would a body that stands there be in the path of those on a link? In plan, whatever its height.
@@ -168,17 +188,17 @@ void LinkMode::stand_aside(Body& body, LinkUse& use) const {
 }
 
 void LinkMode::give_turn(Body& body, LinkUse& use) const {
-  if (use.stands != 0) {
-    body.clear(Body::kLast);
-    if (use.arrived == 0) body.clear(Body::kArrived);
-  }
+  stop_standing(body, use);
   use.stands = 0;
   use.state = LinkUse::kEnters;
   use.since = shared_.sub_step;
   body.clear(Body::kContinues);
   body.detour_angle = 0;
-  body.local_target_x = use.from.x;
-  body.local_target_z = use.from.z;
+  // The start, or a corner before it.
+  const Route& route = walk_.route(body.slot);
+  const bool leads = route.by_link != 0 && route.next + 1 < route.count;
+  body.local_target_x = leads ? route.corners[route.next].x : use.from.x;
+  body.local_target_z = leads ? route.corners[route.next].z : use.from.z;
 }
 
 bool LinkMode::is_obstructed(const Body& body, const Stand& from, const Stand& to) const {

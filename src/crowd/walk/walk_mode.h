@@ -45,8 +45,10 @@ class TakesLinks {
   /// `nth` as for follow(). On any worker.
   virtual bool plan_at_start(Body& body, const Route& route, const StrideGround& ground,
                              uint64_t nth) = 0;
-  /// It needs another path. On any worker.
-  virtual void forget(Body& body) = 0;
+  /// Called before one of them searches for another path, and then with the path, or null: there is
+  /// none. On any worker.
+  virtual void begin_search(Body& body) = 0;
+  virtual void end_search(Body& body, const Route* found) = 0;
 };
 
 class WalkMode final : public Mode {

@@ -43,9 +43,11 @@ void WalkMode::plan(std::span<Body> bodies, int32_t worker) {
     // The link was switched off while it could not search.
     if (!takes_links && leads_to_link(route)) body.flags |= Body::kNeedsPath;
     if (!body.has(Body::kNeedsPath)) continue;
-    if (takes_links) takes_links_->forget(body);
+    if (takes_links) takes_links_->begin_search(body);
     ++asked;
-    if (plan_path(body, route, ground, worker)) continue;
+    const bool is_found = plan_path(body, route, ground, worker);
+    if (takes_links) takes_links_->end_search(body, is_found ? &route : nullptr);
+    if (is_found) continue;
     // A target that cannot be walked to may be flown to.
     const bool takes_off = parts.flies && body.target != 0 && takes_off_->take_off(body);
     if (!takes_off) shared_.drop_goal(body);

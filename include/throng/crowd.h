@@ -146,12 +146,15 @@ struct CrowdConfig {
   ///
   /// Avatars of classes that neither fly nor go over nodes take off-mesh links, with
   /// Routing::kPaths. A link is a corridor: they take turns in the order in which they came, in one
-  /// direction at a time, and wait near the start while an avatar or an obstacle is at its end. On
-  /// it an avatar moves along a straight line, at its speed times length / cost, at most its speed,
-  /// and nothing stops it but other avatars: a link that is switched off lets it arrive, an
-  /// obstacle on the rest of its line waits for it, and a new goal or velocity holds from the end
-  /// on. An avatar that stays at an end for ever closes the link in that direction. Classes that go
-  /// over nodes take NodeConfig::off_mesh_links; flyers take none.
+  /// direction at a time, and wait near the start while an avatar or an obstacle is at its end.
+  /// Links that cross, share an end or lie so close that avatars on them could touch are one
+  /// corridor: one of them is used at a time. On it an avatar moves along a straight line, at its
+  /// speed times length / cost, at least a thousandth of its speed and at most all of it, and
+  /// nothing stops it but other avatars: a link that is switched off lets it arrive, an obstacle on
+  /// the rest of its line waits for it, and a new goal or velocity holds from the end on. An avatar
+  /// that stays at an end for ever closes the link in that direction; one that stays on ground
+  /// which the line crosses stops those on the link. Classes that go over nodes take
+  /// NodeConfig::off_mesh_links; flyers take none.
   Edits edits = {};
   /// PathConfig::slope_cost of avatars that walk or climb. [0 to 1000]
   double slope_cost = 0;

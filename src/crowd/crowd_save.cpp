@@ -380,7 +380,9 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
     for (const crowd::Mode* mode : s.modes) sound = sound && mode->is_in_place(body);
     if (!sound) return bad("is not sound; save the crowd again");
     const crowd::Mode& mode = s.mode_of(body);
-    s.fit(mode.extent_of(body, mode.state_of(body).radius), body.speed);
+    const crowd::BodyExtent extent = mode.extent_of(body, mode.state_of(body).radius);
+    s.fit(extent, body.speed);
+    if (&mode == &s.link) s.link.fit_taking(extent);
     s.walk.engine().add(body);
   }
   s.where_is_old = true;

@@ -24,6 +24,100 @@ std::vector<EditId> add_links(Edits& edits, const Oracle& oracle) {
   return ids;
 }
 
+// Groups on both sides of the gap that change sides.
+void add_groups(Crowd& crowd, const World& world, int each, const AvatarSpawn& like = {}) {
+  for (int i = 0; i < each; ++i) {
+    const double x = 3 + (i % 3) * 1.2, z = 3 + static_cast<double>(i / 3) * 1.5;
+    for (const bool back : {false, true}) {
+      const double begin = back ? x + 13 : x, end = back ? x : x + 13;
+      const AvatarId id = added(crowd, at(world, begin, z), like);
+      EXPECT_TRUE(id);
+      const Place goal = at(world, end, z + 0.6);
+      crowd.set_goals({&id, 1}, {&goal, 1});
+    }
+  }
+}
+
+TEST(CrowdLinkTurns, OneWayLinksWithTheSameEndsAreOneCorridor) {
+  const World world = gap();
+  Edits edits;
+  Oracle oracle{world,
+                {{at(world, 9, 5), at(world, 13, 5), 4, false},
+                 {at(world, 13, 5), at(world, 9, 5), 4, false}}};
+  add_links(edits, oracle);
+  Crowd crowd = made(world, {.edits = edits});
+  add_groups(crowd, world, 6);
+  EXPECT_GT(steps_until(crowd, oracle, 12, 3000), 0);
+}
+
+TEST(CrowdLinkTurns, LinksThatCrossAreOneCorridor) {
+  const World world = gap();
+  Edits edits;
+  Oracle oracle{world,
+                {{at(world, 9, 3), at(world, 13, 7), 5.7, true},
+                 {at(world, 9, 7), at(world, 13, 3), 5.7, true}}};
+  add_links(edits, oracle);
+  Crowd crowd = made(world, {.edits = edits});
+  add_groups(crowd, world, 6);
+  EXPECT_GT(steps_until(crowd, oracle, 12, 4000), 0);
+}
+
+TEST(CrowdLinkTurns, LinksThatShareTheirFarEndAreOneCorridor) {
+  const World world = gap();
+  Edits edits;
+  Oracle oracle{world,
+                {{at(world, 9, 3), at(world, 13, 5), 4.5, false},
+                 {at(world, 9, 7), at(world, 13, 5), 4.5, false},
+                 {at(world, 13, 9), at(world, 9, 9), 4, false}}};
+  add_links(edits, oracle);
+  Crowd crowd = made(world, {.edits = edits});
+  add_groups(crowd, world, 6);
+  EXPECT_GT(steps_until(crowd, oracle, 12, 3000), 0);
+}
+
+// Both links are as long, so that avatars take the one or the other for ever: none starves.
+TEST(CrowdLinkTurns, AStreamOnALinkLetsAnAvatarCrossIt) {
+  const World world = gap();
+  Edits edits;
+  Oracle oracle{world,
+                {{at(world, 9, 3), at(world, 13, 7), 5.7, true},
+                 {at(world, 9, 7), at(world, 13, 3), 5.7, false}}};
+  add_links(edits, oracle);
+  Crowd crowd = made(world, {.edits = edits});
+  std::vector<AvatarId> stream;
+  for (int i = 0; i < 5; ++i)
+    stream.push_back(walker(crowd, at(world, 3 + i, 1), at(world, 16 + i, 9)));
+  const AvatarId one = walker(crowd, at(world, 4, 9), at(world, 14.5, 1.5));
+  bool arrives = false;
+  for (int step = 0; step < 1500 && !arrives; ++step) {
+    crowd.step();
+    oracle.look(crowd, step);
+    if (HasFatalFailure()) return;
+    for (const AvatarId id : crowd.arrived()) {
+      arrives = arrives || id == one;
+      if (id == one) continue;
+      const double x = crowd.read(id)->position.x;
+      const Place goal = x > 11 ? at(world, 3.0 + id.slot1, 1) : at(world, 15.0 + id.slot1, 9);
+      crowd.set_goals({&id, 1}, {&goal, 1});
+    }
+  }
+  EXPECT_TRUE(arrives);
+}
+
+TEST(CrowdLinkTurns, ALinkThatIsAddedAgainWaitsForThoseOnTheOldOne) {
+  const World world = gap();
+  Edits edits;
+  Oracle oracle{world, {{at(world, 9, 5), at(world, 13, 5), 4, true}}};
+  const EditId old = add_link(edits, oracle.links[0]);
+  Crowd crowd = made(world, {.edits = edits});
+  const AvatarId first = walker(crowd, at(world, 8, 5), at(world, 19, 5));
+  walker(crowd, at(world, 14, 5), at(world, 3, 5));
+  step_until_riding(crowd, first);
+  EXPECT_TRUE(edits.remove(old));
+  add_link(edits, oracle.links[0]);
+  EXPECT_GT(steps_until(crowd, oracle, 2, 600), 0);
+}
+
 // Obstacles block whole cells: the one at the end, though the body would not touch the box.
 TEST(CrowdLinkTurns, AnObstacleBesideTheEndWaitsForTheOneOnTheLink) {
   const World world = gap();
@@ -177,6 +271,58 @@ TEST(CrowdLinkTurns, OneThatLeavesAnObstacleLearnsThatItsLinkIsOff) {
     oracle.look(crowd, step);
   }
   EXPECT_EQ(lost, 1u);
+}
+
+TEST(CrowdLinkTurns, ALinkThatIsAddedBeforeSavingChangesNothing) {
+  const World world = gap();
+  Edits edits;
+  Crowd crowd = made(world, {.edits = edits});
+  walker(crowd, at(world, 3, 5), at(world, 7, 5));
+  crowd.step();
+  add_link(edits, {at(world, 9, 5), at(world, 13, 5), 4, true});
+  const std::vector<uint8_t> saved = crowd.save();
+  Context context;
+  auto restored = Crowd::restore(world, {.edits = edits}, saved, context);
+  ASSERT_TRUE(restored) << restored.error().message;
+  EXPECT_EQ(restored->save(), saved);
+  EXPECT_EQ(restored->state_hash(), crowd.state_hash());
+  crowd.step();
+  restored->step();
+  EXPECT_EQ(restored->state_hash(), crowd.state_hash());
+}
+
+// Those beyond all views take longer steps, and not all in each step.
+TEST(CrowdLinkTurns, AvatarsOfLowDetailTakeThem) {
+  const World world = gap();
+  Edits edits;
+  Oracle oracle{world, {{at(world, 9, 5), at(world, 13, 5), 4, true}}};
+  add_links(edits, oracle);
+  Crowd crowd = made(world, {.tuning = {.low_detail_steps = 4}, .edits = edits});
+  const CrowdView view{.position = {20, 2, 1}, .radius = 4};
+  crowd.set_views({&view, 1});
+  add_groups(crowd, world, 6);
+  EXPECT_GT(steps_until(crowd, oracle, 12, 4000), 0);
+}
+
+TEST(CrowdLinkTurns, WideAndNarrowAvatarsPass) {
+  const World world = gap();
+  Edits edits;
+  Oracle oracle{world,
+                {{at(world, 9, 4.4), at(world, 13, 4.4), 4, true},
+                 {at(world, 9, 5.6), at(world, 13, 5.6), 4, true}}};
+  add_links(edits, oracle);
+  Crowd crowd = made(world, {.edits = edits});
+  for (int i = 0; i < 6; ++i) {
+    const double z = 2 + i * 1.2;
+    for (const bool back : {false, true}) {
+      const AvatarSpawn like{.radius = 0.12 + 0.06 * i};
+      const AvatarId id = added(crowd, at(world, back ? 17 : 5, z), like);
+      ASSERT_TRUE(id);
+      const Place goal = at(world, back ? 4 : 18, z);
+      crowd.set_goals({&id, 1}, {&goal, 1});
+    }
+  }
+  EXPECT_GT(steps_until(crowd, oracle, 12, 4000), 0);
 }
 
 // A link straight up through the floor above.

@@ -20,7 +20,7 @@
 #include "throng/path.h"
 #include "worlds.h"
 
-// Walkers on off-mesh links.
+// Walkers on off-mesh links. Turns at links: link_turns_test.cpp.
 namespace throng::links {
 namespace {
 
@@ -530,6 +530,25 @@ TEST(CrowdLinks, ALineMeetsAPrismExactly) {
   EXPECT_FALSE(touches({0, 3, 1.5}, {3, 0.6, 1.5}));
   EXPECT_TRUE(touches({0, 3, 1.5}, {3, -0.5, 1.5}));
   EXPECT_TRUE(touches({1.5, 3, 1.5}, {1.5, 0.5, 1.5}));
+}
+
+TEST(CrowdLinks, LinesOfTwoBodiesMeetWhereTheirHeightsDo) {
+  const auto meet = [](Vec3d from, Vec3d to) {
+    const crowd::LinkLine line{{0, 0, 0}, {4, 0, 4}, 0.25, 0, 1.75};
+    const crowd::LinkLine other{from, to, 0.25, 0, 1.75};
+    EXPECT_EQ(crowd::meets(line, other), crowd::meets(other, line));
+    return crowd::meets(line, other);
+  };
+  EXPECT_TRUE(meet({0, 0, 4}, {4, 0, 0}));
+  EXPECT_TRUE(meet({0, 1.7, 4}, {4, 1.7, 0}));
+  EXPECT_FALSE(meet({0, 1.8, 4}, {4, 1.8, 0}));
+  EXPECT_FALSE(meet({0, -1.8, 4}, {4, -1.8, 0}));
+  EXPECT_TRUE(meet({0.6, 0, 0}, {4.6, 0, 4}));
+  EXPECT_FALSE(meet({0.8, 0, 0}, {4.8, 0, 4}));
+  EXPECT_TRUE(meet({8, 9, 4}, {4, 0, 4}));  // to the same end
+  EXPECT_FALSE(meet({4, 9, 0}, {0, 1.8, 4}));
+  EXPECT_TRUE(meet({2, 9, 2}, {2, 1, 2}));
+  EXPECT_FALSE(meet({2, 9, 2}, {2, 2, 2}));
 }
 
 TEST(CrowdLinks, WhereLinksMakeNoSenseNothingHappens) {

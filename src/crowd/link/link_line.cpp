@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 // A moving cylinder against an upright convex prism: the part of the line on which their heights
 // overlap, and the distance of this part from the polygon. Exact, linear in the polygon's corners.
+// Two cylinders: the same of both lines, each with the heights of the whole other; constant time.
 namespace throng::crowd {
 namespace {
 
@@ -39,20 +42,27 @@ bool keep_above(double value, double rise, double& from, double& to) {
   return from <= to;
 }
 
-}  // namespace
-
-bool meets(const LinkLine& line, const Prism& prism) {
+// In plan, the part of a line on which the cylinder overlaps these heights.
+std::optional<std::pair<Point, Point>> part_between(const LinkLine& line, double low, double high) {
   double first = 0, last = 1;
   const double rise = line.to.y - line.from.y;
-  if (!keep_above(line.from.y + line.top - prism.low, rise, first, last) ||
-      !keep_above(prism.high - line.from.y - line.bottom, -rise, first, last)) {
-    return false;
+  if (!keep_above(line.from.y + line.top - low, rise, first, last) ||
+      !keep_above(high - line.from.y - line.bottom, -rise, first, last)) {
+    return std::nullopt;
   }
   const auto at = [&](double part) {
     return Point{line.from.x + part * (line.to.x - line.from.x),
                  line.from.z + part * (line.to.z - line.from.z)};
   };
-  const Point a = at(first), b = at(last);
+  return std::pair(at(first), at(last));
+}
+
+}  // namespace
+
+bool meets(const LinkLine& line, const Prism& prism) {
+  const auto part = part_between(line, prism.low, prism.high);
+  if (!part) return false;
+  const auto& [a, b] = *part;
   const double range = line.radius * line.radius;
   bool left = true, right = true;  // of all sides
   for (size_t i = 0; i < prism.corners.size(); ++i) {
@@ -66,6 +76,21 @@ bool meets(const LinkLine& line, const Prism& prism) {
     right = right && side <= 0;
   }
   return left || right;
+}
+
+bool meets(const LinkLine& a, const LinkLine& b) {
+  const auto part_beside = [](const LinkLine& line, const LinkLine& other) {
+    return part_between(line, std::min(other.from.y, other.to.y) + other.bottom,
+                        std::max(other.from.y, other.to.y) + other.top);
+  };
+  const auto of_a = part_beside(a, b), of_b = part_beside(b, a);
+  if (!of_a || !of_b) return false;
+  const auto& [p, q] = *of_a;
+  const auto& [c, d] = *of_b;
+  const double nearest =
+      std::min({square_to(p, c, d), square_to(q, c, d), square_to(c, p, q), square_to(d, p, q)});
+  const double range = a.radius + b.radius;
+  return nearest < range * range || cross_each_other(p, q, c, d);
 }
 
 }  // namespace throng::crowd

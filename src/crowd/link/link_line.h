@@ -5,7 +5,7 @@
 #include "throng/base.h"
 #include "throng/world.h"
 
-/// A body that moves along a straight line in space, against obstacles.
+/// Bodies that move along straight lines in space, against obstacles and each other.
 namespace throng::crowd {
 
 /// An upright cylinder whose feet move from one point to another.
@@ -18,5 +18,8 @@ struct LinkLine {
 
 /// Does the cylinder touch the prism anywhere on its line?
 bool meets(const LinkLine& line, const Prism& prism);
+/// May two such cylinders touch each other, wherever each is on its line? True may be wrong where
+/// both lines rise.
+bool meets(const LinkLine& a, const LinkLine& b);
 
 }  // namespace throng::crowd

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "crowd/mode/saved_rows.h"
 #include "path/edits/edit_list.h"
@@ -14,6 +16,21 @@
 // Off-mesh links of a crowd: the contract of modes but for turns (link_turns.cpp) and moves
 // (link_step.cpp). What is said of an avatar on foot, WalkMode answers.
 namespace throng::crowd {
+
+namespace {
+
+// Where a link begins or ends, on the level that its place names. None: there is no such place.
+std::optional<Stand> stand_of(const world::WorldData& world, const Place& place) {
+  if (!world::ground_point(world, place)) return std::nullopt;
+  const PathPoint at = point_of(world, place);
+  const world::GroundLevel level = world::ground_level(world, at.level, 0);
+  if (level.zone == nullptr) return std::nullopt;
+  const double feet = world::place_at(world, level, {at.x, at.z}).position.y;
+  return Stand{at.x, at.z, static_cast<int32_t>(std::lrint(std::clamp(feet, -1e6, 1e6) * 1000)),
+               at.level};
+}
+
+}  // namespace
 
 LinkMode::LinkMode(SharedState& shared, WalkMode& walk) : Mode(shared), walk_(walk) {
   walk_.set_takes_links(*this);
@@ -35,20 +52,63 @@ void LinkMode::read_links() {
     const path::EditList::Edit& edit = list.edits[id - 1];
     if (edit.kind != path::EditList::Kind::kOffMeshLink || !edit.active || edit.removed) continue;
     const OffMeshLink& link = edit.link;
-    if (!world::ground_point(world, link.from) || !world::ground_point(world, link.to)) continue;
-    links_.push_back({.edit = id,
-                      .from = throng::crowd::point_of(world, link.from),
-                      .to = throng::crowd::point_of(world, link.to),
-                      .cost = link.cost,
-                      .two_way = link.two_way});
+    const auto from = stand_of(world, link.from), to = stand_of(world, link.to);
+    if (!from || !to) continue;
+    Link& added = links_.emplace_back();
+    added.edit = id;
+    added.from = *from;
+    added.to = *to;
+    added.cost = link.cost;
+    added.two_way = link.two_way;
   }
-  if (!links_.empty()) uses_.resize(shared_.generation.size());
+  find_corridors();
+}
+
+// Links along x, each with those that begin before it ends.
+void LinkMode::find_corridors() {
+  constexpr double kRise = 0.5;  // [m] between a link's start and where an avatar leaves the ground
+  std::vector<LinkLine> lines;
+  std::vector<std::array<double, 2>> extents;  // along x
+  std::vector<uint32_t> order, parent;
+  for (const Link& link : links_) {
+    const double radius = taking_.widest * shared_.unit + kAtStart;
+    const LinkLine line{point_of(link.from), point_of(link.to), radius, 0,
+                        taking_.tallest * 1e-3 + kRise};
+    extents.push_back(
+        {std::min(line.from.x, line.to.x) - radius, std::max(line.from.x, line.to.x) + radius});
+    order.push_back(static_cast<uint32_t>(lines.size()));
+    parent.push_back(order.back());
+    lines.push_back(line);
+  }
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    return std::pair(extents[a], a) < std::pair(extents[b], b);
+  });
+  const auto root_of = [&](uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (size_t n = 0; n < order.size(); ++n) {
+    for (size_t m = n + 1; m < order.size() && extents[order[m]][0] <= extents[order[n]][1]; ++m) {
+      if (!meets(lines[order[n]], lines[order[m]])) continue;
+      const uint32_t a = root_of(order[n]), b = root_of(order[m]);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  for (uint32_t i = 0; i < links_.size(); ++i) links_[i].corridor = root_of(i);
+  corridors_.assign(links_.size(), {});
 }
 
 const LinkMode::Link* LinkMode::find_link(EditId edit) const {
   const auto at = std::lower_bound(links_.begin(), links_.end(), edit,
                                    [](const Link& link, EditId id) { return link.edit < id; });
   return at != links_.end() && at->edit == edit ? &*at : nullptr;
+}
+
+void LinkMode::fit_taking(const BodyExtent& body) {
+  if (body.widest <= taking_.widest && body.tallest <= taking_.tallest) return;
+  taking_.widest = std::max(taking_.widest, body.widest);
+  taking_.tallest = std::max(taking_.tallest, body.tallest);
+  find_corridors();
 }
 
 uint64_t LinkMode::count_riding() const {
@@ -109,12 +169,14 @@ bool LinkMode::draw(NewAvatar& avatar, const AvatarSpawn& like, uint64_t n) cons
 }
 
 void LinkMode::add(const NewAvatar& avatar) {
-  if (uses_.empty() && links_.empty()) return;
+  const Body& body = avatar.body;
+  if (!shared_.flies(body.avatar_class) && !shared_.climbs(body.avatar_class)) {
+    fit_taking({body.radius, body.radius, body.height});
+  }
+  if (uses_.empty()) return;
   uses_.resize(shared_.generation.size());
-  uses_[avatar.body.slot] = {};
+  uses_[body.slot] = {};
 }
-
-void LinkMode::fit(const BodyExtent& all, float /*fastest*/) { widest_ = all.widest; }
 
 // One that is on a link arrives at its end first. One that waits keeps its turn until it knows
 // whether its new path takes the same link.
@@ -216,7 +278,12 @@ uint64_t LinkMode::hash(std::span<const Body> by_slot, uint64_t hash) const {
 }
 
 void LinkMode::add_memory(CrowdMemory& memory) const {
-  memory.paths += uses_.capacity() * kRowBytes;
+  memory.paths += uses_.capacity() * kRowBytes + links_.capacity() * sizeof(Link) +
+                  corridors_.capacity() * sizeof(Corridor) + lines_.capacity() * sizeof(lines_[0]) +
+                  is_user_.capacity() / 8 + near_.bytes() +
+                  (users_.capacity() + bodies_.capacity() + came_.capacity() + merged_.capacity() +
+                   order_.capacity()) *
+                      sizeof(uint32_t);
 }
 
 void LinkMode::save(std::vector<uint8_t>& out) const { put_rows(out, uses_.data(), uses_.size()); }
@@ -241,6 +308,8 @@ bool LinkMode::is_sound(const Body& body) const {
   }
   const world::WorldData& world = *data_of(shared_.world);
   const auto is_place = [&](const Stand& at) {
+    constexpr int32_t kMaxHeight = 1'000'000'000;  // [mm]
+    if (at.y < -kMaxHeight || at.y > kMaxHeight) return false;
     if (at.x < 0 || at.z < 0 || !world::in_grid(world, {at.x, at.z})) return false;
     const world::GroundPoint p{at.x, at.z};
     const auto tile =

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <mutex>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "crowd/link/link_line.h"
@@ -22,10 +23,15 @@ namespace throng::crowd {
 class LinkMode final : public Mode, public TakesLinks {
  public:
   static constexpr size_t kRowBytes = sizeof(LinkUse);
+  static constexpr double kAtStart = 0.15;  ///< From a link's start, where one leaves the ground.
+                                            ///< [m]
 
   /// `walk` outlives it.
   LinkMode(SharedState& shared, WalkMode& walk);
 
+  /// No avatar that takes links is, or was, wider or taller. [units, mm]
+  [[nodiscard]] const BodyExtent& taking() const { return taking_; }
+  void fit_taking(const BodyExtent& body);
   /// How many avatars are on links.
   [[nodiscard]] uint64_t count_riding() const;
   /// Does an avatar wait for its turn at the start of a link?
@@ -45,7 +51,7 @@ class LinkMode final : public Mode, public TakesLinks {
   Result<bool> begin_draws(const AvatarSpawn& like) override;
   [[nodiscard]] bool draw(NewAvatar& avatar, const AvatarSpawn& like, uint64_t n) const override;
   void add(const NewAvatar& avatar) override;
-  void fit(const BodyExtent& all, float fastest) override;
+  void fit(const BodyExtent& all, float /*fastest*/) override { widest_ = all.widest; }
   void set_goal(Body& body, const Place& goal) override;
   void set_target(Body& body) override;
   void set_velocity(Body& body, const Vec3d& velocity) override;
@@ -74,12 +80,21 @@ class LinkMode final : public Mode, public TakesLinks {
   /// A link in force.
   struct Link {
     EditId edit = 0;
-    PathPoint from, to;
+    Stand from, to;
     double cost = 0;  // [m]
     bool two_way = false;
+    uint32_t corridor = 0;
     std::array<uint32_t, 2> waiting{};  // to go there, and back
   };
+  /// Links on whose lines two avatars could touch: of these one is used at a time, in one
+  /// direction.
+  struct Corridor {
+    EditId link = 0;  // that is used; 0: none
+    bool back = false, is_entered = false, is_closed = false;
+  };
   void read_links();
+  /// Links that share a corridor get the same number.
+  void find_corridors();
   /// Null: it is not in force.
   [[nodiscard]] const Link* find_link(EditId edit) const;
   [[nodiscard]] Vec3d point_of(const Stand& stand) const;
@@ -96,7 +111,7 @@ class LinkMode final : public Mode, public TakesLinks {
   // link_turns.cpp
   [[nodiscard]] int32_t room_of(const Body& body) const;
   bool begin_to_wait(Body& body, const PathPoint& start, const PathPoint& end);
-  [[nodiscard]] bool is_beside_a_link(int32_t x, int32_t z, int32_t range) const;
+  [[nodiscard]] bool is_beside_a_link(const Body& body, const Stand& at) const;
   void stand_aside(Body& body, LinkUse& use) const;
   void stop_standing(Body& body, const LinkUse& use) const;
   void give_turn(Body& body, LinkUse& use) const;
@@ -104,6 +119,10 @@ class LinkMode final : public Mode, public TakesLinks {
   [[nodiscard]] bool end_is_free(std::span<const Body> bodies, const Body& body,
                                  const LinkUse& use) const;
   [[nodiscard]] bool is_obstructed(const Body& body, const Stand& from, const Stand& to) const;
+  /// Could the body, on its line from there, touch one that is on another link?
+  [[nodiscard]] bool is_crossed(std::span<const Body> bodies, const Body& body,
+                                const Stand& from) const;
+  void begin_turns();
   void take_turns(std::span<Body> bodies);
 
   // link_step.cpp
@@ -113,17 +132,19 @@ class LinkMode final : public Mode, public TakesLinks {
   void land(Body& body, LinkUse& use) const;
 
   WalkMode& walk_;
-  std::vector<Link> links_;       // in force, by edit
-  std::vector<LinkUse> uses_;     // by slot; empty, if no link was ever in force
-  int32_t widest_ = 0;            // of all bodies [units]
-  int32_t lowest_ = 0;            // of all classes [mm]
-  std::vector<uint32_t> users_;   // slots with another state than kNone, rising
-  std::vector<uint32_t> bodies_;  // of these, indices; of the step
+  std::vector<Link> links_;          // in force, by edit
+  std::vector<Corridor> corridors_;  // of these
+  std::vector<LinkUse> uses_;        // by slot; empty, if no link was ever in force in a step
+  int32_t widest_ = 0;               // of all bodies [units]
+  BodyExtent taking_;
+  int32_t lowest_ = 0;                          // of all classes [mm]
+  std::vector<std::pair<Stand, Stand>> lines_;  // of bodies on links that are not in force
+  std::vector<uint32_t> users_;                 // slots with another state than kNone, rising
+  std::vector<uint32_t> bodies_;                // of these, indices; of the step
   std::mutex adding_;
   std::vector<uint32_t> came_;    // slots that have begun to wait in this sub-step, in no order
   std::vector<uint32_t> merged_;  // scratch: the old and the new users
   std::vector<bool> is_user_;     // by slot
-  std::vector<uint8_t> on_link_;  // by edit: how a link is used now
   std::vector<uint32_t> order_;   // those that wait, as they take turns
   NearBodies near_;
 };

@@ -17,8 +17,7 @@ namespace throng::crowd {
 namespace {
 
 constexpr std::array<double, 4> kParts = {1, 0.5, 0.25, 0.1};  // of a step
-constexpr double kAtStart = 0.15;  // [m] from the start, where one leaves the ground
-constexpr double kTurnTime = 10;   // [s] to get to the start, then it is another's turn
+constexpr double kTurnTime = 10;  // [s] to get to the start, then it is another's turn
 
 bool overlaps_with(const Body& a, const Stand& at, const Body& b) {
   return nearer_than(at.x - b.x, at.z - b.z, int64_t{a.radius} + b.radius) &&
@@ -99,9 +98,11 @@ void LinkMode::enter(std::span<const Body> bodies, Body& body, LinkUse& use) con
       ground.move(body.level, body.y, body.point(), {use.from.x, use.from.z}, landing) &&
       landing.level == use.from.level;
   if (!is_at_start || !end_is_free(bodies, body, use) ||
-      is_obstructed(body, body.stand(), use.to)) {
+      is_obstructed(body, body.stand(), use.to) || is_crossed(bodies, body, body.stand())) {
     const auto waited = static_cast<double>(shared_.sub_step - use.since) * shared_.sub_dt();
-    if (waited <= kTurnTime) return;
+    const double left =
+        std::hypot(double{1} * use.from.x - body.x, double{1} * use.from.z - body.z) * shared_.unit;
+    if (waited <= kTurnTime + left / body.speed) return;
     use.state = LinkUse::kWaits;
     use.since = shared_.sub_step;
     return;

@@ -11,11 +11,11 @@
 #include "world/place.h"
 #include "world/tile_grid.h"
 
-// Turns at off-mesh links. A link is a corridor in which avatars cannot pass each other, so they
-// take turns in the order in which they came: none enters while another comes towards it or while
-// its end is occupied. Those that wait stand aside of all links, so that those on them can land,
-// and yield to them as avatars do that have arrived. Constant time for each that waits, but for
-// sorting them.
+// Turns at off-mesh links. A link is a corridor in which avatars cannot pass each other, and links
+// that cross or share an end are one corridor. So they take turns in the order in which they came:
+// none enters while another uses the corridor otherwise, or while its end is occupied. Those that
+// wait stand aside of all links, so that those on them can land, and yield to them as avatars do
+// that have arrived. For each that waits, but for sorting them: linear in those on other links.
 namespace throng::crowd {
 namespace {
 
@@ -24,10 +24,8 @@ constexpr double kBrakes = 0.3;        // [s] within which one that comes to the
 constexpr double kSpread = 1.6;        // widest radii, times the root of how many wait
 constexpr uint64_t kSightChecks = 16;  // decisions
 constexpr double kEndMargin = 0.02;    // [m] around one that lands
-constexpr uint8_t kForward = 1, kBack = 2, kEntered = 4, kClosed = 8;  // of on_link_
 
-template <class Point>
-bool same(const Point& a, const PathPoint& b) {
+bool same(const Stand& a, const PathPoint& b) {
   constexpr int32_t kRounded = 2;  // [units]
   return a.level == b.level && std::abs(a.x - b.x) <= kRounded && std::abs(a.z - b.z) <= kRounded;
 }
@@ -38,17 +36,19 @@ bool same(const Point& a, const PathPoint& b) {
 int32_t LinkMode::room_of(const Body& body) const {
   constexpr double kMax = 1 << 28;  // as wide as no body is
   return static_cast<int32_t>(
-      std::min(kMax, double{1} * body.radius + widest_ + kMargin / shared_.unit));
+      std::min(kMax, double{1} * body.radius + taking_.widest + kMargin / shared_.unit));
 }
 
 bool LinkMode::begin_step() {
+  if (!links_.empty()) uses_.resize(shared_.generation.size());
   for (Link& link : links_) link.waiting = {};
+  lines_.clear();
   for (const uint32_t slot : users_) {
     const LinkUse& use = uses_[slot];
-    if (use.state != LinkUse::kWaits) continue;
-    const auto at = std::lower_bound(links_.begin(), links_.end(), use.link,
-                                     [](const Link& link, EditId id) { return link.edit < id; });
-    if (at != links_.end() && at->edit == use.link) ++at->waiting[use.back != 0 ? 1 : 0];
+    const Link* link = find_link(use.link);
+    if (use.state == LinkUse::kRides && link == nullptr) lines_.emplace_back(use.from, use.to);
+    if (use.state != LinkUse::kWaits || link == nullptr) continue;
+    ++links_[static_cast<size_t>(link - links_.data())].waiting[use.back != 0 ? 1 : 0];
   }
   return !links_.empty() || !users_.empty();
 }
@@ -100,17 +100,19 @@ bool LinkMode::plan_at_start(Body& body, const Route& route, const StrideGround&
     return false;
   }
   // The more wait, the farther from the start: they need not press.
+  const double brakes = body.speed * std::max<double>(shared_.sub_dt(), kBrakes) / shared_.unit;
+  const float square = near_square(start.x - body.x, start.z - body.z);
+  const auto is_near = [&](double count) {
+    const double range = room_of(body) + brakes + kSpread * taking_.widest * std::sqrt(count);
+    return square <= static_cast<float>(range * range);
+  };
+  if (!is_near(static_cast<double>(users_.size()))) return false;  // Few come to look at all links.
   uint32_t waiting = 0;
   for (const Link& link : links_) {
     if (same(link.from, start)) waiting += link.waiting[0];
     if (link.two_way && same(link.to, start)) waiting += link.waiting[1];
   }
-  const double brakes = body.speed * std::max<double>(shared_.sub_dt(), kBrakes) / shared_.unit;
-  const double range = room_of(body) + brakes + kSpread * widest_ * std::sqrt(double{1} * waiting);
-  if (near_square(start.x - body.x, start.z - body.z) > static_cast<float>(range * range)) {
-    return false;
-  }
-  if (sees() && !begin_to_wait(body, start, route.corners[route.next + 1u])) {
+  if (is_near(waiting) && sees() && !begin_to_wait(body, start, route.corners[route.next + 1u])) {
     body.flags |= Body::kNeedsPath;
   }
   return false;  // If it is its turn at once, it does not stop.
@@ -144,16 +146,24 @@ void LinkMode::stop_standing(Body& body, const LinkUse& use) const {
   if (use.arrived == 0) body.clear(Body::kArrived);
 }
 
-// Would a body that stands there be in the path of those on a link? In plan, whatever its height.
-bool LinkMode::is_beside_a_link(int32_t x, int32_t z, int32_t range) const {
-  return std::any_of(links_.begin(), links_.end(), [&](const Link& link) {
-    const double wx = double{1} * link.to.x - link.from.x, wz = double{1} * link.to.z - link.from.z;
-    const double dx = double{1} * x - link.from.x, dz = double{1} * z - link.from.z;
+// Would the body, if it stood there, be in the path of those on a link?
+bool LinkMode::is_beside_a_link(const Body& body, const Stand& at) const {
+  const double range = room_of(body);
+  const auto is_beside = [&](const Stand& from, const Stand& to) {
+    const bool is_level = std::min(from.y, to.y) < at.y + body.height &&
+                          at.y < std::max(from.y, to.y) + taking_.tallest;
+    if (!is_level) return false;
+    const double wx = double{1} * to.x - from.x, wz = double{1} * to.z - from.z;
+    const double dx = double{1} * at.x - from.x, dz = double{1} * at.z - from.z;
     const double whole = wx * wx + wz * wz;
     const double part = whole > 0 ? std::clamp((dx * wx + dz * wz) / whole, 0.0, 1.0) : 0;
     const double away_x = dx - part * wx, away_z = dz - part * wz;
-    return away_x * away_x + away_z * away_z < double{1} * range * range;
-  });
+    return away_x * away_x + away_z * away_z < range * range;
+  };
+  return std::any_of(links_.begin(), links_.end(),
+                     [&](const Link& link) { return is_beside(link.from, link.to); }) ||
+         std::any_of(lines_.begin(), lines_.end(),
+                     [&](const auto& line) { return is_beside(line.first, line.second); });
 }
 
 // It waits where it is, or, if one on a link needs the space, at the nearest place beside.
@@ -165,8 +175,8 @@ void LinkMode::stand_aside(Body& body, LinkUse& use) const {
   body.detour_angle = 0;
   body.local_target_x = body.x;
   body.local_target_z = body.z;
+  if (!is_beside_a_link(body, body.stand())) return;
   const int32_t room = room_of(body);
-  if (!is_beside_a_link(body.x, body.z, room)) return;
   const StrideGround ground(shared_.ground_of(body),
                             world::step_mm(shared_.body_class(body.avatar_class)));
   float least = HUGE_VALF;
@@ -176,9 +186,10 @@ void LinkMode::stand_aside(Body& body, LinkUse& use) const {
       if (!(to_x >= 0 && to_z >= 0 && to_x < INT32_MAX && to_z < INT32_MAX)) continue;
       const auto x = static_cast<int32_t>(to_x), z = static_cast<int32_t>(to_z);
       const float square = near_square(x - body.x, z - body.z);
-      if (square >= least || is_beside_a_link(x, z, room)) continue;
+      if (square >= least) continue;
       StrideGround::Landing landing;
       if (!ground.move(body.level, body.y, body.point(), {x, z}, landing)) continue;
+      if (is_beside_a_link(body, {x, z, landing.y, landing.level})) continue;
       least = square;
       body.local_target_x = x;
       body.local_target_z = z;
@@ -211,6 +222,25 @@ bool LinkMode::is_obstructed(const Body& body, const Stand& from, const Stand& t
       [&](const ObstacleGrid::Item& obstacle) { return meets(line, obstacle.solid.prism); });
 }
 
+bool LinkMode::is_crossed(std::span<const Body> bodies, const Body& body, const Stand& from) const {
+  const LinkUse& use = uses_[body.slot];
+  const auto line_between = [&](const Body& of, const Stand& begin, const Stand& end) {
+    constexpr double kRounded = 2;  // [units]
+    return LinkLine{point_of(begin), point_of(end), (of.radius + kRounded) * shared_.unit, 0,
+                    of.height * 1e-3};
+  };
+  const LinkLine line = line_between(body, from, use.to);
+  for (size_t n = 0; n < users_.size(); ++n) {
+    const LinkUse& other = uses_[users_[n]];
+    if (other.state != LinkUse::kRides || (other.link == use.link && other.back == use.back)) {
+      continue;
+    }
+    const Body& rider = bodies[bodies_[n]];
+    if (meets(line, line_between(rider, rider.stand(), other.to))) return true;
+  }
+  return false;
+}
+
 // Of others that are on the link it does not matter where they are: they leave its end before.
 bool LinkMode::end_is_free(std::span<const Body> bodies, const Body& body,
                            const LinkUse& use) const {
@@ -228,37 +258,53 @@ bool LinkMode::end_is_free(std::span<const Body> bodies, const Body& body,
                        int64_t{body.radius} + other.radius + margin) &&
            other.y < use.to.y + body.height && use.to.y < other.y + other.height;
   });
-  return !is_occupied && !is_obstructed(body, use.from, use.to);
+  return !is_occupied && !is_obstructed(body, use.from, use.to) &&
+         !is_crossed(bodies, body, use.from);
 }
 
-void LinkMode::take_turns(std::span<Body> bodies) {
+// How each corridor is used, and in what order those that wait came to it.
+void LinkMode::begin_turns() {
+  std::fill(corridors_.begin(), corridors_.end(), Corridor{});
   order_.clear();
-  on_link_.resize(shared_.edits().edits.size() + 1);
-  for (const uint32_t slot : users_) on_link_[uses_[slot].link] = 0;
   for (uint32_t n = 0; n < users_.size(); ++n) {
     const LinkUse& use = uses_[users_[n]];
+    const Link* link = find_link(use.link);
+    if (link == nullptr) continue;
     if (use.state == LinkUse::kWaits) order_.push_back(n);
     if (use.state != LinkUse::kEnters && use.state != LinkUse::kRides) continue;
-    on_link_[use.link] |= use.back != 0 ? kBack : kForward;
-    if (use.state == LinkUse::kEnters) on_link_[use.link] |= kEntered;
+    Corridor& corridor = corridors_[link->corridor];
+    if (corridor.link == 0) {
+      corridor.link = use.link;
+      corridor.back = use.back != 0;
+    }
+    // Links have been joined while they were used: first all leave them.
+    const bool is_same = corridor.link == use.link && corridor.back == (use.back != 0);
+    corridor.is_closed = corridor.is_closed || !is_same;
+    corridor.is_entered = corridor.is_entered || use.state == LinkUse::kEnters;
   }
   std::sort(order_.begin(), order_.end(), [&](uint32_t a, uint32_t b) {
     const auto key = [&](uint32_t n) {
       const LinkUse& use = uses_[users_[n]];
-      return std::tuple(use.link, use.since, users_[n]);
+      return std::tuple(find_link(use.link)->corridor, use.since, users_[n]);
     };
     return key(a) < key(b);
   });
+}
+
+void LinkMode::take_turns(std::span<Body> bodies) {
+  begin_turns();
   for (const uint32_t n : order_) {
     Body& body = bodies[bodies_[n]];
     LinkUse& use = uses_[users_[n]];
-    uint8_t& on_link = on_link_[use.link];
-    // The first that waits for those that come towards it closes the link to all that came later.
-    if ((on_link & (use.back != 0 ? kForward : kBack)) != 0) on_link |= kClosed;
-    const bool is_open = (on_link & (kClosed | kEntered)) == 0 && !body.has(Body::kNeedsPath);
+    Corridor& corridor = corridors_[find_link(use.link)->corridor];
+    // The first that waits for those that use the corridor otherwise closes it to all that came
+    // later.
+    const bool is_same = corridor.link == use.link && corridor.back == (use.back != 0);
+    corridor.is_closed = corridor.is_closed || (corridor.link != 0 && !is_same);
+    const bool is_open = !corridor.is_closed && !corridor.is_entered && !body.has(Body::kNeedsPath);
     if (is_open && end_is_free(bodies, body, use)) {
       give_turn(body, use);
-      on_link |= static_cast<uint8_t>(kEntered | (use.back != 0 ? kBack : kForward));
+      corridor = {.link = use.link, .back = use.back != 0, .is_entered = true, .is_closed = false};
     } else if (use.stands == 0) {
       stand_aside(body, use);
     }

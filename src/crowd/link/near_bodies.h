@@ -52,6 +52,9 @@ class NearBodies {
     }
     return false;
   }
+  [[nodiscard]] uint64_t bytes() const {
+    return squares_.capacity() * sizeof(squares_[0]) + found_.capacity() * sizeof(found_[0]);
+  }
 
  private:
   [[nodiscard]] uint64_t key(int32_t x, int32_t z, int32_t dx, int32_t dz) const {

@@ -41,8 +41,12 @@ struct Head {
   uint64_t views = 0;
   double low_detail_reaction = 0, slope_cost = 0;
   uint64_t edits = 0, edits_version = 0;
+  // What avatars are, or were: also of those that were removed.
+  crowd::BodyExtent extent;
+  float fastest = 0;  // [m/s]
+  int32_t taking_widest = 0, taking_tallest = 0;
 };
-static_assert(sizeof(Head) == 27 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 30 * 8 && std::is_trivially_copyable_v<Head>);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`.
 struct SavedObstacle {
@@ -253,6 +257,15 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
   if (sum != hash_bytes(saved.data(), saved.size() - 8)) {
     return bad("is corrupt; save the crowd again");
   }
+  const auto may_be = [](int32_t widest, int32_t tallest) {
+    constexpr int32_t kMaxExtent = 1 << 28;  // [units, mm]
+    return widest >= 0 && widest <= kMaxExtent && tallest >= 0 && tallest <= kMaxExtent;
+  };
+  if (!may_be(head.extent.widest, head.extent.tallest) || head.extent.narrowest <= 0 ||
+      !may_be(head.taking_widest, head.taking_tallest) ||
+      !(head.fastest >= 0 && head.fastest <= 100)) {
+    return bad("is not sound; save the crowd again");
+  }
   return head;
 }
 
@@ -329,6 +342,10 @@ std::vector<uint8_t> Crowd::save() const {
   head.views = s.views.size();
   head.edits = s.of_edit.size();
   head.edits_version = s.edits_version;
+  head.extent = s.extent;
+  head.fastest = s.fastest;
+  head.taking_widest = s.link.taking().widest;
+  head.taking_tallest = s.link.taking().tallest;
   std::vector<uint8_t> out;
   out.reserve(size_of(head));
   put_rows(out, &head, 1);
@@ -376,6 +393,8 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
       return bad("has other settings; give the nodes that it was made with");
     }
   }
+  s.fit(head.extent, head.fastest);
+  s.link.fit_taking({.widest = head.taking_widest, .tallest = head.taking_tallest});
   for (const crowd::Body& body : bodies) {
     for (const crowd::Mode* mode : s.modes) sound = sound && mode->is_in_place(body);
     if (!sound) return bad("is not sound; save the crowd again");

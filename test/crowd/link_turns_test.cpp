@@ -273,6 +273,34 @@ TEST(CrowdLinkTurns, OneThatLeavesAnObstacleLearnsThatItsLinkIsOff) {
   EXPECT_EQ(lost, 1u);
 }
 
+// The crowd keeps the measures of those that were removed.
+TEST(CrowdLinkTurns, ASavedCrowdKnowsTheWidestThatWasRemoved) {
+  const World world = gap();
+  for (const AvatarSpawn& like :
+       {AvatarSpawn{.radius = 0.7}, AvatarSpawn{.radius = 0.1}, AvatarSpawn{.speed = 6}}) {
+    Edits edits;
+    Oracle oracle{world,
+                  {{at(world, 9, 4.5), at(world, 13, 4.5), 4, true},
+                   {at(world, 9, 5.6), at(world, 13, 5.6), 4, true}}};
+    add_links(edits, oracle);
+    Crowd crowd = made(world, {.edits = edits});
+    const AvatarId other = added(crowd, at(world, 1, 1), like);
+    ASSERT_TRUE(other);
+    crowd.remove({&other, 1});
+    add_groups(crowd, world, 6);
+    for (int step = 0; step < 40; ++step) crowd.step();
+    Context context;
+    auto restored = Crowd::restore(world, {.edits = edits}, crowd.save(), context);
+    ASSERT_TRUE(restored) << restored.error().message;
+    EXPECT_EQ(restored->save(), crowd.save());
+    for (int step = 0; step < 200; ++step) {
+      crowd.step();
+      restored->step();
+      ASSERT_EQ(crowd.state_hash(), restored->state_hash()) << step;
+    }
+  }
+}
+
 TEST(CrowdLinkTurns, ALinkThatIsAddedBeforeSavingChangesNothing) {
   const World world = gap();
   Edits edits;

@@ -264,7 +264,8 @@ bool WalkMode::is_sound(const Body& body) const {
   if (route.by_link > 1 || (route.by_link != 0 && route.count < 2)) return false;
   if (route.count > Route::kCorners || (route.count > 0 && route.next >= route.count)) return false;
   for (size_t i = 0; i < route.count; ++i) {
-    if (route.corners[i].level >= levels) return false;
+    const PathPoint& corner = route.corners[i];
+    if (corner.level >= levels || corner.x < 0 || corner.z < 0) return false;
   }
   return route.goal.level < levels;
 }

@@ -76,6 +76,7 @@ enum class MoveMode {
   kWalk,   ///< On the ground of its class.
   kFly,    ///< In the air, or in a take-off or landing.
   kClimb,  ///< Over nodes.
+  kLink,   ///< Along an off-mesh link of Edits.
 };
 
 /// The state of one avatar.

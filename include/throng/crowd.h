@@ -142,8 +142,19 @@ struct CrowdConfig {
   CrowdTuning tuning = {};  ///< Fine for most crowds as it is.
   /// What is put up in the world, also for finders. Before each step, and before avatars are added,
   /// the crowd puts up the obstacles as add_obstacle does (static; of triangles their box), and
-  /// avatars on foot plan over areas with the costs that these have. Off-mesh links are for classes
-  /// that go over nodes (NodeConfig::off_mesh_links).
+  /// avatars on foot plan over areas with the costs that these have.
+  ///
+  /// Avatars of classes that neither fly nor go over nodes take off-mesh links, with
+  /// Routing::kPaths. A link is a corridor: they take turns in the order in which they came, in one
+  /// direction at a time, and wait near the start while an avatar or an obstacle is at its end.
+  /// Links that cross, share an end or lie so close that avatars on them could touch are one
+  /// corridor: one of them is used at a time. On it an avatar moves along a straight line, at its
+  /// speed times length / cost, at least a thousandth of its speed and at most all of it, and
+  /// nothing stops it but other avatars: a link that is switched off lets it arrive, an obstacle on
+  /// the rest of its line waits for it, and a new goal or velocity holds from the end on. An avatar
+  /// that stays at an end for ever closes the link in that direction; one that stays on ground
+  /// which the line crosses stops those on the link. Classes that go over nodes take
+  /// NodeConfig::off_mesh_links; flyers take none.
   Edits edits = {};
   /// PathConfig::slope_cost of avatars that walk or climb. [0 to 1000]
   double slope_cost = 0;
@@ -181,6 +192,7 @@ struct CrowdReport {
   uint64_t avatars = 0;     ///< All in the crowd.
   uint64_t flying = 0;      ///< Of these, in the air, or in a take-off or landing.
   uint64_t climbing = 0;    ///< Of these, on nodes.
+  uint64_t on_links = 0;    ///< Of these, on off-mesh links of Edits.
   uint64_t stood = 0;       ///< Avatars that did not move.
   uint64_t low_detail = 0;  ///< In low detail: beyond all views.
   uint64_t skipped = 0;     ///< Of these, not moved in this step; not in `stood`.
@@ -278,7 +290,8 @@ class THRONG_API Crowd {
   /// ignored.
   void set_targets(std::span<const AvatarId> ids, TargetId target);
   /// Length of an avatar's path on foot to a target, on average 1 to 2 % above the shortest.
-  /// Infinite if no path leads there, the avatar is in the air, or the id is unknown. [m]
+  /// Infinite if no path leads there, the avatar is in the air or on an off-mesh link, or the id is
+  /// unknown. [m]
   [[nodiscard]] double distance(AvatarId id, TargetId target) const;
   /// At most about `max_count` places inside a target where a class can stand, evenly spread. Fails
   /// as `add` does.

@@ -135,8 +135,8 @@ class THRONG_API Edits {
   [[nodiscard]] Result<EditId> add_area(const Prism& prism, uint8_t kind);
   /// Adds an off-mesh link, which no move finds: over a ditch, up a ladder, by a lift. It leads
   /// from one place to another, and back if `two_way`; what lies between is not tested. Its cost
-  /// counts as metres and is at least its length in the plane. Only for paths on the ground, of
-  /// classes that can stand at both ends. Fails with kBadInput.
+  /// counts as metres and may be less than its length. Only for paths on the ground and walkers of
+  /// crowds, of classes that can stand at both ends. Fails with kBadInput.
   [[nodiscard]] Result<EditId> add_off_mesh_link(const OffMeshLink& link);
   /// Removes an edit, or switches it off and on, as a door. False if there is none of this id.
   bool remove(EditId edit);
@@ -379,7 +379,7 @@ struct FlowSummary {
 
 /// Distances to goals over points on the borders of rectangles of the ground. It describes the
 /// ground and its edits at the time when it was made; if they change, make another one. Off-mesh
-/// links are ignored. Each copy has its own memory for queries; give every thread one.
+/// links count as in paths. Each copy has its own memory for queries; give every thread one.
 class THRONG_API FlowField {
  public:
   /// Makes a field by one Dijkstra search over the ground of a finder's class. Goals that are no
@@ -397,7 +397,7 @@ class THRONG_API FlowField {
   /// Infinite if no path leads there, or none within `max_distance`. [m]
   [[nodiscard]] double distance(const Place& place);
   /// The next local target: the farthest point of the path to the nearest goal to which a straight
-  /// line leads. At last the goal itself; nowhere if no path leads there.
+  /// line or a link leads. At last the goal itself; nowhere if no path leads there.
   [[nodiscard]] Place next(const Place& place);
   /// Finds the whole path to the nearest goal, pulled taut.
   void find_path(const Place& place, Path& path);

@@ -130,6 +130,7 @@ CrowdReport Crowd::step() {
       report.climbing += body.climbs ? 1 : 0;
     }
   }
+  report.on_links = s.link.count_riding();
   const auto events_start = Clock::now();
   s.arrive_in_targets();
   s.find_events();
@@ -164,7 +165,7 @@ CrowdCheck Crowd::check() const {
   bodies.reserve(s.walk.bodies().size());
   for (const crowd::Body& b : s.walk.bodies()) {
     bodies.push_back({b.x, b.z, b.y, b.level, b.avatar_class, b.radius * unit,
-                      s.mode_of(b).height_of(b), b.flies(), b.climbs});
+                      s.mode_of(b).height_of(b), b.flies(), b.climbs, b.on_link});
   }
   CrowdCheck found =
       crowd::check_bodies(s.shared.world, bodies, obstacles(), s.shared.config.workers);

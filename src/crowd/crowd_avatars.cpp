@@ -80,7 +80,7 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
     shared.classes[c].reset();
     return ok;
   }
-  mode_of_class[c] = &walk;
+  mode_of_class[c] = &link;
   if (shared.flies(c)) mode_of_class[c] = &fly;
   if (shared.climbs(c)) mode_of_class[c] = &climb;
   return {};

@@ -149,7 +149,7 @@ CrowdCheck check_bodies(const World& world, std::span<const CheckedBody> bodies,
     uint64_t found = 0;
     for (size_t i = begin; i < end; ++i) {
       const CheckedBody& a = bodies[i];
-      if (a.climbs) continue;
+      if (a.climbs || a.on_link) continue;
       if (a.flies) {
         found += air[static_cast<size_t>(a.avatar_class)].allows(a) ? 0 : 1;
         continue;

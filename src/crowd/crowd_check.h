@@ -20,6 +20,7 @@ struct CheckedBody {
   double radius = 0, height = 0;  // [m]
   bool flies = false;             // it is in the air, or between the ground and the air
   bool climbs = false;            // over nodes: other code checks whether it may be there
+  bool on_link = false;           // on an off-mesh link: likewise
 };
 
 /// `obstacles`: what no body may be in, a body with the radius of its class, from its step height

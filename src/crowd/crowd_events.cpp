@@ -76,7 +76,8 @@ void Crowd::State::find_no_progress() {
     auto& [x, z, y] = checked_at[body.slot];
     const double dx = double{1} * body.x - x, dz = double{1} * body.z - z;
     const double dy = (double{1} * body.y - y) * 1e-3 / shared.unit;
-    const bool walks = body.has(crowd::Body::kHasGoal) && !body.has(crowd::Body::kArrived);
+    const bool rests = body.has(crowd::Body::kArrived) && !link.waits(body.slot);
+    const bool walks = body.has(crowd::Body::kHasGoal) && !rests;
     if (walks && dx * dx + dy * dy + dz * dz < min_progress * min_progress)
       no_progress.push_back(shared.id_of(body.slot));
     x = body.x;

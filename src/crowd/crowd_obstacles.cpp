@@ -97,12 +97,13 @@ void Crowd::follow_edits() {
   State& s = *state_;
   const path::EditList& list = s.shared.edits();
   if (s.edits_version == list.version()) return;
-  bool areas_changed = false;
+  bool areas_changed = false, links_changed = false;
   s.of_edit.resize(std::max(s.of_edit.size(), list.edits.size()));
   list.for_changed(s.edits_version, [&](const path::EditList::Changed& what) {
     using Kind = path::EditList::Kind;
     const Kind kind = what.edit == 0 ? Kind::kArea : list.edits[what.edit - 1].kind;
     areas_changed = areas_changed || kind == Kind::kArea;
+    links_changed = links_changed || kind == Kind::kOffMeshLink;
     if (kind != Kind::kObstacle) return;
     const path::EditList::Edit& edit = list.edits[what.edit - 1];
     ObstacleId& own = s.of_edit[what.edit - 1];
@@ -117,8 +118,16 @@ void Crowd::follow_edits() {
     }
   });
   s.edits_version = list.version();
-  if (!areas_changed) return;
-  for (crowd::Mode* mode : s.modes) mode->areas_changed(s.walk.bodies());
+  if (!areas_changed && !links_changed) return;
+  // Links change no path of a crowd in which none takes them.
+  const std::span<crowd::Body> all = s.walk.bodies();
+  const bool some_change =
+      areas_changed || std::any_of(all.begin(), all.end(), [&](const crowd::Body& body) {
+        return &s.mode_of(body) == &s.link;
+      });
+  for (crowd::Mode* mode : s.modes) {
+    mode->areas_changed(some_change ? all : std::span<crowd::Body>());
+  }
 }
 
 ObstacleId Crowd::obstacle_of(EditId edit) const {

@@ -22,7 +22,7 @@ namespace {
 using crowd::put_rows;
 using crowd::take_rows;
 
-constexpr uint64_t kMagic = 0x39305744574f5243;  // "CROWDW09"
+constexpr uint64_t kMagic = 0x30315744574f5243;  // "CROWDW10"
 
 struct Head {
   uint64_t magic = kMagic;
@@ -35,13 +35,18 @@ struct Head {
   uint64_t target_values = 0;  // doubles
   uint64_t flights = 0;        // by slot, or none
   uint64_t climbs = 0;         // by slot, or none
+  uint64_t link_uses = 0;      // by slot, or none
   int32_t rounds = 0, routing = 0, deadlock_avoidance = 0, flows_are_old = 0;
   int32_t model = 0, low_detail_steps = 0;
   uint64_t views = 0;
   double low_detail_reaction = 0, slope_cost = 0;
   uint64_t edits = 0, edits_version = 0;
+  // What avatars are, or were: also of those that were removed.
+  crowd::BodyExtent extent;
+  float fastest = 0;  // [m/s]
+  int32_t taking_widest = 0, taking_tallest = 0;
 };
-static_assert(sizeof(Head) == 26 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 30 * 8 && std::is_trivially_copyable_v<Head>);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`.
 struct SavedObstacle {
@@ -128,6 +133,7 @@ uint64_t size_of(const Head& head) {
          (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
          head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 +
          head.flights * crowd::FlyMode::kRowBytes + head.climbs * crowd::ClimbMode::kRowBytes +
+         head.link_uses * crowd::LinkMode::kRowBytes +
          head.views * sizeof(crowd::EngineDetail::View) + head.edits * sizeof(ObstacleId) + 8;
 }
 
@@ -242,13 +248,23 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
       head.obstacles >= kMax || head.corners >= kMax || head.free_obstacles >= kMax ||
       head.target_values >= kMax || head.views >= kMax || head.edits >= kMax ||
       (head.flights != 0 && head.flights != head.slots) ||
-      (head.climbs != 0 && head.climbs != head.slots) || saved.size() != size_of(head)) {
+      (head.climbs != 0 && head.climbs != head.slots) ||
+      (head.link_uses != 0 && head.link_uses != head.slots) || saved.size() != size_of(head)) {
     return bad("is cut short; save the crowd again");
   }
   uint64_t sum = 0;
   std::memcpy(&sum, saved.data() + saved.size() - 8, 8);
   if (sum != hash_bytes(saved.data(), saved.size() - 8)) {
     return bad("is corrupt; save the crowd again");
+  }
+  const auto may_be = [](int32_t widest, int32_t tallest) {
+    constexpr int32_t kMaxExtent = 1 << 28;  // [units, mm]
+    return widest >= 0 && widest <= kMaxExtent && tallest >= 0 && tallest <= kMaxExtent;
+  };
+  if (!may_be(head.extent.widest, head.extent.tallest) || head.extent.narrowest <= 0 ||
+      !may_be(head.taking_widest, head.taking_tallest) ||
+      !(head.fastest >= 0 && head.fastest <= 100)) {
+    return bad("is not sound; save the crowd again");
   }
   return head;
 }
@@ -276,6 +292,7 @@ SavedArrays read_arrays(const Head& head, const uint8_t* at, State& s) {
   at = take_rows(at, head.target_values, saved.targets);
   at = s.fly.restore(at, head.flights);
   at = s.climb.restore(at, head.climbs);
+  at = s.link.restore(at, head.link_uses);
   at = take_rows(at, head.views, s.views);
   take_rows(at, head.edits, s.of_edit);
   return saved;
@@ -321,9 +338,14 @@ std::vector<uint8_t> Crowd::save() const {
   head.target_values = targets.size();
   head.flights = s.fly.row_count();
   head.climbs = s.climb.row_count();
+  head.link_uses = s.link.row_count();
   head.views = s.views.size();
   head.edits = s.of_edit.size();
   head.edits_version = s.edits_version;
+  head.extent = s.extent;
+  head.fastest = s.fastest;
+  head.taking_widest = s.link.taking().widest;
+  head.taking_tallest = s.link.taking().tallest;
   std::vector<uint8_t> out;
   out.reserve(size_of(head));
   put_rows(out, &head, 1);
@@ -337,6 +359,7 @@ std::vector<uint8_t> Crowd::save() const {
   put_rows(out, targets.data(), targets.size());
   s.fly.save(out);
   s.climb.save(out);
+  s.link.save(out);
   put_rows(out, s.views.data(), s.views.size());
   put_rows(out, s.of_edit.data(), s.of_edit.size());
   const uint64_t sum = hash_bytes(out.data(), out.size());
@@ -370,11 +393,15 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
       return bad("has other settings; give the nodes that it was made with");
     }
   }
+  s.fit(head.extent, head.fastest);
+  s.link.fit_taking({.widest = head.taking_widest, .tallest = head.taking_tallest});
   for (const crowd::Body& body : bodies) {
     for (const crowd::Mode* mode : s.modes) sound = sound && mode->is_in_place(body);
     if (!sound) return bad("is not sound; save the crowd again");
     const crowd::Mode& mode = s.mode_of(body);
-    s.fit(mode.extent_of(body, mode.state_of(body).radius), body.speed);
+    const crowd::BodyExtent extent = mode.extent_of(body, mode.state_of(body).radius);
+    s.fit(extent, body.speed);
+    if (&mode == &s.link) s.link.fit_taking(extent);
     s.walk.engine().add(body);
   }
   s.where_is_old = true;

@@ -12,6 +12,7 @@
 #include "crowd/fly/fly_mode.h"
 #include "crowd/ground/body.h"
 #include "crowd/ground/target.h"
+#include "crowd/link/link_mode.h"
 #include "crowd/mode/mode.h"
 #include "crowd/mode/shared_state.h"
 #include "crowd/walk/crowd_engine.h"
@@ -28,9 +29,10 @@ inline constexpr std::array<int32_t, 3> kNeverChecked = {INT32_MIN / 2, 0, 0};
 struct Crowd::State {
   crowd::SharedState shared;
   crowd::WalkMode walk;
+  crowd::LinkMode link;
   crowd::FlyMode fly;
   crowd::ClimbMode climb;
-  const std::array<crowd::Mode*, 3> modes{&walk, &fly, &climb};
+  const std::array<crowd::Mode*, 4> modes{&walk, &link, &fly, &climb};
   std::vector<crowd::Mode*> mode_of_class;  // null: not in use
   crowd::BodyExtent extent;                 // of all bodies
   float fastest = 0;                        // of all bodies [m/s]
@@ -53,6 +55,7 @@ struct Crowd::State {
   State(const World& world, const CrowdConfig& config, const crowd::MoveConfig& move)
       : shared(world, config),
         walk(shared, move),
+        link(shared, walk),
         fly(shared, move, walk),
         climb(shared, move, fly),
         mode_of_class(shared.classes.size(), nullptr) {}

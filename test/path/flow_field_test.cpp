@@ -120,6 +120,49 @@ TEST(FlowField, FollowingItArrives) {
   EXPECT_GT(walked, 150u);
 }
 
+// Two rooms that only links join, against searches from place to place.
+TEST(FlowField, LeadsOverOffMeshLinks) {
+  const World world = bake(worlds::doorway(0.2), 0.1);
+  const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
+  Edits edits;
+  PathFinder finder = finder_of(world, edits);
+  const Place goal = at(7, 5);
+  FlowField apart = field(finder, {goal});
+  ASSERT_TRUE(edits.add_off_mesh_link({at(3.3, 3), at(4.7, 3), 4, false}));
+  const auto cheap = edits.add_off_mesh_link({at(4.6, 1), at(3.4, 1), 0.5, true});
+  ASSERT_TRUE(cheap);
+  ASSERT_TRUE(edits.add_off_mesh_link({at(4.6, 5), at(3.4, 5), 1, false}));  // away from the goal
+  FlowField both = field(finder, {goal});
+  ASSERT_TRUE(edits.set_active(*cheap, false));
+  FlowField dear = field(finder, {goal});
+  ASSERT_TRUE(edits.set_active(*cheap, true));
+  Path path, found;
+  uint64_t compared = 0;
+  for (uint64_t n = 0; n < 60; ++n) {
+    const Place from = world.random_place(0, 5, n);
+    const bool beyond = from.position.x < 4;
+    EXPECT_EQ(std::isfinite(apart.distance(from)), !beyond);
+    finder.find(from, goal, path);
+    ASSERT_EQ(path.end, PathEnd::kReached);
+    EXPECT_LT(both.distance(from), path.cost * 1.1 + 0.05);
+    EXPECT_GT(both.distance(from), path.cost * 0.99 - 0.05);
+    both.find_path(from, found);
+    ASSERT_EQ(found.end, PathEnd::kReached);
+    EXPECT_EQ(found.links.size(), path.links.size());
+    EXPECT_NEAR(found.cost, path.cost, 0.1 * path.cost);
+    if (!beyond) continue;
+    EXPECT_EQ(found.links.size(), 1u);
+    EXPECT_GE(dear.distance(from), both.distance(from) - 1e-9);
+    EXPECT_GT(dear.distance(from), 4 + 3);
+    // Step by step, over the link too.
+    Place here = from;
+    for (int step = 0; step < 100 && here.position.x < 4; ++step) here = both.next(here);
+    EXPECT_GT(here.position.x, 4);
+    ++compared;
+  }
+  EXPECT_GT(compared, 15u);
+}
+
 TEST(FlowField, StopsWhereAsked) {
   const World world = bake(worlds::flat(30), 0.2);
   const Place goal = world.find_place(0, {3, 0, 3}, 0.5);

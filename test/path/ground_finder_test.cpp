@@ -380,6 +380,25 @@ TEST(GroundFinder, OffMeshLinksLeadWhereMovesDoNot) {
   ASSERT_TRUE(ground.remove(*off_mesh_link));
 }
 
+// Their ends lie in tiles of which only a part is legal, none of them the first.
+TEST(GroundFinder, OffMeshLinksJoinTilesFarFromTheOrigin) {
+  Scene scene;
+  scene.add_box({0, -0.5, 0}, {10, 0, 10});
+  scene.add_box({12, -0.5, 0}, {22, 0, 10});
+  const World world = bake(scene, 0.1);
+  const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
+  path::GroundFinder ground = live(world);
+  Path path;
+  for (const double z : {1.0, 5.0, 8.0}) {
+    const auto link = ground.add_off_mesh_link({at(9, z), at(13, z), 4, false});
+    ASSERT_TRUE(link) << z;
+    ground.find(at(3, z), at(19, z), path);
+    ASSERT_EQ(path.end, PathEnd::kReached);
+    EXPECT_NEAR(path.cost, 16, 0.01);
+    ASSERT_TRUE(ground.remove(*link));
+  }
+}
+
 // Two off-mesh links to one place: the path uses the cheaper, and stands where that one begins.
 TEST(GroundFinder, OfTwoOffMeshLinksToOnePlaceTheCheaperIsUsed) {
   const World world = bake(worlds::doorway(0.2), 0.1);

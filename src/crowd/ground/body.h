@@ -55,7 +55,7 @@ struct Body {
   uint16_t height = 0;  // [mm, at most 65 m]
   uint16_t target = 0;  // TargetId: its goal is a target
   State state : 3 = kFree;
-  bool unused : 1 = false;     // (state hashes are of these bytes)
+  bool on_link : 1 = false;    // kFlying is set too: LinkMode moves it along an off-mesh link
   bool follows : 1 = false;    // so closely that it could but crawl, when it last decided
   bool climbs : 1 = false;     // kFlying is set too: it is a climber, which ClimberEngine moves
   bool on_right : 1 = false;   // in counterflow, its lane lies in the right half of the opening
@@ -71,7 +71,7 @@ struct Body {
   [[nodiscard]] Stand stand() const { return {x, z, y, level}; }
   [[nodiscard]] bool has(Flag flag) const { return (flags & flag) != 0; }
   /// Does FlyerEngine move it?
-  [[nodiscard]] bool flies() const { return has(kFlying) && !climbs; }
+  [[nodiscard]] bool flies() const { return has(kFlying) && !climbs && !on_link; }
   void clear(Flag flag) { flags = static_cast<uint8_t>(flags & ~flag); }
 };
 static_assert(sizeof(Body) == 64 && std::is_trivially_copyable_v<Body>);

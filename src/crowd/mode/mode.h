@@ -19,7 +19,8 @@
 #include "throng/surface.h"
 #include "throng/world.h"
 
-/// The contract of the modes in which avatars move: WalkMode, FlyMode, ClimbMode.
+/// The contract of the modes in which avatars move: WalkMode, LinkMode, FlyMode,
+/// ClimbMode.
 namespace throng::crowd {
 
 /// An avatar that is to be added.
@@ -39,10 +40,11 @@ using BlockerPairs = std::vector<std::pair<uint32_t, uint32_t>>;
 
 /// How avatars of some classes move: what is known of these classes, a table by slot, and an
 /// engine. Each class in use has one mode, which the crowd looks up once: climb for those over
-/// nodes, fly for those with air, else walk. Calls for one avatar go to the mode of its class.
+/// nodes, fly for those with air, else link. Calls for one avatar go to the mode of its class.
 /// Those that say "of any class", and those for a class, an obstacle or the whole crowd, go to all
-/// modes, in the order walk, fly, climb. What each has:
+/// modes, in the order walk, link, fly, climb. What each has:
 /// - Walk has the ground and the flow fields of every class, and its engine holds all bodies.
+/// - Link has a WalkMode: its avatars are walkers but on off-mesh links.
 /// - Fly has a WalkMode: on foot its avatars are walkers, and it decides when they take off.
 /// - Climb is alone: its avatars never walk on level tiles.
 /// The engines call their own mode without this contract, so what is virtual here is never called
@@ -96,7 +98,7 @@ class Mode {
 
   /// Obstacles have blocked cells of the grounds, or freed some.
   virtual void ground_changed() {}
-  /// The costs of ground have changed.
+  /// The costs of ground, or the off-mesh links, have changed.
   virtual void areas_changed(std::span<Body> bodies);
   /// Updates the path finders of any class to an obstacle that paths avoid. `is_new`: its
   /// place is not the one that they know.

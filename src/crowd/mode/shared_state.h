@@ -69,6 +69,8 @@ struct SharedState {
   [[nodiscard]] const path::EditList& edits() const { return *Access::state(config.edits); }
   /// Do paths on foot need a search that knows costs?
   [[nodiscard]] bool has_costs() const { return config.slope_cost > 0 || edits().has_costs(); }
+  /// Is an off-mesh link of the edits in force?
+  [[nodiscard]] bool has_links() const { return edits().active_links > 0; }
   [[nodiscard]] SearchBudget search_budget(uint64_t max_nodes = UINT64_MAX) const {
     return {max_nodes, nullptr, config.search_bytes};
   }

@@ -21,7 +21,8 @@ constexpr float kSoon = 0.3f;     // [m] before its lane offset a body turns to 
 
 void turn_to(Body& body, const Route& route, const StrideGround& ground, float metre) {
   body.on_right = body.in_counterflow;
-  const PathPoint place = lane_offset(body, route, ground, metre);
+  const PathPoint place =
+      leads_to_link(route) ? route.corners[route.next] : lane_offset(body, route, ground, metre);
   body.local_target_x = place.x;
   body.local_target_z = place.z;
   const bool last = route.whole && route.next + 1 == route.count;
@@ -49,7 +50,7 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
     return ground.sees(body.level, body.point(), {position.x, position.z}, position.level, range);
   };
   const float square = near_square(body.local_target_x - body.x, body.local_target_z - body.z);
-  if (!body.has(Body::kLast) && square < range * range / 4) {
+  if (!body.has(Body::kLast) && square < range * range / 4 && !leads_to_link(route)) {
     const bool at_end = route.next + 1 == route.count;
     const bool there = square < 16;  // a few units: as near as moves come
     if (!at_end && (there || (is_at_lane_offset(body, route, metre) &&
@@ -108,6 +109,7 @@ bool use_path(const world::WorldData& world, const Path& path, const StrideGroun
               Body& body, Route& route) {
   const float metre = world::kUnitsPerCell / static_cast<float>(world.summary.cell);
   body.flags = static_cast<uint8_t>(body.flags & ~Body::kNeedsPath);
+  route.by_link = 0;
   if (path.end != PathEnd::kReached) return false;
   if (path.points.size() < 2) {  // It stands on its goal.
     route.corners[0] = route.goal;
@@ -118,6 +120,20 @@ bool use_path(const world::WorldData& world, const Path& path, const StrideGroun
     return true;
   }
   const size_t segments = path.points.size() - 1;
+  // Up to the end of the first off-mesh link: the rest is searched for from there.
+  const size_t link_end = path.links.empty() ? SIZE_MAX : path.links.front().point;
+  if (link_end <= Route::kCorners) {
+    const size_t first = link_end == 1 ? 0 : 1;
+    route.count = static_cast<uint8_t>(link_end + 1 - first);
+    route.next = 0;
+    route.whole = false;
+    route.by_link = 1;
+    for (size_t i = 0; i < route.count; ++i) {
+      route.corners[i] = point_of(world, path.points[first + i]);
+    }
+    turn_to(body, route, ground, metre);
+    return true;
+  }
   route.count = static_cast<uint8_t>(std::min(segments, Route::kCorners));
   route.next = 0;
   route.whole = segments <= Route::kCorners;

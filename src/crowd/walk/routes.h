@@ -27,12 +27,18 @@ struct Route {
   PathPoint goal;
   std::array<PathPoint, kCorners> corners;
   uint8_t count = 0, next = 0;
-  bool whole = false;  // the last corner is the goal
+  bool whole = false;   // the last corner is the goal
+  uint8_t by_link = 0;  // An off-mesh link leads to the last corner, from the one before.
 };
 
-/// Heads to the next corner once it is visible, and marks a body that has lost its path. `nth`:
-/// counts decisions, from a different number for each body, so that not all check in the same step.
-/// `metre`: [units]
+/// Is the corner that a body heads to the start of an off-mesh link?
+inline bool leads_to_link(const Route& route) {
+  return route.by_link != 0 && route.next + 2 == route.count;
+}
+
+/// Heads to the next corner once it is visible, unless an off-mesh link leads there, and marks a
+/// body that has lost its path. `nth`: counts decisions, from a different number for each body, so
+/// that not all check in the same step. `metre`: [units]
 void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float metre);
 
 /// The place of a body that heads to `position`.

@@ -21,7 +21,9 @@ bool WalkMode::leads_out(const Body& body, std::span<const uint32_t> slots) cons
     points.push_back({body.local_target_x, body.local_target_z});
   } else {
     const Route& route = routes_[body.slot];
-    for (size_t i = route.next; i < route.count; ++i) {
+    // Not over an off-mesh link: one that leaves takes none.
+    const size_t count = route.count - (route.by_link != 0 ? 1u : 0u);
+    for (size_t i = route.next; i < count; ++i) {
       points.push_back({route.corners[i].x, route.corners[i].z});
     }
   }

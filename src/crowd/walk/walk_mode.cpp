@@ -51,9 +51,10 @@ Result<void> WalkMode::open_class(size_t number, Context& context) {
     made->repairs.resize(made->finders.size());
   }
   made->flies = shared_.flies(number);
+  made->takes_links = has_paths && !made->flies;
   some_fly_ = some_fly_ || made->flies;
   classes_[number] = std::move(made);
-  if (has_paths && shared_.has_costs()) make_lives(number);
+  if (has_paths && plans_by_cost(*classes_[number])) make_lives(number);
   engine_.set_ground(number, StrideGround(shared_.classes[number]->ground,
                                           world::step_mm(shared_.body_class(number))));
   return {};
@@ -130,6 +131,7 @@ void WalkMode::step(std::span<Body> /*bodies: its engine's*/, EngineCounts& coun
   const CrowdEngine::Before before = [this](std::span<Body> bodies, int32_t worker) {
     plan(bodies, worker);
   };
+  links_are_used_ = takes_links_->begin_step();
   const bool has_plans =
       shared_.config.routing == Routing::kPaths || some_fly_ || shared_.some_leave;
   engine_.step(shared_.sub_step - 1, has_plans ? before : CrowdEngine::Before(), counts, times);
@@ -150,7 +152,7 @@ void WalkMode::areas_changed(std::span<Body> bodies) {
   for (size_t c = 0; c < classes_.size(); ++c) {
     if (!classes_[c]) continue;
     OfClass& parts = *classes_[c];
-    if (!shared_.has_costs() && parts.lives.empty()) continue;
+    if (!plans_by_cost(parts) && parts.lives.empty()) continue;
     make_lives(c);
     for (size_t w = 0; w < parts.lives.size(); ++w) {
       parts.areas[w].follow(shared_.edits(), parts.lives[w]);
@@ -259,9 +261,11 @@ bool WalkMode::is_sound(const Body& body) const {
   if (!body.has(Body::kHasGoal) || body.climbs) return true;
   const uint32_t levels = data_of(shared_.world)->level_count;
   const Route& route = routes_[body.slot];
+  if (route.by_link > 1 || (route.by_link != 0 && route.count < 2)) return false;
   if (route.count > Route::kCorners || (route.count > 0 && route.next >= route.count)) return false;
   for (size_t i = 0; i < route.count; ++i) {
-    if (route.corners[i].level >= levels) return false;
+    const PathPoint& corner = route.corners[i];
+    if (corner.level >= levels || corner.x < 0 || corner.z < 0) return false;
   }
   return route.goal.level < levels;
 }

@@ -35,6 +35,22 @@ class TakesOff {
   [[nodiscard]] virtual bool is_at_link(uint32_t slot) const = 0;
 };
 
+/// What avatars of classes that only walk do at the starts of off-mesh links: LinkMode.
+class TakesLinks {
+ public:
+  virtual ~TakesLinks() = default;
+  /// To be called before a step. False: none of the following need be called in it.
+  virtual bool begin_step() = 0;
+  /// Called for each of them before it follows its path. True: it waits, and does not follow it.
+  /// `nth` as for follow(). On any worker.
+  virtual bool plan_at_start(Body& body, const Route& route, const StrideGround& ground,
+                             uint64_t nth) = 0;
+  /// Called before one of them searches for another path, and then with the path, or null: there is
+  /// none. On any worker.
+  virtual void begin_search(Body& body) = 0;
+  virtual void end_search(Body& body, const Route* found) = 0;
+};
+
 class WalkMode final : public Mode {
  public:
   static constexpr size_t kRowBytes = sizeof(Route);
@@ -42,6 +58,8 @@ class WalkMode final : public Mode {
   WalkMode(SharedState& shared, const MoveConfig& config);
   /// What decides for classes that fly; it outlives all steps.
   void set_takes_off(TakesOff& flyers) { takes_off_ = &flyers; }
+  /// The same for classes that only walk.
+  void set_takes_links(TakesLinks& links) { takes_links_ = &links; }
 
   // The bodies of all modes.
   [[nodiscard]] CrowdEngine& engine() { return engine_; }
@@ -95,6 +113,7 @@ class WalkMode final : public Mode {
  private:
   struct OfClass {
     bool flies = false;                     // too: asks takes_off_
+    bool takes_links = false;               // asks takes_links_
     std::vector<path::MeshFinder> finders;  // one a worker
     std::vector<path::GroundFinder> lives;  // one a worker, once paths avoid obstacles or lead to
                                             // targets
@@ -105,6 +124,10 @@ class WalkMode final : public Mode {
     std::optional<StandingDraw> standing;  // none: the ground has changed since
   };
   [[nodiscard]] StrideGround stride_ground(const Body& body) const;
+  /// Do paths on foot need a search that knows costs and off-mesh links?
+  [[nodiscard]] bool plans_by_cost(const OfClass& parts) const {
+    return shared_.has_costs() || (parts.takes_links && shared_.has_links());
+  }
   /// Creates the live grounds of a class, if there are none yet.
   void make_lives(size_t number);
 
@@ -119,6 +142,8 @@ class WalkMode final : public Mode {
 
   CrowdEngine engine_;
   TakesOff* takes_off_ = nullptr;
+  TakesLinks* takes_links_ = nullptr;
+  bool links_are_used_ = false;                    // in this step
   std::vector<std::unique_ptr<OfClass>> classes_;  // null: not in use
   std::vector<Route> routes_;                      // by slot
   bool some_fly_ = false;                          // OfClass::flies, of some

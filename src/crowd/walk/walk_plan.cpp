@@ -34,12 +34,20 @@ void WalkMode::plan(std::span<Body> bodies, int32_t worker) {
       continue;
     Route& route = routes_[body.slot];
     const StrideGround ground = stride_ground(body);
+    const uint64_t nth = (step_now + body.slot) / engine_.steps_of_reaction(body);
+    const bool takes_links = links_are_used_ && parts.takes_links;
     if (!body.has(Body::kNeedsPath)) {
-      follow(body, route, ground, (step_now + body.slot) / engine_.steps_of_reaction(body), metre);
+      if (takes_links && takes_links_->plan_at_start(body, route, ground, nth)) continue;
+      if (!body.has(Body::kNeedsPath)) follow(body, route, ground, nth, metre);
     }
+    // The link was switched off while it could not search.
+    if (!takes_links && leads_to_link(route)) body.flags |= Body::kNeedsPath;
     if (!body.has(Body::kNeedsPath)) continue;
+    if (takes_links) takes_links_->begin_search(body);
     ++asked;
-    if (plan_path(body, route, ground, worker)) continue;
+    const bool is_found = plan_path(body, route, ground, worker);
+    if (takes_links) takes_links_->end_search(body, is_found ? &route : nullptr);
+    if (is_found) continue;
     // A target that cannot be walked to may be flown to.
     const bool takes_off = parts.flies && body.target != 0 && takes_off_->take_off(body);
     if (!takes_off) shared_.drop_goal(body);
@@ -60,7 +68,7 @@ bool WalkMode::plan_path(Body& body, Route& route, const StrideGround& ground, i
     route.goal = here;  // if it stands there already
   } else {
     const Place to = place_of(data, body, route.goal);
-    const bool by_cost = shared_.has_costs();
+    const bool by_cost = plans_by_cost(parts);
     if (by_cost) parts.lives[w].find(from, to, path, shared_.search_budget());
     if (!by_cost) parts.finders[w].find(from, to, path, shared_.search_budget());
     SpentBudget spent = path.spent;
@@ -82,7 +90,9 @@ void WalkMode::make_lives(size_t number) {
   THRONG_ASSERT(made);  // The class is one of the world's.
   lives.assign(static_cast<size_t>(worker_count(shared_.config.workers)), *made);
   std::vector<path::AppliedEdits>& areas = classes_[number]->areas;
-  areas.assign(lives.size(), path::AppliedEdits(path::AppliedEdits::Which::kAreas));
+  const auto which = classes_[number]->takes_links ? path::AppliedEdits::Which::kAreasAndLinks
+                                                   : path::AppliedEdits::Which::kAreas;
+  areas.assign(lives.size(), path::AppliedEdits(which));
   for (size_t w = 0; w < lives.size(); ++w) areas[w].follow(shared_.edits(), lives[w]);
 }
 

@@ -70,7 +70,7 @@ struct EditList {
 /// The edits that one finder has applied.
 class AppliedEdits {
  public:
-  enum class Which : uint8_t { kAll, kAreas };
+  enum class Which : uint8_t { kAll, kAreas, kAreasAndLinks };
   explicit AppliedEdits(Which which = Which::kAll) : which_(which) {}
 
   /// Applies what has changed since the last call, to the same finder or a copy of it.
@@ -108,7 +108,8 @@ class AppliedEdits {
   }
 
   [[nodiscard]] bool is_wanted(const EditList::Edit& edit) const {
-    return which_ == Which::kAll || edit.kind == EditList::Kind::kArea;
+    return which_ == Which::kAll || edit.kind == EditList::Kind::kArea ||
+           (which_ == Which::kAreasAndLinks && edit.kind == EditList::Kind::kOffMeshLink);
   }
 
   // 0: the finder does not know edits of this kind.

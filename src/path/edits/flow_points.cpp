@@ -12,7 +12,8 @@
 #include "path/ground/reset_path.h"
 #include "world/place.h"
 
-// Dijkstra's search outwards from all goals over the points of portals of a GroundView.
+// Dijkstra's search outwards from all goals over the points of portals of a GroundView, and against
+// the direction of its off-mesh links.
 namespace throng::path {
 namespace {
 
@@ -25,15 +26,26 @@ class Outwards {
  public:
   Outwards(GroundView& mesh, double max_distance) : mesh_(mesh), max_distance_(max_distance) {
     nodes_.clear();
+    for (const GroundView::LevelLinkEnd& link : mesh.active_links()) {
+      ViewStop from{link.level, 0, link.end.from},
+          to{link.end.to_level, 0, link.end.to, link.end.cost};
+      const bool stands =
+          mesh.stand(from.level, from.at, from.rect) && mesh.stand(to.level, to.at, to.rect);
+      if (stands) links_.push_back({from, to});
+    }
+    std::stable_sort(links_.begin(), links_.end(), ends_before);
   }
 
-  void push(const ViewStop& stop, uint32_t parent, double cost) {
+  /// `link`: the off-mesh link by which the path leaves the stop, or null.
+  void push(const ViewStop& stop, uint32_t parent, double cost, const ViewStop* link = nullptr) {
     if (cost > max_distance_) return;
     const auto [index, is_new] = nodes_.node_of(stop);
     ReachedPoint& node = nodes_.nodes[index];
     if (!is_new && (node.done || node.cost <= cost)) return;
     node.cost = cost;
     node.parent = parent;
+    node.stop.off_mesh_link = link != nullptr ? link->off_mesh_link : 0;
+    if (link != nullptr) node.link_from = link->at;
     open_.push({cost, index});
   }
 
@@ -52,13 +64,28 @@ class Outwards {
         push(beyond, index,
              node.cost + distance_of(node.stop.at, side) * factor + there / world::kUnitsPerCell);
       });
+      const auto [first, last] =
+          std::equal_range(links_.begin(), links_.end(), Link{{}, node.stop}, ends_before);
+      for (auto link = first; link != last; ++link) {
+        if (!std::isfinite(mesh_.factor(*mesh_.level(link->from.level), link->from.rect))) continue;
+        push(link->from, index,
+             node.cost + distance_of(node.stop.at, link->to.at) * factor + link->to.off_mesh_link,
+             &link->to);
+      }
     }
     return true;
   }
 
+  /// Of a node whose stop has the cost of an off-mesh link, `link_from` is the link's far end.
   [[nodiscard]] const ChunkedArray<ReachedPoint>& nodes() const { return nodes_.nodes; }
 
  private:
+  struct Link {
+    ViewStop from, to;  // `to` has its cost
+  };
+  static bool ends_before(const Link& a, const Link& b) { return lies_before(a.to, b.to); }
+
+  std::vector<Link> links_;  // by where they end
   GroundView& mesh_;
   double max_distance_;
   ReachedPoints nodes_;
@@ -93,8 +120,14 @@ std::optional<FlowPoints> FlowPoints::make(GroundFinder& of, std::span<const Pla
   made.points_.reserve(order.size());
   for (const uint32_t n : order) {
     const ReachedPoint& node = nodes[n];
-    made.points_.push_back(
-        {node.stop, node.parent == UINT32_MAX ? kNoPoint : number[node.parent], node.cost});
+    Point& point = made.points_.emplace_back();
+    point.stop = node.stop;
+    point.stop.off_mesh_link = 0;
+    point.next = node.parent == UINT32_MAX ? kNoPoint : number[node.parent];
+    point.cost = node.cost;
+    if (node.stop.off_mesh_link == 0) continue;
+    point.link = static_cast<uint32_t>(made.link_ends_.size());
+    made.link_ends_.push_back({node.link_from, node.stop.off_mesh_link});
   }
   return made;
 }
@@ -103,7 +136,7 @@ std::optional<FlowPoints> FlowPoints::make(GroundFinder& of, std::span<const Pla
 std::pair<uint32_t, double> FlowPoints::leave_by(GroundView& mesh, const ViewStop& stop) const {
   const double factor = mesh.factor(*mesh.level(stop.level), stop.rect);
   const auto [first, last] =
-      std::equal_range(points_.begin(), points_.end(), Point{stop, kNoPoint, 0}, before);
+      std::equal_range(points_.begin(), points_.end(), Point{.stop = stop}, before);
   std::pair<uint32_t, double> best{kNoPoint, kNever};
   for (auto p = first; p != last; ++p) {
     const double cost = p->cost + distance_of(p->stop.at, stop.at) * factor;
@@ -113,10 +146,16 @@ std::pair<uint32_t, double> FlowPoints::leave_by(GroundView& mesh, const ViewSto
   return best;
 }
 
-// The other side of the border that a point lies at: its path continues there. [it has a next]
-ViewStop FlowPoints::across(GroundView& mesh, const Point& point) const {
+// The other side of the border that a point lies at, or the far end of its link: its path continues
+// there. [it has a next]
+ViewStop FlowPoints::stop_beyond(GroundView& mesh, const Point& point) const {
   const ViewStop& on = points_[point.next].stop;
   ViewStop other = on;
+  if (point.link != kNoLink) {
+    other.at = link_ends_[point.link].at;
+    other.off_mesh_link = link_ends_[point.link].cost;
+    return other;
+  }
   for_portal_points(mesh, on, [&](world::GroundPoint side, const ViewStop& beyond) {
     if (beyond.level == point.stop.level && beyond.at.x == point.stop.at.x &&
         beyond.at.z == point.stop.at.z) {
@@ -155,7 +194,7 @@ Place FlowPoints::next(GroundFinder& of, const Place& place) const {
   }
   ViewStop to = best->stop;
   const bool is_there = to.level == from.level && to.at.x == from.at.x && to.at.z == from.at.z;
-  if (is_there && best->next != kNoPoint) to = across(ground.mesh, *best);
+  if (is_there && best->next != kNoPoint) to = stop_beyond(ground.mesh, *best);
   return world::place_at(ground.mesh.world(), ground.mesh.level(to.level)->ground, to.at);
 }
 
@@ -170,7 +209,7 @@ void FlowPoints::find_path(GroundFinder& of, const Place& place, Path& path) con
   ground.stops.assign(1, stop);
   for (uint32_t p = first; p != kNoPoint; p = points_[p].next) {
     ground.stops.push_back(points_[p].stop);
-    if (points_[p].next != kNoPoint) ground.stops.push_back(across(ground.mesh, points_[p]));
+    if (points_[p].next != kNoPoint) ground.stops.push_back(stop_beyond(ground.mesh, points_[p]));
   }
   ground.string.pull(ground.mesh, ground.stops);
   ground.give(path);

@@ -35,23 +35,33 @@ class FlowPoints {
   void find_path(GroundFinder& ground, const Place& place, Path& path) const;
 
   [[nodiscard]] size_t size() const { return points_.size(); }
-  [[nodiscard]] uint64_t bytes() const { return points_.size() * sizeof(Point); }
+  [[nodiscard]] uint64_t bytes() const {
+    return points_.size() * sizeof(Point) + link_ends_.size() * sizeof(LinkEnd);
+  }
 
  private:
-  static constexpr uint32_t kNoPoint = UINT32_MAX;
-  // A goal, or a point just inside a rectangle where the path to a goal leaves it.
+  static constexpr uint32_t kNoPoint = UINT32_MAX, kNoLink = UINT32_MAX;
+  // A goal, or a point just inside a rectangle where the path to a goal leaves it, or the start of
+  // an off-mesh link.
   struct Point {
     ViewStop stop;
     uint32_t next = kNoPoint;  // on the path; none at a goal
+    uint32_t link = kNoLink;   // of link_ends_: the path takes an off-mesh link from here
     double cost = 0;           // [cells]
+  };
+  // The far end of an off-mesh link, in the rectangle of the next point.
+  struct LinkEnd {
+    world::GroundPoint at;
+    double cost = 0;  // of the link [cells]
   };
 
   static bool before(const Point& a, const Point& b);
   [[nodiscard]] std::pair<uint32_t, double> leave_by(GroundView& mesh, const ViewStop& stop) const;
-  [[nodiscard]] ViewStop across(GroundView& mesh, const Point& point) const;
+  [[nodiscard]] ViewStop stop_beyond(GroundView& mesh, const Point& point) const;
 
   // By level and rectangle, so that those of one lie together.
   std::vector<Point> points_;
+  std::vector<LinkEnd> link_ends_;
   double max_distance_ = kNever;  // [cells]
 };
 

@@ -18,6 +18,7 @@
 #include "path/ground/reset_path.h"
 #include "path/ground/segments.h"
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // Checks and converts what callers give, and searches: exactly while every metre costs the same and
 // no off-mesh link is in force, else over points of portals.
@@ -142,7 +143,7 @@ Result<ChangeId> GroundFinder::add_off_mesh_link(const OffMeshLink& link) {
     if (!at) return {};
     const world::GroundLevel level =
         world::ground_level(world, place.level1 - 1, s.mesh.avatar_class());
-    const int32_t x = at->cell_x(), z = at->cell_z();
+    const int32_t x = world::in_tile(at->cell_x()), z = world::in_tile(at->cell_z());
     const bool legal = world::WorldGround{world, s.mesh.avatar_class()}.is_legal(level, x, z);
     return legal ? at : std::nullopt;
   };

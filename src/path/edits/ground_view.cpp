@@ -153,6 +153,14 @@ const std::vector<GroundView::OffMeshLinkEnd>& GroundView::links_from(uint32_t l
   return found == off_mesh_links_.end() ? none : found->second;
 }
 
+std::vector<GroundView::LevelLinkEnd> GroundView::active_links() const {
+  std::vector<LevelLinkEnd> links;
+  for (const Change& change : changes_) {
+    if (change.active) links.insert(links.end(), change.links.begin(), change.links.end());
+  }
+  return links;
+}
+
 // Links are kept in the order in which they were made: paths must not depend on when each was
 // switched.
 void GroundView::switch_link(const LevelLinkEnd& link, bool active) {

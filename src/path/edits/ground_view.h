@@ -122,6 +122,8 @@ class GroundView final : public PortalSource {
   void add_off_mesh_link(uint32_t level, const OffMeshLinkEnd& off_mesh_link);
   /// Those that are active now.
   [[nodiscard]] const std::vector<OffMeshLinkEnd>& links_from(uint32_t level) const;
+  /// All that are active now, in the order in which they were made.
+  [[nodiscard]] std::vector<LevelLinkEnd> active_links() const;
   /// Can the class stand at a point of a level now? In which rectangle?
   bool stand(uint32_t level, world::GroundPoint at, uint16_t& rect);
   bool set_active(ChangeId change, bool active, bool remove);

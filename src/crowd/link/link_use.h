@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "crowd/ground/body.h"
+#include "throng/path.h"
+
+/// What an avatar that uses an off-mesh link has beside its Body, by slot.
+namespace throng::crowd {
+
+struct LinkUse {
+  enum State : uint8_t {
+    kNone,
+    kWaits,   // near the start, until it is its turn
+    kEnters,  // it is its turn: it walks to the start
+    kRides,   // it is on the link: Body::on_link
+  };
+
+  /// The ends of its line: where it left the ground, before that the link's start; and the far end.
+  Stand from, to;
+  double along = 0;    // of the line [m]
+  uint64_t since = 0;  // it waits, or it is its turn [sub-steps]
+  float factor = 1;    // of its speed, on the link
+  EditId link = 0;
+  uint8_t state = kNone;
+  uint8_t back = 0;                  // it goes from the link's `to` to its `from`
+  uint8_t stands = 0;                // while it waits: it has been given a place to wait at
+  uint8_t arrived = 0;               // it had Body::kArrived before that
+  std::array<int16_t, 2> heading{};  // in plan, when it left the ground [of 32767]
+};
+static_assert(sizeof(LinkUse) == 64 && std::is_trivially_copyable_v<LinkUse>);
+
+}  // namespace throng::crowd

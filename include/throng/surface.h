@@ -33,11 +33,9 @@ enum class LinkKind : uint8_t {
   kClimb,    ///< One end is steeper than any walker's limit, or there is a gap between patches.
   kDrop,     ///< A drop link, one-way: out over an edge and down. For classes with a `max_drop`.
   kOffMesh,  ///< An off-mesh link; may be one-way.
-  kLand,     ///< From the air. (Reserved.)
-  kTakeOff,  ///< To the air. (Reserved.)
 };
 /// Number of LinkKind values.
-inline constexpr uint8_t kLinkKinds = 7;
+inline constexpr uint8_t kLinkKinds = 5;
 
 /// What a node is a part of.
 enum class PatchKind : uint8_t { kBezier = 0, kLevelTile = 1 };

@@ -120,9 +120,8 @@ const char* NodeZone::fault() const {
   for (const format::Arc& arc : arcs_) {
     const bool is_far = (arc.to() & kFarNode) != 0;
     const uint32_t index = arc.to() & ~kFarNode;
-    if (index >= (is_far ? far_.size() : nodes_.size()) || arc.kind() >= kLinkKinds) {
-      return "an arc leads nowhere";
-    }
+    if (index >= (is_far ? far_.size() : nodes_.size())) return "an arc leads nowhere";
+    if (arc.kind() >= kLinkKinds) return "an arc is of no known kind";
   }
   uint64_t next_arc = 0;
   for (const format::HoleLink& hole_link : hole_links_) {

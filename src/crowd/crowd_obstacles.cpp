@@ -167,7 +167,7 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
     if (!here.empty() && (refuses || obstacle.is_exit_only)) {
       leaving.insert(leaving.end(), here.begin(), here.end());
       const auto walks = [&](const auto& pair) {
-        return !bodies[pair.second].has(crowd::Body::kFlying);
+        return !bodies[pair.second].has(crowd::Body::kMovedElsewhere);
       };
       shared.obstacles.set_exit_only(slot, std::any_of(here.begin(), here.end(), walks));
       if (refuses) {

@@ -52,7 +52,7 @@ bool FlyMode::take_off(Body& body) {
   body.detour_angle = 0;
   const bool has_goal = body.has(Body::kHasGoal);
   body.flags &= Body::kExternal | Body::kHasGoal;
-  body.flags |= Body::kFlying;
+  body.flags |= Body::kMovedElsewhere;
   if (has_goal) body.flags |= Body::kNeedsPath;
   return true;
 }

@@ -109,7 +109,7 @@ void LinkMode::set_goal(Body& body, const Place& goal) {
   const bool rides = body.on_link;
   if (!rides && !uses_.empty()) uses_[body.slot] = {};
   walk_.set_goal(body, goal);
-  if (rides) body.flags = (body.flags & Body::kHasGoal) | Body::kFlying;
+  if (rides) body.flags = (body.flags & Body::kHasGoal) | Body::kMovedElsewhere;
 }
 
 void LinkMode::set_target(Body& body) {
@@ -195,7 +195,7 @@ bool LinkMode::is_sound(const Body& body) const {
   const bool rides = use.state == LinkUse::kRides;
   if (use.state > LinkUse::kRides || body.on_link != rides) return false;
   if (use.state == LinkUse::kNone) return true;
-  if (body.has(Body::kFlying) != rides || body.climbs || shared_.flies(body.avatar_class)) {
+  if (body.has(Body::kMovedElsewhere) != rides || body.climbs || shared_.flies(body.avatar_class)) {
     return false;
   }
   const world::WorldData& world = *data_of(shared_.world);

@@ -108,7 +108,7 @@ void LinkMode::enter(std::span<const Body> bodies, Body& body, LinkUse& use) con
   use.along = 0;
   use.state = LinkUse::kRides;
   body.on_link = true;
-  body.flags = (body.flags & (Body::kHasGoal | Body::kArrived)) | Body::kFlying;
+  body.flags = (body.flags & (Body::kHasGoal | Body::kArrived)) | Body::kMovedElsewhere;
   body.detour_angle = 0;
 }
 

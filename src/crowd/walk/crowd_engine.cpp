@@ -153,7 +153,7 @@ void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts
 // Does it repeat its last move?
 bool CrowdEngine::continues(const Body& body, uint64_t step) const {
   return body.has(Body::kContinues) && !body.has(Body::kExternal) && !body.has(Body::kNeedsPath) &&
-         !body.has(Body::kFlying) && !decides(steps_of_reaction(body), step, body.slot) &&
+         !body.has(Body::kMovedElsewhere) && !decides(steps_of_reaction(body), step, body.slot) &&
          !has_short_moves(body) &&
          !is_before({body.local_target_x - body.x, body.local_target_z - body.z}, stride_of(body));
 }
@@ -180,7 +180,7 @@ void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
     }
     if (before) before(bodies, worker);
     for (Body& b : bodies) {
-      if (b.has(Body::kExternal) || b.has(Body::kFlying) || b.steps == 0) continue;
+      if (b.has(Body::kExternal) || b.has(Body::kMovedElsewhere) || b.steps == 0) continue;
       b.preferred = b.has(Body::kHasGoal) || b.leaves
                         ? steer::preferred_towards(
                               config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z),
@@ -421,7 +421,7 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   Body& body = bodies_[i];
   Proposal& proposal = proposals()[i];
   proposal = {};
-  if (body.has(Body::kFlying)) {
+  if (body.has(Body::kMovedElsewhere)) {
     body.state = Body::kEnclosed;
     return false;
   }
@@ -606,7 +606,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
     EngineCounts here;
     for (size_t i = begin; i < end; ++i) {
       Body& b = bodies_[i];
-      if (b.has(Body::kFlying)) continue;
+      if (b.has(Body::kMovedElsewhere)) continue;
       here.low_detail += b.has(Body::kLowDetail) ? 1 : 0;
       const Plane displacement =
           config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z);

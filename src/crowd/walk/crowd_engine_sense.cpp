@@ -21,14 +21,14 @@ constexpr float kTargetCount = 14;  // bodies, to find the nearest among
 // On its last segment, and not at its end yet?
 bool is_on_last_segment(const Body& body) {
   constexpr uint8_t kAll =
-      Body::kHasGoal | Body::kLast | Body::kArrived | Body::kExternal | Body::kFlying;
+      Body::kHasGoal | Body::kLast | Body::kArrived | Body::kExternal | Body::kMovedElsewhere;
   // A target can hold many.
   return body.target == 0 && !body.leaves && (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
 }
 
 // Does it head to a corner, not to its goal yet?
 bool turns_corner(const Body& body) {
-  constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kExternal | Body::kFlying;
+  constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kExternal | Body::kMovedElsewhere;
   return (body.flags & kAll) == Body::kHasGoal && !body.leaves;
 }
 

@@ -47,11 +47,18 @@ enum class ObstaclePolicy : uint8_t {
   kWait,
 };
 
+/// What an obstacle does now.
+enum class ObstaclePhase : uint8_t {
+  kOff,            ///< It is switched off.
+  kWaitsToComeUp,  ///< It was requested, and waits for avatars to leave its volume.
+  kUp,             ///< It blocks avatars.
+  kWaitsToMove,    ///< It blocks avatars where it is, and waits until it can move.
+};
+
 /// The present state of an obstacle.
 struct ObstacleState {
-  Prism prism;         ///< Where it is, or will be.
-  bool is_up = false;  ///< It blocks avatars.
-  bool waits = false;  ///< It was requested to come up or to move, and waits for avatars to leave.
+  Prism prism;  ///< Where it is or, while it waits to come up, will be.
+  ObstaclePhase phase = ObstaclePhase::kOff;
   ObstacleKind kind = ObstacleKind::kStatic;
   ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry;
   /// When it was last requested, in the crowd's time (steps times dt). Below 0: never, or switched
@@ -60,6 +67,13 @@ struct ObstacleState {
   double up_at = -1;  ///< When it came up; below 0: it is not up. [s]
   /// Avatars inside, counted at the request and at the beginning of each step.
   uint32_t occupants = 0;
+
+  [[nodiscard]] bool is_up() const {
+    return phase == ObstaclePhase::kUp || phase == ObstaclePhase::kWaitsToMove;
+  }
+  [[nodiscard]] bool waits() const {
+    return phase == ObstaclePhase::kWaitsToComeUp || phase == ObstaclePhase::kWaitsToMove;
+  }
 };
 
 // ----

@@ -22,6 +22,13 @@ Prism prism_of(const path::Solid& solid) {
                     {(*high)[0] + kThin, box.high + kThin, (*high)[1] + kThin});
 }
 
+ObstaclePhase phase_of(const crowd::CrowdObstacle& obstacle) {
+  if (obstacle.is_up) {
+    return obstacle.waits() ? ObstaclePhase::kWaitsToMove : ObstaclePhase::kUp;
+  }
+  return obstacle.waits() ? ObstaclePhase::kWaitsToComeUp : ObstaclePhase::kOff;
+}
+
 Error no_obstacle() { return {Errc::kNotFound, "crowd: there is no obstacle of that id"}; }
 
 }  // namespace
@@ -82,8 +89,7 @@ Result<ObstacleState> Crowd::obstacle(ObstacleId id) const {
                : static_cast<double>(step) * state_->shared.config.dt;
   };
   return ObstacleState{found->place,
-                       found->is_up,
-                       found->waits(),
+                       phase_of(*found),
                        found->kind,
                        found->policy,
                        seconds(found->requested_step),

@@ -106,6 +106,15 @@ struct Journey {
   bool repeat = false;  ///< Begins again after the last stage; else the avatar stays there.
 };
 
+/// How a source distributes its avatars over time and space.
+enum class SpawnPattern : uint8_t {
+  kRandom,  ///< At exponential intervals (a Poisson process), at random places.
+  kEven,    ///< At equal intervals, at random places.
+  /// All at once, in rows over the box around the area, so that dense crowds find space. [one area,
+  /// a finite count, no rates, no density]
+  kRows,
+};
+
 /// Where and when avatars enter.
 struct Source {
   std::string name;
@@ -117,13 +126,10 @@ struct Source {
   uint64_t count = UINT64_MAX;   ///< Maximum number of avatars.
   double begin = 0;              ///< [s]
   double end = HUGE_VAL;         ///< [s]
-  /// Pairs of time and rate, each rate until the next time; empty: all `count` at once. Intervals
-  /// between avatars are exponential: a Poisson process. [s, people/s]
+  /// Pairs of time and rate, each rate until the next time; empty: all `count` at once. [s,
+  /// people/s]
   std::vector<std::pair<double, double>> rates;
-  bool even = false;  ///< Equal intervals in place of exponential ones.
-  /// In rows over the box around the area, not at random, so that dense crowds find space. [one
-  /// area, a finite count, no rates, no density]
-  bool in_rows = false;
+  SpawnPattern pattern = SpawnPattern::kRandom;
   Distribution premovement;  ///< Premovement time: stands so long before its journey begins. [s]
   Distribution group;        ///< Size of a group that enters and stays together. [people]
 };

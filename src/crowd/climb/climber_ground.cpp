@@ -33,7 +33,7 @@ ClimberGround::ClimberGround(const World& world, const Nodes& nodes, const path:
   };
   width_ = units(data.width);
   depth_ = units(data.depth);
-  tile_ = 64 * data.summary.cell;
+  tile_ = kTileCells * data.summary.cell;
   height_ = avatar.height;
   reach_ = path::reach_of(avatar);
   bottom_ = body_bottom(avatar);

@@ -9,6 +9,9 @@
 #include <tuple>
 #include <utility>
 
+// Finds out what an eye can see of a scene: draws its triangles into six depth images around the
+// eye and tests boxes against these.
+//
 // A pixel is covered if one triangle covers it completely, or two that share a side do so together;
 // where three meet at a corner it stays open. So nothing visible is ever reported as hidden,
 // however narrow the slit, and walls of few triangles hide nearly all that lies behind them.

@@ -92,7 +92,7 @@ const char* NodeZone::fault() const {
         if (bezier || node.level() != kPartialLevel || patch.depth() != kDeepestPatch ||
             partial >= partial_.size() || partial_[partial].node() != n ||
             (partial_[partial].low() | partial_[partial].high()) == 0) {
-          return "the cells of a ragged node make no sense";
+          return "the cells of a partial node make no sense";
         }
         ++partial;
       }
@@ -109,7 +109,7 @@ const char* NodeZone::fault() const {
     }
   }
   if (next != nodes_.size()) return "nodes without a patch";
-  if (partial != partial_.size()) return "cells of nodes that are not ragged";
+  if (partial != partial_.size()) return "cells of nodes that are not partial";
   uint32_t last = 0;
   for (const format::Node& node : nodes_) {
     if (node.first_arc() < last || node.first_arc() > arcs_.size()) {

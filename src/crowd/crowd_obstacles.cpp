@@ -15,11 +15,11 @@ namespace {
 // Of triangles the box around them, which may be flat.
 Prism prism_of(const path::Solid& solid) {
   if (solid.triangles.empty()) return solid.prism;
-  constexpr double kThin = 0.001;  // [m]
+  constexpr double kBoxMargin = 0.001;  // [m]
   const Prism& box = solid.prism;
   const auto [low, high] = std::minmax_element(box.corners.begin(), box.corners.end());
-  return Prism::box({(*low)[0] - kThin, box.low - kThin, (*low)[1] - kThin},
-                    {(*high)[0] + kThin, box.high + kThin, (*high)[1] + kThin});
+  return Prism::box({(*low)[0] - kBoxMargin, box.low - kBoxMargin, (*low)[1] - kBoxMargin},
+                    {(*high)[0] + kBoxMargin, box.high + kBoxMargin, (*high)[1] + kBoxMargin});
 }
 
 ObstaclePhase phase_of(const crowd::CrowdObstacle& obstacle) {

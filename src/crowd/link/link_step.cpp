@@ -16,8 +16,8 @@ namespace throng::crowd {
 namespace {
 
 constexpr std::array<double, 4> kParts = {1, 0.5, 0.25, 0.1};  // of a step
-constexpr double kAtStart = 0.15;  // [m] from the start, where one leaves the ground
-constexpr double kTurnTime = 10;   // [s] to get to the start, then it is another's turn
+constexpr double kEntryRadius = 0.15;  // [m] from the start, where one leaves the ground
+constexpr double kTurnTime = 10;       // [s] to get to the start, then it is another's turn
 
 bool overlaps_with(const Body& a, const Stand& at, const Body& b) {
   return nearer_than(at.x - b.x, at.z - b.z, int64_t{a.radius} + b.radius) &&
@@ -88,7 +88,7 @@ void LinkMode::step(std::span<Body> bodies, EngineCounts& counts, EngineTimes& t
 // One whose turn it is leaves the ground once it is at the start and the end is free.
 void LinkMode::enter(std::span<const Body> bodies, Body& body, LinkUse& use) const {
   if (body.has(Body::kNeedsPath)) return;  // It has lost its path, and searches again.
-  const auto near = static_cast<int64_t>(kAtStart / shared_.unit);
+  const auto near = static_cast<int64_t>(kEntryRadius / shared_.unit);
   const StrideGround ground(shared_.ground_of(body),
                             world::step_mm(shared_.body_class(body.avatar_class)));
   StrideGround::Landing landing;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kNodeZoneIdentifier = "THNZ";
 constexpr const char* kNodeIndexIdentifier = "THNI";
-constexpr double kFarthest = 1e9;  // [m]
+constexpr double kMaxLength = 1e9;  // [m]
 
 constexpr const char* kRemedy = "bake the world again with --nodes";
 
@@ -68,7 +68,7 @@ Result<void> NodeZone::attach(const std::string& name) {
 
 const char* NodeZone::fault() const {
   for (const double p : points_) {
-    if (!(std::fabs(p) <= kFarthest)) return "a control point makes no sense";
+    if (!(std::fabs(p) <= kMaxLength)) return "a control point makes no sense";
   }
   uint64_t next = 0, partial = 0;
   for (const format::NodePatch& patch : patches_) {
@@ -309,8 +309,8 @@ Result<std::shared_ptr<NodeData>> read_node_index(std::span<const uint8_t> bytes
   if (!root.inclination() || !root.height() || !root.width() || !root.zones() || !root.inputs() ||
       !is_aligned(*root.inputs()) || !is_aligned(*root.inclination()) ||
       !is_aligned(*root.height()) || !is_aligned(*root.width()) || !is_aligned(*root.zones()) ||
-      !ascending(*root.inclination(), 0, 180) || !ascending(*root.height(), 0, kFarthest) ||
-      !ascending(*root.width(), 0, kFarthest) || !(root.size() > 0 && root.size() <= kFarthest)) {
+      !ascending(*root.inclination(), 0, 180) || !ascending(*root.height(), 0, kMaxLength) ||
+      !ascending(*root.width(), 0, kMaxLength) || !(root.size() > 0 && root.size() <= kMaxLength)) {
     return bad_nodes(name, "its numbers make no sense");
   }
   auto nodes = std::make_shared<NodeData>();

@@ -10,7 +10,7 @@
 namespace throng::path {
 namespace {
 
-constexpr double kShorter = 1e-9;
+constexpr double kMinGain = 1e-9;
 // The heuristic is weighted a little: among paths that are nearly as short, the one that is nearly
 // at the goal is expanded first. It costs 0.02 % of length and spares three boxes of four.
 constexpr double kHeuristicWeight = 1.02;
@@ -21,9 +21,9 @@ constexpr double kLargeHeuristicWeight = 1.1;  // through large boxes
 // with the distance from both ends. Its result is used if it is hardly longer than the straight
 // line; otherwise the search through all boxes has a budget in which to find a shorter one. String
 // pulling moves the path to the edges of what is in between in either case.
-constexpr double kFar = 256;            // ends so many voxels apart
-constexpr double kHardlyLonger = 1.05;  // before it is pulled taut
-constexpr uint64_t kBudget = 1u << 17;  // boxes
+constexpr double kCoarseDistance = 256;  // ends so many voxels apart
+constexpr double kMaxStretch = 1.05;     // before it is pulled taut
+constexpr uint64_t kBudget = 1u << 17;   // boxes
 struct Ring {
   double within;     // voxels from an end
   int32_t min_side;  // voxels a side of a box
@@ -105,7 +105,7 @@ SearchResult FlightSearch::find(const AirView& air, AirPoint from, AirPoint to,
     return SearchResult::kFound;
   }
   const double straight = air_distance(from, to);
-  if (straight <= kFar) {
+  if (straight <= kCoarseDistance) {
     large_ = false;
     return search(from, start, budget, path);
   }
@@ -115,7 +115,7 @@ SearchResult FlightSearch::find(const AirView& air, AirPoint from, AirPoint to,
   if (large == SearchResult::kBudget) return large;
   const bool found = large == SearchResult::kFound;
   const double length = length_of(large_path_);
-  if (!found || length > kHardlyLonger * straight) {
+  if (!found || length > kMaxStretch * straight) {
     large_ = false;
     const uint64_t left = budget.max_nodes - expanded_;
     SearchBudget rest = budget;
@@ -235,7 +235,7 @@ void FlightSearch::reach(uint32_t from, uint32_t box) {
   next.via = from;
   if (known) {
     Node& old = nodes_[mark.node];
-    if (next.estimate >= old.estimate - kShorter) return;
+    if (next.estimate >= old.estimate - kMinGain) return;
     old = next;
     push(mark.node);
     return;

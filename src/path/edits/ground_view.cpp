@@ -431,7 +431,7 @@ void GroundView::drop(ViewLevel& level) {
 
 // Those that no portal has any more. Their numbers are used again.
 void GroundView::drop_unused_corners() {
-  constexpr size_t kLeast = 256;
+  constexpr size_t kMinCorners = 256;
   used_corners_.assign(mesh_.corners.size(), false);
   for (const std::unique_ptr<ViewLevel>& level : levels_) {
     if (level == nullptr) continue;
@@ -451,7 +451,7 @@ void GroundView::drop_unused_corners() {
     corner_numbers_.erase(found);
     free_corners_.push_back(c);
   }
-  max_corners_ = std::max(kLeast, 2 * corner_numbers_.size());
+  max_corners_ = std::max(kMinCorners, 2 * corner_numbers_.size());
 }
 
 }  // namespace throng::path

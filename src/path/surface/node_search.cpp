@@ -16,7 +16,7 @@
 namespace throng::path {
 namespace {
 
-constexpr double kShort = 1;  // Pieces up to here count as straight. [m]
+constexpr double kMaxStraightPiece = 1;  // Pieces up to here count as straight. [m]
 
 }  // namespace
 
@@ -40,7 +40,7 @@ PieceCost::Piece PieceCost::operator()(uint32_t block, double s0, double t0, Vec
   }
   const double s = (s0 + s1) / 2, t = (t0 + t1) / 2;
   double along = straight;
-  if (straight > kShort) {
+  if (straight > kMaxStraightPiece) {
     const Vec3d middle = surface.at(s, t);
     along = length(middle - from) + length(to - middle);
   }

@@ -86,7 +86,7 @@ void FlightSearch::give_back() {
   if (allocated_bytes() <= kKeptBytes) return;
   nodes_.clear();
   nodes_.shrink(0);
-  marks_.clear();
+  marks_.give_back();
   open_.give_back();
 }
 
@@ -141,16 +141,12 @@ int32_t FlightSearch::min_around(const world::AirCube& box) const {
 
 SearchResult FlightSearch::search(AirPoint from, uint32_t start, const SearchBudget& budget,
                                   std::vector<AirPoint>& path) {
-  marks_.resize(air_->end());
-  if (++search_ == 0) {  // After 2^32 searches the marks start over.
-    marks_.clear();
-    search_ = 1;
-  }
+  marks_.begin(air_->end());
   path.clear();
   nodes_.clear();
   open_.clear();
   nodes_.push_back({from, 0, air_distance(from, goal_), start, 0, 0, false});
-  marks_[start] = {search_, 0};
+  marks_[start] = {marks_.search(), 0};
   push(0);
   while (!open_.empty()) {
     const Entry entry = open_.pop();
@@ -221,7 +217,7 @@ void FlightSearch::open(uint32_t node) {
 
 void FlightSearch::reach(uint32_t from, uint32_t box) {
   Mark& mark = marks_[box];
-  const bool known = mark.search == search_;
+  const bool known = marks_.is_reached(mark);
   if (known && nodes_[mark.node].opened) return;
   const uint32_t parent = nodes_[from].parent;
   const Node& turn = nodes_[parent];
@@ -240,7 +236,7 @@ void FlightSearch::reach(uint32_t from, uint32_t box) {
     push(mark.node);
     return;
   }
-  mark = {search_, static_cast<uint32_t>(nodes_.size())};
+  mark = {marks_.search(), static_cast<uint32_t>(nodes_.size())};
   nodes_.push_back(next);
   push(mark.node);
 }

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+// Words the faults of a command line in one sentence each, in place of the messages of CLI11.
+//
 // CLI11 counts values ("6 required X,Y,Z,X,Y,Z missing") and prints them as it split them
 // ("7,abc" for 7=abc). These messages name the type of the value, as --help does.
 namespace throng::app {

@@ -94,8 +94,8 @@ Result<std::vector<NodeOffMeshLink>> read_off_mesh_links(const std::string& name
 }
 
 Result<NodeSummary> bake_nodes(BakeOptions& options, const Scene& scene, Context& context) {
-  constexpr uint64_t kResident = uint64_t{256} << 20;
-  const Result<World> world = World::open(options.output, {.resident_bytes = kResident});
+  constexpr uint64_t kResidentBytes = uint64_t{256} << 20;
+  const Result<World> world = World::open(options.output, {.resident_bytes = kResidentBytes});
   const auto opened = meet_over_ranks(world ? Result<void>() : world.error(), context);
   if (!opened) return opened.error();
   return nodes_over_ranks(*world, scene, options.node_config, context);

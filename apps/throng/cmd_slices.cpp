@@ -25,11 +25,11 @@ struct SlicesOptions {
 // Bytes of the kept slices as [ML06] section 3.3 stores them: depths below the slice's height, 16
 // bits a cell where the deepest is at most 65.534 m (65535 mm stands for an empty cell), else 32.
 uint64_t stored_bytes(const SliceSet& set) {
-  constexpr int32_t kDeepest = 65534;
+  constexpr int32_t kMaxDepth = 65534;
   uint64_t bytes = 0;
   for (const Slice& slice : set.kept) {
     const bool fits = std::all_of(slice.surface.begin(), slice.surface.end(), [&](int32_t value) {
-      return value == set.far_plane || slice.height - value <= kDeepest;
+      return value == set.far_plane || slice.height - value <= kMaxDepth;
     });
     bytes += slice.surface.size() * (fits ? 2 : 4);
   }

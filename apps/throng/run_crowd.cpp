@@ -18,11 +18,11 @@
 namespace throng::app {
 namespace {
 
-constexpr double kNearGround = 2;    // max distance of a goal of a file from the ground [m]
-constexpr double kStorey = 4;        // vertical tolerance of a random goal [m]
-constexpr uint64_t kTries = 32;      // random points per goal
-constexpr uint64_t kPlaces = 1024;   // random places of nodes per goal
-constexpr uint64_t kAir = 0x616972;  // stream of random numbers
+constexpr double kNearGround = 2;       // max distance of a goal of a file from the ground [m]
+constexpr double kStorey = 4;           // vertical tolerance of a random goal [m]
+constexpr uint64_t kDrawsPerGoal = 32;  // random points per goal
+constexpr uint64_t kPlaces = 1024;      // random places of nodes per goal
+constexpr uint64_t kAir = 0x616972;     // stream of random numbers
 
 // Uniform in [0, 1), of a stream.
 double random_number(uint64_t seed, uint64_t stream, uint64_t n) {
@@ -223,7 +223,7 @@ Place GoalCrowd::goal_in_air(uint32_t slot, uint64_t nth, const Vec3d& from) con
     const auto point = crowd_.random_air_point(avatar_class, seed, uint64_t{slot} << 32 | nth);
     return point ? air_place(*point) : Place{};
   }
-  for (uint64_t n = nth * kTries; n < (nth + 1) * kTries; ++n) {
+  for (uint64_t n = nth * kDrawsPerGoal; n < (nth + 1) * kDrawsPerGoal; ++n) {
     const auto offset = [&](uint64_t stream) {
       return run_.near * (2 * random_number(seed, 3 * uint64_t{slot} + stream, n) - 1);
     };
@@ -241,9 +241,9 @@ Place GoalCrowd::goal(uint32_t slot, uint64_t nth, const Vec3d& from) const {
     const Place place = goal_in_air(slot, nth, from);
     if (place) return place;
   }
-  const uint64_t seed = run_.config.seed, draw = nth * kTries;
+  const uint64_t seed = run_.config.seed, draw = nth * kDrawsPerGoal;
   if (run_.near <= 0) return world_.random_place(avatar_class, seed, uint64_t{slot} << 32 | nth);
-  for (uint64_t n = draw; n < draw + kTries; ++n) {
+  for (uint64_t n = draw; n < draw + kDrawsPerGoal; ++n) {
     const auto offset = [&](uint64_t stream) {
       return run_.near * (2 * random_number(seed, stream, n) - 1);
     };

@@ -298,10 +298,6 @@ const char* word_for(LinkKind kind) {
       return "drop";
     case LinkKind::kOffMesh:
       return "off-mesh link";
-    case LinkKind::kLand:
-      return "land";
-    case LinkKind::kTakeOff:
-      return "take off";
   }
   return "";
 }

@@ -39,9 +39,10 @@ bool set_field(BuiltinWorldConfig& config, std::string_view key, std::string_vie
 
 // Does half of the longer of two ranges lie in the other, or are both short?
 bool share_half(double low, double high, double other_low, double other_high) {
-  constexpr double kShort = 2;  // [m]
+  constexpr double kMaxShortRange = 2;  // [m]
   const double longer = std::max(high - low, other_high - other_low);
-  return longer <= kShort || std::min(high, other_high) - std::max(low, other_low) >= longer / 2;
+  return longer <= kMaxShortRange ||
+         std::min(high, other_high) - std::max(low, other_low) >= longer / 2;
 }
 
 std::string box_text(const Box3d& box) {

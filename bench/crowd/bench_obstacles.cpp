@@ -148,7 +148,7 @@ class Run {
   void drive(uint64_t& moved) {
     for (Cart& cart : carts_) {
       const auto state = crowd_.obstacle(cart.id);
-      if (!state || state->waits) continue;
+      if (!state || state->waits()) continue;
       if (draw() < 0.02) {
         cart.dx = 0.2 * draw() - 0.1;
         cart.dz = 0.2 * draw() - 0.1;

@@ -29,18 +29,18 @@ Vec3d shaken(Vec3d at, double by, uint64_t seed, uint64_t n) {
 }  // namespace
 
 Play corridor(uint32_t side, double area, uint64_t seed) {
-  constexpr double kWidth = 4, kApart = 20;
-  constexpr uint32_t kAcross = 4;
-  const double row = area * kAcross / kWidth;  // [m]
-  const double group = std::ceil(static_cast<double>(side) / kAcross) * row;
-  const double length = 2 * group + kApart;
+  constexpr double kWidth = 4, kGroupDistance = 20;
+  constexpr uint32_t kRowSize = 4;
+  const double row = area * kRowSize / kWidth;  // [m]
+  const double group = std::ceil(static_cast<double>(side) / kRowSize) * row;
+  const double length = 2 * group + kGroupDistance;
   Play play{.name = "corridor", .scene = {}, .avatar = {}, .walkers = {}};
   add_floor(play.scene, 0, 0, length, kWidth);
   for (uint32_t n = 0; n < 2 * side; ++n) {
     const uint32_t i = n / 2;
-    const Vec3d at{(i / kAcross + 0.5) * row, 0, (i % kAcross + 0.5) * kWidth / kAcross};
+    const Vec3d at{(i / kRowSize + 0.5) * row, 0, (i % kRowSize + 0.5) * kWidth / kRowSize};
     const Vec3d from = shaken(at, 0.15, seed, n);
-    const Vec3d to = {from.x + group + kApart, 0, from.z};
+    const Vec3d to = {from.x + group + kGroupDistance, 0, from.z};
     const auto turned = [&](Vec3d p) {  // half around
       return n % 2 == 0 ? p : Vec3d{length - p.x, 0, kWidth - p.z};
     };

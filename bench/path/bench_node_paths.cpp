@@ -48,14 +48,14 @@ std::vector<Pair> find_pairs(const Nodes& nodes, int32_t avatar_class, double ap
   std::vector<Pair> pairs;
   NodePlace from;
   for (uint64_t n = 0; pairs.size() < static_cast<size_t>(count) && n < 400'000; ++n) {
-    constexpr uint64_t kTries = 512;  // of ends for each beginning
-    if (n % kTries == 0) from = nodes.random_place(avatar_class, 1, n);
+    constexpr uint64_t kEndsPerStart = 512;  // of ends for each beginning
+    if (n % kEndsPerStart == 0) from = nodes.random_place(avatar_class, 1, n);
     const NodePlace to = nodes.random_place(avatar_class, 2, n);
     if (!from || !to) stop("the class has no nodes");
     const double far = length(to.feet - from.feet);
     if (far < 0.9 * apart || far > 1.1 * apart) continue;
     pairs.push_back({from, to});
-    n |= kTries - 1;
+    n |= kEndsPerStart - 1;
   }
   return pairs;
 }

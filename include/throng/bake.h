@@ -23,8 +23,11 @@ namespace throng {
 
 struct NodeConfig;
 
-/// Whether a bake into a folder reuses zones that were baked from the same input.
-enum class OldZones : uint8_t { kKeep, kBakeAgain };
+/// What a bake does with zones in its folder that were baked from the same input.
+enum class OldZones : uint8_t {
+  kKeep,       ///< Reuses them.
+  kBakeAgain,  ///< Bakes them again.
+};
 
 class FolderLock;  // Internal: keeps other bakes out of a folder.
 
@@ -45,10 +48,10 @@ struct BakeConfig {
   double zone = 160;  ///< Side of a zone, rounded to whole tiles (64 cells). [m, > 0]
   std::vector<AvatarClass> classes = default_classes();
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
-  /// Zones of the world, or of the interrupted bake, that the folder holds.
+  /// Into a folder that holds zones already, of a world or of an interrupted bake.
   OldZones old_zones = OldZones::kKeep;
-  /// Into a folder: keeps the old world's nodes, so that Nodes::create reuses what has not changed.
-  /// They are not valid for the new world until it has made them.
+  /// Into a folder: keeps the nodes of the old world for Nodes::create, which reuses those of zones
+  /// that have not changed. If the world has changed, they cannot be opened before that call.
   bool carry_nodes = false;
   /// Into a folder: settings of nodes that will be made afterwards. Their off-mesh links are
   /// checked before the new world replaces the old one, and BakeReport::hold keeps other bakes out.

@@ -51,7 +51,7 @@ enum class Errc {
   kCancelled,  ///< The caller's Context requested a stop; no partial result is left.
 };
 
-/// A failure as one sentence: file, place, what is wrong, how to mend it.
+/// A failure as one sentence: file, place, what is wrong, what to do about it.
 struct Error {
   Errc code = Errc::kOk;
   std::string message;
@@ -162,14 +162,19 @@ struct Prism {
   }
   /// Is (x, z) inside its polygon, border included? [m]
   [[nodiscard]] THRONG_API bool covers(double x, double z) const;
-  /// Is this height of feet within the prism's, up to kFeet? [m]
-  [[nodiscard]] bool reaches(double y) const { return y >= low - kFeet && y <= high + kFeet; }
-  /// Does an avatar with these feet stand in it?
-  [[nodiscard]] bool holds(Vec3d feet) const { return reaches(feet.y) && covers(feet.x, feet.z); }
-  /// Tolerance: heights of feet and floors differ by rounding. [m]
-  static constexpr double kFeet = 0.05;
-  /// A prism around an upright cylinder: `middle` is that of its bottom; with 16 corners it is 2 %
-  /// of the radius larger. [m, radius > 0, height > 0, corners 3 to 64]
+  /// Is a height of feet from `low` to `high`, give or take kFeetTolerance? [m]
+  [[nodiscard]] bool covers_height(double y) const {
+    return y >= low - kFeetTolerance && y <= high + kFeetTolerance;
+  }
+  /// Does an avatar with its feet at this point stand in the prism? [m]
+  [[nodiscard]] bool contains(Vec3d feet) const {
+    return covers_height(feet.y) && covers(feet.x, feet.z);
+  }
+  /// By how much heights of feet and floors may differ, because of rounding. [m]
+  static constexpr double kFeetTolerance = 0.05;
+  /// A prism that contains an upright cylinder; `middle` is the centre of the cylinder's bottom.
+  /// With 16 corners these lie 2 % of the radius outside of it. [m, radius > 0, height > 0, corners
+  /// 3 to 64]
   [[nodiscard]] THRONG_API static Prism circle(Vec3d middle, double radius, double height,
                                                int corners = 16);
 };

@@ -47,11 +47,18 @@ enum class ObstaclePolicy : uint8_t {
   kWait,
 };
 
+/// What an obstacle does now.
+enum class ObstaclePhase : uint8_t {
+  kOff,            ///< It is switched off.
+  kWaitsToComeUp,  ///< It was requested, and waits for avatars to leave its volume.
+  kUp,             ///< It blocks avatars.
+  kWaitsToMove,    ///< It blocks avatars where it is, and waits until it can move.
+};
+
 /// The present state of an obstacle.
 struct ObstacleState {
-  Prism prism;         ///< Where it is, or will be.
-  bool is_up = false;  ///< It blocks avatars.
-  bool waits = false;  ///< It was requested to come up or to move, and waits for avatars to leave.
+  Prism prism;  ///< Where it is or, while it waits to come up, will be.
+  ObstaclePhase phase = ObstaclePhase::kOff;
   ObstacleKind kind = ObstacleKind::kStatic;
   ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry;
   /// When it was last requested, in the crowd's time (steps times dt). Below 0: never, or switched
@@ -60,6 +67,13 @@ struct ObstacleState {
   double up_at = -1;  ///< When it came up; below 0: it is not up. [s]
   /// Avatars inside, counted at the request and at the beginning of each step.
   uint32_t occupants = 0;
+
+  [[nodiscard]] bool is_up() const {
+    return phase == ObstaclePhase::kUp || phase == ObstaclePhase::kWaitsToMove;
+  }
+  [[nodiscard]] bool waits() const {
+    return phase == ObstaclePhase::kWaitsToComeUp || phase == ObstaclePhase::kWaitsToMove;
+  }
 };
 
 // ----
@@ -99,7 +113,7 @@ enum class Routing {
   kStraight,
 };
 
-/// What trades quality of movement for time. The defaults were measured
+/// Settings that trade quality of movement for time. The defaults were measured
 /// (docs/design/008-engine.md); only studies of the engine change them.
 struct CrowdTuning {
   double sight = 5;  ///< Avatars farther away are not avoided yet. [m, 1 to 50]
@@ -108,9 +122,9 @@ struct CrowdTuning {
   /// than this, all avatars decide in each step. Shorter times cost more and gain little. [s, 0 to
   /// 1]
   double reaction = 0.2;
-  /// In low detail (beyond all views, see Crowd::set_views) an avatar makes one move for several
-  /// steps: as many steps as the radius of the narrowest body allows, at most this number. If that
-  /// is more than one, it ignores other avatars that it could not touch in this move. [1 to 16]
+  /// Largest number of steps that an avatar in low detail covers by one move; a small radius of the
+  /// narrowest body lowers it. If a move covers more than one step, other avatars that could not be
+  /// touched by it are ignored. Low detail: beyond all views, see Crowd::set_views. [1 to 16]
   int32_t low_detail_steps = 4;
   double low_detail_reaction = 0.4;  ///< `reaction` in low detail. [s, 0 to 10]
   int32_t rounds = 3;                ///< Conflict resolution rounds of a step. [1 to 100]
@@ -140,21 +154,20 @@ struct CrowdConfig {
   /// walk over them; without nodes these walk on level tiles, as others do.
   Nodes nodes = {};
   CrowdTuning tuning = {};  ///< Fine for most crowds as it is.
-  /// What is put up in the world, also for finders. Before each step, and before avatars are added,
-  /// the crowd puts up the obstacles as add_obstacle does (static; of triangles their box), and
-  /// avatars on foot plan over areas with the costs that these have.
+  /// Changes of the world at run time, which finders can share. Before each step, and before
+  /// avatars are added, the crowd adds their obstacles as add_obstacle does (static; of triangles
+  /// their box). Avatars on foot plan over areas with the costs that these have.
   ///
-  /// Avatars of classes that neither fly nor go over nodes take off-mesh links, with
-  /// Routing::kPaths. A link is a corridor: they take turns in the order in which they came, in one
-  /// direction at a time, and wait near the start while an avatar or an obstacle is at its end.
-  /// Links that cross, share an end or lie so close that avatars on them could touch are one
-  /// corridor: one of them is used at a time. On it an avatar moves along a straight line, at its
-  /// speed times length / cost, at least a thousandth of its speed and at most all of it, and
-  /// nothing stops it but other avatars: a link that is switched off lets it arrive, an obstacle on
-  /// the rest of its line waits for it, and a new goal or velocity holds from the end on. An avatar
-  /// that stays at an end for ever closes the link in that direction; one that stays on ground
-  /// which the line crosses stops those on the link. Classes that go over nodes take
-  /// NodeConfig::off_mesh_links; flyers take none.
+  /// With Routing::kPaths, avatars of classes that neither fly nor go over nodes take off-mesh
+  /// links. They take a link in the order in which they came, in one direction at a time, and wait
+  /// near the start while an avatar or an obstacle is at the end. Links that cross, share an end or
+  /// lie so close that avatars on them could touch are used one at a time. On a link an avatar moves
+  /// in a straight line, at its speed times length / cost, but not faster than its speed and not
+  /// slower than a thousandth of it. Only other avatars stop it there: if the link is switched off
+  /// it still arrives, an obstacle on the rest of the line waits for it, and a new goal or velocity
+  /// applies from the end on. An avatar that stays at an end closes the link in that direction for
+  /// as long; one that stays on ground that the line crosses stops those on the link. Classes that
+  /// go over nodes take NodeConfig::off_mesh_links; flyers take none.
   Edits edits = {};
   /// PathConfig::slope_cost of avatars that walk or climb. [0 to 1000]
   double slope_cost = 0;
@@ -204,10 +217,11 @@ struct CrowdReport {
   /// Searches that stopped because they would have taken more than CrowdConfig::search_bytes: raise
   /// it. They count in no_path, or are detours that were not found.
   uint64_t out_of_memory = 0;
-  uint64_t waiting = 0;     ///< Obstacles that wait for avatars to leave their volume.
-  double progress = 0;      ///< Mean speed towards the next corner, by the desired speed. [-1 to 1]
-  double seconds_plan = 0;  ///< Searching and following paths.
-  double seconds_sort = 0;  ///< Finding which avatars are near each other.
+  uint64_t waiting = 0;  ///< Obstacles that wait for avatars to leave their volume.
+  /// Mean speed towards the next corner, divided by the desired speed. [-1 to 1]
+  double progress = 0;
+  double seconds_plan = 0;    ///< Searching and following paths.
+  double seconds_sort = 0;    ///< Finding which avatars are near each other.
   double seconds_steer = 0;   ///< Choosing velocities.
   double seconds_commit = 0;  ///< Conflict resolution, and the accepted moves.
   double seconds_settle = 0;  ///< Updates after the moves, for the next step.
@@ -243,18 +257,19 @@ class THRONG_API Crowd {
   /// Removes avatars. Unknown ids are ignored.
   void remove(std::span<const AvatarId> ids);
 
-  /// Puts up an obstacle. Until it is removed, no avatar stands where its body, from body_bottom()
-  /// up, could touch the obstacle. If bodies are in it, it comes up later, as a door that closes:
+  /// Adds an obstacle. Until it is removed, no avatar stands where its body, from body_bottom() up,
+  /// could touch the obstacle. If bodies are in it, it comes up later, as a door that closes:
   /// before the first step that begins with no body in it; ObstaclePolicy says what happens until
   /// then. Paths lead around kStatic obstacles: an avatar whose path is cut gets another one or, if
-  /// there is none, its goal is unreachable. Fails with kBadInput. Time, also of the changes below:
-  /// all avatars, and the tiles that the obstacle touches with what stands in these.
+  /// there is none, its goal is unreachable. Fails with kBadInput. Time of this call and of those
+  /// below that change an obstacle: linear in all avatars, and in the tiles that the obstacle
+  /// touches with their obstacles.
   [[nodiscard]] Result<ObstacleId> add_obstacle(
       const Prism& prism, ObstacleKind kind = ObstacleKind::kStatic,
       ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry);
   /// Moves an obstacle to a new place. It waits while an avatar stands within the convex hull of
   /// the old and the new place, so move it by small distances; avatars may enter the hull, whatever
-  /// the policy. A later call replaces the order of an earlier one. Fails with kBadInput,
+  /// the policy. If it still waits for an earlier move, that one is dropped. Fails with kBadInput,
   /// kNotFound.
   [[nodiscard]] Result<void> move_obstacle(ObstacleId id, const Prism& prism);
   /// Switches an obstacle on and off, as a door: true closes it by its policy; false opens it at
@@ -263,18 +278,19 @@ class THRONG_API Crowd {
   bool remove_obstacle(ObstacleId id);
   /// The state of an obstacle. Fails with kNotFound.
   [[nodiscard]] Result<ObstacleState> obstacle(ObstacleId id) const;
-  /// The obstacle of an edit of CrowdConfig::edits; its state may still wait for avatars. None if
-  /// the edit is none, no obstacle, or was never active since the crowd last looked.
+  /// The obstacle that the crowd has added for an edit of CrowdConfig::edits; it may still wait for
+  /// avatars. The null id if there is no such edit, it is no obstacle, or it has not been active at
+  /// any time when the crowd applied the edits.
   [[nodiscard]] ObstacleId obstacle_of(EditId edit) const;
   /// All obstacles that are up, in order of slot.
   [[nodiscard]] std::vector<Prism> obstacles() const;
-  /// The avatars that blocked waiting obstacles when the last step began, in order of slot. Among
-  /// them are those from which no path leads out and those that are externally controlled: these
-  /// keep an obstacle open.
+  /// The avatars that blocked waiting obstacles when the last step began, in order of slot. An
+  /// avatar that cannot leave, because no path leads out or it is externally controlled, stays
+  /// among them, and its obstacle waits until the caller moves or removes one of the two.
   [[nodiscard]] std::span<const AvatarId> blockers() const;
 
   /// Sets goals, one for each id: places of the avatar's class. An avatar that has arrived keeps
-  /// its goal, and yields to others. With a goal of nowhere it stands, or hovers. An avatar that
+  /// its goal, and yields to others. If the goal is nowhere it stands, or hovers. An avatar that
   /// flies takes off and lands as its path requires, and its goal may be an air_place. Unknown ids
   /// are ignored.
   void set_goals(std::span<const AvatarId> ids, std::span<const Place> goals);
@@ -285,9 +301,9 @@ class THRONG_API Crowd {
   /// Fails with kBadInput (a bad prism), kBadConfig (Routing::kStraight), kLimit (65535 targets) or
   /// kCancelled. Time: the ground of all classes in use. Targets cannot be removed.
   [[nodiscard]] Result<TargetId> add_target(std::span<const Prism> areas, Context& context);
-  /// Sends avatars to a target of this crowd instead of a goal, each to the place of it that is
-  /// nearest; an avatar that flies does so where no path on foot leads there. Unknown ids are
-  /// ignored.
+  /// Sends avatars to a target of this crowd instead of a goal, each to the nearest place of the
+  /// target. An avatar of a class that flies walks if a path on foot leads there, and flies if none
+  /// does. Unknown ids are ignored.
   void set_targets(std::span<const AvatarId> ids, TargetId target);
   /// Length of an avatar's path on foot to a target, on average 1 to 2 % above the shortest.
   /// Infinite if no path leads there, the avatar is in the air or on an off-mesh link, or the id is
@@ -307,8 +323,8 @@ class THRONG_API Crowd {
   /// avatars that fly or walk over nodes]
   void set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d> velocities);
 
-  /// Sets the views; none, as at the beginning: all avatars are simulated in full detail. Low
-  /// detail is coarser and as safe: avatars never overlap, whatever the views. Flyers and
+  /// Sets the views. Without views, as at the beginning, all avatars are simulated in full detail.
+  /// Low detail is coarser, but as safe: avatars never overlap, whatever the views. Flyers and
   /// externally controlled avatars are always in full detail. Time of a step: avatars times views.
   void set_views(std::span<const CrowdView> views);
   /// Advances all avatars by `dt`. No allocation once it is warm. Time: linear in the avatars.
@@ -327,13 +343,13 @@ class THRONG_API Crowd {
   /// The avatars whose goals were dropped in the last step because no path leads there, in order of
   /// slot.
   [[nodiscard]] std::span<const AvatarId> goal_unreachable() const;
-  /// Watches the union of some prisms: entered() returns from now on each avatar whose middle comes
-  /// into it; an avatar that is inside already comes in with the next step. Never changes the
+  /// Watches the union of some prisms: from now on entered() returns each avatar whose middle comes
+  /// into it. An avatar that is already inside is returned after the next step. Never changes the
   /// steps, and is not saved. Fails with kBadInput (a bad prism) or kLimit (64 areas).
   [[nodiscard]] Result<WatchedArea> watch_area(std::span<const Prism> prisms);
   /// The avatars that came into watched areas in the last step, in order of slot and area.
   [[nodiscard]] std::span<const AreaEntry> entered() const;
-  /// The avatars without progress (CrowdConfig::no_progress_after) if the last step made a check,
+  /// The avatars without progress (CrowdTuning::no_progress_after) if the last step made a check,
   /// in order of slot.
   [[nodiscard]] std::span<const AvatarId> no_progress() const;
   [[nodiscard]] bool is_alive(AvatarId id) const;
@@ -343,16 +359,16 @@ class THRONG_API Crowd {
   /// class yet or it does not fly.
   [[nodiscard]] bool may_fly(int32_t avatar_class, const Vec3d& feet) const;
   /// The n-th of a reproducible stream of points, uniform over the air where the class may fly now.
-  /// Empty only if there is no such air, as above.
+  /// Empty only if there is no such air: may_fly is false everywhere.
   [[nodiscard]] std::optional<Vec3d> random_air_point(int32_t avatar_class, uint64_t seed,
                                                       uint64_t n) const;
 
   /// Saves the whole state. A restored crowd makes the same steps, bit for bit, with any number of
   /// workers. In this machine's byte order; the format may change with every version.
   [[nodiscard]] std::vector<uint8_t> save() const;
-  /// Restores a saved crowd. World and settings must be the same, except for `workers`;
-  /// edits must have been made by the same calls. Fails with
-  /// kBadFile (truncated, corrupt, of another world or version), and as `add` does.
+  /// Restores a saved crowd. World and settings must be the same, except for `workers`; edits must
+  /// have been made by the same calls. Fails with kBadFile (truncated, corrupt, of another world or
+  /// version), and as `add` does.
   [[nodiscard]] static Result<Crowd> restore(const World& world, const CrowdConfig& config,
                                              std::span<const uint8_t> saved, Context& context);
   [[nodiscard]] uint32_t size() const;

@@ -134,7 +134,7 @@ inline constexpr int32_t kAtlasFormats = 6;
 /// The name of a format: "rgba8", "rgb5a1", "bc1", "bc3", "etc2a1", "etc2".
 [[nodiscard]] THRONG_API const char* word_for(AtlasFormat format);
 
-/// Settings for build_atlas.
+/// Settings for create_atlas.
 struct AtlasConfig {
   std::vector<std::string> clips{"Walk"};  ///< See find_clip. [1 to 16]
   int32_t frames = 10;                     ///< Of each clip. [1, or even and up to 64]
@@ -270,8 +270,8 @@ struct ImpostorArrays {
 };
 
 /// An avatar for the card, 16 bytes. `view`: AtlasShape::view in bits 0 to 19, mirrored in bit 20,
-/// look in bits 21 to 31. For a mesh: heading in bits 0 to 10 [2048 a turn], phase in bits 11 to 20
-/// [1024 a cycle], look as before.
+/// appearance in bits 21 to 31. For a mesh: heading in bits 0 to 10 [2048 a turn], phase in bits 11
+/// to 20 [1024 a cycle], appearance as before.
 struct ImpostorInstance {
   float x = 0, y = 0, z = 0;
   uint32_t view = 0;
@@ -279,8 +279,8 @@ struct ImpostorInstance {
 
 /// An avatar for the card, 32 bytes, seen from between two directions or elevations and blended
 /// from the four views around. `nearest_below` is that of the lower column and row, `others` those
-/// of the next column, the next row and both, as ImpostorInstance::view without a look. `shares`:
-/// of the next column in bits 0 to 8, of the next row in bits 9 to 17 [256: all].
+/// of the next column, the next row and both, as ImpostorInstance::view without appearance.
+/// `shares`: of the next column in bits 0 to 8, of the next row in bits 9 to 17 [256: all].
 struct BlendedInstance {
   ImpostorInstance nearest_below;
   std::array<uint32_t, 3> others{};
@@ -336,8 +336,8 @@ struct LevelSpans {
 struct LevelCounts {
   size_t meshes = 0, views = 0, points = 0, blends = 0;
 };
-/// Packs avatars as pack_impostors does, each for the level of its distance. Points use only place
-/// and look.
+/// Packs avatars as pack_impostors does, each for the level of its distance. Points use only
+/// position and appearance.
 THRONG_API LevelCounts pack_levels(const Atlas& atlas, const ImpostorArrays& avatars,
                                    const PackConfig& config, const LevelDistances& levels,
                                    const LevelSpans& out);

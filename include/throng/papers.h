@@ -15,7 +15,7 @@
 #include "throng/scene.h"
 #include "throng/world.h"
 
-/// The wing of the papers: slices of a world, wanderers, and CAACD with its experiment.
+/// Algorithms as papers print them: slices of a world, wanderers, and CAACD with its experiment.
 namespace throng {
 
 // ----
@@ -117,8 +117,8 @@ namespace throng::caacd {
 
 // ----
 // Curvilinear avoidance between avatars: pure functions from one body and its neighbours to a
-// steering force. They need no world, no clock and no memory; throng/caacd_experiment.h has the
-// space of the paper, and any crowd may call these. Y is up; walkers have equal y. Units are the
+// steering force. They need no world, no clock and no memory, so any crowd may call them; the
+// paper's own space is below (Space, Simulation). Y is up; walkers have equal y. Units are the
 // caller's, but must agree; the paper's time unit is one frame. Only arithmetic and sqrt are used,
 // so results are the same bytes on every machine. Coordinates, speeds and settings must be finite
 // and below 1e100. Source: [CAACD] II and III, as docs/algorithms.md reads them.
@@ -140,7 +140,7 @@ enum class State : uint8_t { kTolerable, kAlert, kCritical, kCollision };
 /// collision.
 [[nodiscard]] THRONG_API State state_at(double distance, const Fields& joint);
 
-/// What an avatar knows of another one, and of itself.
+/// An avatar as the functions below see it: oneself or another one.
 struct Body {
   Vec3d position;
   Vec3d velocity;
@@ -361,7 +361,7 @@ class THRONG_API Simulation {
   static Result<Simulation> create(Space space, const Model& model, double dt = 1);
 
   void step();
-  /// Does each avatar stand at its target, or wait for good?
+  /// Is each avatar at its target, or standing still while it waits?
   [[nodiscard]] bool finished() const;
 
   [[nodiscard]] std::span<const Body> bodies() const { return space_.bodies; }
@@ -444,15 +444,15 @@ struct StudyConfig {
 
 /// Results of one set with one number of avatars, over all seeds.
 struct StudyCell {
-  double mean = 0;       ///< Collisions a run.
+  double mean = 0;       ///< Collisions per run.
   double deviation = 0;  ///< Standard deviation over seeds, n - 1; 0 for one seed.
   int64_t min_collisions = 0;
   int64_t max_collisions = 0;
-  double obstacle_mean = 0;  ///< Entries into obstacles a run.
-  double arrived = 0;        ///< Of the avatars, at the end. [0 to 1]
-  double waiting = 0;        ///< Of the avatars, at the end. [0 to 1]
+  double obstacle_mean = 0;  ///< Entries into obstacles per run.
+  double arrived = 0;        ///< Share of the avatars, at the end. [0 to 1]
+  double waiting = 0;        ///< Share of the avatars, at the end. [0 to 1]
   double frames = 0;         ///< Mean.
-  double walked = 0;         ///< An avatar, mean. [length]
+  double walked = 0;         ///< Mean per avatar. [length]
 };
 
 /// cells[set * avatars.size() + count].
@@ -471,7 +471,7 @@ struct Study {
 [[nodiscard]] THRONG_API Result<Study> run_study(const StudyConfig& config, Context& context);
 
 // ----
-// Pictures of the plane of throng/caacd_experiment.h.
+// Pictures of the plane of the experiment.
 
 /// Settings for draw_simulation.
 struct PictureConfig {

@@ -16,8 +16,8 @@
 #include "throng/surface.h"
 #include "throng/world.h"
 
-/// Paths: on foot, over nodes, through the air, around what is put up at run time; flow fields;
-/// budgets of searches.
+/// Paths: on foot, over nodes, through the air, around run-time obstacles; flow fields; budgets of
+/// searches.
 namespace throng {
 
 // ----
@@ -58,7 +58,7 @@ struct SearchBudget {
   [[nodiscard]] bool is_spent(uint64_t nodes, uint64_t bytes) const {
     return bytes > max_bytes || is_spent(nodes);
   }
-  /// Which part a search exhausted that stopped after so many nodes.
+  /// The part that is exhausted, of a search that stopped after so many nodes.
   [[nodiscard]] SpentBudget spent(uint64_t nodes) const {
     if (nodes > max_nodes) return SpentBudget::kNodes;
     return cancel != nullptr && *cancel ? SpentBudget::kCancelled : SpentBudget::kMemory;
@@ -84,11 +84,11 @@ enum class PathSpeedup : uint8_t {
   /// city).
   kLabels,
   /// Paths inside each zone between the entrances of its borders, and labels of these entrances:
-  /// for long paths over large worlds. A path between zones that do not touch is then the shortest
-  /// that passes every obstacle on the same side, but it may pass one on the wrong side.
+  /// for long paths over large worlds. Between zones that do not touch, a path may pass an obstacle
+  /// on the wrong side; no path that passes every obstacle on the same side as it is shorter.
   kZones,
   /// Nothing, not even the ground: data is made where a query needs it. For few queries in large
-  /// worlds, or in worlds that change all the time. Paths are as short as with kNone.
+  /// worlds, or for worlds that change often. Paths are as short as with kNone.
   kOnDemand,
 };
 
@@ -114,18 +114,18 @@ namespace path {
 struct EditList;  // Internal.
 }
 
-/// What is put up in a world at run time, in one place for all finders: obstacles, doors, kinds of
-/// ground and their costs, off-mesh links. Copies of a handle share one list; a PathFinder that was
-/// made with it sees every edit at its next query. Edits only remove ground: an avatar can stand on
-/// a crate only if it was baked. No edit may be made while another thread uses a handle of the same
-/// list or a finder that has one.
+/// Changes of a world at run time, in one list for all finders: obstacles, doors, area kinds and
+/// their costs, off-mesh links. Copies of a handle share the list; a PathFinder that was made with
+/// one applies each edit before its next query. Edits add no ground: an avatar can stand on a crate
+/// only if it was baked. No edit may be made while another thread uses a handle of the same list or
+/// a finder that has one.
 class THRONG_API Edits {
  public:
   Edits();
 
-  /// Puts up an obstacle: a class is illegal where its body could touch the prism; on the ground
-  /// the body counts from body_bottom() up. Fails with kBadInput. Time: constant; each finder pays
-  /// at its next query for what the obstacle touches.
+  /// Adds an obstacle: a class cannot stand where its body could touch the prism; on the ground
+  /// the body counts from body_bottom() up. Fails with kBadInput. Time: constant; the next query of
+  /// each finder also takes time for the tiles that the obstacle touches.
   [[nodiscard]] Result<EditId> add_obstacle(const Prism& prism);
   /// The same for triangles. Only these are solid: a closed shell is hollow.
   [[nodiscard]] Result<EditId> add_obstacle(std::span<const Vec3d> corners,
@@ -157,40 +157,41 @@ class THRONG_API Edits {
 struct PathConfig {
   int32_t avatar_class = 0;
   /// On the ground, cost of a metre on level tiles: 1 + slope_cost * rise. Rises are rounded up to
-  /// 5, 10, 20, 35, 60 or 120 %; the gentlest class counts as level ground, the steepest holds all
-  /// steeper slopes, too. Only with PathSpeedup kNone or kOnDemand. Over nodes, on ground with an
+  /// 5, 10, 20, 35, 60 or 120 %, but up to 5 % counts as level ground, and anything steeper than
+  /// the last as that. Only with PathSpeedup kNone or kOnDemand. Over nodes, on ground with an
   /// inclination a: 1 + slope_cost * (1 - cos a), so level ground 1, a wall 1 + slope_cost, a
   /// ceiling 1 + 2 slope_cost. Not in the air. [0 to 1000]
   double slope_cost = 0;
-  /// Over nodes: makes an overlay where there are many crossings (2^15), over which long paths are
-  /// searched: it knows the costs of crossing squares of ground. Its paths are seldom much longer
-  /// than the best. Making it takes as long as a few searches of the whole world.
+  /// Over nodes, if there are 2^15 crossings or more: makes an overlay, which has the costs of
+  /// crossing squares of ground, and searches long paths over it. Such a path is seldom much longer
+  /// than the best. Making the overlay takes as long as a few searches of the whole world.
   bool overlay = true;
   int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores. [>= 0]
   PathSpeedup speedup = PathSpeedup::kNone;
   PathSpace space = PathSpace::kOfClass;
-  Nodes nodes = {};  ///< Over nodes: these, or those in the world's folder if it has none.
-  Edits edits = {};  ///< What paths lead around.
+  Nodes nodes = {};  ///< Over nodes: the ones to use. Empty: those in the world's folder.
+  Edits edits = {};  ///< Changes of the world that paths follow.
 };
 
 /// How a search ended.
 enum class PathEnd {
   kReached,
-  kUnreachable,      ///< No path on foot leads there.
+  kUnreachable,      ///< No path leads to the goal.
   kNoPlace,          ///< `from` or `to` is no place of the class.
   kBudgetExhausted,  ///< The budget was exhausted: `spent` names the part.
 };
 
 /// How an avatar moves along a segment of a path.
 enum class SegmentKind : uint8_t {
-  kWalk,     ///< On the ground, or on the surface of one patch, straight by its parameters.
-  kCross,    ///< Over nodes: straight through the air while the axis turns evenly. Over the edge of
-             ///< a patch, where both points are (nearly) the same place by the parameters of two
-             ///< patches; along a link over a hole; or out over an edge and then down.
+  kWalk,  ///< On the ground; over nodes, on one patch, in a straight line of its parameters.
+  /// Over nodes, between two patches: in a straight line through the air, while the axis turns
+  /// evenly. The patches meet there (both points are nearly the same), or the path takes a link
+  /// over a hole. On a drop link: horizontally out over the edge, then straight down.
+  kCross,
   kOffMesh,  ///< Along an off-mesh link of Edits.
-  kTakeOff,
-  kFly,
-  kLand,
+  kTakeOff,  ///< Straight up, from the ground into the air.
+  kFly,      ///< Through the air.
+  kLand,     ///< Straight down, from the air to the ground.
 };
 
 /// A link that a path uses: it leads from the point before to `point`.
@@ -204,16 +205,16 @@ struct PathLink {
 struct Path {
   PathEnd end = PathEnd::kNoPlace;
   /// Feet, from the start to the goal. They are places of level ground except over nodes and in the
-  /// air, where `position` alone counts. If the goal is unreachable: to the reached place nearest
-  /// to it, if the query asks for it.
+  /// air, where `position` alone counts. If the goal is unreachable, they lead to the reachable
+  /// place nearest to it; on the ground and in the air only with PathQuery::nearest.
   std::vector<Place> points;
-  /// Over nodes: the place of each point, with its axis; else empty. In the air above the place of
-  /// a drop it is nowhere, but has feet and axis.
+  /// Over nodes: the place of each point, with its axis; else empty. The point of a drop link that
+  /// is in the air, above the landing, has feet and axis, but node1 is 0.
   std::vector<NodePlace> node_places;
   std::vector<SegmentKind> segments;  ///< One fewer than the points.
   std::vector<PathLink> links;        ///< Over nodes and off-mesh links, in order of their points.
-  std::vector<uint32_t> corridor;     ///< Over nodes: those from the start's to the goal's.
-  /// Of all segments; along the ground's plane where a path is only on foot. [m]
+  std::vector<uint32_t> corridor;     ///< Over nodes: all from the start to the goal.
+  /// Of all segments; of a path that is only on foot, as seen from above. [m]
   double length = 0;
   double cost = 0;  ///< Metres times their costs.
   /// Over nodes: cost of the search's path over crossings, before string pulling.
@@ -240,7 +241,7 @@ struct PathSummary {
   uint64_t labels = 0;      ///< With kLabels or kZones.
   uint64_t blocks = 0;      ///< Over nodes: squares of patches where the class can stand.
   uint64_t crossings = 0;   ///< Over nodes: connections between blocks.
-  uint64_t boxes = 0;       ///< Of the air, that are legal.
+  uint64_t boxes = 0;       ///< Legal boxes of the air.
   uint64_t bytes = 0;       ///< Of all.
   double seconds = 0;       ///< To make them.
 };
@@ -251,11 +252,11 @@ using PathPoint = std::variant<Vec3d, Place, NodePlace>;
 /// Input of PathFinder::find.
 struct PathQuery {
   PathPoint from, to;
-  /// Of an end that is a position: a place is looked for so far above and below; over nodes in all
-  /// directions. [m, >= 0]
+  /// How far from an end that is a position its place may be: straight above or below; over nodes,
+  /// in any direction. [m, >= 0]
   double tolerance = 0.5;
-  /// Over nodes: largest distance between points of the path on curved ground; less is 0.01.
-  /// [m, >= 0.01]
+  /// Over nodes: largest distance between points of the path on curved ground; smaller values
+  /// count as 0.01. [m, >= 0.01]
   double spacing = 0.25;
   /// In the air: if no single flight leads to the goal, search paths that land, walk and take off
   /// again.
@@ -273,7 +274,7 @@ struct PathQuery {
 /// machine and for any number of threads.
 class THRONG_API PathFinder {
  public:
-  /// Makes a finder. Reads every zone once, but with kOnDemand. Fails with kBadConfig (no such
+  /// Makes a finder. Reads every zone once, except with kOnDemand. Fails with kBadConfig (no such
   /// class, or a setting that its space does not have), kNotFound (no air, no nodes), kBadFile (a
   /// zone cannot be used) or kCancelled.
   [[nodiscard]] static Result<PathFinder> create(const World& world, const PathConfig& config,
@@ -295,9 +296,10 @@ class THRONG_API PathFinder {
   /// taut afterwards, on average within 1 % of the best.
   ///
   /// Over nodes: A* over the middles of the lines along which nodes touch, or over the overlay if
-  /// the path is long, then string pulling within the nodes of the corridor. If obstacles are up or
-  /// the nearest reachable place is more than 25 m from an unreachable goal, the path leads to the
-  /// nearest place in the block whose border comes nearest.
+  /// the path is long, then string pulling within the nodes of the corridor. If the goal is
+  /// unreachable, the path leads to the reachable place nearest to it; if obstacles are up or that
+  /// place is more than 25 m from the goal, to the nearest place in the block whose border comes
+  /// nearest.
   ///
   /// In the air: over the ground where that is shorter, else straight up, through the air and
   /// straight down; from a place where it cannot take off, it walks to one where it can. If the air
@@ -321,16 +323,17 @@ class THRONG_API PathFinder {
   /// The place of the class on nodes nearest to a position in three dimensions, or nowhere if none
   /// is within `search_radius` or the finder has no nodes. [m, m]
   [[nodiscard]] NodePlace find_node_place(const Vec3d& position, double search_radius);
-  /// The n-th of a reproducible stream of points: in the air uniform over what is legal, else
-  /// places of the class as it was baked. Empty only if there is none.
+  /// The n-th of a reproducible stream of points: in the air uniform over the legal air, else over
+  /// the baked places of the class, whatever the edits. Empty only if there is none.
   [[nodiscard]] std::optional<Vec3d> random_point(uint64_t seed, uint64_t n);
 
-  /// In the air: the end of the take-off from a place on the ground, where the feet come into the
-  /// air, straight up. Empty if a solid blocks it, or out of the air.
+  /// In the air: the point straight above a place on the ground at which the feet enter the air and
+  /// a take-off ends. Empty if a solid blocks the take-off, or the finder is not for the air.
   [[nodiscard]] std::optional<Vec3d> take_off(const Place& place);
-  /// In the air: the place of a landing from a point of it: straight down to the lowest air box,
-  /// and there the best place: the one with the largest clearance, then the nearest to the box's
-  /// axis [PACS00]. Nowhere if there is none, or out of the air.
+  /// In the air: the place on the ground where a flyer at `feet` lands. The descent is straight
+  /// down to the lowest air box; of the places below this box, the one with the largest clearance
+  /// is taken, of several the nearest to the box's axis [PACS00]. Nowhere if there is none, or the
+  /// finder is not for the air.
   [[nodiscard]] Place landing(const Vec3d& feet);
 
   [[nodiscard]] PathSummary summary() const;

@@ -24,7 +24,7 @@ struct Heading {
   float x = 0, z = 1;
 };
 
-inline constexpr size_t kMaxAvatars = size_t{1} << 28;  ///< In one frame, fewer than this.
+inline constexpr size_t kMaxAvatars = size_t{1} << 28;  ///< A frame has fewer avatars than this.
 
 /// A frame to write, borrowed: avatar i is ids[i], classes[i], ... Fastest in ascending order of
 /// id.
@@ -79,7 +79,7 @@ struct RecordingInfo {
   /// Avatars may lean: frames hold FrameView::up_vectors, and the file has version 2. Otherwise it
   /// has version 1, and a frame in which an avatar leans is refused.
   bool leans = false;
-  /// The file stores positions relative to this point; those of frames are absolute all the same.
+  /// The point to which the positions in the file are relative. Those of frames are absolute.
   /// If it is not zero the file has version 3. [m, whole metres within 1 000 000 km]
   Vec3d origin = {};
 };

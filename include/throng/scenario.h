@@ -41,8 +41,8 @@ struct Distribution {
   static Distribution fixed(double value) { return {Kind::kFixed, value, 0, value, value}; }
 };
 
-/// The n-th number of a stream, the same on every machine. After 64 draws outside of low to high,
-/// the nearer of these.
+/// The n-th number of a stream, the same on every machine. After 64 draws outside of the bounds,
+/// the bound nearer to the last one.
 [[nodiscard]] THRONG_API double draw(const Distribution& distribution, uint64_t seed,
                                      uint64_t stream, uint64_t n);
 
@@ -106,23 +106,30 @@ struct Journey {
   bool repeat = false;  ///< Begins again after the last stage; else the avatar stays there.
 };
 
+/// How a source distributes its avatars over time and space.
+enum class SpawnPattern : uint8_t {
+  kRandom,  ///< At exponential intervals (a Poisson process), at random places.
+  kEven,    ///< At equal intervals, at random places.
+  /// All at once, in rows over the box around the area, so that dense crowds find space. [one area,
+  /// a finite count, no rates, no density]
+  kRows,
+};
+
 /// Where and when avatars enter.
 struct Source {
   std::string name;
-  std::vector<int32_t> areas;    ///< A place in one of them,
-  int32_t density = -1;          ///< or drawn from this map.
+  /// Where the avatars enter: at a random place in one of these areas, if `density` is -1.
+  std::vector<int32_t> areas;
+  int32_t density = -1;          ///< Else: at a place that is drawn from this density map.
   std::vector<Choice> profiles;  ///< Empty: the world's first class as it is.
   std::vector<Choice> journeys;  ///< Empty: the avatars stand.
   uint64_t count = UINT64_MAX;   ///< Maximum number of avatars.
   double begin = 0;              ///< [s]
   double end = HUGE_VAL;         ///< [s]
-  /// Pairs of time and rate, each rate until the next time; empty: all `count` at once. Intervals
-  /// between avatars are exponential: a Poisson process. [s, people/s]
+  /// Pairs of time and rate, each rate until the next time; empty: all `count` at once. [s,
+  /// people/s]
   std::vector<std::pair<double, double>> rates;
-  bool even = false;  ///< Equal intervals in place of exponential ones.
-  /// In rows over the box around the area, not at random, so that dense crowds find space. [one
-  /// area, a finite count, no rates, no density]
-  bool in_rows = false;
+  SpawnPattern pattern = SpawnPattern::kRandom;
   Distribution premovement;  ///< Premovement time: stands so long before its journey begins. [s]
   Distribution group;        ///< Size of a group that enters and stays together. [people]
 };
@@ -253,7 +260,8 @@ class THRONG_API Simulation {
 
   /// Advances by the scenario's dt. Fails as Crowd::add does.
   [[nodiscard]] Result<SimulationReport> step();
-  /// Are all avatars gone, and will no more enter? None is in the crowd, outside or in a link.
+  /// Have all avatars left, and will no more enter? Then none is in the crowd, outside or in a
+  /// link.
   [[nodiscard]] bool is_over() const;
 
   [[nodiscard]] const Crowd& crowd() const;
@@ -318,7 +326,7 @@ struct ValidationConfig {
   uint64_t seed = 1;
   int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
   bool brief = false;   ///< Fewer points and shorter runs.
-  /// The steering model of the crowds. Trials use their own, unless this is not the default.
+  /// The steering model of the crowds. The default leaves trials the model of their scenarios.
   SteeringModel model = SteeringModel::kSampled;
 };
 
@@ -346,8 +354,8 @@ struct ValidationResult {
 /// The tests that need recordings of real people, which are not part of throng.
 [[nodiscard]] THRONG_API std::vector<ValidationTest> recorded_validation_tests();
 
-/// Runs one of these tests with a folder of recordings. Fails with kNotFound (no such test; nothing
-/// fits in the folder), kBadFile and the line, kCancelled.
+/// Runs one of these tests with a folder of recordings. Fails with kNotFound (no such test, or no
+/// recording for it in the folder), kBadFile and the line, kCancelled.
 [[nodiscard]] THRONG_API Result<ValidationResult> run_recorded_validation(
     const std::string& name, const std::string& folder, const ValidationConfig& config,
     Context& context);
@@ -363,26 +371,27 @@ enum class Observed : uint8_t {
   kPremovement,   ///< From entering to the end of the premovement, per avatar. [s]
   kDelay,         ///< From the end of the premovement to the first move, per avatar. [s]
   kDesiredSpeed,  ///< Desired speed, per avatar. [m/s]
-  kSpeed,       ///< Distance walked by time, per avatar, in an area or since the premovement. [m/s]
+  /// Distance divided by time, per avatar, in an area or since the premovement. [m/s]
+  kSpeed,
   kPeople,      ///< Number of avatars that left.
   kStayed,      ///< Number of avatars that entered and have not left.
-  kDensity,     ///< People in an area by its size, at each step. [1/m2]
-  kFlow,        ///< People per second over a line, or by its length. [p/s, p/(m s)]
+  kDensity,     ///< People in an area divided by its size, at each step. [1/m2]
+  kFlow,        ///< People per second over a line, or per metre of it. [p/s, p/(m s)]
   kPassed,      ///< Number of avatars that crossed a line.
-  kRatio,       ///< Of two earlier measures.
-  kDifference,  ///< Of two earlier measures.
-  /// Minimum difference from one to the next of some earlier measures: 0 or more if they never
-  /// fall.
+  kRatio,       ///< The first of two earlier measures divided by the second.
+  kDifference,  ///< The first of two earlier measures less the second.
+  /// The smallest difference between an earlier measure and the one listed before it: 0 or more if
+  /// they never fall.
   kRise,
 };
 
-/// How many numbers become one.
+/// How the numbers of a measure become one.
 enum class Statistic : uint8_t {
   kMean,
   kMin,
   kMax,
   kRange,    ///< kMax - kMin.
-  kOverall,  ///< Of kSpeed: all distances by all times.
+  kOverall,  ///< Of kSpeed: the sum of all distances divided by that of all times.
   kFit,      ///< Likelihood that they were drawn from the scenario's distribution [Stephens70].
 };
 
@@ -395,7 +404,7 @@ struct TrialMeasure {
   std::vector<int32_t> exits;  ///< Only avatars that left by these areas; empty: all.
   int32_t area = -1;           ///< kSpeed, kDensity.
   std::array<std::array<double, 2>, 2> line = {};  ///< kFlow, kPassed. [x, z, m]
-  bool by_width = false;                           ///< kFlow: by the line's length.
+  bool by_width = false;                           ///< kFlow: per metre of the line.
   double from = 0;                                 ///< kSpeed, kDensity, kFlow, kPassed. [s]
   double until = std::numeric_limits<double>::infinity();  ///< [s]
   std::vector<size_t> others;                              ///< Indices of earlier measures.
@@ -423,8 +432,8 @@ struct Trial {
 [[nodiscard]] THRONG_API Result<std::vector<Trial>> load_trials(const std::string& folder);
 
 /// Runs a trial's scenario until its time is over or all avatars have left, and checks every step
-/// for overlaps and wall entries. config.seed counts from the scenario's own seed: 1 is that one.
-/// Fails with kBadConfig (something is lacking), and as open_world and Simulation::create do.
+/// for overlaps and wall entries. config.seed 1 is the scenario's own seed, 2 the next one, and so
+/// on. Fails with kBadConfig (something is lacking), and as open_world and Simulation::create do.
 [[nodiscard]] THRONG_API Result<ValidationResult> run_trial(const Trial& trial,
                                                             const ValidationConfig& config,
                                                             Context& context);

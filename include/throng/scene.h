@@ -203,8 +203,8 @@ struct PatchMesh {
 // ----
 // Worlds given by cells or voxels in place of triangles, as in the benchmarks of path search.
 
-/// Flat ground, row by row. A cell says where a point may be; it is no solid that keeps a body
-/// away.
+/// Flat ground, row by row. A cell that is not passable stops points, not bodies beside it: it is
+/// no solid.
 struct FlatCells {
   int32_t width = 0;              ///< Along x. [1 to 16000]
   int32_t depth = 0;              ///< Along z. [1 to 16000]
@@ -258,7 +258,8 @@ struct SceneReport {
   uint64_t degenerate = 0;  ///< Zero-area triangles: kept as solid lines and points.
   uint64_t duplicate = 0;   ///< Coincident triangles: harmless, counted.
   uint64_t ignored = 0;     ///< Triangles dropped by an `ignored` rule.
-  uint64_t spikes = 0;      ///< Triangles over 1 km and 10 times the extent of all others long.
+  /// Triangles longer than 1 km and than 10 times the extent of all others.
+  uint64_t spikes = 0;
   std::vector<std::string> warnings;  ///< Sentences: suspicious units, far-off parts ...
 };
 
@@ -271,9 +272,9 @@ struct THRONG_API Scene {
   PatchSet patches;              ///< Curved ground; its triangles are among the above.
   /// One per triangle, kNoPatch for triangles of no patch; empty if there are no patches.
   std::vector<uint32_t> patch_of_triangle;
-  /// PatchMesh::parts, one per triangle (unused for triangles of no patch), and PatchMesh::off, one
-  /// per patch. Both are empty if unknown: then a patch's own triangles count as solids like any
-  /// others.
+  /// As PatchMesh::parts, one per triangle (unused for triangles of no patch), and as
+  /// PatchMesh::off, one per patch. Both are empty if unknown: then a patch's own triangles count
+  /// as solids like any others.
   std::vector<PatchPart> patch_part;
   std::vector<double> patch_off;
   std::vector<Material> materials;  ///< Of the parts; empty if they were not read.

@@ -33,11 +33,9 @@ enum class LinkKind : uint8_t {
   kClimb,    ///< One end is steeper than any walker's limit, or there is a gap between patches.
   kDrop,     ///< A drop link, one-way: out over an edge and down. For classes with a `max_drop`.
   kOffMesh,  ///< An off-mesh link; may be one-way.
-  kLand,     ///< From the air. (Reserved.)
-  kTakeOff,  ///< To the air. (Reserved.)
 };
 /// Number of LinkKind values.
-inline constexpr uint8_t kLinkKinds = 7;
+inline constexpr uint8_t kLinkKinds = 5;
 
 /// What a node is a part of.
 enum class PatchKind : uint8_t { kBezier = 0, kLevelTile = 1 };
@@ -103,13 +101,15 @@ struct NodeInfo {
   /// the floor). [code]
   uint8_t height = 0;
   uint8_t headroom = 0;  ///< The same straight up; 0 where it is too steep to walk. [code]
-  uint8_t width = 0;     ///< Radius around the middle without anything more restrictive. [code]
+  /// Distance from the middle within which no ground is steeper, lower or closed to a class of the
+  /// node. [code]
+  uint8_t width = 0;
   bool terminal = true;  ///< No smaller node lies in it.
   PatchKind kind = PatchKind::kLevelTile;
   uint32_t source = 0;   ///< Bezier patch of the scene, or level tile of the world.
   uint8_t depth = 0;     ///< The patch is cut into 2^depth x 2^depth finest sub-patches.
-  uint8_t level = 0;     ///< The node is one of 2^level x 2^level blocks of the patch,
-  uint8_t s = 0, t = 0;  ///< namely this one.
+  uint8_t level = 0;     ///< The patch has 2^level x 2^level blocks of the node's size.
+  uint8_t s = 0, t = 0;  ///< Which of these blocks the node is: its column and row.
   uint32_t parent1 = 0;  ///< Smallest node around it, plus one; 0: none.
   float area = 0;        ///< Of the sub-patch; of a partial node's cells. [m^2]
   uint64_t cells = 0;    ///< Partial node: the cells of its block, bit 8 t + s. 0: all.
@@ -121,9 +121,10 @@ struct NodeArc {
   uint32_t to = 0;
   uint16_t classes = 0;  ///< Bit per class that can use it.
   LinkKind kind = LinkKind::kWalk;
-  /// Over a hole: the nodes do not touch. A body moves straight between these two places, given by
-  /// parameters of their patches, and turns evenly. On a drop link it moves horizontally from the
-  /// first to above the second, upright there, and straight down.
+  /// A link over a hole: the nodes do not touch. A body moves in a straight line from parameters
+  /// (from_s, from_t) of this node's patch to (to_s, to_t) of the other's, and its axis turns
+  /// evenly. On a drop link it moves horizontally until it is above the second point, is upright
+  /// there, and moves straight down.
   bool over_hole = false;
   double from_s = 0, from_t = 0, to_s = 0, to_t = 0;
 };
@@ -170,10 +171,10 @@ class THRONG_API Nodes {
   /// False for a handle without nodes, made by default.
   [[nodiscard]] explicit operator bool() const { return state_ != nullptr; }
 
-  /// Makes the nodes of a world from the scene that it was baked from: of its Bezier patches and,
-  /// where there are triangles of no patch, of its level tiles. Zones of the world's folder
-  /// (BakeConfig::carry_nodes) whose nodes are up to date are reused. Fails with kBadConfig,
-  /// kBadFile (a zone cannot be used), kLimit or kCancelled.
+  /// Makes the nodes of a world from the scene that it was baked from: on the Bezier patches of the
+  /// scene, and on level tiles where the scene has triangles of no patch. Nodes of zones in the
+  /// world's folder that are up to date are reused (BakeConfig::carry_nodes). Fails with
+  /// kBadConfig, kBadFile (a zone cannot be used), kLimit or kCancelled.
   [[nodiscard]] static Result<Nodes> create(const World& world, const Scene& scene,
                                             const NodeConfig& config, Context& context);
   /// The same for a world that was opened from its folder, into which the nodes are written batch
@@ -188,11 +189,11 @@ class THRONG_API Nodes {
   [[nodiscard]] static bool exist(const World& world);
   /// The same for a world that was opened from its folder.
   [[nodiscard]] static Result<Nodes> open(const World& world);
-  /// The world that they were made for. [not of an empty handle]
+  /// The world that the nodes were made for. [the handle is not empty]
   [[nodiscard]] const World& world() const;
-  /// Writes them into the folder of the world that they were made for, in place of those there, on
-  /// `workers` threads (0: all cores). Fails with kIo or, if the folder holds another world,
-  /// kBadFile.
+  /// Writes the nodes into the folder of the world that they were made for, and replaces those
+  /// there. `workers`: threads, 0 for all cores. Fails with kIo or, if the folder holds another
+  /// world, kBadFile.
   [[nodiscard]] Result<void> write(const std::string& world_path, int32_t workers = 0) const;
   /// Checks every zone against the index. Fails with kBadFile and the zone's name.
   [[nodiscard]] Result<void> check_all() const;
@@ -202,7 +203,7 @@ class THRONG_API Nodes {
   [[nodiscard]] NodeInfo node(uint32_t node) const;
   [[nodiscard]] std::vector<NodeArc> arcs(uint32_t node) const;
   /// The cells of a partial node on which a class may stand, bit 8 t + s of its block of 8 x 8. 0
-  /// for other nodes and for classes that are not the node's.
+  /// if the node is not partial, or is none of the class.
   [[nodiscard]] uint64_t partial_cells(int32_t avatar_class, uint32_t node) const;
   /// Corners of a node's sub-patch on the ground, in the order of BezierPatch's vertices; for a
   /// partial node those of its block, where the ground may be missing. [m]

@@ -133,7 +133,8 @@ struct PathReport {
   /// Paths with a wrong length or a segment that is no legal move. Must be 0.
   uint64_t illegal = 0;
   uint64_t entered = 0;  ///< Paths on which the body meets a triangle. Must be 0.
-  /// Paths on which it has no such surface. Must be 0.
+  /// Paths on which the body is somewhere without a surface to stand on, within a cell and a step
+  /// height. Must be 0.
   uint64_t unsupported = 0;
   uint64_t broken = 0;  ///< Paths over a point with no legal place. Must be 0.
   /// Pairs with a path between different components, or the reverse. Must be 0.

@@ -41,13 +41,14 @@ struct MoveResult {
 
 /// The content of one level tile in plain arrays, for tools and pictures.
 struct LevelTileContent {
-  int32_t tile_x = 0;            ///< World tile coordinates: the tile covers cells
-  int32_t tile_z = 0;            ///< [64 tile_x, 64 tile_x + 64) of the world's grid.
+  /// Which tile: it covers cells [64 tile_x, 64 tile_x + 64) of the world's grid along x, and
+  /// likewise along z.
+  int32_t tile_x = 0, tile_z = 0;
   std::vector<int32_t> floor;    ///< 4096, row by row; kNoFloor where the level has none. [mm]
   std::vector<int32_t> ceiling;  ///< 4096; kOpenSky where nothing is above. [mm]
   std::vector<uint8_t> area;     ///< 4096 area kinds.
-  /// Per class 4096: 0 is illegal, k: every point within k - 1 cells of this cell is legal, too.
-  /// [0 to 8]
+  /// Per class 4096 numbers. 0: the cell is illegal; k: it is legal, and so is every point within k
+  /// - 1 cells of it. [0 to 8]
   std::vector<std::vector<uint8_t>> clearance;
 };
 
@@ -74,9 +75,8 @@ struct WorldSummary {
 
 /// Settings for World::open.
 struct WorldConfig {
-  /// Limit of the memory of zones: beyond it, the zones that have not been used for longest are
-  /// given back to the system, and read again when they are used. 0: no limit. Never changes a
-  /// result.
+  /// Limit of the memory of zones. Beyond it, the least recently used zones are given back to the
+  /// system, and read again at their next use. 0: no limit. Never changes a result. [bytes]
   uint64_t resident_bytes = 0;
 };
 
@@ -135,18 +135,18 @@ class THRONG_API World {
 // ----
 // Queries of the ground around a body: the nearest place, the nearest wall, how far a straight
 // line leads, sliding along walls, random places nearby. A wall is whatever stops the class: a
-// solid, a step that is too high, a slope that is too steep, an edge. All lengths are of the
-// body's middle, in the ground's plane: the solid of a wall is a radius farther.
+// solid, a step that is too high, a slope that is too steep, an edge. All lengths are measured
+// from the body's axis, as seen from above: the solid of a wall is one radius farther away.
 
-/// What stops a class: what makes a cell illegal, as far as a baked world knows. It stores floors
-/// and ceilings, not walls. There, or within the class's radius,
+/// Why a class cannot stand in a cell, found from the floors and ceilings there and within the
+/// class's radius: a baked world stores no walls.
 enum class Blocker {
   kNone,
-  kGap,     ///< is no floor near the height of the feet on which any class could stand.
-  kStep,    ///< is a floor more than the step height up or down, but not the top of a wall.
-  kLow,     ///< is less than the class's height below the ceiling.
-  kSteep,   ///< is a floor steeper than the class's limit.
-  kNarrow,  ///< is a solid: the passage is too narrow, or ends at a wall.
+  kGap,     ///< There is no floor near the height of the feet on which any class could stand.
+  kStep,    ///< A floor is more than the step height up or down; it is not the top of a wall.
+  kLow,     ///< The ceiling is less than the class's height above the floor.
+  kSteep,   ///< The floor is steeper than the class's limit.
+  kNarrow,  ///< There is a solid: the passage is too narrow, or ends at a wall.
 };
 
 /// The result of a straight walk along the ground.
@@ -185,9 +185,9 @@ class THRONG_API GroundQuery {
   [[nodiscard]] Place nearest_place(Vec3d position, double radius);
   /// Walks straight from a place by (dx, dz), as far as the ground allows. [m, m]
   [[nodiscard]] GroundRay ray(const Place& from, double dx, double dz);
-  /// Slides a body that is pushed by (dx, dz) along walls: of the places connected with `from`
-  /// inside the circle whose diameter is the push, the nearest to its end. `from` itself if there
-  /// is no better one. [m, m]
+  /// Slides a body that is pushed by (dx, dz) along walls. The push is the diameter of a circle; of
+  /// the places that are connected with `from` inside this circle, the result is the one nearest to
+  /// the end of the push, at worst `from` itself. [m, m]
   [[nodiscard]] Place slide(const Place& from, double dx, double dz);
   /// The nearest wall within `max_distance` that a straight line from the place can meet. Time: the
   /// cells within that distance. [m]
@@ -196,7 +196,7 @@ class THRONG_API GroundQuery {
   /// the circle around it. Nowhere only if `centre` is no place of the class. [m]
   [[nodiscard]] Place random_place_near(const Place& centre, double radius, uint64_t seed,
                                         uint64_t n);
-  /// Area of these places, to one cell. [m^2]
+  /// Area of the places that random_place_near draws from, to one cell. [m^2]
   [[nodiscard]] double area_near(const Place& centre, double radius);
 
  private:
@@ -218,7 +218,7 @@ struct GraphConfig {
 struct GraphSummary {
   uint64_t regions = 0;  ///< Connected parts of level tiles, shared by classes.
   uint64_t links = 0;    ///< Undirected links: pairs of regions between which some class can walk.
-  uint64_t bytes = 0;    ///< Of both, without files and data of classes.
+  uint64_t bytes = 0;    ///< Of regions and links, without files and data of classes.
   bool on_disk = false;  ///< Read from the files of the bake, not made in memory.
   double seconds = 0;    ///< To read or to make them.
 };

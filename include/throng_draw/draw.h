@@ -184,7 +184,7 @@ class THRONG_API Drawing {
   [[nodiscard]] size_t colour_bytes(size_t atlas) const;
   /// Can the card read colours of this format as they are? False for formats without blocks.
   [[nodiscard]] bool takes_blocks(AtlasFormat format) const;
-  /// Sets the model as which avatars of an atlas are drawn when they are near. Fails with kBadInput
+  /// Sets the model that is drawn for near avatars of an atlas. Fails with kBadInput
   /// (other clips than the atlas has), kLimit.
   [[nodiscard]] Result<void> set_model(size_t atlas, const FigureModel& model);
   void clear_atlases();  ///< Removes all: the next one is number 0.

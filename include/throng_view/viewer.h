@@ -81,8 +81,8 @@ struct ViewEvent {
   std::string path = {};
 };
 
-/// Sticks of a gamepad now. Others are clamped, and what is no number is 0. [-1 to 1, right and
-/// down are positive]
+/// Sticks of a gamepad now. Values outside the limits are clamped, NaN counts as 0. [-1 to 1, right
+/// and down are positive]
 struct GamepadState {
   double walk_x = 0, walk_y = 0;
   double look_x = 0, look_y = 0;
@@ -107,7 +107,7 @@ struct CrowdStart {
   bool only_seen = false;
   double sight = 150;       ///< [m, > 0]
   bool coarse_far = false;  ///< Avatars beyond 300 m are simulated in low detail.
-  /// Where goals lie, as likely as the weights; empty or all 0: see `near`.
+  /// Maps from which goals are drawn by weight; empty or all 0: see `near`.
   std::vector<DensityMap> density = {};
 };
 

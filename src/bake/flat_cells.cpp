@@ -40,10 +40,10 @@ uint64_t pack_tile(uint32_t tile, const bake::BitPlane& rows, const bake::Surfac
   if (planes.cells == 0) return 0;
   bake::Layer layer;
   bake::clear_layer(layer);
-  layer.base = kFloor - bake::Layer::kBelow;
+  layer.base = kFloor - bake::Layer::kBaseDepth;
   for (size_t c = 0; c < bake::kTileArea; ++c) {
     if ((rows[c / bake::kTileSide] >> (c % bake::kTileSide) & 1) == 0) continue;
-    layer.top[c] = layer.feet[c] = static_cast<uint16_t>(bake::Layer::kBelow);
+    layer.top[c] = layer.feet[c] = static_cast<uint16_t>(bake::Layer::kBaseDepth);
     layer.ceiling[c] = bake::kNone16;
     layer.code[c] = 0;
   }

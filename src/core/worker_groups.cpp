@@ -19,10 +19,10 @@ thread_local int32_t t_group = 0;  // of this thread
 int32_t worker_group() { return t_group; }
 
 WorkerGroups assign_workers(size_t tasks, int32_t workers) {
-  constexpr int32_t kFew = 4;  // Fewer seldom wait for each other.
+  constexpr int32_t kMinThreads = 4;  // Fewer seldom wait for each other.
   const int32_t threads = worker_count(workers);
   const auto max_groups = static_cast<int32_t>(std::clamp<size_t>(tasks, 1, 1024));
-  const int32_t groups = threads < kFew ? 1 : std::min(threads, max_groups);
+  const int32_t groups = threads < kMinThreads ? 1 : std::min(threads, max_groups);
   return {groups, (threads + groups - 1) / groups};
 }
 

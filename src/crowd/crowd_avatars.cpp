@@ -267,8 +267,8 @@ void Crowd::set_targets(std::span<const AvatarId> ids, TargetId target) {
     body->detour_angle = 0;
     body->target = target;
     for (crowd::Mode* mode : s.modes) mode->set_target(*body);
-    body->flags =
-        (body->flags & crowd::Body::kFlying) | crowd::Body::kHasGoal | crowd::Body::kNeedsPath;
+    body->flags = (body->flags & crowd::Body::kMovedElsewhere) | crowd::Body::kHasGoal |
+                  crowd::Body::kNeedsPath;
   }
 }
 

@@ -15,11 +15,18 @@ namespace {
 // Of triangles the box around them, which may be flat.
 Prism prism_of(const path::Solid& solid) {
   if (solid.triangles.empty()) return solid.prism;
-  constexpr double kThin = 0.001;  // [m]
+  constexpr double kBoxMargin = 0.001;  // [m]
   const Prism& box = solid.prism;
   const auto [low, high] = std::minmax_element(box.corners.begin(), box.corners.end());
-  return Prism::box({(*low)[0] - kThin, box.low - kThin, (*low)[1] - kThin},
-                    {(*high)[0] + kThin, box.high + kThin, (*high)[1] + kThin});
+  return Prism::box({(*low)[0] - kBoxMargin, box.low - kBoxMargin, (*low)[1] - kBoxMargin},
+                    {(*high)[0] + kBoxMargin, box.high + kBoxMargin, (*high)[1] + kBoxMargin});
+}
+
+ObstaclePhase phase_of(const crowd::CrowdObstacle& obstacle) {
+  if (obstacle.is_up) {
+    return obstacle.waits() ? ObstaclePhase::kWaitsToMove : ObstaclePhase::kUp;
+  }
+  return obstacle.waits() ? ObstaclePhase::kWaitsToComeUp : ObstaclePhase::kOff;
 }
 
 Error no_obstacle() { return {Errc::kNotFound, "crowd: there is no obstacle of that id"}; }
@@ -82,8 +89,7 @@ Result<ObstacleState> Crowd::obstacle(ObstacleId id) const {
                : static_cast<double>(step) * state_->shared.config.dt;
   };
   return ObstacleState{found->place,
-                       found->is_up,
-                       found->waits(),
+                       phase_of(*found),
                        found->kind,
                        found->policy,
                        seconds(found->requested_step),
@@ -176,7 +182,7 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
     if (!here.empty() && (refuses || obstacle.is_exit_only)) {
       leaving.insert(leaving.end(), here.begin(), here.end());
       const auto walks = [&](const auto& pair) {
-        return !bodies[pair.second].has(crowd::Body::kFlying);
+        return !bodies[pair.second].has(crowd::Body::kMovedElsewhere);
       };
       shared.obstacles.set_exit_only(slot, std::any_of(here.begin(), here.end(), walks));
       if (refuses) {

@@ -179,9 +179,9 @@ bool is_sound(const crowd::Body& b, const world::WorldData& data) {
     return false;
   }
   if (b.x < 0 || b.z < 0 || !world::in_grid(data, b.point())) return false;
-  if (b.climbs) return b.has(crowd::Body::kFlying) && b.level == 0;
+  if (b.climbs) return b.has(crowd::Body::kMovedElsewhere) && b.level == 0;
   if (b.level >= data.level_count) return false;
-  if (b.has(crowd::Body::kFlying)) return true;  // it has no level
+  if (b.has(crowd::Body::kMovedElsewhere)) return true;  // it has no level
   const auto tile = data.tile_levels(b.x >> (world::kUnitBits + 6), b.z >> (world::kUnitBits + 6));
   return b.level >= tile.first && b.level < tile.last;
 }

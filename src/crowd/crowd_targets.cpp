@@ -45,7 +45,7 @@ double Crowd::distance(AvatarId id, TargetId target) const {
   THRONG_ASSERT(target >= 1 && target <= s.shared.targets.size());
   s.renew_flows();
   const crowd::Body* body = s.body(id);
-  if (body == nullptr || body->has(crowd::Body::kFlying)) {
+  if (body == nullptr || body->has(crowd::Body::kMovedElsewhere)) {
     return std::numeric_limits<double>::infinity();
   }
   return s.walk.distance(*body, target);

@@ -32,8 +32,8 @@ namespace {
 
 constexpr size_t kTextureBudget = size_t{128} << 20;  // Bytes, without smaller levels.
 constexpr int kPictureUnit = 8;
-constexpr double kNearer =
-    0.002;  // Share of the distance to the eye by which marks are drawn nearer.
+// Share of the distance to the eye by which marks are drawn nearer.
+constexpr double kMarkOffset = 0.002;
 
 // Colour and depth of an offscreen target.
 struct Target {
@@ -235,7 +235,7 @@ void Drawing::State::draw_sun_depth(const draw::Matrix& sun_from_world, Vec3d to
 // the number of triangles drawn.
 size_t Drawing::State::draw_scene(const draw::Matrix& clip_from_world, Vec3d eye,
                                   const std::function<void()>& read_depths) {
-  constexpr size_t kWorthAsking = 8'000, kNearShare = 8;
+  constexpr size_t kMinQueried = 8'000, kNearShare = 8;
   const std::span<const draw::SceneChunk> chunks = mesh.chunks();
   std::vector<uint32_t> near = draw::chunks_in_view(chunks, clip_from_world, eye), rest;
   const auto triangles = [&](const std::vector<uint32_t>& indices) {
@@ -244,7 +244,7 @@ size_t Drawing::State::draw_scene(const draw::Matrix& clip_from_world, Vec3d eye
     return corners / 3;
   };
   const size_t all = triangles(near);
-  if (all > kWorthAsking) {
+  if (all > kMinQueried) {
     size_t first = 0, corners = 0;
     while (corners / 3 < all / kNearShare) corners += chunks[near[first++]].count;
     rest.assign(near.begin() + static_cast<ptrdiff_t>(first), near.end());
@@ -274,7 +274,7 @@ void Drawing::State::draw_marks(const draw::Matrix& clip_from_world,
                 0.5F * static_cast<float>(config.height * config.samples));
   // Depth is a + b / w: adding to b moves a mark nearer by a share of w.
   const double n = config.camera.nearest, f = config.camera.furthest;
-  mark.set("nearer", static_cast<float>(-kNearer * 2 * f * n / (f - n)));
+  mark.set("nearer", static_cast<float>(-kMarkOffset * 2 * f * n / (f - n)));
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glDepthMask(GL_FALSE);

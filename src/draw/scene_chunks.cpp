@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPerChunk = 500;  // Triangles.
 // The card computes in floats: what lies outside by less than this share may still be drawn.
-constexpr double kSlack = 1e-4;
+constexpr double kClipTolerance = 1e-4;
 
 using Corner = std::array<double, 4>;
 
@@ -39,7 +39,7 @@ bool is_outside(const std::array<Corner, 8>& corners) {
   for (size_t axis = 0; axis < 3; ++axis) {
     for (const double sign : {-1.0, 1.0}) {
       const bool out = std::all_of(corners.begin(), corners.end(), [&](const Corner& c) {
-        return sign * c[axis] > c[3] + kSlack * (1 + std::fabs(c[3]));
+        return sign * c[axis] > c[3] + kClipTolerance * (1 + std::fabs(c[3]));
       });
       if (out) return true;
     }
@@ -48,8 +48,8 @@ bool is_outside(const std::array<Corner, 8>& corners) {
 }
 
 bool is_hidden(const std::array<Corner, 8>& corners, const DepthPyramid& depths) {
-  constexpr double kFar = std::numeric_limits<double>::max();
-  NdcBox box{kFar, -kFar, kFar, -kFar, kFar};
+  constexpr double kUnset = std::numeric_limits<double>::max();
+  NdcBox box{kUnset, -kUnset, kUnset, -kUnset, kUnset};
   for (const Corner& c : corners) {
     if (c[3] <= 0 || c[2] <= -c[3]) return false;  // It reaches behind the near plane.
     const double x = c[0] / c[3], y = c[1] / c[3];

@@ -17,7 +17,7 @@ namespace {
 
 constexpr size_t kMaxTriangles = 40'000'000;  // 1.9 GB.
 constexpr double kWeld = 1e4;                 // Per metre.
-constexpr double kSmooth = 0.906;             // Cosine of 25 degrees.
+constexpr double kSmoothCosine = 0.906;       // Cosine of 25 degrees.
 
 using Lattice = std::array<int64_t, 3>;
 
@@ -63,7 +63,7 @@ void mark_edges(std::vector<Side>& sides, const std::vector<Vec3d>& normals,
          end < sides.size() && sides[end].low == first.low && sides[end].high == first.high;
          ++end) {
       const double cosine = dot(normals[first.triangle], normals[sides[end].triangle]);
-      smooth = smooth && std::abs(cosine) > kSmooth;
+      smooth = smooth && std::abs(cosine) > kSmoothCosine;
     }
     if (smooth && end - begin > 1) continue;
     for (size_t i = begin; i < end; ++i) {

@@ -90,9 +90,9 @@ void PartFinder::find(const world::CellRows& open, const StepCuts* cuts, PartLis
 }
 
 bool PartFinder::find_few(const world::CellRows& open, PartList& list) {
-  constexpr size_t kFewBands = 12;
+  constexpr size_t kMaxBands = 12;
   const bool is_chain = find_bands(open, nullptr);
-  if (!is_chain && band_count_ > kFewBands) return false;
+  if (!is_chain && band_count_ > kMaxBands) return false;
   add_parts(open, nullptr, is_chain, list);
   return true;
 }

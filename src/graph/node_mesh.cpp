@@ -175,7 +175,7 @@ class BlockCutter {
 
   // A square of cells, if all of them are of one piece and no step in it is too high; or quarters.
   void cut_square(const NodeBlock& square) {
-    const int32_t side = 64 >> square.level;
+    const int32_t side = kTileCells >> square.level;
     const int32_t s = square.s * side & 7, t = square.t * side & 7;
     const uint64_t row = (uint64_t{1} << side) - 1;
     uint64_t all = 0, inner_s = 0, inner_t = 0;
@@ -216,8 +216,8 @@ class BlockCutter {
   [[nodiscard]] uint64_t cuts_in(const NodeBlock& square, bool along_s) {
     if (!cuts_) return 0;
     const world::CellRows& rows = along_s ? cuts_->across : cuts_->along;
-    const size_t s0 = size_t{square.s} * (64 >> square.level) & ~size_t{7};
-    const size_t t0 = size_t{square.t} * (64 >> square.level) & ~size_t{7};
+    const size_t s0 = size_t{square.s} * (kTileCells >> square.level) & ~size_t{7};
+    const size_t t0 = size_t{square.t} * (kTileCells >> square.level) & ~size_t{7};
     uint64_t cells = 0;
     for (size_t j = 0; j < 8; ++j) cells |= (rows[t0 + j] >> s0 & 0xff) << (8 * j);
     return cells;
@@ -447,7 +447,8 @@ PortalList NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) const {
     const uint32_t pa = patch_of_level(pair.patch_a), pb = patch_of_level(pair.patch_b);
     if (pa == kNoNode || pb == kNoNode) continue;
     const auto middle = [](uint32_t cell) {
-      return std::pair{(cell % 64 + 0.5) / 64, (cell / 64 + 0.5) / 64};
+      return std::pair{(world::x_of_cell(cell) + 0.5) / kTileCells,
+                       (world::z_of_cell(cell) + 0.5) / kTileCells};
     };
     const auto [as, at] = middle(pair.cell_a);
     const auto [bs, bt] = middle(pair.cell_b);
@@ -470,8 +471,9 @@ PortalList NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) const {
            touches[j].k == touches[j - 1].k + 1) {
       ++j;
     }
-    const double from = t.k / 64.0 + kTileInset, to = (touches[j - 1].k + 1) / 64.0 - kTileInset;
-    const double on_a = t.at / 64.0 - kTileInset, on_b = t.at % 64 / 64.0;
+    constexpr double kSide = kTileCells;
+    const double from = t.k / kSide + kTileInset, to = (touches[j - 1].k + 1) / kSide - kTileInset;
+    const double on_a = t.at / kSide - kTileInset, on_b = t.at % kTileCells / kSide;
     NodePortal portal{.a = t.a, .b = t.b, .on_a = {}, .on_b = {}, .kind = t.kind};
     if (t.side == 2) {
       portal.on_a = {on_a, from, on_a, to};

@@ -27,10 +27,10 @@ Vec3d on_tile(const world::WorldData& world, uint32_t level, double s, double t)
   if (ground.zone == nullptr) return {};
   const auto [tile_x, tile_z] = world::tile_of(world, *ground.zone, *ground.view.record);
   const auto unit = [](int32_t tile, double at) {
-    const double cells = std::clamp(at, 0.0, 1.0) * 64;
+    const double cells = std::clamp(at, 0.0, 1.0) * kTileCells;
     const auto units = static_cast<int64_t>(
-        std::min(cells * world::kUnitsPerCell, 64.0 * world::kUnitsPerCell - 1));
-    return (int64_t{tile} * 64 << world::kUnitBits) + units;
+        std::min(cells * world::kUnitsPerCell, double{kTileCells} * world::kUnitsPerCell - 1));
+    return (int64_t{tile} * kTileCells << world::kUnitBits) + units;
   };
   return world::place_at(world, ground, {unit(tile_x, s), unit(tile_z, t)}).position;
 }

@@ -8,6 +8,7 @@
 
 #include "graph/node_links.h"
 #include "throng/base.h"
+#include "world/tile_grid.h"
 
 /// How far around its middle nothing is more restrictive than a node: the seed's cylinder width.
 namespace throng::graph {
@@ -43,7 +44,8 @@ struct CellBalls {
       const Vec3d middle = shape.middle(origin);
       return {middle.x, middle.y, middle.z, shape.radius};
     }
-    return {(x + cell % 64 + 0.5) * side, 0, (z + cell / 64 + 0.5) * side, side * 0.7072};
+    return {(x + world::x_of_cell(cell) + 0.5) * side, 0, (z + world::z_of_cell(cell) + 0.5) * side,
+            side * 0.7072};
   }
 };
 

@@ -211,7 +211,8 @@ Vec3d Nodes::middle(uint32_t node) const {
     nearest = ds * ds + dt * dt;
     best = bit;
   });
-  return point(node, (info.s * 8 + best % 8 + 0.5) / 64, (info.t * 8 + best / 8 + 0.5) / 64);
+  return point(node, (info.s * 8 + best % 8 + 0.5) / kTileCells,
+               (info.t * 8 + best / 8 + 0.5) / kTileCells);
 }
 
 Vec3d Nodes::point(uint32_t node, double s, double t) const {
@@ -233,8 +234,8 @@ NodePlace Nodes::place(int32_t avatar_class, uint32_t node, double s, double t) 
                       t * blocks >= found.t() && t * blocks <= found.t() + 1;
   if (!inside || (found.classes() >> avatar_class & 1) == 0) return {};
   if ((found.flags() & world::kPartialFlag) != 0 &&
-      !touches(state_->cells_of(*zone, local, avatar_class), s * 64 - found.s() * 8,
-               t * 64 - found.t() * 8)) {
+      !touches(state_->cells_of(*zone, local, avatar_class), s * kTileCells - found.s() * 8,
+               t * kTileCells - found.t() * 8)) {
     return {};
   }
   const graph::NodeSurface surface = graph::surface_of(*state_, *zone, zone->patch_of(local));
@@ -260,8 +261,9 @@ NodePlace Nodes::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) c
     const auto count = static_cast<uint64_t>(std::popcount(cells));
     for (uint64_t skip = random_below(seed, n, 3, count); skip > 0; --skip) cells &= cells - 1;
     const int32_t bit = std::countr_zero(cells);
-    return place(avatar_class, found->first, (info.s * 8 + bit % 8 + random_unit(seed, n, 1)) / 64,
-                 (info.t * 8 + bit / 8 + random_unit(seed, n, 2)) / 64);
+    return place(avatar_class, found->first,
+                 (info.s * 8 + bit % 8 + random_unit(seed, n, 1)) / kTileCells,
+                 (info.t * 8 + bit / 8 + random_unit(seed, n, 2)) / kTileCells);
   }
   const double side = 1.0 / (1 << info.level);
   return place(avatar_class, found->first, (info.s + random_unit(seed, n, 1)) * side,

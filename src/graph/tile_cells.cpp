@@ -43,7 +43,7 @@ namespace {
 template <class Visit>
 void for_runs(const std::array<world::CellRows, kMaxAvatarClasses>& legal, size_t classes,
               Visit visit) {
-  for (size_t z = 0; z < 64; ++z) {
+  for (size_t z = 0; z < kTileCells; ++z) {
     uint64_t any = 0, changes = 1;
     for (size_t c = 0; c < classes; ++c) {
       any |= legal[c][z];
@@ -53,12 +53,12 @@ void for_runs(const std::array<world::CellRows, kMaxAvatarClasses>& legal, size_
     while (changes != 0) {
       const int32_t x = std::countr_zero(changes);
       changes &= changes - 1;
-      const int32_t end = changes == 0 ? 64 : std::countr_zero(changes);
+      const int32_t end = changes == 0 ? kTileCells : std::countr_zero(changes);
       uint16_t stands = 0;
       for (size_t c = 0; c < classes; ++c) {
         if ((legal[c][z] >> x & 1) != 0) stands |= bit_of(c);
       }
-      if (stands != 0) visit(z * 64 + static_cast<size_t>(x), end - x, stands);
+      if (stands != 0) visit(z * kTileCells + static_cast<size_t>(x), end - x, stands);
     }
   }
 }
@@ -99,11 +99,11 @@ PatchCells tile_cells(const World& world, uint32_t level, uint16_t wanted, const
     const auto cuts = step_cuts(ground, legal[c], world::step_mm(classes[c]));
     if (!cuts) continue;
     const auto note = [&](const world::CellRows& rows, std::vector<uint16_t>& out) {
-      for (size_t z = 0; z < 64; ++z) {
+      for (size_t z = 0; z < kTileCells; ++z) {
         for (uint64_t left = rows[z]; left != 0; left &= left - 1) {
           if (patch.cut_s.empty()) patch.cut_s.assign(kArea, 0);
           if (patch.cut_t.empty()) patch.cut_t.assign(kArea, 0);
-          out[z * 64 + static_cast<size_t>(std::countr_zero(left))] |= bit_of(c);
+          out[z * kTileCells + static_cast<size_t>(std::countr_zero(left))] |= bit_of(c);
         }
       }
     };
@@ -152,8 +152,8 @@ namespace {
 
 // The cells along one side of a level: which classes may stand there, and how high.
 struct Rim {
-  std::array<uint16_t, 64> classes{};
-  std::array<int32_t, 64> feet{};  // of cells where some class may [mm]
+  std::array<uint16_t, kTileCells> classes{};
+  std::array<int32_t, kTileCells> feet{};  // of cells where some class may [mm]
 };
 
 Rim rim_of(const world::WorldData& world, world::GroundLevel level, uint32_t zone_level,
@@ -173,9 +173,9 @@ Rim rim_of(const world::WorldData& world, world::GroundLevel level, uint32_t zon
       }
     }
   }
-  for (int32_t i = 0; i < 64; ++i) {
+  for (int32_t i = 0; i < kTileCells; ++i) {
     const auto at = static_cast<size_t>(i);
-    const int32_t last = far ? 63 : 0;
+    const int32_t last = far ? world::kInTile : 0;
     if (rim.classes[at] == 0) continue;
     rim.feet[at] = level.view.sample(across ? last : i, across ? i : last);
   }
@@ -243,7 +243,7 @@ class PairFinder {
       theirs.push_back(rim_of(world_, l.ground, l.zone_level, east ? kWest : kNorth));
     }
     std::vector<uint16_t> classes(beyond.size());  // that step to each
-    for (int32_t i = 0; i < 64; ++i) {
+    for (int32_t i = 0; i < kTileCells; ++i) {
       const auto at = static_cast<size_t>(i);
       const auto to_one_of = [&](const std::vector<Rim>& rims, int32_t feet, size_t c) {
         return nearest(rims.size(), steps_[c], [&](uint32_t l) {
@@ -262,7 +262,8 @@ class PairFinder {
         }
         for (uint32_t to = 0; to < classes.size(); ++to) {
           if (classes[to] == 0) continue;
-          add(here_[l].ground, beyond[to].ground, classes[to], east ? 63 : i, east ? i : 63, east);
+          add(here_[l].ground, beyond[to].ground, classes[to], east ? world::kInTile : i,
+              east ? i : world::kInTile, east);
         }
       }
     }
@@ -284,11 +285,11 @@ class PairFinder {
         const world::CellRows& own = legal_[l];
         world::CellRows others{};
         for (size_t o = 0; o < here_.size(); ++o) {
-          for (size_t z = 0; z < 64 && o != l; ++z) others[z] |= legal_[o][z];
+          for (size_t z = 0; z < kTileCells && o != l; ++z) others[z] |= legal_[o][z];
         }
         uint64_t beside = 0;
-        for (size_t z = 0; z < 64; ++z) {
-          beside |= own[z] & (others[z] >> 1 | (z < 63 ? others[z + 1] : 0));
+        for (size_t z = 0; z < kTileCells; ++z) {
+          beside |= own[z] & (others[z] >> 1 | (z < world::kInTile ? others[z + 1] : 0));
         }
         if (beside == 0) continue;
         world::GroundLevel level = here_[l].ground;
@@ -298,14 +299,14 @@ class PairFinder {
           level.view.samples = samples.data();
         }
         const auto cuts = step_cuts(level, own, steps_[c]);
-        for (size_t z = 0; z < 64; ++z) {
+        for (size_t z = 0; z < kTileCells; ++z) {
           uint64_t ends = ~(own[z] >> 1);
           if (cuts) ends |= cuts->across[z];
           ends &= own[z] & others[z] >> 1;
           for (; ends != 0; ends &= ends - 1) {
             cross_seam(l, c, std::countr_zero(ends), static_cast<int32_t>(z), true);
           }
-          if (z == 63) break;
+          if (z == world::kInTile) break;
           ends = ~own[z + 1];
           if (cuts) ends |= cuts->along[z];
           ends &= own[z] & others[z + 1];
@@ -346,7 +347,7 @@ class PairFinder {
         is_step(from.view, x, z, to.view, world::in_tile(nx), world::in_tile(nz), limits_);
     pairs_.push_back(
         {.patch_a = from.world_level,
-         .cell_a = static_cast<uint32_t>(z * 64 + x),
+         .cell_a = static_cast<uint32_t>(world::cell_index(x, z)),
          .patch_b = to.world_level,
          .cell_b = static_cast<uint32_t>(world::cell_index(world::in_tile(nx), world::in_tile(nz))),
          .classes = classes,

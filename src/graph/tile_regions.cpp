@@ -56,17 +56,18 @@ uint32_t shared_cells(const PartList& a, const Part& p, const PartList& b, const
 }
 
 world::CellRows without(world::CellRows cells, const world::CellRows& occupied) {
-  for (size_t z = 0; z < 64; ++z) cells[z] &= ~occupied[z];
+  for (size_t z = 0; z < kTileCells; ++z) cells[z] &= ~occupied[z];
   return cells;
 }
 
 // Is any cell of `a` beside one of `b`?
 bool is_beside(const world::CellRows& a, const world::CellRows& b) {
   uint64_t found = (a[0] << 1 | a[0] >> 1 | a[1]) & b[0];
-  for (size_t z = 1; z < 63; ++z) {
+  constexpr size_t kLast = world::kInTile;
+  for (size_t z = 1; z < kLast; ++z) {
     found |= (a[z] << 1 | a[z] >> 1 | a[z - 1] | a[z + 1]) & b[z];
   }
-  found |= (a[63] << 1 | a[63] >> 1 | a[62]) & b[63];
+  found |= (a[kLast] << 1 | a[kLast] >> 1 | a[kLast - 1]) & b[kLast];
   return found != 0;
 }
 
@@ -104,7 +105,7 @@ class LevelRegions {
       size_t z = all.begin;
       while (common_.row(all, z) == 0) ++z;
       const auto x = static_cast<uint32_t>(std::countr_zero(common_.row(all, z)));
-      tile_.regions[begin_ + r].key = static_cast<uint32_t>(z) * 64 + x;
+      tile_.regions[begin_ + r].key = static_cast<uint32_t>(z) * kTileCells + x;
     }
   }
 
@@ -193,7 +194,7 @@ class BorderLevels {
     int32_t& height = kept_.heights[l][static_cast<size_t>(i)];
     if ((kept_.known[l] >> i & 1) == 0) {
       const bool column = side_ == kWest || side_ == kEast;
-      const int32_t end = side_ == kEast || side_ == kSouth ? 63 : 0;
+      const int32_t end = side_ == kEast || side_ == kSouth ? world::kInTile : 0;
       height = kept_.views[l].sample(column ? end : i, column ? i : end);
       kept_.known[l] |= uint64_t{1} << i;
     }
@@ -272,7 +273,7 @@ TileParts TileRegions::linked_parts(int32_t tile_x, int32_t tile_z, TileScratch&
   for (size_t at = 0; at < tile.classes.size(); ++at) {
     if (tile.classes[at].first == tile.classes[at].last || scratch.alike[at] != 0) continue;
     world::CellRows& any_class = scratch.any_class[at / steps_.size()];
-    for (size_t z = 0; z < 64; ++z) any_class[z] |= scratch.legal[at][z];
+    for (size_t z = 0; z < kTileCells; ++z) any_class[z] |= scratch.legal[at][z];
   }
   for (uint32_t a = 0; a < tile.levels; ++a) {
     for (uint32_t b = a + 1; b < tile.levels; ++b) {
@@ -470,7 +471,8 @@ void TileRegions::link_seam(const Seam& seam, TileParts& tile, TileScratch& scra
       if (from == 0) continue;
       const uint64_t beside = row_without(shapes, q, z, occupied_a);
       if (any(from & (beside >> 1), 0, z) || any(from & (beside << 1), 1, z)) return true;
-      if (z < 63 && any(from & row_without(shapes, q, z + 1, occupied_a), 2, z)) return true;
+      if (z < world::kInTile && any(from & row_without(shapes, q, z + 1, occupied_a), 2, z))
+        return true;
       if (z > 0 && any(from & row_without(shapes, q, z - 1, occupied_a), 3, z)) return true;
     }
     return false;

@@ -9,6 +9,7 @@
 #include "graph/tile_regions.h"
 #include "graph/zone_components.h"
 #include "world/place.h"
+#include "world/tile_grid.h"
 
 // Runs tile_regions over a zone's tiles and over the borders between zones, in parallel; numbers
 // regions in order of tiles.
@@ -170,7 +171,7 @@ uint32_t region_at(const world::WorldData& world, const world::RegionZone& regio
   const world::CellRows part = flood(legal, cuts ? &*cuts : nullptr, x, z);
   for (uint32_t r = first; r < last; ++r) {
     const uint32_t key = regions.regions()[r].key();
-    if (has_class(r) && (part[key / 64] >> key % 64 & 1) != 0) return r;
+    if (has_class(r) && (part[world::z_of_cell(key)] >> world::x_of_cell(key) & 1) != 0) return r;
   }
   return kNoRegion;
 }

@@ -15,8 +15,9 @@ namespace throng::impostor {
 namespace {
 
 constexpr int32_t kMoments = 96;
-constexpr double kLow = 0.04;    // Of the figure's height: near the ground.
-constexpr double kStands = 0.1;  // Of the figure's height in a whole cycle: it does not walk.
+constexpr double kNearGroundShare = 0.04;  // Of the figure's height: near the ground.
+// Of the figure's height in a whole cycle: it does not walk.
+constexpr double kMinStrideShare = 0.1;
 
 Vec3d mean_on_ground(const PosedMesh& mesh) {
   Vec3d sum;
@@ -33,17 +34,17 @@ ClipPlace place_of_clip(const Character& character, size_t clip) {
   pose_character(character, clip, 0, mesh);
   const Vec3d begin = mean_on_ground(mesh);
   // The last moment itself would wrap to the first.
-  constexpr double kAlmost = 1 - 1e-9;
-  pose_character(character, clip, seconds * kAlmost, mesh);
+  constexpr double kLastMoment = 1 - 1e-9;
+  pose_character(character, clip, seconds * kLastMoment, mesh);
   ClipPlace place{.middle = {}, .drift = mean_on_ground(mesh) - begin};
   Vec3d sum;
-  constexpr int32_t kFew = 8;
-  for (int32_t i = 0; i < kFew; ++i) {
-    const double share = static_cast<double>(i) / kFew;
+  constexpr int32_t kSamples = 8;
+  for (int32_t i = 0; i < kSamples; ++i) {
+    const double share = static_cast<double>(i) / kSamples;
     pose_character(character, clip, seconds * share, mesh);
     sum = sum + mean_on_ground(mesh) - place.drift * share;
   }
-  place.middle = sum * (1.0 / kFew);
+  place.middle = sum * (1.0 / kSamples);
   return place;
 }
 
@@ -68,7 +69,7 @@ double stride_of_clip(const Character& character, size_t clip, const ClipPlace& 
     for (const Vec3d& p : now.positions) lowest = std::min(lowest, p.y);
     double fastest = -std::numeric_limits<double>::infinity();
     for (size_t v = 0; v < now.positions.size(); ++v) {
-      if (now.positions[v].y > lowest + kLow * height) continue;
+      if (now.positions[v].y > lowest + kNearGroundShare * height) continue;
       fastest = std::max(fastest, now.positions[v].z - next.positions[v].z);
     }
     back.push_back(fastest * kMoments);
@@ -76,7 +77,7 @@ double stride_of_clip(const Character& character, size_t clip, const ClipPlace& 
   }
   std::nth_element(back.begin(), back.begin() + kMoments / 2, back.end());
   const double stride = back[kMoments / 2];
-  return stride < kStands * height ? 0 : stride;
+  return stride < kMinStrideShare * height ? 0 : stride;
 }
 
 }  // namespace throng::impostor

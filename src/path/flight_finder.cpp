@@ -24,7 +24,10 @@
 #include "path/mesh_finder.h"
 #include "world/place.h"
 
-// Joins the parts of a flight: walks, take-offs, flight search, landings and string pulling.
+// Joins the parts of a flight: walks, take-offs, flight search, landings and string pulling. Time:
+// mostly of the flight search, n log n in the air boxes that it expands; an end that must walk to a
+// take-off adds a flood over kMaxFloodCells cells at most. Where obstacles block a path all of it
+// is tried again, kMaxTries times at most.
 namespace throng::path {
 namespace {
 

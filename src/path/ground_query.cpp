@@ -328,8 +328,8 @@ Place GroundQuery::random_place_near(const Place& centre, double radius, uint64_
   const world::GroundPoint at = world::to_ground(s.data(), centre.position.x, centre.position.z);
   const double limit = std::min(radius, 1e9) / s.unit();
   // Points outside the circle are drawn again: cells of its rim lie partly inside.
-  constexpr uint64_t kTries = 256;
-  for (uint64_t t = 0; t < kTries; ++t) {
+  constexpr uint64_t kMaxDraws = 256;
+  for (uint64_t t = 0; t < kMaxDraws; ++t) {
     const State::NearCell& cell = s.near[random_below(seed, n, 4 * t, s.near.size())];
     const auto unit_of = [&](int32_t first, uint64_t draw) {
       return (int64_t{first} << world::kUnitBits) +

@@ -24,14 +24,15 @@
 #include "world/place.h"
 
 // Finds paths over nodes: places the ends, searches (blocks when near, the overlay when far), pulls
-// the path taut, and reports what blocks it.
+// the path taut, and reports what blocks it. Time: n log n in the crossings that the search expands
+// or, over the overlay, in the boundary nodes of overlay cells; then the corridor's length.
 namespace throng::path {
 namespace {
 
 constexpr double kEdgeStep = 1e-4;  // of a patch's parameters, for derivatives
 constexpr size_t kMaxPieces = 4096;
-constexpr size_t kManyCrossings = size_t{1}
-                                  << 15;  // A search of fewer crossings takes no noticeable time.
+// A search of fewer crossings takes no noticeable time.
+constexpr size_t kMinOverlayCrossings = size_t{1} << 15;
 // Places no farther apart than so many sides of an overlay cell may be joined by a path that
 // expands so few crossings that it need not be led over entrances.
 constexpr double kNearSides = 3;
@@ -52,7 +53,7 @@ struct NodeFinder::Shared {
       const Vec3d b = mesh.surface(portal.b).at(portal.on_b[0], portal.on_b[1]);
       longest_hole_link = std::max(longest_hole_link, length(b - a));
     }
-    if (config.overlay && mesh.portals().size() >= kManyCrossings) {
+    if (config.overlay && mesh.portals().size() >= kMinOverlayCrossings) {
       const NodeView baked(mesh);
       overlay = Overlay(mesh, PieceCost(baked, slope_cost), config.workers);
     }
@@ -270,10 +271,10 @@ class PathBuilder {
 template <class Accept>
 uint32_t block_around(const graph::NodeMesh& mesh, uint32_t node, double s, double t,
                       Accept accept) {
-  constexpr double kLittle = 1e-9;
+  constexpr double kEdgeOffset = 1e-9;
   const uint32_t patch = mesh.patch_of_node(node);
-  for (const double j : {kLittle, -kLittle}) {
-    for (const double i : {kLittle, -kLittle}) {
+  for (const double j : {kEdgeOffset, -kEdgeOffset}) {
+    for (const double i : {kEdgeOffset, -kEdgeOffset}) {
       const uint32_t block = mesh.block_at(patch, s + i, t + j);
       if (block == graph::kNoNode || mesh.blocks()[block].node != node) continue;
       if (accept(mesh.blocks()[block])) return block;
@@ -392,7 +393,8 @@ void for_each_level_part(const NodeView& view, Vec3d position, double radius, Vi
 template <class IsReached>
 BlockPoint nearest_place(const NodeView& view, const BlockSquares& squares,
                          const BlockPoint& crossing, Vec3d goal, IsReached is_reached) {
-  constexpr double kNear = 25;  // There are too many blocks around a farther goal. [m]
+  // There are too many blocks around a farther goal. [m]
+  constexpr double kMaxNearestDistance = 25;
   BlockPoint best = crossing;
   double least = length(goal - position(view, best));
   const auto consider = [&](uint32_t block, double s, double t) {
@@ -408,7 +410,7 @@ BlockPoint nearest_place(const NodeView& view, const BlockSquares& squares,
     consider(block, s, t);
   };
   consider_nearest(crossing.block);
-  if (least > kNear) return best;
+  if (least > kMaxNearestDistance) return best;
   for_each_level_part(view, goal, least, [&](uint32_t block, double s, double t) {
     if (is_reached(block)) consider(block, s, t);
   });

@@ -6,7 +6,8 @@
 
 #include "render/poster.h"
 
-// Converts the public World to what the poster needs: only this file knows both.
+// Draws a baked world as a picture: converts the public World to what the poster needs, and is the
+// only file that knows both.
 namespace throng {
 
 Result<Image> draw_world(const World& world, std::span<const PictureAvatar> avatars,

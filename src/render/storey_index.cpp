@@ -10,7 +10,7 @@
 namespace throng::render {
 namespace {
 
-constexpr double kCrumb = 0.01;  // Storeys with less than this share of all floor are not shown.
+constexpr double kMinShare = 0.01;  // Storeys with less than this share of all floor are not shown.
 
 }  // namespace
 
@@ -83,7 +83,7 @@ StoreyChoice StoreyIndex::choose(int32_t wanted, size_t max_count) const {
   while (choice.shown.size() > 1) {
     const auto smallest = std::min_element(choice.shown.begin(), choice.shown.end(),
                                            [&](int32_t a, int32_t b) { return rank(a) < rank(b); });
-    if (choice.shown.size() <= max_count && rank(*smallest) >= kCrumb * all) break;
+    if (choice.shown.size() <= max_count && rank(*smallest) >= kMinShare * all) break;
     ++choice.left_out;
     choice.shown.erase(smallest);
   }

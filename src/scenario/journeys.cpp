@@ -57,7 +57,7 @@ double door_flow(const ScenarioArea& area) { return std::max(kDoorFlow * width_o
 // Makes the present place the goal: the avatar yields to others and returns.
 void Simulation::State::stand(ScenarioAvatar& p, Doing doing) {
   const auto state = crowd.read(p.id);
-  const Place here = world.find_place(class_of(p), state->position, Prism::kFeet);
+  const Place here = world.find_place(class_of(p), state->position, Prism::kFeetTolerance);
   crowd.set_goals({&p.id, 1}, {&here, 1});
   p.doing = doing;
 }
@@ -177,7 +177,7 @@ int32_t Simulation::State::area_under(const ScenarioAvatar& p) const {
   for (const int32_t area : stage.areas) {
     for (const Prism& prism : scenario.areas[static_cast<size_t>(area)].prisms) {
       const Vec3d& at = state->position;
-      if (!prism.reaches(at.y)) continue;
+      if (!prism.covers_height(at.y)) continue;
       const double off = distance_to(prism, at.x, at.z);
       if (off >= min_distance) continue;
       min_distance = off;

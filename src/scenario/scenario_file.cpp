@@ -677,7 +677,9 @@ void File::read_source(Reader& r) {
   r.count("count", source.count, 0, 1e7);
   r.number("begin", source.begin, 0, kMaxSeconds);
   r.number("end", source.end, 0, kMaxSeconds);
-  r.flag("even", source.even);
+  bool even = false;
+  r.flag("even", even);
+  if (even) source.pattern = SpawnPattern::kEven;
   r.distribution("premovement", source.premovement, 0, kMaxSeconds);
   source.group = Distribution::fixed(1);
   r.distribution("group", source.group, 1, 20);
@@ -708,11 +710,11 @@ void File::read_source(Reader& r) {
   if (const ConfigNode* node = r.find("places"); node != nullptr) {
     std::string places;
     r.text("places", places);
-    source.in_rows = places == "rows";
     if (places != "rows" && places != "chance") {
       return r.fail(*node, "places must be \"chance\" or \"rows\"");
     }
-    if (source.in_rows && (source.areas.size() != 1 || !source.rates.empty())) {
+    if (places == "rows") source.pattern = SpawnPattern::kRows;
+    if (places == "rows" && (source.areas.size() != 1 || !source.rates.empty())) {
       return r.fail(*node, "rows need one area, a count, and no rate");
     }
   }

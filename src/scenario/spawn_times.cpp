@@ -22,7 +22,9 @@ SpawnTimes::SpawnTimes(const Source& source, uint64_t seed, uint64_t stream)
 // rate since the last one reaches an exponential number (1 if even). Time: linear in the rates.
 void SpawnTimes::find_next() {
   const Distribution exponential{Distribution::Kind::kExponential, 1, 0, 0, HUGE_VAL};
-  double interval = source_->even ? 1 : draw(exponential, seed_, stream_ + kIntervals, events_);
+  double interval = source_->pattern == SpawnPattern::kEven
+                        ? 1
+                        : draw(exponential, seed_, stream_ + kIntervals, events_);
   ++events_;
   const auto& rates = source_->rates;
   double from = std::max(next_, rates.front().first);

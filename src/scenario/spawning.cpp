@@ -143,7 +143,7 @@ Place Simulation::State::choose_place(PendingSpawn& one) {
     }
   }
   const Source& source = scenario.sources[static_cast<size_t>(one.source)];
-  if (source.in_rows) return place_in_rows(source, one.nth, p);
+  if (source.pattern == SpawnPattern::kRows) return place_in_rows(source, one.nth, p);
   return random_place(source.areas, source.density, p);
 }
 

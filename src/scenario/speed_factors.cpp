@@ -17,7 +17,7 @@ void Simulation::State::apply_speed_factors() {
     const Vec3d at = crowd.read(p.id)->position;
     double factor = 1;
     for (const ScenarioArea& area : scenario.areas) {
-      const auto is_here = [&](const Prism& prism) { return prism.holds(at); };
+      const auto is_here = [&](const Prism& prism) { return prism.contains(at); };
       if (!has_factor(area) || std::ranges::none_of(area.prisms, is_here)) continue;
       factor = area.speed_factor;
       break;

@@ -52,7 +52,7 @@ Trials trials_of(const Situation& s) {
 // |at + velocity t| = radii, solved for 1 / t = (approach + root) / apart. Both terms are divided
 // by `apart` first, so the most urgent of many is found without a division for each trial.
 float soonness(Plane at, Plane velocity, float apart) {
-  const float share = 1 / std::max(apart, kTouching);
+  const float share = 1 / std::max(apart, kMinApart);
   const float approach = -(at.x * share * velocity.x + at.z * share * velocity.z);
   const float speed = velocity.x * velocity.x + velocity.z * velocity.z;
   const float inside = approach * approach - speed * share;
@@ -60,7 +60,7 @@ float soonness(Plane at, Plane velocity, float apart) {
 }
 
 float nearness_of_wall(float distance, float speed) {
-  return speed > 0 ? speed / (distance + kSoonest * speed) : 0;
+  return speed > 0 ? speed / (distance + kMinTouchTime * speed) : 0;
 }
 
 Plane following(const SampledSettings& settings, const Situation& s) {
@@ -98,14 +98,14 @@ bool preferred_is_open(const SampledSettings& settings, const Situation& s) {
       return false;
   }
   return !s.has_walls || nearness_of_wall(s.free_distance[0], size_of(s.preferred)) <=
-                             1 / (settings.wall_horizon + kSoonest);
+                             1 / (settings.wall_horizon + kMinTouchTime);
 }
 
 Costs costs_of(const SampledSettings& settings, const Situation& s, const Trials& trials) {
   const float desired = size_of(s.preferred);
   const Plane ahead = ahead_of(s.preferred);
-  const float min_nearness = 1 / (settings.horizon + kSoonest);
-  const float min_of_wall = 1 / (settings.wall_horizon + kSoonest);
+  const float min_nearness = 1 / (settings.horizon + kMinTouchTime);
+  const float min_of_wall = 1 / (settings.wall_horizon + kMinTouchTime);
   Costs costs;
   for (size_t t = 0; t < kTrials; ++t) {
     const Plane v{trials.x[t], trials.z[t]};

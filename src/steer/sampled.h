@@ -47,7 +47,8 @@ inline constexpr size_t kDirections = 24;
 inline constexpr size_t kSpeeds = 4;
 /// Velocities that are tried: a direction's speeds beside each other.
 inline constexpr size_t kTrials = kDirections * kSpeeds;
-inline constexpr float kSoonest = 0.1f;  ///< [s] Bounds the urgency of a touch: see nearness().
+/// [s] Bounds the urgency of a touch: see nearness().
+inline constexpr float kMinTouchTime = 0.1f;
 
 struct Neighbour {
   Plane at, velocity;    ///< `at`: offset from the body's centre.
@@ -103,10 +104,10 @@ Trials trials_of(const Situation& situation);
 /// How soon two discs of constant velocities touch: 1 / the time until then, 0 if they never do.
 /// `at` and `velocity` of the other are relative to the body; `apart` as in NearSet. [1/s]
 float soonness(Plane at, Plane velocity, float apart);
-/// Urgency of a touch: 1 / (time until then + kSoonest). [1/s]
-inline float nearness(float soonness) { return soonness / (1 + kSoonest * soonness); }
+/// Urgency of a touch: 1 / (time until then + kMinTouchTime). [1/s]
+inline float nearness(float soonness) { return soonness / (1 + kMinTouchTime * soonness); }
 /// Discs that touch count as this far apart. [m2]
-inline constexpr float kTouching = 1e-6f;
+inline constexpr float kMinApart = 1e-6f;
 /// The same for a wall at a distance. [1/s]
 float nearness_of_wall(float distance, float speed);
 

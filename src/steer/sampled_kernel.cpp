@@ -52,7 +52,7 @@ HWY_INLINE V soonness(const Touch& t) {
 
 HWY_INLINE V share_of(V apart) {
   const D d;
-  return hn::Div(hn::Set(d, 1), hn::Max(apart, hn::Set(d, kTouching)));
+  return hn::Div(hn::Set(d, 1), hn::Max(apart, hn::Set(d, kMinApart)));
 }
 
 // By vectors of neighbours: the minimum of their limits does not depend on the order.
@@ -113,7 +113,8 @@ bool PreferredIsOpen(const SampledSettings& settings, const Situation& s) {
   }
   if (!s.has_walls) return true;
   const float desired = std::sqrt(s.preferred.x * s.preferred.x + s.preferred.z * s.preferred.z);
-  return nearness_of_wall(s.free_distance[0], desired) <= 1 / (settings.wall_horizon + kSoonest);
+  return nearness_of_wall(s.free_distance[0], desired) <=
+         1 / (settings.wall_horizon + kMinTouchTime);
 }
 
 bool IsOpposed(const LaneSettings& settings, const Situation& s) {
@@ -257,16 +258,17 @@ class TrialCosts {
       if (hn::AllFalse(d, hn::And(to.happens, sooner))) continue;
       soonest = hn::Max(soonest, soonness(to));
     }
-    const V near = hn::Div(soonest, hn::Add(hn::Set(d, 1), hn::Mul(hn::Set(d, kSoonest), soonest)));
-    const V min_nearness = hn::Set(d, 1 / (settings_.horizon + kSoonest));
+    const V near =
+        hn::Div(soonest, hn::Add(hn::Set(d, 1), hn::Mul(hn::Set(d, kMinTouchTime), soonest)));
+    const V min_nearness = hn::Set(d, 1 / (settings_.horizon + kMinTouchTime));
     cost = hn::Add(cost, times(hn::Max(hn::Sub(near, min_nearness), zero), settings_.threat));
     if (!s_.has_walls) return cost;
     alignas(64) std::array<float, kMaxNear> distances;
     for (size_t n = 0; n < hn::Lanes(d); ++n) distances[n] = s_.free_distance[(t + n) / kSpeeds];
     const V speed = size_of(x, z);
     const V close = hn::Div(
-        speed, hn::Add(hn::Load(d, distances.data()), hn::Mul(hn::Set(d, kSoonest), speed)));
-    const V min_of_wall = hn::Set(d, 1 / (settings_.wall_horizon + kSoonest));
+        speed, hn::Add(hn::Load(d, distances.data()), hn::Mul(hn::Set(d, kMinTouchTime), speed)));
+    const V min_of_wall = hn::Set(d, 1 / (settings_.wall_horizon + kMinTouchTime));
     const V urgent =
         hn::Max(hn::Sub(hn::IfThenElseZero(hn::Gt(speed, zero), close), min_of_wall), zero);
     return hn::Add(cost, times(urgent, settings_.wall));

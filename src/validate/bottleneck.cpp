@@ -20,8 +20,8 @@ namespace throng::validate {
 namespace {
 
 constexpr double kRoomLong = 12, kRoomWide = 12;  // [m] before the bottleneck
-constexpr double kBeyond = 8;                     // [m] behind it
-constexpr double kThick = 1;                      // [m] of the wall: how long the bottleneck is
+constexpr double kExitLength = 8;                 // [m] behind it
+constexpr double kWallThickness = 1;              // [m] of the wall: how long the bottleneck is
 constexpr double kStart = 3.3;                    // [1/m2] of the people that wait
 
 struct Door {
@@ -31,11 +31,11 @@ struct Door {
 
 PlaneConfig door_plane(double width) {
   PlaneConfig plane;
-  const double all = kRoomLong + kThick + kBeyond;
+  const double all = kRoomLong + kWallThickness + kExitLength;
   plane.ground = box(-0.5, -0.5, all + 0.5, kRoomWide + 0.5);
   const double low = (kRoomWide - width) / 2, high = (kRoomWide + width) / 2;
-  plane.obstacles = {box(kRoomLong, -0.5, kRoomLong + kThick, low),
-                     box(kRoomLong, high, kRoomLong + kThick, kRoomWide + 0.5),
+  plane.obstacles = {box(kRoomLong, -0.5, kRoomLong + kWallThickness, low),
+                     box(kRoomLong, high, kRoomLong + kWallThickness, kRoomWide + 0.5),
                      box(-0.5, -0.5, 0, kRoomWide + 0.5), box(0, -0.5, kRoomLong, 0),
                      box(0, kRoomWide, kRoomLong, kRoomWide + 0.5)};
   return plane;
@@ -71,10 +71,10 @@ Result<Times> pass(const Door& door, const ValidationConfig& config, ValidationR
   if (!ids) return ids.error();
   for (size_t i = 0; i < ids->size(); ++i) {
     const double z = 1 + (kRoomWide - 2) * random_unit(config.seed, 3, i);
-    crowd->set_goal((*ids)[i], {kRoomLong + kThick + kBeyond - 0.5, z});
+    crowd->set_goal((*ids)[i], {kRoomLong + kWallThickness + kExitLength - 0.5, z});
   }
   Times times;
-  const double line = kRoomLong + kThick / 2;
+  const double line = kRoomLong + kWallThickness / 2;
   std::set<uint32_t> through;  // only the first time counts
   const double limit = 60 + 3.0 * door.people / door.width;
   while (crowd->size() > 0 && crowd->time() < limit) {
@@ -86,7 +86,7 @@ Result<Times> pass(const Door& door, const ValidationConfig& config, ValidationR
       if (before < line && s.x >= line && through.insert(s.id.slot1).second) {
         times.push_back(crowd->time() - (s.x - line) / std::max(1e-9, s.vx));
       }
-      if (s.x > kRoomLong + kThick + kBeyond - 2) leaving.push_back(s.id);
+      if (s.x > kRoomLong + kWallThickness + kExitLength - 2) leaving.push_back(s.id);
     }
     crowd->remove(leaving);
   }

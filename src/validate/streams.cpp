@@ -49,10 +49,10 @@ double arch_shape(std::span<const DoorOffset> people) {
 namespace {
 
 // Lanes: avatars that leave at one end enter again at the other, so the number stays.
-constexpr double kLong = 40, kWide = 6;            // [m]
-constexpr double kLaneFrom = 10, kLaneUntil = 30;  // [m] where order is measured
-constexpr double kRow = 0.6;                       // [m]
-constexpr double kLaneTime = 120;                  // [s]
+constexpr double kCorridorLength = 40, kCorridorWidth = 6;  // [m]
+constexpr double kLaneFrom = 10, kLaneUntil = 30;           // [m] where order is measured
+constexpr double kRow = 0.6;                                // [m]
+constexpr double kLaneTime = 120;                           // [s]
 
 struct Lanes {
   std::vector<double> order, speed;  // of each second
@@ -61,20 +61,21 @@ struct Lanes {
 Result<Lanes> walk_lanes(double density, const ValidationConfig& config, ValidationResult& result,
                          Context& context) {
   PlaneConfig plane;
-  plane.ground = box(-1, -0.5, kLong + 1, kWide + 0.5);
-  plane.obstacles = {box(-1, -0.5, kLong + 1, 0), box(-1, kWide, kLong + 1, kWide + 0.5)};
+  plane.ground = box(-1, -0.5, kCorridorLength + 1, kCorridorWidth + 0.5);
+  plane.obstacles = {box(-1, -0.5, kCorridorLength + 1, 0),
+                     box(-1, kCorridorWidth, kCorridorLength + 1, kCorridorWidth + 0.5)};
   const AvatarClass body = walker();
   auto crowd = PlaneCrowd::build(plane, body, Routing::kStraight, config, context);
   if (!crowd) return crowd.error();
   // Each avatar starts at a point of a grid, in a random direction.
   std::vector<Point2> starts;
   const double apart = 1 / std::sqrt(density), spare = apart - 2 * body.radius - 0.01;
-  for (double x = apart / 2; x < kLong; x += apart) {
-    for (double z = std::max(0.3, apart / 2); z < kWide - 0.25; z += apart) {
+  for (double x = apart / 2; x < kCorridorLength; x += apart) {
+    for (double z = std::max(0.3, apart / 2); z < kCorridorWidth - 0.25; z += apart) {
       const uint64_t n = starts.size();
-      starts.push_back(
-          {x + spare * (random_unit(config.seed, 1, n) - 0.5),
-           std::clamp(z + spare * (random_unit(config.seed, 2, n) - 0.5), 0.3, kWide - 0.3)});
+      starts.push_back({x + spare * (random_unit(config.seed, 1, n) - 0.5),
+                        std::clamp(z + spare * (random_unit(config.seed, 2, n) - 0.5), 0.3,
+                                   kCorridorWidth - 0.3)});
     }
   }
   const auto ids = crowd->add_fitting(starts, 0, context);
@@ -96,9 +97,9 @@ Result<Lanes> walk_lanes(double density, const ValidationConfig& config, Validat
     leaving.clear();
     for (const AvatarMotion& s : crowd->avatars()) {
       const bool up = is_up[s.id.slot1];
-      if (up ? s.x > kLong : s.x < 0) {
+      if (up ? s.x > kCorridorLength : s.x < 0) {
         leaving.push_back(s.id);
-        entering.push_back({{up ? 0.1 : kLong - 0.1, s.z}, up});
+        entering.push_back({{up ? 0.1 : kCorridorLength - 0.1, s.z}, up});
         continue;
       }
       walking.push_back(s.id);

@@ -17,7 +17,7 @@ namespace {
 constexpr double kFirstStep = 0.02;  // [m] in one step: a shorter move may be a yield to others.
 
 bool covers(const ScenarioArea& area, const Vec3d& at) {
-  return std::ranges::any_of(area.prisms, [&](const Prism& p) { return p.holds(at); });
+  return std::ranges::any_of(area.prisms, [&](const Prism& p) { return p.contains(at); });
 }
 
 // By the shoelace formula. The parts of an area must not overlap.

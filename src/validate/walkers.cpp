@@ -23,7 +23,7 @@ namespace throng::validate {
 namespace {
 
 constexpr double kSample = 0.4;  // [s] between positions in the scenes
-constexpr size_t kAhead = 12;    // samples
+constexpr size_t kHorizon = 12;  // samples
 constexpr int kStepsASample = 4;
 constexpr double kStanding = 0.05;  // [m/s] A slower person stands.
 
@@ -34,7 +34,7 @@ constexpr std::array<const char*, kModels> kNames{"real", "throng", "constant ve
 struct Walker {
   Point2 begin;
   double vx = 0, vz = 0;
-  std::array<Point2, kAhead> real = {};
+  std::array<Point2, kHorizon> real = {};
   bool is_complete = false;  // Recorded for the whole time.
 };
 
@@ -75,7 +75,7 @@ std::vector<Walker> walkers_at(const Recording& recording, size_t k) {
     w.vx = (now.x - before->second.x) / kSample;
     w.vz = (now.z - before->second.z) / kSample;
     w.is_complete = true;
-    for (size_t i = 0; i < kAhead; ++i) {
+    for (size_t i = 0; i < kHorizon; ++i) {
       const auto then = recording.samples[k + 1 + i].find(person);
       if (then == recording.samples[k + 1 + i].end()) {
         w.is_complete = false;
@@ -88,12 +88,12 @@ std::vector<Walker> walkers_at(const Recording& recording, size_t k) {
   return walkers;
 }
 
-using Positions = std::vector<std::array<Point2, kAhead>>;  // by walker
+using Positions = std::vector<std::array<Point2, kHorizon>>;  // by walker
 
 Positions predict_constant(const std::vector<Walker>& walkers) {
   Positions positions(walkers.size());
   for (size_t n = 0; n < walkers.size(); ++n) {
-    for (size_t i = 0; i < kAhead; ++i) {
+    for (size_t i = 0; i < kHorizon; ++i) {
       const double t = kSample * static_cast<double>(i + 1);
       positions[n][i] = {walkers[n].begin.x + walkers[n].vx * t,
                          walkers[n].begin.z + walkers[n].vz * t};
@@ -106,7 +106,7 @@ Positions predict_by_forces(const std::vector<Walker>& walkers) {
   std::vector<steer::ForceWalker> moved;
   for (const Walker& w : walkers) moved.push_back({w.begin.x, w.begin.z, w.vx, w.vz, w.vx, w.vz});
   Positions positions(walkers.size());
-  for (size_t i = 0; i < kAhead; ++i) {
+  for (size_t i = 0; i < kHorizon; ++i) {
     for (int step = 0; step < kStepsASample; ++step)
       steer::step_social_force(moved, PlaneCrowd::kStep, {});
     for (size_t n = 0; n < walkers.size(); ++n) positions[n][i] = {moved[n].x, moved[n].z};
@@ -142,7 +142,7 @@ Positions predict_by_curves(const std::vector<Walker>& walkers) {
   }
   Positions positions(walkers.size());
   std::vector<Vec3d> steer(walkers.size());
-  for (size_t i = 0; i < kAhead; ++i) {
+  for (size_t i = 0; i < kHorizon; ++i) {
     for (int frame = 0; frame < kFramesASample; ++frame) {
       for (size_t n = 0; n < bodies.size(); ++n) {
         const auto threat = caacd::greatest_threat(bodies[n], bodies, {}, models[n]);
@@ -189,7 +189,7 @@ Result<Positions> walk_crowd(PlaneCrowd& crowd, std::vector<Walker>& walkers, Co
   }
   crowd.set_velocities(walking, velocities);
   Positions positions(walkers.size());
-  for (size_t i = 0; i < kAhead; ++i) {
+  for (size_t i = 0; i < kHorizon; ++i) {
     for (int step = 0; step < kStepsASample; ++step) crowd.step();
     for (const AvatarMotion& s : crowd.avatars()) positions[walker_of[s.id.slot1]][i] = {s.x, s.z};
   }
@@ -209,14 +209,14 @@ void add(Score& score, const std::vector<Walker>& walkers, const Positions& posi
   for (size_t n = 0; n < walkers.size(); ++n) {
     if (!walkers[n].is_complete) continue;
     double sum = 0, nearest = std::numeric_limits<double>::infinity();
-    for (size_t i = 0; i < kAhead; ++i) {
+    for (size_t i = 0; i < kHorizon; ++i) {
       sum += apart(positions[n][i], walkers[n].real[i]);
       for (size_t m = 0; m < walkers.size(); ++m) {
         if (m == n || !walkers[m].is_complete) continue;
         nearest = std::min(nearest, apart(positions[n][i], positions[m][i]));
       }
     }
-    score.mean_error += sum / static_cast<double>(kAhead);
+    score.mean_error += sum / static_cast<double>(kHorizon);
     score.last_error += apart(positions[n].back(), walkers[n].real.back());
     if (nearest < std::numeric_limits<double>::infinity()) score.nearest.push_back(nearest);
   }
@@ -270,8 +270,8 @@ Result<void> walk_scene(const std::string& scene, const std::string& path,
   if (!crowd) return crowd.error();
   std::array<Score, kModels> scores;
   size_t count = 0, not_placed = 0;
-  const size_t every = config.brief ? 10 * kAhead : kAhead;
-  for (size_t k = 1; k + kAhead < recording.samples.size(); k += every) {
+  const size_t every = config.brief ? 10 * kHorizon : kHorizon;
+  for (size_t k = 1; k + kHorizon < recording.samples.size(); k += every) {
     std::vector<Walker> walkers = walkers_at(recording, k);
     const auto complete = [&] {
       return static_cast<size_t>(std::ranges::count_if(walkers, &Walker::is_complete));

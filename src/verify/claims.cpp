@@ -197,8 +197,8 @@ Result<void> check_source(const Scene& scene, const VerifyConfig& config) {
   }
   for (size_t t = 0; t < scene.triangles.size(); ++t) {
     for (const uint32_t p : scene.triangles[t]) {
-      constexpr double kFar = 1e9;
-      const auto is_sound = [](double v) { return std::fabs(v) <= kFar; };
+      constexpr double kMaxCoordinate = 1e9;
+      const auto is_sound = [](double v) { return std::fabs(v) <= kMaxCoordinate; };
       if (p < scene.positions.size() && is_sound(scene.positions[p].x) &&
           is_sound(scene.positions[p].y) && is_sound(scene.positions[p].z)) {
         continue;

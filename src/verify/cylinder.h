@@ -25,11 +25,12 @@ struct Cylinder {
 };
 
 /// Intersections shallower than this do not count: a body may touch what it stands beside. [m]
-inline constexpr double kTouch = 1e-6;
+inline constexpr double kTouchMargin = 1e-6;
 
 /// True if the triangle reaches deeper than `touch` into the cylinder: the triangle is clipped to
 /// the cylinder's slab and the distance of what is left to the axis is compared with the radius.
-[[nodiscard]] bool meets(const Cylinder& cylinder, const Corners& triangle, double touch = kTouch);
+[[nodiscard]] bool meets(const Cylinder& cylinder, const Corners& triangle,
+                         double touch = kTouchMargin);
 
 /// Height of the triangle on the vertical line through (x, z), or nothing beside it. A triangle
 /// that the line could only meet edge-on has no height.

@@ -24,8 +24,8 @@
 namespace throng {
 namespace {
 
-constexpr uint64_t kDraws = 16;    // of a goal in the component of its start
-constexpr double kSlack = 1.0001;  // of a path's length, for the rounding of its points
+constexpr uint64_t kDraws = 16;           // of a goal in the component of its start
+constexpr double kLengthFactor = 1.0001;  // of a path's length, for the rounding of its points
 
 double plan_distance(Vec3d a, Vec3d b) { return std::hypot(b.x - a.x, b.z - a.z); }
 
@@ -79,8 +79,8 @@ class Walker {
       verify::check_segment(claims_, body_, a, b, spacing_, walked.body);
     }
     // The length is that of the points, which is no shorter than a straight line.
-    if (std::fabs(along - walked.length) > (kSlack - 1) * along + claims_.cell / 100 ||
-        walked.length * kSlack + claims_.cell / 100 < walked.straight) {
+    if (std::fabs(along - walked.length) > (kLengthFactor - 1) * along + claims_.cell / 100 ||
+        walked.length * kLengthFactor + claims_.cell / 100 < walked.straight) {
       refuse(walked, from.position);
     }
     return walked;

@@ -14,9 +14,9 @@ namespace {
 // where the line passes a corner of the legal area, a 512th of a cell to a side is close enough.
 Place place_on_segment(const Claims& claims, Vec3d point, double reach) {
   const double nudge = claims.cell / 512;
-  constexpr std::array<std::array<double, 2>, 5> kTries = {
+  constexpr std::array<std::array<double, 2>, 5> kOffsets = {
       {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
-  for (const auto& [dx, dz] : kTries) {
+  for (const auto& [dx, dz] : kOffsets) {
     const Place place =
         claims.find_place({point.x + dx * nudge, point.y, point.z + dz * nudge}, reach);
     if (place) return place;

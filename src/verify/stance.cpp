@@ -18,7 +18,7 @@ namespace {
 constexpr double kSameSurface = 1e-3;
 
 /// Slack of the step and support limits, far below anything built. [m]
-constexpr double kSlack = 1e-6;
+constexpr double kHeightTolerance = 1e-6;
 
 // Rings no further apart than `spacing`, points on them likewise, and the centre. The outermost has
 // twice as many points and goes around the disc, not through it: a straight rim of the floor must
@@ -53,7 +53,7 @@ Stance::Stance(const TriangleTree& tree, const BodyShape& shape)
 
 void Stance::gather(Vec3d feet) {
   Box3d box;
-  box.min = {feet.x - reach_, feet.y - shape_.bottom - kSlack, feet.z - reach_};
+  box.min = {feet.x - reach_, feet.y - shape_.bottom - kHeightTolerance, feet.z - reach_};
   box.max = {feet.x + reach_, feet.y + shape_.height, feet.z + reach_};
   near_.clear();
   tree_->find(box, [&](uint32_t triangle, const Corners& corners) {
@@ -66,7 +66,7 @@ bool Stance::is_floor(Vec3d feet) const {
   double top = -std::numeric_limits<double>::infinity();
   for (const Candidate& c : near_) {
     const auto y = height_at(c.corners, feet.x, feet.z);
-    if (y && *y <= feet.y + shape_.bottom + kSlack) top = std::max(top, *y);
+    if (y && *y <= feet.y + shape_.bottom + kHeightTolerance) top = std::max(top, *y);
   }
   if (!(std::fabs(top - feet.y) <= kSameSurface)) return false;
   // Several surfaces may coincide there; one that can be stood on is enough.
@@ -92,7 +92,7 @@ bool Stance::is_supported(Vec3d feet) const {
     const double x = feet.x + dx, z = feet.z + dz;
     const auto carries = [&](const Candidate& c) {
       const auto y = height_at(c.corners, x, z);
-      return y && std::fabs(*y - feet.y) <= shape_.bottom + kSlack;
+      return y && std::fabs(*y - feet.y) <= shape_.bottom + kHeightTolerance;
     };
     if (last < near_.size() && carries(near_[last])) continue;
     const auto found = std::find_if(near_.begin(), near_.end(), carries);
@@ -109,12 +109,12 @@ bool Stance::stands(Vec3d feet) {
 
 std::optional<double> Stance::floor_at(double x, double z, double y, double reach) const {
   Box3d box;
-  box.min = {x, y - reach - kSlack, z};
-  box.max = {x, y + reach + kSlack, z};
+  box.min = {x, y - reach - kHeightTolerance, z};
+  box.max = {x, y + reach + kHeightTolerance, z};
   std::optional<double> top;
   tree_->find(box, [&](uint32_t, const Corners& corners) {
     const auto height = height_at(corners, x, z);
-    if (height && std::fabs(*height - y) <= reach + kSlack && (!top || *height > *top)) {
+    if (height && std::fabs(*height - y) <= reach + kHeightTolerance && (!top || *height > *top)) {
       top = height;
     }
     return false;

@@ -47,7 +47,7 @@ class Stance {
   std::optional<double> floor_at(double x, double z, double y, double reach) const;
 
   /// Walks from `start`, where the body stands, over a square lattice of `spacing`, nearest points
-  /// first, to the first place that `accepts`. Gives up after `max_points` places.
+  /// first, to the first place that `accepts`. Stops after `max_points` places.
   WalkEnd walk(Vec3d start, double spacing, size_t max_points,
                const std::function<bool(Vec3d feet)>& accepts);
 

@@ -13,7 +13,7 @@ namespace throng {
 namespace {
 
 constexpr double kFarthestStroke = 3000;  // [m] From the eye.
-constexpr double kDab = 6;                // [px] Between two dabs of a stroke.
+constexpr double kDabSpacing = 6;         // [px] Between two dabs of a stroke.
 constexpr double kMaxDabs = 24;           // Per move of the pointer.
 
 }  // namespace
@@ -28,7 +28,7 @@ std::optional<Vec3d> Viewer::State::ground_under(double x, double y) const {
 // Paints from the pointer's last position on, without gaps in fast strokes.
 void Viewer::State::paint_to(double x, double y) {
   const double moved = std::hypot(x - mouse_x, y - mouse_y);
-  const double dabs = std::clamp(std::ceil(moved / kDab), 1.0, kMaxDabs);
+  const double dabs = std::clamp(std::ceil(moved / kDabSpacing), 1.0, kMaxDabs);
   const auto weight =
       static_cast<uint8_t>(panel.tool == view::Tool::kUnpaint
                                ? 0

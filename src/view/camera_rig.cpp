@@ -10,10 +10,10 @@
 namespace throng::view {
 namespace {
 
-constexpr double kSteepest = 1.55;  // [rad] Below pi / 2: straight down has no up.
-constexpr double kNotch = 0.85;     // Factor of the distance for a notch of the wheel.
-constexpr double kClosest = 0.3;    // [m]
-constexpr double kFarthest = 50000;
+constexpr double kMaxPitch = 1.55;     // [rad] Below pi / 2: straight down has no up.
+constexpr double kNotchFactor = 0.85;  // Factor of the distance for a notch of the wheel.
+constexpr double kMinDistance = 0.3;   // [m]
+constexpr double kMaxDistance = 50000;
 
 }  // namespace
 
@@ -37,10 +37,10 @@ EyeCamera CameraRig::camera(double aspect) const {
 
 void CameraRig::look(Vec3d eye, Vec3d at) {
   const Vec3d away = eye - at;
-  distance = std::max(length(away), kClosest);
+  distance = std::max(length(away), kMinDistance);
   target = at;
   yaw = std::atan2(away.x, away.z);
-  pitch = std::clamp(std::asin(std::clamp(away.y / distance, -1.0, 1.0)), -kSteepest, kSteepest);
+  pitch = std::clamp(std::asin(std::clamp(away.y / distance, -1.0, 1.0)), -kMaxPitch, kMaxPitch);
 }
 
 void CameraRig::show(const Box3d& box, double aspect) {
@@ -63,7 +63,7 @@ void CameraRig::show(const Box3d& box, double aspect) {
 void CameraRig::orbit(double dx, double dy, double height) {
   const double turn = std::numbers::pi / std::max(1.0, height);
   yaw = std::remainder(yaw - dx * turn, 2 * std::numbers::pi);
-  pitch = std::clamp(pitch + dy * turn, -kSteepest, kSteepest);
+  pitch = std::clamp(pitch + dy * turn, -kMaxPitch, kMaxPitch);
 }
 
 void CameraRig::turn_head(double dx, double dy, double height) {
@@ -79,7 +79,8 @@ void CameraRig::pan(double dx, double dy, double height) {
 }
 
 void CameraRig::zoom(double notches, double x, double y, double width, double height) {
-  const double after = std::clamp(distance * std::pow(kNotch, notches), kClosest, kFarthest);
+  const double after =
+      std::clamp(distance * std::pow(kNotchFactor, notches), kMinDistance, kMaxDistance);
   const EyeCamera now = camera(width / std::max(1.0, height));
   const Vec3d ray = pixel_ray(now, x, y, width, height);
   // The point on the ray at the target's depth keeps its place in the picture.

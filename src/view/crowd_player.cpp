@@ -15,7 +15,7 @@ namespace throng::view {
 namespace {
 
 constexpr double kGoalTolerance = 4;  // [m] Vertical tolerance of goals.
-constexpr uint64_t kTries = 24;       // To find a place.
+constexpr uint64_t kMaxDraws = 24;    // To find a place.
 constexpr double kNearGround = 1;     // [m] Vertical tolerance of places on the ground.
 constexpr double kLookMargin = 10;    // [m] Beyond sight: bodies and tiles that begin within it.
 
@@ -121,7 +121,7 @@ bool CrowdPlayer::is_on_large_ground(int32_t avatar_class, Place place) const {
 
 // Not on an isolated roof: in a component of at least a tenth of the largest one's area.
 Place CrowdPlayer::place_of(int32_t avatar_class, uint64_t seed, uint64_t stream) const {
-  for (uint64_t n = 0; n < kTries; ++n) {
+  for (uint64_t n = 0; n < kMaxDraws; ++n) {
     const Place place = world_.random_place(avatar_class, seed, stream + (n << 48));
     if (is_on_large_ground(avatar_class, place)) return place;
   }
@@ -131,14 +131,14 @@ Place CrowdPlayer::place_of(int32_t avatar_class, uint64_t seed, uint64_t stream
 Place CrowdPlayer::goal_of(uint32_t slot, uint64_t nth, const Vec3d& from) const {
   const int32_t avatar_class = avatars_[slot].avatar_class;
   const uint64_t stream = uint64_t{slot} << 32 | nth;
-  for (uint64_t n = 0; n < kTries && !painted_.empty(); ++n) {
+  for (uint64_t n = 0; n < kMaxDraws && !painted_.empty(); ++n) {
     const auto unit = [&](uint64_t k) { return random_unit(start_.seed + 1, stream, 3 * n + k); };
     const WeightedPlaces::Point point = painted_.draw(unit(0), unit(1), unit(2));
     const Place place = world_.find_place(avatar_class, point.at, point.vertical_tolerance);
     if (place) return place;
   }
   if (start_.near <= 0) return place_of(avatar_class, start_.seed, stream);
-  for (uint64_t n = 0; n < kTries; ++n) {
+  for (uint64_t n = 0; n < kMaxDraws; ++n) {
     const auto offset = [&](uint64_t axis) {
       return start_.near * (2 * random_unit(start_.seed, stream, 2 * n + axis) - 1);
     };
@@ -281,14 +281,14 @@ int32_t CrowdPlayer::commonest_class() const {
 
 // A place on large ground: below the eye, else near it, else anywhere.
 Place CrowdPlayer::place_under(Vec3d eye, int32_t avatar_class) const {
-  constexpr double kDeep = 60, kStep = 0.5, kAround = 40;  // [m]
-  for (uint64_t n = 0; n < 4 * kTries; ++n) {
+  constexpr double kMaxDepth = 60, kDepthStep = 0.5, kHalfSide = 40;  // [m]
+  for (uint64_t n = 0; n < 4 * kMaxDraws; ++n) {
     const auto offset = [&](uint64_t axis) {
-      return n == 0 ? 0 : kAround * (2 * random_unit(start_.seed, 21, 2 * n + axis) - 1);
+      return n == 0 ? 0 : kHalfSide * (2 * random_unit(start_.seed, 21, 2 * n + axis) - 1);
     };
-    for (double down = -kGoalTolerance; down < kDeep; down += kStep) {
+    for (double down = -kGoalTolerance; down < kMaxDepth; down += kDepthStep) {
       const Vec3d at{eye.x + offset(0), eye.y - down, eye.z + offset(1)};
-      const Place place = world_.find_place(avatar_class, at, 0.6 * kStep);
+      const Place place = world_.find_place(avatar_class, at, 0.6 * kDepthStep);
       if (place && is_on_large_ground(avatar_class, place)) return place;
     }
   }
@@ -299,7 +299,7 @@ Place CrowdPlayer::place_under(Vec3d eye, int32_t avatar_class) const {
 // eye was, is, and may be by then.
 Result<void> CrowdPlayer::keep_populated() {
   constexpr double kMaxEyeMove = 10;  // [m] After a larger one the crowd is populated again.
-  constexpr double kAhead = 3;        // [steps]
+  constexpr double kLookAhead = 3;    // [steps]
   SeenOnly& s = *seen_only_;
   Context quiet;
   const EyePlace now = *place_;
@@ -311,7 +311,7 @@ Result<void> CrowdPlayer::keep_populated() {
     s.used = jumped ? 1 : 2;
     if (!jumped && now.eye != s.looked->eye) {
       EyePlace soon = now;
-      soon.eye = now.eye + (now.eye - s.looked->eye) * kAhead;
+      soon.eye = now.eye + (now.eye - s.looked->eye) * kLookAhead;
       s.sights[s.used++].look_from(soon, start_.sight + kLookMargin);
     }
   } else {
@@ -367,8 +367,8 @@ Result<void> CrowdPlayer::keep_populated() {
 // a picture 720 high.
 void CrowdPlayer::set_views() {
   if (!start_.coarse_far || !place_) return;
-  constexpr double kUnseen = 300;  // [m]
-  const CrowdView view{.position = place_->eye, .radius = kUnseen};
+  constexpr double kDetailRadius = 300;  // [m]
+  const CrowdView view{.position = place_->eye, .radius = kDetailRadius};
   crowd_.set_views({&view, 1});
 }
 

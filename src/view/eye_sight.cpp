@@ -9,6 +9,9 @@
 #include <tuple>
 #include <utility>
 
+// Finds out what an eye can see of a scene: draws its triangles into six depth images around the
+// eye and tests boxes against these.
+//
 // A pixel is covered if one triangle covers it completely, or two that share a side do so together;
 // where three meet at a corner it stays open. So nothing visible is ever reported as hidden,
 // however narrow the slit, and walls of few triangles hide nearly all that lies behind them.
@@ -19,7 +22,8 @@ namespace {
 
 constexpr double kEdgeOn = 1e-7;     // Cones of a smaller volume are seen edge-on. [m^3]
 constexpr double kRoundDown = 1e-6;  // Relative, of nearness: covers the rounding to float.
-constexpr double kWide = 2.5;  // Distance of a near plane's corner from the eye, in near planes.
+// Distance of a near plane's corner from the eye, in near planes.
+constexpr double kCornerFactor = 2.5;
 
 double part(Vec3d p, size_t axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
@@ -129,7 +133,7 @@ void EyeSight::fill(const Face& face, const std::array<Line, kLines>& lines,
   const auto row_of = [&](double v) {
     return static_cast<int32_t>(std::clamp((v + 1) * scale, 0.0, pixels_ - 1.0));
   };
-  const double max_nearness = 1 / (kWide * place_.nearest);
+  const double max_nearness = 1 / (kCornerFactor * place_.nearest);
   float* const image =
       nearness_.data() + face.number * static_cast<size_t>(pixels_) * static_cast<size_t>(pixels_);
   // A pixel stays open if a part of it can be nearer than the near plane.

@@ -16,10 +16,10 @@
 namespace throng::view {
 namespace {
 
-constexpr double kMarkHeight = 0.05;                // [m]
-constexpr double kPrecaution = 0.25, kAlert = 0.7;  // [m] Beyond the body's radius.
-constexpr size_t kMaxAvatars = 300;                 // Avatars that are shown, the nearest first.
-constexpr double kAround = 8;                       // [m] Around the picked avatar.
+constexpr double kMarkHeight = 0.05;                            // [m]
+constexpr double kPrecautionMargin = 0.25, kAlertMargin = 0.7;  // [m] Beyond the body's radius.
+constexpr size_t kMaxAvatars = 300;  // Avatars that are shown, the nearest first.
+constexpr double kMarkRadius = 8;    // [m] Around the picked avatar.
 
 caacd::Model model_of_metres() {
   caacd::Model model;
@@ -76,7 +76,7 @@ caacd::Body body_of(const TimelineFrame& crowd, size_t i, const std::vector<doub
   body.position = {crowd.x[i], crowd.y[i] + kMarkHeight, crowd.z[i]};
   body.forward = {std::sin(angle), 0, std::cos(angle)};
   body.velocity = body.forward * static_cast<double>(crowd.speed[i]);
-  body.fields = {radius, radius + kPrecaution, radius + kAlert};
+  body.fields = {radius, radius + kPrecautionMargin, radius + kAlertMargin};
   body.id = static_cast<uint32_t>(i);
   return body;
 }
@@ -104,7 +104,7 @@ Marks field_marks(const TimelineFrame& crowd, size_t picked, Vec3d middle,
   std::vector<std::pair<double, size_t>> near;
   for (size_t i = 0; i < crowd.size(); ++i) {
     const double away = length(Vec3d{crowd.x[i], crowd.y[i], crowd.z[i]} - middle);
-    if (!has_picked || away < kAround) near.emplace_back(away, i);
+    if (!has_picked || away < kMarkRadius) near.emplace_back(away, i);
   }
   std::sort(near.begin(), near.end());
   if (near.size() > kMaxAvatars) near.resize(kMaxAvatars);

@@ -257,7 +257,7 @@ Result<Marks> air_marks(const World& world, double height, Vec3d origin, Context
 }
 
 Marks density_marks(const TimelineFrame& crowd) {
-  constexpr double kSide = 2, kStorey = 2.5, kMuch = 4;
+  constexpr double kSide = 2, kStorey = 2.5, kMaxDensity = 4;
   struct Square {
     uint32_t avatars = 0;
     float lowest = 1e30F;
@@ -277,7 +277,7 @@ Marks density_marks(const TimelineFrame& crowd) {
     const double x = std::get<2>(key) * kSide, z = std::get<1>(key) * kSide;
     const double y = square.lowest + kOverlayHeight, density = square.avatars / (kSide * kSide);
     add_quad(marks, {x, y, z}, {x, y, z + kSide}, {x + kSide, y, z + kSide}, {x + kSide, y, z},
-             ramp(1 - density / kMuch, 150));
+             ramp(1 - density / kMaxDensity, 150));
   }
   return marks;
 }

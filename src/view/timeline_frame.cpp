@@ -14,9 +14,9 @@
 namespace throng::view {
 namespace {
 
-constexpr double kStands = 0.12;      // [m/s] Slower is standing.
-constexpr double kTurnSpeed = 0.9;    // [turns/s]
-constexpr double kSpeedMemory = 0.4;  // [s]
+constexpr double kStandingSpeed = 0.12;  // [m/s] Slower is standing.
+constexpr double kTurnSpeed = 0.9;       // [turns/s]
+constexpr double kSpeedMemory = 0.4;     // [s]
 
 // The smaller of the two rotations between two angles, in turns.
 double turn_between(double from, double to) { return std::remainder(to - from, 1.0); }
@@ -173,7 +173,7 @@ void BlendedCrowd::put(size_t i, const Figures& figures) {
   const std::vector<size_t>& choice = figures.of_class[row];
   const auto pick = static_cast<size_t>(random_unit(5, 0, id) * static_cast<double>(choice.size()));
   const size_t atlas = choice[std::min(pick, choice.size() - 1)];
-  const size_t clip = clip_for(figures.shapes[atlas], now_.speed[i] > kStands);
+  const size_t clip = clip_for(figures.shapes[atlas], now_.speed[i] > kStandingSpeed);
   const Vec3d up = now_.up(i);
   const bool leans = !(up == kUpright);
   Group& group = groups_[{atlas, clip, leans}];

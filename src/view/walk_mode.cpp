@@ -13,9 +13,9 @@
 namespace throng {
 namespace {
 
-constexpr double kWalk = 1.5, kHurry = 3.0;  // [m/s]
-constexpr double kBehind = 4;                // [m] From the eye to the controlled avatar.
-constexpr double kAsk = 0.2;                 // [s] Between two queries of the picked avatar.
+constexpr double kWalkSpeed = 1.5, kHurrySpeed = 3.0;  // [m/s]
+constexpr double kFollowDistance = 4;                  // [m] From the eye to the controlled avatar.
+constexpr double kAsk = 0.2;  // [s] Between two queries of the picked avatar.
 
 Vec3d head_of(const view::TimelineFrame& now, size_t i, double share_of_height,
               const std::vector<double>& class_heights) {
@@ -38,7 +38,7 @@ void Viewer::State::begin_walk() {
   }
   if (!where) where = world.random_place(0, panel.crowd.seed, 0).position;
   change_crowd([answers = answers, at = *where](view::CrowdPlayer& player, Context& context) {
-    const auto id = player.add_external(at, 0, kHurry, context);
+    const auto id = player.add_external(at, 0, kHurrySpeed, context);
     const std::lock_guard lock(answers->lock);
     if (id) answers->joined = static_cast<int64_t>(*id);
   });
@@ -61,7 +61,7 @@ void Viewer::State::follow_external(double seconds) {
     if (const auto id = std::exchange(answers->joined, std::nullopt)) {
       panel.status.controlled = *id;
       panel.mode = view::CameraMode::kWalk;
-      walk_distance = kBehind;
+      walk_distance = kFollowDistance;
       ground_query.reset();
       rig.pitch = 0.25;
       last_preferred = {};
@@ -77,7 +77,7 @@ void Viewer::State::follow_external(double seconds) {
   const double ahead =
       either(key_of('W'), Key::kUp) - either(key_of('S'), Key::kDown) - gamepad.walk_y;
   const double size = std::hypot(right, ahead);
-  const double speed = held(Key::kShift) || gamepad.hurry ? kHurry : kWalk;
+  const double speed = held(Key::kShift) || gamepad.hurry ? kHurrySpeed : kWalkSpeed;
   const double scale = size > 0.1 ? speed * std::min(1.0, size) / size : 0;
   const Vec3d flat{-std::sin(rig.yaw), 0, -std::cos(rig.yaw)};
   const Vec3d preferred = (flat * ahead + Vec3d{-flat.z, 0, flat.x} * right) * scale;

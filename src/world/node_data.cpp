@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kNodeZoneIdentifier = "THNZ";
 constexpr const char* kNodeIndexIdentifier = "THNI";
-constexpr double kFarthest = 1e9;  // [m]
+constexpr double kMaxLength = 1e9;  // [m]
 
 constexpr const char* kRemedy = "bake the world again with --nodes";
 
@@ -68,7 +68,7 @@ Result<void> NodeZone::attach(const std::string& name) {
 
 const char* NodeZone::fault() const {
   for (const double p : points_) {
-    if (!(std::fabs(p) <= kFarthest)) return "a control point makes no sense";
+    if (!(std::fabs(p) <= kMaxLength)) return "a control point makes no sense";
   }
   uint64_t next = 0, partial = 0;
   for (const format::NodePatch& patch : patches_) {
@@ -92,7 +92,7 @@ const char* NodeZone::fault() const {
         if (bezier || node.level() != kPartialLevel || patch.depth() != kDeepestPatch ||
             partial >= partial_.size() || partial_[partial].node() != n ||
             (partial_[partial].low() | partial_[partial].high()) == 0) {
-          return "the cells of a ragged node make no sense";
+          return "the cells of a partial node make no sense";
         }
         ++partial;
       }
@@ -109,7 +109,7 @@ const char* NodeZone::fault() const {
     }
   }
   if (next != nodes_.size()) return "nodes without a patch";
-  if (partial != partial_.size()) return "cells of nodes that are not ragged";
+  if (partial != partial_.size()) return "cells of nodes that are not partial";
   uint32_t last = 0;
   for (const format::Node& node : nodes_) {
     if (node.first_arc() < last || node.first_arc() > arcs_.size()) {
@@ -120,9 +120,8 @@ const char* NodeZone::fault() const {
   for (const format::Arc& arc : arcs_) {
     const bool is_far = (arc.to() & kFarNode) != 0;
     const uint32_t index = arc.to() & ~kFarNode;
-    if (index >= (is_far ? far_.size() : nodes_.size()) || arc.kind() >= kLinkKinds) {
-      return "an arc leads nowhere";
-    }
+    if (index >= (is_far ? far_.size() : nodes_.size())) return "an arc leads nowhere";
+    if (arc.kind() >= kLinkKinds) return "an arc is of no known kind";
   }
   uint64_t next_arc = 0;
   for (const format::HoleLink& hole_link : hole_links_) {
@@ -310,8 +309,8 @@ Result<std::shared_ptr<NodeData>> read_node_index(std::span<const uint8_t> bytes
   if (!root.inclination() || !root.height() || !root.width() || !root.zones() || !root.inputs() ||
       !is_aligned(*root.inputs()) || !is_aligned(*root.inclination()) ||
       !is_aligned(*root.height()) || !is_aligned(*root.width()) || !is_aligned(*root.zones()) ||
-      !ascending(*root.inclination(), 0, 180) || !ascending(*root.height(), 0, kFarthest) ||
-      !ascending(*root.width(), 0, kFarthest) || !(root.size() > 0 && root.size() <= kFarthest)) {
+      !ascending(*root.inclination(), 0, 180) || !ascending(*root.height(), 0, kMaxLength) ||
+      !ascending(*root.width(), 0, kMaxLength) || !(root.size() > 0 && root.size() <= kMaxLength)) {
     return bad_nodes(name, "its numbers make no sense");
   }
   auto nodes = std::make_shared<NodeData>();

@@ -230,8 +230,8 @@ class Storeys {
 
  private:
   // What is left of a floor where it was cut, under the low end of a ramp, founds no storey.
-  static constexpr double kRemnant = 0.02;      // of a storey's cells
-  static constexpr double kMaxDistance = 1500;  // [mm]
+  static constexpr double kRemnantShare = 0.02;  // of a storey's cells
+  static constexpr double kMaxDistance = 1500;   // [mm]
   struct Storey {
     double mean = 0, cells = 0;
     std::map<std::pair<int32_t, int32_t>, std::vector<uint32_t>> tiles;
@@ -244,7 +244,7 @@ class Storeys {
     double best_distance = kMaxDistance, min_distance = kMaxDistance;
     for (size_t s = 0; s < storeys_.size(); ++s) {
       const double distance = std::fabs(storeys_[s].mean - mean);
-      if (distance < min_distance && size < kRemnant * storeys_[s].cells) {
+      if (distance < min_distance && size < kRemnantShare * storeys_[s].cells) {
         nearest = s;
         min_distance = distance;
       }

@@ -163,7 +163,7 @@ LevelTileContent World::level_tile(uint32_t index) const {
     }
     for (size_t c = 0; c < world::kTileArea; ++c) {
       const auto bit = [&](size_t set) {
-        return static_cast<uint8_t>((sets[set][c / 64] >> (c % 64)) & 1);
+        return static_cast<uint8_t>((sets[set][world::z_of_cell(c)] >> world::x_of_cell(c)) & 1);
       };
       if (bit(0) != 0) {
         out.clearance[k][c] = static_cast<uint8_t>(1 + bit(1) + 2 * bit(2) + 4 * bit(3));
@@ -207,7 +207,8 @@ Place World::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const
   if (level.legal != nullptr) rank = world::nth_bit(level.legal, rank);
   const int32_t x = world::x_of_cell(rank), z = world::z_of_cell(rank);
   const auto [tile_x, tile_z] = world::tile_of(*state_, *level.zone, *level.view.record);
-  const int64_t cell_x = int64_t{tile_x} * 64 + x, cell_z = int64_t{tile_z} * 64 + z;
+  const int64_t cell_x = int64_t{tile_x} * kTileCells + x,
+                cell_z = int64_t{tile_z} * kTileCells + z;
   const world::GroundPoint p{(cell_x << world::kUnitBits) + static_cast<int64_t>(random_below(
                                                                 seed, n, 1, world::kUnitsPerCell)),
                              (cell_z << world::kUnitBits) + static_cast<int64_t>(random_below(

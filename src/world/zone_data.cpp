@@ -15,8 +15,9 @@ namespace throng::world {
 namespace {
 
 constexpr uint32_t kArea = 4096;
-constexpr int32_t kHighest = 1'050'000'000;  // [mm]: more than is baked, differences fit 32 bits
-constexpr int32_t kMaxSideCells = 1 << 20;   // along a side
+// [mm]: more than is baked, differences fit 32 bits
+constexpr int32_t kHeightBound = 1'050'000'000;
+constexpr int32_t kMaxSideCells = 1 << 20;  // along a side
 
 // Legal cells of a class on a level, or none if its sets do not lie within `words`.
 std::optional<uint32_t> legal_cells(const format::Clearance& entry,
@@ -69,7 +70,9 @@ Result<void> Zone::attach(const std::string& name) {
     for (uint32_t i = begin; i < end; ++i) {
       const format::Level& level = *levels->Get(i);
       const auto gentle = [](int32_t slope) { return slope > -kMaxSlope && slope < kMaxSlope; };
-      const auto in_world = [](int32_t height) { return height > -kHighest && height < kHighest; };
+      const auto in_world = [](int32_t height) {
+        return height > -kHeightBound && height < kHeightBound;
+      };
       const bool floor_ok = level.floor_kind() == format::HeightKind::Constant ||
                             (level.floor_kind() == format::HeightKind::Plane &&
                              gentle(level.slope_x()) && gentle(level.slope_z())) ||

@@ -139,8 +139,8 @@ void expect_good_layers(const naive::FreeSpanBlock& block, const bake::BodyLimit
       const auto free_span = std::find_if(column.begin(), column.end(),
                                           [&](const naive::FreeSpan& g) { return g.top == top; });
       ASSERT_NE(free_span, column.end()) << what << ": layer " << s << " invents a top";
-      ASSERT_GE(layer.top[cell], bake::Layer::kBelow) << what;
-      ASSERT_LE(layer.top[cell], bake::Layer::kHighest) << what;
+      ASSERT_GE(layer.top[cell], bake::Layer::kBaseDepth) << what;
+      ASSERT_LE(layer.top[cell], bake::Layer::kMaxTop) << what;
       if (free_span->ceiling == bake::kOpenSkyMm) {
         ASSERT_EQ(layer.ceiling[cell], bake::kNone16) << what;
       } else {  // exact, or the highest of 16 bits

@@ -389,12 +389,12 @@ TEST(Climbers, KeepOutOfObstaclesThatWaitForThem) {
   const auto at_it = crowd.add_obstacle(
       Prism::box({p.x - 0.5, p.y - 0.5, p.z - 0.5}, {p.x + 0.5, p.y + 0.5, p.z + 0.5}));
   ASSERT_TRUE(at_it);
-  EXPECT_TRUE(crowd.obstacle(*at_it)->waits);
+  EXPECT_TRUE(crowd.obstacle(*at_it)->waits());
   EXPECT_EQ(crowd.step().waiting, 1u);
   const NodePlace away = stage.place(kClimber, 5, 2);
   crowd.set_goals(std::span(&id, 1), std::span(&away, 1));
   expect_all(go(crowd, stage, 1, 400), 1);
-  EXPECT_FALSE(crowd.obstacle(*at_it)->waits);
+  EXPECT_FALSE(crowd.obstacle(*at_it)->waits());
   EXPECT_FALSE(added_on(crowd, here));
 }
 
@@ -414,14 +414,14 @@ TEST(Climbers, GetOutOfWhatClosesAroundThemAndEnterNoOther) {
     const auto crate = crowd.add_obstacle(
         Prism::box({p.x - 0.5, p.y - 0.5, p.z - 0.5}, {p.x + 0.5, p.y + 0.5, p.z + 0.5}));
     ASSERT_TRUE(crate);
-    EXPECT_TRUE(crowd.obstacle(*crate)->waits);
+    EXPECT_TRUE(crowd.obstacle(*crate)->waits());
     Stage::Faults faults;
     for (int step = 0; step < 100; ++step) {
       crowd.step();
       if (step % 5 == 0) stage.look(crowd, faults);
     }
     EXPECT_EQ(faults.overlaps + faults.entered, 0u);
-    EXPECT_TRUE(crowd.obstacle(*crate)->is_up) << n;
+    EXPECT_TRUE(crowd.obstacle(*crate)->is_up()) << n;
   }
 }
 

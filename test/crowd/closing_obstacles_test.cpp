@@ -95,7 +95,7 @@ TEST(ClosingObstacles, OnlyAvatarsInsideADoorComeThroughOnceItCloses) {
       EXPECT_GT(in_it.size(), 1u);
       const auto door = crowd.add_obstacle(kDoor);
       ASSERT_TRUE(door);
-      EXPECT_TRUE(crowd.obstacle(*door)->waits);
+      EXPECT_TRUE(crowd.obstacle(*door)->waits());
       EXPECT_GE(crowd.obstacle(*door)->occupants, in_it.size());
       std::set<uint32_t> still = in_it;
       for (int step = 0; step < 100; ++step) {
@@ -104,12 +104,12 @@ TEST(ClosingObstacles, OnlyAvatarsInsideADoorComeThroughOnceItCloses) {
         const std::set<uint32_t> now = inside(crowd, kDoor, rush.radius - 2e-4);
         for (const uint32_t id : now) ASSERT_TRUE(still.count(id)) << "entered at step " << step;
         still = inside(crowd, kDoor, rush.radius);
-        if (crowd.obstacle(*door)->is_up) {
+        if (crowd.obstacle(*door)->is_up()) {
           ASSERT_TRUE(now.empty());
         }
       }
       const ObstacleState state = *crowd.obstacle(*door);
-      ASSERT_TRUE(state.is_up);
+      ASSERT_TRUE(state.is_up());
       EXPECT_NEAR(state.requested_at, 20, 1e-9);
       EXPECT_GT(state.up_at, state.requested_at);
       EXPECT_LE(state.up_at, state.requested_at + 3) << seed;
@@ -131,7 +131,7 @@ TEST(ClosingObstacles, OneThatWaitsStaysOpenAsLongAsPeopleStreamThrough) {
   ASSERT_TRUE(door);
   for (int step = 0; step < 100; ++step) rush.crowd.step();
   const ObstacleState state = *rush.crowd.obstacle(*door);
-  EXPECT_FALSE(state.is_up);
+  EXPECT_FALSE(state.is_up());
   EXPECT_EQ(state.policy, ObstaclePolicy::kWait);
   EXPECT_LT(state.up_at, 0);
   EXPECT_NEAR(state.requested_at, 20, 1e-9);
@@ -148,11 +148,11 @@ TEST(ClosingObstacles, ADoorThatIsSwitchedOnClosesTheSameAndOpensAgain) {
   EXPECT_LT(crowd.obstacle(*door)->requested_at, 0);
   ASSERT_TRUE(crowd.move_obstacle(*door, kDoor));
   ASSERT_TRUE(crowd.set_obstacle_active(*door, true));
-  for (int step = 0; step < 30 && !crowd.obstacle(*door)->is_up; ++step) {
+  for (int step = 0; step < 30 && !crowd.obstacle(*door)->is_up(); ++step) {
     crowd.step();
     ASSERT_TRUE(is_free(crowd));
   }
-  EXPECT_TRUE(crowd.obstacle(*door)->is_up);
+  EXPECT_TRUE(crowd.obstacle(*door)->is_up());
   EXPECT_TRUE(crowd.set_obstacle_active(*door, false));
   // Requested to close, and to open before it has: avatars come in again.
   const auto west = [&] {
@@ -168,7 +168,7 @@ TEST(ClosingObstacles, ADoorThatIsSwitchedOnClosesTheSameAndOpensAgain) {
   crowd.set_goals(rush.ids, goals);
   for (int step = 0; step < 100; ++step) crowd.step();
   ASSERT_TRUE(crowd.set_obstacle_active(*door, true));
-  EXPECT_TRUE(crowd.obstacle(*door)->waits);
+  EXPECT_TRUE(crowd.obstacle(*door)->waits());
   crowd.step();
   ASSERT_TRUE(crowd.set_obstacle_active(*door, false));
   crowd.set_goals(rush.ids, goals);
@@ -190,12 +190,12 @@ TEST(ClosingObstacles, AvatarsThatStandOrHaveArrivedInsideLeaveToo) {
     for (int step = 0; step < 5; ++step) crowd.step();
     const auto crate = crowd.add_obstacle(Prism::box({8, 0, 9}, {11, 2, 14}));
     ASSERT_TRUE(crate);
-    EXPECT_TRUE(crowd.obstacle(*crate)->waits);
+    EXPECT_TRUE(crowd.obstacle(*crate)->waits());
     for (int step = 0; step < 30; ++step) {
       crowd.step();
       ASSERT_TRUE(is_free(crowd));
     }
-    EXPECT_TRUE(crowd.obstacle(*crate)->is_up);
+    EXPECT_TRUE(crowd.obstacle(*crate)->is_up());
     const Vec3d p = positions(crowd).begin()->second;
     EXPECT_TRUE(p.x > 11 || p.z < 9) << "the nearest side, " << p.x << ' ' << p.z;
     EXPECT_TRUE(crowd.no_progress().empty());
@@ -223,12 +223,12 @@ TEST(ClosingObstacles, AnAvatarThatCannotLeaveKeepsItOpenAndIsReported) {
     ASSERT_TRUE(is_free(crowd));
   }
   const ObstacleState state = *crowd.obstacle(*crate);
-  EXPECT_TRUE(state.waits);
+  EXPECT_TRUE(state.waits());
   EXPECT_EQ(state.occupants, 1u);
   EXPECT_LT(state.up_at, 0);
   crowd.remove(std::span(&id, 1));
   crowd.step();
-  EXPECT_TRUE(crowd.obstacle(*crate)->is_up);
+  EXPECT_TRUE(crowd.obstacle(*crate)->is_up());
 }
 
 TEST(ClosingObstacles, PathsLeadAroundOneFromTheTimeOfTheRequest) {
@@ -254,7 +254,7 @@ TEST(ClosingObstacles, PathsLeadAroundOneFromTheTimeOfTheRequest) {
     ASSERT_TRUE(is_free(crowd));
   }
   EXPECT_TRUE(there) << "by the other door";
-  EXPECT_TRUE(crowd.obstacle(*door)->waits) << "an externally controlled avatar stays in it";
+  EXPECT_TRUE(crowd.obstacle(*door)->waits()) << "an externally controlled avatar stays in it";
 }
 
 TEST(ClosingObstacles, ACrowdRestoredWhileOneClosesContinuesTheSame) {
@@ -263,7 +263,7 @@ TEST(ClosingObstacles, ACrowdRestoredWhileOneClosesContinuesTheSame) {
   const auto door = crowd.add_obstacle(kDoor);
   ASSERT_TRUE(door);
   for (int step = 0; step < 4; ++step) crowd.step();
-  ASSERT_TRUE(crowd.obstacle(*door)->waits);
+  ASSERT_TRUE(crowd.obstacle(*door)->waits());
   const std::vector<uint8_t> saved = crowd.save();
   Context context;
   CrowdConfig config = rush.config;
@@ -276,7 +276,7 @@ TEST(ClosingObstacles, ACrowdRestoredWhileOneClosesContinuesTheSame) {
     restored->step();
     ASSERT_EQ(restored->state_hash(), crowd.state_hash()) << step;
   }
-  EXPECT_TRUE(restored->obstacle(*door)->is_up);
+  EXPECT_TRUE(restored->obstacle(*door)->is_up());
   EXPECT_EQ(restored->obstacle(*door)->up_at, crowd.obstacle(*door)->up_at);
 }
 
@@ -294,7 +294,7 @@ TEST(ClosingObstacles, OverlappingOnesAreLeftAndNeverEnteredFromEachOther) {
                             Prism::circle({24, 0, 8}, 2, 2, 9)};
     std::vector<ObstacleId> obstacles;
     for (const Prism& prism : prisms) obstacles.push_back(*crowd.add_obstacle(prism));
-    const auto up = [&](size_t i) { return crowd.obstacle(obstacles[i])->is_up; };
+    const auto up = [&](size_t i) { return crowd.obstacle(obstacles[i])->is_up(); };
     for (int step = 0; step < 300 && !(up(0) && up(1) && up(2)); ++step) {
       std::set<uint32_t> before[2];
       for (size_t k = 0; k < 2; ++k) before[k] = inside(crowd, prisms[k], 0.25);
@@ -321,7 +321,7 @@ TEST(ClosingObstacles, AFlyerInsideGetsOutAndNoOtherEnters) {
   const Prism box = Prism::box({14.5, 0, 10}, {15.8, 12, 20});
   const auto wall = crowd.add_obstacle(box);
   ASSERT_TRUE(wall);
-  EXPECT_TRUE(crowd.obstacle(*wall)->waits);
+  EXPECT_TRUE(crowd.obstacle(*wall)->waits());
   bool there = false;
   double up_at = -1;
   for (int step = 0; step < 600 && !there; ++step) {

@@ -80,7 +80,8 @@ TEST(CrowdEdits, AreObstaclesAsIfTheCrowdHadBeenGivenThem) {
     ASSERT_EQ(a.waiting, b.waiting);
     if (step == 20) {
       EXPECT_EQ(reads.obstacle_of(door), own_door);
-      EXPECT_EQ(reads.obstacle(reads.obstacle_of(door))->waits, given.obstacle(own_door)->waits);
+      EXPECT_EQ(reads.obstacle(reads.obstacle_of(door))->waits(),
+                given.obstacle(own_door)->waits());
     }
     if (step == 100) {
       EXPECT_FALSE(reads.obstacle_of(crate));

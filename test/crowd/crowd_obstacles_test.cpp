@@ -26,8 +26,8 @@ ObstacleId put_up(Crowd& crowd, const Prism& prism, ObstacleKind kind = Obstacle
   return id ? *id : ObstacleId{};
 }
 
-bool is_up(const Crowd& crowd, ObstacleId id) { return crowd.obstacle(id)->is_up; }
-bool waits(const Crowd& crowd, ObstacleId id) { return crowd.obstacle(id)->waits; }
+bool is_up(const Crowd& crowd, ObstacleId id) { return crowd.obstacle(id)->is_up(); }
+bool waits(const Crowd& crowd, ObstacleId id) { return crowd.obstacle(id)->waits(); }
 
 void send(Crowd& crowd, AvatarId id, const Place& goal) {
   crowd.set_goals(std::span(&id, 1), std::span(&goal, 1));
@@ -211,6 +211,7 @@ TEST(CrowdObstacles, ACartDoesNotJumpOverAnyAvatar) {
   EXPECT_TRUE(waits(crowd, cart));
   crowd.step();
   EXPECT_NEAR(crowd.obstacle(cart)->prism.corners[0][0], 5.5, 0.02) << "it stays where it is";
+  EXPECT_EQ(crowd.obstacle(cart)->phase, ObstaclePhase::kWaitsToMove);
   ASSERT_EQ(crowd.blockers().size(), 1u);
   EXPECT_EQ(crowd.blockers()[0], id);
   ASSERT_TRUE(crowd.move_obstacle(cart, cart_at(8)));
@@ -413,7 +414,7 @@ struct Chaos {
       if (what < 0.5) {
         const Prism before = crowd.obstacle(ids[i])->prism;
         ASSERT_TRUE(crowd.move_obstacle(ids[i], shifted(before)));
-        moved += crowd.obstacle(ids[i])->waits ? 0 : 1;
+        moved += crowd.obstacle(ids[i])->waits() ? 0 : 1;
       } else if (what < 0.65) {
         crowd.set_obstacle_active(ids[i], draw() < 0.5);
       } else if (what < 0.8) {

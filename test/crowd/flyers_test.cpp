@@ -410,17 +410,17 @@ TEST(Flyers, KeepOutOfObstaclesThatWaitForThem) {
   ASSERT_TRUE(hovers);
   const auto at_it = crowd.add_obstacle(Prism::box({19, 4, 19}, {21, 6, 21}));
   ASSERT_TRUE(at_it);
-  EXPECT_TRUE(crowd.obstacle(*at_it)->waits);
+  EXPECT_TRUE(crowd.obstacle(*at_it)->waits());
   EXPECT_EQ(crowd.step().waiting, 1u);
   ASSERT_EQ(crowd.blockers().size(), 1u);
   EXPECT_EQ(crowd.blockers()[0], hovers);
   const auto beside = crowd.add_obstacle(Prism::box({25, 0, 10}, {26, 12, 30}));
   ASSERT_TRUE(beside);
-  EXPECT_FALSE(crowd.obstacle(*beside)->waits);
+  EXPECT_FALSE(crowd.obstacle(*beside)->waits());
   const Place goal = air_place({34, 5, 20});
   crowd.set_goals(std::span(&hovers, 1), std::span(&goal, 1));
   expect_all(go(crowd, stage, 1, 600), 1);
-  EXPECT_FALSE(crowd.obstacle(*at_it)->waits);
+  EXPECT_FALSE(crowd.obstacle(*at_it)->waits());
   EXPECT_FALSE(crowd.remove_obstacle({}));
 }
 
@@ -441,7 +441,7 @@ TEST(Flyers, GoAroundAWallThatIsPutUpAndReportUnreachableGoals) {
   for (int i = 0; i < 20; ++i) crowd.step();  // They fly to their goals.
   const auto wall = crowd.add_obstacle(Prism::box({19, -1, -5}, {19.5, 40, 33}));
   ASSERT_TRUE(wall);
-  ASSERT_FALSE(crowd.obstacle(*wall)->waits);
+  ASSERT_FALSE(crowd.obstacle(*wall)->waits());
   expect_all(go(crowd, stage, 12, 1200), 12);
 
   const auto rest = crowd.add_obstacle(Prism::box({19, -1, 32}, {19.5, 40, 45}));

@@ -258,14 +258,14 @@ TEST(CrowdLinks, AnObstacleAtTheEndWaitsForTheOneOnTheLink) {
       const auto crate =
           crowd.add_obstacle(Prism::circle({x, 0, 5}, 0.4, 1), ObstacleKind::kStatic, policy);
       ASSERT_TRUE(crate);
-      EXPECT_FALSE(crowd.obstacle(*crate)->is_up);
+      EXPECT_FALSE(crowd.obstacle(*crate)->is_up());
       EXPECT_EQ(crowd.obstacle(*crate)->occupants, 1u);
       for (int step = 0; step < 250; ++step) {
         crowd.step();
         oracle.look(crowd, step);
       }
       EXPECT_NEAR(crowd.read(first)->position.x, 19, 0.5);
-      EXPECT_EQ(crowd.obstacle(*crate)->is_up, true);
+      EXPECT_EQ(crowd.obstacle(*crate)->is_up(), true);
       EXPECT_LT(crowd.read(second)->position.x, 10);
       EXPECT_TRUE(crowd.remove_obstacle(*crate));
       const Place goal = at(world, 19, 6);

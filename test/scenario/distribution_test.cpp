@@ -86,7 +86,7 @@ TEST(SpawnTimes, AreEvenOrAtOnceUpToTheCount) {
   Source source;
   source.group = Distribution::fixed(1);
   source.rates = {{0, 4}};
-  source.even = true;
+  source.pattern = SpawnPattern::kEven;
   source.count = 10;
   scenario::SpawnTimes even(source, 1, 0);
   std::vector<int> at;

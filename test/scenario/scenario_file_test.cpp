@@ -128,7 +128,7 @@ TEST(ScenarioFile, ReadsEveryKey) {
   EXPECT_EQ(s->areas[1].prisms[0].low, -1);
   EXPECT_EQ(s->areas[0].speed_factor, 1);
   EXPECT_EQ(s->areas[1].speed_factor, 0.5);
-  EXPECT_FALSE(s->sources[0].in_rows);
+  EXPECT_EQ(s->sources[0].pattern, SpawnPattern::kRandom);
   ASSERT_EQ(s->densities.size(), 1U);
   EXPECT_EQ(s->densities[0].width, 20);
   EXPECT_EQ(s->densities[0].weights[size_t{5} * 20 + 1], 200);  // in
@@ -151,7 +151,7 @@ TEST(ScenarioFile, ReadsEveryKey) {
               s->journeys[static_cast<size_t>(choice.index)].name == "away" ? 2.5 : 1);
   }
   EXPECT_EQ(s->sources[1].rates.size(), 3U);
-  EXPECT_TRUE(s->sources[1].even);
+  EXPECT_EQ(s->sources[1].pattern, SpawnPattern::kEven);
   ASSERT_EQ(s->obstacles.size(), 1U);
   EXPECT_EQ(s->obstacles[0].end, 9);
   EXPECT_EQ(s->obstacles[0].policy, ObstaclePolicy::kRefuseEntry);

@@ -77,6 +77,31 @@ TEST(FalseNodes, AreRefusedByNameOrUsedWithoutACrash) {
   EXPECT_GT(used, 300u);
 }
 
+// The arc is changed in the bytes of the file: `kind` is its last byte but one.
+TEST(FalseNodes, AnArcOfAKindThatDoesNotExistIsRefusedByName) {
+  Scene scene;
+  const Nodes nodes = make_small(scene);
+  const world::NodeZone& zone = *data_of(nodes)->zone(0);
+  uint32_t node = 0;
+  while (node + 1 < zone.nodes().size() && zone.arcs(node).empty()) ++node;
+  ASSERT_FALSE(zone.arcs(node).empty());
+  const format::Arc& arc = zone.arcs(node).front();
+  const auto at =
+      static_cast<size_t>(reinterpret_cast<const uint8_t*>(&arc) - zone.bytes().data()) + 6;
+  for (const int32_t kind : {0, kLinkKinds - 1, int32_t{kLinkKinds}, 6, 255}) {
+    const size_t size = zone.bytes().size();
+    auto* copy = new uint8_t[size];
+    std::copy_n(zone.bytes().data(), size, copy);
+    ASSERT_EQ(copy[at], arc.kind());
+    copy[at] = static_cast<uint8_t>(kind);
+    const auto found = world::NodeZone::from_bytes(
+        flatbuffers::DetachedBuffer(nullptr, false, copy, size, copy, size), "it");
+    EXPECT_EQ(static_cast<bool>(found), kind < kLinkKinds) << kind;
+    if (found) continue;
+    EXPECT_EQ(found.error().message.substr(0, 30), "it: an arc is of no known kind");
+  }
+}
+
 TEST(FalseNodes, ATruncatedOrForeignFileIsRefused) {
   Scene scene;
   const Nodes nodes = make_small(scene);

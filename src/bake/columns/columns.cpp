@@ -242,9 +242,10 @@ class RowCutter {
     const M swap = hn::Gt(l.x, s.x);
     const Point a = choose(swap, s, l), b = choose(swap, l, s);
     const V dx = hn::Sub(b.x, a.x);
-    constexpr double kOn = kWiden / 2;  // A centre on a shared edge belongs to both triangles.
-    const V first = hn::Ceil(hn::Sub(a.x, set(0.5 + kOn)));
-    const V last = hn::Floor(hn::Sub(b.x, set(0.5 - kOn)));
+    // A centre on a shared edge belongs to both triangles.
+    constexpr double kEdgeMargin = kWiden / 2;
+    const V first = hn::Ceil(hn::Sub(a.x, set(0.5 + kEdgeMargin)));
+    const V last = hn::Floor(hn::Sub(b.x, set(0.5 - kEdgeMargin)));
     const M covers = hn::And(hn::And(hn::Ge(centre, set(t_.z[0])), hn::Le(centre, set(t_.z[2]))),
                              hn::Gt(dx, set(1e-6)));
     store_int(hn::IfThenElse(covers, first, set(1)), out.c0 + at);
@@ -383,7 +384,7 @@ class TriangleGroup {
 
   HWY_INLINE void set_gradients(size_t i) {
     const D d;
-    constexpr double kSteepest = 1e6;  // mm per cell
+    constexpr double kMaxRise = 1e6;  // mm per cell
     const auto from_first = [&](const double(&of)[3][kGroup], size_t k) {
       return hn::Sub(load(&of[k][i]), load(&of[0][i]));
     };
@@ -392,7 +393,7 @@ class TriangleGroup {
     const V normal_y = hn::Sub(hn::Mul(az, bx), hn::Mul(ax, bz));
     const V rise_x = hn::Sub(hn::Mul(az, by), hn::Mul(ay, bz));
     const V rise_z = hn::Sub(hn::Mul(ay, bx), hn::Mul(ax, by));
-    const M upright = hn::Not(hn::Lt(hn::Abs(rise_x), hn::Mul(set(kSteepest), hn::Abs(normal_y))));
+    const M upright = hn::Not(hn::Lt(hn::Abs(rise_x), hn::Mul(set(kMaxRise), hn::Abs(normal_y))));
     const V gradient = hn::Div(rise_x, hn::IfThenElse(upright, set(1), normal_y));
     store(hn::IfThenElse(upright, hn::Zero(d), gradient), &gradient_[i]);
     store(upright, &upright_[i]);
@@ -438,9 +439,9 @@ class TriangleGroup {
     const V y = hn::Add(y_a, hn::Mul(slope, hn::Sub(x, x_a)));
     // Of a triangle seen edge-on, thinner than floats resolve, each side is a lower and an upper
     // bound.
-    constexpr double kThin = 0.01;  // mm
-    const M is_above = hn::And(sloped, hn::Gt(over, set(-kThin)));
-    const M is_below = hn::And(sloped, hn::Lt(over, set(kThin)));
+    constexpr double kHeightTolerance = 0.01;  // mm
+    const M is_above = hn::And(sloped, hn::Gt(over, set(-kHeightTolerance)));
+    const M is_below = hn::And(sloped, hn::Lt(over, set(kHeightTolerance)));
     const V rising = hn::Sub(x, set(kRisingEnd)), falling = hn::Sub(x, set(kFallingEnd));
     store(hn::IfThenElse(hn::Ge(slope, hn::Zero(d)), rising, falling), &above_[side].x[i]);
     store(hn::IfThenElse(hn::Le(slope, hn::Zero(d)), rising, falling), &below_[side].x[i]);

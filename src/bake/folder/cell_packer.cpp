@@ -28,7 +28,7 @@ using VU = hn::Vec<DU>;
 using VI = hn::Vec<DI>;
 using MU = hn::Mask<DU>;
 
-constexpr int32_t kSteepest = 4096;  // rise over a block beyond which no slope is sought [mm]
+constexpr int32_t kMaxBlockRise = 4096;  // rise over a block beyond which no slope is sought [mm]
 
 HWY_INLINE VI as_signed(VU v) { return hn::BitCast(DI(), v); }
 HWY_INLINE VU as_unsigned(VI v) { return hn::BitCast(DU(), v); }
@@ -275,7 +275,7 @@ struct RowPlan {
 };
 
 HWY_INLINE bool may_slope(const world::ValueBlock& block, const BlockRow& row, size_t b) {
-  return block.width > 1 && row.high[8 * b] - row.low[8 * b] < kSteepest;
+  return block.width > 1 && row.high[8 * b] - row.low[8 * b] < kMaxBlockRise;
 }
 
 HWY_INLINE RowPlan plan_row(const BlockRow& row, uint16_t low, world::ValueBlock* blocks) {

@@ -11,7 +11,7 @@
 namespace throng::bake {
 namespace {
 
-constexpr uint64_t kResident = uint64_t{8} << 20;  // of zones in use [bytes]
+constexpr uint64_t kResidentBytes = uint64_t{8} << 20;  // of zones in use [bytes]
 
 class FilesInFolder : public graph::GraphFiles {
  public:
@@ -37,7 +37,7 @@ Result<std::shared_ptr<world::GraphData>> bake_graph(WorldFolder& folder, world:
                                                      BakeReport& report) {
   const auto start = std::chrono::steady_clock::now();
   world.path = folder.part();
-  world.budget = kResident;
+  world.budget = kResidentBytes;
   FilesInFolder files(folder);
   auto made = graph::make_graph(world, &files, workers, context);
   if (!made) {

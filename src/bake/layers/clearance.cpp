@@ -64,7 +64,7 @@ void add_rows(const std::array<const TileLegality*, 3>& tiles, const LayerLegali
 void link_layer(const Layer& layer, const std::array<const TileLayers*, 4>& sides, int32_t max_step,
                 LayerLegality& out) {
   constexpr std::array<size_t, 4> kAcross{1, 0, 3, 2};
-  constexpr int32_t kFar = 1 << 28;
+  constexpr int32_t kMissingRise = 1 << 28;
   for (size_t side = 0; side < 4; ++side) {
     out.link[side].fill(-1);
     out.rise[side].fill(0);
@@ -86,7 +86,7 @@ void link_layer(const Layer& layer, const std::array<const TileLayers*, 4>& side
       const auto& across = other.border[kAcross[side]];
       for (size_t i = 0; i < kTileSide; ++i) {
         const int32_t apart = std::abs(across[i] + shift - own[i]);
-        const int32_t rise = own[i] == kNone16 || across[i] == kNone16 ? kFar : apart;
+        const int32_t rise = own[i] == kNone16 || across[i] == kNone16 ? kMissingRise : apart;
         link[i] = rise < best[i] ? static_cast<int32_t>(s) : link[i];
         best[i] = std::min(rise, best[i]);
       }

@@ -20,7 +20,7 @@ namespace throng::bake {
 namespace {
 
 constexpr int32_t kSide = kTileSide;
-constexpr int32_t kMaxRange = Layer::kHighest - Layer::kBelow;  // of tops in a layer [mm]
+constexpr int32_t kMaxRange = Layer::kMaxTop - Layer::kBaseDepth;  // of tops in a layer [mm]
 
 using Rows = world::CellRows;
 
@@ -330,9 +330,9 @@ bool LayerBuilder::goes_on(size_t component) const {
 
 // Assigns components to layers, larger first, each to the first layer of about its height whose
 // columns are free: floors stay constant when a crate's top is in another layer. Many layers are
-// worse than mixed ones, so after kManyLayers the height does not count.
+// worse than mixed ones, so after kMaxSortedLayers the height does not count.
 int32_t LayerBuilder::pack(std::vector<int32_t>& layer_of) const {
-  constexpr size_t kManyLayers = 24;
+  constexpr size_t kMaxSortedLayers = 24;
   constexpr int32_t kSameHeight = 500;  // [mm]
   std::vector<int32_t> order;
   for (size_t i = 0; i < components_.size(); ++i) {
@@ -355,7 +355,7 @@ int32_t LayerBuilder::pack(std::vector<int32_t>& layer_of) const {
       if (std::max(bins[b].tops.high, component.tops.high) - low > kMaxRange) continue;
       const bool apart = component.tops.low - bins[b].tops.high > kSameHeight ||
                          bins[b].tops.low - component.tops.high > kSameHeight;
-      if (apart && bins.size() < kManyLayers) continue;
+      if (apart && bins.size() < kMaxSortedLayers) continue;
       bool clash = false;
       for (size_t z = 0; z < kTileSide && !clash; ++z)
         clash = (bins[b].used[z] & component.cells[z]) != 0;
@@ -396,7 +396,7 @@ void LayerBuilder::build(LayerPool& pool, TileLayers& layers) {
   }
   for (const int32_t lowest : low) {
     built.push_back(pool.take());
-    built.back()->base = lowest - Layer::kBelow;
+    built.back()->base = lowest - Layer::kBaseDepth;
     built.back()->seams = seams || !only_.empty();
     built.back()->is_low = !only_.empty();
     clear_layer(*built.back());
@@ -453,7 +453,7 @@ bool build_single_layer(const TileFreeSpans& free_spans, LayerPool& pool, TileLa
   const TopRange range = free_span_range(free_spans, 0);
   if (static_cast<int64_t>(range.high) - range.low > kMaxRange) return false;
   auto layer = pool.take();
-  layer->base = range.low - Layer::kBelow;
+  layer->base = range.low - Layer::kBaseDepth;
   layer->seams = layer->is_low = false;
   uint64_t missing = 0;
   Rows has{};

@@ -21,11 +21,11 @@ namespace throng::bake {
 inline constexpr uint16_t kNone16 = 65535;         // no free span, no feet; for ceilings: open sky
 inline constexpr uint16_t kHighCeiling16 = 65534;  // a ceiling that high or more
 
-/// One free span per cell. Heights are [mm] from `base`, which lies kBelow under the lowest top so
-/// that lower neighbours keep distinct heights.
+/// One free span per cell. Heights are [mm] from `base`, which lies kBaseDepth under the lowest top
+/// so that lower neighbours keep distinct heights.
 struct Layer {
-  static constexpr int32_t kBelow = 4000;     // [mm]
-  static constexpr int32_t kHighest = 60000;  // tops above base + this go to another layer
+  static constexpr int32_t kBaseDepth = 4000;  // [mm]
+  static constexpr int32_t kMaxTop = 60000;    // tops above base + this go to another layer
 
   int32_t base = 0;
   int32_t cells = 0;                     // that have a free span

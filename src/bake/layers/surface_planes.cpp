@@ -64,9 +64,9 @@ using DH = hn::Rebind<uint16_t, DI>;
 using VF = hn::Vec<DF>;
 using MF = hn::Mask<DF>;
 
-constexpr float kHalf = 0.51f;    // of a difference over a cell, and more than floats err
-constexpr float kNegligible = 1;  // an excess that is not refined [mm]
-constexpr double kFar = 1000;     // beyond, floats do not resolve how high a plane is [cells]
+constexpr float kHalf = 0.51f;         // of a difference over a cell, and more than floats err
+constexpr float kMinExcess = 1;        // an excess that is not refined [mm]
+constexpr double kMaxDistance = 1000;  // beyond, floats do not resolve how high a plane is [cells]
 
 HWY_INLINE VF set(double value) { return hn::Set(DF(), static_cast<float>(value)); }
 
@@ -131,7 +131,7 @@ void FindPlanes(const SurfaceSide& side) {
       if (all.empty()) continue;
       const Interval line = t.on_line(z + 0.5);
       const CellRun run =
-          touched(all, std::ceil(line.low - 0.5 - kTouch), line.high - 0.5 + kTouch);
+          touched(all, std::ceil(line.low - 0.5 - kTouchMargin), line.high - 0.5 + kTouchMargin);
       if (run.empty()) continue;
       const PlaneRow row(side, z);
       const VF at_zero = set(t.at(0.5, z + 0.5)), slope = set(t.slope_x);
@@ -177,7 +177,7 @@ struct Comparison {
       const SurfacePoint& p = t.corner[i];
       corner_x[i] = set(p.x - 0.5);
       corner_y[i] = set(p.y);
-      is_near &= std::fabs(p.x) < kFar && std::fabs(p.z) < kFar;
+      is_near &= std::fabs(p.x) < kMaxDistance && std::fabs(p.z) < kMaxDistance;
     }
   }
 
@@ -210,8 +210,8 @@ struct Comparison {
 
 // Widens the excess of one cell exactly. `strip` is what of the triangle lies in its row.
 void widen_excess(const SurfacePart& strip, const PlaneRow& row, int32_t x, int32_t z) {
-  const SurfacePart part =
-      strip.cut<&SurfacePoint::x>(x - kTouch, 1).cut<&SurfacePoint::x>(x + 1 + kTouch, -1);
+  const SurfacePart part = strip.cut<&SurfacePoint::x>(x - kTouchMargin, 1)
+                               .cut<&SurfacePoint::x>(x + 1 + kTouchMargin, -1);
   double lowest = 1e30, most = -1e30;
   for (size_t k = 0; k < part.count; ++k) {
     const SurfacePoint& p = part.points[k];
@@ -228,13 +228,13 @@ void FindExcess(const SurfaceSide& side) {
   const DF df;
   for (const SurfaceTriangle& t : side.triangles) {
     const Comparison triangle(t);
-    const int32_t first = floor_in(t.corner[0].z - kTouch, side.z0, side.z1 + 1);
-    const int32_t last = floor_in(t.corner[2].z + kTouch, side.z0 - 1, side.z1);
+    const int32_t first = floor_in(t.corner[0].z - kTouchMargin, side.z0, side.z1 + 1);
+    const int32_t last = floor_in(t.corner[2].z + kTouchMargin, side.z0 - 1, side.z1);
     for (int32_t z = first; z <= last; ++z) {
       const CellRun all = side.run(z);
       if (all.empty()) continue;
       const Interval reach = t.in_row(z);
-      const CellRun run = touched(all, reach.low - kTouch, reach.high + kTouch);
+      const CellRun run = touched(all, reach.low - kTouchMargin, reach.high + kTouchMargin);
       if (run.empty()) continue;
       const PlaneRow row(side, z);
       SurfacePart strip;
@@ -246,7 +246,7 @@ void FindExcess(const SurfaceSide& side) {
         if (hn::AllFalse(df, open)) continue;
         const Excess raised = triangle.with(row, z, lanes);
         const MF mask = hn::And(open, hn::And(raised.below, hn::Gt(raised.most, excess)));
-        const MF little = hn::Le(raised.most, set(kNegligible));
+        const MF little = hn::Le(raised.most, set(kMinExcess));
         hn::BlendedStore(raised.most, hn::And(mask, little), df, row.excess + x);
         uint64_t cells = bits_of(df, hn::AndNot(little, mask));
         if (cells == 0) continue;

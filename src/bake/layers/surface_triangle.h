@@ -14,7 +14,7 @@
 namespace throng::bake {
 
 /// Cells are widened by that much, far more than doubles err. [cells]
-inline constexpr double kTouch = 1e-6;
+inline constexpr double kTouchMargin = 1e-6;
 
 struct SurfacePoint {
   double x, y, z;  // [cells, mm, cells]
@@ -62,8 +62,8 @@ struct SurfaceTriangle {
   std::array<double, 3> side;          // x by z along 0-1, 1-2, 0-2; 0 where z does not change
 
   SurfaceTriangle(const CellTriangle& t, double cell_x, double cell_z, double base) {
-    constexpr double kNarrow = 0.05;  // one less wide has no plane worth the name [cells]
-    constexpr double kSteep = 1000;   // nor has one steeper [mm per cell]
+    constexpr double kMinWidth = 0.05;  // one less wide has no plane worth the name [cells]
+    constexpr double kMaxRise = 1000;   // nor has one steeper [mm per cell]
     for (size_t i = 0; i < 3; ++i) corner[i] = {t.x[i] - cell_x, t.y[i] - base, t.z[i] - cell_z};
     const auto& [o, a, b] = corner;
     lowest = std::min({o.y, a.y, b.y});
@@ -73,8 +73,8 @@ struct SurfaceTriangle {
     const double normal_y = az * bx - ax * bz;
     const double rise_x = az * by - ay * bz, rise_z = ay * bx - ax * by;
     const double size = std::max({std::fabs(ax), std::fabs(bx), std::fabs(bx - ax), bz});
-    is_plane = std::fabs(normal_y) > kNarrow * size &&
-               std::max(std::fabs(rise_x), std::fabs(rise_z)) < kSteep * std::fabs(normal_y);
+    is_plane = std::fabs(normal_y) > kMinWidth * size &&
+               std::max(std::fabs(rise_x), std::fabs(rise_z)) < kMaxRise * std::fabs(normal_y);
     slope_x = is_plane ? rise_x / normal_y : 0;
     slope_z = is_plane ? rise_z / normal_y : 0;
     at_origin = o.y - slope_x * o.x - slope_z * o.z;
@@ -94,7 +94,7 @@ struct SurfaceTriangle {
   }
   /// How far it reaches in row z.
   [[nodiscard]] Interval in_row(int32_t z) const {
-    const double low = z - kTouch, high = z + 1 + kTouch;
+    const double low = z - kTouchMargin, high = z + 1 + kTouchMargin;
     Interval out;
     if (corner[0].z < low) {
       if (corner[2].z >= low) out = on_line(low);
@@ -117,7 +117,8 @@ struct SurfaceTriangle {
   [[nodiscard]] SurfacePart row_part(int32_t z) const {
     SurfacePart whole;
     for (const SurfacePoint& p : corner) whole.push(p);
-    return whole.cut<&SurfacePoint::z>(z - kTouch, 1).cut<&SurfacePoint::z>(z + 1 + kTouch, -1);
+    return whole.cut<&SurfacePoint::z>(z - kTouchMargin, 1)
+        .cut<&SurfacePoint::z>(z + 1 + kTouchMargin, -1);
   }
 };
 

@@ -282,7 +282,7 @@ namespace {
 
 constexpr int32_t kLast = kTileSide - 1;
 constexpr int32_t kBandZero = 1 << 29;  // Heights are far above its negative. [mm]
-constexpr double kShallow = 1e-4;  // A solid that enters a body by less does not block it. [mm]
+constexpr double kMinOverlap = 1e-4;  // A solid that enters a body by less does not block it. [mm]
 
 // Where the triangle lies between two heights, in the frame of the tile at (cell_x, cell_z).
 PlanPart cut_slab(const CellTriangle& t, double cell_x, double cell_z, double low, double high) {
@@ -590,7 +590,8 @@ void WallCheck::for_wanted(Visit visit) {
 
 // Fills the parts of the wanted cells. All others stay empty.
 void WallCheck::fill(Slab slab) {
-  const double low = layer_.base + slab.low + kShallow, high = layer_.base + slab.high - kShallow;
+  const double low = layer_.base + slab.low + kMinOverlap,
+               high = layer_.base + slab.high - kMinOverlap;
   for (const WallScratch::Near& near : scratch_.near) {
     const WallScratch::Side& side = scratch_.sides[near.side];
     if (near.high < low || near.low > high || !touches_wanted(side, near)) continue;

@@ -229,7 +229,8 @@ class NodeBatch {
       if (patch_of(drop.from) == graph::kNoNode || patch_of(drop.to) == graph::kNoNode) continue;
       // Of level tiles one every half metre will do.
       const bool on_tile = drop.from.kind == PatchKind::kLevelTile;
-      const uint32_t block = drop.from.cell / 64 / wide * 64 + drop.from.cell % 64 / wide;
+      const uint32_t block =
+          drop.from.cell / kTileCells / wide * kTileCells + drop.from.cell % kTileCells / wide;
       hole_links_.push_back({patch_of(drop.from), drop.from.cell, patch_of(drop.to), drop.to.cell});
       pairs_.push_back({.patch_a = patch_of(drop.from),
                         .cell_a = drop.from.cell,
@@ -290,7 +291,8 @@ class NodeBatch {
       const NodeOffMeshLink& off_mesh_link = config_.off_mesh_links[j];
       const auto& classes = data_.summary.classes;
       const auto bad = [&](const std::string& what) {
-        return Error{Errc::kBadInput, "nodes: jump " + std::to_string(j + 1) + ": " + what};
+        return Error{Errc::kBadInput,
+                     "nodes: off-mesh link " + std::to_string(j + 1) + ": " + what};
       };
       if (off_mesh_link.avatar_class < 0 ||
           static_cast<size_t>(off_mesh_link.avatar_class) >= classes.size()) {
@@ -381,8 +383,11 @@ class NodeBatch {
         continue;
       }
       const auto [x, z] = tile_place[source.source];
-      balls.push_back(
-          {.listed = {}, .origin = {}, .x = x * 64.0, .z = z * 64.0, .side = data_.summary.cell});
+      balls.push_back({.listed = {},
+                       .origin = {},
+                       .x = double{kTileCells} * x,
+                       .z = double{kTileCells} * z,
+                       .side = data_.summary.cell});
     }
     const graph::CrossCells cross(pairs_, sources_.size(), config_.workers);
     const double max_width = bins_.width.back();

@@ -26,7 +26,7 @@ namespace {
 constexpr uint64_t kNodeBakeVersion = 2;  // To be raised when equal inputs give other nodes.
 constexpr double kLinkEndRadius = 1;      // Places that an off-mesh link's ends may be at. [m]
 constexpr double kMargin = 1;             // for rounding, and then some [m]
-constexpr double kHighest = 1e7;          // above and below all [m]
+constexpr double kHeightBound = 1e7;      // above and below all [m]
 
 // Where all ground is Bezier patches, they carry all classes. Where there is other ground too,
 // level tiles carry walkers and patches carry climbers.
@@ -239,8 +239,8 @@ void add_triangles(const TriangleSquares& triangles, const Box3d& zone, double r
                    Words& words) {
   const Scene& scene = triangles.scene();
   const bool parts = knows_parts(scene), patches = !scene.patch_of_triangle.empty();
-  const Box3d box{.min = {zone.min.x - reach, -kHighest, zone.min.z - reach},
-                  .max = {zone.max.x + reach, kHighest, zone.max.z + reach}};
+  const Box3d box{.min = {zone.min.x - reach, -kHeightBound, zone.min.z - reach},
+                  .max = {zone.max.x + reach, kHeightBound, zone.max.z + reach}};
   std::vector<uint32_t> found;
   triangles.find(box, found);
   uint64_t sum = 0, count = 0;

@@ -18,10 +18,10 @@
 namespace throng::bake {
 namespace {
 
-constexpr double kSmooth = 0.9962;    // cosine of 5 degrees: no crease
-constexpr double kWalkSpacing = 0.1;  // between the tested points of a walker's move [m]
-constexpr size_t kTries = 6;          // cells of a patch that are tried for one link
-constexpr size_t kBoxedCells = 8;     // of a patch, found to be far away together
+constexpr double kCreaseCosine = 0.9962;  // cosine of 5 degrees: no crease
+constexpr double kWalkSpacing = 0.1;      // between the tested points of a walker's move [m]
+constexpr size_t kMaxCandidates = 6;      // cells of a patch that are tried for one link
+constexpr size_t kBoxedCells = 8;         // of a patch, found to be far away together
 
 Vec3d middle_of(const PatchLinkInput& input, uint32_t patch, uint32_t cell) {
   return input.cells[patch].shape[cell].middle(input.cells[patch].origin);
@@ -101,7 +101,7 @@ EdgeLinks link_edges(const PatchLinkInput& input, int32_t workers) {
         return BodyPose{patch.at(s, t), patch.normal(s, t)};
       };
       const BodyPose a = at(pair.side_a, pair.at_a), b = at(pair.side_b, pair.at_b);
-      const bool creased = dot(a.axis, b.axis) < kSmooth;
+      const bool creased = dot(a.axis, b.axis) < kCreaseCosine;
       for (const PatchBody& body : bodies) {
         if ((both & body.bit) == 0) continue;
         if (body.climbs && creased && !judge.is_free(body, a, b)) continue;
@@ -239,7 +239,7 @@ class HoleLinker {
       looked_closer_ = true;
     }
     const BodyPose start = pose_on(input_, body, patch_, a);
-    for (size_t k = 0; k < std::min(kTries, nearest_.size()); ++k) {
+    for (size_t k = 0; k < std::min(kMaxCandidates, nearest_.size()); ++k) {
       const uint32_t b = nearest_[k].second;
       if (!goes(judge_, body, start, pose_on(input_, body, target.maker, b),
                 input_.classes[target.avatar_class].step)) {

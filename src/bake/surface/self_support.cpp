@@ -22,11 +22,13 @@
 namespace throng::bake {
 namespace {
 
-constexpr int32_t kBeside = 24;  // 256ths on each side of the cells
+constexpr int32_t kSideMargin = 24;  // 256ths on each side of the cells
 
 PatchPart widened(const PatchPart& cells) {
-  const auto low = [](int32_t at) { return static_cast<uint8_t>(std::max(0, at - kBeside)); };
-  const auto high = [](int32_t at) { return static_cast<uint8_t>(std::min(255, at + kBeside)); };
+  const auto low = [](int32_t at) { return static_cast<uint8_t>(std::max(0, at - kSideMargin)); };
+  const auto high = [](int32_t at) {
+    return static_cast<uint8_t>(std::min(255, at + kSideMargin));
+  };
   return {low(cells.s0), high(cells.s1), low(cells.t0), high(cells.t1)};
 }
 

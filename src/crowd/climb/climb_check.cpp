@@ -66,7 +66,7 @@ void ClimbMode::check(std::span<const Body> bodies, CrowdCheck& found) const {
 
 // Does it stand where its class may, and does its cylinder enclose it?
 bool ClimbMode::is_enclosed(const Body& body) const {
-  constexpr double kTouch = 1e-9;  // [m]
+  constexpr double kTolerance = 1e-9;  // [m]
   const Climb& climb = climbs_[body.slot];
   const ClimberGround& ground = of(body).ground;
   const auto pose = ground.pose_of(climb, climb.at);
@@ -87,9 +87,9 @@ bool ClimbMode::is_enclosed(const Body& body) const {
       const Vec3d p = climb.feet + climb.axis * up + rim;
       const double dx = p.x - origin.x - (body.x + 0.5) * shared_.unit;
       const double dz = p.z - origin.z - (body.z + 0.5) * shared_.unit;
-      const double range = body.radius * shared_.unit + kTouch;
-      sound = sound && dx * dx + dz * dz <= range * range && p.y >= body.y * 1e-3 - kTouch &&
-              p.y <= (body.y + body.height) * 1e-3 + kTouch;
+      const double range = body.radius * shared_.unit + kTolerance;
+      sound = sound && dx * dx + dz * dz <= range * range && p.y >= body.y * 1e-3 - kTolerance &&
+              p.y <= (body.y + body.height) * 1e-3 + kTolerance;
     }
   }
   return sound;

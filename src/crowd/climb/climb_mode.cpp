@@ -70,7 +70,7 @@ bool ClimbMode::put_on_nodes(NewAvatar& avatar, const NodePlace& place) const {
   body.radius = cylinder->radius;
   body.height = static_cast<uint16_t>(cylinder->height);
   body.level = 0;
-  body.flags = Body::kFlying;
+  body.flags = Body::kMovedElsewhere;
   body.climbs = true;
   return true;
 }
@@ -139,11 +139,11 @@ void ClimbMode::head_to(Body& body, const NodePlace& goal) {
   climb.waited = 0;
   climb.turns_aside = 0;
   climb.station = climb.station_count = 0;
-  body.flags = Body::kFlying | Body::kHasGoal | Body::kNeedsPath;
+  body.flags = Body::kMovedElsewhere | Body::kHasGoal | Body::kNeedsPath;
 }
 
 void ClimbMode::stop(Body& body) {
-  body.flags &= Body::kFlying;
+  body.flags &= Body::kMovedElsewhere;
   Climb& climb = climbs_[body.slot];
   if (climb.is_on_ground()) clear_path(climb);
 }

@@ -18,9 +18,9 @@ constexpr float kMin = 1;                  // [s] of a path that does not lead t
 constexpr float kExternal = 0.5f;          // [s] for which one that is externally controlled plans
                                            // ahead
 constexpr uint64_t kDetours = 0x6465746f;  // random stream
-constexpr double kRoomy = 2;               // [m] of a node in which a body can step aside
+constexpr double kMinRoomySide = 2;        // [m] of a node in which a body can step aside
 constexpr double kSearchMargin = 1;        // [m] more than a square of a node
-constexpr uint64_t kFew = 8000;            // crossings that a search for a detour may expand
+constexpr uint64_t kDetourBudget = 8000;   // crossings that a search for a detour may expand
 
 }  // namespace
 
@@ -58,11 +58,11 @@ void ClimbMode::turn_aside(Body& body, Climb& climb, int32_t worker) {
   path.points.clear();
   // Either to a random place of the graph, or to one of the same node.
   const NodeInfo info = shared_.config.nodes.node(climb.at.node1 - 1);
-  const bool is_roomy = info.cells == 0 && info.area > kRoomy * kRoomy;
+  const bool is_roomy = info.cells == 0 && info.area > kMinRoomySide * kMinRoomySide;
   if (!is_roomy || random_below(seed, stream | 1, shared_.sub_step, 2) == 0) {
     const NodePlace to = shared_.config.nodes.random_place(
         body.avatar_class, seed, random_u64(seed, stream | 2, shared_.sub_step));
-    parts.finders[w].find(from, to, path, kNoSpacing, shared_.search_budget(kFew));
+    parts.finders[w].find(from, to, path, kNoSpacing, shared_.search_budget(kDetourBudget));
   }
   if (path.points.size() < 2) {
     const double side = 1.0 / (1 << info.level);
@@ -116,7 +116,7 @@ void ClimbMode::follow_velocity(const Body& body, Climb& climb, int32_t worker) 
   const NodePlace from = place_of(body, climb);
   if (!to || !from) return clear_path(climb);
   Path& path = parts.paths[w];
-  parts.finders[w].find(from, to, path, kNoSpacing, shared_.search_budget(kFew));
+  parts.finders[w].find(from, to, path, kNoSpacing, shared_.search_budget(kDetourBudget));
   // A long detour does not lead in the direction that it is given.
   if (path.end != PathEnd::kReached || path.length > 3 * far) return clear_path(climb);
   take_path(climb, path);

@@ -15,9 +15,9 @@
 namespace throng::crowd {
 namespace {
 
-constexpr double kLittle = 1e-9;    // [m]
-constexpr double kEdgeStep = 1e-4;  // of a patch's parameters, for derivatives
-constexpr int kShorter = 8;         // attempts to make a move short enough
+constexpr double kMinLength = 1e-9;  // [m]
+constexpr double kEdgeStep = 1e-4;   // of a patch's parameters, for derivatives
+constexpr int kMaxAttempts = 8;      // attempts to make a move short enough
 
 }  // namespace
 
@@ -33,7 +33,7 @@ ClimberGround::ClimberGround(const World& world, const Nodes& nodes, const path:
   };
   width_ = units(data.width);
   depth_ = units(data.depth);
-  tile_ = 64 * data.summary.cell;
+  tile_ = kTileCells * data.summary.cell;
   height_ = avatar.height;
   reach_ = path::reach_of(avatar);
   bottom_ = body_bottom(avatar);
@@ -212,7 +212,7 @@ Vec3d ClimberGround::path_ahead(const Climb& climb) const {
   Vec3d displacement = slope.along_s * ds + slope.along_t * dt;
   if (here.kind == PatchKind::kLevelTile) displacement.y = 0;
   const double size = length(displacement);
-  return size > kLittle ? displacement * (far / size) : to->feet - climb.feet;
+  return size > kMinLength ? displacement * (far / size) : to->feet - climb.feet;
 }
 
 Vec3d ClimberGround::normal_at(const Climb& climb) const {
@@ -236,7 +236,7 @@ bool ClimberGround::advance_on_surface(const Climb& climb, Step& step, double& m
   }
   const double ds = local_target.s - at.s, dt = local_target.t - at.t;
   double part = max_travel / whole;
-  for (int n = 0; n < kShorter; ++n) {
+  for (int n = 0; n < kMaxAttempts; ++n) {
     const auto pose_there = pose(at.node1, at.s + part * ds, at.t + part * dt);
     if (!pose_there) return false;
     const double far = travel(step.pose, *pose_there);
@@ -266,7 +266,7 @@ bool ClimberGround::advance_through_air(const Climb& climb, Step& step, double& 
     return true;
   }
   double part = (1 - at.part) * max_travel / left;
-  for (int n = 0; n < kShorter; ++n) {
+  for (int n = 0; n < kMaxAttempts; ++n) {
     ClimbStance there = at;
     there.part = at.part + part;
     const auto pose_there = pose_of(climb, there);
@@ -295,7 +295,7 @@ std::optional<ClimberGround::Step> ClimberGround::advance(const Climb& climb,
     return step;
   }
   // At most all that is left of the path.
-  while (max_travel > kLittle && at.next < climb.count) {
+  while (max_travel > kMinLength && at.next < climb.count) {
     const ClimbPoint& local_target = climb.points[at.next];
     const bool there = at.in_air != 0 ? advance_through_air(climb, step, max_travel)
                                       : advance_on_surface(climb, step, max_travel);
@@ -320,7 +320,7 @@ std::optional<ClimberGround::Step> ClimberGround::retreat(const Climb& climb,
   const auto from = pose_of_point(climb, at.next - 1u);
   if (!from || climb.points[at.next - 1u].node1 == 0) return std::nullopt;
   double part = at.part;
-  for (int n = 0; n < kShorter; ++n) {
+  for (int n = 0; n < kMaxAttempts; ++n) {
     ClimbStance there = climb.at;
     there.part = at.part - part;
     const auto pose_there = there.part == 0 ? from : pose_of(climb, there);
@@ -352,8 +352,8 @@ std::optional<ClimberGround::Step> ClimberGround::shift(const Climb& climb, Vec3
     const double s = at.s + out * ds, t = at.t + out * dt;
     part = out + next.part_inside(s, t, (1 - out) * ds, (1 - out) * dt) * (1 - out);
   }
-  constexpr double kWorthIt = 0.1;
-  for (int n = 0; n < kShorter && part > kWorthIt; ++n) {
+  constexpr double kMinPart = 0.1;
+  for (int n = 0; n < kMaxAttempts && part > kMinPart; ++n) {
     Step step{at, {}};
     const bool is_next = part > out;
     const Square& square = is_next ? next : here;

@@ -69,7 +69,7 @@ bool FlyMode::put_in_air(Body& body, const Vec3d& feet) const {
   body.z = position.z;
   body.y = position.y;
   body.level = 0;
-  body.flags = Body::kFlying;
+  body.flags = Body::kMovedElsewhere;
   return true;
 }
 
@@ -101,8 +101,8 @@ void FlyMode::fit(const BodyExtent& all, float fastest) {
 }
 
 void FlyMode::set_goal(Body& body, const Place& goal) {
-  const bool flies = body.has(Body::kFlying);
-  body.flags &= Body::kFlying;
+  const bool flies = body.has(Body::kMovedElsewhere);
+  body.flags &= Body::kMovedElsewhere;
   Flight& flight = flights_[body.slot];
   flight.waited = 0;
   flight.descends = 0;

@@ -16,11 +16,11 @@ namespace {
 
 constexpr double kCheckRange = 3;        // [m] to a waypoint, to test whether the next one is
                                          // visible
-constexpr double kAtLink = 0.3;          // [m] from the place of its take-off
-constexpr float kTries = 10;             // [s] there, before it gives up
+constexpr double kTakeOffRadius = 0.3;   // [m] from the place of its take-off
+constexpr float kTakeOffTimeout = 10;    // [s] there, after which its goal is dropped
 constexpr double kLinkRadius = 0.5;      // [m] from a link to the ground below
 constexpr uint64_t kSightInterval = 16;  // steps
-constexpr float kWaits = 2;              // [s] over its landing place, before it takes another
+constexpr float kLandingTimeout = 2;     // [s] over its landing place, before it takes another
 constexpr uint64_t kRooms = 0x726f6f6d;  // random stream
 constexpr int32_t kPointTolerance = 20;  // [units, mm] so near to a waypoint that the rest does not
                                          // matter
@@ -52,7 +52,7 @@ bool FlyMode::take_off(Body& body) {
   body.detour_angle = 0;
   const bool has_goal = body.has(Body::kHasGoal);
   body.flags &= Body::kExternal | Body::kHasGoal;
-  body.flags |= Body::kFlying;
+  body.flags |= Body::kMovedElsewhere;
   if (has_goal) body.flags |= Body::kNeedsPath;
   return true;
 }
@@ -67,11 +67,11 @@ bool FlyMode::plan_on_foot(Body& body, int32_t worker) {
   if (flight.to_link != 0 && body.has(Body::kLast)) {
     const double dx = static_cast<double>(body.local_target_x) - body.x;
     const double dz = static_cast<double>(body.local_target_z) - body.z;
-    const double near = kAtLink / shared_.unit;
+    const double near = kTakeOffRadius / shared_.unit;
     if (dx * dx + dz * dz < near * near) {
       if (take_off(body)) return true;
       flight.waited += shared_.sub_dt();
-      if (flight.waited > kTries) {
+      if (flight.waited > kTakeOffTimeout) {
         shared_.drop_goal(body);
         return true;
       }
@@ -119,8 +119,8 @@ bool FlyMode::plan_on_foot(Body& body, int32_t worker) {
 void FlyMode::find_landing_place(Body& body, const Flight& flight) const {
   const FlyerAir& air = air_of(body);
   const AirPosition& over = flight.points[flight.next];
-  const auto window =
-      static_cast<uint64_t>(static_cast<double>(shared_.step) * shared_.config.dt / kWaits);
+  const auto window = static_cast<uint64_t>(static_cast<double>(shared_.step) * shared_.config.dt /
+                                            kLandingTimeout);
   const uint64_t side =
       random_below(shared_.config.seed ^ kRooms, body.slot, window, steer::kEighths.size());
   const double far = FlyerEngine::landing_radius(flight) / shared_.unit;
@@ -159,7 +159,7 @@ void FlyMode::follow_flight(Body& body, Flight& flight) const {
     if (!air.sees(at, local_target) || !is_clear_of_obstacles(body, at, local_target))
       body.flags |= Body::kNeedsPath;
   }
-  if (flight.lands != 0 && flight.is_last() && flight.waited > kWaits)
+  if (flight.lands != 0 && flight.is_last() && flight.waited > kLandingTimeout)
     find_landing_place(body, flight);
 }
 

@@ -17,17 +17,17 @@ namespace {
 
 using steer::Space;
 
-constexpr size_t kGrain = 128;           // flyers that are worth another thread
-constexpr float kArrivalRadius = 0.3f;   // [m] from its goal a body has arrived
-constexpr uint64_t kRolls = 0x726f6c6c;  // random stream
-constexpr float kRoll = 2;               // [s] for which a flyer keeps to a side
-constexpr float kSlow = 2;               // [m/s] at most, up or down a ground-air link
-constexpr float kPressed = 2;            // [s] that one which lands waits for a body below it
-constexpr float kLandingSpread = 0.5f;   // [m/s] by which one that waits lands farther away
-constexpr float kFarthest = 15;          // [m] from where one would land, at most
-constexpr int32_t kLowOver = 1500;       // [mm] above the start of the air at which it may begin to
-                                         // land
-constexpr std::array<float, 3> kShorterBy = {0.5f, 0.25f, 0.1f};
+constexpr size_t kGrain = 128;             // flyers that are worth another thread
+constexpr float kArrivalRadius = 0.3f;     // [m] from its goal a body has arrived
+constexpr uint64_t kRolls = 0x726f6c6c;    // random stream
+constexpr float kRoll = 2;                 // [s] for which a flyer keeps to a side
+constexpr float kLinkSpeed = 2;            // [m/s] at most, up or down a ground-air link
+constexpr float kDescentTimeout = 2;       // [s] that one which lands waits for a body below it
+constexpr float kLandingSpread = 0.5f;     // [m/s] by which one that waits lands farther away
+constexpr float kMaxLandingDistance = 15;  // [m] from where one would land, at most
+constexpr int32_t kLandingHeight = 1500;   // [mm] above the start of the air at which it may begin
+                                           // to land
+constexpr std::array<float, 3> kShorterParts = {0.5f, 0.25f, 0.1f};
 
 bool overlap(int32_t y, int32_t height, int32_t other_y, int32_t other_height) {
   return y < other_y + other_height && other_y < y + height;
@@ -60,7 +60,7 @@ void FlyerEngine::fit(int32_t widest, float fastest, int32_t tallest, float dt) 
   sight_metres_ = std::max(config_.sight, config_.air_steering.horizon * fastest);
   const float touched = 2 * static_cast<float>(widest) * unit + 2 * stride;
   const float high = 2 * static_cast<float>(tallest) * 1e-3f + 2 * stride;
-  near_metres_ = std::max({sight_metres_ / 2, touched, high + kLowOver * 1e-3f}) + 0.01f;
+  near_metres_ = std::max({sight_metres_ / 2, touched, high + kLandingHeight * 1e-3f}) + 0.01f;
   sight_metres_ = std::min(sight_metres_, 2 * near_metres_);
   fastest_ = fastest;
   grid_.fit(static_cast<int32_t>(near_metres_ / unit) + 4,
@@ -150,8 +150,8 @@ void FlyerEngine::preferred(Body& body, Flight& flight, uint64_t step) const {
   if (flight.in_link != 0) {
     const int32_t to = flight.descends != 0 ? flight.link_low : flight.link_high;
     const Space displacement{0, static_cast<float>(to - body.y) * 1e-3f, 0};
-    return set(steer::preferred_towards(displacement, std::min(body.speed, kSlow), units.dt, 0, 0,
-                                        flight.descends != 0));
+    return set(steer::preferred_towards(displacement, std::min(body.speed, kLinkSpeed), units.dt, 0,
+                                        0, flight.descends != 0));
   }
   if (!body.has(Body::kHasGoal) && !body.leaves) return set({});
   const steer::Plane level =
@@ -165,7 +165,7 @@ void FlyerEngine::preferred(Body& body, Flight& flight, uint64_t step) const {
 }
 
 float FlyerEngine::landing_radius(const Flight& flight) {
-  return std::min(kLandingSpread * flight.waited, kFarthest);
+  return std::min(kLandingSpread * flight.waited, kMaxLandingDistance);
 }
 
 // Would it land, if there is ground below?
@@ -261,7 +261,8 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
 // Of two that touch before one waypoint the farther steps back, if the nearer stands.
 bool FlyerEngine::gives_precedence(const Body& body, const Flight& flight, const Body& other,
                                    const Flight& of_other) const {
-  constexpr float kCornerRadius = 1.5f, kTouch = 0.3f, kStands = 0.3f;  // [m], [m], of its speed
+  constexpr float kCornerRadius = 1.5f, kMaxGap = 0.3f,
+                  kStandingShare = 0.3f;  // [m], [m], of its speed
   const StepUnits& units = config_.units;
   const auto turns = [](const Body& b) {
     constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kExternal;
@@ -282,9 +283,9 @@ bool FlyerEngine::gives_precedence(const Body& body, const Flight& flight, const
   const int32_t up = other.y - body.y;
   const float gap = static_cast<float>(std::max({up - body.height, -up - other.height, 0})) * 1e-3f;
   const float radii = static_cast<float>(body.radius + other.radius) * units.unit;
-  if (gap > kTouch || steer::size_of(apart) > radii + kTouch) return false;
+  if (gap > kMaxGap || steer::size_of(apart) > radii + kMaxGap) return false;
   const Space velocity{other.velocity.x, of_other.rise, other.velocity.z};
-  if (steer::size_of(velocity) > kStands * other.speed) return false;
+  if (steer::size_of(velocity) > kStandingShare * other.speed) return false;
   const float mine = left(body, flight), its = left(other, of_other);
   return its != mine ? its < mine : other.slot < body.slot;
 }
@@ -333,7 +334,7 @@ void FlyerEngine::find_candidates(const steer::AirSituation& situation, bool ope
     for (const Space& v : choices) add(v);
     best = choices[0];
   }
-  for (const float part : kShorterBy) add(part * best);
+  for (const float part : kShorterParts) add(part * best);
 }
 
 // Senses, steers, and takes a place at once if no other could touch it.
@@ -349,7 +350,7 @@ void FlyerEngine::decide(uint32_t f, Worker& worker) {
   std::optional<FlyerAir::GroundAirLink> ground_air_link;
   if (wants_down(body, flight))
     ground_air_link = classes_[body.avatar_class].air->link_below(position_of(body));
-  if (ground_air_link && body.y - ground_air_link->high > kLowOver) ground_air_link.reset();
+  if (ground_air_link && body.y - ground_air_link->high > kLandingHeight) ground_air_link.reset();
   steer::AirSituation situation;
   bool column_is_clear = true;
   sense(f, worker, situation, column_is_clear, ground_air_link ? &*ground_air_link : nullptr);
@@ -361,7 +362,7 @@ void FlyerEngine::decide(uint32_t f, Worker& worker) {
     flight.link_high = ground_air_link->high;
     flight.link_level = ground_air_link->level;
     body.detour_angle = 0;
-    const float down = -std::min(body.speed, kSlow);
+    const float down = -std::min(body.speed, kLinkSpeed);
     situation.preferred = {0,
                            std::max(down, static_cast<float>(ground_air_link->low - body.y) *
                                               1e-3f / config_.units.dt),
@@ -470,7 +471,7 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
     if (flight.descends != 0) {
       body.detour_angle = moves ? 0 : body.detour_angle + units.dt;
       flight.waited += moves ? 0 : units.dt;
-      if (body.detour_angle > kPressed && !body.has(Body::kExternal)) flight.descends = 0;
+      if (body.detour_angle > kDescentTimeout && !body.has(Body::kExternal)) flight.descends = 0;
     }
     if (flight.descends == 0 && body.y >= flight.link_high) {
       flight.in_link = 0;
@@ -491,7 +492,8 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
     body.detour_angle = steer::next_detour_angle(config_.deadlock_settings, body.detour_angle,
                                                  content, along, units.dt);
   }
-  if (flight.lands != 0 && flight.is_last() && left < kFarthest && towards < 0.3f * body.speed) {
+  if (flight.lands != 0 && flight.is_last() && left < kMaxLandingDistance &&
+      towards < 0.3f * body.speed) {
     flight.waited += units.dt;
   }
   const steer::Plane rest =

@@ -60,10 +60,10 @@ class FlyerEngine {
   [[nodiscard]] uint64_t bytes() const;
 
  private:
-  static constexpr size_t kShorter = 3;
+  static constexpr size_t kShorterMoves = 3;
   struct Contest : MoverContest {
     uint8_t candidate_count = 0;
-    std::array<AirPosition, steer::kAirChoices + kShorter + 1> displacement;  // of a step
+    std::array<AirPosition, steer::kAirChoices + kShorterMoves + 1> displacement;  // of a step
   };
   struct Move : MoverState {
     AirPosition place;

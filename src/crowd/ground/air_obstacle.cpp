@@ -10,7 +10,7 @@
 namespace throng::crowd {
 namespace {
 
-constexpr double kBeyond = 8;  // [units] farther than needed
+constexpr double kRangeMargin = 8;  // [units] farther than needed
 
 bool overlap(int32_t y, int32_t height, int32_t other_y, int32_t other_height) {
   return y < other_y + other_height && other_y < y + height;
@@ -64,7 +64,7 @@ bool AirObstacle::holds(const AirPosition& feet, double radius, int32_t height) 
 
 void AirObstacle::list_exits(const AirPosition& feet, double radius, int32_t height,
                              std::vector<AirPosition>& exits) const {
-  const double range = radius / unit_ + 2 + kBeyond;
+  const double range = radius / unit_ + 2 + kRangeMargin;
   const double x = feet.x + 0.5, z = feet.z + 0.5;
   for (size_t i = 0; i < corners_.size(); ++i) {
     const auto& [ax, az] = corners_[i];

@@ -26,11 +26,11 @@ struct Body {
     kLast = 2,      // `local_target` is the goal itself
     kExternal = 4,  // externally controlled: `preferred` is given
     kHasGoal = 8,
-    kNeedsPath = 16,   // it requests a path
-    kFlying = 32,      // Another engine moves it: for those that walk it stands where it is.
-    kContinues = 64,   // with its last decision: it moved so in the last step, and does so again if
-                       // it can
-    kLowDetail = 128,  // beyond all views
+    kNeedsPath = 16,       // it requests a path
+    kMovedElsewhere = 32,  // another engine moves it: for those that walk it stands where it is
+    kContinues = 64,       // with its last decision: it moved so in the last step, and does so
+                           // again if it can
+    kLowDetail = 128,      // beyond all views
   };
 
   enum State : uint8_t {
@@ -55,9 +55,9 @@ struct Body {
   uint16_t height = 0;  // [mm, at most 65 m]
   uint16_t target = 0;  // TargetId: its goal is a target
   State state : 3 = kFree;
-  bool on_link : 1 = false;    // kFlying is set too: LinkMode moves it along an off-mesh link
+  bool on_link : 1 = false;    // LinkMode moves it along an off-mesh link; with kMovedElsewhere
   bool follows : 1 = false;    // so closely that it could but crawl, when it last decided
-  bool climbs : 1 = false;     // kFlying is set too: it is a climber, which ClimberEngine moves
+  bool climbs : 1 = false;     // ClimberEngine moves it over nodes; with kMovedElsewhere
   bool on_right : 1 = false;   // in counterflow, its lane lies in the right half of the opening
   bool near_wall : 1 = false;  // and in need of another path, in the last step
   uint8_t : 0;                 // What follows lies in another byte.
@@ -71,7 +71,7 @@ struct Body {
   [[nodiscard]] Stand stand() const { return {x, z, y, level}; }
   [[nodiscard]] bool has(Flag flag) const { return (flags & flag) != 0; }
   /// Does FlyerEngine move it?
-  [[nodiscard]] bool flies() const { return has(kFlying) && !climbs && !on_link; }
+  [[nodiscard]] bool flies() const { return has(kMovedElsewhere) && !climbs && !on_link; }
   void clear(Flag flag) { flags = static_cast<uint8_t>(flags & ~flag); }
 };
 static_assert(sizeof(Body) == 64 && std::is_trivially_copyable_v<Body>);

@@ -10,13 +10,13 @@ namespace throng::crowd {
 ObstacleGrid::Squares ObstacleGrid::squares(size_t level, const std::array<double, 4>& box) {
   const double side = std::ldexp(1.0, kBaseBits + static_cast<int>(level));
   const auto square = [&](double at) {
-    return static_cast<int32_t>(std::floor(std::clamp(at, -kFar, kFar) / side));
+    return static_cast<int32_t>(std::floor(std::clamp(at, -kMaxPosition, kMaxPosition) / side));
   };
   return {square(box[0]), square(box[1]), square(box[2]), square(box[3])};
 }
 
 size_t ObstacleGrid::level_of(const std::array<double, 4>& box) {
-  const auto near = [](double at) { return std::clamp(at, -kFar, kFar); };
+  const auto near = [](double at) { return std::clamp(at, -kMaxPosition, kMaxPosition); };
   const double wide = std::max(near(box[2]) - near(box[0]), near(box[3]) - near(box[1]));
   size_t level = 0;
   while (level + 1 < kLevels && std::ldexp(1.0, kBaseBits + static_cast<int>(level)) < wide) {

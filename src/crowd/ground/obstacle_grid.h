@@ -41,10 +41,11 @@ class ObstacleGrid {
   void list_near(const AirPosition& at, double radius, std::vector<const Item*>& found) const;
 
  private:
-  static constexpr int32_t kBaseBits = 15;      // of the width of a square of level 0 [units]
-  static constexpr size_t kLevels = 20;         // the last holds any box
-  static constexpr double kFar = 4294967296.0;  // [units] beyond what a body's position can be
-  static constexpr size_t kFew = 32;            // obstacles that take less time than a look-up
+  static constexpr int32_t kBaseBits = 15;  // of the width of a square of level 0 [units]
+  static constexpr size_t kLevels = 20;     // the last holds any box
+  // [units] beyond what a body's position can be
+  static constexpr double kMaxPosition = 4294967296.0;
+  static constexpr size_t kMaxUnindexed = 32;  // obstacles that take less time than a look-up
   static constexpr uint32_t kNoItem = UINT32_MAX;
 
   struct Squares {  // last included
@@ -72,7 +73,7 @@ bool ObstacleGrid::any_near(const AirPosition& at, double radius, Test test) con
     }
     return false;
   };
-  if (items_.size() <= kFew) return test_all();
+  if (items_.size() <= kMaxUnindexed) return test_all();
   const double range = AirObstacle::range(radius, unit_) + 1;  // and what rounding adds
   const std::array<double, 4> box{at.x - range, at.z - range, at.x + range, at.z + range};
   uint64_t count = 0;

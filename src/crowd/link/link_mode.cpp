@@ -71,7 +71,7 @@ void LinkMode::find_corridors() {
   std::vector<std::array<double, 2>> extents;  // along x
   std::vector<uint32_t> order, parent;
   for (const Link& link : links_) {
-    const double radius = taking_.widest * shared_.unit + kAtStart;
+    const double radius = taking_.widest * shared_.unit + kEntryRadius;
     const LinkLine line{point_of(link.from), point_of(link.to), radius, 0,
                         taking_.tallest * 1e-3 + kRise};
     extents.push_back(
@@ -183,7 +183,7 @@ void LinkMode::add(const NewAvatar& avatar) {
 void LinkMode::set_goal(Body& body, const Place& goal) {
   walk_.set_goal(body, goal);
   if (body.on_link) {
-    body.flags = (body.flags & Body::kHasGoal) | Body::kFlying;
+    body.flags = (body.flags & Body::kHasGoal) | Body::kMovedElsewhere;
     head_to_end(body);
   } else if (!uses_.empty() && !body.has(Body::kHasGoal)) {
     uses_[body.slot] = {};
@@ -303,7 +303,7 @@ bool LinkMode::is_sound(const Body& body) const {
   const bool rides = use.state == LinkUse::kRides;
   if (use.state > LinkUse::kRides || body.on_link != rides) return false;
   if (use.state == LinkUse::kNone) return true;
-  if (body.has(Body::kFlying) != rides || body.climbs || shared_.flies(body.avatar_class)) {
+  if (body.has(Body::kMovedElsewhere) != rides || body.climbs || shared_.flies(body.avatar_class)) {
     return false;
   }
   const world::WorldData& world = *data_of(shared_.world);

@@ -23,8 +23,8 @@ namespace throng::crowd {
 class LinkMode final : public Mode, public TakesLinks {
  public:
   static constexpr size_t kRowBytes = sizeof(LinkUse);
-  static constexpr double kAtStart = 0.15;  ///< From a link's start, where one leaves the ground.
-                                            ///< [m]
+  static constexpr double kEntryRadius = 0.15;  ///< From a link's start, where one leaves the
+                                                ///< ground. [m]
 
   /// `walk` outlives it.
   LinkMode(SharedState& shared, WalkMode& walk);

@@ -89,7 +89,7 @@ void LinkMode::step(std::span<Body> bodies, EngineCounts& counts, EngineTimes& t
 void LinkMode::enter(std::span<const Body> bodies, Body& body, LinkUse& use) const {
   // It has lost its path, or its link, and searches again.
   if (body.has(Body::kNeedsPath) || find_link(use.link) == nullptr) return;
-  const auto near = static_cast<int64_t>(kAtStart / shared_.unit);
+  const auto near = static_cast<int64_t>(kEntryRadius / shared_.unit);
   const StrideGround ground(shared_.ground_of(body),
                             world::step_mm(shared_.body_class(body.avatar_class)));
   StrideGround::Landing landing;
@@ -111,7 +111,7 @@ void LinkMode::enter(std::span<const Body> bodies, Body& body, LinkUse& use) con
   use.along = 0;
   use.state = LinkUse::kRides;
   body.on_link = true;
-  body.flags = (body.flags & (Body::kHasGoal | Body::kArrived)) | Body::kFlying;
+  body.flags = (body.flags & (Body::kHasGoal | Body::kArrived)) | Body::kMovedElsewhere;
   body.detour_angle = 0;
   head_to_end(body);
   const double size = std::hypot(body.velocity.x, body.velocity.z);

@@ -20,7 +20,7 @@ namespace throng::crowd {
 namespace {
 
 constexpr double kMargin = 0.1;        // [m] between those that wait and one at an end
-constexpr double kBrakes = 0.3;        // [s] within which one that comes to the start stops
+constexpr double kBrakingTime = 0.3;   // [s] within which one that comes to the start stops
 constexpr double kSpread = 1.6;        // widest radii, times the root of how many wait
 constexpr uint64_t kSightChecks = 16;  // decisions
 constexpr double kEndMargin = 0.02;    // [m] around one that lands
@@ -100,7 +100,8 @@ bool LinkMode::plan_at_start(Body& body, const Route& route, const StrideGround&
     return false;
   }
   // The more wait, the farther from the start: they need not press.
-  const double brakes = body.speed * std::max<double>(shared_.sub_dt(), kBrakes) / shared_.unit;
+  const double brakes =
+      body.speed * std::max<double>(shared_.sub_dt(), kBrakingTime) / shared_.unit;
   const float square = near_square(start.x - body.x, start.z - body.z);
   const auto is_near = [&](double count) {
     const double range = room_of(body) + brakes + kSpread * taking_.widest * std::sqrt(count);

@@ -18,8 +18,8 @@ constexpr double kMaxPath = 2;          // [m] more than that
 
 // Of any height.
 AirObstacle column_of(const Prism& prism, const Vec3d& origin, double unit) {
-  constexpr double kHigh = 1e5;  // [m]
-  return {{prism.corners, -kHigh, kHigh}, origin, unit};
+  constexpr double kColumnHeight = 1e5;  // [m]
+  return {{prism.corners, -kColumnHeight, kColumnHeight}, origin, unit};
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ Vec3d Mode::control(Body& body, const Vec3d& velocity) {
   double size = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
   if (!std::isfinite(size)) size = INFINITY;
   const double part = size > body.speed ? body.speed / size : 1;
-  body.flags = (body.flags & Body::kFlying) | Body::kExternal;
+  body.flags = (body.flags & Body::kMovedElsewhere) | Body::kExternal;
   const Vec3d cut = part > 0 ? Vec3d{v.x * part, v.y * part, v.z * part} : Vec3d{};
   body.preferred = {static_cast<float>(cut.x), static_cast<float>(cut.z)};
   return cut;

@@ -25,7 +25,7 @@ bool SharedState::climbs(size_t number) const {
 }
 
 void SharedState::drop_goal(Body& body) {
-  body.flags &= Body::kFlying;
+  body.flags &= Body::kMovedElsewhere;
   const std::lock_guard lock(goal_mutex);
   goal_unreachable.push_back(id_of(body.slot));
 }

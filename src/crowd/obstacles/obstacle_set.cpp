@@ -186,7 +186,7 @@ std::vector<std::pair<uint32_t, uint32_t>> ObstacleSet::blockers(std::span<const
   parallel_ranges(bodies.size(), 4096, workers, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Body& body = bodies[i];
-      if (body.level < first || body.level > last || body.has(Body::kFlying)) continue;
+      if (body.level < first || body.level > last || body.has(Body::kMovedElsewhere)) continue;
       const auto list = lists.find(key(body.avatar_class, body.level));
       if (list == lists.end()) continue;
       for (const Asked& asked : list->second) {

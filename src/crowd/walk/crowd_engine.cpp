@@ -25,14 +25,14 @@ namespace {
 using steer::Plane;
 
 constexpr size_t kGrain = 256;  // bodies that are worth another thread
-constexpr std::array<float, 3> kShorter = {0.5f, 0.25f, 0.1f};
-constexpr float kArrivalRadius = 0.3f;             // [m] from its goal a body has arrived
-constexpr uint64_t kSides = 0x51de5;               // random stream
-constexpr float kClose = 0.1f;                     // [m] to its corner a body turns to neither side
-constexpr float kAtOnce = 0.1f;                    // [s] within which a body that walks straight
-                                                   // must meet no other
-constexpr size_t kFarPrefetch = 6, kPrefetch = 3;  // bodies, whose ground is prefetched
-constexpr size_t kBits = 64;                       // of a word
+constexpr std::array<float, 3> kShorterParts = {0.5f, 0.25f, 0.1f};
+constexpr float kArrivalRadius = 0.3f;    // [m] from its goal a body has arrived
+constexpr uint64_t kSides = 0x51de5;      // random stream
+constexpr float kCornerRadius = 0.1f;     // [m] to its corner a body turns to neither side
+constexpr float kStraightHorizon = 0.1f;  // [s] within which a body that walks straight
+                                          // must meet no other
+constexpr size_t kLevelPrefetch = 6, kCellPrefetch = 3;  // bodies, whose ground is prefetched
+constexpr size_t kBits = 64;                             // of a word
 
 // Do two bodies at these places overlap?
 bool overlaps_with(const Body& a, const Stand& at_a, const Body& b, const Stand& at_b) {
@@ -153,7 +153,7 @@ void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts
 // Does it repeat its last move?
 bool CrowdEngine::continues(const Body& body, uint64_t step) const {
   return body.has(Body::kContinues) && !body.has(Body::kExternal) && !body.has(Body::kNeedsPath) &&
-         !body.has(Body::kFlying) && !decides(steps_of_reaction(body), step, body.slot) &&
+         !body.has(Body::kMovedElsewhere) && !decides(steps_of_reaction(body), step, body.slot) &&
          !has_short_moves(body) &&
          !is_before({body.local_target_x - body.x, body.local_target_z - body.z}, stride_of(body));
 }
@@ -165,7 +165,8 @@ void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
   // against it: there, to a random side.
   const auto turn = [&](const Body& b) {
     if (b.in_counterflow || !is_blocked_by_walls(b)) return b.detour_angle;
-    if (size_of(config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z)) < kClose)
+    if (size_of(config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z)) <
+        kCornerRadius)
       return 0.0f;
     const bool left = (random_u64(config_.seed ^ kSides, b.slot, window) & 1) != 0;
     return left ? -b.detour_angle : b.detour_angle;
@@ -180,7 +181,7 @@ void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
     }
     if (before) before(bodies, worker);
     for (Body& b : bodies) {
-      if (b.has(Body::kExternal) || b.has(Body::kFlying) || b.steps == 0) continue;
+      if (b.has(Body::kExternal) || b.has(Body::kMovedElsewhere) || b.steps == 0) continue;
       b.preferred = b.has(Body::kHasGoal) || b.leaves
                         ? steer::preferred_towards(
                               config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z),
@@ -233,12 +234,12 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
 
 // Prefetches the ground that the bodies which decide next will reach if they repeat their moves.
 void CrowdEngine::prefetch_ground(size_t i) const {
-  if (i + kFarPrefetch < size_) {
-    const Body& body = bodies_[i + kFarPrefetch];
+  if (i + kLevelPrefetch < size_) {
+    const Body& body = bodies_[i + kLevelPrefetch];
     grounds_[body.avatar_class].prefetch_level(body.level);
   }
-  if (i + kPrefetch < size_) {
-    const Body& body = bodies_[i + kPrefetch];
+  if (i + kCellPrefetch < size_) {
+    const Body& body = bodies_[i + kCellPrefetch];
     const Displacement displacement = displacement_again(body, body.velocity);
     grounds_[body.avatar_class].prefetch_cell(
         body.level, {int64_t{body.x} + displacement.x, int64_t{body.z} + displacement.z});
@@ -274,7 +275,7 @@ bool CrowdEngine::go_straight(const Body& body, steer::Situation& situation) con
   situation.preferred = steer::following_fast(config_.steering, situation);
   query_wall_ahead(body, situation);
   steer::SampledSettings at_once = config_.steering;
-  at_once.horizon = kAtOnce;
+  at_once.horizon = kStraightHorizon;
   if (steer::preferred_is_open_fast(at_once, situation)) return true;
   situation.preferred = turned;
   return false;
@@ -421,7 +422,7 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   Body& body = bodies_[i];
   Proposal& proposal = proposals()[i];
   proposal = {};
-  if (body.has(Body::kFlying)) {
+  if (body.has(Body::kMovedElsewhere)) {
     body.state = Body::kEnclosed;
     return false;
   }
@@ -491,7 +492,7 @@ bool CrowdEngine::try_displacements(const Body& body, const Displacements& candi
     return true;
   };
   return std::any_of(candidates.begin(), candidates.end(), is_free) ||
-         std::any_of(kShorter.begin(), kShorter.end(),
+         std::any_of(kShorterParts.begin(), kShorterParts.end(),
                      [&](float part) { return is_free(shorter(candidates[0], part)); });
 }
 
@@ -606,7 +607,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
     EngineCounts here;
     for (size_t i = begin; i < end; ++i) {
       Body& b = bodies_[i];
-      if (b.has(Body::kFlying)) continue;
+      if (b.has(Body::kMovedElsewhere)) continue;
       here.low_detail += b.has(Body::kLowDetail) ? 1 : 0;
       const Plane displacement =
           config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z);

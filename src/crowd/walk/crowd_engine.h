@@ -198,9 +198,9 @@ class CrowdEngine {
   // Moves are whole units. A body whose moves are of few units decides in each step, and its moves
   // are rounded up or down in turn: else it would be too slow, or stand.
   [[nodiscard]] bool has_short_moves(const Body& body) const {
-    constexpr float kFew = 128;  // [units]
+    constexpr float kMinStepUnits = 128;  // [units]
     const StepUnits units = units_of(body);
-    return body.speed * (units.dt / units.unit) < kFew;
+    return body.speed * (units.dt / units.unit) < kMinStepUnits;
   }
   [[nodiscard]] Displacement displacement_of(const Body& body, steer::Plane velocity) const {
     const StepUnits units = units_of(body);

@@ -40,7 +40,7 @@ uint64_t CrowdEngine::steps_of_reaction(const Body& body) const {
 void CrowdEngine::choose_detail(Body& body, uint64_t step) const {
   body.steps = 1;
   const bool low_detail = !detail_.views.empty() && !body.has(Body::kExternal) &&
-                          !body.has(Body::kFlying) && !is_near(body);
+                          !body.has(Body::kMovedElsewhere) && !is_near(body);
   if (!low_detail) {
     body.clear(Body::kLowDetail);
     return;

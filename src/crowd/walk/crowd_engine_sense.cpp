@@ -15,20 +15,20 @@ namespace {
 
 using steer::Plane;
 
-constexpr float kSlow = 0.3f;       // of its speed: it is held up
-constexpr float kTargetCount = 14;  // bodies, to find the nearest among
+constexpr float kHeldUpShare = 0.3f;  // of its speed: it is held up
+constexpr float kTargetCount = 14;    // bodies, to find the nearest among
 
 // On its last segment, and not at its end yet?
 bool is_on_last_segment(const Body& body) {
   constexpr uint8_t kAll =
-      Body::kHasGoal | Body::kLast | Body::kArrived | Body::kExternal | Body::kFlying;
+      Body::kHasGoal | Body::kLast | Body::kArrived | Body::kExternal | Body::kMovedElsewhere;
   // A target can hold many.
   return body.target == 0 && !body.leaves && (body.flags & kAll) == (Body::kHasGoal | Body::kLast);
 }
 
 // Does it head to a corner, not to its goal yet?
 bool turns_corner(const Body& body) {
-  constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kExternal | Body::kFlying;
+  constexpr uint8_t kAll = Body::kHasGoal | Body::kLast | Body::kExternal | Body::kMovedElsewhere;
   return (body.flags & kAll) == Body::kHasGoal && !body.leaves;
 }
 
@@ -129,7 +129,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   const bool may_wait = is_on_last_segment(body), turns = turns_corner(body);
   const bool rests = !body.leaves && !body.has(Body::kExternal) &&
                      (body.has(Body::kArrived) || !body.has(Body::kHasGoal));
-  const bool is_slow = size_of(body.velocity) < kSlow * body.speed;
+  const bool is_slow = size_of(body.velocity) < kHeldUpShare * body.speed;
   const bool steps_back = rests || (is_slow && !body.leaves && !body.has(Body::kExternal));
   for (size_t n = 0; n < nearest; ++n) {
     const Body& other = bodies_[lists.entries[n]];

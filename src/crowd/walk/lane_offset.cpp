@@ -11,11 +11,11 @@ namespace {
 
 using steer::Plane;
 
-constexpr float kHardly = 0.9f;  // cosine of a bend too small to matter
-constexpr float kAbreast = 5;    // radii that three centres in a row need
-constexpr float kWidest = 10;    // radii of an opening, beyond which width is not used
-constexpr float kWallRange = 3;  // [m] for the walls on both sides
-constexpr int32_t kTries = 3;    // each half as far from the corner
+constexpr float kStraightCosine = 0.9f;  // cosine of a bend too small to matter
+constexpr float kAbreast = 5;            // radii that three centres in a row need
+constexpr float kMaxOpening = 10;        // radii of an opening, beyond which width is not used
+constexpr float kWallRange = 3;          // [m] for the walls on both sides
+constexpr int32_t kMaxAttempts = 3;      // each half as far from the corner
 
 Plane towards(world::GroundPoint from, world::GroundPoint to) {
   const Plane displacement{static_cast<float>(to.x - from.x), static_cast<float>(to.z - from.z)};
@@ -40,13 +40,13 @@ PathPoint lane_offset(const Body& body, const Route& route, const StrideGround& 
   const PathPoint& next = route.corners[route.next + 1u];
   const world::GroundPoint at{corner.x, corner.z}, beyond{next.x, next.z};
   const Plane in = towards(body.point(), at), out = towards(at, beyond);
-  if (in.x * out.x + in.z * out.z > kHardly) return corner;
+  if (in.x * out.x + in.z * out.z > kStraightCosine) return corner;
   // Away from the wall that the path bends around.
   Plane away{in.x - out.x, in.z - out.z};
   const float size = steer::size_of(away);
   if (!(size > 1e-3f)) return corner;
   away = {away.x / size, away.z / size};
-  const float widest = kWidest * static_cast<float>(body.radius);
+  const float widest = kMaxOpening * static_cast<float>(body.radius);
   const float door = ground.free_distance(corner.level, at, across(away, out), widest);
   if (door < kAbreast * static_cast<float>(body.radius)) return corner;
 
@@ -59,7 +59,7 @@ PathPoint lane_offset(const Body& body, const Route& route, const StrideGround& 
   // Others come from the opposite direction: theirs is the left half.
   if (body.on_right) part = (part + (away.z * out.x - away.x * out.z > 0 ? 1.0f : 0.0f)) / 2;
   float off = ground.free_distance(corner.level, at, away, widest) * part;
-  for (int32_t i = 0; i < kTries; ++i, off *= 0.5f) {
+  for (int32_t i = 0; i < kMaxAttempts; ++i, off *= 0.5f) {
     const PathPoint own{corner.x + static_cast<int32_t>(std::lrint(away.x * off)),
                         corner.z + static_cast<int32_t>(std::lrint(away.z * off)), corner.level};
     const world::GroundPoint place{own.x, own.z};

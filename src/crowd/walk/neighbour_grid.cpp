@@ -11,9 +11,9 @@
 namespace throng::crowd {
 namespace {
 
-constexpr size_t kSpare = 64;    // entries that a vector may read past the end
-constexpr size_t kMin = 16384;   // squares of a table, however few bodies there are
-constexpr size_t kMaxParts = 4;  // of the bodies: each has a table while they are sorted
+constexpr size_t kReadMargin = 64;  // entries that a vector may read past the end
+constexpr size_t kMin = 16384;      // squares of a table, however few bodies there are
+constexpr size_t kMaxParts = 4;     // of the bodies: each has a table while they are sorted
 
 uint32_t squares_of(int32_t cells, int32_t square) {
   return std::max(8u, std::bit_ceil(static_cast<uint32_t>(cells / square) + 1));
@@ -35,7 +35,8 @@ NeighbourGrid::NeighbourGrid(int32_t width, int32_t depth, int64_t sight, size_t
   mask_x_ = across - 1;
   mask_z_ = down - 1;
   first_.resize(size_t{across} * down + 1);
-  for (HugeArray<int32_t>* places : {&x_, &z_, &y_}) *places = HugeArray<int32_t>(bodies + kSpare);
+  for (HugeArray<int32_t>* places : {&x_, &z_, &y_})
+    *places = HugeArray<int32_t>(bodies + kReadMargin);
 }
 
 void NeighbourGrid::sort(std::span<const Body> bodies, std::span<Body> sorted, int32_t workers) {

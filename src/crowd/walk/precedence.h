@@ -25,13 +25,13 @@ struct Contender {
 /// Must `self` wait for `other`? Their goals cannot hold both, and the other is nearer to its own.
 /// Only near the goal: a column that heads to one place keeps walking.
 inline bool goes_first(const Contender& other, const Contender& self) {
-  constexpr int64_t kNear = 6;  // times what both need
+  constexpr int64_t kRangeFactor = 6;  // times what both need
   const int64_t room = int64_t{other.radius} + self.radius;
   if (!nearer_than(other.local_target_x - self.local_target_x,
                    other.local_target_z - self.local_target_z, room))
     return false;
   const int64_t theirs = other.left(), mine = self.left();
-  if (mine > kNear * kNear * room * room) return false;
+  if (mine > kRangeFactor * kRangeFactor * room * room) return false;
   return theirs < mine || (theirs == mine && other.slot < self.slot);
 }
 
@@ -49,9 +49,9 @@ inline steer::Plane preferred_of_waiting(steer::Plane displacement, float speed,
 /// of its desired speed.
 inline bool gives_precedence(const Contender& other, const Contender& self, float far, float room,
                              float speed) {
-  constexpr float kClose = 0.1f;   // [m] between the bodies
-  constexpr float kStands = 0.2f;  // of its desired speed
-  return far < room + kClose && far > 1e-6f && speed < kStands && goes_first(other, self);
+  constexpr float kMaxGap = 0.1f;         // [m] between the bodies
+  constexpr float kStandingShare = 0.2f;  // of its desired speed
+  return far < room + kMaxGap && far > 1e-6f && speed < kStandingShare && goes_first(other, self);
 }
 
 }  // namespace throng::crowd

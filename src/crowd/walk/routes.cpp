@@ -16,8 +16,8 @@ namespace {
 
 constexpr uint64_t kCheckInterval = 16;  // decisions
 constexpr uint64_t kBlockedCheckInterval = 4;
-constexpr float kCheckRange = 3;  // [m] of a segment, to test whether it is visible
-constexpr float kSoon = 0.3f;     // [m] before its lane offset a body turns to the next corner
+constexpr float kCheckRange = 3;       // [m] of a segment, to test whether it is visible
+constexpr float kTurnDistance = 0.3f;  // [m] before its lane offset a body turns to the next corner
 
 void turn_to(Body& body, const Route& route, const StrideGround& ground, float metre) {
   body.on_right = body.in_counterflow;
@@ -39,7 +39,7 @@ bool is_at_lane_offset(const Body& body, const Route& route, float metre) {
   const auto z = static_cast<float>(next.z - body.local_target_z);
   const float along = static_cast<float>(body.x - body.local_target_x) * x +
                       static_cast<float>(body.z - body.local_target_z) * z;
-  return along > -kSoon * metre * std::sqrt(x * x + z * z);
+  return along > -kTurnDistance * metre * std::sqrt(x * x + z * z);
 }
 
 }  // namespace

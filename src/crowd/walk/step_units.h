@@ -26,10 +26,10 @@ struct StepUnits {
   /// to the unit. (As in Bresenham's line.)
   [[nodiscard]] int32_t small_displacement(float velocity, uint64_t n) const {
     const double units = double{velocity} * (double{dt} / unit);
-    const auto k = static_cast<double>(n % kSmallMoves);
+    const auto k = static_cast<double>(n % kMovesPerCycle);
     return static_cast<int32_t>(std::floor(units * (k + 1)) - std::floor(units * k));
   }
-  static constexpr uint64_t kSmallMoves = 1 << 16;
+  static constexpr uint64_t kMovesPerCycle = 1 << 16;
   [[nodiscard]] float velocity(int32_t displacement) const {
     return static_cast<float>(displacement) * (unit / dt);
   }

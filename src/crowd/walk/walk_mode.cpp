@@ -160,7 +160,7 @@ void WalkMode::areas_changed(std::span<Body> bodies) {
   }
   flows_are_old_ = true;
   for (Body& body : bodies) {
-    if (body.has(Body::kHasGoal) && !body.has(Body::kFlying) && !body.leaves) {
+    if (body.has(Body::kHasGoal) && !body.has(Body::kMovedElsewhere) && !body.leaves) {
       body.flags |= Body::kNeedsPath;
     }
   }
@@ -205,8 +205,8 @@ void WalkMode::cut_paths(std::span<const uint32_t> slots, std::span<Body> bodies
   if (boxes.empty()) return;
   parallel_ranges(bodies.size(), 4096, shared_.config.workers, [&](size_t begin, size_t end) {
     for (Body& body : bodies.subspan(begin, end - begin)) {
-      if (!body.has(Body::kHasGoal) || body.has(Body::kNeedsPath) || body.has(Body::kFlying) ||
-          body.leaves) {
+      if (!body.has(Body::kHasGoal) || body.has(Body::kNeedsPath) ||
+          body.has(Body::kMovedElsewhere) || body.leaves) {
         continue;
       }
       const bool is_cut = std::any_of(boxes.begin(), boxes.end(), [&](const PlanBox& box) {

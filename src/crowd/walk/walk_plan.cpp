@@ -18,7 +18,7 @@ void WalkMode::plan(std::span<Body> bodies, int32_t worker) {
   const uint64_t step_now = shared_.sub_step - 1;
   uint64_t asked = 0;
   for (Body& body : bodies) {
-    if (body.has(Body::kFlying) || body.steps == 0) continue;
+    if (body.has(Body::kMovedElsewhere) || body.steps == 0) continue;
     const OfClass& parts = *classes_[body.avatar_class];
     if (body.leaves) {
       plan_exit(body);

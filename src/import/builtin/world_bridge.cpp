@@ -18,10 +18,10 @@ namespace {
 
 using namespace shapes;
 
-constexpr double kDepth = 60;  // Of the ground, along z.
-constexpr double kDeck = 5.2;  // Height of the road.
-constexpr double kNear = 25;   // The deck: z from 25 to 35.
-constexpr double kFar = 35;
+constexpr double kDepth = 60;      // Of the ground, along z.
+constexpr double kDeck = 5.2;      // Height of the road.
+constexpr double kDeckBegin = 25;  // The deck: z from 25 to 35.
+constexpr double kDeckEnd = 35;
 constexpr double kParapet = 0.25;
 constexpr double kPavement = 1.75;
 constexpr double kSpan = 16;
@@ -77,14 +77,15 @@ void add_arch(WorldBuilder& b, const Plan& p, int32_t span) {
   const double x = p.first + span * kSpan;
   const double pier = p.is_river(span) || (span > 0 && p.is_river(span - 1)) ? kBed : 0;
   b.node(fmt::format("arch {}", span));
-  block(b, Mat::kStone, x - 1, x + 1, kNear, kFar, {pier, pier}, {kDeck, kDeck});
+  block(b, Mat::kStone, x - 1, x + 1, kDeckBegin, kDeckEnd, {pier, pier}, {kDeck, kDeck});
   std::array<uint32_t, 4> last{};
   for (int32_t i = 0; i <= kParts; ++i) {
     const double off = -7 + 14.0 * i / kParts;
     const double at = x + kSpan / 2 + off;
     const double low = soffit(off);
-    const std::array<uint32_t, 4> now{b.vertex({at, low, kNear}), b.vertex({at, low, kFar}),
-                                      b.vertex({at, kDeck, kNear}), b.vertex({at, kDeck, kFar})};
+    const std::array<uint32_t, 4> now{
+        b.vertex({at, low, kDeckBegin}), b.vertex({at, low, kDeckEnd}),
+        b.vertex({at, kDeck, kDeckBegin}), b.vertex({at, kDeck, kDeckEnd})};
     if (i > 0) {
       b.quad(Mat::kStone, last[0], now[0], now[1], last[1]);
       b.quad(Mat::kStone, last[0], last[2], now[2], now[0]);
@@ -100,7 +101,7 @@ void add_embankment(WorldBuilder& b, const Plan& p, double outer, double inner, 
                     double t1) {
   const auto piece = [&](double x0, double x1, double foot) {
     if (!(x1 > x0)) return;
-    block(b, Mat::kStone, x0, x1, kNear, kFar, {foot, foot}, {p.deck(x0), p.deck(x1)});
+    block(b, Mat::kStone, x0, x1, kDeckBegin, kDeckEnd, {foot, foot}, {p.deck(x0), p.deck(x1)});
   };
   std::array<double, 6> cuts{outer, outer < inner ? inner - kFlat : inner + kFlat, inner, t0, t1,
                              inner};
@@ -124,18 +125,18 @@ void add_deck(WorldBuilder& b, const Plan& p, double gap0, double gap1) {
     const std::array<double, 2> road{p.deck(x0), p.deck(x1)};
     const std::array<double, 2> kerb{road[0] + 0.12, road[1] + 0.12};
     const std::array<double, 2> rail{road[0] + 1.1, road[1] + 1.1};
-    block(b, Mat::kPavement, x0, x1, kNear + kParapet, kNear + kPavement, road, kerb);
-    block(b, Mat::kPavement, x0, x1, kFar - kPavement, kFar - kParapet, road, kerb);
+    block(b, Mat::kPavement, x0, x1, kDeckBegin + kParapet, kDeckBegin + kPavement, road, kerb);
+    block(b, Mat::kPavement, x0, x1, kDeckEnd - kPavement, kDeckEnd - kParapet, road, kerb);
     if (x0 >= gap0 && x1 <= gap1) {
-      block(b, Mat::kPavement, x0, x1, kNear, kNear + kParapet, road, kerb);
-      block(b, Mat::kPavement, x0, x1, kFar - kParapet, kFar, road, kerb);
+      block(b, Mat::kPavement, x0, x1, kDeckBegin, kDeckBegin + kParapet, road, kerb);
+      block(b, Mat::kPavement, x0, x1, kDeckEnd - kParapet, kDeckEnd, road, kerb);
     } else if (road[0] + road[1] > 0) {
-      block(b, Mat::kStone, x0, x1, kNear, kNear + kParapet, road, rail);
-      block(b, Mat::kStone, x0, x1, kFar - kParapet, kFar, road, rail);
+      block(b, Mat::kStone, x0, x1, kDeckBegin, kDeckBegin + kParapet, road, rail);
+      block(b, Mat::kStone, x0, x1, kDeckEnd - kParapet, kDeckEnd, road, rail);
     }
     // Asphalt a finger over the masonry.
-    const double z0 = kNear + kPavement;
-    const double z1 = kFar - kPavement;
+    const double z0 = kDeckBegin + kPavement;
+    const double z1 = kDeckEnd - kPavement;
     const uint32_t v0 = b.vertex({x0, road[0] + 0.01, z0});
     const uint32_t v1 = b.vertex({x0, road[0] + 0.01, z1});
     const uint32_t v2 = b.vertex({x1, road[1] + 0.01, z1});
@@ -169,7 +170,7 @@ void add_stairs(WorldBuilder& b, double landing0, double landing1, double z) {
   flight(b, Mat::kStairs, f);
   b.place({});
   box(b, Mat::kStone, {landing0, 0, z}, {landing1, top, z + 2.2}, kNoBottom);
-  const double outside = z < kNear ? z + 0.05 : z + 2.15;
+  const double outside = z < kDeckBegin ? z + 0.05 : z + 2.15;
   railing(b, {landing0, top, outside}, {landing1, top, outside});
   railing(b, {landing0 + 0.05, top, z}, {landing0 + 0.05, top, z + 2.2});
 }
@@ -190,8 +191,8 @@ void add_ground(WorldBuilder& b, const Plan& p, uint64_t seed) {
       if (ends) thin_wall(b, Mat::kStone, river.x1, 0, river.x1, kDepth, kBed, 0);
       for (const double bank : {begins ? river.x0 - 0.1 : -1.0, ends ? river.x1 + 0.1 : -1.0}) {
         if (bank < 0) continue;
-        railing(b, {bank, 0, 0}, {bank, 0, kNear});
-        railing(b, {bank, 0, kFar}, {bank, 0, kDepth});
+        railing(b, {bank, 0, 0}, {bank, 0, kDeckBegin});
+        railing(b, {bank, 0, kDeckEnd}, {bank, 0, kDepth});
       }
     } else {
       const double wide = span == 0 ? 8 : 3;
@@ -201,7 +202,7 @@ void add_ground(WorldBuilder& b, const Plan& p, uint64_t seed) {
     }
   }
   for (const double x : {0.0, p.size - kApproach}) {
-    const Rect road{x, kNear + kPavement, x + kApproach, kFar - kPavement};
+    const Rect road{x, kDeckBegin + kPavement, x + kApproach, kDeckEnd - kPavement};
     holes.push_back(road);
   }
   floor_with_holes(b, Mat::kGrass, {0, 0, p.size, kDepth}, holes, 0);
@@ -229,7 +230,7 @@ void build_bridge(WorldBuilder& b, const BuiltinWorldConfig& config) {
   add_ground(b, p, config.seed);
   for (int32_t span = 0; span < p.spans; ++span) add_arch(b, p, span);
   b.node("abutment");
-  block(b, Mat::kStone, p.last() - 1, p.last() + 1, kNear, kFar, {0, 0}, {kDeck, kDeck});
+  block(b, Mat::kStone, p.last() - 1, p.last() + 1, kDeckBegin, kDeckEnd, {0, 0}, {kDeck, kDeck});
   b.node("embankments");
   const double tunnel = p.first - kFlat - 9;
   add_embankment(b, p, kApproach, p.first - 1, tunnel, tunnel + 3.5);
@@ -239,8 +240,8 @@ void build_bridge(WorldBuilder& b, const BuiltinWorldConfig& config) {
   const double gap1 = p.last() + 2.5;
   add_deck(b, p, gap0, gap1);
   b.node("stairs");
-  add_stairs(b, gap0 - 0.2, gap1 + 0.2, kFar);
-  add_stairs(b, gap0 - 0.2, gap1 + 0.2, kNear - 2.2);
+  add_stairs(b, gap0 - 0.2, gap1 + 0.2, kDeckEnd);
+  add_stairs(b, gap0 - 0.2, gap1 + 0.2, kDeckBegin - 2.2);
 }
 
 }  // namespace throng::importer::builtin

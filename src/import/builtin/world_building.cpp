@@ -12,7 +12,7 @@ namespace {
 
 using namespace shapes;
 
-constexpr double kThick = 0.25;
+constexpr double kWallThickness = 0.25;
 constexpr double kFloor0 = 0.03;     // The ground floor's height over the pavement.
 constexpr double kCorridor0 = -1.0;  // The corridor, in z.
 constexpr double kCorridor1 = 1.2;
@@ -64,8 +64,8 @@ void thin_wall_with_doors(WorldBuilder& b, double x0, double x1, double z, doubl
 }
 
 void add_rooms(WorldBuilder& b, const Building& h, int32_t storey) {
-  const double x1 = h.width / 2 - kThick;
-  const double z1 = h.depth / 2 - kThick;
+  const double x1 = h.width / 2 - kWallThickness;
+  const double z1 = h.depth / 2 - kWallThickness;
   const double y0 = floor_height(storey);
   const double y1 = floor_height(storey + 1);
   const double third = h.width / 6;
@@ -86,13 +86,15 @@ void add_rooms(WorldBuilder& b, const Building& h, int32_t storey) {
 void add_shell(WorldBuilder& b, const Building& h, double top) {
   const double x1 = h.width / 2;
   const double z1 = h.depth / 2;
-  box(b, Mat::kWall, {-x1, 0, z1 - kThick}, {x1, top, z1}, kNoBottom);
-  box(b, Mat::kWall, {-x1, 0, -z1 + kThick}, {-x1 + kThick, top, z1 - kThick}, kNoBottom);
-  box(b, Mat::kWall, {x1 - kThick, 0, -z1 + kThick}, {x1, top, z1 - kThick}, kNoBottom);
+  box(b, Mat::kWall, {-x1, 0, z1 - kWallThickness}, {x1, top, z1}, kNoBottom);
+  box(b, Mat::kWall, {-x1, 0, -z1 + kWallThickness},
+      {-x1 + kWallThickness, top, z1 - kWallThickness}, kNoBottom);
+  box(b, Mat::kWall, {x1 - kWallThickness, 0, -z1 + kWallThickness}, {x1, top, z1 - kWallThickness},
+      kNoBottom);
   constexpr double kHalf = 0.8;
-  box(b, Mat::kWall, {-x1, 0, -z1}, {-kHalf, top, -z1 + kThick}, kNoBottom);
-  box(b, Mat::kWall, {kHalf, 0, -z1}, {x1, top, -z1 + kThick}, kNoBottom);
-  box(b, Mat::kWall, {-kHalf, 2.3, -z1}, {kHalf, top, -z1 + kThick});
+  box(b, Mat::kWall, {-x1, 0, -z1}, {-kHalf, top, -z1 + kWallThickness}, kNoBottom);
+  box(b, Mat::kWall, {kHalf, 0, -z1}, {x1, top, -z1 + kWallThickness}, kNoBottom);
+  box(b, Mat::kWall, {-kHalf, 2.3, -z1}, {kHalf, top, -z1 + kWallThickness});
 }
 
 // Panes a little outside of the walls. `bands`: one long pane a storey, for houses without an
@@ -123,8 +125,8 @@ void add_windows(WorldBuilder& b, const Building& h) {
 }
 
 void add_flat_roof(WorldBuilder& b, const Building& h, double y, std::span<const Rect> hole) {
-  const double x1 = h.width / 2 - kThick;
-  const double z1 = h.depth / 2 - kThick;
+  const double x1 = h.width / 2 - kWallThickness;
+  const double z1 = h.depth / 2 - kWallThickness;
   floor_with_holes(b, Mat::kRoof, {-x1, -z1, x1, z1}, hole, y);
   if (hole.empty()) return;
   const Rect& w = hole[0];
@@ -160,11 +162,14 @@ void add_building(WorldBuilder& b, const Building& h) {
   const std::array<Rect, 1> hole{well()};
   if (h.interior) {
     add_shell(b, h, top);
-    floor_rect(b, Mat::kFloor, {-x1 + kThick, -z1, x1 - kThick, z1 - kThick}, kFloor0);
+    floor_rect(b, Mat::kFloor,
+               {-x1 + kWallThickness, -z1, x1 - kWallThickness, z1 - kWallThickness}, kFloor0);
     for (int32_t storey = 0; storey < h.storeys; ++storey) {
       if (storey > 0) {
-        floor_with_holes(b, Mat::kFloor, {-x1 + kThick, -z1 + kThick, x1 - kThick, z1 - kThick},
-                         hole, floor_height(storey));
+        floor_with_holes(
+            b, Mat::kFloor,
+            {-x1 + kWallThickness, -z1 + kWallThickness, x1 - kWallThickness, z1 - kWallThickness},
+            hole, floor_height(storey));
       }
       add_rooms(b, h, storey);
       if (storey + 1 < h.storeys || h.roof_access) add_stairs(b, storey);

@@ -412,10 +412,10 @@ void scatter(const PatchSet& set, const std::vector<Cell>& cells, const Ground& 
 }  // namespace
 
 double landscape_tolerance(double size) {
-  constexpr double kUsual = 0.02;
+  constexpr double kDefaultTolerance = 0.02;
   constexpr double kTriangles = 7;  // On a square metre at that tolerance; nearly inverse to it.
   constexpr double kMax = 90e6;
-  return std::max(kUsual, kUsual * kTriangles * size * size / kMax);
+  return std::max(kDefaultTolerance, kDefaultTolerance * kTriangles * size * size / kMax);
 }
 
 PatchSet build_landscape(const BuiltinWorldConfig& config) {

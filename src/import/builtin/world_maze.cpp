@@ -18,7 +18,7 @@ namespace {
 using namespace shapes;
 
 constexpr double kPitch = 2.2;  // A corridor of 2 m and a wall of 0.2 m.
-constexpr double kThick = 0.2;
+constexpr double kWallThickness = 0.2;
 constexpr double kStorey = 3.06;
 constexpr double kSlab = 0.25;
 constexpr double kMargin = 2;  // Ground around the maze.
@@ -88,11 +88,11 @@ void raise_walls(WorldBuilder& b, const std::vector<uint8_t>& edges, int32_t n, 
       while (stands(j)) ++j;
       const double u0 = at + line * kPitch;
       const double v0 = at + from * kPitch;
-      const double v1 = at + j * kPitch + kThick;
+      const double v1 = at + j * kPitch + kWallThickness;
       if (along_z) {
-        box(b, Mat::kWall, {u0, y0, v0}, {u0 + kThick, y1, v1}, kNoBottom);
+        box(b, Mat::kWall, {u0, y0, v0}, {u0 + kWallThickness, y1, v1}, kNoBottom);
       } else {
-        box(b, Mat::kWall, {v0, y0, u0}, {v1, y1, u0 + kThick}, kNoBottom);
+        box(b, Mat::kWall, {v0, y0, u0}, {v1, y1, u0 + kWallThickness}, kNoBottom);
       }
     }
   }
@@ -101,8 +101,8 @@ void raise_walls(WorldBuilder& b, const std::vector<uint8_t>& edges, int32_t n, 
 }  // namespace
 
 void build_maze(WorldBuilder& b, const BuiltinWorldConfig& config) {
-  const auto n = static_cast<int32_t>((config.size - 2 * kMargin - kThick) / kPitch);
-  const double side = n * kPitch + kThick;
+  const auto n = static_cast<int32_t>((config.size - 2 * kMargin - kWallThickness) / kPitch);
+  const double side = n * kPitch + kWallThickness;
   const double at = (config.size - side) / 2;
   b.node("ground");
   floor_rect(b, Mat::kPavement, {0, 0, config.size, config.size}, 0);
@@ -121,7 +121,7 @@ void build_maze(WorldBuilder& b, const BuiltinWorldConfig& config) {
     if (last) continue;
 
     const int32_t room = l % 2 == 0 ? 1 : n - 4;
-    const double centre = at + (room + 1.5) * kPitch + kThick / 2;
+    const double centre = at + (room + 1.5) * kPitch + kWallThickness / 2;
     b.node(fmt::format("stairs from level {}", l));
     spiral(b, Mat::kStairs,
            {.x = centre,

@@ -12,7 +12,8 @@
 
 #include "import/formats/text_cursor.h"
 
-// Source: G. Turk. The PLY polygon file format. 1994.
+// Reads PLY models, as text or as numbers of either byte order, in one pass over the elements that
+// the header lists. Time: linear in the bytes. Source: G. Turk. The PLY polygon file format. 1994.
 namespace throng::importer {
 namespace {
 

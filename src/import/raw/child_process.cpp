@@ -59,7 +59,7 @@ void prepare_child(const ChildLimits& limits, uint64_t own_bytes) {
 }
 
 std::string how_it_ended(int status) {
-  if (!WIFSIGNALED(status)) return "the reader of this format gave up on it";
+  if (!WIFSIGNALED(status)) return "the reader of this format ended without a result";
   if (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL) {
     return "the reader of this format took too long or too much memory";
   }

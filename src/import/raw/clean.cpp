@@ -23,9 +23,9 @@
 namespace throng::importer {
 namespace {
 
-constexpr double kFarthest = 1e9;      // [m] Beyond it a double keeps less than a micrometre.
-constexpr double kLargestWorld = 1e6;  // [m] 1000 km.
-constexpr double kSpikeLength = 1000;  // [m] Shorter ones are harmless.
+constexpr double kMaxCoordinate = 1e9;  // [m] Beyond it a double keeps less than a micrometre.
+constexpr double kLargestWorld = 1e6;   // [m] 1000 km.
+constexpr double kSpikeLength = 1000;   // [m] Shorter ones are harmless.
 
 // Calls look(begin, end, share) for ranges of all triangles in parallel, and add(share) for each
 // share, one at a time and in no fixed order: add must not depend on the order.
@@ -307,7 +307,7 @@ Result<void> clean_scene(Scene& scene, const std::string& name, Context& context
   if (context.cancel) return Error{Errc::kCancelled, "cancelled while cleaning"};
   const Box3d all = corner_box(scene.positions, scene.triangles, 0);
   for (const double value : {all.min.x, all.min.y, all.min.z, all.max.x, all.max.y, all.max.z}) {
-    if (std::fabs(value) <= kFarthest) continue;
+    if (std::fabs(value) <= kMaxCoordinate) continue;
     return Error{Errc::kBadInput,
                  fmt::format("{}: a vertex lies {:.3g} km from the origin; remove it, or give the "
                              "scale if the unit is not the metre",

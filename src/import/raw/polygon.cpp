@@ -16,11 +16,13 @@ namespace throng::importer {
 namespace {
 
 constexpr uint32_t kNone = UINT32_MAX;
-constexpr int kMaxForced = 8;      // After so many wrong cuts exactness is given up.
-constexpr double kLargest = 1e15;  // Beyond it products of coordinates are meaningless as lengths.
+constexpr int kMaxForced = 8;  // After so many wrong cuts exactness is given up.
+// Beyond it products of coordinates are meaningless as lengths.
+constexpr double kMaxCoordinate = 1e15;
 
 bool is_usable(Vec3d p) {
-  return std::fabs(p.x) < kLargest && std::fabs(p.y) < kLargest && std::fabs(p.z) < kLargest;
+  return std::fabs(p.x) < kMaxCoordinate && std::fabs(p.y) < kMaxCoordinate &&
+         std::fabs(p.z) < kMaxCoordinate;
 }
 
 double cross2(Vec2d a, Vec2d b, Vec2d c) {

@@ -10,7 +10,7 @@
 namespace throng::caacd {
 namespace {
 
-constexpr uint64_t kTries = 20000;
+constexpr uint64_t kMaxDraws = 20000;
 
 // One stream for each purpose and index, so that one more avatar does not change the others.
 enum Purpose : uint64_t { kObstaclePlace = 1, kStart, kTarget, kHeading, kSpeed, kObstacleSize };
@@ -30,7 +30,7 @@ Vec3d random_point(uint64_t seed, uint64_t stream, uint64_t attempt, double side
 
 // A direction, from a point of the unit disc: sines differ between machines, square roots do not.
 Vec3d random_heading(uint64_t seed, size_t index) {
-  for (uint64_t attempt = 0; attempt < kTries; ++attempt) {
+  for (uint64_t attempt = 0; attempt < kMaxDraws; ++attempt) {
     const Vec3d p = random_point(seed, stream_of(kHeading, index), attempt, 2, 0);
     const Vec3d v{p.x - 1, 0, p.z - 1};
     const double size = length(v);
@@ -97,7 +97,7 @@ Result<Space> random_space(const SpaceConfig& config, const Model& model) {
     };
     bool placed = false;
     if (2 * fields.alert < config.side) {
-      for (uint64_t attempt = 0; attempt < kTries && !placed; ++attempt) {
+      for (uint64_t attempt = 0; attempt < kMaxDraws && !placed; ++attempt) {
         const Vec3d p =
             random_point(seed, stream_of(kObstaclePlace, i), attempt, config.side, fields.alert);
         if (is_free(p)) {
@@ -110,7 +110,7 @@ Result<Space> random_space(const SpaceConfig& config, const Model& model) {
   }
   for (size_t i = 0; i < static_cast<size_t>(config.avatars); ++i) {
     bool placed = false;
-    for (uint64_t attempt = 0; attempt < kTries && !placed; ++attempt) {
+    for (uint64_t attempt = 0; attempt < kMaxDraws && !placed; ++attempt) {
       const Vec3d p = random_point(seed, stream_of(kStart, i), attempt, config.side, 0);
       if (!outside_alert_fields(p, space)) continue;
       if (!away_from_all(p, space, 2 * config.fields.precaution)) continue;
@@ -124,7 +124,7 @@ Result<Space> random_space(const SpaceConfig& config, const Model& model) {
       placed = true;
     }
     if (!placed) return too_full("avatar", i);
-    for (uint64_t attempt = 0; attempt < kTries; ++attempt) {
+    for (uint64_t attempt = 0; attempt < kMaxDraws; ++attempt) {
       const Vec3d p = random_point(seed, stream_of(kTarget, i), attempt, config.side, 0);
       if (!outside_alert_fields(p, space)) continue;
       space.targets.push_back(p);

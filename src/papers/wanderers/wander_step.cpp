@@ -25,7 +25,7 @@ namespace {
 constexpr size_t kGroup = 64;
 constexpr int32_t kAheadAvatar = 128;  // avatars between the prefetch of one and its use
 constexpr int32_t kAheadLevel = 48;    // the same for the line of a level
-constexpr int32_t kShort = 2;          // longest flat step [cells]
+constexpr int32_t kMaxFlatStep = 2;    // longest flat step [cells]
 
 // Numbers of avatars of a group.
 class List {
@@ -131,12 +131,12 @@ std::span<const uint16_t> all_of_group() {
 int32_t mask(bool condition) { return -static_cast<int32_t>(condition); }
 
 // True if all cells of a box between two cells are set and lie on one tile of 64 rows. False for
-// boxes longer than kShort.
+// boxes longer than kMaxFlatStep.
 [[gnu::always_inline]] inline bool box_is_set(const uint64_t* rows, int32_t x0, int32_t z0,
                                               int32_t x1, int32_t z1) {
   const bool near = (static_cast<uint32_t>((x0 ^ x1) | (z0 ^ z1)) < 64) &
-                    (static_cast<uint32_t>(x1 - x0 + kShort) <= 2 * kShort) &
-                    (static_cast<uint32_t>(z1 - z0 + kShort) <= 2 * kShort);
+                    (static_cast<uint32_t>(x1 - x0 + kMaxFlatStep) <= 2 * kMaxFlatStep) &
+                    (static_cast<uint32_t>(z1 - z0 + kMaxFlatStep) <= 2 * kMaxFlatStep);
   // Of two cells that are at most two apart, the middle one is all that lies between.
   const uint64_t common =
       rows[world::in_tile(z0)] & rows[world::in_tile((z0 + z1) >> 1)] & rows[world::in_tile(z1)];

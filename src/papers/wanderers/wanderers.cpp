@@ -26,7 +26,7 @@ namespace {
 constexpr int32_t kBlockPixels = 32;
 // Pixels of the map for each avatar above which small pages, allocated only around it, save memory:
 // an avatar touches up to three pages of 512.
-constexpr int64_t kSparse = 2048;
+constexpr int64_t kPixelsPerAvatar = 2048;
 constexpr double kMaxPixels = 1e12;  // 8 TB of addresses; only what is touched takes memory
 constexpr double kMinUnits = 50;  // of a step: they are whole, so it is within 1.5 % of its length
 constexpr uint64_t kGrain = 512;  // avatars that are worth another thread
@@ -98,7 +98,7 @@ Result<Wanderers> Wanderers::create(const World& world, const WanderConfig& conf
   const auto [low, high] = state->ground.feet_range();
   const crowd::PixelGrid grid(pixel_cells);
   const int64_t pixels = int64_t{data.width / pixel_cells + 1} * (data.depth / pixel_cells + 1);
-  const Pages pages = pixels / kSparse < config.avatars ? Pages::kHuge : Pages::kSmall;
+  const Pages pages = pixels / kPixelsPerAvatar < config.avatars ? Pages::kHuge : Pages::kSmall;
   const double planes = (static_cast<double>(high) - low) / (64 * crowd::CollisionMap::kSlab) + 2;
   if (static_cast<double>(pixels) * planes > kMaxPixels) {
     return Error{Errc::kLimit, "crowd: the world is too large and too high for a crowd of class " +

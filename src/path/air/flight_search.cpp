@@ -10,7 +10,7 @@
 namespace throng::path {
 namespace {
 
-constexpr double kShorter = 1e-9;
+constexpr double kMinGain = 1e-9;
 // The heuristic is weighted a little: among paths that are nearly as short, the one that is nearly
 // at the goal is expanded first. It costs 0.02 % of length and spares three boxes of four.
 constexpr double kHeuristicWeight = 1.02;
@@ -21,9 +21,9 @@ constexpr double kLargeHeuristicWeight = 1.1;  // through large boxes
 // with the distance from both ends. Its result is used if it is hardly longer than the straight
 // line; otherwise the search through all boxes has a budget in which to find a shorter one. String
 // pulling moves the path to the edges of what is in between in either case.
-constexpr double kFar = 256;            // ends so many voxels apart
-constexpr double kHardlyLonger = 1.05;  // before it is pulled taut
-constexpr uint64_t kBudget = 1u << 17;  // boxes
+constexpr double kCoarseDistance = 256;  // ends so many voxels apart
+constexpr double kMaxStretch = 1.05;     // before it is pulled taut
+constexpr uint64_t kBudget = 1u << 17;   // boxes
 struct Ring {
   double within;     // voxels from an end
   int32_t min_side;  // voxels a side of a box
@@ -86,7 +86,7 @@ void FlightSearch::give_back() {
   if (allocated_bytes() <= kKeptBytes) return;
   nodes_.clear();
   nodes_.shrink(0);
-  marks_.clear();
+  marks_.give_back();
   open_.give_back();
 }
 
@@ -105,7 +105,7 @@ SearchResult FlightSearch::find(const AirView& air, AirPoint from, AirPoint to,
     return SearchResult::kFound;
   }
   const double straight = air_distance(from, to);
-  if (straight <= kFar) {
+  if (straight <= kCoarseDistance) {
     large_ = false;
     return search(from, start, budget, path);
   }
@@ -115,7 +115,7 @@ SearchResult FlightSearch::find(const AirView& air, AirPoint from, AirPoint to,
   if (large == SearchResult::kBudget) return large;
   const bool found = large == SearchResult::kFound;
   const double length = length_of(large_path_);
-  if (!found || length > kHardlyLonger * straight) {
+  if (!found || length > kMaxStretch * straight) {
     large_ = false;
     const uint64_t left = budget.max_nodes - expanded_;
     SearchBudget rest = budget;
@@ -141,16 +141,12 @@ int32_t FlightSearch::min_around(const world::AirCube& box) const {
 
 SearchResult FlightSearch::search(AirPoint from, uint32_t start, const SearchBudget& budget,
                                   std::vector<AirPoint>& path) {
-  marks_.resize(air_->end());
-  if (++search_ == 0) {  // After 2^32 searches the marks start over.
-    marks_.clear();
-    search_ = 1;
-  }
+  marks_.begin(air_->end());
   path.clear();
   nodes_.clear();
   open_.clear();
   nodes_.push_back({from, 0, air_distance(from, goal_), start, 0, 0, false});
-  marks_[start] = {search_, 0};
+  marks_[start] = {marks_.search(), 0};
   push(0);
   while (!open_.empty()) {
     const Entry entry = open_.pop();
@@ -221,7 +217,7 @@ void FlightSearch::open(uint32_t node) {
 
 void FlightSearch::reach(uint32_t from, uint32_t box) {
   Mark& mark = marks_[box];
-  const bool known = mark.search == search_;
+  const bool known = marks_.is_reached(mark);
   if (known && nodes_[mark.node].opened) return;
   const uint32_t parent = nodes_[from].parent;
   const Node& turn = nodes_[parent];
@@ -235,12 +231,12 @@ void FlightSearch::reach(uint32_t from, uint32_t box) {
   next.via = from;
   if (known) {
     Node& old = nodes_[mark.node];
-    if (next.estimate >= old.estimate - kShorter) return;
+    if (next.estimate >= old.estimate - kMinGain) return;
     old = next;
     push(mark.node);
     return;
   }
-  mark = {search_, static_cast<uint32_t>(nodes_.size())};
+  mark = {marks_.search(), static_cast<uint32_t>(nodes_.size())};
   nodes_.push_back(next);
   push(mark.node);
 }

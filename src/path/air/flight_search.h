@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/chunked_array.h"
-#include "core/paged.h"
 #include "path/air/air_view.h"
 #include "path/ground/open_list.h"
 #include "path/ground/search.h"
+#include "path/ground/search_states.h"
 #include "throng/path.h"
 
 /// A short path through the air, over boxes.
@@ -71,11 +71,10 @@ class FlightSearch {
   bool large_ =
       false;  // only through boxes of a minimum size that grows with the distance from both ends
   uint32_t goal_box_ = kNoBox;
-  uint32_t search_ = 0;
   uint64_t expanded_ = 0;
   ChunkedArray<Node> nodes_;
   OpenList<Entry> open_;
-  Paged<Mark> marks_;                 // per box or part of a split one
+  SearchStates<Mark> marks_;          // per box or part of a split one
   std::vector<AirPoint> large_path_;  // through large boxes
 };
 

@@ -19,8 +19,10 @@ double off_faces(double v) {
 AirPoint off_faces(AirPoint p) { return {off_faces(p.x), off_faces(p.y), off_faces(p.z)}; }
 
 uint32_t FlightSpace::box_at(AirPoint p) const {
-  constexpr double kFar = 1e9;
-  if (!(std::fabs(p.x) < kFar && std::fabs(p.y) < kFar && std::fabs(p.z) < kFar)) return kNoBox;
+  constexpr double kMaxCoordinate = 1e9;
+  if (!(std::fabs(p.x) < kMaxCoordinate && std::fabs(p.y) < kMaxCoordinate &&
+        std::fabs(p.z) < kMaxCoordinate))
+    return kNoBox;
   return box_at(static_cast<int32_t>(std::floor(p.x)), static_cast<int32_t>(std::floor(p.y)),
                 static_cast<int32_t>(std::floor(p.z)));
 }

@@ -204,10 +204,11 @@ class Surroundings {
   // the floor is flat? Of a slope where no avatar can stand only the first cell is known.
   [[nodiscard]] bool is_slope(int32_t x, int32_t z, int32_t dx, int32_t dz, int32_t from,
                               int32_t to) const {
-    constexpr double kSteepest = 4;  // A floor that rises more is a wall, about 76 degrees.
+    constexpr double kMaxFloorRise = 4;  // A floor that rises more is a wall, about 76 degrees.
     const double run = std::sqrt(static_cast<double>(dx * dx + dz * dz));
     const int32_t rise = to - from;
-    if (std::abs(rise) <= steepest_ * run || std::abs(rise) > kSteepest * cell_ * run) return false;
+    if (std::abs(rise) <= steepest_ * run || std::abs(rise) > kMaxFloorRise * cell_ * run)
+      return false;
     const auto next = nearest_floor(ground_, x + dx, z + dz, to + rise);
     if (!next) return true;
     const int32_t goes_on =

@@ -13,8 +13,8 @@ namespace throng {
 namespace path {
 
 void EditList::note(Changed what) {
-  constexpr size_t kFew = 4096;
-  if (changed.size() > 2 * edits.size() + kFew) {
+  constexpr size_t kMinKept = 4096;
+  if (changed.size() > 2 * edits.size() + kMinKept) {
     first_version = version();
     changed.clear();
   }

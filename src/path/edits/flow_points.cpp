@@ -181,9 +181,9 @@ Place FlowPoints::next(GroundFinder& of, const Place& place) const {
   const Point* best = &points_[first];
   // On as long as a straight line costs no more than the path so far; stop after some that cost
   // more.
-  constexpr int kPatience = 3;
+  constexpr int kMaxMissed = 3;
   int missed = 0;
-  for (const Point* p = best; p->next != kNoPoint && missed < kPatience;) {
+  for (const Point* p = best; p->next != kNoPoint && missed < kMaxMissed;) {
     p = &points_[p->next];
     if (segment_cost(ground.mesh, from, p->stop) <= (total - p->cost) * (1 + 1e-9)) {
       best = p;

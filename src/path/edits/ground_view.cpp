@@ -16,7 +16,8 @@
 #include "world/tile_grid.h"
 
 // Rectangles and portals of one level tile after the other, cut from its cells less those that
-// obstacles block; a change makes the levels of its tiles again.
+// obstacles block; a change makes the levels of its tiles again. Time: linear in the cells of the
+// levels that are made; a change also finds the portals of the tiles around its own again.
 namespace throng::path {
 namespace {
 
@@ -430,7 +431,7 @@ void GroundView::drop(ViewLevel& level) {
 
 // Those that no portal has any more. Their numbers are used again.
 void GroundView::drop_unused_corners() {
-  constexpr size_t kLeast = 256;
+  constexpr size_t kMinCorners = 256;
   used_corners_.assign(mesh_.corners.size(), false);
   for (const std::unique_ptr<ViewLevel>& level : levels_) {
     if (level == nullptr) continue;
@@ -450,7 +451,7 @@ void GroundView::drop_unused_corners() {
     corner_numbers_.erase(found);
     free_corners_.push_back(c);
   }
-  max_corners_ = std::max(kLeast, 2 * corner_numbers_.size());
+  max_corners_ = std::max(kMinCorners, 2 * corner_numbers_.size());
 }
 
 }  // namespace throng::path

@@ -117,13 +117,13 @@ double segment_cost(GroundView& mesh, const ViewStop& from, const ViewStop& to) 
 }
 
 void CostString::leave_out(std::vector<ViewStop>& walk) {
-  constexpr double kSlack = 1 + 1e-9;
+  constexpr double kRoundingFactor = 1 + 1e-9;
   if (walk.size() < 3) return;
   before_.assign(walk.size(), 0);
   for (size_t i = 1; i < walk.size(); ++i)
     before_[i] = before_[i - 1] + segment_cost(*mesh_, walk[i - 1], walk[i]);
   path::leave_out<LeaveOut::kDoubling>(walk, [&](const ViewStop& from, size_t at, size_t to) {
-    return segment_cost(*mesh_, from, walk[to]) <= (before_[to] - before_[at]) * kSlack;
+    return segment_cost(*mesh_, from, walk[to]) <= (before_[to] - before_[at]) * kRoundingFactor;
   });
 }
 

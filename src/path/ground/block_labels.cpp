@@ -53,8 +53,8 @@ class Lister {
           std::max(from_middle(r, mesh_.corners[corner]) - half, nearest(r, mesh_.corners[corner]));
       for (const HubLabels::Label& label : labels_.of(corner)) {
         // What is as long within a float's error stays.
-        constexpr float kSlack = 1e-2f;  // cells
-        if (near + label.length > true_length(label.hub) + half + kSlack) continue;
+        constexpr float kLengthTolerance = 1e-2f;  // cells
+        if (near + label.length > true_length(label.hub) + half + kLengthTolerance) continue;
         entries.push_back({label.hub, static_cast<uint16_t>(i - begin), label.length});
       }
     }
@@ -69,9 +69,9 @@ class Lister {
     cast_into(rect, n);
     std::vector<MiddleEntry> entries;
     for (const uint32_t hub : hubs_) {
-      constexpr float kSlack =
-          1e-3f;  // cells: the hub itself is one of those that it is reached by
-      if (best_[hub].length > true_length(hub) + kSlack) continue;
+      // cells: the hub itself is one of those that it is reached by
+      constexpr float kLengthTolerance = 1e-3f;
+      if (best_[hub].length > true_length(hub) + kLengthTolerance) continue;
       entries.push_back({hub, labels_.tree_place[best_[hub].label], best_[hub].length});
     }
     std::sort(entries.begin(), entries.end(),

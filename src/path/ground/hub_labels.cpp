@@ -7,7 +7,9 @@
 
 #include "core/parallel.h"
 
-// Casts from every corner, then labels the visibility graph of the corners ([LPW79]) by hubs.
+// Casts from every corner, then labels the visibility graph of the corners ([LPW79]) by hubs. Time:
+// the blocks and corners that each corner sees, and a pruned Dijkstra search from each corner
+// (two_hop.cpp).
 namespace throng::path {
 namespace {
 

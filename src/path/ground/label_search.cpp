@@ -13,10 +13,10 @@
 namespace throng::path {
 namespace {
 
-constexpr float kFarthest = 3e38f;
+constexpr float kUnreached = 3e38f;
 constexpr double kMaxLonger = 1.02;  // of paths over middles
 // Sums of two or three floats of up to 2^20 cells; what is as short within their error stays.
-constexpr float kSlack = 0.25f;  // cells
+constexpr float kBoundTolerance = 0.25f;  // cells
 
 uint32_t block_of(const PathMesh& mesh, const Stop& end) {
   return mesh.block_at(end.rect, end.at.cell_x(), end.at.cell_z());
@@ -55,8 +55,8 @@ bool LabelSearch::narrow(const PathMesh& mesh, const HubLabels& labels, const St
   gather(from, start, goal, start_);
   gather(to, goal, start, goal_);
   const auto keep = [&](const Stop& end, std::vector<Turn>& turns) {
-    std::erase_if(turns,
-                  [&](Turn& turn) { return turn.bound > known + kSlack || !see(end, turn); });
+    std::erase_if(
+        turns, [&](Turn& turn) { return turn.bound > known + kBoundTolerance || !see(end, turn); });
   };
   keep(from, start_);
   keep(to, goal_);
@@ -77,7 +77,7 @@ bool LabelSearch::join(const PathMesh& mesh, const HubLabels& labels, Best& best
       if (reached.search != search_ || here < reached.length) reached = {search_, s.corner, here};
     }
   }
-  best.length = kFarthest;
+  best.length = kUnreached;
   for (const Turn& s : goal_) {
     for (const HubLabels::Label& label : labels.of(s.corner)) {
       const ReachedHub& reached = reached_hubs_[label.hub];
@@ -86,7 +86,7 @@ bool LabelSearch::join(const PathMesh& mesh, const HubLabels& labels, Best& best
       best = {here, label.hub, reached.corner, s.corner};
     }
   }
-  return best.length < kFarthest;
+  return best.length < kUnreached;
 }
 
 namespace {
@@ -135,7 +135,7 @@ bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, cons
   const CellPoint start = in_cells(from.at), goal = in_cells(to.at);
   const uint32_t a = block_of(mesh, from), b = block_of(mesh, to);
   const Meeting best = meet(middles.of(a), middles.of(b));
-  if (!(best.length < kFarthest)) return false;
+  if (!(best.length < kUnreached)) return false;
   const Waypoint from_middle{in_cells(middle_of(mesh, from.rect, a)), from.rect};
   const Waypoint to_middle{in_cells(middle_of(mesh, to.rect, b)), to.rect};
   labels.walk(middles.tree_place[middles.first[a] + best.first],
@@ -151,7 +151,7 @@ bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, cons
   const auto is_proved = [&](const SeenMiddle& p, const SeenMiddle& q, double between) {
     const auto is_short = [&](double least) { return length <= kMaxLonger * least; };
     if (is_short(straight)) return true;
-    const double off = p.distance + q.distance + kSlack;
+    const double off = p.distance + q.distance + kBoundTolerance;
     if (!is_short(between - off)) return false;
     const double apart = distance(in_cells(p.middle.at), in_cells(q.middle.at));
     return is_short(apart - off) ||
@@ -167,7 +167,7 @@ bool LabelSearch::by_middles(const PathMesh& mesh, const HubLabels& labels, cons
   const SeenMiddle behind_b =
       middle_behind(mesh, to, corners.empty() ? start : at(corners.back()), own_b);
   const Meeting longer = meet(middles.of(behind_a.block), middles.of(behind_b.block));
-  return longer.length < kFarthest && is_proved(behind_a, behind_b, longer.length);
+  return longer.length < kUnreached && is_proved(behind_a, behind_b, longer.length);
 }
 
 // The corners from each end to the hub.
@@ -191,7 +191,7 @@ void distances(const PathMesh& mesh, const HubLabels& labels, const Stop& end,
 
 // The shortest of the entries of a block's hub, by the distances of an end.
 struct HubDistance {
-  float length = kFarthest;
+  float length = kUnreached;
   uint32_t candidate = 0;
 
   HubDistance(const BlockLabels& labels, uint32_t hub, const std::vector<float>& to) {
@@ -218,11 +218,11 @@ bool LabelSearch::merge(const PathMesh& mesh, const HubLabels& labels, const Sto
     const HubLabels::Candidate& c =
         labels.candidates[labels.first_candidate[block_of(mesh, end)] + candidate];
     if (c.from_all != 0 || sees_corner(mesh, end, c.corner)) return true;
-    length = kFarthest;
+    length = kUnreached;
     return false;
   };
   for (;;) {
-    best.length = kFarthest;
+    best.length = kUnreached;
     uint32_t first = 0, last = 0;  // candidates
     uint32_t i = by_block.first[from_block], j = by_block.first[to_block];
     const uint32_t i_end = by_block.first[from_block + 1], j_end = by_block.first[to_block + 1];
@@ -241,7 +241,7 @@ bool LabelSearch::merge(const PathMesh& mesh, const HubLabels& labels, const Sto
         last = b.candidate;
       }
     }
-    if (!(best.length < kFarthest)) return false;
+    if (!(best.length < kUnreached)) return false;
     const bool seen = is_seen(from, first, from_[first]);
     const bool both = is_seen(to, last, to_[last]) && seen;
     if (!both) continue;
@@ -257,7 +257,7 @@ bool LabelSearch::find(const PathMesh& mesh, const HubLabels& labels, const Stop
   const CellPoint start = in_cells(from.at), goal = in_cells(to.at);
   length = distance(start, goal);
   if (mesh_ray(mesh, from.rect, from.at, to.at) == to.rect) return true;
-  double known = kFarthest;
+  double known = kUnreached;
   if (!labels.by_middle.first.empty()) {
     if (by_middles(mesh, labels, from, to, corners, known)) {
       length = known;

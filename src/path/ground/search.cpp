@@ -32,11 +32,7 @@ void PathSearch::begin(const PathMesh& mesh, const Stop& from, const Stop& to, d
   goal_rect_ = to.rect;
   goal_ = in_cells(to.at);
   expanded_ = 0;
-  if (best_.size() < mesh.corners.size()) best_.resize(mesh.corners.size());
-  if (++search_ == 0) {
-    best_.assign(best_.size(), {});
-    search_ = 1;
-  }
+  best_.begin(mesh.corners.size());
   was_spent_ = false;
   drop_at_ = kDropFrom;
   roots_.clear();
@@ -147,10 +143,10 @@ bool PathSearch::is_stale(uint32_t root) const {
 // there.
 uint32_t PathSearch::turn(uint32_t root, CellPoint at, uint32_t corner) {
   const double length = roots_[root].length + distance(roots_[root].point, at);
-  if (corner >= best_.size()) best_.resize(mesh_->corners.size());  // made meanwhile
+  best_.grow(mesh_->corners.size());  // made meanwhile
   Best& best = best_[corner];
-  if (best.search == search_ && best.length < length - kSame) return UINT32_MAX;
-  best = {search_, length};
+  if (best_.is_reached(best) && best.length < length - kSame) return UINT32_MAX;
+  best = {best_.search(), length};
   roots_.push_back({at, length, corner, root});
   return static_cast<uint32_t>(roots_.size() - 1);
 }

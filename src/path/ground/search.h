@@ -8,6 +8,7 @@
 #include "core/chunked_array.h"
 #include "path/ground/mesh.h"
 #include "path/ground/open_list.h"
+#include "path/ground/search_states.h"
 #include "throng/path.h"
 
 /// The shortest path over a mesh, by search over intervals.
@@ -86,7 +87,6 @@ class PathSearch {
   const PathMesh* mesh_ = nullptr;
   uint32_t goal_rect_ = kNoRect;
   CellPoint goal_;
-  uint32_t search_ = 0;
   uint64_t expanded_ = 0;
   uint32_t found_root_ = 0;
   double found_length_ = 0;
@@ -97,8 +97,8 @@ class PathSearch {
   std::vector<uint32_t> free_;  // places of nodes_
   OpenList<Entry> open_;
   uint32_t pushed_ = 0;
-  std::vector<Best> best_;        // per corner
-  std::vector<uint32_t> around_;  // rectangles around the start
+  SearchStates<Best, std::vector<Best>> best_;  // per corner
+  std::vector<uint32_t> around_;                // rectangles around the start
 };
 
 }  // namespace throng::path

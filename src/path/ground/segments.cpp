@@ -14,8 +14,8 @@
 namespace throng::path {
 namespace {
 
-constexpr int32_t kMaxGrazed = 64;  // corners past which one segment is led
-constexpr double kGrazes = 0.02;    // cells
+constexpr int32_t kMaxGrazed = 64;       // corners past which one segment is led
+constexpr double kGrazeDistance = 0.02;  // cells
 
 bool is_same(world::GroundPoint a, world::GroundPoint b) { return a.x == b.x && a.z == b.z; }
 
@@ -85,7 +85,7 @@ bool SegmentWalker::slip_by(uint32_t level, world::GroundPoint from, world::Grou
     std::swap(corners[0], corners[1]);
   }
   for (const CellCorner& corner : corners) {
-    if (distance(corner, from, to) > kGrazes) continue;
+    if (distance(corner, from, to) > kGrazeDistance) continue;
     const size_t before = stops.size();
     for (size_t a = 0; a < 4; ++a) {
       stops.resize(before);
@@ -139,7 +139,7 @@ std::optional<world::GroundPoint> SegmentWalker::grazed(uint32_t level, world::G
                                    (int64_t{nz} << world::kUnitBits) + 1024};
     if (!cells_.walk(level, here, there)) {
       // Of the cells that may block, the corner that the segment passes closest.
-      double nearest = kGrazes;
+      double nearest = kGrazeDistance;
       std::optional<world::GroundPoint> best;
       // The cells beside the segment first: a diagonal one that can be stood on shares their
       // corner, but it is not what is missing there.

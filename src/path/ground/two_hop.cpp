@@ -15,13 +15,13 @@
 namespace throng::path {
 namespace {
 
-constexpr double kFar = 1e300;
+constexpr double kUnreached = 1e300;
 constexpr double kSameLength = 1e-9;
 
 // Dijkstra's search with its memory.
 class DijkstraSearch {
  public:
-  explicit DijkstraSearch(size_t count) : best_(count, kFar), before_(count, 0) {}
+  explicit DijkstraSearch(size_t count) : best_(count, kUnreached), before_(count, 0) {}
 
   // Calls visit(node, length, before) in order of length; expands a node if it returns true.
   template <class Visit>
@@ -35,7 +35,7 @@ class DijkstraSearch {
       if (!visit(node, length, before_[node])) continue;
       for (const PathGraph::Edge& edge : graph.of(node)) relax(edge.to, length + edge.length, node);
     }
-    for (const uint32_t node : touched_) best_[node] = kFar;
+    for (const uint32_t node : touched_) best_[node] = kUnreached;
   }
 
  private:
@@ -43,7 +43,7 @@ class DijkstraSearch {
 
   void relax(uint32_t node, double length, uint32_t before) {
     if (length >= best_[node]) return;
-    if (best_[node] == kFar) touched_.push_back(node);
+    if (best_[node] == kUnreached) touched_.push_back(node);
     best_[node] = length;
     before_[node] = before;
     open_.push({length, node});
@@ -197,7 +197,7 @@ Result<TwoHopLabels> label_graph(const PathGraph& graph, uint64_t samples, int32
     double length;
   };
   std::vector<std::vector<Made>> labels(count);
-  std::vector<double> to_root(count, kFar);  // per hub that the root has
+  std::vector<double> to_root(count, kUnreached);  // per hub that the root has
   DijkstraSearch search(count);
   HubTree tree(count);
   for (uint32_t rank = 0; rank < count; ++rank) {
@@ -218,7 +218,7 @@ Result<TwoHopLabels> label_graph(const PathGraph& graph, uint64_t samples, int32
       tree.add(node, before);
       return true;
     });
-    for (const auto& label : labels[root]) to_root[label.hub] = kFar;
+    for (const auto& label : labels[root]) to_root[label.hub] = kUnreached;
     tree.write(out.trees,
                [&](uint32_t node, uint32_t place) { labels[node].back().tree_place = place; });
   }

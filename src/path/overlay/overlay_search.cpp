@@ -7,23 +7,18 @@
 
 // A* over entrances, then a search of each overlay cell crossed. Source: [BMS04], [DGPW11].
 namespace throng::path {
-namespace {}  // namespace
 
 void OverlaySearch::begin() {
-  states_.resize(2 * overlay_->entrances().size());
-  if (++query_ == 0) {  // After 2^32 queries the marks start over.
-    std::fill(states_.begin(), states_.end(), State{});
-    query_ = 1;
-  }
+  states_.begin(2 * overlay_->entrances().size());
   open_.clear();
 }
 
 void OverlaySearch::reach(uint32_t entry, uint32_t parent, double cost, uint8_t overlay_level,
                           Vec3d goal) {
   State& state = states_[entry];
-  if (!(cost < kNoPath) || (state.query == query_ && state.cost <= cost)) return;
+  if (!(cost < kNoPath) || (states_.is_reached(state) && state.cost <= cost)) return;
   if (now_.is_closed(entry)) return;
-  state = {query_, parent, cost, overlay_level, false};
+  state = {states_.search(), parent, cost, overlay_level, false};
   open_.push({cost + length(goal - now_.at(entry)), entry});
 }
 
@@ -251,7 +246,7 @@ bool OverlaySearch::refine(const Stretch& stretch) {
       reach(out, top.entry, cost + double{through[j]}, finer, goal);
     }
   }
-  if (states_[stretch.to].query != query_) return false;
+  if (!states_.is_reached(states_[stretch.to])) return false;
   const size_t first = finer_.size();
   for (uint32_t entry = stretch.to; entry != stretch.from; entry = states_[entry].parent) {
     finer_.push_back({states_[entry].parent, entry, finer});

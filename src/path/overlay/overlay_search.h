@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "path/ground/open_list.h"
+#include "path/ground/search_states.h"
 #include "path/overlay/overlay.h"
 #include "path/overlay/overlay_changes.h"
 #include "path/overlay/overlay_graph.h"
@@ -40,7 +41,7 @@ class OverlaySearch {
   static constexpr uint32_t kNoEntry = UINT32_MAX;
   // An entry that was reached.
   struct State {
-    uint32_t query = 0;
+    uint32_t search = 0;
     uint32_t parent = kNoEntry;
     double cost = 0;
     uint8_t overlay_level = 0;  // of the overlay cell through which it was reached
@@ -76,14 +77,13 @@ class OverlaySearch {
   const Overlay* overlay_;
   OverlayChanges now_;
   OverlayGraph graph_;
-  std::vector<State> states_;  // by entry
+  SearchStates<State, std::vector<State>> states_;  // by entry
   OpenList<Open> open_;
   std::vector<double> rest_;  // from the entries of the goal's overlay cell
   std::vector<Stretch> stretches_, finer_;
   std::vector<Crossing> piece_, straightened_;
   std::vector<size_t> joints_;                   // where entrances come in the path
   uint32_t first_ = kNoEntry, last_ = kNoEntry;  // none: the path does not leave the overlay cell
-  uint32_t query_ = 0;
   double cost_ = 0;
   uint64_t expanded_ = 0;
 };

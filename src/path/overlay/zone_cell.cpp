@@ -33,12 +33,12 @@ void add_edges(size_t count, const std::function<float(size_t, size_t)>& length_
     for (size_t b = a + 1; b < count; ++b) {
       const float direct = lengths[a * count + b];
       if (!(direct < kNeverReached)) continue;
-      constexpr float kSlack = 1e-5f;  // of the length: floats
+      constexpr float kRoundingShare = 1e-5f;  // of the length: floats
       const float* from = &lengths[a * count];
       const float* to = &lengths[b * count];
       bool is_over = false;
       for (size_t c = 0; c < count && !is_over; ++c)
-        is_over = from[c] > 0 && to[c] > 0 && from[c] + to[c] <= direct * (1 + kSlack);
+        is_over = from[c] > 0 && to[c] > 0 && from[c] + to[c] <= direct * (1 + kRoundingShare);
       if (is_over) continue;
       edges[node_of(a)].push_back({node_of(b), direct});
       edges[node_of(b)].push_back({node_of(a), direct});

@@ -134,9 +134,10 @@ void ZoneSearch::join_boundary_nodes(const ZoneGraph& graph, const Stop& from, c
   const OverlayCell& goal = graph.zone_cells[goal_.zone_cell];
   const Meeting met = meet(graph.boundary_labels.of(start.boundary_nodes[*first]),
                            graph.boundary_labels.of(goal.boundary_nodes[*last]));
-  constexpr float kSlack = 1.00001f;  // floats
-  float known = kSlack * std::min(best.length, start_.boundary_nodes[*first].length + met.length +
-                                                   goal_.boundary_nodes[*last].length);
+  constexpr float kRoundingFactor = 1.00001f;  // floats
+  float known =
+      kRoundingFactor * std::min(best.length, start_.boundary_nodes[*first].length + met.length +
+                                                  goal_.boundary_nodes[*last].length);
   const auto each_within = [&](End& end, auto visit) {
     const OverlayCell& zone_cell = graph.zone_cells[end.zone_cell];
     const auto keep = [&](auto is_kept) {
@@ -171,7 +172,7 @@ void ZoneSearch::join_boundary_nodes(const ZoneGraph& graph, const Stop& from, c
       if (!(here < best.length)) continue;
       best = {here, true, label.hub, boundary_hubs_.from(label.hub), p};
     }
-    known = std::min(known, kSlack * best.length);
+    known = std::min(known, kRoundingFactor * best.length);
   });
 }
 

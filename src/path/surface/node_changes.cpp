@@ -15,12 +15,12 @@
 namespace throng::path {
 namespace {
 
-constexpr double kFinest = 0.35;  // [m] across a square of curved ground that is cut no further
-constexpr uint8_t kDeepest = 8;   // the maximum that a block's numbers hold
-constexpr int32_t kPieces = 16;   // of a portal's line
-constexpr int kTurns = 7;         // halvings of a motion
+constexpr double kMinSquare = 0.35;  // [m] across a square of curved ground that is cut no further
+constexpr uint8_t kMaxDepth = 8;     // the maximum that a block's numbers hold
+constexpr int32_t kPieces = 16;      // of a portal's line
+constexpr int kTurns = 7;            // halvings of a motion
 constexpr double kRounded = 1e-9;
-constexpr double kWide = 1e-7;  // A shorter piece of a line counts as empty.
+constexpr double kMinPiece = 1e-7;  // A shorter piece of a line counts as empty.
 
 struct Pose {
   Vec3d feet, axis;
@@ -172,7 +172,7 @@ uint8_t NodeChanges::finest_level(const graph::NodeBlock& block) const {
   const double side = block.side(), s = block.s * side, t = block.t * side;
   double across = 2 * surface_piece(surface, s, t, s + side, t + side).spread;
   uint8_t level = block.level;
-  for (; level < kDeepest && across > kFinest; across /= 2) ++level;
+  for (; level < kMaxDepth && across > kMinSquare; across /= 2) ++level;
   return level;
 }
 
@@ -470,7 +470,7 @@ void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& 
       double from = 0, to = 1;
       const auto clip = [&](double at, double delta, double low, double high) {
         // A line along a side lies on it, or an inset beside it.
-        if (std::fabs(delta) < kWide) {
+        if (std::fabs(delta) < kMinPiece) {
           if (at < low - inset - kRounded || at > high + inset + kRounded) to = -1;
           return;
         }
@@ -480,8 +480,8 @@ void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& 
       };
       clip(line.s, line.ds, part.s * side, (part.s + 1) * side);
       clip(line.t, line.dt, part.t * side, (part.t + 1) * side);
-      const bool is_point = std::fabs(line.ds) < kWide && std::fabs(line.dt) < kWide;
-      if (is_point ? to >= 0 : to - from > kWide) out.push_back({from, to, base + p});
+      const bool is_point = std::fabs(line.ds) < kMinPiece && std::fabs(line.dt) < kMinPiece;
+      if (is_point ? to >= 0 : to - from > kMinPiece) out.push_back({from, to, base + p});
       if (is_point && !out.empty()) break;
     }
     std::sort(out.begin(), out.end(),
@@ -513,7 +513,7 @@ void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& 
         for (const Stretch& b : on_b) {
           const double from = std::max({piece.from, a.from, b.from});
           const double to = std::min({piece.to, a.to, b.to});
-          if (!portal.over_hole && !(to - from > kWide)) continue;
+          if (!portal.over_hole && !(to - from > kMinPiece)) continue;
           graph::NodePortal left = portal;
           left.a = a.block;
           left.b = b.block;

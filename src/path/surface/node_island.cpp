@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "path/surface/node_island.h"
 
-// A breadth-first flood over crossings, at most kMax blocks.
+// Finds the blocks that obstacles cut off from the rest, by a breadth-first flood over crossings
+// that stops at kMax blocks. Time: linear in the crossings of the blocks that it visits.
 namespace throng::path {
 
 void NodeIsland::clear(const NodeView& view) {

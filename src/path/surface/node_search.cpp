@@ -16,7 +16,7 @@
 namespace throng::path {
 namespace {
 
-constexpr double kShort = 1;  // Pieces up to here count as straight. [m]
+constexpr double kMaxStraightPiece = 1;  // Pieces up to here count as straight. [m]
 
 }  // namespace
 
@@ -40,7 +40,7 @@ PieceCost::Piece PieceCost::operator()(uint32_t block, double s0, double t0, Vec
   }
   const double s = (s0 + s1) / 2, t = (t0 + t1) / 2;
   double along = straight;
-  if (straight > kShort) {
+  if (straight > kMaxStraightPiece) {
     const Vec3d middle = surface.at(s, t);
     along = length(middle - from) + length(to - middle);
   }
@@ -61,17 +61,17 @@ void NodeSearch::expand(const BlockPoint& from, Vec3d at, double cost, uint32_t 
       return;
     }
     State& state = states_[id];
-    if (state.query == query_ && state.cost <= cost) return;
+    if (states_.is_reached(state) && state.cost <= cost) return;
     const graph::NodePortal portal = view_->portal(crossing.portal);
     const auto [out, in] = ends_of(portal, crossing.backward);
     const Vec3d here = position(*view_, out);
     double next = cost + (*cost_)(out.block, from.s, from.t, at, out.s, out.t, here).cost;
-    if (state.query == query_ && state.cost <= next) return;
+    if (states_.is_reached(state) && state.cost <= next) return;
     const Vec3d there = position(*view_, in);
     next += graph::portal_length(portal, here, there);
-    if (state.query == query_ && state.cost <= next) return;
-    met_ += state.query == query_ ? 0 : 1;
-    state = {query_, parent, next, there, false};
+    if (states_.is_reached(state) && state.cost <= next) return;
+    met_ += states_.is_reached(state) ? 0 : 1;
+    state = {states_.search(), parent, next, there, false};
     push(next + length(goal_ - there), id);
   });
 }
@@ -82,11 +82,7 @@ PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const Sea
   crossings.clear();
   expanded_ = met_ = 0;
   within_ = within;
-  states_.resize(2 * view_->portal_count());
-  if (++query_ == 0) {  // After 2^32 queries the marks start over.
-    states_.clear();
-    query_ = 1;
-  }
+  states_.begin(2 * view_->portal_count());
   open_.clear();
   const PathEnd end = search(from, to, budget, crossings, less_than);
   give_back();
@@ -103,7 +99,7 @@ uint64_t NodeSearch::allocated_bytes() const {
 
 void NodeSearch::give_back() {
   if (allocated_bytes() <= kKeptBytes) return;
-  states_.clear();
+  states_.give_back();
   open_.give_back();
 }
 

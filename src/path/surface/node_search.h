@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "core/paged.h"
 #include "path/ground/open_list.h"
+#include "path/ground/search_states.h"
 #include "path/surface/node_view.h"
 #include "throng/path.h"
 
@@ -56,7 +56,7 @@ class NodeSearch {
  private:
   // A portal has two states: where it leads to b and where it leads to a.
   struct State {
-    uint32_t query = 0;
+    uint32_t search = 0;
     uint32_t parent = UINT32_MAX;
     double cost = 0;
     Vec3d at;
@@ -81,9 +81,8 @@ class NodeSearch {
   const NodeView* view_;
   const PieceCost* cost_;
   SearchBounds within_;
-  Paged<State> states_;
+  SearchStates<State> states_;
   OpenList<Open> open_;
-  uint32_t query_ = 0;
   Vec3d goal_;
   double best_cost_ = 0;
   uint64_t expanded_ = 0;

@@ -13,7 +13,7 @@
 namespace throng::path {
 namespace {
 
-constexpr double kLittle = 1e-4;  // Of the whole cost: a round that gains less is the last.
+constexpr double kMinGain = 1e-4;  // Of the whole cost: a round that gains less is the last.
 
 // Where the shortest path from p to q over the line from a to b meets it, 0 at a and 1 at b.
 double unfolded(Vec3d p, Vec3d q, Vec3d a, Vec3d b) {
@@ -105,7 +105,7 @@ bool NodeString::move(std::vector<PulledCrossing>& crossings, int round) const {
     if (i > 0) crossings[i - 1].settled = false;
     if (i + 1 < crossings.size()) crossings[i + 1].settled = false;
   }
-  return gained > kLittle * all;
+  return gained > kMinGain * all;
 }
 
 }  // namespace throng::path

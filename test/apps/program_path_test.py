@@ -138,7 +138,7 @@ class ProgramPath(ProgramCase):
         (self.path / "far.json").write_text('[{"from": [0, 0, 0], "to": [900, 0, 0], "class": "adult"}]')
         for cell in ("0.2", "0.25"):
             done = self.run_throng("bake", "builtin:stairs", "--cell", cell, "-o", "w.throng", "--nodes", "--off-mesh-links", "far.json")
-            self.assert_refused(done, "jump 1", "no place", "nothing was written")
+            self.assert_refused(done, "off-mesh link 1", "no place", "nothing was written")
             self.assertEqual({path.name for path in self.path.iterdir()}, {"w.throng", "links.json", "list.json", "far.json"})
             self.assertEqual({path for path in before} | {self.path / name for name in ("links.json", "list.json", "far.json")},
                              {path for path in self.path.rglob("*") if path.is_file()})

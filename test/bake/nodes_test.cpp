@@ -238,7 +238,7 @@ TEST(Nodes, OffMeshLinksJoinWhatNothingElseJoins) {
   config.off_mesh_links[0].to = {7, 0, 3};
   Context context;
   EXPECT_EQ(Nodes::create(world, scene, config, context).error().message,
-            "nodes: jump 1: adult has no place within a metre of where it ends");
+            "nodes: off-mesh link 1: adult has no place within a metre of where it ends");
 }
 
 TEST(Nodes, AreWrittenAndOpened) {

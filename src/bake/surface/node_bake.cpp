@@ -237,7 +237,7 @@ Result<void> check_node_config(const NodeConfig& config) {
     const Vec3d sum = off_mesh_link.from + off_mesh_link.to;
     if (std::isfinite(sum.x + sum.y + sum.z)) continue;
     return Error{Errc::kBadConfig,
-                 "nodes: jump " + std::to_string(j + 1) + ": its ends must be finite"};
+                 "nodes: off-mesh link " + std::to_string(j + 1) + ": its ends must be finite"};
   }
   return {};
 }

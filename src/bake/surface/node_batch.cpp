@@ -290,7 +290,8 @@ class NodeBatch {
       const NodeOffMeshLink& off_mesh_link = config_.off_mesh_links[j];
       const auto& classes = data_.summary.classes;
       const auto bad = [&](const std::string& what) {
-        return Error{Errc::kBadInput, "nodes: jump " + std::to_string(j + 1) + ": " + what};
+        return Error{Errc::kBadInput,
+                     "nodes: off-mesh link " + std::to_string(j + 1) + ": " + what};
       };
       if (off_mesh_link.avatar_class < 0 ||
           static_cast<size_t>(off_mesh_link.avatar_class) >= classes.size()) {

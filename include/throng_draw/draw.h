@@ -110,7 +110,8 @@ enum class HiddenCulling : uint8_t {
 
 /// Settings for Drawing::draw and show.
 struct DrawingConfig {
-  EyeCamera camera;  ///< Relative to the drawing's origin; `aspect` follows from the picture.
+  /// Relative to the drawing's origin; `aspect` follows from the picture. [field of view over 0.01]
+  EyeCamera camera;
   int32_t width = 1280, height = 720;  ///< [px, 16 to 8192]
   int32_t samples = 2;                 ///< Along each side of a pixel. [1 to 4]
   Vec3d to_sun{-0.5, 0.75, 0.45};      ///< Towards the sun, any length. [y > 0]

@@ -58,7 +58,9 @@ crowd::Mode& Crowd::State::mode_of(const AvatarSpawn& spawn) {
 
 Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   const world::WorldData& data = *data_of(shared.world);
-  if (auto ok = check_class(data.summary.classes, number, "crowd"); !ok) return ok;
+  if (auto ok = check_class(data.summary.classes, number, "crowd"); !ok) {
+    return Error{Errc::kNotFound, ok.error().message};
+  }
   const auto c = static_cast<size_t>(number);
   if (mode_of_class[c] != nullptr) return {};
   auto ground = crowd::CrowdGround::make(data, number, world::step_mm(shared.body_class(c)));

@@ -320,11 +320,12 @@ Result<void> Drawing::check(const DrawingConfig& c) {
   const bool sound = c.width >= 16 && c.width <= 8192 && c.height >= 16 && c.height <= 8192 &&
                      c.samples >= 1 && c.samples <= 4 && c.workers >= 0 && c.sun_pixels >= 256 &&
                      c.sun_pixels <= 8192 && c.edges >= 0 && c.edges <= 1 && c.view_blend >= 0 &&
-                     c.view_blend <= 1;
+                     c.view_blend <= 1 && c.mesh_texel >= 0 && c.point_pixels >= 0;
   if (!sound) {
     return Error{Errc::kBadConfig,
                  "drawing: need 16 to 8192 pixels a side, 1 to 4 samples, 256 to 8192 pixels for "
-                 "the sun, and edges and blends of views of 0 to 1"};
+                 "the sun, edges and blends of views of 0 to 1, and mesh_texel, point_pixels and "
+                 "workers of 0 or more"};
   }
   if (std::isnan(c.cut_height)) {
     return Error{Errc::kBadConfig, "drawing: the height of the cut must be a number"};

@@ -76,9 +76,9 @@ Result<Nodes> Nodes::open(const std::string& world_path) {
 }
 
 bool Nodes::exist(const World& world) {
+  if (!world || data_of(world)->path.empty()) return false;
   std::error_code failure;
-  return !data_of(world)->path.empty() &&
-         std::filesystem::exists(index_of(data_of(world)->path), failure);
+  return std::filesystem::exists(index_of(data_of(world)->path), failure);
 }
 
 Result<Nodes> Nodes::open(const World& world) {

@@ -350,10 +350,10 @@ Blocker blocker_towards(const NodeView& view, const BlockPoint& from, Vec3d goal
   return found;
 }
 
-// Calls visit(block, s, t) for the parts and blocks of level tiles within `radius`: with the point
-// that lies nearest in the plane.
+// Calls visit(block, s, t) for the parts and blocks of level tiles that may have a point no farther
+// than `radius`, which the calls may reduce: with the point that lies nearest in the plane.
 template <class Visit>
-void for_each_level_part(const NodeView& view, Vec3d position, double radius, Visit visit) {
+void for_each_level_part(const NodeView& view, Vec3d position, const double& radius, Visit visit) {
   const graph::NodeMesh& mesh = view.mesh();
   const world::WorldData& world = *data_of(data_of(mesh.nodes())->world);
   const std::array<double, 2> plan{position.x, position.z};
@@ -365,7 +365,9 @@ void for_each_level_part(const NodeView& view, Vec3d position, double radius, Vi
     const auto inside = [&](double at, double low) {
       return std::clamp(at, low + graph::kTileInset, low + side - graph::kTileInset);
     };
-    visit(block, inside(s, low_s), inside(t, low_t));
+    const double at_s = inside(s, low_s), at_t = inside(t, low_t);
+    constexpr double kRounding = 1e-6;  // [m]
+    if (std::hypot(at_s - s, at_t - t) * tile <= radius + kRounding) visit(block, at_s, at_t);
   };
   for (int32_t z = tiles.first_z; z <= tiles.last_z; ++z) {
     for (int32_t x = tiles.first_x; x <= tiles.last_x; ++x) {
@@ -511,6 +513,7 @@ NodePlace NodeFinder::find_place(Vec3d position, double search_radius) const {
     consider(block, s, t, uint64_t{block} + 1);
   };
   const World& world = data_of(mesh.nodes())->world;
+  uint32_t under = graph::kNoNode;  // What was found straight above or below.
   if (const Place place = world.find_place(mesh.avatar_class(), position, search_radius)) {
     if (const uint32_t patch = mesh.patch_of_level(place.level1 - 1); patch != graph::kNoNode) {
       const world::GroundPoint at =
@@ -521,16 +524,14 @@ NodePlace NodeFinder::find_place(Vec3d position, double search_radius) const {
       };
       const double s = along(at.x), t = along(at.z);
       const uint32_t block = mesh.block_at(patch, s, t);
-      const uint32_t part = block == graph::kNoNode ? graph::kNoNode : changes.part_at(block, s, t);
-      if (part != graph::kNoNode) consider(part, s, t, 0);
-      if (part == graph::kNoNode && block != graph::kNoNode) {
-        // The nearest is used. No level tile's place is nearer than in one of its parts.
-        for_each_level_part(view, position, nearest, [&](uint32_t other, double u, double v) {
-          consider(other, u, v, uint64_t{other} + 1);
-        });
-      }
+      under = block == graph::kNoNode ? graph::kNoNode : changes.part_at(block, s, t);
+      if (under != graph::kNoNode) consider(under, s, t, 0);
     }
   }
+  // Beside it: what lies under a wall or an obstacle, or over the edge of the floor.
+  for_each_level_part(view, position, nearest, [&](uint32_t other, double u, double v) {
+    if (other != under) consider(other, u, v, uint64_t{other} + 1);
+  });
   state_->squares.for_each_near(position, nearest, [&](uint32_t block) {
     const auto parts = changes.parts_of(block);
     if (!parts) return consider_curved(block);

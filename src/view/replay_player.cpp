@@ -22,6 +22,7 @@ std::shared_ptr<const TimelineFrame> ReplayPlayer::next() {
 }
 
 std::shared_ptr<const TimelineFrame> ReplayPlayer::seek(double time) {
+  if (replay_.frame_count() == 0) return nullptr;
   const Result<uint64_t> index = replay_.find(time);
   next_ = index ? *index : 0;
   return next();

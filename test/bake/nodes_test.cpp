@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
+#include <string>
 
 #include "baked.h"
 #include "core/access.h"
@@ -268,6 +271,57 @@ TEST(Nodes, AreWrittenAndOpened) {
   ASSERT_TRUE(bake_world_to(path, scene, {.cell = 0.5, .zone = 32}, context));
   EXPECT_FALSE(Nodes::open(path));
   EXPECT_EQ(made.write(path).error().message, path + ": holds another world than these nodes' own");
+}
+
+TEST(Nodes, ExistOnceTheyAreInTheFolderOfTheirWorld) {
+  const test::ScratchFolder folder;
+  const std::string path = folder.path() + "/cube.throng";
+  const Scene scene = builtin({.name = "cube"});
+  Context context;
+  const World in_memory = bake(scene, 0.25);
+  make(in_memory, scene);
+  EXPECT_FALSE(Nodes::exist(in_memory)) << "it was opened from no folder";
+  EXPECT_FALSE(Nodes::exist(World()));
+  ASSERT_TRUE(bake_world_to(path, scene, {.cell = 0.25}, context));
+  const auto world = World::open(path);
+  ASSERT_TRUE(world) << world.error().message;
+  EXPECT_FALSE(Nodes::exist(*world));
+  const Nodes made = make(*world, scene);
+  EXPECT_FALSE(Nodes::exist(*world)) << "they are in memory";
+  ASSERT_TRUE(made.write(path));
+  EXPECT_TRUE(Nodes::exist(*world));
+  ASSERT_TRUE(bake_world_to(path, scene, {.cell = 0.5}, context));  // Nodes go with their world.
+  EXPECT_FALSE(Nodes::exist(*World::open(path)));
+  const auto again = World::open(path);
+  ASSERT_TRUE(Nodes::create_in_folder(*again, scene, {}, context));
+  EXPECT_TRUE(Nodes::exist(*again));
+  std::filesystem::remove_all(path);
+  EXPECT_FALSE(Nodes::exist(*again)) << "the folder is gone";
+}
+
+TEST(NodeConfig, IsCheckedWhateverTheWorld) {
+  const auto checked = [](const NodeConfig& config) {
+    const auto ok = check_node_config(config);
+    if (!ok) {
+      EXPECT_EQ(ok.error().code, Errc::kBadConfig) << ok.error().message;
+    }
+    return ok ? std::string() : ok.error().message;
+  };
+  const NodeOffMeshLink link{.from = {1, 2, 3}, .to = {4, 5, 6}};
+  EXPECT_EQ(checked({}), "");
+  EXPECT_EQ(checked({.size = 0.05, .workers = 64}), "");
+  EXPECT_EQ(checked({.size = 100, .classes = 0, .off_mesh_links = {link, link}}), "");
+  for (const double size : {0.0, 0.0499, 100.1, -1.0, double{INFINITY}, double{NAN}}) {
+    EXPECT_EQ(checked({.size = size}), "nodes: the size must be 0.05 to 100 m") << size;
+  }
+  EXPECT_EQ(checked({.workers = -1}), "nodes: workers must be 0 or more");
+  for (const double bad : {double{NAN}, double{INFINITY}, -double{INFINITY}}) {
+    const std::string second = "nodes: off-mesh link 2: its ends must be finite";
+    EXPECT_EQ(checked({.off_mesh_links = {link, {.from = {bad, 0, 0}, .to = {}}}}), second);
+    EXPECT_EQ(checked({.off_mesh_links = {link, {.from = {}, .to = {0, 0, bad}}}}), second);
+    EXPECT_EQ(checked({.off_mesh_links = {link, {.from = {0, bad, 0}, .to = {0, bad, 0}}}}),
+              second);
+  }
 }
 
 TEST(Nodes, OverGroundThatCannotBeReadNoBodyStands) {

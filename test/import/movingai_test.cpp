@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include "scratch_folder.h"
 #include "throng/scene.h"
 
@@ -42,6 +45,32 @@ TEST(GridMap, BadMapsAreRefusedAndTheLineIsNamed) {
             "a.map: line 6 has 1 cells, `width` says 2");
   EXPECT_EQ(message("type octile\nheight 2\nwidth 2\nmap\n..\n"),
             "a.map: line 6 has 0 cells, `width` says 2");
+}
+
+TEST(GridMap, FilesAreReadAndNamedWhereTheyCannotBe) {
+  const test::ScratchFolder folder;
+  const auto cells =
+      load_grid_map(folder.write("a.map", "type octile\nheight 2\nwidth 3\nmap\n.GS\n@.T\n"));
+  ASSERT_TRUE(cells) << cells.error().message;
+  EXPECT_EQ(cells->width, 3);
+  EXPECT_EQ(cells->depth, 2);
+  EXPECT_EQ(cells->passable, (std::vector<uint8_t>{1, 1, 1, 0, 1, 0}));
+
+  const std::string bad = folder.write("b.map", "type octile\nheight 2\nwidth 3\nmap\n...\n..\n");
+  const auto refused = load_grid_map(bad);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::kBadFile);
+  EXPECT_EQ(refused.error().message.rfind(bad + ": line 6", 0), 0u) << refused.error().message;
+
+  for (const std::string& path : {folder.path() + "/c.map", std::string()}) {
+    const auto missing = load_grid_map(path);
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.error().code, Errc::kBadFile);
+    EXPECT_NE(missing.error().message.find(path), std::string::npos) << missing.error().message;
+  }
+  const auto no_file = load_grid_map(folder.path());
+  ASSERT_FALSE(no_file);
+  EXPECT_TRUE(no_file.error().code == Errc::kBadFile || no_file.error().code == Errc::kIo);
 }
 
 TEST(VoxelMap, ListsItsVoxels) {

@@ -133,6 +133,29 @@ TEST(BezierPatch, ARaisedPatchIsTheSameSurface) {
   }
 }
 
+TEST(BezierPatch, ARaisedPatchOfBadPointsIsNoBetterThanThese) {
+  const std::vector<Vec3d> one_place(9, Vec3d{1, 2, 3});
+  const BezierPatch point = raise_degree(2, 2, one_place);
+  for (const Vec3d& p : point.points) expect_near(p, {1, 2, 3}, 1e-15);
+  EXPECT_EQ(point.normal(0.5, 0.5), Vec3d{}) << "it has no area";
+
+  for (const double bad : {double{NAN}, double{INFINITY}}) {
+    for (size_t i = 0; i < 9; ++i) {
+      std::vector<Vec3d> points;
+      for (int32_t k = 0; k < 9; ++k) points.push_back({double(k % 3), 0, double(k) / 3});
+      PatchSet sound, false_one;
+      sound.add(raise_degree(2, 2, points));
+      points[i].y = bad;
+      false_one.add(raise_degree(2, 2, points));
+      const auto passed = check_patches(sound);
+      ASSERT_TRUE(passed) << passed.error().message;
+      const auto refused = check_patches(false_one);
+      ASSERT_FALSE(refused) << i;
+      EXPECT_EQ(refused.error().code, Errc::kBadInput);
+    }
+  }
+}
+
 TEST(BezierPatch, ItsBoxHoldsTheSurface) {
   const BezierPatch patch = random_patch(11);
   const Box3d box = patch.bounds();

@@ -3,14 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <queue>
 #include <set>
+#include <string>
 #include <tuple>
 #include <vector>
 
 #include "baked.h"
 #include "core/random.h"
+#include "scratch_folder.h"
+#include "throng/bake.h"
 #include "throng/path.h"
 #include "throng/world.h"
 #include "worlds.h"
@@ -344,6 +348,48 @@ TEST(GroundQuery, APlaceBesideTheTileOfItsLevelIsNone) {
   EXPECT_EQ(world.move(0, false_place, 0.5, 0).end, MoveEnd::kBlocked);
   EXPECT_TRUE(ask.ray(there, 1, 0).arrived);
   EXPECT_EQ(world.move(0, there, 0.5, 0).end, MoveEnd::kArrived);
+}
+
+// Zones of 12.8 m, one of them damaged or missing.
+TEST(GroundQuery, NamesAZoneNearbyThatCannotBeUsed) {
+  const test::ScratchFolder folder;
+  const std::string path = folder.path() + "/flat.throng";
+  Context context;
+  ASSERT_TRUE(bake_world_to(path, worlds::flat(40), {.cell = 0.2, .zone = 12.8}, context));
+  const auto whole = World::open(path);
+  ASSERT_TRUE(whole) << whole.error().message;
+  const Vec3d origin = whole->summary().origin;
+  EXPECT_TRUE(query(*whole).check_near({20, 0, 20}, 1000));
+
+  const std::string name = "zone_2_1.thz";  // x from 25.6 to 38.4 m, z from 12.8 to 25.6 m
+  const Vec3d inside = origin + Vec3d{32, 0, 19}, west = origin + Vec3d{20, 0, 19},
+              far = origin + Vec3d{5, 0, 5};
+  ASSERT_TRUE(std::filesystem::exists(path + "/" + name));
+  for (const bool is_missing : {false, true}) {
+    if (is_missing) std::filesystem::remove(path + "/" + name);
+    if (!is_missing) folder.write("flat.throng/" + name, "no zone");
+    const auto world = World::open(path);
+    ASSERT_TRUE(world) << world.error().message;
+    const GroundQuery ask = query(*world);
+    const auto refused = [&](Vec3d position, double radius) {
+      const auto ok = ask.check_near(position, radius);
+      if (ok) return false;
+      EXPECT_EQ(ok.error().code, Errc::kBadFile);
+      EXPECT_NE(ok.error().message.find(name), std::string::npos) << ok.error().message;
+      return true;
+    };
+    EXPECT_TRUE(refused(inside, 0));
+    EXPECT_TRUE(refused(inside + Vec3d{0, 500, 0}, 1)) << "seen from above";
+    EXPECT_FALSE(refused(west, 5)) << "5.6 m from it";
+    EXPECT_TRUE(refused(west, 5.7));
+    EXPECT_FALSE(refused(far, 15)) << "22 m from it, by the corner";
+    EXPECT_TRUE(refused(far, std::numeric_limits<double>::infinity()));
+    EXPECT_FALSE(refused({1e9, 0, 1e9}, 5)) << "outside of the world are no zones";
+    // Queries take it as empty.
+    GroundQuery near = query(*world);
+    EXPECT_FALSE(near.nearest_place(inside, 3));
+    EXPECT_TRUE(near.nearest_place(west, 3));
+  }
 }
 
 TEST(GroundQuery, RefusesNonsense) {

@@ -140,6 +140,85 @@ TEST(PathFinder, LeadsToTheNearestPlaceIfAsked) {
   EXPECT_FALSE(finder.find_node_place(from, 1)) << "there are no nodes";
 }
 
+// Level ground alone, so that the nearest place of nodes is that of the ground: a floor, a crate,
+// and a deck over a part of both.
+struct LevelStage {
+  Scene scene = [] {
+    Scene made = worlds::flat(12);
+    made.add_box({4, 0, 4}, {7, 1.5, 7});
+    made.add_box({6, 3.5, 0}, {12, 3.8, 12});
+    return made;
+  }();
+  World world = bake(
+      scene, 0.25,
+      {{.name = "adult"}, {.name = "climber", .height = 1.0, .radius = 0.3, .climb_slope = 180}});
+  Context context;
+  Nodes nodes = need(Nodes::create(world, scene, {}, context));
+};
+
+TEST(PathFinder, TheNodePlaceNearestInThreeDimensionsIsFound) {
+  LevelStage s;
+  PathFinder finder =
+      need(PathFinder::create(s.world, {.avatar_class = 1, .nodes = s.nodes}, s.context));
+  GroundQuery ground = need(GroundQuery::create(s.world, 1));
+  uint64_t found = 0, none = 0;
+  for (uint64_t n = 0; n < 3000; ++n) {
+    const Vec3d at{random_unit(4, n, 0) * 18 - 3, random_unit(4, n, 1) * 6 - 1,
+                   random_unit(4, n, 2) * 18 - 3};
+    const double radius = random_unit(4, n, 3) * 3;
+    const Place nearest = ground.nearest_place(at, 1000);
+    ASSERT_TRUE(nearest);
+    const double distance = length(nearest.position - at);
+    if (std::fabs(distance - radius) < 0.002) continue;
+    const NodePlace place = finder.find_node_place(at, radius);
+    ASSERT_EQ(static_cast<bool>(place), distance < radius)
+        << at.x << ' ' << at.y << ' ' << at.z << ", " << distance << " of " << radius;
+    if (place) {
+      EXPECT_NEAR(length(place.feet - at), distance, 0.002) << at.x << ' ' << at.y << ' ' << at.z;
+      EXPECT_TRUE(finder.is_free(place));
+    }
+    ++(place ? found : none);
+  }
+  EXPECT_GT(found, 500u);
+  EXPECT_GT(none, 500u);
+}
+
+TEST(PathFinder, ANodePlaceIsFoundBesideAnObstacle) {
+  LevelStage s;
+  Edits edits;
+  const Prism crate = Prism::box({1, 0, 1}, {3, 1, 3});
+  ASSERT_TRUE(edits.add_obstacle(crate));
+  PathFinder finder = need(PathFinder::create(
+      s.world, {.avatar_class = 1, .nodes = s.nodes, .edits = edits}, s.context));
+  const NodePlace place = finder.find_node_place({2, 0, 2.5}, 3);
+  ASSERT_TRUE(place);
+  EXPECT_FALSE(crate.covers(place.feet.x, place.feet.z));
+  EXPECT_GT(place.feet.z, 3.2) << "on the side that is nearer";
+  EXPECT_LT(place.feet.z, 4.1);
+  EXPECT_TRUE(finder.is_free(place));
+  EXPECT_FALSE(finder.find_node_place({2, 0, 2}, 0.5)) << "all of it is blocked";
+}
+
+TEST(PathFinder, ANodePlaceOfNoPositionIsNowhere) {
+  LevelStage s;
+  PathFinder finder =
+      need(PathFinder::create(s.world, {.avatar_class = 1, .nodes = s.nodes}, s.context));
+  const double nan = std::nan(""), infinity = HUGE_VAL;
+  const NodePlace place = s.nodes.random_place(1, 3, 4);
+  ASSERT_TRUE(finder.find_node_place(place.feet, 0.01));
+  EXPECT_FALSE(finder.find_node_place(place.feet, -1));
+  EXPECT_FALSE(finder.find_node_place(place.feet, nan));
+  for (const double bad : {nan, infinity, -infinity}) {
+    EXPECT_FALSE(finder.find_node_place({bad, 0, 0}, 5)) << bad;
+    EXPECT_FALSE(finder.find_node_place({0, bad, 0}, infinity)) << bad;
+    EXPECT_FALSE(finder.find_node_place({0, 0, bad}, 5)) << bad;
+  }
+  EXPECT_FALSE(finder.find_node_place({1e300, 0, -1e300}, 5));
+  EXPECT_FALSE(finder.find_node_place({1000, 0, 0}, 900));
+  EXPECT_TRUE(finder.find_node_place({1000, 0, 0}, 1000));
+  EXPECT_TRUE(finder.find_node_place({5, 0, 5}, infinity));
+}
+
 TEST(PathFinder, RefusesWhatItsSpaceDoesNotHave) {
   const World world = bake(worlds::flat(6), 0.2);
   Context context;

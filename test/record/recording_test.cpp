@@ -616,6 +616,38 @@ TEST(Recording, NamesWhatIsCorruptAndReadsTheRest) {
   EXPECT_GT(partly, bytes.size() / 2);
 }
 
+TEST(Recording, HeadersOfFramesInACorruptChunkAreRefusedAndOthersRead) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  const auto run = random_run(5, 12, 8);
+  record(path, run, {.chunk_frames = 4, .key_frames = 4});
+  const std::string bytes = bytes_of(path);
+  uint64_t refused = 0;
+  for (size_t at = 0; at < bytes.size(); at += 5) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ 4);
+    auto replay = Replay::from_bytes(span_of(damaged), "damaged");
+    if (!replay) continue;
+    uint64_t failed = 0;
+    for (uint64_t f = 0; f < replay->frame_count(); ++f) {
+      const auto about = replay->frame_info(f);
+      if (about) {
+        EXPECT_EQ(about->step, run[f].step) << at;
+        EXPECT_EQ(about->time, run[f].time) << at;
+        EXPECT_EQ(about->avatars, run[f].size()) << at;
+        continue;
+      }
+      EXPECT_EQ(about.error().code, Errc::kBadFile);
+      EXPECT_NE(about.error().message.find("damaged: the chunk at byte"), std::string::npos)
+          << about.error().message;
+      ++failed;
+    }
+    EXPECT_TRUE(failed == 0 || failed == 4) << "one chunk: byte " << at;
+    refused += failed;
+  }
+  EXPECT_GT(refused, 40u);
+}
+
 TEST(Recording, RefusesInvalidFramesAndContinues) {
   const ScratchFolder folder;
   const std::string path = folder.path() + "/run.replay";

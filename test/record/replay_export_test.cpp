@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "core/random.h"
@@ -67,6 +68,49 @@ TEST(ReplayExport, TheFilmTakesTheWidestEvenSpacing) {
   Replay one = recorded(folder, run);
   EXPECT_EQ(film_rate(one)->steps, 1u);
   EXPECT_DOUBLE_EQ(film_rate(one)->rate, 20);
+}
+
+TEST(ReplayExport, TheFilmOfADamagedRecordingIsRefusedAndNamed) {
+  const test::ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  auto recorder = Recorder::create(
+      path, {.dt = 0.05, .classes = {{.name = "adult"}, {.name = "child"}}}, {.chunk_frames = 4});
+  ASSERT_TRUE(recorder) << recorder.error().message;
+  for (const RecordedFrame& frame : uneven_run()) ASSERT_TRUE(recorder->append(frame.view()));
+  ASSERT_TRUE(recorder->finish());
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  size_t refused = 0;
+  for (size_t at = 0; at < bytes.size(); at += 7) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ 0x20);
+    auto replay =
+        Replay::from_bytes({reinterpret_cast<const uint8_t*>(damaged.data()), damaged.size()}, "a");
+    if (!replay) continue;
+    bool is_whole = true;
+    RecordedFrame frame;
+    for (uint64_t f = 0; f < replay->frame_count(); ++f) {
+      is_whole &= static_cast<bool>(replay->read(f, frame));
+    }
+    const auto film = film_rate(*replay);
+    EXPECT_EQ(static_cast<bool>(film), is_whole) << "as read() does: byte " << at;
+    if (film) continue;
+    EXPECT_EQ(film.error().code, Errc::kBadFile);
+    EXPECT_NE(film.error().message.find("a: the chunk at byte"), std::string::npos)
+        << film.error().message;
+    ++refused;
+  }
+  EXPECT_GT(refused, 20u);
+}
+
+TEST(ReplayExport, ARecordingWithoutFramesHasTheRateOfItsSteps) {
+  const test::ScratchFolder folder;
+  Replay replay = recorded(folder, {});
+  ASSERT_EQ(replay.frame_count(), 0u);
+  const auto film = film_rate(replay);
+  ASSERT_TRUE(film) << film.error().message;
+  EXPECT_EQ(film->steps, 1u);
+  EXPECT_DOUBLE_EQ(film->rate, 20);
 }
 
 // Of a run whose positions are moved by `origin`.

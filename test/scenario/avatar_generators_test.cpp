@@ -13,6 +13,7 @@
 #include "core/random.h"
 #include "rays.h"
 #include "throng/crowd.h"
+#include "worlds.h"
 
 namespace throng {
 namespace {
@@ -269,6 +270,71 @@ TEST(AvatarGenerators, PopulateAfterAJumpMovesOwnAvatarsAndLeavesOthers) {
     EXPECT_GT(report->seen_avatars, 10u);
     EXPECT_NEAR(report->seen_avatars, config.density * report->seen_area,
                 0.2 * config.density * report->seen_area);
+  }
+}
+
+// A small yard for two classes.
+struct Yard {
+  World world = test::bake(worlds::flat(30), 0.25, {{.name = "adult"}, {.name = "porter"}});
+  GeneratorConfig config{.home = world.find_place(1, {15, 0, 15}, 0.1), .avatar_class = 1};
+  Context context;
+};
+
+TEST(AvatarGenerators, PopulateFailsAsACrowdThatAddsThem) {
+  Yard yard;
+  Context context;
+  auto generators = AvatarGenerators::create(yard.world, yard.config, context);
+  ASSERT_TRUE(generators) << generators.error().message;
+  const Vec3d eye{15, 1.7, 15};
+  const auto sees_all = [](const Box3d&) { return true; };
+
+  // Its world has no such class.
+  auto other = Crowd::create(test::bake(worlds::flat(30), 0.25, {{.name = "adult"}}), {});
+  ASSERT_TRUE(other);
+  const auto unknown = generators->populate(*other, eye, sees_all, context);
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error().code, Errc::kNotFound) << unknown.error().message;
+  EXPECT_EQ(other->size(), 0u);
+  EXPECT_TRUE(generators->members().empty());
+
+  auto crowd = Crowd::create(yard.world, {});
+  ASSERT_TRUE(crowd);
+  context.cancel = true;
+  const auto cancelled = generators->populate(*crowd, eye, sees_all, context);
+  ASSERT_FALSE(cancelled);
+  EXPECT_EQ(cancelled.error().code, Errc::kCancelled);
+  EXPECT_EQ(crowd->size(), 0u);
+  EXPECT_TRUE(generators->members().empty());
+
+  context.cancel = false;
+  const auto report = generators->populate(*crowd, eye, sees_all, context);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->removed, 0u);
+  EXPECT_GT(report->added, 20u);
+  EXPECT_EQ(generators->members().size(), report->added);
+}
+
+TEST(AvatarGenerators, PopulateNothingForAnEyeThatSeesNothing) {
+  Yard yard;
+  auto generators = AvatarGenerators::create(yard.world, yard.config, yard.context);
+  auto crowd = Crowd::create(yard.world, {});
+  ASSERT_TRUE(generators && crowd);
+  const auto sees = [](bool all) { return [all](const Box3d&) { return all; }; };
+  const Vec3d eye{15, 1.7, 15};
+  for (int round = 0; round < 2; ++round) {  // Also after there were some.
+    for (const Vec3d& nowhere :
+         {Vec3d{NAN, 0, 0}, Vec3d{15, 0, NAN}, Vec3d{HUGE_VAL, 0, 0}, Vec3d{1e6, 0, 1e6}}) {
+      const auto report = generators->populate(*crowd, nowhere, sees(true), yard.context);
+      ASSERT_TRUE(report) << report.error().message;
+      EXPECT_EQ(report->added, 0u);
+      EXPECT_EQ(report->seen_area, 0);
+      EXPECT_EQ(crowd->size(), 0u);
+    }
+    const auto blind = generators->populate(*crowd, eye, sees(false), yard.context);
+    ASSERT_TRUE(blind);
+    EXPECT_EQ(crowd->size(), 0u) << "without what is seen there is no band";
+    ASSERT_TRUE(generators->populate(*crowd, eye, sees(true), yard.context));
+    EXPECT_GT(crowd->size(), 20u);
   }
 }
 

@@ -113,6 +113,21 @@ TEST_P(Overlays, LooksAsItDid) {
 INSTANTIATE_TEST_SUITE_P(All, Overlays, testing::ValuesIn(Viewer::overlay_names()),
                          [](const auto& test) { return test.param; });
 
+TEST(OverlayNames, UnknownOnesAreIgnored) {
+  Viewer viewer = made_viewer("");
+  const Image without = picture(viewer);
+  for (const std::string& name : {std::string(), std::string("levels"), std::string("Levels "),
+                                  std::string("All"), std::string(1000, 'x')}) {
+    viewer.show_overlay(name);
+  }
+  viewer.wait_for_overlays();
+  EXPECT_EQ(viewer.status().error, "");
+  EXPECT_EQ(picture(viewer).rgb, without.rgb);
+  viewer.show_overlay("Levels");
+  viewer.wait_for_overlays();
+  EXPECT_GT(pixels_that_differ(picture(viewer), without), 40U) << "the one that is known";
+}
+
 // Area of a mark's triangles seen from above.
 double area_of(const Marks& marks) {
   double area = 0;

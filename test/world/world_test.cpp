@@ -9,6 +9,8 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "core/random.h"
 #include "throng/bake.h"
@@ -179,6 +181,20 @@ double unevenness(const std::vector<int32_t>& counts, const std::vector<double>&
   }
   const auto freedom = static_cast<double>(counts.size()) - 1;
   return (chi - freedom) / std::sqrt(2 * freedom);
+}
+
+TEST(World, AClassIsFoundByItsWholeName) {
+  const World world = bake(worlds::flat(5), 0.2);
+  const std::vector<AvatarClass> classes = world.summary().classes;
+  ASSERT_GT(classes.size(), 1u);
+  for (size_t c = 0; c < classes.size(); ++c) {
+    EXPECT_EQ(world.find_class(classes[c].name), static_cast<int32_t>(c)) << classes[c].name;
+  }
+  const std::string name = classes[0].name;
+  for (const std::string& unknown : {std::string(), name + " ", name.substr(1), name + name,
+                                     std::string("ADULT"), name + std::string(1, '\0')}) {
+    EXPECT_FALSE(world.find_class(unknown)) << unknown;
+  }
 }
 
 TEST(World, RandomPlacesAreUniformOverTheLegalCellsOfAllLevels) {

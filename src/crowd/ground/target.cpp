@@ -87,7 +87,9 @@ std::vector<Place> places_inside(const world::WorldData& world, const CrowdGroun
                  level + 1};
   };
   const auto for_cells = [&](int32_t stride, auto visit) {
-    for (const TargetRegion& region : regions) {
+    for (size_t r = 0; r < regions.size(); ++r) {
+      const TargetRegion& region = regions[r];
+      const std::span<const TargetRegion> before = regions.first(r);
       const int32_t x0 = cell_of(region.bounds().x0, world.width),
                     x1 = cell_of(region.bounds().x1, world.width),
                     z0 = cell_of(region.bounds().z0, world.depth),
@@ -108,6 +110,10 @@ std::vector<Place> places_inside(const world::WorldData& world, const CrowdGroun
                 const auto mx = static_cast<int32_t>(middle.x), mz = static_cast<int32_t>(middle.z);
                 const int32_t feet = ground.feet(level, middle);
                 if (!region.contains(mx, mz, feet)) continue;
+                const bool is_known = std::any_of(
+                    before.begin(), before.end(),
+                    [&](const TargetRegion& other) { return other.contains(mx, mz, feet); });
+                if (is_known) continue;
                 const Place place = place_of(level, middle, feet);
                 if (live == nullptr || live->is_free(place)) visit(place);
               }
@@ -128,8 +134,15 @@ std::vector<Place> places_inside(const world::WorldData& world, const CrowdGroun
   std::vector<Place> places;
   for (;; stride = std::max(1, stride / 2)) {
     for_cells(stride, [&](const Place& place) { places.push_back(place); });
-    if (!places.empty() || stride == 1) return places;
+    if (!places.empty() || stride == 1) break;
   }
+  // A raster that is fine enough for a narrow region has many more points along it.
+  if (places.size() / 2 <= max_count) return places;
+  const size_t every = (places.size() + max_count - 1) / max_count;
+  size_t kept = 0;
+  for (size_t i = every / 2; i < places.size(); i += every) places[kept++] = places[i];
+  places.resize(kept);
+  return places;
 }
 
 }  // namespace throng::crowd

@@ -50,9 +50,9 @@ struct Target {
   [[nodiscard]] bool contains(const Body& body) const;
 };
 
-/// Legal cells whose centres are inside, by region, level and row: all, or every n-th of a row and
-/// every n-th row, so that they are not many more than `max_count`. Y at the feet. With `live`:
-/// those that are legal there, whatever else is blocked in `ground`.
+/// Legal cells whose centres are inside, each once, by region, level and row: all, or every n-th of
+/// a row and every n-th row, and of these every m-th if they would be more than twice `max_count`.
+/// Y at the feet. With `live`: those that are legal there, whatever else is blocked in `ground`.
 std::vector<Place> places_inside(const world::WorldData& world, const CrowdGround& ground,
                                  std::span<const TargetRegion> regions, size_t max_count,
                                  path::GroundFinder* live = nullptr);

@@ -161,13 +161,13 @@ struct CrowdConfig {
   /// With Routing::kPaths, avatars of classes that neither fly nor go over nodes take off-mesh
   /// links. They take a link in the order in which they came, in one direction at a time, and wait
   /// near the start while an avatar or an obstacle is at the end. Links that cross, share an end or
-  /// lie so close that avatars on them could touch are used one at a time. On a link an avatar moves
-  /// in a straight line, at its speed times length / cost, but not faster than its speed and not
-  /// slower than a thousandth of it. Only other avatars stop it there: if the link is switched off
-  /// it still arrives, an obstacle on the rest of the line waits for it, and a new goal or velocity
-  /// applies from the end on. An avatar that stays at an end closes the link in that direction for
-  /// as long; one that stays on ground that the line crosses stops those on the link. Classes that
-  /// go over nodes take NodeConfig::off_mesh_links; flyers take none.
+  /// lie so close that avatars on them could touch are used one at a time. On a link an avatar
+  /// moves in a straight line, at its speed times length / cost, but not faster than its speed and
+  /// not slower than a thousandth of it. Only other avatars stop it there: if the link is switched
+  /// off it still arrives, an obstacle on the rest of the line waits for it, and a new goal or
+  /// velocity applies from the end on. An avatar that stays at an end closes the link in that
+  /// direction for as long; one that stays on ground that the line crosses stops those on the link.
+  /// Classes that go over nodes take NodeConfig::off_mesh_links; flyers take none.
   Edits edits = {};
   /// PathConfig::slope_cost of avatars that walk or climb. [0 to 1000]
   double slope_cost = 0;

@@ -22,7 +22,7 @@ namespace throng {
 // graph for all avatar classes. Source: [PACS00] 1.2.3; docs/design/006-nodes.md.
 
 struct Scene;
-namespace world {
+namespace graph {
 struct NodeData;  // Internal: zones of nodes.
 }
 
@@ -227,8 +227,8 @@ class THRONG_API Nodes {
 
  private:
   friend struct Access;
-  explicit Nodes(std::shared_ptr<const world::NodeData> state) : state_(std::move(state)) {}
-  std::shared_ptr<const world::NodeData> state_;
+  explicit Nodes(std::shared_ptr<const graph::NodeData> state) : state_(std::move(state)) {}
+  std::shared_ptr<const graph::NodeData> state_;
 };
 
 /// Calls visit(s, t, count) for each run of cells in a row of a partial node (NodeInfo::cells,

@@ -18,7 +18,6 @@
 #include "render/tile_slopes.h"
 #include "throng/picture.h"
 #include "throng/surface.h"
-#include "world/node_data.h"
 
 // Nodes as surfaces seen at a slant from the south, as in the last figures of [PACS00]: every
 // sub-patch in the colour of its inclination, smaller nodes over the larger ones that hold them,
@@ -178,8 +177,8 @@ class NodePicture {
       : nodes_(nodes),
         config_(config),
         summary_(nodes.summary()),
-        slopes_(*data_of(data_of(nodes)->world)) {
-    if (config.storey >= 0) storeys_ = data_of(nodes)->world.storeys();
+        slopes_(*data_of(nodes.world())) {
+    if (config.storey >= 0) storeys_ = nodes.world().storeys();
   }
 
   Result<Image> draw() {
@@ -188,7 +187,7 @@ class NodePicture {
       return Error{Errc::kNotFound, "picture: no node of the area, storey and class asked for"};
     }
     if (config_.air) {
-      auto lines = render::air_lines(data_of(nodes_)->world, config_.area);
+      auto lines = render::air_lines(nodes_.world(), config_.area);
       if (!lines) return lines.error();
       air_ = *std::move(lines);
       for (const render::AirLine& line : air_) {
@@ -378,7 +377,7 @@ class NodePicture {
         paint({(info.s * 8 + first) * kCell, (info.t * 8 + row) * kCell, count * kCell - kInset,
                kCell - kInset});
       });
-      if (whole * kTileCells * data_of(nodes_)->world.summary().cell * scale_ >= 5)
+      if (whole * kTileCells * nodes_.world().summary().cell * scale_ >= 5)
         rim_of_cells(canvas, info, node, cells, rim, nearer);
       return;
     }
@@ -593,11 +592,10 @@ Result<Image> draw_nodes(const Nodes& nodes, const NodePictureConfig& config) {
   if (config.width < 200 || config.width > 16000) {
     return Error{Errc::kBadConfig, "picture: the width must be 200 to 16000 pixels"};
   }
-  if (data_of(nodes) != nullptr &&
-      config.avatar_class >= static_cast<int32_t>(nodes.summary().classes.size())) {
+  if (nodes && config.avatar_class >= static_cast<int32_t>(nodes.summary().classes.size())) {
     return Error{Errc::kBadConfig, "picture: the world has no such avatar class"};
   }
-  if (data_of(nodes) == nullptr || nodes.node_count() == 0) {
+  if (!nodes || nodes.node_count() == 0) {
     return Error{Errc::kNotFound, "picture: this world has no nodes to draw"};
   }
   if (auto ok = nodes.check_all(); !ok) return ok.error();

@@ -12,6 +12,7 @@
 #include "baked.h"
 #include "core/access.h"
 #include "core/random.h"
+#include "graph/node_data.h"
 #include "patch_nets.h"
 #include "path/node_finder.h"
 #include "scratch_folder.h"
@@ -19,7 +20,6 @@
 #include "throng/path.h"
 #include "throng/verify.h"
 #include "verify/turned_body.h"
-#include "world/node_data.h"
 #include "world/zone_data.h"
 
 namespace throng {

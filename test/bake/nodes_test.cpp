@@ -13,13 +13,13 @@
 #include "baked.h"
 #include "core/access.h"
 #include "core/random.h"
+#include "graph/node_data.h"
 #include "patch_nets.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
 #include "throng/surface.h"
 #include "throng/verify.h"
 #include "throng/world.h"
-#include "world/node_data.h"
 #include "worlds.h"
 
 namespace throng {

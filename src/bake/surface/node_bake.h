@@ -62,11 +62,11 @@ class NodeBaker {
   /// Writes for the next bake what is in the folder so far.
   Result<void> list();
   /// All of them, once they are made. Fails with kLimit: too many.
-  Result<std::shared_ptr<world::NodeData>> finish();
+  Result<std::shared_ptr<graph::NodeData>> finish();
 
  private:
   [[nodiscard]] NodeBatchInput batch_input(bool is_last, Context& context);
-  [[nodiscard]] std::shared_ptr<world::NodeData> gather();
+  [[nodiscard]] std::shared_ptr<graph::NodeData> gather();
 
   const World& world_;
   const world::WorldData& data_;

@@ -16,8 +16,8 @@
 #include "core/access.h"
 #include "core/parallel.h"
 #include "graph/ground_parts.h"
+#include "graph/node_data.h"
 #include "graph/node_width.h"
-#include "world/node_data.h"
 #include "world/place.h"
 #include "world/tile_grid.h"
 

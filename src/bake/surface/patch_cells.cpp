@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "core/float_origin.h"
-#include "world/node_data.h"
+#include "graph/node_data.h"
 
 // A body with its feet at p, axis n and bottom b fills the points p + h n + l, where b <= h <=
 // height and l is at most a radius long and across n. If all normals of a sub-patch lie within an
@@ -110,7 +110,7 @@ int32_t patch_depth(const BezierPatch& patch, double size) {
                                     length(curve[3] - curve[2]));
   }
   int32_t depth = 0;
-  while (depth < world::kDeepestPatch && longest > size * (1 << depth)) ++depth;
+  while (depth < graph::kDeepestPatch && longest > size * (1 << depth)) ++depth;
   return depth;
 }
 

@@ -8,8 +8,8 @@
 
 #include "core/access.h"
 #include "core/parallel.h"
+#include "graph/node_data.h"
 #include "graph/patch_pairs.h"
-#include "world/node_data.h"
 #include "world/place.h"
 #include "world/tile_grid.h"
 
@@ -47,7 +47,7 @@ bool goes(MotionJudge& judge, const PatchBody& body, const BodyPose& from, const
 // The part of the edges that a pair touches along, as a door of its own or the end of the last one.
 void add_door(const graph::EdgePair& pair, uint16_t classes, std::vector<PatchDoor>& doors) {
   const auto along = [](double at) {
-    return static_cast<uint16_t>(std::lround(at * world::kEdgeUnits));
+    return static_cast<uint16_t>(std::lround(at * graph::kEdgeUnits));
   };
   const PatchDoor door{.patch = pair.side_a.patch,
                        .to_patch = pair.side_b.patch,

@@ -13,13 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "graph/nodes_generated.h"
 #include "throng/base.h"
 #include "throng/surface.h"
-#include "world/nodes_generated.h"
 #include "world/zone_file.h"
 
 /// Nodes in memory: zones mapped from files, or owned after they were made.
-namespace throng::world {
+namespace throng::graph {
 
 inline constexpr uint32_t kNodeVersion = 4;
 inline constexpr const char* kNodeIndexName = "index.thn";
@@ -33,7 +33,7 @@ inline constexpr uint8_t kTerminalFlag = 1, kPartialFlag = 2;  // of nodes
 inline constexpr uint8_t kPartialLevel = 3;  // of partial nodes: blocks of 8 x 8 of a tile's cells
 
 /// A zone's bytes after the verifier and the checks of its numbers.
-class NodeZone : public ZoneFile<NodeZone> {
+class NodeZone : public world::ZoneFile<NodeZone> {
  public:
   [[nodiscard]] int32_t x() const { return root_->x(); }
   [[nodiscard]] int32_t z() const { return root_->z(); }
@@ -55,7 +55,7 @@ class NodeZone : public ZoneFile<NodeZone> {
   }
 
  private:
-  friend class ZoneFile<NodeZone>;
+  friend class world::ZoneFile<NodeZone>;
   Result<void> attach(const std::string& name);
   [[nodiscard]] const char* fault() const;
 
@@ -73,7 +73,7 @@ class NodeZone : public ZoneFile<NodeZone> {
 /// What Nodes points to.
 struct NodeData {
   using AreaList = std::vector<std::pair<uint32_t, double>>;
-  struct Slot : ZoneSlot<NodeZone> {
+  struct Slot : world::ZoneSlot<NodeZone> {
     format::NodeZoneEntry entry;
     uint32_t first_node = 0;  // of all
   };
@@ -124,4 +124,4 @@ std::vector<uint8_t> write_node_index(const NodeData& nodes);
 Result<std::shared_ptr<NodeData>> read_node_index(std::span<const uint8_t> bytes,
                                                   const std::string& name);
 
-}  // namespace throng::world
+}  // namespace throng::graph

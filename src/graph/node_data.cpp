@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "world/node_data.h"
+#include "graph/node_data.h"
 
 #include <algorithm>
 #include <bit>
@@ -13,7 +13,7 @@
 #include "world/region_data.h"
 
 // Reads and checks files of nodes, and looks up nodes, arcs and hole links in them.
-namespace throng::world {
+namespace throng::graph {
 namespace {
 
 constexpr const char* kNodeZoneIdentifier = "THNZ";
@@ -23,7 +23,7 @@ constexpr double kMaxLength = 1e9;  // [m]
 constexpr const char* kRemedy = "bake the world again with --nodes";
 
 Error bad_nodes(const std::string& name, const std::string& what) {
-  return bad_file(name, what, kRemedy);
+  return world::bad_file(name, what, kRemedy);
 }
 
 bool ascending(const flatbuffers::Vector<double>& edges, double low, double high) {
@@ -51,16 +51,16 @@ Result<void> NodeZone::attach(const std::string& name) {
   }
   if (!root_->patches() || !root_->nodes() || !root_->arcs() || !root_->far() ||
       !root_->hole_links() || !root_->doors() || !root_->points() || !root_->partial() ||
-      !is_aligned(*root_->points())) {
+      !world::is_aligned(*root_->points())) {
     return bad_nodes(name, "an array is missing");
   }
-  patches_ = structs(*root_->patches());
-  nodes_ = structs(*root_->nodes());
-  arcs_ = structs(*root_->arcs());
-  hole_links_ = structs(*root_->hole_links());
-  partial_ = structs(*root_->partial());
-  far_ = structs(*root_->far());
-  doors_ = structs(*root_->doors());
+  patches_ = world::structs(*root_->patches());
+  nodes_ = world::structs(*root_->nodes());
+  arcs_ = world::structs(*root_->arcs());
+  hole_links_ = world::structs(*root_->hole_links());
+  partial_ = world::structs(*root_->partial());
+  far_ = world::structs(*root_->far());
+  doors_ = world::structs(*root_->doors());
   points_ = {root_->points()->data(), root_->points()->size()};
   if (const char* what = fault()) return bad_nodes(name, what);
   return {};
@@ -190,7 +190,7 @@ const NodeZone* NodeData::zone(size_t slot) const {
             const size_t other = slot_at(far.x(), far.z());
             belongs = belongs && other < slots.size() && far.node() < slots[other]->entry.nodes();
           }
-          const int32_t ground = throng::world::slot_at(*data_of(world), found.x(), found.z());
+          const int32_t ground = world::slot_at(*data_of(world), found.x(), found.z());
           const uint32_t levels =
               ground < 0 ? 0 : data_of(world)->slots[static_cast<size_t>(ground)]->entry.levels();
           for (const format::NodePatch& patch : found.patches()) {
@@ -220,8 +220,8 @@ size_t NodeData::slot_at(int32_t x, int32_t z) const {
 
 uint32_t NodeData::source_of(const NodeZone& from, const format::NodePatch& patch) const {
   if (patch.kind() == static_cast<uint8_t>(PatchKind::kBezier)) return patch.source();
-  const WorldData& ground = *data_of(world);
-  const auto slot = static_cast<size_t>(throng::world::slot_at(ground, from.x(), from.z()));
+  const world::WorldData& ground = *data_of(world);
+  const auto slot = static_cast<size_t>(world::slot_at(ground, from.x(), from.z()));
   return ground.slots[slot]->first_level + patch.source();
 }
 
@@ -256,9 +256,9 @@ uint64_t NodeData::cells_of(const NodeZone& from, uint32_t node, int32_t avatar_
   const uint64_t cells = from.cells_of(node);
   const format::Node& found = from.nodes()[node];
   if (cells == 0 || (found.classes() >> avatar_class & 1) == 0) return 0;
-  const GroundLevel ground =
-      ground_level(*data_of(world), source_of(from, from.patch_of(node)), avatar_class);
-  return cells & ground.legal_in(block_of(found.s() * 8, found.t() * 8));
+  const world::GroundLevel ground =
+      world::ground_level(*data_of(world), source_of(from, from.patch_of(node)), avatar_class);
+  return cells & ground.legal_in(world::block_of(found.s() * 8, found.t() * 8));
 }
 
 double NodeData::area_of(const NodeZone& from, uint32_t node, int32_t avatar_class) const {
@@ -307,10 +307,11 @@ Result<std::shared_ptr<NodeData>> read_node_index(std::span<const uint8_t> bytes
                                ", this program reads " + std::to_string(kNodeVersion));
   }
   if (!root.inclination() || !root.height() || !root.width() || !root.zones() || !root.inputs() ||
-      !is_aligned(*root.inputs()) || !is_aligned(*root.inclination()) ||
-      !is_aligned(*root.height()) || !is_aligned(*root.width()) || !is_aligned(*root.zones()) ||
-      !ascending(*root.inclination(), 0, 180) || !ascending(*root.height(), 0, kMaxLength) ||
-      !ascending(*root.width(), 0, kMaxLength) || !(root.size() > 0 && root.size() <= kMaxLength)) {
+      !world::is_aligned(*root.inputs()) || !world::is_aligned(*root.inclination()) ||
+      !world::is_aligned(*root.height()) || !world::is_aligned(*root.width()) ||
+      !world::is_aligned(*root.zones()) || !ascending(*root.inclination(), 0, 180) ||
+      !ascending(*root.height(), 0, kMaxLength) || !ascending(*root.width(), 0, kMaxLength) ||
+      !(root.size() > 0 && root.size() <= kMaxLength)) {
     return bad_nodes(name, "its numbers make no sense");
   }
   auto nodes = std::make_shared<NodeData>();
@@ -322,7 +323,7 @@ Result<std::shared_ptr<NodeData>> read_node_index(std::span<const uint8_t> bytes
                   {root.width()->begin(), root.width()->end()}};
   summary.bezier_patches = root.bezier_patches();
   uint64_t count = 0;
-  for (const format::NodeZoneEntry& entry : structs(*root.zones())) {
+  for (const format::NodeZoneEntry& entry : world::structs(*root.zones())) {
     if (!nodes->slots.empty()) {
       const format::NodeZoneEntry& last = nodes->slots.back()->entry;
       if (std::pair{last.z(), last.x()} >= std::pair{entry.z(), entry.x()}) {
@@ -340,7 +341,7 @@ Result<std::shared_ptr<NodeData>> read_node_index(std::span<const uint8_t> bytes
     summary.patches += entry.patches();
     nodes->slots.push_back(std::move(slot));
   }
-  for (const format::NodeInput& input : structs(*root.inputs())) {
+  for (const format::NodeInput& input : world::structs(*root.inputs())) {
     if (!nodes->inputs.empty()) {
       const format::NodeInput& last = nodes->inputs.back();
       if (std::pair{last.z(), last.x()} >= std::pair{input.z(), input.x()}) {
@@ -356,4 +357,4 @@ Result<std::shared_ptr<NodeData>> read_node_index(std::span<const uint8_t> bytes
   return nodes;
 }
 
-}  // namespace throng::world
+}  // namespace throng::graph

@@ -19,8 +19,9 @@
 #include "import/raw/child_process.h"
 #include "throng/impostor.h"
 
-// assimp reads a character in a child process (for the reason see assimp_reader.cpp). The child
-// converts it to our own arrays and sends them; the parent checks every index and number first.
+// assimp reads a character in a child process (for the reason see
+// import/formats/assimp_reader.cpp). The child converts it to our own arrays and sends them; the
+// parent checks every index and number first.
 namespace throng {
 namespace {
 

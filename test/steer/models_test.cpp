@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "throng/papers.h"
+#include "throng/steering.h"
 
 namespace throng::steer {
 namespace {

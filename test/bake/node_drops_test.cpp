@@ -14,7 +14,7 @@
 #include "core/random.h"
 #include "graph/node_data.h"
 #include "patch_nets.h"
-#include "path/node_finder.h"
+#include "path/overlay/node_finder.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
 #include "throng/path.h"

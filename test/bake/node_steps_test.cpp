@@ -7,7 +7,7 @@
 
 #include "baked.h"
 #include "core/disjoint_sets.h"
-#include "path/node_finder.h"
+#include "path/overlay/node_finder.h"
 #include "throng/path.h"
 #include "throng/surface.h"
 

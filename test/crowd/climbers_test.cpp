@@ -10,7 +10,7 @@
 #include "baked.h"
 #include "crowds.h"
 #include "patch_nets.h"
-#include "path/node_finder.h"
+#include "path/overlay/node_finder.h"
 #include "prism_shell.h"
 #include "simd_targets.h"
 #include "throng/avatar.h"

@@ -11,7 +11,7 @@
 #include "core/random.h"
 #include "crowd/obstacles/obstacle_set.h"
 #include "path/edits/ground_finder.h"
-#include "path/mesh_finder.h"
+#include "path/overlay/mesh_finder.h"
 #include "world/place.h"
 #include "worlds.h"
 

@@ -8,7 +8,7 @@
 #include "baked.h"
 #include "core/random.h"
 #include "path/edits/solid.h"
-#include "path/node_finder.h"
+#include "path/overlay/node_finder.h"
 #include "path/overlay/overlay_search.h"
 #include "path/surface/node_changes.h"
 #include "path/surface/node_view.h"

@@ -12,7 +12,7 @@
 #include "baked.h"
 #include "core/random.h"
 #include "path/edits/ground_finder.h"
-#include "path/mesh_finder.h"
+#include "path/overlay/mesh_finder.h"
 #include "throng/bake.h"
 #include "throng/world.h"
 #include "worlds.h"

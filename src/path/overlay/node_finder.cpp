@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/node_finder.h"
+#include "path/overlay/node_finder.h"
 
 #include <algorithm>
 #include <chrono>
@@ -10,8 +10,8 @@
 
 #include "core/access.h"
 #include "path/edits/blocked_cells.h"
-#include "path/edits/blocker.h"
 #include "path/edits/solid.h"
+#include "path/ground/blocker.h"
 #include "path/ground/reset_path.h"
 #include "path/overlay/overlay_search.h"
 #include "path/surface/block_squares.h"

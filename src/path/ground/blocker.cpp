@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/edits/blocker.h"
+#include "path/ground/blocker.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/mesh_finder.h"
+#include "path/overlay/mesh_finder.h"
 
 #include <algorithm>
 #include <chrono>

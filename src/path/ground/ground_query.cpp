@@ -10,7 +10,7 @@
 #include "core/access.h"
 #include "core/check_class.h"
 #include "core/random.h"
-#include "path/edits/blocker.h"
+#include "path/ground/blocker.h"
 #include "path/ground/circle_flood.h"
 #include "throng/world.h"
 #include "world/tile_grid.h"

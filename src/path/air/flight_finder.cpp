@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "path/flight_finder.h"
+#include "path/air/flight_finder.h"
 
 #include <algorithm>
 #include <chrono>
@@ -21,7 +21,7 @@
 #include "path/edits/solid.h"
 #include "path/ground/mesh.h"
 #include "path/ground/reset_path.h"
-#include "path/mesh_finder.h"
+#include "path/overlay/mesh_finder.h"
 #include "world/place.h"
 
 // Joins the parts of a flight: walks, take-offs, flight search, landings and string pulling. Time:

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/classes_file.h"
-#include "core/config_file.h"
-#include "core/read_file.h"
+#include "core/files/classes_file.h"
+#include "core/files/config_file.h"
+#include "core/files/read_file.h"
 #include "throng/avatar.h"
 
 // Limits of avatar classes, the default classes, and lists of classes in TOML and JSON files.

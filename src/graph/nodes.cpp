@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "core/access.h"
-#include "core/disjoint_sets.h"
+#include "core/arrays/disjoint_sets.h"
 #include "core/hash.h"
 #include "core/random.h"
 #include "graph/node_data.h"

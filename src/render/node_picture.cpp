@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/access.h"
-#include "core/float_origin.h"
+#include "core/math/float_origin.h"
 #include "render/air_lines.h"
 #include "render/canvas.h"
 #include "render/text.h"

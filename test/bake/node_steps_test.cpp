@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "baked.h"
-#include "core/disjoint_sets.h"
+#include "core/arrays/disjoint_sets.h"
 #include "path/overlay/node_finder.h"
 #include "throng/path.h"
 #include "throng/surface.h"

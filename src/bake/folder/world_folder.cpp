@@ -15,7 +15,7 @@
 #endif
 
 #include "bake/surface/node_folder.h"
-#include "core/file_map.h"
+#include "core/files/file_map.h"
 #include "core/hash.h"
 #include "world/sealed_file.h"
 

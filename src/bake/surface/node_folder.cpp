@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/file_map.h"
+#include "core/files/file_map.h"
 #include "core/hash.h"
 #include "world/sealed_file.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/folder_lock.h"
+#include "core/files/folder_lock.h"
 #include "graph/node_data.h"
 
 /// Nodes in a world's folder: those of earlier bakes, whole or killed, and those that are made.

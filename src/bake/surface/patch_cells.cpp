@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/float_origin.h"
+#include "core/math/float_origin.h"
 #include "graph/node_data.h"
 
 // A body with its feet at p, axis n and bottom b fills the points p + h n + l, where b <= h <=

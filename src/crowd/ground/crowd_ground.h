@@ -6,8 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/huge_array.h"
-#include "core/prefetch.h"
+#include "core/arrays/huge_array.h"
+#include "core/arrays/prefetch.h"
 #include "crowd/ground/left_cells.h"
 #include "crowd/ground/level_line.h"
 #include "throng/base.h"

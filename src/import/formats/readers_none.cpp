@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <filesystem>
 
-#include "core/read_file.h"
+#include "core/files/read_file.h"
 #include "import/formats/assimp_reader.h"
 #include "import/formats/city.h"
 #include "import/formats/glb.h"

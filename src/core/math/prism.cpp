@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
-#include "core/plan_point.h"
-#include "core/trig.h"
+#include "core/math/plan_point.h"
+#include "core/math/trig.h"
 #include "throng/base.h"
 
 // Upright convex prisms: circles, containment, checks.

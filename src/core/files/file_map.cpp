@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "core/file_map.h"
+#include "core/files/file_map.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "core/part_file.h"
+#include "core/files/part_file.h"
 
 // Maps files read-only, and writes files whole: to NAME.part, then renamed.
 namespace throng {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "core/part_file.h"
+#include "core/files/part_file.h"
 
 #include <cerrno>
 #include <cstring>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "core/folder_lock.h"
+#include "core/files/folder_lock.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

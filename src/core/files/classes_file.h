@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/config_file.h"
+#include "core/files/config_file.h"
 #include "throng/avatar.h"
 
 /// What load_classes does once the file is parsed.

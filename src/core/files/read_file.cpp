@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "core/read_file.h"
+#include "core/files/read_file.h"
 
 #include <cstdio>
 #include <filesystem>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "core/config_file.h"
+#include "core/files/config_file.h"
 
 #include <fmt/format.h>
 #include <toml++/impl/preprocessor.h>

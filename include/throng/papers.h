@@ -168,25 +168,28 @@ struct Counts {
 };
 
 /// One run of the experiment. Each frame takes all forces from the state of the frame before,
-/// applies eq. 15, and updates positions, arrivals and collisions.
+/// applies eq. 15, and updates positions, arrivals and collisions. Movable, not copyable.
 class THRONG_API Simulation {
  public:
   /// Begins a run. Fails with kBadConfig (model, dt) or kBadInput (not finite, sizes differ, ids
   /// not in order).
-  static Result<Simulation> create(Space space, const Model& model, double dt = 1);
+  [[nodiscard]] static Result<Simulation> create(Space space, const Model& model, double dt = 1);
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+  ~Simulation();
 
   void step();
   /// Is each avatar at its target, or standing still while it waits?
   [[nodiscard]] bool finished() const;
 
-  [[nodiscard]] std::span<const Body> bodies() const { return space_.bodies; }
-  [[nodiscard]] std::span<const Vec3d> targets() const { return space_.targets; }
-  [[nodiscard]] std::span<const Obstacle> obstacles() const { return space_.obstacles; }
-  [[nodiscard]] std::span<const Activity> activities() const { return activities_; }
+  [[nodiscard]] std::span<const Body> bodies() const;
+  [[nodiscard]] std::span<const Vec3d> targets() const;
+  [[nodiscard]] std::span<const Obstacle> obstacles() const;
+  [[nodiscard]] std::span<const Activity> activities() const;
   /// The greatest threat of each avatar now.
-  [[nodiscard]] std::span<const Threat> threats() const { return threats_; }
-  [[nodiscard]] const Counts& counts() const { return counts_; }
-  [[nodiscard]] const Model& model() const { return model_; }
+  [[nodiscard]] std::span<const Threat> threats() const;
+  [[nodiscard]] const Counts& counts() const;
+  [[nodiscard]] const Model& model() const;
   /// Hash of all positions and velocities, bit by bit.
   [[nodiscard]] uint64_t state_hash() const;
   /// Gives an avatar a new target. Fails with kNotFound (no such body) or kBadInput. Time:
@@ -194,27 +197,9 @@ class THRONG_API Simulation {
   [[nodiscard]] Result<void> send(uint32_t id, Vec3d target);
 
  private:
-  Simulation() = default;
-  void find_rivals();
-  void negotiate();
-  void sense(size_t i);
-  void move(size_t i);
-  void count();
-
-  Space space_;
-  Model model_;
-  double dt_ = 1;
-  double largest_alert_ = 0;
-  std::vector<Activity> activities_;
-  std::vector<Threat> threats_;
-  std::vector<Vec3d> steer_;
-  std::vector<double> stop_before_;    // Avatars that wait stop so far from the target; others 0.
-  std::vector<uint8_t> claims_;        // 1 if the avatar may go on to its target.
-  std::vector<uint32_t> rival_first_;  // n + 1 offsets into rivals_.
-  std::vector<uint32_t> rivals_;       // Avatars whose targets are too near to one's own.
-  std::vector<uint8_t> inside_;        // Pair (i, j < i) at i (i - 1) / 2 + j: is it in r_rep now?
-  std::vector<uint8_t> inside_obstacle_;
-  Counts counts_;
+  struct Run;
+  explicit Simulation(std::unique_ptr<Run> run);
+  std::unique_ptr<Run> run_;
 };
 
 /// The paper's Mass/MaxSpeed/MaxForce.

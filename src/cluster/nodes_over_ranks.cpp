@@ -44,7 +44,7 @@ cluster::RankJobs jobs_of(bake::NodeBaker& baker, const std::string& path) {
       .stage = "nodes",
       .work = [&](std::span<const uint8_t> job, Context& context) -> Result<cluster::RankBytes> {
         const auto zones = cluster::values_of<uint32_t>(job);
-        auto slots = baker.make(zones, false, context);
+        auto slots = baker.make_nodes(zones, false, context);
         if (!slots) return slots.error();
         const auto made = baker.write(zones, *slots);
         if (!made) return made.error();

@@ -45,8 +45,8 @@ double portal_length(const NodePortal& portal, Vec3d out, Vec3d in) {
   return std::sqrt(hop.x * hop.x + hop.z * hop.z) + std::fabs(hop.y);
 }
 
-Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_t workers,
-                                Context& context) {
+Result<NodeMesh> NodeMesh::create(const Nodes& nodes, int32_t avatar_class, int32_t workers,
+                                  Context& context) {
   if (auto ok = nodes.check_all(); !ok) return ok.error();
   NodeMesh mesh(nodes, avatar_class);
   const NodeData& data = *data_of(nodes);

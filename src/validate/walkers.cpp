@@ -266,7 +266,7 @@ Result<void> walk_scene(const std::string& scene, const std::string& path,
   }
   PlaneConfig plane;
   plane.ground = box(low.x - kMargin, low.z - kMargin, high.x + kMargin, high.z + kMargin);
-  auto crowd = PlaneCrowd::build(plane, walker(), Routing::kStraight, config, context);
+  auto crowd = PlaneCrowd::create(plane, walker(), Routing::kStraight, config, context);
   if (!crowd) return crowd.error();
   std::array<Score, kModels> scores;
   size_t count = 0, not_placed = 0;

@@ -130,7 +130,7 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftFindsTheSame) {
   for_each_world([&](const TestWorld& world) {
     Context context;
     for (int32_t c = 0; c < 4; ++c) {
-      const auto mesh = graph::NodeMesh::make(world.nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::create(world.nodes, c, 1, context);
       ASSERT_TRUE(mesh);
       const path::BlockSquares squares(*mesh);
       path::NodeChanges changes(*mesh, squares, 20);
@@ -196,7 +196,7 @@ TEST(NodeObstacles, LongPathsLeadOverWhatIsLeft) {
   for_each_world([&](const TestWorld& world) {
     Context context;
     for (const int32_t c : {0, 2, 3}) {
-      const auto mesh = graph::NodeMesh::make(world.nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::create(world.nodes, c, 1, context);
       ASSERT_TRUE(mesh);
       const path::BlockSquares squares(*mesh);
       path::NodeChanges changes(*mesh, squares, 20);
@@ -318,7 +318,7 @@ TEST(NodeObstacles, BlockNoMoreThanNeeded) {
   for_each_world([&](const TestWorld& world) {
     Context context;
     for (int32_t c = 0; c < 4; ++c) {
-      const auto mesh = graph::NodeMesh::make(world.nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::create(world.nodes, c, 1, context);
       ASSERT_TRUE(mesh);
       const path::BlockSquares squares(*mesh);
       path::NodeChanges changes(*mesh, squares, 20);

@@ -110,7 +110,7 @@ TEST(NodePath, SearchFindsTheCheapestCrossings) {
   for (const double slope_cost : {0.0, 3.0}) {
     const Nodes nodes = make(net_scene(7), 0.25, 1);
     for (const int32_t c : {0, 4}) {
-      const auto mesh = graph::NodeMesh::make(nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::create(nodes, c, 1, context);
       ASSERT_TRUE(mesh);
       const path::NodeView view(*mesh);
       const path::PieceCost piece(view, slope_cost);
@@ -259,7 +259,7 @@ TEST(NodePath, EndsAtTheNearestPlaceThatIsReached) {
         {make(builtin({.name = "landscape", .size = 100}), 0.5, 2), 0},
         {make(builtin({.name = "landscape", .size = 100}), 0.5, 2), 5}}) {
     path::NodeFinder found = finder(nodes, avatar_class);
-    const auto mesh = graph::NodeMesh::make(nodes, avatar_class, 1, context);
+    const auto mesh = graph::NodeMesh::create(nodes, avatar_class, 1, context);
     ASSERT_TRUE(mesh);
     const path::NodeView view(*mesh);
     const path::NodeParts parts(*mesh, 1);
@@ -365,7 +365,7 @@ TEST(NodePath, FindPlaceFindsWhatASearchThroughAllBlocksFinds) {
     const Nodes nodes = rocks ? make(builtin({.name = "landscape", .size = 64}), 0.5, 2)
                               : make(net_scene(6), 0.25, 1);
     const path::NodeFinder found = finder(nodes, 4);
-    const auto mesh = graph::NodeMesh::make(nodes, 4, 1, context);
+    const auto mesh = graph::NodeMesh::create(nodes, 4, 1, context);
     ASSERT_TRUE(mesh);
     size_t places = 0;
     for (uint64_t n = 0; n < 300; ++n) {

@@ -41,7 +41,7 @@ void for_each_mesh(Check check) {
     const auto nodes = Nodes::create(bake(scene, 0.25, classes()), scene, {.size = 1}, context);
     ASSERT_TRUE(nodes) << nodes.error().message;
     for (const int32_t c : {0, 3, 4, 5}) {
-      const auto mesh = graph::NodeMesh::make(*nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::create(*nodes, c, 1, context);
       ASSERT_TRUE(mesh);
       check(*mesh);
     }

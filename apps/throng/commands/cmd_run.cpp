@@ -126,7 +126,7 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
     run.also.emplace_back(group.substr(0, colon), count);
   }
   auto crowd =
-      times.measure("prepare", [&] { return GoalCrowd::make(world, run, session.context); });
+      times.measure("prepare", [&] { return GoalCrowd::create(world, run, session.context); });
   if (!crowd) return fail(crowd.error());
   Sinks sinks(options.sinks);
   if (auto ok = sinks.open(world, {.world = options.world,

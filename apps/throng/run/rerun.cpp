@@ -100,7 +100,7 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
   }
   run.config.model = *model;
   Context context;
-  Result<GoalCrowd> made = GoalCrowd::make(world, run, context);
+  Result<GoalCrowd> made = GoalCrowd::create(world, run, context);
   if (!made) return made.error();
   const auto crowd = std::make_shared<GoalCrowd>(std::move(*made));
   return Rerun{.step =

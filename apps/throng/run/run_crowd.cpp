@@ -129,7 +129,7 @@ Result<void> read_goals(CrowdRun& run) {
 GoalCrowd::GoalCrowd(const World& world, const CrowdRun& run, Crowd&& crowd)
     : world_(world), run_(run), crowd_(std::move(crowd)) {}
 
-Result<GoalCrowd> GoalCrowd::make(const World& world, const CrowdRun& run, Context& context) {
+Result<GoalCrowd> GoalCrowd::create(const World& world, const CrowdRun& run, Context& context) {
   CrowdRun with_nodes = run;
   const std::vector<AvatarClass> classes = world.summary().classes;
   std::vector<std::pair<std::string, uint32_t>> groups = run.also;

@@ -40,7 +40,7 @@ Result<void> read_goals(CrowdRun& run);
 /// and their goals are there.
 class GoalCrowd {
  public:
-  static Result<GoalCrowd> make(const World& world, const CrowdRun& run, Context& context);
+  static Result<GoalCrowd> create(const World& world, const CrowdRun& run, Context& context);
   CrowdReport step();
   /// Gives new goals to avatars that arrived in the last step, or found no path.
   void give_goals();

@@ -123,8 +123,8 @@ bake::NodeBatchInput bake::NodeBaker::batch_input(bool is_last, Context& context
           .context = context};
 }
 
-Result<bake::NodeSlots> bake::NodeBaker::make(std::span<const uint32_t> zones, bool is_last,
-                                              Context& context) {
+Result<bake::NodeSlots> bake::NodeBaker::make_nodes(std::span<const uint32_t> zones, bool is_last,
+                                                    Context& context) {
   return bake::make_node_batch(batch_input(is_last, context), zones);
 }
 
@@ -213,7 +213,7 @@ Result<std::shared_ptr<graph::NodeData>> make_all(const World& world, const Scen
     if (context.on_progress) context.on_progress({"nodes", baker.zones_done(), baker.zones()});
     // The journal names what is there before the rest is begun.
     if (auto ok = baker.list(); !ok) return ok.error();
-    auto slots = baker.make(batches[b], b + 1 == batches.size(), context);
+    auto slots = baker.make_nodes(batches[b], b + 1 == batches.size(), context);
     if (!slots) return slots.error();
     const auto made = baker.write(batches[b], *slots);
     if (!made) return made.error();

@@ -88,7 +88,7 @@ Result<NodeFolder> NodeFolder::begin(const std::string& world_path) {
   auto world_lock = FolderLock::take(world_path, FolderLock::Kind::kShared, world_path);
   if (!world_lock) return world_lock.error();
   const std::string part = (fs::path(world_path) / graph::kPartNodeFolder).string();
-  auto part_lock = FolderLock::make(part, world_path);
+  auto part_lock = FolderLock::create(part, world_path);
   if (!part_lock) return part_lock.error();
   NodeFolder folder(world_path);
   folder.world_lock_ = *std::move(world_lock);

@@ -54,7 +54,7 @@ Result<FolderLock> FolderLock::take(const std::string& path, Kind kind, const st
 }
 
 // Another process may have removed the folder before it was locked: then it is made again.
-Result<FolderLock> FolderLock::make(const std::string& path, const std::string& world) {
+Result<FolderLock> FolderLock::create(const std::string& path, const std::string& world) {
   while (true) {
     std::error_code error;
     std::filesystem::create_directories(path, error);

@@ -25,7 +25,7 @@ class FolderLock {
   /// Holds nothing where no folder is, or on a file system that cannot lock.
   static Result<FolderLock> take(const std::string& path, Kind kind, const std::string& world);
   /// Makes the folder if it is not there, and takes it alone.
-  static Result<FolderLock> make(const std::string& path, const std::string& world);
+  static Result<FolderLock> create(const std::string& path, const std::string& world);
   /// Lets others in that share.
   void share();
   [[nodiscard]] bool holds() const { return file_ >= 0; }

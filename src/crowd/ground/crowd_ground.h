@@ -23,8 +23,8 @@ class CrowdGround {
 
   /// Opens every zone of the world. Fails with kBadFile, also where floors are not between the
   /// world's lowest and highest triangle.
-  static Result<CrowdGround> make(const world::WorldData& world, int32_t avatar_class,
-                                  int32_t step_mm);
+  static Result<CrowdGround> create(const world::WorldData& world, int32_t avatar_class,
+                                    int32_t step_mm);
 
   [[nodiscard]] bool is_legal(Level level, int32_t x, int32_t z) const {
     return ((rows(lines_[level].legal_set)[z] >> x) & 1) != 0;

@@ -451,7 +451,7 @@ Result<NodeFinder> NodeFinder::create(const Nodes& nodes, const PathConfig& conf
   }
   if (config.workers < 0) return Error{Errc::kBadConfig, "path: workers must be 0 or more"};
   if (auto ok = refuse_settings(config, "path", true); !ok) return ok.error();
-  auto mesh = graph::NodeMesh::make(nodes, config.avatar_class, config.workers, context);
+  auto mesh = graph::NodeMesh::create(nodes, config.avatar_class, config.workers, context);
   if (!mesh) return mesh.error();
   auto shared = std::make_shared<Shared>(std::move(*mesh), config);
   shared->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

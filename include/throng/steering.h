@@ -111,7 +111,7 @@ struct Approach {
 /// A body or obstacle whose course comes too near.
 struct Threat {
   static constexpr uint32_t kObstacle = UINT32_MAX;
-  State level = State::kTolerable;  ///< kAlert or kCritical; kTolerable if there is no threat.
+  State state = State::kTolerable;  ///< kAlert or kCritical; kTolerable if there is no threat.
   double time = std::numeric_limits<double>::infinity();      ///< A_tau.
   double distance = std::numeric_limits<double>::infinity();  ///< B_d.
   uint32_t id = kObstacle;  ///< Body::id of the threat; kObstacle for an obstacle.

@@ -109,7 +109,7 @@ Threat threat_of(const Body& self, const Body& other, const Model& model) {
     return {};
   }
   if (model.trigger == Trigger::kZones && !probes_meet(self, other, model)) return {};
-  threat.level = state == State::kAlert ? State::kAlert : State::kCritical;
+  threat.state = state == State::kAlert ? State::kAlert : State::kCritical;
   return threat;
 }
 
@@ -121,7 +121,7 @@ Threat threat_of(const Body& self, const Obstacle& obstacle, const Model& model)
   // An obstacle behind is no threat, even if the zone still covers it.
   if (approach.time < 0) return {};
   // A zone may reach farther than T3, so the time is not bounded here.
-  Threat threat{.level = State::kCritical,
+  Threat threat{.state = State::kCritical,
                 .time = approach.time,
                 .id = Threat::kObstacle,
                 .now = obstacle.position,
@@ -142,7 +142,7 @@ Threat greatest_threat(const Body& self, std::span<const Body> others,
                        double search_radius) {
   Threat greatest;
   const auto consider = [&](const Threat& threat) {
-    if (threat.level != State::kTolerable && more_urgent(threat, greatest)) greatest = threat;
+    if (threat.state != State::kTolerable && more_urgent(threat, greatest)) greatest = threat;
   };
   for (const Body& other : others) {
     const Vec3d offset = other.position - self.position;

@@ -146,7 +146,7 @@ Positions predict_by_curves(const std::vector<Walker>& walkers) {
     for (int frame = 0; frame < kFramesASample; ++frame) {
       for (size_t n = 0; n < bodies.size(); ++n) {
         const auto threat = caacd::greatest_threat(bodies[n], bodies, {}, models[n]);
-        steer[n] = threat.level != caacd::State::kTolerable
+        steer[n] = threat.state != caacd::State::kTolerable
                        ? caacd::avoidance(bodies[n], threat, models[n])
                        : caacd::path_amendment(bodies[n], targets[n], 0, models[n]);
       }

@@ -191,7 +191,7 @@ void Simulation::Run::sense(size_t i) {
   const double radius = threat_radius(self, largest_alert, model);
   const Threat greatest = greatest_threat(self, space.bodies, space.obstacles, model, radius);
   threats[i] = greatest;
-  if (greatest.level != State::kTolerable) {
+  if (greatest.state != State::kTolerable) {
     activities[i] = Activity::kAvoiding;
     steer[i] = avoidance(self, greatest, model);
     return;

@@ -22,7 +22,7 @@ std::vector<AvatarClass> many_classes() {
   std::vector<AvatarClass> classes = default_classes();
   classes.push_back({.name = "climber"});
   classes.back().climb_slope = 180;
-  classes.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step = 0.2});
+  classes.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step_height = 0.2});
   classes.back().climb_slope = 95;
   return classes;
 }

@@ -45,9 +45,10 @@ AvatarClass climber() {
 std::vector<AvatarClass> many_classes() {
   std::vector<AvatarClass> classes = default_classes();
   classes.push_back(climber());
-  classes.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step = 0.2});
+  classes.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step_height = 0.2});
   classes.back().climb_slope = 95;
-  classes.push_back({.name = "ogre", .height = 2.5, .radius = 0.8, .step = 0.6, .max_slope = 30});
+  classes.push_back(
+      {.name = "ogre", .height = 2.5, .radius = 0.8, .step_height = 0.6, .max_slope = 30});
   return classes;
 }
 

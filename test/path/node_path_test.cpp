@@ -31,7 +31,7 @@ std::vector<AvatarClass> classes() {
   std::vector<AvatarClass> all = default_classes();
   all.push_back({.name = "climber"});
   all.back().climb_slope = 180;
-  all.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step = 0.2});
+  all.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step_height = 0.2});
   all.back().climb_slope = 95;
   return all;
 }

@@ -26,7 +26,7 @@ std::vector<AvatarClass> classes() {
   all.push_back({.name = "climber"});
   all.back().climb_slope = 180;
   all.back().max_drop = 6;
-  all.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step = 0.2});
+  all.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step_height = 0.2});
   all.back().climb_slope = 95;
   all[0].max_drop = 3;
   return all;

@@ -32,8 +32,8 @@ using test::ScratchFolder;
 
 std::vector<AvatarClass> flyers() {
   return {flyer_class(),
-          {.name = "bee", .height = 0.1, .radius = 0.02, .step = 0.02, .flies = true},
-          {.name = "whale", .height = 1.3, .radius = 0.9, .step = 0.2, .flies = true}};
+          {.name = "bee", .height = 0.1, .radius = 0.02, .step_height = 0.02, .flies = true},
+          {.name = "whale", .height = 1.3, .radius = 0.9, .step_height = 0.2, .flies = true}};
 }
 
 // Boxes and slanted triangles at random, on no ground.

@@ -41,7 +41,7 @@ Json info_json(const InfoOptions& options, const WorldSummary& summary,
     classes.push_back({{"name", avatar.name},
                        {"height", avatar.height},
                        {"radius", avatar.radius},
-                       {"step", avatar.step},
+                       {"step", avatar.step_height},
                        {"max_slope", avatar.max_slope},
                        {"speed", avatar.speed},
                        {"climb_slope", avatar.climb_slope},
@@ -92,7 +92,7 @@ std::string info_text(const InfoOptions& options, const WorldSummary& summary,
     const AvatarClass& avatar = summary.classes[i];
     text += fmt::format(
         "  {:<12} {:.2f} m high, radius {:.2f} m, step {:.2f} m, slope {:.1f} deg: ", avatar.name,
-        avatar.height, avatar.radius, avatar.step, avatar.max_slope);
+        avatar.height, avatar.radius, avatar.step_height, avatar.max_slope);
     text += fmt::format("{:.1f} m2 walkable{}\n", summary.walkable_area[i], info_of_moves(avatar));
   }
   if (air) {

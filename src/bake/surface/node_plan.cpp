@@ -213,7 +213,7 @@ uint64_t common_input(const world::WorldData& world, const Scene& scene, const N
   words.add(world.summary.origin);
   words.add(uint64_t{world.tiles_per_zone});
   for (const AvatarClass& avatar : world.summary.classes) {
-    for (const double number : {avatar.height, avatar.radius, avatar.step, avatar.max_slope,
+    for (const double number : {avatar.height, avatar.radius, avatar.step_height, avatar.max_slope,
                                 avatar.climb_slope, avatar.max_drop}) {
       words.add(number);
     }

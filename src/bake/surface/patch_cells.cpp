@@ -54,7 +54,7 @@ std::vector<PatchBody> patch_bodies(std::span<const AvatarClass> classes) {
     const bool climbs = avatar.climb_slope > 0;
     bodies.push_back(
         {.radius = avatar.radius,
-         .bottom = climbs ? avatar.step : body_bottom(avatar),
+         .bottom = climbs ? avatar.step_height : body_bottom(avatar),
          .height = avatar.height,
          .steepest = rounded_cosine(climbs ? avatar.climb_slope : avatar.max_slope) - kSlopeMargin,
          .climbs = climbs,

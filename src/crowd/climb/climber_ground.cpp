@@ -37,7 +37,7 @@ ClimberGround::ClimberGround(const World& world, const Nodes& nodes, const path:
   height_ = avatar.height;
   reach_ = path::reach_of(avatar);
   bottom_ = body_bottom(avatar);
-  leaning_bottom_ = avatar.climb_slope > 0 ? avatar.step : bottom_;
+  leaning_bottom_ = avatar.climb_slope > 0 ? avatar.step_height : bottom_;
 }
 
 std::optional<ClimbPose> ClimberGround::pose(uint32_t node1, double s, double t) const {

@@ -31,7 +31,7 @@ NodeInfo info_of(uint32_t source, const format::NodePatch& patch, const format::
           .kind = static_cast<PatchKind>(patch.kind()),
           .source = source,
           .depth = patch.depth(),
-          .level = node.level(),
+          .block_level = node.level(),
           .s = node.s(),
           .t = node.t(),
           .parent1 = 0,
@@ -183,7 +183,7 @@ std::array<Vec3d, 4> Nodes::corners(uint32_t node) const {
   const NodeInfo info = this->node(node);
   // Of a level tile the far corners lie in the next cells, which may have no floor.
   const double inside = info.kind == PatchKind::kLevelTile ? 1e-5 : 0;
-  const double whole = 1.0 / (1 << info.level), side = whole - inside;
+  const double whole = 1.0 / (1 << info.block_level), side = whole - inside;
   const double s = info.s * whole, t = info.t * whole;
   return {point(node, s, t), point(node, s, t + side), point(node, s + side, t + side),
           point(node, s + side, t)};
@@ -192,7 +192,7 @@ std::array<Vec3d, 4> Nodes::corners(uint32_t node) const {
 Vec3d Nodes::middle(uint32_t node) const {
   const NodeInfo info = this->node(node);
   if (info.cells == 0) {
-    const double side = 1.0 / (1 << info.level);
+    const double side = 1.0 / (1 << info.block_level);
     return point(node, (info.s + 0.5) * side, (info.t + 0.5) * side);
   }
   // The middle of all cells may lie in none: the nearest of them.
@@ -265,7 +265,7 @@ NodePlace Nodes::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) c
                  (info.s * 8 + bit % 8 + random_unit(seed, n, 1)) / kTileCells,
                  (info.t * 8 + bit / 8 + random_unit(seed, n, 2)) / kTileCells);
   }
-  const double side = 1.0 / (1 << info.level);
+  const double side = 1.0 / (1 << info.block_level);
   return place(avatar_class, found->first, (info.s + random_unit(seed, n, 1)) * side,
                (info.t + random_unit(seed, n, 2)) * side);
 }

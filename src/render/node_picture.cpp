@@ -344,7 +344,7 @@ class NodePicture {
       const auto c = static_cast<size_t>(config_.avatar_class);
       limit = std::min(limit, summary_.bins.inclination_code(summary_.classes[c].max_slope));
     }
-    const int32_t size = kTileCells >> info.level;
+    const int32_t size = kTileCells >> info.block_level;
     const uint64_t cells = info.cells != 0 ? cells_of(node, info) : 0;
     for (int32_t i = 0; i < size * size && code < limit; ++i) {
       if (info.cells != 0 && (cells >> i & 1) == 0) continue;
@@ -358,13 +358,13 @@ class NodePicture {
   void surface(DepthCanvas& canvas, uint32_t node) {
     const NodeInfo info = nodes_.node(node);
     // The far corners of a tile's cells lie in the next cells, which may have no floor.
-    const double whole = 1.0 / (1 << info.level);
+    const double whole = 1.0 / (1 << info.block_level);
     const double side = whole - (info.kind == PatchKind::kLevelTile ? kInset : 0);
     const double s0 = info.s * whole, t0 = info.t * whole;
     const render::Rgb colour =
         inclination_colour(summary_.bins.inclination_of(inclination(node, info)));
-    const int32_t parts = info.kind == PatchKind::kBezier ? std::max(1, 16 >> info.level) : 1;
-    const double nearer = 0.01 * info.level;
+    const int32_t parts = info.kind == PatchKind::kBezier ? std::max(1, 16 >> info.block_level) : 1;
+    const double nearer = 0.01 * info.block_level;
     const auto paint = [&](const Block& block) {
       pieces(node, block, parts, [&](const std::array<Vec3d, 4>& c, Vec3d normal) {
         fill(canvas, c, normal, colour, nearer);

@@ -66,7 +66,7 @@ TEST(Nodes, OnLevelTilesClassesHaveExactlyTheirLegalCells) {
     for (uint32_t n = 0; n < nodes.node_count(); ++n) {
       const NodeInfo info = nodes.node(n);
       ASSERT_EQ(info.kind, PatchKind::kLevelTile);
-      const int32_t size = 64 >> info.level;
+      const int32_t size = 64 >> info.block_level;
       for (int32_t t = info.t * size; t < (info.t + 1) * size; ++t) {
         for (int32_t s = info.s * size; s < (info.s + 1) * size; ++s) {
           if (info.cells != 0) continue;
@@ -346,7 +346,7 @@ TEST(Nodes, OverGroundThatCannotBeReadNoBodyStands) {
   size_t lost = 0, found = 0;
   for (uint32_t n = 0; n < nodes->node_count(); ++n) {
     const NodeInfo info = nodes->node(n);
-    const double side = 1.0 / (1 << info.level);
+    const double side = 1.0 / (1 << info.block_level);
     for (int32_t c = 0; c < 4; ++c) {
       const bool stands =
           static_cast<bool>(nodes->place(c, n, (info.s + 0.5) * side, (info.t + 0.5) * side));

@@ -123,7 +123,7 @@ path::BodyRoom ClimberGround::body_room_of(const ClimbPose& pose, double radius)
 
 ClimberGround::Square ClimberGround::square_of(uint32_t node1) const {
   const NodeInfo info = nodes_->node(node1 - 1);
-  const double side = 1.0 / (1 << info.level);
+  const double side = 1.0 / (1 << info.block_level);
   return {info.s * side, info.t * side, (info.s + 1) * side, (info.t + 1) * side,
           info.kind,     info.source,   info.cells != 0};
 }

@@ -335,7 +335,7 @@ Blocker blocker_towards(const NodeView& view, const BlockPoint& from, Vec3d goal
   for (uint32_t node = block.node; node < nodes.node_count(); ++node) {
     const NodeInfo info = nodes.node(node);
     if (info.kind != PatchKind::kBezier || info.source != surface.source) break;
-    const double blocks = 1 << info.level;
+    const double blocks = 1 << info.block_level;
     if (s * blocks < info.s || s * blocks > info.s + 1 || t * blocks < info.t ||
         t * blocks > info.t + 1) {
       continue;
@@ -584,7 +584,7 @@ void NodeFinder::find(const NodePlace& from, const NodePlace& to, Path& path, do
         return at;
       }
       const NodeInfo info = mesh.nodes().node(place.node1 - 1);
-      const double side = 1.0 / (1 << info.level), in = 1e-9;
+      const double side = 1.0 / (1 << info.block_level), in = 1e-9;
       const double s = std::clamp(place.s, info.s * side + in, (info.s + 1) * side - in);
       const double t = std::clamp(place.t, info.t * side + in, (info.t + 1) * side - in);
       const uint32_t other = mesh.block_at(mesh.patch_of_node(place.node1 - 1), s, t);

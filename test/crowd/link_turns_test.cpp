@@ -131,9 +131,9 @@ TEST(CrowdLinkTurns, AnObstacleBesideTheEndWaitsForTheOneOnTheLink) {
     const auto crate = crowd.add_obstacle(Prism::box({13.3, 0, 4.5}, {13.8, 1, 5.5}),
                                           ObstacleKind::kStatic, policy);
     ASSERT_TRUE(crate);
-    EXPECT_FALSE(crowd.obstacle(*crate)->is_up);
+    EXPECT_FALSE(crowd.obstacle(*crate)->is_up());
     EXPECT_GT(steps_until(crowd, oracle, 1, 400), 0);
-    EXPECT_TRUE(crowd.obstacle(*crate)->is_up);
+    EXPECT_TRUE(crowd.obstacle(*crate)->is_up());
   }
 }
 

@@ -138,7 +138,7 @@ struct EditList;  // Internal.
 /// avatars are added, in the order of the calls (CrowdConfig::edits). Edits add no ground: an
 /// avatar can stand on a crate only if it was baked. No edit may be made while another thread uses
 /// a handle of the same list, or a finder or a crowd that has one. The list never shrinks: a
-/// removed edit leaves about 100 bytes.
+/// removed edit leaves about 150 bytes.
 class THRONG_API Edits {
  public:
   Edits();

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "core/access.h"
 #include "core/check_class.h"
@@ -300,7 +301,9 @@ Result<FlightFinder> FlightFinder::create(const World& world, const PathConfig& 
 PathSummary FlightFinder::summary() const { return state_->summary; }
 const FlightSpace& FlightFinder::space() const { return state_->space; }
 
-ChangeId FlightFinder::add_obstacle(const Solid& solid) { return scratch_->add(*state_, solid); }
+ChangeId FlightFinder::add_obstacle(Solid solid) {
+  return scratch_->add(*state_, std::move(solid));
+}
 
 bool FlightFinder::set_active(ChangeId change, bool active) {
   Scratch& scratch = *scratch_;

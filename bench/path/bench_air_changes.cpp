@@ -33,7 +33,7 @@ Json crates(path::FlightFinder& finder, int64_t trials, int64_t standing, double
             double side) {
   for (int64_t n = 0; n < standing; ++n) {
     const auto at = finder.random_point(7, static_cast<uint64_t>(n));
-    if (at && !finder.add_obstacle(crate_around(*at, side))) stop("a crate was refused");
+    if (at) finder.add_obstacle({crate_around(*at, side)});
   }
   std::vector<double> before, added, after, both, removed;
   int64_t longer = 0, shut = 0;
@@ -62,7 +62,7 @@ Json crates(path::FlightFinder& finder, int64_t trials, int64_t standing, double
     }
     const double straight = path.length;
     start = Clock::now();
-    const auto crate = finder.add_obstacle(crate_around(middle, side));
+    const path::ChangeId crate = finder.add_obstacle({crate_around(middle, side)});
     added.push_back(milliseconds_since(start));
     start = Clock::now();
     finder.find(query, path);
@@ -71,7 +71,7 @@ Json crates(path::FlightFinder& finder, int64_t trials, int64_t standing, double
     if (path.end != PathEnd::kReached) ++shut;
     if (path.end == PathEnd::kReached && path.length > straight) ++longer;
     start = Clock::now();
-    finder.remove(*crate);
+    finder.remove(crate);
     removed.push_back(milliseconds_since(start));
   }
   if (added.empty()) stop("no path was found to put a crate onto");

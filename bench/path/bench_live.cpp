@@ -75,7 +75,7 @@ Json crates(const World& world, int64_t trials, double away) {
     const Vec3d low{middle.x - 0.5, middle.y, middle.z - 0.5};
     const Vec3d high{middle.x + 0.5, middle.y + 1, middle.z + 0.5};
     start = Clock::now();
-    const auto crate = ground->add_obstacle(Prism::box(low, high));
+    const path::ChangeId crate = ground->add_obstacle({Prism::box(low, high)});
     added.push_back(milliseconds_since(start));
     ground->find(from, to, path, 20000);
     both.push_back(milliseconds_since(start));
@@ -83,7 +83,7 @@ Json crates(const World& world, int64_t trials, double away) {
     if (path.end != PathEnd::kReached) ++blocked;
     if (path.end == PathEnd::kReached && !avoids(path, low, high, radius)) ++through;
     start = Clock::now();
-    ground->remove(*crate);
+    ground->remove(crate);
     removed.push_back(milliseconds_since(start));
   }
   if (added.empty()) stop("no path was found to put a crate onto");

@@ -140,10 +140,10 @@ Json put_crates(const Nodes& nodes, int32_t avatar_class, path::NodeFinder& find
     const Prism crate =
         Prism::box({at.x - 0.5, at.y, at.z - 0.5}, {at.x + 0.5, at.y + 1, at.z + 0.5});
     path::ChangeId id = 0;
-    timed(add_ms, [&] { id = *finder.add_obstacle(crate); });
+    timed(add_ms, [&] { id = finder.add_obstacle({crate}); });
     timed(find_ms, [&] { finder.find(from, to, path); });
     both_ms.push_back(add_ms.back() + find_ms.back());
-    const path::ChangeId other = *search.add_obstacle(crate);
+    const path::ChangeId other = search.add_obstacle({crate});
     search.find(from, to, shortest);
     search.remove(other);
     differ += shortest.end != path.end;

@@ -20,32 +20,7 @@
 namespace throng {
 
 // ----
-// Obstacles that are put up in a crowd while it runs: crates, barriers, doors, carts.
-
-/// Names an obstacle of a crowd; zero names none. An id is never given twice.
-struct ObstacleId {
-  uint32_t slot1 = 0;  ///< Slot plus one.
-  uint32_t generation = 0;
-  explicit operator bool() const { return slot1 != 0; }
-  friend bool operator==(ObstacleId, ObstacleId) = default;
-};
-
-/// How an obstacle affects paths. Avatars avoid both kinds as walls.
-enum class ObstacleKind : uint8_t {
-  kStatic,  ///< Paths lead around it: a crate, a door.
-  /// Paths ignore it: a cart, which is elsewhere by the time that an avatar comes there.
-  kKinematic,
-};
-
-/// What happens when an obstacle is requested where avatars stand.
-enum class ObstaclePolicy : uint8_t {
-  /// It closes: from the request on no avatar enters its volume, paths lead around it, and avatars
-  /// inside walk out: along their paths if these lead out soon, else by the shortest path. It comes
-  /// up as soon as no body is inside.
-  kRefuseEntry,
-  /// It waits until no body is inside; until then avatars walk in and out.
-  kWait,
-};
+// Obstacles of Edits, as a crowd has them: crates, barriers, doors, carts.
 
 /// What an obstacle does now.
 enum class ObstaclePhase : uint8_t {
@@ -55,7 +30,7 @@ enum class ObstaclePhase : uint8_t {
   kWaitsToMove,    ///< It blocks avatars where it is, and waits until it can move.
 };
 
-/// The present state of an obstacle.
+/// The present state of an obstacle in a crowd.
 struct ObstacleState {
   Prism prism;  ///< Where it is or, while it waits to come up, will be.
   ObstaclePhase phase = ObstaclePhase::kOff;
@@ -154,9 +129,22 @@ struct CrowdConfig {
   /// walk over them; without nodes these walk on level tiles, as others do.
   Nodes nodes = {};
   CrowdTuning tuning = {};  ///< Fine for most crowds as it is.
-  /// Changes of the world at run time, which finders can share. Before each step, and before
-  /// avatars are added, the crowd adds their obstacles as add_obstacle does (static; of triangles
-  /// their box). Avatars on foot plan over areas with the costs that these have.
+  /// Changes of the world at run time, which finders can share. At the beginning of `step`, `add`
+  /// and `scatter` the crowd follows them: it makes the calls that have changed them since, one
+  /// after the other, as if each were made then. So a door that was switched off and on again
+  /// opens, and closes by its policy. Until then nothing in the crowd changes: neither obstacles(),
+  /// check() nor distance(). A crowd without avatars takes the state of edits that it sees for the
+  /// first time, not their calls, and so does one that has missed more than 2000 calls at once:
+  /// then an obstacle that was moved, moves from where it was to where it is.
+  ///
+  /// Until an obstacle is removed or switched off, no avatar stands where its body, from
+  /// body_bottom() up, could touch it (of triangles: the box around them). If bodies are in it, it
+  /// comes up later, as a door that closes: before the first step that begins with no body in it;
+  /// ObstaclePolicy says what happens until then. Paths lead around kStatic obstacles: an avatar
+  /// whose path is cut gets another one or, if there is none, its goal is unreachable. Avatars on
+  /// foot plan over areas with the costs that these have. Time of each call that changed an
+  /// obstacle: linear in all avatars, and in the tiles that it touches with their obstacles. Edits
+  /// that have not changed cost a step one comparison.
   ///
   /// With Routing::kPaths, avatars of classes that neither fly nor go over nodes take off-mesh
   /// links. They take a link in the order in which they came, in one direction at a time, and wait
@@ -245,8 +233,9 @@ class THRONG_API Crowd {
 
   /// Adds avatars in order. An avatar that cannot stand at its place, or would overlap another one
   /// there, is left out and gets no id. The first avatar of a class reads the ground of the class
-  /// and makes its path finder. Fails with kNotFound (class), kBadConfig (radius, speed), kBadFile,
-  /// kCancelled; then none is added.
+  /// and makes its path finder. Without spawns it only makes the calls that changed the edits.
+  /// Fails with kNotFound (class), kBadConfig (radius, speed), kBadFile, kCancelled; then none is
+  /// added.
   [[nodiscard]] Result<std::vector<AvatarId>> add(std::span<const AvatarSpawn> spawns,
                                                   Context& context);
   /// Adds `count` equal avatars at random places, uniform over where the class can stand, or, if
@@ -257,32 +246,13 @@ class THRONG_API Crowd {
   /// Removes avatars. Unknown ids are ignored.
   void remove(std::span<const AvatarId> ids);
 
-  /// Adds an obstacle. Until it is removed, no avatar stands where its body, from body_bottom() up,
-  /// could touch the obstacle. If bodies are in it, it comes up later, as a door that closes:
-  /// before the first step that begins with no body in it; ObstaclePolicy says what happens until
-  /// then. Paths lead around kStatic obstacles: an avatar whose path is cut gets another one or, if
-  /// there is none, its goal is unreachable. Fails with kBadInput. Time of this call and of those
-  /// below that change an obstacle: linear in all avatars, and in the tiles that the obstacle
-  /// touches with their obstacles.
-  [[nodiscard]] Result<ObstacleId> add_obstacle(
-      const Prism& prism, ObstacleKind kind = ObstacleKind::kStatic,
-      ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry);
-  /// Moves an obstacle to a new place. It waits while an avatar stands within the convex hull of
-  /// the old and the new place, so move it by small distances; avatars may enter the hull, whatever
-  /// the policy. If it still waits for an earlier move, that one is dropped. Fails with kBadInput,
-  /// kNotFound.
-  [[nodiscard]] Result<void> move_obstacle(ObstacleId id, const Prism& prism);
-  /// Switches an obstacle on and off, as a door: true closes it by its policy; false opens it at
-  /// once, or ends its closing. Returns false for unknown ids.
-  bool set_obstacle_active(ObstacleId id, bool active);
-  bool remove_obstacle(ObstacleId id);
-  /// The state of an obstacle. Fails with kNotFound.
-  [[nodiscard]] Result<ObstacleState> obstacle(ObstacleId id) const;
-  /// The obstacle that the crowd has added for an edit of CrowdConfig::edits; it may still wait for
-  /// avatars. The null id if there is no such edit, it is no obstacle, or it has not been active at
-  /// any time when the crowd applied the edits.
-  [[nodiscard]] ObstacleId obstacle_of(EditId edit) const;
-  /// All obstacles that are up, in order of slot.
+  /// The state of an obstacle of CrowdConfig::edits, as the last step or `add` has left it: the
+  /// crowd knows whether avatars let it come up or move yet, which the edits do not. One that was
+  /// added since is kWaitsToComeUp, or kOff if it is switched off. Fails with kNotFound: there is
+  /// no such edit (now), or it is no obstacle.
+  [[nodiscard]] Result<ObstacleState> obstacle(EditId edit) const;
+  /// All obstacles that are up, as the last step or `add` has left them. Their order depends on the
+  /// calls alone.
   [[nodiscard]] std::vector<Prism> obstacles() const;
   /// The avatars that blocked waiting obstacles when the last step began, in order of slot. An
   /// avatar that cannot leave, because no path leads out or it is externally controlled, stays
@@ -363,12 +333,13 @@ class THRONG_API Crowd {
   [[nodiscard]] std::optional<Vec3d> random_air_point(int32_t avatar_class, uint64_t seed,
                                                       uint64_t n) const;
 
-  /// Saves the whole state. A restored crowd makes the same steps, bit for bit, with any number of
-  /// workers. In this machine's byte order; the format may change with every version.
+  /// Saves the whole state and the edits. A restored crowd makes the same steps, bit for bit, with
+  /// any number of workers. In this machine's byte order; the format may change with every version.
   [[nodiscard]] std::vector<uint8_t> save() const;
-  /// Restores a saved crowd. World and settings must be the same, except for `workers`; edits must
-  /// have been made by the same calls. Fails with kBadFile (truncated, corrupt, of another world or
-  /// version), and as `add` does.
+  /// Restores a saved crowd. World and settings must be the same, except for `workers`. If nothing
+  /// was ever changed in `config.edits`, they become those of the saved crowd, with the same ids;
+  /// they stay empty if this fails. Else they must have been made by the same calls. Fails with
+  /// kBadFile (truncated, corrupt, of another world, version or other edits), and as `add` does.
   [[nodiscard]] static Result<Crowd> restore(const World& world, const CrowdConfig& config,
                                              std::span<const uint8_t> saved, Context& context);
   [[nodiscard]] uint32_t size() const;
@@ -378,7 +349,6 @@ class THRONG_API Crowd {
  private:
   struct State;
   explicit Crowd(std::unique_ptr<State> state);
-  void follow_edits();
   std::unique_ptr<State> state_;
 };
 

@@ -97,8 +97,8 @@ void Crowd::set_views(std::span<const CrowdView> views) {
 
 CrowdReport Crowd::step() {
   const auto start = Clock::now();
-  follow_edits();
   State& s = *state_;
+  s.follow_edits();
   CrowdReport report;
   report.step = ++s.shared.step;
   report.avatars = s.walk.bodies().size();

@@ -160,8 +160,9 @@ AvatarId Crowd::State::add(crowd::NewAvatar avatar) {
 }
 
 Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Context& context) {
-  follow_edits();
   State& s = *state_;
+  s.follow_edits();
+  if (spawns.empty()) return std::vector<AvatarId>();
   std::vector<crowd::NewAvatar> avatars;
   int32_t widest = s.extent.widest;
   for (const AvatarSpawn& spawn : spawns) {
@@ -184,8 +185,8 @@ Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Co
 
 Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& like,
                                              Context& context) {
-  follow_edits();
   State& s = *state_;
+  s.follow_edits();
   if (auto ok = s.open_class(like.avatar_class, context); !ok) return ok.error();
   const auto avatar = s.avatar_of(like);
   if (!avatar) return avatar.error();

@@ -12,16 +12,6 @@
 namespace throng {
 namespace {
 
-// Of triangles the box around them, which may be flat.
-Prism prism_of(const path::Solid& solid) {
-  if (solid.triangles.empty()) return solid.prism;
-  constexpr double kBoxMargin = 0.001;  // [m]
-  const Prism& box = solid.prism;
-  const auto [low, high] = std::minmax_element(box.corners.begin(), box.corners.end());
-  return Prism::box({(*low)[0] - kBoxMargin, box.low - kBoxMargin, (*low)[1] - kBoxMargin},
-                    {(*high)[0] + kBoxMargin, box.high + kBoxMargin, (*high)[1] + kBoxMargin});
-}
-
 ObstaclePhase phase_of(const crowd::CrowdObstacle& obstacle) {
   if (obstacle.is_up) {
     return obstacle.waits() ? ObstaclePhase::kWaitsToMove : ObstaclePhase::kUp;
@@ -29,115 +19,36 @@ ObstaclePhase phase_of(const crowd::CrowdObstacle& obstacle) {
   return obstacle.waits() ? ObstaclePhase::kWaitsToComeUp : ObstaclePhase::kOff;
 }
 
-Error no_obstacle() { return {Errc::kNotFound, "crowd: there is no obstacle of that id"}; }
-
 }  // namespace
 
-Result<ObstacleId> Crowd::add_obstacle(const Prism& prism, ObstacleKind kind,
-                                       ObstaclePolicy policy) {
-  if (auto ok = check_prism(prism); !ok) return ok.error();
-  State& s = *state_;
-  const uint32_t slot = s.shared.obstacles.add(prism, kind, /*wanted_up=*/true, policy);
-  s.shared.obstacles.at(slot).requested_step = s.shared.step;
-  s.settle_obstacles(std::span(&slot, 1), nullptr);
-  return ObstacleId{slot + 1, s.shared.obstacles.at(slot).generation};
-}
-
-Result<void> Crowd::move_obstacle(ObstacleId id, const Prism& prism) {
-  if (auto ok = check_prism(prism); !ok) return ok.error();
-  State& s = *state_;
-  if (s.shared.obstacles.find(id) == nullptr) return no_obstacle();
-  const uint32_t slot = id.slot1 - 1;
-  const bool closed = s.shared.obstacles.at(slot).closes();
-  s.shared.obstacles.request_move(slot, prism);
-  s.settle_obstacles(std::span(&slot, 1), nullptr);
-  if (closed && !s.shared.obstacles.at(slot).has_cells) s.ground_changed();
-  return {};
-}
-
-bool Crowd::set_obstacle_active(ObstacleId id, bool active) {
-  State& s = *state_;
-  if (s.shared.obstacles.find(id) == nullptr) return false;
-  const uint32_t slot = id.slot1 - 1;
-  const crowd::CrowdObstacle& obstacle = s.shared.obstacles.at(slot);
-  const bool had_cells = obstacle.has_cells, was_wanted = obstacle.wanted_up;
-  s.shared.obstacles.request_active(slot, active);
-  if (active && !was_wanted) s.shared.obstacles.at(slot).requested_step = s.shared.step;
-  s.settle_obstacles(std::span(&slot, 1), nullptr);
-  if (had_cells && !active) {
-    s.ground_changed();
-    s.sync_paths(slot);
+Result<ObstacleState> Crowd::obstacle(EditId edit) const {
+  const State& s = *state_;
+  const path::EditList::Edit* known = s.shared.edits().find(edit);
+  if (known == nullptr || !known->is_obstacle()) {
+    return Error{Errc::kNotFound,
+                 "crowd: no obstacle of its edits has the id " + std::to_string(edit)};
   }
-  return true;
-}
-
-bool Crowd::remove_obstacle(ObstacleId id) {
-  State& s = *state_;
-  if (!set_obstacle_active(id, false)) return false;
-  const uint32_t slot = id.slot1 - 1;
-  for (crowd::Mode* mode : s.modes) mode->forget_obstacle(s.shared.obstacles.at(slot));
-  s.shared.obstacles.remove(slot);
-  return true;
-}
-
-Result<ObstacleState> Crowd::obstacle(ObstacleId id) const {
-  const crowd::CrowdObstacle* found = state_->shared.obstacles.find(id);
-  if (found == nullptr) return no_obstacle();
+  const uint32_t slot1 = edit <= s.slot1_of_edit.size() ? s.slot1_of_edit[edit - 1] : 0;
+  if (slot1 == 0) {
+    ObstacleState state;
+    state.prism = *known->place;
+    state.phase = known->active ? ObstaclePhase::kWaitsToComeUp : ObstaclePhase::kOff;
+    state.kind = known->obstacle_kind;
+    state.policy = known->policy;
+    return state;
+  }
+  const crowd::CrowdObstacle& found = s.shared.obstacles.all()[slot1 - 1];
   const auto seconds = [&](uint64_t step) {
-    return step == crowd::CrowdObstacle::kNever
-               ? -1
-               : static_cast<double>(step) * state_->shared.config.dt;
+    return step == crowd::CrowdObstacle::kNever ? -1
+                                                : static_cast<double>(step) * s.shared.config.dt;
   };
-  return ObstacleState{found->place,
-                       phase_of(*found),
-                       found->kind,
-                       found->policy,
-                       seconds(found->requested_step),
-                       seconds(found->up_step),
-                       found->occupants};
-}
-
-// Obstacles of edits are those of add_obstacle. One that is not active is not added, so that it
-// costs nothing.
-void Crowd::follow_edits() {
-  State& s = *state_;
-  const path::EditList& list = s.shared.edits();
-  if (s.edits_version == list.version()) return;
-  bool areas_changed = false, links_changed = false;
-  s.of_edit.resize(std::max(s.of_edit.size(), list.edits.size()));
-  list.for_changed(s.edits_version, [&](const path::EditList::Changed& what) {
-    using Kind = path::EditList::Kind;
-    const Kind kind = what.edit == 0 ? Kind::kArea : list.edits[what.edit - 1].kind;
-    areas_changed = areas_changed || kind == Kind::kArea;
-    links_changed = links_changed || kind == Kind::kOffMeshLink;
-    if (kind != Kind::kObstacle) return;
-    const path::EditList::Edit& edit = list.edits[what.edit - 1];
-    ObstacleId& own = s.of_edit[what.edit - 1];
-    if (edit.removed) {
-      remove_obstacle(own);
-      own = {};
-    } else if (own) {
-      set_obstacle_active(own, edit.active);
-    } else if (edit.active) {
-      const auto added = add_obstacle(prism_of(edit.solid));
-      if (added) own = *added;  // Edits has checked it.
-    }
-  });
-  s.edits_version = list.version();
-  if (!areas_changed && !links_changed) return;
-  // Links change no path of a crowd in which none takes them.
-  const std::span<crowd::Body> all = s.walk.bodies();
-  const bool some_change =
-      areas_changed || std::any_of(all.begin(), all.end(), [&](const crowd::Body& body) {
-        return &s.mode_of(body) == &s.link;
-      });
-  for (crowd::Mode* mode : s.modes) {
-    mode->areas_changed(some_change ? all : std::span<crowd::Body>());
-  }
-}
-
-ObstacleId Crowd::obstacle_of(EditId edit) const {
-  return edit >= 1 && edit <= state_->of_edit.size() ? state_->of_edit[edit - 1] : ObstacleId{};
+  return ObstacleState{found.place,
+                       phase_of(found),
+                       found.kind,
+                       found.policy,
+                       seconds(found.requested_step),
+                       seconds(found.up_step),
+                       found.occupants};
 }
 
 std::vector<Prism> Crowd::obstacles() const {
@@ -149,6 +60,41 @@ std::vector<Prism> Crowd::obstacles() const {
 }
 
 std::span<const AvatarId> Crowd::blockers() const { return state_->blockers; }
+
+uint32_t Crowd::State::add_obstacle(EditId edit, const Prism& prism) {
+  const path::EditList::Edit& of = shared.edits().edits[edit - 1];
+  const uint32_t slot =
+      shared.obstacles.add(prism, of.obstacle_kind, /*wanted_up=*/true, of.policy);
+  shared.obstacles.at(slot).edit = edit;
+  shared.obstacles.at(slot).requested_step = shared.step;
+  settle_obstacles(std::span(&slot, 1), nullptr);
+  return slot;
+}
+
+void Crowd::State::move_obstacle(uint32_t slot, const Prism& prism) {
+  const bool closed = shared.obstacles.at(slot).closes();
+  shared.obstacles.request_move(slot, prism);
+  settle_obstacles(std::span(&slot, 1), nullptr);
+  if (closed && !shared.obstacles.at(slot).has_cells) ground_changed();
+}
+
+void Crowd::State::set_obstacle_active(uint32_t slot, bool active) {
+  const crowd::CrowdObstacle& obstacle = shared.obstacles.at(slot);
+  const bool had_cells = obstacle.has_cells, was_wanted = obstacle.wanted_up;
+  shared.obstacles.request_active(slot, active);
+  if (active && !was_wanted) shared.obstacles.at(slot).requested_step = shared.step;
+  settle_obstacles(std::span(&slot, 1), nullptr);
+  if (had_cells && !active) {
+    ground_changed();
+    sync_paths(slot);
+  }
+}
+
+void Crowd::State::remove_obstacle(uint32_t slot) {
+  set_obstacle_active(slot, false);
+  for (crowd::Mode* mode : modes) mode->forget_obstacle(shared.obstacles.at(slot));
+  shared.obstacles.remove(slot);
+}
 
 size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
                                       std::vector<AvatarId>* in_their_path) {

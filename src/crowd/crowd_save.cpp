@@ -11,6 +11,8 @@
 #include "core/hash.h"
 #include "crowd/crowd_state.h"
 #include "crowd/mode/saved_rows.h"
+#include "path/edits/edit_list.h"
+#include "path/edits/saved_edits.h"
 #include "throng/crowd.h"
 #include "world/place.h"
 
@@ -22,7 +24,7 @@ namespace {
 using crowd::put_rows;
 using crowd::take_rows;
 
-constexpr uint64_t kMagic = 0x30315744574f5243;  // "CROWDW10"
+constexpr uint64_t kMagic = 0x31315744574f5243;  // "CROWDW11"
 
 struct Head {
   uint64_t magic = kMagic;
@@ -40,21 +42,23 @@ struct Head {
   int32_t model = 0, low_detail_steps = 0;
   uint64_t views = 0;
   double low_detail_reaction = 0, slope_cost = 0;
-  uint64_t edits = 0, edits_version = 0;
+  uint64_t edit_bytes = 0, call_bytes = 0;  // of path::save_edits and save_calls
+  uint64_t edits_version = 0;               // that the crowd has followed
   // What avatars are, or were: also of those that were removed.
   crowd::BodyExtent extent;
   float fastest = 0;  // [m/s]
   int32_t taking_widest = 0, taking_tallest = 0;
 };
-static_assert(sizeof(Head) == 30 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 31 * 8 && std::is_trivially_copyable_v<Head>);
 
-// An obstacle without its corners: those of `place`, then those of `wanted`.
+// An obstacle without its corners: those of `place`, then those of `wanted`; and without what its
+// edit holds.
 struct SavedObstacle {
   double low = 0, high = 0, wanted_low = 0, wanted_high = 0;
-  uint32_t generation = 0, corners = 0, wanted_corners = 0;
-  uint8_t exists = 0, kind = 0, is_up = 0, wanted_up = 0;
-  uint8_t is_elsewhere = 0, policy = 0, has_cells = 0, is_exit_only = 0;
-  uint32_t occupants = 0;
+  uint32_t edit = 0;  // 0: the slot is free
+  uint32_t corners = 0, wanted_corners = 0;
+  uint8_t is_up = 0, wanted_up = 0, is_elsewhere = 0, has_cells = 0;
+  uint32_t is_exit_only = 0, occupants = 0;
   uint64_t requested_step = 0, up_step = 0;
 };
 static_assert(sizeof(SavedObstacle) == 72 && std::is_trivially_copyable_v<SavedObstacle>);
@@ -67,15 +71,12 @@ std::vector<SavedObstacle> saved_obstacles(std::span<const crowd::CrowdObstacle>
                      .high = o.place.high,
                      .wanted_low = o.wanted.low,
                      .wanted_high = o.wanted.high,
-                     .generation = o.generation,
+                     .edit = o.edit,
                      .corners = static_cast<uint32_t>(o.place.corners.size()),
                      .wanted_corners = static_cast<uint32_t>(o.wanted.corners.size()),
-                     .exists = o.exists,
-                     .kind = static_cast<uint8_t>(o.kind),
                      .is_up = o.is_up,
                      .wanted_up = o.wanted_up,
                      .is_elsewhere = o.is_elsewhere,
-                     .policy = static_cast<uint8_t>(o.policy),
                      .has_cells = o.has_cells,
                      .is_exit_only = o.is_exit_only,
                      .occupants = o.occupants,
@@ -88,15 +89,15 @@ std::vector<SavedObstacle> saved_obstacles(std::span<const crowd::CrowdObstacle>
   return saved;
 }
 
-// None if they are not as an ObstacleSet holds them.
+// None if they are not as an ObstacleSet holds them, each for another edit. `slot1_of_edit` has a
+// place for each edit.
 std::optional<std::vector<crowd::CrowdObstacle>> obstacles_of(
-    std::span<const SavedObstacle> saved, std::span<const std::array<double, 2>> corners) {
+    std::span<const SavedObstacle> saved, std::span<const std::array<double, 2>> corners,
+    const path::EditList& list, std::vector<uint32_t>& slot1_of_edit) {
   std::vector<crowd::CrowdObstacle> obstacles;
   size_t at = 0;
   for (const SavedObstacle& s : saved) {
-    if (corners.size() - at < size_t{s.corners} + s.wanted_corners || s.kind > 1 || s.policy > 1) {
-      return {};
-    }
+    if (corners.size() - at < size_t{s.corners} + s.wanted_corners) return {};
     crowd::CrowdObstacle& o = obstacles.emplace_back();
     const auto take = [&](size_t count) {
       const auto first = corners.begin() + static_cast<ptrdiff_t>(at);
@@ -109,19 +110,24 @@ std::optional<std::vector<crowd::CrowdObstacle>> obstacles_of(
     o.place.high = s.high;
     o.wanted.low = s.wanted_low;
     o.wanted.high = s.wanted_high;
-    o.generation = s.generation;
-    o.exists = s.exists != 0;
-    o.kind = static_cast<ObstacleKind>(s.kind);
+    o.exists = s.edit != 0;
     o.is_up = s.is_up != 0;
     o.wanted_up = s.wanted_up != 0;
     o.is_elsewhere = s.is_elsewhere != 0;
-    o.policy = static_cast<ObstaclePolicy>(s.policy);
     o.has_cells = s.has_cells != 0;
     o.is_exit_only = s.is_exit_only != 0;
     o.occupants = s.occupants;
     o.requested_step = s.requested_step;
     o.up_step = s.up_step;
     if ((o.is_up && !o.wanted_up) || (o.is_elsewhere && !o.is_up)) return {};
+    if (!o.exists) continue;
+    if (s.edit > list.edits.size() || slot1_of_edit[s.edit - 1] != 0) return {};
+    const path::EditList::Edit& edit = list.edits[s.edit - 1];
+    if (!edit.is_obstacle()) return {};
+    slot1_of_edit[s.edit - 1] = static_cast<uint32_t>(obstacles.size());
+    o.edit = s.edit;
+    o.kind = edit.obstacle_kind;
+    o.policy = edit.policy;
   }
   return at == corners.size() ? std::optional(std::move(obstacles)) : std::nullopt;
 }
@@ -134,7 +140,7 @@ uint64_t size_of(const Head& head) {
          head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 +
          head.flights * crowd::FlyMode::kRowBytes + head.climbs * crowd::ClimbMode::kRowBytes +
          head.link_uses * crowd::LinkMode::kRowBytes +
-         head.views * sizeof(crowd::EngineDetail::View) + head.edits * sizeof(ObstacleId) + 8;
+         head.views * sizeof(crowd::EngineDetail::View) + head.edit_bytes + head.call_bytes + 8;
 }
 
 // A world that was never written has no hash of its own.
@@ -246,8 +252,8 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
   constexpr uint64_t kMax = uint64_t{1} << 32;
   if (head.bodies >= kMax || head.slots >= kMax || head.free_slots >= kMax ||
       head.obstacles >= kMax || head.corners >= kMax || head.free_obstacles >= kMax ||
-      head.target_values >= kMax || head.views >= kMax || head.edits >= kMax ||
-      (head.flights != 0 && head.flights != head.slots) ||
+      head.target_values >= kMax || head.views >= kMax || head.edit_bytes >= kMax ||
+      head.call_bytes >= kMax || (head.flights != 0 && head.flights != head.slots) ||
       (head.climbs != 0 && head.climbs != head.slots) ||
       (head.link_uses != 0 && head.link_uses != head.slots) || saved.size() != size_of(head)) {
     return bad("is cut short; save the crowd again");
@@ -276,6 +282,7 @@ struct SavedArrays {
   std::vector<std::array<double, 2>> corners;
   std::vector<uint32_t> free_obstacles;
   std::vector<double> targets;
+  std::vector<uint8_t> edits, calls;
 };
 
 // Reads all arrays, in the order of Crowd::save.
@@ -294,8 +301,27 @@ SavedArrays read_arrays(const Head& head, const uint8_t* at, State& s) {
   at = s.climb.restore(at, head.climbs);
   at = s.link.restore(at, head.link_uses);
   at = take_rows(at, head.views, s.views);
-  take_rows(at, head.edits, s.of_edit);
+  at = take_rows(at, head.edit_bytes, saved.edits);
+  take_rows(at, head.call_bytes, saved.calls);
   return saved;
+}
+
+// The edits of a saved crowd: those that are given or, if nothing was ever changed in these, new
+// ones. Fails if others are given.
+Result<Edits> edits_of(const Head& head, const SavedArrays& saved, const Edits& given) {
+  auto list = path::restore_edits(saved.edits, saved.calls);
+  if (!list || head.edits_version > list->version()) {
+    return bad("is not sound; save the crowd again");
+  }
+  if (given.version() == 0) {
+    Edits made;
+    *Access::state(made) = *std::move(list);
+    return made;
+  }
+  if (path::save_edits(*Access::state(given)) == saved.edits) return given;
+  return bad(
+      "has other edits; give edits that the same calls have made, or new ones, which become those "
+      "that were saved");
 }
 
 // Does each slot belong to one body or to the free ones, and is what each body holds possible?
@@ -340,7 +366,10 @@ std::vector<uint8_t> Crowd::save() const {
   head.climbs = s.climb.row_count();
   head.link_uses = s.link.row_count();
   head.views = s.views.size();
-  head.edits = s.of_edit.size();
+  const std::vector<uint8_t> edits = path::save_edits(s.shared.edits());
+  const std::vector<uint8_t> calls = path::save_calls(s.shared.edits(), s.edits_version);
+  head.edit_bytes = edits.size();
+  head.call_bytes = calls.size();
   head.edits_version = s.edits_version;
   head.extent = s.extent;
   head.fastest = s.fastest;
@@ -361,7 +390,8 @@ std::vector<uint8_t> Crowd::save() const {
   s.climb.save(out);
   s.link.save(out);
   put_rows(out, s.views.data(), s.views.size());
-  put_rows(out, s.of_edit.data(), s.of_edit.size());
+  put_rows(out, edits.data(), edits.size());
+  put_rows(out, calls.data(), calls.size());
   const uint64_t sum = hash_bytes(out.data(), out.size());
   put_rows(out, &sum, 1);
   return out;
@@ -377,9 +407,15 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   const Head& head = *read;
   SavedArrays arrays = read_arrays(head, saved.data() + sizeof head, s);
   const std::vector<crowd::Body>& bodies = arrays.bodies;
+  // The caller's edits are filled at the end, so that they stay as they are if something fails.
+  auto edits = edits_of(head, arrays, config.edits);
+  if (!edits) return edits.error();
+  s.shared.config.edits = *edits;
+  s.edits_version = head.edits_version;
+  s.slot1_of_edit.assign(s.shared.edits().edits.size(), 0);
   s.where.assign(head.slots, kNoBody);
   bool sound = are_sound(bodies, head, s);
-  auto all = obstacles_of(arrays.obstacles, arrays.corners);
+  auto all = obstacles_of(arrays.obstacles, arrays.corners, s.shared.edits(), s.slot1_of_edit);
   sound =
       sound && all && s.shared.obstacles.restore(std::move(*all), std::move(arrays.free_obstacles));
   sound = sound && add_targets(*made, arrays.targets, context);
@@ -412,7 +448,10 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   s.shared.step = head.step;
   s.shared.sub_step = head.sub_step;
   s.scattered = head.scattered;
-  s.edits_version = head.edits_version;
+  if (config.edits.version() == 0) {
+    *Access::state(config.edits) = s.shared.edits();
+    s.shared.config.edits = config.edits;
+  }
   return made;
 }
 

@@ -17,6 +17,7 @@
 #include "crowd/mode/shared_state.h"
 #include "crowd/walk/crowd_engine.h"
 #include "crowd/walk/walk_mode.h"
+#include "path/edits/edit_list.h"
 #include "throng/crowd.h"
 
 /// The state of a crowd: the modes in which its avatars move, and what is the same for all of them:
@@ -48,8 +49,8 @@ struct Crowd::State {
   std::vector<crowd::EngineDetail::View> views;
   std::vector<AreaEntry> entered;
   std::vector<AvatarId> no_progress;
-  uint64_t edits_version = 0;       // that is followed
-  std::vector<ObstacleId> of_edit;  // by id - 1
+  uint64_t edits_version = 0;           // that is followed
+  std::vector<uint32_t> slot1_of_edit;  // by id - 1: slot of its obstacle plus one; 0: none
   std::vector<AvatarId> blockers;
 
   State(const World& world, const CrowdConfig& config, const crowd::MoveConfig& move)
@@ -81,7 +82,20 @@ struct Crowd::State {
     return body.climbs ? climb.at_feet(body) : body;
   }
 
+  // crowd_edits.cpp
+  /// Makes the calls that have changed the edits since it was called last.
+  void follow_edits();
+  /// Makes one of these, which is for an obstacle.
+  void follow_call(const path::EditList::Changed& call);
+  /// Where the order of the calls is unknown: brings an obstacle to the state of its edit.
+  void follow_state(EditId id);
+
   // crowd_obstacles.cpp
+  /// Requests the obstacle of an edit at once, and returns its slot. [check_prism]
+  uint32_t add_obstacle(EditId edit, const Prism& prism);
+  void move_obstacle(uint32_t slot, const Prism& prism);
+  void set_obstacle_active(uint32_t slot, bool active);
+  void remove_obstacle(uint32_t slot);
   /// Activates or moves the waiting obstacles that no avatar blocks. Returns how many still wait.
   size_t settle_obstacles(std::span<const uint32_t> slots, std::vector<AvatarId>* in_their_path);
   /// Updates the grounds to the obstacles.

@@ -55,15 +55,17 @@ Result<Simulation> Simulation::create(const World& world, const Scenario& scenar
                                       Context& context) {
   auto nodes = State::nodes_for(world, scenario, workers, context);
   if (!nodes) return nodes.error();
+  const Edits edits;
   auto crowd = Crowd::create(world, {.dt = scenario.dt,
                                      .seed = scenario.seed,
                                      .workers = workers,
                                      .model = scenario.steering,
                                      .speedup = scenario.paths,
                                      .search_bytes = scenario.search_bytes,
-                                     .nodes = *std::move(nodes)});
+                                     .nodes = *std::move(nodes),
+                                     .edits = edits});
   if (!crowd) return crowd.error();
-  auto state = std::make_unique<State>(world, scenario, std::move(*crowd));
+  auto state = std::make_unique<State>(world, scenario, edits, std::move(*crowd));
   for (const ScenarioObstacle& obstacle : scenario.obstacles) {
     if (auto ok = check_prism(obstacle.prism); !ok) return ok.error();
   }
@@ -183,24 +185,34 @@ Result<void> Simulation::State::prepare(Context& context) {
   return spawn_due(pending, context);
 }
 
-// Adds obstacles whose time begins, removes those whose time is over.
+// Adds obstacles whose time begins, removes those whose time is over. The crowd follows at once:
+// distances to exits and the avatars inside are those with these obstacles.
 void Simulation::State::update_obstacles() {
+  std::vector<size_t> begun;
+  const uint64_t before = edits.version();
   for (size_t n = 0; n < obstacles.size(); ++n) {
     const ScenarioObstacle& obstacle = scenario.obstacles[n];
     const bool wanted = time() >= obstacle.begin && time() < obstacle.end;
-    if (wanted && !obstacles[n]) {
-      const auto added = crowd.add_obstacle(obstacle.prism, ObstacleKind::kStatic, obstacle.policy);
+    if (wanted && obstacles[n] == 0) {
+      const auto added = edits.add_obstacle(obstacle.prism, ObstacleKind::kStatic, obstacle.policy);
       THRONG_ASSERT(added);  // The prism was checked.
       obstacles[n] = *added;
       obstacle_times[n].requested_at = time();
-      record_obstacle_times(n);
-      obstacle_times[n].inside = obstacle_times[n].waits_for;
-    } else if (!wanted && obstacles[n]) {
-      crowd.remove_obstacle(obstacles[n]);
-      obstacles[n] = {};
+      begun.push_back(n);
+    } else if (!wanted && obstacles[n] != 0) {
+      edits.remove(obstacles[n]);
+      obstacles[n] = 0;
       obstacle_times[n].removed_at = time();
       obstacle_times[n].waits_for = 0;
     }
+  }
+  if (edits.version() == before) return;
+  Context context;
+  const auto followed = crowd.add({}, context);
+  THRONG_ASSERT(followed);  // No avatar was to be added.
+  for (const size_t n : begun) {
+    record_obstacle_times(n);
+    obstacle_times[n].inside = obstacle_times[n].waits_for;
   }
 }
 
@@ -211,7 +223,7 @@ void Simulation::State::record_obstacle_times() {
 void Simulation::State::record_obstacle_times(size_t n) {
   ObstacleTimes& times = obstacle_times[n];
   const bool is_up = times.up >= 0 && times.waits_for == 0;  // and stays so until it is removed
-  if (is_up || !obstacles[n]) return;
+  if (is_up || obstacles[n] == 0) return;
   const auto state = crowd.obstacle(obstacles[n]);
   if (!state) return;
   times.up = state->up_at;

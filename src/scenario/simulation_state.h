@@ -77,11 +77,12 @@ struct PendingSpawn {
 double door_flow(const ScenarioArea& area);
 
 struct Simulation::State {
-  State(const World& a_world, const Scenario& a_scenario, Crowd&& a_crowd)
-      : world(a_world), scenario(a_scenario), crowd(std::move(a_crowd)) {}
+  State(const World& a_world, const Scenario& a_scenario, const Edits& a_edits, Crowd&& a_crowd)
+      : world(a_world), scenario(a_scenario), edits(a_edits), crowd(std::move(a_crowd)) {}
 
   World world;
   Scenario scenario;
+  Edits edits;  // the crowd's: its obstacles
   Crowd crowd;
   uint64_t steps = 0;
 
@@ -105,7 +106,7 @@ struct Simulation::State {
   std::vector<BoardingQueue> boarding;            // by link
   std::vector<std::vector<uint64_t>> groups;      // numbers
   std::vector<scenario::DoorQueue> doors;         // by area: avatars that chose it
-  std::vector<ObstacleId> obstacles;  // by obstacle; null before it begins and after it ends
+  std::vector<EditId> obstacles;  // by obstacle; 0 before it begins and after it ends
   std::vector<ObstacleTimes> obstacle_times;
   uint64_t entered = 0, left = 0;
 

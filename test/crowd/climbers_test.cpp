@@ -381,20 +381,21 @@ TEST(Climbers, LetThemselvesDownOverEdges) {
 
 TEST(Climbers, KeepOutOfObstaclesThatWaitForThem) {
   Stage stage(net());
-  Crowd crowd = stage.crowd();
+  Edits edits;
+  Crowd crowd = stage.crowd({.edits = edits});
   const NodePlace here = stage.place(kClimber, 5, 1);
   const AvatarId id = added_on(crowd, here);
   ASSERT_TRUE(id);
   const Vec3d& p = here.feet;
-  const auto at_it = crowd.add_obstacle(
-      Prism::box({p.x - 0.5, p.y - 0.5, p.z - 0.5}, {p.x + 0.5, p.y + 0.5, p.z + 0.5}));
-  ASSERT_TRUE(at_it);
-  EXPECT_TRUE(crowd.obstacle(*at_it)->waits());
+  const Prism box =
+      Prism::box({p.x - 0.5, p.y - 0.5, p.z - 0.5}, {p.x + 0.5, p.y + 0.5, p.z + 0.5});
+  const EditId at_it = put_up(crowd, edits, box);
+  EXPECT_TRUE(crowd.obstacle(at_it)->waits());
   EXPECT_EQ(crowd.step().waiting, 1u);
   const NodePlace away = stage.place(kClimber, 5, 2);
   crowd.set_goals(std::span(&id, 1), std::span(&away, 1));
   expect_all(go(crowd, stage, 1, 400), 1);
-  EXPECT_FALSE(crowd.obstacle(*at_it)->waits());
+  EXPECT_FALSE(crowd.obstacle(at_it)->waits());
   EXPECT_FALSE(added_on(crowd, here));
 }
 
@@ -402,7 +403,8 @@ TEST(Climbers, KeepOutOfObstaclesThatWaitForThem) {
 TEST(Climbers, GetOutOfWhatClosesAroundThemAndEnterNoOther) {
   Stage stage(net());
   for (const uint64_t n : {1, 2, 3, 4}) {
-    Crowd crowd = stage.crowd();
+    Edits edits;
+    Crowd crowd = stage.crowd({.edits = edits});
     const NodePlace here = stage.place(kClimber, 5, n), away = stage.place(kClimber, 6, n);
     const AvatarId id = added_on(crowd, here);
     ASSERT_TRUE(id);
@@ -411,17 +413,17 @@ TEST(Climbers, GetOutOfWhatClosesAroundThemAndEnterNoOther) {
       for (int step = 0; step < 20; ++step) crowd.step();
     }
     const Vec3d p = crowd.read(id)->position;
-    const auto crate = crowd.add_obstacle(
-        Prism::box({p.x - 0.5, p.y - 0.5, p.z - 0.5}, {p.x + 0.5, p.y + 0.5, p.z + 0.5}));
-    ASSERT_TRUE(crate);
-    EXPECT_TRUE(crowd.obstacle(*crate)->waits());
+    const Prism box =
+        Prism::box({p.x - 0.5, p.y - 0.5, p.z - 0.5}, {p.x + 0.5, p.y + 0.5, p.z + 0.5});
+    const EditId crate = put_up(crowd, edits, box);
+    EXPECT_TRUE(crowd.obstacle(crate)->waits());
     Stage::Faults faults;
     for (int step = 0; step < 100; ++step) {
       crowd.step();
       if (step % 5 == 0) stage.look(crowd, faults);
     }
     EXPECT_EQ(faults.overlaps + faults.entered, 0u);
-    EXPECT_TRUE(crowd.obstacle(*crate)->is_up()) << n;
+    EXPECT_TRUE(crowd.obstacle(crate)->is_up()) << n;
   }
 }
 
@@ -439,12 +441,13 @@ TEST(Climbers, GoAroundObstaclesThatArePutUpOnTheirPaths) {
   for (const Prism& wall : walls) test::add_to(shell, test::shell_of(wall));
   const verify::TriangleTree tree(shell, 1);
   for (const bool ahead : {true, false}) {
-    Crowd crowd = stage.crowd();
+    Edits edits;
+    Crowd crowd = stage.crowd({.edits = edits});
     std::vector<AvatarId> ids;
-    const auto put_up = [&] {
-      for (const Prism& wall : walls) ASSERT_TRUE(crowd.add_obstacle(wall));
+    const auto put_up_all = [&] {
+      for (const Prism& wall : walls) put_up(crowd, edits, wall);
     };
-    if (ahead) put_up();
+    if (ahead) put_up_all();
     for (uint64_t n = 0; ids.size() < 6 && n < 400; ++n) {
       const int32_t avatar_class = n % 3 == 2 ? kGecko : kClimber;
       const NodePlace from = stage.place(avatar_class, 21, n),
@@ -464,7 +467,7 @@ TEST(Climbers, GoAroundObstaclesThatArePutUpOnTheirPaths) {
     ASSERT_EQ(ids.size(), 6u);
     if (!ahead) {
       for (int step = 0; step < 10; ++step) crowd.step();
-      put_up();
+      put_up_all();
     }
     std::set<uint32_t> there;
     uint64_t inside = 0, bodies = 0;

@@ -61,12 +61,13 @@ bool is_free(const Crowd& crowd) {
 struct Rush {
   World world = hall();
   double radius = world.summary().classes[0].radius;
+  Edits edits;
   CrowdConfig config;
   Crowd crowd;
   std::vector<AvatarId> ids;
 
   explicit Rush(uint64_t seed, int32_t workers)
-      : config{.seed = seed, .workers = workers}, crowd(made(world, config)) {
+      : config{.seed = seed, .workers = workers, .edits = edits}, crowd(made(world, config)) {
     Context context;
     std::vector<AvatarSpawn> spawns;
     for (int i = 0; i < 250; ++i) {
@@ -93,10 +94,9 @@ TEST(ClosingObstacles, OnlyAvatarsInsideADoorComeThroughOnceItCloses) {
       const auto before = positions(crowd);
       const std::set<uint32_t> in_it = inside(crowd, kDoor, rush.radius);
       EXPECT_GT(in_it.size(), 1u);
-      const auto door = crowd.add_obstacle(kDoor);
-      ASSERT_TRUE(door);
-      EXPECT_TRUE(crowd.obstacle(*door)->waits());
-      EXPECT_GE(crowd.obstacle(*door)->occupants, in_it.size());
+      const EditId door = put_up(crowd, rush.edits, kDoor);
+      EXPECT_TRUE(crowd.obstacle(door)->waits());
+      EXPECT_GE(crowd.obstacle(door)->occupants, in_it.size());
       std::set<uint32_t> still = in_it;
       for (int step = 0; step < 100; ++step) {
         crowd.step();
@@ -104,11 +104,11 @@ TEST(ClosingObstacles, OnlyAvatarsInsideADoorComeThroughOnceItCloses) {
         const std::set<uint32_t> now = inside(crowd, kDoor, rush.radius - 2e-4);
         for (const uint32_t id : now) ASSERT_TRUE(still.count(id)) << "entered at step " << step;
         still = inside(crowd, kDoor, rush.radius);
-        if (crowd.obstacle(*door)->is_up()) {
+        if (crowd.obstacle(door)->is_up()) {
           ASSERT_TRUE(now.empty());
         }
       }
-      const ObstacleState state = *crowd.obstacle(*door);
+      const ObstacleState state = *crowd.obstacle(door);
       ASSERT_TRUE(state.is_up());
       EXPECT_NEAR(state.requested_at, 20, 1e-9);
       EXPECT_GT(state.up_at, state.requested_at);
@@ -127,10 +127,10 @@ TEST(ClosingObstacles, OnlyAvatarsInsideADoorComeThroughOnceItCloses) {
 
 TEST(ClosingObstacles, OneThatWaitsStaysOpenAsLongAsPeopleStreamThrough) {
   Rush rush(1, 1);
-  const auto door = rush.crowd.add_obstacle(kDoor, ObstacleKind::kStatic, ObstaclePolicy::kWait);
-  ASSERT_TRUE(door);
+  const EditId door =
+      put_up(rush.crowd, rush.edits, kDoor, ObstacleKind::kStatic, ObstaclePolicy::kWait);
   for (int step = 0; step < 100; ++step) rush.crowd.step();
-  const ObstacleState state = *rush.crowd.obstacle(*door);
+  const ObstacleState state = *rush.crowd.obstacle(door);
   EXPECT_FALSE(state.is_up());
   EXPECT_EQ(state.policy, ObstaclePolicy::kWait);
   EXPECT_LT(state.up_at, 0);
@@ -142,18 +142,21 @@ TEST(ClosingObstacles, ADoorThatIsSwitchedOnClosesTheSameAndOpensAgain) {
   Rush rush(2, 2);
   Crowd& crowd = rush.crowd;
   // Where no avatar is yet; then it is moved while it is open.
-  const auto door = crowd.add_obstacle(Prism::box({38, 0, 1}, {38.5, 2, 2}));
-  ASSERT_TRUE(door);
-  ASSERT_TRUE(crowd.set_obstacle_active(*door, false));
-  EXPECT_LT(crowd.obstacle(*door)->requested_at, 0);
-  ASSERT_TRUE(crowd.move_obstacle(*door, kDoor));
-  ASSERT_TRUE(crowd.set_obstacle_active(*door, true));
-  for (int step = 0; step < 30 && !crowd.obstacle(*door)->is_up(); ++step) {
+  const EditId door = put_up(crowd, rush.edits, Prism::box({38, 0, 1}, {38.5, 2, 2}));
+  const auto set_active = [&](bool active) {
+    ASSERT_TRUE(rush.edits.set_active(door, active));
+    follow(crowd);
+  };
+  set_active(false);
+  EXPECT_LT(crowd.obstacle(door)->requested_at, 0);
+  ASSERT_TRUE(rush.edits.move_obstacle(door, kDoor));
+  set_active(true);
+  for (int step = 0; step < 30 && !crowd.obstacle(door)->is_up(); ++step) {
     crowd.step();
     ASSERT_TRUE(is_free(crowd));
   }
-  EXPECT_TRUE(crowd.obstacle(*door)->is_up());
-  EXPECT_TRUE(crowd.set_obstacle_active(*door, false));
+  EXPECT_TRUE(crowd.obstacle(door)->is_up());
+  set_active(false);
   // Requested to close, and to open before it has: avatars come in again.
   const auto west = [&] {
     int count = 0;
@@ -167,10 +170,10 @@ TEST(ClosingObstacles, ADoorThatIsSwitchedOnClosesTheSameAndOpensAgain) {
   }
   crowd.set_goals(rush.ids, goals);
   for (int step = 0; step < 100; ++step) crowd.step();
-  ASSERT_TRUE(crowd.set_obstacle_active(*door, true));
-  EXPECT_TRUE(crowd.obstacle(*door)->waits());
+  set_active(true);
+  EXPECT_TRUE(crowd.obstacle(door)->waits());
   crowd.step();
-  ASSERT_TRUE(crowd.set_obstacle_active(*door, false));
+  set_active(false);
   crowd.set_goals(rush.ids, goals);
   const int before = west();
   for (int step = 0; step < 100; ++step) {
@@ -183,19 +186,19 @@ TEST(ClosingObstacles, ADoorThatIsSwitchedOnClosesTheSameAndOpensAgain) {
 TEST(ClosingObstacles, AvatarsThatStandOrHaveArrivedInsideLeaveToo) {
   const World world = test::bake(worlds::flat(20), 0.1);
   for (const bool has_arrived : {false, true}) {
-    Crowd crowd = made(world);
+    Edits edits;
+    Crowd crowd = made(world, {.edits = edits});
     const Place place = world.find_place(0, {10, 0, 10}, 0.5);
     const AvatarId id = added(crowd, place);
     if (has_arrived) crowd.set_goals(std::span(&id, 1), std::span(&place, 1));
     for (int step = 0; step < 5; ++step) crowd.step();
-    const auto crate = crowd.add_obstacle(Prism::box({8, 0, 9}, {11, 2, 14}));
-    ASSERT_TRUE(crate);
-    EXPECT_TRUE(crowd.obstacle(*crate)->waits());
+    const EditId crate = put_up(crowd, edits, Prism::box({8, 0, 9}, {11, 2, 14}));
+    EXPECT_TRUE(crowd.obstacle(crate)->waits());
     for (int step = 0; step < 30; ++step) {
       crowd.step();
       ASSERT_TRUE(is_free(crowd));
     }
-    EXPECT_TRUE(crowd.obstacle(*crate)->is_up());
+    EXPECT_TRUE(crowd.obstacle(crate)->is_up());
     const Vec3d p = positions(crowd).begin()->second;
     EXPECT_TRUE(p.x > 11 || p.z < 9) << "the nearest side, " << p.x << ' ' << p.z;
     EXPECT_TRUE(crowd.no_progress().empty());
@@ -209,26 +212,26 @@ TEST(ClosingObstacles, AnAvatarThatCannotLeaveKeepsItOpenAndIsReported) {
   scene.add_box({9, 0, 9}, {11, 3, 9.1});
   scene.add_box({9, 0, 11}, {11.1, 3, 11.1});
   const World world = test::bake(scene, 0.1);
-  Crowd crowd = made(world);
+  Edits edits;
+  Crowd crowd = made(world, {.edits = edits});
   const AvatarId id = added(crowd, world.find_place(0, {10, 0, 10}, 0.5));
   ASSERT_TRUE(id);
   const Place goal = world.find_place(0, {3, 0, 3}, 0.5);
   crowd.set_goals(std::span(&id, 1), std::span(&goal, 1));
-  const auto crate = crowd.add_obstacle(Prism::box({8, 0, 8}, {12, 2, 12}));
-  ASSERT_TRUE(crate);
+  const EditId crate = put_up(crowd, edits, Prism::box({8, 0, 8}, {12, 2, 12}));
   for (int step = 0; step < 100; ++step) {
     EXPECT_EQ(crowd.step().waiting, 1u);
     ASSERT_EQ(crowd.blockers().size(), 1u);
     EXPECT_EQ(crowd.blockers()[0], id);
     ASSERT_TRUE(is_free(crowd));
   }
-  const ObstacleState state = *crowd.obstacle(*crate);
+  const ObstacleState state = *crowd.obstacle(crate);
   EXPECT_TRUE(state.waits());
   EXPECT_EQ(state.occupants, 1u);
   EXPECT_LT(state.up_at, 0);
   crowd.remove(std::span(&id, 1));
   crowd.step();
-  EXPECT_TRUE(crowd.obstacle(*crate)->is_up());
+  EXPECT_TRUE(crowd.obstacle(crate)->is_up());
 }
 
 TEST(ClosingObstacles, PathsLeadAroundOneFromTheTimeOfTheRequest) {
@@ -237,7 +240,8 @@ TEST(ClosingObstacles, PathsLeadAroundOneFromTheTimeOfTheRequest) {
   scene.add_box({11.9, 0, 5}, {12.1, 3, 19});
   scene.add_box({11.9, 0, 21}, {12.1, 3, 24});
   const World world = test::bake(scene, 0.1);
-  Crowd crowd = made(world);
+  Edits edits;
+  Crowd crowd = made(world, {.edits = edits});
   const AvatarId in_door = added(crowd, world.find_place(0, {12, 0, 4}, 0.5));
   const AvatarId id = added(crowd, world.find_place(0, {6, 0, 4}, 0.5));
   const Vec3d still{};
@@ -245,8 +249,7 @@ TEST(ClosingObstacles, PathsLeadAroundOneFromTheTimeOfTheRequest) {
   const Place goal = world.find_place(0, {20, 0, 4}, 0.5);
   crowd.set_goals(std::span(&id, 1), std::span(&goal, 1));
   for (int step = 0; step < 5; ++step) crowd.step();
-  const auto door = crowd.add_obstacle(Prism::box({11.5, 0, 3}, {12.5, 2, 5}));
-  ASSERT_TRUE(door);
+  const EditId door = put_up(crowd, edits, Prism::box({11.5, 0, 3}, {12.5, 2, 5}));
   bool there = false;
   for (int step = 0; step < 600 && !there; ++step) {
     crowd.step();
@@ -254,16 +257,15 @@ TEST(ClosingObstacles, PathsLeadAroundOneFromTheTimeOfTheRequest) {
     ASSERT_TRUE(is_free(crowd));
   }
   EXPECT_TRUE(there) << "by the other door";
-  EXPECT_TRUE(crowd.obstacle(*door)->waits()) << "an externally controlled avatar stays in it";
+  EXPECT_TRUE(crowd.obstacle(door)->waits()) << "an externally controlled avatar stays in it";
 }
 
 TEST(ClosingObstacles, ACrowdRestoredWhileOneClosesContinuesTheSame) {
   Rush rush(3, 2);
   Crowd& crowd = rush.crowd;
-  const auto door = crowd.add_obstacle(kDoor);
-  ASSERT_TRUE(door);
+  const EditId door = put_up(crowd, rush.edits, kDoor);
   for (int step = 0; step < 4; ++step) crowd.step();
-  ASSERT_TRUE(crowd.obstacle(*door)->waits());
+  ASSERT_TRUE(crowd.obstacle(door)->waits());
   const std::vector<uint8_t> saved = crowd.save();
   Context context;
   CrowdConfig config = rush.config;
@@ -276,14 +278,15 @@ TEST(ClosingObstacles, ACrowdRestoredWhileOneClosesContinuesTheSame) {
     restored->step();
     ASSERT_EQ(restored->state_hash(), crowd.state_hash()) << step;
   }
-  EXPECT_TRUE(restored->obstacle(*door)->is_up());
-  EXPECT_EQ(restored->obstacle(*door)->up_at, crowd.obstacle(*door)->up_at);
+  EXPECT_TRUE(restored->obstacle(door)->is_up());
+  EXPECT_EQ(restored->obstacle(door)->up_at, crowd.obstacle(door)->up_at);
 }
 
 TEST(ClosingObstacles, OverlappingOnesAreLeftAndNeverEnteredFromEachOther) {
   const World world = test::bake(worlds::flat(30), 0.1);
   for (const uint64_t seed : {1, 2, 3}) {
-    Crowd crowd = made(world, {.seed = seed});
+    Edits edits;
+    Crowd crowd = made(world, {.seed = seed, .edits = edits});
     const auto ids = scattered(crowd, 400);
     std::vector<Place> goals;
     for (size_t i = 0; i < ids.size(); ++i) goals.push_back(world.random_place(0, seed, i));
@@ -292,8 +295,8 @@ TEST(ClosingObstacles, OverlappingOnesAreLeftAndNeverEnteredFromEachOther) {
     const Prism prisms[] = {Prism::box({10, 0, 10}, {14, 2, 13}),
                             Prism::box({12, 0, 11}, {18, 2, 18}),
                             Prism::circle({24, 0, 8}, 2, 2, 9)};
-    std::vector<ObstacleId> obstacles;
-    for (const Prism& prism : prisms) obstacles.push_back(*crowd.add_obstacle(prism));
+    std::vector<EditId> obstacles;
+    for (const Prism& prism : prisms) obstacles.push_back(put_up(crowd, edits, prism));
     const auto up = [&](size_t i) { return crowd.obstacle(obstacles[i])->is_up(); };
     for (int step = 0; step < 300 && !(up(0) && up(1) && up(2)); ++step) {
       std::set<uint32_t> before[2];
@@ -312,16 +315,16 @@ TEST(ClosingObstacles, OverlappingOnesAreLeftAndNeverEnteredFromEachOther) {
 
 TEST(ClosingObstacles, AFlyerInsideGetsOutAndNoOtherEnters) {
   const World world = test::bake(worlds::flat(30), 0.1, {flyer_class(), default_classes()[0]});
-  Crowd crowd = made(world);
+  Edits edits;
+  Crowd crowd = made(world, {.edits = edits});
   const AvatarId hovers = added(crowd, air_place({15, 5, 15}));
   const AvatarId crosses = added(crowd, air_place({5, 5, 15}));
   ASSERT_TRUE(hovers && crosses);
   const Place goal = air_place({25, 5, 15});
   crowd.set_goals(std::span(&crosses, 1), std::span(&goal, 1));
   const Prism box = Prism::box({14.5, 0, 10}, {15.8, 12, 20});
-  const auto wall = crowd.add_obstacle(box);
-  ASSERT_TRUE(wall);
-  EXPECT_TRUE(crowd.obstacle(*wall)->waits());
+  const EditId wall = put_up(crowd, edits, box);
+  EXPECT_TRUE(crowd.obstacle(wall)->waits());
   bool there = false;
   double up_at = -1;
   for (int step = 0; step < 600 && !there; ++step) {
@@ -330,7 +333,7 @@ TEST(ClosingObstacles, AFlyerInsideGetsOutAndNoOtherEnters) {
     for (const AvatarId id : crowd.arrived()) there = there || id == crosses;
     const Vec3d at = crowd.read(crosses)->position;
     ASSERT_TRUE(at.y >= 12 || distance_to(box, at) > 0) << step;
-    up_at = crowd.obstacle(*wall)->up_at;
+    up_at = crowd.obstacle(wall)->up_at;
   }
   EXPECT_TRUE(there);
   EXPECT_GT(up_at, 0);

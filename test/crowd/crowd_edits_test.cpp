@@ -3,18 +3,23 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "baked.h"
+#include "core/hash.h"
+#include "core/random.h"
 #include "crowds.h"
 #include "throng/crowd.h"
 #include "throng/path.h"
 #include "worlds.h"
 
-// A crowd that reads edits: against one that gets the same obstacles by calls of its own, and
-// against finders that share the edits.
+// A crowd that follows edits: at its next step as at once, against finders that share them, saved
+// and restored.
 namespace throng {
 namespace {
 
@@ -49,52 +54,171 @@ double crossing(Crowd& crowd, const World& world, Vec3d from, Vec3d to) {
   return crossed;
 }
 
-TEST(CrowdEdits, AreObstaclesAsIfTheCrowdHadBeenGivenThem) {
+// Calls at random: obstacles come, move, switch and go, some twice between two steps.
+struct Calls {
+  const World& world;
+  std::vector<Edits> lists;  // each gets all calls
+  std::vector<EditId> ids = {};
+  uint64_t n = 0;
+
+  double draw() { return random_unit(3, 55, n++); }
+  Prism somewhere() {
+    const Vec3d at = world.random_place(0, 17, n++).position;
+    return Prism::circle({at.x, at.y, at.z}, 0.2 + draw(), 1);
+  }
+  // Makes one call to all lists, and has the crowd of the first follow it.
+  void make_one(Crowd& first) {
+    const double what = draw();
+    const size_t i = static_cast<size_t>(draw() * static_cast<double>(ids.size()));
+    const Prism prism = somewhere();
+    const auto kind = draw() < 0.5 ? ObstacleKind::kStatic : ObstacleKind::kKinematic;
+    const auto policy = draw() < 0.7 ? ObstaclePolicy::kRefuseEntry : ObstaclePolicy::kWait;
+    const bool adds = ids.size() < 10 || what < 0.1, active = draw() < 0.5;
+    EditId made = 0;
+    for (Edits& edits : lists) {
+      if (adds) {
+        made = *edits.add_obstacle(prism, kind, policy);
+      } else if (what < 0.5) {
+        EXPECT_TRUE(edits.set_active(ids[i], active));
+      } else if (what < 0.9) {
+        EXPECT_TRUE(edits.move_obstacle(ids[i], prism));
+      } else {
+        EXPECT_TRUE(edits.remove(ids[i]));
+      }
+    }
+    if (adds) ids.push_back(made);
+    if (!adds && what >= 0.9) ids.erase(ids.begin() + static_cast<ptrdiff_t>(i));
+    follow(first);
+  }
+};
+
+TEST(CrowdEdits, WhatWasCalledSinceTheLastStepIsCalledInItsOrderAtTheNext) {
   const World world = two_openings();
-  Edits edits;
-  Crowd reads = made(world, {.edits = edits}), given = made(world);
+  Edits one, two;
+  Crowd at_once = made(world, {.edits = one}), later = made(world, {.edits = two});
   std::vector<Place> goals;
   for (uint64_t n = 0; n < 60; ++n) goals.push_back(world.random_place(0, 3, n));
-  EXPECT_FALSE(reads.obstacle_of(0) || reads.obstacle_of(1));
-  EditId door = 0, crate = 0;
-  ObstacleId own_door, own_crate;
-  for (int step = 0; step < 240; ++step) {
-    if (step == 0) {
-      for (Crowd* crowd : {&reads, &given}) crowd->set_goals(scattered(*crowd, 60), goals);
-    }
-    if (step == 20) {
-      door = *edits.add_obstacle(kNearDoor);
-      own_door = *given.add_obstacle(kNearDoor);
-      crate = *edits.add_obstacle(Prism::circle({6, 0, 12}, 0.7, 1));
-      own_crate = *given.add_obstacle(Prism::circle({6, 0, 12}, 0.7, 1));
-    }
-    if (step == 80 || step == 150) {
-      EXPECT_TRUE(edits.set_active(door, step == 150));
-      EXPECT_TRUE(given.set_obstacle_active(own_door, step == 150));
-    }
+  for (Crowd* crowd : {&at_once, &later}) crowd->set_goals(scattered(*crowd, 60), goals);
+  Calls calls{world, {one, two}};
+  uint64_t waiting = 0;
+  for (int step = 0; step < 200; ++step) {
     if (step == 100) {
-      EXPECT_TRUE(edits.remove(crate));
-      EXPECT_TRUE(given.remove_obstacle(own_crate));
+      for (Crowd* crowd : {&at_once, &later}) {
+        const std::vector<AvatarId> arrived(crowd->arrived().begin(), crowd->arrived().end());
+        crowd->remove(arrived);
+      }
     }
-    const CrowdReport a = reads.step(), b = given.step();
-    ASSERT_EQ(a.waiting, b.waiting);
-    if (step == 20) {
-      EXPECT_EQ(reads.obstacle_of(door), own_door);
-      EXPECT_EQ(reads.obstacle(reads.obstacle_of(door))->waits(),
-                given.obstacle(own_door)->waits());
-    }
-    if (step == 100) {
-      EXPECT_FALSE(reads.obstacle_of(crate));
-    }
-    std::vector<AvatarState> now, other;
-    reads.read(now);
-    given.read(other);
-    ASSERT_EQ(now.size(), other.size());
-    for (size_t i = 0; i < now.size(); ++i) {
-      ASSERT_EQ(now[i].position.x, other[i].position.x) << "step " << step;
-      ASSERT_EQ(now[i].position.z, other[i].position.z) << "step " << step;
+    for (int k = 0; k < 4 && step % 3 == 0; ++k) calls.make_one(at_once);
+    const CrowdReport a = at_once.step(), b = later.step();
+    ASSERT_EQ(a.waiting, b.waiting) << step;
+    ASSERT_EQ(a.planned, b.planned) << step;
+    ASSERT_EQ(at_once.state_hash(), later.state_hash()) << step;
+    waiting += a.waiting;
+    for (const EditId id : calls.ids) {
+      const ObstacleState x = *at_once.obstacle(id), y = *later.obstacle(id);
+      ASSERT_EQ(x.phase, y.phase) << step << ' ' << id;
+      ASSERT_EQ(x.prism.corners, y.prism.corners) << step << ' ' << id;
+      ASSERT_EQ(x.requested_at, y.requested_at) << step << ' ' << id;
+      ASSERT_EQ(x.up_at, y.up_at) << step << ' ' << id;
+      ASSERT_EQ(x.occupants, y.occupants) << step << ' ' << id;
     }
   }
+  EXPECT_GT(waiting, 20u);
+  EXPECT_EQ(at_once.save(), later.save());
+}
+
+TEST(CrowdEdits, ADoorThatWasSwitchedOffAndOnBetweenTwoStepsClosesAgain) {
+  const World world = two_openings();
+  Edits edits;
+  Crowd crowd = made(world, {.edits = edits});
+  ASSERT_TRUE(added(crowd, world.find_place(0, {4, 0, 12}, 0.5)));
+  const EditId door = put_up(crowd, edits, kNearDoor);
+  for (int step = 0; step < 10; ++step) crowd.step();
+  EXPECT_EQ(crowd.obstacle(door)->requested_at, 0);
+  EXPECT_TRUE(edits.set_active(door, false) && edits.set_active(door, true));
+  crowd.step();
+  EXPECT_TRUE(crowd.obstacle(door)->is_up());
+  EXPECT_NEAR(crowd.obstacle(door)->requested_at, 1, 1e-9);
+  EXPECT_NEAR(crowd.obstacle(door)->up_at, 1, 1e-9);
+}
+
+// The hull of its first and last place holds an avatar; those with the place between do not.
+TEST(CrowdEdits, ACartMovesByEachOfItsMoves) {
+  const World world = two_openings();
+  const auto cart_at = [](double x, double z) { return Prism::circle({x, 0, z}, 0.4, 1); };
+  for (const bool by_corner : {true, false}) {
+    Edits edits;
+    Crowd crowd = made(world, {.edits = edits});
+    ASSERT_TRUE(added(crowd, world.find_place(0, {6, 0, 12}, 0.5)));
+    const EditId cart = put_up(crowd, edits, cart_at(4, 12), ObstacleKind::kKinematic);
+    if (by_corner) {
+      ASSERT_TRUE(edits.move_obstacle(cart, cart_at(6, 8)));
+    }
+    ASSERT_TRUE(edits.move_obstacle(cart, cart_at(8, 12)));
+    EXPECT_EQ(crowd.obstacle(cart)->phase, ObstaclePhase::kUp);
+    EXPECT_EQ(crowd.obstacle(cart)->prism.corners, cart_at(4, 12).corners);
+    crowd.step();
+    EXPECT_EQ(crowd.obstacle(cart)->waits(), !by_corner);
+    EXPECT_EQ(crowd.obstacle(cart)->prism.corners, cart_at(by_corner ? 8 : 4, 12).corners);
+  }
+}
+
+TEST(CrowdEdits, UntilACrowdFollowsItReportsWhatItHas) {
+  const World world = two_openings();
+  Edits edits;
+  Crowd crowd = made(world, {.edits = edits});
+  ASSERT_TRUE(added(crowd, world.find_place(0, {4, 0, 12}, 0.5)));
+  const auto door = edits.add_obstacle(kNearDoor, ObstacleKind::kStatic, ObstaclePolicy::kWait);
+  const auto cart = edits.add_obstacle(kFarDoor, ObstacleKind::kKinematic);
+  ASSERT_TRUE(door && cart && edits.set_active(*cart, false));
+  EXPECT_EQ(crowd.obstacle(*door)->phase, ObstaclePhase::kWaitsToComeUp);
+  EXPECT_EQ(crowd.obstacle(*door)->policy, ObstaclePolicy::kWait);
+  EXPECT_EQ(crowd.obstacle(*door)->prism.corners, kNearDoor.corners);
+  EXPECT_LT(crowd.obstacle(*door)->requested_at, 0);
+  EXPECT_EQ(crowd.obstacle(*cart)->phase, ObstaclePhase::kOff);
+  EXPECT_EQ(crowd.obstacle(*cart)->kind, ObstacleKind::kKinematic);
+  EXPECT_TRUE(crowd.obstacles().empty());
+  crowd.step();
+  EXPECT_EQ(crowd.obstacle(*door)->phase, ObstaclePhase::kUp);
+  EXPECT_EQ(crowd.obstacle(*cart)->phase, ObstaclePhase::kOff);
+  EXPECT_EQ(crowd.obstacles().size(), 1u);
+  ASSERT_TRUE(edits.set_active(*door, false) && edits.set_active(*cart, true));
+  EXPECT_EQ(crowd.obstacle(*door)->phase, ObstaclePhase::kUp);
+  EXPECT_EQ(crowd.obstacle(*cart)->phase, ObstaclePhase::kOff);
+  follow(crowd);
+  EXPECT_EQ(crowd.obstacle(*door)->phase, ObstaclePhase::kOff);
+  EXPECT_EQ(crowd.obstacle(*cart)->phase, ObstaclePhase::kUp);
+  ASSERT_TRUE(edits.remove(*cart));
+  EXPECT_EQ(crowd.obstacle(*cart).error().code, Errc::kNotFound);
+  EXPECT_EQ(crowd.obstacles().size(), 1u);
+  crowd.step();
+  EXPECT_TRUE(crowd.obstacles().empty());
+  EXPECT_EQ(crowd.obstacle(*cart).error().code, Errc::kNotFound);
+}
+
+// Edits that were made before the crowd, and more calls at once than the list remembers.
+TEST(CrowdEdits, ACrowdThatIsFarBehindTakesTheStateOfTheEdits) {
+  const World world = two_openings();
+  Edits edits;
+  const auto gone = edits.add_obstacle(kNearDoor), off = edits.add_obstacle(kNearDoor),
+             moved = edits.add_obstacle(kNearDoor);
+  ASSERT_TRUE(gone && off && moved && edits.remove(*gone) && edits.set_active(*off, false));
+  ASSERT_TRUE(edits.move_obstacle(*moved, kFarDoor));
+  Crowd crowd = made(world, {.edits = edits});
+  ASSERT_TRUE(added(crowd, world.find_place(0, {12, 0, 4}, 0.5)));
+  EXPECT_EQ(crowd.obstacles().size(), 1u);
+  EXPECT_EQ(crowd.obstacle(*off)->phase, ObstaclePhase::kOff);
+  EXPECT_EQ(crowd.obstacle(*moved)->prism.corners, kFarDoor.corners);
+  const auto shifted = [](double by) { return Prism::box({3 + by, 0, 20}, {4 + by, 1, 21}); };
+  for (int n = 0; n < 20000; ++n) ASSERT_TRUE(edits.move_obstacle(*moved, shifted(n % 7)));
+  ASSERT_TRUE(edits.set_active(*off, true));
+  const auto last = edits.add_obstacle(shifted(10));
+  ASSERT_TRUE(last);
+  crowd.step();
+  EXPECT_EQ(crowd.obstacle(*moved)->prism.corners, shifted(19999 % 7).corners);
+  EXPECT_TRUE(crowd.obstacle(*off)->waits()) << "an avatar stands there";
+  EXPECT_TRUE(crowd.obstacle(*last)->is_up());
+  EXPECT_EQ(crowd.obstacles().size(), 2u);
 }
 
 TEST(CrowdEdits, OneDoorForFindersAndCrowd) {
@@ -216,7 +340,7 @@ TEST(CrowdEdits, ASavedCrowdGoesOnWithThem) {
   Context context;
   auto restored = Crowd::restore(world, {.workers = 2, .edits = edits}, saved, context);
   ASSERT_TRUE(restored) << restored.error().message;
-  EXPECT_EQ(restored->obstacle_of(*door), crowd.obstacle_of(*door));
+  EXPECT_EQ(restored->obstacle(*door)->phase, crowd.obstacle(*door)->phase);
   for (int step = 0; step < 60; ++step) {
     if (step == 20) {
       EXPECT_TRUE(edits.set_active(*door, false));
@@ -229,6 +353,129 @@ TEST(CrowdEdits, ASavedCrowdGoesOnWithThem) {
   }
   EXPECT_EQ(crowd.save(), restored->save());
   EXPECT_FALSE(Crowd::restore(world, {.edits = edits, .slope_cost = 3}, saved, context));
+}
+
+// All kinds of edits, some of which the crowd has not followed when it is saved.
+struct Saved {
+  World world = two_openings();
+  Edits edits;
+  EditId door = 0, cart = 0, sheet = 0, area = 0, link = 0;
+  Crowd crowd = made(world, {.edits = edits});
+
+  Saved() {
+    scattered(crowd, 40);
+    make_calls(edits, crowd);
+  }
+  // To edits of the same crowd or, with another, of one that has as many steps.
+  void make_calls(Edits& to, Crowd& of) {
+    for (int step = 0; step < 5; ++step) of.step();
+    door = *to.add_obstacle(kNearDoor, ObstacleKind::kStatic, ObstaclePolicy::kWait);
+    cart = *to.add_obstacle(Prism::circle({6, 0, 6}, 0.4, 1), ObstacleKind::kKinematic);
+    EXPECT_TRUE(to.remove(*to.add_obstacle(kFarDoor)));
+    area = *to.add_area(Prism::box({14, -1, 8}, {18, 1, 16}), 2);
+    EXPECT_TRUE(to.set_area_cost(2, 7) && to.set_area_cost(9, INFINITY));
+    for (int step = 0; step < 5; ++step) of.step();
+    const std::vector<Vec3d> corners{{12, 0, 18}, {12, 0, 22}, {12, 2, 20}};
+    const std::vector<std::array<uint32_t, 3>> triangles{{0, 1, 2}};
+    sheet = *to.add_obstacle(corners, triangles);
+    link = *to.add_off_mesh_link(
+        {world.find_place(0, {11, 0, 12}, 1), world.find_place(0, {13, 0, 12}, 1), 3, false});
+    EXPECT_TRUE(to.move_obstacle(cart, Prism::circle({6, 0, 6.3}, 0.4, 1)));
+    EXPECT_TRUE(to.set_active(door, false) && to.set_active(door, true));
+  }
+  void go_on(Crowd& of, Edits& with) const {
+    for (int step = 0; step < 20; ++step) {
+      if (step == 5) {
+        EXPECT_TRUE(with.set_active(door, false) && with.remove(sheet));
+        EXPECT_TRUE(with.move_obstacle(cart, Prism::circle({6.4, 0, 6.3}, 0.4, 1)));
+      }
+      if (step == 10) {
+        EXPECT_TRUE(with.set_area_cost(2, 1) && with.set_active(link, false));
+        EXPECT_TRUE(with.set_active(door, true));
+      }
+      of.step();
+    }
+  }
+};
+
+TEST(CrowdEdits, ASavedCrowdFillsEditsInWhichNothingWasEverChanged) {
+  Saved s;
+  const std::vector<uint8_t> saved = s.crowd.save();
+  Context context;
+  Edits filled;
+  PathFinder finder = *PathFinder::create(s.world, {.edits = filled}, context);
+  auto restored = Crowd::restore(s.world, {.workers = 2, .edits = filled}, saved, context);
+  ASSERT_TRUE(restored) << restored.error().message;
+  EXPECT_EQ(filled.version(), s.edits.version());
+  EXPECT_EQ(restored->save(), saved);
+  Path path;
+  finder.find({.from = Vec3d{11, 0, 4}, .to = Vec3d{20, 0, 4}}, path);
+  EXPECT_EQ(path.end, PathEnd::kNoPlace) << "a finder of the same edits knows the door";
+  s.go_on(s.crowd, s.edits);
+  s.go_on(*restored, filled);
+  EXPECT_EQ(restored->save(), s.crowd.save());
+  const auto next = filled.add_obstacle(kFarDoor), same = s.edits.add_obstacle(kFarDoor);
+  ASSERT_TRUE(next && same);
+  EXPECT_EQ(*next, *same) << "ids go on";
+}
+
+TEST(CrowdEdits, ASavedCrowdTakesEditsOfTheSameCallsAndNoOthers) {
+  Saved s;
+  const std::vector<uint8_t> saved = s.crowd.save();
+  Context context;
+  Edits same;
+  Crowd spare = made(s.world, {.edits = same});
+  s.make_calls(same, spare);
+  auto restored = Crowd::restore(s.world, {.edits = same}, saved, context);
+  ASSERT_TRUE(restored) << restored.error().message;
+  EXPECT_EQ(restored->save(), saved);
+  // One more call, one less, another one.
+  ASSERT_TRUE(same.set_area_cost(3, 2));
+  Edits fewer, other;
+  ASSERT_TRUE(fewer.set_area_cost(1, 1) && other.add_obstacle(kFarDoor));
+  for (const Edits& wrong : {same, fewer, other}) {
+    const uint64_t version = wrong.version();
+    const auto refused = Crowd::restore(s.world, {.edits = wrong}, saved, context);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, Errc::kBadFile);
+    EXPECT_NE(refused.error().message.find("has other edits"), std::string::npos);
+    EXPECT_EQ(wrong.version(), version);
+  }
+  // What fails fills nothing.
+  Edits empty;
+  EXPECT_FALSE(Crowd::restore(s.world, {.seed = 9, .edits = empty}, saved, context));
+  Context cancelled;
+  cancelled.cancel = true;
+  EXPECT_FALSE(Crowd::restore(s.world, {.edits = empty}, saved, cancelled));
+  EXPECT_EQ(empty.version(), 0u);
+}
+
+TEST(CrowdEdits, SavedNonsenseIsRefusedOrHarmless) {
+  Saved s;
+  std::vector<uint8_t> saved = s.crowd.save();
+  Context context;
+  uint64_t accepted = 0, refused = 0;
+  const size_t size = saved.size() - 8;
+  // The edits and calls are the last that is saved.
+  const size_t first = (size - std::min<size_t>(size, 2000)) * 8;
+  for (size_t bit = first; bit < size * 8; bit += bit % 97 + 1) {
+    saved[bit / 8] ^= static_cast<uint8_t>(1 << bit % 8);
+    const uint64_t sum = hash_bytes(saved.data(), size);
+    std::memcpy(saved.data() + size, &sum, 8);
+    Edits edits;
+    auto restored = Crowd::restore(s.world, {.workers = 1, .edits = edits}, saved, context);
+    if (restored) {
+      for (int step = 0; step < 2; ++step) restored->step();
+      ++accepted;
+    } else {
+      EXPECT_EQ(restored.error().code, Errc::kBadFile);
+      EXPECT_EQ(edits.version(), 0u);
+      ++refused;
+    }
+    saved[bit / 8] ^= static_cast<uint8_t>(1 << bit % 8);
+  }
+  EXPECT_GT(accepted, 20u);
+  EXPECT_GT(refused, 20u);
 }
 
 TEST(CrowdEdits, RefusedSettings) {

@@ -57,7 +57,7 @@ TEST(CrowdTargets, PlacesLieInsideWhereTheClassCanStandAndAreEvenlySpread) {
     EXPECT_GE(places.size(), 1u);
     EXPECT_LE(places.size(), 2 * max_count + 2) << max_count;
     for (const Place& place : places) {
-      EXPECT_TRUE(area.holds(place.position)) << place.position.x << ' ' << place.position.z;
+      EXPECT_TRUE(area.contains(place.position)) << place.position.x << ' ' << place.position.z;
       EXPECT_TRUE(stands(world, place)) << place.position.x << ' ' << place.position.z;
       EXPECT_NEAR(place.position.y, 0, 0.002);
     }
@@ -77,11 +77,11 @@ TEST(CrowdTargets, PlacesLieInsideWhereTheClassCanStandAndAreEvenlySpread) {
 }
 
 TEST(CrowdTargets, PlacesAreNotWhereAnObstacleIsUp) {
-  Crowd crowd = made(floor_with_crate());
+  Edits edits;
+  Crowd crowd = made(floor_with_crate(), {.edits = edits});
   const TargetId target = target_of(crowd, {Prism::box({8, -0.5, 8}, {18, 1, 18})});
   ASSERT_FALSE(places_of(crowd, target, 400).empty());
-  const auto crate = crowd.add_obstacle(Prism::box({12, 0, 8}, {20, 1, 18}));
-  ASSERT_TRUE(crate) << crate.error().message;
+  put_up(crowd, edits, Prism::box({12, 0, 8}, {20, 1, 18}));
   const std::vector<Place> left = places_of(crowd, target, 400);
   EXPECT_GT(left.size(), 50u);
   for (const Place& place : left) EXPECT_LT(place.position.x, 12);
@@ -98,7 +98,7 @@ TEST(CrowdTargets, PlacesOfPrismsThatOverlapAreThoseOfTheirUnion) {
     for (const Place& p : places) distinct.emplace(p.position.x, p.position.z);
     EXPECT_EQ(distinct.size(), places.size()) << max_count;
     const auto is_in = [&](const Prism& prism) {
-      return [&prism](const Place& p) { return prism.holds(p.position); };
+      return [&prism](const Place& p) { return prism.contains(p.position); };
     };
     EXPECT_TRUE(std::any_of(places.begin(), places.end(), is_in(one)));
     EXPECT_TRUE(std::any_of(places.begin(), places.end(), is_in(two)));
@@ -200,7 +200,7 @@ TEST(CrowdTargets, ACancelledOneIsNotAddedAndTheCrowdGoesOn) {
   EXPECT_GT(crowd.distance(id, *second), crowd.distance(id, first) + 5);
   crowd.set_targets({&id, 1}, *second);
   for (int step = 0; step < 300 && crowd.arrived().empty(); ++step) crowd.step();
-  EXPECT_TRUE(area.holds(crowd.read(id)->position));
+  EXPECT_TRUE(area.contains(crowd.read(id)->position));
 }
 
 TEST(CrowdTargets, MoreThan65535AreRefused) {

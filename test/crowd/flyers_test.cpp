@@ -405,30 +405,29 @@ TEST(Flyers, AnExternallyControlledOneTakesOffFliesAndLands) {
 
 TEST(Flyers, KeepOutOfObstaclesThatWaitForThem) {
   Stage stage(open_air(40, 20));
-  Crowd crowd = made(stage.world());
+  Edits edits;
+  Crowd crowd = made(stage.world(), {.edits = edits});
   const AvatarId hovers = added(crowd, air_place({20, 5, 20}), {.avatar_class = kFlyer});
   ASSERT_TRUE(hovers);
-  const auto at_it = crowd.add_obstacle(Prism::box({19, 4, 19}, {21, 6, 21}));
-  ASSERT_TRUE(at_it);
-  EXPECT_TRUE(crowd.obstacle(*at_it)->waits());
+  const EditId at_it = put_up(crowd, edits, Prism::box({19, 4, 19}, {21, 6, 21}));
+  EXPECT_TRUE(crowd.obstacle(at_it)->waits());
   EXPECT_EQ(crowd.step().waiting, 1u);
   ASSERT_EQ(crowd.blockers().size(), 1u);
   EXPECT_EQ(crowd.blockers()[0], hovers);
-  const auto beside = crowd.add_obstacle(Prism::box({25, 0, 10}, {26, 12, 30}));
-  ASSERT_TRUE(beside);
-  EXPECT_FALSE(crowd.obstacle(*beside)->waits());
+  const EditId beside = put_up(crowd, edits, Prism::box({25, 0, 10}, {26, 12, 30}));
+  EXPECT_FALSE(crowd.obstacle(beside)->waits());
   const Place goal = air_place({34, 5, 20});
   crowd.set_goals(std::span(&hovers, 1), std::span(&goal, 1));
   expect_all(go(crowd, stage, 1, 600), 1);
-  EXPECT_FALSE(crowd.obstacle(*at_it)->waits());
-  EXPECT_FALSE(crowd.remove_obstacle({}));
+  EXPECT_FALSE(crowd.obstacle(at_it)->waits());
 }
 
 // From wall to wall and higher than the air, except for an opening at one end; and a room around
 // one flyer.
 TEST(Flyers, GoAroundAWallThatIsPutUpAndReportUnreachableGoals) {
   Stage stage(open_air(40, 12));
-  Crowd crowd = made(stage.world());
+  Edits edits;
+  Crowd crowd = made(stage.world(), {.edits = edits});
   std::vector<AvatarSpawn> spawns;
   std::vector<Place> goals;
   for (int i = 0; i < 12; ++i) {
@@ -439,19 +438,17 @@ TEST(Flyers, GoAroundAWallThatIsPutUpAndReportUnreachableGoals) {
   const std::vector<AvatarId> ids = added(crowd, spawns);
   crowd.set_goals(ids, goals);
   for (int i = 0; i < 20; ++i) crowd.step();  // They fly to their goals.
-  const auto wall = crowd.add_obstacle(Prism::box({19, -1, -5}, {19.5, 40, 33}));
-  ASSERT_TRUE(wall);
-  ASSERT_FALSE(crowd.obstacle(*wall)->waits());
+  const EditId wall = put_up(crowd, edits, Prism::box({19, -1, -5}, {19.5, 40, 33}));
+  ASSERT_FALSE(crowd.obstacle(wall)->waits());
   expect_all(go(crowd, stage, 12, 1200), 12);
 
-  const auto rest = crowd.add_obstacle(Prism::box({19, -1, 32}, {19.5, 40, 45}));
-  ASSERT_TRUE(rest);
+  const EditId rest = put_up(crowd, edits, Prism::box({19, -1, 32}, {19.5, 40, 45}));
   const Place back = air_place({6, 5, 20});
   crowd.set_goals(std::span(&ids[0], 1), std::span(&back, 1));
   crowd.step();
   ASSERT_EQ(crowd.goal_unreachable().size(), 1u);
   EXPECT_EQ(crowd.goal_unreachable()[0], ids[0]);
-  ASSERT_TRUE(crowd.remove_obstacle(*rest));
+  ASSERT_TRUE(edits.remove(rest));
   crowd.set_goals(std::span(&ids[0], 1), std::span(&back, 1));
   expect_all(go(crowd, stage, 1, 1200), 1);
 }
@@ -459,15 +456,15 @@ TEST(Flyers, GoAroundAWallThatIsPutUpAndReportUnreachableGoals) {
 // Some hover so near to a wall that the finder's cells around them are not free.
 TEST(Flyers, FindPathsFromAndToWhereTheyTouchAWall) {
   Stage stage(open_air(40, 12));
-  Crowd crowd = made(stage.world());
+  Edits edits;
+  Crowd crowd = made(stage.world(), {.edits = edits});
   std::vector<AvatarSpawn> spawns;
   std::vector<Place> goals;
   for (int i = 0; i < 6; ++i) {
     spawns.push_back(flyer_at({18.59 - 0.05 * i, 2, 6.0 + 3 * i}));
     goals.push_back(air_place({19.92 + 0.05 * i, 2, 6.0 + 3 * i}));
   }
-  const auto wall = crowd.add_obstacle(Prism::box({19, -1, -5}, {19.5, 40, 33}));
-  ASSERT_TRUE(wall);
+  put_up(crowd, edits, Prism::box({19, -1, -5}, {19.5, 40, 33}));
   crowd.set_goals(added(crowd, spawns), goals);
   expect_all(go(crowd, stage, 6, 1200), 6);
 }

@@ -128,12 +128,11 @@ TEST(CrowdLinkTurns, AnObstacleBesideTheEndWaitsForTheOneOnTheLink) {
     Crowd crowd = made(world, {.edits = edits});
     const AvatarId first = walker(crowd, at(world, 7, 5), at(world, 19, 5));
     step_until_riding(crowd, first);
-    const auto crate = crowd.add_obstacle(Prism::box({13.3, 0, 4.5}, {13.8, 1, 5.5}),
-                                          ObstacleKind::kStatic, policy);
-    ASSERT_TRUE(crate);
-    EXPECT_FALSE(crowd.obstacle(*crate)->is_up);
+    const EditId crate = put_up(crowd, edits, Prism::box({13.3, 0, 4.5}, {13.8, 1, 5.5}),
+                                ObstacleKind::kStatic, policy);
+    EXPECT_FALSE(crowd.obstacle(crate)->is_up());
     EXPECT_GT(steps_until(crowd, oracle, 1, 400), 0);
-    EXPECT_TRUE(crowd.obstacle(*crate)->is_up);
+    EXPECT_TRUE(crowd.obstacle(crate)->is_up());
   }
 }
 
@@ -147,8 +146,7 @@ TEST(CrowdLinkTurns, OneThatLandsInAClosingObstacleKeepsItsGoal) {
     Crowd crowd = made(world, {.dt = 0.3, .edits = edits});
     const AvatarId id = walker(crowd, at(world, 7 + shift * 0.05, 5), at(world, 19, 5));
     step_until_riding(crowd, id);
-    const auto crate = crowd.add_obstacle(Prism::circle({13, 0, 5}, 0.4, 1));
-    ASSERT_TRUE(crate);
+    put_up(crowd, edits, Prism::circle({13, 0, 5}, 0.4, 1));
     uint64_t lost = 0, arrived = 0;
     for (int step = 0; step < 150; ++step) {
       const CrowdReport report = crowd.step();
@@ -262,7 +260,7 @@ TEST(CrowdLinkTurns, OneThatLeavesAnObstacleLearnsThatItsLinkIsOff) {
   const AvatarId id = walker(crowd, at(world, 4, 5), at(world, 19, 5));
   for (int step = 0; step < 5; ++step) crowd.step();
   const Vec3d here = crowd.read(id)->position;
-  ASSERT_TRUE(crowd.add_obstacle(Prism::circle({here.x, 0, here.z}, 0.5, 1)));
+  put_up(crowd, edits, Prism::circle({here.x, 0, here.z}, 0.5, 1));
   crowd.step();
   EXPECT_TRUE(edits.set_active(link, false));
   uint64_t lost = 0;

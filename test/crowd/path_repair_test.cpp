@@ -39,7 +39,7 @@ struct Crated {
   void put_up(const Prism& prism) {
     book.settle(book.add(prism, ObstacleKind::kStatic, true));
     book.block_cells();
-    ASSERT_TRUE(live.add_obstacle(prism));
+    ASSERT_TRUE(live.add_obstacle({prism}));
   }
 };
 

@@ -232,9 +232,7 @@ int faults(const std::vector<Prism>& prisms, const Path& path) {
 std::vector<path::ChangeId> put_up(path::FlightFinder& flight, const std::vector<Prism>& prisms) {
   std::vector<path::ChangeId> ids;
   for (const Prism& prism : prisms) {
-    const auto id = flight.add_obstacle(prism);
-    EXPECT_TRUE(id) << id.error().message;
-    if (id) ids.push_back(*id);
+    ids.push_back(flight.add_obstacle({prism}));
   }
   return ids;
 }
@@ -491,8 +489,7 @@ TEST(FlightChanges, EndsInAnObstacleAreNoPlacesAndPathsLeadAroundAWall) {
   ASSERT_EQ(path.end, PathEnd::kReached);
   const double straight = path.length;
   const Prism wall = box({7, -1, -1}, {7.2, 7, 6});
-  const auto id = flight.add_obstacle(wall);
-  ASSERT_TRUE(id);
+  const path::ChangeId id = flight.add_obstacle({wall});
   flight.find({.from = here, .to = there}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   EXPECT_EQ(faults({wall}, path), 0);
@@ -508,7 +505,7 @@ TEST(FlightChanges, EndsInAnObstacleAreNoPlacesAndPathsLeadAroundAWall) {
     EXPECT_EQ(path.end, PathEnd::kNoPlace);
   }
   path::FlightFinder copy = flight;
-  ASSERT_TRUE(flight.remove(*id));
+  ASSERT_TRUE(flight.remove(id));
   EXPECT_TRUE(flight.is_legal({7.1, 3, 4}));
   EXPECT_FALSE(copy.is_legal({7.1, 3, 4}));
   flight.find({.from = here, .to = there}, path);
@@ -544,13 +541,12 @@ TEST(FlightChanges, GroundBetweenTwoComponentsOfAirIsLeftOutUnderAnObstacle) {
   flight.find(query, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   EXPECT_EQ(faults(crates, path), 0);
-  const auto door = flight.add_obstacle(box({9.7, 0, 3}, {10.1, 3, 5}));
-  ASSERT_TRUE(door);
+  const path::ChangeId door = flight.add_obstacle({box({9.7, 0, 3}, {10.1, 3, 5})});
   flight.find(query, path);
   ASSERT_EQ(path.end, PathEnd::kUnreachable);
   ASSERT_FALSE(path.points.empty());
   EXPECT_NEAR(path.points.back().position.x, 9.1, 0.5);
-  flight.set_active(*door, false);
+  flight.set_active(door, false);
   flight.find(query, path);
   EXPECT_EQ(path.end, PathEnd::kReached);
 }
@@ -632,8 +628,7 @@ TEST(FlightChanges, AWallThroughALargeWorldIsFoundBySearching) {
   Path path;
   flight.find({.from = left[0], .to = right[0]}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
-  const auto wall = flight.add_obstacle(box({48.2, -10, -10}, {48.4, 60, 90}));
-  ASSERT_TRUE(wall);
+  const path::ChangeId wall = flight.add_obstacle({box({48.2, -10, -10}, {48.4, 60, 90})});
   for (size_t i = 0; i < 4; ++i) {
     for (const auto& [from, to] : {std::pair{left[i], right[i]}, std::pair{right[i], left[i]}}) {
       flight.find({.from = from, .to = to}, path);
@@ -650,7 +645,7 @@ TEST(FlightChanges, AWallThroughALargeWorldIsFoundBySearching) {
   const std::atomic<bool> cancel = true;
   flight.find({.from = left[0], .to = right[0], .budget = {UINT64_MAX, &cancel}}, path);
   EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
-  flight.remove(*wall);
+  flight.remove(wall);
   flight.find({.from = left[0], .to = right[0]}, path);
   EXPECT_EQ(path.end, PathEnd::kReached);
 }
@@ -661,8 +656,7 @@ TEST(FlightChanges, TrianglesAreObstaclesAndBlockOnlyWhatTheyCover) {
   // A sail from the floor on one side up to 6 m on the other.
   const std::array<Vec3d, 3> corners{Vec3d{8, 0, 0}, Vec3d{8, 0, 8}, Vec3d{14, 6, 8}};
   const std::array<std::array<uint32_t, 3>, 1> triangles{{{0, 1, 2}}};
-  const auto id = flight.add_obstacle(corners, triangles);
-  ASSERT_TRUE(id) << id.error().message;
+  const path::ChangeId id = flight.add_obstacle(*path::make_solid(corners, triangles));
   EXPECT_FALSE(flight.is_legal({8.5, 0.5, 6}));
   EXPECT_FALSE(flight.is_legal({12, 3, 6.5}));
   EXPECT_TRUE(flight.is_legal({13, 1, 2}));      // beside it
@@ -671,23 +665,15 @@ TEST(FlightChanges, TrianglesAreObstaclesAndBlockOnlyWhatTheyCover) {
   Path path;
   flight.find({.from = {4, 1, 7}, .to = {12.6, 1, 6.6}}, path);
   EXPECT_EQ(path.end, PathEnd::kReached);
-  flight.remove(*id);
+  flight.remove(id);
   EXPECT_TRUE(flight.is_legal({12, 3, 6.5}));
-  const std::array<std::array<uint32_t, 3>, 1> wrong{{{0, 1, 9}}};
-  EXPECT_EQ(flight.add_obstacle(corners, wrong).error().code, Errc::kBadInput);
-  EXPECT_EQ(flight.add_obstacle(corners, {}).error().code, Errc::kBadInput);
 }
 
-TEST(FlightChanges, BadPrismsAreRefusedAndUnknownOnesAreNoChanges) {
+TEST(FlightChanges, UnknownOnesAreNoChanges) {
   const World world = bake(open_floor());
   path::FlightFinder flight = finder(world);
   EXPECT_FALSE(flight.remove(1));
   EXPECT_FALSE(flight.set_active(0, true));
-  Prism bad = box({1, 1, 1}, {2, 2, 2});
-  std::swap(bad.corners[1], bad.corners[2]);
-  EXPECT_EQ(flight.add_obstacle(bad).error().code, Errc::kBadInput);
-  EXPECT_EQ(flight.add_obstacle(box({1, 2, 1}, {2, 2, 2})).error().code, Errc::kBadInput);
-  EXPECT_EQ(flight.add_obstacle(box({1, NAN, 1}, {2, 2, 2})).error().code, Errc::kBadInput);
   EXPECT_TRUE(flight.is_legal({1.5, 1.5, 1.5}));
   EXPECT_FALSE(flight.remove(1));
 }

@@ -148,7 +148,7 @@ TEST(GroundFinder, NoPlaceIsInAnObstacleAndLittleElseIsLost) {
       std::vector<Prism> prisms;
       for (uint64_t n = 0; n < 40; ++n) {
         prisms.push_back(random_prism(17, n, summary.bounds));
-        ASSERT_TRUE(ground.add_obstacle(prisms.back()));
+        ASSERT_TRUE(ground.add_obstacle({prisms.back()}));
       }
       for (uint64_t n = 0; n < 3000; ++n) {
         const Place p = world.random_place(c, 23, n);
@@ -185,8 +185,8 @@ TEST(GroundFinder, MeshesBlockWhatTheirTrianglesTouch) {
   path::GroundFinder by_mesh = live(world), by_prism = live(world);
   Scene crate;
   crate.add_box({3, 0, 3}, {3.4, 1, 3.6});
-  ASSERT_TRUE(by_mesh.add_obstacle(crate.positions, crate.triangles));
-  ASSERT_TRUE(by_prism.add_obstacle(Prism::box({3, 0, 3}, {3.4, 1, 3.6})));
+  ASSERT_TRUE(by_mesh.add_obstacle(*path::make_solid(crate.positions, crate.triangles)));
+  ASSERT_TRUE(by_prism.add_obstacle({Prism::box({3, 0, 3}, {3.4, 1, 3.6})}));
   for (uint64_t n = 0; n < 4000; ++n) {
     const Place p = world.random_place(0, 5, n);
     // So thin a crate has no inside that a body would fit.
@@ -204,8 +204,7 @@ TEST(GroundFinder, PathsLeadAroundACrateAndStraightAfterItsRemoval) {
   const double straight = path.length;
   EXPECT_NEAR(straight, 4, 1e-3);
   // A crate before the door: around it.
-  const auto crate = ground.add_obstacle(Prism::box({2.8, 0, 2.8}, {3.1, 1, 3.2}));
-  ASSERT_TRUE(crate);
+  const path::ChangeId crate = ground.add_obstacle({Prism::box({2.8, 0, 2.8}, {3.1, 1, 3.2})});
   ground.find(from, to, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   EXPECT_GT(path.length, straight + 0.05);
@@ -216,21 +215,20 @@ TEST(GroundFinder, PathsLeadAroundACrateAndStraightAfterItsRemoval) {
     }
   }
   // A closed door leaf in the doorway: no path; the nearest place is on this side of it.
-  const auto door = ground.add_obstacle(Prism::box({3.95, 0, 2.3}, {4.05, 2, 3.7}));
-  ASSERT_TRUE(door);
+  const path::ChangeId door = ground.add_obstacle({Prism::box({3.95, 0, 2.3}, {4.05, 2, 3.7})});
   ground.find(from, to, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
   EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
   expect_walkable(world, 0, path);
   EXPECT_NEAR(path.points.back().position.x, 3.7, 0.15);
-  ASSERT_TRUE(ground.set_active(*door, false));
-  ASSERT_TRUE(ground.remove(*crate));
+  ASSERT_TRUE(ground.set_active(door, false));
+  ASSERT_TRUE(ground.remove(crate));
   ground.find(from, to, path);
   EXPECT_NEAR(path.length, straight, 1e-9);
-  ASSERT_TRUE(ground.set_active(*door, true));
+  ASSERT_TRUE(ground.set_active(door, true));
   ground.find(from, to, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
-  EXPECT_FALSE(ground.remove(*crate));
+  EXPECT_FALSE(ground.remove(crate));
   EXPECT_FALSE(ground.set_active(99, true));
 }
 
@@ -248,12 +246,10 @@ TEST(GroundFinder, ChangesAreUndoneWithoutATrace) {
     } else {
       Prism prism = random_prism(29, n, world.summary().bounds);
       prism.high = prism.low + 3;
-      const auto id = changed.add_obstacle(prism);
-      ASSERT_TRUE(id);
-      active.push_back({*id, prism});
+      active.push_back({changed.add_obstacle({prism}), prism});
     }
     path::GroundFinder rebuilt = live(world);
-    for (const auto& [id, prism] : active) ASSERT_TRUE(rebuilt.add_obstacle(prism));
+    for (const auto& [id, prism] : active) ASSERT_TRUE(rebuilt.add_obstacle({prism}));
     for (uint64_t k = 0; k < 5; ++k) {
       const Place from = world.random_place(0, n, 2 * k), to = world.random_place(0, n, 2 * k + 1);
       changed.find(from, to, path);
@@ -373,7 +369,7 @@ TEST(GroundFinder, OffMeshLinksLeadWhereMovesDoNot) {
   ground.find(to, from, path);
   EXPECT_EQ(path.end, PathEnd::kReached);
   // A crate where it lands: no path uses the link.
-  ASSERT_TRUE(ground.add_obstacle(Prism::box({4.4, 0, 2.9}, {4.6, 1, 3.1})));
+  ASSERT_TRUE(ground.add_obstacle({Prism::box({4.4, 0, 2.9}, {4.6, 1, 3.1})}));
   ASSERT_TRUE(ground.remove(*lift));
   ground.find(from, to, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
@@ -477,9 +473,8 @@ TEST(GroundFinder, SearchesInSlicesAndStartsAgainWhenTheGroundChanges) {
       EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
       ++slices;
       if (slices % 7 == 0) {
-        const auto id = ground.add_obstacle(Prism::box({-90, 0, -90}, {90, 0.1, 90}));
-        ASSERT_TRUE(id);
-        ASSERT_TRUE(ground.remove(*id));
+        const Prism everywhere = Prism::box({-90, 0, -90}, {90, 0.1, 90});
+        ASSERT_TRUE(ground.remove(ground.add_obstacle({everywhere})));
         ground.advance(100000, path);
         break;
       }
@@ -498,7 +493,7 @@ TEST(GroundFinder, SeesEarlyThatAGoalIsWalledIn) {
   path::GroundFinder ground = live(world);
   for (uint64_t n = 0; n < 400; ++n) {
     const double x = real(8, n, 0, 2, 58), z = real(8, n, 1, 2, 40);
-    ASSERT_TRUE(ground.add_obstacle(Prism::box({x, 0, z}, {x + 0.5, 1, z + 0.3})));
+    ASSERT_TRUE(ground.add_obstacle({Prism::box({x, 0, z}, {x + 0.5, 1, z + 0.3})}));
   }
   const Place from = world.find_place(0, {1, 0, 1}, 1), to = world.find_place(0, {50, 0, 50}, 1);
   Path path, over_points;
@@ -507,7 +502,7 @@ TEST(GroundFinder, SeesEarlyThatAGoalIsWalledIn) {
   const Prism walls[] = {
       Prism::box({48, 0, 48}, {52, 2, 48.2}), Prism::box({48, 0, 51.8}, {52, 2, 52}),
       Prism::box({48, 0, 48}, {48.2, 2, 52}), Prism::box({51.8, 0, 48}, {52, 2, 52})};
-  for (const Prism& wall : walls) ASSERT_TRUE(ground.add_obstacle(wall));
+  for (const Prism& wall : walls) ground.add_obstacle({wall});
   ground.find_over_points(from, to, over_points);
   ground.find(from, to, path);
   ASSERT_EQ(path.end, PathEnd::kUnreachable);
@@ -532,26 +527,26 @@ TEST(GroundFinder, RefusesNonsense) {
   EXPECT_FALSE(path::GroundFinder::create(world, {.slope_cost = -1}));
   path::GroundFinder ground = live(world);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(ground.add_obstacle(Prism{}));
-  EXPECT_FALSE(ground.add_obstacle(Prism{{{0, 0}, {1, 0}, {1, nan}}, 0, 1}));
-  EXPECT_FALSE(ground.add_obstacle(Prism{{{0, 0}, {1, 0}, {1, 1}}, 1, 1}));
-  EXPECT_FALSE(ground.add_obstacle(Prism{{{0, 0}, {1, 0}, {2, 0}}, 0, 1}));            // a line
-  EXPECT_FALSE(ground.add_obstacle(Prism{{{0, 0}, {2, 0}, {1, 0.5}, {1, 2}}, 0, 1}));  // a dent
+  EXPECT_FALSE(path::make_solid(Prism{}));
+  EXPECT_FALSE(path::make_solid(Prism{{{0, 0}, {1, 0}, {1, nan}}, 0, 1}));
+  EXPECT_FALSE(path::make_solid(Prism{{{0, 0}, {1, 0}, {1, 1}}, 1, 1}));
+  EXPECT_FALSE(path::make_solid(Prism{{{0, 0}, {1, 0}, {2, 0}}, 0, 1}));            // a line
+  EXPECT_FALSE(path::make_solid(Prism{{{0, 0}, {2, 0}, {1, 0.5}, {1, 2}}, 0, 1}));  // a dent
   Prism star;
   for (int i = 0; i < 5; ++i) {
     star.corners.push_back({std::cos(i * 2 * 1.2566), std::sin(i * 2 * 1.2566)});
   }
   star.high = 1;
-  EXPECT_FALSE(ground.add_obstacle(star));
+  EXPECT_FALSE(path::make_solid(star));
   const std::vector<Vec3d> corners{{0, 0, 0}, {1, 0, 0}, {0, nan, 1}};
-  EXPECT_FALSE(ground.add_obstacle(corners, std::vector<std::array<uint32_t, 3>>{}));
-  EXPECT_FALSE(ground.add_obstacle(corners, std::vector<std::array<uint32_t, 3>>{{0, 1, 2}}));
-  EXPECT_FALSE(ground.add_obstacle(corners, std::vector<std::array<uint32_t, 3>>{{0, 1, 7}}));
+  EXPECT_FALSE(path::make_solid(corners, std::vector<std::array<uint32_t, 3>>{}));
+  EXPECT_FALSE(path::make_solid(corners, std::vector<std::array<uint32_t, 3>>{{0, 1, 2}}));
+  EXPECT_FALSE(path::make_solid(corners, std::vector<std::array<uint32_t, 3>>{{0, 1, 7}}));
   EXPECT_FALSE(ground.add_area(Prism::box({0, 0, 0}, {1, 1, 1}), 0));
   EXPECT_FALSE(ground.set_area_cost(3, 0));
   EXPECT_FALSE(ground.set_area_cost(3, nan));
   EXPECT_FALSE(ground.set_area_cost(64, 1));
-  EXPECT_TRUE(ground.add_obstacle(Prism::box({-1e8, 0, -1e8}, {-0.9e8, 1, 1e8})));  // far off
+  EXPECT_TRUE(ground.add_obstacle({Prism::box({-1e8, 0, -1e8}, {-0.9e8, 1, 1e8})}));  // far off
   Path path;
   ground.find({}, world.find_place(0, {3, 0, 3}, 0.5), path);
   EXPECT_EQ(path.end, PathEnd::kNoPlace);

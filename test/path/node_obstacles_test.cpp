@@ -139,7 +139,7 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftFindsTheSame) {
       ASSERT_TRUE(finder);
       for (const Prism& prism : random_prisms(world.nodes, 77, 50)) {
         changes.add({prism, {}});
-        ASSERT_TRUE(finder->add_obstacle(prism));
+        ASSERT_TRUE(finder->add_obstacle({prism}));
       }
       // A body is walled in.
       const Vec3d in = world.nodes.random_place(c, 5, 0).feet;
@@ -148,7 +148,7 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftFindsTheSame) {
             {in.x + 2 * u - (v != 0 ? 2.1 : 0.1), in.y - 5, in.z + 2 * v - (u != 0 ? 2.1 : 0.1)},
             {in.x + 2 * u + (v != 0 ? 2.1 : 0.1), in.y + 5, in.z + 2 * v + (u != 0 ? 2.1 : 0.1)});
         changes.add({wall, {}});
-        ASSERT_TRUE(finder->add_obstacle(wall));
+        ASSERT_TRUE(finder->add_obstacle({wall}));
       }
       changes.update();
       const path::NodeView view(*mesh, &changes);
@@ -264,11 +264,11 @@ TEST(NodeObstacles, WhatIsTakenAwayOrAddedInAnotherOrderLeavesNoTrace) {
     path::NodeFinder rebuilt = *made, one = *made, other = *made;
     const std::vector<Prism> prisms = random_prisms(world.nodes, 3, 30);
     std::vector<path::ChangeId> ids;
-    for (const Prism& prism : prisms) ids.push_back(*one.add_obstacle(prism));
+    for (const Prism& prism : prisms) ids.push_back(one.add_obstacle({prism}));
     for (size_t i = prisms.size(); i-- > 0;) {
       // An obstacle that is removed later, or switched off, does not count.
-      const path::ChangeId spare = *other.add_obstacle(prisms[(i * 7 + 3) % prisms.size()]);
-      ASSERT_TRUE(other.add_obstacle(prisms[i]));
+      const path::ChangeId spare = other.add_obstacle({prisms[(i * 7 + 3) % prisms.size()]});
+      ASSERT_TRUE(other.add_obstacle({prisms[i]}));
       if (i % 2 == 0) {
         EXPECT_TRUE(other.remove(spare));
         EXPECT_FALSE(other.remove(spare));
@@ -365,8 +365,8 @@ TEST(NodeObstacles, MeshesBlockWhatTheirTrianglesTouch) {
     Scene scene;
     for (const Prism& prism : random_prisms(world.nodes, 31, 40)) {
       const test::PrismShell shell = test::shell_of(prism);
-      ASSERT_TRUE(solid.add_obstacle(prism));
-      ASSERT_TRUE(shells.add_obstacle(shell.corners, shell.triangles));
+      ASSERT_TRUE(solid.add_obstacle({prism}));
+      ASSERT_TRUE(shells.add_obstacle(*path::make_solid(shell.corners, shell.triangles)));
       test::add_to(scene, shell);
     }
     const verify::TriangleTree tree(scene, 1);
@@ -393,18 +393,11 @@ TEST(NodeObstacles, MeshesBlockWhatTheirTrianglesTouch) {
   EXPECT_GT(around, 30u);
 }
 
-TEST(NodeObstacles, BadOnesAreRefusedAndNamed) {
+TEST(NodeObstacles, UnknownOnesAreNoChanges) {
   const TestWorld world = make({.name = "stairs"}, 0.25, 1);
   Context context;
   auto finder = path::NodeFinder::create(world.nodes, {.workers = 1}, context);
   ASSERT_TRUE(finder);
-  EXPECT_FALSE(finder->add_obstacle(Prism{{{0, 0}, {1, 0}}, 0, 1}));
-  EXPECT_FALSE(finder->add_obstacle(Prism::box({0, 1, 0}, {1, 0, 1})));
-  const std::vector<Vec3d> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, NAN}};
-  const std::vector<std::array<uint32_t, 3>> far{{0, 1, 3}}, bad{{0, 1, 2}};
-  EXPECT_FALSE(finder->add_obstacle(corners, {}));
-  EXPECT_FALSE(finder->add_obstacle(corners, far));
-  EXPECT_FALSE(finder->add_obstacle(corners, bad));
   EXPECT_FALSE(finder->remove(0));
   EXPECT_FALSE(finder->remove(1));
   EXPECT_FALSE(finder->set_active(7, true));

@@ -2,7 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <limits>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "baked.h"
@@ -426,6 +430,116 @@ TEST(Edits, LeadAroundAndBackAgain) {
   ASSERT_TRUE(edits.remove(*link));
   finder.find(query, path);
   EXPECT_NEAR(path.length, 16, 1e-6);
+}
+
+// As if they were not there: on the ground by each search, over nodes, in the air, in flow fields.
+TEST(Edits, FindersIgnoreKinematicObstacles) {
+  Stage s;
+  Edits edits;
+  const Place target = s.place(kAdult, 100);
+  for (uint64_t n = 0; n < 30; ++n) {
+    const Vec3d at = s.place(kAdult, 1000 + n).position;
+    const Prism cart = Prism::box({at.x - 1, at.y - 1, at.z - 1}, {at.x + 1, at.y + 3, at.z + 1});
+    const auto id = edits.add_obstacle(cart, ObstacleKind::kKinematic);
+    ASSERT_TRUE(id);
+    if (n % 3 == 0) {
+      ASSERT_TRUE(edits.move_obstacle(*id, cart));
+    }
+    if (n % 3 == 1) {
+      ASSERT_TRUE(edits.set_active(*id, false) && edits.set_active(*id, true));
+    }
+  }
+  const Vec3d there = target.position;
+  ASSERT_TRUE(edits.add_obstacle(Prism::box(there - Vec3d{1, 1, 1}, there + Vec3d{1, 3, 1}),
+                                 ObstacleKind::kKinematic));
+  for (const auto& [avatar_class, speedup] :
+       {std::pair{kAdult, PathSpeedup::kNone}, std::pair{kAdult, PathSpeedup::kOnDemand},
+        std::pair{kFlyer, PathSpeedup::kNone}, std::pair{kClimber, PathSpeedup::kNone}}) {
+    PathFinder with = s.finder({.avatar_class = avatar_class, .speedup = speedup, .edits = edits});
+    PathFinder without = s.finder({.avatar_class = avatar_class, .speedup = speedup});
+    uint64_t reached = 0;
+    for (uint64_t n = 0; n < 20; ++n) {
+      const PathQuery query{.from = s.place(kAdult, n).position,
+                            .to = s.place(kAdult, n + 1).position,
+                            .nearest = true};
+      Path path, other;
+      with.find(query, path);
+      without.find(query, other);
+      expect_same(path, other);
+      reached += path.end == PathEnd::kReached ? 1 : 0;
+      EXPECT_EQ(with.is_free(query.to), without.is_free(query.to));
+    }
+    EXPECT_GT(reached, 0u) << avatar_class;
+    if (avatar_class != kAdult) continue;
+    FlowField flow = need(FlowField::create(with, {&target, 1}, {}, s.context)),
+              other = need(FlowField::create(without, {&target, 1}, {}, s.context));
+    for (uint64_t n = 0; n < 20; ++n) {
+      EXPECT_EQ(flow.distance(s.place(kAdult, n)), other.distance(s.place(kAdult, n)));
+    }
+  }
+}
+
+TEST(Edits, FindersKnowAnObstacleWhereItWasMoved) {
+  const World world = bake(worlds::flat(20), 0.2);
+  Context context;
+  Edits edits;
+  PathFinder finder = need(PathFinder::create(world, {.edits = edits}, context));
+  const PathQuery query{.from = Vec3d{2, 0, 10}, .to = Vec3d{18, 0, 10}};
+  Path path;
+  const auto length = [&] {
+    finder.find(query, path);
+    EXPECT_EQ(path.end, PathEnd::kReached);
+    return path.length;
+  };
+  const Prism wall = Prism::box({9, 0, 0}, {10, 2, 18}), beside = Prism::box({9, 0, 1}, {10, 2, 4}),
+              other = Prism::box({9, 0, 2}, {10, 2, 20});
+  const auto id = edits.add_obstacle(wall);
+  ASSERT_TRUE(id);
+  EXPECT_GT(length(), 22);
+  const uint64_t version = edits.version();
+  ASSERT_TRUE(edits.move_obstacle(*id, beside));
+  EXPECT_EQ(edits.version(), version + 1);
+  EXPECT_NEAR(length(), 16, 1e-6);
+  ASSERT_TRUE(edits.move_obstacle(*id, other));
+  EXPECT_GT(length(), 22);
+  EXPECT_LT(path.points[1].position.z, 3) << "around the other end";
+  // While it is off, and more often between two queries.
+  ASSERT_TRUE(edits.set_active(*id, false) && edits.move_obstacle(*id, wall));
+  EXPECT_NEAR(length(), 16, 1e-6);
+  ASSERT_TRUE(edits.move_obstacle(*id, beside) && edits.set_active(*id, true));
+  EXPECT_NEAR(length(), 16, 1e-6);
+  ASSERT_TRUE(edits.move_obstacle(*id, other) && edits.move_obstacle(*id, wall));
+  EXPECT_GT(length(), 22);
+  EXPECT_GT(path.points[1].position.z, 17);
+  ASSERT_TRUE(edits.move_obstacle(*id, other) && edits.remove(*id));
+  EXPECT_NEAR(length(), 16, 1e-6);
+}
+
+TEST(Edits, OnlyObstaclesOfPrismsCanBeMoved) {
+  const World world = bake(worlds::flat(6), 0.2);
+  const Place place = world.find_place(0, {3, 0, 3}, 0.5);
+  Edits edits;
+  const std::vector<Vec3d> corners{{1, 0, 1}, {2, 0, 1}, {2, 1, 1}};
+  const std::vector<std::array<uint32_t, 3>> triangles{{0, 1, 2}};
+  const Prism box = Prism::box({1, 0, 1}, {2, 1, 2});
+  const auto crate = edits.add_obstacle(box), sheet = edits.add_obstacle(corners, triangles),
+             area = edits.add_area(box, 3), link = edits.add_off_mesh_link({place, place, 1}),
+             gone = edits.add_obstacle(box);
+  ASSERT_TRUE(crate && sheet && area && link && gone && edits.remove(*gone));
+  const uint64_t version = edits.version();
+  EXPECT_EQ(edits.move_obstacle(*crate, Prism{}).error().code, Errc::kBadInput);
+  const auto of_triangles = edits.move_obstacle(*sheet, box);
+  ASSERT_FALSE(of_triangles);
+  EXPECT_EQ(of_triangles.error().code, Errc::kBadInput);
+  EXPECT_EQ(of_triangles.error().message,
+            "obstacle: 2 is of triangles, which cannot be moved; remove it and add it where it is "
+            "to be");
+  for (const EditId id : {*area, *link, *gone, EditId{0}, EditId{99}}) {
+    const auto none = edits.move_obstacle(id, box);
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().code, Errc::kNotFound);
+  }
+  EXPECT_EQ(edits.version(), version);
 }
 
 // A link that was added while a crate stood at its end works once the crate is removed.

@@ -84,9 +84,9 @@ int run() {
   for (uint64_t n = 0; n < 12; ++n) {
     const Vec3d at = from(n).position, high{at.x + 1, at.y + 2, n == 0 ? 1000 : at.z + 1};
     const Prism box = Prism::box({at.x, at.y + 0.1, at.z}, high);
-    need(live.add_obstacle(box));
-    need(over_nodes.add_obstacle(box));
-    need(flight.add_obstacle(box));
+    live.add_obstacle({box});
+    over_nodes.add_obstacle({box});
+    flight.add_obstacle({box});
   }
   sum += late("live ground around obstacles", [&](uint64_t n) {
     live.find(from(n), to(n), path);

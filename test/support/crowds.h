@@ -35,4 +35,21 @@ inline AvatarId added(Crowd& crowd, const Place& place, const AvatarSpawn& like 
   return ids ? ids->front() : AvatarId{};
 }
 
+/// Makes a crowd follow its edits now, and not at the beginning of its next step.
+inline void follow(Crowd& crowd) {
+  Context context;
+  const auto none = crowd.add({}, context);
+  EXPECT_TRUE(none) << none.error().message;
+}
+
+/// Adds an obstacle to a crowd's edits, and makes the crowd follow them.
+inline EditId put_up(Crowd& crowd, Edits edits, const Prism& prism,
+                     ObstacleKind kind = ObstacleKind::kStatic,
+                     ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry) {
+  const auto id = edits.add_obstacle(prism, kind, policy);
+  EXPECT_TRUE(id) << id.error().message;
+  follow(crowd);
+  return id ? *id : EditId{};
+}
+
 }  // namespace throng

@@ -6,7 +6,6 @@
 
 #include "crowd/obstacles/obstacle_set.h"
 #include "path/edits/solid.h"
-#include "throng/base.h"
 
 /// What the path finders of a class, one a worker, know of an obstacle.
 namespace throng::crowd {
@@ -22,9 +21,7 @@ void sync_change(std::vector<Finder>& finders, const CrowdObstacle& obstacle, bo
       continue;
     }
     finder.remove(old);
-    const auto added = finder.add_obstacle(obstacle.place);
-    THRONG_ASSERT(added);  // The prism was checked.
-    change = *added;
+    change = finder.add_obstacle({obstacle.place});
   }
 }
 

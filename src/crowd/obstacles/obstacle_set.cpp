@@ -81,9 +81,7 @@ uint32_t ObstacleSet::add(const Prism& prism, ObstacleKind kind, bool wanted_up,
     free_slots_.pop_back();
   }
   CrowdObstacle& obstacle = obstacles_[slot];
-  const uint32_t generation = obstacle.generation;
   obstacle = {};
-  obstacle.generation = generation;
   obstacle.exists = true;
   obstacle.kind = kind;
   obstacle.policy = policy;
@@ -92,12 +90,6 @@ uint32_t ObstacleSet::add(const Prism& prism, ObstacleKind kind, bool wanted_up,
   if (wanted_up) request_active(slot, true);
   note(slot);
   return slot;
-}
-
-const CrowdObstacle* ObstacleSet::find(ObstacleId id) const {
-  if (!id || id.slot1 > obstacles_.size()) return nullptr;
-  const CrowdObstacle& obstacle = obstacles_[id.slot1 - 1];
-  return obstacle.exists && obstacle.generation == id.generation ? &obstacle : nullptr;
 }
 
 void ObstacleSet::request_move(uint32_t slot, const Prism& prism) {
@@ -152,10 +144,7 @@ void ObstacleSet::request_active(uint32_t slot, bool up) {
 
 void ObstacleSet::remove(uint32_t slot) {
   request_active(slot, false);
-  CrowdObstacle& obstacle = obstacles_[slot];
-  const uint32_t generation = obstacle.generation;
-  obstacle = {};
-  obstacle.generation = generation + 1;
+  obstacles_[slot] = {};
   free_slots_.push_back(slot);
   note(slot);
 }

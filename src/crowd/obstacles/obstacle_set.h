@@ -25,7 +25,7 @@ struct LevelCells {
 };
 
 struct CrowdObstacle {
-  uint32_t generation = 1;
+  EditId edit = 0;  // whose it is
   bool exists = false;
   ObstacleKind kind = ObstacleKind::kStatic;
   ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry;
@@ -74,8 +74,6 @@ class ObstacleSet {
   /// [check_prism] It waits until it is settled.
   uint32_t add(const Prism& prism, ObstacleKind kind, bool wanted_up,
                ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry);
-  /// Null for those that were removed.
-  [[nodiscard]] const CrowdObstacle* find(ObstacleId id) const;
   [[nodiscard]] std::span<const CrowdObstacle> all() const { return obstacles_; }
   [[nodiscard]] CrowdObstacle& at(uint32_t slot) { return obstacles_[slot]; }
 

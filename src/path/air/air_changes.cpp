@@ -167,28 +167,9 @@ void AirChanges::add_all_to(GroundFinder& ground, std::vector<ChangeId>& ids) co
       ids.push_back(0);
       continue;
     }
-    ids.push_back(add_to(ground, change.solid));
+    ids.push_back(ground.add_obstacle(change.solid));
     ground.set_active(ids.back(), change.active);
   }
-}
-
-ChangeId AirChanges::add_to(GroundFinder& ground, const Solid& solid) {
-  const auto& [prism, triangles] = solid;
-  if (triangles.empty()) {
-    const auto added = ground.add_obstacle(prism);
-    THRONG_ASSERT(added);  // It was checked.
-    return *added;
-  }
-  std::vector<Vec3d> corners;
-  std::vector<std::array<uint32_t, 3>> numbers;
-  for (const auto& triangle : triangles) {
-    const auto first = static_cast<uint32_t>(corners.size());
-    corners.insert(corners.end(), triangle.begin(), triangle.end());
-    numbers.push_back({first, first + 1, first + 2});
-  }
-  const auto added = ground.add_obstacle(corners, numbers);
-  THRONG_ASSERT(added);
-  return *added;
 }
 
 }  // namespace throng::path

@@ -44,8 +44,6 @@ class AirChanges {
     return found == blocked_.end() ||
            (found->second[static_cast<size_t>(world::in_tile(z))] >> world::in_tile(x) & 1) == 0;
   }
-  /// Adds one obstacle to a ground; returns its id there.
-  static ChangeId add_to(GroundFinder& ground, const Solid& solid);
   /// Adds all obstacles to a ground of the class that has none of them yet; `ids`: their ids there,
   /// by id - 1.
   void add_all_to(GroundFinder& ground, std::vector<ChangeId>& ids) const;

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "core/access.h"
 #include "core/check_class.h"
@@ -136,7 +137,7 @@ struct FlightFinder::Scratch {
     return *changes;
   }
   ChangeId add(const Shared& shared, Solid solid) {
-    if (live) live_ids.push_back(AirChanges::add_to(*live, solid));
+    if (live) live_ids.push_back(live->add_obstacle(solid));
     return changes_of(shared).add(std::move(solid));
   }
   // The ground with all changes; made on the first walk.
@@ -300,19 +301,8 @@ Result<FlightFinder> FlightFinder::create(const World& world, const PathConfig& 
 PathSummary FlightFinder::summary() const { return state_->summary; }
 const FlightSpace& FlightFinder::space() const { return state_->space; }
 
-ChangeId FlightFinder::add_obstacle(const Solid& solid) { return scratch_->add(*state_, solid); }
-
-Result<ChangeId> FlightFinder::add_obstacle(const Prism& prism) {
-  const auto solid = make_solid(prism);
-  if (!solid) return solid.error();
-  return add_obstacle(*solid);
-}
-
-Result<ChangeId> FlightFinder::add_obstacle(std::span<const Vec3d> corners,
-                                            std::span<const std::array<uint32_t, 3>> triangles) {
-  const auto solid = make_solid(corners, triangles);
-  if (!solid) return solid.error();
-  return add_obstacle(*solid);
+ChangeId FlightFinder::add_obstacle(Solid solid) {
+  return scratch_->add(*state_, std::move(solid));
 }
 
 bool FlightFinder::set_active(ChangeId change, bool active) {

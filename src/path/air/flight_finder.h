@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 
 #include "path/edits/solid.h"
 #include "throng/path.h"
@@ -57,15 +55,11 @@ class FlightFinder {
   /// reused: its memory stays.
   void find(const FlightQuery& query, Path& path);
 
-  /// Puts up an obstacle: no path leads where the body could touch the prism; on the ground, as in
-  /// GroundFinder, the body counts from body_bottom() up. A start or goal inside is no place. Fails
-  /// with kBadInput. Time: the air boxes that it touches and those of what it cuts off, up to 65
-  /// 536.
-  [[nodiscard]] Result<ChangeId> add_obstacle(const Prism& prism);
-  ChangeId add_obstacle(const Solid& solid);
-  /// The same for triangles. Only these are solid: a closed shell is hollow.
-  [[nodiscard]] Result<ChangeId> add_obstacle(std::span<const Vec3d> corners,
-                                              std::span<const std::array<uint32_t, 3>> triangles);
+  /// Puts up an obstacle: no path leads where the body could touch the solid; on the ground, as in
+  /// GroundFinder, the body counts from body_bottom() up. Of triangles only these are solid: a
+  /// closed shell is hollow. A start or goal inside is no place. Time: the air boxes that it
+  /// touches and those of what it cuts off, up to 65 536.
+  ChangeId add_obstacle(Solid solid);
   /// Removes an obstacle, or switches it off and on, as a door. False if there is none of this id.
   bool remove(ChangeId change);
   bool set_active(ChangeId change, bool active);

@@ -4,27 +4,42 @@
 
 #include <algorithm>
 #include <memory>
+#include <string>
 #include <utility>
 
-// The list of edits. It keeps what has changed in order, so that a finder applies only what it has
-// not seen; once that is longer than the list itself it is forgotten, and finders that are behind
-// apply all.
+// The list of edits. It keeps the calls that changed it in order, so that a finder applies only
+// what it has not seen, and a crowd makes the same calls. Once these are more than the edits
+// themselves the older half is forgotten; what is further behind compares the whole list.
 namespace throng {
 namespace path {
+
+Solid EditList::Edit::solid() const {
+  if (!triangles.empty()) return solid_of(triangles);
+  return {*place};
+}
+
+void EditList::note(EditId id, Call call) {
+  const Edit& edit = edits[id - 1];
+  Changed what{.edit = id, .call = call};
+  if (edit.is_obstacle()) what.place = edit.place;
+  note(std::move(what));
+}
 
 void EditList::note(Changed what) {
   constexpr size_t kMinKept = 4096;
   if (changed.size() > 2 * edits.size() + kMinKept) {
-    first_version = version();
-    changed.clear();
+    const size_t forgotten = changed.size() / 2;
+    changed.erase(changed.begin(), changed.begin() + static_cast<ptrdiff_t>(forgotten));
+    first_version += forgotten;
   }
-  changed.push_back(what);
+  changed.push_back(std::move(what));
 }
 
 void EditList::count(const Edit& edit, int by) {
-  size_t& active = edit.kind == Kind::kObstacle ? active_solids
-                   : edit.kind == Kind::kArea   ? active_areas
-                                                : active_links;
+  if (!edit.bears_on_paths()) return;
+  size_t& active = edit.is_obstacle()         ? active_solids
+                   : edit.kind == Kind::kArea ? active_areas
+                                              : active_links;
   active += static_cast<size_t>(by);
 }
 
@@ -32,26 +47,51 @@ EditId EditList::add(Edit edit) {
   count(edit, 1);
   edits.push_back(std::move(edit));
   const auto id = static_cast<EditId>(edits.size());
-  note({.edit = id});
+  note(id, Call::kAdd);
   return id;
 }
 
-Result<EditId> EditList::add_obstacle(Result<Solid> solid) {
+Result<EditId> EditList::add_obstacle(Result<Solid> solid, ObstacleKind kind,
+                                      ObstaclePolicy policy) {
   if (!solid) return solid.error();
   Edit edit;
-  edit.solid = *std::move(solid);
+  edit.obstacle_kind = kind;
+  edit.policy = policy;
+  edit.place = std::make_shared<const Prism>(prism_around(*solid));
+  edit.triangles = std::move(solid->triangles);
   return add(std::move(edit));
 }
 
+Result<void> EditList::move_obstacle(EditId id, const Prism& prism) {
+  if (auto ok = check_prism(prism); !ok) return ok;
+  const Edit* found = find(id);
+  if (found == nullptr || !found->is_obstacle()) {
+    return Error{Errc::kNotFound, "obstacle: no obstacle has the id " + std::to_string(id)};
+  }
+  if (!found->triangles.empty()) {
+    return Error{Errc::kBadInput, "obstacle: " + std::to_string(id) +
+                                      " is of triangles, which cannot be moved; remove it and add "
+                                      "it where it is to be"};
+  }
+  Edit& edit = edits[id - 1];
+  edit.place = std::make_shared<const Prism>(prism);
+  ++edit.moves;
+  note(id, Call::kMove);
+  return {};
+}
+
 bool EditList::set_active(EditId id, bool active, bool remove) {
-  if (id == 0 || id > edits.size() || edits[id - 1].removed) return false;
+  if (find(id) == nullptr) return false;
   Edit& edit = edits[id - 1];
   if (edit.active == active && !remove) return true;
   if (edit.active != active) count(edit, active ? 1 : -1);
   edit.active = active;
   edit.removed = remove;
-  if (remove) edit.solid = {};
-  note({.edit = id});
+  if (remove) {
+    edit.place = nullptr;
+    edit.triangles = {};
+  }
+  note(id, remove ? Call::kRemove : active ? Call::kSwitchOn : Call::kSwitchOff);
   return true;
 }
 
@@ -61,11 +101,18 @@ void EditList::set_area_cost(uint8_t kind, double cost) {
   note({.area = kind});
 }
 
+void EditList::count_all() {
+  active_solids = active_areas = active_links = 0;
+  for (const Edit& edit : edits) {
+    if (edit.active) count(edit, 1);
+  }
+  costs_differ = std::any_of(area_costs.begin(), area_costs.end(), [](double c) { return c != 1; });
+}
+
 ChangeId AppliedEdits::id_of_new(const EditList::Edit& edit, GroundFinder& finder) {
-  if (edit.kind == EditList::Kind::kObstacle) return finder.add_obstacle(edit.solid);
-  const auto added = edit.kind == EditList::Kind::kArea
-                         ? finder.add_area(edit.solid.prism, edit.area)
-                         : finder.add_off_mesh_link(edit.link);
+  if (edit.is_obstacle()) return finder.add_obstacle(edit.solid());
+  const auto added = edit.kind == EditList::Kind::kArea ? finder.add_area(*edit.place, edit.area)
+                                                        : finder.add_off_mesh_link(edit.link);
   return added ? *added : 0;
 }
 
@@ -78,13 +125,18 @@ void AppliedEdits::set_cost(GroundFinder& finder, uint8_t kind, double cost) {
 
 Edits::Edits() : state_(std::make_shared<path::EditList>()) {}
 
-Result<EditId> Edits::add_obstacle(const Prism& prism) {
-  return state_->add_obstacle(path::make_solid(prism));
+Result<EditId> Edits::add_obstacle(const Prism& prism, ObstacleKind kind, ObstaclePolicy policy) {
+  return state_->add_obstacle(path::make_solid(prism), kind, policy);
 }
 
 Result<EditId> Edits::add_obstacle(std::span<const Vec3d> corners,
-                                   std::span<const std::array<uint32_t, 3>> triangles) {
-  return state_->add_obstacle(path::make_solid(corners, triangles));
+                                   std::span<const std::array<uint32_t, 3>> triangles,
+                                   ObstacleKind kind, ObstaclePolicy policy) {
+  return state_->add_obstacle(path::make_solid(corners, triangles), kind, policy);
+}
+
+Result<void> Edits::move_obstacle(EditId obstacle, const Prism& prism) {
+  return state_->move_obstacle(obstacle, prism);
 }
 
 Result<EditId> Edits::add_area(const Prism& prism, uint8_t kind) {
@@ -93,7 +145,7 @@ Result<EditId> Edits::add_area(const Prism& prism, uint8_t kind) {
   path::EditList::Edit edit;
   edit.kind = path::EditList::Kind::kArea;
   edit.area = kind;
-  edit.solid.prism = prism;
+  edit.place = std::make_shared<const Prism>(prism);
   return state_->add(std::move(edit));
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "path/edits/ground_finder.h"
@@ -19,12 +20,27 @@ struct EditList {
     Kind kind = Kind::kObstacle;
     uint8_t area = 0;
     bool active = true, removed = false;
-    Solid solid;  // of an area: its prism
+    ObstacleKind obstacle_kind = ObstacleKind::kStatic;
+    ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry;
+    uint32_t moves = 0;  // so far
+    // Of an obstacle or an area; of triangles the box around them, never flat. Null once removed.
+    std::shared_ptr<const Prism> place;
+    std::vector<std::array<Vec3d, 3>> triangles;
     OffMeshLink link;
+
+    [[nodiscard]] bool is_obstacle() const { return kind == Kind::kObstacle; }
+    /// Do finders know it?
+    [[nodiscard]] bool bears_on_paths() const {
+      return !is_obstacle() || obstacle_kind == ObstacleKind::kStatic;
+    }
+    [[nodiscard]] Solid solid() const;
   };
+  enum class Call : uint8_t { kAdd, kSwitchOn, kSwitchOff, kMove, kRemove, kSetCost };
   struct Changed {
     EditId edit = 0;  // 0: an area's cost
     uint8_t area = 0;
+    Call call = Call::kSetCost;
+    std::shared_ptr<const Prism> place = {};  // of an obstacle after the call; null once removed
   };
 
   EditList() { area_costs.fill(1); }
@@ -38,20 +54,31 @@ struct EditList {
   [[nodiscard]] bool may_shorten_paths() const { return active_links > 0 || has_costs(); }
   /// Do areas have another cost than the ground around them?
   [[nodiscard]] bool has_costs() const { return active_areas > 0 && costs_differ; }
-  /// Calls visit(Changed) for what has changed since a version, or may have.
+  /// Is it known in which order calls have changed the list since a version?
+  [[nodiscard]] bool knows_calls_since(uint64_t version) const { return version >= first_version; }
+  /// Calls visit(Changed) for what has changed since a version, or may have; in the order of the
+  /// calls if that is known, else only `edit` and `area` count.
   template <class Visit>
   void for_changed(uint64_t since, Visit visit) const {
-    if (since >= first_version) {
+    if (knows_calls_since(since)) {
       for (size_t i = since - first_version; i < changed.size(); ++i) visit(changed[i]);
       return;
     }
     for (EditId id = 1; id <= edits.size(); ++id) visit(Changed{.edit = id});
     for (uint8_t kind = 1; kind < area_costs.size(); ++kind) visit(Changed{.area = kind});
   }
+  /// Null: there is none of this id, or it was removed.
+  [[nodiscard]] const Edit* find(EditId id) const {
+    const bool exists = id >= 1 && id <= edits.size() && !edits[id - 1].removed;
+    return exists ? &edits[id - 1] : nullptr;
+  }
   EditId add(Edit edit);
-  Result<EditId> add_obstacle(Result<Solid> solid);
+  Result<EditId> add_obstacle(Result<Solid> solid, ObstacleKind kind, ObstaclePolicy policy);
+  Result<void> move_obstacle(EditId id, const Prism& prism);
   bool set_active(EditId id, bool active, bool remove);
   void set_area_cost(uint8_t kind, double cost);
+  /// Counts what is active again, of edits and costs that were written one by one.
+  void count_all();
 
   std::vector<Edit> edits;  // by id - 1
   std::array<double, 64> area_costs{};
@@ -63,6 +90,7 @@ struct EditList {
   uint64_t first_version = 0;
 
  private:
+  void note(EditId id, Call call);
   void note(Changed what);
   void count(const Edit& edit, int by);
 };
@@ -77,37 +105,40 @@ class AppliedEdits {
   template <class Finder>
   void follow(const EditList& list, Finder& finder) {
     if (version_ == list.version()) return;
-    while (ids_.size() < list.edits.size()) add(list.edits[ids_.size()], finder);
+    while (own_.size() < list.edits.size()) own_.push_back(add(list.edits[own_.size()], finder));
     list.for_changed(version_, [&](const EditList::Changed& what) {
-      if (what.edit != 0) apply(list, what.edit, finder);
+      if (what.edit != 0) apply(list.edits[what.edit - 1], own_[what.edit - 1], finder);
       if (what.edit == 0) set_cost(finder, what.area, list.area_costs[what.area]);
     });
     version_ = list.version();
   }
 
  private:
+  struct Own {
+    ChangeId id = 0;     // of the finder; 0: none
+    uint32_t moves = 0;  // that it has made
+  };
+
   // Also one that is not active: of areas that overlap the last one counts.
   template <class Finder>
-  void add(const EditList::Edit& edit, Finder& finder) {
+  [[nodiscard]] Own add(const EditList::Edit& edit, Finder& finder) const {
     const ChangeId id = edit.removed || !is_wanted(edit) ? 0 : id_of_new(edit, finder);
     if (id != 0 && !edit.active) finder.set_active(id, false);
-    ids_.push_back(id);
+    return {id, edit.moves};
   }
 
   template <class Finder>
-  void apply(const EditList& list, EditId id, Finder& finder) {
-    const EditList::Edit& edit = list.edits[id - 1];
-    ChangeId& own = ids_[id - 1];
-    if (own == 0) return;
-    if (!edit.removed) {
-      finder.set_active(own, edit.active);
-      return;
+  void apply(const EditList::Edit& edit, Own& own, Finder& finder) const {
+    if (own.id == 0) return;
+    if (edit.removed || own.moves != edit.moves) {
+      finder.remove(own.id);
+      own = add(edit, finder);
     }
-    finder.remove(own);
-    own = 0;
+    if (own.id != 0) finder.set_active(own.id, edit.active);
   }
 
   [[nodiscard]] bool is_wanted(const EditList::Edit& edit) const {
+    if (!edit.bears_on_paths()) return false;
     return which_ == Which::kAll || edit.kind == EditList::Kind::kArea ||
            (which_ == Which::kAreasAndLinks && edit.kind == EditList::Kind::kOffMeshLink);
   }
@@ -115,7 +146,7 @@ class AppliedEdits {
   // 0: the finder does not know edits of this kind.
   template <class Finder>
   static ChangeId id_of_new(const EditList::Edit& edit, Finder& finder) {
-    return edit.kind == EditList::Kind::kObstacle ? finder.add_obstacle(edit.solid) : 0;
+    return edit.is_obstacle() ? finder.add_obstacle(edit.solid()) : 0;
   }
   static ChangeId id_of_new(const EditList::Edit& edit, GroundFinder& finder);
   template <class Finder>
@@ -123,7 +154,7 @@ class AppliedEdits {
   static void set_cost(GroundFinder& finder, uint8_t kind, double cost);
 
   Which which_;
-  std::vector<ChangeId> ids_;  // of the finder, by id of the edit - 1; 0: none
+  std::vector<Own> own_;  // by id of the edit - 1
   uint64_t version_ = 0;
 };
 

@@ -85,23 +85,10 @@ Result<GroundFinder> GroundFinder::create(const World& world, const PathConfig& 
   return GroundFinder(std::make_unique<State>(world, config));
 }
 
-ChangeId GroundFinder::add_obstacle(const Solid& solid) {
+ChangeId GroundFinder::add_obstacle(Solid solid) {
   GroundView::Change change;
-  change.solid = solid;
+  change.solid = std::move(solid);
   return state_->mesh.add(std::move(change));
-}
-
-Result<ChangeId> GroundFinder::add_obstacle(const Prism& prism) {
-  const auto solid = make_solid(prism);
-  if (!solid) return solid.error();
-  return add_obstacle(*solid);
-}
-
-Result<ChangeId> GroundFinder::add_obstacle(std::span<const Vec3d> corners,
-                                            std::span<const std::array<uint32_t, 3>> triangles) {
-  const auto solid = make_solid(corners, triangles);
-  if (!solid) return solid.error();
-  return add_obstacle(*solid);
 }
 
 Result<void> check_area(uint8_t kind) {

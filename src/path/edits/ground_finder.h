@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
-#include <span>
 
 #include "path/edits/solid.h"
 #include "throng/path.h"
@@ -33,12 +31,9 @@ class GroundFinder {
   ~GroundFinder();
 
   /// Puts up an obstacle: the class is illegal where its body, from body_bottom() up, could touch
-  /// the prism. Fails with kBadInput. Time: the tiles that it touches.
-  [[nodiscard]] Result<ChangeId> add_obstacle(const Prism& prism);
-  ChangeId add_obstacle(const Solid& solid);
-  /// The same for triangles. Only these are solid: a closed shell is hollow.
-  [[nodiscard]] Result<ChangeId> add_obstacle(std::span<const Vec3d> corners,
-                                              std::span<const std::array<uint32_t, 3>> triangles);
+  /// the solid. Of triangles only these are solid: a closed shell is hollow. Time: the tiles that
+  /// it touches.
+  ChangeId add_obstacle(Solid solid);
   /// Gives floors inside a prism an area kind; where several overlap, the last one counts.
   [[nodiscard]] Result<ChangeId> add_area(const Prism& prism, uint8_t kind);
   /// Adds an off-mesh link, which no move finds: over a ditch, up a ladder, by a lift. It leads

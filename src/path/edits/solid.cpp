@@ -121,24 +121,42 @@ Result<Solid> make_solid(std::span<const Vec3d> corners,
     return Error{Errc::kBadInput, "obstacle: " + what};
   };
   if (triangles.empty()) return bad("it has no triangles");
-  Solid solid;
-  Box3d box;
+  std::vector<std::array<Vec3d, 3>> made;
   for (size_t t = 0; t < triangles.size(); ++t) {
-    std::array<Vec3d, 3>& triangle = solid.triangles.emplace_back();
+    std::array<Vec3d, 3>& triangle = made.emplace_back();
     for (size_t k = 0; k < 3; ++k) {
       if (triangles[t][k] >= corners.size()) {
         return bad("triangle " + std::to_string(t) + " uses corner " +
                    std::to_string(triangles[t][k]) + " of " + std::to_string(corners.size()));
       }
       triangle[k] = corners[triangles[t][k]];
-      const Vec3d& p = triangle[k];
-      if (!(std::fabs(p.x) < 1e9 && std::fabs(p.y) < 1e9 && std::fabs(p.z) < 1e9))
+      if (!is_on_earth(triangle[k])) {
         return bad("triangle " + std::to_string(t) + " is not on Earth");
-      box.add(p);
+      }
     }
   }
-  solid.prism = Prism::box(box.min, box.max);
-  return solid;
+  return solid_of(std::move(made));
+}
+
+Solid solid_of(std::vector<std::array<Vec3d, 3>> triangles) {
+  Box3d box;
+  for (const auto& triangle : triangles) {
+    for (const Vec3d& p : triangle) box.add(p);
+  }
+  return {Prism::box(box.min, box.max), std::move(triangles)};
+}
+
+bool is_on_earth(const Vec3d& point) {
+  return std::fabs(point.x) < 1e9 && std::fabs(point.y) < 1e9 && std::fabs(point.z) < 1e9;
+}
+
+Prism prism_around(const Solid& solid) {
+  if (solid.triangles.empty()) return solid.prism;
+  constexpr double kBoxMargin = 0.001;  // [m]
+  const Prism& box = solid.prism;
+  const auto [low, high] = std::minmax_element(box.corners.begin(), box.corners.end());
+  return Prism::box({(*low)[0] - kBoxMargin, box.low - kBoxMargin, (*low)[1] - kBoxMargin},
+                    {(*high)[0] + kBoxMargin, box.high + kBoxMargin, (*high)[1] + kBoxMargin});
 }
 
 bool may_touch(const BodyRoom& room, const Solid& solid) {

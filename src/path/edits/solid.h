@@ -18,8 +18,8 @@ namespace throng::path {
 using ChangeId = uint32_t;
 
 struct Solid {
-  Prism prism;  ///< Of triangles: the box around them.
-  std::vector<std::array<Vec3d, 3>> triangles;
+  Prism prism;  ///< Of triangles: the box around them, which may be flat.
+  std::vector<std::array<Vec3d, 3>> triangles = {};
 };
 
 /// [check_prism] Fails with kBadInput.
@@ -27,6 +27,11 @@ struct Solid {
 /// Fails with kBadInput unless there are triangles, of these corners, on Earth.
 [[nodiscard]] Result<Solid> make_solid(std::span<const Vec3d> corners,
                                        std::span<const std::array<uint32_t, 3>> triangles);
+/// The solid of triangles on Earth.
+[[nodiscard]] Solid solid_of(std::vector<std::array<Vec3d, 3>> triangles);
+[[nodiscard]] bool is_on_earth(const Vec3d& point);
+/// A prism that holds it: of triangles a box that is never flat.
+[[nodiscard]] Prism prism_around(const Solid& solid);
 
 /// Bodies whose feet are no farther than `spread` from `feet` and whose axes turn away from `axis`
 /// by at most an angle; where `turns_far` is set, by any.

@@ -3,10 +3,13 @@
 #include "path/overlay/node_finder.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
+#include <utility>
 
 #include "core/access.h"
 #include "path/edits/blocked_cells.h"
@@ -543,20 +546,7 @@ NodePlace NodeFinder::find_place(Vec3d position, double search_radius) const {
   return best;
 }
 
-ChangeId NodeFinder::add_obstacle(const Solid& solid) { return scratch_->changes.add(solid); }
-
-Result<ChangeId> NodeFinder::add_obstacle(const Prism& prism) {
-  const auto solid = make_solid(prism);
-  if (!solid) return solid.error();
-  return add_obstacle(*solid);
-}
-
-Result<ChangeId> NodeFinder::add_obstacle(std::span<const Vec3d> corners,
-                                          std::span<const std::array<uint32_t, 3>> triangles) {
-  const auto solid = make_solid(corners, triangles);
-  if (!solid) return solid.error();
-  return add_obstacle(*solid);
-}
+ChangeId NodeFinder::add_obstacle(Solid solid) { return scratch_->changes.add(std::move(solid)); }
 
 bool NodeFinder::remove(ChangeId change) {
   return scratch_->changes.set_active(change, false, true);

@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 
 #include "path/edits/solid.h"
 #include "throng/path.h"
@@ -54,17 +52,13 @@ class NodeFinder {
   void find(const NodePlace& from, const NodePlace& to, Path& path, double spacing = 0.25,
             const SearchBudget& budget = {});
 
-  /// Puts up an obstacle: no path leads where the body could touch the prism, whatever its axis.
+  /// Puts up an obstacle: no path leads where the body could touch the solid, whatever its axis. Of
+  /// triangles only these are solid: a closed shell is hollow.
   /// Blocks are cut there, by cells of level tiles and by squares of about a quarter of a metre of
   /// curved ground. Paths lead around it over the rest; long ones still use the overlay, but for
   /// the overlay cells that the obstacle touches. Holds for this finder and for copies made later.
-  /// Fails with kBadInput. Time: here what lies within a body's size of it; at the next query all
-  /// obstacles that are up.
-  [[nodiscard]] Result<ChangeId> add_obstacle(const Prism& prism);
-  ChangeId add_obstacle(const Solid& solid);
-  /// The same for triangles. Only these are solid: a closed shell is hollow.
-  [[nodiscard]] Result<ChangeId> add_obstacle(std::span<const Vec3d> corners,
-                                              std::span<const std::array<uint32_t, 3>> triangles);
+  /// Time: here what lies within a body's size of it; at the next query all obstacles that are up.
+  ChangeId add_obstacle(Solid solid);
   /// Removes an obstacle, or switches it off and on, as a door; paths are then the same as without
   /// it. False if there is none of this id.
   bool remove(ChangeId change);

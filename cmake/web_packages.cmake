@@ -38,4 +38,4 @@ add_library(PkgConfig::IMGUI ALIAS web_imgui)
 # The one file that hashes also compiles the hash.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/src/core/hash.cpp PROPERTIES COMPILE_DEFINITIONS XXH_INLINE_ALL)
 # Exceptions are disabled, except in parsers, which throw the faults of a file.
-set_source_files_properties(${PROJECT_SOURCE_DIR}/src/core/config_file.cpp PROPERTIES COMPILE_OPTIONS -fexceptions)
+set_source_files_properties(${PROJECT_SOURCE_DIR}/src/core/files/config_file.cpp PROPERTIES COMPILE_OPTIONS -fexceptions)

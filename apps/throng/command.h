@@ -47,7 +47,7 @@ int fail(const Error& error);
 void note(const std::string& sentence);
 
 /// A subcommand with --json and an example that `--help` shows and that works as printed: one
-/// command per line, run in order in an empty folder by scripts/test_examples.
+/// command per line, run in order in an empty folder by scripts/tests/test_examples.
 CLI::App* add_command(CLI::App& parser, Session& session, const std::string& name,
                       const std::string& summary, const std::string& example);
 

@@ -5,9 +5,9 @@
 #include <cstdio>
 
 #include "command.h"
-#include "rerun.h"
+#include "run/rerun.h"
 
-// The functions that apps/throng/view_stage.cpp needs of a program, for a page.
+// The functions that apps/throng/window/view_stage.cpp needs of a program, for a page.
 namespace throng::app {
 
 void note(const std::string& sentence) { std::printf("throng: %s\n", sentence.c_str()); }

@@ -13,7 +13,7 @@
 
 #include "command.h"
 #include "throng_view/viewer.h"
-#include "view_stage.h"
+#include "window/view_stage.h"
 
 // The viewer's functions for JavaScript, which has the canvas, the pointer and the network
 // (page/throng.js).

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "crate_times.h"
-#include "path/flight_finder.h"
+#include "path/air/flight_finder.h"
 #include "throng/path.h"
 
 // Time until paths through the air avoid a crate that is put onto one, on a world of any size; with

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "path/edits/solid.h"
-#include "path/node_finder.h"
+#include "path/overlay/node_finder.h"
 #include "throng/path.h"
 #include "throng/surface.h"
 

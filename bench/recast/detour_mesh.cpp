@@ -30,7 +30,7 @@ unsigned char* make_tile(const RecastInput& input, const std::vector<int>& trian
   c.ch = config.cell_height;
   c.walkableSlopeAngle = static_cast<float>(config.avatar.max_slope);
   c.walkableHeight = std::max(3, up(config.avatar.height / c.ch));
-  c.walkableClimb = static_cast<int>(std::floor(config.avatar.step / c.ch + 1e-6));
+  c.walkableClimb = static_cast<int>(std::floor(config.avatar.step_height / c.ch + 1e-6));
   c.walkableRadius = up(config.avatar.radius / c.cs);
   c.maxEdgeLen = static_cast<int>(12 / c.cs);
   c.maxSimplificationError = 1.3f;
@@ -95,7 +95,7 @@ unsigned char* make_tile(const RecastInput& input, const std::vector<int>& trian
   p.detailTriCount = detail->ntris;
   p.walkableHeight = static_cast<float>(config.avatar.height);
   p.walkableRadius = static_cast<float>(config.avatar.radius);
-  p.walkableClimb = static_cast<float>(config.avatar.step);
+  p.walkableClimb = static_cast<float>(config.avatar.step_height);
   p.tileX = x;
   p.tileY = z;
   std::copy(polygons->bmin, polygons->bmin + 3, p.bmin);

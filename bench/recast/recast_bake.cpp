@@ -20,10 +20,11 @@ struct Walker {
 
 Walker make_walker(const RecastConfig& config) {
   const auto up = [](double value) { return static_cast<int>(std::ceil(value - 1e-6)); };
-  return {.height = std::max(3, up(config.avatar.height / config.cell_height)),
-          .climb = static_cast<int>(std::floor(config.avatar.step / config.cell_height + 1e-6)),
-          .radius = up(config.avatar.radius / config.cell),
-          .slope = static_cast<float>(config.avatar.max_slope)};
+  return {
+      .height = std::max(3, up(config.avatar.height / config.cell_height)),
+      .climb = static_cast<int>(std::floor(config.avatar.step_height / config.cell_height + 1e-6)),
+      .radius = up(config.avatar.radius / config.cell),
+      .slope = static_cast<float>(config.avatar.max_slope)};
 }
 
 // One heightfield over [min, max] in the plane, from triangles whose corners are `triangles`.

@@ -24,7 +24,7 @@ struct AvatarClass {
   double height = 1.75;  ///< [m, 0.1 to 30]
   double radius = 0.25;  ///< [m, 0.01 to 5]
   /// The step height: largest climb or descent between neighbouring places. [m, 0 to height / 2]
-  double step = 0.4;
+  double step_height = 0.4;
   double max_slope = 45;  ///< Steepest surface on which it stands upright. [degrees, 0 to 89]
   double speed = 1.34;    ///< Desired speed. [m/s, > 0]
   /// Steepest surface of a patch that it climbs, its axis along the surface's normal: 90 is a wall,

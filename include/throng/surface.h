@@ -22,7 +22,7 @@ namespace throng {
 // graph for all avatar classes. Source: [PACS00] 1.2.3; docs/design/006-nodes.md.
 
 struct Scene;
-namespace world {
+namespace graph {
 struct NodeData;  // Internal: zones of nodes.
 }
 
@@ -106,13 +106,13 @@ struct NodeInfo {
   uint8_t width = 0;
   bool terminal = true;  ///< No smaller node lies in it.
   PatchKind kind = PatchKind::kLevelTile;
-  uint32_t source = 0;   ///< Bezier patch of the scene, or level tile of the world.
-  uint8_t depth = 0;     ///< The patch is cut into 2^depth x 2^depth finest sub-patches.
-  uint8_t level = 0;     ///< The patch has 2^level x 2^level blocks of the node's size.
-  uint8_t s = 0, t = 0;  ///< Which of these blocks the node is: its column and row.
-  uint32_t parent1 = 0;  ///< Smallest node around it, plus one; 0: none.
-  float area = 0;        ///< Of the sub-patch; of a partial node's cells. [m^2]
-  uint64_t cells = 0;    ///< Partial node: the cells of its block, bit 8 t + s. 0: all.
+  uint32_t source = 0;      ///< Bezier patch of the scene, or level tile of the world.
+  uint8_t depth = 0;        ///< The patch is cut into 2^depth x 2^depth finest sub-patches.
+  uint8_t block_level = 0;  ///< k: the patch has 2^k x 2^k blocks of the node's size.
+  uint8_t s = 0, t = 0;     ///< Which of these blocks the node is: its column and row.
+  uint32_t parent1 = 0;     ///< Smallest node around it, plus one; 0: none.
+  float area = 0;           ///< Of the sub-patch; of a partial node's cells. [m^2]
+  uint64_t cells = 0;       ///< Partial node: the cells of its block, bit 8 t + s. 0: all.
 };
 
 /// A directed link from a node. The opposite arc is always at the other node, except for drop links
@@ -227,8 +227,8 @@ class THRONG_API Nodes {
 
  private:
   friend struct Access;
-  explicit Nodes(std::shared_ptr<const world::NodeData> state) : state_(std::move(state)) {}
-  std::shared_ptr<const world::NodeData> state_;
+  explicit Nodes(std::shared_ptr<const graph::NodeData> state) : state_(std::move(state)) {}
+  std::shared_ptr<const graph::NodeData> state_;
 };
 
 /// Calls visit(s, t, count) for each run of cells in a row of a partial node (NodeInfo::cells,

@@ -73,7 +73,7 @@ Result<World> bake_flat_cells(const FlatCells& cells, double cell, int32_t worke
   summary.bounds = {{0, 0, 0}, {cells.width * cell, 0, cells.depth * cell}};
   summary.tiles_x = (cells.width + bake::kTileSide - 1) / bake::kTileSide;
   summary.tiles_z = (cells.depth + bake::kTileSide - 1) / bake::kTileSide;
-  summary.classes = {AvatarClass{.name = "point", .height = 0.1, .radius = 0.01, .step = 0}};
+  summary.classes = {AvatarClass{.name = "point", .height = 0.1, .radius = 0.01, .step_height = 0}};
   world->width = cells.width;
   world->depth = cells.depth;
   world->class_index.push_back(std::make_unique<world::ClassIndex>());

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/access.h"
+#include "core/arrays/disjoint_sets.h"
 #include "core/check_class.h"
-#include "core/disjoint_sets.h"
 #include "throng/bake.h"
 
 // The legal cells of a class as polygons: runs of cells in rows, and runs that share a side are one

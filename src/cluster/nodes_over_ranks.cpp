@@ -44,7 +44,7 @@ cluster::RankJobs jobs_of(bake::NodeBaker& baker, const std::string& path) {
       .stage = "nodes",
       .work = [&](std::span<const uint8_t> job, Context& context) -> Result<cluster::RankBytes> {
         const auto zones = cluster::values_of<uint32_t>(job);
-        auto slots = baker.make(zones, false, context);
+        auto slots = baker.make_nodes(zones, false, context);
         if (!slots) return slots.error();
         const auto made = baker.write(zones, *slots);
         if (!made) return made.error();
@@ -55,7 +55,7 @@ cluster::RankJobs jobs_of(bake::NodeBaker& baker, const std::string& path) {
             return (knows ? std::to_string(baker.zones_done()) + " of " +
                                 std::to_string(baker.zones()) + " zones are finished"
                           : std::string("finished zones are")) +
-                   " in " + path + "/" + world::kPartNodeFolder + ", and the next bake of " + path +
+                   " in " + path + "/" + graph::kPartNodeFolder + ", and the next bake of " + path +
                    " goes on from there";
           }};
 }
@@ -82,7 +82,7 @@ Result<NodeSummary> assign_nodes(cluster::Ranks& ranks, bake::NodeBaker& baker,
   const auto nodes = baker.finish();
   if (!nodes) return nodes.error();
   if (auto ok = folder.finish(**nodes); !ok) return ok.error();
-  (*nodes)->path = path + "/" + world::kNodeFolder;
+  (*nodes)->path = path + "/" + graph::kNodeFolder;
   return Access::create<Nodes>(*nodes).summary();
 }
 

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/classes_file.h"
-#include "core/config_file.h"
-#include "core/read_file.h"
+#include "core/files/classes_file.h"
+#include "core/files/config_file.h"
+#include "core/files/read_file.h"
 #include "throng/avatar.h"
 
 // Limits of avatar classes, the default classes, and lists of classes in TOML and JSON files.
@@ -28,7 +28,7 @@ struct Limit {
 constexpr std::array<Limit, 7> kLimits{{
     {"height", &AvatarClass::height, 0.1, 30, "m"},
     {"radius", &AvatarClass::radius, 0.01, 5, "m"},
-    {"step", &AvatarClass::step, 0, 15, "m"},
+    {"step", &AvatarClass::step_height, 0, 15, "m"},
     {"max_slope", &AvatarClass::max_slope, 0, 89, "degrees"},
     {"speed", &AvatarClass::speed, 1e-6, 1000, "m/s"},
     {"climb_slope", &AvatarClass::climb_slope, 0, 180, "degrees"},
@@ -43,12 +43,13 @@ std::string broken_limit(const AvatarClass& avatar) {
     return fmt::format("{} = {} is outside {} to {} [{}]", limit.key, value, limit.low, limit.high,
                        limit.unit);
   }
-  if (avatar.step > avatar.height / 2) {
-    return fmt::format("step = {} is more than half the height {}", avatar.step, avatar.height);
+  if (avatar.step_height > avatar.height / 2) {
+    return fmt::format("step = {} is more than half the height {}", avatar.step_height,
+                       avatar.height);
   }
-  if (avatar.max_drop > 0 && avatar.max_drop <= avatar.step) {
+  if (avatar.max_drop > 0 && avatar.max_drop <= avatar.step_height) {
     return fmt::format("max_drop = {} is no more than the step {}; 0 asks for no drops",
-                       avatar.max_drop, avatar.step);
+                       avatar.max_drop, avatar.step_height);
   }
   return {};
 }
@@ -58,7 +59,7 @@ std::string broken_limit(const AvatarClass& avatar) {
 // In whole micrometres, rounded up: the last bit of tan() differs between machines' libraries.
 double body_bottom(const AvatarClass& avatar) {
   const double rise = avatar.radius * std::tan(avatar.max_slope * std::numbers::pi / 180);
-  return std::max(avatar.step, std::ceil(rise * 1e6 - 1e-3) / 1e6);
+  return std::max(avatar.step_height, std::ceil(rise * 1e6 - 1e-3) / 1e6);
 }
 
 std::vector<AvatarClass> default_classes() {
@@ -70,19 +71,19 @@ std::vector<AvatarClass> default_classes() {
       AvatarClass{.name = "child",
                   .height = 1.10,
                   .radius = 0.18,
-                  .step = 0.3,
+                  .step_height = 0.3,
                   .max_slope = 45,
                   .speed = 1.1},
       AvatarClass{.name = "wheelchair",
                   .height = 1.35,
                   .radius = 0.4,
-                  .step = 0.02,
+                  .step_height = 0.02,
                   .max_slope = kSixPercent,
                   .speed = 1.0},
       AvatarClass{.name = "giant",
                   .height = 3.0,
                   .radius = 0.5,
-                  .step = 0.8,
+                  .step_height = 0.8,
                   .max_slope = 45,
                   .speed = 2.0},
   };

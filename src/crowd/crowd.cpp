@@ -12,7 +12,6 @@
 #include "crowd/crowd_check.h"
 #include "crowd/crowd_state.h"
 #include "throng/avatar.h"
-#include "world/node_data.h"
 #include "world/tile_grid.h"
 
 // The public face of a crowd: configuration, the order of a step's parts, and reports. Avatars,
@@ -27,10 +26,10 @@ Error bad_config(const std::string& what) { return {Errc::kBadConfig, "crowd: " 
 
 // As far as known from outside: worlds that were never written have no hash.
 bool is_same_world(const Nodes& nodes, const World& world) {
-  const WorldSummary &a = data_of(data_of(nodes)->world)->summary, &b = data_of(world)->summary;
+  const WorldSummary &a = data_of(nodes.world())->summary, &b = data_of(world)->summary;
   return a.hash == b.hash && a.cell == b.cell && a.origin == b.origin &&
          a.classes.size() == b.classes.size() &&
-         data_of(data_of(nodes)->world)->level_count == data_of(world)->level_count;
+         data_of(nodes.world())->level_count == data_of(world)->level_count;
 }
 
 }  // namespace
@@ -71,7 +70,7 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (config.speedup == PathSpeedup::kOnDemand) {
     return bad_config("it searches the whole ground: PathSpeedup::kOnDemand is not for crowds");
   }
-  if (data_of(config.nodes) != nullptr && !is_same_world(config.nodes, world)) {
+  if (config.nodes && !is_same_world(config.nodes, world)) {
     return bad_config("the nodes are of another world");
   }
   const double unit = data_of(world)->summary.cell / world::kUnitsPerCell;
@@ -206,7 +205,7 @@ std::optional<AvatarState> Crowd::read(AvatarId id) const {
   return state_->mode_of(*body).state_of(*body);
 }
 
-bool Crowd::may_lean() const { return data_of(state_->shared.config.nodes) != nullptr; }
+bool Crowd::may_lean() const { return static_cast<bool>(state_->shared.config.nodes); }
 
 std::span<const AvatarId> Crowd::arrived() const { return state_->shared.arrived; }
 std::span<const AvatarId> Crowd::goal_unreachable() const {

@@ -63,7 +63,7 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   }
   const auto c = static_cast<size_t>(number);
   if (mode_of_class[c] != nullptr) return {};
-  auto ground = crowd::CrowdGround::make(data, number, world::step_mm(shared.body_class(c)));
+  auto ground = crowd::CrowdGround::create(data, number, world::step_mm(shared.body_class(c)));
   if (!ground) return ground.error();
   shared.classes[c] = std::make_unique<crowd::SharedClass>();
   shared.classes[c]->ground = std::move(*ground);

@@ -57,7 +57,7 @@ uint64_t count_inside(const world::WorldData& data, std::span<const CheckedBody>
     if (body.climbs) continue;  // The crowd tests the body itself: this one only encloses it.
     const AvatarClass& avatar = data.summary.classes[static_cast<size_t>(body.avatar_class)];
     const double lean = avatar.radius * std::tan(avatar.max_slope * std::numbers::pi / 180);
-    const double bottom = body.flies ? 0 : std::max(avatar.step, lean);
+    const double bottom = body.flies ? 0 : std::max(avatar.step_height, lean);
     entries.push_back({origin.x + (body.x + 0.5) * unit, origin.z + (body.z + 0.5) * unit,
                        body.y * 1e-3, avatar.radius, bottom, body.height});
     widest = std::max(widest, avatar.radius);

@@ -22,7 +22,7 @@ constexpr double kNoProgress = 0.3;   // [m]
 
 Result<WatchedArea> Crowd::watch_area(std::span<const Prism> prisms) {
   State& s = *state_;
-  auto made = crowd::Target::make(*data_of(s.shared.world), prisms);
+  auto made = crowd::Target::create(*data_of(s.shared.world), prisms);
   if (!made) return made.error();
   if (s.watched.size() >= kMaxAreas) {
     return Error{Errc::kLimit, "crowd: it watches 64 areas; watch fewer"};

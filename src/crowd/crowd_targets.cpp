@@ -23,7 +23,7 @@ Result<TargetId> Crowd::add_target(std::span<const Prism> areas, Context& contex
   if (s.shared.config.routing != Routing::kPaths) {
     return Error{Errc::kBadConfig, "crowd: Routing::kStraight supports no targets; give goals"};
   }
-  auto made = crowd::Target::make(*data_of(s.shared.world), areas);
+  auto made = crowd::Target::create(*data_of(s.shared.world), areas);
   if (!made) return made.error();
   if (s.shared.targets.size() >= kMaxTargets) {
     return Error{Errc::kLimit, "crowd: it has 65535 targets; use those that it has again"};

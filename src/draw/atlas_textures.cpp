@@ -136,7 +136,7 @@ bool takes_blocks(AtlasFormat format) {
   return etc2 ? takes_etc2() : takes_s3tc();
 }
 
-Result<AtlasTextures> AtlasTextures::make(const Atlas& packed) {
+Result<AtlasTextures> AtlasTextures::create(const Atlas& packed) {
   GLint largest = 0, layers = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &layers);

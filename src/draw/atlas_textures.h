@@ -16,7 +16,7 @@ namespace throng::draw {
 /// An atlas in the card's memory, and the part of it that the processor needs.
 struct AtlasTextures {
   /// Fails with kLimit: pages larger than textures may be.
-  [[nodiscard]] static Result<AtlasTextures> make(const Atlas& atlas);
+  [[nodiscard]] static Result<AtlasTextures> create(const Atlas& atlas);
   /// Binds colours, details and views to units 0, 1 and 2 and sets the program's numbers.
   void bind(const GlProgram& program) const;
 

@@ -107,7 +107,7 @@ Result<void> CrowdPass::make_programs() {
 }
 
 Result<size_t> CrowdPass::add_atlas(const Atlas& atlas) {
-  Result<AtlasTextures> made = AtlasTextures::make(atlas);
+  Result<AtlasTextures> made = AtlasTextures::create(atlas);
   if (!made) return made.error();
   atlases_.push_back(*std::move(made));
   models_.emplace_back();
@@ -118,7 +118,7 @@ Result<void> CrowdPass::set_model(size_t atlas, const FigureModel& model) {
   if (model.clips.size() != atlases_[atlas].shape.clips.size()) {
     return Error{Errc::kBadInput, "drawing: a figure must have the clips of its atlas"};
   }
-  Result<ModelMesh> made = ModelMesh::make(model);
+  Result<ModelMesh> made = ModelMesh::create(model);
   if (!made) return made.error();
   models_[atlas] = *std::move(made);
   return {};

@@ -14,7 +14,7 @@ constexpr GLenum kPoseUnit = 6;
 
 }  // namespace
 
-Result<ModelMesh> ModelMesh::make(const FigureModel& model) {
+Result<ModelMesh> ModelMesh::create(const FigureModel& model) {
   GLint largest = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   const auto rows = static_cast<GLsizei>((model.poses.size() + kPosesWide - 1) / kPosesWide);

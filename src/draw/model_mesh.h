@@ -12,7 +12,7 @@ namespace throng::draw {
 class ModelMesh {
  public:
   /// Fails with kLimit: more poses than a texture holds.
-  [[nodiscard]] static Result<ModelMesh> make(const FigureModel& model);
+  [[nodiscard]] static Result<ModelMesh> create(const FigureModel& model);
   /// Draws `instances` of a clip, with the program in use that they are set in.
   void draw(const GlProgram& program, size_t clip, size_t instances) const;
   /// Of any pose from a point this high over the feet. [m]

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/texel_mean.h"
+#include "core/math/texel_mean.h"
 #include "draw/gl.h"
 
 // Scales textures to one size and makes their smaller levels.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/access.h"
-#include "core/file_map.h"
+#include "core/files/file_map.h"
 #include "graph/graph_passes.h"
 #include "graph/zone_regions.h"
 #include "throng/world.h"

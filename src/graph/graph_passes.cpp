@@ -8,7 +8,7 @@
 #include <mutex>
 #include <vector>
 
-#include "core/disjoint_sets.h"
+#include "core/arrays/disjoint_sets.h"
 #include "core/hash.h"
 #include "core/side_by_side.h"
 #include "graph/zone_regions.h"

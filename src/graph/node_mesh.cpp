@@ -45,11 +45,11 @@ double portal_length(const NodePortal& portal, Vec3d out, Vec3d in) {
   return std::sqrt(hop.x * hop.x + hop.z * hop.z) + std::fabs(hop.y);
 }
 
-Result<NodeMesh> NodeMesh::make(const Nodes& nodes, int32_t avatar_class, int32_t workers,
-                                Context& context) {
+Result<NodeMesh> NodeMesh::create(const Nodes& nodes, int32_t avatar_class, int32_t workers,
+                                  Context& context) {
   if (auto ok = nodes.check_all(); !ok) return ok.error();
   NodeMesh mesh(nodes, avatar_class);
-  const world::NodeData& data = *data_of(nodes);
+  const NodeData& data = *data_of(nodes);
   double steepest = 0;
   for (const AvatarClass& avatar : data_of(data.world)->summary.classes) {
     steepest = std::max(steepest, avatar.max_slope);
@@ -83,9 +83,8 @@ namespace {
 // The squares of one patch for a class, in the order of its quadtree.
 class BlockCutter {
  public:
-  BlockCutter(const world::NodeData& data, const world::NodeZone& zone,
-              const format::NodePatch& patch, const NodeSurface& surface, uint32_t first_node,
-              uint32_t place, int32_t avatar_class)
+  BlockCutter(const NodeData& data, const NodeZone& zone, const format::NodePatch& patch,
+              const NodeSurface& surface, uint32_t first_node, uint32_t place, int32_t avatar_class)
       : data_(data),
         zone_(zone),
         patch_(patch),
@@ -109,9 +108,7 @@ class BlockCutter {
   }
 
  private:
-  static bool is_partial(const format::Node& node) {
-    return (node.flags() & world::kPartialFlag) != 0;
-  }
+  static bool is_partial(const format::Node& node) { return (node.flags() & kPartialFlag) != 0; }
 
   [[nodiscard]] bool stands(const format::Node& node) const {
     return (node.classes() >> class_ & 1) != 0;
@@ -223,8 +220,8 @@ class BlockCutter {
     return cells;
   }
 
-  const world::NodeData& data_;
-  const world::NodeZone& zone_;
+  const NodeData& data_;
+  const NodeZone& zone_;
   const format::NodePatch& patch_;
   const NodeSurface& surface_;
   uint32_t first_node_;  // of the zone, of all
@@ -244,16 +241,16 @@ class BlockCutter {
 }  // namespace
 
 void NodeMesh::list_blocks(int32_t workers) {
-  const world::NodeData& data = *data_of(nodes_);
+  const NodeData& data = *data_of(nodes_);
   of_level_.assign(data_of(data.world)->level_count, kNoNode);
   struct Source {
-    const world::NodeZone* zone;
+    const NodeZone* zone;
     const format::NodePatch* patch;
     uint32_t first;
   };
   std::vector<Source> sources;
   for (size_t s = 0; s < data.slots.size(); ++s) {
-    const world::NodeZone& zone = *data.zone(s);
+    const NodeZone& zone = *data.zone(s);
     const uint32_t first = data.slots[s]->first_node;
     for (const format::NodePatch& patch : zone.patches()) {
       const auto p = static_cast<uint32_t>(patches_.size());
@@ -381,10 +378,10 @@ PortalList NodeMesh::inside_patch(uint32_t patch) const {
 
 // A door is cut where the blocks on either side end.
 void NodeMesh::open_doors() {
-  const world::NodeData& data = *data_of(nodes_);
+  const NodeData& data = *data_of(nodes_);
   uint32_t first_patch = 0;
   for (size_t s = 0; s < data.slots.size(); ++s) {
-    const world::NodeZone& zone = *data.zone(s);
+    const NodeZone& zone = *data.zone(s);
     for (const format::Door& door : zone.doors()) {
       if ((door.classes() >> avatar_class_ & 1) == 0) continue;
       const uint32_t a_patch = first_patch + door.patch();
@@ -392,12 +389,10 @@ void NodeMesh::open_doors() {
       if (patches_[b_patch].points == nullptr) continue;  // A foreign file may say so.
       const double scale =
           static_cast<double>(door.to_last() - door.to_first()) / (door.last() - door.first());
-      const auto on_a = [&](double at) {
-        return edge_parameters(door.edge(), at / world::kEdgeUnits);
-      };
+      const auto on_a = [&](double at) { return edge_parameters(door.edge(), at / kEdgeUnits); };
       const auto on_b = [&](double at) {
         return edge_parameters(door.to_edge(),
-                               (door.to_first() + (at - door.first()) * scale) / world::kEdgeUnits);
+                               (door.to_first() + (at - door.first()) * scale) / kEdgeUnits);
       };
       NodePortal open{.a = kNoNode, .b = kNoNode, .on_a = {}, .on_b = {}};
       const auto close = [&] {
@@ -490,11 +485,11 @@ PortalList NodeMesh::over_tile(int32_t tile_x, int32_t tile_z) const {
 
 // Each direction has an arc of its own. A node around another may have the same hole link.
 void NodeMesh::add_hole_links() {
-  const world::NodeData& data = *data_of(nodes_);
+  const NodeData& data = *data_of(nodes_);
   using Key = std::tuple<uint32_t, uint32_t, uint8_t, uint8_t, uint8_t, uint8_t>;
   std::map<Key, size_t> known;
   for (size_t s = 0; s < data.slots.size(); ++s) {
-    const world::NodeZone& zone = *data.zone(s);
+    const NodeZone& zone = *data.zone(s);
     const uint32_t first = data.slots[s]->first_node;
     for (uint32_t n = 0; n < zone.nodes().size(); ++n) {
       for (const format::Arc& arc : zone.arcs(n)) {

@@ -46,8 +46,8 @@ constexpr uint32_t quad_order(uint32_t s, uint32_t t, int32_t level) {
 class NodeMesh {
  public:
   /// Reads all nodes once. Fails with kBadFile (a zone cannot be used) or kCancelled.
-  [[nodiscard]] static Result<NodeMesh> make(const Nodes& nodes, int32_t avatar_class,
-                                             int32_t workers, Context& context);
+  [[nodiscard]] static Result<NodeMesh> create(const Nodes& nodes, int32_t avatar_class,
+                                               int32_t workers, Context& context);
 
   [[nodiscard]] const Nodes& nodes() const { return nodes_; }
   [[nodiscard]] int32_t avatar_class() const { return avatar_class_; }

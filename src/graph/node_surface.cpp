@@ -49,7 +49,7 @@ Vec3d NodeSurface::normal(double s, double t) const {
   return points != nullptr ? patch_of(points).normal(s, t) : Vec3d{0, 1, 0};
 }
 
-NodeSurface surface_of(const world::NodeData& nodes, const world::NodeZone& zone,
+NodeSurface surface_of(const NodeData& nodes, const NodeZone& zone,
                        const format::NodePatch& patch) {
   const auto kind = static_cast<PatchKind>(patch.kind());
   return {.kind = kind,

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
+#include "graph/node_data.h"
 #include "throng/base.h"
 #include "throng/surface.h"
-#include "world/node_data.h"
 
 /// The ground of a node's patch.
 namespace throng::graph {
@@ -27,7 +27,7 @@ struct NodeSurface {
   [[nodiscard]] Vec3d normal(double s, double t) const;
 };
 
-[[nodiscard]] NodeSurface surface_of(const world::NodeData& nodes, const world::NodeZone& zone,
+[[nodiscard]] NodeSurface surface_of(const NodeData& nodes, const NodeZone& zone,
                                      const format::NodePatch& patch);
 
 }  // namespace throng::graph

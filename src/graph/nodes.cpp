@@ -7,12 +7,12 @@
 #include <numeric>
 
 #include "core/access.h"
-#include "core/disjoint_sets.h"
+#include "core/arrays/disjoint_sets.h"
 #include "core/hash.h"
 #include "core/random.h"
+#include "graph/node_data.h"
 #include "graph/node_surface.h"
 #include "throng/surface.h"
-#include "world/node_data.h"
 #include "world/sealed_file.h"
 #include "world/zone_data.h"
 
@@ -27,11 +27,11 @@ NodeInfo info_of(uint32_t source, const format::NodePatch& patch, const format::
           .height = static_cast<uint8_t>(node.surface() & 15),
           .headroom = static_cast<uint8_t>(node.room() >> 4),
           .width = static_cast<uint8_t>(node.room() & 15),
-          .terminal = (node.flags() & world::kTerminalFlag) != 0,
+          .terminal = (node.flags() & graph::kTerminalFlag) != 0,
           .kind = static_cast<PatchKind>(patch.kind()),
           .source = source,
           .depth = patch.depth(),
-          .level = node.level(),
+          .block_level = node.level(),
           .s = node.s(),
           .t = node.t(),
           .parent1 = 0,
@@ -50,11 +50,11 @@ bool touches(uint64_t cells, double s, double t) {
 }
 
 // Drop links are one-way, and off-mesh links may be; a one-way link connects no component.
-bool goes_back(const world::NodeData& data, uint32_t from, uint32_t to, const format::Arc& arc) {
+bool goes_back(const graph::NodeData& data, uint32_t from, uint32_t to, const format::Arc& arc) {
   if (arc.kind() == static_cast<uint8_t>(LinkKind::kDrop)) return false;
   if (arc.kind() != static_cast<uint8_t>(LinkKind::kOffMesh)) return true;
   const size_t slot = data.slot_of(to);
-  const world::NodeZone* zone = data.zone(slot);
+  const graph::NodeZone* zone = data.zone(slot);
   if (zone == nullptr) return false;
   const auto arcs = zone->arcs(to - data.slots[slot]->first_node);
   return std::any_of(arcs.begin(), arcs.end(), [&](const format::Arc& back) {
@@ -64,7 +64,7 @@ bool goes_back(const world::NodeData& data, uint32_t from, uint32_t to, const fo
 }
 
 std::string index_of(const std::string& world_path) {
-  return world_path + "/" + world::kNodeFolder + "/" + world::kNodeIndexName;
+  return world_path + "/" + graph::kNodeFolder + "/" + graph::kNodeIndexName;
 }
 
 }  // namespace
@@ -94,14 +94,14 @@ Result<Nodes> Nodes::open(const World& world) {
     return Error{Errc::kBadFile,
                  world_path + ": this world has no nodes; bake it again with --nodes"};
   }
-  auto nodes = world::read_node_index(map->bytes(), name);
+  auto nodes = graph::read_node_index(map->bytes(), name);
   if (!nodes) return nodes.error();
   if (const auto whole = world::unsealed(map->bytes(), name); !whole) return whole.error();
   if (data_of(world)->manifest_hash != (*nodes)->world_hash) {
     return Error{Errc::kBadFile, name + ": belongs to another world; bake it again with --nodes"};
   }
   (*nodes)->world = world;
-  (*nodes)->path = world_path + "/" + world::kNodeFolder;
+  (*nodes)->path = world_path + "/" + graph::kNodeFolder;
   return Nodes(std::move(*nodes));
 }
 
@@ -120,11 +120,11 @@ NodeSummary Nodes::summary() const {
   NodeSummary summary = state_->summary;
   summary.classes = state_->world.summary().classes;
   for (size_t s = 0; s < state_->slots.size(); ++s) {
-    const world::NodeZone* zone = state_->zone(s);
+    const graph::NodeZone* zone = state_->zone(s);
     if (zone == nullptr) continue;
     for (const format::Node& node : zone->nodes()) {
-      summary.terminal += (node.flags() & world::kTerminalFlag) != 0;
-      summary.partial += (node.flags() & world::kPartialFlag) != 0;
+      summary.terminal += (node.flags() & graph::kTerminalFlag) != 0;
+      summary.partial += (node.flags() & graph::kPartialFlag) != 0;
     }
     for (uint32_t n = 0; n < zone->nodes().size(); ++n) summary.arcs += zone->arcs(n).size();
   }
@@ -151,7 +151,7 @@ std::vector<NodeArc> Nodes::arcs(uint32_t node) const {
   THRONG_ASSERT(node < node_count());
   std::vector<NodeArc> out;
   const size_t slot = state_->slot_of(node);
-  const world::NodeZone* zone = state_->zone(slot);
+  const graph::NodeZone* zone = state_->zone(slot);
   if (zone == nullptr) return out;
   const uint32_t local = node - state_->slots[slot]->first_node;
   for (const format::Arc& arc : zone->arcs(local)) {
@@ -183,7 +183,7 @@ std::array<Vec3d, 4> Nodes::corners(uint32_t node) const {
   const NodeInfo info = this->node(node);
   // Of a level tile the far corners lie in the next cells, which may have no floor.
   const double inside = info.kind == PatchKind::kLevelTile ? 1e-5 : 0;
-  const double whole = 1.0 / (1 << info.level), side = whole - inside;
+  const double whole = 1.0 / (1 << info.block_level), side = whole - inside;
   const double s = info.s * whole, t = info.t * whole;
   return {point(node, s, t), point(node, s, t + side), point(node, s + side, t + side),
           point(node, s + side, t)};
@@ -192,7 +192,7 @@ std::array<Vec3d, 4> Nodes::corners(uint32_t node) const {
 Vec3d Nodes::middle(uint32_t node) const {
   const NodeInfo info = this->node(node);
   if (info.cells == 0) {
-    const double side = 1.0 / (1 << info.level);
+    const double side = 1.0 / (1 << info.block_level);
     return point(node, (info.s + 0.5) * side, (info.t + 0.5) * side);
   }
   // The middle of all cells may lie in none: the nearest of them.
@@ -233,7 +233,7 @@ NodePlace Nodes::place(int32_t avatar_class, uint32_t node, double s, double t) 
   const bool inside = s * blocks >= found.s() && s * blocks <= found.s() + 1 &&
                       t * blocks >= found.t() && t * blocks <= found.t() + 1;
   if (!inside || (found.classes() >> avatar_class & 1) == 0) return {};
-  if ((found.flags() & world::kPartialFlag) != 0 &&
+  if ((found.flags() & graph::kPartialFlag) != 0 &&
       !touches(state_->cells_of(*zone, local, avatar_class), s * kTileCells - found.s() * 8,
                t * kTileCells - found.t() * 8)) {
     return {};
@@ -265,7 +265,7 @@ NodePlace Nodes::random_place(int32_t avatar_class, uint64_t seed, uint64_t n) c
                  (info.s * 8 + bit % 8 + random_unit(seed, n, 1)) / kTileCells,
                  (info.t * 8 + bit / 8 + random_unit(seed, n, 2)) / kTileCells);
   }
-  const double side = 1.0 / (1 << info.level);
+  const double side = 1.0 / (1 << info.block_level);
   return place(avatar_class, found->first, (info.s + random_unit(seed, n, 1)) * side,
                (info.t + random_unit(seed, n, 2)) * side);
 }
@@ -280,7 +280,7 @@ std::vector<NodeComponent> Nodes::components(int32_t avatar_class,
   std::vector<uint8_t> stands(count, 0);
   std::vector<double> area(count, 0);
   for (size_t s = 0; s < state_->slots.size(); ++s) {
-    const world::NodeZone* zone = state_->zone(s);
+    const graph::NodeZone* zone = state_->zone(s);
     if (zone == nullptr) continue;
     const uint32_t first = state_->slots[s]->first_node;
     const auto nodes = zone->nodes();

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/prefetch.h"
+#include "core/arrays/prefetch.h"
 #include "graph/ground_parts.h"
 #include "world/place.h"
 #include "world/tile_grid.h"

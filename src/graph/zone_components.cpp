@@ -6,7 +6,7 @@
 #include <bit>
 #include <vector>
 
-#include "core/disjoint_sets.h"
+#include "core/arrays/disjoint_sets.h"
 #include "core/hash.h"
 #include "world/place.h"
 

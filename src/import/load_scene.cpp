@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "core/read_file.h"
+#include "core/files/read_file.h"
 #include "import/formats/assimp_reader.h"
 #include "import/formats/bpt.h"
 #include "import/formats/bsp.h"

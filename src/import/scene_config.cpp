@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <numbers>
 
-#include "core/read_file.h"
+#include "core/files/read_file.h"
 
 namespace throng {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/config_file.h"
+#include "core/files/config_file.h"
 #include "throng/scene.h"
 
 /// The scene file: its models, their placement and the area kinds of their surfaces.

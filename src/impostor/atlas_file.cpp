@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/file_map.h"
+#include "core/files/file_map.h"
 #include "core/hash.h"
 #include "impostor/atlas_generated.h"
 #include "impostor/atlas_size.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/trig.h"
+#include "core/math/trig.h"
 #include "impostor/figure_mesh.h"
 #include "throng/impostor.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "core/trig.h"
+#include "core/math/trig.h"
 
 /// The arithmetic that chooses a view, for one avatar and for arrays. Angles are 65536 steps
 /// a turn, so that sums wrap by themselves.

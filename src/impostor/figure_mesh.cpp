@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "impostor/figure_mesh.h"
 
-#include "core/trig.h"
+#include "core/math/trig.h"
 
 // Builds tubes from rings of vertices.
 namespace throng::impostor {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/trig.h"
+#include "core/math/trig.h"
 #include "impostor/srgb.h"
 
 // Rasterises with a z-buffer of kSub x kSub samples a texel. It uses only sums and products of

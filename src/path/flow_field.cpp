@@ -34,7 +34,7 @@ Result<FlowField> FlowField::create(const PathFinder& finder, std::span<const Pl
   const auto start = Clock::now();
   auto state =
       std::make_unique<State>(State{Access::state(finder)->ground_of_its_own(), nullptr, 0});
-  auto points = path::FlowPoints::make(state->ground, goals, config.max_distance, context);
+  auto points = path::FlowPoints::create(state->ground, goals, config.max_distance, context);
   if (!points) return Error{Errc::kCancelled, "flow field: cancelled"};
   if (points->empty()) {
     return Error{Errc::kBadInput, "flow field: none of " + std::to_string(goals.size()) +

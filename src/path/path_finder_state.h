@@ -4,11 +4,11 @@
 
 #include <optional>
 
+#include "path/air/flight_finder.h"
 #include "path/edits/edit_list.h"
 #include "path/edits/ground_finder.h"
-#include "path/flight_finder.h"
-#include "path/mesh_finder.h"
-#include "path/node_finder.h"
+#include "path/overlay/mesh_finder.h"
+#include "path/overlay/node_finder.h"
 #include "throng/path.h"
 
 /// What a PathFinder holds.

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <utility>
 
-#include "core/file_map.h"
+#include "core/files/file_map.h"
 #include "record/frame_codec.h"
 #include "record/replay_file.h"
 #include "record/replay_generated.h"

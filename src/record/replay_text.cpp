@@ -5,7 +5,7 @@
 #include <iterator>
 #include <numeric>
 
-#include "core/part_file.h"
+#include "core/files/part_file.h"
 #include "throng/recording.h"
 
 // Recordings as text: CSV for spreadsheets, and the trajectory format of the Juelich experiments.

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "core/access.h"
-#include "path/flight_finder.h"
+#include "path/air/flight_finder.h"
 #include "throng/path.h"
 #include "world/air_data.h"
 #include "world/zone_data.h"

@@ -11,14 +11,13 @@
 #include <vector>
 
 #include "core/access.h"
-#include "core/float_origin.h"
+#include "core/math/float_origin.h"
 #include "render/air_lines.h"
 #include "render/canvas.h"
 #include "render/text.h"
 #include "render/tile_slopes.h"
 #include "throng/picture.h"
 #include "throng/surface.h"
-#include "world/node_data.h"
 
 // Nodes as surfaces seen at a slant from the south, as in the last figures of [PACS00]: every
 // sub-patch in the colour of its inclination, smaller nodes over the larger ones that hold them,
@@ -178,8 +177,8 @@ class NodePicture {
       : nodes_(nodes),
         config_(config),
         summary_(nodes.summary()),
-        slopes_(*data_of(data_of(nodes)->world)) {
-    if (config.storey >= 0) storeys_ = data_of(nodes)->world.storeys();
+        slopes_(*data_of(nodes.world())) {
+    if (config.storey >= 0) storeys_ = nodes.world().storeys();
   }
 
   Result<Image> draw() {
@@ -188,7 +187,7 @@ class NodePicture {
       return Error{Errc::kNotFound, "picture: no node of the area, storey and class asked for"};
     }
     if (config_.air) {
-      auto lines = render::air_lines(data_of(nodes_)->world, config_.area);
+      auto lines = render::air_lines(nodes_.world(), config_.area);
       if (!lines) return lines.error();
       air_ = *std::move(lines);
       for (const render::AirLine& line : air_) {
@@ -345,7 +344,7 @@ class NodePicture {
       const auto c = static_cast<size_t>(config_.avatar_class);
       limit = std::min(limit, summary_.bins.inclination_code(summary_.classes[c].max_slope));
     }
-    const int32_t size = kTileCells >> info.level;
+    const int32_t size = kTileCells >> info.block_level;
     const uint64_t cells = info.cells != 0 ? cells_of(node, info) : 0;
     for (int32_t i = 0; i < size * size && code < limit; ++i) {
       if (info.cells != 0 && (cells >> i & 1) == 0) continue;
@@ -359,13 +358,13 @@ class NodePicture {
   void surface(DepthCanvas& canvas, uint32_t node) {
     const NodeInfo info = nodes_.node(node);
     // The far corners of a tile's cells lie in the next cells, which may have no floor.
-    const double whole = 1.0 / (1 << info.level);
+    const double whole = 1.0 / (1 << info.block_level);
     const double side = whole - (info.kind == PatchKind::kLevelTile ? kInset : 0);
     const double s0 = info.s * whole, t0 = info.t * whole;
     const render::Rgb colour =
         inclination_colour(summary_.bins.inclination_of(inclination(node, info)));
-    const int32_t parts = info.kind == PatchKind::kBezier ? std::max(1, 16 >> info.level) : 1;
-    const double nearer = 0.01 * info.level;
+    const int32_t parts = info.kind == PatchKind::kBezier ? std::max(1, 16 >> info.block_level) : 1;
+    const double nearer = 0.01 * info.block_level;
     const auto paint = [&](const Block& block) {
       pieces(node, block, parts, [&](const std::array<Vec3d, 4>& c, Vec3d normal) {
         fill(canvas, c, normal, colour, nearer);
@@ -378,7 +377,7 @@ class NodePicture {
         paint({(info.s * 8 + first) * kCell, (info.t * 8 + row) * kCell, count * kCell - kInset,
                kCell - kInset});
       });
-      if (whole * kTileCells * data_of(nodes_)->world.summary().cell * scale_ >= 5)
+      if (whole * kTileCells * nodes_.world().summary().cell * scale_ >= 5)
         rim_of_cells(canvas, info, node, cells, rim, nearer);
       return;
     }
@@ -593,11 +592,10 @@ Result<Image> draw_nodes(const Nodes& nodes, const NodePictureConfig& config) {
   if (config.width < 200 || config.width > 16000) {
     return Error{Errc::kBadConfig, "picture: the width must be 200 to 16000 pixels"};
   }
-  if (data_of(nodes) != nullptr &&
-      config.avatar_class >= static_cast<int32_t>(nodes.summary().classes.size())) {
+  if (nodes && config.avatar_class >= static_cast<int32_t>(nodes.summary().classes.size())) {
     return Error{Errc::kBadConfig, "picture: the world has no such avatar class"};
   }
-  if (data_of(nodes) == nullptr || nodes.node_count() == 0) {
+  if (!nodes || nodes.node_count() == 0) {
     return Error{Errc::kNotFound, "picture: this world has no nodes to draw"};
   }
   if (auto ok = nodes.check_all(); !ok) return ok.error();

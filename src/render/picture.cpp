@@ -40,7 +40,7 @@ Result<Image> draw_world(const World& world, std::span<const PictureAvatar> avat
                   size.y, summary.cell, summary.source_triangles));
   std::string walkers =
       fmt::format("{}: {:g} m high, radius {:g} m, step {:g} m, stands on {:.0f} m2", avatar.name,
-                  avatar.height, avatar.radius, avatar.step, summary.walkable_area[index]);
+                  avatar.height, avatar.radius, avatar.step_height, summary.walkable_area[index]);
   if (!avatars.empty()) walkers += fmt::format("; {} avatars", avatars.size());
   text.lines.push_back(walkers);
   return render::draw_poster(source, text, avatars, config);

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/part_file.h"
+#include "core/files/part_file.h"
 #include "throng/picture.h"
 
 #pragma GCC diagnostic push

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "core/read_file.h"
+#include "core/files/read_file.h"
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/logarithm.h"
+#include "core/math/logarithm.h"
+#include "core/math/trig.h"
 #include "core/random.h"
-#include "core/trig.h"
 #include "throng/scenario.h"
 
 // Random numbers of the distributions in scenarios: by inversion, and normal ones after [BM58].

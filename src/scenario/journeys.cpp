@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/plan_point.h"
+#include "core/math/plan_point.h"
 #include "scenario/simulation_state.h"
 
 // Journeys: the stages of an avatar one after the other, and the choice of the quickest exit

@@ -9,9 +9,9 @@
 #include <numbers>
 #include <span>
 
-#include "core/classes_file.h"
-#include "core/config_file.h"
-#include "core/read_file.h"
+#include "core/files/classes_file.h"
+#include "core/files/config_file.h"
+#include "core/files/read_file.h"
 #include "scenario/density_image.h"
 #include "throng/scenario.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/trig.h"
+#include "core/math/trig.h"
 #include "scenario/simulation_state.h"
 
 // How avatars enter the crowd: from sources and out of links. A random place is drawn for each; the

@@ -8,7 +8,7 @@
 
 #include "steer/social_force.h"
 #include "throng/base.h"
-#include "throng/papers.h"
+#include "throng/steering.h"
 
 // [CAACD] and [HM95] as models of a crowd. They define no step length: both are integrated by
 // Euler's method in parts of a step that are short beside their time constants.
@@ -61,7 +61,7 @@ Plane curvilinear_velocity(const View& view, float dt) {
   const double part = dt * frames / parts;
   for (int k = 0; k < parts; ++k) {
     const caacd::Threat threat = caacd::greatest_threat(self, near, {}, model);
-    const Vec3d force = threat.level != caacd::State::kTolerable
+    const Vec3d force = threat.state != caacd::State::kTolerable
                             ? caacd::avoidance(self, threat, model)
                             : caacd::path_amendment(self, target, 0, model);
     self.velocity = caacd::steered(self.velocity, force, part, model);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/exponential.h"
+#include "core/math/exponential.h"
 
 // [HM95]: each walker has a potential whose level lines are ellipses along its next stride, eq. 4;
 // the force is its gradient, eq. 3, weaker from behind, eq. 8 and 9. Walls push by their nearest

@@ -65,7 +65,7 @@ using Times = std::vector<double>;
 Result<Times> pass(const Door& door, const ValidationConfig& config, ValidationResult& result,
                    Context& context) {
   const AvatarClass body = walker();
-  auto crowd = PlaneCrowd::build(door_plane(door.width), body, Routing::kPaths, config, context);
+  auto crowd = PlaneCrowd::create(door_plane(door.width), body, Routing::kPaths, config, context);
   if (!crowd) return crowd.error();
   const auto ids = crowd->add_fitting(waiting(door, body.radius, config.seed), 0, context);
   if (!ids) return ids.error();

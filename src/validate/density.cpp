@@ -84,7 +84,7 @@ Result<DiagramPoint> walk_around(const Walk& walk, double density, const Validat
   AvatarClass body;
   body.radius = walk.radius;
   body.speed = walk.speed;
-  auto crowd = PlaneCrowd::build(ring_plane(), body, Routing::kStraight, config, context);
+  auto crowd = PlaneCrowd::create(ring_plane(), body, Routing::kStraight, config, context);
   if (!crowd) return crowd.error();
   const auto ids = crowd->add_fitting(rows(density, walk.radius, config.seed), 0, context);
   if (!ids) return ids.error();

@@ -175,7 +175,7 @@ Result<std::vector<WalkedPath>> walk(const Experiment& e, const std::vector<Walk
   plane.ground = box(e.low.x, e.low.z, e.high.x, e.high.z);
   plane.obstacles = e.walls;
   const AvatarClass body = walker();
-  auto crowd = PlaneCrowd::build(plane, body, Routing::kPaths, config, context);
+  auto crowd = PlaneCrowd::create(plane, body, Routing::kPaths, config, context);
   if (!crowd) return crowd.error();
   std::vector<size_t> outside(recorded.size());
   for (size_t n = 0; n < recorded.size(); ++n) outside[n] = n;

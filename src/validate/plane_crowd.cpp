@@ -20,9 +20,9 @@ Polygon box(double x0, double z0, double x1, double z1) {
   return {.outer = {{x0, z0}, {x1, z0}, {x1, z1}, {x0, z1}}, .holes = {}};
 }
 
-Result<PlaneCrowd> PlaneCrowd::build(const PlaneConfig& plane, const AvatarClass& body,
-                                     Routing routing, const ValidationConfig& config,
-                                     Context& context) {
+Result<PlaneCrowd> PlaneCrowd::create(const PlaneConfig& plane, const AvatarClass& body,
+                                      Routing routing, const ValidationConfig& config,
+                                      Context& context) {
   const auto scene = create_plane_scene(plane);
   if (!scene) return scene.error();
   auto world = bake_world(

@@ -38,9 +38,9 @@ Polygon box(double x0, double z0, double x1, double z1);
 
 class PlaneCrowd {
  public:
-  static Result<PlaneCrowd> build(const PlaneConfig& plane, const AvatarClass& body,
-                                  Routing routing, const ValidationConfig& config,
-                                  Context& context);
+  static Result<PlaneCrowd> create(const PlaneConfig& plane, const AvatarClass& body,
+                                   Routing routing, const ValidationConfig& config,
+                                   Context& context);
 
   /// Adds avatars with the given speeds; the id is null where an avatar does not fit.
   Result<std::vector<AvatarId>> add(std::span<const Point2> starts, std::span<const double> speeds,

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "core/read_file.h"
+#include "core/files/read_file.h"
 
 // Readers of text tables of positions, one row a person and frame. Linear in the text.
 namespace throng::validate {

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "core/config_file.h"
-#include "core/read_file.h"
+#include "core/files/config_file.h"
+#include "core/files/read_file.h"
 #include "throng/scenario.h"
 
 // Reads the tables [trial] and [[measure]] of a scenario file, which takes time linear in the text.

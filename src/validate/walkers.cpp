@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "steer/social_force.h"
-#include "throng/papers.h"
+#include "throng/steering.h"
 #include "validate/plane_crowd.h"
 #include "validate/tests.h"
 #include "validate/tracks.h"
@@ -146,7 +146,7 @@ Positions predict_by_curves(const std::vector<Walker>& walkers) {
     for (int frame = 0; frame < kFramesASample; ++frame) {
       for (size_t n = 0; n < bodies.size(); ++n) {
         const auto threat = caacd::greatest_threat(bodies[n], bodies, {}, models[n]);
-        steer[n] = threat.level != caacd::State::kTolerable
+        steer[n] = threat.state != caacd::State::kTolerable
                        ? caacd::avoidance(bodies[n], threat, models[n])
                        : caacd::path_amendment(bodies[n], targets[n], 0, models[n]);
       }
@@ -266,7 +266,7 @@ Result<void> walk_scene(const std::string& scene, const std::string& path,
   }
   PlaneConfig plane;
   plane.ground = box(low.x - kMargin, low.z - kMargin, high.x + kMargin, high.z + kMargin);
-  auto crowd = PlaneCrowd::build(plane, walker(), Routing::kStraight, config, context);
+  auto crowd = PlaneCrowd::create(plane, walker(), Routing::kStraight, config, context);
   if (!crowd) return crowd.error();
   std::array<Score, kModels> scores;
   size_t count = 0, not_placed = 0;

@@ -23,7 +23,7 @@ BodyCheck::BodyCheck(const TriangleTree& tree, const AvatarClass& avatar, double
       radius_(avatar.radius),
       bottom_(body_bottom(avatar)),
       height_(avatar.height),
-      step_(avatar.step),
+      step_(avatar.step_height),
       cell_(cell),
       support_above_(cell * std::tan(radians(avatar.max_slope)) + 0.005),
       levelness_(levelness_limit(avatar)) {}

@@ -64,7 +64,7 @@ class NodeJudge {
 
  private:
   static double bottom_of(const AvatarClass& avatar) {
-    return avatar.climb_slope > 0 ? avatar.step : body_bottom(avatar);
+    return avatar.climb_slope > 0 ? avatar.step_height : body_bottom(avatar);
   }
 
   void look(const Pose& pose, Sample& sample) const {

@@ -173,7 +173,7 @@ class Follower {
     const Vec3d seam = to.feet - from.feet;
     if (!on_surface && !over_hole &&
         (std::hypot(seam.x, seam.z) > kSeam ||
-         std::fabs(seam.y) > std::max(kSeam, avatar_.step + verify::kSameLength))) {
+         std::fabs(seam.y) > std::max(kSeam, avatar_.step_height + verify::kSameLength))) {
       mark_broken(walked, to.feet);
     }
     bool entered = false, unsupported = false, broken = false;

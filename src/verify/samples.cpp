@@ -64,7 +64,7 @@ BodyShape shape_of(const Claims& claims, double growth, double headroom) {
   return {.radius = claims.avatar.radius + growth,
           .bottom = body_bottom(claims.avatar),
           .height = claims.avatar.height + headroom,
-          .step = claims.avatar.step,
+          .step = claims.avatar.step_height,
           .levelness = levelness_limit(claims.avatar),
           .spacing = claims.cell};
 }
@@ -115,7 +115,7 @@ PointRecord PointCheck::check(Vec3d feet) {
 
 // The world's floor in a column may be any surface that the body's step swallows.
 bool PointCheck::is_kept(Vec3d feet) const {
-  return static_cast<bool>(claims_->find_place(feet, std::max(claims_->avatar.step, 0.1)));
+  return static_cast<bool>(claims_->find_place(feet, std::max(claims_->avatar.step_height, 0.1)));
 }
 
 // An area too large to be searched counts as lost, whether it is connected or not: a bake that

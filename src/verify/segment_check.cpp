@@ -55,7 +55,7 @@ void check_segment(const Claims& claims, const BodyCheck& body, const Place& fro
   const double length = std::sqrt(dx * dx + dz * dz);
   const int parts = std::max(1, static_cast<int>(std::ceil(length / spacing)));
   // More than the floor may change over a quarter of a cell by a step, or on the steepest slope.
-  const double reach = claims.avatar.step + std::max(claims.cell, 2 * spacing);
+  const double reach = claims.avatar.step_height + std::max(claims.cell, 2 * spacing);
   double y = a.y;
   for (int k = 1; k < parts; ++k) {
     const double t = static_cast<double>(k) / parts;

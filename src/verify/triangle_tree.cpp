@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/float_origin.h"
+#include "core/math/float_origin.h"
 #include "core/parallel.h"
 
 // Builds a balanced box tree by median splits. n log n.

@@ -45,7 +45,7 @@ bool for_each_turned(const TriangleTree& tree, const Pose& pose, double radius, 
 /// a climber walks, on level tiles, it is a walker.
 inline double turned_bottom(const AvatarClass& avatar, Vec3d axis) {
   const bool upright = axis.y > 1 - 1e-12;
-  return avatar.climb_slope > 0 && !upright ? avatar.step : body_bottom(avatar);
+  return avatar.climb_slope > 0 && !upright ? avatar.step_height : body_bottom(avatar);
 }
 
 /// A triangle that meets the body, if any.
@@ -68,7 +68,7 @@ inline constexpr double kOnSurface = 0.15;  // [m]
 
 /// Is there a surface that is not blocked at the feet, in whatever direction?
 inline bool turned_support(const TriangleTree& tree, const AvatarClass& avatar, Vec3d feet) {
-  const double reach = std::max(kOnSurface, avatar.step + 0.01);
+  const double reach = std::max(kOnSurface, avatar.step_height + 0.01);
   const Cylinder around{feet.x, feet.z, feet.y - reach, feet.y + reach, reach};
   return tree.find(around.bounds(), [&](uint32_t triangle, const Corners& corners) {
     return tree.scene().area[triangle] != kAreaBlocked && meets(around, corners, -1e-9);

@@ -36,11 +36,11 @@ CrowdPlayer::CrowdPlayer(World world, const CrowdStart& start, Vec3d origin, Cro
   for (double& up_to : mix_up_to_) up_to /= sum;
 }
 
-Result<std::unique_ptr<CrowdPlayer>> CrowdPlayer::make(World world, Nodes nodes,
-                                                       const CrowdStart& start, int32_t workers,
-                                                       Vec3d origin,
-                                                       std::shared_ptr<const Occluders> occluders,
-                                                       Context& context) {
+Result<std::unique_ptr<CrowdPlayer>> CrowdPlayer::create(World world, Nodes nodes,
+                                                         const CrowdStart& start, int32_t workers,
+                                                         Vec3d origin,
+                                                         std::shared_ptr<const Occluders> occluders,
+                                                         Context& context) {
   const CrowdConfig config{.dt = start.dt,
                            .seed = start.seed,
                            .workers = workers,

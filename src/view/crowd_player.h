@@ -46,7 +46,7 @@ class CrowdPlayer final : public TimelinePlayer {
   /// Fails as Crowd::create and Crowd::scatter do, except that a world too small for all gets as
   /// many as fit in a few tries. With CrowdStart::only_seen there are no avatars, and next()
   /// returns nothing, before look_from(). [nodes: CrowdConfig::nodes]
-  [[nodiscard]] static Result<std::unique_ptr<CrowdPlayer>> make(
+  [[nodiscard]] static Result<std::unique_ptr<CrowdPlayer>> create(
       World world, Nodes nodes, const CrowdStart& start, int32_t workers, Vec3d origin,
       std::shared_ptr<const Occluders> occluders, Context& context);
   /// Sets the eye, from the next step on.

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "throng/papers.h"
+#include "throng/steering.h"
 #include "view/overlays.h"
 
 // [CAACD] II: three concentric fields around each avatar, the probe ahead, and the state that
@@ -90,7 +90,7 @@ caacd::State state_of(const caacd::Body& self, const std::vector<caacd::Body>& a
     const Vec3d apart{other.position.x - self.position.x, 0, other.position.z - self.position.z};
     const caacd::State now =
         caacd::state_at(length(apart), caacd::joint_fields(self.fields, other.fields));
-    worst = std::max({worst, now, caacd::threat_of(self, other, model).level});
+    worst = std::max({worst, now, caacd::threat_of(self, other, model).state});
   }
   return worst;
 }

@@ -20,10 +20,10 @@ bool are_alike(const std::vector<Prism>& a, const std::vector<Prism>& b) {
 ScenarioPlayer::ScenarioPlayer(Simulation&& simulation, double seconds, Vec3d origin)
     : simulation_(std::move(simulation)), seconds_(seconds), origin_(origin) {}
 
-Result<std::unique_ptr<ScenarioPlayer>> ScenarioPlayer::make(const World& world,
-                                                             const Scenario& scenario,
-                                                             int32_t workers, Vec3d origin,
-                                                             Context& context) {
+Result<std::unique_ptr<ScenarioPlayer>> ScenarioPlayer::create(const World& world,
+                                                               const Scenario& scenario,
+                                                               int32_t workers, Vec3d origin,
+                                                               Context& context) {
   Result<Simulation> simulation = Simulation::create(world, scenario, workers, context);
   if (!simulation) return simulation.error();
   return std::unique_ptr<ScenarioPlayer>(

@@ -16,10 +16,10 @@ namespace throng::view {
 class ScenarioPlayer final : public TimelinePlayer {
  public:
   /// Fails as Simulation::create does.
-  [[nodiscard]] static Result<std::unique_ptr<ScenarioPlayer>> make(const World& world,
-                                                                    const Scenario& scenario,
-                                                                    int32_t workers, Vec3d origin,
-                                                                    Context& context);
+  [[nodiscard]] static Result<std::unique_ptr<ScenarioPlayer>> create(const World& world,
+                                                                      const Scenario& scenario,
+                                                                      int32_t workers, Vec3d origin,
+                                                                      Context& context);
   std::shared_ptr<const TimelineFrame> next() override;
   std::shared_ptr<const TimelineFrame> seek(double) override {
     return nullptr;

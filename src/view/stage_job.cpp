@@ -52,12 +52,12 @@ Result<void> view::StageJob::start_player() {
   std::unique_ptr<view::TimelinePlayer> player;
   if (scenario_) {
     auto made =
-        view::ScenarioPlayer::make(before_.world, *scenario_, workers_, before_.origin, context_);
+        view::ScenarioPlayer::create(before_.world, *scenario_, workers_, before_.origin, context_);
     if (!made) return made.error();
     player = *std::move(made);
   } else {
-    auto made = view::CrowdPlayer::make(before_.world, before_.nodes, *crowd_, workers_,
-                                        before_.origin, before_.occluders, context_);
+    auto made = view::CrowdPlayer::create(before_.world, before_.nodes, *crowd_, workers_,
+                                          before_.origin, before_.occluders, context_);
     if (!made) return made.error();
     player = *std::move(made);
   }

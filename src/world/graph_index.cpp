@@ -6,7 +6,7 @@
 #include <bit>
 #include <numeric>
 
-#include "core/var_number.h"
+#include "core/files/var_number.h"
 #include "throng/avatar.h"
 
 // Packs the components of a world into bytes: 7 bits a byte, as differences from the one before.

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "core/prefetch.h"
+#include "core/arrays/prefetch.h"
 #include "world/cell_blocks.h"
 #include "world/surface.h"
 #include "world/zone_generated.h"

@@ -73,7 +73,7 @@ inline Place place_at(const WorldData& world, const GroundLevel& level, GroundPo
 
 /// A class's step in the whole millimetres of the moves.
 inline int32_t step_mm(const AvatarClass& avatar) {
-  return static_cast<int32_t>(std::floor(avatar.step * 1000 + 1e-6));
+  return static_cast<int32_t>(std::floor(avatar.step_height * 1000 + 1e-6));
 }
 
 }  // namespace throng::world

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "core/var_number.h"
+#include "core/files/var_number.h"
 #include "world/cell_blocks.h"
 
 // Packs and reads the groups of a zone's regions and where their components begin. Linear.

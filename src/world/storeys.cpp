@@ -277,7 +277,7 @@ std::vector<int32_t> World::storeys() const {
   const world::WorldData& world = *state_;
   double max_step = 0;
   for (const AvatarClass& avatar : world.summary.classes)
-    max_step = std::max(max_step, avatar.step);
+    max_step = std::max(max_step, avatar.step_height);
   const auto step = static_cast<int32_t>(max_step * 1000);
   const std::vector<LevelInfo> levels = levels_of(world);
   const std::vector<std::vector<uint32_t>> members = group_levels(world, levels, step);

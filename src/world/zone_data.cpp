@@ -267,7 +267,7 @@ Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
     summary.classes.push_back({.name = entry.name() ? entry.name()->str() : "",
                                .height = entry.height(),
                                .radius = entry.radius(),
-                               .step = entry.step(),
+                               .step_height = entry.step(),
                                .max_slope = entry.max_slope(),
                                .speed = entry.speed(),
                                .climb_slope = entry.climb_slope(),
@@ -314,7 +314,7 @@ std::vector<uint8_t> write_manifest(const WorldData& world) {
   for (size_t c = 0; c < s.classes.size(); ++c) {
     const AvatarClass& a = s.classes[c];
     classes.push_back(format::CreateClassEntryDirect(
-        builder, a.name.c_str(), a.height, a.radius, a.step, a.max_slope, a.speed,
+        builder, a.name.c_str(), a.height, a.radius, a.step_height, a.max_slope, a.speed,
         s.walkable_area[c], a.climb_slope, a.max_drop));
   }
   std::vector<format::ZoneEntry> zones;

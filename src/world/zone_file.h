@@ -11,7 +11,7 @@
 #include <string>
 #include <utility>
 
-#include "core/file_map.h"
+#include "core/files/file_map.h"
 #include "core/hash.h"
 #include "throng/base.h"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "avatars_csv.h"
+#include "report/avatars_csv.h"
 
 #include <gtest/gtest.h>
 

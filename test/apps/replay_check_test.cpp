@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "command.h"
-#include "rerun.h"
-#include "run_recorder.h"
+#include "run/rerun.h"
+#include "run/run_recorder.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
 #include "worlds.h"

@@ -32,9 +32,9 @@ std::vector<AvatarClass> walkers() {
 
 std::vector<AvatarClass> climbers() {
   std::vector<AvatarClass> classes = walkers();
-  classes.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step = 0.2});
+  classes.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step_height = 0.2});
   classes.back().climb_slope = 180;
-  classes.push_back({.name = "spider", .height = 1, .radius = 0.5, .step = 0.3});
+  classes.push_back({.name = "spider", .height = 1, .radius = 0.5, .step_height = 0.3});
   classes.back().climb_slope = 100;
   classes.back().max_drop = 2;
   return classes;

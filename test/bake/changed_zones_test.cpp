@@ -190,7 +190,7 @@ TEST_F(ChangedZones, ATouchedTriangleLeavesAllOtherFilesAsTheyAre) {
 TEST_F(ChangedZones, AnotherStepMakesOtherRegions) {
   bake("w", field());
   BakeConfig config = kConfig;
-  for (AvatarClass& avatar : config.classes) avatar.step *= 0.9;
+  for (AvatarClass& avatar : config.classes) avatar.step_height *= 0.9;
   EXPECT_EQ(bake("w", field(), config).zones_relinked, 20u);
   bake("new", field(), config);
   EXPECT_EQ(folder_bytes(at("w")), folder_bytes(at("new")));
@@ -238,7 +238,7 @@ TEST_F(ChangedZones, ABakeKilledBetweenItsPassesGoesOn) {
 TEST_F(ChangedZones, AnotherClassCellOrResolutionBakesAll) {
   bake("w", field());
   BakeConfig config = kConfig;
-  config.classes[0].step += 0.01;
+  config.classes[0].step_height += 0.01;
   EXPECT_EQ(bake("w", field(), config).zones_baked, 20u);
   EXPECT_EQ(bake("w", field(), config).zones_baked, 0u);
   config.classes[0].speed += 1;  // Of no zone's business.

@@ -130,8 +130,8 @@ Plane feet_plane(const bake::Layer& layer, int32_t x, int32_t z) {
 }
 
 double true_bottom(const AvatarClass& avatar) {
-  return 1000 *
-         std::max(avatar.step, avatar.radius * std::tan(avatar.max_slope * std::numbers::pi / 180));
+  return 1000 * std::max(avatar.step_height,
+                         avatar.radius * std::tan(avatar.max_slope * std::numbers::pi / 180));
 }
 
 // Distance from a point of cell (x, z) to the square of another cell. [cells]
@@ -276,7 +276,7 @@ TEST(Legality, BodiesOfAllSizesAndCellsAreSafe) {
       return low + (high - low) * random_unit(seed, 9, n);
     };
     AvatarClass avatar{.name = "any", .height = pick(0, 0.3, 4), .radius = pick(1, 0.02, 0.8)};
-    avatar.step = std::floor(pick(2, 0, avatar.height / 2) * 1000) / 1000;
+    avatar.step_height = std::floor(pick(2, 0, avatar.height / 2) * 1000) / 1000;
     avatar.max_slope = pick(3, 0, 70);
     const naive::RandomBlock block{.seed = seed + 100,
                                    .ground = static_cast<int32_t>(seed % 5),
@@ -475,7 +475,7 @@ TEST(Legality, StepSafeIsTrueIffNoTwoLegalNeighboursDifferByMoreThanTheStep) {
 TEST(Legality, ATallBodyUnderAFarCeilingOfATallTileKeepsItsHead) {
   // The tile climbs 50 m; over its upper end a ceiling hangs 12 m above the floor: more than 65 m
   // above the lowest floor, too low for a body of 15 m.
-  const AvatarClass tall{.name = "tall", .height = 15, .radius = 0.5, .step = 1};
+  const AvatarClass tall{.name = "tall", .height = 15, .radius = 0.5, .step_height = 1};
   naive::SolidBlock solids;
   for (int32_t z = -64; z < 128; ++z) {
     for (int32_t x = -64; x < 128; ++x) {
@@ -491,7 +491,7 @@ TEST(Legality, ATallBodyUnderAFarCeilingOfATallTileKeepsItsHead) {
 
 TEST(Legality, ABodyThatStepsFarDownDoesNotStepOverADeeperEdge) {
   // bottom is 5 m; beside the tile the ground lies 12 m lower, in another tile's layer.
-  const AvatarClass wide{.name = "wide", .height = 20, .radius = 1, .step = 5};
+  const AvatarClass wide{.name = "wide", .height = 20, .radius = 1, .step_height = 5};
   for (const int32_t drop : {3000, 5500, 12000, 40000}) {
     naive::SolidBlock solids = flat_block(0);
     for (int32_t z = -64; z < 128; ++z) {

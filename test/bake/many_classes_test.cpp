@@ -22,12 +22,13 @@ namespace {
 
 // Low and high, thin and wide, of small and large steps, for flat and for steep ground.
 std::vector<AvatarClass> six_classes() {
-  return {{.name = "adult"},
-          {.name = "child", .height = 1.1, .radius = 0.18, .step = 0.3},
-          {.name = "wheelchair", .height = 1.35, .radius = 0.4, .step = 0.02, .max_slope = 3.43},
-          {.name = "giant", .height = 3.0, .radius = 0.5, .step = 0.8},
-          {.name = "dog", .height = 0.6, .radius = 0.2, .step = 0.25, .max_slope = 40},
-          {.name = "porter", .height = 2.1, .radius = 0.35, .step = 0.3, .max_slope = 20}};
+  return {
+      {.name = "adult"},
+      {.name = "child", .height = 1.1, .radius = 0.18, .step_height = 0.3},
+      {.name = "wheelchair", .height = 1.35, .radius = 0.4, .step_height = 0.02, .max_slope = 3.43},
+      {.name = "giant", .height = 3.0, .radius = 0.5, .step_height = 0.8},
+      {.name = "dog", .height = 0.6, .radius = 0.2, .step_height = 0.25, .max_slope = 40},
+      {.name = "porter", .height = 2.1, .radius = 0.35, .step_height = 0.3, .max_slope = 20}};
 }
 
 // Places of a class: cell and feet, without the level tile they are stored in.
@@ -105,11 +106,11 @@ std::vector<AvatarClass> random_classes(uint64_t seed) {
       return low + (high - low) * random_unit(seed, n, i);
     };
     AvatarClass avatar{.name = "class" + std::to_string(n), .radius = pick(0, 0.16, 0.7)};
-    avatar.step = pick(1, 0.02, 0.9);
+    avatar.step_height = pick(1, 0.02, 0.9);
     avatar.max_slope = pick(2, 2, 45);
     // From those that crawl under tables to those that need a gate.
-    const double bottom = std::max(avatar.step, avatar.radius);
-    avatar.height = std::max(2 * avatar.step, bottom + pick(3, 0.3, 2.6));
+    const double bottom = std::max(avatar.step_height, avatar.radius);
+    avatar.height = std::max(2 * avatar.step_height, bottom + pick(3, 0.3, 2.6));
     classes.push_back(avatar);
   }
   return classes;

@@ -58,8 +58,10 @@ Height rough(double spacing, double percent, uint64_t seed) {
 TEST(NearLimit, NoBodyEntersCreasesKerbsAndPosts) {
   std::vector<AvatarClass> classes = default_classes();
   // One that clears its slope by nothing, on more than one cell in height; one thinner than a cell.
-  classes.push_back({.name = "steep", .height = 1, .radius = 0.27, .step = 0, .max_slope = 21});
-  classes.push_back({.name = "thin", .height = 1, .radius = 0.07, .step = 0.001, .max_slope = 12});
+  classes.push_back(
+      {.name = "steep", .height = 1, .radius = 0.27, .step_height = 0, .max_slope = 21});
+  classes.push_back(
+      {.name = "thin", .height = 1, .radius = 0.07, .step_height = 0.001, .max_slope = 12});
   std::array<int64_t, 6> cells{};
   for (uint64_t seed = 1; seed <= 14; ++seed) {
     const double spacing = std::array{0.25, 0.5, 1.0, 3.0}[seed % 4];

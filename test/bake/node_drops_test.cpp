@@ -12,14 +12,14 @@
 #include "baked.h"
 #include "core/access.h"
 #include "core/random.h"
+#include "graph/node_data.h"
 #include "patch_nets.h"
-#include "path/node_finder.h"
+#include "path/overlay/node_finder.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
 #include "throng/path.h"
 #include "throng/verify.h"
 #include "verify/turned_body.h"
-#include "world/node_data.h"
 #include "world/zone_data.h"
 
 namespace throng {
@@ -34,7 +34,7 @@ std::vector<AvatarClass> divers(double deepest = 3) {
   classes.resize(1);
   classes.push_back({.name = "diver", .max_drop = deepest});
   classes.push_back(
-      {.name = "kid", .height = 1.1, .radius = 0.18, .step = 0.3, .max_drop = deepest / 2});
+      {.name = "kid", .height = 1.1, .radius = 0.18, .step_height = 0.3, .max_drop = deepest / 2});
   return classes;
 }
 
@@ -145,7 +145,7 @@ std::map<std::pair<bake::DropEnd, bake::DropEnd>, uint16_t> plain_drops(const Wo
         const Vec3d b = to.place.position;
         const double far2 = (b.x - a.x) * (b.x - a.x) + (b.z - a.z) * (b.z - a.z);
         const double down = a.y - b.y;
-        if (far2 <= reach * reach && down > avatar.step && down <= avatar.max_drop) {
+        if (far2 <= reach * reach && down > avatar.step_height && down <= avatar.max_drop) {
           lower.push_back({std::llround(far2 * 1e8), &to});
         }
       }
@@ -208,7 +208,7 @@ TEST(NodeDrops, LeadDownOnlyForClassesThatDrop) {
       for (size_t c = 0; c < 3; ++c) {
         if ((arc.classes >> c & 1) == 0) continue;
         ++drops[c];
-        EXPECT_GT(from.y - to.y, nodes.summary().classes[c].step);
+        EXPECT_GT(from.y - to.y, nodes.summary().classes[c].step_height);
         EXPECT_LE(from.y - to.y, nodes.summary().classes[c].max_drop);
       }
     }

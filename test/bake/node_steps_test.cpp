@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "baked.h"
-#include "core/disjoint_sets.h"
-#include "path/node_finder.h"
+#include "core/arrays/disjoint_sets.h"
+#include "path/overlay/node_finder.h"
 #include "throng/path.h"
 #include "throng/surface.h"
 

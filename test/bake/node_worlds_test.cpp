@@ -22,7 +22,7 @@ std::vector<AvatarClass> many_classes() {
   std::vector<AvatarClass> classes = default_classes();
   classes.push_back({.name = "climber"});
   classes.back().climb_slope = 180;
-  classes.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step = 0.2});
+  classes.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step_height = 0.2});
   classes.back().climb_slope = 95;
   return classes;
 }
@@ -111,7 +111,8 @@ size_t check_tile_widths(const std::string& name, const Made& made, uint32_t eve
     if (width == 0 || info.kind != PatchKind::kLevelTile) continue;
     if (!tiles.contains(info.source)) tiles[info.source] = made.world.level_tile(info.source);
     const LevelTileContent& tile = tiles[info.source];
-    const double size = 64 >> info.level, s = (info.s + 0.5) * size, t = (info.t + 0.5) * size;
+    const double size = 64 >> info.block_level, s = (info.s + 0.5) * size,
+                 t = (info.t + 0.5) * size;
     for (int32_t i = 0; i < 4096; ++i) {
       const double ds = std::max(0.0, std::abs(i % 64 + 0.5 - s) - 0.5);
       const double dt = std::max(0.0, std::abs(i / 64 + 0.5 - t) - 0.5);
@@ -140,7 +141,7 @@ size_t check_patch_widths(const std::string& name, const Nodes& nodes, uint32_t 
     const NodeInfo info = nodes.node(n);
     const double width = bins.width_of(info.width);
     if (width == 0 || info.kind != PatchKind::kBezier) continue;
-    const double side = 1.0 / (1 << info.level);
+    const double side = 1.0 / (1 << info.block_level);
     const double s0 = (info.s + 0.5) * side, t0 = (info.t + 0.5) * side;
     const Vec3d middle = nodes.point(n, s0, t0);
     for (uint64_t ray = 0; ray < 16; ++ray) {
@@ -153,9 +154,9 @@ size_t check_patch_widths(const std::string& name, const Nodes& nodes, uint32_t 
         NodeInfo found;
         for (const uint32_t m : of_patch[info.source]) {
           const NodeInfo other = nodes.node(m);
-          const double blocks = 1 << other.level;
+          const double blocks = 1 << other.block_level;
           if (std::floor(s * blocks) != other.s || std::floor(t * blocks) != other.t) continue;
-          if (smallest != nullptr && found.level > other.level) continue;
+          if (smallest != nullptr && found.block_level > other.block_level) continue;
           found = other;
           smallest = &found;
         }

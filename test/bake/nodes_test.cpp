@@ -13,13 +13,13 @@
 #include "baked.h"
 #include "core/access.h"
 #include "core/random.h"
+#include "graph/node_data.h"
 #include "patch_nets.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
 #include "throng/surface.h"
 #include "throng/verify.h"
 #include "throng/world.h"
-#include "world/node_data.h"
 #include "worlds.h"
 
 namespace throng {
@@ -45,9 +45,10 @@ AvatarClass climber() {
 std::vector<AvatarClass> many_classes() {
   std::vector<AvatarClass> classes = default_classes();
   classes.push_back(climber());
-  classes.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step = 0.2});
+  classes.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step_height = 0.2});
   classes.back().climb_slope = 95;
-  classes.push_back({.name = "ogre", .height = 2.5, .radius = 0.8, .step = 0.6, .max_slope = 30});
+  classes.push_back(
+      {.name = "ogre", .height = 2.5, .radius = 0.8, .step_height = 0.6, .max_slope = 30});
   return classes;
 }
 
@@ -65,7 +66,7 @@ TEST(Nodes, OnLevelTilesClassesHaveExactlyTheirLegalCells) {
     for (uint32_t n = 0; n < nodes.node_count(); ++n) {
       const NodeInfo info = nodes.node(n);
       ASSERT_EQ(info.kind, PatchKind::kLevelTile);
-      const int32_t size = 64 >> info.level;
+      const int32_t size = 64 >> info.block_level;
       for (int32_t t = info.t * size; t < (info.t + 1) * size; ++t) {
         for (int32_t s = info.s * size; s < (info.s + 1) * size; ++s) {
           if (info.cells != 0) continue;
@@ -345,7 +346,7 @@ TEST(Nodes, OverGroundThatCannotBeReadNoBodyStands) {
   size_t lost = 0, found = 0;
   for (uint32_t n = 0; n < nodes->node_count(); ++n) {
     const NodeInfo info = nodes->node(n);
-    const double side = 1.0 / (1 << info.level);
+    const double side = 1.0 / (1 << info.block_level);
     for (int32_t c = 0; c < 4; ++c) {
       const bool stands =
           static_cast<bool>(nodes->place(c, n, (info.s + 0.5) * side, (info.t + 0.5) * side));

@@ -109,10 +109,11 @@ std::set<uint32_t> beside(const PatchSet& set, uint32_t patch) {
 }
 
 std::vector<AvatarClass> four_classes() {
-  std::vector<AvatarClass> classes{{.name = "adult"},
-                                   {.name = "giant", .height = 3, .radius = 0.5, .step = 0.8},
-                                   {.name = "climber"},
-                                   {.name = "gecko", .height = 0.5, .radius = 0.2, .step = 0.25}};
+  std::vector<AvatarClass> classes{
+      {.name = "adult"},
+      {.name = "giant", .height = 3, .radius = 0.5, .step_height = 0.8},
+      {.name = "climber"},
+      {.name = "gecko", .height = 0.5, .radius = 0.2, .step_height = 0.25}};
   classes[2].climb_slope = 120;
   classes[3].climb_slope = 180;
   return classes;

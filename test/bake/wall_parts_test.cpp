@@ -46,8 +46,10 @@ Scene clutter(uint64_t seed, double slope) {
 
 TEST(WallParts, NoBodyEntersWallsKerbsAndBeamsAtAnyAngle) {
   std::vector<AvatarClass> classes = default_classes();
-  classes.push_back({.name = "wide", .height = 1.2, .radius = 0.61, .step = 0.1, .max_slope = 30});
-  classes.push_back({.name = "slim", .height = 1.9, .radius = 0.16, .step = 0.3, .max_slope = 40});
+  classes.push_back(
+      {.name = "wide", .height = 1.2, .radius = 0.61, .step_height = 0.1, .max_slope = 30});
+  classes.push_back(
+      {.name = "slim", .height = 1.9, .radius = 0.16, .step_height = 0.3, .max_slope = 40});
   std::vector<int64_t> cells(classes.size());
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     const Scene scene = clutter(seed, std::array{0.0, 0.04, 0.12, 0.3}[seed % 4]);

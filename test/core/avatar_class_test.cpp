@@ -37,7 +37,8 @@ TEST(AvatarClass, DefaultsPassTheirOwnCheck) {
 
 TEST(AvatarClass, BodyBottomIsTheStepOrTheRiseUnderTheRadius) {
   EXPECT_DOUBLE_EQ(body_bottom(AvatarClass{}), 0.4);
-  EXPECT_DOUBLE_EQ(body_bottom(AvatarClass{.radius = 0.5, .step = 0.4, .max_slope = 45}), 0.5);
+  EXPECT_DOUBLE_EQ(body_bottom(AvatarClass{.radius = 0.5, .step_height = 0.4, .max_slope = 45}),
+                   0.5);
   EXPECT_DOUBLE_EQ(body_bottom(default_classes()[2]), 0.024);  // 0.4 m * 6 %
 }
 
@@ -58,7 +59,7 @@ TEST(AvatarClass, TomlAndJsonGiveTheSameClasses) {
     EXPECT_EQ((*a)[i].name, (*b)[i].name);
     EXPECT_EQ((*a)[i].height, (*b)[i].height);
     EXPECT_EQ((*a)[i].radius, (*b)[i].radius);
-    EXPECT_EQ((*a)[i].step, (*b)[i].step);
+    EXPECT_EQ((*a)[i].step_height, (*b)[i].step_height);
   }
   EXPECT_EQ((*a)[0].radius, 0.25);  // the default
   EXPECT_EQ((*a)[1].radius, 0.6);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "core/exponential.h"
+#include "core/math/exponential.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "core/huge_array.h"
+#include "core/arrays/huge_array.h"
 
 #include <gtest/gtest.h>
 

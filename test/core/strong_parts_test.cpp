@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "core/strong_parts.h"
+#include "core/arrays/strong_parts.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "core/var_number.h"
+#include "core/files/var_number.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include "baked.h"
 #include "crowds.h"
 #include "patch_nets.h"
-#include "path/node_finder.h"
+#include "path/overlay/node_finder.h"
 #include "prism_shell.h"
 #include "simd_targets.h"
 #include "throng/avatar.h"
@@ -32,7 +32,7 @@ std::vector<AvatarClass> classes() {
   std::vector<AvatarClass> all(2);
   all[0].name = "climber";
   all[0].climb_slope = 180;
-  all[1] = {.name = "gecko", .height = 0.5, .radius = 0.15, .step = 0.2, .climb_slope = 120};
+  all[1] = {.name = "gecko", .height = 0.5, .radius = 0.15, .step_height = 0.2, .climb_slope = 120};
   all.push_back(default_classes()[0]);
   all.push_back(flyer_class());
   return all;

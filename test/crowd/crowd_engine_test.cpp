@@ -51,7 +51,7 @@ struct LevelGround {
 
   explicit LevelGround(double side)
       : world(test::bake(worlds::flat(side), 0.1)),
-        ground(*crowd::CrowdGround::make(*data_of(world), 0, 400)) {}
+        ground(*crowd::CrowdGround::create(*data_of(world), 0, 400)) {}
 
   [[nodiscard]] Pair pair(const std::vector<test::PlainBody>& bodies,
                           const test::PlainConfig& config, int32_t workers) const {

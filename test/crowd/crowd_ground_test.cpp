@@ -34,7 +34,7 @@ world::GroundLevel zone_level(const World& world, uint32_t level) {
 TEST(CrowdGround, LegalCellsAreThoseOfTheZones) {
   for (const Scene& scene : {worlds::two_floors(), worlds::flat(20), worlds::ramp(20, 8)}) {
     const World world = baked(scene);
-    const auto ground = crowd::CrowdGround::make(*data_of(world), 0, kStep);
+    const auto ground = crowd::CrowdGround::create(*data_of(world), 0, kStep);
     ASSERT_TRUE(ground);
     for (uint32_t level = 0; level < world.level_tile_count(); ++level) {
       const world::GroundLevel expected = zone_level(world, level);
@@ -69,7 +69,7 @@ TEST(CrowdGround, AWalkOverFlatCellsEndsOnTheSameLevelAtTheSameHeight) {
        {worlds::two_floors(), worlds::steps(0.17, 0.3, 12), worlds::ramp(20, 8), worlds::doorway(1),
         slope_over_the_edge(true), slope_over_the_edge(false)}) {
     const World world = baked(scene);
-    const auto ground = crowd::CrowdGround::make(*data_of(world), 0, kStep);
+    const auto ground = crowd::CrowdGround::create(*data_of(world), 0, kStep);
     ASSERT_TRUE(ground);
     uint64_t n = 0, plain_walks = 0;
     const auto draw = [&](uint64_t below) {
@@ -113,7 +113,7 @@ TEST(CrowdGround, AStepOverAJoinEndsWhereAWalkDoesAtTheSameHeight) {
   for (const Scene& scene : {worlds::two_floors(), worlds::flat(20), slope_over_the_edge(true),
                              slope_over_the_edge(false), garage()}) {
     const World world = baked(scene);
-    const auto ground = crowd::CrowdGround::make(*data_of(world), 0, kStep);
+    const auto ground = crowd::CrowdGround::create(*data_of(world), 0, kStep);
     ASSERT_TRUE(ground);
     uint64_t n = 0, crossed = 0;
     const auto draw = [&](uint64_t below) {
@@ -145,7 +145,7 @@ TEST(CrowdGround, AStepOverAJoinEndsWhereAWalkDoesAtTheSameHeight) {
 
 TEST(CrowdGround, ALoneLevelIsTheOnlyOneWithinAStepInItsTile) {
   const World world = baked(worlds::two_floors());
-  const auto ground = crowd::CrowdGround::make(*data_of(world), 0, kStep);
+  const auto ground = crowd::CrowdGround::create(*data_of(world), 0, kStep);
   ASSERT_TRUE(ground);
   int32_t lone = 0;
   for (uint32_t level = 0; level < world.level_tile_count(); ++level) {
@@ -170,7 +170,7 @@ TEST(CrowdGround, ALoneLevelIsTheOnlyOneWithinAStepInItsTile) {
 
 TEST(CrowdGround, FloorsOutsideTheGivenHeightsMayBeLeftOutButNoOther) {
   const World world = baked(worlds::two_floors());
-  const auto ground = crowd::CrowdGround::make(*data_of(world), 0, kStep);
+  const auto ground = crowd::CrowdGround::create(*data_of(world), 0, kStep);
   ASSERT_TRUE(ground);
   for (uint32_t level = 0; level < world.level_tile_count(); ++level) {
     const auto& record = ground->records()[level];

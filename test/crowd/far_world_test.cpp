@@ -9,7 +9,7 @@
 #include "baked.h"
 #include "crowds.h"
 #include "patch_nets.h"
-#include "path/mesh_finder.h"
+#include "path/overlay/mesh_finder.h"
 #include "scratch_folder.h"
 #include "throng/papers.h"
 #include "throng/path.h"

@@ -9,7 +9,7 @@
 
 #include "baked.h"
 #include "crowds.h"
-#include "path/flight_finder.h"
+#include "path/air/flight_finder.h"
 #include "simd_targets.h"
 #include "throng/crowd.h"
 #include "throng/path.h"

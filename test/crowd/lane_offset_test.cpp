@@ -29,7 +29,7 @@ struct Bend {
     AvatarClass walker;
     walker.radius = 0.19;
     world = test::bake(*scene, 0.05, {walker});
-    ground = *crowd::CrowdGround::make(*data_of(world), 0, 400);
+    ground = *crowd::CrowdGround::create(*data_of(world), 0, 400);
     stride = crowd::StrideGround(ground, 400);
     metre = static_cast<float>(world::kUnitsPerCell / 0.05);
     corner = point_at({10.22, 0, width - 0.22});

@@ -376,7 +376,7 @@ TEST(CrowdLinkTurns, FlatBodiesDoNotPassThroughEachOther) {
   scene.add_box({0, 0, 0}, {10, 3, 10});
   scene.add_box({10, -0.5, 0}, {20, 0, 10});
   const AvatarClass flat{
-      .name = "flat", .height = 0.1, .radius = 0.5, .step = 0.05, .max_slope = 5};
+      .name = "flat", .height = 0.1, .radius = 0.5, .step_height = 0.05, .max_slope = 5};
   const World world = test::bake(scene, 0.1, {flat});
   Edits edits;
   Oracle oracle{world, {{at(world, 9.2, 5, 3), at(world, 10.8, 5), 3.4, false}}};

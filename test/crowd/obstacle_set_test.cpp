@@ -51,7 +51,7 @@ struct Fixture {
 
   explicit Fixture(World of)
       : world(std::move(of)),
-        ground(*crowd::CrowdGround::make(*data_of(world), 0, kStep)),
+        ground(*crowd::CrowdGround::create(*data_of(world), 0, kStep)),
         obstacle_set(world, world.summary().classes.size()) {
     obstacle_set.open_class(0, ground);
   }
@@ -93,7 +93,7 @@ TEST(ObstacleSet, BlocksTheCellsOnWhichABodyCouldTouchAndFewMore) {
   uint64_t blocked = 0, left = 0;
   for (const Scene& scene : {worlds::two_floors(), worlds::ramp(20, 8), worlds::flat(14)}) {
     Fixture f(test::bake(scene, 0.1));
-    const crowd::CrowdGround baked = *crowd::CrowdGround::make(*data_of(f.world), 0, kStep);
+    const crowd::CrowdGround baked = *crowd::CrowdGround::create(*data_of(f.world), 0, kStep);
     const AvatarClass avatar = f.world.summary().classes[0];
     const double bottom = body_bottom(avatar), cell = f.world.summary().cell;
     const Vec3d origin = f.world.summary().origin;
@@ -165,7 +165,7 @@ TEST(ObstacleSet, FreesToTheBitWhatItBlocked) {
     }
     EXPECT_NE(hash_of(f.ground), baked);
     // What is left must equal what the same obstacles leave of a new ground.
-    crowd::CrowdGround rebuilt = *crowd::CrowdGround::make(*data_of(f.world), 0, kStep);
+    crowd::CrowdGround rebuilt = *crowd::CrowdGround::create(*data_of(f.world), 0, kStep);
     crowd::ObstacleSet again(f.world, f.world.summary().classes.size());
     again.open_class(0, rebuilt);
     for (const uint32_t slot : slots) {

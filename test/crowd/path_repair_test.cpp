@@ -11,7 +11,7 @@
 #include "core/random.h"
 #include "crowd/obstacles/obstacle_set.h"
 #include "path/edits/ground_finder.h"
-#include "path/mesh_finder.h"
+#include "path/overlay/mesh_finder.h"
 #include "world/place.h"
 #include "worlds.h"
 
@@ -30,7 +30,7 @@ struct Crated {
 
   Crated(World of, path::MeshFinder a_finder)
       : world(std::move(of)),
-        ground(*crowd::CrowdGround::make(*data_of(world), 0, kStep)),
+        ground(*crowd::CrowdGround::create(*data_of(world), 0, kStep)),
         book(world, world.summary().classes.size()),
         live(*path::GroundFinder::create(world, {})),
         finder(std::move(a_finder)) {

@@ -26,7 +26,7 @@ struct Fixture {
     auto baked = bake_world(*scene, {.cell = 0.1, .classes = {AvatarClass{}}}, context);
     EXPECT_TRUE(baked) << baked.error().message;
     world = *baked;
-    ground = *crowd::CrowdGround::make(*data_of(world), 0, kStep);
+    ground = *crowd::CrowdGround::create(*data_of(world), 0, kStep);
     stride = crowd::StrideGround(ground, kStep);
   }
   // A random body, and a point to look at.

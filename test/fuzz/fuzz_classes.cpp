@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "core/classes_file.h"
-#include "core/config_file.h"
+#include "core/files/classes_file.h"
+#include "core/files/config_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   const std::string text(reinterpret_cast<const char*>(bytes), size);

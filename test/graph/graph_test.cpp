@@ -139,7 +139,7 @@ TEST(Graph, ManyClassesShareOneGraph) {
   auto classes = default_classes();
   AvatarClass climber = classes[0];
   climber.name = "climber";
-  climber.step = 0.6;
+  climber.step_height = 0.6;
   climber.max_slope = 60;
   AvatarClass crawler = classes[0];
   crawler.name = "crawler";

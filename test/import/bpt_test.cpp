@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "core/read_file.h"
+#include "core/files/read_file.h"
 #include "import/patches/patch_edges.h"
 #include "patch_bytes.h"
 #include "patch_nets.h"

@@ -5,10 +5,10 @@
 #include <cstdlib>
 #include <functional>
 
-#include "core/classes_file.h"
-#include "core/config_file.h"
+#include "core/files/classes_file.h"
+#include "core/files/config_file.h"
+#include "core/files/read_file.h"
 #include "core/random.h"
-#include "core/read_file.h"
 #include "import/formats/bsp.h"
 #include "import/formats/city.h"
 #include "import/formats/obj.h"

@@ -6,8 +6,8 @@
 
 #include <cstring>
 
+#include "core/files/read_file.h"
 #include "core/random.h"
-#include "core/read_file.h"
 #include "import/formats/assimp_reader.h"
 #include "scratch_folder.h"
 #include "throng/scene.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/read_file.h"
+#include "core/files/read_file.h"
 #include "import/formats/glb.h"
 #include "import/formats/mtl.h"
 #include "import/formats/texture_reader.h"

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/read_file.h"
+#include "core/files/read_file.h"
 #include "patch_bytes.h"
 #include "patch_nets.h"
 #include "scratch_folder.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
-#include "core/read_file.h"
+#include "core/files/read_file.h"
 #include "scratch_folder.h"
 #include "throng/scene.h"
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/read_file.h"
+#include "core/files/read_file.h"
 #include "import/formats/glb.h"
 #include "import/formats/texture_reader.h"
 #include "throng/scene.h"

@@ -9,9 +9,9 @@
 #include <filesystem>
 #include <set>
 
+#include "core/files/read_file.h"
 #include "core/hash.h"
 #include "core/random.h"
-#include "core/read_file.h"
 #include "import/patches/patch_edges.h"
 #include "patch_bytes.h"
 #include "patch_nets.h"

@@ -7,8 +7,8 @@
 #include <set>
 #include <tuple>
 
+#include "core/math/trig.h"
 #include "core/random.h"
-#include "core/trig.h"
 #include "impostor/figure_raster.h"
 #include "throng/impostor.h"
 

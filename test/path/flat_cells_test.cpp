@@ -5,7 +5,7 @@
 #include "core/random.h"
 #include "grid_oracle.h"
 #include "path/edits/ground_finder.h"
-#include "path/mesh_finder.h"
+#include "path/overlay/mesh_finder.h"
 #include "throng/bake.h"
 #include "throng/path.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "baked.h"
-#include "path/mesh_finder.h"
+#include "path/overlay/mesh_finder.h"
 #include "throng/path.h"
 #include "worlds.h"
 

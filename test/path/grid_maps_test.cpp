@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "path/mesh_finder.h"
+#include "path/overlay/mesh_finder.h"
 #include "throng/bake.h"
 #include "throng/path.h"
 #include "throng/scene.h"

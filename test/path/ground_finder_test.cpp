@@ -13,7 +13,7 @@
 #include "baked.h"
 #include "core/random.h"
 #include "path/edits/solid.h"
-#include "path/mesh_finder.h"
+#include "path/overlay/mesh_finder.h"
 #include "throng/path.h"
 #include "worlds.h"
 

@@ -283,10 +283,13 @@ TEST(GroundQuery, SaysWhatBlocks) {
   EXPECT_EQ(toward(bake(worlds::doorway(0.2), 0.1), {2, 0, 3}, 4, 0), Blocker::kNarrow);
   // Of a slope that no class of a world climbs, the world knows no more than its first cell.
   EXPECT_EQ(toward(bake(worlds::ramp(50, 2), 0.1), {1, 0, 1.5}, 4, 0), Blocker::kSteep);
-  const std::vector<AvatarClass> classes = {
-      {.name = "adult"},
-      {.name = "climber", .max_slope = 70},
-      {.name = "wheelchair", .height = 1.35, .radius = 0.4, .step = 0.02, .max_slope = 3.44}};
+  const std::vector<AvatarClass> classes = {{.name = "adult"},
+                                            {.name = "climber", .max_slope = 70},
+                                            {.name = "wheelchair",
+                                             .height = 1.35,
+                                             .radius = 0.4,
+                                             .step_height = 0.02,
+                                             .max_slope = 3.44}};
   const World ramp = bake(worlds::ramp(30, 2), 0.1, classes);
   EXPECT_EQ(toward(ramp, {1, 0, 1.5}, 4, 0, 2), Blocker::kSteep);
   EXPECT_EQ(toward(ramp, {6, 1.155, 1.5}, -4, 0, 2), Blocker::kSteep);

@@ -8,7 +8,7 @@
 #include "baked.h"
 #include "core/random.h"
 #include "path/edits/solid.h"
-#include "path/node_finder.h"
+#include "path/overlay/node_finder.h"
 #include "path/overlay/overlay_search.h"
 #include "path/surface/node_changes.h"
 #include "path/surface/node_view.h"
@@ -31,7 +31,7 @@ std::vector<AvatarClass> classes() {
   all[1].max_drop = 3;
   all[2].climb_slope = 180;
   all[2].max_drop = 6;
-  all.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step = 0.2});
+  all.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step_height = 0.2});
   all.back().climb_slope = 95;
   return all;
 }
@@ -130,7 +130,7 @@ TEST(NodeObstacles, ASearchOfWhatIsLeftFindsTheSame) {
   for_each_world([&](const TestWorld& world) {
     Context context;
     for (int32_t c = 0; c < 4; ++c) {
-      const auto mesh = graph::NodeMesh::make(world.nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::create(world.nodes, c, 1, context);
       ASSERT_TRUE(mesh);
       const path::BlockSquares squares(*mesh);
       path::NodeChanges changes(*mesh, squares, 20);
@@ -196,7 +196,7 @@ TEST(NodeObstacles, LongPathsLeadOverWhatIsLeft) {
   for_each_world([&](const TestWorld& world) {
     Context context;
     for (const int32_t c : {0, 2, 3}) {
-      const auto mesh = graph::NodeMesh::make(world.nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::create(world.nodes, c, 1, context);
       ASSERT_TRUE(mesh);
       const path::BlockSquares squares(*mesh);
       path::NodeChanges changes(*mesh, squares, 20);
@@ -318,7 +318,7 @@ TEST(NodeObstacles, BlockNoMoreThanNeeded) {
   for_each_world([&](const TestWorld& world) {
     Context context;
     for (int32_t c = 0; c < 4; ++c) {
-      const auto mesh = graph::NodeMesh::make(world.nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::create(world.nodes, c, 1, context);
       ASSERT_TRUE(mesh);
       const path::BlockSquares squares(*mesh);
       path::NodeChanges changes(*mesh, squares, 20);

@@ -12,8 +12,8 @@
 #include "core/random.h"
 #include "graph/node_mesh.h"
 #include "patch_nets.h"
-#include "path/mesh_finder.h"
-#include "path/node_finder.h"
+#include "path/overlay/mesh_finder.h"
+#include "path/overlay/node_finder.h"
 #include "path/surface/block_squares.h"
 #include "path/surface/node_parts.h"
 #include "path/surface/node_search.h"
@@ -31,7 +31,7 @@ std::vector<AvatarClass> classes() {
   std::vector<AvatarClass> all = default_classes();
   all.push_back({.name = "climber"});
   all.back().climb_slope = 180;
-  all.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step = 0.2});
+  all.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step_height = 0.2});
   all.back().climb_slope = 95;
   return all;
 }
@@ -110,7 +110,7 @@ TEST(NodePath, SearchFindsTheCheapestCrossings) {
   for (const double slope_cost : {0.0, 3.0}) {
     const Nodes nodes = make(net_scene(7), 0.25, 1);
     for (const int32_t c : {0, 4}) {
-      const auto mesh = graph::NodeMesh::make(nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::create(nodes, c, 1, context);
       ASSERT_TRUE(mesh);
       const path::NodeView view(*mesh);
       const path::PieceCost piece(view, slope_cost);
@@ -259,7 +259,7 @@ TEST(NodePath, EndsAtTheNearestPlaceThatIsReached) {
         {make(builtin({.name = "landscape", .size = 100}), 0.5, 2), 0},
         {make(builtin({.name = "landscape", .size = 100}), 0.5, 2), 5}}) {
     path::NodeFinder found = finder(nodes, avatar_class);
-    const auto mesh = graph::NodeMesh::make(nodes, avatar_class, 1, context);
+    const auto mesh = graph::NodeMesh::create(nodes, avatar_class, 1, context);
     ASSERT_TRUE(mesh);
     const path::NodeView view(*mesh);
     const path::NodeParts parts(*mesh, 1);
@@ -365,7 +365,7 @@ TEST(NodePath, FindPlaceFindsWhatASearchThroughAllBlocksFinds) {
     const Nodes nodes = rocks ? make(builtin({.name = "landscape", .size = 64}), 0.5, 2)
                               : make(net_scene(6), 0.25, 1);
     const path::NodeFinder found = finder(nodes, 4);
-    const auto mesh = graph::NodeMesh::make(nodes, 4, 1, context);
+    const auto mesh = graph::NodeMesh::create(nodes, 4, 1, context);
     ASSERT_TRUE(mesh);
     size_t places = 0;
     for (uint64_t n = 0; n < 300; ++n) {

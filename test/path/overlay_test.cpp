@@ -26,7 +26,7 @@ std::vector<AvatarClass> classes() {
   all.push_back({.name = "climber"});
   all.back().climb_slope = 180;
   all.back().max_drop = 6;
-  all.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step = 0.2});
+  all.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step_height = 0.2});
   all.back().climb_slope = 95;
   all[0].max_drop = 3;
   return all;
@@ -41,7 +41,7 @@ void for_each_mesh(Check check) {
     const auto nodes = Nodes::create(bake(scene, 0.25, classes()), scene, {.size = 1}, context);
     ASSERT_TRUE(nodes) << nodes.error().message;
     for (const int32_t c : {0, 3, 4, 5}) {
-      const auto mesh = graph::NodeMesh::make(*nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::create(*nodes, c, 1, context);
       ASSERT_TRUE(mesh);
       check(*mesh);
     }

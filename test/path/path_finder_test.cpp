@@ -11,10 +11,10 @@
 
 #include "baked.h"
 #include "core/random.h"
+#include "path/air/flight_finder.h"
 #include "path/edits/ground_finder.h"
-#include "path/flight_finder.h"
-#include "path/mesh_finder.h"
-#include "path/node_finder.h"
+#include "path/overlay/mesh_finder.h"
+#include "path/overlay/node_finder.h"
 #include "throng/path.h"
 #include "worlds.h"
 

@@ -12,7 +12,7 @@
 #include "baked.h"
 #include "core/random.h"
 #include "path/edits/ground_finder.h"
-#include "path/mesh_finder.h"
+#include "path/overlay/mesh_finder.h"
 #include "throng/bake.h"
 #include "throng/world.h"
 #include "worlds.h"
@@ -281,8 +281,8 @@ Scene hills(uint64_t seed, double side, double steepest) {
 
 TEST(Path, LeadsAroundTheEndsOfRisesThatAreTooHigh) {
   const std::vector<AvatarClass> classes{
-      {.name = "low", .height = 1.5, .radius = 0.25, .step = 0.05, .max_slope = 40},
-      {.name = "high", .height = 1.5, .radius = 0.25, .step = 0.08, .max_slope = 40}};
+      {.name = "low", .height = 1.5, .radius = 0.25, .step_height = 0.05, .max_slope = 40},
+      {.name = "high", .height = 1.5, .radius = 0.25, .step_height = 0.08, .max_slope = 40}};
   Context context;
   uint64_t together = 0, apart = 0;
   double sum = 0, by_live = 0;

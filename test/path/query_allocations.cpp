@@ -4,10 +4,10 @@
 #include <functional>
 #include <string>
 
+#include "path/air/flight_finder.h"
 #include "path/edits/ground_finder.h"
-#include "path/flight_finder.h"
-#include "path/mesh_finder.h"
-#include "path/node_finder.h"
+#include "path/overlay/mesh_finder.h"
+#include "path/overlay/node_finder.h"
 #include "support/counted_allocations.h"
 #include "throng/bake.h"
 #include "throng/path.h"

@@ -10,7 +10,7 @@
 #include "path/edits/ground_finder.h"
 #include "path/ground/mesh.h"
 #include "path/ground/search.h"
-#include "path/mesh_finder.h"
+#include "path/overlay/mesh_finder.h"
 #include "throng/crowd.h"
 #include "throng/path.h"
 

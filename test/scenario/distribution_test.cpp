@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/logarithm.h"
+#include "core/math/logarithm.h"
 #include "core/random.h"
 #include "scenario/spawn_times.h"
 #include "throng/scenario.h"

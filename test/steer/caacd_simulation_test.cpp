@@ -397,9 +397,9 @@ TEST(CaacdSimulation, AnySpaceStaysFiniteAndWithinTheSpeed) {
     const auto trigger = static_cast<Trigger>(1 + seed % 3);
     Model model{.mass = seed % 2 == 0 ? 1e-6 : 2, .max_speed = 1.2, .max_force = 1e3};
     model.trigger = trigger;
-    const auto run = Simulation::create(space, model, seed % 5 == 0 ? 100 : 1);
+    auto run = Simulation::create(space, model, seed % 5 == 0 ? 100 : 1);
     ASSERT_TRUE(run);
-    Simulation walked = *run;
+    Simulation walked = *std::move(run);
     for (int i = 0; i < 200; ++i) walked.step();
     for (const Body& body : walked.bodies()) {
       ASSERT_LT(std::fabs(body.position.x), 1e6) << seed;

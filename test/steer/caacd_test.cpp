@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "throng/papers.h"
+#include "throng/steering.h"
 
 // Each equation of [CAACD] against values worked out by hand, then what must hold for any input.
 namespace throng::caacd {
@@ -72,7 +72,7 @@ TEST(Caacd, PositionsThenByEquations7To9) {
   expect_near(threat.self_then, {7, 0, 0});
   expect_near(threat.other_then, {10, 0, -3});
   EXPECT_NEAR(threat.distance, std::sqrt(18.0), 1e-12);
-  EXPECT_EQ(threat.level, State::kCritical);  // 4.24 <= 15
+  EXPECT_EQ(threat.state, State::kCritical);  // 4.24 <= 15
 }
 
 TEST(Caacd, LengthByEquation10) {
@@ -104,18 +104,18 @@ TEST(Caacd, LengthByEquation10StaysWithinItsBounds) {
 
 TEST(Caacd, AThreatIsJudgedByTimeAndDistanceThen) {
   const Model model = brisk();
-  const auto level = [&](double distance_then, double start) {
-    return threat_of(body(0, 0, 1, 0), body(start, distance_then, -1, 0), model).level;
+  const auto state = [&](double distance_then, double start) {
+    return threat_of(body(0, 0, 1, 0), body(start, distance_then, -1, 0), model).state;
   };
-  EXPECT_EQ(level(0, 50), State::kCritical);
-  EXPECT_EQ(level(15, 50), State::kCritical);  // r_pre = 7.5 + 7.5
-  EXPECT_EQ(level(15.01, 50), State::kAlert);
-  EXPECT_EQ(level(20, 50), State::kAlert);  // r_alert = 10 + 10
-  EXPECT_EQ(level(20.01, 50), State::kTolerable);
-  EXPECT_EQ(level(0, 119.9), State::kCritical);  // 59.95 frames
-  EXPECT_EQ(level(0, 120), State::kTolerable);   // T3 itself is too late
-  EXPECT_EQ(level(0, -1), State::kTolerable);    // they part
-  EXPECT_EQ(level(0, 0), State::kCritical);      // now
+  EXPECT_EQ(state(0, 50), State::kCritical);
+  EXPECT_EQ(state(15, 50), State::kCritical);  // r_pre = 7.5 + 7.5
+  EXPECT_EQ(state(15.01, 50), State::kAlert);
+  EXPECT_EQ(state(20, 50), State::kAlert);  // r_alert = 10 + 10
+  EXPECT_EQ(state(20.01, 50), State::kTolerable);
+  EXPECT_EQ(state(0, 119.9), State::kCritical);  // 59.95 frames
+  EXPECT_EQ(state(0, 120), State::kTolerable);   // T3 itself is too late
+  EXPECT_EQ(state(0, -1), State::kTolerable);    // they part
+  EXPECT_EQ(state(0, 0), State::kCritical);      // now
 }
 
 TEST(Caacd, ParallelCoursesAreJudgedByTheirPresentDistance) {
@@ -124,20 +124,20 @@ TEST(Caacd, ParallelCoursesAreJudgedByTheirPresentDistance) {
     return threat_of(body(0, 0, 1, 0), body(0, z, 1, 0, 1), model);
   };
   EXPECT_EQ(nearest_approach(body(0, 0, 1, 0), body(0, 9, 1, 0)).time, 0);
-  EXPECT_EQ(beside(12).level, State::kCritical);
-  EXPECT_EQ(beside(18).level, State::kAlert);
-  EXPECT_EQ(beside(21).level, State::kTolerable);
+  EXPECT_EQ(beside(12).state, State::kCritical);
+  EXPECT_EQ(beside(18).state, State::kAlert);
+  EXPECT_EQ(beside(21).state, State::kTolerable);
   EXPECT_EQ(beside(12).time, 0);
   EXPECT_EQ(beside(12).distance, 12);
 }
 
 TEST(Caacd, OnlyABodyInTheAlertFieldIsAThreat) {
   const Model near = brisk(Trigger::kNear);
-  EXPECT_EQ(threat_of(body(0, 0, 1, 0), body(20.1, 0, -1, 0), near).level, State::kTolerable);
-  EXPECT_EQ(threat_of(body(0, 0, 1, 0), body(20, 0, -1, 0), near).level, State::kCritical);
+  EXPECT_EQ(threat_of(body(0, 0, 1, 0), body(20.1, 0, -1, 0), near).state, State::kTolerable);
+  EXPECT_EQ(threat_of(body(0, 0, 1, 0), body(20, 0, -1, 0), near).state, State::kCritical);
   // In it, but leaving it.
-  EXPECT_EQ(threat_of(body(0, 0, -1, 0), body(12, 0, 1, 0), near).level, State::kTolerable);
-  EXPECT_EQ(threat_of(body(0, 0, 1, 0), body(12, 0, -1, 0), brisk(Trigger::kNever)).level,
+  EXPECT_EQ(threat_of(body(0, 0, -1, 0), body(12, 0, 1, 0), near).state, State::kTolerable);
+  EXPECT_EQ(threat_of(body(0, 0, 1, 0), body(12, 0, -1, 0), brisk(Trigger::kNever)).state,
             State::kTolerable);
 }
 
@@ -195,14 +195,14 @@ TEST(Caacd, ZonesMeetIffSomePointLiesInBoth) {
 TEST(Caacd, ObstaclesThreatenWhenTheZoneOverlapsTheirPrecautionField) {
   const Model model = brisk();
   const Fields fields{10, 15, 25};
-  const auto level = [&](const Body& a, double x, double z) {
-    return threat_of(a, Obstacle{{x, 0, z}, fields}, model).level;
+  const auto state = [&](const Body& a, double x, double z) {
+    return threat_of(a, Obstacle{{x, 0, z}, fields}, model).state;
   };
-  EXPECT_EQ(level(body(0, 0, 1, 0), 22.6, 0), State::kTolerable);  // 7.5 + 15
-  EXPECT_EQ(level(body(0, 0, 1, 0), 22.4, 0), State::kCritical);
-  EXPECT_EQ(level(body(0, 0, 1, 0), 5, 19.9), State::kCritical);  // 5 + 15 beside
-  EXPECT_EQ(level(body(0, 0, 1, 0), 5, 20.1), State::kTolerable);
-  EXPECT_EQ(level(body(0, 0, 1, 0), -3, 12), State::kTolerable);  // behind
+  EXPECT_EQ(state(body(0, 0, 1, 0), 22.6, 0), State::kTolerable);  // 7.5 + 15
+  EXPECT_EQ(state(body(0, 0, 1, 0), 22.4, 0), State::kCritical);
+  EXPECT_EQ(state(body(0, 0, 1, 0), 5, 19.9), State::kCritical);  // 5 + 15 beside
+  EXPECT_EQ(state(body(0, 0, 1, 0), 5, 20.1), State::kTolerable);
+  EXPECT_EQ(state(body(0, 0, 1, 0), -3, 12), State::kTolerable);  // behind
   const Threat threat = threat_of(body(0, 2, 0.5, 0), Obstacle{{20, 0, 0}, fields}, model);
   EXPECT_DOUBLE_EQ(threat.time, 40);
   EXPECT_DOUBLE_EQ(threat.distance, 2);
@@ -225,7 +225,7 @@ TEST(Caacd, TheGreatestThreatIsTheSoonestThenTheNearestThenTheLowestId) {
   EXPECT_EQ(greatest_threat(self, std::span(others).first(4), {}, model).id, 7u);
   EXPECT_EQ(greatest_threat(self, std::span(others).first(3), {}, model).id, 2u);
   EXPECT_EQ(greatest_threat(self, std::span(others).first(2), {}, model).id, 1u);
-  EXPECT_EQ(greatest_threat(self, std::span(others).first(1), {}, model).level, State::kTolerable);
+  EXPECT_EQ(greatest_threat(self, std::span(others).first(1), {}, model).state, State::kTolerable);
   const std::vector<Obstacle> wall = {{{20, 0, 0}, {8, 13, 20}}};
   EXPECT_EQ(greatest_threat(self, std::span(others).first(2), wall, model).id, 1u);  // 20 and 20,
   const Body faster = body(20.5, 0, -1.2, 0, 1);
@@ -321,7 +321,7 @@ TEST(Caacd, CrossingTheLaterOneBrakesAndTheEarlierOneGoesOn) {
   const Model model = brisk();
   const Body early = body(-18, 0, 1.5, 0, 0), late = body(0, -22, 0, 1.5, 1);
   const Threat seen = threat_of(late, early, model);
-  EXPECT_EQ(seen.level, State::kCritical);
+  EXPECT_EQ(seen.state, State::kCritical);
   EXPECT_LT(forward_avoidance(late, seen, model).z, 0);
   EXPECT_GT(forward_avoidance(early, threat_of(early, late, model), model).x, 0);
 }
@@ -330,7 +330,7 @@ TEST(Caacd, BodiesAtOnePointPart) {
   const Model model = brisk();
   const Body a = body(3, 3, 1, 0, 4), b = body(3, 3, 1, 0, 8);
   const Threat ta = threat_of(a, b, model), tb = threat_of(b, a, model);
-  EXPECT_EQ(ta.level, State::kCritical);
+  EXPECT_EQ(ta.state, State::kCritical);
   EXPECT_EQ(ta.distance, 0);
   expect_near(lateral_avoidance(a, ta, model), {0, 0, 0.5});  // the smaller id to its right
   expect_near(lateral_avoidance(b, tb, model), {0, 0, -0.5});
@@ -386,8 +386,8 @@ TEST(Caacd, AQuarterTurnOfEverythingTurnsTheForceAndNothingElse) {
       const Body a = random_body(3, i, 0, 15, 1.4), b = random_body(3, i, 1, 15, 1.4);
       const Body a2 = moved(a, quarter_turn), b2 = moved(b, quarter_turn);
       const Threat threat = threat_of(a, b, model), turned = threat_of(a2, b2, model);
-      ASSERT_EQ(threat.level, turned.level);
-      if (threat.level == State::kTolerable) continue;
+      ASSERT_EQ(threat.state, turned.state);
+      if (threat.state == State::kTolerable) continue;
       ++threats;
       EXPECT_EQ(threat.time, turned.time);  // bit by bit: sums of two commute
       expect_near(quarter_turn(avoidance(a, threat, model)), avoidance(a2, turned, model), 1e-15);
@@ -405,7 +405,7 @@ TEST(Caacd, AMirrorMirrorsTheForceWhereTheOtherIsNotDeadAhead) {
     const Model model = brisk();
     const Body a = random_body(4, i, 0, 25, 1.4), b = random_body(4, i, 1, 25, 1.4);
     const Threat threat = threat_of(a, b, model);
-    if (threat.level == State::kTolerable) continue;
+    if (threat.state == State::kTolerable) continue;
     ++threats;
     const Body a2 = moved(a, mirrored);
     const Threat other = threat_of(a2, moved(b, mirrored), model);
@@ -422,7 +422,7 @@ TEST(Caacd, NoBodyBeyondTheThreatRadiusIsAThreat) {
     model.lambda1 = 0.5;
     for (uint64_t i = 0; i < 20000; ++i) {
       const Body a = random_body(5, i, 0, 200, 1.4), b = random_body(5, i, 1, 200, 1.4);
-      if (threat_of(a, b, model).level == State::kTolerable) continue;
+      if (threat_of(a, b, model).state == State::kTolerable) continue;
       ++threats;
       EXPECT_LE(length(a.position - b.position), threat_radius(a, kFields.alert, model));
     }
@@ -435,7 +435,7 @@ TEST(Caacd, TheThreatRadiusAllowsForALengthThatIsTooShort) {
   model.length = Length::kMaxAndSum;
   model.trigger = Trigger::kThreat;
   const Body a = body(0, 0, 0, 0), b = body(39, 0, 0, 0, 1);  // 19.5 by eq. 10
-  EXPECT_EQ(threat_of(a, b, model).level, State::kAlert);
+  EXPECT_EQ(threat_of(a, b, model).state, State::kAlert);
   EXPECT_GE(threat_radius(a, kFields.alert, model), 39);
 }
 
@@ -463,7 +463,7 @@ TEST(Caacd, AnyInputGivesFiniteForcesWithinTheLimits) {
     const std::array<Obstacle, 1> wall{{{{pick(20), 0, pick(21)}, {5, 8, 12}}}};
     const Threat threat = greatest_threat(a, std::array<Body, 1>{b}, wall, model);
     std::vector<Vec3d> forces = {path_amendment(a, {pick(22), 0, pick(23)}, 0, model)};
-    if (threat.level != State::kTolerable) forces.push_back(avoidance(a, threat, model));
+    if (threat.state != State::kTolerable) forces.push_back(avoidance(a, threat, model));
     for (const Vec3d force : forces) {
       ASSERT_LE(length(force), 0.5 * (1 + 1e-12)) << i;  // false for a NaN as well
       ASSERT_LE(length(steered(a.velocity, force, 1, model)), 1 + 1e-12) << i;
@@ -475,7 +475,7 @@ TEST(Caacd, AnyInputGivesFiniteForcesWithinTheLimits) {
 
 TEST(Caacd, TheMoreUrgentThreatIsSoonerThenNearerThenOfTheSmallerId) {
   Threat base;
-  base.level = State::kAlert, base.time = 4, base.distance = 3, base.id = 7;
+  base.state = State::kAlert, base.time = 4, base.distance = 3, base.id = 7;
   Threat sooner = base, nearer = base, smaller = base;
   sooner.time = 3, sooner.distance = 9, sooner.id = 9;
   nearer.distance = 2, nearer.id = 9;

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "throng/papers.h"
+#include "throng/steering.h"
 
 namespace throng::steer {
 namespace {
@@ -77,7 +77,7 @@ TEST(SteeringModels, ACurveIsThatOfTheEquations) {
   const std::array<caacd::Body, 2> near{body(others[0].at, others[0].velocity, 0.25, 7),
                                         body(others[1].at, others[1].velocity, 0.3f, 8)};
   const caacd::Threat threat = caacd::greatest_threat(self, near, {}, model);
-  ASSERT_NE(threat.level, caacd::State::kTolerable);
+  ASSERT_NE(threat.state, caacd::State::kTolerable);
   const Vec3d v = caacd::steered(self.velocity, caacd::avoidance(self, threat, model), 2, model);
   const Plane got = preferred_velocity(kCurves, view, dt);
   EXPECT_NEAR(got.x, v.x / speed, 1e-5);

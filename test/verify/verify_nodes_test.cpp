@@ -28,7 +28,7 @@ const Nodes& yard_nodes() {
   static const Nodes nodes = [] {
     Context context;
     const auto world = bake_world(
-        yard(), {.cell = 0.2, .classes = {{.name = "adult"}, {.name = "ogre", .step = 0.6}}},
+        yard(), {.cell = 0.2, .classes = {{.name = "adult"}, {.name = "ogre", .step_height = 0.6}}},
         context);
     EXPECT_TRUE(world) << world.error().message;
     const auto made = Nodes::create(*world, yard(), {}, context);

@@ -81,8 +81,8 @@ void watch(At at, int32_t steps) {
   Context context;
   const Vec3d origin{80, 0, 80};
   constexpr uint32_t kAll = 600;
-  auto made = view::CrowdPlayer::make(town().world, {}, start_with(kAll), 1, origin,
-                                      view::occluders_of(town().scene, origin), context);
+  auto made = view::CrowdPlayer::create(town().world, {}, start_with(kAll), 1, origin,
+                                        view::occluders_of(town().scene, origin), context);
   ASSERT_TRUE(made) << made.error().message;
   view::CrowdPlayer& player = **made;
   EXPECT_EQ(player.next(), nullptr);  // It waits for look_from().
@@ -230,7 +230,7 @@ TEST(OnlySeen, FarAvatarsAreInLowDetailIfSet) {
     CrowdStart start;
     start.avatars = 100;
     start.coarse_far = coarse;
-    auto made = view::CrowdPlayer::make(town().world, {}, start, 1, {}, nullptr, context);
+    auto made = view::CrowdPlayer::create(town().world, {}, start, 1, {}, nullptr, context);
     ASSERT_TRUE(made);
     (*made)->look_from({.eye = {80, 900, 80}});
     (void)(*made)->next();

@@ -364,7 +364,7 @@ TEST(CrowdPlayer, PeopleGoWhereItIsPainted) {
   Context context;
   CrowdStart start;
   start.avatars = 24;
-  auto player = view::CrowdPlayer::make(two_floors().world, {}, start, 1, {}, nullptr, context);
+  auto player = view::CrowdPlayer::create(two_floors().world, {}, start, 1, {}, nullptr, context);
   ASSERT_TRUE(player) << player.error().message;
   std::vector<DensityMap> maps;
   const auto near = [](const view::TimelineFrame& moment, double x, double z, double within) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 // node page_test.mjs SITE FOLDER: uses the page as a visitor does. FOLDER holds walk.replay, garage.throng and
-// garage.throng.tar (scripts/test_web makes them); pictures of what went wrong go to $PICTURES.
+// garage.throng.tar (scripts/tests/test_web makes them); pictures of what went wrong go to $PICTURES.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

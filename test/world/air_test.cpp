@@ -14,9 +14,9 @@
 #include "core/hash.h"
 #include "core/random.h"
 #include "path/air/air_view.h"
+#include "path/air/flight_finder.h"
 #include "path/air/flight_space.h"
-#include "path/flight_finder.h"
-#include "path/mesh_finder.h"
+#include "path/overlay/mesh_finder.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
 #include "throng/path.h"
@@ -32,8 +32,8 @@ using test::ScratchFolder;
 
 std::vector<AvatarClass> flyers() {
   return {flyer_class(),
-          {.name = "bee", .height = 0.1, .radius = 0.02, .step = 0.02, .flies = true},
-          {.name = "whale", .height = 1.3, .radius = 0.9, .step = 0.2, .flies = true}};
+          {.name = "bee", .height = 0.1, .radius = 0.02, .step_height = 0.02, .flies = true},
+          {.name = "whale", .height = 1.3, .radius = 0.9, .step_height = 0.2, .flies = true}};
 }
 
 // Boxes and slanted triangles at random, on no ground.

@@ -6,7 +6,7 @@
 
 #include "core/access.h"
 #include "core/random.h"
-#include "path/mesh_finder.h"
+#include "path/overlay/mesh_finder.h"
 #include "throng/bake.h"
 #include "throng/papers.h"
 #include "throng/path.h"

@@ -346,7 +346,7 @@ TEST(World, WalkersOfAStackOfFloorsNeverLeaveTheLegalCells) {
   const World world = garage();
   const Content content(world);
   for (const int32_t c : {0, 1, 2, 3}) {
-    const double step = world.summary().classes[static_cast<size_t>(c)].step;
+    const double step = world.summary().classes[static_cast<size_t>(c)].step_height;
     int32_t arrived = 0, blocked = 0, changed = 0;
     for (uint64_t walker = 0; walker < 40; ++walker) {
       Place place = world.random_place(c, 5, walker);

@@ -8,9 +8,9 @@
 
 #include "core/access.h"
 #include "core/random.h"
+#include "graph/node_data.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
-#include "world/node_data.h"
 #include "world/region_data.h"
 #include "world/zone_data.h"
 #include "worlds.h"
@@ -193,7 +193,7 @@ TEST(FuzzSeeds, RegionsAndLinksAreOfThisVersion) {
 TEST(FuzzSeeds, TheNodesAreOfThisVersion) {
   auto file = FileMap::open(THRONG_TEST_DATA "/../fuzz/seeds/nodes/small.thn");
   ASSERT_TRUE(file);
-  const auto zone = world::NodeZone::from_file(*std::move(file), "small.thn");
+  const auto zone = graph::NodeZone::from_file(*std::move(file), "small.thn");
   ASSERT_TRUE(zone) << zone.error().message;
   EXPECT_GT((*zone)->nodes().size(), 0u);
 }

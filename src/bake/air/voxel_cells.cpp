@@ -43,7 +43,7 @@ Result<World> bake_voxel_cells(const VoxelCells& cells, double cell) {
   summary.tiles_x = (cells.width + kTileCells - 1) / kTileCells;
   summary.tiles_z = (cells.depth + kTileCells - 1) / kTileCells;
   summary.classes = {
-      AvatarClass{.name = "point", .height = 0.1, .radius = 0.01, .step = 0, .flies = true}};
+      AvatarClass{.name = "point", .height = 0.1, .radius = 0.01, .step_height = 0, .flies = true}};
   summary.walkable_area = {0};
   world->width = cells.width;
   world->depth = cells.depth;

@@ -8,8 +8,8 @@
 
 #include "bake/air/air_clearance.h"
 #include "bake/columns/columns.h"
-#include "core/floor_div.h"
 #include "core/hash.h"
+#include "core/math/floor_div.h"
 #include "core/parallel.h"
 #include "world/air_rows.h"
 

@@ -15,7 +15,7 @@
 #endif
 
 #include "bake/surface/node_folder.h"
-#include "core/file_map.h"
+#include "core/files/file_map.h"
 #include "core/hash.h"
 #include "world/sealed_file.h"
 
@@ -104,7 +104,7 @@ Result<WorldFolder> WorldFolder::begin(std::string path, OldZones old_zones) {
     }
   }
   WorldFolder folder(path);
-  auto part_lock = FolderLock::make(folder.part(), path);
+  auto part_lock = FolderLock::create(folder.part(), path);
   if (!part_lock) {
     folder.leave();
     return part_lock.error();

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/folder_lock.h"
+#include "core/files/folder_lock.h"
 #include "throng/bake.h"
 #include "throng/base.h"
 #include "world/air_data.h"

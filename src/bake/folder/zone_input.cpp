@@ -68,7 +68,8 @@ uint64_t zone_input(const BakePlan& plan, int32_t zone_x, int32_t zone_z,
                               plan.config->classes.size(),
                               triangles.size()};
   for (const AvatarClass& avatar : plan.config->classes) {
-    for (const double number : {avatar.height, avatar.radius, avatar.step, avatar.max_slope}) {
+    for (const double number :
+         {avatar.height, avatar.radius, avatar.step_height, avatar.max_slope}) {
       words.push_back(std::bit_cast<uint64_t>(number));
     }
   }

@@ -95,7 +95,7 @@ BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double ce
   BodyWindow body;
   body.bottom = bottom_mm(avatar);
   body.height = height_mm(avatar);
-  body.step = static_cast<int32_t>(std::floor(avatar.step * 1000 + 1e-6));
+  body.step = static_cast<int32_t>(std::floor(avatar.step_height * 1000 + 1e-6));
   body.class_bit = 1u << class_index;
   // Cells at distance (dx, dz) are max(|d| - 1, 0) cells apart; a body that just touches is not in.
   const double radius = avatar.radius / cell - 1e-9;
@@ -103,7 +103,7 @@ BodyWindow body_window(const AvatarClass& avatar, int32_t class_index, double ce
   // A plane of gradient g that carries the body rises g r <= bottom under it; the cells that the
   // body reaches lie up to r + sqrt(2) away, and their tops half their tilt above their centres.
   body.hope = static_cast<int32_t>(std::min(60000.0, body.bottom * (1 + 2.2 / body.radius))) + 3;
-  body.barely = avatar.step < body_bottom(avatar);
+  body.barely = avatar.step_height < body_bottom(avatar);
   body.fine = fine && body.radius >= 1.5;  // more than a cell's diagonal
   body.gentle = body.bottom / 16;
   for (int32_t dz = 0;; ++dz) {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/float_origin.h"
+#include "core/math/float_origin.h"
 #include "core/parallel.h"
 
 // Exact tests of one triangle against an upright cylinder, a prism or a cylinder that moves: the

@@ -123,8 +123,8 @@ bake::NodeBatchInput bake::NodeBaker::batch_input(bool is_last, Context& context
           .context = context};
 }
 
-Result<bake::NodeSlots> bake::NodeBaker::make(std::span<const uint32_t> zones, bool is_last,
-                                              Context& context) {
+Result<bake::NodeSlots> bake::NodeBaker::make_nodes(std::span<const uint32_t> zones, bool is_last,
+                                                    Context& context) {
   return bake::make_node_batch(batch_input(is_last, context), zones);
 }
 
@@ -150,7 +150,7 @@ void bake::NodeBaker::enter(std::span<const Made> made, bake::NodeSlots* slots) 
     is_done_[made[i].zone] = 1;
     if (made[i].has_nodes == 0) continue;
     auto& slot = slots_[made[i].zone];
-    slot = slots != nullptr ? std::move((*slots)[i]) : std::make_unique<world::NodeData::Slot>();
+    slot = slots != nullptr ? std::move((*slots)[i]) : std::make_unique<graph::NodeData::Slot>();
     slot->entry = made[i].entry;
   }
 }
@@ -159,17 +159,17 @@ Result<void> bake::NodeBaker::list() {
   return folder_ != nullptr ? folder_->list(*gather()) : Result<void>();
 }
 
-Result<std::shared_ptr<world::NodeData>> bake::NodeBaker::finish() {
+Result<std::shared_ptr<graph::NodeData>> bake::NodeBaker::finish() {
   auto nodes = gather();
-  if (nodes->node_count >= world::kFarNode) return bake::too_many_nodes();
+  if (nodes->node_count >= graph::kFarNode) return bake::too_many_nodes();
   nodes->summary.zones_reused = reused_;
   nodes->summary.zones_made = plan_.zones.size() - reused_;
   return nodes;
 }
 
 // What is done so far. Where nodes stay in memory they are in it, and no longer here.
-std::shared_ptr<world::NodeData> bake::NodeBaker::gather() {
-  auto nodes = std::make_shared<world::NodeData>();
+std::shared_ptr<graph::NodeData> bake::NodeBaker::gather() {
+  auto nodes = std::make_shared<graph::NodeData>();
   nodes->world = world_;
   nodes->world_hash = bake::world_hash(data_);
   nodes->size = config_.size;
@@ -182,11 +182,11 @@ std::shared_ptr<world::NodeData> bake::NodeBaker::gather() {
       nodes->inputs.emplace_back(plan_.zones[z].x, plan_.zones[z].z, plan_.zones[z].input);
     }
     if (slots_[z] == nullptr) continue;
-    auto slot = std::make_unique<world::NodeData::Slot>();
+    auto slot = std::make_unique<graph::NodeData::Slot>();
     slot->entry = slots_[z]->entry;
     slot->zone = std::move(slots_[z]->zone);
     slot->first_node = static_cast<uint32_t>(count);
-    count = std::min<uint64_t>(count + slot->entry.nodes(), world::kFarNode);
+    count = std::min<uint64_t>(count + slot->entry.nodes(), graph::kFarNode);
     nodes->summary.bytes += slot->entry.bytes();
     nodes->summary.patches += slot->entry.patches();
     nodes->slots.push_back(std::move(slot));
@@ -200,7 +200,7 @@ std::shared_ptr<world::NodeData> bake::NodeBaker::gather() {
 namespace {
 
 // By this process alone.
-Result<std::shared_ptr<world::NodeData>> make_all(const World& world, const Scene& scene,
+Result<std::shared_ptr<graph::NodeData>> make_all(const World& world, const Scene& scene,
                                                   const NodeConfig& config, Context& context,
                                                   const bake::NodeFolder* folder) {
   const auto start = Clock::now();
@@ -213,7 +213,7 @@ Result<std::shared_ptr<world::NodeData>> make_all(const World& world, const Scen
     if (context.on_progress) context.on_progress({"nodes", baker.zones_done(), baker.zones()});
     // The journal names what is there before the rest is begun.
     if (auto ok = baker.list(); !ok) return ok.error();
-    auto slots = baker.make(batches[b], b + 1 == batches.size(), context);
+    auto slots = baker.make_nodes(batches[b], b + 1 == batches.size(), context);
     if (!slots) return slots.error();
     const auto made = baker.write(batches[b], *slots);
     if (!made) return made.error();
@@ -264,7 +264,7 @@ Result<Nodes> Nodes::create_in_folder(const World& world, const Scene& scene,
     return made.error();
   }
   if (auto ok = folder->finish(**made); !ok) return ok.error();
-  (*made)->path = data_of(world)->path + "/" + world::kNodeFolder;
+  (*made)->path = data_of(world)->path + "/" + graph::kNodeFolder;
   return Nodes(*made);
 }
 
@@ -279,7 +279,7 @@ Result<void> Nodes::write(const std::string& world_path, int32_t workers) const 
   if (!folder) return folder.error();
   std::vector<std::optional<Error>> failed(state_->slots.size());
   parallel_for(failed.size(), workers, [&](size_t s) {
-    const world::NodeZone* zone = state_->zone(s);
+    const graph::NodeZone* zone = state_->zone(s);
     if (zone == nullptr) {
       failed[s] = Error{Errc::kBadFile, state_->slots[s]->error};
     } else if (auto ok = folder->write(*zone); !ok) {

@@ -54,7 +54,7 @@ class NodeBaker {
   [[nodiscard]] uint64_t zones_done() const;
 
   /// `is_last`: triangles are let go as soon as may be.
-  Result<NodeSlots> make(std::span<const uint32_t> zones, bool is_last, Context& context);
+  Result<NodeSlots> make_nodes(std::span<const uint32_t> zones, bool is_last, Context& context);
   /// Writes what was made into the folder, if there is one, and lets it go.
   Result<std::vector<Made>> write(std::span<const uint32_t> zones, NodeSlots& made) const;
   /// Enters what was made by this process, with `slots`, or by another.
@@ -62,11 +62,11 @@ class NodeBaker {
   /// Writes for the next bake what is in the folder so far.
   Result<void> list();
   /// All of them, once they are made. Fails with kLimit: too many.
-  Result<std::shared_ptr<world::NodeData>> finish();
+  Result<std::shared_ptr<graph::NodeData>> finish();
 
  private:
   [[nodiscard]] NodeBatchInput batch_input(bool is_last, Context& context);
-  [[nodiscard]] std::shared_ptr<world::NodeData> gather();
+  [[nodiscard]] std::shared_ptr<graph::NodeData> gather();
 
   const World& world_;
   const world::WorldData& data_;

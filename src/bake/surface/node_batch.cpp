@@ -25,7 +25,7 @@
 namespace throng::bake {
 namespace {
 
-static_assert(world::kPartialLevel + graph::kPartialDepth == graph::kTileDepth);
+static_assert(graph::kPartialLevel + graph::kPartialDepth == graph::kTileDepth);
 
 // Cells between which a body goes straight though they do not touch.
 struct HoleLink {
@@ -64,7 +64,7 @@ class NodeBatch {
     judge_patches();
     if (context_.cancel) return cancelled();
     grow_trees();
-    if (forest_.size() >= world::kFarNode) return too_many_nodes();
+    if (forest_.size() >= graph::kFarNode) return too_many_nodes();
     find_pairs();
     if (context_.cancel) return cancelled();
     add_drops();
@@ -477,7 +477,7 @@ class NodeBatch {
     return links;
   }
 
-  Result<std::unique_ptr<world::NodeData::Slot>> pack_zone(size_t z) const {
+  Result<std::unique_ptr<graph::NodeData::Slot>> pack_zone(size_t z) const {
     const ZoneRange& zone = zones_[z];
     const ZoneArcs arcs = arcs_of(links_of(z), zone);
     const int32_t slot = world::slot_at(data_, zone.x, zone.z);
@@ -515,8 +515,8 @@ class NodeBatch {
             node.promise.classes, node.level, node.s, node.t,
             static_cast<uint8_t>(node.promise.inclination << 4 | node.promise.height),
             static_cast<uint8_t>(node.promise.headroom << 4 | width),
-            static_cast<uint8_t>((node.terminal ? world::kTerminalFlag : 0) |
-                                 (node.cells != 0 ? world::kPartialFlag : 0)),
+            static_cast<uint8_t>((node.terminal ? graph::kTerminalFlag : 0) |
+                                 (node.cells != 0 ? graph::kPartialFlag : 0)),
             node.parent == graph::kNoNode ? UINT32_MAX : first + node.parent,
             static_cast<float>(area_of(source, tree, node)),
             static_cast<uint32_t>(content.arcs.size()));

@@ -10,10 +10,10 @@
 
 #include "bake/columns/triangles.h"
 #include "bake/surface/node_plan.h"
+#include "graph/node_data.h"
 #include "throng/base.h"
 #include "throng/scene.h"
 #include "throng/surface.h"
-#include "world/node_data.h"
 
 /// From patches and level tiles to nodes, links and widths, so many zones at a time as fit in
 /// memory.
@@ -31,7 +31,7 @@ struct NodeBatchInput {
 };
 
 /// Nodes of zones; null where there are none.
-using NodeSlots = std::vector<std::unique_ptr<world::NodeData::Slot>>;
+using NodeSlots = std::vector<std::unique_ptr<graph::NodeData::Slot>>;
 
 /// Makes the nodes of some zones of the plan, given in ascending order, and returns them in it.
 /// What lies near these is read, so the results do not depend on which are made together. Fails

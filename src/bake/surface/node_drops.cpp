@@ -16,8 +16,8 @@
 #include "core/access.h"
 #include "core/parallel.h"
 #include "graph/ground_parts.h"
+#include "graph/node_data.h"
 #include "graph/node_width.h"
-#include "world/node_data.h"
 #include "world/place.h"
 #include "world/tile_grid.h"
 
@@ -159,7 +159,7 @@ class DropFinder {
   void consider(const Spot& from, const Spot& to, double reach) {
     const double dx = to.feet.x - from.feet.x, dz = to.feet.z - from.feet.z;
     const double far2 = dx * dx + dz * dz, down = from.feet.y - to.feet.y;
-    if (far2 > reach * reach || !(down > avatar_.step && down <= avatar_.max_drop)) return;
+    if (far2 > reach * reach || !(down > avatar_.step_height && down <= avatar_.max_drop)) return;
     lower_.push_back({std::llround(far2 * kNear2), to});
   }
 
@@ -205,7 +205,7 @@ class DropFinder {
               // Feet in the middle of a cell are at its sample.
               const double down =
                   from.feet.y - level.view.sample(world::in_tile(x), world::in_tile(z)) * 1e-3;
-              if (!(down > avatar_.step && down <= avatar_.max_drop)) continue;
+              if (!(down > avatar_.step_height && down <= avatar_.max_drop)) continue;
               consider(from, spot_on(level, x, z), reach);
             }
           }

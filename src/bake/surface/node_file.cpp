@@ -45,11 +45,11 @@ uint32_t ZoneContent::far_node(const format::FarNode& node) {
   const auto [entry, is_new] = far_known.try_emplace(std::tuple(node.x(), node.z(), node.node()),
                                                      static_cast<uint32_t>(far.size()));
   if (is_new) far.push_back(node);
-  return world::kFarNode | entry->second;
+  return graph::kFarNode | entry->second;
 }
 
-Result<std::unique_ptr<world::NodeData::Slot>> node_slot(const ZoneContent& content) {
-  const std::string name = world::node_file_name(content.x, content.z);
+Result<std::unique_ptr<graph::NodeData::Slot>> node_slot(const ZoneContent& content) {
+  const std::string name = graph::node_file_name(content.x, content.z);
   const uint64_t bytes =
       content.patches.size() * sizeof(format::NodePatch) +
       content.nodes.size() * sizeof(format::Node) + content.arcs.size() * sizeof(format::Arc) +
@@ -69,12 +69,12 @@ Result<std::unique_ptr<world::NodeData::Slot>> node_slot(const ZoneContent& cont
   const auto doors = builder.CreateVectorOfStructs(content.doors);
   const auto points = builder.CreateVector(content.points);
   const auto partial = builder.CreateVectorOfStructs(content.partial);
-  builder.Finish(format::CreateNodeZone(builder, world::kNodeVersion, content.x, content.z, patches,
+  builder.Finish(format::CreateNodeZone(builder, graph::kNodeVersion, content.x, content.z, patches,
                                         nodes, arcs, far, hole_links, doors, points, partial),
                  "THNZ");
-  auto zone = world::NodeZone::from_bytes(builder.Release(), name);
+  auto zone = graph::NodeZone::from_bytes(builder.Release(), name);
   if (!zone) return zone.error();
-  auto slot = std::make_unique<world::NodeData::Slot>();
+  auto slot = std::make_unique<graph::NodeData::Slot>();
   const auto span = (*zone)->bytes();
   slot->entry =
       format::NodeZoneEntry(content.x, content.z, static_cast<uint32_t>(content.nodes.size()),

@@ -9,8 +9,8 @@
 #include <tuple>
 #include <vector>
 
+#include "graph/node_data.h"
 #include "graph/node_links.h"
-#include "world/node_data.h"
 #include "world/zone_data.h"
 
 /// Packs nodes into the files of zones.
@@ -61,7 +61,7 @@ struct ZoneContent {
 };
 
 /// The zone's bytes, read back and checked. Fails with kLimit.
-[[nodiscard]] Result<std::unique_ptr<world::NodeData::Slot>> node_slot(const ZoneContent& content);
+[[nodiscard]] Result<std::unique_ptr<graph::NodeData::Slot>> node_slot(const ZoneContent& content);
 
 /// XXH3 of the manifest of a world: of its file, or of what would be written.
 [[nodiscard]] uint64_t world_hash(const world::WorldData& world);

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/file_map.h"
+#include "core/files/file_map.h"
 #include "core/hash.h"
 #include "world/sealed_file.h"
 
@@ -30,12 +30,12 @@ bool link_or_copy(const fs::path& from, const fs::path& to) {
 
 OldNodes::OldNodes(const std::string& world_path) {
   if (world_path.empty()) return;
-  for (const char* folder : {world::kNodeFolder, world::kOldNodeFolder, world::kPartNodeFolder}) {
+  for (const char* folder : {graph::kNodeFolder, graph::kOldNodeFolder, graph::kPartNodeFolder}) {
     const std::string path = (fs::path(world_path) / folder).string();
-    const std::string name = path + "/" + world::kNodeIndexName;
+    const std::string name = path + "/" + graph::kNodeIndexName;
     const auto map = FileMap::open(name);
     if (!map) continue;
-    auto index = world::read_node_index(map->bytes(), name);
+    auto index = graph::read_node_index(map->bytes(), name);
     if (!index || !world::unsealed(map->bytes(), name)) continue;
     (*index)->path = path;
     folders_.push_back(std::move(*index));
@@ -56,11 +56,11 @@ std::optional<OldNodes::Reused> OldNodes::reuse(int32_t x, int32_t z, uint64_t i
     const size_t place = index->slot_at(x, z);
     if (place == index->slots.size()) return Reused{};
     const format::NodeZoneEntry& entry = index->slots[place]->entry;
-    const std::string file = index->path + "/" + world::node_file_name(x, z);
-    auto zone = world::open_listed<world::NodeZone>(
+    const std::string file = index->path + "/" + graph::node_file_name(x, z);
+    auto zone = world::open_listed<graph::NodeZone>(
         {.name = file, .bytes = entry.bytes(), .hash = entry.hash(), .whose = "the index's"});
     if (!zone || (*zone)->nodes().size() != entry.nodes()) continue;
-    auto slot = std::make_unique<world::NodeData::Slot>();
+    auto slot = std::make_unique<graph::NodeData::Slot>();
     slot->entry = entry;
     slot->zone = std::move(*zone);
     return Reused{std::move(slot), file};
@@ -69,7 +69,7 @@ std::optional<OldNodes::Reused> OldNodes::reuse(int32_t x, int32_t z, uint64_t i
 }
 
 NodeFolder::NodeFolder(std::string world_path)
-    : world_path_(std::move(world_path)), part_(fs::path(world_path_) / world::kPartNodeFolder) {}
+    : world_path_(std::move(world_path)), part_(fs::path(world_path_) / graph::kPartNodeFolder) {}
 
 NodeFolder::NodeFolder(NodeFolder&& other) noexcept
     : world_path_(std::move(other.world_path_)),
@@ -87,8 +87,8 @@ NodeFolder::~NodeFolder() {
 Result<NodeFolder> NodeFolder::begin(const std::string& world_path) {
   auto world_lock = FolderLock::take(world_path, FolderLock::Kind::kShared, world_path);
   if (!world_lock) return world_lock.error();
-  const std::string part = (fs::path(world_path) / world::kPartNodeFolder).string();
-  auto part_lock = FolderLock::make(part, world_path);
+  const std::string part = (fs::path(world_path) / graph::kPartNodeFolder).string();
+  auto part_lock = FolderLock::create(part, world_path);
   if (!part_lock) return part_lock.error();
   NodeFolder folder(world_path);
   folder.world_lock_ = *std::move(world_lock);
@@ -102,12 +102,12 @@ NodeFolder NodeFolder::join(const std::string& world_path) {
   return folder;
 }
 
-Result<void> NodeFolder::write(const world::NodeZone& zone) const {
-  return write_file((part_ / world::node_file_name(zone.x(), zone.z())).string(), zone.bytes());
+Result<void> NodeFolder::write(const graph::NodeZone& zone) const {
+  return write_file((part_ / graph::node_file_name(zone.x(), zone.z())).string(), zone.bytes());
 }
 
-Result<void> NodeFolder::take_over(const world::NodeZone& zone, const std::string& file) const {
-  const fs::path to = part_ / world::node_file_name(zone.x(), zone.z());
+Result<void> NodeFolder::take_over(const graph::NodeZone& zone, const std::string& file) const {
+  const fs::path to = part_ / graph::node_file_name(zone.x(), zone.z());
   if (fs::path(file) == to) return {};
   std::error_code error;
   fs::remove(to, error);
@@ -115,15 +115,15 @@ Result<void> NodeFolder::take_over(const world::NodeZone& zone, const std::strin
   return write(zone);
 }
 
-Result<void> NodeFolder::list(const world::NodeData& nodes) const {
-  return write_file((part_ / world::kNodeIndexName).string(),
-                    world::sealed(world::write_node_index(nodes)));
+Result<void> NodeFolder::list(const graph::NodeData& nodes) const {
+  return write_file((part_ / graph::kNodeIndexName).string(),
+                    world::sealed(graph::write_node_index(nodes)));
 }
 
-Result<void> NodeFolder::finish(const world::NodeData& nodes) {
-  std::set<std::string> names{world::kNodeIndexName};
+Result<void> NodeFolder::finish(const graph::NodeData& nodes) {
+  std::set<std::string> names{graph::kNodeIndexName};
   for (const auto& slot : nodes.slots) {
-    names.insert(world::node_file_name(slot->entry.x(), slot->entry.z()));
+    names.insert(graph::node_file_name(slot->entry.x(), slot->entry.z()));
   }
   std::error_code error;
   std::vector<fs::path>
@@ -133,12 +133,12 @@ Result<void> NodeFolder::finish(const world::NodeData& nodes) {
   }
   for (const fs::path& file : stale) fs::remove_all(file, error);
   if (auto ok = list(nodes); !ok) return ok;
-  const fs::path target = fs::path(world_path_) / world::kNodeFolder;
+  const fs::path target = fs::path(world_path_) / graph::kNodeFolder;
   fs::remove_all(target, error);
   fs::rename(part_, target, error);
   if (error) return Error{Errc::kIo, target.string() + ": cannot be written: " + error.message()};
   part_.clear();
-  fs::remove_all(fs::path(world_path_) / world::kOldNodeFolder, error);
+  fs::remove_all(fs::path(world_path_) / graph::kOldNodeFolder, error);
   return {};
 }
 
@@ -147,7 +147,7 @@ namespace {
 // If it has any nodes.
 bool reuse_folder(const fs::path& source, const fs::path& target) {
   std::error_code error;
-  if (!fs::exists(source / world::kNodeIndexName, error)) return false;
+  if (!fs::exists(source / graph::kNodeIndexName, error)) return false;
   fs::remove_all(target, error);
   fs::create_directory(target, error);
   for (const auto& file : fs::directory_iterator(source, error)) {
@@ -160,12 +160,12 @@ bool reuse_folder(const fs::path& source, const fs::path& target) {
 
 void carry_nodes(const std::string& from, const std::string& to, bool is_same_world) {
   const fs::path source(from), target(to);
-  reuse_folder(source / world::kPartNodeFolder, target / world::kPartNodeFolder);
-  if (reuse_folder(source / world::kNodeFolder,
-                   target / (is_same_world ? world::kNodeFolder : world::kOldNodeFolder))) {
+  reuse_folder(source / graph::kPartNodeFolder, target / graph::kPartNodeFolder);
+  if (reuse_folder(source / graph::kNodeFolder,
+                   target / (is_same_world ? graph::kNodeFolder : graph::kOldNodeFolder))) {
     return;
   }
-  reuse_folder(source / world::kOldNodeFolder, target / world::kOldNodeFolder);
+  reuse_folder(source / graph::kOldNodeFolder, target / graph::kOldNodeFolder);
 }
 
 }  // namespace throng::bake

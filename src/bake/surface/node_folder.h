@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/folder_lock.h"
-#include "world/node_data.h"
+#include "core/files/folder_lock.h"
+#include "graph/node_data.h"
 
 /// Nodes in a world's folder: those of earlier bakes, whole or killed, and those that are made.
 namespace throng::bake {
@@ -23,14 +23,14 @@ class OldNodes {
 
   /// A zone's nodes that need not be made: `slot` is null if it has none, else mapped, from `file`.
   struct Reused {
-    std::unique_ptr<world::NodeData::Slot> slot;
+    std::unique_ptr<graph::NodeData::Slot> slot;
     std::string file;
   };
   /// If they were made from this input and their file is whole.
   [[nodiscard]] std::optional<Reused> reuse(int32_t x, int32_t z, uint64_t input) const;
 
  private:
-  std::vector<std::shared_ptr<const world::NodeData>> folders_;  // their indexes
+  std::vector<std::shared_ptr<const graph::NodeData>> folders_;  // their indexes
 };
 
 /// The folder that replaces a world's nodes at once, when all are in it. Until then it lies beside
@@ -48,15 +48,15 @@ class NodeFolder {
   ~NodeFolder();
 
   /// Adds a zone's nodes. From several threads, of different zones.
-  Result<void> write(const world::NodeZone& zone) const;
+  Result<void> write(const graph::NodeZone& zone) const;
   /// Adds those of an earlier bake, mapped from `file`.
-  Result<void> take_over(const world::NodeZone& zone, const std::string& file) const;
+  Result<void> take_over(const graph::NodeZone& zone, const std::string& file) const;
   /// Writes the index of what is there so far.
-  Result<void> list(const world::NodeData& nodes) const;
+  Result<void> list(const graph::NodeData& nodes) const;
   /// Leaves what was begun to the next bake.
   void leave() { part_.clear(); }
   /// Writes the index of all; then they are the world's nodes.
-  Result<void> finish(const world::NodeData& nodes);
+  Result<void> finish(const graph::NodeData& nodes);
 
  private:
   explicit NodeFolder(std::string world_path);

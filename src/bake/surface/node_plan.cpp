@@ -13,7 +13,7 @@
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "graph/node_bins.h"
-#include "world/node_data.h"
+#include "graph/node_data.h"
 
 // A zone's own input is what its patches are made of: their control points and neighbours, the
 // ground's files for its level tiles, and every triangle that a body on one of them, or in a move
@@ -202,7 +202,7 @@ uint64_t common_input(const world::WorldData& world, const Scene& scene, const N
                       const NodePlan& plan) {
   Words words;
   words.add(kNodeBakeVersion);
-  words.add(uint64_t{world::kNodeVersion});
+  words.add(uint64_t{graph::kNodeVersion});
   words.add(uint64_t{config.classes});
   words.add(config.size);
   words.add(uint64_t{plan.on_patches});
@@ -213,7 +213,7 @@ uint64_t common_input(const world::WorldData& world, const Scene& scene, const N
   words.add(world.summary.origin);
   words.add(uint64_t{world.tiles_per_zone});
   for (const AvatarClass& avatar : world.summary.classes) {
-    for (const double number : {avatar.height, avatar.radius, avatar.step, avatar.max_slope,
+    for (const double number : {avatar.height, avatar.radius, avatar.step_height, avatar.max_slope,
                                 avatar.climb_slope, avatar.max_drop}) {
       words.add(number);
     }

@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
-#include "core/float_origin.h"
-#include "world/node_data.h"
+#include "core/math/float_origin.h"
+#include "graph/node_data.h"
 
 // A body with its feet at p, axis n and bottom b fills the points p + h n + l, where b <= h <=
 // height and l is at most a radius long and across n. If all normals of a sub-patch lie within an
@@ -54,7 +54,7 @@ std::vector<PatchBody> patch_bodies(std::span<const AvatarClass> classes) {
     const bool climbs = avatar.climb_slope > 0;
     bodies.push_back(
         {.radius = avatar.radius,
-         .bottom = climbs ? avatar.step : body_bottom(avatar),
+         .bottom = climbs ? avatar.step_height : body_bottom(avatar),
          .height = avatar.height,
          .steepest = rounded_cosine(climbs ? avatar.climb_slope : avatar.max_slope) - kSlopeMargin,
          .climbs = climbs,
@@ -110,7 +110,7 @@ int32_t patch_depth(const BezierPatch& patch, double size) {
                                     length(curve[3] - curve[2]));
   }
   int32_t depth = 0;
-  while (depth < world::kDeepestPatch && longest > size * (1 << depth)) ++depth;
+  while (depth < graph::kDeepestPatch && longest > size * (1 << depth)) ++depth;
   return depth;
 }
 

@@ -8,8 +8,8 @@
 
 #include "core/access.h"
 #include "core/parallel.h"
+#include "graph/node_data.h"
 #include "graph/patch_pairs.h"
-#include "world/node_data.h"
 #include "world/place.h"
 #include "world/tile_grid.h"
 
@@ -47,7 +47,7 @@ bool goes(MotionJudge& judge, const PatchBody& body, const BodyPose& from, const
 // The part of the edges that a pair touches along, as a door of its own or the end of the last one.
 void add_door(const graph::EdgePair& pair, uint16_t classes, std::vector<PatchDoor>& doors) {
   const auto along = [](double at) {
-    return static_cast<uint16_t>(std::lround(at * world::kEdgeUnits));
+    return static_cast<uint16_t>(std::lround(at * graph::kEdgeUnits));
   };
   const PatchDoor door{.patch = pair.side_a.patch,
                        .to_patch = pair.side_b.patch,
@@ -242,7 +242,7 @@ class HoleLinker {
     for (size_t k = 0; k < std::min(kMaxCandidates, nearest_.size()); ++k) {
       const uint32_t b = nearest_[k].second;
       if (!goes(judge_, body, start, pose_on(input_, body, target.maker, b),
-                input_.classes[target.avatar_class].step)) {
+                input_.classes[target.avatar_class].step_height)) {
         continue;
       }
       pairs_.push_back({.patch_a = patch_,
@@ -290,7 +290,7 @@ std::vector<graph::CellPair> link_tiles(const PatchLinkInput& input, int32_t wor
       if (!body.climbs) continue;
       for (const uint32_t a : cells_of(input.cells[p], body.bit)) {
         const BodyPose on = pose_on(input, body, static_cast<uint32_t>(p), a);
-        const double step = input.classes[c].step;
+        const double step = input.classes[c].step_height;
         const Place place = input.world->find_place(static_cast<int32_t>(c), on.feet, step);
         if (!place || !judge.is_free(body, {place.position, {0, 1, 0}}, on)) continue;
         const world::GroundPoint at = world::to_ground(data, place.position.x, place.position.z);

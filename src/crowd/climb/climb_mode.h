@@ -13,7 +13,7 @@
 #include "crowd/climb/climber_ground.h"
 #include "crowd/fly/fly_mode.h"
 #include "crowd/mode/mode.h"
-#include "path/node_finder.h"
+#include "path/overlay/node_finder.h"
 
 /// Avatars that walk over nodes: where they are placed, and how they find and follow their paths.
 /// docs/design/013-climbers.md. A path costs a search over nodes; a step without one is constant

@@ -65,7 +65,7 @@ void ClimbMode::turn_aside(Body& body, Climb& climb, int32_t worker) {
     parts.finders[w].find(from, to, path, kNoSpacing, shared_.search_budget(kDetourBudget));
   }
   if (path.points.size() < 2) {
-    const double side = 1.0 / (1 << info.level);
+    const double side = 1.0 / (1 << info.block_level);
     path::NodeSquare square{info.s * side, info.t * side, (info.s + 1) * side, (info.t + 1) * side};
     if (info.cells != 0) {
       square = parts.finders[w]

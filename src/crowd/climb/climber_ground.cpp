@@ -37,7 +37,7 @@ ClimberGround::ClimberGround(const World& world, const Nodes& nodes, const path:
   height_ = avatar.height;
   reach_ = path::reach_of(avatar);
   bottom_ = body_bottom(avatar);
-  leaning_bottom_ = avatar.climb_slope > 0 ? avatar.step : bottom_;
+  leaning_bottom_ = avatar.climb_slope > 0 ? avatar.step_height : bottom_;
 }
 
 std::optional<ClimbPose> ClimberGround::pose(uint32_t node1, double s, double t) const {
@@ -123,7 +123,7 @@ path::BodyRoom ClimberGround::body_room_of(const ClimbPose& pose, double radius)
 
 ClimberGround::Square ClimberGround::square_of(uint32_t node1) const {
   const NodeInfo info = nodes_->node(node1 - 1);
-  const double side = 1.0 / (1 << info.level);
+  const double side = 1.0 / (1 << info.block_level);
   return {info.s * side, info.t * side, (info.s + 1) * side, (info.t + 1) * side,
           info.kind,     info.source,   info.cells != 0};
 }

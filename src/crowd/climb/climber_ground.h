@@ -8,7 +8,7 @@
 #include "crowd/climb/climb.h"
 #include "crowd/fly/flight.h"
 #include "path/edits/solid.h"
-#include "path/node_finder.h"
+#include "path/overlay/node_finder.h"
 #include "throng/path.h"
 #include "throng/surface.h"
 #include "throng/world.h"

@@ -14,7 +14,7 @@
 #include "crowd/fly/flyer_engine.h"
 #include "crowd/mode/mode.h"
 #include "crowd/walk/walk_mode.h"
-#include "path/flight_finder.h"
+#include "path/air/flight_finder.h"
 
 /// Avatars of classes that fly: in the air their engine moves them, on foot WalkMode does, and this
 /// decides when they take off. docs/design/012-flyers.md.

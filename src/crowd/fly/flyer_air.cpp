@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/access.h"
-#include "core/floor_div.h"
+#include "core/math/floor_div.h"
 #include "world/place.h"
 #include "world/tile_grid.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/floor_div.h"
+#include "core/math/floor_div.h"
 
 // Fills the grid of cubes with a counting sort. Linear in the bodies and cubes.
 namespace throng::crowd {

@@ -116,8 +116,8 @@ size_t count_rough(const world::Zone& zone, int32_t avatar_class) {
 
 }  // namespace
 
-Result<CrowdGround> CrowdGround::make(const world::WorldData& world, int32_t avatar_class,
-                                      int32_t step_mm) {
+Result<CrowdGround> CrowdGround::create(const world::WorldData& world, int32_t avatar_class,
+                                        int32_t step_mm) {
   CrowdGround ground;
   ground.tiles_x_ = world.summary.tiles_x;
   ground.tiles_z_ = world.summary.tiles_z;

@@ -6,8 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/huge_array.h"
-#include "core/prefetch.h"
+#include "core/arrays/huge_array.h"
+#include "core/arrays/prefetch.h"
 #include "crowd/ground/left_cells.h"
 #include "crowd/ground/level_line.h"
 #include "throng/base.h"
@@ -23,8 +23,8 @@ class CrowdGround {
 
   /// Opens every zone of the world. Fails with kBadFile, also where floors are not between the
   /// world's lowest and highest triangle.
-  static Result<CrowdGround> make(const world::WorldData& world, int32_t avatar_class,
-                                  int32_t step_mm);
+  static Result<CrowdGround> create(const world::WorldData& world, int32_t avatar_class,
+                                    int32_t step_mm);
 
   [[nodiscard]] bool is_legal(Level level, int32_t x, int32_t z) const {
     return ((rows(lines_[level].legal_set)[z] >> x) & 1) != 0;

@@ -51,7 +51,7 @@ bool TargetRegion::contains(int32_t x, int32_t z, int32_t y) const {
   });
 }
 
-Result<Target> Target::make(const world::WorldData& world, std::span<const Prism> areas) {
+Result<Target> Target::create(const world::WorldData& world, std::span<const Prism> areas) {
   if (areas.empty()) return Error{Errc::kBadInput, "crowd: a region needs at least one prism"};
   Target made;
   for (const Prism& prism : areas) {

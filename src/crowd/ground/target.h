@@ -46,7 +46,7 @@ struct Target {
   std::vector<TargetRegion> regions;
 
   /// Fails with kBadInput: no prism, or an invalid one.
-  static Result<Target> make(const world::WorldData& world, std::span<const Prism> areas);
+  static Result<Target> create(const world::WorldData& world, std::span<const Prism> areas);
   [[nodiscard]] bool contains(const Body& body) const;
 };
 

@@ -21,7 +21,7 @@ bool SharedState::flies(size_t number) const {
 
 bool SharedState::climbs(size_t number) const {
   const AvatarClass& avatar = body_class(number);
-  return data_of(config.nodes) != nullptr && !avatar.flies && goes_over_nodes(avatar);
+  return config.nodes && !avatar.flies && goes_over_nodes(avatar);
 }
 
 void SharedState::drop_goal(Body& body) {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/access.h"
+#include "core/math/plan_point.h"
 #include "core/parallel.h"
-#include "core/plan_point.h"
 #include "crowd/ground/leaving_ground.h"
 #include "path/edits/blocked_cells.h"
 #include "world/place.h"

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 
-#include "core/huge_array.h"
-#include "core/prefetch.h"
+#include "core/arrays/huge_array.h"
+#include "core/arrays/prefetch.h"
 #include "crowd/ground/pixel_grid.h"
 
 /// The collision map: where bodies are, on a grid of its own. Source: [TC00] section 3; the bit per

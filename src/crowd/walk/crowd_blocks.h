@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/huge_array.h"
+#include "core/arrays/huge_array.h"
 #include "crowd/ground/avatars.h"
 #include "crowd/ground/pixel_grid.h"
 

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "core/huge_array.h"
+#include "core/arrays/huge_array.h"
 #include "crowd/ground/body.h"
 #include "crowd/ground/stride_ground.h"
 #include "crowd/mode/engine_counts.h"

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/huge_array.h"
+#include "core/arrays/huge_array.h"
 #include "crowd/ground/body.h"
 #include "crowd/ground/pixel_grid.h"
 #include "crowd/walk/sense_kernel.h"

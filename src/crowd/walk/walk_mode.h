@@ -17,7 +17,7 @@
 #include "crowd/walk/routes.h"
 #include "path/edits/flow_points.h"
 #include "path/edits/ground_finder.h"
-#include "path/mesh_finder.h"
+#include "path/overlay/mesh_finder.h"
 
 /// Avatars on foot: paths over the ground and flow fields to targets. docs/design/008-engine.md.
 namespace throng::crowd {

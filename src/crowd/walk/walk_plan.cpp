@@ -104,7 +104,7 @@ Result<void> WalkMode::find_flows(size_t number, Context& context) {
     const Target& target = shared_.targets[parts.flows.size()];
     const std::vector<Place> goals = places_inside(*data_of(shared_.world), shared.ground,
                                                    target.regions, kGoals, &parts.lives[0]);
-    auto flow = path::FlowPoints::make(parts.lives[0], goals, path::FlowPoints::kNever, context);
+    auto flow = path::FlowPoints::create(parts.lives[0], goals, path::FlowPoints::kNever, context);
     if (!flow) return Error{Errc::kCancelled, "crowd: cancelled"};
     parts.flows.push_back(std::move(*flow));
     if (parts.flies || shared_.climbs(number)) shared.landings.push_back(goals);

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/disjoint_sets.h"
+#include "core/arrays/disjoint_sets.h"
 #include "core/random.h"
 #include "import/builtin/builtin_table.h"
 #include "import/builtin/world_shapes.h"

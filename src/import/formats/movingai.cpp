@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "import/formats/movingai.h"
 
-#include "core/read_file.h"
+#include "core/files/read_file.h"
 #include "import/formats/text_cursor.h"
 
 // Reads the maps of movingai.com as text, line by line. Source: [Stu12], [BS18].

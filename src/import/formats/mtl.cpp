@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "core/read_file.h"
+#include "core/files/read_file.h"
 #include "import/formats/text_cursor.h"
 
 // Reads of a material: Kd, d or Tr, map_Kd and map_d. Colours of such files are as a screen shows

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/part_file.h"
+#include "core/files/part_file.h"
 #include "import/patches/patch_edges.h"
 #include "throng/scene.h"
 

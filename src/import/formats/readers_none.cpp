@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include <filesystem>
 
-#include "core/read_file.h"
+#include "core/files/read_file.h"
 #include "import/formats/assimp_reader.h"
 #include "import/formats/city.h"
 #include "import/formats/glb.h"
 #include "import/formats/patch_json.h"
 #include "import/formats/plan.h"
 #include "import/formats/texture_reader.h"
-#include "throng/impostor.h"
 
 // A build without assimp, pugixml and simdjson, and without child processes: a browser's.
 namespace throng::importer {
@@ -61,11 +60,3 @@ Result<std::vector<Result<Texture>>> read_all_textures(const std::vector<Texture
 }
 
 }  // namespace throng::importer
-
-namespace throng {
-
-Result<Character> load_character(const std::string& path, Context&) {
-  return importer::not_here(path);
-}
-
-}  // namespace throng

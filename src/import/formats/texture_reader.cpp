@@ -10,8 +10,8 @@
 #include <memory>
 #include <utility>
 
-#include "core/read_file.h"
-#include "core/texel_mean.h"
+#include "core/files/read_file.h"
+#include "core/math/texel_mean.h"
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/disjoint_sets.h"
+#include "core/arrays/disjoint_sets.h"
 #include "core/hash.h"
 
 namespace throng::importer {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/part_file.h"
+#include "core/files/part_file.h"
 #include "throng/base.h"
 #include "throng/scene.h"
 

@@ -4,8 +4,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <memory>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/hash.h"
 #include "throng/papers.h"
@@ -40,6 +43,42 @@ Error bad_input(const char* what, size_t index) {
 
 }  // namespace
 
+struct Simulation::Run {
+  Space space;
+  Model model;
+  double dt = 1;
+  double largest_alert = 0;
+  std::vector<Activity> activities;
+  std::vector<Threat> threats;
+  std::vector<Vec3d> steer;
+  std::vector<double> stop_before;    // Avatars that wait stop so far from the target; others 0.
+  std::vector<uint8_t> claims;        // 1 if the avatar may go on to its target.
+  std::vector<uint32_t> rival_first;  // n + 1 offsets into rivals.
+  std::vector<uint32_t> rivals;       // Avatars whose targets are too near to one's own.
+  std::vector<uint8_t> inside;        // Pair (i, j < i) at i (i - 1) / 2 + j: is it in r_rep now?
+  std::vector<uint8_t> inside_obstacle;
+  Counts counts;
+
+  void find_rivals();
+  void negotiate();
+  void sense(size_t i);
+  void move(size_t i);
+  void count();
+};
+
+Simulation::Simulation(std::unique_ptr<Run> run) : run_(std::move(run)) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+std::span<const Body> Simulation::bodies() const { return run_->space.bodies; }
+std::span<const Vec3d> Simulation::targets() const { return run_->space.targets; }
+std::span<const Obstacle> Simulation::obstacles() const { return run_->space.obstacles; }
+std::span<const Activity> Simulation::activities() const { return run_->activities; }
+std::span<const Threat> Simulation::threats() const { return run_->threats; }
+const Counts& Simulation::counts() const { return run_->counts; }
+const Model& Simulation::model() const { return run_->model; }
+
 Result<Simulation> Simulation::create(Space space, const Model& model, double dt) {
   if (auto ok = check_model(model); !ok) return ok.error();
   if (!(dt >= 1e-3 && dt <= 1e3)) {
@@ -60,128 +99,129 @@ Result<Simulation> Simulation::create(Space space, const Model& model, double dt
     const Obstacle& o = space.obstacles[i];
     if (!is_finite(o.position) || !is_sound(o.fields)) return bad_input("obstacle", i);
   }
-  Simulation run;
-  run.space_ = std::move(space);
-  run.model_ = model;
-  run.dt_ = dt;
-  for (Body& body : run.space_.bodies) {
-    run.largest_alert_ = std::max(run.largest_alert_, body.fields.alert);
+  auto made = std::make_unique<Run>();
+  Run& run = *made;
+  run.space = std::move(space);
+  run.model = model;
+  run.dt = dt;
+  for (Body& body : run.space.bodies) {
+    run.largest_alert = std::max(run.largest_alert, body.fields.alert);
     body.velocity = steered(body.velocity, {}, dt, model);
     body.forward = heading_of(body.forward, heading_of(body.velocity, {1, 0, 0}));
   }
-  run.activities_.assign(n, Activity::kTravelling);
-  run.threats_.resize(n);
-  run.steer_.resize(n);
-  run.stop_before_.assign(n, 0);
-  run.claims_.assign(n, 0);
-  run.inside_.assign(n * (n - std::min<size_t>(n, 1)) / 2, 0);
-  run.inside_obstacle_.assign(n * run.space_.obstacles.size(), 0);
+  run.activities.assign(n, Activity::kTravelling);
+  run.threats.resize(n);
+  run.steer.resize(n);
+  run.stop_before.assign(n, 0);
+  run.claims.assign(n, 0);
+  run.inside.assign(n * (n - std::min<size_t>(n, 1)) / 2, 0);
+  run.inside_obstacle.assign(n * run.space.obstacles.size(), 0);
   run.find_rivals();
   // Overlaps at the start are not entries.
   run.count();
-  run.counts_ = {};
-  return run;
+  run.counts = {};
+  return Simulation(std::move(made));
 }
 
-void Simulation::find_rivals() {
-  const size_t n = space_.bodies.size();
-  rival_first_.assign(1, 0);
-  rivals_.clear();
+void Simulation::Run::find_rivals() {
+  const size_t n = space.bodies.size();
+  rival_first.assign(1, 0);
+  rivals.clear();
   for (size_t i = 0; i < n; ++i) {
     for (size_t j = 0; j < n; ++j) {
-      const double apart = space_.bodies[i].fields.repulsive + space_.bodies[j].fields.repulsive;
-      if (i != j && distance2(space_.targets[i], space_.targets[j]) <= apart * apart) {
-        rivals_.push_back(static_cast<uint32_t>(j));
+      const double apart = space.bodies[i].fields.repulsive + space.bodies[j].fields.repulsive;
+      if (i != j && distance2(space.targets[i], space.targets[j]) <= apart * apart) {
+        rivals.push_back(static_cast<uint32_t>(j));
       }
     }
-    rival_first_.push_back(static_cast<uint32_t>(rivals_.size()));
+    rival_first.push_back(static_cast<uint32_t>(rivals.size()));
   }
 }
 
 Result<void> Simulation::send(uint32_t id, Vec3d target) {
-  if (id >= space_.bodies.size()) {
+  if (id >= run_->space.bodies.size()) {
     return Error{Errc::kNotFound, "caacd: there is no body " + std::to_string(id)};
   }
   if (!is_finite(target)) return Error{Errc::kBadInput, "caacd: a target must be finite"};
-  space_.targets[id] = target;
-  activities_[id] = Activity::kTravelling;
-  claims_[id] = 0;
-  find_rivals();
+  run_->space.targets[id] = target;
+  run_->activities[id] = Activity::kTravelling;
+  run_->claims[id] = 0;
+  run_->find_rivals();
   return {};
 }
 
 // Of avatars with targets too near to each other, the first one near its target reserves it; the
 // others stop before it, outside of the precaution field.
-void Simulation::negotiate() {
-  const auto& bodies = space_.bodies;
-  const auto rivals = [&](size_t i) {
-    return std::span(rivals_).subspan(rival_first_[i], rival_first_[i + 1] - rival_first_[i]);
+void Simulation::Run::negotiate() {
+  const auto& bodies = space.bodies;
+  const auto rivals_of = [&](size_t i) {
+    return std::span(rivals).subspan(rival_first[i], rival_first[i + 1] - rival_first[i]);
   };
   const auto is_near = [&](size_t i) {
-    const double radius = std::max(model_.deceleration, 2 * bodies[i].fields.alert);
-    return distance2(bodies[i].position, space_.targets[i]) <= radius * radius;
+    const double radius = std::max(model.deceleration, 2 * bodies[i].fields.alert);
+    return distance2(bodies[i].position, space.targets[i]) <= radius * radius;
   };
   for (size_t i = 0; i < bodies.size(); ++i) {
-    if (claims_[i] != 0 || !is_near(i)) continue;
-    const bool first = std::ranges::all_of(rivals(i), [&](uint32_t j) {
-      return claims_[j] == 0 && (!is_near(j) || goes_first(bodies[i], space_.targets[i], bodies[j],
-                                                           space_.targets[j]));
+    if (claims[i] != 0 || !is_near(i)) continue;
+    const bool first = std::ranges::all_of(rivals_of(i), [&](uint32_t j) {
+      return claims[j] == 0 &&
+             (!is_near(j) || goes_first(bodies[i], space.targets[i], bodies[j], space.targets[j]));
     });
-    if (first) claims_[i] = 1;
+    if (first) claims[i] = 1;
   }
   for (size_t i = 0; i < bodies.size(); ++i) {
-    stop_before_[i] = 0;
-    if (claims_[i] != 0) continue;
-    for (const uint32_t j : rivals(i)) {
-      if (claims_[j] == 0) continue;
+    stop_before[i] = 0;
+    if (claims[i] != 0) continue;
+    for (const uint32_t j : rivals_of(i)) {
+      if (claims[j] == 0) continue;
       const double apart = bodies[i].fields.precaution + bodies[j].fields.precaution;
-      stop_before_[i] = std::max(
-          stop_before_[i], apart + std::sqrt(distance2(space_.targets[i], space_.targets[j])));
+      stop_before[i] = std::max(stop_before[i],
+                                apart + std::sqrt(distance2(space.targets[i], space.targets[j])));
     }
   }
 }
 
-void Simulation::sense(size_t i) {
-  const Body& self = space_.bodies[i];
-  threats_[i] = {};
-  if (activities_[i] == Activity::kArrived) {
-    steer_[i] = {};
+void Simulation::Run::sense(size_t i) {
+  const Body& self = space.bodies[i];
+  threats[i] = {};
+  if (activities[i] == Activity::kArrived) {
+    steer[i] = {};
     return;
   }
-  const double radius = threat_radius(self, largest_alert_, model_);
-  const Threat greatest = greatest_threat(self, space_.bodies, space_.obstacles, model_, radius);
-  threats_[i] = greatest;
-  if (greatest.level != State::kTolerable) {
-    activities_[i] = Activity::kAvoiding;
-    steer_[i] = avoidance(self, greatest, model_);
+  const double radius = threat_radius(self, largest_alert, model);
+  const Threat greatest = greatest_threat(self, space.bodies, space.obstacles, model, radius);
+  threats[i] = greatest;
+  if (greatest.state != State::kTolerable) {
+    activities[i] = Activity::kAvoiding;
+    steer[i] = avoidance(self, greatest, model);
     return;
   }
-  steer_[i] = path_amendment(self, space_.targets[i], stop_before_[i], model_);
-  const double left = std::sqrt(distance2(space_.targets[i], self.position)) - stop_before_[i];
-  activities_[i] = left >= model_.deceleration ? Activity::kTravelling
-                   : stop_before_[i] > 0       ? Activity::kWaiting
-                                               : Activity::kArriving;
+  steer[i] = path_amendment(self, space.targets[i], stop_before[i], model);
+  const double left = std::sqrt(distance2(space.targets[i], self.position)) - stop_before[i];
+  activities[i] = left >= model.deceleration ? Activity::kTravelling
+                  : stop_before[i] > 0       ? Activity::kWaiting
+                                             : Activity::kArriving;
 }
 
-void Simulation::move(size_t i) {
-  if (activities_[i] == Activity::kArrived) return;
-  Body& body = space_.bodies[i];
-  body.velocity = steered(body.velocity, steer_[i], dt_, model_);
+void Simulation::Run::move(size_t i) {
+  if (activities[i] == Activity::kArrived) return;
+  Body& body = space.bodies[i];
+  body.velocity = steered(body.velocity, steer[i], dt, model);
   body.forward = heading_of(body.velocity, body.forward);
-  body.position = body.position + body.velocity * dt_;
-  counts_.walked += length(body.velocity) * dt_;
+  body.position = body.position + body.velocity * dt;
+  counts.walked += length(body.velocity) * dt;
   const double arrival = kArrival * body.fields.repulsive;
-  if (stop_before_[i] == 0 && distance2(body.position, space_.targets[i]) <= arrival * arrival) {
+  if (stop_before[i] == 0 && distance2(body.position, space.targets[i]) <= arrival * arrival) {
     body.velocity = {};
-    activities_[i] = Activity::kArrived;
+    activities[i] = Activity::kArrived;
   }
 }
 
-void Simulation::count() {
-  const auto& bodies = space_.bodies;
-  const auto enter = [](uint8_t& inside, bool now) {
-    const bool entered = now && inside == 0;
-    inside = now ? 1 : 0;
+void Simulation::Run::count() {
+  const auto& bodies = space.bodies;
+  const auto enter = [](uint8_t& was, bool now) {
+    const bool entered = now && was == 0;
+    was = now ? 1 : 0;
     return entered ? 1 : 0;
   };
   size_t pair = 0;
@@ -189,43 +229,43 @@ void Simulation::count() {
     for (size_t j = 0; j < i; ++j) {
       const double apart = bodies[i].fields.repulsive + bodies[j].fields.repulsive;
       const bool now = distance2(bodies[i].position, bodies[j].position) <= apart * apart;
-      counts_.collisions += enter(inside_[pair++], now);
+      counts.collisions += enter(inside[pair++], now);
     }
   }
   pair = 0;
   for (const Body& body : bodies) {
-    for (const Obstacle& o : space_.obstacles) {
+    for (const Obstacle& o : space.obstacles) {
       const double apart = body.fields.repulsive + o.fields.repulsive;
       const bool now = distance2(body.position, o.position) <= apart * apart;
-      counts_.obstacle_collisions += enter(inside_obstacle_[pair++], now);
+      counts.obstacle_collisions += enter(inside_obstacle[pair++], now);
     }
   }
-  counts_.arrived = std::ranges::count(activities_, Activity::kArrived);
-  counts_.waiting = std::ranges::count(activities_, Activity::kWaiting);
+  counts.arrived = std::ranges::count(activities, Activity::kArrived);
+  counts.waiting = std::ranges::count(activities, Activity::kWaiting);
 }
 
 void Simulation::step() {
-  const size_t n = space_.bodies.size();
-  negotiate();
-  for (size_t i = 0; i < n; ++i) sense(i);
-  for (size_t i = 0; i < n; ++i) move(i);
-  ++counts_.frames;
-  count();
+  const size_t n = run_->space.bodies.size();
+  run_->negotiate();
+  for (size_t i = 0; i < n; ++i) run_->sense(i);
+  for (size_t i = 0; i < n; ++i) run_->move(i);
+  ++run_->counts.frames;
+  run_->count();
 }
 
 bool Simulation::finished() const {
-  for (size_t i = 0; i < activities_.size(); ++i) {
-    if (activities_[i] == Activity::kArrived) continue;
-    if (activities_[i] != Activity::kWaiting) return false;
-    const Body& body = space_.bodies[i];
-    if (length(body.velocity) > 1e-3 * model_.max_speed) return false;
+  for (size_t i = 0; i < run_->activities.size(); ++i) {
+    if (run_->activities[i] == Activity::kArrived) continue;
+    if (run_->activities[i] != Activity::kWaiting) return false;
+    const Body& body = run_->space.bodies[i];
+    if (length(body.velocity) > 1e-3 * run_->model.max_speed) return false;
   }
   return true;
 }
 
 uint64_t Simulation::state_hash() const {
   std::vector<double> state;
-  for (const Body& body : space_.bodies) {
+  for (const Body& body : run_->space.bodies) {
     for (const Vec3d& v : {body.position, body.velocity}) {
       state.insert(state.end(), {v.x, v.y, v.z});
     }

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <span>
 
-#include "core/prefetch.h"
+#include "core/arrays/prefetch.h"
 #include "core/random.h"
 #include "crowd/ground/plan_steps.h"
 #include "world/tile_grid.h"

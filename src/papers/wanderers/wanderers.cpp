@@ -88,7 +88,7 @@ Result<Wanderers> Wanderers::create(const World& world, const WanderConfig& conf
   state->config = config;
   state->body = data.summary.classes[static_cast<size_t>(config.avatar_class)];
   const AvatarClass& body = state->body;
-  auto ground = crowd::CrowdGround::make(data, config.avatar_class, world::step_mm(body));
+  auto ground = crowd::CrowdGround::create(data, config.avatar_class, world::step_mm(body));
   if (!ground) return ground.error();
   state->ground = std::move(*ground);
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/chunked_array.h"
+#include "core/arrays/chunked_array.h"
 #include "path/air/air_view.h"
 #include "path/ground/open_list.h"
 #include "path/ground/search.h"

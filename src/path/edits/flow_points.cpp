@@ -96,8 +96,8 @@ class Outwards {
 
 bool FlowPoints::before(const Point& a, const Point& b) { return lies_before(a.stop, b.stop); }
 
-std::optional<FlowPoints> FlowPoints::make(GroundFinder& of, std::span<const Place> goals,
-                                           double max_distance, Context& context) {
+std::optional<FlowPoints> FlowPoints::create(GroundFinder& of, std::span<const Place> goals,
+                                             double max_distance, Context& context) {
   auto& ground = of.state();
   max_distance /= ground.mesh.world().summary.cell;
   Outwards search(ground.mesh, max_distance);

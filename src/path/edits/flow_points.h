@@ -24,8 +24,8 @@ class FlowPoints {
 
   /// Searches outwards from all goals that are places of the class, up to a cost of `max_distance`
   /// metres. None if it was cancelled; without any points if no goal is a place.
-  static std::optional<FlowPoints> make(GroundFinder& ground, std::span<const Place> goals,
-                                        double max_distance, Context& context);
+  static std::optional<FlowPoints> create(GroundFinder& ground, std::span<const Place> goals,
+                                          double max_distance, Context& context);
   [[nodiscard]] bool empty() const { return points_.empty(); }
 
   // `ground` is that of which they were made, or a copy of it, here and below.

@@ -9,12 +9,12 @@
 
 #include "core/access.h"
 #include "core/check_class.h"
-#include "path/edits/blocker.h"
 #include "path/edits/ground_finder_state.h"
 #include "path/edits/ground_view.h"
 #include "path/edits/plan_shapes.h"
 #include "path/edits/point_search.h"
 #include "path/edits/solid.h"
+#include "path/ground/blocker.h"
 #include "path/ground/reset_path.h"
 #include "path/ground/segments.h"
 #include "world/place.h"

@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "core/plan_point.h"
+#include "core/math/plan_point.h"
 #include "throng/base.h"
 
 /// Squares of the ground's plane against polygons and triangles: which cells obstacles block.

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/chunked_array.h"
+#include "core/arrays/chunked_array.h"
 #include "path/edits/ground_view.h"
 #include "path/ground/open_list.h"
 

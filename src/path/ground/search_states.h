@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/paged.h"
+#include "core/arrays/paged.h"
 
 /// What a search knows of the items that it has reached (corners, boxes, portals, entrances).
 namespace throng::path {

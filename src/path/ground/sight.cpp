@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/prefetch.h"
+#include "core/arrays/prefetch.h"
 #include "path/ground/border.h"
 
 // The search of path/ground/search.cpp without its turns: intervals of portals are pushed on as

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/prefetch.h"
+#include "core/arrays/prefetch.h"
 #include "path/ground/border.h"
 #include "path/ground/mesh_ray.h"
 

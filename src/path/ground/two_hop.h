@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/prefetch.h"
+#include "core/arrays/prefetch.h"
 #include "throng/base.h"
 
 /// Two-hop labels of any graph: shortest paths by look-up.

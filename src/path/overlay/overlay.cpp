@@ -7,8 +7,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/arrays/strong_parts.h"
 #include "core/parallel.h"
-#include "core/strong_parts.h"
 #include "path/ground/open_list.h"
 #include "path/overlay/overlay_graph.h"
 

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/prefetch.h"
+#include "core/arrays/prefetch.h"
 #include "path/ground/border.h"
 #include "path/ground/mesh_ray.h"
 #include "path/ground/open_list.h"

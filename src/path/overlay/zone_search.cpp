@@ -8,7 +8,7 @@
 #include <numeric>
 #include <optional>
 
-#include "core/prefetch.h"
+#include "core/arrays/prefetch.h"
 #include "path/ground/border.h"
 #include "path/ground/mesh_ray.h"
 

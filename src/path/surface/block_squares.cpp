@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "core/float_origin.h"
+#include "core/math/float_origin.h"
 #include "world/zone_data.h"
 
 // Balls around the blocks of Bezier patches, in a uniform grid of about one ball a square. The

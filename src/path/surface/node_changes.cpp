@@ -28,7 +28,7 @@ struct Pose {
 
 BodyRoom body_of(const AvatarClass& avatar, bool climbs) {
   BodyRoom body;
-  body.bottom = climbs ? avatar.step : body_bottom(avatar);
+  body.bottom = climbs ? avatar.step_height : body_bottom(avatar);
   body.top = avatar.height;
   body.radius = avatar.radius;
   return body;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/paged.h"
+#include "core/arrays/paged.h"
 #include "path/surface/node_view.h"
 
 /// Blocks that are cut off from the rest by obstacles.

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "core/arrays/strong_parts.h"
 #include "core/parallel.h"
-#include "core/strong_parts.h"
 
 // Strongly connected components of the blocks, and the graph between them. Linear in the portals.
 namespace throng::path {

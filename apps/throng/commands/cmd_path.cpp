@@ -1,0 +1,213 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "command.h"
+#include "in_world.h"
+#include "paths/boxes.h"
+#include "paths/path_ground.h"
+#include "paths/path_options.h"
+#include "paths/path_output.h"
+#include "throng/path.h"
+#include "throng/world.h"
+
+// throng path: the shortest path of an avatar class between two places, on foot, over nodes or
+// through the air.
+namespace throng::app {
+namespace {
+
+// What was made for a search: nothing where its data is made on demand.
+void add_summary(const PathSummary& summary, PathSpace space, Json& json) {
+  Json made;
+  const char* name = "mesh";
+  if (space == PathSpace::kAir) {
+    name = "air";
+    made["boxes"] = summary.boxes;
+  } else if (space == PathSpace::kNodes) {
+    name = "finder";
+    made["blocks"] = summary.blocks;
+    made["crossings"] = summary.crossings;
+  } else if (summary.bytes == 0) {
+    return;
+  } else {
+    made["rectangles"] = summary.rectangles;
+    made["portals"] = summary.portals;
+    made["corners"] = summary.corners;
+  }
+  made["bytes"] = summary.bytes;
+  made["seconds"] = summary.seconds;
+  json[name] = std::move(made);
+}
+
+// What is printed of a path that was found in so many seconds.
+PathRun run_of(const PathOptions& options, const Vec3d& goal, double seconds) {
+  return {.world = options.world,
+          .avatar_class = options.avatar_class,
+          .goal = goal,
+          .seconds = seconds,
+          .search_bytes = options.search_bytes};
+}
+
+template <class Find>
+double seconds_of(const Find& find) {
+  const auto start = std::chrono::steady_clock::now();
+  find();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// What both ends of a path are asked for.
+struct End {
+  PathPoint at;
+  Vec3d position;
+  const char* option;
+};
+
+// The end of a path in its space. Fails with a sentence if the class cannot be there.
+Result<End> end_of(const World& world, const PathOptions& options, int32_t avatar_class,
+                   PathSpace space, PathFinder& finder, const std::vector<double>& at,
+                   const char* option) {
+  const auto position = position_of(world, options, at, option);
+  if (!position) return position.error();
+  End end{.at = *position, .position = *position, .option = option};
+  if (space == PathSpace::kAir) return end;
+  if (space == PathSpace::kGround) {
+    const auto place = place_of(world, options, avatar_class, at, option);
+    if (!place) return place.error();
+    end.at = *place;
+    return end;
+  }
+  // A class that only walks: the ground above or below; if there is none, the nearest place.
+  const bool climbs = goes_over_nodes(world.summary().classes[static_cast<size_t>(avatar_class)]);
+  const Place ground =
+      climbs ? Place{} : world.find_place(avatar_class, *position, options.tolerance);
+  const NodePlace place =
+      finder.find_node_place(ground ? ground.position : *position, options.tolerance);
+  if (!place) {
+    return bad_end(options, *position, option,
+                   fmt::format("is no place on nodes where class {} can be, within {} m; see "
+                               "`throng picture --nodes`, or give a larger --tolerance",
+                               options.avatar_class, options.tolerance));
+  }
+  end.at = place;
+  return end;
+}
+
+Vec3d feet_of(const End& end) {
+  if (const auto* place = std::get_if<NodePlace>(&end.at)) return place->feet;
+  if (const auto* place = std::get_if<Place>(&end.at)) return place->position;
+  return end.position;
+}
+
+constexpr double kMaxOffset = 0.01;  // of an end in the plane; larger ones are printed [m]
+
+// How far ends over nodes are beside what was asked for.
+void add_offset(const End& end, const char* name, Json& json, std::string& text) {
+  const Vec3d feet = feet_of(end);
+  const double offset = std::hypot(feet.x - end.position.x, feet.z - end.position.z);
+  json["beside"][name] = offset;
+  if (offset < kMaxOffset) return;
+  text += fmt::format("  --{} is {:.3f} m beside, at ({})\n", name, offset, where(feet));
+}
+
+int find(Session& session, const PathOptions& options, const World& world, int32_t avatar_class,
+         PathSpace space) {
+  const bool on_ground = space == PathSpace::kGround;
+  if (on_ground) {
+    // Data that is made on demand takes a damaged zone for empty: check all first.
+    if (auto ok = world.check_ground(); !ok) return fail(ok.error());
+    for (const auto& [at, option] :
+         {std::pair{&options.from, "--from"}, std::pair{&options.to, "--to"}}) {
+      if (auto place = place_of(world, options, avatar_class, *at, option); !place) {
+        return fail(place.error());
+      }
+    }
+  }
+  Edits edits;
+  const bool on_demand = on_ground && options.is_live();
+  auto finder =
+      PathFinder::create(world,
+                         {.avatar_class = avatar_class,
+                          .slope_cost = options.slope_cost,
+                          .overlay = false,  // One query does not repay its time.
+                          .workers = options.threads,
+                          .speedup = on_demand ? PathSpeedup::kOnDemand : PathSpeedup::kNone,
+                          .space = space,
+                          .edits = edits},
+                         session.context);
+  if (!finder) return fail(finder.error());
+  const auto from = end_of(world, options, avatar_class, space, *finder, options.from, "--from");
+  if (!from) return fail(from.error());
+  const auto to = end_of(world, options, avatar_class, space, *finder, options.to, "--to");
+  if (!to) return fail(to.error());
+  for (const End& end : {*from, *to}) {
+    if (space != PathSpace::kAir || finder->is_free(end.at, options.tolerance)) continue;
+    return fail(bad_end(options, end.position, end.option,
+                        fmt::format("is neither in the air nor on the ground for class {}: its "
+                                    "body would touch a solid, or it lies above or below the air",
+                                    options.avatar_class)));
+  }
+  if (auto ok = put_up(world, options, avatar_class, edits); !ok) return fail(ok.error());
+  for (const End& end : {*from, *to}) {
+    if (finder->is_free(end.at, options.tolerance)) continue;
+    return fail(bad_end(options, end.position, end.option,
+                        on_ground ? "is blocked: a --block stands there, or its ground is closed"
+                                  : "is blocked: a --block is there"));
+  }
+  Path found;
+  const double seconds = seconds_of([&] {
+    finder->find({.from = from->at,
+                  .to = to->at,
+                  .tolerance = options.tolerance,
+                  .nearest = true,
+                  .budget = {UINT64_MAX, &session.context.cancel, options.search_bytes}},
+                 found);
+  });
+  if (found.spent == SpentBudget::kCancelled) return fail({Errc::kCancelled, "path: interrupted"});
+  const PathRun run = run_of(options, feet_of(*to), seconds);
+  Json json = path_json(run, found);
+  std::string text = path_text(run, found);
+  add_summary(finder->summary(), space, json);
+  if (space == PathSpace::kNodes) {
+    add_offset(*from, "from", json, text);
+    add_offset(*to, "to", json, text);
+  }
+  print_result(session, json, text);
+  return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;
+}
+
+int path(Session& session, const PathOptions& options) {
+  const Result<World> world = World::open(options.world);
+  if (!world) return fail(world.error());
+  const Result<int32_t> avatar_class = class_named(*world, options.avatar_class);
+  if (!avatar_class) return fail(avatar_class.error());
+  const AvatarClass avatar = world->summary().classes[static_cast<size_t>(*avatar_class)];
+  const auto space = space_of(options, *world, avatar);
+  if (!space) return fail(space.error());
+  return find(session, options, *world, *avatar_class, *space);
+}
+
+}  // namespace
+
+void add_path(CLI::App& parser, Session& session) {
+  CLI::App* command =
+      add_command(parser, session, "path", "Find the shortest path between two places",
+                  "throng bake builtin:garage -o garage.throng\n"
+                  "throng path garage.throng --from 14,0,8 --to 30,8.7,30 --class adult\n"
+                  "throng path garage.throng --from 14,0,8 --to 20,0,8 --block 16,0,0,17,2,9\n"
+                  "throng bake builtin:bridge --fly -o bridge.throng\n"
+                  "throng path bridge.throng --from 10,9,10 --to 30,9,30 --class flyer\n"
+                  "throng bake builtin:landscape,size=160 -o hills.throng --cell 0.5 --nodes\n"
+                  "throng path hills.throng --from 20,5,20 --to 120,5,90 --tolerance 20 --nodes");
+  const auto options = std::make_shared<PathOptions>();
+  add_path_options(*command, *options);
+  command->callback([&session, options] { session.exit_code = path(session, *options); });
+}
+
+}  // namespace throng::app

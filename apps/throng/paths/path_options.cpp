@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "paths/path_options.h"
+
+#include "command.h"
+#include "number_checks.h"
+#include "paths/boxes.h"
+
+// The options of `throng path`: their help, their ranges, and which go together.
+namespace throng::app {
+
+void add_path_options(CLI::App& command, PathOptions& options) {
+  const auto add_place = [&](const char* name, std::vector<double>& at, const char* what) {
+    command.add_option(name, at, what)->delimiter(',')->expected(3)->required()->type_name("X,Y,Z");
+  };
+  command.add_option("world", options.world, "World folder")->required()->type_name("WORLD");
+  add_place("--from", options.from, "Start of the path [m]");
+  add_place("--to", options.to, "Goal of the path [m]");
+  command.add_option("--class", options.avatar_class, "Avatar class by name")
+      ->capture_default_str();
+  command
+      .add_option(
+          "--tolerance", options.tolerance,
+          "Vertical tolerance of both ends; search radius for classes that climb, and over nodes "
+          "without ground above or below [m]")
+      ->check(at_least(0))
+      ->capture_default_str();
+  command.add_flag(
+      "--fly", options.fly,
+      "Path through the air, for a class that flies, as always if the world has air and no "
+      "option changes the ground; an end may be on the ground");
+  command.add_flag("--nodes", options.nodes,
+                   "Path over the world's nodes, as always for classes that climb");
+  command.add_flag("--on-foot", options.on_foot,
+                   "Path over level ground, also for a class that climbs or flies");
+  const auto add_list = [&](const char* name, std::vector<double>& list, const char* what,
+                            char between, int count, const char* type) {
+    command.add_option(name, list, what)
+        ->delimiter(between)
+        ->type_size(count)
+        ->expected(1, 1 << 16)
+        ->type_name(type);
+  };
+  add_blocks(&command, options.blocks);
+  add_list("--off-mesh-link", options.off_mesh_links,
+           "A link from one place to another and back, given by hand [m]", ',', 6, "X,Y,Z,X,Y,Z");
+  add_list("--area-cost", options.area_costs, "Cost of a metre on ground of a kind; inf closes it",
+           '=', 2, "KIND=COST");
+  command
+      .add_option("--slope-cost", options.slope_cost,
+                  "Additional cost of a metre per metre of rise")
+      ->check(between(0.0, 1000.0))
+      ->capture_default_str();
+  add_search_memory(command, options.search_bytes);
+  command.add_option("--threads", options.threads, "Threads for making the mesh, 0 for all cores")
+      ->check(between(0, 1024))
+      ->capture_default_str();
+}
+
+namespace {
+
+bool has_ground_costs(const PathOptions& options) {
+  return !options.off_mesh_links.empty() || !options.area_costs.empty();
+}
+
+Result<void> check_options(const PathOptions& options, bool over_nodes) {
+  if (options.fly + options.nodes + options.on_foot > 1) {
+    return Error{
+        Errc::kBadConfig,
+        "--fly finds paths through the air, --nodes over all surfaces, --on-foot over level "
+        "ground: give one of them"};
+  }
+  if (options.fly && (has_ground_costs(options) || options.slope_cost > 0)) {
+    return Error{Errc::kBadConfig,
+                 "--off-mesh-link, --area-cost and --slope-cost change the ground; paths through "
+                 "the air (--fly) take only --block"};
+  }
+  if (over_nodes && has_ground_costs(options)) {
+    return Error{Errc::kBadConfig,
+                 "--off-mesh-link and --area-cost change the ground of level tiles; paths over "
+                 "nodes take off-mesh links from `throng bake --off-mesh-links`"};
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<PathSpace> space_of(const PathOptions& options, const World& world,
+                           const AvatarClass& avatar) {
+  const bool by_class = !options.fly && !options.nodes && !options.on_foot;
+  const bool over_nodes = options.nodes || (by_class && !avatar.flies && goes_over_nodes(avatar));
+  if (auto ok = check_options(options, over_nodes); !ok) return ok.error();
+  if (options.fly) return PathSpace::kAir;
+  if (over_nodes) return PathSpace::kNodes;
+  if (!by_class || !avatar.flies || has_ground_costs(options) || options.slope_cost > 0) {
+    return PathSpace::kGround;
+  }
+  const auto air = air_summary(world);
+  if (!air && air.error().code != Errc::kNotFound) return air.error();
+  if (air) return PathSpace::kAir;
+  return goes_over_nodes(avatar) ? PathSpace::kNodes : PathSpace::kGround;
+}
+
+}  // namespace throng::app

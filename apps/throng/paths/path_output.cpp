@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "paths/path_output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+// How `throng path` prints a path: one writer for all finders, since they give one type.
+namespace throng::app {
+namespace {
+
+const char* path_word(SpentBudget spent) {
+  switch (spent) {
+    case SpentBudget::kNone:
+      return "";
+    case SpentBudget::kNodes:
+      return "nodes";
+    case SpentBudget::kMemory:
+      return "memory";
+    case SpentBudget::kCancelled:
+      return "cancelled";
+  }
+  return "";
+}
+
+const char* path_word(PathEnd end) {
+  switch (end) {
+    case PathEnd::kReached:
+      return "reached";
+    case PathEnd::kUnreachable:
+      return "unreachable";
+    case PathEnd::kNoPlace:
+      return "no place";
+    case PathEnd::kBudgetExhausted:
+      return "budget exhausted";
+  }
+  return "";
+}
+
+const char* path_word(SegmentKind kind) {
+  switch (kind) {
+    case SegmentKind::kWalk:
+      return "walk";
+    case SegmentKind::kCross:
+      return "cross";
+    case SegmentKind::kOffMesh:
+      return "off-mesh link";
+    case SegmentKind::kTakeOff:
+      return "take off";
+    case SegmentKind::kFly:
+      return "fly";
+    case SegmentKind::kLand:
+      return "land";
+  }
+  return "";
+}
+
+bool is_flown(SegmentKind kind) {
+  return kind == SegmentKind::kTakeOff || kind == SegmentKind::kFly || kind == SegmentKind::kLand;
+}
+
+// "1.200 m from there in the plane and 2.900 m below".
+std::string how_near(const Vec3d& nearest, const Vec3d& goal) {
+  const double below = goal.y - nearest.y;
+  std::string text = fmt::format("{:.3f} m from there in the plane",
+                                 std::hypot(nearest.x - goal.x, nearest.z - goal.z));
+  if (std::fabs(below) < 0.0005) return text;
+  return text + fmt::format(" and {:.3f} m {}", std::fabs(below), below > 0 ? "below" : "above");
+}
+
+std::string point_text(const Path& path, size_t i) {
+  std::string text = "  " + where(path.points[i].position);
+  if (!path.node_places.empty()) {
+    const NodePlace& place = path.node_places[i];
+    const double slope = std::acos(std::clamp(place.normal.y, -1.0, 1.0)) * 180 / std::numbers::pi;
+    text += fmt::format("  {:3.0f} deg", slope);
+    if (!place) text += "  over the edge";
+  }
+  for (const PathLink& link : path.links) {
+    if (link.point != i || link.kind == LinkKind::kWalk) continue;
+    const bool is_wide = link.over_hole && link.kind != LinkKind::kDrop;
+    text += fmt::format("  {}{}", word_for(link.kind), is_wide ? " over a hole" : "");
+  }
+  if (i > 0 && is_flown(path.segments[i - 1])) {
+    text += fmt::format("  {}", path_word(path.segments[i - 1]));
+  }
+  return text + '\n';
+}
+
+}  // namespace
+
+Json path_json(const PathRun& run, const Path& path) {
+  Json points = Json::array(), segments = Json::array(), links = Json::array();
+  for (const Place& p : path.points) points.push_back(numbers(p.position));
+  for (const SegmentKind kind : path.segments) segments.push_back(path_word(kind));
+  for (const PathLink& link : path.links) {
+    links.push_back(
+        {{"point", link.point}, {"kind", word_for(link.kind)}, {"over_hole", link.over_hole}});
+  }
+  Json json = {{"world", run.world},         {"class", run.avatar_class},
+               {"end", path_word(path.end)}, {"length", path.length},
+               {"cost", path.cost},          {"points", points},
+               {"segments", segments},       {"links", links},
+               {"nodes", path.nodes},        {"seconds", run.seconds}};
+  if (!path.node_places.empty()) {
+    Json normals = Json::array();
+    for (const NodePlace& place : path.node_places) normals.push_back(numbers(place.normal));
+    json["normals"] = normals;
+    json["corridor"] = path.corridor;
+  }
+  if (path.spent != SpentBudget::kNone) json["spent"] = path_word(path.spent);
+  if (path.end == PathEnd::kUnreachable && !path.points.empty()) {
+    const Vec3d& nearest = path.points.back().position;
+    json["nearest"] = {{"place", numbers(nearest)},
+                       {"distance", length(run.goal - nearest)},
+                       {"below", run.goal.y - nearest.y},
+                       {"blocked_by", word_for(path.blocked_by)}};
+  }
+  return json;
+}
+
+std::string path_text(const PathRun& run, const Path& path) {
+  std::string text;
+  if (path.end == PathEnd::kReached) {
+    const std::string over =
+        path.corridor.empty() ? "" : fmt::format(" over {} nodes", path.corridor.size());
+    text = fmt::format("{:.3f} m for {}{}, {} segments, found in {:.3f} ms\n", path.length,
+                       run.avatar_class, over, path.segments.size(), run.seconds * 1e3);
+    if (std::fabs(path.cost - path.length) > 0.0005) {
+      text += fmt::format("  costs {:.3f}\n", path.cost);
+    }
+  } else {
+    text = fmt::format("no path for {}: {}\n", run.avatar_class, path_word(path.end));
+    if (path.spent == SpentBudget::kMemory) {
+      text += fmt::format("  the search needs more than {} MiB of memory; raise --search-memory\n",
+                          run.search_bytes >> 20);
+    }
+    if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
+    const Vec3d& nearest = path.points.back().position;
+    text += fmt::format("  gets to ({}), {}; blocked by: {}\n", where(nearest),
+                        how_near(nearest, run.goal), word_for(path.blocked_by));
+  }
+  for (size_t i = 0; i < path.points.size(); ++i) text += point_text(path, i);
+  return text;
+}
+
+}  // namespace throng::app

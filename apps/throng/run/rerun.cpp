@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "run/rerun.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <utility>
+
+#include "run/run_scenario.h"
+
+// Repeats recorded runs from their settings, to compare state hashes.
+namespace throng::app {
+namespace {
+
+// Fails if a key is missing or of another kind.
+Result<void> need(const Json& settings, std::initializer_list<const char*> keys,
+                  bool (*is_right)(const Json&)) {
+  for (const char* key : keys) {
+    const auto found = settings.find(key);
+    if (found != settings.end() && is_right(*found)) continue;
+    return Error{Errc::kBadFile, fmt::format("the recording's settings have no usable '{}'; record "
+                                             "the run again with this program",
+                                             key)};
+  }
+  return {};
+}
+
+Result<Rerun> rerun_wanderers(const Json& settings, const World& world, int32_t workers) {
+  auto ok =
+      need(settings, {"avatars", "seed"}, [](const Json& j) { return j.is_number_unsigned(); });
+  if (ok) ok = need(settings, {"dt", "speed"}, [](const Json& j) { return j.is_number(); });
+  if (ok) ok = need(settings, {"class"}, [](const Json& j) { return j.is_string(); });
+  if (!ok) return ok.error();
+  WanderConfig config{.avatars = settings.at("avatars"),
+                      .avatar_class = 0,
+                      .dt = settings.at("dt"),
+                      .speed = settings.at("speed"),
+                      .seed = settings.at("seed"),
+                      .workers = workers};
+  const Result<int32_t> avatar_class = class_named(world, settings.at("class"));
+  if (!avatar_class) return avatar_class.error();
+  config.avatar_class = *avatar_class;
+  Result<Wanderers> made = Wanderers::create(world, config);
+  if (!made) return made.error();
+  const auto crowd = std::make_shared<Wanderers>(std::move(*made));
+  return Rerun{.step = [crowd] { crowd->step(); },
+               .state_hash = [crowd] { return crowd->state_hash(); }};
+}
+
+Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t workers) {
+  auto ok =
+      need(settings, {"avatars", "seed"}, [](const Json& j) { return j.is_number_unsigned(); });
+  if (ok) {
+    ok = need(settings, {"dt", "speed", "radius", "near"},
+              [](const Json& j) { return j.is_number(); });
+  }
+  if (ok) {
+    ok = need(settings, {"class", "goals", "goals_text"},
+              [](const Json& j) { return j.is_string(); });
+  }
+  if (ok && settings.contains("search_bytes")) {
+    ok = need(settings, {"search_bytes"}, [](const Json& j) { return j.is_number_unsigned(); });
+  }
+  if (ok) ok = need(settings, {"labels", "zones"}, [](const Json& j) { return j.is_boolean(); });
+  if (ok && settings.contains("model")) {
+    ok = need(settings, {"model"}, [](const Json& j) { return j.is_string(); });
+  }
+  if (!ok) return ok.error();
+  CrowdRun run;
+  run.class_name = settings.at("class");
+  run.goals = settings.at("goals");
+  run.goals_text = settings.at("goals_text");
+  run.near = settings.at("near");
+  run.avatars = settings.at("avatars");
+  for (const Json& group : settings.value("also", Json::array())) {
+    const bool is_right = group.is_array() && group.size() == 2 && group[0].is_string() &&
+                          group[1].is_number_unsigned();
+    if (!is_right) {
+      return Error{Errc::kBadFile,
+                   "the recording's settings have no usable 'also'; record the run "
+                   "again with this program"};
+    }
+    run.also.emplace_back(group[0], group[1]);
+  }
+  run.speed = settings.at("speed");
+  run.radius = settings.at("radius");
+  run.config.dt = settings.at("dt");
+  run.config.seed = settings.at("seed");
+  if (settings.at("labels")) run.config.speedup = PathSpeedup::kLabels;
+  if (settings.at("zones")) run.config.speedup = PathSpeedup::kZones;
+  run.config.search_bytes = settings.value("search_bytes", run.config.search_bytes);
+  run.config.workers = workers;
+  const auto model = find_steering_model(settings.value("model", name_of(run.config.model)));
+  if (!model) {
+    return Error{
+        Errc::kBadFile,
+        "the recording is of a model that this program does not know; use the program that "
+        "recorded it"};
+  }
+  run.config.model = *model;
+  Context context;
+  Result<GoalCrowd> made = GoalCrowd::create(world, run, context);
+  if (!made) return made.error();
+  const auto crowd = std::make_shared<GoalCrowd>(std::move(*made));
+  return Rerun{.step =
+                   [crowd] {
+                     crowd->step();
+                     crowd->give_goals();
+                   },
+               .state_hash = [crowd] { return crowd->crowd().state_hash(); }};
+}
+
+Result<Rerun> rerun_scenario(const Json& settings, const World& world, int32_t workers) {
+  const auto scenario = recorded_scenario(settings);
+  if (!scenario) return scenario.error();
+  Context context;
+  auto made = Simulation::create(world, *scenario, workers, context);
+  if (!made) return made.error();
+  const auto simulation = std::make_shared<Simulation>(std::move(*made));
+  // If a step fails, the state differs from the recording, and so does its hash.
+  return Rerun{.step = [simulation] { (void)simulation->step(); },
+               .state_hash = [simulation] { return simulation->state_hash(); }};
+}
+
+// The world that a scenario bakes itself; a null world if it opens a folder.
+Result<World> own_world(const RecordingInfo& info) {
+  const Json settings = Json::parse(info.settings, nullptr, /*allow_exceptions=*/false);
+  const auto scenario = recorded_scenario(settings);
+  if (!scenario) return scenario.error();
+  if (!scenario->world.empty()) return World();
+  Context context;
+  return open_world(*scenario, context);
+}
+
+struct Model {
+  const char* name;
+  Result<Rerun> (*rerun)(const Json& settings, const World& world, int32_t workers);
+};
+
+// One line per model that `throng replay --check` can repeat.
+constexpr Model kModels[] = {{kWanderersModel, rerun_wanderers},
+                             {kCrowdModel, rerun_crowd},
+                             {kScenarioModel, rerun_scenario}};
+
+}  // namespace
+
+Json wanderers_settings(const WanderConfig& config, const std::string& class_name) {
+  return {{"avatars", config.avatars},
+          {"class", class_name},
+          {"dt", config.dt},
+          {"speed", config.speed},
+          {"seed", config.seed}};
+}
+
+Json crowd_settings(const CrowdRun& run) {
+  Json also = Json::array();
+  for (const auto& [name, count] : run.also) also.push_back(Json::array({name, count}));
+  return {{"avatars", run.avatars},
+          {"also", also},
+          {"class", run.class_name},
+          {"goals", run.goals},
+          {"goals_text", run.goals_text},
+          {"near", run.near},
+          {"dt", run.config.dt},
+          {"speed", run.speed},
+          {"radius", run.radius},
+          {"labels", run.config.speedup == PathSpeedup::kLabels},
+          {"zones", run.config.speedup == PathSpeedup::kZones},
+          {"search_bytes", run.config.search_bytes},
+          {"seed", run.config.seed},
+          {"model", name_of(run.config.model)}};
+}
+
+Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t workers) {
+  for (const Model& model : kModels) {
+    if (info.model != model.name) continue;
+    const Json settings = Json::parse(info.settings, nullptr, /*allow_exceptions=*/false);
+    if (!settings.is_object()) break;
+    return model.rerun(settings, world, workers);
+  }
+  return Error{Errc::kBadFile,
+               fmt::format("the recording is of '{}', which this program cannot run again; use the "
+                           "program that recorded it",
+                           info.model)};
+}
+
+Result<World> world_of(const RecordingInfo& info, const std::string& folder) {
+  if (folder.empty() && info.model == kScenarioModel) {
+    auto world = own_world(info);
+    if (!world || *world) return world;
+  }
+  const std::string& name = folder.empty() ? info.world : folder;
+  Result<World> world = World::open(name);
+  if (!world) {
+    return Error{
+        Errc::kBadFile,
+        fmt::format("{}: the recording's world is not there; name its folder with --world", name)};
+  }
+  const uint64_t hash = world->summary().hash;
+  if (hash == info.world_hash) return world;
+  return Error{Errc::kBadFile,
+               fmt::format("{}: not the world that was recorded (its hash is {:016x}, recorded "
+                           "{:016x}); bake it as it was, or name another folder with --world",
+                           name, hash, info.world_hash)};
+}
+
+}  // namespace throng::app

@@ -1,0 +1,752 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "path/air/flight_finder.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "core/access.h"
+#include "core/check_class.h"
+#include "core/random.h"
+#include "path/air/air_string.h"
+#include "path/air/air_view.h"
+#include "path/air/flight_endpoints.h"
+#include "path/air/flight_search.h"
+#include "path/air/ground_air_links.h"
+#include "path/edits/ground_finder.h"
+#include "path/edits/solid.h"
+#include "path/ground/mesh.h"
+#include "path/ground/reset_path.h"
+#include "path/overlay/mesh_finder.h"
+#include "world/place.h"
+
+// Joins the parts of a flight: walks, take-offs, flight search, landings and string pulling. Time:
+// mostly of the flight search, n log n in the air boxes that it expands; an end that must walk to a
+// take-off adds a flood over kMaxFloodCells cells at most. Where obstacles block a path all of it
+// is tried again, kMaxTries times at most.
+namespace throng::path {
+namespace {
+
+constexpr int32_t kLargestBox = 32;           // voxels: larger ones hide good paths
+constexpr uint64_t kMaxFloodCells = 1 << 18;  // on foot to a take-off
+// The same where the nearest take-off leads into an island and there are several others.
+constexpr uint64_t kMaxIslandCells = 1 << 15;
+// Paths over other ground, or to what is less near, where obstacles block the first.
+constexpr int32_t kMaxTries = 4;
+
+double distance(Vec3d a, Vec3d b) {
+  const Vec3d d = a - b;
+  return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+}
+
+// All but the nodes, which count what all parts of a search expand.
+void clear(Path& path) {
+  const uint64_t nodes = path.nodes;
+  reset(path);
+  path.nodes = nodes;
+}
+
+void add(Vec3d point, SegmentKind kind, Path& path) {
+  if (!path.points.empty()) {
+    path.length += distance(path.points.back().position, point);
+    path.segments.push_back(kind);
+  }
+  path.points.push_back({point});
+}
+
+void add_walk(const Path& ground, size_t first, Path& path) {
+  for (size_t i = first; i < ground.points.size(); ++i) {
+    add(ground.points[i].position, SegmentKind::kWalk, path);
+    path.points.back() = ground.points[i];
+  }
+}
+
+}  // namespace
+
+// A point of the air, or a place with the nearest place to take off or to land.
+struct FlightFinder::End {
+  std::optional<AirPoint> air;
+  Place ground, ground_air_link;
+};
+
+struct FlightFinder::Shared {
+  World world;
+  int32_t avatar_class = 0;
+  world::AirBody body;
+  FlightSpace space;
+  std::vector<uint64_t> cells_before;  // per box, and of all
+  std::optional<MeshFinder> walker;    // none where the class has no ground
+  GroundAirLinks ground_air_links;
+  PathSummary summary;
+
+  [[nodiscard]] FlightEndpoints ends(const AirView& air) const {
+    return {*data_of(world), air, avatar_class};
+  }
+  // The component of the ground at a place.
+  [[nodiscard]] uint32_t ground_of(const Place& place) const {
+    const auto at = world::ground_point(*data_of(world), place);
+    if (!walker || !at) return kNoRect;
+    const PathMesh& mesh = walker->mesh();
+    const uint32_t rect = mesh.rect_at(place.level1 - 1, at->cell_x(), at->cell_z());
+    return rect == kNoRect ? kNoRect : mesh.rects[rect].component;
+  }
+  [[nodiscard]] GroundAirLinks::Part part_of(const End& end) const {
+    if (end.air) return {space.component[space.box_at(*end.air)], true};
+    return {ground_of(end.ground), false};
+  }
+  // The middle of a cell.
+  [[nodiscard]] Place place_of(const GroundAirLinks::Cell& cell) const {
+    return world::place_at(*data_of(world),
+                           world::ground_level(*data_of(world), cell.level, avatar_class),
+                           {(int64_t{cell.x} << world::kUnitBits) + world::kUnitsPerCell / 2,
+                            (int64_t{cell.z} << world::kUnitBits) + world::kUnitsPerCell / 2});
+  }
+  [[nodiscard]] Place nearest_ground(uint32_t component, Vec3d at) const {
+    Place nearest;
+    double least = std::numeric_limits<double>::infinity();
+    if (!walker) return nearest;
+    const world::GroundPoint to = world::to_ground(*data_of(world), at.x, at.z);
+    for (const MeshRect& rect : walker->mesh().rects) {
+      if (rect.component != component) continue;
+      const Place place =
+          place_of({rect.level, std::clamp(to.cell_x(), rect.x, rect.x + rect.width - 1),
+                    std::clamp(to.cell_z(), rect.z, rect.z + rect.depth - 1)});
+      const double far = distance(place.position, at);
+      if (far >= least) continue;
+      least = far;
+      nearest = place;
+    }
+    return nearest;
+  }
+};
+
+struct FlightFinder::Scratch {
+  explicit Scratch(const Shared& shared) : walker(shared.walker) {}
+
+  [[nodiscard]] bool is_changed() const { return changes && changes->any(); }
+  [[nodiscard]] AirView air(const Shared& shared) const {
+    return {shared.space, is_changed() ? &*changes : nullptr};
+  }
+  AirChanges& changes_of(const Shared& shared) {
+    if (!changes) changes.emplace(*data_of(shared.world), shared.space, shared.avatar_class);
+    return *changes;
+  }
+  ChangeId add(const Shared& shared, Solid solid) {
+    if (live) live_ids.push_back(live->add_obstacle(solid));
+    return changes_of(shared).add(std::move(solid));
+  }
+  // The ground with all changes; made on the first walk.
+  GroundFinder& ground(const Shared& shared) {
+    if (!live) {
+      auto made = GroundFinder::create(shared.world, {.avatar_class = shared.avatar_class});
+      THRONG_ASSERT(made);  // The class was checked.
+      changes->add_all_to(*made, live_ids);
+      live = std::move(*made);
+    }
+    return *live;
+  }
+
+  // From the ground into the air: into this component of it, or any (kNoBox). False: none is found.
+  bool find_link(const Shared& shared, const AirView& air, End& end, uint32_t component,
+                 bool& budget_exhausted);
+  // A component of the air over the ground at both ends: if there is more than one, the one that is
+  // nearest to both, as far as a flood around them shows. kNoBox: none.
+  uint32_t common_air(const Shared& shared, const AirView& air, const End& a, const End& b,
+                      const std::atomic<bool>* cancel, bool& budget_exhausted);
+
+  FlightSearch search;
+  SpentBudget spent = SpentBudget::kNone;  // the budget that the last search exhausted
+  AirString pull;
+  CircleFlood flood;
+  std::optional<MeshFinder> walker;
+  std::vector<AirPoint> air_path;
+  Path walk_there, walk_on, walk_all;
+  std::vector<uint32_t> over_from, over_to, common;  // components of the air
+  AirView::ZoneOrder zone_order;
+  GroundAirLinks::Scratch parts;
+  std::vector<GroundAirLinks::Part> route;
+  std::vector<GroundAirLinks::Pair> banned;
+  // Made with the first obstacle; none before.
+  std::optional<AirChanges> changes;
+  std::optional<GroundFinder> live;
+  std::vector<ChangeId> live_ids;  // by id of a change - 1
+  // Of a search that found no path between ends that could be connected: the point that it reached
+  // in the air that is nearest to where the query leads.
+  std::optional<AirPoint> reached;
+};
+
+bool FlightFinder::Scratch::find_link(const Shared& shared, const AirView& air_now, End& end,
+                                      uint32_t component, bool& budget_exhausted) {
+  if (!end.ground) return end.air.has_value();
+  const FlightEndpoints ends = shared.ends(air_now);
+  end.ground_air_link = end.ground;
+  end.air = ends.take_off(end.ground_air_link);
+  if (end.air &&
+      (component == kNoBox || air_now.component(air_now.box_at(*end.air)) == component)) {
+    return true;
+  }
+  end.air.reset();
+  const uint32_t ground_part = shared.ground_of(end.ground);
+  const bool leads = component == kNoBox
+                         ? !shared.ground_air_links.air_over(ground_part).empty()
+                         : shared.ground_air_links.joins(ground_part, air_now.baked(component));
+  if (!leads) return false;
+  const auto nearest = ends.nearest_take_off(end.ground, kMaxFloodCells, component, flood);
+  budget_exhausted = budget_exhausted || nearest.budget_exhausted;
+  end.ground_air_link = nearest.place;
+  end.air = ends.take_off(end.ground_air_link);
+  return end.air.has_value();
+}
+
+uint32_t FlightFinder::Scratch::common_air(const Shared& shared, const AirView& air_now,
+                                           const End& a, const End& b,
+                                           const std::atomic<bool>* cancel,
+                                           bool& budget_exhausted) {
+  const FlightEndpoints ends = shared.ends(air_now);
+  const auto over_a = shared.ground_air_links.air_over(shared.ground_of(a.ground));
+  const auto over_b = shared.ground_air_links.air_over(shared.ground_of(b.ground));
+  common.clear();
+  std::set_intersection(over_a.begin(), over_a.end(), over_b.begin(), over_b.end(),
+                        std::back_inserter(common));
+  if (common.empty()) return kNoBox;
+  if (common.size() < 2 && !is_changed()) return common[0];
+  for (const auto& [end, over] : {std::pair{&a, &over_from}, std::pair{&b, &over_to}}) {
+    if (cancel != nullptr && *cancel) {
+      budget_exhausted = true;
+      return kNoBox;
+    }
+    ends.components_over(end->ground, kMaxIslandCells, flood, *over);
+  }
+  size_t least = SIZE_MAX;
+  uint32_t best = common[0];
+  for (size_t i = 0; i < over_from.size(); ++i) {
+    const auto found = std::find(over_to.begin(), over_to.end(), over_from[i]);
+    const size_t rank = i + static_cast<size_t>(found - over_to.begin());
+    if (found == over_to.end() || rank >= least) continue;
+    least = rank;
+    best = over_from[i];
+  }
+  return best;
+}
+
+FlightFinder::FlightFinder(std::shared_ptr<const Shared> shared)
+    : state_(std::move(shared)), scratch_(std::make_unique<Scratch>(*state_)) {}
+FlightFinder::FlightFinder(const FlightFinder& other) : FlightFinder(other.state_) {
+  scratch_->changes = other.scratch_->changes;
+}
+FlightFinder& FlightFinder::operator=(const FlightFinder& other) {
+  if (this != &other) *this = FlightFinder(other);
+  return *this;
+}
+FlightFinder::FlightFinder(FlightFinder&&) noexcept = default;
+FlightFinder& FlightFinder::operator=(FlightFinder&&) noexcept = default;
+FlightFinder::~FlightFinder() = default;
+
+Result<FlightFinder> FlightFinder::create(const World& world, const PathConfig& config,
+                                          Context& context) {
+  if (data_of(world) == nullptr) return Error{Errc::kBadInput, "flight: the world is empty"};
+  const world::WorldData& data = *data_of(world);
+  if (auto ok = world::check_air_index(data); !ok) return ok.error();
+  if (data.air == nullptr) {
+    return Error{Errc::kNotFound,
+                 "flight: the world was baked without air; bake it with --air or with a class that "
+                 "flies"};
+  }
+  if (auto ok = check_class(data.summary.classes, config.avatar_class, "flight"); !ok)
+    return ok.error();
+  if (config.workers < 0) return Error{Errc::kBadConfig, "flight: workers must be 0 or more"};
+  if (auto ok = refuse_settings(config, "flight", false); !ok) return ok.error();
+  const AvatarClass& avatar = data.summary.classes[static_cast<size_t>(config.avatar_class)];
+  if (!avatar.flies) {
+    return Error{Errc::kBadConfig, "flight: class " + avatar.name +
+                                       " does not fly; say `flies = true` in the classes' file"};
+  }
+  const auto start = std::chrono::steady_clock::now();
+  if (auto ok = world.check_all(); !ok) return ok.error();
+  auto shared = std::make_shared<Shared>();
+  shared->body = world::air_body(avatar, data.air->shape);
+  auto space = build_flight_space(*data.air, shared->body, kLargestBox, config.workers, context);
+  if (!space) return space.error();
+  shared->world = world;
+  shared->avatar_class = config.avatar_class;
+  shared->space = std::move(*space);
+  shared->cells_before.reserve(shared->space.boxes.size() + 1);
+  shared->cells_before.push_back(0);
+  for (const world::AirCube& box : shared->space.boxes) {
+    const auto side = static_cast<uint64_t>(box.side);
+    shared->cells_before.push_back(shared->cells_before.back() + side * side * side);
+  }
+  if (data.level_count > 0) {
+    auto walker = MeshFinder::create(
+        world, {.avatar_class = config.avatar_class, .workers = config.workers}, context);
+    if (!walker) return walker.error();
+    shared->walker = std::move(*walker);
+    shared->ground_air_links =
+        GroundAirLinks(data, shared->walker->mesh(), shared->space, config.workers);
+  }
+  shared->summary.boxes = shared->space.boxes.size();
+  shared->summary.bytes = shared->space.bytes() + shared->cells_before.size() * sizeof(uint64_t) +
+                          shared->ground_air_links.bytes() +
+                          (shared->walker ? shared->walker->summary().bytes : 0);
+  shared->summary.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return FlightFinder(std::move(shared));
+}
+
+PathSummary FlightFinder::summary() const { return state_->summary; }
+const FlightSpace& FlightFinder::space() const { return state_->space; }
+
+ChangeId FlightFinder::add_obstacle(Solid solid) {
+  return scratch_->add(*state_, std::move(solid));
+}
+
+bool FlightFinder::set_active(ChangeId change, bool active) {
+  Scratch& scratch = *scratch_;
+  if (!scratch.changes || !scratch.changes->set_active(change, active)) return false;
+  if (scratch.live) scratch.live->set_active(scratch.live_ids[change - 1], active);
+  return true;
+}
+
+bool FlightFinder::remove(ChangeId change) {
+  Scratch& scratch = *scratch_;
+  if (!scratch.changes || !scratch.changes->remove(change)) return false;
+  if (scratch.live) scratch.live->remove(scratch.live_ids[change - 1]);
+  return true;
+}
+
+bool FlightFinder::is_end(Vec3d at, double vertical_tolerance) const {
+  End end;
+  return locate(at, vertical_tolerance, end);
+}
+
+bool FlightFinder::is_legal(Vec3d feet) const {
+  return state_->ends(scratch_->air(*state_)).in_air(feet).has_value();
+}
+
+std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const {
+  const std::vector<uint64_t>& before = state_->cells_before;
+  if (before.back() == 0) return {};
+  const AirView air = scratch_->air(*state_);
+  const FlightEndpoints ends = state_->ends(air);
+  const auto draw = [&](const world::AirCube& cube, uint64_t first) {
+    const auto part = [&](uint64_t i) {
+      return kAirSkin + random_unit(seed, n, first + i) * (cube.side - 2 * kAirSkin);
+    };
+    return AirPoint{cube.x + part(1), cube.y + part(2), cube.z + part(3)};
+  };
+  // What obstacles have blocked is drawn again. Where hardly anything is left, it is searched.
+  constexpr uint64_t kDraws = 256;
+  size_t box = 0;
+  for (uint64_t i = 0; i < kDraws; ++i) {
+    const uint64_t pick = random_below(seed, n, 4 * i, before.back());
+    box = static_cast<size_t>(std::upper_bound(before.begin(), before.end(), pick) -
+                              before.begin() - 1);
+    const AirPoint p = draw(state_->space.boxes[box], 4 * i);
+    if (air.changes() == nullptr || air.box_at(p) != kNoBox) return ends.to_metres(p);
+  }
+  std::optional<AirPoint> found;
+  for (size_t i = 0; i < state_->space.boxes.size() && !found; ++i) {
+    air.for_pieces(static_cast<uint32_t>((box + i) % state_->space.boxes.size()),
+                   [&](uint32_t piece) {
+                     if (!found) found = draw(air.cube(piece), 4 * kDraws);
+                   });
+  }
+  if (!found) return {};
+  return ends.to_metres(*found);
+}
+
+std::optional<Vec3d> FlightFinder::take_off(const Place& place) const {
+  const FlightEndpoints ends = state_->ends(scratch_->air(*state_));
+  const auto up = ends.take_off(place);
+  if (!up) return {};
+  return ends.to_metres(*up);
+}
+
+Place FlightFinder::landing(Vec3d feet) const {
+  const FlightEndpoints ends = state_->ends(scratch_->air(*state_));
+  const auto point = ends.in_air(feet);
+  if (!point) return {};
+  return ends.best_landing(ends.lowest_box(*point));
+}
+
+void FlightFinder::find(const FlightQuery& query, Path& path) {
+  scratch_->spent = SpentBudget::kNodes;
+  find_flight(query, path);
+  if (query.by_turns && path.end == PathEnd::kUnreachable) find_by_turns(query, path);
+  if (query.nearest && path.end == PathEnd::kUnreachable) find_nearest(query, path);
+  if (path.end == PathEnd::kBudgetExhausted) {
+    const bool stopped = query.budget.cancel != nullptr && *query.budget.cancel;
+    path.spent = stopped ? SpentBudget::kCancelled : scratch_->spent;
+  }
+  path.cost = path.length;
+  scratch_->search.give_back();
+}
+
+bool FlightFinder::locate(Vec3d at, double vertical_tolerance, End& end) const {
+  const FlightEndpoints ends = state_->ends(scratch_->air(*state_));
+  end.air = ends.in_air(at);
+  if (end.air) return true;
+  end.ground = state_->world.find_place(state_->avatar_class, at, vertical_tolerance);
+  return end.ground && ends.may_stand(end.ground);
+}
+
+PathEnd FlightFinder::walk(const FlightQuery& query, const Place& from, const Place& to,
+                           Path& path) {
+  reset(path);
+  if (query.budget.cancel != nullptr && *query.budget.cancel) return PathEnd::kBudgetExhausted;
+  if (!scratch_->is_changed()) {
+    scratch_->walker->find(from, to, path,
+                           {query.budget.max_nodes, nullptr, query.budget.max_bytes});
+    if (path.end == PathEnd::kBudgetExhausted) scratch_->spent = path.spent;
+    return path.end;
+  }
+  if (state_->ground_of(from) != state_->ground_of(to)) {
+    path.end = PathEnd::kUnreachable;
+  } else {
+    scratch_->ground(*state_).find(from, to, path, query.budget);
+    if (path.end == PathEnd::kBudgetExhausted) scratch_->spent = path.spent;
+  }
+  return path.end;
+}
+
+// One flight, or a walk.
+void FlightFinder::find_flight(const FlightQuery& query, Path& path) {
+  Scratch& scratch = *scratch_;
+  const AirView air = scratch.air(*state_);
+  const FlightEndpoints ends = state_->ends(air);
+  clear(path);
+  path.nodes = 0;
+  scratch.reached.reset();
+  bool budget_exhausted = false;  // somewhere: then what was not found may exist all the same
+  const auto component_of = [&](AirPoint p) { return air.component(air.box_at(p)); };
+  const auto to_link = [&](End& end, uint32_t component) {
+    return scratch.find_link(*state_, air, end, component, budget_exhausted);
+  };
+  // The nearest take-offs may lead into islands of the air, a room or a yard under a net: then the
+  // path takes off farther away, into air that leads to the other end.
+  const auto to_links = [&](End& a, End& b) {
+    if (!a.ground && !b.ground) return true;
+    if (!a.ground) return to_link(b, component_of(*a.air));
+    if (!b.ground) return to_link(a, component_of(*b.air));
+    if (!to_link(a, kNoBox) || !to_link(b, kNoBox)) return false;
+    if (air.same_component(*a.air, *b.air)) return true;
+    const uint32_t common =
+        scratch.common_air(*state_, air, a, b, query.budget.cancel, budget_exhausted);
+    return common != kNoBox && to_link(a, common) && to_link(b, common);
+  };
+  const auto find_on_foot = [&](const Place& a, const Place& b, Path& ground) {
+    const PathEnd end = walk(query, a, b, ground);
+    budget_exhausted = budget_exhausted || end == PathEnd::kBudgetExhausted;
+    return end == PathEnd::kReached;
+  };
+  End from, to;
+  if (!locate(query.from, query.vertical_tolerance, from) ||
+      !locate(query.to, query.vertical_tolerance, to))
+    return;
+
+  double on_foot = INFINITY;
+  if (from.ground && to.ground && scratch.walker &&
+      find_on_foot(from.ground, to.ground, scratch.walk_all)) {
+    on_foot = 0;
+    const auto& places = scratch.walk_all.points;
+    for (size_t i = 1; i < places.size(); ++i) {
+      on_foot += distance(places[i - 1].position, places[i].position);
+    }
+  }
+  const bool ground_air_links = to_links(from, to);
+  SearchResult result = SearchResult::kNone;
+  if (ground_air_links && air.same_component(*from.air, *to.air)) {
+    result = scratch.search.find(air, *from.air, *to.air, query.budget, scratch.air_path);
+    path.nodes = scratch.search.expanded();
+    if (result == SearchResult::kBudget) {
+      scratch.spent = query.budget.spent(path.nodes);
+      budget_exhausted = true;
+    }
+    if (result == SearchResult::kNone) {
+      scratch.reached = scratch.search.nearest_reached(ends.to_air(query.to));
+    }
+  }
+  if (result == SearchResult::kFound) {
+    scratch.pull.pull(air, scratch.air_path);
+    bool walked = true;
+    if (from.ground) {
+      if (from.ground_air_link.position.x != from.ground.position.x ||
+          from.ground_air_link.position.z != from.ground.position.z) {
+        walked = find_on_foot(from.ground, from.ground_air_link, scratch.walk_there);
+        add_walk(scratch.walk_there, 0, path);
+      } else {
+        add(from.ground_air_link.position, SegmentKind::kWalk, path);
+      }
+    }
+    for (size_t i = 0; i < scratch.air_path.size(); ++i) {
+      add(ends.to_metres(scratch.air_path[i]), i == 0 ? SegmentKind::kTakeOff : SegmentKind::kFly,
+          path);
+    }
+    if (to.ground) {
+      add(to.ground_air_link.position, SegmentKind::kLand, path);
+      if (to.ground_air_link.position.x != to.ground.position.x ||
+          to.ground_air_link.position.z != to.ground.position.z) {
+        walked = find_on_foot(to.ground_air_link, to.ground, scratch.walk_on) && walked;
+        add_walk(scratch.walk_on, 1, path);
+      }
+    }
+    if (walked && path.length <= on_foot) {
+      path.end = PathEnd::kReached;
+      return;
+    }
+  }
+  clear(path);
+  path.end = budget_exhausted ? PathEnd::kBudgetExhausted : PathEnd::kUnreachable;
+  if (on_foot == INFINITY) return;
+  add_walk(scratch.walk_all, 0, path);
+  path.end = PathEnd::kReached;
+}
+
+// From part to part of the ground and the air. The take-off or landing between two of them is at
+// the place nearest to where the path stands, or to the goal, else at the one that is known of the
+// two. Parts are those of the world as it was baked: where an obstacle blocks the path from one to
+// the next, another path that does without that pair is searched for.
+void FlightFinder::find_by_turns(const FlightQuery& query, Path& path) {
+  Scratch& scratch = *scratch_;
+  End from, to;
+  if (!locate(query.from, query.vertical_tolerance, from) ||
+      !locate(query.to, query.vertical_tolerance, to))
+    return;
+  const GroundAirLinks::Part start = state_->part_of(from), goal = state_->part_of(to);
+  scratch.banned.clear();
+  for (int32_t tries = 0; tries < (scratch.is_changed() ? kMaxTries : 1); ++tries) {
+    // Air that an obstacle has cut in two is one part: then over some ground under it.
+    const bool returns = start == goal && scratch.is_changed() && goal.is_air;
+    const GroundAirLinks::Part last = returns ? GroundAirLinks::Part{kNoBox, true} : goal;
+    state_->ground_air_links.search(start, last, scratch.banned, scratch.parts);
+    const auto& steps = scratch.parts.steps;
+    if (steps.size() < 2 || (!returns && steps.back().part != goal)) return;
+    scratch.route.clear();
+    if (returns) {
+      scratch.route.assign({start, steps[1].part, goal});
+    } else {
+      for (uint32_t i = static_cast<uint32_t>(steps.size()) - 1;; i = steps[i].before) {
+        scratch.route.push_back(steps[i].part);
+        if (i == 0) break;
+      }
+      std::reverse(scratch.route.begin(), scratch.route.end());
+    }
+    const size_t stuck = follow_route(query, from, to, path);
+    if (path.end != PathEnd::kUnreachable) return;
+    const GroundAirLinks::Part& a = scratch.route[stuck - 1];
+    const GroundAirLinks::Part& b = scratch.route[stuck];
+    scratch.banned.emplace_back(a.is_air ? b.component : a.component,
+                                a.is_air ? a.component : b.component);
+  }
+}
+
+// If it does not lead on: the place in the route of the part that it did not reach.
+size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, const End& to,
+                                  Path& path) {
+  Scratch& scratch = *scratch_;
+  const AirView view = scratch.air(*state_);
+  const FlightEndpoints ends = state_->ends(view);
+  PathEnd end = PathEnd::kReached;
+  Place feet = from.ground;  // where the path is by now, or
+  AirPoint air = from.air.value_or(AirPoint{});
+  const auto go = [&](const Place& there) {
+    if (end != PathEnd::kReached) return;
+    end = walk(query, feet, there, scratch.walk_all);
+    add_walk(scratch.walk_all, 1, path);
+    feet = there;
+  };
+  const auto fly = [&](AirPoint there) {
+    if (end != PathEnd::kReached) return;
+    if (view.changes() != nullptr && !view.same_component(air, there)) {
+      end = PathEnd::kUnreachable;
+      return;
+    }
+    const SearchResult result =
+        scratch.search.find(view, air, there, query.budget, scratch.air_path);
+    path.nodes += scratch.search.expanded();
+    if (result == SearchResult::kBudget)
+      scratch.spent = query.budget.spent(scratch.search.expanded());
+    end = result == SearchResult::kFound    ? PathEnd::kReached
+          : result == SearchResult::kBudget ? PathEnd::kBudgetExhausted
+                                            : PathEnd::kUnreachable;
+    scratch.pull.pull(view, scratch.air_path);
+    for (size_t i = 1; i < scratch.air_path.size(); ++i) {
+      add(ends.to_metres(scratch.air_path[i]), SegmentKind::kFly, path);
+    }
+    air = there;
+  };
+  // A place of some ground under some air: it leads into this component of that.
+  const auto link_near = [&](const Place& at, GroundAirLinks::Part ground,
+                             GroundAirLinks::Part over, uint32_t component) {
+    const Place near =
+        at ? ends.nearest_take_off(at, kMaxFloodCells, component, scratch.flood).place : Place{};
+    if (near) return near;
+    const Place known =
+        state_->place_of(state_->ground_air_links.cell(ground.component, over.component));
+    if (view.changes() == nullptr) return known;
+    return ends.nearest_take_off(known, kMaxFloodCells, component, scratch.flood).place;
+  };
+  clear(path);
+  add(from.air ? ends.to_metres(air) : feet.position, SegmentKind::kWalk, path);
+  const size_t count = scratch.route.size();
+  size_t k = 1;
+  for (; k < count && end == PathEnd::kReached; ++k) {
+    const GroundAirLinks::Part here = scratch.route[k - 1], next = scratch.route[k];
+    const bool last = k + 1 == count;
+    if (next.is_air) {
+      const bool known = last && to.air;
+      const Place ground_air_link = link_near(
+          feet, here, next, known ? view.component(view.box_at(*to.air)) : next.component);
+      const auto up = ends.take_off(ground_air_link);
+      if (!up) {
+        end = PathEnd::kUnreachable;
+        continue;
+      }
+      go(ground_air_link);
+      air = *up;
+      add(ends.to_metres(air), SegmentKind::kTakeOff, path);
+    } else {
+      const Place ground_air_link =
+          link_near(last ? to.ground : Place{}, next, here, view.component(view.box_at(air)));
+      const auto up = ends.take_off(ground_air_link);
+      if (!up) {
+        end = PathEnd::kUnreachable;
+        continue;
+      }
+      feet = ground_air_link;
+      fly(*up);
+      add(feet.position, SegmentKind::kLand, path);
+    }
+  }
+  if (to.air) {
+    fly(*to.air);
+  } else {
+    go(to.ground);
+  }
+  if (end != PathEnd::kReached) clear(path);
+  path.end = end;
+  return k - 1;
+}
+
+// To the point of all reachable air that is nearest to the goal; if no avatar can take off from the
+// ground, of the ground: there, of each rectangle, the cell that is nearest in the plane.
+void FlightFinder::find_nearest(const FlightQuery& query, Path& path) {
+  Scratch& scratch = *scratch_;
+  const AirView air = scratch.air(*state_);
+  const FlightEndpoints ends = state_->ends(air);
+  const std::optional<AirPoint> reached = scratch.reached;
+  const bool is_changed = scratch.is_changed();
+  End from;
+  if (!locate(query.from, query.vertical_tolerance, from)) return;
+  const GroundAirLinks::Part start = state_->part_of(from);
+  state_->ground_air_links.search(start, {kNoBox, true}, {}, scratch.parts);
+  std::vector<uint32_t>& airs = scratch.common;
+  airs.clear();
+  for (const auto& step : scratch.parts.steps) {
+    if (step.part.is_air) airs.push_back(step.part.component);
+  }
+  // Obstacles may have cut off its air from what the ground leads to otherwise.
+  if (is_changed && from.air) {
+    airs.push_back(air.component(air.box_at(*from.air)));
+  } else if (is_changed) {
+    ends.components_over(from.ground, kMaxIslandCells, scratch.flood, scratch.over_from);
+    airs.insert(airs.end(), scratch.over_from.begin(), scratch.over_from.end());
+  }
+  std::sort(airs.begin(), airs.end());
+  airs.erase(std::unique(airs.begin(), airs.end()), airs.end());
+  const AirPoint goal = ends.to_air(query.to);
+  std::optional<AirPoint> nearest;
+  for (int32_t tries = 0; tries < kMaxTries; ++tries) {
+    nearest = reached && tries == 0 ? reached : air.nearest_in(airs, goal, scratch.zone_order);
+    if (!nearest) break;
+    const AirPoint at = off_faces(*nearest);
+    FlightQuery nearer = query;
+    nearer.to = ends.to_metres(at);
+    find_flight(nearer, path);
+    if (path.end == PathEnd::kUnreachable) find_by_turns(nearer, path);
+    if (path.end != PathEnd::kUnreachable || !is_changed) break;
+    const uint32_t component = air.component(air.box_at(at));
+    std::erase(airs, component);
+  }
+  if (!nearest || (is_changed && path.end == PathEnd::kUnreachable && from.ground)) {
+    find_nearest_on_foot(query, from.ground, path);
+    return;
+  }
+  if (path.end != PathEnd::kReached) clear(path);
+  path.end = PathEnd::kUnreachable;
+  path.blocked_by = Blocker::kNone;
+  if (path.points.empty()) return;
+  path.blocked_by =
+      air_blocker(*data_of(state_->world)->air, state_->body, air, off_faces(*nearest), goal);
+  // Air that begins right there and leads nowhere else: only a corner is between.
+  if (path.blocked_by == Blocker::kNone) path.blocked_by = Blocker::kNarrow;
+}
+
+// Over the ground, where no avatar can take off.
+void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& from, Path& path) {
+  Scratch& scratch = *scratch_;
+  clear(path);
+  path.end = PathEnd::kUnreachable;
+  const uint32_t ground = state_->ground_of(from);
+  Place nearest;
+  if (scratch.is_changed()) {
+    nearest = state_->ends(scratch.air(*state_))
+                  .nearest_place(from, kMaxFloodCells, query.to, scratch.flood);
+  }
+  if (!nearest) nearest = state_->nearest_ground(ground, query.to);
+  if (!nearest) return;
+  const PathEnd end = walk(query, from, nearest, scratch.walk_all);
+  // To what comes nearest, if the finder of paths on foot knows it.
+  if (end != PathEnd::kReached && !(scratch.is_changed() && end == PathEnd::kUnreachable)) return;
+  add_walk(scratch.walk_all, 0, path);
+  path.blocked_by =
+      state_->ground_air_links.air_over(ground).empty() ? Blocker::kLow : Blocker::kNarrow;
+}
+
+}  // namespace throng::path
+
+namespace throng {
+
+Result<AirSummary> air_summary(const World& world) {
+  if (data_of(world) != nullptr) {
+    if (auto ok = world::check_air_index(*data_of(world)); !ok) return ok.error();
+  }
+  if (data_of(world) == nullptr || data_of(world)->air == nullptr) {
+    return Error{Errc::kNotFound, "the world was baked without air"};
+  }
+  const world::AirData& air = *data_of(world)->air;
+  const world::AirShape& shape = air.shape;
+  const auto height = [&](int32_t layer) {
+    return (static_cast<double>(layer) * shape.cell + shape.origin_y) * 1e-3;
+  };
+  AirSummary summary{.cell = shape.cell * 1e-3,
+                     .floor = height(shape.floor),
+                     .ceiling = height(shape.ceiling),
+                     .zones = air.slots.size(),
+                     .bytes = air.bytes};
+  for (const auto& slot : air.slots) {
+    const world::AirData::ZoneAir zone = air.zone(slot->entry.x(), slot->entry.z());
+    if (!zone.usable) return Error{Errc::kBadFile, slot->error};
+    zone.tree->for_each([&](const world::AirCube& cube, uint32_t word) {
+      if (world::air_kind(word) == world::AirKind::kFull) return;
+      ++summary.nodes;
+      if (world::air_kind(word) == world::AirKind::kLeaf) {
+        summary.free_cells +=
+            static_cast<uint64_t>(std::popcount(zone.tree->leaves[world::air_number(word)]));
+        return;
+      }
+      const int32_t layers =
+          std::min(cube.y + cube.side, shape.ceiling) - std::max(cube.y, shape.floor);
+      summary.free_cells += static_cast<uint64_t>(std::max(layers, 0)) *
+                            static_cast<uint64_t>(cube.side) * static_cast<uint64_t>(cube.side);
+    });
+  }
+  return summary;
+}
+
+}  // namespace throng

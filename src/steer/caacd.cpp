@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "throng/steering.h"
+#include "throng/papers.h"
 
 // [CAACD] equations 1 to 15, one function for each step that has a meaning of its own. What the
 // paper leaves open, and the measurements that decided it: docs/design/007-caacd.md. The greatest

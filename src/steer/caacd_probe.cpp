@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "throng/steering.h"
+#include "throng/papers.h"
 
 // Probes: the "repulsive zones" of [CAACD], the dashed rectangles of figure 7, seen from above.
 namespace throng::caacd {

@@ -8,7 +8,7 @@
 
 #include "steer/social_force.h"
 #include "throng/base.h"
-#include "throng/steering.h"
+#include "throng/papers.h"
 
 // [CAACD] and [HM95] as models of a crowd. They define no step length: both are integrated by
 // Euler's method in parts of a step that are short beside their time constants.

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "steer/social_force.h"
-#include "throng/steering.h"
+#include "throng/papers.h"
 #include "validate/plane_crowd.h"
 #include "validate/tests.h"
 #include "validate/tracks.h"

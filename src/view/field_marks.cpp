@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "throng/steering.h"
+#include "throng/papers.h"
 #include "view/overlays.h"
 
 // [CAACD] II: three concentric fields around each avatar, the probe ahead, and the state that

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "throng/steering.h"
+#include "throng/papers.h"
 
 // Each equation of [CAACD] against values worked out by hand, then what must hold for any input.
 namespace throng::caacd {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "throng/steering.h"
+#include "throng/papers.h"
 
 namespace throng::steer {
 namespace {

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "path/edits/solid.h"
+#include "path/ground/slice.h"
 #include "throng/path.h"
 #include "throng/surface.h"
 
@@ -53,6 +54,15 @@ class NodeFinder {
   /// goal, or obstacles are up, to the nearest place in the block whose border comes nearest.
   void find(const NodePlace& from, const NodePlace& to, Path& path, double spacing = 0.25,
             const SearchBudget& budget = {});
+  /// The same in parts: call begin, then advance until it returns true; `path` is then that of
+  /// find, and before it counts what was expanded. Finding the places, the nearest one to a goal
+  /// that is not connected, and string pulling are each in one go and not counted. After a change
+  /// or another query, begin again.
+  void begin(const NodePlace& from, const NodePlace& to, double spacing = 0.25,
+             const SearchBudget& budget = {});
+  bool advance(Slice& slice, Path& path);
+  /// Could a path begin or end there now?
+  [[nodiscard]] bool is_free(const NodePlace& place) const;
 
   /// Puts up an obstacle: no path leads where the body could touch the prism, whatever its axis.
   /// Blocks are cut there, by cells of level tiles and by squares of about a quarter of a metre of
@@ -76,6 +86,7 @@ class NodeFinder {
   struct Shared;
   struct Scratch;
   explicit NodeFinder(std::shared_ptr<const Shared> shared);
+  void give(Path& path);
 
   std::shared_ptr<const Shared> state_;
   std::unique_ptr<Scratch> scratch_;

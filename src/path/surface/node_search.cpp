@@ -79,13 +79,35 @@ void NodeSearch::expand(const BlockPoint& from, Vec3d at, double cost, uint32_t 
 PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
                          std::vector<Crossing>& crossings, const SearchBounds& within,
                          double less_than) {
-  crossings.clear();
+  begin(from, to, within, less_than);
+  Slice all;
+  return *advance(budget, all, crossings);
+}
+
+void NodeSearch::begin(const BlockPoint& from, const BlockPoint& to, const SearchBounds& within,
+                       double less_than) {
   expanded_ = met_ = 0;
+  best_cost_ = 0;
   within_ = within;
   states_.begin(2 * view_->portal_count());
   open_.clear();
-  const PathEnd end = search(from, to, budget, crossings, less_than);
-  give_back();
+  to_ = to;
+  goal_ = position(*view_, to);
+  less_than_ = less_than;
+  found_ = std::numeric_limits<double>::infinity();
+  last_ = kStart;
+  const Vec3d start = position(*view_, from);
+  arrive(from, start, 0, kStart);
+  expand(from, start, 0, kStart);
+  nearest_ = length(goal_ - start);
+  nearest_state_ = kStart;
+}
+
+std::optional<PathEnd> NodeSearch::advance(const SearchBudget& budget, Slice& slice,
+                                           std::vector<Crossing>& crossings) {
+  crossings.clear();
+  const std::optional<PathEnd> end = search(budget, slice, crossings);
+  if (end) give_back();
   return end;
 }
 
@@ -103,49 +125,43 @@ void NodeSearch::give_back() {
   open_.give_back();
 }
 
-PathEnd NodeSearch::search(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-                           std::vector<Crossing>& crossings, double less_than) {
-  goal_ = position(*view_, to);
-  const Vec3d start = position(*view_, from);
-  constexpr uint32_t kGoal = UINT32_MAX - 1, kStart = UINT32_MAX;
-  double found = std::numeric_limits<double>::infinity();
-  uint32_t last = kStart;
-  const auto arrive = [&](const BlockPoint& in, Vec3d at, double cost, uint32_t parent) {
-    if (in.block != to.block) return;
-    const double all = cost + (*cost_)(in.block, in.s, in.t, at, to.s, to.t, goal_).cost;
-    if (all >= found) return;
-    found = all;
-    last = parent;
-    push(all, kGoal);
-  };
-  arrive(from, start, 0, kStart);
-  expand(from, start, 0, kStart);
-  double nearest = length(goal_ - start);
-  uint32_t nearest_state = kStart;
+void NodeSearch::arrive(const BlockPoint& in, Vec3d at, double cost, uint32_t parent) {
+  if (in.block != to_.block) return;
+  const double all = cost + (*cost_)(in.block, in.s, in.t, at, to_.s, to_.t, goal_).cost;
+  if (all >= found_) return;
+  found_ = all;
+  last_ = parent;
+  push(all, kGoal);
+}
+
+std::optional<PathEnd> NodeSearch::search(const SearchBudget& budget, Slice& slice,
+                                          std::vector<Crossing>& crossings) {
   while (!open_.empty()) {
+    if (slice.is_empty()) return {};
     const Open top = open_.pop();
-    if (top.estimate >= less_than) break;
+    if (top.estimate >= less_than_) break;
     if (top.state == kGoal) {
-      best_cost_ = found;
-      trace(last, crossings);
+      best_cost_ = found_;
+      trace(last_, crossings);
       return PathEnd::kReached;
     }
     State& state = states_[top.state];
     if (state.closed) continue;
     state.closed = true;
+    slice.take();
     if (budget.is_spent(++expanded_, used_bytes())) return PathEnd::kBudgetExhausted;
     const BlockPoint in = ends_of(*view_, {top.state / 2, (top.state & 1) != 0}).in;
     const Vec3d at = state.at;
     const double cost = state.cost;
-    if (const double far = length(goal_ - at); far < nearest) {
-      nearest = far;
-      nearest_state = top.state;
+    if (const double far = length(goal_ - at); far < nearest_) {
+      nearest_ = far;
+      nearest_state_ = top.state;
     }
     arrive(in, at, cost, top.state);
     expand(in, at, cost, top.state);
   }
-  best_cost_ = nearest_state == kStart ? 0 : states_[nearest_state].cost;
-  trace(nearest_state, crossings);
+  best_cost_ = nearest_state_ == kStart ? 0 : states_[nearest_state_].cost;
+  trace(nearest_state_, crossings);
   return PathEnd::kUnreachable;
 }
 

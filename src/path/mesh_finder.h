@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "path/ground/slice.h"
 #include "throng/path.h"
 
 /// Paths over the ground as it was baked.
@@ -32,6 +33,10 @@ class MeshFinder {
   /// stops (Path::spent); with labels there is none. Between queries a finder keeps up to 64 MiB of
   /// search memory, and 16 bytes per corner.
   void find(const Place& from, const Place& to, Path& path, const SearchBudget& budget = {});
+  /// The same in parts: call begin, then advance with the same budget until it returns true. With
+  /// labels or zones the first call does all.
+  void begin(const Place& from, const Place& to);
+  bool advance(const SearchBudget& budget, Slice& slice, Path& path);
 
   [[nodiscard]] PathSummary summary() const;
   [[nodiscard]] const PathMesh& mesh() const;
@@ -40,7 +45,8 @@ class MeshFinder {
   struct Shared;
   struct Scratch;
   explicit MeshFinder(std::shared_ptr<const Shared> shared);
-  void find_over_points(const Place& from, const Place& to, const SearchBudget& budget, Path& path);
+  void begin_over_points();
+  bool advance_over_points(const SearchBudget& budget, Slice& slice, Path& path);
 
   std::shared_ptr<const Shared> state_;
   std::unique_ptr<Scratch> scratch_;

@@ -195,13 +195,17 @@ bool GroundFinder::allows(const Path& path) {
 
 void GroundFinder::begin(const Place& from, const Place& to) { state_->begin(from, to); }
 
+void GroundFinder::begin_over_points(const Place& from, const Place& to) {
+  state_->begin(from, to, true);
+}
+
 void GroundFinder::State::begin(const Place& start, const Place& goal, bool over_points) {
   from_place = start;
   to_place = goal;
   searching = locate(start, from) && locate(goal, to);
   version = mesh.version();
   is_exact = !over_points && mesh.is_plain() && !mesh.has_links();
-  exact_nodes = nodes_before = 0;
+  exact_nodes = nodes_before = expanded = 0;
   was_flooded = false;
   if (!searching) return;
   if (is_exact) exact.begin(mesh.rects(), exact_stop(from), exact_stop(to));
@@ -210,7 +214,6 @@ void GroundFinder::State::begin(const Place& start, const Place& goal, bool over
 
 void GroundFinder::State::begin_over_points() {
   is_exact = false;
-  nodes_before = exact.expanded();
   search.begin(mesh, from, to);
 }
 
@@ -283,6 +286,7 @@ std::optional<bool> GroundFinder::State::advance_exactly(uint64_t max_bytes, Pat
       return end_exactly(result, first, length, path);
     }
     was_flooded = true;
+    nodes_before = kNodesBefore;
     if (is_cut_off()) return {};
   }
   const SearchBudget budget(exact_nodes, nullptr, max_bytes);
@@ -299,6 +303,7 @@ std::optional<bool> GroundFinder::State::end_exactly(SearchResult result,
     path.spent = SpentBudget::kNodes;
     return false;
   }
+  nodes_before = path.nodes;
   if (result != SearchResult::kFound || !give_exactly(length, path)) return {};
   searching = false;
   return true;
@@ -345,32 +350,40 @@ bool GroundFinder::advance(uint64_t max_nodes, Path& path) {
 void GroundFinder::find(const Place& from, const Place& to, Path& path,
                         const SearchBudget& budget) {
   state_->begin(from, to);
-  state_->run(budget, path);
+  Slice all;
+  state_->advance(budget, all, path);
 }
 
 void GroundFinder::find_over_points(const Place& from, const Place& to, Path& path,
                                     const SearchBudget& budget) {
   state_->begin(from, to, true);
-  state_->run(budget, path);
+  Slice all;
+  state_->advance(budget, all, path);
 }
 
-void GroundFinder::State::run(const SearchBudget& budget, Path& path) {
-  if (budget.cancel == nullptr) {
-    advance(budget.max_nodes, budget.max_bytes, path);
-    return;
-  }
-  constexpr uint64_t kSlice = 64;
-  reset(path);
-  path.end = PathEnd::kBudgetExhausted;
-  path.spent = SpentBudget::kNodes;
-  for (uint64_t left = budget.max_nodes; left > 0;) {
-    if (*budget.cancel) {
+bool GroundFinder::advance(const SearchBudget& budget, Slice& slice, Path& path) {
+  State& s = *state_;
+  if (s.searching && s.version != s.mesh.version()) begin(s.from_place, s.to_place);
+  return s.advance(budget, slice, path);
+}
+
+bool GroundFinder::State::advance(const SearchBudget& budget, Slice& slice, Path& path) {
+  constexpr uint64_t kStride = 64;  // between looks at `cancel`
+  while (true) {
+    if (budget.cancel != nullptr && *budget.cancel) {
+      reset(path);
+      path.nodes = expanded;
+      path.end = PathEnd::kBudgetExhausted;
       path.spent = SpentBudget::kCancelled;
-      return;
+      return true;
     }
-    const uint64_t slice = std::min(left, kSlice);
-    if (advance(slice, budget.max_bytes, path)) return;
-    left -= slice;
+    uint64_t part = std::min(slice.left, budget.max_nodes - std::min(budget.max_nodes, expanded));
+    if (budget.cancel != nullptr) part = std::min(part, kStride);
+    const bool ended = advance(part, budget.max_bytes, path);
+    slice.take(ended ? path.nodes - expanded : part);
+    expanded += part;
+    if (ended || expanded >= budget.max_nodes) return true;
+    if (slice.is_empty()) return false;
   }
 }
 

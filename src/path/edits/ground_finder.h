@@ -8,6 +8,7 @@
 #include <span>
 
 #include "path/edits/solid.h"
+#include "path/ground/slice.h"
 #include "throng/path.h"
 
 /// Paths over ground with edits. Data is made when a query needs it, and a change discards only the
@@ -71,7 +72,10 @@ class GroundFinder {
   /// The same search in parts: call begin, then advance with some points per frame until it returns
   /// true. Stops where it would take more than SearchBudget::kDefaultBytes.
   void begin(const Place& from, const Place& to);
+  void begin_over_points(const Place& from, const Place& to);
   bool advance(uint64_t max_nodes, Path& path);
+  /// The same within a budget of the whole search; true, too, when that is exhausted.
+  bool advance(const SearchBudget& budget, Slice& slice, Path& path);
 
   struct State;
   /// For what works on the same ground (FlowPoints).

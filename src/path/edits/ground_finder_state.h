@@ -21,8 +21,9 @@ struct GroundFinder::State {
 
   bool locate(const Place& place, ViewStop& stop);
   void begin(const Place& start, const Place& goal, bool over_points = false);
-  /// To the end of what has begun, or of the budget.
-  void run(const SearchBudget& budget, Path& path);
+  /// To the end of what has begun, of the slice, or of the budget of the whole search. False: the
+  /// slice is spent.
+  bool advance(const SearchBudget& budget, Slice& slice, Path& path);
   /// False: the search has more to expand.
   bool advance(uint64_t max_nodes, uint64_t max_bytes, Path& path);
   /// The exact search. None if points of portals have to be searched instead.
@@ -47,6 +48,7 @@ struct GroundFinder::State {
   ViewStop from, to;
   uint64_t version = 0;
   bool searching = false;
+  uint64_t expanded = 0;  // within the budget
   std::vector<ViewStop> stops;
 
   // While no metre costs more than another, and no off-mesh link is in force.

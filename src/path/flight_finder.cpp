@@ -15,6 +15,7 @@
 #include "path/air/air_string.h"
 #include "path/air/air_view.h"
 #include "path/air/flight_endpoints.h"
+#include "path/air/flight_path.h"
 #include "path/air/flight_search.h"
 #include "path/air/ground_air_links.h"
 #include "path/edits/ground_finder.h"
@@ -37,33 +38,6 @@ constexpr uint64_t kMaxFloodCells = 1 << 18;  // on foot to a take-off
 constexpr uint64_t kMaxIslandCells = 1 << 15;
 // Paths over other ground, or to what is less near, where obstacles block the first.
 constexpr int32_t kMaxTries = 4;
-
-double distance(Vec3d a, Vec3d b) {
-  const Vec3d d = a - b;
-  return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
-}
-
-// All but the nodes, which count what all parts of a search expand.
-void clear(Path& path) {
-  const uint64_t nodes = path.nodes;
-  reset(path);
-  path.nodes = nodes;
-}
-
-void add(Vec3d point, SegmentKind kind, Path& path) {
-  if (!path.points.empty()) {
-    path.length += distance(path.points.back().position, point);
-    path.segments.push_back(kind);
-  }
-  path.points.push_back({point});
-}
-
-void add_walk(const Path& ground, size_t first, Path& path) {
-  for (size_t i = first; i < ground.points.size(); ++i) {
-    add(ground.points[i].position, SegmentKind::kWalk, path);
-    path.points.back() = ground.points[i];
-  }
-}
 
 }  // namespace
 

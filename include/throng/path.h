@@ -311,10 +311,16 @@ class THRONG_API PathFinder {
   /// to 64 MiB of search memory.
   void find(const PathQuery& query, Path& path);
   void find(const Place& from, const Place& to, Path& path, const SearchBudget& budget = {});
-  /// The same search in parts: call begin, then advance with some nodes a frame until it returns
-  /// true. If edits change meanwhile, it begins again. On the ground the search is that for
-  /// kOnDemand; over nodes and in the air the first call of advance does all. Stops where it would
-  /// take more than SearchBudget::kDefaultBytes.
+  /// The same query in parts, for slices over frames: call begin, then advance with some nodes a
+  /// frame until it returns true. A call expands at most `max_nodes`: on the ground, over nodes,
+  /// and in the air, with its walks, alike. Until then `path` has no points, and counts what was
+  /// expanded. The path is that of find, whatever the slices; on the ground, that of find with
+  /// kOnDemand. PathQuery::budget is that of the whole query; `cancel` is read by
+  /// each call, too. Not counted, and in one go: to find
+  /// the ends, string pulling, floods to the nearest take-off, rows of the overlay that obstacles
+  /// have changed. If edits change in between, or this finder is asked for another path, the query
+  /// begins again: use a copy for paths in between. Once it has ended, or without begin, advance
+  /// returns true and nothing is found.
   void begin(const PathQuery& query);
   bool advance(uint64_t max_nodes, Path& path);
 

@@ -82,9 +82,11 @@ path::GroundFinder PathFinder::State::ground_of_its_own() const {
 }
 
 PathFinder::PathFinder(std::unique_ptr<State> state) : state_(std::move(state)) {}
-PathFinder::PathFinder(const PathFinder& other) : state_(std::make_unique<State>(*other.state_)) {}
+PathFinder::PathFinder(const PathFinder& other) : state_(std::make_unique<State>(*other.state_)) {
+  state_->is_disturbed = true;  // What a query in parts has found is not copied.
+}
 PathFinder& PathFinder::operator=(const PathFinder& other) {
-  if (this != &other) state_ = std::make_unique<State>(*other.state_);
+  if (this != &other) *this = PathFinder(other);
   return *this;
 }
 PathFinder::PathFinder(PathFinder&&) noexcept = default;
@@ -160,28 +162,42 @@ void PathFinder::State::find_on_ground(const Place& from, const Place& to, bool 
     if (path.end == PathEnd::kBudgetExhausted) return;
     nodes_before = path.nodes;
   }
+  is_disturbed = true;
   ground().find(from, to, path, budget.after(nodes_before));
   path.nodes += nodes_before;
   if (path.end == PathEnd::kUnreachable && !nearest) forget_points(path);
 }
 
 void PathFinder::State::find_over_nodes(const PathQuery& query, Path& path) {
+  is_disturbed = true;
+  begin_over_nodes(query);
+  path::Slice all;
+  nodes->advance(all, path);
+}
+
+void PathFinder::State::begin_over_nodes(const PathQuery& query) {
   applied.follow(edits(), *nodes);
-  nodes->find(node_place_of(query.from, query.tolerance), node_place_of(query.to, query.tolerance),
-              path, std::max(kMinSpacing, query.spacing), query.budget);
+  nodes->begin(node_place_of(query.from, query.tolerance), node_place_of(query.to, query.tolerance),
+               std::max(kMinSpacing, query.spacing), query.budget);
 }
 
 void PathFinder::State::find_in_air(const PathQuery& query, Path& path) {
-  applied.follow(edits(), *flight);
+  is_disturbed = true;
   path::reset(path);
   if (is_nowhere(query.from) || is_nowhere(query.to)) return;
-  flight->find({.from = position_of(query.from),
-                .to = position_of(query.to),
-                .vertical_tolerance = query.tolerance,
-                .budget = query.budget,
-                .by_turns = query.by_turns,
-                .nearest = query.nearest},
-               path);
+  begin_in_air(query);
+  path::Slice all;
+  flight->advance(all, path);
+}
+
+void PathFinder::State::begin_in_air(const PathQuery& query) {
+  applied.follow(edits(), *flight);
+  flight->begin({.from = position_of(query.from),
+                 .to = position_of(query.to),
+                 .vertical_tolerance = query.tolerance,
+                 .budget = query.budget,
+                 .by_turns = query.by_turns,
+                 .nearest = query.nearest});
 }
 
 void PathFinder::find(const PathQuery& query, Path& path) {
@@ -200,20 +216,49 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, const Sear
 }
 
 void PathFinder::begin(const PathQuery& query) {
-  State& s = *state_;
-  s.begun = query;
-  if (s.config.space != PathSpace::kGround) return;
-  s.ground().begin(s.place_of(query.from, query.tolerance), s.place_of(query.to, query.tolerance));
+  state_->begun = query;
+  state_->begin();
+}
+
+void PathFinder::State::begin() {
+  is_begun = true;
+  is_disturbed = false;
+  begun_version = edits().version();
+  begun_nodes = 0;
+  if (config.space == PathSpace::kNodes) return begin_over_nodes(begun);
+  if (config.space == PathSpace::kGround) {
+    ground().begin(place_of(begun.from, begun.tolerance), place_of(begun.to, begun.tolerance));
+    return;
+  }
+  // A query from or to nowhere ends at once.
+  if (!is_nowhere(begun.from) && !is_nowhere(begun.to)) return begin_in_air(begun);
+  is_begun = false;
 }
 
 bool PathFinder::advance(uint64_t max_nodes, Path& path) {
   State& s = *state_;
-  if (s.config.space == PathSpace::kGround) {
-    if (!s.ground().advance(max_nodes, path)) return false;
-    if (path.end == PathEnd::kUnreachable && !s.begun.nearest) forget_points(path);
+  path::reset(path);
+  if (!s.is_begun) return true;
+  if (s.is_disturbed || s.begun_version != s.edits().version()) s.begin();
+  const std::atomic<bool>* cancel = s.begun.budget.cancel;
+  if (cancel != nullptr && *cancel) {
+    path.nodes = s.begun_nodes;
+    path.end = PathEnd::kBudgetExhausted;
+    path.spent = SpentBudget::kCancelled;
+    s.is_begun = false;
     return true;
   }
-  find(s.begun, path);
+  path::Slice slice{max_nodes};
+  s.is_begun = !s.advance(slice, path);
+  s.begun_nodes = path.nodes;
+  return !s.is_begun;
+}
+
+bool PathFinder::State::advance(path::Slice& slice, Path& path) {
+  if (config.space == PathSpace::kAir) return flight->advance(slice, path);
+  if (config.space == PathSpace::kNodes) return nodes->advance(slice, path);
+  if (!ground().advance(begun.budget, slice, path)) return false;
+  if (path.end == PathEnd::kUnreachable && !begun.nearest) forget_points(path);
   return true;
 }
 
@@ -226,10 +271,7 @@ bool PathFinder::is_free(const PathPoint& end, double tolerance) {
   }
   if (s.nodes) {
     s.applied.follow(s.edits(), *s.nodes);
-    const NodePlace place = s.node_place_of(end, tolerance);
-    Path there;
-    s.nodes->find(place, place, there);
-    return there.end != PathEnd::kNoPlace;
+    return s.nodes->is_free(s.node_place_of(end, tolerance));
   }
   const Place place = s.place_of(end, tolerance);
   return place && s.ground().is_free(place);

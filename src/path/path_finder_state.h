@@ -26,7 +26,13 @@ struct PathFinder::State {
   std::optional<path::FlightFinder> flight;
   path::AppliedEdits applied;  // by `live`, `nodes` or `flight`
 
-  PathQuery begun;  // the search in parts
+  // The query in parts. What it has found is the finder's that it searches with, so another query
+  // there, or an edit, makes it begin again.
+  PathQuery begun;
+  bool is_begun = false;
+  bool is_disturbed = false;
+  uint64_t begun_version = 0;  // of the edits
+  uint64_t begun_nodes = 0;    // expanded so far
 
   [[nodiscard]] const path::EditList& edits() const;
   /// The finder of ground with edits, up to date.
@@ -39,6 +45,10 @@ struct PathFinder::State {
                       Path& path);
   void find_over_nodes(const PathQuery& query, Path& path);
   void find_in_air(const PathQuery& query, Path& path);
+  void begin_over_nodes(const PathQuery& query);
+  void begin_in_air(const PathQuery& query);
+  void begin();
+  bool advance(path::Slice& slice, Path& path);
 };
 
 }  // namespace throng

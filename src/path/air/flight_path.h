@@ -30,6 +30,14 @@ inline void add(Vec3d point, SegmentKind kind, Path& path) {
   path.points.push_back({point});
 }
 
+inline double length_of(const Path& ground) {
+  double length = 0;
+  for (size_t i = 1; i < ground.points.size(); ++i) {
+    length += distance(ground.points[i - 1].position, ground.points[i].position);
+  }
+  return length;
+}
+
 inline void add_walk(const Path& ground, size_t first, Path& path) {
   for (size_t i = first; i < ground.points.size(); ++i) {
     add(ground.points[i].position, SegmentKind::kWalk, path);

@@ -206,7 +206,7 @@ struct Path {
   PathEnd end = PathEnd::kNoPlace;
   /// Feet, from the start to the goal. They are places of level ground except over nodes and in the
   /// air, where `position` alone counts. If the goal is unreachable, they lead to the reachable
-  /// place nearest to it; on the ground and in the air only with PathQuery::nearest.
+  /// place nearest to it; on the ground and in the air not without PathQuery::nearest.
   std::vector<Place> points;
   /// Over nodes: the place of each point, with its axis; else empty. The point of a drop link that
   /// is in the air, above the landing, has feet and axis, but node1 is 0.
@@ -261,10 +261,12 @@ struct PathQuery {
   /// In the air: if no single flight leads to the goal, search paths that land, walk and take off
   /// again.
   bool by_turns = true;
-  /// If no path leads to the goal, find the path to what is reachable and nearest to it, and what
-  /// blocks it there. On the ground that searches all that is reachable, which takes up to a second
-  /// in a city; over nodes it is always done.
-  bool nearest = false;
+  /// If no path leads to the goal, find the path to what is reachable and nearest to it, heights
+  /// counted, and what blocks it there. It costs a look around the goal and one more search. Only
+  /// if it is not known beforehand what is connected (on the ground, where obstacles cut the goal
+  /// off, an off-mesh link is in force, with kOnDemand or a slope cost) all that is reachable is
+  /// searched, which takes up to a second in a city. Over nodes it is always done.
+  bool nearest = true;
   SearchBudget budget = {};
 };
 
@@ -314,13 +316,13 @@ class THRONG_API PathFinder {
   /// The same query in parts, for slices over frames: call begin, then advance with some nodes a
   /// frame until it returns true. A call expands at most `max_nodes`: on the ground, over nodes,
   /// and in the air, with its walks, alike. Until then `path` has no points, and counts what was
-  /// expanded. The path is that of find, whatever the slices; on the ground, that of find with
-  /// kOnDemand. PathQuery::budget is that of the whole query; `cancel` is read by
-  /// each call, too. Not counted, and in one go: to find
-  /// the ends, string pulling, floods to the nearest take-off, rows of the overlay that obstacles
-  /// have changed. If edits change in between, or this finder is asked for another path, the query
-  /// begins again: use a copy for paths in between. Once it has ended, or without begin, advance
-  /// returns true and nothing is found.
+  /// expanded. The path is that of find, whatever the slices; on the ground, a path to a goal that
+  /// is reached is that of find with kOnDemand. PathQuery::budget is that of the whole query;
+  /// `cancel` is read by each call, too. Not counted, and in one go: to find the ends, string
+  /// pulling, floods to the nearest take-off, rows of the overlay that obstacles have changed. If
+  /// edits change in between, or this finder is asked for another path, the query begins again: use
+  /// a copy for paths in between. Once it has ended, or without begin, advance returns true and
+  /// nothing is found.
   void begin(const PathQuery& query);
   bool advance(uint64_t max_nodes, Path& path);
 

@@ -137,22 +137,29 @@ void MeshFinder::find(const Place& from, const Place& to, Path& path, const Sear
   advance(budget, all, path);
 }
 
+std::optional<Stop> MeshFinder::stop(const Place& place) const {
+  const auto at = world::ground_point(*data_of(state_->world), place);
+  if (!at) return {};
+  const uint32_t rect = state_->mesh.rect_at(place.level1 - 1, at->cell_x(), at->cell_z());
+  return rect == kNoRect ? std::nullopt : std::optional<Stop>({*at, rect});
+}
+
+uint32_t MeshFinder::component(const Place& place) const {
+  const auto at = stop(place);
+  return at ? state_->mesh.rects[at->rect].component : kNoRect;
+}
+
 void MeshFinder::begin(const Place& from, const Place& to) {
-  const world::WorldData& world = *data_of(state_->world);
   const PathMesh& mesh = state_->mesh;
-  const auto locate = [&](const Place& place, Stop& end) {
-    const auto at = world::ground_point(world, place);
-    if (!at) return false;
-    end.at = *at;
-    end.rect = mesh.rect_at(place.level1 - 1, end.at.cell_x(), end.at.cell_z());
-    return end.rect != kNoRect;
-  };
   Scratch& s = *scratch_;
   s.from = from;
   s.to = to;
   s.nodes = 0;
   s.step = Scratch::Step::kNoPlace;
-  if (!locate(from, s.start) || !locate(to, s.goal)) return;
+  const auto start = stop(from), goal = stop(to);
+  if (!start || !goal) return;
+  s.start = *start;
+  s.goal = *goal;
   s.step = Scratch::Step::kApart;
   if (mesh.rects[s.start.rect].component != mesh.rects[s.goal.rect].component) return;
   s.step = Scratch::Step::kCorners;

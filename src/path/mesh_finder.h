@@ -2,15 +2,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 
+#include "path/ground/mesh.h"
 #include "path/ground/slice.h"
 #include "throng/path.h"
 
 /// Paths over the ground as it was baked.
 namespace throng::path {
-
-struct PathMesh;
 
 /// Finds paths for one class. All copies share the ground; each copy has its own memory for
 /// searching: give every thread one. No allocation once it is warm.
@@ -40,6 +41,10 @@ class MeshFinder {
 
   [[nodiscard]] PathSummary summary() const;
   [[nodiscard]] const PathMesh& mesh() const;
+  /// Where a place lies on the mesh; none if it is no place of the class.
+  [[nodiscard]] std::optional<Stop> stop(const Place& place) const;
+  /// The same for places that are connected, or kNoRect.
+  [[nodiscard]] uint32_t component(const Place& place) const;
 
  private:
   struct Shared;

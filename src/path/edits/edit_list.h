@@ -36,6 +36,8 @@ struct EditList {
   }
   /// May a path on the ground be shorter, or cost less, than that of the baked ground?
   [[nodiscard]] bool may_shorten_paths() const { return active_links > 0 || has_costs(); }
+  /// May places be connected that are not on the baked ground?
+  [[nodiscard]] bool may_connect() const { return active_links > 0; }
   /// Do areas have another cost than the ground around them?
   [[nodiscard]] bool has_costs() const { return active_areas > 0 && costs_differ; }
   /// Calls visit(Changed) for what has changed since a version, or may have.

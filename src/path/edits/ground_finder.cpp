@@ -48,10 +48,16 @@ void GroundFinder::State::give(Path& path) {
   path.cost = cost * world.summary.cell;
 }
 
-Blocker GroundFinder::State::blocker() {
-  const ViewLevel* level = mesh.level(stops.back().level);
+Blocker GroundFinder::blocker(const Place& from, const Place& to) {
+  ViewStop start, goal;
+  if (!state_->locate(from, start) || !state_->locate(to, goal)) return Blocker::kNone;
+  return state_->blocker(start, goal);
+}
+
+Blocker GroundFinder::State::blocker(const ViewStop& start, const ViewStop& goal) {
+  const ViewLevel* level = mesh.level(start.level);
   const world::WalkStop stop =
-      world::walk_far(mesh.ground(), level, stops.back().at, to.at, mesh.step());
+      world::walk_far(mesh.ground(), level, start.at, goal.at, mesh.step());
   if (stop.arrived) return Blocker::kGap;  // under or over the goal
   // Obstacles placed since the bake are not in its floors.
   const world::WorldGround baked{mesh.world(), mesh.avatar_class()};
@@ -193,7 +199,10 @@ bool GroundFinder::allows(const Path& path) {
   return true;
 }
 
-void GroundFinder::begin(const Place& from, const Place& to) { state_->begin(from, to); }
+void GroundFinder::begin(const Place& from, const Place& to, IfUnreachable otherwise) {
+  state_->begin(from, to);
+  state_->otherwise = otherwise;
+}
 
 void GroundFinder::begin_over_points(const Place& from, const Place& to) {
   state_->begin(from, to, true);
@@ -287,7 +296,13 @@ std::optional<bool> GroundFinder::State::advance_exactly(uint64_t max_bytes, Pat
     }
     was_flooded = true;
     nodes_before = kNodesBefore;
-    if (is_cut_off()) return {};
+    if (is_cut_off()) {
+      if (otherwise == IfUnreachable::kNearest) return {};
+      path.nodes = kNodesBefore;
+      path.end = PathEnd::kUnreachable;
+      searching = false;
+      return true;
+    }
   }
   const SearchBudget budget(exact_nodes, nullptr, max_bytes);
   const SearchResult result = exact.advance(budget, corners, length);
@@ -336,20 +351,20 @@ bool GroundFinder::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& 
   search.give_back();
   string.pull(mesh, stops);
   give(path);
-  if (path.end == PathEnd::kUnreachable) path.blocked_by = blocker();
+  if (path.end == PathEnd::kUnreachable) path.blocked_by = blocker(stops.back(), to);
   return true;
 }
 
 bool GroundFinder::advance(uint64_t max_nodes, Path& path) {
   State& s = *state_;
   // What the search has reached may no longer exist.
-  if (s.searching && s.version != s.mesh.version()) begin(s.from_place, s.to_place);
+  if (s.searching && s.version != s.mesh.version()) s.begin(s.from_place, s.to_place);
   return s.advance(max_nodes, SearchBudget::kDefaultBytes, path);
 }
 
-void GroundFinder::find(const Place& from, const Place& to, Path& path,
-                        const SearchBudget& budget) {
-  state_->begin(from, to);
+void GroundFinder::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget,
+                        IfUnreachable otherwise) {
+  begin(from, to, otherwise);
   Slice all;
   state_->advance(budget, all, path);
 }
@@ -363,7 +378,7 @@ void GroundFinder::find_over_points(const Place& from, const Place& to, Path& pa
 
 bool GroundFinder::advance(const SearchBudget& budget, Slice& slice, Path& path) {
   State& s = *state_;
-  if (s.searching && s.version != s.mesh.version()) begin(s.from_place, s.to_place);
+  if (s.searching && s.version != s.mesh.version()) s.begin(s.from_place, s.to_place);
   return s.advance(budget, slice, path);
 }
 

@@ -38,8 +38,8 @@ struct GroundFinder::State {
   bool give_exactly(double length, Path& path);
   /// Of `stops`.
   void give(Path& path);
-  /// What a straight line from its end to the goal meets first.
-  Blocker blocker();
+  /// What a straight line meets first.
+  Blocker blocker(const ViewStop& start, const ViewStop& goal);
 
   GroundView mesh;
   PointSearch search;
@@ -48,6 +48,7 @@ struct GroundFinder::State {
   ViewStop from, to;
   uint64_t version = 0;
   bool searching = false;
+  IfUnreachable otherwise = IfUnreachable::kNearest;
   uint64_t expanded = 0;  // within the budget
   std::vector<ViewStop> stops;
 

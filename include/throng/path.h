@@ -100,11 +100,15 @@ enum class PathSpace : uint8_t {
   kAir,      ///< The air, and the ground for walks between flights.
 };
 
-/// An off-mesh link, see Edits::add_off_mesh_link.
+/// An off-mesh link, see Edits::add_off_mesh_link. A link of the bake (NodeOffMeshLink) is another
+/// type, because files hold it for one class and without a cost: that is its length.
 struct OffMeshLink {
-  Place from, to;
+  Place from = {}, to = {};
   double cost = 0;  ///< [m]
   bool two_way = true;
+  /// Ends on nodes, as on a wall, instead of `from` and `to`. A link that has one is only for
+  /// classes over nodes.
+  NodePlace from_on_nodes = {}, to_on_nodes = {};
 };
 
 /// Names an edit; 0 names none.
@@ -116,9 +120,9 @@ struct EditList;  // Internal.
 
 /// Changes of a world at run time, in one list for all finders: obstacles, doors, area kinds and
 /// their costs, off-mesh links. Copies of a handle share the list; a PathFinder that was made with
-/// one applies each edit before its next query. Edits add no ground: an avatar can stand on a crate
-/// only if it was baked. No edit may be made while another thread uses a handle of the same list or
-/// a finder that has one.
+/// one applies each edit before its next query. In the air only obstacles count: areas and links do
+/// not apply. Edits add no ground: an avatar can stand on a crate only if it was baked. No edit may
+/// be made while another thread uses a handle of the same list or a finder that has one.
 class THRONG_API Edits {
  public:
   Edits();
@@ -130,19 +134,22 @@ class THRONG_API Edits {
   /// The same for triangles. Only these are solid: a closed shell is hollow.
   [[nodiscard]] Result<EditId> add_obstacle(std::span<const Vec3d> corners,
                                             std::span<const std::array<uint32_t, 3>> triangles);
-  /// Gives level tiles inside a prism an area kind; where several overlap, the last one counts.
-  /// Only for paths on the ground. Fails with kBadInput or kBadConfig.
+  /// Gives what lies inside a prism an area kind: cells of level tiles and, over nodes, squares of
+  /// curved ground of about a quarter of a metre, each by its middle. Where several overlap, the
+  /// last one counts. Not in the air. Fails with kBadInput or kBadConfig.
   [[nodiscard]] Result<EditId> add_area(const Prism& prism, uint8_t kind);
   /// Adds an off-mesh link, which no move finds: over a ditch, up a ladder, by a lift. It leads
   /// from one place to another, and back if `two_way`; what lies between is not tested. Its cost
-  /// counts as metres and may be less than its length. Only for paths on the ground and walkers of
-  /// crowds, of classes that can stand at both ends. Fails with kBadInput.
+  /// counts as metres and may be less than its length. For classes that can stand at both ends, on
+  /// the ground or over nodes, and avatars of crowds that walk; not in the air, and not for
+  /// climbers of crowds. Fails with kBadInput.
   [[nodiscard]] Result<EditId> add_off_mesh_link(const OffMeshLink& link);
   /// Removes an edit, or switches it off and on, as a door. False if there is none of this id.
   bool remove(EditId edit);
   bool set_active(EditId edit, bool active);
   /// Sets the cost of a metre on ground of an area kind; infinity closes it. All kinds begin
-  /// with 1. Fails with kBadConfig. [kind 1 to 63, 0.01 to 10000 or infinity]
+  /// with 1. Over nodes, only areas of Edits have kinds, and no path begins or ends on what is
+  /// closed. Fails with kBadConfig. [kind 1 to 63, 0.01 to 10000 or infinity]
   [[nodiscard]] Result<void> set_area_cost(uint8_t kind, double cost);
 
   /// Rises with every change of the list.
@@ -188,7 +195,7 @@ enum class SegmentKind : uint8_t {
   /// evenly. The patches meet there (both points are nearly the same), or the path takes a link
   /// over a hole. On a drop link: horizontally out over the edge, then straight down.
   kCross,
-  kOffMesh,  ///< Along an off-mesh link of Edits.
+  kOffMesh,  ///< Along an off-mesh link of Edits; over nodes, as kCross.
   kTakeOff,  ///< Straight up, from the ground into the air.
   kFly,      ///< Through the air.
   kLand,     ///< Straight down, from the air to the ground.

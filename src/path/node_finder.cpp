@@ -11,6 +11,7 @@
 #include "core/access.h"
 #include "path/edits/blocked_cells.h"
 #include "path/edits/blocker.h"
+#include "path/edits/ground_finder.h"
 #include "path/edits/solid.h"
 #include "path/ground/reset_path.h"
 #include "path/overlay/overlay_search.h"
@@ -70,6 +71,7 @@ struct NodeFinder::Shared {
 
   /// The block of a place, as it was baked.
   [[nodiscard]] BlockPoint block_of(const NodePlace& place) const;
+  [[nodiscard]] BlockPoint block_of(const Place& place) const;
 };
 
 struct NodeFinder::Scratch {
@@ -243,7 +245,9 @@ class PathBuilder {
 
   void cross(const PulledCrossing& crossing) {
     const graph::NodePortal portal = view_.portal(crossing.crossing.portal);
-    path_.cost += graph::portal_length(portal, crossing.out_at, crossing.in_at);
+    path_.cost +=
+        view_.cost_through(crossing.crossing.portal, portal, crossing.out_at, crossing.in_at);
+    const bool is_link = view_.is_link(crossing.crossing.portal);
     const bool same_patch =
         view_.block(crossing.out.block).patch == view_.block(crossing.in.block).patch;
     if (same_patch && !portal.over_hole) {
@@ -251,7 +255,7 @@ class PathBuilder {
       path_.node_places.back().node1 = node_of(crossing.in) + 1;
     } else {
       if (portal.kind == LinkKind::kDrop) add_over(crossing.in_at);
-      add(crossing.in, SegmentKind::kCross);
+      add(crossing.in, is_link ? SegmentKind::kOffMesh : SegmentKind::kCross);
     }
     last_ = crossing.in;
     if (portal.inside) return;
@@ -373,6 +377,15 @@ Blocker blocker_towards(const NodeView& view, const BlockPoint& from, Vec3d goal
     }
   }
   return found;
+}
+
+// The parameters of a point in the patch of its tile.
+std::pair<double, double> in_tile(world::GroundPoint at) {
+  const auto along = [](int64_t unit) {
+    return (static_cast<double>(unit & (64 * world::kUnitsPerCell - 1)) + 0.5) /
+           (64 * world::kUnitsPerCell);
+  };
+  return {along(at.x), along(at.z)};
 }
 
 // Calls visit(block, s, t) for the parts and blocks of level tiles that may have a point no farther
@@ -543,11 +556,7 @@ NodePlace NodeFinder::find_place(Vec3d position, double search_radius) const {
     if (const uint32_t patch = mesh.patch_of_level(place.level1 - 1); patch != graph::kNoNode) {
       const world::GroundPoint at =
           world::to_ground(*data_of(world), place.position.x, place.position.z);
-      const auto along = [](int64_t unit) {
-        return (static_cast<double>(unit & (64 * world::kUnitsPerCell - 1)) + 0.5) /
-               (64 * world::kUnitsPerCell);
-      };
-      const double s = along(at.x), t = along(at.z);
+      const auto [s, t] = in_tile(at);
       const uint32_t block = mesh.block_at(patch, s, t);
       under = block == graph::kNoNode ? graph::kNoNode : changes.part_at(block, s, t);
       if (under != graph::kNoNode) consider(under, s, t, 0);
@@ -583,6 +592,34 @@ Result<ChangeId> NodeFinder::add_obstacle(std::span<const Vec3d> corners,
   return add_obstacle(*solid);
 }
 
+Result<ChangeId> NodeFinder::add_area(const Prism& prism, uint8_t kind) {
+  if (auto ok = check_area(kind); !ok) return ok.error();
+  if (auto ok = check_prism(prism); !ok) return ok.error();
+  return scratch_->changes.add_area(prism, kind);
+}
+
+Result<void> NodeFinder::set_area_cost(uint8_t kind, double cost) {
+  if (auto ok = check_area_cost(kind, cost); !ok) return ok;
+  scratch_->changes.set_area_cost(kind, cost);
+  return {};
+}
+
+Result<ChangeId> NodeFinder::add_off_mesh_link(const OffMeshLink& link) {
+  if (auto ok = check_link(link); !ok) return ok.error();
+  const auto end_of = [&](const Place& place, const NodePlace& on_nodes) {
+    const BlockPoint at = on_nodes ? state_->block_of(on_nodes) : state_->block_of(place);
+    return NodeChanges::LinkEnd{at.block, at.s, at.t};
+  };
+  const NodeChanges::Link added{.from = end_of(link.from, link.from_on_nodes),
+                                .to = end_of(link.to, link.to_on_nodes),
+                                .cost = link.cost,
+                                .two_way = link.two_way};
+  if (added.from.block == graph::kNoNode || added.to.block == graph::kNoNode) {
+    return Error{Errc::kBadInput, "off-mesh link: an end is no place of the class"};
+  }
+  return scratch_->changes.add_link(added);
+}
+
 bool NodeFinder::remove(ChangeId change) {
   return scratch_->changes.set_active(change, false, true);
 }
@@ -613,6 +650,14 @@ BlockPoint NodeFinder::Shared::block_of(const NodePlace& place) const {
     }
   }
   return at;
+}
+
+BlockPoint NodeFinder::Shared::block_of(const Place& place) const {
+  const auto at = world::ground_point(*data_of(data_of(mesh.nodes())->world), place);
+  const uint32_t patch = at ? mesh.patch_of_level(place.level1 - 1) : graph::kNoNode;
+  if (patch == graph::kNoNode) return {};
+  const auto [s, t] = in_tile(*at);
+  return {mesh.block_at(patch, s, t), s, t};
 }
 
 BlockPoint NodeFinder::Scratch::locate(const NodePlace& place) const {
@@ -653,6 +698,11 @@ void NodeFinder::begin(const NodePlace& from, const NodePlace& to, double spacin
   scratch.searched_cost = 0;
   scratch.crossings.clear();
   if (start.block == graph::kNoNode || goal.block == graph::kNoNode) return;
+  // Parts and the overlay do not know links.
+  if (view.has_links()) {
+    scratch.reachable = true;
+    return scratch.begin_step(Scratch::Step::kAll);
+  }
   const NodeParts& parts = state_->parts;
   parts.reach(view.base_of(start.block), scratch.reached);
   scratch.reachable = scratch.reached.holds(parts.of_block(view.base_of(goal.block)));

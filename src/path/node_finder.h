@@ -75,8 +75,18 @@ class NodeFinder {
   /// The same for triangles. Only these are solid: a closed shell is hollow.
   [[nodiscard]] Result<ChangeId> add_obstacle(std::span<const Vec3d> corners,
                                               std::span<const std::array<uint32_t, 3>> triangles);
-  /// Removes an obstacle, or switches it off and on, as a door; paths are then the same as without
-  /// it. False if there is none of this id.
+  /// Gives an area a kind: squares of level tiles whose middle lies in the prism, and of curved
+  /// ground of about a quarter of a metre. A metre on them costs what the kind does; infinity
+  /// closes them. Where several overlap, the last one counts. Fails with kBadInput or kBadConfig.
+  /// Time: the blocks that it touches.
+  [[nodiscard]] Result<ChangeId> add_area(const Prism& prism, uint8_t kind);
+  [[nodiscard]] Result<void> set_area_cost(uint8_t kind, double cost);
+  /// Adds an off-mesh link between places of the class as they were baked; while an obstacle blocks
+  /// one, it is not in force. While one is in force, all crossings are searched, without the
+  /// overlay, because links may join any of its cells. Fails with kBadInput.
+  [[nodiscard]] Result<ChangeId> add_off_mesh_link(const OffMeshLink& link);
+  /// Removes a change, or switches it off and on, as a door; paths are then the same as without it.
+  /// False if there is none of this id.
   bool remove(ChangeId change);
   bool set_active(ChangeId change, bool active);
 

@@ -24,6 +24,7 @@ void EditList::note(Changed what) {
 void EditList::count(const Edit& edit, int by) {
   size_t& active = edit.kind == Kind::kObstacle ? active_solids
                    : edit.kind == Kind::kArea   ? active_areas
+                   : is_over_nodes(edit.link)   ? active_node_links
                                                 : active_links;
   active += static_cast<size_t>(by);
 }
@@ -59,19 +60,6 @@ void EditList::set_area_cost(uint8_t kind, double cost) {
   area_costs[kind] = cost;
   costs_differ = std::any_of(area_costs.begin(), area_costs.end(), [](double c) { return c != 1; });
   note({.area = kind});
-}
-
-ChangeId AppliedEdits::id_of_new(const EditList::Edit& edit, GroundFinder& finder) {
-  if (edit.kind == EditList::Kind::kObstacle) return finder.add_obstacle(edit.solid);
-  const auto added = edit.kind == EditList::Kind::kArea
-                         ? finder.add_area(edit.solid.prism, edit.area)
-                         : finder.add_off_mesh_link(edit.link);
-  return added ? *added : 0;
-}
-
-void AppliedEdits::set_cost(GroundFinder& finder, uint8_t kind, double cost) {
-  const auto set = finder.set_area_cost(kind, cost);
-  THRONG_ASSERT(set);  // Edits has checked it.
 }
 
 }  // namespace path

@@ -122,7 +122,7 @@ Result<void> check_area_cost(uint8_t kind, double cost) {
 }
 
 Result<void> check_link(const OffMeshLink& link) {
-  if (!link.from || !link.to) {
+  if ((!link.from && !link.from_on_nodes) || (!link.to && !link.to_on_nodes)) {
     return Error{Errc::kBadInput, "off-mesh link: it must lead from a place to another"};
   }
   if (link.cost > 0 && std::isfinite(link.cost)) return {};
@@ -141,6 +141,9 @@ Result<ChangeId> GroundFinder::add_area(const Prism& prism, uint8_t kind) {
 
 Result<ChangeId> GroundFinder::add_off_mesh_link(const OffMeshLink& link) {
   if (auto ok = check_link(link); !ok) return ok.error();
+  if (is_over_nodes(link)) {
+    return Error{Errc::kBadInput, "off-mesh link: its ends are not on the ground"};
+  }
   State& s = *state_;
   const world::WorldData& world = s.mesh.world();
   // As the ground was baked: what stands there now may be removed.

@@ -20,6 +20,11 @@ namespace throng::path {
 [[nodiscard]] Result<void> check_area_cost(uint8_t kind, double cost);
 [[nodiscard]] Result<void> check_link(const OffMeshLink& link);
 
+/// Has it an end that only classes over nodes can stand at?
+inline bool is_over_nodes(const OffMeshLink& link) {
+  return link.from_on_nodes || link.to_on_nodes;
+}
+
 /// What a search finds if no path leads to the goal: a path to what is reachable and nearest to it
 /// and what blocks it there, or nothing, which takes less time if little is connected with one of
 /// both.

@@ -298,17 +298,9 @@ std::array<uint8_t, 4096> GroundView::kinds_of(const ViewLevel& level) const {
   for (const ChangeId id : found->second) {
     const Change& change = changes_[id - 1];
     if (!change.active || !change.is_area) continue;
-    const SquareRange cells = cells_near(floor, change.solid.prism.corners, kHeightRounding);
-    for (int32_t z = cells.first_z; z <= cells.last_z; ++z) {
-      for (int32_t x = cells.first_x; x <= cells.last_x; ++x) {
-        if (!level.is_legal(x, z)) continue;
-        const double feet = level.ground.view.sample(x, z) * 1e-3;
-        if (feet < change.solid.prism.low || feet > change.solid.prism.high) continue;
-        const double mx = summary.origin.x + (level.tile_x * kTileCells + x + 0.5) * summary.cell;
-        const double mz = summary.origin.z + (level.tile_z * kTileCells + z + 0.5) * summary.cell;
-        if (is_nearer({mx, mz, mx, mz}, change.solid.prism.corners, 1e-9))
-          kinds[static_cast<size_t>(z * 64 + x)] = change.kind;
-      }
+    const world::CellRows cells = cells_in(floor, change.solid.prism);
+    for (size_t c = 0; c < kinds.size(); ++c) {
+      if ((cells[c / 64] >> (c % 64) & 1) != 0) kinds[c] = change.kind;
     }
   }
   return kinds;

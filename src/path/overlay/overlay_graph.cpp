@@ -35,7 +35,7 @@ void OverlayGraph::set(std::span<const uint32_t> blocks, bool keep) {
       const graph::NodePortal portal = view_->portal(crossing.portal);
       const auto [out, in] = ends_of(portal, crossing.backward);
       Arc arc{crossing, out, in, position(*view_, out), position(*view_, in)};
-      arc.through = graph::portal_length(portal, arc.out_at, arc.in_at);
+      arc.through = view_->cost_through(crossing.portal, portal, arc.out_at, arc.in_at);
       arc.into = place_of(in.block);
       arcs_.push_back(arc);
     });

@@ -19,7 +19,7 @@ void OverlaySearch::reach(uint32_t entry, uint32_t parent, double cost, uint8_t 
   if (!(cost < kNoPath) || (states_.is_reached(state) && state.cost <= cost)) return;
   if (now_.is_closed(entry)) return;
   state = {states_.search(), parent, cost, overlay_level, false};
-  open_.push({cost + length(goal - now_.at(entry)), entry});
+  open_.push({cost + length(goal - now_.at(entry)) * view_->min_factor(), entry});
 }
 
 bool OverlaySearch::next(Open& top) {
@@ -104,8 +104,8 @@ std::optional<PathEnd> OverlaySearch::join(const SearchBudget& budget, Slice& sl
     if (end != PathEnd::kReached) return end;
     joints_.push_back(crossings.size());
     crossings.push_back(crossing);
-    cost_ +=
-        graph::portal_length(view_->portal(crossing.portal), position(*view_, out), now_.at(entry));
+    cost_ += view_->cost_through(crossing.portal, view_->portal(crossing.portal),
+                                 position(*view_, out), now_.at(entry));
     at_ = in;
   }
   return within(to_, budget, slice, blocks, crossings);
@@ -136,8 +136,8 @@ bool OverlaySearch::straighten(const SearchBudget& budget, Slice& slice, NodeSea
     if (ends) break;
     straightened_.push_back(crossings[last]);
     const auto [out, in] = ends_of(*view_, crossings[last]);
-    cost_ += graph::portal_length(view_->portal(crossings[last].portal), position(*view_, out),
-                                  position(*view_, in));
+    cost_ += view_->cost_through(crossings[last].portal, view_->portal(crossings[last].portal),
+                                 position(*view_, out), position(*view_, in));
     at_ = in;
     first_crossing_ = last + 1;
   }
@@ -159,7 +159,7 @@ double OverlaySearch::cost_of(const BlockPoint& from, const BlockPoint& to, cons
     const auto [out, in] = ends_of(*view_, *first);
     go(out);
     const Vec3d beyond = position(*view_, in);
-    cost += graph::portal_length(view_->portal(first->portal), here, beyond);
+    cost += view_->cost_through(first->portal, view_->portal(first->portal), here, beyond);
     at = in;
     here = beyond;
   }

@@ -96,6 +96,7 @@ class NodeSearch {
   OpenList<Open> open_;
   BlockPoint to_;
   Vec3d goal_;
+  double min_factor_ = 1;  // of costs to the straight line
   double less_than_ = 0;
   double found_ = 0;        // cost of the best path to the goal so far
   uint32_t last_ = kStart;  // its last state

@@ -100,11 +100,15 @@ enum class PathSpace : uint8_t {
   kAir,      ///< The air, and the ground for walks between flights.
 };
 
-/// An off-mesh link, see Edits::add_off_mesh_link.
+/// An off-mesh link, see Edits::add_off_mesh_link. A link of the bake (NodeOffMeshLink) is another
+/// type, because files hold it for one class and without a cost: that is its length.
 struct OffMeshLink {
-  Place from, to;
+  Place from = {}, to = {};
   double cost = 0;  ///< [m]
   bool two_way = true;
+  /// Ends on nodes, as on a wall, instead of `from` and `to`. A link that has one is only for
+  /// classes over nodes.
+  NodePlace from_on_nodes = {}, to_on_nodes = {};
 };
 
 /// Names an edit; 0 names none. An id is never given twice.
@@ -135,10 +139,10 @@ struct EditList;  // Internal.
 /// Changes of a world at run time, in one list for all finders and crowds: obstacles, doors, area
 /// kinds and their costs, off-mesh links. Copies of a handle share the list. A PathFinder that was
 /// made with one applies each edit before its next query; a Crowd before its next step, and before
-/// avatars are added, in the order of the calls (CrowdConfig::edits). Edits add no ground: an
-/// avatar can stand on a crate only if it was baked. No edit may be made while another thread uses
-/// a handle of the same list, or a finder or a crowd that has one. The list never shrinks: a
-/// removed edit leaves about 150 bytes.
+/// avatars are added, in the order of the calls (CrowdConfig::edits). In the air only obstacles
+/// count: areas and links do not apply. Edits add no ground: an avatar can stand on a crate only if
+/// it was baked. No edit may be made while another thread uses a handle of the same list, or a
+/// finder or a crowd that has one. The list never shrinks: a removed edit leaves about 150 bytes.
 class THRONG_API Edits {
  public:
   Edits();
@@ -163,20 +167,23 @@ class THRONG_API Edits {
   /// still waits for an earlier move, that one is dropped. Fails with kBadInput (a bad prism, or
   /// the obstacle is of triangles) and kNotFound (no obstacle has this id).
   [[nodiscard]] Result<void> move_obstacle(EditId obstacle, const Prism& prism);
-  /// Gives level tiles inside a prism an area kind; where several overlap, the last one counts.
-  /// Only for paths on the ground. Fails with kBadInput or kBadConfig.
+  /// Gives what lies inside a prism an area kind: cells of level tiles and, over nodes, squares of
+  /// curved ground of about a quarter of a metre, each by its middle. Where several overlap, the
+  /// last one counts. Not in the air. Fails with kBadInput or kBadConfig.
   [[nodiscard]] Result<EditId> add_area(const Prism& prism, uint8_t kind);
   /// Adds an off-mesh link, which no move finds: over a ditch, up a ladder, by a lift. It leads
   /// from one place to another, and back if `two_way`; what lies between is not tested. Its cost
-  /// counts as metres and may be less than its length. Only for paths on the ground and walkers of
-  /// crowds, of classes that can stand at both ends. Fails with kBadInput.
+  /// counts as metres and may be less than its length. For classes that can stand at both ends, on
+  /// the ground or over nodes, and avatars of crowds that walk; not in the air, and not for
+  /// climbers of crowds. Fails with kBadInput.
   [[nodiscard]] Result<EditId> add_off_mesh_link(const OffMeshLink& link);
   /// Removes an edit, or switches it off and on, as a door: in a crowd true closes it by its
   /// policy, false opens it at once or ends its closing. False if there is none of this id.
   bool remove(EditId edit);
   bool set_active(EditId edit, bool active);
   /// Sets the cost of a metre on ground of an area kind; infinity closes it. All kinds begin
-  /// with 1. Fails with kBadConfig. [kind 1 to 63, 0.01 to 10000 or infinity]
+  /// with 1. Over nodes, only areas of Edits have kinds, and no path begins or ends on what is
+  /// closed. Fails with kBadConfig. [kind 1 to 63, 0.01 to 10000 or infinity]
   [[nodiscard]] Result<void> set_area_cost(uint8_t kind, double cost);
 
   /// Rises with every change of the list.
@@ -222,7 +229,7 @@ enum class SegmentKind : uint8_t {
   /// evenly. The patches meet there (both points are nearly the same), or the path takes a link
   /// over a hole. On a drop link: horizontally out over the edge, then straight down.
   kCross,
-  kOffMesh,  ///< Along an off-mesh link of Edits.
+  kOffMesh,  ///< Along an off-mesh link of Edits; over nodes, as kCross.
   kTakeOff,  ///< Straight up, from the ground into the air.
   kFly,      ///< Through the air.
   kLand,     ///< Straight down, from the air to the ground.
@@ -240,7 +247,7 @@ struct Path {
   PathEnd end = PathEnd::kNoPlace;
   /// Feet, from the start to the goal. They are places of level ground except over nodes and in the
   /// air, where `position` alone counts. If the goal is unreachable, they lead to the reachable
-  /// place nearest to it; on the ground and in the air only with PathQuery::nearest.
+  /// place nearest to it; on the ground and in the air not without PathQuery::nearest.
   std::vector<Place> points;
   /// Over nodes: the place of each point, with its axis; else empty. The point of a drop link that
   /// is in the air, above the landing, has feet and axis, but node1 is 0.
@@ -295,10 +302,12 @@ struct PathQuery {
   /// In the air: if no single flight leads to the goal, search paths that land, walk and take off
   /// again.
   bool by_turns = true;
-  /// If no path leads to the goal, find the path to what is reachable and nearest to it, and what
-  /// blocks it there. On the ground that searches all that is reachable, which takes up to a second
-  /// in a city; over nodes it is always done.
-  bool nearest = false;
+  /// If no path leads to the goal, find the path to what is reachable and nearest to it, heights
+  /// counted, and what blocks it there. It costs a look around the goal and one more search. Only
+  /// if it is not known beforehand what is connected (on the ground, where obstacles cut the goal
+  /// off, an off-mesh link is in force, with kOnDemand or a slope cost) all that is reachable is
+  /// searched, which takes up to a second in a city. Over nodes it is always done.
+  bool nearest = true;
   SearchBudget budget = {};
 };
 
@@ -345,10 +354,16 @@ class THRONG_API PathFinder {
   /// to 64 MiB of search memory.
   void find(const PathQuery& query, Path& path);
   void find(const Place& from, const Place& to, Path& path, const SearchBudget& budget = {});
-  /// The same search in parts: call begin, then advance with some nodes a frame until it returns
-  /// true. If edits change meanwhile, it begins again. On the ground the search is that for
-  /// kOnDemand; over nodes and in the air the first call of advance does all. Stops where it would
-  /// take more than SearchBudget::kDefaultBytes.
+  /// The same query in parts, for slices over frames: call begin, then advance with some nodes a
+  /// frame until it returns true. A call expands at most `max_nodes`: on the ground, over nodes,
+  /// and in the air, with its walks, alike. Until then `path` has no points, and counts what was
+  /// expanded. The path is that of find, whatever the slices; on the ground, a path to a goal that
+  /// is reached is that of find with kOnDemand. PathQuery::budget is that of the whole query;
+  /// `cancel` is read by each call, too. Not counted, and in one go: to find the ends, string
+  /// pulling, floods to the nearest take-off, rows of the overlay that obstacles have changed. If
+  /// edits change in between, or this finder is asked for another path, the query begins again: use
+  /// a copy for paths in between. Once it has ended, or without begin, advance returns true and
+  /// nothing is found.
   void begin(const PathQuery& query);
   bool advance(uint64_t max_nodes, Path& path);
 

@@ -7,8 +7,12 @@
 
 #include "core/access.h"
 #include "core/check_class.h"
+#include "path/edits/blocker.h"
+#include "path/edits/ground_finder_state.h"
+#include "path/edits/nearest_cell.h"
 #include "path/ground/reset_path.h"
 #include "path/path_finder_state.h"
+#include "world/place.h"
 #include "world/zone_data.h"
 
 // Chooses the search that fits a class and what is put up in its world.
@@ -42,6 +46,10 @@ void forget_points(Path& path) {
   path::reset(path);
   path.end = PathEnd::kUnreachable;
   path.nodes = nodes;
+}
+
+path::IfUnreachable otherwise_of(const PathQuery& query) {
+  return query.nearest ? path::IfUnreachable::kNearest : path::IfUnreachable::kNothing;
 }
 
 // For a path on the ground between places: no search of the mesh knows costs.
@@ -82,9 +90,11 @@ path::GroundFinder PathFinder::State::ground_of_its_own() const {
 }
 
 PathFinder::PathFinder(std::unique_ptr<State> state) : state_(std::move(state)) {}
-PathFinder::PathFinder(const PathFinder& other) : state_(std::make_unique<State>(*other.state_)) {}
+PathFinder::PathFinder(const PathFinder& other) : state_(std::make_unique<State>(*other.state_)) {
+  state_->is_disturbed = true;  // What a query in parts has found is not copied.
+}
 PathFinder& PathFinder::operator=(const PathFinder& other) {
-  if (this != &other) state_ = std::make_unique<State>(*other.state_);
+  if (this != &other) *this = PathFinder(other);
   return *this;
 }
 PathFinder::PathFinder(PathFinder&&) noexcept = default;
@@ -145,43 +155,105 @@ NodePlace PathFinder::State::node_place_of(const PathPoint& point, double tolera
   return nodes->find_place(position_of(point), tolerance);
 }
 
-void PathFinder::State::find_on_ground(const Place& from, const Place& to, bool nearest,
-                                       const SearchBudget& budget, Path& path) {
-  uint64_t nodes_before = 0;
+void PathFinder::State::find_on_ground(const Place& from, const Place& to,
+                                       path::IfUnreachable otherwise, const SearchBudget& budget,
+                                       Path& path) {
+  if (!is_apart(from, to)) return find_connected(from, to, otherwise, budget, path);
+  path::reset(path);
+  if (!are_free(from, to)) return;
+  path.end = PathEnd::kUnreachable;
+  if (otherwise == path::IfUnreachable::kNothing) return;
+  if (const Place nearest = nearest_connected(from, to)) {
+    find_connected(from, nearest, path::IfUnreachable::kNothing, budget, path);
+    if (path.end == PathEnd::kReached) return end_before(to, path);
+    if (path.end != PathEnd::kUnreachable) return;
+  }
+  // Obstacles have cut that off.
+  const uint64_t nodes = path.nodes;
+  is_disturbed = true;
+  ground().find_over_points(from, to, path, budget.after(nodes));
+  path.nodes += nodes;
+}
+
+void PathFinder::State::find_connected(const Place& from, const Place& to,
+                                       path::IfUnreachable otherwise, const SearchBudget& budget,
+                                       Path& path) {
+  uint64_t nodes = 0;
   if (mesh && !edits().may_shorten_paths()) {
     // Obstacles only remove ground: the shortest path of the baked ground that can still be walked
-    // is the shortest, and what was never reached is not reached now.
+    // is the shortest.
     mesh->find(from, to, path, budget);
-    const bool is_bare = !edits().bears_on_ground();
-    if (path.end == PathEnd::kReached && (is_bare || ground().allows(path))) return;
-    if (path.end == PathEnd::kUnreachable && !nearest &&
-        (is_bare || (ground().is_free(from) && ground().is_free(to))))
+    if (path.end == PathEnd::kReached && (!edits().bears_on_ground() || ground().allows(path)))
       return;
     if (path.end == PathEnd::kBudgetExhausted) return;
-    nodes_before = path.nodes;
+    nodes = path.nodes;
   }
-  ground().find(from, to, path, budget.after(nodes_before));
-  path.nodes += nodes_before;
-  if (path.end == PathEnd::kUnreachable && !nearest) forget_points(path);
+  is_disturbed = true;
+  ground().find(from, to, path, budget.after(nodes), otherwise);
+  path.nodes += nodes;
+  if (path.end == PathEnd::kUnreachable && otherwise == path::IfUnreachable::kNothing)
+    forget_points(path);
+}
+
+bool PathFinder::State::is_apart(const Place& from, const Place& to) const {
+  if (!mesh || edits().may_connect()) return false;
+  const uint32_t a = mesh->component(from), b = mesh->component(to);
+  return a != path::kNoRect && b != path::kNoRect && a != b;
+}
+
+bool PathFinder::State::are_free(const Place& from, const Place& to) {
+  return !edits().bears_on_ground() || (ground().is_free(from) && ground().is_free(to));
+}
+
+Place PathFinder::State::nearest_connected(const Place& from, const Place& to) {
+  path::GroundView* view = edits().bears_on_ground() ? &ground().state().mesh : nullptr;
+  const world::WorldData& data = *data_of(world);
+  const path::PathMesh& rects = mesh->mesh();
+  const auto nearest =
+      path::nearest_of_component(data, rects, view, mesh->component(from), *mesh->stop(to));
+  if (!nearest) return {};
+  const uint32_t level = rects.rects[nearest->rect].level;
+  return world::place_at(data, world::ground_level(data, level, config.avatar_class), nearest->at);
+}
+
+void PathFinder::State::end_before(const Place& to, Path& path) {
+  path.end = PathEnd::kUnreachable;
+  const Place& last = path.points.back();
+  path.blocked_by = edits().bears_on_ground()
+                        ? ground().blocker(last, to)
+                        : path::blocker_towards({*data_of(world), config.avatar_class}, last, to);
 }
 
 void PathFinder::State::find_over_nodes(const PathQuery& query, Path& path) {
+  is_disturbed = true;
+  begin_over_nodes(query);
+  path::Slice all;
+  nodes->advance(all, path);
+}
+
+void PathFinder::State::begin_over_nodes(const PathQuery& query) {
   applied.follow(edits(), *nodes);
-  nodes->find(node_place_of(query.from, query.tolerance), node_place_of(query.to, query.tolerance),
-              path, std::max(kMinSpacing, query.spacing), query.budget);
+  nodes->begin(node_place_of(query.from, query.tolerance), node_place_of(query.to, query.tolerance),
+               std::max(kMinSpacing, query.spacing), query.budget);
 }
 
 void PathFinder::State::find_in_air(const PathQuery& query, Path& path) {
-  applied.follow(edits(), *flight);
+  is_disturbed = true;
   path::reset(path);
   if (is_nowhere(query.from) || is_nowhere(query.to)) return;
-  flight->find({.from = position_of(query.from),
-                .to = position_of(query.to),
-                .vertical_tolerance = query.tolerance,
-                .budget = query.budget,
-                .by_turns = query.by_turns,
-                .nearest = query.nearest},
-               path);
+  begin_in_air(query);
+  path::Slice all;
+  flight->advance(all, path);
+}
+
+void PathFinder::State::begin_in_air(const PathQuery& query) {
+  applied.follow(edits(), *flight);
+  flight->begin({.from = position_of(query.from),
+                 .to = position_of(query.to),
+                 .vertical_tolerance = query.tolerance,
+                 .budget = query.budget,
+                 .by_turns = query.by_turns,
+                 .nearest = query.nearest});
 }
 
 void PathFinder::find(const PathQuery& query, Path& path) {
@@ -189,31 +261,93 @@ void PathFinder::find(const PathQuery& query, Path& path) {
   if (s.config.space == PathSpace::kAir) return s.find_in_air(query, path);
   if (s.config.space == PathSpace::kNodes) return s.find_over_nodes(query, path);
   s.find_on_ground(s.place_of(query.from, query.tolerance), s.place_of(query.to, query.tolerance),
-                   query.nearest, query.budget, path);
+                   otherwise_of(query), query.budget, path);
 }
 
 void PathFinder::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget) {
-  if (state_->config.space == PathSpace::kGround) {
-    return state_->find_on_ground(from, to, false, budget, path);
-  }
   find({.from = from, .to = to, .budget = budget}, path);
 }
 
 void PathFinder::begin(const PathQuery& query) {
-  State& s = *state_;
-  s.begun = query;
-  if (s.config.space != PathSpace::kGround) return;
-  s.ground().begin(s.place_of(query.from, query.tolerance), s.place_of(query.to, query.tolerance));
+  state_->begun = query;
+  state_->begin();
+}
+
+void PathFinder::State::begin() {
+  is_begun = true;
+  is_disturbed = false;
+  begun_version = edits().version();
+  begun_nodes = 0;
+  if (config.space == PathSpace::kNodes) return begin_over_nodes(begun);
+  if (config.space == PathSpace::kGround) return begin_on_ground();
+  // A query from or to nowhere ends at once.
+  if (!is_nowhere(begun.from) && !is_nowhere(begun.to)) return begin_in_air(begun);
+  is_begun = false;
 }
 
 bool PathFinder::advance(uint64_t max_nodes, Path& path) {
   State& s = *state_;
-  if (s.config.space == PathSpace::kGround) {
-    if (!s.ground().advance(max_nodes, path)) return false;
-    if (path.end == PathEnd::kUnreachable && !s.begun.nearest) forget_points(path);
+  path::reset(path);
+  if (!s.is_begun) return true;
+  if (s.is_disturbed || s.begun_version != s.edits().version()) s.begin();
+  const std::atomic<bool>* cancel = s.begun.budget.cancel;
+  if (cancel != nullptr && *cancel) {
+    path.nodes = s.begun_nodes;
+    path.end = PathEnd::kBudgetExhausted;
+    path.spent = SpentBudget::kCancelled;
+    s.is_begun = false;
     return true;
   }
-  find(s.begun, path);
+  path::Slice slice{max_nodes};
+  s.is_begun = !s.advance(slice, path);
+  s.begun_nodes = path.nodes;
+  return !s.is_begun;
+}
+
+bool PathFinder::State::advance(path::Slice& slice, Path& path) {
+  if (config.space == PathSpace::kAir) return flight->advance(slice, path);
+  if (config.space == PathSpace::kNodes) return nodes->advance(slice, path);
+  return advance_on_ground(slice, path);
+}
+
+void PathFinder::State::begin_on_ground() {
+  begun_from = place_of(begun.from, begun.tolerance);
+  begun_to = place_of(begun.to, begun.tolerance);
+  nodes_before = 0;
+  aim = Aim::kGoal;
+  if (!is_apart(begun_from, begun_to) || !are_free(begun_from, begun_to)) {
+    return ground().begin(begun_from, begun_to, otherwise_of(begun));
+  }
+  aim = Aim::kNothing;
+  if (!begun.nearest) return;
+  const Place nearest = nearest_connected(begun_from, begun_to);
+  aim = nearest ? Aim::kNearest : Aim::kFlood;
+  if (nearest) return ground().begin(begun_from, nearest, path::IfUnreachable::kNothing);
+  ground().begin_over_points(begun_from, begun_to);
+}
+
+bool PathFinder::State::advance_on_ground(path::Slice& slice, Path& path) {
+  if (aim == Aim::kNothing) {
+    path::reset(path);
+    path.end = PathEnd::kUnreachable;
+    return true;
+  }
+  if (aim == Aim::kNearest) {
+    if (!ground().advance(begun.budget, slice, path)) return false;
+    if (path.end == PathEnd::kReached) {
+      end_before(begun_to, path);
+      return true;
+    }
+    if (path.end != PathEnd::kUnreachable) return true;
+    // Obstacles have cut that off.
+    aim = Aim::kFlood;
+    nodes_before = path.nodes;
+    ground().begin_over_points(begun_from, begun_to);
+  }
+  const bool ended = ground().advance(begun.budget.after(nodes_before), slice, path);
+  path.nodes += nodes_before;
+  if (!ended) return false;
+  if (path.end == PathEnd::kUnreachable && !begun.nearest) forget_points(path);
   return true;
 }
 
@@ -226,10 +360,7 @@ bool PathFinder::is_free(const PathPoint& end, double tolerance) {
   }
   if (s.nodes) {
     s.applied.follow(s.edits(), *s.nodes);
-    const NodePlace place = s.node_place_of(end, tolerance);
-    Path there;
-    s.nodes->find(place, place, there);
-    return there.end != PathEnd::kNoPlace;
+    return s.nodes->is_free(s.node_place_of(end, tolerance));
   }
   const Place place = s.place_of(end, tolerance);
   return place && s.ground().is_free(place);

@@ -26,7 +26,23 @@ struct PathFinder::State {
   std::optional<path::FlightFinder> flight;
   path::AppliedEdits applied;  // by `live`, `nodes` or `flight`
 
-  PathQuery begun;  // the search in parts
+  // The query in parts. What it has found is the finder's that it searches with, so another query
+  // there, or an edit, makes it begin again.
+  PathQuery begun;
+  bool is_begun = false;
+  bool is_disturbed = false;
+  uint64_t begun_version = 0;  // of the edits
+  uint64_t begun_nodes = 0;    // expanded so far
+  // On the ground: what its search leads to.
+  enum class Aim : uint8_t {
+    kGoal,
+    kNearest,  // the nearest place that is connected, as far as the mesh knows
+    kFlood,    // obstacles cut that off: the nearest of all that is reached
+    kNothing,  // the goal is not connected
+  };
+  Aim aim = Aim::kGoal;
+  Place begun_from, begun_to;
+  uint64_t nodes_before = 0;  // expanded before the flood
 
   [[nodiscard]] const path::EditList& edits() const;
   /// The finder of ground with edits, up to date.
@@ -35,10 +51,25 @@ struct PathFinder::State {
   [[nodiscard]] path::GroundFinder ground_of_its_own() const;
   [[nodiscard]] Place place_of(const PathPoint& point, double tolerance) const;
   [[nodiscard]] NodePlace node_place_of(const PathPoint& point, double tolerance);
-  void find_on_ground(const Place& from, const Place& to, bool nearest, const SearchBudget& budget,
-                      Path& path);
+  void find_on_ground(const Place& from, const Place& to, path::IfUnreachable otherwise,
+                      const SearchBudget& budget, Path& path);
+  void find_connected(const Place& from, const Place& to, path::IfUnreachable otherwise,
+                      const SearchBudget& budget, Path& path);
+  /// Does the mesh know that nothing connects the two? Both must be free, too.
+  [[nodiscard]] bool is_apart(const Place& from, const Place& to) const;
+  bool are_free(const Place& from, const Place& to);
+  /// Of what is connected with a place, the place nearest to another one, as far as the mesh knows.
+  Place nearest_connected(const Place& from, const Place& to);
+  /// Of a path to that place: it does not lead to the goal.
+  void end_before(const Place& to, Path& path);
   void find_over_nodes(const PathQuery& query, Path& path);
   void find_in_air(const PathQuery& query, Path& path);
+  void begin_over_nodes(const PathQuery& query);
+  void begin_in_air(const PathQuery& query);
+  void begin_on_ground();
+  bool advance_on_ground(path::Slice& slice, Path& path);
+  void begin();
+  bool advance(path::Slice& slice, Path& path);
 };
 
 }  // namespace throng

@@ -131,7 +131,8 @@ Result<FlightReport> verify_flight(const World& world, const Scene& source,
     const uint64_t n = i - report.points;
     const auto from = end_of(worker.finder, n, 0), to = end_of(worker.finder, n, 1);
     if (!from || !to) return;
-    worker.finder.find({.from = *from, .to = *to, .tolerance = kReach}, worker.path);
+    worker.finder.find({.from = *from, .to = *to, .tolerance = kReach, .nearest = false},
+                       worker.path);
     record.reached = worker.path.end == PathEnd::kReached;
     if (record.reached) judge.judge_path(worker.path, record);
   };

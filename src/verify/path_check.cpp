@@ -58,7 +58,7 @@ class Walker {
     walked.at = from.position;
     walked.together = part >= 0 && part == part_of(to);
     const auto start = Clock::now();
-    finder.find({.from = from, .to = to}, path);
+    finder.find({.from = from, .to = to, .nearest = false}, path);
     walked.seconds = seconds_since(start);
     walked.reached = path.end == PathEnd::kReached;
     if (!walked.reached) return walked;

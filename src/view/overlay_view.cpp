@@ -52,7 +52,7 @@ Result<std::vector<Vec3d>> OverlayMaker::find_path(const Order& order) {
   }
   std::vector<Vec3d> points;
   Path path;
-  finder_->find({.from = order.from, .to = order.to}, path);
+  finder_->find({.from = order.from, .to = order.to, .nearest = false}, path);
   if (path.end != PathEnd::kReached) return points;
   for (const Place& place : path.points) points.push_back(place.position);
   return points;

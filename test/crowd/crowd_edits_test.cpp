@@ -221,6 +221,28 @@ TEST(CrowdEdits, ACrowdThatIsFarBehindTakesTheStateOfTheEdits) {
   EXPECT_EQ(crowd.obstacles().size(), 2u);
 }
 
+TEST(CrowdEdits, ClimbersPlanByAreas) {
+  const Scene scene = worlds::flat(24);
+  const World world = test::bake(
+      scene, 0.25, {{.name = "climber", .height = 1.0, .radius = 0.3, .climb_slope = 180}});
+  Context context;
+  const auto nodes = Nodes::create(world, scene, {}, context);
+  ASSERT_TRUE(nodes) << nodes.error().message;
+  Edits edits;
+  Crowd crowd = made(world, {.nodes = *nodes, .edits = edits});
+  const Vec3d from{4, 0, 4}, to{20, 0, 4};
+  EXPECT_NEAR(crossing(crowd, world, from, to), 4, 2);
+  const auto area = edits.add_area(Prism::box({10, -1, -1}, {14, 1, 16}), 3);
+  ASSERT_TRUE(area);
+  EXPECT_NEAR(crossing(crowd, world, from, to), 4, 2);
+  for (const double cost : {10.0, std::numeric_limits<double>::infinity()}) {
+    ASSERT_TRUE(edits.set_area_cost(3, cost));
+    EXPECT_GT(crossing(crowd, world, from, to), 15.5);
+  }
+  EXPECT_TRUE(edits.remove(*area));
+  EXPECT_NEAR(crossing(crowd, world, from, to), 4, 2);
+}
+
 TEST(CrowdEdits, OneDoorForFindersAndCrowd) {
   const World world = two_openings();
   Edits edits;

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "baked.h"
 #include "core/random.h"
@@ -75,6 +76,47 @@ double cost_along(const path::NodeView& mesh, const path::PieceCost& piece,
   }
   go(to);
   return cost;
+}
+
+TEST(Overlay, InPartsItFindsTheSame) {
+  uint64_t many = 0, reached = 0;
+  for_each_mesh([&](const graph::NodeMesh& mesh) {
+    const path::NodeView view(mesh);
+    const path::PieceCost piece(view, 1);
+    const path::Overlay overlay(mesh, piece, 2, 24);
+    path::OverlaySearch search(view, piece, overlay);
+    path::NodeSearch blocks(view, piece);
+    for (uint64_t n = 0; n < 8; ++n) {
+      const path::BlockPoint from = random_point(mesh, 2 * n), to = random_point(mesh, 2 * n + 1);
+      const SearchBudget budget{n == 7 ? 100 : UINT64_MAX};
+      std::vector<path::Crossing> whole, parts;
+      const PathEnd end = search.find(from, to, budget, blocks, whole);
+      const double cost = search.cost();
+      const uint64_t expanded = search.expanded();
+      reached += end == PathEnd::kReached;
+      for (const uint64_t size : {1, 7, 100}) {
+        search.begin(from, to);
+        uint64_t taken = 0;
+        std::optional<PathEnd> ended;
+        for (int calls = 0; !ended; ++calls) {
+          path::Slice slice{size};
+          ended = search.advance(budget, slice, blocks, parts);
+          taken += size - slice.left;
+          many += calls == 5;
+          if (!ended) {
+            ASSERT_TRUE(slice.is_empty());
+          }
+        }
+        EXPECT_EQ(*ended, end);
+        EXPECT_EQ(search.cost(), cost);
+        EXPECT_EQ(search.expanded(), expanded);
+        EXPECT_EQ(taken, expanded) << "each node is taken from a slice";
+        EXPECT_EQ(parts, whole);
+      }
+    }
+  });
+  EXPECT_GT(reached, 40u);
+  EXPECT_GT(many, 100u);
 }
 
 TEST(Overlay, PathsOverEntrancesAreFoundIfAnyAndCostLittleMore) {

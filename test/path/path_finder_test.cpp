@@ -82,11 +82,12 @@ TEST(PathFinder, SearchesAsTheClassMoves) {
   Path path, other;
   for (uint64_t n = 0; n < 10; ++n) {
     const Place from = s.place(kAdult, 2 * n), to = s.place(kAdult, 2 * n + 1);
-    walks.find(from, to, path);
+    walks.find({.from = from, .to = to, .nearest = false}, path);
     mesh.find(from, to, other);
     expect_same(path, other);
     // By positions it is the same path.
-    walks.find({.from = from.position, .to = to.position, .tolerance = 0.05}, path);
+    walks.find({.from = from.position, .to = to.position, .tolerance = 0.05, .nearest = false},
+               path);
     expect_same(path, other);
     const Vec3d up = s.place(kFlyer, n).position, there = *flies.random_point(3, n);
     flies.find({.from = up, .to = there}, path);
@@ -116,21 +117,21 @@ TEST(PathFinder, SearchesAsTheClassMoves) {
   }
 }
 
-TEST(PathFinder, LeadsToTheNearestPlaceIfAsked) {
+TEST(PathFinder, LeadsToTheNearestPlaceUnlessNotAsked) {
   const World world = bake(worlds::doorway(0.2), 0.1);  // too narrow for an adult: two rooms
   Context context;
   PathFinder finder = need(PathFinder::create(world, {}, context));
   const Vec3d from{1, 0, 1}, to{7, 0, 5};
   Path path;
-  finder.find({.from = from, .to = to}, path);
+  finder.find({.from = from, .to = to, .nearest = false}, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
   EXPECT_TRUE(path.points.empty());
   EXPECT_EQ(path.nodes, 0u) << "components of the mesh differ: no search";
-  finder.begin({.from = from, .to = to});
+  finder.begin({.from = from, .to = to, .nearest = false});
   while (!finder.advance(1000, path)) continue;
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
   EXPECT_TRUE(path.points.empty());
-  finder.find({.from = from, .to = to, .nearest = true}, path);
+  finder.find({.from = from, .to = to}, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
   ASSERT_FALSE(path.points.empty());
   EXPECT_LT(path.points.back().position.x, 4);

@@ -80,6 +80,20 @@ int run() {
     reached += static_cast<bool>(query.nearest_place(to(n).position, 2));
     reached += static_cast<bool>(query.random_place_near(place, 3, 1, n));
   });
+  path::Slice slice;
+  sum += late("nodes in parts", [&](uint64_t n) {
+    over_nodes.begin(over_nodes.find_place(from(n).position, 1),
+                     over_nodes.find_place(to(n).position, 1));
+    do slice = {50};
+    while (!over_nodes.advance(slice, node_path));
+    reached += node_path.end == PathEnd::kReached;
+  });
+  sum += late("flight in parts", [&](uint64_t n) {
+    flight.begin({.from = from(n).position, .to = to(n).position});
+    do slice = {50};
+    while (!flight.advance(slice, flown));
+    reached += flown.end == PathEnd::kReached;
+  });
   // A wall through the garage, and crates.
   for (uint64_t n = 0; n < 12; ++n) {
     const Vec3d at = from(n).position, high{at.x + 1, at.y + 2, n == 0 ? 1000 : at.z + 1};

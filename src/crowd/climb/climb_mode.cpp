@@ -40,9 +40,30 @@ Result<void> ClimbMode::open_class(size_t number, Context& context) {
   if (!finder) return finder.error();
   classes_[number] = std::make_unique<OfClass>(
       shared_.world, config.nodes, *finder, static_cast<size_t>(worker_count(config.workers)), of);
+  follow_areas(*classes_[number]);
   engine_.set_ground(number, &classes_[number]->ground);
   climbs_.resize(shared_.generation.size());
   return {};
+}
+
+void ClimbMode::follow_areas(OfClass& parts) {
+  for (size_t w = 0; w < parts.finders.size(); ++w) {
+    parts.areas[w].follow(shared_.edits(), parts.finders[w]);
+  }
+  had_costs_ = had_costs_ || shared_.edits().has_costs();
+}
+
+// All climbers search again, if metres cost something else now.
+void ClimbMode::areas_changed(std::span<Body> bodies) {
+  const bool differ = had_costs_ || shared_.edits().has_costs();
+  for (const auto& parts : classes_) {
+    if (parts) follow_areas(*parts);
+  }
+  had_costs_ = shared_.edits().has_costs();
+  if (!differ) return;
+  for (Body& body : bodies) {
+    if (body.climbs && body.has(Body::kHasGoal) && !body.leaves) body.flags |= Body::kNeedsPath;
+  }
 }
 
 void ClimbMode::close_class(size_t number) { classes_[number].reset(); }

@@ -13,6 +13,7 @@
 #include "crowd/climb/climber_ground.h"
 #include "crowd/fly/fly_mode.h"
 #include "crowd/mode/mode.h"
+#include "path/edits/edit_list.h"
 #include "path/overlay/node_finder.h"
 
 /// Avatars that walk over nodes: where they are placed, and how they find and follow their paths.
@@ -53,6 +54,7 @@ class ClimbMode final : public Mode {
   [[nodiscard]] bool must_leave(const Body& body, const Prism& obstacle) const override;
   [[nodiscard]] bool leads_out(const Body& body, std::span<const uint32_t> slots) const override;
   void end_leaving(Body& body) override;
+  void areas_changed(std::span<Body> bodies) override;
   [[nodiscard]] AvatarState state_of(const Body& body) const override;
   [[nodiscard]] double height_of(const Body& body) const override { return body.height * 1e-3; }
   void check(std::span<const Body> bodies, CrowdCheck& found) const override;
@@ -68,11 +70,16 @@ class ClimbMode final : public Mode {
   struct OfClass {
     OfClass(const World& world, const Nodes& nodes, const path::NodeFinder& finder, size_t workers,
             int32_t number)
-        : finders(workers, finder), paths(workers), ground(world, nodes, finders[0], number) {}
+        : finders(workers, finder),
+          areas(workers, path::AppliedEdits(path::AppliedEdits::Which::kAreas)),
+          paths(workers),
+          ground(world, nodes, finders[0], number) {}
     std::vector<path::NodeFinder> finders;  // one a worker
+    std::vector<path::AppliedEdits> areas;  // by finder
     std::vector<Path> paths;
     ClimberGround ground;
   };
+  void follow_areas(OfClass& parts);
   [[nodiscard]] OfClass& of(const Body& body) const { return *classes_[body.avatar_class]; }
   /// The place nearest to a place on the ground; none if there is none near.
   [[nodiscard]] NodePlace place_near(size_t number, const Place& place) const;
@@ -105,6 +112,7 @@ class ClimbMode final : public Mode {
   ClimberEngine engine_;
   std::vector<std::unique_ptr<OfClass>> classes_;  // null: not in use, or not over nodes
   std::vector<Climb> climbs_;                      // by slot; empty, if there is no climber
+  bool had_costs_ = false;                         // Areas cost more when they last changed.
 };
 
 }  // namespace throng::crowd

@@ -84,13 +84,14 @@ void ClimbMode::turn_aside(Body& body, Climb& climb, int32_t worker) {
   climb.whole = 0;
 }
 
-// An obstacle that came up beside it blocks a whole square of its node for its finder: on to the
-// nearest place of it that is left.
+// An obstacle that came up beside it, or an area that was closed, blocks a whole square of its node
+// for its finder: on to the nearest place of it that is left.
 bool ClimbMode::step_aside(Body& body, Climb& climb, int32_t worker, double beside) {
   OfClass& parts = of(body);
   const auto w = static_cast<size_t>(worker);
   const NodePlace from = place_of(body, climb);
-  if (shared_.obstacles.all().empty() || !from) return false;
+  const bool is_as_baked = shared_.obstacles.all().empty() && !shared_.edits().has_costs();
+  if (is_as_baked || !from) return false;
   const NodePlace to = parts.finders[w].find_place(climb.feet, beside);
   if (to.node1 != from.node1 || to.feet == from.feet) return false;
   Path& path = parts.paths[w];

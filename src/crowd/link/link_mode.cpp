@@ -52,6 +52,7 @@ void LinkMode::read_links() {
     const path::EditList::Edit& edit = list.edits[id - 1];
     if (edit.kind != path::EditList::Kind::kOffMeshLink || !edit.active || edit.removed) continue;
     const OffMeshLink& link = edit.link;
+    if (path::is_over_nodes(link)) continue;
     const auto from = stand_of(world, link.from), to = stand_of(world, link.to);
     if (!from || !to) continue;
     Link& added = links_.emplace_back();

@@ -16,6 +16,8 @@
 #include "path/air/air_string.h"
 #include "path/air/air_view.h"
 #include "path/air/flight_endpoints.h"
+#include "path/air/flight_log.h"
+#include "path/air/flight_path.h"
 #include "path/air/flight_search.h"
 #include "path/air/ground_air_links.h"
 #include "path/edits/ground_finder.h"
@@ -38,33 +40,6 @@ constexpr uint64_t kMaxFloodCells = 1 << 18;  // on foot to a take-off
 constexpr uint64_t kMaxIslandCells = 1 << 15;
 // Paths over other ground, or to what is less near, where obstacles block the first.
 constexpr int32_t kMaxTries = 4;
-
-double distance(Vec3d a, Vec3d b) {
-  const Vec3d d = a - b;
-  return std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
-}
-
-// All but the nodes, which count what all parts of a search expand.
-void clear(Path& path) {
-  const uint64_t nodes = path.nodes;
-  reset(path);
-  path.nodes = nodes;
-}
-
-void add(Vec3d point, SegmentKind kind, Path& path) {
-  if (!path.points.empty()) {
-    path.length += distance(path.points.back().position, point);
-    path.segments.push_back(kind);
-  }
-  path.points.push_back({point});
-}
-
-void add_walk(const Path& ground, size_t first, Path& path) {
-  for (size_t i = first; i < ground.points.size(); ++i) {
-    add(ground.points[i].position, SegmentKind::kWalk, path);
-    path.points.back() = ground.points[i];
-  }
-}
 
 }  // namespace
 
@@ -157,16 +132,45 @@ struct FlightFinder::Scratch {
   // A component of the air over the ground at both ends: if there is more than one, the one that is
   // nearest to both, as far as a flood around them shows. kNoBox: none.
   uint32_t common_air(const Shared& shared, const AirView& air, const End& a, const End& b,
-                      const std::atomic<bool>* cancel, bool& budget_exhausted);
+                      const SearchBudget& budget, bool& budget_exhausted);
 
+  // These take from the log what the query has found before.
+  // The place nearest to another, on foot, from where it can take off into a component of the air,
+  // or into any (kNoBox).
+  const FlightLog::Entry& nearest_take_off(const FlightEndpoints& ends, const Place& from,
+                                           uint32_t component) {
+    return log.next([&](FlightLog::Entry& entry) {
+      const auto nearest = ends.nearest_take_off(from, kMaxFloodCells, component, flood);
+      entry.place = nearest.place;
+      entry.budget_exhausted = nearest.budget_exhausted;
+    });
+  }
+  const std::vector<uint32_t>& components_over(const FlightEndpoints& ends, const Place& from) {
+    const auto make = [&](FlightLog::Entry& entry) {
+      ends.components_over(from, kMaxIslandCells, flood, entry.components);
+    };
+    return log.next(make).components;
+  }
+  bool is_cancelled(const SearchBudget& budget) {
+    const auto make = [&](FlightLog::Entry& entry) {
+      entry.budget_exhausted = budget.cancel != nullptr && *budget.cancel;
+    };
+    return log.next(make).budget_exhausted;
+  }
+  // The flight from one point to another, pulled taut; if there is none, the point nearest to
+  // `towards` that the search reached.
+  const FlightLog::Entry& fly(const AirView& air, const FlightQuery& query, AirPoint from,
+                              AirPoint to, AirPoint towards);
+
+  FlightLog log;
+  FlightQuery begun;
+  uint64_t taken = 0;  // nodes, by the parts before
   FlightSearch search;
   SpentBudget spent = SpentBudget::kNone;  // the budget that the last search exhausted
   AirString pull;
   CircleFlood flood;
   std::optional<MeshFinder> walker;
-  std::vector<AirPoint> air_path;
-  Path walk_there, walk_on, walk_all;
-  std::vector<uint32_t> over_from, over_to, common;  // components of the air
+  std::vector<uint32_t> common;  // components of the air
   AirView::ZoneOrder zone_order;
   GroundAirLinks::Scratch parts;
   std::vector<GroundAirLinks::Part> route;
@@ -196,7 +200,7 @@ bool FlightFinder::Scratch::find_link(const Shared& shared, const AirView& air_n
                          ? !shared.ground_air_links.air_over(ground_part).empty()
                          : shared.ground_air_links.joins(ground_part, air_now.baked(component));
   if (!leads) return false;
-  const auto nearest = ends.nearest_take_off(end.ground, kMaxFloodCells, component, flood);
+  const FlightLog::Entry& nearest = nearest_take_off(ends, end.ground, component);
   budget_exhausted = budget_exhausted || nearest.budget_exhausted;
   end.ground_air_link = nearest.place;
   end.air = ends.take_off(end.ground_air_link);
@@ -204,8 +208,7 @@ bool FlightFinder::Scratch::find_link(const Shared& shared, const AirView& air_n
 }
 
 uint32_t FlightFinder::Scratch::common_air(const Shared& shared, const AirView& air_now,
-                                           const End& a, const End& b,
-                                           const std::atomic<bool>* cancel,
+                                           const End& a, const End& b, const SearchBudget& budget,
                                            bool& budget_exhausted) {
   const FlightEndpoints ends = shared.ends(air_now);
   const auto over_a = shared.ground_air_links.air_over(shared.ground_of(a.ground));
@@ -215,13 +218,12 @@ uint32_t FlightFinder::Scratch::common_air(const Shared& shared, const AirView& 
                         std::back_inserter(common));
   if (common.empty()) return kNoBox;
   if (common.size() < 2 && !is_changed()) return common[0];
-  for (const auto& [end, over] : {std::pair{&a, &over_from}, std::pair{&b, &over_to}}) {
-    if (cancel != nullptr && *cancel) {
-      budget_exhausted = true;
-      return kNoBox;
-    }
-    ends.components_over(end->ground, kMaxIslandCells, flood, *over);
+  if (is_cancelled(budget)) {
+    budget_exhausted = true;
+    return kNoBox;
   }
+  const std::vector<uint32_t>& over_from = components_over(ends, a.ground);
+  const std::vector<uint32_t>& over_to = components_over(ends, b.ground);
   size_t least = SIZE_MAX;
   uint32_t best = common[0];
   for (size_t i = 0; i < over_from.size(); ++i) {
@@ -375,16 +377,41 @@ Place FlightFinder::landing(Vec3d feet) const {
 }
 
 void FlightFinder::find(const FlightQuery& query, Path& path) {
-  scratch_->spent = SpentBudget::kNodes;
+  begin(query);
+  Slice all;
+  advance(all, path);
+}
+
+void FlightFinder::begin(const FlightQuery& query) {
+  scratch_->begun = query;
+  scratch_->taken = 0;
+  scratch_->log.begin();
+}
+
+bool FlightFinder::advance(Slice& slice, Path& path) {
+  Scratch& scratch = *scratch_;
+  const FlightQuery& query = scratch.begun;
+  const uint64_t before = slice.left;
+  scratch.log.begin_part(slice);
+  scratch.spent = SpentBudget::kNodes;
   find_flight(query, path);
   if (query.by_turns && path.end == PathEnd::kUnreachable) find_by_turns(query, path);
   if (query.nearest && path.end == PathEnd::kUnreachable) find_nearest(query, path);
+  if (scratch.log.is_pending()) {
+    scratch.taken += before - slice.left;
+    reset(path);
+    path.nodes = scratch.taken;
+    path.end = PathEnd::kBudgetExhausted;
+    path.spent = SpentBudget::kNodes;
+    return false;
+  }
   if (path.end == PathEnd::kBudgetExhausted) {
     const bool stopped = query.budget.cancel != nullptr && *query.budget.cancel;
-    path.spent = stopped ? SpentBudget::kCancelled : scratch_->spent;
+    path.spent = stopped ? SpentBudget::kCancelled : scratch.spent;
   }
   path.cost = path.length;
-  scratch_->search.give_back();
+  scratch.search.give_back();
+  return true;
 }
 
 bool FlightFinder::locate(Vec3d at, double vertical_tolerance, End& end) const {
@@ -395,23 +422,55 @@ bool FlightFinder::locate(Vec3d at, double vertical_tolerance, End& end) const {
   return end.ground && ends.may_stand(end.ground);
 }
 
-PathEnd FlightFinder::walk(const FlightQuery& query, const Place& from, const Place& to,
-                           Path& path) {
-  reset(path);
-  if (query.budget.cancel != nullptr && *query.budget.cancel) return PathEnd::kBudgetExhausted;
-  if (!scratch_->is_changed()) {
-    scratch_->walker->find(from, to, path,
-                           {query.budget.max_nodes, nullptr, query.budget.max_bytes});
-    if (path.end == PathEnd::kBudgetExhausted) scratch_->spent = path.spent;
-    return path.end;
+const Path& FlightFinder::walk(const FlightQuery& query, const Place& from, const Place& to) {
+  Scratch& scratch = *scratch_;
+  FlightLog::Entry& entry = scratch.log.next();
+  Path& path = entry.walk;
+  const bool is_changed = scratch.is_changed();
+  if (!entry.is_begun) {
+    entry.is_begun = true;
+    reset(path);
+    if (query.budget.cancel != nullptr && *query.budget.cancel) {
+      path.end = PathEnd::kBudgetExhausted;
+      path.spent = scratch.spent;
+      entry.is_done = true;
+    } else if (!is_changed) {
+      scratch.walker->begin(from, to);
+    } else if (state_->ground_of(from) != state_->ground_of(to)) {
+      path.end = PathEnd::kUnreachable;
+      entry.is_done = true;
+    } else {
+      scratch.ground(*state_).begin(from, to);
+    }
   }
-  if (state_->ground_of(from) != state_->ground_of(to)) {
-    path.end = PathEnd::kUnreachable;
-  } else {
-    scratch_->ground(*state_).find(from, to, path, query.budget);
-    if (path.end == PathEnd::kBudgetExhausted) scratch_->spent = path.spent;
+  if (!entry.is_done) {
+    Slice& slice = scratch.log.slice();
+    const SearchBudget on_mesh{query.budget.max_nodes, nullptr, query.budget.max_bytes};
+    entry.is_done = is_changed ? scratch.ground(*state_).advance(query.budget, slice, path)
+                               : scratch.walker->advance(on_mesh, slice, path);
+    if (!entry.is_done) scratch.log.set_pending();
   }
-  return path.end;
+  if (path.end == PathEnd::kBudgetExhausted) scratch.spent = path.spent;
+  return path;
+}
+
+const FlightLog::Entry& FlightFinder::Scratch::fly(const AirView& air_now, const FlightQuery& query,
+                                                   AirPoint from, AirPoint to, AirPoint towards) {
+  FlightLog::Entry& entry = log.next();
+  if (!entry.is_begun) search.begin(air_now, from, to);
+  entry.is_begun = true;
+  if (!entry.is_done) {
+    const auto result = search.advance(query.budget, log.slice(), entry.flight);
+    entry.is_done = result.has_value();
+    if (!result) log.set_pending();
+    entry.result = result.value_or(SearchResult::kBudget);
+    entry.nodes = search.expanded();
+    entry.point.reset();
+    if (result == SearchResult::kNone) entry.point = search.nearest_reached(towards);
+    if (result == SearchResult::kFound) pull.pull(air_now, entry.flight);
+  }
+  if (entry.result == SearchResult::kBudget) spent = query.budget.spent(entry.nodes);
+  return entry;
 }
 
 // One flight, or a walk.
@@ -435,14 +494,13 @@ void FlightFinder::find_flight(const FlightQuery& query, Path& path) {
     if (!b.ground) return to_link(a, component_of(*b.air));
     if (!to_link(a, kNoBox) || !to_link(b, kNoBox)) return false;
     if (air.same_component(*a.air, *b.air)) return true;
-    const uint32_t common =
-        scratch.common_air(*state_, air, a, b, query.budget.cancel, budget_exhausted);
+    const uint32_t common = scratch.common_air(*state_, air, a, b, query.budget, budget_exhausted);
     return common != kNoBox && to_link(a, common) && to_link(b, common);
   };
-  const auto find_on_foot = [&](const Place& a, const Place& b, Path& ground) {
-    const PathEnd end = walk(query, a, b, ground);
-    budget_exhausted = budget_exhausted || end == PathEnd::kBudgetExhausted;
-    return end == PathEnd::kReached;
+  const auto find_on_foot = [&](const Place& a, const Place& b) {
+    const Path& ground = walk(query, a, b);
+    budget_exhausted = budget_exhausted || ground.end == PathEnd::kBudgetExhausted;
+    return &ground;
   };
   End from, to;
   if (!locate(query.from, query.vertical_tolerance, from) ||
@@ -450,49 +508,44 @@ void FlightFinder::find_flight(const FlightQuery& query, Path& path) {
     return;
 
   double on_foot = INFINITY;
-  if (from.ground && to.ground && scratch.walker &&
-      find_on_foot(from.ground, to.ground, scratch.walk_all)) {
-    on_foot = 0;
-    const auto& places = scratch.walk_all.points;
-    for (size_t i = 1; i < places.size(); ++i) {
-      on_foot += distance(places[i - 1].position, places[i].position);
-    }
+  const Path* all = nullptr;
+  if (from.ground && to.ground && scratch.walker) {
+    all = find_on_foot(from.ground, to.ground);
+    if (all->end == PathEnd::kReached) on_foot = length_of(*all);
   }
-  const bool ground_air_links = to_links(from, to);
   SearchResult result = SearchResult::kNone;
-  if (ground_air_links && air.same_component(*from.air, *to.air)) {
-    result = scratch.search.find(air, *from.air, *to.air, query.budget, scratch.air_path);
-    path.nodes = scratch.search.expanded();
-    if (result == SearchResult::kBudget) {
-      scratch.spent = query.budget.spent(path.nodes);
-      budget_exhausted = true;
-    }
-    if (result == SearchResult::kNone) {
-      scratch.reached = scratch.search.nearest_reached(ends.to_air(query.to));
-    }
+  const std::vector<AirPoint>* flight = nullptr;
+  if (!scratch.log.is_pending() && to_links(from, to) && air.same_component(*from.air, *to.air)) {
+    const FlightLog::Entry& found =
+        scratch.fly(air, query, *from.air, *to.air, ends.to_air(query.to));
+    flight = &found.flight;
+    result = found.result;
+    path.nodes = found.nodes;
+    budget_exhausted = budget_exhausted || result == SearchResult::kBudget;
+    scratch.reached = found.point;
   }
   if (result == SearchResult::kFound) {
-    scratch.pull.pull(air, scratch.air_path);
     bool walked = true;
     if (from.ground) {
       if (from.ground_air_link.position.x != from.ground.position.x ||
           from.ground_air_link.position.z != from.ground.position.z) {
-        walked = find_on_foot(from.ground, from.ground_air_link, scratch.walk_there);
-        add_walk(scratch.walk_there, 0, path);
+        const Path* there = find_on_foot(from.ground, from.ground_air_link);
+        walked = there->end == PathEnd::kReached;
+        add_walk(*there, 0, path);
       } else {
         add(from.ground_air_link.position, SegmentKind::kWalk, path);
       }
     }
-    for (size_t i = 0; i < scratch.air_path.size(); ++i) {
-      add(ends.to_metres(scratch.air_path[i]), i == 0 ? SegmentKind::kTakeOff : SegmentKind::kFly,
-          path);
+    for (size_t i = 0; i < flight->size(); ++i) {
+      add(ends.to_metres((*flight)[i]), i == 0 ? SegmentKind::kTakeOff : SegmentKind::kFly, path);
     }
     if (to.ground) {
       add(to.ground_air_link.position, SegmentKind::kLand, path);
-      if (to.ground_air_link.position.x != to.ground.position.x ||
-          to.ground_air_link.position.z != to.ground.position.z) {
-        walked = find_on_foot(to.ground_air_link, to.ground, scratch.walk_on) && walked;
-        add_walk(scratch.walk_on, 1, path);
+      if (!scratch.log.is_pending() && (to.ground_air_link.position.x != to.ground.position.x ||
+                                        to.ground_air_link.position.z != to.ground.position.z)) {
+        const Path* on = find_on_foot(to.ground_air_link, to.ground);
+        walked = walked && on->end == PathEnd::kReached;
+        add_walk(*on, 1, path);
       }
     }
     if (walked && path.length <= on_foot) {
@@ -501,9 +554,10 @@ void FlightFinder::find_flight(const FlightQuery& query, Path& path) {
     }
   }
   clear(path);
-  path.end = budget_exhausted ? PathEnd::kBudgetExhausted : PathEnd::kUnreachable;
+  const bool open = budget_exhausted || scratch.log.is_pending();
+  path.end = open ? PathEnd::kBudgetExhausted : PathEnd::kUnreachable;
   if (on_foot == INFINITY) return;
-  add_walk(scratch.walk_all, 0, path);
+  add_walk(*all, 0, path);
   path.end = PathEnd::kReached;
 }
 
@@ -556,8 +610,9 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
   AirPoint air = from.air.value_or(AirPoint{});
   const auto go = [&](const Place& there) {
     if (end != PathEnd::kReached) return;
-    end = walk(query, feet, there, scratch.walk_all);
-    add_walk(scratch.walk_all, 1, path);
+    const Path& ground = walk(query, feet, there);
+    end = ground.end;
+    add_walk(ground, 1, path);
     feet = there;
   };
   const auto fly = [&](AirPoint there) {
@@ -566,30 +621,25 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
       end = PathEnd::kUnreachable;
       return;
     }
-    const SearchResult result =
-        scratch.search.find(view, air, there, query.budget, scratch.air_path);
-    path.nodes += scratch.search.expanded();
-    if (result == SearchResult::kBudget)
-      scratch.spent = query.budget.spent(scratch.search.expanded());
-    end = result == SearchResult::kFound    ? PathEnd::kReached
-          : result == SearchResult::kBudget ? PathEnd::kBudgetExhausted
-                                            : PathEnd::kUnreachable;
-    scratch.pull.pull(view, scratch.air_path);
-    for (size_t i = 1; i < scratch.air_path.size(); ++i) {
-      add(ends.to_metres(scratch.air_path[i]), SegmentKind::kFly, path);
+    const FlightLog::Entry& found = scratch.fly(view, query, air, there, there);
+    path.nodes += found.nodes;
+    end = found.result == SearchResult::kFound    ? PathEnd::kReached
+          : found.result == SearchResult::kBudget ? PathEnd::kBudgetExhausted
+                                                  : PathEnd::kUnreachable;
+    for (size_t i = 1; i < found.flight.size(); ++i) {
+      add(ends.to_metres(found.flight[i]), SegmentKind::kFly, path);
     }
     air = there;
   };
   // A place of some ground under some air: it leads into this component of that.
   const auto link_near = [&](const Place& at, GroundAirLinks::Part ground,
                              GroundAirLinks::Part over, uint32_t component) {
-    const Place near =
-        at ? ends.nearest_take_off(at, kMaxFloodCells, component, scratch.flood).place : Place{};
+    const Place near = at ? scratch.nearest_take_off(ends, at, component).place : Place{};
     if (near) return near;
     const Place known =
         state_->place_of(state_->ground_air_links.cell(ground.component, over.component));
     if (view.changes() == nullptr) return known;
-    return ends.nearest_take_off(known, kMaxFloodCells, component, scratch.flood).place;
+    return scratch.nearest_take_off(ends, known, component).place;
   };
   clear(path);
   add(from.air ? ends.to_metres(air) : feet.position, SegmentKind::kWalk, path);
@@ -654,15 +704,18 @@ void FlightFinder::find_nearest(const FlightQuery& query, Path& path) {
   if (is_changed && from.air) {
     airs.push_back(air.component(air.box_at(*from.air)));
   } else if (is_changed) {
-    ends.components_over(from.ground, kMaxIslandCells, scratch.flood, scratch.over_from);
-    airs.insert(airs.end(), scratch.over_from.begin(), scratch.over_from.end());
+    const std::vector<uint32_t>& over = scratch.components_over(ends, from.ground);
+    airs.insert(airs.end(), over.begin(), over.end());
   }
   std::sort(airs.begin(), airs.end());
   airs.erase(std::unique(airs.begin(), airs.end()), airs.end());
   const AirPoint goal = ends.to_air(query.to);
   std::optional<AirPoint> nearest;
   for (int32_t tries = 0; tries < kMaxTries; ++tries) {
-    nearest = reached && tries == 0 ? reached : air.nearest_in(airs, goal, scratch.zone_order);
+    const auto look = [&](FlightLog::Entry& entry) {
+      entry.point = air.nearest_in(airs, goal, scratch.zone_order);
+    };
+    nearest = reached && tries == 0 ? reached : scratch.log.next(look).point;
     if (!nearest) break;
     const AirPoint at = off_faces(*nearest);
     FlightQuery nearer = query;
@@ -693,60 +746,23 @@ void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& f
   clear(path);
   path.end = PathEnd::kUnreachable;
   const uint32_t ground = state_->ground_of(from);
-  Place nearest;
-  if (scratch.is_changed()) {
-    nearest = state_->ends(scratch.air(*state_))
-                  .nearest_place(from, kMaxFloodCells, query.to, scratch.flood);
-  }
-  if (!nearest) nearest = state_->nearest_ground(ground, query.to);
+  const auto look = [&](FlightLog::Entry& entry) {
+    entry.place = {};
+    if (scratch.is_changed()) {
+      entry.place = state_->ends(scratch.air(*state_))
+                        .nearest_place(from, kMaxFloodCells, query.to, scratch.flood);
+    }
+    if (!entry.place) entry.place = state_->nearest_ground(ground, query.to);
+  };
+  const Place nearest = scratch.log.next(look).place;
   if (!nearest) return;
-  const PathEnd end = walk(query, from, nearest, scratch.walk_all);
+  const Path& on_foot = walk(query, from, nearest);
+  const PathEnd end = on_foot.end;
   // To what comes nearest, if the finder of paths on foot knows it.
   if (end != PathEnd::kReached && !(scratch.is_changed() && end == PathEnd::kUnreachable)) return;
-  add_walk(scratch.walk_all, 0, path);
+  add_walk(on_foot, 0, path);
   path.blocked_by =
       state_->ground_air_links.air_over(ground).empty() ? Blocker::kLow : Blocker::kNarrow;
 }
 
 }  // namespace throng::path
-
-namespace throng {
-
-Result<AirSummary> air_summary(const World& world) {
-  if (data_of(world) != nullptr) {
-    if (auto ok = world::check_air_index(*data_of(world)); !ok) return ok.error();
-  }
-  if (data_of(world) == nullptr || data_of(world)->air == nullptr) {
-    return Error{Errc::kNotFound, "the world was baked without air"};
-  }
-  const world::AirData& air = *data_of(world)->air;
-  const world::AirShape& shape = air.shape;
-  const auto height = [&](int32_t layer) {
-    return (static_cast<double>(layer) * shape.cell + shape.origin_y) * 1e-3;
-  };
-  AirSummary summary{.cell = shape.cell * 1e-3,
-                     .floor = height(shape.floor),
-                     .ceiling = height(shape.ceiling),
-                     .zones = air.slots.size(),
-                     .bytes = air.bytes};
-  for (const auto& slot : air.slots) {
-    const world::AirData::ZoneAir zone = air.zone(slot->entry.x(), slot->entry.z());
-    if (!zone.usable) return Error{Errc::kBadFile, slot->error};
-    zone.tree->for_each([&](const world::AirCube& cube, uint32_t word) {
-      if (world::air_kind(word) == world::AirKind::kFull) return;
-      ++summary.nodes;
-      if (world::air_kind(word) == world::AirKind::kLeaf) {
-        summary.free_cells +=
-            static_cast<uint64_t>(std::popcount(zone.tree->leaves[world::air_number(word)]));
-        return;
-      }
-      const int32_t layers =
-          std::min(cube.y + cube.side, shape.ceiling) - std::max(cube.y, shape.floor);
-      summary.free_cells += static_cast<uint64_t>(std::max(layers, 0)) *
-                            static_cast<uint64_t>(cube.side) * static_cast<uint64_t>(cube.side);
-    });
-  }
-  return summary;
-}
-
-}  // namespace throng

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "path/edits/solid.h"
+#include "path/ground/slice.h"
 #include "throng/path.h"
 
 /// Paths through the air of a baked world, from the ground and back to it.
@@ -54,6 +55,12 @@ class FlightFinder {
   /// where a lower body would pass, or where the avatar cannot take off, else kNarrow. `path` is
   /// reused: its memory stays.
   void find(const FlightQuery& query, Path& path);
+  /// The same in parts: call begin, then advance until it returns true; `path` is then that of
+  /// find, and before it counts what was expanded in the air and on foot. Each flood on foot to a
+  /// take-off and each string pulling is in one go and not counted. After a change or another
+  /// query, begin again.
+  void begin(const FlightQuery& query);
+  bool advance(Slice& slice, Path& path);
 
   /// Puts up an obstacle: no path leads where the body could touch the solid; on the ground, as in
   /// GroundFinder, the body counts from body_bottom() up. Of triangles only these are solid: a
@@ -95,7 +102,7 @@ class FlightFinder {
   size_t follow_route(const FlightQuery& query, const End& from, const End& to, Path& path);
   void find_nearest(const FlightQuery& query, Path& path);
   void find_nearest_on_foot(const FlightQuery& query, const Place& from, Path& path);
-  PathEnd walk(const FlightQuery& query, const Place& from, const Place& to, Path& path);
+  const Path& walk(const FlightQuery& query, const Place& from, const Place& to);
 
   std::shared_ptr<const Shared> state_;
   std::unique_ptr<Scratch> scratch_;

@@ -92,37 +92,52 @@ void FlightSearch::give_back() {
 
 SearchResult FlightSearch::find(const AirView& air, AirPoint from, AirPoint to,
                                 const SearchBudget& budget, std::vector<AirPoint>& path) {
+  begin(air, from, to);
+  Slice all;
+  return *advance(budget, all, path);
+}
+
+void FlightSearch::begin(const AirView& air, AirPoint from, AirPoint to) {
   air_ = air;
   start_ = from;
   goal_ = to;
   expanded_ = 0;
-  path.clear();
-  const uint32_t start = air.box_at(from);
+  found_large_ = false;
+  all_nodes_ = UINT64_MAX;
+  start_box_ = air.box_at(from);
   goal_box_ = air.box_at(to);
-  if (start == kNoBox || goal_box_ == kNoBox) return SearchResult::kNone;
-  if (air.sees(from, to)) {
-    path = {from, to};
+  step_ = Step::kNone;
+  if (start_box_ == kNoBox || goal_box_ == kNoBox) return;
+  step_ = Step::kStraight;
+  if (air.sees(from, to)) return;
+  begin_boxes(air_distance(from, to) <= kCoarseDistance ? Step::kAll : Step::kLarge);
+}
+
+std::optional<SearchResult> FlightSearch::advance(const SearchBudget& budget, Slice& slice,
+                                                  std::vector<AirPoint>& path) {
+  path.clear();
+  if (step_ == Step::kNone) return SearchResult::kNone;
+  if (step_ == Step::kStraight) {
+    path = {start_, goal_};
     return SearchResult::kFound;
   }
-  const double straight = air_distance(from, to);
-  if (straight <= kCoarseDistance) {
-    large_ = false;
-    return search(from, start, budget, path);
-  }
-  large_ = true;
-  large_path_.clear();
-  const SearchResult large = search(from, start, budget, large_path_);
-  if (large == SearchResult::kBudget) return large;
-  const bool found = large == SearchResult::kFound;
-  const double length = length_of(large_path_);
-  if (!found || length > kMaxStretch * straight) {
-    large_ = false;
+  if (step_ == Step::kLarge) {
+    const auto large = search(budget, slice, large_path_);
+    if (!large || large == SearchResult::kBudget) return large;
+    found_large_ = large == SearchResult::kFound;
+    if (found_large_ && length_of(large_path_) <= kMaxStretch * air_distance(start_, goal_)) {
+      path = large_path_;
+      return SearchResult::kFound;
+    }
     const uint64_t left = budget.max_nodes - expanded_;
-    SearchBudget rest = budget;
-    rest.max_nodes = expanded_ + (found ? std::min(left, kBudget) : left);
-    const SearchResult all = search(from, start, rest, path);
-    if (!found || (all == SearchResult::kFound && length_of(path) <= length)) return all;
+    all_nodes_ = expanded_ + (found_large_ ? std::min(left, kBudget) : left);
+    begin_boxes(Step::kAll);
   }
+  SearchBudget rest = budget;
+  rest.max_nodes = std::min(budget.max_nodes, all_nodes_);
+  const auto all = search(rest, slice, path);
+  if (!all || !found_large_) return all;
+  if (all == SearchResult::kFound && length_of(path) <= length_of(large_path_)) return all;
   path = large_path_;
   return SearchResult::kFound;
 }
@@ -139,19 +154,26 @@ int32_t FlightSearch::min_around(const world::AirCube& box) const {
   return ring->min_side;
 }
 
-SearchResult FlightSearch::search(AirPoint from, uint32_t start, const SearchBudget& budget,
-                                  std::vector<AirPoint>& path) {
+void FlightSearch::begin_boxes(Step step) {
+  step_ = step;
+  large_ = step == Step::kLarge;
   marks_.begin(air_->end());
-  path.clear();
   nodes_.clear();
   open_.clear();
-  nodes_.push_back({from, 0, air_distance(from, goal_), start, 0, 0, false});
-  marks_[start] = {marks_.search(), 0};
+  nodes_.push_back({start_, 0, air_distance(start_, goal_), start_box_, 0, 0, false});
+  marks_[start_box_] = {marks_.search(), 0};
   push(0);
+}
+
+std::optional<SearchResult> FlightSearch::search(const SearchBudget& budget, Slice& slice,
+                                                 std::vector<AirPoint>& path) {
+  path.clear();
   while (!open_.empty()) {
+    if (slice.is_empty()) return {};
     const Entry entry = open_.pop();
     Node& node = nodes_[entry.node];
     if (node.opened || entry.estimate > node.estimate) continue;
+    slice.take();
     if (budget.is_spent(++expanded_, used_bytes())) return SearchResult::kBudget;
     // Seen from the parent's waypoint after all? Else the path turns where it entered the box
     // before.

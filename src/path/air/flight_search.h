@@ -11,6 +11,7 @@
 #include "path/ground/open_list.h"
 #include "path/ground/search.h"
 #include "path/ground/search_states.h"
+#include "path/ground/slice.h"
 #include "throng/path.h"
 
 /// A short path through the air, over boxes.
@@ -26,6 +27,11 @@ class FlightSearch {
   /// exhausted. Far ends are searched through large boxes first.
   SearchResult find(const AirView& air, AirPoint from, AirPoint to, const SearchBudget& budget,
                     std::vector<AirPoint>& path);
+  /// The same in parts: call begin, then advance with the same budget until it returns a result.
+  /// The air must not change in between.
+  void begin(const AirView& air, AirPoint from, AirPoint to);
+  std::optional<SearchResult> advance(const SearchBudget& budget, Slice& slice,
+                                      std::vector<AirPoint>& path);
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
   /// Frees what is allocated beyond kKeptBytes: after a query, when its results are no longer
   /// needed.
@@ -36,8 +42,17 @@ class FlightSearch {
   [[nodiscard]] AirPoint nearest_reached(AirPoint goal) const;
 
  private:
-  SearchResult search(AirPoint from, uint32_t start, const SearchBudget& budget,
-                      std::vector<AirPoint>& path);
+  // What a search in parts does next.
+  enum class Step : uint8_t {
+    kNone,      // an end is not in the air
+    kStraight,  // the ends see each other
+    kLarge,     // through large boxes
+    kAll,       // through all boxes
+  };
+
+  void begin_boxes(Step step);
+  std::optional<SearchResult> search(const SearchBudget& budget, Slice& slice,
+                                     std::vector<AirPoint>& path);
   [[nodiscard]] uint64_t used_bytes() const;
   [[nodiscard]] int32_t min_around(const world::AirCube& box) const;
   struct Node {
@@ -68,9 +83,12 @@ class FlightSearch {
 
   std::optional<AirView> air_;
   AirPoint start_, goal_;
+  Step step_ = Step::kNone;
   bool large_ =
       false;  // only through boxes of a minimum size that grows with the distance from both ends
-  uint32_t goal_box_ = kNoBox;
+  uint32_t start_box_ = kNoBox, goal_box_ = kNoBox;
+  bool found_large_ = false;  // and a shorter path is searched for
+  uint64_t all_nodes_ = 0;    // in how many boxes
   uint64_t expanded_ = 0;
   ChunkedArray<Node> nodes_;
   OpenList<Entry> open_;

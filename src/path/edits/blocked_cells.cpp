@@ -69,6 +69,23 @@ SquareRange cells_near(const TileFloor& floor, std::span<const PlanPoint> polygo
   };
 }
 
+world::CellRows cells_in(const TileFloor& floor, const Prism& prism) {
+  world::CellRows rows{};
+  const SquareRange cells = cells_near(floor, prism.corners, kHeightRounding);
+  for (int32_t z = cells.first_z; z <= cells.last_z; ++z) {
+    for (int32_t x = cells.first_x; x <= cells.last_x; ++x) {
+      const double feet = floor.view.sample(x, z) * 1e-3;
+      if (feet < prism.low || feet > prism.high) continue;
+      const WorldSummary& world = floor.summary;
+      const double mx = world.origin.x + (floor.tile_x * kTileCells + x + 0.5) * world.cell;
+      const double mz = world.origin.z + (floor.tile_z * kTileCells + z + 0.5) * world.cell;
+      if (is_nearer({mx, mz, mx, mz}, prism.corners, 1e-9))
+        rows[static_cast<size_t>(z)] |= uint64_t{1} << x;
+    }
+  }
+  return rows;
+}
+
 std::pair<int32_t, int32_t> rise_at(const world::LevelView& view, int32_t x, int32_t z) {
   if (view.is_constant()) return {0, 0};
   return {world::sheet_slope(

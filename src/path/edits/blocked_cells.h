@@ -35,6 +35,9 @@ SquareRange tiles_near(const world::WorldData& world,
 SquareRange cells_near(const TileFloor& floor, std::span<const std::array<double, 2>> polygon,
                        double radius);
 
+/// Cells of a tile whose middle lies in a prism: on its border, too. By rows.
+world::CellRows cells_in(const TileFloor& floor, const Prism& prism);
+
 /// How a floor rises over a cell that has one, along x and z. [mm per cell]
 std::pair<int32_t, int32_t> rise_at(const world::LevelView& view, int32_t x, int32_t z);
 

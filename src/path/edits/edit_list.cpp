@@ -39,6 +39,7 @@ void EditList::count(const Edit& edit, int by) {
   if (!edit.bears_on_paths()) return;
   size_t& active = edit.is_obstacle()         ? active_solids
                    : edit.kind == Kind::kArea ? active_areas
+                   : is_over_nodes(edit.link) ? active_node_links
                                               : active_links;
   active += static_cast<size_t>(by);
 }
@@ -102,23 +103,11 @@ void EditList::set_area_cost(uint8_t kind, double cost) {
 }
 
 void EditList::count_all() {
-  active_solids = active_areas = active_links = 0;
+  active_solids = active_areas = active_links = active_node_links = 0;
   for (const Edit& edit : edits) {
     if (edit.active) count(edit, 1);
   }
   costs_differ = std::any_of(area_costs.begin(), area_costs.end(), [](double c) { return c != 1; });
-}
-
-ChangeId AppliedEdits::id_of_new(const EditList::Edit& edit, GroundFinder& finder) {
-  if (edit.is_obstacle()) return finder.add_obstacle(edit.solid());
-  const auto added = edit.kind == EditList::Kind::kArea ? finder.add_area(*edit.place, edit.area)
-                                                        : finder.add_off_mesh_link(edit.link);
-  return added ? *added : 0;
-}
-
-void AppliedEdits::set_cost(GroundFinder& finder, uint8_t kind, double cost) {
-  const auto set = finder.set_area_cost(kind, cost);
-  THRONG_ASSERT(set);  // Edits has checked it.
 }
 
 }  // namespace path

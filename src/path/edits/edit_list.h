@@ -52,6 +52,8 @@ struct EditList {
   }
   /// May a path on the ground be shorter, or cost less, than that of the baked ground?
   [[nodiscard]] bool may_shorten_paths() const { return active_links > 0 || has_costs(); }
+  /// May places be connected that are not on the baked ground?
+  [[nodiscard]] bool may_connect() const { return active_links > 0; }
   /// Do areas have another cost than the ground around them?
   [[nodiscard]] bool has_costs() const { return active_areas > 0 && costs_differ; }
   /// Is it known in which order calls have changed the list since a version?
@@ -82,8 +84,9 @@ struct EditList {
 
   std::vector<Edit> edits;  // by id - 1
   std::array<double, 64> area_costs{};
-  size_t active_solids = 0, active_areas = 0, active_links = 0;
-  bool costs_differ = false;  // of areas, from 1
+  size_t active_solids = 0, active_areas = 0;
+  size_t active_links = 0, active_node_links = 0;  // on the ground, too; only over nodes
+  bool costs_differ = false;                       // of areas, from 1
 
   /// What has changed from `first_version` on, in order. What is older was forgotten.
   std::vector<Changed> changed;
@@ -143,15 +146,25 @@ class AppliedEdits {
            (which_ == Which::kAreasAndLinks && edit.kind == EditList::Kind::kOffMeshLink);
   }
 
-  // 0: the finder does not know edits of this kind.
+  // 0: the finder does not know edits of this kind, or cannot use this one.
   template <class Finder>
   static ChangeId id_of_new(const EditList::Edit& edit, Finder& finder) {
-    return edit.is_obstacle() ? finder.add_obstacle(edit.solid()) : 0;
+    if (edit.is_obstacle()) return finder.add_obstacle(edit.solid());
+    if constexpr (requires { finder.set_area_cost(uint8_t{1}, 1.0); }) {
+      const auto added = edit.kind == EditList::Kind::kArea
+                             ? finder.add_area(*edit.place, edit.area)
+                             : finder.add_off_mesh_link(edit.link);
+      return added ? *added : 0;
+    }
+    return 0;
   }
-  static ChangeId id_of_new(const EditList::Edit& edit, GroundFinder& finder);
   template <class Finder>
-  static void set_cost(Finder& /*finder*/, uint8_t /*kind*/, double /*cost*/) {}
-  static void set_cost(GroundFinder& finder, uint8_t kind, double cost);
+  static void set_cost(Finder& finder, uint8_t kind, double cost) {
+    if constexpr (requires { finder.set_area_cost(kind, cost); }) {
+      const auto set = finder.set_area_cost(kind, cost);
+      THRONG_ASSERT(set);  // Edits has checked it.
+    }
+  }
 
   Which which_;
   std::vector<Own> own_;  // by id of the edit - 1

@@ -48,10 +48,16 @@ void GroundFinder::State::give(Path& path) {
   path.cost = cost * world.summary.cell;
 }
 
-Blocker GroundFinder::State::blocker() {
-  const ViewLevel* level = mesh.level(stops.back().level);
+Blocker GroundFinder::blocker(const Place& from, const Place& to) {
+  ViewStop start, goal;
+  if (!state_->locate(from, start) || !state_->locate(to, goal)) return Blocker::kNone;
+  return state_->blocker(start, goal);
+}
+
+Blocker GroundFinder::State::blocker(const ViewStop& start, const ViewStop& goal) {
+  const ViewLevel* level = mesh.level(start.level);
   const world::WalkStop stop =
-      world::walk_far(mesh.ground(), level, stops.back().at, to.at, mesh.step());
+      world::walk_far(mesh.ground(), level, start.at, goal.at, mesh.step());
   if (stop.arrived) return Blocker::kGap;  // under or over the goal
   // Obstacles placed since the bake are not in its floors.
   const world::WorldGround baked{mesh.world(), mesh.avatar_class()};
@@ -103,7 +109,7 @@ Result<void> check_area_cost(uint8_t kind, double cost) {
 }
 
 Result<void> check_link(const OffMeshLink& link) {
-  if (!link.from || !link.to) {
+  if ((!link.from && !link.from_on_nodes) || (!link.to && !link.to_on_nodes)) {
     return Error{Errc::kBadInput, "off-mesh link: it must lead from a place to another"};
   }
   if (link.cost > 0 && std::isfinite(link.cost)) return {};
@@ -122,6 +128,9 @@ Result<ChangeId> GroundFinder::add_area(const Prism& prism, uint8_t kind) {
 
 Result<ChangeId> GroundFinder::add_off_mesh_link(const OffMeshLink& link) {
   if (auto ok = check_link(link); !ok) return ok.error();
+  if (is_over_nodes(link)) {
+    return Error{Errc::kBadInput, "off-mesh link: its ends are not on the ground"};
+  }
   State& s = *state_;
   const world::WorldData& world = s.mesh.world();
   // As the ground was baked: what stands there now may be removed.
@@ -180,7 +189,14 @@ bool GroundFinder::allows(const Path& path) {
   return true;
 }
 
-void GroundFinder::begin(const Place& from, const Place& to) { state_->begin(from, to); }
+void GroundFinder::begin(const Place& from, const Place& to, IfUnreachable otherwise) {
+  state_->begin(from, to);
+  state_->otherwise = otherwise;
+}
+
+void GroundFinder::begin_over_points(const Place& from, const Place& to) {
+  state_->begin(from, to, true);
+}
 
 void GroundFinder::State::begin(const Place& start, const Place& goal, bool over_points) {
   from_place = start;
@@ -188,7 +204,7 @@ void GroundFinder::State::begin(const Place& start, const Place& goal, bool over
   searching = locate(start, from) && locate(goal, to);
   version = mesh.version();
   is_exact = !over_points && mesh.is_plain() && !mesh.has_links();
-  exact_nodes = nodes_before = 0;
+  exact_nodes = nodes_before = expanded = 0;
   was_flooded = false;
   if (!searching) return;
   if (is_exact) exact.begin(mesh.rects(), exact_stop(from), exact_stop(to));
@@ -197,7 +213,6 @@ void GroundFinder::State::begin(const Place& start, const Place& goal, bool over
 
 void GroundFinder::State::begin_over_points() {
   is_exact = false;
-  nodes_before = exact.expanded();
   search.begin(mesh, from, to);
 }
 
@@ -270,7 +285,14 @@ std::optional<bool> GroundFinder::State::advance_exactly(uint64_t max_bytes, Pat
       return end_exactly(result, first, length, path);
     }
     was_flooded = true;
-    if (is_cut_off()) return {};
+    nodes_before = kNodesBefore;
+    if (is_cut_off()) {
+      if (otherwise == IfUnreachable::kNearest) return {};
+      path.nodes = kNodesBefore;
+      path.end = PathEnd::kUnreachable;
+      searching = false;
+      return true;
+    }
   }
   const SearchBudget budget(exact_nodes, nullptr, max_bytes);
   const SearchResult result = exact.advance(budget, corners, length);
@@ -286,6 +308,7 @@ std::optional<bool> GroundFinder::State::end_exactly(SearchResult result,
     path.spent = SpentBudget::kNodes;
     return false;
   }
+  nodes_before = path.nodes;
   if (result != SearchResult::kFound || !give_exactly(length, path)) return {};
   searching = false;
   return true;
@@ -318,46 +341,54 @@ bool GroundFinder::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& 
   search.give_back();
   string.pull(mesh, stops);
   give(path);
-  if (path.end == PathEnd::kUnreachable) path.blocked_by = blocker();
+  if (path.end == PathEnd::kUnreachable) path.blocked_by = blocker(stops.back(), to);
   return true;
 }
 
 bool GroundFinder::advance(uint64_t max_nodes, Path& path) {
   State& s = *state_;
   // What the search has reached may no longer exist.
-  if (s.searching && s.version != s.mesh.version()) begin(s.from_place, s.to_place);
+  if (s.searching && s.version != s.mesh.version()) s.begin(s.from_place, s.to_place);
   return s.advance(max_nodes, SearchBudget::kDefaultBytes, path);
 }
 
-void GroundFinder::find(const Place& from, const Place& to, Path& path,
-                        const SearchBudget& budget) {
-  state_->begin(from, to);
-  state_->run(budget, path);
+void GroundFinder::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget,
+                        IfUnreachable otherwise) {
+  begin(from, to, otherwise);
+  Slice all;
+  state_->advance(budget, all, path);
 }
 
 void GroundFinder::find_over_points(const Place& from, const Place& to, Path& path,
                                     const SearchBudget& budget) {
   state_->begin(from, to, true);
-  state_->run(budget, path);
+  Slice all;
+  state_->advance(budget, all, path);
 }
 
-void GroundFinder::State::run(const SearchBudget& budget, Path& path) {
-  if (budget.cancel == nullptr) {
-    advance(budget.max_nodes, budget.max_bytes, path);
-    return;
-  }
-  constexpr uint64_t kSlice = 64;
-  reset(path);
-  path.end = PathEnd::kBudgetExhausted;
-  path.spent = SpentBudget::kNodes;
-  for (uint64_t left = budget.max_nodes; left > 0;) {
-    if (*budget.cancel) {
+bool GroundFinder::advance(const SearchBudget& budget, Slice& slice, Path& path) {
+  State& s = *state_;
+  if (s.searching && s.version != s.mesh.version()) s.begin(s.from_place, s.to_place);
+  return s.advance(budget, slice, path);
+}
+
+bool GroundFinder::State::advance(const SearchBudget& budget, Slice& slice, Path& path) {
+  constexpr uint64_t kStride = 64;  // between looks at `cancel`
+  while (true) {
+    if (budget.cancel != nullptr && *budget.cancel) {
+      reset(path);
+      path.nodes = expanded;
+      path.end = PathEnd::kBudgetExhausted;
       path.spent = SpentBudget::kCancelled;
-      return;
+      return true;
     }
-    const uint64_t slice = std::min(left, kSlice);
-    if (advance(slice, budget.max_bytes, path)) return;
-    left -= slice;
+    uint64_t part = std::min(slice.left, budget.max_nodes - std::min(budget.max_nodes, expanded));
+    if (budget.cancel != nullptr) part = std::min(part, kStride);
+    const bool ended = advance(part, budget.max_bytes, path);
+    slice.take(ended ? path.nodes - expanded : part);
+    expanded += part;
+    if (ended || expanded >= budget.max_nodes) return true;
+    if (slice.is_empty()) return false;
   }
 }
 

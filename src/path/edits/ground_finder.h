@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "path/edits/solid.h"
+#include "path/ground/slice.h"
 #include "throng/path.h"
 
 /// Paths over ground with edits. Data is made when a query needs it, and a change discards only the
@@ -16,6 +17,16 @@ namespace throng::path {
 [[nodiscard]] Result<void> check_area(uint8_t kind);
 [[nodiscard]] Result<void> check_area_cost(uint8_t kind, double cost);
 [[nodiscard]] Result<void> check_link(const OffMeshLink& link);
+
+/// Has it an end that only classes over nodes can stand at?
+inline bool is_over_nodes(const OffMeshLink& link) {
+  return link.from_on_nodes || link.to_on_nodes;
+}
+
+/// What a search finds if no path leads to the goal: a path to what is reachable and nearest to it
+/// and what blocks it there, or nothing, which takes less time if little is connected with one of
+/// both.
+enum class IfUnreachable : uint8_t { kNearest, kNothing };
 
 /// The ground of one class with changes. Obstacles only remove ground: an avatar can stand on a
 /// crate only if it was baked. Changes and queries are for one thread at a time; copies are
@@ -57,7 +68,8 @@ class GroundFinder {
   /// best. If no path leads to the goal (kUnreachable), `path` leads to the reached place nearest
   /// to it, and Path::blocked_by says what blocks it. Stops when the budget of points or memory is
   /// exhausted (Path::spent). No allocation once it is warm.
-  void find(const Place& from, const Place& to, Path& path, const SearchBudget& budget = {});
+  void find(const Place& from, const Place& to, Path& path, const SearchBudget& budget = {},
+            IfUnreachable otherwise = IfUnreachable::kNearest);
   /// As find, by the search over points even where the shortest path could be searched: for what
   /// cannot be drawn over corners, because neighbouring cells that are both legal lie more than a
   /// step height apart and a shortest path may lead along the line between them.
@@ -65,8 +77,14 @@ class GroundFinder {
                         const SearchBudget& budget = {});
   /// The same search in parts: call begin, then advance with some points per frame until it returns
   /// true. Stops where it would take more than SearchBudget::kDefaultBytes.
-  void begin(const Place& from, const Place& to);
+  void begin(const Place& from, const Place& to, IfUnreachable otherwise = IfUnreachable::kNearest);
+  void begin_over_points(const Place& from, const Place& to);
   bool advance(uint64_t max_nodes, Path& path);
+  /// The same within a budget of the whole search; true, too, when that is exhausted.
+  bool advance(const SearchBudget& budget, Slice& slice, Path& path);
+
+  /// What a straight line from one place of the class to another meets first.
+  Blocker blocker(const Place& from, const Place& to);
 
   struct State;
   /// For what works on the same ground (FlowPoints).

@@ -21,8 +21,9 @@ struct GroundFinder::State {
 
   bool locate(const Place& place, ViewStop& stop);
   void begin(const Place& start, const Place& goal, bool over_points = false);
-  /// To the end of what has begun, or of the budget.
-  void run(const SearchBudget& budget, Path& path);
+  /// To the end of what has begun, of the slice, or of the budget of the whole search. False: the
+  /// slice is spent.
+  bool advance(const SearchBudget& budget, Slice& slice, Path& path);
   /// False: the search has more to expand.
   bool advance(uint64_t max_nodes, uint64_t max_bytes, Path& path);
   /// The exact search. None if points of portals have to be searched instead.
@@ -37,8 +38,8 @@ struct GroundFinder::State {
   bool give_exactly(double length, Path& path);
   /// Of `stops`.
   void give(Path& path);
-  /// What a straight line from its end to the goal meets first.
-  Blocker blocker();
+  /// What a straight line meets first.
+  Blocker blocker(const ViewStop& start, const ViewStop& goal);
 
   GroundView mesh;
   PointSearch search;
@@ -47,6 +48,8 @@ struct GroundFinder::State {
   ViewStop from, to;
   uint64_t version = 0;
   bool searching = false;
+  IfUnreachable otherwise = IfUnreachable::kNearest;
+  uint64_t expanded = 0;  // within the budget
   std::vector<ViewStop> stops;
 
   // While no metre costs more than another, and no off-mesh link is in force.

@@ -90,6 +90,10 @@ void GroundView::set_area_cost(uint8_t kind, double cost) {
            std::all_of(area_cost_.begin(), area_cost_.end(), [](double c) { return c == 1; });
 }
 
+bool GroundView::closes_kinds() const {
+  return std::any_of(area_cost_.begin(), area_cost_.end(), [](double c) { return std::isinf(c); });
+}
+
 ChangeId GroundView::add(Change change) {
   const WorldSummary& summary = world().summary;
   const AvatarClass& avatar = summary.classes[static_cast<size_t>(config_.avatar_class)];
@@ -193,6 +197,11 @@ bool GroundView::stand(uint32_t index, world::GroundPoint at, uint16_t& rect) {
 }
 
 // Row by row of tiles, those between the ends of the line's part in the row.
+bool GroundView::is_changed(int32_t tile_x, int32_t tile_z) const {
+  const auto found = changes_of_tile_.find(tile_key(tile_x, tile_z));
+  return found != changes_of_tile_.end() && !found->second.empty();
+}
+
 bool GroundView::is_changed_on(world::GroundPoint from, world::GroundPoint to) const {
   if (changes_of_tile_.empty()) return false;
   constexpr int64_t kSide = int64_t{kTileCells} << world::kUnitBits, kMargin = 2;  // units
@@ -207,9 +216,7 @@ bool GroundView::is_changed_on(world::GroundPoint from, world::GroundPoint to) c
     if (last < first) std::swap(first, last);
     const int64_t end = (last + kMargin) / kSide;
     for (int64_t x = std::max<int64_t>(first - kMargin, 0) / kSide; x <= end; ++x) {
-      const auto tile = tile_key(static_cast<int32_t>(x), static_cast<int32_t>(z));
-      const auto found = changes_of_tile_.find(tile);
-      if (found != changes_of_tile_.end() && !found->second.empty()) return true;
+      if (is_changed(static_cast<int32_t>(x), static_cast<int32_t>(z))) return true;
     }
   }
   return false;
@@ -291,17 +298,9 @@ std::array<uint8_t, 4096> GroundView::kinds_of(const ViewLevel& level) const {
   for (const ChangeId id : found->second) {
     const Change& change = changes_[id - 1];
     if (!change.active || !change.is_area) continue;
-    const SquareRange cells = cells_near(floor, change.solid.prism.corners, kHeightRounding);
-    for (int32_t z = cells.first_z; z <= cells.last_z; ++z) {
-      for (int32_t x = cells.first_x; x <= cells.last_x; ++x) {
-        if (!level.is_legal(x, z)) continue;
-        const double feet = level.ground.view.sample(x, z) * 1e-3;
-        if (feet < change.solid.prism.low || feet > change.solid.prism.high) continue;
-        const double mx = summary.origin.x + (level.tile_x * kTileCells + x + 0.5) * summary.cell;
-        const double mz = summary.origin.z + (level.tile_z * kTileCells + z + 0.5) * summary.cell;
-        if (is_nearer({mx, mz, mx, mz}, change.solid.prism.corners, 1e-9))
-          kinds[static_cast<size_t>(z * 64 + x)] = change.kind;
-      }
+    const world::CellRows cells = cells_in(floor, change.solid.prism);
+    for (size_t c = 0; c < kinds.size(); ++c) {
+      if ((cells[c / 64] >> (c % 64) & 1) != 0) kinds[c] = change.kind;
     }
   }
   return kinds;

@@ -92,6 +92,7 @@ class GroundView final : public PortalSource {
   [[nodiscard]] double factor(const ViewLevel& level, uint32_t n) const {
     return factor(level.first_rect + n);
   }
+  [[nodiscard]] bool closes_kinds() const;  // does ground of some area kind cost infinity?
   [[nodiscard]] bool is_plain() const { return plain_; }  // a metre costs 1 everywhere
   [[nodiscard]] bool has_links() const { return active_links_ > 0; }
   /// No path costs less than its length in the plane times this.
@@ -127,6 +128,8 @@ class GroundView final : public PortalSource {
   /// Can the class stand at a point of a level now? In which rectangle?
   bool stand(uint32_t level, world::GroundPoint at, uint16_t& rect);
   bool set_active(ChangeId change, bool active, bool remove);
+  /// Does a change touch a tile, active or not?
+  [[nodiscard]] bool is_changed(int32_t tile_x, int32_t tile_z) const;
   /// Does a line lead over a tile that a change touches, active or not?
   [[nodiscard]] bool is_changed_on(world::GroundPoint from, world::GroundPoint to) const;
 

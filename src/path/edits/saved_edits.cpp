@@ -24,7 +24,9 @@ static_assert(sizeof(Head) == 66 * 8 && std::is_trivially_copyable_v<Head>);
 
 struct EditRow {
   uint8_t kind = 0, area = 0, active = 0, removed = 0;
-  uint8_t obstacle_kind = 0, policy = 0, two_way = 0, unused = 0;
+  uint8_t obstacle_kind = 0, policy = 0, two_way = 0;
+  uint8_t on_nodes = 0;  // a link with ends on nodes, which follow the row
+
   uint32_t moves = 0, corners = 0;
   uint64_t triangles = 0;
   double low = 0, high = 0;
@@ -34,6 +36,14 @@ struct EditRow {
   double cost = 0;
 };
 static_assert(sizeof(EditRow) == 104 && std::is_trivially_copyable_v<EditRow>);
+
+// A place on nodes.
+struct NodeRow {
+  uint32_t node1 = 0, unused = 0;
+  std::array<double, 3> feet{}, axis{}, normal{};
+  double s = 0, t = 0;
+};
+static_assert(sizeof(NodeRow) == 96 && std::is_trivially_copyable_v<NodeRow>);
 
 struct CallRow {
   uint32_t edit = 0;
@@ -75,19 +85,37 @@ std::shared_ptr<const Prism> take_prism(std::span<const uint8_t>& from, size_t c
 std::array<double, 3> numbers_of(const Vec3d& v) { return {v.x, v.y, v.z}; }
 Vec3d vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
+NodeRow row_of(const NodePlace& place) {
+  return {.node1 = place.node1,
+          .feet = numbers_of(place.feet),
+          .axis = numbers_of(place.axis),
+          .normal = numbers_of(place.normal),
+          .s = place.s,
+          .t = place.t};
+}
+NodePlace place_of(const NodeRow& row) {
+  return {.node1 = row.node1,
+          .feet = vector_of(row.feet),
+          .axis = vector_of(row.axis),
+          .normal = vector_of(row.normal),
+          .s = row.s,
+          .t = row.t};
+}
+
 bool is_flag(uint8_t value) { return value <= 1; }
 
 // Is it a row of which Edits could have made an edit, whatever follows it?
 bool is_sound(const EditRow& row) {
   if (row.kind > static_cast<uint8_t>(EditList::Kind::kOffMeshLink) || !is_flag(row.active) ||
       !is_flag(row.removed) || !is_flag(row.obstacle_kind) || !is_flag(row.policy) ||
-      !is_flag(row.two_way) || row.unused != 0 || (row.active != 0 && row.removed != 0)) {
+      !is_flag(row.two_way) || !is_flag(row.on_nodes) || (row.active != 0 && row.removed != 0)) {
     return false;
   }
   const auto kind = static_cast<EditList::Kind>(row.kind);
   const bool is_area = kind == EditList::Kind::kArea;
   if (is_area ? !check_area(row.area) : row.area != 0) return false;
   const bool is_obstacle = kind == EditList::Kind::kObstacle;
+  if (row.on_nodes != 0 && (is_obstacle || is_area)) return false;
   if (!is_obstacle && (row.triangles != 0 || row.moves != 0)) return false;
   if (row.removed != 0) return row.corners == 0 && row.triangles == 0;
   if (is_obstacle || is_area) return (row.corners != 0) != (row.triangles != 0);
@@ -108,6 +136,15 @@ bool take_edit(std::span<const uint8_t>& from, EditList::Edit& edit) {
                .to = {vector_of(row.to), row.to_level1},
                .cost = row.cost,
                .two_way = row.two_way != 0};
+  if (row.on_nodes != 0) {
+    std::array<NodeRow, 2> ends;
+    if (!take(from, ends.data(), ends.size()) || ends[0].unused != 0 || ends[1].unused != 0) {
+      return false;
+    }
+    edit.link.from_on_nodes = place_of(ends[0]);
+    edit.link.to_on_nodes = place_of(ends[1]);
+    if (!is_over_nodes(edit.link)) return false;
+  }
   if (edit.kind == EditList::Kind::kOffMeshLink) return bool(check_link(edit.link));
   if (row.corners > 0) {
     edit.place = take_prism(from, row.corners, row.low, row.high);
@@ -162,6 +199,7 @@ std::vector<uint8_t> save_edits(const EditList& list) {
         .obstacle_kind = static_cast<uint8_t>(edit.obstacle_kind),
         .policy = static_cast<uint8_t>(edit.policy),
         .two_way = edit.link.two_way,
+        .on_nodes = is_over_nodes(edit.link),
         .moves = edit.moves,
         .corners = has_corners ? static_cast<uint32_t>(edit.place->corners.size()) : 0,
         .triangles = edit.triangles.size(),
@@ -173,6 +211,10 @@ std::vector<uint8_t> save_edits(const EditList& list) {
         .to_level1 = edit.link.to.level1,
         .cost = edit.link.cost};
     put(out, &row, 1);
+    if (row.on_nodes != 0) {
+      const std::array ends{row_of(edit.link.from_on_nodes), row_of(edit.link.to_on_nodes)};
+      put(out, ends.data(), ends.size());
+    }
     if (has_corners) put(out, edit.place->corners.data(), edit.place->corners.size());
     for (const std::array<Vec3d, 3>& triangle : edit.triangles) {
       for (const Vec3d& p : triangle) {

@@ -256,4 +256,18 @@ Blocker blocker_beyond(const world::WorldGround& ground, const world::GroundLeve
   return found == Blocker::kNone ? Blocker::kStep : found;
 }
 
+Blocker blocker_towards(const world::WorldGround& ground, const Place& from, const Place& to) {
+  const auto start = world::ground_point(ground.world, from);
+  const auto goal = world::ground_point(ground.world, to);
+  if (!start || !goal) return Blocker::kNone;
+  const AvatarClass& avatar =
+      ground.world.summary.classes[static_cast<size_t>(ground.avatar_class)];
+  world::GroundLevel level =
+      world::ground_level(ground.world, from.level1 - 1, ground.avatar_class);
+  const world::WalkStop stop =
+      world::walk_far(ground, level, *start, *goal, world::step_mm(avatar));
+  if (stop.arrived) return Blocker::kGap;  // under or over the goal
+  return blocker_beyond(ground, level, stop);
+}
+
 }  // namespace throng::path

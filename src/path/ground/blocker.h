@@ -12,4 +12,7 @@ namespace throng::path {
 Blocker blocker_beyond(const world::WorldGround& ground, const world::GroundLevel& level,
                        const world::WalkStop& stop);
 
+/// What a straight line over the baked ground from one place to another meets first.
+Blocker blocker_towards(const world::WorldGround& ground, const Place& from, const Place& to);
+
 }  // namespace throng::path

@@ -34,6 +34,8 @@ class PathSearch {
   void begin(const PathMesh& mesh, const Stop& from, const Stop& to, double longest = kAnyLength);
   SearchResult advance(const SearchBudget& budget, std::vector<uint32_t>& corners, double& length);
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
+  /// After a search that no call will continue: frees what is allocated beyond kKeptBytes.
+  void give_back();
   /// What it has allocated for queries by now, without references to the mesh. [bytes]
   [[nodiscard]] uint64_t allocated_bytes() const;
   /// Of these, the maximum that stays allocated from one query to the next. [bytes]
@@ -82,7 +84,6 @@ class PathSearch {
   [[nodiscard]] bool is_stale(uint32_t root) const;
   [[nodiscard]] uint64_t used_bytes() const;
   void drop_useless();
-  void give_back();
 
   const PathMesh* mesh_ = nullptr;
   uint32_t goal_rect_ = kNoRect;

@@ -67,6 +67,13 @@ struct MeshFinder::Scratch {
   std::vector<uint32_t> corners;
   std::vector<Stop> stops;
   std::vector<world::LevelView> views;  // of the stops
+
+  // Of a search in parts.
+  enum class Step : uint8_t { kNoPlace, kApart, kCorners, kPoints };
+  Step step = Step::kNoPlace;
+  Place from, to;
+  Stop start, goal;
+  uint64_t nodes = 0;  // expanded over corners
 };
 
 MeshFinder::MeshFinder(std::shared_ptr<const Shared> shared)
@@ -125,71 +132,117 @@ PathSummary MeshFinder::summary() const { return state_->summary; }
 const PathMesh& MeshFinder::mesh() const { return state_->mesh; }
 
 void MeshFinder::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget) {
+  begin(from, to);
+  Slice all;
+  advance(budget, all, path);
+}
+
+std::optional<Stop> MeshFinder::stop(const Place& place) const {
+  const auto at = world::ground_point(*data_of(state_->world), place);
+  if (!at) return {};
+  const uint32_t rect = state_->mesh.rect_at(place.level1 - 1, at->cell_x(), at->cell_z());
+  return rect == kNoRect ? std::nullopt : std::optional<Stop>({*at, rect});
+}
+
+uint32_t MeshFinder::component(const Place& place) const {
+  const auto at = stop(place);
+  return at ? state_->mesh.rects[at->rect].component : kNoRect;
+}
+
+void MeshFinder::begin(const Place& from, const Place& to) {
+  const PathMesh& mesh = state_->mesh;
+  Scratch& s = *scratch_;
+  s.from = from;
+  s.to = to;
+  s.nodes = 0;
+  s.step = Scratch::Step::kNoPlace;
+  const auto start = stop(from), goal = stop(to);
+  if (!start || !goal) return;
+  s.start = *start;
+  s.goal = *goal;
+  s.step = Scratch::Step::kApart;
+  if (mesh.rects[s.start.rect].component != mesh.rects[s.goal.rect].component) return;
+  s.step = Scratch::Step::kCorners;
+  if (!state_->labels && !state_->zones) s.search.begin(mesh, s.start, s.goal);
+}
+
+bool MeshFinder::advance(const SearchBudget& budget, Slice& slice, Path& path) {
   const world::WorldData& world = *data_of(state_->world);
   const PathMesh& mesh = state_->mesh;
+  Scratch& s = *scratch_;
   reset(path);
-  const auto locate = [&](const Place& place, Stop& end) {
-    const auto at = world::ground_point(world, place);
-    if (!at) return false;
-    end.at = *at;
-    end.rect = mesh.rect_at(place.level1 - 1, end.at.cell_x(), end.at.cell_z());
-    return end.rect != kNoRect;
-  };
-  Stop start, goal;
-  if (!locate(from, start) || !locate(to, goal)) return;
-
-  if (mesh.rects[start.rect].component != mesh.rects[goal.rect].component) {
-    path.end = PathEnd::kUnreachable;
-    return;
-  }
+  if (s.step == Scratch::Step::kPoints) return advance_over_points(budget, slice, path);
+  if (s.step == Scratch::Step::kApart) path.end = PathEnd::kUnreachable;
+  if (s.step != Scratch::Step::kCorners) return true;
   double length = 0;
   SearchResult result = SearchResult::kNone;
   if (state_->labels) {
-    if (scratch_->label_search.find(mesh, *state_->labels, start, goal, scratch_->corners,
-                                    length)) {
+    if (s.label_search.find(mesh, *state_->labels, s.start, s.goal, s.corners, length)) {
       result = SearchResult::kFound;
     }
   } else if (state_->zones) {
-    ZoneSearch& search = scratch_->over_zones;
-    result =
-        search.find(world, mesh, *state_->zones, start, goal, budget, scratch_->corners, length);
-    path.nodes = search.expanded();
+    ZoneSearch& search = s.over_zones;
+    result = search.find(world, mesh, *state_->zones, s.start, s.goal, budget, s.corners, length);
+    s.nodes = search.expanded();
   } else {
-    result = scratch_->search.find(mesh, start, goal, budget, scratch_->corners, length);
-    path.nodes = scratch_->search.expanded();
+    // The search counts the node that was too many; with a larger budget it is expanded.
+    SearchBudget part = budget;
+    part.max_nodes =
+        std::min(budget.max_nodes, s.nodes + std::min(slice.left, UINT64_MAX - s.nodes));
+    result = s.search.advance(part, s.corners, length);
+    const uint64_t expanded = std::min(s.search.expanded(), part.max_nodes);
+    slice.take(expanded - s.nodes);
+    s.nodes = expanded;
+    if (result == SearchResult::kBudget && part.spent(s.search.expanded()) == SpentBudget::kNodes &&
+        expanded < budget.max_nodes) {
+      path.nodes = expanded;
+      path.end = PathEnd::kBudgetExhausted;
+      path.spent = SpentBudget::kNodes;
+      return false;
+    }
+    s.nodes = s.search.expanded();
+    s.search.give_back();
   }
+  path.nodes = s.nodes;
   // Both are of one component: a path exists, even if none can be drawn over corners.
   const auto is_drawn = [&] {
     const BakedCells cells(world, mesh);
     SegmentWalker walker(cells, mesh);
-    return walker.walk(start, scratch_->corners, goal.at, scratch_->stops) &&
-           scratch_->stops.back().rect == goal.rect;
+    return walker.walk(s.start, s.corners, s.goal.at, s.stops) &&
+           s.stops.back().rect == s.goal.rect;
   };
-  if (result == SearchResult::kBudget) path.spent = budget.spent(path.nodes);
-  if (result == SearchResult::kNone || (result == SearchResult::kFound && !is_drawn())) {
-    return find_over_points(from, to, budget.after(path.nodes), path);
+  if (result == SearchResult::kBudget) {
+    path.spent = budget.spent(path.nodes);
+    path.end = PathEnd::kBudgetExhausted;
+    return true;
   }
-  if (result != SearchResult::kFound) {
-    path.end = result == SearchResult::kNone ? PathEnd::kUnreachable : PathEnd::kBudgetExhausted;
-    return;
+  if (result == SearchResult::kNone || !is_drawn()) {
+    begin_over_points();
+    return advance_over_points(budget, slice, path);
   }
   path.end = PathEnd::kReached;
   path.length = path.cost = length * world.summary.cell;
-  add_places(world, mesh, scratch_->stops, scratch_->views, path);
+  add_places(world, mesh, s.stops, s.views, path);
   path.segments.assign(path.points.size() - 1, SegmentKind::kWalk);
+  return true;
 }
 
-void MeshFinder::find_over_points(const Place& from, const Place& to, const SearchBudget& budget,
-                                  Path& path) {
-  const uint64_t nodes_before = path.nodes;
-  std::optional<GroundFinder>& finder = scratch_->over_points;
-  if (!finder) {
+void MeshFinder::begin_over_points() {
+  Scratch& s = *scratch_;
+  s.step = Scratch::Step::kPoints;
+  if (!s.over_points) {
     auto made = GroundFinder::create(state_->world, {.avatar_class = state_->mesh.avatar_class});
     THRONG_ASSERT(made);  // The class was checked.
-    finder = *std::move(made);
+    s.over_points = *std::move(made);
   }
-  finder->find_over_points(from, to, path, budget);
+  s.over_points->begin_over_points(s.from, s.to);
+}
+
+bool MeshFinder::advance_over_points(const SearchBudget& budget, Slice& slice, Path& path) {
+  const uint64_t nodes_before = scratch_->nodes;
+  const bool ended = scratch_->over_points->advance(budget.after(nodes_before), slice, path);
   path.nodes += nodes_before;
+  return ended;
 }
 
 }  // namespace throng::path

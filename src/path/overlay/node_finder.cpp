@@ -13,6 +13,7 @@
 
 #include "core/access.h"
 #include "path/edits/blocked_cells.h"
+#include "path/edits/ground_finder.h"
 #include "path/edits/solid.h"
 #include "path/ground/blocker.h"
 #include "path/ground/reset_path.h"
@@ -70,6 +71,10 @@ struct NodeFinder::Shared {
   Overlay overlay;
   double longest_hole_link = 0;  // [m]
   double seconds = 0;
+
+  /// The block of a place, as it was baked.
+  [[nodiscard]] BlockPoint block_of(const NodePlace& place) const;
+  [[nodiscard]] BlockPoint block_of(const Place& place) const;
 };
 
 struct NodeFinder::Scratch {
@@ -97,8 +102,6 @@ struct NodeFinder::Scratch {
   NodeIsland islands;
   NodeString pull;
   std::vector<Crossing> crossings;
-  std::optional<BlockPoint>
-      nearest;  // where `crossings` ends, if not where its last crossing leads to
   std::vector<PulledCrossing> pulled;
 
   void update() {
@@ -107,73 +110,97 @@ struct NodeFinder::Scratch {
     changes.update();
     far_search.update();
   }
-  PathEnd find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-               Path& path);
-  PathEnd find_all(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-                   Path& path);
-  PathEnd find_nearest(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-                       Path& path);
+  // The search that goes on, or comes next.
+  enum class Step : uint8_t {
+    kNear,   // over crossings near the ends
+    kFar,    // over the overlay
+    kAll,    // over all crossings
+    kFlood,  // the same to the goal itself: to what comes nearest to it
+    kEnded,
+  };
+  void begin_search();
+  void begin_step(Step to);
+  [[nodiscard]] Step next_step(PathEnd end) const;
+  bool advance(Slice& slice);
+  void aim_at_nearest();
+
+  // The query.
+  BlockPoint start, goal;
+  std::optional<BlockPoint> nearest;  // the place that the search leads to, if it is not the goal
+  bool aims_at_nearest = false;       // which obstacles may have cut off, too
+  Vec3d goal_at;
+  double spacing = 0;
+  SearchBudget budget;
+  bool reachable = false;  // the goal, as far as is known
+  Step step = Step::kEnded;
+  SearchBudget step_budget;
+  PathEnd end = PathEnd::kNoPlace;
+  uint64_t nodes = 0;  // of the steps before
+  uint64_t taken = 0;  // from the slices before
+  double searched_cost = 0;
+
+  [[nodiscard]] BlockPoint locate(const NodePlace& place) const;
+  [[nodiscard]] BlockPoint target() const { return nearest.value_or(goal); }
 };
 
-namespace {
-
-SearchBudget what_is_left(const SearchBudget& budget, const Path& path) {
-  return budget.after(path.nodes);
-}
-
-}  // namespace
-
 // Over crossings nearby if the ends are near, else over the overlay; if that finds none, over all.
-PathEnd NodeFinder::Scratch::find(const BlockPoint& from, const BlockPoint& to,
-                                  const SearchBudget& budget, Path& path) {
-  const auto take = [&](auto&& searched, PathEnd end) {
-    path.nodes += searched.expanded();
-    path.searched_cost = searched.cost();
-    return end;
-  };
-  if (!shared.overlay.empty()) {
-    const double far = length(position(view, to) - position(view, from));
-    if (far <= kNearSides * shared.overlay.overlay_levels().front().side) {
-      SearchBudget near = what_is_left(budget, path);
-      near.max_nodes = std::min(near.max_nodes, kNearCrossings);
-      const PathEnd end = take(search, search.find(from, to, near, crossings));
-      const bool stopped = budget.cancel != nullptr && *budget.cancel;
-      if (end != PathEnd::kBudgetExhausted || stopped) return end;
-    }
-    const SearchBudget left = what_is_left(budget, path);
-    const PathEnd end = take(far_search, far_search.find(from, to, left, search, crossings));
-    if (end != PathEnd::kUnreachable) return end;
+void NodeFinder::Scratch::begin_search() {
+  if (shared.overlay.empty()) return begin_step(Step::kAll);
+  const double far = length(position(view, target()) - position(view, start));
+  const bool near = far <= kNearSides * shared.overlay.overlay_levels().front().side;
+  begin_step(near ? Step::kNear : Step::kFar);
+}
+
+void NodeFinder::Scratch::begin_step(Step to) {
+  step = to;
+  step_budget = budget.after(nodes);
+  if (to == Step::kFlood) nearest.reset();
+  if (to == Step::kNear) step_budget.max_nodes = std::min(step_budget.max_nodes, kNearCrossings);
+  if (to == Step::kFar) return far_search.begin(start, target());
+  if (to != Step::kEnded) search.begin(start, target());
+}
+
+NodeFinder::Scratch::Step NodeFinder::Scratch::next_step(PathEnd ended) const {
+  const bool stopped = budget.cancel != nullptr && *budget.cancel;
+  if (step == Step::kNear && ended == PathEnd::kBudgetExhausted && !stopped) return Step::kFar;
+  if (ended != PathEnd::kUnreachable) return Step::kEnded;
+  if (step == Step::kFar) return Step::kAll;
+  // The place that seemed the nearest cannot be reached either.
+  return step != Step::kFlood && aims_at_nearest ? Step::kFlood : Step::kEnded;
+}
+
+// False: the slice is spent.
+bool NodeFinder::Scratch::advance(Slice& slice) {
+  while (step != Step::kEnded) {
+    const bool far = step == Step::kFar;
+    const auto ended = far ? far_search.advance(step_budget, slice, search, crossings)
+                           : search.advance(step_budget, slice, crossings);
+    if (!ended) return false;
+    nodes += far ? far_search.expanded() : search.expanded();
+    searched_cost = far ? far_search.cost() : search.cost();
+    end = *ended;
+    begin_step(next_step(end));
   }
-  return find_all(from, to, budget, path);
+  return true;
 }
 
-// Of all crossings; where none leads there, to the one that comes nearest.
-PathEnd NodeFinder::Scratch::find_all(const BlockPoint& from, const BlockPoint& to,
-                                      const SearchBudget& budget, Path& path) {
-  const PathEnd end = search.find(from, to, what_is_left(budget, path), crossings);
-  path.nodes += search.expanded();
-  path.searched_cost = search.cost();
-  return end;
-}
-
-// To the reachable place that comes nearest to one that is not. A place that seems near may itself
-// be cut off.
-PathEnd NodeFinder::Scratch::find_nearest(const BlockPoint& from, const BlockPoint& to,
-                                          const SearchBudget& budget, Path& path) {
+// At the reachable place that comes nearest to a goal that obstacles have cut off. A place that
+// seems near may itself be cut off.
+void NodeFinder::Scratch::aim_at_nearest() {
   constexpr int kMaxPockets = 16;
-  const Vec3d goal = position(view, to);
-  if (islands.close(view, from.block, to.block, NodeIsland::Direction::kOut))
-    return find_all(from, to, budget, path);
+  if (islands.close(view, start.block, goal.block, NodeIsland::Direction::kOut)) {
+    return begin_step(Step::kAll);
+  }
   for (int i = 0; i < kMaxPockets; ++i) {
     const auto is_cut_off = [&](uint32_t block) { return islands.holds(block); };
-    const BlockPoint last = shared.parts.nearest(view, from, goal, reached, is_cut_off);
-    if (islands.close(view, last.block, from.block, NodeIsland::Direction::kIn)) continue;
-    const PathEnd end = find(from, last, budget, path);
-    if (end == PathEnd::kReached) nearest = last;
-    if (end != PathEnd::kUnreachable) return end;
-    break;
+    const BlockPoint last =
+        shared.parts.nearest(view, start, position(view, goal), reached, is_cut_off);
+    if (islands.close(view, last.block, start.block, NodeIsland::Direction::kIn)) continue;
+    nearest = last;
+    aims_at_nearest = true;
+    return begin_search();
   }
-  return find_all(from, to, budget, path);
+  begin_step(Step::kAll);
 }
 
 namespace {
@@ -221,7 +248,9 @@ class PathBuilder {
 
   void cross(const PulledCrossing& crossing) {
     const graph::NodePortal portal = view_.portal(crossing.crossing.portal);
-    path_.cost += graph::portal_length(portal, crossing.out_at, crossing.in_at);
+    path_.cost +=
+        view_.cost_through(crossing.crossing.portal, portal, crossing.out_at, crossing.in_at);
+    const bool is_link = view_.is_link(crossing.crossing.portal);
     const bool same_patch =
         view_.block(crossing.out.block).patch == view_.block(crossing.in.block).patch;
     if (same_patch && !portal.over_hole) {
@@ -229,7 +258,7 @@ class PathBuilder {
       path_.node_places.back().node1 = node_of(crossing.in) + 1;
     } else {
       if (portal.kind == LinkKind::kDrop) add_over(crossing.in_at);
-      add(crossing.in, SegmentKind::kCross);
+      add(crossing.in, is_link ? SegmentKind::kOffMesh : SegmentKind::kCross);
     }
     last_ = crossing.in;
     if (portal.inside) return;
@@ -351,6 +380,15 @@ Blocker blocker_towards(const NodeView& view, const BlockPoint& from, Vec3d goal
     }
   }
   return found;
+}
+
+// The parameters of a point in the patch of its tile.
+std::pair<double, double> in_tile(world::GroundPoint at) {
+  const auto along = [](int64_t unit) {
+    return (static_cast<double>(unit & (64 * world::kUnitsPerCell - 1)) + 0.5) /
+           (64 * world::kUnitsPerCell);
+  };
+  return {along(at.x), along(at.z)};
 }
 
 // Calls visit(block, s, t) for the parts and blocks of level tiles that may have a point no farther
@@ -521,11 +559,7 @@ NodePlace NodeFinder::find_place(Vec3d position, double search_radius) const {
     if (const uint32_t patch = mesh.patch_of_level(place.level1 - 1); patch != graph::kNoNode) {
       const world::GroundPoint at =
           world::to_ground(*data_of(world), place.position.x, place.position.z);
-      const auto along = [](int64_t unit) {
-        return (static_cast<double>(unit & (64 * world::kUnitsPerCell - 1)) + 0.5) /
-               (64 * world::kUnitsPerCell);
-      };
-      const double s = along(at.x), t = along(at.z);
+      const auto [s, t] = in_tile(at);
       const uint32_t block = mesh.block_at(patch, s, t);
       under = block == graph::kNoNode ? graph::kNoNode : changes.part_at(block, s, t);
       if (under != graph::kNoNode) consider(under, s, t, 0);
@@ -548,6 +582,34 @@ NodePlace NodeFinder::find_place(Vec3d position, double search_radius) const {
 
 ChangeId NodeFinder::add_obstacle(Solid solid) { return scratch_->changes.add(std::move(solid)); }
 
+Result<ChangeId> NodeFinder::add_area(const Prism& prism, uint8_t kind) {
+  if (auto ok = check_area(kind); !ok) return ok.error();
+  if (auto ok = check_prism(prism); !ok) return ok.error();
+  return scratch_->changes.add_area(prism, kind);
+}
+
+Result<void> NodeFinder::set_area_cost(uint8_t kind, double cost) {
+  if (auto ok = check_area_cost(kind, cost); !ok) return ok;
+  scratch_->changes.set_area_cost(kind, cost);
+  return {};
+}
+
+Result<ChangeId> NodeFinder::add_off_mesh_link(const OffMeshLink& link) {
+  if (auto ok = check_link(link); !ok) return ok.error();
+  const auto end_of = [&](const Place& place, const NodePlace& on_nodes) {
+    const BlockPoint at = on_nodes ? state_->block_of(on_nodes) : state_->block_of(place);
+    return NodeChanges::LinkEnd{at.block, at.s, at.t};
+  };
+  const NodeChanges::Link added{.from = end_of(link.from, link.from_on_nodes),
+                                .to = end_of(link.to, link.to_on_nodes),
+                                .cost = link.cost,
+                                .two_way = link.two_way};
+  if (added.from.block == graph::kNoNode || added.to.block == graph::kNoNode) {
+    return Error{Errc::kBadInput, "off-mesh link: an end is no place of the class"};
+  }
+  return scratch_->changes.add_link(added);
+}
+
 bool NodeFinder::remove(ChangeId change) {
   return scratch_->changes.set_active(change, false, true);
 }
@@ -555,80 +617,140 @@ bool NodeFinder::set_active(ChangeId change, bool active) {
   return scratch_->changes.set_active(change, active, false);
 }
 
+BlockPoint NodeFinder::Shared::block_of(const NodePlace& place) const {
+  BlockPoint at{graph::kNoNode, place.s, place.t};
+  if (!place || place.node1 > mesh.nodes().node_count()) return at;
+  if (!(place.s >= 0 && place.s <= 1 && place.t >= 0 && place.t <= 1)) return at;
+  at.block = mesh.block_at(mesh.patch_of_node(place.node1 - 1), place.s, place.t);
+  // On the border of a cell the other cell may be meant.
+  if (at.block == graph::kNoNode || mesh.blocks()[at.block].node != place.node1 - 1) {
+    const uint32_t own = block_around(mesh, place.node1 - 1, place.s, place.t,
+                                      [](const graph::NodeBlock&) { return true; });
+    if (own != graph::kNoNode) {
+      at.block = own;
+      return at;
+    }
+    const NodeInfo info = mesh.nodes().node(place.node1 - 1);
+    const double side = 1.0 / (1 << info.block_level), in = 1e-9;
+    const double s = std::clamp(place.s, info.s * side + in, (info.s + 1) * side - in);
+    const double t = std::clamp(place.t, info.t * side + in, (info.t + 1) * side - in);
+    const uint32_t other = mesh.block_at(mesh.patch_of_node(place.node1 - 1), s, t);
+    if (other != graph::kNoNode && std::fabs(s - place.s) + std::fabs(t - place.t) < 1e-6) {
+      at.block = other;
+    }
+  }
+  return at;
+}
+
+BlockPoint NodeFinder::Shared::block_of(const Place& place) const {
+  const auto at = world::ground_point(*data_of(data_of(mesh.nodes())->world), place);
+  const uint32_t patch = at ? mesh.patch_of_level(place.level1 - 1) : graph::kNoNode;
+  if (patch == graph::kNoNode) return {};
+  const auto [s, t] = in_tile(*at);
+  return {mesh.block_at(patch, s, t), s, t};
+}
+
+BlockPoint NodeFinder::Scratch::locate(const NodePlace& place) const {
+  BlockPoint at = shared.block_of(place);
+  if (at.block != graph::kNoNode) at.block = changes.part_at(at.block, at.s, at.t);
+  return at;
+}
+
+bool NodeFinder::is_free(const NodePlace& place) const {
+  scratch_->update();
+  return scratch_->locate(place).block != graph::kNoNode;
+}
+
 void NodeFinder::find(const NodePlace& from, const NodePlace& to, Path& path, double spacing,
                       const SearchBudget& budget) {
+  begin(from, to, spacing, budget);
+  Slice all;
+  advance(all, path);
+}
+
+void NodeFinder::begin(const NodePlace& from, const NodePlace& to, double spacing,
+                       const SearchBudget& budget) {
   THRONG_ASSERT(spacing > 0);
-  const graph::NodeMesh& mesh = state_->mesh;
-  reset(path);
-  const auto block_of = [&](const NodePlace& place) {
-    BlockPoint at{graph::kNoNode, place.s, place.t};
-    if (!place || place.node1 > mesh.nodes().node_count()) return at;
-    if (!(place.s >= 0 && place.s <= 1 && place.t >= 0 && place.t <= 1)) return at;
-    at.block = mesh.block_at(mesh.patch_of_node(place.node1 - 1), place.s, place.t);
-    // On the border of a cell the other cell may be meant.
-    if (at.block == graph::kNoNode || mesh.blocks()[at.block].node != place.node1 - 1) {
-      const uint32_t own = block_around(mesh, place.node1 - 1, place.s, place.t,
-                                        [](const graph::NodeBlock&) { return true; });
-      if (own != graph::kNoNode) {
-        at.block = own;
-        return at;
-      }
-      const NodeInfo info = mesh.nodes().node(place.node1 - 1);
-      const double side = 1.0 / (1 << info.block_level), in = 1e-9;
-      const double s = std::clamp(place.s, info.s * side + in, (info.s + 1) * side - in);
-      const double t = std::clamp(place.t, info.t * side + in, (info.t + 1) * side - in);
-      const uint32_t other = mesh.block_at(mesh.patch_of_node(place.node1 - 1), s, t);
-      if (other != graph::kNoNode && std::fabs(s - place.s) + std::fabs(t - place.t) < 1e-6) {
-        at.block = other;
-      }
-    }
-    return at;
-  };
   Scratch& scratch = *scratch_;
   scratch.update();
   const NodeView& view = scratch.view;
-  const auto part_of = [&](BlockPoint at) {
-    if (at.block != graph::kNoNode) at.block = scratch.changes.part_at(at.block, at.s, at.t);
-    return at;
-  };
-  const BlockPoint start = part_of(block_of(from)), goal = part_of(block_of(to));
-  if (start.block == graph::kNoNode || goal.block == graph::kNoNode) return;
-  state_->parts.reach(view.base_of(start.block), scratch.reached);
-  bool reachable = scratch.reached.holds(state_->parts.of_block(view.base_of(goal.block)));
+  const BlockPoint start = scratch.locate(from), goal = scratch.locate(to);
+  scratch.start = start;
+  scratch.goal = goal;
   scratch.nearest.reset();
+  scratch.goal_at = to.feet;
+  scratch.spacing = spacing;
+  scratch.budget = budget;
+  scratch.aims_at_nearest = false;
+  scratch.step = Scratch::Step::kEnded;
+  scratch.end = PathEnd::kNoPlace;
+  scratch.nodes = scratch.taken = 0;
+  scratch.searched_cost = 0;
+  scratch.crossings.clear();
+  if (start.block == graph::kNoNode || goal.block == graph::kNoNode) return;
+  // Parts and the overlay do not know links.
+  if (view.has_links()) {
+    scratch.reachable = true;
+    return scratch.begin_step(Scratch::Step::kAll);
+  }
+  const NodeParts& parts = state_->parts;
+  parts.reach(view.base_of(start.block), scratch.reached);
+  scratch.reachable = scratch.reached.holds(parts.of_block(view.base_of(goal.block)));
   if (view.is_as_baked()) {
-    if (!reachable) {
-      const BlockPoint crossing = state_->parts.nearest(view, start, to.feet, scratch.reached,
-                                                        [](uint32_t) { return false; });
+    if (!scratch.reachable) {
+      const BlockPoint crossing =
+          parts.nearest(view, start, to.feet, scratch.reached, [](uint32_t) { return false; });
       scratch.nearest = nearest_place(
           view, state_->squares, crossing, to.feet,
-          [&](uint32_t block) { return scratch.reached.holds(state_->parts.of_block(block)); });
+          [&](uint32_t block) { return scratch.reached.holds(parts.of_block(block)); });
     }
-    path.end = scratch.find(start, scratch.nearest.value_or(goal), budget, path);
-  } else {
-    // If no obstacle blocks, parts decide what is reachable.
-    scratch.islands.clear(view);
-    reachable = reachable &&
-                !scratch.islands.close(view, goal.block, start.block, NodeIsland::Direction::kIn);
-    path.end = reachable ? scratch.find(start, goal, budget, path)
-                         : scratch.find_nearest(start, goal, budget, path);
-    reachable = reachable && path.end == PathEnd::kReached;
+    return scratch.begin_search();
   }
+  // If no obstacle blocks, parts decide what is reachable.
+  scratch.islands.clear(view);
+  scratch.reachable = scratch.reachable && !scratch.islands.close(view, goal.block, start.block,
+                                                                  NodeIsland::Direction::kIn);
+  if (scratch.reachable) return scratch.begin_search();
+  scratch.aim_at_nearest();
+}
+
+bool NodeFinder::advance(Slice& slice, Path& path) {
+  Scratch& scratch = *scratch_;
+  const uint64_t before = slice.left;
+  reset(path);
+  if (!scratch.advance(slice)) {
+    scratch.taken += before - slice.left;
+    path.nodes = scratch.taken;
+    path.end = PathEnd::kBudgetExhausted;
+    path.spent = SpentBudget::kNodes;
+    return false;
+  }
+  give(path);
+  return true;
+}
+
+void NodeFinder::give(Path& path) {
+  Scratch& scratch = *scratch_;
+  const NodeView& view = scratch.view;
+  path.end = scratch.end;
+  path.nodes = scratch.nodes;
+  path.searched_cost = scratch.searched_cost;
+  if (path.end == PathEnd::kNoPlace) return;
   if (path.end == PathEnd::kBudgetExhausted) {
-    path.spent = budget.spent(path.nodes);
+    path.spent = scratch.budget.spent(path.nodes);
     return;
   }
-  BlockPoint last = goal;
-  if (!reachable) {
-    last = scratch.crossings.empty() ? start : ends_of(view, scratch.crossings.back()).in;
-    last = scratch.nearest.value_or(
-        nearest_place(view, state_->squares, last, to.feet, [](uint32_t) { return false; }));
+  BlockPoint last = scratch.goal;
+  if (!scratch.reachable || path.end != PathEnd::kReached) {
+    last = scratch.crossings.empty() ? scratch.start : ends_of(view, scratch.crossings.back()).in;
+    last = scratch.nearest.value_or(nearest_place(view, state_->squares, last, scratch.goal_at,
+                                                  [](uint32_t) { return false; }));
     path.end = PathEnd::kUnreachable;
-    path.blocked_by = blocker_towards(view, last, to.feet);
+    path.blocked_by = blocker_towards(view, last, scratch.goal_at);
   }
-  scratch.pull.pull(start, last, scratch.crossings, scratch.pulled);
-  PathBuilder path_builder(view, scratch.cost, spacing, path);
-  path_builder.begin(start);
+  scratch.pull.pull(scratch.start, last, scratch.crossings, scratch.pulled);
+  PathBuilder path_builder(view, scratch.cost, scratch.spacing, path);
+  path_builder.begin(scratch.start);
   for (const PulledCrossing& crossing : scratch.pulled) {
     path_builder.go_on(crossing.out);
     path_builder.cross(crossing);

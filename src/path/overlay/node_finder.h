@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "path/edits/solid.h"
+#include "path/ground/slice.h"
 #include "throng/path.h"
 #include "throng/surface.h"
 
@@ -51,6 +52,15 @@ class NodeFinder {
   /// goal, or obstacles are up, to the nearest place in the block whose border comes nearest.
   void find(const NodePlace& from, const NodePlace& to, Path& path, double spacing = 0.25,
             const SearchBudget& budget = {});
+  /// The same in parts: call begin, then advance until it returns true; `path` is then that of
+  /// find, and before it counts what was expanded. Finding the places, the nearest one to a goal
+  /// that is not connected, and string pulling are each in one go and not counted. After a change
+  /// or another query, begin again.
+  void begin(const NodePlace& from, const NodePlace& to, double spacing = 0.25,
+             const SearchBudget& budget = {});
+  bool advance(Slice& slice, Path& path);
+  /// Could a path begin or end there now?
+  [[nodiscard]] bool is_free(const NodePlace& place) const;
 
   /// Puts up an obstacle: no path leads where the body could touch the solid, whatever its axis. Of
   /// triangles only these are solid: a closed shell is hollow.
@@ -59,8 +69,18 @@ class NodeFinder {
   /// the overlay cells that the obstacle touches. Holds for this finder and for copies made later.
   /// Time: here what lies within a body's size of it; at the next query all obstacles that are up.
   ChangeId add_obstacle(Solid solid);
-  /// Removes an obstacle, or switches it off and on, as a door; paths are then the same as without
-  /// it. False if there is none of this id.
+  /// Gives an area a kind: squares of level tiles whose middle lies in the prism, and of curved
+  /// ground of about a quarter of a metre. A metre on them costs what the kind does; infinity
+  /// closes them. Where several overlap, the last one counts. Fails with kBadInput or kBadConfig.
+  /// Time: the blocks that it touches.
+  [[nodiscard]] Result<ChangeId> add_area(const Prism& prism, uint8_t kind);
+  [[nodiscard]] Result<void> set_area_cost(uint8_t kind, double cost);
+  /// Adds an off-mesh link between places of the class as they were baked; while an obstacle blocks
+  /// one, it is not in force. While one is in force, all crossings are searched, without the
+  /// overlay, because links may join any of its cells. Fails with kBadInput.
+  [[nodiscard]] Result<ChangeId> add_off_mesh_link(const OffMeshLink& link);
+  /// Removes a change, or switches it off and on, as a door; paths are then the same as without it.
+  /// False if there is none of this id.
   bool remove(ChangeId change);
   bool set_active(ChangeId change, bool active);
 
@@ -70,6 +90,7 @@ class NodeFinder {
   struct Shared;
   struct Scratch;
   explicit NodeFinder(std::shared_ptr<const Shared> shared);
+  void give(Path& path);
 
   std::shared_ptr<const Shared> state_;
   std::unique_ptr<Scratch> scratch_;

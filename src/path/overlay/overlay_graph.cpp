@@ -35,7 +35,7 @@ void OverlayGraph::set(std::span<const uint32_t> blocks, bool keep) {
       const graph::NodePortal portal = view_->portal(crossing.portal);
       const auto [out, in] = ends_of(portal, crossing.backward);
       Arc arc{crossing, out, in, position(*view_, out), position(*view_, in)};
-      arc.through = graph::portal_length(portal, arc.out_at, arc.in_at);
+      arc.through = view_->cost_through(crossing.portal, portal, arc.out_at, arc.in_at);
       arc.into = place_of(in.block);
       arcs_.push_back(arc);
     });
@@ -74,10 +74,12 @@ void OverlayGraph::reach(uint32_t arc, double cost) {
   open_.push({cost, arc});
 }
 
-bool OverlayGraph::next(Open& top) {
-  while (!open_.empty()) {
+// False if nothing is left, of the slice or to expand.
+bool OverlayGraph::next(Open& top, Slice& slice) {
+  while (!open_.empty() && !slice.is_empty()) {
     top = open_.pop();
     if (top.cost > cost_[top.arc]) continue;
+    slice.take();
     ++expanded_;
     return true;
   }
@@ -85,6 +87,20 @@ bool OverlayGraph::next(Open& top) {
 }
 
 const std::vector<double>& OverlayGraph::run(const BlockPoint& from) {
+  begin(from);
+  Slice all;
+  advance(all);
+  return cost_;
+}
+
+const std::vector<double>& OverlayGraph::run_back(const BlockPoint& to) {
+  begin_back(to);
+  Slice all;
+  advance_back(all);
+  return cost_;
+}
+
+void OverlayGraph::begin(const BlockPoint& from) {
   cost_.assign(arcs_.size(), kNoPath);
   open_.clear();
   const uint32_t start = place_of(from.block);
@@ -92,7 +108,10 @@ const std::vector<double>& OverlayGraph::run(const BlockPoint& from) {
   for (uint32_t w = first_arc_[start]; w < first_arc_[start + 1]; ++w) {
     reach(w, piece(from, at, arcs_[w].out, arcs_[w].out_at) + arcs_[w].through);
   }
-  for (Open top; next(top);) {
+}
+
+bool OverlayGraph::advance(Slice& slice) {
+  for (Open top; next(top, slice);) {
     const Arc& arc = arcs_[top.arc];
     if (arc.into == graph::kNoNode) continue;
     const uint32_t first = first_arc_[arc.into], last = first_arc_[arc.into + 1];
@@ -103,10 +122,10 @@ const std::vector<double>& OverlayGraph::run(const BlockPoint& from) {
       reach(w, top.cost + along + arcs_[w].through);
     }
   }
-  return cost_;
+  return open_.empty();
 }
 
-const std::vector<double>& OverlayGraph::run_back(const BlockPoint& to) {
+void OverlayGraph::begin_back(const BlockPoint& to) {
   cost_.assign(arcs_.size(), kNoPath);
   open_.clear();
   goal_ = to;
@@ -116,7 +135,10 @@ const std::vector<double>& OverlayGraph::run_back(const BlockPoint& to) {
     const Arc& arc = arcs_[in_of_[k]];
     reach(in_of_[k], piece(arc.in, arc.in_at, goal_, goal_at_));
   }
-  for (Open top; next(top);) {
+}
+
+bool OverlayGraph::advance_back(Slice& slice) {
+  for (Open top; next(top, slice);) {
     const Arc& arc = arcs_[top.arc];
     const uint32_t from = place_of(arc.out.block);
     for (uint32_t k = first_in_[from]; k < first_in_[from + 1]; ++k) {
@@ -126,7 +148,7 @@ const std::vector<double>& OverlayGraph::run_back(const BlockPoint& to) {
             piece(before.in, before.in_at, arc.out, arc.out_at) + arc.through + top.cost);
     }
   }
-  return cost_;
+  return open_.empty();
 }
 
 double OverlayGraph::rest(const BlockPoint& from) const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "path/ground/open_list.h"
+#include "path/ground/slice.h"
 #include "path/surface/node_search.h"
 
 /// The arcs within one overlay cell of a mesh, with costs from one point or to one point.
@@ -40,6 +41,12 @@ class OverlayGraph {
   const std::vector<double>& run(const BlockPoint& from);
   /// The minimum cost from the end of each arc to a point of the overlay cell.
   const std::vector<double>& run_back(const BlockPoint& to);
+  /// Both in parts: begin one of them, then advance until it returns true; then costs() are known.
+  void begin(const BlockPoint& from);
+  void begin_back(const BlockPoint& to);
+  bool advance(Slice& slice);
+  bool advance_back(Slice& slice);
+  [[nodiscard]] const std::vector<double>& costs() const { return cost_; }
   /// After run_back(): from a point of the overlay cell.
   [[nodiscard]] double rest(const BlockPoint& from) const;
   /// Arcs expanded since set().
@@ -60,7 +67,7 @@ class OverlayGraph {
     return (*piece_)(from.block, from.s, from.t, at, to.s, to.t, to_at).cost;
   }
   void reach(uint32_t arc, double cost);
-  bool next(Open& top);
+  bool next(Open& top, Slice& slice);
 
   const NodeView* view_;
   const PieceCost* piece_;

@@ -8,7 +8,7 @@
 // A* over entrances, then a search of each overlay cell crossed. Source: [BMS04], [DGPW11].
 namespace throng::path {
 
-void OverlaySearch::begin() {
+void OverlaySearch::begin_states() {
   states_.begin(2 * overlay_->entrances().size());
   open_.clear();
 }
@@ -19,7 +19,7 @@ void OverlaySearch::reach(uint32_t entry, uint32_t parent, double cost, uint8_t 
   if (!(cost < kNoPath) || (states_.is_reached(state) && state.cost <= cost)) return;
   if (now_.is_closed(entry)) return;
   state = {states_.search(), parent, cost, overlay_level, false};
-  open_.push({cost + length(goal - now_.at(entry)), entry});
+  open_.push({cost + length(goal - now_.at(entry)) * view_->min_factor(), entry});
 }
 
 bool OverlaySearch::next(Open& top) {
@@ -35,71 +35,97 @@ bool OverlaySearch::next(Open& top) {
 PathEnd OverlaySearch::find(const BlockPoint& from, const BlockPoint& to,
                             const SearchBudget& budget, NodeSearch& blocks,
                             std::vector<Crossing>& crossings) {
-  crossings.clear();
+  begin(from, to);
+  Slice all;
+  return *advance(budget, all, blocks, crossings);
+}
+
+void OverlaySearch::begin(const BlockPoint& from, const BlockPoint& to) {
+  const std::vector<uint32_t>& of_block = overlay_->of_block();
+  from_ = from;
+  to_ = to;
+  goal_ = position(*view_, to);
+  start_cell_ = of_block[view_->base_of(from.block)];
+  goal_cell_ = of_block[view_->base_of(to.block)];
   expanded_ = 0;
   cost_ = 0;
-  if (const PathEnd end = over_entrances(from, to, budget); end != PathEnd::kReached) return end;
-  const std::vector<uint32_t>& of_block = overlay_->of_block();
-  if (first_ == kNoEntry)
-    return within(of_block[view_->base_of(from.block)], from, to, budget, blocks, crossings);
-  for (size_t overlay_level = overlay_->overlay_levels().size(); --overlay_level > 0;) {
+  stretches_.clear();
+  first_ = last_ = kNoEntry;
+  step_ = Step::kBack;
+  graph_.set(now_.blocks_of(goal_cell_), false);
+  graph_.begin_back(to);
+}
+
+std::optional<PathEnd> OverlaySearch::advance(const SearchBudget& budget, Slice& slice,
+                                              NodeSearch& blocks,
+                                              std::vector<Crossing>& crossings) {
+  if (step_ < Step::kRefine) {
+    crossings.clear();
+    const auto end = over_entrances(budget, slice);
+    if (end != PathEnd::kReached) return end;
+    overlay_level_ = overlay_->overlay_levels().size() - 1;
+    index_ = 0;
+    is_begun_ = false;
     finer_.clear();
-    for (const Stretch& stretch : stretches_) {
-      if (stretch.overlay_level < overlay_level) {
-        finer_.push_back(stretch);
-      } else if (!refine(stretch)) {
-        return PathEnd::kUnreachable;  // Never: an overlay level is made from the one below.
-      }
-    }
-    stretches_.swap(finer_);
+    step_ = Step::kRefine;
   }
-  BlockPoint at = from;
-  joints_.clear();
-  const auto go_to = [&](uint32_t entry) {
+  if (step_ == Step::kRefine) {
+    const auto end = refine_all(slice);
+    if (end != PathEnd::kReached) return end;
+    index_ = 0;
+    is_begun_ = false;
+    at_ = from_;
+    joints_.clear();
+    step_ = Step::kJoin;
+  }
+  if (step_ == Step::kJoin) {
+    const auto end = join(budget, slice, blocks, crossings);
+    if (end != PathEnd::kReached || first_ == kNoEntry) return end;
+    straightened_.clear();
+    cost_ = 0;
+    index_ = first_crossing_ = 0;
+    is_begun_ = false;
+    at_ = from_;
+    step_ = Step::kStraighten;
+  }
+  if (!straighten(budget, slice, blocks, crossings)) return {};
+  return PathEnd::kReached;
+}
+
+// To the start of each entrance of the path, over it, and at last to the goal.
+std::optional<PathEnd> OverlaySearch::join(const SearchBudget& budget, Slice& slice,
+                                           NodeSearch& blocks, std::vector<Crossing>& crossings) {
+  const size_t entries = first_ == kNoEntry ? 0 : stretches_.size() + 1;
+  for (; index_ < entries; ++index_) {
+    const uint32_t entry = index_ == 0 ? first_ : stretches_[index_ - 1].to;
     const Crossing crossing = now_.crossing(entry);
     const auto [out, in] = ends_of(*view_, crossing);
-    const PathEnd end =
-        within(of_block[view_->base_of(at.block)], at, out, budget, blocks, crossings);
+    const auto end = within(out, budget, slice, blocks, crossings);
     if (end != PathEnd::kReached) return end;
     joints_.push_back(crossings.size());
     crossings.push_back(crossing);
-    cost_ +=
-        graph::portal_length(view_->portal(crossing.portal), position(*view_, out), now_.at(entry));
-    at = in;
-    return end;
-  };
-  PathEnd end = go_to(first_);
-  for (size_t i = 0; i < stretches_.size() && end == PathEnd::kReached; ++i) {
-    end = go_to(stretches_[i].to);
+    cost_ += view_->cost_through(crossing.portal, view_->portal(crossing.portal),
+                                 position(*view_, out), now_.at(entry));
+    at_ = in;
   }
-  if (end == PathEnd::kReached)
-    end = within(of_block[view_->base_of(to.block)], at, to, budget, blocks, crossings);
-  if (end == PathEnd::kReached) straighten(from, to, budget, blocks, crossings);
-  return end;
+  return within(to_, budget, slice, blocks, crossings);
 }
 
 // From the middle of one overlay cell to the middle of the next, the path is searched for again,
-// without having to pass the entrance between them.
-void OverlaySearch::straighten(const BlockPoint& from, const BlockPoint& to,
-                               const SearchBudget& budget, NodeSearch& blocks,
+// without having to pass the entrance between them. False: the slice is spent.
+bool OverlaySearch::straighten(const SearchBudget& budget, Slice& slice, NodeSearch& blocks,
                                std::vector<Crossing>& crossings) {
-  straightened_.clear();
-  cost_ = 0;
-  BlockPoint begin = from;
-  size_t first = 0;  // of the stretch that is replaced
-  for (size_t i = 0; i < joints_.size(); ++i) {
-    const bool ends = i + 1 == joints_.size();
-    const size_t last = ends ? crossings.size() : (joints_[i] + joints_[i + 1]) / 2;
-    if (!ends && last == joints_[i]) continue;  // No middle: over both entrances at once.
-    const BlockPoint end = ends ? to : ends_of(*view_, crossings[last]).out;
-    const double known = cost_of(begin, end, crossings.data() + first, crossings.data() + last);
+  for (; index_ < joints_.size(); ++index_) {
+    const bool ends = index_ + 1 == joints_.size();
+    const size_t last = ends ? crossings.size() : (joints_[index_] + joints_[index_ + 1]) / 2;
+    if (!ends && last == joints_[index_]) continue;  // No middle: over both entrances at once.
+    const BlockPoint end = ends ? to_ : ends_of(*view_, crossings[last]).out;
+    const size_t first = first_crossing_;
+    const double known = cost_of(at_, end, crossings.data() + first, crossings.data() + last);
     constexpr double kGain = 1e-6;  // Anything less is rounding.
-    SearchBudget left = budget;
-    left.max_nodes = budget.max_nodes - std::min(budget.max_nodes, expanded_);
-    const bool cheaper =
-        blocks.find(begin, end, left, piece_, {}, known * (1 - kGain)) == PathEnd::kReached;
-    expanded_ += blocks.expanded();
-    if (cheaper) {
+    const auto found = find_piece(at_, end, {}, known * (1 - kGain), budget, slice, blocks);
+    if (!found) return false;
+    if (found == PathEnd::kReached) {
       straightened_.insert(straightened_.end(), piece_.begin(), piece_.end());
       cost_ += blocks.cost();
     } else {
@@ -110,12 +136,13 @@ void OverlaySearch::straighten(const BlockPoint& from, const BlockPoint& to,
     if (ends) break;
     straightened_.push_back(crossings[last]);
     const auto [out, in] = ends_of(*view_, crossings[last]);
-    cost_ += graph::portal_length(view_->portal(crossings[last].portal), position(*view_, out),
-                                  position(*view_, in));
-    begin = in;
-    first = last + 1;
+    cost_ += view_->cost_through(crossings[last].portal, view_->portal(crossings[last].portal),
+                                 position(*view_, out), position(*view_, in));
+    at_ = in;
+    first_crossing_ = last + 1;
   }
   crossings.swap(straightened_);
+  return true;
 }
 
 double OverlaySearch::cost_of(const BlockPoint& from, const BlockPoint& to, const Crossing* first,
@@ -132,7 +159,7 @@ double OverlaySearch::cost_of(const BlockPoint& from, const BlockPoint& to, cons
     const auto [out, in] = ends_of(*view_, *first);
     go(out);
     const Vec3d beyond = position(*view_, in);
-    cost += graph::portal_length(view_->portal(first->portal), here, beyond);
+    cost += view_->cost_through(first->portal, view_->portal(first->portal), here, beyond);
     at = in;
     here = beyond;
   }
@@ -140,81 +167,33 @@ double OverlaySearch::cost_of(const BlockPoint& from, const BlockPoint& to, cons
   return cost;
 }
 
-// A* over entries. An overlay cell that does not hold the goal is crossed as one of the highest
-// overlay level whose border the search crossed to enter it.
-PathEnd OverlaySearch::over_entrances(const BlockPoint& from, const BlockPoint& to,
-                                      const SearchBudget& budget) {
-  const auto& overlay_levels = overlay_->overlay_levels();
-  const std::vector<uint32_t>& of_block = overlay_->of_block();
-  const uint32_t start_cell = of_block[view_->base_of(from.block)],
-                 goal_cell = of_block[view_->base_of(to.block)];
-  const Vec3d goal = position(*view_, to);
-  stretches_.clear();
-  // The remaining cost from the entries of the goal's overlay cell, and from the start if it is in
-  // that cell too.
-  graph_.set(now_.blocks_of(goal_cell), false);
-  graph_.run_back(to);
-  const auto goal_entries = overlay_levels.front().entries_of(goal_cell);
-  rest_.clear();
-  for (const uint32_t entry : goal_entries) {
-    if (now_.is_closed(entry)) {
-      rest_.push_back(kNoPath);
-      continue;
-    }
-    const Crossing crossing = now_.crossing(entry);
-    const bool closed = crossing.backward && view_->portal(crossing.portal).one_way;
-    rest_.push_back(closed ? kNoPath : graph_.rest(ends_of(*view_, crossing).in));
+// An overlay cell that does not hold the goal is crossed as one of the highest overlay level whose
+// border the search crossed to enter it.
+std::optional<PathEnd> OverlaySearch::over_entrances(const SearchBudget& budget, Slice& slice) {
+  if (step_ == Step::kBack) {
+    if (!graph_.advance_back(slice)) return {};
+    note_rest();
+    expanded_ += graph_.expanded();
+    graph_.set(now_.blocks_of(start_cell_), false);
+    graph_.begin(from_);
+    step_ = Step::kOut;
   }
-  double found = start_cell == goal_cell ? graph_.rest(from) : kNoPath;
-  first_ = last_ = kNoEntry;
-  expanded_ += graph_.expanded();
-  graph_.set(now_.blocks_of(start_cell), false);
-  const std::vector<double>& costs = graph_.run(from);
-  expanded_ += graph_.expanded();
-  if (budget.is_spent(expanded_)) return PathEnd::kBudgetExhausted;
-  begin();
-  for (const uint32_t entry : overlay_levels.front().entries_of(start_cell)) {
-    const uint32_t out = entry ^ 1;
-    if (now_.is_closed(out)) continue;
-    const uint32_t arc = graph_.arc_of(now_.crossing(out));
-    if (arc != graph::kNoNode) reach(out, kNoEntry, costs[arc], 0, goal);
+  if (step_ == Step::kOut) {
+    if (!graph_.advance(slice)) return {};
+    expanded_ += graph_.expanded();
+    if (budget.is_spent(expanded_)) return PathEnd::kBudgetExhausted;
+    begin_entrances();
+    step_ = Step::kEntrances;
   }
-  // By overlay level: the cell of the goal.
-  std::array<uint32_t, 32> holds_goal{};
-  uint32_t overlay_cell = goal_cell;
-  for (size_t k = 0; k < overlay_levels.size(); ++k) {
-    holds_goal[k] = overlay_cell;
-    if (k + 1 < overlay_levels.size()) overlay_cell = overlay_levels[k].above[overlay_cell];
-  }
-  for (Open top; next(top);) {
-    if (top.estimate >= found) break;
+  while (!open_.empty()) {
+    if (slice.is_empty()) return {};
+    Open top;
+    if (!next(top) || top.estimate >= found_) break;
+    slice.take();
     if (budget.is_spent(++expanded_, open_.used_bytes())) return PathEnd::kBudgetExhausted;
-    const uint32_t entry = top.entry;
-    const double cost = states_[entry].cost;
-    if (overlay_levels.front().of_entry[entry] == goal_cell) {
-      const double all = cost + rest_[overlay_levels.front().place[entry]];
-      if (all < found) {
-        found = all;
-        last_ = entry;
-      }
-    }
-    uint8_t overlay_level = overlay_->entrances()[entry / 2].overlay_level;
-    const auto is_opened = [&] {
-      const uint32_t through = overlay_levels[overlay_level].of_entry[entry];
-      return through == holds_goal[overlay_level] || now_.is_stale(overlay_level, through);
-    };
-    while (overlay_level > 0 && is_opened()) --overlay_level;
-    const bool is_stale =
-        now_.is_stale(overlay_level, overlay_levels[overlay_level].of_entry[entry]);
-    const auto through =
-        is_stale ? now_.costs_from(entry) : overlay_levels[overlay_level].costs_from(entry);
-    const auto others =
-        overlay_levels[overlay_level].entries_of(overlay_levels[overlay_level].of_entry[entry]);
-    for (size_t j = 0; j < others.size(); ++j) {
-      reach(others[j] ^ 1, entry, cost + double{through[j]}, overlay_level, goal);
-    }
+    expand(top.entry);
   }
-  if (!(found < kNoPath)) return PathEnd::kUnreachable;
+  if (!(found_ < kNoPath)) return PathEnd::kUnreachable;
   for (uint32_t entry = last_; entry != kNoEntry; entry = states_[entry].parent) {
     const State& state = states_[entry];
     first_ = entry;
@@ -224,18 +203,104 @@ PathEnd OverlaySearch::over_entrances(const BlockPoint& from, const BlockPoint& 
   return PathEnd::kReached;
 }
 
+// The remaining cost from the entries of the goal's overlay cell, and from the start if it is in
+// that cell too.
+void OverlaySearch::note_rest() {
+  rest_.clear();
+  for (const uint32_t entry : overlay_->overlay_levels().front().entries_of(goal_cell_)) {
+    if (now_.is_closed(entry)) {
+      rest_.push_back(kNoPath);
+      continue;
+    }
+    const Crossing crossing = now_.crossing(entry);
+    const bool closed = crossing.backward && view_->portal(crossing.portal).one_way;
+    rest_.push_back(closed ? kNoPath : graph_.rest(ends_of(*view_, crossing).in));
+  }
+  found_ = start_cell_ == goal_cell_ ? graph_.rest(from_) : kNoPath;
+}
+
+void OverlaySearch::begin_entrances() {
+  const auto& overlay_levels = overlay_->overlay_levels();
+  const std::vector<double>& costs = graph_.costs();
+  begin_states();
+  for (const uint32_t entry : overlay_levels.front().entries_of(start_cell_)) {
+    const uint32_t out = entry ^ 1;
+    if (now_.is_closed(out)) continue;
+    const uint32_t arc = graph_.arc_of(now_.crossing(out));
+    if (arc != graph::kNoNode) reach(out, kNoEntry, costs[arc], 0, goal_);
+  }
+  uint32_t overlay_cell = goal_cell_;
+  for (size_t k = 0; k < overlay_levels.size(); ++k) {
+    holds_goal_[k] = overlay_cell;
+    if (k + 1 < overlay_levels.size()) overlay_cell = overlay_levels[k].above[overlay_cell];
+  }
+}
+
+void OverlaySearch::expand(uint32_t entry) {
+  const auto& overlay_levels = overlay_->overlay_levels();
+  const double cost = states_[entry].cost;
+  if (overlay_levels.front().of_entry[entry] == goal_cell_) {
+    const double all = cost + rest_[overlay_levels.front().place[entry]];
+    if (all < found_) {
+      found_ = all;
+      last_ = entry;
+    }
+  }
+  uint8_t overlay_level = overlay_->entrances()[entry / 2].overlay_level;
+  const auto is_opened = [&] {
+    const uint32_t through = overlay_levels[overlay_level].of_entry[entry];
+    return through == holds_goal_[overlay_level] || now_.is_stale(overlay_level, through);
+  };
+  while (overlay_level > 0 && is_opened()) --overlay_level;
+  const bool is_stale = now_.is_stale(overlay_level, overlay_levels[overlay_level].of_entry[entry]);
+  const auto through =
+      is_stale ? now_.costs_from(entry) : overlay_levels[overlay_level].costs_from(entry);
+  const auto others =
+      overlay_levels[overlay_level].entries_of(overlay_levels[overlay_level].of_entry[entry]);
+  for (size_t j = 0; j < others.size(); ++j) {
+    reach(others[j] ^ 1, entry, cost + double{through[j]}, overlay_level, goal_);
+  }
+}
+
+// Stretches over overlay levels, from the highest down to the lowest.
+std::optional<PathEnd> OverlaySearch::refine_all(Slice& slice) {
+  for (; overlay_level_ > 0; --overlay_level_) {
+    for (; index_ < stretches_.size(); ++index_) {
+      const Stretch& stretch = stretches_[index_];
+      if (stretch.overlay_level < overlay_level_) {
+        finer_.push_back(stretch);
+        continue;
+      }
+      const std::optional<bool> found = refine(stretch, slice);
+      if (!found) return {};
+      // Never false: an overlay level is made from the one below.
+      if (!*found) return PathEnd::kUnreachable;
+    }
+    stretches_.swap(finer_);
+    finer_.clear();
+    index_ = 0;
+  }
+  return PathEnd::kReached;
+}
+
 // Adds the same stretch to `finer_`, through overlay cells of the level below.
-bool OverlaySearch::refine(const Stretch& stretch) {
+std::optional<bool> OverlaySearch::refine(const Stretch& stretch, Slice& slice) {
   const Overlay::OverlayLevel& overlay_level = overlay_->overlay_levels()[stretch.overlay_level];
   const Overlay::OverlayLevel& below =
       overlay_->overlay_levels()[stretch.overlay_level - size_t{1}];
   const auto finer = static_cast<uint8_t>(stretch.overlay_level - 1);
   const uint32_t overlay_cell = overlay_level.of_entry[stretch.from];
   const Vec3d goal = now_.at(stretch.to);
-  begin();
-  reach(stretch.from, kNoEntry, 0, 0, goal);
-  for (Open top; next(top);) {
-    if (top.entry == stretch.to) break;
+  if (!is_begun_) {
+    begin_states();
+    reach(stretch.from, kNoEntry, 0, 0, goal);
+    is_begun_ = true;
+  }
+  while (!open_.empty()) {
+    if (slice.is_empty()) return {};
+    Open top;
+    if (!next(top) || top.entry == stretch.to) break;
+    slice.take();
     ++expanded_;
     const double cost = states_[top.entry].cost;
     const auto through = below.costs_from(top.entry);
@@ -246,6 +311,7 @@ bool OverlaySearch::refine(const Stretch& stretch) {
       reach(out, top.entry, cost + double{through[j]}, finer, goal);
     }
   }
+  is_begun_ = false;
   if (!states_.is_reached(states_[stretch.to])) return false;
   const size_t first = finer_.size();
   for (uint32_t entry = stretch.to; entry != stretch.from; entry = states_[entry].parent) {
@@ -255,18 +321,29 @@ bool OverlaySearch::refine(const Stretch& stretch) {
   return true;
 }
 
-PathEnd OverlaySearch::within(uint32_t overlay_cell, const BlockPoint& from, const BlockPoint& to,
-                              const SearchBudget& budget, NodeSearch& blocks,
-                              std::vector<Crossing>& crossings) {
-  SearchBudget left = budget;
-  left.max_nodes = budget.max_nodes > expanded_ ? budget.max_nodes - expanded_ : 0;
-  const PathEnd end =
-      blocks.find(from, to, left, piece_, {overlay_->of_block().data(), overlay_cell});
+// From where the crossings lead to so far, within its overlay cell.
+std::optional<PathEnd> OverlaySearch::within(const BlockPoint& to, const SearchBudget& budget,
+                                             Slice& slice, NodeSearch& blocks,
+                                             std::vector<Crossing>& crossings) {
+  const std::vector<uint32_t>& of_block = overlay_->of_block();
+  const auto end = find_piece(at_, to, {of_block.data(), of_block[view_->base_of(at_.block)]},
+                              kNoPath, budget, slice, blocks);
+  if (end != PathEnd::kReached) return end;
+  crossings.insert(crossings.end(), piece_.begin(), piece_.end());
+  cost_ += blocks.cost();
+  return end;
+}
+
+std::optional<PathEnd> OverlaySearch::find_piece(const BlockPoint& from, const BlockPoint& to,
+                                                 const SearchBounds& within, double less_than,
+                                                 const SearchBudget& budget, Slice& slice,
+                                                 NodeSearch& blocks) {
+  if (!is_begun_) blocks.begin(from, to, within, less_than);
+  is_begun_ = true;
+  const auto end = blocks.advance(budget.after(expanded_), slice, piece_);
+  if (!end) return {};
+  is_begun_ = false;
   expanded_ += blocks.expanded();
-  if (end == PathEnd::kReached) {
-    crossings.insert(crossings.end(), piece_.begin(), piece_.end());
-    cost_ += blocks.cost();
-  }
   return end;
 }
 

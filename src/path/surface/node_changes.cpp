@@ -95,6 +95,10 @@ ChangeId NodeChanges::add(Solid solid) {
   for (size_t i = first_curved; i < near.size(); ++i) block_squares(solid, near[i], change);
   std::sort(near.begin(), near.end());
   block_pieces(solid, near, change);
+  return keep(std::move(change));
+}
+
+ChangeId NodeChanges::keep(Change change) {
   changes_.push_back(std::move(change));
   ++version_;
   active_.push_back(static_cast<ChangeId>(changes_.size()));
@@ -291,53 +295,45 @@ void NodeChanges::update() {
   cut_patches_.clear();
   parts_.clear();
   base_of_part_.clear();
+  area_of_part_.clear();
   portals_.clear();
   replaced_.clear();
   touched_.clear();
   place_of_touched_.clear();
-  std::vector<BlockedTile> tiles;
-  std::vector<BlockedSquare> squares;
   std::unordered_map<uint32_t, uint16_t> pieces;
-  std::unordered_map<uint32_t, size_t> place;
   for (const ChangeId id : active_) {
-    const Change& change = changes_[id - 1];
-    for (const BlockedTile& tile : change.tiles) {
-      const auto [at, is_new] = place.try_emplace(tile.patch, tiles.size());
-      if (is_new) tiles.push_back({tile.patch, {}});
-      for (size_t k = 0; k < 64; ++k) tiles[at->second].rows[k] |= tile.rows[k];
-    }
-    squares.insert(squares.end(), change.squares.begin(), change.squares.end());
-    for (const BlockedPieces& blocked : change.pieces) pieces[blocked.portal] |= blocked.pieces;
+    for (const BlockedPieces& blocked : changes_[id - 1].pieces)
+      pieces[blocked.portal] |= blocked.pieces;
   }
-  std::sort(tiles.begin(), tiles.end(),
-            [](const BlockedTile& a, const BlockedTile& b) { return a.patch < b.patch; });
-  std::sort(squares.begin(), squares.end());
-  squares.erase(std::unique(squares.begin(), squares.end()), squares.end());
-  cut_tiles(tiles);
-  cut_squares(squares);
+  cut_tiles(tile_labels());
+  cut_squares(square_labels());
   std::sort(cut_blocks_.begin(), cut_blocks_.end());
   std::sort(cut_patches_.begin(), cut_patches_.end());
   cut_patches_.erase(std::unique(cut_patches_.begin(), cut_patches_.end()), cut_patches_.end());
   for (const uint32_t block : cut_blocks_) join_parts(block);
   replace_portals(pieces);
+  add_links();
+  find_min_factor();
   list_portals();
 }
 
-// The largest free squares of a block. blocked(level, s, t): 0 free, 1 partly blocked, 2 blocked.
-template <class IsBlocked>
-void NodeChanges::cut(uint32_t block, const IsBlocked& blocked) {
+// The largest squares of a block that are free and cost the same. label_of(level, s, t): what
+// becomes of a square.
+template <class LabelOf>
+void NodeChanges::cut(uint32_t block, const LabelOf& label_of) {
   const graph::NodeBlock& whole = mesh_->blocks()[block];
   Cut made{static_cast<uint32_t>(parts_.size()), 0};
   const auto descend = [&](auto&& self, uint8_t level, uint32_t s, uint32_t t) -> void {
-    const int some = blocked(level, s, t);
-    if (some == 2) return;
-    if (some == 0) {
+    const int label = label_of(level, s, t);
+    if (label == kBlocked) return;
+    if (label != kMixed) {
       graph::NodeBlock part = whole;
       part.level = level;
       part.s = static_cast<uint8_t>(s);
       part.t = static_cast<uint8_t>(t);
       parts_.push_back(part);
       base_of_part_.push_back(block);
+      area_of_part_.push_back(static_cast<uint8_t>(label));
       return;
     }
     for (uint32_t q = 0; q < 4; ++q)
@@ -350,42 +346,57 @@ void NodeChanges::cut(uint32_t block, const IsBlocked& blocked) {
   cut_patches_.push_back(whole.patch);
 }
 
-void NodeChanges::cut_tiles(const std::vector<BlockedTile>& blocked) {
-  for (const BlockedTile& tile : blocked) {
+void NodeChanges::cut_tiles(const std::vector<TileLabels>& tiles) {
+  for (const TileLabels& tile : tiles) {
     const auto blocks = mesh_->blocks_of(tile.patch);
-    const auto some = [&](uint8_t level, uint32_t s, uint32_t t) {
+    const auto label_of = [&](uint8_t level, uint32_t s, uint32_t t) {
       const uint32_t side = 64u >> level;
       const uint64_t row = (~uint64_t{0} >> (64 - side)) << (s * side);
-      bool any = false, all = true;
-      for (uint32_t k = t * side; k < (t + 1) * side; ++k) {
-        any |= (tile.rows[k] & row) != 0;
-        all &= (tile.rows[k] & row) == row;
+      bool is_mixed = false;
+      // Does it hold all cells of the square? Notes if it holds some.
+      const auto holds_all = [&](const world::CellRows& cells) {
+        bool any = false, all = true;
+        for (uint32_t k = t * side; k < (t + 1) * side; ++k) {
+          any |= (cells[k] & row) != 0;
+          all &= (cells[k] & row) == row;
+        }
+        is_mixed |= any && !all;
+        return all;
+      };
+      if (holds_all(tile.blocked)) return kBlocked;
+      if (is_mixed) return kMixed;
+      for (const auto& [area, cells] : tile.areas) {
+        if (holds_all(cells)) return int{area};
       }
-      return all ? 2 : any ? 1 : 0;
+      return is_mixed ? kMixed : 0;
     };
     for (uint32_t b = 0; b < blocks.size(); ++b) {
-      if (some(blocks[b].level, blocks[b].s, blocks[b].t) == 0) continue;
-      cut(mesh_->first_block(tile.patch) + b, some);
+      if (label_of(blocks[b].level, blocks[b].s, blocks[b].t) == 0) continue;
+      cut(mesh_->first_block(tile.patch) + b, label_of);
     }
   }
 }
 
-void NodeChanges::cut_squares(const std::vector<BlockedSquare>& blocked) {
-  for (size_t i = 0; i < blocked.size();) {
+void NodeChanges::cut_squares(const std::vector<SquareLabel>& squares) {
+  for (size_t i = 0; i < squares.size();) {
     size_t j = i;
-    while (j < blocked.size() && blocked[j].block == blocked[i].block) ++j;
-    const uint8_t finest = finest_level(mesh_->blocks()[blocked[i].block]);
-    const auto begin = blocked.begin() + static_cast<ptrdiff_t>(i);
-    const auto end = blocked.begin() + static_cast<ptrdiff_t>(j);
-    cut(blocked[i].block, [&](uint8_t level, uint32_t s, uint32_t t) {
+    const uint32_t block = squares[i].square.block;
+    while (j < squares.size() && squares[j].square.block == block) ++j;
+    const uint8_t finest = finest_level(mesh_->blocks()[block]);
+    const auto begin = squares.begin() + static_cast<ptrdiff_t>(i);
+    const auto end = squares.begin() + static_cast<ptrdiff_t>(j);
+    cut(block, [&](uint8_t level, uint32_t s, uint32_t t) {
       const uint32_t up = 2u * (finest - level);
       const uint32_t first = graph::quad_order(s, t, level) << up, count = 1u << up;
-      const auto before = [](const BlockedSquare& square, uint32_t order) {
-        return square.order < order;
+      const auto before = [](const SquareLabel& one, uint32_t order) {
+        return one.square.order < order;
       };
-      const auto found = std::lower_bound(begin, end, first, before) -
-                         std::lower_bound(begin, end, first + count, before);
-      return found == 0 ? 0 : -found == static_cast<ptrdiff_t>(count) ? 2 : 1;
+      const auto from = std::lower_bound(begin, end, first, before);
+      const auto to = std::lower_bound(from, end, first + count, before);
+      if (from == to) return 0;
+      const bool is_same =
+          std::all_of(from, to, [&](const SquareLabel& one) { return one.label == from->label; });
+      return is_same && to - from == static_cast<ptrdiff_t>(count) ? from->label : kMixed;
     });
     i = j;
   }
@@ -538,6 +549,11 @@ void NodeChanges::list_portals() {
     touched_.push_back(portal.a);
     touched_.push_back(portal.b);
   }
+  for (size_t k = portals_.size() - link_costs_.size(); k < portals_.size(); ++k) {
+    for (const uint32_t end : {portals_[k].a, portals_[k].b}) {
+      if (end < base) touched_.push_back(end);
+    }
+  }
   std::sort(touched_.begin(), touched_.end());
   touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
   for (uint32_t i = 0; i < touched_.size(); ++i) place_of_touched_.emplace(touched_[i], i);
@@ -606,7 +622,8 @@ uint64_t NodeChanges::bytes() const {
                    portals_.size() * sizeof(graph::NodePortal) +
                    (base_of_part_.size() + touched_.size() + first_portal_.size() +
                     portal_of_.size() + cut_blocks_.size()) *
-                       sizeof(uint32_t);
+                       sizeof(uint32_t) +
+                   area_of_part_.size() + link_costs_.size() * sizeof(double);
   for (const Change& change : changes_) {
     bytes += change.tiles.size() * sizeof(BlockedTile) +
              change.squares.size() * sizeof(BlockedSquare) +

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -15,20 +16,39 @@
 #include "throng/path.h"
 #include "world/cell_blocks.h"
 
-/// Obstacles placed on a mesh of nodes since the bake.
+/// What edits have changed on a mesh of nodes since the bake.
 namespace throng::path {
 
 /// Where a body could touch a solid its block is cut: level tiles by their cells, curved patches by
-/// squares of about a quarter of a metre. What is left of a block are *parts*. What a solid blocks
-/// is found once, when it is added; parts and portals are those of all active solids, in whatever
-/// order they were added. Copies share the mesh.
+/// squares of about a quarter of a metre. What is left of a block are *parts*. An area of another
+/// cost cuts its blocks likewise, so all of a part costs the same; where areas overlap, the one
+/// that was added last counts. Off-mesh links are portals. What a change touches is found once,
+/// when it is added; parts and portals are those of all active changes, in whatever order solids
+/// were added. Copies share the mesh.
 class NodeChanges {
  public:
   /// No link over a hole of the mesh is longer. [m]
   NodeChanges(const graph::NodeMesh& mesh, const BlockSquares& squares, double longest_hole_link)
-      : mesh_(&mesh), squares_(&squares), longest_hole_link_(longest_hole_link) {}
+      : mesh_(&mesh), squares_(&squares), longest_hole_link_(longest_hole_link) {
+    area_cost_.fill(1);
+  }
 
   ChangeId add(Solid solid);
+  /// Cells whose middle lies in the prism, and squares of curved ground.
+  ChangeId add_area(const Prism& prism, uint8_t kind);
+  /// An end of a link, in a block as it was baked.
+  struct LinkEnd {
+    uint32_t block = graph::kNoNode;
+    double s = 0, t = 0;
+  };
+  struct Link {
+    LinkEnd from, to;
+    double cost = 0;  // [m]
+    bool two_way = true;
+  };
+  ChangeId add_link(const Link& link);
+  /// Of a metre, as Edits::set_area_cost.
+  void set_area_cost(uint8_t kind, double cost);
   /// False if there is none of that id, which is never used again once removed.
   bool set_active(ChangeId change, bool active, bool remove);
   /// Rises with every change.
@@ -43,6 +63,18 @@ class NodeChanges {
   [[nodiscard]] std::optional<std::span<const uint32_t>> portals_of(uint32_t block) const;
   [[nodiscard]] uint32_t base_of(uint32_t part) const {
     return base_of_part_[part - mesh_->blocks().size()];
+  }
+  /// Cost of a metre in a part.
+  [[nodiscard]] double factor(uint32_t part) const {
+    return area_cost_[area_of_part_[part - mesh_->blocks().size()]];
+  }
+  /// No path costs less than the straight line times this. [0 to 1]
+  [[nodiscard]] double min_factor() const { return min_factor_; }
+  /// Is a link in force?
+  [[nodiscard]] bool has_links() const { return !link_costs_.empty(); }
+  /// What crossing a portal costs if it is a link of add_link(); null: it is none. [m]
+  [[nodiscard]] const double* link_cost(uint32_t portal) const {
+    return portal < first_link_ ? nullptr : &link_costs_[portal - first_link_];
   }
   /// The numbers of the parts that are left of a block, [first, last); none: it is whole.
   [[nodiscard]] std::optional<std::pair<uint32_t, uint32_t>> parts_of(uint32_t block) const;
@@ -76,26 +108,61 @@ class NodeChanges {
     uint32_t portal = 0;
     uint16_t pieces = 0;
   };
+  enum class Kind : uint8_t { kSolid, kArea, kLink };
   struct Change {
     bool active = true, removed = false;
+    Kind kind = Kind::kSolid;
+    uint8_t area = 0;
+    // Blocked, or in the area.
     std::vector<BlockedTile> tiles;
     std::vector<BlockedSquare> squares;
     std::vector<BlockedPieces> pieces;
+    Link link;
   };
+  // What becomes of a cell or square: its area kind, or
+  static constexpr int kBlocked = 64, kMixed = -1;
+  struct TileLabels {
+    uint32_t patch = 0;
+    world::CellRows blocked{};
+    std::vector<std::pair<uint8_t, world::CellRows>> areas;  // which share no cell
+  };
+  struct SquareLabel {
+    BlockedSquare square;
+    int label = 0;
+  };
+  // While they are collected: of several for one square the one of the highest rank counts.
+  struct RankedSquare {
+    BlockedSquare square;
+    uint32_t rank = 0;
+    int label = 0;
+  };
+
+  ChangeId keep(Change change);
 
   void block_tiles(const Solid& solid, double around, Change& change,
                    std::vector<uint32_t>& near) const;
   void block_squares(const Solid& solid, uint32_t block, Change& change) const;
+  void mark_squares(const Prism& prism, uint32_t block, Change& change) const;
+  [[nodiscard]] bool differs(const Change& change) const {
+    return change.kind == Kind::kSolid || (change.kind == Kind::kArea && areas_differ_);
+  }
+  [[nodiscard]] std::vector<TileLabels> tile_labels() const;
+  [[nodiscard]] std::vector<SquareLabel> square_labels() const;
   void block_pieces(const Solid& solid, std::span<const uint32_t> near, Change& change) const;
   [[nodiscard]] bool blocks_portal(const Solid& solid, const graph::NodePortal& portal, double from,
                                    double to) const;
   [[nodiscard]] uint8_t finest_level(const graph::NodeBlock& block) const;
-  void cut_tiles(const std::vector<BlockedTile>& blocked);
-  void cut_squares(const std::vector<BlockedSquare>& blocked);
-  template <class IsBlocked>
-  void cut(uint32_t block, const IsBlocked& blocked);
+  void cut_tiles(const std::vector<TileLabels>& tiles);
+  void cut_squares(const std::vector<SquareLabel>& squares);
+  template <class LabelOf>
+  void cut(uint32_t block, const LabelOf& label_of);
   void join_parts(uint32_t block);
   void replace_portals(const std::unordered_map<uint32_t, uint16_t>& pieces);
+  [[nodiscard]] const graph::NodeBlock& block_of_part(uint32_t b) const {
+    return b < mesh_->blocks().size() ? mesh_->blocks()[b] : parts_[b - mesh_->blocks().size()];
+  }
+  void add_links();
+  void find_min_factor();
   void list_portals();
 
   const graph::NodeMesh* mesh_;
@@ -104,6 +171,9 @@ class NodeChanges {
   uint64_t version_ = 0, updated_ = 0;
   std::vector<Change> changes_;
   std::vector<ChangeId> active_;  // rising
+  std::array<double, kBlocked + 1> area_cost_;
+  bool areas_differ_ = false;  // Some kind costs other than 1.
+  double min_factor_ = 1;
 
   struct Cut {
     uint32_t first = 0, last = 0;  // of parts_
@@ -112,8 +182,11 @@ class NodeChanges {
   std::vector<uint32_t> cut_blocks_, cut_patches_;
   std::vector<graph::NodeBlock> parts_;
   std::vector<uint32_t> base_of_part_;
+  std::vector<uint8_t> area_of_part_;
   std::vector<graph::NodePortal> portals_;
   std::vector<Replaced> replaced_;
+  uint32_t first_link_ = UINT32_MAX;  // Portals from here on are links,
+  std::vector<double> link_costs_;    // of these costs. [m]
   std::vector<uint32_t> touched_;
   std::unordered_map<uint32_t, uint32_t> place_of_touched_;  // looked up only
   std::vector<uint32_t> first_portal_, portal_of_;           // of those touched, then of parts

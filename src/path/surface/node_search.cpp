@@ -12,7 +12,8 @@
 // Hart, Nilsson, Raphael. A formal basis for the heuristic determination of minimum cost paths.
 // 1968. A path leads from the middle of one portal to the middle of the next, straight in the
 // parameters of their block; a piece is measured over its middle, so it is never shorter than the
-// straight line, and the straight line to the goal never overestimates.
+// straight line, and the straight line to the goal never overestimates: times the least cost of a
+// metre, where that is less than 1.
 namespace throng::path {
 namespace {
 
@@ -34,9 +35,9 @@ PieceCost::PieceCost(const NodeView& view, double slope_cost)
 PieceCost::Piece PieceCost::operator()(uint32_t block, double s0, double t0, Vec3d from, double s1,
                                        double t1, Vec3d to) const {
   const graph::NodeSurface& surface = view_->surface(block);
-  const double straight = length(to - from);
+  const double straight = length(to - from), factor = view_->factor(block);
   if (surface.points == nullptr) {
-    return {straight, straight * by_code_[view_->block(block).inclination]};
+    return {straight, straight * by_code_[view_->block(block).inclination] * factor};
   }
   const double s = (s0 + s1) / 2, t = (t0 + t1) / 2;
   double along = straight;
@@ -44,8 +45,8 @@ PieceCost::Piece PieceCost::operator()(uint32_t block, double s0, double t0, Vec
     const Vec3d middle = surface.at(s, t);
     along = length(middle - from) + length(to - middle);
   }
-  if (slope_cost_ == 0) return {along, along};
-  return {along, along * (1 + slope_cost_ * (1 - surface.normal(s, t).y))};
+  if (slope_cost_ == 0) return {along, along * factor};
+  return {along, along * (1 + slope_cost_ * (1 - surface.normal(s, t).y)) * factor};
 }
 
 void NodeSearch::push(double estimate, uint32_t state) { open_.push({estimate, state}); }
@@ -68,24 +69,47 @@ void NodeSearch::expand(const BlockPoint& from, Vec3d at, double cost, uint32_t 
     double next = cost + (*cost_)(out.block, from.s, from.t, at, out.s, out.t, here).cost;
     if (states_.is_reached(state) && state.cost <= next) return;
     const Vec3d there = position(*view_, in);
-    next += graph::portal_length(portal, here, there);
+    next += view_->cost_through(crossing.portal, portal, here, there);
     if (states_.is_reached(state) && state.cost <= next) return;
     met_ += states_.is_reached(state) ? 0 : 1;
     state = {states_.search(), parent, next, there, false};
-    push(next + length(goal_ - there), id);
+    push(next + length(goal_ - there) * min_factor_, id);
   });
 }
 
 PathEnd NodeSearch::find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
                          std::vector<Crossing>& crossings, const SearchBounds& within,
                          double less_than) {
-  crossings.clear();
+  begin(from, to, within, less_than);
+  Slice all;
+  return *advance(budget, all, crossings);
+}
+
+void NodeSearch::begin(const BlockPoint& from, const BlockPoint& to, const SearchBounds& within,
+                       double less_than) {
   expanded_ = met_ = 0;
+  best_cost_ = 0;
   within_ = within;
   states_.begin(2 * view_->portal_count());
   open_.clear();
-  const PathEnd end = search(from, to, budget, crossings, less_than);
-  give_back();
+  to_ = to;
+  goal_ = position(*view_, to);
+  min_factor_ = view_->min_factor();
+  less_than_ = less_than;
+  found_ = std::numeric_limits<double>::infinity();
+  last_ = kStart;
+  const Vec3d start = position(*view_, from);
+  arrive(from, start, 0, kStart);
+  expand(from, start, 0, kStart);
+  nearest_ = length(goal_ - start);
+  nearest_state_ = kStart;
+}
+
+std::optional<PathEnd> NodeSearch::advance(const SearchBudget& budget, Slice& slice,
+                                           std::vector<Crossing>& crossings) {
+  crossings.clear();
+  const std::optional<PathEnd> end = search(budget, slice, crossings);
+  if (end) give_back();
   return end;
 }
 
@@ -103,49 +127,43 @@ void NodeSearch::give_back() {
   open_.give_back();
 }
 
-PathEnd NodeSearch::search(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-                           std::vector<Crossing>& crossings, double less_than) {
-  goal_ = position(*view_, to);
-  const Vec3d start = position(*view_, from);
-  constexpr uint32_t kGoal = UINT32_MAX - 1, kStart = UINT32_MAX;
-  double found = std::numeric_limits<double>::infinity();
-  uint32_t last = kStart;
-  const auto arrive = [&](const BlockPoint& in, Vec3d at, double cost, uint32_t parent) {
-    if (in.block != to.block) return;
-    const double all = cost + (*cost_)(in.block, in.s, in.t, at, to.s, to.t, goal_).cost;
-    if (all >= found) return;
-    found = all;
-    last = parent;
-    push(all, kGoal);
-  };
-  arrive(from, start, 0, kStart);
-  expand(from, start, 0, kStart);
-  double nearest = length(goal_ - start);
-  uint32_t nearest_state = kStart;
+void NodeSearch::arrive(const BlockPoint& in, Vec3d at, double cost, uint32_t parent) {
+  if (in.block != to_.block) return;
+  const double all = cost + (*cost_)(in.block, in.s, in.t, at, to_.s, to_.t, goal_).cost;
+  if (all >= found_) return;
+  found_ = all;
+  last_ = parent;
+  push(all, kGoal);
+}
+
+std::optional<PathEnd> NodeSearch::search(const SearchBudget& budget, Slice& slice,
+                                          std::vector<Crossing>& crossings) {
   while (!open_.empty()) {
+    if (slice.is_empty()) return {};
     const Open top = open_.pop();
-    if (top.estimate >= less_than) break;
+    if (top.estimate >= less_than_) break;
     if (top.state == kGoal) {
-      best_cost_ = found;
-      trace(last, crossings);
+      best_cost_ = found_;
+      trace(last_, crossings);
       return PathEnd::kReached;
     }
     State& state = states_[top.state];
     if (state.closed) continue;
     state.closed = true;
+    slice.take();
     if (budget.is_spent(++expanded_, used_bytes())) return PathEnd::kBudgetExhausted;
     const BlockPoint in = ends_of(*view_, {top.state / 2, (top.state & 1) != 0}).in;
     const Vec3d at = state.at;
     const double cost = state.cost;
-    if (const double far = length(goal_ - at); far < nearest) {
-      nearest = far;
-      nearest_state = top.state;
+    if (const double far = length(goal_ - at); far < nearest_) {
+      nearest_ = far;
+      nearest_state_ = top.state;
     }
     arrive(in, at, cost, top.state);
     expand(in, at, cost, top.state);
   }
-  best_cost_ = nearest_state == kStart ? 0 : states_[nearest_state].cost;
-  trace(nearest_state, crossings);
+  best_cost_ = nearest_state_ == kStart ? 0 : states_[nearest_state_].cost;
+  trace(nearest_state_, crossings);
   return PathEnd::kUnreachable;
 }
 

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "path/ground/open_list.h"
 #include "path/ground/search_states.h"
+#include "path/ground/slice.h"
 #include "path/surface/node_view.h"
 #include "throng/path.h"
 
@@ -47,6 +49,12 @@ class NodeSearch {
   PathEnd find(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
                std::vector<Crossing>& crossings, const SearchBounds& within = {},
                double less_than = std::numeric_limits<double>::infinity());
+  /// The same in parts: call advance with the same budget, which is that of the whole search, until
+  /// it returns how the search ended. The view must not change in between.
+  void begin(const BlockPoint& from, const BlockPoint& to, const SearchBounds& within = {},
+             double less_than = std::numeric_limits<double>::infinity());
+  std::optional<PathEnd> advance(const SearchBudget& budget, Slice& slice,
+                                 std::vector<Crossing>& crossings);
   [[nodiscard]] double cost() const { return best_cost_; }
   [[nodiscard]] uint64_t expanded() const { return expanded_; }
   [[nodiscard]] uint64_t allocated_bytes() const;
@@ -70,8 +78,11 @@ class NodeSearch {
     }
   };
 
-  PathEnd search(const BlockPoint& from, const BlockPoint& to, const SearchBudget& budget,
-                 std::vector<Crossing>& crossings, double less_than);
+  static constexpr uint32_t kGoal = UINT32_MAX - 1, kStart = UINT32_MAX;
+
+  std::optional<PathEnd> search(const SearchBudget& budget, Slice& slice,
+                                std::vector<Crossing>& crossings);
+  void arrive(const BlockPoint& in, Vec3d at, double cost, uint32_t parent);
   [[nodiscard]] uint64_t used_bytes() const;
   void give_back();
   void expand(const BlockPoint& from, Vec3d at, double cost, uint32_t parent);
@@ -83,7 +94,14 @@ class NodeSearch {
   SearchBounds within_;
   SearchStates<State> states_;
   OpenList<Open> open_;
+  BlockPoint to_;
   Vec3d goal_;
+  double min_factor_ = 1;  // of costs to the straight line
+  double less_than_ = 0;
+  double found_ = 0;        // cost of the best path to the goal so far
+  uint32_t last_ = kStart;  // its last state
+  double nearest_ = 0;      // of what was expanded, from the goal [m]
+  uint32_t nearest_state_ = kStart;
   double best_cost_ = 0;
   uint64_t expanded_ = 0;
   uint64_t met_ = 0;  // states that this query has reached

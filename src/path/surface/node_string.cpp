@@ -50,8 +50,8 @@ double NodeString::cost_around(const std::vector<PulledCrossing>& crossings, siz
   return (*cost_)(crossing.out.block, before.s, before.t, i > 0 ? crossings[i - 1].in_at : from_at_,
                   crossing.out.s, crossing.out.t, crossing.out_at)
              .cost +
-         graph::portal_length(view_->portal(crossing.crossing.portal), crossing.out_at,
-                              crossing.in_at) +
+         view_->cost_through(crossing.crossing.portal, view_->portal(crossing.crossing.portal),
+                             crossing.out_at, crossing.in_at) +
          (*cost_)(crossing.in.block, crossing.in.s, crossing.in.t, crossing.in_at, after.s, after.t,
                   i + 1 < crossings.size() ? crossings[i + 1].out_at : to_at_)
              .cost;

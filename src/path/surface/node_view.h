@@ -8,11 +8,12 @@
 #include "graph/node_mesh.h"
 #include "path/surface/node_changes.h"
 
-/// A mesh of nodes as it is now: as it was baked, less what obstacles block since.
+/// A mesh of nodes as it is now: as it was baked, less what obstacles block since, with areas of
+/// other costs and off-mesh links.
 namespace throng::path {
 
 /// Blocks and portals have the mesh's numbers. Above these are parts of the blocks that obstacles
-/// cut, to which no portal leads any more, and portals between parts.
+/// and areas cut, to which no portal leads any more, portals between parts, and links.
 class NodeView {
  public:
   /// As it was baked, if `changes` are null.
@@ -52,6 +53,22 @@ class NodeView {
     }
     return mesh_->portals_of(b);
   }
+  /// Cost of a metre in a block, beside that of its inclination.
+  [[nodiscard]] double factor(uint32_t b) const {
+    return b < mesh_->blocks().size() ? 1 : changes_->factor(b);
+  }
+  /// What going through a portal costs, from one point to the other. [m]
+  [[nodiscard]] double cost_through(uint32_t p, const graph::NodePortal& portal, Vec3d out,
+                                    Vec3d in) const {
+    const double* link = is_as_baked() ? nullptr : changes_->link_cost(p);
+    return link != nullptr ? *link : graph::portal_length(portal, out, in);
+  }
+  [[nodiscard]] bool is_link(uint32_t p) const {
+    return !is_as_baked() && changes_->link_cost(p) != nullptr;
+  }
+  /// No path costs less than the straight line times this. [0 to 1]
+  [[nodiscard]] double min_factor() const { return is_as_baked() ? 1 : changes_->min_factor(); }
+  [[nodiscard]] bool has_links() const { return !is_as_baked() && changes_->has_links(); }
   /// The block of the mesh that it is, or is a part of.
   [[nodiscard]] uint32_t base_of(uint32_t b) const {
     return b < mesh_->blocks().size() ? b : changes_->base_of(b);

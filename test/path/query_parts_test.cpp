@@ -1,0 +1,275 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <vector>
+
+#include "baked.h"
+#include "core/random.h"
+#include "throng/path.h"
+
+// Queries in parts: for slices of any size they find what a query in one go finds.
+namespace throng {
+namespace {
+
+using test::bake;
+using test::builtin;
+
+constexpr int32_t kAdult = 0, kFlyer = 1, kClimber = 2;
+
+template <class T>
+T need(Result<T> made) {
+  EXPECT_TRUE(made) << made.error().message;
+  if constexpr (!std::is_void_v<T>) return *std::move(made);
+}
+
+std::vector<AvatarClass> classes() {
+  return {{.name = "adult"},
+          flyer_class(),
+          {.name = "climber", .height = 1.0, .radius = 0.3, .climb_slope = 180, .max_drop = 4}};
+}
+
+// Two halls; through the wall between them one can walk but not fly.
+Scene two_halls() {
+  Scene scene;
+  scene.add_quad({0, 0, 0}, {0, 0, 8}, {20, 0, 8}, {20, 0, 0});
+  for (const double x : {0.0, 19.8}) scene.add_box({x, -0.1, 0}, {x + 0.2, 6, 8});
+  scene.add_box({9.8, -0.1, 0}, {10, 6, 3.45});
+  scene.add_box({9.8, -0.1, 4.55}, {10, 6, 8.0});
+  scene.add_box({9.8, 2, 3}, {10, 6, 5});
+  scene.add_box({0, -0.1, 0}, {20, 6, 0.2});
+  scene.add_box({0, -0.1, 7.8}, {20, 6, 8});
+  scene.add_box({0, 5.8, 0}, {20, 6, 8});
+  return scene;
+}
+
+struct Stage {
+  explicit Stage(Scene of) : scene(std::move(of)) {}
+
+  Scene scene;
+  World world = bake(scene, 0.25, classes());
+  Context context;
+  Nodes nodes = need(Nodes::create(world, scene, {}, context));
+  Edits edits;
+
+  [[nodiscard]] PathFinder finder(int32_t avatar_class) {
+    PathConfig config{.avatar_class = avatar_class, .nodes = nodes, .edits = edits};
+    if (avatar_class == kAdult) config.speedup = PathSpeedup::kOnDemand;
+    return need(PathFinder::create(world, config, context));
+  }
+  // In the air, on surfaces or on the ground, as the class moves.
+  [[nodiscard]] PathPoint end(PathFinder& finder, int32_t avatar_class, uint64_t n) const {
+    if (avatar_class == kClimber) return nodes.random_place(kClimber, 5, n);
+    const Place place = world.random_place(avatar_class, 5, n);
+    if (avatar_class == kFlyer && n % 3 != 0) return *finder.random_point(5, n);
+    return place.position;
+  }
+  [[nodiscard]] PathQuery query(PathFinder& finder, int32_t avatar_class, uint64_t n) const {
+    return {.from = end(finder, avatar_class, 2 * n),
+            .to = end(finder, avatar_class, 5 * n + 1),
+            .nearest = n % 2 == 0};
+  }
+  // A crate, a wall or a slab beside some place.
+  Prism prism(uint64_t n) const {
+    const Vec3d at = world.random_place(kAdult, 8, n).position;
+    const double side = n % 3 == 0 ? 4 : 0.6, high = n % 2 == 0 ? 1.5 : 8;
+    return Prism::box(at - Vec3d{0.3, 0.2, side}, at + Vec3d{0.3, high, side});
+  }
+};
+
+void expect_same(const Path& a, const Path& b) {
+  EXPECT_EQ(a.end, b.end);
+  EXPECT_EQ(a.spent, b.spent);
+  EXPECT_EQ(a.blocked_by, b.blocked_by);
+  EXPECT_EQ(a.nodes, b.nodes);
+  EXPECT_EQ(a.length, b.length);
+  EXPECT_EQ(a.cost, b.cost);
+  EXPECT_EQ(a.searched_cost, b.searched_cost);
+  EXPECT_EQ(a.segments, b.segments);
+  EXPECT_EQ(a.corridor, b.corridor);
+  EXPECT_EQ(a.links.size(), b.links.size());
+  EXPECT_EQ(a.node_places.size(), b.node_places.size());
+  ASSERT_EQ(a.points.size(), b.points.size());
+  for (size_t i = 0; i < a.points.size(); ++i) {
+    EXPECT_EQ(length(a.points[i].position - b.points[i].position), 0);
+    EXPECT_EQ(a.points[i].level1, b.points[i].level1);
+  }
+}
+
+// To the end of a query that has begun, and expanded so many nodes. Counts the calls, and what each
+// expands.
+uint64_t finish(PathFinder& finder, uint64_t slice, Path& path, uint64_t before = 0) {
+  uint64_t calls = 1;
+  for (; !finder.advance(slice, path); ++calls) {
+    EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
+    EXPECT_EQ(path.spent, SpentBudget::kNodes);
+    EXPECT_TRUE(path.points.empty());
+    EXPECT_EQ(path.nodes, before + slice);
+    before = path.nodes;
+  }
+  return calls;
+}
+
+TEST(QueryParts, FindTheSameForSlicesOfAnySize) {
+  uint64_t reached = 0, unreachable = 0, many = 0;
+  for (const Scene& scene : {builtin({.name = "garage", .size = 30, .levels = 2}), two_halls()}) {
+    Stage s(scene);
+    for (const int32_t c : {kAdult, kFlyer, kClimber}) {
+      PathFinder finder = s.finder(c);
+      Path whole, parts;
+      for (uint64_t n = 0; n < 14; ++n) {
+        // From the middle on with obstacles.
+        if (n == 7) {
+          for (uint64_t i = 0; i < 12; ++i) need(s.edits.add_obstacle(s.prism(i)));
+        }
+        const PathQuery query = s.query(finder, c, n);
+        finder.find(query, whole);
+        reached += whole.end == PathEnd::kReached;
+        unreachable += whole.end == PathEnd::kUnreachable;
+        for (const uint64_t slice : {uint64_t{1}, uint64_t{7}, uint64_t{100}, UINT64_MAX}) {
+          finder.begin(query);
+          const uint64_t calls = finish(finder, slice, parts);
+          many += calls > 3;
+          if (slice == UINT64_MAX) {
+            EXPECT_EQ(calls, 1u);
+          }
+          SCOPED_TRACE(testing::Message() << "class " << c << ", query " << n << ", " << slice);
+          expect_same(whole, parts);
+          // Only walks of flyers are counted while they are searched, and not in the end.
+          if (c != kFlyer && slice != UINT64_MAX) {
+            EXPECT_LE(whole.nodes, calls * slice);
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(reached, 20u);
+  EXPECT_GT(unreachable, 0u);
+  EXPECT_GT(many, 50u);
+}
+
+TEST(QueryParts, AnEditMakesThemBeginAgain) {
+  Stage s(builtin({.name = "garage", .size = 30, .levels = 2}));
+  for (const int32_t c : {kAdult, kFlyer, kClimber}) {
+    PathFinder finder = s.finder(c), other = s.finder(c);
+    Path whole, parts;
+    for (uint64_t n = 0; n < 8; ++n) {
+      const PathQuery query = s.query(finder, c, n);
+      finder.begin(query);
+      const bool ended = finder.advance(2 + n, parts);
+      const EditId edit = need(s.edits.add_obstacle(s.prism(40 + n)));
+      if (ended) finder.begin(query);
+      if (!finder.advance(3, parts)) {
+        EXPECT_EQ(parts.nodes, 3u) << "what was expanded before does not count";
+        finish(finder, 11, parts, 3);
+      }
+      other.find(query, whole);
+      expect_same(whole, parts);
+      // And when it goes.
+      finder.begin(query);
+      if (!finder.advance(4, parts)) {
+        EXPECT_TRUE(s.edits.remove(edit));
+        finish(finder, 50, parts);
+        other.find(query, whole);
+        expect_same(whole, parts);
+      }
+    }
+  }
+}
+
+TEST(QueryParts, OtherQueriesDoNotDisturbTheResult) {
+  Stage s(builtin({.name = "garage", .size = 30, .levels = 2}));
+  for (const int32_t c : {kAdult, kFlyer, kClimber}) {
+    PathFinder finder = s.finder(c), other = s.finder(c);
+    Path whole, parts, path;
+    for (uint64_t n = 0; n < 6; ++n) {
+      const PathQuery query = s.query(finder, c, n), between = s.query(finder, c, n + 20);
+      other.find(query, whole);
+      // Another query in one go.
+      finder.begin(query);
+      if (!finder.advance(5, parts)) {
+        finder.find(between, path);
+        finish(finder, 9, parts);
+      }
+      expect_same(whole, parts);
+      other.find(between, path);
+      finder.find(between, parts);
+      expect_same(path, parts);
+      // Another one in parts takes its place.
+      finder.begin(between);
+      static_cast<void>(finder.advance(2, path));
+      finder.begin(query);
+      finish(finder, 9, parts);
+      expect_same(whole, parts);
+      // What does not search, and a copy.
+      finder.begin(query);
+      if (!finder.advance(5, parts)) {
+        EXPECT_TRUE(finder.is_free(s.end(finder, c, n)));
+        PathFinder copy = finder;
+        finish(copy, 13, parts);
+        expect_same(whole, parts);
+        finish(finder, 9, parts, 5);
+        expect_same(whole, parts);
+      }
+    }
+  }
+}
+
+TEST(QueryParts, KeepTheBudgetOfTheWholeQueryAndCanBeCancelled) {
+  Stage s(builtin({.name = "garage", .size = 30, .levels = 2}));
+  for (const int32_t c : {kAdult, kFlyer, kClimber}) {
+    PathFinder finder = s.finder(c);
+    Path whole, parts;
+    uint64_t exhausted = 0, cancelled = 0;
+    for (uint64_t n = 0; n < 8; ++n) {
+      PathQuery query = s.query(finder, c, n);
+      query.budget = {12};
+      finder.find(query, whole);
+      finder.begin(query);
+      finish(finder, 5, parts);
+      exhausted += whole.end == PathEnd::kBudgetExhausted;
+      EXPECT_EQ(parts.end, whole.end);
+      EXPECT_EQ(parts.spent, whole.spent);
+      std::atomic<bool> cancel = false;
+      query.budget = {UINT64_MAX, &cancel};
+      finder.begin(query);
+      if (finder.advance(3, parts)) continue;
+      cancel = true;
+      ASSERT_TRUE(finder.advance(3, parts));
+      EXPECT_EQ(parts.end, PathEnd::kBudgetExhausted);
+      EXPECT_EQ(parts.spent, SpentBudget::kCancelled);
+      EXPECT_EQ(parts.nodes, 3u);
+      EXPECT_TRUE(parts.points.empty());
+      ++cancelled;
+    }
+    EXPECT_GT(exhausted, 0u) << c;
+    EXPECT_GT(cancelled, 0u) << c;
+  }
+}
+
+TEST(QueryParts, WithoutAQueryNothingIsFound) {
+  Stage s(two_halls());
+  for (const int32_t c : {kAdult, kFlyer, kClimber}) {
+    PathFinder finder = s.finder(c);
+    Path path;
+    EXPECT_TRUE(finder.advance(10, path));
+    EXPECT_EQ(path.end, PathEnd::kNoPlace);
+    finder.begin({.from = Place{}, .to = Place{}});
+    EXPECT_TRUE(finder.advance(10, path));
+    EXPECT_EQ(path.end, PathEnd::kNoPlace);
+    finder.begin({.from = Vec3d{1e6, 0, 0}, .to = Vec3d{1, 0, 1}});
+    EXPECT_TRUE(finder.advance(0, path));
+    EXPECT_EQ(path.end, PathEnd::kNoPlace);
+    finder.begin(s.query(finder, c, 3));
+    finish(finder, 1000, path);
+    EXPECT_NE(path.end, PathEnd::kNoPlace);
+    EXPECT_TRUE(finder.advance(10, path));
+    EXPECT_EQ(path.end, PathEnd::kNoPlace) << "it has ended";
+    EXPECT_TRUE(path.points.empty());
+  }
+}
+
+}  // namespace
+}  // namespace throng

@@ -7,9 +7,9 @@
 
 #include "core/access.h"
 #include "core/check_class.h"
-#include "path/edits/blocker.h"
 #include "path/edits/ground_finder_state.h"
 #include "path/edits/nearest_cell.h"
+#include "path/ground/blocker.h"
 #include "path/ground/reset_path.h"
 #include "path/path_finder_state.h"
 #include "world/place.h"
@@ -169,16 +169,16 @@ void PathFinder::State::find_on_ground(const Place& from, const Place& to,
     if (path.end != PathEnd::kUnreachable) return;
   }
   // Obstacles have cut that off.
-  const uint64_t nodes = path.nodes;
+  const uint64_t spent = path.nodes;
   is_disturbed = true;
-  ground().find_over_points(from, to, path, budget.after(nodes));
-  path.nodes += nodes;
+  ground().find_over_points(from, to, path, budget.after(spent));
+  path.nodes += spent;
 }
 
 void PathFinder::State::find_connected(const Place& from, const Place& to,
                                        path::IfUnreachable otherwise, const SearchBudget& budget,
                                        Path& path) {
-  uint64_t nodes = 0;
+  uint64_t spent = 0;
   if (mesh && !edits().may_shorten_paths()) {
     // Obstacles only remove ground: the shortest path of the baked ground that can still be walked
     // is the shortest.
@@ -186,11 +186,11 @@ void PathFinder::State::find_connected(const Place& from, const Place& to,
     if (path.end == PathEnd::kReached && (!edits().bears_on_ground() || ground().allows(path)))
       return;
     if (path.end == PathEnd::kBudgetExhausted) return;
-    nodes = path.nodes;
+    spent = path.nodes;
   }
   is_disturbed = true;
-  ground().find(from, to, path, budget.after(nodes), otherwise);
-  path.nodes += nodes;
+  ground().find(from, to, path, budget.after(spent), otherwise);
+  path.nodes += spent;
   if (path.end == PathEnd::kUnreachable && otherwise == path::IfUnreachable::kNothing)
     forget_points(path);
 }

@@ -10,7 +10,7 @@
 
 #include "baked.h"
 #include "core/random.h"
-#include "path/node_finder.h"
+#include "path/overlay/node_finder.h"
 #include "path/surface/node_changes.h"
 #include "path/surface/node_search.h"
 #include "path/surface/node_view.h"
@@ -69,7 +69,7 @@ void for_each_mesh(Check check) {
                              builtin({.name = "garage", .size = 30, .levels = 2})}) {
     const Nodes nodes = make_nodes(scene);
     for (const int32_t c : {0, 1}) {
-      const auto mesh = graph::NodeMesh::make(nodes, c, 1, context);
+      const auto mesh = graph::NodeMesh::create(nodes, c, 1, context);
       ASSERT_TRUE(mesh);
       check(nodes, *mesh);
     }

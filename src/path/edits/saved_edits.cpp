@@ -56,8 +56,10 @@ static_assert(sizeof(CallRow) == 24 && std::is_trivially_copyable_v<CallRow>);
 template <class T>
 void put(std::vector<uint8_t>& out, const T* values, size_t count) {
   static_assert(std::is_trivially_copyable_v<T>);
-  const auto* bytes = reinterpret_cast<const uint8_t*>(values);
-  if (count > 0) out.insert(out.end(), bytes, bytes + count * sizeof(T));
+  if (count == 0) return;
+  const size_t before = out.size();
+  out.resize(before + count * sizeof(T));
+  std::memcpy(out.data() + before, values, count * sizeof(T));
 }
 
 // Takes values from the front. False: there are not so many bytes.

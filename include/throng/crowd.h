@@ -267,9 +267,10 @@ class THRONG_API Crowd {
   /// Sets goals of avatars that walk over nodes. Ids of others are ignored, too.
   void set_goals(std::span<const AvatarId> ids, std::span<const NodePlace> goals);
   /// Makes a target: a region, the union of prisms, that many avatars can head to. One search
-  /// outwards from it serves them all (FlowField). An avatar has arrived when its middle is inside.
-  /// Fails with kBadInput (a bad prism), kBadConfig (Routing::kStraight), kLimit (65535 targets) or
-  /// kCancelled. Time: the ground of all classes in use. Targets cannot be removed.
+  /// outwards from it serves them all (FlowField). An avatar has arrived when its middle is inside,
+  /// or within 0.3 m of the place inside to which its path leads. Fails with kBadInput (a bad
+  /// prism), kBadConfig (Routing::kStraight), kLimit (65535 targets) or kCancelled. Time: the
+  /// ground of all classes in use. Targets cannot be removed.
   [[nodiscard]] Result<TargetId> add_target(std::span<const Prism> areas, Context& context);
   /// Sends avatars to a target of this crowd instead of a goal, each to the nearest place of the
   /// target. An avatar of a class that flies walks if a path on foot leads there, and flies if none

@@ -200,7 +200,8 @@ TEST(CrowdTargets, ACancelledOneIsNotAddedAndTheCrowdGoesOn) {
   EXPECT_GT(crowd.distance(id, *second), crowd.distance(id, first) + 5);
   crowd.set_targets({&id, 1}, *second);
   for (int step = 0; step < 300 && crowd.arrived().empty(); ++step) crowd.step();
-  EXPECT_TRUE(area.contains(crowd.read(id)->position));
+  const Vec3d end = crowd.read(id)->position;
+  EXPECT_TRUE(Prism::box({14.7, -0.5, 14.7}, {18, 1, 18}).contains(end)) << end.x << ' ' << end.z;
 }
 
 TEST(CrowdTargets, MoreThan65535AreRefused) {

@@ -88,7 +88,7 @@ TEST(NearestPlace, IsTheNearestOfTheComponentOfTheStart) {
   Context context;
   uint64_t apart = 0;
   for (const Scene& scene : {blocks(1), blocks(2), worlds::doorway(0.2), worlds::two_floors(),
-                             test::builtin({.name = "garage", .size = 30, .levels = 2})}) {
+                             test::builtin({.name = "garage", .size = 45, .levels = 2})}) {
     const World world = bake(scene, 0.25, {{.name = "adult"}});
     const Graph graph = need(Graph::create(world, {}, context));
     PathFinder finder = need(PathFinder::create(world, {}, context));

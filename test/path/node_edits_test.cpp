@@ -65,8 +65,8 @@ double depth_in(const Prism& box, Vec3d p) {
 template <class Check>
 void for_each_mesh(Check check) {
   Context context;
-  for (const Scene& scene : {builtin({.name = "landscape", .size = 40, .seed = 2}),
-                             builtin({.name = "garage", .size = 30, .levels = 2})}) {
+  for (const Scene& scene : {builtin({.name = "landscape", .size = 64, .seed = 2}),
+                             builtin({.name = "garage", .size = 45, .levels = 2})}) {
     const Nodes nodes = make_nodes(scene);
     for (const int32_t c : {0, 1}) {
       const auto mesh = graph::NodeMesh::create(nodes, c, 1, context);

@@ -114,7 +114,7 @@ uint64_t finish(PathFinder& finder, uint64_t slice, Path& path, uint64_t before 
 
 TEST(QueryParts, FindTheSameForSlicesOfAnySize) {
   uint64_t reached = 0, unreachable = 0, many = 0;
-  for (const Scene& scene : {builtin({.name = "garage", .size = 30, .levels = 2}), two_halls()}) {
+  for (const Scene& scene : {builtin({.name = "garage", .size = 45, .levels = 2}), two_halls()}) {
     Stage s(scene);
     for (const int32_t c : {kAdult, kFlyer, kClimber}) {
       PathFinder finder = s.finder(c);
@@ -151,7 +151,7 @@ TEST(QueryParts, FindTheSameForSlicesOfAnySize) {
 }
 
 TEST(QueryParts, AnEditMakesThemBeginAgain) {
-  Stage s(builtin({.name = "garage", .size = 30, .levels = 2}));
+  Stage s(builtin({.name = "garage", .size = 45, .levels = 2}));
   for (const int32_t c : {kAdult, kFlyer, kClimber}) {
     PathFinder finder = s.finder(c), other = s.finder(c);
     Path whole, parts;
@@ -180,7 +180,7 @@ TEST(QueryParts, AnEditMakesThemBeginAgain) {
 }
 
 TEST(QueryParts, OtherQueriesDoNotDisturbTheResult) {
-  Stage s(builtin({.name = "garage", .size = 30, .levels = 2}));
+  Stage s(builtin({.name = "garage", .size = 45, .levels = 2}));
   for (const int32_t c : {kAdult, kFlyer, kClimber}) {
     PathFinder finder = s.finder(c), other = s.finder(c);
     Path whole, parts, path;
@@ -218,7 +218,7 @@ TEST(QueryParts, OtherQueriesDoNotDisturbTheResult) {
 }
 
 TEST(QueryParts, KeepTheBudgetOfTheWholeQueryAndCanBeCancelled) {
-  Stage s(builtin({.name = "garage", .size = 30, .levels = 2}));
+  Stage s(builtin({.name = "garage", .size = 45, .levels = 2}));
   for (const int32_t c : {kAdult, kFlyer, kClimber}) {
     PathFinder finder = s.finder(c);
     Path whole, parts;

@@ -69,7 +69,7 @@ TEST(VerifyNodes, PlacesAndArcsOfAWorldHoldForEachClass) {
         verify_nodes(yard_nodes(), yard(), {.samples = 2000, .avatar_class = c}, context);
     ASSERT_TRUE(report) << report.error().message;
     EXPECT_EQ(report->places, 2000u);
-    EXPECT_GT(report->arcs, 2000u);
+    EXPECT_GE(report->arcs, 2000u);
     EXPECT_EQ(
         report->entered + report->unsupported + report->steeper + report->lower + report->one_way,
         0u);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <utility>
@@ -24,6 +25,7 @@ namespace {
 
 using steer::Plane;
 
+// (What runs on all workers is handed over by std::cref: a copy would be allocated in each step.)
 constexpr size_t kGrain = 256;  // bodies that are worth another thread
 constexpr std::array<float, 3> kShorterParts = {0.5f, 0.25f, 0.1f};
 constexpr float kArrivalRadius = 0.3f;    // [m] from its goal a body has arrived
@@ -172,7 +174,7 @@ void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
     return left ? -b.detour_angle : b.detour_angle;
   };
   const size_t pieces = (size_ + kGrain - 1) / kGrain;
-  parallel_for_worker(pieces, config_.workers, [&](size_t piece, int32_t worker) {
+  const auto run = [&](size_t piece, int32_t worker) {
     const size_t begin = piece * kGrain;
     const std::span<Body> bodies{bodies_.data() + begin, std::min(kGrain, size_ - begin)};
     for (Body& b : bodies) {
@@ -188,7 +190,8 @@ void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
                               b.speed, units_of(b).dt, turn(b))
                         : Plane{};
     }
-  });
+  };
+  parallel_for_worker(pieces, config_.workers, std::cref(run));
 }
 
 void CrowdEngine::decide_all(EngineCounts& counts) {
@@ -197,7 +200,7 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
     worker.counts = {};
   }
   const size_t pieces = (size_ + kGrain - 1) / kGrain;
-  parallel_for_worker(pieces, config_.workers, [&](size_t piece, int32_t worker) {
+  const auto run = [&](size_t piece, int32_t worker) {
     const auto w = static_cast<uint16_t>(worker);
     NeighbourGrid::Around around;
     uint32_t square = UINT32_MAX;
@@ -228,7 +231,8 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
       if (proposals()[i].round == 0) contests.unproposed |= bit;
       ++workers_[w].counts.contested;
     }
-  });
+  };
+  parallel_for_worker(pieces, config_.workers, std::cref(run));
   for (const Worker& worker : workers_) counts.add(worker.counts);
 }
 
@@ -502,19 +506,18 @@ void CrowdEngine::for_contests(uint64_t Contests::*which, Do act) {
   static_assert(kGrain % kBits == 0);
   const size_t words = (size_ + kBits - 1) / kBits;
   constexpr size_t kPiece = kGrain / kBits;
-  parallel_for_worker((words + kPiece - 1) / kPiece, config_.workers,
-                      [&](size_t piece, int32_t worker) {
-                        const size_t last = std::min(words, (piece + 1) * kPiece);
-                        for (size_t word = piece * kPiece; word < last; ++word) {
-                          uint64_t& bits = contests_[word].*which;
-                          for (uint64_t left = bits; left != 0; left &= left - 1) {
-                            const auto bit = static_cast<size_t>(std::countr_zero(left));
-                            const auto i = static_cast<uint32_t>(word * kBits + bit);
-                            if (act(i, workers_[static_cast<size_t>(worker)]))
-                              bits ^= uint64_t{1} << bit;
-                          }
-                        }
-                      });
+  const auto run = [&](size_t piece, int32_t worker) {
+    const size_t last = std::min(words, (piece + 1) * kPiece);
+    for (size_t word = piece * kPiece; word < last; ++word) {
+      uint64_t& bits = contests_[word].*which;
+      for (uint64_t left = bits; left != 0; left &= left - 1) {
+        const auto bit = static_cast<size_t>(std::countr_zero(left));
+        const auto i = static_cast<uint32_t>(word * kBits + bit);
+        if (act(i, workers_[static_cast<size_t>(worker)])) bits ^= uint64_t{1} << bit;
+      }
+    }
+  };
+  parallel_for_worker((words + kPiece - 1) / kPiece, config_.workers, std::cref(run));
 }
 
 // By induction no body ever touches another: a proposed place is clear of where all bodies stand
@@ -603,7 +606,7 @@ bool CrowdEngine::is_accepted(uint32_t i, uint64_t step) const {
 void CrowdEngine::settle_all(EngineCounts& counts) {
   arrived_.clear();
   std::mutex adding;
-  parallel_ranges(size_, 4 * kGrain, config_.workers, [&](size_t begin, size_t end) {
+  const auto run = [&](size_t begin, size_t end) {
     EngineCounts here;
     for (size_t i = begin; i < end; ++i) {
       Body& b = bodies_[i];
@@ -660,7 +663,8 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
     }
     const std::lock_guard lock(adding);
     counts.add(here);
-  });
+  };
+  parallel_ranges(size_, 4 * kGrain, config_.workers, std::cref(run));
 }
 
 uint64_t CrowdEngine::bytes() const {

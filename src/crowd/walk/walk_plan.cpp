@@ -47,7 +47,11 @@ void WalkMode::plan(std::span<Body> bodies, int32_t worker) {
     ++asked;
     const bool is_found = plan_path(body, route, ground, worker);
     if (takes_links) takes_links_->end_search(body, is_found ? &route : nullptr);
-    if (is_found) continue;
+    if (is_found) {
+      // One that searches in each step comes to a link, too.
+      if (takes_links) takes_links_->plan_at_start(body, route, ground, nth);
+      continue;
+    }
     // A target that cannot be walked to may be flown to.
     const bool takes_off = parts.flies && body.target != 0 && takes_off_->take_off(body);
     if (!takes_off) shared_.drop_goal(body);

@@ -62,7 +62,7 @@ void AirString::cut_corners(std::vector<AirPoint>& path) {
     next_.push_back(toward(after, low));
   }
   next_.push_back(path.back());
-  path.swap(next_);
+  path.assign(next_.begin(), next_.end());  // Both keep what they have grown to.
 }
 
 void AirString::slide(std::vector<AirPoint>& path, size_t waypoint) const {

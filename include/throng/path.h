@@ -196,7 +196,8 @@ class THRONG_API Edits {
   std::shared_ptr<path::EditList> state_;
 };
 
-/// Settings of a PathFinder. A setting that its space does not have is refused with kBadConfig.
+/// Settings of a PathFinder. A speedup or a slope cost that its space does not have is refused with
+/// kBadConfig; other settings of another space are ignored.
 struct PathConfig {
   int32_t avatar_class = 0;
   /// On the ground, cost of a metre on level tiles: 1 + slope_cost * rise. Rises are rounded up to
@@ -437,7 +438,8 @@ struct FlowSummary {
 class THRONG_API FlowField {
  public:
   /// Makes a field by one Dijkstra search over the ground of a finder's class. Goals that are no
-  /// places of the class are ignored. Fails with kBadInput (no goal is left) or kCancelled.
+  /// places of the class are ignored. Fails with kBadConfig (max_distance), kBadInput (no goal is
+  /// left) or kCancelled.
   [[nodiscard]] static Result<FlowField> create(const PathFinder& finder,
                                                 std::span<const Place> goals,
                                                 const FlowConfig& config, Context& context);

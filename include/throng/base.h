@@ -162,7 +162,7 @@ struct Prism {
   }
   /// Is (x, z) inside its polygon, border included? [m]
   [[nodiscard]] THRONG_API bool covers(double x, double z) const;
-  /// Is a height of feet from `low` to `high`, give or take kFeetTolerance? [m]
+  /// Is a height of feet within [low, high], widened by kFeetTolerance on both sides? [m]
   [[nodiscard]] bool covers_height(double y) const {
     return y >= low - kFeetTolerance && y <= high + kFeetTolerance;
   }

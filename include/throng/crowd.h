@@ -32,7 +32,7 @@ enum class ObstaclePhase : uint8_t {
 
 /// The present state of an obstacle in a crowd.
 struct ObstacleState {
-  Prism prism;  ///< Where it is or, while it waits to come up, will be.
+  Prism prism;  ///< Where it is; while it waits to come up, where it will be.
   ObstaclePhase phase = ObstaclePhase::kOff;
   ObstacleKind kind = ObstacleKind::kStatic;
   ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry;
@@ -132,19 +132,19 @@ struct CrowdConfig {
   /// Changes of the world at run time, which finders can share. At the beginning of `step`, `add`
   /// and `scatter` the crowd follows them: it makes the calls that have changed them since, one
   /// after the other, as if each were made then. So a door that was switched off and on again
-  /// opens, and closes by its policy. Until then nothing in the crowd changes: neither obstacles(),
-  /// check() nor distance(). A crowd without avatars takes the state of edits that it sees for the
-  /// first time, not their calls, and so does one that has missed more than 2000 calls at once:
-  /// then an obstacle that was moved, moves from where it was to where it is.
+  /// opens, and closes by its policy. Until then nothing in the crowd changes: obstacles(), check()
+  /// and distance() do not know the calls. A crowd takes the present state of the edits in place of
+  /// the calls if it has no avatars and sees the edits for the first time, or if it has missed more
+  /// than 2000 calls: then an obstacle moves straight from where the crowd has it to where it is.
   ///
-  /// Until an obstacle is removed or switched off, no avatar stands where its body, from
-  /// body_bottom() up, could touch it (of triangles: the box around them). If bodies are in it, it
-  /// comes up later, as a door that closes: before the first step that begins with no body in it;
-  /// ObstaclePolicy says what happens until then. Paths lead around kStatic obstacles: an avatar
-  /// whose path is cut gets another one or, if there is none, its goal is unreachable. Avatars on
-  /// foot plan over areas with the costs that these have. Time of each call that changed an
-  /// obstacle: linear in all avatars, and in the tiles that it touches with their obstacles. Edits
-  /// that have not changed cost a step one comparison.
+  /// While an obstacle is up, no avatar stands where its body, from body_bottom() up, could touch
+  /// it (of triangles: the box around them). If bodies are in it when it is requested, it comes up
+  /// before the first step that begins with no body in it; ObstaclePolicy says what happens until
+  /// then. Paths lead around kStatic obstacles: an avatar whose path is cut gets another one or, if
+  /// there is none, its goal is unreachable. Avatars on foot plan over areas with the costs that
+  /// these have. Time of each call that changed an obstacle: linear in all avatars, and in the
+  /// tiles that it touches with their obstacles. Edits that have not changed cost a step one
+  /// comparison.
   ///
   /// With Routing::kPaths, avatars of classes that neither fly nor go over nodes take off-mesh
   /// links. They take a link in the order in which they came, in one direction at a time, and wait
@@ -153,9 +153,9 @@ struct CrowdConfig {
   /// moves in a straight line, at its speed times length / cost, but not faster than its speed and
   /// not slower than a thousandth of it. Only other avatars stop it there: if the link is switched
   /// off it still arrives, an obstacle on the rest of the line waits for it, and a new goal or
-  /// velocity applies from the end on. An avatar that stays at an end closes the link in that
-  /// direction for as long; one that stays on ground that the line crosses stops those on the link.
-  /// Classes that go over nodes take NodeConfig::off_mesh_links; flyers take none.
+  /// velocity applies from the end on. While an avatar stays at an end, no other one enters the
+  /// link towards that end. An avatar that stays on ground that the line crosses stops those on the
+  /// link. Classes that go over nodes take NodeConfig::off_mesh_links; flyers take none.
   Edits edits = {};
   /// PathConfig::slope_cost of avatars that walk or climb. [0 to 1000]
   double slope_cost = 0;

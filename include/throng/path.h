@@ -142,7 +142,7 @@ struct EditList;  // Internal.
 /// avatars are added, in the order of the calls (CrowdConfig::edits). In the air only obstacles
 /// count: areas and links do not apply. Edits add no ground: an avatar can stand on a crate only if
 /// it was baked. No edit may be made while another thread uses a handle of the same list, or a
-/// finder or a crowd that has one. The list never shrinks: a removed edit leaves about 150 bytes.
+/// finder or a crowd that has one. The list never shrinks: a removed edit leaves about 330 bytes.
 class THRONG_API Edits {
  public:
   Edits();
@@ -150,8 +150,10 @@ class THRONG_API Edits {
   /// Adds an obstacle: a class cannot stand where its body could touch the prism; on the ground
   /// the body counts from body_bottom() up. Finders know only those that are kStatic. A crowd lets
   /// it come up by its policy once no body is inside (Crowd::obstacle says whether it has). Fails
-  /// with kBadInput. Time: constant; the next query of each finder also takes time for the tiles
-  /// that the obstacle touches, the next step of a crowd that and time linear in all avatars.
+  /// with kBadInput. Time: constant. Later, once for each finder and crowd: on the ground and in
+  /// the air the next query takes time for what the obstacle touches, over nodes time linear in all
+  /// active edits; the next step of a crowd takes time for what the obstacle touches, and time
+  /// linear in all avatars.
   [[nodiscard]] Result<EditId> add_obstacle(const Prism& prism,
                                             ObstacleKind kind = ObstacleKind::kStatic,
                                             ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry);
@@ -194,7 +196,8 @@ class THRONG_API Edits {
   std::shared_ptr<path::EditList> state_;
 };
 
-/// Settings of a PathFinder. A setting that its space does not have is refused with kBadConfig.
+/// Settings of a PathFinder. A speedup or a slope cost that its space does not have is refused with
+/// kBadConfig; other settings of another space are ignored.
 struct PathConfig {
   int32_t avatar_class = 0;
   /// On the ground, cost of a metre on level tiles: 1 + slope_cost * rise. Rises are rounded up to
@@ -303,10 +306,11 @@ struct PathQuery {
   /// again.
   bool by_turns = true;
   /// If no path leads to the goal, find the path to what is reachable and nearest to it, heights
-  /// counted, and what blocks it there. It costs a look around the goal and one more search. Only
-  /// if it is not known beforehand what is connected (on the ground, where obstacles cut the goal
-  /// off, an off-mesh link is in force, with kOnDemand or a slope cost) all that is reachable is
-  /// searched, which takes up to a second in a city. Over nodes it is always done.
+  /// counted, and what blocks it there. It costs a look around the goal and one more search. On the
+  /// ground, all that is reachable is searched if it is not known beforehand what is connected:
+  /// where obstacles cut the goal off, while an off-mesh link is in force, with kOnDemand, and with
+  /// a slope cost. That takes up to a second in a city. Over nodes the setting is ignored: it is
+  /// always done.
   bool nearest = true;
   SearchBudget budget = {};
 };
@@ -318,8 +322,8 @@ struct PathQuery {
 class THRONG_API PathFinder {
  public:
   /// Makes a finder. Reads every zone once, except with kOnDemand. Fails with kBadConfig (no such
-  /// class, or a setting that its space does not have), kNotFound (no air, no nodes), kBadFile (a
-  /// zone cannot be used) or kCancelled.
+  /// class, or a setting that its space does not have), kBadInput (an empty world), kNotFound (no
+  /// air), kBadFile (no nodes, or a zone cannot be used) or kCancelled.
   [[nodiscard]] static Result<PathFinder> create(const World& world, const PathConfig& config,
                                                  Context& context);
   PathFinder(const PathFinder& other);
@@ -340,9 +344,8 @@ class THRONG_API PathFinder {
   ///
   /// Over nodes: A* over the middles of the lines along which nodes touch, or over the overlay if
   /// the path is long, then string pulling within the nodes of the corridor. If the goal is
-  /// unreachable, the path leads to the reachable place nearest to it; if obstacles are up or that
-  /// place is more than 25 m from the goal, to the nearest place in the block whose border comes
-  /// nearest.
+  /// unreachable, the path leads to the reachable place nearest to it; if edits are in force, or
+  /// that place is more than 25 m from the goal, only to about the nearest.
   ///
   /// In the air: over the ground where that is shorter, else straight up, through the air and
   /// straight down; from a place where it cannot take off, it walks to one where it can. If the air
@@ -359,11 +362,11 @@ class THRONG_API PathFinder {
   /// and in the air, with its walks, alike. Until then `path` has no points, and counts what was
   /// expanded. The path is that of find, whatever the slices; on the ground, a path to a goal that
   /// is reached is that of find with kOnDemand. PathQuery::budget is that of the whole query;
-  /// `cancel` is read by each call, too. Not counted, and in one go: to find the ends, string
-  /// pulling, floods to the nearest take-off, rows of the overlay that obstacles have changed. If
-  /// edits change in between, or this finder is asked for another path, the query begins again: use
-  /// a copy for paths in between. Once it has ended, or without begin, advance returns true and
-  /// nothing is found.
+  /// `cancel` is read by each call, too. Finding the ends, string pulling, floods to the nearest
+  /// take-off and rows of the overlay that obstacles have changed are not counted, and each is done
+  /// in one go. If edits change in between, or this finder is asked for another path, the query
+  /// begins again: use a copy for paths in between. Once it has ended, or without begin, advance
+  /// returns true and nothing is found.
   void begin(const PathQuery& query);
   bool advance(uint64_t max_nodes, Path& path);
 
@@ -435,7 +438,8 @@ struct FlowSummary {
 class THRONG_API FlowField {
  public:
   /// Makes a field by one Dijkstra search over the ground of a finder's class. Goals that are no
-  /// places of the class are ignored. Fails with kBadInput (no goal is left) or kCancelled.
+  /// places of the class are ignored. Fails with kBadConfig (max_distance), kBadInput (no goal is
+  /// left) or kCancelled.
   [[nodiscard]] static Result<FlowField> create(const PathFinder& finder,
                                                 std::span<const Place> goals,
                                                 const FlowConfig& config, Context& context);

@@ -250,7 +250,7 @@ struct SummaryMap {
   double lowest = 0, highest = 0;  ///< Feet in [lowest, highest). [m]
   double x0 = 0, z0 = 0, cell = 0.5;
   int32_t width = 0, depth = 0;
-  std::vector<double> density;  ///< Mean over the whole time. [persons / m^2]
+  std::vector<double> density;  ///< Mean over the whole time. [avatars / m^2]
   std::vector<double> waiting;  ///< Waiting time, summed over avatars. [s / m^2]
 };
 

@@ -28,7 +28,7 @@ namespace throng {
 // Scenarios: which avatars enter a world, when and where, where they head to, and what they do on
 // their journeys. One readable file (TOML or JSON); docs/scenarios.md lists every key.
 
-/// A random number with a distribution, drawn for each person.
+/// A random number with a distribution, drawn for each avatar.
 struct Distribution {
   enum class Kind : uint8_t { kFixed, kUniform, kNormal, kExponential };
   Kind kind = Kind::kFixed;
@@ -127,11 +127,11 @@ struct Source {
   double begin = 0;              ///< [s]
   double end = HUGE_VAL;         ///< [s]
   /// Pairs of time and rate, each rate until the next time; empty: all `count` at once. [s,
-  /// people/s]
+  /// avatars/s]
   std::vector<std::pair<double, double>> rates;
   SpawnPattern pattern = SpawnPattern::kRandom;
   Distribution premovement;  ///< Premovement time: stands so long before its journey begins. [s]
-  Distribution group;        ///< Size of a group that enters and stays together. [people]
+  Distribution group;        ///< Size of a group that enters and stays together. [avatars]
 };
 
 /// A line of avatars before a counter or a gate.
@@ -149,7 +149,7 @@ struct Link {
   std::string name;
   int32_t from = 0, to = 0;  ///< Areas.
   double interval = 1;       ///< Between two departures. [s]
-  int32_t capacity = 1;      ///< People per departure.
+  int32_t capacity = 1;      ///< Avatars per departure.
   double seconds = 0;        ///< Of the ride. [s]
 };
 
@@ -265,8 +265,7 @@ class THRONG_API Simulation {
   [[nodiscard]] bool is_over() const;
 
   [[nodiscard]] const Crowd& crowd() const;
-  /// Reads the avatars of the crowd in ascending order of id, which is the person's number modulo
-  /// 2^32.
+  /// Reads the avatars of the crowd in ascending order of id, which is Trip::person modulo 2^32.
   void read(std::vector<AvatarState>& out) const;
   /// XXH3 of the crowd and of the state of all journeys.
   [[nodiscard]] uint64_t state_hash() const;
@@ -375,8 +374,8 @@ enum class Observed : uint8_t {
   kSpeed,
   kPeople,      ///< Number of avatars that left.
   kStayed,      ///< Number of avatars that entered and have not left.
-  kDensity,     ///< People in an area divided by its size, at each step. [1/m2]
-  kFlow,        ///< People per second over a line, or per metre of it. [p/s, p/(m s)]
+  kDensity,     ///< Avatars in an area divided by its size, at each step. [1/m2]
+  kFlow,        ///< Avatars per second over a line, or per metre of it. [p/s, p/(m s)]
   kPassed,      ///< Number of avatars that crossed a line.
   kRatio,       ///< The first of two earlier measures divided by the second.
   kDifference,  ///< The first of two earlier measures less the second.

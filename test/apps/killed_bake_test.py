@@ -82,7 +82,11 @@ def main():
         assert content(world) == references[empty][0]
         before = content(old)
         killed = resumed = in_graph = in_nodes = opened = refused = without_nodes = 0
-        for point in range(POINTS):
+        # On a busy machine few points may fall where it matters: then there are more of them.
+        for point in range(4 * POINTS):
+            if point >= POINTS and killed >= POINTS // 4 and resumed >= 2 and in_graph >= 1:
+                break
+            points = point + 1
             start = (empty, old)[point % 2]
             reference, seconds = references[start]
             shutil.rmtree(world, ignore_errors=True)
@@ -112,7 +116,7 @@ def main():
             assert content(world) == reference, f"point {point}: other bytes than undisturbed"
             left = {file.name for file in folder.iterdir()} - {"old.obj", "new.obj", "old.throng", "w.throng"}
             assert not left, f"point {point}: left behind: {left}"
-        print(f"{POINTS} points: {killed} killed, {resumed} with zones to resume from, {in_graph} while "
+        print(f"{points} points: {killed} killed, {resumed} with zones to resume from, {in_graph} while "
               f"the graph was made, {in_nodes} with nodes to resume from; the world opened {opened} "
               f"times, {without_nodes} of them without its nodes, and was refused {refused} times")
         assert killed >= POINTS // 4 and resumed >= 2 and in_graph >= 1, "too few bakes were killed where it matters"

@@ -177,11 +177,15 @@ Head head_of(const World& world, const CrowdConfig& config) {
 Error bad(const std::string& what) { return {Errc::kBadFile, "crowd: what was saved " + what}; }
 
 // Can a step use it without reading out of bounds? What its modes have of it, they test.
+// No body is so large, and sums of a few such sizes fit. [units, mm]
+constexpr int32_t kMaxExtent = 1 << 28;
+
 bool is_sound(const crowd::Body& b, const world::WorldData& data) {
   const bool finite =
       std::isfinite(b.velocity.x + b.velocity.z + b.preferred.x + b.preferred.z + b.detour_angle) &&
       std::isfinite(b.speed);
-  if (!finite || !(b.speed > 0) || b.radius <= 0 || b.avatar_class >= data.summary.classes.size()) {
+  if (!finite || !(b.speed > 0) || b.radius <= 0 || b.radius > kMaxExtent ||
+      b.avatar_class >= data.summary.classes.size()) {
     return false;
   }
   if (b.x < 0 || b.z < 0 || !world::in_grid(data, b.point())) return false;
@@ -264,7 +268,6 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
     return bad("is corrupt; save the crowd again");
   }
   const auto may_be = [](int32_t widest, int32_t tallest) {
-    constexpr int32_t kMaxExtent = 1 << 28;  // [units, mm]
     return widest >= 0 && widest <= kMaxExtent && tallest >= 0 && tallest <= kMaxExtent;
   };
   if (!may_be(head.extent.widest, head.extent.tallest) || head.extent.narrowest <= 0 ||

@@ -235,10 +235,9 @@ TEST(CrowdEdits, ClimbersPlanByAreas) {
   const auto area = edits.add_area(Prism::box({10, -1, -1}, {14, 1, 16}), 3);
   ASSERT_TRUE(area);
   EXPECT_NEAR(crossing(crowd, world, from, to), 4, 2);
-  for (const double cost : {6.0}) {  // (They stall at bends of such paths: docs/design/013.)
-    ASSERT_TRUE(edits.set_area_cost(3, cost));
-    EXPECT_GT(crossing(crowd, world, from, to), 15.5) << cost;
-  }
+  // (At other costs climbers stall at bends of such paths: docs/design/013.)
+  ASSERT_TRUE(edits.set_area_cost(3, 6));
+  EXPECT_GT(crossing(crowd, world, from, to), 15.5);
   EXPECT_TRUE(edits.remove(*area));
   EXPECT_NEAR(crossing(crowd, world, from, to), 4, 2);
 }

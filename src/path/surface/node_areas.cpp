@@ -6,6 +6,7 @@
 #include "core/access.h"
 #include "path/edits/blocked_cells.h"
 #include "path/edits/plan_shapes.h"
+#include "path/surface/floors_near.h"
 #include "path/surface/node_changes.h"
 #include "world/ground.h"
 
@@ -18,22 +19,13 @@ ChangeId NodeChanges::add_area(const Prism& prism, uint8_t kind) {
   change.kind = Kind::kArea;
   change.area = kind;
   const world::WorldData& world = *data_of(data_of(mesh_->nodes())->world);
-  const SquareRange tiles = tiles_near(world, prism.corners, world.summary.cell);
-  for (int32_t z = tiles.first_z; z <= tiles.last_z; ++z) {
-    for (int32_t x = tiles.first_x; x <= tiles.last_x; ++x) {
-      const auto levels = world.tile_levels(x, z);
-      for (uint32_t level = levels.first; level < levels.last; ++level) {
-        const uint32_t patch = mesh_->patch_of_level(level);
-        if (patch == graph::kNoNode) continue;
-        const world::GroundLevel ground = world::ground_level(world, level, mesh_->avatar_class());
-        if (ground.zone == nullptr) continue;
-        const world::CellRows rows = cells_in({world.summary, ground.view, x, z}, prism);
+  for_floors_near(
+      *mesh_, prism.corners, world.summary.cell, [&](uint32_t patch, const TileFloor& floor) {
+        const world::CellRows rows = cells_in(floor, prism);
         if (std::any_of(rows.begin(), rows.end(), [](uint64_t row) { return row != 0; })) {
           change.tiles.push_back({patch, rows});
         }
-      }
-    }
-  }
+      });
   Box3d box;
   for (const auto& [x, z] : prism.corners) {
     box.add({x, prism.low, z});

@@ -8,6 +8,7 @@
 #include "core/access.h"
 #include "graph/surface_piece.h"
 #include "path/edits/blocked_cells.h"
+#include "path/surface/floors_near.h"
 #include "world/place.h"
 
 // Which blocks and portals of a mesh of nodes obstacles block, found by halving blocks and motions.
@@ -131,44 +132,30 @@ void NodeChanges::block_tiles(const Solid& solid, double around, Change& change,
                               std::vector<uint32_t>& near) const {
   const world::WorldData& world = *data_of(data_of(mesh_->nodes())->world);
   const AvatarClass& avatar = world.summary.classes[static_cast<size_t>(mesh_->avatar_class())];
-  const SquareRange tiles = tiles_near(world, solid.prism.corners, around);
-  world::CellRows all;
-  all.fill(~uint64_t{0});
-  for (int32_t z = tiles.first_z; z <= tiles.last_z; ++z) {
-    for (int32_t x = tiles.first_x; x <= tiles.last_x; ++x) {
-      const auto levels = world.tile_levels(x, z);
-      for (uint32_t level = levels.first; level < levels.last; ++level) {
-        const uint32_t patch = mesh_->patch_of_level(level);
-        if (patch == graph::kNoNode) continue;
-        const world::GroundLevel ground = world::ground_level(world, level, mesh_->avatar_class());
-        if (ground.zone == nullptr) continue;
-        const TileFloor floor{world.summary, ground.view, x, z};
-        // Legal cells alone need their heights.
-        world::CellRows legal{};
-        const auto blocks = mesh_->blocks_of(patch);
-        for (const graph::NodeBlock& block : blocks) {
-          const int32_t side = 64 >> block.level;
-          const uint64_t row = (~uint64_t{0} >> (64 - side)) << (block.s * side);
-          for (int32_t k = block.t * side; k < (block.t + 1) * side; ++k)
-            legal[static_cast<size_t>(k)] |= row;
-        }
-        const world::CellRows rows =
-            blocked_cells(floor, avatar, solid.prism, solid.triangles, legal.data());
-        if (std::any_of(rows.begin(), rows.end(), [](uint64_t row) { return row != 0; })) {
-          change.tiles.push_back({patch, rows});
-        }
-        const auto [first_x, last_x, first_z, last_z] =
-            cells_near(floor, solid.prism.corners, around);
-        for (uint32_t b = 0; b < blocks.size(); ++b) {
-          const int32_t side = 64 >> blocks[b].level;
-          const int32_t s = blocks[b].s * side, t = blocks[b].t * side;
-          if (s <= last_x && s + side > first_x && t <= last_z && t + side > first_z) {
-            near.push_back(mesh_->first_block(patch) + b);
-          }
-        }
+  for_floors_near(*mesh_, solid.prism.corners, around, [&](uint32_t patch, const TileFloor& floor) {
+    // Legal cells alone need their heights.
+    world::CellRows legal{};
+    const auto blocks = mesh_->blocks_of(patch);
+    for (const graph::NodeBlock& block : blocks) {
+      const int32_t side = 64 >> block.level;
+      const uint64_t row = (~uint64_t{0} >> (64 - side)) << (block.s * side);
+      for (int32_t k = block.t * side; k < (block.t + 1) * side; ++k)
+        legal[static_cast<size_t>(k)] |= row;
+    }
+    const world::CellRows rows =
+        blocked_cells(floor, avatar, solid.prism, solid.triangles, legal.data());
+    if (std::any_of(rows.begin(), rows.end(), [](uint64_t row) { return row != 0; })) {
+      change.tiles.push_back({patch, rows});
+    }
+    const auto [first_x, last_x, first_z, last_z] = cells_near(floor, solid.prism.corners, around);
+    for (uint32_t b = 0; b < blocks.size(); ++b) {
+      const int32_t side = 64 >> blocks[b].level;
+      const int32_t s = blocks[b].s * side, t = blocks[b].t * side;
+      if (s <= last_x && s + side > first_x && t <= last_z && t + side > first_z) {
+        near.push_back(mesh_->first_block(patch) + b);
       }
     }
-  }
+  });
 }
 
 uint8_t NodeChanges::finest_level(const graph::NodeBlock& block) const {

@@ -388,11 +388,15 @@ struct BuiltinWorldConfig {
   uint64_t seed = 1;
 };
 
-/// Description of a built-in world.
+/// Description of a built-in world, and what BuiltinWorldConfig may ask of it.
 struct BuiltinWorldInfo {
   std::string_view name;
-  std::string_view summary;  ///< One line, for `throng generate --list`.
-  double default_size = 0;   ///< [m]
+  std::string_view summary;           ///< One line, for `throng generate --list`.
+  double default_size = 0;            ///< [m]
+  double min_size = 0, max_size = 0;  ///< [m]
+  int32_t default_levels = 0;         ///< 0: it has no storeys to count.
+  int32_t max_levels = 0;
+  uint64_t max_triangles = 0;  ///< 0: it does not grow by triangles.
 };
 
 /// All built-in worlds.

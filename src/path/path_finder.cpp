@@ -314,25 +314,25 @@ void PathFinder::State::begin_on_ground() {
   begun_from = place_of(begun.from, begun.tolerance);
   begun_to = place_of(begun.to, begun.tolerance);
   nodes_before = 0;
-  aim = Aim::kGoal;
+  target = Target::kGoal;
   if (!is_apart(begun_from, begun_to) || !are_free(begun_from, begun_to)) {
     return ground().begin(begun_from, begun_to, otherwise_of(begun));
   }
-  aim = Aim::kNothing;
+  target = Target::kNothing;
   if (!begun.nearest) return;
   const Place nearest = nearest_connected(begun_from, begun_to);
-  aim = nearest ? Aim::kNearest : Aim::kFlood;
+  target = nearest ? Target::kNearest : Target::kFlood;
   if (nearest) return ground().begin(begun_from, nearest, path::IfUnreachable::kNothing);
   ground().begin_over_points(begun_from, begun_to);
 }
 
 bool PathFinder::State::advance_on_ground(path::Slice& slice, Path& path) {
-  if (aim == Aim::kNothing) {
+  if (target == Target::kNothing) {
     path::reset(path);
     path.end = PathEnd::kUnreachable;
     return true;
   }
-  if (aim == Aim::kNearest) {
+  if (target == Target::kNearest) {
     if (!ground().advance(begun.budget, slice, path)) return false;
     if (path.end == PathEnd::kReached) {
       end_before(begun_to, path);
@@ -340,7 +340,7 @@ bool PathFinder::State::advance_on_ground(path::Slice& slice, Path& path) {
     }
     if (path.end != PathEnd::kUnreachable) return true;
     // Obstacles have cut that off.
-    aim = Aim::kFlood;
+    target = Target::kFlood;
     nodes_before = path.nodes;
     ground().begin_over_points(begun_from, begun_to);
   }

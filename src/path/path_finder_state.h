@@ -34,13 +34,13 @@ struct PathFinder::State {
   uint64_t begun_version = 0;  // of the edits
   uint64_t begun_nodes = 0;    // expanded so far
   // On the ground: what its search leads to.
-  enum class Aim : uint8_t {
+  enum class Target : uint8_t {
     kGoal,
     kNearest,  // the nearest place that is connected, as far as the mesh knows
     kFlood,    // obstacles cut that off: the nearest of all that is reached
     kNothing,  // the goal is not connected
   };
-  Aim aim = Aim::kGoal;
+  Target target = Target::kGoal;
   Place begun_from, begun_to;
   uint64_t nodes_before = 0;  // expanded before the flood
 

@@ -183,9 +183,9 @@ class THRONG_API Edits {
   /// policy, false opens it at once or ends its closing. False if there is none of this id.
   bool remove(EditId edit);
   bool set_active(EditId edit, bool active);
-  /// Sets the cost of a metre on ground of an area kind; infinity closes it. All kinds begin
-  /// with 1. Over nodes, only areas of Edits have kinds, and no path begins or ends on what is
-  /// closed. Fails with kBadConfig. [kind 1 to 63, 0.01 to 10000 or infinity]
+  /// Sets the cost of a metre on ground of an area kind, which the bake or an area gave; infinity
+  /// closes it: no path begins, leads or ends there. All kinds begin with 1. Over nodes, only areas
+  /// of Edits have kinds. Fails with kBadConfig. [kind 1 to 63, 0.01 to 10000 or infinity]
   [[nodiscard]] Result<void> set_area_cost(uint8_t kind, double cost);
 
   /// Rises with every change of the list.

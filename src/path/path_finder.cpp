@@ -60,7 +60,9 @@ bool needs_mesh(const PathConfig& config) {
 
 // Of the finder of ground with edits, whose data is made on demand.
 PathConfig live_config(const PathConfig& config) {
-  return {.avatar_class = config.avatar_class, .slope_cost = config.slope_cost};
+  return {.avatar_class = config.avatar_class,
+          .slope_cost = config.slope_cost,
+          .workers = config.workers};
 }
 
 }  // namespace

@@ -453,7 +453,8 @@ class THRONG_API FlowField {
   /// Infinite if no path leads there, or none within `max_distance`. [m]
   [[nodiscard]] double distance(const Place& place);
   /// The next local target: the farthest point of the path to the nearest goal to which a straight
-  /// line or a link leads. At last the goal itself; nowhere if no path leads there.
+  /// line leads. Where the path takes an off-mesh link, that is its start; from places within a
+  /// cell of it, it is the link's end. At last the goal itself; nowhere if no path leads there.
   [[nodiscard]] Place next(const Place& place);
   /// Finds the whole path to the nearest goal, pulled taut.
   void find_path(const Place& place, Path& path);

@@ -48,14 +48,14 @@ int main(int argc, char** argv) {
   const EditId door = need(edits.add_obstacle(shut));
   need(edits.add_obstacle(Prism::circle(from.position + line * 0.1, 0.6, 1)));
   finder.find(from, to, path);
+  if (path.end != PathEnd::kReached) return std::puts(": crate and door cut off the goal"), 1;
   std::printf(", with crate and shut door %.1f m\n", path.length);
   FlowField guide = need(FlowField::create(finder, {&to, 1}, {}, context));
 
   // The crowd: a player, and 500 avatars with goals. It reads the same edits; the door is open.
   edits.set_active(door, false);
   Crowd crowd = need(Crowd::create(world, {.dt = 0.1, .edits = edits}));
-  const std::vector<AvatarSpawn> spawns = {{.place = from, .speed = 2}};
-  const auto player = need(crowd.add(spawns, context));
+  const auto player = need(crowd.add(std::vector{AvatarSpawn{.place = from, .speed = 2}}, context));
   const auto others = need(crowd.scatter(500, {}, context));
   std::vector<Place> goals(500);
   for (size_t n = 0; n < 500; ++n) goals[n] = world.random_place(0, /*seed=*/1, n);

@@ -94,7 +94,7 @@ class Run {
             {"progress", progress / steps},
             {"stood", static_cast<double>(stood) / steps / o_.avatars},
             {"planned", planned},
-            {"stranded", goal_unreachable},
+            {"goal_unreachable", goal_unreachable},
             {"carts_moved", moved},
             {"waited", waited},
             {"avatar_steps", o_.steps * o_.avatars},

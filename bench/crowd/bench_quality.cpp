@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
                                           options.config.model = *model;
                                         })
       ->type_name("MODEL");
-  parser.add_flag("!--no-patience", options.config.deadlock_avoidance);
+  parser.add_flag("!--no-deadlock-avoidance", options.config.deadlock_avoidance);
   CLI11_PARSE(parser, argc, argv);
   std::puts(run(options).dump().c_str());
 }

@@ -345,7 +345,7 @@ int main(int argc, char** argv) {
   parser.add_option("--cell", options.cell, "Side of our cells [m]")->capture_default_str();
   parser.add_option("--avatars", options.avatars, "Above 16000 ours alone")->capture_default_str();
   parser.add_option("--seconds", options.seconds, "Simulated")->capture_default_str();
-  parser.add_option("--speed", options.speed, "Wished [m/s]")->capture_default_str();
+  parser.add_option("--speed", options.speed, "Desired speed [m/s]")->capture_default_str();
   parser.add_option("--far", options.far, "Goals are at least as far off [m]")
       ->capture_default_str();
   parser.add_option("--seed", options.seed)->capture_default_str();

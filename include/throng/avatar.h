@@ -87,8 +87,7 @@ struct AvatarState {
   double radius = 0;  ///< Of the body. [m]
   /// Unit vector in the ground plane. For an avatar that leans: before the lean; leaned() of
   /// avatar.h gives the direction of its walk.
-  double heading_x = 0;
-  double heading_z = 0;
+  double heading_x = 0, heading_z = 0;
   MoveMode mode = MoveMode::kWalk;
   /// Unit vector along the body from the feet; for climbers the surface's normal.
   Vec3d up{0, 1, 0};

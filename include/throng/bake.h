@@ -80,12 +80,12 @@ struct BakeReport {
   uint64_t air_bytes = 0;             ///< Of all air files.
   uint64_t graph_bytes = 0;           ///< Of all files of regions and links.
   std::vector<double> walkable_area;  ///< Per class. [m^2]
-  double seconds_columns = 0;
-  double seconds_levels = 0;
-  double seconds_clearance = 0;
+  double seconds_columns = 0;         ///< Triangles to solid spans.
+  double seconds_levels = 0;          ///< Places, layers, legality.
+  double seconds_clearance = 0;       ///< Distances to walls.
   double seconds_air = 0;
-  double seconds_graph = 0;
-  double seconds_write = 0;
+  double seconds_graph = 0;  ///< Regions and links.
+  double seconds_write = 0;  ///< Files of zones.
   double seconds_total = 0;  ///< Wall clock.
   /// With BakeConfig::nodes: as long as it exists, the folder accepts nodes but no other bake.
   std::shared_ptr<const FolderLock> hold;

@@ -54,7 +54,7 @@ enum class Errc {
 /// A failure as one sentence: file, place, what is wrong, what to do about it.
 struct Error {
   Errc code = Errc::kOk;
-  std::string message;
+  std::string message;  ///< One sentence, without a full stop.
 };
 
 /// A value or an Error. Test before use: `if (!r) return r.error();`
@@ -64,12 +64,15 @@ class [[nodiscard]] Result {
   Result(T value) : state_(std::move(value)) {}      // NOLINT: a value is a result
   Result(Error error) : state_(std::move(error)) {}  // NOLINT: so is an error
 
+  /// Is it a value?
   [[nodiscard]] explicit operator bool() const { return state_.index() == 0; }
+  /// The value. There must be one.
   [[nodiscard]] T& operator*() & { return std::get<0>(state_); }
   [[nodiscard]] const T& operator*() const& { return std::get<0>(state_); }
   [[nodiscard]] T&& operator*() && { return std::get<0>(std::move(state_)); }
   [[nodiscard]] T* operator->() { return &std::get<0>(state_); }
   [[nodiscard]] const T* operator->() const { return &std::get<0>(state_); }
+  /// The error. There must be one.
   [[nodiscard]] const Error& error() const { return std::get<1>(state_); }
 
  private:
@@ -83,7 +86,9 @@ class [[nodiscard]] Result<void> {
   Result() = default;
   Result(Error error) : error_(std::move(error)) {}  // NOLINT: an error is a result
 
+  /// Is it a success?
   [[nodiscard]] explicit operator bool() const { return !error_.has_value(); }
+  /// The error. There must be one.
   [[nodiscard]] const Error& error() const { return *error_; }
 
  private:
@@ -96,7 +101,7 @@ class [[nodiscard]] Result<void> {
 /// How far a long call has come. `total` is 0 while it is unknown.
 struct Progress {
   std::string_view stage;  ///< "read", "bake", "verify" ...: valid during the callback only.
-  uint64_t done = 0;
+  uint64_t done = 0;       ///< Of `total`, in units of the stage: bytes, zones, samples.
   uint64_t total = 0;
 };
 
@@ -120,6 +125,7 @@ struct Vec3d {
   friend Vec3d operator*(Vec3d a, double s) { return {a.x * s, a.y * s, a.z * s}; }
 };
 
+/// The dot product, the cross product (right-handed) and the Euclidean length.
 inline double dot(Vec3d a, Vec3d b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline Vec3d cross(Vec3d a, Vec3d b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -133,6 +139,7 @@ struct Box3d {
   Vec3d max{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
             -std::numeric_limits<double>::infinity()};
   [[nodiscard]] bool empty() const { return !(min.x <= max.x); }
+  /// Grows it to hold a point.
   void add(Vec3d p) {
     min = {p.x < min.x ? p.x : min.x, p.y < min.y ? p.y : min.y, p.z < min.z ? p.z : min.z};
     max = {p.x > max.x ? p.x : max.x, p.y > max.y ? p.y : max.y, p.z > max.z ? p.z : max.z};
@@ -142,6 +149,7 @@ struct Box3d {
 /// An affine map, row-major 3 x 4: out = m[r][0..2] * in + m[r][3] in row r.
 struct Transform {
   std::array<std::array<double, 4>, 3> m{{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+  /// The image of a point.
   [[nodiscard]] Vec3d operator()(Vec3d p) const {
     return {m[0][0] * p.x + m[0][1] * p.y + m[0][2] * p.z + m[0][3],
             m[1][0] * p.x + m[1][1] * p.y + m[1][2] * p.z + m[1][3],

@@ -43,9 +43,11 @@ struct ObstacleState {
   /// Avatars inside, counted at the request and at the beginning of each step.
   uint32_t occupants = 0;
 
+  /// Does it block avatars?
   [[nodiscard]] bool is_up() const {
     return phase == ObstaclePhase::kUp || phase == ObstaclePhase::kWaitsToMove;
   }
+  /// Does it wait for avatars, to come up or to move?
   [[nodiscard]] bool waits() const {
     return phase == ObstaclePhase::kWaitsToComeUp || phase == ObstaclePhase::kWaitsToMove;
   }
@@ -57,8 +59,8 @@ struct ObstacleState {
 
 /// Names an avatar of a crowd; zero names none. An id is never given twice.
 struct AvatarId {
-  uint32_t slot1 = 0;  ///< Slot plus one.
-  uint32_t generation = 0;
+  uint32_t slot1 = 0;       ///< Slot plus one.
+  uint32_t generation = 0;  ///< Of the slot: how many avatars it has held.
   explicit operator bool() const { return slot1 != 0; }
   friend bool operator==(AvatarId, AvatarId) = default;
 };
@@ -175,7 +177,7 @@ struct AvatarSpawn {
 
 /// A circle that is in view: avatars inside are simulated in full detail.
 struct CrowdView {
-  Vec3d position;
+  Vec3d position;      ///< Its centre. [m]
   double radius = 50;  ///< [m]
 };
 
@@ -323,6 +325,7 @@ class THRONG_API Crowd {
   /// The avatars without progress (CrowdTuning::no_progress_after) if the last step made a check,
   /// in order of slot.
   [[nodiscard]] std::span<const AvatarId> no_progress() const;
+  /// Is the avatar in the crowd? False for a null id, and once it was removed.
   [[nodiscard]] bool is_alive(AvatarId id) const;
   /// Has the crowd nodes, so that avatars may lean (AvatarState::up)?
   [[nodiscard]] bool may_lean() const;
@@ -343,7 +346,7 @@ class THRONG_API Crowd {
   /// kBadFile (truncated, corrupt, of another world, version or other edits), and as `add` does.
   [[nodiscard]] static Result<Crowd> restore(const World& world, const CrowdConfig& config,
                                              std::span<const uint8_t> saved, Context& context);
-  [[nodiscard]] uint32_t size() const;
+  [[nodiscard]] uint32_t size() const;  ///< Avatars in the crowd.
   /// Memory of the crowd itself, without path finders.
   [[nodiscard]] CrowdMemory memory() const;
 

@@ -42,29 +42,29 @@ struct Joint {
 
 /// A bone: a joint that vertices follow.
 struct Bone {
-  int32_t joint = 0;
+  int32_t joint = 0;       ///< Index into Character::joints.
   Transform inverse_bind;  ///< From the mesh at rest to the joint.
 };
 
 /// The bones that a vertex follows; weights add up to 1, unused ones are 0.
 struct Influence {
-  std::array<uint8_t, 4> bone{};
-  std::array<float, 4> weight{};
+  std::array<uint8_t, 4> bone{};  ///< Indices into Character::bones.
+  std::array<float, 4> weight{};  ///< [0 to 1]
 };
 
 /// Keys of one joint. Times ascend [s]; an empty array leaves that part of `rest` as it is.
 struct JointTrack {
   int32_t joint = 0;
-  std::vector<double> position_times, rotation_times, scale_times;
-  std::vector<Vec3d> positions, scales;
+  std::vector<double> position_times, rotation_times, scale_times;  ///< One per key. [s]
+  std::vector<Vec3d> positions, scales;  ///< Relative to the parent. [the file's unit; factors]
   std::vector<std::array<double, 4>> rotations;  ///< Unit quaternions x, y, z, w.
 };
 
 /// A movement that repeats after `seconds`.
 struct Clip {
   std::string name;
-  double seconds = 0;
-  std::vector<JointTrack> tracks;
+  double seconds = 0;              ///< Length of one cycle. [s]
+  std::vector<JointTrack> tracks;  ///< Joints without one stay at rest.
 };
 
 /// A material of a character.
@@ -79,7 +79,7 @@ struct CharacterMaterial {
 struct Character {
   std::vector<Joint> joints;
   std::vector<Bone> bones;
-  std::vector<Vec3d> positions;
+  std::vector<Vec3d> positions;       ///< In the file's unit.
   std::vector<Vec3d> normals;         ///< One per position; unit length.
   std::vector<Influence> influences;  ///< One per position.
   std::vector<std::array<uint32_t, 3>> triangles;
@@ -166,6 +166,7 @@ struct AtlasView {
 
 /// The dimensions of an atlas.
 struct AtlasShape {
+  // As in AtlasConfig, the fields of the same names.
   int32_t pixels = 0;
   int32_t directions = 0;
   int32_t elevations = 0;
@@ -173,6 +174,7 @@ struct AtlasShape {
   double side = 0;     ///< Of a view's square. [m]
   double centre = 0;   ///< Height of the square's middle over the feet. [m]
   double height = 0;   ///< Of the figure. [m]
+  /// Index into Atlas::views; rows are elevations from the horizon up, columns directions.
   [[nodiscard]] size_t view(int32_t frame, int32_t row, int32_t column) const {
     return (static_cast<size_t>(frame) * elevations + row) * directions + column;
   }
@@ -189,8 +191,8 @@ struct Atlas {
   AtlasFormat format = AtlasFormat::kRgba8;
   int32_t width = 0, height = 0;  ///< Of a page. [texels, multiples of 4]
   int32_t pages = 0;
-  std::vector<uint8_t> colour;
-  std::vector<uint8_t> normal;
+  std::vector<uint8_t> colour;  ///< Texels of `format`, with alpha.
+  std::vector<uint8_t> normal;  ///< As AtlasFormat says.
   /// One byte per texel: BodyPart << 5 | distance in front of the plane through the figure's
   /// middle, 16 +- 15 for half a `side`.
   std::vector<uint8_t> mask;
@@ -229,9 +231,9 @@ struct Atlas {
 /// The view to show. `mirrored`: left and right are exchanged, and `frame` is half a cycle later,
 /// because the mirror image of a step of the left foot is one of the right. Source: [TC00] 2.
 struct ViewChoice {
-  int32_t frame = 0;
-  int32_t row = 0;
-  int32_t column = 0;
+  int32_t frame = 0;   ///< Of all clips together.
+  int32_t row = 0;     ///< As in AtlasShape::view.
+  int32_t column = 0;  ///< As in AtlasShape::view.
   bool mirrored = false;
   friend bool operator==(const ViewChoice&, const ViewChoice&) = default;
 };
@@ -252,8 +254,8 @@ struct ViewChoice {
 
 /// An eye that looks at a point. Y is up.
 struct EyeCamera {
-  Vec3d eye{0, 1.7, 5};
-  Vec3d target{0, 1, 0};
+  Vec3d eye{0, 1.7, 5};        ///< [m]
+  Vec3d target{0, 1, 0};       ///< Only the direction from the eye counts. [m]
   double field_of_view = 0.8;  ///< Top to bottom. [rad, > 0, < 3]
   double aspect = 16.0 / 9;    ///< Width by height. [> 0]
   double nearest = 0.2;        ///< Nearer things are not drawn. [m, > 0]
@@ -363,8 +365,8 @@ struct PosedVertex {
 
 /// The colour of a vertex in all poses: albedo as Atlas keeps colours, and the BodyPart.
 struct ModelPaint {
-  std::array<uint8_t, 3> colour{};
-  uint8_t part = 0;
+  std::array<uint8_t, 3> colour{};  ///< Red, green, blue.
+  uint8_t part = 0;                 ///< A BodyPart.
   friend bool operator==(const ModelPaint&, const ModelPaint&) = default;
 };
 

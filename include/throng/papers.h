@@ -40,9 +40,9 @@ struct Slice {
 /// All kept slices, highest first. Cell (x, z) is index z * width + x and covers
 /// [origin_x + x * cell, origin_x + (x + 1) * cell] and likewise in z.
 struct SliceSet {
-  int32_t width = 0;
-  int32_t depth = 0;
-  double cell = 0;
+  int32_t width = 0;                   ///< Cells along X.
+  int32_t depth = 0;                   ///< Cells along Z.
+  double cell = 0;                     ///< Side of a cell. [m]
   double origin_x = 0;                 ///< [m]
   double origin_z = 0;                 ///< [m]
   int32_t far_plane = 0;               ///< eq. 2: min_y - resolution. [mm]
@@ -65,7 +65,7 @@ struct SliceSet {
 
 /// Settings for Wanderers::create.
 struct WanderConfig {
-  uint32_t avatars = 1000;
+  uint32_t avatars = 1000;   ///< All are added, or none.
   int32_t avatar_class = 0;  ///< Class of the avatars, index into the world's classes.
   double dt = 0.1;           ///< Length of a step. [s, 0.001 to 10]
   double speed = 0;          ///< Walking speed, 0 for the class's own. [m/s, >= 0]
@@ -79,8 +79,8 @@ struct WanderReport {
   uint64_t moved = 0;
   uint64_t blocked_by_wall = 0;  ///< The straight move was illegal.
   uint64_t blocked_by_avatar = 0;
-  uint64_t waited = 0;  ///< Neither the straight nor the turned move was free.
-  double seconds_sort = 0;
+  uint64_t waited = 0;      ///< Neither the straight nor the turned move was free.
+  double seconds_sort = 0;  ///< Wall clock, as all three.
   double seconds_move = 0;
   double seconds_total = 0;
 };
@@ -98,6 +98,8 @@ class THRONG_API Wanderers {
 
   /// Advances all avatars by `dt`. No allocation after the first step. Time: linear in the avatars.
   WanderReport step();
+  /// Tests the present positions against the world and each other, without the step's own data. All
+  /// counts must be 0. Time: about linear in the avatars.
   [[nodiscard]] CrowdCheck check() const;
   /// XXH3 of all avatars in order of id: position, level, heading. Same for any workers.
   [[nodiscard]] uint64_t state_hash() const;
@@ -125,9 +127,9 @@ namespace throng::caacd {
 
 /// Radii of the concentric protection fields of one body, or of a pair. [>= 0, ascending]
 struct Fields {
-  double repulsive = 0;
-  double precaution = 0;
-  double alert = 0;
+  double repulsive = 0;   ///< Two bodies nearer than this collide.
+  double precaution = 0;  ///< What comes nearer than this is critical.
+  double alert = 0;       ///< What comes nearer than this is a threat.
 };
 
 /// The fields of a pair of bodies: the sums of their radii, r = A_r + B_r.
@@ -214,7 +216,7 @@ struct Approach {
 
 /// A body or obstacle whose course comes too near.
 struct Threat {
-  static constexpr uint32_t kObstacle = UINT32_MAX;
+  static constexpr uint32_t kObstacle = UINT32_MAX;  ///< The `id` of all obstacles.
   State state = State::kTolerable;  ///< kAlert or kCritical; kTolerable if there is no threat.
   double time = std::numeric_limits<double>::infinity();      ///< A_tau.
   double distance = std::numeric_limits<double>::infinity();  ///< B_d.
@@ -344,7 +346,7 @@ enum class Activity : uint8_t {
 
 /// Counts of a run so far.
 struct Counts {
-  int64_t frames = 0;
+  int64_t frames = 0;               ///< Calls of Simulation::step.
   int64_t collisions = 0;           ///< Entries of a pair into r_rep.
   int64_t obstacle_collisions = 0;  ///< Entries of an avatar into an obstacle's r_rep.
   int64_t arrived = 0;              ///< Avatars that stand at their targets now.
@@ -363,17 +365,25 @@ class THRONG_API Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
+  /// Advances by one frame of `dt`. Time: quadratic in the bodies.
   void step();
   /// Is each avatar at its target, or standing still while it waits?
   [[nodiscard]] bool finished() const;
 
+  // One entry per avatar, by id; valid as long as the simulation, and changed by step and send.
   [[nodiscard]] std::span<const Body> bodies() const;
   [[nodiscard]] std::span<const Vec3d> targets() const;
-  [[nodiscard]] std::span<const Obstacle> obstacles() const;
   [[nodiscard]] std::span<const Activity> activities() const;
-  /// The greatest threat of each avatar now.
+  /// The greatest threat of each avatar in the last step, from the state before it. Without a
+  /// threat its state is kTolerable, as it is for avatars that had arrived and before the first
+  /// step.
   [[nodiscard]] std::span<const Threat> threats() const;
+
+  /// The obstacles of the space; they never change.
+  [[nodiscard]] std::span<const Obstacle> obstacles() const;
+  /// Counts since the run began.
   [[nodiscard]] const Counts& counts() const;
+  /// The settings that it was created with.
   [[nodiscard]] const Model& model() const;
   /// Hash of all positions and velocities, bit by bit.
   [[nodiscard]] uint64_t state_hash() const;

@@ -25,7 +25,7 @@ namespace throng {
 
 /// The part of a budget that a search exhausted.
 enum class SpentBudget : uint8_t {
-  kNone,
+  kNone,       ///< The search has ended by itself.
   kNodes,      ///< SearchBudget::max_nodes.
   kMemory,     ///< SearchBudget::max_bytes.
   kCancelled,  ///< SearchBudget::cancel was set.
@@ -42,7 +42,7 @@ struct SearchBudget {
                uint64_t bytes = kDefaultBytes)
       : max_nodes(nodes), cancel(stop), max_bytes(bytes) {}
 
-  uint64_t max_nodes;
+  uint64_t max_nodes;  ///< Limit of the nodes that are expanded (Path::nodes).
   /// Set from any thread to stop; read every 64 nodes. May be null.
   const std::atomic<bool>* cancel;
   /// Limit of the memory of one query, beside what the finder holds of the world (corners, zones,
@@ -103,8 +103,8 @@ enum class PathSpace : uint8_t {
 /// An off-mesh link, see Edits::add_off_mesh_link. A link of the bake (NodeOffMeshLink) is another
 /// type, because files hold it for one class and without a cost: that is its length.
 struct OffMeshLink {
-  Place from = {}, to = {};
-  double cost = 0;  ///< [m]
+  Place from = {}, to = {};  ///< Where a class can stand.
+  double cost = 0;           ///< [m]
   bool two_way = true;
   /// Ends on nodes, as on a wall, instead of `from` and `to`. A link that has one is only for
   /// classes over nodes.
@@ -145,6 +145,7 @@ struct EditList;  // Internal.
 /// finder or a crowd that has one. The list never shrinks: a removed edit leaves about 330 bytes.
 class THRONG_API Edits {
  public:
+  /// An empty list, which no other handle has.
   Edits();
 
   /// Adds an obstacle: a class cannot stand where its body could touch the prism; on the ground
@@ -183,9 +184,9 @@ class THRONG_API Edits {
   /// policy, false opens it at once or ends its closing. False if there is none of this id.
   bool remove(EditId edit);
   bool set_active(EditId edit, bool active);
-  /// Sets the cost of a metre on ground of an area kind; infinity closes it. All kinds begin
-  /// with 1. Over nodes, only areas of Edits have kinds, and no path begins or ends on what is
-  /// closed. Fails with kBadConfig. [kind 1 to 63, 0.01 to 10000 or infinity]
+  /// Sets the cost of a metre on ground of an area kind, which the bake or an area gave; infinity
+  /// closes it: no path begins, leads or ends there. All kinds begin with 1. Over nodes, only areas
+  /// of Edits have kinds. Fails with kBadConfig. [kind 1 to 63, 0.01 to 10000 or infinity]
   [[nodiscard]] Result<void> set_area_cost(uint8_t kind, double cost);
 
   /// Rises with every change of the list.
@@ -219,7 +220,7 @@ struct PathConfig {
 
 /// How a search ended.
 enum class PathEnd {
-  kReached,
+  kReached,          ///< At the goal.
   kUnreachable,      ///< No path leads to the goal.
   kNoPlace,          ///< `from` or `to` is no place of the class.
   kBudgetExhausted,  ///< The budget was exhausted: `spent` names the part.
@@ -240,7 +241,7 @@ enum class SegmentKind : uint8_t {
 
 /// A link that a path uses: it leads from the point before to `point`.
 struct PathLink {
-  uint32_t point = 0;
+  uint32_t point = 0;  ///< Index into Path::points, at least 1.
   LinkKind kind = LinkKind::kWalk;
   bool over_hole = false;  ///< Over a hole: between places that do not touch.
 };
@@ -388,6 +389,7 @@ class THRONG_API PathFinder {
   /// finder is not for the air.
   [[nodiscard]] Place landing(const Vec3d& feet);
 
+  /// Sizes of what was made, and the time that it took. Time: constant.
   [[nodiscard]] PathSummary summary() const;
 
  private:
@@ -453,11 +455,13 @@ class THRONG_API FlowField {
   /// Infinite if no path leads there, or none within `max_distance`. [m]
   [[nodiscard]] double distance(const Place& place);
   /// The next local target: the farthest point of the path to the nearest goal to which a straight
-  /// line or a link leads. At last the goal itself; nowhere if no path leads there.
+  /// line leads. Where the path takes an off-mesh link, that is its start; from places within a
+  /// cell of it, it is the link's end. At last the goal itself; nowhere if no path leads there.
   [[nodiscard]] Place next(const Place& place);
   /// Finds the whole path to the nearest goal, pulled taut.
   void find_path(const Place& place, Path& path);
 
+  /// Sizes of what was made, and the time that it took. Time: constant.
   [[nodiscard]] FlowSummary summary() const;
 
  private:

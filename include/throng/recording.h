@@ -45,6 +45,7 @@ struct FrameView {
 
 /// A frame that was read, owned, in ascending order of id.
 struct THRONG_API RecordedFrame {
+  // As in FrameView, the fields of the same names.
   double time = 0;
   uint64_t step = 0;
   uint64_t state_hash = 0;
@@ -56,7 +57,9 @@ struct THRONG_API RecordedFrame {
   std::vector<Vec3d> up_vectors = {};  ///< Unit vectors, empty if RecordingInfo::leans is not set.
 
   [[nodiscard]] size_t size() const { return ids.size(); }
+  /// Makes all arrays but `up_vectors` so long.
   void resize(size_t avatars);
+  /// The frame as one to write; valid until the arrays change.
   [[nodiscard]] FrameView view() const;
 };
 
@@ -119,8 +122,8 @@ class THRONG_API Recorder {
   /// Marks the file as complete and closes it; nothing can be added afterwards. `outcome`: other
   /// results of the run, in the model's own format. Fails with kIo.
   [[nodiscard]] Result<void> finish(std::string_view outcome = {});
-  [[nodiscard]] uint64_t frames() const;
-  [[nodiscard]] uint64_t bytes() const;  ///< Written so far.
+  [[nodiscard]] uint64_t frames() const;  ///< Added so far.
+  [[nodiscard]] uint64_t bytes() const;   ///< Written so far.
 
  private:
   struct State;
@@ -156,9 +159,11 @@ class THRONG_API Replay {
   Replay& operator=(Replay&&) noexcept;
   ~Replay();
 
+  /// The description that the recorder was given.
   [[nodiscard]] const RecordingInfo& info() const;
   /// The `outcome` of Recorder::finish; empty if there was none, or the recording was not finished.
   [[nodiscard]] const std::string& outcome() const;
+  /// Frames that can be read, if their chunks are not corrupt.
   [[nodiscard]] uint64_t frame_count() const;
   [[nodiscard]] uint64_t bytes() const;  ///< Of the undamaged part of the file.
   /// Where and why a recording ends too early, as a sentence. Empty if it was finished.
@@ -194,9 +199,10 @@ struct ExportConfig {
 /// Maps steps to film frames at a constant rate. The interval is the greatest common divisor of the
 /// steps between recorded frames, so that each of these falls on a film frame.
 struct FilmRate {
-  uint64_t first_step = 0;
-  uint64_t steps = 1;  ///< From one film frame to the next.
-  double rate = 10;    ///< Film frames per second.
+  uint64_t first_step = 0;  ///< Of the first recorded frame.
+  uint64_t steps = 1;       ///< From one film frame to the next.
+  double rate = 10;         ///< Film frames per second.
+  /// The film frame that shows a step, from 0. [step >= first_step]
   [[nodiscard]] uint64_t frame_of(uint64_t step) const { return (step - first_step) / steps; }
 };
 
@@ -241,17 +247,17 @@ struct SummaryConfig {
 /// Crossings of one line, per time bin from the first frame on. Forth is to the right as seen from
 /// the line's first end towards its second (x to the right, z down).
 struct LineFlow {
-  std::vector<uint32_t> forth, back;
-  uint64_t total_forth = 0, total_back = 0;
+  std::vector<uint32_t> forth, back;         ///< Avatars, one entry per bin.
+  uint64_t total_forth = 0, total_back = 0;  ///< Over all bins.
 };
 
 /// Cells of one storey, row by row: cell (i, k) begins at x0 + i * cell, z0 + k * cell.
 struct SummaryMap {
-  double lowest = 0, highest = 0;  ///< Feet in [lowest, highest). [m]
-  double x0 = 0, z0 = 0, cell = 0.5;
-  int32_t width = 0, depth = 0;
-  std::vector<double> density;  ///< Mean over the whole time. [avatars / m^2]
-  std::vector<double> waiting;  ///< Waiting time, summed over avatars. [s / m^2]
+  double lowest = 0, highest = 0;     ///< Feet in [lowest, highest). [m]
+  double x0 = 0, z0 = 0, cell = 0.5;  ///< [m]
+  int32_t width = 0, depth = 0;       ///< Cells along X and Z.
+  std::vector<double> density;        ///< Mean over the whole time. [avatars / m^2]
+  std::vector<double> waiting;        ///< Waiting time, summed over avatars. [s / m^2]
 };
 
 /// The summary of a recording.
@@ -261,10 +267,11 @@ struct ReplaySummary {
   double waited = 0;       ///< Waiting time, summed over avatars. [s]
   double last_left = 0;    ///< When the last avatar left; 0 if none did. [s]
   // One per frame:
-  std::vector<double> time;  ///< [s]
-  std::vector<uint32_t> present;
+  std::vector<double> time;             ///< [s]
+  std::vector<uint32_t> present;        ///< Avatars in the frame.
   std::vector<uint64_t> entered, left;  ///< So far; avatars of the first frame have entered.
   /// Mean over avatars that are also in the next frame; the last frame repeats the one before.
+  /// [m/s]
   std::vector<double> speed;
   std::vector<LineFlow> lines;   ///< In the order of the config.
   std::vector<SummaryMap> maps;  ///< Of storeys with avatars, lowest first.

@@ -30,6 +30,7 @@ namespace throng {
 
 /// A random number with a distribution, drawn for each avatar.
 struct Distribution {
+  /// Its shape.
   enum class Kind : uint8_t { kFixed, kUniform, kNormal, kExponential };
   Kind kind = Kind::kFixed;
   double a = 0;  ///< By kind: the value; the minimum; the mean; the mean.
@@ -38,6 +39,7 @@ struct Distribution {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 
+  /// One that always gives the same number.
   static Distribution fixed(double value) { return {Kind::kFixed, value, 0, value, value}; }
 };
 
@@ -57,7 +59,7 @@ struct ScenarioArea {
 
 /// One of several alternatives, with a weight; one is drawn at random by the weights.
 struct Choice {
-  int32_t index = 0;
+  int32_t index = 0;  ///< Of a profile or a journey of the scenario.
   double weight = 1;  ///< [> 0]
 };
 
@@ -80,6 +82,7 @@ struct DensityMap {
 
 /// A stage: one thing that an avatar does in a journey.
 struct Stage {
+  /// What the avatar does.
   enum class Kind : uint8_t {
     kGo,           ///< Walks until it is inside one of `areas`.
     kRandomPoint,  ///< Walks to a random point in one of `areas`, or drawn from `density`.
@@ -89,14 +92,14 @@ struct Stage {
     kLeave,        ///< Walks until it is inside one of `areas`, and leaves the simulation.
   };
   Kind kind = Kind::kGo;
-  std::vector<int32_t> areas;
+  std::vector<int32_t> areas;  ///< kGo, kRandomPoint, kLeave.
   /// kGo, kLeave with several areas. False: the nearest one. True: the one that is likely to be
   /// reached and passed first, chosen again every few seconds.
   bool quickest = false;
-  int32_t density = -1;
-  int32_t queue = -1;
-  int32_t link = -1;
-  Distribution seconds;
+  int32_t density = -1;  ///< kRandomPoint: index of a density map; -1: `areas` count.
+  int32_t queue = -1;    ///< kQueue.
+  int32_t link = -1;     ///< kLink.
+  Distribution seconds;  ///< kWait. [s]
 };
 
 /// A journey: the stages of an avatar, in order.
@@ -140,7 +143,7 @@ struct Queue {
   std::vector<Vec3d> line;  ///< From its head to its end. [m]
   double spacing = 0.6;     ///< Between neighbours in the line. [m]
   int32_t servers = 1;      ///< Avatars that are served at the same time, from the head.
-  Distribution service;     ///< [s]
+  Distribution service;     ///< How long an avatar is served. [s]
 };
 
 /// A lift, an escalator, a shuttle: avatars that stand in `from` when it leaves come out in `to`
@@ -213,7 +216,7 @@ struct Scenario {
 
 /// What one step of a simulation did, and its state afterwards.
 struct SimulationReport {
-  CrowdReport crowd;
+  CrowdReport crowd;              ///< Of the crowd's step.
   double time = 0;                ///< After the step. [s]
   uint64_t entered = 0;           ///< So far.
   uint64_t left = 0;              ///< So far.
@@ -264,6 +267,7 @@ class THRONG_API Simulation {
   /// link.
   [[nodiscard]] bool is_over() const;
 
+  /// The crowd of all avatars that are not outside or in a link.
   [[nodiscard]] const Crowd& crowd() const;
   /// Reads the avatars of the crowd in ascending order of id, which is Trip::person modulo 2^32.
   void read(std::vector<AvatarState>& out) const;
@@ -293,8 +297,9 @@ class THRONG_API Simulation {
 /// A measured value, and the bounds between which it passes.
 struct ValidationMeasure {
   std::string name;
-  double value = 0;
-  std::string unit = {};
+  double value = 0;       ///< In `unit`.
+  std::string unit = {};  ///< As it is printed; empty: a number without a unit.
+  /// It passes within these, both included.
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 
@@ -303,6 +308,7 @@ struct ValidationMeasure {
     return low > -std::numeric_limits<double>::infinity() ||
            high < std::numeric_limits<double>::infinity();
   }
+  /// Is the value within its bounds? True without bounds.
   [[nodiscard]] bool passed() const { return !is_judged() || (value >= low && value <= high); }
 };
 
@@ -407,14 +413,15 @@ struct TrialMeasure {
   double from = 0;                                 ///< kSpeed, kDensity, kFlow, kPassed. [s]
   double until = std::numeric_limits<double>::infinity();  ///< [s]
   std::vector<size_t> others;                              ///< Indices of earlier measures.
+  /// As in ValidationMeasure.
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 };
 
 /// A trial: a scenario and its measures.
 struct Trial {
-  ValidationTest about;
-  std::string note;  ///< What differs from the source.
+  ValidationTest about;  ///< Its name, what it tests, how and whence.
+  std::string note;      ///< What differs from the source.
   /// What the simulation cannot do yet, so that the trial does not run; empty: nothing.
   std::string lacks;
   Scenario scenario;  ///< Empty if something is lacking.

@@ -58,9 +58,9 @@ using TextureCorners = std::array<std::array<float, 2>, 3>;
 /// (1, 0); edge e runs from vertex e to vertex (e + 1) % 4, which is counter-clockwise seen from
 /// the side of the normal. An edge or a vertex may be collapsed. [m]
 struct THRONG_API BezierPatch {
-  std::array<Vec3d, 16> points{};
+  std::array<Vec3d, 16> points{};  ///< [m]
 
-  [[nodiscard]] Vec3d at(double s, double t) const;
+  [[nodiscard]] Vec3d at(double s, double t) const;       ///< The point at a parameter.
   [[nodiscard]] Vec3d along_s(double s, double t) const;  ///< First derivative by s.
   [[nodiscard]] Vec3d along_t(double s, double t) const;  ///< First derivative by t.
   /// The unit normal, along_t x along_s. Where the two are parallel or vanish (a collapsed edge),
@@ -68,7 +68,7 @@ struct THRONG_API BezierPatch {
   [[nodiscard]] Vec3d normal(double s, double t) const;
   /// A box that contains the surface; usually a little larger.
   [[nodiscard]] Box3d bounds() const;
-  [[nodiscard]] Vec3d vertex(int32_t corner) const;
+  [[nodiscard]] Vec3d vertex(int32_t corner) const;  ///< `corner` is 0 to 3.
   /// The control points of an edge's curve, from vertex e on. `edge` is 0 to 3.
   [[nodiscard]] std::array<Vec3d, 4> edge(int32_t edge) const;
 };
@@ -174,7 +174,7 @@ struct PatchPart {
 /// Triangles of patches. Those of patch p are triangles[first[p]] to triangles[first[p + 1]],
 /// counter-clockwise seen from the side of the normal.
 struct PatchMesh {
-  std::vector<Vec3d> positions;
+  std::vector<Vec3d> positions;  ///< [m]
   std::vector<std::array<uint32_t, 3>> triangles;
   std::vector<uint32_t> first;   ///< patches + 1
   std::vector<PatchPart> parts;  ///< One per triangle.
@@ -388,11 +388,15 @@ struct BuiltinWorldConfig {
   uint64_t seed = 1;
 };
 
-/// Description of a built-in world.
+/// Description of a built-in world, and what BuiltinWorldConfig may ask of it.
 struct BuiltinWorldInfo {
   std::string_view name;
-  std::string_view summary;  ///< One line, for `throng generate --list`.
-  double default_size = 0;   ///< [m]
+  std::string_view summary;           ///< One line, for `throng generate --list`.
+  double default_size = 0;            ///< [m]
+  double min_size = 0, max_size = 0;  ///< [m]
+  int32_t default_levels = 0;         ///< 0: it has no storeys to count.
+  int32_t max_levels = 0;
+  uint64_t max_triangles = 0;  ///< 0: it does not grow by triangles.
 };
 
 /// All built-in worlds.

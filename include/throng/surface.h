@@ -28,24 +28,27 @@ struct NodeData;  // Internal: zones of nodes.
 
 /// How a body moves from one node to another.
 enum class LinkKind : uint8_t {
-  kWalk = 0,
-  kStep,     ///< Over a step of the floor, not a slope, that some class of the world cannot climb.
-  kClimb,    ///< One end is steeper than any walker's limit, or there is a gap between patches.
-  kDrop,     ///< A drop link, one-way: out over an edge and down. For classes with a `max_drop`.
-  kOffMesh,  ///< An off-mesh link; may be one-way.
+  kWalk = 0,  ///< None of the kinds below.
+  kStep,      ///< Over a step of the floor, not a slope, that some class of the world cannot climb.
+  kClimb,     ///< One end is steeper than any walker's limit, or there is a gap between patches.
+  kDrop,      ///< A drop link, one-way: out over an edge and down. For classes with a `max_drop`.
+  kOffMesh,   ///< An off-mesh link; may be one-way.
 };
 /// Number of LinkKind values.
 inline constexpr uint8_t kLinkKinds = 5;
 
 /// What a node is a part of.
-enum class PatchKind : uint8_t { kBezier = 0, kLevelTile = 1 };
+enum class PatchKind : uint8_t {
+  kBezier = 0,     ///< A Bezier patch of the scene.
+  kLevelTile = 1,  ///< A level tile of the baked world.
+};
 
 /// An off-mesh link, given by hand: a ditch to jump, a ladder, a lift. The body is not tested on
 /// it.
 struct NodeOffMeshLink {
-  Vec3d from, to;  ///< Within a metre of places of the class. [m]
-  int32_t avatar_class = 0;
-  bool two_way = false;
+  Vec3d from, to;            ///< Within a metre of places of the class. [m]
+  int32_t avatar_class = 0;  ///< The only class that can use it.
+  bool two_way = false;      ///< Also from `to` to `from`.
 };
 
 /// Settings for Nodes::create.
@@ -73,6 +76,7 @@ struct THRONG_API NodeBins {
   std::vector<double> height;       ///< Also of headroom. [m]
   std::vector<double> width;        ///< [m]
 
+  /// What a code promises: at most this inclination, at least this height or width. [degrees, m]
   [[nodiscard]] double inclination_of(uint8_t code) const {
     return code < inclination.size() ? inclination[code] : 180;
   }
@@ -118,7 +122,7 @@ struct NodeInfo {
 /// A directed link from a node. The opposite arc is always at the other node, except for drop links
 /// and one-way off-mesh links.
 struct NodeArc {
-  uint32_t to = 0;
+  uint32_t to = 0;       ///< Index of the other node.
   uint16_t classes = 0;  ///< Bit per class that can use it.
   LinkKind kind = LinkKind::kWalk;
   /// A link over a hole: the nodes do not touch. A body moves in a straight line from parameters
@@ -132,12 +136,12 @@ struct NodeArc {
 /// Sizes of nodes, and what was made.
 struct NodeSummary {
   uint64_t nodes = 0;
-  uint64_t terminal = 0;
-  uint64_t partial = 0;
-  uint64_t arcs = 0;  ///< Two per undirected link.
-  uint64_t patches = 0;
+  uint64_t terminal = 0;  ///< Of the nodes: NodeInfo::terminal.
+  uint64_t partial = 0;   ///< Of the nodes: with NodeInfo::cells.
+  uint64_t arcs = 0;      ///< Two per undirected link.
+  uint64_t patches = 0;   ///< Bezier patches and level tiles.
   uint64_t bezier_patches = 0;
-  uint64_t zones = 0;
+  uint64_t zones = 0;         ///< With nodes.
   uint64_t zones_made = 0;    ///< Zones with patches, with or without nodes.
   uint64_t zones_reused = 0;  ///< Of these, reused: nothing that they depend on has changed.
   uint64_t bytes = 0;         ///< Of all zones.
@@ -192,15 +196,21 @@ class THRONG_API Nodes {
   /// The world that the nodes were made for. [the handle is not empty]
   [[nodiscard]] const World& world() const;
   /// Writes the nodes into the folder of the world that they were made for, and replaces those
-  /// there. `workers`: threads, 0 for all cores. Fails with kIo or, if the folder holds another
-  /// world, kBadFile.
+  /// there. Fails with kBadConfig (workers), kIo or, if the folder holds another world, kBadFile.
+  /// `workers`: threads, 0 for all cores. [>= 0]
   [[nodiscard]] Result<void> write(const std::string& world_path, int32_t workers = 0) const;
   /// Checks every zone against the index. Fails with kBadFile and the zone's name.
   [[nodiscard]] Result<void> check_all() const;
 
+  // For a handle that is not empty. `node` is an index below node_count(). A zone that cannot be
+  // used counts as empty: see check_all.
+
+  /// Sizes of all nodes. Reads every zone; time is linear in the nodes and arcs.
   [[nodiscard]] NodeSummary summary() const;
-  [[nodiscard]] uint32_t node_count() const;
+  [[nodiscard]] uint32_t node_count() const;  ///< Of all zones.
+  /// What bodies may rely on in a node. Time: logarithmic in the zones.
   [[nodiscard]] NodeInfo node(uint32_t node) const;
+  /// The links that lead from a node. Time: linear in them, and logarithmic in the zones.
   [[nodiscard]] std::vector<NodeArc> arcs(uint32_t node) const;
   /// The cells of a partial node on which a class may stand, bit 8 t + s of its block of 8 x 8. 0
   /// if the node is not partial, or is none of the class.

@@ -36,10 +36,10 @@ struct VerifyFault {
 
 /// Results of verify_world. docs/algorithms.md gives the exact meaning of each number.
 struct VerifyReport {
-  uint64_t states = 0;
-  uint64_t moves = 0;  ///< Legal ones: those that the world let arrive.
-  uint64_t surface_points = 0;
-  uint64_t entered = 0;  ///< Legal states or moves whose body meets a triangle. Must be 0.
+  uint64_t states = 0;          ///< Places that were sampled, in which the body is tested.
+  uint64_t moves = 0;           ///< Legal ones: those that the world let arrive.
+  uint64_t surface_points = 0;  ///< Points of the source's surfaces, for what is lost.
+  uint64_t entered = 0;         ///< Legal states or moves whose body meets a triangle. Must be 0.
   /// Legal states or moves without a surface to stand on, within a cell and a step height. Must be
   /// 0.
   uint64_t unsupported = 0;
@@ -62,7 +62,7 @@ struct VerifyReport {
 
 /// Results of verify_nodes. All counts but the first three must be 0.
 struct NodeVerifyReport {
-  uint64_t places = 0;
+  uint64_t places = 0;       ///< Places tested.
   uint64_t arcs = 0;         ///< Arcs tested.
   uint64_t hole_links = 0;   ///< Of these, over holes.
   uint64_t entered = 0;      ///< Places, or links over holes, whose body meets a triangle.

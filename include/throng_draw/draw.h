@@ -30,7 +30,7 @@ class THRONG_API PreparedScene {
   PreparedScene& operator=(PreparedScene&&) noexcept;
   ~PreparedScene();
   [[nodiscard]] const Box3d& bounds() const;  ///< Relative to the origin.
-  [[nodiscard]] Vec3d origin() const;
+  [[nodiscard]] Vec3d origin() const;         ///< As it was given.
 
  private:
   friend struct Access;
@@ -104,8 +104,8 @@ enum class AvatarStyle : uint8_t {
 /// a graphics card wait for its own work, so it pays off where a processor draws.
 enum class HiddenCulling : uint8_t {
   kWhereItPays,  ///< If the driver draws with the processor.
-  kNever,
-  kAlways,
+  kNever,        ///< All is drawn.
+  kAlways,       ///< With any driver.
 };
 
 /// Settings for Drawing::draw and show.
@@ -166,6 +166,7 @@ class THRONG_API Drawing {
   /// Sets the scene and the point that everything is relative to; replaces both. Fails with kLimit:
   /// more triangles than the card's memory holds.
   [[nodiscard]] Result<void> set_scene(const Scene& scene, Vec3d origin);
+  /// The same for a scene that was prepared, perhaps on another thread: only the upload is left.
   [[nodiscard]] Result<void> set_scene(const PreparedScene& scene);
   /// Sets props: temporary parts of the scene, such as crates and barriers. Replaces all; an empty
   /// scene removes them. `origin` as of the scene. Fails with kLimit.

@@ -25,7 +25,8 @@ namespace throng {
 // ----
 // Events of a window as plain data: from GLFW, from a browser, from a test.
 
-/// Keys that the viewer knows. Letters and digits are their ASCII codes.
+/// Keys that the viewer knows. Letters and digits are their ASCII codes, also those without a name
+/// here: see key_of.
 enum class Key : uint8_t {
   kNone = 0,
   kSpace = ' ',
@@ -58,8 +59,10 @@ enum class Key : uint8_t {
 /// The key of a letter or digit: key_of('W').
 [[nodiscard]] constexpr Key key_of(char upper) { return static_cast<Key>(upper); }
 
+/// The button of a mouse.
 enum class MouseButton : uint8_t { kLeft, kRight, kMiddle };
 
+/// What happened in a window, and which fields of ViewEvent say more about it.
 enum class ViewEventKind : uint8_t {
   kKeyDown,    ///< `key`. Not for repeats.
   kKeyUp,      ///< `key`.
@@ -72,21 +75,22 @@ enum class ViewEventKind : uint8_t {
   kDrop,       ///< `path`: a file was dropped on the window.
 };
 
+/// One event of a window. Fields that its kind does not name are ignored.
 struct ViewEvent {
   ViewEventKind kind = ViewEventKind::kLeave;
-  Key key = Key::kNone;
+  Key key = Key::kNone;  ///< kNone: one that the viewer does not know.
   MouseButton button = MouseButton::kLeft;
-  double x = 0, y = 0;  ///< From the picture's upper left corner. [px]
-  uint32_t text = 0;    ///< Unicode.
-  std::string path = {};
+  double x = 0, y = 0;    ///< From the picture's upper left corner. [px]
+  uint32_t text = 0;      ///< A Unicode code point.
+  std::string path = {};  ///< Of the dropped file; the owner of the window loads it.
 };
 
 /// Sticks of a gamepad now. Values outside the limits are clamped, NaN counts as 0. [-1 to 1, right
 /// and down are positive]
 struct GamepadState {
-  double walk_x = 0, walk_y = 0;
-  double look_x = 0, look_y = 0;
-  bool hurry = false;
+  double walk_x = 0, walk_y = 0;  ///< Moves the eye, or the avatar that the user walks as.
+  double look_x = 0, look_y = 0;  ///< Turns the view.
+  bool hurry = false;             ///< As Shift: faster.
 };
 
 // ----
@@ -149,6 +153,7 @@ class THRONG_API StageParts {
 /// Loads a stage; runs on a thread of the viewer.
 using LoadStage = std::function<Result<void>(StageParts&, Context&)>;
 
+/// Settings of Viewer::create.
 struct ViewerConfig {
   std::string settings = {};  ///< As Viewer::settings() wrote them, or empty.
   std::string font = {};      ///< A TrueType file for the panel; empty: a small built-in font.
@@ -159,7 +164,7 @@ struct ViewerConfig {
 
 /// What the viewer requests from the owner of the window.
 struct ViewerRequests {
-  bool close = false;
+  bool close = false;         ///< The user wants to leave: close the window.
   bool fullscreen = false;    ///< The window should fill the screen.
   bool grab_mouse = false;    ///< Hide the pointer and report moves without limits.
   bool save_picture = false;  ///< F12 was pressed: save `Viewer::picture`.
@@ -168,10 +173,10 @@ struct ViewerRequests {
 
 /// The state of the viewer, for titles and tests.
 struct ViewerStatus {
-  std::string name;
-  bool loading = false;
-  std::string error;  ///< Why the last load failed, or empty.
-  bool playing = false;
+  std::string name;         ///< Of the stage that was loaded last.
+  bool loading = false;     ///< A stage is being loaded.
+  std::string error;        ///< Why the last load failed, or empty.
+  bool playing = false;     ///< Time passes; false: paused.
   double time = 0;          ///< That is shown. [s]
   double last_time = 0;     ///< Of a recording's last frame, or 0. [s]
   size_t avatars = 0;       ///< In the world.
@@ -181,10 +186,12 @@ struct ViewerStatus {
   EyeCamera camera;         ///< In the world's coordinates.
 };
 
-/// At most one per thread at a time: Dear ImGui has global state.
+/// The viewer: shows a stage and its crowd, and reacts to events. Movable, not copyable; one thread
+/// at a time. At most one per thread: Dear ImGui has global state.
 class THRONG_API Viewer {
  public:
-  /// Fails with kBadFile if the settings are not a JSON object.
+  /// Makes a viewer that draws with `drawing`, without a stage. Fails with kBadFile if the settings
+  /// are not a JSON object.
   [[nodiscard]] static Result<Viewer> create(Drawing drawing, const ViewerConfig& config);
   Viewer(Viewer&&) noexcept;
   Viewer& operator=(Viewer&&) noexcept;
@@ -192,16 +199,20 @@ class THRONG_API Viewer {
 
   /// Loads another stage. The old one is shown until the new scene has been set.
   void load(const std::string& name, LoadStage load);
+  /// Reacts to an event of the window, in the order of the calls.
   void handle(const ViewEvent& event);
+  /// Sets the sticks of the gamepad, from the next frame on.
   void set_gamepad(const GamepadState& state);
-  /// Draws into the window whose context is current. `now` never decreases [s].
+  /// Advances to `now` and draws into the window whose context is current. `now` never decreases.
+  /// Fails as Drawing::show. [s, px]
   [[nodiscard]] Result<void> frame(double now, int32_t width, int32_t height);
-  /// The same as a picture.
+  /// The same as a picture. Fails as Drawing::draw.
   [[nodiscard]] Result<Image> picture(double now, int32_t width, int32_t height);
   /// Looks at `target` from `eye`, in the world's coordinates.
   void look_at(Vec3d eye, Vec3d target);
   /// Switches on one of overlay_names(). Other names are ignored.
   void show_overlay(const std::string& name);
+  /// The names of all overlays.
   [[nodiscard]] static std::vector<std::string> overlay_names();
   /// Picks an avatar, as a click does; -1: none.
   void pick(int64_t id);
@@ -214,6 +225,7 @@ class THRONG_API Viewer {
   void play_for(double seconds);
   /// Requests since the last call.
   [[nodiscard]] ViewerRequests take_requests();
+  /// The state after the last frame.
   [[nodiscard]] ViewerStatus status() const;
   [[nodiscard]] std::string settings() const;  ///< To save for the next start: JSON.
 

@@ -35,7 +35,7 @@ def main():
                          f"{alone['ns']:.0f} ({alone['ns_plan']:.0f})", f"{others['ns']:.0f} ({others['ns_plan']:.0f})",
                          f"{others['planned'] / alone['planned']:.1f}",
                          f"{costs['add_us']:.0f} / {costs['remove_us']:.0f} / {costs['move_us']:.0f}",
-                         others["carts_moved"], others["waited"], others["stranded"], found))
+                         others["carts_moved"], others["waited"], others["goal_unreachable"], found))
     shutil.rmtree(folder)
     text = (f"Machine: {machine()}. `city` of {SIDE} m, cells of {CELL} m, dt 0.1 s, {options.steps} steps alone and as many "
             "with obstacles.\n\n")

@@ -386,7 +386,7 @@ void NodeMesh::open_doors() {
       if ((door.classes() >> avatar_class_ & 1) == 0) continue;
       const uint32_t a_patch = first_patch + door.patch();
       const uint32_t b_patch = patch_of_node(data.target(s, zone, door.to()));
-      if (patches_[b_patch].points == nullptr) continue;  // A foreign file may say so.
+      if (patches_[b_patch].points == nullptr) continue;  // A file of another world may say so.
       const double scale =
           static_cast<double>(door.to_last() - door.to_first()) / (door.last() - door.first());
       const auto on_a = [&](double at) { return edge_parameters(door.edge(), at / kEdgeUnits); };

@@ -34,17 +34,22 @@ struct PathFinder::State {
   uint64_t begun_version = 0;  // of the edits
   uint64_t begun_nodes = 0;    // expanded so far
   // On the ground: what its search leads to.
-  enum class Aim : uint8_t {
+  enum class Target : uint8_t {
     kGoal,
     kNearest,  // the nearest place that is connected, as far as the mesh knows
     kFlood,    // obstacles cut that off: the nearest of all that is reached
     kNothing,  // the goal is not connected
   };
-  Aim aim = Aim::kGoal;
+  Target target = Target::kGoal;
   Place begun_from, begun_to;
   uint64_t nodes_before = 0;  // expanded before the flood
 
   [[nodiscard]] const path::EditList& edits() const;
+  /// Area kinds of the mesh, see EditList::has_costs; without a mesh all paths are searched with
+  /// costs.
+  [[nodiscard]] uint64_t baked_kinds() const { return mesh ? mesh->mesh().kinds : 0; }
+  /// May paths on the ground differ from those of the mesh?
+  [[nodiscard]] bool bears_on_ground() const { return edits().bears_on_ground(baked_kinds()); }
   /// The finder of ground with edits, up to date.
   path::GroundFinder& ground();
   /// The same apart from this finder, of any class that has ground.

@@ -107,9 +107,9 @@ class Groups {
     a = find(a);
     b = find(b);
     if (size_[a] < size_[b] || (size_[a] == size_[b] && b < a)) std::swap(a, b);
-    if (a == b || clashing_.contains({a, b})) return;
-    if (clash(a, b)) {
-      clashing_.insert({a, b});  // For good: groups only grow.
+    if (a == b || overlapping_.contains({a, b})) return;
+    if (groups_overlap(a, b)) {
+      overlapping_.insert({a, b});  // For good: groups only grow.
       return;
     }
     parent_[b] = a;
@@ -128,7 +128,7 @@ class Groups {
     return {levels_[level].tile_z, levels_[level].tile_x};
   }
 
-  [[nodiscard]] bool clash(uint32_t large, uint32_t small) const {
+  [[nodiscard]] bool groups_overlap(uint32_t large, uint32_t small) const {
     for (const auto& [tile, members] : tiles_[small]) {
       const auto found = tiles_[large].find(tile);
       if (found == tiles_[large].end()) continue;
@@ -145,7 +145,7 @@ class Groups {
   std::vector<uint32_t> parent_;
   std::vector<uint32_t> size_;
   std::vector<std::map<Tile, std::vector<uint32_t>>> tiles_;
-  std::set<std::pair<uint32_t, uint32_t>> clashing_;
+  std::set<std::pair<uint32_t, uint32_t>> overlapping_;
 };
 
 std::vector<std::vector<uint32_t>> group_levels(const world::WorldData& world,
@@ -248,7 +248,7 @@ class Storeys {
         nearest = s;
         min_distance = distance;
       }
-      if (distance >= best_distance || clashes(storeys_[s], group)) continue;
+      if (distance >= best_distance || overlaps(storeys_[s], group)) continue;
       best = s;
       best_distance = distance;
     }
@@ -256,7 +256,7 @@ class Storeys {
   }
 
   // Does a level of the group lie over or under one of the storey?
-  [[nodiscard]] bool clashes(const Storey& storey, const std::vector<uint32_t>& group) const {
+  [[nodiscard]] bool overlaps(const Storey& storey, const std::vector<uint32_t>& group) const {
     for (const uint32_t level : group) {
       const auto found = storey.tiles.find({levels_[level].tile_z, levels_[level].tile_x});
       if (found == storey.tiles.end()) continue;

@@ -38,6 +38,8 @@ class ProgramPath(ProgramCase):
         self.assert_refused(fly("2,3,2", "4,3,4", "--block", "3.8,2,3.8,4,4,4"), "--to", "--block")
         self.assert_refused(fly("2,3,2", "4,3,4", "--block", "2,2,2,4,2,4"), "--block", "opposite corners")
         self.assert_refused(fly("2,3,2", "4,3,4", "--slope-cost", "1"), "--slope-cost", "ground")
+        for option in (("--off-mesh-link", "2,3,2,4,3,4"), ("--area", "2,2,2,4,4,4,5"), ("--area-cost", "5=2")):
+            self.assert_refused(fly("2,3,2", "4,3,4", *option), option[0], "through the air (--fly) take only --block")
         around = json.loads(fly("2,3,2", "4,3,4", "--block", "2.9,2,2.9,3.1,9,3.1", "--json").stdout)
         self.assertEqual(around["end"], "reached")
         self.assertGreater(around["length"], found["length"] + 0.05)
@@ -82,6 +84,10 @@ class ProgramPath(ProgramCase):
         code, link = path("20,0,8", "--block", "16,0,0,17,2,40", "--off-mesh-link", "15,0,8,18,0,8")
         self.assertEqual((code, [one["kind"] for one in link["links"]]), (0, ["off-mesh link"]))
         self.assertEqual(link["segments"][link["links"][0]["point"] - 1], "off-mesh link")
+        code, dear = path("20,0,8", "--area", "16,-1,0,17,2,40,5", "--area-cost", "5=3")
+        self.assertEqual(code, 0)
+        self.assertAlmostEqual(dear["cost"], straight["cost"] + 2, delta=0.5)
+        self.assertEqual(path("20,0,8", "--area", "16,-1,0,17,2,40,5", "--area-cost", "5=inf")[0], 1)
         code, up = path("30,2.9,30", "--class", "wheelchair")
         self.assertEqual((code, up["end"], up["nearest"]["blocked_by"]), (1, "unreachable", "a gap"))
         ends = ["path", self.world, "--from", "14,0,8", "--to", "20,0,8"]
@@ -112,6 +118,47 @@ class ProgramPath(ProgramCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assert_refused(self.run_throng(*verify, *box), "--block", "--paths")
         self.assert_refused(self.run_throng(*verify, "--paths", *box), "--block", "--nodes")
+
+    def test_links_and_areas_hold_over_nodes_too(self):
+        (self.path / "classes.toml").write_text(
+            '[[class]]\nname = "adult"\n[[class]]\nname = "climber"\nclimb_slope = 90\n')
+        done = self.run_throng("bake", "builtin:garage,levels=2", "--cell", "0.2", "--nodes", "--classes", "classes.toml", "-o", "n.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        all_across = "16,-1,0,17,2,40"
+        for name, how in (("adult", ("--nodes",)), ("climber", ())):  # A climber always moves over nodes.
+            ends = ("path", "n.throng", "--class", name, *how, "--from", "14,0,8", "--to", "20,0,8")
+
+            def path(*options):
+                done = self.run_throng(*ends, *options, "--json")
+                self.assertIn(done.returncode, (0, 1), done.stderr)
+                found = json.loads(done.stdout)
+                self.assertEqual(found["end"], "unreachable" if done.returncode else "reached")
+                self.assertIn("corridor", found)
+                return found
+
+            plain = path()
+            self.assertAlmostEqual(plain["length"], 6, delta=0.3)
+            self.assertEqual(path("--block", all_across)["end"], "unreachable")
+            link = path("--block", all_across, "--off-mesh-link", "15,0,8,18,0,8")
+            self.assertEqual(link["end"], "reached")
+            used = [one["point"] for one in link["links"] if one["kind"] == "off-mesh link"]
+            self.assertEqual([link["segments"][point - 1] for point in used], ["off-mesh link"])
+            self.assertAlmostEqual(link["cost"], plain["cost"], delta=0.3)
+            back = path("--block", all_across, "--off-mesh-link", "18,0,8,15,0,8")
+            self.assertAlmostEqual(back["cost"], link["cost"], delta=0.01)
+            # A metre that costs 3, a strip to walk around, and one that is closed.
+            dear = path("--area", f"{all_across},5", "--area-cost", "5=3")
+            self.assertAlmostEqual(dear["cost"], plain["cost"] + 2, delta=0.6)
+            around = path("--area", "16,-1,0,17,2,9,5", "--area-cost", "5=20")
+            self.assertGreater(around["length"], plain["length"] + 0.1)
+            self.assertLess(around["cost"], plain["cost"] + 5)
+            self.assertEqual(path("--area", f"{all_across},5", "--area-cost", "5=inf")["end"], "unreachable")
+            self.assert_refused(self.run_throng(*ends, "--area", "13,-1,7,15,2,9,5", "--area-cost", "5=inf", "--tolerance", "0.1"),
+                                "--from", "its ground is closed")
+            self.assert_refused(self.run_throng(*ends, "--area-cost", "5=3"), "no --area has kind 5", "over nodes")
+            self.assert_refused(self.run_throng(*ends, "--off-mesh-link", "15,0,8,18,90,8"), "--off-mesh-link", "no place on nodes")
+            self.assert_refused(self.run_throng(*ends, "--area", "16,0,0,16,2,9,5"), "--area", "opposite corners")
+            self.assert_refused(self.run_throng(*ends, "--area", "16,0,0,17,2,9,64"), "--area", "1 to 63")
 
     def test_ends_over_nodes_are_above_or_below_the_given_ones(self):
         done = self.run_throng("bake", "builtin:landscape,size=160", "--cell", "0.5", "--nodes", "-o", "h.throng")

@@ -246,7 +246,7 @@ TEST_F(ChangedNodes, WhatIsMadeBeforeABakeStopsIsNotMadeAgain) {
     ASSERT_FALSE(nodes);
     EXPECT_EQ(nodes.error().code, Errc::kCancelled);
     EXPECT_FALSE(Nodes::open(at("w")));
-    // The world is baked again in between: what was made is carried over to it.
+    // The world is baked again in between: what was made is reused for it.
     BakeConfig carry = config;
     carry.carry_nodes = true;
     ASSERT_TRUE(bake_world_to(at("w"), scene, carry, silent));

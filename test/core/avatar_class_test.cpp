@@ -42,6 +42,16 @@ TEST(AvatarClass, BodyBottomIsTheStepOrTheRiseUnderTheRadius) {
   EXPECT_DOUBLE_EQ(body_bottom(default_classes()[2]), 0.024);  // 0.4 m * 6 %
 }
 
+TEST(AvatarClass, WhatClimbsOrDropsGoesOverNodes) {
+  for (const AvatarClass& avatar : default_classes()) EXPECT_FALSE(goes_over_nodes(avatar));
+  EXPECT_FALSE(goes_over_nodes(flyer_class()));
+  EXPECT_TRUE(goes_over_nodes({.climb_slope = 0.5}));
+  EXPECT_TRUE(goes_over_nodes({.max_drop = 0.5}));
+  EXPECT_TRUE(goes_over_nodes({.climb_slope = 180, .max_drop = 3, .flies = true}));
+  // Steep ground and high steps that it walks over are no climbs.
+  EXPECT_FALSE(goes_over_nodes({.step_height = 0.8, .max_slope = 89}));
+}
+
 TEST(AvatarClass, TomlAndJsonGiveTheSameClasses) {
   const ClassFile toml("c.toml",
                        "[[class]]\nname = \"nurse\"\nheight = 1.7\n\n"

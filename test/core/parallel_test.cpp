@@ -29,16 +29,16 @@ TEST(Parallel, RangesVisitEveryIndexOnceForAnyNumberOfWorkers) {
 TEST(Parallel, NoTwoThreadsEverShareAWorkerNumber) {
   for (const int32_t workers : {1, 2, 5}) {
     std::vector<std::atomic<int>> inside(static_cast<size_t>(worker_count(workers)));
-    std::atomic<int> clashes{0};
+    std::atomic<int> overlaps{0};
     std::vector<int> visits(2000, 0);
     parallel_for_worker(visits.size(), workers, [&](size_t index, int32_t worker) {
       ASSERT_GE(worker, 0);
       ASSERT_LT(worker, worker_count(workers));
-      if (inside[static_cast<size_t>(worker)]++ != 0) ++clashes;
+      if (inside[static_cast<size_t>(worker)]++ != 0) ++overlaps;
       ++visits[index];
       --inside[static_cast<size_t>(worker)];
     });
-    EXPECT_EQ(clashes, 0);
+    EXPECT_EQ(overlaps, 0);
     EXPECT_EQ(visits, std::vector<int>(2000, 1));
   }
 }
@@ -56,22 +56,22 @@ TEST(Parallel, WorkersMayWorkInsideAWorker) {
 TEST(Parallel, GroupsVisitEveryIndexOnceAndWorkOnThreadsOfTheirOwn) {
   for (const int32_t groups : {1, 2, 5}) {
     std::vector<std::atomic<int>> inside(static_cast<size_t>(groups));
-    std::atomic<int> clashes{0};
+    std::atomic<int> overlaps{0};
     std::vector<int> sums(200, 0);
     parallel_groups(sums.size(), groups, [&](size_t index, int32_t group) {
-      if (inside[static_cast<size_t>(group)]++ != 0) ++clashes;
+      if (inside[static_cast<size_t>(group)]++ != 0) ++overlaps;
       // Scratch memory of a group's workers: no other group may use it.
       std::vector<std::atomic<int>> used(2);
       std::atomic<int> sum{0};
       parallel_for_worker(100, 2, [&](size_t i, int32_t worker) {
-        if (used[static_cast<size_t>(worker)]++ != 0) ++clashes;
+        if (used[static_cast<size_t>(worker)]++ != 0) ++overlaps;
         sum += static_cast<int>(i);
         --used[static_cast<size_t>(worker)];
       });
       sums[index] += sum;
       --inside[static_cast<size_t>(group)];
     });
-    EXPECT_EQ(clashes, 0);
+    EXPECT_EQ(overlaps, 0);
     EXPECT_EQ(sums, std::vector<int>(200, 4950)) << groups << " groups";
   }
 }

@@ -30,5 +30,18 @@ TEST(Prism, ACircleLiesInItsPrismAndTouchesAllSides) {
   EXPECT_LT(std::hypot(sixteen.corners[3][0], sixteen.corners[3][1]), 1.02);
 }
 
+TEST(Prism, CoversHeightsOfFeetThatRoundingMayHaveMovedOutside) {
+  const Prism prism = Prism::box({-1, 2, -1}, {1, 3.5, 1});
+  for (const double y : {1.951, 2.0, 2.7, 3.5, 3.549}) EXPECT_TRUE(prism.covers_height(y)) << y;
+  for (const double y : {-1e9, 1.949, 3.551, 1e9, std::nan("")}) {
+    EXPECT_FALSE(prism.covers_height(y)) << y;
+  }
+  EXPECT_EQ(Prism::kFeetTolerance, 0.05);
+  // To stand in it takes both: the height, and the place seen from above.
+  EXPECT_TRUE(prism.contains({0.5, 1.96, 1}));
+  EXPECT_FALSE(prism.contains({0.5, 1.94, 1}));
+  EXPECT_FALSE(prism.contains({0.5, 2.5, 1.01}));
+}
+
 }  // namespace
 }  // namespace throng

@@ -102,7 +102,7 @@ TEST(FalseNodes, AnArcOfAKindThatDoesNotExistIsRefusedByName) {
   }
 }
 
-TEST(FalseNodes, ATruncatedOrForeignFileIsRefused) {
+TEST(FalseNodes, ATruncatedFileOrOneOfAnotherKindIsRefused) {
   Scene scene;
   const Nodes nodes = make_small(scene);
   const auto bytes = data_of(nodes)->zone(0)->bytes();

@@ -332,11 +332,11 @@ TEST_P(DamagedGraphFile, OfAnotherBakeIsRefusedByName) {
   fs::rename(path(), folder_.path() + "/here");
   Scene other = builtin({.name = "city", .size = 100, .seed = 2});
   bake(other, {.cell = 0.25, .zone = 32});
-  const std::string foreign = read_text(name_);
+  const std::string of_another = read_text(name_);
   fs::remove_all(path());
   fs::rename(folder_.path() + "/here", path());
-  ASSERT_NE(foreign, whole_);
-  write_text(name_, foreign);
+  ASSERT_NE(of_another, whole_);
+  write_text(name_, of_another);
   EXPECT_NE(said().find(name_), std::string::npos) << said();
 }
 

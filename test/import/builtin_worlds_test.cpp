@@ -131,6 +131,34 @@ TEST(BuiltinWorlds, SizeIsTheSideOfTheFootprint) {
   EXPECT_NEAR(side({.name = "bridge", .size = 400}), 400, 1e-9);
 }
 
+// Of what is allowed, the smallest is made; the largest takes too long here.
+TEST(BuiltinWorlds, LimitsAreThoseThatTheListStates) {
+  const auto is_refused = [](const BuiltinWorldConfig& config) {
+    const auto scene = create_builtin_world(config);
+    return !scene && scene.error().code == Errc::kBadConfig;
+  };
+  uint64_t with_levels = 0, growing = 0;
+  for (const BuiltinWorldInfo& info : builtin_worlds()) {
+    const std::string name(info.name);
+    EXPECT_LE(info.min_size, info.default_size) << name;
+    EXPECT_LE(info.default_size, info.max_size) << name;
+    EXPECT_FALSE(make({.name = name, .size = info.min_size}).triangles.empty()) << name;
+    EXPECT_TRUE(is_refused({.name = name, .size = info.min_size * 0.999})) << name;
+    EXPECT_TRUE(is_refused({.name = name, .size = info.max_size * 1.001})) << name;
+    EXPECT_TRUE(is_refused({.name = name, .levels = info.max_levels + 1})) << name;
+    EXPECT_TRUE(is_refused({.name = name, .triangles = info.max_triangles + 1})) << name;
+    if (info.max_levels > 0) {
+      ++with_levels;
+      EXPECT_EQ(hash_of(make({.name = name, .levels = info.default_levels})),
+                hash_of(make({.name = name})))
+          << name;
+    }
+    growing += info.max_triangles > 0 ? 1 : 0;
+  }
+  EXPECT_EQ(with_levels, 3u);  // garage, powerplant, maze
+  EXPECT_EQ(growing, 2u);      // powerplant, city
+}
+
 TEST(BuiltinWorlds, LevelsSetTheStoreys) {
   const auto top = [](const BuiltinWorldConfig& config) { return make(config).bounds().max.y; };
   EXPECT_NEAR(top({.name = "garage", .levels = 7}), 7 * 2.9 + 1.55, 1e-9);

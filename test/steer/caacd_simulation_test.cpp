@@ -357,6 +357,50 @@ TEST(CaacdSimulation, RandomSpacesKeepTheirDistancesAndTheirPlaces) {
   }
 }
 
+// The oracle looks at all pairs, without the radius beyond which the step looks at none.
+TEST(CaacdSimulation, ThreatsAreTheGreatestOfEachAvatarBeforeTheStep) {
+  const Model model = best();
+  const auto space = random_space({.avatars = 70, .side = 300, .obstacles = 3, .seed = 4}, model);
+  ASSERT_TRUE(space) << space.error().message;
+  Simulation run = made(*space, model);
+  const auto is_none = [](const Threat& threat) { return threat.state == State::kTolerable; };
+  ASSERT_EQ(run.threats().size(), 70u);
+  EXPECT_TRUE(std::ranges::all_of(run.threats(), is_none));
+  uint64_t of_bodies = 0, of_obstacles = 0, critical = 0, of_arrived = 0;
+  for (int frame = 0; frame < 600; ++frame) {
+    const std::vector<Body> bodies(run.bodies().begin(), run.bodies().end());
+    const std::vector<Activity> before(run.activities().begin(), run.activities().end());
+    run.step();
+    for (size_t i = 0; i < bodies.size(); ++i) {
+      Threat greatest;
+      const auto consider = [&](const Threat& threat) {
+        if (!is_none(threat) && more_urgent(threat, greatest)) greatest = threat;
+      };
+      for (size_t j = 0; j < bodies.size(); ++j) {
+        if (j != i) consider(threat_of(bodies[i], bodies[j], model));
+      }
+      for (const Obstacle& obstacle : run.obstacles()) {
+        consider(threat_of(bodies[i], obstacle, model));
+      }
+      if (before[i] == Activity::kArrived) greatest = {};
+      const Threat& threat = run.threats()[i];
+      ASSERT_EQ(threat.state, greatest.state) << frame << ", " << i;
+      ASSERT_EQ(threat.id, greatest.id) << frame << ", " << i;
+      ASSERT_EQ(threat.time, greatest.time);
+      ASSERT_EQ(threat.distance, greatest.distance);
+      ASSERT_EQ(threat.other_then, greatest.other_then);
+      critical += threat.state == State::kCritical ? 1 : 0;
+      of_arrived += before[i] == Activity::kArrived ? 1 : 0;
+      if (is_none(threat)) continue;
+      ++(threat.id == Threat::kObstacle ? of_obstacles : of_bodies);
+    }
+  }
+  EXPECT_GT(of_bodies, 100u);
+  EXPECT_GT(of_obstacles, 10u);
+  EXPECT_GT(critical, 10u);
+  EXPECT_GT(of_arrived, 100u);
+}
+
 TEST(CaacdSimulation, BadSpacesAreRefused) {
   const auto refused = [](const SpaceConfig& config) {
     const auto space = random_space(config, {});

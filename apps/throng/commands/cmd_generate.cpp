@@ -24,7 +24,12 @@ int list_worlds(const Session& session) {
   for (const BuiltinWorldInfo& info : builtin_worlds()) {
     worlds.push_back({{"name", std::string(info.name)},
                       {"summary", std::string(info.summary)},
-                      {"default_size", info.default_size}});
+                      {"default_size", info.default_size},
+                      {"min_size", info.min_size},
+                      {"max_size", info.max_size},
+                      {"default_levels", info.default_levels},
+                      {"max_levels", info.max_levels},
+                      {"max_triangles", info.max_triangles}});
     text += fmt::format("{:<11} {:>6} m  {}\n", info.name, info.default_size, info.summary);
   }
   print_result(session, {{"worlds", worlds}}, text);

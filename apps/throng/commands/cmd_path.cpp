@@ -11,7 +11,6 @@
 
 #include "command.h"
 #include "in_world.h"
-#include "paths/boxes.h"
 #include "paths/path_ground.h"
 #include "paths/path_options.h"
 #include "paths/path_output.h"
@@ -70,32 +69,20 @@ struct End {
 };
 
 // The end of a path in its space. Fails with a sentence if the class cannot be there.
-Result<End> end_of(const World& world, const PathOptions& options, int32_t avatar_class,
-                   PathSpace space, PathFinder& finder, const std::vector<double>& at,
+Result<End> end_of(const PathStage& stage, PathFinder& finder, const std::vector<double>& at,
                    const char* option) {
-  const auto position = position_of(world, options, at, option);
+  const auto position = position_of(stage.world, stage.options, at, option);
   if (!position) return position.error();
   End end{.at = *position, .position = *position, .option = option};
-  if (space == PathSpace::kAir) return end;
-  if (space == PathSpace::kGround) {
-    const auto place = place_of(world, options, avatar_class, at, option);
+  if (stage.space == PathSpace::kGround) {
+    const auto place = place_of(stage, at, option);
     if (!place) return place.error();
     end.at = *place;
-    return end;
+  } else if (stage.space == PathSpace::kNodes) {
+    const auto place = node_place_of(stage, finder, at, option);
+    if (!place) return place.error();
+    end.at = *place;
   }
-  // A class that only walks: the ground above or below; if there is none, the nearest place.
-  const bool climbs = goes_over_nodes(world.summary().classes[static_cast<size_t>(avatar_class)]);
-  const Place ground =
-      climbs ? Place{} : world.find_place(avatar_class, *position, options.tolerance);
-  const NodePlace place =
-      finder.find_node_place(ground ? ground.position : *position, options.tolerance);
-  if (!place) {
-    return bad_end(options, *position, option,
-                   fmt::format("is no place on nodes where class {} can be, within {} m; see "
-                               "`throng picture --nodes`, or give a larger --tolerance",
-                               options.avatar_class, options.tolerance));
-  }
-  end.at = place;
   return end;
 }
 
@@ -116,24 +103,24 @@ void add_offset(const End& end, const char* name, Json& json, std::string& text)
   text += fmt::format("  --{} is {:.3f} m beside, at ({})\n", name, offset, where(feet));
 }
 
-int find(Session& session, const PathOptions& options, const World& world, int32_t avatar_class,
-         PathSpace space) {
+int find(Session& session, const PathStage& stage) {
+  const World& world = stage.world;
+  const PathOptions& options = stage.options;
+  const PathSpace space = stage.space;
   const bool on_ground = space == PathSpace::kGround;
   if (on_ground) {
     // Data that is made on demand takes a damaged zone for empty: check all first.
     if (auto ok = world.check_ground(); !ok) return fail(ok.error());
     for (const auto& [at, option] :
          {std::pair{&options.from, "--from"}, std::pair{&options.to, "--to"}}) {
-      if (auto place = place_of(world, options, avatar_class, *at, option); !place) {
-        return fail(place.error());
-      }
+      if (auto place = place_of(stage, *at, option); !place) return fail(place.error());
     }
   }
   Edits edits;
   const bool on_demand = on_ground && options.is_live();
   auto finder =
       PathFinder::create(world,
-                         {.avatar_class = avatar_class,
+                         {.avatar_class = stage.avatar_class,
                           .slope_cost = options.slope_cost,
                           .overlay = false,  // One query does not repay its time.
                           .workers = options.threads,
@@ -142,9 +129,9 @@ int find(Session& session, const PathOptions& options, const World& world, int32
                           .edits = edits},
                          session.context);
   if (!finder) return fail(finder.error());
-  const auto from = end_of(world, options, avatar_class, space, *finder, options.from, "--from");
+  const auto from = end_of(stage, *finder, options.from, "--from");
   if (!from) return fail(from.error());
-  const auto to = end_of(world, options, avatar_class, space, *finder, options.to, "--to");
+  const auto to = end_of(stage, *finder, options.to, "--to");
   if (!to) return fail(to.error());
   for (const End& end : {*from, *to}) {
     if (space != PathSpace::kAir || finder->is_free(end.at, options.tolerance)) continue;
@@ -153,12 +140,13 @@ int find(Session& session, const PathOptions& options, const World& world, int32
                                     "body would touch a solid, or it lies above or below the air",
                                     options.avatar_class)));
   }
-  if (auto ok = put_up(world, options, avatar_class, edits); !ok) return fail(ok.error());
+  if (auto ok = put_up(stage, *finder, edits); !ok) return fail(ok.error());
   for (const End& end : {*from, *to}) {
     if (finder->is_free(end.at, options.tolerance)) continue;
     return fail(bad_end(options, end.position, end.option,
-                        on_ground ? "is blocked: a --block stands there, or its ground is closed"
-                                  : "is blocked: a --block is there"));
+                        space == PathSpace::kAir
+                            ? "is blocked: a --block is there"
+                            : "is blocked: a --block stands there, or its ground is closed"));
   }
   Path found;
   const double seconds = seconds_of([&] {
@@ -190,7 +178,7 @@ int path(Session& session, const PathOptions& options) {
   const AvatarClass avatar = world->summary().classes[static_cast<size_t>(*avatar_class)];
   const auto space = space_of(options, *world, avatar);
   if (!space) return fail(space.error());
-  return find(session, options, *world, *avatar_class, *space);
+  return find(session, {*world, options, *avatar_class, *space});
 }
 
 }  // namespace

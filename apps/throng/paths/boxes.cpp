@@ -19,22 +19,28 @@ void add_blocks(CLI::App* command, std::vector<double>& blocks) {
       ->type_name("X,Y,Z,X,Y,Z");
 }
 
+Result<Prism> box_of(std::span<const double, 6> corners, const char* option) {
+  const Vec3d a{corners[0], corners[1], corners[2]}, b{corners[3], corners[4], corners[5]};
+  if (a.x == b.x || a.y == b.y || a.z == b.z) {
+    return Error{Errc::kBadInput,
+                 fmt::format("{}: ({}) and ({}) are no opposite corners of a box: they must differ "
+                             "in x, y and z",
+                             option, where(a), where(b))};
+  }
+  const Prism box = Prism::box({std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
+                               {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)});
+  if (auto ok = check_prism(box); !ok) {
+    return Error{Errc::kBadInput, fmt::format("{}: {}", option, ok.error().message)};
+  }
+  return box;
+}
+
 Result<std::vector<Prism>> boxes_of(const std::vector<double>& blocks) {
   std::vector<Prism> boxes;
   for (size_t i = 0; i + 6 <= blocks.size(); i += 6) {
-    const Vec3d a{blocks[i], blocks[i + 1], blocks[i + 2]};
-    const Vec3d b{blocks[i + 3], blocks[i + 4], blocks[i + 5]};
-    if (a.x == b.x || a.y == b.y || a.z == b.z) {
-      return Error{Errc::kBadInput,
-                   fmt::format("--block: ({}) and ({}) are no opposite corners of a box: they must "
-                               "differ in x, y and z",
-                               where(a), where(b))};
-    }
-    boxes.push_back(Prism::box({std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
-                               {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}));
-    if (auto ok = check_prism(boxes.back()); !ok) {
-      return Error{Errc::kBadInput, "--block: " + ok.error().message};
-    }
+    const auto box = box_of(std::span(blocks).subspan(i).first<6>(), "--block");
+    if (!box) return box.error();
+    boxes.push_back(*box);
   }
   return boxes;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <span>
 #include <vector>
 
 #include "throng/base.h"
@@ -11,6 +12,10 @@ namespace throng::app {
 
 /// Adds --block: box-shaped obstacles, six numbers each.
 void add_blocks(CLI::App* command, std::vector<double>& blocks);
+
+/// The box with two opposite corners that an option gives. Fails with kBadInput and
+/// a sentence that names the option.
+Result<Prism> box_of(std::span<const double, 6> corners, const char* option);
 
 /// The boxes of --block. Fails with kBadInput and a sentence.
 Result<std::vector<Prism>> boxes_of(const std::vector<double>& blocks);

@@ -44,7 +44,12 @@ void add_path_options(CLI::App& command, PathOptions& options) {
   add_blocks(&command, options.blocks);
   add_list("--off-mesh-link", options.off_mesh_links,
            "A link from one place to another and back, given by hand [m]", ',', 6, "X,Y,Z,X,Y,Z");
-  add_list("--area-cost", options.area_costs, "Cost of a metre on ground of a kind; inf closes it",
+  add_list("--area", options.areas,
+           "A box, by two opposite corners, in which the ground has an area kind [m, 1 to 63]", ',',
+           7, "X,Y,Z,X,Y,Z,KIND");
+  add_list("--area-cost", options.area_costs,
+           "Cost of a metre on ground of a kind; inf closes it; over nodes, kinds of --area alone "
+           "count",
            '=', 2, "KIND=COST");
   command
       .add_option("--slope-cost", options.slope_cost,
@@ -59,26 +64,17 @@ void add_path_options(CLI::App& command, PathOptions& options) {
 
 namespace {
 
-bool has_ground_costs(const PathOptions& options) {
-  return !options.off_mesh_links.empty() || !options.area_costs.empty();
-}
-
-Result<void> check_options(const PathOptions& options, bool over_nodes) {
+Result<void> check_options(const PathOptions& options) {
   if (options.fly + options.nodes + options.on_foot > 1) {
     return Error{
         Errc::kBadConfig,
         "--fly finds paths through the air, --nodes over all surfaces, --on-foot over level "
         "ground: give one of them"};
   }
-  if (options.fly && (has_ground_costs(options) || options.slope_cost > 0)) {
+  if (options.fly && options.changes_ground()) {
     return Error{Errc::kBadConfig,
-                 "--off-mesh-link, --area-cost and --slope-cost change the ground; paths through "
-                 "the air (--fly) take only --block"};
-  }
-  if (over_nodes && has_ground_costs(options)) {
-    return Error{Errc::kBadConfig,
-                 "--off-mesh-link and --area-cost change the ground of level tiles; paths over "
-                 "nodes take off-mesh links from `throng bake --off-mesh-links`"};
+                 "--off-mesh-link, --area, --area-cost and --slope-cost change the ground; paths "
+                 "through the air (--fly) take only --block"};
   }
   return {};
 }
@@ -89,12 +85,10 @@ Result<PathSpace> space_of(const PathOptions& options, const World& world,
                            const AvatarClass& avatar) {
   const bool by_class = !options.fly && !options.nodes && !options.on_foot;
   const bool over_nodes = options.nodes || (by_class && !avatar.flies && goes_over_nodes(avatar));
-  if (auto ok = check_options(options, over_nodes); !ok) return ok.error();
+  if (auto ok = check_options(options); !ok) return ok.error();
   if (options.fly) return PathSpace::kAir;
   if (over_nodes) return PathSpace::kNodes;
-  if (!by_class || !avatar.flies || has_ground_costs(options) || options.slope_cost > 0) {
-    return PathSpace::kGround;
-  }
+  if (!by_class || !avatar.flies || options.changes_ground()) return PathSpace::kGround;
   const auto air = air_summary(world);
   if (!air && air.error().code != Errc::kNotFound) return air.error();
   if (air) return PathSpace::kAir;

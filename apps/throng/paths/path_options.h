@@ -24,13 +24,16 @@ struct PathOptions {
   bool on_foot = false;
   std::vector<double> blocks;          // six numbers a box
   std::vector<double> off_mesh_links;  // six numbers a link
+  std::vector<double> areas;           // six numbers a box, and a kind
   std::vector<double> area_costs;      // a kind and its cost
   double slope_cost = 0;
   uint64_t search_bytes = SearchBudget::kDefaultBytes;
 
-  [[nodiscard]] bool is_live() const {
-    return !blocks.empty() || !off_mesh_links.empty() || !area_costs.empty() || slope_cost > 0;
+  /// Does an option change the ground, but not the air?
+  [[nodiscard]] bool changes_ground() const {
+    return !off_mesh_links.empty() || !areas.empty() || !area_costs.empty() || slope_cost > 0;
   }
+  [[nodiscard]] bool is_live() const { return !blocks.empty() || changes_ground(); }
 };
 
 void add_path_options(CLI::App& command, PathOptions& options);

@@ -356,10 +356,10 @@ int32_t LayerBuilder::pack(std::vector<int32_t>& layer_of) const {
       const bool apart = component.tops.low - bins[b].tops.high > kSameHeight ||
                          bins[b].tops.low - component.tops.high > kSameHeight;
       if (apart && bins.size() < kMaxSortedLayers) continue;
-      bool clash = false;
-      for (size_t z = 0; z < kTileSide && !clash; ++z)
-        clash = (bins[b].used[z] & component.cells[z]) != 0;
-      if (!clash) break;
+      bool overlaps = false;
+      for (size_t z = 0; z < kTileSide && !overlaps; ++z)
+        overlaps = (bins[b].used[z] & component.cells[z]) != 0;
+      if (!overlaps) break;
     }
     if (b == bins.size()) bins.emplace_back();
     Bin& bin = bins[b];

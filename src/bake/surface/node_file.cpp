@@ -29,7 +29,7 @@ ZoneArcs arcs_of(std::span<const graph::NodeLink> links, const ZoneRange& zone) 
   }
   for (size_t n = 2; n < next.size(); ++n) next[n] += next[n - 1];
   out.arcs.resize(next.back());
-  // Links are sorted, so a stable deal to `from` leaves each node's arcs sorted.
+  // Links are sorted, so a stable sort by `from` leaves each node's arcs sorted.
   for (const graph::NodeLink& l : links) {
     if (!goes_down(l)) continue;
     out.arcs[next[l.b - zone.first + 1]++] = {l.b, l.a, l.classes, l.kind, l.hole_link1, !l.turned};

@@ -17,7 +17,7 @@ namespace throng::bake {
 
 class OldNodes {
  public:
-  /// Of the world itself, those that its bake has carried over from the world before it, and those
+  /// Of the world itself, those that its bake has reused from the world before it, and those
   /// that a killed bake had made. What cannot be read is left out. [world_path may be empty: none]
   explicit OldNodes(const std::string& world_path);
 

@@ -364,7 +364,7 @@ void PatchJudge::gather(const Box3d& box, const SelfSupport& own) {
   const Vec3d middle = (box.min + box.max) * 0.5;
   all_.region.clear(middle);
   others_.region.clear(middle);
-  foreign_.clear(middle);
+  not_beside_.clear(middle);
   all_is_filled_ = false;
   spared_ = 0;
   spares_height_ = {false, false};
@@ -391,14 +391,14 @@ void PatchJudge::gather(const Box3d& box, const SelfSupport& own) {
     }
     other_ids_.push_back(triangle);
     if (patch == kNoPatch || is_beside_[patch] != 0) continue;
-    foreign_.add(triangle, triangles_->corners(triangle));
+    not_beside_.add(triangle, triangles_->corners(triangle));
   }
   if (!other_ids_.empty()) {
     found_others_.clear(middle);
     found_others_.add(scene, other_ids_);
     found_others_.close();
     narrow(found_others_, box, others_.region);
-    foreign_.close();
+    not_beside_.close();
   }
   if (known) set_spared(own, own.deviation(span_s, span_t) + scene.patch_off[patch_]);
 }
@@ -422,14 +422,14 @@ void PatchJudge::fill_all() {
 
 // Patches whose triangles come into the surfaces of cells.
 void PatchJudge::find_makers(std::span<const Pending> cells, BezierCells& out) {
-  if (foreign_.count == 0) return;
+  if (not_beside_.count == 0) return;
   Box3d box;
   for (const Pending& cell : cells) {
     const Box3d b = sweep_box(cell.surface(0).frame, surface_sweep(cell.surface(0)));
     box.add(b.min);
     box.add(b.max);
   }
-  narrow(foreign_, box, maker_);
+  narrow(not_beside_, box, maker_);
   if (maker_.count == 0) return;
   for (const Pending& cell : cells) {
     const BodyFrame& frame = cell.surface(0).frame;

@@ -137,9 +137,9 @@ class PatchJudge {
   struct NearLists {
     FilterList region, block, square;
   };
-  NearLists others_, all_;      // without those of its own that are spared, and with them
-  FilterList foreign_, maker_;  // those of other patches, not beside; near a square
-  FilterList found_others_;     // before their boxes are tested
+  NearLists others_, all_;         // without those of its own that are spared, and with them
+  FilterList not_beside_, maker_;  // those of other patches, not beside; near a square
+  FilterList found_others_;        // before their boxes are tested
   bool all_is_filled_ = false, all_is_asked_ = false;
   uint32_t spared_ = 0;                  // bodies that the patch's own triangles here do not reach
   std::array<bool, 2> spares_height_{};  // along the normal and upright

@@ -274,10 +274,11 @@ bool FlyerEngine::gives_precedence(const Body& body, const Flight& flight, const
     return steer::size_of(
         Space{level.x, static_cast<float>(f.local_target_y - b.y) * 1e-3f, level.z});
   };
-  const steer::Plane aims = units.metres(other.local_target_x - body.local_target_x,
-                                         other.local_target_z - body.local_target_z);
-  const Space between{
-      aims.x, static_cast<float>(of_other.local_target_y - flight.local_target_y) * 1e-3f, aims.z};
+  const steer::Plane targets_apart = units.metres(other.local_target_x - body.local_target_x,
+                                                  other.local_target_z - body.local_target_z);
+  const Space between{targets_apart.x,
+                      static_cast<float>(of_other.local_target_y - flight.local_target_y) * 1e-3f,
+                      targets_apart.z};
   if (steer::size_of(between) > kCornerRadius) return false;
   const steer::Plane apart = units.metres(other.x - body.x, other.z - body.z);
   const int32_t up = other.y - body.y;

@@ -15,12 +15,7 @@ namespace {
 
 struct Entry {
   BuiltinWorldInfo info;
-  double min_size = 0;
-  double max_size = 0;
-  int32_t default_levels = 0;  // 0: the world has no storeys to count.
-  int32_t max_levels = 0;
   double (*size_for)(uint64_t triangles, int32_t levels) = nullptr;  // Null: does not grow.
-  uint64_t max_triangles = 0;
   void (*build)(importer::WorldBuilder&, const BuiltinWorldConfig&) = nullptr;
   PatchSet (*build_patches)(const BuiltinWorldConfig&) = nullptr;  // Instead of `build`.
 };
@@ -28,78 +23,38 @@ struct Entry {
 constexpr uint64_t kMaxTriangles = 100'000'000;  // Corners must stay below 2^32 with room.
 
 const std::array<Entry, 9> kWorlds = {{
-    {{"cube", "a hollow cube: floor, roof and four walls without thickness", 5.8},
-     0.5,
-     10000,
-     0,
-     0,
+    {{"cube", "a hollow cube: floor, roof and four walls without thickness", 5.8, 0.5, 10000},
      nullptr,
-     0,
      importer::builtin::build_cube},
-    {{"stairs", "flights of all kinds up two terraces: easy, steep, too high, ramps, spirals", 44},
-     44,
-     4000,
-     0,
-     0,
+    {{"stairs", "flights of all kinds up two terraces: easy, steep, too high, ramps, spirals", 44,
+      44, 4000},
      nullptr,
-     0,
      importer::builtin::build_stairs},
-    {{"garage", "a car park: floors, ramps, pillars, cars, stairwells", 60},
-     45,
-     2000,
-     3,
-     40,
+    {{"garage", "a car park: floors, ramps, pillars, cars, stairwells", 60, 45, 2000, 3, 40},
      nullptr,
-     0,
      importer::builtin::build_garage},
-    {{"bridge", "a road over a river and a road: arches, embankments, stairs, an underpass", 160},
-     160,
-     4000,
-     0,
-     0,
+    {{"bridge", "a road over a river and a road: arches, embankments, stairs, an underpass", 160,
+      160, 4000},
      nullptr,
-     0,
      importer::builtin::build_bridge},
-    {{"church", "nave, arcades, galleries at two heights, spiral stairs, a tower", 42},
-     30,
-     400,
-     0,
-     0,
+    {{"church", "nave, arcades, galleries at two heights, spiral stairs, a tower", 42, 30, 400},
      nullptr,
-     0,
      importer::builtin::build_church},
-    {{"powerplant", "a dense steel frame: gratings, stairs, pipes, tanks, ladders", 36},
-     24,
-     1200,
-     22,
-     22,
+    {{"powerplant", "a dense steel frame: gratings, stairs, pipes, tanks, ladders", 36, 24, 1200,
+      22, 22, kMaxTriangles},
      importer::builtin::powerplant_size,
-     kMaxTriangles,
      importer::builtin::build_powerplant},
-    {{"city", "streets, kerbs, buildings with storeys inside, a canal, bridges, underpasses", 500},
-     100,
-     12000,
-     0,
-     0,
+    {{"city", "streets, kerbs, buildings with storeys inside, a canal, bridges, underpasses", 500,
+      100, 12000, 0, 0, 10'000'000},
      [](uint64_t triangles, int32_t) { return importer::builtin::city_size(triangles); },
-     10'000'000,
      importer::builtin::build_city},
-    {{"maze", "a perfect maze of 2 m corridors on levels joined by spiral stairs", 50},
-     30,
-     1500,
-     2,
-     40,
+    {{"maze", "a perfect maze of 2 m corridors on levels joined by spiral stairs", 50, 30, 1500, 2,
+      40},
      nullptr,
-     0,
      importer::builtin::build_maze},
     {{"landscape", "curved hills, cliffs, overhangs, sunken rocks and arches, as Bezier patches",
-      320},
-     64,
-     12000,
-     0,
-     0,
+      320, 64, 12000},
      nullptr,
-     0,
      nullptr,
      importer::builtin::build_landscape},
 }};
@@ -142,33 +97,33 @@ Result<Scene> create_builtin_world(const BuiltinWorldConfig& config) {
     return Error{Errc::kBadConfig, fmt::format("world {}: {}", config.name, what)};
   };
   BuiltinWorldConfig full = config;
-  if (config.levels != 0 && entry->default_levels == 0) {
+  if (config.levels != 0 && entry->info.default_levels == 0) {
     return refuse("has no levels to count; leave levels out");
   }
-  if (config.levels < 0 || config.levels > entry->max_levels) {
-    return refuse(fmt::format("levels is {}, use 1 to {}", config.levels, entry->max_levels));
+  if (config.levels < 0 || config.levels > entry->info.max_levels) {
+    return refuse(fmt::format("levels is {}, use 1 to {}", config.levels, entry->info.max_levels));
   }
-  if (config.levels == 0) full.levels = entry->default_levels;
+  if (config.levels == 0) full.levels = entry->info.default_levels;
   if (config.triangles != 0) {
     if (entry->size_for == nullptr) {
       return refuse("does not grow by triangles; use size (only powerplant and city grow)");
     }
     if (config.size != 0) return refuse("takes either size or triangles; leave one out");
-    if (config.triangles > entry->max_triangles) {
-      return refuse(
-          fmt::format("triangles is {}, at most {} fit", config.triangles, entry->max_triangles));
+    if (config.triangles > entry->info.max_triangles) {
+      return refuse(fmt::format("triangles is {}, at most {} fit", config.triangles,
+                                entry->info.max_triangles));
     }
     full.size = entry->size_for(config.triangles, full.levels);
-    if (full.size < entry->min_size) {
+    if (full.size < entry->info.min_size) {
       return refuse(fmt::format("triangles is {}, too few even for its smallest size; use size {}",
-                                config.triangles, entry->min_size));
+                                config.triangles, entry->info.min_size));
     }
   } else if (config.size == 0) {
     full.size = entry->info.default_size;
   }
-  if (!(full.size >= entry->min_size && full.size <= entry->max_size)) {
-    return refuse(
-        fmt::format("size is {} m, use {} to {}", full.size, entry->min_size, entry->max_size));
+  if (!(full.size >= entry->info.min_size && full.size <= entry->info.max_size)) {
+    return refuse(fmt::format("size is {} m, use {} to {}", full.size, entry->info.min_size,
+                              entry->info.max_size));
   }
   if (entry->build_patches != nullptr) {
     Scene scene;

@@ -590,10 +590,10 @@ void FlightFinder::find_by_turns(const FlightQuery& query, Path& path) {
       }
       std::reverse(scratch.route.begin(), scratch.route.end());
     }
-    const size_t stuck = follow_route(query, from, to, path);
+    const size_t missed = follow_route(query, from, to, path);
     if (path.end != PathEnd::kUnreachable) return;
-    const GroundAirLinks::Part& a = scratch.route[stuck - 1];
-    const GroundAirLinks::Part& b = scratch.route[stuck];
+    const GroundAirLinks::Part& a = scratch.route[missed - 1];
+    const GroundAirLinks::Part& b = scratch.route[missed];
     scratch.banned.emplace_back(a.is_air ? b.component : a.component,
                                 a.is_air ? a.component : b.component);
   }

@@ -122,12 +122,12 @@ struct NodeFinder::Scratch {
   void begin_step(Step to);
   [[nodiscard]] Step next_step(PathEnd end) const;
   bool advance(Slice& slice);
-  void aim_at_nearest();
+  void head_to_nearest();
 
   // The query.
   BlockPoint start, goal;
   std::optional<BlockPoint> nearest;  // the place that the search leads to, if it is not the goal
-  bool aims_at_nearest = false;       // which obstacles may have cut off, too
+  bool heads_to_nearest = false;      // which obstacles may have cut off, too
   Vec3d goal_at;
   double spacing = 0;
   SearchBudget budget;
@@ -166,7 +166,7 @@ NodeFinder::Scratch::Step NodeFinder::Scratch::next_step(PathEnd ended) const {
   if (ended != PathEnd::kUnreachable) return Step::kEnded;
   if (step == Step::kFar) return Step::kAll;
   // The place that seemed the nearest cannot be reached either.
-  return step != Step::kFlood && aims_at_nearest ? Step::kFlood : Step::kEnded;
+  return step != Step::kFlood && heads_to_nearest ? Step::kFlood : Step::kEnded;
 }
 
 // False: the slice is spent.
@@ -186,18 +186,18 @@ bool NodeFinder::Scratch::advance(Slice& slice) {
 
 // At the reachable place that comes nearest to a goal that obstacles have cut off. A place that
 // seems near may itself be cut off.
-void NodeFinder::Scratch::aim_at_nearest() {
-  constexpr int kMaxPockets = 16;
+void NodeFinder::Scratch::head_to_nearest() {
+  constexpr int kMaxIslands = 16;
   if (islands.close(view, start.block, goal.block, NodeIsland::Direction::kOut)) {
     return begin_step(Step::kAll);
   }
-  for (int i = 0; i < kMaxPockets; ++i) {
+  for (int i = 0; i < kMaxIslands; ++i) {
     const auto is_cut_off = [&](uint32_t block) { return islands.holds(block); };
     const BlockPoint last =
         shared.parts.nearest(view, start, position(view, goal), reached, is_cut_off);
     if (islands.close(view, last.block, start.block, NodeIsland::Direction::kIn)) continue;
     nearest = last;
-    aims_at_nearest = true;
+    heads_to_nearest = true;
     return begin_search();
   }
   begin_step(Step::kAll);
@@ -681,7 +681,7 @@ void NodeFinder::begin(const NodePlace& from, const NodePlace& to, double spacin
   scratch.goal_at = to.feet;
   scratch.spacing = spacing;
   scratch.budget = budget;
-  scratch.aims_at_nearest = false;
+  scratch.heads_to_nearest = false;
   scratch.step = Scratch::Step::kEnded;
   scratch.end = PathEnd::kNoPlace;
   scratch.nodes = scratch.taken = 0;
@@ -711,7 +711,7 @@ void NodeFinder::begin(const NodePlace& from, const NodePlace& to, double spacin
   scratch.reachable = scratch.reachable && !scratch.islands.close(view, goal.block, start.block,
                                                                   NodeIsland::Direction::kIn);
   if (scratch.reachable) return scratch.begin_search();
-  scratch.aim_at_nearest();
+  scratch.head_to_nearest();
 }
 
 bool NodeFinder::advance(Slice& slice, Path& path) {

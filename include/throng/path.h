@@ -184,9 +184,9 @@ class THRONG_API Edits {
   /// policy, false opens it at once or ends its closing. False if there is none of this id.
   bool remove(EditId edit);
   bool set_active(EditId edit, bool active);
-  /// Sets the cost of a metre on ground of an area kind; infinity closes it. All kinds begin
-  /// with 1. Over nodes, only areas of Edits have kinds, and no path begins or ends on what is
-  /// closed. Fails with kBadConfig. [kind 1 to 63, 0.01 to 10000 or infinity]
+  /// Sets the cost of a metre on ground of an area kind, which the bake or an area gave; infinity
+  /// closes it: no path begins, leads or ends there. All kinds begin with 1. Over nodes, only areas
+  /// of Edits have kinds. Fails with kBadConfig. [kind 1 to 63, 0.01 to 10000 or infinity]
   [[nodiscard]] Result<void> set_area_cost(uint8_t kind, double cost);
 
   /// Rises with every change of the list.
@@ -455,7 +455,8 @@ class THRONG_API FlowField {
   /// Infinite if no path leads there, or none within `max_distance`. [m]
   [[nodiscard]] double distance(const Place& place);
   /// The next local target: the farthest point of the path to the nearest goal to which a straight
-  /// line or a link leads. At last the goal itself; nowhere if no path leads there.
+  /// line leads. Where the path takes an off-mesh link, that is its start; from places within a
+  /// cell of it, it is the link's end. At last the goal itself; nowhere if no path leads there.
   [[nodiscard]] Place next(const Place& place);
   /// Finds the whole path to the nearest goal, pulled taut.
   void find_path(const Place& place, Path& path);

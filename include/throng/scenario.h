@@ -324,6 +324,8 @@ struct ValidationTest {
   std::string title;   ///< What is tested.
   std::string method;  ///< How it is measured, in sentences.
   std::string source;  ///< Source of the range: keys of docs/references.md.
+  /// Known to be missed today. `throng validate` runs it only if it is named.
+  bool in_work = false;
 };
 
 /// Settings for run_validation and run_trial.

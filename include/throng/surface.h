@@ -196,8 +196,8 @@ class THRONG_API Nodes {
   /// The world that the nodes were made for. [the handle is not empty]
   [[nodiscard]] const World& world() const;
   /// Writes the nodes into the folder of the world that they were made for, and replaces those
-  /// there. `workers`: threads, 0 for all cores. Fails with kIo or, if the folder holds another
-  /// world, kBadFile.
+  /// there. Fails with kBadConfig (workers), kIo or, if the folder holds another world, kBadFile.
+  /// `workers`: threads, 0 for all cores. [>= 0]
   [[nodiscard]] Result<void> write(const std::string& world_path, int32_t workers = 0) const;
   /// Checks every zone against the index. Fails with kBadFile and the zone's name.
   [[nodiscard]] Result<void> check_all() const;

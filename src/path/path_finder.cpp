@@ -60,7 +60,9 @@ bool needs_mesh(const PathConfig& config) {
 
 // Of the finder of ground with edits, whose data is made on demand.
 PathConfig live_config(const PathConfig& config) {
-  return {.avatar_class = config.avatar_class, .slope_cost = config.slope_cost};
+  return {.avatar_class = config.avatar_class,
+          .slope_cost = config.slope_cost,
+          .workers = config.workers};
 }
 
 }  // namespace
@@ -179,12 +181,11 @@ void PathFinder::State::find_connected(const Place& from, const Place& to,
                                        path::IfUnreachable otherwise, const SearchBudget& budget,
                                        Path& path) {
   uint64_t spent = 0;
-  if (mesh && !edits().may_shorten_paths()) {
+  if (mesh && !edits().may_shorten_paths(baked_kinds())) {
     // Obstacles only remove ground: the shortest path of the baked ground that can still be walked
     // is the shortest.
     mesh->find(from, to, path, budget);
-    if (path.end == PathEnd::kReached && (!edits().bears_on_ground() || ground().allows(path)))
-      return;
+    if (path.end == PathEnd::kReached && (!bears_on_ground() || ground().allows(path))) return;
     if (path.end == PathEnd::kBudgetExhausted) return;
     spent = path.nodes;
   }
@@ -202,11 +203,11 @@ bool PathFinder::State::is_apart(const Place& from, const Place& to) const {
 }
 
 bool PathFinder::State::are_free(const Place& from, const Place& to) {
-  return !edits().bears_on_ground() || (ground().is_free(from) && ground().is_free(to));
+  return !bears_on_ground() || (ground().is_free(from) && ground().is_free(to));
 }
 
 Place PathFinder::State::nearest_connected(const Place& from, const Place& to) {
-  path::GroundView* view = edits().bears_on_ground() ? &ground().state().mesh : nullptr;
+  path::GroundView* view = bears_on_ground() ? &ground().state().mesh : nullptr;
   const world::WorldData& data = *data_of(world);
   const path::PathMesh& rects = mesh->mesh();
   const auto nearest =
@@ -219,7 +220,7 @@ Place PathFinder::State::nearest_connected(const Place& from, const Place& to) {
 void PathFinder::State::end_before(const Place& to, Path& path) {
   path.end = PathEnd::kUnreachable;
   const Place& last = path.points.back();
-  path.blocked_by = edits().bears_on_ground()
+  path.blocked_by = bears_on_ground()
                         ? ground().blocker(last, to)
                         : path::blocker_towards({*data_of(world), config.avatar_class}, last, to);
 }

@@ -45,6 +45,11 @@ struct PathFinder::State {
   uint64_t nodes_before = 0;  // expanded before the flood
 
   [[nodiscard]] const path::EditList& edits() const;
+  /// Area kinds of the mesh, see EditList::has_costs; without a mesh all paths are searched with
+  /// costs.
+  [[nodiscard]] uint64_t baked_kinds() const { return mesh ? mesh->mesh().kinds : 0; }
+  /// May paths on the ground differ from those of the mesh?
+  [[nodiscard]] bool bears_on_ground() const { return edits().bears_on_ground(baked_kinds()); }
   /// The finder of ground with edits, up to date.
   path::GroundFinder& ground();
   /// The same apart from this finder, of any class that has ground.

@@ -14,6 +14,7 @@
 #include "validate/statistics.h"
 #include "validate/tests.h"
 #include "validate/tracks.h"
+#include "validate/walked_path.h"
 
 // Experiments of the laboratory of Juelich simulated: the same walls, and each avatar enters at the
 // time and place of one person's first recorded position. Recorded and simulated paths are measured
@@ -29,7 +30,7 @@ struct Experiment {
   std::vector<Polygon> walls;
   Point2 low, high;            // of the ground
   Point2 box_low, box_high;    // in which density and speed are measured
-  Point2 line_from, line_to;   // over which flow is measured
+  CrossedLine line;            // over which flow is measured, and before which paths are
   Point2 goal_low, goal_high;  // both ends; the target is that of the person's walking direction
   bool has_two_ways = false;
 };
@@ -44,8 +45,7 @@ Experiment open_corridor(const char* file, const char* title, double in, double 
                .high = {4, 9},
                .box_low = {0, -2},
                .box_high = {1.8, 2},
-               .line_from = {0, -3.5},
-               .line_to = {1.8, -3.5},
+               .line = {{0, -3.5}, {1.8, -3.5}},
                .goal_low = {middle, -7},
                .goal_high = {middle, -7}};
   for (const auto& [z, width] : {std::pair(3.7, in), std::pair(-4.0, out)}) {
@@ -70,8 +70,7 @@ std::vector<Experiment> experiments() {
                  .high = {8, 5.5},
                  .box_low = {-2, 0},
                  .box_high = {2, 4},
-                 .line_from = {0, 0},
-                 .line_to = {0, 4},
+                 .line = {{0, 0}, {0, 4}},
                  .goal_low = {-8, 2},
                  .goal_high = {7, 2},
                  .has_two_ways = true});
@@ -83,65 +82,28 @@ std::vector<Experiment> experiments() {
                  .high = {3.3, 9},
                  .box_low = {-1, 0.3},
                  .box_high = {1, 2.3},
-                 .line_from = {-0.25, -0.5},
-                 .line_to = {0.25, -0.5},
+                 .line = {{-0.25, -0.5}, {0.25, -0.5}},
                  .goal_low = {0, -4},
                  .goal_high = {0, -4}});
   return all;
 }
 
-// The path of a person, one position each step of 0.1 s.
-struct WalkedPath {
-  int64_t first = 0;  // step
-  std::vector<Point2> at;
-};
-
-// Positions between frames by linear interpolation.
-WalkedPath resampled(const Track& track, double fps) {
-  WalkedPath walked_path;
-  const auto time = [&](size_t i) { return static_cast<double>(track.points[i].frame) / fps; };
-  walked_path.first = static_cast<int64_t>(std::ceil(time(0) / PlaneCrowd::kStep - 1e-9));
-  size_t i = 0;
-  for (int64_t step = walked_path.first;; ++step) {
-    const double t = static_cast<double>(step) * PlaneCrowd::kStep;
-    while (i + 1 < track.points.size() && time(i + 1) < t) ++i;
-    if (i + 1 >= track.points.size()) break;
-    const TrackPoint &a = track.points[i], &b = track.points[i + 1];
-    const double part = (t - time(i)) / (time(i + 1) - time(i));
-    walked_path.at.push_back({a.x + part * (b.x - a.x), a.z + part * (b.z - a.z)});
-  }
-  return walked_path;
-}
-
 struct Measured {
   size_t passed = 0;
   double flow = 0, density = 0, speed = 0;
+  PathMeasures paths;
 };
-
-// Time of the first crossing of the line [s]; below 0: there is none.
-double crossing_time(const WalkedPath& walked_path, const Experiment& e) {
-  const bool along_x = e.line_from.z == e.line_to.z;
-  for (size_t i = 1; i < walked_path.at.size(); ++i) {
-    const Point2 &a = walked_path.at[i - 1], &b = walked_path.at[i];
-    const double before = along_x ? a.z - e.line_from.z : a.x - e.line_from.x;
-    const double after = along_x ? b.z - e.line_from.z : b.x - e.line_from.x;
-    if ((before < 0) == (after < 0)) continue;
-    return (static_cast<double>(walked_path.first + static_cast<int64_t>(i)) -
-            after / (after - before)) *
-           PlaneCrowd::kStep;
-  }
-  return -1;
-}
 
 Measured measure(const std::vector<WalkedPath>& walked_paths, const Experiment& e) {
   Measured out;
   std::vector<double> times;
   for (const WalkedPath& walked_path : walked_paths) {
-    if (const double t = crossing_time(walked_path, e); t >= 0) times.push_back(t);
+    if (const double t = crossing_time(walked_path, e.line); t >= 0) times.push_back(t);
   }
   std::sort(times.begin(), times.end());
   out.passed = times.size();
   out.flow = flow_rate(times);
+  out.paths = measure_paths(walked_paths, e.line);
   if (times.size() < 20) return out;
   const auto step_of = [](double t) { return static_cast<int64_t>(t / PlaneCrowd::kStep); };
   const int64_t begin = step_of(times[times.size() / 10]),
@@ -260,6 +222,15 @@ Result<void> compare(const Experiment& e, const std::string& path, const Validat
   add_measure("density, throng", ours.density, "1/m2");
   add_measure("speed, real", real.speed, "m/s");
   add_measure("speed, throng", ours.speed, "m/s");
+  const PathMeasures &a = real.paths, &b = ours.paths;
+  add_measure("path by straight line, real", a.detour, "");
+  add_measure("path by straight line, throng", b.detour, "");
+  add_measure("turns of more than 90 degrees, real", 100 * a.turns, "%");
+  add_measure("turns of more than 90 degrees, throng", 100 * b.turns, "%");
+  add_measure("change of speed in 0.4 s, real", a.speed_change, "m/s");
+  add_measure("change of speed in 0.4 s, throng", b.speed_change, "m/s");
+  add_measure("walked away from the line, real", a.walked_away, "m");
+  add_measure("walked away from the line, throng", b.walked_away, "m");
   return {};
 }
 

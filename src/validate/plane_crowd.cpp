@@ -20,21 +20,31 @@ Polygon box(double x0, double z0, double x1, double z1) {
   return {.outer = {{x0, z0}, {x1, z0}, {x1, z1}, {x0, z1}}, .holes = {}};
 }
 
+Result<World> bake_plane(const PlaneConfig& plane, const AvatarClass& body,
+                         const ValidationConfig& config, Context& context) {
+  const auto scene = create_plane_scene(plane);
+  if (!scene) return scene.error();
+  return bake_world(
+      *scene, {.cell = kCell, .zone = 51.2, .classes = {body}, .workers = config.workers}, context);
+}
+
+Result<PlaneCrowd> PlaneCrowd::create(const World& world, Routing routing,
+                                      const ValidationConfig& config, double dt) {
+  auto crowd = Crowd::create(world, {.dt = dt,
+                                     .seed = config.seed,
+                                     .workers = config.workers,
+                                     .routing = routing,
+                                     .model = config.model});
+  if (!crowd) return crowd.error();
+  return PlaneCrowd(world, *std::move(crowd), dt);
+}
+
 Result<PlaneCrowd> PlaneCrowd::create(const PlaneConfig& plane, const AvatarClass& body,
                                       Routing routing, const ValidationConfig& config,
                                       Context& context) {
-  const auto scene = create_plane_scene(plane);
-  if (!scene) return scene.error();
-  auto world = bake_world(
-      *scene, {.cell = kCell, .zone = 51.2, .classes = {body}, .workers = config.workers}, context);
+  const auto world = bake_plane(plane, body, config, context);
   if (!world) return world.error();
-  auto crowd = Crowd::create(*world, {.dt = kStep,
-                                      .seed = config.seed,
-                                      .workers = config.workers,
-                                      .routing = routing,
-                                      .model = config.model});
-  if (!crowd) return crowd.error();
-  return PlaneCrowd(*std::move(world), *std::move(crowd));
+  return create(*world, routing, config);
 }
 
 Result<std::vector<AvatarId>> PlaneCrowd::add(std::span<const Point2> starts,
@@ -82,10 +92,14 @@ void PlaneCrowd::observe(bool has_moved) {
   for (const AvatarState& state : states_) {
     Point2& last = last_position_[state.id];
     const Point2 now{state.position.x, state.position.z};
-    AvatarMotion motion{.id = id_of_slot_[state.id], .x = now.x, .z = now.z};
+    AvatarMotion motion{.id = id_of_slot_[state.id],
+                        .x = now.x,
+                        .z = now.z,
+                        .heading_x = state.heading_x,
+                        .heading_z = state.heading_z};
     if (has_moved) {
-      motion.vx = (now.x - last.x) / kStep;
-      motion.vz = (now.z - last.z) / kStep;
+      motion.vx = (now.x - last.x) / dt_;
+      motion.vz = (now.z - last.z) / dt_;
     }
     last = now;
     avatars_.push_back(motion);

@@ -25,6 +25,8 @@ struct AvatarMotion {
   AvatarId id;
   double x = 0, z = 0;    ///< [m]
   double vx = 0, vz = 0;  ///< Over the last step. [m/s]
+  double heading_x = 0;   ///< Orientation, as AvatarState has it.
+  double heading_z = 0;
 };
 
 /// Cell size of the world: walls are exact to this. [m]
@@ -36,8 +38,16 @@ AvatarClass walker();
 
 Polygon box(double x0, double z0, double x1, double z1);
 
+/// Bakes a world for one class from polygons.
+Result<World> bake_plane(const PlaneConfig& plane, const AvatarClass& body,
+                         const ValidationConfig& config, Context& context);
+
 class PlaneCrowd {
  public:
+  /// A crowd in a world of bake_plane, with steps of `dt`. [s]
+  static Result<PlaneCrowd> create(const World& world, Routing routing,
+                                   const ValidationConfig& config, double dt = kStep);
+  /// The same in a world of its own, with steps of kStep.
   static Result<PlaneCrowd> create(const PlaneConfig& plane, const AvatarClass& body,
                                    Routing routing, const ValidationConfig& config,
                                    Context& context);
@@ -60,18 +70,20 @@ class PlaneCrowd {
   [[nodiscard]] const std::vector<AvatarMotion>& avatars() const { return avatars_; }
   [[nodiscard]] std::span<const AvatarId> arrived() const { return crowd_.arrived(); }
   [[nodiscard]] uint32_t size() const { return crowd_.size(); }
-  [[nodiscard]] double time() const { return static_cast<double>(steps_) * kStep; }
+  [[nodiscard]] double time() const { return static_cast<double>(steps_) * dt_; }
   /// Adds the faults found and the number of checks to a result.
   void report(ValidationResult& result) const;
 
-  static constexpr double kStep = 0.1;  ///< [s]
+  static constexpr double kStep = 0.1;  ///< Of most tests. [s]
 
  private:
-  PlaneCrowd(World world, Crowd crowd) : world_(std::move(world)), crowd_(std::move(crowd)) {}
+  PlaneCrowd(const World& world, Crowd crowd, double dt)
+      : world_(world), crowd_(std::move(crowd)), dt_(dt) {}
   void observe(bool has_moved);
 
   World world_;
   Crowd crowd_;
+  double dt_ = kStep;
   uint64_t steps_ = 0, checks_ = 0;
   CrowdCheck faults_;
   std::vector<AvatarId> id_of_slot_;

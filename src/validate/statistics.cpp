@@ -66,4 +66,20 @@ double flow_rate(std::span<const double> times) {
   return static_cast<double>(last - first) / (times[last] - times[first]);
 }
 
+ProportionalFit fit_proportional(std::span<const double> x, std::span<const double> y) {
+  double xy = 0, xx = 0, mean = 0;
+  for (size_t i = 0; i < x.size(); ++i) {
+    xy += x[i] * y[i];
+    xx += x[i] * x[i];
+    mean += y[i] / static_cast<double>(x.size());
+  }
+  const double slope = xy / xx;
+  double off = 0, spread = 0;
+  for (size_t i = 0; i < x.size(); ++i) {
+    off += (y[i] - slope * x[i]) * (y[i] - slope * x[i]);
+    spread += (y[i] - mean) * (y[i] - mean);
+  }
+  return {.slope = slope, .explained = 1 - off / spread};
+}
+
 }  // namespace throng::validate

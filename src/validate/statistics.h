@@ -28,4 +28,12 @@ double weidmann(double density);
 /// between them [SS10]. 0: fewer than 20 people. [times: ascending, s] [p/s]
 double flow_rate(std::span<const double> times);
 
+/// The line through the origin that is nearest to some points, by least squares.
+struct ProportionalFit {
+  double slope = 0;
+  double explained = 0;  ///< Share of the variance of y that the line explains. [<= 1]
+};
+/// [x and y: equally many, not all x 0; NaN for `explained` if all y are equal and on the line]
+ProportionalFit fit_proportional(std::span<const double> x, std::span<const double> y);
+
 }  // namespace throng::validate

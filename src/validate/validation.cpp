@@ -30,7 +30,8 @@ const RecordedTest kRecorded[] = {
       "The same walls; each avatar enters at the time and place of the first recorded position of "
       "one person, with a desired speed of 1.34 m/s. Flow over a line by the time between people, "
       "without the first and the last tenth [SS10]; meanwhile classic density in a box, and speeds "
-      "over 0.8 s in it. Measured alike in both.",
+      "over 0.8 s in it. Paths up to the line, in moves of 0.4 s: length by straight line, turns, "
+      "changes of speed, distance walked away from the line. Measured alike in both.",
       "trajectories of [ZKSS11], [ZKSS12], [ABHSS20]; no target"},
      validate::laboratory},
 };
@@ -38,7 +39,8 @@ const RecordedTest kRecorded[] = {
 template <class Do>
 void for_tests(Do act) {
   for (const auto family :
-       {validate::density_tests, validate::bottleneck_tests, validate::stream_tests}) {
+       {validate::density_tests, validate::bottleneck_tests, validate::stream_tests,
+        validate::motion_tests, validate::rest_tests, validate::passage_tests}) {
     for (const validate::Test& test : family()) act(test);
   }
 }

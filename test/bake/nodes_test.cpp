@@ -255,6 +255,8 @@ TEST(Nodes, AreWrittenAndOpened) {
   EXPECT_EQ(Nodes::open(path).error().message,
             path + ": this world has no nodes; bake it again with --nodes");
   const Nodes made = make(*World::open(path), scene, {.size = 2});
+  EXPECT_EQ(made.write(path, -1).error().message, "nodes: workers must be 0 or more");
+  EXPECT_FALSE(Nodes::open(path)) << "nothing was written";
   ASSERT_TRUE(made.write(path));
   ASSERT_TRUE(made.write(path));  // In place of those that are there.
   const auto opened = Nodes::open(path);

@@ -274,6 +274,38 @@ TEST(CrowdEdits, OneDoorForFindersAndCrowd) {
   EXPECT_LT(finder_crosses(), 6);
 }
 
+// The openings have area kinds of the bake, and no edit adds an area.
+TEST(CrowdEdits, AvatarsPlanByTheCostsOfBakedAreas) {
+  Scene scene;
+  const auto add = [&](double x0, double z0, double x1, double z1, AreaKind kind) {
+    scene.add_quad({x0, 0, z0}, {x0, 0, z1}, {x1, 0, z1}, {x1, 0, z0}, kind);
+  };
+  add(0, 0, 10, 24, kAreaWalkable);
+  add(10, 0, 14, 12, 5);
+  add(10, 12, 14, 24, 6);
+  add(14, 0, 24, 24, kAreaWalkable);
+  scene.add_box({11.9, 0, 0}, {12.1, 3, 3});
+  scene.add_box({11.9, 0, 5}, {12.1, 3, 19});
+  scene.add_box({11.9, 0, 21}, {12.1, 3, 24});
+  const World world = test::bake(scene, 0.1);
+  for (const PathSpeedup speedup : {PathSpeedup::kNone, PathSpeedup::kLabels}) {
+    Edits edits;
+    Crowd crowd = made(world, {.speedup = speedup, .edits = edits});
+    const Vec3d from{4, 0, 4}, to{20, 0, 4};
+    const double near = crossing(crowd, world, from, to);
+    EXPECT_TRUE(near > 0 && near < 6) << "a metre costs one";
+    ASSERT_TRUE(edits.set_area_cost(5, 50));
+    EXPECT_GT(crossing(crowd, world, from, to), 18);
+    ASSERT_TRUE(edits.set_area_cost(6, std::numeric_limits<double>::infinity()));
+    const double dear = crossing(crowd, world, from, to);
+    EXPECT_TRUE(dear > 0 && dear < 6) << "the other opening is closed";
+    // A crowd that is made when the costs are set already.
+    ASSERT_TRUE(edits.set_area_cost(5, 50) && edits.set_area_cost(6, 1));
+    Crowd later = made(world, {.speedup = speedup, .edits = edits});
+    EXPECT_GT(crossing(later, world, from, to), 18);
+  }
+}
+
 TEST(CrowdEdits, AvatarsPlanByTheCostsOfAreas) {
   const World world = two_openings();
   Edits edits;

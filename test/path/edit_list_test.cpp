@@ -42,6 +42,27 @@ Edits all_kinds() {
   return edits;
 }
 
+TEST(EditList, CostsCountForKindsOfTheBakeAndForActiveAreas) {
+  Edits edits;
+  const EditList& list = list_of(edits);
+  constexpr uint64_t kFive = uint64_t{1} << 5, kLast = uint64_t{1} << 63;
+  EXPECT_FALSE(list.has_costs(~uint64_t{0}));
+  EXPECT_TRUE(edits.set_area_cost(5, 2));
+  EXPECT_TRUE(list.has_costs(kFive | kLast));
+  EXPECT_FALSE(list.has_costs(kLast));
+  EXPECT_FALSE(list.has_costs(EditList::kNoKinds));
+  EXPECT_TRUE(edits.set_area_cost(63, INFINITY) && edits.set_area_cost(5, 1));
+  EXPECT_TRUE(list.has_costs(kLast));
+  EXPECT_FALSE(list.has_costs(kFive));
+  EXPECT_TRUE(list.may_shorten_paths(kLast) && list.bears_on_ground(kLast));
+  EXPECT_FALSE(list.may_shorten_paths(kFive) || list.bears_on_ground(kFive));
+  const auto area = edits.add_area(box_at(1), 63);
+  ASSERT_TRUE(area);
+  EXPECT_TRUE(list.has_costs(EditList::kNoKinds));
+  EXPECT_TRUE(edits.set_active(*area, false));
+  EXPECT_FALSE(list.has_costs(EditList::kNoKinds));
+}
+
 TEST(EditList, RemembersCallsInTheirOrderWithThePlacesOfThatTime) {
   const Edits edits = all_kinds();
   std::vector<EditList::Call> calls;
@@ -100,7 +121,7 @@ TEST(EditList, ComesBackFromItsBytesWithTheCallsThatWereAskedFor) {
     EXPECT_EQ(restored->active_solids, list_of(edits).active_solids);
     EXPECT_EQ(restored->active_areas, 1u);
     EXPECT_EQ(restored->active_links, 1u);
-    EXPECT_TRUE(restored->has_costs());
+    EXPECT_TRUE(restored->has_costs(EditList::kNoKinds));
     // It goes on as the list itself does.
     Edits other = all_kinds(), again;
     list_of(again) = *std::move(restored);

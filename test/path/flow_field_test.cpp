@@ -163,6 +163,51 @@ TEST(FlowField, LeadsOverOffMeshLinks) {
   EXPECT_GT(compared, 15u);
 }
 
+// Avatars stop short of a local target, so the end of a link is the next one beside its start, too.
+TEST(FlowField, BesideTheStartOfALinkItsEndIsNext) {
+  const World world = bake(worlds::doorway(0.2), 0.1);
+  const auto at = [&](double x, double z) { return world.find_place(0, {x, 0, z}, 0.5); };
+  const auto off = [](const Place& a, const Place& b) {
+    return std::hypot(a.position.x - b.position.x, a.position.z - b.position.z);
+  };
+  // Over the wall, on from where that one ends, and one that costs too much.
+  const std::vector<OffMeshLink> links{{at(3.3, 3), at(4.7, 3), 2, false},
+                                       {at(4.7, 3), at(7, 1), 0.1, false},
+                                       {at(3.3, 5), at(7, 5), 9, true}};
+  Edits edits;
+  PathFinder finder = finder_of(world, edits);
+  for (const OffMeshLink& link : links) ASSERT_TRUE(edits.add_off_mesh_link(link));
+  const Place goal = at(7.2, 1);
+  FlowField flow = field(finder, {goal});
+  EXPECT_LT(off(flow.next(links[0].from), links[0].to), 1e-3);
+  EXPECT_LT(off(flow.next(links[0].to), links[1].to), 1e-3) << "on by the second link";
+  EXPECT_LT(off(flow.next(links[1].to), goal), 1e-3);
+  for (const double dx : {-0.06, 0.0, 0.06}) {
+    for (const double dz : {-0.06, 0.0, 0.06}) {
+      EXPECT_LT(off(flow.next(at(3.3 + dx, 3 + dz)), links[0].to), 1e-3) << dx << ", " << dz;
+    }
+  }
+  EXPECT_LT(off(flow.next(at(3.3, 3.4)), links[0].from), 1e-3) << "not there yet";
+  // One that stops a little before each local target arrives all the same.
+  uint64_t crossed = 0;
+  for (uint64_t n = 0; n < 40; ++n) {
+    Place here = world.random_place(0, 5, n);
+    const bool crosses = here.position.x < 4;
+    for (int step = 0; step < 60 && off(here, goal) > 0.1; ++step) {
+      const Place next = flow.next(here);
+      ASSERT_TRUE(next);
+      const double far = off(here, next);
+      const double t = far > 0.05 ? (far - 0.05) / far : 0;
+      const Vec3d to = here.position + (next.position - here.position) * t;
+      here = at(to.x, to.z);
+      ASSERT_TRUE(here);
+    }
+    EXPECT_LE(off(here, goal), 0.1) << n;
+    crossed += crosses;
+  }
+  EXPECT_GT(crossed, 10u);
+}
+
 TEST(FlowField, StopsWhereAsked) {
   const World world = bake(worlds::flat(30), 0.2);
   const Place goal = world.find_place(0, {3, 0, 3}, 0.5);

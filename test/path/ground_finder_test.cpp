@@ -525,6 +525,8 @@ TEST(GroundFinder, RefusesNonsense) {
   EXPECT_FALSE(path::GroundFinder::create(World(), {}));
   EXPECT_FALSE(path::GroundFinder::create(world, {.avatar_class = 9}));
   EXPECT_FALSE(path::GroundFinder::create(world, {.slope_cost = -1}));
+  EXPECT_EQ(path::GroundFinder::create(world, {.workers = -1}).error().message,
+            "path: workers must be 0 or more");
   path::GroundFinder ground = live(world);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(path::make_solid(Prism{}));

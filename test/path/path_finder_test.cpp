@@ -237,7 +237,11 @@ TEST(PathFinder, RefusesWhatItsSpaceDoesNotHave) {
   refused({.slope_cost = -1}, Errc::kBadConfig);
   refused({.slope_cost = std::nan("")}, Errc::kBadConfig);
   refused({.slope_cost = 1, .speedup = PathSpeedup::kLabels}, Errc::kBadConfig);
-  refused({.workers = -1}, Errc::kBadConfig);
+  for (const PathSpeedup speedup :
+       {PathSpeedup::kNone, PathSpeedup::kLabels, PathSpeedup::kZones, PathSpeedup::kOnDemand}) {
+    refused({.workers = -1, .speedup = speedup}, Errc::kBadConfig);
+  }
+  refused({.slope_cost = 1, .workers = -1}, Errc::kBadConfig);
   refused({.space = PathSpace::kAir}, Errc::kNotFound);
   EXPECT_FALSE(PathFinder::create(world, {.space = PathSpace::kNodes}, context)) << "no nodes";
   EXPECT_FALSE(PathFinder::create(World(), {}, context));

@@ -165,6 +165,12 @@ TEST_F(Recorded, ARecordedCorridorIsMeasuredAsWorkedOutByHand) {
   EXPECT_NEAR(value_of(*result, at + "flow, real"), 0.5, 1e-6);
   EXPECT_NEAR(value_of(*result, at + "speed, real"), 1, 1e-6);
   EXPECT_NEAR(value_of(*result, at + "density, real"), 2 / 7.2, 0.02);
+  EXPECT_NEAR(value_of(*result, at + "path by straight line, real"), 1, 1e-9);
+  EXPECT_EQ(value_of(*result, at + "turns of more than 90 degrees, real"), 0);
+  EXPECT_NEAR(value_of(*result, at + "change of speed in 0.4 s, real"), 0, 1e-6);
+  EXPECT_EQ(value_of(*result, at + "walked away from the line, real"), 0);
+  EXPECT_NEAR(value_of(*result, at + "path by straight line, throng"), 1, 0.01);
+  EXPECT_EQ(value_of(*result, at + "turns of more than 90 degrees, throng"), 0);
   EXPECT_NEAR(value_of(*result, at + "flow, throng"), 0.5, 0.01);
   EXPECT_NEAR(value_of(*result, at + "speed, throng"), 1.34, 0.02);
   EXPECT_NEAR(value_of(*result, at + "density, throng"), 2 / 1.34 / 7.2, 0.02);

@@ -77,5 +77,18 @@ TEST(Statistics, FlowLeavesOutTheFirstAndTheLastTenth) {
   EXPECT_EQ(flow_rate(times), 0);
 }
 
+TEST(Statistics, ALineThroughTheOriginIsFittedAsByHand) {
+  const std::vector<double> x{1, 2, 3};
+  const ProportionalFit exact = fit_proportional(x, std::vector<double>{2, 4, 6});
+  EXPECT_DOUBLE_EQ(exact.slope, 2);
+  EXPECT_DOUBLE_EQ(exact.explained, 1);
+  // (1 + 4 + 12) / 14; off by 3/14, 6/14 and 5/14 from the values 1, 2, 4, whose mean is 7/3.
+  const ProportionalFit bent = fit_proportional(x, std::vector<double>{1, 2, 4});
+  EXPECT_DOUBLE_EQ(bent.slope, 17.0 / 14);
+  EXPECT_NEAR(bent.explained, 1 - (9.0 + 36 + 25) / 196 / (14.0 / 3), 1e-12);
+  // A line through the origin is no better than the mean for values that do not rise with x.
+  EXPECT_LT(fit_proportional(x, std::vector<double>{3, 2, 1}).explained, 0);
+}
+
 }  // namespace
 }  // namespace throng::validate

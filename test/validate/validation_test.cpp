@@ -34,6 +34,15 @@ TEST(Validation, TestsHaveUniqueNamesAndStateTheirMethod) {
   EXPECT_FALSE(names.empty());
 }
 
+TEST(Validation, TestsOfMotionAloneAreInWork) {
+  for (const ValidationTest& test : validation_tests()) {
+    EXPECT_EQ(test.in_work, test.name.starts_with("motion.")) << test.name;
+  }
+  for (const ValidationTest& test : recorded_validation_tests()) {
+    EXPECT_FALSE(test.in_work) << test.name;
+  }
+}
+
 TEST(Validation, AnUnknownTestIsRefusedWithTheListOfTests) {
   Context context;
   const auto result = run_validation("fundamentl", {}, context);
@@ -45,9 +54,11 @@ TEST(Validation, AnUnknownTestIsRefusedWithTheListOfTests) {
 TEST(Validation, StopsWhenCancelled) {
   Context context;
   context.cancel = true;
-  const auto result = run_validation("bottleneck", {.brief = true}, context);
-  ASSERT_FALSE(result);
-  EXPECT_EQ(result.error().code, Errc::kCancelled);
+  for (const char* name : {"bottleneck", "motion.rest", "motion.passages"}) {
+    const auto result = run_validation(name, {.brief = true}, context);
+    ASSERT_FALSE(result) << name;
+    EXPECT_EQ(result.error().code, Errc::kCancelled) << name;
+  }
 }
 
 // The slowest: a few seconds.

@@ -33,8 +33,10 @@ Json measure_json(const ValidationMeasure& m) {
 }
 
 Json test_json(const ValidationTest& test) {
-  return {
+  Json json = {
       {"test", test.name}, {"title", test.title}, {"method", test.method}, {"source", test.source}};
+  if (test.in_work) json["in_work"] = true;
+  return json;
 }
 
 // One thing to run: a test in code, or a scenario file.
@@ -103,8 +105,9 @@ void print_list(const Session& session, const std::vector<Item>& items) {
   for (const Item& item : items) {
     json["tests"].push_back(item_json(item));
     const bool lacks = item.trial && !item.trial->lacks.empty();
-    text += fmt::format("{:20} {}\n{:20} {}\n", item.about.name, item.about.title, "",
-                        lacks ? "not modelled" : item.about.source);
+    text += fmt::format("{:20} {}\n{:20} {}{}\n", item.about.name, item.about.title, "",
+                        lacks ? "not modelled" : item.about.source,
+                        item.about.in_work ? "; in work: runs only if it is named" : "");
   }
   print_result(session, json, text);
 }
@@ -171,7 +174,10 @@ int run(const ValidateOptions& options, Session& session) {
     return kDone;
   }
   std::vector<Item> items;
-  if (options.names.empty()) items = *all;
+  if (options.names.empty()) {
+    items = *all;
+    std::erase_if(items, [](const Item& item) { return item.about.in_work; });
+  }
   for (size_t i = 0; i < options.names.size(); ++i) {
     const std::string& word = options.names[i];
     if (const auto test = recorded_test(word)) {
@@ -229,9 +235,10 @@ void add_validate(CLI::App& parser, Session& session) {
                                   "Test the crowd against real ones: exit code 1 if a test fails",
                                   "throng validate --list\n"
                                   "throng validate rimea.1 nist.2.1");
-  command->add_option("test", options->names,
-                      "Tests, standards (rimea, nist), scenario files, or a test of recordings and "
-                      "their folder; all that need no recordings if none is named");
+  command->add_option(
+      "test", options->names,
+      "Tests, standards (rimea, nist), scenario files, or a test of recordings and "
+      "their folder; all that need no recordings and are not in work if none is named");
   add_model(*command, options->config.model);
   command->add_flag("--list", options->list, "List the tests, and run none");
   command->add_flag("--brief", options->config.brief,

@@ -270,6 +270,7 @@ Result<Nodes> Nodes::create_in_folder(const World& world, const Scene& scene,
 
 Result<void> Nodes::write(const std::string& world_path, int32_t workers) const {
   THRONG_ASSERT(state_);
+  if (workers < 0) return Error{Errc::kBadConfig, "nodes: workers must be 0 or more"};
   const auto world = World::open(world_path);
   if (!world) return world.error();
   if (world->summary().hash != state_->world_hash) {

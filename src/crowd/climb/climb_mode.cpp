@@ -50,16 +50,16 @@ void ClimbMode::follow_areas(OfClass& parts) {
   for (size_t w = 0; w < parts.finders.size(); ++w) {
     parts.areas[w].follow(shared_.edits(), parts.finders[w]);
   }
-  had_costs_ = had_costs_ || shared_.edits().has_costs();
+  had_costs_ = had_costs_ || shared_.edits().has_costs(path::EditList::kNoKinds);
 }
 
 // All climbers search again, if metres cost something else now.
 void ClimbMode::areas_changed(std::span<Body> bodies) {
-  const bool differ = had_costs_ || shared_.edits().has_costs();
+  const bool differ = had_costs_ || shared_.edits().has_costs(path::EditList::kNoKinds);
   for (const auto& parts : classes_) {
     if (parts) follow_areas(*parts);
   }
-  had_costs_ = shared_.edits().has_costs();
+  had_costs_ = shared_.edits().has_costs(path::EditList::kNoKinds);
   if (!differ) return;
   for (Body& body : bodies) {
     if (body.climbs && body.has(Body::kHasGoal) && !body.leaves) body.flags |= Body::kNeedsPath;

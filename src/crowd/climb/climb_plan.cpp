@@ -90,7 +90,8 @@ bool ClimbMode::step_aside(Body& body, Climb& climb, int32_t worker, double besi
   OfClass& parts = of(body);
   const auto w = static_cast<size_t>(worker);
   const NodePlace from = place_of(body, climb);
-  const bool is_as_baked = shared_.obstacles.all().empty() && !shared_.edits().has_costs();
+  const bool is_as_baked =
+      shared_.obstacles.all().empty() && !shared_.edits().has_costs(path::EditList::kNoKinds);
   if (is_as_baked || !from) return false;
   const NodePlace to = parts.finders[w].find_place(climb.feet, beside);
   if (to.node1 != from.node1 || to.feet == from.feet) return false;

@@ -67,8 +67,10 @@ struct SharedState {
 
   [[nodiscard]] AvatarId id_of(uint32_t slot) const { return {slot + 1, generation[slot]}; }
   [[nodiscard]] const path::EditList& edits() const { return *Access::state(config.edits); }
-  /// Do paths on foot need a search that knows costs?
-  [[nodiscard]] bool has_costs() const { return config.slope_cost > 0 || edits().has_costs(); }
+  /// Do paths on foot need a search that knows costs, over ground of these baked area kinds?
+  [[nodiscard]] bool has_costs(uint64_t baked_kinds) const {
+    return config.slope_cost > 0 || edits().has_costs(baked_kinds);
+  }
   /// Is an off-mesh link of the edits in force?
   [[nodiscard]] bool has_links() const { return edits().active_links > 0; }
   [[nodiscard]] SearchBudget search_budget(uint64_t max_nodes = UINT64_MAX) const {

@@ -126,7 +126,8 @@ class WalkMode final : public Mode {
   [[nodiscard]] StrideGround stride_ground(const Body& body) const;
   /// Do paths on foot need a search that knows costs and off-mesh links?
   [[nodiscard]] bool plans_by_cost(const OfClass& parts) const {
-    return shared_.has_costs() || (parts.takes_links && shared_.has_links());
+    const uint64_t kinds = parts.finders.empty() ? 0 : parts.finders[0].mesh().kinds;
+    return shared_.has_costs(kinds) || (parts.takes_links && shared_.has_links());
   }
   /// Creates the live grounds of a class, if there are none yet.
   void make_lives(size_t number);

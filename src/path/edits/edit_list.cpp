@@ -98,7 +98,7 @@ bool EditList::set_active(EditId id, bool active, bool remove) {
 
 void EditList::set_area_cost(uint8_t kind, double cost) {
   area_costs[kind] = cost;
-  costs_differ = std::any_of(area_costs.begin(), area_costs.end(), [](double c) { return c != 1; });
+  find_costly_kinds();
   note({.area = kind});
 }
 
@@ -107,7 +107,14 @@ void EditList::count_all() {
   for (const Edit& edit : edits) {
     if (edit.active) count(edit, 1);
   }
-  costs_differ = std::any_of(area_costs.begin(), area_costs.end(), [](double c) { return c != 1; });
+  find_costly_kinds();
+}
+
+void EditList::find_costly_kinds() {
+  costly_kinds = 0;
+  for (size_t kind = 0; kind < area_costs.size(); ++kind) {
+    if (area_costs[kind] != 1) costly_kinds |= uint64_t{1} << kind;
+  }
 }
 
 }  // namespace path

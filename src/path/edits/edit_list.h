@@ -46,16 +46,22 @@ struct EditList {
   EditList() { area_costs.fill(1); }
 
   [[nodiscard]] uint64_t version() const { return first_version + changed.size(); }
+  // `baked_kinds`: the area kinds that a bake gave to the ground of the paths, bit by kind.
   /// May paths on the ground differ from those of the baked ground?
-  [[nodiscard]] bool bears_on_ground() const {
-    return active_solids + active_links > 0 || has_costs();
+  [[nodiscard]] bool bears_on_ground(uint64_t baked_kinds) const {
+    return active_solids + active_links > 0 || has_costs(baked_kinds);
   }
   /// May a path on the ground be shorter, or cost less, than that of the baked ground?
-  [[nodiscard]] bool may_shorten_paths() const { return active_links > 0 || has_costs(); }
+  [[nodiscard]] bool may_shorten_paths(uint64_t baked_kinds) const {
+    return active_links > 0 || has_costs(baked_kinds);
+  }
   /// May places be connected that are not on the baked ground?
   [[nodiscard]] bool may_connect() const { return active_links > 0; }
-  /// Do areas have another cost than the ground around them?
-  [[nodiscard]] bool has_costs() const { return active_areas > 0 && costs_differ; }
+  /// May a metre of ground cost something else than 1?
+  [[nodiscard]] bool has_costs(uint64_t baked_kinds) const {
+    return (active_areas > 0 && costly_kinds != 0) || (costly_kinds & baked_kinds) != 0;
+  }
+  static constexpr uint64_t kNoKinds = 0;  // bakes give none to nodes
   /// Is it known in which order calls have changed the list since a version?
   [[nodiscard]] bool knows_calls_since(uint64_t version) const { return version >= first_version; }
   /// Calls visit(Changed) for what has changed since a version, or may have; in the order of the
@@ -86,7 +92,7 @@ struct EditList {
   std::array<double, 64> area_costs{};
   size_t active_solids = 0, active_areas = 0;
   size_t active_links = 0, active_node_links = 0;  // on the ground, too; only over nodes
-  bool costs_differ = false;                       // of areas, from 1
+  uint64_t costly_kinds = 0;                       // bit by kind: its cost is not 1
 
   /// What has changed from `first_version` on, in order. What is older was forgotten.
   std::vector<Changed> changed;
@@ -96,6 +102,7 @@ struct EditList {
   void note(EditId id, Call call);
   void note(Changed what);
   void count(const Edit& edit, int by);
+  void find_costly_kinds();
 };
 
 /// The edits that one finder has applied.

@@ -193,7 +193,11 @@ Place FlowPoints::next(GroundFinder& of, const Place& place) const {
     }
   }
   ViewStop to = best->stop;
-  const bool is_there = to.level == from.level && to.at.x == from.at.x && to.at.z == from.at.z;
+  // Bodies stop short of a point by some millimetres, and would never stand on a link's start.
+  constexpr double kAtLink = 1;  // [cells]
+  const double far = distance_of(to.at, from.at);
+  const bool is_there =
+      to.level == from.level && (best->link != kNoLink ? far <= kAtLink : far == 0);
   if (is_there && best->next != kNoPoint) to = stop_beyond(ground.mesh, *best);
   return world::place_at(ground.mesh.world(), ground.mesh.level(to.level)->ground, to.at);
 }

@@ -84,6 +84,7 @@ Result<GroundFinder> GroundFinder::create(const World& world, const PathConfig& 
   if (data_of(world) == nullptr) return Error{Errc::kBadInput, "path: the world is empty"};
   if (auto ok = check_class(data_of(world)->summary.classes, config.avatar_class, "path"); !ok)
     return ok.error();
+  if (config.workers < 0) return Error{Errc::kBadConfig, "path: workers must be 0 or more"};
   if (!(config.slope_cost >= 0 && config.slope_cost <= 1000)) {
     return Error{Errc::kBadConfig, "path: slope_cost must be 0 to 1000"};
   }

@@ -11,6 +11,7 @@
 #include "core/access.h"
 #include "path/edits/blocked_cells.h"
 #include "path/edits/plan_shapes.h"
+#include "path/ground/baked_cells.h"
 #include "path/ground/rects.h"
 #include "world/place.h"
 #include "world/tile_grid.h"
@@ -282,15 +283,7 @@ void GroundView::block_cells(ViewLevel& level) const {
 }
 
 std::array<uint8_t, 4096> GroundView::kinds_of(const ViewLevel& level) const {
-  std::array<uint8_t, 4096> kinds;
-  const format::Level& record = *level.ground.view.record;
-  kinds.fill(record.area_value());
-  if (record.area_kind() == format::CellsKind::Blocks) {
-    std::array<uint16_t, 4096> values;
-    world::unpack_values(level.ground.zone->words(record.area_offset()), values.data());
-    for (size_t c = 0; c < kinds.size(); ++c)
-      kinds[c] = static_cast<uint8_t>(values[c] & world::kLastAreaKind);
-  }
+  std::array<uint8_t, 4096> kinds = baked_kinds(level.ground);
   const auto found = changes_of_tile_.find(tile_key(level.tile_x, level.tile_z));
   if (found == changes_of_tile_.end()) return kinds;
   const WorldSummary& summary = world().summary;

@@ -41,6 +41,24 @@ class Builder {
     return rects;
   }
 
+  // Of all cells where the class may stand, bit by kind.
+  [[nodiscard]] uint64_t find_kinds(uint32_t level) const {
+    const world::GroundLevel ground = ground_.level(level);
+    const world::CellRows legal = graph::legal_rows(ground);
+    uint64_t found = 0;
+    const format::Level& record = *ground.view.record;
+    if (record.area_kind() != format::CellsKind::Blocks) {
+      const bool is_any =
+          std::any_of(legal.begin(), legal.end(), [](auto row) { return row != 0; });
+      return is_any ? uint64_t{1} << record.area_value() : 0;
+    }
+    const std::array<uint8_t, 4096> kinds = baked_kinds(ground);
+    for (size_t c = 0; c < kinds.size(); ++c) {
+      if ((legal[c / 64] >> (c % 64) & 1) != 0) found |= uint64_t{1} << kinds[c];
+    }
+    return found;
+  }
+
   void find_portals(const PathMesh& mesh, const MeshRect& rect,
                     std::vector<FoundPortal>& portals) const {
     const world::GroundLevel level = ground_.level(rect.level);
@@ -151,10 +169,14 @@ Result<PathMesh> build_mesh(const world::WorldData& world, int32_t avatar_class,
   constexpr size_t kGrain = 16;  // levels
 
   std::vector<std::vector<MeshRect>> rects(world.level_count);
+  std::vector<uint64_t> kinds(world.level_count, 0);
   parallel_ranges(rects.size(), kGrain, workers, [&](size_t begin, size_t end) {
-    for (size_t l = begin; l < end && !context.cancel; ++l)
+    for (size_t l = begin; l < end && !context.cancel; ++l) {
       rects[l] = builder.find_rects(static_cast<uint32_t>(l));
+      kinds[l] = builder.find_kinds(static_cast<uint32_t>(l));
+    }
   });
+  for (const uint64_t of_level : kinds) mesh.kinds |= of_level;
   mesh.first.push_back(0);
   for (const auto& of_level : rects) {
     mesh.rects.insert(mesh.rects.end(), of_level.begin(), of_level.end());

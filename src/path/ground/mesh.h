@@ -86,6 +86,7 @@ class PortalSource {
 struct PathMesh {
   int32_t avatar_class = 0;
   int32_t step = 0;             // [mm]
+  uint64_t kinds = 0;           // bit by area kind: some cell of a rectangle has it, as baked
   std::vector<uint32_t> first;  // per level of the world: its first rectangle; one more
   std::vector<MeshRect> rects;  // one more at the end, for its first_portal and first_block
   std::vector<MeshPortal> portals;

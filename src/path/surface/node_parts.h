@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <vector>
 
+#include "path/ground/open_list.h"
 #include "path/surface/node_view.h"
 
 /// What of a mesh can be reached from where, without a search over its portals.
@@ -34,7 +34,7 @@ class NodeParts {
         return far != other.far ? far > other.far : patch > other.patch;
       }
     };
-    std::vector<Near> near_;
+    OpenList<Near> near_;
   };
 
   [[nodiscard]] uint32_t of_block(uint32_t block) const { return part_of_[block]; }
@@ -65,18 +65,17 @@ BlockPoint NodeParts::nearest(const NodeView& view, const BlockPoint& from, Vec3
   const graph::NodeMesh& mesh = view.mesh();
   BlockPoint best = from;
   double least = length(goal - position(view, from));
-  auto& near = reached.near_;
+  OpenList<Reached::Near>& near = reached.near_;
   near.clear();
   for (uint32_t p = 0; p < boxes_.size(); ++p) {
     if (boxes_[p].empty()) continue;
     const double far = distance_to(p, goal);
-    if (far < least) near.push_back({far, p});
+    if (far < least) near.push({far, p});
   }
   if (!view.is_as_baked()) {
     // Ends of what is left of portals lie beside the middles that the boxes hold.
-    for (const uint32_t patch : view.changes()->cut_patches()) near.push_back({0, patch});
+    for (const uint32_t patch : view.changes()->cut_patches()) near.push({0, patch});
   }
-  std::make_heap(near.begin(), near.end());
   const auto consider = [&](uint32_t block) {
     for_each_arc_in(view, block, [&](const Crossing& crossing) {
       const auto [out, in] = ends_of(view, crossing);
@@ -87,10 +86,8 @@ BlockPoint NodeParts::nearest(const NodeView& view, const BlockPoint& from, Vec3
       best = in;
     });
   };
-  while (!near.empty() && near.front().far < least) {
-    const uint32_t patch = near.front().patch;
-    std::pop_heap(near.begin(), near.end());
-    near.pop_back();
+  while (!near.empty() && near.first().far < least) {
+    const uint32_t patch = near.pop().patch;
     const auto blocks = static_cast<uint32_t>(mesh.blocks_of(patch).size());
     for (uint32_t b = mesh.first_block(patch); b < mesh.first_block(patch) + blocks; ++b) {
       if (!reached.holds(part_of_[b])) continue;

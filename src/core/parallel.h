@@ -13,9 +13,10 @@
 #include "throng/base.h"
 
 /// Threads only through here. Bodies write only what their index owns, so results never depend on
-/// the number of workers. A body is called where it stands: it is neither copied nor moved, and a
-/// loop allocates nothing once the threads have started. If a body throws, the pieces that have not
-/// begun may be left out, and once the others have ended the loop throws it.
+/// the number of workers. A body is called where it stands: it is neither copied nor moved. A loop
+/// allocates nothing once its threads have started; parallel_groups starts threads in each call. If
+/// a body throws, what has not begun may be left out, and once the others have ended the loop
+/// throws it.
 namespace throng {
 
 /// Threads to use for a setting: 0 means all that the machine gives this process.

@@ -40,7 +40,7 @@ int32_t worker_count(int32_t workers) {
 }
 
 void parallel_ranges(size_t count, size_t grain, int32_t workers,
-                     const std::function<void(size_t, size_t)>& body) {
+                     FunctionRef<void(size_t, size_t)> body) {
   if (count == 0) return;
   const int32_t threads = worker_count(workers);
   if (threads == 1 || count <= grain) {
@@ -53,8 +53,7 @@ void parallel_ranges(size_t count, size_t grain, int32_t workers,
   });
 }
 
-void parallel_for_worker(size_t count, int32_t workers,
-                         const std::function<void(size_t, int32_t)>& body) {
+void parallel_for_worker(size_t count, int32_t workers, FunctionRef<void(size_t, int32_t)> body) {
   const int32_t threads = worker_count(workers);
   if (threads == 1) {
     for (size_t i = 0; i < count; ++i) body(i, 0);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <atomic>
+#include <exception>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -14,15 +16,25 @@ namespace throng {
 namespace {
 
 // Calls body(piece, worker) for every piece in [0, pieces), each on whichever thread is free.
-void share(size_t pieces, int32_t threads, const std::function<void(size_t, int32_t)>& body) {
+// Throws what a body threw first, once the others have ended; no piece is begun after it.
+void share(size_t pieces, int32_t threads, FunctionRef<void(size_t, int32_t)> body) {
   std::atomic<size_t> next{0};
+  std::mutex mutex;  // of the failure
+  std::exception_ptr failure;
   const auto work = [&](int32_t worker) {
-    for (size_t piece = next++; piece < pieces; piece = next++) body(piece, worker);
+    try {
+      for (size_t piece = next++; piece < pieces; piece = next++) body(piece, worker);
+    } catch (...) {
+      next = pieces;
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+    }
   };
   std::vector<std::thread> others;
   for (int32_t worker = 1; worker < threads; ++worker) others.emplace_back(work, worker);
   work(0);
   for (std::thread& thread : others) thread.join();
+  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace
@@ -33,7 +45,7 @@ int32_t worker_count(int32_t workers) {
 }
 
 void parallel_ranges(size_t count, size_t grain, int32_t workers,
-                     const std::function<void(size_t, size_t)>& body) {
+                     FunctionRef<void(size_t, size_t)> body) {
   if (count == 0) return;
   const int32_t threads = worker_count(workers);
   const size_t piece = std::max({grain, size_t{1}, count / (4 * static_cast<size_t>(threads))});
@@ -45,8 +57,7 @@ void parallel_ranges(size_t count, size_t grain, int32_t workers,
         [&](size_t index, int32_t) { body(index * piece, std::min(count, (index + 1) * piece)); });
 }
 
-void parallel_for_worker(size_t count, int32_t workers,
-                         const std::function<void(size_t, int32_t)>& body) {
+void parallel_for_worker(size_t count, int32_t workers, FunctionRef<void(size_t, int32_t)> body) {
   share(count, worker_count(workers), body);
 }
 

@@ -26,8 +26,7 @@ WorkerGroups assign_workers(size_t tasks, int32_t workers) {
   return {groups, (threads + groups - 1) / groups};
 }
 
-void parallel_groups(size_t count, int32_t groups,
-                     const std::function<void(size_t, int32_t)>& body) {
+void parallel_groups(size_t count, int32_t groups, FunctionRef<void(size_t, int32_t)> body) {
   if (groups <= 1) {
     for (size_t i = 0; i < count; ++i) body(i, 0);
     return;

@@ -9,7 +9,7 @@
 #include "world/tile_grid.h"
 
 // Where wanderers begin: random points of the ground as long as these fit, then what is left of it,
-// cell by cell.
+// cell by cell. Time: about ten draws for each avatar at most, then linear in the cells.
 namespace throng::crowd {
 
 std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uint64_t seed,

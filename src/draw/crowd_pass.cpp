@@ -390,8 +390,7 @@ void CrowdPass::draw_shadows(const Matrix& sun_from_world, Vec3d to_sun, Vec3d s
   draw_cards(leaning_shadow_, leaning_thrown_);
 }
 
-void CrowdPass::draw(const DrawingConfig& config,
-                     const std::function<void(const GlProgram&)>& begin) {
+void CrowdPass::draw(const DrawingConfig& config, FunctionRef<void(const GlProgram&)> begin) {
   if (config.avatars == AvatarStyle::kPlainQuads) {
     if (!plain_.is_linked()) {
       plain_ = GlProgram(shaders::plain_vertex(), shaders::plain_fragment());

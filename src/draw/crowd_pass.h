@@ -3,12 +3,12 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/function_ref.h"
 #include "draw/atlas_textures.h"
 #include "draw/depth_pyramid.h"
 #include "draw/gl_objects.h"
@@ -49,7 +49,7 @@ class CrowdPass {
   void draw_shadows(const Matrix& sun_from_world, Vec3d to_sun, Vec3d sun_right,
                     Vec3d sun_up) const;
   /// `begin` puts a program in use and sets what all share.
-  void draw(const DrawingConfig& config, const std::function<void(const GlProgram&)>& begin);
+  void draw(const DrawingConfig& config, FunctionRef<void(const GlProgram&)> begin);
   [[nodiscard]] size_t drawn() const { return drawn_; }    ///< Not culled.
   [[nodiscard]] size_t hidden() const { return hidden_; }  ///< By drop_hidden().
 

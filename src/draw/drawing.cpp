@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -121,8 +120,9 @@ struct Drawing::State {
   }
   void draw_sun_depth(const draw::Matrix& sun_from_world, Vec3d to_sun, Vec3d sun_right,
                       Vec3d sun_up, float cut) const;
-  size_t draw_scene(const draw::Matrix& clip_from_world, Vec3d eye,
-                    const std::function<void()>& read_depths);
+  // `read_depths` reads those of the near parts; null: no part is tested.
+  template <class ReadDepths>
+  size_t draw_scene(const draw::Matrix& clip_from_world, Vec3d eye, const ReadDepths* read_depths);
   void draw_marks(const draw::Matrix& clip_from_world, const DrawingConfig& config) const;
   // Does the window have depths, so that a picture can be drawn there directly?
   [[nodiscard]] bool window_has_depth() const;
@@ -233,8 +233,9 @@ void Drawing::State::draw_sun_depth(const draw::Matrix& sun_from_world, Vec3d to
 // Near parts first: they hide much of the rest, which is tested before it is drawn. The order is
 // the same with and without culling, because where surfaces coincide the last one shows. Returns
 // the number of triangles drawn.
+template <class ReadDepths>
 size_t Drawing::State::draw_scene(const draw::Matrix& clip_from_world, Vec3d eye,
-                                  const std::function<void()>& read_depths) {
+                                  const ReadDepths* read_depths) {
   constexpr size_t kMinQueried = 8'000, kNearShare = 8;
   const std::span<const draw::SceneChunk> chunks = mesh.chunks();
   std::vector<uint32_t> near = draw::chunks_in_view(chunks, clip_from_world, eye), rest;
@@ -253,8 +254,8 @@ size_t Drawing::State::draw_scene(const draw::Matrix& clip_from_world, Vec3d eye
   mesh.draw(near);
   size_t drawn = triangles(near);
   if (!rest.empty()) {
-    if (read_depths) {
-      read_depths();
+    if (read_depths != nullptr) {
+      (*read_depths)();
       draw::drop_hidden_chunks(chunks, clip_from_world, depths, rest);
       scene_program().use();
     }
@@ -521,7 +522,7 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   };
   double seconds_cull = 0;
   const bool hides = culls(config);
-  const std::function<void()> read_depths = [&] {
+  const auto read_depths = [&] {
     const auto cull_start = Clock::now();
     depth_reader.read(target.depth, wide, high, depths);
     glBindFramebuffer(GL_FRAMEBUFFER, canvas);
@@ -541,7 +542,7 @@ Result<void> Drawing::State::paint(std::span<const DrawnCrowd> crowds, const Dra
   };
   begin_scene(scene_program(), 0);
   if (mesh.has_surfaces()) surfaced.set("pictures", kPictureUnit);
-  const size_t triangles = draw_scene(clip_from_world, camera.eye, hides ? read_depths : nullptr);
+  const size_t triangles = draw_scene(clip_from_world, camera.eye, hides ? &read_depths : nullptr);
   if (!props.bounds().empty()) {
     begin_scene(scene, 1);
     props.draw();

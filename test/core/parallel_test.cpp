@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <mutex>
 #include <stdexcept>
 #include <vector>
 
@@ -89,6 +90,84 @@ TEST(Parallel, WhatAGroupThrowsIsThrownOnceTheOthersHaveEnded) {
     };
     EXPECT_THROW(run(), std::runtime_error);
     EXPECT_EQ(running, 0);
+  }
+}
+
+// Each kind of loop over 1000 indices whose body throws at the twentieth.
+TEST(Parallel, WhatABodyThrowsIsThrownOnceTheOthersHaveEnded) {
+  for (const int32_t workers : {1, 3}) {
+    std::atomic<int> running{0}, visits{0};
+    const auto body = [&](size_t index) {
+      ++running;
+      ++visits;
+      const bool fails = index == 20;
+      --running;
+      if (fails) throw std::runtime_error("the twentieth");
+    };
+    const auto ranges = [&] {
+      parallel_ranges(1000, 1, workers, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) body(i);
+      });
+    };
+    const auto indices = [&] { parallel_for(1000, workers, body); };
+    const auto with_worker = [&] {
+      parallel_for_worker(1000, workers, [&](size_t index, int32_t) { body(index); });
+    };
+    EXPECT_THROW(ranges(), std::runtime_error) << workers << " workers";
+    EXPECT_EQ(running, 0);
+    EXPECT_THROW(indices(), std::runtime_error) << workers << " workers";
+    EXPECT_EQ(running, 0);
+    EXPECT_THROW(with_worker(), std::runtime_error) << workers << " workers";
+    EXPECT_EQ(running, 0);
+    // The threads are as usable as before.
+    visits = 0;
+    parallel_for(20, workers, body);
+    EXPECT_EQ(visits, 20);
+  }
+}
+
+// A loop calls all its bodies; those that see the cancel do nothing.
+TEST(Parallel, ACancelThatABodySetsIsSeenByAllThatBeginLater) {
+  for (const int32_t workers : {1, 3}) {
+    std::mutex mutex;
+    bool cancel = false;
+    int calls = 0, done = 0;
+    parallel_for_worker(1000, workers, [&](size_t, int32_t) {
+      const std::lock_guard lock(mutex);
+      ++calls;
+      if (cancel) return;
+      if (++done == 20) cancel = true;
+    });
+    EXPECT_EQ(calls, 1000);
+    EXPECT_EQ(done, 20);
+  }
+}
+
+// A copy, of a body or of what it captures, would count.
+TEST(Parallel, BodiesAreNeitherCopiedNorMoved) {
+  struct Counted {
+    std::atomic<int>& made;
+    explicit Counted(std::atomic<int>& count) : made(count) {}
+    Counted(const Counted& other) : made(other.made) { ++made; }
+    Counted& operator=(const Counted&) = delete;
+    ~Counted() = default;
+  };
+  for (const int32_t workers : {1, 3}) {
+    std::atomic<int> made{0}, visits{0};
+    const Counted counted(made);
+    const auto ranges = [counted, &visits](size_t begin, size_t end) {
+      visits += static_cast<int>(end - begin);
+    };
+    const auto index = [counted, &visits](size_t) { ++visits; };
+    const auto with_number = [counted, &visits](size_t, int32_t) { ++visits; };
+    const int captured = made;
+    EXPECT_EQ(captured, 3);
+    parallel_ranges(100, 1, workers, ranges);
+    parallel_for(100, workers, index);
+    parallel_for_worker(100, workers, with_number);
+    parallel_groups(100, workers, with_number);
+    EXPECT_EQ(visits, 400);
+    EXPECT_EQ(made, captured) << workers << " workers";
   }
 }
 

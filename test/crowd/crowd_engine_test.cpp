@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,8 @@ struct Pair {
     plain.step();
     crowd::EngineCounts counts;
     crowd::EngineTimes times;
-    engine.step(steps++, {}, counts, times);
+    engine.step(
+        steps++, [](std::span<crowd::Body>, int32_t) {}, counts, times);
     std::vector<const crowd::Body*> by_slot(engine.bodies().size());
     for (const crowd::Body& body : engine.bodies()) by_slot[body.slot] = &body;
     for (size_t i = 0; i < by_slot.size(); ++i) {

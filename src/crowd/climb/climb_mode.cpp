@@ -178,7 +178,7 @@ void ClimbMode::set_velocity(Body& body, const Vec3d& velocity) {
 
 void ClimbMode::step(std::span<Body> bodies, EngineCounts& counts, EngineTimes& times) {
   if (climbs_.empty()) return;
-  const ClimberEngine::Before before = [this](Body& body, Climb& climb, int32_t worker) {
+  const auto before = [this](Body& body, Climb& climb, int32_t worker) {
     plan(body, climb, worker);
   };
   engine_.step(shared_.sub_step, bodies, climbs_, fly_.flights(), before, counts, times);

@@ -107,30 +107,33 @@ bool ClimberEngine::is_blocked(const ClimberGround& ground, const Body& body, co
 }
 
 void ClimberEngine::step(uint64_t step, std::span<Body> bodies, std::span<Climb> climbs,
-                         std::span<const Flight> flights, const Before& before,
-                         EngineCounts& counts, EngineTimes& times) {
+                         std::span<const Flight> flights, Before before, EngineCounts& counts,
+                         EngineTimes& times) {
   arrived_.clear();
   bodies_ = bodies;
   climbs_ = climbs;
   flights_ = flights;
-  const Rounds::Parts parts{
-      .is_mover = [](const Body& body) { return bool{body.climbs}; },
-      .plan =
-          [&](uint32_t c, int32_t worker) {
-            Body& body = bodies_[rounds_.movers[c]];
-            Climb& climb = climbs_[body.slot];
-            before(body, climb, worker);
-            preferred(body, climb);
-          },
-      .decide = [&](uint32_t c, Worker& worker) { decide(c, worker); },
-      .propose = [&](const Contest& contest,
-                     const Worker& owner) { return propose(contest, owner); },
-      .overlaps_with =
-          [&](const Contest& contest, uint32_t other) {
-            return overlaps_with(rounds_.moves[contest.mover].displacement.cylinder,
-                                 rounds_.moves[rounds_.mover_of[other]].displacement.cylinder);
-          },
-      .settle = [&](uint32_t c, EngineCounts& here) { settle(c, step, here); }};
+  const auto plan_one = [&](uint32_t c, int32_t worker) {
+    Body& body = bodies_[rounds_.movers[c]];
+    Climb& climb = climbs_[body.slot];
+    before(body, climb, worker);
+    preferred(body, climb);
+  };
+  const auto decide_one = [&](uint32_t c, Worker& worker) { decide(c, worker); };
+  const auto propose_one = [&](const Contest& contest, const Worker& owner) {
+    return propose(contest, owner);
+  };
+  const auto overlap = [&](const Contest& contest, uint32_t other) {
+    return overlaps_with(rounds_.moves[contest.mover].displacement.cylinder,
+                         rounds_.moves[rounds_.mover_of[other]].displacement.cylinder);
+  };
+  const auto settle_one = [&](uint32_t c, EngineCounts& here) { settle(c, step, here); };
+  const Rounds::Parts parts{.is_mover = [](const Body& body) { return bool{body.climbs}; },
+                            .plan = plan_one,
+                            .decide = decide_one,
+                            .propose = propose_one,
+                            .overlaps_with = overlap,
+                            .settle = settle_one};
   rounds_.step(bodies, parts, grid_, kGrain, config_.workers, config_.rounds, {config_.seed, step},
                counts, times);
   for (size_t n = 0; n < rounds_.movers.size(); ++n) {

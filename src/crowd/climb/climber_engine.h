@@ -4,10 +4,10 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
+#include "core/function_ref.h"
 #include "crowd/climb/climb.h"
 #include "crowd/climb/climber_ground.h"
 #include "crowd/fly/flight.h"
@@ -52,11 +52,11 @@ class ClimberEngine {
                                     const AirObstacle& obstacle, const path::Solid& solid) const;
 
   /// Called first for each climber, on any worker: it finds and follows the path.
-  using Before = std::function<void(Body&, Climb&, int32_t worker)>;
+  using Before = FunctionRef<void(Body&, Climb&, int32_t worker)>;
   /// One step of all climbers; `climbs` by slot, `flights` too, or none. Other bodies keep their
   /// places.
   void step(uint64_t step, std::span<Body> bodies, std::span<Climb> climbs,
-            std::span<const Flight> flights, const Before& before, EngineCounts& counts,
+            std::span<const Flight> flights, Before before, EngineCounts& counts,
             EngineTimes& times);
   /// Slots of the climbers that arrived in the last step.
   [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "crowd/fly/air_blockers.h"
 
-// Of an obstacle that moves, the volume that it passes is the convex hull of both places.
+// Which bodies in the air are where an obstacle waits to appear or to move. Of one that moves, the
+// volume that it passes is the convex hull of both places. Linear in the obstacles that wait near a
+// body.
 namespace throng::crowd {
 
 AirBlockers::AirBlockers(const SharedState& shared, std::span<const uint32_t> slots)

@@ -143,7 +143,7 @@ void FlyMode::set_velocity(Body& body, const Vec3d& velocity) {
 
 void FlyMode::step(std::span<Body> bodies, EngineCounts& counts, EngineTimes& times) {
   if (flights_.empty()) return;
-  const FlyerEngine::Before before = [this](Body& body, Flight& flight, int32_t worker) {
+  const auto before = [this](Body& body, Flight& flight, int32_t worker) {
     plan(body, flight, worker);
   };
   engine_.step(shared_.sub_step, bodies, flights_, before, counts, times);

@@ -99,30 +99,32 @@ void FlyerEngine::list_exits(const Body& body, std::vector<AirPosition>& exits) 
 }
 
 void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> flights,
-                       const Before& before, EngineCounts& counts, EngineTimes& times) {
+                       Before before, EngineCounts& counts, EngineTimes& times) {
   arrived_.clear();
   landed_.clear();
   bodies_ = bodies;
   flights_ = flights;
+  const auto plan_one = [&](uint32_t f, int32_t worker) {
+    Body& body = bodies_[rounds_.movers[f]];
+    Flight& flight = flights_[body.slot];
+    before(body, flight, worker);
+    preferred(body, flight, step);
+  };
+  const auto decide_one = [&](uint32_t f, Worker& worker) { decide(f, worker); };
+  const auto propose_one = [&](const Contest& contest, const Worker& owner) {
+    return propose(contest, owner);
+  };
+  const auto overlap = [&](const Contest& contest, uint32_t other) {
+    return overlaps_with(bodies_[rounds_.movers[contest.mover]], rounds_.moves[contest.mover].place,
+                         bodies_[other], rounds_.moves[rounds_.mover_of[other]].place);
+  };
+  const auto settle_one = [&](uint32_t f, EngineCounts& here) { settle(f, here); };
   const Rounds::Parts parts{.is_mover = [](const Body& body) { return body.flies(); },
-                            .plan =
-                                [&](uint32_t f, int32_t worker) {
-                                  Body& body = bodies_[rounds_.movers[f]];
-                                  Flight& flight = flights_[body.slot];
-                                  before(body, flight, worker);
-                                  preferred(body, flight, step);
-                                },
-                            .decide = [&](uint32_t f, Worker& worker) { decide(f, worker); },
-                            .propose = [&](const Contest& contest,
-                                           const Worker& owner) { return propose(contest, owner); },
-                            .overlaps_with =
-                                [&](const Contest& contest, uint32_t other) {
-                                  return overlaps_with(
-                                      bodies_[rounds_.movers[contest.mover]],
-                                      rounds_.moves[contest.mover].place, bodies_[other],
-                                      rounds_.moves[rounds_.mover_of[other]].place);
-                                },
-                            .settle = [&](uint32_t f, EngineCounts& here) { settle(f, here); }};
+                            .plan = plan_one,
+                            .decide = decide_one,
+                            .propose = propose_one,
+                            .overlaps_with = overlap,
+                            .settle = settle_one};
   rounds_.step(bodies, parts, grid_, kGrain, config_.workers, config_.rounds, {config_.seed, step},
                counts, times);
   for (size_t n = 0; n < rounds_.movers.size(); ++n) {

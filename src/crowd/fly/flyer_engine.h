@@ -4,10 +4,10 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
+#include "core/function_ref.h"
 #include "crowd/fly/flight.h"
 #include "crowd/fly/flyer_air.h"
 #include "crowd/fly/flyer_grid.h"
@@ -49,9 +49,9 @@ class FlyerEngine {
   /// How far from its landing place a body comes down that waits for it. [m]
   [[nodiscard]] static float landing_radius(const Flight& flight);
   /// Called first for each flyer, on any worker: it finds and follows the path.
-  using Before = std::function<void(Body&, Flight&, int32_t worker)>;
+  using Before = FunctionRef<void(Body&, Flight&, int32_t worker)>;
   /// One step of all bodies that fly; `flights` by slot. Other bodies keep their places.
-  void step(uint64_t step, std::span<Body> bodies, std::span<Flight> flights, const Before& before,
+  void step(uint64_t step, std::span<Body> bodies, std::span<Flight> flights, Before before,
             EngineCounts& counts, EngineTimes& times);
   /// Slots of the bodies that arrived in the last step, and the bodies that reached the ground.
   /// These are still flying.

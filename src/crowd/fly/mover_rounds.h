@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "core/function_ref.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/stopwatch.h"
@@ -103,16 +103,17 @@ class MoverRounds {
   std::vector<Move> moves;         // by mover
   std::vector<Worker> workers;
 
-  /// The parts of a step. Each `act` is called on any worker.
+  /// The parts of a step, each called on any worker. What they refer to must have a name: it is
+  /// called until the step is over.
   struct Parts {
     bool (*is_mover)(const Body& body);
-    std::function<void(uint32_t mover, int32_t worker)> plan;
-    std::function<void(uint32_t mover, Worker& worker)> decide;
+    FunctionRef<void(uint32_t mover, int32_t worker)> plan;
+    FunctionRef<void(uint32_t mover, Worker& worker)> decide;
     /// Proposes the first candidate that is clear of where all bodies are now.
-    std::function<bool(const Contest& contest, const Worker& owner)> propose;
+    FunctionRef<bool(const Contest& contest, const Worker& owner)> propose;
     /// Do the moves that these two propose, of which the second moves too, overlap?
-    std::function<bool(const Contest& contest, uint32_t other)> overlaps_with;
-    std::function<void(uint32_t mover, EngineCounts& counts)> settle;
+    FunctionRef<bool(const Contest& contest, uint32_t other)> overlaps_with;
+    FunctionRef<void(uint32_t mover, EngineCounts& counts)> settle;
   };
 
   /// One step. `grain`: how many movers are worth another thread; `seed` and `step` make the order

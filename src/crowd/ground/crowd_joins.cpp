@@ -11,6 +11,7 @@
 // the edge needs no search. A step from a flat cell to an equally high one rises by 0, which no
 // other level of the tile can better; world/walk.h takes the first of those that rise least. So a
 // join is right if no earlier level of the tile is legal at that height in a cell of the block.
+// Linear in the level tiles, but for the levels that lie over one tile.
 namespace throng::crowd {
 namespace {
 

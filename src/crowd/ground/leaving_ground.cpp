@@ -12,7 +12,7 @@
 #include "world/walk.h"
 
 // A breadth-first search from outside: in cells, along the axes, backwards over steps that a body
-// on such a cell may make.
+// on such a cell may make. Linear in the blocked cells that are connected to what changed.
 namespace throng::crowd {
 namespace {
 

@@ -11,9 +11,10 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
-// A lane for each direction: all advance by half a square at a time. Walls are as thick as bodies,
-// since squares are free where a body's centre may be, so none is stepped over. In integers, hence
-// the same for every vector width.
+// How far each direction of a fan leads over free squares. A lane for each direction: all advance
+// by half a square at a time. Walls are as thick as bodies, since squares are free where a body's
+// centre may be, so none is stepped over. In integers, hence the same for every vector width.
+// Linear in the directions and in the half squares of the range.
 HWY_BEFORE_NAMESPACE();
 namespace throng::crowd {
 namespace HWY_NAMESPACE {

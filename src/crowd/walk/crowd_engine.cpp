@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <functional>
 #include <limits>
 #include <mutex>
 #include <utility>
@@ -25,7 +24,6 @@ namespace {
 
 using steer::Plane;
 
-// (What runs on all workers is handed over by std::cref: a copy would be allocated in each step.)
 constexpr size_t kGrain = 256;  // bodies that are worth another thread
 constexpr std::array<float, 3> kShorterParts = {0.5f, 0.25f, 0.1f};
 constexpr float kArrivalRadius = 0.3f;    // [m] from its goal a body has arrived
@@ -130,8 +128,7 @@ void CrowdEngine::add(const Body& body) {
   bodies_[size_++] = body;
 }
 
-void CrowdEngine::step(uint64_t step, const Before& before, EngineCounts& counts,
-                       EngineTimes& times) {
+void CrowdEngine::step(uint64_t step, Before before, EngineCounts& counts, EngineTimes& times) {
   if (size_ == 0) return;
   step_ = step;
   auto start = Clock::now();
@@ -160,7 +157,7 @@ bool CrowdEngine::continues(const Body& body, uint64_t step) const {
          !is_before({body.local_target_x - body.x, body.local_target_z - body.z}, stride_of(body));
 }
 
-void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
+void CrowdEngine::prefer_all(uint64_t step, Before before) {
   constexpr float kSide = 2;  // [s] for which a body keeps to a side
   const auto window = step / static_cast<uint64_t>(std::lround(kSide / config_.units.dt));
   // To the right, if only other bodies block it. At a wall or a corner that would press a crowd
@@ -181,7 +178,7 @@ void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
       choose_detail(b, step);
       if (b.steps > 0 && !continues(b, step)) b.clear(Body::kContinues);
     }
-    if (before) before(bodies, worker);
+    before(bodies, worker);
     for (Body& b : bodies) {
       if (b.has(Body::kExternal) || b.has(Body::kMovedElsewhere) || b.steps == 0) continue;
       b.preferred = b.has(Body::kHasGoal) || b.leaves
@@ -191,7 +188,7 @@ void CrowdEngine::prefer_all(uint64_t step, const Before& before) {
                         : Plane{};
     }
   };
-  parallel_for_worker(pieces, config_.workers, std::cref(run));
+  parallel_for_worker(pieces, config_.workers, run);
 }
 
 void CrowdEngine::decide_all(EngineCounts& counts) {
@@ -232,7 +229,7 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
       ++workers_[w].counts.contested;
     }
   };
-  parallel_for_worker(pieces, config_.workers, std::cref(run));
+  parallel_for_worker(pieces, config_.workers, run);
   for (const Worker& worker : workers_) counts.add(worker.counts);
 }
 
@@ -517,7 +514,7 @@ void CrowdEngine::for_contests(uint64_t Contests::*which, Do act) {
       }
     }
   };
-  parallel_for_worker((words + kPiece - 1) / kPiece, config_.workers, std::cref(run));
+  parallel_for_worker((words + kPiece - 1) / kPiece, config_.workers, run);
 }
 
 // By induction no body ever touches another: a proposed place is clear of where all bodies stand
@@ -664,7 +661,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
     const std::lock_guard lock(adding);
     counts.add(here);
   };
-  parallel_ranges(size_, 4 * kGrain, config_.workers, std::cref(run));
+  parallel_ranges(size_, 4 * kGrain, config_.workers, run);
 }
 
 uint64_t CrowdEngine::bytes() const {

@@ -6,12 +6,12 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "core/arrays/huge_array.h"
+#include "core/function_ref.h"
 #include "crowd/ground/body.h"
 #include "crowd/ground/stride_ground.h"
 #include "crowd/mode/engine_counts.h"
@@ -71,8 +71,8 @@ class CrowdEngine {
 
   /// One step. `step`: its number, for the order of proposed moves. `before` is called first for
   /// all bodies, some at a time, on any worker.
-  using Before = std::function<void(std::span<Body>, int32_t worker)>;
-  void step(uint64_t step, const Before& before, EngineCounts& counts, EngineTimes& times);
+  using Before = FunctionRef<void(std::span<Body>, int32_t worker)>;
+  void step(uint64_t step, Before before, EngineCounts& counts, EngineTimes& times);
   /// After how many steps a body that continues decides again.
   [[nodiscard]] uint64_t steps_of_reaction(const Body& body) const;
   /// Slots of the bodies that arrived in the last step, in no order.
@@ -158,7 +158,7 @@ class CrowdEngine {
     return config_.model == SteeringModel::kSampled && !ignores_neighbours(body);
   }
   [[nodiscard]] bool continues(const Body& body, uint64_t step) const;
-  void prefer_all(uint64_t step, const Before& before);
+  void prefer_all(uint64_t step, Before before);
   void decide_all(EngineCounts& counts);
   bool decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& around);
   void prefetch_ground(size_t i) const;

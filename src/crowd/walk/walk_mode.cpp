@@ -128,13 +128,14 @@ void WalkMode::set_velocity(Body& body, const Vec3d& velocity) {
 
 void WalkMode::step(std::span<Body> /*bodies: its engine's*/, EngineCounts& counts,
                     EngineTimes& times) {
-  const CrowdEngine::Before before = [this](std::span<Body> bodies, int32_t worker) {
-    plan(bodies, worker);
-  };
+  const auto plan_all = [this](std::span<Body> bodies, int32_t worker) { plan(bodies, worker); };
+  const auto plan_none = [](std::span<Body> /*bodies*/, int32_t /*worker*/) {};
   links_are_used_ = takes_links_->begin_step();
   const bool has_plans =
       shared_.config.routing == Routing::kPaths || some_fly_ || shared_.some_leave;
-  engine_.step(shared_.sub_step - 1, has_plans ? before : CrowdEngine::Before(), counts, times);
+  engine_.step(shared_.sub_step - 1,
+               has_plans ? CrowdEngine::Before(plan_all) : CrowdEngine::Before(plan_none), counts,
+               times);
   for (const uint32_t slot : engine_.arrived()) {
     if (!takes_off_->is_at_link(slot)) shared_.arrived.push_back(shared_.id_of(slot));
   }

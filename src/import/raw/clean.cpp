@@ -8,11 +8,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <functional>
 #include <mutex>
 #include <utility>
 
 #include "core/corner_box.h"
+#include "core/function_ref.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "import/raw/raw_scene.h"
@@ -30,7 +30,7 @@ constexpr double kSpikeLength = 1000;   // [m] Shorter ones are harmless.
 // Calls look(begin, end, share) for ranges of all triangles in parallel, and add(share) for each
 // share, one at a time and in no fixed order: add must not depend on the order.
 template <class Share, class Look>
-void share_out(size_t triangles, Look look, const std::function<void(Share&)>& add) {
+void share_out(size_t triangles, Look look, FunctionRef<void(Share&)> add) {
   constexpr size_t kGrain = 1 << 16;
   std::mutex mutex;
   parallel_ranges(triangles, kGrain, 0, [&](size_t begin, size_t end) {

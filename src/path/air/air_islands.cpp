@@ -10,7 +10,9 @@
 // Whatever is cut off has a box beside cells that became blocked. So floods start from those boxes,
 // each as a piece of its own; pieces that meet are merged. They take turns, box by box, and stop
 // when only one piece is left of what was connected: a piece that runs out of boxes before that is
-// an island. Around a crate all pieces have met after a few turns.
+// an island. Around a crate all pieces have met after a few turns. Time: linear in the boxes
+// visited, about kMaxBoxes for one change; pieces that have not met by then keep the label that
+// they had.
 namespace throng::path {
 namespace {
 

@@ -10,7 +10,9 @@
 
 // A taut path turns at edges of blockers, and its angles to the edge are alike on both sides. Edges
 // run along the axes, so a waypoint is slid along one axis at a time to where that is so; a
-// waypoint that hangs in the air is cut off, which makes two of it that lie on the edges.
+// waypoint that hangs in the air is cut off, which makes two of it that lie on the edges. Time:
+// lines of sight, each linear in the boxes that it crosses: a constant number for each waypoint and
+// round, and up to the square of the waypoints to leave some out.
 namespace throng::path {
 namespace {
 

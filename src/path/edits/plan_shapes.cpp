@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-// Distances of convex polygons, and heights of a triangle over a square.
+// Distances of convex polygons, and heights of a triangle over a square. Linear in the polygon's
+// corners; constant time for a triangle.
 namespace throng::path {
 namespace {
 

@@ -12,7 +12,7 @@
 // A cylinder lies in the capsule around its axis and in the slab between its ends. A solid that
 // stays clear of either stays clear of the cylinder. The distance of a convex solid from a point of
 // the axis is a convex function of the point's place on the axis, so its minimum is found by
-// ternary search.
+// ternary search. Time: linear in the corners or triangles, times 2 kThirds at most.
 namespace throng::path {
 namespace {
 

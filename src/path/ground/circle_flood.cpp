@@ -6,7 +6,8 @@
 
 #include "world/tile_grid.h"
 
-// The visited cells of a flood fill: a hash table with linear probing, emptied run by run.
+// The visited cells of a flood fill: a hash table with linear probing, emptied run by run. Constant
+// time a cell on average.
 namespace throng::path {
 namespace {
 

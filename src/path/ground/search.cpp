@@ -7,9 +7,11 @@
 
 #include "path/ground/border.h"
 
-// Distances around a rectangle run from its south-west corner with the inside on the left, as its
-// portals do. Of a node that sees [right, left] of a portal, what lies from `right` on comes first,
-// then what the root sees, then what lies beyond `left`.
+// Polyanya [CHG17] over rectangles: an interval of a portal, seen from a root, is expanded to what
+// is seen of the portals beyond. Time: n log n in the intervals expanded and their rectangles'
+// portals. Distances around a rectangle run from its south-west corner with the inside on the left,
+// as its portals do. Of a node that sees [right, left] of a portal, what lies from `right` on comes
+// first, then what the root sees, then what lies beyond `left`.
 namespace throng::path {
 namespace {
 

@@ -10,7 +10,8 @@
 #include "path/ground/mesh_ray.h"
 
 // Removes waypoint after waypoint that is not a taut turn, replacing it by the convex chain of
-// corners in its triangle.
+// corners in its triangle. Time: a ray for each waypoint removed; if that is blocked, a cast into
+// the triangle for each corner of the chain.
 namespace throng::path {
 namespace {
 

@@ -11,7 +11,8 @@
 #include "path/ground/open_list.h"
 
 // Pruned landmark labelling [AIY13]: a Dijkstra search from each hub, pruned where earlier hubs
-// give as short a path.
+// give as short a path. Time: for each hub, n log n in the nodes that its search reaches, and the
+// labels that these have; the order of the hubs takes a whole search for each sample.
 namespace throng::path {
 namespace {
 

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <limits>
 
-// A* over entrances, then a search of each overlay cell crossed. Source: [BMS04], [DGPW11].
+// A* over entrances, then a search of each overlay cell crossed. Source: [BMS04], [DGPW11]. Time: n
+// log n in the entrances that it reaches, then in the blocks of the overlay cells crossed.
 namespace throng::path {
 
 void OverlaySearch::begin_states() {

@@ -4,17 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <map>
 #include <string>
 #include <tuple>
 #include <utility>
 
+#include "core/function_ref.h"
 #include "core/parallel.h"
 
 // Builds the graph of zones: tables of each zone, labels of the entrances of each overlay cell,
-// labels of the boundary nodes between them.
+// labels of the boundary nodes between them. Time: mostly of the tables (zone_paths.cpp) and the
+// labels (ground/two_hop.cpp); joining nodes is cubic in the entrances of a zone and in the
+// boundary nodes of an overlay cell at most.
 namespace throng::path {
 namespace {
 
@@ -22,8 +24,8 @@ using Edges = std::vector<std::vector<PathGraph::Edge>>;
 
 // Joins every two of `count` nodes by their paths' lengths, without the paths that lead over
 // another.
-void add_edges(size_t count, const std::function<float(size_t, size_t)>& length_of,
-               const std::function<uint32_t(size_t)>& node_of, Edges& edges) {
+void add_edges(size_t count, FunctionRef<float(size_t, size_t)> length_of,
+               FunctionRef<uint32_t(size_t)> node_of, Edges& edges) {
   std::vector<float> lengths(count * count, kNeverReached);
   for (size_t a = 0; a < count; ++a) {
     for (size_t b = a + 1; b < count; ++b)

@@ -13,7 +13,9 @@
 #include "path/ground/mesh_ray.h"
 #include "path/ground/open_list.h"
 
-// Tables of a zone: a Dijkstra search over its visible corners from each entrance.
+// Tables of a zone: a Dijkstra search over its visible corners from each entrance. Time: a cast
+// from each corner and entrance, then for each entrance n log n in what the corners see, and a ray
+// to each other entrance.
 namespace throng::path {
 namespace {
 

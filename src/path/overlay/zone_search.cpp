@@ -12,7 +12,9 @@
 #include "path/ground/border.h"
 #include "path/ground/mesh_ray.h"
 
-// Joins the tables and labels of the zones of both ends, then pulls the path taut.
+// Joins the tables and labels of the zones of both ends, then pulls the path taut. Time: mostly of
+// the labels that are read, linear, of boundary nodes only those that may lie on a shorter path;
+// ends in the same zone or in zones that touch add a search of the mesh.
 namespace throng::path {
 namespace {
 

@@ -9,11 +9,12 @@
 
 #include "core/access.h"
 
-// Hart, Nilsson, Raphael. A formal basis for the heuristic determination of minimum cost paths.
-// 1968. A path leads from the middle of one portal to the middle of the next, straight in the
-// parameters of their block; a piece is measured over its middle, so it is never shorter than the
-// straight line, and the straight line to the goal never overestimates: times the least cost of a
-// metre, where that is less than 1.
+// A* over the crossings of portals: Hart, Nilsson, Raphael. A formal basis for the heuristic
+// determination of minimum cost paths. 1968. A path leads from the middle of one portal to the
+// middle of the next, straight in the parameters of their block; a piece is measured over its
+// middle, so it is never shorter than the straight line, and the straight line to the goal never
+// overestimates: times the least cost of a metre, where that is less than 1. Time: n log n in the
+// crossings that it reaches.
 namespace throng::path {
 namespace {
 

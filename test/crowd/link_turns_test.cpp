@@ -229,6 +229,35 @@ TEST(CrowdLinkTurns, ASearchDoesNotChangeTheOrderOfComing) {
   EXPECT_GT(steps_until(crowd, oracle, 2, 600), 0);
 }
 
+// The end is occupied just after one got its turn. After 10 s it stands aside again; also if steps
+// are divided meanwhile, because a fast avatar comes.
+TEST(CrowdLinkTurns, ATurnEndsAfterTheSameTimeHoweverStepsAreDivided) {
+  const World world = gap();
+  const auto seconds_at_start = [&](bool divides) {
+    Edits edits;
+    add_link(edits, {at(world, 9, 5), at(world, 13, 5), 4, false});
+    Crowd crowd = made(world, {.edits = edits});
+    const AvatarId id = walker(crowd, at(world, 6, 5), at(world, 19, 5));
+    const auto off = [&] {
+      const Vec3d there = crowd.read(id)->position;
+      return std::hypot(there.x - 9, there.z - 5);
+    };
+    for (int step = 0; step < 100 && off() > 0.3; ++step) crowd.step();
+    EXPECT_TRUE(added(crowd, at(world, 13, 5)));
+    for (int step = 0; step < 50; ++step) crowd.step();
+    EXPECT_LT(off(), 0.2) << "it stands at the start";
+    if (divides) {
+      EXPECT_TRUE(added(crowd, at(world, 1, 1), {.speed = 8}));
+    }
+    int steps = 50;
+    for (; steps < 300 && off() < 0.4; ++steps) crowd.step();
+    return steps * 0.1;
+  };
+  const double plain = seconds_at_start(false);
+  EXPECT_NEAR(plain, 10, 2);
+  EXPECT_NEAR(seconds_at_start(true), plain, 0.5);
+}
+
 // One that waits at a link and gets a goal on its own side goes there.
 TEST(CrowdLinkTurns, AnotherPathEndsTheWait) {
   const World world = gap();

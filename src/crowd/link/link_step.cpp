@@ -99,12 +99,11 @@ void LinkMode::enter(std::span<const Body> bodies, Body& body, LinkUse& use) con
       landing.level == use.from.level;
   if (!is_at_start || !end_is_free(bodies, body, use) ||
       is_obstructed(body, body.stand(), use.to) || is_crossed(bodies, body, body.stand())) {
-    const auto waited = static_cast<double>(shared_.sub_step - use.since) * shared_.sub_dt();
     const double left =
         std::hypot(double{1} * use.from.x - body.x, double{1} * use.from.z - body.z) * shared_.unit;
-    if (waited <= kTurnTime + left / body.speed) return;
+    if (shared_.seconds_since(use.since) <= kTurnTime + left / body.speed) return;
     use.state = LinkUse::kWaits;
-    use.since = shared_.sub_step;
+    use.since = shared_.time;
     return;
   }
   use.from = body.stand();

@@ -73,7 +73,7 @@ bool LinkMode::begin_to_wait(Body& body, const PathPoint& start, const PathPoint
   use = {};
   use.from = stand(start);
   use.to = stand(end);
-  use.since = shared_.sub_step;
+  use.since = shared_.time;
   use.link = best->edit;
   use.state = LinkUse::kWaits;
   use.back = back ? 1 : 0;
@@ -203,7 +203,7 @@ void LinkMode::give_turn(Body& body, LinkUse& use) const {
   stop_standing(body, use);
   use.stands = 0;
   use.state = LinkUse::kEnters;
-  use.since = shared_.sub_step;
+  use.since = shared_.time;
   body.clear(Body::kContinues);
   body.detour_angle = 0;
   // The start, or a corner before it.

@@ -23,7 +23,7 @@ struct LinkUse {
   /// The ends of its line: where it left the ground, before that the link's start; and the far end.
   Stand from, to;
   double along = 0;    // of the line [m]
-  uint64_t since = 0;  // it waits, or it is its turn [sub-steps]
+  uint64_t since = 0;  // it waits, or it is its turn [SharedState::time]
   float factor = 1;    // of its speed, on the link
   EditId link = 0;
   uint8_t state = kNone;

@@ -120,6 +120,9 @@ CrowdReport Crowd::step() {
        .narrowest = s.extent.narrowest});
   for (int32_t i = 0; i < s.shared.sub_steps; ++i) {
     ++s.shared.sub_step;
+    s.shared.time = s.shared.step * crowd::SharedState::kTimeUnits +
+                    static_cast<uint64_t>(i) * crowd::SharedState::kTimeUnits /
+                        static_cast<uint64_t>(s.shared.sub_steps);
     for (crowd::Mode* mode : s.modes) mode->step(s.walk.bodies(), counts, times);
   }
   s.where_is_old = true;

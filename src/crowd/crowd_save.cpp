@@ -24,7 +24,7 @@ namespace {
 using crowd::put_rows;
 using crowd::take_rows;
 
-constexpr uint64_t kMagic = 0x31315744574f5243;  // "CROWDW11"
+constexpr uint64_t kMagic = 0x32315744574f5243;  // "CROWDW12"
 
 struct Head {
   uint64_t magic = kMagic;

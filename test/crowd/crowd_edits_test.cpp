@@ -221,25 +221,78 @@ TEST(CrowdEdits, ACrowdThatIsFarBehindTakesTheStateOfTheEdits) {
   EXPECT_EQ(crowd.obstacles().size(), 2u);
 }
 
+// A square of 24 m for a class that climbs.
+struct ClimbersFloor {
+  Scene scene = worlds::flat(24);
+  World world = test::bake(scene, 0.25,
+                           {{.name = "climber", .height = 1.0, .radius = 0.3, .climb_slope = 180}});
+  Nodes nodes;
+
+  ClimbersFloor() {
+    Context context;
+    auto made = Nodes::create(world, scene, {}, context);
+    EXPECT_TRUE(made) << made.error().message;
+    if (made) nodes = *made;
+  }
+};
+
 TEST(CrowdEdits, ClimbersPlanByAreas) {
-  const Scene scene = worlds::flat(24);
-  const World world = test::bake(
-      scene, 0.25, {{.name = "climber", .height = 1.0, .radius = 0.3, .climb_slope = 180}});
-  Context context;
-  const auto nodes = Nodes::create(world, scene, {}, context);
-  ASSERT_TRUE(nodes) << nodes.error().message;
+  const ClimbersFloor floor;
+  const World& world = floor.world;
   Edits edits;
-  Crowd crowd = made(world, {.nodes = *nodes, .edits = edits});
+  Crowd crowd = made(world, {.nodes = floor.nodes, .edits = edits});
   const Vec3d from{4, 0, 4}, to{20, 0, 4};
   EXPECT_NEAR(crossing(crowd, world, from, to), 4, 2);
   const auto area = edits.add_area(Prism::box({10, -1, -1}, {14, 1, 16}), 3);
   ASSERT_TRUE(area);
   EXPECT_NEAR(crossing(crowd, world, from, to), 4, 2);
-  // (At other costs climbers stall at bends of such paths: docs/design/013.)
-  ASSERT_TRUE(edits.set_area_cost(3, 6));
-  EXPECT_GT(crossing(crowd, world, from, to), 15.5);
+  for (const double cost : {6.0, 10.0, std::numeric_limits<double>::infinity()}) {
+    ASSERT_TRUE(edits.set_area_cost(3, cost));
+    EXPECT_GT(crossing(crowd, world, from, to), 15.5) << cost;
+  }
   EXPECT_TRUE(edits.remove(*area));
   EXPECT_NEAR(crossing(crowd, world, from, to), 4, 2);
+}
+
+// For how many steps in a row a climber that is alone hardly moves before it arrives; negative: it
+// does not arrive.
+int steps_at_rest(Crowd& crowd, const World& world, Vec3d from, Vec3d to) {
+  constexpr double kRest = 0.1;  // [m/s]
+  const AvatarId id = added(crowd, world.find_place(0, from, 0.5));
+  const Place goal = world.find_place(0, to, 0.5);
+  crowd.set_goals({&id, 1}, {&goal, 1});
+  int here = 0, longest = 0;
+  bool arrives = false;
+  for (int step = 0; step < 600 && !arrives; ++step) {
+    const Vec3d before = crowd.read(id)->position;
+    arrives = crowd.step().arrived > 0;
+    const double moved = length(crowd.read(id)->position - before);
+    here = moved < kRest * CrowdConfig{}.dt ? here + 1 : 0;
+    longest = std::max(longest, here);
+  }
+  crowd.remove({&id, 1});
+  return arrives ? longest : -1;
+}
+
+// Their paths have many points where they bend around the area's squares, and go on from points
+// where the kept part of a path ended, between two squares.
+TEST(CrowdEdits, ClimbersDoNotStandStillOnPathsAroundAnArea) {
+  const ClimbersFloor floor;
+  const World& world = floor.world;
+  for (const Prism& prism :
+       {Prism::box({10, -1, -1}, {14, 1, 16}), Prism::box({9.4, -1, -1}, {13.6, 1, 14.2}),
+        Prism::circle({12, -1, 9}, 6.3, 2)}) {
+    for (const double cost : {6.0, 10.0, std::numeric_limits<double>::infinity()}) {
+      Edits edits;
+      ASSERT_TRUE(edits.add_area(prism, 3) && edits.set_area_cost(3, cost));
+      Crowd crowd = made(world, {.nodes = floor.nodes, .edits = edits});
+      for (int k = 0; k < 8; ++k) {
+        const double z = 2.1 + 1.7 * k;
+        const int steps = steps_at_rest(crowd, world, {3, 0, z}, {21, 0, 16.5 - z});
+        EXPECT_TRUE(steps >= 0 && steps <= 5) << "cost " << cost << ", from " << z << ": " << steps;
+      }
+    }
+  }
 }
 
 TEST(CrowdEdits, OneDoorForFindersAndCrowd) {

@@ -229,6 +229,82 @@ TEST(CrowdLinkTurns, ASearchDoesNotChangeTheOrderOfComing) {
   EXPECT_GT(steps_until(crowd, oracle, 2, 600), 0);
 }
 
+// One rests at the start, or at the far end, of a link that others take; it goes back then.
+TEST(CrowdLinkTurns, AvatarsThatRestAtTheEndsGiveRoom) {
+  const World world = gap();
+  for (const bool at_start : {true, false}) {
+    Edits edits;
+    Oracle oracle{world, {{at(world, 9, 5), at(world, 13, 5), 4, true}}};
+    add_link(edits, oracle.links[0]);
+    Crowd crowd = made(world, {.edits = edits});
+    const double x = at_start ? 9 : 13;
+    const AvatarId resting = walker(crowd, at(world, at_start ? 7 : 15, 7), at(world, x, 5));
+    ASSERT_GT(steps_until(crowd, oracle, 1, 100), 0);
+    for (int i = 0; i < 4; ++i) walker(crowd, at(world, 2 + i, 3 + i), at(world, 17 + i, 3 + i));
+    EXPECT_GT(steps_until(crowd, oracle, 4, 700), 0) << at_start;
+    for (int step = 0; step < 60; ++step) crowd.step();
+    const Vec3d there = crowd.read(resting)->position;
+    EXPECT_LT(std::hypot(there.x - x, there.z - 5), 0.4) << "it is back";
+  }
+}
+
+TEST(CrowdLinkTurns, ASavedCrowdGivesRoomAsTheOneThatWentOn) {
+  const World world = gap();
+  Edits edits;
+  Oracle oracle{world, {{at(world, 9, 5), at(world, 13, 5), 4, true}}};
+  add_link(edits, oracle.links[0]);
+  Crowd crowd = made(world, {.edits = edits});
+  const AvatarId resting = walker(crowd, at(world, 7, 7), at(world, 9, 5));
+  ASSERT_GT(steps_until(crowd, oracle, 1, 100), 0);
+  walker(crowd, at(world, 5, 5), at(world, 19, 5));
+  const auto is_aside = [&] {
+    const Vec3d there = crowd.read(resting)->position;
+    return std::hypot(there.x - 9, there.z - 5) > 0.4;
+  };
+  for (int step = 0; step < 100 && !is_aside(); ++step) crowd.step();
+  ASSERT_TRUE(is_aside());
+  const std::vector<uint8_t> saved = crowd.save();
+  Context context;
+  auto restored = Crowd::restore(world, {.edits = edits}, saved, context);
+  ASSERT_TRUE(restored) << restored.error().message;
+  EXPECT_EQ(restored->save(), saved);
+  for (int step = 0; step < 200; ++step) {
+    crowd.step();
+    restored->step();
+    ASSERT_EQ(crowd.state_hash(), restored->state_hash()) << step;
+  }
+  EXPECT_FALSE(is_aside());
+}
+
+// The end is occupied just after one got its turn. After 10 s it stands aside again; also if steps
+// are divided meanwhile, because a fast avatar comes.
+TEST(CrowdLinkTurns, ATurnEndsAfterTheSameTimeHoweverStepsAreDivided) {
+  const World world = gap();
+  const auto seconds_at_start = [&](bool divides) {
+    Edits edits;
+    add_link(edits, {at(world, 9, 5), at(world, 13, 5), 4, false});
+    Crowd crowd = made(world, {.edits = edits});
+    const AvatarId id = walker(crowd, at(world, 6, 5), at(world, 19, 5));
+    const auto off = [&] {
+      const Vec3d there = crowd.read(id)->position;
+      return std::hypot(there.x - 9, there.z - 5);
+    };
+    for (int step = 0; step < 100 && off() > 0.3; ++step) crowd.step();
+    EXPECT_TRUE(added(crowd, at(world, 13, 5)));
+    for (int step = 0; step < 50; ++step) crowd.step();
+    EXPECT_LT(off(), 0.2) << "it stands at the start";
+    if (divides) {
+      EXPECT_TRUE(added(crowd, at(world, 1, 1), {.speed = 8}));
+    }
+    int steps = 50;
+    for (; steps < 300 && off() < 0.4; ++steps) crowd.step();
+    return steps * 0.1;
+  };
+  const double plain = seconds_at_start(false);
+  EXPECT_NEAR(plain, 10, 2);
+  EXPECT_NEAR(seconds_at_start(true), plain, 0.5);
+}
+
 // One that waits at a link and gets a goal on its own side goes there.
 TEST(CrowdLinkTurns, AnotherPathEndsTheWait) {
   const World world = gap();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <queue>
 #include <vector>
@@ -131,6 +132,114 @@ TEST(NodeEdits, AreasCountWhereTheyLie) {
   EXPECT_GT(inside, 100u);
   EXPECT_GT(outside, 1000u);
   EXPECT_GT(closed, 1000u);
+}
+
+bool same(const graph::NodePortal& a, const graph::NodePortal& b) {
+  return a.a == b.a && a.b == b.b && a.on_a == b.on_a && a.on_b == b.on_b && a.kind == b.kind &&
+         a.over_hole == b.over_hole && a.one_way == b.one_way && a.inside == b.inside;
+}
+
+// To the bit, with all numbers.
+void expect_same(const graph::NodeMesh& mesh, const path::NodeChanges& one,
+                 const path::NodeChanges& other) {
+  ASSERT_EQ(one.parts().size(), other.parts().size());
+  const auto whole = static_cast<uint32_t>(mesh.blocks().size());
+  for (uint32_t k = 0; k < one.parts().size(); ++k) {
+    const graph::NodeBlock &a = one.parts()[k], &b = other.parts()[k];
+    ASSERT_TRUE(a.patch == b.patch && a.node == b.node && a.level == b.level && a.s == b.s &&
+                a.t == b.t && a.inclination == b.inclination);
+    ASSERT_EQ(one.base_of(whole + k), other.base_of(whole + k));
+    ASSERT_EQ(one.factor(whole + k), other.factor(whole + k));
+  }
+  ASSERT_EQ(one.portals().size(), other.portals().size());
+  for (size_t k = 0; k < one.portals().size(); ++k) {
+    ASSERT_TRUE(same(one.portals()[k], other.portals()[k])) << k;
+  }
+  ASSERT_EQ(one.replaced().size(), other.replaced().size());
+  for (size_t k = 0; k < one.replaced().size(); ++k) {
+    const auto &a = one.replaced()[k], &b = other.replaced()[k];
+    ASSERT_TRUE(a.portal == b.portal && a.first == b.first && a.last == b.last) << k;
+  }
+  ASSERT_TRUE(std::ranges::equal(one.touched(), other.touched()));
+  ASSERT_TRUE(std::ranges::equal(one.cut_patches(), other.cut_patches()));
+  ASSERT_EQ(one.min_factor(), other.min_factor());
+  for (uint32_t b = 0; b < whole + one.parts().size(); ++b) {
+    const auto p = one.portals_of(b), q = other.portals_of(b);
+    ASSERT_EQ(p.has_value(), q.has_value()) << b;
+    ASSERT_TRUE(!p || std::ranges::equal(*p, *q)) << b;
+    if (b < whole) {
+      ASSERT_EQ(one.parts_of(b), other.parts_of(b)) << b;
+    }
+  }
+}
+
+// Against changes that get the same calls and are updated once.
+TEST(NodeEdits, ChangesThatAreUpdatedAfterEachCallAreThoseOfAllCalls) {
+  uint64_t parts = 0;
+  for_each_mesh([&](const Nodes& nodes, const graph::NodeMesh& mesh) {
+    const path::BlockSquares squares(mesh);
+    path::NodeChanges changes(mesh, squares, 20);
+    std::vector<std::function<void(path::NodeChanges&)>> calls;
+    uint32_t added = 0;
+    for (uint64_t n = 0; n < 60; ++n) {
+      const auto draw = [&](uint64_t stream, uint64_t count) {
+        return random_below(9, stream, n, count);
+      };
+      const uint64_t what = draw(0, 10);
+      const auto kind = static_cast<uint8_t>(1 + draw(1, 3));
+      const auto id = static_cast<path::ChangeId>(1 + draw(2, added + 1));  // maybe of none
+      const Prism prism = area_at(nodes, n % 40);
+      const bool active = draw(3, 2) == 0;
+      const double costs[] = {1, 0.5, 7, kNever};
+      const double cost = costs[draw(4, 4)];
+      calls.push_back([=](path::NodeChanges& to) {
+        if (what < 3) to.add({prism, {}});
+        if (what >= 3 && what < 6) to.add_area(prism, kind);
+        if (what >= 6 && what < 8) to.set_active(id, active, false);
+        if (what == 8) to.set_active(id, false, true);
+        if (what == 9) to.set_area_cost(kind, cost);
+      });
+      added += what < 6 ? 1 : 0;
+      calls.back()(changes);
+      if (n % 7 != 3) changes.update();
+      if (n % 5 != 4) continue;
+      changes.update();
+      path::NodeChanges fresh(mesh, squares, 20);
+      for (const auto& call : calls) call(fresh);
+      fresh.update();
+      expect_same(mesh, changes, fresh);
+      if (testing::Test::HasFatalFailure()) return;
+      parts += fresh.parts().size();
+    }
+  });
+  EXPECT_GT(parts, 3000u);
+}
+
+// A tile is cut as a whole, so a crate in it costs the cuts of the others there, and no more.
+TEST(NodeEdits, AnUpdateCutsOnlyWhatTheChangesTouch) {
+  const Nodes nodes = make_nodes(worlds::flat(96));
+  Context context;
+  const auto mesh = graph::NodeMesh::create(nodes, 0, 1, context);
+  ASSERT_TRUE(mesh);
+  const path::BlockSquares squares(*mesh);
+  path::NodeChanges one_by_one(*mesh, squares, 20), at_once(*mesh, squares, 20);
+  std::vector<path::ChangeId> ids;
+  for (int k = 0; k < 144; ++k) {
+    const double x = 4 + 8 * (k % 12), z = 4 + 8 * static_cast<double>(k / 12);
+    const Prism crate = Prism::box({x - 0.5, -1, z - 0.5}, {x + 0.5, 2, z + 0.5});
+    ids.push_back(one_by_one.add({crate, {}}));
+    at_once.add({crate, {}});
+    one_by_one.update();
+  }
+  at_once.update();
+  EXPECT_GT(at_once.cut_count(), 144u);
+  EXPECT_LT(one_by_one.cut_count(), 6 * at_once.cut_count());
+  expect_same(*mesh, one_by_one, at_once);
+  // To take one away costs its tile as well.
+  const uint64_t before = one_by_one.cut_count();
+  one_by_one.set_active(ids[70], false, true);
+  one_by_one.update();
+  EXPECT_LT(one_by_one.cut_count() - before, at_once.cut_count() / 10);
 }
 
 struct Link {

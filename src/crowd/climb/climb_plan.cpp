@@ -133,7 +133,7 @@ void ClimbMode::plan(Body& body, Climb& climb, int32_t worker) {
     climb.detour -= shared_.sub_dt();
     if (climb.detour <= 0) body.flags |= Body::kNeedsPath;
   }
-  const bool used_up = climb.at.next >= climb.count && climb.whole == 0;
+  const bool used_up = climb.whole == 0 && of(body).ground.is_at_end(climb);
   if (used_up) {
     body.flags |= Body::kNeedsPath;
     climb.station += climb.to_station;

@@ -15,9 +15,10 @@
 namespace throng::crowd {
 namespace {
 
-constexpr double kMinLength = 1e-9;  // [m]
-constexpr double kEdgeStep = 1e-4;   // of a patch's parameters, for derivatives
-constexpr int kMaxAttempts = 8;      // attempts to make a move short enough
+constexpr double kMinLength = 1e-9;    // [m]
+constexpr double kPointRadius = 1e-3;  // [m] within which a body stands on a point
+constexpr double kEdgeStep = 1e-4;     // of a patch's parameters, for derivatives
+constexpr int kMaxAttempts = 8;        // attempts to make a move short enough
 
 }  // namespace
 
@@ -182,31 +183,57 @@ bool ClimberGround::enters_next(const Climb& climb, const Square& here, double d
   return there.holds(at.s + out * ds, at.t + out * dt);
 }
 
+bool ClimberGround::stands_on(const Climb& climb, size_t point) const {
+  const auto there = pose_of_point(climb, point);
+  return there && travel({climb.feet, climb.axis}, *there) <= kPointRadius;
+}
+
+// A path often begins on a point where another one ended, between two parts of a node: its next
+// points then lie where the body stands, up to rounding, and show no direction.
+size_t ClimberGround::point_ahead(const Climb& climb) const {
+  size_t point = std::min<size_t>(climb.at.next, climb.count - 1u);
+  while (point + 1 < climb.count && stands_on(climb, point)) ++point;
+  return point;
+}
+
+bool ClimberGround::is_at_end(const Climb& climb) const {
+  if (climb.at.next >= climb.count) return true;
+  if (climb.at.in_air != 0) return false;
+  const size_t point = point_ahead(climb);
+  return point + 1 == climb.count && stands_on(climb, point);
+}
+
+Vec3d ClimberGround::displacement_to(const Climb& climb, const ClimbPose& to) const {
+  const Vec3d displacement = to.feet - climb.feet;
+  if (length(displacement) > 0.05) return displacement;
+  // It nearly only turns: as its centre moves.
+  return displacement + (to.axis - climb.axis) * (height_ / 2);
+}
+
 Vec3d ClimberGround::path_ahead(const Climb& climb) const {
   const ClimbStance& at = climb.at;
   if (climb.count == 0) return {};
   if (at.in_air != 0) {
     const auto to = pose_of_point(climb, at.next);
-    const Vec3d displacement = to ? to->feet - climb.feet : Vec3d{};
-    if (!to || length(displacement) > 0.05) return displacement;
-    // It nearly only turns: as its centre moves.
-    return displacement + (to->axis - climb.axis) * (height_ / 2);
+    return to ? displacement_to(climb, *to) : Vec3d{};
   }
   const Square here = square_here(climb);
-  size_t local_target = std::min<size_t>(at.next, climb.count - 1u);
+  const size_t next = std::min<size_t>(at.next, climb.count - 1u);
+  size_t local_target = point_ahead(climb);
   const auto off = [&](size_t point) {
     return std::pair{climb.points[point].s - at.s, climb.points[point].t - at.t};
   };
-  if (local_target + 1 < climb.count) {
-    const auto [ds, dt] = off(local_target + 1);
-    if (enters_next(climb, here, ds, dt) || (off(local_target) == std::pair{0.0, 0.0} &&
-                                             climb.points[local_target + 1].on_surface != 0)) {
-      ++local_target;
-    }
+  if (local_target == next && next + 1 < climb.count) {
+    const auto [ds, dt] = off(next + 1);
+    if (enters_next(climb, here, ds, dt)) ++local_target;
   }
-  const auto [ds, dt] = off(local_target);
   const auto to = pose_of_point(climb, local_target);
   if (!to) return {};
+  // Beyond a segment through the air parameters are those of another patch.
+  for (size_t point = next + 1; point <= local_target; ++point) {
+    if (climb.points[point].on_surface == 0) return displacement_to(climb, *to);
+  }
+  const auto [ds, dt] = off(local_target);
   const double far = length(to->feet - climb.feet);
   const Slope slope = slope_at(here, at);
   Vec3d displacement = slope.along_s * ds + slope.along_t * dt;

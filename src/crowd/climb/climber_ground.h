@@ -63,6 +63,8 @@ class ClimberGround {
   /// The vector to the point that it heads to: straight in the patch's parameters, so it begins
   /// along the surface and is as long as the straight line. [m]
   [[nodiscard]] Vec3d path_ahead(const Climb& climb) const;
+  /// Has it passed all points of its path, but for those on which it stands?
+  [[nodiscard]] bool is_at_end(const Climb& climb) const;
   /// The surface's normal; the body's axis where it is in the air.
   [[nodiscard]] Vec3d normal_at(const Climb& climb) const;
 
@@ -94,6 +96,12 @@ class ClimberGround {
   [[nodiscard]] std::optional<ClimbPose> pose_of_point(const Climb& climb, size_t point) const;
   [[nodiscard]] bool enters_next(const Climb& climb, const Square& here, double ds,
                                  double dt) const;
+  /// The point to which it heads, or, where it stands on that, the first behind it on which it does
+  /// not stand, if there is one. [it has a path]
+  [[nodiscard]] size_t point_ahead(const Climb& climb) const;
+  [[nodiscard]] bool stands_on(const Climb& climb, size_t point) const;
+  /// Straight to a pose.
+  [[nodiscard]] Vec3d displacement_to(const Climb& climb, const ClimbPose& to) const;
   bool advance_on_surface(const Climb& climb, Step& step, double& max_travel) const;
   bool advance_through_air(const Climb& climb, Step& step, double& max_travel) const;
 

@@ -302,7 +302,7 @@ bool LinkMode::is_sound(const Body& body) const {
   if (uses_.empty()) return !body.on_link;
   const LinkUse& use = uses_[body.slot];
   const bool rides = use.state == LinkUse::kRides;
-  if (use.state > LinkUse::kRides || body.on_link != rides) return false;
+  if (use.state > LinkUse::kGivesRoom || body.on_link != rides) return false;
   if (use.state == LinkUse::kNone) return true;
   if (body.has(Body::kMovedElsewhere) != rides || body.climbs || shared_.flies(body.avatar_class)) {
     return false;

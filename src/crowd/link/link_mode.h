@@ -85,6 +85,7 @@ class LinkMode final : public Mode, public TakesLinks {
     bool two_way = false;
     uint32_t corridor = 0;
     std::array<uint32_t, 2> waiting{};  // to go there, and back
+    std::array<bool, 2> is_used{};      // so, by any that wait, enter or are on it
   };
   /// Links on whose lines two avatars could touch: of these one is used at a time, in one
   /// direction.
@@ -125,7 +126,14 @@ class LinkMode final : public Mode, public TakesLinks {
   void begin_turns();
   void take_turns(std::span<Body> bodies);
 
+  // link_room.cpp
+  [[nodiscard]] bool may_give_room(const Body& body) const;
+  void give_room(Body& body, const LinkUse& to, const Stand& at);
+  void ask_for_room(std::span<Body> bodies);
+  void end_giving_room(std::span<Body> bodies);
+
   // link_step.cpp
+  void add_users();
   void find_users(std::span<Body> bodies);
   void enter(std::span<const Body> bodies, Body& body, LinkUse& use) const;
   void ride(std::span<Body> bodies, uint32_t index, EngineCounts& counts);
@@ -142,7 +150,8 @@ class LinkMode final : public Mode, public TakesLinks {
   std::vector<uint32_t> users_;                 // slots with another state than kNone, rising
   std::vector<uint32_t> bodies_;                // of these, indices; of the step
   std::mutex adding_;
-  std::vector<uint32_t> came_;    // slots that have begun to wait in this sub-step, in no order
+  std::vector<uint32_t> came_;    // slots that have begun to wait or to give room in this sub-step,
+                                  // in no order
   std::vector<uint32_t> merged_;  // scratch: the old and the new users
   std::vector<bool> is_user_;     // by slot
   std::vector<uint32_t> order_;   // those that wait, as they take turns

@@ -26,15 +26,19 @@ bool overlaps_with(const Body& a, const Stand& at, const Body& b) {
 
 }  // namespace
 
-// Of those that use links, and of what is near them and near the ends that they wait for.
-void LinkMode::find_users(std::span<Body> bodies) {
-  constexpr uint32_t kNone = UINT32_MAX;
+void LinkMode::add_users() {
   std::sort(came_.begin(), came_.end());
   merged_.resize(users_.size() + came_.size());
   std::merge(users_.begin(), users_.end(), came_.begin(), came_.end(), merged_.begin());
   users_.swap(merged_);
   users_.erase(std::unique(users_.begin(), users_.end()), users_.end());
   came_.clear();
+}
+
+// Of those that use links, and of what is near them and near the ends that they wait for.
+void LinkMode::find_users(std::span<Body> bodies) {
+  constexpr uint32_t kNone = UINT32_MAX;
+  add_users();
   is_user_.assign(shared_.generation.size(), false);
   for (const uint32_t slot : users_) is_user_[slot] = true;
   bodies_.assign(users_.size(), kNone);
@@ -65,6 +69,7 @@ void LinkMode::find_users(std::span<Body> bodies) {
     const Body& body = bodies[bodies_[n]];
     const bool rides = use.state == LinkUse::kRides;
     near_.add_point(rides ? body.x : use.to.x, rides ? body.z : use.to.z);
+    if (use.state == LinkUse::kEnters) near_.add_point(use.from.x, use.from.z);
   }
   near_.find(bodies);
 }
@@ -81,7 +86,10 @@ void LinkMode::step(std::span<Body> bodies, EngineCounts& counts, EngineTimes& t
     if (use.state == LinkUse::kEnters) enter(bodies, bodies[bodies_[n]], use);
   }
   take_turns(bodies);
+  end_giving_room(bodies);
+  ask_for_room(bodies);
   std::erase_if(users_, [&](uint32_t slot) { return uses_[slot].state == LinkUse::kNone; });
+  add_users();
   times.resolve += seconds_since(start);
 }
 
@@ -99,12 +107,11 @@ void LinkMode::enter(std::span<const Body> bodies, Body& body, LinkUse& use) con
       landing.level == use.from.level;
   if (!is_at_start || !end_is_free(bodies, body, use) ||
       is_obstructed(body, body.stand(), use.to) || is_crossed(bodies, body, body.stand())) {
-    const auto waited = static_cast<double>(shared_.sub_step - use.since) * shared_.sub_dt();
     const double left =
         std::hypot(double{1} * use.from.x - body.x, double{1} * use.from.z - body.z) * shared_.unit;
-    if (waited <= kTurnTime + left / body.speed) return;
+    if (shared_.seconds_since(use.since) <= kTurnTime + left / body.speed) return;
     use.state = LinkUse::kWaits;
-    use.since = shared_.sub_step;
+    use.since = shared_.time;
     return;
   }
   use.from = body.stand();

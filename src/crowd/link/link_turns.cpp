@@ -73,7 +73,7 @@ bool LinkMode::begin_to_wait(Body& body, const PathPoint& start, const PathPoint
   use = {};
   use.from = stand(start);
   use.to = stand(end);
-  use.since = shared_.sub_step;
+  use.since = shared_.time;
   use.link = best->edit;
   use.state = LinkUse::kWaits;
   use.back = back ? 1 : 0;
@@ -87,6 +87,7 @@ bool LinkMode::begin_to_wait(Body& body, const PathPoint& start, const PathPoint
 bool LinkMode::plan_at_start(Body& body, const Route& route, const StrideGround& ground,
                              uint64_t nth) {
   const LinkUse& use = uses_[body.slot];
+  if (use.state == LinkUse::kGivesRoom) return true;
   const bool leads = leads_to_link(route);
   if (use.state == LinkUse::kWaits && !leads) return true;
   if (!leads || use.state == LinkUse::kEnters) return false;
@@ -126,7 +127,8 @@ void LinkMode::begin_search(Body& body) { stop_standing(body, uses_[body.slot]);
 void LinkMode::end_search(Body& body, const Route* found) {
   LinkUse& use = uses_[body.slot];
   if (use.state == LinkUse::kNone) return;
-  const bool stays = found != nullptr && found->by_link != 0 && find_link(use.link) != nullptr &&
+  const bool stays = use.state != LinkUse::kGivesRoom && found != nullptr && found->by_link != 0 &&
+                     find_link(use.link) != nullptr &&
                      same(use.from, found->corners[found->count - 2u]) &&
                      same(use.to, found->corners[found->count - 1u]);
   if (!stays) {
@@ -203,7 +205,7 @@ void LinkMode::give_turn(Body& body, LinkUse& use) const {
   stop_standing(body, use);
   use.stands = 0;
   use.state = LinkUse::kEnters;
-  use.since = shared_.sub_step;
+  use.since = shared_.time;
   body.clear(Body::kContinues);
   body.detour_angle = 0;
   // The start, or a corner before it.

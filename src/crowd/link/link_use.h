@@ -15,15 +15,17 @@ namespace throng::crowd {
 struct LinkUse {
   enum State : uint8_t {
     kNone,
-    kWaits,   // near the start, until it is its turn
-    kEnters,  // it is its turn: it walks to the start
-    kRides,   // it is on the link: Body::on_link
+    kWaits,      // near the start, until it is its turn
+    kEnters,     // it is its turn: it walks to the start
+    kRides,      // it is on the link: Body::on_link
+    kGivesRoom,  // it rests at an end of a link and stands aside while others use that
   };
 
   /// The ends of its line: where it left the ground, before that the link's start; and the far end.
+  /// While it gives room: the end at which it does, and the other.
   Stand from, to;
   double along = 0;    // of the line [m]
-  uint64_t since = 0;  // it waits, or it is its turn [sub-steps]
+  uint64_t since = 0;  // it waits, or it is its turn [SharedState::time]
   float factor = 1;    // of its speed, on the link
   EditId link = 0;
   uint8_t state = kNone;

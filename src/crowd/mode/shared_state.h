@@ -41,7 +41,10 @@ struct SharedState {
   int32_t sub_steps = 1;
   uint64_t step = 0;
   uint64_t sub_step = 0;  // while avatars move: the number of the next one
-  std::vector<std::unique_ptr<SharedClass>> classes;  // null: not in use
+  /// Of this sub-step, whatever the number of sub-steps in those before. [step / kTimeUnits]
+  uint64_t time = 0;
+  static constexpr uint64_t kTimeUnits = uint64_t{1} << 20;  // as many as sub-steps at most
+  std::vector<std::unique_ptr<SharedClass>> classes;         // null: not in use
   ObstacleSet obstacles;
   ObstacleGrid obstacle_grid;        // those that are active or close
   bool some_leave = false;           // Body::leaves is set for some
@@ -78,6 +81,11 @@ struct SharedState {
   }
   /// The length of a sub-step. [s]
   [[nodiscard]] float sub_dt() const { return static_cast<float>(config.dt / sub_steps); }
+
+  /// From a time to this sub-step. [s]
+  [[nodiscard]] double seconds_since(uint64_t then) const {
+    return static_cast<double>(time - then) / static_cast<double>(kTimeUnits) * config.dt;
+  }
 
   /// Counts a search that exhausted its memory.
   void note_spent(SpentBudget spent) {

@@ -67,7 +67,8 @@ class NodeFinder {
   /// Blocks are cut there, by cells of level tiles and by squares of about a quarter of a metre of
   /// curved ground. Paths lead around it over the rest; long ones still use the overlay, but for
   /// the overlay cells that the obstacle touches. Holds for this finder and for copies made later.
-  /// Time: here what lies within a body's size of it; at the next query all obstacles that are up.
+  /// Time: here what lies within a body's size of it; at the next query the cuts of what it
+  /// touches, and a copy of all that is cut.
   ChangeId add_obstacle(Solid solid);
   /// Gives an area a kind: squares of level tiles whose middle lies in the prism, and of curved
   /// ground of about a quarter of a metre. A metre on them costs what the kind does; infinity

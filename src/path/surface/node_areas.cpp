@@ -11,8 +11,8 @@
 #include "world/ground.h"
 
 // Areas and off-mesh links on a mesh of nodes. Which cells and squares an area holds is found once;
-// at an update the areas of a cell are laid over each other in the order in which they were added.
-// Time of an update: n log n in the cells and squares of all active areas.
+// where a tile or block is cut, its areas are laid over each other in the order in which they were
+// added. Time of an update: n log n in the cells and squares of the areas there.
 namespace throng::path {
 
 ChangeId NodeChanges::add_area(const Prism& prism, uint8_t kind) {
@@ -50,8 +50,10 @@ ChangeId NodeChanges::add_link(const Link& link) {
 void NodeChanges::set_area_cost(uint8_t kind, double cost) {
   if (area_cost_[kind] == cost) return;
   area_cost_[kind] = cost;
-  areas_differ_ =
-      std::any_of(area_cost_.begin(), area_cost_.end(), [](double c) { return c != 1; });
+  for (const ChangeId id : active_) {
+    const Change& change = changes_[id - 1];
+    if (change.kind == Kind::kArea && change.area == kind) list(id, true);
+  }
   ++version_;
 }
 
@@ -71,17 +73,16 @@ void NodeChanges::mark_squares(const Prism& prism, uint32_t block, Change& chang
   }
 }
 
-// By patch, rising.
-std::vector<NodeChanges::TileLabels> NodeChanges::tile_labels() const {
-  std::vector<TileLabels> tiles;
-  std::unordered_map<uint32_t, size_t> place;
-  for (const ChangeId id : active_) {
+NodeChanges::TileLabels NodeChanges::tile_labels(uint32_t patch) const {
+  TileLabels labels{patch, {}, {}};
+  const auto changes = tile_changes_.find(patch);
+  if (changes == tile_changes_.end()) return labels;
+  for (const ChangeId id : changes->second) {
     const Change& change = changes_[id - 1];
-    if (!differs(change)) continue;
-    for (const BlockedTile& tile : change.tiles) {
-      const auto [at, is_new] = place.try_emplace(tile.patch, tiles.size());
-      if (is_new) tiles.push_back({tile.patch, {}, {}});
-      TileLabels& labels = tiles[at->second];
+    auto at = std::lower_bound(change.tiles.begin(), change.tiles.end(), patch,
+                               [](const BlockedTile& one, uint32_t p) { return one.patch < p; });
+    for (; at != change.tiles.end() && at->patch == patch; ++at) {
+      const BlockedTile& tile = *at;
       world::CellRows* rows = &labels.blocked;
       if (change.kind == Kind::kArea) {
         for (auto& [area, cells] : labels.areas) {
@@ -96,29 +97,29 @@ std::vector<NodeChanges::TileLabels> NodeChanges::tile_labels() const {
       for (size_t k = 0; k < 64; ++k) (*rows)[k] |= tile.rows[k];
     }
   }
-  for (TileLabels& labels : tiles) {
-    for (const auto& [area, cells] : labels.areas) {
-      if (!std::isinf(area_cost_[area])) continue;
-      for (size_t k = 0; k < 64; ++k) labels.blocked[k] |= cells[k];
-    }
-    std::erase_if(labels.areas, [&](const auto& one) {
-      return area_cost_[one.first] == 1 || std::isinf(area_cost_[one.first]);
-    });
+  for (const auto& [area, cells] : labels.areas) {
+    if (!std::isinf(area_cost_[area])) continue;
+    for (size_t k = 0; k < 64; ++k) labels.blocked[k] |= cells[k];
   }
-  std::sort(tiles.begin(), tiles.end(),
-            [](const TileLabels& a, const TileLabels& b) { return a.patch < b.patch; });
-  return tiles;
+  std::erase_if(labels.areas, [&](const auto& one) {
+    return area_cost_[one.first] == 1 || std::isinf(area_cost_[one.first]);
+  });
+  return labels;
 }
 
-// By block and order, rising.
-std::vector<NodeChanges::SquareLabel> NodeChanges::square_labels() const {
+// By order, rising.
+std::vector<NodeChanges::SquareLabel> NodeChanges::square_labels(uint32_t block) const {
   std::vector<RankedSquare> all;
-  for (const ChangeId id : active_) {
+  const auto changes = block_changes_.find(block);
+  if (changes == block_changes_.end()) return {};
+  for (const ChangeId id : changes->second) {
     const Change& change = changes_[id - 1];
-    if (!differs(change)) continue;
     const bool is_area = change.kind == Kind::kArea;
-    for (const BlockedSquare& square : change.squares)
-      all.push_back({square, is_area ? id : UINT32_MAX, is_area ? int{change.area} : kBlocked});
+    // They are in order of block.
+    auto at = std::lower_bound(change.squares.begin(), change.squares.end(), block,
+                               [](const BlockedSquare& s, uint32_t b) { return s.block < b; });
+    for (; at != change.squares.end() && at->block == block; ++at)
+      all.push_back({*at, is_area ? id : UINT32_MAX, is_area ? int{change.area} : kBlocked});
   }
   std::sort(all.begin(), all.end(), [](const RankedSquare& a, const RankedSquare& b) {
     return a.square != b.square ? a.square < b.square : a.rank < b.rank;

@@ -12,7 +12,7 @@
 #include "world/place.h"
 
 // Which blocks and portals of a mesh of nodes obstacles block, found by halving blocks and motions.
-// Time by the blocks near an obstacle.
+// Time by the blocks near an obstacle; an update copies what is cut elsewhere.
 namespace throng::path {
 namespace {
 
@@ -100,10 +100,35 @@ ChangeId NodeChanges::add(Solid solid) {
 }
 
 ChangeId NodeChanges::keep(Change change) {
+  std::sort(change.tiles.begin(), change.tiles.end(),
+            [](const BlockedTile& a, const BlockedTile& b) { return a.patch < b.patch; });
+  std::sort(change.pieces.begin(), change.pieces.end(),
+            [](const BlockedPieces& a, const BlockedPieces& b) { return a.portal < b.portal; });
   changes_.push_back(std::move(change));
   ++version_;
   active_.push_back(static_cast<ChangeId>(changes_.size()));
+  list(active_.back(), true);
   return active_.back();
+}
+
+void NodeChanges::list(ChangeId id, bool active) {
+  const Change& change = changes_[id - 1];
+  const auto list_at = [&](uint32_t place, ChangesByPlace& changes, std::vector<uint32_t>& stale) {
+    stale.push_back(place);
+    std::vector<ChangeId>& here = changes[place];
+    const auto at = std::lower_bound(here.begin(), here.end(), id);
+    const bool is_listed = at != here.end() && *at == id;
+    if (active && !is_listed) here.insert(at, id);
+    if (!active && is_listed) here.erase(at);
+    if (here.empty()) changes.erase(place);
+  };
+  for (const BlockedTile& tile : change.tiles) list_at(tile.patch, tile_changes_, stale_tiles_);
+  uint32_t last = graph::kNoNode;  // A block has many squares.
+  for (const BlockedSquare& square : change.squares) {
+    if (square.block != last) list_at(square.block, block_changes_, stale_blocks_);
+    last = square.block;
+  }
+  for (const BlockedPieces& p : change.pieces) list_at(p.portal, portal_changes_, stale_portals_);
 }
 
 bool NodeChanges::set_active(ChangeId id, bool active, bool remove) {
@@ -117,6 +142,7 @@ bool NodeChanges::set_active(ChangeId id, bool active, bool remove) {
     } else {
       active_.erase(at);
     }
+    list(id, active);
   }
   change.active = active;
   if (remove) {
@@ -274,31 +300,30 @@ bool NodeChanges::blocks_portal(const Solid& solid, const graph::NodePortal& por
          motion_may_touch(solid, body, over, b, spread, kTurns);
 }
 
+namespace {
+
+void sort_unique(std::vector<uint32_t>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
+}  // namespace
+
 void NodeChanges::update() {
   if (updated_ == version_) return;
   updated_ = version_;
-  cuts_.clear();
-  cut_blocks_.clear();
-  cut_patches_.clear();
-  parts_.clear();
-  base_of_part_.clear();
-  area_of_part_.clear();
-  portals_.clear();
-  replaced_.clear();
-  touched_.clear();
-  place_of_touched_.clear();
-  std::unordered_map<uint32_t, uint16_t> pieces;
-  for (const ChangeId id : active_) {
-    for (const BlockedPieces& blocked : changes_[id - 1].pieces)
-      pieces[blocked.portal] |= blocked.pieces;
-  }
-  cut_tiles(tile_labels());
-  cut_squares(square_labels());
-  std::sort(cut_blocks_.begin(), cut_blocks_.end());
-  std::sort(cut_patches_.begin(), cut_patches_.end());
-  cut_patches_.erase(std::unique(cut_patches_.begin(), cut_patches_.end()), cut_patches_.end());
-  for (const uint32_t block : cut_blocks_) join_parts(block);
-  replace_portals(pieces);
+  sort_unique(stale_tiles_);
+  sort_unique(stale_blocks_);
+  std::vector<uint32_t> recut;  // blocks that were cut before, or are now
+  for (const uint32_t patch : stale_tiles_) cut_tile(patch, recut);
+  for (const uint32_t block : stale_blocks_) cut_squares(block, recut);
+  sort_unique(recut);
+  cut_portals(recut);
+  stale_tiles_.clear();
+  stale_blocks_.clear();
+  stale_portals_.clear();
+  number_parts();
+  number_portals();
   add_links();
   find_min_factor();
   list_portals();
@@ -307,9 +332,10 @@ void NodeChanges::update() {
 // The largest squares of a block that are free and cost the same. label_of(level, s, t): what
 // becomes of a square.
 template <class LabelOf>
-void NodeChanges::cut(uint32_t block, const LabelOf& label_of) {
+NodeChanges::CutBlock NodeChanges::cut(uint32_t block, const LabelOf& label_of) {
   const graph::NodeBlock& whole = mesh_->blocks()[block];
-  Cut made{static_cast<uint32_t>(parts_.size()), 0};
+  CutBlock made;
+  made.block = block;
   const auto descend = [&](auto&& self, uint8_t level, uint32_t s, uint32_t t) -> void {
     const int label = label_of(level, s, t);
     if (label == kBlocked) return;
@@ -318,82 +344,143 @@ void NodeChanges::cut(uint32_t block, const LabelOf& label_of) {
       part.level = level;
       part.s = static_cast<uint8_t>(s);
       part.t = static_cast<uint8_t>(t);
-      parts_.push_back(part);
-      base_of_part_.push_back(block);
-      area_of_part_.push_back(static_cast<uint8_t>(label));
+      made.parts.push_back(part);
+      made.areas.push_back(static_cast<uint8_t>(label));
       return;
     }
     for (uint32_t q = 0; q < 4; ++q)
       self(self, static_cast<uint8_t>(level + 1), 2 * s + q % 2, 2 * t + q / 2);
   };
   descend(descend, whole.level, whole.s, whole.t);
-  made.last = static_cast<uint32_t>(parts_.size());
-  cuts_.emplace(block, made);
-  cut_blocks_.push_back(block);
-  cut_patches_.push_back(whole.patch);
+  join_parts(made);
+  ++cut_count_;
+  return made;
 }
 
-void NodeChanges::cut_tiles(const std::vector<TileLabels>& tiles) {
-  for (const TileLabels& tile : tiles) {
-    const auto blocks = mesh_->blocks_of(tile.patch);
-    const auto label_of = [&](uint8_t level, uint32_t s, uint32_t t) {
-      const uint32_t side = 64u >> level;
-      const uint64_t row = (~uint64_t{0} >> (64 - side)) << (s * side);
-      bool is_mixed = false;
-      // Does it hold all cells of the square? Notes if it holds some.
-      const auto holds_all = [&](const world::CellRows& cells) {
-        bool any = false, all = true;
-        for (uint32_t k = t * side; k < (t + 1) * side; ++k) {
-          any |= (cells[k] & row) != 0;
-          all &= (cells[k] & row) == row;
-        }
-        is_mixed |= any && !all;
-        return all;
-      };
-      if (holds_all(tile.blocked)) return kBlocked;
-      if (is_mixed) return kMixed;
-      for (const auto& [area, cells] : tile.areas) {
-        if (holds_all(cells)) return int{area};
+void NodeChanges::cut_tile(uint32_t patch, std::vector<uint32_t>& recut) {
+  if (const auto old = cut_tiles_.find(patch); old != cut_tiles_.end()) {
+    for (const CutBlock& one : old->second) recut.push_back(one.block);
+    cut_tiles_.erase(old);
+  }
+  const TileLabels tile = tile_labels(patch);
+  const auto blocks = mesh_->blocks_of(patch);
+  const auto label_of = [&](uint8_t level, uint32_t s, uint32_t t) {
+    const uint32_t side = 64u >> level;
+    const uint64_t row = (~uint64_t{0} >> (64 - side)) << (s * side);
+    bool is_mixed = false;
+    // Does it hold all cells of the square? Notes if it holds some.
+    const auto holds_all = [&](const world::CellRows& cells) {
+      bool any = false, all = true;
+      for (uint32_t k = t * side; k < (t + 1) * side; ++k) {
+        any |= (cells[k] & row) != 0;
+        all &= (cells[k] & row) == row;
       }
-      return is_mixed ? kMixed : 0;
+      is_mixed |= any && !all;
+      return all;
     };
-    for (uint32_t b = 0; b < blocks.size(); ++b) {
-      if (label_of(blocks[b].level, blocks[b].s, blocks[b].t) == 0) continue;
-      cut(mesh_->first_block(tile.patch) + b, label_of);
+    if (holds_all(tile.blocked)) return kBlocked;
+    if (is_mixed) return kMixed;
+    for (const auto& [area, cells] : tile.areas) {
+      if (holds_all(cells)) return int{area};
+    }
+    return is_mixed ? kMixed : 0;
+  };
+  std::vector<CutBlock> made;
+  for (uint32_t b = 0; b < blocks.size(); ++b) {
+    if (label_of(blocks[b].level, blocks[b].s, blocks[b].t) == 0) continue;
+    made.push_back(cut(mesh_->first_block(patch) + b, label_of));
+    recut.push_back(made.back().block);
+  }
+  if (!made.empty()) cut_tiles_.emplace(patch, std::move(made));
+}
+
+void NodeChanges::cut_squares(uint32_t block, std::vector<uint32_t>& recut) {
+  if (cut_curved_.erase(block) > 0) recut.push_back(block);
+  const std::vector<SquareLabel> squares = square_labels(block);
+  if (squares.empty()) return;
+  const uint8_t finest = finest_level(mesh_->blocks()[block]);
+  CutBlock made = cut(block, [&](uint8_t level, uint32_t s, uint32_t t) {
+    const uint32_t up = 2u * (finest - level);
+    const uint32_t first = graph::quad_order(s, t, level) << up, count = 1u << up;
+    const auto before = [](const SquareLabel& one, uint32_t order) {
+      return one.square.order < order;
+    };
+    const auto from = std::lower_bound(squares.begin(), squares.end(), first, before);
+    const auto to = std::lower_bound(from, squares.end(), first + count, before);
+    if (from == to) return 0;
+    const bool is_same =
+        std::all_of(from, to, [&](const SquareLabel& one) { return one.label == from->label; });
+    return is_same && to - from == static_cast<ptrdiff_t>(count) ? from->label : kMixed;
+  });
+  cut_curved_.emplace(block, std::move(made));
+  recut.push_back(block);
+}
+
+const NodeChanges::CutBlock* NodeChanges::find_cut(uint32_t block) const {
+  const auto curved = cut_curved_.find(block);
+  if (curved != cut_curved_.end()) return &curved->second;
+  const auto tile = cut_tiles_.find(mesh_->blocks()[block].patch);
+  if (tile == cut_tiles_.end()) return nullptr;
+  const auto at = std::lower_bound(tile->second.begin(), tile->second.end(), block,
+                                   [](const CutBlock& one, uint32_t b) { return one.block < b; });
+  return at != tile->second.end() && at->block == block ? &*at : nullptr;
+}
+
+// All parts, tiles before curved blocks.
+void NodeChanges::number_parts() {
+  cuts_.clear();
+  cut_blocks_.clear();
+  cut_patches_.clear();
+  parts_.clear();
+  base_of_part_.clear();
+  area_of_part_.clear();
+  const auto add = [&](const CutBlock& one) {
+    const auto first = static_cast<uint32_t>(parts_.size());
+    parts_.insert(parts_.end(), one.parts.begin(), one.parts.end());
+    base_of_part_.resize(parts_.size(), one.block);
+    area_of_part_.insert(area_of_part_.end(), one.areas.begin(), one.areas.end());
+    cuts_.emplace(one.block, Cut{first, static_cast<uint32_t>(parts_.size())});
+    cut_blocks_.push_back(one.block);
+    cut_patches_.push_back(mesh_->blocks()[one.block].patch);
+  };
+  for (const auto& [patch, blocks] : cut_tiles_) std::for_each(blocks.begin(), blocks.end(), add);
+  for (const auto& [block, one] : cut_curved_) add(one);
+  std::sort(cut_blocks_.begin(), cut_blocks_.end());
+  sort_unique(cut_patches_);
+}
+
+// Those between parts by block, then what is left of the mesh's.
+void NodeChanges::number_portals() {
+  portals_.clear();
+  replaced_.clear();
+  const auto base = static_cast<uint32_t>(mesh_->blocks().size());
+  const auto count = static_cast<uint32_t>(mesh_->portals().size());
+  for (const uint32_t block : cut_blocks_) {
+    const uint32_t first = base + cuts_.at(block).first;
+    for (graph::NodePortal portal : find_cut(block)->portals) {
+      portal.a += first;
+      portal.b += first;
+      portals_.push_back(portal);
     }
   }
-}
-
-void NodeChanges::cut_squares(const std::vector<SquareLabel>& squares) {
-  for (size_t i = 0; i < squares.size();) {
-    size_t j = i;
-    const uint32_t block = squares[i].square.block;
-    while (j < squares.size() && squares[j].square.block == block) ++j;
-    const uint8_t finest = finest_level(mesh_->blocks()[block]);
-    const auto begin = squares.begin() + static_cast<ptrdiff_t>(i);
-    const auto end = squares.begin() + static_cast<ptrdiff_t>(j);
-    cut(block, [&](uint8_t level, uint32_t s, uint32_t t) {
-      const uint32_t up = 2u * (finest - level);
-      const uint32_t first = graph::quad_order(s, t, level) << up, count = 1u << up;
-      const auto before = [](const SquareLabel& one, uint32_t order) {
-        return one.square.order < order;
-      };
-      const auto from = std::lower_bound(begin, end, first, before);
-      const auto to = std::lower_bound(from, end, first + count, before);
-      if (from == to) return 0;
-      const bool is_same =
-          std::all_of(from, to, [&](const SquareLabel& one) { return one.label == from->label; });
-      return is_same && to - from == static_cast<ptrdiff_t>(count) ? from->label : kMixed;
-    });
-    i = j;
+  for (const auto& [p, left] : left_) {
+    const graph::PortalSides sides = mesh_->portals().sides(p);
+    Replaced made{p, static_cast<uint32_t>(count + portals_.size()), 0};
+    for (const LeftPortal& one : left) {
+      graph::NodePortal portal = one.portal;
+      if (one.in_part_a) portal.a += base + cuts_.at(sides.a).first;
+      if (one.in_part_b) portal.b += base + cuts_.at(sides.b).first;
+      portals_.push_back(portal);
+    }
+    made.last = static_cast<uint32_t>(count + portals_.size());
+    replaced_.push_back(made);
   }
 }
 
 // Portals between the parts of a block: where two squares share a part of a side.
-void NodeChanges::join_parts(uint32_t block) {
-  const auto [first, last] = cuts_.at(block);
-  const auto base = static_cast<uint32_t>(mesh_->blocks().size());
-  const bool tile = mesh_->surface(block).points == nullptr;
+void NodeChanges::join_parts(CutBlock& cut) const {
+  const std::vector<graph::NodeBlock>& parts = cut.parts;
+  const bool tile = mesh_->surface(cut.block).points == nullptr;
   const double inset = tile ? graph::kTileInset : 0;
   struct Side {
     double at, from, to;
@@ -401,8 +488,8 @@ void NodeChanges::join_parts(uint32_t block) {
   };
   for (const bool by_s : {true, false}) {
     std::vector<Side> lows, highs;
-    for (uint32_t p = first; p < last; ++p) {
-      const graph::NodeBlock& part = parts_[p];
+    for (uint32_t p = 0; p < parts.size(); ++p) {
+      const graph::NodeBlock& part = parts[p];
       const double side = part.side();
       const double along = (by_s ? part.s : part.t) * side,
                    across = (by_s ? part.t : part.s) * side;
@@ -425,45 +512,35 @@ void NodeChanges::join_parts(uint32_t block) {
         const double begin = std::max(high.from, lows[k].from) + inset;
         const double end = std::min(high.to, lows[k].to) - inset;
         if (!(end > begin)) continue;
-        graph::NodePortal portal{
-            .a = base + high.part, .b = base + lows[k].part, .on_a = {}, .on_b = {}};
+        graph::NodePortal portal{.a = high.part, .b = lows[k].part, .on_a = {}, .on_b = {}};
         portal.kind =
-            parts_[high.part].inclination > mesh_->walking() ? LinkKind::kClimb : LinkKind::kWalk;
+            parts[high.part].inclination > mesh_->walking() ? LinkKind::kClimb : LinkKind::kWalk;
         portal.inside = true;
         portal.on_a = by_s ? std::array{high.at, begin, high.at, end}
                            : std::array{begin, high.at, end, high.at};
         portal.on_b = portal.on_a;
-        portals_.push_back(portal);
+        cut.portals.push_back(portal);
       }
     }
   }
 }
 
-// What is left of portals whose blocks are cut, or that are blocked themselves.
-void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& pieces) {
-  std::vector<uint32_t> closed;
-  for (const auto& [portal, blocked] : pieces) closed.push_back(portal);
-  for (const uint32_t block : cut_blocks_) {
-    const auto portals = mesh_->portals_of(block);
-    closed.insert(closed.end(), portals.begin(), portals.end());
-  }
-  std::sort(closed.begin(), closed.end());
-  closed.erase(std::unique(closed.begin(), closed.end()), closed.end());
-  const auto base = static_cast<uint32_t>(mesh_->blocks().size());
+// What is left of a portal whose blocks are cut, or of which pieces are blocked.
+std::vector<NodeChanges::LeftPortal> NodeChanges::left_of(uint32_t p, uint16_t blocked) const {
   std::vector<Stretch> free, on_a, on_b;
+  const graph::NodePortal portal = mesh_->portals()[p];
+  const CutBlock *cut_a = find_cut(portal.a), *cut_b = find_cut(portal.b);
   // The pieces of a line that lie in what is left of a block.
-  const auto stretches = [&](uint32_t block, const std::array<double, 4>& on,
+  const auto stretches = [&](const CutBlock* cut, uint32_t block, const std::array<double, 4>& on,
                              std::vector<Stretch>& out) {
-    out.clear();
-    const auto cut = cuts_.find(block);
-    if (cut == cuts_.end()) {
+    if (cut == nullptr) {
       out.push_back({0, 1, block});
       return;
     }
     const double inset = mesh_->surface(block).points == nullptr ? graph::kTileInset : 0;
     const Line line = line_of(on);
-    for (uint32_t p = cut->second.first; p < cut->second.last; ++p) {
-      const graph::NodeBlock& part = parts_[p];
+    for (uint32_t k = 0; k < cut->parts.size(); ++k) {
+      const graph::NodeBlock& part = cut->parts[k];
       const double side = part.side();
       double from = 0, to = 1;
       const auto clip = [&](double at, double delta, double low, double high) {
@@ -479,52 +556,77 @@ void NodeChanges::replace_portals(const std::unordered_map<uint32_t, uint16_t>& 
       clip(line.s, line.ds, part.s * side, (part.s + 1) * side);
       clip(line.t, line.dt, part.t * side, (part.t + 1) * side);
       const bool is_point = std::fabs(line.ds) < kMinPiece && std::fabs(line.dt) < kMinPiece;
-      if (is_point ? to >= 0 : to - from > kMinPiece) out.push_back({from, to, base + p});
+      if (is_point ? to >= 0 : to - from > kMinPiece) out.push_back({from, to, k});
       if (is_point && !out.empty()) break;
     }
     std::sort(out.begin(), out.end(),
               [](const Stretch& a, const Stretch& b) { return a.from < b.from; });
   };
-  for (const uint32_t p : closed) {
-    const graph::NodePortal portal = mesh_->portals()[p];
-    Replaced made{p, static_cast<uint32_t>(mesh_->portals().size() + portals_.size()), 0};
-    free.clear();
-    const auto blocked = pieces.find(p);
-    const uint16_t mask = blocked == pieces.end() ? uint16_t{0} : blocked->second;
-    if (mask == 0) {
-      free.push_back({});
-    } else if (!portal.over_hole) {
-      for (int32_t k = 0; k < kPieces; ++k) {
-        if ((mask >> k & 1) != 0) continue;
-        const double from = k * (1.0 / kPieces), to = (k + 1) * (1.0 / kPieces);
-        if (!free.empty() && free.back().to == from) {
-          free.back().to = to;
-        } else {
-          free.push_back({from, to, 0});
-        }
+  if (blocked == 0) {
+    free.push_back({});
+  } else if (!portal.over_hole) {
+    for (int32_t k = 0; k < kPieces; ++k) {
+      if ((blocked >> k & 1) != 0) continue;
+      const double from = k * (1.0 / kPieces), to = (k + 1) * (1.0 / kPieces);
+      if (!free.empty() && free.back().to == from) {
+        free.back().to = to;
+      } else {
+        free.push_back({from, to, 0});
       }
     }
-    stretches(portal.a, portal.on_a, on_a);
-    stretches(portal.b, portal.on_b, on_b);
-    for (const Stretch& piece : free) {
-      for (const Stretch& a : on_a) {
-        for (const Stretch& b : on_b) {
-          const double from = std::max({piece.from, a.from, b.from});
-          const double to = std::min({piece.to, a.to, b.to});
-          if (!portal.over_hole && !(to - from > kMinPiece)) continue;
-          graph::NodePortal left = portal;
-          left.a = a.block;
-          left.b = b.block;
-          if (!portal.over_hole) {
-            left.on_a = cut_line(portal.on_a, from, to);
-            left.on_b = cut_line(portal.on_b, from, to);
-          }
-          portals_.push_back(left);
-        }
+  }
+  stretches(cut_a, portal.a, portal.on_a, on_a);
+  stretches(cut_b, portal.b, portal.on_b, on_b);
+  std::vector<LeftPortal> made;
+  for (const Stretch& piece : free) {
+    for (const Stretch& a : on_a) {
+      for (const Stretch& b : on_b) {
+        const double from = std::max({piece.from, a.from, b.from});
+        const double to = std::min({piece.to, a.to, b.to});
+        if (!portal.over_hole && !(to - from > kMinPiece)) continue;
+        LeftPortal& left = made.emplace_back();
+        left.portal = portal;
+        left.portal.a = a.block;
+        left.portal.b = b.block;
+        left.in_part_a = cut_a != nullptr;
+        left.in_part_b = cut_b != nullptr;
+        if (portal.over_hole) continue;
+        left.portal.on_a = cut_line(portal.on_a, from, to);
+        left.portal.on_b = cut_line(portal.on_b, from, to);
       }
     }
-    made.last = static_cast<uint32_t>(mesh_->portals().size() + portals_.size());
-    replaced_.push_back(made);
+  }
+  return made;
+}
+
+// Of blocks that were cut again, and those of which other pieces are blocked now.
+void NodeChanges::cut_portals(const std::vector<uint32_t>& recut) {
+  std::vector<uint32_t> stale = stale_portals_;
+  for (const uint32_t block : recut) {
+    const auto portals = mesh_->portals_of(block);
+    stale.insert(stale.end(), portals.begin(), portals.end());
+  }
+  sort_unique(stale);
+  for (const uint32_t p : stale) {
+    uint16_t blocked = 0;
+    const auto changes = portal_changes_.find(p);
+    if (changes != portal_changes_.end()) {
+      for (const ChangeId id : changes->second) {
+        const std::vector<BlockedPieces>& pieces = changes_[id - 1].pieces;
+        auto at =
+            std::lower_bound(pieces.begin(), pieces.end(), p,
+                             [](const BlockedPieces& one, uint32_t q) { return one.portal < q; });
+        for (; at != pieces.end() && at->portal == p; ++at) blocked |= at->pieces;
+      }
+    }
+    const graph::PortalSides sides = mesh_->portals().sides(p);
+    const bool is_closed =
+        blocked != 0 || find_cut(sides.a) != nullptr || find_cut(sides.b) != nullptr;
+    if (is_closed) {
+      left_.insert_or_assign(p, left_of(p, blocked));
+    } else {
+      left_.erase(p);
+    }
   }
 }
 
@@ -543,6 +645,7 @@ void NodeChanges::list_portals() {
   }
   std::sort(touched_.begin(), touched_.end());
   touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+  place_of_touched_.clear();
   for (uint32_t i = 0; i < touched_.size(); ++i) place_of_touched_.emplace(touched_[i], i);
   const auto place = [&](uint32_t block) {
     return block < base ? place_of_touched_.at(block)
@@ -605,8 +708,10 @@ uint32_t NodeChanges::part_at(uint32_t block, double s, double t) const {
 }
 
 uint64_t NodeChanges::bytes() const {
-  uint64_t bytes = parts_.size() * sizeof(graph::NodeBlock) +
-                   portals_.size() * sizeof(graph::NodePortal) +
+  uint64_t bytes = 2 * parts_.size() * sizeof(graph::NodeBlock) +
+                   2 * portals_.size() * sizeof(graph::NodePortal) +
+                   (cut_tiles_.size() + cut_curved_.size()) * sizeof(CutBlock) +
+                   left_.size() * sizeof(std::vector<LeftPortal>) +
                    (base_of_part_.size() + touched_.size() + first_portal_.size() +
                     portal_of_.size() + cut_blocks_.size()) *
                        sizeof(uint32_t) +

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -24,7 +25,7 @@ namespace throng::path {
 /// cost cuts its blocks likewise, so all of a part costs the same; where areas overlap, the one
 /// that was added last counts. Off-mesh links are portals. What a change touches is found once,
 /// when it is added; parts and portals are those of all active changes, in whatever order solids
-/// were added. Copies share the mesh.
+/// were added and however often they were updated between. Copies share the mesh.
 class NodeChanges {
  public:
   /// No link over a hole of the mesh is longer. [m]
@@ -53,8 +54,11 @@ class NodeChanges {
   bool set_active(ChangeId change, bool active, bool remove);
   /// Rises with every change.
   [[nodiscard]] uint64_t version() const { return version_; }
-  /// Brings what follows up to date. Time: linear in the active obstacles.
+  /// Brings what follows up to date. Cuts the blocks again that changes since the last call touch;
+  /// parts and portals of the others are copied, because their numbers change.
   void update();
+  /// How often update() has cut a block.
+  [[nodiscard]] uint64_t cut_count() const { return cut_count_; }
 
   [[nodiscard]] bool empty() const { return touched_.empty(); }
   [[nodiscard]] std::span<const graph::NodeBlock> parts() const { return parts_; }
@@ -137,27 +141,45 @@ class NodeChanges {
     int label = 0;
   };
 
+  // A block that is cut: what is left of it, and the portals between, numbered from 0.
+  struct CutBlock {
+    uint32_t block = 0;
+    std::vector<graph::NodeBlock> parts;
+    std::vector<uint8_t> areas;  // of the parts
+    std::vector<graph::NodePortal> portals;
+  };
+  // What is left of a portal of the mesh. An end in a block that is cut is the number of its part.
+  struct LeftPortal {
+    graph::NodePortal portal;
+    bool in_part_a = false, in_part_b = false;
+  };
+  using ChangesByPlace = std::map<uint32_t, std::vector<ChangeId>>;  // active ones, rising
+
   ChangeId keep(Change change);
+  /// Lists a change, or no longer, where it blocks something, and marks that as stale.
+  void list(ChangeId id, bool active);
 
   void block_tiles(const Solid& solid, double around, Change& change,
                    std::vector<uint32_t>& near) const;
   void block_squares(const Solid& solid, uint32_t block, Change& change) const;
   void mark_squares(const Prism& prism, uint32_t block, Change& change) const;
-  [[nodiscard]] bool differs(const Change& change) const {
-    return change.kind == Kind::kSolid || (change.kind == Kind::kArea && areas_differ_);
-  }
-  [[nodiscard]] std::vector<TileLabels> tile_labels() const;
-  [[nodiscard]] std::vector<SquareLabel> square_labels() const;
+  [[nodiscard]] TileLabels tile_labels(uint32_t patch) const;
+  [[nodiscard]] std::vector<SquareLabel> square_labels(uint32_t block) const;
   void block_pieces(const Solid& solid, std::span<const uint32_t> near, Change& change) const;
   [[nodiscard]] bool blocks_portal(const Solid& solid, const graph::NodePortal& portal, double from,
                                    double to) const;
   [[nodiscard]] uint8_t finest_level(const graph::NodeBlock& block) const;
-  void cut_tiles(const std::vector<TileLabels>& tiles);
-  void cut_squares(const std::vector<SquareLabel>& squares);
+  void cut_tile(uint32_t patch, std::vector<uint32_t>& recut);
+  void cut_squares(uint32_t block, std::vector<uint32_t>& recut);
   template <class LabelOf>
-  void cut(uint32_t block, const LabelOf& label_of);
-  void join_parts(uint32_t block);
-  void replace_portals(const std::unordered_map<uint32_t, uint16_t>& pieces);
+  [[nodiscard]] CutBlock cut(uint32_t block, const LabelOf& label_of);
+  void join_parts(CutBlock& cut) const;
+  /// Null: the block is whole.
+  [[nodiscard]] const CutBlock* find_cut(uint32_t block) const;
+  [[nodiscard]] std::vector<LeftPortal> left_of(uint32_t portal, uint16_t blocked) const;
+  void cut_portals(const std::vector<uint32_t>& recut);
+  void number_parts();
+  void number_portals();
   [[nodiscard]] const graph::NodeBlock& block_of_part(uint32_t b) const {
     return b < mesh_->blocks().size() ? mesh_->blocks()[b] : parts_[b - mesh_->blocks().size()];
   }
@@ -172,8 +194,15 @@ class NodeChanges {
   std::vector<Change> changes_;
   std::vector<ChangeId> active_;  // rising
   std::array<double, kBlocked + 1> area_cost_;
-  bool areas_differ_ = false;  // Some kind costs other than 1.
   double min_factor_ = 1;
+
+  // What is kept from one update to the next, by the tile's patch, the curved block and the portal.
+  ChangesByPlace tile_changes_, block_changes_, portal_changes_;
+  std::vector<uint32_t> stale_tiles_, stale_blocks_, stale_portals_;  // with doubles
+  std::map<uint32_t, std::vector<CutBlock>> cut_tiles_;               // blocks rising
+  std::map<uint32_t, CutBlock> cut_curved_;
+  std::map<uint32_t, std::vector<LeftPortal>> left_;  // of portals that are closed
+  uint64_t cut_count_ = 0;
 
   struct Cut {
     uint32_t first = 0, last = 0;  // of parts_

@@ -100,17 +100,22 @@ ChangeId NodeChanges::add(Solid solid) {
 }
 
 ChangeId NodeChanges::keep(Change change) {
+  note(change);
   changes_.push_back(std::move(change));
-  ++version_;
   active_.push_back(static_cast<ChangeId>(changes_.size()));
   return active_.back();
+}
+
+void NodeChanges::note(const Change& change) {
+  const bool holds_any = !change.tiles.empty() || !change.squares.empty() || !change.pieces.empty();
+  if (change.kind == Kind::kLink || (holds_any && differs(change))) ++version_;
 }
 
 bool NodeChanges::set_active(ChangeId id, bool active, bool remove) {
   if (id == 0 || id > changes_.size() || changes_[id - 1].removed) return false;
   Change& change = changes_[id - 1];
   if (change.active != active) {
-    ++version_;
+    note(change);
     const auto at = std::lower_bound(active_.begin(), active_.end(), id);
     if (active) {
       active_.insert(at, id);

@@ -51,7 +51,7 @@ class NodeChanges {
   void set_area_cost(uint8_t kind, double cost);
   /// False if there is none of that id, which is never used again once removed.
   bool set_active(ChangeId change, bool active, bool remove);
-  /// Rises with every change.
+  /// Rises with every change that concerns the mesh: a solid that blocks none of it does not.
   [[nodiscard]] uint64_t version() const { return version_; }
   /// Brings what follows up to date. Time: linear in the active obstacles.
   void update();
@@ -138,6 +138,7 @@ class NodeChanges {
   };
 
   ChangeId keep(Change change);
+  void note(const Change& change);
 
   void block_tiles(const Solid& solid, double around, Change& change,
                    std::vector<uint32_t>& near) const;

@@ -365,9 +365,12 @@ class THRONG_API PathFinder {
   /// is reached is that of find with kOnDemand. PathQuery::budget is that of the whole query;
   /// `cancel` is read by each call, too. Finding the ends, string pulling, floods to the nearest
   /// take-off and rows of the overlay that obstacles have changed are not counted, and each is done
-  /// in one go. If edits change in between, or this finder is asked for another path, the query
-  /// begins again: use a copy for paths in between. Once it has ended, or without begin, advance
-  /// returns true and nothing is found.
+  /// in one go. If this finder is asked for another path in between, the query begins again: use a
+  /// copy for that. It also begins again if edits change what it may have seen, but not for
+  /// kinematic obstacles, nor for static ones where the class has no place. This happens four times
+  /// at most. Then it goes on over the world as it was when it last began, so that it ends even if
+  /// a crate moves in each frame; what has come up since may cut the path. Once it has ended, or
+  /// without begin, advance returns true and nothing is found.
   void begin(const PathQuery& query);
   bool advance(uint64_t max_nodes, Path& path);
 

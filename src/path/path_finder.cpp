@@ -220,8 +220,9 @@ Place PathFinder::State::nearest_connected(const Place& from, const Place& to) {
 void PathFinder::State::end_before(const Place& to, Path& path) {
   path.end = PathEnd::kUnreachable;
   const Place& last = path.points.back();
-  path.blocked_by = bears_on_ground()
-                        ? ground().blocker(last, to)
+  // Not ground(), which follows edits: a query in parts may have stopped to.
+  path.blocked_by = bears_on_ground() && live
+                        ? live->blocker(last, to)
                         : path::blocker_towards({*data_of(world), config.avatar_class}, last, to);
 }
 
@@ -271,26 +272,86 @@ void PathFinder::find(const Place& from, const Place& to, Path& path, const Sear
 
 void PathFinder::begin(const PathQuery& query) {
   state_->begun = query;
+  state_->restarts = 0;
   state_->begin();
 }
 
 void PathFinder::State::begin() {
   is_begun = true;
   is_disturbed = false;
-  begun_version = edits().version();
   begun_nodes = 0;
-  if (config.space == PathSpace::kNodes) return begin_over_nodes(begun);
-  if (config.space == PathSpace::kGround) return begin_on_ground();
-  // A query from or to nowhere ends at once.
-  if (!is_nowhere(begun.from) && !is_nowhere(begun.to)) return begin_in_air(begun);
-  is_begun = false;
+  if (config.space == PathSpace::kNodes) {
+    begin_over_nodes(begun);
+  } else if (config.space == PathSpace::kGround) {
+    begin_on_ground();
+  } else if (is_nowhere(begun.from) || is_nowhere(begun.to)) {
+    is_begun = false;  // A query from or to nowhere ends at once.
+  } else {
+    begin_in_air(begun);
+  }
+  begun_version = edits().version();
+  begun_finder = finder_version();
+}
+
+void PathFinder::State::follow_edits() {
+  if (flight) {
+    applied.follow(edits(), *flight);
+  } else if (nodes) {
+    applied.follow(edits(), *nodes);
+  } else {
+    ground();
+  }
+}
+
+uint64_t PathFinder::State::finder_version() const {
+  if (flight) return flight->version();
+  if (nodes) return nodes->version();
+  return live ? live->version() : 0;
+}
+
+// Where a change was is known from the finder, which has not applied it yet.
+bool PathFinder::State::are_on_ground() {
+  if (!live) return true;
+  path::GroundView& view = live->state().mesh;
+  bool found = false;
+  edits().for_changed(begun_version, [&](const path::EditList::Changed& what) {
+    if (found) return;
+    if (what.edit == 0) {
+      found = true;
+      return;
+    }
+    const path::EditList::Edit& edit = edits().edits[what.edit - 1];
+    if (!edit.bears_on_paths()) return;
+    if (edit.kind == path::EditList::Kind::kOffMeshLink) {
+      found = !path::is_over_nodes(edit.link);
+      return;
+    }
+    const path::ChangeId own = applied.own(what.edit);
+    const bool was = own != 0 && view.change(own).active;
+    found = (was && view.touches(view.change(own).solid, !edit.is_obstacle())) ||
+            (edit.active && view.touches(edit.solid(), !edit.is_obstacle()));
+  });
+  return found;
+}
+
+bool PathFinder::State::must_begin_again() {
+  if (is_disturbed || finder_version() != begun_finder) return true;
+  if (begun_version == edits().version() || restarts == kMaxRestarts) return false;
+  const bool concern = config.space != PathSpace::kGround || are_on_ground();
+  begun_version = edits().version();
+  if (!concern) return false;
+  follow_edits();
+  // What the search leads to, if it is not the goal, was found without its ground.
+  if (finder_version() == begun_finder && (!live || target == Target::kGoal)) return false;
+  ++restarts;
+  return true;
 }
 
 bool PathFinder::advance(uint64_t max_nodes, Path& path) {
   State& s = *state_;
   path::reset(path);
   if (!s.is_begun) return true;
-  if (s.is_disturbed || s.begun_version != s.edits().version()) s.begin();
+  if (s.must_begin_again()) s.begin();
   const std::atomic<bool>* cancel = s.begun.budget.cancel;
   if (cancel != nullptr && *cancel) {
     path.nodes = s.begun_nodes;
@@ -334,7 +395,7 @@ bool PathFinder::State::advance_on_ground(path::Slice& slice, Path& path) {
     return true;
   }
   if (target == Target::kNearest) {
-    if (!ground().advance(begun.budget, slice, path)) return false;
+    if (!live->advance(begun.budget, slice, path)) return false;
     if (path.end == PathEnd::kReached) {
       end_before(begun_to, path);
       return true;
@@ -343,9 +404,9 @@ bool PathFinder::State::advance_on_ground(path::Slice& slice, Path& path) {
     // Obstacles have cut that off.
     target = Target::kFlood;
     nodes_before = path.nodes;
-    ground().begin_over_points(begun_from, begun_to);
+    live->begin_over_points(begun_from, begun_to);
   }
-  const bool ended = ground().advance(begun.budget.after(nodes_before), slice, path);
+  const bool ended = live->advance(begun.budget.after(nodes_before), slice, path);
   path.nodes += nodes_before;
   if (!ended) return false;
   if (path.end == PathEnd::kUnreachable && !begun.nearest) forget_points(path);

@@ -27,11 +27,15 @@ struct PathFinder::State {
   path::AppliedEdits applied;  // by `live`, `nodes` or `flight`
 
   // The query in parts. What it has found is the finder's that it searches with, so another query
-  // there, or an edit, makes it begin again.
+  // there, or an edit of what it may have seen, makes it begin again. Edits do so kMaxRestarts
+  // times: from then on the finder does not follow them before the query has ended.
+  static constexpr uint32_t kMaxRestarts = 4;
   PathQuery begun;
   bool is_begun = false;
   bool is_disturbed = false;
-  uint64_t begun_version = 0;  // of the edits
+  uint32_t restarts = 0;
+  uint64_t begun_version = 0;  // of the edits that it knows, or that do not concern it
+  uint64_t begun_finder = 0;   // finder_version() when it began
   uint64_t begun_nodes = 0;    // expanded so far
   // On the ground: what its search leads to.
   enum class Target : uint8_t {
@@ -72,6 +76,13 @@ struct PathFinder::State {
   void begin_over_nodes(const PathQuery& query);
   void begin_in_air(const PathQuery& query);
   void begin_on_ground();
+  /// Applies edits to the finder that searches.
+  void follow_edits();
+  /// Rises where these concern what a search of that finder may have seen.
+  [[nodiscard]] uint64_t finder_version() const;
+  /// Do edits since begun_version change a place of the ground, a link, or a cost?
+  [[nodiscard]] bool are_on_ground();
+  bool must_begin_again();
   bool advance_on_ground(path::Slice& slice, Path& path);
   void begin();
   bool advance(path::Slice& slice, Path& path);

@@ -46,8 +46,8 @@ ChangeId AirChanges::add(Solid solid) {
     }
   }
   const auto id = static_cast<ChangeId>(changes_.size());
-  ++active_;
-  touch(id);
+  changes_[id - 1].blocks = touch(id);
+  count(changes_[id - 1]);
   return id;
 }
 
@@ -56,9 +56,17 @@ bool AirChanges::set_active(ChangeId id, bool active) {
   Change& change = changes_[id - 1];
   if (change.active == active) return true;
   change.active = active;
-  active_ = active ? active_ + 1 : active_ - 1;
   touch(id);
+  count(change);
   return true;
+}
+
+// After it was switched.
+void AirChanges::count(const Change& change) {
+  if (!change.blocks) return;
+  ++version_;
+  active_ = change.active ? active_ + 1 : active_ - 1;
+  if (active_ == 0) islands_ = AirIslands(*space_);  // nothing is cut off; frees memory
 }
 
 bool AirChanges::remove(ChangeId id) {
@@ -71,8 +79,9 @@ bool AirChanges::remove(ChangeId id) {
 }
 
 // Cuts the boxes again that a change touches, after it was switched.
-void AirChanges::touch(ChangeId id) {
+bool AirChanges::touch(ChangeId id) {
   const Change& change = changes_[id - 1];
+  bool blocks = false;
   for (const int64_t tile : change.tiles) {
     std::vector<ChangeId>& here = of_tile_[tile];
     if (change.active) {
@@ -80,7 +89,7 @@ void AirChanges::touch(ChangeId id) {
     } else {
       std::erase(here, id);
     }
-    block_ground(tile, here);
+    blocks = block_ground(tile, here, id) || blocks;
     if (here.empty()) of_tile_.erase(tile);
   }
   const AirView air(*space_, this);
@@ -117,7 +126,7 @@ void AirChanges::touch(ChangeId id) {
   } else {
     islands_.join(air, touched_);
   }
-  if (active_ == 0) islands_ = AirIslands(*space_);  // nothing is cut off; frees memory
+  return blocks || !touched_.empty();
 }
 
 // A piece has the label of a former piece that holds it or lies in it.
@@ -136,7 +145,8 @@ void AirChanges::label_pieces(uint32_t box) {
 }
 
 // The cells that obstacles block on every level of a tile.
-void AirChanges::block_ground(int64_t tile, std::span<const ChangeId> here) {
+bool AirChanges::block_ground(int64_t tile, std::span<const ChangeId> here, ChangeId of) {
+  bool blocks = false;
   const auto x = static_cast<int32_t>(tile), z = static_cast<int32_t>(tile >> 32);
   const auto levels = world_->tile_levels(x, z);
   for (uint32_t i = levels.first; i < levels.last; ++i) {
@@ -150,7 +160,10 @@ void AirChanges::block_ground(int64_t tile, std::span<const ChangeId> here) {
       const world::CellRows own =
           blocked_cells({world_->summary, level.view, x, z}, *avatar_, change.solid.prism,
                         change.solid.triangles, legal.data());
-      for (size_t row = 0; row < own.size(); ++row) any |= blocked[row] |= own[row];
+      for (size_t row = 0; row < own.size(); ++row) {
+        any |= blocked[row] |= own[row];
+        blocks = blocks || (id == of && own[row] != 0);
+      }
     }
     if (any != 0) {
       blocked_[i] = blocked;
@@ -158,6 +171,7 @@ void AirChanges::block_ground(int64_t tile, std::span<const ChangeId> here) {
       blocked_.erase(i);
     }
   }
+  return blocks;
 }
 
 void AirChanges::add_all_to(GroundFinder& ground, std::vector<ChangeId>& ids) const {

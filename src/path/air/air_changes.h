@@ -35,7 +35,10 @@ class AirChanges {
   bool set_active(ChangeId change, bool active);
   bool remove(ChangeId change);
 
+  /// Does an active obstacle block any air or ground?
   [[nodiscard]] bool any() const { return active_ > 0; }
+  /// Rises with every change of an obstacle that does.
+  [[nodiscard]] uint64_t version() const { return version_; }
   [[nodiscard]] const SplitBoxes& splits() const { return splits_; }
   [[nodiscard]] const AirIslands& islands() const { return islands_; }
   /// May the class stand on a legal cell of the grid, as far as obstacles permit?
@@ -53,11 +56,15 @@ class AirChanges {
     Solid solid;
     AirRange near;
     bool active = true, removed = false;
+    bool blocks = false;         // any air or ground
     std::vector<int64_t> tiles;  // of the ground
   };
-  void touch(ChangeId id);
+  /// Does it block any air or ground? [it is active]
+  bool touch(ChangeId id);
+  void count(const Change& change);
   void label_pieces(uint32_t box);
-  void block_ground(int64_t tile, std::span<const ChangeId> here);
+  /// True if that one blocks a cell of the tile.
+  bool block_ground(int64_t tile, std::span<const ChangeId> here, ChangeId of);
 
   const world::WorldData* world_;
   const FlightSpace* space_;
@@ -67,7 +74,8 @@ class AirChanges {
   SplitBoxes splits_;
   AirIslands islands_;
   std::vector<Change> changes_;
-  size_t active_ = 0;
+  size_t active_ = 0;  // of those that block
+  uint64_t version_ = 0;
   // Active ones, by box of the space and by tile of the ground; looked up only.
   std::unordered_map<uint32_t, std::vector<ChangeId>> of_box_;
   std::unordered_map<int64_t, std::vector<ChangeId>> of_tile_;

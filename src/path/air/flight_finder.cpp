@@ -122,6 +122,7 @@ struct FlightFinder::Scratch {
       THRONG_ASSERT(made);  // The class was checked.
       changes->add_all_to(*made, live_ids);
       live = std::move(*made);
+      live_began = live->version();
     }
     return *live;
   }
@@ -178,6 +179,7 @@ struct FlightFinder::Scratch {
   // Made with the first obstacle; none before.
   std::optional<AirChanges> changes;
   std::optional<GroundFinder> live;
+  uint64_t live_began = 0;         // its version, with the changes of that time
   std::vector<ChangeId> live_ids;  // by id of a change - 1
   // Of a search that found no path between ends that could be connected: the point that it reached
   // in the air that is nearest to where the query leads.
@@ -319,6 +321,12 @@ bool FlightFinder::remove(ChangeId change) {
   if (!scratch.changes || !scratch.changes->remove(change)) return false;
   if (scratch.live) scratch.live->remove(scratch.live_ids[change - 1]);
   return true;
+}
+
+uint64_t FlightFinder::version() const {
+  const Scratch& scratch = *scratch_;
+  return (scratch.changes ? scratch.changes->version() : 0) +
+         (scratch.live ? scratch.live->version() - scratch.live_began : 0);
 }
 
 bool FlightFinder::is_end(Vec3d at, double vertical_tolerance) const {

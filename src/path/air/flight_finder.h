@@ -71,6 +71,9 @@ class FlightFinder {
   bool remove(ChangeId change);
   bool set_active(ChangeId change, bool active);
 
+  /// Rises where a change concerns what a search may have seen.
+  [[nodiscard]] uint64_t version() const;
+
   /// Could a path begin or end at a position, in the air or on the ground near it? [m]
   [[nodiscard]] bool is_end(Vec3d at, double vertical_tolerance) const;
   /// Is a point of the air legal for the feet? Constant time.

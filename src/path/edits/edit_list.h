@@ -123,6 +123,11 @@ class AppliedEdits {
     version_ = list.version();
   }
 
+  /// What an edit is to the finder; 0: none, or not applied yet.
+  [[nodiscard]] ChangeId own(EditId edit) const {
+    return edit - 1 < own_.size() ? own_[edit - 1].id : 0;
+  }
+
  private:
   struct Own {
     ChangeId id = 0;     // of the finder; 0: none

@@ -168,6 +168,8 @@ Result<void> GroundFinder::set_area_cost(uint8_t kind, double cost) {
   return {};
 }
 
+uint64_t GroundFinder::version() const { return state_->mesh.version(); }
+
 bool GroundFinder::is_free(const Place& place) {
   ViewStop stop;
   return state_->locate(place, stop);

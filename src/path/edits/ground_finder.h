@@ -83,6 +83,9 @@ class GroundFinder {
   /// The same within a budget of the whole search; true, too, when that is exhausted.
   bool advance(const SearchBudget& budget, Slice& slice, Path& path);
 
+  /// Rises where a change concerns what a search may have seen.
+  [[nodiscard]] uint64_t version() const;
+
   /// What a straight line from one place of the class to another meets first.
   Blocker blocker(const Place& from, const Place& to);
 

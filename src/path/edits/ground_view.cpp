@@ -84,6 +84,7 @@ GroundView::GroundView(const GroundView& other)
 }
 
 void GroundView::set_area_cost(uint8_t kind, double cost) {
+  if (area_cost_[kind] == cost) return;
   ++version_;
   area_cost_[kind] = cost;
   min_factor_ = *std::min_element(area_cost_.begin(), area_cost_.end());
@@ -226,13 +227,14 @@ bool GroundView::is_changed_on(world::GroundPoint from, world::GroundPoint to) c
 // The tile's levels are rebuilt; what touches it in those around it finds its portals again: a
 // corner of the mesh depends on all four cells that share its point.
 void GroundView::forget(int64_t key) {
-  ++version_;
+  bool is_seen = false;
   const auto x = static_cast<int32_t>(key), z = static_cast<int32_t>(key >> 32);
   for (int32_t dz = -1; dz <= 1; ++dz) {
     for (int32_t dx = -1; dx <= 1; ++dx) {
       const auto tile = world().tile_levels(x + dx, z + dz);
       for (uint32_t i = tile.first; i < tile.last; ++i) {
         if (levels_[i] == nullptr) continue;
+        is_seen = true;
         if (dx != 0 || dz != 0) {
           drop_border(*levels_[i], -dx, -dz);
           continue;
@@ -242,7 +244,33 @@ void GroundView::forget(int64_t key) {
       }
     }
   }
+  if (!is_seen) return;
+  ++version_;
   if (corner_numbers_.size() > max_corners_) drop_unused_corners();
+}
+
+bool GroundView::touches(const Solid& solid, bool is_area) const {
+  const WorldSummary& summary = world().summary;
+  const AvatarClass& avatar = summary.classes[static_cast<size_t>(config_.avatar_class)];
+  const SquareRange near = tiles_near(world(), solid.prism.corners, avatar.radius + summary.cell);
+  for (int32_t z = near.first_z; z <= near.last_z; ++z) {
+    for (int32_t x = near.first_x; x <= near.last_x; ++x) {
+      const auto tile = world().tile_levels(x, z);
+      for (uint32_t i = tile.first; i < tile.last; ++i) {
+        const world::GroundLevel level = world::ground_level(world(), i, config_.avatar_class);
+        if (level.zone == nullptr) continue;
+        const world::CellRows legal = graph::legal_rows(level);
+        const TileFloor floor{summary, level.view, x, z};
+        const world::CellRows rows =
+            is_area ? cells_in(floor, solid.prism)
+                    : blocked_cells(floor, avatar, solid.prism, solid.triangles, legal.data());
+        for (size_t row = 0; row < rows.size(); ++row) {
+          if ((rows[row] & legal[row]) != 0) return true;
+        }
+      }
+    }
+  }
+  return false;
 }
 
 const ViewLevel* GroundView::level(uint32_t index) {

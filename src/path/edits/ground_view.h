@@ -59,7 +59,8 @@ class GroundView final : public PortalSource {
   [[nodiscard]] int32_t avatar_class() const { return config_.avatar_class; }
   [[nodiscard]] int32_t step() const { return step_; }
 
-  /// Rises with every change.
+  /// Rises where a change concerns what a search may have seen: levels that were made and those
+  /// beside them, off-mesh links, costs.
   [[nodiscard]] uint64_t version() const { return version_; }
   /// Without legal cells if its zone cannot be used.
   const ViewLevel* level(uint32_t index);
@@ -128,6 +129,10 @@ class GroundView final : public PortalSource {
   /// Can the class stand at a point of a level now? In which rectangle?
   bool stand(uint32_t level, world::GroundPoint at, uint16_t& rect);
   bool set_active(ChangeId change, bool active, bool remove);
+  [[nodiscard]] const Change& change(ChangeId id) const { return changes_[id - 1]; }
+  /// Would an obstacle or an area change any cell where the class may stand? Time: the tiles that
+  /// it touches.
+  [[nodiscard]] bool touches(const Solid& solid, bool is_area) const;
   /// Does a change touch a tile, active or not?
   [[nodiscard]] bool is_changed(int32_t tile_x, int32_t tile_z) const;
   /// Does a line lead over a tile that a change touches, active or not?

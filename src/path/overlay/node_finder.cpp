@@ -617,6 +617,8 @@ bool NodeFinder::set_active(ChangeId change, bool active) {
   return scratch_->changes.set_active(change, active, false);
 }
 
+uint64_t NodeFinder::version() const { return scratch_->changes.version(); }
+
 BlockPoint NodeFinder::Shared::block_of(const NodePlace& place) const {
   BlockPoint at{graph::kNoNode, place.s, place.t};
   if (!place || place.node1 > mesh.nodes().node_count()) return at;

@@ -84,6 +84,8 @@ class NodeFinder {
   /// False if there is none of this id.
   bool remove(ChangeId change);
   bool set_active(ChangeId change, bool active);
+  /// Rises with every change that concerns the mesh.
+  [[nodiscard]] uint64_t version() const;
 
   [[nodiscard]] PathSummary summary() const;
 

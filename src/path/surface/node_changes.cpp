@@ -104,8 +104,8 @@ ChangeId NodeChanges::keep(Change change) {
             [](const BlockedTile& a, const BlockedTile& b) { return a.patch < b.patch; });
   std::sort(change.pieces.begin(), change.pieces.end(),
             [](const BlockedPieces& a, const BlockedPieces& b) { return a.portal < b.portal; });
+  note(change);
   changes_.push_back(std::move(change));
-  ++version_;
   active_.push_back(static_cast<ChangeId>(changes_.size()));
   list(active_.back(), true);
   return active_.back();
@@ -131,11 +131,20 @@ void NodeChanges::list(ChangeId id, bool active) {
   for (const BlockedPieces& p : change.pieces) list_at(p.portal, portal_changes_, stale_portals_);
 }
 
+void NodeChanges::note(const Change& change) {
+  const bool holds_any = !change.tiles.empty() || !change.squares.empty() || !change.pieces.empty();
+  // An area over another one counts even if its own cost is 1.
+  const bool differs =
+      change.kind != Kind::kArea ||
+      std::any_of(area_cost_.begin(), area_cost_.end(), [](double cost) { return cost != 1; });
+  if (change.kind == Kind::kLink || (holds_any && differs)) ++version_;
+}
+
 bool NodeChanges::set_active(ChangeId id, bool active, bool remove) {
   if (id == 0 || id > changes_.size() || changes_[id - 1].removed) return false;
   Change& change = changes_[id - 1];
   if (change.active != active) {
-    ++version_;
+    note(change);
     const auto at = std::lower_bound(active_.begin(), active_.end(), id);
     if (active) {
       active_.insert(at, id);

@@ -52,7 +52,7 @@ class NodeChanges {
   void set_area_cost(uint8_t kind, double cost);
   /// False if there is none of that id, which is never used again once removed.
   bool set_active(ChangeId change, bool active, bool remove);
-  /// Rises with every change.
+  /// Rises with every change that concerns the mesh: a solid that blocks none of it does not.
   [[nodiscard]] uint64_t version() const { return version_; }
   /// Brings what follows up to date. Cuts the blocks again that changes since the last call touch;
   /// parts and portals of the others are copied, because their numbers change.
@@ -158,6 +158,8 @@ class NodeChanges {
   ChangeId keep(Change change);
   /// Lists a change, or no longer, where it blocks something, and marks that as stale.
   void list(ChangeId id, bool active);
+  /// Counts a change that concerns the mesh.
+  void note(const Change& change);
 
   void block_tiles(const Solid& solid, double around, Change& change,
                    std::vector<uint32_t>& near) const;

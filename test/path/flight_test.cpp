@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "core/access.h"
 #include "core/random.h"
@@ -347,6 +349,73 @@ TEST(Flight, AnExhaustedBudgetOnFootIsNoProofThatNoPathExists) {
   query.budget.cancel = &cancel;
   flight.find(query, path);
   EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
+}
+
+// A hall with a wall in it, and one that nothing leads to.
+Scene hall_with_a_corner() {
+  Scene scene = two_halls(false);
+  scene.add_box({5, -0.1, 0}, {5.3, 6, 4.5});
+  return scene;
+}
+
+TEST(Flight, ACancelledSearchFindsNothing) {
+  const World world = bake(hall_with_a_corner());
+  path::FlightFinder flight = finder(world);
+  Path path;
+  // Straight, around a corner, on foot, and to a goal that cannot be reached.
+  const std::vector<std::pair<Vec3d, Vec3d>> queries{{{3, 2, 2}, {4, 2, 5}},
+                                                     {{3, 2, 2}, {8, 3, 2}},
+                                                     {{3, 0, 6}, {4, 0, 2}},
+                                                     {{3, 2, 2}, {16, 3, 3}},
+                                                     {{3, 0, 2}, {16, 3, 3}}};
+  uint64_t stopped = 0;
+  for (const auto& [from, to] : queries) {
+    std::atomic<bool> cancel = false;
+    const path::FlightQuery query{.from = from, .to = to, .budget = {UINT64_MAX, &cancel}};
+    flight.find(query, path);
+    ASSERT_FALSE(path.points.empty());
+    const uint64_t whole = path.nodes;
+    for (uint64_t after = 0; after < std::min<uint64_t>(whole, 20) || after == 0; ++after) {
+      cancel = false;
+      flight.begin(query);
+      if (after > 0) {
+        path::Slice slice{after};
+        ASSERT_FALSE(flight.advance(slice, path)) << after << " of " << whole;
+      }
+      cancel = true;
+      path::Slice slice{1000};
+      ASSERT_TRUE(flight.advance(slice, path));
+      EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
+      EXPECT_EQ(path.spent, SpentBudget::kCancelled);
+      EXPECT_EQ(path.nodes, after);
+      EXPECT_TRUE(path.points.empty());
+      ++stopped;
+    }
+  }
+  EXPECT_GT(stopped, queries.size() + 5);
+}
+
+// The budget is also that of the path to the nearest point.
+TEST(Flight, ABudgetThatIsExhaustedBeforeTheNearestPointIsReported) {
+  const World world = bake(hall_with_a_corner());
+  path::FlightFinder flight = finder(world);
+  Path path;
+  path::FlightQuery query{.from = {3, 0, 2}, .to = {16, 3, 3}};
+  flight.find(query, path);
+  ASSERT_EQ(path.end, PathEnd::kUnreachable);
+  ASSERT_FALSE(path.points.empty());
+  const uint64_t whole = path.nodes;
+  ASSERT_GT(whole, 2u);
+  query.budget.max_nodes = whole + 1;
+  flight.find(query, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
+  EXPECT_EQ(path.nodes, whole);
+  query.budget.max_nodes = whole - 1;
+  flight.find(query, path);
+  EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
+  EXPECT_EQ(path.spent, SpentBudget::kNodes);
+  EXPECT_TRUE(path.points.empty());
+  EXPECT_LE(path.nodes, whole - 1);
 }
 
 TEST(Flight, NeedsAirAndAClassThatFlies) {

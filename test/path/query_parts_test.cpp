@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <vector>
@@ -137,8 +138,7 @@ TEST(QueryParts, FindTheSameForSlicesOfAnySize) {
           }
           SCOPED_TRACE(testing::Message() << "class " << c << ", query " << n << ", " << slice);
           expect_same(whole, parts);
-          // Only walks of flyers are counted while they are searched, and not in the end.
-          if (c != kFlyer && slice != UINT64_MAX) {
+          if (slice != UINT64_MAX) {
             EXPECT_LE(whole.nodes, calls * slice);
           }
         }
@@ -317,6 +317,78 @@ TEST(QueryParts, KeepTheBudgetOfTheWholeQueryAndCanBeCancelled) {
     EXPECT_GT(exhausted, 0u) << c;
     EXPECT_GT(cancelled, 0u) << c;
   }
+}
+
+// Flights and walks take from one budget. What a query expands is counted by calls of a node each.
+TEST(QueryParts, InTheAirTheBudgetIsThatOfAllItsSearches) {
+  uint64_t by_many = 0, exhausted = 0;
+  for (const Scene& scene : {builtin({.name = "garage", .size = 45, .levels = 2}), two_halls()}) {
+    Stage s(scene);
+    PathFinder finder = s.finder(kFlyer);
+    Path whole, part;
+    for (uint64_t n = 0; n < 14; ++n) {
+      if (n == 7) {
+        for (uint64_t i = 0; i < 12; ++i) need(s.edits.add_obstacle(s.prism(i)));
+      }
+      SCOPED_TRACE(n);
+      PathQuery query = s.query(finder, kFlyer, n);
+      finder.find(query, whole);
+      finder.begin(query);
+      const uint64_t calls = finish(finder, 1, part);
+      EXPECT_LE(whole.nodes, calls);
+      EXPECT_GE(whole.nodes, calls - 1);
+      query.budget.max_nodes = whole.nodes + 1;
+      finder.find(query, part);
+      expect_same(whole, part);
+      for (const uint64_t less : {whole.nodes - whole.nodes / 4, whole.nodes / 2, uint64_t{0}}) {
+        query.budget.max_nodes = less;
+        finder.find(query, part);
+        EXPECT_LE(part.nodes, less);
+        EXPECT_TRUE(part.end != PathEnd::kBudgetExhausted || part.spent == SpentBudget::kNodes);
+        exhausted += part.end == PathEnd::kBudgetExhausted;
+        finder.begin(query);
+        EXPECT_LE(finish(finder, 1, part), less + 1);
+      }
+      const bool walks =
+          std::count(whole.segments.begin(), whole.segments.end(), SegmentKind::kWalk) > 0;
+      const bool flies =
+          std::count(whole.segments.begin(), whole.segments.end(), SegmentKind::kFly) > 0;
+      by_many += walks && flies;
+    }
+  }
+  EXPECT_GT(by_many, 0u);
+  EXPECT_GT(exhausted, 10u);
+}
+
+// The nearest point is looked for when the goal is known to be unreachable.
+TEST(QueryParts, InTheAirACancelEndsTheSearchForTheNearestPoint) {
+  Stage s(two_halls());
+  // One wall closes the door, and one stands between the start and the nearest point.
+  need(s.edits.add_obstacle(Prism::box({9.2, -0.1, 0}, {9.6, 6, 8})));
+  need(s.edits.add_obstacle(Prism::box({5, -0.1, 0}, {5.3, 6, 4.5})));
+  PathFinder finder = s.finder(kFlyer);
+  std::atomic<bool> cancel = false;
+  const PathQuery query{
+      .from = Vec3d{2, 0, 2}, .to = Vec3d{17, 3, 3}, .budget = {UINT64_MAX, &cancel}};
+  Path whole, path;
+  finder.find(query, whole);
+  ASSERT_EQ(whole.end, PathEnd::kUnreachable);
+  ASSERT_FALSE(whole.points.empty());
+  ASSERT_GT(whole.nodes, 3u);
+  for (uint64_t after = 1; after < whole.nodes; after += 1 + whole.nodes / 50) {
+    cancel = false;
+    finder.begin(query);
+    ASSERT_FALSE(finder.advance(after, path)) << after;
+    cancel = true;
+    ASSERT_TRUE(finder.advance(1000, path));
+    EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
+    EXPECT_EQ(path.spent, SpentBudget::kCancelled);
+    EXPECT_EQ(path.nodes, after);
+    EXPECT_TRUE(path.points.empty());
+  }
+  // In one go it looks as well.
+  finder.find(query, path);
+  EXPECT_EQ(path.spent, SpentBudget::kCancelled);
 }
 
 TEST(QueryParts, WithoutAQueryNothingIsFound) {

@@ -165,7 +165,8 @@ struct FlightFinder::Scratch {
 
   FlightLog log;
   FlightQuery begun;
-  uint64_t taken = 0;  // nodes, by the parts before
+  uint64_t taken = 0;     // nodes, by the parts before
+  uint64_t expanded = 0;  // by the searches that the part has come to, of all parts
   FlightSearch search;
   SpentBudget spent = SpentBudget::kNone;  // the budget that the last search exhausted
   AirString pull;
@@ -402,24 +403,31 @@ bool FlightFinder::advance(Slice& slice, Path& path) {
   const uint64_t before = slice.left;
   scratch.log.begin_part(slice);
   scratch.spent = SpentBudget::kNodes;
-  find_flight(query, path);
+  scratch.expanded = 0;
+  reset(path);
+  if (!is_cancelled(query)) find_flight(query, path);
   if (query.by_turns && path.end == PathEnd::kUnreachable) find_by_turns(query, path);
   if (query.nearest && path.end == PathEnd::kUnreachable) find_nearest(query, path);
-  if (scratch.log.is_pending()) {
-    scratch.taken += before - slice.left;
+  scratch.taken += before - slice.left;
+  // What was not found may exist all the same.
+  const bool is_stopped = is_cancelled(query) && path.end != PathEnd::kReached;
+  if (is_stopped || scratch.log.is_pending()) {
     reset(path);
     path.nodes = scratch.taken;
     path.end = PathEnd::kBudgetExhausted;
-    path.spent = SpentBudget::kNodes;
-    return false;
+    path.spent = is_stopped ? SpentBudget::kCancelled : SpentBudget::kNodes;
+    if (is_stopped) scratch.search.give_back();
+    return is_stopped;
   }
-  if (path.end == PathEnd::kBudgetExhausted) {
-    const bool stopped = query.budget.cancel != nullptr && *query.budget.cancel;
-    path.spent = stopped ? SpentBudget::kCancelled : scratch.spent;
-  }
+  if (path.end == PathEnd::kBudgetExhausted) path.spent = scratch.spent;
+  path.nodes = scratch.expanded;
   path.cost = path.length;
   scratch.search.give_back();
   return true;
+}
+
+bool FlightFinder::is_cancelled(const FlightQuery& query) {
+  return query.budget.cancel != nullptr && *query.budget.cancel;
 }
 
 bool FlightFinder::locate(Vec3d at, double vertical_tolerance, End& end) const {
@@ -434,13 +442,14 @@ const Path& FlightFinder::walk(const FlightQuery& query, const Place& from, cons
   Scratch& scratch = *scratch_;
   FlightLog::Entry& entry = scratch.log.next();
   Path& path = entry.walk;
+  const SearchBudget left = query.budget.after(scratch.expanded);
   const bool is_changed = scratch.is_changed();
   if (!entry.is_begun) {
     entry.is_begun = true;
     reset(path);
-    if (query.budget.cancel != nullptr && *query.budget.cancel) {
+    if (is_cancelled(query)) {
       path.end = PathEnd::kBudgetExhausted;
-      path.spent = scratch.spent;
+      path.spent = SpentBudget::kCancelled;
       entry.is_done = true;
     } else if (!is_changed) {
       scratch.walker->begin(from, to);
@@ -453,22 +462,24 @@ const Path& FlightFinder::walk(const FlightQuery& query, const Place& from, cons
   }
   if (!entry.is_done) {
     Slice& slice = scratch.log.slice();
-    const SearchBudget on_mesh{query.budget.max_nodes, nullptr, query.budget.max_bytes};
-    entry.is_done = is_changed ? scratch.ground(*state_).advance(query.budget, slice, path)
-                               : scratch.walker->advance(on_mesh, slice, path);
+    entry.is_done = is_changed ? scratch.ground(*state_).advance(left, slice, path)
+                               : scratch.walker->advance(left, slice, path);
     if (!entry.is_done) scratch.log.set_pending();
   }
   if (path.end == PathEnd::kBudgetExhausted) scratch.spent = path.spent;
+  // A search counts the node that was too many.
+  scratch.expanded += std::min(path.nodes, left.max_nodes);
   return path;
 }
 
 const FlightLog::Entry& FlightFinder::Scratch::fly(const AirView& air_now, const FlightQuery& query,
                                                    AirPoint from, AirPoint to, AirPoint towards) {
   FlightLog::Entry& entry = log.next();
+  const SearchBudget left = query.budget.after(expanded);
   if (!entry.is_begun) search.begin(air_now, from, to);
   entry.is_begun = true;
   if (!entry.is_done) {
-    const auto result = search.advance(query.budget, log.slice(), entry.flight);
+    const auto result = search.advance(left, log.slice(), entry.flight);
     entry.is_done = result.has_value();
     if (!result) log.set_pending();
     entry.result = result.value_or(SearchResult::kBudget);
@@ -477,7 +488,8 @@ const FlightLog::Entry& FlightFinder::Scratch::fly(const AirView& air_now, const
     if (result == SearchResult::kNone) entry.point = search.nearest_reached(towards);
     if (result == SearchResult::kFound) pull.pull(air_now, entry.flight);
   }
-  if (entry.result == SearchResult::kBudget) spent = query.budget.spent(entry.nodes);
+  if (entry.result == SearchResult::kBudget) spent = left.spent(entry.nodes + 1);
+  expanded += entry.nodes;
   return entry;
 }
 
@@ -487,7 +499,6 @@ void FlightFinder::find_flight(const FlightQuery& query, Path& path) {
   const AirView air = scratch.air(*state_);
   const FlightEndpoints ends = state_->ends(air);
   clear(path);
-  path.nodes = 0;
   scratch.reached.reset();
   bool budget_exhausted = false;  // somewhere: then what was not found may exist all the same
   const auto component_of = [&](AirPoint p) { return air.component(air.box_at(p)); };
@@ -528,7 +539,6 @@ void FlightFinder::find_flight(const FlightQuery& query, Path& path) {
         scratch.fly(air, query, *from.air, *to.air, ends.to_air(query.to));
     flight = &found.flight;
     result = found.result;
-    path.nodes = found.nodes;
     budget_exhausted = budget_exhausted || result == SearchResult::kBudget;
     scratch.reached = found.point;
   }
@@ -630,7 +640,6 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
       return;
     }
     const FlightLog::Entry& found = scratch.fly(view, query, air, there, there);
-    path.nodes += found.nodes;
     end = found.result == SearchResult::kFound    ? PathEnd::kReached
           : found.result == SearchResult::kBudget ? PathEnd::kBudgetExhausted
                                                   : PathEnd::kUnreachable;
@@ -723,6 +732,7 @@ void FlightFinder::find_nearest(const FlightQuery& query, Path& path) {
     const auto look = [&](FlightLog::Entry& entry) {
       entry.point = air.nearest_in(airs, goal, scratch.zone_order);
     };
+    if (is_cancelled(query)) return;
     nearest = reached && tries == 0 ? reached : scratch.log.next(look).point;
     if (!nearest) break;
     const AirPoint at = off_faces(*nearest);
@@ -739,6 +749,7 @@ void FlightFinder::find_nearest(const FlightQuery& query, Path& path) {
     return;
   }
   if (path.end != PathEnd::kReached) clear(path);
+  if (path.end == PathEnd::kBudgetExhausted) return;
   path.end = PathEnd::kUnreachable;
   path.blocked_by = Blocker::kNone;
   if (path.points.empty()) return;
@@ -766,6 +777,7 @@ void FlightFinder::find_nearest_on_foot(const FlightQuery& query, const Place& f
   if (!nearest) return;
   const Path& on_foot = walk(query, from, nearest);
   const PathEnd end = on_foot.end;
+  if (end == PathEnd::kBudgetExhausted) path.end = end;
   // To what comes nearest, if the finder of paths on foot knows it.
   if (end != PathEnd::kReached && !(scratch.is_changed() && end == PathEnd::kUnreachable)) return;
   add_walk(on_foot, 0, path);

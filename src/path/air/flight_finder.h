@@ -20,8 +20,7 @@ struct FlightQuery {
   /// Feet. In the air, or on the ground within `vertical_tolerance` above or below. [m]
   Vec3d from, to;
   double vertical_tolerance = 0.5;  ///< [m, >= 0]
-  /// Counts air boxes, and for each path on foot its nodes. A search on foot ends before `cancel`
-  /// is read.
+  /// Of the whole query: air boxes and the nodes of all searches on foot.
   SearchBudget budget = {};
   /// If no single flight leads to the goal, search paths that land, walk and take off again.
   bool by_turns = true;
@@ -99,6 +98,7 @@ class FlightFinder {
   struct End;
   explicit FlightFinder(std::shared_ptr<const Shared> shared);
 
+  [[nodiscard]] static bool is_cancelled(const FlightQuery& query);
   bool locate(Vec3d at, double vertical_tolerance, End& end) const;
   void find_flight(const FlightQuery& query, Path& path);
   void find_by_turns(const FlightQuery& query, Path& path);

@@ -173,8 +173,9 @@ std::optional<SearchResult> FlightSearch::search(const SearchBudget& budget, Sli
     const Entry entry = open_.pop();
     Node& node = nodes_[entry.node];
     if (node.opened || entry.estimate > node.estimate) continue;
+    if (budget.is_spent(expanded_ + 1, used_bytes())) return SearchResult::kBudget;
     slice.take();
-    if (budget.is_spent(++expanded_, used_bytes())) return SearchResult::kBudget;
+    ++expanded_;
     // Seen from the parent's waypoint after all? Else the path turns where it entered the box
     // before.
     if (node.parent != node.via && !air_->sees(nodes_[node.parent].point, node.point)) {

@@ -226,7 +226,8 @@ TEST(QueryParts, EndWhateverMovesInEachFrame) {
   for (const int32_t c : {kAdult, kFlyer, kClimber}) {
     const EditId crate = need(s.edits.add_obstacle(crate_at(0)));
     PathFinder finder = s.finder(c), other = s.finder(c);
-    const PathQuery query{.from = Vec3d{2, 0, 6}, .to = Vec3d{18, 0, 6}};
+    // The door between the halls is too narrow for climbers.
+    const PathQuery query{.from = Vec3d{2, 0, 6}, .to = Vec3d{c == kClimber ? 8.0 : 18.0, 0, 6}};
     Path whole, parts;
     finder.begin(query);
     uint64_t calls = 1, restarts = 0;
@@ -239,7 +240,7 @@ TEST(QueryParts, EndWhateverMovesInEachFrame) {
       restarts += !ended && parts.nodes <= before;
     }
     EXPECT_EQ(restarts, 4u) << c;
-    EXPECT_EQ(parts.end, PathEnd::kReached);
+    EXPECT_EQ(parts.end, PathEnd::kReached) << c;
     expect_same(whole, parts);
     // The next one knows where the crate is.
     finder.find(query, parts);

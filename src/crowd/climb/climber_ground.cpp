@@ -16,7 +16,7 @@ namespace throng::crowd {
 namespace {
 
 constexpr double kMinLength = 1e-9;    // [m]
-constexpr double kPointRadius = 1e-3;  // [m] within which a body stands on a point
+constexpr double kPointRadius = 2e-6;  // [m] within which a body stands on a point
 constexpr double kEdgeStep = 1e-4;     // of a patch's parameters, for derivatives
 constexpr int kMaxAttempts = 8;        // attempts to make a move short enough
 

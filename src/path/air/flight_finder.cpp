@@ -748,9 +748,10 @@ void FlightFinder::find_nearest(const FlightQuery& query, Path& path) {
     find_nearest_on_foot(query, from.ground, path);
     return;
   }
-  if (path.end != PathEnd::kReached) clear(path);
+  const PathEnd ended = path.end;
+  if (ended != PathEnd::kReached) clear(path);
+  path.end = ended == PathEnd::kBudgetExhausted ? ended : PathEnd::kUnreachable;
   if (path.end == PathEnd::kBudgetExhausted) return;
-  path.end = PathEnd::kUnreachable;
   path.blocked_by = Blocker::kNone;
   if (path.points.empty()) return;
   path.blocked_by =

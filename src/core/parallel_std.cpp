@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -14,6 +15,20 @@
 // for each call: slow, and not for anything but such builds.
 namespace throng {
 namespace {
+
+// Threads that end before what they work on does, also where an exception passes.
+struct JoinedThreads {
+  std::vector<std::thread> threads;
+  JoinedThreads() = default;
+  JoinedThreads(const JoinedThreads&) = delete;
+  JoinedThreads& operator=(const JoinedThreads&) = delete;
+  ~JoinedThreads() { join(); }
+  void join() {
+    for (std::thread& thread : threads) {
+      if (thread.joinable()) thread.join();
+    }
+  }
+};
 
 // Calls body(piece, worker) for every piece in [0, pieces), each on whichever thread is free.
 // Throws what a body threw first, once the others have ended; no piece is begun after it.
@@ -30,10 +45,15 @@ void share(size_t pieces, int32_t threads, FunctionRef<void(size_t, int32_t)> bo
       if (!failure) failure = std::current_exception();
     }
   };
-  std::vector<std::thread> others;
-  for (int32_t worker = 1; worker < threads; ++worker) others.emplace_back(work, worker);
+  JoinedThreads others;
+  others.threads.reserve(static_cast<size_t>(threads));
+  try {
+    for (int32_t worker = 1; worker < threads; ++worker) others.threads.emplace_back(work, worker);
+  } catch (const std::system_error&) {
+    // The system starts no more of them: those that run do the work.
+  }
   work(0);
-  for (std::thread& thread : others) thread.join();
+  others.join();
   if (failure) std::rethrow_exception(failure);
 }
 

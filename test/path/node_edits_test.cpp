@@ -215,6 +215,34 @@ TEST(NodeEdits, ChangesThatAreUpdatedAfterEachCallAreThoseOfAllCalls) {
   EXPECT_GT(parts, 3000u);
 }
 
+// While nothing is cut, because all kinds cost the same, an area may be switched without an end.
+TEST(NodeEdits, AreasThatAreSwitchedTakeNoMoreMemory) {
+  for_each_mesh([&](const Nodes& nodes, const graph::NodeMesh& mesh) {
+    const path::BlockSquares squares(mesh);
+    for (uint64_t n = 0; n < 4; ++n) {
+      path::NodeChanges changes(mesh, squares, 20), once(mesh, squares, 20);
+      const path::ChangeId area = changes.add_area(area_at(nodes, n), 7);
+      once.add_area(area_at(nodes, n), 7);
+      const auto switch_it = [&](uint64_t times) {
+        for (uint64_t k = 0; k < 2 * times; ++k) {
+          ASSERT_TRUE(changes.set_active(area, k % 2 != 0, false));
+          changes.update();
+        }
+      };
+      switch_it(500);
+      const uint64_t bytes = changes.bytes();
+      switch_it(2000);
+      EXPECT_EQ(changes.bytes(), bytes);
+      // Where they lie is known all the same.
+      for (path::NodeChanges* each : {&changes, &once}) {
+        each->set_area_cost(7, 3);
+        each->update();
+      }
+      expect_same(mesh, changes, once);
+    }
+  });
+}
+
 // A tile is cut as a whole, so a crate in it costs the cuts of the others there, and no more.
 TEST(NodeEdits, AnUpdateCutsOnlyWhatTheChangesTouch) {
   const Nodes nodes = make_nodes(worlds::flat(96));

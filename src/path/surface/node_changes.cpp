@@ -69,12 +69,34 @@ struct Stretch {
   uint32_t block = 0;
 };
 
+void sort_unique(std::vector<uint32_t>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
 std::array<double, 4> cut_line(const std::array<double, 4>& on, double from, double to) {
   const auto at = [&](double u, size_t k) { return on[k] + u * (on[k + 2] - on[k]); };
   return {at(from, 0), at(from, 1), at(to, 0), at(to, 1)};
 }
 
 }  // namespace
+
+void NodeChanges::StalePlaces::add(uint32_t place) {
+  places_.push_back(place);
+  if (places_.size() < max_places_) return;
+  sort_unique(places_);
+  max_places_ = std::max(kMinPlaces, 2 * places_.size());
+}
+
+void NodeChanges::StalePlaces::clear() {
+  places_.clear();
+  max_places_ = kMinPlaces;
+}
+
+const std::vector<uint32_t>& NodeChanges::StalePlaces::sorted() {
+  sort_unique(places_);
+  return places_;
+}
 
 ChangeId NodeChanges::add(Solid solid) {
   const auto& classes = data_of(data_of(mesh_->nodes())->world)->summary.classes;
@@ -113,8 +135,8 @@ ChangeId NodeChanges::keep(Change change) {
 
 void NodeChanges::list(ChangeId id, bool active) {
   const Change& change = changes_[id - 1];
-  const auto list_at = [&](uint32_t place, ChangesByPlace& changes, std::vector<uint32_t>& stale) {
-    stale.push_back(place);
+  const auto list_at = [&](uint32_t place, ChangesByPlace& changes, StalePlaces& stale) {
+    stale.add(place);
     std::vector<ChangeId>& here = changes[place];
     const auto at = std::lower_bound(here.begin(), here.end(), id);
     const bool is_listed = at != here.end() && *at == id;
@@ -309,23 +331,12 @@ bool NodeChanges::blocks_portal(const Solid& solid, const graph::NodePortal& por
          motion_may_touch(solid, body, over, b, spread, kTurns);
 }
 
-namespace {
-
-void sort_unique(std::vector<uint32_t>& numbers) {
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-}
-
-}  // namespace
-
 void NodeChanges::update() {
   if (updated_ == version_) return;
   updated_ = version_;
-  sort_unique(stale_tiles_);
-  sort_unique(stale_blocks_);
   std::vector<uint32_t> recut;  // blocks that were cut before, or are now
-  for (const uint32_t patch : stale_tiles_) cut_tile(patch, recut);
-  for (const uint32_t block : stale_blocks_) cut_squares(block, recut);
+  for (const uint32_t patch : stale_tiles_.sorted()) cut_tile(patch, recut);
+  for (const uint32_t block : stale_blocks_.sorted()) cut_squares(block, recut);
   sort_unique(recut);
   cut_portals(recut);
   stale_tiles_.clear();
@@ -610,7 +621,7 @@ std::vector<NodeChanges::LeftPortal> NodeChanges::left_of(uint32_t p, uint16_t b
 
 // Of blocks that were cut again, and those of which other pieces are blocked now.
 void NodeChanges::cut_portals(const std::vector<uint32_t>& recut) {
-  std::vector<uint32_t> stale = stale_portals_;
+  std::vector<uint32_t> stale = stale_portals_.sorted();
   for (const uint32_t block : recut) {
     const auto portals = mesh_->portals_of(block);
     stale.insert(stale.end(), portals.begin(), portals.end());
@@ -724,7 +735,8 @@ uint64_t NodeChanges::bytes() const {
                    (base_of_part_.size() + touched_.size() + first_portal_.size() +
                     portal_of_.size() + cut_blocks_.size()) *
                        sizeof(uint32_t) +
-                   area_of_part_.size() + link_costs_.size() * sizeof(double);
+                   area_of_part_.size() + link_costs_.size() * sizeof(double) +
+                   stale_tiles_.bytes() + stale_blocks_.bytes() + stale_portals_.bytes();
   for (const Change& change : changes_) {
     bytes += change.tiles.size() * sizeof(BlockedTile) +
              change.squares.size() * sizeof(BlockedSquare) +

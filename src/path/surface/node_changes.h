@@ -154,6 +154,21 @@ class NodeChanges {
     bool in_part_a = false, in_part_b = false;
   };
   using ChangesByPlace = std::map<uint32_t, std::vector<ChangeId>>;  // active ones, rising
+  // Places to cut again. Areas list them with every switch, also while nothing is ever cut because
+  // all costs are 1: doubles are removed whenever half of the list may be doubles.
+  class StalePlaces {
+   public:
+    void add(uint32_t place);
+    void clear();
+    /// Rising, without doubles.
+    const std::vector<uint32_t>& sorted();
+    [[nodiscard]] uint64_t bytes() const { return places_.capacity() * sizeof(uint32_t); }
+
+   private:
+    static constexpr size_t kMinPlaces = 256;
+    std::vector<uint32_t> places_;
+    size_t max_places_ = kMinPlaces;  // until doubles are removed
+  };
 
   ChangeId keep(Change change);
   /// Lists a change, or no longer, where it blocks something, and marks that as stale.
@@ -200,8 +215,8 @@ class NodeChanges {
 
   // What is kept from one update to the next, by the tile's patch, the curved block and the portal.
   ChangesByPlace tile_changes_, block_changes_, portal_changes_;
-  std::vector<uint32_t> stale_tiles_, stale_blocks_, stale_portals_;  // with doubles
-  std::map<uint32_t, std::vector<CutBlock>> cut_tiles_;               // blocks rising
+  StalePlaces stale_tiles_, stale_blocks_, stale_portals_;
+  std::map<uint32_t, std::vector<CutBlock>> cut_tiles_;  // blocks rising
   std::map<uint32_t, CutBlock> cut_curved_;
   std::map<uint32_t, std::vector<LeftPortal>> left_;  // of portals that are closed
   uint64_t cut_count_ = 0;

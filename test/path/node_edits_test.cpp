@@ -243,6 +243,43 @@ TEST(NodeEdits, AreasThatAreSwitchedTakeNoMoreMemory) {
   });
 }
 
+TEST(NodeEdits, CostsThatNothingHasConcernNothing) {
+  const Nodes nodes = make_nodes(worlds::flat(20));
+  Context context;
+  const auto mesh = graph::NodeMesh::create(nodes, 0, 1, context);
+  ASSERT_TRUE(mesh);
+  const path::BlockSquares squares(*mesh);
+  path::NodeChanges changes(*mesh, squares, 20);
+  const uint64_t before = changes.version();
+  changes.set_area_cost(7, 3);  // no area
+  const path::ChangeId area = changes.add_area(Prism::box({4, -1, 4}, {9, 1, 9}), 6);
+  const uint64_t added = changes.version();
+  EXPECT_GT(added, before) << "it could lie over another area";
+  changes.add_area(Prism::box({4, 900, 4}, {9, 901, 9}), 7);
+  changes.set_area_cost(7, 4);  // one that holds nothing
+  EXPECT_EQ(changes.version(), added);
+  changes.set_area_cost(6, 2);
+  const uint64_t held = changes.version();
+  EXPECT_GT(held, added);
+  EXPECT_TRUE(changes.set_active(area, false, false));
+  const uint64_t off = changes.version();
+  EXPECT_GT(off, held);
+  changes.set_area_cost(6, 5);  // one that is off
+  EXPECT_EQ(changes.version(), off);
+  changes.update();
+  EXPECT_TRUE(changes.parts().empty());
+  EXPECT_TRUE(changes.set_active(area, true, false));
+  changes.update();
+  ASSERT_FALSE(changes.parts().empty());
+  bool is_found = false;
+  for (uint32_t k = 0; k < changes.parts().size(); ++k) {
+    const double factor = changes.factor(static_cast<uint32_t>(mesh->blocks().size()) + k);
+    is_found = is_found || factor == 5;
+    EXPECT_TRUE(factor == 1 || factor == 5) << factor;
+  }
+  EXPECT_TRUE(is_found);
+}
+
 // A tile is cut as a whole, so a crate in it costs the cuts of the others there, and no more.
 TEST(NodeEdits, AnUpdateCutsOnlyWhatTheChangesTouch) {
   const Nodes nodes = make_nodes(worlds::flat(96));

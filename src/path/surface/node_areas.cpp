@@ -50,11 +50,14 @@ ChangeId NodeChanges::add_link(const Link& link) {
 void NodeChanges::set_area_cost(uint8_t kind, double cost) {
   if (area_cost_[kind] == cost) return;
   area_cost_[kind] = cost;
+  bool is_held = false;  // by some of the mesh
   for (const ChangeId id : active_) {
     const Change& change = changes_[id - 1];
-    if (change.kind == Kind::kArea && change.area == kind) list(id, true);
+    if (change.kind != Kind::kArea || change.area != kind) continue;
+    list(id, true);
+    is_held = is_held || !change.tiles.empty() || !change.squares.empty();
   }
-  ++version_;
+  if (is_held) ++version_;
 }
 
 void NodeChanges::mark_squares(const Prism& prism, uint32_t block, Change& change) const {

@@ -52,7 +52,8 @@ class NodeChanges {
   void set_area_cost(uint8_t kind, double cost);
   /// False if there is none of that id, which is never used again once removed.
   bool set_active(ChangeId change, bool active, bool remove);
-  /// Rises with every change that concerns the mesh: a solid that blocks none of it does not.
+  /// Rises with every change that concerns the mesh: a solid that blocks none of it does not, nor
+  /// does a cost that none of it has.
   [[nodiscard]] uint64_t version() const { return version_; }
   /// Brings what follows up to date. Cuts the blocks again that changes since the last call touch;
   /// parts and portals of the others are copied, because their numbers change.

@@ -292,6 +292,52 @@ TEST(GroundFinder, DearGroundIsAvoidedAndClosedGroundNeverEntered) {
   EXPECT_EQ(path.end, PathEnd::kReached);
 }
 
+// What a search has read stays where a change touches no cell that is legal for the class.
+TEST(GroundFinder, OnlyChangesOfItsGroundConcernASearch) {
+  const World world = bake(worlds::flat(30), 0.1);
+  path::GroundFinder ground = live(world);
+  const Place from = world.find_place(0, {2, 0, 2}, 0.5),
+              to = world.find_place(0, {27, 0, 26}, 0.5);
+  ground.begin(from, to);
+  Path path;
+  uint64_t version = ground.version();
+  const auto expect_change = [&](bool is_one, const char* what) {
+    EXPECT_EQ(ground.version() != version, is_one) << what;
+    version = ground.version();
+  };
+  const auto add = [&](double low) {
+    return ground.add_obstacle({Prism::box({3, low, 3}, {4, low + 1, 4}), {}});
+  };
+  const path::ChangeId high = add(900), low = add(0);
+  expect_change(true, "the crate on the floor");
+  ground.find(from, to, path);
+  for (const bool active : {false, true}) {
+    EXPECT_TRUE(ground.set_active(high, active));
+    expect_change(false, "the crate high up");
+    EXPECT_TRUE(ground.set_active(low, active));
+    expect_change(true, "the crate on the floor");
+    ground.find(from, to, path);
+  }
+  EXPECT_TRUE(ground.remove(high));
+  expect_change(false, "the crate high up");
+  // Costs, after the first, which decides how paths are searched.
+  ASSERT_TRUE(ground.set_area_cost(9, 3));
+  expect_change(true, "the first cost");
+  ground.find(from, to, path);
+  ASSERT_TRUE(ground.set_area_cost(8, 5));
+  expect_change(false, "a cost of no ground");
+  ASSERT_TRUE(ground.set_area_cost(8, 0.5));
+  expect_change(true, "the least cost");
+  ground.find(from, to, path);
+  ASSERT_TRUE(ground.add_area(Prism::box({3, 900, 3}, {6, 901, 6}), 9));
+  expect_change(false, "an area high up");
+  ASSERT_TRUE(ground.add_area(Prism::box({3, -1, 3}, {6, 1, 6}), 9));
+  expect_change(true, "an area");
+  ground.find(from, to, path);
+  ASSERT_TRUE(ground.set_area_cost(9, 4));
+  expect_change(true, "its cost");
+}
+
 // The path over a refracting border: by Snell's law, found by trying all places to cross.
 TEST(GroundFinder, CrossesBordersOfAreasWhereItIsCheapest) {
   const World world = bake(worlds::flat(12), 0.1);

@@ -183,17 +183,26 @@ TEST(QueryParts, AnEditOfWhatTheyMayHaveSeenMakesThemBeginAgain) {
   }
 }
 
-// Carts, and crates where nothing can stand or fly, that move before each call.
+// Carts, and crates where nothing can stand or fly, that move before each call. A look-up makes the
+// finder follow them. Flyers have walked before, so they know ground with edits.
 TEST(QueryParts, EditsThatDoNotBearOnThemDoNotDisturbThem) {
   Stage s(builtin({.name = "garage", .size = 45, .levels = 2}));
   const auto cart_at = [](double x) { return Prism::box({x, -1, 1}, {x + 1, 9, 40}); };
   const auto far_at = [](double x) { return Prism::box({x, 900, 1}, {x + 1, 901, 40}); };
   const EditId cart = need(s.edits.add_obstacle(cart_at(5), ObstacleKind::kKinematic));
   const EditId far = need(s.edits.add_obstacle(far_at(5)));
+  need(s.edits.add_obstacle(s.prism(1)));
   for (const int32_t c : {kAdult, kFlyer, kClimber}) {
     PathFinder finder = s.finder(c);
     Path whole, parts;
-    uint64_t many = 0;
+    uint64_t many = 0, walks = 0;
+    for (uint64_t n = 0; n < 20 && c == kFlyer; ++n) {
+      finder.find({.from = s.world.random_place(c, 6, 2 * n).position,
+                   .to = s.world.random_place(c, 6, 2 * n + 1).position},
+                  whole);
+      walks += std::count(whole.segments.begin(), whole.segments.end(), SegmentKind::kWalk) > 0;
+    }
+    EXPECT_TRUE(c != kFlyer || walks > 0);
     for (uint64_t n = 0; n < 10; ++n) {
       const PathQuery query = s.query(finder, c, n);
       finder.find(query, whole);
@@ -205,6 +214,7 @@ TEST(QueryParts, EditsThatDoNotBearOnThemDoNotDisturbThem) {
         const double x = 5 + static_cast<double>(moved % 30);
         need(s.edits.move_obstacle(cart, cart_at(x)));
         need(s.edits.move_obstacle(far, far_at(x)));
+        static_cast<void>(finder.is_free(query.to));
         ended = finder.advance(3, parts);
       }
       EXPECT_EQ(moved, calls) << "class " << c << ", query " << n;

@@ -29,6 +29,8 @@ double link_factor(const GroundView::OffMeshLinkEnd& link) {
 }
 
 int64_t tile_key(int32_t x, int32_t z) { return (int64_t{z} << 32) | static_cast<uint32_t>(x); }
+int32_t x_of(int64_t tile) { return static_cast<int32_t>(tile); }
+int32_t z_of(int64_t tile) { return static_cast<int32_t>(tile >> 32); }
 
 }  // namespace
 
@@ -85,11 +87,23 @@ GroundView::GroundView(const GroundView& other)
 
 void GroundView::set_area_cost(uint8_t kind, double cost) {
   if (area_cost_[kind] == cost) return;
-  ++version_;
+  const double min_before = min_factor_;
+  const bool was_plain = plain_;
   area_cost_[kind] = cost;
   min_factor_ = *std::min_element(area_cost_.begin(), area_cost_.end());
   plain_ = config_.slope_cost == 0 &&
            std::all_of(area_cost_.begin(), area_cost_.end(), [](double c) { return c == 1; });
+  if (min_factor_ != min_before || plain_ != was_plain || has_made(kind)) ++version_;
+}
+
+// Is a rectangle that a search may have seen of this kind?
+bool GroundView::has_made(uint8_t kind) const {
+  return std::any_of(levels_.begin(), levels_.end(), [&](const std::unique_ptr<ViewLevel>& level) {
+    if (level == nullptr) return false;
+    const auto first = rect_states_.begin() + level->first_rect;
+    return std::any_of(first, first + level->rect_count,
+                       [&](const RectState& rect) { return rect.area == kind; });
+  });
 }
 
 bool GroundView::closes_kinds() const {
@@ -106,12 +120,12 @@ ChangeId GroundView::add(Change change) {
     for (int32_t x = near.first_x; x <= near.last_x; ++x) {
       const auto tile = world().tile_levels(x, z);
       if (tile.first == tile.last) continue;
-      change.tiles.push_back(tile_key(x, z));
+      change.tiles.push_back({tile_key(x, z), {}});
       changes_of_tile_[tile_key(x, z)].push_back(id);
     }
   }
   changes_.push_back(std::move(change));
-  for (const int64_t tile : changes_.back().tiles) forget(tile);
+  forget(changes_.back());
   return id;
 }
 
@@ -120,7 +134,7 @@ bool GroundView::set_active(ChangeId id, bool active, bool remove) {
   Change& change = changes_[id - 1];
   if (change.active != active) {
     change.active = active;
-    for (const int64_t tile : change.tiles) forget(tile);
+    forget(change);
     for (const LevelLinkEnd& link : change.links) switch_link(link, active);
     for (const LevelLinkEnd& link : change.links) {
       const double factor = link_factor(link.end);
@@ -129,7 +143,7 @@ bool GroundView::set_active(ChangeId id, bool active, bool remove) {
     }
   }
   if (remove) {
-    for (const int64_t tile : change.tiles) std::erase(changes_of_tile_[tile], id);
+    for (const TileNear& near : change.tiles) std::erase(changes_of_tile_[near.tile], id);
     change = Change{};  // Its id is never used again, its memory is freed.
     change.active = false;
     change.removed = true;
@@ -224,17 +238,40 @@ bool GroundView::is_changed_on(world::GroundPoint from, world::GroundPoint to) c
   return false;
 }
 
+// Was a level of a tile made, or one beside it?
+bool GroundView::is_seen(int64_t key) const {
+  for (int32_t z = z_of(key) - 1; z <= z_of(key) + 1; ++z) {
+    for (int32_t x = x_of(key) - 1; x <= x_of(key) + 1; ++x) {
+      const auto tile = world().tile_levels(x, z);
+      for (uint32_t i = tile.first; i < tile.last; ++i) {
+        if (levels_[i] != nullptr) return true;
+      }
+    }
+  }
+  return false;
+}
+
+// Tiles that are as they were without the change are kept, and what searches know of them.
+void GroundView::forget(Change& change) {
+  for (TileNear& near : change.tiles) {
+    if (!is_seen(near.tile)) continue;
+    if (!near.is_touched) {
+      near.is_touched =
+          touches_tile(change.solid, change.is_area, x_of(near.tile), z_of(near.tile));
+    }
+    if (*near.is_touched) forget(near.tile);
+  }
+}
+
 // The tile's levels are rebuilt; what touches it in those around it finds its portals again: a
 // corner of the mesh depends on all four cells that share its point.
 void GroundView::forget(int64_t key) {
-  bool is_seen = false;
-  const auto x = static_cast<int32_t>(key), z = static_cast<int32_t>(key >> 32);
+  const int32_t x = x_of(key), z = z_of(key);
   for (int32_t dz = -1; dz <= 1; ++dz) {
     for (int32_t dx = -1; dx <= 1; ++dx) {
       const auto tile = world().tile_levels(x + dx, z + dz);
       for (uint32_t i = tile.first; i < tile.last; ++i) {
         if (levels_[i] == nullptr) continue;
-        is_seen = true;
         if (dx != 0 || dz != 0) {
           drop_border(*levels_[i], -dx, -dz);
           continue;
@@ -244,7 +281,6 @@ void GroundView::forget(int64_t key) {
       }
     }
   }
-  if (!is_seen) return;
   ++version_;
   if (corner_numbers_.size() > max_corners_) drop_unused_corners();
 }
@@ -255,19 +291,26 @@ bool GroundView::touches(const Solid& solid, bool is_area) const {
   const SquareRange near = tiles_near(world(), solid.prism.corners, avatar.radius + summary.cell);
   for (int32_t z = near.first_z; z <= near.last_z; ++z) {
     for (int32_t x = near.first_x; x <= near.last_x; ++x) {
-      const auto tile = world().tile_levels(x, z);
-      for (uint32_t i = tile.first; i < tile.last; ++i) {
-        const world::GroundLevel level = world::ground_level(world(), i, config_.avatar_class);
-        if (level.zone == nullptr) continue;
-        const world::CellRows legal = graph::legal_rows(level);
-        const TileFloor floor{summary, level.view, x, z};
-        const world::CellRows rows =
-            is_area ? cells_in(floor, solid.prism)
-                    : blocked_cells(floor, avatar, solid.prism, solid.triangles, legal.data());
-        for (size_t row = 0; row < rows.size(); ++row) {
-          if ((rows[row] & legal[row]) != 0) return true;
-        }
-      }
+      if (touches_tile(solid, is_area, x, z)) return true;
+    }
+  }
+  return false;
+}
+
+bool GroundView::touches_tile(const Solid& solid, bool is_area, int32_t x, int32_t z) const {
+  const WorldSummary& summary = world().summary;
+  const AvatarClass& avatar = summary.classes[static_cast<size_t>(config_.avatar_class)];
+  const auto tile = world().tile_levels(x, z);
+  for (uint32_t i = tile.first; i < tile.last; ++i) {
+    const world::GroundLevel level = world::ground_level(world(), i, config_.avatar_class);
+    if (level.zone == nullptr) continue;
+    const world::CellRows legal = graph::legal_rows(level);
+    const TileFloor floor{summary, level.view, x, z};
+    const world::CellRows rows =
+        is_area ? cells_in(floor, solid.prism)
+                : blocked_cells(floor, avatar, solid.prism, solid.triangles, legal.data());
+    for (size_t row = 0; row < rows.size(); ++row) {
+      if ((rows[row] & legal[row]) != 0) return true;
     }
   }
   return false;

@@ -59,8 +59,9 @@ class GroundView final : public PortalSource {
   [[nodiscard]] int32_t avatar_class() const { return config_.avatar_class; }
   [[nodiscard]] int32_t step() const { return step_; }
 
-  /// Rises where a change concerns what a search may have seen: levels that were made and those
-  /// beside them, off-mesh links, costs.
+  /// Rises where a change concerns what a search may have seen: cells of tiles whose levels, or
+  /// those beside them, were made, off-mesh links, costs of ground that was made. Also where a cost
+  /// changes what searches go by from their beginning: is_plain() or min_factor().
   [[nodiscard]] uint64_t version() const { return version_; }
   /// Without legal cells if its zone cannot be used.
   const ViewLevel* level(uint32_t index);
@@ -99,6 +100,7 @@ class GroundView final : public PortalSource {
   /// No path costs less than its length in the plane times this.
   [[nodiscard]] double min_factor() const { return std::min(min_factor_, min_link_factor_); }
   void set_area_cost(uint8_t kind, double cost);
+  [[nodiscard]] double area_cost(uint8_t kind) const { return area_cost_[kind]; }
 
   /// An off-mesh link in one direction, as long as the change is active.
   struct OffMeshLinkEnd {
@@ -111,12 +113,16 @@ class GroundView final : public PortalSource {
     uint32_t level = 0;  // from which it leads
     OffMeshLinkEnd end;
   };
+  struct TileNear {
+    int64_t tile = 0;
+    std::optional<bool> is_touched;  // touches_tile(), once that was asked
+  };
   struct Change {
     bool active = true, removed = false;
     bool is_area = false;
     uint8_t kind = 0;
     Solid solid;                      // of an area: its prism
-    std::vector<int64_t> tiles;       // that it touches
+    std::vector<TileNear> tiles;      // that it may touch
     std::vector<LevelLinkEnd> links;  // of an off-mesh link
   };
   ChangeId add(Change change);
@@ -133,9 +139,9 @@ class GroundView final : public PortalSource {
   /// Would an obstacle or an area change any cell where the class may stand? Time: the tiles that
   /// it touches.
   [[nodiscard]] bool touches(const Solid& solid, bool is_area) const;
-  /// Does a change touch a tile, active or not?
+  /// May a change touch a tile, active or not?
   [[nodiscard]] bool is_changed(int32_t tile_x, int32_t tile_z) const;
-  /// Does a line lead over a tile that a change touches, active or not?
+  /// Does a line lead over a tile that a change may touch, active or not?
   [[nodiscard]] bool is_changed_on(world::GroundPoint from, world::GroundPoint to) const;
 
   /// As world/walk.h needs it.
@@ -181,6 +187,10 @@ class GroundView final : public PortalSource {
   void drop_border(const ViewLevel& level, int32_t toward_x, int32_t toward_z);
   void drop(ViewLevel& level);
   void drop_unused_corners();
+  [[nodiscard]] bool touches_tile(const Solid& solid, bool is_area, int32_t x, int32_t z) const;
+  [[nodiscard]] bool is_seen(int64_t tile) const;
+  [[nodiscard]] bool has_made(uint8_t kind) const;
+  void forget(Change& change);
   void forget(int64_t tile);
   void switch_link(const LevelLinkEnd& link, bool active);
   void find_min_link_factor();

@@ -367,14 +367,20 @@ class THRONG_API PathFinder {
   /// take-off and rows of the overlay that obstacles have changed are not counted, and each is done
   /// in one go. If this finder is asked for another path in between, the query begins again: use a
   /// copy for that. It also begins again if edits change what it may have seen, but not for
-  /// kinematic obstacles, nor for static ones where the class has no place. This happens four times
-  /// at most. Then it goes on over the world as it was when it last began, so that it ends even if
-  /// a crate moves in each frame; what has come up since may cut the path. Once it has ended, or
-  /// without begin, advance returns true and nothing is found.
+  /// kinematic obstacles, nor for static ones where the class has no place, nor for areas while all
+  /// kinds cost 1, nor for costs of kinds that no ground has. With kOnDemand it is not known which
+  /// kinds there are: a cost counts if searched ground has it, and if it is the first or the last
+  /// that differs from 1, or changes the least of all. This happens four times at most, also if
+  /// edits were applied for is_free, find_node_place, random_point, take_off or landing. Then it
+  /// goes on over the world as it was when it last began, so that it ends even if a crate moves in
+  /// each frame; what has come up since may cut the path. From then until it has ended, these five
+  /// answer for the world of that time, too. Once it has ended, or without begin, advance returns
+  /// true and nothing is found.
   void begin(const PathQuery& query);
   bool advance(uint64_t max_nodes, Path& path);
 
-  /// Could a path begin or end there now? `tolerance` as in PathQuery. [m]
+  /// Could a path begin or end there now? Until a query in parts has ended that no longer follows
+  /// edits (begin): in the world of that query. `tolerance` as in PathQuery. [m]
   [[nodiscard]] bool is_free(const PathPoint& end, double tolerance = 0.5);
   /// The place of the class on nodes nearest to a position in three dimensions, or nowhere if none
   /// is within `search_radius` or the finder has no nodes. [m, m]

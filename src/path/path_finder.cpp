@@ -309,33 +309,66 @@ uint64_t PathFinder::State::finder_version() const {
   return live ? live->version() : 0;
 }
 
-// Where a change was is known from the finder, which has not applied it yet.
+void PathFinder::State::follow_edits_to_look_up() {
+  if (is_begun && !is_disturbed && restarts == kMaxRestarts) return;
+  follow_edits();
+}
+
 bool PathFinder::State::are_on_ground() {
   if (!live) return true;
-  path::GroundView& view = live->state().mesh;
+  // While the costs of all kinds are 1, areas change nothing.
+  bool has_costs = edits().costly_kinds != 0;
+  for (uint8_t kind = 1; kind < edits().area_costs.size(); ++kind)
+    has_costs = has_costs || live->state().mesh.area_cost(kind) != 1;
   bool found = false;
   edits().for_changed(begun_version, [&](const path::EditList::Changed& what) {
     if (found) return;
     if (what.edit == 0) {
-      found = true;
+      found = is_cost_on_ground(what.area);
       return;
     }
     const path::EditList::Edit& edit = edits().edits[what.edit - 1];
     if (!edit.bears_on_paths()) return;
     if (edit.kind == path::EditList::Kind::kOffMeshLink) {
       found = !path::is_over_nodes(edit.link);
-      return;
+    } else {
+      found = (edit.is_obstacle() || has_costs) && is_on_ground(what.edit);
     }
-    const path::ChangeId own = applied.own(what.edit);
-    const bool was = own != 0 && view.change(own).active;
-    found = (was && view.touches(view.change(own).solid, !edit.is_obstacle())) ||
-            (edit.active && view.touches(edit.solid(), !edit.is_obstacle()));
   });
   return found;
 }
 
+// Which kinds the bake gave is known from a mesh alone: `live` has read only a part of the ground.
+bool PathFinder::State::is_cost_on_ground(uint8_t kind) {
+  const path::GroundView& view = live->state().mesh;
+  if (view.area_cost(kind) == edits().area_costs[kind]) return false;
+  if (!mesh || (baked_kinds() >> kind & 1) != 0) return true;
+  const std::vector<path::EditList::Edit>& all = edits().edits;
+  for (EditId id = 1; id <= all.size(); ++id) {
+    const path::EditList::Edit& edit = all[id - 1];
+    if (edit.kind == path::EditList::Kind::kArea && edit.area == kind && is_on_ground(id))
+      return true;
+  }
+  return false;
+}
+
+// Where a change was is known from the finder, which may not have applied it yet.
+bool PathFinder::State::is_on_ground(EditId id) {
+  const path::GroundView& view = live->state().mesh;
+  const path::EditList::Edit& edit = edits().edits[id - 1];
+  const path::ChangeId own = applied.own(id);
+  const bool was = own != 0 && view.change(own).active;
+  return (was && view.touches(view.change(own).solid, !edit.is_obstacle())) ||
+         (edit.active && view.touches(edit.solid(), !edit.is_obstacle()));
+}
+
 bool PathFinder::State::must_begin_again() {
-  if (is_disturbed || finder_version() != begun_finder) return true;
+  if (is_disturbed) return true;
+  if (finder_version() != begun_finder) {
+    // A look-up has followed edits, or a path that was found without a search of this finder.
+    restarts = std::min(restarts + 1, kMaxRestarts);
+    return true;
+  }
   if (begun_version == edits().version() || restarts == kMaxRestarts) return false;
   const bool concern = config.space != PathSpace::kGround || are_on_ground();
   begun_version = edits().version();
@@ -416,43 +449,38 @@ bool PathFinder::State::advance_on_ground(path::Slice& slice, Path& path) {
 bool PathFinder::is_free(const PathPoint& end, double tolerance) {
   State& s = *state_;
   if (is_nowhere(end)) return false;
-  if (s.flight) {
-    s.applied.follow(s.edits(), *s.flight);
-    return s.flight->is_end(position_of(end), tolerance);
-  }
-  if (s.nodes) {
-    s.applied.follow(s.edits(), *s.nodes);
-    return s.nodes->is_free(s.node_place_of(end, tolerance));
-  }
+  s.follow_edits_to_look_up();
+  if (s.flight) return s.flight->is_end(position_of(end), tolerance);
+  if (s.nodes) return s.nodes->is_free(s.node_place_of(end, tolerance));
   const Place place = s.place_of(end, tolerance);
-  return place && s.ground().is_free(place);
+  return place && s.live->is_free(place);
 }
 
 NodePlace PathFinder::find_node_place(const Vec3d& position, double search_radius) {
   State& s = *state_;
   if (!s.nodes) return {};
-  s.applied.follow(s.edits(), *s.nodes);
+  s.follow_edits_to_look_up();
   return s.nodes->find_place(position, search_radius);
 }
 
 std::optional<Vec3d> PathFinder::take_off(const Place& place) {
   State& s = *state_;
   if (!s.flight || !place) return {};
-  s.applied.follow(s.edits(), *s.flight);
+  s.follow_edits_to_look_up();
   return s.flight->take_off(place);
 }
 
 Place PathFinder::landing(const Vec3d& feet) {
   State& s = *state_;
   if (!s.flight) return {};
-  s.applied.follow(s.edits(), *s.flight);
+  s.follow_edits_to_look_up();
   return s.flight->landing(feet);
 }
 
 std::optional<Vec3d> PathFinder::random_point(uint64_t seed, uint64_t n) {
   State& s = *state_;
   if (s.flight) {
-    s.applied.follow(s.edits(), *s.flight);
+    s.follow_edits_to_look_up();
     return s.flight->random_point(seed, n);
   }
   if (s.nodes) {

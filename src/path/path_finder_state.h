@@ -28,7 +28,8 @@ struct PathFinder::State {
 
   // The query in parts. What it has found is the finder's that it searches with, so another query
   // there, or an edit of what it may have seen, makes it begin again. Edits do so kMaxRestarts
-  // times: from then on the finder does not follow them before the query has ended.
+  // times: from then on neither this query nor look-ups make the finder follow them before the
+  // query has ended.
   static constexpr uint32_t kMaxRestarts = 4;
   PathQuery begun;
   bool is_begun = false;
@@ -78,10 +79,17 @@ struct PathFinder::State {
   void begin_on_ground();
   /// Applies edits to the finder that searches.
   void follow_edits();
+  /// The same for what is no query, such as is_free: not if that would keep a query in parts from
+  /// ever ending.
+  void follow_edits_to_look_up();
   /// Rises where these concern what a search of that finder may have seen.
   [[nodiscard]] uint64_t finder_version() const;
-  /// Do edits since begun_version change a place of the ground, a link, or a cost?
+  /// Do edits since begun_version change a place of the ground, a link, or a cost of some ground?
   [[nodiscard]] bool are_on_ground();
+  /// Does an area's cost differ from the one that `live` knows, and may some ground have it?
+  [[nodiscard]] bool is_cost_on_ground(uint8_t kind);
+  /// Does an edit of an obstacle or an area change cells, from what `live` knows to what is now?
+  [[nodiscard]] bool is_on_ground(EditId id);
   bool must_begin_again();
   bool advance_on_ground(path::Slice& slice, Path& path);
   void begin();

@@ -225,38 +225,100 @@ TEST(QueryParts, EditsThatDoNotBearOnThemDoNotDisturbThem) {
   }
 }
 
+// Areas while all kinds cost 1, and costs of a kind that no place has: changed before each call.
+TEST(QueryParts, CostsThatNoGroundHasDoNotDisturbThem) {
+  Stage s(builtin({.name = "garage", .size = 45, .levels = 2}));
+  const EditId area = need(s.edits.add_area(Prism::box({-1, -9, -1}, {60, 20, 60}), 3));
+  need(s.edits.add_area(Prism::box({-1, 900, -1}, {60, 901, 60}), 9));
+  for (const int32_t c : {kAdult, kClimber}) {
+    // The baked mesh of adults knows which kinds there are.
+    PathFinder finder = need(PathFinder::create(
+        s.world, {.avatar_class = c, .nodes = s.nodes, .edits = s.edits}, s.context));
+    Path quiet, parts;
+    for (const bool is_cost : {false, true}) {
+      uint64_t many = 0;
+      for (uint64_t n = 0; n < 10; ++n) {
+        const PathQuery query = s.query(finder, c, n);
+        finder.begin(query);
+        uint64_t calls = 1, edited = 0;
+        while (!finder.advance(3, quiet)) ++calls;
+        finder.begin(query);
+        for (bool ended = false; !ended && edited <= calls; ++edited) {
+          if (is_cost) {
+            need(s.edits.set_area_cost(9, edited % 2 == 0 ? 2 : 3));
+          } else {
+            EXPECT_TRUE(s.edits.set_active(area, edited % 2 != 0));
+          }
+          ended = finder.advance(3, parts);
+        }
+        EXPECT_EQ(edited, calls) << "class " << c << ", query " << n << ", costs " << is_cost;
+        expect_same(quiet, parts);
+        many += calls > 5;
+      }
+      EXPECT_GT(many, 2u) << c;
+    }
+    // Costs of ground do.
+    EXPECT_TRUE(s.edits.set_active(area, true));
+    uint64_t again = 0;
+    for (uint64_t n = 0; n < 10; ++n) {
+      finder.begin(s.query(finder, c, n));
+      if (finder.advance(2, parts)) continue;
+      need(s.edits.set_area_cost(3, 5));
+      if (!finder.advance(1, parts)) {
+        EXPECT_EQ(parts.nodes, 1u) << "class " << c << ", query " << n;
+        ++again;
+      }
+      need(s.edits.set_area_cost(3, 1));
+    }
+    EXPECT_GT(again, 0u) << c;
+    need(s.edits.set_area_cost(9, 1));
+  }
+}
+
 // A crate beside the start moves before each call. After four restarts the query does not follow it
-// any more, and finds the path of that time.
+// any more, and finds the path of that time; look-ups in between do not make it begin again either.
 TEST(QueryParts, EndWhateverMovesInEachFrame) {
   Stage s(two_halls());
-  const auto crate_at = [](uint64_t n) {
-    const double x = 3 + 0.3 * static_cast<double>(n % 8);
-    return Prism::box({x, -0.1, 5}, {x + 0.8, 2.5, 6});
+  const auto corner_of = [](uint64_t n) {
+    return Vec3d{3 + 0.3 * static_cast<double>(n % 8), -0.1, 5};
+  };
+  const auto crate_at = [&](uint64_t n) {
+    return Prism::box(corner_of(n), corner_of(n) + Vec3d{0.8, 2.6, 1});
   };
   for (const int32_t c : {kAdult, kFlyer, kClimber}) {
-    const EditId crate = need(s.edits.add_obstacle(crate_at(0)));
-    PathFinder finder = s.finder(c), other = s.finder(c);
-    // The door between the halls is too narrow for climbers.
-    const PathQuery query{.from = Vec3d{2, 0, 6}, .to = Vec3d{c == kClimber ? 8.0 : 18.0, 0, 6}};
-    Path whole, parts;
-    finder.begin(query);
-    uint64_t calls = 1, restarts = 0;
-    for (bool ended = finder.advance(1, parts); !ended; ++calls) {
-      ASSERT_LT(calls, 100'000u);
-      need(s.edits.move_obstacle(crate, crate_at(calls)));
-      if (restarts < 4) other.find(query, whole);
-      const uint64_t before = parts.nodes;
-      ended = finder.advance(1, parts);
-      restarts += !ended && parts.nodes <= before;
+    for (const bool looks_up : {false, true}) {
+      SCOPED_TRACE(testing::Message() << "class " << c << (looks_up ? ", looks up" : ""));
+      const EditId crate = need(s.edits.add_obstacle(crate_at(0)));
+      PathFinder finder = s.finder(c), other = s.finder(c);
+      // The door between the halls is too narrow for climbers.
+      const PathQuery query{.from = Vec3d{2, 0, 6}, .to = Vec3d{c == kClimber ? 8.0 : 18.0, 0, 6}};
+      Path whole, parts;
+      finder.begin(query);
+      uint64_t calls = 1, restarts = 0;
+      for (bool ended = finder.advance(1, parts); !ended; ++calls) {
+        ASSERT_LT(calls, 100'000u);
+        need(s.edits.move_obstacle(crate, crate_at(calls)));
+        if (restarts < 4) other.find(query, whole);
+        if (looks_up) {
+          ASSERT_TRUE(finder.is_free(query.to));
+        }
+        const uint64_t before = parts.nodes;
+        ended = finder.advance(1, parts);
+        restarts += !ended && parts.nodes <= before;
+      }
+      EXPECT_EQ(restarts, 4u);
+      EXPECT_EQ(parts.end, PathEnd::kReached);
+      expect_same(whole, parts);
+      // From now on it knows where the crate is.
+      const Vec3d corner = corner_of(calls - 1);
+      const Vec3d inside{corner.x + 0.4, 0, corner.z + 0.5};
+      EXPECT_EQ(finder.is_free(inside), other.is_free(inside));
+      EXPECT_TRUE(c == kClimber || !finder.is_free(inside));
+      finder.find(query, parts);
+      other.find(query, whole);
+      expect_same(whole, parts);
+      EXPECT_TRUE(s.edits.remove(crate));
     }
-    EXPECT_EQ(restarts, 4u) << c;
-    EXPECT_EQ(parts.end, PathEnd::kReached) << c;
-    expect_same(whole, parts);
-    // The next one knows where the crate is.
-    finder.find(query, parts);
-    other.find(query, whole);
-    expect_same(whole, parts);
-    EXPECT_TRUE(s.edits.remove(crate));
   }
 }
 

@@ -110,7 +110,7 @@ class LinkMode final : public Mode, public TakesLinks {
   [[nodiscard]] bool lands_on(const Body& body, const CrowdObstacle& obstacle) const;
 
   // link_turns.cpp
-  [[nodiscard]] int32_t room_of(const Body& body) const;
+  [[nodiscard]] int32_t room_of(int32_t radius) const;
   bool begin_to_wait(Body& body, const PathPoint& start, const PathPoint& end);
   [[nodiscard]] bool is_beside_a_link(const Body& body, const Stand& at) const;
   void stand_aside(Body& body, LinkUse& use) const;

@@ -45,8 +45,9 @@ void LinkMode::ask_for_room(std::span<Body> bodies) {
     const auto ask_at = [&](const Stand& at) {
       (void)near_.any_near(at.x, at.z, [&](uint32_t i) {
         Body& other = bodies[i];
-        const bool stands_there = nearer_than(other.x - at.x, other.z - at.z, room_of(other)) &&
-                                  other.y < at.y + body.height && at.y < other.y + other.height;
+        const bool stands_there =
+            nearer_than(other.x - at.x, other.z - at.z, room_of(other.radius)) &&
+            other.y < at.y + body.height && at.y < other.y + other.height;
         if (stands_there && may_give_room(other)) give_room(other, use, at);
         return false;
       });

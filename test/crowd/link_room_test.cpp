@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 
 #include "baked.h"
 #include "crowds.h"
@@ -45,6 +46,80 @@ TEST(CrowdLinkRoom, NarrowAvatarsAreAskedAtTheSameMargin) {
     crowd.set_goals({&waiting, 1}, {&goal, 1});
     for (int step = 0; step < 60; ++step) crowd.step();
     EXPECT_GT(distance_of(crowd, resting, end), 0.02 + 0.02 + 0.1) << i;
+  }
+}
+
+// It searches in each step, because costs change, or because an obstacle changes the flow field of
+// its target. Afterwards it is back.
+TEST(CrowdLinkRoom, OneThatSearchesInEachStepGivesRoom) {
+  const World world = gap();
+  for (const bool by_flow : {false, true}) {
+    for (const bool at_start : {true, false}) {
+      Edits edits;
+      Oracle oracle{world, {{at(world, 9, 5), at(world, 13, 5), 4, true}}};
+      add_link(edits, oracle.links[0]);
+      const auto area = edits.add_area(Prism::box({0, -1, 0}, {2, 1, 2}), 1);
+      const auto crate = edits.add_obstacle(Prism::box({0.5, 0, 9}, {1, 1, 9.5}));
+      ASSERT_TRUE(area && crate);
+      Crowd crowd = made(world, {.edits = edits});
+      const Place end = at(world, at_start ? 9 : 13, 5);
+      const AvatarId resting = walker(crowd, at(world, at_start ? 7 : 15, 7), end);
+      if (by_flow) {
+        const Vec3d& p = end.position;
+        const Prism there = Prism::box({p.x - 0.2, -1, p.z - 0.2}, {p.x + 0.2, 1, p.z + 0.2});
+        Context context;
+        const auto target = crowd.add_target({&there, 1}, context);
+        ASSERT_TRUE(target);
+        crowd.set_targets({&resting, 1}, *target);
+      }
+      ASSERT_GT(steps_until(crowd, oracle, 1, 100), 0);
+      for (int i = 0; i < 4; ++i) walker(crowd, at(world, 2 + i, 3 + i), at(world, 17 + i, 3 + i));
+      uint64_t arrived = 0;
+      int steps_left = 60;  // after the last has arrived
+      for (int step = 0; step < 1200 && steps_left > 0; ++step) {
+        if (by_flow) {
+          EXPECT_TRUE(edits.set_active(*crate, step % 2 == 0));
+        } else {
+          EXPECT_TRUE(edits.set_area_cost(1, 1.5 + step % 2));
+        }
+        arrived += crowd.step().arrived;
+        oracle.look(crowd, step);
+        if (HasFatalFailure()) return;
+        if (arrived >= 4) --steps_left;
+      }
+      EXPECT_EQ(arrived, 4u) << by_flow << ' ' << at_start;
+      EXPECT_LT(distance_of(crowd, resting, end), 0.5) << by_flow << ' ' << at_start;
+    }
+  }
+}
+
+// It gives room at the far end as long as the gap is closed.
+TEST(CrowdLinkRoom, OneThatGivesRoomTakesAnotherGoal) {
+  const World world = gap();
+  for (const bool by_target : {false, true}) {
+    Edits edits;
+    Oracle oracle{world, {{at(world, 9, 5), at(world, 13, 5), 4, false}}};
+    add_link(edits, oracle.links[0]);
+    Crowd crowd = made(world, {.edits = edits});
+    const Place end = at(world, 13, 5), goal = at(world, 18, 2);
+    const AvatarId resting = walker(crowd, at(world, 15, 7), end);
+    ASSERT_GT(steps_until(crowd, oracle, 1, 100), 0);
+    close_gap(crowd, edits);
+    const AvatarId waiting = walker(crowd, at(world, 7, 5), at(world, 19, 5));
+    for (int step = 0; step < 100; ++step) crowd.step();
+    ASSERT_GT(distance_of(crowd, resting, end), 0.5) << "it has stood aside";
+    if (by_target) {
+      Context context;
+      const Prism there = Prism::box({17.5, -1, 1.5}, {18.5, 1, 2.5});
+      const auto target = crowd.add_target({&there, 1}, context);
+      ASSERT_TRUE(target);
+      crowd.set_targets({&resting, 1}, *target);
+    } else {
+      crowd.set_goals({&resting, 1}, {&goal, 1});
+    }
+    EXPECT_GT(steps_until(crowd, oracle, 1, 150), 0) << by_target;
+    EXPECT_LT(distance_of(crowd, resting, goal), 1) << by_target;
+    EXPECT_LT(crowd.read(waiting)->position.x, 10) << "it still waits";
   }
 }
 

@@ -114,6 +114,7 @@ class LinkMode final : public Mode, public TakesLinks {
   bool begin_to_wait(Body& body, const PathPoint& start, const PathPoint& end);
   [[nodiscard]] bool is_beside_a_link(const Body& body, const Stand& at) const;
   void stand_aside(Body& body, LinkUse& use) const;
+  void stand_aside_again(Body& body, LinkUse& use) const;
   void stop_standing(Body& body, const LinkUse& use) const;
   void give_turn(Body& body, LinkUse& use) const;
   void end_use(Body& body, LinkUse& use) const;
@@ -131,6 +132,8 @@ class LinkMode final : public Mode, public TakesLinks {
   void give_room(Body& body, const LinkUse& to, const Stand& at);
   void ask_for_room(std::span<Body> bodies);
   void end_giving_room(std::span<Body> bodies);
+  /// Of one that gets another goal.
+  void stop_giving_room(const Body& body);
 
   // link_step.cpp
   void add_users();

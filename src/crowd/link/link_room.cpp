@@ -57,6 +57,11 @@ void LinkMode::ask_for_room(std::span<Body> bodies) {
   }
 }
 
+void LinkMode::stop_giving_room(const Body& body) {
+  if (uses_.empty() || uses_[body.slot].state != LinkUse::kGivesRoom) return;
+  uses_[body.slot] = {};
+}
+
 // Those that gave room go back once none uses the link in that direction.
 void LinkMode::end_giving_room(std::span<Body> bodies) {
   for (Link& link : links_) link.is_used = {};

@@ -124,12 +124,14 @@ bool LinkMode::plan_at_start(Body& body, const Route& route, const StrideGround&
 void LinkMode::begin_search(Body& body) { stop_standing(body, uses_[body.slot]); }
 
 // One that searches in each step, because its goal moves or costs change, keeps its turn and the
-// place where it waits, as long as it takes the same link.
+// place where it waits, as long as it takes the same link; or goes on giving room, wherever its
+// path leads.
 void LinkMode::end_search(Body& body, const Route* found) {
   LinkUse& use = uses_[body.slot];
   if (use.state == LinkUse::kNone) return;
-  const bool stays = use.state != LinkUse::kGivesRoom && found != nullptr && found->by_link != 0 &&
-                     find_link(use.link) != nullptr &&
+  const bool goes_on = found != nullptr && find_link(use.link) != nullptr;
+  if (goes_on && use.state == LinkUse::kGivesRoom) return stand_aside_again(body, use);
+  const bool stays = goes_on && found->by_link != 0 &&
                      same(use.from, found->corners[found->count - 2u]) &&
                      same(use.to, found->corners[found->count - 1u]);
   if (!stays) {
@@ -200,6 +202,13 @@ void LinkMode::stand_aside(Body& body, LinkUse& use) const {
     }
     if (least < HUGE_VALF) return;
   }
+}
+
+// It keeps its detour, as one on foot does that searches.
+void LinkMode::stand_aside_again(Body& body, LinkUse& use) const {
+  const float detour_angle = body.detour_angle;
+  stand_aside(body, use);
+  body.detour_angle = detour_angle;
 }
 
 void LinkMode::give_turn(Body& body, LinkUse& use) const {

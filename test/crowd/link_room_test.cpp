@@ -123,5 +123,53 @@ TEST(CrowdLinkRoom, OneThatGivesRoomTakesAnotherGoal) {
   }
 }
 
+// The wide one is added after the one at the end has stood aside for a narrow one.
+TEST(CrowdLinkRoom, WiderAvatarsThatComeLaterGetRoomToo) {
+  const World world = gap();
+  Edits edits;
+  Oracle oracle{world, {{at(world, 9, 5), at(world, 13, 5), 4, false}}};
+  add_link(edits, oracle.links[0]);
+  Crowd crowd = made(world, {.edits = edits});
+  const Place end = at(world, 13, 5), goal = at(world, 18, 8);
+  const AvatarId resting = walker(crowd, at(world, 15, 7), end);
+  ASSERT_GT(steps_until(crowd, oracle, 1, 100), 0);
+  const EditId crate = close_gap(crowd, edits);
+  walker(crowd, at(world, 7, 5), at(world, 18, 2));
+  for (int step = 0; step < 60; ++step) crowd.step();
+  const double aside = distance_of(crowd, resting, end);
+  ASSERT_GT(aside, 0.5);
+  ASSERT_LT(aside, 0.9) << "a wide one has no room there";
+  const AvatarId wide = added(crowd, at(world, 4, 5), {.radius = 0.7});
+  ASSERT_TRUE(wide);
+  crowd.set_goals({&wide, 1}, {&goal, 1});
+  for (int step = 0; step < 100; ++step) crowd.step();
+  EXPECT_TRUE(edits.remove(crate));
+  EXPECT_GT(steps_until(crowd, oracle, 2, 600), 0);
+  EXPECT_LT(distance_of(crowd, wide, goal), 0.5);
+}
+
+// Crates on three sides of the end leave no place that is clear of the link.
+TEST(CrowdLinkRoom, OneThatFoundNoPlaceTriesAgain) {
+  const World world = gap();
+  Edits edits;
+  Oracle oracle{world, {{at(world, 9, 5), at(world, 13, 5), 4, false}}};
+  add_link(edits, oracle.links[0]);
+  Crowd crowd = made(world, {.edits = edits});
+  const Place end = at(world, 13, 5);
+  const AvatarId resting = walker(crowd, end, end);
+  ASSERT_GT(steps_until(crowd, oracle, 1, 10), 0);
+  put_up(crowd, edits, Prism::box({12, 0, 4.2}, {13.8, 1, 4.4}));
+  put_up(crowd, edits, Prism::box({12, 0, 5.6}, {13.8, 1, 5.8}));
+  const EditId beyond = put_up(crowd, edits, Prism::box({13.6, 0, 4.2}, {13.8, 1, 5.8}));
+  ASSERT_TRUE(crowd.obstacle(beyond)->is_up());
+  const AvatarId waiting = walker(crowd, at(world, 7, 5), end);
+  for (int step = 0; step < 100; ++step) EXPECT_EQ(crowd.step().arrived, 0u);
+  ASSERT_LT(distance_of(crowd, resting, end), 0.3);
+  ASSERT_LT(crowd.read(waiting)->position.x, 10);
+  EXPECT_TRUE(edits.remove(beyond));
+  EXPECT_GT(steps_until(crowd, oracle, 1, 200), 0);
+  EXPECT_LT(distance_of(crowd, waiting, end), 0.4);
+}
+
 }  // namespace
 }  // namespace throng::links

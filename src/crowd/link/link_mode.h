@@ -130,6 +130,7 @@ class LinkMode final : public Mode, public TakesLinks {
   // link_room.cpp
   [[nodiscard]] bool may_give_room(const Body& body) const;
   void give_room(Body& body, const LinkUse& to, const Stand& at);
+  void ask_again(const Body& body);
   void ask_for_room(std::span<Body> bodies);
   void end_giving_room(std::span<Body> bodies);
   /// Of one that gets another goal.

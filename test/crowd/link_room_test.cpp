@@ -4,8 +4,14 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <vector>
 
 #include "baked.h"
+#include "core/hash.h"
+#include "crowd/ground/body.h"
+#include "crowd/link/link_use.h"
+#include "crowd/mode/shared_state.h"
 #include "crowds.h"
 #include "links.h"
 #include "throng/crowd.h"
@@ -169,6 +175,116 @@ TEST(CrowdLinkRoom, OneThatFoundNoPlaceTriesAgain) {
   EXPECT_TRUE(edits.remove(beyond));
   EXPECT_GT(steps_until(crowd, oracle, 1, 200), 0);
   EXPECT_LT(distance_of(crowd, waiting, end), 0.4);
+}
+
+// The part of a saved crowd that is such a row, whatever lies before it.
+template <class Row>
+struct SavedRow {
+  size_t at = 0;
+  Row row;
+
+  template <class Test>
+  SavedRow(const std::vector<uint8_t>& saved, Test test) {
+    int found = 0;
+    for (size_t i = 0; i + sizeof(Row) <= saved.size(); i += 4) {
+      Row here;
+      std::memcpy(&here, saved.data() + i, sizeof here);
+      if (!test(here)) continue;
+      at = i;
+      row = here;
+      ++found;
+    }
+    EXPECT_EQ(found, 1);
+  }
+};
+
+// Is a crowd restored in which these bytes are others, and its checksum is right?
+struct Forgery {
+  const World& world;
+  const Edits& edits;
+  const std::vector<uint8_t>& saved;
+
+  template <class Row>
+  [[nodiscard]] bool is_accepted(size_t at, const Row& row) const {
+    std::vector<uint8_t> forged = saved;
+    std::memcpy(forged.data() + at, &row, sizeof row);
+    const uint64_t sum = hash_bytes(forged.data(), forged.size() - 8);
+    std::memcpy(forged.data() + forged.size() - 8, &sum, 8);
+    Context context;
+    const auto restored = Crowd::restore(world, {.edits = edits}, forged, context);
+    if (!restored) {
+      EXPECT_EQ(restored.error().code, Errc::kBadFile);
+    }
+    return static_cast<bool>(restored);
+  }
+};
+
+// One gives room at the far end of a link, and one waits for it.
+TEST(CrowdLinkRoom, SavedRowsThatNoCrowdHasAreRefused) {
+  using crowd::Body;
+  using crowd::LinkUse;
+  const World world = gap();
+  Edits edits;
+  Oracle oracle{world, {{at(world, 9, 5), at(world, 13, 5), 4, false}}};
+  const EditId link = add_link(edits, oracle.links[0]);
+  Crowd crowd = made(world, {.edits = edits});
+  const AvatarId resting = walker(crowd, at(world, 15, 7), at(world, 13, 5));
+  ASSERT_GT(steps_until(crowd, oracle, 1, 100), 0);
+  close_gap(crowd, edits);
+  walker(crowd, at(world, 7, 5), at(world, 19, 5));
+  uint64_t steps = 0;
+  for (int step = 0; step < 60; ++step) steps = crowd.step().step;
+  const std::vector<uint8_t> saved = crowd.save();
+  const Forgery forgery{world, edits, saved};
+  for (const LinkUse::State state : {LinkUse::kGivesRoom, LinkUse::kWaits}) {
+    const SavedRow<LinkUse> use(saved, [&](const LinkUse& row) {
+      return row.state == state && row.link == link && row.back == 0 && row.stands == 1 &&
+             row.along == 0 && row.factor > 0.999f && row.factor <= 1;
+    });
+    const auto is_accepted = [&](auto change) {
+      LinkUse row = use.row;
+      change(row);
+      return forgery.is_accepted(use.at, row);
+    };
+    constexpr uint64_t kUnits = crowd::SharedState::kTimeUnits;
+    EXPECT_TRUE(is_accepted([](LinkUse& /*row*/) {}));
+    EXPECT_TRUE(is_accepted([&](LinkUse& row) { row.since = (steps + 1) * kUnits - 1; }));
+    EXPECT_FALSE(is_accepted([&](LinkUse& row) { row.since = (steps + 1) * kUnits; }));
+    EXPECT_FALSE(is_accepted([](LinkUse& row) { row.since = UINT64_MAX; }));
+    EXPECT_FALSE(is_accepted([](LinkUse& row) { row.stands = 2; }));
+    EXPECT_FALSE(is_accepted([](LinkUse& row) { row.arrived = 2; }));
+  }
+  const SavedRow<Body> body(saved, [&](const Body& row) {
+    return row.slot == resting.slot1 - 1 && row.speed == 1.34f && row.height == 1750 &&
+           row.has(Body::kArrived) && row.has(Body::kHasGoal);
+  });
+  Body other = body.row;
+  EXPECT_TRUE(forgery.is_accepted(body.at, other));
+  other.clear(Body::kHasGoal);
+  EXPECT_FALSE(forgery.is_accepted(body.at, other));
+  other = body.row;
+  other.clear(Body::kArrived);
+  EXPECT_FALSE(forgery.is_accepted(body.at, other));
+  other = body.row;
+  other.flags |= Body::kExternal;
+  EXPECT_FALSE(forgery.is_accepted(body.at, other));
+}
+
+// Its times would wrap.
+TEST(CrowdLinkRoom, ASavedCrowdAfterTooManyStepsIsRefused) {
+  const World world = gap();
+  const Edits edits;
+  Crowd crowd = made(world, {.edits = edits});
+  walker(crowd, at(world, 3, 5), at(world, 7, 5));
+  for (int step = 0; step < 3; ++step) crowd.step();
+  const std::vector<uint8_t> saved = crowd.save();
+  constexpr size_t kAtStep = 48;  // bytes of the header before it
+  uint64_t step = 0;
+  std::memcpy(&step, saved.data() + kAtStep, sizeof step);
+  ASSERT_EQ(step, 3u);
+  const Forgery forgery{world, edits, saved};
+  EXPECT_TRUE(forgery.is_accepted(kAtStep, (uint64_t{1} << 43) - 1));
+  EXPECT_FALSE(forgery.is_accepted(kAtStep, uint64_t{1} << 43));
 }
 
 }  // namespace

@@ -309,6 +309,12 @@ bool LinkMode::is_sound(const Body& body) const {
   if (body.has(Body::kMovedElsewhere) != rides || body.climbs || shared_.flies(body.avatar_class)) {
     return false;
   }
+  if (use.since / SharedState::kTimeUnits > shared_.step || use.stands > 1 || use.arrived > 1) {
+    return false;
+  }
+  constexpr uint8_t kRests = Body::kArrived | Body::kHasGoal;
+  const bool rests = (body.flags & (kRests | Body::kExternal)) == kRests;
+  if (use.state == LinkUse::kGivesRoom && !rests) return false;
   const world::WorldData& world = *data_of(shared_.world);
   const auto is_place = [&](const Stand& at) {
     constexpr int32_t kMaxHeight = 1'000'000'000;  // [mm]

@@ -267,12 +267,14 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
   if (sum != hash_bytes(saved.data(), saved.size() - 8)) {
     return bad("is corrupt; save the crowd again");
   }
+  // Times, of which a step has many units, do not wrap while the crowd goes on.
+  constexpr uint64_t kMaxStep = UINT64_MAX / 2 / crowd::SharedState::kTimeUnits;
   const auto may_be = [](int32_t widest, int32_t tallest) {
     return widest >= 0 && widest <= kMaxExtent && tallest >= 0 && tallest <= kMaxExtent;
   };
   if (!may_be(head.extent.widest, head.extent.tallest) || head.extent.narrowest <= 0 ||
       !may_be(head.taking_widest, head.taking_tallest) ||
-      !(head.fastest >= 0 && head.fastest <= 100)) {
+      !(head.fastest >= 0 && head.fastest <= 100) || head.step > kMaxStep) {
     return bad("is not sound; save the crowd again");
   }
   return head;
@@ -417,6 +419,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   s.edits_version = head.edits_version;
   s.slot1_of_edit.assign(s.shared.edits().edits.size(), 0);
   s.where.assign(head.slots, kNoBody);
+  s.shared.step = head.step;
   bool sound = are_sound(bodies, head, s);
   auto all = obstacles_of(arrays.obstacles, arrays.corners, s.shared.edits(), s.slot1_of_edit);
   sound =
@@ -448,7 +451,6 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
       std::any_of(bodies.begin(), bodies.end(), [](const crowd::Body& b) { return b.leaves; });
   // (Opening a class made them from the current ground.)
   s.walk.set_flows_old(head.flows_are_old != 0);
-  s.shared.step = head.step;
   s.shared.sub_step = head.sub_step;
   s.scattered = head.scattered;
   if (config.edits.version() == 0) {

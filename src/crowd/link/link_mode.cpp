@@ -180,7 +180,7 @@ void LinkMode::add(const NewAvatar& avatar) {
 }
 
 // One that is on a link arrives at its end first. One that waits keeps its turn until it knows
-// whether its new path takes the same link.
+// whether its new path takes the same link. One that gives room has not arrived any more.
 void LinkMode::set_goal(Body& body, const Place& goal) {
   walk_.set_goal(body, goal);
   if (body.on_link) {
@@ -189,10 +189,12 @@ void LinkMode::set_goal(Body& body, const Place& goal) {
   } else if (!uses_.empty() && !body.has(Body::kHasGoal)) {
     uses_[body.slot] = {};
   }
+  stop_giving_room(body);
 }
 
 void LinkMode::set_target(Body& body) {
   if (body.on_link) head_to_end(body);
+  stop_giving_room(body);
 }
 
 void LinkMode::head_to_end(Body& body) const {
@@ -307,6 +309,12 @@ bool LinkMode::is_sound(const Body& body) const {
   if (body.has(Body::kMovedElsewhere) != rides || body.climbs || shared_.flies(body.avatar_class)) {
     return false;
   }
+  if (use.since / SharedState::kTimeUnits > shared_.step || use.stands > 1 || use.arrived > 1) {
+    return false;
+  }
+  constexpr uint8_t kRests = Body::kArrived | Body::kHasGoal;
+  const bool rests = (body.flags & (kRests | Body::kExternal)) == kRests;
+  if (use.state == LinkUse::kGivesRoom && !rests) return false;
   const world::WorldData& world = *data_of(shared_.world);
   const auto is_place = [&](const Stand& at) {
     constexpr int32_t kMaxHeight = 1'000'000'000;  // [mm]

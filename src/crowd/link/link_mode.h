@@ -110,10 +110,11 @@ class LinkMode final : public Mode, public TakesLinks {
   [[nodiscard]] bool lands_on(const Body& body, const CrowdObstacle& obstacle) const;
 
   // link_turns.cpp
-  [[nodiscard]] int32_t room_of(const Body& body) const;
+  [[nodiscard]] int32_t room_of(int32_t radius) const;
   bool begin_to_wait(Body& body, const PathPoint& start, const PathPoint& end);
   [[nodiscard]] bool is_beside_a_link(const Body& body, const Stand& at) const;
   void stand_aside(Body& body, LinkUse& use) const;
+  void stand_aside_again(Body& body, LinkUse& use) const;
   void stop_standing(Body& body, const LinkUse& use) const;
   void give_turn(Body& body, LinkUse& use) const;
   void end_use(Body& body, LinkUse& use) const;
@@ -129,8 +130,11 @@ class LinkMode final : public Mode, public TakesLinks {
   // link_room.cpp
   [[nodiscard]] bool may_give_room(const Body& body) const;
   void give_room(Body& body, const LinkUse& to, const Stand& at);
+  void ask_again(const Body& body);
   void ask_for_room(std::span<Body> bodies);
   void end_giving_room(std::span<Body> bodies);
+  /// Of one that gets another goal.
+  void stop_giving_room(const Body& body);
 
   // link_step.cpp
   void add_users();

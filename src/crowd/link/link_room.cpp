@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <cstddef>
+#include <cstdint>
 
 #include "crowd/link/link_mode.h"
 #include "crowd/walk/step_units.h"
@@ -10,6 +11,11 @@
 // they stand aside while others leave the ground or land there, as those that wait do, and go back
 // to their goals then. Linear in the users of links and in those that rest near the ends.
 namespace throng::crowd {
+namespace {
+
+constexpr uint64_t kPlaceChecks = 16;  // sub-steps
+
+}  // namespace
 
 // Only one that has a goal goes back; one that is externally controlled stays where it is.
 bool LinkMode::may_give_room(const Body& body) const {
@@ -35,6 +41,14 @@ void LinkMode::give_room(Body& body, const LinkUse& to, const Stand& at) {
   came_.push_back(body.slot);
 }
 
+// It stands aside, but nearer than another needs: a wider avatar has come since, or it found no
+// place, or does not get there.
+void LinkMode::ask_again(const Body& body) {
+  LinkUse& use = uses_[body.slot];
+  const bool is_due = (shared_.sub_step + body.slot) % kPlaceChecks == 0;
+  if (use.state == LinkUse::kGivesRoom && is_due) use.stands = 0;
+}
+
 // The start is needed by one whose turn it is, the end before it can be its turn.
 void LinkMode::ask_for_room(std::span<Body> bodies) {
   for (size_t n = 0; n < users_.size(); ++n) {
@@ -45,15 +59,31 @@ void LinkMode::ask_for_room(std::span<Body> bodies) {
     const auto ask_at = [&](const Stand& at) {
       (void)near_.any_near(at.x, at.z, [&](uint32_t i) {
         Body& other = bodies[i];
-        const bool stands_there = nearer_than(other.x - at.x, other.z - at.z, room_of(other)) &&
-                                  other.y < at.y + body.height && at.y < other.y + other.height;
-        if (stands_there && may_give_room(other)) give_room(other, use, at);
+        const bool stands_there =
+            nearer_than(other.x - at.x, other.z - at.z, room_of(other.radius)) &&
+            other.y < at.y + body.height && at.y < other.y + other.height;
+        if (!stands_there) return false;
+        if (may_give_room(other)) {
+          give_room(other, use, at);
+        } else {
+          ask_again(other);
+        }
         return false;
       });
     };
     if (enters) ask_at(use.from);
     ask_at(use.to);
   }
+  for (size_t n = 0; n < users_.size(); ++n) {
+    LinkUse& use = uses_[users_[n]];
+    const bool is_asked = use.state == LinkUse::kGivesRoom && use.stands == 0;
+    if (is_asked) stand_aside_again(bodies[bodies_[n]], use);
+  }
+}
+
+void LinkMode::stop_giving_room(const Body& body) {
+  if (uses_.empty() || uses_[body.slot].state != LinkUse::kGivesRoom) return;
+  uses_[body.slot] = {};
 }
 
 // Those that gave room go back once none uses the link in that direction.

@@ -63,7 +63,9 @@ void LinkMode::find_users(std::span<Body> bodies) {
   users_.resize(kept);
   bodies_.resize(kept);
   if (users_.empty()) return;
-  near_.begin(static_cast<int32_t>(std::min(int64_t{4} * widest_ + 8, int64_t{1} << 30)));
+  // Where all bodies are narrow, those that are asked for room may be farther from an end.
+  const auto width = std::max(int64_t{4} * widest_ + 8, int64_t{room_of(widest_)});
+  near_.begin(static_cast<int32_t>(std::min(width, int64_t{1} << 30)));
   for (size_t n = 0; n < users_.size(); ++n) {
     const LinkUse& use = uses_[users_[n]];
     const Body& body = bodies[bodies_[n]];

@@ -32,11 +32,11 @@ bool same(const Stand& a, const PathPoint& b) {
 
 }  // namespace
 
-// Between the middles of a body that waits and of one at an end. [units]
-int32_t LinkMode::room_of(const Body& body) const {
+// Between the middles of a body of that radius that waits and of one at an end. [units]
+int32_t LinkMode::room_of(int32_t radius) const {
   constexpr double kMax = 1 << 28;  // as wide as no body is
   return static_cast<int32_t>(
-      std::min(kMax, double{1} * body.radius + taking_.widest + kMargin / shared_.unit));
+      std::min(kMax, double{1} * radius + taking_.widest + kMargin / shared_.unit));
 }
 
 bool LinkMode::begin_step() {
@@ -105,7 +105,8 @@ bool LinkMode::plan_at_start(Body& body, const Route& route, const StrideGround&
       body.speed * std::max<double>(shared_.sub_dt(), kBrakingTime) / shared_.unit;
   const float square = near_square(start.x - body.x, start.z - body.z);
   const auto is_near = [&](double count) {
-    const double range = room_of(body) + brakes + kSpread * taking_.widest * std::sqrt(count);
+    const double range =
+        room_of(body.radius) + brakes + kSpread * taking_.widest * std::sqrt(count);
     return square <= static_cast<float>(range * range);
   };
   if (!is_near(static_cast<double>(users_.size()))) return false;  // Few come to look at all links.
@@ -123,12 +124,14 @@ bool LinkMode::plan_at_start(Body& body, const Route& route, const StrideGround&
 void LinkMode::begin_search(Body& body) { stop_standing(body, uses_[body.slot]); }
 
 // One that searches in each step, because its goal moves or costs change, keeps its turn and the
-// place where it waits, as long as it takes the same link.
+// place where it waits, as long as it takes the same link; or goes on giving room, wherever its
+// path leads.
 void LinkMode::end_search(Body& body, const Route* found) {
   LinkUse& use = uses_[body.slot];
   if (use.state == LinkUse::kNone) return;
-  const bool stays = use.state != LinkUse::kGivesRoom && found != nullptr && found->by_link != 0 &&
-                     find_link(use.link) != nullptr &&
+  const bool goes_on = found != nullptr && find_link(use.link) != nullptr;
+  if (goes_on && use.state == LinkUse::kGivesRoom) return stand_aside_again(body, use);
+  const bool stays = goes_on && found->by_link != 0 &&
                      same(use.from, found->corners[found->count - 2u]) &&
                      same(use.to, found->corners[found->count - 1u]);
   if (!stays) {
@@ -151,7 +154,7 @@ void LinkMode::stop_standing(Body& body, const LinkUse& use) const {
 
 // Would the body, if it stood there, be in the path of those on a link?
 bool LinkMode::is_beside_a_link(const Body& body, const Stand& at) const {
-  const double range = room_of(body);
+  const double range = room_of(body.radius);
   const auto is_beside = [&](const Stand& from, const Stand& to) {
     const bool is_level = std::min(from.y, to.y) < at.y + body.height &&
                           at.y < std::max(from.y, to.y) + taking_.tallest;
@@ -179,7 +182,7 @@ void LinkMode::stand_aside(Body& body, LinkUse& use) const {
   body.local_target_x = body.x;
   body.local_target_z = body.z;
   if (!is_beside_a_link(body, body.stand())) return;
-  const int32_t room = room_of(body);
+  const int32_t room = room_of(body.radius);
   const StrideGround ground(shared_.ground_of(body),
                             world::step_mm(shared_.body_class(body.avatar_class)));
   float least = HUGE_VALF;
@@ -199,6 +202,13 @@ void LinkMode::stand_aside(Body& body, LinkUse& use) const {
     }
     if (least < HUGE_VALF) return;
   }
+}
+
+// It keeps its detour, as one on foot does that searches.
+void LinkMode::stand_aside_again(Body& body, LinkUse& use) const {
+  const float detour_angle = body.detour_angle;
+  stand_aside(body, use);
+  body.detour_angle = detour_angle;
 }
 
 void LinkMode::give_turn(Body& body, LinkUse& use) const {

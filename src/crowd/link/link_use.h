@@ -29,9 +29,9 @@ struct LinkUse {
   float factor = 1;    // of its speed, on the link
   EditId link = 0;
   uint8_t state = kNone;
-  uint8_t back = 0;                  // it goes from the link's `to` to its `from`
-  uint8_t stands = 0;                // while it waits: it has been given a place to wait at
-  uint8_t arrived = 0;               // it had Body::kArrived before that
+  uint8_t back = 0;     // it goes from the link's `to` to its `from`
+  uint8_t stands = 0;   // while it waits or gives room: it has been given a place to stand at
+  uint8_t arrived = 0;  // it had Body::kArrived before that
   std::array<int16_t, 2> heading{};  // in plan, when it left the ground [of 32767]
 };
 static_assert(sizeof(LinkUse) == 64 && std::is_trivially_copyable_v<LinkUse>);

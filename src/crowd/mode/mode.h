@@ -141,7 +141,8 @@ class Mode {
   virtual void save(std::vector<uint8_t>& out) const = 0;
   /// Takes rows from what was saved, and returns what is behind them. Before any class is opened.
   virtual const uint8_t* restore(const uint8_t* saved, size_t rows) = 0;
-  /// Can the row of a body, which is of any class, be read without reading out of bounds?
+  /// Can the row of a body, which is of any class, be read without reading out of bounds? The
+  /// shared state's step is that of the saved crowd.
   [[nodiscard]] virtual bool is_sound(const Body& body) const = 0;
   /// Once its class is open: may a body, which is of any class, be where it is?
   [[nodiscard]] virtual bool is_in_place(const Body& body) const;

@@ -264,8 +264,12 @@ struct Path {
   double cost = 0;  ///< Metres times their costs.
   /// Over nodes: cost of the search's path over crossings, before string pulling.
   double searched_cost = 0;
-  /// What blocks the path to an unreachable goal, at its last point.
+  /// What blocks the path to an unreachable goal: what a straight line from its last point to the
+  /// goal meets first. An edit that cuts the path is kObstacle or kClosed.
   Blocker blocked_by = Blocker::kNone;
+  /// With kObstacle, an obstacle that does; with kClosed, the area, or 0 if the bake gave the kind.
+  /// Else 0.
+  EditId blocked_by_edit = 0;
   /// What the search expanded: intervals (0 with labels), points, air boxes, or crossings and
   /// boundary nodes of overlay cells.
   uint64_t nodes = 0;

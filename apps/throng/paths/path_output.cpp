@@ -71,6 +71,14 @@ std::string how_near(const Vec3d& nearest, const Vec3d& goal) {
   return text + fmt::format(" and {:.3f} m {}", std::fabs(below), below > 0 ? "below" : "above");
 }
 
+// With the option that made it.
+std::string blocker_text(Blocker blocker) {
+  std::string text = word_for(blocker);
+  if (blocker == Blocker::kObstacle) text += " (--block)";
+  if (blocker == Blocker::kClosed) text += " (--area-cost)";
+  return text;
+}
+
 std::string point_text(const Path& path, size_t i) {
   std::string text = "  " + where(path.points[i].position);
   if (!path.node_places.empty()) {
@@ -141,7 +149,7 @@ std::string path_text(const PathRun& run, const Path& path) {
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d& nearest = path.points.back().position;
     text += fmt::format("  gets to ({}), {}; blocked by: {}\n", where(nearest),
-                        how_near(nearest, run.goal), word_for(path.blocked_by));
+                        how_near(nearest, run.goal), blocker_text(path.blocked_by));
   }
   for (size_t i = 0; i < path.points.size(); ++i) text += point_text(path, i);
   return text;

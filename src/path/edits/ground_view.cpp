@@ -28,8 +28,6 @@ double link_factor(const GroundView::OffMeshLinkEnd& link) {
   return link.cost < length ? link.cost / length : 1;
 }
 
-int64_t tile_key(int32_t x, int32_t z) { return (int64_t{z} << 32) | static_cast<uint32_t>(x); }
-
 }  // namespace
 
 size_t GroundView::HashCorner::operator()(const CornerKey& key) const {

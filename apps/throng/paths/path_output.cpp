@@ -135,7 +135,9 @@ std::string path_text(const PathRun& run, const Path& path) {
   if (path.end == PathEnd::kReached) {
     const std::string over =
         path.corridor.empty() ? "" : fmt::format(" over {} nodes", path.corridor.size());
-    text = fmt::format("{:.3f} m for {}{}, {} segments, found in {:.3f} ms\n", path.length,
+    const bool flies = std::any_of(path.segments.begin(), path.segments.end(), is_flown);
+    const char* seen = path.node_places.empty() && !flies ? " as seen from above" : "";
+    text = fmt::format("{:.3f} m{} for {}{}, {} segments, found in {:.3f} ms\n", path.length, seen,
                        run.avatar_class, over, path.segments.size(), run.seconds * 1e3);
     if (std::fabs(path.cost - path.length) > 0.0005) {
       text += fmt::format("  costs {:.3f}\n", path.cost);

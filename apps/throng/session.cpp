@@ -282,6 +282,10 @@ const char* word_for(Blocker blocker) {
       return "too steep";
     case Blocker::kNarrow:
       return "a wall, or too narrow";
+    case Blocker::kObstacle:
+      return "an obstacle";
+    case Blocker::kClosed:
+      return "an area of infinite cost";
   }
   return "";
 }

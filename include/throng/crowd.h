@@ -263,10 +263,11 @@ class THRONG_API Crowd {
 
   /// Sets goals, one for each id: places of the avatar's class. An avatar that has arrived keeps
   /// its goal, and yields to others. If the goal is nowhere it stands, or hovers. An avatar that
-  /// flies takes off and lands as its path requires, and its goal may be an air_place. Unknown ids
-  /// are ignored.
+  /// flies takes off and lands as its path requires, and its goal may be an air_place. A goal that
+  /// is outside the world or not finite counts as nowhere. Unknown ids are ignored.
   void set_goals(std::span<const AvatarId> ids, std::span<const Place> goals);
-  /// Sets goals of avatars that walk over nodes. Ids of others are ignored, too.
+  /// Sets goals of avatars that walk over nodes. Ids of others are ignored, too. A goal that the
+  /// nodes do not have is unreachable.
   void set_goals(std::span<const AvatarId> ids, std::span<const NodePlace> goals);
   /// Makes a target: a region, the union of prisms, that many avatars can head to. One search
   /// outwards from it serves them all (FlowField). An avatar has arrived when its middle is inside,
@@ -276,29 +277,32 @@ class THRONG_API Crowd {
   [[nodiscard]] Result<TargetId> add_target(std::span<const Prism> areas, Context& context);
   /// Sends avatars to a target of this crowd instead of a goal, each to the nearest place of the
   /// target. An avatar of a class that flies walks if a path on foot leads there, and flies if none
-  /// does. Unknown ids are ignored.
+  /// does. Unknown ids are ignored; if the crowd has no such target, nothing changes.
   void set_targets(std::span<const AvatarId> ids, TargetId target);
   /// Length of an avatar's path on foot to a target, on average 1 to 2 % above the shortest.
-  /// Infinite if no path leads there, the avatar is in the air or on an off-mesh link, or the id is
-  /// unknown. [m]
+  /// Infinite if no path leads there, the avatar is in the air or on an off-mesh link, or the id or
+  /// the target is unknown. [m]
   [[nodiscard]] double distance(AvatarId id, TargetId target) const;
   /// At most about `max_count` places inside a target where a class can stand, evenly spread. Fails
-  /// as `add` does.
+  /// as `add` does, and with kNotFound if there is no such target.
   [[nodiscard]] Result<std::vector<Place>> places(TargetId target, int32_t avatar_class,
                                                   size_t max_count, Context& context);
-  /// Sets desired speeds, one for each id. Unknown ids are ignored. [m/s, > 0 to 100]
+  /// Sets desired speeds, one for each id. An avatar keeps its speed if the new one is not a
+  /// number, not above 0, above 100, or above 1000 of its radii per step: `add` refuses these.
+  /// Unknown ids are ignored. [m/s, > 0 to 100]
   void set_speeds(std::span<const AvatarId> ids, std::span<const double> speeds);
 
   /// Sets preferred velocities in place of goals: the avatars are externally controlled until they
-  /// get a goal. A velocity longer than the avatar's speed is cut to it. Avatars still avoid each
-  /// other and never overlap. An avatar that flies takes off when Y is above 0, and lands when Y is
-  /// below 0 and there is ground. An avatar on nodes follows their surface. [m/s; Y: only for
-  /// avatars that fly or walk over nodes]
+  /// get a goal. A velocity longer than the avatar's speed is cut to it; one that is not finite, or
+  /// above 1e150, counts as 0. Avatars still avoid each other and never overlap. An avatar that
+  /// flies takes off when Y is above 0, and lands when Y is below 0 and there is ground. An avatar
+  /// on nodes follows their surface. [m/s; Y: only for avatars that fly or walk over nodes]
   void set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d> velocities);
 
   /// Sets the views. Without views, as at the beginning, all avatars are simulated in full detail.
   /// Low detail is coarser, but as safe: avatars never overlap, whatever the views. Flyers and
-  /// externally controlled avatars are always in full detail. Time of a step: avatars times views.
+  /// externally controlled avatars are always in full detail. A view is left out if its position is
+  /// not finite, or its radius below 0 or not a number. Time of a step: avatars times views.
   void set_views(std::span<const CrowdView> views);
   /// Advances all avatars by `dt`. No allocation once it is warm. Time: linear in the avatars.
   CrowdReport step();

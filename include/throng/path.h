@@ -104,7 +104,7 @@ enum class PathSpace : uint8_t {
 /// type, because files hold it for one class and without a cost: that is its length.
 struct OffMeshLink {
   Place from = {}, to = {};  ///< Where a class can stand.
-  double cost = 0;           ///< [m]
+  double cost = 0;           ///< What it costs to take it, as metres of ground. [m, > 0]
   bool two_way = true;
   /// Ends on nodes, as on a wall, instead of `from` and `to`. A link that has one is only for
   /// classes over nodes.
@@ -259,13 +259,18 @@ struct Path {
   std::vector<SegmentKind> segments;  ///< One fewer than the points.
   std::vector<PathLink> links;        ///< Over nodes and off-mesh links, in order of their points.
   std::vector<uint32_t> corridor;     ///< Over nodes: all from the start to the goal.
-  /// Of all segments; of a path that is only on foot, as seen from above. [m]
+  /// Of all segments; of a path that is only on foot, as seen from above, off-mesh links included.
+  /// [m]
   double length = 0;
-  double cost = 0;  ///< Metres times their costs.
+  double cost = 0;  ///< Metres of the length times their costs, and the costs of off-mesh links.
   /// Over nodes: cost of the search's path over crossings, before string pulling.
   double searched_cost = 0;
-  /// What blocks the path to an unreachable goal, at its last point.
+  /// What blocks the path to an unreachable goal: what a straight line from its last point to the
+  /// goal meets first. An edit that cuts the path is kObstacle or kClosed.
   Blocker blocked_by = Blocker::kNone;
+  /// With kObstacle, an obstacle that does; with kClosed, the area, or 0 if the bake gave the kind.
+  /// Else 0.
+  EditId blocked_by_edit = 0;
   /// What the search expanded: intervals (0 with labels), points, air boxes, or crossings and
   /// boundary nodes of overlay cells.
   uint64_t nodes = 0;

@@ -139,7 +139,7 @@ class THRONG_API World {
 // from the body's axis, as seen from above: the solid of a wall is one radius farther away.
 
 /// Why a class cannot stand in a cell, found from the floors and ceilings there and within the
-/// class's radius: a baked world stores no walls.
+/// class's radius: a baked world stores no walls. Queries of the ground know no edits; paths do.
 enum class Blocker {
   kNone,
   kGap,     ///< There is no floor near the height of the feet on which any class could stand.
@@ -147,6 +147,9 @@ enum class Blocker {
   kLow,     ///< The ceiling is less than the class's height above the floor.
   kSteep,   ///< The floor is steeper than the class's limit.
   kNarrow,  ///< There is a solid: the passage is too narrow, or ends at a wall.
+  /// The class can stand there in the baked world, but an obstacle of Edits is in its place.
+  kObstacle,
+  kClosed,  ///< The same, but the ground is of an area kind that costs infinity.
 };
 
 /// The result of a straight walk along the ground.

@@ -3,6 +3,7 @@
 #include "throng/crowd.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/access.h"
@@ -89,6 +90,7 @@ void Crowd::set_views(std::span<const CrowdView> views) {
   const Vec3d& origin = data_of(state_->shared.world)->summary.origin;
   state_->views.clear();
   for (const CrowdView& v : views) {
+    if (!std::isfinite(v.position.x + v.position.y + v.position.z) || !(v.radius >= 0)) continue;
     state_->views.push_back({static_cast<float>(v.position.x - origin.x),
                              static_cast<float>(v.position.z - origin.z),
                              static_cast<float>(v.position.y), static_cast<float>(v.radius)});

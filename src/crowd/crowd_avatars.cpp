@@ -25,6 +25,12 @@ constexpr int32_t kMaxSubSteps = 1000;
 
 Error bad_config(const std::string& what) { return {Errc::kBadConfig, "crowd: " + what}; }
 
+// Can a body have it? A step has a limited number of parts, and a body keeps it as a float, of
+// which the smallest doubles are 0.
+bool is_speed(double speed, double radius, double dt) {
+  return static_cast<float>(speed) > 0 && speed <= kMaxSpeed && speed * dt <= kMaxSubSteps * radius;
+}
+
 // Before it is given another.
 void forget_goal(crowd::Body& body) {
   body.target = 0;
@@ -95,7 +101,7 @@ Result<crowd::NewAvatar> Crowd::State::avatar_of(const AvatarSpawn& spawn) const
   if (!(spawn.radius >= 0 && radius <= std::min(kMaxRadius, 4000 * 2048 * shared.unit / 2))) {
     return bad_config("radius must be 0 (the class's) to 100 m, and at most 4000 cells");
   }
-  if (!(spawn.speed >= 0 && speed <= kMaxSpeed)) {
+  if (!(spawn.speed >= 0 && static_cast<float>(speed) > 0 && speed <= kMaxSpeed)) {
     return bad_config("speed must be 0 (the class's) to 100 m/s");
   }
   if (avatar.height > kMaxBodyHeight) {
@@ -107,7 +113,7 @@ Result<crowd::NewAvatar> Crowd::State::avatar_of(const AvatarSpawn& spawn) const
   made.body.radius = static_cast<int32_t>(std::ceil(radius / shared.unit - 1e-9));
   made.body.height = static_cast<uint16_t>(std::ceil(avatar.height * 1000 - 1e-6));
   made.body.avatar_class = static_cast<uint8_t>(spawn.avatar_class);
-  if (speed * shared.config.dt > kMaxSubSteps * radius) {
+  if (!is_speed(speed, radius, shared.config.dt)) {
     return bad_config("speed times dt is over 1000 radii; take shorter steps");
   }
   return made;
@@ -263,7 +269,7 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const NodePlace> 
 
 void Crowd::set_targets(std::span<const AvatarId> ids, TargetId target) {
   State& s = *state_;
-  THRONG_ASSERT(target >= 1 && target <= s.shared.targets.size());
+  if (!s.has_target(target)) return;
   for (const AvatarId id : ids) {
     crowd::Body* body = s.body(id);
     if (body == nullptr) continue;
@@ -290,9 +296,10 @@ void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> sp
   THRONG_ASSERT(ids.size() == speeds.size());
   State& s = *state_;
   for (size_t i = 0; i < ids.size(); ++i) {
-    THRONG_ASSERT(speeds[i] > 0 && speeds[i] <= 100);
     crowd::Body* body = s.body(ids[i]);
     if (body == nullptr) continue;
+    const double radius = s.mode_of(*body).state_of(*body).radius;
+    if (!is_speed(speeds[i], radius, s.shared.config.dt)) continue;
     body->speed = static_cast<float>(speeds[i]);
     s.fit({}, body->speed);  // Its size is known.
   }

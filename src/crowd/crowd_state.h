@@ -76,6 +76,9 @@ struct Crowd::State {
   void reserve(size_t more);
   AvatarId add(crowd::NewAvatar avatar);
   [[nodiscard]] crowd::Body* body(AvatarId id) const;
+  [[nodiscard]] bool has_target(TargetId target) const {
+    return target >= 1 && target <= shared.targets.size();
+  }
   void find_bodies() const;
   /// A body at its feet: that of a climber encloses it, however it leans.
   [[nodiscard]] crowd::Body at_feet(const crowd::Body& body) const {

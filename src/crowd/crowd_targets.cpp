@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <mutex>
+#include <string>
 
 #include "core/access.h"
 #include "core/parallel.h"
@@ -42,7 +43,7 @@ Result<TargetId> Crowd::add_target(std::span<const Prism> areas, Context& contex
 
 double Crowd::distance(AvatarId id, TargetId target) const {
   State& s = *state_;
-  THRONG_ASSERT(target >= 1 && target <= s.shared.targets.size());
+  if (!s.has_target(target)) return std::numeric_limits<double>::infinity();
   s.renew_flows();
   const crowd::Body* body = s.body(id);
   if (body == nullptr || body->has(crowd::Body::kMovedElsewhere)) {
@@ -54,7 +55,10 @@ double Crowd::distance(AvatarId id, TargetId target) const {
 Result<std::vector<Place>> Crowd::places(TargetId target, int32_t avatar_class, size_t max_count,
                                          Context& context) {
   State& s = *state_;
-  THRONG_ASSERT(target >= 1 && target <= s.shared.targets.size());
+  if (!s.has_target(target)) {
+    return Error{Errc::kNotFound, "crowd: it has no target " + std::to_string(target) +
+                                      "; add_target makes them, from 1 on"};
+  }
   if (auto ok = s.open_class(avatar_class, context); !ok) return ok.error();
   return crowd::places_inside(
       *data_of(s.shared.world), s.shared.classes[static_cast<size_t>(avatar_class)]->ground,

@@ -221,9 +221,8 @@ void PathFinder::State::end_before(const Place& to, Path& path) {
   path.end = PathEnd::kUnreachable;
   const Place& last = path.points.back();
   // Not ground(), which follows edits: a query in parts may have stopped to.
-  path.blocked_by = bears_on_ground() && live
-                        ? live->blocker(last, to)
-                        : path::blocker_towards({*data_of(world), config.avatar_class}, last, to);
+  if (bears_on_ground() && live) return path::set_blocker(live->blocker(last, to), path);
+  path.blocked_by = path::blocker_towards({*data_of(world), config.avatar_class}, last, to);
 }
 
 void PathFinder::State::find_over_nodes(const PathQuery& query, Path& path) {
@@ -260,10 +259,15 @@ void PathFinder::State::begin_in_air(const PathQuery& query) {
 
 void PathFinder::find(const PathQuery& query, Path& path) {
   State& s = *state_;
-  if (s.config.space == PathSpace::kAir) return s.find_in_air(query, path);
-  if (s.config.space == PathSpace::kNodes) return s.find_over_nodes(query, path);
-  s.find_on_ground(s.place_of(query.from, query.tolerance), s.place_of(query.to, query.tolerance),
-                   otherwise_of(query), query.budget, path);
+  if (s.config.space == PathSpace::kAir) {
+    s.find_in_air(query, path);
+  } else if (s.config.space == PathSpace::kNodes) {
+    s.find_over_nodes(query, path);
+  } else {
+    s.find_on_ground(s.place_of(query.from, query.tolerance), s.place_of(query.to, query.tolerance),
+                     otherwise_of(query), query.budget, path);
+  }
+  path.blocked_by_edit = s.applied.edit_of(path.blocked_by_edit);
 }
 
 void PathFinder::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget) {
@@ -395,6 +399,7 @@ bool PathFinder::advance(uint64_t max_nodes, Path& path) {
   }
   path::Slice slice{max_nodes};
   s.is_begun = !s.advance(slice, path);
+  path.blocked_by_edit = s.applied.edit_of(path.blocked_by_edit);
   s.begun_nodes = path.nodes;
   return !s.is_begun;
 }

@@ -79,7 +79,7 @@ class ProgramPath(ProgramCase):
         self.assertGreater(max(z for _, _, z in around["points"]), 9.2)
         code, shut = path("20,0,8", "--block", "16,0,0,17,2,40")
         self.assertEqual((code, shut["end"]), (1, "unreachable"))
-        self.assertEqual(shut["nearest"]["blocked_by"], "a wall, or too narrow")
+        self.assertEqual(shut["nearest"]["blocked_by"], "an obstacle")
         self.assertLess(shut["points"][-1][0], 16)
         code, link = path("20,0,8", "--block", "16,0,0,17,2,40", "--off-mesh-link", "15,0,8,18,0,8")
         self.assertEqual((code, [one["kind"] for one in link["links"]]), (0, ["off-mesh link"]))
@@ -87,7 +87,10 @@ class ProgramPath(ProgramCase):
         code, dear = path("20,0,8", "--area", "16,-1,0,17,2,40,5", "--area-cost", "5=3")
         self.assertEqual(code, 0)
         self.assertAlmostEqual(dear["cost"], straight["cost"] + 2, delta=0.5)
-        self.assertEqual(path("20,0,8", "--area", "16,-1,0,17,2,40,5", "--area-cost", "5=inf")[0], 1)
+        code, closed = path("20,0,8", "--area", "16,-1,0,17,2,40,5", "--area-cost", "5=inf")
+        self.assertEqual((code, closed["nearest"]["blocked_by"]), (1, "an area of infinite cost"))
+        text = self.run_throng("path", self.world, "--from", "14,0,8", "--to", "20,0,8", "--block", "16,0,0,17,2,40").stdout
+        self.assertIn("blocked by: an obstacle (--block)", text)
         code, up = path("30,2.9,30", "--class", "wheelchair")
         self.assertEqual((code, up["end"], up["nearest"]["blocked_by"]), (1, "unreachable", "a gap"))
         ends = ["path", self.world, "--from", "14,0,8", "--to", "20,0,8"]

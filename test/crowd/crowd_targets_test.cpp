@@ -219,5 +219,35 @@ TEST(CrowdTargets, MoreThan65535AreRefused) {
   EXPECT_NE(refused.error().message.find("65535"), std::string::npos) << refused.error().message;
 }
 
+// Before: a step read beyond the flow fields.
+TEST(CrowdTargets, ThoseThatTheCrowdDoesNotHaveChangeNothing) {
+  const World& world = floor_with_crate();
+  Crowd crowd = made(world), twin = made(world);
+  const auto ids = scattered(crowd, 20);
+  ASSERT_EQ(scattered(twin, 20), ids);
+  std::vector<Place> goals;
+  for (uint64_t n = 0; n < 20; ++n) goals.push_back(world.random_place(0, 3, n));
+  for (Crowd* one : {&crowd, &twin}) {
+    EXPECT_EQ(target_of(*one, {Prism::box({12, -0.5, 12}, {16, 1, 16})}), 1);
+    one->set_goals(ids, goals);
+  }
+  Context context;
+  for (const TargetId unknown : {TargetId{0}, TargetId{2}, TargetId{77}, TargetId{UINT16_MAX}}) {
+    crowd.set_targets(ids, unknown);
+    EXPECT_TRUE(std::isinf(crowd.distance(ids[0], unknown))) << unknown;
+    const auto places = crowd.places(unknown, 0, 10, context);
+    ASSERT_FALSE(places) << unknown;
+    EXPECT_EQ(places.error().code, Errc::kNotFound);
+    for (int step = 0; step < 5; ++step) {
+      crowd.step();
+      twin.step();
+      ASSERT_EQ(crowd.state_hash(), twin.state_hash()) << unknown;
+    }
+  }
+  EXPECT_LT(crowd.distance(ids[0], 1), 40);
+  crowd.set_targets(ids, 1);
+  EXPECT_NE(crowd.state_hash(), twin.state_hash());
+}
+
 }  // namespace
 }  // namespace throng

@@ -384,5 +384,90 @@ TEST(Crowd, SpeedsBoundTheMovesAndUnknownIdsAreIgnored) {
   EXPECT_FALSE(crowd.may_lean());
 }
 
+// Beside a crowd that was given only what it can use: the same steps, and the crowd can be
+// restored.
+TEST(Crowd, SpeedsThatNoneCanHaveAreIgnored) {
+  const World world = test::bake(test::builtin({.name = "garage", .seed = 3}), 0.1);
+  Crowd crowd = made(world), twin = made(world);
+  const auto ids = scattered(crowd, 40);
+  ASSERT_EQ(scattered(twin, 40), ids);
+  const auto goals = random_goals(world, ids.size(), 5);
+  crowd.set_goals(ids, goals);
+  twin.set_goals(ids, goals);
+  crowd.step();
+  twin.step();
+  for (const double bad :
+       {double{NAN}, 0.0, -1.0, -double{INFINITY}, 1e-320, 1e-60, 100.001, 1e9, double{INFINITY}}) {
+    crowd.set_speeds(ids, std::vector(ids.size(), bad));
+    ASSERT_EQ(crowd.state_hash(), twin.state_hash()) << bad;
+  }
+  // One that is ignored does not keep the next from its own.
+  const AvatarId two[] = {ids[1], ids[2]};
+  const double speeds[] = {NAN, 0.5};
+  crowd.set_speeds(two, speeds);
+  EXPECT_NE(crowd.state_hash(), twin.state_hash());
+  twin.set_speeds(std::span(two).last(1), std::span(speeds).last(1));
+  for (int step = 0; step < 20; ++step) crowd.step();
+  for (int step = 0; step < 20; ++step) twin.step();
+  EXPECT_EQ(crowd.state_hash(), twin.state_hash());
+  Context context;
+  auto restored = Crowd::restore(world, {}, crowd.save(), context);
+  ASSERT_TRUE(restored) << restored.error().message;
+  EXPECT_EQ(restored->state_hash(), crowd.state_hash());
+}
+
+TEST(Crowd, NoAvatarGetsASpeedThatAddRefuses) {
+  const World world = test::bake(worlds::flat(10), 0.1);
+  Crowd crowd = made(world, {.dt = 1});
+  const auto ids = scattered(crowd, 1, {.radius = 0.05});
+  ASSERT_EQ(ids.size(), 1u);
+  const auto hash_at = [&](double speed) {
+    crowd.set_speeds(ids, std::span(&speed, 1));
+    return crowd.state_hash();
+  };
+  Context context;
+  const auto add_takes = [&](double speed) {
+    return static_cast<bool>(crowd.scatter(1, {.radius = 0.05, .speed = speed}, context));
+  };
+  const uint64_t slow = hash_at(1);
+  // 1000 radii a step are 50 m/s.
+  ASSERT_FALSE(add_takes(60));
+  EXPECT_EQ(hash_at(60), slow);
+  EXPECT_NE(hash_at(49), slow);
+  ASSERT_TRUE(add_takes(49));
+  // As a float it is 0.
+  EXPECT_FALSE(add_takes(1e-60));
+}
+
+TEST(Crowd, GoalsAndVelocitiesThatAreNotFiniteStandForNone) {
+  const World world = test::bake(worlds::flat(10), 0.1);
+  Crowd crowd = made(world), twin = made(world);
+  const auto ids = scattered(crowd, 5);
+  ASSERT_EQ(scattered(twin, 5), ids);
+  const Place here = world.find_place(0, {5, 0, 5}, 0.5);
+  std::vector<Place> bad(5, here), none(5);
+  bad[0].position.x = NAN;
+  bad[1].position.z = INFINITY;
+  bad[2].position.x = -1e300;
+  bad[3].level1 = 77;
+  bad[4].level1 = kAirLevel1;
+  crowd.set_goals(ids, bad);
+  twin.set_goals(ids, none);
+  crowd.step();
+  twin.step();
+  EXPECT_EQ(crowd.state_hash(), twin.state_hash());
+  EXPECT_EQ(crowd.step().planned, 0u);
+  twin.step();
+  const std::vector<Vec3d> wild = {
+      {NAN, 0, 0}, {0, 0, INFINITY}, {-INFINITY, 0, INFINITY}, {1e300, 0, 0}, {0, 0, NAN}};
+  crowd.set_velocities(ids, wild);
+  twin.set_velocities(ids, std::vector<Vec3d>(5));
+  for (int step = 0; step < 5; ++step) {
+    crowd.step();
+    twin.step();
+    ASSERT_EQ(crowd.state_hash(), twin.state_hash()) << step;
+  }
+}
+
 }  // namespace
 }  // namespace throng

@@ -96,6 +96,21 @@ TEST(LevelsOfDetail, AViewOfAllChangesNothingAndLowDetailAvatarsArrive) {
   EXPECT_EQ(arrived, 100U);
 }
 
+TEST(LevelsOfDetail, ViewsThatAreNoneAreLeftOut) {
+  const World world = test::bake(worlds::flat(30), 0.1);
+  Crowd crowd = made(world);
+  give_goals(crowd, world, scattered(crowd, 20), 4);
+  const CrowdView bad[] = {
+      {{NAN, 0, 0}, 10}, {{0, INFINITY, 0}, 10}, {{15, 0, 15}, NAN}, {{15, 0, 15}, -100}};
+  const CrowdView far{{-500, 0, 0}, 1};
+  crowd.set_views(bad);
+  EXPECT_EQ(crowd.step().low_detail, 0U) << "there is no view";
+  std::vector<CrowdView> all(std::begin(bad), std::end(bad));
+  all.push_back(far);
+  crowd.set_views(all);
+  EXPECT_EQ(crowd.step().low_detail, 20U) << "the one view is far off";
+}
+
 TEST(LevelsOfDetail, StatesAreTheSameForAnyWorkersAndWhenRestored) {
   const World world = test::bake(test::builtin({.name = "garage", .seed = 3}), 0.1);
   const CrowdView view{world.random_place(0, 5, 5).position, 8};

@@ -576,7 +576,8 @@ TEST(FlightChanges, ABoxedInGoalIsReportedWithTheNearestPoint) {
   for (const Vec3d from : {Vec3d{3, 3, 4}, Vec3d{3, 0, 4}}) {
     flight.find({.from = from, .to = goal}, path);
     ASSERT_EQ(path.end, PathEnd::kUnreachable);
-    EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
+    EXPECT_EQ(path.blocked_by, Blocker::kObstacle);
+    EXPECT_NE(path.blocked_by_edit, 0u);
     ASSERT_GE(path.points.size(), 2u);
     EXPECT_LT(length(path.points.back().position - goal), 3.5);
   }
@@ -629,17 +630,22 @@ TEST(FlightChanges, AWallThroughALargeWorldIsFoundBySearching) {
   flight.find({.from = left[0], .to = right[0]}, path);
   ASSERT_EQ(path.end, PathEnd::kReached);
   const path::ChangeId wall = flight.add_obstacle({box({48.2, -10, -10}, {48.4, 60, 90})});
+  int stopped_by_wall = 0;
   for (size_t i = 0; i < 4; ++i) {
     for (const auto& [from, to] : {std::pair{left[i], right[i]}, std::pair{right[i], left[i]}}) {
       flight.find({.from = from, .to = to}, path);
       ASSERT_EQ(path.end, PathEnd::kUnreachable);
       ASSERT_FALSE(path.points.empty());
-      EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
+      // A pillar may stand between the nearest point and the wall.
+      EXPECT_TRUE(path.blocked_by == Blocker::kObstacle || path.blocked_by == Blocker::kNarrow);
+      EXPECT_EQ(path.blocked_by_edit, path.blocked_by == Blocker::kObstacle ? wall : 0);
+      stopped_by_wall += path.blocked_by == Blocker::kObstacle;
       for (const Place& p : path.points) EXPECT_EQ(p.position.x < 48.3, from.x < 48.3);
       // Beyond the wall it would be nearer; on this side it comes close to it.
       EXPECT_NEAR(path.points.back().position.x, 48.3, 5);
     }
   }
+  EXPECT_GT(stopped_by_wall, 0);
   flight.find({.from = left[0], .to = right[0], .budget = 500}, path);
   EXPECT_EQ(path.end, PathEnd::kBudgetExhausted);
   const std::atomic<bool> cancel = true;

@@ -218,7 +218,8 @@ TEST(GroundFinder, PathsLeadAroundACrateAndStraightAfterItsRemoval) {
   const path::ChangeId door = ground.add_obstacle({Prism::box({3.95, 0, 2.3}, {4.05, 2, 3.7})});
   ground.find(from, to, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
-  EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
+  EXPECT_EQ(path.blocked_by, Blocker::kObstacle);
+  EXPECT_EQ(path.blocked_by_edit, door);
   expect_walkable(world, 0, path);
   EXPECT_NEAR(path.points.back().position.x, 3.7, 0.15);
   ASSERT_TRUE(ground.set_active(door, false));
@@ -265,7 +266,8 @@ TEST(GroundFinder, DearGroundIsAvoidedAndClosedGroundNeverEntered) {
   const World world = bake(worlds::flat(12), 0.1);
   path::GroundFinder ground = live(world);
   const Prism lawn = Prism::box({4, -1, 0}, {8, 1, 9});
-  ASSERT_TRUE(ground.add_area(lawn, 7));
+  const auto first = ground.add_area(lawn, 7);
+  ASSERT_TRUE(first);
   const Place from = world.find_place(0, {2, 0, 4}, 0.5), to = world.find_place(0, {10, 0, 4}, 0.5);
   Path path;
   ground.find(from, to, path);
@@ -287,6 +289,9 @@ TEST(GroundFinder, DearGroundIsAvoidedAndClosedGroundNeverEntered) {
   ASSERT_TRUE(more);
   ground.find(from, to, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
+  EXPECT_EQ(path.blocked_by, Blocker::kClosed);
+  EXPECT_EQ(path.blocked_by_edit, *first);
+  EXPECT_NEAR(path.points.back().position.x, 4, 0.2);
   ASSERT_TRUE(ground.remove(*more));
   ground.find(from, to, path);
   EXPECT_EQ(path.end, PathEnd::kReached);
@@ -553,7 +558,7 @@ TEST(GroundFinder, SeesEarlyThatAGoalIsWalledIn) {
   ground.find(from, to, path);
   ASSERT_EQ(path.end, PathEnd::kUnreachable);
   EXPECT_EQ(path.length, over_points.length);
-  EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
+  EXPECT_EQ(path.blocked_by, Blocker::kObstacle);
   EXPECT_GT(path.nodes, over_points.nodes + 4000);  // else this proves nothing
   EXPECT_LT(path.nodes, over_points.nodes + 4200);
   // In parts it is the same.

@@ -534,7 +534,14 @@ TEST(NodeEdits, PathsLeadAroundDearAreasAndComeBack) {
     finder.find(query, path);
     EXPECT_EQ(path.end, PathEnd::kUnreachable);
     EXPECT_LE(path.points.back().position.x, 8.3);
+    EXPECT_EQ(path.blocked_by, Blocker::kClosed);
+    EXPECT_EQ(path.blocked_by_edit, closed);
     EXPECT_FALSE(finder.is_free(Vec3d{10, 0, 8}, 0.1));
+    const EditId wall = need(s.edits.add_obstacle(Prism::box({8, -1, -1}, {9, 3, 21})));
+    finder.find(query, path);
+    EXPECT_EQ(path.blocked_by, Blocker::kObstacle);
+    EXPECT_EQ(path.blocked_by_edit, wall);
+    EXPECT_TRUE(s.edits.remove(wall));
     EXPECT_TRUE(s.edits.remove(closed));
     EXPECT_TRUE(s.edits.set_active(area, false));
     finder.find(query, path);

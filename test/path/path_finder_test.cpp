@@ -145,6 +145,77 @@ TEST(PathFinder, LeadsToTheNearestPlaceUnlessNotAsked) {
   EXPECT_FALSE(finder.find_node_place(from, 1)) << "there are no nodes";
 }
 
+// In a list with edits that are no longer there, and some that do not count on the ground.
+TEST(PathFinder, NamesTheEditThatCutsAPath) {
+  const World world = bake(worlds::doorway(1.2), 0.1);
+  const Prism in_door = Prism::box({3.95, 0, 2.3}, {4.05, 2, 3.7});
+  for (const PathSpeedup speedup :
+       {PathSpeedup::kNone, PathSpeedup::kLabels, PathSpeedup::kZones, PathSpeedup::kOnDemand}) {
+    Edits edits;
+    Context context;
+    PathFinder finder =
+        need(PathFinder::create(world, {.speedup = speedup, .edits = edits}, context));
+    const PathQuery query{.from = Vec3d{2, 0, 3}, .to = Vec3d{6, 0, 3}};
+    const auto expect_blocked = [&](Blocker blocker, EditId edit) {
+      Path path;
+      finder.find(query, path);
+      EXPECT_EQ(path.end, PathEnd::kUnreachable);
+      EXPECT_EQ(path.blocked_by, blocker);
+      EXPECT_EQ(path.blocked_by_edit, edit);
+      finder.begin(query);
+      while (!finder.advance(10, path)) EXPECT_EQ(path.blocked_by_edit, 0u);
+      EXPECT_EQ(path.blocked_by, blocker);
+      EXPECT_EQ(path.blocked_by_edit, edit);
+    };
+    const EditId crate = need(edits.add_obstacle(Prism::box({1, 0, 1}, {1.5, 1, 1.5})));
+    need(edits.add_obstacle(in_door, ObstacleKind::kKinematic));
+    const EditId door = need(edits.add_obstacle(Prism::box({6, 0, 5}, {6.5, 2, 5.5})));
+    Path path;
+    finder.find(query, path);
+    EXPECT_EQ(path.end, PathEnd::kReached);
+    EXPECT_TRUE(edits.remove(crate));
+    need(edits.move_obstacle(door, in_door));
+    expect_blocked(Blocker::kObstacle, door);
+    // Nearer than the door: it is met first.
+    need(edits.set_area_cost(9, std::numeric_limits<double>::infinity()));
+    const EditId closed = need(edits.add_area(Prism::box({3, -1, -1}, {3.5, 1, 7}), 9));
+    expect_blocked(Blocker::kClosed, closed);
+    EXPECT_TRUE(edits.set_active(closed, false));
+    expect_blocked(Blocker::kObstacle, door);
+    EXPECT_TRUE(edits.set_active(door, false));
+    finder.find(query, path);
+    EXPECT_EQ(path.end, PathEnd::kReached);
+    EXPECT_EQ(path.blocked_by, Blocker::kNone);
+    EXPECT_EQ(path.blocked_by_edit, 0u);
+    // Of areas that overlap the last one counts, and only where it is.
+    EXPECT_TRUE(edits.set_active(closed, true));
+    need(edits.add_area(Prism::box({3, -1, -1}, {3.5, 1, 2}), 8));
+    const EditId last = need(edits.add_area(Prism::box({3.2, -1, -1}, {3.8, 1, 7}), 9));
+    finder.find(query, path);
+    EXPECT_EQ(path.end, PathEnd::kUnreachable);
+    EXPECT_TRUE(edits.remove(closed));
+    expect_blocked(Blocker::kClosed, last);
+    // Ends on ground that is closed or under an obstacle are no places.
+    finder.find({.from = Vec3d{2, 0, 3}, .to = Vec3d{3.5, 0, 3}}, path);
+    EXPECT_EQ(path.end, PathEnd::kNoPlace);
+    EXPECT_EQ(path.blocked_by_edit, 0u);
+  }
+}
+
+// The wall of the bake comes before the obstacle.
+TEST(PathFinder, NamesNoEditWhereABakedWallIsMetFirst) {
+  const World world = bake(worlds::doorway(0.2), 0.1);  // too narrow for an adult: two rooms
+  Edits edits;
+  Context context;
+  PathFinder finder = need(PathFinder::create(world, {.edits = edits}, context));
+  need(edits.add_obstacle(Prism::box({5.5, 0, 2}, {6, 2, 4})));  // beyond the wall
+  Path path;
+  finder.find({.from = Vec3d{1, 0, 1}, .to = Vec3d{7, 0, 3}}, path);
+  EXPECT_EQ(path.end, PathEnd::kUnreachable);
+  EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
+  EXPECT_EQ(path.blocked_by_edit, 0u);
+}
+
 // Level ground alone, so that the nearest place of nodes is that of the ground: a floor, a crate,
 // and a deck over a part of both.
 struct LevelStage {

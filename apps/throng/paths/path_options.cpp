@@ -19,10 +19,10 @@ void add_path_options(CLI::App& command, PathOptions& options) {
   command.add_option("--class", options.avatar_class, "Avatar class by name")
       ->capture_default_str();
   command
-      .add_option(
-          "--tolerance", options.tolerance,
-          "Vertical tolerance of both ends; search radius for classes that climb, and over nodes "
-          "without ground above or below [m]")
+      .add_option("--tolerance", options.tolerance,
+                  "How far above or below an end its place may be; for classes that climb, and "
+                  "over nodes if "
+                  "there is none: how far away [m]")
       ->check(at_least(0))
       ->capture_default_str();
   command.add_flag(
@@ -57,7 +57,9 @@ void add_path_options(CLI::App& command, PathOptions& options) {
       ->check(between(0.0, 1000.0))
       ->capture_default_str();
   add_search_memory(command, options.search_bytes);
-  command.add_option("--threads", options.threads, "Threads for making the mesh, 0 for all cores")
+  command
+      .add_option("--threads", options.threads,
+                  "Threads for what is made before the search, 0 for all cores")
       ->check(between(0, 1024))
       ->capture_default_str();
 }

@@ -71,6 +71,14 @@ std::string how_near(const Vec3d& nearest, const Vec3d& goal) {
   return text + fmt::format(" and {:.3f} m {}", std::fabs(below), below > 0 ? "below" : "above");
 }
 
+// With the option that made it.
+std::string blocker_text(Blocker blocker) {
+  std::string text = word_for(blocker);
+  if (blocker == Blocker::kObstacle) text += " (--block)";
+  if (blocker == Blocker::kClosed) text += " (--area-cost)";
+  return text;
+}
+
 std::string point_text(const Path& path, size_t i) {
   std::string text = "  " + where(path.points[i].position);
   if (!path.node_places.empty()) {
@@ -127,7 +135,9 @@ std::string path_text(const PathRun& run, const Path& path) {
   if (path.end == PathEnd::kReached) {
     const std::string over =
         path.corridor.empty() ? "" : fmt::format(" over {} nodes", path.corridor.size());
-    text = fmt::format("{:.3f} m for {}{}, {} segments, found in {:.3f} ms\n", path.length,
+    const bool flies = std::any_of(path.segments.begin(), path.segments.end(), is_flown);
+    const char* seen = path.node_places.empty() && !flies ? " as seen from above" : "";
+    text = fmt::format("{:.3f} m{} for {}{}, {} segments, found in {:.3f} ms\n", path.length, seen,
                        run.avatar_class, over, path.segments.size(), run.seconds * 1e3);
     if (std::fabs(path.cost - path.length) > 0.0005) {
       text += fmt::format("  costs {:.3f}\n", path.cost);
@@ -141,7 +151,7 @@ std::string path_text(const PathRun& run, const Path& path) {
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d& nearest = path.points.back().position;
     text += fmt::format("  gets to ({}), {}; blocked by: {}\n", where(nearest),
-                        how_near(nearest, run.goal), word_for(path.blocked_by));
+                        how_near(nearest, run.goal), blocker_text(path.blocked_by));
   }
   for (size_t i = 0; i < path.points.size(); ++i) text += point_text(path, i);
   return text;

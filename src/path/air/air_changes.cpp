@@ -3,6 +3,7 @@
 #include "path/air/air_changes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "graph/ground_parts.h"
@@ -172,6 +173,19 @@ bool AirChanges::block_ground(int64_t tile, std::span<const ChangeId> here, Chan
     }
   }
   return blocks;
+}
+
+ChangeId AirChanges::obstacle_at(uint32_t box, AirPoint p) const {
+  const auto here = of_box_.find(box);
+  if (here == of_box_.end()) return 0;
+  const auto whole = [](double value) { return static_cast<int32_t>(std::floor(value)); };
+  const world::AirCube voxel{whole(p.x), whole(p.y), whole(p.z), 1};
+  for (const ChangeId id : here->second) {
+    const Change& of = changes_[id - 1];
+    CubeCells blocked;
+    if (block_air(grid_, voxel, of.near, of.solid.prism, of.solid.triangles, blocked)) return id;
+  }
+  return 0;
 }
 
 void AirChanges::add_all_to(GroundFinder& ground, std::vector<ChangeId>& ids) const {

@@ -47,6 +47,8 @@ class AirChanges {
     return found == blocked_.end() ||
            (found->second[static_cast<size_t>(world::in_tile(z))] >> world::in_tile(x) & 1) == 0;
   }
+  /// An active obstacle that blocks the voxel around a point of a box of the space; 0: none does.
+  [[nodiscard]] ChangeId obstacle_at(uint32_t box, AirPoint p) const;
   /// Adds all obstacles to a ground of the class that has none of them yet; `ids`: their ids there,
   /// by id - 1.
   void add_all_to(GroundFinder& ground, std::vector<ChangeId>& ids) const;

@@ -45,21 +45,22 @@ int32_t free_layers(const world::AirData& air, const world::AirBody& body, int32
 
 }  // namespace
 
-Blocker air_blocker(const world::AirData& air, const world::AirBody& body, const AirView& view,
-                    AirPoint from, AirPoint to) {
+FoundBlocker air_blocker(const world::AirData& air, const world::AirBody& body, const AirView& view,
+                         AirPoint from, AirPoint to) {
   constexpr double kStep = 0.25;  // [voxels]
   const AirPoint delta = to - from;
   const double far = air_distance(from, to);
   for (double at = 0; at < far; at += kStep) {
     const AirPoint p = from + (at / far) * delta;
     if (view.box_at(p) != kNoBox) continue;
-    if (view.space().box_at(p) != kNoBox) return Blocker::kNarrow;  // placed since
+    const uint32_t box = view.space().box_at(p);
+    if (box != kNoBox) return {Blocker::kObstacle, view.changes()->obstacle_at(box, p)};
     const int32_t layers =
         free_layers(air, body, static_cast<int32_t>(std::floor(p.x)),
                     static_cast<int32_t>(std::floor(p.y)), static_cast<int32_t>(std::floor(p.z)));
-    return layers > 0 ? Blocker::kLow : Blocker::kNarrow;
+    return {layers > 0 ? Blocker::kLow : Blocker::kNarrow, 0};
   }
-  return Blocker::kNone;
+  return {};
 }
 
 FlightEndpoints::FlightEndpoints(const world::WorldData& world, const AirView& air,

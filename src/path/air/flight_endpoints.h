@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "path/air/air_view.h"
+#include "path/edits/found_blocker.h"
 #include "path/ground/circle_flood.h"
 #include "throng/world.h"
 
@@ -13,10 +14,10 @@
 namespace throng::path {
 
 /// What a body meets first on the straight line from where it may be: kLow where it would fit if it
-/// were less tall, else kNarrow, as where an obstacle was placed; kNone if it meets nothing. Linear
-/// in the voxels on the line.
-[[nodiscard]] Blocker air_blocker(const world::AirData& air, const world::AirBody& body,
-                                  const AirView& view, AirPoint from, AirPoint to);
+/// were less tall, else kNarrow; an obstacle; kNone if it meets nothing. Linear in the voxels on
+/// the line.
+[[nodiscard]] FoundBlocker air_blocker(const world::AirData& air, const world::AirBody& body,
+                                       const AirView& view, AirPoint from, AirPoint to);
 
 class FlightEndpoints {
  public:

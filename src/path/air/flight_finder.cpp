@@ -754,8 +754,9 @@ void FlightFinder::find_nearest(const FlightQuery& query, Path& path) {
   if (path.end == PathEnd::kBudgetExhausted) return;
   path.blocked_by = Blocker::kNone;
   if (path.points.empty()) return;
-  path.blocked_by =
-      air_blocker(*data_of(state_->world)->air, state_->body, air, off_faces(*nearest), goal);
+  set_blocker(
+      air_blocker(*data_of(state_->world)->air, state_->body, air, off_faces(*nearest), goal),
+      path);
   // Air that begins right there and leads nowhere else: only a corner is between.
   if (path.blocked_by == Blocker::kNone) path.blocked_by = Blocker::kNarrow;
 }

@@ -128,6 +128,13 @@ class AppliedEdits {
     return edit - 1 < own_.size() ? own_[edit - 1].id : 0;
   }
 
+  /// The edit that a change of the finder is; 0: none. Time: linear in the edits.
+  [[nodiscard]] EditId edit_of(ChangeId change) const {
+    EditId edit = change == 0 ? 0 : static_cast<EditId>(own_.size());
+    while (edit > 0 && own_[edit - 1].id != change) --edit;
+    return edit;
+  }
+
  private:
   struct Own {
     ChangeId id = 0;     // of the finder; 0: none

@@ -14,7 +14,6 @@
 #include "path/edits/plan_shapes.h"
 #include "path/edits/point_search.h"
 #include "path/edits/solid.h"
-#include "path/ground/blocker.h"
 #include "path/ground/reset_path.h"
 #include "path/ground/segments.h"
 #include "world/place.h"
@@ -46,27 +45,6 @@ void GroundFinder::State::give(Path& path) {
   }
   path.length = length * world.summary.cell;
   path.cost = cost * world.summary.cell;
-}
-
-Blocker GroundFinder::blocker(const Place& from, const Place& to) {
-  ViewStop start, goal;
-  if (!state_->locate(from, start) || !state_->locate(to, goal)) return Blocker::kNone;
-  return state_->blocker(start, goal);
-}
-
-Blocker GroundFinder::State::blocker(const ViewStop& start, const ViewStop& goal) {
-  const ViewLevel* level = mesh.level(start.level);
-  const world::WalkStop stop =
-      world::walk_far(mesh.ground(), level, start.at, goal.at, mesh.step());
-  if (stop.arrived) return Blocker::kGap;  // under or over the goal
-  // Obstacles placed since the bake are not in its floors.
-  const world::WorldGround baked{mesh.world(), mesh.avatar_class()};
-  const Blocker found = blocker_beyond(baked, level->ground, stop);
-  const world::GroundLevel& ground = level->ground;
-  const bool was_free = world::step_to(baked, ground, stop.x, stop.z, stop.x + stop.toward_x,
-                                       stop.z + stop.toward_z, mesh.step())
-                            .has_value();
-  return was_free ? Blocker::kNarrow : found;
 }
 
 GroundFinder::GroundFinder(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -344,7 +322,7 @@ bool GroundFinder::State::advance(uint64_t max_nodes, uint64_t max_bytes, Path& 
   search.give_back();
   string.pull(mesh, stops);
   give(path);
-  if (path.end == PathEnd::kUnreachable) path.blocked_by = blocker(stops.back(), to);
+  if (path.end == PathEnd::kUnreachable) set_blocker(blocker(stops.back(), to), path);
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "path/edits/found_blocker.h"
 #include "path/edits/solid.h"
 #include "path/ground/slice.h"
 #include "throng/path.h"
@@ -87,7 +88,7 @@ class GroundFinder {
   [[nodiscard]] uint64_t version() const;
 
   /// What a straight line from one place of the class to another meets first.
-  Blocker blocker(const Place& from, const Place& to);
+  FoundBlocker blocker(const Place& from, const Place& to);
 
   struct State;
   /// For what works on the same ground (FlowPoints).

@@ -39,7 +39,9 @@ struct GroundFinder::State {
   /// Of `stops`.
   void give(Path& path);
   /// What a straight line meets first.
-  Blocker blocker(const ViewStop& start, const ViewStop& goal);
+  FoundBlocker blocker(const ViewStop& start, const ViewStop& goal);
+  /// The change that stopped a walk on a level; none if the bake did.
+  FoundBlocker changed_beyond(const ViewLevel& level, const world::WalkStop& stop);
 
   GroundView mesh;
   PointSearch search;

@@ -28,7 +28,6 @@ double link_factor(const GroundView::OffMeshLinkEnd& link) {
   return link.cost < length ? link.cost / length : 1;
 }
 
-int64_t tile_key(int32_t x, int32_t z) { return (int64_t{z} << 32) | static_cast<uint32_t>(x); }
 int32_t x_of(int64_t tile) { return static_cast<int32_t>(tile); }
 int32_t z_of(int64_t tile) { return static_cast<int32_t>(tile >> 32); }
 

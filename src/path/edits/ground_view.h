@@ -95,6 +95,12 @@ class GroundView final : public PortalSource {
     return factor(level.first_rect + n);
   }
   [[nodiscard]] bool closes_kinds() const;  // does ground of some area kind cost infinity?
+  /// Of a legal cell of a level's tile: does it?
+  [[nodiscard]] bool is_closed(const ViewLevel& level, int32_t x, int32_t z) const;
+  /// An active obstacle that blocks a cell of a level's tile, or the last of the active areas that
+  /// hold it; 0: there is none.
+  [[nodiscard]] ChangeId obstacle_at(const ViewLevel& level, int32_t x, int32_t z) const;
+  [[nodiscard]] ChangeId area_at(const ViewLevel& level, int32_t x, int32_t z) const;
   [[nodiscard]] bool is_plain() const { return plain_; }  // a metre costs 1 everywhere
   [[nodiscard]] bool has_links() const { return active_links_ > 0; }
   /// No path costs less than its length in the plane times this.
@@ -177,6 +183,9 @@ class GroundView final : public PortalSource {
     size_t operator()(const CornerKey& key) const;
   };
 
+  static int64_t tile_key(int32_t x, int32_t z) {
+    return (int64_t{z} << 32) | static_cast<uint32_t>(x);
+  }
   void make(uint32_t index, ViewLevel& level);
   void block_cells(ViewLevel& level) const;
   void cut(ViewLevel& level);

@@ -31,6 +31,7 @@ inline void reset(Path& path) {
   path.corridor.clear();
   path.length = path.cost = path.searched_cost = 0;
   path.blocked_by = Blocker::kNone;
+  path.blocked_by_edit = 0;
   path.nodes = 0;
   path.spent = SpentBudget::kNone;
 }

@@ -316,7 +316,7 @@ uint32_t block_around(const graph::NodeMesh& mesh, uint32_t node, double s, doub
 }
 
 // What blocks the class from a block towards a position.
-Blocker blocker_towards(const NodeView& view, const BlockPoint& from, Vec3d goal) {
+FoundBlocker blocker_towards(const NodeView& view, const BlockPoint& from, Vec3d goal) {
   const graph::NodeMesh& mesh = view.mesh();
   const graph::NodeBlock& block = view.block(from.block);
   const graph::NodeSurface& surface = view.surface(from.block);
@@ -339,10 +339,12 @@ Blocker blocker_towards(const NodeView& view, const BlockPoint& from, Vec3d goal
     outside = s < 0 || t < 0 || s > 1 || t > 1;
   }
   if (!view.is_as_baked() && !outside) {
-    // A body could stand there, were it not for an obstacle.
+    // A body could stand there, were it not for an edit.
     const uint32_t next = mesh.block_at(block.patch, s, t);
-    if (next != graph::kNoNode && view.changes()->part_at(next, s, t) == graph::kNoNode)
-      return Blocker::kNarrow;
+    if (next != graph::kNoNode && view.changes()->part_at(next, s, t) == graph::kNoNode) {
+      const FoundBlocker found = view.changes()->blocker_at(next, s, t);
+      return found.blocker != Blocker::kNone ? found : FoundBlocker{Blocker::kNarrow, 0};
+    }
   }
   if (surface.points == nullptr) {
     // What blocks a straight walk, as over level tiles without nodes.
@@ -354,13 +356,13 @@ Blocker blocker_towards(const NodeView& view, const BlockPoint& from, Vec3d goal
     const world::WalkStop stop =
         world::walk_far(ground, level, world::to_ground(world, feet.x, feet.z),
                         world::to_ground(world, goal.x, goal.z), world::step_mm(avatar));
-    return stop.arrived ? Blocker::kGap : blocker_beyond(ground, level, stop);
+    return {stop.arrived ? Blocker::kGap : blocker_beyond(ground, level, stop), 0};
   }
-  if (outside) return Blocker::kGap;
+  if (outside) return {Blocker::kGap, 0};
   const double limit = avatar.climb_slope > 0 ? avatar.climb_slope : avatar.max_slope;
   const double slope =
       std::acos(std::clamp(surface.normal(s, t).y, -1.0, 1.0)) * 180 / std::numbers::pi;
-  if (slope > limit) return Blocker::kSteep;
+  if (slope > limit) return {Blocker::kSteep, 0};
   // Classes that can stand there show which measure of this one is too large.
   const Nodes& nodes = mesh.nodes();
   Blocker found = Blocker::kNarrow;
@@ -379,7 +381,7 @@ Blocker blocker_towards(const NodeView& view, const BlockPoint& from, Vec3d goal
       }
     }
   }
-  return found;
+  return {found, 0};
 }
 
 // The parameters of a point in the patch of its tile.
@@ -748,7 +750,7 @@ void NodeFinder::give(Path& path) {
     last = scratch.nearest.value_or(nearest_place(view, state_->squares, last, scratch.goal_at,
                                                   [](uint32_t) { return false; }));
     path.end = PathEnd::kUnreachable;
-    path.blocked_by = blocker_towards(view, last, scratch.goal_at);
+    set_blocker(blocker_towards(view, last, scratch.goal_at), path);
   }
   scratch.pull.pull(scratch.start, last, scratch.crossings, scratch.pulled);
   PathBuilder path_builder(view, scratch.cost, scratch.spacing, path);

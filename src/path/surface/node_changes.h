@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "graph/node_mesh.h"
+#include "path/edits/found_blocker.h"
 #include "path/edits/solid.h"
 #include "path/surface/block_squares.h"
 #include "throng/path.h"
@@ -85,6 +86,8 @@ class NodeChanges {
   [[nodiscard]] std::optional<std::pair<uint32_t, uint32_t>> parts_of(uint32_t block) const;
   /// The block or the part of it that holds a point, which may lie on its border; or kNoNode.
   [[nodiscard]] uint32_t part_at(uint32_t block, double s, double t) const;
+  /// The obstacle, or the area of infinite cost, that keeps the class from a point of a block.
+  [[nodiscard]] FoundBlocker blocker_at(uint32_t block, double s, double t) const;
   /// Blocks of the mesh that are cut or have other portals, rising.
   [[nodiscard]] std::span<const uint32_t> touched() const { return touched_; }
   /// Portals of the mesh that are closed, rising, and what is left of each among portals().

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "command.h"
+#include "input_file.h"
 #include "number_checks.h"
 #include "sources.h"
 #include "throng/bake.h"
@@ -53,9 +53,9 @@ bool read_point(const Json& entry, const char* key, Vec3d& out) {
 // false}].
 Result<std::vector<NodeOffMeshLink>> read_off_mesh_links(const std::string& name,
                                                          const std::vector<AvatarClass>& classes) {
-  std::ifstream file(name);
-  if (!file) return Error{Errc::kBadFile, name + ": cannot be read"};
-  const Json json = Json::parse(file, nullptr, false);
+  const auto text = read_file(name, "give --off-mesh-links a list of links in JSON");
+  if (!text) return text.error();
+  const Json json = Json::parse(*text, nullptr, false);
   if (!json.is_array()) {
     return Error{
         Errc::kBadFile,

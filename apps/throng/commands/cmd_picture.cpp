@@ -4,12 +4,12 @@
 
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "command.h"
+#include "input_file.h"
 #include "report/avatars_csv.h"
 #include "report/scene_picture.h"
 #include "throng/picture.h"
@@ -35,10 +35,10 @@ struct PictureOptions {
 
 // The points of a path that `throng path --json` printed.
 Result<std::vector<Vec3d>> read_path(const std::string& name) {
-  std::ifstream file(name);
   const auto bad = [&](const char* what) { return Error{Errc::kBadFile, name + ": " + what}; };
-  if (!file) return bad("cannot be read");
-  const Json json = Json::parse(file, nullptr, false);
+  const auto text = read_file(name, "write it with `throng path ... --json`");
+  if (!text) return text.error();
+  const Json json = Json::parse(*text, nullptr, false);
   if (!json.is_object() || !json.contains("points") || !json["points"].is_array()) {
     return bad("has no points; write it with `throng path ... --json`");
   }

@@ -6,11 +6,10 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <sstream>
 
+#include "input_file.h"
 #include "throng/path.h"
 #include "throng/world.h"
 
@@ -117,12 +116,9 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
 
 Result<void> read_goals(CrowdRun& run) {
   if (run.goals == "random") return {};
-  std::ifstream file(run.goals, std::ios::binary);
-  if (!file) {
-    return Error{Errc::kNotFound,
-                 run.goals + ": cannot be read; give 'random' or a file of lines x,y,z"};
-  }
-  run.goals_text.assign(std::istreambuf_iterator<char>(file), {});
+  auto text = read_file(run.goals, "give --goals 'random' or a file of lines x,y,z");
+  if (!text) return text.error();
+  run.goals_text = *std::move(text);
   return {};
 }
 

@@ -25,6 +25,27 @@ class ProgramInput(ProgramCase):
         self.assert_refused(self.run_throng(*picture, "--path", "none.json"), "none.json: cannot be read", "throng path")
         self.assertEqual([path.name for path in self.path.iterdir()], ["folder"])
 
+    def test_a_recording_without_a_good_step_proves_and_exports_nothing(self):
+        done = self.run_throng("run", self.world, "--avatars", 20, "--steps", 20, "--record", "whole.replay")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        content = bytearray((self.path / "whole.replay").read_bytes())
+        second = content.index(content[:4], 4)  # Each chunk begins with the mark of the first.
+        content[second + 200] ^= 1
+        (self.path / "bad.replay").write_bytes(content)
+        done = self.run_throng("replay", "bad.replay", "--json")
+        self.assertEqual((done.returncode, json.loads(done.stdout)["frames"]), (0, 0), done.stderr)
+        for options in (("--check",), ("--at", 0), ("--csv", "a.csv"), ("--txt", "a.txt"), ("--sqlite", "a.sqlite")):
+            with self.subTest(options=options):
+                done = self.run_throng("replay", "bad.replay", *options)
+                self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+                note, refusal = done.stderr.splitlines()
+                self.assertIn("corrupt", note)
+                self.assertIn("bad.replay: holds no", refusal)
+        self.assert_refused(self.run_throng("report", "bad.replay", "-o", "a.html"), "bad.replay: holds no frame")
+        self.assertEqual(sorted(path.name for path in self.path.iterdir()), ["bad.replay", "whole.replay"])
+        whole = json.loads(self.run_throng("replay", "whole.replay", "--check", "--json").stdout)
+        self.assertEqual((whole["hashes"], whole["complete"]), (21, True))
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

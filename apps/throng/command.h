@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "throng/avatar.h"
 #include "throng/base.h"
@@ -27,6 +28,7 @@ using Json = nlohmann::ordered_json;
 struct Session {
   bool json = false;  ///< --json: one object on standard output, all else on standard error.
   int exit_code = kDone;
+  std::vector<std::string> words;  ///< The command line, as typed.
   Context context;  ///< Draws progress on a terminal, lines elsewhere; Ctrl-C cancels.
 };
 
@@ -56,6 +58,9 @@ void add_model(CLI::App& command, SteeringModel& model);
 /// A flag that chooses how paths are found faster.
 CLI::Option* add_speedup(CLI::App& command, const std::string& flag, PathSpeedup chosen,
                          PathSpeedup& speedup, const std::string& text);
+/// --threads, 0 for all cores, with its limit.
+CLI::Option* add_threads(CLI::App& command, int32_t& threads,
+                         const std::string& text = "Threads, 0 for all cores");
 /// --search-memory, in MiB.
 void add_search_memory(CLI::App& command, uint64_t& bytes);
 

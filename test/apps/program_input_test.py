@@ -46,6 +46,44 @@ class ProgramInput(ProgramCase):
         whole = json.loads(self.run_throng("replay", "whole.replay", "--check", "--json").stdout)
         self.assertEqual((whole["hashes"], whole["complete"]), (21, True))
 
+    def test_counts_below_zero_are_refused_and_do_not_wrap_around(self):
+        run = ("run", self.world, "--avatars", 5, "--steps", 2)
+        for command in ((*run[:4], "--steps", -1), (*run, "--seed", -1), (*run, "--check-every", -1), (*run, "--every", "-1"),
+                        (*run[:2], "--avatars", -1), ("verify", self.world, "--source", "builtin:garage", "--samples", -1),
+                        ("generate", "city", "-o", "a.glb", "--seed", -1), ("generate", "city", "-o", "a.glb", "--triangles", -1),
+                        ("bench", "--steps", -1), ("query", self.world, "--at", "14,0,8", "--random", -1)):
+            with self.subTest(command=command):
+                self.assert_refused(self.run_throng(*command), f"{command[-2]}: ", "-1")
+        self.assertEqual(list(self.path.iterdir()), [])
+
+    def test_each_command_limits_its_threads(self):
+        for command in (("bake", "builtin:cube", "-o", "x.throng"), ("run", self.world, "--steps", 1), ("components", self.world),
+                        ("path", self.world, "--from", "14,0,8", "--to", "20,0,8"), ("slices", "builtin:cube"),
+                        ("verify", self.world, "--source", "builtin:garage"), ("caacd",), ("validate", "--list"),
+                        ("atlas", "-o", "a.atlas"), ("bench",)):
+            with self.subTest(command=command):
+                self.assert_refused(self.run_throng(*command, "--threads", 99999), "--threads: 99999 is above ")
+                self.assert_refused(self.run_throng(*command, "--threads", -1), "--threads: -1 is below 0")
+        self.assertEqual(list(self.path.iterdir()), [])
+        most = self.run_throng("run", self.world, "--avatars", 5, "--steps", 1, "--threads", 256)
+        self.assertEqual((most.returncode, most.stderr), (0, ""))
+
+    def test_an_empty_value_is_no_zero(self):
+        run = ("run", self.world, "--avatars", 5, "--steps", 2)
+        for command in ((*run[:2], "--avatars", ""), (*run[:4], "--steps", ""), (*run, "--threads", ""), (*run, "--seed", ""),
+                        (*run, "--speed", ""), (*run, "--radius", ""), (*run, "--near", ""), (*run, "--class", ""),
+                        (*run, "--record", ""), ("query", self.world, "--at", ""), ("replay", "x.replay", "--at", ""),
+                        ("generate", "garage", "-o", "a.glb", "--levels", ""), ("bake", "builtin:cube", "-o", ""),
+                        ("bake", "builtin:cube", "-o", "x.throng", "--cell", "")):
+            with self.subTest(command=command):
+                self.assert_refused(self.run_throng(*command), f"{'--output' if command[-2] == '-o' else command[-2]}: ")
+        ends = ("path", self.world, "--to", "20,0,8", "--from")
+        self.assert_refused(self.run_throng(*ends, "1,,3"), "--from: wants X,Y,Z, and got 1,,3;")
+        self.assert_refused(self.run_throng(*ends, "14,,0,8"), "--from: 14,,0,8 leaves out a value; write X,Y,Z;")
+        self.assert_refused(self.run_throng(*ends[:-1], "--from=14,0,8,"), "--from: 14,0,8, leaves out a value;")
+        self.assert_refused(self.run_throng(*ends, "1e30,0,8"), "--from (1e+30, 0.000, 8.000) lies outside")
+        self.assertEqual(list(self.path.iterdir()), [])
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

@@ -271,8 +271,8 @@ void add_bake(CLI::App& parser, Session& session) {
       ->capture_default_str();
   command->add_option("--zone", config.zone, "Side of a zone [m]")->capture_default_str();
   command->add_option("--classes", options->classes, "Avatar classes (TOML or JSON)");
-  command->add_option("--threads", config.workers,
-                      "Threads, 0 for all cores (under mpirun: of each rank, and its share)");
+  add_threads(*command, config.workers,
+              "Threads, 0 for all cores (under mpirun: of each rank, and its share)");
   command->add_flag("--coarse", options->coarse,
                     "Solids as whole cells: faster, loses up to a cell beside walls");
   command->add_flag("--one-sided", config.one_sided,

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "command.h"
-#include "number_checks.h"
 #include "report/caacd_figures.h"
 #include "report/caacd_one_run.h"
 #include "throng/papers.h"
@@ -277,8 +276,7 @@ void add_caacd(CLI::App& parser, Session& session) {
       ->capture_default_str();
   command->add_option("--obstacles", study.space.obstacles, "How many")->capture_default_str();
   command->add_option("--dt", study.dt, "Step of time [frames]")->capture_default_str();
-  command->add_option("--threads", study.workers, "Threads, 0 for all cores")
-      ->check(between(0, 1024));
+  add_threads(*command, study.workers);
   command->add_option("--figure10", options->figure10, "Chart of the paper's bad sets and the mean")
       ->type_name("FILE.png");
   command->add_option("--figure11", options->figure11, "Chart of all other sets")

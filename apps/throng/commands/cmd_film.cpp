@@ -152,7 +152,7 @@ void add_film(CLI::App& parser, Session& session) {
       ->check(at_least(0))
       ->capture_default_str();
   add_people_options(command, target);
-  command->add_option("--threads", options->workers, "Threads, 0 for all cores");
+  add_threads(*command, options->workers);
   add_source_options(command, target.sources, "--source");
   command->callback([&session, options, command] {
     if (command->count("--seed") > 0) options->target.seed = options->target.start.seed;

@@ -271,7 +271,7 @@ void add_replay(CLI::App& parser, Session& session) {
   command->add_flag("--check", options->check, "Run it again and name the first step that differs");
   command->add_option("--world", options->world, "World folder, if it is not where it was")
       ->type_name("WORLD");
-  command->add_option("--threads", options->workers, "Threads of --check, 0 for all cores");
+  add_threads(*command, options->workers, "Threads of --check, 0 for all cores");
   command->add_flag_callback(
       "--info", [] {}, "Print what the recording holds (done in any case)");
   command->callback([&session, options] { session.exit_code = replay(session, *options); });

@@ -244,7 +244,7 @@ void add_run(CLI::App& parser, Session& session) {
   command->add_option("--steps", options->steps, "How many steps")->capture_default_str();
   command->add_option("--dt", config.dt, "Length of a step [s]")->capture_default_str();
   command->add_option("--seed", config.seed, "Seed of all chance")->capture_default_str();
-  command->add_option("--threads", config.workers, "Threads, 0 for all cores");
+  add_threads(*command, config.workers);
   command->add_option("--class", options->class_name, "Avatar class (the world's first)");
   command->add_option("--speed", config.speed, "Walking speed, 0 for the class's own [m/s]");
   command

@@ -144,7 +144,7 @@ void add_view(CLI::App& parser, Session& session) {
   command->add_option("--height", options->height, "Of the window or picture [px]")
       ->check(between(120, 8192))
       ->capture_default_str();
-  command->add_option("--threads", options->workers, "Threads, 0 for all cores");
+  add_threads(*command, options->workers);
   command->add_option("--pictures", options->pictures, "Folder for the pictures that F12 keeps")
       ->type_name("FOLDER");
   command->add_flag("--forget", options->forget, "Neither read nor keep settings");

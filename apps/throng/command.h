@@ -28,7 +28,8 @@ using Json = nlohmann::ordered_json;
 struct Session {
   bool json = false;  ///< --json: one object on standard output, all else on standard error.
   int exit_code = kDone;
-  std::vector<std::string> words;  ///< The command line, as typed.
+  std::vector<std::string> words;           ///< The command line, as typed.
+  std::vector<const CLI::Option*> outputs;  ///< Those of add_output.
   Context context;  ///< Draws progress on a terminal, lines elsewhere; Ctrl-C cancels.
 };
 
@@ -52,6 +53,11 @@ void note(const std::string& sentence);
 /// command per line, run in order in an empty folder by scripts/tests/test_examples.
 CLI::App* add_command(CLI::App& parser, Session& session, const std::string& name,
                       const std::string& summary, const std::string& example);
+
+/// An option for a file to write. It is refused if it is a folder, a device, a file of a world, or
+/// one that another option of the command reads or writes.
+CLI::Option* add_output(CLI::App& command, Session& session, const std::string& names,
+                        std::string& path, const std::string& text);
 
 /// The option --model.
 void add_model(CLI::App& command, SteeringModel& model);

@@ -20,6 +20,7 @@
 #include "number_checks.h"
 #include "old_names.h"
 #include "option_values.h"
+#include "output_checks.h"
 #include "throng/bake.h"
 #include "throng/path.h"
 
@@ -187,7 +188,10 @@ CLI::App* add_command(CLI::App& parser, Session& session, const std::string& nam
   std::string indented = "Example:\n  ";
   for (const char c : example) indented += c == '\n' ? std::string("\n  ") : std::string(1, c);
   command->footer(indented);
-  command->parse_complete_callback([command, &session] { check_values(*command, session.words); });
+  command->parse_complete_callback([command, &session] {
+    check_values(*command, session.words);
+    check_outputs(*command, session.outputs);
+  });
   return command;
 }
 
@@ -213,6 +217,13 @@ void add_search_memory(CLI::App& command, uint64_t& bytes) {
                       SearchBudget::kDefaultBytes >> 20))
       ->check(between(1, 1 << 20))
       ->type_name("MIB");
+}
+
+CLI::Option* add_output(CLI::App& command, Session& session, const std::string& names,
+                        std::string& path, const std::string& text) {
+  CLI::Option* output = command.add_option(names, path, text);
+  session.outputs.push_back(output);
+  return output;
 }
 
 void add_model(CLI::App& command, SteeringModel& model) {

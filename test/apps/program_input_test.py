@@ -4,6 +4,7 @@
 
 python3 program_input_test.py build/release/throng"""
 import json
+import os
 import unittest
 
 from program_case import ProgramCase
@@ -83,6 +84,36 @@ class ProgramInput(ProgramCase):
         self.assert_refused(self.run_throng(*ends[:-1], "--from=14,0,8,"), "--from: 14,0,8, leaves out a value;")
         self.assert_refused(self.run_throng(*ends, "1e30,0,8"), "--from (1e+30, 0.000, 8.000) lies outside")
         self.assertEqual(list(self.path.iterdir()), [])
+
+    def test_no_output_is_written_over_an_input(self):
+        done = self.run_throng("run", self.world, "--avatars", 5, "--steps", 4, "--record", "a.replay", "--trajectories", "a.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.run_throng("generate", "cube", "-o", "m.glb").returncode, 0)
+        (self.path / "link.replay").symlink_to("a.replay")
+        (self.path / "hard.replay").hardlink_to(self.path / "a.replay")
+        (self.path / "s.toml").write_text("")
+        manifest = self.world / "manifest.thm"
+        before = {path: path.read_bytes() for path in [*self.path.iterdir(), *self.world.iterdir()]}
+        run = ("run", self.world, "--avatars", 5, "--steps", 2)
+        for option, *command in (("--csv", "replay", "a.replay", "--csv", "a.replay"), ("--txt", "replay", "a.replay", "--txt", "./a.replay"),
+                                 ("--sqlite", "replay", "a.replay", "--sqlite", "link.replay"),
+                                 ("--csv", "replay", "a.replay", "--csv", "hard.replay"),
+                                 ("--output", "report", "a.replay", "-o", "a.replay"),
+                                 ("--output", "picture", self.world, "--avatars", "a.csv", "-o", "a.csv"),
+                                 ("--output", "atlas", "m.glb", "-o", "m.glb"),
+                                 ("--record", *run, "--goals", "a.csv", "--record", "a.csv"),
+                                 ("--record", "run", "s.toml", "--record", "s.toml"),
+                                 ("--record", *run, "--record", manifest), ("--output", "export", self.world, "-o", manifest),
+                                 ("--csv", "replay", "a.replay", "--csv", self.world / "new.csv"),
+                                 ("--record", *run, "--record", "."), ("--output", "generate", "cube", "-o", "."),
+                                 ("--trajectories", *run, "--record", "new", "--trajectories", "new"),
+                                 ("--csv", "replay", "a.replay", "--csv", "new", "--txt", f"../{self.path.name}/new")):
+            with self.subTest(command=command):
+                self.assert_refused(self.run_throng(*command), f"throng: {option}: ", "name a")
+                self.assertEqual({path: path.read_bytes() for path in [*self.path.iterdir(), *self.world.iterdir()]}, before)
+        os.mkfifo(self.path / "pipe")  # A file that is renamed when it is whole would replace it.
+        self.assert_refused(self.run_throng("replay", "a.replay", "--csv", "pipe"), "--csv: pipe is no regular file")
+        self.assertTrue((self.path / "pipe").is_fifo())
 
 
 if __name__ == "__main__":

@@ -169,7 +169,7 @@ void add_atlas(CLI::App& parser, Session& session) {
           "character", options->character,
           "Character with a skeleton (glb, gltf, fbx, dae); a built-in figure if not given")
       ->type_name("CHARACTER.glb");
-  command->add_option("-o,--output", options->output, "Atlas to write")
+  add_output(*command, session, "-o,--output", options->output, "Atlas to write")
       ->required()
       ->type_name("FILE.atlas");
   command

@@ -270,7 +270,8 @@ void add_bake(CLI::App& parser, Session& session) {
   command->add_option("--resolution", config.resolution, "Headroom that may be lost [m]")
       ->capture_default_str();
   command->add_option("--zone", config.zone, "Side of a zone [m]")->capture_default_str();
-  command->add_option("--classes", options->classes, "Avatar classes (TOML or JSON)");
+  command->add_option("--classes", options->classes, "Avatar classes (TOML or JSON)")
+      ->type_name("FILE");
   add_threads(*command, config.workers,
               "Threads, 0 for all cores (under mpirun: of each rank, and its share)");
   command->add_flag("--coarse", options->coarse,

@@ -277,16 +277,16 @@ void add_caacd(CLI::App& parser, Session& session) {
   command->add_option("--obstacles", study.space.obstacles, "How many")->capture_default_str();
   command->add_option("--dt", study.dt, "Step of time [frames]")->capture_default_str();
   add_threads(*command, study.workers);
-  command->add_option("--figure10", options->figure10, "Chart of the paper's bad sets and the mean")
+  add_output(*command, session, "--figure10", options->figure10,
+             "Chart of the paper's bad sets and the mean")
       ->type_name("FILE.png");
-  command->add_option("--figure11", options->figure11, "Chart of all other sets")
+  add_output(*command, session, "--figure11", options->figure11, "Chart of all other sets")
       ->type_name("FILE.png");
-  command
-      ->add_option("--figure9", options->one_run.picture,
-                   "One run instead, of the last set and number of avatars: its picture")
+  add_output(*command, session, "--figure9", options->one_run.picture,
+             "One run instead, of the last set and number of avatars: its picture")
       ->type_name("FILE.png");
   command->add_option("--at", options->one_run.at, "Frame of that picture")->capture_default_str();
-  command->add_option("--record", options->one_run.record, "The same run, frame by frame")
+  add_output(*command, session, "--record", options->one_run.record, "The same run, frame by frame")
       ->type_name("FILE.csv");
   command->callback([&session, options] { session.exit_code = caacd(session, *options); });
 }

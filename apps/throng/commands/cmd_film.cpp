@@ -116,7 +116,7 @@ void add_film(CLI::App& parser, Session& session) {
   command->add_option("target", target.path, "Recording, world folder, or model to bake now")
       ->required()
       ->type_name("FILE.replay|WORLD|MODEL");
-  command->add_option("-o,--output", options->output, "Film to write, by ffmpeg")
+  add_output(*command, session, "-o,--output", options->output, "Film to write, by ffmpeg")
       ->required()
       ->type_name("FILE.mp4");
   command->add_option("--camera", options->camera, "Where to look from and to [m]")

@@ -105,9 +105,8 @@ void add_generate(CLI::App& parser, Session& session) {
   command->add_option("--seed", config.seed, "Another seed, another world")
       ->check(at_least(0))
       ->type_name("S");
-  auto* output = command
-                     ->add_option("-o,--output", options->output,
-                                  "File to write; .patches.json keeps a landscape curved")
+  auto* output = add_output(*command, session, "-o,--output", options->output,
+                            "File to write; .patches.json keeps a landscape curved")
                      ->type_name("GLB");
   list->excludes(output);
   command->callback([&session, options] {

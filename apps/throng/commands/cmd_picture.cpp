@@ -145,7 +145,7 @@ void add_picture(CLI::App& parser, Session& session) {
   command->add_option("world", options->world, "World folder")
       ->required()
       ->type_name("WORLD.throng");
-  command->add_option("-o,--output", options->output, "PNG file to write")
+  add_output(*command, session, "-o,--output", options->output, "PNG file to write")
       ->required()
       ->type_name("FILE.png");
   command->add_option("--storey,--level", options->storey, "One storey, or all")

@@ -256,11 +256,14 @@ void add_replay(CLI::App& parser, Session& session) {
                   "throng replay walk.replay --check");
   const auto options = std::make_shared<ReplayOptions>();
   command->add_option("file", options->file, "Recording")->required()->type_name("FILE.replay");
-  command->add_option("--csv", options->csv, "Write positions as `run --trajectories` does")
+  add_output(*command, session, "--csv", options->csv,
+             "Write positions as `run --trajectories` does")
       ->type_name("FILE.csv");
-  command->add_option("--txt", options->txt, "Write positions as text of the Juelich format")
+  add_output(*command, session, "--txt", options->txt,
+             "Write positions as text of the Juelich format")
       ->type_name("FILE.txt");
-  command->add_option("--sqlite", options->sqlite, "Write positions and walkable area for JuPedSim")
+  add_output(*command, session, "--sqlite", options->sqlite,
+             "Write positions and walkable area for JuPedSim")
       ->type_name("FILE.sqlite");
   command->add_option("--heights", options->heights, "Only avatars and floors between these [m]")
       ->expected(2)

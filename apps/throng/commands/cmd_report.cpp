@@ -189,7 +189,7 @@ void add_report(CLI::App& parser, Session& session) {
   const auto options = std::make_shared<ReportOptions>();
   SummaryConfig& config = options->config;
   command->add_option("file", options->file, "Recording")->required()->type_name("FILE.replay");
-  command->add_option("-o,--output", options->output, "Page to write")
+  add_output(*command, session, "-o,--output", options->output, "Page to write")
       ->required()
       ->type_name("FILE.html");
   command

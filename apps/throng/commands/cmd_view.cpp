@@ -127,7 +127,8 @@ void add_view(CLI::App& parser, Session& session) {
       ->expected(6)
       ->delimiter(',')
       ->type_name("X,Y,Z,TX,TY,TZ");
-  command->add_option("--picture", options->picture, "Write a picture instead of opening a window")
+  add_output(*command, session, "--picture", options->picture,
+             "Write a picture instead of opening a window")
       ->type_name("FILE.png");
   command->add_option("--after", options->after, "With --picture: time before it [s]")
       ->check(between(0.0, 3600.0))

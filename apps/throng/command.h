@@ -70,8 +70,9 @@ CLI::Option* add_threads(CLI::App& command, int32_t& threads,
 /// --search-memory, in MiB.
 void add_search_memory(CLI::App& command, uint64_t& bytes);
 
-/// Index of the class that --class names. Fails with kNotFound and the names to choose from.
-Result<int32_t> class_named(const World& world, const std::string& name);
+/// Index of the class that an option names. Fails with kNotFound and the names to choose from.
+Result<int32_t> class_named(const World& world, const std::string& name,
+                            const char* option = "--class");
 
 /// A line for results of level tiles alone, if the class also climbs or drops; else nothing.
 std::string note_of_nodes(const AvatarClass& avatar);

@@ -242,13 +242,13 @@ void add_model(CLI::App& command, SteeringModel& model) {
       ->type_name("MODEL");
 }
 
-Result<int32_t> class_named(const World& world, const std::string& name) {
+Result<int32_t> class_named(const World& world, const std::string& name, const char* option) {
   if (const auto index = world.find_class(name)) return *index;
   std::string known;
   for (const AvatarClass& avatar : world.summary().classes)
     known += (known.empty() ? "" : ", ") + avatar.name;
-  return Error{Errc::kNotFound,
-               fmt::format("--class {}: the world has no such class; choose from {}", name, known)};
+  return Error{Errc::kNotFound, fmt::format("{} {}: the world has no such class; choose from {}",
+                                            option, name, known)};
 }
 
 std::string note_of_nodes(const AvatarClass& avatar) {

@@ -115,6 +115,42 @@ class ProgramInput(ProgramCase):
         self.assert_refused(self.run_throng("replay", "a.replay", "--csv", "pipe"), "--csv: pipe is no regular file")
         self.assertTrue((self.path / "pipe").is_fifo())
 
+    def test_a_refused_value_is_named_by_its_option_and_in_its_unit(self):
+        view = ("picture", self.world, "--camera", "30,12,40,20,2,20", "-o", "a.png")
+        for command in ((*view, "--width", -1), (*view, "--height", -1), (*view, "--view-angle", 200), (*view, "--view-angle", 0),
+                        ("caacd", "--psi", 0), ("caacd", "--t3", 0), ("caacd", "--zone-time", -1), ("caacd", "--lambda1", 0),
+                        ("caacd", "--obstacles", 1001), ("caacd", "--avatars", 2001)):
+            with self.subTest(command=command):
+                self.assert_refused(self.run_throng(*command), f"throng: {command[-2]}: {command[-1]} is ")
+        run = ("run", self.world, "--steps", 1, "--avatars", 5)
+        self.assert_refused(self.run_throng(*run, "--also", "dragon:5"), "throng: --also dragon: ", "adult")
+        self.assert_refused(self.run_throng(*run, "--class", "dragon"), "throng: --class dragon: ", "adult")
+        self.assert_refused(self.run_throng("bake", "builtin:cube", "-o", "x.throng", "--zone", 0), "zone", "above 0 m")
+        ends = ("path", self.world, "--from", "14,0,8", "--to", "20,0,8")
+        for kind in ("5.5", "0", "99"):
+            self.assert_refused(self.run_throng(*ends, "--area", f"14,-1,7,15,2,9,{kind}"), f"--area: {kind} is no kind", "1 to 63")
+        self.assert_refused(self.run_throng(*ends, "--off-mesh-link", "14,0,8,14,0,8"), "--off-mesh-link (14.000", "two different places")
+        self.assertEqual(list(self.path.iterdir()), [])
+
+    def test_what_is_no_world_is_not_to_be_written_over(self):
+        (self.path / "notes.txt").write_text("kept")
+        for name, remedy in (("notes.txt", "-o WORLD.throng`"), (".", "-o WORLD.throng`"), ("new.throng", "-o new.throng`")):
+            self.assert_refused(self.run_throng("info", name), f"{name}: not a baked world", remedy)
+
+    def test_a_flyer_is_put_on_foot_by_the_option_that_is_named(self):
+        done = self.run_throng("bake", "builtin:cube", "--fly", "--cell", "0.2", "-o", "cube.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        ends = ("path", "cube.throng", "--from", "2,3,2", "--to", "4,3,4", "--class", "flyer")
+        for option in (("--off-mesh-link", "2,3,2,4,3,4"), ("--area", "2,2,2,4,4,4,5"), ("--area-cost", "5=2"), ("--slope-cost", "1")):
+            self.assert_refused(self.run_throng(*ends, *option), "--from", "can stand", f"on foot because of {option[0]};")
+        self.assertNotIn("because", self.run_throng(*ends, "--on-foot", "--slope-cost", 1).stderr)
+
+    def test_no_class_is_named_all(self):
+        (self.path / "classes.toml").write_text('[[class]]\nname = "adult"\n[[class]]\nname = "all"\n')
+        self.assert_refused(self.run_throng("bake", "builtin:cube", "-o", "x.throng", "--classes", "classes.toml"),
+                            "classes.toml", "named all", "another name")
+        self.assertEqual([path.name for path in self.path.iterdir()], ["classes.toml"])
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

@@ -175,6 +175,12 @@ Result<void> prepare(BakeOptions& options) {
   if (!options.classes.empty()) {
     Result<std::vector<AvatarClass>> classes = load_classes(options.classes);
     if (!classes) return classes.error();
+    for (const AvatarClass& avatar : *classes) {
+      if (avatar.name != "all") continue;
+      return Error{Errc::kBadFile, options.classes +
+                                       ": a class is named all, which stands for every class in "
+                                       "--class; give it another name"};
+    }
     options.config.classes = *std::move(classes);
   }
   if (options.fly) options.config.classes.push_back(flyer_class());

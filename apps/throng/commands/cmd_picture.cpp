@@ -10,6 +10,7 @@
 
 #include "command.h"
 #include "input_file.h"
+#include "number_checks.h"
 #include "report/avatars_csv.h"
 #include "report/scene_picture.h"
 #include "throng/picture.h"
@@ -168,6 +169,7 @@ void add_picture(CLI::App& parser, Session& session) {
   command->add_option("--path", options->path, "A path, as `throng path --json` prints it")
       ->type_name("FILE.json");
   command->add_option("--width", options->config.width, "Width of the picture [px]")
+      ->check(between(16, 16000))
       ->capture_default_str();
   command->add_option("--title", options->config.title, "Title; the folder's name if not given");
   add_scene_picture_options(command, options->scene);

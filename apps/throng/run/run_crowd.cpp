@@ -131,8 +131,9 @@ Result<GoalCrowd> GoalCrowd::create(const World& world, const CrowdRun& run, Con
   std::vector<std::pair<std::string, uint32_t>> groups = run.also;
   groups.insert(groups.begin(), {run.class_name, run.avatars});
   bool wants_nodes = false;
-  for (const auto& [name, count] : groups) {
-    const Result<int32_t> avatar_class = class_named(world, name);
+  for (size_t g = 0; g < groups.size(); ++g) {
+    const Result<int32_t> avatar_class =
+        class_named(world, groups[g].first, g == 0 ? "--class" : "--also");
     if (!avatar_class) return avatar_class.error();
     const AvatarClass& avatar = classes[static_cast<size_t>(*avatar_class)];
     // A world baked for such a class has nodes; without nodes it walks.

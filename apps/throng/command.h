@@ -89,6 +89,9 @@ std::string where(const Vec3d& p);
 /// Peak memory of this process. [bytes]
 uint64_t peak_memory();
 
+/// "1 zone", "2 zones".
+std::string counted(uint64_t count, const std::string& noun);
+
 /// "1.2 MB", "35 kB".
 std::string human_bytes(uint64_t bytes);
 

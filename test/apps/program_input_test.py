@@ -151,6 +151,23 @@ class ProgramInput(ProgramCase):
                             "classes.toml", "named all", "another name")
         self.assertEqual([path.name for path in self.path.iterdir()], ["classes.toml"])
 
+    def test_info_prints_bounds_nodes_and_numbers_with_their_nouns(self):
+        info = self.run_throng("info", self.world).stdout
+        bounds = json.loads(self.run_throng("info", self.world, "--json").stdout)
+        corners = [", ".join(f"{v:.3f}" for v in bounds[name]) for name in ("bounds_min", "bounds_max")]
+        self.assertIn(f"from ({corners[0]}) to ({corners[1]})\n", info)
+        self.assertIn("no nodes", info)
+        self.assertNotIn("nodes", bounds)
+        done = self.run_throng("bake", "builtin:cube", "--cell", "0.2", "--nodes", "--fly", "-o", "n.throng", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        count = json.loads(done.stdout)["nodes"]
+        info = self.run_throng("info", "n.throng").stdout
+        self.assertIn(f"\n{count} nodes for paths", info)
+        self.assertIn(" boxes, ", info)
+        self.assertEqual(json.loads(self.run_throng("info", "n.throng", "--json").stdout)["nodes"], count)
+        self.assertIn("; 1 zone, ", info)
+        self.assertIn(", 1 segment, ", self.run_throng("path", self.world, "--from", "14,0,8", "--to", "20,0,8").stdout)
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

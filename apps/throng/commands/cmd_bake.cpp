@@ -145,11 +145,11 @@ bool stands_nowhere(const BakeReport& report) {
 }
 
 std::string bake_text(const BakeOptions& options, const Scene& scene, const BakeReport& report) {
-  std::string text = fmt::format(
-      "{}: {} triangles in {:.2f} s, {} zones ({} reused), {} level tiles ({} of them flat), {}\n",
-      options.output, scene.triangles.size(), report.seconds_total, report.zones,
-      report.zones_reused, report.level_tiles, report.constant_level_tiles,
-      human_bytes(report.bytes));
+  std::string text = fmt::format("{}: {} in {:.2f} s, {} ({} reused), {} ({} of them flat), {}\n",
+                                 options.output, counted(scene.triangles.size(), "triangle"),
+                                 report.seconds_total, counted(report.zones, "zone"),
+                                 report.zones_reused, counted(report.level_tiles, "level tile"),
+                                 report.constant_level_tiles, human_bytes(report.bytes));
   for (size_t i = 0; i < report.walkable_area.size(); ++i) {
     text += fmt::format("  {:<12} {:12.1f} m2 walkable\n", options.config.classes[i].name,
                         report.walkable_area[i]);
@@ -162,9 +162,9 @@ std::string bake_text(const BakeOptions& options, const Scene& scene, const Bake
                                  : "");
   }
   if (report.air_zones > 0) {
-    text += fmt::format("  air over {} zones ({} reused), {}, in {:.2f} s of the above\n",
-                        report.air_zones, report.air_zones_reused, human_bytes(report.air_bytes),
-                        report.seconds_air);
+    text += fmt::format("  air over {} ({} reused), {}, in {:.2f} s of the above\n",
+                        counted(report.air_zones, "zone"), report.air_zones_reused,
+                        human_bytes(report.air_bytes), report.seconds_air);
   }
   return text;
 }
@@ -247,9 +247,10 @@ int bake(Session& session, BakeOptions& options) {
     json["node_bytes"] = nodes->bytes;
     json["seconds_nodes"] = nodes->seconds;
     json["peak_bytes"] = peak_memory();
-    text += fmt::format("  {} nodes, {} arcs in {:.2f} s, {}, over {} zones ({} reused)\n",
-                        nodes->nodes, nodes->arcs, nodes->seconds, human_bytes(nodes->bytes),
-                        nodes->zones_made + nodes->zones_reused, nodes->zones_reused);
+    text += fmt::format(
+        "  {}, {} in {:.2f} s, {}, over {} ({} reused)\n", counted(nodes->nodes, "node"),
+        counted(nodes->arcs, "arc"), nodes->seconds, human_bytes(nodes->bytes),
+        counted(nodes->zones_made + nodes->zones_reused, "zone"), nodes->zones_reused);
   }
   print_result(session, json, text);
   return kDone;

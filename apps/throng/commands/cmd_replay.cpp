@@ -185,7 +185,7 @@ int check(Session& session, const ReplayOptions& options, Replay& replay) {
   }
   const bool whole = replay.damage().empty();
   if (differs.is_null()) {
-    text = fmt::format("{}: {} steps, all the same{}\n", options.file, same,
+    text = fmt::format("{}: {}, all the same{}\n", options.file, counted(same, "step"),
                        whole ? "" : "; those after them are lost");
   }
   print_result(session,

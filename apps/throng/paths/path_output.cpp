@@ -126,9 +126,9 @@ std::string path_text(const PathRun& run, const Path& path) {
   std::string text;
   if (path.end == PathEnd::kReached) {
     const std::string over =
-        path.corridor.empty() ? "" : fmt::format(" over {} nodes", path.corridor.size());
-    text = fmt::format("{:.3f} m for {}{}, {} segments, found in {:.3f} ms\n", path.length,
-                       run.avatar_class, over, path.segments.size(), run.seconds * 1e3);
+        path.corridor.empty() ? "" : fmt::format(" over {}", counted(path.corridor.size(), "node"));
+    text = fmt::format("{:.3f} m for {}{}, {}, found in {:.3f} ms\n", path.length, run.avatar_class,
+                       over, counted(path.segments.size(), "segment"), run.seconds * 1e3);
     if (std::fabs(path.cost - path.length) > 0.0005) {
       text += fmt::format("  costs {:.3f}\n", path.cost);
     }

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "option_values.h"
+
 // Words the faults of a command line in one sentence each, in place of the messages of CLI11.
 //
 // CLI11 counts values ("6 required X,Y,Z,X,Y,Z missing") and prints them as it split them
@@ -38,21 +40,24 @@ std::string kind_of(const CLI::Option& option) {
   return name == "TEXT" ? "one value" : name;
 }
 
-// As it was typed, if it was typed once.
-std::string given(const CLI::Option& option) {
+std::string given(const CLI::Option& option, const std::vector<std::string>& words) {
+  const std::string typed = typed_values(option, words);
+  if (!typed.empty()) return typed;
   const char between = option.get_delimiter() != '\0' ? option.get_delimiter() : ' ';
-  return CLI::detail::join(option.results(), std::string(1, between));
+  const std::string parsed = CLI::detail::join(option.results(), std::string(1, between));
+  return parsed.empty() ? "nothing" : parsed;
 }
 
-std::string about(const CLI::ParseError& error, const CLI::Option& option) {
+std::string about(const CLI::ParseError& error, const CLI::Option& option,
+                  const std::vector<std::string>& words) {
   if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
-    return fmt::format("{}: wants {}, not {}", option.get_name(), kind_of(option), given(option));
+    return fmt::format("{}: wants {}, not {}", option.get_name(), kind_of(option),
+                       given(option, words));
   }
   const bool too_many =
       option.results().size() > static_cast<size_t>(option.get_items_expected_max());
   return fmt::format("{}: wants {}{}, and got {}", option.get_name(), kind_of(option),
-                     too_many ? ", once" : "",
-                     option.results().empty() ? "nothing" : given(option));
+                     too_many ? ", once" : "", given(option, words));
 }
 
 }  // namespace
@@ -62,7 +67,8 @@ const CLI::App* command_in_use(const CLI::App& parser) {
   return commands.empty() ? nullptr : commands.front();
 }
 
-std::string what_is_wrong(const CLI::ParseError& error, const CLI::App& parser) {
+std::string what_is_wrong(const CLI::ParseError& error, const CLI::App& parser,
+                          const std::vector<std::string>& words) {
   const std::string message = one_sentence(error.what());
   std::string name;
   const std::string could_not = "Could not convert: ";
@@ -72,7 +78,7 @@ std::string what_is_wrong(const CLI::ParseError& error, const CLI::App& parser) 
     name = message.substr(0, message.find(':'));
   }
   const CLI::Option* option = name.empty() ? nullptr : option_named(name, parser);
-  return option != nullptr ? about(error, *option) : message;
+  return option != nullptr ? about(error, *option, words) : message;
 }
 
 }  // namespace throng::app

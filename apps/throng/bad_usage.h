@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace throng::app {
 
@@ -11,6 +12,8 @@ namespace throng::app {
 [[nodiscard]] const CLI::App* command_in_use(const CLI::App& parser);
 
 /// The fault of the program's arguments, in one sentence without its full stop.
-[[nodiscard]] std::string what_is_wrong(const CLI::ParseError& error, const CLI::App& parser);
+/// `words`: the command line, as typed.
+[[nodiscard]] std::string what_is_wrong(const CLI::ParseError& error, const CLI::App& parser,
+                                        const std::vector<std::string>& words);
 
 }  // namespace throng::app

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "throng/avatar.h"
 #include "throng/base.h"
@@ -27,6 +28,8 @@ using Json = nlohmann::ordered_json;
 struct Session {
   bool json = false;  ///< --json: one object on standard output, all else on standard error.
   int exit_code = kDone;
+  std::vector<std::string> words;           ///< The command line, as typed.
+  std::vector<const CLI::Option*> outputs;  ///< Those of add_output.
   Context context;  ///< Draws progress on a terminal, lines elsewhere; Ctrl-C cancels.
 };
 
@@ -51,16 +54,25 @@ void note(const std::string& sentence);
 CLI::App* add_command(CLI::App& parser, Session& session, const std::string& name,
                       const std::string& summary, const std::string& example);
 
+/// An option for a file to write. It is refused if it is a folder, a device, a file of a world, or
+/// one that another option of the command reads or writes.
+CLI::Option* add_output(CLI::App& command, Session& session, const std::string& names,
+                        std::string& path, const std::string& text);
+
 /// The option --model.
 void add_model(CLI::App& command, SteeringModel& model);
 /// A flag that chooses how paths are found faster.
 CLI::Option* add_speedup(CLI::App& command, const std::string& flag, PathSpeedup chosen,
                          PathSpeedup& speedup, const std::string& text);
+/// --threads, 0 for all cores, with its limit.
+CLI::Option* add_threads(CLI::App& command, int32_t& threads,
+                         const std::string& text = "Threads, 0 for all cores");
 /// --search-memory, in MiB.
 void add_search_memory(CLI::App& command, uint64_t& bytes);
 
-/// Index of the class that --class names. Fails with kNotFound and the names to choose from.
-Result<int32_t> class_named(const World& world, const std::string& name);
+/// Index of the class that an option names. Fails with kNotFound and the names to choose from.
+Result<int32_t> class_named(const World& world, const std::string& name,
+                            const char* option = "--class");
 
 /// A line for results of level tiles alone, if the class also climbs or drops; else nothing.
 std::string note_of_nodes(const AvatarClass& avatar);
@@ -76,6 +88,9 @@ std::string where(const Vec3d& p);
 
 /// Peak memory of this process. [bytes]
 uint64_t peak_memory();
+
+/// "1 zone", "2 zones".
+std::string counted(uint64_t count, const std::string& noun);
 
 /// "1.2 MB", "35 kB".
 std::string human_bytes(uint64_t bytes);

@@ -15,6 +15,7 @@ namespace {
 template <class Wrong>
 CLI::Validator validator(const std::string& range, Wrong wrong) {
   return {[wrong](std::string& given) -> std::string {
+            if (given.empty()) return "its value is empty";
             double number = 0;
             if (!CLI::detail::lexical_cast(given, number)) return given + " is no number";
             if (!std::isfinite(number)) return given + " is not a finite number";

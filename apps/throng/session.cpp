@@ -6,17 +6,21 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <mutex>
 #include <new>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "bad_usage.h"
 #include "command.h"
 #include "number_checks.h"
 #include "old_names.h"
+#include "option_values.h"
+#include "output_checks.h"
 #include "throng/bake.h"
 #include "throng/path.h"
 
@@ -127,16 +131,17 @@ int run_program(int argc, const char* const* argv,
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
   try {
-    const std::vector<std::string> arguments = with_new_names(argc, argv);
+    session.words = with_new_names(argc, argv);
     std::vector<const char*> words;
-    for (const std::string& argument : arguments) words.push_back(argument.c_str());
+    for (const std::string& argument : session.words) words.push_back(argument.c_str());
     parser.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::Success& success) {  // --help and --version
     session.exit_code = parser.exit(success);
   } catch (const CLI::ParseError& error) {
     session.exit_code =
         fail({Errc::kBadConfig,
-              fmt::format("{}; see {} --help", what_is_wrong(error, parser), name_in_use(parser))});
+              fmt::format("{}; see {} --help", what_is_wrong(error, parser, session.words),
+                          name_in_use(parser))});
   } catch (const std::bad_alloc&) {
     session.exit_code = fail(
         {Errc::kLimit, fmt::format("{}: out of memory; use larger cells, a smaller world or fewer "
@@ -176,23 +181,6 @@ void note(const std::string& sentence) {
   fmt::print(stderr, "throng: note: {}\n", sentence);
 }
 
-namespace {
-
-// Parsers of numbers accept "nan", and no comparison with a limit refuses it.
-void refuse_nan(const CLI::App& command) {
-  for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& given : option->results()) {
-      std::string word = given.substr(given.find_first_not_of("+-") == 1 ? 1 : 0);
-      std::transform(word.begin(), word.end(), word.begin(),
-                     [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-      if (word != "nan" || option->get_positional()) continue;
-      throw CLI::ValidationError(option->get_name(), given + " is not a finite number");
-    }
-  }
-}
-
-}  // namespace
-
 CLI::App* add_command(CLI::App& parser, Session& session, const std::string& name,
                       const std::string& summary, const std::string& example) {
   CLI::App* command = parser.add_subcommand(name, summary);
@@ -200,7 +188,10 @@ CLI::App* add_command(CLI::App& parser, Session& session, const std::string& nam
   std::string indented = "Example:\n  ";
   for (const char c : example) indented += c == '\n' ? std::string("\n  ") : std::string(1, c);
   command->footer(indented);
-  command->parse_complete_callback([command] { refuse_nan(*command); });
+  command->parse_complete_callback([command, &session] {
+    check_values(*command, session.words);
+    check_outputs(*command, session.outputs);
+  });
   return command;
 }
 
@@ -208,6 +199,13 @@ CLI::Option* add_speedup(CLI::App& command, const std::string& flag, PathSpeedup
                          PathSpeedup& speedup, const std::string& text) {
   return command.add_flag_callback(
       flag, [chosen, &speedup] { speedup = chosen; }, text);
+}
+
+CLI::Option* add_threads(CLI::App& command, int32_t& threads, const std::string& text) {
+  // TBB has 256 threads on machines of up to 64 cores, and prints a warning of its own above that.
+  constexpr uint32_t kMaxThreads = 256;
+  return command.add_option("--threads", threads, text)
+      ->check(between(0, std::max(kMaxThreads, std::thread::hardware_concurrency())));
 }
 
 void add_search_memory(CLI::App& command, uint64_t& bytes) {
@@ -219,6 +217,13 @@ void add_search_memory(CLI::App& command, uint64_t& bytes) {
                       SearchBudget::kDefaultBytes >> 20))
       ->check(between(1, 1 << 20))
       ->type_name("MIB");
+}
+
+CLI::Option* add_output(CLI::App& command, Session& session, const std::string& names,
+                        std::string& path, const std::string& text) {
+  CLI::Option* output = command.add_option(names, path, text);
+  session.outputs.push_back(output);
+  return output;
 }
 
 void add_model(CLI::App& command, SteeringModel& model) {
@@ -237,13 +242,13 @@ void add_model(CLI::App& command, SteeringModel& model) {
       ->type_name("MODEL");
 }
 
-Result<int32_t> class_named(const World& world, const std::string& name) {
+Result<int32_t> class_named(const World& world, const std::string& name, const char* option) {
   if (const auto index = world.find_class(name)) return *index;
   std::string known;
   for (const AvatarClass& avatar : world.summary().classes)
     known += (known.empty() ? "" : ", ") + avatar.name;
-  return Error{Errc::kNotFound,
-               fmt::format("--class {}: the world has no such class; choose from {}", name, known)};
+  return Error{Errc::kNotFound, fmt::format("{} {}: the world has no such class; choose from {}",
+                                            option, name, known)};
 }
 
 std::string note_of_nodes(const AvatarClass& avatar) {
@@ -258,6 +263,10 @@ uint64_t peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<uint64_t>(usage.ru_maxrss) * 1024;  // Linux counts in kB.
+}
+
+std::string counted(uint64_t count, const std::string& noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 std::string human_bytes(uint64_t bytes) {
@@ -308,6 +317,12 @@ const char* word_for(LinkKind kind) {
 
 Json numbers(const Vec3d& p) { return {p.x, p.y, p.z}; }
 
-std::string where(const Vec3d& p) { return fmt::format("{:.3f}, {:.3f}, {:.3f}", p.x, p.y, p.z); }
+std::string where(const Vec3d& p) {
+  // Far beyond any world, digits after the point are noise.
+  const auto metres = [](double v) {
+    return std::fabs(v) < 1e9 ? fmt::format("{:.3f}", v) : fmt::format("{:g}", v);
+  };
+  return fmt::format("{}, {}, {}", metres(p.x), metres(p.y), metres(p.z));
+}
 
 }  // namespace throng::app

@@ -60,8 +60,8 @@ void add_source_options(CLI::App* command, SourceOptions& options, const std::st
   command->add_option("--up", options.up, "Axis that points up in the files")
       ->check(CLI::IsMember({"y", "z"}));
   command->add_option("--scale", options.scale, "Metres per unit of the files")->check(above(0));
-  command->add_option("--scene", options.scene,
-                      "Scene file (TOML or JSON): sources and area rules");
+  command->add_option("--scene", options.scene, "Scene file (TOML or JSON): sources and area rules")
+      ->type_name("FILE");
 }
 
 Result<BuiltinWorldConfig> parse_builtin(const std::string& text) {

@@ -215,7 +215,7 @@ inline constexpr const char* kCsvColumns = "step,id,class,x,y,z,radius";
 inline constexpr const char* kCsvUpColumns = ",up_x,up_y,up_z";
 
 /// Exports a CSV table, one line per avatar and frame, as `throng run --trajectories` writes. Fails
-/// with kBadFile, kIo or kCancelled.
+/// with kBadFile (also if there is no frame), kIo or kCancelled; then nothing is written.
 [[nodiscard]] THRONG_API Result<void> export_csv(Replay& replay, const std::string& path,
                                                  const ExportConfig& config, Context& context);
 

@@ -17,6 +17,10 @@ namespace {
 template <class Line>
 Result<void> write_text(Replay& replay, const std::string& path, const ExportConfig& config,
                         Context& context, const std::string& head, Line line) {
+  if (replay.frame_count() == 0) {
+    return Error{Errc::kBadFile,
+                 path + ": not written, since the recording holds no frame; record the run again"};
+  }
   PartFile file(path);
   file.write(head.data(), head.size());
   RecordedFrame frame;

@@ -501,8 +501,10 @@ class NodePicture {
 
   void letter(render::Canvas& sheet) const {
     render::draw_text(sheet, {kMargin, 30}, config_.title, {.size = 15, .bold = true});
-    const std::string line = fmt::format("{} nodes ({} of them terminal), {} in all; {} links",
-                                         shown_.size(), terminal_, summary_.nodes, link_count_);
+    const std::string in_all =
+        shown_.size() < summary_.nodes ? fmt::format(", {} in all", summary_.nodes) : "";
+    const std::string line = fmt::format("{} nodes ({} of them terminal){}; {} links",
+                                         shown_.size(), terminal_, in_all, link_count_);
     render::draw_text(sheet, {kMargin, 52}, line, {.size = 9, .colour = render::kFaintInk});
     double y = kHeader + height_ + 20;
     const double right = config_.width - kMargin;

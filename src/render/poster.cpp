@@ -259,12 +259,13 @@ Result<Image> draw_poster(const PictureWorld& world, const PosterText& text,
   const StoreyIndex index(world);
   const StoreyChoice choice = index.choose(config.storey, kMaxStoreys);
   PosterText head = text;
-  if (choice.left_out > 0) head.lines.emplace_back();  // Written below.
+  const bool names_left_out = !one && choice.left_out > 0;
+  if (names_left_out) head.lines.emplace_back();  // Written below.
   Layout layout = make_layout(config.width, head.lines.size());
   lay_out_plans(layout, world, one ? 1 : choice.shown.size());
   const StoreyRasters rasters = rasterise_storeys(world, index, choice.shown, layout.grid);
   const std::span<const StoreyRaster> storeys = rasters.storeys;
-  if (choice.left_out > 0) {
+  if (names_left_out) {
     head.lines.back() = fmt::format(
         "{} of {} storeys are shown, with the small ones near them; {:.0f} m2 of floor are not",
         choice.shown.size(), last + 1, rasters.left_out_area);

@@ -62,7 +62,7 @@ Result<void> AirZone::attach(const std::string& name) {
     return bad_file(name, "its layers lie out of this world");
   }
   if (const std::string fault = tree_.fault(); !fault.empty()) return bad_file(name, fault);
-  if (root_->sum() != sum_of(root_->input(), tree_)) return bad_file(name, "its sum is wrong");
+  if (root_->sum() != sum_of(root_->input(), tree_)) return bad_file(name, "its checksum is wrong");
   return {};
 }
 

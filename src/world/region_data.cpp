@@ -214,7 +214,7 @@ Result<void> RegionZone::attach(const std::string& name) {
   links_ = structs(*root_->links());
   const uint64_t head = head_sum(root_->x(), root_->z(), root_->input());
   if (root_->sum() != sum_of(head, root_->classes(), first_, regions_, groups_, links_)) {
-    return bad_file(name, "its sum is wrong");
+    return bad_file(name, "its checksum is wrong");
   }
   if (const char* what = fault()) return bad_file(name, what);
   component_count_ = groups_.component_count();
@@ -229,7 +229,7 @@ Result<void> LinkZone::attach(const std::string& name) {
   east_ = structs(*root_->east());
   south_ = structs(*root_->south());
   const uint64_t head = head_sum(root_->x(), root_->z(), root_->input());
-  if (root_->sum() != sum_of(head, east_, south_)) return bad_file(name, "its sum is wrong");
+  if (root_->sum() != sum_of(head, east_, south_)) return bad_file(name, "its checksum is wrong");
   const auto is_empty = [](const format::RegionLink& link) { return link.classes() == 0; };
   if (!in_order(east_) || !in_order(south_) || std::any_of(east_.begin(), east_.end(), is_empty) ||
       std::any_of(south_.begin(), south_.end(), is_empty)) {
@@ -376,7 +376,7 @@ Result<std::shared_ptr<GraphData>> read_graph_index(std::span<const uint8_t> byt
   const auto class_first = numbers(*root.class_first());
   const auto packed = numbers(*root.components());
   if (root.sum() != sum_of(world_hash, structs(*root.zones()), class_first, packed)) {
-    return bad_file(name, "its sum is wrong");
+    return bad_file(name, "its checksum is wrong");
   }
   if (root.zones()->size() != world.slots.size() || class_first.size() < 2 ||
       class_first.size() != world.summary.classes.size() + 1 ||

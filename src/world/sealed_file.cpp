@@ -27,7 +27,7 @@ Result<std::span<const uint8_t>> unsealed(std::span<const uint8_t> file, const s
     for (size_t i = 0; i < kSum; ++i) sum |= uint64_t{last[i]} << (8 * i);
     if (sum == hash_span(content)) return content;
   }
-  return bad_file(name, "its sum is wrong, or it was written when it had none");
+  return bad_file(name, "its checksum is wrong, or it was written when files had none");
 }
 
 }  // namespace throng::world

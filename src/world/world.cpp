@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <system_error>
 #include <tuple>
 
 #include "core/hash.h"
@@ -50,10 +52,12 @@ Result<World> World::open(const std::string& path, const WorldConfig& config) {
   const std::string name = path + "/manifest.thm";
   auto map = FileMap::open(name);
   if (!map) {
+    std::error_code failed;  // What is there must not be written over.
+    const std::string output = std::filesystem::exists(path, failed) ? "WORLD.throng" : path;
     return Error{Errc::kBadFile, path +
                                      ": not a baked world (no manifest.thm); make one with "
                                      "`throng bake MODEL -o " +
-                                     path + "`"};
+                                     output + "`"};
   }
   auto world = world::read_manifest(map->bytes(), name);
   if (!world) return world.error();

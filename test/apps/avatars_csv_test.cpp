@@ -89,7 +89,10 @@ TEST_F(AvatarsCsv, WhatIsWrongIsNamedWithItsLine) {
   EXPECT_EQ(refusal(kHead + "0,1,adult,1,nan,3,0.2\n"), ":2: y is 'nan'; write a number in metres");
   EXPECT_EQ(refusal(kHead + "0,1,adult,1,2,3,0\n"), ":2: radius is 0; write more than 0");
   EXPECT_EQ(read_avatars("/nowhere/a.csv").error().message,
-            "/nowhere/a.csv: cannot read; write one with throng run --trajectories");
+            "/nowhere/a.csv: cannot be read: No such file or directory; write one with `throng run "
+            "--trajectories`");
+  EXPECT_EQ(read_avatars("/").error().message,
+            "/: is a folder, not a file; write one with `throng run --trajectories`");
 }
 
 }  // namespace

@@ -613,7 +613,7 @@ class Program(ProgramCase):
         for words, *named in ((("--set", "2.0/0.4"), "--set", "MASS/SPEED/FORCE"), (("--set", "2/x/1"), "--set 2/x/1"),
                               (("--set", "0/1/1"), "mass", "0.0/1.0/1.00"), (("--trigger", "far"), "--trigger far", "zones"),
                               (("--length", "long"), "--length long", "max-sum"), (("--avatars", "20,5"), "--avatars"),
-                              (("--avatars", "0"), "avatars"), (("--seeds", "0"), "seeds"), (("--t3", "-1"), "horizon"),
+                              (("--avatars", "0"), "avatars"), (("--seeds", "0"), "seeds"), (("--t3", "-1"), "--t3: -1 is not above 0"),
                               (("--fields", "5,4,3"), "radii"), (("--fields", "5,4"), "--fields"),
                               (("--side", "50", "--avatars", "90"), "no room"), (("--lambda3", "2"), "lambda3"),
                               (("--avatars", "5", "--figure10", "x.png"), "two numbers"),

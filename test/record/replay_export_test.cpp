@@ -113,6 +113,21 @@ TEST(ReplayExport, ARecordingWithoutFramesHasTheRateOfItsSteps) {
   EXPECT_DOUBLE_EQ(film->rate, 20);
 }
 
+TEST(ReplayExport, ARecordingWithoutFramesIsRefusedAndNothingIsWritten) {
+  const test::ScratchFolder folder;
+  Replay replay = recorded(folder, {});
+  Context context;
+  const std::string path = folder.path() + "/a.csv";
+  for (const auto& done :
+       {export_csv(replay, path, {}, context), export_juelich(replay, path, {}, context)}) {
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().code, Errc::kBadFile);
+    EXPECT_NE(done.error().message.find("holds no frame"), std::string::npos);
+  }
+  EXPECT_FALSE(std::ifstream(path).good());
+  EXPECT_FALSE(std::ifstream(path + ".part").good());
+}
+
 // Of a run whose positions are moved by `origin`.
 void expect_texts_to_the_millimetre(Vec3d origin) {
   const test::ScratchFolder folder;

@@ -169,7 +169,7 @@ void add_atlas(CLI::App& parser, Session& session) {
           "character", options->character,
           "Character with a skeleton (glb, gltf, fbx, dae); a built-in figure if not given")
       ->type_name("CHARACTER.glb");
-  command->add_option("-o,--output", options->output, "Atlas to write")
+  add_output(*command, session, "-o,--output", options->output, "Atlas to write")
       ->required()
       ->type_name("FILE.atlas");
   command
@@ -198,7 +198,7 @@ void add_atlas(CLI::App& parser, Session& session) {
       ->capture_default_str();
   command->add_option("--images", options->images, "Folder for a picture of each frame")
       ->type_name("DIR");
-  command->add_option("--threads", config.workers, "Threads, 0 for all cores");
+  add_threads(*command, config.workers);
   command->callback([&session, options] { session.exit_code = atlas(session, *options); });
 }
 

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "command.h"
+#include "input_file.h"
 #include "number_checks.h"
 #include "sources.h"
 #include "throng/bake.h"
@@ -53,9 +53,9 @@ bool read_point(const Json& entry, const char* key, Vec3d& out) {
 // false}].
 Result<std::vector<NodeOffMeshLink>> read_off_mesh_links(const std::string& name,
                                                          const std::vector<AvatarClass>& classes) {
-  std::ifstream file(name);
-  if (!file) return Error{Errc::kBadFile, name + ": cannot be read"};
-  const Json json = Json::parse(file, nullptr, false);
+  const auto text = read_file(name, "give --off-mesh-links a list of links in JSON");
+  if (!text) return text.error();
+  const Json json = Json::parse(*text, nullptr, false);
   if (!json.is_array()) {
     return Error{
         Errc::kBadFile,
@@ -145,11 +145,11 @@ bool stands_nowhere(const BakeReport& report) {
 }
 
 std::string bake_text(const BakeOptions& options, const Scene& scene, const BakeReport& report) {
-  std::string text = fmt::format(
-      "{}: {} triangles in {:.2f} s, {} zones ({} reused), {} level tiles ({} of them flat), {}\n",
-      options.output, scene.triangles.size(), report.seconds_total, report.zones,
-      report.zones_reused, report.level_tiles, report.constant_level_tiles,
-      human_bytes(report.bytes));
+  std::string text = fmt::format("{}: {} in {:.2f} s, {} ({} reused), {} ({} of them flat), {}\n",
+                                 options.output, counted(scene.triangles.size(), "triangle"),
+                                 report.seconds_total, counted(report.zones, "zone"),
+                                 report.zones_reused, counted(report.level_tiles, "level tile"),
+                                 report.constant_level_tiles, human_bytes(report.bytes));
   for (size_t i = 0; i < report.walkable_area.size(); ++i) {
     text += fmt::format("  {:<12} {:12.1f} m2 walkable\n", options.config.classes[i].name,
                         report.walkable_area[i]);
@@ -162,9 +162,9 @@ std::string bake_text(const BakeOptions& options, const Scene& scene, const Bake
                                  : "");
   }
   if (report.air_zones > 0) {
-    text += fmt::format("  air over {} zones ({} reused), {}, in {:.2f} s of the above\n",
-                        report.air_zones, report.air_zones_reused, human_bytes(report.air_bytes),
-                        report.seconds_air);
+    text += fmt::format("  air over {} ({} reused), {}, in {:.2f} s of the above\n",
+                        counted(report.air_zones, "zone"), report.air_zones_reused,
+                        human_bytes(report.air_bytes), report.seconds_air);
   }
   return text;
 }
@@ -175,6 +175,12 @@ Result<void> prepare(BakeOptions& options) {
   if (!options.classes.empty()) {
     Result<std::vector<AvatarClass>> classes = load_classes(options.classes);
     if (!classes) return classes.error();
+    for (const AvatarClass& avatar : *classes) {
+      if (avatar.name != "all") continue;
+      return Error{Errc::kBadFile, options.classes +
+                                       ": a class is named all, which stands for every class in "
+                                       "--class; give it another name"};
+    }
     options.config.classes = *std::move(classes);
   }
   if (options.fly) options.config.classes.push_back(flyer_class());
@@ -241,9 +247,10 @@ int bake(Session& session, BakeOptions& options) {
     json["node_bytes"] = nodes->bytes;
     json["seconds_nodes"] = nodes->seconds;
     json["peak_bytes"] = peak_memory();
-    text += fmt::format("  {} nodes, {} arcs in {:.2f} s, {}, over {} zones ({} reused)\n",
-                        nodes->nodes, nodes->arcs, nodes->seconds, human_bytes(nodes->bytes),
-                        nodes->zones_made + nodes->zones_reused, nodes->zones_reused);
+    text += fmt::format(
+        "  {}, {} in {:.2f} s, {}, over {} ({} reused)\n", counted(nodes->nodes, "node"),
+        counted(nodes->arcs, "arc"), nodes->seconds, human_bytes(nodes->bytes),
+        counted(nodes->zones_made + nodes->zones_reused, "zone"), nodes->zones_reused);
   }
   print_result(session, json, text);
   return kDone;
@@ -270,9 +277,10 @@ void add_bake(CLI::App& parser, Session& session) {
   command->add_option("--resolution", config.resolution, "Headroom that may be lost [m]")
       ->capture_default_str();
   command->add_option("--zone", config.zone, "Side of a zone [m]")->capture_default_str();
-  command->add_option("--classes", options->classes, "Avatar classes (TOML or JSON)");
-  command->add_option("--threads", config.workers,
-                      "Threads, 0 for all cores (under mpirun: of each rank, and its share)");
+  command->add_option("--classes", options->classes, "Avatar classes (TOML or JSON)")
+      ->type_name("FILE");
+  add_threads(*command, config.workers,
+              "Threads, 0 for all cores (under mpirun: of each rank, and its share)");
   command->add_flag("--coarse", options->coarse,
                     "Solids as whole cells: faster, loses up to a cell beside walls");
   command->add_flag("--one-sided", config.one_sided,

@@ -182,7 +182,7 @@ void add_bench(CLI::App& parser, Session& session) {
                                   "throng bench --cell 0.2 --avatars 1000 --steps 10 --runs 1");
   const auto options = std::make_shared<BenchOptions>();
   command->add_option("--cell", options->cell, "Side of a cell [m]")->capture_default_str();
-  command->add_option("--threads", options->threads, "Compare one thread with this many")
+  add_threads(*command, options->threads, "Compare one thread with this many")
       ->check(above(0))
       ->capture_default_str();
   command->add_option("--runs", options->runs, "Bakes of each world")

@@ -237,9 +237,11 @@ void add_caacd(CLI::App& parser, Session& session) {
   Model& model = study.model;
   command
       ->add_option("--avatars", study.avatars, "How many, ascending; 5, 10, ... 100 if not given")
+      ->check(between(1, 2000))
       ->delimiter(',')
       ->type_name("N,N,...");
   command->add_option("--seeds", study.seeds, "Runs of each, from different random starts")
+      ->check(between(1, 100000))
       ->capture_default_str();
   command->add_option("--seed", study.space.seed, "The first of them")->capture_default_str();
   command
@@ -249,6 +251,7 @@ void add_caacd(CLI::App& parser, Session& session) {
       ->type_name("M/V/F");
   command->add_flag("--grid", options->grid, "Also 60 sets over the paper's ranges");
   command->add_option("--frames", study.frames, "A run ends here, or when all stand")
+      ->check(between(1, 10'000'000))
       ->capture_default_str();
   command
       ->add_option("--trigger", options->trigger,
@@ -258,15 +261,21 @@ void add_caacd(CLI::App& parser, Session& session) {
   command->add_option("--length", options->length, "Eq. 10: true, or max-sum as printed")
       ->capture_default_str();
   command->add_option("--t3", model.horizon, "Latest nearest approach to avoid [frames]")
+      ->check(above(0))
       ->capture_default_str();
   command->add_option("--lambda1", model.lambda1, "Of eq. 10, with --length max-sum")
+      ->check(between(0.5, 1))
       ->capture_default_str();
-  command->add_option("--lambda3", model.lambda3, "Of eq. 12 and 13")->capture_default_str();
+  command->add_option("--lambda3", model.lambda3, "Of eq. 12 and 13")
+      ->check(between(0, 1))
+      ->capture_default_str();
   command->add_option("--psi", model.deceleration, "Distance to the target to brake from [units]")
+      ->check(above(0))
       ->capture_default_str();
   command
       ->add_option("--zone-time", model.probe_time,
                    "Zones extend this much beyond the precaution field [frames at speed]")
+      ->check(at_least(0))
       ->capture_default_str();
   command->add_option("--fields", options->fields, "Radii: repulsive, precaution, alert [units]")
       ->expected(3)
@@ -274,21 +283,25 @@ void add_caacd(CLI::App& parser, Session& session) {
       ->type_name("R,P,A")
       ->default_str("5,7.5,12");
   command->add_option("--side", study.space.side, "Of the square of starts and targets [units]")
+      ->check(above(0))
       ->capture_default_str();
-  command->add_option("--obstacles", study.space.obstacles, "How many")->capture_default_str();
-  command->add_option("--dt", study.dt, "Step of time [frames]")->capture_default_str();
-  command->add_option("--threads", study.workers, "Threads, 0 for all cores")
-      ->check(between(0, 1024));
-  command->add_option("--figure10", options->figure10, "Chart of the paper's bad sets and the mean")
+  command->add_option("--obstacles", study.space.obstacles, "How many")
+      ->check(between(0, 1000))
+      ->capture_default_str();
+  command->add_option("--dt", study.dt, "Step of time [frames]")
+      ->check(above(0))
+      ->capture_default_str();
+  add_threads(*command, study.workers);
+  add_output(*command, session, "--figure10", options->figure10,
+             "Chart of the paper's bad sets and the mean")
       ->type_name("FILE.png");
-  command->add_option("--figure11", options->figure11, "Chart of all other sets")
+  add_output(*command, session, "--figure11", options->figure11, "Chart of all other sets")
       ->type_name("FILE.png");
-  command
-      ->add_option("--figure9", options->one_run.picture,
-                   "One run instead, of the last set and number of avatars: its picture")
+  add_output(*command, session, "--figure9", options->one_run.picture,
+             "One run instead, of the last set and number of avatars: its picture")
       ->type_name("FILE.png");
   command->add_option("--at", options->one_run.at, "Frame of that picture")->capture_default_str();
-  command->add_option("--record", options->one_run.record, "The same run, frame by frame")
+  add_output(*command, session, "--record", options->one_run.record, "The same run, frame by frame")
       ->type_name("FILE.csv");
   command->callback([&session, options] { session.exit_code = caacd(session, *options); });
 }

@@ -139,9 +139,7 @@ void add_components(CLI::App& parser, Session& session) {
   command->add_option("--limit", options->limit, "Components to list for each class")
       ->check(at_least(0))
       ->capture_default_str();
-  command->add_option("--threads", options->threads, "Threads, 0 for all cores")
-      ->check(between(0, 1024))
-      ->capture_default_str();
+  add_threads(*command, options->threads)->capture_default_str();
   command->callback(
       [&session, options] { session.exit_code = print_components(session, *options); });
 }

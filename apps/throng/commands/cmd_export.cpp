@@ -65,7 +65,7 @@ void add_export(CLI::App& parser, Session& session) {
   command->add_option("world", options->world, "World folder")->required()->type_name("WORLD");
   command->add_option("--class", options->avatar_class, "Avatar class by name")
       ->capture_default_str();
-  command->add_option("-o,--output", options->output, "File to write")
+  add_output(*command, session, "-o,--output", options->output, "File to write")
       ->required()
       ->type_name("GLB|OBJ");
   command->callback([&session, options] { session.exit_code = export_surface(session, *options); });

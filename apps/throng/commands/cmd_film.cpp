@@ -116,7 +116,7 @@ void add_film(CLI::App& parser, Session& session) {
   command->add_option("target", target.path, "Recording, world folder, or model to bake now")
       ->required()
       ->type_name("FILE.replay|WORLD|MODEL");
-  command->add_option("-o,--output", options->output, "Film to write, by ffmpeg")
+  add_output(*command, session, "-o,--output", options->output, "Film to write, by ffmpeg")
       ->required()
       ->type_name("FILE.mp4");
   command->add_option("--camera", options->camera, "Where to look from and to [m]")
@@ -152,7 +152,7 @@ void add_film(CLI::App& parser, Session& session) {
       ->check(at_least(0))
       ->capture_default_str();
   add_people_options(command, target);
-  command->add_option("--threads", options->workers, "Threads, 0 for all cores");
+  add_threads(*command, options->workers);
   add_source_options(command, target.sources, "--source");
   command->callback([&session, options, command] {
     if (command->count("--seed") > 0) options->target.seed = options->target.start.seed;

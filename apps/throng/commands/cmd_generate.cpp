@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "command.h"
+#include "number_checks.h"
 #include "throng/scene.h"
 
 // throng generate: writes a built-in world as a GLB file.
@@ -99,11 +100,13 @@ void add_generate(CLI::App& parser, Session& session) {
   command
       ->add_option("--triangles", config.triangles,
                    "Grow the world to about this many (powerplant, city)")
+      ->check(at_least(0))
       ->type_name("N");
-  command->add_option("--seed", config.seed, "Another seed, another world")->type_name("S");
-  auto* output = command
-                     ->add_option("-o,--output", options->output,
-                                  "File to write; .patches.json keeps a landscape curved")
+  command->add_option("--seed", config.seed, "Another seed, another world")
+      ->check(at_least(0))
+      ->type_name("S");
+  auto* output = add_output(*command, session, "-o,--output", options->output,
+                            "File to write; .patches.json keeps a landscape curved")
                      ->type_name("GLB");
   list->excludes(output);
   command->callback([&session, options] {

@@ -7,6 +7,7 @@
 
 #include "command.h"
 #include "throng/path.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 
 // throng info: prints the content of a baked world, and checks its files.
@@ -34,7 +35,7 @@ Json air_json(const AirSummary& air) {
 }
 
 Json info_json(const InfoOptions& options, const WorldSummary& summary,
-               const std::optional<AirSummary>& air) {
+               const std::optional<AirSummary>& air, const std::optional<uint32_t>& nodes) {
   Json classes = Json::array();
   for (size_t i = 0; i < summary.classes.size(); ++i) {
     const AvatarClass& avatar = summary.classes[i];
@@ -65,6 +66,7 @@ Json info_json(const InfoOptions& options, const WorldSummary& summary,
                {"source_triangles", summary.source_triangles},
                {"classes", classes}};
   if (air) json["air"] = air_json(*air);
+  if (nodes) json["nodes"] = *nodes;
   if (options.check) json["intact"] = true;
   return json;
 }
@@ -78,16 +80,16 @@ std::string info_of_moves(const AvatarClass& avatar) {
 }
 
 std::string info_text(const InfoOptions& options, const WorldSummary& summary,
-                      const std::optional<AirSummary>& air) {
+                      const std::optional<AirSummary>& air, const std::optional<uint32_t>& nodes) {
   const Vec3d size = summary.bounds.max - summary.bounds.min;
   std::string text = fmt::format(
-      "{}: {:.1f} x {:.1f} m, {:.1f} m high, from {} triangles\n"
-      "cells of {} m, headroom within {} m; {} zones, {} level tiles, {} ({:.1f} bytes per "
-      "walkable "
-      "m2)\n",
-      options.world, size.x, size.z, size.y, summary.source_triangles, summary.cell,
-      summary.resolution, summary.zones, summary.level_tiles, human_bytes(summary.bytes),
-      bytes_per_area(summary));
+      "{}: {:.1f} x {:.1f} m, {:.1f} m high, from {}\n"
+      "from ({}) to ({})\n"
+      "cells of {} m, headroom within {} m; {}, {}, {} ({:.1f} bytes per walkable m2)\n",
+      options.world, size.x, size.z, size.y, counted(summary.source_triangles, "triangle"),
+      where(summary.bounds.min), where(summary.bounds.max), summary.cell, summary.resolution,
+      counted(summary.zones, "zone"), counted(summary.level_tiles, "level tile"),
+      human_bytes(summary.bytes), bytes_per_area(summary));
   for (size_t i = 0; i < summary.classes.size(); ++i) {
     const AvatarClass& avatar = summary.classes[i];
     text += fmt::format(
@@ -97,11 +99,13 @@ std::string info_text(const InfoOptions& options, const WorldSummary& summary,
   }
   if (air) {
     text += fmt::format(
-        "air from {:.1f} to {:.1f} m in voxels of {} m: {} zones with solids, {} free voxels in {} "
-        "nodes, {}\n",
-        air->floor, air->ceiling, air->cell, air->zones, air->free_cells, air->nodes,
-        human_bytes(air->bytes));
+        "air from {:.1f} to {:.1f} m in voxels of {} m: {} with solids, {} in an octree of {} "
+        "boxes, {}\n",
+        air->floor, air->ceiling, air->cell, counted(air->zones, "zone"),
+        counted(air->free_cells, "free voxel"), air->nodes, human_bytes(air->bytes));
   }
+  text += nodes ? counted(*nodes, "node") + " for paths over all surfaces\n"
+                : std::string("no nodes: paths on level ground alone\n");
   if (options.check) text += "all zones are intact\n";
   return text;
 }
@@ -125,7 +129,14 @@ int info(const Session& session, const InfoOptions& options) {
   } else if (found.error().code != Errc::kNotFound) {
     return fail(found.error());
   }
-  print_result(session, info_json(options, summary, air), info_text(options, summary, air));
+  std::optional<uint32_t> count;
+  if (Nodes::exist(*world)) {
+    const Result<Nodes> nodes = Nodes::open(*world);
+    if (nodes) count = nodes->node_count();
+    if (!nodes) note(nodes.error().message);  // The ground can be used all the same.
+  }
+  print_result(session, info_json(options, summary, air, count),
+               info_text(options, summary, air, count));
   return kDone;
 }
 

@@ -4,12 +4,13 @@
 
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "command.h"
+#include "input_file.h"
+#include "number_checks.h"
 #include "report/avatars_csv.h"
 #include "report/scene_picture.h"
 #include "throng/picture.h"
@@ -35,10 +36,10 @@ struct PictureOptions {
 
 // The points of a path that `throng path --json` printed.
 Result<std::vector<Vec3d>> read_path(const std::string& name) {
-  std::ifstream file(name);
   const auto bad = [&](const char* what) { return Error{Errc::kBadFile, name + ": " + what}; };
-  if (!file) return bad("cannot be read");
-  const Json json = Json::parse(file, nullptr, false);
+  const auto text = read_file(name, "write it with `throng path ... --json`");
+  if (!text) return text.error();
+  const Json json = Json::parse(*text, nullptr, false);
   if (!json.is_object() || !json.contains("points") || !json["points"].is_array()) {
     return bad("has no points; write it with `throng path ... --json`");
   }
@@ -145,7 +146,7 @@ void add_picture(CLI::App& parser, Session& session) {
   command->add_option("world", options->world, "World folder")
       ->required()
       ->type_name("WORLD.throng");
-  command->add_option("-o,--output", options->output, "PNG file to write")
+  add_output(*command, session, "-o,--output", options->output, "PNG file to write")
       ->required()
       ->type_name("FILE.png");
   command->add_option("--storey,--level", options->storey, "One storey, or all")
@@ -168,6 +169,7 @@ void add_picture(CLI::App& parser, Session& session) {
   command->add_option("--path", options->path, "A path, as `throng path --json` prints it")
       ->type_name("FILE.json");
   command->add_option("--width", options->config.width, "Width of the picture [px]")
+      ->check(between(16, 16000))
       ->capture_default_str();
   command->add_option("--title", options->config.title, "Title; the folder's name if not given");
   add_scene_picture_options(command, options->scene);

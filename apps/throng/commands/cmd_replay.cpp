@@ -143,9 +143,7 @@ std::string frame_text(const RecordingInfo& info, const RecordedFrame& frame) {
 }
 
 int show_frame(Session& session, const ReplayOptions& options, Replay& replay) {
-  if (replay.frame_count() == 0) {
-    return fail({Errc::kBadFile, options.file + ": holds no frame; record the run again"});
-  }
+  if (auto ok = check_has_frames(replay, options.file); !ok) return fail(ok.error());
   const Result<uint64_t> index = replay.find(*options.at);
   if (!index) return fail(index.error());
   RecordedFrame frame;
@@ -158,6 +156,10 @@ int show_frame(Session& session, const ReplayOptions& options, Replay& replay) {
 int check(Session& session, const ReplayOptions& options, Replay& replay) {
   const Result<std::vector<StepHash>> hashes = replay.step_hashes();
   if (!hashes) return fail(hashes.error());
+  if (hashes->empty()) {  // Of nothing, all would be the same.
+    return fail(
+        {Errc::kBadFile, options.file + ": holds no step to compare; record the run again"});
+  }
   const Result<World> world = world_of(replay.info(), options.world);
   if (!world) return fail(world.error());
   const Result<Rerun> rerun = make_rerun(replay.info(), *world, options.workers);
@@ -181,12 +183,17 @@ int check(Session& session, const ReplayOptions& options, Replay& replay) {
                        options.file, step, recorded.state_hash, hash);
     break;
   }
-  if (differs.is_null()) text = fmt::format("{}: {} steps, all the same\n", options.file, same);
+  const bool whole = replay.damage().empty();
+  if (differs.is_null()) {
+    text = fmt::format("{}: {}, all the same{}\n", options.file, counted(same, "step"),
+                       whole ? "" : "; those after them are lost");
+  }
   print_result(session,
                {{"file", options.file},
                 {"hashes", hashes->size()},
                 {"same", same},
-                {"first_difference", differs}},
+                {"first_difference", differs},
+                {"complete", whole}},
                text);
   return differs.is_null() ? kDone : kAnswerIsNo;
 }
@@ -203,6 +210,9 @@ int replay(Session& session, const ReplayOptions& options) {
   if (options.check) return check(session, options, *opened);
   if (options.at) return show_frame(session, options, *opened);
 
+  if (!options.csv.empty() || !options.txt.empty() || !options.sqlite.empty()) {
+    if (auto ok = check_has_frames(*opened, options.file); !ok) return fail(ok.error());
+  }
   Json written = Json::array();
   const auto done = [&](const std::string& path, const Result<void>& ok) {
     if (ok) written.push_back(path);
@@ -246,11 +256,14 @@ void add_replay(CLI::App& parser, Session& session) {
                   "throng replay walk.replay --check");
   const auto options = std::make_shared<ReplayOptions>();
   command->add_option("file", options->file, "Recording")->required()->type_name("FILE.replay");
-  command->add_option("--csv", options->csv, "Write positions as `run --trajectories` does")
+  add_output(*command, session, "--csv", options->csv,
+             "Write positions as `run --trajectories` does")
       ->type_name("FILE.csv");
-  command->add_option("--txt", options->txt, "Write positions as text of the Juelich format")
+  add_output(*command, session, "--txt", options->txt,
+             "Write positions as text of the Juelich format")
       ->type_name("FILE.txt");
-  command->add_option("--sqlite", options->sqlite, "Write positions and walkable area for JuPedSim")
+  add_output(*command, session, "--sqlite", options->sqlite,
+             "Write positions and walkable area for JuPedSim")
       ->type_name("FILE.sqlite");
   command->add_option("--heights", options->heights, "Only avatars and floors between these [m]")
       ->expected(2)
@@ -261,7 +274,7 @@ void add_replay(CLI::App& parser, Session& session) {
   command->add_flag("--check", options->check, "Run it again and name the first step that differs");
   command->add_option("--world", options->world, "World folder, if it is not where it was")
       ->type_name("WORLD");
-  command->add_option("--threads", options->workers, "Threads of --check, 0 for all cores");
+  add_threads(*command, options->workers, "Threads of --check, 0 for all cores");
   command->add_flag_callback(
       "--info", [] {}, "Print what the recording holds (done in any case)");
   command->callback([&session, options] { session.exit_code = replay(session, *options); });

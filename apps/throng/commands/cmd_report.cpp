@@ -12,6 +12,7 @@
 #include "command.h"
 #include "output_file.h"
 #include "report/report_page.h"
+#include "run/rerun.h"
 #include "throng/recording.h"
 
 // throng report: a recording in numbers and pictures, on one page.
@@ -152,6 +153,7 @@ int report(Session& session, ReportOptions& options) {
   }
   Result<Replay> replay = Replay::open(options.file);
   if (!replay) return fail(replay.error());
+  if (auto ok = check_has_frames(*replay, options.file); !ok) return fail(ok.error());
   const Result<ReplaySummary> summary = summarise(*replay, options.config, session.context);
   if (!summary) return fail(summary.error());
   const auto pictures = draw_report(*summary, options.config);
@@ -187,7 +189,7 @@ void add_report(CLI::App& parser, Session& session) {
   const auto options = std::make_shared<ReportOptions>();
   SummaryConfig& config = options->config;
   command->add_option("file", options->file, "Recording")->required()->type_name("FILE.replay");
-  command->add_option("-o,--output", options->output, "Page to write")
+  add_output(*command, session, "-o,--output", options->output, "Page to write")
       ->required()
       ->type_name("FILE.html");
   command

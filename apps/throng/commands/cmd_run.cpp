@@ -244,7 +244,7 @@ void add_run(CLI::App& parser, Session& session) {
   command->add_option("--steps", options->steps, "How many steps")->capture_default_str();
   command->add_option("--dt", config.dt, "Length of a step [s]")->capture_default_str();
   command->add_option("--seed", config.seed, "Seed of all chance")->capture_default_str();
-  command->add_option("--threads", config.workers, "Threads, 0 for all cores");
+  add_threads(*command, config.workers);
   command->add_option("--class", options->class_name, "Avatar class (the world's first)");
   command->add_option("--speed", config.speed, "Walking speed, 0 for the class's own [m/s]");
   command
@@ -271,22 +271,21 @@ void add_run(CLI::App& parser, Session& session) {
       ->excludes(labels);
   add_search_memory(*command, options->crowd.config.search_bytes);
   add_model(*command, options->crowd.config.model);
-  command->add_option("--trajectories", options->sinks.trajectories, "Write positions to this file")
+  add_output(*command, session, "--trajectories", options->sinks.trajectories,
+             "Write positions to this file")
       ->type_name("FILE.csv");
-  command->add_option("--record", options->sinks.record, "Record the run in this file")
+  add_output(*command, session, "--record", options->sinks.record, "Record the run in this file")
       ->type_name("FILE.replay");
   command->add_option("--every", options->sinks.every, "Write each K-th step")
       ->check(above(0))
       ->capture_default_str();
   command->add_option("--check-every", options->check_every,
                       "Check for walls entered and overlaps each K-th step, 0: ten times a run");
-  command
-      ->add_option("--trips", options->trips,
-                   "Of a scenario: write a line for each trip of an avatar")
+  add_output(*command, session, "--trips", options->trips,
+             "Of a scenario: write a line for each trip of an avatar")
       ->type_name("FILE.csv");
-  command
-      ->add_option("--obstacles", options->obstacles,
-                   "Of a scenario: write when obstacles were requested, and when they were up")
+  add_output(*command, session, "--obstacles", options->obstacles,
+             "Of a scenario: write when obstacles were requested, and when they were up")
       ->type_name("FILE.csv");
   command->callback([&session, options, command] {
     if (is_scenario_file(options->world)) {

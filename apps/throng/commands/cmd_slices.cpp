@@ -104,7 +104,7 @@ void add_slices(CLI::App& parser, Session& session) {
   command->add_option("--cell", config.cell, "Side of a cell [m]")->capture_default_str();
   command->add_option("--images", options->images, "Folder for a picture of each kept slice")
       ->type_name("DIR");
-  command->add_option("--threads", config.workers, "Threads, 0 for all cores");
+  add_threads(*command, config.workers);
   command->callback([&session, options] { session.exit_code = slices(session, *options); });
 }
 

@@ -28,10 +28,10 @@ int print_surface(Session& session, const std::string& path) {
                {"bytes", summary.bytes},
                {"bytes_a_node", static_cast<double>(summary.bytes) / count}};
   std::string text = fmt::format(
-      "{}: {} nodes ({} terminal, {} partial), {} arcs, {} patches in {} zones, {} ({:.1f} bytes a "
-      "node)\n",
-      path, summary.nodes, summary.terminal, summary.partial, summary.arcs, summary.patches,
-      summary.zones, human_bytes(summary.bytes), static_cast<double>(summary.bytes) / count);
+      "{}: {} ({} terminal, {} partial), {}, {} patches in {}, {} ({:.1f} bytes a node)\n", path,
+      counted(summary.nodes, "node"), summary.terminal, summary.partial,
+      counted(summary.arcs, "arc"), summary.patches, counted(summary.zones, "zone"),
+      human_bytes(summary.bytes), static_cast<double>(summary.bytes) / count);
   json["classes"] = Json::array();
   for (size_t c = 0; c < summary.classes.size(); ++c) {
     const auto components = nodes->components(static_cast<int32_t>(c));

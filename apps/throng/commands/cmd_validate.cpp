@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "command.h"
-#include "number_checks.h"
 #include "throng/scenario.h"
 #include "trials_folder.h"
 
@@ -245,8 +244,7 @@ void add_validate(CLI::App& parser, Session& session) {
                     "Fewer points and shorter runs; not of scenario files");
   command->add_option("-o,--output", options->folder, "Folder for charts, PNG");
   command->add_option("--seed", options->config.seed)->capture_default_str();
-  command->add_option("--threads", options->config.workers, "0: all cores")
-      ->check(between(0, 1024));
+  add_threads(*command, options->config.workers);
   command->callback([options, &session] { session.exit_code = run(*options, session); });
 }
 

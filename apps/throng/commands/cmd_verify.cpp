@@ -443,7 +443,7 @@ void add_verify(CLI::App& parser, Session& session) {
       "Test the paths between as many pairs of places; over nodes for classes that climb or "
       "drop, or with --nodes");
   add_blocks(command, options->blocks);
-  command->add_option("--threads", options->config.workers, "Threads, 0 for all cores");
+  add_threads(*command, options->config.workers);
   command->callback([&session, options] { session.exit_code = verify(session, *options); });
 }
 

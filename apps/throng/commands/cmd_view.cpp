@@ -127,7 +127,8 @@ void add_view(CLI::App& parser, Session& session) {
       ->expected(6)
       ->delimiter(',')
       ->type_name("X,Y,Z,TX,TY,TZ");
-  command->add_option("--picture", options->picture, "Write a picture instead of opening a window")
+  add_output(*command, session, "--picture", options->picture,
+             "Write a picture instead of opening a window")
       ->type_name("FILE.png");
   command->add_option("--after", options->after, "With --picture: time before it [s]")
       ->check(between(0.0, 3600.0))
@@ -144,7 +145,7 @@ void add_view(CLI::App& parser, Session& session) {
   command->add_option("--height", options->height, "Of the window or picture [px]")
       ->check(between(120, 8192))
       ->capture_default_str();
-  command->add_option("--threads", options->workers, "Threads, 0 for all cores");
+  add_threads(*command, options->workers);
   command->add_option("--pictures", options->pictures, "Folder for the pictures that F12 keeps")
       ->type_name("FOLDER");
   command->add_flag("--forget", options->forget, "Neither read nor keep settings");

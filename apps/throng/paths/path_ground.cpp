@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "command.h"
 #include "in_world.h"
 #include "paths/boxes.h"
 
@@ -23,6 +24,20 @@ Result<Vec3d> position_of(const World& world, const PathOptions& options,
   return position_in(world, options.world, option, at);
 }
 
+namespace {
+
+// For a class that flies, in a world with air, that an option has put on the ground; else nothing.
+std::string why_on_foot(const PathStage& stage) {
+  const PathOptions& options = stage.options;
+  const auto& classes = stage.world.summary().classes;
+  if (!classes[static_cast<size_t>(stage.avatar_class)].flies || options.on_foot) return {};
+  if (!options.changes_ground() || !air_summary(stage.world)) return {};
+  return fmt::format(" (the path is on foot because of {}; leave it out for one through the air)",
+                     options.ground_option());
+}
+
+}  // namespace
+
 Result<Place> place_of(const PathStage& stage, const std::vector<double>& at, const char* option) {
   const PathOptions& options = stage.options;
   const Result<Vec3d> position = position_of(stage.world, options, at, option);
@@ -32,8 +47,8 @@ Result<Place> place_of(const PathStage& stage, const std::vector<double>& at, co
     if (auto ok = stage.world.check_ground(); !ok) return ok.error();  // Its zone may be damaged.
     return bad_end(options, *position, option,
                    fmt::format("is no place where class {} can stand, within {} m up or down; see "
-                               "`throng picture`, or give a larger --tolerance",
-                               options.avatar_class, options.tolerance));
+                               "`throng picture`, or give a larger --tolerance{}",
+                               options.avatar_class, options.tolerance, why_on_foot(stage)));
   }
   return place;
 }
@@ -60,12 +75,12 @@ Result<NodePlace> node_place_of(const PathStage& stage, PathFinder& finder,
 
 namespace {
 
-// A kind of ground. Its range is that of Edits, which names it.
+// A kind of ground, in the range of Edits.
 Result<uint8_t> kind_of(double given, const char* option) {
-  if (given >= 0 && given <= 255 && given == std::floor(given)) return static_cast<uint8_t>(given);
-  return Error{Errc::kBadConfig,
-               fmt::format("{}: {} is no kind of ground; kinds are whole numbers from 0 to 255",
-                           option, given)};
+  if (given >= 1 && given <= 63 && given == std::floor(given)) return static_cast<uint8_t>(given);
+  return Error{
+      Errc::kBadConfig,
+      fmt::format("{}: {} is no kind of ground; kinds are whole numbers, 1 to 63", option, given)};
 }
 
 Error about(const char* option, const Error& error) {
@@ -108,6 +123,13 @@ Result<void> set_area_costs(const PathStage& stage, Edits& edits) {
   return {};
 }
 
+// Both ends can be one place although the options differ: each takes the nearest.
+Result<void> check_apart(const PathStage& stage, const Vec3d& start, const Vec3d& goal) {
+  if (length(goal - start) > 0) return {};
+  return bad_end(stage.options, start, "--off-mesh-link",
+                 "is both ends of a link; give it two different places");
+}
+
 Result<OffMeshLink> link_of(const PathStage& stage, PathFinder& finder,
                             const std::vector<double>& from, const std::vector<double>& to) {
   constexpr const char* kOption = "--off-mesh-link";
@@ -117,6 +139,7 @@ Result<OffMeshLink> link_of(const PathStage& stage, PathFinder& finder,
     if (!start) return start.error();
     const auto goal = node_place_of(stage, finder, to, kOption);
     if (!goal) return goal.error();
+    if (auto ok = check_apart(stage, start->feet, goal->feet); !ok) return ok.error();
     link.from_on_nodes = *start;
     link.to_on_nodes = *goal;
     link.cost = length(goal->feet - start->feet);
@@ -126,6 +149,7 @@ Result<OffMeshLink> link_of(const PathStage& stage, PathFinder& finder,
   if (!start) return start.error();
   const auto goal = place_of(stage, to, kOption);
   if (!goal) return goal.error();
+  if (auto ok = check_apart(stage, start->position, goal->position); !ok) return ok.error();
   link.from = *start;
   link.to = *goal;
   link.cost = length(goal->position - start->position);

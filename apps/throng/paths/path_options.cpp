@@ -57,10 +57,8 @@ void add_path_options(CLI::App& command, PathOptions& options) {
       ->check(between(0.0, 1000.0))
       ->capture_default_str();
   add_search_memory(command, options.search_bytes);
-  command
-      .add_option("--threads", options.threads,
-                  "Threads for what is made before the search, 0 for all cores")
-      ->check(between(0, 1024))
+  add_threads(command, options.threads,
+              "Threads for what is made before the search, 0 for all cores")
       ->capture_default_str();
 }
 

@@ -29,10 +29,14 @@ struct PathOptions {
   double slope_cost = 0;
   uint64_t search_bytes = SearchBudget::kDefaultBytes;
 
-  /// Does an option change the ground, but not the air?
-  [[nodiscard]] bool changes_ground() const {
-    return !off_mesh_links.empty() || !areas.empty() || !area_costs.empty() || slope_cost > 0;
+  /// The first option that changes the ground, but not the air; or nothing.
+  [[nodiscard]] std::string ground_option() const {
+    if (!off_mesh_links.empty()) return "--off-mesh-link";
+    if (!areas.empty()) return "--area";
+    if (!area_costs.empty()) return "--area-cost";
+    return slope_cost > 0 ? "--slope-cost" : "";
   }
+  [[nodiscard]] bool changes_ground() const { return !ground_option().empty(); }
   [[nodiscard]] bool is_live() const { return !blocks.empty() || changes_ground(); }
 };
 

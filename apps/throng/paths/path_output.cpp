@@ -134,11 +134,12 @@ std::string path_text(const PathRun& run, const Path& path) {
   std::string text;
   if (path.end == PathEnd::kReached) {
     const std::string over =
-        path.corridor.empty() ? "" : fmt::format(" over {} nodes", path.corridor.size());
+        path.corridor.empty() ? "" : fmt::format(" over {}", counted(path.corridor.size(), "node"));
     const bool flies = std::any_of(path.segments.begin(), path.segments.end(), is_flown);
     const char* seen = path.node_places.empty() && !flies ? " as seen from above" : "";
-    text = fmt::format("{:.3f} m{} for {}{}, {} segments, found in {:.3f} ms\n", path.length, seen,
-                       run.avatar_class, over, path.segments.size(), run.seconds * 1e3);
+    text = fmt::format("{:.3f} m{} for {}{}, {}, found in {:.3f} ms\n", path.length, seen,
+                       run.avatar_class, over, counted(path.segments.size(), "segment"),
+                       run.seconds * 1e3);
     if (std::fabs(path.cost - path.length) > 0.0005) {
       text += fmt::format("  costs {:.3f}\n", path.cost);
     }

@@ -12,6 +12,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "input_file.h"
 #include "throng/avatar.h"
 #include "throng/recording.h"
 
@@ -86,11 +87,9 @@ Result<CsvRow> parse_row(const std::string& where, std::string_view line, size_t
 // Calls take(row) for each line of the file.
 template <class Take>
 Result<void> read_rows(const std::string& path, Take take) {
+  const std::string remedy = "write one with `throng run --trajectories`";
+  if (auto ok = check_file(path, remedy); !ok) return ok;
   std::ifstream file(path);
-  if (!file) {
-    return Error{Errc::kBadFile,
-                 fmt::format("{}: cannot read; write one with throng run --trajectories", path)};
-  }
   uint64_t number = 0;
   size_t fields = kFields;
   const std::string leaning = std::string(kCsvColumns) + kCsvUpColumns;
@@ -107,6 +106,10 @@ Result<void> read_rows(const std::string& path, Take take) {
     const Result<CsvRow> row = parse_row(fmt::format("{}:{}", path, number), line, fields);
     if (!row) return row.error();
     take(*row);
+  }
+  if (file.bad()) {
+    return Error{Errc::kBadFile,
+                 fmt::format("{}: reading it failed after line {}; {}", path, number, remedy)};
   }
   if (number == 0) {
     return Error{Errc::kBadFile,

@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "number_checks.h"
 #include "report/avatars_csv.h"
 #include "throng/bake.h"
 #include "throng/impostor.h"
@@ -40,9 +41,12 @@ void add_scene_picture_options(CLI::App* command, ScenePictureOptions& options) 
       ->allow_extra_args(false);
   command->add_option("--crowd", options.crowd,
                       "With --camera: place so many avatars, if no --avatars are given");
-  command->add_option("--height", options.height, "With --camera: height of the picture [px]");
-  command->add_option("--view-angle", options.view_angle,
-                      "With --camera: from the top to the bottom of the picture [degrees]");
+  command->add_option("--height", options.height, "With --camera: height of the picture [px]")
+      ->check(between(0, 8192));
+  command
+      ->add_option("--view-angle", options.view_angle,
+                   "With --camera: from the top to the bottom of the picture [degrees]")
+      ->check(between(1, 170));
   add_source_options(command, options.sources, "--source");
 }
 
@@ -163,6 +167,14 @@ int draw_scene_picture(Session& session, const World& world, const ScenePictureO
   config.camera.field_of_view = options.view_angle * std::numbers::pi / 180;
   config.width = options.width;
   config.height = options.height > 0 ? options.height : options.width * 9 / 16;
+  for (const auto& [name, pixels] :
+       {std::pair("--width", config.width), std::pair("--height", config.height)}) {
+    if (pixels >= 16 && pixels <= 8192) continue;
+    return fail({Errc::kBadConfig,
+                 fmt::format("{}: {} is outside of 16 to 8192, the pixels of a view from an eye; "
+                             "give another number",
+                             name, pixels)});
+  }
   if (auto sound = Drawing::check(config); !sound) return fail(sound.error());
   Result<Drawing> drawing = Drawing::create();
   if (!drawing) return fail(drawing.error());

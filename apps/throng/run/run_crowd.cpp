@@ -6,11 +6,10 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <sstream>
 
+#include "input_file.h"
 #include "throng/path.h"
 #include "throng/world.h"
 
@@ -117,12 +116,9 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
 
 Result<void> read_goals(CrowdRun& run) {
   if (run.goals == "random") return {};
-  std::ifstream file(run.goals, std::ios::binary);
-  if (!file) {
-    return Error{Errc::kNotFound,
-                 run.goals + ": cannot be read; give 'random' or a file of lines x,y,z"};
-  }
-  run.goals_text.assign(std::istreambuf_iterator<char>(file), {});
+  auto text = read_file(run.goals, "give --goals 'random' or a file of lines x,y,z");
+  if (!text) return text.error();
+  run.goals_text = *std::move(text);
   return {};
 }
 
@@ -135,8 +131,9 @@ Result<GoalCrowd> GoalCrowd::create(const World& world, const CrowdRun& run, Con
   std::vector<std::pair<std::string, uint32_t>> groups = run.also;
   groups.insert(groups.begin(), {run.class_name, run.avatars});
   bool wants_nodes = false;
-  for (const auto& [name, count] : groups) {
-    const Result<int32_t> avatar_class = class_named(world, name);
+  for (size_t g = 0; g < groups.size(); ++g) {
+    const Result<int32_t> avatar_class =
+        class_named(world, groups[g].first, g == 0 ? "--class" : "--also");
     if (!avatar_class) return avatar_class.error();
     const AvatarClass& avatar = classes[static_cast<size_t>(*avatar_class)];
     // A world baked for such a class has nodes; without nodes it walks.

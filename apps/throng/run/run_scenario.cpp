@@ -7,10 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 
+#include "input_file.h"
 #include "output_file.h"
 #include "run/run_crowd.h"
 #include "run/run_times.h"
@@ -231,9 +230,9 @@ Result<ScenarioTotals> run_steps(Session& session, const ScenarioRun& run, const
 
 Result<int> try_run(Session& session, ScenarioRun& run) {
   RunTimes times;
-  std::ifstream file(run.file, std::ios::binary);
-  if (!file) return Error{Errc::kNotFound, run.file + ": cannot be read"};
-  run.text.assign(std::istreambuf_iterator<char>(file), {});
+  auto text = read_file(run.file, "name a scenario file (.toml or .json) or a world folder");
+  if (!text) return text.error();
+  run.text = *std::move(text);
   auto scenario = parse_scenario(run.text, run.file);
   if (!scenario) return scenario.error();
   if (run.seed) scenario->seed = *run.seed;

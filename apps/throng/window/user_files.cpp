@@ -5,7 +5,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <string>
+
+#include "input_file.h"
 
 // Files in the XDG folders of a user.
 namespace throng::app {
@@ -29,8 +31,8 @@ bool make_folder_of(const std::string& file) {
 }
 
 std::string read_text(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
+  const auto text = read_file(file, "");
+  return text ? *text : std::string();
 }
 
 bool write_text(const std::string& file, const std::string& text) {

@@ -151,9 +151,7 @@ Result<void> load_model(StageParts& parts, ViewTarget target, Context& context) 
 Result<void> load_replay(StageParts& parts, const ViewTarget& target, Context& context) {
   Result<Replay> replay = Replay::open(target.path);
   if (!replay) return replay.error();
-  if (replay->frame_count() == 0) {
-    return Error{Errc::kBadFile, target.path + ": holds no frame; record the run again"};
-  }
+  if (auto ok = check_has_frames(*replay, target.path); !ok) return ok;
   std::vector<double> heights;
   for (const RecordedClass& c : replay->info().classes) heights.push_back(c.height);
   const Result<World> world = world_of(replay->info(), target.world);

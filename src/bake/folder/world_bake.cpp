@@ -32,7 +32,9 @@ Result<void> check_config(const BakeConfig& config) {
   if (!(config.resolution >= 0.001 && config.resolution <= 1)) {
     return bad("the resolution must be 0.001 to 1 m");
   }
-  if (!(config.zone > 0 && config.zone <= 10000)) return bad("the zone must be 0 to 10000 m");
+  if (!(config.zone > 0 && config.zone <= 10000)) {
+    return bad("the zone must be above 0 m, and 10000 m at most");
+  }
   if (config.workers < 0) return bad("workers must be 0 (all cores) or more");
   if (auto ok = check_classes(config.classes); !ok) return ok.error();
   if (auto ok = check_air(config); !ok) return ok.error();

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include "throng/base.h"
+
+/// The one reading of text files that options name.
+namespace throng::app {
+
+/// All bytes of a file; pipes are files, too. Fails with kNotFound or kBadFile, the reason and
+/// `remedy`, which says what to give instead: "goals.csv: is a folder, not a file; REMEDY".
+[[nodiscard]] Result<std::string> read_file(const std::string& path, const std::string& remedy);
+
+/// Fails as read_file does before its first byte: for files that are read line by line.
+[[nodiscard]] Result<void> check_file(const std::string& path, const std::string& remedy);
+
+}  // namespace throng::app

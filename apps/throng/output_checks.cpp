@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "output_checks.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+#include <system_error>
+
+// Compares the files that a command's options name before it begins. Files that an input file names
+// in turn (the model of a scenario) are not known here.
+namespace throng::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Does the type that --help shows name a file or a folder?
+bool takes_file(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return std::ranges::any_of(
+      std::initializer_list<const char*>{"FILE", "WORLD", "MODEL", "CHARACTER", "DIR", "FOLDER"},
+      [&](const char* word) { return type.find(word) != std::string::npos; });
+}
+
+bool is_same(const fs::path& a, const fs::path& b) {
+  std::error_code failed;
+  if (fs::equivalent(a, b, failed)) return true;  // Hard links, too. Fails if one is missing.
+  const fs::path whole_a = fs::weakly_canonical(a, failed);
+  if (failed) return false;
+  const fs::path whole_b = fs::weakly_canonical(b, failed);
+  return !failed && whole_a == whole_b;
+}
+
+// Is it the file, or the one that becomes it?
+bool overwrites(const std::string& output, const std::string& file) {
+  return is_same(output, file) || is_same(output + ".part", file);
+}
+
+bool is_in_world(const std::string& file) {
+  std::error_code failed;
+  const fs::path whole = fs::weakly_canonical(file, failed);
+  return !failed && fs::exists(whole.parent_path() / "manifest.thm", failed);
+}
+
+void refuse_output(const CLI::Option& output, const std::string& what) {
+  throw CLI::ValidationError(output.get_name(), what);
+}
+
+void check_against(const CLI::Option& output, const std::string& path, const CLI::Option& other,
+                   bool is_output) {
+  if (!is_output && !takes_file(other)) return;
+  for (const std::string& file : other.results()) {
+    if (!overwrites(path, file)) continue;
+    const std::string what = is_output ? path + " is also what " + other.get_name() + " writes"
+                                       : path + " is an input (" + other.get_name() + ")";
+    refuse_output(output, what + "; name another file");
+  }
+}
+
+}  // namespace
+
+void check_outputs(const CLI::App& command, const std::vector<const CLI::Option*>& outputs) {
+  const auto options = command.get_options();
+  for (const CLI::Option* output : outputs) {
+    if (std::ranges::find(options, output) == options.end()) continue;  // of another command
+    for (const std::string& path : output->results()) {
+      std::error_code failed;
+      const fs::file_status status = fs::status(path, failed);
+      if (fs::is_directory(status)) refuse_output(*output, path + " is a folder; name a file");
+      // Most are renamed when they are whole, which would replace a device or a pipe.
+      if (fs::exists(status) && !fs::is_regular_file(status)) {
+        refuse_output(*output, path + " is no regular file; name another");
+      }
+      if (is_in_world(path))
+        refuse_output(*output, path + " lies in a baked world; name a file elsewhere");
+      for (const CLI::Option* other : options) {
+        const bool is_output = std::ranges::find(outputs, other) != outputs.end();
+        if (other != output) check_against(*output, path, *other, is_output);
+      }
+    }
+  }
+}
+
+}  // namespace throng::app

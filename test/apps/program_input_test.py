@@ -1,0 +1,173 @@
+# SPDX-FileCopyrightText: 2026 the throng authors
+# SPDX-License-Identifier: MIT
+"""Files and values that the program refuses: folders, damaged recordings, outputs that are inputs, numbers out of range.
+
+python3 program_input_test.py build/release/throng"""
+import json
+import os
+import unittest
+
+from program_case import ProgramCase
+
+
+class ProgramInput(ProgramCase):
+    def test_a_folder_in_place_of_a_file_is_refused(self):
+        (self.path / "folder").mkdir()
+        run = ("run", self.world, "--avatars", 5, "--steps", 2)
+        picture = ("picture", self.world, "-o", "a.png")
+        for command in ((*run, "--goals", "folder"), (*picture, "--path", "folder"), (*picture, "--avatars", "folder"),
+                        ("bake", "builtin:cube", "-o", "z.throng", "--off-mesh-links", "folder"),
+                        ("bake", "builtin:cube", "-o", "z.throng", "--classes", "folder"),
+                        ("bake", "builtin:cube", "-o", "z.throng", "--scene", "folder"),
+                        ("replay", "folder"), ("report", "folder", "-o", "a.html")):
+            with self.subTest(command=command):
+                self.assert_refused(self.run_throng(*command), "folder: ")
+        self.assert_refused(self.run_throng(*run, "--goals", "folder"), "is a folder, not a file", "random")
+        self.assert_refused(self.run_throng(*picture, "--path", "none.json"), "none.json: cannot be read", "throng path")
+        self.assertEqual([path.name for path in self.path.iterdir()], ["folder"])
+
+    def test_a_recording_without_a_good_step_proves_and_exports_nothing(self):
+        done = self.run_throng("run", self.world, "--avatars", 20, "--steps", 20, "--record", "whole.replay")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        content = bytearray((self.path / "whole.replay").read_bytes())
+        second = content.index(content[:4], 4)  # Each chunk begins with the mark of the first.
+        content[second + 200] ^= 1
+        (self.path / "bad.replay").write_bytes(content)
+        done = self.run_throng("replay", "bad.replay", "--json")
+        self.assertEqual((done.returncode, json.loads(done.stdout)["frames"]), (0, 0), done.stderr)
+        for options in (("--check",), ("--at", 0), ("--csv", "a.csv"), ("--txt", "a.txt"), ("--sqlite", "a.sqlite")):
+            with self.subTest(options=options):
+                done = self.run_throng("replay", "bad.replay", *options)
+                self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+                note, refusal = done.stderr.splitlines()
+                self.assertIn("corrupt", note)
+                self.assertIn("bad.replay: holds no", refusal)
+        self.assert_refused(self.run_throng("report", "bad.replay", "-o", "a.html"), "bad.replay: holds no frame")
+        self.assertEqual(sorted(path.name for path in self.path.iterdir()), ["bad.replay", "whole.replay"])
+        whole = json.loads(self.run_throng("replay", "whole.replay", "--check", "--json").stdout)
+        self.assertEqual((whole["hashes"], whole["complete"]), (21, True))
+
+    def test_counts_below_zero_are_refused_and_do_not_wrap_around(self):
+        run = ("run", self.world, "--avatars", 5, "--steps", 2)
+        for command in ((*run[:4], "--steps", -1), (*run, "--seed", -1), (*run, "--check-every", -1), (*run, "--every", "-1"),
+                        (*run[:2], "--avatars", -1), ("verify", self.world, "--source", "builtin:garage", "--samples", -1),
+                        ("generate", "city", "-o", "a.glb", "--seed", -1), ("generate", "city", "-o", "a.glb", "--triangles", -1),
+                        ("bench", "--steps", -1), ("query", self.world, "--at", "14,0,8", "--random", -1)):
+            with self.subTest(command=command):
+                self.assert_refused(self.run_throng(*command), f"{command[-2]}: ", "-1")
+        self.assertEqual(list(self.path.iterdir()), [])
+
+    def test_each_command_limits_its_threads(self):
+        for command in (("bake", "builtin:cube", "-o", "x.throng"), ("run", self.world, "--steps", 1), ("components", self.world),
+                        ("path", self.world, "--from", "14,0,8", "--to", "20,0,8"), ("slices", "builtin:cube"),
+                        ("verify", self.world, "--source", "builtin:garage"), ("caacd",), ("validate", "--list"),
+                        ("atlas", "-o", "a.atlas"), ("bench",)):
+            with self.subTest(command=command):
+                self.assert_refused(self.run_throng(*command, "--threads", 99999), "--threads: 99999 is above ")
+                self.assert_refused(self.run_throng(*command, "--threads", -1), "--threads: -1 is below 0")
+        self.assertEqual(list(self.path.iterdir()), [])
+        most = self.run_throng("run", self.world, "--avatars", 5, "--steps", 1, "--threads", 256)
+        self.assertEqual((most.returncode, most.stderr), (0, ""))
+
+    def test_an_empty_value_is_no_zero(self):
+        run = ("run", self.world, "--avatars", 5, "--steps", 2)
+        for command in ((*run[:2], "--avatars", ""), (*run[:4], "--steps", ""), (*run, "--threads", ""), (*run, "--seed", ""),
+                        (*run, "--speed", ""), (*run, "--radius", ""), (*run, "--near", ""), (*run, "--class", ""),
+                        (*run, "--record", ""), ("query", self.world, "--at", ""), ("replay", "x.replay", "--at", ""),
+                        ("generate", "garage", "-o", "a.glb", "--levels", ""), ("bake", "builtin:cube", "-o", ""),
+                        ("bake", "builtin:cube", "-o", "x.throng", "--cell", "")):
+            with self.subTest(command=command):
+                self.assert_refused(self.run_throng(*command), f"{'--output' if command[-2] == '-o' else command[-2]}: ")
+        ends = ("path", self.world, "--to", "20,0,8", "--from")
+        self.assert_refused(self.run_throng(*ends, "1,,3"), "--from: wants X,Y,Z, and got 1,,3;")
+        self.assert_refused(self.run_throng(*ends, "14,,0,8"), "--from: 14,,0,8 leaves out a value; write X,Y,Z;")
+        self.assert_refused(self.run_throng(*ends[:-1], "--from=14,0,8,"), "--from: 14,0,8, leaves out a value;")
+        self.assert_refused(self.run_throng(*ends, "1e30,0,8"), "--from (1e+30, 0.000, 8.000) lies outside")
+        self.assertEqual(list(self.path.iterdir()), [])
+
+    def test_no_output_is_written_over_an_input(self):
+        done = self.run_throng("run", self.world, "--avatars", 5, "--steps", 4, "--record", "a.replay", "--trajectories", "a.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.run_throng("generate", "cube", "-o", "m.glb").returncode, 0)
+        (self.path / "link.replay").symlink_to("a.replay")
+        (self.path / "hard.replay").hardlink_to(self.path / "a.replay")
+        (self.path / "s.toml").write_text("")
+        manifest = self.world / "manifest.thm"
+        before = {path: path.read_bytes() for path in [*self.path.iterdir(), *self.world.iterdir()]}
+        run = ("run", self.world, "--avatars", 5, "--steps", 2)
+        for option, *command in (("--csv", "replay", "a.replay", "--csv", "a.replay"), ("--txt", "replay", "a.replay", "--txt", "./a.replay"),
+                                 ("--sqlite", "replay", "a.replay", "--sqlite", "link.replay"),
+                                 ("--csv", "replay", "a.replay", "--csv", "hard.replay"),
+                                 ("--output", "report", "a.replay", "-o", "a.replay"),
+                                 ("--output", "picture", self.world, "--avatars", "a.csv", "-o", "a.csv"),
+                                 ("--output", "atlas", "m.glb", "-o", "m.glb"),
+                                 ("--record", *run, "--goals", "a.csv", "--record", "a.csv"),
+                                 ("--record", "run", "s.toml", "--record", "s.toml"),
+                                 ("--record", *run, "--record", manifest), ("--output", "export", self.world, "-o", manifest),
+                                 ("--csv", "replay", "a.replay", "--csv", self.world / "new.csv"),
+                                 ("--record", *run, "--record", "."), ("--output", "generate", "cube", "-o", "."),
+                                 ("--trajectories", *run, "--record", "new", "--trajectories", "new"),
+                                 ("--csv", "replay", "a.replay", "--csv", "new", "--txt", f"../{self.path.name}/new")):
+            with self.subTest(command=command):
+                self.assert_refused(self.run_throng(*command), f"throng: {option}: ", "name a")
+                self.assertEqual({path: path.read_bytes() for path in [*self.path.iterdir(), *self.world.iterdir()]}, before)
+        os.mkfifo(self.path / "pipe")  # A file that is renamed when it is whole would replace it.
+        self.assert_refused(self.run_throng("replay", "a.replay", "--csv", "pipe"), "--csv: pipe is no regular file")
+        self.assertTrue((self.path / "pipe").is_fifo())
+
+    def test_a_refused_value_is_named_by_its_option_and_in_its_unit(self):
+        view = ("picture", self.world, "--camera", "30,12,40,20,2,20", "-o", "a.png")
+        for command in ((*view, "--width", -1), (*view, "--height", -1), (*view, "--view-angle", 200), (*view, "--view-angle", 0),
+                        ("caacd", "--psi", 0), ("caacd", "--t3", 0), ("caacd", "--zone-time", -1), ("caacd", "--lambda1", 0),
+                        ("caacd", "--obstacles", 1001), ("caacd", "--avatars", 2001)):
+            with self.subTest(command=command):
+                self.assert_refused(self.run_throng(*command), f"throng: {command[-2]}: {command[-1]} is ")
+        run = ("run", self.world, "--steps", 1, "--avatars", 5)
+        self.assert_refused(self.run_throng(*run, "--also", "dragon:5"), "throng: --also dragon: ", "adult")
+        self.assert_refused(self.run_throng(*run, "--class", "dragon"), "throng: --class dragon: ", "adult")
+        self.assert_refused(self.run_throng("bake", "builtin:cube", "-o", "x.throng", "--zone", 0), "zone", "above 0 m")
+        ends = ("path", self.world, "--from", "14,0,8", "--to", "20,0,8")
+        for kind in ("5.5", "0", "99"):
+            self.assert_refused(self.run_throng(*ends, "--area", f"14,-1,7,15,2,9,{kind}"), f"--area: {kind} is no kind", "1 to 63")
+        self.assert_refused(self.run_throng(*ends, "--off-mesh-link", "14,0,8,14,0,8"), "--off-mesh-link (14.000", "two different places")
+        self.assertEqual(list(self.path.iterdir()), [])
+
+    def test_what_is_no_world_is_not_to_be_written_over(self):
+        (self.path / "notes.txt").write_text("kept")
+        for name, remedy in (("notes.txt", "-o WORLD.throng`"), (".", "-o WORLD.throng`"), ("new.throng", "-o new.throng`")):
+            self.assert_refused(self.run_throng("info", name), f"{name}: not a baked world", remedy)
+
+    def test_a_flyer_is_put_on_foot_by_the_option_that_is_named(self):
+        done = self.run_throng("bake", "builtin:cube", "--fly", "--cell", "0.2", "-o", "cube.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        ends = ("path", "cube.throng", "--from", "2,3,2", "--to", "4,3,4", "--class", "flyer")
+        for option in (("--off-mesh-link", "2,3,2,4,3,4"), ("--area", "2,2,2,4,4,4,5"), ("--area-cost", "5=2"), ("--slope-cost", "1")):
+            self.assert_refused(self.run_throng(*ends, *option), "--from", "can stand", f"on foot because of {option[0]};")
+        self.assertNotIn("because", self.run_throng(*ends, "--on-foot", "--slope-cost", 1).stderr)
+
+    def test_no_class_is_named_all(self):
+        (self.path / "classes.toml").write_text('[[class]]\nname = "adult"\n[[class]]\nname = "all"\n')
+        self.assert_refused(self.run_throng("bake", "builtin:cube", "-o", "x.throng", "--classes", "classes.toml"),
+                            "classes.toml", "named all", "another name")
+        self.assertEqual([path.name for path in self.path.iterdir()], ["classes.toml"])
+
+    def test_info_prints_bounds_nodes_and_numbers_with_their_nouns(self):
+        info = self.run_throng("info", self.world).stdout
+        bounds = json.loads(self.run_throng("info", self.world, "--json").stdout)
+        corners = [", ".join(f"{v:.3f}" for v in bounds[name]) for name in ("bounds_min", "bounds_max")]
+        self.assertIn(f"from ({corners[0]}) to ({corners[1]})\n", info)
+        self.assertIn("no nodes", info)
+        self.assertNotIn("nodes", bounds)
+        done = self.run_throng("bake", "builtin:cube", "--cell", "0.2", "--nodes", "--fly", "-o", "n.throng", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        count = json.loads(done.stdout)["nodes"]
+        info = self.run_throng("info", "n.throng").stdout
+        self.assertIn(f"\n{count} nodes for paths", info)
+        self.assertIn(" boxes, ", info)
+        self.assertEqual(json.loads(self.run_throng("info", "n.throng", "--json").stdout)["nodes"], count)
+        self.assertIn("; 1 zone, ", info)
+        self.assertIn(", 1 segment, ", self.run_throng("path", self.world, "--from", "14,0,8", "--to", "20,0,8").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

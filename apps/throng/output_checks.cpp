@@ -23,13 +23,19 @@ bool takes_file(const CLI::Option& option) {
       [&](const char* word) { return type.find(word) != std::string::npos; });
 }
 
+// Absolute and without links, also if the file does not exist yet; empty if that is not known.
+fs::path whole_path(const fs::path& path) {
+  std::error_code failed;
+  const fs::path absolute = fs::absolute(path, failed);
+  const fs::path whole = failed ? fs::path() : fs::weakly_canonical(absolute, failed);
+  return failed ? fs::path() : whole;
+}
+
 bool is_same(const fs::path& a, const fs::path& b) {
   std::error_code failed;
   if (fs::equivalent(a, b, failed)) return true;  // Hard links, too. Fails if one is missing.
-  const fs::path whole_a = fs::weakly_canonical(a, failed);
-  if (failed) return false;
-  const fs::path whole_b = fs::weakly_canonical(b, failed);
-  return !failed && whole_a == whole_b;
+  const fs::path whole = whole_path(a);
+  return !whole.empty() && whole == whole_path(b);
 }
 
 // Is it the file, or the one that becomes it?
@@ -39,8 +45,8 @@ bool overwrites(const std::string& output, const std::string& file) {
 
 bool is_in_world(const std::string& file) {
   std::error_code failed;
-  const fs::path whole = fs::weakly_canonical(file, failed);
-  return !failed && fs::exists(whole.parent_path() / "manifest.thm", failed);
+  const fs::path whole = whole_path(file);
+  return !whole.empty() && fs::exists(whole.parent_path() / "manifest.thm", failed);
 }
 
 void refuse_output(const CLI::Option& output, const std::string& what) {

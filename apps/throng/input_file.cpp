@@ -47,4 +47,9 @@ Result<std::string> read_file(const std::string& path, const std::string& remedy
   return text;
 }
 
+Result<void> check_has_frames(const Replay& replay, const std::string& file) {
+  if (replay.frame_count() > 0) return {};
+  return Error{Errc::kBadFile, file + ": holds no frame; record the run again"};
+}
+
 }  // namespace throng::app

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "throng/base.h"
+#include "throng/recording.h"
 
 /// The one reading of text files that options name.
 namespace throng::app {
@@ -15,5 +16,8 @@ namespace throng::app {
 
 /// Fails as read_file does before its first byte: for files that are read line by line.
 [[nodiscard]] Result<void> check_file(const std::string& path, const std::string& remedy);
+
+/// Fails with kBadFile if a recording holds no frame: nothing can be shown, exported or summed up.
+[[nodiscard]] Result<void> check_has_frames(const Replay& replay, const std::string& file);
 
 }  // namespace throng::app

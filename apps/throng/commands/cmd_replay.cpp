@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "command.h"
+#include "input_file.h"
 #include "run/rerun.h"
 #include "run/trajectory_db.h"
 #include "throng/bake.h"

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "command.h"
+#include "input_file.h"
 #include "output_file.h"
 #include "report/report_page.h"
 #include "run/rerun.h"

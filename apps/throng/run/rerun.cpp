@@ -172,11 +172,6 @@ Json crowd_settings(const CrowdRun& run) {
           {"model", name_of(run.config.model)}};
 }
 
-Result<void> check_has_frames(const Replay& replay, const std::string& file) {
-  if (replay.frame_count() > 0) return {};
-  return Error{Errc::kBadFile, file + ": holds no frame; record the run again"};
-}
-
 Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t workers) {
   for (const Model& model : kModels) {
     if (info.model != model.name) continue;

@@ -27,9 +27,6 @@ inline constexpr const char* kWanderersModel = "wanderers";
 inline constexpr const char* kCrowdModel = "crowd";
 [[nodiscard]] Json crowd_settings(const CrowdRun& run);
 
-/// Fails with kBadFile if a recording holds no frame: nothing can be shown, exported or summed up.
-[[nodiscard]] Result<void> check_has_frames(const Replay& replay, const std::string& file);
-
 /// Fails with kBadFile: a model or settings that this program does not know.
 [[nodiscard]] Result<Rerun> make_rerun(const RecordingInfo& info, const World& world,
                                        int32_t workers);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "input_file.h"
 #include "number_checks.h"
 #include "run/rerun.h"
 #include "throng/bake.h"

@@ -162,9 +162,12 @@ const tests = {
   },
 
   async 'says in a sentence what cannot be opened, and goes on'(page) {
+    let last = '';  // Its notice may still be there for a moment.
     const fault = async () => {
-      await page.waitForFunction(() => document.getElementById('notice').className === 'fault', null, { timeout: 60000 });
-      return page.textContent('#sentence');
+      await page.waitForFunction(([before]) => document.getElementById('notice').className === 'fault' &&
+        document.getElementById('sentence').textContent !== before, [last], { timeout: 60000 });
+      last = await page.textContent('#sentence');
+      return last;
     };
     await page.goto(`${server.url}?open=nothing.replay`);
     assert.match(await fault(), /nothing\.replay: the server answers 404/);

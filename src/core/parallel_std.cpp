@@ -16,20 +16,6 @@
 namespace throng {
 namespace {
 
-// Threads that end before what they work on does, also where an exception passes.
-struct JoinedThreads {
-  std::vector<std::thread> threads;
-  JoinedThreads() = default;
-  JoinedThreads(const JoinedThreads&) = delete;
-  JoinedThreads& operator=(const JoinedThreads&) = delete;
-  ~JoinedThreads() { join(); }
-  void join() {
-    for (std::thread& thread : threads) {
-      if (thread.joinable()) thread.join();
-    }
-  }
-};
-
 // Calls body(piece, worker) for every piece in [0, pieces), each on whichever thread is free.
 // Throws what a body threw first, once the others have ended; no piece is begun after it.
 void share(size_t pieces, int32_t threads, FunctionRef<void(size_t, int32_t)> body) {
@@ -45,15 +31,15 @@ void share(size_t pieces, int32_t threads, FunctionRef<void(size_t, int32_t)> bo
       if (!failure) failure = std::current_exception();
     }
   };
-  JoinedThreads others;
-  others.threads.reserve(static_cast<size_t>(threads));
+  std::vector<std::jthread> others;  // Joined before what they work on ends, whatever is thrown.
+  others.reserve(static_cast<size_t>(threads));
   try {
-    for (int32_t worker = 1; worker < threads; ++worker) others.threads.emplace_back(work, worker);
+    for (int32_t worker = 1; worker < threads; ++worker) others.emplace_back(work, worker);
   } catch (const std::system_error&) {
     // The system starts no more of them: those that run do the work.
   }
   work(0);
-  others.join();
+  others.clear();
   if (failure) std::rethrow_exception(failure);
 }
 

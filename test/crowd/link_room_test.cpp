@@ -64,9 +64,7 @@ TEST(CrowdLinkRoom, OneThatSearchesInEachStepGivesRoom) {
       Edits edits;
       Oracle oracle{world, {{at(world, 9, 5), at(world, 13, 5), 4, true}}};
       add_link(edits, oracle.links[0]);
-      const auto area = edits.add_area(Prism::box({0, -1, 0}, {2, 1, 2}), 1);
-      const auto crate = edits.add_obstacle(Prism::box({0.5, 0, 9}, {1, 1, 9.5}));
-      ASSERT_TRUE(area && crate);
+      ChangesInEachStep changes(edits);
       Crowd crowd = made(world, {.edits = edits});
       const Place end = at(world, at_start ? 9 : 13, 5);
       const AvatarId resting = walker(crowd, at(world, at_start ? 7 : 15, 7), end);
@@ -84,9 +82,9 @@ TEST(CrowdLinkRoom, OneThatSearchesInEachStepGivesRoom) {
       int steps_left = 60;  // after the last has arrived
       for (int step = 0; step < 1200 && steps_left > 0; ++step) {
         if (by_flow) {
-          EXPECT_TRUE(edits.set_active(*crate, step % 2 == 0));
+          changes.change_flows(step);
         } else {
-          EXPECT_TRUE(edits.set_area_cost(1, 1.5 + step % 2));
+          changes.change_costs(step);
         }
         arrived += crowd.step().arrived;
         oracle.look(crowd, step);

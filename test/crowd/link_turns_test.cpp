@@ -166,9 +166,7 @@ TEST(CrowdLinkTurns, OneThatSearchesInEachStepKeepsItsTurn) {
     Edits edits;
     Oracle oracle{world, {{at(world, 9, 5), at(world, 13, 5), 4, true}}};
     add_link(edits, oracle.links[0]);
-    const auto area = edits.add_area(Prism::box({0, -1, 0}, {2, 1, 2}), 1);
-    const auto crate = edits.add_obstacle(Prism::box({0.5, 0, 9}, {1, 1, 9.5}));
-    ASSERT_TRUE(area && crate);
+    ChangesInEachStep changes(edits);
     Crowd crowd = made(world, {.edits = edits});
     Context context;
     const Prism left = Prism::box({1, -1, 1}, {5, 1, 9}),
@@ -192,10 +190,8 @@ TEST(CrowdLinkTurns, OneThatSearchesInEachStepKeepsItsTurn) {
     }
     for (int step = 0; step < 1200; ++step) {
       if (what[0] == 'g') crowd.set_goals(ids, goals);
-      if (what[0] == 'c') {
-        EXPECT_TRUE(edits.set_area_cost(1, 1.5 + step % 2));
-      }
-      if (by_flow) edits.set_active(*crate, step % 2 == 0);
+      if (what[0] == 'c') changes.change_costs(step);
+      if (by_flow) changes.change_flows(step);
       crowd.step();
       oracle.look(crowd, step);
       if (HasFatalFailure()) return;

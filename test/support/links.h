@@ -127,4 +127,23 @@ inline AvatarState step_until_riding(Crowd& crowd, AvatarId id) {
   return {};
 }
 
+/// Edits beside the gap that change in each step, so that avatars search in each.
+class ChangesInEachStep {
+ public:
+  explicit ChangesInEachStep(const Edits& edits) : edits_(edits) {
+    EXPECT_TRUE(edits_.add_area(Prism::box({0, -1, 0}, {2, 1, 2}), 1));
+    const auto crate = edits_.add_obstacle(Prism::box({0.5, 0, 9}, {1, 1, 9.5}));
+    EXPECT_TRUE(crate);
+    if (crate) crate_ = *crate;
+  }
+  /// Of paths.
+  void change_costs(int step) { EXPECT_TRUE(edits_.set_area_cost(1, 1.5 + step % 2)); }
+  /// What flow fields lead around.
+  void change_flows(int step) { EXPECT_TRUE(edits_.set_active(crate_, step % 2 == 0)); }
+
+ private:
+  Edits edits_;
+  EditId crate_ = 0;
+};
+
 }  // namespace throng::links

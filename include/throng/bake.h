@@ -33,8 +33,11 @@ class FolderLock;  // Internal: keeps other bakes out of a folder.
 
 /// Settings for bake_world and bake_world_to.
 struct BakeConfig {
-  double cell = 0.1;        ///< Side of a cell. [m, 0.02 to 5]
-  double resolution = 0.1;  ///< Largest loss of headroom. [m, 0.001 to 1]
+  double cell = 0.1;  ///< Side of a cell. [m, 0.02 to 5]
+  /// Headroom that verify allows the bake to lose: it counts ground as lost where a body that is
+  /// this much taller could stand. The world keeps the number, and its ground is the same for any:
+  /// heights are whole millimetres. Another number bakes all zones again. [m, 0.001 to 1]
+  double resolution = 0.1;
   /// Side of a voxel of the air: 1, 2, 4, 8 or 16 cells. 0: the world has no air, or, if a class
   /// flies, voxels of the smallest such side from 0.4 m on. [m]
   double air = 0;

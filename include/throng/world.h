@@ -59,7 +59,7 @@ inline constexpr int32_t kTileCells = 64;       ///< Cells along a side of a til
 /// Description and sizes of a world.
 struct WorldSummary {
   double cell = 0;        ///< [m]
-  double resolution = 0;  ///< [m]
+  double resolution = 0;  ///< BakeConfig::resolution, for verify. [m]
   Vec3d origin;           ///< Of cell (0, 0) of the grid; heights count from y = origin.y.
   Box3d bounds;           ///< Of the source triangles.
   int32_t tiles_x = 0;

@@ -253,6 +253,27 @@ TEST_F(ChangedZones, AnotherClassCellOrResolutionBakesAll) {
   EXPECT_EQ(bake("w", field(), config).zones_reused, 0u);
 }
 
+TEST_F(ChangedZones, AnotherResolutionChangesNoZone) {
+  BakeConfig config = kConfig;
+  Scene scene = field();
+  // A ceiling that leaves an adult (1.75 m) 5 cm: a loss of 0.5 m would close the ground below.
+  scene.add_box({3, 1.8, 3}, {9, 2.5, 9});
+  config.resolution = 0.001;
+  bake("fine", scene, config);
+  config.resolution = 0.5;
+  bake("coarse", scene, config);
+  Folder fine = folder_bytes(at("fine")), coarse = folder_bytes(at("coarse"));
+  EXPECT_EQ(World::open(at("fine"))->summary().resolution, 0.001);
+  EXPECT_EQ(World::open(at("coarse"))->summary().resolution, 0.5);
+  for (const std::string name : {"manifest.thm", "graph.thm"}) {  // The graph names its manifest.
+    EXPECT_NE(fine.at(name), coarse.at(name));
+    fine.erase(name);
+    coarse.erase(name);
+  }
+  EXPECT_GT(fine.size(), 20u);  // Zones, their regions and links.
+  EXPECT_EQ(fine, coarse);
+}
+
 TEST_F(ChangedZones, AnotherAreaKindIsBaked) {
   Scene scene = field();
   bake("w", scene);

@@ -274,7 +274,10 @@ void add_bake(CLI::App& parser, Session& session) {
           "--air", config.air,
           "Side of a voxel of the air: 1, 2, 4, 8 or 16 cells; 0: none unless a class flies [m]")
       ->capture_default_str();
-  command->add_option("--resolution", config.resolution, "Headroom that may be lost [m]")
+  command
+      ->add_option("--resolution", config.resolution,
+                   "Headroom that `throng verify` allows the bake to lose; the ground is the same "
+                   "for any [m]")
       ->capture_default_str();
   command->add_option("--zone", config.zone, "Side of a zone [m]")->capture_default_str();
   command->add_option("--classes", options->classes, "Avatar classes (TOML or JSON)")

@@ -14,6 +14,12 @@ namespace throng::app {
 [[nodiscard]] std::string typed_values(const CLI::Option& option,
                                        const std::vector<std::string>& words);
 
+/// Has all numbers among the options of `command` read to base 10: CLI11 reads 010 as 8 and 0x10 as
+/// 16. Leading zeros are dropped; hexadecimal numbers, and whole numbers of more than 64 bits
+/// (which CLI11 takes for the largest), are refused with the option's name. For a command that has
+/// all its options.
+void read_base_10(CLI::App& command);
+
 /// Refuses what CLI11 takes for a number and is none: empty values (0), NaN, and numbers below 0 of
 /// options that count, which wrap around. Throws CLI::ValidationError, which names the option.
 void check_values(const CLI::App& command, const std::vector<std::string>& words);

@@ -126,6 +126,7 @@ int run_program(int argc, const char* const* argv,
     session.context.on_progress = [](const Progress& progress) { progress_line().show(progress); };
   }
   add(parser, session);
+  for (CLI::App* command : parser.get_subcommands({})) read_base_10(*command);
 
   g_cancel = &session.context.cancel;
   std::signal(SIGINT, on_interrupt);

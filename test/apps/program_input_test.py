@@ -5,6 +5,7 @@
 python3 program_input_test.py build/release/throng"""
 import json
 import os
+import re
 import unittest
 
 from program_case import ProgramCase
@@ -56,6 +57,44 @@ class ProgramInput(ProgramCase):
             with self.subTest(command=command):
                 self.assert_refused(self.run_throng(*command), f"{command[-2]}: ", "-1")
         self.assertEqual(list(self.path.iterdir()), [])
+
+    def test_a_leading_zero_does_not_change_a_number(self):
+        run = ("run", self.world, "--json")
+        kept = ("avatars", "steps", "dt", "seed", "checks", "state_hash")
+        plain = ("--avatars", "10", "--steps=12", "--seed", "9", "--dt", "0.1", "--check-every", "10", "--threads", "2")
+        zeros = ("--avatars", "010", "--steps=0012", "--seed", "+09", "--dt", "00.1", "--check-every", " 010", "--threads", "02")
+        before, after = (json.loads(self.run_throng(*run, *words).stdout) for words in (plain, zeros))
+        self.assertEqual((before["avatars"], before["steps"], before["seed"]), (10, 12, 9))
+        self.assertEqual({key: after[key] for key in kept}, {key: before[key] for key in kept})
+        at = [self.run_throng("query", self.world, "--at", place, "--json").stdout for place in ("14,0,10", "014,00,+010")]
+        self.assertIn("area", at[0])
+        self.assertEqual(*at)
+        for words in (("--levels", "010"), ("--seed", "010"), ("--triangles", "0100000")):
+            files = []
+            for value in (words[1], words[1].lstrip("0")):
+                done = self.run_throng("generate", "garage" if words[0] == "--levels" else "city", words[0], value, "-o", "a.obj")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                files.append((self.path / "a.obj").read_bytes())
+            self.assertEqual(*files, words)
+        self.assert_refused(self.run_throng("generate", "city", "--seed", "-010", "-o", "b.obj"), "--seed: -10 is below 0")
+
+    def test_all_numbers_are_refused_in_hexadecimal(self):
+        commands = re.findall(r"(?m)^  ([a-z]+) ", self.run_throng("--help").stdout.partition("Subcommands:")[2])
+        self.assertIn("run", commands)
+        seen = set()
+        for command in commands:
+            shown = self.run_throng(command, "--help").stdout
+            for name, kind in re.findall(r"(?m)^  (?:-\w,)?(--[a-z0-9-]+) (FLOAT|INT|UINT|N|S|ID|M|MIB|[A-Z0-9]+(?:,[A-Z0-9]+)+)(?=[ :=\n])", shown):
+                with self.subTest(command=command, name=name):
+                    values = ",".join(["0x10"] * len(kind.split(",")))
+                    self.assert_refused(self.run_throng(command, f"{name}={values}"), f"throng: {name}: 0x10 is hexadecimal")
+                    if kind in ("INT", "UINT", "N", "S", "ID"):
+                        self.assert_refused(self.run_throng(command, f"{name}={'9' * 30}"), f"throng: {name}: {'9' * 30} is too large")
+                seen.add((name, kind))
+        self.assertGreater(len(seen), 60)
+        for name in ("--steps", "--cell", "--threads", "--from", "--pick", "--levels", "--search-memory"):
+            self.assertIn(name, {name for name, _ in seen})
+        self.assert_refused(self.run_throng("run", self.world, "--steps", "-0X10"), "--steps: -0X10 is hexadecimal")
 
     def test_each_command_limits_its_threads(self):
         for command in (("bake", "builtin:cube", "-o", "x.throng"), ("run", self.world, "--steps", 1), ("components", self.world),

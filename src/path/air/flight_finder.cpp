@@ -6,26 +6,14 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <string>
 #include <utility>
 
 #include "core/access.h"
 #include "core/check_class.h"
 #include "core/random.h"
-#include "path/air/air_string.h"
-#include "path/air/air_view.h"
-#include "path/air/flight_endpoints.h"
-#include "path/air/flight_log.h"
-#include "path/air/flight_path.h"
-#include "path/air/flight_search.h"
-#include "path/air/ground_air_links.h"
-#include "path/edits/ground_finder.h"
-#include "path/edits/solid.h"
-#include "path/ground/mesh.h"
+#include "path/air/flight_finder_state.h"
 #include "path/ground/reset_path.h"
-#include "path/overlay/mesh_finder.h"
-#include "world/place.h"
 
 // Joins the parts of a flight: walks, take-offs, flight search, landings and string pulling. Time:
 // mostly of the flight search, n log n in the air boxes that it expands; an end that must walk to a
@@ -34,158 +22,9 @@
 namespace throng::path {
 namespace {
 
-constexpr int32_t kLargestBox = 32;           // voxels: larger ones hide good paths
-constexpr uint64_t kMaxFloodCells = 1 << 18;  // on foot to a take-off
-// The same where the nearest take-off leads into an island and there are several others.
-constexpr uint64_t kMaxIslandCells = 1 << 15;
-// Paths over other ground, or to what is less near, where obstacles block the first.
-constexpr int32_t kMaxTries = 4;
+constexpr int32_t kLargestBox = 32;  // voxels: larger ones hide good paths
 
 }  // namespace
-
-// A point of the air, or a place with the nearest place to take off or to land.
-struct FlightFinder::End {
-  std::optional<AirPoint> air;
-  Place ground, ground_air_link;
-};
-
-struct FlightFinder::Shared {
-  World world;
-  int32_t avatar_class = 0;
-  world::AirBody body;
-  FlightSpace space;
-  std::vector<uint64_t> cells_before;  // per box, and of all
-  std::optional<MeshFinder> walker;    // none where the class has no ground
-  GroundAirLinks ground_air_links;
-  PathSummary summary;
-
-  [[nodiscard]] FlightEndpoints ends(const AirView& air) const {
-    return {*data_of(world), air, avatar_class};
-  }
-  // The component of the ground at a place.
-  [[nodiscard]] uint32_t ground_of(const Place& place) const {
-    const auto at = world::ground_point(*data_of(world), place);
-    if (!walker || !at) return kNoRect;
-    const PathMesh& mesh = walker->mesh();
-    const uint32_t rect = mesh.rect_at(place.level1 - 1, at->cell_x(), at->cell_z());
-    return rect == kNoRect ? kNoRect : mesh.rects[rect].component;
-  }
-  [[nodiscard]] GroundAirLinks::Part part_of(const End& end) const {
-    if (end.air) return {space.component[space.box_at(*end.air)], true};
-    return {ground_of(end.ground), false};
-  }
-  // The middle of a cell.
-  [[nodiscard]] Place place_of(const GroundAirLinks::Cell& cell) const {
-    return world::place_at(*data_of(world),
-                           world::ground_level(*data_of(world), cell.level, avatar_class),
-                           {(int64_t{cell.x} << world::kUnitBits) + world::kUnitsPerCell / 2,
-                            (int64_t{cell.z} << world::kUnitBits) + world::kUnitsPerCell / 2});
-  }
-  [[nodiscard]] Place nearest_ground(uint32_t component, Vec3d at) const {
-    Place nearest;
-    double least = std::numeric_limits<double>::infinity();
-    if (!walker) return nearest;
-    const world::GroundPoint to = world::to_ground(*data_of(world), at.x, at.z);
-    for (const MeshRect& rect : walker->mesh().rects) {
-      if (rect.component != component) continue;
-      const Place place =
-          place_of({rect.level, std::clamp(to.cell_x(), rect.x, rect.x + rect.width - 1),
-                    std::clamp(to.cell_z(), rect.z, rect.z + rect.depth - 1)});
-      const double far = distance(place.position, at);
-      if (far >= least) continue;
-      least = far;
-      nearest = place;
-    }
-    return nearest;
-  }
-};
-
-struct FlightFinder::Scratch {
-  explicit Scratch(const Shared& shared) : walker(shared.walker) {}
-
-  [[nodiscard]] bool is_changed() const { return changes && changes->any(); }
-  [[nodiscard]] AirView air(const Shared& shared) const {
-    return {shared.space, is_changed() ? &*changes : nullptr};
-  }
-  AirChanges& changes_of(const Shared& shared) {
-    if (!changes) changes.emplace(*data_of(shared.world), shared.space, shared.avatar_class);
-    return *changes;
-  }
-  ChangeId add(const Shared& shared, Solid solid) {
-    if (live) live_ids.push_back(live->add_obstacle(solid));
-    return changes_of(shared).add(std::move(solid));
-  }
-  // The ground with all changes; made on the first walk.
-  GroundFinder& ground(const Shared& shared) {
-    if (!live) {
-      auto made = GroundFinder::create(shared.world, {.avatar_class = shared.avatar_class});
-      THRONG_ASSERT(made);  // The class was checked.
-      changes->add_all_to(*made, live_ids);
-      live = std::move(*made);
-      live_began = live->version();
-    }
-    return *live;
-  }
-
-  // From the ground into the air: into this component of it, or any (kNoBox). False: none is found.
-  bool find_link(const Shared& shared, const AirView& air, End& end, uint32_t component,
-                 bool& budget_exhausted);
-  // A component of the air over the ground at both ends: if there is more than one, the one that is
-  // nearest to both, as far as a flood around them shows. kNoBox: none.
-  uint32_t common_air(const Shared& shared, const AirView& air, const End& a, const End& b,
-                      const SearchBudget& budget, bool& budget_exhausted);
-
-  // These take from the log what the query has found before.
-  // The place nearest to another, on foot, from where it can take off into a component of the air,
-  // or into any (kNoBox).
-  const FlightLog::Entry& nearest_take_off(const FlightEndpoints& ends, const Place& from,
-                                           uint32_t component) {
-    return log.next([&](FlightLog::Entry& entry) {
-      const auto nearest = ends.nearest_take_off(from, kMaxFloodCells, component, flood);
-      entry.place = nearest.place;
-      entry.budget_exhausted = nearest.budget_exhausted;
-    });
-  }
-  const std::vector<uint32_t>& components_over(const FlightEndpoints& ends, const Place& from) {
-    const auto make = [&](FlightLog::Entry& entry) {
-      ends.components_over(from, kMaxIslandCells, flood, entry.components);
-    };
-    return log.next(make).components;
-  }
-  bool is_cancelled(const SearchBudget& budget) {
-    const auto make = [&](FlightLog::Entry& entry) {
-      entry.budget_exhausted = budget.cancel != nullptr && *budget.cancel;
-    };
-    return log.next(make).budget_exhausted;
-  }
-  // The flight from one point to another, pulled taut; if there is none, the point nearest to
-  // `towards` that the search reached.
-  const FlightLog::Entry& fly(const AirView& air, const FlightQuery& query, AirPoint from,
-                              AirPoint to, AirPoint towards);
-
-  FlightLog log;
-  FlightQuery begun;
-  uint64_t taken = 0;     // nodes, by the parts before
-  uint64_t expanded = 0;  // by the searches that the part has come to, of all parts
-  FlightSearch search;
-  SpentBudget spent = SpentBudget::kNone;  // the budget that the last search exhausted
-  AirString pull;
-  CircleFlood flood;
-  std::optional<MeshFinder> walker;
-  std::vector<uint32_t> common;  // components of the air
-  AirView::ZoneOrder zone_order;
-  GroundAirLinks::Scratch parts;
-  std::vector<GroundAirLinks::Part> route;
-  std::vector<GroundAirLinks::Pair> banned;
-  // Made with the first obstacle; none before.
-  std::optional<AirChanges> changes;
-  std::optional<GroundFinder> live;
-  uint64_t live_began = 0;         // its version, with the changes of that time
-  std::vector<ChangeId> live_ids;  // by id of a change - 1
-  // Of a search that found no path between ends that could be connected: the point that it reached
-  // in the air that is nearest to where the query leads.
-  std::optional<AirPoint> reached;
-};
 
 bool FlightFinder::Scratch::find_link(const Shared& shared, const AirView& air_now, End& end,
                                       uint32_t component, bool& budget_exhausted) {
@@ -577,127 +416,6 @@ void FlightFinder::find_flight(const FlightQuery& query, Path& path) {
   if (on_foot == INFINITY) return;
   add_walk(*all, 0, path);
   path.end = PathEnd::kReached;
-}
-
-// From part to part of the ground and the air. The take-off or landing between two of them is at
-// the place nearest to where the path stands, or to the goal, else at the one that is known of the
-// two. Parts are those of the world as it was baked: where an obstacle blocks the path from one to
-// the next, another path that does without that pair is searched for.
-void FlightFinder::find_by_turns(const FlightQuery& query, Path& path) {
-  Scratch& scratch = *scratch_;
-  End from, to;
-  if (!locate(query.from, query.vertical_tolerance, from) ||
-      !locate(query.to, query.vertical_tolerance, to))
-    return;
-  const GroundAirLinks::Part start = state_->part_of(from), goal = state_->part_of(to);
-  scratch.banned.clear();
-  for (int32_t tries = 0; tries < (scratch.is_changed() ? kMaxTries : 1); ++tries) {
-    // Air that an obstacle has cut in two is one part: then over some ground under it.
-    const bool returns = start == goal && scratch.is_changed() && goal.is_air;
-    const GroundAirLinks::Part last = returns ? GroundAirLinks::Part{kNoBox, true} : goal;
-    state_->ground_air_links.search(start, last, scratch.banned, scratch.parts);
-    const auto& steps = scratch.parts.steps;
-    if (steps.size() < 2 || (!returns && steps.back().part != goal)) return;
-    scratch.route.clear();
-    if (returns) {
-      scratch.route.assign({start, steps[1].part, goal});
-    } else {
-      for (uint32_t i = static_cast<uint32_t>(steps.size()) - 1;; i = steps[i].before) {
-        scratch.route.push_back(steps[i].part);
-        if (i == 0) break;
-      }
-      std::reverse(scratch.route.begin(), scratch.route.end());
-    }
-    const size_t missed = follow_route(query, from, to, path);
-    if (path.end != PathEnd::kUnreachable) return;
-    const GroundAirLinks::Part& a = scratch.route[missed - 1];
-    const GroundAirLinks::Part& b = scratch.route[missed];
-    scratch.banned.emplace_back(a.is_air ? b.component : a.component,
-                                a.is_air ? a.component : b.component);
-  }
-}
-
-// If it does not lead on: the place in the route of the part that it did not reach.
-size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, const End& to,
-                                  Path& path) {
-  Scratch& scratch = *scratch_;
-  const AirView view = scratch.air(*state_);
-  const FlightEndpoints ends = state_->ends(view);
-  PathEnd end = PathEnd::kReached;
-  Place feet = from.ground;  // where the path is by now, or
-  AirPoint air = from.air.value_or(AirPoint{});
-  const auto go = [&](const Place& there) {
-    if (end != PathEnd::kReached) return;
-    const Path& ground = walk(query, feet, there);
-    end = ground.end;
-    add_walk(ground, 1, path);
-    feet = there;
-  };
-  const auto fly = [&](AirPoint there) {
-    if (end != PathEnd::kReached) return;
-    if (view.changes() != nullptr && !view.same_component(air, there)) {
-      end = PathEnd::kUnreachable;
-      return;
-    }
-    const FlightLog::Entry& found = scratch.fly(view, query, air, there, there);
-    end = found.result == SearchResult::kFound    ? PathEnd::kReached
-          : found.result == SearchResult::kBudget ? PathEnd::kBudgetExhausted
-                                                  : PathEnd::kUnreachable;
-    for (size_t i = 1; i < found.flight.size(); ++i) {
-      add(ends.to_metres(found.flight[i]), SegmentKind::kFly, path);
-    }
-    air = there;
-  };
-  // A place of some ground under some air: it leads into this component of that.
-  const auto link_near = [&](const Place& at, GroundAirLinks::Part ground,
-                             GroundAirLinks::Part over, uint32_t component) {
-    const Place near = at ? scratch.nearest_take_off(ends, at, component).place : Place{};
-    if (near) return near;
-    const Place known =
-        state_->place_of(state_->ground_air_links.cell(ground.component, over.component));
-    if (view.changes() == nullptr) return known;
-    return scratch.nearest_take_off(ends, known, component).place;
-  };
-  clear(path);
-  add(from.air ? ends.to_metres(air) : feet.position, SegmentKind::kWalk, path);
-  const size_t count = scratch.route.size();
-  size_t k = 1;
-  for (; k < count && end == PathEnd::kReached; ++k) {
-    const GroundAirLinks::Part here = scratch.route[k - 1], next = scratch.route[k];
-    const bool last = k + 1 == count;
-    if (next.is_air) {
-      const bool known = last && to.air;
-      const Place ground_air_link = link_near(
-          feet, here, next, known ? view.component(view.box_at(*to.air)) : next.component);
-      const auto up = ends.take_off(ground_air_link);
-      if (!up) {
-        end = PathEnd::kUnreachable;
-        continue;
-      }
-      go(ground_air_link);
-      air = *up;
-      add(ends.to_metres(air), SegmentKind::kTakeOff, path);
-    } else {
-      const Place ground_air_link =
-          link_near(last ? to.ground : Place{}, next, here, view.component(view.box_at(air)));
-      const auto up = ends.take_off(ground_air_link);
-      if (!up) {
-        end = PathEnd::kUnreachable;
-        continue;
-      }
-      feet = ground_air_link;
-      fly(*up);
-      add(feet.position, SegmentKind::kLand, path);
-    }
-  }
-  if (to.air) {
-    fly(*to.air);
-  } else {
-    go(to.ground);
-  }
-  if (end != PathEnd::kReached) clear(path);
-  path.end = end;
-  return k - 1;
 }
 
 // To the point of all reachable air that is nearest to the goal; if no avatar can take off from the

@@ -20,6 +20,14 @@ constexpr double kPointRadius = 2e-6;  // [m] within which a body stands on a po
 constexpr double kEdgeStep = 1e-4;     // of a patch's parameters, for derivatives
 constexpr int kMaxAttempts = 8;        // attempts to make a move short enough
 
+// In the air, a part of the segment from one pose to another: it turns evenly.
+std::optional<ClimbPose> pose_between(const ClimbPose& from, const ClimbPose& to, double part) {
+  const Vec3d axis = from.axis * (1 - part) + to.axis * part;
+  const double size = length(axis);
+  if (!(size > 1e-6)) return std::nullopt;
+  return ClimbPose{from.feet * (1 - part) + to.feet * part, axis * (1 / size)};
+}
+
 }  // namespace
 
 ClimberGround::ClimberGround(const World& world, const Nodes& nodes, const path::NodeFinder& finder,
@@ -60,10 +68,7 @@ std::optional<ClimbPose> ClimberGround::pose_of(const Climb& climb, const ClimbS
   if (at.in_air == 0) return pose(at.node1, at.s, at.t);
   const auto from = pose_of_point(climb, at.next - 1u), to = pose_of_point(climb, at.next);
   if (!from || !to) return std::nullopt;
-  const Vec3d axis = from->axis * (1 - at.part) + to->axis * at.part;
-  const double size = length(axis);
-  if (!(size > 1e-6)) return std::nullopt;
-  return ClimbPose{from->feet * (1 - at.part) + to->feet * at.part, axis * (1 / size)};
+  return pose_between(*from, *to, at.part);
 }
 
 // Circles around the centre: the farthest point of the leaning cylinder is on one of its rims, at
@@ -183,24 +188,26 @@ bool ClimberGround::enters_next(const Climb& climb, const Square& here, double d
   return there.holds(at.s + out * ds, at.t + out * dt);
 }
 
-bool ClimberGround::stands_on(const Climb& climb, size_t point) const {
-  const auto there = pose_of_point(climb, point);
+bool ClimberGround::stands_on(const Climb& climb, const std::optional<ClimbPose>& there) const {
   return there && travel({climb.feet, climb.axis}, *there) <= kPointRadius;
 }
 
 // A path often begins on a point where another one ended, between two parts of a node: its next
 // points then lie where the body stands, up to rounding, and show no direction.
-size_t ClimberGround::point_ahead(const Climb& climb) const {
-  size_t point = std::min<size_t>(climb.at.next, climb.count - 1u);
-  while (point + 1 < climb.count && stands_on(climb, point)) ++point;
-  return point;
+ClimberGround::Ahead ClimberGround::point_ahead(const Climb& climb) const {
+  const size_t first = std::min<size_t>(climb.at.next, climb.count - 1u);
+  Ahead ahead{first, pose_of_point(climb, first)};
+  while (ahead.point + 1 < climb.count && stands_on(climb, ahead.pose)) {
+    ahead.pose = pose_of_point(climb, ++ahead.point);
+  }
+  return ahead;
 }
 
 bool ClimberGround::is_at_end(const Climb& climb) const {
   if (climb.at.next >= climb.count) return true;
   if (climb.at.in_air != 0) return false;
-  const size_t point = point_ahead(climb);
-  return point + 1 == climb.count && stands_on(climb, point);
+  const Ahead ahead = point_ahead(climb);
+  return ahead.point + 1 == climb.count && stands_on(climb, ahead.pose);
 }
 
 Vec3d ClimberGround::displacement_to(const Climb& climb, const ClimbPose& to) const {
@@ -219,15 +226,14 @@ Vec3d ClimberGround::path_ahead(const Climb& climb) const {
   }
   const Square here = square_here(climb);
   const size_t next = std::min<size_t>(at.next, climb.count - 1u);
-  size_t local_target = point_ahead(climb);
+  auto [local_target, to] = point_ahead(climb);
   const auto off = [&](size_t point) {
     return std::pair{climb.points[point].s - at.s, climb.points[point].t - at.t};
   };
   if (local_target == next && next + 1 < climb.count) {
     const auto [ds, dt] = off(next + 1);
-    if (enters_next(climb, here, ds, dt)) ++local_target;
+    if (enters_next(climb, here, ds, dt)) to = pose_of_point(climb, ++local_target);
   }
-  const auto to = pose_of_point(climb, local_target);
   if (!to) return {};
   // Beyond a segment through the air parameters are those of another patch.
   for (size_t point = next + 1; point <= local_target; ++point) {
@@ -294,13 +300,11 @@ bool ClimberGround::advance_through_air(const Climb& climb, Step& step, double& 
   }
   double part = (1 - at.part) * max_travel / left;
   for (int n = 0; n < kMaxAttempts; ++n) {
-    ClimbStance there = at;
-    there.part = at.part + part;
-    const auto pose_there = pose_of(climb, there);
+    const auto pose_there = pose_between(*from, *to, at.part + part);
     if (!pose_there) break;
     const double far = travel(step.pose, *pose_there);
     if (far <= max_travel) {
-      at = there;
+      at.part += part;
       step.pose = *pose_there;
       break;
     }
@@ -347,10 +351,13 @@ std::optional<ClimberGround::Step> ClimberGround::retreat(const Climb& climb,
   const auto from = pose_of_point(climb, at.next - 1u);
   if (!from || climb.points[at.next - 1u].node1 == 0) return std::nullopt;
   double part = at.part;
+  std::optional<ClimbPose> to;
   for (int n = 0; n < kMaxAttempts; ++n) {
     ClimbStance there = climb.at;
     there.part = at.part - part;
-    const auto pose_there = there.part == 0 ? from : pose_of(climb, there);
+    if (there.part != 0 && !to) to = pose_of_point(climb, at.next);
+    if (there.part != 0 && !to) return std::nullopt;
+    const auto pose_there = there.part == 0 ? from : pose_between(*from, *to, there.part);
     if (!pose_there) return std::nullopt;
     const double far = travel(step.pose, *pose_there);
     if (far <= max_travel) return Step{there, *pose_there};

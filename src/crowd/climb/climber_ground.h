@@ -97,9 +97,13 @@ class ClimberGround {
   [[nodiscard]] bool enters_next(const Climb& climb, const Square& here, double ds,
                                  double dt) const;
   /// The point to which it heads, or, where it stands on that, the first behind it on which it does
-  /// not stand, if there is one. [it has a path]
-  [[nodiscard]] size_t point_ahead(const Climb& climb) const;
-  [[nodiscard]] bool stands_on(const Climb& climb, size_t point) const;
+  /// not stand, if there is one; and its pose, so that each is looked up once. [it has a path]
+  struct Ahead {
+    size_t point;
+    std::optional<ClimbPose> pose;
+  };
+  [[nodiscard]] Ahead point_ahead(const Climb& climb) const;
+  [[nodiscard]] bool stands_on(const Climb& climb, const std::optional<ClimbPose>& there) const;
   /// Straight to a pose.
   [[nodiscard]] Vec3d displacement_to(const Climb& climb, const ClimbPose& to) const;
   bool advance_on_surface(const Climb& climb, Step& step, double& max_travel) const;

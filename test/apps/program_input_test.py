@@ -172,6 +172,18 @@ class ProgramInput(ProgramCase):
         self.assert_refused(self.run_throng(*ends, "--off-mesh-link", "14,0,8,14,0,8"), "--off-mesh-link (14.000", "two different places")
         self.assertEqual(list(self.path.iterdir()), [])
 
+    def test_a_bake_prints_the_size_and_what_is_strange_about_it(self):
+        for name, scale, hint in (("a", 1, ""), ("b", 0.01, "check the unit (--scale)")):
+            corners = [(x * scale, y * scale, z * scale) for y in (0, 6) for x, z in ((0, 0), (20, 0), (20, 30), (0, 30))]
+            sides = ("4 3 2 1", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8")
+            (self.path / f"{name}.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in corners) + "".join(f"f {s}\n" for s in sides))
+            done = self.run_throng("bake", f"{name}.obj", "-o", f"{name}.throng", "--cell", "0.2")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"\n  {20 * scale:.1f} x {30 * scale:.1f} m, {6 * scale:.1f} m high\n", done.stdout)
+            self.assertEqual(hint in done.stdout and hint != "", hint != "")
+            hints = json.loads(self.run_throng("bake", f"{name}.obj", "-o", f"{name}.throng", "--cell", "0.2", "--json").stdout)["hints"]
+            self.assertEqual([hint in text for text in hints], [True] if hint else [])
+
     def test_what_is_no_world_is_not_to_be_written_over(self):
         (self.path / "notes.txt").write_text("kept")
         for name, remedy in (("notes.txt", "-o WORLD.throng`"), (".", "-o WORLD.throng`"), ("new.throng", "-o new.throng`")):

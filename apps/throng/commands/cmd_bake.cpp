@@ -11,6 +11,7 @@
 #include "command.h"
 #include "input_file.h"
 #include "number_checks.h"
+#include "scene_hints.h"
 #include "sources.h"
 #include "throng/bake.h"
 #include "throng/surface.h"
@@ -111,6 +112,7 @@ Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport&
           {"triangles", scene.triangles.size()},
           {"patches", scene.patches.size()},
           {"import", report_json(scene.report)},
+          {"hints", scene_hints(scene)},
           {"cell", options.config.cell},
           {"resolution", options.config.resolution},
           {"zones", report.zones},
@@ -150,6 +152,7 @@ std::string bake_text(const BakeOptions& options, const Scene& scene, const Bake
                                  report.seconds_total, counted(report.zones, "zone"),
                                  report.zones_reused, counted(report.level_tiles, "level tile"),
                                  report.constant_level_tiles, human_bytes(report.bytes));
+  text += fmt::format("  {}\n", size_text(scene.bounds()));
   for (size_t i = 0; i < report.walkable_area.size(); ++i) {
     text += fmt::format("  {:<12} {:12.1f} m2 walkable\n", options.config.classes[i].name,
                         report.walkable_area[i]);
@@ -161,6 +164,7 @@ std::string bake_text(const BakeOptions& options, const Scene& scene, const Bake
         options.config.one_sided ? ", and whether all triangles are wound backwards (--one-sided)"
                                  : "");
   }
+  for (const std::string& hint : scene_hints(scene)) text += fmt::format("  {}\n", hint);
   if (report.air_zones > 0) {
     text += fmt::format("  air over {} ({} reused), {}, in {:.2f} s of the above\n",
                         counted(report.air_zones, "zone"), report.air_zones_reused,

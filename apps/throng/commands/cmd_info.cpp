@@ -85,7 +85,7 @@ std::string info_text(const InfoOptions& options, const WorldSummary& summary,
   std::string text = fmt::format(
       "{}: {:.1f} x {:.1f} m, {:.1f} m high, from {}\n"
       "from ({}) to ({})\n"
-      "cells of {} m, headroom within {} m; {}, {}, {} ({:.1f} bytes per walkable m2)\n",
+      "cells of {} m, resolution {} m; {}, {}, {} ({:.1f} bytes per walkable m2)\n",
       options.world, size.x, size.z, size.y, counted(summary.source_triangles, "triangle"),
       where(summary.bounds.min), where(summary.bounds.max), summary.cell, summary.resolution,
       counted(summary.zones, "zone"), counted(summary.level_tiles, "level tile"),

@@ -60,6 +60,17 @@ std::string about(const CLI::ParseError& error, const CLI::Option& option,
                      too_many ? ", once" : "", given(option, words));
 }
 
+// Words that the command has no use for. CLI11 lists them all, the last one first.
+std::string about_extra(const CLI::App& parser) {
+  const CLI::App* command = command_in_use(parser);
+  const std::vector<std::string> extra = parser.remaining(true);
+  if (extra.empty()) return "bad usage";
+  const std::string name = command == nullptr ? "throng" : "throng " + command->get_name();
+  return extra.front().starts_with('-')
+             ? fmt::format("{}: {} has no such option", extra.front(), name)
+             : fmt::format("{}: {} takes fewer words", extra.front(), name);
+}
+
 }  // namespace
 
 const CLI::App* command_in_use(const CLI::App& parser) {
@@ -69,6 +80,7 @@ const CLI::App* command_in_use(const CLI::App& parser) {
 
 std::string what_is_wrong(const CLI::ParseError& error, const CLI::App& parser,
                           const std::vector<std::string>& words) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return about_extra(parser);
   const std::string message = one_sentence(error.what());
   std::string name;
   const std::string could_not = "Could not convert: ";

@@ -172,6 +172,13 @@ class ProgramInput(ProgramCase):
         self.assert_refused(self.run_throng(*ends, "--off-mesh-link", "14,0,8,14,0,8"), "--off-mesh-link (14.000", "two different places")
         self.assertEqual(list(self.path.iterdir()), [])
 
+    def test_words_that_a_command_does_not_take_are_named_in_their_order(self):
+        self.assert_refused(self.run_throng("surface", self.world, "--at", "14,0,8"), "throng: --at: throng surface has no such option;")
+        self.assert_refused(self.run_throng("info", self.world, "more", "--at"), "throng: more: throng info takes fewer words;")
+        for command in ("components", "verify"):
+            source = ("--source", "builtin:garage") if command == "verify" else ()
+            self.assert_refused(self.run_throng(command, self.world, *source, "--class", "horse"), "--class horse: ", "adult", "giant", "all")
+
     def test_a_bake_prints_the_size_and_what_is_strange_about_it(self):
         for name, scale, hint in (("a", 1, ""), ("b", 0.01, "check the unit (--scale)")):
             corners = [(x * scale, y * scale, z * scale) for y in (0, 6) for x, z in ((0, 0), (20, 0), (20, 30), (0, 30))]

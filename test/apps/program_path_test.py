@@ -171,7 +171,27 @@ class ProgramPath(ProgramCase):
         self.assertLess(max(path["beside"].values()), 0.001)
         for point, given in ((path["points"][0], (20, 20)), (path["points"][-1], (120, 90))):
             self.assertLess(abs(point[0] - given[0]) + abs(point[2] - given[1]), 0.001)
-        self.assertNotIn("beside", self.run_throng(*ends).stdout)
+        text = self.run_throng(*ends).stdout
+        self.assertNotIn("beside", text)
+        # A point each --spacing: the text has the first and the last, --json has all.
+        lines = [line for line in text.splitlines() if " deg" in line]
+        self.assertEqual((len(lines), len(path["points"]) > 400), (16, True))
+        self.assertIn(f"  ... {len(path['points']) - 16} more points: --json has all\n", text)
+        for point, line in ((path["points"][7], lines[7]), (path["points"][-8], lines[8])):
+            self.assertIn(", ".join(f"{v:.3f}" for v in point), line)
+        wide = json.loads(self.run_throng(*ends, "--json", "--spacing", "4").stdout)
+        self.assertLess(len(wide["points"]), len(path["points"]) / 2)
+        self.assertLess(abs(wide["length"] - path["length"]), 0.01 * path["length"])
+        self.assert_refused(self.run_throng(*ends, "--spacing", "0"), "--spacing: 0 is below 0.01")
+
+    def test_paths_through_the_air_are_refused_by_world_and_class_alike(self):
+        ends = ("--from", "2,0,2", "--to", "4,0,4")
+        done = self.run_throng("bake", "builtin:cube", "--fly", "--cell", "0.2", "-o", "cube.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_refused(self.run_throng("path", self.world, *ends, "--fly"), f"{self.world}: --fly: ", "bake it again with --fly")
+        self.assert_refused(self.run_throng("path", self.world, *ends, "--nodes"), f"{self.world}: ", "bake it again with --nodes")
+        self.assert_refused(self.run_throng("path", "cube.throng", *ends, "--fly"), "cube.throng: --fly: class adult does not fly", "--class")
+        self.assertEqual(self.run_throng("path", "cube.throng", *ends, "--fly", "--class", "flyer").returncode, 0)
 
     def test_options_of_nodes_are_checked_before_the_old_world_is_replaced(self):
         done = self.run_throng("bake", "builtin:stairs", "--cell", "0.2", "--nodes", "-o", "w.throng")

@@ -87,7 +87,7 @@ int print_components(Session& session, const ComponentsOptions& options) {
   std::optional<int32_t> only;
   if (options.avatar_class != "all") {
     const Result<int32_t> named = class_named(*world, options.avatar_class);
-    if (!named) return fail(named.error());
+    if (!named) return fail({named.error().code, named.error().message + ", or all"});
     only = *named;
   }
   if (!options.at.empty()) {

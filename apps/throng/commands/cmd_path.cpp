@@ -153,6 +153,7 @@ int find(Session& session, const PathStage& stage) {
     finder->find({.from = from->at,
                   .to = to->at,
                   .tolerance = options.tolerance,
+                  .spacing = options.spacing,
                   .nearest = true,
                   .budget = {UINT64_MAX, &session.context.cancel, options.search_bytes}},
                  found);

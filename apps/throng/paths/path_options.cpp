@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "paths/path_options.h"
 
+#include <fmt/format.h>
+
 #include "command.h"
 #include "number_checks.h"
 #include "paths/boxes.h"
@@ -24,6 +26,11 @@ void add_path_options(CLI::App& command, PathOptions& options) {
                   "over nodes if "
                   "there is none: how far away [m]")
       ->check(at_least(0))
+      ->capture_default_str();
+  command
+      .add_option("--spacing", options.spacing,
+                  "Over nodes: largest distance between points of the path on curved ground [m]")
+      ->check(at_least(0.01))
       ->capture_default_str();
   command.add_flag(
       "--fly", options.fly,
@@ -79,6 +86,21 @@ Result<void> check_options(const PathOptions& options) {
   return {};
 }
 
+// Does a world have what --fly asks for?
+Result<void> check_fly(const PathOptions& options, const World& world, const AvatarClass& avatar) {
+  if (const auto air = air_summary(world); !air) {
+    if (air.error().code != Errc::kNotFound) return air.error();
+    return Error{Errc::kNotFound,
+                 options.world +
+                     ": --fly: the world was baked without air; bake it again with "
+                     "--fly, or with --air and a class that flies"};
+  }
+  if (avatar.flies) return {};
+  return Error{Errc::kBadConfig,
+               fmt::format("{}: --fly: class {} does not fly; name one that does with --class",
+                           options.world, avatar.name)};
+}
+
 }  // namespace
 
 Result<PathSpace> space_of(const PathOptions& options, const World& world,
@@ -86,7 +108,10 @@ Result<PathSpace> space_of(const PathOptions& options, const World& world,
   const bool by_class = !options.fly && !options.nodes && !options.on_foot;
   const bool over_nodes = options.nodes || (by_class && !avatar.flies && goes_over_nodes(avatar));
   if (auto ok = check_options(options); !ok) return ok.error();
-  if (options.fly) return PathSpace::kAir;
+  if (options.fly) {
+    if (auto ok = check_fly(options, world, avatar); !ok) return ok.error();
+    return PathSpace::kAir;
+  }
   if (over_nodes) return PathSpace::kNodes;
   if (!by_class || !avatar.flies || options.changes_ground()) return PathSpace::kGround;
   const auto air = air_summary(world);

@@ -18,6 +18,7 @@ struct PathOptions {
   std::string avatar_class = "adult";
   std::vector<double> from, to;
   double tolerance = 1.0;
+  double spacing = PathQuery{}.spacing;
   int32_t threads = 0;
   bool fly = false;
   bool nodes = false;

@@ -62,6 +62,10 @@ bool is_flown(SegmentKind kind) {
   return kind == SegmentKind::kTakeOff || kind == SegmentKind::kFly || kind == SegmentKind::kLand;
 }
 
+// Points that are printed at each end of a path over nodes, which has one each --spacing on curved
+// ground; between them only those over edges and at links.
+constexpr size_t kPrintedEnds = 8;
+
 // "1.200 m from there in the plane and 2.900 m below".
 std::string how_near(const Vec3d& nearest, const Vec3d& goal) {
   const double below = goal.y - nearest.y;
@@ -96,6 +100,36 @@ std::string point_text(const Path& path, size_t i) {
     text += fmt::format("  {}", path_word(path.segments[i - 1]));
   }
   return text + '\n';
+}
+
+// Is it only one more point of a surface: not over an edge, and not at a link?
+bool is_plain(const Path& path, size_t i) {
+  if (path.node_places.empty() || !path.node_places[i]) return false;
+  return std::none_of(path.links.begin(), path.links.end(), [i](const PathLink& link) {
+    return link.point == i && link.kind != LinkKind::kWalk;
+  });
+}
+
+std::string point_lines(const Path& path) {
+  const size_t count = path.points.size();
+  std::string text;
+  size_t left_out = 0;
+  const auto end_gap = [&] {
+    if (left_out > 0) {
+      text += fmt::format("  ... {}: --json has all\n", counted(left_out, "more point"));
+    }
+    left_out = 0;
+  };
+  for (size_t i = 0; i < count; ++i) {
+    const bool is_end = i < kPrintedEnds || i + kPrintedEnds >= count;
+    if (!is_end && is_plain(path, i)) {
+      ++left_out;
+      continue;
+    }
+    end_gap();
+    text += point_text(path, i);
+  }
+  return text;
 }
 
 }  // namespace
@@ -154,8 +188,7 @@ std::string path_text(const PathRun& run, const Path& path) {
     text += fmt::format("  gets to ({}), {}; blocked by: {}\n", where(nearest),
                         how_near(nearest, run.goal), blocker_text(path.blocked_by));
   }
-  for (size_t i = 0; i < path.points.size(); ++i) text += point_text(path, i);
-  return text;
+  return text + point_lines(path);
 }
 
 }  // namespace throng::app

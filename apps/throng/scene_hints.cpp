@@ -12,7 +12,7 @@
 // of its area faces one horizontal axis; the walls of a tower face two. Of one in centimetres,
 // triangles are 10 000 times as large as they should be. Of the 16 models that were measured, those
 // that are read right have up to 1.1 times as much area towards one horizontal axis as level; 11
-// have 2.1 to 53 times as much, and twice what faces the other one, if z and y are exchanged.
+// have 2.2 to 53 times as much, and twice what faces the other one, if z and y are exchanged.
 namespace throng::app {
 namespace {
 

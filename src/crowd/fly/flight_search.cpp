@@ -130,7 +130,9 @@ bool FlyMode::find_flight(const Body& body, Flight& flight, int32_t worker) {
   const auto w = static_cast<size_t>(worker);
   const Path& path = parts.paths[w];
   search(parts, w, from, flight.goal);
-  std::vector<AirPosition> points;
+  std::vector<AirPosition>& points = parts.buffers[w].points;
+  std::vector<AirPosition>& over = parts.buffers[w].over;
+  points.clear();
   std::optional<AirPosition> end;
   if (path.end == PathEnd::kNoPlace && engine_.has_obstacles()) {
     // Beside an obstacle the feet may be where the finder's whole cell is blocked.
@@ -151,7 +153,6 @@ bool FlyMode::find_flight(const Body& body, Flight& flight, int32_t worker) {
     if (points.empty()) points.push_back(from);
     // The finder does not know obstacles that move. If one blocks the path, a path over it may be
     // free.
-    std::vector<AirPosition> over;
     AirPosition at = from;
     const bool clear = std::all_of(points.begin(), points.end(), [&](const AirPosition& next) {
       const AirPosition begin = std::exchange(at, next);

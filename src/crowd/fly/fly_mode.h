@@ -12,6 +12,7 @@
 #include "crowd/fly/flight.h"
 #include "crowd/fly/flyer_air.h"
 #include "crowd/fly/flyer_engine.h"
+#include "crowd/ground/obstacle_grid.h"
 #include "crowd/mode/mode.h"
 #include "crowd/walk/walk_mode.h"
 #include "path/air/flight_finder.h"
@@ -67,14 +68,22 @@ class FlyMode final : public Mode, public TakesOff {
   [[nodiscard]] bool is_in_place(const Body& body) const override;
 
  private:
+  /// Of one worker, so that a step allocates nothing.
+  struct Buffers {
+    std::vector<AirPosition> points, over;  // of a path that is found, and of one over it
+    std::vector<AirPosition> exits;
+    std::vector<const ObstacleGrid::Item*> near;  // that close around a body
+  };
   struct OfClass {
     OfClass(const World& world, const path::FlightFinder& finder, size_t workers,
             const CrowdGround& ground, int32_t number)
         : finders(workers, finder),
           paths(workers),
+          buffers(workers),
           air(world, finders[0].space(), ground, number) {}
     std::vector<path::FlightFinder> finders;  // one a worker
     std::vector<Path> paths;
+    std::vector<Buffers> buffers;
     FlyerAir air;
   };
   [[nodiscard]] const FlyerAir& air_of(const Body& body) const {
@@ -87,7 +96,7 @@ class FlyMode final : public Mode, public TakesOff {
   // fly_plan.cpp
   void plan(Body& body, Flight& flight, int32_t worker);
   /// Of a flyer in a link or without a path. True: its path is not followed.
-  bool plan_exit(Body& body, Flight& flight) const;
+  bool plan_exit(Body& body, Flight& flight, int32_t worker) const;
   void follow_flight(Body& body, Flight& flight) const;
   [[nodiscard]] bool head_to_nearest_landing(const Body& body, Flight& flight) const;
   void find_landing_place(Body& body, const Flight& flight) const;

@@ -184,7 +184,7 @@ bool FlyMode::head_to_nearest_landing(const Body& body, Flight& flight) const {
 }
 
 void FlyMode::plan(Body& body, Flight& flight, int32_t worker) {
-  if (body.leaves && plan_exit(body, flight)) return;
+  if (body.leaves && plan_exit(body, flight, worker)) return;
   if (!body.has(Body::kHasGoal)) return;
   if (!body.has(Body::kNeedsPath) && flight.in_link == 0) follow_flight(body, flight);
   if (!body.has(Body::kNeedsPath)) return;
@@ -195,7 +195,7 @@ void FlyMode::plan(Body& body, Flight& flight, int32_t worker) {
   turn_to(body, flight);
 }
 
-bool FlyMode::plan_exit(Body& body, Flight& flight) const {
+bool FlyMode::plan_exit(Body& body, Flight& flight, int32_t worker) const {
   if (body.has(Body::kExternal)) return false;
   if (flight.in_link != 0) {
     flight.descends = 0;  // It may not stand there.
@@ -210,10 +210,10 @@ bool FlyMode::plan_exit(Body& body, Flight& flight) const {
   body.local_target_x = body.x;
   body.local_target_z = body.z;
   flight.local_target_y = body.y;
-  std::vector<AirPosition> exits;
-  engine_.list_exits(body, exits);
+  Buffers& buffers = classes_[body.avatar_class]->buffers[static_cast<size_t>(worker)];
+  engine_.list_exits(body, buffers.near, buffers.exits);
   double least = HUGE_VAL;
-  for (const AirPosition& exit : exits) {
+  for (const AirPosition& exit : buffers.exits) {
     const double dx = (static_cast<double>(exit.x) - at.x) * shared_.unit;
     const double dz = (static_cast<double>(exit.z) - at.z) * shared_.unit;
     const double dy = (static_cast<double>(exit.y) - at.y) * 1e-3;

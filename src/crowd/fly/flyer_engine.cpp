@@ -85,11 +85,11 @@ bool FlyerEngine::is_obstructed(const Body& body, const AirPosition& position) c
   });
 }
 
-void FlyerEngine::list_exits(const Body& body, std::vector<AirPosition>& exits) const {
+void FlyerEngine::list_exits(const Body& body, std::vector<const ObstacleGrid::Item*>& near,
+                             std::vector<AirPosition>& exits) const {
   const double radius = classes_[body.avatar_class].radius;
   exits.clear();
   if (!has_obstacles()) return;
-  std::vector<const ObstacleGrid::Item*> near;
   obstacles_->list_near(position_of(body), radius, near);
   for (const ObstacleGrid::Item* obstacle : near) {
     const AirObstacle& shape = obstacle->shape;

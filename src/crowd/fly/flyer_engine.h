@@ -43,8 +43,9 @@ class FlyerEngine {
   /// Is the position inside an obstacle, so that no such body may be placed there?
   [[nodiscard]] bool is_obstructed(const Body& body, const AirPosition& position) const;
   /// The nearest positions beside, above and below the obstacles that close around a body, not
-  /// tested further.
-  void list_exits(const Body& body, std::vector<AirPosition>& exits) const;
+  /// tested further. `near` is memory.
+  void list_exits(const Body& body, std::vector<const ObstacleGrid::Item*>& near,
+                  std::vector<AirPosition>& exits) const;
 
   /// How far from its landing place a body comes down that waits for it. [m]
   [[nodiscard]] static float landing_radius(const Flight& flight);

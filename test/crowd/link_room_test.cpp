@@ -152,6 +152,31 @@ TEST(CrowdLinkRoom, WiderAvatarsThatComeLaterGetRoomToo) {
   EXPECT_LT(distance_of(crowd, wide, goal), 0.5);
 }
 
+// One waits for a link that is closed, 0.8 m from the end of another: clear of it for avatars as
+// narrow as itself, and in the place where a wide one must land.
+TEST(CrowdLinkRoom, OneThatWaitsGivesRoomToAWiderOneThatComesLater) {
+  const World world = gap();
+  Edits edits;
+  Oracle oracle{world,
+                {{at(world, 9, 5), at(world, 13, 5), 4, false},
+                 {at(world, 13, 8), at(world, 8.05, 5.8), 6, false}}};
+  for (const OffMeshLink& link : oracle.links) add_link(edits, link);
+  Crowd crowd = made(world, {.edits = edits});
+  close_gap(crowd, edits);
+  const AvatarId waiting = walker(crowd, at(world, 4, 5), at(world, 19, 5));
+  for (int step = 0; step < 60; ++step) crowd.step();
+  const double aside = distance_of(crowd, waiting, oracle.links[1].to);
+  ASSERT_GT(aside, 0.25 + 0.25 + 0.1) << "for those of that time it is far enough";
+  ASSERT_LT(aside, 0.25 + 0.7) << "a wide one has no room there";
+  const Place goal = at(world, 3, 8);
+  const AvatarId wide = added(crowd, at(world, 16, 8), {.radius = 0.7});
+  ASSERT_TRUE(wide);
+  crowd.set_goals({&wide, 1}, {&goal, 1});
+  EXPECT_GT(steps_until(crowd, oracle, 1, 600), 0);
+  EXPECT_LT(distance_of(crowd, wide, goal), 0.5);
+  EXPECT_LT(crowd.read(waiting)->position.x, 10) << "it still waits";
+}
+
 // Crates on three sides of the end leave no place that is clear of the link.
 TEST(CrowdLinkRoom, OneThatFoundNoPlaceTriesAgain) {
   const World world = gap();

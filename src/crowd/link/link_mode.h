@@ -118,6 +118,8 @@ class LinkMode final : public Mode, public TakesLinks {
   void stop_standing(Body& body, const LinkUse& use) const;
   void give_turn(Body& body, LinkUse& use) const;
   void end_use(Body& body, LinkUse& use) const;
+  /// Is a body so near to an end that another cannot land or start there?
+  [[nodiscard]] bool blocks_end(const Body& other, const Body& body, const Stand& end) const;
   [[nodiscard]] bool end_is_free(std::span<const Body> bodies, const Body& body,
                                  const LinkUse& use) const;
   [[nodiscard]] bool is_obstructed(const Body& body, const Stand& from, const Stand& to) const;
@@ -130,7 +132,7 @@ class LinkMode final : public Mode, public TakesLinks {
   // link_room.cpp
   [[nodiscard]] bool may_give_room(const Body& body) const;
   void give_room(Body& body, const LinkUse& to, const Stand& at);
-  void ask_again(const Body& body);
+  void ask_again(Body& body, const Body& user, const Stand& end);
   void ask_for_room(std::span<Body> bodies);
   void end_giving_room(std::span<Body> bodies);
   /// Of one that gets another goal.

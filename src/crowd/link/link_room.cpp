@@ -41,12 +41,20 @@ void LinkMode::give_room(Body& body, const LinkUse& to, const Stand& at) {
   came_.push_back(body.slot);
 }
 
-// It stands aside, but nearer than another needs: a wider avatar has come since, or it found no
-// place, or does not get there.
-void LinkMode::ask_again(const Body& body) {
+// It stands aside, but nearer to an end than its user needs: a wider avatar has come since, or it
+// found no place, or does not get there.
+void LinkMode::ask_again(Body& body, const Body& user, const Stand& end) {
   LinkUse& use = uses_[body.slot];
   const bool is_due = (shared_.sub_step + body.slot) % kPlaceChecks == 0;
-  if (use.state == LinkUse::kGivesRoom && is_due) use.stands = 0;
+  if (!is_due || use.stands == 0) return;
+  if (use.state == LinkUse::kGivesRoom) use.stands = 0;
+  if (use.state != LinkUse::kWaits) return;
+  // One that waits chose its place for the widest avatar of that time. It keeps it unless it blocks
+  // the end (as in end_is_free) and the place, not only where it is now, is too near to a link.
+  const Stand place{body.local_target_x, body.local_target_z, body.y, body.level};
+  if (!blocks_end(body, user, end) || !is_beside_a_link(body, place)) return;
+  stop_standing(body, use);
+  stand_aside_again(body, use);
 }
 
 // The start is needed by one whose turn it is, the end before it can be its turn.
@@ -66,7 +74,7 @@ void LinkMode::ask_for_room(std::span<Body> bodies) {
         if (may_give_room(other)) {
           give_room(other, use, at);
         } else {
-          ask_again(other);
+          ask_again(other, body, at);
         }
         return false;
       });

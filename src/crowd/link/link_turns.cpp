@@ -254,6 +254,13 @@ bool LinkMode::is_crossed(std::span<const Body> bodies, const Body& body, const 
   return false;
 }
 
+bool LinkMode::blocks_end(const Body& other, const Body& body, const Stand& end) const {
+  const auto margin = std::min(widest_, static_cast<int32_t>(kEndMargin / shared_.unit));
+  return nearer_than(other.x - end.x, other.z - end.z,
+                     int64_t{body.radius} + other.radius + margin) &&
+         other.y < end.y + body.height && end.y < other.y + other.height;
+}
+
 // Of others that are on the link it does not matter where they are: they leave its end before.
 bool LinkMode::end_is_free(std::span<const Body> bodies, const Body& body,
                            const LinkUse& use) const {
@@ -262,14 +269,10 @@ bool LinkMode::end_is_free(std::span<const Body> bodies, const Body& body,
                                         world::in_tile(p.cell_z()))) {
     return false;
   }
-  const auto margin = std::min(widest_, static_cast<int32_t>(kEndMargin / shared_.unit));
   const bool is_occupied = near_.any_near(use.to.x, use.to.z, [&](uint32_t i) {
     const Body& other = bodies[i];
     const bool same_link = other.on_link && uses_[other.slot].link == use.link;
-    return !same_link && other.slot != body.slot &&
-           nearer_than(other.x - use.to.x, other.z - use.to.z,
-                       int64_t{body.radius} + other.radius + margin) &&
-           other.y < use.to.y + body.height && use.to.y < other.y + other.height;
+    return !same_link && other.slot != body.slot && blocks_end(other, body, use.to);
   });
   return !is_occupied && !is_obstructed(body, use.from, use.to) &&
          !is_crossed(bodies, body, use.from);

@@ -262,6 +262,45 @@ TEST(GroundFinder, ChangesAreUndoneWithoutATrace) {
   }
 }
 
+// Crates so small and so near to the point that four tiles share that they change one, two or four
+// of them: corners of the mesh there depend on the cells of all four.
+TEST(GroundFinder, FollowsChangesWhereFourTilesMeet) {
+  const World world = bake(worlds::flat(20), 0.1);
+  const WorldSummary& summary = world.summary();
+  const double tile = kTileCells * summary.cell;
+  const Vec3d corner{summary.origin.x + tile, 0, summary.origin.z + tile};
+  path::GroundFinder changed = live(world);
+  std::vector<std::pair<path::ChangeId, Prism>> active;
+  Path path, rebuilt_path;
+  uint64_t bent = 0;
+  for (uint64_t n = 0; n < 150; ++n) {
+    if (active.size() > 3 || (!active.empty() && random_below(5, n, 0, 3) == 0)) {
+      const size_t which = random_below(5, n, 1, active.size());
+      EXPECT_TRUE(changed.remove(active[which].first));
+      active.erase(active.begin() + static_cast<int64_t>(which));
+    } else {
+      const double x = corner.x + real(5, n, 2, -0.9, 0.9), z = corner.z + real(5, n, 3, -0.9, 0.9);
+      const Prism crate =
+          Prism::box({x, 0, z}, {x + real(5, n, 4, 0.05, 0.5), 1, z + real(5, n, 5, 0.05, 0.5)});
+      active.push_back({changed.add_obstacle({crate}), crate});
+    }
+    path::GroundFinder rebuilt = live(world);
+    for (const auto& [id, crate] : active) ASSERT_TRUE(rebuilt.add_obstacle({crate}));
+    for (uint64_t k = 0; k < 6; ++k) {
+      const double dx = real(7, n, 2 * k, -2.5, 2.5), dz = real(7, n, 2 * k + 1, -2.5, 2.5);
+      const Place from = world.find_place(0, {corner.x + dx, 0, corner.z + dz}, 0.5);
+      const Place to = world.find_place(0, {corner.x - dx, 0, corner.z - dz}, 0.5);
+      changed.find(from, to, path);
+      rebuilt.find(from, to, rebuilt_path);
+      ASSERT_EQ(path.end, rebuilt_path.end) << n;
+      EXPECT_EQ(path.length, rebuilt_path.length) << n;
+      ASSERT_EQ(path.points.size(), rebuilt_path.points.size()) << n;
+      bent += path.end == PathEnd::kReached && path.points.size() > 2 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(bent, 100u);
+}
+
 TEST(GroundFinder, DearGroundIsAvoidedAndClosedGroundNeverEntered) {
   const World world = bake(worlds::flat(12), 0.1);
   path::GroundFinder ground = live(world);

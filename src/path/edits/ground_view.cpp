@@ -22,6 +22,8 @@
 namespace throng::path {
 namespace {
 
+constexpr double kCornerCells = 2;  // by which a change is widened to find tiles across a corner
+
 // Of one that costs less than its length: the cost of a metre of the straight line; else 1.
 double link_factor(const GroundView::OffMeshLinkEnd& link) {
   const double length = distance_of(link.from, link.to);
@@ -250,38 +252,56 @@ bool GroundView::is_seen(int64_t key) const {
   return false;
 }
 
-// Tiles that are as they were without the change are kept, and what searches know of them.
+// Tiles that are as they were without the change are kept, and what searches know of them. All
+// levels that are rebuilt are dropped first: then only others are left whose borders count.
 void GroundView::forget(Change& change) {
+  touched_tiles_.clear();
   for (TileNear& near : change.tiles) {
     if (!is_seen(near.tile)) continue;
     if (!near.is_touched) {
       near.is_touched =
           touches_tile(change.solid, change.is_area, x_of(near.tile), z_of(near.tile));
     }
-    if (*near.is_touched) forget(near.tile);
+    if (*near.is_touched) touched_tiles_.push_back(near.tile);
+  }
+  if (touched_tiles_.empty()) return;
+  for (const int64_t tile : touched_tiles_) drop_tile(tile);
+  const WorldSummary& summary = world().summary;
+  const AvatarClass& avatar = summary.classes[static_cast<size_t>(config_.avatar_class)];
+  const SquareRange reach = tiles_near(world(), change.solid.prism.corners,
+                                       taking_reach(avatar) + kCornerCells * summary.cell);
+  for (const int64_t tile : touched_tiles_) drop_around(tile, reach);
+  ++version_;
+  if (corner_numbers_.size() > max_corners_) drop_unused_corners();
+}
+
+// The tile's levels are rebuilt when they are needed.
+void GroundView::drop_tile(int64_t key) {
+  const auto tile = world().tile_levels(x_of(key), z_of(key));
+  for (uint32_t i = tile.first; i < tile.last; ++i) {
+    if (levels_[i] == nullptr) continue;
+    drop(*levels_[i]);
+    levels_[i].reset();
   }
 }
 
-// The tile's levels are rebuilt; what touches it in those around it finds its portals again: a
-// corner of the mesh depends on all four cells that share its point.
-void GroundView::forget(int64_t key) {
+// What touches a rebuilt tile from beside finds its portals again: they lead to rectangles that get
+// other numbers. What touches it at a corner has no portal into it, but a corner of the mesh
+// depends on all four cells that share its point. So it counts only if the change can reach the
+// cell of the rebuilt tile there, and then `reach`, a cell wider, holds the tile across.
+void GroundView::drop_around(int64_t key, const SquareRange& reach) {
   const int32_t x = x_of(key), z = z_of(key);
   for (int32_t dz = -1; dz <= 1; ++dz) {
     for (int32_t dx = -1; dx <= 1; ++dx) {
+      const bool is_in_reach = x + dx >= reach.first_x && x + dx <= reach.last_x &&
+                               z + dz >= reach.first_z && z + dz <= reach.last_z;
+      if (dx != 0 && dz != 0 && !is_in_reach) continue;
       const auto tile = world().tile_levels(x + dx, z + dz);
       for (uint32_t i = tile.first; i < tile.last; ++i) {
-        if (levels_[i] == nullptr) continue;
-        if (dx != 0 || dz != 0) {
-          drop_border(*levels_[i], -dx, -dz);
-          continue;
-        }
-        drop(*levels_[i]);
-        levels_[i].reset();
+        if (levels_[i] != nullptr) drop_border(*levels_[i], -dx, -dz);
       }
     }
   }
-  ++version_;
-  if (corner_numbers_.size() > max_corners_) drop_unused_corners();
 }
 
 bool GroundView::touches(const Solid& solid, bool is_area) const {

@@ -13,6 +13,7 @@
 
 #include "core/access.h"
 #include "graph/ground_parts.h"
+#include "path/edits/blocked_cells.h"
 #include "path/edits/index_blocks.h"
 #include "path/edits/solid.h"
 #include "path/ground/cells.h"
@@ -200,7 +201,8 @@ class GroundView final : public PortalSource {
   [[nodiscard]] bool is_seen(int64_t tile) const;
   [[nodiscard]] bool has_made(uint8_t kind) const;
   void forget(Change& change);
-  void forget(int64_t tile);
+  void drop_tile(int64_t tile);
+  void drop_around(int64_t tile, const SquareRange& reach);
   void switch_link(const LevelLinkEnd& link, bool active);
   void find_min_link_factor();
   [[nodiscard]] std::array<uint8_t, 4096> kinds_of(const ViewLevel& level) const;
@@ -229,6 +231,7 @@ class GroundView final : public PortalSource {
   std::vector<RectState> new_states_;
   std::vector<FoundPortal> new_portals_;
   std::vector<bool> used_corners_;
+  std::vector<int64_t> touched_tiles_;
 
   std::vector<Change> changes_;
   std::unordered_map<int64_t, std::vector<ChangeId>> changes_of_tile_;  // in order; looked up only

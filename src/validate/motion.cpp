@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 #include <utility>
@@ -83,9 +84,7 @@ Result<std::vector<double>> flows_in_haste(double width, const std::vector<doubl
     const auto run = pass_door(door, config, result, context);
     if (!run) return run.error();
     const size_t left_behind = door.people - run->times.size();
-    std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), ", %.1f m, %.0f m/s", width, speed);
-    const std::string at = text.data();
+    const std::string at = fmt::format(", {:.1f} m, {:.0f} m/s", width, speed);
     flows.push_back(flow_rate(run->times) / width);
     result.measures.push_back({.name = "flow by width" + at,
                                .value = flows.back(),

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -118,11 +119,8 @@ Result<void> measure_passage(const Passage& passage, uint64_t seeds, const Valid
     all_there += *arrived == 2 * passage.each ? 1 : 0;
     share += static_cast<double>(*arrived) / static_cast<double>(2 * passage.each * seeds);
   }
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(),
-                "%d against %d, %.1f x %.0f m: ", static_cast<int>(passage.each),
-                static_cast<int>(passage.each), passage.width, passage.length);
-  const std::string at = text.data();
+  const std::string at = fmt::format("{0} against {0}, {1:.1f} x {2:.0f} m: ", passage.each,
+                                     passage.width, passage.length);
   result.measures.push_back({.name = at + "seeds with all there",
                              .value = all_there,
                              .unit = "of " + std::to_string(seeds),

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "validate/arrivals.h"
 #include "validate/door_crowd.h"
 #include "validate/statistics.h"
 #include "validate/tests.h"
@@ -53,9 +54,7 @@ Result<ValidationResult> before_door(const ValidationConfig& config, Context& co
   const DoorConfig door{.width = 0.9, .people = config.brief ? 60u : 150u};
   const uint64_t runs = config.brief ? 1 : 3;
   for (uint64_t k = 0; k < runs; ++k) {
-    ValidationConfig one = config;
-    one.seed = (config.seed - 1) * runs + 1 + k;
-    const auto run = pass_door(door, one, result, context);
+    const auto run = pass_door(door, config_of_run(config, runs, k), result, context);
     if (!run) return run.error();
     const std::string of = "run " + std::to_string(k + 1);
     result.measures.push_back({.name = "left behind, " + of,

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "validate/arrivals.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 // An avatar that has arrived is removed after the step, so none that is there keeps others from
@@ -15,11 +17,15 @@ Result<Arrivals> walk_trips(const World& world, const Trips& trips, double limit
   if (!crowd) return crowd.error();
   const auto ids = crowd->add(trips.starts, std::vector<double>(trips.starts.size(), 0), context);
   if (!ids) return ids.error();
-  Arrivals run;
   for (size_t n = 0; n < ids->size(); ++n) {
-    if (!(*ids)[n]) continue;
-    if (crowd->set_goal((*ids)[n], trips.goals[n])) ++run.placed;
+    if ((*ids)[n] && crowd->set_goal((*ids)[n], trips.goals[n])) continue;
+    return Error{Errc::kBadConfig,
+                 fmt::format("validate: no room for person {} of {}, from ({}, "
+                             "{}) to ({}, {})",
+                             n + 1, ids->size(), trips.starts[n].x, trips.starts[n].z,
+                             trips.goals[n].x, trips.goals[n].z)};
   }
+  Arrivals run;
   while (crowd->size() > 0 && crowd->time() < limit) {
     crowd->step();
     if (context.cancel) return Error{Errc::kCancelled, "cancelled"};

@@ -19,14 +19,13 @@ struct Trips {
 
 /// How many arrived.
 struct Arrivals {
-  size_t placed = 0;  ///< People with room at their start, whose body can stand at their goal.
   size_t arrived = 0;
   double last = 0;  ///< When the last of these arrived. [s]
 };
 
 /// Lets people with the desired speed of their class walk until all have arrived, or `limit` [s]
 /// has gone by. Each leaves where it has arrived. Adds the faults to `result`. Fails as Crowd::add
-/// does, and with kCancelled.
+/// does, with kBadConfig (no room at a start, or no avatar can stand at a goal), and kCancelled.
 Result<Arrivals> walk_trips(const World& world, const Trips& trips, double limit,
                             const ValidationConfig& config, ValidationResult& result,
                             Context& context);

@@ -161,7 +161,7 @@ Json run(const Options& o) {
   if (o.scene == "corridor") return run_play(corridor(o.bodies / 2, o.area, o.seed), o);
   if (o.scene == "crossing") return run_play(crossing(o.bodies / 4, o.area, o.seed), o);
   if (!o.scene.ends_with(".xml")) return run_world(o);
-  const auto play = steer_bench_case(o.scene);
+  const auto play = test::load_steer_bench(o.scene, o.seed);
   return play ? run_play(*play, o) : fail(play.error());
 }
 

@@ -2,19 +2,15 @@
 // SPDX-License-Identifier: MIT
 #include "scenes.h"
 
-#include <algorithm>
 #include <cmath>
-#include <functional>
-#include <pugixml.hpp>
 
 #include "core/random.h"
 
-// The scenes as boxes, quads and lists of walkers, and a reader of SteerBench files.
+// The scenes as quads and lists of walkers.
 namespace throng::bench {
 namespace {
 
 constexpr double kSpeed = 1.34;
-constexpr double kWall = 2;  // [m] high
 
 void add_floor(Scene& scene, double x0, double z0, double x1, double z1) {
   scene.add_quad({x0, 0, z0}, {x0, 0, z1}, {x1, 0, z1}, {x1, 0, z0});
@@ -76,51 +72,6 @@ Play crossing(uint32_t arm, double area, uint64_t seed) {
     };
     play.walkers.push_back({turned(from), turned(to), kSpeed});
   }
-  return play;
-}
-
-Result<Play> steer_bench_case(const std::string& path) {
-  pugi::xml_document document;
-  const pugi::xml_parse_result parsed = document.load_file(path.c_str());
-  if (!parsed) return Error{Errc::kBadFile, path + ": " + parsed.description()};
-  const pugi::xml_node root = document.child("SteerBenchTestCase");
-  if (!root) return Error{Errc::kBadFile, path + ": holds no SteerBenchTestCase"};
-  std::string missing;
-  const auto number = [&](const pugi::xml_node& node, const char* name) {
-    const pugi::xml_node child = node.child(name);
-    if (!child && missing.empty()) missing = std::string(node.name()) + " without " + name;
-    return child.text().as_double();
-  };
-  const auto point = [&](const pugi::xml_node& node) {
-    return Vec3d{number(node, "x"), 0, number(node, "z")};
-  };
-  for (const char* name : {"agentRegion", "obstacleRegion", "circleObstacle", "orientedObstacle"}) {
-    if (root.child(name)) {
-      return Error{Errc::kBadFile, path + ": " + name + " is not read; give agents and obstacles"};
-    }
-  }
-  Play play;
-  const pugi::xml_node header = root.child("header"), bounds = header.child("worldBounds");
-  play.name = header.child("name").text().as_string();
-  add_floor(play.scene, number(bounds, "xmin"), number(bounds, "zmin"), number(bounds, "xmax"),
-            number(bounds, "zmax"));
-  for (const pugi::xml_node& box : root.children("obstacle")) {
-    play.scene.add_box(
-        {number(box, "xmin"), 0, number(box, "zmin")},
-        {number(box, "xmax"), std::max(kWall, number(box, "ymax")), number(box, "zmax")});
-  }
-  double radius = 0;
-  for (const pugi::xml_node& agent : root.children("agent")) {
-    const pugi::xml_node start = agent.child("initialConditions");
-    const pugi::xml_node target = agent.child("goalSequence").child("seekStaticTarget");
-    radius = std::max(radius, number(start, "radius"));
-    play.walkers.push_back({point(start.child("position")), point(target.child("targetLocation")),
-                            number(target, "desiredSpeed")});
-  }
-  if (play.walkers.empty() && missing.empty()) missing = "no agent";
-  if (!missing.empty()) return Error{Errc::kBadFile, path + ": " + missing};
-  play.avatar.name = "agent";
-  play.avatar.radius = radius;
   return play;
 }
 

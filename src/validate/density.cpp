@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -125,9 +126,7 @@ Result<DiagramPoint> walk_around(const Walk& walk, double density, const Validat
 }
 
 std::string at_density(const char* what, double density) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%s at %.2f /m2", what, density);
-  return text.data();
+  return fmt::format("{} at {:.2f} /m2", what, density);
 }
 
 ValidationChart diagram(const std::string& name, const std::string& title,

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "validate/door_crowd.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 
@@ -111,9 +111,7 @@ Result<DoorRun> pass_door(const DoorConfig& door, const ValidationConfig& config
 }
 
 std::string at_width(const char* what, double width) {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%s, %.1f m", what, width);
-  return text.data();
+  return fmt::format("{}, {:.1f} m", what, width);
 }
 
 }  // namespace throng::validate

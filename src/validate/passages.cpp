@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
 #include "core/random.h"
-#include "validate/plane_crowd.h"
+#include "validate/arrivals.h"
 #include "validate/tests.h"
 
 // People that go through a narrow corridor between two rooms in opposite directions.
@@ -22,36 +23,14 @@ constexpr uint64_t kPlaces = 20;    // where people start, in each room
 struct Passage {
   double width, length;  // [m]
   uint64_t each;         // people in each room, at most kPlaces
+
+  [[nodiscard]] TwoRooms rooms() const { return {.side = kRoom, .width = width, .length = length}; }
 };
 
-PlaneConfig passage_plane(const Passage& passage) {
-  const double low = (kRoom - passage.width) / 2, high = (kRoom + passage.width) / 2;
-  const double end = kRoom + passage.length, all = end + kRoom;
-  PlaneConfig plane;
-  plane.ground = {.outer = {{0, 0},
-                            {kRoom, 0},
-                            {kRoom, low},
-                            {end, low},
-                            {end, 0},
-                            {all, 0},
-                            {all, kRoom},
-                            {end, kRoom},
-                            {end, high},
-                            {kRoom, high},
-                            {kRoom, kRoom},
-                            {0, kRoom}},
-                  .holes = {}};
-  return plane;
-}
-
-// Where people start and where they go, those of the first room before those of the second.
-struct Trips {
-  std::vector<Point2> starts, goals;
-};
-
+// Those of the first room before those of the second.
 Trips trips_of(const Passage& passage, uint64_t seed) {
   Trips trips;
-  const double all = 2 * kRoom + passage.length;
+  const double all = passage.rooms().all();
   for (uint64_t n = 0; n < 2 * passage.each; ++n) {
     const bool is_second = n >= passage.each;
     const uint64_t shift = random_below(seed, 1, is_second ? 1 : 0, kPlaces);
@@ -80,49 +59,31 @@ double longest_path(const Passage& passage, const Trips& trips) {
   return longest;
 }
 
-// Number of people that arrive in time. Each leaves where it has arrived.
-Result<size_t> arrivals(const World& world, const Passage& passage, const ValidationConfig& config,
-                        ValidationResult& result, Context& context) {
-  auto crowd = PlaneCrowd::create(world, Routing::kPaths, config);
-  if (!crowd) return crowd.error();
+Result<Arrivals> walk_through(const World& world, const Passage& passage,
+                              const ValidationConfig& config, ValidationResult& result,
+                              Context& context) {
   const Trips trips = trips_of(passage, config.seed);
-  const auto ids = crowd->add(trips.starts, std::vector<double>(trips.starts.size(), 0), context);
-  if (!ids) return ids.error();
-  for (size_t n = 0; n < ids->size(); ++n) crowd->set_goal((*ids)[n], trips.goals[n]);
   const double speed = AvatarClass{}.speed;
   const double limit =
       passage.each == 1 ? (3 * longest_path(passage, trips) + passage.length) / speed : kCrowdTime;
-  size_t arrived = 0;
-  while (crowd->size() > 0 && crowd->time() < limit) {
-    crowd->step();
-    if (context.cancel) return Error{Errc::kCancelled, "cancelled"};
-    const std::vector<AvatarId> leaving(crowd->arrived().begin(), crowd->arrived().end());
-    arrived += leaving.size();
-    crowd->remove(leaving);
-  }
-  crowd->report(result);
-  return arrived;
+  return walk_trips(world, trips, limit, config, result, context);
 }
 
 Result<void> measure_passage(const Passage& passage, uint64_t seeds, const ValidationConfig& config,
                              ValidationResult& result, Context& context) {
-  const auto world = bake_plane(passage_plane(passage), AvatarClass{}, config, context);
+  const auto world = bake_plane(two_rooms_plane(passage.rooms()), AvatarClass{}, config, context);
   if (!world) return world.error();
   double all_there = 0, share = 0;
   for (uint64_t k = 0; k < seeds; ++k) {
-    ValidationConfig one = config;
-    one.seed = (config.seed - 1) * seeds + 1 + k;
+    ValidationConfig one = config_of_run(config, seeds, k);
     one.workers = 1;  // Few avatars: threads would cost more than they save.
-    const auto arrived = arrivals(*world, passage, one, result, context);
-    if (!arrived) return arrived.error();
-    all_there += *arrived == 2 * passage.each ? 1 : 0;
-    share += static_cast<double>(*arrived) / static_cast<double>(2 * passage.each * seeds);
+    const auto run = walk_through(*world, passage, one, result, context);
+    if (!run) return run.error();
+    all_there += run->arrived == 2 * passage.each ? 1 : 0;
+    share += static_cast<double>(run->arrived) / static_cast<double>(2 * passage.each * seeds);
   }
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(),
-                "%d against %d, %.1f x %.0f m: ", static_cast<int>(passage.each),
-                static_cast<int>(passage.each), passage.width, passage.length);
-  const std::string at = text.data();
+  const std::string at = fmt::format("{0} against {0}, {1:.1f} x {2:.0f} m: ", passage.each,
+                                     passage.width, passage.length);
   result.measures.push_back({.name = at + "seeds with all there",
                              .value = all_there,
                              .unit = "of " + std::to_string(seeds),

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <string>
 #include <vector>
@@ -102,9 +103,7 @@ Result<ValidationResult> rest(const ValidationConfig& config, Context& context) 
     for (const double dt : {0.02, 0.1, 0.2}) {
       const auto found = come_to_rest(*world, waiting, dt, config, result, context);
       if (!found) return found.error();
-      std::array<char, 64> text{};
-      std::snprintf(text.data(), text.size(), "%s, dt %.2f s: ", waiting.name, dt);
-      const std::string at = text.data();
+      const std::string at = fmt::format("{}, dt {:.2f} s: ", waiting.name, dt);
       result.measures.push_back({.name = at + "mean speed",
                                  .value = found->mean_speed,
                                  .unit = "m/s",

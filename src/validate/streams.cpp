@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "validate/streams.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <utility>
 #include <vector>
@@ -158,9 +159,7 @@ Result<ValidationResult> lanes(const ValidationConfig& config, Context& context)
     const auto found = walk_lanes(density, config, result, context);
     if (!found) return found.error();
     const size_t seconds = found->order.size(), last = seconds / 4;
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.1f /m2", density);
-    const std::string at = text.data();
+    const std::string at = fmt::format("{:.1f} /m2", density);
     result.measures.push_back(
         {.name = "order in the first 5 s, " + at, .value = mean_of(found->order, 0, 5)});
     ValidationMeasure last_order{.name = "order in the last quarter, " + at,

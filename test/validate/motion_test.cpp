@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
+#include "throng/picture.h"
 #include "throng/scenario.h"
 
 namespace throng {
@@ -106,6 +108,83 @@ TEST(Motion, PassagesCountTheSeedsWithAllThere) {
     best = std::max(best, arrived.value);
   }
   EXPECT_GT(best, 0);
+}
+
+// The number of those that arrived, of `people`, and the time, if it was all of them.
+void expect_arrivals(const ValidationResult& result, const std::string& at, double people,
+                     double shortest, double longest) {
+  const double arrived = value_of(result, "arrived, " + at);
+  const double time = value_of(result, "time until all arrived, " + at);
+  EXPECT_GT(arrived, 0) << at;
+  EXPECT_LE(arrived, people) << at;
+  EXPECT_EQ(std::isnan(time), arrived < people) << at;
+  if (!std::isnan(time)) {
+    EXPECT_GT(time, shortest) << at;
+    EXPECT_LE(time, longest + 0.11) << at;
+  }
+  for (const ValidationMeasure& m : result.measures) {
+    if (m.name != "arrived, " + at) continue;
+    EXPECT_EQ(m.low, people) << at;
+    EXPECT_EQ(m.passed(), arrived == people) << at;
+  }
+}
+
+// None is faster than its desired speed of 1.34 m/s, and arrives half a metre early at most. Groups
+// of 20 begin in four rows: straight on it is 49.4 m past the pillar and 63.4 m over the
+// square. To the next street of the roundabout it is more than 43.4 m.
+TEST(Motion, FourStreamsAreCountedWhereTheyArrive) {
+  const std::pair<const char*, double> paths[] = {
+      {"motion.pillar", 49.4}, {"motion.square", 63.4}, {"motion.roundabout", 43.4}};
+  for (const auto& [name, path] : paths) {
+    const ValidationResult result = run_brief(name, 1);
+    expect_no_faults(result);
+    ASSERT_EQ(result.measures.size(), 2U) << name;
+    expect_arrivals(result, "run 1", 80, (path - 0.5) / 1.34, 400);
+  }
+}
+
+TEST(Motion, CounterflowIsCountedInAllThreePlaces) {
+  const ValidationResult result = run_brief("motion.counterflow", 1);
+  expect_no_faults(result);
+  ASSERT_EQ(result.measures.size(), 7U);
+  expect_arrivals(result, "door of 0.8 m, run 1", 10, 0, 300);
+  // Five rows of 1.3 m, and 20 m between the groups.
+  expect_arrivals(result, "corridor of 4 m", 40, (5 * 1.3 + 20 - 0.5) / 1.34, 1000);
+  // Two people a second from each side for 10 s; the last come after 9.5 s, and walk 25.5 m.
+  expect_arrivals(result, "corridor of 2.4 m, fed", 40, 9.5 + (25.5 - 0.5) / 1.34, 10 + 60);
+  EXPECT_LE(value_of(result, "max waiting for room to enter, corridor of 2.4 m"), 40);
+}
+
+TEST(Motion, MazesAreCountedWithAllThere) {
+  const ValidationResult result = run_brief("motion.mazes", 1);
+  expect_no_faults(result);
+  const double mazes = value_of(result, "mazes with all there");
+  const double arrived = value_of(result, "arrived");
+  EXPECT_GE(mazes, 0);
+  EXPECT_LE(mazes, 3);
+  EXPECT_GT(arrived, 0);
+  EXPECT_GE(arrived, 100 * mazes / 3 - 1e-9);
+  EXPECT_EQ(mazes == 3, arrived > 100 - 1e-9);
+  EXPECT_EQ(mazes == 3, std::isnan(value_of(result, "seed of the first other maze")));
+  EXPECT_EQ(result.passed(), mazes == 3);
+}
+
+TEST(Motion, FlowOfTheDefaultBodyIsMeasuredFromSlowToFast) {
+  const ValidationResult result = run_brief("motion.flow", 1);
+  expect_no_faults(result);
+  const double slow = value_of(result, "flow by width, 1.0 m, 0.5 m/s");
+  const double walk = value_of(result, "flow by width, 1.0 m, 1.34 m/s");
+  EXPECT_GT(slow, 0);
+  EXPECT_DOUBLE_EQ(value_of(result, "flow at the speed of a walk by flow at 0.5 m/s"), walk / slow);
+  int limited = 0;
+  for (const ValidationMeasure& m : result.measures) limited += m.high == 2.6 ? 1 : 0;
+  EXPECT_EQ(limited, 4);  // three speeds at 1 m, and a wide door
+  for (const char* at :
+       {", 1.0 m, 0.5 m/s", ", 1.0 m, 1.34 m/s", ", 1.0 m, 5 m/s", ", 2.5 m, 5 m/s"}) {
+    const double left_behind = value_of(result, std::string("left behind") + at);
+    EXPECT_EQ(std::isnan(value_of(result, std::string("time to empty") + at)), left_behind > 0);
+  }
+  for (const ValidationChart& chart : result.charts) EXPECT_TRUE(draw_chart(chart.chart));
 }
 
 }  // namespace

@@ -54,7 +54,8 @@ TEST(Validation, AnUnknownTestIsRefusedWithTheListOfTests) {
 TEST(Validation, StopsWhenCancelled) {
   Context context;
   context.cancel = true;
-  for (const char* name : {"bottleneck", "motion.rest", "motion.passages"}) {
+  for (const char* name : {"bottleneck", "motion.rest", "motion.passages", "motion.pillar",
+                           "motion.counterflow", "motion.mazes"}) {
     const auto result = run_validation(name, {.brief = true}, context);
     ASSERT_FALSE(result) << name;
     EXPECT_EQ(result.error().code, Errc::kCancelled) << name;

@@ -92,8 +92,8 @@ TEST(StepLength, EveryLengthIsRefusedWithASentenceOrWalked) {
   EXPECT_EQ(walked, 4);
 }
 
-constexpr double kSteps[] = {0.001, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1};  // [s]
-constexpr double kSpeeds[] = {0.05, 0.1, 0.5, 1.3, 1.34, 5, 20};          // [m/s]
+constexpr double kStepLengths[] = {0.001, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1};  // [s]
+constexpr double kWalkSpeeds[] = {0.05, 0.1, 0.5, 1.3, 1.34, 5, 20};            // [m/s]
 
 // About 60 m, or as far as 2000 steps lead.
 int steps_for(double dt, double speed) {
@@ -103,8 +103,8 @@ int steps_for(double dt, double speed) {
 TEST(StepLength, AvatarsMoveAsFarAsTheirSpeedRequires) {
   for (const double cell : {0.1, 0.25, 0.5, 1.0}) {
     const World world = open_ground(cell);
-    for (const double dt : kSteps) {
-      for (const double speed : kSpeeds) {
+    for (const double dt : kStepLengths) {
+      for (const double speed : kWalkSpeeds) {
         SCOPED_TRACE(testing::Message() << "cell " << cell << " dt " << dt << " speed " << speed);
         auto [crowd, id] = walker(world, dt, speed);
         const int steps = steps_for(dt, speed);
@@ -164,7 +164,7 @@ TEST(StepLength, SpeedsAndRadiiThatStepsCannotBeDividedForAreRefusedByName) {
 TEST(StepLength, AnExternallyControlledAvatarIsWithinAUnitOfWhereItsVelocitiesLead) {
   for (const double cell : {0.1, 1.0}) {
     const World world = open_ground(cell);
-    for (const double dt : kSteps) {
+    for (const double dt : kStepLengths) {
       for (const double speed : {0.05, 0.5, 1.3, 3.16, 4.9}) {
         for (const double turn : {0.0, 0.3}) {  // by each step
           SCOPED_TRACE(testing::Message() << "cell " << cell << " dt " << dt << " speed " << speed

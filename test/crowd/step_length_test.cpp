@@ -224,6 +224,34 @@ TEST(StepLength, AnExternallyControlledAvatarIsNeverFasterThanItWasGiven) {
   }
 }
 
+// Moves of few units, each rounded up or down, of avatars that press against each other.
+TEST(StepLength, ShortMovesNeverOverlap) {
+  const World world = open_ground(1);
+  Crowd crowd = made(world, {.dt = 0.001, .workers = 2});
+  std::vector<AvatarSpawn> spawns;
+  for (int i = 0; i < 64; ++i) {
+    const Vec3d at{48.0 + 0.51 * (i % 8), 0, 48.0 + 0.51 * (i / 8)};
+    spawns.push_back({.place = world.find_place(0, at, 1), .speed = 0.4 + 0.05 * i});
+  }
+  Context context;
+  const auto ids = crowd.add(spawns, context);
+  ASSERT_TRUE(ids) << ids.error().message;
+  crowd.set_goals(*ids, std::vector<Place>(64, world.find_place(0, {50, 0, 50}, 1)));
+  // A quarter is externally controlled, towards the same place.
+  for (size_t i = 0; i < 64; i += 4) {
+    const Vec3d at = crowd.read((*ids)[i])->position, to{50 - at.x, 0, 50 - at.z};
+    crowd.set_velocities({&(*ids)[i], 1}, {&to, 1});
+  }
+  uint64_t moved = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const CrowdReport report = crowd.step();
+    moved += report.avatars - report.stood;
+    const CrowdCheck found = crowd.check();
+    ASSERT_EQ(found.overlaps + found.wall_entries, 0u) << i;
+  }
+  EXPECT_GT(moved, 200u);
+}
+
 TEST(StepLength, WanderersWhoseStepsAreTooShortToBeExactAreRefused) {
   const World world = open_ground(0.25);
   const auto slow = Wanderers::create(world, {.avatars = 1, .dt = 0.1, .speed = 1e-3});

@@ -115,7 +115,10 @@ struct CrowdTuning {
 
 /// Settings for Crowd::create.
 struct CrowdConfig {
-  double dt = 0.1;  ///< Length of a step. [s, 0.001 to 1]
+  /// Length of a step. An avatar without others or walls near goes its speed times that, to 1 %
+  /// over many steps, whatever the length. A step in which the fastest avatar would go farther than
+  /// the smallest radius is divided, for all. [s, 0.001 to 1]
+  double dt = 0.1;
   uint64_t seed = 1;
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
   Routing routing = Routing::kPaths;
@@ -169,7 +172,8 @@ struct AvatarSpawn {
   int32_t avatar_class = 0;
   /// Of the body, 0: the class's. Its distance to walls follows the class's radius. [m]
   double radius = 0;
-  double speed = 0;  ///< Desired speed, also its maximum. 0: the class's. [m/s]
+  /// Desired speed, also its maximum. 0: the class's. [m/s, to 100, and to 1000 radii a step]
+  double speed = 0;
   /// For avatars that walk over nodes, in place of `place`. Nowhere: the place of the nodes that is
   /// nearest to `place`.
   NodePlace on_nodes = {};
@@ -294,9 +298,13 @@ class THRONG_API Crowd {
 
   /// Sets preferred velocities in place of goals: the avatars are externally controlled until they
   /// get a goal. A velocity longer than the avatar's speed is cut to it; one that is not finite, or
-  /// above 1e150, counts as 0. Avatars still avoid each other and never overlap. An avatar that
-  /// flies takes off when Y is above 0, and lands when Y is below 0 and there is ground. An avatar
-  /// on nodes follows their surface. [m/s; Y: only for avatars that fly or walk over nodes]
+  /// above 1e150, counts as 0. Avatars still avoid each other and never overlap. Whatever it
+  /// avoids, an avatar is never faster than its given velocity, except on an off-mesh link, where
+  /// it moves on as others do, and over an edge of nodes, where it keeps a quarter of its speed.
+  /// One that walks or flies and avoids nothing is within 1 unit (1/2048 of a cell, 1 mm of height)
+  /// of where its velocities lead. An avatar that flies takes off when Y is above 0, and lands when
+  /// Y is below 0 and there is ground. An avatar on nodes follows their surface. [m/s; Y: only for
+  /// avatars that fly or walk over nodes]
   void set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d> velocities);
 
   /// Sets the views. Without views, as at the beginning, all avatars are simulated in full detail.

@@ -223,6 +223,9 @@ struct SimulationReport {
   uint64_t goal_unreachable = 0;  ///< Now: avatars that stand because no path leads to their goals.
   uint64_t outside = 0;           ///< Now: due to enter, but without free space yet.
   uint64_t in_links = 0;          ///< Now: in lifts and on escalators, so not in the crowd.
+  /// In this step: places that were tried for avatars that were to enter. A full source tries few,
+  /// however many wait there.
+  uint64_t entry_tries = 0;
 };
 
 /// A trip: one avatar from entering to leaving.

@@ -112,12 +112,11 @@ void Simulation::State::run_links() {
         boarding_queue.members.pop_front();
         PendingSpawn out;
         out.avatar = p;
-        out.due = time() + link.seconds;
         out.link = static_cast<int32_t>(n);
         remove_from_crowd(p);
         out.avatar.id = {};
         out.avatar.area = -1;
-        in_transit.push_back(out);
+        in_transit.push(n, time() + link.seconds, out);
       }
     }
   }

@@ -143,6 +143,8 @@ Result<void> Simulation::State::prepare(Context& context) {
   for (const ScenarioArea& area : scenario.areas) doors.emplace_back(door_flow(area));
   lines.resize(scenario.queues.size());
   for (const Link& link : scenario.links) boarding.push_back({{}, link.interval});
+  pending.resize(scenario.sources.size());
+  in_transit.resize(scenario.links.size());
   for (const DensityMap& map : scenario.densities) densities.emplace_back(map);
 
   for (const Journey& journey : scenario.journeys) {
@@ -240,6 +242,7 @@ Result<SimulationReport> Simulation::step() {
   s.update_obstacles();
   s.queue_spawns();
   s.run_links();
+  s.entry_tries = 0;
   if (auto ok = s.spawn_due(s.pending, context); !ok) return ok.error();
   if (auto ok = s.spawn_due(s.in_transit, context); !ok) return ok.error();
   s.end_waits();
@@ -263,6 +266,7 @@ Result<SimulationReport> Simulation::step() {
   report.left = s.left;
   report.outside = s.pending.size();
   report.in_links = s.in_transit.size();
+  report.entry_tries = s.entry_tries;
   for (const ScenarioAvatar& p : s.avatars) {
     if (p.id && p.doing == Doing::kGoalUnreachable) ++report.goal_unreachable;
   }
@@ -300,8 +304,8 @@ uint64_t Simulation::state_hash() const {
   for (const ScenarioAvatar& p : s.avatars) {
     if (p.id) add(p);
   }
-  for (const PendingSpawn& c : s.pending) add(c.avatar);
-  for (const PendingSpawn& c : s.in_transit) add(c.avatar);
+  s.pending.for_each([&](const PendingSpawn& c) { add(c.avatar); });
+  s.in_transit.for_each([&](const PendingSpawn& c) { add(c.avatar); });
   for (const WaitingLine& line : s.lines) {
     words.insert(words.end(), line.members.begin(), line.members.end());
     for (const double until : line.served) words.push_back(std::bit_cast<uint64_t>(until));

@@ -12,6 +12,7 @@
 
 #include "scenario/density_draw.h"
 #include "scenario/door_queue.h"
+#include "scenario/entry_queue.h"
 #include "scenario/spawn_times.h"
 #include "throng/scenario.h"
 
@@ -66,7 +67,6 @@ struct BoardingQueue {
 // An avatar that waits to enter the crowd, from a source or out of a link.
 struct PendingSpawn {
   ScenarioAvatar avatar;
-  double due = 0;       // [s]
   int32_t source = -1;  // or -1 and
   int32_t link = -1;
   uint64_t companion = UINT64_MAX;  // number of the avatar beside which it enters
@@ -97,8 +97,9 @@ struct Simulation::State {
 
   std::vector<scenario::SpawnTimes> spawn_times;  // by source
   std::vector<uint64_t> spawn_counts;             // by source: avatars so far
-  std::deque<PendingSpawn> pending;               // out of sources, in order of due times
-  std::deque<PendingSpawn> in_transit;            // out of links, in order of exit
+  scenario::EntryQueue<PendingSpawn> pending;     // out of sources
+  scenario::EntryQueue<PendingSpawn> in_transit;  // out of links
+  uint64_t entry_tries = 0;                       // SimulationReport::entry_tries
   std::vector<Trip> trips;                        // by number
   std::vector<uint32_t> slot_of;                  // by number; kNoSlot: not in the crowd
   std::vector<ScenarioAvatar> avatars;            // by slot
@@ -146,7 +147,14 @@ struct Simulation::State {
 
   // spawning.cpp
   void queue_spawns();
-  Result<void> spawn_due(std::deque<PendingSpawn>& queue, Context& context);
+  // What a round of tries has done.
+  struct EntryTries {
+    size_t placed = 0;   // at places where they might stand
+    size_t entered = 0;  // of these
+  };
+  Result<void> spawn_due(scenario::EntryQueue<PendingSpawn>& queue, Context& context);
+  Result<EntryTries> try_entries(scenario::EntryQueue<PendingSpawn>& queue, Context& context);
+  [[nodiscard]] AvatarSpawn spawn_of(const ScenarioAvatar& p, const Place& place) const;
   Place choose_place(PendingSpawn& one);
   Place place_in_rows(const Source& source, uint64_t nth, ScenarioAvatar& p);
   Place random_place(std::span<const int32_t> areas, int32_t density, ScenarioAvatar& p);

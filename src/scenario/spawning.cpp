@@ -7,12 +7,13 @@
 #include "scenario/simulation_state.h"
 
 // How avatars enter the crowd: from sources and out of links. A random place is drawn for each; the
-// crowd refuses those that overlap, which are drawn again. Time: kMaxRounds draws each a step at
-// most.
+// crowd refuses those that overlap, which are drawn again. Time: by those that enter, see
+// EntryQueue; where fewer than EntryQueue::kMinTries wait, kMaxRounds draws each a step at most.
 namespace throng {
 namespace {
 
 constexpr int kMaxRounds = 32;        // of drawing places in a step
+constexpr size_t kFirstBatch = 1024;  // avatars of a round that are tried at once
 constexpr int kMaxPixelDraws = 16;    // drawn to find one with a floor
 constexpr double kGroupRadius = 0.7;  // [m] Members of a group enter this near to the first,
 constexpr double kGroupHeight = 1.5;  // [m] and at most this much above or below.
@@ -43,7 +44,6 @@ void Simulation::State::queue_spawns() {
       for (uint64_t k = 0; k < members; ++k) {
         PendingSpawn one;
         ScenarioAvatar& p = one.avatar;
-        one.due = time();
         one.source = static_cast<int32_t>(n);
         one.companion = first;
         one.nth = spawn_counts[n]++;
@@ -55,7 +55,7 @@ void Simulation::State::queue_spawns() {
         p.group = group;
         if (group >= 0) groups[static_cast<size_t>(group)].push_back(p.number);
         if (k == 0) first = p.number;
-        pending.push_back(one);
+        pending.push(n, time(), one);
       }
     }
   }
@@ -147,45 +147,64 @@ Place Simulation::State::choose_place(PendingSpawn& one) {
   return random_place(source.areas, source.density, p);
 }
 
+AvatarSpawn Simulation::State::spawn_of(const ScenarioAvatar& p, const Place& place) const {
+  double speed = p.speed, radius = 0;
+  if (p.profile >= 0) {
+    const Profile& profile = scenario.profiles[static_cast<size_t>(p.profile)];
+    if (speed == 0) speed = draw(profile.speed, scenario.seed, p.number, 1);
+    radius = draw(profile.radius, scenario.seed, p.number, 2);
+  }
+  return {place, class_of(p), radius, speed};
+}
+
+// Tries all that are due once, but those of sources that are full.
+Result<Simulation::State::EntryTries> Simulation::State::try_entries(
+    scenario::EntryQueue<PendingSpawn>& queue, Context& context) {
+  queue.begin_round();
+  EntryTries tries;
+  // In batches that grow, because each looks at all bodies of the crowd.
+  for (size_t max_count = kFirstBatch;; max_count *= 2) {
+    const std::vector<PendingSpawn*> batch = queue.next(max_count);
+    if (batch.empty()) return tries;
+    entry_tries += batch.size();
+    std::vector<AvatarSpawn> spawns;
+    std::vector<size_t> batch_index;
+    for (size_t i = 0; i < batch.size(); ++i) {
+      const Place place = choose_place(*batch[i]);
+      if (!place) continue;
+      spawns.push_back(spawn_of(batch[i]->avatar, place));
+      batch_index.push_back(i);
+    }
+    std::vector<bool> is_in(batch.size(), false);
+    if (!spawns.empty()) {
+      const auto ids = crowd.add(spawns, context);
+      if (!ids) return ids.error();
+      for (size_t k = 0; k < ids->size(); ++k) {
+        if (!(*ids)[k]) continue;
+        PendingSpawn& one = *batch[batch_index[k]];
+        const AvatarClass& kind = kinds[static_cast<size_t>(spawns[k].avatar_class)];
+        one.avatar.speed = spawns[k].speed > 0 ? spawns[k].speed : kind.speed;
+        is_in[batch_index[k]] = true;
+        ++tries.entered;
+        enter(one, (*ids)[k]);
+      }
+    }
+    tries.placed += spawns.size();
+    queue.settle(is_in);
+  }
+}
+
 // Adds avatars that find room to the crowd, in order; the others try again in the next step.
-Result<void> Simulation::State::spawn_due(std::deque<PendingSpawn>& queue, Context& context) {
+Result<void> Simulation::State::spawn_due(scenario::EntryQueue<PendingSpawn>& queue,
+                                          Context& context) {
+  queue.begin_step(time());
   size_t failed_rounds = 0;
   for (int round = 0; round < kMaxRounds; ++round) {
-    std::vector<AvatarSpawn> spawns;
-    std::vector<size_t> queue_index;
-    for (size_t i = 0; i < queue.size(); ++i) {
-      PendingSpawn& one = queue[i];
-      if (one.due > time()) continue;
-      const Place place = choose_place(one);
-      if (!place) continue;
-      ScenarioAvatar& p = one.avatar;
-      double speed = p.speed, radius = 0;
-      if (p.profile >= 0) {
-        const Profile& profile = scenario.profiles[static_cast<size_t>(p.profile)];
-        if (speed == 0) speed = draw(profile.speed, scenario.seed, p.number, 1);
-        radius = draw(profile.radius, scenario.seed, p.number, 2);
-      }
-      spawns.push_back({place, class_of(p), radius, speed});
-      queue_index.push_back(i);
-    }
-    if (spawns.empty()) break;
-    const auto ids = crowd.add(spawns, context);
-    if (!ids) return ids.error();
-    std::vector<bool> is_in(queue.size(), false);
-    size_t entered_now = 0;
-    for (size_t k = 0; k < ids->size(); ++k) {
-      if (!(*ids)[k]) continue;
-      PendingSpawn& one = queue[queue_index[k]];
-      const AvatarClass& kind = kinds[static_cast<size_t>(spawns[k].avatar_class)];
-      one.avatar.speed = spawns[k].speed > 0 ? spawns[k].speed : kind.speed;
-      is_in[queue_index[k]] = true;
-      ++entered_now;
-      enter(one, (*ids)[k]);
-    }
-    size_t i = 0;
-    std::erase_if(queue, [&](const PendingSpawn&) { return is_in[i++]; });
-    failed_rounds = entered_now == 0 ? failed_rounds + 1 : 0;
-    if (failed_rounds == 4 || entered_now == spawns.size()) break;
+    const auto tries = try_entries(queue, context);
+    if (!tries) return tries.error();
+    if (tries->placed == 0) break;
+    failed_rounds = tries->entered == 0 ? failed_rounds + 1 : 0;
+    if (failed_rounds == 4 || tries->entered == tries->placed) break;
   }
   return {};
 }

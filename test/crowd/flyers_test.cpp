@@ -403,6 +403,43 @@ TEST(Flyers, AnExternallyControlledOneTakesOffFliesAndLands) {
   EXPECT_NEAR(down.position.y, 0, 0.01);
 }
 
+// Also in steps in which it rises by less than a millimetre.
+TEST(Flyers, AnExternallyControlledOneIsWhereItsVelocityLeads) {
+  const Stage stage(open_air(30, 15));
+  for (const double dt : {0.001, 0.01, 0.1}) {
+    Crowd crowd = made(stage.world(), {.dt = dt, .workers = 1});
+    const AvatarId id = added(crowd, air_place({5, 5, 15}), {.avatar_class = kFlyer});
+    const Vec3d from = crowd.read(id)->position, velocity{0.9, 0.07, 0.31};
+    crowd.set_velocities({&id, 1}, {&velocity, 1});
+    const int steps = std::min(2000, static_cast<int>(10 / dt));
+    for (int step = 1; step <= steps; ++step) {
+      crowd.step();
+      const Vec3d off = crowd.read(id)->position - from - velocity * (step * dt);
+      ASSERT_LE(std::hypot(off.x, off.z), 0.1 / 2048) << "dt " << dt << " step " << step;
+      ASSERT_LE(std::fabs(off.y), 1e-3) << "dt " << dt << " step " << step;
+    }
+  }
+}
+
+TEST(Flyers, FlyAsFarAsTheirSpeedRequiresInShortSteps) {
+  const Stage stage(open_air(30, 15));
+  for (const double dt : {0.001, 0.01, 0.1}) {
+    for (const double speed : {0.05, 0.5, 1.3}) {
+      Crowd crowd = made(stage.world(), {.dt = dt, .workers = 1});
+      const AvatarId id =
+          added(crowd, air_place({4, 4, 15}), {.avatar_class = kFlyer, .speed = speed});
+      const Place goal = air_place({26, 10, 17});
+      crowd.set_goals({&id, 1}, {&goal, 1});
+      const Vec3d from = crowd.read(id)->position;
+      const int steps = std::min(4000, static_cast<int>(15 / (speed * dt)));
+      for (int step = 0; step < steps; ++step) crowd.step();
+      const double whole = speed * dt * steps;
+      EXPECT_NEAR(length(crowd.read(id)->position - from), whole, std::max(0.01 * whole, 2e-3))
+          << "dt " << dt << " speed " << speed;
+    }
+  }
+}
+
 TEST(Flyers, KeepOutOfObstaclesThatWaitForThem) {
   Stage stage(open_air(40, 20));
   Edits edits;

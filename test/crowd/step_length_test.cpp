@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -9,10 +10,12 @@
 #include <vector>
 
 #include "baked.h"
+#include "crowds.h"
 #include "throng/crowd.h"
 #include "throng/papers.h"
 #include "throng/recording.h"
 #include "throng/scenario.h"
+#include "worlds.h"
 
 namespace throng {
 namespace {
@@ -89,22 +92,164 @@ TEST(StepLength, EveryLengthIsRefusedWithASentenceOrWalked) {
   EXPECT_EQ(walked, 4);
 }
 
-TEST(StepLength, SlowAvatarsInShortStepsMoveAsFarAsTheirSpeedRequires) {
+constexpr double kStepLengths[] = {0.001, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1};  // [s]
+constexpr double kWalkSpeeds[] = {0.05, 0.1, 0.5, 1.3, 1.34, 5, 20};            // [m/s]
+
+// About 60 m, or as far as 2000 steps lead.
+int steps_for(double dt, double speed) {
+  return static_cast<int>(std::clamp(60 / (speed * dt), 3.0, 2000.0));
+}
+
+TEST(StepLength, AvatarsMoveAsFarAsTheirSpeedRequires) {
   for (const double cell : {0.1, 0.25, 0.5, 1.0}) {
     const World world = open_ground(cell);
-    for (const double dt : {0.1, 0.01, 0.001}) {
-      for (const double speed : {0.1, 0.5, 1.34}) {
+    for (const double dt : kStepLengths) {
+      for (const double speed : kWalkSpeeds) {
         SCOPED_TRACE(testing::Message() << "cell " << cell << " dt " << dt << " speed " << speed);
         auto [crowd, id] = walker(world, dt, speed);
-        const int steps = dt < 0.01 ? 4000 : static_cast<int>(10 / dt);
+        const int steps = steps_for(dt, speed);
         const Vec3d from = crowd.read(id)->position;
         for (int i = 0; i < steps; ++i) crowd.step();
         const Vec3d to = crowd.read(id)->position;
         const double whole = steps * dt * speed;
-        EXPECT_NEAR(std::hypot(to.x - from.x, to.z - from.z), whole, 0.015 * whole + 0.02);
+        // Of the shortest of these walks 1 % is less than what a move is rounded by.
+        const double rounded = 3 * cell / 2048;
+        EXPECT_NEAR(std::hypot(to.x - from.x, to.z - from.z), whole,
+                    std::max(0.01 * whole, rounded));
       }
     }
   }
+}
+
+// A wall behind the goal slows down fast avatars no more than others: they stop as quickly.
+TEST(StepLength, FastAvatarsReachGoalsBesideWalls) {
+  const World world = test::bake(worlds::flat(20), 0.1);
+  for (const double dt : {0.05, 0.1, 0.5, 1.0}) {
+    for (const double speed : {2.5, 5.0, 20.0, 50.0, 99.0}) {
+      SCOPED_TRACE(testing::Message() << "dt " << dt << " speed " << speed);
+      Crowd crowd = made(world, {.dt = dt, .workers = 1});
+      const AvatarId id = added(crowd, world.find_place(0, {3, 0, 9}, 1), {.speed = speed});
+      const Place goal = world.find_place(0, {19.6, 0, 10}, 1);
+      ASSERT_TRUE(goal);
+      crowd.set_goals({&id, 1}, {&goal, 1});
+      // The last steps, before the wall, are slower.
+      const auto steps = static_cast<int>(std::ceil((17 / speed + 1) / dt));
+      bool arrives = false;
+      for (int i = 0; i < steps && !arrives; ++i) {
+        crowd.step();
+        arrives = !crowd.arrived().empty();
+      }
+      EXPECT_TRUE(arrives);
+      EXPECT_EQ(crowd.check().wall_entries, 0u);
+    }
+  }
+}
+
+TEST(StepLength, SpeedsAndRadiiThatStepsCannotBeDividedForAreRefusedByName) {
+  const World world = open_ground(0.25);
+  Crowd crowd = made(world, {.dt = 1, .workers = 1});
+  Context context;
+  const auto add = [&](double radius, double speed) {
+    const AvatarSpawn spawn{
+        .place = world.find_place(0, {50, 0, 50}, 1), .radius = radius, .speed = speed};
+    const auto ids = crowd.add({&spawn, 1}, context);
+    return ids ? std::string() : ids.error().message;
+  };
+  EXPECT_NE(add(0.015, 20).find("take shorter steps"), std::string::npos);
+  EXPECT_NE(add(0, 101).find("speed must be"), std::string::npos);
+  EXPECT_EQ(add(0.02, 20), "");
+}
+
+// Externally controlled avatars, which could walk faster, on open ground.
+TEST(StepLength, AnExternallyControlledAvatarIsWithinAUnitOfWhereItsVelocitiesLead) {
+  for (const double cell : {0.1, 1.0}) {
+    const World world = open_ground(cell);
+    for (const double dt : kStepLengths) {
+      for (const double speed : {0.05, 0.5, 1.3, 3.16, 4.9}) {
+        for (const double turn : {0.0, 0.3}) {  // by each step
+          SCOPED_TRACE(testing::Message() << "cell " << cell << " dt " << dt << " speed " << speed
+                                          << " turn " << turn);
+          Crowd crowd = made(world, {.dt = dt, .workers = 1});
+          const AvatarId id = added(crowd, world.find_place(0, {40.3, 0, 50.2}, 1), {.speed = 5});
+          const Vec3d from = crowd.read(id)->position;
+          const int steps = std::min(2000, static_cast<int>(30 / (speed * dt)));
+          double x = 0, z = 0;  // where they lead
+          for (int i = 0; i < steps; ++i) {
+            const double angle = 0.35 + turn * i;
+            const Vec3d velocity{speed * std::cos(angle), 0, speed * std::sin(angle)};
+            crowd.set_velocities({&id, 1}, {&velocity, 1});
+            crowd.step();
+            x += velocity.x * dt;
+            z += velocity.z * dt;
+            const Vec3d at = crowd.read(id)->position;
+            ASSERT_LE(std::hypot(at.x - from.x - x, at.z - from.z - z), cell / 2048) << i;
+            if (turn == 0) {
+              ASSERT_LE(std::hypot(at.x - from.x, at.z - from.z),
+                        speed * dt * (i + 1) + cell / 2048);
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+// Whatever it avoids, and whichever model steers it.
+TEST(StepLength, AnExternallyControlledAvatarIsNeverFasterThanItWasGiven) {
+  const World world = test::bake(worlds::flat(16), 0.1);
+  constexpr double kUnit = 0.1 / 2048;
+  for (const SteeringModel model :
+       {SteeringModel::kSampled, SteeringModel::kCurvilinear, SteeringModel::kSocialForce}) {
+    int turned = 0;  // moves that are not the given ones
+    for (const double speed : {0.0, 0.4, 3.16}) {
+      SCOPED_TRACE(testing::Message() << name_of(model) << " speed " << speed);
+      Crowd crowd = made(world, {.workers = 1, .model = model});
+      const AvatarId id = added(crowd, world.find_place(0, {2, 0, 8}, 1), {.speed = 5});
+      const auto others = scattered(crowd, 60);
+      crowd.set_goals(others, std::vector<Place>(60, world.find_place(0, {2, 0, 8}, 1)));
+      Vec3d before = crowd.read(id)->position;
+      for (int i = 0; i < 100; ++i) {
+        const Vec3d velocity{speed * (i < 50 ? 0.8 : -0.8), 0, speed * 0.6};
+        crowd.set_velocities({&id, 1}, {&velocity, 1});
+        crowd.step();
+        const Vec3d at = crowd.read(id)->position;
+        // And what the moves of the sub-steps are rounded by.
+        ASSERT_LE(std::hypot(at.x - before.x, at.z - before.z), speed * 0.1 + 3 * kUnit) << i;
+        const double off = (at.x - before.x) * velocity.z - (at.z - before.z) * velocity.x;
+        turned += std::fabs(off) > 0.1 * speed * speed * 0.1 ? 1 : 0;
+        before = at;
+      }
+    }
+    EXPECT_GT(turned, 0) << name_of(model) << ": it met none";
+  }
+}
+
+// Moves of few units, each rounded up or down, of avatars that press against each other.
+TEST(StepLength, ShortMovesNeverOverlap) {
+  const World world = open_ground(1);
+  Crowd crowd = made(world, {.dt = 0.001, .workers = 2});
+  std::vector<AvatarSpawn> spawns;
+  for (int i = 0; i < 64; ++i) {
+    const Vec3d at{48.0 + 0.51 * (i % 8), 0, 48.0 + 0.51 * (i / 8)};
+    spawns.push_back({.place = world.find_place(0, at, 1), .speed = 0.4 + 0.05 * i});
+  }
+  Context context;
+  const auto ids = crowd.add(spawns, context);
+  ASSERT_TRUE(ids) << ids.error().message;
+  crowd.set_goals(*ids, std::vector<Place>(64, world.find_place(0, {50, 0, 50}, 1)));
+  // A quarter is externally controlled, towards the same place.
+  for (size_t i = 0; i < 64; i += 4) {
+    const Vec3d at = crowd.read((*ids)[i])->position, to{50 - at.x, 0, 50 - at.z};
+    crowd.set_velocities({&(*ids)[i], 1}, {&to, 1});
+  }
+  uint64_t moved = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const CrowdReport report = crowd.step();
+    moved += report.avatars - report.stood;
+    const CrowdCheck found = crowd.check();
+    ASSERT_EQ(found.overlaps + found.wall_entries, 0u) << i;
+  }
+  EXPECT_GT(moved, 200u);
 }
 
 TEST(StepLength, WanderersWhoseStepsAreTooShortToBeExactAreRefused) {

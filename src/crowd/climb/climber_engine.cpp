@@ -40,6 +40,13 @@ Space space_of(Vec3d v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+// The fastest that it may go: if it is externally controlled, no faster than it was given.
+float speed_limit(const Body& body, const Climb& climb) {
+  if (!body.has(Body::kExternal)) return body.speed;
+  return std::min(body.speed,
+                  steer::size_of({climb.external[0], climb.external[1], climb.external[2]}));
+}
+
 }  // namespace
 
 ClimberEngine::ClimberEngine(const MoveConfig& config, size_t classes)
@@ -146,11 +153,7 @@ void ClimberEngine::preferred(Body& body, Climb& climb) const {
   Space desired;
   const bool goes = body.has(Body::kHasGoal) || body.has(Body::kExternal) || body.leaves;
   if (goes && climb.count > 0) {
-    float speed = body.speed;
-    if (body.has(Body::kExternal)) {
-      speed = std::min(speed,
-                       steer::size_of({climb.external[0], climb.external[1], climb.external[2]}));
-    }
+    const float speed = speed_limit(body, climb);
     const Space displacement = space_of(grounds_[body.avatar_class]->path_ahead(climb));
     if (speed > 0) {
       desired = steer::preferred_towards(displacement, speed, config_.units.dt, 0, 0,
@@ -205,7 +208,8 @@ void ClimberEngine::sense(uint32_t c, Worker& worker, steer::AirSituation& situa
   nearest.query_neighbours(grid_, body, near_metres_, units.unit, query);
   situation.velocity = {body.velocity.x, climb.rise, body.velocity.z};
   situation.preferred = {body.preferred.x, climb.preferred_up, body.preferred.z};
-  situation.fastest = body.speed;
+  constexpr float kMinLimit = 1e-3f;  // [m/s] Costs are divided by it.
+  situation.fastest = std::min(body.speed, std::max(speed_limit(body, climb), kMinLimit));
   situation.height = static_cast<float>(body.height) * 1e-3f;
   situation.has_walls = false;
   situation.size = nearest.size();
@@ -246,7 +250,7 @@ void ClimberEngine::find_candidates(const Body& body, const Climb& climb,
                                     Contest& contest) const {
   const ClimberGround& ground = *grounds_[body.avatar_class];
   const float dt = config_.units.dt;
-  const double max_travel = double{body.speed} * dt;
+  const double max_travel = double{speed_limit(body, climb)} * dt;
   contest.candidate_count = 0;
   const auto add = [&](const std::optional<ClimberGround::Step>& step, bool on_path) {
     if (!step || contest.candidate_count == kCandidates) return;
@@ -263,7 +267,9 @@ void ClimberEngine::find_candidates(const Body& body, const Climb& climb,
                              : max_travel;
   if (climb.at.in_air != 0) {
     const bool turning = climb.count > 0 && climb.at.next < climb.count;
-    const double along = body.has(Body::kExternal) ? std::max(desired, max_travel / 4) : max_travel;
+    // Over an edge or a hole it can only continue.
+    const double along =
+        body.has(Body::kExternal) ? std::max(desired, double{body.speed} * dt / 4) : max_travel;
     for (const double part : {1.0, 0.5, 0.25}) {
       if (turning) add(ground.advance(climb, part * along), true);
     }

@@ -20,7 +20,7 @@ struct Flight {
   uint32_t goal_level = kInAir;  // of the world, if the goal is on the ground
   /// The next waypoints of the path; when they are used up, the rest is searched for.
   std::array<AirPosition, kPoints> points;
-  int32_t local_target_y = 0;        // beside Body::local_target_x [mm]
+  int32_t local_target_y = 0;        // beside Body::local_target_x [mm, or CarriedMove::rest]
   float rise = 0, preferred_up = 0;  // beside Body::velocity and Body::preferred [m/s]
   /// While `in_link`: feet on the ground, and where the air begins straight above. Between the two
   /// the body moves up and down only (docs/design/005-air.md). [mm]

@@ -138,7 +138,9 @@ void FlyMode::set_target(Body& body) {
 }
 
 void FlyMode::set_velocity(Body& body, const Vec3d& velocity) {
-  flights_[body.slot].preferred_up = static_cast<float>(control(body, velocity).y);
+  Flight& flight = flights_[body.slot];
+  if (!body.has(Body::kExternal)) flight.local_target_y = 0;  // CarriedMove::rest
+  flight.preferred_up = static_cast<float>(control(body, velocity).y);
 }
 
 void FlyMode::step(std::span<Body> bodies, EngineCounts& counts, EngineTimes& times) {

@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
+#include "crowd/mode/given_moves.h"
 
 // The step of flyers: docs/design/012-flyers.md. Walkers have moved clear of where all flyers are;
 // then flyers move, clear of where all bodies are. Linear in the flyers and their neighbours.
@@ -39,6 +40,17 @@ bool overlaps_with(const Body& a, const AirPosition& at_a, const Body& b, const 
 }
 
 AirPosition position_of(const Body& body) { return {body.x, body.z, body.y}; }
+
+Space given_to(const Body& body, const Flight& flight) {
+  return {body.preferred.x, flight.preferred_up, body.preferred.z};
+}
+
+// The fastest that it may fly, as speed_limit() of walkers.
+float speed_limit(const Body& body, const Flight& flight) {
+  constexpr float kMinLimit = 1e-3f;  // [m/s]
+  if (!body.has(Body::kExternal)) return body.speed;
+  return std::min(body.speed, std::max(steer::size_of(given_to(body, flight)), kMinLimit));
+}
 
 }  // namespace
 
@@ -100,6 +112,7 @@ void FlyerEngine::list_exits(const Body& body, std::vector<const ObstacleGrid::I
 
 void FlyerEngine::step(uint64_t step, std::span<Body> bodies, std::span<Flight> flights,
                        Before before, EngineCounts& counts, EngineTimes& times) {
+  step_ = step;
   arrived_.clear();
   landed_.clear();
   bodies_ = bodies;
@@ -189,7 +202,7 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
   const uint32_t i = rounds_.movers[f];
   const Body& body = bodies_[i];
   const StepUnits& units = config_.units;
-  const int32_t stride = units.stride(body.speed);
+  const int32_t stride = stride_of(body);
   const auto rise_of = [&](float speed) {
     return static_cast<int32_t>(speed * units.dt * 1000) + 2;
   };
@@ -197,7 +210,7 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
   NearestInAir nearest(sight_metres_);
   // Bodies farther away than that and their radius cannot be touched; the exact test follows.
   const float own_range =
-      static_cast<float>(body.radius + 2 * units.stride(fastest_) + 1) * units.unit * 1.0001f;
+      static_cast<float>(body.radius + 2 * units.stride(fastest_) + 3) * units.unit * 1.0001f;
   const auto query = [&](const FlyerGrid::Entry& entry, bool is_near) {
     const float dx = static_cast<float>(entry.x - body.x) * units.unit;
     const float dz = static_cast<float>(entry.z - body.z) * units.unit;
@@ -212,7 +225,7 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
     if (may_matter) {
       const bool flies = other.flies();
       const int64_t radii = int64_t{body.radius} + other.radius;
-      const int64_t touched = radii + stride + (flies ? units.stride(other.speed) : 0);
+      const int64_t touched = radii + stride + (flies ? stride_of(other) : 0);
       if (apart <= rise + (flies ? rise_of(other.speed) : 0) &&
           nearer_than(entry.x - body.x, entry.z - body.z, touched)) {
         worker.others.push_back(entry.body);
@@ -229,7 +242,7 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
   const Flight& flight = flights_[body.slot];
   situation.velocity = {body.velocity.x, flight.rise, body.velocity.z};
   situation.preferred = {body.preferred.x, flight.preferred_up, body.preferred.z};
-  situation.fastest = body.speed;
+  situation.fastest = speed_limit(body, flight);
   situation.height = static_cast<float>(body.height) * 1e-3f;
   situation.size = nearest.size();
   for (size_t n = 0; n < nearest.size(); ++n) {
@@ -320,14 +333,52 @@ bool FlyerEngine::query_walls(const Body& body, steer::AirSituation& situation) 
   return false;
 }
 
-void FlyerEngine::find_candidates(const steer::AirSituation& situation, bool open,
-                                  Contest& contest) const {
+// No move of it in the plan is longer. [units]
+int32_t FlyerEngine::stride_of(const Body& body) const {
+  return config_.units.stride(body.speed) + (body.has(Body::kExternal) ? 1 : 0);
+}
+
+// How far it rises in a step, in whole millimetres: short rises are rounded up or down in turn.
+int32_t FlyerEngine::rise_of(const Body& body, float velocity) const {
+  constexpr float kMinRise = 64;  // [mm] Shorter ones are short.
+  const StepUnits millimetres{1e-3f, config_.units.dt};
+  const uint64_t n = step_ + body.slot;
+  if (body.has(Body::kExternal)) return millimetres.displacement_within(velocity, n);
+  const float by_speed = millimetres.dt * 1000;
+  if (body.speed * by_speed < kMinRise) return millimetres.small_displacement(velocity, n);
+  return static_cast<int32_t>(std::lrint(velocity * by_speed));
+}
+
+// A velocity as a move of whole units and millimetres.
+AirPosition FlyerEngine::displacement_of(const Body& body, Space velocity) const {
   const StepUnits& units = config_.units;
+  const uint64_t n = step_ + body.slot;
+  if (body.has(Body::kExternal)) {
+    const Flight& flight = flights_[body.slot];
+    const Space given = given_to(body, flight);
+    const StepUnits millimetres{1e-3f, units.dt};
+    if (velocity.x == given.x && velocity.y == given.y && velocity.z == given.z) {
+      const GivenMove move(body, units.units_by_speed());
+      const double rise = double{given.y} * millimetres.units_by_speed();
+      return {move.x.units, move.z.units, carry(rise, flight.local_target_y).units};
+    }
+    const float size = steer::size_of(velocity), max_speed = steer::size_of(given);
+    const Space cut = size > max_speed ? (max_speed / size) * velocity : velocity;
+    return {units.displacement_within(cut.x, n), units.displacement_within(cut.z, n),
+            millimetres.displacement_within(cut.y, n)};
+  }
+  const int32_t up = rise_of(body, velocity.y);
+  if (!units.is_short(body.speed)) {
+    return {units.displacement(velocity.x), units.displacement(velocity.z), up};
+  }
+  return {units.small_displacement(velocity.x, n), units.small_displacement(velocity.z, n), up};
+}
+
+void FlyerEngine::find_candidates(const Body& body, const steer::AirSituation& situation, bool open,
+                                  Contest& contest) const {
   contest.candidate_count = 0;
   const auto add = [&](Space v) {
-    contest.displacement[contest.candidate_count++] = {
-        units.displacement(v.x), units.displacement(v.z),
-        static_cast<int32_t>(std::lrint(v.y * (units.dt * 1000)))};
+    contest.displacement[contest.candidate_count++] = displacement_of(body, v);
   };
   Space best = situation.preferred;
   if (open) {
@@ -365,7 +416,8 @@ void FlyerEngine::decide(uint32_t f, Worker& worker) {
     flight.link_high = ground_air_link->high;
     flight.link_level = ground_air_link->level;
     body.detour_angle = 0;
-    const float down = -std::min(body.speed, kLinkSpeed);
+    const float down = body.has(Body::kExternal) ? std::max(flight.preferred_up, -kLinkSpeed)
+                                                 : -std::min(body.speed, kLinkSpeed);
     situation.preferred = {0,
                            std::max(down, static_cast<float>(ground_air_link->low - body.y) *
                                               1e-3f / config_.units.dt),
@@ -375,12 +427,11 @@ void FlyerEngine::decide(uint32_t f, Worker& worker) {
     // Up and down only: it can choose nothing but its speed.
     contest.candidate_count = 0;
     for (const float part : {1.0f, 0.5f, 0.25f}) {
-      const auto up = static_cast<int32_t>(
-          std::lrint(part * situation.preferred.y * (config_.units.dt * 1000)));
+      const int32_t up = rise_of(body, part * situation.preferred.y);
       contest.displacement[contest.candidate_count++] = {0, 0, up};
     }
   } else {
-    find_candidates(situation, query_walls(body, situation), contest);
+    find_candidates(body, situation, query_walls(body, situation), contest);
   }
   if (contest.first != contest.last) {
     ++worker.counts.contested;
@@ -449,6 +500,20 @@ bool FlyerEngine::propose(const Contest& contest, const Worker& owner) {
   return false;
 }
 
+// As keep_rest() of walkers, also of the rise.
+void FlyerEngine::keep_rest(Body& body, Flight& flight, const AirPosition& to) const {
+  if (!body.has(Body::kExternal) || flight.in_link != 0) return;
+  const StepUnits& units = config_.units;
+  const double rise = double{flight.preferred_up} * StepUnits{1e-3f, units.dt}.units_by_speed();
+  const CarriedMove up = carry(rise, flight.local_target_y);
+  const GivenMove given(body, units.units_by_speed());
+  const AirPosition move{to.x - body.x, to.z - body.z, to.y - body.y};
+  if (move != AirPosition{given.x.units, given.z.units, up.units}) return;
+  body.local_target_x = given.x.rest;
+  body.local_target_z = given.z.rest;
+  flight.local_target_y = up.rest;
+}
+
 void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
   const StepUnits& units = config_.units;
   Body& body = bodies_[rounds_.movers[f]];
@@ -458,6 +523,7 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
       units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
   const Space displacement{level.x, static_cast<float>(flight.local_target_y - body.y) * 1e-3f,
                            level.z};
+  if (move.state == Move::kDecided) keep_rest(body, flight, move.place);
   const bool moves = move.state == Move::kDecided && move.place != position_of(body);
   if (moves) {
     body.velocity = {units.velocity(move.place.x - body.x), units.velocity(move.place.z - body.z)};

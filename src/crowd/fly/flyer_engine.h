@@ -79,16 +79,22 @@ class FlyerEngine {
   bool query_walls(const Body& body, steer::AirSituation& situation) const;
   [[nodiscard]] bool gives_precedence(const Body& body, const Flight& flight, const Body& other,
                                       const Flight& of_other) const;
-  void find_candidates(const steer::AirSituation& situation, bool open, Contest& contest) const;
+  [[nodiscard]] int32_t stride_of(const Body& body) const;
+  [[nodiscard]] int32_t rise_of(const Body& body, float velocity) const;
+  [[nodiscard]] AirPosition displacement_of(const Body& body, steer::Space velocity) const;
+  void find_candidates(const Body& body, const steer::AirSituation& situation, bool open,
+                       Contest& contest) const;
   [[nodiscard]] bool wants_down(const Body& body, const Flight& flight) const;
   [[nodiscard]] bool try_place(const Body& body, const AirPosition& displacement,
                                AirPosition& place) const;
   [[nodiscard]] bool is_clear(const Contest& contest, const Worker& owner,
                               const AirPosition& place) const;
   bool propose(const Contest& contest, const Worker& owner);
+  void keep_rest(Body& body, Flight& flight, const AirPosition& to) const;
   void settle(uint32_t flyer, EngineCounts& counts);
 
   MoveConfig config_;
+  uint64_t step_ = 0;  // the current one
   struct OfClass {
     const FlyerAir* air = nullptr;
     double radius = 0;  // [m]

@@ -45,7 +45,8 @@ struct Body {
   uint32_t level = 0;    // of the world
   steer::Plane velocity, preferred;
   int32_t local_target_x = 0,
-          local_target_z = 0;  // where it heads to in a straight line [units]
+          local_target_z = 0;  // where it heads to in a straight line [units]; of an externally
+                               // controlled one: CarriedMove::rest
   float detour_angle = 0;      // of steer::DeadlockAvoidance
   float speed = 1;             // desired speed, and the maximum [m/s]
   int32_t radius = 0;          // [units]

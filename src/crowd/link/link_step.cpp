@@ -183,6 +183,7 @@ void LinkMode::land(Body& body, LinkUse& use) const {
   body.clear(Body::kLast);
   body.local_target_x = body.x;
   body.local_target_z = body.z;
+  if (body.has(Body::kExternal)) forget_rest(body);
   // An obstacle that closes there lets it out.
   const world::GroundPoint at = body.point();
   if (!shared_.ground_of(body).is_legal(body.level, world::in_tile(at.cell_x()),

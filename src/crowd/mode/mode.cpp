@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "crowd/mode/given_moves.h"
+
 // What most modes do alike.
 namespace throng::crowd {
 
@@ -30,6 +32,7 @@ Vec3d Mode::control(Body& body, const Vec3d& velocity) {
   double size = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
   if (!std::isfinite(size)) size = INFINITY;
   const double part = size > body.speed ? body.speed / size : 1;
+  if (!body.has(Body::kExternal)) forget_rest(body);
   body.flags = (body.flags & Body::kMovedElsewhere) | Body::kExternal;
   const Vec3d cut = part > 0 ? Vec3d{v.x * part, v.y * part, v.z * part} : Vec3d{};
   body.preferred = {static_cast<float>(cut.x), static_cast<float>(cut.z)};

@@ -289,9 +289,9 @@ Plane CrowdEngine::if_blocked(Plane displacement, const steer::Situation& situat
                                        : displacement;
 }
 
-// A distance that is free over the whole query range counts as endless.
-float CrowdEngine::metres(float displacement, float query_range) const {
-  return displacement < query_range ? displacement * config_.units.unit
+// As it counts for a body. A distance that is free over the whole query range counts as endless.
+float CrowdEngine::wall_distance(const Body& body, float displacement, float query_range) const {
+  return displacement < query_range ? displacement * config_.units.unit * wall_scale(body)
                                     : std::numeric_limits<float>::infinity();
 }
 
@@ -302,8 +302,8 @@ void CrowdEngine::query_wall_ahead(const Body& body, steer::Situation& situation
   situation.has_walls = !ground.is_open_around(body.level, body.point(), cells_of(query_range));
   if (!situation.has_walls) return;
   const Plane ahead = steer::ahead_of(situation.preferred);
-  situation.free_distance[0] =
-      metres(ground.free_distance(body.level, body.point(), ahead, query_range), query_range);
+  situation.free_distance[0] = wall_distance(
+      body, ground.free_distance(body.level, body.point(), ahead, query_range), query_range);
 }
 
 // The distances to walls in all directions. Only for bodies whose preferred velocity is not open.
@@ -322,12 +322,12 @@ void CrowdEngine::query_walls(const Body& body, steer::Situation& situation) con
     case StrideGround::Around::kWalls:
       find_free_distances(window, fan, query_range, situation.free_distance);
       for (float& displacement : situation.free_distance)
-        displacement = metres(displacement, query_range);
+        displacement = wall_distance(body, displacement, query_range);
       break;
     case StrideGround::Around::kSteps:
       for (size_t k = 1; k < steer::kDirections; ++k) {
-        situation.free_distance[k] = metres(
-            ground.free_distance(body.level, body.point(), fan[k], query_range), query_range);
+        situation.free_distance[k] = wall_distance(
+            body, ground.free_distance(body.level, body.point(), fan[k], query_range), query_range);
       }
   }
 }
@@ -622,6 +622,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       const bool is_alone = b.state == Body::kFree || b.state == Body::kEnclosed;
       const bool may_move = b.state == Body::kFree || b.state == Body::kDecided;
       const bool moves = may_move && (place.x != b.x || place.z != b.z);
+      if (may_move) keep_rest(b, place.x, place.z, units.units_by_speed());
       if (moves) {
         b.velocity = {units.velocity(place.x - b.x), units.velocity(place.z - b.z)};
         b.x = place.x;

@@ -15,6 +15,7 @@
 #include "crowd/ground/body.h"
 #include "crowd/ground/stride_ground.h"
 #include "crowd/mode/engine_counts.h"
+#include "crowd/mode/given_moves.h"
 #include "crowd/walk/move_config.h"
 #include "crowd/walk/neighbour_grid.h"
 #include "crowd/walk/step_units.h"
@@ -147,7 +148,8 @@ class CrowdEngine {
   }
   // No move of it in this step is longer. [units]
   [[nodiscard]] int32_t stride_of(const Body& body) const {
-    return body.steps == 0 ? 0 : units_of(body).stride(body.speed);
+    if (body.steps == 0) return 0;
+    return units_of(body).stride(body.speed) + (body.has(Body::kExternal) ? 1 : 0);
   }
   // A body that takes several steps at once relies on conflict resolution alone. One in low detail
   // that takes a single step is steered in full: without that, it would block others so often that
@@ -187,22 +189,42 @@ class CrowdEngine {
   bool choose_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
   [[nodiscard]] steer::Plane if_blocked(steer::Plane displacement,
                                         const steer::Situation& situation) const;
-  [[nodiscard]] float metres(float displacement, float query_range) const;
+  [[nodiscard]] float wall_distance(const Body& body, float displacement, float query_range) const;
   void query_wall_ahead(const Body& body, steer::Situation& situation) const;
   void query_walls(const Body& body, steer::Situation& situation) const;
+  // Walls count by the time until they are reached, and a body that comes too near slows down to
+  // 0.118 s of its speed before one. Faster bodies than this would not reach a goal beside a wall
+  // to 0.3 m, and in a small room not move at all. They stop as well as others do, within a step:
+  // to them walls are as near as to a body of this speed. [m/s]
+  static constexpr float kMaxWallSpeed = 2.5f;
+  [[nodiscard]] static float wall_scale(const Body& body) {
+    return std::max(1.0f, speed_limit(body) / kMaxWallSpeed);
+  }
   [[nodiscard]] float wall_range(const Body& body) const {  // [units]
-    return body.speed * config_.steering.wall_horizon / config_.units.unit;
+    return std::min(speed_limit(body), kMaxWallSpeed) * config_.steering.wall_horizon /
+           config_.units.unit;
   }
   void find_candidates(const Body& body, const steer::Situation& situation, bool open,
                        Displacements& candidates);
   // Moves are whole units. A body whose moves are of few units decides in each step, and its moves
   // are rounded up or down in turn: else it would be too slow, or stand.
   [[nodiscard]] bool has_short_moves(const Body& body) const {
-    constexpr float kMinStepUnits = 128;  // [units]
+    return units_of(body).is_short(body.speed);
+  }
+  // One that is externally controlled is never moved farther than it was given.
+  [[nodiscard]] Displacement given_displacement(const Body& body, steer::Plane velocity) const {
     const StepUnits units = units_of(body);
-    return body.speed * (units.dt / units.unit) < kMinStepUnits;
+    if (velocity.x == body.preferred.x && velocity.z == body.preferred.z) {
+      const GivenMove given(body, units.units_by_speed());
+      return {static_cast<int16_t>(given.x.units), static_cast<int16_t>(given.z.units)};
+    }
+    const steer::Plane cut = cut_to(velocity, size_of(body.preferred));
+    const uint64_t n = step_ + body.slot;
+    return {static_cast<int16_t>(units.displacement_within(cut.x, n)),
+            static_cast<int16_t>(units.displacement_within(cut.z, n))};
   }
   [[nodiscard]] Displacement displacement_of(const Body& body, steer::Plane velocity) const {
+    if (body.has(Body::kExternal)) return given_displacement(body, velocity);
     const StepUnits units = units_of(body);
     if (has_short_moves(body)) {
       const uint64_t n = step_ + body.slot;

@@ -35,7 +35,7 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
       .preferred = body.preferred,
       .to_target = config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z),
       .stops = body.has(Body::kLast) && body.target == 0,
-      .fastest = body.speed,
+      .fastest = speed_limit(body),
       .radius = static_cast<float>(body.radius) * config_.units.unit,
       .slot = body.slot,
       .others = {others.data(), count}};
@@ -55,7 +55,7 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
         static_cast<size_t>(std::min_element(free.begin(), free.end()) - free.begin());
     view.has_wall =
         situation.has_walls && free[nearest_wall] < std::numeric_limits<float>::infinity();
-    const float far = free[nearest_wall] + view.radius;
+    const float far = free[nearest_wall] / wall_scale(body) + view.radius;
     if (view.has_wall) view.wall = {fan[nearest_wall].x * far, fan[nearest_wall].z * far};
   }
   situation.has_walls = false;

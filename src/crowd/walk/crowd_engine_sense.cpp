@@ -124,7 +124,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   steer::Situation& situation = worker.situation;
   situation.velocity = body.velocity;
   situation.preferred = body.preferred;
-  situation.fastest = body.speed;
+  situation.fastest = speed_limit(body);
   situation.near.size = 0;
   const bool may_wait = is_on_last_segment(body), turns = turns_corner(body);
   const bool rests = !body.leaves && !body.has(Body::kExternal) &&

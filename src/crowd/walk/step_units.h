@@ -22,20 +22,39 @@ struct StepUnits {
   [[nodiscard]] int32_t displacement(float velocity) const {
     return static_cast<int32_t>(std::lrint(velocity * (dt / unit)));
   }
-  /// The same for displacements of few units: the n-th of many at one velocity, whose sum is right
-  /// to the unit. (As in Bresenham's line.)
-  [[nodiscard]] int32_t small_displacement(float velocity, uint64_t n) const {
-    const double units = double{velocity} * (double{dt} / unit);
-    const auto k = static_cast<double>(n % kMovesPerCycle);
-    return static_cast<int32_t>(std::floor(units * (k + 1)) - std::floor(units * k));
+  /// Units that a body with 1 m/s moves in a step.
+  [[nodiscard]] double units_by_speed() const { return double{dt} / unit; }
+  /// Are moves at this speed of so few units that rounding to the nearest would change it by more
+  /// than half a percent?
+  [[nodiscard]] bool is_short(float speed) const {
+    constexpr float kMinStepUnits = 128;
+    return speed * (dt / unit) < kMinStepUnits;
   }
-  static constexpr uint64_t kMovesPerCycle = 1 << 16;
+  /// As displacement(), for short moves: the n-th of many, whose sum is right to a few units at
+  /// every velocity, also if that changes a little from one to the next. To the displacement
+  /// the n-th multiple of the golden ratio is added, modulo 1, then it is rounded down.
+  [[nodiscard]] int32_t small_displacement(float velocity, uint64_t n) const {
+    return towards_0(velocity, static_cast<double>((n * kGoldenRatio) >> 11) * 0x1p-53);
+  }
+  /// As displacement(), but short moves as small_displacement(), and longer ones rounded down.
+  [[nodiscard]] int32_t displacement_within(float velocity, uint64_t n) const {
+    return is_short(std::fabs(velocity)) ? small_displacement(velocity, n) : towards_0(velocity, 0);
+  }
   [[nodiscard]] float velocity(int32_t displacement) const {
     return static_cast<float>(displacement) * (unit / dt);
   }
-  /// No step at this speed is longer. [units]
+  /// No step at this speed is longer: moves are rounded to the nearest unit, short ones up. [units]
   [[nodiscard]] int32_t stride(float speed) const {
-    return static_cast<int32_t>(speed * (dt / unit)) + 2;
+    return static_cast<int32_t>(speed * (dt / unit)) + (is_short(speed) ? 3 : 2);
+  }
+
+ private:
+  static constexpr uint64_t kGoldenRatio = 0x9e3779b97f4a7c15;  // less 1, times 2^64
+  // Rounded towards 0 once `part` of a unit was added.
+  [[nodiscard]] int32_t towards_0(float velocity, double part) const {
+    const double units = double{velocity} * units_by_speed();
+    const auto size = static_cast<int32_t>(std::floor(std::fabs(units) + part));
+    return units < 0 ? -size : size;
   }
 };
 

@@ -300,6 +300,8 @@ void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> sp
     if (body == nullptr) continue;
     const double radius = s.mode_of(*body).state_of(*body).radius;
     if (!is_speed(speeds[i], radius, s.shared.config.dt)) continue;
+    // Its last move is longer than others then expect of it.
+    if (static_cast<float>(speeds[i]) < body->speed) body->clear(crowd::Body::kContinues);
     body->speed = static_cast<float>(speeds[i]);
     s.fit({}, body->speed);  // Its size is known.
   }

@@ -113,6 +113,15 @@ struct CrowdTuning {
   double no_progress_after = 0;
 };
 
+/// How stairs slow a class: horizontal speeds divided by that on level ground, which is 1.34 m/s.
+/// Source: [Weidmann93]; 0.61 m/s up, 0.694 m/s down. A slope without treads slows by the same
+/// share of its gradient: not at all if it is level, as stairs if it rises by 0.17 in 0.29 m or
+/// more. docs/design/016-slopes.md. [0.01 to 1]
+struct SlopeFactors {
+  double stairs_up = 0.61 / 1.34;
+  double stairs_down = 0.694 / 1.34;
+};
+
 /// Settings for Crowd::create.
 struct CrowdConfig {
   /// Length of a step. An avatar without others or walls near goes its speed times that, to 1 %
@@ -164,6 +173,12 @@ struct CrowdConfig {
   Edits edits = {};
   /// PathConfig::slope_cost of avatars that walk or climb. [0 to 1000]
   double slope_cost = 0;
+  /// Stairs and slopes slow avatars on foot that head to a goal. Paths do not depend on it.
+  /// Avatars in the air, over nodes, on off-mesh links, and those that are externally controlled
+  /// keep their speed. Time on level ground: a test of a flag for each avatar that decides.
+  bool slow_on_slopes = true;
+  /// By class; classes beyond the last entry have the default.
+  std::vector<SlopeFactors> slope_factors = {};
 };
 
 /// An avatar to add.
@@ -172,7 +187,8 @@ struct AvatarSpawn {
   int32_t avatar_class = 0;
   /// Of the body, 0: the class's. Its distance to walls follows the class's radius. [m]
   double radius = 0;
-  /// Desired speed, also its maximum. 0: the class's. [m/s, to 100, and to 1000 radii a step]
+  /// Desired speed on level ground, also its maximum. 0: the class's. [m/s, to 100, and to 1000
+  /// radii a step]
   double speed = 0;
   /// For avatars that walk over nodes, in place of `place`. Nowhere: the place of the nodes that is
   /// nearest to `place`.
@@ -212,7 +228,8 @@ struct CrowdReport {
   /// it. They count in no_path, or are detours that were not found.
   uint64_t out_of_memory = 0;
   uint64_t waiting = 0;  ///< Obstacles that wait for avatars to leave their volume.
-  /// Mean speed towards the next corner, divided by the desired speed. [-1 to 1]
+  /// Mean speed towards the next corner, divided by the desired speed, on stairs and slopes by what
+  /// that is there. [-1 to 1]
   double progress = 0;
   double seconds_plan = 0;    ///< Searching and following paths.
   double seconds_sort = 0;    ///< Finding which avatars are near each other.

@@ -33,6 +33,23 @@ bool is_same_world(const Nodes& nodes, const World& world) {
          data_of(nodes.world())->level_count == data_of(world)->level_count;
 }
 
+// Of each class of the world. Empty: stairs and slopes slow none.
+Result<std::vector<SlopeFactors>> slope_factors_of(const World& world, const CrowdConfig& config) {
+  const size_t classes = data_of(world)->summary.classes.size();
+  if (config.slope_factors.size() > classes) {
+    return bad_config("slope_factors are more than the world has classes");
+  }
+  const auto is_factor = [](double factor) { return factor >= 0.01 && factor <= 1; };
+  for (const SlopeFactors& factors : config.slope_factors) {
+    if (is_factor(factors.stairs_up) && is_factor(factors.stairs_down)) continue;
+    return bad_config("slope_factors must be 0.01 to 1");
+  }
+  if (!config.slow_on_slopes) return std::vector<SlopeFactors>();
+  std::vector<SlopeFactors> all = config.slope_factors;
+  all.resize(classes);
+  return all;
+}
+
 }  // namespace
 
 Crowd::Crowd(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -74,6 +91,8 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (config.nodes && !is_same_world(config.nodes, world)) {
     return bad_config("the nodes are of another world");
   }
+  auto slope_factors = slope_factors_of(world, config);
+  if (!slope_factors) return slope_factors.error();
   const double unit = data_of(world)->summary.cell / world::kUnitsPerCell;
   const crowd::MoveConfig move{.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
                                .sight = static_cast<float>(config.tuning.sight),
@@ -82,7 +101,8 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
                                .reaction = static_cast<float>(config.tuning.reaction),
                                .seed = config.seed,
                                .workers = config.workers,
-                               .model = config.model};
+                               .model = config.model,
+                               .slope_factors = *std::move(slope_factors)};
   return Crowd(std::make_unique<State>(world, config, move));
 }
 

@@ -288,6 +288,7 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
     crowd::Body* body = s.body(ids[i]);
     if (body == nullptr) continue;
     forget_goal(*body);
+    s.walk.engine().end_slowing(*body);
     s.mode_of(*body).set_velocity(*body, velocities[i]);
   }
 }
@@ -300,8 +301,9 @@ void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> sp
     if (body == nullptr) continue;
     const double radius = s.mode_of(*body).state_of(*body).radius;
     if (!is_speed(speeds[i], radius, s.shared.config.dt)) continue;
-    body->speed = static_cast<float>(speeds[i]);
-    s.fit({}, body->speed);  // Its size is known.
+    const auto speed = static_cast<float>(speeds[i]);
+    s.walk.engine().set_level_speed(*body, speed);
+    s.fit({}, speed);  // Its size is known.
   }
 }
 

@@ -24,7 +24,7 @@ namespace {
 using crowd::put_rows;
 using crowd::take_rows;
 
-constexpr uint64_t kMagic = 0x32315744574f5243;  // "CROWDW12"
+constexpr uint64_t kMagic = 0x33315744574f5243;  // "CROWDW13"
 
 struct Head {
   uint64_t magic = kMagic;
@@ -42,6 +42,7 @@ struct Head {
   int32_t model = 0, low_detail_steps = 0;
   uint64_t views = 0;
   double low_detail_reaction = 0, slope_cost = 0;
+  uint64_t slopes = 0;                      // hash_of_slopes
   uint64_t edit_bytes = 0, call_bytes = 0;  // of path::save_edits and save_calls
   uint64_t edits_version = 0;               // that the crowd has followed
   // What avatars are, or were: also of those that were removed.
@@ -49,7 +50,7 @@ struct Head {
   float fastest = 0;  // [m/s]
   int32_t taking_widest = 0, taking_tallest = 0;
 };
-static_assert(sizeof(Head) == 31 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 32 * 8 && std::is_trivially_copyable_v<Head>);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`; and without what its
 // edit holds.
@@ -157,6 +158,13 @@ uint64_t hash_of(const World& world) {
   return hash_bytes(facts, sizeof facts, world.summary().hash);
 }
 
+// How stairs and slopes slow avatars.
+uint64_t hash_of_slopes(const CrowdConfig& config) {
+  if (!config.slow_on_slopes) return 0;
+  const std::vector<SlopeFactors>& factors = config.slope_factors;
+  return hash_bytes(factors.data(), factors.size() * sizeof(SlopeFactors), /*seed=*/1);
+}
+
 Head head_of(const World& world, const CrowdConfig& config) {
   Head head;
   head.world = hash_of(world);
@@ -171,6 +179,7 @@ Head head_of(const World& world, const CrowdConfig& config) {
   head.low_detail_steps = config.tuning.low_detail_steps;
   head.low_detail_reaction = config.tuning.low_detail_reaction;
   head.slope_cost = config.slope_cost;
+  head.slopes = hash_of_slopes(config);
   return head;
 }
 
@@ -250,7 +259,7 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
       head.routing != expected.routing || head.deadlock_avoidance != expected.deadlock_avoidance ||
       head.model != expected.model || head.low_detail_steps != expected.low_detail_steps ||
       head.low_detail_reaction != expected.low_detail_reaction ||
-      head.slope_cost != expected.slope_cost) {
+      head.slope_cost != expected.slope_cost || head.slopes != expected.slopes) {
     return bad("has other settings; give those that it was made with");
   }
   constexpr uint64_t kMax = uint64_t{1} << 32;
@@ -442,7 +451,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
     if (!sound) return bad("is not sound; save the crowd again");
     const crowd::Mode& mode = s.mode_of(body);
     const crowd::BodyExtent extent = mode.extent_of(body, mode.state_of(body).radius);
-    s.fit(extent, body.speed);
+    s.fit(extent, s.walk.engine().level_speed(body));
     if (&mode == &s.link) s.link.fit_taking(extent);
     s.walk.engine().add(body);
   }

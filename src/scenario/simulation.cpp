@@ -63,7 +63,8 @@ Result<Simulation> Simulation::create(const World& world, const Scenario& scenar
                                      .speedup = scenario.paths,
                                      .search_bytes = scenario.search_bytes,
                                      .nodes = *std::move(nodes),
-                                     .edits = edits});
+                                     .edits = edits,
+                                     .slow_on_slopes = scenario.slow_on_slopes});
   if (!crowd) return crowd.error();
   auto state = std::make_unique<State>(world, scenario, edits, std::move(*crowd));
   for (const ScenarioObstacle& obstacle : scenario.obstacles) {

@@ -4,8 +4,8 @@
 
 #include "scenario/simulation_state.h"
 
-// Areas in which avatars walk faster or slower: stairs, sand. Time: avatars x prisms of areas with
-// a factor.
+// Areas in which avatars walk faster or slower, as on sand; stairs and slopes slow them besides.
+// Time: avatars x prisms of areas with a factor.
 namespace throng {
 
 // The first area with a factor in which an avatar stands sets its own.

@@ -251,6 +251,28 @@ TEST(Crowd, FastAndSmallOnesDoNotPassThroughOthers) {
   }
 }
 
+// In one of two steps it continues with its last move, which is longer than its new speed allows.
+TEST(Crowd, AnAvatarThatSuddenlyHasToWalkSlowlyTouchesNoOther) {
+  const World world = test::bake(worlds::flat(30), 0.1);
+  for (int steps = 10; steps < 14; ++steps) {
+    Crowd crowd = made(world, {.dt = 0.1});
+    const AvatarId walker = added(crowd, world.find_place(0, {5, 0, 15}, 0.5), {.speed = 2});
+    const Place goal = world.find_place(0, {25, 0, 15}, 0.5);
+    crowd.set_goals(std::span(&walker, 1), std::span(&goal, 1));
+    for (int step = 0; step < steps; ++step) crowd.step();
+    const double x = position(crowd, walker).x;
+    EXPECT_GT(x, 6);
+    const double gap = 0.05;
+    const Place ahead = world.find_place(0, {x + 2 * 0.25 + gap, 0, 15}, 0.5);
+    ASSERT_TRUE(added(crowd, ahead, {.speed = 0.05}));
+    const double slow = 0.1;
+    crowd.set_speeds(std::span(&walker, 1), std::span(&slow, 1));
+    crowd.step();
+    expect_no_faults(crowd);
+    EXPECT_LE(position(crowd, walker).x, x + slow * 0.1 + 0.001) << steps;
+  }
+}
+
 // A step is no longer than 16 bits hold: longer ones are split.
 TEST(Crowd, GiantsWithLongStepsTouchNoOther) {
   const World world = test::bake(worlds::flat(60), 0.02);

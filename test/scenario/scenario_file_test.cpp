@@ -165,6 +165,16 @@ std::string changed(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
+TEST(ScenarioFile, StatesWhetherSlopesSlow) {
+  const std::string labels = "paths = \"labels\"";
+  EXPECT_TRUE(parse_scenario(kFull, "full.toml")->slow_on_slopes);
+  const auto off =
+      parse_scenario(changed(labels, labels + "\nslow_on_slopes = false"), "full.toml");
+  ASSERT_TRUE(off) << off.error().message;
+  EXPECT_FALSE(off->slow_on_slopes);
+  EXPECT_FALSE(parse_scenario(changed(labels, labels + "\nslow_on_slopes = 0"), "full.toml"));
+}
+
 TEST(ScenarioFile, NamesTheSteeringModel) {
   const std::string labels = "paths = \"labels\"";
   const auto ours = parse_scenario(kFull, "full.toml");

@@ -32,6 +32,7 @@ struct RunOptions {
   WanderConfig config;
   CrowdRun crowd;
   bool wander = false;            // without goals
+  bool full_speed = false;        // on stairs and slopes, too
   std::vector<std::string> also;  // CLASS:N
 };
 
@@ -112,6 +113,7 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
   run.config.dt = options.config.dt;
   run.config.seed = options.config.seed;
   run.config.workers = options.config.workers;
+  run.config.slow_on_slopes = !options.full_speed;
   if (auto ok = read_goals(run); !ok) return fail(ok.error());
   for (const std::string& group : options.also) {
     const size_t colon = group.rfind(':');
@@ -192,6 +194,7 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
                   .steps = {},
                   .seed = {},
                   .model = {},
+                  .full_speed = options.full_speed,
                   .check_every = options.check_every,
                   .workers = options.config.workers,
                   .trips = options.trips,
@@ -206,7 +209,7 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
 // Fails if an option of avatars with goals stands beside --wander.
 Result<void> check_wander(const CLI::App& command) {
   for (const char* name : {"--goals", "--near", "--also", "--radius", "--labels", "--zones",
-                           "--search-memory", "--model"}) {
+                           "--search-memory", "--model", "--full-speed"}) {
     if (command.count(name) == 0) continue;
     return Error{Errc::kBadConfig,
                  fmt::format("{} is for avatars with goals; leave out --wander", name)};
@@ -271,6 +274,8 @@ void add_run(CLI::App& parser, Session& session) {
       ->excludes(labels);
   add_search_memory(*command, options->crowd.config.search_bytes);
   add_model(*command, options->crowd.config.model);
+  command->add_flag("--full-speed", options->full_speed,
+                    "Stairs and slopes slow no avatar; without it they do");
   add_output(*command, session, "--trajectories", options->sinks.trajectories,
              "Write positions to this file")
       ->type_name("FILE.csv");

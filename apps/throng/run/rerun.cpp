@@ -63,6 +63,9 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
     ok = need(settings, {"search_bytes"}, [](const Json& j) { return j.is_number_unsigned(); });
   }
   if (ok) ok = need(settings, {"labels", "zones"}, [](const Json& j) { return j.is_boolean(); });
+  if (ok && settings.contains("slow_on_slopes")) {
+    ok = need(settings, {"slow_on_slopes"}, [](const Json& j) { return j.is_boolean(); });
+  }
   if (ok && settings.contains("model")) {
     ok = need(settings, {"model"}, [](const Json& j) { return j.is_string(); });
   }
@@ -90,6 +93,8 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
   if (settings.at("labels")) run.config.speedup = PathSpeedup::kLabels;
   if (settings.at("zones")) run.config.speedup = PathSpeedup::kZones;
   run.config.search_bytes = settings.value("search_bytes", run.config.search_bytes);
+  // Older recordings do not have it: nothing slowed their avatars.
+  run.config.slow_on_slopes = settings.value("slow_on_slopes", false);
   run.config.workers = workers;
   const auto model = find_steering_model(settings.value("model", name_of(run.config.model)));
   if (!model) {
@@ -169,7 +174,8 @@ Json crowd_settings(const CrowdRun& run) {
           {"zones", run.config.speedup == PathSpeedup::kZones},
           {"search_bytes", run.config.search_bytes},
           {"seed", run.config.seed},
-          {"model", name_of(run.config.model)}};
+          {"model", name_of(run.config.model)},
+          {"slow_on_slopes", run.config.slow_on_slopes}};
 }
 
 Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t workers) {

@@ -76,6 +76,7 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
                {"class", run.class_name},
                {"goals", run.goals},
                {"model", name_of(run.config.model)},
+               {"slow_on_slopes", run.config.slow_on_slopes},
                {"avatars", crowd.size()},
                {"steps", times.steps()},
                {"dt", run.config.dt},

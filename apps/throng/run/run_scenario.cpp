@@ -144,6 +144,7 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
                {"seconds", t.last.time},
                {"dt", scenario.dt},
                {"model", name_of(scenario.steering)},
+               {"slow_on_slopes", scenario.slow_on_slopes},
                {"seed", scenario.seed},
                {"threads", run.workers},
                {"entered", t.last.entered},
@@ -237,6 +238,7 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
   if (!scenario) return scenario.error();
   if (run.seed) scenario->seed = *run.seed;
   if (run.model) scenario->steering = *run.model;
+  if (run.full_speed) scenario->slow_on_slopes = false;
   const auto world = times.measure("open", [&] { return open_world(*scenario, session.context); });
   if (!world) return world.error();
   auto simulation = times.measure("prepare", [&] {
@@ -247,7 +249,8 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
   const Json settings = {{"scenario", run.text},
                          {"file", run.file},
                          {"seed", scenario->seed},
-                         {"model", name_of(scenario->steering)}};
+                         {"model", name_of(scenario->steering)},
+                         {"slow_on_slopes", scenario->slow_on_slopes}};
   auto ok = sinks.open(*world, {.world = scenario->world.empty() ? run.file : scenario->world,
                                 .dt = scenario->dt,
                                 .model = kScenarioModel,
@@ -293,6 +296,9 @@ Result<Scenario> recorded_scenario(const Json& settings) {
   auto scenario = parse_scenario(text->get<std::string>(), file->get<std::string>());
   if (!scenario) return scenario;
   scenario->seed = *seed;
+  // Older recordings do not have it: nothing slowed their avatars.
+  const auto slow = settings.find("slow_on_slopes");
+  scenario->slow_on_slopes = slow != settings.end() && *slow == true;
   const auto name = settings.find("model");
   if (name == settings.end()) return scenario;  // as the file says
   const auto model =

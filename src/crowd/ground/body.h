@@ -48,7 +48,7 @@ struct Body {
           local_target_z = 0;  // where it heads to in a straight line [units]; of an externally
                                // controlled one: CarriedMove::rest
   float detour_angle = 0;      // of steer::DeadlockAvoidance
-  float speed = 1;             // desired speed, and the maximum [m/s]
+  float speed = 1;             // desired speed where it is, and the maximum [m/s]
   int32_t radius = 0;          // [units]
   uint32_t slot = 0;
   uint8_t avatar_class = 0;
@@ -62,7 +62,8 @@ struct Body {
   bool on_right : 1 = false;   // in counterflow, its lane lies in the right half of the opening
   bool near_wall : 1 = false;  // and in need of another path, in the last step
   uint8_t : 0;                 // What follows lies in another byte.
-  uint8_t steps : 6 = 1;       // that it takes at once in this step; 0: it is skipped
+  uint8_t steps : 5 = 1;       // that it takes at once in this step; 0: it is skipped
+  bool slowed : 1 = false;     // by the slope: CrowdEngine::level_speed is more than `speed`
   // Others read the next two while they decide, so what shares their byte must not change then.
   bool leaves : 1 = false;  // an obstacle that closes around it, or that became active beside it
   // A stream came towards it when it last sensed.

@@ -122,6 +122,7 @@ Result<CrowdGround> CrowdGround::create(const world::WorldData& world, int32_t a
   ground.tiles_x_ = world.summary.tiles_x;
   ground.tiles_z_ = world.summary.tiles_z;
   ground.step_mm_ = step_mm;
+  ground.slope_range_ = SlopeRange::of_cell(world.summary.cell);
   ground.tiles_.resize(static_cast<size_t>(ground.tiles_x_) * static_cast<size_t>(ground.tiles_z_));
   ground.records_.resize(world.level_count);
   ground.heights_.resize(world.level_count);
@@ -202,6 +203,7 @@ Result<CrowdGround> CrowdGround::create(const world::WorldData& world, int32_t a
     }
   }
   ground.find_isolated(step_mm);
+  ground.find_uneven();
   ground.join_blocks();
   return ground;
 }

@@ -3,13 +3,16 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
 #include "core/arrays/huge_array.h"
 #include "core/arrays/prefetch.h"
+#include "crowd/ground/ground_slope.h"
 #include "crowd/ground/left_cells.h"
 #include "crowd/ground/level_line.h"
+#include "steer/sampled.h"
 #include "throng/base.h"
 #include "world/ground.h"
 #include "world/tile_grid.h"
@@ -102,6 +105,16 @@ class CrowdGround {
                      static_cast<int32_t>(p.z & (world::kUnitsPerCell - 1)));
   }
 
+  // ground_slope.cpp
+  /// Is all ground that slope_along reads from here level, in every direction? A quick test: false
+  /// may be wrong.
+  [[nodiscard]] bool is_level_around(Level level, world::GroundPoint at) const {
+    return (lines_[level].legal_set & kUneven) == 0 || box_is_level(level, at);
+  }
+  /// The slope of the ground from behind a body to before it, along a unit vector.
+  [[nodiscard]] GroundSlope slope_along(Level level, world::GroundPoint at,
+                                        steer::Plane direction) const;
+
   /// Blocks exactly these cells of a level, of all cells that were baked: an empty set frees all
   /// that were blocked before. Call join_tile then. Not while others read.
   void set_blocked(Level level, const world::CellRows& blocked);
@@ -146,7 +159,8 @@ class CrowdGround {
   // Flags beside the number of the legal set.
   static constexpr uint32_t kStepSafe = uint32_t{1} << 31;
   static constexpr uint32_t kIsolated = uint32_t{1} << 30;
-  static constexpr uint32_t kSetBits = kIsolated - 1;
+  static constexpr uint32_t kUneven = uint32_t{1} << 29;  // It is, or ground near by.
+  static constexpr uint32_t kSetBits = kUneven - 1;
   static constexpr uint32_t kNoneLegal = 0;  // Sets of rows that levels share.
   static constexpr uint32_t kAllLegal = 1;
 
@@ -158,6 +172,17 @@ class CrowdGround {
   void keep_baked(Level level, Baked& baked);
 
   void find_isolated(int32_t step_mm);
+  // ground_slope.cpp
+  void find_uneven();
+  [[nodiscard]] bool is_uneven_around(Level level) const;
+  [[nodiscard]] bool box_is_level(Level level, world::GroundPoint at) const;
+  struct FloorCell {
+    Level level = 0;
+    int32_t x = 0, z = 0;
+    int32_t height = 0;  // [mm]
+  };
+  [[nodiscard]] std::optional<FloorCell> floor_beside(const FloorCell& from, int32_t x,
+                                                      int32_t z) const;
   void join_blocks();
   void join_side(Level level, LevelLine::Side side);
   void find_open(Level level);
@@ -173,6 +198,7 @@ class CrowdGround {
 
   int32_t tiles_x_ = 0, tiles_z_ = 0;
   int32_t step_mm_ = 0;
+  SlopeRange slope_range_;
   std::vector<Range> tiles_;
   Heights feet_range_;
   std::vector<Heights> heights_;  // between which a level's legal floors lie [mm]

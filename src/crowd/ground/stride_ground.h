@@ -42,6 +42,15 @@ class StrideGround {
   Around query_walls(uint32_t level, int32_t y, world::GroundPoint from, int32_t range,
                      int32_t rise, WallWindow& window) const;
 
+  // As CrowdGround's.
+  [[nodiscard]] bool is_level_around(uint32_t level, world::GroundPoint at) const {
+    return ground_->is_level_around(level, at);
+  }
+  [[nodiscard]] GroundSlope slope_along(uint32_t level, world::GroundPoint at,
+                                        steer::Plane direction) const {
+    return ground_->slope_along(level, at, direction);
+  }
+
   /// Prefetches what is read of the ground around a body, in two calls: the second reads what the
   /// first prefetched.
   void prefetch_level(uint32_t level) const { ground_->prefetch_open(level); }

@@ -180,6 +180,7 @@ void CrowdEngine::prefer_all(uint64_t step, Before before) {
     }
     before(bodies, worker);
     for (Body& b : bodies) {
+      if (!config_.slope_factors.empty()) slow_on_slope(b);
       if (b.has(Body::kExternal) || b.has(Body::kMovedElsewhere) || b.steps == 0) continue;
       b.preferred = b.has(Body::kHasGoal) || b.leaves
                         ? steer::preferred_towards(

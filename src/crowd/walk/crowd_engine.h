@@ -70,6 +70,19 @@ class CrowdEngine {
   /// Removes the last bodies.
   void shrink(size_t size) { size_ = size; }
 
+  // crowd_engine_slopes.cpp: MoveConfig::slope_factors slow bodies, others' speeds are these.
+  /// Its desired speed on level ground. [m/s]
+  [[nodiscard]] float level_speed(const Body& body) const {
+    return body.slowed ? level_speeds_[body.slot] : body.speed;
+  }
+  /// Sets it. The slope where the body is slows it as before.
+  void set_level_speed(Body& body, float speed);
+  /// No slope slows it, until it decides again.
+  void end_slowing(Body& body) { slow_down(body, level_speed(body), 1); }
+  /// By slot, of all slots; those of slowed bodies count.
+  [[nodiscard]] std::vector<float>& level_speeds() { return level_speeds_; }
+  [[nodiscard]] const std::vector<float>& level_speeds() const { return level_speeds_; }
+
   /// One step. `step`: its number, for the order of proposed moves. `before` is called first for
   /// all bodies, some at a time, on any worker.
   using Before = FunctionRef<void(std::span<Body>, int32_t worker)>;
@@ -160,6 +173,8 @@ class CrowdEngine {
     return config_.model == SteeringModel::kSampled && !ignores_neighbours(body);
   }
   [[nodiscard]] bool continues(const Body& body, uint64_t step) const;
+  void slow_down(Body& body, float level_speed, float factor);
+  void slow_on_slope(Body& body);
   void prefer_all(uint64_t step, Before before);
   void decide_all(EngineCounts& counts);
   bool decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& around);
@@ -273,6 +288,7 @@ class CrowdEngine {
   std::optional<NeighbourGrid> grid_;
   std::vector<Worker> workers_;
   std::vector<uint32_t> arrived_;
+  std::vector<float> level_speeds_;
 };
 
 }  // namespace throng::crowd

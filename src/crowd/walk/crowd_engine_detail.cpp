@@ -24,7 +24,7 @@ bool CrowdEngine::is_near(const Body& body) const {
 // At most as many that it moves less than the narrowest body is wide: none passes through another.
 uint64_t CrowdEngine::steps_in_low_detail(const Body& body) const {
   constexpr float kRounded = 4;  // [units]
-  const float displacement = body.speed * (config_.units.dt / config_.units.unit);
+  const float displacement = level_speed(body) * (config_.units.dt / config_.units.unit);
   const float max_steps = (static_cast<float>(detail_.narrowest) - kRounded) / displacement;
   return static_cast<uint64_t>(std::clamp(max_steps, 1.0f, static_cast<float>(detail_.steps)));
 }
@@ -47,7 +47,7 @@ void CrowdEngine::choose_detail(Body& body, uint64_t step) const {
   }
   body.flags |= Body::kLowDetail;
   const uint64_t steps = steps_in_low_detail(body);
-  body.steps = ((step + body.slot) % steps == 0 ? steps : 0) & 63;
+  body.steps = ((step + body.slot) % steps == 0 ? steps : 0) & 31;
 }
 
 }  // namespace throng::crowd

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "crowd/walk/step_units.h"
 #include "steer/air.h"
 #include "steer/lanes.h"
 #include "steer/models.h"
 #include "steer/sampled.h"
+#include "throng/crowd.h"
 
 namespace throng::crowd {
 
@@ -28,6 +30,8 @@ struct MoveConfig {
   steer::LaneSettings lanes = {};
   steer::SpacingSettings spacing = {};
   steer::AirSettings air_steering = {};  ///< Of flyers and climbers.
+  /// Of walkers, by class. None: stairs and slopes slow no body.
+  std::vector<SlopeFactors> slope_factors = {};
 };
 
 }  // namespace throng::crowd

@@ -17,7 +17,7 @@
 // (walk_leaving.cpp).
 namespace throng::crowd {
 
-static_assert(WalkMode::kRowBytes == 16 + 12 * Route::kCorners);
+static_assert(sizeof(Route) == 16 + 12 * Route::kCorners);
 
 WalkMode::WalkMode(SharedState& shared, const MoveConfig& config)
     : Mode(shared),
@@ -31,6 +31,7 @@ StrideGround WalkMode::stride_ground(const Body& body) const {
 
 void WalkMode::reserve(size_t bodies, size_t rows) {
   routes_.reserve(rows);
+  engine_.level_speeds().reserve(rows);
   engine_.reserve(bodies);
 }
 
@@ -96,7 +97,10 @@ bool WalkMode::draw(NewAvatar& avatar, const AvatarSpawn& /*like*/, uint64_t n) 
 }
 
 // A row that was another avatar's stays until a goal replaces it.
-void WalkMode::add(const NewAvatar& /*avatar*/) { routes_.resize(shared_.generation.size()); }
+void WalkMode::add(const NewAvatar& /*avatar*/) {
+  routes_.resize(shared_.generation.size());
+  engine_.level_speeds().resize(shared_.generation.size());
+}
 
 void WalkMode::fit(const BodyExtent& all, float fastest) {
   engine_.expect_height(all.tallest);
@@ -247,18 +251,22 @@ AvatarState WalkMode::state_of(const Body& body) const {
 
 void WalkMode::add_memory(CrowdMemory& memory) const {
   memory.avatars += engine_.bytes();
-  memory.paths += routes_.capacity() * kRowBytes;
+  memory.paths += routes_.capacity() * kRowBytes;  // as many of each
 }
 
 void WalkMode::save(std::vector<uint8_t>& out) const {
   put_rows(out, routes_.data(), routes_.size());
+  put_rows(out, engine_.level_speeds().data(), engine_.level_speeds().size());
 }
 
 const uint8_t* WalkMode::restore(const uint8_t* saved, size_t rows) {
-  return take_rows(saved, rows, routes_);
+  return take_rows(take_rows(saved, rows, routes_), rows, engine_.level_speeds());
 }
 
 bool WalkMode::is_sound(const Body& body) const {
+  constexpr float kMaxSpeed = 100;  // [m/s] that Crowd::add takes
+  const float level_speed = engine_.level_speed(body);
+  if (body.slowed && !(level_speed >= body.speed && level_speed <= kMaxSpeed)) return false;
   if (!body.has(Body::kHasGoal) || body.climbs) return true;
   const uint32_t levels = data_of(shared_.world)->level_count;
   const Route& route = routes_[body.slot];

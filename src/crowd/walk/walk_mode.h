@@ -53,7 +53,7 @@ class TakesLinks {
 
 class WalkMode final : public Mode {
  public:
-  static constexpr size_t kRowBytes = sizeof(Route);
+  static constexpr size_t kRowBytes = sizeof(Route) + sizeof(float);  // and its level speed
 
   WalkMode(SharedState& shared, const MoveConfig& config);
   /// What decides for classes that fly; it outlives all steps.

@@ -85,9 +85,14 @@ struct AvatarState {
   int32_t avatar_class = 0;
   Vec3d position;     ///< Y at the feet. [m]
   double radius = 0;  ///< Of the body. [m]
-  /// Unit vector in the ground plane. For an avatar that leans: before the lean; leaned() of
-  /// avatar.h gives the direction of its walk.
+  /// Orientation, a unit vector in the ground plane. An avatar of a crowd with goals turns by at
+  /// most 120 degrees a second towards the direction in which it walks, little by little if it is
+  /// slow, and keeps its orientation while it stands; a new one faces its preferred velocity after
+  /// its first step, before that +Z. For an avatar that leans: before the lean; leaned() of
+  /// avatar.h gives the direction in which it faces.
   double heading_x = 0, heading_z = 0;
+  /// Over the last step, in crowds with goals. Y is 0 but in the air and over nodes. [m/s]
+  Vec3d velocity;
   MoveMode mode = MoveMode::kWalk;
   /// Unit vector along the body from the feet; for climbers the surface's normal.
   Vec3d up{0, 1, 0};

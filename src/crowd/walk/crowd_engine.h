@@ -15,6 +15,7 @@
 #include "crowd/ground/body.h"
 #include "crowd/ground/stride_ground.h"
 #include "crowd/mode/engine_counts.h"
+#include "crowd/mode/orientation.h"
 #include "crowd/walk/move_config.h"
 #include "crowd/walk/neighbour_grid.h"
 #include "crowd/walk/step_units.h"
@@ -62,6 +63,8 @@ class CrowdEngine {
   void expect_height(int32_t tallest) { highest_ = highest_ < tallest ? tallest : highest_; }
   /// From the next step on; the views must stay until it is over.
   void set_detail(const EngineDetail& detail);
+  /// Steps turn these, by slot; they must stay until the next call. At first there are none.
+  void set_orientations(std::span<Orientation> by_slot) { orientations_ = by_slot; }
   /// Reserves memory for so many bodies. The bodies stay.
   void reserve(size_t bodies);
   [[nodiscard]] std::span<Body> bodies() const { return {bodies_.data(), size_}; }
@@ -251,6 +254,7 @@ class CrowdEngine {
   std::optional<NeighbourGrid> grid_;
   std::vector<Worker> workers_;
   std::vector<uint32_t> arrived_;
+  std::span<Orientation> orientations_;  // by slot
 };
 
 }  // namespace throng::crowd

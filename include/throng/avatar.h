@@ -33,6 +33,10 @@ struct AvatarClass {
   /// Largest descent over an edge by a drop link, which is one-way; only paths over nodes use
   /// these. 0: none. [m, 0 to 1000]
   double max_drop = 0;
+  /// On foot, the direction of its velocity turns in a step by at most speed x dt / turning_radius,
+  /// as that of a cart. A sharper turn slows it down, a much sharper one stops it, and from a stop
+  /// it starts in any direction. 0: no bound. [m, 0 to 100]
+  double turning_radius = 0;
   bool flies = false;  ///< It also moves through the air.
 };
 

@@ -81,6 +81,11 @@ void CrowdEngine::set_ground(size_t avatar_class, const StrideGround& ground) {
   grounds_[avatar_class] = ground;
 }
 
+void CrowdEngine::set_turning_radius(size_t avatar_class, float radius) {
+  if (turning_radii_.empty() && radius > 0) turning_radii_.resize(grounds_.size());
+  if (!turning_radii_.empty()) turning_radii_[avatar_class] = radius;
+}
+
 void CrowdEngine::fit(int32_t widest, float fastest, float dt) {
   config_.units.dt = dt;
   widest_ = widest;

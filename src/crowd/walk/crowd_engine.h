@@ -22,6 +22,7 @@
 #include "steer/lanes.h"
 #include "steer/models.h"
 #include "steer/sampled.h"
+#include "steer/turning_radius.h"
 
 /// The step of a crowd with goals as passes over arrays: sort, sense and steer, resolve conflicts,
 /// settle. test/support/plain_crowd.h does the same in the simplest code.
@@ -57,6 +58,8 @@ class CrowdEngine {
   CrowdEngine(const MoveConfig& config, int32_t width, int32_t depth, size_t classes);
 
   void set_ground(size_t avatar_class, const StrideGround& ground);
+  /// Bounds the turns of a class. [m; 0: no bound]
+  void set_turning_radius(size_t avatar_class, float radius);
   /// No body may be wider or faster. To be called before the first such body is added.
   void fit(int32_t widest, float fastest, float dt);
   /// A body may become that tall. [mm]
@@ -198,15 +201,25 @@ class CrowdEngine {
   }
   void find_candidates(const Body& body, const steer::Situation& situation, bool open,
                        Displacements& candidates);
+  // Its turns are read from its last move: were that rounded to the nearest unit, those of short
+  // steps would all be lost.
+  [[nodiscard]] bool is_turn_bounded(const Body& body) const {
+    return !turning_radii_.empty() && turning_radii_[body.avatar_class] > 0;
+  }
   // Moves are whole units. A body whose moves are of few units decides in each step, and its moves
   // are rounded up or down in turn: else it would be too slow, or stand.
   [[nodiscard]] bool has_short_moves(const Body& body) const {
+    if (is_turn_bounded(body)) return true;
     constexpr float kMinStepUnits = 128;  // [units]
     const StepUnits units = units_of(body);
     return body.speed * (units.dt / units.unit) < kMinStepUnits;
   }
   [[nodiscard]] Displacement displacement_of(const Body& body, steer::Plane velocity) const {
     const StepUnits units = units_of(body);
+    if (is_turn_bounded(body)) {
+      velocity = steer::within_turning_radius(body.velocity, velocity, units.dt,
+                                              turning_radii_[body.avatar_class]);
+    }
     if (has_short_moves(body)) {
       const uint64_t n = step_ + body.slot;
       return {static_cast<int16_t>(units.small_displacement(velocity.x, n)),
@@ -241,6 +254,7 @@ class CrowdEngine {
   MoveConfig config_;
   uint64_t step_ = 0;                  // the current one
   std::vector<StrideGround> grounds_;  // by class
+  std::vector<float> turning_radii_;   // by class, 0: no bound [m]; empty: none has any
   int32_t width_, depth_;
   int32_t widest_ = 0, longest_ = 0, sight_ = 0;
   uint64_t every_ = 1;  // steps of a reaction

@@ -57,6 +57,7 @@ Result<void> WalkMode::open_class(size_t number, Context& context) {
   if (has_paths && plans_by_cost(*classes_[number])) make_lives(number);
   engine_.set_ground(number, StrideGround(shared_.classes[number]->ground,
                                           world::step_mm(shared_.body_class(number))));
+  engine_.set_turning_radius(number, static_cast<float>(shared_.body_class(number).turning_radius));
   return {};
 }
 

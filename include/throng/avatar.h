@@ -33,6 +33,10 @@ struct AvatarClass {
   /// Largest descent over an edge by a drop link, which is one-way; only paths over nodes use
   /// these. 0: none. [m, 0 to 1000]
   double max_drop = 0;
+  /// On foot, the direction of its velocity turns in a step by at most speed x dt / turning_radius,
+  /// as that of a cart. A sharper turn slows it down, a much sharper one stops it, and from a stop
+  /// it starts in any direction. 0: no bound. [m, 0 to 100]
+  double turning_radius = 0;
   bool flies = false;  ///< It also moves through the air.
 };
 
@@ -85,9 +89,14 @@ struct AvatarState {
   int32_t avatar_class = 0;
   Vec3d position;     ///< Y at the feet. [m]
   double radius = 0;  ///< Of the body. [m]
-  /// Unit vector in the ground plane. For an avatar that leans: before the lean; leaned() of
-  /// avatar.h gives the direction of its walk.
+  /// Orientation, a unit vector in the ground plane. An avatar of a crowd with goals turns by at
+  /// most 120 degrees a second towards the direction in which it walks, little by little if it is
+  /// slow, and keeps its orientation while it stands; a new one faces its preferred velocity after
+  /// its first step, before that +Z. For an avatar that leans: before the lean; leaned() of
+  /// avatar.h gives the direction in which it faces.
   double heading_x = 0, heading_z = 0;
+  /// Over the last step, in crowds with goals. Y is 0 but in the air and over nodes. [m/s]
+  Vec3d velocity;
   MoveMode mode = MoveMode::kWalk;
   /// Unit vector along the body from the feet; for climbers the surface's normal.
   Vec3d up{0, 1, 0};

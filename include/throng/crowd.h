@@ -334,7 +334,8 @@ class THRONG_API Crowd {
 
   /// Counts overlaps and wall entries by exact tests that share nothing with the step.
   [[nodiscard]] CrowdCheck check() const;
-  /// XXH3 of all avatars in order of slot: position, level, velocity, state. Same for any workers.
+  /// XXH3 of all avatars in order of slot: position, level, velocity, state, but not orientation,
+  /// on which no step depends. Same for any workers.
   [[nodiscard]] uint64_t state_hash() const;
   /// Reads all avatars in order of slot into `out` (resized). AvatarState::id is the slot.
   void read(std::vector<AvatarState>& out) const;

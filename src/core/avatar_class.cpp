@@ -25,7 +25,7 @@ struct Limit {
   const char* unit;
 };
 
-constexpr std::array<Limit, 7> kLimits{{
+constexpr std::array<Limit, 8> kLimits{{
     {"height", &AvatarClass::height, 0.1, 30, "m"},
     {"radius", &AvatarClass::radius, 0.01, 5, "m"},
     {"step", &AvatarClass::step_height, 0, 15, "m"},
@@ -33,6 +33,7 @@ constexpr std::array<Limit, 7> kLimits{{
     {"speed", &AvatarClass::speed, 1e-6, 1000, "m/s"},
     {"climb_slope", &AvatarClass::climb_slope, 0, 180, "degrees"},
     {"max_drop", &AvatarClass::max_drop, 0, 1000, "m"},
+    {"turning_radius", &AvatarClass::turning_radius, 0, 100, "m"},
 }};
 
 // The limit that `avatar` breaks, as words, or nothing.
@@ -115,7 +116,7 @@ Result<void> check_classes(std::span<const AvatarClass> classes) {
 
 void read_class(ConfigReader& reader, AvatarClass& avatar) {
   reader.only({"name", "height", "radius", "step", "max_slope", "speed", "climb_slope", "max_drop",
-               "flies"});
+               "turning_radius", "flies"});
   reader.flag("flies", avatar.flies);
   for (const Limit& limit : kLimits) {
     reader.number(limit.key, avatar.*limit.member, limit.low, limit.high);

@@ -256,6 +256,7 @@ CrowdMemory Crowd::memory() const {
   CrowdMemory memory;
   memory.avatars =
       (s.shared.generation.capacity() + s.where.capacity() + s.free_slots.capacity()) * 4 +
+      s.shared.orientations.capacity() * sizeof(crowd::Orientation) +
       s.inside.capacity() * sizeof(uint64_t) + s.checked_at.capacity() * sizeof(s.checked_at[0]);
   for (const crowd::Mode* mode : s.modes) mode->add_memory(memory);
   for (const auto& of : s.shared.classes) memory.ground += of ? of->ground.bytes() : 0;

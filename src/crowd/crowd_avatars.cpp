@@ -141,6 +141,7 @@ void Crowd::State::reserve(size_t more) {
   const size_t slots = generation.size() + more - std::min(more, free_slots.size());
   const size_t room = crowd::grown(generation.capacity(), slots);
   generation.reserve(room);
+  shared.orientations.reserve(room);
   where.reserve(room);
   walk.reserve(walk.bodies().size() + more, room);
 }
@@ -151,10 +152,12 @@ AvatarId Crowd::State::add(crowd::NewAvatar avatar) {
   if (free_slots.empty()) {
     body.slot = static_cast<uint32_t>(shared.generation.size());
     shared.generation.push_back(1);
+    shared.orientations.emplace_back();
     where.push_back(kNoBody);
   } else {
     body.slot = free_slots.back();
     free_slots.pop_back();
+    shared.orientations[body.slot] = {};
   }
   for (crowd::Mode* mode : modes) mode->add(avatar);
   where[body.slot] = static_cast<uint32_t>(walk.bodies().size());

@@ -136,7 +136,7 @@ std::optional<std::vector<crowd::CrowdObstacle>> obstacles_of(
 // Size in bytes of a crowd with the numbers of this header.
 uint64_t size_of(const Head& head) {
   return sizeof head + head.bodies * sizeof(crowd::Body) +
-         head.slots * (crowd::WalkMode::kRowBytes + 4) +
+         head.slots * (crowd::WalkMode::kRowBytes + 4 + sizeof(crowd::Orientation)) +
          (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
          head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 +
          head.flights * crowd::FlyMode::kRowBytes + head.climbs * crowd::ClimbMode::kRowBytes +
@@ -305,6 +305,7 @@ SavedArrays read_arrays(const Head& head, const uint8_t* at, State& s) {
   SavedArrays saved;
   at = take_rows(at, head.bodies, saved.bodies);
   at = take_rows(at, head.slots, s.shared.generation);
+  at = take_rows(at, head.slots, s.shared.orientations);
   at = s.walk.restore(at, head.slots);
   at = take_rows(at, head.free_slots, s.free_slots);
   at = take_rows(at, head.obstacles, saved.obstacles);
@@ -394,6 +395,7 @@ std::vector<uint8_t> Crowd::save() const {
   put_rows(out, &head, 1);
   put_rows(out, s.walk.bodies().data(), head.bodies);
   put_rows(out, s.shared.generation.data(), head.slots);
+  put_rows(out, s.shared.orientations.data(), head.slots);
   s.walk.save(out);
   put_rows(out, s.free_slots.data(), head.free_slots);
   put_rows(out, obstacles.data(), head.obstacles);

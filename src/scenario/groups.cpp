@@ -14,6 +14,13 @@ constexpr double kSlowdownPerMetre =
     0.35;  // [1/m] share of the speed lost for each metre ahead of the middle
 constexpr double kMinFactor = 0.35, kMaxFactor = 1.15;
 
+// The direction of its last move, in plan; that of one that stands is +Z.
+Vec3d direction_of(const AvatarState& at) {
+  const Vec3d move = unleaned(at.velocity, at.up);
+  const double size = std::hypot(static_cast<float>(move.x), static_cast<float>(move.z));
+  return size > 0 ? Vec3d{move.x / size, 0, move.z / size} : Vec3d{0, 0, 1};
+}
+
 }  // namespace
 
 // Are all present members of its group at this stage's end, or beyond, or unable to get there?
@@ -38,7 +45,7 @@ void Simulation::State::adjust_group_speeds() {
       walkers.emplace_back(p->id, *crowd.read(p->id));
       const AvatarState& at = walkers.back().second;
       middle = {middle.x + at.position.x, 0, middle.z + at.position.z};
-      heading = {heading.x + at.heading_x, 0, heading.z + at.heading_z};
+      heading = heading + direction_of(at);
       slowest = std::min(slowest, p->speed);
     }
     if (walkers.size() < 2) continue;

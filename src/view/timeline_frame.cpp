@@ -113,7 +113,8 @@ void follow(const TimelineFrame& before, TimelineFrame& now) {
     now.walked[i] = static_cast<float>(before.walked[j] + (seconds < 0 ? -moved : moved));
     const double keep = std::exp(-apart / kSpeedMemory);
     now.speed[i] = static_cast<float>(before.speed[j] * keep + moved / apart * (1 - keep));
-    // A standing avatar has no heading: players give that along +Z then.
+    // An avatar that has not moved yet has no heading, and one that stands none in recordings of
+    // wanderers: players give that along +Z then.
     const bool stands = moved < 1e-3 * apart && now.heading[i] == 0;
     const double turn = stands ? 0 : turn_between(was, now.heading[i]);
     const double max_turn = kTurnSpeed * apart;

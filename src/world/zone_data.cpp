@@ -271,7 +271,8 @@ Result<std::shared_ptr<WorldData>> read_manifest(std::span<const uint8_t> bytes,
                                .max_slope = entry.max_slope(),
                                .speed = entry.speed(),
                                .climb_slope = entry.climb_slope(),
-                               .max_drop = entry.max_drop()});
+                               .max_drop = entry.max_drop(),
+                               .turning_radius = entry.turning_radius()});
     summary.walkable_area.push_back(entry.walkable_area());
     world->class_index.push_back(std::make_unique<ClassIndex>());
   }
@@ -315,7 +316,7 @@ std::vector<uint8_t> write_manifest(const WorldData& world) {
     const AvatarClass& a = s.classes[c];
     classes.push_back(format::CreateClassEntryDirect(
         builder, a.name.c_str(), a.height, a.radius, a.step_height, a.max_slope, a.speed,
-        s.walkable_area[c], a.climb_slope, a.max_drop));
+        s.walkable_area[c], a.climb_slope, a.max_drop, a.turning_radius));
   }
   std::vector<format::ZoneEntry> zones;
   for (const auto& slot : world.slots) zones.push_back(slot->entry);

@@ -75,6 +75,17 @@ TEST(AvatarClass, TomlAndJsonGiveTheSameClasses) {
   EXPECT_EQ((*a)[1].radius, 0.6);
 }
 
+TEST(AvatarClass, ATurningRadiusIsReadFromAFile) {
+  const ClassFile file(
+      "c.toml", "[[class]]\nname = \"cart\"\nturning_radius = 1.5\n[[class]]\nname = \"a\"\n");
+  const auto classes = load_classes(file.path);
+  ASSERT_TRUE(classes) << classes.error().message;
+  EXPECT_EQ((*classes)[0].turning_radius, 1.5);
+  EXPECT_EQ((*classes)[1].turning_radius, 0);
+  EXPECT_EQ(refusal("c.toml", "[[class]]\nname = \"a\"\nturning_radius = -1\n"),
+            ":3: avatar class 1: turning_radius = -1 is outside 0 to 100");
+}
+
 TEST(AvatarClass, AWrongSettingIsNamedByLineKeyAndLimit) {
   EXPECT_EQ(refusal("c.toml", "[[class]]\nname = \"a\"\n\nheight = 40\n"),
             ":4: avatar class 1: height = 40 is outside 0.1 to 30");
@@ -83,7 +94,7 @@ TEST(AvatarClass, AWrongSettingIsNamedByLineKeyAndLimit) {
             ":4: avatar class 2: radius = 9 is outside 0.01 to 5");
   EXPECT_EQ(refusal("c.toml", "[[class]]\nname = \"a\"\nheigth = 1\n"),
             ":3: avatar class 1: unknown key 'heigth'; known are name, height, radius, step, "
-            "max_slope, speed, climb_slope, max_drop, flies");
+            "max_slope, speed, climb_slope, max_drop, turning_radius, flies");
   EXPECT_EQ(refusal("c.toml", "[[class]]\nname = \"a\"\nradius = \"wide\"\n"),
             ":3: avatar class 1: radius must be a number");
   EXPECT_EQ(refusal("c.toml", "[[class]]\nname = \"a\"\nheight = 1\nstep = 0.6\n"),

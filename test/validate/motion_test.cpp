@@ -61,7 +61,7 @@ TEST(Motion, RecordedPeopleTurnAndChangeSpeedLessThanTheLimits) {
   EXPECT_EQ(compared, 3);
   EXPECT_GE(value_of(result, "path by straight line, run 1"), 1);
   EXPECT_GT(value_of(result, "turning rate of orientations, run 1"), 0);
-  EXPECT_LT(value_of(result, "turning rate of orientations, run 1"), 1800);
+  EXPECT_LT(value_of(result, "turning rate of orientations, run 1"), 90);
 }
 
 TEST(Motion, HasteIsMeasuredAtEachDesiredSpeed) {

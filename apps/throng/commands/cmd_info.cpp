@@ -47,6 +47,7 @@ Json info_json(const InfoOptions& options, const WorldSummary& summary,
                        {"speed", avatar.speed},
                        {"climb_slope", avatar.climb_slope},
                        {"max_drop", avatar.max_drop},
+                       {"turning_radius", avatar.turning_radius},
                        {"flies", avatar.flies},
                        {"walkable_area", summary.walkable_area[i]}});
   }
@@ -75,6 +76,9 @@ std::string info_of_moves(const AvatarClass& avatar) {
   std::string text;
   if (avatar.climb_slope > 0) text += fmt::format(", climbs to {:.0f} deg", avatar.climb_slope);
   if (avatar.max_drop > 0) text += fmt::format(", drops {:.2f} m", avatar.max_drop);
+  if (avatar.turning_radius > 0) {
+    text += fmt::format(", turns in circles of {:.2f} m", avatar.turning_radius);
+  }
   if (avatar.flies) text += ", flies";
   return text;
 }

@@ -181,6 +181,7 @@ void ClimbMode::step(std::span<Body> bodies, EngineCounts& counts, EngineTimes& 
   const auto before = [this](Body& body, Climb& climb, int32_t worker) {
     plan(body, climb, worker);
   };
+  engine_.set_orientations(shared_.orientations);
   engine_.step(shared_.sub_step, bodies, climbs_, fly_.flights(), before, counts, times);
   for (const uint32_t slot : engine_.arrived()) shared_.arrived.push_back(shared_.id_of(slot));
 }
@@ -258,14 +259,14 @@ bool ClimbMode::must_leave(const Body& body, const Prism& obstacle) const {
 
 AvatarState ClimbMode::state_of(const Body& body) const {
   const Climb& climb = climbs_[body.slot];
-  const Vec3d displacement = unleaned({body.velocity.x, climb.rise, body.velocity.z}, climb.axis);
-  const double size = std::hypot(displacement.x, displacement.z);
+  const Orientation& orientation = shared_.orientations[body.slot];
   return {.id = body.slot,
           .avatar_class = body.avatar_class,
           .position = climb.feet,
           .radius = climb.radius,
-          .heading_x = size > 0 ? displacement.x / size : 0,
-          .heading_z = size > 0 ? displacement.z / size : 1,
+          .heading_x = orientation.x(),
+          .heading_z = orientation.z(),
+          .velocity = {body.velocity.x, climb.rise, body.velocity.z},
           .mode = MoveMode::kClimb,
           .up = climb.axis};
 }

@@ -348,6 +348,20 @@ bool ClimberEngine::propose(const Contest& contest, const Worker& owner) {
   return false;
 }
 
+// Its orientation, after its axis and then towards its move.
+void ClimberEngine::turn(const Body& body, const Climb& climb, const Vec3d& last_axis) const {
+  if (orientations_.empty()) return;
+  Orientation& orientation = orientations_[body.slot];
+  orientation = transported(orientation, last_axis, climb.axis);
+  const auto before_lean = [&](const Vec3d& v) {
+    const Vec3d own = unleaned(v, climb.axis);
+    return steer::Plane{static_cast<float>(own.x), static_cast<float>(own.z)};
+  };
+  Turning(orientations_, config_.units.dt)
+      .turn(body, before_lean({body.velocity.x, climb.rise, body.velocity.z}),
+            before_lean({body.preferred.x, climb.preferred_up, body.preferred.z}));
+}
+
 void ClimberEngine::settle(uint32_t c, uint64_t step, EngineCounts& counts) {
   const StepUnits& units = config_.units;
   Body& body = bodies_[rounds_.movers[c]];
@@ -356,6 +370,7 @@ void ClimberEngine::settle(uint32_t c, uint64_t step, EngineCounts& counts) {
   const ClimberGround& ground = *grounds_[body.avatar_class];
   const Space desired{body.preferred.x, climb.preferred_up, body.preferred.z};
   const bool moves = move.state == Move::kDecided;
+  const Vec3d last_axis = climb.axis;
   float gained = 0;  // of its speed
   if (moves) {
     const auto& [at, pose] = move.displacement.step;
@@ -381,6 +396,7 @@ void ClimberEngine::settle(uint32_t c, uint64_t step, EngineCounts& counts) {
     climb.rise = 0;
     ++counts.stood;
   }
+  turn(body, climb, last_axis);
   if (!body.has(Body::kHasGoal) || body.has(Body::kExternal)) return;
   counts.progress += std::lrint(gained * 1e6f);
   const bool at_end = climb.is_last_segment() && climb.at.in_air == 0;

@@ -51,6 +51,9 @@ class ClimberEngine {
                                     const ClimbPose& pose, double radius,
                                     const AirObstacle& obstacle, const path::Solid& solid) const;
 
+  /// As of CrowdEngine.
+  void set_orientations(std::span<Orientation> by_slot) { orientations_ = by_slot; }
+
   /// Called first for each climber, on any worker: it finds and follows the path.
   using Before = FunctionRef<void(Body&, Climb&, int32_t worker)>;
   /// One step of all climbers; `climbs` by slot, `flights` too, or none. Other bodies keep their
@@ -93,6 +96,7 @@ class ClimberEngine {
                               const ClimbCylinder& cylinder) const;
   bool propose(const Contest& contest, const Worker& owner);
   void settle(uint32_t climber, uint64_t step, EngineCounts& counts);
+  void turn(const Body& body, const Climb& climb, const Vec3d& last_axis) const;
 
   MoveConfig config_;
   std::vector<const ClimberGround*> grounds_;  // by class
@@ -105,6 +109,7 @@ class ClimberEngine {
   Rounds rounds_;
   FlyerGrid grid_;
   std::vector<uint32_t> arrived_;
+  std::span<Orientation> orientations_;  // by slot
 };
 
 }  // namespace throng::crowd

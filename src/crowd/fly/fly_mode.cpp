@@ -148,6 +148,7 @@ void FlyMode::step(std::span<Body> bodies, EngineCounts& counts, EngineTimes& ti
   const auto before = [this](Body& body, Flight& flight, int32_t worker) {
     plan(body, flight, worker);
   };
+  engine_.set_orientations(shared_.orientations);
   engine_.step(shared_.sub_step, bodies, flights_, before, counts, times);
   for (const uint32_t slot : engine_.arrived()) shared_.arrived.push_back(shared_.id_of(slot));
   for (const uint32_t i : engine_.landed()) land(bodies[i]);
@@ -227,7 +228,9 @@ void FlyMode::end_leaving(Body& body) {
 
 AvatarState FlyMode::state_of(const Body& body) const {
   AvatarState state = walk_.state_of(body);
-  if (body.flies()) state.mode = MoveMode::kFly;
+  if (!body.flies()) return state;
+  state.mode = MoveMode::kFly;
+  state.velocity.y = flights_[body.slot].rise;
   return state;
 }
 

@@ -536,6 +536,7 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
     flight.rise = 0;
     ++counts.stood;
   }
+  Turning(orientations_, units.dt).turn(body, units.dt);
   if (flight.in_link != 0) {
     if (flight.descends != 0) {
       body.detour_angle = moves ? 0 : body.detour_angle + units.dt;

@@ -47,6 +47,8 @@ class FlyerEngine {
   void list_exits(const Body& body, std::vector<const ObstacleGrid::Item*>& near,
                   std::vector<AirPosition>& exits) const;
 
+  /// As of CrowdEngine.
+  void set_orientations(std::span<Orientation> by_slot) { orientations_ = by_slot; }
   /// How far from its landing place a body comes down that waits for it. [m]
   [[nodiscard]] static float landing_radius(const Flight& flight);
   /// Called first for each flyer, on any worker: it finds and follows the path.
@@ -107,6 +109,7 @@ class FlyerEngine {
   Rounds rounds_;
   FlyerGrid grid_;
   std::vector<uint32_t> arrived_, landed_;
+  std::span<Orientation> orientations_;  // by slot
 };
 
 }  // namespace throng::crowd

@@ -257,15 +257,7 @@ void LinkMode::end_leaving(Body& body) {
 
 AvatarState LinkMode::state_of(const Body& body) const {
   AvatarState state = walk_.state_of(body);
-  if (!body.on_link) return state;
-  state.mode = MoveMode::kLink;
-  // On a vertical link it keeps its heading.
-  const auto& [x, z] = uses_[body.slot].heading;
-  const double size = std::hypot(x, z);
-  if (body.velocity.x == 0 && body.velocity.z == 0 && size > 0) {
-    state.heading_x = x / size;
-    state.heading_z = z / size;
-  }
+  if (body.on_link) state.mode = MoveMode::kLink;
   return state;
 }
 

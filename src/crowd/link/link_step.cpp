@@ -123,11 +123,6 @@ void LinkMode::enter(std::span<const Body> bodies, Body& body, LinkUse& use) con
   body.flags = (body.flags & (Body::kHasGoal | Body::kArrived)) | Body::kMovedElsewhere;
   body.detour_angle = 0;
   head_to_end(body);
-  const double size = std::hypot(body.velocity.x, body.velocity.z);
-  const auto component = [&](float velocity) {
-    return static_cast<int16_t>(size > 0 ? std::lrint(velocity / size * INT16_MAX) : 0);
-  };
-  use.heading = {component(body.velocity.x), component(body.velocity.z)};
 }
 
 void LinkMode::ride(std::span<Body> bodies, uint32_t index, EngineCounts& counts) {
@@ -171,6 +166,8 @@ void LinkMode::ride(std::span<Body> bodies, uint32_t index, EngineCounts& counts
     body.preferred = {static_cast<float>((use.to.x - use.from.x) * rate),
                       static_cast<float>((use.to.z - use.from.z) * rate)};
   }
+  const float sub_dt = shared_.sub_dt();
+  Turning(shared_.orientations, sub_dt).turn(body, sub_dt);
   if (use.along >= size) land(body, use);
 }
 

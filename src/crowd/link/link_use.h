@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <type_traits>
 
@@ -32,7 +31,7 @@ struct LinkUse {
   uint8_t back = 0;     // it goes from the link's `to` to its `from`
   uint8_t stands = 0;   // while it waits or gives room: it has been given a place to stand at
   uint8_t arrived = 0;  // it had Body::kArrived before that
-  std::array<int16_t, 2> heading{};  // in plan, when it left the ground [of 32767]
+  uint8_t reserved[4] = {};
 };
 static_assert(sizeof(LinkUse) == 64 && std::is_trivially_copyable_v<LinkUse>);
 

@@ -15,6 +15,7 @@
 #include "crowd/ground/crowd_ground.h"
 #include "crowd/ground/obstacle_grid.h"
 #include "crowd/ground/target.h"
+#include "crowd/mode/orientation.h"
 #include "crowd/obstacles/obstacle_set.h"
 #include "path/edits/edit_list.h"
 #include "throng/avatar.h"
@@ -46,10 +47,11 @@ struct SharedState {
   static constexpr uint64_t kTimeUnits = uint64_t{1} << 20;  // as many as sub-steps at most
   std::vector<std::unique_ptr<SharedClass>> classes;         // null: not in use
   ObstacleSet obstacles;
-  ObstacleGrid obstacle_grid;        // those that are active or close
-  bool some_leave = false;           // Body::leaves is set for some
-  std::vector<uint32_t> generation;  // by slot
-  std::vector<Target> targets;       // TargetId less one
+  ObstacleGrid obstacle_grid;             // those that are active or close
+  bool some_leave = false;                // Body::leaves is set for some
+  std::vector<uint32_t> generation;       // by slot
+  std::vector<Orientation> orientations;  // by slot
+  std::vector<Target> targets;            // TargetId less one
 
   // Of the step.
   std::vector<AvatarId> arrived, goal_unreachable;

@@ -32,6 +32,7 @@ constexpr float kCornerRadius = 0.1f;     // [m] to its corner a body turns to n
 constexpr float kStraightHorizon = 0.1f;  // [s] within which a body that walks straight
                                           // must meet no other
 constexpr size_t kLevelPrefetch = 6, kCellPrefetch = 3;  // bodies, whose ground is prefetched
+constexpr size_t kOrientationPrefetch = 8;               // bodies
 constexpr size_t kBits = 64;                             // of a word
 
 // Do two bodies at these places overlap?
@@ -78,6 +79,11 @@ CrowdEngine::CrowdEngine(const MoveConfig& config, int32_t width, int32_t depth,
 
 void CrowdEngine::set_ground(size_t avatar_class, const StrideGround& ground) {
   grounds_[avatar_class] = ground;
+}
+
+void CrowdEngine::set_turning_radius(size_t avatar_class, float radius) {
+  if (turning_radii_.empty() && radius > 0) turning_radii_.resize(grounds_.size());
+  if (!turning_radii_.empty()) turning_radii_[avatar_class] = radius;
 }
 
 void CrowdEngine::fit(int32_t widest, float fastest, float dt) {
@@ -604,10 +610,12 @@ bool CrowdEngine::is_accepted(uint32_t i, uint64_t step) const {
 void CrowdEngine::settle_all(EngineCounts& counts) {
   arrived_.clear();
   std::mutex adding;
+  const Turning turning(orientations_, config_.units.dt);
   const auto run = [&](size_t begin, size_t end) {
     EngineCounts here;
     for (size_t i = begin; i < end; ++i) {
       Body& b = bodies_[i];
+      if (i + kOrientationPrefetch < end) turning.prefetch(bodies_[i + kOrientationPrefetch].slot);
       if (b.has(Body::kMovedElsewhere)) continue;
       here.low_detail += b.has(Body::kLowDetail) ? 1 : 0;
       const Plane displacement =
@@ -634,6 +642,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
         b.velocity = {};
         ++here.stood;
       }
+      turning.turn(b, units.dt);
       b.clear(Body::kContinues);
       b.in_counterflow = proposal.in_counterflow;
       if (may_move) b.flags = static_cast<uint8_t>(b.flags | proposal.flags);

@@ -16,12 +16,14 @@
 #include "crowd/ground/stride_ground.h"
 #include "crowd/mode/engine_counts.h"
 #include "crowd/mode/given_moves.h"
+#include "crowd/mode/orientation.h"
 #include "crowd/walk/move_config.h"
 #include "crowd/walk/neighbour_grid.h"
 #include "crowd/walk/step_units.h"
 #include "steer/lanes.h"
 #include "steer/models.h"
 #include "steer/sampled.h"
+#include "steer/turning_radius.h"
 
 /// The step of a crowd with goals as passes over arrays: sort, sense and steer, resolve conflicts,
 /// settle. test/support/plain_crowd.h does the same in the simplest code.
@@ -57,12 +59,16 @@ class CrowdEngine {
   CrowdEngine(const MoveConfig& config, int32_t width, int32_t depth, size_t classes);
 
   void set_ground(size_t avatar_class, const StrideGround& ground);
+  /// Bounds the turns of a class. [m; 0: no bound]
+  void set_turning_radius(size_t avatar_class, float radius);
   /// No body may be wider or faster. To be called before the first such body is added.
   void fit(int32_t widest, float fastest, float dt);
   /// A body may become that tall. [mm]
   void expect_height(int32_t tallest) { highest_ = highest_ < tallest ? tallest : highest_; }
   /// From the next step on; the views must stay until it is over.
   void set_detail(const EngineDetail& detail);
+  /// Steps turn these, by slot; they must stay until the next call. At first there are none.
+  void set_orientations(std::span<Orientation> by_slot) { orientations_ = by_slot; }
   /// Reserves memory for so many bodies. The bodies stay.
   void reserve(size_t bodies);
   [[nodiscard]] std::span<Body> bodies() const { return {bodies_.data(), size_}; }
@@ -221,10 +227,15 @@ class CrowdEngine {
   }
   void find_candidates(const Body& body, const steer::Situation& situation, bool open,
                        Displacements& candidates);
+  // Its turns are read from its last move: were that rounded to the nearest unit, those of short
+  // steps would all be lost.
+  [[nodiscard]] bool is_turn_bounded(const Body& body) const {
+    return !turning_radii_.empty() && turning_radii_[body.avatar_class] > 0;
+  }
   // Moves are whole units. A body whose moves are of few units decides in each step, and its moves
   // are rounded up or down in turn: else it would be too slow, or stand.
   [[nodiscard]] bool has_short_moves(const Body& body) const {
-    return units_of(body).is_short(body.speed);
+    return is_turn_bounded(body) || units_of(body).is_short(body.speed);
   }
   // One that is externally controlled is never moved farther than it was given.
   [[nodiscard]] Displacement given_displacement(const Body& body, steer::Plane velocity) const {
@@ -241,6 +252,10 @@ class CrowdEngine {
   [[nodiscard]] Displacement displacement_of(const Body& body, steer::Plane velocity) const {
     if (body.has(Body::kExternal)) return given_displacement(body, velocity);
     const StepUnits units = units_of(body);
+    if (is_turn_bounded(body)) {
+      velocity = steer::within_turning_radius(body.velocity, velocity, units.dt,
+                                              turning_radii_[body.avatar_class]);
+    }
     if (has_short_moves(body)) {
       const uint64_t n = step_ + body.slot;
       return {static_cast<int16_t>(units.small_displacement(velocity.x, n)),
@@ -275,6 +290,7 @@ class CrowdEngine {
   MoveConfig config_;
   uint64_t step_ = 0;                  // the current one
   std::vector<StrideGround> grounds_;  // by class
+  std::vector<float> turning_radii_;   // by class, 0: no bound [m]; empty: none has any
   int32_t width_, depth_;
   int32_t widest_ = 0, longest_ = 0, sight_ = 0;
   uint64_t every_ = 1;  // steps of a reaction
@@ -289,6 +305,7 @@ class CrowdEngine {
   std::vector<Worker> workers_;
   std::vector<uint32_t> arrived_;
   std::vector<float> level_speeds_;
+  std::span<Orientation> orientations_;  // by slot
 };
 
 }  // namespace throng::crowd

@@ -58,6 +58,7 @@ Result<void> WalkMode::open_class(size_t number, Context& context) {
   if (has_paths && plans_by_cost(*classes_[number])) make_lives(number);
   engine_.set_ground(number, StrideGround(shared_.classes[number]->ground,
                                           world::step_mm(shared_.body_class(number))));
+  engine_.set_turning_radius(number, static_cast<float>(shared_.body_class(number).turning_radius));
   return {};
 }
 
@@ -135,6 +136,7 @@ void WalkMode::step(std::span<Body> /*bodies: its engine's*/, EngineCounts& coun
   const auto plan_all = [this](std::span<Body> bodies, int32_t worker) { plan(bodies, worker); };
   const auto plan_none = [](std::span<Body> /*bodies*/, int32_t /*worker*/) {};
   links_are_used_ = takes_links_->begin_step();
+  engine_.set_orientations(shared_.orientations);
   const bool has_plans =
       shared_.config.routing == Routing::kPaths || some_fly_ || shared_.some_leave;
   engine_.step(shared_.sub_step - 1,
@@ -238,14 +240,15 @@ bool WalkMode::is_inside(const Body& body, const ObstacleGrid::Item& obstacle) c
 AvatarState WalkMode::state_of(const Body& body) const {
   const Vec3d& origin = shared_.origin();
   const double unit = shared_.unit;
-  const double size = std::hypot(body.velocity.x, body.velocity.z);
+  const Orientation& orientation = shared_.orientations[body.slot];
   return {.id = body.slot,
           .avatar_class = body.avatar_class,
           .position = {origin.x + (body.x + 0.5) * unit, body.y * 1e-3,
                        origin.z + (body.z + 0.5) * unit},
           .radius = body.radius * unit,
-          .heading_x = size > 0 ? body.velocity.x / size : 0,
-          .heading_z = size > 0 ? body.velocity.z / size : 1,
+          .heading_x = orientation.x(),
+          .heading_z = orientation.z(),
+          .velocity = {body.velocity.x, 0, body.velocity.z},
           .mode = MoveMode::kWalk};
 }
 

@@ -24,7 +24,7 @@ namespace {
 using crowd::put_rows;
 using crowd::take_rows;
 
-constexpr uint64_t kMagic = 0x32315744574f5243;  // "CROWDW12"
+constexpr uint64_t kMagic = 0x33315744574f5243;  // "CROWDW13"
 
 struct Head {
   uint64_t magic = kMagic;

@@ -61,8 +61,9 @@ struct Body {
   bool on_right : 1 = false;   // in counterflow, its lane lies in the right half of the opening
   bool near_wall : 1 = false;  // and in need of another path, in the last step
   uint8_t : 0;                 // What follows lies in another byte.
-  uint8_t steps : 6 = 1;       // that it takes at once in this step; 0: it is skipped
-  // Others read the next two while they decide, so what shares their byte must not change then.
+  uint8_t steps : 5 = 1;       // that it takes at once in this step; 0: it is skipped
+  // Others read the next three while they decide, so what shares their byte must not change then.
+  bool asks : 1 = false;    // others to make room, by the request of the last step
   bool leaves : 1 = false;  // an obstacle that closes around it, or that became active beside it
   // A stream came towards it when it last sensed.
   bool in_counterflow : 1 = false;

@@ -85,7 +85,8 @@ Plane following(const SampledSettings& settings, const Situation& s) {
     const float half = 0.5f * u;
     const float limit = settings.unbound * s.fastest * (1 - 1 / (1 + (u + half * (u + u * u))));
     const float leader = s.near.vx[n] * ahead.x + s.near.vz[n] * ahead.z;
-    max_speed = std::min(max_speed, limit + settings.foresight * std::max(leader - limit, 0.0f));
+    const float allowed = limit + settings.foresight * std::max(leader - limit, 0.0f);
+    max_speed = std::min(max_speed, std::min(allowed, settings.max_flow * std::sqrt(square)));
   }
   return max_speed < desired ? Plane{ahead.x * max_speed, ahead.z * max_speed} : s.preferred;
 }

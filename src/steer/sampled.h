@@ -39,6 +39,7 @@ struct SampledSettings {
   float lane = 0.75f;           ///< A leader is not farther aside than this part of both radii,
   float same_direction = 0.8f;  ///< and prefers the same direction: cosine of the angle.
   float unbound = 1.1f;         ///< Speed at unlimited spacing, by `fastest`.
+  float max_flow = 1.2f;        ///< Of a lane, however fast its bodies want to be. [1/s, > 0]
   float foresight = 0.29f;      ///< Share of a leader's excess speed that is added to the limit.
 };
 

@@ -84,7 +84,8 @@ Plane Following(const SampledSettings& settings, const Situation& s) {
     leads = hn::And(leads, hn::Gt(hn::Mul(along_ahead, along_ahead), min_square));
     if (hn::AllFalse(d, leads)) continue;
     const V bodies = hn::Min(radii, hn::Set(d, settings.body));
-    const V spacing = hn::Max(hn::Sub(hn::Sqrt(square), bodies), zero);
+    const V distance = hn::Sqrt(square);
+    const V spacing = hn::Max(hn::Sub(distance, bodies), zero);
     const V u = times(spacing, per_metre);
     const V half = times(u, 0.5f);
     const V sum = hn::Add(u, hn::Mul(half, hn::Add(u, hn::Mul(u, u))));
@@ -92,7 +93,8 @@ Plane Following(const SampledSettings& settings, const Situation& s) {
     const V leader = hn::Add(hn::Mul(hn::Load(d, &s.near.vx[n]), ahead_x),
                              hn::Mul(hn::Load(d, &s.near.vz[n]), ahead_z));
     const V faster = hn::Max(hn::Sub(leader, limit), zero);
-    const V allowed = hn::Add(limit, times(faster, settings.foresight));
+    const V allowed = hn::Min(hn::Add(limit, times(faster, settings.foresight)),
+                              times(distance, settings.max_flow));
     max_speed = hn::IfThenElse(leads, hn::Min(max_speed, allowed), max_speed);
   }
   const float speed = hn::GetLane(hn::MinOfLanes(d, max_speed));

@@ -75,7 +75,10 @@ struct LevelGround {
                                .steering = config.steering,
                                .deadlock_settings = config.deadlock_settings,
                                .lanes = config.lanes,
-                               .spacing = {}},
+                               .spacing = {},
+                               .queues = config.queues,
+                               .queue = config.queue,
+                               .acceleration = config.acceleration},
                               data.width, data.depth, 1);
     engine.set_ground(0, crowd::StrideGround(ground, 400));
     engine.fit(widest, fastest, config.units.dt);
@@ -142,6 +145,33 @@ TEST(CrowdEngine, BodiesThatContinueDoWhatThePlainStepDoes) {
       for (int step = 0; step < 80; ++step) ASSERT_EQ(pair.step(), "") << reaction << ' ' << area;
     }
   }
+}
+
+TEST(CrowdEngine, QueuesDoWhatThePlainStepDoes) {
+  const LevelGround ground(60);
+  test::PlainConfig config;
+  config.queues = true;
+  const test::Spot corner{config.to_units(15), config.to_units(15)};
+  for (const float acceleration : {0.0f, 5.0f}) {
+    config.acceleration = acceleration;
+    for (const double area : {2.0, 1.0, 0.7}) {
+      Pair pair = ground.pair(scattered(config, 300, area, 4, corner), config, 2);
+      for (int step = 0; step < 300; ++step)
+        ASSERT_EQ(pair.step(), "") << acceleration << ' ' << area;
+    }
+  }
+}
+
+// A third head to the same place, so that they queue and rest around it.
+TEST(CrowdEngine, BodiesWithOneGoalDoWhatThePlainStepDoes) {
+  const LevelGround ground(60);
+  test::PlainConfig config;
+  config.queues = true;
+  const test::Spot corner{config.to_units(15), config.to_units(15)};
+  std::vector<test::PlainBody> bodies = scattered(config, 200, 0.7, 5, corner);
+  for (size_t i = 0; i < bodies.size(); i += 3) bodies[i].goal = bodies[0].goal;
+  Pair pair = ground.pair(bodies, config, 2);
+  for (int step = 0; step < 400; ++step) ASSERT_EQ(pair.step(), "");
 }
 
 TEST(CrowdEngine, RingsDoWhatThePlainStepDoes) {

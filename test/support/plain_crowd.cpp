@@ -73,6 +73,8 @@ PlainCrowd::PlainCrowd(std::vector<PlainBody> bodies, const PlainConfig& config)
   }
   near_.resize(bodies_.size());
   choices_.resize(bodies_.size());
+  next_rest_of_.resize(bodies_.size());
+  if (config_.queues) config_.steering.gap = 0;
 }
 
 Spot PlainCrowd::between(Spot a, Spot b) const {
@@ -80,16 +82,19 @@ Spot PlainCrowd::between(Spot a, Spot b) const {
 }
 
 Plane PlainCrowd::preferred_of(const PlainBody& body) const {
+  if (is_paused(body)) return {};
   const Plane to_goal = config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
   return steer::preferred_towards(to_goal, body.speed, config_.units.dt, body.turn);
 }
 
+int32_t PlainCrowd::sight() const {
+  return std::max(config_.to_units(config_.sight), 2 * max_radius_ + 2 * max_stride_);
+}
+
 void PlainCrowd::sense() {
   // Bodies that can be touched within a step are neighbours, however short the sight.
-  const int32_t sight =
-      std::max(config_.to_units(config_.sight), 2 * max_radius_ + 2 * max_stride_);
-  const float sight_square = static_cast<float>(sight) * static_cast<float>(sight);
-  const Grid grid(bodies_, sight, config_.side);
+  const float sight_square = static_cast<float>(sight()) * static_cast<float>(sight());
+  const Grid grid(bodies_, sight(), config_.side);
   const bool repeats = config_.side > 0;
   for (uint32_t i = 0; i < bodies_.size(); ++i) {
     near_[i].clear();
@@ -140,7 +145,7 @@ void PlainCrowd::prefer(uint32_t i) {
 }
 
 void PlainCrowd::steer_all() {
-  follows_.assign(bodies_.size(), 0);
+  plans_.assign(bodies_.size(), {});
   for (uint32_t i = 0; i < bodies_.size(); ++i) {
     if (config_.model != SteeringModel::kSampled) {
       prefer(i);
@@ -161,25 +166,29 @@ void PlainCrowd::steer_all() {
       const auto contender = [](const PlainBody& b, uint32_t slot) {
         return crowd::Contender{b.at.x, b.at.z, b.goal.x, b.goal.z, b.radius, slot};
       };
-      if (body.arrived < 0 && other.arrived < 0 &&
+      if (!config_.queues && body.arrived < 0 && other.arrived < 0 &&
           goes_first(contender(other, n.other), contender(body, i))) {
         waits = true;
         situation.preferred = crowd::preferred_of_waiting(
             config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z), body.speed,
             static_cast<float>(body.radius + other.radius) * config_.units.unit);
       }
+      const bool keeps_off = queues(body) && queues(other) &&
+                             gap(i, n) < config_.queue.ahead_range &&
+                             order_of(n.other) < order_of(i);
       situation.near.add(
           config_.steering,
           {config_.units.metres(n.at.x, n.at.z), yields ? preferred_of(other) : other.velocity,
-           static_cast<float>(body.radius + other.radius) * config_.units.unit,
+           static_cast<float>(body.radius + other.radius) * config_.units.unit +
+               (keeps_off ? config_.queue.ahead_margin : 0),
            preferred_of(other)});
     }
     const Plane preferred = situation.preferred;
     situation.preferred = steer::following(config_.steering, situation);
-    follows_[i] =
-        steer::can_but_crawl(config_.deadlock_settings, preferred, situation.preferred, body.speed)
-            ? 1
-            : 0;
+    Plan& plan = plans_[i];
+    plan.follows =
+        steer::can_but_crawl(config_.deadlock_settings, preferred, situation.preferred, body.speed);
+    if (config_.queues) queue_up(i, plan);
     bool open = steer::preferred_is_open(config_.steering, situation);
     if (!open && !waits && steer::is_opposed(config_.lanes, situation)) {
       steer::Lanes lanes(config_.lanes, preferred_of(body));
@@ -197,6 +206,21 @@ void PlainCrowd::steer_all() {
     if (open) {
       std::rotate(choices_[i].begin(), choices_[i].end() - 1, choices_[i].end());
       choices_[i][0] = situation.preferred;
+    }
+    if (config_.queues) {
+      const bool walks_back = !queues(body) || has_oncoming(i) || body.turn != 0;
+      const Plane ahead = path_ahead(body);
+      for (size_t c = open ? 1 : 0; c < choices_[i].size() && !walks_back; ++c) {
+        Plane& v = choices_[i][c];
+        if (v.x * ahead.x + v.z * ahead.z < 0) v = {};
+      }
+      make_room(i, plan, choices_[i]);
+    }
+    for (size_t c = 0; c < choices_[i].size() && !plan.creeps; ++c) {
+      const Plane wanted = choices_[i][c];
+      choices_[i][c] = reachable(body, wanted);
+      plan.repeats =
+          plan.repeats && (c > 0 || (choices_[i][c].x == wanted.x && choices_[i][c].z == wanted.z));
     }
   }
 }
@@ -223,6 +247,11 @@ void PlainCrowd::resolve_conflicts() {
         b.keeps && !crowd::decides(every, steps_, i) &&
         !crowd::is_before({b.goal.x - b.at.x, b.goal.z - b.at.z}, config_.units.stride(b.speed));
   }
+  std::vector<uint8_t> asks(count, 0);
+  yields_.assign(count, 0);
+  std::vector<crowd::RoomRequest> requests(count);
+  std::vector<crowd::Rest> rest(count);
+  for (size_t i = 0; i < count; ++i) rest[i] = bodies_[i].rest;
   std::vector<std::optional<Spot>> proposed(count);
   const auto is_clear = [&](uint32_t i, uint32_t j, Spot a, Spot b) {
     const Spot d = between(a, b);
@@ -251,9 +280,18 @@ void PlainCrowd::resolve_conflicts() {
         keeping[i] = 0;
         if (round > 0) first[i] = 0;
       }
-      if (round == 0) bodies_[i].follows = follows_[i] != 0;
+      if (round == 0) {
+        PlainBody& b = bodies_[i];
+        const Plan& plan = plans_[i];
+        b.follows = plan.follows;
+        asks[i] = plan.asks;
+        rest[i] = plan.rest;
+        yields_[i] = plan.yields;
+        if (plan.asks) requests[i] = plan.request;
+        if (plan.creeps) first[i] = 0;
+      }
       if (first[i] != 0) first[i] = propose(choices_[i][0]);
-      keeps[i] = first[i];
+      keeps[i] = first[i] != 0 && !plans_[i].asks && plans_[i].repeats;
       bool found = std::any_of(choices_[i].begin(), choices_[i].end(), propose);
       for (const float share : kMoveShares) {
         const Spot best = move_of(choices_[i][0]);
@@ -276,6 +314,11 @@ void PlainCrowd::resolve_conflicts() {
     }
   }
   for (size_t i = 0; i < count; ++i) keeps[i] = keeps[i] & decided[i];
+  for (size_t i = 0; i < count; ++i) {
+    bodies_[i].asks = asks[i] != 0;
+    bodies_[i].request = requests[i];
+    next_rest_of_[i] = rest[i];
+  }
   settle(now, keeps);
 }
 
@@ -288,18 +331,29 @@ void PlainCrowd::settle(const std::vector<Spot>& now, const std::vector<uint8_t>
     const Plane to_goal = units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
     const Plane preferred = preferred_of(body);
     const float left = size_of(to_goal);
+    const bool stood = stands(body);
     body.velocity = {units.velocity(now[i].x - body.at.x), units.velocity(now[i].z - body.at.z)};
     const float towards =
         left > 1e-6f ? (body.velocity.x * to_goal.x + body.velocity.z * to_goal.z) / left : 0;
     progress_ += towards / body.speed / static_cast<double>(bodies_.size());
     body.at = now[i];
     body.keeps = keeps[i] != 0;
+    body.rest = next_rest_of_[i];
+    if (config_.queues) {
+      if (stands(body) || stood || yields_[i] != 0) {
+        body.yields =
+            yields_[i] != 0 ? config_.queue.yield_time : std::max(body.yields - units.dt, 0.0f);
+      }
+      body.stood = stands(body) ? std::min(body.stood + units.dt, 60.0f) : 0;
+    }
     if (config_.deadlock_avoidance) {
       const bool alone = std::none_of(near_[i].begin(), near_[i].end(), [&](const Near& n) {
         return can_touch(static_cast<uint32_t>(i), n);
       });
+      const bool turns_aside = !config_.queues || (body.asks && body.request.order.slot == i &&
+                                                   body.stood >= config_.queue.detour_stands);
       const float content =
-          left > 1 && !alone
+          left > 1 && !alone && turns_aside
               ? steer::progress_felt(config_.deadlock_settings, towards / body.speed, body.follows)
               : 1;
       const float along = (body.velocity.x * preferred.x + body.velocity.z * preferred.z) /

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "crowd/walk/queue.h"
 #include "crowd/walk/step_units.h"
 #include "steer/lanes.h"
 #include "steer/models.h"
@@ -28,7 +29,12 @@ struct PlainBody {
   float turn = 0;         // detour angle, of steer::DeadlockAvoidance
   bool keeps = false;     // it moves by its first choice, and goes on so until it decides again
   bool follows = false;   // another so closely, when it last decided, that it could only crawl
-  double arrived = -1;    // time at which it came within 0.3 m of the goal [s]; not yet: -1
+  float stood = 0;        // for how long [s]
+  float yields = 0;       // for how long it lets another pass [s]
+  bool asks = false;      // others to make room
+  crowd::RoomRequest request;
+  crowd::Rest rest = crowd::Rest::kNo;
+  double arrived = -1;  // time at which it came within 0.3 m of the goal [s]; not yet: -1
 };
 
 struct PlainConfig {
@@ -43,6 +49,9 @@ struct PlainConfig {
   steer::SampledSettings steering;
   steer::DeadlockAvoidance deadlock_settings;
   steer::LaneSettings lanes;
+  bool queues = false;
+  crowd::QueueSettings queue;
+  float acceleration = 0;  // at most [m/s2]; 0: no limit
 
   [[nodiscard]] int32_t to_units(double metres) const;
 };
@@ -69,12 +78,38 @@ class PlainCrowd {
     uint32_t other;
     Spot at;  // from the body
   };
+  // What a body that decides will be after the step.
+  struct Plan {
+    bool follows = false, makes_room = false, asks = false, creeps = false, repeats = true,
+         yields = false;
+    steer::Plane away;
+    crowd::RoomRequest request;
+    crowd::Rest rest = crowd::Rest::kNo;
+  };
   [[nodiscard]] Spot between(Spot a, Spot b) const;
   [[nodiscard]] steer::Plane preferred_of(const PlainBody& body) const;
   [[nodiscard]] bool can_touch(uint32_t i, const Near& n) const;
   void sense();
   void steer_all();
   void prefer(uint32_t i);
+  // Queues and rest.
+  [[nodiscard]] bool may_rest(const PlainBody& body) const;
+  [[nodiscard]] bool rests(const PlainBody& body) const;
+  [[nodiscard]] bool stands(const PlainBody& body) const;
+  [[nodiscard]] bool is_paused(const PlainBody& body) const;
+  [[nodiscard]] bool queues(const PlainBody& body) const;
+  [[nodiscard]] crowd::QueueOrder order_of(uint32_t i) const;
+  [[nodiscard]] steer::Plane path_ahead(const PlainBody& body) const;
+  [[nodiscard]] float gap(uint32_t i, const Near& n) const;
+  [[nodiscard]] bool has_oncoming(uint32_t i) const;
+  [[nodiscard]] bool is_head(uint32_t i) const;
+  [[nodiscard]] bool is_goal_taken(uint32_t i) const;
+  [[nodiscard]] crowd::Rest next_rest(uint32_t i) const;
+  void queue_up(uint32_t i, Plan& plan) const;
+  void make_room(uint32_t i, Plan& plan, steer::Choices& choices) const;
+  [[nodiscard]] steer::Plane reachable(const PlainBody& body, steer::Plane velocity) const;
+  [[nodiscard]] int32_t sight() const;
+  [[nodiscard]] size_t nearest(uint32_t i) const;
   void resolve_conflicts();
   void settle(const std::vector<Spot>& now, const std::vector<uint8_t>& keeps);
 
@@ -85,7 +120,9 @@ class PlainCrowd {
   int32_t max_radius_ = 0, max_stride_ = 0;  // [units]
   std::vector<std::vector<Near>> near_;      // nearest first
   std::vector<steer::Choices> choices_;
-  std::vector<uint8_t> follows_;  // PlainBody::follows, if it decides in this step.
+  std::vector<uint8_t> yields_;
+  std::vector<crowd::Rest> next_rest_of_;
+  std::vector<Plan> plans_;  // of those that decide in this step
 };
 
 /// Bodies at random places of a periodic square, `area` m2 per body, with goals within 50 m along

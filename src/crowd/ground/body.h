@@ -55,16 +55,17 @@ struct Body {
   uint8_t flags = 0;
   uint16_t height = 0;  // [mm, at most 65 m]
   uint16_t target = 0;  // TargetId: its goal is a target
-  State state : 3 = kFree;
+  State state : 2 = kFree;
   bool on_link : 1 = false;    // LinkMode moves it along an off-mesh link; with kMovedElsewhere
   bool follows : 1 = false;    // so closely that it could but crawl, when it last decided
   bool climbs : 1 = false;     // ClimberEngine moves it over nodes; with kMovedElsewhere
   bool on_right : 1 = false;   // in counterflow, its lane lies in the right half of the opening
   bool near_wall : 1 = false;  // and in need of another path, in the last step
+  bool slowed : 1 = false;     // by the slope: CrowdEngine::level_speed is more than `speed`
   uint8_t : 0;                 // What follows lies in another byte.
   uint8_t steps : 5 = 1;       // that it takes at once in this step; 0: it is skipped
-  bool slowed : 1 = false;     // by the slope: CrowdEngine::level_speed is more than `speed`
-  // Others read the next two while they decide, so what shares their byte must not change then.
+  // Others read the next three while they decide, so what shares their byte must not change then.
+  bool asks : 1 = false;    // others to make room, by the request of the last step
   bool leaves : 1 = false;  // an obstacle that closes around it, or that became active beside it
   // A stream came towards it when it last sensed.
   bool in_counterflow : 1 = false;

@@ -73,7 +73,9 @@ CrowdEngine::CrowdEngine(const MoveConfig& config, int32_t width, int32_t depth,
     config_.reaction = 0;
     config_.deadlock_avoidance = false;
     config_.steering.neighbours = steer::kMaxNear;
+    config_.queues = false;
   }
+  if (config_.queues) config_.steering.gap = 0;  // Bodies that queue come to touch.
   workers_.resize(static_cast<size_t>(worker_count(config.workers)));
 }
 
@@ -132,6 +134,7 @@ void CrowdEngine::add(const Body& body) {
   highest_ = std::max<int32_t>(highest_, body.height);
   reserve(size_ + 1);
   bodies_[size_++] = body;
+  fit_rows(body.slot + size_t{1});
 }
 
 void CrowdEngine::step(uint64_t step, Before before, EngineCounts& counts, EngineTimes& times) {
@@ -188,7 +191,7 @@ void CrowdEngine::prefer_all(uint64_t step, Before before) {
     for (Body& b : bodies) {
       if (!config_.slope_factors.empty()) slow_on_slope(b);
       if (b.has(Body::kExternal) || b.has(Body::kMovedElsewhere) || b.steps == 0) continue;
-      b.preferred = b.has(Body::kHasGoal) || b.leaves
+      b.preferred = (b.has(Body::kHasGoal) || b.leaves) && !is_paused(b)
                         ? steer::preferred_towards(
                               config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z),
                               b.speed, units_of(b).dt, turn(b))
@@ -339,8 +342,9 @@ void CrowdEngine::query_walls(const Body& body, steer::Situation& situation) con
   }
 }
 
-void CrowdEngine::find_candidates(const Body& body, const steer::Situation& situation, bool open,
+void CrowdEngine::find_candidates(const Body& body, Worker& worker, bool open,
                                   Displacements& candidates) {
+  const steer::Situation& situation = worker.situation;
   if (!is_sampled(body)) {
     const steer::Choices choices = steer::candidates_about(situation.preferred);
     std::transform(choices.begin(), choices.end(), candidates.begin(),
@@ -351,11 +355,25 @@ void CrowdEngine::find_candidates(const Body& body, const steer::Situation& situ
   steer::Costs costs;
   steer::costs_of_fast(config_.steering, situation, trials, costs);
   size_t n = 0;
-  if (open) candidates[n++] = displacement_of(body, if_blocked(situation.preferred, situation));
-  while (n < candidates.size()) {
+  if (open)
     candidates[n++] =
-        displacement_of(body, if_blocked(steer::take_best_fast(trials, costs), situation));
+        displacement_of(body, reachable(body, if_blocked(situation.preferred, situation)));
+  if (!config_.queues) {
+    while (n < candidates.size()) {
+      candidates[n++] =
+          displacement_of(body, if_blocked(steer::take_best_fast(trials, costs), situation));
+    }
+    return;
   }
+  // Squares of walls are coarse, so beside a wall the cheapest trials may all lead into it.
+  Stand place;
+  for (size_t tries = 0; tries < steer::kTrials && n < candidates.size(); ++tries) {
+    const Plane velocity = if_blocked(steer::take_best_fast(trials, costs), situation);
+    const Displacement displacement =
+        displacement_of(body, reachable(body, unless_back(body, worker, velocity)));
+    if (try_displacement(body, displacement, place)) candidates[n++] = displacement;
+  }
+  std::fill(candidates.begin() + static_cast<ptrdiff_t>(n), candidates.end(), Displacement{});
 }
 
 std::span<const uint32_t> CrowdEngine::others_of(const Proposal& proposal) const {
@@ -448,16 +466,28 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   if (!open) query_walls(body, worker.situation);
   const Plane best =
       open ? worker.situation.preferred
-           : if_blocked(steer::best_fast(config_.steering, worker.situation), worker.situation);
-  Displacements candidates{displacement_of(body, best)};
-  bool proposed = try_displacement(body, candidates[0], proposal.place) &&
+           : unless_back(body, worker,
+                         if_blocked(steer::best_fast(config_.steering, worker.situation),
+                                    worker.situation));
+  const Plane reached = reachable(body, best);
+  Displacements candidates{displacement_of(body, reached)};
+  proposal.has_all = find_room(body, best, worker, candidates);
+  proposal.asks = worker.asks.has_value();
+  proposal.yields = worker.yields;
+  proposal.may_rest = may_rest(body);
+  if (proposal.may_rest) proposal.rest = next_rest(i, around);
+  if (worker.asks) requests_[step_ % 2][body.slot] = *worker.asks;
+  bool proposed = !proposal.has_all && try_displacement(body, candidates[0], proposal.place) &&
                   is_clear(body, proposal.place, others, /*any_moved=*/false);
   if (proposed) {
-    proposal.flags = Body::kContinues;
+    // A body that asks looks in each step whether there is room; one that still accelerates does
+    // not repeat its move.
+    const bool repeats = !worker.asks && reached.x == best.x && reached.z == best.z;
+    proposal.flags = repeats ? Body::kContinues : 0;
     proposal.round = others.empty() ? 0 : 1;
-  } else {
+  } else if (!proposal.has_all) {
     if (open) query_walls(body, worker.situation);
-    find_candidates(body, worker.situation, open, candidates);
+    find_candidates(body, worker, open, candidates);
     proposal.has_all = true;
   }
   // Known only if walls were queried.
@@ -582,7 +612,7 @@ void CrowdEngine::propose(uint32_t i, Worker& scratch, uint8_t round) {
   sense(i, scratch, around, /*lists_others=*/false);
   const bool open = find_open_preferred(i, scratch, around);
   query_walls(body, scratch.situation);
-  find_candidates(body, scratch.situation, open, candidates);
+  find_candidates(body, scratch, open, candidates);
   proposal.forgets = !proposal.has_room(candidates.size());
   if (!proposal.forgets) {
     proposal.candidate_count = 0;
@@ -620,6 +650,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       here.low_detail += b.has(Body::kLowDetail) ? 1 : 0;
       const Plane displacement =
           config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z);
+      b.asks = b.steps > 0 && proposals()[i].asks;
       if (b.steps == 0) {  // For all others it looks as if it had moved evenly.
         ++here.skipped;
         if (b.has(Body::kHasGoal)) here.progress += progress_of(b, displacement);
@@ -630,6 +661,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       const Stand& place = proposal.place;
       const bool is_alone = b.state == Body::kFree || b.state == Body::kEnclosed;
       const bool may_move = b.state == Body::kFree || b.state == Body::kDecided;
+      const bool stood = stands(b);
       const bool moves = may_move && (place.x != b.x || place.z != b.z);
       if (may_move) keep_rest(b, place.x, place.z, units.units_by_speed());
       if (moves) {
@@ -645,6 +677,8 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       turning.turn(b, units.dt);
       b.clear(Body::kContinues);
       b.in_counterflow = proposal.in_counterflow;
+      if (proposal.may_rest) progress_[b.slot].rest = proposal.rest;
+      if (config_.queues) settle_standing(b, stood, proposal.yields, units.dt);
       if (may_move) b.flags = static_cast<uint8_t>(b.flags | proposal.flags);
       if (!b.has(Body::kHasGoal) || b.has(Body::kExternal)) continue;
       const float left = size_of(displacement);
@@ -654,7 +688,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       // A body without others near has none to turn away from.
       if (config_.deadlock_avoidance) {
         const float content =
-            near_goal || is_alone
+            near_goal || is_alone || !may_turn_aside(b)
                 ? 1
                 : steer::progress_felt(config_.deadlock_settings, towards / b.speed, b.follows);
         const float along =
@@ -678,6 +712,8 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
 uint64_t CrowdEngine::bytes() const {
   uint64_t bytes = 2 * bodies_.size() * sizeof(Body) + contests_.size() * sizeof(Contests) +
                    (grid_ ? grid_->bytes() : 0);
+  bytes += progress_.capacity() * sizeof(QueueProgress) +
+           2 * requests_[0].capacity() * sizeof(RoomRequest);
   for (const Worker& worker : workers_) {
     bytes += 4 * (worker.squares.capacity() + worker.entries.capacity() +
                   worker.touched.capacity() + worker.others.capacity());

@@ -19,6 +19,7 @@
 #include "crowd/mode/orientation.h"
 #include "crowd/walk/move_config.h"
 #include "crowd/walk/neighbour_grid.h"
+#include "crowd/walk/queue.h"
 #include "crowd/walk/step_units.h"
 #include "steer/lanes.h"
 #include "steer/models.h"
@@ -95,6 +96,24 @@ class CrowdEngine {
   void step(uint64_t step, Before before, EngineCounts& counts, EngineTimes& times);
   /// After how many steps a body that continues decides again.
   [[nodiscard]] uint64_t steps_of_reaction(const Body& body) const;
+  // Rows by slot of what bodies of a queue know.
+  void fit_rows(size_t rows) {
+    if (rows <= progress_.size()) return;
+    progress_.resize(rows);
+    for (auto& requests : requests_) requests.resize(rows);
+  }
+  void clear_rows(uint32_t slot) {
+    fit_rows(slot + size_t{1});
+    progress_[slot] = {};
+  }
+  static constexpr size_t kRowBytes = sizeof(QueueProgress) + sizeof(RoomRequest);
+  void save_rows(size_t rows, std::vector<uint8_t>& out) const;
+  /// Could a crowd have saved the rows of a body?
+  [[nodiscard]] bool has_sound_rows(uint32_t slot) const;
+  const uint8_t* restore_rows(const uint8_t* saved, size_t rows);
+  /// Length of a body's path after its local target, for the order in queues. [m]
+  void set_path_after(uint32_t slot, float length) { progress_[slot].after = length; }
+  [[nodiscard]] float path_after(uint32_t slot) const { return progress_[slot].after; }
   /// Slots of the bodies that arrived in the last step, in no order.
   [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
   [[nodiscard]] uint64_t bytes() const;
@@ -118,8 +137,12 @@ class CrowdEngine {
     Stand place;
     uint8_t round;  // in which it was proposed, from 1; 0: before
     uint8_t flags;  // Body::kContinues
-    uint8_t candidate_count;
+    uint8_t candidate_count : 4;
     bool has_all : 1;
+    bool asks : 1;                       // Body::asks, from the next step on
+    bool yields : 1;                     // to an oncoming body that asks
+    bool may_rest : 1;                   // near its goal
+    Rest rest : 2;                       // then: from the next step on
     bool in_counterflow : 1;             // Body::in_counterflow, from the next step on
     bool forgets : 1;                    // No space is left for the candidates: they are found
                                          // again.
@@ -152,6 +175,10 @@ class CrowdEngine {
     bool waits = false;           // it yields to another, instead of its preferred velocity
     bool in_counterflow = false;  // a stream comes towards it
     bool follows = false;         // Body::follows
+    bool has_oncoming = false;    // a neighbour comes towards it
+    std::optional<steer::Plane> makes_room;  // in this direction: another asks it to
+    std::optional<RoomRequest> asks;
+    bool yields = false;  // the one that asks comes towards it
     EngineCounts counts;
   };
   using Displacements = std::array<Displacement, steer::kChoices>;
@@ -206,10 +233,34 @@ class CrowdEngine {
   }
   [[nodiscard]] Sides sides_of(const Body& body) const;
   [[nodiscard]] bool has_oncoming(const Body& body, const Worker& worker) const;
+  [[nodiscard]] bool comes_towards(const Body& body, const Body& other, steer::Plane apart) const;
   void keep_right(const Body& body, Worker& worker) const;
   bool choose_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
   [[nodiscard]] steer::Plane if_blocked(steer::Plane displacement,
                                         const steer::Situation& situation) const;
+
+  // crowd_engine_queue.cpp
+  [[nodiscard]] QueueOrder order_of(const Body& body) const;
+  [[nodiscard]] float margin_to(const Body& body, const Body& other, float gap) const;
+  void query_queue(const Body& body, std::span<const uint32_t> nearest, Worker& worker) const;
+  [[nodiscard]] bool is_head(const Body& body, std::span<const uint32_t> nearest) const;
+  [[nodiscard]] steer::Plane unless_back(const Body& body, const Worker& worker,
+                                         steer::Plane velocity) const;
+  [[nodiscard]] bool find_room(const Body& body, steer::Plane best, Worker& worker,
+                               Displacements& candidates) const;
+  [[nodiscard]] bool stands(const Body& body) const;
+  void settle_standing(const Body& body, bool stood, bool yields, float dt);
+  [[nodiscard]] bool is_paused(const Body& body) const;
+  [[nodiscard]] steer::Plane reachable(const Body& body, steer::Plane velocity) const;
+  [[nodiscard]] bool may_turn_aside(const Body& body) const;
+  [[nodiscard]] bool queues(const Body& body) const;
+
+  // crowd_engine_rest.cpp
+  [[nodiscard]] bool may_rest(const Body& body) const;
+  [[nodiscard]] bool rests(const Body& body) const;
+  [[nodiscard]] bool is_goal_taken(uint32_t i, const NeighbourGrid::Around& around) const;
+  [[nodiscard]] Rest next_rest(uint32_t i, const NeighbourGrid::Around& around) const;
+
   [[nodiscard]] float wall_distance(const Body& body, float displacement, float query_range) const;
   void query_wall_ahead(const Body& body, steer::Situation& situation) const;
   void query_walls(const Body& body, steer::Situation& situation) const;
@@ -225,8 +276,7 @@ class CrowdEngine {
     return std::min(speed_limit(body), kMaxWallSpeed) * config_.steering.wall_horizon /
            config_.units.unit;
   }
-  void find_candidates(const Body& body, const steer::Situation& situation, bool open,
-                       Displacements& candidates);
+  void find_candidates(const Body& body, Worker& worker, bool open, Displacements& candidates);
   // Its turns are read from its last move: were that rounded to the nearest unit, those of short
   // steps would all be lost.
   [[nodiscard]] bool is_turn_bounded(const Body& body) const {
@@ -306,6 +356,10 @@ class CrowdEngine {
   std::vector<uint32_t> arrived_;
   std::vector<float> level_speeds_;
   std::span<Orientation> orientations_;  // by slot
+  std::vector<QueueProgress> progress_;  // by slot
+  // By slot: those of this step, which bodies write that ask, and those of the step before, which
+  // all read. Valid where Body::asks is set.
+  std::array<std::vector<RoomRequest>, 2> requests_;
 };
 
 }  // namespace throng::crowd

@@ -29,17 +29,19 @@ CrowdEngine::Sides CrowdEngine::sides_of(const Body& body) const {
 // Does a neighbour come towards it? The neighbour's local target counts: in a jam, preferred
 // velocities point in all directions.
 bool CrowdEngine::has_oncoming(const Body& body, const Worker& worker) const {
-  const Plane displacement = path_ahead(body);
   for (size_t n = 0; n < worker.situation.near.size; ++n) {
     const Body& other = bodies_[worker.entries[n]];
-    if (body.preferred.x * other.preferred.x + body.preferred.z * other.preferred.z >= 0) continue;
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
-    if (steer::comes_towards(apart, displacement, path_ahead(other),
-                             config_.lanes.narrow_opposed)) {
-      return true;
-    }
+    if (comes_towards(body, other, apart)) return true;
   }
   return false;
+}
+
+bool CrowdEngine::comes_towards(const Body& body, const Body& other, Plane apart) const {
+  if (body.preferred.x * other.preferred.x + body.preferred.z * other.preferred.z >= 0)
+    return false;
+  return steer::comes_towards(apart, path_ahead(body), path_ahead(other),
+                              config_.lanes.narrow_opposed);
 }
 
 // A body in counterflow between walls leaves the left half to the stream. Where no wall is near,

@@ -75,7 +75,10 @@ void CrowdEngine::list_touched(const Body& body, const SeenLists& lists, Worker&
 // Senses what it steers by, and if required lists the bodies that it could touch.
 void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
                         bool lists_others) {
-  worker.waits = worker.in_counterflow = worker.follows = false;
+  worker.waits = worker.in_counterflow = worker.follows = worker.has_oncoming = false;
+  worker.makes_room.reset();
+  worker.asks.reset();
+  worker.yields = false;
   const Body& body = bodies_[i];
   fit_lists(around, worker);
   const Places places{grid_->x(), grid_->z(), grid_->y()};
@@ -126,7 +129,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   situation.preferred = body.preferred;
   situation.fastest = speed_limit(body);
   situation.near.size = 0;
-  const bool may_wait = is_on_last_segment(body), turns = turns_corner(body);
+  const bool may_wait = !config_.queues && is_on_last_segment(body), turns = turns_corner(body);
   const bool rests = !body.leaves && !body.has(Body::kExternal) &&
                      (body.has(Body::kArrived) || !body.has(Body::kHasGoal));
   const bool is_slow = size_of(body.velocity) < kHeldUpShare * body.speed;
@@ -144,7 +147,9 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
           config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z),
           body.speed, room);
     }
-    if (turns && turns_corner(other) &&
+    if (config_.queues)
+      worker.has_oncoming = worker.has_oncoming || comes_towards(body, other, apart);
+    if (!config_.queues && turns && turns_corner(other) &&
         gives_precedence(contender(other), contender(body), size_of(apart), room,
                          size_of(other.velocity) / other.speed)) {
       worker.waits = true;
@@ -156,9 +161,11 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     // A body that has arrived yields to those that would pass if it were not there: they may stand.
     const bool yields =
         (body.has(Body::kArrived) && !other.has(Body::kArrived)) || (rests && other.leaves);
+    const float kept = room + margin_to(body, other, size_of(apart) - room);
     situation.near.add(config_.steering,
-                       {apart, yields ? other.preferred : other.velocity, room, other.preferred});
+                       {apart, yields ? other.preferred : other.velocity, kept, other.preferred});
   }
+  query_queue(body, {lists.entries, nearest}, worker);
   const Plane preferred = situation.preferred;
   situation.preferred = steer::following_fast(config_.steering, situation);
   // Before a corner a body that crawls is turned as one that stands: doors need that.

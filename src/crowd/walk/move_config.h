@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "crowd/walk/queue.h"
 #include "crowd/walk/step_units.h"
 #include "steer/air.h"
 #include "steer/lanes.h"
@@ -29,6 +30,9 @@ struct MoveConfig {
   steer::DeadlockAvoidance deadlock_settings = {};
   steer::LaneSettings lanes = {};
   steer::SpacingSettings spacing = {};
+  bool queues = false;  ///< Walkers with kSampled queue; else they push.
+  QueueSettings queue = {};
+  float acceleration = 0;                ///< At most; 0: no limit. [m/s2]
   steer::AirSettings air_steering = {};  ///< Of flyers and climbers.
   /// Of walkers, by class. None: stairs and slopes slow no body.
   std::vector<SlopeFactors> slope_factors = {};

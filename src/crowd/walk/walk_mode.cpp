@@ -98,9 +98,10 @@ bool WalkMode::draw(NewAvatar& avatar, const AvatarSpawn& /*like*/, uint64_t n) 
 }
 
 // A row that was another avatar's stays until a goal replaces it.
-void WalkMode::add(const NewAvatar& /*avatar*/) {
+void WalkMode::add(const NewAvatar& avatar) {
   routes_.resize(shared_.generation.size());
   engine_.level_speeds().resize(shared_.generation.size());
+  engine_.clear_rows(avatar.body.slot);
 }
 
 void WalkMode::fit(const BodyExtent& all, float fastest) {
@@ -113,6 +114,7 @@ void WalkMode::set_goal(Body& body, const Place& goal) {
   const auto point = world::ground_point(*data_of(shared_.world), goal);
   if (!point) return;
   Route& route = routes_[body.slot];
+  engine_.set_path_after(body.slot, 0);
   route = {};
   route.goal = {static_cast<int32_t>(point->x), static_cast<int32_t>(point->z), goal.level1 - 1};
   body.local_target_x = route.goal.x;
@@ -123,6 +125,7 @@ void WalkMode::set_goal(Body& body, const Place& goal) {
 
 void WalkMode::set_target(Body& body) {
   routes_[body.slot] = {};
+  engine_.set_path_after(body.slot, 0);
   body.local_target_x = body.x;
   body.local_target_z = body.z;
 }
@@ -254,16 +257,18 @@ AvatarState WalkMode::state_of(const Body& body) const {
 
 void WalkMode::add_memory(CrowdMemory& memory) const {
   memory.avatars += engine_.bytes();
-  memory.paths += routes_.capacity() * kRowBytes;  // as many of each
+  memory.paths += routes_.capacity() * (sizeof(Route) + sizeof(float));  // as many of each
 }
 
 void WalkMode::save(std::vector<uint8_t>& out) const {
   put_rows(out, routes_.data(), routes_.size());
   put_rows(out, engine_.level_speeds().data(), engine_.level_speeds().size());
+  engine_.save_rows(routes_.size(), out);
 }
 
 const uint8_t* WalkMode::restore(const uint8_t* saved, size_t rows) {
-  return take_rows(take_rows(saved, rows, routes_), rows, engine_.level_speeds());
+  saved = take_rows(take_rows(saved, rows, routes_), rows, engine_.level_speeds());
+  return engine_.restore_rows(saved, rows);
 }
 
 bool WalkMode::is_sound(const Body& body) const {
@@ -272,6 +277,7 @@ bool WalkMode::is_sound(const Body& body) const {
   if (body.slowed && !(level_speed >= body.speed && level_speed <= kMaxSpeed)) return false;
   if (!body.has(Body::kHasGoal) || body.climbs) return true;
   const uint32_t levels = data_of(shared_.world)->level_count;
+  if (!engine_.has_sound_rows(body.slot)) return false;
   const Route& route = routes_[body.slot];
   if (route.by_link > 1 || (route.by_link != 0 && route.count < 2)) return false;
   if (route.count > Route::kCorners || (route.count > 0 && route.next >= route.count)) return false;

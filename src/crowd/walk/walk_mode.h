@@ -53,7 +53,8 @@ class TakesLinks {
 
 class WalkMode final : public Mode {
  public:
-  static constexpr size_t kRowBytes = sizeof(Route) + sizeof(float);  // and its level speed
+  /// Of a route, a speed on level ground and the engine's rows.
+  static constexpr size_t kRowBytes = sizeof(Route) + sizeof(float) + CrowdEngine::kRowBytes;
 
   WalkMode(SharedState& shared, const MoveConfig& config);
   /// What decides for classes that fly; it outlives all steps.
@@ -134,6 +135,7 @@ class WalkMode final : public Mode {
 
   // walk_plan.cpp
   void plan(std::span<Body> bodies, int32_t worker);
+  void follow_path(Body& body, Route& route, const StrideGround& ground, uint64_t nth);
   bool plan_path(Body& body, Route& route, const StrideGround& ground, int32_t worker);
 
   // walk_leaving.cpp

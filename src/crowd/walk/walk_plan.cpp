@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
 #include "core/parallel.h"
 #include "crowd/walk/walk_mode.h"
 
@@ -14,7 +17,6 @@ constexpr size_t kGoals = 4096;  // places of a target that paths lead to, about
 
 // Follows paths, and finds those that are missing.
 void WalkMode::plan(std::span<Body> bodies, int32_t worker) {
-  const auto metre = static_cast<float>(1 / shared_.unit);
   const uint64_t step_now = shared_.sub_step - 1;
   uint64_t asked = 0;
   for (Body& body : bodies) {
@@ -38,7 +40,7 @@ void WalkMode::plan(std::span<Body> bodies, int32_t worker) {
     const bool takes_links = links_are_used_ && parts.takes_links;
     if (!body.has(Body::kNeedsPath)) {
       if (takes_links && takes_links_->plan_at_start(body, route, ground, nth)) continue;
-      if (!body.has(Body::kNeedsPath)) follow(body, route, ground, nth, metre);
+      if (!body.has(Body::kNeedsPath)) follow_path(body, route, ground, nth);
     }
     // The link was switched off while it could not search.
     if (!takes_links && leads_to_link(route)) body.flags |= Body::kNeedsPath;
@@ -57,6 +59,17 @@ void WalkMode::plan(std::span<Body> bodies, int32_t worker) {
     if (!takes_off) shared_.drop_goal(body);
   }
   if (asked > 0) shared_.note_planned(asked);
+}
+
+// Its next corner may become its local target: then less of the path comes after that.
+void WalkMode::follow_path(Body& body, Route& route, const StrideGround& ground, uint64_t nth) {
+  const size_t corner = route.next;
+  follow(body, route, ground, nth, static_cast<float>(1 / shared_.unit));
+  if (route.next == corner) return;
+  const PathPoint &from = route.corners[corner], &to = route.corners[route.next];
+  const float square = near_square(to.x - from.x, to.z - from.z);
+  const auto passed = std::sqrt(square) * static_cast<float>(shared_.unit);
+  engine_.set_path_after(body.slot, std::max(engine_.path_after(body.slot) - passed, 0.0f));
 }
 
 // A path from where the body is to its target or goal. False: there is none.
@@ -82,7 +95,14 @@ bool WalkMode::plan_path(Body& body, Route& route, const StrideGround& ground, i
     }
     shared_.note_spent(spent);
   }
-  return use_path(data, path, ground, body, route);
+  if (!use_path(data, path, ground, body, route)) return false;
+  double first = 0;  // [m]
+  if (path.points.size() > 1) {
+    first = std::hypot(path.points[1].position.x - path.points[0].position.x,
+                       path.points[1].position.z - path.points[0].position.z);
+  }
+  engine_.set_path_after(body.slot, static_cast<float>(std::max(path.length - first, 0.0)));
+  return true;
 }
 
 void WalkMode::make_lives(size_t number) {

@@ -1,0 +1,185 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include "plain_crowd.h"
+
+// Queues and rest of the plain step.
+namespace throng::test {
+
+using crowd::QueueOrder;
+using crowd::Rest;
+using steer::Plane;
+
+Plane PlainCrowd::path_ahead(const PlainBody& body) const {
+  return config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
+}
+
+bool PlainCrowd::may_rest(const PlainBody& body) const {
+  return config_.queues &&
+         crowd::nearer_than(body.goal.x - body.at.x, body.goal.z - body.at.z, sight());
+}
+
+bool PlainCrowd::rests(const PlainBody& body) const {
+  return may_rest(body) && body.rest != Rest::kNo;
+}
+
+bool PlainCrowd::stands(const PlainBody& body) const {
+  const float slow = config_.queue.still_share * body.speed;
+  return body.velocity.x * body.velocity.x + body.velocity.z * body.velocity.z < slow * slow;
+}
+
+bool PlainCrowd::is_paused(const PlainBody& body) const {
+  return rests(body) || (config_.queues && stands(body) && body.yields > 0);
+}
+
+bool PlainCrowd::queues(const PlainBody& body) const {
+  return config_.queues && body.arrived < 0 && !rests(body);
+}
+
+QueueOrder PlainCrowd::order_of(uint32_t i) const { return {size_of(path_ahead(bodies_[i])), i}; }
+
+// Between the bodies. [m]
+float PlainCrowd::gap(uint32_t i, const Near& n) const {
+  const auto room = static_cast<float>(bodies_[i].radius + bodies_[n.other].radius);
+  return size_of(config_.units.metres(n.at.x, n.at.z)) - room * config_.units.unit;
+}
+
+// Those that count in steering.
+size_t PlainCrowd::nearest(uint32_t i) const {
+  return std::min(near_[i].size(), static_cast<size_t>(config_.steering.neighbours));
+}
+
+bool PlainCrowd::has_oncoming(uint32_t i) const {
+  const PlainBody& body = bodies_[i];
+  const Plane preferred = preferred_of(body);
+  for (size_t k = 0; k < nearest(i); ++k) {
+    const Near& n = near_[i][k];
+    const PlainBody& other = bodies_[n.other];
+    const Plane others = preferred_of(other);
+    if (preferred.x * others.x + preferred.z * others.z < 0 &&
+        steer::comes_towards(config_.units.metres(n.at.x, n.at.z), path_ahead(body),
+                             path_ahead(other), config_.lanes.narrow_opposed)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool PlainCrowd::is_head(uint32_t i) const {
+  const PlainBody& body = bodies_[i];
+  const bool asks_on = body.asks && body.request.order.slot == i &&
+                       size_of(body.velocity) < config_.queue.asks_on * body.speed;
+  const bool has_stood = stands(body) && body.stood >= config_.queue.head_stands;
+  if (!queues(body) || (!has_stood && !asks_on)) return false;
+  const Plane ahead = path_ahead(body);
+  for (size_t k = 0; k < nearest(i); ++k) {
+    const Near& n = near_[i][k];
+    const Plane at = config_.units.metres(n.at.x, n.at.z);
+    if (queues(bodies_[n.other]) && gap(i, n) < config_.queue.head_range &&
+        at.x * ahead.x + at.z * ahead.z > 0 && order_of(n.other) < order_of(i)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool PlainCrowd::is_goal_taken(uint32_t i) const {
+  const PlainBody& body = bodies_[i];
+  const Plane ahead = path_ahead(body);
+  return std::any_of(near_[i].begin(), near_[i].end(), [&](const Near& n) {
+    const PlainBody& other = bodies_[n.other];
+    if (!rests(other)) return false;
+    const Spot from_goal = between(body.goal, other.at), goals = between(body.goal, other.goal);
+    const int64_t room = int64_t{body.radius} + other.radius;
+    if (crowd::nearer_than(from_goal.x, from_goal.z, room)) return true;
+    const Plane at = config_.units.metres(n.at.x, n.at.z);
+    const auto touching = room + static_cast<int64_t>(0.1f / config_.units.unit);
+    return at.x * ahead.x + at.z * ahead.z > 0 && crowd::nearer_than(n.at.x, n.at.z, touching) &&
+           crowd::nearer_than(goals.x, goals.z, room);
+  });
+}
+
+Rest PlainCrowd::next_rest(uint32_t i) const {
+  const PlainBody& body = bodies_[i];
+  const float left = size_of(path_ahead(body));
+  if (!may_rest(body)) return body.rest;
+  if (body.rest == Rest::kMadeRoom) {
+    return stands(body) && body.stood >= 1 ? Rest::kNo : Rest::kMadeRoom;
+  }
+  if (body.rest == Rest::kRests && !stands(body) && body.stood == 0) return Rest::kMadeRoom;
+  if (body.rest == Rest::kNo) {
+    if (left < 0.02f) return Rest::kRests;
+    if (!stands(body) || body.stood < 0.5f) return Rest::kNo;
+  }
+  return left < 0.3f || is_goal_taken(i) ? Rest::kRests : Rest::kNo;
+}
+
+// The request that it follows, or its own.
+void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
+  const PlainBody& body = bodies_[i];
+  plan.rest = next_rest(i);
+  const QueueOrder own = queues(body) ? order_of(i) : QueueOrder{};
+  QueueOrder first = own;
+  uint32_t asker = UINT32_MAX;
+  Plane asked;
+  for (size_t k = 0; k < nearest(i); ++k) {
+    const Near& n = near_[i][k];
+    const PlainBody& other = bodies_[n.other];
+    const Plane at = config_.units.metres(n.at.x, n.at.z);
+    if (!other.asks || gap(i, n) >= config_.queue.touch_gap) continue;
+    if (at.x * other.request.ahead.x + at.z * other.request.ahead.z >= 0) continue;
+    const Spot goal = between(body.at, other.goal);
+    if (rests(body) && crowd::nearer_than(goal.x, goal.z, int64_t{body.radius} + other.radius)) {
+      continue;
+    }
+    const QueueOrder& order = other.request.order;
+    const bool is_equal = !(first < order) && !(order < first);
+    if (!(order < first) && !(asker != UINT32_MAX && is_equal && n.other < asker)) continue;
+    first = order;
+    asker = n.other;
+    asked = other.request.ahead;
+    const float size = size_of(at);
+    plan.away = {-at.x / size, -at.z / size};
+  }
+  plan.makes_room = asker != UINT32_MAX;
+  const Plane ahead = path_ahead(body);
+  const float size = size_of(ahead);
+  if (plan.makes_room) {
+    plan.asks = true;
+    plan.request = {first, plan.away};
+    const Plane to = size > 0 ? Plane{ahead.x / size, ahead.z / size} : Plane{1, 0};
+    plan.yields = queues(body) && asked.x * to.x + asked.z * to.z < -config_.queue.oncoming;
+  } else if (is_head(i)) {
+    plan.asks = true;
+    plan.request = {own, size > 0 ? Plane{ahead.x / size, ahead.z / size} : Plane{1, 0}};
+  }
+}
+
+// On an open plane every direction permits a step: the first four are the candidates.
+void PlainCrowd::make_room(uint32_t i, Plan& plan, steer::Choices& choices) const {
+  const PlainBody& body = bodies_[i];
+  const float wanted = size_of(preferred_of(body));
+  const bool creeps = plan.asks && size_of(choices[0]) < config_.queue.creep_share * wanted;
+  plan.creeps = plan.makes_room || creeps;
+  if (!plan.creeps) return;
+  float speed = config_.queue.room_share * body.speed;
+  if (!plan.makes_room) speed = std::min(speed, wanted);
+  const auto directions = crowd::room_directions(plan.makes_room ? plan.away : plan.request.ahead);
+  choices = {};
+  for (size_t c = 0; c < 4; ++c) {
+    choices[c] = {directions[c].x * speed, directions[c].z * speed};
+  }
+}
+
+Plane PlainCrowd::reachable(const PlainBody& body, Plane velocity) const {
+  if (config_.acceleration <= 0) return velocity;
+  const Plane change{velocity.x - body.velocity.x, velocity.z - body.velocity.z};
+  const float size = size_of(change), most = config_.acceleration * config_.units.dt;
+  if (size <= most) return velocity;
+  const float part = most / size;
+  return {body.velocity.x + change.x * part, body.velocity.z + change.z * part};
+}
+
+}  // namespace throng::test

@@ -251,7 +251,7 @@ struct Path {
   PathEnd end = PathEnd::kNoPlace;
   /// Feet, from the start to the goal. They are places of level ground except over nodes and in the
   /// air, where `position` alone counts. If the goal is unreachable, they lead to the reachable
-  /// place nearest to it; on the ground and in the air not without PathQuery::nearest.
+  /// place nearest to it; on the ground and in the air only with PathQuery::nearest.
   std::vector<Place> points;
   /// Over nodes: the place of each point, with its axis; else empty. The point of a drop link that
   /// is in the air, above the landing, has feet and axis, but node1 is 0.
@@ -317,7 +317,7 @@ struct PathQuery {
   /// where obstacles cut the goal off, while an off-mesh link is in force, with kOnDemand, and with
   /// a slope cost. That takes up to a second in a city. Over nodes the setting is ignored: it is
   /// always done.
-  bool nearest = true;
+  bool nearest = false;
   SearchBudget budget = {};
 };
 

@@ -98,7 +98,7 @@ TEST(NearestPlace, IsTheNearestOfTheComponentOfTheStart) {
       const Place from = world.random_place(0, 9, 2 * n), to = world.random_place(0, 9, 2 * n + 1);
       if (graph.component_at(0, from) == graph.component_at(0, to)) continue;
       ++apart;
-      finder.find(from, to, path);
+      finder.find({.from = from, .to = to, .nearest = true}, path);
       ASSERT_EQ(path.end, PathEnd::kUnreachable);
       ASSERT_FALSE(path.points.empty());
       EXPECT_NE(path.blocked_by, Blocker::kNone);
@@ -109,11 +109,11 @@ TEST(NearestPlace, IsTheNearestOfTheComponentOfTheStart) {
       EXPECT_EQ(other.end, PathEnd::kReached);
       EXPECT_EQ(path.nodes, other.nodes);
       EXPECT_EQ(path.length, other.length);
-      labels.find(from, to, other);
+      labels.find({.from = from, .to = to, .nearest = true}, other);
       EXPECT_EQ(other.nodes, 0u);
       EXPECT_EQ(distance(world, other.points.back(), last), 0);
       // In parts.
-      finder.begin({.from = from, .to = to});
+      finder.begin({.from = from, .to = to, .nearest = true});
       uint64_t before = 0;
       while (!finder.advance(7, other)) {
         EXPECT_EQ(other.nodes, before + 7);
@@ -169,16 +169,16 @@ TEST(NearestPlace, IsThatOfASearchOfAllWithEdits) {
                       [&](Vec3d at) { return length(at - from.position) < 2.5; })) {
         continue;
       }
-      finder.find(from, to, path);
-      all.find(from, to, best);
+      finder.find({.from = from, .to = to, .nearest = true}, path);
+      all.find({.from = from, .to = to, .nearest = true}, best);
       ASSERT_EQ(path.end, best.end);
       if (path.end != PathEnd::kUnreachable) continue;  // a crate stands on an end
       ++apart;
       const double far = distance(world, best.points.back(), to);
       EXPECT_NEAR(distance(world, path.points.back(), to), far, 1e-6) << seed << ", " << n;
-      baked.find(from, to, bare);
+      baked.find({.from = from, .to = to, .nearest = true}, bare);
       obstructed += distance(world, bare.points.back(), to) < far - 1e-6;
-      finder.begin({.from = from, .to = to});
+      finder.begin({.from = from, .to = to, .nearest = true});
       while (!finder.advance(40, parts)) continue;
       EXPECT_EQ(parts.end, PathEnd::kUnreachable);
       EXPECT_EQ(distance(world, parts.points.back(), path.points.back()), 0);

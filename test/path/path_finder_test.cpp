@@ -82,16 +82,15 @@ TEST(PathFinder, SearchesAsTheClassMoves) {
   Path path, other;
   for (uint64_t n = 0; n < 10; ++n) {
     const Place from = s.place(kAdult, 2 * n), to = s.place(kAdult, 2 * n + 1);
-    walks.find({.from = from, .to = to, .nearest = false}, path);
+    walks.find({.from = from, .to = to}, path);
     mesh.find(from, to, other);
     expect_same(path, other);
     // By positions it is the same path.
-    walks.find({.from = from.position, .to = to.position, .tolerance = 0.05, .nearest = false},
-               path);
+    walks.find({.from = from.position, .to = to.position, .tolerance = 0.05}, path);
     expect_same(path, other);
     const Vec3d up = s.place(kFlyer, n).position, there = *flies.random_point(3, n);
-    flies.find({.from = up, .to = there}, path);
-    flight.find({.from = up, .to = there}, other);
+    flies.find({.from = up, .to = there, .nearest = true}, path);
+    flight.find({.from = up, .to = there, .nearest = true}, other);
     expect_same(path, other);
     EXPECT_EQ(flies.take_off(s.place(kFlyer, n)).has_value(),
               flight.take_off(s.place(kFlyer, n)).has_value());
@@ -117,21 +116,21 @@ TEST(PathFinder, SearchesAsTheClassMoves) {
   }
 }
 
-TEST(PathFinder, LeadsToTheNearestPlaceUnlessNotAsked) {
+TEST(PathFinder, LeadsToTheNearestPlaceIfAsked) {
   const World world = bake(worlds::doorway(0.2), 0.1);  // too narrow for an adult: two rooms
   Context context;
   PathFinder finder = need(PathFinder::create(world, {}, context));
   const Vec3d from{1, 0, 1}, to{7, 0, 5};
   Path path;
-  finder.find({.from = from, .to = to, .nearest = false}, path);
+  finder.find({.from = from, .to = to}, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
   EXPECT_TRUE(path.points.empty());
   EXPECT_EQ(path.nodes, 0u) << "components of the mesh differ: no search";
-  finder.begin({.from = from, .to = to, .nearest = false});
+  finder.begin({.from = from, .to = to});
   while (!finder.advance(1000, path)) continue;
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
   EXPECT_TRUE(path.points.empty());
-  finder.find({.from = from, .to = to}, path);
+  finder.find({.from = from, .to = to, .nearest = true}, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
   ASSERT_FALSE(path.points.empty());
   EXPECT_LT(path.points.back().position.x, 4);
@@ -155,7 +154,7 @@ TEST(PathFinder, NamesTheEditThatCutsAPath) {
     Context context;
     PathFinder finder =
         need(PathFinder::create(world, {.speedup = speedup, .edits = edits}, context));
-    const PathQuery query{.from = Vec3d{2, 0, 3}, .to = Vec3d{6, 0, 3}};
+    const PathQuery query{.from = Vec3d{2, 0, 3}, .to = Vec3d{6, 0, 3}, .nearest = true};
     const auto expect_blocked = [&](Blocker blocker, EditId edit) {
       Path path;
       finder.find(query, path);
@@ -210,7 +209,7 @@ TEST(PathFinder, NamesNoEditWhereABakedWallIsMetFirst) {
   PathFinder finder = need(PathFinder::create(world, {.edits = edits}, context));
   need(edits.add_obstacle(Prism::box({5.5, 0, 2}, {6, 2, 4})));  // beyond the wall
   Path path;
-  finder.find({.from = Vec3d{1, 0, 1}, .to = Vec3d{7, 0, 3}}, path);
+  finder.find({.from = Vec3d{1, 0, 1}, .to = Vec3d{7, 0, 3}, .nearest = true}, path);
   EXPECT_EQ(path.end, PathEnd::kUnreachable);
   EXPECT_EQ(path.blocked_by, Blocker::kNarrow);
   EXPECT_EQ(path.blocked_by_edit, 0u);
@@ -329,7 +328,8 @@ TEST(PathFinder, InPartsItIsTheSamePath) {
     Path whole, parts;
     for (uint64_t n = 0; n < 6; ++n) {
       const PathQuery query{.from = s.place(config.avatar_class, n).position,
-                            .to = s.place(config.avatar_class, n + 1).position};
+                            .to = s.place(config.avatar_class, n + 1).position,
+                            .nearest = n % 2 == 0};
       finder.find(query, whole);
       finder.begin(query);
       while (!finder.advance(3, parts)) EXPECT_EQ(parts.end, PathEnd::kBudgetExhausted);
@@ -401,7 +401,8 @@ TEST(Edits, AFinderThatFollowsFindsWhatANewOneFinds) {
     };
     PathFinder plain = s.finder({});
     for (uint64_t n = 4 * round; n < 4 * round + 4; ++n) {
-      const PathQuery query{.from = s.place(kAdult, n), .to = s.place(kAdult, n + 1)};
+      const PathQuery query{
+          .from = s.place(kAdult, n), .to = s.place(kAdult, n + 1), .nearest = n % 2 == 0};
       compare(labels, new_labels, query);
       compare(walks, new_walks, query);
       plain.find(query, other);
@@ -442,7 +443,8 @@ TEST(Edits, WithCratesEverySpeedupFindsTheShortest) {
     }
     for (uint64_t q = 0; q < 6; ++q) {
       const PathQuery query{.from = world.random_place(0, 6, 12 * n + 2 * q),
-                            .to = world.random_place(0, 6, 12 * n + 2 * q + 1)};
+                            .to = world.random_place(0, 6, 12 * n + 2 * q + 1),
+                            .nearest = n % 2 == 0};
       on_demand.find(query, best);
       for (PathFinder* finder : {&by_mesh, &by_labels}) {
         finder->find(query, path);

@@ -291,7 +291,8 @@ TEST(QueryParts, EndWhateverMovesInEachFrame) {
       const EditId crate = need(s.edits.add_obstacle(crate_at(0)));
       PathFinder finder = s.finder(c), other = s.finder(c);
       // The door between the halls is too narrow for climbers.
-      const PathQuery query{.from = Vec3d{2, 0, 6}, .to = Vec3d{c == kClimber ? 8.0 : 18.0, 0, 6}};
+      const PathQuery query{
+          .from = Vec3d{2, 0, 6}, .to = Vec3d{c == kClimber ? 8.0 : 18.0, 0, 6}, .nearest = true};
       Path whole, parts;
       finder.begin(query);
       uint64_t calls = 1, restarts = 0;
@@ -441,8 +442,10 @@ TEST(QueryParts, InTheAirACancelEndsTheSearchForTheNearestPoint) {
   need(s.edits.add_obstacle(Prism::box({5, -0.1, 0}, {5.3, 6, 4.5})));
   PathFinder finder = s.finder(kFlyer);
   std::atomic<bool> cancel = false;
-  const PathQuery query{
-      .from = Vec3d{2, 0, 2}, .to = Vec3d{17, 3, 3}, .budget = {UINT64_MAX, &cancel}};
+  const PathQuery query{.from = Vec3d{2, 0, 2},
+                        .to = Vec3d{17, 3, 3},
+                        .nearest = true,
+                        .budget = {UINT64_MAX, &cancel}};
   Path whole, path;
   finder.find(query, whole);
   ASSERT_EQ(whole.end, PathEnd::kUnreachable);

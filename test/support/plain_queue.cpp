@@ -116,6 +116,18 @@ Rest PlainCrowd::next_rest(uint32_t i) const {
   return left < 0.3f || is_goal_taken(i) ? Rest::kRests : Rest::kNo;
 }
 
+// To the side of the line along which the other walks. There are no walls.
+static Plane aside_of(Plane away, Plane from, Plane asked, float room) {
+  const Plane right{-asked.z, asked.x};
+  const float off = -(from.x * right.x + from.z * right.z);
+  const float nearer = off >= 0 ? 1.0f : -1.0f;
+  for (const float side : {nearer, -nearer}) {
+    const float wanted = room + 0.02f - side * off;
+    if (wanted > 0 && wanted < 1.5f) return {side * right.x, side * right.z};
+  }
+  return away;
+}
+
 // The request that it follows, or its own.
 void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
   const PlainBody& body = bodies_[i];
@@ -123,7 +135,8 @@ void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
   const QueueOrder own = queues(body) ? order_of(i) : QueueOrder{};
   QueueOrder first = own;
   uint32_t asker = UINT32_MAX;
-  Plane asked;
+  Plane asked, from;
+  float needs = 0;
   for (size_t k = 0; k < nearest(i); ++k) {
     const Near& n = near_[i][k];
     const PlainBody& other = bodies_[n.other];
@@ -140,17 +153,20 @@ void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
     first = order;
     asker = n.other;
     asked = other.request.ahead;
-    const float size = size_of(at);
-    plan.away = {-at.x / size, -at.z / size};
+    from = at;
+    needs = static_cast<float>(body.radius + other.radius) * config_.units.unit;
   }
   plan.makes_room = asker != UINT32_MAX;
   const Plane ahead = path_ahead(body);
   const float size = size_of(ahead);
   if (plan.makes_room) {
-    plan.asks = true;
-    plan.request = {first, plan.away};
     const Plane to = size > 0 ? Plane{ahead.x / size, ahead.z / size} : Plane{1, 0};
     plan.yields = queues(body) && asked.x * to.x + asked.z * to.z < -config_.queue.oncoming;
+    const float far = size_of(from);
+    plan.away = {-from.x / far, -from.z / far};
+    if (plan.yields || !queues(body)) plan.away = aside_of(plan.away, from, asked, needs);
+    plan.asks = true;
+    plan.request = {first, plan.away};
   } else if (is_head(i)) {
     plan.asks = true;
     plan.request = {own, size > 0 ? Plane{ahead.x / size, ahead.z / size} : Plane{1, 0}};

@@ -243,6 +243,8 @@ class CrowdEngine {
   [[nodiscard]] QueueOrder order_of(const Body& body) const;
   [[nodiscard]] float margin_to(const Body& body, const Body& other, float gap) const;
   void query_queue(const Body& body, std::span<const uint32_t> nearest, Worker& worker) const;
+  [[nodiscard]] steer::Plane aside_of(const Body& body, steer::Plane away, steer::Plane from,
+                                      steer::Plane asked, float room) const;
   [[nodiscard]] bool is_head(const Body& body, std::span<const uint32_t> nearest) const;
   [[nodiscard]] steer::Plane unless_back(const Body& body, const Worker& worker,
                                          steer::Plane velocity) const;

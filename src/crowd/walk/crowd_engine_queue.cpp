@@ -54,7 +54,8 @@ void CrowdEngine::query_queue(const Body& body, std::span<const uint32_t> neares
   QueueOrder first = own;
   const bool is_at_rest = rests(body);
   uint32_t asker = UINT32_MAX;
-  Plane asked;
+  Plane asked, from;
+  float needs = 0;
   for (const uint32_t j : nearest) {
     const Body& other = bodies_[j];
     if (!other.asks || other.has(Body::kMovedElsewhere)) continue;
@@ -75,16 +76,41 @@ void CrowdEngine::query_queue(const Body& body, std::span<const uint32_t> neares
     if (!is_first) continue;
     first = request.order;
     asker = other.slot;
-    worker.makes_room = unit({-apart.x, -apart.z});
+    from = apart;
+    needs = room;
     asked = request.ahead;
   }
   if (asker != UINT32_MAX) {
+    const Plane away = unit({-from.x, -from.z});
+    worker.yields = queues(body) && dot(asked, unit(path_ahead(body))) < -config_.queue.oncoming;
+    const bool steps_aside = worker.yields || !queues(body);
+    worker.makes_room = steps_aside ? aside_of(body, away, from, asked, needs) : away;
     worker.asks = RoomRequest{first, *worker.makes_room};
-    const Plane ahead = unit(path_ahead(body));
-    worker.yields = queues(body) && dot(asked, ahead) < -config_.queue.oncoming;
   } else if (queues(body) && is_head(body, nearest)) {
     worker.asks = RoomRequest{own, unit(path_ahead(body))};
   }
+}
+
+// Where a body goes that another asks to make room, `from` where it is, and that does not go the
+// same direction: to the side, if walls leave the room that both need to pass, or else away.
+Plane CrowdEngine::aside_of(const Body& body, Plane away, Plane from, Plane asked,
+                            float room) const {
+  constexpr float kSpare = 0.02f, kFarthest = 1.5f;  // [m]
+  const Plane right{-asked.z, asked.x};
+  const float off = -dot(from, right);  // to the right of the line that the other walks along
+  const StrideGround& ground = grounds_[body.avatar_class];
+  const auto has_room = [&](float side) {
+    const float wanted = room + kSpare - side * off;
+    if (!(wanted > 0 && wanted < kFarthest)) return false;
+    const float range = wanted / config_.units.unit;
+    return ground.free_distance(body.level, body.point(), {side * right.x, side * right.z},
+                                range) >= range;
+  };
+  const float nearer = off >= 0 ? 1.0f : -1.0f;
+  for (const float side : {nearer, -nearer}) {
+    if (has_room(side)) return {side * right.x, side * right.z};
+  }
+  return away;
 }
 
 // Has it stood, with none before it that is ahead in the order?

@@ -107,6 +107,14 @@ struct CrowdTuning {
   int32_t rounds = 3;                ///< Conflict resolution rounds of a step. [1 to 100]
   /// An avatar that makes no progress tries a growing detour angle.
   bool deadlock_avoidance = true;
+  /// Avatars on foot queue before narrow places and rest at their goals, instead of pushing and
+  /// circling: docs/design/008-engine.md, "Queues". Only with SteeringModel::kSampled. Off by
+  /// default, because doors of less than 0.9 m can still jam and let fewer people through. Takes
+  /// 52 bytes an avatar.
+  bool queues = false;
+  /// Most change of an avatar's velocity on foot; a stop before others is exempt. 0: no limit. Only
+  /// with SteeringModel::kSampled. [m/s2, 0 to 1000]
+  double acceleration = 0;
   /// Time between two checks for progress. Crowd::no_progress() returns the avatars that have a
   /// goal, have not arrived and have come less than 0.3 m further since the last check. 0: no
   /// checks. Never changes the steps. [s, 0 to 1e6]

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <string>
 
 #include "core/access.h"
@@ -80,6 +79,9 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (!(config.tuning.low_detail_steps >= 1 && config.tuning.low_detail_steps <= 16)) {
     return bad_config("low_detail_steps must be 1 to 16");
   }
+  if (!(config.tuning.acceleration >= 0 && config.tuning.acceleration <= 1000)) {
+    return bad_config("acceleration must be 0 to 1000 m/s2");
+  }
   if (!(config.tuning.no_progress_after >= 0 && config.tuning.no_progress_after <= 1e6)) {
     return bad_config("no_progress_after must be 0 to 1000000 s");
   }
@@ -95,41 +97,17 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   auto slope_factors = slope_factors_of(world, config);
   if (!slope_factors) return slope_factors.error();
   const double unit = data_of(world)->summary.cell / world::kUnitsPerCell;
-  crowd::MoveConfig move{.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
-                         .sight = static_cast<float>(config.tuning.sight),
-                         .rounds = config.tuning.rounds,
-                         .deadlock_avoidance = config.tuning.deadlock_avoidance,
-                         .reaction = static_cast<float>(config.tuning.reaction),
-                         .seed = config.seed,
-                         .workers = config.workers,
-                         .model = config.model,
-                         .slope_factors = *std::move(slope_factors)};
-  // TUNE
-  const auto env = [](const char* n, float v) {
-    const char* t = std::getenv(n);
-    return t ? static_cast<float>(std::atof(t)) : v;
-  };
-  move.queues = env("TQ", 0) > 0;
-  auto& q = move.queue;
-  q.still_share = env("TQ_STILL", q.still_share);
-  q.head_stands = env("TQ_HEAD", q.head_stands);
-  q.asks_on = env("TQ_ON", q.asks_on);
-  q.yield_time = env("TQ_YIELD", q.yield_time);
-  q.oncoming = env("TQ_ONC", q.oncoming);
-  q.head_range = env("TQ_RANGE", q.head_range);
-  q.touch_gap = env("TQ_TOUCH", q.touch_gap);
-  q.room_share = env("TQ_ROOM", q.room_share);
-  q.creep_share = env("TQ_CREEP", q.creep_share);
-  q.ahead_margin = env("TQ_MARGIN", q.ahead_margin);
-  q.ahead_range = env("TQ_MRANGE", q.ahead_range);
-  q.detour_stands = env("TQ_DETOUR", q.detour_stands);
-  move.steering.headway = env("TQ_HEADWAY", move.steering.headway);
-  move.steering.horizon = env("TQ_HORIZON", move.steering.horizon);
-  move.steering.max_flow = env("TQ_FLOW", move.steering.max_flow);
-  move.steering.keep = env("TQ_KEEP", move.steering.keep);
-  move.steering.threat = env("TQ_THREAT", move.steering.threat);
-  move.steering.wall = env("TQ_WALL", move.steering.wall);
-  move.acceleration = env("TQ_ACC", 0);
+  const crowd::MoveConfig move{.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
+                               .sight = static_cast<float>(config.tuning.sight),
+                               .rounds = config.tuning.rounds,
+                               .deadlock_avoidance = config.tuning.deadlock_avoidance,
+                               .reaction = static_cast<float>(config.tuning.reaction),
+                               .seed = config.seed,
+                               .workers = config.workers,
+                               .model = config.model,
+                               .queues = config.tuning.queues,
+                               .acceleration = static_cast<float>(config.tuning.acceleration),
+                               .slope_factors = *std::move(slope_factors)};
   return Crowd(std::make_unique<State>(world, config, move));
 }
 

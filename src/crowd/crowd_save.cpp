@@ -42,7 +42,9 @@ struct Head {
   int32_t model = 0, low_detail_steps = 0;
   uint64_t views = 0;
   double low_detail_reaction = 0, slope_cost = 0;
-  uint64_t slopes = 0;                      // hash_of_slopes
+  uint64_t slopes = 0;  // hash_of_slopes
+  double acceleration = 0;
+  uint64_t queues = 0;                      // 1: CrowdTuning::queues
   uint64_t edit_bytes = 0, call_bytes = 0;  // of path::save_edits and save_calls
   uint64_t edits_version = 0;               // that the crowd has followed
   // What avatars are, or were: also of those that were removed.
@@ -50,7 +52,7 @@ struct Head {
   float fastest = 0;  // [m/s]
   int32_t taking_widest = 0, taking_tallest = 0;
 };
-static_assert(sizeof(Head) == 32 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 34 * 8 && std::is_trivially_copyable_v<Head>);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`; and without what its
 // edit holds.
@@ -137,6 +139,7 @@ std::optional<std::vector<crowd::CrowdObstacle>> obstacles_of(
 uint64_t size_of(const Head& head) {
   return sizeof head + head.bodies * sizeof(crowd::Body) +
          head.slots * (crowd::WalkMode::kRowBytes + 4 + sizeof(crowd::Orientation)) +
+         (head.queues != 0 ? head.slots * crowd::CrowdEngine::kRowBytes : 0) +
          (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
          head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 +
          head.flights * crowd::FlyMode::kRowBytes + head.climbs * crowd::ClimbMode::kRowBytes +
@@ -180,6 +183,8 @@ Head head_of(const World& world, const CrowdConfig& config) {
   head.low_detail_reaction = config.tuning.low_detail_reaction;
   head.slope_cost = config.slope_cost;
   head.slopes = hash_of_slopes(config);
+  head.acceleration = config.tuning.acceleration;
+  head.queues = config.tuning.queues && config.model == SteeringModel::kSampled ? 1 : 0;
   return head;
 }
 
@@ -259,7 +264,8 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
       head.routing != expected.routing || head.deadlock_avoidance != expected.deadlock_avoidance ||
       head.model != expected.model || head.low_detail_steps != expected.low_detail_steps ||
       head.low_detail_reaction != expected.low_detail_reaction ||
-      head.slope_cost != expected.slope_cost || head.slopes != expected.slopes) {
+      head.slope_cost != expected.slope_cost || head.slopes != expected.slopes ||
+      head.acceleration != expected.acceleration || head.queues != expected.queues) {
     return bad("has other settings; give those that it was made with");
   }
   constexpr uint64_t kMax = uint64_t{1} << 32;

@@ -199,7 +199,9 @@ TEST(BakedCosts, ClosedKindsAreNoPlacesAndOtherKindsChangeNothing) {
     EXPECT_NEAR(path.cost, path.length, 1e-6);
     // Where the lawn is all that could be crossed.
     const EditId wall = need(finders.edits.add_obstacle(Prism::box({16, 0, 13.5}, {24, 2, 21})));
-    finder.find(across(), path);
+    PathQuery query = across();
+    query.nearest = true;
+    finder.find(query, path);
     EXPECT_EQ(path.end, PathEnd::kUnreachable);
     EXPECT_EQ(path.blocked_by, Blocker::kClosed);
     EXPECT_EQ(path.blocked_by_edit, 0u) << "no edit gave it the kind";

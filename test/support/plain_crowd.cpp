@@ -214,9 +214,9 @@ void PlainCrowd::steer_all() {
         Plane& v = choices_[i][c];
         if (v.x * ahead.x + v.z * ahead.z < 0) v = {};
       }
-      make_room(i, plan, choices_[i]);
+      make_room(i, plan, choices_[i][0]);
     }
-    for (size_t c = 0; c < choices_[i].size() && !plan.creeps; ++c) {
+    for (size_t c = 0; c < choices_[i].size(); ++c) {
       const Plane wanted = choices_[i][c];
       choices_[i][c] = reachable(body, wanted);
       plan.repeats =
@@ -247,7 +247,7 @@ void PlainCrowd::resolve_conflicts() {
         b.keeps && !crowd::decides(every, steps_, i) &&
         !crowd::is_before({b.goal.x - b.at.x, b.goal.z - b.at.z}, config_.units.stride(b.speed));
   }
-  std::vector<uint8_t> asks(count, 0);
+  std::vector<uint8_t> asks(count, 0), decides(count, 0);
   yields_.assign(count, 0);
   std::vector<crowd::RoomRequest> requests(count);
   std::vector<crowd::Rest> rest(count);
@@ -289,17 +289,22 @@ void PlainCrowd::resolve_conflicts() {
         yields_[i] = plan.yields;
         if (plan.asks) requests[i] = plan.request;
         if (plan.creeps) first[i] = 0;
+        decides[i] = 1;
       }
       if (first[i] != 0) first[i] = propose(choices_[i][0]);
       keeps[i] = first[i] != 0 && !plans_[i].asks && plans_[i].repeats;
-      bool found = std::any_of(choices_[i].begin(), choices_[i].end(), propose);
+      const Plan& plan = plans_[i];
+      const bool creeps = decides[i] != 0 && plan.creeps;
+      bool found = creeps ? std::any_of(plan.room.begin(), plan.room.end(), propose)
+                          : std::any_of(choices_[i].begin(), choices_[i].end(), propose);
       for (const float share : kMoveShares) {
-        const Spot best = move_of(choices_[i][0]);
+        const Spot best = move_of(creeps ? plan.room[0] : choices_[i][0]);
         const auto shorter = [&](int32_t move) {
           return static_cast<int32_t>(std::lrint(static_cast<float>(move) * share));
         };
         found = found || propose_move({shorter(best.x), shorter(best.z)});
       }
+      if (creeps && !found) propose_move({});  // It stands.
     }
     for (uint32_t i = 0; i < count; ++i) {
       if (!proposed[i]) continue;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -83,6 +84,7 @@ class PlainCrowd {
     bool follows = false, makes_room = false, asks = false, creeps = false, repeats = true,
          yields = false;
     steer::Plane away;
+    std::array<steer::Plane, 4> room;  // if it creeps
     crowd::RoomRequest request;
     crowd::Rest rest = crowd::Rest::kNo;
   };
@@ -106,7 +108,7 @@ class PlainCrowd {
   [[nodiscard]] bool is_goal_taken(uint32_t i) const;
   [[nodiscard]] crowd::Rest next_rest(uint32_t i) const;
   void queue_up(uint32_t i, Plan& plan) const;
-  void make_room(uint32_t i, Plan& plan, steer::Choices& choices) const;
+  void make_room(uint32_t i, Plan& plan, const steer::Plane& best) const;
   [[nodiscard]] steer::Plane reachable(const PlainBody& body, steer::Plane velocity) const;
   [[nodiscard]] int32_t sight() const;
   [[nodiscard]] size_t nearest(uint32_t i) const;

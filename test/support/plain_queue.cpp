@@ -161,7 +161,10 @@ void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
   const float size = size_of(ahead);
   if (plan.makes_room) {
     const Plane to = size > 0 ? Plane{ahead.x / size, ahead.z / size} : Plane{1, 0};
-    plan.yields = queues(body) && asked.x * to.x + asked.z * to.z < -config_.queue.oncoming;
+    const Plane others = path_ahead(bodies_[asker]);
+    const float whole = size_of(others);
+    const Plane theirs = whole > 0 ? Plane{others.x / whole, others.z / whole} : Plane{1, 0};
+    plan.yields = queues(body) && theirs.x * to.x + theirs.z * to.z < -config_.queue.oncoming;
     const float far = size_of(from);
     plan.away = {-from.x / far, -from.z / far};
     if (plan.yields || !queues(body)) plan.away = aside_of(plan.away, from, asked, needs);
@@ -174,18 +177,17 @@ void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
 }
 
 // On an open plane every direction permits a step: the first four are the candidates.
-void PlainCrowd::make_room(uint32_t i, Plan& plan, steer::Choices& choices) const {
+void PlainCrowd::make_room(uint32_t i, Plan& plan, const Plane& best) const {
   const PlainBody& body = bodies_[i];
   const float wanted = size_of(preferred_of(body));
-  const bool creeps = plan.asks && size_of(choices[0]) < config_.queue.creep_share * wanted;
+  const bool creeps = plan.asks && size_of(best) < config_.queue.creep_share * wanted;
   plan.creeps = plan.makes_room || creeps;
   if (!plan.creeps) return;
   float speed = config_.queue.room_share * body.speed;
   if (!plan.makes_room) speed = std::min(speed, wanted);
   const auto directions = crowd::room_directions(plan.makes_room ? plan.away : plan.request.ahead);
-  choices = {};
-  for (size_t c = 0; c < 4; ++c) {
-    choices[c] = {directions[c].x * speed, directions[c].z * speed};
+  for (size_t c = 0; c < plan.room.size(); ++c) {
+    plan.room[c] = {directions[c].x * speed, directions[c].z * speed};
   }
 }
 

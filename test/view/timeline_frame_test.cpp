@@ -75,7 +75,12 @@ TEST(TimelineFrame, AStandingAvatarKeepsItsHeading) {
 
 AvatarState climber(Vec3d at, Vec3d up, Vec3d goes) {
   const Vec3d ahead = unleaned(goes, up);
-  return {.id = 1, .position = at, .heading_x = ahead.x, .heading_z = ahead.z, .up = up};
+  return {.id = 1,
+          .position = at,
+          .heading_x = ahead.x,
+          .heading_z = ahead.z,
+          .velocity = {},
+          .up = up};
 }
 
 Vec3d looks(const view::TimelineFrame& m, size_t i) {
@@ -93,8 +98,9 @@ TEST(TimelineFrame, AClimberLeansAndFacesItsMove) {
   EXPECT_NEAR(length(looks(a, 0) - Vec3d{-1, 0, 0}), 0, 1e-6);
   view::follow({}, a);
   // Against a wall that faces +X, and up.
-  view::put_states(
-      {climber({-0.3, 0.4, 0}, {1, 0, 0}, {0, 1, 0}), AvatarState{.id = 5, .position = {}}}, {}, b);
+  view::put_states({climber({-0.3, 0.4, 0}, {1, 0, 0}, {0, 1, 0}),
+                    AvatarState{.id = 5, .position = {}, .velocity = {}}},
+                   {}, b);
   ASSERT_EQ(b.ups.size(), 2U);
   view::follow(a, b);
   EXPECT_NEAR(length(looks(b, 0) - Vec3d{0, 1, 0}), 0, 1e-5) << "no turn but that over the edge";

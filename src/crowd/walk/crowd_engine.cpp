@@ -24,8 +24,7 @@ namespace {
 
 using steer::Plane;
 
-constexpr size_t kGrain = 256;  // bodies that are worth another thread
-constexpr std::array<float, 3> kShorterParts = {0.5f, 0.25f, 0.1f};
+constexpr size_t kGrain = 256;            // bodies that are worth another thread
 constexpr float kArrivalRadius = 0.3f;    // [m] from its goal a body has arrived
 constexpr uint64_t kSides = 0x51de5;      // random stream
 constexpr float kCornerRadius = 0.1f;     // [m] to its corner a body turns to neither side
@@ -39,13 +38,6 @@ constexpr size_t kBits = 64;                             // of a word
 bool overlaps_with(const Body& a, const Stand& at_a, const Body& b, const Stand& at_b) {
   return nearer_than(at_a.x - at_b.x, at_a.z - at_b.z, int64_t{a.radius} + b.radius) &&
          at_a.y < at_b.y + b.height && at_b.y < at_a.y + a.height;
-}
-
-// A fraction of a displacement.
-template <class Displacement>
-Displacement shorter(Displacement displacement, float part) {
-  return {static_cast<int16_t>(std::lrint(static_cast<float>(displacement.x) * part)),
-          static_cast<int16_t>(std::lrint(static_cast<float>(displacement.z) * part))};
 }
 
 // Is it turned aside by deadlock avoidance, blocked by more than other bodies?
@@ -74,6 +66,7 @@ CrowdEngine::CrowdEngine(const MoveConfig& config, int32_t width, int32_t depth,
     config_.deadlock_avoidance = false;
     config_.steering.neighbours = steer::kMaxNear;
     config_.queues = false;
+    config_.acceleration = 0;
   }
   if (config_.queues) config_.steering.gap = 0;  // Bodies that queue come to touch.
   workers_.resize(static_cast<size_t>(worker_count(config.workers)));

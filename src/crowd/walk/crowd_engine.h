@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -98,13 +99,13 @@ class CrowdEngine {
   [[nodiscard]] uint64_t steps_of_reaction(const Body& body) const;
   // Rows by slot of what bodies of a queue know.
   void fit_rows(size_t rows) {
-    if (rows <= progress_.size()) return;
+    if (!config_.queues || rows <= progress_.size()) return;
     progress_.resize(rows);
     for (auto& requests : requests_) requests.resize(rows);
   }
   void clear_rows(uint32_t slot) {
     fit_rows(slot + size_t{1});
-    progress_[slot] = {};
+    if (config_.queues) progress_[slot] = {};
   }
   static constexpr size_t kRowBytes = sizeof(QueueProgress) + sizeof(RoomRequest);
   void save_rows(size_t rows, std::vector<uint8_t>& out) const;
@@ -112,8 +113,12 @@ class CrowdEngine {
   [[nodiscard]] bool has_sound_rows(uint32_t slot) const;
   const uint8_t* restore_rows(const uint8_t* saved, size_t rows);
   /// Length of a body's path after its local target, for the order in queues. [m]
-  void set_path_after(uint32_t slot, float length) { progress_[slot].after = length; }
-  [[nodiscard]] float path_after(uint32_t slot) const { return progress_[slot].after; }
+  void set_path_after(uint32_t slot, float length) {
+    if (config_.queues) progress_[slot].after = length;
+  }
+  [[nodiscard]] float path_after(uint32_t slot) const {
+    return config_.queues ? progress_[slot].after : 0;
+  }
   /// Slots of the bodies that arrived in the last step, in no order.
   [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
   [[nodiscard]] uint64_t bytes() const;
@@ -182,6 +187,12 @@ class CrowdEngine {
     EngineCounts counts;
   };
   using Displacements = std::array<Displacement, steer::kChoices>;
+  // What is tried if no candidate is clear: parts of the first.
+  static constexpr std::array<float, 3> kShorterParts = {0.5f, 0.25f, 0.1f};
+  static Displacement shorter(Displacement displacement, float part) {
+    return {static_cast<int16_t>(std::lrint(static_cast<float>(displacement.x) * part)),
+            static_cast<int16_t>(std::lrint(static_cast<float>(displacement.z) * part))};
+  }
 
   void fit_grid();
   void choose_detail(Body& body, uint64_t step) const;
@@ -302,12 +313,12 @@ class CrowdEngine {
             static_cast<int16_t>(units.displacement_within(cut.z, n))};
   }
   [[nodiscard]] Displacement displacement_of(const Body& body, steer::Plane velocity) const {
-    if (body.has(Body::kExternal)) return given_displacement(body, velocity);
     const StepUnits units = units_of(body);
     if (is_turn_bounded(body)) {
       velocity = steer::within_turning_radius(body.velocity, velocity, units.dt,
                                               turning_radii_[body.avatar_class]);
     }
+    if (body.has(Body::kExternal)) return given_displacement(body, velocity);
     if (has_short_moves(body)) {
       const uint64_t n = step_ + body.slot;
       return {static_cast<int16_t>(units.small_displacement(velocity.x, n)),

@@ -55,6 +55,7 @@ void CrowdEngine::query_queue(const Body& body, std::span<const uint32_t> neares
   const bool is_at_rest = rests(body);
   uint32_t asker = UINT32_MAX;
   Plane asked, from;
+  uint32_t by = 0;
   float needs = 0;
   for (const uint32_t j : nearest) {
     const Body& other = bodies_[j];
@@ -79,10 +80,12 @@ void CrowdEngine::query_queue(const Body& body, std::span<const uint32_t> neares
     from = apart;
     needs = room;
     asked = request.ahead;
+    by = j;
   }
   if (asker != UINT32_MAX) {
     const Plane away = unit({-from.x, -from.z});
-    worker.yields = queues(body) && dot(asked, unit(path_ahead(body))) < -config_.queue.oncoming;
+    worker.yields = queues(body) && dot(unit(path_ahead(bodies_[by])), unit(path_ahead(body))) <
+                                        -config_.queue.oncoming;
     const bool steps_aside = worker.yields || !queues(body);
     worker.makes_room = steps_aside ? aside_of(body, away, from, asked, needs) : away;
     worker.asks = RoomRequest{first, *worker.makes_room};
@@ -164,6 +167,10 @@ bool CrowdEngine::find_room(const Body& body, Plane best, Worker& worker,
       break;
     }
   }
+  // To stand is always clear, so shorter moves must come before that.
+  for (const float part : kShorterParts) {
+    if (n > 0 && n < candidates.size()) candidates[n++] = shorter(candidates[0], part);
+  }
   std::fill(candidates.begin() + static_cast<ptrdiff_t>(n), candidates.end(), Displacement{});
   return true;
 }
@@ -207,11 +214,13 @@ bool CrowdEngine::may_turn_aside(const Body& body) const {
 
 // Requests count for one step: those of the last one are read in the next.
 void CrowdEngine::save_rows(size_t rows, std::vector<uint8_t>& out) const {
+  if (!config_.queues) return;
   put_rows(out, progress_.data(), rows);
   put_rows(out, requests_[step_ % 2].data(), rows);
 }
 
 bool CrowdEngine::has_sound_rows(uint32_t slot) const {
+  if (!config_.queues) return true;
   const QueueProgress& progress = progress_[slot];
   const RoomRequest& request = requests_[0][slot];
   return progress.after >= 0 && progress.stood >= 0 && progress.rest <= Rest::kMadeRoom &&
@@ -220,6 +229,7 @@ bool CrowdEngine::has_sound_rows(uint32_t slot) const {
 }
 
 const uint8_t* CrowdEngine::restore_rows(const uint8_t* saved, size_t rows) {
+  if (!config_.queues) return saved;
   saved = take_rows(saved, rows, progress_);
   saved = take_rows(saved, rows, requests_[0]);
   requests_[1] = requests_[0];

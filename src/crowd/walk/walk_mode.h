@@ -53,8 +53,7 @@ class TakesLinks {
 
 class WalkMode final : public Mode {
  public:
-  /// Of a route, a speed on level ground and the engine's rows.
-  static constexpr size_t kRowBytes = sizeof(Route) + sizeof(float) + CrowdEngine::kRowBytes;
+  static constexpr size_t kRowBytes = sizeof(Route) + sizeof(float);  // and its level speed
 
   WalkMode(SharedState& shared, const MoveConfig& config);
   /// What decides for classes that fly; it outlives all steps.

@@ -14,6 +14,7 @@
 #include "crowd/mode/mode.h"
 #include "crowd/obstacles/path_repair.h"
 #include "crowd/walk/crowd_engine.h"
+#include "crowd/walk/delay_map.h"
 #include "crowd/walk/routes.h"
 #include "path/edits/flow_points.h"
 #include "path/edits/ground_finder.h"
@@ -53,8 +54,9 @@ class TakesLinks {
 
 class WalkMode final : public Mode {
  public:
-  /// Of a route, a speed on level ground and the engine's rows.
-  static constexpr size_t kRowBytes = sizeof(Route) + sizeof(float) + CrowdEngine::kRowBytes;
+  /// Of a route, a speed on level ground, what is known of its progress, and the engine's rows.
+  static constexpr size_t kRowBytes =
+      sizeof(Route) + sizeof(float) + sizeof(PathProgress) + CrowdEngine::kRowBytes;
 
   WalkMode(SharedState& shared, const MoveConfig& config);
   /// What decides for classes that fly; it outlives all steps.
@@ -80,6 +82,8 @@ class WalkMode final : public Mode {
   bool renew_flows();
   /// Length of the path of a body on foot to a target. [m]
   [[nodiscard]] double distance(const Body& body, TargetId target);
+  /// Where avatars get on slowly; null if CrowdConfig::avoid_jams is off. Saved apart from rows.
+  [[nodiscard]] DelayMap* delays() const { return delays_.get(); }
   [[nodiscard]] bool flows_are_old() const { return flows_are_old_; }
   void set_flows_old(bool old) { flows_are_old_ = old; }
 
@@ -120,6 +124,7 @@ class WalkMode final : public Mode {
                                             // targets
     std::vector<path::AppliedEdits> areas;  // of `lives`
     std::vector<Path> paths;
+    std::vector<Path> compared;  // with `paths`, where one leads around a jam
     std::vector<RepairScratch> repairs;
     std::vector<path::FlowPoints> flows;   // by target
     std::optional<StandingDraw> standing;  // none: the ground has changed since
@@ -137,6 +142,28 @@ class WalkMode final : public Mode {
   void plan(std::span<Body> bodies, int32_t worker);
   void follow_path(Body& body, Route& route, const StrideGround& ground, uint64_t nth);
   bool plan_path(Body& body, Route& route, const StrideGround& ground, int32_t worker);
+  void find_path(const Body& body, const PathPoint& from, const PathPoint& to,
+                 const StrideGround& ground, size_t worker, Path& path);
+
+  // walk_congestion.cpp
+  void begin_watching();
+  void watch_routes(std::span<Body> bodies, int32_t worker);
+  void watch_route(Body& body, size_t worker);
+  void note_ahead(const Body& body, int32_t dx, int32_t dz, int share);
+  [[nodiscard]] bool may_change_route(const Body& body, const Route& route) const;
+  [[nodiscard]] bool leads_into_jam(const Body& body, const Route& route) const;
+  struct RouteCost {
+    size_t end = 0;              // the corner up to which it was measured
+    float length = 0, cost = 0;  // up to there, without and with delays [m]
+  };
+  [[nodiscard]] RouteCost measure_route(const Body& body, const Route& route,
+                                        path::GroundFinder& live) const;
+  void avoid_jam(Body& body, size_t worker);
+  [[nodiscard]] size_t find_via(const Body& body, const StrideGround& ground, size_t worker,
+                                const Path& path);
+  bool plan_to_via(Body& body, Route& route, const StrideGround& ground, size_t worker);
+  void take_path(Body& body, Route& route, const StrideGround& ground, const Path& path,
+                 size_t end);
 
   // walk_leaving.cpp
   /// Along its path, or to the nearest exit.
@@ -149,6 +176,8 @@ class WalkMode final : public Mode {
   bool links_are_used_ = false;                    // in this step
   std::vector<std::unique_ptr<OfClass>> classes_;  // null: not in use
   std::vector<Route> routes_;                      // by slot
+  std::vector<PathProgress> progress_;             // by slot
+  std::unique_ptr<DelayMap> delays_;               // null: avatars take no notice of jams
   bool some_fly_ = false;                          // OfClass::flies, of some
   bool flows_are_old_ = false;                     // the ground has changed since
 };

@@ -22,11 +22,39 @@ constexpr float kReach = 50;          // [m] of its path that it compares
 constexpr float kSlowRoute = 1.5f;    // delayed by length, from which on it searches
 constexpr float kClearlyLess = 0.8f;  // of the cost, at which it takes another route
 constexpr uint64_t kMaxNodes = 2000;  // of a search
+constexpr double kSameCorner = 1;     // [m] nearer to a corner a path leads around it, too
 
 PathPoint place_of_body(const Body& body) { return {body.x, body.z, body.level}; }
 
 float distance_of(const PathPoint& a, const PathPoint& b) {  // [units]
   return std::sqrt(near_square(b.x - a.x, b.z - a.z));
+}
+
+// Square of the distance from a point to a segment.
+double square_to_segment(const PathPoint& at, const PathPoint& from, const PathPoint& to) {
+  const double ux = to.x - from.x, uz = to.z - from.z, x = at.x - from.x, z = at.z - from.z;
+  const double size = ux * ux + uz * uz;
+  const double part = size > 0 ? std::clamp((x * ux + z * uz) / size, 0.0, 1.0) : 0;
+  const double dx = x - part * ux, dz = z - part * uz;
+  return dx * dx + dz * dz;
+}
+
+// Does a path lead around all corners before number `end` that a body heads to? Then it is the same
+// route, through the same doors. `near`: [units]
+bool is_same_route(const world::WorldData& world, const Path& path, const Route& route, size_t end,
+                   double near) {
+  if (route.next == end) return false;
+  for (size_t i = route.next; i < end; ++i) {
+    double least = HUGE_VAL;
+    PathPoint from = point_of(world, path.points[0]);
+    for (size_t p = 1; p < path.points.size(); ++p) {
+      const PathPoint to = point_of(world, path.points[p]);
+      least = std::min(least, square_to_segment(route.corners[i], from, to));
+      from = to;
+    }
+    if (least > near * near) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -49,13 +77,13 @@ void WalkMode::watch_routes(std::span<Body> bodies, int32_t worker) {
   }
 }
 
-// Not one that waits for a link: its turn comes.
+// Not one that waits for a link, where its turn comes, or gives room at one.
 bool WalkMode::may_change_route(const Body& body, const Route& route) const {
   return body.has(Body::kHasGoal) && !body.leaves &&
          (body.flags &
           (Body::kArrived | Body::kExternal | Body::kNeedsPath | Body::kMovedElsewhere)) == 0 &&
          classes_[body.avatar_class]->takes_links && route.next < route.count &&
-         !leads_to_link(route);
+         !leads_to_link(route) && !takes_links_->uses_link(body);
 }
 
 void WalkMode::watch_route(Body& body, size_t worker) {
@@ -160,7 +188,8 @@ void WalkMode::avoid_jam(Body& body, size_t worker) {
                                              .budget = shared_.search_budget(kMaxNodes)},
                                             path);
   shared_.note_spent(path.spent);
-  if (!is_found || path.points.size() < 2) {
+  if (!is_found || path.points.size() < 2 ||
+      is_same_route(data, path, route, now.end, kSameCorner / shared_.unit)) {
     // The longer there was none, the less often it searches.
     row.wait = row.next_wait;
     row.next_wait = static_cast<uint8_t>(std::min<int>(2 * row.next_wait, PathProgress::kMaxWait));

@@ -50,6 +50,8 @@ class TakesLinks {
   /// none. On any worker.
   virtual void begin_search(Body& body) = 0;
   virtual void end_search(Body& body, const Route* found) = 0;
+  /// Does one of them wait for a link, or give room to others that use one? On any worker.
+  [[nodiscard]] virtual bool uses_link(const Body& body) const = 0;
 };
 
 class WalkMode final : public Mode {

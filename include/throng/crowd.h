@@ -188,6 +188,13 @@ struct CrowdConfig {
   bool slow_on_slopes = true;
   /// By class; classes beyond the last entry have the default.
   std::vector<SlopeFactors> slope_factors = {};
+  /// With Routing::kPaths, avatars on foot of classes that neither fly nor go over nodes take
+  /// another route where one is clearly faster now: if they do not get on, or if their new path
+  /// leads into a jam. They search up to about 50 m ahead, so an avatar keeps its goal and the
+  /// place of its target to which it walks. docs/design/017-congestion.md. Time: a test for each
+  /// avatar and step, and at most 32 searches a second and one for each 2000 avatars. Memory: 385
+  /// bytes for each level of a tile, 8 for each avatar.
+  bool avoid_jams = true;
 };
 
 /// An avatar to add.
@@ -237,6 +244,9 @@ struct CrowdReport {
   /// it. They count in no_path, or are detours that were not found.
   uint64_t out_of_memory = 0;
   uint64_t waiting = 0;  ///< Obstacles that wait for avatars to leave their volume.
+  /// Searches for a route around a jam (CrowdConfig::avoid_jams); not in `planned`.
+  uint64_t jam_searches = 0;
+  uint64_t changed_route = 0;  ///< Of these, led to another route: avatars that took it.
   /// Mean speed towards the next corner, divided by the desired speed, on stairs and slopes by what
   /// that is there. [-1 to 1]
   double progress = 0;

@@ -184,6 +184,7 @@ struct Scenario {
   uint64_t search_bytes = SearchBudget::kDefaultBytes;  ///< As in CrowdConfig.
   SteeringModel steering = SteeringModel::kSampled;     ///< CrowdConfig::model.
   bool slow_on_slopes = true;                           ///< As in CrowdConfig.
+  bool avoid_jams = true;                               ///< As in CrowdConfig.
 
   std::vector<ScenarioArea> areas;
   std::vector<DensityMap> densities;

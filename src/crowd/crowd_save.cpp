@@ -52,8 +52,11 @@ struct Head {
   crowd::BodyExtent extent;
   float fastest = 0;  // [m/s]
   int32_t taking_widest = 0, taking_tallest = 0;
+  uint64_t avoids_jams = 0;
+  uint64_t slow_levels = 0;  // of the delay map
+  crowd::DelayMap::SavedQuestions questions;
 };
-static_assert(sizeof(Head) == 35 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 39 * 8 && std::is_trivially_copyable_v<Head>);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`; and without what its
 // edit holds.
@@ -145,7 +148,8 @@ uint64_t size_of(const Head& head) {
          head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 +
          head.flights * crowd::FlyMode::kRowBytes + head.searches * sizeof(crowd::LongSearch) +
          head.climbs * crowd::ClimbMode::kRowBytes + head.link_uses * crowd::LinkMode::kRowBytes +
-         head.views * sizeof(crowd::EngineDetail::View) + head.edit_bytes + head.call_bytes + 8;
+         head.views * sizeof(crowd::EngineDetail::View) + head.edit_bytes + head.call_bytes +
+         head.slow_levels * sizeof(crowd::DelayMap::Saved) + 8;
 }
 
 // A world that was never written has no hash of its own.
@@ -186,6 +190,7 @@ Head head_of(const World& world, const CrowdConfig& config) {
   head.slopes = hash_of_slopes(config);
   head.acceleration = config.tuning.acceleration;
   head.queues = config.tuning.queues && config.model == SteeringModel::kSampled ? 1 : 0;
+  head.avoids_jams = config.avoid_jams ? 1 : 0;
   return head;
 }
 
@@ -266,14 +271,15 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
       head.model != expected.model || head.low_detail_steps != expected.low_detail_steps ||
       head.low_detail_reaction != expected.low_detail_reaction ||
       head.slope_cost != expected.slope_cost || head.slopes != expected.slopes ||
-      head.acceleration != expected.acceleration || head.queues != expected.queues) {
+      head.acceleration != expected.acceleration || head.queues != expected.queues ||
+      head.avoids_jams != expected.avoids_jams) {
     return bad("has other settings; give those that it was made with");
   }
   constexpr uint64_t kMax = uint64_t{1} << 32;
   if (head.bodies >= kMax || head.slots >= kMax || head.free_slots >= kMax ||
       head.obstacles >= kMax || head.corners >= kMax || head.free_obstacles >= kMax ||
       head.target_values >= kMax || head.searches > head.flights || head.views >= kMax ||
-      head.edit_bytes >= kMax || head.call_bytes >= kMax ||
+      head.edit_bytes >= kMax || head.call_bytes >= kMax || head.slow_levels >= kMax ||
       (head.flights != 0 && head.flights != head.slots) ||
       (head.climbs != 0 && head.climbs != head.slots) ||
       (head.link_uses != 0 && head.link_uses != head.slots) || saved.size() != size_of(head)) {
@@ -306,6 +312,7 @@ struct SavedArrays {
   std::vector<double> targets;
   std::vector<crowd::LongSearch> searches;
   std::vector<uint8_t> edits, calls;
+  std::vector<crowd::DelayMap::Saved> delays;
 };
 
 // Reads all arrays, in the order of Crowd::save.
@@ -327,7 +334,8 @@ SavedArrays read_arrays(const Head& head, const uint8_t* at, State& s) {
   at = s.link.restore(at, head.link_uses);
   at = take_rows(at, head.views, s.views);
   at = take_rows(at, head.edit_bytes, saved.edits);
-  take_rows(at, head.call_bytes, saved.calls);
+  at = take_rows(at, head.call_bytes, saved.calls);
+  take_rows(at, head.slow_levels, saved.delays);
   return saved;
 }
 
@@ -401,6 +409,12 @@ std::vector<uint8_t> Crowd::save() const {
   head.fastest = s.fastest;
   head.taking_widest = s.link.taking().widest;
   head.taking_tallest = s.link.taking().tallest;
+  std::vector<crowd::DelayMap::Saved> delays;
+  if (const crowd::DelayMap* map = s.walk.delays(); map != nullptr) {
+    delays = map->saved();
+    head.questions = map->saved_questions();
+  }
+  head.slow_levels = delays.size();
   std::vector<uint8_t> out;
   out.reserve(size_of(head));
   put_rows(out, &head, 1);
@@ -420,6 +434,7 @@ std::vector<uint8_t> Crowd::save() const {
   put_rows(out, s.views.data(), s.views.size());
   put_rows(out, edits.data(), edits.size());
   put_rows(out, calls.data(), calls.size());
+  put_rows(out, delays.data(), delays.size());
   const uint64_t sum = hash_bytes(out.data(), out.size());
   put_rows(out, &sum, 1);
   return out;
@@ -447,6 +462,9 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   auto all = obstacles_of(arrays.obstacles, arrays.corners, s.shared.edits(), s.slot1_of_edit);
   sound =
       sound && all && s.shared.obstacles.restore(std::move(*all), std::move(arrays.free_obstacles));
+  if (crowd::DelayMap* map = s.walk.delays(); map != nullptr) {
+    sound = sound && map->restore(arrays.delays, head.questions);
+  }
   sound = sound && add_targets(*made, arrays.targets, context);
   for (const crowd::Body& body : bodies) sound = sound && body.target <= s.shared.targets.size();
   if (!sound) return bad("is not sound; save the crowd again");

@@ -64,7 +64,8 @@ Result<Simulation> Simulation::create(const World& world, const Scenario& scenar
                                      .search_bytes = scenario.search_bytes,
                                      .nodes = *std::move(nodes),
                                      .edits = edits,
-                                     .slow_on_slopes = scenario.slow_on_slopes});
+                                     .slow_on_slopes = scenario.slow_on_slopes,
+                                     .avoid_jams = scenario.avoid_jams});
   if (!crowd) return crowd.error();
   auto state = std::make_unique<State>(world, scenario, edits, std::move(*crowd));
   for (const ScenarioObstacle& obstacle : scenario.obstacles) {

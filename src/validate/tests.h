@@ -24,6 +24,7 @@ std::span<const Test> passage_tests();      // opposite directions in narrow cor
 std::span<const Test> crossing_tests();     // four streams that meet
 std::span<const Test> counterflow_tests();  // a door, a long corridor, a corridor that is fed
 std::span<const Test> maze_tests();         // corridors one body wide
+std::span<const Test> jam_tests();          // a building in which all go to and fro
 
 /// Recorded people beside predictions of their positions, for a folder of scenes.
 Result<ValidationResult> walkers(const std::string& folder, const ValidationConfig& config,

@@ -41,7 +41,8 @@ void for_tests(Do act) {
   for (const auto family :
        {validate::density_tests, validate::bottleneck_tests, validate::stream_tests,
         validate::motion_tests, validate::rest_tests, validate::passage_tests,
-        validate::crossing_tests, validate::counterflow_tests, validate::maze_tests}) {
+        validate::crossing_tests, validate::counterflow_tests, validate::maze_tests,
+        validate::jam_tests}) {
     for (const validate::Test& test : family()) act(test);
   }
 }

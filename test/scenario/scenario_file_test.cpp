@@ -175,6 +175,15 @@ TEST(ScenarioFile, StatesWhetherSlopesSlow) {
   EXPECT_FALSE(parse_scenario(changed(labels, labels + "\nslow_on_slopes = 0"), "full.toml"));
 }
 
+TEST(ScenarioFile, StatesWhetherAvatarsAvoidJams) {
+  const std::string labels = "paths = \"labels\"";
+  EXPECT_TRUE(parse_scenario(kFull, "full.toml")->avoid_jams);
+  const auto off = parse_scenario(changed(labels, labels + "\navoid_jams = false"), "full.toml");
+  ASSERT_TRUE(off) << off.error().message;
+  EXPECT_FALSE(off->avoid_jams);
+  EXPECT_FALSE(parse_scenario(changed(labels, labels + "\navoid_jams = 0"), "full.toml"));
+}
+
 TEST(ScenarioFile, NamesTheSteeringModel) {
   const std::string labels = "paths = \"labels\"";
   const auto ours = parse_scenario(kFull, "full.toml");

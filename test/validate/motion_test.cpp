@@ -169,6 +169,19 @@ TEST(Motion, MazesAreCountedWithAllThere) {
   EXPECT_EQ(result.passed(), mazes == 3);
 }
 
+TEST(Motion, JamsAreMeasuredByTheSpeedAndTheRoutesThatChange) {
+  const ValidationResult result = run_brief("motion.jams", 1);
+  expect_no_faults(result);
+  const double speed =
+      value_of(result, "speed towards the next corner, of the desired speed, at the end");
+  EXPECT_GT(speed, 0.5);
+  EXPECT_LE(speed, 1);
+  EXPECT_GT(value_of(result, "goals reached"), 0);
+  const double changed = value_of(result, "routes changed, of an avatar");
+  EXPECT_GE(value_of(result, "searches for other routes, of an avatar"), changed);
+  EXPECT_EQ(result.passed(), speed >= 0.85);
+}
+
 TEST(Motion, FlowOfTheDefaultBodyIsMeasuredFromSlowToFast) {
   const ValidationResult result = run_brief("motion.flow", 1);
   expect_no_faults(result);

@@ -55,7 +55,7 @@ TEST(Validation, StopsWhenCancelled) {
   Context context;
   context.cancel = true;
   for (const char* name : {"bottleneck", "motion.rest", "motion.passages", "motion.pillar",
-                           "motion.counterflow", "motion.mazes"}) {
+                           "motion.counterflow", "motion.mazes", "motion.jams"}) {
     const auto result = run_validation(name, {.brief = true}, context);
     ASSERT_FALSE(result) << name;
     EXPECT_EQ(result.error().code, Errc::kCancelled) << name;

@@ -33,6 +33,7 @@ struct RunOptions {
   CrowdRun crowd;
   bool wander = false;            // without goals
   bool full_speed = false;        // on stairs and slopes, too
+  bool ignore_jams = false;       // no other routes around them
   std::vector<std::string> also;  // CLASS:N
 };
 
@@ -114,6 +115,7 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
   run.config.seed = options.config.seed;
   run.config.workers = options.config.workers;
   run.config.slow_on_slopes = !options.full_speed;
+  run.config.avoid_jams = !options.ignore_jams;
   if (auto ok = read_goals(run); !ok) return fail(ok.error());
   for (const std::string& group : options.also) {
     const size_t colon = group.rfind(':');
@@ -195,6 +197,7 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
                   .seed = {},
                   .model = {},
                   .full_speed = options.full_speed,
+                  .ignore_jams = options.ignore_jams,
                   .check_every = options.check_every,
                   .workers = options.config.workers,
                   .trips = options.trips,
@@ -209,7 +212,7 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
 // Fails if an option of avatars with goals stands beside --wander.
 Result<void> check_wander(const CLI::App& command) {
   for (const char* name : {"--goals", "--near", "--also", "--radius", "--labels", "--zones",
-                           "--search-memory", "--model", "--full-speed"}) {
+                           "--search-memory", "--model", "--full-speed", "--ignore-jams"}) {
     if (command.count(name) == 0) continue;
     return Error{Errc::kBadConfig,
                  fmt::format("{} is for avatars with goals; leave out --wander", name)};
@@ -276,6 +279,8 @@ void add_run(CLI::App& parser, Session& session) {
   add_model(*command, options->crowd.config.model);
   command->add_flag("--full-speed", options->full_speed,
                     "Stairs and slopes slow no avatar; without it they do");
+  command->add_flag("--ignore-jams", options->ignore_jams,
+                    "No avatar takes another route around a jam; without it avatars do");
   add_output(*command, session, "--trajectories", options->sinks.trajectories,
              "Write positions to this file")
       ->type_name("FILE.csv");

@@ -63,8 +63,9 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
     ok = need(settings, {"search_bytes"}, [](const Json& j) { return j.is_number_unsigned(); });
   }
   if (ok) ok = need(settings, {"labels", "zones"}, [](const Json& j) { return j.is_boolean(); });
-  if (ok && settings.contains("slow_on_slopes")) {
-    ok = need(settings, {"slow_on_slopes"}, [](const Json& j) { return j.is_boolean(); });
+  for (const char* key : {"slow_on_slopes", "avoid_jams"}) {
+    if (!ok || !settings.contains(key)) continue;
+    ok = need(settings, {key}, [](const Json& j) { return j.is_boolean(); });
   }
   if (ok && settings.contains("model")) {
     ok = need(settings, {"model"}, [](const Json& j) { return j.is_string(); });
@@ -95,6 +96,8 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
   run.config.search_bytes = settings.value("search_bytes", run.config.search_bytes);
   // Older recordings do not have it: nothing slowed their avatars.
   run.config.slow_on_slopes = settings.value("slow_on_slopes", false);
+  // The same: they took no other routes.
+  run.config.avoid_jams = settings.value("avoid_jams", false);
   run.config.workers = workers;
   const auto model = find_steering_model(settings.value("model", name_of(run.config.model)));
   if (!model) {
@@ -175,7 +178,8 @@ Json crowd_settings(const CrowdRun& run) {
           {"search_bytes", run.config.search_bytes},
           {"seed", run.config.seed},
           {"model", name_of(run.config.model)},
-          {"slow_on_slopes", run.config.slow_on_slopes}};
+          {"slow_on_slopes", run.config.slow_on_slopes},
+          {"avoid_jams", run.config.avoid_jams}};
 }
 
 Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t workers) {

@@ -56,6 +56,8 @@ struct Totals {
     sum.arrived += r.arrived;
     sum.planned += r.planned;
     sum.no_path += r.no_path;
+    sum.jam_searches += r.jam_searches;
+    sum.changed_route += r.changed_route;
     sum.flying = r.flying;  // at the end
     sum.climbing = r.climbing;
     sum.out_of_memory += r.out_of_memory;
@@ -77,6 +79,7 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
                {"goals", run.goals},
                {"model", name_of(run.config.model)},
                {"slow_on_slopes", run.config.slow_on_slopes},
+               {"avoid_jams", run.config.avoid_jams},
                {"avatars", crowd.size()},
                {"steps", times.steps()},
                {"dt", run.config.dt},
@@ -87,6 +90,8 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
                {"planned", t.sum.planned},
                {"no_path", t.sum.no_path},
                {"out_of_memory", t.sum.out_of_memory},
+               {"jam_searches", t.sum.jam_searches},
+               {"changed_route", t.sum.changed_route},
                {"flying", t.sum.flying},
                {"climbing", t.sum.climbing},
                {"blocked", t.sum.stood},

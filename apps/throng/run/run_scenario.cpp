@@ -121,6 +121,7 @@ Result<void> write_obstacles(const std::string& path, const Scenario& scenario,
 
 struct ScenarioTotals {
   uint64_t steps = 0, max_avatars = 0, checks = 0, out_of_memory = 0;
+  uint64_t jam_searches = 0, changed_route = 0;
   double avatar_steps = 0, progress = 0;
   CrowdCheck found;
   SimulationReport last;
@@ -145,6 +146,7 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
                {"dt", scenario.dt},
                {"model", name_of(scenario.steering)},
                {"slow_on_slopes", scenario.slow_on_slopes},
+               {"avoid_jams", scenario.avoid_jams},
                {"seed", scenario.seed},
                {"threads", run.workers},
                {"entered", t.last.entered},
@@ -160,6 +162,8 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
                {"obstacles", obstacles},
                {"progress", progress},
                {"out_of_memory", t.out_of_memory},
+               {"jam_searches", t.jam_searches},
+               {"changed_route", t.changed_route},
                {"checks", t.checks},
                {"wall_entries", t.found.wall_entries},
                {"overlaps", t.found.overlaps},
@@ -212,6 +216,8 @@ Result<ScenarioTotals> run_steps(Session& session, const ScenarioRun& run, const
     t.max_avatars = std::max(t.max_avatars, report->crowd.avatars);
     t.avatar_steps += avatars;
     t.out_of_memory += report->crowd.out_of_memory;
+    t.jam_searches += report->crowd.jam_searches;
+    t.changed_route += report->crowd.changed_route;
     t.progress += report->crowd.progress * avatars;
     if (t.steps % check_every == 0) check();
     if (auto ok = write(t.steps); !ok) return ok.error();
@@ -239,6 +245,7 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
   if (run.seed) scenario->seed = *run.seed;
   if (run.model) scenario->steering = *run.model;
   if (run.full_speed) scenario->slow_on_slopes = false;
+  if (run.ignore_jams) scenario->avoid_jams = false;
   const auto world = times.measure("open", [&] { return open_world(*scenario, session.context); });
   if (!world) return world.error();
   auto simulation = times.measure("prepare", [&] {
@@ -250,7 +257,8 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
                          {"file", run.file},
                          {"seed", scenario->seed},
                          {"model", name_of(scenario->steering)},
-                         {"slow_on_slopes", scenario->slow_on_slopes}};
+                         {"slow_on_slopes", scenario->slow_on_slopes},
+                         {"avoid_jams", scenario->avoid_jams}};
   auto ok = sinks.open(*world, {.world = scenario->world.empty() ? run.file : scenario->world,
                                 .dt = scenario->dt,
                                 .model = kScenarioModel,
@@ -299,6 +307,8 @@ Result<Scenario> recorded_scenario(const Json& settings) {
   // Older recordings do not have it: nothing slowed their avatars.
   const auto slow = settings.find("slow_on_slopes");
   scenario->slow_on_slopes = slow != settings.end() && *slow == true;
+  const auto avoid = settings.find("avoid_jams");  // The same: none took another route.
+  scenario->avoid_jams = avoid != settings.end() && *avoid == true;
   const auto name = settings.find("model");
   if (name == settings.end()) return scenario;  // as the file says
   const auto model =

@@ -20,6 +20,7 @@ struct ScenarioRun {
   std::optional<uint64_t> seed;        // instead of the scenario's
   std::optional<SteeringModel> model;  // instead of the scenario's
   bool full_speed = false;             // stairs and slopes slow none, whatever the scenario says
+  bool ignore_jams = false;            // none takes another route, whatever the scenario says
   uint64_t check_every = 0;            // 0: ten times a run
   int32_t workers = 0;
   std::string trips;      // CSV of all trips; empty: none

@@ -44,6 +44,9 @@ class LinkMode final : public Mode, public TakesLinks {
                      uint64_t nth) override;
   void begin_search(Body& body) override;
   void end_search(Body& body, const Route* found) override;
+  [[nodiscard]] bool uses_link(const Body& body) const override {
+    return !uses_.empty() && uses_[body.slot].state != LinkUse::kNone;
+  }
 
   Result<void> open_class(size_t number, Context& context) override;
   void close_class(size_t /*number*/) override {}

@@ -56,6 +56,7 @@ struct SharedState {
   // Of the step.
   std::vector<AvatarId> arrived, goal_unreachable;
   std::atomic<uint64_t> planned{0}, out_of_memory{0};  // searches
+  std::atomic<uint64_t> jam_searches{0}, changed_route{0};
   std::mutex goal_mutex;
 
   [[nodiscard]] const AvatarClass& body_class(size_t number) const {

@@ -56,6 +56,7 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
     if (!at_end && (there || (is_at_lane_offset(body, route, metre) &&
                               sees(route.corners[route.next + 1u])))) {
       ++route.next;
+      if (route.via <= route.next) route.via = 0;
       turn_to(body, route, ground, metre);
       return;
     }
@@ -110,6 +111,7 @@ bool use_path(const world::WorldData& world, const Path& path, const StrideGroun
   const float metre = world::kUnitsPerCell / static_cast<float>(world.summary.cell);
   body.flags = static_cast<uint8_t>(body.flags & ~Body::kNeedsPath);
   route.by_link = 0;
+  route.via = 0;
   if (path.end != PathEnd::kReached) return false;
   if (path.points.size() < 2) {  // It stands on its goal.
     route.corners[0] = route.goal;
@@ -142,6 +144,37 @@ bool use_path(const world::WorldData& world, const Path& path, const StrideGroun
   }
   turn_to(body, route, ground, metre);
   return true;
+}
+
+void replace_corners(const world::WorldData& world, const Path& path, size_t end,
+                     const StrideGround& ground, Body& body, Route& route) {
+  const float metre = world::kUnitsPerCell / static_cast<float>(world.summary.cell);
+  const Route old = route;
+  const size_t wanted = path.points.size() - 1 + (old.count - 1 - end);
+  const size_t count = std::min(wanted, Route::kCorners);
+  for (size_t i = 0; i < count; ++i) {
+    const bool is_new = i + 1 < path.points.size();
+    route.corners[i] = is_new ? point_of(world, path.points[i + 1])
+                              : old.corners[end + 1 + (i - (path.points.size() - 1))];
+  }
+  route.count = static_cast<uint8_t>(count);
+  route.next = 0;
+  route.via = 0;
+  if (count < wanted) {
+    route.whole = false;
+    route.by_link = 0;
+  }
+  body.clear(Body::kNeedsPath);
+  turn_to(body, route, ground, metre);
+}
+
+float length_between(const Route& route, size_t from, size_t to) {
+  float length = 0;
+  for (size_t i = from; i < to; ++i) {
+    const PathPoint &a = route.corners[i], &b = route.corners[i + 1];
+    length += std::sqrt(near_square(b.x - a.x, b.z - a.z));
+  }
+  return length;
 }
 
 }  // namespace throng::crowd

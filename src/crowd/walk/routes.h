@@ -27,8 +27,11 @@ struct Route {
   PathPoint goal;
   std::array<PathPoint, kCorners> corners;
   uint8_t count = 0, next = 0;
-  bool whole = false;   // the last corner is the goal
-  uint8_t by_link = 0;  // An off-mesh link leads to the last corner, from the one before.
+  bool whole = false;       // the last corner is the goal
+  uint8_t by_link : 1 = 0;  // An off-mesh link leads to the last corner, from the one before.
+  // Number plus one of a corner on a detour around a jam, from which the shortest path leads on as
+  // the corners do; 0: none. It is never the last corner.
+  uint8_t via : 7 = 0;
 };
 
 /// Is the corner that a body heads to the start of an off-mesh link?
@@ -48,6 +51,13 @@ PathPoint point_of(const world::WorldData& world, const Place& place);
 /// Takes the next corners of a path that was found, from where the body is. False: none was found.
 bool use_path(const world::WorldData& world, const Path& path, const StrideGround& ground,
               Body& body, Route& route);
+
+/// Replaces the corners up to number `end` by those of a path from the body to that corner. Corners
+/// behind it stay as far as there is room. No link leads to `end`.
+void replace_corners(const world::WorldData& world, const Path& path, size_t end,
+                     const StrideGround& ground, Body& body, Route& route);
+/// Length from one corner to a later one. [units]
+float length_between(const Route& route, size_t from, size_t to);
 
 /// A rectangle of the plane. [units]
 struct PlanBox {

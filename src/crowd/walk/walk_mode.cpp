@@ -23,7 +23,10 @@ WalkMode::WalkMode(SharedState& shared, const MoveConfig& config)
     : Mode(shared),
       engine_(config, data_of(shared.world)->width, data_of(shared.world)->depth,
               shared.classes.size()),
-      classes_(shared.classes.size()) {}
+      classes_(shared.classes.size()) {
+  if (!shared.config.avoid_jams || shared.config.routing != Routing::kPaths) return;
+  delays_ = std::make_unique<DelayMap>(data_of(shared.world)->level_count, shared.config.dt);
+}
 
 StrideGround WalkMode::stride_ground(const Body& body) const {
   return {shared_.ground_of(body), world::step_mm(shared_.body_class(body.avatar_class))};
@@ -31,6 +34,7 @@ StrideGround WalkMode::stride_ground(const Body& body) const {
 
 void WalkMode::reserve(size_t bodies, size_t rows) {
   routes_.reserve(rows);
+  progress_.reserve(rows);
   engine_.level_speeds().reserve(rows);
   engine_.reserve(bodies);
 }
@@ -49,6 +53,7 @@ Result<void> WalkMode::open_class(size_t number, Context& context) {
     if (!finder) return finder.error();
     made->finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
     made->paths.resize(made->finders.size());
+    made->compared.resize(made->finders.size());
     made->repairs.resize(made->finders.size());
   }
   made->flies = shared_.flies(number);
@@ -100,6 +105,7 @@ bool WalkMode::draw(NewAvatar& avatar, const AvatarSpawn& /*like*/, uint64_t n) 
 // A row that was another avatar's stays until a goal replaces it.
 void WalkMode::add(const NewAvatar& avatar) {
   routes_.resize(shared_.generation.size());
+  progress_.resize(shared_.generation.size());
   engine_.level_speeds().resize(shared_.generation.size());
   engine_.clear_rows(avatar.body.slot);
 }
@@ -115,6 +121,7 @@ void WalkMode::set_goal(Body& body, const Place& goal) {
   if (!point) return;
   Route& route = routes_[body.slot];
   engine_.set_path_after(body.slot, 0);
+  progress_[body.slot] = {};
   route = {};
   route.goal = {static_cast<int32_t>(point->x), static_cast<int32_t>(point->z), goal.level1 - 1};
   body.local_target_x = route.goal.x;
@@ -125,6 +132,7 @@ void WalkMode::set_goal(Body& body, const Place& goal) {
 
 void WalkMode::set_target(Body& body) {
   routes_[body.slot] = {};
+  progress_[body.slot] = {};
   engine_.set_path_after(body.slot, 0);
   body.local_target_x = body.x;
   body.local_target_z = body.z;
@@ -139,6 +147,7 @@ void WalkMode::step(std::span<Body> /*bodies: its engine's*/, EngineCounts& coun
   const auto plan_all = [this](std::span<Body> bodies, int32_t worker) { plan(bodies, worker); };
   const auto plan_none = [](std::span<Body> /*bodies*/, int32_t /*worker*/) {};
   links_are_used_ = takes_links_->begin_step();
+  if (delays_) begin_watching();
   engine_.set_orientations(shared_.orientations);
   const bool has_plans =
       shared_.config.routing == Routing::kPaths || some_fly_ || shared_.some_leave;
@@ -257,17 +266,21 @@ AvatarState WalkMode::state_of(const Body& body) const {
 
 void WalkMode::add_memory(CrowdMemory& memory) const {
   memory.avatars += engine_.bytes();
-  memory.paths += routes_.capacity() * (sizeof(Route) + sizeof(float));  // as many of each
+  // As many of each.
+  memory.paths += routes_.capacity() * (sizeof(Route) + sizeof(float) + sizeof(PathProgress));
+  if (delays_) memory.ground += delays_->bytes();
 }
 
 void WalkMode::save(std::vector<uint8_t>& out) const {
   put_rows(out, routes_.data(), routes_.size());
+  put_rows(out, progress_.data(), progress_.size());
   put_rows(out, engine_.level_speeds().data(), engine_.level_speeds().size());
   engine_.save_rows(routes_.size(), out);
 }
 
 const uint8_t* WalkMode::restore(const uint8_t* saved, size_t rows) {
-  saved = take_rows(take_rows(saved, rows, routes_), rows, engine_.level_speeds());
+  saved = take_rows(take_rows(saved, rows, routes_), rows, progress_);
+  saved = take_rows(saved, rows, engine_.level_speeds());
   return engine_.restore_rows(saved, rows);
 }
 
@@ -279,7 +292,9 @@ bool WalkMode::is_sound(const Body& body) const {
   const uint32_t levels = data_of(shared_.world)->level_count;
   if (!engine_.has_sound_rows(body.slot)) return false;
   const Route& route = routes_[body.slot];
-  if (route.by_link > 1 || (route.by_link != 0 && route.count < 2)) return false;
+  if (!progress_[body.slot].is_sound()) return false;
+  if (route.by_link != 0 && route.count < 2) return false;
+  if (route.via != 0 && (route.via >= route.count || route.via <= route.next)) return false;
   if (route.count > Route::kCorners || (route.count > 0 && route.next >= route.count)) return false;
   for (size_t i = 0; i < route.count; ++i) {
     const PathPoint& corner = route.corners[i];

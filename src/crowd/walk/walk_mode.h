@@ -14,6 +14,7 @@
 #include "crowd/mode/mode.h"
 #include "crowd/obstacles/path_repair.h"
 #include "crowd/walk/crowd_engine.h"
+#include "crowd/walk/delay_map.h"
 #include "crowd/walk/routes.h"
 #include "path/edits/flow_points.h"
 #include "path/edits/ground_finder.h"
@@ -49,11 +50,14 @@ class TakesLinks {
   /// none. On any worker.
   virtual void begin_search(Body& body) = 0;
   virtual void end_search(Body& body, const Route* found) = 0;
+  /// Does one of them wait for a link, or give room to others that use one? On any worker.
+  [[nodiscard]] virtual bool uses_link(const Body& body) const = 0;
 };
 
 class WalkMode final : public Mode {
  public:
-  static constexpr size_t kRowBytes = sizeof(Route) + sizeof(float);  // and its level speed
+  /// Of a route, a speed on level ground and what is known of its progress.
+  static constexpr size_t kRowBytes = sizeof(Route) + sizeof(float) + sizeof(PathProgress);
 
   WalkMode(SharedState& shared, const MoveConfig& config);
   /// What decides for classes that fly; it outlives all steps.
@@ -79,6 +83,8 @@ class WalkMode final : public Mode {
   bool renew_flows();
   /// Length of the path of a body on foot to a target. [m]
   [[nodiscard]] double distance(const Body& body, TargetId target);
+  /// Where avatars get on slowly; null if CrowdConfig::avoid_jams is off. Saved apart from rows.
+  [[nodiscard]] DelayMap* delays() const { return delays_.get(); }
   [[nodiscard]] bool flows_are_old() const { return flows_are_old_; }
   void set_flows_old(bool old) { flows_are_old_ = old; }
 
@@ -119,6 +125,7 @@ class WalkMode final : public Mode {
                                             // targets
     std::vector<path::AppliedEdits> areas;  // of `lives`
     std::vector<Path> paths;
+    std::vector<Path> compared;  // with `paths`, where one leads around a jam
     std::vector<RepairScratch> repairs;
     std::vector<path::FlowPoints> flows;   // by target
     std::optional<StandingDraw> standing;  // none: the ground has changed since
@@ -136,6 +143,28 @@ class WalkMode final : public Mode {
   void plan(std::span<Body> bodies, int32_t worker);
   void follow_path(Body& body, Route& route, const StrideGround& ground, uint64_t nth);
   bool plan_path(Body& body, Route& route, const StrideGround& ground, int32_t worker);
+  void find_path(const Body& body, const PathPoint& from, const PathPoint& to,
+                 const StrideGround& ground, size_t worker, Path& path);
+
+  // walk_congestion.cpp
+  void begin_watching();
+  void watch_routes(std::span<Body> bodies, int32_t worker);
+  void watch_route(Body& body, size_t worker);
+  void note_ahead(const Body& body, int32_t dx, int32_t dz, int share);
+  [[nodiscard]] bool may_change_route(const Body& body, const Route& route) const;
+  [[nodiscard]] bool leads_into_jam(const Body& body, const Route& route) const;
+  struct RouteCost {
+    size_t end = 0;              // the corner up to which it was measured
+    float length = 0, cost = 0;  // up to there, without and with delays [m]
+  };
+  [[nodiscard]] RouteCost measure_route(const Body& body, const Route& route,
+                                        path::GroundFinder& live) const;
+  void avoid_jam(Body& body, size_t worker);
+  [[nodiscard]] size_t find_via(const Body& body, const StrideGround& ground, size_t worker,
+                                const Path& path);
+  bool plan_to_via(Body& body, Route& route, const StrideGround& ground, size_t worker);
+  void take_path(Body& body, Route& route, const StrideGround& ground, const Path& path,
+                 size_t end);
 
   // walk_leaving.cpp
   /// Along its path, or to the nearest exit.
@@ -148,6 +177,8 @@ class WalkMode final : public Mode {
   bool links_are_used_ = false;                    // in this step
   std::vector<std::unique_ptr<OfClass>> classes_;  // null: not in use
   std::vector<Route> routes_;                      // by slot
+  std::vector<PathProgress> progress_;             // by slot
+  std::unique_ptr<DelayMap> delays_;               // null: avatars take no notice of jams
   bool some_fly_ = false;                          // OfClass::flies, of some
   bool flows_are_old_ = false;                     // the ground has changed since
 };

@@ -19,6 +19,7 @@ constexpr size_t kGoals = 4096;  // places of a target that paths lead to, about
 void WalkMode::plan(std::span<Body> bodies, int32_t worker) {
   const uint64_t step_now = shared_.sub_step - 1;
   uint64_t asked = 0;
+  if (delays_) watch_routes(bodies, worker);
   for (Body& body : bodies) {
     if (body.has(Body::kMovedElsewhere) || body.steps == 0) continue;
     const OfClass& parts = *classes_[body.avatar_class];
@@ -79,21 +80,13 @@ bool WalkMode::plan_path(Body& body, Route& route, const StrideGround& ground, i
   OfClass& parts = *classes_[body.avatar_class];
   Path& path = parts.paths[w];
   const PathPoint here{body.x, body.z, body.level};
-  const Place from = place_of(data, body, here);
+  if (route.via != 0 && plan_to_via(body, route, ground, w)) return true;
+  progress_[body.slot].is_new = 1;
   if (body.target != 0) {
-    parts.flows[body.target - 1u].find_path(parts.lives[w], from, path);
+    parts.flows[body.target - 1u].find_path(parts.lives[w], place_of(data, body, here), path);
     route.goal = here;  // if it stands there already
   } else {
-    const Place to = place_of(data, body, route.goal);
-    const bool by_cost = plans_by_cost(parts);
-    if (by_cost) parts.lives[w].find(from, to, path, shared_.search_budget());
-    if (!by_cost) parts.finders[w].find(from, to, path, shared_.search_budget());
-    SpentBudget spent = path.spent;
-    if (!by_cost && shared_.obstacles.cuts_paths() && path.end == PathEnd::kReached) {
-      lead_around(data, parts.lives[w], ground, shared_.search_budget(), path, parts.repairs[w]);
-      if (path.spent != SpentBudget::kNone) spent = path.spent;
-    }
-    shared_.note_spent(spent);
+    find_path(body, here, route.goal, ground, w, path);
   }
   if (!use_path(data, path, ground, body, route)) return false;
   double first = 0;  // [m]
@@ -103,6 +96,24 @@ bool WalkMode::plan_path(Body& body, Route& route, const StrideGround& ground, i
   }
   engine_.set_path_after(body.slot, static_cast<float>(std::max(path.length - first, 0.0)));
   return true;
+}
+
+// A path of low cost over the ground of the body's class, around its obstacles.
+void WalkMode::find_path(const Body& body, const PathPoint& from, const PathPoint& to,
+                         const StrideGround& ground, size_t worker, Path& path) {
+  const world::WorldData& data = *data_of(shared_.world);
+  OfClass& parts = *classes_[body.avatar_class];
+  const Place start = place_of(data, body, from), goal = place_of(data, body, to);
+  const SearchBudget budget = shared_.search_budget();
+  const bool by_cost = plans_by_cost(parts);
+  if (by_cost) parts.lives[worker].find(start, goal, path, budget);
+  if (!by_cost) parts.finders[worker].find(start, goal, path, budget);
+  SpentBudget spent = path.spent;
+  if (!by_cost && shared_.obstacles.cuts_paths() && path.end == PathEnd::kReached) {
+    lead_around(data, parts.lives[worker], ground, budget, path, parts.repairs[worker]);
+    if (path.spent != SpentBudget::kNone) spent = path.spent;
+  }
+  shared_.note_spent(spent);
 }
 
 void WalkMode::make_lives(size_t number) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -345,6 +346,44 @@ void GroundFinder::find_over_points(const Place& from, const Place& to, Path& pa
   state_->begin(from, to, true);
   Slice all;
   state_->advance(budget, all, path);
+}
+
+bool GroundFinder::find_by_delays(const Place& from, const Place& to, const DelayedSearch& search,
+                                  Path& path) {
+  State& s = *state_;
+  reset(path);
+  s.searching = false;
+  if (!s.locate(from, s.from) || !s.locate(to, s.to)) return false;
+  s.mesh.set_delays(search.delays);
+  s.search.begin(s.mesh, s.from, s.to, search.max_cost / s.mesh.world().summary.cell);
+  const PointSearch::State result =
+      s.search.advance(s.mesh, search.budget.max_nodes, search.budget.max_bytes);
+  path.nodes = s.search.expanded();
+  path.end = PathEnd::kUnreachable;
+  if (result == PointSearch::State::kSearching || result == PointSearch::State::kFull) {
+    path.end = PathEnd::kBudgetExhausted;
+    path.spent = result == PointSearch::State::kFull ? SpentBudget::kMemory : SpentBudget::kNodes;
+  }
+  if (result == PointSearch::State::kFound) {
+    path.end = PathEnd::kReached;
+    s.search.trace(s.mesh, s.stops);
+    s.string.pull(s.mesh, s.stops);
+    s.give(path);
+  }
+  s.search.give_back();
+  s.mesh.set_delays(nullptr);
+  return result == PointSearch::State::kFound;
+}
+
+double GroundFinder::delayed_length(const Place& from, const Place& to,
+                                    const GroundDelays& delays) {
+  State& s = *state_;
+  ViewStop start, end;
+  if (!s.locate(from, start) || !s.locate(to, end)) return std::numeric_limits<double>::infinity();
+  s.mesh.set_delays(&delays);
+  const double cost = segment_cost(s.mesh, start, end);
+  s.mesh.set_delays(nullptr);
+  return cost * s.mesh.world().summary.cell;
 }
 
 bool GroundFinder::advance(const SearchBudget& budget, Slice& slice, Path& path) {

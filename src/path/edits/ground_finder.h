@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "path/edits/found_blocker.h"
+#include "path/edits/ground_delays.h"
 #include "path/edits/solid.h"
 #include "path/ground/slice.h"
 #include "throng/path.h"
@@ -83,6 +84,20 @@ class GroundFinder {
   bool advance(uint64_t max_nodes, Path& path);
   /// The same within a budget of the whole search; true, too, when that is exhausted.
   bool advance(const SearchBudget& budget, Slice& slice, Path& path);
+
+  /// Of a search by delays.
+  struct DelayedSearch {
+    const GroundDelays* delays = nullptr;  // [not null]
+    double max_cost = 0;                   // of a path, in metres of free ground
+    SearchBudget budget;
+  };
+  /// As find_over_points, but each metre costs more where avatars get on slowly now, no path costs
+  /// more than `max_cost`, and none takes off-mesh links. True: a path was found (kReached);
+  /// Path::cost is by delays. No allocation once it is warm.
+  bool find_by_delays(const Place& from, const Place& to, const DelayedSearch& search, Path& path);
+  /// Of a straight segment, by delays, in metres of free ground; infinite if it is no legal move.
+  [[nodiscard]] double delayed_length(const Place& from, const Place& to,
+                                      const GroundDelays& delays);
 
   /// Rises where a change concerns what a search may have seen.
   [[nodiscard]] uint64_t version() const;

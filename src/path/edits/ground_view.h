@@ -14,6 +14,7 @@
 #include "core/access.h"
 #include "graph/ground_parts.h"
 #include "path/edits/blocked_cells.h"
+#include "path/edits/ground_delays.h"
 #include "path/edits/index_blocks.h"
 #include "path/edits/solid.h"
 #include "path/ground/cells.h"
@@ -106,6 +107,14 @@ class GroundView final : public PortalSource {
   [[nodiscard]] bool has_links() const { return active_links_ > 0; }
   /// No path costs less than its length in the plane times this.
   [[nodiscard]] double min_factor() const { return std::min(min_factor_, min_link_factor_); }
+  /// While these are set, searches over points and costs of segments go by them. Null: none.
+  void set_delays(const GroundDelays* delays) { delays_ = delays; }
+  [[nodiscard]] const GroundDelays* delays() const { return delays_; }
+  /// Of a segment within a level, times the delays there. [cells]
+  [[nodiscard]] double length_now(uint32_t level, world::GroundPoint from,
+                                  world::GroundPoint to) const {
+    return delays_ == nullptr ? distance_of(from, to) : delays_->length(level, from, to);
+  }
   void set_area_cost(uint8_t kind, double cost);
   [[nodiscard]] double area_cost(uint8_t kind) const { return area_cost_[kind]; }
 
@@ -216,6 +225,7 @@ class GroundView final : public PortalSource {
   double min_factor_ = 1;
   double min_link_factor_ = 1;  // of active off-mesh links that cost less than their length
   bool plain_ = true;
+  const GroundDelays* delays_ = nullptr;  // a copy has none
   uint64_t version_ = 0;
   size_t active_links_ = 0;
   std::vector<std::unique_ptr<ViewLevel>> levels_;  // of the world; null: not made yet

@@ -91,13 +91,23 @@ void ReachedPoints::grow() {
 double segment_cost(GroundView& mesh, const ViewStop& from, const ViewStop& to) {
   const ViewLevel* level = mesh.level(from.level);
   const double length = distance_of(from.at, to.at);
+  const GroundDelays* delays = mesh.delays();
+  const GroundDelays::Heading heading =
+      delays == nullptr ? GroundDelays::Heading{} : GroundDelays::heading(from.at, to.at);
+  const bool is_even = mesh.is_plain() && delays == nullptr;  // a metre costs 1 everywhere
+  const auto factor_of = [&](const ViewLevel& of, int32_t x, int32_t z) {
+    const double by_kind = mesh.is_plain() ? 1 : factor_at(mesh, of, x, z);
+    if (delays == nullptr) return by_kind;
+    return by_kind *
+           delays->factor(of.ground.world_level, world::in_tile(x), world::in_tile(z), heading);
+  };
   double cost = 0, t = 0;
-  double factor = mesh.is_plain() ? 1 : factor_at(mesh, *level, from.at.cell_x(), from.at.cell_z());
+  double factor = is_even ? 1 : factor_of(*level, from.at.cell_x(), from.at.cell_z());
   const auto dx = static_cast<double>(to.at.x - from.at.x);
   const auto dz = static_cast<double>(to.at.z - from.at.z);
   const auto enter = [&](const ViewLevel* next, int32_t x, int32_t z, int32_t before_x,
                          int32_t before_z) {
-    if (mesh.is_plain()) return;
+    if (is_even) return;
     double at = t;
     if (x != before_x) {
       const int64_t line = int64_t{std::max(x, before_x)} << world::kUnitBits;
@@ -108,12 +118,12 @@ double segment_cost(GroundView& mesh, const ViewStop& from, const ViewStop& to) 
     }
     cost += (at - t) * length * factor;
     t = at;
-    factor = factor_at(mesh, *next, x, z);
+    factor = factor_of(*next, x, z);
   };
   const world::WalkStop stop =
       world::walk_far(mesh.ground(), level, from.at, to.at, mesh.step(), enter);
   if (!stop.arrived || level->ground.world_level != to.level) return kNever;
-  if (mesh.is_plain()) return length;
+  if (is_even) return length;
   cost += (1 - t) * length * factor;
   return std::isfinite(cost) ? cost : kNever;
 }
@@ -191,8 +201,10 @@ void CostString::pull(GroundView& mesh, std::vector<ViewStop>& stops) {
   stops.swap(whole_);
 }
 
-void PointSearch::begin(GroundView& mesh, const ViewStop& from, const ViewStop& to) {
+void PointSearch::begin(GroundView& mesh, const ViewStop& from, const ViewStop& to,
+                        double max_cost) {
   to_ = to;
+  max_cost_ = max_cost;
   nodes_.clear();
   open_.clear();
   expanded_ = 0;
@@ -267,7 +279,9 @@ PointSearch::State PointSearch::advance(GroundView& mesh, uint64_t max_nodes, ui
   for (uint64_t n = 0; n < max_nodes;) {
     if (open_.empty()) return State::kNone;
     if (nodes_.used_bytes() + open_.used_bytes() > max_bytes) return State::kFull;
-    const uint32_t index = open_.pop().node;
+    const Open next = open_.pop();
+    if (next.bound > max_cost_) return State::kNone;  // All others cost as much or more.
+    const uint32_t index = next.node;
     if (nodes_.nodes[index].done) continue;
     ++n;
     ++expanded_;
@@ -279,15 +293,18 @@ PointSearch::State PointSearch::advance(GroundView& mesh, uint64_t max_nodes, ui
     }
     const ViewLevel& level = *mesh.level(node.stop.level);
     note_nearest(mesh, index);
-    const double away = distance_of(node.stop.at, to_.at);
     const double factor = mesh.factor(level, node.stop.rect);
-    if (node.stop.level == to_.level && node.stop.rect == to_.rect)
+    if (node.stop.level == to_.level && node.stop.rect == to_.rect) {
+      const double away = mesh.length_now(node.stop.level, node.stop.at, to_.at);
       push(mesh, to_, index, node.cost + away * factor);
-    push_links(mesh, node, index, factor);
+    }
+    // No delay is known of links.
+    if (mesh.delays() == nullptr) push_links(mesh, node, index, factor);
     for_portal_points(mesh, node.stop, [&](world::GroundPoint side, const ViewStop& beyond) {
       const double beyond_factor = mesh.factor(*mesh.level(beyond.level), beyond.rect);
       if (!std::isfinite(beyond_factor)) return;
-      const double cost = node.cost + distance_of(node.stop.at, side) * factor +
+      const double cost = node.cost +
+                          mesh.length_now(node.stop.level, node.stop.at, side) * factor +
                           beyond_factor / world::kUnitsPerCell;
       push(mesh, beyond, index, cost);
     });

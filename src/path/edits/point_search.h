@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/arrays/chunked_array.h"
@@ -90,7 +91,9 @@ class PointSearch {
   enum class State { kSearching, kFound, kNone, kFull };
   static constexpr uint64_t kKeptBytes = uint64_t{32} << 20;
 
-  void begin(GroundView& mesh, const ViewStop& from, const ViewStop& to);
+  /// `max_cost`: of a path; one that costs more counts as none. [cells]
+  void begin(GroundView& mesh, const ViewStop& from, const ViewStop& to,
+             double max_cost = std::numeric_limits<double>::infinity());
   /// Expands up to `max_nodes` points more; kFull if it would need more than `max_bytes`.
   State advance(GroundView& mesh, uint64_t max_nodes, uint64_t max_bytes);
   /// Frees what is allocated beyond kKeptBytes: after a search.
@@ -120,6 +123,7 @@ class PointSearch {
   OpenList<Open> open_;
   uint32_t nearest_ = 0, goal_ = UINT32_MAX;
   double nearest_distance_ = 0;
+  double max_cost_ = 0;
   uint64_t expanded_ = 0;
 };
 

@@ -461,7 +461,7 @@ class Program(ProgramCase):
         self.assertEqual(sum(n.startswith("nist.") for n in names), 17)
         self.assertEqual(len(set(names)), len(names))
         self.assertEqual({t["test"] for t in listed if t.get("in_work")}, {n for n in names if n.startswith("motion.")})
-        self.assertEqual(sum(n.startswith("motion.") for n in names), 11)
+        self.assertEqual(sum(n.startswith("motion.") for n in names), 12)
         for test in listed:
             self.assertTrue(test["title"] and test["source"] and (test.get("lacks") or test["method"]), test)
         cheap = ("rimea.1", "rimea.2", "rimea.3", "rimea.5", "rimea.6", "rimea.10", "nist.2.1", "nist.2.2", "nist.2.3",

@@ -236,8 +236,11 @@ TEST(StepLength, ShortMovesNeverOverlap) {
   Context context;
   const auto ids = crowd.add(spawns, context);
   ASSERT_TRUE(ids) << ids.error().message;
-  crowd.set_goals(*ids, std::vector<Place>(64, world.find_place(0, {50, 0, 50}, 1)));
-  // A quarter is externally controlled, towards the same place.
+  // Each to the place of the one opposite: all press inwards.
+  std::vector<Place> goals;
+  for (size_t i = 0; i < 64; ++i) goals.push_back(spawns[63 - i].place);
+  crowd.set_goals(*ids, goals);
+  // A quarter is externally controlled, towards the middle.
   for (size_t i = 0; i < 64; i += 4) {
     const Vec3d at = crowd.read((*ids)[i])->position, to{50 - at.x, 0, 50 - at.z};
     crowd.set_velocities({&(*ids)[i], 1}, {&to, 1});

@@ -99,12 +99,15 @@ class CrowdEngine {
   [[nodiscard]] uint64_t steps_of_reaction(const Body& body) const;
   // Rows by slot of what bodies of a queue know.
   void fit_rows(size_t rows) {
-    if (!config_.queues || rows <= progress_.size()) return;
+    if (rows <= after_.size()) return;
+    after_.resize(rows);
+    if (!config_.queues) return;
     progress_.resize(rows);
     for (auto& requests : requests_) requests.resize(rows);
   }
   void clear_rows(uint32_t slot) {
     fit_rows(slot + size_t{1});
+    after_[slot] = 0;
     if (config_.queues) progress_[slot] = {};
   }
   static constexpr size_t kRowBytes = sizeof(QueueProgress) + sizeof(RoomRequest);
@@ -112,13 +115,9 @@ class CrowdEngine {
   /// Could a crowd have saved the rows of a body?
   [[nodiscard]] bool has_sound_rows(uint32_t slot) const;
   const uint8_t* restore_rows(const uint8_t* saved, size_t rows);
-  /// Length of a body's path after its local target, for the order in queues. [m]
-  void set_path_after(uint32_t slot, float length) {
-    if (config_.queues) progress_[slot].after = length;
-  }
-  [[nodiscard]] float path_after(uint32_t slot) const {
-    return config_.queues ? progress_[slot].after : 0;
-  }
+  /// Length of a body's path after its local target. [m]
+  void set_path_after(uint32_t slot, float length) { after_[slot] = length; }
+  [[nodiscard]] float path_after(uint32_t slot) const { return after_[slot]; }
   /// Slots of the bodies that arrived in the last step, in no order.
   [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
   [[nodiscard]] uint64_t bytes() const;
@@ -369,7 +368,8 @@ class CrowdEngine {
   std::vector<uint32_t> arrived_;
   std::vector<float> level_speeds_;
   std::span<Orientation> orientations_;  // by slot
-  std::vector<QueueProgress> progress_;  // by slot
+  std::vector<float> after_;             // path_after, by slot
+  std::vector<QueueProgress> progress_;  // by slot, if bodies queue
   // By slot: those of this step, which bodies write that ask, and those of the step before, which
   // all read. Valid where Body::asks is set.
   std::array<std::vector<RoomRequest>, 2> requests_;

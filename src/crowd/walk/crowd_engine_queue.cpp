@@ -33,7 +33,7 @@ bool CrowdEngine::queues(const Body& body) const {
 QueueOrder CrowdEngine::order_of(const Body& body) const {
   const Plane target =
       config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
-  return {size_of(target) + progress_[body.slot].after, body.slot};
+  return {size_of(target) + after_[body.slot], body.slot};
 }
 
 // What a body keeps to another that is ahead in the order, so that the other can move. [m]
@@ -214,21 +214,24 @@ bool CrowdEngine::may_turn_aside(const Body& body) const {
 
 // Requests count for one step: those of the last one are read in the next.
 void CrowdEngine::save_rows(size_t rows, std::vector<uint8_t>& out) const {
+  put_rows(out, after_.data(), rows);
   if (!config_.queues) return;
   put_rows(out, progress_.data(), rows);
   put_rows(out, requests_[step_ % 2].data(), rows);
 }
 
 bool CrowdEngine::has_sound_rows(uint32_t slot) const {
+  if (!(after_[slot] >= 0)) return false;
   if (!config_.queues) return true;
   const QueueProgress& progress = progress_[slot];
   const RoomRequest& request = requests_[0][slot];
-  return progress.after >= 0 && progress.stood >= 0 && progress.rest <= Rest::kMadeRoom &&
+  return progress.stood >= 0 && progress.rest <= Rest::kMadeRoom &&
          request.order.left >= 0 && std::abs(request.ahead.x) <= 1.001f &&
          std::abs(request.ahead.z) <= 1.001f;
 }
 
 const uint8_t* CrowdEngine::restore_rows(const uint8_t* saved, size_t rows) {
+  saved = take_rows(saved, rows, after_);
   if (!config_.queues) return saved;
   saved = take_rows(saved, rows, progress_);
   saved = take_rows(saved, rows, requests_[0]);

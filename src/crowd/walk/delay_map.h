@@ -22,7 +22,7 @@ namespace throng::crowd {
 struct PathProgress {
   static constexpr int kWhole = 127;        // of `share`: the desired speed
   static constexpr uint8_t kMinWait = 10;   // [samples]
-  static constexpr uint8_t kMaxWait = 120;  // [samples]
+  static constexpr uint8_t kMaxWait = 20;  // [samples]
 
   float left = -1;               // of its path at the last sample [m]; below 0: there was none
   int8_t share = kWhole;         // of the desired speed at which the path grew shorter, lately

@@ -41,7 +41,6 @@ enum class Rest : uint8_t {
 
 /// What an engine knows of a body that may queue or rest, by slot.
 struct QueueProgress {
-  float after = 0;   ///< Length of its path after its local target. [m]
   float stood = 0;   ///< How long it has stood. [s]
   float yields = 0;  ///< For how long it still stands, to let another pass. [s]
   Rest rest = Rest::kNo;

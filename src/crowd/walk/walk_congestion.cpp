@@ -14,7 +14,7 @@
 namespace throng::crowd {
 namespace {
 
-constexpr float kNearGoal = 3;        // [m] of its path where others may stand on its goal
+constexpr float kNearGoal = 1.5f;     // [m] of its path where others may stand on its goal
 constexpr int kHeldUp = 25;           // [PathProgress::share] below this it searches: 0.2
 constexpr float kAhead = 1;           // [m] ahead of such a body ground is as slow
 constexpr double kJam = 3;            // factor of a delay at a corner that a new path is tested by

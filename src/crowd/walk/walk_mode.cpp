@@ -267,7 +267,7 @@ AvatarState WalkMode::state_of(const Body& body) const {
 void WalkMode::add_memory(CrowdMemory& memory) const {
   memory.avatars += engine_.bytes();
   // As many of each.
-  memory.paths += routes_.capacity() * (sizeof(Route) + sizeof(float) + sizeof(PathProgress));
+  memory.paths += routes_.capacity() * kRowBytes;
   if (delays_) memory.ground += delays_->bytes();
 }
 

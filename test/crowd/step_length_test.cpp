@@ -230,7 +230,7 @@ TEST(StepLength, ShortMovesNeverOverlap) {
   Crowd crowd = made(world, {.dt = 0.001, .workers = 2});
   std::vector<AvatarSpawn> spawns;
   for (int i = 0; i < 64; ++i) {
-    const Vec3d at{48.0 + 0.56 * (i % 8), 0, 48.0 + 0.56 * (i / 8)};
+    const Vec3d at{46.5 + 0.9 * (i % 8), 0, 46.5 + 0.9 * (i / 8)};
     spawns.push_back({.place = world.find_place(0, at, 1), .speed = 0.4 + 0.05 * i});
   }
   Context context;

@@ -135,7 +135,7 @@ bool CrowdEngine::is_head(const Body& body, std::span<const uint32_t> nearest) c
   });
 }
 
-// A velocity away from its local target becomes 0, unless another comes towards it: people who
+// A velocity away from its local target becomes 0, unless another comes towards it: people that
 // queue stand rather than walk back.
 Plane CrowdEngine::unless_back(const Body& body, const Worker& worker, Plane velocity) const {
   const bool may = !config_.queues || !queues(body) || worker.waits || worker.has_oncoming ||
@@ -151,13 +151,13 @@ bool CrowdEngine::find_room(const Body& body, Plane best, Worker& worker,
   const QueueSettings& queue = config_.queue;
   const float wanted = size_of(body.preferred);
   if (!worker.makes_room && size_of(best) >= queue.creep_share * wanted) return false;
-  constexpr size_t kNear = 11, kMost = 4;  // directions within 75 degrees; candidates
+  constexpr size_t kNear = 11, kMaxFound = 4;  // directions within 75 degrees; candidates
   const size_t directions = worker.makes_room ? kRoomDirections : kRoomDirections / 2;
   float speed = queue.room_share * body.speed;
   if (!worker.makes_room) speed = std::min(speed, wanted);  // It must not pass its local target.
   const auto all = room_directions(worker.makes_room ? *worker.makes_room : worker.asks->ahead);
   size_t n = 0;
-  for (size_t d = 0; d < directions && n < kMost && (d < kNear || n == 0); ++d) {
+  for (size_t d = 0; d < directions && n < kMaxFound && (d < kNear || n == 0); ++d) {
     for (const float part : {1.0f, 0.25f}) {
       const Displacement displacement =
           displacement_of(body, {all[d].x * speed * part, all[d].z * speed * part});
@@ -225,9 +225,8 @@ bool CrowdEngine::has_sound_rows(uint32_t slot) const {
   if (!config_.queues) return true;
   const QueueProgress& progress = progress_[slot];
   const RoomRequest& request = requests_[0][slot];
-  return progress.stood >= 0 && progress.rest <= Rest::kMadeRoom &&
-         request.order.left >= 0 && std::abs(request.ahead.x) <= 1.001f &&
-         std::abs(request.ahead.z) <= 1.001f;
+  return progress.stood >= 0 && progress.rest <= Rest::kMadeRoom && request.order.left >= 0 &&
+         std::abs(request.ahead.x) <= 1.001f && std::abs(request.ahead.z) <= 1.001f;
 }
 
 const uint8_t* CrowdEngine::restore_rows(const uint8_t* saved, size_t rows) {

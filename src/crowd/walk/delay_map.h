@@ -20,8 +20,8 @@ namespace throng::crowd {
 
 /// How a body gets on along its path, by samples about a second apart. By slot.
 struct PathProgress {
-  static constexpr int kWhole = 127;        // of `share`: the desired speed
-  static constexpr uint8_t kMinWait = 10;   // [samples]
+  static constexpr int kWhole = 127;       // of `share`: the desired speed
+  static constexpr uint8_t kMinWait = 10;  // [samples]
   static constexpr uint8_t kMaxWait = 20;  // [samples]
 
   float left = -1;               // of its path at the last sample [m]; below 0: there was none

@@ -340,6 +340,7 @@ struct ValidationConfig {
   bool brief = false;   ///< Fewer points and shorter runs.
   /// The steering model of the crowds. The default leaves trials the model of their scenarios.
   SteeringModel model = SteeringModel::kSampled;
+  bool queues = false;  ///< CrowdTuning::queues, in tests on level ground; trials ignore it.
 };
 
 /// The results of a test.

@@ -34,7 +34,8 @@ Result<PlaneCrowd> PlaneCrowd::create(const World& world, Routing routing,
                                      .seed = config.seed,
                                      .workers = config.workers,
                                      .routing = routing,
-                                     .model = config.model});
+                                     .model = config.model,
+                                     .tuning = {.queues = config.queues}});
   if (!crowd) return crowd.error();
   return PlaneCrowd(world, *std::move(crowd), dt);
 }

@@ -184,7 +184,7 @@ void CrowdEngine::prefer_all(uint64_t step, Before before) {
     for (Body& b : bodies) {
       if (!config_.slope_factors.empty()) slow_on_slope(b);
       if (b.has(Body::kExternal) || b.has(Body::kMovedElsewhere) || b.steps == 0) continue;
-      b.preferred = (b.has(Body::kHasGoal) || b.leaves) && !is_paused(b)
+      b.preferred = (b.has(Body::kHasGoal) || b.leaves) && !(config_.queues && is_paused(b))
                         ? steer::preferred_towards(
                               config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z),
                               b.speed, units_of(b).dt, turn(b))
@@ -348,23 +348,20 @@ void CrowdEngine::find_candidates(const Body& body, Worker& worker, bool open,
   steer::Costs costs;
   steer::costs_of_fast(config_.steering, situation, trials, costs);
   size_t n = 0;
-  if (open)
+  if (open) {
     candidates[n++] =
         displacement_of(body, reachable(body, if_blocked(situation.preferred, situation)));
-  if (!config_.queues) {
-    while (n < candidates.size()) {
-      candidates[n++] =
-          displacement_of(body, if_blocked(steer::take_best_fast(trials, costs), situation));
-    }
-    return;
   }
-  // Squares of walls are coarse, so beside a wall the cheapest trials may all lead into it.
+  // Squares of walls are coarse, so beside a wall the cheapest trials may all lead into it: bodies
+  // that queue, and do not walk back, would have no other.
   Stand place;
   for (size_t tries = 0; tries < steer::kTrials && n < candidates.size(); ++tries) {
     const Plane velocity = if_blocked(steer::take_best_fast(trials, costs), situation);
     const Displacement displacement =
         displacement_of(body, reachable(body, unless_back(body, worker, velocity)));
-    if (try_displacement(body, displacement, place)) candidates[n++] = displacement;
+    if (!config_.queues || try_displacement(body, displacement, place)) {
+      candidates[n++] = displacement;
+    }
   }
   std::fill(candidates.begin() + static_cast<ptrdiff_t>(n), candidates.end(), Displacement{});
 }
@@ -467,7 +464,7 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   proposal.has_all = find_room(body, best, worker, candidates);
   proposal.asks = worker.asks.has_value();
   proposal.yields = worker.yields;
-  proposal.may_rest = may_rest(body);
+  proposal.may_rest = config_.queues && may_rest(body);
   if (proposal.may_rest) proposal.rest = next_rest(i, around);
   if (worker.asks) requests_[step_ % 2][body.slot] = *worker.asks;
   bool proposed = !proposal.has_all && try_displacement(body, candidates[0], proposal.place) &&
@@ -654,7 +651,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       const Stand& place = proposal.place;
       const bool is_alone = b.state == Body::kFree || b.state == Body::kEnclosed;
       const bool may_move = b.state == Body::kFree || b.state == Body::kDecided;
-      const bool stood = stands(b);
+      const bool stood = config_.queues && stands(b);
       const bool moves = may_move && (place.x != b.x || place.z != b.z);
       if (may_move) keep_rest(b, place.x, place.z, units.units_by_speed());
       if (moves) {
@@ -681,7 +678,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       // A body without others near has none to turn away from.
       if (config_.deadlock_avoidance) {
         const float content =
-            near_goal || is_alone || !may_turn_aside(b)
+            near_goal || is_alone || (config_.queues && !may_turn_aside(b))
                 ? 1
                 : steer::progress_felt(config_.deadlock_settings, towards / b.speed, b.follows);
         const float along =

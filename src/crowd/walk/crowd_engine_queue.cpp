@@ -38,9 +38,7 @@ QueueOrder CrowdEngine::order_of(const Body& body) const {
 
 // What a body keeps to another that is ahead in the order, so that the other can move. [m]
 float CrowdEngine::margin_to(const Body& body, const Body& other, float gap) const {
-  if (!config_.queues || gap >= config_.queue.ahead_range || !queues(body) || !queues(other)) {
-    return 0;
-  }
+  if (gap >= config_.queue.ahead_range || !queues(body) || !queues(other)) return 0;
   return order_of(other) < order_of(body) ? config_.queue.ahead_margin : 0;
 }
 
@@ -48,7 +46,7 @@ float CrowdEngine::margin_to(const Body& body, const Body& other, float gap) con
 // asks it, it may be the head of a queue, and ask.
 void CrowdEngine::query_queue(const Body& body, std::span<const uint32_t> nearest,
                               Worker& worker) const {
-  if (!config_.queues || body.has(Body::kExternal)) return;
+  if (body.has(Body::kExternal)) return;
   const std::vector<RoomRequest>& requests = requests_[(step_ + 1) % 2];
   const QueueOrder own = queues(body) ? order_of(body) : QueueOrder{};
   QueueOrder first = own;
@@ -203,13 +201,13 @@ void CrowdEngine::settle_standing(const Body& body, bool stood, bool yields, flo
 
 // Does it stand, instead of heading to its goal, until it has rested or another has passed?
 bool CrowdEngine::is_paused(const Body& body) const {
-  return rests(body) || (config_.queues && stands(body) && progress_[body.slot].yields > 0);
+  return rests(body) || (stands(body) && progress_[body.slot].yields > 0);
 }
 
 // The detour angle is the last resort of heads of queues: others wait.
 bool CrowdEngine::may_turn_aside(const Body& body) const {
-  return !config_.queues || (body.asks && requests_[step_ % 2][body.slot].order.slot == body.slot &&
-                             progress_[body.slot].stood >= config_.queue.detour_stands);
+  return body.asks && requests_[step_ % 2][body.slot].order.slot == body.slot &&
+         progress_[body.slot].stood >= config_.queue.detour_stands;
 }
 
 // Requests count for one step: those of the last one are read in the next.

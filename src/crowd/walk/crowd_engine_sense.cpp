@@ -147,8 +147,6 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
           config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z),
           body.speed, room);
     }
-    if (config_.queues)
-      worker.has_oncoming = worker.has_oncoming || comes_towards(body, other, apart);
     if (!config_.queues && turns && turns_corner(other) &&
         gives_precedence(contender(other), contender(body), size_of(apart), room,
                          size_of(other.velocity) / other.speed)) {
@@ -161,11 +159,15 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     // A body that has arrived yields to those that would pass if it were not there: they may stand.
     const bool yields =
         (body.has(Body::kArrived) && !other.has(Body::kArrived)) || (rests && other.leaves);
-    const float kept = room + margin_to(body, other, size_of(apart) - room);
+    float kept = room;
+    if (config_.queues) {
+      worker.has_oncoming = worker.has_oncoming || comes_towards(body, other, apart);
+      kept += margin_to(body, other, size_of(apart) - room);
+    }
     situation.near.add(config_.steering,
                        {apart, yields ? other.preferred : other.velocity, kept, other.preferred});
   }
-  query_queue(body, {lists.entries, nearest}, worker);
+  if (config_.queues) query_queue(body, {lists.entries, nearest}, worker);
   const Plane preferred = situation.preferred;
   situation.preferred = steer::following_fast(config_.steering, situation);
   // Before a corner a body that crawls is turned as one that stands: doors need that.

@@ -162,6 +162,17 @@ TEST(CrowdEngine, QueuesDoWhatThePlainStepDoes) {
   }
 }
 
+TEST(CrowdEngine, BoundedAccelerationsDoWhatThePlainStepDoes) {
+  const LevelGround ground(60);
+  test::PlainConfig config;
+  config.acceleration = 3;
+  const test::Spot corner{config.to_units(15), config.to_units(15)};
+  for (const double area : {4.0, 1.0, 0.7}) {
+    Pair pair = ground.pair(scattered(config, 300, area, 4, corner), config, 2);
+    for (int step = 0; step < 100; ++step) ASSERT_EQ(pair.step(), "") << area;
+  }
+}
+
 // A third head to the same place, so that they queue and rest around it.
 TEST(CrowdEngine, BodiesWithOneGoalDoWhatThePlainStepDoes) {
   const LevelGround ground(60);

@@ -252,6 +252,8 @@ class CrowdEngine {
   // crowd_engine_queue.cpp
   [[nodiscard]] QueueOrder order_of(const Body& body) const;
   [[nodiscard]] float margin_to(const Body& body, const Body& other, float gap) const;
+  float room_in_queue(const Body& body, const Body& other, steer::Plane apart, float room,
+                      Worker& worker) const;
   void query_queue(const Body& body, std::span<const uint32_t> nearest, Worker& worker) const;
   [[nodiscard]] steer::Plane aside_of(const Body& body, steer::Plane away, steer::Plane from,
                                       steer::Plane asked, float room) const;

@@ -42,6 +42,13 @@ float CrowdEngine::margin_to(const Body& body, const Body& other, float gap) con
   return order_of(other) < order_of(body) ? config_.queue.ahead_margin : 0;
 }
 
+// The room that a body keeps to a neighbour. Notes whether that comes towards it. [m]
+float CrowdEngine::room_in_queue(const Body& body, const Body& other, Plane apart, float room,
+                                 Worker& worker) const {
+  worker.has_oncoming = worker.has_oncoming || comes_towards(body, other, apart);
+  return room + margin_to(body, other, size_of(apart) - room);
+}
+
 // A body follows the request that is first in the order, unless it is ahead of that itself. If none
 // asks it, it may be the head of a queue, and ask.
 void CrowdEngine::query_queue(const Body& body, std::span<const uint32_t> nearest,

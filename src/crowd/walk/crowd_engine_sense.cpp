@@ -159,11 +159,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     // A body that has arrived yields to those that would pass if it were not there: they may stand.
     const bool yields =
         (body.has(Body::kArrived) && !other.has(Body::kArrived)) || (rests && other.leaves);
-    float kept = room;
-    if (config_.queues) {
-      worker.has_oncoming = worker.has_oncoming || comes_towards(body, other, apart);
-      kept += margin_to(body, other, size_of(apart) - room);
-    }
+    const float kept = config_.queues ? room_in_queue(body, other, apart, room, worker) : room;
     situation.near.add(config_.steering,
                        {apart, yields ? other.preferred : other.velocity, kept, other.preferred});
   }

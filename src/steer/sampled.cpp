@@ -115,6 +115,7 @@ Costs costs_of(const SampledSettings& settings, const Situation& s, const Trials
     float cost =
         (1 - settings.straightness) * size_of(Plane{v.x - s.preferred.x, v.z - s.preferred.z});
     cost = cost + settings.straightness * std::max(desired - along, 0.0f);
+    cost = cost + settings.excess * std::max(along - desired, 0.0f);
     cost = cost + settings.keep * size_of(Plane{v.x - s.velocity.x, v.z - s.velocity.z});
     cost = cost + settings.right * std::max(left, 0.0f);
     cost = cost / s.fastest;

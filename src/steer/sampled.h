@@ -27,6 +27,7 @@ inline float size_of(Plane p) { return std::sqrt(p.x * p.x + p.z * p.z); }
 struct SampledSettings {
   float horizon = 2;            ///< Later touches do not count. [s, > 0]
   float straightness = 0.8f;    ///< Share of "less progress", beside "another velocity", in a cost.
+  float excess = 0;             ///< Cost of more progress than the preferred velocity makes.
   float keep = 0.2f;            ///< Cost of a change of the present velocity.
   float right = 0.1f;           ///< Cost of passing on the left.
   float threat = 0.5f;          ///< Cost of the most urgent touch.

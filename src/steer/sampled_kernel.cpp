@@ -239,6 +239,8 @@ class TrialCosts {
         size_of(hn::Sub(x, hn::Set(d, s_.preferred.x)), hn::Sub(z, hn::Set(d, s_.preferred.z))));
     const V lost = hn::Max(hn::Sub(hn::Set(d, desired_), along), zero);
     cost = hn::Add(cost, hn::Mul(hn::Set(d, settings_.straightness), lost));
+    const V gained = hn::Max(hn::Sub(along, hn::Set(d, desired_)), zero);
+    cost = hn::Add(cost, hn::Mul(hn::Set(d, settings_.excess), gained));
     const V changed =
         size_of(hn::Sub(x, hn::Set(d, s_.velocity.x)), hn::Sub(z, hn::Set(d, s_.velocity.z)));
     cost = hn::Add(cost, hn::Mul(hn::Set(d, settings_.keep), changed));

@@ -51,7 +51,7 @@ struct Bend {
     route.corners[0] = corner;
     route.corners[1] = next;
     route.count = 2;
-    return crowd::lane_offset(body, route, stride, metre);
+    return crowd::lane_offset(body, route, stride, {metre});
   }
   [[nodiscard]] double off(const crowd::PathPoint& place) const {  // from the corner [m]
     return std::hypot(place.x - corner.x, place.z - corner.z) / metre;

@@ -74,7 +74,7 @@ PlainCrowd::PlainCrowd(std::vector<PlainBody> bodies, const PlainConfig& config)
   near_.resize(bodies_.size());
   choices_.resize(bodies_.size());
   next_rest_of_.resize(bodies_.size());
-  if (config_.queues) config_.steering.gap = 0;
+  if (config_.queues) config_.steering = crowd::queueing(config_.steering);
 }
 
 Spot PlainCrowd::between(Spot a, Spot b) const {
@@ -166,7 +166,7 @@ void PlainCrowd::steer_all() {
       const auto contender = [](const PlainBody& b, uint32_t slot) {
         return crowd::Contender{b.at.x, b.at.z, b.goal.x, b.goal.z, b.radius, slot};
       };
-      if (!config_.queues && body.arrived < 0 && other.arrived < 0 &&
+      if (pushes(body) && body.arrived < 0 && other.arrived < 0 &&
           goes_first(contender(other, n.other), contender(body, i))) {
         waits = true;
         situation.preferred = crowd::preferred_of_waiting(
@@ -208,7 +208,7 @@ void PlainCrowd::steer_all() {
       choices_[i][0] = situation.preferred;
     }
     if (config_.queues) {
-      const bool walks_back = !queues(body) || has_oncoming(i) || body.turn != 0;
+      const bool walks_back = !queues(body) || body.turn != 0;
       const Plane ahead = path_ahead(body);
       for (size_t c = open ? 1 : 0; c < choices_[i].size() && !walks_back; ++c) {
         Plane& v = choices_[i][c];
@@ -249,6 +249,7 @@ void PlainCrowd::resolve_conflicts() {
   }
   std::vector<uint8_t> asks(count, 0), decides(count, 0);
   yields_.assign(count, 0);
+  in_stream_.assign(count, 0);
   std::vector<crowd::RoomRequest> requests(count);
   std::vector<crowd::Rest> rest(count);
   for (size_t i = 0; i < count; ++i) rest[i] = bodies_[i].rest;
@@ -287,6 +288,7 @@ void PlainCrowd::resolve_conflicts() {
         asks[i] = plan.asks;
         rest[i] = plan.rest;
         yields_[i] = plan.yields;
+        in_stream_[i] = plan.in_stream;
         if (plan.asks) requests[i] = plan.request;
         if (plan.creeps) first[i] = 0;
         decides[i] = 1;
@@ -349,14 +351,16 @@ void PlainCrowd::settle(const std::vector<Spot>& now, const std::vector<uint8_t>
         body.yields =
             yields_[i] != 0 ? config_.queue.yield_time : std::max(body.yields - units.dt, 0.0f);
       }
+      body.stream =
+          in_stream_[i] != 0 ? config_.queue.stream_time : std::max(body.stream - units.dt, 0.0f);
       body.stood = stands(body) ? std::min(body.stood + units.dt, 60.0f) : 0;
     }
     if (config_.deadlock_avoidance) {
       const bool alone = std::none_of(near_[i].begin(), near_[i].end(), [&](const Near& n) {
         return can_touch(static_cast<uint32_t>(i), n);
       });
-      const bool turns_aside = !config_.queues || (body.asks && body.request.order.slot == i &&
-                                                   body.stood >= config_.queue.detour_stands);
+      const bool turns_aside = pushes(body) || (body.asks && body.request.order.slot == i &&
+                                                body.stood >= config_.queue.detour_stands);
       const float content =
           left > 1 && !alone && turns_aside
               ? steer::progress_felt(config_.deadlock_settings, towards / body.speed, body.follows)

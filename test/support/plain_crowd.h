@@ -32,6 +32,7 @@ struct PlainBody {
   bool follows = false;   // another so closely, when it last decided, that it could only crawl
   float stood = 0;        // for how long [s]
   float yields = 0;       // for how long it lets another pass [s]
+  float stream = 0;       // for how long it counts as in a stream that meets another [s]
   bool asks = false;      // others to make room
   crowd::RoomRequest request;
   crowd::Rest rest = crowd::Rest::kNo;
@@ -82,7 +83,7 @@ class PlainCrowd {
   // What a body that decides will be after the step.
   struct Plan {
     bool follows = false, makes_room = false, asks = false, creeps = false, repeats = true,
-         yields = false;
+         yields = false, in_stream = false;
     steer::Plane away;
     std::array<steer::Plane, 4> room;  // if it creeps
     crowd::RoomRequest request;
@@ -103,7 +104,10 @@ class PlainCrowd {
   [[nodiscard]] crowd::QueueOrder order_of(uint32_t i) const;
   [[nodiscard]] steer::Plane path_ahead(const PlainBody& body) const;
   [[nodiscard]] float gap(uint32_t i, const Near& n) const;
-  [[nodiscard]] bool has_oncoming(uint32_t i) const;
+  [[nodiscard]] bool pushes(const PlainBody& body) const;
+  [[nodiscard]] bool is_in_stream(uint32_t i) const;
+  [[nodiscard]] bool has_turn(uint32_t i) const;
+  [[nodiscard]] bool can_move(uint32_t i, steer::Plane velocity) const;
   [[nodiscard]] bool is_head(uint32_t i) const;
   [[nodiscard]] bool is_goal_taken(uint32_t i) const;
   [[nodiscard]] crowd::Rest next_rest(uint32_t i) const;
@@ -122,7 +126,7 @@ class PlainCrowd {
   int32_t max_radius_ = 0, max_stride_ = 0;  // [units]
   std::vector<std::vector<Near>> near_;      // nearest first
   std::vector<steer::Choices> choices_;
-  std::vector<uint8_t> yields_;
+  std::vector<uint8_t> yields_, in_stream_;
   std::vector<crowd::Rest> next_rest_of_;
   std::vector<Plan> plans_;  // of those that decide in this step
 };

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "core/random.h"
 #include "plain_crowd.h"
 
 // Queues and rest of the plain step.
@@ -34,11 +36,18 @@ bool PlainCrowd::is_paused(const PlainBody& body) const {
   return rests(body) || (config_.queues && stands(body) && body.yields > 0);
 }
 
+bool PlainCrowd::pushes(const PlainBody& body) const { return !config_.queues || body.stream > 0; }
+
 bool PlainCrowd::queues(const PlainBody& body) const {
-  return config_.queues && body.arrived < 0 && !rests(body);
+  return !pushes(body) && body.arrived < 0 && !rests(body);
 }
 
-QueueOrder PlainCrowd::order_of(uint32_t i) const { return {size_of(path_ahead(bodies_[i])), i}; }
+// Paths are straight.
+QueueOrder PlainCrowd::order_of(uint32_t i) const {
+  const PlainBody& body = bodies_[i];
+  const Plane ahead = path_ahead(body);
+  return {i, {body.at.x, body.at.z}, {body.goal.x, body.goal.z}, ahead, size_of(ahead)};
+}
 
 // Between the bodies. [m]
 float PlainCrowd::gap(uint32_t i, const Near& n) const {
@@ -51,20 +60,37 @@ size_t PlainCrowd::nearest(uint32_t i) const {
   return std::min(near_[i].size(), static_cast<size_t>(config_.steering.neighbours));
 }
 
-bool PlainCrowd::has_oncoming(uint32_t i) const {
+// Two come towards it, or one before it that heads the same direction knows of a stream.
+bool PlainCrowd::is_in_stream(uint32_t i) const {
   const PlainBody& body = bodies_[i];
-  const Plane preferred = preferred_of(body);
+  const Plane preferred = preferred_of(body), ahead = path_ahead(body);
+  int32_t oncoming = 0;
   for (size_t k = 0; k < nearest(i); ++k) {
     const Near& n = near_[i][k];
     const PlainBody& other = bodies_[n.other];
-    const Plane others = preferred_of(other);
-    if (preferred.x * others.x + preferred.z * others.z < 0 &&
-        steer::comes_towards(config_.units.metres(n.at.x, n.at.z), path_ahead(body),
-                             path_ahead(other), config_.lanes.narrow_opposed)) {
-      return true;
+    const Plane at = config_.units.metres(n.at.x, n.at.z), others = preferred_of(other);
+    const float same = preferred.x * others.x + preferred.z * others.z;
+    const float both = (preferred.x * preferred.x + preferred.z * preferred.z) *
+                       (others.x * others.x + others.z * others.z);
+    const bool is_before = at.x * preferred.x + at.z * preferred.z > 0;
+    if (other.stream > 0 && is_before && same > 0 && 2 * same * same > both) return true;
+    const Plane theirs = path_ahead(other);
+    const float along = ahead.x * theirs.x + ahead.z * theirs.z;
+    const bool goes_alike = along > config_.queue.alike * size_of(ahead) * size_of(theirs);
+    if (same < 0 && !goes_alike &&
+        steer::comes_towards(at, ahead, theirs, config_.lanes.narrow_opposed)) {
+      ++oncoming;
     }
   }
-  return false;
+  return oncoming >= config_.queue.min_oncoming;
+}
+
+// After long standing each is the first of a queue in turn, if none asks.
+bool PlainCrowd::has_turn(uint32_t i) const {
+  bool asked = false;
+  for (size_t k = 0; k < nearest(i); ++k) asked = asked || bodies_[near_[i][k].other].asks;
+  return !asked && bodies_[i].stood >= config_.queue.turn_stands &&
+         random_u64(config_.seed ^ 0x7ead, i, steps_ / 8) % 8 == 0;
 }
 
 bool PlainCrowd::is_head(uint32_t i) const {
@@ -73,6 +99,7 @@ bool PlainCrowd::is_head(uint32_t i) const {
                        size_of(body.velocity) < config_.queue.asks_on * body.speed;
   const bool has_stood = stands(body) && body.stood >= config_.queue.head_stands;
   if (!queues(body) || (!has_stood && !asks_on)) return false;
+  if (has_turn(i)) return true;
   const Plane ahead = path_ahead(body);
   for (size_t k = 0; k < nearest(i); ++k) {
     const Near& n = near_[i][k];
@@ -132,6 +159,8 @@ static Plane aside_of(Plane away, Plane from, Plane asked, float room) {
 void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
   const PlainBody& body = bodies_[i];
   plan.rest = next_rest(i);
+  plan.in_stream = is_in_stream(i);
+  if (pushes(body)) return;
   const QueueOrder own = queues(body) ? order_of(i) : QueueOrder{};
   QueueOrder first = own;
   uint32_t asker = UINT32_MAX;
@@ -164,7 +193,9 @@ void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
     const Plane others = path_ahead(bodies_[asker]);
     const float whole = size_of(others);
     const Plane theirs = whole > 0 ? Plane{others.x / whole, others.z / whole} : Plane{1, 0};
-    plan.yields = queues(body) && theirs.x * to.x + theirs.z * to.z < -config_.queue.oncoming;
+    const float along = others.x * ahead.x + others.z * ahead.z;
+    plan.yields = queues(body) && theirs.x * to.x + theirs.z * to.z < -config_.queue.oncoming &&
+                  !(along > config_.queue.alike * whole * size);
     const float far = size_of(from);
     plan.away = {-from.x / far, -from.z / far};
     if (plan.yields || !queues(body)) plan.away = aside_of(plan.away, from, asked, needs);
@@ -176,19 +207,41 @@ void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
   }
 }
 
-// On an open plane every direction permits a step: the first four are the candidates.
+// Is the place clear where it moves so, as long as all others stand?
+bool PlainCrowd::can_move(uint32_t i, Plane velocity) const {
+  const PlainBody& body = bodies_[i];
+  const Spot to{body.at.x + config_.units.displacement(velocity.x),
+                body.at.z + config_.units.displacement(velocity.z)};
+  return std::none_of(near_[i].begin(), near_[i].end(), [&](const Near& n) {
+    const Spot d = between(to, bodies_[n.other].at);
+    return can_touch(i, n) &&
+           crowd::nearer_than(d.x, d.z, int64_t{body.radius} + bodies_[n.other].radius);
+  });
+}
+
+// The first four directions that are clear, then the first ones: on an open plane each permits a
+// step.
 void PlainCrowd::make_room(uint32_t i, Plan& plan, const Plane& best) const {
   const PlainBody& body = bodies_[i];
   const float wanted = size_of(preferred_of(body));
-  const bool creeps = plan.asks && size_of(best) < config_.queue.creep_share * wanted;
+  const bool creeps = plan.asks && (size_of(best) < config_.queue.creep_share * wanted ||
+                                    !can_move(i, reachable(body, best)));
   plan.creeps = plan.makes_room || creeps;
   if (!plan.creeps) return;
-  float speed = config_.queue.room_share * body.speed;
-  if (!plan.makes_room) speed = std::min(speed, wanted);
-  const auto directions = crowd::room_directions(plan.makes_room ? plan.away : plan.request.ahead);
-  for (size_t c = 0; c < plan.room.size(); ++c) {
-    plan.room[c] = {directions[c].x * speed, directions[c].z * speed};
+  float speed = (plan.yields ? config_.queue.back_share : config_.queue.room_share) * body.speed;
+  if (!plan.makes_room) speed = std::min(config_.queue.creep_speed * body.speed, wanted);
+  const auto all = crowd::room_directions(plan.makes_room ? plan.away : plan.request.ahead);
+  std::vector<Plane> room;
+  for (size_t d = 0; d < (plan.makes_room ? 15u : 7u); ++d) {
+    for (const float part : {1.0f, 0.5f, 0.25f}) {
+      const Plane velocity{all[d].x * speed * part, all[d].z * speed * part};
+      if (!can_move(i, velocity)) continue;
+      room.push_back(velocity);
+      break;
+    }
   }
+  for (const Plane direction : all) room.push_back({direction.x * speed, direction.z * speed});
+  std::copy_n(room.begin(), plan.room.size(), plan.room.begin());
 }
 
 Plane PlainCrowd::reachable(const PlainBody& body, Plane velocity) const {

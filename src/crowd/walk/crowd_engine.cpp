@@ -68,7 +68,7 @@ CrowdEngine::CrowdEngine(const MoveConfig& config, int32_t width, int32_t depth,
     config_.queues = false;
     config_.acceleration = 0;
   }
-  if (config_.queues) config_.steering.gap = 0;  // Bodies that queue come to touch.
+  if (config_.queues) config_.steering = queueing(config_.steering);
   workers_.resize(static_cast<size_t>(worker_count(config.workers)));
 }
 
@@ -461,9 +461,10 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
                                     worker.situation));
   const Plane reached = reachable(body, best);
   Displacements candidates{displacement_of(body, reached)};
-  proposal.has_all = find_room(body, best, worker, candidates);
+  proposal.has_all = find_room(body, best, worker, others, candidates);
   proposal.asks = worker.asks.has_value();
   proposal.yields = worker.yields;
+  proposal.in_stream = worker.in_stream;
   proposal.may_rest = config_.queues && may_rest(body);
   if (proposal.may_rest) proposal.rest = next_rest(i, around);
   if (worker.asks) requests_[step_ % 2][body.slot] = *worker.asks;
@@ -668,7 +669,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       b.clear(Body::kContinues);
       b.in_counterflow = proposal.in_counterflow;
       if (proposal.may_rest) progress_[b.slot].rest = proposal.rest;
-      if (config_.queues) settle_standing(b, stood, proposal.yields, units.dt);
+      if (config_.queues) settle_queue(b, stood, proposal, units.dt);
       if (may_move) b.flags = static_cast<uint8_t>(b.flags | proposal.flags);
       if (!b.has(Body::kHasGoal) || b.has(Body::kExternal)) continue;
       const float left = size_of(displacement);
@@ -678,7 +679,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       // A body without others near has none to turn away from.
       if (config_.deadlock_avoidance) {
         const float content =
-            near_goal || is_alone || (config_.queues && !may_turn_aside(b))
+            near_goal || is_alone || !may_turn_aside(b)
                 ? 1
                 : steer::progress_felt(config_.deadlock_settings, towards / b.speed, b.follows);
         const float along =

@@ -102,21 +102,31 @@ class CrowdEngine {
     if (rows <= after_.size()) return;
     after_.resize(rows);
     if (!config_.queues) return;
+    onward_.resize(rows);
     progress_.resize(rows);
     for (auto& requests : requests_) requests.resize(rows);
   }
   void clear_rows(uint32_t slot) {
     fit_rows(slot + size_t{1});
     after_[slot] = 0;
-    if (config_.queues) progress_[slot] = {};
+    if (!config_.queues) return;
+    onward_[slot] = {};
+    progress_[slot] = {};
   }
-  static constexpr size_t kRowBytes = sizeof(QueueProgress) + sizeof(RoomRequest);
+  static constexpr size_t kRowBytes =
+      sizeof(steer::Plane) + sizeof(QueueProgress) + sizeof(RoomRequest);
   void save_rows(size_t rows, std::vector<uint8_t>& out) const;
   /// Could a crowd have saved the rows of a body?
   [[nodiscard]] bool has_sound_rows(uint32_t slot) const;
   const uint8_t* restore_rows(const uint8_t* saved, size_t rows);
   /// Length of a body's path after its local target. [m]
   void set_path_after(uint32_t slot, float length) { after_[slot] = length; }
+  /// Do its bodies queue? None does with another model than kSampled.
+  [[nodiscard]] bool queues() const { return config_.queues; }
+  /// From a body's local target to its path some metres on; 0 at the end of the path. [m]
+  void set_onward(uint32_t slot, steer::Plane onward) {
+    if (config_.queues) onward_[slot] = onward;
+  }
   [[nodiscard]] float path_after(uint32_t slot) const { return after_[slot]; }
   /// Slots of the bodies that arrived in the last step, in no order.
   [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
@@ -145,6 +155,7 @@ class CrowdEngine {
     bool has_all : 1;
     bool asks : 1;                       // Body::asks, from the next step on
     bool yields : 1;                     // to an oncoming body that asks
+    bool in_stream : 1;                  // that meets another
     bool may_rest : 1;                   // near its goal
     Rest rest : 2;                       // then: from the next step on
     bool in_counterflow : 1;             // Body::in_counterflow, from the next step on
@@ -179,7 +190,9 @@ class CrowdEngine {
     bool waits = false;           // it yields to another, instead of its preferred velocity
     bool in_counterflow = false;  // a stream comes towards it
     bool follows = false;         // Body::follows
-    bool has_oncoming = false;    // a neighbour comes towards it
+    int32_t oncoming = 0;         // neighbours that come towards it
+    bool in_stream = false;       // that meets another
+    steer::Plane not_left;        // to its right, if it must keep to its half; else 0
     std::optional<steer::Plane> makes_room;  // in this direction: another asks it to
     std::optional<RoomRequest> asks;
     bool yields = false;  // the one that asks comes towards it
@@ -243,6 +256,8 @@ class CrowdEngine {
   }
   [[nodiscard]] Sides sides_of(const Body& body) const;
   [[nodiscard]] bool has_oncoming(const Body& body, const Worker& worker) const;
+  [[nodiscard]] steer::Plane path_beyond(const Body& body) const;
+  [[nodiscard]] bool go_on_alike(const Body& body, const Body& other) const;
   [[nodiscard]] bool comes_towards(const Body& body, const Body& other, steer::Plane apart) const;
   void keep_right(const Body& body, Worker& worker) const;
   bool choose_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
@@ -257,17 +272,25 @@ class CrowdEngine {
   void query_queue(const Body& body, std::span<const uint32_t> nearest, Worker& worker) const;
   [[nodiscard]] steer::Plane aside_of(const Body& body, steer::Plane away, steer::Plane from,
                                       steer::Plane asked, float room) const;
+  [[nodiscard]] bool has_turn(const Body& body, std::span<const uint32_t> nearest) const;
   [[nodiscard]] bool is_head(const Body& body, std::span<const uint32_t> nearest) const;
+  [[nodiscard]] static steer::Plane unless_left(const Worker& worker, steer::Plane velocity);
   [[nodiscard]] steer::Plane unless_back(const Body& body, const Worker& worker,
                                          steer::Plane velocity) const;
-  [[nodiscard]] bool find_room(const Body& body, steer::Plane best, Worker& worker,
-                               Displacements& candidates) const;
+  [[nodiscard]] bool can_move(const Body& body, Displacement displacement,
+                              std::span<const uint32_t> others) const;
+  [[nodiscard]] bool find_room(const Body& body, steer::Plane best, const Worker& worker,
+                               std::span<const uint32_t> others, Displacements& candidates) const;
   [[nodiscard]] bool stands(const Body& body) const;
-  void settle_standing(const Body& body, bool stood, bool yields, float dt);
+  void settle_queue(const Body& body, bool stood, const Proposal& proposal, float dt);
   [[nodiscard]] bool is_paused(const Body& body) const;
   [[nodiscard]] steer::Plane reachable(const Body& body, steer::Plane velocity) const;
   [[nodiscard]] bool may_turn_aside(const Body& body) const;
   [[nodiscard]] bool queues(const Body& body) const;
+  // Without queues all push; with them those in a stream that meets another.
+  [[nodiscard]] bool pushes(const Body& body) const {
+    return !config_.queues || progress_[body.slot].stream > 0;
+  }
 
   // crowd_engine_rest.cpp
   [[nodiscard]] bool may_rest(const Body& body) const;
@@ -371,6 +394,7 @@ class CrowdEngine {
   std::vector<float> level_speeds_;
   std::span<Orientation> orientations_;  // by slot
   std::vector<float> after_;             // path_after, by slot
+  std::vector<steer::Plane> onward_;     // set_onward, by slot, if bodies queue
   std::vector<QueueProgress> progress_;  // by slot, if bodies queue
   // By slot: those of this step, which bodies write that ask, and those of the step before, which
   // all read. Valid where Body::asks is set.

@@ -37,9 +37,24 @@ bool CrowdEngine::has_oncoming(const Body& body, const Worker& worker) const {
   return false;
 }
 
+// The vector to its path some metres beyond its local target.
+Plane CrowdEngine::path_beyond(const Body& body) const {
+  const Plane ahead = path_ahead(body);
+  if (body.has(Body::kExternal) || !body.has(Body::kHasGoal)) return ahead;
+  const Plane onward = onward_[body.slot];
+  return {ahead.x + onward.x, ahead.z + onward.z};
+}
+
+// Two at the sides of a door head towards each other, but go on in the same direction.
+bool CrowdEngine::go_on_alike(const Body& body, const Body& other) const {
+  const Plane a = path_beyond(body), b = path_beyond(other);
+  return a.x * b.x + a.z * b.z > config_.queue.alike * steer::size_of(a) * steer::size_of(b);
+}
+
 bool CrowdEngine::comes_towards(const Body& body, const Body& other, Plane apart) const {
   if (body.preferred.x * other.preferred.x + body.preferred.z * other.preferred.z >= 0)
     return false;
+  if (config_.queues && go_on_alike(body, other)) return false;
   return steer::comes_towards(apart, path_ahead(body), path_ahead(other),
                               config_.lanes.narrow_opposed);
 }
@@ -57,6 +72,13 @@ void CrowdEngine::keep_right(const Body& body, Worker& worker) const {
   const Sides sides = sides_of(body);
   if (sides.left >= narrow || sides.right >= narrow) return;
   worker.in_counterflow = true;
+  // If there is room for two beside each other, one that queues does not step into the left half.
+  const float radius = static_cast<float>(body.radius) * config_.units.unit;
+  if (config_.queues && sides.left + sides.right >= 2 * radius &&
+      (sides.left - sides.right) / 2 < radius) {
+    const Plane ahead = steer::ahead_of(path_ahead(body));
+    worker.not_left = {-ahead.z, ahead.x};
+  }
   Plane& preferred = worker.situation.preferred;
   const float speed = size_of(preferred);
   if (worker.waits || speed <= 1e-3f || sides.right <= sides.left) return;

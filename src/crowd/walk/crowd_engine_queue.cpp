@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 
+#include "core/random.h"
 #include "crowd/mode/saved_rows.h"
 #include "crowd/walk/crowd_engine.h"
 
@@ -12,6 +13,8 @@ namespace throng::crowd {
 namespace {
 
 using steer::Plane;
+
+constexpr uint64_t kTurns = 0x7ead;  // random stream
 
 float dot(Plane a, Plane b) { return a.x * b.x + a.z * b.z; }
 
@@ -27,13 +30,17 @@ Plane unit(Plane p) {
 bool CrowdEngine::queues(const Body& body) const {
   constexpr uint8_t kAll =
       Body::kHasGoal | Body::kArrived | Body::kExternal | Body::kMovedElsewhere;
-  return (body.flags & kAll) == Body::kHasGoal && !body.leaves && !rests(body);
+  return (body.flags & kAll) == Body::kHasGoal && !body.leaves && !rests(body) && !pushes(body);
 }
 
 QueueOrder CrowdEngine::order_of(const Body& body) const {
-  const Plane target =
-      config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
-  return {size_of(target) + after_[body.slot], body.slot};
+  const Plane ahead = path_ahead(body);
+  const float left = size_of(ahead) + after_[body.slot];
+  return {body.slot,
+          {body.x, body.z},
+          {body.local_target_x, body.local_target_z},
+          path_beyond(body),
+          left};
 }
 
 // What a body keeps to another that is ahead in the order, so that the other can move. [m]
@@ -42,10 +49,10 @@ float CrowdEngine::margin_to(const Body& body, const Body& other, float gap) con
   return order_of(other) < order_of(body) ? config_.queue.ahead_margin : 0;
 }
 
-// The room that a body keeps to a neighbour. Notes whether that comes towards it. [m]
+// The room that a body keeps to a neighbour. Counts those that come towards it. [m]
 float CrowdEngine::room_in_queue(const Body& body, const Body& other, Plane apart, float room,
                                  Worker& worker) const {
-  worker.has_oncoming = worker.has_oncoming || comes_towards(body, other, apart);
+  worker.oncoming += comes_towards(body, other, apart) ? 1 : 0;
   return room + margin_to(body, other, size_of(apart) - room);
 }
 
@@ -53,7 +60,7 @@ float CrowdEngine::room_in_queue(const Body& body, const Body& other, Plane apar
 // asks it, it may be the head of a queue, and ask.
 void CrowdEngine::query_queue(const Body& body, std::span<const uint32_t> nearest,
                               Worker& worker) const {
-  if (body.has(Body::kExternal)) return;
+  if (body.has(Body::kExternal) || pushes(body)) return;
   const std::vector<RoomRequest>& requests = requests_[(step_ + 1) % 2];
   const QueueOrder own = queues(body) ? order_of(body) : QueueOrder{};
   QueueOrder first = own;
@@ -89,8 +96,10 @@ void CrowdEngine::query_queue(const Body& body, std::span<const uint32_t> neares
   }
   if (asker != UINT32_MAX) {
     const Plane away = unit({-from.x, -from.z});
-    worker.yields = queues(body) && dot(unit(path_ahead(bodies_[by])), unit(path_ahead(body))) <
-                                        -config_.queue.oncoming;
+    worker.yields =
+        queues(body) &&
+        dot(unit(path_ahead(bodies_[by])), unit(path_ahead(body))) < -config_.queue.oncoming &&
+        !go_on_alike(body, bodies_[by]);
     const bool steps_aside = worker.yields || !queues(body);
     worker.makes_room = steps_aside ? aside_of(body, away, from, asked, needs) : away;
     worker.asks = RoomRequest{first, *worker.makes_room};
@@ -121,6 +130,15 @@ Plane CrowdEngine::aside_of(const Body& body, Plane away, Plane from, Plane aske
   return away;
 }
 
+// Bodies that have long stood, and of which none asks, may wait for each other in a cycle: each
+// becomes the first of a queue for a while, in turn.
+bool CrowdEngine::has_turn(const Body& body, std::span<const uint32_t> nearest) const {
+  constexpr uint64_t kSteps = 8, kShare = 8;  // for so many steps; one of so many bodies
+  return progress_[body.slot].stood >= config_.queue.turn_stands &&
+         random_u64(config_.seed ^ kTurns, body.slot, step_ / kSteps) % kShare == 0 &&
+         std::none_of(nearest.begin(), nearest.end(), [&](uint32_t j) { return bodies_[j].asks; });
+}
+
 // Has it stood, with none before it that is ahead in the order?
 bool CrowdEngine::is_head(const Body& body, std::span<const uint32_t> nearest) const {
   // One that follows a body which makes room for it asks on.
@@ -128,6 +146,7 @@ bool CrowdEngine::is_head(const Body& body, std::span<const uint32_t> nearest) c
                        requests_[(step_ + 1) % 2][body.slot].order.slot == body.slot;
   const bool has_stood = stands(body) && progress_[body.slot].stood >= config_.queue.head_stands;
   if (!has_stood && !asks_on) return false;
+  if (has_turn(body, nearest)) return true;
   const Plane ahead = path_ahead(body);
   const QueueOrder own = order_of(body);
   return std::none_of(nearest.begin(), nearest.end(), [&](uint32_t j) {
@@ -140,37 +159,62 @@ bool CrowdEngine::is_head(const Body& body, std::span<const uint32_t> nearest) c
   });
 }
 
-// A velocity away from its local target becomes 0, unless another comes towards it: people that
-// queue stand rather than walk back.
+// Without its part to the left, of a body that must keep to its half.
+Plane CrowdEngine::unless_left(const Worker& worker, Plane velocity) {
+  const float left = std::max(-dot(velocity, worker.not_left), 0.0f);
+  return {velocity.x + left * worker.not_left.x, velocity.z + left * worker.not_left.z};
+}
+
+// A velocity away from its local target becomes 0: people that queue stand rather than walk back.
 Plane CrowdEngine::unless_back(const Body& body, const Worker& worker, Plane velocity) const {
-  const bool may = !config_.queues || !queues(body) || worker.waits || worker.has_oncoming ||
-                   body.detour_angle != 0;
-  return may || dot(velocity, path_ahead(body)) >= 0 ? velocity : Plane{};
+  if (!config_.queues) return velocity;
+  const Plane kept = unless_left(worker, velocity);
+  const bool may = !queues(body) || worker.waits || body.detour_angle != 0;
+  return may || dot(kept, path_ahead(body)) >= 0 ? kept : Plane{};
+}
+
+// Does the ground permit a step, and do all others that stand?
+bool CrowdEngine::can_move(const Body& body, Displacement displacement,
+                           std::span<const uint32_t> others) const {
+  Stand place;
+  return try_displacement(body, displacement, place) &&
+         is_clear(body, place, others, /*any_moved=*/false);
 }
 
 // Candidates of a body that makes room, or of the head of a queue whose best velocity is next to
-// nothing: the nearest directions in which the ground permits a step. False: it does neither.
-bool CrowdEngine::find_room(const Body& body, Plane best, Worker& worker,
-                            Displacements& candidates) const {
+// nothing or not possible: the nearest directions that are clear, or else those in which the ground
+// permits a step: others may move away. False: it does neither.
+bool CrowdEngine::find_room(const Body& body, Plane best, const Worker& worker,
+                            std::span<const uint32_t> others, Displacements& candidates) const {
   if (!worker.asks) return false;
   const QueueSettings& queue = config_.queue;
   const float wanted = size_of(body.preferred);
-  if (!worker.makes_room && size_of(best) >= queue.creep_share * wanted) return false;
+  if (!worker.makes_room && size_of(best) >= queue.creep_share * wanted &&
+      can_move(body, displacement_of(body, reachable(body, best)), others)) {
+    return false;
+  }
   constexpr size_t kNear = 11, kMaxFound = 4;  // directions within 75 degrees; candidates
   const size_t directions = worker.makes_room ? kRoomDirections : kRoomDirections / 2;
-  float speed = queue.room_share * body.speed;
-  if (!worker.makes_room) speed = std::min(speed, wanted);  // It must not pass its local target.
+  float speed = (worker.yields ? queue.back_share : queue.room_share) * body.speed;
+  // It must not pass its local target.
+  if (!worker.makes_room) speed = std::min(queue.creep_speed * body.speed, wanted);
   const auto all = room_directions(worker.makes_room ? *worker.makes_room : worker.asks->ahead);
   size_t n = 0;
-  for (size_t d = 0; d < directions && n < kMaxFound && (d < kNear || n == 0); ++d) {
-    for (const float part : {1.0f, 0.25f}) {
+  const auto add = [&](size_t d, auto is_possible) {
+    for (const float part : {1.0f, 0.5f, 0.25f}) {
       const Displacement displacement =
           displacement_of(body, {all[d].x * speed * part, all[d].z * speed * part});
-      Stand place;
-      if (!try_displacement(body, displacement, place)) continue;
+      if (!is_possible(displacement)) continue;
       candidates[n++] = displacement;
-      break;
+      return;
     }
+  };
+  for (size_t d = 0; d < directions && n < kMaxFound; ++d) {
+    add(d, [&](Displacement displacement) { return can_move(body, displacement, others); });
+  }
+  for (size_t d = 0; d < directions && n < kMaxFound && (d < kNear || n == 0); ++d) {
+    Stand place;
+    add(d, [&](Displacement displacement) { return try_displacement(body, displacement, place); });
   }
   // To stand is always clear, so shorter moves must come before that.
   for (const float part : kShorterParts) {
@@ -196,14 +240,18 @@ bool CrowdEngine::stands(const Body& body) const {
 }
 
 // `stood`: at the beginning of the step.
-void CrowdEngine::settle_standing(const Body& body, bool stood, bool yields, float dt) {
+void CrowdEngine::settle_queue(const Body& body, bool stood, const Proposal& proposal, float dt) {
   constexpr float kLongest = 60;  // [s]
   const bool still = stands(body);
-  if (still || stood || yields) {
-    QueueProgress& progress = progress_[body.slot];
-    progress.stood = still ? std::min(progress.stood + dt, kLongest) : 0;
-    progress.yields = yields ? config_.queue.yield_time : std::max(progress.yields - dt, 0.0f);
+  QueueProgress& progress = progress_[body.slot];
+  if (proposal.in_stream || progress.stream > 0) {
+    progress.stream =
+        proposal.in_stream ? config_.queue.stream_time : std::max(progress.stream - dt, 0.0f);
   }
+  if (!still && !stood && !proposal.yields) return;
+  progress.stood = still ? std::min(progress.stood + dt, kLongest) : 0;
+  progress.yields =
+      proposal.yields ? config_.queue.yield_time : std::max(progress.yields - dt, 0.0f);
 }
 
 // Does it stand, instead of heading to its goal, until it has rested or another has passed?
@@ -211,16 +259,17 @@ bool CrowdEngine::is_paused(const Body& body) const {
   return rests(body) || (stands(body) && progress_[body.slot].yields > 0);
 }
 
-// The detour angle is the last resort of heads of queues: others wait.
+// Where bodies queue, the detour angle is the last resort of those at their heads: others wait.
 bool CrowdEngine::may_turn_aside(const Body& body) const {
-  return body.asks && requests_[step_ % 2][body.slot].order.slot == body.slot &&
-         progress_[body.slot].stood >= config_.queue.detour_stands;
+  return pushes(body) || (body.asks && requests_[step_ % 2][body.slot].order.slot == body.slot &&
+                          progress_[body.slot].stood >= config_.queue.detour_stands);
 }
 
 // Requests count for one step: those of the last one are read in the next.
 void CrowdEngine::save_rows(size_t rows, std::vector<uint8_t>& out) const {
   put_rows(out, after_.data(), rows);
   if (!config_.queues) return;
+  put_rows(out, onward_.data(), rows);
   put_rows(out, progress_.data(), rows);
   put_rows(out, requests_[step_ % 2].data(), rows);
 }
@@ -230,13 +279,21 @@ bool CrowdEngine::has_sound_rows(uint32_t slot) const {
   if (!config_.queues) return true;
   const QueueProgress& progress = progress_[slot];
   const RoomRequest& request = requests_[0][slot];
-  return progress.stood >= 0 && progress.rest <= Rest::kMadeRoom && request.order.left >= 0 &&
-         std::abs(request.ahead.x) <= 1.001f && std::abs(request.ahead.z) <= 1.001f;
+  const QueueOrder& order = request.order;
+  constexpr float kFarthest = 1e6f;  // [m] as far as a crowd can lie
+  const auto is_sound = [&](Plane p) {
+    return std::abs(p.x) <= kFarthest && std::abs(p.z) <= kFarthest;
+  };
+  return progress.stood >= 0 && progress.yields >= 0 && progress.stream >= 0 &&
+         progress.rest <= Rest::kMadeRoom && order.left >= 0 && is_sound(onward_[slot]) &&
+         is_sound(order.beyond) && std::abs(request.ahead.x) <= 1.001f &&
+         std::abs(request.ahead.z) <= 1.001f;
 }
 
 const uint8_t* CrowdEngine::restore_rows(const uint8_t* saved, size_t rows) {
   saved = take_rows(saved, rows, after_);
   if (!config_.queues) return saved;
+  saved = take_rows(saved, rows, onward_);
   saved = take_rows(saved, rows, progress_);
   saved = take_rows(saved, rows, requests_[0]);
   requests_[1] = requests_[0];

@@ -75,10 +75,12 @@ void CrowdEngine::list_touched(const Body& body, const SeenLists& lists, Worker&
 // Senses what it steers by, and if required lists the bodies that it could touch.
 void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
                         bool lists_others) {
-  worker.waits = worker.in_counterflow = worker.follows = worker.has_oncoming = false;
+  worker.waits = worker.in_counterflow = worker.follows = worker.in_stream = false;
   worker.makes_room.reset();
   worker.asks.reset();
   worker.yields = false;
+  worker.oncoming = 0;
+  worker.not_left = {};
   const Body& body = bodies_[i];
   fit_lists(around, worker);
   const Places places{grid_->x(), grid_->z(), grid_->y()};
@@ -129,7 +131,8 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   situation.preferred = body.preferred;
   situation.fastest = speed_limit(body);
   situation.near.size = 0;
-  const bool may_wait = !config_.queues && is_on_last_segment(body), turns = turns_corner(body);
+  const bool pushes = this->pushes(body), turns = turns_corner(body);
+  const bool may_wait = pushes && is_on_last_segment(body);
   const bool rests = !body.leaves && !body.has(Body::kExternal) &&
                      (body.has(Body::kArrived) || !body.has(Body::kHasGoal));
   const bool is_slow = size_of(body.velocity) < kHeldUpShare * body.speed;
@@ -140,6 +143,8 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     // Bodies ahead inform those behind, which would else fill the whole width.
     worker.in_counterflow = worker.in_counterflow ||
                             (other.in_counterflow && leads(apart, body.preferred, other.preferred));
+    worker.in_stream = worker.in_stream || (config_.queues && progress_[other.slot].stream > 0 &&
+                                            leads(apart, body.preferred, other.preferred));
     const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
     if (may_wait && is_on_last_segment(other) && goes_first(contender(other), contender(body))) {
       worker.waits = true;
@@ -147,7 +152,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
           config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z),
           body.speed, room);
     }
-    if (!config_.queues && turns && turns_corner(other) &&
+    if (pushes && turns && turns_corner(other) &&
         gives_precedence(contender(other), contender(body), size_of(apart), room,
                          size_of(other.velocity) / other.speed)) {
       worker.waits = true;
@@ -163,6 +168,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     situation.near.add(config_.steering,
                        {apart, yields ? other.preferred : other.velocity, kept, other.preferred});
   }
+  worker.in_stream = worker.in_stream || worker.oncoming >= config_.queue.min_oncoming;
   if (config_.queues) query_queue(body, {lists.entries, nearest}, worker);
   const Plane preferred = situation.preferred;
   situation.preferred = steer::following_fast(config_.steering, situation);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "crowd/walk/step_units.h"
+
 // Lane offsets at corners: docs/design/008-engine.md, "Lane offset at corners". Constant time.
 namespace throng::crowd {
 namespace {
@@ -31,15 +33,28 @@ Plane across(Plane displacement, Plane ahead) {
   return size > 0 ? Plane{rest.x / size, rest.z / size} : Plane{};
 }
 
+// The first corner a metre or more beyond the next one, or else the last.
+size_t after_bend(const Route& route, float metre) {
+  const PathPoint& corner = route.corners[route.next];
+  size_t i = route.next + 1u;
+  while (i + 1 < route.count && near_square(route.corners[i].x - corner.x,
+                                            route.corners[i].z - corner.z) < metre * metre) {
+    ++i;
+  }
+  return i;
+}
+
 }  // namespace
 
 PathPoint lane_offset(const Body& body, const Route& route, const StrideGround& ground,
-                      float metre) {
+                      Following how) {
   const PathPoint corner = route.corners[route.next];
   if (route.next + 1 >= route.count) return corner;
   const PathPoint& next = route.corners[route.next + 1u];
+  const size_t last = how.queues ? after_bend(route, how.metre) : route.next + 1u;
   const world::GroundPoint at{corner.x, corner.z}, beyond{next.x, next.z};
-  const Plane in = towards(body.point(), at), out = towards(at, beyond);
+  const Plane in = towards(body.point(), at),
+              out = towards(at, {route.corners[last].x, route.corners[last].z});
   if (in.x * out.x + in.z * out.z > kStraightCosine) return corner;
   // Away from the wall that the path bends around.
   Plane away{in.x - out.x, in.z - out.z};
@@ -47,11 +62,16 @@ PathPoint lane_offset(const Body& body, const Route& route, const StrideGround& 
   if (!(size > 1e-3f)) return corner;
   away = {away.x / size, away.z / size};
   const float widest = kMaxOpening * static_cast<float>(body.radius);
-  const float door = ground.free_distance(corner.level, at, across(away, out), widest);
+  float door = ground.free_distance(corner.level, at, across(away, out), widest);
+  for (size_t i = route.next + 1u; i < last; ++i) {
+    const PathPoint& other = route.corners[i];
+    door = std::min(
+        door, ground.free_distance(other.level, {other.x, other.z}, across(away, out), widest));
+  }
   if (door < kAbreast * static_cast<float>(body.radius)) return corner;
 
   const Plane side = across(away, in);
-  const float query_range = kWallRange * metre;
+  const float query_range = kWallRange * how.metre;
   const float outer = ground.free_distance(body.level, body.point(), side, query_range);
   const float inner =
       ground.free_distance(body.level, body.point(), {-side.x, -side.z}, query_range);

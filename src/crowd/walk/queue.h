@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 #include "steer/fan.h"
 #include "steer/sampled.h"
@@ -15,14 +14,35 @@
 /// docs/design/008-engine.md, "Queues".
 namespace throng::crowd {
 
-/// The order of bodies that queue: the shorter path that is left, then the smaller slot. It has no
-/// cycles, and it confirms itself: a body that moves on comes nearer, one that makes room does not.
+/// The place of a body in a queue. Of two that go the same direction the first is the one for which
+/// the sum over both local targets of its distance less the other's is below 0: their goals may
+/// differ, and what comes after a door does not matter before it. Of two that come towards each
+/// other it is the one with the shorter path that is left. It confirms itself: a body that moves on
+/// comes nearer, one that makes room does not. Three and more may form a cycle: see
+/// QueueSettings::turn_stands.
 struct QueueOrder {
-  float left = std::numeric_limits<float>::infinity();  ///< Length of the path that is left. [m]
-  uint32_t slot = UINT32_MAX;
+  struct Spot {
+    int32_t x = 0, z = 0;  // [units]
+  };
+  uint32_t slot = UINT32_MAX;  ///< None: behind all.
+  Spot at, target;             ///< The body and its local target.
+  steer::Plane beyond;         ///< From the body to its path beyond its local target. [m]
+  float left = 0;              ///< Length of the path that is left. [m]
 
   friend bool operator<(const QueueOrder& a, const QueueOrder& b) {
-    return a.left < b.left || (a.left == b.left && a.slot < b.slot);
+    if (a.slot == UINT32_MAX || b.slot == UINT32_MAX) return a.slot < b.slot;
+    float more = a.left - b.left;
+    if (a.beyond.x * b.beyond.x + a.beyond.z * b.beyond.z > 0) {
+      more =
+          (far(a.at, a.target) - far(b.at, a.target)) + (far(a.at, b.target) - far(b.at, b.target));
+    }
+    return more < 0 || (more == 0 && a.slot < b.slot);
+  }
+  /// [units]
+  static float far(Spot from, Spot to) {
+    const auto x = static_cast<float>(int64_t{to.x} - from.x);
+    const auto z = static_cast<float>(int64_t{to.z} - from.z);
+    return std::sqrt(x * x + z * z);
   }
 };
 
@@ -43,26 +63,44 @@ enum class Rest : uint8_t {
 struct QueueProgress {
   float stood = 0;   ///< How long it has stood. [s]
   float yields = 0;  ///< For how long it still stands, to let another pass. [s]
+  float stream = 0;  ///< For how long it still counts as in a stream that meets another. [s]
   Rest rest = Rest::kNo;
   std::array<uint8_t, 3> unused{};  ///< 0, so that saved rows have no undefined bytes.
 };
 
 /// Sources of all numbers: docs/log/015-motion.md.
 struct QueueSettings {
-  float still_share = 0.2f;    ///< Of its desired speed: slower ones stand.
-  float head_stands = 0.3f;    ///< The first of a queue asks after it has stood that long. [s]
-  float asks_on = 0.5f;        ///< It asks on while it is slower, by its desired speed.
-  float head_range = 0.6f;     ///< None that is ahead in the order lies before it within that. [m]
-  float touch_gap = 0.02f;     ///< Bodies this near touch. [m]
-  float room_share = 0.3f;     ///< Speed of one that makes room, by its desired speed.
-  float creep_share = 0.1f;    ///< The first of a queue creeps if its best velocity is slower, by
-                               ///< its preferred one.
-  float ahead_margin = 0.07f;  ///< Kept to bodies that are ahead in the order, [m]
+  float still_share = 0.2f;  ///< Of its desired speed: slower ones stand.
+  float head_stands = 0.1f;  ///< The first of a queue asks after it has stood that long. [s]
+  float asks_on = 0.5f;      ///< It asks on while it is slower, by its desired speed.
+  float head_range = 0.4f;   ///< None that is ahead in the order lies before it within that. [m]
+  float turn_stands = 3;     ///< After that bodies of which none asks become the first in turn. [s]
+  float touch_gap = 0.04f;   ///< Bodies this near touch. [m]
+  float room_share = 0.2f;   ///< Speed of one that makes room, by its desired speed,
+  float back_share = 0.5f;   ///< if the other comes towards it.
+  float creep_share = 0.1f;  ///< The first of a queue creeps if its best velocity is slower, by
+                             ///< its preferred one,
+  float creep_speed = 0.5f;  ///< at most at that, by its desired speed.
+  float ahead_margin = 0.04f;  ///< Kept to bodies that are ahead in the order, [m]
   float ahead_range = 0.3f;    ///< and nearer than that. [m]
   float yield_time = 1;        ///< One that made room for an oncoming body stands that long. [s]
   float oncoming = 0.5f;       ///< Cosine of the angle between them that makes it so.
+  float alike = 0.5f;          ///< Paths go on alike: cosine of the angle between them.
+  int32_t min_oncoming = 2;    ///< So many that come towards a body are a stream. [> 0]
+  float stream_time = 2;       ///< As long a body counts as in a stream after it saw it. [s]
   float detour_stands = 3;     ///< The first of a queue turns aside after that. [s]
 };
+
+/// Steering of bodies that queue: they come to touch, and heed those ahead more than those beside
+/// them. Found so that flows and speeds by density are those of experiments.
+inline steer::SampledSettings queueing(steer::SampledSettings settings) {
+  settings.gap = 0;
+  settings.threat = 0.3f;
+  settings.lane = 0.72f;
+  settings.foresight = 0.7f;
+  settings.excess = 1;
+  return settings;
+}
 
 /// Directions in the order in which a body tries them: along `away`, then to both sides in turn, 15
 /// degrees more each time, up to 105 degrees.

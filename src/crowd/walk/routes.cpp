@@ -19,10 +19,10 @@ constexpr uint64_t kBlockedCheckInterval = 4;
 constexpr float kCheckRange = 3;       // [m] of a segment, to test whether it is visible
 constexpr float kTurnDistance = 0.3f;  // [m] before its lane offset a body turns to the next corner
 
-void turn_to(Body& body, const Route& route, const StrideGround& ground, float metre) {
+void turn_to(Body& body, const Route& route, const StrideGround& ground, Following how) {
   body.on_right = body.in_counterflow;
   const PathPoint place =
-      leads_to_link(route) ? route.corners[route.next] : lane_offset(body, route, ground, metre);
+      leads_to_link(route) ? route.corners[route.next] : lane_offset(body, route, ground, how);
   body.local_target_x = place.x;
   body.local_target_z = place.z;
   const bool last = route.whole && route.next + 1 == route.count;
@@ -42,9 +42,19 @@ bool is_at_lane_offset(const Body& body, const Route& route, float metre) {
   return along > -kTurnDistance * metre * std::sqrt(x * x + z * z);
 }
 
+// Is it beyond its corner, but beside the straight line to the next one? It would walk back.
+bool has_passed_corner(const Body& body, const Route& route) {
+  if (route.next + 1 >= route.count || leads_to_link(route)) return false;
+  const PathPoint &corner = route.corners[route.next], &next = route.corners[route.next + 1u];
+  return int64_t{next.x - corner.x} * (body.x - corner.x) +
+             int64_t{next.z - corner.z} * (body.z - corner.z) >
+         0;
+}
+
 }  // namespace
 
-void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float metre) {
+void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, Following how) {
+  const float metre = how.metre;
   const float range = kCheckRange * metre;
   const auto sees = [&](const PathPoint& position) {
     return ground.sees(body.level, body.point(), {position.x, position.z}, position.level, range);
@@ -57,7 +67,7 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
                               sees(route.corners[route.next + 1u])))) {
       ++route.next;
       if (route.via <= route.next) route.via = 0;
-      turn_to(body, route, ground, metre);
+      turn_to(body, route, ground, how);
       return;
     }
     if (at_end) {  // Corners are used up: the rest is a new path.
@@ -65,7 +75,11 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
       return;
     }
   }
-  if (body.in_counterflow && !body.on_right) turn_to(body, route, ground, metre);
+  if (body.in_counterflow && !body.on_right) turn_to(body, route, ground, how);
+  if (how.queues && nth % kBlockedCheckInterval == 0 && has_passed_corner(body, route)) {
+    body.flags |= Body::kNeedsPath;
+    return;
+  }
   // A body pushed back behind a corner no longer sees it, and is blocked until it checks.
   const bool is_blocked = body.detour_angle != 0 && body.near_wall;
   if (nth % (is_blocked ? kBlockedCheckInterval : kCheckInterval) != 0) return;
@@ -107,8 +121,7 @@ PathPoint point_of(const world::WorldData& world, const Place& place) {
 }
 
 bool use_path(const world::WorldData& world, const Path& path, const StrideGround& ground,
-              Body& body, Route& route) {
-  const float metre = world::kUnitsPerCell / static_cast<float>(world.summary.cell);
+              Following how, Body& body, Route& route) {
   body.flags = static_cast<uint8_t>(body.flags & ~Body::kNeedsPath);
   route.by_link = 0;
   route.via = 0;
@@ -118,7 +131,7 @@ bool use_path(const world::WorldData& world, const Path& path, const StrideGroun
     route.count = 1;
     route.next = 0;
     route.whole = true;
-    turn_to(body, route, ground, metre);
+    turn_to(body, route, ground, how);
     return true;
   }
   const size_t segments = path.points.size() - 1;
@@ -133,7 +146,7 @@ bool use_path(const world::WorldData& world, const Path& path, const StrideGroun
     for (size_t i = 0; i < route.count; ++i) {
       route.corners[i] = point_of(world, path.points[first + i]);
     }
-    turn_to(body, route, ground, metre);
+    turn_to(body, route, ground, how);
     return true;
   }
   route.count = static_cast<uint8_t>(std::min(segments, Route::kCorners));
@@ -142,13 +155,12 @@ bool use_path(const world::WorldData& world, const Path& path, const StrideGroun
   for (size_t i = 0; i < route.count; ++i) {
     route.corners[i] = point_of(world, path.points[i + 1]);
   }
-  turn_to(body, route, ground, metre);
+  turn_to(body, route, ground, how);
   return true;
 }
 
 void replace_corners(const world::WorldData& world, const Path& path, size_t end,
-                     const StrideGround& ground, Body& body, Route& route) {
-  const float metre = world::kUnitsPerCell / static_cast<float>(world.summary.cell);
+                     const StrideGround& ground, Following how, Body& body, Route& route) {
   const Route old = route;
   const size_t wanted = path.points.size() - 1 + (old.count - 1 - end);
   const size_t count = std::min(wanted, Route::kCorners);
@@ -165,7 +177,7 @@ void replace_corners(const world::WorldData& world, const Path& path, size_t end
     route.by_link = 0;
   }
   body.clear(Body::kNeedsPath);
-  turn_to(body, route, ground, metre);
+  turn_to(body, route, ground, how);
 }
 
 float length_between(const Route& route, size_t from, size_t to) {

@@ -39,10 +39,16 @@ inline bool leads_to_link(const Route& route) {
   return route.by_link != 0 && route.next + 2 == route.count;
 }
 
+/// How bodies follow their routes.
+struct Following {
+  float metre = 1;      ///< [units]
+  bool queues = false;  ///< They queue: openings count at their narrowest, corners are left behind.
+};
+
 /// Heads to the next corner once it is visible, unless an off-mesh link leads there, and marks a
 /// body that has lost its path. `nth`: counts decisions, from a different number for each body, so
-/// that not all check in the same step. `metre`: [units]
-void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, float metre);
+/// that not all check in the same step.
+void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, Following how);
 
 /// The place of a body that heads to `position`.
 Place place_of(const world::WorldData& world, const Body& body, const PathPoint& position);
@@ -50,12 +56,12 @@ PathPoint point_of(const world::WorldData& world, const Place& place);
 
 /// Takes the next corners of a path that was found, from where the body is. False: none was found.
 bool use_path(const world::WorldData& world, const Path& path, const StrideGround& ground,
-              Body& body, Route& route);
+              Following how, Body& body, Route& route);
 
 /// Replaces the corners up to number `end` by those of a path from the body to that corner. Corners
 /// behind it stay as far as there is room. No link leads to `end`.
 void replace_corners(const world::WorldData& world, const Path& path, size_t end,
-                     const StrideGround& ground, Body& body, Route& route);
+                     const StrideGround& ground, Following how, Body& body, Route& route);
 /// Length from one corner to a later one. [units]
 float length_between(const Route& route, size_t from, size_t to);
 

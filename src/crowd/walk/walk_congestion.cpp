@@ -244,11 +244,12 @@ void WalkMode::take_path(Body& body, Route& route, const StrideGround& ground, c
                          size_t end) {
   const float replaced = length_between(route, route.next, end) * static_cast<float>(shared_.unit);
   const float after_end = std::max(engine_.path_after(body.slot) - replaced, 0.0f);
-  replace_corners(*data_of(shared_.world), path, end, ground, body, route);
+  replace_corners(*data_of(shared_.world), path, end, ground, following(), body, route);
   const Vec3d &a = path.points[0].position, &b = path.points[1].position;
   const double dx = b.x - a.x, dz = b.z - a.z;
   const auto after_first = static_cast<float>(path.length - std::sqrt(dx * dx + dz * dz));
   engine_.set_path_after(body.slot, after_end + std::max(after_first, 0.0f));
+  note_onward(body, route);
 }
 
 }  // namespace throng::crowd

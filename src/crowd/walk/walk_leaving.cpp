@@ -71,7 +71,7 @@ void WalkMode::plan_exit(Body& body) {
   if (follows_path(body)) {
     if (shared_.config.routing == Routing::kPaths && !body.has(Body::kContinues)) {
       const uint64_t nth = (shared_.sub_step - 1 + body.slot) / engine_.steps_of_reaction(body);
-      follow(body, routes_[body.slot], ground, nth, static_cast<float>(1 / shared_.unit));
+      follow(body, routes_[body.slot], ground, nth, following());
     }
     if (std::fabs(body.detour_angle) > kMaxDetourAngle) {
       body.flags |= Body::kNeedsPath;

@@ -121,6 +121,7 @@ void WalkMode::set_goal(Body& body, const Place& goal) {
   if (!point) return;
   Route& route = routes_[body.slot];
   engine_.set_path_after(body.slot, 0);
+  engine_.set_onward(body.slot, {});
   progress_[body.slot] = {};
   route = {};
   route.goal = {static_cast<int32_t>(point->x), static_cast<int32_t>(point->z), goal.level1 - 1};
@@ -134,6 +135,7 @@ void WalkMode::set_target(Body& body) {
   routes_[body.slot] = {};
   progress_[body.slot] = {};
   engine_.set_path_after(body.slot, 0);
+  engine_.set_onward(body.slot, {});
   body.local_target_x = body.x;
   body.local_target_z = body.z;
 }

@@ -141,6 +141,10 @@ class WalkMode final : public Mode {
 
   // walk_plan.cpp
   void plan(std::span<Body> bodies, int32_t worker);
+  [[nodiscard]] Following following() const {
+    return {static_cast<float>(1 / shared_.unit), engine_.queues()};
+  }
+  void note_onward(const Body& body, const Route& route);
   void follow_path(Body& body, Route& route, const StrideGround& ground, uint64_t nth);
   bool plan_path(Body& body, Route& route, const StrideGround& ground, int32_t worker);
   void find_path(const Body& body, const PathPoint& from, const PathPoint& to,

@@ -65,12 +65,13 @@ void WalkMode::plan(std::span<Body> bodies, int32_t worker) {
 // Its next corner may become its local target: then less of the path comes after that.
 void WalkMode::follow_path(Body& body, Route& route, const StrideGround& ground, uint64_t nth) {
   const size_t corner = route.next;
-  follow(body, route, ground, nth, static_cast<float>(1 / shared_.unit));
+  follow(body, route, ground, nth, following());
   if (route.next == corner) return;
   const PathPoint &from = route.corners[corner], &to = route.corners[route.next];
   const float square = near_square(to.x - from.x, to.z - from.z);
   const auto passed = std::sqrt(square) * static_cast<float>(shared_.unit);
   engine_.set_path_after(body.slot, std::max(engine_.path_after(body.slot) - passed, 0.0f));
+  note_onward(body, route);
 }
 
 // A path from where the body is to its target or goal. False: there is none.
@@ -88,14 +89,29 @@ bool WalkMode::plan_path(Body& body, Route& route, const StrideGround& ground, i
   } else {
     find_path(body, here, route.goal, ground, w, path);
   }
-  if (!use_path(data, path, ground, body, route)) return false;
+  if (!use_path(data, path, ground, following(), body, route)) return false;
   double first = 0;  // [m]
   if (path.points.size() > 1) {
     first = std::hypot(path.points[1].position.x - path.points[0].position.x,
                        path.points[1].position.z - path.points[0].position.z);
   }
   engine_.set_path_after(body.slot, static_cast<float>(std::max(path.length - first, 0.0)));
+  note_onward(body, route);
   return true;
+}
+
+// Where its path leads some metres beyond its local target: corners around one wall are near each
+// other, and do not yet show that.
+void WalkMode::note_onward(const Body& body, const Route& route) {
+  constexpr float kFar = 2;  // [m]
+  const auto metre = static_cast<float>(shared_.unit);
+  const PathPoint& from = route.corners[route.next];
+  steer::Plane onward;
+  for (size_t i = route.next + 1u; i < route.count && steer::size_of(onward) < kFar; ++i) {
+    const PathPoint& to = route.corners[i];
+    onward = {static_cast<float>(to.x - from.x) * metre, static_cast<float>(to.z - from.z) * metre};
+  }
+  engine_.set_onward(body.slot, onward);
 }
 
 // A path of low cost over the ground of the body's class, around its obstacles.

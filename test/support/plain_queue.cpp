@@ -162,7 +162,7 @@ void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
   plan.in_stream = is_in_stream(i);
   if (pushes(body)) return;
   const QueueOrder own = queues(body) ? order_of(i) : QueueOrder{};
-  QueueOrder first = own;
+  QueueOrder first;
   uint32_t asker = UINT32_MAX;
   Plane asked, from;
   float needs = 0;
@@ -177,8 +177,13 @@ void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
       continue;
     }
     const QueueOrder& order = other.request.order;
-    const bool is_equal = !(first < order) && !(order < first);
-    if (!(order < first) && !(asker != UINT32_MAX && is_equal && n.other < asker)) continue;
+    if (!(order < own)) continue;
+    // The shortest path that is left.
+    if (asker != UINT32_MAX) {
+      if (first.left < order.left) continue;
+      if (first.left == order.left && first.slot < order.slot) continue;
+      if (first.left == order.left && first.slot == order.slot && asker < n.other) continue;
+    }
     first = order;
     asker = n.other;
     asked = other.request.ahead;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <tuple>
 
 #include "core/random.h"
 #include "crowd/mode/saved_rows.h"
@@ -56,14 +57,15 @@ float CrowdEngine::room_in_queue(const Body& body, const Body& other, Plane apar
   return room + margin_to(body, other, size_of(apart) - room);
 }
 
-// A body follows the request that is first in the order, unless it is ahead of that itself. If none
-// asks it, it may be the head of a queue, and ask.
+// Of the requests of those that are ahead of it a body follows the one with the shortest path left:
+// neighbours have no order of their own, so the choice must not depend on which comes first. If
+// none asks it, it may be the head of a queue, and ask.
 void CrowdEngine::query_queue(const Body& body, std::span<const uint32_t> nearest,
                               Worker& worker) const {
   if (body.has(Body::kExternal) || pushes(body)) return;
   const std::vector<RoomRequest>& requests = requests_[(step_ + 1) % 2];
   const QueueOrder own = queues(body) ? order_of(body) : QueueOrder{};
-  QueueOrder first = own;
+  QueueOrder first;
   const bool is_at_rest = rests(body);
   uint32_t asker = UINT32_MAX;
   Plane asked, from;
@@ -84,9 +86,11 @@ void CrowdEngine::query_queue(const Body& body, std::span<const uint32_t> neares
         is_at_rest && other.has(Body::kLast) &&
         nearer_than(other.local_target_x - body.x, other.local_target_z - body.z, reach);
     if (is_wanted) continue;
-    const bool is_first = request.order < first ||
-                          (asker != UINT32_MAX && !(first < request.order) && other.slot < asker);
-    if (!is_first) continue;
+    const auto key = [](const QueueOrder& order, uint32_t slot) {
+      return std::tuple(order.left, order.slot, slot);
+    };
+    if (!(request.order < own)) continue;
+    if (asker != UINT32_MAX && key(first, asker) < key(request.order, other.slot)) continue;
     first = request.order;
     asker = other.slot;
     from = apart;

@@ -206,7 +206,7 @@ void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
     if (plan.yields || !queues(body)) plan.away = aside_of(plan.away, from, asked, needs);
     plan.asks = true;
     plan.request = {first, plan.away};
-  } else if (is_head(i)) {
+  } else if (is_head(i) && !(may_rest(body) && is_goal_taken(i))) {
     plan.asks = true;
     plan.request = {own, size > 0 ? Plane{ahead.x / size, ahead.z / size} : Plane{1, 0}};
   }

@@ -269,7 +269,8 @@ class CrowdEngine {
   [[nodiscard]] float margin_to(const Body& body, const Body& other, float gap) const;
   float room_in_queue(const Body& body, const Body& other, steer::Plane apart, float room,
                       Worker& worker) const;
-  void query_queue(const Body& body, std::span<const uint32_t> nearest, Worker& worker) const;
+  void query_queue(uint32_t i, std::span<const uint32_t> nearest,
+                   const NeighbourGrid::Around& around, Worker& worker) const;
   [[nodiscard]] steer::Plane aside_of(const Body& body, steer::Plane away, steer::Plane from,
                                       steer::Plane asked, float room) const;
   [[nodiscard]] bool has_turn(const Body& body, std::span<const uint32_t> nearest) const;

@@ -60,8 +60,9 @@ float CrowdEngine::room_in_queue(const Body& body, const Body& other, Plane apar
 // Of the requests of those that are ahead of it a body follows the one with the shortest path left:
 // neighbours have no order of their own, so the choice must not depend on which comes first. If
 // none asks it, it may be the head of a queue, and ask.
-void CrowdEngine::query_queue(const Body& body, std::span<const uint32_t> nearest,
-                              Worker& worker) const {
+void CrowdEngine::query_queue(uint32_t i, std::span<const uint32_t> nearest,
+                              const NeighbourGrid::Around& around, Worker& worker) const {
+  const Body& body = bodies_[i];
   if (body.has(Body::kExternal) || pushes(body)) return;
   const std::vector<RoomRequest>& requests = requests_[(step_ + 1) % 2];
   const QueueOrder own = queues(body) ? order_of(body) : QueueOrder{};
@@ -107,7 +108,8 @@ void CrowdEngine::query_queue(const Body& body, std::span<const uint32_t> neares
     const bool steps_aside = worker.yields || !queues(body);
     worker.makes_room = steps_aside ? aside_of(body, away, from, asked, needs) : away;
     worker.asks = RoomRequest{first, *worker.makes_room};
-  } else if (queues(body) && is_head(body, nearest)) {
+  } else if (queues(body) && is_head(body, nearest) &&
+             !(may_rest(body) && is_goal_taken(i, around))) {
     worker.asks = RoomRequest{own, unit(path_ahead(body))};
   }
 }

@@ -169,7 +169,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
                        {apart, yields ? other.preferred : other.velocity, kept, other.preferred});
   }
   worker.in_stream = worker.in_stream || worker.oncoming >= config_.queue.min_oncoming;
-  if (config_.queues) query_queue(body, {lists.entries, nearest}, worker);
+  if (config_.queues) query_queue(i, {lists.entries, nearest}, around, worker);
   const Plane preferred = situation.preferred;
   situation.preferred = steer::following_fast(config_.steering, situation);
   // Before a corner a body that crawls is turned as one that stands: doors need that.

@@ -137,7 +137,7 @@ Rest PlainCrowd::next_rest(uint32_t i) const {
   }
   if (body.rest == Rest::kRests && !stands(body) && body.stood == 0) return Rest::kMadeRoom;
   if (body.rest == Rest::kNo) {
-    if (left < 0.02f) return Rest::kRests;
+    if (left < 0.02f || (left < 0.3f && is_goal_taken(i))) return Rest::kRests;
     if (!stands(body) || body.stood < 0.5f) return Rest::kNo;
   }
   return left < 0.3f || is_goal_taken(i) ? Rest::kRests : Rest::kNo;

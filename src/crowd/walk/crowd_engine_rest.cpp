@@ -76,7 +76,7 @@ Rest CrowdEngine::next_rest(uint32_t i, const NeighbourGrid::Around& around) con
       size_of(config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z));
   switch (progress.rest) {
     case Rest::kNo:
-      if (left < kAtGoal) return Rest::kRests;
+      if (left < kAtGoal || (left < kNearGoal && is_goal_taken(i, around))) return Rest::kRests;
       if (!stands(body) || progress.stood < kStandsBefore) return Rest::kNo;
       return left < kNearGoal || is_goal_taken(i, around) ? Rest::kRests : Rest::kNo;
     case Rest::kRests:

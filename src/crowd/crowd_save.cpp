@@ -24,7 +24,7 @@ namespace {
 using crowd::put_rows;
 using crowd::take_rows;
 
-constexpr uint64_t kMagic = 0x33315744574f5243;  // "CROWDW13"
+constexpr uint64_t kMagic = 0x34315744574f5243;  // "CROWDW14"
 
 struct Head {
   uint64_t magic = kMagic;

@@ -53,6 +53,18 @@ struct Bend {
     route.count = 2;
     return crowd::lane_offset(body, route, stride, {metre});
   }
+  // The same if the corner is the first of two that are 5 cm from each other.
+  crowd::PathPoint own_before_bend(double x, double z, bool queues) {
+    own(x, z);
+    crowd::Route route;
+    route.corners[0] = corner;
+    route.corners[1] = corner;
+    route.corners[1].x += static_cast<int32_t>(0.05 * metre);
+    route.corners[1].z += static_cast<int32_t>(0.05 * metre);
+    route.corners[2] = next;
+    route.count = 3;
+    return crowd::lane_offset(body, route, stride, {metre, queues});
+  }
   [[nodiscard]] double off(const crowd::PathPoint& place) const {  // from the corner [m]
     return std::hypot(place.x - corner.x, place.z - corner.z) / metre;
   }
@@ -104,6 +116,17 @@ TEST(LaneOffset, IsTheCornerWhereFewFitOrNothingBends) {
   EXPECT_EQ(bend.off(bend.own(5, 1.6)), 0);
   bend.next = ahead;
   EXPECT_GT(bend.off(bend.own(5, 1.0)), 0);
+}
+
+// Corners around one wall are a few centimetres from each other.
+TEST(LaneOffset, CornersNearEachOtherAreOneBendForThoseThatQueue) {
+  Bend bend(2), narrow(1.2);
+  for (const double z : {1.7, 1.4, 1.0, 0.6}) {
+    const double alone = bend.off(bend.own(5, z));
+    EXPECT_NEAR(bend.off(bend.own_before_bend(5, z, true)), alone, 0.1) << z;
+    EXPECT_GT(std::abs(bend.off(bend.own_before_bend(5, z, false)) - alone), 0) << z;
+  }
+  EXPECT_EQ(narrow.off(narrow.own_before_bend(5, 0.4, true)), 0);
 }
 
 TEST(LaneOffset, ABodyInCounterflowKeepsToTheRightHalf) {

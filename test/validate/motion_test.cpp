@@ -33,7 +33,41 @@ ValidationResult run_brief(const std::string& name, int32_t workers) {
   return result ? *std::move(result) : ValidationResult{};
 }
 
-// The crowd misses most limits today, so these test what is measured, not whether it passes.
+// All limits, not only of brief runs.
+TEST(Motion, QueuesPassAllLimits) {
+  for (const char* name : {"motion.door", "motion.rest", "motion.passages", "motion.square",
+                           "motion.roundabout", "fundamental"}) {
+    Context context;
+    const auto result = run_validation(name, {.workers = 2, .queues = true}, context);
+    ASSERT_TRUE(result) << result.error().message;
+    expect_no_faults(*result);
+    for (const ValidationMeasure& m : result->measures) {
+      EXPECT_TRUE(m.passed()) << name << ": " << m.name << " is " << m.value;
+    }
+  }
+}
+
+// None is left behind at doors of 0.8 m and more, and the flow is near that of experiments.
+TEST(Motion, QueuesLeaveNoneBehind) {
+  Context context;
+  const auto result = run_validation("bottleneck", {.workers = 2, .queues = true}, context);
+  ASSERT_TRUE(result) << result.error().message;
+  expect_no_faults(*result);
+  int flows = 0;
+  for (const ValidationMeasure& m : result->measures) {
+    if (m.name.starts_with("left behind")) {
+      EXPECT_EQ(m.value, 0) << m.name;
+    }
+    if (!m.name.starts_with("flow by width")) continue;
+    ++flows;
+    EXPECT_GT(m.value, 1.5) << m.name;
+    EXPECT_LT(m.value, 2.3) << m.name;
+  }
+  EXPECT_GT(flows, 5);
+}
+
+// Without queues the crowd misses most limits, so these test what is measured, not whether it
+// passes.
 TEST(Motion, MeasuresAreTheSameForAnyWorkers) {
   for (const char* name : {"motion.door", "motion.rest"}) {
     const ValidationResult one = run_brief(name, 1), two = run_brief(name, 2);

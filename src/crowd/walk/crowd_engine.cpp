@@ -703,7 +703,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
 uint64_t CrowdEngine::bytes() const {
   uint64_t bytes = 2 * bodies_.size() * sizeof(Body) + contests_.size() * sizeof(Contests) +
                    (grid_ ? grid_->bytes() : 0);
-  bytes += progress_.capacity() * sizeof(QueueProgress) +
+  bytes += onward_.capacity() * sizeof(Plane) + progress_.capacity() * sizeof(QueueProgress) +
            2 * requests_[0].capacity() * sizeof(RoomRequest);
   for (const Worker& worker : workers_) {
     bytes += 4 * (worker.squares.capacity() + worker.entries.capacity() +

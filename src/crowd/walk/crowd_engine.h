@@ -197,6 +197,15 @@ class CrowdEngine {
     std::optional<RoomRequest> asks;
     bool yields = false;  // the one that asks comes towards it
     EngineCounts counts;
+
+    // What it sensed of the last body.
+    void forget() {
+      waits = in_counterflow = follows = in_stream = yields = false;
+      oncoming = 0;
+      not_left = {};
+      makes_room.reset();
+      asks.reset();
+    }
   };
   using Displacements = std::array<Displacement, steer::kChoices>;
   // What is tried if no candidate is clear: parts of the first.

@@ -75,12 +75,7 @@ void CrowdEngine::list_touched(const Body& body, const SeenLists& lists, Worker&
 // Senses what it steers by, and if required lists the bodies that it could touch.
 void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
                         bool lists_others) {
-  worker.waits = worker.in_counterflow = worker.follows = worker.in_stream = false;
-  worker.makes_room.reset();
-  worker.asks.reset();
-  worker.yields = false;
-  worker.oncoming = 0;
-  worker.not_left = {};
+  worker.forget();
   const Body& body = bodies_[i];
   fit_lists(around, worker);
   const Places places{grid_->x(), grid_->z(), grid_->y()};

@@ -208,7 +208,7 @@ void PlainCrowd::steer_all() {
       choices_[i][0] = situation.preferred;
     }
     if (config_.queues) {
-      const bool walks_back = !queues(body) || body.turn != 0;
+      const bool walks_back = !queues(body) || pushes(body) || body.turn != 0;
       const Plane ahead = path_ahead(body);
       for (size_t c = open ? 1 : 0; c < choices_[i].size() && !walks_back; ++c) {
         Plane& v = choices_[i][c];

@@ -39,7 +39,7 @@ bool PlainCrowd::is_paused(const PlainBody& body) const {
 bool PlainCrowd::pushes(const PlainBody& body) const { return !config_.queues || body.stream > 0; }
 
 bool PlainCrowd::queues(const PlainBody& body) const {
-  return !pushes(body) && body.arrived < 0 && !rests(body);
+  return config_.queues && body.arrived < 0 && !rests(body);
 }
 
 // Paths are straight.
@@ -160,7 +160,6 @@ void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
   const PlainBody& body = bodies_[i];
   plan.rest = next_rest(i);
   plan.in_stream = is_in_stream(i);
-  if (pushes(body)) return;
   const QueueOrder own = queues(body) ? order_of(i) : QueueOrder{};
   QueueOrder first;
   uint32_t asker = UINT32_MAX;

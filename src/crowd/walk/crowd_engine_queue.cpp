@@ -31,7 +31,7 @@ Plane unit(Plane p) {
 bool CrowdEngine::queues(const Body& body) const {
   constexpr uint8_t kAll =
       Body::kHasGoal | Body::kArrived | Body::kExternal | Body::kMovedElsewhere;
-  return (body.flags & kAll) == Body::kHasGoal && !body.leaves && !rests(body) && !pushes(body);
+  return (body.flags & kAll) == Body::kHasGoal && !body.leaves && !rests(body);
 }
 
 QueueOrder CrowdEngine::order_of(const Body& body) const {
@@ -63,7 +63,7 @@ float CrowdEngine::room_in_queue(const Body& body, const Body& other, Plane apar
 void CrowdEngine::query_queue(uint32_t i, std::span<const uint32_t> nearest,
                               const NeighbourGrid::Around& around, Worker& worker) const {
   const Body& body = bodies_[i];
-  if (body.has(Body::kExternal) || pushes(body)) return;
+  if (body.has(Body::kExternal)) return;
   const std::vector<RoomRequest>& requests = requests_[(step_ + 1) % 2];
   const QueueOrder own = queues(body) ? order_of(body) : QueueOrder{};
   QueueOrder first;
@@ -171,11 +171,12 @@ Plane CrowdEngine::unless_left(const Worker& worker, Plane velocity) {
   return {velocity.x + left * worker.not_left.x, velocity.z + left * worker.not_left.z};
 }
 
-// A velocity away from its local target becomes 0: people that queue stand rather than walk back.
+// A velocity away from its local target becomes 0: people that queue stand rather than walk back,
+// unless a stream comes towards them.
 Plane CrowdEngine::unless_back(const Body& body, const Worker& worker, Plane velocity) const {
   if (!config_.queues) return velocity;
   const Plane kept = unless_left(worker, velocity);
-  const bool may = !queues(body) || worker.waits || body.detour_angle != 0;
+  const bool may = !queues(body) || pushes(body) || worker.waits || body.detour_angle != 0;
   return may || dot(kept, path_ahead(body)) >= 0 ? kept : Plane{};
 }
 

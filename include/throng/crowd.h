@@ -109,8 +109,7 @@ struct CrowdTuning {
   bool deadlock_avoidance = true;
   /// Avatars on foot queue before narrow places and rest at their goals, instead of pushing and
   /// circling: docs/design/008-engine.md, "Queues". Only with SteeringModel::kSampled. Off by
-  /// default, because doors of less than 0.8 m can still jam, and those with streams from both
-  /// sides do. Takes 104 bytes an avatar.
+  /// default, because doors of less than 0.8 m can still jam. Takes 104 bytes an avatar.
   bool queues = false;
   /// Most change of an avatar's velocity on foot; a stop before others is exempt. 0: no limit. Only
   /// with SteeringModel::kSampled. [m/s2, 0 to 1000]

@@ -340,7 +340,8 @@ struct ValidationConfig {
   bool brief = false;   ///< Fewer points and shorter runs.
   /// The steering model of the crowds. The default leaves trials the model of their scenarios.
   SteeringModel model = SteeringModel::kSampled;
-  bool queues = false;  ///< CrowdTuning::queues, in tests on level ground; trials ignore it.
+  /// CrowdTuning::queues, with accelerations of 4 m/s2 at most; trials ignore it.
+  bool queues = false;
 };
 
 /// The results of a test.

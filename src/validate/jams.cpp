@@ -7,6 +7,7 @@
 #include "throng/bake.h"
 #include "throng/crowd.h"
 #include "throng/scene.h"
+#include "validate/plane_crowd.h"
 #include "validate/tests.h"
 
 // A building in which all go from one random place to the next: how fast they get on once jams have
@@ -35,8 +36,11 @@ Result<ValidationResult> garage(const ValidationConfig& config, Context& context
   const auto world =
       bake_world(*scene, {.classes = {AvatarClass{}}, .workers = config.workers}, context);
   if (!world) return world.error();
-  auto crowd = Crowd::create(
-      *world, {.dt = kDt, .seed = config.seed, .workers = config.workers, .model = config.model});
+  auto crowd = Crowd::create(*world, {.dt = kDt,
+                                      .seed = config.seed,
+                                      .workers = config.workers,
+                                      .model = config.model,
+                                      .tuning = tuning_of(config)});
   if (!crowd) return crowd.error();
   const uint32_t people = config.brief ? kBriefPeople : kPeople;
   const auto ids = crowd->scatter(people, {}, context);

@@ -20,8 +20,10 @@ Polygon box(double x0, double z0, double x1, double z1) {
   return {.outer = {{x0, z0}, {x1, z0}, {x1, z1}, {x0, z1}}, .holes = {}};
 }
 
-// Of bodies that queue: 320 N by 80 kg. [m/s2]
-static constexpr double kAcceleration = 4;
+CrowdTuning tuning_of(const ValidationConfig& config) {
+  constexpr double kAcceleration = 4;  // of those that queue: 320 N by 80 kg [m/s2]
+  return {.queues = config.queues, .acceleration = config.queues ? kAcceleration : 0};
+}
 
 Result<World> bake_plane(const PlaneConfig& plane, const AvatarClass& body,
                          const ValidationConfig& config, Context& context) {
@@ -33,14 +35,12 @@ Result<World> bake_plane(const PlaneConfig& plane, const AvatarClass& body,
 
 Result<PlaneCrowd> PlaneCrowd::create(const World& world, Routing routing,
                                       const ValidationConfig& config, double dt) {
-  auto crowd = Crowd::create(
-      world,
-      {.dt = dt,
-       .seed = config.seed,
-       .workers = config.workers,
-       .routing = routing,
-       .model = config.model,
-       .tuning = {.queues = config.queues, .acceleration = config.queues ? kAcceleration : 0}});
+  auto crowd = Crowd::create(world, {.dt = dt,
+                                     .seed = config.seed,
+                                     .workers = config.workers,
+                                     .routing = routing,
+                                     .model = config.model,
+                                     .tuning = tuning_of(config)});
   if (!crowd) return crowd.error();
   return PlaneCrowd(world, *std::move(crowd), dt);
 }

@@ -443,7 +443,7 @@ TEST(CrowdLinks, SavedNonsenseIsRefusedOrHarmless) {
   EXPECT_GT(refused, 100u);
   // A crowd of the version before.
   ASSERT_EQ(std::memcmp(saved.data(), "CROWDW14", 8), 0);
-  std::memcpy(saved.data(), "CROWDW12", 8);
+  std::memcpy(saved.data(), "CROWDW13", 8);
   const auto old = Crowd::restore(world, {.edits = edits}, saved, context);
   ASSERT_FALSE(old);
   EXPECT_NE(old.error().message.find("no crowd of this version"), std::string::npos);

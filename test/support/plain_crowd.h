@@ -85,7 +85,7 @@ class PlainCrowd {
     bool follows = false, makes_room = false, asks = false, creeps = false, repeats = true,
          yields = false, in_stream = false;
     steer::Plane away;
-    std::array<steer::Plane, 4> room;  // if it creeps
+    std::vector<steer::Plane> room;  // if it creeps: up to 4
     crowd::RoomRequest request;
     crowd::Rest rest = crowd::Rest::kNo;
   };

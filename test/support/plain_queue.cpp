@@ -223,7 +223,7 @@ bool PlainCrowd::can_move(uint32_t i, Plane velocity) const {
   });
 }
 
-// The first four directions that are clear, then the first ones: on an open plane each permits a
+// The first four directions that are clear, or else the first four: on an open plane each permits a
 // step.
 void PlainCrowd::make_room(uint32_t i, Plan& plan, const Plane& best) const {
   const PlainBody& body = bodies_[i];
@@ -244,8 +244,11 @@ void PlainCrowd::make_room(uint32_t i, Plan& plan, const Plane& best) const {
       break;
     }
   }
-  for (const Plane direction : all) room.push_back({direction.x * speed, direction.z * speed});
-  std::copy_n(room.begin(), plan.room.size(), plan.room.begin());
+  if (room.empty()) {
+    for (const Plane direction : all) room.push_back({direction.x * speed, direction.z * speed});
+  }
+  room.resize(std::min<size_t>(room.size(), 4));
+  plan.room = room;
 }
 
 Plane PlainCrowd::reachable(const PlainBody& body, Plane velocity) const {

@@ -190,6 +190,7 @@ class CrowdEngine {
     bool waits = false;           // it yields to another, instead of its preferred velocity
     bool in_counterflow = false;  // a stream comes towards it
     bool follows = false;         // Body::follows
+    QueueOrder own;               // its place in a queue, if it has one
     int32_t oncoming = 0;         // neighbours that come towards it
     bool in_stream = false;       // that meets another
     steer::Plane not_left;        // to its right, if it must keep to its half; else 0
@@ -201,6 +202,7 @@ class CrowdEngine {
     // What it sensed of the last body.
     void forget() {
       waits = in_counterflow = follows = in_stream = yields = false;
+      own = {};
       oncoming = 0;
       not_left = {};
       makes_room.reset();
@@ -275,7 +277,7 @@ class CrowdEngine {
 
   // crowd_engine_queue.cpp
   [[nodiscard]] QueueOrder order_of(const Body& body) const;
-  [[nodiscard]] float margin_to(const Body& body, const Body& other, float gap) const;
+  [[nodiscard]] float margin_to(const QueueOrder& own, const Body& other, float gap) const;
   float room_in_queue(const Body& body, const Body& other, steer::Plane apart, float room,
                       Worker& worker) const;
   void query_queue(uint32_t i, std::span<const uint32_t> nearest,
@@ -283,7 +285,8 @@ class CrowdEngine {
   [[nodiscard]] steer::Plane aside_of(const Body& body, steer::Plane away, steer::Plane from,
                                       steer::Plane asked, float room) const;
   [[nodiscard]] bool has_turn(const Body& body, std::span<const uint32_t> nearest) const;
-  [[nodiscard]] bool is_head(const Body& body, std::span<const uint32_t> nearest) const;
+  [[nodiscard]] bool is_head(const Body& body, const QueueOrder& own,
+                             std::span<const uint32_t> nearest) const;
   [[nodiscard]] static steer::Plane unless_left(const Worker& worker, steer::Plane velocity);
   [[nodiscard]] steer::Plane unless_back(const Body& body, const Worker& worker,
                                          steer::Plane velocity) const;

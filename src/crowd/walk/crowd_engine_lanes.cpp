@@ -29,6 +29,7 @@ CrowdEngine::Sides CrowdEngine::sides_of(const Body& body) const {
 // Does a neighbour come towards it? The neighbour's local target counts: in a jam, preferred
 // velocities point in all directions.
 bool CrowdEngine::has_oncoming(const Body& body, const Worker& worker) const {
+  if (config_.queues) return worker.oncoming > 0;  // They are counted already.
   for (size_t n = 0; n < worker.situation.near.size; ++n) {
     const Body& other = bodies_[worker.entries[n]];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);

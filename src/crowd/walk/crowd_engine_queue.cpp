@@ -45,16 +45,16 @@ QueueOrder CrowdEngine::order_of(const Body& body) const {
 }
 
 // What a body keeps to another that is ahead in the order, so that the other can move. [m]
-float CrowdEngine::margin_to(const Body& body, const Body& other, float gap) const {
-  if (gap >= config_.queue.ahead_range || !queues(body) || !queues(other)) return 0;
-  return order_of(other) < order_of(body) ? config_.queue.ahead_margin : 0;
+float CrowdEngine::margin_to(const QueueOrder& own, const Body& other, float gap) const {
+  if (gap >= config_.queue.ahead_range || own.slot == UINT32_MAX || !queues(other)) return 0;
+  return order_of(other) < own ? config_.queue.ahead_margin : 0;
 }
 
 // The room that a body keeps to a neighbour. Counts those that come towards it. [m]
 float CrowdEngine::room_in_queue(const Body& body, const Body& other, Plane apart, float room,
                                  Worker& worker) const {
   worker.oncoming += comes_towards(body, other, apart) ? 1 : 0;
-  return room + margin_to(body, other, size_of(apart) - room);
+  return room + margin_to(worker.own, other, size_of(apart) - room);
 }
 
 // Of the requests of those that are ahead of it a body follows the one with the shortest path left:
@@ -65,7 +65,7 @@ void CrowdEngine::query_queue(uint32_t i, std::span<const uint32_t> nearest,
   const Body& body = bodies_[i];
   if (body.has(Body::kExternal)) return;
   const std::vector<RoomRequest>& requests = requests_[(step_ + 1) % 2];
-  const QueueOrder own = queues(body) ? order_of(body) : QueueOrder{};
+  const QueueOrder& own = worker.own;
   QueueOrder first;
   const bool is_at_rest = rests(body);
   uint32_t asker = UINT32_MAX;
@@ -108,7 +108,7 @@ void CrowdEngine::query_queue(uint32_t i, std::span<const uint32_t> nearest,
     const bool steps_aside = worker.yields || !queues(body);
     worker.makes_room = steps_aside ? aside_of(body, away, from, asked, needs) : away;
     worker.asks = RoomRequest{first, *worker.makes_room};
-  } else if (queues(body) && is_head(body, nearest) &&
+  } else if (queues(body) && is_head(body, own, nearest) &&
              !(may_rest(body) && is_goal_taken(i, around))) {
     worker.asks = RoomRequest{own, unit(path_ahead(body))};
   }
@@ -146,7 +146,8 @@ bool CrowdEngine::has_turn(const Body& body, std::span<const uint32_t> nearest) 
 }
 
 // Has it stood, with none before it that is ahead in the order?
-bool CrowdEngine::is_head(const Body& body, std::span<const uint32_t> nearest) const {
+bool CrowdEngine::is_head(const Body& body, const QueueOrder& own,
+                          std::span<const uint32_t> nearest) const {
   // One that follows a body which makes room for it asks on.
   const bool asks_on = body.asks && size_of(body.velocity) < config_.queue.asks_on * body.speed &&
                        requests_[(step_ + 1) % 2][body.slot].order.slot == body.slot;
@@ -154,7 +155,6 @@ bool CrowdEngine::is_head(const Body& body, std::span<const uint32_t> nearest) c
   if (!has_stood && !asks_on) return false;
   if (has_turn(body, nearest)) return true;
   const Plane ahead = path_ahead(body);
-  const QueueOrder own = order_of(body);
   return std::none_of(nearest.begin(), nearest.end(), [&](uint32_t j) {
     const Body& other = bodies_[j];
     if (!queues(other)) return false;
@@ -219,7 +219,8 @@ bool CrowdEngine::find_room(const Body& body, Plane best, const Worker& worker,
   for (size_t d = 0; d < directions && n < kMaxFound; ++d) {
     add(d, [&](Displacement displacement) { return can_move(body, displacement, others); });
   }
-  for (size_t d = 0; d < directions && n < kMaxFound && (d < kNear || n == 0); ++d) {
+  const bool is_blocked = n == 0;
+  for (size_t d = 0; is_blocked && d < directions && n < kMaxFound && (d < kNear || n == 0); ++d) {
     Stand place;
     add(d, [&](Displacement displacement) { return try_displacement(body, displacement, place); });
   }

@@ -126,6 +126,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   situation.preferred = body.preferred;
   situation.fastest = speed_limit(body);
   situation.near.size = 0;
+  if (config_.queues && queues(body)) worker.own = order_of(body);
   const bool pushes = this->pushes(body), turns = turns_corner(body);
   const bool may_wait = pushes && is_on_last_segment(body);
   const bool rests = !body.leaves && !body.has(Body::kExternal) &&
@@ -136,10 +137,11 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     const Body& other = bodies_[lists.entries[n]];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
     // Bodies ahead inform those behind, which would else fill the whole width.
-    worker.in_counterflow = worker.in_counterflow ||
-                            (other.in_counterflow && leads(apart, body.preferred, other.preferred));
-    worker.in_stream = worker.in_stream || (config_.queues && progress_[other.slot].stream > 0 &&
-                                            leads(apart, body.preferred, other.preferred));
+    const bool in_stream = config_.queues && progress_[other.slot].stream > 0;
+    if ((other.in_counterflow || in_stream) && leads(apart, body.preferred, other.preferred)) {
+      worker.in_counterflow = worker.in_counterflow || other.in_counterflow;
+      worker.in_stream = worker.in_stream || in_stream;
+    }
     const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
     if (may_wait && is_on_last_segment(other) && goes_first(contender(other), contender(body))) {
       worker.waits = true;

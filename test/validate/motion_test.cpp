@@ -47,6 +47,16 @@ TEST(Motion, QueuesPassAllLimits) {
   }
 }
 
+// Four streams around a pillar, in brief: all of them takes minutes.
+TEST(Motion, QueuesPassAPillarInBrief) {
+  Context context;
+  const auto result =
+      run_validation("motion.pillar", {.workers = 2, .brief = true, .queues = true}, context);
+  ASSERT_TRUE(result) << result.error().message;
+  expect_no_faults(*result);
+  EXPECT_TRUE(result->passed());
+}
+
 // None is left behind at doors of 0.8 m and more, and the flow is near that of experiments.
 TEST(Motion, QueuesLeaveNoneBehind) {
   Context context;

@@ -22,7 +22,9 @@ namespace throng {
 struct AvatarClass {
   std::string name = "adult";
   double height = 1.75;  ///< [m, 0.1 to 30]
-  double radius = 0.25;  ///< [m, 0.01 to 5]
+  /// The default is a disc with the area of an adult seen from above in street dress, 0.113 m2
+  /// [PM78]; flows at doors and speeds by density are tested with it. [m, 0.01 to 5]
+  double radius = 0.19;
   /// The step height: largest climb or descent between neighbouring places. [m, 0 to height / 2]
   double step_height = 0.4;
   double max_slope = 45;  ///< Steepest surface on which it stands upright. [degrees, 0 to 89]
@@ -53,7 +55,8 @@ inline constexpr int32_t kMaxAvatarClasses = 16;
 /// max(step, radius * tan(max_slope)). [m]
 [[nodiscard]] THRONG_API double body_bottom(const AvatarClass& avatar);
 
-/// The default classes: adult, child (1.10 m), wheelchair (0.02 m step, 6 % slope), giant (3 m).
+/// The default classes: adult; child (1.10 m tall); wheelchair (0.70 m wide as in ISO 7176-5, 0.02
+/// m step, ramps of 1:12, the steepest of ISO 21542 and the ADA); giant (3 m tall), for games.
 [[nodiscard]] THRONG_API std::vector<AvatarClass> default_classes();
 /// An adult that flies, radius 0.4 m. It is none of the default classes.
 [[nodiscard]] THRONG_API AvatarClass flyer_class();

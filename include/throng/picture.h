@@ -20,7 +20,7 @@ namespace throng {
 /// An avatar to draw as a disc.
 struct PictureAvatar {
   Vec3d position;        ///< Feet. [m]
-  double radius = 0.25;  ///< [m]
+  double radius = 0.19;  ///< [m]
 };
 
 /// Settings for draw_world.

@@ -67,7 +67,7 @@ struct THRONG_API RecordedFrame {
 struct RecordedClass {
   std::string name = "adult";
   double height = 1.75;  ///< [m]
-  double radius = 0.25;  ///< [m]
+  double radius = 0.19;  ///< [m]
   friend bool operator==(const RecordedClass&, const RecordedClass&) = default;
 };
 

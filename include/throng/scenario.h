@@ -185,6 +185,8 @@ struct Scenario {
   SteeringModel steering = SteeringModel::kSampled;     ///< CrowdConfig::model.
   bool slow_on_slopes = true;                           ///< As in CrowdConfig.
   bool avoid_jams = true;                               ///< As in CrowdConfig.
+  bool pushing = false;     ///< Avatars do not queue: CrowdTuning::queues is false.
+  double acceleration = 4;  ///< As in CrowdTuning. [m/s2]
 
   std::vector<ScenarioArea> areas;
   std::vector<DensityMap> densities;
@@ -340,8 +342,9 @@ struct ValidationConfig {
   bool brief = false;   ///< Fewer points and shorter runs.
   /// The steering model of the crowds. The default leaves trials the model of their scenarios.
   SteeringModel model = SteeringModel::kSampled;
-  /// CrowdTuning::queues, with accelerations of 4 m/s2 at most; trials ignore it.
-  bool queues = false;
+  /// Avatars push instead of queueing, and nothing limits their acceleration: CrowdTuning::queues
+  /// is false. False leaves trials what their scenarios say.
+  bool pushing = false;
 };
 
 /// The results of a test.

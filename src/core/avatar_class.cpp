@@ -64,22 +64,22 @@ double body_bottom(const AvatarClass& avatar) {
 }
 
 std::vector<AvatarClass> default_classes() {
-  // A wheelchair's limit is given as a rise of 6 in 100: atan(0.06), as a literal because every
+  // A wheelchair's limit is given as a rise of 1 in 12: atan(1 / 12), as a literal because every
   // machine must agree on it.
-  constexpr double kSixPercent = 3.4336303624505224;
+  constexpr double kOneInTwelve = 4.763641690726177;
   return {
       AvatarClass{},
       AvatarClass{.name = "child",
                   .height = 1.10,
-                  .radius = 0.18,
+                  .radius = 0.15,
                   .step_height = 0.3,
                   .max_slope = 45,
                   .speed = 1.1},
       AvatarClass{.name = "wheelchair",
                   .height = 1.35,
-                  .radius = 0.4,
+                  .radius = 0.35,
                   .step_height = 0.02,
-                  .max_slope = kSixPercent,
+                  .max_slope = kOneInTwelve,
                   .speed = 1.0},
       AvatarClass{.name = "giant",
                   .height = 3.0,

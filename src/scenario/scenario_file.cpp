@@ -295,8 +295,9 @@ class File {
 void File::read_top() {
   Reader r(name_, root_, "scenario");
   r.only({"world", "model", "builtin", "plane", "cell", "class", "seconds", "dt", "seed", "paths",
-          "ways", "search_memory", "steering", "slow_on_slopes", "avoid_jams", "area", "density",
-          "profile", "queue", "link", "journey", "source", "obstacle",
+          "ways", "search_memory", "steering", "slow_on_slopes", "avoid_jams", "pushing",
+          "acceleration", "area", "density", "profile", "queue", "link", "journey", "source",
+          "obstacle",
           // The expected results of the run, read by load_trial.
           "trial", "measure"});
   r.text("world", out_.world);
@@ -338,6 +339,8 @@ void File::read_top() {
   }
   r.flag("slow_on_slopes", out_.slow_on_slopes);
   r.flag("avoid_jams", out_.avoid_jams);
+  r.flag("pushing", out_.pushing);
+  r.number("acceleration", out_.acceleration, 0, 1000);
   keep(r);
   if (const ConfigNode* table = r.find("builtin"); table != nullptr) {
     Reader b(name_, *table, "builtin");

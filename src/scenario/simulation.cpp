@@ -56,16 +56,18 @@ Result<Simulation> Simulation::create(const World& world, const Scenario& scenar
   auto nodes = State::nodes_for(world, scenario, workers, context);
   if (!nodes) return nodes.error();
   const Edits edits;
-  auto crowd = Crowd::create(world, {.dt = scenario.dt,
-                                     .seed = scenario.seed,
-                                     .workers = workers,
-                                     .model = scenario.steering,
-                                     .speedup = scenario.paths,
-                                     .search_bytes = scenario.search_bytes,
-                                     .nodes = *std::move(nodes),
-                                     .edits = edits,
-                                     .slow_on_slopes = scenario.slow_on_slopes,
-                                     .avoid_jams = scenario.avoid_jams});
+  auto crowd = Crowd::create(
+      world, {.dt = scenario.dt,
+              .seed = scenario.seed,
+              .workers = workers,
+              .model = scenario.steering,
+              .speedup = scenario.paths,
+              .search_bytes = scenario.search_bytes,
+              .nodes = *std::move(nodes),
+              .tuning = {.queues = !scenario.pushing, .acceleration = scenario.acceleration},
+              .edits = edits,
+              .slow_on_slopes = scenario.slow_on_slopes,
+              .avoid_jams = scenario.avoid_jams});
   if (!crowd) return crowd.error();
   auto state = std::make_unique<State>(world, scenario, edits, std::move(*crowd));
   for (const ScenarioObstacle& obstacle : scenario.obstacles) {

@@ -138,6 +138,29 @@ Choices choose_velocity(const SampledSettings& settings, const Situation& situat
 /// past the target within `dt`; turned as by turned_right.
 Plane preferred_towards(Plane to_target, float speed, float dt, float detour_angle);
 
+/// The velocity that comes nearest to `wanted` if it may differ from `velocity` by `most`; `known`:
+/// as exactly `velocity` is known, because moves are rounded. It is never faster than `speed`,
+/// though that may have been more a step ago.
+inline Plane within_acceleration(Plane velocity, Plane wanted, float most, float known,
+                                 float speed) {
+  const Plane change{wanted.x - velocity.x, wanted.z - velocity.z};
+  const float size = size_of(change);
+  if (size <= most + known) return wanted;
+  const float part = most / size;
+  const Plane near{velocity.x + change.x * part, velocity.z + change.z * part};
+  const float fast = size_of(near);
+  return fast > speed ? Plane{near.x * (speed / fast), near.z * (speed / fast)} : near;
+}
+
+/// The greatest speed at which a body can walk for `dt` and then stop within `left` in all, if its
+/// acceleration is bounded; 0: it is not.
+inline float braking_speed(float left, float acceleration, float dt, float speed) {
+  if (!(acceleration > 0) || left * acceleration > speed * (dt * acceleration + 0.5f * speed)) {
+    return speed;
+  }
+  return acceleration * (std::sqrt(dt * dt + 2 * left / acceleration) - dt);
+}
+
 /// Deadlock avoidance. An avatar without progress turns its preferred velocity to the right, by a
 /// detour angle that grows up to `side_angle` and shrinks with progress: so a jam starts to rotate.
 /// Without progress at `side_angle` it grows slowly up to `max_angle`: away from the goal, out of a

@@ -14,10 +14,9 @@
 namespace throng::validate {
 namespace {
 
-ValidationChart flow_chart(const char* name, const std::vector<double>& widths,
-                           const std::vector<double>& flows) {
+ValidationChart flow_chart(const std::vector<double>& widths, const std::vector<double>& flows) {
   ValidationChart chart;
-  chart.name = name;
+  chart.name = "bottleneck";
   chart.chart.title = "Flow through a door by its width";
   chart.chart.x_title = "width, m";
   chart.chart.y_title = "flow, p/s";
@@ -34,14 +33,13 @@ ValidationChart flow_chart(const char* name, const std::vector<double>& widths,
   return chart;
 }
 
-Result<ValidationResult> flow_by_width(const char* name, const AvatarClass& body,
-                                       const ValidationConfig& config, Context& context) {
+Result<ValidationResult> bottleneck(const ValidationConfig& config, Context& context) {
   ValidationResult result;
   std::vector<double> widths{0.8, 0.9, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0, 2.2, 2.5};
   if (config.brief) widths = {0.8, 1.0, 1.2, 1.8, 2.5};
   std::vector<double> flows;
   for (const double width : widths) {
-    const DoorConfig door{.width = width, .people = config.brief ? 120u : 200u, .body = body};
+    const DoorConfig door{.width = width, .people = config.brief ? 120u : 200u};
     const auto run = pass_door(door, config, result, context);
     if (!run) return run.error();
     flows.push_back(flow_rate(run->times));
@@ -60,32 +58,16 @@ Result<ValidationResult> flow_by_width(const char* name, const AvatarClass& body
       {.name = "k of J = k b", .value = fit.slope, .unit = "p/(m s)", .low = 1.8, .high = 2.3});
   result.measures.push_back(
       {.name = "share of the variance that J = k b explains", .value = fit.explained, .low = 0.95});
-  result.charts.push_back(flow_chart(name, widths, flows));
+  result.charts.push_back(flow_chart(widths, flows));
   return result;
 }
 
-Result<ValidationResult> bottleneck(const ValidationConfig& config, Context& context) {
-  return flow_by_width("bottleneck", walker(), config, context);
-}
-
-Result<ValidationResult> default_body(const ValidationConfig& config, Context& context) {
-  return flow_by_width("motion_widths", AvatarClass{}, config, context);
-}
-
-const std::array<Test, 2> kBottleneckTests{
+const std::array<Test, 1> kBottleneckTests{
     Test{{"bottleneck", "Flow through doors 0.8 to 2.5 m wide",
           "200 people wait at 3.3 /m2 before a door through a wall 1 m thick. Times at the line in "
           "its middle, without the first and the last tenth: people by time and width [SS10].",
           "1.8 to 2.3 p/(m s), linear in the width: [Seyfried09], [Kretz06]"},
-         bottleneck},
-    Test{{.name = "motion.widths",
-          .title = "Flow of the default adult through doors 0.8 to 2.5 m wide",
-          .method = "As bottleneck, with the body and the speed that avatars have by default. "
-                    "Linear: a line through the origin, by least squares, explains 0.95 of the "
-                    "variance of the flow.",
-          .source = "1.8 to 2.3 p/(m s), linear in the width: [Seyfried09], [Kretz06]",
-          .in_work = true},
-         default_body}};
+         bottleneck}};
 
 }  // namespace
 

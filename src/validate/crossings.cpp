@@ -135,22 +135,19 @@ const std::array<Test, 3> kCrossingTests{
           .method = "Two streets 6 m wide cross, and a pillar of 3 x 3 m stands in the middle. A "
                     "group of default adults, one a square metre, walks from each end to the "
                     "other end of its street, three runs. Each leaves where it has arrived.",
-          .source = "ours, by the pattern of [SKFR09]: all arrive within 400 s",
-          .in_work = true},
+          .source = "ours, by the pattern of [SKFR09]: all arrive within 400 s"},
          pillar},
     Test{{.name = "motion.square",
           .title = "Four streams of 100 people cross a square",
           .method = "As motion.pillar, with streets that lead to the middles of the sides of an "
                     "open square of 20 x 20 m.",
-          .source = "ours, by the pattern of [SKFR09]: all arrive within 400 s",
-          .in_work = true},
+          .source = "ours, by the pattern of [SKFR09]: all arrive within 400 s"},
          square},
     Test{{.name = "motion.roundabout",
           .title = "Four streams of 100 people meet at a roundabout",
           .method = "As motion.square, with a round island 10 m wide on a square of 16 x 16 m; "
                     "each person goes to the end of one of the other three streets, at random.",
-          .source = "ours, by the pattern of [SKFR09]: all arrive within 400 s",
-          .in_work = true},
+          .source = "ours, by the pattern of [SKFR09]: all arrive within 400 s"},
          roundabout}};
 
 }  // namespace

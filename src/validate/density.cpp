@@ -172,7 +172,7 @@ Result<ValidationResult> fundamental(const ValidationConfig& config, Context& co
   ValidationResult result;
   std::vector<double> densities{0.25, 0.5, 0.75, 1, 1.5, 2, 2.5, 3, 3.5};
   if (config.brief) densities = {0.5, 1, 1.5, 2, 2.6, 3.2, 3.7};
-  const auto points = diagram_of(walk_of(walker(), config), densities, config, result, context);
+  const auto points = diagram_of(walk_of({}, config), densities, config, result, context);
   if (!points) return points.error();
   double error = 0, largest = 0;
   for (const DiagramPoint& p : *points) {
@@ -201,7 +201,7 @@ Result<ValidationResult> fundamental_dense(const ValidationConfig& config, Conte
   ValidationResult result;
   std::vector<double> densities{0.5, 1, 2, 3, 4, 5, 6};
   if (config.brief) densities = {1, 3, 6};
-  const auto points = diagram_of(walk_of(walker(), config), densities, config, result, context);
+  const auto points = diagram_of(walk_of({}, config), densities, config, result, context);
   if (!points) return points.error();
   double rises = 0;
   for (size_t i = 0; i < points->size(); ++i) {

@@ -35,7 +35,7 @@ PlaneConfig door_plane(double width) {
 
 // Start points in a half circle around the door, nearest first.
 std::vector<Point2> waiting(const DoorConfig& door, uint64_t seed) {
-  const double apart = 1 / std::sqrt(kStart), spare = apart - 2 * door.body.radius - 0.004;
+  const double apart = 1 / std::sqrt(kStart), spare = apart - 2 * AvatarClass{}.radius - 0.004;
   std::vector<Point2> starts;
   for (double x = kRoomLong - 0.8; x > 0.5; x -= apart) {
     for (double z = 0.5; z < kRoomWide - 0.5; z += apart) {
@@ -81,8 +81,7 @@ class DoorWatch {
 
 Result<DoorRun> pass_door(const DoorConfig& door, const ValidationConfig& config,
                           ValidationResult& result, Context& context) {
-  auto crowd =
-      PlaneCrowd::create(door_plane(door.width), door.body, Routing::kPaths, config, context);
+  auto crowd = PlaneCrowd::create(door_plane(door.width), {}, Routing::kPaths, config, context);
   if (!crowd) return crowd.error();
   const auto ids = crowd->add_fitting(waiting(door, config.seed), door.speed, context);
   if (!ids) return ids.error();

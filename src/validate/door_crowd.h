@@ -15,10 +15,9 @@ namespace throng::validate {
 
 /// The door, and the people that wait before it at 3.3 /m2, in a room of 12 x 12 m.
 struct DoorConfig {
-  double width = 1;             ///< [m, > 0, < 12]
-  uint32_t people = 200;        ///< [> 0]
-  double speed = 0;             ///< Desired speed of all; 0: that of the class. [m/s, >= 0]
-  AvatarClass body = walker();  ///< [radius: at most 0.27 m]
+  double width = 1;       ///< [m, > 0, < 12]
+  uint32_t people = 200;  ///< [> 0]
+  double speed = 0;       ///< Desired speed of all; 0: that of the class. [m/s, >= 0]
 };
 
 /// How the people passed.

@@ -136,7 +136,7 @@ Result<std::vector<WalkedPath>> walk(const Experiment& e, const std::vector<Walk
   PlaneConfig plane;
   plane.ground = box(e.low.x, e.low.z, e.high.x, e.high.z);
   plane.obstacles = e.walls;
-  const AvatarClass body = walker();
+  const AvatarClass body;
   auto crowd = PlaneCrowd::create(plane, body, Routing::kPaths, config, context);
   if (!crowd) return crowd.error();
   std::vector<size_t> outside(recorded.size());

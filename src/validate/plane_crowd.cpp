@@ -9,20 +9,13 @@
 // The world is baked from polygons; velocities are differences of positions over a step.
 namespace throng::validate {
 
-AvatarClass walker() {
-  AvatarClass body;
-  body.name = "walker";
-  body.radius = 0.19;
-  return body;
-}
-
 Polygon box(double x0, double z0, double x1, double z1) {
   return {.outer = {{x0, z0}, {x1, z0}, {x1, z1}, {x0, z1}}, .holes = {}};
 }
 
 CrowdTuning tuning_of(const ValidationConfig& config) {
-  constexpr double kAcceleration = 4;  // of those that queue: 320 N by 80 kg [m/s2]
-  return {.queues = config.queues, .acceleration = config.queues ? kAcceleration : 0};
+  if (!config.pushing) return {};
+  return {.queues = false, .acceleration = 0};
 }
 
 Result<World> bake_plane(const PlaneConfig& plane, const AvatarClass& body,

@@ -35,10 +35,6 @@ inline constexpr double kCell = 0.05;
 /// The tuning of the crowds of tests.
 CrowdTuning tuning_of(const ValidationConfig& config);
 
-/// The class of the tests: a disc with the area of a body seen from above (0.46 m x 0.25 m), so
-/// that 6 of them fit on a square metre.
-AvatarClass walker();
-
 Polygon box(double x0, double z0, double x1, double z1);
 
 /// Bakes a world for one class from polygons.

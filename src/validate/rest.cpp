@@ -126,8 +126,7 @@ const std::array<Test, 1> kRestTests{Test{
                "16 m2, nine to places in rows 0.6 m apart. From 30 to 60 s: length of the paths "
                "by the time, mean and maximum of a person; at the end the mean distance from the "
                "places.",
-     .source = "ours: a mean speed of 0.01 m/s, a mean distance of 1 m",
-     .in_work = true},
+     .source = "ours: a mean speed of 0.01 m/s, a mean distance of 1 m"},
     rest}};
 
 }  // namespace

@@ -65,7 +65,7 @@ Result<Lanes> walk_lanes(double density, const ValidationConfig& config, Validat
   plane.ground = box(-1, -0.5, kCorridorLength + 1, kCorridorWidth + 0.5);
   plane.obstacles = {box(-1, -0.5, kCorridorLength + 1, 0),
                      box(-1, kCorridorWidth, kCorridorLength + 1, kCorridorWidth + 0.5)};
-  const AvatarClass body = walker();
+  const AvatarClass body;
   auto crowd = PlaneCrowd::create(plane, body, Routing::kStraight, config, context);
   if (!crowd) return crowd.error();
   // Each avatar starts at a point of a grid, in a random direction.
@@ -198,7 +198,7 @@ Result<ValidationResult> crossing(const ValidationConfig& config, Context& conte
   plane.obstacles = {box(-1, -1, kArm, kArm), box(kArm + kCross, -1, all + 1, kArm),
                      box(-1, kArm + kCross, kArm, all + 1),
                      box(kArm + kCross, kArm + kCross, all + 1, all + 1)};
-  const AvatarClass body = walker();
+  const AvatarClass body;
   auto crowd = PlaneCrowd::create(plane, body, Routing::kPaths, config, context);
   if (!crowd) return crowd.error();
   const double rate = kEach * body.speed * kCross;  // [p/s] of each stream
@@ -276,7 +276,7 @@ Result<ValidationResult> arch(const ValidationConfig& config, Context& context) 
   const double middle = kHall / 2;
   plane.obstacles = {box(kHall, -0.5, kHall + 0.5, middle - kDoor / 2),
                      box(kHall, middle + kDoor / 2, kHall + 0.5, kHall + 0.5)};
-  const AvatarClass body = walker();
+  const AvatarClass body;
   auto crowd = PlaneCrowd::create(plane, body, Routing::kPaths, config, context);
   if (!crowd) return crowd.error();
   std::vector<Point2> starts;

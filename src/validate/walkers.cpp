@@ -266,7 +266,7 @@ Result<void> walk_scene(const std::string& scene, const std::string& path,
   }
   PlaneConfig plane;
   plane.ground = box(low.x - kMargin, low.z - kMargin, high.x + kMargin, high.z + kMargin);
-  auto crowd = PlaneCrowd::create(plane, walker(), Routing::kStraight, config, context);
+  auto crowd = PlaneCrowd::create(plane, {}, Routing::kStraight, config, context);
   if (!crowd) return crowd.error();
   std::array<Score, kModels> scores;
   size_t count = 0, not_placed = 0;
@@ -309,7 +309,7 @@ Result<void> walk_scene(const std::string& scene, const std::string& path,
   for (size_t m = 0; m < kModels; ++m) {
     std::ranges::sort(scores[m].nearest);
     const auto below = std::ranges::count_if(
-        scores[m].nearest, [](double d) { return d < 2 * walker().radius - 1e-6; });
+        scores[m].nearest, [](double d) { return d < 2 * AvatarClass{}.radius - 1e-6; });
     add_measure(std::string("min distance, 5 % of people, ") + kNames[m],
                 quantile(scores[m].nearest, 0.05), "m");
     add_measure(std::string("min distance, half of people, ") + kNames[m],

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""Runs of the program state whether avatars take other routes around jams, and recordings repeat it.
+"""Runs of the program state whether avatars avoid jams and queue, and recordings repeat it.
 
 python3 program_jams_test.py build/release/throng"""
 import json
@@ -23,6 +23,42 @@ class ProgramJams(ProgramCase):
             check = self.run_throng("replay", "walk.replay", "--check")
             self.assertEqual(check.returncode, 0, check.stderr)
             self.assertIn("all the same", check.stdout)
+    def test_a_run_states_whether_avatars_push_and_its_recording_is_repeated_exactly(self):
+        with open("door.toml", "w") as file:
+            file.write(
+                """
+builtin = { name = "cube" }
+seconds = 20
+[[area]]
+name = "all"
+box = [1, 1, 9, 9]
+[[journey]]
+name = "wait"
+stages = [{ wait = "all" }]
+[[source]]
+name = "source"
+area = "all"
+journey = "wait"
+count = 10
+"""
+            )
+        world = ("run", self.world, "--avatars", 200, "--steps", 100)
+        for run in (world, ("run", "door.toml")):
+            positions = []
+            for option in ((), ("--pushing",)):
+                done = self.run_throng(*run, *option, "--json", "--record", "walk.replay", "--trajectories", "walk.csv")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                said = json.loads(done.stdout)
+                self.assertEqual((said["pushing"], said["acceleration"]), (bool(option), 0 if option else 4))
+                with open("walk.csv") as file:
+                    positions.append(file.read())
+                check = self.run_throng("replay", "walk.replay", "--check")
+                self.assertEqual(check.returncode, 0, check.stderr)
+                self.assertIn("all the same", check.stdout)
+            self.assertNotEqual(positions[0], positions[1], run)
+        self.assert_refused(self.run_throng("run", self.world, "--wander", "--pushing"), "--pushing", "--wander")
+
+    def test_wanderers_know_no_jams(self):
         self.assert_refused(self.run_throng("run", self.world, "--wander", "--ignore-jams"), "--ignore-jams", "--wander")
 
 

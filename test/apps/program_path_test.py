@@ -77,19 +77,19 @@ class ProgramPath(ProgramCase):
         self.assertEqual((code, around["end"]), (0, "reached"))
         self.assertGreater(around["length"], straight["length"] + 0.5)
         self.assertGreater(max(z for _, _, z in around["points"]), 9.2)
-        code, shut = path("20,0,8", "--block", "16,0,0,17,2,40")
+        code, shut = path("20,0,8", "--block", "16,0,0,17,12,40")
         self.assertEqual((code, shut["end"]), (1, "unreachable"))
         self.assertEqual(shut["nearest"]["blocked_by"], "an obstacle")
         self.assertLess(shut["points"][-1][0], 16)
-        code, link = path("20,0,8", "--block", "16,0,0,17,2,40", "--off-mesh-link", "15,0,8,18,0,8")
+        code, link = path("20,0,8", "--block", "16,0,0,17,12,40", "--off-mesh-link", "15,0,8,18,0,8")
         self.assertEqual((code, [one["kind"] for one in link["links"]]), (0, ["off-mesh link"]))
         self.assertEqual(link["segments"][link["links"][0]["point"] - 1], "off-mesh link")
-        code, dear = path("20,0,8", "--area", "16,-1,0,17,2,40,5", "--area-cost", "5=3")
+        code, dear = path("20,0,8", "--area", "16,-1,0,17,12,40,5", "--area-cost", "5=3")
         self.assertEqual(code, 0)
         self.assertAlmostEqual(dear["cost"], straight["cost"] + 2, delta=0.5)
-        code, closed = path("20,0,8", "--area", "16,-1,0,17,2,40,5", "--area-cost", "5=inf")
+        code, closed = path("20,0,8", "--area", "16,-1,0,17,12,40,5", "--area-cost", "5=inf")
         self.assertEqual((code, closed["nearest"]["blocked_by"]), (1, "an area of infinite cost"))
-        text = self.run_throng("path", self.world, "--from", "14,0,8", "--to", "20,0,8", "--block", "16,0,0,17,2,40").stdout
+        text = self.run_throng("path", self.world, "--from", "14,0,8", "--to", "20,0,8", "--block", "16,0,0,17,12,40").stdout
         self.assertIn("blocked by: an obstacle (--block)", text)
         code, up = path("30,2.9,30", "--class", "wheelchair")
         self.assertEqual((code, up["end"], up["nearest"]["blocked_by"]), (1, "unreachable", "a gap"))
@@ -113,7 +113,7 @@ class ProgramPath(ProgramCase):
         code, around = path("--block", "17,2,9,16,0,0")
         self.assertEqual(code, 0)
         self.assertGreater(around, straight + 0.3)
-        self.assertEqual(path("--block", "16,0,0,17,2,40")[0], 1)
+        self.assertEqual(path("--block", "16,0,0,17,12,40")[0], 1)
         self.assert_refused(self.run_throng(*ends, "--block", "13,0,7,15,2,9", "--tolerance", "0.1"), "--from")
         verify = ("verify", "n.throng", "--source", "builtin:garage", "--samples", "40")
         box = ("--block", "16,0,0,17,2,9")
@@ -127,7 +127,7 @@ class ProgramPath(ProgramCase):
             '[[class]]\nname = "adult"\n[[class]]\nname = "climber"\nclimb_slope = 90\n')
         done = self.run_throng("bake", "builtin:garage,levels=2", "--cell", "0.2", "--nodes", "--classes", "classes.toml", "-o", "n.throng")
         self.assertEqual(done.returncode, 0, done.stderr)
-        all_across = "16,-1,0,17,2,40"
+        all_across = "16,-1,0,17,12,40"
         for name, how in (("adult", ("--nodes",)), ("climber", ())):  # A climber always moves over nodes.
             ends = ("path", "n.throng", "--class", name, *how, "--from", "14,0,8", "--to", "20,0,8")
 

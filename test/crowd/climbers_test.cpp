@@ -31,9 +31,11 @@ constexpr int32_t kClimber = 0, kGecko = 1, kAdult = 2, kFlyer = 3;
 std::vector<AvatarClass> classes() {
   std::vector<AvatarClass> all(2);
   all[0].name = "climber";
+  all[0].radius = 0.25;
   all[0].climb_slope = 180;
   all[1] = {.name = "gecko", .height = 0.5, .radius = 0.15, .step_height = 0.2, .climb_slope = 120};
   all.push_back(default_classes()[0]);
+  all.back().radius = 0.25;
   all.push_back(flyer_class());
   return all;
 }

@@ -300,11 +300,11 @@ TEST(ClosingObstacles, OverlappingOnesAreLeftAndNeverEnteredFromEachOther) {
     const auto up = [&](size_t i) { return crowd.obstacle(obstacles[i])->is_up(); };
     for (int step = 0; step < 300 && !(up(0) && up(1) && up(2)); ++step) {
       std::set<uint32_t> before[2];
-      for (size_t k = 0; k < 2; ++k) before[k] = inside(crowd, prisms[k], 0.25);
+      for (size_t k = 0; k < 2; ++k) before[k] = inside(crowd, prisms[k], AvatarClass{}.radius);
       crowd.step();
       ASSERT_TRUE(is_free(crowd));
       for (size_t k = 0; k < 2; ++k) {
-        for (const uint32_t id : inside(crowd, prisms[k], 0.25 - 2e-4)) {
+        for (const uint32_t id : inside(crowd, prisms[k], AvatarClass{}.radius - 2e-4)) {
           ASSERT_TRUE(before[k].count(id));
         }
       }

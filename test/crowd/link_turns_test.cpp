@@ -128,7 +128,7 @@ TEST(CrowdLinkTurns, AnObstacleBesideTheEndWaitsForTheOneOnTheLink) {
     Crowd crowd = made(world, {.edits = edits});
     const AvatarId first = walker(crowd, at(world, 7, 5), at(world, 19, 5));
     step_until_riding(crowd, first);
-    const EditId crate = put_up(crowd, edits, Prism::box({13.28, 0, 4.5}, {13.8, 1, 5.5}),
+    const EditId crate = put_up(crowd, edits, Prism::box({13.22, 0, 4.5}, {13.8, 1, 5.5}),
                                 ObstacleKind::kStatic, policy);
     EXPECT_FALSE(crowd.obstacle(crate)->is_up());
     EXPECT_GT(steps_until(crowd, oracle, 1, 400), 0);

@@ -238,7 +238,8 @@ TEST(CrowdLinks, OneThatGetsAnotherGoalOnALinkArrivesFirst) {
       crowd.step();
       oracle.look(crowd, step);
     }
-    EXPECT_NEAR(crowd.read(id)->position.x, external ? 9 : 13, 0.01);
+    // One without a goal comes to a stop.
+    EXPECT_NEAR(crowd.read(id)->position.x, external ? 9 : 13, external ? 0.01 : 0.1);
     EXPECT_EQ(crowd.read(id)->mode, MoveMode::kWalk);
   }
 }

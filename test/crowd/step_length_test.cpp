@@ -33,8 +33,10 @@ World open_ground(double cell) {
 }
 
 // An avatar that heads to a place far along a line that is not along an axis.
-std::pair<Crowd, AvatarId> walker(const World& world, double dt, double speed) {
-  auto crowd = Crowd::create(world, {.dt = dt, .workers = 1});
+std::pair<Crowd, AvatarId> walker(const World& world, double dt, double speed,
+                                  double acceleration = 0) {
+  auto crowd =
+      Crowd::create(world, {.dt = dt, .workers = 1, .tuning = {.acceleration = acceleration}});
   EXPECT_TRUE(crowd) << crowd.error().message;
   Context context;
   const auto ids = crowd->add(
@@ -121,6 +123,31 @@ TEST(StepLength, AvatarsMoveAsFarAsTheirSpeedRequires) {
   }
 }
 
+// Also those whose velocity changes by far less in a step than a move is rounded by.
+TEST(StepLength, AvatarsThatAccelerateReachTheirSpeedAndKeepIt) {
+  for (const double cell : {0.1, 1.0}) {
+    const World world = open_ground(cell);
+    for (const double dt : kStepLengths) {
+      for (const double speed : {0.05, 0.5, 1.34, 5.0}) {
+        SCOPED_TRACE(testing::Message() << "cell " << cell << " dt " << dt << " speed " << speed);
+        auto [crowd, id] = walker(world, dt, speed, 4);
+        const auto walk = [&, &crowd = crowd, id = id](double seconds) {
+          const Vec3d from = crowd.read(id)->position;
+          const auto steps = static_cast<int>(std::ceil(seconds / dt - 1e-9));
+          for (int i = 0; i < steps; ++i) crowd.step();
+          const Vec3d to = crowd.read(id)->position;
+          return std::hypot(to.x - from.x, to.z - from.z) / (steps * dt);
+        };
+        const double first = walk(std::max(dt, 0.5 * speed / 4));
+        // Half of it, and what is rounded.
+        EXPECT_LT(first, dt < 0.1 * speed ? 0.5 * speed + 3 * cell / 2048 / dt : 1.1 * speed);
+        walk(speed / 4 + 0.5);
+        EXPECT_NEAR(walk(4), speed, std::max(0.01 * speed, cell / 2048));
+      }
+    }
+  }
+}
+
 // A wall behind the goal slows down fast avatars no more than others: they stop as quickly.
 TEST(StepLength, FastAvatarsReachGoalsBesideWalls) {
   const World world = test::bake(worlds::flat(20), 0.1);
@@ -132,8 +159,11 @@ TEST(StepLength, FastAvatarsReachGoalsBesideWalls) {
       const Place goal = world.find_place(0, {19.6, 0, 10}, 1);
       ASSERT_TRUE(goal);
       crowd.set_goals({&id, 1}, {&goal, 1});
-      // The last steps, before the wall, are slower.
-      const auto steps = static_cast<int>(std::ceil((17 / speed + 1) / dt));
+      // It begins and ends slowly; the last steps, before the wall, are slower, too.
+      const double acceleration = CrowdTuning{}.acceleration;
+      const double fastest = std::min(speed, std::sqrt(17 * acceleration));
+      const double whole = 17 / fastest + fastest / acceleration;
+      const auto steps = static_cast<int>(std::ceil((whole + 1) / dt));
       bool arrives = false;
       for (int i = 0; i < steps && !arrives; ++i) {
         crowd.step();

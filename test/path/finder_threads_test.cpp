@@ -128,7 +128,9 @@ TEST(Finders, APathHasTheSameShapeWhicheverFinderGivesIt) {
     EXPECT_EQ(path.corridor.empty(), !on_nodes);
     EXPECT_LT(length(path.points.front().position - from), off);
     EXPECT_LT(length(path.points.back().position - to), off);
-    EXPECT_NEAR(path.cost, path.length, 1e-3 * path.length + 1e-9) << "nothing costs more here";
+    // Over nodes each bump of the ground adds to the length.
+    EXPECT_NEAR(path.cost, path.length, (on_nodes ? 1e-2 : 1e-3) * path.length + 1e-9)
+        << "nothing costs more here";
     EXPECT_EQ(path.blocked_by, Blocker::kNone);
     EXPECT_EQ(path.spent, SpentBudget::kNone);
     for (size_t i = 0; i < path.points.size(); ++i) {

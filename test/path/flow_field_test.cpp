@@ -65,7 +65,7 @@ TEST(FlowField, IsAsFarAsTheNearestGoalByTheExactSearch) {
       }
       ASSERT_EQ(path.end, PathEnd::kReached);
       EXPECT_GE(distance, nearest - 0.01);
-      EXPECT_LE(distance, nearest * 1.1 + 3 * world.summary().cell);
+      EXPECT_LE(distance, nearest * 1.1 + 4 * world.summary().cell);
       EXPECT_LE(path.length, distance + 1e-6);
       sum += distance / std::max(nearest, world.summary().cell);
       drawn += path.length / std::max(nearest, world.summary().cell);

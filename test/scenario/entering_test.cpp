@@ -113,7 +113,7 @@ count = 1
 )",
                                                         speed),
                                             dt);
-      for (int step = 0; step < (12 / speed + 1) / dt; ++step) {
+      for (int step = 0; step < (12 / speed + 5) / dt; ++step) {
         ASSERT_TRUE(simulation.step());
         const CrowdCheck found = simulation.crowd().check();
         ASSERT_EQ(found.overlaps + found.wall_entries, 0U) << step;

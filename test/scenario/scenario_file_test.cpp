@@ -178,6 +178,14 @@ TEST(ScenarioFile, StatesWhetherSlopesSlow) {
 TEST(ScenarioFile, StatesWhetherAvatarsAvoidJams) {
   const std::string labels = "paths = \"labels\"";
   EXPECT_TRUE(parse_scenario(kFull, "full.toml")->avoid_jams);
+  EXPECT_FALSE(parse_scenario(kFull, "full.toml")->pushing);
+  EXPECT_EQ(parse_scenario(kFull, "full.toml")->acceleration, CrowdTuning{}.acceleration);
+  const auto push =
+      parse_scenario(changed(labels, labels + "\npushing = true\nacceleration = 2.5"), "full.toml");
+  ASSERT_TRUE(push) << push.error().message;
+  EXPECT_TRUE(push->pushing);
+  EXPECT_EQ(push->acceleration, 2.5);
+  EXPECT_FALSE(parse_scenario(changed(labels, labels + "\nacceleration = -1"), "full.toml"));
   const auto off = parse_scenario(changed(labels, labels + "\navoid_jams = false"), "full.toml");
   ASSERT_TRUE(off) << off.error().message;
   EXPECT_FALSE(off->avoid_jams);

@@ -84,7 +84,9 @@ Spot PlainCrowd::between(Spot a, Spot b) const {
 Plane PlainCrowd::preferred_of(const PlainBody& body) const {
   if (is_paused(body)) return {};
   const Plane to_goal = config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z);
-  return steer::preferred_towards(to_goal, body.speed, config_.units.dt, body.turn);
+  const float dt = config_.units.dt;
+  const float speed = steer::braking_speed(size_of(to_goal), config_.acceleration, dt, body.speed);
+  return steer::preferred_towards(to_goal, speed, dt, body.turn);
 }
 
 int32_t PlainCrowd::sight() const {
@@ -245,7 +247,9 @@ void PlainCrowd::resolve_conflicts() {
     const PlainBody& b = bodies_[i];
     keeping[i] =
         b.keeps && !crowd::decides(every, steps_, i) &&
-        !crowd::is_before({b.goal.x - b.at.x, b.goal.z - b.at.z}, config_.units.stride(b.speed));
+        !crowd::is_before({b.goal.x - b.at.x, b.goal.z - b.at.z}, config_.units.stride(b.speed)) &&
+        !crowd::must_brake(config_.units.metres(b.goal.x - b.at.x, b.goal.z - b.at.z), b.speed,
+                           config_.acceleration, every, config_.units.dt);
   }
   std::vector<uint8_t> asks(count, 0), decides(count, 0);
   yields_.assign(count, 0);

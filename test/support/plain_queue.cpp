@@ -137,7 +137,7 @@ Rest PlainCrowd::next_rest(uint32_t i) const {
   }
   if (body.rest == Rest::kRests && !stands(body) && body.stood == 0) return Rest::kMadeRoom;
   if (body.rest == Rest::kNo) {
-    if (left < 0.02f || (left < 0.3f && is_goal_taken(i))) return Rest::kRests;
+    if (left < 0.005f || (left < 0.3f && is_goal_taken(i))) return Rest::kRests;
     if (!stands(body) || body.stood < 0.5f) return Rest::kNo;
   }
   return left < 0.3f || is_goal_taken(i) ? Rest::kRests : Rest::kNo;
@@ -253,11 +253,9 @@ void PlainCrowd::make_room(uint32_t i, Plan& plan, const Plane& best) const {
 
 Plane PlainCrowd::reachable(const PlainBody& body, Plane velocity) const {
   if (config_.acceleration <= 0) return velocity;
-  const Plane change{velocity.x - body.velocity.x, velocity.z - body.velocity.z};
-  const float size = size_of(change), most = config_.acceleration * config_.units.dt;
-  if (size <= most) return velocity;
-  const float part = most / size;
-  return {body.velocity.x + change.x * part, body.velocity.z + change.z * part};
+  return steer::within_acceleration(body.velocity, velocity,
+                                    config_.acceleration * config_.units.dt,
+                                    config_.units.rounding(), body.speed);
 }
 
 }  // namespace throng::test

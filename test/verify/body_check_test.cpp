@@ -32,8 +32,8 @@ TEST(BodyCheck, BodyBeginsAtItsBottomAndEndsAtItsHead) {
   EXPECT_EQ(plates.body.intruder({0, -0.401, 0}), 0u);
   EXPECT_TRUE(plates.body.intruder({0, -1.749, 0}));
   EXPECT_FALSE(plates.body.intruder({0, -1.75, 0}));
-  EXPECT_TRUE(plates.body.intruder({1.249, -1, 0}));
-  EXPECT_FALSE(plates.body.intruder({1.25, -1, 0}));
+  EXPECT_TRUE(plates.body.intruder({1.189, -1, 0}));
+  EXPECT_FALSE(plates.body.intruder({1.19, -1, 0}));
 }
 
 TEST(BodyCheck, BottomOfAWideBodyFollowsItsSlope) {

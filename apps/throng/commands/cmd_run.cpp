@@ -34,6 +34,7 @@ struct RunOptions {
   bool wander = false;            // without goals
   bool full_speed = false;        // on stairs and slopes, too
   bool ignore_jams = false;       // no other routes around them
+  bool pushing = false;           // no queues, no limit of accelerations
   std::vector<std::string> also;  // CLASS:N
 };
 
@@ -116,6 +117,10 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
   run.config.workers = options.config.workers;
   run.config.slow_on_slopes = !options.full_speed;
   run.config.avoid_jams = !options.ignore_jams;
+  if (options.pushing) {
+    run.config.tuning.queues = false;
+    run.config.tuning.acceleration = 0;
+  }
   if (auto ok = read_goals(run); !ok) return fail(ok.error());
   for (const std::string& group : options.also) {
     const size_t colon = group.rfind(':');
@@ -198,6 +203,7 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
                   .model = {},
                   .full_speed = options.full_speed,
                   .ignore_jams = options.ignore_jams,
+                  .pushing = options.pushing,
                   .check_every = options.check_every,
                   .workers = options.config.workers,
                   .trips = options.trips,
@@ -211,8 +217,9 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
 
 // Fails if an option of avatars with goals stands beside --wander.
 Result<void> check_wander(const CLI::App& command) {
-  for (const char* name : {"--goals", "--near", "--also", "--radius", "--labels", "--zones",
-                           "--search-memory", "--model", "--full-speed", "--ignore-jams"}) {
+  for (const char* name :
+       {"--goals", "--near", "--also", "--radius", "--labels", "--zones", "--search-memory",
+        "--model", "--full-speed", "--ignore-jams", "--pushing"}) {
     if (command.count(name) == 0) continue;
     return Error{Errc::kBadConfig,
                  fmt::format("{} is for avatars with goals; leave out --wander", name)};
@@ -281,6 +288,8 @@ void add_run(CLI::App& parser, Session& session) {
                     "Stairs and slopes slow no avatar; without it they do");
   command->add_flag("--ignore-jams", options->ignore_jams,
                     "No avatar takes another route around a jam; without it avatars do");
+  command->add_flag("--pushing", options->pushing,
+                    "Avatars push instead of queueing, and nothing limits their acceleration");
   add_output(*command, session, "--trajectories", options->sinks.trajectories,
              "Write positions to this file")
       ->type_name("FILE.csv");

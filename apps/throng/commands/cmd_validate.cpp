@@ -242,9 +242,8 @@ void add_validate(CLI::App& parser, Session& session) {
   command->add_flag("--list", options->list, "List the tests, and run none");
   command->add_flag("--brief", options->config.brief,
                     "Fewer points and shorter runs; not of scenario files");
-  command->add_flag("--queues", options->config.queues,
-                    "Let avatars queue and rest, with accelerations of at most 4 m/s2 "
-                    "(CrowdTuning::queues, acceleration); not of scenario files");
+  command->add_flag("--pushing", options->config.pushing,
+                    "Avatars push instead of queueing, and nothing limits their acceleration");
   command->add_option("-o,--output", options->folder, "Folder for charts, PNG");
   command->add_option("--seed", options->config.seed)->capture_default_str();
   add_threads(*command, options->config.workers);

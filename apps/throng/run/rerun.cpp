@@ -63,9 +63,12 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
     ok = need(settings, {"search_bytes"}, [](const Json& j) { return j.is_number_unsigned(); });
   }
   if (ok) ok = need(settings, {"labels", "zones"}, [](const Json& j) { return j.is_boolean(); });
-  for (const char* key : {"slow_on_slopes", "avoid_jams"}) {
+  for (const char* key : {"slow_on_slopes", "avoid_jams", "pushing"}) {
     if (!ok || !settings.contains(key)) continue;
     ok = need(settings, {key}, [](const Json& j) { return j.is_boolean(); });
+  }
+  if (ok && settings.contains("acceleration")) {
+    ok = need(settings, {"acceleration"}, [](const Json& j) { return j.is_number(); });
   }
   if (ok && settings.contains("model")) {
     ok = need(settings, {"model"}, [](const Json& j) { return j.is_string(); });
@@ -98,6 +101,9 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
   run.config.slow_on_slopes = settings.value("slow_on_slopes", false);
   // The same: they took no other routes.
   run.config.avoid_jams = settings.value("avoid_jams", false);
+  // The same: they pushed, and accelerated without a limit.
+  run.config.tuning.queues = !settings.value("pushing", true);
+  run.config.tuning.acceleration = settings.value("acceleration", 0.0);
   run.config.workers = workers;
   const auto model = find_steering_model(settings.value("model", name_of(run.config.model)));
   if (!model) {
@@ -179,7 +185,9 @@ Json crowd_settings(const CrowdRun& run) {
           {"seed", run.config.seed},
           {"model", name_of(run.config.model)},
           {"slow_on_slopes", run.config.slow_on_slopes},
-          {"avoid_jams", run.config.avoid_jams}};
+          {"avoid_jams", run.config.avoid_jams},
+          {"pushing", !run.config.tuning.queues},
+          {"acceleration", run.config.tuning.acceleration}};
 }
 
 Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t workers) {

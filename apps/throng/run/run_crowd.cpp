@@ -80,6 +80,8 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
                {"model", name_of(run.config.model)},
                {"slow_on_slopes", run.config.slow_on_slopes},
                {"avoid_jams", run.config.avoid_jams},
+               {"pushing", !run.config.tuning.queues},
+               {"acceleration", run.config.tuning.acceleration},
                {"avatars", crowd.size()},
                {"steps", times.steps()},
                {"dt", run.config.dt},

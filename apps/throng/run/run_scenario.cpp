@@ -147,6 +147,8 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
                {"model", name_of(scenario.steering)},
                {"slow_on_slopes", scenario.slow_on_slopes},
                {"avoid_jams", scenario.avoid_jams},
+               {"pushing", scenario.pushing},
+               {"acceleration", scenario.acceleration},
                {"seed", scenario.seed},
                {"threads", run.workers},
                {"entered", t.last.entered},
@@ -246,6 +248,10 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
   if (run.model) scenario->steering = *run.model;
   if (run.full_speed) scenario->slow_on_slopes = false;
   if (run.ignore_jams) scenario->avoid_jams = false;
+  if (run.pushing) {
+    scenario->pushing = true;
+    scenario->acceleration = 0;
+  }
   const auto world = times.measure("open", [&] { return open_world(*scenario, session.context); });
   if (!world) return world.error();
   auto simulation = times.measure("prepare", [&] {
@@ -258,7 +264,9 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
                          {"seed", scenario->seed},
                          {"model", name_of(scenario->steering)},
                          {"slow_on_slopes", scenario->slow_on_slopes},
-                         {"avoid_jams", scenario->avoid_jams}};
+                         {"avoid_jams", scenario->avoid_jams},
+                         {"pushing", scenario->pushing},
+                         {"acceleration", scenario->acceleration}};
   auto ok = sinks.open(*world, {.world = scenario->world.empty() ? run.file : scenario->world,
                                 .dt = scenario->dt,
                                 .model = kScenarioModel,
@@ -309,6 +317,10 @@ Result<Scenario> recorded_scenario(const Json& settings) {
   scenario->slow_on_slopes = slow != settings.end() && *slow == true;
   const auto avoid = settings.find("avoid_jams");  // The same: none took another route.
   scenario->avoid_jams = avoid != settings.end() && *avoid == true;
+  const auto pushing = settings.find("pushing");  // The same: all pushed, with no limit.
+  scenario->pushing = pushing == settings.end() || *pushing == true;
+  const auto limit = settings.find("acceleration");
+  scenario->acceleration = limit != settings.end() && limit->is_number() ? limit->get<double>() : 0;
   const auto name = settings.find("model");
   if (name == settings.end()) return scenario;  // as the file says
   const auto model =

@@ -21,6 +21,7 @@ struct ScenarioRun {
   std::optional<SteeringModel> model;  // instead of the scenario's
   bool full_speed = false;             // stairs and slopes slow none, whatever the scenario says
   bool ignore_jams = false;            // none takes another route, whatever the scenario says
+  bool pushing = false;                // none queues or is limited in its acceleration
   uint64_t check_every = 0;            // 0: ten times a run
   int32_t workers = 0;
   std::string trips;      // CSV of all trips; empty: none

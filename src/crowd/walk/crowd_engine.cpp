@@ -153,10 +153,29 @@ void CrowdEngine::step(uint64_t step, Before before, EngineCounts& counts, Engin
 
 // Does it repeat its last move?
 bool CrowdEngine::continues(const Body& body, uint64_t step) const {
-  return body.has(Body::kContinues) && !body.has(Body::kExternal) && !body.has(Body::kNeedsPath) &&
-         !body.has(Body::kMovedElsewhere) && !decides(steps_of_reaction(body), step, body.slot) &&
-         !has_short_moves(body) &&
-         !is_before({body.local_target_x - body.x, body.local_target_z - body.z}, stride_of(body));
+  if (!body.has(Body::kContinues) || body.has(Body::kExternal) || body.has(Body::kNeedsPath) ||
+      body.has(Body::kMovedElsewhere) || has_short_moves(body)) {
+    return false;
+  }
+  const uint64_t every = steps_of_reaction(body);
+  if (decides(every, step, body.slot)) return false;
+  const int32_t x = body.local_target_x - body.x, z = body.local_target_z - body.z;
+  return !is_before({x, z}, stride_of(body)) &&
+         !(body.has(Body::kLast) && must_brake(config_.units.metres(x, z), body.speed,
+                                               config_.acceleration, every, config_.units.dt));
+}
+
+// Its velocity if nothing blocked it. `detour_angle`: to the right.
+Plane CrowdEngine::preferred_of(const Body& body, float detour_angle) const {
+  if (!(body.has(Body::kHasGoal) || body.leaves) || (config_.queues && is_paused(body))) return {};
+  const Plane left =
+      config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
+  const float dt = units_of(body).dt;
+  float speed = body.speed;
+  if (body.has(Body::kLast)) {
+    speed = steer::braking_speed(size_of(left), config_.acceleration, dt, speed);
+  }
+  return steer::preferred_towards(left, speed, dt, detour_angle);
 }
 
 void CrowdEngine::prefer_all(uint64_t step, Before before) {
@@ -184,11 +203,7 @@ void CrowdEngine::prefer_all(uint64_t step, Before before) {
     for (Body& b : bodies) {
       if (!config_.slope_factors.empty()) slow_on_slope(b);
       if (b.has(Body::kExternal) || b.has(Body::kMovedElsewhere) || b.steps == 0) continue;
-      b.preferred = (b.has(Body::kHasGoal) || b.leaves) && !(config_.queues && is_paused(b))
-                        ? steer::preferred_towards(
-                              config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z),
-                              b.speed, units_of(b).dt, turn(b))
-                        : Plane{};
+      b.preferred = preferred_of(b, turn(b));
     }
   };
   parallel_for_worker(pieces, config_.workers, run);

@@ -98,6 +98,13 @@ class CrowdEngine {
   /// After how many steps a body that continues decides again.
   [[nodiscard]] uint64_t steps_of_reaction(const Body& body) const;
   // Rows by slot of what bodies of a queue know.
+  void reserve_rows(size_t rows) {
+    after_.reserve(rows);
+    if (!config_.queues) return;
+    onward_.reserve(rows);
+    progress_.reserve(rows);
+    for (auto& requests : requests_) requests.reserve(rows);
+  }
   void fit_rows(size_t rows) {
     if (rows <= after_.size()) return;
     after_.resize(rows);
@@ -119,6 +126,12 @@ class CrowdEngine {
   /// Could a crowd have saved the rows of a body?
   [[nodiscard]] bool has_sound_rows(uint32_t slot) const;
   const uint8_t* restore_rows(const uint8_t* saved, size_t rows);
+  /// A body that rests does not any more: it heads to another place.
+  void wake(uint32_t slot) {
+    if (!config_.queues) return;
+    progress_[slot].rest = Rest::kNo;
+    progress_[slot].stood = 0;
+  }
   /// Length of a body's path after its local target. [m]
   void set_path_after(uint32_t slot, float length) { after_[slot] = length; }
   /// Do its bodies queue? None does with another model than kSampled.
@@ -239,6 +252,7 @@ class CrowdEngine {
   [[nodiscard]] bool is_sampled(const Body& body) const {
     return config_.model == SteeringModel::kSampled && !ignores_neighbours(body);
   }
+  [[nodiscard]] steer::Plane preferred_of(const Body& body, float detour_angle) const;
   [[nodiscard]] bool continues(const Body& body, uint64_t step) const;
   void slow_down(Body& body, float level_speed, float factor);
   void slow_on_slope(Body& body);
@@ -337,6 +351,13 @@ class CrowdEngine {
   [[nodiscard]] bool has_short_moves(const Body& body) const {
     return is_turn_bounded(body) || units_of(body).is_short(body.speed);
   }
+  // So are all moves if the gain of speed in a step is less than a few units: it would be lost.
+  [[nodiscard]] bool gains_little() const {
+    constexpr float kMinGain = 4;  // [units]
+    const StepUnits& units = config_.units;
+    return config_.acceleration > 0 &&
+           config_.acceleration * units.dt * (units.dt / units.unit) < kMinGain;
+  }
   // One that is externally controlled is never moved farther than it was given.
   [[nodiscard]] Displacement given_displacement(const Body& body, steer::Plane velocity) const {
     const StepUnits units = units_of(body);
@@ -356,7 +377,7 @@ class CrowdEngine {
                                               turning_radii_[body.avatar_class]);
     }
     if (body.has(Body::kExternal)) return given_displacement(body, velocity);
-    if (has_short_moves(body)) {
+    if (has_short_moves(body) || gains_little()) {
       const uint64_t n = step_ + body.slot;
       return {static_cast<int16_t>(units.small_displacement(velocity.x, n)),
               static_cast<int16_t>(units.small_displacement(velocity.z, n))};

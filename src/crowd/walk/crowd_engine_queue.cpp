@@ -232,14 +232,13 @@ bool CrowdEngine::find_room(const Body& body, Plane best, const Worker& worker,
   return true;
 }
 
-// The velocity that comes nearest to another within the body's acceleration.
+// The velocity that comes nearest to another within the body's acceleration. An externally
+// controlled one moves as its host wants.
 Plane CrowdEngine::reachable(const Body& body, Plane velocity) const {
-  if (!(config_.acceleration > 0)) return velocity;
-  const Plane change{velocity.x - body.velocity.x, velocity.z - body.velocity.z};
-  const float size = size_of(change), most = config_.acceleration * units_of(body).dt;
-  if (size <= most) return velocity;
-  const float part = most / size;
-  return {body.velocity.x + change.x * part, body.velocity.z + change.z * part};
+  if (!(config_.acceleration > 0) || body.has(Body::kExternal)) return velocity;
+  const StepUnits units = units_of(body);
+  return steer::within_acceleration(body.velocity, velocity, config_.acceleration * units.dt,
+                                    units.rounding(), body.speed);
 }
 
 bool CrowdEngine::stands(const Body& body) const {
@@ -273,13 +272,19 @@ bool CrowdEngine::may_turn_aside(const Body& body) const {
                           progress_[body.slot].stood >= config_.queue.detour_stands);
 }
 
-// Requests count for one step: those of the last one are read in the next.
+// Requests count for one step: those of the last one are read in the next. Rows of bodies that do
+// not ask hold old requests, which none reads.
 void CrowdEngine::save_rows(size_t rows, std::vector<uint8_t>& out) const {
   put_rows(out, after_.data(), rows);
   if (!config_.queues) return;
   put_rows(out, onward_.data(), rows);
   put_rows(out, progress_.data(), rows);
-  put_rows(out, requests_[step_ % 2].data(), rows);
+  std::vector<RoomRequest> requests(rows);
+  for (size_t i = 0; i < size_; ++i) {
+    const Body& body = bodies_[i];
+    if (body.asks) requests[body.slot] = requests_[step_ % 2][body.slot];
+  }
+  put_rows(out, requests.data(), rows);
 }
 
 bool CrowdEngine::has_sound_rows(uint32_t slot) const {

@@ -12,7 +12,7 @@ namespace {
 
 using steer::Plane;
 
-constexpr float kAtGoal = 0.02f;       // [m] as near to its goal a body rests at once
+constexpr float kAtGoal = 0.005f;      // [m] as near to its goal a body rests at once
 constexpr float kNearGoal = 0.3f;      // [m] as near it rests if it stands
 constexpr float kStandsBefore = 0.5f;  // [s] until it rests
 constexpr float kReturnsAfter = 1;     // [s] after it made room

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "crowd/walk/step_units.h"
+#include "steer/sampled.h"
 #include "world/walk.h"
 
 /// When an avatar decides. It need not sense sixty times a second: an avatar that could make its
@@ -28,6 +29,15 @@ inline bool decides(uint64_t every, uint64_t step, uint32_t slot) {
 inline bool is_before(world::GroundPoint displacement, int32_t stride) {
   const int64_t range = int64_t{2} * stride;
   return displacement.x * displacement.x + displacement.z * displacement.z < range * range;
+}
+
+/// Can it not walk on for `every` steps and then stop at the end of its path, `left` ahead, because
+/// its acceleration is bounded? `every`: steps until it decides again. `acceleration` 0: no bound.
+inline bool must_brake(steer::Plane left, float speed, float acceleration, uint64_t every,
+                       float dt) {
+  if (!(acceleration > 0)) return false;
+  const float range = speed * static_cast<float>(every) * dt + speed * speed / (2 * acceleration);
+  return left.x * left.x + left.z * left.z < range * range;
 }
 
 }  // namespace throng::crowd

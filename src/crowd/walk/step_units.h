@@ -43,6 +43,8 @@ struct StepUnits {
   [[nodiscard]] float velocity(int32_t displacement) const {
     return static_cast<float>(displacement) * (unit / dt);
   }
+  /// As exactly a velocity is known from the displacement in a step: either part is rounded. [m/s]
+  [[nodiscard]] float rounding() const { return 1.5f * (unit / dt); }
   /// No step at this speed is longer: moves are rounded to the nearest unit, short ones up. [units]
   [[nodiscard]] int32_t stride(float speed) const {
     return static_cast<int32_t>(speed * (dt / unit)) + (is_short(speed) ? 3 : 2);

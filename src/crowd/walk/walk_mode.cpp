@@ -36,6 +36,7 @@ void WalkMode::reserve(size_t bodies, size_t rows) {
   routes_.reserve(rows);
   progress_.reserve(rows);
   engine_.level_speeds().reserve(rows);
+  engine_.reserve_rows(rows);
   engine_.reserve(bodies);
 }
 
@@ -122,6 +123,7 @@ void WalkMode::set_goal(Body& body, const Place& goal) {
   Route& route = routes_[body.slot];
   engine_.set_path_after(body.slot, 0);
   engine_.set_onward(body.slot, {});
+  engine_.wake(body.slot);
   progress_[body.slot] = {};
   route = {};
   route.goal = {static_cast<int32_t>(point->x), static_cast<int32_t>(point->z), goal.level1 - 1};
@@ -136,6 +138,7 @@ void WalkMode::set_target(Body& body) {
   progress_[body.slot] = {};
   engine_.set_path_after(body.slot, 0);
   engine_.set_onward(body.slot, {});
+  engine_.wake(body.slot);
   body.local_target_x = body.x;
   body.local_target_z = body.z;
 }

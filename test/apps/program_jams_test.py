@@ -24,9 +24,8 @@ class ProgramJams(ProgramCase):
             self.assertEqual(check.returncode, 0, check.stderr)
             self.assertIn("all the same", check.stdout)
     def test_a_run_states_whether_avatars_push_and_its_recording_is_repeated_exactly(self):
-        with open("door.toml", "w") as file:
-            file.write(
-                """
+        (self.path / "wait.toml").write_text(
+            """
 builtin = { name = "cube" }
 seconds = 20
 [[area]]
@@ -34,24 +33,23 @@ name = "all"
 box = [1, 1, 9, 9]
 [[journey]]
 name = "wait"
-stages = [{ wait = "all" }]
+stages = [{ go = "all" }, { wait = 10 }]
 [[source]]
 name = "source"
 area = "all"
 journey = "wait"
 count = 10
 """
-            )
+        )
         world = ("run", self.world, "--avatars", 200, "--steps", 100)
-        for run in (world, ("run", "door.toml")):
+        for run in (world, ("run", "wait.toml")):
             positions = []
             for option in ((), ("--pushing",)):
                 done = self.run_throng(*run, *option, "--json", "--record", "walk.replay", "--trajectories", "walk.csv")
                 self.assertEqual(done.returncode, 0, done.stderr)
                 said = json.loads(done.stdout)
                 self.assertEqual((said["pushing"], said["acceleration"]), (bool(option), 0 if option else 4))
-                with open("walk.csv") as file:
-                    positions.append(file.read())
+                positions.append((self.path / "walk.csv").read_text())
                 check = self.run_throng("replay", "walk.replay", "--check")
                 self.assertEqual(check.returncode, 0, check.stderr)
                 self.assertIn("all the same", check.stdout)

@@ -32,6 +32,8 @@ struct Options {
   double view = -1;  // Radius of a view in the middle [m]; negative: none.
   double dt = 0.1;
   int32_t low_detail_steps = CrowdTuning().low_detail_steps;
+  bool pushing = false;  // they do not queue
+  double acceleration = CrowdTuning().acceleration;
   double low_detail_reaction = CrowdTuning().low_detail_reaction;
 };
 
@@ -53,7 +55,9 @@ Json run(const Options& o) {
                                       .workers = o.threads,
                                       .routing = Routing::kStraight,
                                       .tuning = {.low_detail_steps = o.low_detail_steps,
-                                                 .low_detail_reaction = o.low_detail_reaction}});
+                                                 .low_detail_reaction = o.low_detail_reaction,
+                                                 .queues = !o.pushing,
+                                                 .acceleration = o.acceleration}});
   if (!crowd) return fail(crowd.error());
   if (o.view >= 0) {
     const CrowdView view{{side / 2, 0, side / 2}, o.view};
@@ -102,6 +106,8 @@ int main(int argc, char** argv) {
   parser.add_option("--radius", options.radius)->check(CLI::Range(0.05, 10.0));
   parser.add_option("--view", options.view, "One view in the middle of this radius [m]");
   parser.add_option("--dt", options.dt)->check(CLI::Range(0.001, 1.0));
+  parser.add_flag("--pushing", options.pushing, "They push instead of queueing");
+  parser.add_option("--acceleration", options.acceleration, "Limit, 0: none [m/s2]");
   parser.add_option("--far-steps", options.low_detail_steps)->check(CLI::Range(1, 16));
   parser.add_option("--far-reaction", options.low_detail_reaction)->check(CLI::Range(0.0, 10.0));
   parser.add_option("--check-every", options.timing.check_every, "Steps")

@@ -24,7 +24,7 @@ namespace {
 using crowd::put_rows;
 using crowd::take_rows;
 
-constexpr uint64_t kMagic = 0x34315744574f5243;  // "CROWDW14"
+constexpr uint64_t kMagic = 0x35315744574f5243;  // "CROWDW15"
 
 struct Head {
   uint64_t magic = kMagic;
@@ -142,7 +142,7 @@ std::optional<std::vector<crowd::CrowdObstacle>> obstacles_of(
 uint64_t size_of(const Head& head) {
   return sizeof head + head.bodies * sizeof(crowd::Body) +
          head.slots * (crowd::WalkMode::kRowBytes + 4 + sizeof(crowd::Orientation)) +
-         (head.queues != 0 ? head.slots * crowd::CrowdEngine::kRowBytes : 0) +
+         head.slots * crowd::CrowdEngine::row_bytes(head.queues != 0) +
          (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
          head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 +
          head.flights * crowd::FlyMode::kRowBytes + head.climbs * crowd::ClimbMode::kRowBytes +

@@ -20,13 +20,6 @@ float cosine(Plane direction, Plane v) {
 
 }  // namespace
 
-bool comes_towards(Plane at, Plane own, Plane other, float cosine) {
-  const float towards = -(other.x * own.x + other.z * own.z);
-  if (towards <= 0 || at.x * own.x + at.z * own.z <= 0) return false;
-  const float both = (other.x * other.x + other.z * other.z) * (own.x * own.x + own.z * own.z);
-  return towards * towards > cosine * cosine * both;
-}
-
 bool is_opposed(const LaneSettings& settings, const Situation& s) {
   int32_t opposers = 0;
   for (size_t n = 0; n < s.near.size; ++n) {

@@ -443,7 +443,7 @@ TEST(CrowdLinks, SavedNonsenseIsRefusedOrHarmless) {
   EXPECT_GT(accepted, 100u);
   EXPECT_GT(refused, 100u);
   // A crowd of the version before.
-  ASSERT_EQ(std::memcmp(saved.data(), "CROWDW14", 8), 0);
+  ASSERT_EQ(std::memcmp(saved.data(), "CROWDW15", 8), 0);
   std::memcpy(saved.data(), "CROWDW13", 8);
   const auto old = Crowd::restore(world, {.edits = edits}, saved, context);
   ASSERT_FALSE(old);

@@ -175,9 +175,8 @@ void PlainCrowd::steer_all() {
             config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z), body.speed,
             static_cast<float>(body.radius + other.radius) * config_.units.unit);
       }
-      const bool keeps_off = queues(body) && queues(other) &&
-                             gap(i, n) < config_.queue.ahead_range &&
-                             order_of(n.other) < order_of(i);
+      const bool keeps_off =
+          queues(body) && queues(other) && is_near(i, n) && order_of(n.other) < order_of(i);
       situation.near.add(
           config_.steering,
           {config_.units.metres(n.at.x, n.at.z), yields ? preferred_of(other) : other.velocity,

@@ -101,6 +101,7 @@ class PlainCrowd {
   [[nodiscard]] bool stands(const PlainBody& body) const;
   [[nodiscard]] bool is_paused(const PlainBody& body) const;
   [[nodiscard]] bool queues(const PlainBody& body) const;
+  [[nodiscard]] bool is_near(uint32_t i, const Near& n) const;
   [[nodiscard]] crowd::QueueOrder order_of(uint32_t i) const;
   [[nodiscard]] steer::Plane path_ahead(const PlainBody& body) const;
   [[nodiscard]] float gap(uint32_t i, const Near& n) const;

@@ -55,6 +55,15 @@ float PlainCrowd::gap(uint32_t i, const Near& n) const {
   return size_of(config_.units.metres(n.at.x, n.at.z)) - room * config_.units.unit;
 }
 
+// Within the range in which it keeps off those ahead of it.
+bool PlainCrowd::is_near(uint32_t i, const Near& n) const {
+  const Plane at = config_.units.metres(n.at.x, n.at.z);
+  const float range =
+      static_cast<float>(bodies_[i].radius + bodies_[n.other].radius) * config_.units.unit +
+      config_.queue.ahead_range;
+  return at.x * at.x + at.z * at.z < range * range;
+}
+
 // Those that count in steering.
 size_t PlainCrowd::nearest(uint32_t i) const {
   return std::min(near_[i].size(), static_cast<size_t>(config_.steering.neighbours));
@@ -65,9 +74,11 @@ bool PlainCrowd::is_in_stream(uint32_t i) const {
   const PlainBody& body = bodies_[i];
   const Plane preferred = preferred_of(body), ahead = path_ahead(body);
   int32_t oncoming = 0;
+  bool is_close = false;
   for (size_t k = 0; k < nearest(i); ++k) {
     const Near& n = near_[i][k];
     const PlainBody& other = bodies_[n.other];
+    is_close = is_close || is_near(i, n);
     const Plane at = config_.units.metres(n.at.x, n.at.z), others = preferred_of(other);
     const float same = preferred.x * others.x + preferred.z * others.z;
     const float both = (preferred.x * preferred.x + preferred.z * preferred.z) *
@@ -82,7 +93,10 @@ bool PlainCrowd::is_in_stream(uint32_t i) const {
       ++oncoming;
     }
   }
-  return oncoming >= config_.queue.min_oncoming;
+  const Plane v = body.velocity;
+  const float slow = config_.queue.held_up * body.speed;
+  return oncoming >= config_.queue.min_oncoming &&
+         (is_close || v.x * v.x + v.z * v.z < slow * slow);
 }
 
 // After long standing each is the first of a queue in turn, if none asks.

@@ -51,7 +51,10 @@ struct Body {
   float speed = 1;             // desired speed where it is, and the maximum [m/s]
   int32_t radius = 0;          // [units]
   uint32_t slot = 0;
-  uint8_t avatar_class = 0;
+  // These share a byte that does not change while bodies decide.
+  uint8_t avatar_class : 4 = 0;  // at most kMaxAvatarClasses
+  bool in_stream : 1 = false;    // it meets a stream, or follows one that does
+  bool at_rest : 1 = false;      // at the end of its path, see Rest
   uint8_t flags = 0;
   uint16_t height = 0;  // [mm, at most 65 m]
   uint16_t target = 0;  // TargetId: its goal is a target

@@ -112,7 +112,7 @@ void LinkMode::end_giving_room(std::span<Body> bodies) {
     use = {};
     Body& body = bodies[bodies_[n]];
     if (body.has(Body::kHasGoal)) body.flags |= Body::kNeedsPath;
-    walk_.engine().wake(body.slot);
+    walk_.engine().wake(body);
     body.clear(Body::kContinues);
   }
 }

@@ -201,7 +201,7 @@ void LinkMode::stand_aside(Body& body, LinkUse& use) const {
       body.local_target_z = z;
     }
     if (least < HUGE_VALF) {
-      walk_.engine().wake(body.slot);
+      walk_.engine().wake(body);
       return;
     }
   }
@@ -226,7 +226,7 @@ void LinkMode::give_turn(Body& body, LinkUse& use) const {
   const bool leads = route.by_link != 0 && route.next + 1 < route.count;
   body.local_target_x = leads ? route.corners[route.next].x : use.from.x;
   body.local_target_z = leads ? route.corners[route.next].z : use.from.z;
-  walk_.engine().wake(body.slot);
+  walk_.engine().wake(body);
 }
 
 bool LinkMode::is_obstructed(const Body& body, const Stand& from, const Stand& to) const {

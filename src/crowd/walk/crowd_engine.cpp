@@ -262,6 +262,7 @@ void CrowdEngine::prefetch_ground(size_t i) const {
     const Displacement displacement = displacement_again(body, body.velocity);
     grounds_[body.avatar_class].prefetch_cell(
         body.level, {int64_t{body.x} + displacement.x, int64_t{body.z} + displacement.z});
+    if (config_.queues) __builtin_prefetch(&progress_[body.slot]);
   }
 }
 
@@ -651,7 +652,11 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
     EngineCounts here;
     for (size_t i = begin; i < end; ++i) {
       Body& b = bodies_[i];
-      if (i + kOrientationPrefetch < end) turning.prefetch(bodies_[i + kOrientationPrefetch].slot);
+      if (i + kOrientationPrefetch < end) {
+        const uint32_t slot = bodies_[i + kOrientationPrefetch].slot;
+        turning.prefetch(slot);
+        if (config_.queues) __builtin_prefetch(&progress_[slot]);
+      }
       if (b.has(Body::kMovedElsewhere)) continue;
       here.low_detail += b.has(Body::kLowDetail) ? 1 : 0;
       const Plane displacement =
@@ -683,7 +688,10 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       turning.turn(b, units.dt);
       b.clear(Body::kContinues);
       b.in_counterflow = proposal.in_counterflow;
-      if (proposal.may_rest) progress_[b.slot].rest = proposal.rest;
+      if (proposal.may_rest) {
+        progress_[b.slot].rest = proposal.rest;
+        b.at_rest = proposal.rest != Rest::kNo;
+      }
       if (config_.queues) settle_queue(b, stood, proposal, units.dt);
       if (may_move) b.flags = static_cast<uint8_t>(b.flags | proposal.flags);
       if (!b.has(Body::kHasGoal) || b.has(Body::kExternal)) continue;
@@ -718,7 +726,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
 uint64_t CrowdEngine::bytes() const {
   uint64_t bytes = 2 * bodies_.size() * sizeof(Body) + contests_.size() * sizeof(Contests) +
                    (grid_ ? grid_->bytes() : 0);
-  bytes += onward_.capacity() * sizeof(Plane) + progress_.capacity() * sizeof(QueueProgress) +
+  bytes += progress_.capacity() * sizeof(QueueProgress) +
            2 * requests_[0].capacity() * sizeof(RoomRequest);
   for (const Worker& worker : workers_) {
     bytes += 4 * (worker.squares.capacity() + worker.entries.capacity() +

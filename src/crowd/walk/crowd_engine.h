@@ -97,50 +97,43 @@ class CrowdEngine {
   void step(uint64_t step, Before before, EngineCounts& counts, EngineTimes& times);
   /// After how many steps a body that continues decides again.
   [[nodiscard]] uint64_t steps_of_reaction(const Body& body) const;
-  // Rows by slot of what bodies of a queue know.
+  // Rows by slot.
   void reserve_rows(size_t rows) {
-    after_.reserve(rows);
-    if (!config_.queues) return;
-    onward_.reserve(rows);
     progress_.reserve(rows);
+    if (!config_.queues) return;
     for (auto& requests : requests_) requests.reserve(rows);
   }
   void fit_rows(size_t rows) {
-    if (rows <= after_.size()) return;
-    after_.resize(rows);
-    if (!config_.queues) return;
-    onward_.resize(rows);
+    if (rows <= progress_.size()) return;
     progress_.resize(rows);
+    if (!config_.queues) return;
     for (auto& requests : requests_) requests.resize(rows);
   }
   void clear_rows(uint32_t slot) {
     fit_rows(slot + size_t{1});
-    after_[slot] = 0;
-    if (!config_.queues) return;
-    onward_[slot] = {};
     progress_[slot] = {};
   }
-  static constexpr size_t kRowBytes =
-      sizeof(steer::Plane) + sizeof(QueueProgress) + sizeof(RoomRequest);
+  /// Bytes of a saved row.
+  static constexpr size_t row_bytes(bool queues) {
+    return sizeof(QueueProgress) + (queues ? sizeof(RoomRequest) : 0);
+  }
   void save_rows(size_t rows, std::vector<uint8_t>& out) const;
   /// Could a crowd have saved the rows of a body?
-  [[nodiscard]] bool has_sound_rows(uint32_t slot) const;
+  [[nodiscard]] bool has_sound_rows(const Body& body) const;
   const uint8_t* restore_rows(const uint8_t* saved, size_t rows);
   /// A body that rests does not any more: it heads to another place.
-  void wake(uint32_t slot) {
-    if (!config_.queues) return;
-    progress_[slot].rest = Rest::kNo;
-    progress_[slot].stood = 0;
+  void wake(Body& body) {
+    body.at_rest = false;
+    progress_[body.slot].rest = Rest::kNo;
+    progress_[body.slot].stood = 0;
   }
   /// Length of a body's path after its local target. [m]
-  void set_path_after(uint32_t slot, float length) { after_[slot] = length; }
+  void set_path_after(uint32_t slot, float length) { progress_[slot].after = length; }
   /// Do its bodies queue? None does with another model than kSampled.
   [[nodiscard]] bool queues() const { return config_.queues; }
   /// From a body's local target to its path some metres on; 0 at the end of the path. [m]
-  void set_onward(uint32_t slot, steer::Plane onward) {
-    if (config_.queues) onward_[slot] = onward;
-  }
-  [[nodiscard]] float path_after(uint32_t slot) const { return after_[slot]; }
+  void set_onward(uint32_t slot, steer::Plane onward) { progress_[slot].onward = onward; }
+  [[nodiscard]] float path_after(uint32_t slot) const { return progress_[slot].after; }
   /// Slots of the bodies that arrived in the last step, in no order.
   [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
   [[nodiscard]] uint64_t bytes() const;
@@ -203,8 +196,8 @@ class CrowdEngine {
     bool waits = false;           // it yields to another, instead of its preferred velocity
     bool in_counterflow = false;  // a stream comes towards it
     bool follows = false;         // Body::follows
-    QueueOrder own;               // its place in a queue, if it has one
-    int32_t oncoming = 0;         // neighbours that come towards it
+    QueueOrder own;               // own_order(), once it was needed
+    bool is_close = false;        // a neighbour is within QueueSettings::ahead_range
     bool in_stream = false;       // that meets another
     steer::Plane not_left;        // to its right, if it must keep to its half; else 0
     std::optional<steer::Plane> makes_room;  // in this direction: another asks it to
@@ -216,7 +209,7 @@ class CrowdEngine {
     void forget() {
       waits = in_counterflow = follows = in_stream = yields = false;
       own = {};
-      oncoming = 0;
+      is_close = false;
       not_left = {};
       makes_room.reset();
       asks.reset();
@@ -283,7 +276,15 @@ class CrowdEngine {
   [[nodiscard]] bool has_oncoming(const Body& body, const Worker& worker) const;
   [[nodiscard]] steer::Plane path_beyond(const Body& body) const;
   [[nodiscard]] bool go_on_alike(const Body& body, const Body& other) const;
-  [[nodiscard]] bool comes_towards(const Body& body, const Body& other, steer::Plane apart) const;
+  [[nodiscard]] bool comes_towards(const Body& body, const Body& other, steer::Plane apart) const {
+    const steer::Plane own = body.preferred, others = other.preferred;
+    const int against = own.x * others.x + own.z * others.z < 0 ? 1 : 0;
+    const int comes = steer::comes_towards(apart, path_ahead(body), path_ahead(other),
+                                           config_.lanes.narrow_opposed)
+                          ? 1
+                          : 0;
+    return (against & comes) != 0 && !(config_.queues && go_on_alike(body, other));
+  }
   void keep_right(const Body& body, Worker& worker) const;
   bool choose_lane(uint32_t i, Worker& worker, const NeighbourGrid::Around& around);
   [[nodiscard]] steer::Plane if_blocked(steer::Plane displacement,
@@ -291,16 +292,20 @@ class CrowdEngine {
 
   // crowd_engine_queue.cpp
   [[nodiscard]] QueueOrder order_of(const Body& body) const;
-  [[nodiscard]] float margin_to(const QueueOrder& own, const Body& other, float gap) const;
-  float room_in_queue(const Body& body, const Body& other, steer::Plane apart, float room,
-                      Worker& worker) const;
+  const QueueOrder& own_order(const Body& body, Worker& worker) const;
+  [[nodiscard]] bool meets_stream(const Body& body, std::span<const uint32_t> nearest,
+                                  const Worker& worker) const;
+  [[nodiscard]] bool is_close(steer::Plane apart, float room) const {
+    const float range = room + config_.queue.ahead_range;
+    return apart.x * apart.x + apart.z * apart.z < range * range;
+  }
+  float room_in_queue(const Body& body, const Body& other, float room, Worker& worker) const;
   void query_queue(uint32_t i, std::span<const uint32_t> nearest,
                    const NeighbourGrid::Around& around, Worker& worker) const;
   [[nodiscard]] steer::Plane aside_of(const Body& body, steer::Plane away, steer::Plane from,
                                       steer::Plane asked, float room) const;
   [[nodiscard]] bool has_turn(const Body& body, std::span<const uint32_t> nearest) const;
-  [[nodiscard]] bool is_head(const Body& body, const QueueOrder& own,
-                             std::span<const uint32_t> nearest) const;
+  bool is_head(const Body& body, std::span<const uint32_t> nearest, Worker& worker) const;
   [[nodiscard]] static steer::Plane unless_left(const Worker& worker, steer::Plane velocity);
   [[nodiscard]] steer::Plane unless_back(const Body& body, const Worker& worker,
                                          steer::Plane velocity) const;
@@ -309,15 +314,13 @@ class CrowdEngine {
   [[nodiscard]] bool find_room(const Body& body, steer::Plane best, const Worker& worker,
                                std::span<const uint32_t> others, Displacements& candidates) const;
   [[nodiscard]] bool stands(const Body& body) const;
-  void settle_queue(const Body& body, bool stood, const Proposal& proposal, float dt);
+  void settle_queue(Body& body, bool stood, const Proposal& proposal, float dt);
   [[nodiscard]] bool is_paused(const Body& body) const;
   [[nodiscard]] steer::Plane reachable(const Body& body, steer::Plane velocity) const;
   [[nodiscard]] bool may_turn_aside(const Body& body) const;
   [[nodiscard]] bool queues(const Body& body) const;
   // Without queues all push; with them those in a stream that meets another.
-  [[nodiscard]] bool pushes(const Body& body) const {
-    return !config_.queues || progress_[body.slot].stream > 0;
-  }
+  [[nodiscard]] bool pushes(const Body& body) const { return !config_.queues || body.in_stream; }
 
   // crowd_engine_rest.cpp
   [[nodiscard]] bool may_rest(const Body& body) const;
@@ -427,9 +430,7 @@ class CrowdEngine {
   std::vector<uint32_t> arrived_;
   std::vector<float> level_speeds_;
   std::span<Orientation> orientations_;  // by slot
-  std::vector<float> after_;             // path_after, by slot
-  std::vector<steer::Plane> onward_;     // set_onward, by slot, if bodies queue
-  std::vector<QueueProgress> progress_;  // by slot, if bodies queue
+  std::vector<QueueProgress> progress_;  // by slot
   // By slot: those of this step, which bodies write that ask, and those of the step before, which
   // all read. Valid where Body::asks is set.
   std::array<std::vector<RoomRequest>, 2> requests_;

@@ -29,7 +29,6 @@ CrowdEngine::Sides CrowdEngine::sides_of(const Body& body) const {
 // Does a neighbour come towards it? The neighbour's local target counts: in a jam, preferred
 // velocities point in all directions.
 bool CrowdEngine::has_oncoming(const Body& body, const Worker& worker) const {
-  if (config_.queues) return worker.oncoming > 0;  // They are counted already.
   for (size_t n = 0; n < worker.situation.near.size; ++n) {
     const Body& other = bodies_[worker.entries[n]];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
@@ -41,8 +40,8 @@ bool CrowdEngine::has_oncoming(const Body& body, const Worker& worker) const {
 // The vector to its path some metres beyond its local target.
 Plane CrowdEngine::path_beyond(const Body& body) const {
   const Plane ahead = path_ahead(body);
-  if (body.has(Body::kExternal) || !body.has(Body::kHasGoal)) return ahead;
-  const Plane onward = onward_[body.slot];
+  if (body.has(Body::kExternal) || !body.has(Body::kHasGoal) || body.has(Body::kLast)) return ahead;
+  const Plane onward = progress_[body.slot].onward;
   return {ahead.x + onward.x, ahead.z + onward.z};
 }
 
@@ -50,14 +49,6 @@ Plane CrowdEngine::path_beyond(const Body& body) const {
 bool CrowdEngine::go_on_alike(const Body& body, const Body& other) const {
   const Plane a = path_beyond(body), b = path_beyond(other);
   return a.x * b.x + a.z * b.z > config_.queue.alike * steer::size_of(a) * steer::size_of(b);
-}
-
-bool CrowdEngine::comes_towards(const Body& body, const Body& other, Plane apart) const {
-  if (body.preferred.x * other.preferred.x + body.preferred.z * other.preferred.z >= 0)
-    return false;
-  if (config_.queues && go_on_alike(body, other)) return false;
-  return steer::comes_towards(apart, path_ahead(body), path_ahead(other),
-                              config_.lanes.narrow_opposed);
 }
 
 // A body in counterflow between walls leaves the left half to the stream. Where no wall is near,

@@ -36,7 +36,7 @@ bool CrowdEngine::queues(const Body& body) const {
 
 QueueOrder CrowdEngine::order_of(const Body& body) const {
   const Plane ahead = path_ahead(body);
-  const float left = size_of(ahead) + after_[body.slot];
+  const float left = size_of(ahead) + progress_[body.slot].after;
   return {body.slot,
           {body.x, body.z},
           {body.local_target_x, body.local_target_z},
@@ -44,17 +44,33 @@ QueueOrder CrowdEngine::order_of(const Body& body) const {
           left};
 }
 
-// What a body keeps to another that is ahead in the order, so that the other can move. [m]
-float CrowdEngine::margin_to(const QueueOrder& own, const Body& other, float gap) const {
-  if (gap >= config_.queue.ahead_range || own.slot == UINT32_MAX || !queues(other)) return 0;
-  return order_of(other) < own ? config_.queue.ahead_margin : 0;
+// Its order, which few need: it is found once.
+const QueueOrder& CrowdEngine::own_order(const Body& body, Worker& worker) const {
+  if (worker.own.slot == UINT32_MAX && queues(body)) worker.own = order_of(body);
+  return worker.own;
 }
 
-// The room that a body keeps to a neighbour. Counts those that come towards it. [m]
-float CrowdEngine::room_in_queue(const Body& body, const Body& other, Plane apart, float room,
+// The room that a body keeps to a close neighbour: more to one that is ahead in the order, so that
+// it can move. [m]
+float CrowdEngine::room_in_queue(const Body& body, const Body& other, float room,
                                  Worker& worker) const {
-  worker.oncoming += comes_towards(body, other, apart) ? 1 : 0;
-  return room + margin_to(worker.own, other, size_of(apart) - room);
+  worker.is_close = true;
+  if (!queues(body) || !queues(other)) return room;
+  return order_of(other) < own_order(body, worker) ? room + config_.queue.ahead_margin : room;
+}
+
+// Do enough come towards it? While it walks freely it need not know.
+bool CrowdEngine::meets_stream(const Body& body, std::span<const uint32_t> nearest,
+                               const Worker& worker) const {
+  const float slow = config_.queue.held_up * body.speed;
+  if (!worker.is_close && dot(body.velocity, body.velocity) >= slow * slow) return false;
+  int32_t oncoming = 0;
+  for (size_t n = 0; n < nearest.size() && oncoming < config_.queue.min_oncoming; ++n) {
+    const Body& other = bodies_[nearest[n]];
+    const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
+    oncoming += comes_towards(body, other, apart) ? 1 : 0;
+  }
+  return oncoming >= config_.queue.min_oncoming;
 }
 
 // Of the requests of those that are ahead of it a body follows the one with the shortest path left:
@@ -65,7 +81,6 @@ void CrowdEngine::query_queue(uint32_t i, std::span<const uint32_t> nearest,
   const Body& body = bodies_[i];
   if (body.has(Body::kExternal)) return;
   const std::vector<RoomRequest>& requests = requests_[(step_ + 1) % 2];
-  const QueueOrder& own = worker.own;
   QueueOrder first;
   const bool is_at_rest = rests(body);
   uint32_t asker = UINT32_MAX;
@@ -90,7 +105,7 @@ void CrowdEngine::query_queue(uint32_t i, std::span<const uint32_t> nearest,
     const auto key = [](const QueueOrder& order, uint32_t slot) {
       return std::tuple(order.left, order.slot, slot);
     };
-    if (!(request.order < own)) continue;
+    if (!(request.order < own_order(body, worker))) continue;
     if (asker != UINT32_MAX && key(first, asker) < key(request.order, other.slot)) continue;
     first = request.order;
     asker = other.slot;
@@ -108,9 +123,9 @@ void CrowdEngine::query_queue(uint32_t i, std::span<const uint32_t> nearest,
     const bool steps_aside = worker.yields || !queues(body);
     worker.makes_room = steps_aside ? aside_of(body, away, from, asked, needs) : away;
     worker.asks = RoomRequest{first, *worker.makes_room};
-  } else if (queues(body) && is_head(body, own, nearest) &&
+  } else if (queues(body) && is_head(body, nearest, worker) &&
              !(may_rest(body) && is_goal_taken(i, around))) {
-    worker.asks = RoomRequest{own, unit(path_ahead(body))};
+    worker.asks = RoomRequest{own_order(body, worker), unit(path_ahead(body))};
   }
 }
 
@@ -146,8 +161,8 @@ bool CrowdEngine::has_turn(const Body& body, std::span<const uint32_t> nearest) 
 }
 
 // Has it stood, with none before it that is ahead in the order?
-bool CrowdEngine::is_head(const Body& body, const QueueOrder& own,
-                          std::span<const uint32_t> nearest) const {
+bool CrowdEngine::is_head(const Body& body, std::span<const uint32_t> nearest,
+                          Worker& worker) const {
   // One that follows a body which makes room for it asks on.
   const bool asks_on = body.asks && size_of(body.velocity) < config_.queue.asks_on * body.speed &&
                        requests_[(step_ + 1) % 2][body.slot].order.slot == body.slot;
@@ -161,7 +176,7 @@ bool CrowdEngine::is_head(const Body& body, const QueueOrder& own,
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
     const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
     return size_of(apart) - room < config_.queue.head_range && dot(ahead, apart) > 0 &&
-           order_of(other) < own;
+           order_of(other) < own_order(body, worker);
   });
 }
 
@@ -247,14 +262,14 @@ bool CrowdEngine::stands(const Body& body) const {
 }
 
 // `stood`: at the beginning of the step.
-void CrowdEngine::settle_queue(const Body& body, bool stood, const Proposal& proposal, float dt) {
+void CrowdEngine::settle_queue(Body& body, bool stood, const Proposal& proposal, float dt) {
   constexpr float kLongest = 60;  // [s]
   const bool still = stands(body);
+  if (!proposal.in_stream && !body.in_stream && !still && !stood && !proposal.yields) return;
   QueueProgress& progress = progress_[body.slot];
-  if (proposal.in_stream || progress.stream > 0) {
-    progress.stream =
-        proposal.in_stream ? config_.queue.stream_time : std::max(progress.stream - dt, 0.0f);
-  }
+  progress.stream =
+      proposal.in_stream ? config_.queue.stream_time : std::max(progress.stream - dt, 0.0f);
+  body.in_stream = progress.stream > 0;
   if (!still && !stood && !proposal.yields) return;
   progress.stood = still ? std::min(progress.stood + dt, kLongest) : 0;
   progress.yields =
@@ -275,10 +290,8 @@ bool CrowdEngine::may_turn_aside(const Body& body) const {
 // Requests count for one step: those of the last one are read in the next. Rows of bodies that do
 // not ask hold old requests, which none reads.
 void CrowdEngine::save_rows(size_t rows, std::vector<uint8_t>& out) const {
-  put_rows(out, after_.data(), rows);
-  if (!config_.queues) return;
-  put_rows(out, onward_.data(), rows);
   put_rows(out, progress_.data(), rows);
+  if (!config_.queues) return;
   std::vector<RoomRequest> requests(rows);
   for (size_t i = 0; i < size_; ++i) {
     const Body& body = bodies_[i];
@@ -287,10 +300,11 @@ void CrowdEngine::save_rows(size_t rows, std::vector<uint8_t>& out) const {
   put_rows(out, requests.data(), rows);
 }
 
-bool CrowdEngine::has_sound_rows(uint32_t slot) const {
-  if (!(after_[slot] >= 0)) return false;
-  if (!config_.queues) return true;
+bool CrowdEngine::has_sound_rows(const Body& body) const {
+  const uint32_t slot = body.slot;
   const QueueProgress& progress = progress_[slot];
+  if (!(progress.after >= 0)) return false;
+  if (!config_.queues) return !body.in_stream && !body.at_rest;
   const RoomRequest& request = requests_[0][slot];
   const QueueOrder& order = request.order;
   constexpr float kFarthest = 1e6f;  // [m] as far as a crowd can lie
@@ -298,16 +312,15 @@ bool CrowdEngine::has_sound_rows(uint32_t slot) const {
     return std::abs(p.x) <= kFarthest && std::abs(p.z) <= kFarthest;
   };
   return progress.stood >= 0 && progress.yields >= 0 && progress.stream >= 0 &&
-         progress.rest <= Rest::kMadeRoom && order.left >= 0 && is_sound(onward_[slot]) &&
+         progress.rest <= Rest::kMadeRoom && body.at_rest == (progress.rest != Rest::kNo) &&
+         body.in_stream == (progress.stream > 0) && order.left >= 0 && is_sound(progress.onward) &&
          is_sound(order.beyond) && std::abs(request.ahead.x) <= 1.001f &&
          std::abs(request.ahead.z) <= 1.001f;
 }
 
 const uint8_t* CrowdEngine::restore_rows(const uint8_t* saved, size_t rows) {
-  saved = take_rows(saved, rows, after_);
-  if (!config_.queues) return saved;
-  saved = take_rows(saved, rows, onward_);
   saved = take_rows(saved, rows, progress_);
+  if (!config_.queues) return saved;
   saved = take_rows(saved, rows, requests_[0]);
   requests_[1] = requests_[0];
   return saved;

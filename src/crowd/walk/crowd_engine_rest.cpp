@@ -33,9 +33,7 @@ bool CrowdEngine::may_rest(const Body& body) const {
 }
 
 // Does it stand until something changes, instead of heading to its goal?
-bool CrowdEngine::rests(const Body& body) const {
-  return may_rest(body) && progress_[body.slot].rest != Rest::kNo;
-}
+bool CrowdEngine::rests(const Body& body) const { return body.at_rest && may_rest(body); }
 
 // Does another body that rests stand where it would stand at its goal? Or does one before it rest
 // that has the same goal and does not reach it either?

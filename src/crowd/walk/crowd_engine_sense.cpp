@@ -32,12 +32,23 @@ bool turns_corner(const Body& body) {
   return (body.flags & kAll) == Body::kHasGoal && !body.leaves;
 }
 
+// What bodies ahead inform those behind of, which would else fill the whole width. No branches:
+// half of the neighbours are ahead.
+struct Informed {
+  void add(const Body& other, bool leads) {
+    counterflow |= (leads ? 1 : 0) & (other.in_counterflow ? 1 : 0);
+    stream |= (leads ? 1 : 0) & (other.in_stream ? 1 : 0);
+  }
+  int counterflow = 0, stream = 0;
+};
+
 // Is another body ahead that walks in the same direction? Within 45 degrees.
 bool leads(Plane apart, Plane preferred, Plane others) {
   const float same = preferred.x * others.x + preferred.z * others.z;
   const float both = (preferred.x * preferred.x + preferred.z * preferred.z) *
                      (others.x * others.x + others.z * others.z);
-  return apart.x * preferred.x + apart.z * preferred.z > 0 && same > 0 && 2 * same * same > both;
+  const int is_ahead = apart.x * preferred.x + apart.z * preferred.z > 0 ? 1 : 0;
+  return (is_ahead & (same > 0 ? 1 : 0) & (2 * same * same > both ? 1 : 0)) != 0;
 }
 
 Contender contender(const Body& body) {
@@ -126,22 +137,17 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   situation.preferred = body.preferred;
   situation.fastest = speed_limit(body);
   situation.near.size = 0;
-  if (config_.queues && queues(body)) worker.own = order_of(body);
   const bool pushes = this->pushes(body), turns = turns_corner(body);
   const bool may_wait = pushes && is_on_last_segment(body);
   const bool rests = !body.leaves && !body.has(Body::kExternal) &&
                      (body.has(Body::kArrived) || !body.has(Body::kHasGoal));
   const bool is_slow = size_of(body.velocity) < kHeldUpShare * body.speed;
   const bool steps_back = rests || (is_slow && !body.leaves && !body.has(Body::kExternal));
+  Informed informed;
   for (size_t n = 0; n < nearest; ++n) {
     const Body& other = bodies_[lists.entries[n]];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
-    // Bodies ahead inform those behind, which would else fill the whole width.
-    const bool in_stream = config_.queues && progress_[other.slot].stream > 0;
-    if ((other.in_counterflow || in_stream) && leads(apart, body.preferred, other.preferred)) {
-      worker.in_counterflow = worker.in_counterflow || other.in_counterflow;
-      worker.in_stream = worker.in_stream || in_stream;
-    }
+    informed.add(other, leads(apart, body.preferred, other.preferred));
     const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
     if (may_wait && is_on_last_segment(other) && goes_first(contender(other), contender(body))) {
       worker.waits = true;
@@ -161,12 +167,16 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     // A body that has arrived yields to those that would pass if it were not there: they may stand.
     const bool yields =
         (body.has(Body::kArrived) && !other.has(Body::kArrived)) || (rests && other.leaves);
-    const float kept = config_.queues ? room_in_queue(body, other, apart, room, worker) : room;
+    const float kept =
+        config_.queues && is_close(apart, room) ? room_in_queue(body, other, room, worker) : room;
     situation.near.add(config_.steering,
                        {apart, yields ? other.preferred : other.velocity, kept, other.preferred});
   }
-  worker.in_stream = worker.in_stream || worker.oncoming >= config_.queue.min_oncoming;
-  if (config_.queues) query_queue(i, {lists.entries, nearest}, around, worker);
+  worker.in_counterflow = informed.counterflow != 0;
+  if (config_.queues) {
+    worker.in_stream = informed.stream != 0 || meets_stream(body, {lists.entries, nearest}, worker);
+    query_queue(i, {lists.entries, nearest}, around, worker);
+  }
   const Plane preferred = situation.preferred;
   situation.preferred = steer::following_fast(config_.steering, situation);
   // Before a corner a body that crawls is turned as one that stands: doors need that.

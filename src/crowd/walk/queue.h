@@ -59,14 +59,18 @@ enum class Rest : uint8_t {
   kMadeRoom,  ///< It was moved from there, and stands for a while before it returns.
 };
 
-/// What an engine knows of a body that may queue or rest, by slot.
-struct QueueProgress {
-  float stood = 0;   ///< How long it has stood. [s]
-  float yields = 0;  ///< For how long it still stands, to let another pass. [s]
-  float stream = 0;  ///< For how long it still counts as in a stream that meets another. [s]
+/// What an engine knows of the path of a body and of its place in a queue, by slot. A body's
+/// neighbours seldom need it: what they do is in Body.
+struct alignas(32) QueueProgress {
+  steer::Plane onward;  ///< From its local target to its path some metres on; 0 at its end. [m]
+  float after = 0;      ///< Length of its path after its local target. [m]
+  float stood = 0;      ///< How long it has stood. [s]
+  float yields = 0;     ///< For how long it still stands, to let another pass. [s]
+  float stream = 0;     ///< For how long it is still in a stream that meets another. [s]
   Rest rest = Rest::kNo;
-  std::array<uint8_t, 3> unused{};  ///< 0, so that saved rows have no undefined bytes.
+  std::array<uint8_t, 7> unused{};  ///< 0, so that saved rows have no undefined bytes.
 };
+static_assert(sizeof(QueueProgress) == 32);
 
 /// Sources of all numbers: docs/log/015-motion.md.
 struct QueueSettings {
@@ -87,6 +91,8 @@ struct QueueSettings {
   float oncoming = 0.5f;       ///< Cosine of the angle between them that makes it so.
   float alike = 0.5f;          ///< Paths go on alike: cosine of the angle between them.
   int32_t min_oncoming = 2;    ///< So many that come towards a body are a stream. [> 0]
+  float held_up = 0.5f;        ///< It looks for one while it is slower, by its desired speed, or
+                               ///< another is within `ahead_range`.
   float stream_time = 2;       ///< As long a body counts as in a stream after it saw it. [s]
   float detour_stands = 3;     ///< The first of a queue turns aside after that. [s]
 };

@@ -123,7 +123,7 @@ void WalkMode::set_goal(Body& body, const Place& goal) {
   Route& route = routes_[body.slot];
   engine_.set_path_after(body.slot, 0);
   engine_.set_onward(body.slot, {});
-  engine_.wake(body.slot);
+  engine_.wake(body);
   progress_[body.slot] = {};
   route = {};
   route.goal = {static_cast<int32_t>(point->x), static_cast<int32_t>(point->z), goal.level1 - 1};
@@ -138,7 +138,7 @@ void WalkMode::set_target(Body& body) {
   progress_[body.slot] = {};
   engine_.set_path_after(body.slot, 0);
   engine_.set_onward(body.slot, {});
-  engine_.wake(body.slot);
+  engine_.wake(body);
   body.local_target_x = body.x;
   body.local_target_z = body.z;
 }
@@ -295,7 +295,7 @@ bool WalkMode::is_sound(const Body& body) const {
   if (body.slowed && !(level_speed >= body.speed && level_speed <= kMaxSpeed)) return false;
   if (!body.has(Body::kHasGoal) || body.climbs) return true;
   const uint32_t levels = data_of(shared_.world)->level_count;
-  if (!engine_.has_sound_rows(body.slot)) return false;
+  if (!engine_.has_sound_rows(body)) return false;
   const Route& route = routes_[body.slot];
   if (!progress_[body.slot].is_sound()) return false;
   if (route.by_link != 0 && route.count < 2) return false;

@@ -56,8 +56,8 @@ class TakesLinks {
 
 class WalkMode final : public Mode {
  public:
-  /// Of a route, a speed on level ground, the length of the path and what is known of its progress.
-  static constexpr size_t kRowBytes = sizeof(Route) + 2 * sizeof(float) + sizeof(PathProgress);
+  /// Of a route, a speed on level ground and what is known of its progress.
+  static constexpr size_t kRowBytes = sizeof(Route) + sizeof(float) + sizeof(PathProgress);
 
   WalkMode(SharedState& shared, const MoveConfig& config);
   /// What decides for classes that fly; it outlives all steps.

@@ -52,10 +52,11 @@ struct Head {
   float fastest = 0;  // [m/s]
   int32_t taking_widest = 0, taking_tallest = 0;
   uint64_t avoids_jams = 0;
+  uint64_t aside = 0;        // bodies that stand aside
   uint64_t slow_levels = 0;  // of the delay map
   crowd::DelayMap::SavedQuestions questions;
 };
-static_assert(sizeof(Head) == 38 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 39 * 8 && std::is_trivially_copyable_v<Head>);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`; and without what its
 // edit holds.
@@ -148,7 +149,8 @@ uint64_t size_of(const Head& head) {
          head.flights * crowd::FlyMode::kRowBytes + head.climbs * crowd::ClimbMode::kRowBytes +
          head.link_uses * crowd::LinkMode::kRowBytes +
          head.views * sizeof(crowd::EngineDetail::View) + head.edit_bytes + head.call_bytes +
-         head.slow_levels * sizeof(crowd::DelayMap::Saved) + 8;
+         head.slow_levels * sizeof(crowd::DelayMap::Saved) +
+         head.aside * sizeof(crowd::StandsAside) + 8;
 }
 
 // A world that was never written has no hash of its own.
@@ -278,7 +280,7 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
   if (head.bodies >= kMax || head.slots >= kMax || head.free_slots >= kMax ||
       head.obstacles >= kMax || head.corners >= kMax || head.free_obstacles >= kMax ||
       head.target_values >= kMax || head.views >= kMax || head.edit_bytes >= kMax ||
-      head.call_bytes >= kMax || head.slow_levels >= kMax ||
+      head.call_bytes >= kMax || head.slow_levels >= kMax || head.aside >= kMax ||
       (head.flights != 0 && head.flights != head.slots) ||
       (head.climbs != 0 && head.climbs != head.slots) ||
       (head.link_uses != 0 && head.link_uses != head.slots) || saved.size() != size_of(head)) {
@@ -332,7 +334,8 @@ SavedArrays read_arrays(const Head& head, const uint8_t* at, State& s) {
   at = take_rows(at, head.views, s.views);
   at = take_rows(at, head.edit_bytes, saved.edits);
   at = take_rows(at, head.call_bytes, saved.calls);
-  take_rows(at, head.slow_levels, saved.delays);
+  at = take_rows(at, head.slow_levels, saved.delays);
+  take_rows(at, head.aside, s.walk.standing_aside());
   return saved;
 }
 
@@ -411,6 +414,7 @@ std::vector<uint8_t> Crowd::save() const {
     head.questions = map->saved_questions();
   }
   head.slow_levels = delays.size();
+  head.aside = s.walk.standing_aside().size();
   std::vector<uint8_t> out;
   out.reserve(size_of(head));
   put_rows(out, &head, 1);
@@ -430,6 +434,7 @@ std::vector<uint8_t> Crowd::save() const {
   put_rows(out, edits.data(), edits.size());
   put_rows(out, calls.data(), calls.size());
   put_rows(out, delays.data(), delays.size());
+  put_rows(out, s.walk.standing_aside().data(), head.aside);
   const uint64_t sum = hash_bytes(out.data(), out.size());
   put_rows(out, &sum, 1);
   return out;
@@ -462,6 +467,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   }
   sound = sound && add_targets(*made, arrays.targets, context);
   for (const crowd::Body& body : bodies) sound = sound && body.target <= s.shared.targets.size();
+  sound = sound && s.walk.aside_is_sound();
   if (!sound) return bad("is not sound; save the crowd again");
   s.ground_changed();
   s.walk.engine().reserve(bodies.size());

@@ -80,11 +80,11 @@ TEST(Congestion, ThoseBehindAJammedDoorTakeTheOther) {
       const CrowdCheck check = crowd.check();
       ASSERT_EQ(check.overlaps + check.wall_entries, 0u) << step;
     }
-    // Six of the eight arrive; the last two are held up too little to look for another route.
-    EXPECT_GE(all.arrived, avoid ? 6u : 0u);
+    // Five of the eight arrive; the others are held up too little to look for another route.
+    EXPECT_GE(all.arrived, avoid ? 5u : 0u);
     EXPECT_LE(all.arrived, avoid ? 8u : 0u);
     // Some again in the crowd before the other door.
-    EXPECT_GE(all.changed, avoid ? 6u : 0u);
+    EXPECT_GE(all.changed, avoid ? 5u : 0u);
     EXPECT_LE(all.changed, avoid ? 40u : 0u);
     EXPECT_GE(all.searches, all.changed);
   }
@@ -125,18 +125,18 @@ TEST(Congestion, ARestoredCrowdTakesTheSameRoutes) {
   EXPECT_GT(is.changed, 0u);
 }
 
-// Nothing changes but a search now and then.
+// Nothing changes but a search now and then. In single file none stands aside either.
 TEST(Congestion, WhereThereIsNoOtherRouteTheStepsAreTheSame) {
   Scene scene;
-  scene.add_box({0, -0.5, 0}, {12, 0, 1});
+  scene.add_box({0, -0.5, 0}, {12, 0, 0.6});
   const World world = test::bake(scene, 0.1, {AvatarClass{}});
   std::vector<uint64_t> hashes;
   for (const bool avoid : {false, true}) {
     Crowd crowd = made(world, {.avoid_jams = avoid});
-    stand_in_passage(crowd, world, 9, 0.5);
+    stand_in_passage(crowd, world, 9, 0.3);
     for (int i = 0; i < 10; ++i) {
-      const AvatarId id = added(crowd, world.find_place(0, {0.5 + 0.7 * i, 0, 0.5}, 0.5));
-      const Place goal = world.find_place(0, {11.5, 0, 0.5}, 0.5);
+      const AvatarId id = added(crowd, world.find_place(0, {0.5 + 0.7 * i, 0, 0.3}, 0.5));
+      const Place goal = world.find_place(0, {11.5, 0, 0.3}, 0.5);
       ASSERT_TRUE(id && goal);
       crowd.set_goals(std::span(&id, 1), std::span(&goal, 1));
     }

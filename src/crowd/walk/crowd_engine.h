@@ -133,6 +133,8 @@ class CrowdEngine {
   [[nodiscard]] bool queues() const { return config_.queues; }
   /// From a body's local target to its path some metres on; 0 at the end of the path. [m]
   void set_onward(uint32_t slot, steer::Plane onward) { progress_[slot].onward = onward; }
+  /// How long a body has stood. [s]
+  [[nodiscard]] float stood(uint32_t slot) const { return progress_[slot].stood; }
   [[nodiscard]] float path_after(uint32_t slot) const { return progress_[slot].after; }
   /// Slots of the bodies that arrived in the last step, in no order.
   [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }

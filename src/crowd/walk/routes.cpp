@@ -19,16 +19,6 @@ constexpr uint64_t kBlockedCheckInterval = 4;
 constexpr float kCheckRange = 3;       // [m] of a segment, to test whether it is visible
 constexpr float kTurnDistance = 0.3f;  // [m] before its lane offset a body turns to the next corner
 
-void turn_to(Body& body, const Route& route, const StrideGround& ground, Following how) {
-  body.on_right = body.in_counterflow;
-  const PathPoint place =
-      leads_to_link(route) ? route.corners[route.next] : lane_offset(body, route, ground, how);
-  body.local_target_x = place.x;
-  body.local_target_z = place.z;
-  const bool last = route.whole && route.next + 1 == route.count;
-  body.flags = static_cast<uint8_t>(last ? body.flags | Body::kLast : body.flags & ~Body::kLast);
-}
-
 // Is it as far as its lane offset, on the segment to the next corner? One that turned at first
 // sight of that corner would walk along the inner wall after all.
 bool is_at_lane_offset(const Body& body, const Route& route, float metre) {
@@ -53,6 +43,16 @@ bool has_passed_corner(const Body& body, const Route& route) {
 
 }  // namespace
 
+void head_to_corner(Body& body, const Route& route, const StrideGround& ground, Following how) {
+  body.on_right = body.in_counterflow;
+  const PathPoint place =
+      leads_to_link(route) ? route.corners[route.next] : lane_offset(body, route, ground, how);
+  body.local_target_x = place.x;
+  body.local_target_z = place.z;
+  const bool last = route.whole && route.next + 1 == route.count;
+  body.flags = static_cast<uint8_t>(last ? body.flags | Body::kLast : body.flags & ~Body::kLast);
+}
+
 void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, Following how) {
   const float metre = how.metre;
   const float range = kCheckRange * metre;
@@ -67,7 +67,7 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
                               sees(route.corners[route.next + 1u])))) {
       ++route.next;
       if (route.via <= route.next) route.via = 0;
-      turn_to(body, route, ground, how);
+      head_to_corner(body, route, ground, how);
       return;
     }
     if (at_end) {  // Corners are used up: the rest is a new path.
@@ -75,7 +75,7 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
       return;
     }
   }
-  if (body.in_counterflow && !body.on_right) turn_to(body, route, ground, how);
+  if (body.in_counterflow && !body.on_right) head_to_corner(body, route, ground, how);
   if (how.queues && nth % kBlockedCheckInterval == 0 && has_passed_corner(body, route)) {
     body.flags |= Body::kNeedsPath;
     return;
@@ -131,7 +131,7 @@ bool use_path(const world::WorldData& world, const Path& path, const StrideGroun
     route.count = 1;
     route.next = 0;
     route.whole = true;
-    turn_to(body, route, ground, how);
+    head_to_corner(body, route, ground, how);
     return true;
   }
   const size_t segments = path.points.size() - 1;
@@ -146,7 +146,7 @@ bool use_path(const world::WorldData& world, const Path& path, const StrideGroun
     for (size_t i = 0; i < route.count; ++i) {
       route.corners[i] = point_of(world, path.points[first + i]);
     }
-    turn_to(body, route, ground, how);
+    head_to_corner(body, route, ground, how);
     return true;
   }
   route.count = static_cast<uint8_t>(std::min(segments, Route::kCorners));
@@ -155,7 +155,7 @@ bool use_path(const world::WorldData& world, const Path& path, const StrideGroun
   for (size_t i = 0; i < route.count; ++i) {
     route.corners[i] = point_of(world, path.points[i + 1]);
   }
-  turn_to(body, route, ground, how);
+  head_to_corner(body, route, ground, how);
   return true;
 }
 
@@ -177,7 +177,7 @@ void replace_corners(const world::WorldData& world, const Path& path, size_t end
     route.by_link = 0;
   }
   body.clear(Body::kNeedsPath);
-  turn_to(body, route, ground, how);
+  head_to_corner(body, route, ground, how);
 }
 
 float length_between(const Route& route, size_t from, size_t to) {

@@ -50,6 +50,9 @@ struct Following {
 /// that not all check in the same step.
 void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, Following how);
 
+/// Heads to the next corner of its route.
+void head_to_corner(Body& body, const Route& route, const StrideGround& ground, Following how);
+
 /// The place of a body that heads to `position`.
 Place place_of(const world::WorldData& world, const Body& body, const PathPoint& position);
 PathPoint point_of(const world::WorldData& world, const Place& place);

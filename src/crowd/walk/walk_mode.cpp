@@ -124,6 +124,7 @@ void WalkMode::set_goal(Body& body, const Place& goal) {
   engine_.set_path_after(body.slot, 0);
   engine_.set_onward(body.slot, {});
   engine_.wake(body);
+  yielding_.erase(body.slot);
   progress_[body.slot] = {};
   route = {};
   route.goal = {static_cast<int32_t>(point->x), static_cast<int32_t>(point->z), goal.level1 - 1};
@@ -139,11 +140,13 @@ void WalkMode::set_target(Body& body) {
   engine_.set_path_after(body.slot, 0);
   engine_.set_onward(body.slot, {});
   engine_.wake(body);
+  yielding_.erase(body.slot);
   body.local_target_x = body.x;
   body.local_target_z = body.z;
 }
 
 void WalkMode::set_velocity(Body& body, const Vec3d& velocity) {
+  yielding_.erase(body.slot);
   control(body, {velocity.x, 0, velocity.z});
 }
 
@@ -153,6 +156,7 @@ void WalkMode::step(std::span<Body> /*bodies: its engine's*/, EngineCounts& coun
   const auto plan_none = [](std::span<Body> /*bodies*/, int32_t /*worker*/) {};
   links_are_used_ = takes_links_->begin_step();
   if (delays_) begin_watching();
+  order_aside();
   engine_.set_orientations(shared_.orientations);
   const bool has_plans =
       shared_.config.routing == Routing::kPaths || some_fly_ || shared_.some_leave;
@@ -274,6 +278,8 @@ void WalkMode::add_memory(CrowdMemory& memory) const {
   // As many of each.
   memory.paths += routes_.capacity() * kRowBytes;
   if (delays_) memory.ground += delays_->bytes();
+  memory.paths += yielding_.all.capacity() * sizeof(StandsAside) +
+                  yielding_.index_of.capacity() * sizeof(uint32_t);
 }
 
 void WalkMode::save(std::vector<uint8_t>& out) const {

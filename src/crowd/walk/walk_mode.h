@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "crowd/ground/standing_draw.h"
@@ -16,6 +17,7 @@
 #include "crowd/walk/crowd_engine.h"
 #include "crowd/walk/delay_map.h"
 #include "crowd/walk/routes.h"
+#include "crowd/walk/yielding.h"
 #include "path/edits/flow_points.h"
 #include "path/edits/ground_finder.h"
 #include "path/overlay/mesh_finder.h"
@@ -87,6 +89,11 @@ class WalkMode final : public Mode {
   [[nodiscard]] DelayMap* delays() const { return delays_.get(); }
   [[nodiscard]] bool flows_are_old() const { return flows_are_old_; }
   void set_flows_old(bool old) { flows_are_old_ = old; }
+  /// Those that stand aside, by slot. Saved apart from rows.
+  [[nodiscard]] std::vector<StandsAside>& standing_aside() { return yielding_.all; }
+  [[nodiscard]] const std::vector<StandsAside>& standing_aside() const { return yielding_.all; }
+  /// Could a crowd have saved them?
+  [[nodiscard]] bool aside_is_sound() const;
 
   Result<void> open_class(size_t number, Context& context) override;
   void close_class(size_t number) override;
@@ -170,6 +177,20 @@ class WalkMode final : public Mode {
   void take_path(Body& body, Route& route, const StrideGround& ground, const Path& path,
                  size_t end);
 
+  // walk_yielding.cpp
+  void order_aside();
+  [[nodiscard]] std::pair<uint32_t, int> precedence_of(uint32_t slot);
+  [[nodiscard]] bool may_stand_aside(const Body& body) const;
+  void write_line(const Body& body, PathLine& line) const;
+  void end_standing_aside(std::span<Body> bodies);
+  void find_on_line(std::span<const Body> bodies, uint32_t asker);
+  [[nodiscard]] bool block_each_other(const Body& asker, const Body& body);
+  void sort_on_line(std::span<const Body> bodies, uint32_t asker);
+  [[nodiscard]] bool is_in_crowd(std::span<const Body> bodies, const Body& body) const;
+  void ask_aside(std::span<Body> bodies, uint32_t asker, int& searches);
+  bool send_aside(std::span<Body> bodies, uint32_t which, uint32_t asker, size_t lines);
+  bool plan_aside(Body& body, Route& route, const StrideGround& ground, size_t worker);
+
   // walk_leaving.cpp
   /// Along its path, or to the nearest exit.
   void plan_exit(Body& body);
@@ -182,9 +203,10 @@ class WalkMode final : public Mode {
   std::vector<std::unique_ptr<OfClass>> classes_;  // null: not in use
   std::vector<Route> routes_;                      // by slot
   std::vector<PathProgress> progress_;             // by slot
-  std::unique_ptr<DelayMap> delays_;               // null: avatars take no notice of jams
-  bool some_fly_ = false;                          // OfClass::flies, of some
-  bool flows_are_old_ = false;                     // the ground has changed since
+  Yielding yielding_;
+  std::unique_ptr<DelayMap> delays_;  // null: avatars take no notice of jams
+  bool some_fly_ = false;             // OfClass::flies, of some
+  bool flows_are_old_ = false;        // the ground has changed since
 };
 
 }  // namespace throng::crowd

@@ -81,6 +81,7 @@ bool WalkMode::plan_path(Body& body, Route& route, const StrideGround& ground, i
   OfClass& parts = *classes_[body.avatar_class];
   Path& path = parts.paths[w];
   const PathPoint here{body.x, body.z, body.level};
+  if (plan_aside(body, route, ground, w)) return true;
   if (route.via != 0 && plan_to_via(body, route, ground, w)) return true;
   progress_[body.slot].is_new = 1;
   if (body.target != 0) {

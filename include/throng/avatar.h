@@ -55,8 +55,8 @@ inline constexpr int32_t kMaxAvatarClasses = 16;
 /// max(step, radius * tan(max_slope)). [m]
 [[nodiscard]] THRONG_API double body_bottom(const AvatarClass& avatar);
 
-/// The default classes: adult; child (1.10 m tall); wheelchair (0.70 m wide as in ISO 7176-5, 0.02
-/// m step, ramps of 1:12, the steepest of ISO 21542 and the ADA); giant (3 m tall), for games.
+/// The default classes: adult; child (1.10 m tall); wheelchair (0.60 m wide, for doors of 0.8 m and
+/// ramps of 1:12 at cells of 0.1 m; 0.02 m step); giant (3 m tall), for games.
 [[nodiscard]] THRONG_API std::vector<AvatarClass> default_classes();
 /// An adult that flies, radius 0.4 m. It is none of the default classes.
 [[nodiscard]] THRONG_API AvatarClass flyer_class();

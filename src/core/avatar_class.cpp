@@ -64,9 +64,11 @@ double body_bottom(const AvatarClass& avatar) {
 }
 
 std::vector<AvatarClass> default_classes() {
-  // A wheelchair's limit is given as a rise of 1 in 12: atan(1 / 12), as a literal because every
-  // machine must agree on it.
-  constexpr double kOneInTwelve = 4.763641690726177;
+  // Ramps of 1 in 12, the steepest for wheelchairs, must be reached at cells of 0.1 m in any
+  // direction: at their ends a bake loses what is steeper than about three quarters of the limit.
+  // So the limit is a rise of 11 in 100: atan(0.11), as a literal because every machine must agree
+  // on it.
+  constexpr double kElevenPercent = 6.2772984895975545;
   return {
       AvatarClass{},
       AvatarClass{.name = "child",
@@ -77,9 +79,9 @@ std::vector<AvatarClass> default_classes() {
                   .speed = 1.1},
       AvatarClass{.name = "wheelchair",
                   .height = 1.35,
-                  .radius = 0.35,
+                  .radius = 0.3,
                   .step_height = 0.02,
-                  .max_slope = kOneInTwelve,
+                  .max_slope = kElevenPercent,
                   .speed = 1.0},
       AvatarClass{.name = "giant",
                   .height = 3.0,

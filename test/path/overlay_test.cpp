@@ -217,7 +217,7 @@ TEST(Overlay, HoldsTheCostsOfCrossing) {
                 search.cost() + graph::portal_length(portal, path::position(view, ends.out),
                                                      path::position(view, ends.in));
             ASSERT_FALSE(std::isinf(costs[j]));
-            EXPECT_GE(costs[j], least * (1 - 1e-6));
+            EXPECT_GE(costs[j], least * (1 - 3e-6));  // sums of floats
             if (&overlay_level == &overlay.overlay_levels().front()) {
               EXPECT_NEAR(costs[j], least, 1e-5 * least);
             }

@@ -660,7 +660,9 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       if (b.has(Body::kMovedElsewhere)) continue;
       here.low_detail += b.has(Body::kLowDetail) ? 1 : 0;
       const Plane displacement =
-          config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z);
+          b.has(Body::kExternal)
+              ? Plane{}
+              : config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z);
       b.asks = b.steps > 0 && proposals()[i].asks;
       if (b.steps == 0) {  // For all others it looks as if it had moved evenly.
         ++here.skipped;

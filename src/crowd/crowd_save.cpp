@@ -210,6 +210,8 @@ bool is_sound(const crowd::Body& b, const world::WorldData& data) {
     return false;
   }
   if (b.x < 0 || b.z < 0 || !world::in_grid(data, b.point())) return false;
+  constexpr int32_t kMaxHeight = 1'000'000'000;  // [mm]
+  if (b.y < -kMaxHeight || b.y > kMaxHeight) return false;
   // Differences to where it heads must not overflow. Of one that is controlled they are rests.
   const int32_t least = b.has(crowd::Body::kExternal) ? -(1 << 29) : 0;
   if (b.local_target_x < least || b.local_target_z < least) return false;

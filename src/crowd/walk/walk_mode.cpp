@@ -311,7 +311,7 @@ bool WalkMode::is_sound(const Body& body) const {
     const PathPoint& corner = route.corners[i];
     if (corner.level >= levels || corner.x < 0 || corner.z < 0) return false;
   }
-  return route.goal.level < levels;
+  return route.goal.level < levels && route.goal.x >= 0 && route.goal.z >= 0;
 }
 
 }  // namespace throng::crowd

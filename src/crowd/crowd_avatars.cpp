@@ -112,7 +112,7 @@ Result<crowd::NewAvatar> Crowd::State::avatar_of(const AvatarSpawn& spawn) const
   made.body.speed = static_cast<float>(speed);
   made.body.radius = static_cast<int32_t>(std::ceil(radius / shared.unit - 1e-9));
   made.body.height = static_cast<uint16_t>(std::ceil(avatar.height * 1000 - 1e-6));
-  made.body.avatar_class = static_cast<uint8_t>(spawn.avatar_class) & 15U;
+  made.body.avatar_class = static_cast<uint8_t>(spawn.avatar_class) & (kMaxAvatarClasses - 1);
   if (!is_speed(speed, radius, shared.config.dt)) {
     return bad_config("speed times dt is over 1000 radii; take shorter steps");
   }

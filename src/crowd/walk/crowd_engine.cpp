@@ -86,6 +86,10 @@ void CrowdEngine::fit(int32_t widest, float fastest, float dt) {
   widest_ = widest;
   fastest_ = fastest;
   every_ = throng::crowd::steps_of_reaction(config_.reaction, dt);
+  // A gain of a few units would be lost if moves were rounded to the nearest one.
+  constexpr float kMinGain = 4;  // [units]
+  gains_little_ =
+      config_.acceleration > 0 && config_.acceleration * dt * (dt / config_.units.unit) < kMinGain;
   sight_ = 0;
   fit_grid();
 }

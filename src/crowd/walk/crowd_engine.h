@@ -356,13 +356,6 @@ class CrowdEngine {
   [[nodiscard]] bool has_short_moves(const Body& body) const {
     return is_turn_bounded(body) || units_of(body).is_short(body.speed);
   }
-  // So are all moves if the gain of speed in a step is less than a few units: it would be lost.
-  [[nodiscard]] bool gains_little() const {
-    constexpr float kMinGain = 4;  // [units]
-    const StepUnits& units = config_.units;
-    return config_.acceleration > 0 &&
-           config_.acceleration * units.dt * (units.dt / units.unit) < kMinGain;
-  }
   // One that is externally controlled is never moved farther than it was given.
   [[nodiscard]] Displacement given_displacement(const Body& body, steer::Plane velocity) const {
     const StepUnits units = units_of(body);
@@ -382,7 +375,7 @@ class CrowdEngine {
                                               turning_radii_[body.avatar_class]);
     }
     if (body.has(Body::kExternal)) return given_displacement(body, velocity);
-    if (has_short_moves(body) || gains_little()) {
+    if (has_short_moves(body) || gains_little_) {
       const uint64_t n = step_ + body.slot;
       return {static_cast<int16_t>(units.small_displacement(velocity.x, n)),
               static_cast<int16_t>(units.small_displacement(velocity.z, n))};
@@ -432,6 +425,7 @@ class CrowdEngine {
   std::vector<uint32_t> arrived_;
   std::vector<float> level_speeds_;
   std::span<Orientation> orientations_;  // by slot
+  bool gains_little_ = false;            // of speed in a step: all moves are rounded in turn
   std::vector<QueueProgress> progress_;  // by slot
   // By slot: those of this step, which bodies write that ask, and those of the step before, which
   // all read. Valid where Body::asks is set.

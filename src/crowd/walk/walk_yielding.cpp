@@ -39,10 +39,6 @@ double square_between(const Body& body, double x, double z) {
 
 bool is_level(const Body& body, double y) { return std::fabs(body.y - y) < body.height; }
 
-uint64_t key_of(int64_t column, int64_t row) {
-  return static_cast<uint64_t>(row) << 32 | static_cast<uint32_t>(column);
-}
-
 }  // namespace
 
 // Its precedence: the slot for which it stands aside in the end, and over how many others.
@@ -162,9 +158,9 @@ void WalkMode::order_aside() {
     if (body.velocity.x * body.velocity.x + body.velocity.z * body.velocity.z >= slow * slow) {
       continue;
     }
-    y.slow.emplace_back(
-        key_of(static_cast<int64_t>(body.x / square), static_cast<int64_t>(body.z / square)),
-        static_cast<uint32_t>(i));
+    y.slow.emplace_back(Yielding::square_key(static_cast<int64_t>(body.x / square),
+                                             static_cast<int64_t>(body.z / square)),
+                        static_cast<uint32_t>(i));
   }
   std::sort(y.slow.begin(), y.slow.end());
   int searches = kMaxSearches;
@@ -188,7 +184,8 @@ void WalkMode::find_on_line(std::span<const Body> bodies, uint32_t asker) {
       const auto column = static_cast<int64_t>((a.x + part * (b.x - a.x)) / square);
       const auto row = static_cast<int64_t>((a.z + part * (b.z - a.z)) / square);
       for (int64_t r = row - 1; r <= row + 1; ++r) {
-        for (int64_t c = column - 1; c <= column + 1; ++c) y.squares.push_back(key_of(c, r));
+        for (int64_t c = column - 1; c <= column + 1; ++c)
+          y.squares.push_back(Yielding::square_key(c, r));
       }
     }
   }
@@ -196,16 +193,15 @@ void WalkMode::find_on_line(std::span<const Body> bodies, uint32_t asker) {
   y.squares.erase(std::unique(y.squares.begin(), y.squares.end()), y.squares.end());
   y.on_line.clear();
   for (const uint64_t key : y.squares) {
-    auto at = std::lower_bound(y.slow.begin(), y.slow.end(), std::pair(key, 0U));
-    for (; at != y.slow.end() && at->first == key; ++at) {
-      const Body& body = bodies[at->second];
-      if (at->second == asker) continue;
+    y.for_slow_in(key, [&](uint32_t i) {
+      const Body& body = bodies[i];
+      if (i == asker) return;
       const auto nearest = line.nearest(body.x, body.z, body.y, body.height);
       const double range = line.radius() + body.radius + kGap / shared_.unit;
       if (nearest.square < range * range && nearest.along > 0) {
-        y.on_line.emplace_back(nearest.along, at->second);
+        y.on_line.emplace_back(nearest.along, i);
       }
-    }
+    });
   }
   std::sort(y.on_line.begin(), y.on_line.end(), [&](const auto& a, const auto& b) {
     return std::pair(a.first, bodies[a.second].slot) < std::pair(b.first, bodies[b.second].slot);
@@ -262,17 +258,15 @@ bool WalkMode::is_in_crowd(std::span<const Body> bodies, const Body& body) const
   int beside = 0;
   for (int64_t r = row - 1; r <= row + 1; ++r) {
     for (int64_t c = column - 1; c <= column + 1; ++c) {
-      const uint64_t key = key_of(c, r);
-      auto at = std::lower_bound(y.slow.begin(), y.slow.end(), std::pair(key, 0U));
-      for (; at != y.slow.end() && at->first == key; ++at) {
-        const Body& other = bodies[at->second];
+      y.for_slow_in(Yielding::square_key(c, r), [&](uint32_t i) {
+        const Body& other = bodies[i];
         if (!is_level(other, body.y) || square_between(other, body.x, body.z) >= range * range) {
-          continue;
+          return;
         }
         const auto nearest = y.lines[0].nearest(other.x, other.z, other.y, other.height);
         const double touching = y.lines[0].radius() + other.radius;
         beside += nearest.square >= touching * touching ? 1 : 0;
-      }
+      });
     }
   }
   return beside > kCrowd;

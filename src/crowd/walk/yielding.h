@@ -54,6 +54,15 @@ struct Yielding {
     corners.reserve(kFew);
     search.reserve();
   }
+  static uint64_t square_key(int64_t column, int64_t row) {
+    return static_cast<uint64_t>(row) << 32 | static_cast<uint32_t>(column);
+  }
+  /// Calls f with each of the slow bodies of a square.
+  template <class F>
+  void for_slow_in(uint64_t square, F&& f) const {
+    auto at = std::lower_bound(slow.begin(), slow.end(), std::pair(square, 0U));
+    for (; at != slow.end() && at->first == square; ++at) f(at->second);
+  }
   [[nodiscard]] StandsAside* find(uint32_t slot) {
     const auto found =
         std::lower_bound(all.begin(), all.end(), slot,

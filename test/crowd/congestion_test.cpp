@@ -150,6 +150,34 @@ TEST(Congestion, WhereThereIsNoOtherRouteTheStepsAreTheSame) {
   EXPECT_EQ(hashes[0], hashes[1]);
 }
 
+// Detours around the crowd lead back to the door: no avatar may take one.
+TEST(Congestion, ACrowdBeforeItsOnlyDoorKeepsItsRoute) {
+  Scene scene;
+  scene.add_box({0, -0.5, 0}, {20, 0, 20});
+  scene.add_box({11.9, 0, 0}, {12.1, 3, 9.55});
+  scene.add_box({11.9, 0, 10.45}, {12.1, 3, 20});
+  const World world = test::bake(scene, 0.1, {AvatarClass{}});
+  for (uint64_t seed = 1; seed <= 3; ++seed) {
+    Crowd crowd = made(world, {.seed = seed});
+    const Place goal = world.find_place(0, {16, 0, 10}, 0.5);
+    ASSERT_TRUE(goal);
+    for (int i = 0; i < 120; ++i) {
+      const AvatarId id =
+          added(crowd, world.find_place(0, {5 + 0.6 * (i % 10), 0, 6.4 + 0.6 * (i / 10)}, 0.5));
+      ASSERT_TRUE(id) << i;
+      crowd.set_goals(std::span(&id, 1), std::span(&goal, 1));
+    }
+    Outcome all;
+    for (int step = 0; step < 600; ++step) {
+      all.step(crowd);
+      for (const AvatarId id : crowd.arrived()) crowd.remove(std::span(&id, 1));
+    }
+    EXPECT_GT(all.arrived, 60u);
+    EXPECT_GT(all.searches, 20u);
+    EXPECT_EQ(all.changed, 0u);
+  }
+}
+
 TEST(Congestion, CrowdsBeforeTwoEqualDoorsDoNotOscillate) {
   Scene scene;
   scene.add_box({0, -0.5, 0}, {20, 0, 12});

@@ -19,6 +19,7 @@ constexpr int kHeldUp = 25;           // [PathProgress::share] below this it sea
 constexpr float kAhead = 1;           // [m] ahead of such a body ground is as slow
 constexpr double kJam = 3;            // factor of a delay at a corner that a new path is tested by
 constexpr float kReach = 50;          // [m] of its path that it compares
+constexpr float kGoalReach = 100;     // [m] of its path, up to which it searches to its goal
 constexpr float kSlowRoute = 1.5f;    // delayed by length, from which on it searches
 constexpr float kClearlyLess = 0.8f;  // of the cost, at which it takes another route
 constexpr uint64_t kMaxNodes = 2000;  // of a search
@@ -39,16 +40,19 @@ double square_to_segment(const PathPoint& at, const PathPoint& from, const PathP
   return dx * dx + dz * dz;
 }
 
-// Does a path lead around all corners before number `end` that a body heads to? Then it is the same
-// route, through the same doors. `near`: [units]
-bool is_same_route(const world::WorldData& world, const Path& path, const Route& route, size_t end,
-                   double near) {
-  if (route.next == end) return false;
+// Does a path that was pulled taut lead around all corners before number `end` that a body heads
+// to, and is it no longer than the route? Then it is the same route, through the same doors; before
+// it was pulled it may have led around those that queue there. `length`: of the route [m], `near`:
+// [units]
+bool is_same_route(const world::WorldData& world, const Path& taut, const Route& route, size_t end,
+                   double length, double near) {
+  constexpr double kLonger = 1.05, kPushed = 0.5;  // [1, m] by which avatars are pushed off paths
+  if (taut.length > kLonger * length + kPushed) return false;
   for (size_t i = route.next; i < end; ++i) {
     double least = HUGE_VAL;
-    PathPoint from = point_of(world, path.points[0]);
-    for (size_t p = 1; p < path.points.size(); ++p) {
-      const PathPoint to = point_of(world, path.points[p]);
+    PathPoint from = point_of(world, taut.points[0]);
+    for (size_t p = 1; p < taut.points.size(); ++p) {
+      const PathPoint to = point_of(world, taut.points[p]);
       least = std::min(least, square_to_segment(route.corners[i], from, to));
       from = to;
     }
@@ -86,6 +90,13 @@ bool WalkMode::may_change_route(const Body& body, const Route& route) const {
          !leads_to_link(route) && !takes_links_->uses_link(body);
 }
 
+// [m]
+float WalkMode::path_left(const Body& body) const {
+  const int32_t dx = body.local_target_x - body.x, dz = body.local_target_z - body.z;
+  return engine_.path_after(body.slot) +
+         std::sqrt(near_square(dx, dz)) * static_cast<float>(shared_.unit);
+}
+
 void WalkMode::watch_route(Body& body, size_t worker) {
   PathProgress& row = progress_[body.slot];
   const Route& route = routes_[body.slot];
@@ -95,8 +106,7 @@ void WalkMode::watch_route(Body& body, size_t worker) {
     return;
   }
   const int32_t dx = body.local_target_x - body.x, dz = body.local_target_z - body.z;
-  const float left = engine_.path_after(body.slot) +
-                     std::sqrt(near_square(dx, dz)) * static_cast<float>(shared_.unit);
+  const float left = path_left(body);
   if (row.left < 0 || left < kNearGoal) {
     row.left = left;
     row.share = PathProgress::kWhole;
@@ -168,7 +178,7 @@ void WalkMode::note_ahead(const Body& body, int32_t dx, int32_t dz, int share) {
   }
 }
 
-// Takes another route up to a corner ahead, if that is clearly faster now.
+// Takes another route to its goal, or up to a corner ahead, if that is clearly faster now.
 void WalkMode::avoid_jam(Body& body, size_t worker) {
   OfClass& parts = *classes_[body.avatar_class];
   PathProgress& row = progress_[body.slot];
@@ -180,16 +190,23 @@ void WalkMode::avoid_jam(Body& body, size_t worker) {
   if (now.cost < kSlowRoute * now.length) return;
   shared_.jam_searches.fetch_add(1, std::memory_order_relaxed);
   const world::WorldData& data = *data_of(shared_.world);
-  Path& path = parts.paths[worker];
-  const bool is_found = live.find_by_delays(place_of(data, body, place_of_body(body)),
-                                            place_of(data, body, route.corners[now.end]),
-                                            {.delays = &delays_->delays(),
-                                             .max_cost = kClearlyLess * double{now.cost},
-                                             .budget = shared_.search_budget(kMaxNodes)},
-                                            path);
+  Path &path = parts.paths[worker], &taut = parts.compared[worker];
+  // The last corner that it keeps may lie in the jam, and a detour to its goal pass it by.
+  const float left = path_left(body);
+  const bool to_goal = left <= kGoalReach && body.target == 0;
+  const float cost = now.cost + (to_goal ? std::max(left - now.length, 0.0f) : 0);
+  const PathPoint& end = to_goal ? route.goal : route.corners[now.end];
+  const bool is_found =
+      live.find_by_delays(place_of(data, body, place_of_body(body)), place_of(data, body, end),
+                          {.delays = &delays_->delays(),
+                           .max_cost = kClearlyLess * double{cost},
+                           .budget = shared_.search_budget(kMaxNodes),
+                           .taut = &taut},
+                          path);
   shared_.note_spent(path.spent);
   if (!is_found || path.points.size() < 2 ||
-      is_same_route(data, path, route, now.end, kSameCorner / shared_.unit)) {
+      is_same_route(data, taut, route, now.end, to_goal ? left : now.length,
+                    kSameCorner / shared_.unit)) {
     // The longer there was none, the less often it searches.
     row.wait = row.next_wait;
     row.next_wait = static_cast<uint8_t>(std::min<int>(2 * row.next_wait, PathProgress::kMaxWait));
@@ -198,8 +215,12 @@ void WalkMode::avoid_jam(Body& body, size_t worker) {
   shared_.changed_route.fetch_add(1, std::memory_order_relaxed);
   const StrideGround ground = stride_ground(body);
   const size_t via = find_via(body, ground, worker, path);
-  take_path(body, route, ground, path, now.end);
-  route.via = via < route.count ? via & 0x7f : 0;
+  if (to_goal) {
+    take_whole_path(body, route, ground, path);
+  } else {
+    take_path(body, route, ground, path, now.end);
+  }
+  route.via = std::min<size_t>(via, route.count - 1u) & 0x7f;
   body.clear(Body::kContinues);
   body.detour_angle = 0;
   row = {};

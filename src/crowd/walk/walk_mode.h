@@ -154,6 +154,7 @@ class WalkMode final : public Mode {
   void note_onward(const Body& body, const Route& route);
   void follow_path(Body& body, Route& route, const StrideGround& ground, uint64_t nth);
   bool plan_path(Body& body, Route& route, const StrideGround& ground, int32_t worker);
+  bool take_whole_path(Body& body, Route& route, const StrideGround& ground, const Path& path);
   void find_path(const Body& body, const PathPoint& from, const PathPoint& to,
                  const StrideGround& ground, size_t worker, Path& path);
 
@@ -162,6 +163,7 @@ class WalkMode final : public Mode {
   void watch_routes(std::span<Body> bodies, int32_t worker);
   void watch_route(Body& body, size_t worker);
   void note_ahead(const Body& body, int32_t dx, int32_t dz, int share);
+  [[nodiscard]] float path_left(const Body& body) const;
   [[nodiscard]] bool may_change_route(const Body& body, const Route& route) const;
   [[nodiscard]] bool leads_into_jam(const Body& body, const Route& route) const;
   struct RouteCost {

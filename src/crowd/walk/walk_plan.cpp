@@ -90,7 +90,12 @@ bool WalkMode::plan_path(Body& body, Route& route, const StrideGround& ground, i
   } else {
     find_path(body, here, route.goal, ground, w, path);
   }
-  if (!use_path(data, path, ground, following(), body, route)) return false;
+  return take_whole_path(body, route, ground, path);
+}
+
+bool WalkMode::take_whole_path(Body& body, Route& route, const StrideGround& ground,
+                               const Path& path) {
+  if (!use_path(*data_of(shared_.world), path, ground, following(), body, route)) return false;
   double first = 0;  // [m]
   if (path.points.size() > 1) {
     first = std::hypot(path.points[1].position.x - path.points[0].position.x,

@@ -10,9 +10,14 @@
 namespace throng::path {
 namespace {
 
+// Delay counts more than once, because each that joins a queue also delays all behind it: by the
+// volume-delay function of [BPR64], t = t0 (1 + a v^4), by four times what it waits itself. Weights
+// were measured: docs/design/017-congestion.md.
 double slowed(uint16_t share) {
   constexpr double kFree = GroundDelays::kFree;
-  return share * GroundDelays::kMaxFactor <= kFree ? GroundDelays::kMaxFactor : kFree / share;
+  const double longer =
+      share * GroundDelays::kMaxDelayed <= kFree ? GroundDelays::kMaxDelayed : kFree / share;
+  return 1 + GroundDelays::kWeight * (longer - 1);
 }
 
 }  // namespace

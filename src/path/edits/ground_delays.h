@@ -14,7 +14,8 @@
 namespace throng::path {
 
 /// By squares of level tiles and by the direction in which they are walked: the share of their
-/// desired speed at which avatars get on. A metre at a share of 1/4 counts as four metres.
+/// desired speed at which avatars get on. A metre at a share of 1/4 takes the time of three metres
+/// more, which count kWeight times.
 class GroundDelays {
  public:
   static constexpr int32_t kSide = 16;  // of a square [cells]
@@ -24,7 +25,9 @@ class GroundDelays {
   /// Of the squares of a level, row by row, by direction. [kFree: the whole speed]
   using Shares = std::array<uint16_t, kBins>;
   static constexpr uint16_t kFree = UINT16_MAX;
-  static constexpr double kMaxFactor = 40;
+  static constexpr double kWeight = 8;       // of delay by time on free ground
+  static constexpr double kMaxDelayed = 40;  // the time that a metre is taken to need, at most
+  static constexpr double kMaxFactor = 1 + kWeight * (kMaxDelayed - 1);
 
   explicit GroundDelays(size_t levels);
 

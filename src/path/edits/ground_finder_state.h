@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "path/edits/cluster_search.h"
 #include "path/edits/ground_finder.h"
 #include "path/edits/ground_view.h"
 #include "path/edits/point_search.h"
@@ -45,6 +47,7 @@ struct GroundFinder::State {
 
   GroundView mesh;
   PointSearch search;
+  std::unique_ptr<ClusterSearch> clusters;  // null: no search by delays yet
   CostString string;
   Place from_place, to_place;
   ViewStop from, to;

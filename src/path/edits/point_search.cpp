@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "path/edits/corridor.h"
 #include "path/ground/pull_string.h"
 #include "world/tile_grid.h"
 
@@ -201,9 +202,10 @@ void CostString::pull(GroundView& mesh, std::vector<ViewStop>& stops) {
   stops.swap(whole_);
 }
 
-void PointSearch::begin(GroundView& mesh, const ViewStop& from, const ViewStop& to,
-                        double max_cost) {
+void PointSearch::begin(GroundView& mesh, const ViewStop& from, const ViewStop& to, double max_cost,
+                        const Corridor* corridor) {
   to_ = to;
+  corridor_ = corridor;
   max_cost_ = max_cost;
   nodes_.clear();
   open_.clear();
@@ -216,6 +218,10 @@ void PointSearch::begin(GroundView& mesh, const ViewStop& from, const ViewStop& 
 
 ReachedPoint* PointSearch::push(GroundView& mesh, const ViewStop& stop, uint32_t parent,
                                 double cost) {
+  if (corridor_ != nullptr &&
+      !corridor_->holds(stop.level, mesh.rect(*mesh.level(stop.level), stop.rect))) {
+    return nullptr;
+  }
   const auto [index, is_new] = nodes_.node_of(stop);
   ReachedPoint& node = nodes_.nodes[index];
   if (!is_new && (node.done || node.cost <= cost)) return nullptr;

@@ -13,6 +13,8 @@
 /// Paths of low cost over a GroundView: a search over points of portals, pulled taut afterwards.
 namespace throng::path {
 
+class Corridor;
+
 /// A point of a path, standing in a rectangle.
 struct ViewStop {
   uint32_t level = 0;  // of the world
@@ -91,9 +93,11 @@ class PointSearch {
   enum class State { kSearching, kFound, kNone, kFull };
   static constexpr uint64_t kKeptBytes = uint64_t{32} << 20;
 
-  /// `max_cost`: of a path; one that costs more counts as none. [cells]
+  /// `max_cost`: of a path; one that costs more counts as none. `corridor`, if it is not null,
+  /// holds all rectangles that the search may enter, until it ends. [cells]
   void begin(GroundView& mesh, const ViewStop& from, const ViewStop& to,
-             double max_cost = std::numeric_limits<double>::infinity());
+             double max_cost = std::numeric_limits<double>::infinity(),
+             const Corridor* corridor = nullptr);
   /// Expands up to `max_nodes` points more; kFull if it would need more than `max_bytes`.
   State advance(GroundView& mesh, uint64_t max_nodes, uint64_t max_bytes);
   /// Frees what is allocated beyond kKeptBytes: after a search.
@@ -124,6 +128,7 @@ class PointSearch {
   uint32_t nearest_ = 0, goal_ = UINT32_MAX;
   double nearest_distance_ = 0;
   double max_cost_ = 0;
+  const Corridor* corridor_ = nullptr;
   uint64_t expanded_ = 0;
 };
 

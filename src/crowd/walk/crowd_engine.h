@@ -136,6 +136,8 @@ class CrowdEngine {
   /// How long a body has stood. [s]
   [[nodiscard]] float stood(uint32_t slot) const { return progress_[slot].stood; }
   [[nodiscard]] float path_after(uint32_t slot) const { return progress_[slot].after; }
+  /// Could another like it stand beside it, across its path?
+  [[nodiscard]] bool has_room_for_two(const Body& body) const;
   /// Slots of the bodies that arrived in the last step, in no order.
   [[nodiscard]] std::span<const uint32_t> arrived() const { return arrived_; }
   [[nodiscard]] uint64_t bytes() const;

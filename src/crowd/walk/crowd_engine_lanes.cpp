@@ -26,6 +26,11 @@ CrowdEngine::Sides CrowdEngine::sides_of(const Body& body) const {
           ground.free_distance(body.level, body.point(), right, query_range) * unit};
 }
 
+bool CrowdEngine::has_room_for_two(const Body& body) const {
+  const Sides sides = sides_of(body);
+  return sides.left + sides.right >= 2 * static_cast<float>(body.radius) * config_.units.unit;
+}
+
 // Does a neighbour come towards it? The neighbour's local target counts: in a jam, preferred
 // velocities point in all directions.
 bool CrowdEngine::has_oncoming(const Body& body, const Worker& worker) const {

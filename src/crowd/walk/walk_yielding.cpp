@@ -281,6 +281,13 @@ void WalkMode::ask_aside(std::span<Body> bodies, uint32_t asker, int& searches) 
   sort_on_line(bodies, asker);
   if (y.asked.empty() || is_in_crowd(bodies, body) || is_in_crowd(bodies, bodies[y.asked[0]]))
     return;
+  // Where two fit side by side, many that come towards it are a lane: it ends by itself, and would
+  // be broken up.
+  constexpr size_t kLane = 3;
+  if (y.asked.size() >= kLane && engine_.has_room_for_two(body) &&
+      engine_.has_room_for_two(bodies[y.asked[0]])) {
+    return;
+  }
   // Also the paths of those for which it stands aside itself.
   size_t lines = 1;
   for (uint32_t slot = body.slot; lines < kMaxDepth; ++lines) {

@@ -145,7 +145,8 @@ struct CrowdConfig {
   /// Of finding paths: kLabels for small worlds and many long paths, kZones for large worlds.
   PathSpeedup speedup = PathSpeedup::kNone;
   /// SearchBudget::max_bytes of each search for a path. As many searches as there are workers may
-  /// run at the same time. [bytes, >= 2^20]
+  /// run at the same time, and two more for each class that flies, whose searches go on over
+  /// several steps. [bytes, >= 2^20]
   uint64_t search_bytes = SearchBudget::kDefaultBytes;
   /// Nodes of the same world. Avatars of classes that climb or have a `max_drop`, and do not fly,
   /// walk over them; without nodes these walk on level tiles, as others do.

@@ -178,6 +178,13 @@ bool FlightFinder::is_legal(Vec3d feet) const {
   return state_->ends(scratch_->air(*state_)).in_air(feet).has_value();
 }
 
+bool FlightFinder::is_cut_off(Vec3d from, Vec3d to) const {
+  const AirView air = scratch_->air(*state_);
+  const FlightEndpoints ends = state_->ends(air);
+  const auto a = ends.in_air(from), b = ends.in_air(to);
+  return a && b && !air.same_component(*a, *b);
+}
+
 std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const {
   const std::vector<uint64_t>& before = state_->cells_before;
   if (before.back() == 0) return {};

@@ -77,6 +77,8 @@ class FlightFinder {
   [[nodiscard]] bool is_end(Vec3d at, double vertical_tolerance) const;
   /// Is a point of the air legal for the feet? Constant time.
   [[nodiscard]] bool is_legal(Vec3d feet) const;
+  /// Are both points in the air, and does no flight lead from one to the other? Constant time.
+  [[nodiscard]] bool is_cut_off(Vec3d from, Vec3d to) const;
   /// The n-th of a reproducible stream of points, uniform over the legal air. Empty only if there
   /// is no legal air.
   [[nodiscard]] std::optional<Vec3d> random_point(uint64_t seed, uint64_t n) const;

@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "baked.h"
+#include "crowd/fly/flyer_air.h"
+#include "crowd/ground/crowd_ground.h"
 #include "crowds.h"
+#include "path/air/flight_finder.h"
 #include "throng/crowd.h"
 #include "throng/path.h"
 
@@ -262,6 +265,21 @@ Scene two_halls() {
   scene.add_box({0, -0.1, 7.8}, {20, 6, 8});
   scene.add_box({0, 5.8, 0}, {20, 6, 8});
   return scene;
+}
+
+// What a search is given is the cell in which the flyer is: a height in whole millimetres is not
+// one less in metres, since it may be the lowest of a cell.
+TEST(FlyerPaths, APositionIsTheSameInMetres) {
+  const World world = test::bake(two_halls(), 0.1, {flyer_class()});
+  Context context;
+  const auto flight = path::FlightFinder::create(world, {}, context);
+  ASSERT_TRUE(flight) << flight.error().message;
+  const crowd::CrowdGround ground;
+  const crowd::FlyerAir air(world, flight->space(), ground, 0);
+  for (int32_t y = -50000; y <= 50000; ++y) {
+    const crowd::AirPosition position{1000 + 3 * (y + 50000), 2000 + (y + 50000), y};
+    ASSERT_EQ(air.position(air.metres(position)), position) << y;
+  }
 }
 
 TEST(FlyerPaths, OneLandsAndWalksWhereOnlyTheGroundLeadsToItsGoal) {

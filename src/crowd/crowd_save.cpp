@@ -287,8 +287,7 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
       head.obstacles >= kMax || head.corners >= kMax || head.free_obstacles >= kMax ||
       head.target_values >= kMax || head.searches > head.flights || head.views >= kMax ||
       head.edit_bytes >= kMax || head.call_bytes >= kMax || head.slow_levels >= kMax ||
-      head.aside >= kMax ||
-      (head.flights != 0 && head.flights != head.slots) ||
+      head.aside >= kMax || (head.flights != 0 && head.flights != head.slots) ||
       (head.climbs != 0 && head.climbs != head.slots) ||
       (head.link_uses != 0 && head.link_uses != head.slots) || saved.size() != size_of(head)) {
     return bad("is cut short; save the crowd again");

@@ -10,13 +10,12 @@
 #include "path/ground/slice.h"
 
 // How flyers find their paths: straight, by a search in the air's octree, or up and over what it
-// does not know. Time in a step: mostly of the search, kSliceBoxes boxes at most and the pulling of
-// its string; a search that takes longer goes on in the next steps (flight_slices.cpp).
+// does not know. Searches are done in slices (flight_slices.cpp). Time of one: kSliceBoxes boxes,
+// and of the last one the pulling of its string.
 namespace throng::crowd {
 namespace {
 
-constexpr double kGroundRadius = 0.5;      // [m] from feet to the ground below them
-constexpr uint64_t kSliceBoxes = 1 << 13;  // and nodes that a search expands in a step: 2 to 4 ms
+constexpr double kGroundRadius = 0.5;  // [m] from feet to the ground below them
 
 // Where a path in the air to the goal ends: there, or over the place to land on. None: a solid is
 // straight above that place.
@@ -62,12 +61,13 @@ void FlyMode::begin_search(OfClass& parts, size_t lane, const AirPosition& from,
                              .nearest = false});
 }
 
-bool FlyMode::advance_search(OfClass& parts, size_t lane) {
+bool FlyMode::advance_search(OfClass& parts, size_t lane, uint64_t& boxes) {
   Path& path = parts.paths[lane];
   path::Slice slice{kSliceBoxes};
-  if (!parts.finders[lane].advance(slice, path)) return false;
-  shared_.note_spent(path.spent);
-  return true;
+  const bool is_done = parts.finders[lane].advance(slice, path);
+  boxes += std::max(kSliceBoxes - slice.left, kMinBoxes);
+  if (is_done) shared_.note_spent(path.spent);
+  return is_done;
 }
 
 // Is a straight line clear of all active obstacles?
@@ -210,37 +210,18 @@ bool FlyMode::take_points(const Body& body, const Flight& flight, const FlightEn
   return true;
 }
 
-// A path from where a flyer is to its goal.
-FlyMode::Found FlyMode::find_flight(const Body& body, Flight& flight, size_t lane) {
-  OfClass& parts = *classes_[body.avatar_class];
+// The straight path to the goal. False: it is not free.
+bool FlyMode::find_straight(const Body& body, Flight& flight) const {
+  const FlyerAir& air = air_of(body);
+  const auto to = end_in_air(air, flight);
+  if (!to) return false;
   const AirPosition from = first_in_air(body, flight);
-  const bool is_straight = shared_.config.routing == Routing::kStraight;
-  const auto to = end_in_air(parts.air, flight);
-  if (to &&
-      (is_straight || (parts.air.sees(from, *to) && is_clear_of_obstacles(body, from, *to)))) {
-    set_path(flight, std::span(&*to, 1), flight.goal_level != Flight::kInAir);
-    return Found::kPath;
+  if (shared_.config.routing != Routing::kStraight &&
+      !(air.sees(from, *to) && is_clear_of_obstacles(body, from, *to))) {
+    return false;
   }
-  if (is_straight) return Found::kNone;
-  const FlightEnds ends = ends_of(body, flight, from, lane);
-  begin_search(parts, lane, ends.begin, ends.to);
-  if (!advance_search(parts, lane)) return Found::kLater;
-  if (!take_points(body, flight, ends, lane)) return Found::kNone;
-  set_path(flight, parts.buffers[lane].points, parts.buffers[lane].lands);
-  return Found::kPath;
-}
-
-// The rest of a path, from the last waypoint that its flyer knows: it is found before the flyer is
-// there.
-FlyMode::Found FlyMode::find_rest(const Body& body, Flight& flight, size_t lane) {
-  OfClass& parts = *classes_[body.avatar_class];
-  const FlightEnds ends = ends_of(body, flight, flight.points[flight.count - 1u], lane);
-  begin_search(parts, lane, ends.begin, ends.to);
-  if (!advance_search(parts, lane)) return Found::kLater;
-  if (!take_points(body, flight, ends, lane)) return Found::kNone;
-  put_before(flight, parts.buffers[lane].points);
-  set_path(flight, parts.buffers[lane].points, parts.buffers[lane].lands);
-  return Found::kPath;
+  set_path(flight, std::span(&*to, 1), flight.goal_level != Flight::kInAir);
+  return true;
 }
 
 }  // namespace throng::crowd

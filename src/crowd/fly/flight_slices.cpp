@@ -1,43 +1,63 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 
 #include "core/parallel.h"
 #include "crowd/fly/fly_mode.h"
 
-// Searches for the paths of flyers that did not end in the step in which they were begun. They go
-// on in slices, a few of each class at a time, in the order in which they were asked for, of one
-// step by slots. What a slice does depends on the boxes that are expanded alone, so results are the
-// same for any number of workers and on every machine. Time in a step: kSearchers slices for each
-// class, and linear in the bodies while there is a search.
+// Searches for the paths of flyers, at the end of a step, in the order in which they were asked
+// for, of one step by slots. Each has one slice in the memory of a worker, in which most end. Those
+// that do not go on in slices, a few of each class at a time, in memory of their own. All slices of
+// a step together expand kBoxesPerSecond boxes a simulated second at most. What is done in a step
+// depends on the boxes that are expanded alone, so results are the same for any number of workers
+// and on every machine. Time in a step: these boxes, and linear in the bodies while there is a
+// search.
 namespace throng::crowd {
+namespace {
+
+constexpr double kBoxesPerSecond = 163840;  // 16 slices in 0.1 s: 4 to 27 ms on one thread
+constexpr uint64_t kMinBoxesInStep = 4 * kSliceBoxes;  // in a sub-step, however short
+
+}  // namespace
 
 void FlyMode::advance_searches(std::span<Body> bodies) {
   if (searches_.empty() && !some_ask_.load(std::memory_order_relaxed)) return;
   list_searches(bodies);
-  choose_searches(bodies);
-  parallel_for(active_.size(), shared_.config.workers,
-               [&](size_t a) { advance(active_[a], bodies[active_[a].body]); });
+  const double seconds = shared_.config.dt / shared_.sub_steps;
+  const auto all =
+      std::max(static_cast<uint64_t>(std::lround(kBoxesPerSecond * seconds)), kMinBoxesInStep);
+  const bool some_go_on = std::any_of(searches_.begin(), searches_.end(),
+                                      [](const LongSearch& search) { return search.slices > 0; });
+  const uint64_t kept = some_go_on ? all / 2 : 0;
+  uint64_t left = kept + begin_searches(bodies, all - kept);
+  while (choose_searches(bodies, left)) {
+    parallel_for(active_.size(), shared_.config.workers,
+                 [&](size_t a) { advance(active_[a], bodies[active_[a].body]); });
+    for (const ActiveSearch& active : active_) left -= active.boxes;
+  }
+  shared_.flight_boxes += all - left;
 }
 
 // Takes out the searches of flyers that are gone, have another goal or have their path, and adds
 // those that were asked for.
 void FlyMode::list_searches(std::span<const Body> bodies) {
-  constexpr uint8_t kKept = kListed + 1;  // also against a list that has a slot twice
+  constexpr uint8_t kKept = kTakesOff + 1;  // also against a list that has a slot twice
   some_ask_.store(false, std::memory_order_relaxed);
   searching_.clear();
   for (size_t i = 0; i < bodies.size(); ++i) {
-    const Body& body = bodies[i];
-    if (!body.flies() || flights_[body.slot].search == kNoSearch) continue;
-    if (body.has(Body::kHasGoal)) {
-      searching_.emplace_back(body.slot, i);
+    uint8_t& search = flights_[bodies[i].slot].search;
+    if (search != kAsked && search != kListed) continue;
+    if (bodies[i].has(Body::kHasGoal)) {
+      searching_.emplace_back(bodies[i].slot, i);
     } else {
-      flights_[body.slot].search = kNoSearch;
+      search = kNoSearch;
     }
   }
   std::sort(searching_.begin(), searching_.end());
+  body_of_search_.clear();
   size_t kept = 0;
   for (const LongSearch& search : searches_) {
     const auto at =
@@ -47,65 +67,119 @@ void FlyMode::list_searches(std::span<const Body> bodies) {
     if (flight.search != kListed) continue;
     flight.search = kKept;
     searches_[kept++] = search;
+    body_of_search_.push_back(at->second);
   }
   searches_.resize(kept);
   for (const auto& [slot, body] : searching_) {
     Flight& flight = flights_[slot];
-    if (flight.search != kKept) searches_.push_back({.ends = {}, .slot = slot, .slices = 0});
+    if (flight.search != kKept) {
+      searches_.push_back({.ends = {}, .slot = slot, .slices = 0});
+      body_of_search_.push_back(body);
+    }
     flight.search = kListed;
   }
 }
 
-// The first searches of each class go on, each where it was begun.
-void FlyMode::choose_searches(std::span<const Body> bodies) {
+// The first slice of each search that has not begun, as long as boxes are left. Returns how many
+// are left.
+uint64_t FlyMode::begin_searches(std::span<Body> bodies, uint64_t left) {
+  size_t next = 0;
+  while (left >= kSliceBoxes) {
+    active_.clear();
+    for (; next < searches_.size() && (active_.size() + 1) * kSliceBoxes <= left; ++next) {
+      if (searches_[next].slices > 0) continue;
+      const Body& body = bodies[body_of_search_[next]];
+      // What a searcher may have of an earlier search for this flyer is of no use.
+      auto& slots = classes_[body.avatar_class]->slot_of_searcher;
+      std::replace(slots.begin(), slots.end(), body.slot, kNoSlot);
+      active_.push_back({.search = next, .body = body_of_search_[next]});
+    }
+    if (active_.empty()) break;
+    parallel_for_worker(active_.size(), shared_.config.workers, [&](size_t a, int32_t worker) {
+      begin(active_[a], bodies[active_[a].body], static_cast<size_t>(worker));
+    });
+    for (const ActiveSearch& active : active_) left -= active.boxes;
+  }
+  return left;
+}
+
+// The first searches of each class that go on, each in the memory in which it was begun. False:
+// there are none for which enough boxes are left.
+bool FlyMode::choose_searches(std::span<const Body> bodies, uint64_t left) {
   for (const auto& parts : classes_) {
     if (parts) parts->active = parts->taken = 0;
   }
   active_.clear();
   for (size_t s = 0; s < searches_.size(); ++s) {
-    const uint32_t slot = searches_[s].slot;
-    const size_t body =
-        std::lower_bound(searching_.begin(), searching_.end(), std::pair(slot, size_t{0}))->second;
-    OfClass& parts = *classes_[bodies[body].avatar_class];
+    const LongSearch& search = searches_[s];
+    if (search.slices == 0 || flights_[search.slot].search != kListed) continue;
+    OfClass& parts = *classes_[bodies[body_of_search_[s]].avatar_class];
     if (parts.active == kSearchers) continue;
+    const uint64_t boxes = (search.slices == 1 ? 2 : 1) * kSliceBoxes;  // see advance
+    if (boxes > left) break;
+    left -= boxes;
     ++parts.active;
     const auto has_it =
-        std::find(parts.slot_of_searcher.begin(), parts.slot_of_searcher.end(), slot);
+        std::find(parts.slot_of_searcher.begin(), parts.slot_of_searcher.end(), search.slot);
     const auto searcher = static_cast<size_t>(has_it - parts.slot_of_searcher.begin());
     if (searcher < kSearchers) parts.taken |= 1u << searcher;
-    active_.push_back({.search = s, .body = body, .searcher = searcher, .is_begun = true});
+    active_.push_back({.search = s,
+                       .body = body_of_search_[s],
+                       .searcher = searcher,
+                       .is_begun = searcher < kSearchers});
   }
   for (ActiveSearch& active : active_) {
-    if (active.searcher < kSearchers) continue;
+    if (active.is_begun) continue;
     OfClass& parts = *classes_[bodies[active.body].avatar_class];
     active.searcher = 0;
     while ((parts.taken >> active.searcher & 1) != 0) ++active.searcher;
-    active.is_begun = false;
     parts.taken |= 1u << active.searcher;
     parts.slot_of_searcher[active.searcher] = searches_[active.search].slot;
   }
+  return !active_.empty();
 }
 
-void FlyMode::advance(const ActiveSearch& active, Body& body) {
+void FlyMode::begin(ActiveSearch& active, Body& body, size_t lane) {
   LongSearch& search = searches_[active.search];
-  Flight& flight = flights_[body.slot];
+  const Flight& flight = flights_[body.slot];
   OfClass& parts = *classes_[body.avatar_class];
-  const size_t lane = parts.first_searcher + active.searcher;
-  if (search.slices == 0) {
+  if (!body.flies()) {
+    search.ends = {feet_of(body), feet_of(body), flight.goal};
+  } else {
     // One that flies on needs the rest of its path.
     const bool waits = body.has(Body::kNeedsPath) || flight.count == 0;
     const AirPosition from = waits ? first_in_air(body, flight) : flight.points[flight.count - 1u];
     search.ends = ends_of(body, flight, from, lane);
   }
+  begin_search(parts, lane, search.ends.begin, search.ends.to);
+  search.slices = 1;
+  if (advance_search(parts, lane, active.boxes)) use_path(search, body, lane);
+}
+
+// A search that is in no searcher's memory repeats the slices that were done: the first one, which
+// a worker has done, or all of them, in a crowd that was restored. Only the first one counts, so
+// that such a crowd goes on as the one that was saved.
+void FlyMode::advance(ActiveSearch& active, Body& body) {
+  LongSearch& search = searches_[active.search];
+  OfClass& parts = *classes_[body.avatar_class];
+  const size_t lane = parts.first_searcher + active.searcher;
+  if (search.slices == 1) active.boxes += kSliceBoxes;
   bool is_done = false;
-  if (search.slices == 0 || !active.is_begun) {
+  if (!active.is_begun) {
     begin_search(parts, lane, search.ends.begin, search.ends.to);
-    // The crowd was restored.
-    for (uint32_t s = 0; s < search.slices && !is_done; ++s) is_done = advance_search(parts, lane);
+    uint64_t repeated = 0;
+    for (uint32_t s = 0; s < search.slices && !is_done; ++s) {
+      is_done = advance_search(parts, lane, repeated);
+    }
   }
-  is_done = is_done || advance_search(parts, lane);
   ++search.slices;
-  if (!is_done) return;
+  if (is_done || advance_search(parts, lane, active.boxes)) use_path(search, body, lane);
+}
+
+// The search is over.
+void FlyMode::use_path(const LongSearch& search, Body& body, size_t lane) {
+  Flight& flight = flights_[body.slot];
+  if (!body.flies()) return use_path_on_foot(body, flight, lane);
   flight.search = kNoSearch;
   if (take_points(body, flight, search.ends, lane)) {
     if (!join_path(body, flight, search.ends.from, lane)) ask_for_search(flight);
@@ -140,6 +214,7 @@ bool FlyMode::join_path(Body& body, Flight& flight, const AirPosition& from, siz
   }
   set_path(flight, buffers.points, buffers.lands);
   body.clear(Body::kNeedsPath);
+  body.detour_angle = 0;
   turn_to(body, flight);
   return true;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "crowd/fly/air_blockers.h"
 #include "crowd/mode/finder_changes.h"
 #include "crowd/mode/leaving.h"
@@ -149,11 +150,13 @@ void FlyMode::step(std::span<Body> bodies, EngineCounts& counts, EngineTimes& ti
   const auto before = [this](Body& body, Flight& flight, int32_t worker) {
     plan(body, flight, worker);
   };
-  advance_searches(bodies);
   engine_.set_orientations(shared_.orientations);
   engine_.step(shared_.sub_step, bodies, flights_, before, counts, times);
   for (const uint32_t slot : engine_.arrived()) shared_.arrived.push_back(shared_.id_of(slot));
   for (const uint32_t i : engine_.landed()) land(bodies[i]);
+  const auto start = Clock::now();
+  advance_searches(bodies);
+  times.plan += seconds_since(start);
 }
 
 void FlyMode::land(Body& body) {
@@ -268,7 +271,7 @@ bool FlyMode::is_sound(const Body& body) const {
   const bool has_path =
       !body.flies() || !body.has(Body::kHasGoal) || body.has(Body::kNeedsPath) || flight.count > 0;
   const bool goal = flight.goal_level == Flight::kInAir || flight.goal_level < levels;
-  return finite && counts && has_path && flight.search <= kListed && goal &&
+  return finite && counts && has_path && flight.search <= kTakesOff && goal &&
          flight.link_low <= flight.link_high && (flight.in_link == 0 || flight.link_level < levels);
 }
 

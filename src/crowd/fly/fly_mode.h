@@ -41,7 +41,7 @@ class FlyMode final : public Mode, public TakesOff {
   /// Of a saved crowd, once its obstacles are known.
   void restore_searches(std::vector<LongSearch> searches) { searches_ = std::move(searches); }
 
-  bool plan_on_foot(Body& body, int32_t worker) override;
+  bool plan_on_foot(Body& body) override;
   bool take_off(Body& body) override;
   [[nodiscard]] bool is_at_link(uint32_t slot) const override {
     return !flights_.empty() && flights_[slot].to_link != 0;
@@ -78,7 +78,7 @@ class FlyMode final : public Mode, public TakesOff {
  private:
   /// Searches of a class that go on at the same time. A search needs memory of its own for as long
   /// as it goes on; the others wait.
-  static constexpr size_t kSearchers = 2;
+  static constexpr size_t kSearchers = 4;
   static constexpr uint32_t kNoSlot = UINT32_MAX;
 
   /// Of one worker or search, so that a step allocates nothing.
@@ -112,8 +112,8 @@ class FlyMode final : public Mode, public TakesOff {
   struct ActiveSearch {
     size_t search = 0, body = 0, searcher = kSearchers;
     bool is_begun = false;
+    uint64_t boxes = 0;  // that its slice has expanded
   };
-  enum class Found : uint8_t { kPath, kNone, kLater };
   [[nodiscard]] const FlyerAir& air_of(const Body& body) const {
     return classes_[body.avatar_class]->air;
   }
@@ -125,9 +125,8 @@ class FlyMode final : public Mode, public TakesOff {
   void plan(Body& body, Flight& flight, int32_t worker);
   /// Of a flyer in a link or without a path. True: its path is not followed.
   bool plan_exit(Body& body, Flight& flight, int32_t worker) const;
-  void follow_flight(Body& body, Flight& flight, int32_t worker);
+  void follow_flight(Body& body, Flight& flight);
   void head_on(Body& body, Flight& flight) const;
-  bool take_off_into(Body& body, const AirPosition& there);
   void ask_for_search(Flight& flight) {
     flight.search = kAsked;
     some_ask_.store(true, std::memory_order_relaxed);
@@ -135,14 +134,16 @@ class FlyMode final : public Mode, public TakesOff {
   [[nodiscard]] bool head_to_nearest_landing(const Body& body, Flight& flight) const;
   void find_landing_place(Body& body, const Flight& flight) const;
 
+  // fly_on_foot.cpp
+  bool take_off_into(Body& body, const AirPosition& there);
+  void use_path_on_foot(Body& body, Flight& flight, size_t lane);
+
   // flight_search.cpp
-  /// `lane`: a worker or a searcher.
-  Found find_flight(const Body& body, Flight& flight, size_t lane);
-  Found find_rest(const Body& body, Flight& flight, size_t lane);
-  /// Begins a search, into the lane's path.
+  [[nodiscard]] bool find_straight(const Body& body, Flight& flight) const;
+  /// Begins a search, into the path of a lane: of a worker or a searcher.
   void begin_search(OfClass& parts, size_t lane, const AirPosition& from, const AirPosition& to);
-  /// False: it goes on.
-  bool advance_search(OfClass& parts, size_t lane);
+  /// One slice. Adds the boxes that it expands. False: it goes on.
+  bool advance_search(OfClass& parts, size_t lane, uint64_t& boxes);
   [[nodiscard]] FlightEnds ends_of(const Body& body, const Flight& flight, const AirPosition& from,
                                    size_t lane) const;
   bool take_points(const Body& body, const Flight& flight, const FlightEnds& ends, size_t lane);
@@ -152,8 +153,11 @@ class FlyMode final : public Mode, public TakesOff {
   // flight_slices.cpp
   void advance_searches(std::span<Body> bodies);
   void list_searches(std::span<const Body> bodies);
-  void choose_searches(std::span<const Body> bodies);
-  void advance(const ActiveSearch& active, Body& body);
+  uint64_t begin_searches(std::span<Body> bodies, uint64_t left);
+  [[nodiscard]] bool choose_searches(std::span<const Body> bodies, uint64_t left);
+  void begin(ActiveSearch& active, Body& body, size_t lane);
+  void advance(ActiveSearch& active, Body& body);
+  void use_path(const LongSearch& search, Body& body, size_t lane);
   bool join_path(Body& body, Flight& flight, const AirPosition& from, size_t lane);
   void restart_searches();
 
@@ -169,8 +173,10 @@ class FlyMode final : public Mode, public TakesOff {
   std::vector<std::unique_ptr<OfClass>> classes_;  // null: not in use, or it does not fly
   std::vector<Flight> flights_;                    // by slot; empty, if no class in use flies
   std::vector<LongSearch> searches_;
-  std::vector<ActiveSearch> active_;                    // of the step
-  std::vector<std::pair<uint32_t, size_t>> searching_;  // slot and body, of the step
+  // Of the step.
+  std::vector<size_t> body_of_search_;
+  std::vector<ActiveSearch> active_;
+  std::vector<std::pair<uint32_t, size_t>> searching_;  // slot and body
   std::atomic<bool> some_ask_{true};                    // Flight::search may be kAsked for some
 };
 

@@ -10,116 +10,20 @@
 #include "crowd/mode/leaving.h"
 #include "steer/air.h"
 
-// When flyers take off, and how they follow their paths. A step without a search is constant time.
+// How flyers in the air follow their paths, and when they ask for another one. Constant time.
 namespace throng::crowd {
 namespace {
 
-constexpr double kCheckRange = 3;        // [m] to a waypoint, to test whether the next one is
-                                         // visible
-constexpr double kTakeOffRadius = 0.3;   // [m] from the place of its take-off
-constexpr float kTakeOffTimeout = 10;    // [s] there, after which its goal is dropped
-constexpr double kLinkRadius = 0.5;      // [m] from a link to the ground below
-constexpr uint64_t kSightInterval = 16;  // steps
+constexpr double kCheckRange = 3;              // [m] to a waypoint, to test whether the next one is
+                                               // visible
+constexpr uint64_t kSightInterval = 16;        // steps
+constexpr uint64_t kBlockedSightInterval = 4;  // of one that makes little progress
 constexpr float kLandingTimeout = 2;     // [s] over its landing place, before it takes another
 constexpr uint64_t kRooms = 0x726f6f6d;  // random stream
 constexpr int32_t kPointTolerance = 20;  // [units, mm] so near to a waypoint that the rest does not
                                          // matter
 
 }  // namespace
-
-bool FlyMode::take_off(Body& body) {
-  Flight& flight = flights_[body.slot];
-  const auto high = air_of(body).take_off(feet_of(body));
-  if (!high) return false;
-  flight.in_link = 1;
-  flight.descends = 0;
-  flight.link_low = body.y;
-  flight.link_high = *high;
-  flight.link_level = body.level;
-  flight.rise = 0;
-  flight.to_link = 0;
-  flight.lands = 0;
-  flight.search = kNoSearch;
-  flight.count = flight.next = 0;
-  body.detour_angle = 0;
-  const bool has_goal = body.has(Body::kHasGoal);
-  body.flags &= Body::kExternal | Body::kHasGoal;
-  body.flags |= Body::kMovedElsewhere;
-  if (has_goal) body.flags |= Body::kNeedsPath;
-  return true;
-}
-
-// Takes off where this leads into the air of a point. Beside an obstacle, where the finder's cell
-// is blocked, any air will do.
-bool FlyMode::take_off_into(Body& body, const AirPosition& there) {
-  const OfClass& parts = *classes_[body.avatar_class];
-  const auto high = parts.air.take_off(feet_of(body));
-  if (!high) return false;
-  const Vec3d above = parts.air.metres({body.x, body.z, *high});
-  return !parts.finders[0].is_cut_off(above, parts.air.metres(there)) && take_off(body);
-}
-
-// What a flyer on the ground does before it walks.
-bool FlyMode::plan_on_foot(Body& body, int32_t worker) {
-  Flight& flight = flights_[body.slot];
-  if (body.has(Body::kExternal)) {
-    if (flight.preferred_up > 0) take_off(body);
-    return true;
-  }
-  if (flight.to_link != 0 && body.has(Body::kLast)) {
-    const double dx = static_cast<double>(body.local_target_x) - body.x;
-    const double dz = static_cast<double>(body.local_target_z) - body.z;
-    const double near = kTakeOffRadius / shared_.unit;
-    if (dx * dx + dz * dz < near * near) {
-      if (take_off_into(body, flight.points[0])) return true;
-      flight.waited += shared_.sub_dt();
-      if (flight.waited > kTakeOffTimeout) {
-        shared_.drop_goal(body);
-        return true;
-      }
-    }
-  }
-  if (!body.has(Body::kNeedsPath) || body.target != 0) return false;
-  const bool is_straight = shared_.config.routing == Routing::kStraight;
-  const bool lands = flight.goal_level != Flight::kInAir;
-  if (is_straight && lands) return false;
-  // Into the air from where it stands, unless that air does not lead to the goal; to the ground it
-  // may be shorter on foot.
-  if (!lands && (is_straight ? take_off(body) : take_off_into(body, flight.goal))) return true;
-  if (is_straight) {
-    shared_.drop_goal(body);
-    return true;
-  }
-  OfClass& parts = *classes_[body.avatar_class];
-  const auto w = static_cast<size_t>(worker);
-  begin_search(parts, w, feet_of(body), flight.goal);
-  bool is_done = false;  // In one go: what it does until then would be the walkers' to say.
-  while (!is_done) is_done = advance_search(parts, w);
-  const Path& path = parts.paths[w];
-  flight.to_link = 0;
-  if (lands) walk_.route(body.slot).goal = {flight.goal.x, flight.goal.z, flight.goal_level};
-  if (path.end != PathEnd::kReached) {
-    if (lands) return false;  // as a walker
-    shared_.drop_goal(body);
-    return true;
-  }
-  const auto walked = static_cast<size_t>(
-      std::find_if(path.segments.begin(), path.segments.end(),
-                   [](SegmentKind segment) { return segment != SegmentKind::kWalk; }) -
-      path.segments.begin());
-  if (walked == path.segments.size()) return false;
-  if (walked == 0 && take_off(body)) {
-    shared_.note_planned();
-    return true;
-  }
-  const Place ground_air_link =
-      shared_.world.find_place(body.avatar_class, path.points[walked].position, kLinkRadius);
-  if (!ground_air_link) return false;
-  walk_.route(body.slot).goal = point_of(*data_of(shared_.world), ground_air_link);
-  flight.to_link = 1;
-  flight.points[0] = parts.air.position(path.points[walked + 1].position);
-  return false;
-}
 
 // Others are where it would land: it picks another place, the farther away the longer it has
 // waited.
@@ -138,16 +42,17 @@ void FlyMode::find_landing_place(Body& body, const Flight& flight) const {
   body.local_target_z = sees ? there.z : over.z;
 }
 
-// Heads to the next waypoint once it is visible, looks whether the path is still free, and searches
-// for the rest of a path that was too long for its row.
-void FlyMode::follow_flight(Body& body, Flight& flight, int32_t worker) {
+// Heads to the next waypoint once it is visible, looks whether the path is still free, and asks for
+// the rest of a path that was too long for its row.
+void FlyMode::follow_flight(Body& body, Flight& flight) {
   const FlyerAir& air = air_of(body);
   const AirPosition at = feet_of(body);
   const double dx = (static_cast<double>(body.local_target_x) - body.x) * shared_.unit;
   const double dz = (static_cast<double>(body.local_target_z) - body.z) * shared_.unit;
   const double dy = (static_cast<double>(flight.local_target_y) - body.y) * 1e-3;
   const double square = dx * dx + dy * dy + dz * dz;
-  const bool checks_path = (shared_.sub_step + body.slot) % kSightInterval == 0;
+  const uint64_t interval = body.detour_angle != 0 ? kBlockedSightInterval : kSightInterval;
+  const bool checks_path = (shared_.sub_step + body.slot) % interval == 0;
   if (square < kCheckRange * kCheckRange && !flight.is_last()) {
     const AirPosition& here = flight.points[flight.next];
     const bool there = std::abs(here.x - at.x) < kPointTolerance &&
@@ -175,10 +80,7 @@ void FlyMode::follow_flight(Body& body, Flight& flight, int32_t worker) {
   const bool has_more = flight.whole == 0 && flight.next + 1 == flight.count;
   if (has_more && !body.has(Body::kNeedsPath) && flight.search == kNoSearch) {
     shared_.note_planned();
-    const Found rest = find_rest(body, flight, static_cast<size_t>(worker));
-    if (rest == Found::kPath) turn_to(body, flight);
-    if (rest == Found::kLater) ask_for_search(flight);
-    if (rest == Found::kNone) body.flags |= Body::kNeedsPath;
+    ask_for_search(flight);
   }
   if (flight.lands != 0 && flight.is_last() && flight.waited > kLandingTimeout)
     find_landing_place(body, flight);
@@ -220,18 +122,17 @@ bool FlyMode::head_to_nearest_landing(const Body& body, Flight& flight) const {
 void FlyMode::plan(Body& body, Flight& flight, int32_t worker) {
   if (body.leaves && plan_exit(body, flight, worker)) return;
   if (!body.has(Body::kHasGoal)) return;
-  if (!body.has(Body::kNeedsPath) && flight.in_link == 0) follow_flight(body, flight, worker);
+  if (!body.has(Body::kNeedsPath) && flight.in_link == 0) follow_flight(body, flight);
   if (!body.has(Body::kNeedsPath) || flight.search != kNoSearch) return;
   shared_.note_planned();
   if (body.target != 0 && !head_to_nearest_landing(body, flight)) return shared_.drop_goal(body);
-  const Found found = find_flight(body, flight, static_cast<size_t>(worker));
-  if (found == Found::kNone) return shared_.drop_goal(body);
-  if (found == Found::kLater) {
-    ask_for_search(flight);
-    return head_on(body, flight);
+  if (find_straight(body, flight)) {
+    body.clear(Body::kNeedsPath);
+    return turn_to(body, flight);
   }
-  body.clear(Body::kNeedsPath);
-  turn_to(body, flight);
+  if (shared_.config.routing == Routing::kStraight) return shared_.drop_goal(body);
+  ask_for_search(flight);
+  head_on(body, flight);
 }
 
 bool FlyMode::plan_exit(Body& body, Flight& flight, int32_t worker) const {

@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
+#include "crowd/fly/long_search.h"
 #include "crowd/mode/given_moves.h"
 
 // The step of flyers: docs/design/012-flyers.md. Walkers have moved clear of where all flyers are;
@@ -588,8 +589,10 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
   const bool near_goal = body.has(Body::kLast) && left <= std::max(1.0f, braking);
   if (config_.deadlock_avoidance) {
     // A step that ends at a waypoint is short, and one that waits for its path makes none.
+    constexpr float kWaitingRadius = 0.1f;  // [m]
+    const bool waits = left <= (flight.search != kNoSearch ? kWaitingRadius : 1e-6f);
     const float possible = std::min(body.speed, left / units.dt);
-    const float content = near_goal || left <= 1e-6f ? 1 : towards / possible;
+    const float content = near_goal || waits ? 1 : towards / possible;
     const float along = steer::dot(velocity, preferred) / (body.speed * body.speed);
     body.detour_angle = steer::next_detour_angle(config_.deadlock_settings, body.detour_angle,
                                                  content, along, units.dt);

@@ -144,8 +144,8 @@ struct CrowdConfig {
   SteeringModel model = SteeringModel::kSampled;
   /// Of finding paths: kLabels for small worlds and many long paths, kZones for large worlds.
   PathSpeedup speedup = PathSpeedup::kNone;
-  /// SearchBudget::max_bytes of each search for a path. As many searches as there are workers may
-  /// run at the same time. [bytes, >= 2^20]
+  /// SearchBudget::max_bytes of each search for a path. At the same time there are as many searches
+  /// as workers, and four more for each class that flies. [bytes, >= 2^20]
   uint64_t search_bytes = SearchBudget::kDefaultBytes;
   /// Nodes of the same world. Avatars of classes that climb or have a `max_drop`, and do not fly,
   /// walk over them; without nodes these walk on level tiles, as others do.
@@ -246,6 +246,10 @@ struct CrowdReport {
   /// Searches for a route around a jam (CrowdConfig::avoid_jams); not in `planned`.
   uint64_t jam_searches = 0;
   uint64_t changed_route = 0;  ///< Of these, led to another route: avatars that took it.
+  /// Air boxes, and nodes on foot, that searches for paths of flyers took in this step: at most
+  /// 163 840 a simulated second, but up to 4096 in each sub-step. A search that needs more goes on
+  /// in the next step.
+  uint64_t flight_boxes = 0;
   /// Mean speed towards the next corner, divided by the desired speed, on stairs and slopes by what
   /// that is there. [-1 to 1]
   double progress = 0;

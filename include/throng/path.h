@@ -368,9 +368,9 @@ class THRONG_API PathFinder {
   /// and in the air, with its walks, alike. Until then `path` has no points, and counts what was
   /// expanded. The path is that of find, whatever the slices; on the ground, a path to a goal that
   /// is reached is that of find with kOnDemand. PathQuery::budget is that of the whole query;
-  /// `cancel` is read by each call, too. Finding the ends, string pulling, floods to the nearest
-  /// take-off and rows of the overlay that obstacles have changed are not counted, and each is done
-  /// in one go. If this finder is asked for another path in between, the query begins again: use a
+  /// `cancel` is read by each call, too. Finding the ends, string pulling and rows of the overlay
+  /// that obstacles have changed are not counted, and each is done in one go. Floods to a take-off
+  /// count for calls, not for the budget. After another query in between, it begins again: use a
   /// copy for that. It also begins again if edits change what it may have seen, but not for
   /// kinematic obstacles, nor for static ones where the class has no place, nor for areas while all
   /// kinds cost 1, nor for costs of kinds that no ground has. With kOnDemand it is not known which

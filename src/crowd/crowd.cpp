@@ -135,6 +135,7 @@ CrowdReport Crowd::step() {
   s.shared.out_of_memory = 0;
   s.shared.jam_searches = 0;
   s.shared.changed_route = 0;
+  s.shared.flight_boxes = 0;
   // A copy, because what settles is taken out of the list.
   const std::span<const uint32_t> waiting = s.shared.obstacles.waiting();
   report.waiting = s.settle_obstacles(std::vector(waiting.begin(), waiting.end()), &s.blockers);
@@ -181,6 +182,7 @@ CrowdReport Crowd::step() {
   report.out_of_memory = s.shared.out_of_memory;
   report.jam_searches = s.shared.jam_searches;
   report.changed_route = s.shared.changed_route;
+  report.flight_boxes = s.shared.flight_boxes;
   report.progress = static_cast<double>(counts.progress) * 1e-6 / moves;
   report.seconds_plan = times.plan;
   report.seconds_sort = times.sort;

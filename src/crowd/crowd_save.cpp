@@ -24,7 +24,7 @@ namespace {
 using crowd::put_rows;
 using crowd::take_rows;
 
-constexpr uint64_t kMagic = 0x35315744574f5243;  // "CROWDW15"
+constexpr uint64_t kMagic = 0x36315744574f5243;  // "CROWDW16"
 
 struct Head {
   uint64_t magic = kMagic;
@@ -36,6 +36,7 @@ struct Head {
   uint64_t obstacles = 0, corners = 0, free_obstacles = 0;
   uint64_t target_values = 0;  // doubles
   uint64_t flights = 0;        // by slot, or none
+  uint64_t searches = 0;       // for paths of flyers, that go on
   uint64_t climbs = 0;         // by slot, or none
   uint64_t link_uses = 0;      // by slot, or none
   int32_t rounds = 0, routing = 0, deadlock_avoidance = 0, flows_are_old = 0;
@@ -56,7 +57,7 @@ struct Head {
   uint64_t slow_levels = 0;  // of the delay map
   crowd::DelayMap::SavedQuestions questions;
 };
-static_assert(sizeof(Head) == 39 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 40 * 8 && std::is_trivially_copyable_v<Head>);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`; and without what its
 // edit holds.
@@ -146,8 +147,8 @@ uint64_t size_of(const Head& head) {
          head.slots * crowd::CrowdEngine::row_bytes(head.queues != 0) +
          (head.free_slots + head.free_obstacles) * 4 + head.obstacles * sizeof(SavedObstacle) +
          head.corners * sizeof(std::array<double, 2>) + head.target_values * 8 +
-         head.flights * crowd::FlyMode::kRowBytes + head.climbs * crowd::ClimbMode::kRowBytes +
-         head.link_uses * crowd::LinkMode::kRowBytes +
+         head.flights * crowd::FlyMode::kRowBytes + head.searches * sizeof(crowd::LongSearch) +
+         head.climbs * crowd::ClimbMode::kRowBytes + head.link_uses * crowd::LinkMode::kRowBytes +
          head.views * sizeof(crowd::EngineDetail::View) + head.edit_bytes + head.call_bytes +
          head.slow_levels * sizeof(crowd::DelayMap::Saved) +
          head.aside * sizeof(crowd::StandsAside) + 8;
@@ -284,9 +285,9 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
   constexpr uint64_t kMax = uint64_t{1} << 32;
   if (head.bodies >= kMax || head.slots >= kMax || head.free_slots >= kMax ||
       head.obstacles >= kMax || head.corners >= kMax || head.free_obstacles >= kMax ||
-      head.target_values >= kMax || head.views >= kMax || head.edit_bytes >= kMax ||
-      head.call_bytes >= kMax || head.slow_levels >= kMax || head.aside >= kMax ||
-      (head.flights != 0 && head.flights != head.slots) ||
+      head.target_values >= kMax || head.searches > head.flights || head.views >= kMax ||
+      head.edit_bytes >= kMax || head.call_bytes >= kMax || head.slow_levels >= kMax ||
+      head.aside >= kMax || (head.flights != 0 && head.flights != head.slots) ||
       (head.climbs != 0 && head.climbs != head.slots) ||
       (head.link_uses != 0 && head.link_uses != head.slots) || saved.size() != size_of(head)) {
     return bad("is cut short; save the crowd again");
@@ -316,6 +317,7 @@ struct SavedArrays {
   std::vector<std::array<double, 2>> corners;
   std::vector<uint32_t> free_obstacles;
   std::vector<double> targets;
+  std::vector<crowd::LongSearch> searches;
   std::vector<uint8_t> edits, calls;
   std::vector<crowd::DelayMap::Saved> delays;
 };
@@ -334,6 +336,7 @@ SavedArrays read_arrays(const Head& head, const uint8_t* at, State& s) {
   at = take_rows(at, head.free_obstacles, saved.free_obstacles);
   at = take_rows(at, head.target_values, saved.targets);
   at = s.fly.restore(at, head.flights);
+  at = take_rows(at, head.searches, saved.searches);
   at = s.climb.restore(at, head.climbs);
   at = s.link.restore(at, head.link_uses);
   at = take_rows(at, head.views, s.views);
@@ -401,6 +404,7 @@ std::vector<uint8_t> Crowd::save() const {
   const std::vector<double> targets = values_of(s.shared.targets);
   head.target_values = targets.size();
   head.flights = s.fly.row_count();
+  head.searches = s.fly.searches().size();
   head.climbs = s.climb.row_count();
   head.link_uses = s.link.row_count();
   head.views = s.views.size();
@@ -433,6 +437,7 @@ std::vector<uint8_t> Crowd::save() const {
   put_rows(out, s.shared.obstacles.free_slots().data(), head.free_obstacles);
   put_rows(out, targets.data(), targets.size());
   s.fly.save(out);
+  put_rows(out, s.fly.searches().data(), head.searches);
   s.climb.save(out);
   s.link.save(out);
   put_rows(out, s.views.data(), s.views.size());
@@ -500,6 +505,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   s.walk.set_flows_old(head.flows_are_old != 0);
   s.shared.sub_step = head.sub_step;
   s.scattered = head.scattered;
+  s.fly.restore_searches(std::move(arrays.searches));
   if (config.edits.version() == 0) {
     *Access::state(config.edits) = s.shared.edits();
     s.shared.config.edits = config.edits;

@@ -163,12 +163,11 @@ AirChoices best_of(const AirSettings& settings, const AirSituation& situation) {
 
 Space preferred_towards(Space to_target, float speed, float dt, float detour_angle, int32_t roll,
                         bool stops) {
-  constexpr float kStop = 0.5f;              // [s]
   constexpr float kMinApproachSpeed = 0.2f;  // [m/s] So that a stop takes finite time.
   const float left = size_of(to_target);
   if (left <= 1e-6f) return {};
   float limit = std::min(speed, left / dt);
-  if (stops) limit = std::min(limit, std::max(left / kStop, kMinApproachSpeed));
+  if (stops) limit = std::min(limit, std::max(left / kAirStop, kMinApproachSpeed));
   const float part = limit / left;
   if (detour_angle == 0) return part * to_target;
   const Frame frame = frame_of(to_target);

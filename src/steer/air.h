@@ -51,6 +51,8 @@ inline constexpr size_t kAirDirections = 42;  ///< Ahead, five rings of eight, b
 inline constexpr size_t kAirSpeeds = 3;
 inline constexpr size_t kAirTrials = kAirDirections * kAirSpeeds;
 inline constexpr size_t kAirChoices = 8;
+inline constexpr float kAirStop = 0.5f;  ///< Within which a body that stops at its target is there
+                                         ///< at its present speed. [s]
 
 struct AirNeighbour {
   Space at, velocity;  ///< `at`: offset of its feet.
@@ -89,8 +91,8 @@ AirChoices best_of(const AirSettings& settings, const AirSituation& situation);
 
 /// The preferred velocity of a body with the offset `to_target` to its target: at `speed`, turned
 /// by 2 atan(detour_angle) to the side `roll` (0 right, 1 right and up, 2 right and down), and not
-/// past the target within `dt`. If it `stops`, the speed is at most the remaining distance in 0.5
-/// s.
+/// past the target within `dt`. If it `stops`, the speed is at most the remaining distance in
+/// kAirStop.
 Space preferred_towards(Space to_target, float speed, float dt, float detour_angle, int32_t roll,
                         bool stops);
 

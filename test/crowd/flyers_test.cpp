@@ -315,7 +315,7 @@ TEST(Flyers, SameStateForAnyWorkersAndMachines) {
     for (const int32_t workers : of) {
       Crowd crowd = mixed(stage, workers);
       for (int step = 0; step < 12; ++step) crowd.step();
-      ASSERT_EQ(crowd.state_hash(), 7064580005524651559u) << name << ' ' << workers;
+      ASSERT_EQ(crowd.state_hash(), 6112486951193689009u) << name << ' ' << workers;
     }
   };
   walk("best", {1, 2, 8});
@@ -482,9 +482,12 @@ TEST(Flyers, GoAroundAWallThatIsPutUpAndReportUnreachableGoals) {
   const EditId rest = put_up(crowd, edits, Prism::box({19, -1, 32}, {19.5, 40, 45}));
   const Place back = air_place({6, 5, 20});
   crowd.set_goals(std::span(&ids[0], 1), std::span(&back, 1));
-  crowd.step();
+  // Floods on foot look for air that leads there, which takes some steps.
+  int steps = 0;
+  for (; steps < 60 && crowd.goal_unreachable().empty(); ++steps) crowd.step();
   ASSERT_EQ(crowd.goal_unreachable().size(), 1u);
   EXPECT_EQ(crowd.goal_unreachable()[0], ids[0]);
+  RecordProperty("steps_to_unreachable", steps);
   ASSERT_TRUE(edits.remove(rest));
   crowd.set_goals(std::span(&ids[0], 1), std::span(&back, 1));
   expect_all(go(crowd, stage, 1, 1200), 1);

@@ -7,38 +7,67 @@
 #include <vector>
 
 #include "crowd/fly/fly_mode.h"
+#include "path/ground/slice.h"
 
 // How flyers find their paths: straight, by a search in the air's octree, or up and over what it
-// does not know. Time: mostly of the search, kMaxBoxes boxes at most.
+// does not know. Searches are done in slices (flight_slices.cpp). Time of one: kSliceBoxes boxes,
+// and of the last one the pulling of its string.
 namespace throng::crowd {
 namespace {
 
-constexpr double kGroundRadius = 0.5;    // [m] from feet to the ground below them
-constexpr uint64_t kMaxBoxes = 1 << 16;  // that a search may expand; then it passes over all
-                                         // obstacles
+constexpr double kGroundRadius = 0.5;  // [m] from feet to the ground below them
 
-void set_path(Flight& flight, std::span<const AirPosition> points, bool lands) {
-  flight.count = static_cast<uint8_t>(std::min(points.size(), Flight::kPoints));
-  flight.next = 0;
-  flight.whole = points.size() <= Flight::kPoints ? 1 : 0;
-  flight.lands = lands ? 1 : 0;
-  std::copy_n(points.begin(), flight.count, flight.points.begin());
+// Where a path in the air to the goal ends: there, or over the place to land on. None: a solid is
+// straight above that place.
+std::optional<AirPosition> end_in_air(const FlyerAir& air, const Flight& flight) {
+  AirPosition to = flight.goal;
+  if (flight.goal_level == Flight::kInAir) return to;
+  const auto high = air.take_off(to);
+  if (!high) return {};
+  to.y = *high;
+  return to;
+}
+
+// A waypoint in whole units, between the waypoint before it and the one after. It lies at an edge,
+// around which the segments lead so closely that those to a rounded point may not be free. Then a
+// point next to it is taken, if there are free segments to that.
+AirPosition whole_position(const FlyerAir& air, const AirPosition& before, const Vec3d& point,
+                           const AirPosition& after) {
+  const AirPosition rounded = air.position(point);
+  const auto is_free = [&](const AirPosition& at) {
+    return air.sees(before, at) && air.sees(at, after);
+  };
+  if (is_free(rounded)) return rounded;
+  for (const int32_t dy : {0, 1, -1}) {
+    for (const int32_t dz : {0, 1, -1}) {
+      for (const int32_t dx : {0, 1, -1}) {
+        const AirPosition beside{rounded.x + dx, rounded.z + dz, rounded.y + dy};
+        if (is_free(beside)) return beside;
+      }
+    }
+  }
+  return rounded;
 }
 
 }  // namespace
 
-// Into the worker's path.
-void FlyMode::search(OfClass& parts, size_t worker, const AirPosition& from,
-                     const AirPosition& to) {
-  Path& path = parts.paths[worker];
-  parts.finders[worker].find({.from = parts.air.metres(from),
-                              .to = parts.air.metres(to),
-                              .vertical_tolerance = kGroundRadius,
-                              .budget = shared_.search_budget(kMaxBoxes),
-                              .by_turns = false,
-                              .nearest = false},
-                             path);
-  shared_.note_spent(path.spent);
+void FlyMode::begin_search(OfClass& parts, size_t lane, const AirPosition& from,
+                           const AirPosition& to) {
+  parts.finders[lane].begin({.from = parts.air.metres(from),
+                             .to = parts.air.metres(to),
+                             .vertical_tolerance = kGroundRadius,
+                             .budget = shared_.search_budget(),
+                             .by_turns = true,
+                             .nearest = false});
+}
+
+bool FlyMode::advance_search(OfClass& parts, size_t lane, uint64_t& boxes) {
+  Path& path = parts.paths[lane];
+  path::Slice slice{kSliceBoxes};
+  const bool is_done = parts.finders[lane].advance(slice, path);
+  boxes += std::max(kSliceBoxes - slice.left, kMinBoxes);
+  if (is_done) shared_.note_spent(path.spent);
+  return is_done;
 }
 
 // Is a straight line clear of all active obstacles?
@@ -82,11 +111,11 @@ bool FlyMode::find_path_over(const Body& body, const AirPosition& from, const Ai
 // The nearest position beside obstacles that the path finder takes for open, straight on from `at`;
 // `at` itself if it is open.
 std::optional<AirPosition> FlyMode::open_position(const Body& body, const AirPosition& at,
-                                                  int32_t worker) const {
+                                                  size_t lane) const {
   constexpr int32_t kCells = 2;  // to each side
   const OfClass& parts = *classes_[body.avatar_class];
   const FlyerAir& air = parts.air;
-  const path::FlightFinder& finder = parts.finders[static_cast<size_t>(worker)];
+  const path::FlightFinder& finder = parts.finders[lane];
   if (finder.is_legal(air.metres(at))) return at;
   const int32_t high = finder.space().shape.cell;
   const auto wide = static_cast<int32_t>(high * 1e-3 / shared_.unit);
@@ -110,64 +139,88 @@ std::optional<AirPosition> FlyMode::open_position(const Body& body, const AirPos
   return nearest;
 }
 
-// A path from where a flyer is to its goal. False: there is none.
-bool FlyMode::find_flight(const Body& body, Flight& flight, int32_t worker) {
+FlightEnds FlyMode::ends_of(const Body& body, const Flight& flight, const AirPosition& from,
+                            size_t lane) const {
+  FlightEnds ends{from, from, flight.goal};
+  if (!engine_.has_obstacles()) return ends;
+  // Beside an obstacle the feet may be where the finder's whole cell is blocked.
+  const OfClass& parts = *classes_[body.avatar_class];
+  const auto is_end = [&](const AirPosition& at) {
+    return parts.finders[lane].is_end(parts.air.metres(at), kGroundRadius);
+  };
+  if (!is_end(from)) ends.begin = open_position(body, from, lane).value_or(from);
+  const bool in_air = flight.goal_level == Flight::kInAir;
+  if (in_air && !is_end(flight.goal)) {
+    ends.to = open_position(body, flight.goal, lane).value_or(flight.goal);
+  }
+  return ends;
+}
+
+// The waypoints of a path that was found, as far as it leads through the air. The path on foot
+// after a landing is searched for then.
+void FlyMode::add_points(const OfClass& parts, const FlightEnds& ends, size_t lane,
+                         std::vector<AirPosition>& points, bool& lands) {
+  const Path& path = parts.paths[lane];
+  if (ends.begin != ends.from) points.push_back(ends.begin);
+  AirPosition before = ends.begin;
+  const size_t count = path.segments.size();
+  for (size_t i = 0; i < count && path.segments[i] != SegmentKind::kLand; ++i) {
+    if (path.segments[i] != SegmentKind::kFly) continue;
+    const bool goes_on = i + 1 < count && path.segments[i + 1] == SegmentKind::kFly;
+    const Vec3d& point = path.points[i + 1].position;
+    const Vec3d& after = path.points[goes_on ? i + 2 : i + 1].position;
+    before = whole_position(parts.air, before, point, parts.air.position(after));
+    points.push_back(before);
+  }
+  lands = std::find(path.segments.begin(), path.segments.end(), SegmentKind::kLand) !=
+          path.segments.end();
+}
+
+// From the path that was found to Buffers::points and Buffers::lands. False: there is none.
+bool FlyMode::take_points(const Body& body, const Flight& flight, const FlightEnds& ends,
+                          size_t lane) {
   OfClass& parts = *classes_[body.avatar_class];
-  const FlyerAir& air = parts.air;
-  AirPosition from = feet_of(body), to = flight.goal;
-  if (flight.in_link != 0) from.y = std::max(from.y, flight.link_high);
-  const bool lands = flight.goal_level != Flight::kInAir;
-  const auto high = lands ? air.take_off(to) : std::nullopt;
-  if (high) to.y = *high;
-  const bool ends_in_air = !lands || high;
-  const bool is_straight = shared_.config.routing == Routing::kStraight;
-  if (ends_in_air &&
-      (is_straight || (air.sees(from, to) && is_clear_of_obstacles(body, from, to)))) {
-    set_path(flight, std::span(&to, 1), lands);
-    return true;
-  }
-  if (shared_.config.routing == Routing::kStraight) return false;
-  const auto w = static_cast<size_t>(worker);
-  const Path& path = parts.paths[w];
-  search(parts, w, from, flight.goal);
-  std::vector<AirPosition>& points = parts.buffers[w].points;
-  std::vector<AirPosition>& over = parts.buffers[w].over;
+  Buffers& buffers = parts.buffers[lane];
+  std::vector<AirPosition>& points = buffers.points;
   points.clear();
-  std::optional<AirPosition> end;
-  if (path.end == PathEnd::kNoPlace && engine_.has_obstacles()) {
-    // Beside an obstacle the feet may be where the finder's whole cell is blocked.
-    const auto out = open_position(body, from, worker);
-    end = lands ? flight.goal : open_position(body, to, worker);
-    if (out && end) search(parts, w, *out, *end);
-    if (out) points.push_back(*out);
+  const Path& path = parts.paths[lane];
+  const bool ends_on_ground = flight.goal_level != Flight::kInAir;
+  buffers.lands = ends_on_ground;
+  const auto to = end_in_air(parts.air, flight);
+  if (path.end == PathEnd::kBudgetExhausted) {
+    return to && find_path_over(body, ends.from, *to, points);
   }
-  if (path.end == PathEnd::kReached) {
-    // The path on foot after the landing is searched for then.
-    bool walks_then = false;
-    for (size_t i = 0; i < path.segments.size() && !walks_then; ++i) {
-      if (path.segments[i] == SegmentKind::kFly)
-        points.push_back(air.position(path.points[i + 1].position));
-      walks_then = path.segments[i] == SegmentKind::kLand;
-    }
-    if (end && !lands) points.push_back(to);
-    if (points.empty()) points.push_back(from);
-    // The finder does not know obstacles that move. If one blocks the path, a path over it may be
-    // free.
-    AirPosition at = from;
-    const bool clear = std::all_of(points.begin(), points.end(), [&](const AirPosition& next) {
-      const AirPosition begin = std::exchange(at, next);
-      return is_clear_of_obstacles(body, begin, next);
-    });
-    const bool goes_over = !clear && ends_in_air && find_path_over(body, from, to, over);
-    set_path(flight, goes_over ? over : points, lands);
-    return true;
+  if (path.end != PathEnd::kReached) return false;
+  bool lands = false;
+  add_points(parts, ends, lane, points, lands);
+  if (!lands && ends.to != flight.goal) points.push_back(flight.goal);
+  if (points.empty()) points.push_back(ends.from);
+  buffers.lands = lands || ends_on_ground;
+  // The finder does not know obstacles that move. If one blocks the path, a path over it may be
+  // free.
+  AirPosition at = ends.from;
+  const bool clear = std::all_of(points.begin(), points.end(), [&](const AirPosition& next) {
+    const AirPosition begin = std::exchange(at, next);
+    return is_clear_of_obstacles(body, begin, next);
+  });
+  if (!clear && to && find_path_over(body, ends.from, *to, buffers.over)) {
+    points.assign(buffers.over.begin(), buffers.over.end());
+    buffers.lands = ends_on_ground;
   }
-  points.clear();
-  if (path.end != PathEnd::kBudgetExhausted || !ends_in_air ||
-      !find_path_over(body, from, to, points)) {
+  return true;
+}
+
+// The straight path to the goal. False: it is not free.
+bool FlyMode::find_straight(const Body& body, Flight& flight) const {
+  const FlyerAir& air = air_of(body);
+  const auto to = end_in_air(air, flight);
+  if (!to) return false;
+  const AirPosition from = first_in_air(body, flight);
+  if (shared_.config.routing != Routing::kStraight &&
+      !(air.sees(from, *to) && is_clear_of_obstacles(body, from, *to))) {
     return false;
   }
-  set_path(flight, points, lands);
+  set_path(flight, std::span(&*to, 1), flight.goal_level != Flight::kInAir);
   return true;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "crowd/fly/air_blockers.h"
 #include "crowd/mode/finder_changes.h"
 #include "crowd/mode/leaving.h"
@@ -108,6 +109,7 @@ void FlyMode::set_goal(Body& body, const Place& goal) {
   flight.descends = 0;
   flight.to_link = 0;
   flight.lands = 0;
+  flight.search = kNoSearch;
   flight.count = flight.next = 0;
   const FlyerAir& air = air_of(body);
   if (goal.level1 == kAirLevel1) {
@@ -152,6 +154,9 @@ void FlyMode::step(std::span<Body> bodies, EngineCounts& counts, EngineTimes& ti
   engine_.step(shared_.sub_step, bodies, flights_, before, counts, times);
   for (const uint32_t slot : engine_.arrived()) shared_.arrived.push_back(shared_.id_of(slot));
   for (const uint32_t i : engine_.landed()) land(bodies[i]);
+  const auto start = Clock::now();
+  advance_searches(bodies);
+  times.plan += seconds_since(start);
 }
 
 void FlyMode::land(Body& body) {
@@ -163,6 +168,7 @@ void FlyMode::land(Body& body) {
   flight.descends = 0;
   flight.lands = 0;
   flight.rise = 0;
+  flight.search = kNoSearch;
   const bool has_goal = body.has(Body::kHasGoal);
   body.flags &= Body::kExternal | Body::kHasGoal;
   if (!has_goal) return;
@@ -175,12 +181,14 @@ void FlyMode::land(Body& body) {
 void FlyMode::sync_obstacle(CrowdObstacle& obstacle, size_t number, bool is_new) {
   if (shared_.config.routing != Routing::kPaths || !classes_[number]) return;
   sync_change(classes_[number]->finders, obstacle, is_new, obstacle.of_class[number].air_change);
+  restart_searches();
 }
 
 void FlyMode::forget_obstacle(const CrowdObstacle& obstacle) {
   for (size_t c = 0; c < classes_.size(); ++c) {
     if (classes_[c]) remove_change(classes_[c]->finders, obstacle.of_class[c].air_change);
   }
+  restart_searches();
 }
 
 // A flyer looks itself whether its path is free.
@@ -235,12 +243,14 @@ AvatarState FlyMode::state_of(const Body& body) const {
 }
 
 uint64_t FlyMode::hash(std::span<const Body> by_slot, uint64_t hash) const {
-  return hash_rows(by_slot, flights_, hash);
+  hash = hash_rows(by_slot, flights_, hash);
+  if (searches_.empty()) return hash;
+  return hash_bytes(searches_.data(), searches_.size() * sizeof(LongSearch), hash);
 }
 
 void FlyMode::add_memory(CrowdMemory& memory) const {
   memory.avatars += engine_.bytes();
-  memory.paths += flights_.capacity() * kRowBytes;
+  memory.paths += flights_.capacity() * kRowBytes + searches_.capacity() * sizeof(LongSearch);
 }
 
 void FlyMode::save(std::vector<uint8_t>& out) const {
@@ -261,8 +271,8 @@ bool FlyMode::is_sound(const Body& body) const {
   const bool has_path =
       !body.flies() || !body.has(Body::kHasGoal) || body.has(Body::kNeedsPath) || flight.count > 0;
   const bool goal = flight.goal_level == Flight::kInAir || flight.goal_level < levels;
-  return finite && counts && has_path && goal && flight.link_low <= flight.link_high &&
-         (flight.in_link == 0 || flight.link_level < levels);
+  return finite && counts && has_path && flight.search <= kTakesOff && goal &&
+         flight.link_low <= flight.link_high && (flight.in_link == 0 || flight.link_level < levels);
 }
 
 bool FlyMode::is_in_place(const Body& body) const {

@@ -2,16 +2,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "crowd/fly/flight.h"
 #include "crowd/fly/flyer_air.h"
 #include "crowd/fly/flyer_engine.h"
+#include "crowd/fly/long_search.h"
 #include "crowd/ground/obstacle_grid.h"
 #include "crowd/mode/mode.h"
 #include "crowd/walk/walk_mode.h"
@@ -32,8 +36,12 @@ class FlyMode final : public Mode, public TakesOff {
   [[nodiscard]] std::span<const Flight> flights() const { return flights_; }
   /// Null if the class does not fly or is not in use.
   [[nodiscard]] const path::FlightFinder* finder(int32_t avatar_class) const;
+  /// Searches that go on, in the order in which they are done.
+  [[nodiscard]] std::span<const LongSearch> searches() const { return searches_; }
+  /// Of a saved crowd, once its obstacles are known.
+  void restore_searches(std::vector<LongSearch> searches) { searches_ = std::move(searches); }
 
-  bool plan_on_foot(Body& body, int32_t worker) override;
+  bool plan_on_foot(Body& body) override;
   bool take_off(Body& body) override;
   [[nodiscard]] bool is_at_link(uint32_t slot) const override {
     return !flights_.empty() && flights_[slot].to_link != 0;
@@ -68,23 +76,43 @@ class FlyMode final : public Mode, public TakesOff {
   [[nodiscard]] bool is_in_place(const Body& body) const override;
 
  private:
-  /// Of one worker, so that a step allocates nothing.
+  /// Searches of a class that go on at the same time. A search needs memory of its own for as long
+  /// as it goes on; the others wait.
+  static constexpr size_t kSearchers = 4;
+  static constexpr uint32_t kNoSlot = UINT32_MAX;
+
+  /// Of one worker or search, so that a step allocates nothing.
   struct Buffers {
     std::vector<AirPosition> points, over;  // of a path that is found, and of one over it
+    bool lands = false;                     // at the end of `points`
     std::vector<AirPosition> exits;
     std::vector<const ObstacleGrid::Item*> near;  // that close around a body
   };
   struct OfClass {
     OfClass(const World& world, const path::FlightFinder& finder, size_t workers,
             const CrowdGround& ground, int32_t number)
-        : finders(workers, finder),
-          paths(workers),
-          buffers(workers),
-          air(world, finders[0].space(), ground, number) {}
-    std::vector<path::FlightFinder> finders;  // one a worker
+        : first_searcher(workers),
+          finders(workers + kSearchers, finder),
+          paths(workers + kSearchers),
+          buffers(workers + kSearchers),
+          air(world, finders[0].space(), ground, number) {
+      slot_of_searcher.fill(kNoSlot);
+    }
+    size_t first_searcher;
+    // One a worker, then those of searches that go on. Likewise the two below.
+    std::vector<path::FlightFinder> finders;
     std::vector<Path> paths;
     std::vector<Buffers> buffers;
+    std::array<uint32_t, kSearchers> slot_of_searcher;  // whose search each has begun
+    // Of the step: searches that go on, and a bit for each searcher that has one.
+    uint32_t active = 0, taken = 0;
     FlyerAir air;
+  };
+  /// Of the step: a search, its flyer, and the searcher that has it.
+  struct ActiveSearch {
+    size_t search = 0, body = 0, searcher = kSearchers;
+    bool is_begun = false;
+    uint64_t boxes = 0;  // that its slice has expanded
   };
   [[nodiscard]] const FlyerAir& air_of(const Body& body) const {
     return classes_[body.avatar_class]->air;
@@ -97,24 +125,59 @@ class FlyMode final : public Mode, public TakesOff {
   void plan(Body& body, Flight& flight, int32_t worker);
   /// Of a flyer in a link or without a path. True: its path is not followed.
   bool plan_exit(Body& body, Flight& flight, int32_t worker) const;
-  void follow_flight(Body& body, Flight& flight) const;
+  void follow_flight(Body& body, Flight& flight);
+  void head_on(Body& body, Flight& flight) const;
+  void ask_for_search(Flight& flight) {
+    flight.search = kAsked;
+    some_ask_.store(true, std::memory_order_relaxed);
+  }
   [[nodiscard]] bool head_to_nearest_landing(const Body& body, Flight& flight) const;
   void find_landing_place(Body& body, const Flight& flight) const;
 
+  // fly_on_foot.cpp
+  bool take_off_into(Body& body, const AirPosition& there);
+  void use_path_on_foot(Body& body, Flight& flight, size_t lane);
+
   // flight_search.cpp
-  bool find_flight(const Body& body, Flight& flight, int32_t worker);
-  void search(OfClass& parts, size_t worker, const AirPosition& from, const AirPosition& to);
+  [[nodiscard]] bool find_straight(const Body& body, Flight& flight) const;
+  /// Begins a search, into the path of a lane: of a worker or a searcher.
+  void begin_search(OfClass& parts, size_t lane, const AirPosition& from, const AirPosition& to);
+  /// One slice. Adds the boxes that it expands. False: it goes on.
+  bool advance_search(OfClass& parts, size_t lane, uint64_t& boxes);
+  [[nodiscard]] FlightEnds ends_of(const Body& body, const Flight& flight, const AirPosition& from,
+                                   size_t lane) const;
+  bool take_points(const Body& body, const Flight& flight, const FlightEnds& ends, size_t lane);
+  static void add_points(const OfClass& parts, const FlightEnds& ends, size_t lane,
+                         std::vector<AirPosition>& points, bool& lands);
+
+  // flight_slices.cpp
+  void advance_searches(std::span<Body> bodies);
+  void list_searches(std::span<const Body> bodies);
+  uint64_t begin_searches(std::span<Body> bodies, uint64_t left);
+  [[nodiscard]] bool choose_searches(std::span<const Body> bodies, uint64_t left);
+  void begin(ActiveSearch& active, Body& body, size_t lane);
+  void advance(ActiveSearch& active, Body& body);
+  void use_path(const LongSearch& search, Body& body, size_t lane);
+  bool join_path(Body& body, Flight& flight, const AirPosition& from, size_t lane);
+  void restart_searches();
+
   [[nodiscard]] bool is_clear_of_obstacles(const Body& body, const AirPosition& from,
                                            const AirPosition& to) const;
   bool find_path_over(const Body& body, const AirPosition& from, const AirPosition& to,
                       std::vector<AirPosition>& points) const;
   [[nodiscard]] std::optional<AirPosition> open_position(const Body& body, const AirPosition& at,
-                                                         int32_t worker) const;
+                                                         size_t lane) const;
 
   WalkMode& walk_;
   FlyerEngine engine_;
   std::vector<std::unique_ptr<OfClass>> classes_;  // null: not in use, or it does not fly
   std::vector<Flight> flights_;                    // by slot; empty, if no class in use flies
+  std::vector<LongSearch> searches_;
+  // Of the step.
+  std::vector<size_t> body_of_search_;
+  std::vector<ActiveSearch> active_;
+  std::vector<std::pair<uint32_t, size_t>> searching_;  // slot and body
+  std::atomic<bool> some_ask_{true};                    // Flight::search may be kAsked for some
 };
 
 }  // namespace throng::crowd

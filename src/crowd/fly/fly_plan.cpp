@@ -10,109 +10,20 @@
 #include "crowd/mode/leaving.h"
 #include "steer/air.h"
 
-// When flyers take off, and how they follow their paths. A step without a search is constant time.
+// How flyers in the air follow their paths, and when they ask for another one. Constant time.
 namespace throng::crowd {
 namespace {
 
-constexpr double kCheckRange = 3;        // [m] to a waypoint, to test whether the next one is
-                                         // visible
-constexpr double kTakeOffRadius = 0.3;   // [m] from the place of its take-off
-constexpr float kTakeOffTimeout = 10;    // [s] there, after which its goal is dropped
-constexpr double kLinkRadius = 0.5;      // [m] from a link to the ground below
-constexpr uint64_t kSightInterval = 16;  // steps
+constexpr double kCheckRange = 3;              // [m] to a waypoint, to test whether the next one is
+                                               // visible
+constexpr uint64_t kSightInterval = 16;        // steps
+constexpr uint64_t kBlockedSightInterval = 4;  // of one that makes little progress
 constexpr float kLandingTimeout = 2;     // [s] over its landing place, before it takes another
 constexpr uint64_t kRooms = 0x726f6f6d;  // random stream
 constexpr int32_t kPointTolerance = 20;  // [units, mm] so near to a waypoint that the rest does not
                                          // matter
 
-void turn_to(Body& body, Flight& flight) {
-  const AirPosition& point = flight.points[flight.next];
-  body.local_target_x = point.x;
-  body.local_target_z = point.z;
-  flight.local_target_y = point.y;
-  body.flags =
-      static_cast<uint8_t>(flight.is_last() ? body.flags | Body::kLast : body.flags & ~Body::kLast);
-}
-
 }  // namespace
-
-bool FlyMode::take_off(Body& body) {
-  Flight& flight = flights_[body.slot];
-  const auto high = air_of(body).take_off(feet_of(body));
-  if (!high) return false;
-  flight.in_link = 1;
-  flight.descends = 0;
-  flight.link_low = body.y;
-  flight.link_high = *high;
-  flight.link_level = body.level;
-  flight.rise = 0;
-  flight.to_link = 0;
-  flight.lands = 0;
-  flight.count = flight.next = 0;
-  body.detour_angle = 0;
-  const bool has_goal = body.has(Body::kHasGoal);
-  body.flags &= Body::kExternal | Body::kHasGoal;
-  body.flags |= Body::kMovedElsewhere;
-  if (has_goal) body.flags |= Body::kNeedsPath;
-  return true;
-}
-
-// What a flyer on the ground does before it walks.
-bool FlyMode::plan_on_foot(Body& body, int32_t worker) {
-  Flight& flight = flights_[body.slot];
-  if (body.has(Body::kExternal)) {
-    if (flight.preferred_up > 0) take_off(body);
-    return true;
-  }
-  if (flight.to_link != 0 && body.has(Body::kLast)) {
-    const double dx = static_cast<double>(body.local_target_x) - body.x;
-    const double dz = static_cast<double>(body.local_target_z) - body.z;
-    const double near = kTakeOffRadius / shared_.unit;
-    if (dx * dx + dz * dz < near * near) {
-      if (take_off(body)) return true;
-      flight.waited += shared_.sub_dt();
-      if (flight.waited > kTakeOffTimeout) {
-        shared_.drop_goal(body);
-        return true;
-      }
-    }
-  }
-  if (!body.has(Body::kNeedsPath) || body.target != 0) return false;
-  const bool is_straight = shared_.config.routing == Routing::kStraight;
-  const bool lands = flight.goal_level != Flight::kInAir;
-  if (is_straight && lands) return false;
-  if (take_off(body)) {
-    // Into the air from where it stands, unless it is shorter on foot.
-    if (!lands) return true;
-    flight.in_link = 0;
-    body.flags = Body::kHasGoal | Body::kNeedsPath;
-  } else if (is_straight) {
-    shared_.drop_goal(body);
-    return true;
-  }
-  OfClass& parts = *classes_[body.avatar_class];
-  const auto w = static_cast<size_t>(worker);
-  search(parts, w, feet_of(body), flight.goal);
-  const Path& path = parts.paths[w];
-  flight.to_link = 0;
-  if (lands) walk_.route(body.slot).goal = {flight.goal.x, flight.goal.z, flight.goal_level};
-  if (path.end != PathEnd::kReached) return false;  // as a walker
-  const auto walked = static_cast<size_t>(
-      std::find_if(path.segments.begin(), path.segments.end(),
-                   [](SegmentKind segment) { return segment != SegmentKind::kWalk; }) -
-      path.segments.begin());
-  if (walked == path.segments.size()) return false;
-  if (walked == 0 && take_off(body)) {
-    shared_.note_planned();
-    return true;
-  }
-  const Place ground_air_link =
-      shared_.world.find_place(body.avatar_class, path.points[walked].position, kLinkRadius);
-  if (!ground_air_link) return false;
-  walk_.route(body.slot).goal = point_of(*data_of(shared_.world), ground_air_link);
-  flight.to_link = 1;
-  return false;
-}
 
 // Others are where it would land: it picks another place, the farther away the longer it has
 // waited.
@@ -131,36 +42,61 @@ void FlyMode::find_landing_place(Body& body, const Flight& flight) const {
   body.local_target_z = sees ? there.z : over.z;
 }
 
-// Heads to the next waypoint once it is visible, and looks whether the path is still free.
-void FlyMode::follow_flight(Body& body, Flight& flight) const {
+// Heads to the next waypoint once it is visible, looks whether the path is still free, and asks for
+// the rest of a path that was too long for its row.
+void FlyMode::follow_flight(Body& body, Flight& flight) {
   const FlyerAir& air = air_of(body);
   const AirPosition at = feet_of(body);
   const double dx = (static_cast<double>(body.local_target_x) - body.x) * shared_.unit;
   const double dz = (static_cast<double>(body.local_target_z) - body.z) * shared_.unit;
   const double dy = (static_cast<double>(flight.local_target_y) - body.y) * 1e-3;
-  const bool is_near = dx * dx + dy * dy + dz * dz < kCheckRange * kCheckRange;
-  if (is_near && !flight.is_last()) {
-    const bool at_end = flight.next + 1 == flight.count;
-    const AirPosition& local_target = flight.points[flight.next];
-    const bool there = std::abs(local_target.x - at.x) < kPointTolerance &&
-                       std::abs(local_target.z - at.z) < kPointTolerance &&
-                       std::abs(local_target.y - at.y) < kPointTolerance;
-    if (at_end) {
-      if (there || dx * dx + dy * dy + dz * dz < 1) body.flags |= Body::kNeedsPath;
-    } else if (there || (air.sees(at, flight.points[flight.next + 1u]) &&
-                         is_clear_of_obstacles(body, at, flight.points[flight.next + 1u]))) {
-      ++flight.next;
-      turn_to(body, flight);
+  const double square = dx * dx + dy * dy + dz * dz;
+  const uint64_t interval = body.detour_angle != 0 ? kBlockedSightInterval : kSightInterval;
+  const bool checks_path = (shared_.sub_step + body.slot) % interval == 0;
+  if (square < kCheckRange * kCheckRange && !flight.is_last()) {
+    const AirPosition& here = flight.points[flight.next];
+    const bool there = std::abs(here.x - at.x) < kPointTolerance &&
+                       std::abs(here.z - at.z) < kPointTolerance &&
+                       std::abs(here.y - at.y) < kPointTolerance;
+    if (flight.next + 1 == flight.count) {
+      if (there || square < 1) body.flags |= Body::kNeedsPath;
+    } else {
+      // Very near to a waypoint the next one may be hidden that is visible from it.
+      const AirPosition& next = flight.points[flight.next + 1u];
+      if (at == here || (there && checks_path) ||
+          (air.sees(at, next) && is_clear_of_obstacles(body, at, next))) {
+        ++flight.next;
+        turn_to(body, flight);
+      }
     }
   }
-  const bool checks_path = (shared_.sub_step + body.slot) % kSightInterval == 0;
   if (checks_path && shared_.config.routing == Routing::kPaths) {
     const AirPosition& local_target = flight.points[flight.next];
-    if (!air.sees(at, local_target) || !is_clear_of_obstacles(body, at, local_target))
+    if (!air.sees(at, local_target) || !is_clear_of_obstacles(body, at, local_target)) {
       body.flags |= Body::kNeedsPath;
+      flight.search = kNoSearch;
+    }
+  }
+  const bool has_more = flight.whole == 0 && flight.next + 1 == flight.count;
+  if (has_more && !body.has(Body::kNeedsPath) && flight.search == kNoSearch) {
+    shared_.note_planned();
+    ask_for_search(flight);
   }
   if (flight.lands != 0 && flight.is_last() && flight.waited > kLandingTimeout)
     find_landing_place(body, flight);
+}
+
+// While the path of a flyer is searched for: straight on to its goal, in the box of the air in
+// which it is. From there it sees the place from which the path leads.
+void FlyMode::head_on(Body& body, Flight& flight) const {
+  flight.count = flight.next = flight.whole = flight.lands = 0;
+  const AirPosition at = first_in_air(body, flight);
+  const AirPosition to = air_of(body).end_in_box(at, flight.goal);
+  const AirPosition& target = is_clear_of_obstacles(body, at, to) ? to : at;
+  body.local_target_x = target.x;
+  body.local_target_z = target.z;
+  flight.local_target_y = target.y;
+  body.clear(Body::kLast);
 }
 
 // The nearest place of its target, in a straight line. False: it has none.
@@ -187,12 +123,16 @@ void FlyMode::plan(Body& body, Flight& flight, int32_t worker) {
   if (body.leaves && plan_exit(body, flight, worker)) return;
   if (!body.has(Body::kHasGoal)) return;
   if (!body.has(Body::kNeedsPath) && flight.in_link == 0) follow_flight(body, flight);
-  if (!body.has(Body::kNeedsPath)) return;
+  if (!body.has(Body::kNeedsPath) || flight.search != kNoSearch) return;
   shared_.note_planned();
   if (body.target != 0 && !head_to_nearest_landing(body, flight)) return shared_.drop_goal(body);
-  if (!find_flight(body, flight, worker)) return shared_.drop_goal(body);
-  body.flags &= static_cast<uint8_t>(~Body::kNeedsPath);
-  turn_to(body, flight);
+  if (find_straight(body, flight)) {
+    body.clear(Body::kNeedsPath);
+    return turn_to(body, flight);
+  }
+  if (shared_.config.routing == Routing::kStraight) return shared_.drop_goal(body);
+  ask_for_search(flight);
+  head_on(body, flight);
 }
 
 bool FlyMode::plan_exit(Body& body, Flight& flight, int32_t worker) const {

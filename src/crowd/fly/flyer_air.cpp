@@ -43,6 +43,27 @@ bool FlyerAir::is_open_around(const AirPosition& position, float distance) const
   return inside(p.x, box.x) && inside(p.y, box.y) && inside(p.z, box.z);
 }
 
+AirPosition FlyerAir::end_in_box(const AirPosition& from, const AirPosition& to) const {
+  constexpr double kMargin = 0.1;  // [air cells] more than what rounding moves the end by
+  const path::AirPoint p = point(from), q = point(to);
+  const uint32_t index = space_->box_at(p);
+  if (index == path::kNoBox) return from;
+  const world::AirCube& box = space_->boxes[index];
+  double part = 1;
+  const auto cut = [&](double a, double b, int32_t low) {
+    const double face = b > a ? low + box.side - kMargin : low + kMargin;
+    if (b > a ? b > face : b < face) part = std::min(part, (face - a) / (b - a));
+  };
+  cut(p.x, q.x, box.x);
+  cut(p.y, q.y, box.y);
+  cut(p.z, q.z, box.z);
+  if (!(part > 0)) return from;
+  const auto along = [&](int32_t a, int32_t b) {
+    return a + static_cast<int32_t>(part * (static_cast<double>(b) - a));
+  };
+  return {along(from.x, to.x), along(from.z, to.z), along(from.y, to.y)};
+}
+
 // As FlightEndpoints::take_off computes it, in whole millimetres.
 std::optional<int32_t> FlyerAir::take_off(const AirPosition& feet) const {
   const path::AirPoint p = point(feet);
@@ -83,7 +104,9 @@ AirPosition FlyerAir::position(const Vec3d& metres) const {
 }
 
 Vec3d FlyerAir::metres(const AirPosition& position) const {
-  return {origin_.x + (position.x + 0.5) * unit_, position.y * 1e-3,
+  // The middle of the millimetre, too: its lower end may be the face of a cell, which a product
+  // with an inexact 0.001 misses.
+  return {origin_.x + (position.x + 0.5) * unit_, (position.y + 0.5) * 1e-3,
           origin_.z + (position.z + 0.5) * unit_};
 }
 

@@ -32,6 +32,9 @@ class FlyerAir {
   /// wrong. [m]
   [[nodiscard]] bool is_open_around(const AirPosition& position, float distance) const;
 
+  /// The end of the part of a line that lies in the box of the air in which it begins.
+  [[nodiscard]] AirPosition end_in_box(const AirPosition& from, const AirPosition& to) const;
+
   /// Where the air begins straight above feet on the ground, at most a body's height higher; none
   /// if a solid blocks it. [mm]
   [[nodiscard]] std::optional<int32_t> take_off(const AirPosition& feet) const;

@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/random.h"
+#include "crowd/fly/long_search.h"
 #include "crowd/mode/given_moves.h"
 
 // The step of flyers: docs/design/012-flyers.md. Walkers have moved clear of where all flyers are;
@@ -306,6 +307,22 @@ bool FlyerEngine::gives_precedence(const Body& body, const Flight& flight, const
   return its != mine ? its < mine : other.slot < body.slot;
 }
 
+// Does its preferred velocity lead straight to its local target, which it sees? Then it flies no
+// farther than that, so walls beyond do not matter: a flyer comes to a goal beside a wall, and to a
+// waypoint in a narrow shaft, at full speed.
+bool FlyerEngine::leads_to_target(const Body& body, const steer::AirSituation& situation) const {
+  const bool has_target = body.has(Body::kHasGoal) || body.leaves;
+  if (!has_target || body.has(Body::kExternal) || body.detour_angle != 0) return false;
+  const Flight& flight = flights_[body.slot];
+  const Space& v = situation.preferred;
+  // It may step back instead.
+  if (v.x != body.preferred.x || v.y != flight.preferred_up || v.z != body.preferred.z) {
+    return false;
+  }
+  return classes_[body.avatar_class].air->sees(
+      position_of(body), {body.local_target_x, body.local_target_z, flight.local_target_y});
+}
+
 // Is its preferred velocity open? If not, how far are walls in all directions?
 bool FlyerEngine::query_walls(const Body& body, steer::AirSituation& situation) const {
   const FlyerAir& air = *classes_[body.avatar_class].air;
@@ -326,7 +343,12 @@ bool FlyerEngine::query_walls(const Body& body, steer::AirSituation& situation) 
   };
   situation.has_walls = !air.is_open_around(here, query_range);
   const steer::AirFan fan = steer::air_fan(situation.preferred);
-  if (situation.has_walls) situation.free_distance[0] = free_distance(fan[0]);
+  if (situation.has_walls) {
+    float& ahead = situation.free_distance[0];
+    ahead = free_distance(fan[0]);
+    const float never = std::numeric_limits<float>::infinity();
+    if (ahead < never && leads_to_target(body, situation)) ahead = never;
+  }
   if (steer::preferred_is_open(config_.air_steering, situation)) return true;
   if (!situation.has_walls) return false;
   for (size_t d = 1; d < fan.size(); ++d) situation.free_distance[d] = free_distance(fan[d]);
@@ -389,6 +411,13 @@ void FlyerEngine::find_candidates(const Body& body, const steer::AirSituation& s
     best = choices[0];
   }
   for (const float part : kShorterParts) add(part * best);
+  if (!open || body.has(Body::kExternal)) return;
+  // Rounding may lead off a line that runs along a floor or a ceiling, by a millimetre.
+  for (const int32_t up : {-1, 1}) {
+    AirPosition& beside = contest.displacement[contest.candidate_count++];
+    beside = contest.displacement[0];
+    beside.y += up;
+  }
 }
 
 // Senses, steers, and takes a place at once if no other could touch it.
@@ -555,9 +584,15 @@ void FlyerEngine::settle(uint32_t f, EngineCounts& counts) {
   const float left = steer::size_of(displacement);
   const float towards = left > 1e-6f ? steer::dot(velocity, displacement) / left : 0;
   counts.progress += std::lrint(towards / body.speed * 1e6f);
-  const bool near_goal = left <= 1 && body.has(Body::kLast);
+  // So near that it brakes to less than what counts as progress.
+  const float braking = steer::kAirStop * config_.deadlock_settings.min_progress * body.speed;
+  const bool near_goal = body.has(Body::kLast) && left <= std::max(1.0f, braking);
   if (config_.deadlock_avoidance) {
-    const float content = near_goal ? 1 : towards / body.speed;
+    // A step that ends at a waypoint is short, and one that waits for its path makes none.
+    constexpr float kWaitingRadius = 0.1f;  // [m]
+    const bool waits = left <= (flight.search != kNoSearch ? kWaitingRadius : 1e-6f);
+    const float possible = std::min(body.speed, left / units.dt);
+    const float content = near_goal || waits ? 1 : towards / possible;
     const float along = steer::dot(velocity, preferred) / (body.speed * body.speed);
     body.detour_angle = steer::next_detour_angle(config_.deadlock_settings, body.detour_angle,
                                                  content, along, units.dt);

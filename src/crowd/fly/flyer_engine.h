@@ -79,6 +79,7 @@ class FlyerEngine {
   void sense(uint32_t flyer, Worker& worker, steer::AirSituation& situation, bool& column_is_clear,
              const FlyerAir::GroundAirLink* ground_air_link) const;
   bool query_walls(const Body& body, steer::AirSituation& situation) const;
+  [[nodiscard]] bool leads_to_target(const Body& body, const steer::AirSituation& situation) const;
   [[nodiscard]] bool gives_precedence(const Body& body, const Flight& flight, const Body& other,
                                       const Flight& of_other) const;
   [[nodiscard]] int32_t stride_of(const Body& body) const;

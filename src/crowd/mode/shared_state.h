@@ -57,6 +57,7 @@ struct SharedState {
   std::vector<AvatarId> arrived, goal_unreachable;
   std::atomic<uint64_t> planned{0}, out_of_memory{0};  // searches
   std::atomic<uint64_t> jam_searches{0}, changed_route{0};
+  uint64_t flight_boxes = 0;
   std::mutex goal_mutex;
 
   [[nodiscard]] const AvatarClass& body_class(size_t number) const {

@@ -29,8 +29,9 @@ namespace throng::crowd {
 class TakesOff {
  public:
   virtual ~TakesOff() = default;
-  /// Called for each of them, before it walks. True: it needs no path to walk. On any worker.
-  virtual bool plan_on_foot(Body& body, int32_t worker) = 0;
+  /// Called for each of them, before it walks. True: it needs no path to walk, or waits for one. On
+  /// any worker.
+  virtual bool plan_on_foot(Body& body) = 0;
   /// False: a solid blocks it.
   virtual bool take_off(Body& body) = 0;
   /// Has an avatar of any class that reached the end of its path on foot only come to where it can

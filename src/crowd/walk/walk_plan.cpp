@@ -28,7 +28,7 @@ void WalkMode::plan(std::span<Body> bodies, int32_t worker) {
       continue;
     }
     if (parts.flies && (body.has(Body::kHasGoal) || body.has(Body::kExternal)) &&
-        takes_off_->plan_on_foot(body, worker)) {
+        takes_off_->plan_on_foot(body)) {
       body.clear(Body::kContinues);
       continue;
     }

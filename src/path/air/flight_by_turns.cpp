@@ -84,11 +84,15 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
   const auto link_near = [&](const Place& at, GroundAirLinks::Part ground,
                              GroundAirLinks::Part over, uint32_t component) {
     const Place near = at ? scratch.nearest_take_off(ends, at, component).place : Place{};
-    if (near) return near;
+    if (near || scratch.log.is_pending()) return near;
     const Place known =
         state_->place_of(state_->ground_air_links.cell(ground.component, over.component));
     if (view.changes() == nullptr) return known;
     return scratch.nearest_take_off(ends, known, component).place;
+  };
+  // A flood that goes on has found none yet.
+  const auto nowhere = [&] {
+    return scratch.log.is_pending() ? PathEnd::kBudgetExhausted : PathEnd::kUnreachable;
   };
   clear(path);
   add(from.air ? ends.to_metres(air) : feet.position, SegmentKind::kWalk, path);
@@ -103,7 +107,7 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
           feet, here, next, known ? view.component(view.box_at(*to.air)) : next.component);
       const auto up = ends.take_off(ground_air_link);
       if (!up) {
-        end = PathEnd::kUnreachable;
+        end = nowhere();
         continue;
       }
       go(ground_air_link);
@@ -114,7 +118,7 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
           link_near(last ? to.ground : Place{}, next, here, view.component(view.box_at(air)));
       const auto up = ends.take_off(ground_air_link);
       if (!up) {
-        end = PathEnd::kUnreachable;
+        end = nowhere();
         continue;
       }
       feet = ground_air_link;

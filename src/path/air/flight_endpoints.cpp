@@ -112,7 +112,8 @@ bool FlightEndpoints::may_stand(const Place& place) const {
 
 template <class Visit>
 bool FlightEndpoints::for_places(const Place& from, uint64_t max_cells, CircleFlood& flood,
-                                 Visit visit) const {
+                                 FloodPart& part, Visit visit) const {
+  part.is_done = true;
   const auto start = world::ground_point(world_, from);
   if (!start) return false;
   const world::GroundLevel level =
@@ -120,17 +121,16 @@ bool FlightEndpoints::for_places(const Place& from, uint64_t max_cells, CircleFl
   if (!level.is_legal(world::in_tile(start->cell_x()), world::in_tile(start->cell_z())))
     return false;
   const AirChanges* changes = air_.changes();
-  uint64_t seen = 0;
   bool more = true, budget_exhausted = false;
-  flood.start(level, start->cell_x(), start->cell_z());
-  flood.run(
-      ground_, world::step_mm(avatar_),
+  if (part.visited == 0) flood.start(level, start->cell_x(), start->cell_z());
+  part.is_done = flood.advance(
+      ground_, world::step_mm(avatar_), part.left,
       [&](int32_t, int32_t) {
-        budget_exhausted = more && seen == max_cells;
+        budget_exhausted = more && part.visited == max_cells;
         return more && !budget_exhausted;
       },
       [&](const CircleFlood::Cell& cell) {
-        ++seen;
+        ++part.visited;
         more = visit(
             world::place_at(world_, cell.level,
                             {(int64_t{cell.x} << world::kUnitBits) + world::kUnitsPerCell / 2,
@@ -145,8 +145,8 @@ bool FlightEndpoints::for_places(const Place& from, uint64_t max_cells, CircleFl
 
 template <class Visit>
 bool FlightEndpoints::for_take_offs(const Place& from, uint64_t max_cells, CircleFlood& flood,
-                                    Visit visit) const {
-  return for_places(from, max_cells, flood, [&](const Place& place) {
+                                    FloodPart& part, Visit visit) const {
+  return for_places(from, max_cells, flood, part, [&](const Place& place) {
     const auto up = take_off(place);
     return !up || visit(place, air_.component(air_.box_at(*up)));
   });
@@ -156,7 +156,8 @@ Place FlightEndpoints::nearest_place(const Place& from, uint64_t max_cells, Vec3
                                      CircleFlood& flood) const {
   Place nearest;
   double least = HUGE_VAL;
-  const bool budget_exhausted = for_places(from, max_cells, flood, [&](const Place& place) {
+  FloodPart all;
+  const bool budget_exhausted = for_places(from, max_cells, flood, all, [&](const Place& place) {
     const double far = length(place.position - goal);
     if (far < least) {
       least = far;
@@ -168,11 +169,11 @@ Place FlightEndpoints::nearest_place(const Place& from, uint64_t max_cells, Vec3
 }
 
 FlightEndpoints::TakeOff FlightEndpoints::nearest_take_off(const Place& from, uint64_t max_cells,
-                                                           uint32_t component,
-                                                           CircleFlood& flood) const {
+                                                           uint32_t component, CircleFlood& flood,
+                                                           FloodPart& part) const {
   Place found;
   const bool budget_exhausted =
-      for_take_offs(from, max_cells, flood, [&](const Place& place, uint32_t leads_to) {
+      for_take_offs(from, max_cells, flood, part, [&](const Place& place, uint32_t leads_to) {
         if (component == kNoBox || leads_to == component) found = place;
         return !found;
       });
@@ -182,7 +183,8 @@ FlightEndpoints::TakeOff FlightEndpoints::nearest_take_off(const Place& from, ui
 bool FlightEndpoints::components_over(const Place& from, uint64_t max_cells, CircleFlood& flood,
                                       std::vector<uint32_t>& components) const {
   components.clear();
-  return for_take_offs(from, max_cells, flood, [&](const Place&, uint32_t leads_to) {
+  FloodPart all;
+  return for_take_offs(from, max_cells, flood, all, [&](const Place&, uint32_t leads_to) {
     if (std::find(components.begin(), components.end(), leads_to) == components.end()) {
       components.push_back(leads_to);
     }

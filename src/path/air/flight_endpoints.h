@@ -35,14 +35,21 @@ class FlightEndpoints {
   /// height, the body in the air from its feet to its height: if the feet in the air are not above
   /// the head on the ground, so is everything between the two.
   [[nodiscard]] std::optional<AirPoint> take_off(const Place& place) const;
+  /// A flood in parts.
+  struct FloodPart {
+    uint64_t visited = 0;        ///< Cells, in all parts. Not 0: the flood has begun.
+    uint64_t left = UINT64_MAX;  ///< Cells that it may still visit in this part.
+    bool is_done = true;
+  };
   /// The nearest place, by cells crossed, from which feet come into the air; `max_cells` cells are
   /// visited. Only into air of this component (see AirView), unless it is kNoBox.
   struct TakeOff {
     Place place;                    ///< Null if there is none among them.
     bool budget_exhausted = false;  ///< There were more cells.
   };
+  /// Until the part is done, what it returns is of no use, and the flood is used for nothing else.
   [[nodiscard]] TakeOff nearest_take_off(const Place& from, uint64_t max_cells, uint32_t component,
-                                         CircleFlood& flood) const;
+                                         CircleFlood& flood, FloodPart& part) const;
   /// Fills `components` with the components of the air over those places, the nearest first. True
   /// if there were more than `max_cells` cells.
   bool components_over(const Place& from, uint64_t max_cells, CircleFlood& flood,
@@ -60,9 +67,11 @@ class FlightEndpoints {
   /// Calls visit(place), or visit(place, component of the air over it), for every cell that is
   /// connected to a place, until it returns false. True if there are too many cells.
   template <class Visit>
-  bool for_places(const Place& from, uint64_t max_cells, CircleFlood& flood, Visit visit) const;
+  bool for_places(const Place& from, uint64_t max_cells, CircleFlood& flood, FloodPart& part,
+                  Visit visit) const;
   template <class Visit>
-  bool for_take_offs(const Place& from, uint64_t max_cells, CircleFlood& flood, Visit visit) const;
+  bool for_take_offs(const Place& from, uint64_t max_cells, CircleFlood& flood, FloodPart& part,
+                     Visit visit) const;
 
   const world::WorldData& world_;
   AirView air_;

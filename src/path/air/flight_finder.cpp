@@ -43,10 +43,31 @@ bool FlightFinder::Scratch::find_link(const Shared& shared, const AirView& air_n
                          : shared.ground_air_links.joins(ground_part, air_now.baked(component));
   if (!leads) return false;
   const FlightLog::Entry& nearest = nearest_take_off(ends, end.ground, component);
+  is_flood_cut = is_flood_cut || nearest.budget_exhausted;
   budget_exhausted = budget_exhausted || nearest.budget_exhausted;
   end.ground_air_link = nearest.place;
   end.air = ends.take_off(end.ground_air_link);
   return end.air.has_value();
+}
+
+const FlightLog::Entry& FlightFinder::Scratch::nearest_take_off(const FlightEndpoints& ends,
+                                                                const Place& from,
+                                                                uint32_t component) {
+  FlightLog::Entry& entry = log.next();
+  if (entry.is_done) return entry;
+  if (!entry.is_begun) entry.nodes = 0;
+  entry.is_begun = true;
+  Slice& slice = log.slice();
+  const uint64_t cells = kFloodCells * std::min(slice.left, kMaxFloodCells);
+  FlightEndpoints::FloodPart part{.visited = entry.nodes, .left = cells};
+  const auto nearest = ends.nearest_take_off(from, kMaxFloodCells, component, flood, part);
+  slice.take((cells - part.left) / kFloodCells);
+  entry.nodes = part.visited;
+  entry.is_done = part.is_done;
+  entry.place = part.is_done ? nearest.place : Place{};
+  entry.budget_exhausted = part.is_done && nearest.budget_exhausted;
+  if (!part.is_done) log.set_pending();
+  return entry;
 }
 
 uint32_t FlightFinder::Scratch::common_air(const Shared& shared, const AirView& air_now,
@@ -178,6 +199,13 @@ bool FlightFinder::is_legal(Vec3d feet) const {
   return state_->ends(scratch_->air(*state_)).in_air(feet).has_value();
 }
 
+bool FlightFinder::is_cut_off(Vec3d from, Vec3d to) const {
+  const AirView air = scratch_->air(*state_);
+  const FlightEndpoints ends = state_->ends(air);
+  const auto a = ends.in_air(from), b = ends.in_air(to);
+  return a && b && !air.same_component(*a, *b);
+}
+
 std::optional<Vec3d> FlightFinder::random_point(uint64_t seed, uint64_t n) const {
   const std::vector<uint64_t>& before = state_->cells_before;
   if (before.back() == 0) return {};
@@ -243,9 +271,14 @@ bool FlightFinder::advance(Slice& slice, Path& path) {
   scratch.log.begin_part(slice);
   scratch.spent = SpentBudget::kNodes;
   scratch.expanded = 0;
+  scratch.is_flood_cut = false;
   reset(path);
   if (!is_cancelled(query)) find_flight(query, path);
-  if (query.by_turns && path.end == PathEnd::kUnreachable) find_by_turns(query, path);
+  // A flood on foot that was cut short says nothing about paths that land in between.
+  const bool is_cut =
+      scratch.is_flood_cut && !scratch.log.is_pending() && path.end == PathEnd::kBudgetExhausted;
+  if (query.by_turns && (is_cut || path.end == PathEnd::kUnreachable)) find_by_turns(query, path);
+  if (is_cut && path.end == PathEnd::kUnreachable) path.end = PathEnd::kBudgetExhausted;
   if (query.nearest && path.end == PathEnd::kUnreachable) find_nearest(query, path);
   scratch.taken += before - slice.left;
   // What was not found may exist all the same.

@@ -55,9 +55,10 @@ class FlightFinder {
   /// reused: its memory stays.
   void find(const FlightQuery& query, Path& path);
   /// The same in parts: call begin, then advance until it returns true; `path` is then that of
-  /// find, and before it counts what was expanded in the air and on foot. Each flood on foot to a
-  /// take-off and each string pulling is in one go and not counted. After a change or another
-  /// query, begin again.
+  /// find, and before it counts what was expanded in the air and on foot. Two cells of a flood on
+  /// foot to a take-off take as much of a slice as a node. Each string pulling, and each look for
+  /// the air over both ends, is in one go and not counted. After a change or another query, begin
+  /// again.
   void begin(const FlightQuery& query);
   bool advance(Slice& slice, Path& path);
 
@@ -77,6 +78,8 @@ class FlightFinder {
   [[nodiscard]] bool is_end(Vec3d at, double vertical_tolerance) const;
   /// Is a point of the air legal for the feet? Constant time.
   [[nodiscard]] bool is_legal(Vec3d feet) const;
+  /// Are both points in the air, and does no flight lead from one to the other? Constant time.
+  [[nodiscard]] bool is_cut_off(Vec3d from, Vec3d to) const;
   /// The n-th of a reproducible stream of points, uniform over the legal air. Empty only if there
   /// is no legal air.
   [[nodiscard]] std::optional<Vec3d> random_point(uint64_t seed, uint64_t n) const;

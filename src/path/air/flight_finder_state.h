@@ -28,6 +28,7 @@
 namespace throng::path {
 
 inline constexpr uint64_t kMaxFloodCells = 1 << 18;  // on foot to a take-off
+inline constexpr uint64_t kFloodCells = 2;           // take the time of a node
 // The same where the nearest take-off leads into an island and there are several others.
 inline constexpr uint64_t kMaxIslandCells = 1 << 15;
 // Paths over other ground, or to what is less near, where obstacles block the first.
@@ -129,13 +130,7 @@ struct FlightFinder::Scratch {
   // The place nearest to another, on foot, from where it can take off into a component of the air,
   // or into any (kNoBox).
   const FlightLog::Entry& nearest_take_off(const FlightEndpoints& ends, const Place& from,
-                                           uint32_t component) {
-    return log.next([&](FlightLog::Entry& entry) {
-      const auto nearest = ends.nearest_take_off(from, kMaxFloodCells, component, flood);
-      entry.place = nearest.place;
-      entry.budget_exhausted = nearest.budget_exhausted;
-    });
-  }
+                                           uint32_t component);
   const std::vector<uint32_t>& components_over(const FlightEndpoints& ends, const Place& from) {
     const auto make = [&](FlightLog::Entry& entry) {
       ends.components_over(from, kMaxIslandCells, flood, entry.components);
@@ -159,6 +154,7 @@ struct FlightFinder::Scratch {
   uint64_t expanded = 0;  // by the searches that the part has come to, of all parts
   FlightSearch search;
   SpentBudget spent = SpentBudget::kNone;  // the budget that the last search exhausted
+  bool is_flood_cut = false;               // a flood to a take-off had more than kMaxFloodCells
   AirString pull;
   CircleFlood flood;
   std::optional<MeshFinder> walker;

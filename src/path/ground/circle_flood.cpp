@@ -39,6 +39,7 @@ void CircleFlood::start(const world::GroundLevel& level, int32_t x, int32_t z) {
     std::fill(seen_.begin(), seen_.end(), 0);
   }
   cells_.clear();
+  next_ = 0;
   add_once(level.world_level, x, z);
   cells_.push_back({level, x, z});
 }

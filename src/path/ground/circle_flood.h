@@ -28,10 +28,21 @@ class CircleFlood {
   template <class Within, class Visit, class Blocked, class Open>
   void run(const world::WorldGround& ground, int32_t step, Within within, Visit visit,
            Blocked blocked, Open open) {
+    uint64_t all = UINT64_MAX;
+    advance(ground, step, all, within, visit, blocked, open);
+  }
+
+  /// The same in parts: visits `cells` cells at most, and takes those that it visits from it.
+  /// False: call it again.
+  template <class Within, class Visit, class Blocked, class Open>
+  bool advance(const world::WorldGround& ground, int32_t step, uint64_t& cells, Within within,
+               Visit visit, Blocked blocked, Open open) {
     constexpr int32_t kSides[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
-    for (size_t i = 0; i < cells_.size(); ++i) {
-      const Cell cell = cells_[i];
+    for (; next_ < cells_.size(); ++next_) {
+      const Cell cell = cells_[next_];
       if (!within(cell.x, cell.z)) continue;
+      if (cells == 0) return false;
+      --cells;
       visit(cell);
       for (const auto& side : kSides) {
         const int32_t x = cell.x + side[0], z = cell.z + side[1];
@@ -43,6 +54,7 @@ class CircleFlood {
         }
       }
     }
+    return true;
   }
 
   template <class Within, class Visit, class Blocked>
@@ -57,6 +69,7 @@ class CircleFlood {
   void grow();
 
   std::vector<Cell> cells_;
+  size_t next_ = 0;             // of these, to be visited
   std::vector<uint64_t> seen_;  // open addressing; 0 is free
 };
 

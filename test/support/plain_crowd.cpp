@@ -160,6 +160,7 @@ void PlainCrowd::steer_all() {
                                .near = {},
                                .free_distance = {}};
     bool waits = false;
+    float waiting_room = 0;
     for (const Near& n : near_[i]) {
       if (situation.near.size == static_cast<size_t>(config_.steering.neighbours)) break;
       const PlainBody& other = bodies_[n.other];
@@ -170,10 +171,12 @@ void PlainCrowd::steer_all() {
       };
       if (pushes(body) && body.arrived < 0 && other.arrived < 0 &&
           goes_first(contender(other, n.other), contender(body, i))) {
-        waits = true;
+        waits = true;  // for the widest
+        const auto room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
+        waiting_room = std::max(waiting_room, room);
         situation.preferred = crowd::preferred_of_waiting(
             config_.units.metres(body.goal.x - body.at.x, body.goal.z - body.at.z), body.speed,
-            static_cast<float>(body.radius + other.radius) * config_.units.unit);
+            waiting_room);
       }
       const bool keeps_off =
           queues(body) && queues(other) && is_near(i, n) && order_of(n.other) < order_of(i);
@@ -348,6 +351,7 @@ void PlainCrowd::settle(const std::vector<Spot>& now, const std::vector<uint8_t>
     progress_ += towards / body.speed / static_cast<double>(bodies_.size());
     body.at = now[i];
     body.keeps = keeps[i] != 0;
+    if (body.rest == crowd::Rest::kMadeRoom && next_rest_of_[i] == crowd::Rest::kNo) body.stood = 0;
     body.rest = next_rest_of_[i];
     if (config_.queues) {
       if (stands(body) || stood || yields_[i] != 0) {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "crowd/walk/crowd_engine.h"
@@ -143,6 +144,11 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
                      (body.has(Body::kArrived) || !body.has(Body::kHasGoal));
   const bool is_slow = size_of(body.velocity) < kHeldUpShare * body.speed;
   const bool steps_back = rests || (is_slow && !body.leaves && !body.has(Body::kExternal));
+  // Neighbours have no order of their own: of several that go first the widest counts, or the
+  // nearest.
+  float waiting_room = 0;
+  std::pair<float, uint32_t> nearest_first(HUGE_VALF, 0);
+  Plane backward;
   Informed informed;
   for (size_t n = 0; n < nearest; ++n) {
     const Body& other = bodies_[lists.entries[n]];
@@ -150,17 +156,17 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     informed.add(other, leads(apart, body.preferred, other.preferred));
     const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
     if (may_wait && is_on_last_segment(other) && goes_first(contender(other), contender(body))) {
-      worker.waits = true;
-      situation.preferred = preferred_of_waiting(
-          config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z),
-          body.speed, room);
+      waiting_room = std::max(waiting_room, room);
     }
     if (pushes && turns && turns_corner(other) &&
         gives_precedence(contender(other), contender(body), size_of(apart), room,
                          size_of(other.velocity) / other.speed)) {
-      worker.waits = true;
-      const float back = -0.5f * body.speed / size_of(apart);
-      situation.preferred = {apart.x * back, apart.z * back};
+      const std::pair distance(size_of(apart), other.slot);
+      if (distance < nearest_first) {
+        nearest_first = distance;
+        const float back = -0.5f * body.speed / distance.first;
+        backward = {apart.x * back, apart.z * back};
+      }
     }
     // Bodies that stand or are held up step back from those beside them that leave an obstacle.
     if (other.leaves && steps_back) step_back(body, apart, room, worker);
@@ -171,6 +177,16 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
         config_.queues && is_close(apart, room) ? room_in_queue(body, other, room, worker) : room;
     situation.near.add(config_.steering,
                        {apart, yields ? other.preferred : other.velocity, kept, other.preferred});
+  }
+  if (waiting_room > 0) {
+    worker.waits = true;
+    situation.preferred = preferred_of_waiting(
+        config_.units.metres(body.local_target_x - body.x, body.local_target_z - body.z),
+        body.speed, waiting_room);
+  }
+  if (nearest_first.first < HUGE_VALF) {
+    worker.waits = true;
+    situation.preferred = backward;
   }
   worker.in_counterflow = informed.counterflow != 0;
   if (config_.queues) {

@@ -261,6 +261,8 @@ class CrowdEngine {
   void list_touched(const Body& body, const SeenLists& lists, Worker& worker) const;
   static void fit_lists(const NeighbourGrid::Around& around, Worker& worker);
   [[nodiscard]] float touch_of(const Body& body) const;
+  [[nodiscard]] std::span<uint32_t> find_nearest(uint32_t i, const NeighbourGrid::Around& around,
+                                                 bool lists_others, Worker& worker) const;
   void sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around, bool lists_others);
   static void step_back(const Body& body, steer::Plane apart, float room, Worker& worker);
   void prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker) const;

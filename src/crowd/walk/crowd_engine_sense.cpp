@@ -84,10 +84,10 @@ void CrowdEngine::list_touched(const Body& body, const SeenLists& lists, Worker&
   }
 }
 
-// Senses what it steers by, and if required lists the bodies that it could touch.
-void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
-                        bool lists_others) {
-  worker.forget();
+// Finds its nearest neighbours, at most as many as count in steering, and if required lists the
+// bodies that it could touch.
+std::span<uint32_t> CrowdEngine::find_nearest(uint32_t i, const NeighbourGrid::Around& around,
+                                              bool lists_others, Worker& worker) const {
   const Body& body = bodies_[i];
   fit_lists(around, worker);
   const Places places{grid_->x(), grid_->z(), grid_->y()};
@@ -118,11 +118,7 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
     query();
   }
   list_touched(body, lists, worker);
-  if (ignores_neighbours(body)) {  // It senses no more.
-    worker.situation.preferred = body.preferred;
-    worker.situation.has_walls = false;
-    return;
-  }
+  if (ignores_neighbours(body)) return {};
   size_t nearest = keep_nearest(lists, wanted);
   if (nearest > wanted) {  // Some are equally far: of these the first slots.
     const auto key = [&](uint32_t j) {
@@ -132,7 +128,21 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
               [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
     nearest = wanted;
   }
-  if (config_.model != SteeringModel::kSampled) return prefer(i, {lists.entries, nearest}, worker);
+  return {lists.entries, nearest};
+}
+
+// Senses what it steers by, and if required lists the bodies that it could touch.
+void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around& around,
+                        bool lists_others) {
+  worker.forget();
+  const Body& body = bodies_[i];
+  const std::span<uint32_t> nearest = find_nearest(i, around, lists_others, worker);
+  if (ignores_neighbours(body)) {  // It senses no more.
+    worker.situation.preferred = body.preferred;
+    worker.situation.has_walls = false;
+    return;
+  }
+  if (config_.model != SteeringModel::kSampled) return prefer(i, nearest, worker);
   steer::Situation& situation = worker.situation;
   situation.velocity = body.velocity;
   situation.preferred = body.preferred;
@@ -150,8 +160,8 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   std::pair<float, uint32_t> nearest_first(HUGE_VALF, 0);
   Plane backward;
   Informed informed;
-  for (size_t n = 0; n < nearest; ++n) {
-    const Body& other = bodies_[lists.entries[n]];
+  for (const uint32_t j : nearest) {
+    const Body& other = bodies_[j];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
     informed.add(other, leads(apart, body.preferred, other.preferred));
     const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
@@ -190,8 +200,8 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   }
   worker.in_counterflow = informed.counterflow != 0;
   if (config_.queues) {
-    worker.in_stream = informed.stream != 0 || meets_stream(body, {lists.entries, nearest}, worker);
-    query_queue(i, {lists.entries, nearest}, around, worker);
+    worker.in_stream = informed.stream != 0 || meets_stream(body, nearest, worker);
+    query_queue(i, nearest, around, worker);
   }
   const Plane preferred = situation.preferred;
   situation.preferred = steer::following_fast(config_.steering, situation);

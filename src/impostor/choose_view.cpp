@@ -36,8 +36,9 @@ ViewChoice choose_view(const AtlasShape& shape, const AtlasClip& clip, Vec3d to_
   return choice;
 }
 
-double walk_phase(const AtlasClip& clip, double distance, double start) {
-  return clip.stride == 0 ? wrap(start) : wrap(start + distance / clip.stride);
+double walk_phase(const AtlasClip& clip, double distance, double start, double seconds) {
+  if (clip.stride != 0) return wrap(start + distance / clip.stride);
+  return wrap(clip.seconds > 0 ? start + seconds / clip.seconds : start);
 }
 
 }  // namespace throng

@@ -185,7 +185,7 @@ void BlendedCrowd::put(size_t i, const Figures& figures) {
   group.heading.push_back(steps_of(now_.heading[i]));
   const double start = random_unit(5, 1, id);
   group.phase.push_back(
-      steps_of(walk_phase(figures.shapes[atlas].clips[clip], now_.walked[i], start)));
+      steps_of(walk_phase(figures.shapes[atlas].clips[clip], now_.walked[i], start, now_.time)));
   group.look.push_back(static_cast<uint16_t>(random_unit(5, 2, id) * 2048));
 }
 

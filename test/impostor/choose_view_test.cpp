@@ -112,6 +112,13 @@ TEST(ChooseView, PhaseFollowsTheDistanceWalked) {
   EXPECT_DOUBLE_EQ(walk_phase(kWalk, -0.375, 0), 0.75);
   const AtlasClip stands{.name = "Idle", .first_frame = 0, .frames = 10, .seconds = 4, .stride = 0};
   EXPECT_DOUBLE_EQ(walk_phase(stands, 100, 0.25), 0.25);
+  // One that stands breathes: by the time alone, forwards and backwards.
+  const AtlasClip breathes{
+      .name = "stand", .first_frame = 0, .frames = 8, .seconds = 4, .stride = 0};
+  EXPECT_DOUBLE_EQ(walk_phase(breathes, 100, 0.25, 0), 0.25);
+  EXPECT_DOUBLE_EQ(walk_phase(breathes, 100, 0.25, 5), 0.5);
+  EXPECT_DOUBLE_EQ(walk_phase(breathes, 100, 0.25, -2), 0.75);
+  EXPECT_DOUBLE_EQ(walk_phase(kWalk, 0.75, 0, 5), 0.5);  // not by its walk's time
 }
 
 TEST(Trig, AgreesWithTheCLibrary) {

@@ -244,9 +244,9 @@ struct ViewChoice {
 [[nodiscard]] THRONG_API ViewChoice choose_view(const AtlasShape& shape, const AtlasClip& clip,
                                                 Vec3d to_eye, double heading, double phase);
 
-/// The phase of a figure that has walked `distance` since phase `start`: its feet do not slide. In a
-/// clip of a figure that stands it goes by the time since then. `distance` in metres, `seconds` in
-/// seconds; `start` and the result in turns, [0, 1).
+/// The phase of a figure that has walked `distance` since phase `start`: its feet do not slide. In
+/// a clip of a figure that stands it goes by the time since then. `distance` in metres, `seconds`
+/// in seconds; `start` and the result in turns, [0, 1).
 [[nodiscard]] THRONG_API double walk_phase(const AtlasClip& clip, double distance, double start,
                                            double seconds = 0);
 

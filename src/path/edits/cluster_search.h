@@ -48,8 +48,8 @@ class ClusterSearch {
     uint16_t cluster = 0;
   };
   struct LevelClusters {
-    world::CellRows open{};                   // cells that are not closed
-    std::array<uint16_t, 64 * 64> of_cell{};  // kNone where it is closed
+    world::CellRows open{};                            // cells that are not closed
+    std::array<uint16_t, world::kTileArea> of_cell{};  // kNone where it is closed
     std::vector<Cluster> clusters;
     std::vector<std::array<uint16_t, 2>> joined;     // neighbours within the level, both orders
     std::vector<uint32_t> first_joined;              // by cluster, and the end

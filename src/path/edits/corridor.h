@@ -40,9 +40,6 @@ class Corridor {
     }
     return false;
   }
-  [[nodiscard]] bool has(uint32_t level, uint32_t square) const {
-    return (squares_[level] >> square & 1) != 0;
-  }
 
  private:
   static_assert(kAcross * kAcross == 16);

@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
+#include <vector>
 
 #include "baked.h"
 #include "core/access.h"
@@ -136,6 +138,40 @@ TEST(ClusterSearch, GoesByTheGroundAsItIsNow) {
   EXPECT_EQ(length(), -1);
   ASSERT_TRUE(finder->set_area_cost(7, 1));
   EXPECT_EQ(length(), around);
+}
+
+// Two doors, and a crowd's place before the first: around it leads a path to the same door.
+TEST(SameSide, PathsThroughTheSameDoorCanBeMovedOntoEachOther) {
+  Scene scene;
+  scene.add_box({0, -0.5, 0}, {10, 0, 10});
+  scene.add_box({4.9, 0, 0}, {5.1, 3, 1.5});
+  scene.add_box({4.9, 0, 2.5}, {5.1, 3, 3.5});
+  scene.add_box({4.9, 0, 4.5}, {5.1, 3, 10});
+  const World world = test::bake(scene, 0.1, {AvatarClass{}});
+  auto finder = GroundFinder::create(world, {});
+  ASSERT_TRUE(finder) << finder.error().message;
+  const auto path = [&](std::initializer_list<Vec3d> points) {
+    std::vector<Place> places;
+    for (const Vec3d& point : points) places.push_back(world.find_place(0, point, 0.5));
+    return places;
+  };
+  const Vec3d from{2, 0, 3}, to{8, 0, 2}, door{5, 0, 2}, other_door{5, 0, 4};
+  const auto straight = path({from, door, to});
+  const auto around = path({from, {1, 0, 9}, {3.5, 0, 8}, {3.5, 0, 2}, door, {6, 0, 1}, to});
+  const auto other = path({from, other_door, to});
+  EXPECT_TRUE(finder->is_same_side(straight, straight, true));
+  EXPECT_TRUE(finder->is_same_side(straight, around, true));
+  EXPECT_TRUE(finder->is_same_side(around, straight, true));
+  EXPECT_FALSE(finder->is_same_side(straight, other, true));
+  EXPECT_FALSE(finder->is_same_side(other, around, true));
+  // A part of it, which the other goes on from.
+  const auto part = path({from, door});
+  EXPECT_TRUE(finder->is_same_side(part, around, false));
+  EXPECT_FALSE(finder->is_same_side(part, other, false));
+  EXPECT_FALSE(finder->is_same_side(path({from, other_door}), around, false));
+  // No legal path is the same as none.
+  EXPECT_FALSE(finder->is_same_side(path({from, to}), straight, true));
+  EXPECT_FALSE(finder->is_same_side(straight, path({from, to}), true));
 }
 
 TEST(ClusterSearch, StopsAtItsBudgetAndItsHighestCost) {

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "crowd/walk/walk_mode.h"
@@ -23,42 +24,11 @@ constexpr float kGoalReach = 100;     // [m] of its path, up to which it searche
 constexpr float kSlowRoute = 1.5f;    // delayed by length, from which on it searches
 constexpr float kClearlyLess = 0.8f;  // of the cost, at which it takes another route
 constexpr uint64_t kMaxNodes = 2000;  // of a search
-constexpr double kSameCorner = 1;     // [m] nearer to a corner a path leads around it, too
 
 PathPoint place_of_body(const Body& body) { return {body.x, body.z, body.level}; }
 
 float distance_of(const PathPoint& a, const PathPoint& b) {  // [units]
   return std::sqrt(near_square(b.x - a.x, b.z - a.z));
-}
-
-// Square of the distance from a point to a segment.
-double square_to_segment(const PathPoint& at, const PathPoint& from, const PathPoint& to) {
-  const double ux = to.x - from.x, uz = to.z - from.z, x = at.x - from.x, z = at.z - from.z;
-  const double size = ux * ux + uz * uz;
-  const double part = size > 0 ? std::clamp((x * ux + z * uz) / size, 0.0, 1.0) : 0;
-  const double dx = x - part * ux, dz = z - part * uz;
-  return dx * dx + dz * dz;
-}
-
-// Does a path that was pulled taut lead around all corners before number `end` that a body heads
-// to, and is it no longer than the route? Then it is the same route, through the same doors; before
-// it was pulled it may have led around those that queue there. `length`: of the route [m], `near`:
-// [units]
-bool is_same_route(const world::WorldData& world, const Path& taut, const Route& route, size_t end,
-                   double length, double near) {
-  constexpr double kLonger = 1.05, kPushed = 0.5;  // [1, m] by which avatars are pushed off paths
-  if (taut.length > kLonger * length + kPushed) return false;
-  for (size_t i = route.next; i < end; ++i) {
-    double least = HUGE_VAL;
-    PathPoint from = point_of(world, taut.points[0]);
-    for (size_t p = 1; p < taut.points.size(); ++p) {
-      const PathPoint to = point_of(world, taut.points[p]);
-      least = std::min(least, square_to_segment(route.corners[i], from, to));
-      from = to;
-    }
-    if (least > near * near) return false;
-  }
-  return true;
 }
 
 }  // namespace
@@ -178,6 +148,26 @@ void WalkMode::note_ahead(const Body& body, int32_t dx, int32_t dz, int share) {
   }
 }
 
+// Does a path lead through the same doors as the route does up to a corner? Before these it may
+// lead around those that queue.
+bool WalkMode::is_same_route(const Body& body, const Route& route, size_t end, bool to_goal,
+                             const Path& path, path::GroundFinder& live) const {
+  const world::WorldData& data = *data_of(shared_.world);
+  std::array<Place, Route::kCorners + 1> own;
+  size_t count = 0;
+  own[count++] = place_of(data, body, place_of_body(body));
+  for (size_t i = route.next; i <= end; ++i) {
+    PathPoint at = route.corners[i];
+    if (i == route.next) {
+      at.x = body.local_target_x;
+      at.z = body.local_target_z;
+    }
+    own[count++] = place_of(data, body, at);
+  }
+  const bool whole = !to_goal || (route.whole && end + 1 == route.count);
+  return live.is_same_side({own.data(), count}, path.points, whole);
+}
+
 // Takes another route to its goal, or up to a corner ahead, if that is clearly faster now.
 void WalkMode::avoid_jam(Body& body, size_t worker) {
   OfClass& parts = *classes_[body.avatar_class];
@@ -190,7 +180,7 @@ void WalkMode::avoid_jam(Body& body, size_t worker) {
   if (now.cost < kSlowRoute * now.length) return;
   shared_.jam_searches.fetch_add(1, std::memory_order_relaxed);
   const world::WorldData& data = *data_of(shared_.world);
-  Path &path = parts.paths[worker], &taut = parts.compared[worker];
+  Path& path = parts.paths[worker];
   // The last corner that it keeps may lie in the jam, and a detour to its goal pass it by.
   const float left = path_left(body);
   const bool to_goal = left <= kGoalReach && body.target == 0;
@@ -200,13 +190,11 @@ void WalkMode::avoid_jam(Body& body, size_t worker) {
       live.find_by_delays(place_of(data, body, place_of_body(body)), place_of(data, body, end),
                           {.delays = &delays_->delays(),
                            .max_cost = kClearlyLess * double{cost},
-                           .budget = shared_.search_budget(kMaxNodes),
-                           .taut = &taut},
+                           .budget = shared_.search_budget(kMaxNodes)},
                           path);
   shared_.note_spent(path.spent);
   if (!is_found || path.points.size() < 2 ||
-      is_same_route(data, taut, route, now.end, to_goal ? left : now.length,
-                    kSameCorner / shared_.unit)) {
+      is_same_route(body, route, now.end, to_goal, path, live)) {
     // The longer there was none, the less often it searches.
     row.wait = row.next_wait;
     row.next_wait = static_cast<uint8_t>(std::min<int>(2 * row.next_wait, PathProgress::kMaxWait));

@@ -173,6 +173,8 @@ class WalkMode final : public Mode {
   };
   [[nodiscard]] RouteCost measure_route(const Body& body, const Route& route,
                                         path::GroundFinder& live) const;
+  [[nodiscard]] bool is_same_route(const Body& body, const Route& route, size_t end, bool to_goal,
+                                   const Path& path, path::GroundFinder& live) const;
   void avoid_jam(Body& body, size_t worker);
   [[nodiscard]] size_t find_via(const Body& body, const StrideGround& ground, size_t worker,
                                 const Path& path);

@@ -18,11 +18,6 @@ constexpr int32_t kSide = Corridor::kSide;
 constexpr int32_t kAcross = Corridor::kAcross;
 constexpr size_t kCells = kTileCells;
 
-GroundPoint middle_of_cell(int32_t x, int32_t z) {
-  constexpr int64_t kHalf = world::kUnitsPerCell / 2;
-  return {(int64_t{x} << world::kUnitBits) + kHalf, (int64_t{z} << world::kUnitBits) + kHalf};
-}
-
 size_t cell_index(int32_t x, int32_t z) {  // in a tile
   return static_cast<size_t>(z) * kCells + static_cast<size_t>(x);
 }

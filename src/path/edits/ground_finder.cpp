@@ -380,13 +380,6 @@ bool GroundFinder::find_by_delays(const Place& from, const Place& to, const Dela
     s.search.trace(s.mesh, s.stops);
     s.string.pull(s.mesh, s.stops);
     s.give(path);
-    s.mesh.set_delays(nullptr);
-    if (search.taut != nullptr) {
-      reset(*search.taut);
-      search.taut->end = PathEnd::kReached;
-      s.string.pull(s.mesh, s.stops);
-      s.give(*search.taut);
-    }
   }
   s.mesh.set_delays(nullptr);
   s.search.give_back();

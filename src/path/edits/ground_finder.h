@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "path/edits/found_blocker.h"
 #include "path/edits/ground_delays.h"
@@ -91,15 +92,18 @@ class GroundFinder {
     double max_cost = 0;                   // of a path, in metres of free ground
     uint64_t max_clusters = 10'000;        // that the search for its corridor expands
     SearchBudget budget;                   // of that within the corridor
-    // Null, or where to write the found path pulled taut on free ground: the shortest that leads
-    // around the same walls on the same sides.
-    Path* taut = nullptr;
   };
   /// As find_over_points, but each metre costs more where avatars get on slowly now, no path costs
   /// more than `max_cost`, and none takes off-mesh links. It looks for a corridor first, over
   /// coarse ground, and may miss the best path by 8 %. True: a path was found (kReached);
   /// Path::cost is by delays. No allocation once it is warm.
   bool find_by_delays(const Place& from, const Place& to, const DelayedSearch& search, Path& path);
+  /// Does a path lead around all that is closed on the same side as another from the same place? It
+  /// does if it can be moved onto that over open ground. `whole`: both end at the same place; else
+  /// the other goes on, within a metre of the path's end. A pillar less than a body wide may be
+  /// overlooked. False if one is no legal path, too. Time: quadratic in their lengths. No
+  /// allocation once it is warm.
+  bool is_same_side(std::span<const Place> path, std::span<const Place> other, bool whole);
   /// Of a straight segment, by delays, in metres of free ground; infinite if it is no legal move.
   [[nodiscard]] double delayed_length(const Place& from, const Place& to,
                                       const GroundDelays& delays);

@@ -56,6 +56,8 @@ struct GroundFinder::State {
   IfUnreachable otherwise = IfUnreachable::kNearest;
   uint64_t expanded = 0;  // within the budget
   std::vector<ViewStop> stops;
+  std::array<std::vector<ViewStop>, 2> sampled;  // points of two paths that are compared
+  std::vector<uint8_t> paired;
 
   // While no metre costs more than another, and no off-mesh link is in force.
   PathSearch exact;

@@ -46,6 +46,11 @@ inline double distance_of(world::GroundPoint a, world::GroundPoint b) {  // [cel
   return std::sqrt(dx * dx + dz * dz) * (1.0 / world::kUnitsPerCell);
 }
 
+inline world::GroundPoint middle_of_cell(int32_t x, int32_t z) {
+  constexpr int64_t kHalf = world::kUnitsPerCell / 2;
+  return {(int64_t{x} << world::kUnitBits) + kHalf, (int64_t{z} << world::kUnitBits) + kHalf};
+}
+
 /// Levels and the changes made to them, as a mesh whose parts are made when they are needed. Copies
 /// share nothing.
 class GroundView final : public PortalSource {

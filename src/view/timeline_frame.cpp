@@ -14,9 +14,14 @@
 namespace throng::view {
 namespace {
 
-constexpr double kStandingSpeed = 0.12;  // [m/s] Slower is standing.
-constexpr double kTurnSpeed = 0.9;       // [turns/s]
-constexpr double kSpeedMemory = 0.4;     // [s]
+// Between these speeds a figure goes on with what it does: else it changes with each small move.
+constexpr float kStands = 0.08f, kWalks = 0.2f;  // [m/s]
+// How far a figure may rise or sink, so that it does not hop from tread to tread.
+constexpr double kRise = 0.9;         // per metre walked: no slope that is walked is steeper
+constexpr double kRiseSpeed = 0.4;    // [m/s], in addition
+constexpr double kMaxOff = 0.4;       // [m] from the floor
+constexpr double kTurnSpeed = 0.9;    // [turns/s]
+constexpr double kSpeedMemory = 0.4;  // [s]
 
 // The smaller of the two rotations between two angles, in turns.
 double turn_between(double from, double to) { return std::remainder(to - from, 1.0); }
@@ -70,6 +75,7 @@ void for_each_pair(const TimelineFrame& a, const TimelineFrame& b, Each each) {
 void TimelineFrame::resize(size_t avatars) {
   ids.resize(avatars);
   classes.resize(avatars);
+  moves.resize(avatars);
   for (auto* array : {&x, &y, &z, &heading, &walked, &speed}) array->resize(avatars);
 }
 
@@ -103,6 +109,7 @@ void follow(const TimelineFrame& before, TimelineFrame& now) {
     if (j == before.size()) {
       now.walked[i] = static_cast<float>(2 * random_unit(3, 0, now.ids[i]));
       now.speed[i] = 0;
+      now.moves[i] = 0;
       if (now.heading[i] == 0) now.heading[i] = in_turn(random_unit(3, 1, now.ids[i]));
       return;
     }
@@ -111,8 +118,14 @@ void follow(const TimelineFrame& before, TimelineFrame& now) {
     const double moved = leans ? std::hypot(flat, now.y[i] - before.y[j]) : flat;
     const float was = transported(before.heading[j], before.up(j), now.up(i));
     now.walked[i] = static_cast<float>(before.walked[j] + (seconds < 0 ? -moved : moved));
+    if (!leans) {
+      const double rise = kRise * flat + kRiseSpeed * apart, floor = now.y[i], was_at = before.y[j];
+      const double next = was_at + std::clamp(floor - was_at, -rise, rise);
+      now.y[i] = static_cast<float>(std::clamp(next, floor - kMaxOff, floor + kMaxOff));
+    }
     const double keep = std::exp(-apart / kSpeedMemory);
     now.speed[i] = static_cast<float>(before.speed[j] * keep + moved / apart * (1 - keep));
+    now.moves[i] = now.speed[i] > (before.moves[j] != 0 ? kStands : kWalks) ? 1 : 0;
     // An avatar that has not moved yet has no heading, and one that stands none in recordings of
     // wanderers: players give that along +Z then.
     const bool stands = moved < 1e-3 * apart && now.heading[i] == 0;
@@ -139,6 +152,7 @@ void BlendedCrowd::blend(const TimelineFrame& a, const TimelineFrame& b, double 
     now_.ids[i] = b.ids[i];
     now_.classes[i] = b.classes[i];
     now_.speed[i] = b.speed[i];
+    now_.moves[i] = b.moves[i];
     const bool both = j < a.size();
     const auto between = [&](const std::vector<float>& p, const std::vector<float>& q) {
       return both ? p[j] + (q[i] - p[j]) * s : q[i];
@@ -174,7 +188,7 @@ void BlendedCrowd::put(size_t i, const Figures& figures) {
   const std::vector<size_t>& choice = figures.of_class[row];
   const auto pick = static_cast<size_t>(random_unit(5, 0, id) * static_cast<double>(choice.size()));
   const size_t atlas = choice[std::min(pick, choice.size() - 1)];
-  const size_t clip = clip_for(figures.shapes[atlas], now_.speed[i] > kStandingSpeed);
+  const size_t clip = clip_for(figures.shapes[atlas], now_.moves[i] != 0);
   const Vec3d up = now_.up(i);
   const bool leans = !(up == kUpright);
   Group& group = groups_[{atlas, clip, leans}];

@@ -31,10 +31,11 @@ struct TimelineFrame {
   /// Differs between avatars that had the same id one after the other; empty: ids are never reused.
   std::vector<uint32_t> generations;
   std::vector<uint8_t> classes;
-  std::vector<float> x, y, z;
+  std::vector<float> x, y, z;  ///< Y: once followed, of the figure, which does not hop on stairs.
   std::vector<float> heading;  ///< From +Z towards +X. [turns, 0 to 1]
   std::vector<float> walked;   ///< Since first seen. [m]
   std::vector<float> speed;    ///< Running mean. [m/s]
+  std::vector<uint8_t> moves;  ///< 1: its figure walks, 0: it stands.
   /// The axis of each body from its feet; empty: all are upright. Of a body that leans, `heading`
   /// is the one before leaning (lean.h). [unit length]
   std::vector<Vec3d> ups = {};
@@ -53,8 +54,9 @@ struct TimelineFrame {
 /// Fills in the avatars, with positions relative to an origin.
 void put_states(const std::vector<AvatarState>& states, Vec3d origin, TimelineFrame& frame);
 
-/// Fills in `walked` and `speed` of `now` from the frame before it and limits the turns of its
-/// headings. `before` may be empty, or later: then time runs backwards.
+/// Fills in `walked`, `speed` and `moves` of `now` from the frame before it, and limits the turns
+/// of its headings and how fast it rises and sinks. `before` may be empty, or later: then time runs
+/// backwards.
 void follow(const TimelineFrame& before, TimelineFrame& now);
 
 /// The atlases of each class, by number, at least one per class.

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -64,6 +65,52 @@ TEST(TimelineFrame, FiguresTurnByTheSmallerAngleAndNotAtOnce) {
   a.heading[0] = 0.97F;
   view::follow(a, c);  // Over zero: 0.05 turns, within the limit of 0.18.
   EXPECT_NEAR(c.heading[0], 0.02, 1e-5);
+}
+
+// Before a door people stop and start all the time; a figure that shuffles goes on standing.
+TEST(TimelineFrame, FiguresDoNotChangeTheirClipWithEachSmallMove) {
+  view::TimelineFrame before = frame_of(0, {{1, 0, 0, 0}});
+  view::follow({}, before);
+  const auto moves_after = [&](double speed, int steps) {
+    for (int step = 0; step < steps; ++step) {
+      view::TimelineFrame now = frame_of(before.time + 0.1, {{1, 0, before.z[0], 0}});
+      now.z[0] += static_cast<float>(speed * 0.1);
+      view::follow(before, now);
+      before = now;
+    }
+    return before.moves[0] != 0;
+  };
+  EXPECT_FALSE(moves_after(0.15, 40));
+  EXPECT_TRUE(moves_after(0.3, 40));
+  EXPECT_TRUE(moves_after(0.15, 40));
+  EXPECT_FALSE(moves_after(0.05, 40));
+}
+
+// Up and down 20 treads of 0.28 m by 0.17 m: floors are level within each.
+TEST(TimelineFrame, FiguresDoNotHopOnStairs) {
+  for (const double sign : {1.0, -1.0}) {
+    view::TimelineFrame before = frame_of(0, {{1, 0, 0, 0}});
+    view::follow({}, before);
+    double most = 0;
+    for (int step = 1; step < 80; ++step) {
+      const double x = 0.07 * step, floor = sign * 0.17 * std::floor(x / 0.28);
+      view::TimelineFrame now = frame_of(0.1 * step, {{1, static_cast<float>(x), 0, 0}});
+      now.y[0] = static_cast<float>(floor);
+      view::follow(before, now);
+      most = std::max<double>(most, std::abs(now.y[0] - before.y[0]));
+      EXPECT_NEAR(now.y[0], floor, 0.11) << x;
+      before = now;
+    }
+    EXPECT_LT(most, 0.104);
+  }
+  // On ramps, and where a lift or a fall moves it, it stays near its floor.
+  view::TimelineFrame low = frame_of(0, {{1, 0, 0, 0}}), high = frame_of(0.1, {{1, 0.1F, 0, 0}});
+  high.y[0] = 0.1F;
+  view::follow(low, high);
+  EXPECT_FLOAT_EQ(high.y[0], 0.1F);
+  high.y[0] = 5;
+  view::follow(low, high);
+  EXPECT_NEAR(high.y[0], 4.6, 1e-5);
 }
 
 TEST(TimelineFrame, AStandingAvatarKeepsItsHeading) {
@@ -141,6 +188,7 @@ TEST(TimelineFrame, BlendsBetweenTwoFramesAndShowsNewAvatars) {
   view::TimelineFrame a = frame_of(1, {{1, 0, 0, 0.9F}, {2, 5, 5, 0}});
   view::TimelineFrame b = frame_of(2, {{1, 4, 8, 0.1F}, {7, 1, 2, 0.5F}});
   b.speed = {1.2F, 0};
+  b.moves = {1, 0};
   view::BlendedCrowd crowd;
   crowd.blend(a, b, 0.25, one_figure(), 1e9);
   const view::TimelineFrame& now = crowd.now();

@@ -23,7 +23,12 @@ using crowd::Orientation;
 using steer::Plane;
 
 constexpr double kRadians = std::numbers::pi / 180;
-constexpr double kRate = 120;  // [degrees/s] that orientations turn by at most
+constexpr double kRate = 120;      // [degrees/s] that orientations turn by at most
+constexpr double kBackRate = 240;  // and with 120 degrees and more to go
+
+double max_rate(double apart) {
+  return std::clamp(kRate * (1 + (std::fabs(apart) - 90) / 30), kRate, kBackRate);
+}
 
 // From one angle to another by the smaller of the two rotations. [degrees]
 double between(double from, double to) { return std::remainder(to - from, 360); }
@@ -63,7 +68,8 @@ TEST(Orientation, FollowsTheWalkWithALagAndABoundedRate) {
       const double now = one.turn(v, dt), change = between(before, now);
       before = now;
       if (std::fabs(apart) > 179.9) continue;  // either side is as near
-      const double wanted = apart * (1 - std::exp(-dt * part / 0.43)), most = kRate * double{dt};
+      const double wanted = apart * (1 - std::exp(-dt * part / 0.43)),
+                   most = max_rate(apart) * double{dt};
       ASSERT_NEAR(change, std::clamp(wanted, -most, most), 0.01 * std::fabs(wanted) + 0.001)
           << dt << ' ' << step;
       at_the_bound += std::fabs(wanted) > most ? 1 : 0;
@@ -84,7 +90,7 @@ TEST(Orientation, FacesTheWalkWithinASecondAtAnyStep) {
         const double now_aside = aside.turn({speed, 0}, dt);
         const double now_back = back.turn({0.001f * speed, -speed}, dt);
         EXPECT_LE(std::fabs(between(before_aside, now_aside)), kRate * double{dt} + 1e-4);
-        EXPECT_LE(std::fabs(between(before_back, now_back)), kRate * double{dt} + 1e-4);
+        EXPECT_LE(std::fabs(between(before_back, now_back)), kBackRate * double{dt} + 1e-4);
         before_aside = now_aside;
         before_back = now_back;
         if (step == steps - 1) {
@@ -103,6 +109,22 @@ TEST(Orientation, StaysWhileTheBodyStands) {
   one.body.preferred = {-1, 0};
   for (int step = 0; step < 100; ++step) one.turn({}, 0.1f);
   EXPECT_EQ(one.orientations[0].code, before);
+}
+
+// From a stand to full speed within a third of a second, straight back.
+TEST(Orientation, ABodyThatStartsTurnsToWhereItWantsToWalk) {
+  for (const float dt : {0.01f, 0.05f, 0.1f}) {
+    OneBody one;
+    one.body.preferred = {0.01f, -1.34f};
+    double off = 0;  // [s] more than 90 degrees
+    for (float time = 0; time < 2; time += dt) {
+      const float speed = std::min(1.34f, 4 * (time + dt));
+      const double now = one.turn({0.0075f * speed, -speed}, dt);
+      off += std::fabs(between(now, 180)) > 90 ? double{dt} : 0;
+    }
+    EXPECT_LT(off, 0.61) << dt;
+    EXPECT_NEAR(std::fabs(between(0, degrees_of(one.orientations[0]))), 180, 8) << dt;
+  }
 }
 
 TEST(Orientation, AShakenBodyKeepsIt) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -47,12 +48,17 @@ class Turning {
   // angle has 124 degrees a second in its fastest moment.
   static constexpr float kLag = 0.43f;         // [s]
   static constexpr float kMaxRate = 1.0f / 3;  // [turns/s]
+  /// A half turn has twice that by the same equation: from here on the rate rises, until it is so
+  /// at the second angle. Else people that start walk backwards for a while. [turns]
+  static constexpr float kBack = 0.25f, kFarBack = 1.0f / 3;
   /// At this speed, or half of its desired speed if that is less, a body turns with the whole rate:
   /// slower, it sways or steps aside, and turns less by the square of its speed.
   static constexpr float kFullSpeed = 0.5f;  // [m/s]
+  /// Of the rate by its lag, of a body that starts: towards where it wants to walk.
+  static constexpr float kStart = 0.5f;
 
   Turning(std::span<Orientation> by_slot, float dt)
-      : by_slot_(by_slot), dt_(dt), share_(share_of(dt / kLag)), most_(most_in(dt)) {}
+      : by_slot_(by_slot), dt_(dt), share_(share_of(dt / kLag)) {}
 
   void prefetch(uint32_t slot) const {
     if (!by_slot_.empty()) throng::prefetch(&by_slot_[slot]);
@@ -75,12 +81,24 @@ class Turning {
     const float square = square_of(velocity);
     if (!(square > 0)) return;
     const float full = std::min(kFullSpeed, 0.5f * body.speed), full_square = full * full;
-    const float share =
-        square < full_square ? share_of(dt_ / kLag * (square / full_square)) : share_;
-    const auto apart = static_cast<int32_t>(Orientation::along(velocity).code - now.code);
-    const auto change =
-        static_cast<int32_t>(std::clamp(share * static_cast<float>(apart), -most_, most_));
-    now.code = (now.code + static_cast<uint32_t>(change)) | 1u;
+    float share = share_;
+    steer::Plane towards = velocity;
+    if (square < full_square) {
+      float part = square / full_square;
+      if (square_of(preferred) >= full_square) {
+        towards = {velocity.x * part + preferred.x * (1 - part),
+                   velocity.z * part + preferred.z * (1 - part)};
+        part = std::max(part, kStart);
+      }
+      share = share_of(dt_ / kLag * part);
+    }
+    if (!(square_of(towards) > 0)) return;
+    const auto apart = static_cast<int32_t>(Orientation::along(towards).code - now.code);
+    const float wanted = share * static_cast<float>(apart);
+    const float most = most_at(std::abs(static_cast<float>(apart)) * 0x1p-32f);
+    now.code =
+        (now.code + static_cast<uint32_t>(static_cast<int32_t>(std::clamp(wanted, -most, most)))) |
+        1u;
   }
 
  private:
@@ -91,7 +109,10 @@ class Turning {
     return sum / (1 + sum);
   }
   // Below half a turn, so that it fits into 32 bits.
-  static float most_in(float dt) { return std::min(kMaxRate * dt, 0.499f) * 0x1p32f; }
+  [[nodiscard]] float most_at(float apart) const {
+    const float far = std::clamp((apart - kBack) * (1 / (kFarBack - kBack)), 0.0f, 1.0f);
+    return std::min(kMaxRate * dt_ * (1 + far), 0.499f) * 0x1p32f;
+  }
   // A new avatar faces where it would walk, or else where it does.
   static void begin(Orientation& now, steer::Plane velocity, steer::Plane preferred) {
     if (square_of(preferred) > 0) {
@@ -104,7 +125,6 @@ class Turning {
   std::span<Orientation> by_slot_;
   float dt_;     // [s]
   float share_;  // of the angle to the direction of the walk
-  float most_;   // [2^32 a turn]
 };
 
 }  // namespace throng::crowd

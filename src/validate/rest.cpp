@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,19 @@ Waiting in_rows() {
     const auto row = static_cast<double>(n / 3), column = static_cast<double>(n % 3);
     waiting.starts.push_back({1 + row, 5 + column});
     waiting.goals.push_back({8 + 0.6 * row, 5.4 + 0.6 * column});
+  }
+  return waiting;
+}
+
+// Goals within half a metre of one point, where four have room.
+Waiting around_a_point(uint64_t seed) {
+  Waiting waiting{.name = "20 people around a point", .starts = {}, .goals = {}};
+  for (uint64_t n = 0; n < 20; ++n) {
+    const double angle = 2 * std::numbers::pi * random_unit(seed, 3, n);
+    const double off = 0.5 * std::sqrt(random_unit(seed, 4, n));
+    waiting.starts.push_back(
+        {1 + 0.7 * static_cast<double>(n / 5), 4 + 0.7 * static_cast<double>(n % 5)});
+    waiting.goals.push_back({8 + off * std::cos(angle), 6 + off * std::sin(angle)});
   }
   return waiting;
 }
@@ -99,7 +113,8 @@ Result<ValidationResult> rest(const ValidationConfig& config, Context& context) 
   plane.ground = box(0, 0, kRoom, kRoom);
   const auto world = bake_plane(plane, AvatarClass{}, config, context);
   if (!world) return world.error();
-  for (const Waiting& waiting : {on_small_area(config.seed), in_rows()}) {
+  for (const Waiting& waiting :
+       {on_small_area(config.seed), in_rows(), around_a_point(config.seed)}) {
     for (const double dt : {0.02, 0.1, 0.2}) {
       const auto found = come_to_rest(*world, waiting, dt, config, result, context);
       if (!found) return found.error();
@@ -123,9 +138,9 @@ const std::array<Test, 1> kRestTests{Test{
     {.name = "motion.rest",
      .title = "People that have come to their places stand",
      .method = "The default adult, steps of 0.02, 0.1 and 0.2 s. 24 people go to random places on "
-               "16 m2, nine to places in rows 0.6 m apart. From 30 to 60 s: length of the paths "
-               "by the time, mean and maximum of a person; at the end the mean distance from the "
-               "places.",
+               "16 m2, nine to places in rows 0.6 m apart, 20 to random places within 0.5 m of a "
+               "point. From 30 to 60 s: length of the paths by the time, mean and maximum of a "
+               "person; at the end the mean distance from the places.",
      .source = "ours: a mean speed of 0.01 m/s, a mean distance of 1 m"},
     rest}};
 

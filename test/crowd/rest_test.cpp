@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -59,6 +60,42 @@ TEST(Rest, ThoseThatMadeRoomReturnWithoutTwitching) {
     }
   }
   EXPECT_LE(twitches, 100);  // 246 if they rest again at once
+}
+
+// Goals within 0.3 to 2 m of a point: far more people than have room there.
+TEST(Rest, ThoseWhoseGoalsLieTooNearToEachOtherComeToRest) {
+  Scene scene;
+  scene.add_box({0, -0.5, 0}, {16, 0, 16});
+  scene.add_box({11, 0, 0}, {11.2, 3, 16});
+  const World world = test::bake(scene, 0.1, {AvatarClass{}});
+  for (const double range : {0.3, 1.0, 2.0}) {
+    for (const size_t people : {10u, 20u, 40u}) {
+      for (uint64_t seed = 1; seed <= 2; ++seed) {
+        Crowd crowd = made(world, {.dt = kDt, .seed = seed});
+        std::vector<AvatarId> ids;
+        for (size_t i = 0; i < people; ++i) {
+          const auto draw = [&](uint64_t k) { return random_unit(seed, k, i); };
+          const double angle = 2 * M_PI * draw(0), off = range * std::sqrt(draw(1));
+          const double x = std::min(10.3 + off * std::cos(angle), 10.7);
+          const Place goal = world.find_place(0, {x, 0, 8 + off * std::sin(angle)}, 0.5);
+          const auto row = static_cast<double>(i / 5), column = static_cast<double>(i % 5);
+          ids.push_back(
+              added(crowd, world.find_place(0, {1 + 0.6 * column, 0, 3 + 0.9 * row}, 0.5)));
+          ASSERT_TRUE(ids.back() && goal);
+          crowd.set_goals(std::span(&ids.back(), 1), std::span(&goal, 1));
+        }
+        for (int step = 0; step < 500; ++step) (void)crowd.step();
+        double moved = 0;  // [m/s] each
+        for (int step = 0; step < 100; ++step) {
+          (void)crowd.step();
+          for (const AvatarId id : ids) {
+            moved += length(crowd.read(id)->velocity) / static_cast<double>(100 * people);
+          }
+        }
+        EXPECT_LT(moved, 0.01) << range << ' ' << people << ' ' << seed;
+      }
+    }
+  }
 }
 
 }  // namespace

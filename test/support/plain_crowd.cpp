@@ -74,6 +74,7 @@ PlainCrowd::PlainCrowd(std::vector<PlainBody> bodies, const PlainConfig& config)
   near_.resize(bodies_.size());
   choices_.resize(bodies_.size());
   next_rest_of_.resize(bodies_.size());
+  nears_goal_.resize(bodies_.size());
   if (config_.queues) config_.steering = crowd::queueing(config_.steering);
 }
 
@@ -331,6 +332,7 @@ void PlainCrowd::resolve_conflicts() {
     bodies_[i].asks = asks[i] != 0;
     bodies_[i].request = requests[i];
     next_rest_of_[i] = rest[i];
+    nears_goal_[i] = decides[i] != 0 && may_rest(bodies_[i]) ? 1 : 0;
   }
   settle(now, keeps);
 }
@@ -351,8 +353,7 @@ void PlainCrowd::settle(const std::vector<Spot>& now, const std::vector<uint8_t>
     progress_ += towards / body.speed / static_cast<double>(bodies_.size());
     body.at = now[i];
     body.keeps = keeps[i] != 0;
-    if (body.rest == crowd::Rest::kMadeRoom && next_rest_of_[i] == crowd::Rest::kNo) body.stood = 0;
-    body.rest = next_rest_of_[i];
+    if (nears_goal_[i] != 0) settle_rest(body, next_rest_of_[i], left, units.dt);
     if (config_.queues) {
       if (stands(body) || stood || yields_[i] != 0) {
         body.yields =

@@ -36,6 +36,8 @@ struct PlainBody {
   bool asks = false;      // others to make room
   crowd::RoomRequest request;
   crowd::Rest rest = crowd::Rest::kNo;
+  int nearest_cm = -1;  // to its goal so far; not near yet: -1
+  float vain = 0;       // for how long it has come no nearer [s]
   double arrived = -1;  // time at which it came within 0.3 m of the goal [s]; not yet: -1
 };
 
@@ -111,7 +113,9 @@ class PlainCrowd {
   [[nodiscard]] bool can_move(uint32_t i, steer::Plane velocity) const;
   [[nodiscard]] bool is_head(uint32_t i) const;
   [[nodiscard]] bool is_goal_taken(uint32_t i) const;
+  [[nodiscard]] bool touches_resting(uint32_t i) const;
   [[nodiscard]] crowd::Rest next_rest(uint32_t i) const;
+  static void settle_rest(PlainBody& body, crowd::Rest next, float left, float dt);
   void queue_up(uint32_t i, Plan& plan) const;
   void make_room(uint32_t i, Plan& plan, const steer::Plane& best) const;
   [[nodiscard]] steer::Plane reachable(const PlainBody& body, steer::Plane velocity) const;
@@ -129,7 +133,8 @@ class PlainCrowd {
   std::vector<steer::Choices> choices_;
   std::vector<uint8_t> yields_, in_stream_;
   std::vector<crowd::Rest> next_rest_of_;
-  std::vector<Plan> plans_;  // of those that decide in this step
+  std::vector<uint8_t> nears_goal_;  // and has decided in this step
+  std::vector<Plan> plans_;          // of those that decide in this step
 };
 
 /// Bodies at random places of a periodic square, `area` m2 per body, with goals within 50 m along

@@ -142,16 +142,38 @@ bool PlainCrowd::is_goal_taken(uint32_t i) const {
   });
 }
 
+bool PlainCrowd::touches_resting(uint32_t i) const {
+  const PlainBody& body = bodies_[i];
+  return std::any_of(near_[i].begin(), near_[i].end(), [&](const Near& n) {
+    const PlainBody& other = bodies_[n.other];
+    const int64_t touching =
+        int64_t{body.radius} + other.radius + static_cast<int64_t>(0.1f / config_.units.unit);
+    return crowd::nearer_than(n.at.x, n.at.z, touching) && rests(other);
+  });
+}
+
+void PlainCrowd::settle_rest(PlainBody& body, Rest next, float left, float dt) {
+  body.vain = body.rest == Rest::kNo ? body.vain + dt : 0;
+  if (body.nearest_cm < 0 || left < 0.01f * static_cast<float>(body.nearest_cm) - 0.2f) {
+    body.nearest_cm = static_cast<int>(100 * left + 0.5f);
+    body.vain = 0;
+  }
+  if (body.rest == Rest::kMadeRoom && next == Rest::kNo) body.stood = 0;
+  body.rest = next;
+}
+
 Rest PlainCrowd::next_rest(uint32_t i) const {
   const PlainBody& body = bodies_[i];
   const float left = size_of(path_ahead(body));
   if (!may_rest(body)) return body.rest;
   if (body.rest == Rest::kMadeRoom) {
-    return stands(body) && body.stood >= 1 ? Rest::kNo : Rest::kMadeRoom;
+    if (!stands(body) || body.stood < 1) return Rest::kMadeRoom;
+    return is_goal_taken(i) ? Rest::kRests : Rest::kNo;
   }
   if (body.rest == Rest::kRests && !stands(body) && body.stood == 0) return Rest::kMadeRoom;
   if (body.rest == Rest::kNo) {
     if (left < 0.005f || (left < 0.3f && is_goal_taken(i))) return Rest::kRests;
+    if (body.vain >= 1 && touches_resting(i)) return Rest::kRests;
     if (!stands(body) || body.stood < 0.5f) return Rest::kNo;
   }
   return left < 0.3f || is_goal_taken(i) ? Rest::kRests : Rest::kNo;

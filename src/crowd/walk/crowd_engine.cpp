@@ -695,11 +695,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
       b.clear(Body::kContinues);
       b.in_counterflow = proposal.in_counterflow;
       if (proposal.may_rest) {
-        // It returns now. If it counted as standing still, it would rest again after a step.
-        if (progress_[b.slot].rest == Rest::kMadeRoom && proposal.rest == Rest::kNo) {
-          progress_[b.slot].stood = 0;
-        }
-        progress_[b.slot].rest = proposal.rest;
+        progress_[b.slot].set_rest(proposal.rest, size_of(displacement), units.dt);
         b.at_rest = proposal.rest != Rest::kNo;
       }
       if (config_.queues) settle_queue(b, stood, proposal, units.dt);

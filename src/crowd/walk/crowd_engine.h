@@ -124,8 +124,7 @@ class CrowdEngine {
   /// A body that rests does not any more: it heads to another place.
   void wake(Body& body) {
     body.at_rest = false;
-    progress_[body.slot].rest = Rest::kNo;
-    progress_[body.slot].stood = 0;
+    progress_[body.slot].wake();
   }
   /// Length of a body's path after its local target. [m]
   void set_path_after(uint32_t slot, float length) { progress_[slot].after = length; }
@@ -332,6 +331,7 @@ class CrowdEngine {
   [[nodiscard]] bool may_rest(const Body& body) const;
   [[nodiscard]] bool rests(const Body& body) const;
   [[nodiscard]] bool is_goal_taken(uint32_t i, const NeighbourGrid::Around& around) const;
+  [[nodiscard]] bool touches_resting(uint32_t i, const NeighbourGrid::Around& around) const;
   [[nodiscard]] Rest next_rest(uint32_t i, const NeighbourGrid::Around& around) const;
 
   [[nodiscard]] float wall_distance(const Body& body, float displacement, float query_range) const;

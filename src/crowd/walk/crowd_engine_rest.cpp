@@ -16,6 +16,7 @@ constexpr float kAtGoal = 0.005f;      // [m] as near to its goal a body rests a
 constexpr float kNearGoal = 0.3f;      // [m] as near it rests if it stands
 constexpr float kStandsBefore = 0.5f;  // [s] until it rests
 constexpr float kReturnsAfter = 1;     // [s] after it made room
+constexpr float kTries = 1;            // [s] to get past others that rest
 constexpr float kBlockedGap = 0.1f;    // [m] to one that rests before it
 
 // On the last segment of its path to a goal of its own?
@@ -65,6 +66,24 @@ bool CrowdEngine::is_goal_taken(uint32_t i, const NeighbourGrid::Around& around)
   return false;
 }
 
+// Does it touch one that rests, about?
+bool CrowdEngine::touches_resting(uint32_t i, const NeighbourGrid::Around& around) const {
+  const Body& body = bodies_[i];
+  const auto gap = static_cast<int64_t>(kBlockedGap / config_.units.unit);
+  for (const Entries& piece : around.pieces()) {
+    for (uint32_t j = piece.first; j < piece.last; ++j) {
+      const Body& other = bodies_[j];
+      if (j != i && std::abs(other.y - body.y) <= body.height &&
+          nearer_than(other.x - body.x, other.z - body.z,
+                      int64_t{other.radius} + body.radius + gap) &&
+          rests(other)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 // Does it rest from the next step on?
 Rest CrowdEngine::next_rest(uint32_t i, const NeighbourGrid::Around& around) const {
   const Body& body = bodies_[i];
@@ -75,13 +94,15 @@ Rest CrowdEngine::next_rest(uint32_t i, const NeighbourGrid::Around& around) con
   switch (progress.rest) {
     case Rest::kNo:
       if (left < kAtGoal || (left < kNearGoal && is_goal_taken(i, around))) return Rest::kRests;
+      if (progress.vain >= kTries && touches_resting(i, around)) return Rest::kRests;
       if (!stands(body) || progress.stood < kStandsBefore) return Rest::kNo;
       return left < kNearGoal || is_goal_taken(i, around) ? Rest::kRests : Rest::kNo;
     case Rest::kRests:
       if (!stands(body) && progress.stood == 0) return Rest::kMadeRoom;
       return left < kNearGoal || is_goal_taken(i, around) ? Rest::kRests : Rest::kNo;
     case Rest::kMadeRoom:
-      return stands(body) && progress.stood >= kReturnsAfter ? Rest::kNo : Rest::kMadeRoom;
+      if (!stands(body) || progress.stood < kReturnsAfter) return Rest::kMadeRoom;
+      return is_goal_taken(i, around) ? Rest::kRests : Rest::kNo;
   }
   return Rest::kNo;
 }

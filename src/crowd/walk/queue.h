@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -62,13 +63,36 @@ enum class Rest : uint8_t {
 /// What an engine knows of the path of a body and of its place in a queue, by slot. A body's
 /// neighbours seldom need it: what they do is in Body.
 struct alignas(32) QueueProgress {
-  steer::Plane onward;  ///< From its local target to its path some metres on; 0 at its end. [m]
-  float after = 0;      ///< Length of its path after its local target. [m]
-  float stood = 0;      ///< How long it has stood. [s]
-  float yields = 0;     ///< For how long it still stands, to let another pass. [s]
-  float stream = 0;     ///< For how long it is still in a stream that meets another. [s]
+  steer::Plane onward;   ///< From its local target to its path some metres on; 0 at its end. [m]
+  float after = 0;       ///< Length of its path after its local target. [m]
+  float stood = 0;       ///< How long it has stood. [s]
+  float yields = 0;      ///< For how long it still stands, to let another pass. [s]
+  float stream = 0;      ///< For how long it is still in a stream that meets another. [s]
+  float vain = 0;        ///< For how long it has come no nearer to its goal. [s]
+  uint16_t nearest = 0;  ///< To its goal so far, and 1; 0: not near yet. [cm]
   Rest rest = Rest::kNo;
-  std::array<uint8_t, 7> unused{};  ///< 0, so that saved rows have no undefined bytes.
+  uint8_t unused = 0;  ///< So that saved rows have no undefined bytes.
+
+  /// Of a step of `dt` in which it decided, at the beginning `left` before its goal. [m, s]
+  void set_rest(Rest next, float left, float dt) {
+    constexpr float kNearer = 0.2f;  // [m]
+    const float far = std::min(left, 600.0f);
+    vain = rest == Rest::kNo ? vain + dt : 0;
+    if (nearest == 0 || far < 0.01f * static_cast<float>(nearest - 1) - kNearer) {
+      nearest = static_cast<uint16_t>(100 * far + 1.5f);
+      vain = 0;
+    }
+    // If it counted as standing still, it would rest again after a step.
+    if (rest == Rest::kMadeRoom && next == Rest::kNo) stood = 0;
+    rest = next;
+  }
+  /// It heads to another goal.
+  void wake() {
+    rest = Rest::kNo;
+    stood = 0;
+    nearest = 0;
+    vain = 0;
+  }
 };
 static_assert(sizeof(QueueProgress) == 32);
 

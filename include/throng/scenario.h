@@ -224,7 +224,7 @@ struct SimulationReport {
   double time = 0;                ///< After the step. [s]
   uint64_t entered = 0;           ///< So far.
   uint64_t left = 0;              ///< So far.
-  uint64_t goal_unreachable = 0;  ///< Now: avatars that stand because no path leads to their goals.
+  uint64_t goal_unreachable = 0;  ///< Now: avatars that wait because no path leads to their goals.
   uint64_t outside = 0;           ///< Now: due to enter, but without free space yet.
   uint64_t in_links = 0;          ///< Now: in lifts and on escalators, so not in the crowd.
   /// In this step: places that were tried for avatars that were to enter. A full source tries few,

@@ -16,25 +16,10 @@ constexpr double kNearRadius = 1.5;    // [m] An avatar this near its place
 constexpr double kNearTime = 4;        // [s] for this long has arrived.
 constexpr double kDoorFlow = 2.0;      // [avatars / (m s)], assumed for the choice of an exit
 constexpr uint64_t kChoosePeriod = 3;  // [reviews]
-constexpr uint64_t kRetryPeriod = 5;   // [reviews]
 constexpr double kSwitchRatio = 0.75;  // Another exit must take less than this share of the time.
 
 // Not the C library's hypot, which differs between machines.
 double size_of(double x, double z) { return std::sqrt(x * x + z * z); }
-
-// Horizontal distance of a point to a prism; 0 inside. [m]
-double distance_to(const Prism& prism, double x, double z) {
-  if (prism.covers(x, z)) return 0;
-  double min_distance = std::numeric_limits<double>::infinity();
-  for (size_t i = 0; i < prism.corners.size(); ++i) {
-    const PlanPoint &a = prism.corners[i], &b = prism.corners[(i + 1) % prism.corners.size()];
-    const double ex = b[0] - a[0], ez = b[1] - a[1];
-    const double along = ((x - a[0]) * ex + (z - a[1]) * ez) / (ex * ex + ez * ez);
-    const double part = std::clamp(along, 0.0, 1.0);
-    min_distance = std::min(min_distance, size_of(a[0] + part * ex - x, a[1] + part * ez - z));
-  }
-  return min_distance;
-}
 
 // Sum of the longest sides of an area's prisms: the width of an exit. [m]
 double width_of(const ScenarioArea& area) {
@@ -51,6 +36,19 @@ double width_of(const ScenarioArea& area) {
 }
 
 }  // namespace
+
+double distance_to(const Prism& prism, double x, double z) {
+  if (prism.covers(x, z)) return 0;
+  double min_distance = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < prism.corners.size(); ++i) {
+    const PlanPoint &a = prism.corners[i], &b = prism.corners[(i + 1) % prism.corners.size()];
+    const double ex = b[0] - a[0], ez = b[1] - a[1];
+    const double along = ((x - a[0]) * ex + (z - a[1]) * ez) / (ex * ex + ez * ez);
+    const double part = std::clamp(along, 0.0, 1.0);
+    min_distance = std::min(min_distance, size_of(a[0] + part * ex - x, a[1] + part * ez - z));
+  }
+  return min_distance;
+}
 
 double door_flow(const ScenarioArea& area) { return std::max(kDoorFlow * width_of(area), 1e-3); }
 
@@ -93,8 +91,8 @@ void Simulation::State::begin_stage(ScenarioAvatar& p) {
     case Stage::Kind::kQueue: {
       WaitingLine& line = lines[static_cast<size_t>(stage.queue)];
       line.approaching.push_back(p.number);
-      const Queue& queue = scenario.queues[static_cast<size_t>(stage.queue)];
-      return walk_to(p, in_line(queue, line.members.size(), class_of(p)), Doing::kToQueue);
+      const auto number = static_cast<size_t>(stage.queue);
+      return walk_to(p, in_line(number, line.members.size(), class_of(p)), Doing::kToQueue);
     }
   }
 }
@@ -250,8 +248,8 @@ void Simulation::State::end_waits() {
   }
 }
 
-// Ends the stage of avatars that stay near their place; lets the others compare exits again and
-// retry unreachable goals, each in turn.
+// Ends the stage of avatars that stay near their place; lets the others compare exits again,
+// each in turn.
 void Simulation::State::review_stages() {
   const auto review = static_cast<uint64_t>(time() + 0.5);
   for (ScenarioAvatar& p : avatars) {
@@ -262,11 +260,6 @@ void Simulation::State::review_stages() {
     if (p.doing == Doing::kWalking && p.area >= 0 && stage_of(p).quickest &&
         (review + p.number) % kChoosePeriod == 0) {
       choose_area(p);
-    }
-    // The ground may have changed.
-    if (p.doing == Doing::kGoalUnreachable && stage_of(p).kind != Stage::Kind::kQueue &&
-        (review + p.number) % kRetryPeriod == 0) {
-      begin_stage(p);
     }
     if (p.doing != Doing::kToRandomPlace) continue;
     const auto state = crowd.read(p.id);

@@ -20,8 +20,11 @@ double distance(const Vec3d& a, const Vec3d& b) {
   return std::sqrt(x * x + z * z);
 }
 
-// The point `offset` behind the head of a line; beyond its end, on its last segment prolonged.
-Vec3d along(const std::vector<Vec3d>& line, double offset) {
+}  // namespace
+
+Vec3d place_along(const Queue& queue, size_t n) {
+  const std::vector<Vec3d>& line = queue.line;
+  double offset = static_cast<double>(n) * queue.spacing;
   for (size_t i = 0; i + 1 < line.size(); ++i) {
     const double segment = distance(line[i], line[i + 1]);
     if (offset > segment && i + 2 < line.size()) {
@@ -37,13 +40,15 @@ Vec3d along(const std::vector<Vec3d>& line, double offset) {
   return line.back();
 }
 
-}  // namespace
-
-// The place of the n-th of a line; where there is no floor, the last place before that has one.
-Place Simulation::State::in_line(const Queue& queue, size_t index, int32_t avatar_class) const {
+// The place of the n-th of a line: no place that an obstacle covers is used. Where there is no
+// floor, the last place before that has one.
+Place Simulation::State::in_line(size_t line, size_t index, int32_t avatar_class) const {
+  const Queue& queue = scenario.queues[line];
+  const std::vector<size_t>& covered = lines[line].covered;
+  for (const size_t c : covered) index += c <= index ? 1 : 0;
   for (size_t n = index + 1; n-- > 0;) {
-    const Vec3d at = along(queue.line, static_cast<double>(n) * queue.spacing);
-    const Place place = world.find_place(avatar_class, at, kFloor);
+    if (std::binary_search(covered.begin(), covered.end(), n)) continue;
+    const Place place = world.find_place(avatar_class, place_along(queue, n), kFloor);
     if (place) return place;
   }
   return {};
@@ -68,10 +73,10 @@ void Simulation::State::move_lines() {
     // The others close up, and an avatar that stands at a counter is served.
     for (size_t i = 0; i < line.members.size(); ++i) {
       ScenarioAvatar& p = *find_avatar(line.members[i]);
-      const Place place = in_line(queue, i, class_of(p));
+      const Place place = in_line(q, i, class_of(p));
       const bool is_current = p.goal.level1 == place.level1 &&
                               distance(p.goal.position, place.position) < queue.spacing / 4;
-      if (!is_current) walk_to(p, place, Doing::kInQueue);
+      if (!is_current || retries(p)) walk_to(p, place, Doing::kInQueue);
       const auto state = crowd.read(p.id);
       if (i < servers && line.served[i] < 0 &&
           distance(state->position, place.position) < kServiceRadius) {
@@ -84,7 +89,7 @@ void Simulation::State::move_lines() {
       ScenarioAvatar* p = find_avatar(number);
       if (p == nullptr || (p->doing != Doing::kToQueue && p->doing != Doing::kGoalUnreachable))
         continue;
-      const Place tail = in_line(queue, line.members.size(), class_of(*p));
+      const Place tail = in_line(q, line.members.size(), class_of(*p));
       const auto state = crowd.read(p->id);
       if (tail && distance(state->position, tail.position) < kTailRadius &&
           std::fabs(state->position.y - tail.position.y) < kTailRadius) {
@@ -94,7 +99,7 @@ void Simulation::State::move_lines() {
         continue;
       }
       line.approaching[kept++] = number;
-      if (distance(p->goal.position, tail.position) > kTailRadius / 2)
+      if (distance(p->goal.position, tail.position) > kTailRadius / 2 || retries(*p))
         walk_to(*p, tail, Doing::kToQueue);
     }
     line.approaching.resize(kept);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <string>
+#include <utility>
 
 #include "core/hash.h"
 #include "core/random.h"
@@ -210,6 +211,7 @@ void Simulation::State::update_obstacles() {
       obstacles[n] = 0;
       obstacle_times[n].removed_at = time();
       obstacle_times[n].waits_for = 0;
+      has_opened = solids_are_old = true;
     }
   }
   if (edits.version() == before) return;
@@ -232,6 +234,7 @@ void Simulation::State::record_obstacle_times(size_t n) {
   if (is_up || obstacles[n] == 0) return;
   const auto state = crowd.obstacle(obstacles[n]);
   if (!state) return;
+  if (state->up_at != times.up) solids_are_old = true;
   times.up = state->up_at;
   times.waits_for = state->occupants;
 }
@@ -243,7 +246,10 @@ Result<SimulationReport> Simulation::step() {
     const auto steps = std::max<uint64_t>(1, static_cast<uint64_t>(every / s.scenario.dt + 0.5));
     return s.steps % steps == 0;
   };
+  s.is_review = is_due(kReviewInterval);
+  s.has_opened = false;
   s.update_obstacles();
+  if (std::exchange(s.solids_are_old, false)) s.note_solids();
   s.queue_spawns();
   s.run_links();
   s.entry_tries = 0;
@@ -251,7 +257,8 @@ Result<SimulationReport> Simulation::step() {
   if (auto ok = s.spawn_due(s.in_transit, context); !ok) return ok.error();
   s.end_waits();
   s.move_lines();
-  if (is_due(kReviewInterval)) s.review_stages();
+  if (s.is_review) s.review_stages();
+  s.retry_goals();
   if (is_due(kGroupInterval)) s.adjust_group_speeds();
   s.apply_speed_factors();
 
@@ -263,7 +270,9 @@ Result<SimulationReport> Simulation::step() {
     if (s.is_here(id.slot1 - 1)) s.arrive(s.avatars[id.slot1 - 1]);
   }
   for (const AvatarId id : s.crowd.goal_unreachable()) {
-    if (s.is_here(id.slot1 - 1)) s.avatars[id.slot1 - 1].doing = Doing::kGoalUnreachable;
+    if (!s.is_here(id.slot1 - 1)) continue;
+    ScenarioAvatar& p = s.avatars[id.slot1 - 1];
+    if (p.doing != Doing::kGoalUnreachable) s.walk_up(p);
   }
   report.time = s.time();
   report.entered = s.entered;

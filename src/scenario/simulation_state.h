@@ -14,6 +14,7 @@
 #include "scenario/door_queue.h"
 #include "scenario/entry_queue.h"
 #include "scenario/spawn_times.h"
+#include "throng/path.h"
 #include "throng/scenario.h"
 
 /// The state of a simulation.
@@ -40,10 +41,11 @@ struct ScenarioAvatar {
   int32_t profile = -1, journey = -1;
   uint32_t stage = 0;
   Doing doing = Doing::kNothing;
-  bool has_started = false;  // the premovement time is over
-  double until = 0;          // kWaiting: when it ends; kToRandomPlace: since when it is near [s]
-  double speed = 0;          // desired speed, before factors [m/s]
-  uint64_t draws = 0;        // random choices so far
+  bool has_started = false;   // the premovement time is over
+  bool waits_before = false;  // kGoalUnreachable: before an obstacle
+  double until = 0;           // kWaiting: when it ends; kToRandomPlace: since when it is near [s]
+  double speed = 0;           // desired speed, before factors [m/s]
+  uint64_t draws = 0;         // random choices so far
   int32_t group = -1;
   int32_t area = -1;        // the exit chosen by `quickest`; -1: none
   uint32_t door_tick = 0;   // tick of DoorQueue: expected arrival if no other were there
@@ -56,6 +58,7 @@ struct WaitingLine {
   std::vector<uint64_t> members;      // the head first
   std::vector<double> served;         // of each, when service ends; below 0: not begun [s]
   std::vector<uint64_t> approaching;  // on paths to the tail
+  std::vector<size_t> covered;        // places that obstacles cover, by index, sorted
 };
 
 // Avatars that wait for a link, by number, in order of arrival.
@@ -75,6 +78,12 @@ struct PendingSpawn {
 
 /// The flow through an area that the choice of the quickest exit assumes. [avatars/s]
 double door_flow(const ScenarioArea& area);
+
+/// Horizontal distance of a point to a prism; 0 inside. [m]
+double distance_to(const Prism& prism, double x, double z);
+
+/// The n-th place of a line; beyond its end, on its last segment prolonged.
+Vec3d place_along(const Queue& queue, size_t n);
 
 struct Simulation::State {
   State(const World& a_world, const Scenario& a_scenario, const Edits& a_edits, Crowd&& a_crowd)
@@ -109,6 +118,11 @@ struct Simulation::State {
   std::vector<scenario::DoorQueue> doors;         // by area: avatars that chose it
   std::vector<EditId> obstacles;  // by obstacle; 0 before it begins and after it ends
   std::vector<ObstacleTimes> obstacle_times;
+  std::vector<Prism> solids;                        // the obstacles that are up
+  std::map<int32_t, PathFinder> without_obstacles;  // by class, once needed
+  bool solids_are_old = false;
+  bool has_opened = false;  // an obstacle has gone in this step
+  bool is_review = false;   // this step
   uint64_t entered = 0, left = 0;
 
   [[nodiscard]] double time() const { return static_cast<double>(steps) * scenario.dt; }
@@ -176,8 +190,17 @@ struct Simulation::State {
   void review_stages();
   [[nodiscard]] int32_t area_under(const ScenarioAvatar& p) const;
 
+  // unreachable.cpp
+  [[nodiscard]] bool is_covered(const Vec3d& feet, const AvatarClass& body) const;
+  void note_solids();
+  [[nodiscard]] bool retries(const ScenarioAvatar& p) const;
+  void retry_goals();
+  [[nodiscard]] Place goal_of(const ScenarioAvatar& p, const Vec3d& from) const;
+  [[nodiscard]] Place place_before_obstacle(const ScenarioAvatar& p);
+  void walk_up(ScenarioAvatar& p);
+
   // lines.cpp
-  [[nodiscard]] Place in_line(const Queue& queue, size_t index, int32_t avatar_class) const;
+  [[nodiscard]] Place in_line(size_t line, size_t index, int32_t avatar_class) const;
   void move_lines();
   void run_links();
 

@@ -148,7 +148,10 @@ bool PlainCrowd::touches_resting(uint32_t i) const {
     const PlainBody& other = bodies_[n.other];
     const int64_t touching =
         int64_t{body.radius} + other.radius + static_cast<int64_t>(0.1f / config_.units.unit);
-    return crowd::nearer_than(n.at.x, n.at.z, touching) && rests(other);
+    const Spot goals = between(body.goal, other.goal);
+    return crowd::nearer_than(n.at.x, n.at.z, touching) &&
+           crowd::nearer_than(goals.x, goals.z, static_cast<int64_t>(1.0f / config_.units.unit)) &&
+           rests(other);
   });
 }
 

@@ -312,10 +312,10 @@ bool CrowdEngine::has_sound_rows(const Body& body) const {
     return std::abs(p.x) <= kFarthest && std::abs(p.z) <= kFarthest;
   };
   return progress.stood >= 0 && progress.yields >= 0 && progress.stream >= 0 &&
-         progress.rest <= Rest::kMadeRoom && progress.vain >= 0 && body.at_rest == (progress.rest != Rest::kNo) &&
-         body.in_stream == (progress.stream > 0) && order.left >= 0 && is_sound(progress.onward) &&
-         is_sound(order.beyond) && std::abs(request.ahead.x) <= 1.001f &&
-         std::abs(request.ahead.z) <= 1.001f;
+         progress.rest <= Rest::kMadeRoom && progress.vain >= 0 &&
+         body.at_rest == (progress.rest != Rest::kNo) && body.in_stream == (progress.stream > 0) &&
+         order.left >= 0 && is_sound(progress.onward) && is_sound(order.beyond) &&
+         std::abs(request.ahead.x) <= 1.001f && std::abs(request.ahead.z) <= 1.001f;
 }
 
 const uint8_t* CrowdEngine::restore_rows(const uint8_t* saved, size_t rows) {

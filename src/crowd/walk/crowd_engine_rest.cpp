@@ -16,6 +16,7 @@ constexpr float kAtGoal = 0.005f;      // [m] as near to its goal a body rests a
 constexpr float kNearGoal = 0.3f;      // [m] as near it rests if it stands
 constexpr float kStandsBefore = 0.5f;  // [s] until it rests
 constexpr float kReturnsAfter = 1;     // [s] after it made room
+constexpr float kNearGoals = 1;        // [m] between goals that bodies share
 constexpr float kTries = 1;            // [s] to get past others that rest
 constexpr float kBlockedGap = 0.1f;    // [m] to one that rests before it
 
@@ -66,16 +67,19 @@ bool CrowdEngine::is_goal_taken(uint32_t i, const NeighbourGrid::Around& around)
   return false;
 }
 
-// Does it touch one that rests, about?
+// Does it touch one, about, that rests and has a goal near its own?
 bool CrowdEngine::touches_resting(uint32_t i, const NeighbourGrid::Around& around) const {
   const Body& body = bodies_[i];
   const auto gap = static_cast<int64_t>(kBlockedGap / config_.units.unit);
+  const auto near_goals = static_cast<int64_t>(kNearGoals / config_.units.unit);
   for (const Entries& piece : around.pieces()) {
     for (uint32_t j = piece.first; j < piece.last; ++j) {
       const Body& other = bodies_[j];
       if (j != i && std::abs(other.y - body.y) <= body.height &&
           nearer_than(other.x - body.x, other.z - body.z,
                       int64_t{other.radius} + body.radius + gap) &&
+          nearer_than(other.local_target_x - body.local_target_x,
+                      other.local_target_z - body.local_target_z, near_goals) &&
           rests(other)) {
         return true;
       }

@@ -58,6 +58,7 @@ struct GroundFinder::State {
   std::vector<ViewStop> stops;
   std::array<std::vector<ViewStop>, 2> sampled;  // points of two paths that are compared
   std::vector<uint8_t> paired;
+  std::vector<uint32_t> pairs;
 
   // While no metre costs more than another, and no off-mesh link is in force.
   PathSearch exact;

@@ -8,12 +8,13 @@
 #include "path/edits/ground_finder_state.h"
 
 // Can one path be moved onto another without crossing what is closed? Points along both are paired
-// in order, one step on one of them at a time, and each pair must see each other (a discrete Frechet
-// distance whose bound is sight). Time: quadratic in the points that see each other.
+// in order, one step on one of them at a time, and each pair must see each other (a discrete
+// Frechet distance whose bound is sight). Time: quadratic in the points that see each other.
 namespace throng::path {
 namespace {
 
-constexpr double kSameEnd = 1;  // [m] by which a path that goes on passes the end of another
+constexpr size_t kMaxPairs = 5000;  // that are tested; then it counts as moved
+constexpr double kSameEnd = 1;      // [m] by which a path that goes on passes the end of another
 
 // Points of a path on their levels: its corners, and middles of cells between them. (A rounded
 // point beside a wall may be beyond it.) False: a segment is no legal move.
@@ -56,23 +57,27 @@ bool GroundFinder::is_same_side(std::span<const Place> path, std::span<const Pla
     }
     if (s.stops.empty() || !sample(s.mesh, s.stops, s.sampled[k])) return false;
   }
-  // By point of the other: can all before it be paired with those of the path up to this one?
-  std::vector<uint8_t>& row = s.paired;
+  // Pairs that are reached, the last first. The path that lags behind is tried first.
   const std::vector<ViewStop>&a = s.sampled[0], &b = s.sampled[1];
-  row.assign(b.size(), 0);
-  for (size_t i = 0; i < a.size(); ++i) {
-    bool any = false;
-    for (size_t j = 0; j < b.size(); ++j) {
-      const bool from = (i == 0 && j == 0) || row[j] != 0 || (j > 0 && row[j - 1] != 0);
-      row[j] = from && sees(s.mesh, a[i], b[j]) ? 1 : 0;
-      any = any || row[j] != 0;
-    }
-    if (!any) return false;
-  }
-  if (whole) return row.back() != 0;
   const double near = kSameEnd / s.mesh.world().summary.cell;
-  for (size_t j = 0; j < b.size(); ++j) {
-    if (row[j] != 0 && distance_of(a.back().at, b[j].at) <= near) return true;
+  s.paired.assign(a.size() * b.size(), 0);
+  s.pairs.assign(1, 0);
+  const auto reach = [&](size_t i, size_t j) {
+    if (i >= a.size() || j >= b.size()) return;
+    uint8_t& was = s.paired[i * b.size() + j];
+    if (was == 0) s.pairs.push_back(static_cast<uint32_t>(i * b.size() + j));
+    was = 1;
+  };
+  for (size_t tested = 0; !s.pairs.empty(); ++tested) {
+    if (tested == kMaxPairs) return true;
+    const size_t i = s.pairs.back() / b.size(), j = s.pairs.back() % b.size();
+    s.pairs.pop_back();
+    if (!sees(s.mesh, a[i], b[j])) continue;
+    const bool at_end = whole ? j + 1 == b.size() : distance_of(a[i].at, b[j].at) <= near;
+    if (i + 1 == a.size() && at_end) return true;
+    const bool lags = i * b.size() <= j * a.size();
+    lags ? reach(i, j + 1) : reach(i + 1, j);
+    lags ? reach(i + 1, j) : reach(i, j + 1);
   }
   return false;
 }

@@ -14,11 +14,14 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include "core/arrays/compress-inl.h"
+
 // Every operation is one of sampled.cpp, in its order, and none is fused: the bits are the same.
 HWY_BEFORE_NAMESPACE();
 namespace throng::steer {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace simd = throng::HWY_NAMESPACE;
 
 using D = hn::CappedTag<float, kMaxNear>;
 using V = hn::Vec<D>;
@@ -197,11 +200,11 @@ size_t CopyNear(const SampledSettings& settings, const Situation& s, Relevant& n
     const auto here = hn::FirstN(d, s.near.size - n);
     const auto matters = hn::And(here, hn::Lt(hn::Mul(gap, far), hn::Mul(horizon, closing)));
     const V share = share_of(apart);
-    hn::StoreU(hn::Compress(hn::Mul(x, share), matters), d, &near.x[size]);
-    hn::StoreU(hn::Compress(hn::Mul(z, share), matters), d, &near.z[size]);
-    hn::StoreU(hn::Compress(vx, matters), d, &near.vx[size]);
-    hn::StoreU(hn::Compress(vz, matters), d, &near.vz[size]);
-    hn::StoreU(hn::Compress(share, matters), d, &near.share[size]);
+    hn::StoreU(simd::compress(hn::Mul(x, share), matters), d, &near.x[size]);
+    hn::StoreU(simd::compress(hn::Mul(z, share), matters), d, &near.z[size]);
+    hn::StoreU(simd::compress(vx, matters), d, &near.vx[size]);
+    hn::StoreU(simd::compress(vz, matters), d, &near.vz[size]);
+    hn::StoreU(simd::compress(share, matters), d, &near.share[size]);
     size += hn::CountTrue(d, matters);
   }
   return size;

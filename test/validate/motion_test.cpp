@@ -123,7 +123,7 @@ TEST(Motion, HasteIsMeasuredAtEachDesiredSpeed) {
 TEST(Motion, RestIsMeasuredAfterTheSameTimeWithAnyStep) {
   const ValidationResult result = run_brief("motion.rest", 1);
   expect_no_faults(result);
-  EXPECT_NEAR(result.simulated, 6 * 33, 1);
+  EXPECT_NEAR(result.simulated, 9 * 33, 1);
   for (const char* step : {"0.02", "0.10", "0.20"}) {
     const std::string at = std::string("nine people at 0.6 m, dt ") + step + " s: ";
     const double mean = value_of(result, at + "mean speed");

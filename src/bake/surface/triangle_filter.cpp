@@ -16,6 +16,7 @@
 #include <hwy/highway.h>
 
 #include "bake/columns/vector_bits-inl.h"
+#include "core/arrays/compress-inl.h"
 
 #ifndef THRONG_TRIANGLE_FILTER_ONCE
 #define THRONG_TRIANGLE_FILTER_ONCE
@@ -50,6 +51,7 @@ HWY_BEFORE_NAMESPACE();
 namespace throng::bake {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace simd = throng::HWY_NAMESPACE;
 
 using DF = hn::CappedTag<float, kFilterLanes>;
 using DI = hn::Rebind<uint32_t, DF>;
@@ -151,12 +153,12 @@ size_t Narrow(const FilterList& list, const float* middle, const float* half, Fi
     if (hn::AllFalse(df, near)) continue;
     for (size_t k = 0; k < 9; ++k) {
       const VF corner = hn::LoadU(df, corners + k * stride + i);
-      hn::StoreU(hn::Compress(corner, near), df, to_corners + k * to_stride + kept);
+      hn::StoreU(simd::compress(corner, near), df, to_corners + k * to_stride + kept);
       const VF plane = hn::LoadU(df, planes + k * stride + i);
-      hn::StoreU(hn::Compress(plane, near), df, to_planes + k * to_stride + kept);
+      hn::StoreU(simd::compress(plane, near), df, to_planes + k * to_stride + kept);
     }
     const auto id = hn::LoadU(di, ids + i);
-    hn::StoreU(hn::Compress(id, hn::RebindMask(di, near)), di, to_ids + kept);
+    hn::StoreU(simd::compress(id, hn::RebindMask(di, near)), di, to_ids + kept);
     kept += hn::CountTrue(df, near);
   }
   return kept;
@@ -470,8 +472,9 @@ uint32_t Filter(const FilterList& list, const FilterView& view, FilterHits& hits
     }
     const auto any = hn::Ne(entered, hn::Zero(di));
     if (hn::AllFalse(di, any)) continue;
-    hn::StoreU(hn::Compress(hn::LoadU(di, &list.triangle[i]), any), di, &hits.triangle[hits.count]);
-    hn::StoreU(hn::Compress(entered, any), di, &hits.tubes[hits.count]);
+    hn::StoreU(simd::compress(hn::LoadU(di, &list.triangle[i]), any), di,
+               &hits.triangle[hits.count]);
+    hn::StoreU(simd::compress(entered, any), di, &hits.tubes[hits.count]);
     hits.count += hn::CountTrue(di, any);
   }
   return answered;

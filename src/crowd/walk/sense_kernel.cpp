@@ -7,12 +7,15 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include "core/arrays/compress-inl.h"
+
 // Finds the bodies within sight, and the nearest of them, a vector at a time. The first is linear
 // in the bodies around, the second quadratic in those within sight.
 HWY_BEFORE_NAMESPACE();
 namespace throng::crowd {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+namespace simd = throng::HWY_NAMESPACE;
 
 using DI = hn::CappedTag<int32_t, 16>;
 using DF = hn::RebindToFloat<DI>;
@@ -45,13 +48,13 @@ HWY_INLINE void FindAround(const Places& places, std::span<const Entries> around
       const auto near = hn::And(hn::RebindMask(du, hn::Lt(square, max_square)), others);
       const auto seen = hn::And(near, hn::RebindMask(du, hn::Lt(dy, tall)));
       // Compressing into memory is slow on some machines; the lists have space for a whole vector.
-      hn::StoreU(hn::Compress(entry, seen), du, lists.entries + lists.seen);
-      hn::StoreU(hn::Compress(square, hn::RebindMask(df, seen)), df, lists.squares + lists.seen);
+      hn::StoreU(simd::compress(entry, seen), du, lists.entries + lists.seen);
+      hn::StoreU(simd::compress(square, hn::RebindMask(df, seen)), df, lists.squares + lists.seen);
       lists.seen += hn::CountTrue(du, seen);
     }
     if (!touches) return;
     const auto touched = hn::And(close, hn::RebindMask(du, hn::Lt(dy, touch_tall)));
-    hn::StoreU(hn::Compress(entry, touched), du, lists.touched + lists.touches);
+    hn::StoreU(simd::compress(entry, touched), du, lists.touched + lists.touches);
     lists.touches += hn::CountTrue(du, touched);
   };
   const auto lanes = static_cast<uint32_t>(hn::Lanes(d));
@@ -88,7 +91,7 @@ size_t KeepNearest(SeenLists& lists, size_t max_count) {
     const auto valid = hn::FirstN(du, lists.seen - n);
     const auto keeps = hn::And(valid, hn::RebindMask(du, hn::Gt(left, hn::Zero(di))));
     const auto entries = hn::LoadU(du, lists.entries + n);
-    hn::StoreU(hn::Compress(entries, keeps), du, lists.entries + kept);
+    hn::StoreU(simd::compress(entries, keeps), du, lists.entries + kept);
     kept += hn::CountTrue(du, keeps);
   }
   return kept;

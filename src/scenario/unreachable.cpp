@@ -61,6 +61,7 @@ bool Simulation::State::retries(const ScenarioAvatar& p) const {
 
 // Where the avatar's stage leads: its own goal, or about the nearest place of its areas.
 Place Simulation::State::goal_of(const ScenarioAvatar& p, const Vec3d& from) const {
+  if (p.journey < 0) return {};
   const Stage& stage = stage_of(p);
   if (stage.kind == Stage::Kind::kQueue || stage.kind == Stage::Kind::kRandomPoint) return p.goal;
   Place nearest;
@@ -121,7 +122,12 @@ Place Simulation::State::place_before_obstacle(const ScenarioAvatar& p) {
 void Simulation::State::retry_goals() {
   if (!has_opened && !is_review) return;
   for (ScenarioAvatar& p : avatars) {
-    if (!p.id || !retries(p) || stage_of(p).kind == Stage::Kind::kQueue) continue;
+    if (!p.id || !retries(p)) continue;
+    if (p.journey < 0) {
+      begin_stage(p);
+      continue;
+    }
+    if (stage_of(p).kind == Stage::Kind::kQueue) continue;
     const std::vector<TargetId>& targets = targets_of(p);
     // It stays where it waits, rather than to try in vain.
     const bool tries =

@@ -129,7 +129,6 @@ Result<ValidationResult> rest(const ValidationConfig& config, Context& context) 
       result.measures.push_back({.name = at + "distance from the goals",
                                  .value = found->distance,
                                  .unit = "m",
-
                                  .high = waiting.max_distance});
     }
   }

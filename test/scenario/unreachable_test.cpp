@@ -95,6 +95,23 @@ TEST(Unreachable, AQueueGoesOnWhileACrateStandsOnItsLine) {
   }
 }
 
+// An obstacle comes up over people without a journey: where they stood is under it.
+TEST(Unreachable, PeopleWithoutAJourneyLeaveAnObstacleAndStand) {
+  Rooms run(R"([[journey]]
+name = "j"
+stages = [{leave = "b"}]
+[[source]]
+name = "t"
+area = "a"
+count = 8
+)" + obstacle("0.5, 0.5, 4.5, 9.5", "begin = 5\nend = 40"));
+  EXPECT_EQ(run.until(100), 10u);
+  std::vector<AvatarState> all;
+  run.simulation->read(all);
+  ASSERT_EQ(all.size(), 8u);
+  for (const AvatarState& one : all) EXPECT_LT(length(one.velocity), 0.02);
+}
+
 TEST(Unreachable, PeopleWalkUpToAShutDoorWaitBeforeItAndGoOnAtOnce) {
   const std::string door = obstacle("9.9, 4.3, 10.3, 5.7", "begin = 0\nend = 60");
   for (const std::string stage :

@@ -1,6 +1,12 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-set(THRONG_UNITY OFF CACHE STRING
+# (A variable of the environment sets what a new build folder starts with: scripts/test builds from
+# nothing, so it compiles all together.)
+set(unity PROGRAMS)
+if(DEFINED ENV{THRONG_UNITY})
+  set(unity $ENV{THRONG_UNITY})
+endif()
+set(THRONG_UNITY ${unity} CACHE STRING
     "Compile files of a folder together, faster from nothing and slower after a change: OFF; PROGRAMS, tests and commands; ON")
 
 # The names that a file defines at the left margin, among them those of its unnamed namespace, and

@@ -330,6 +330,8 @@ class CrowdEngine {
   // crowd_engine_rest.cpp
   [[nodiscard]] bool may_rest(const Body& body) const;
   [[nodiscard]] bool rests(const Body& body) const;
+  template <typename Is>
+  bool any_at_rest(uint32_t i, const NeighbourGrid::Around& around, Is is) const;
   [[nodiscard]] bool is_goal_taken(uint32_t i, const NeighbourGrid::Around& around) const;
   [[nodiscard]] bool touches_resting(uint32_t i, const NeighbourGrid::Around& around) const;
   [[nodiscard]] Rest next_rest(uint32_t i, const NeighbourGrid::Around& around) const;

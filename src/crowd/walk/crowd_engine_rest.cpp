@@ -37,34 +37,39 @@ bool CrowdEngine::may_rest(const Body& body) const {
 // Does it stand until something changes, instead of heading to its goal?
 bool CrowdEngine::rests(const Body& body) const { return body.at_rest && may_rest(body); }
 
+// Is it so of any other body that rests in sight, on its level?
+template <typename Is>
+bool CrowdEngine::any_at_rest(uint32_t i, const NeighbourGrid::Around& around, Is is) const {
+  const Body& body = bodies_[i];
+  for (const Entries& piece : around.pieces()) {
+    for (uint32_t j = piece.first; j < piece.last; ++j) {
+      const Body& other = bodies_[j];
+      if (j != i && std::abs(other.y - body.y) <= body.height &&
+          nearer_than(other.x - body.x, other.z - body.z, sight_) && rests(other) && is(other)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 // Does another body that rests stand where it would stand at its goal? Or does one before it rest
 // that has the same goal and does not reach it either?
 bool CrowdEngine::is_goal_taken(uint32_t i, const NeighbourGrid::Around& around) const {
   const Body& body = bodies_[i];
   const Plane ahead = path_ahead(body);
-  const auto takes = [&](uint32_t j) {
-    const Body& other = bodies_[j];
-    if (j == i || std::abs(other.y - body.y) > body.height ||
-        !nearer_than(other.x - body.x, other.z - body.z, sight_) || !rests(other)) {
-      return false;
-    }
+  const auto gap = static_cast<int64_t>(kBlockedGap / config_.units.unit);
+  return any_at_rest(i, around, [&](const Body& other) {
     const int64_t room = int64_t{other.radius} + body.radius;
     if (nearer_than(other.x - body.local_target_x, other.z - body.local_target_z, room)) {
       return true;
     }
-    const auto gap = static_cast<int64_t>(kBlockedGap / config_.units.unit);
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
     return apart.x * ahead.x + apart.z * ahead.z > 0 &&
            nearer_than(other.x - body.x, other.z - body.z, room + gap) &&
            nearer_than(other.local_target_x - body.local_target_x,
                        other.local_target_z - body.local_target_z, room);
-  };
-  for (const Entries& piece : around.pieces()) {
-    for (uint32_t j = piece.first; j < piece.last; ++j) {
-      if (takes(j)) return true;
-    }
-  }
-  return false;
+  });
 }
 
 // Does it touch one, about, that rests and has a goal near its own?
@@ -72,20 +77,12 @@ bool CrowdEngine::touches_resting(uint32_t i, const NeighbourGrid::Around& aroun
   const Body& body = bodies_[i];
   const auto gap = static_cast<int64_t>(kBlockedGap / config_.units.unit);
   const auto near_goals = static_cast<int64_t>(kNearGoals / config_.units.unit);
-  for (const Entries& piece : around.pieces()) {
-    for (uint32_t j = piece.first; j < piece.last; ++j) {
-      const Body& other = bodies_[j];
-      if (j != i && std::abs(other.y - body.y) <= body.height &&
-          nearer_than(other.x - body.x, other.z - body.z,
-                      int64_t{other.radius} + body.radius + gap) &&
-          nearer_than(other.local_target_x - body.local_target_x,
-                      other.local_target_z - body.local_target_z, near_goals) &&
-          rests(other)) {
-        return true;
-      }
-    }
-  }
-  return false;
+  return any_at_rest(i, around, [&](const Body& other) {
+    return nearer_than(other.x - body.x, other.z - body.z,
+                       int64_t{other.radius} + body.radius + gap) &&
+           nearer_than(other.local_target_x - body.local_target_x,
+                       other.local_target_z - body.local_target_z, near_goals);
+  });
 }
 
 // Does it rest from the next step on?

@@ -68,7 +68,7 @@ struct alignas(32) QueueProgress {
   float stood = 0;       ///< How long it has stood. [s]
   float yields = 0;      ///< For how long it still stands, to let another pass. [s]
   float stream = 0;      ///< For how long it is still in a stream that meets another. [s]
-  float vain = 0;        ///< For how long it has come no nearer to its goal. [s]
+  float vain = 0;        ///< For how long, at its decisions, it has come no nearer to its goal. [s]
   uint16_t nearest = 0;  ///< To its goal so far, and 1; 0: not near yet. [cm]
   Rest rest = Rest::kNo;
   uint8_t unused = 0;  ///< So that saved rows have no undefined bytes.

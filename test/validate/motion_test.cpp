@@ -222,6 +222,24 @@ TEST(Motion, JamsAreMeasuredByTheSpeedAndTheRoutesThatChange) {
   EXPECT_EQ(result.passed(), speed >= 0.85);
 }
 
+TEST(Motion, NarrowDoorsAreComparedWithRecordedPeople) {
+  const ValidationResult result = run_brief("motion.narrow", 1);
+  expect_no_faults(result);
+  for (const char* at : {", 0.5 m", ", 0.7 m"}) {
+    const std::string what = std::string("flow") + at;
+    const double flow = value_of(result, what);
+    EXPECT_GT(flow, 0.5);
+    EXPECT_DOUBLE_EQ(value_of(result, std::string("flow by width") + at),
+                     flow / (std::string(at) == ", 0.5 m" ? 0.5 : 0.7));
+    EXPECT_EQ(value_of(result, std::string("left behind") + at), 0);
+    const double real = value_of(result, what + ", people recorded");
+    for (const ValidationMeasure& m : result.measures) {
+      if (m.name != what) continue;
+      EXPECT_TRUE(m.low < real && real < m.high) << m.name;
+    }
+  }
+}
+
 TEST(Motion, FlowIsMeasuredFromSlowToFast) {
   const ValidationResult result = run_brief("motion.flow", 1);
   expect_no_faults(result);

@@ -71,6 +71,12 @@ struct Profile {
   Distribution radius;       ///< Of the body; 0: the class's. [m]
 };
 
+/// The weights of a density map at a time of the run.
+struct DensityHour {
+  double at = 0;                 ///< [s, >= 0]
+  std::vector<uint8_t> weights;  ///< As DensityMap::weights. [not all 0]
+};
+
 /// A density map: a picture seen from above whose brightness is a weight.
 struct DensityMap {
   std::string name;
@@ -78,6 +84,12 @@ struct DensityMap {
   double low = -1e6, high = 1e6;          ///< Heights of the floors to which it applies. [m]
   int32_t width = 0, height = 0;          ///< [pixels]
   std::vector<uint8_t> weights;           ///< Row by row, Z grows downwards; 0: no avatars.
+  /// Weights by time, ascending; between two times they are blended, once a second. Before the
+  /// first and after the last theirs hold. None: `weights` hold.
+  std::vector<DensityHour> hours{};
+  /// After this time the hours begin again, and the last is blended with the first; 0: never. [s,
+  /// more than the last hour]
+  double period = 0;
 };
 
 /// A stage: one thing that an avatar does in a journey.
@@ -286,8 +298,8 @@ class THRONG_API Simulation {
   /// The times of each obstacle of the scenario, in its order.
   [[nodiscard]] std::span<const ObstacleTimes> obstacle_times() const;
 
-  /// Replaces the weights of a density map, from the next draw on. Fails with kNotFound, kBadInput
-  /// (another number of pixels, or all are 0).
+  /// Replaces the weights of a density map, from the next draw on, and ends its hours. Fails with
+  /// kNotFound, kBadInput (another number of pixels, or all are 0).
   [[nodiscard]] Result<void> set_density(const std::string& name, std::span<const uint8_t> weights);
 
  private:

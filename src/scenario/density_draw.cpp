@@ -3,10 +3,43 @@
 #include "scenario/density_draw.h"
 
 #include <algorithm>
+#include <cmath>
 
 // Draws points by the weights of a density map: prefix sums of the pixels, and a binary search for
 // each point.
 namespace throng::scenario {
+
+std::vector<uint8_t> weights_at(const DensityMap& map, double time) {
+  const std::vector<DensityHour>& hours = map.hours;
+  if (hours.empty()) return map.weights;
+  if (map.period > 0) time -= map.period * std::floor(time / map.period);
+  const auto after =
+      std::upper_bound(hours.begin(), hours.end(), time,
+                       [](double t, const DensityHour& hour) { return t < hour.at; });
+  const DensityHour *a = &hours.front(), *b = a;
+  double begin = 0, end = 0;
+  if (after != hours.begin() && after != hours.end()) {
+    a = &after[-1];
+    b = &after[0];
+    begin = a->at;
+    end = b->at;
+  } else if (map.period > 0) {
+    // From the last to the first of the next period.
+    a = &hours.back();
+    begin = after == hours.begin() ? a->at - map.period : a->at;
+    end = begin + map.period - a->at + b->at;
+  } else if (after == hours.end()) {
+    return hours.back().weights;
+  }
+  if (!(end > begin)) return a->weights;
+  const double part = (time - begin) / (end - begin);
+  std::vector<uint8_t> weights(a->weights.size());
+  std::transform(a->weights.begin(), a->weights.end(), b->weights.begin(), weights.begin(),
+                 [&](uint8_t from, uint8_t to) {
+                   return static_cast<uint8_t>(std::floor(from + (to - from) * part + 0.5));
+                 });
+  return weights;
+}
 
 DensityDraw::DensityDraw(const DensityMap& map) : map_(&map) {
   before_.reserve(map.weights.size() + 1);

@@ -11,6 +11,9 @@
 /// Random points of the plane, distributed by a density map.
 namespace throng::scenario {
 
+/// The weights of a map at a time of the run: those of its hours, blended. [s]
+[[nodiscard]] std::vector<uint8_t> weights_at(const DensityMap& map, double time);
+
 class DensityDraw {
  public:
   explicit DensityDraw(const DensityMap& map);

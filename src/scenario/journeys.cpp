@@ -18,9 +18,6 @@ constexpr double kDoorFlow = 2.0;      // [avatars / (m s)], assumed for the cho
 constexpr uint64_t kChoosePeriod = 3;  // [reviews]
 constexpr double kSwitchRatio = 0.75;  // Another exit must take less than this share of the time.
 
-// Not the C library's hypot, which differs between machines.
-double size_of(double x, double z) { return std::sqrt(x * x + z * z); }
-
 // Sum of the longest sides of an area's prisms: the width of an exit. [m]
 double width_of(const ScenarioArea& area) {
   double width = 0;
@@ -28,7 +25,7 @@ double width_of(const ScenarioArea& area) {
     double longest = 0;
     for (size_t i = 0; i < prism.corners.size(); ++i) {
       const PlanPoint &a = prism.corners[i], &b = prism.corners[(i + 1) % prism.corners.size()];
-      longest = std::max(longest, size_of(b[0] - a[0], b[1] - a[1]));
+      longest = std::max(longest, plan_length(b[0] - a[0], b[1] - a[1]));
     }
     width += longest;
   }
@@ -45,7 +42,7 @@ double distance_to(const Prism& prism, double x, double z) {
     const double ex = b[0] - a[0], ez = b[1] - a[1];
     const double along = ((x - a[0]) * ex + (z - a[1]) * ez) / (ex * ex + ez * ez);
     const double part = std::clamp(along, 0.0, 1.0);
-    min_distance = std::min(min_distance, size_of(a[0] + part * ex - x, a[1] + part * ez - z));
+    min_distance = std::min(min_distance, plan_length(a[0] + part * ex - x, a[1] + part * ez - z));
   }
   return min_distance;
 }
@@ -264,7 +261,7 @@ void Simulation::State::review_stages() {
     if (p.doing != Doing::kToRandomPlace) continue;
     const auto state = crowd.read(p.id);
     const Vec3d& at = state->position;
-    const bool near = size_of(at.x - p.goal.position.x, at.z - p.goal.position.z) < kNearRadius &&
+    const bool near = plan_distance(at, p.goal.position) < kNearRadius &&
                       std::fabs(at.y - p.goal.position.y) < kNearRadius;
     if (!near) {
       p.until = -1;

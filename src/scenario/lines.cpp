@@ -15,18 +15,13 @@ constexpr double kServiceRadius =
     0.45;                     // [m] An avatar this near to its place at a counter is served.
 constexpr double kFloor = 1;  // [m] Vertical tolerance between a line's points and the floor.
 
-double distance(const Vec3d& a, const Vec3d& b) {
-  const double x = a.x - b.x, z = a.z - b.z;
-  return std::sqrt(x * x + z * z);
-}
-
 }  // namespace
 
 Vec3d place_along(const Queue& queue, size_t n) {
   const std::vector<Vec3d>& line = queue.line;
   double offset = static_cast<double>(n) * queue.spacing;
   for (size_t i = 0; i + 1 < line.size(); ++i) {
-    const double segment = distance(line[i], line[i + 1]);
+    const double segment = plan_distance(line[i], line[i + 1]);
     if (offset > segment && i + 2 < line.size()) {
       offset -= segment;
       continue;
@@ -75,11 +70,11 @@ void Simulation::State::move_lines() {
       ScenarioAvatar& p = *find_avatar(line.members[i]);
       const Place place = in_line(q, i, class_of(p));
       const bool is_current = p.goal.level1 == place.level1 &&
-                              distance(p.goal.position, place.position) < queue.spacing / 4;
+                              plan_distance(p.goal.position, place.position) < queue.spacing / 4;
       if (!is_current || retries(p)) walk_to(p, place, Doing::kInQueue);
       const auto state = crowd.read(p.id);
       if (i < servers && line.served[i] < 0 &&
-          distance(state->position, place.position) < kServiceRadius) {
+          plan_distance(state->position, place.position) < kServiceRadius) {
         line.served[i] = time() + draw(queue.service, scenario.seed, p.number, 16 + p.draws++);
       }
     }
@@ -91,7 +86,7 @@ void Simulation::State::move_lines() {
         continue;
       const Place tail = in_line(q, line.members.size(), class_of(*p));
       const auto state = crowd.read(p->id);
-      if (tail && distance(state->position, tail.position) < kTailRadius &&
+      if (tail && plan_distance(state->position, tail.position) < kTailRadius &&
           std::fabs(state->position.y - tail.position.y) < kTailRadius) {
         line.members.push_back(number);
         line.served.push_back(-1);
@@ -99,7 +94,7 @@ void Simulation::State::move_lines() {
         continue;
       }
       line.approaching[kept++] = number;
-      if (distance(p->goal.position, tail.position) > kTailRadius / 2 || retries(*p))
+      if (plan_distance(p->goal.position, tail.position) > kTailRadius / 2 || retries(*p))
         walk_to(*p, tail, Doing::kToQueue);
     }
     line.approaching.resize(kept);

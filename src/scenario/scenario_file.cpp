@@ -278,6 +278,7 @@ class File {
   void read_area(Reader& r);
   void read_obstacle(Reader& r);
   void read_density(Reader& r);
+  void read_hours(Reader& r, DensityMap& map);
   void read_profile(Reader& r);
   void read_queue(Reader& r);
   void read_link(Reader& r);
@@ -476,9 +477,49 @@ void File::read_obstacle(Reader& r) {
   out_.obstacles.push_back(std::move(obstacle));
 }
 
+// `images = [{ at, image }, ...]` and `period`.
+void File::read_hours(Reader& r, DensityMap& map) {
+  r.number("period", map.period, 0, kMaxSeconds);
+  for (const ConfigNode* entry : r.tables("images")) {
+    Reader hour(name_, *entry, fmt::format("density '{}': images", map.name));
+    hour.only({"at", "image"});
+    hour.require("at");
+    hour.require("image");
+    double at = 0;
+    std::string file;
+    hour.number("at", at, 0, kMaxSeconds);
+    hour.text("image", file);
+    DensityMap picture;
+    if (hour.ok()) {
+      const ConfigNode& node = *hour.find("image");
+      if (auto ok = scenario::read_density_image(path(file), picture); !ok) {
+        hour.fail(node, ok.error().message);
+      } else if (!map.hours.empty() && !(at > map.hours.back().at)) {
+        hour.fail(*hour.find("at"), "at: give the images in the order of their times");
+      } else if (map.period > 0 && !(at < map.period)) {
+        hour.fail(*hour.find("at"), "at must be less than the period");
+      } else if (!map.hours.empty() &&
+                 (picture.width != map.width || picture.height != map.height)) {
+        hour.fail(node, fmt::format("{}: it has {} x {} pixels, the first one {} x {}", file,
+                                    picture.width, picture.height, map.width, map.height));
+      } else if (std::all_of(picture.weights.begin(), picture.weights.end(),
+                             [](uint8_t w) { return w == 0; })) {
+        hour.fail(node, file + ": its weights are all 0; paint where avatars may be");
+      }
+    }
+    keep(hour);
+    if (!hour.ok()) return;
+    map.width = picture.width;
+    map.height = picture.height;
+    map.hours.push_back({at, std::move(picture.weights)});
+  }
+  if (map.hours.empty()) return r.fail(*r.find("images"), "images: give at least one");
+  map.weights = map.hours.front().weights;
+}
+
 void File::read_density(Reader& r) {
   DensityMap map;
-  r.only({"name", "box", "y", "image", "paint", "pixel"});
+  r.only({"name", "box", "y", "image", "images", "period", "paint", "pixel"});
   name_of(r, out_.densities, map.name);
   r.require("box");
   heights(r, map.low, map.high);
@@ -492,11 +533,20 @@ void File::read_density(Reader& r) {
     return r.fail(*r.find("box"), "box must be [x0, z0, x1, z1], low corner first");
   }
   const ConfigNode* image = r.find("image");
-  const ConfigNode* paint = r.find("paint");
-  if ((image == nullptr) == (paint == nullptr)) {
-    return r.fail(*r.find("box"), "give it an image, or areas in a list 'paint'");
+  const ConfigNode* images = r.find("images");
+  const int given = (image != nullptr ? 1 : 0) + (images != nullptr ? 1 : 0) +
+                    (r.find("paint") != nullptr ? 1 : 0);
+  if (given != 1) {
+    return r.fail(*r.find("box"),
+                  "give it one of: an image, a list 'images', or areas in a list 'paint'");
   }
-  if (image != nullptr) {
+  if (images == nullptr && r.find("period") != nullptr) {
+    return r.fail(*r.find("period"), "period goes with a list 'images'");
+  }
+  if (images != nullptr) {
+    read_hours(r, map);
+    if (!r.ok()) return;
+  } else if (image != nullptr) {
     std::string file;
     r.text("image", file);
     if (!r.ok()) return;

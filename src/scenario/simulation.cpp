@@ -150,7 +150,16 @@ Result<void> Simulation::State::prepare(Context& context) {
   for (const Link& link : scenario.links) boarding.push_back({{}, link.interval});
   pending.resize(scenario.sources.size());
   in_transit.resize(scenario.links.size());
-  for (const DensityMap& map : scenario.densities) densities.emplace_back(map);
+  for (DensityMap& map : scenario.densities) {
+    for (const DensityHour& hour : map.hours) {
+      if (hour.weights.size() == size_t(map.width) * size_t(map.height)) continue;
+      return Error{Errc::kBadInput, "density '" + map.name + "': an hour has " +
+                                        std::to_string(hour.weights.size()) +
+                                        " weights, not one a pixel"};
+    }
+    map.weights = scenario::weights_at(map, 0);
+    densities.emplace_back(map);
+  }
 
   for (const Journey& journey : scenario.journeys) {
     auto& stages = stage_targets.emplace_back();
@@ -250,6 +259,7 @@ Result<SimulationReport> Simulation::step() {
   s.has_opened = false;
   s.update_obstacles();
   if (std::exchange(s.solids_are_old, false)) s.note_solids();
+  if (s.is_review) s.blend_densities();
   s.queue_spawns();
   s.run_links();
   s.entry_tries = 0;
@@ -341,6 +351,7 @@ Result<void> Simulation::set_density(const std::string& name, std::span<const ui
                    "density '" + name + "': all weights are 0; give at least one pixel a weight"};
     }
     map.weights.assign(weights.begin(), weights.end());
+    map.hours.clear();
     s.densities[d] = scenario::DensityDraw(map);
     return {};
   }

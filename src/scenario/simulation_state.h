@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -78,6 +79,13 @@ struct PendingSpawn {
 
 /// The flow through an area that the choice of the quickest exit assumes. [avatars/s]
 double door_flow(const ScenarioArea& area);
+
+/// Of a horizontal vector. Not the C library's hypot, which differs between machines.
+inline double plan_length(double x, double z) { return std::sqrt(x * x + z * z); }
+/// Horizontal distance. [m]
+inline double plan_distance(const Vec3d& a, const Vec3d& b) {
+  return plan_length(a.x - b.x, a.z - b.z);
+}
 
 /// Horizontal distance of a point to a prism; 0 inside. [m]
 double distance_to(const Prism& prism, double x, double z);
@@ -171,6 +179,7 @@ struct Simulation::State {
   [[nodiscard]] AvatarSpawn spawn_of(const ScenarioAvatar& p, const Place& place) const;
   Place choose_place(PendingSpawn& one);
   Place place_in_rows(const Source& source, uint64_t nth, ScenarioAvatar& p);
+  void blend_densities();
   Place random_place(std::span<const int32_t> areas, int32_t density, ScenarioAvatar& p);
   void enter(const PendingSpawn& one, AvatarId id);
 

@@ -61,6 +61,17 @@ void Simulation::State::queue_spawns() {
   }
 }
 
+void Simulation::State::blend_densities() {
+  for (size_t d = 0; d < densities.size(); ++d) {
+    DensityMap& map = scenario.densities[d];
+    if (map.hours.empty()) continue;
+    std::vector<uint8_t> weights = scenario::weights_at(map, time());
+    if (weights == map.weights) continue;
+    map.weights = std::move(weights);
+    densities[d] = scenario::DensityDraw(map);
+  }
+}
+
 Place Simulation::State::random_place(std::span<const int32_t> areas, int32_t density,
                                       ScenarioAvatar& p) {
   const int32_t avatar_class = class_of(p);

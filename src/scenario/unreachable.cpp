@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -11,16 +12,12 @@
 namespace throng {
 namespace {
 
-constexpr double kStopBefore = 0.3;    // [m] before an obstacle
 constexpr double kSample = 0.1;        // [m] between points of a path that are tested
+constexpr size_t kKept = 3;            // of them: so many before an obstacle one stops
 constexpr double kFloor = 1;           // [m] Vertical tolerance between a path and the floor.
 constexpr uint64_t kRetryPeriod = 5;   // [reviews]
 constexpr size_t kMaxCompared = 64;    // places of an area, about
 constexpr size_t kMaxProlonged = 200;  // places of a line beyond its end
-
-double size_of(double x, double z) { return std::sqrt(x * x + z * z); }
-
-double distance(const Vec3d& a, const Vec3d& b) { return size_of(a.x - b.x, a.z - b.z); }
 
 }  // namespace
 
@@ -41,7 +38,7 @@ void Simulation::State::note_solids() {
     if (solids.empty()) continue;
     double length = 0;
     for (size_t i = 0; i + 1 < queue.line.size(); ++i)
-      length += distance(queue.line[i], queue.line[i + 1]);
+      length += plan_distance(queue.line[i], queue.line[i + 1]);
     const auto count = static_cast<size_t>(length / queue.spacing) + kMaxProlonged;
     AvatarClass widest = kinds[0];
     for (const AvatarClass& kind : kinds) widest.radius = std::max(widest.radius, kind.radius);
@@ -71,7 +68,7 @@ Place Simulation::State::goal_of(const ScenarioAvatar& p, const Vec3d& from) con
     if (found == places.end()) continue;
     const size_t stride = 1 + found->second.size() / kMaxCompared;
     for (size_t i = 0; i < found->second.size(); i += stride) {
-      const double d = distance(found->second[i].position, from);
+      const double d = plan_distance(found->second[i].position, from);
       if (d >= least) continue;
       least = d;
       nearest = found->second[i];
@@ -100,19 +97,19 @@ Place Simulation::State::place_before_obstacle(const ScenarioAvatar& p) {
   Path path;
   finder->second.find(here, goal, path, {UINT64_MAX, nullptr, scenario.search_bytes});
   if (path.end != PathEnd::kReached) return {};
-  std::vector<Vec3d> passed;
+  std::array<Vec3d, kKept> passed{};  // the last points, in turn
+  size_t count_passed = 0;
   for (size_t i = 1; i < path.points.size(); ++i) {
     const Vec3d a = path.points[i - 1].position, b = path.points[i].position;
-    const double length = distance(a, b);
+    const double length = plan_distance(a, b);
     const auto count = static_cast<size_t>(std::ceil(length / kSample));
     for (size_t k = 0; k < count; ++k) {
       const Vec3d at = a + (b - a) * (static_cast<double>(k) / static_cast<double>(count));
       if (is_covered(at, body)) {
-        const auto back = static_cast<size_t>(kStopBefore / kSample);
-        if (passed.size() <= back) return here;
-        return world.find_place(avatar_class, passed[passed.size() - 1 - back], kFloor);
+        if (count_passed < kKept) return here;
+        return world.find_place(avatar_class, passed[count_passed % kKept], kFloor);
       }
-      passed.push_back(at);
+      passed[count_passed++ % kKept] = at;
     }
   }
   return {};

@@ -17,7 +17,6 @@ namespace throng::draw {
 namespace {
 
 constexpr GLsizei kInstancesWide = 2048;  // [texels]
-constexpr GLsizei kLooks = 2048;
 constexpr int kLooksUnit = 5;
 
 constexpr size_t kCardsADraw = 16384;  // Their corners have numbers of 16 bits.
@@ -28,16 +27,12 @@ GlTexture make_looks() {
   const auto all = wardrobe();
   std::vector<uint32_t> words(size_t{4} * kLooks);
   for (uint32_t look = 0; look < kLooks; ++look) {
-    const auto choice = [&](uint32_t part) {
-      return (look * (5 + 2 * part) + (look >> 4) * 7 + part * 3) % kColoursAPart;
-    };
+    const uint32_t outfit = outfit_of(look);
     const auto cloth = [&](BodyPart part, size_t channel) {
       const auto p = static_cast<uint32_t>(part);
-      return all[(p * kColoursAPart + choice(p)) * 3 + channel];
+      return all[(p * kColoursAPart + (outfit >> 4 * p & 15)) * 3 + channel];
     };
-    for (uint32_t part = 0; part < kBodyParts; ++part) {
-      words[look * size_t{4} + 3] |= choice(part) << 4 * part;
-    }
+    words[look * size_t{4} + 3] = outfit;
     for (size_t channel = 0; channel < 3; ++channel) {
       const float parts[] = {
           0.5F * (cloth(BodyPart::kSkin, channel) + cloth(BodyPart::kHair, channel)),

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/random.h"
+
 namespace throng::draw {
 namespace {
 
@@ -36,6 +38,16 @@ std::array<float, 3 * kColoursAPart * kBodyParts> wardrobe() {
     }
   }
   return out;
+}
+
+uint32_t outfit_of(uint32_t look) {
+  constexpr uint64_t kOutfits = 0x6f7574666974;
+  uint32_t outfit = 0;
+  for (uint32_t part = 0; part < kBodyParts; ++part) {
+    const uint64_t choice = random_below(kOutfits, look, part, kColoursAPart);
+    outfit |= static_cast<uint32_t>(choice) << 4 * part;
+  }
+  return outfit;
 }
 
 }  // namespace throng::draw

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "throng/impostor.h"
 
@@ -14,5 +15,12 @@ inline constexpr int32_t kColoursAPart = 12;
 /// Twelve linear colours for each body part, red, green, blue: clothes as they are seen in a
 /// street, most of them quiet, some bright; skins and hair from everywhere.
 [[nodiscard]] std::array<float, 3 * kColoursAPart * kBodyParts> wardrobe();
+
+/// How many outfits a crowd has: a look has eleven bits in what is packed for an avatar.
+inline constexpr int32_t kLooks = 2048;
+
+/// The outfit of a look: which of its twelve colours each part has, four bits each. Each part is
+/// drawn by a hash of its own, so nearly all looks have different outfits.
+[[nodiscard]] uint32_t outfit_of(uint32_t look);
 
 }  // namespace throng::draw

@@ -90,6 +90,19 @@ enum class Routing {
   kStraight,
 };
 
+/// [CAACD]'s Mass, MaxSpeed and MaxForce, whose best set these are, for
+/// SteeringModel::kCurvilinear. A crowd scales lengths to the body and times to the speed of each
+/// avatar, so max_speed is its own speed; mass x max_speed by max_force is the time in which it
+/// turns or stops. [1e-6 to 1e6]
+struct CurvilinearTuning {
+  double mass = 2.0;
+  double max_speed = 0.4;
+  double max_force = 0.06;
+  /// Of the threats, collisions come first, then what is critical, then alerts; otherwise, as
+  /// printed, what comes nearest first.
+  bool by_state = false;
+};
+
 /// Settings that trade quality of movement for time. The defaults were measured
 /// (docs/design/008-engine.md); only studies of the engine change them.
 struct CrowdTuning {
@@ -119,6 +132,8 @@ struct CrowdTuning {
   /// goal, have not arrived and have come less than 0.3 m further since the last check. 0: no
   /// checks. Never changes the steps. [s, 0 to 1e6]
   double no_progress_after = 0;
+  /// Of SteeringModel::kCurvilinear alone.
+  CurvilinearTuning curvilinear = {};
 };
 
 /// How stairs slow a class: horizontal speeds divided by that on level ground, which is 1.34 m/s.

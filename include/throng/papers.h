@@ -46,6 +46,8 @@ struct SliceSet {
   double origin_x = 0;                 ///< [m]
   double origin_z = 0;                 ///< [m]
   int32_t far_plane = 0;               ///< eq. 2: min_y - resolution. [mm]
+  int32_t avatar_height = 0;           ///< Of the smallest avatar. [mm]
+  int32_t resolution = 0;              ///< [mm]
   int32_t taken = 0;                   ///< Slices cut, kept or not.
   std::vector<int32_t> taken_heights;  ///< [mm], highest first
   std::vector<Slice> kept;
@@ -56,24 +58,52 @@ struct SliceSet {
 [[nodiscard]] THRONG_API Result<SliceSet> slice_scene(const Scene& scene, const SliceConfig& config,
                                                       Context& context);
 
-/// Draws one slice as [ML06] figures 9 and 10 do: darker is higher.
-[[nodiscard]] THRONG_API Image draw_slice(const SliceSet& slices, size_t index);
-
-// ----
-// A crowd of wanderers: avatars without goals that walk straight on and turn at random when
-// blocked. They never enter a wall and never overlap. For avatars with goals see throng/crowd.h.
-
-/// Settings for Wanderers::create.
-struct WanderConfig {
-  uint32_t avatars = 1000;   ///< All are added, or none.
-  int32_t avatar_class = 0;  ///< Class of the avatars, index into the world's classes.
-  double dt = 0.1;           ///< Length of a step. [s, 0.001 to 10]
-  double speed = 0;          ///< Walking speed, 0 for the class's own. [m/s, >= 0]
-  uint64_t seed = 1;
-  int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
+/// A slice as [ML06] section 3.3 stores it.
+struct DepthSlice {
+  static constexpr uint16_t kNone = 65535;  ///< No surface, or one that is deeper than 65.534 m.
+  int32_t height = 0;                       ///< Height of the cut. [mm]
+  std::vector<uint16_t> depths;             ///< Of the highest surface below it, per cell. [mm]
+  /// Height of the surface in a cell whose depth is not kNone. [mm]
+  [[nodiscard]] int32_t surface(size_t cell) const { return height - depths[cell]; }
 };
 
-/// What one step did.
+/// Slices with 16 bits a cell, highest first, cells as in SliceSet. Where a floor lies deeper below
+/// a kept slice than 16 bits can say, and the next slice does not serve it, extra slices stand
+/// between the two: a body up to kMaxBody tall may make the same moves as on the SliceSet.
+struct DepthSlices {
+  static constexpr int32_t kMaxBody = 20000;  ///< [mm]
+  int32_t width = 0;                          ///< Cells along X.
+  int32_t depth = 0;                          ///< Cells along Z.
+  double cell = 0;                            ///< Side of a cell. [m]
+  double origin_x = 0;                        ///< [m]
+  double origin_z = 0;                        ///< [m]
+  int32_t far_plane = 0;                      ///< [mm]
+  int32_t avatar_height = 0;                  ///< Of the smallest avatar. [mm]
+  int32_t resolution = 0;                     ///< [mm]
+  int32_t taken = 0;                          ///< Slices cut, kept or not.
+  int32_t extra = 0;                          ///< Of the slices, those added for their depth.
+  std::vector<DepthSlice> slices;
+  [[nodiscard]] uint64_t bytes() const { return slices.size() * 2 * uint64_t(width) * depth; }
+};
+
+/// The slices with 16 bits a cell. Time: linear in cells x slices.
+[[nodiscard]] THRONG_API DepthSlices store_depths(const SliceSet& slices);
+/// Writes `path`, whole or not at all. Fails with kIo, and kLimit above 2 GB.
+[[nodiscard]] THRONG_API Result<void> save_slices(const DepthSlices& slices,
+                                                  const std::string& path);
+/// Reads what save_slices wrote. Fails with kBadFile: missing, no slices, damaged, another version.
+[[nodiscard]] THRONG_API Result<DepthSlices> load_slices(const std::string& path);
+/// Does the file begin as one of save_slices does?
+[[nodiscard]] THRONG_API bool is_slice_file(const std::string& path);
+
+/// Draws one slice as [ML06] figures 9 and 10 do: darker is higher.
+[[nodiscard]] THRONG_API Image draw_slice(const DepthSlices& slices, size_t index);
+
+// ----
+// A crowd on the slices themselves, by [ML06] algorithm 1: for comparison with the level tiles, on
+// which all other crowds walk.
+
+/// What one step of wanderers did.
 struct WanderReport {
   uint64_t step = 0;  ///< Number of the step just made, from 1.
   uint64_t moved = 0;
@@ -83,6 +113,76 @@ struct WanderReport {
   double seconds_sort = 0;  ///< Wall clock, as all three.
   double seconds_move = 0;
   double seconds_total = 0;
+};
+
+/// Avatars of one class, for SliceWanderers::create.
+struct SliceGroup {
+  AvatarClass avatar;
+  uint32_t count = 1000;
+};
+
+/// Settings for SliceWanderers::create.
+struct SliceWanderConfig {
+  std::vector<SliceGroup> groups;  ///< Ids in their order; all are added, or none. [1 to 16]
+  double dt = 0.1;                 ///< Length of a step. [s, 0.001 to 10]
+  uint64_t seed = 1;
+  int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
+};
+
+/// Wanderers on slices: straight on; left or right at random when blocked. A body covers the cells
+/// that its bounding square touches, all of which it may enter by algorithm 1 (slice_move.h says
+/// what the printed one lacks); no other body is in any of them. Its feet are on the highest
+/// surface that it covers. Of a class: height, radius, step height and speed. Source: [ML06]
+/// section 4. Movable, not copyable.
+class THRONG_API SliceWanderers {
+ public:
+  /// Makes the avatars where they can stand without overlap. Fails with kLimit and how many fit,
+  /// kBadConfig.
+  [[nodiscard]] static Result<SliceWanderers> create(DepthSlices slices,
+                                                     const SliceWanderConfig& config);
+  SliceWanderers(SliceWanderers&&) noexcept;
+  SliceWanderers& operator=(SliceWanderers&&) noexcept;
+  ~SliceWanderers();
+
+  /// Advances all avatars by `dt`. Time: avatars x cells that a body covers.
+  WanderReport step();
+  /// Tests the present positions against the slices and each other, without the step's own data.
+  /// All counts must be 0.
+  [[nodiscard]] CrowdCheck check() const;
+  /// XXH3 of all avatars in order of id. Same for any workers.
+  [[nodiscard]] uint64_t state_hash() const;
+  /// Reads all avatars in order of id into `out` (resized).
+  void read(std::vector<AvatarState>& out) const;
+  [[nodiscard]] uint32_t size() const;
+  [[nodiscard]] uint64_t bytes() const;  ///< Memory of slices, occupancy and avatars.
+  [[nodiscard]] const DepthSlices& slices() const;
+
+ private:
+  struct State;
+  explicit SliceWanderers(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+// ----
+// A crowd of wanderers: avatars without goals that walk straight on and turn at random when
+// blocked. They never enter a wall and never overlap. For avatars with goals see throng/crowd.h.
+
+/// Wanderers of one class more.
+struct WanderGroup {
+  int32_t avatar_class = 0;  ///< Index into the world's classes.
+  uint32_t avatars = 0;
+};
+
+/// Settings for Wanderers::create.
+struct WanderConfig {
+  uint32_t avatars = 1000;   ///< All are added, or none.
+  int32_t avatar_class = 0;  ///< Class of the avatars, index into the world's classes.
+  double dt = 0.1;           ///< Length of a step. [s, 0.001 to 10]
+  double speed = 0;          ///< Walking speed of all, 0 for the class's own. [m/s, >= 0]
+  uint64_t seed = 1;
+  int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
+  /// More avatars, of other heights, widths and steps; their ids follow, group by group. [<= 15]
+  std::vector<WanderGroup> also{};
 };
 
 /// Wanderers: straight on; left or right at random when blocked. Source: [ML06] section 4, [TC00]
@@ -174,6 +274,14 @@ enum class Trigger : uint8_t {
   kZones,   ///< Such a threat whose probe meets one's own: [CAACD] II, figure 7.
 };
 
+/// What makes one threat more urgent than another.
+enum class Order : uint8_t {
+  kTime,  ///< As printed: the earlier nearest approach, then the smaller distance.
+  /// Its future work: a collision before what is critical, and that before an alert; then as
+  /// printed. Two bodies collide that touch now or will at their nearest approach.
+  kState,
+};
+
 /// The axes along which eq. 11 pushes.
 enum class Axes : uint8_t { kSide, kSideAndUp };
 
@@ -193,6 +301,7 @@ struct Model {
   Length length = Length::kTrue;
   Trigger trigger = Trigger::kNear;
   Axes axes = Axes::kSide;
+  Order order = Order::kTime;
 };
 
 /// Checks the settings. Fails with kBadConfig and the setting that is out of its limits.
@@ -217,7 +326,8 @@ struct Approach {
 /// A body or obstacle whose course comes too near.
 struct Threat {
   static constexpr uint32_t kObstacle = UINT32_MAX;  ///< The `id` of all obstacles.
-  State state = State::kTolerable;  ///< kAlert or kCritical; kTolerable if there is no threat.
+  /// kAlert or kCritical, with Order::kState also kCollision; kTolerable if there is no threat.
+  State state = State::kTolerable;
   double time = std::numeric_limits<double>::infinity();      ///< A_tau.
   double distance = std::numeric_limits<double>::infinity();  ///< B_d.
   uint32_t id = kObstacle;  ///< Body::id of the threat; kObstacle for an obstacle.
@@ -235,8 +345,10 @@ struct Threat {
 [[nodiscard]] THRONG_API Threat threat_of(const Body& self, const Obstacle& obstacle,
                                           const Model& model);
 
-/// Is `a` more urgent than `b`? The smaller A_tau is, then the smaller B_d, then the smaller id.
-[[nodiscard]] THRONG_API bool more_urgent(const Threat& a, const Threat& b);
+/// Is `a` more urgent than `b`? The worse state is, if `order` says so; then the smaller A_tau,
+/// then the smaller B_d, then the smaller id.
+[[nodiscard]] THRONG_API bool more_urgent(const Threat& a, const Threat& b,
+                                          Order order = Order::kTime);
 
 /// The most urgent threat. A body in `others` with the id of `self` is ignored, as are bodies
 /// farther away than `search_radius`.

@@ -118,10 +118,40 @@ def claims(study, grid):
             ("of the grid of 60, the two are the worst",
              f"{len(worse)} others are as bad; {len(agile)} of them can turn more tightly than 1.0/0.8/0.06"),
             ("of the grid of 60, 2.0/0.4/0.06 is best", f"{len(better)} are better; {len(fast)} of them are faster than 0.4"),
+            ("figure 10 has the two bad sets above all others at 100 avatars",
+             f"the mean of {len(grid.sets)} sets is {ranks(grid, 100)[0]:.0f}, the two bad ones have "
+             f"{grid.at(BAD[0], 100):.0f} and {grid.at(BAD[1], 100):.0f}"),
             ("the number grows slowly to 50 avatars and steeply to 100",
              "; ".join(f"{name}: x {study.at(name, 100) / study.at(name, 50):.1f} from 50 to 100" for name in NAMED)
              + "; [CAACD] x 9.9 and 3.3")]
     return table(["claim", "here"], rows)
+
+
+def priorities_table(study, by_state):
+    """The printed order of threats, and states first."""
+    rows = [(n, *(f"{study.cell(name, n)} / {by_state.cell(name, n)}" for name in NAMED)) for n in COUNTS]
+    rows.append(("sum of means", *(f"{study.total(name):.1f} / {by_state.total(name):.1f}" for name in NAMED)))
+    return table(["avatars", *NAMED], rows)
+
+
+def ranks(study, avatars):
+    """Places of the named sets among all of a study, from the worst, and the mean of all."""
+    worst_first = sorted(study.sets, key=lambda name: -study.at(name, avatars))
+    mean = sum(study.at(name, avatars) for name in study.sets) / len(study.sets)
+    return mean, [(study.at(name, avatars), worst_first.index(name) + 1) for name in NAMED]
+
+
+def search_table(options):
+    """Figure 10 puts the two bad sets above all others: does any choice of what the paper leaves open?"""
+    options = argparse.Namespace(seeds=min(options.seeds, 5), threads=options.threads)
+    rows, found = [], 0
+    for name, words in READINGS + SETTINGS[1:]:
+        study = Study(options, "--grid", *words, counts=[100])
+        mean, places = ranks(study, 100)
+        as_printed = places[0][1] <= 2 and places[1][1] <= 2
+        found += as_printed
+        rows.append((name, f"{mean:.1f}", *(f"{value:.1f}, {place}." for value, place in places), "yes" if as_printed else "no"))
+    return found, table(["", f"mean of {len(study.sets)} sets", *NAMED, "the two bad sets are the worst"], rows)
 
 
 def main():
@@ -131,7 +161,9 @@ def main():
     options = parser.parse_args()
     IMAGES.mkdir(parents=True, exist_ok=True)
     study = Study(options, "--figure10", IMAGES / "caacd_figure10.png", "--figure11", IMAGES / "caacd_figure11.png", sets=SWEEP)
+    by_state = Study(options, "--order", "state", sets=NAMED)
     grid = Study(options, "--grid", counts=STEPS)
+    found, search = search_table(options)
     run_json(PROGRAM, "caacd", "--json", "--set", BEST, "--avatars", 40, "--at", 250, "--figure9", IMAGES / "caacd_figure9.png")
     text = [f"{options.seeds} seeds; mean +- standard deviation (max) of collisions a run. State {study.report['state_hash']}.",
             named_table(study),
@@ -140,6 +172,10 @@ def main():
             "One parameter at a time, in ascending order of collisions.", order_table(study),
             "The grid over the paper's ranges: means with 100 avatars.", grid_table(grid, 100),
             "Readings: means with 10 / 50 / 100 avatars.", settings_table(options, READINGS, ("1.0/0.4/0.20",)),
+            "Priorities of the states, the paper's future work (`--order state`): collisions a run, in the printed order of threats / by state.",
+            priorities_table(study, by_state),
+            f"Figure 10's order, over what the paper leaves open (radii, space, time step, readings): with 100 avatars, means over "
+            f"{min(options.seeds, 5)} seeds and places from the worst. {found} of {len(READINGS) + len(SETTINGS) - 1} choices give it.", search,
             "What the paper does not print: the same, one setting changed.", settings_table(options, SETTINGS)]
     write_between("caacd_table", "\n\n".join(text))
 

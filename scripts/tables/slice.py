@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Cuts the worlds of [ML06] Table 2 and every model of ../shared/worlds into slices: counts, bytes and times.
 
-scripts/results slice [--only PART_OF_NAME]"""
+Then Table 2 over cells of 0.1 to 2 m: the paper does not print its own.
+
+scripts/results slice [--only PART_OF_NAME] [--cells]    --cells: the second table alone"""
 import argparse
 import json
 import subprocess
@@ -18,6 +20,7 @@ FOLDERS = ["bezier", "buildings", "cities", "quake3", "recast", "sponza"]
 OPTIONS = {"buildings/wd1_psup.obj": ("--up", "z"), "cities/denhaag_01.obj": ("--up", "z"),
            "cities/lod3_railway.obj": ("--up", "z"), ".bsp": ("--scale", "0.0254")}
 CELLS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 50]
+TABLE_2_CELLS = [0.1, 0.2, 0.5, 1, 2]
 MAX_CELLS = 2_000_000  # A kept slice is a full grid, so larger worlds get larger cells.
 
 
@@ -52,10 +55,29 @@ def row(name, source):
             human(report["bytes"]), f"{report['seconds']:.2f}", human(report["peak_bytes"]))
 
 
+def by_cell(source, paper):
+    """Kept slices at each cell, and at which cells they come nearest to the paper's."""
+    kept = [slices(source, cell)["kept"] for cell in TABLE_2_CELLS]
+    least = min(abs(count - paper[1]) for count in kept)
+    nearest = [f"{cell:g}" for cell, count in zip(TABLE_2_CELLS, kept) if abs(count - paper[1]) == least]
+    return (source.removeprefix("builtin:"), paper[1], *kept, " and ".join(nearest))
+
+
+def write_cells():
+    rows = [by_cell(source, paper) for source, paper in PAPER.items()]
+    write_between("slice_cells_table", table(["world", "[ML06] kept", *(f"cells of {cell:g} m" for cell in TABLE_2_CELLS),
+                                              "nearest at [m]"], rows))
+
+
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="")
-    only = parser.parse_args().only
+    parser.add_argument("--cells", action="store_true")
+    options = parser.parse_args()
+    only = options.only
+    write_cells()
+    if options.cells:
+        return
     sources = [(source.removeprefix("builtin:"), source) for source in PAPER]
     if WORLDS.is_dir():
         found = sorted(path for folder in FOLDERS for path in (WORLDS / folder).rglob("*") if path.suffix in MODELS)

@@ -85,6 +85,11 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (!(config.tuning.no_progress_after >= 0 && config.tuning.no_progress_after <= 1e6)) {
     return bad_config("no_progress_after must be 0 to 1000000 s");
   }
+  const CurvilinearTuning& c = config.tuning.curvilinear;
+  for (const double value : {c.mass, c.max_speed, c.max_force}) {
+    if (value >= 1e-6 && value <= 1e6) continue;
+    return bad_config("mass, max_speed and max_force of curvilinear must be 1e-6 to 1e6");
+  }
   if (!(config.slope_cost >= 0 && config.slope_cost <= 1000)) {
     return bad_config("slope_cost must be 0 to 1000");
   }
@@ -97,17 +102,22 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   auto slope_factors = slope_factors_of(world, config);
   if (!slope_factors) return slope_factors.error();
   const double unit = data_of(world)->summary.cell / world::kUnitsPerCell;
-  const crowd::MoveConfig move{.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
-                               .sight = static_cast<float>(config.tuning.sight),
-                               .rounds = config.tuning.rounds,
-                               .deadlock_avoidance = config.tuning.deadlock_avoidance,
-                               .reaction = static_cast<float>(config.tuning.reaction),
-                               .seed = config.seed,
-                               .workers = config.workers,
-                               .model = config.model,
-                               .queues = config.tuning.queues,
-                               .acceleration = static_cast<float>(config.tuning.acceleration),
-                               .slope_factors = *std::move(slope_factors)};
+  const crowd::MoveConfig move{
+      .units = {static_cast<float>(unit), static_cast<float>(config.dt)},
+      .sight = static_cast<float>(config.tuning.sight),
+      .rounds = config.tuning.rounds,
+      .deadlock_avoidance = config.tuning.deadlock_avoidance,
+      .reaction = static_cast<float>(config.tuning.reaction),
+      .seed = config.seed,
+      .workers = config.workers,
+      .model = config.model,
+      .curves = {.mass = c.mass,
+                 .max_speed = c.max_speed,
+                 .max_force = c.max_force,
+                 .order = c.by_state ? caacd::Order::kState : caacd::Order::kTime},
+      .queues = config.tuning.queues,
+      .acceleration = static_cast<float>(config.tuning.acceleration),
+      .slope_factors = *std::move(slope_factors)};
   return Crowd(std::make_unique<State>(world, config, move));
 }
 

@@ -24,7 +24,7 @@ namespace {
 using crowd::put_rows;
 using crowd::take_rows;
 
-constexpr uint64_t kMagic = 0x36315744574f5243;  // "CROWDW16"
+constexpr uint64_t kMagic = 0x37315744574f5243;  // "CROWDW17"
 
 struct Head {
   uint64_t magic = kMagic;
@@ -53,11 +53,12 @@ struct Head {
   float fastest = 0;  // [m/s]
   int32_t taking_widest = 0, taking_tallest = 0;
   uint64_t avoids_jams = 0;
+  uint64_t curves = 0;       // hash_of_curves
   uint64_t aside = 0;        // bodies that stand aside
   uint64_t slow_levels = 0;  // of the delay map
   crowd::DelayMap::SavedQuestions questions;
 };
-static_assert(sizeof(Head) == 40 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 41 * 8 && std::is_trivially_copyable_v<Head>);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`; and without what its
 // edit holds.
@@ -175,6 +176,14 @@ uint64_t hash_of_slopes(const CrowdConfig& config) {
   return hash_bytes(factors.data(), factors.size() * sizeof(SlopeFactors), /*seed=*/1);
 }
 
+// The settings of a curvilinear crowd.
+uint64_t hash_of_curves(const CrowdConfig& config) {
+  if (config.model != SteeringModel::kCurvilinear) return 0;
+  const CurvilinearTuning& t = config.tuning.curvilinear;
+  const std::array<double, 4> values = {t.mass, t.max_speed, t.max_force, t.by_state ? 1.0 : 0.0};
+  return hash_bytes(values.data(), sizeof values);
+}
+
 Head head_of(const World& world, const CrowdConfig& config) {
   Head head;
   head.world = hash_of(world);
@@ -193,6 +202,7 @@ Head head_of(const World& world, const CrowdConfig& config) {
   head.acceleration = config.tuning.acceleration;
   head.queues = config.tuning.queues && config.model == SteeringModel::kSampled ? 1 : 0;
   head.avoids_jams = config.avoid_jams ? 1 : 0;
+  head.curves = hash_of_curves(config);
   return head;
 }
 
@@ -279,7 +289,7 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
       head.low_detail_reaction != expected.low_detail_reaction ||
       head.slope_cost != expected.slope_cost || head.slopes != expected.slopes ||
       head.acceleration != expected.acceleration || head.queues != expected.queues ||
-      head.avoids_jams != expected.avoids_jams) {
+      head.avoids_jams != expected.avoids_jams || head.curves != expected.curves) {
     return bad("has other settings; give those that it was made with");
   }
   constexpr uint64_t kMax = uint64_t{1} << 32;

@@ -12,8 +12,8 @@
 // cell by cell. Time: about ten draws for each avatar at most, then linear in the cells.
 namespace throng::crowd {
 
-std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uint64_t seed,
-                                  CollisionMap& map) {
+std::vector<Avatar> place_avatars(const CrowdGround& ground, int32_t body_height, uint32_t count,
+                                  uint64_t seed, CollisionMap& map) {
   const auto& records = ground.records();
   const StandingDraw standing(ground, seed);
   std::vector<Avatar> avatars;
@@ -21,7 +21,7 @@ std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uin
   avatars.reserve(count);
   const auto try_place = [&](uint32_t level, world::GroundPoint p) {
     const int32_t y = ground.feet(level, p);
-    const CollisionMap::Mark mark = map.mark(p, y);
+    const CollisionMap::Mark mark = map.mark(p, y, body_height);
     if (!map.is_free(mark)) return false;
     map.set(mark);
     avatars.push_back({.x = static_cast<int32_t>(p.x),

@@ -13,7 +13,8 @@ namespace throng::crowd {
 
 /// Places `count` avatars on legal cells, clear of each other in `map`: at random, uniform over the
 /// ground, and when random points no longer fit, cell by cell. Returns fewer if no more fit.
-std::vector<Avatar> place_avatars(const CrowdGround& ground, uint32_t count, uint64_t seed,
-                                  CollisionMap& map);
+/// [body_height: mm]
+std::vector<Avatar> place_avatars(const CrowdGround& ground, int32_t body_height, uint32_t count,
+                                  uint64_t seed, CollisionMap& map);
 
 }  // namespace throng::crowd

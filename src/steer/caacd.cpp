@@ -30,6 +30,15 @@ double side_when_in_line(const Body& self, const Threat& threat) {
   return self.id < threat.id ? 1 : -1;
 }
 
+// The state of a threat that will be `then`: as printed it is alert or critical. By state, a
+// collision counts as such, also one of now.
+State state_of(State then, const Body& self, Vec3d position, const Fields& fields,
+               const Model& model) {
+  if (model.order == Order::kTime) return then == State::kAlert ? then : State::kCritical;
+  const State now = state_at(length(self.position - position), joint_fields(self.fields, fields));
+  return now == State::kCollision ? now : then;
+}
+
 }  // namespace
 
 Fields joint_fields(const Fields& a, const Fields& b) {
@@ -109,7 +118,7 @@ Threat threat_of(const Body& self, const Body& other, const Model& model) {
     return {};
   }
   if (model.trigger == Trigger::kZones && !probes_meet(self, other, model)) return {};
-  threat.state = state == State::kAlert ? State::kAlert : State::kCritical;
+  threat.state = state_of(state, self, other.position, other.fields, model);
   return threat;
 }
 
@@ -128,10 +137,14 @@ Threat threat_of(const Body& self, const Obstacle& obstacle, const Model& model)
                 .self_then = position_at(self, approach.time),
                 .other_then = obstacle.position};
   threat.distance = convergence_distance(threat.self_then - threat.other_then, model);
+  const State state = state_at(threat.distance, joint_fields(self.fields, obstacle.fields));
+  threat.state = state_of(state == State::kCollision ? state : State::kCritical, self,
+                          obstacle.position, obstacle.fields, model);
   return threat;
 }
 
-bool more_urgent(const Threat& a, const Threat& b) {
+bool more_urgent(const Threat& a, const Threat& b, Order order) {
+  if (order == Order::kState && a.state != b.state) return a.state > b.state;
   if (a.time != b.time) return a.time < b.time;
   if (a.distance != b.distance) return a.distance < b.distance;
   return a.id < b.id;
@@ -142,7 +155,8 @@ Threat greatest_threat(const Body& self, std::span<const Body> others,
                        double search_radius) {
   Threat greatest;
   const auto consider = [&](const Threat& threat) {
-    if (threat.state != State::kTolerable && more_urgent(threat, greatest)) greatest = threat;
+    if (threat.state != State::kTolerable && more_urgent(threat, greatest, model.order))
+      greatest = threat;
   };
   for (const Body& other : others) {
     const Vec3d offset = other.position - self.position;

@@ -8,7 +8,6 @@
 
 #include "steer/social_force.h"
 #include "throng/base.h"
-#include "throng/papers.h"
 
 // [CAACD] and [HM95] as models of a crowd. They define no step length: both are integrated by
 // Euler's method in parts of a step that are short beside their time constants.
@@ -30,8 +29,7 @@ Plane limited(double x, double z, double max) {
 
 // The unit of length makes the repulsive field as large as the body; the unit of time makes the
 // model's maximum speed equal to `fastest`.
-Plane curvilinear_velocity(const View& view, float dt) {
-  const caacd::Model model;
+Plane curvilinear_velocity(const View& view, float dt, const caacd::Model& model) {
   const double units = kFields.repulsive / view.radius;          // a metre
   const double frames = view.fastest * units / model.max_speed;  // a second
   const double speed = units / frames;
@@ -107,9 +105,10 @@ Plane force_velocity(const View& view, float dt) {
 
 }  // namespace
 
-Plane preferred_velocity(SteeringModel model, const View& view, float dt) {
+Plane preferred_velocity(SteeringModel model, const View& view, float dt,
+                         const caacd::Model& curves) {
   THRONG_ASSERT(model != SteeringModel::kSampled);
-  return model == SteeringModel::kCurvilinear ? curvilinear_velocity(view, dt)
+  return model == SteeringModel::kCurvilinear ? curvilinear_velocity(view, dt, curves)
                                               : force_velocity(view, dt);
 }
 

@@ -7,6 +7,7 @@
 
 #include "steer/sampled.h"
 #include "throng/avatar.h"
+#include "throng/papers.h"
 
 /// The other models that can steer a crowd, for comparison: from the view of an avatar to its next
 /// velocity. Their only state is the present velocity.
@@ -34,8 +35,10 @@ struct View {
 };
 
 /// The velocity after a step of `dt` in which all others keep their velocities; at most `fastest`.
-/// A step is integrated in parts of at most about 30 ms. [model: not kSampled]
-Plane preferred_velocity(SteeringModel model, const View& view, float dt);
+/// A step is integrated in parts of at most about 30 ms. [model: not kSampled; curves: of
+/// kCurvilinear]
+Plane preferred_velocity(SteeringModel model, const View& view, float dt,
+                         const caacd::Model& curves = {});
 
 /// Candidates for a preferred velocity, in order: the velocity itself, turned by 30, 60 and 90
 /// degrees, each to the right first, then straight on, slower.

@@ -586,42 +586,6 @@ class Program(ProgramCase):
             self.assertIn(done.returncode, (0, 1), done.stderr)
             self.assertEqual("does not lie where the world does" in done.stderr, is_elsewhere, done.stderr)
 
-    def test_the_experiment_of_caacd_is_the_same_for_any_threads_and_writes_its_files(self):
-        def study(*more):
-            done = self.run_throng("caacd", "--avatars", "5,20", "--seeds", 3, "--frames", 400, *more)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            return done.stdout
-        reports = [json.loads(study("--json", "--threads", threads)) for threads in (1, 2, 5)]
-        self.assertEqual(len({report["state_hash"] for report in reports}), 1)
-        self.assertEqual([row["set"] for row in reports[0]["sets"]], ["1.0/1.0/0.06", "1.0/0.8/0.06", "2.0/0.4/0.06"])
-        self.assertEqual(reports[0]["reported"], {"bad": [2, 4], "others": [2, 4]})
-        self.assertNotEqual(json.loads(study("--json", "--seed", 7))["state_hash"], reports[0]["state_hash"])
-        text = study("--figure10", "ten.png", "--figure11", "eleven.png")
-        self.assertIn("2.0/0.4/0.06", text)
-        self.assertIn("<= 4", text)
-        self.assertEqual(len(study("--grid").splitlines()), 3 + 60)
-        one = self.run_throng("caacd", "--avatars", 12, "--figure9", "nine.png", "--record", "walk.csv", "--json")
-        self.assertEqual(one.returncode, 0, one.stderr)
-        head, *lines = (self.path / "walk.csv").read_text().splitlines()
-        self.assertEqual(head, "frame,id,x,z,vx,vz,activity,tangential,centripetal")
-        self.assertEqual(len(lines), 12 * (json.loads(one.stdout)["frames"] + 1))
-        self.assertTrue(lines[-1].split(",")[6] in ("arrived", "waiting"), lines[-1])
-        for name in ("nine.png", "ten.png", "eleven.png"):
-            self.assertTrue((self.path / name).read_bytes().startswith(b"\x89PNG"), name)
-
-    def test_bad_settings_of_caacd_are_one_sentence(self):
-        for words, *named in ((("--set", "2.0/0.4"), "--set", "MASS/SPEED/FORCE"), (("--set", "2/x/1"), "--set 2/x/1"),
-                              (("--set", "0/1/1"), "mass", "0.0/1.0/1.00"), (("--trigger", "far"), "--trigger far", "zones"),
-                              (("--length", "long"), "--length long", "max-sum"), (("--avatars", "20,5"), "--avatars"),
-                              (("--avatars", "0"), "avatars"), (("--seeds", "0"), "seeds"), (("--t3", "-1"), "--t3: -1 is not above 0"),
-                              (("--fields", "5,4,3"), "radii"), (("--fields", "5,4"), "--fields"),
-                              (("--side", "50", "--avatars", "90"), "no room"), (("--lambda3", "2"), "lambda3"),
-                              (("--avatars", "5", "--figure10", "x.png"), "two numbers"),
-                              (("--avatars", "5", "--record", "no/x.csv"), "no/x.csv"),
-                              (("--avatars", "5", "--seeds", "1", "--dt", "0"), "dt")):
-            self.assert_refused(self.run_throng("caacd", *words), *named)
-        self.assertEqual(list(self.path.iterdir()), [])
-
     def write_character(self, name, bones, clip=True):
         """A triangle that follows `bones` joints in a row, as a glTF file of text."""
         weights = [struct.pack("<4H", *(min(4 * vertex + k, bones - 1) for k in range(4))) for vertex in range(3)]

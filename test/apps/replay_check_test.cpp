@@ -46,7 +46,10 @@ class ReplayCheck : public testing::Test {
   }
 
   Json settings() const {
-    return wanderers_settings({.avatars = 20, .dt = 0.25, .seed = 5}, "adult");
+    WanderRun run;
+    run.class_name = "adult";
+    run.config = {.avatars = 20, .dt = 0.25, .seed = 5};
+    return wanderers_settings(run);
   }
 
   // Exit code and output.

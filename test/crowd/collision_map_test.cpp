@@ -36,7 +36,7 @@ TEST(CollisionMap, AnswersLikeThePrintedMap) {
   PrintedMap printed;
   const auto mark = [&](int x, int z) {
     return map.mark({(int64_t{x} << world::kUnitBits) + 7, (int64_t{z} << world::kUnitBits) + 2000},
-                    120);
+                    120, 1750);
   };
   std::vector<std::pair<int, int>> bodies;
   uint64_t n = 0;
@@ -73,12 +73,23 @@ TEST(CollisionMap, BodiesOnFloorsAboveEachOtherDoNotCollide) {
   crowd::CollisionMap map(10, 10, crowd::PixelGrid(1), 0, 200000, 1750);
   const world::GroundPoint p{5 << world::kUnitBits, 5 << world::kUnitBits};
   for (int32_t y = 0; y < 200000; y += 2250) {  // words of 16 m are crossed many times
-    ASSERT_TRUE(map.is_free(map.mark(p, y))) << y;
-    map.set(map.mark(p, y));
-    ASSERT_FALSE(map.is_free(map.mark(p, y + 1749))) << y;
-    ASSERT_FALSE(map.is_free(map.mark({p.x + world::kUnitsPerCell, p.z}, y))) << y;
-    ASSERT_TRUE(map.is_free(map.mark({p.x + 2 * world::kUnitsPerCell, p.z}, y))) << y;
+    ASSERT_TRUE(map.is_free(map.mark(p, y, 1750))) << y;
+    map.set(map.mark(p, y, 1750));
+    ASSERT_FALSE(map.is_free(map.mark(p, y + 1749, 1750))) << y;
+    ASSERT_FALSE(map.is_free(map.mark({p.x + world::kUnitsPerCell, p.z}, y, 1750))) << y;
+    ASSERT_TRUE(map.is_free(map.mark({p.x + 2 * world::kUnitsPerCell, p.z}, y, 1750))) << y;
   }
+}
+
+TEST(CollisionMap, AShortBodyFitsUnderWhatATallOneDoesNot) {
+  crowd::CollisionMap map(10, 10, crowd::PixelGrid(1), 0, 20000, 3000);
+  const world::GroundPoint p{5 << world::kUnitBits, 5 << world::kUnitBits};
+  map.set(map.mark(p, 10000, 1100));
+  // Slices are 250 mm high, so 1 mm below two of them are certainly others.
+  EXPECT_TRUE(map.is_free(map.mark(p, 8400, 1100)));
+  EXPECT_FALSE(map.is_free(map.mark(p, 8400, 3000)));
+  EXPECT_TRUE(map.is_free(map.mark(p, 11600, 3000)));
+  EXPECT_FALSE(map.is_free(map.mark(p, 11099, 3000)));
 }
 
 // Bodies on several floors that move one pixel at a time, in turn, in two maps: in one only the new
@@ -101,7 +112,7 @@ TEST(CollisionMap, TestingOnlyTheNewPixelsIsEnough) {
   };
   for (int32_t i = 0; i < 100; ++i) {
     const Body body{draw(kSide / 3), draw(kSide / 3), draw(14) * kStorey};
-    const auto mark = simple.mark(body.point(), body.y);
+    const auto mark = simple.mark(body.point(), body.y, 1750);
     if (!simple.is_free(mark)) continue;
     simple.set(mark);
     quick.set(mark);
@@ -114,7 +125,8 @@ TEST(CollisionMap, TestingOnlyTheNewPixelsIsEnough) {
     if (dx == 0 && dz == 0) continue;
     const Body next{body.x + dx, body.z + dz, body.y};
     if (next.x < 0 || next.z < 0 || next.x >= kSide / 3 || next.z >= kSide / 3) continue;
-    const auto from = simple.mark(body.point(), body.y), to = simple.mark(next.point(), body.y);
+    const auto from = simple.mark(body.point(), body.y, 1750),
+               to = simple.mark(next.point(), body.y, 1750);
     simple.clear(from);
     const bool is_free = simple.is_free(to);
     simple.set(is_free ? to : from);

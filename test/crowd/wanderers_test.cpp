@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
+#include <vector>
 
 #include "throng/bake.h"
 #include "throng/papers.h"
@@ -72,6 +75,54 @@ TEST(Wanderers, SameStateForAnyNumberOfThreads) {
     for (int step = 0; step < 300; ++step) crowd->step();
     EXPECT_EQ(crowd->state_hash(), 4112767451889562575u) << "workers = " << workers;
   }
+}
+
+TEST(Wanderers, ClassesOfAllSizesShareTheFloors) {
+  const World world = baked(small_garage());
+  WanderConfig config{.avatars = 150,
+                      .seed = 6,
+                      .also = {{.avatar_class = 3, .avatars = 12},  // giants
+                               {.avatar_class = 1, .avatars = 80},
+                               {.avatar_class = 2, .avatars = 15}}};
+  std::set<uint64_t> hashes;
+  for (const int32_t workers : {1, 2, 8}) {
+    config.workers = workers;
+    auto crowd = Wanderers::create(world, config);
+    ASSERT_TRUE(crowd) << crowd.error().message;
+    ASSERT_EQ(crowd->size(), 257u);
+    std::vector<AvatarState> before, after;
+    crowd->read(before);
+    uint64_t moved = 0, blocked = 0;
+    for (int step = 0; step < 400; ++step) {
+      const WanderReport report = crowd->step();
+      moved += report.moved;
+      blocked += report.blocked_by_avatar;
+      const CrowdCheck check = crowd->check();
+      ASSERT_EQ(check.overlaps + check.wall_entries, 0u) << "step " << step;
+    }
+    crowd->read(after);
+    EXPECT_GT(moved, 257u * 400u / 2);
+    EXPECT_GT(blocked, 100u);
+    std::vector<int32_t> counts(4);
+    std::vector<double> walked(4);
+    for (size_t i = 0; i < after.size(); ++i) {
+      EXPECT_EQ(after[i].id, i);
+      const auto kind = static_cast<size_t>(after[i].avatar_class);
+      ++counts[kind];
+      walked[kind] = std::max(walked[kind], length(after[i].position - before[i].position));
+    }
+    EXPECT_EQ(counts, (std::vector<int32_t>{150, 80, 15, 12}));
+    EXPECT_GT(*std::min_element(walked.begin(), walked.end()), 4);
+    hashes.insert(crowd->state_hash());
+  }
+  EXPECT_EQ(hashes.size(), 1u);
+
+  config.also.push_back({.avatar_class = 9, .avatars = 1});
+  EXPECT_EQ(Wanderers::create(world, config).error().code, Errc::kNotFound);
+  config.also.assign(16, {.avatar_class = 0, .avatars = 1});
+  EXPECT_EQ(Wanderers::create(world, config).error().code, Errc::kBadConfig);
+  config.also = {{.avatar_class = 3, .avatars = 100000}};
+  EXPECT_EQ(Wanderers::create(world, config).error().code, Errc::kLimit);
 }
 
 TEST(Wanderers, TwoCrowdsLiveSideBySide) {

@@ -488,6 +488,54 @@ TEST(Caacd, TheMoreUrgentThreatIsSoonerThenNearerThenOfTheSmallerId) {
   EXPECT_TRUE(more_urgent(base, Threat{})) << "no threat is less urgent than any";
 }
 
+TEST(Caacd, ByStateACollisionOutranksWhatIsCriticalAndThatAnAlert) {
+  Threat later;
+  later.time = 9, later.distance = 9, later.id = 9;
+  Threat sooner = later;
+  sooner.time = 1, sooner.distance = 1, sooner.id = 1;
+  const std::array states = {State::kTolerable, State::kAlert, State::kCritical, State::kCollision};
+  for (size_t worse = 1; worse < states.size(); ++worse) {
+    later.state = states[worse];
+    sooner.state = states[worse - 1];
+    EXPECT_TRUE(more_urgent(later, sooner, Order::kState));
+    EXPECT_FALSE(more_urgent(sooner, later, Order::kState));
+    EXPECT_TRUE(more_urgent(sooner, later, Order::kTime)) << "as printed";
+    sooner.state = states[worse];
+    EXPECT_TRUE(more_urgent(sooner, later, Order::kState)) << "within a state by time";
+  }
+}
+
+// As printed a threat is alert or critical; by state it is what the field says in which the nearest
+// approach lies, or a collision if the bodies touch now.
+TEST(Caacd, ByStateAThreatHasTheStateOfItsNearestApproach) {
+  Model printed, by_state;
+  printed.trigger = by_state.trigger = Trigger::kThreat;
+  by_state.order = Order::kState;
+  const Fields fields{5, 7.5, 12};
+  Body self{.position = {}, .velocity = {0.4, 0, 0}, .fields = fields, .id = 1};
+  const auto state = [&](double aside, double ahead, const Model& model) {
+    const Body other{.position = {ahead, 0, aside},
+                     .velocity = {-0.4, 0, 0},
+                     .forward = {-1, 0, 0},
+                     .fields = fields,
+                     .id = 2};
+    return threat_of(self, other, model).state;
+  };
+  EXPECT_EQ(state(2, 30, printed), State::kCritical);
+  EXPECT_EQ(state(2, 30, by_state), State::kCollision);
+  EXPECT_EQ(state(12, 30, printed), State::kCritical);
+  EXPECT_EQ(state(12, 30, by_state), State::kCritical);
+  EXPECT_EQ(state(20, 30, printed), State::kAlert);
+  EXPECT_EQ(state(20, 30, by_state), State::kAlert);
+  EXPECT_EQ(state(30, 30, by_state), State::kTolerable);
+  self.velocity = {};
+  EXPECT_EQ(state(6, 7, by_state), State::kCollision) << "they touch now";
+  const Obstacle wall{.position = {14, 0, 0}, .fields = {8, 13, 13}};
+  self.velocity = {0.4, 0, 0};
+  EXPECT_EQ(threat_of(self, wall, printed).state, State::kCritical);
+  EXPECT_EQ(threat_of(self, wall, by_state).state, State::kCollision);
+}
+
 // The probe as a grid of points, 1 % of its size apart.
 TEST(Caacd, AProbeOverlapsADiscIfOneOfItsPointsIsInside) {
   Model model = brisk();

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -16,6 +14,7 @@
 #include "number_checks.h"
 #include "report/caacd_figures.h"
 #include "report/caacd_one_run.h"
+#include "run/caacd_options.h"
 #include "throng/papers.h"
 #include "throng/picture.h"
 
@@ -29,7 +28,7 @@ struct CaacdOptions {
   StudyConfig study;
   std::vector<std::string> sets;
   std::vector<double> fields;
-  std::string trigger = "near", length = "true";
+  std::string trigger = "near", length = "true", order = "time";
   bool grid = false;
   std::string figure10, figure11;
   OneRunFiles one_run;
@@ -39,23 +38,6 @@ std::vector<int32_t> paper_counts() {
   std::vector<int32_t> counts;
   for (int32_t n = 5; n <= 100; n += 5) counts.push_back(n);
   return counts;
-}
-
-// "2.0/0.4/0.06"
-Result<ParameterSet> parse_set(const std::string& text) {
-  std::array<double, 3> values{};
-  const char* at = text.data();
-  const char* const end = text.data() + text.size();
-  for (size_t i = 0; i < values.size(); ++i) {
-    const auto [next, error] = std::from_chars(at, end, values[i]);
-    const bool last = i + 1 == values.size();
-    if (error != std::errc() || (last ? next != end : next == end || *next != '/')) {
-      return Error{Errc::kBadConfig,
-                   fmt::format("--set {}: write MASS/SPEED/FORCE, as in 2.0/0.4/0.06", text)};
-    }
-    at = next + 1;
-  }
-  return ParameterSet{values[0], values[1], values[2]};
 }
 
 template <class T>
@@ -93,6 +75,9 @@ Result<void> complete(CaacdOptions& options) {
       {{"true", Length::kTrue}, {"max-sum", Length::kMaxAndSum}}, options.length, "--length");
   if (!kind) return kind.error();
   study.model.length = *kind;
+  const Result<Order> order = parse_order(options.order);
+  if (!order) return order.error();
+  study.model.order = *order;
   if (!options.fields.empty()) {
     study.space.fields = {options.fields[0], options.fields[1], options.fields[2]};
   }
@@ -103,6 +88,7 @@ Json study_json(const CaacdOptions& options, const Study& study, double seconds)
   Json json = {{"seeds", options.study.seeds},
                {"frames", options.study.frames},
                {"trigger", options.trigger},
+               {"order", options.order},
                {"avatars", study.avatars},
                {"reported", {{"bad", Json::array()}, {"others", Json::array()}}},
                {"sets", Json::array()}};
@@ -257,6 +243,11 @@ void add_caacd(CLI::App& parser, Session& session) {
       ->add_option("--trigger", options->trigger,
                    "Avatars to avoid: threats in the alert field (near), all (threat), those whose "
                    "zones meet (zones), none (never)")
+      ->capture_default_str();
+  command
+      ->add_option("--order", options->order,
+                   "Most urgent: the threat that comes first (time), or collisions before critical "
+                   "threats before alerts (state)")
       ->capture_default_str();
   command->add_option("--length", options->length, "Eq. 10: true, or max-sum as printed")
       ->capture_default_str();

@@ -9,11 +9,13 @@
 
 #include "command.h"
 #include "number_checks.h"
+#include "run/caacd_options.h"
 #include "run/rerun.h"
 #include "run/run_crowd.h"
 #include "run/run_scenario.h"
 #include "run/run_sinks.h"
 #include "run/run_times.h"
+#include "run/run_wanderers.h"
 #include "throng/papers.h"
 #include "throng/world.h"
 
@@ -35,75 +37,53 @@ struct RunOptions {
   bool full_speed = false;        // on stairs and slopes, too
   bool ignore_jams = false;       // no other routes around them
   bool pushing = false;           // no queues, no limit of accelerations
+  std::string set, order;         // of the model caacd
   std::vector<std::string> also;  // CLASS:N
 };
-
-// Sums over all steps.
-struct RunTotals {
-  uint64_t moved = 0;
-  uint64_t blocked_by_wall = 0;
-  uint64_t blocked_by_avatar = 0;
-  uint64_t waited = 0;
-  double seconds_total = 0;
-  uint64_t checks = 0;
-  CrowdCheck found;
-
-  void add(const WanderReport& report) {
-    moved += report.moved;
-    blocked_by_wall += report.blocked_by_wall;
-    blocked_by_avatar += report.blocked_by_avatar;
-    waited += report.waited;
-    seconds_total += report.seconds_total;
-  }
-
-  void add(const CrowdCheck& check) {
-    ++checks;
-    found.wall_entries += check.wall_entries;
-    found.overlaps += check.overlaps;
-  }
-};
-
-Json run_json(const RunOptions& options, const Wanderers& crowd, const RunTotals& totals,
-              const RunTimes& times) {
-  Json json = {{"world", options.world},
-               {"class", options.class_name},
-               {"avatars", crowd.size()},
-               {"steps", times.steps()},
-               {"dt", options.config.dt},
-               {"seed", options.config.seed},
-               {"threads", options.config.workers},
-               {"moved", totals.moved},
-               {"blocked", totals.blocked_by_wall + totals.blocked_by_avatar},
-               {"blocked_by_wall", totals.blocked_by_wall},
-               {"blocked_by_avatar", totals.blocked_by_avatar},
-               {"waited", totals.waited},
-               {"checks", totals.checks},
-               {"wall_entries", totals.found.wall_entries},
-               {"overlaps", totals.found.overlaps},
-               {"state_hash", fmt::format("{:016x}", crowd.state_hash())},
-               {"seconds_total", totals.seconds_total},
-               {"crowd_bytes", crowd.bytes()},
-               {"peak_bytes", peak_memory()}};
-  times.add_to(json);
-  return json;
-}
-
-std::string run_text(const RunOptions& options, const Wanderers& crowd, const RunTotals& totals,
-                     const RunTimes& times) {
-  return fmt::format(
-      "{} {} avatars, {} steps of {} s: {}\n{}"
-      "blocked {} times by walls, {} by avatars; waited {} times\n"
-      "{} checks: {} wall entries, {} overlaps\n"
-      "state {:016x}\n",
-      crowd.size(), options.class_name, times.steps(), options.config.dt, times.text_of_steps(),
-      times.text_of_parts(), totals.blocked_by_wall, totals.blocked_by_avatar, totals.waited,
-      totals.checks, totals.found.wall_entries, totals.found.overlaps, crowd.state_hash());
-}
 
 // The class's index, by name or the first; fills in the name.
 Result<int32_t> pick_class(const World& world, std::string& name) {
   if (name.empty()) name = world.summary().classes.front().name;
   return class_named(world, name);
+}
+
+// Of --also.
+Result<std::vector<AvatarGroup>> read_groups(const std::vector<std::string>& also) {
+  std::vector<AvatarGroup> groups;
+  for (const std::string& group : also) {
+    const size_t colon = group.rfind(':');
+    uint32_t count = 0;
+    const char* end = group.data() + group.size();
+    const bool is_right = colon != std::string::npos && colon > 0 &&
+                          std::from_chars(group.data() + colon + 1, end, count).ptr == end &&
+                          count > 0;
+    if (!is_right) {
+      return Error{Errc::kBadConfig, "--also " + group + ": write CLASS:N, as in climber:50"};
+    }
+    groups.push_back({group.substr(0, colon), count});
+  }
+  return groups;
+}
+
+// --set and --order.
+Result<void> read_curves(const RunOptions& options, CrowdConfig& config) {
+  if (options.set.empty() && options.order.empty()) return {};
+  if (config.model != SteeringModel::kCurvilinear) {
+    return Error{Errc::kBadConfig, "--set and --order are of [CAACD]; add --model caacd"};
+  }
+  CurvilinearTuning& tuning = config.tuning.curvilinear;
+  if (!options.set.empty()) {
+    const auto set = parse_set(options.set);
+    if (!set) return set.error();
+    tuning.mass = set->mass;
+    tuning.max_speed = set->max_speed;
+    tuning.max_force = set->max_force;
+  }
+  if (options.order.empty()) return {};
+  const auto order = parse_order(options.order);
+  if (!order) return order.error();
+  tuning.by_state = *order == caacd::Order::kState;
+  return {};
 }
 
 int run_with_goals(Session& session, const World& world, RunOptions& options, RunTimes& times) {
@@ -121,19 +101,11 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
     run.config.tuning.queues = false;
     run.config.tuning.acceleration = 0;
   }
+  if (auto ok = read_curves(options, run.config); !ok) return fail(ok.error());
   if (auto ok = read_goals(run); !ok) return fail(ok.error());
-  for (const std::string& group : options.also) {
-    const size_t colon = group.rfind(':');
-    uint32_t count = 0;
-    const char* end = group.data() + group.size();
-    const bool is_right = colon != std::string::npos && colon > 0 &&
-                          std::from_chars(group.data() + colon + 1, end, count).ptr == end &&
-                          count > 0;
-    if (!is_right) {
-      return fail({Errc::kBadConfig, "--also " + group + ": write CLASS:N, as in climber:50"});
-    }
-    run.also.emplace_back(group.substr(0, colon), count);
-  }
+  const auto also = read_groups(options.also);
+  if (!also) return fail(also.error());
+  for (const AvatarGroup& group : *also) run.also.emplace_back(group.class_name, group.avatars);
   auto crowd =
       times.measure("prepare", [&] { return GoalCrowd::create(world, run, session.context); });
   if (!crowd) return fail(crowd.error());
@@ -149,49 +121,11 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
   return run_crowd(session, run, *crowd, times, shown, [&] { return sinks.finish(); });
 }
 
-int run_wanderers(Session& session, const World& world, const RunOptions& options,
-                  RunTimes& times) {
-  Result<Wanderers> crowd =
-      times.measure("prepare", [&] { return Wanderers::create(world, options.config); });
-  if (!crowd) return fail(crowd.error());
-  Sinks sinks(options.sinks);
-  auto ok = sinks.open(world,
-                       {.world = options.world,
-                        .dt = options.config.dt,
-                        .model = kWanderersModel,
-                        .settings = wanderers_settings(options.config, options.class_name).dump()});
-  const auto write = [&](uint64_t step) {
-    return times.measure("write", [&] { return sinks.add(step, *crowd); });
-  };
-  if (ok) ok = write(0);
-  if (!ok) return fail(ok.error());
-  RunTotals totals;
-  for (uint64_t step = 1; step <= options.steps; ++step) {
-    const WanderReport report = crowd->step();
-    totals.add(report);
-    times.add_step(report.seconds_total, crowd->size());
-    times.add("sort", report.seconds_sort);
-    times.add("move", report.seconds_move);
-    if (step % options.check_every == 0 || step == options.steps) {
-      totals.add(times.measure("check", [&] { return crowd->check(); }));
-    }
-    ok = write(step);
-    if (!ok) return fail(ok.error());
-    show_progress(session, "walk", step, options.steps);
-    if (session.context.cancel) return fail({Errc::kCancelled, "run: interrupted"});
-  }
-  ok = times.measure("write", [&] { return sinks.finish(); });
-  if (!ok) return fail(ok.error());
-  print_result(session, run_json(options, *crowd, totals, times),
-               run_text(options, *crowd, totals, times));
-  return totals.found.wall_entries + totals.found.overlaps == 0 ? kDone : kAnswerIsNo;
-}
-
 int run_file(Session& session, const CLI::App& command, const RunOptions& options) {
   // These are in the scenario file, or belong to worlds alone.
   for (const char* name :
        {"--avatars", "--dt", "--class", "--speed", "--goals", "--wander", "--near", "--also",
-        "--radius", "--labels", "--zones", "--search-memory"}) {
+        "--radius", "--labels", "--zones", "--search-memory", "--set", "--order"}) {
     if (command.count(name) == 0) continue;
     return fail({Errc::kBadConfig,
                  fmt::format("{} goes with a world; write it into {}", name, options.world)});
@@ -218,13 +152,37 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
 // Fails if an option of avatars with goals stands beside --wander.
 Result<void> check_wander(const CLI::App& command) {
   for (const char* name :
-       {"--goals", "--near", "--also", "--radius", "--labels", "--zones", "--search-memory",
-        "--model", "--full-speed", "--ignore-jams", "--pushing"}) {
+       {"--goals", "--near", "--radius", "--labels", "--zones", "--search-memory", "--model",
+        "--set", "--order", "--full-speed", "--ignore-jams", "--pushing"}) {
     if (command.count(name) == 0) continue;
     return Error{Errc::kBadConfig,
                  fmt::format("{} is for avatars with goals; leave out --wander", name)};
   }
   return {};
+}
+
+WanderRun wander_run(const RunOptions& options, std::vector<AvatarGroup> also) {
+  return {.world = options.world,
+          .class_name = options.class_name,
+          .also = std::move(also),
+          .config = options.config,
+          .steps = options.steps,
+          .check_every = options.check_every,
+          .sinks = options.sinks};
+}
+
+// --wander on slices; everything but the classes as on a world.
+int run_slices(Session& session, const CLI::App& command, RunOptions& options) {
+  if (!options.wander) {
+    return fail(
+        {Errc::kBadConfig,
+         options.world + ": on slices avatars have no goals; add --wander, or bake a world"});
+  }
+  if (auto fits = check_wander(command); !fits) return fail(fits.error());
+  const auto also = read_groups(options.also);
+  if (!also) return fail(also.error());
+  if (options.check_every == 0) options.check_every = std::max<uint64_t>(1, options.steps / 10);
+  return run_slice_wanderers(session, wander_run(options, *also));
 }
 
 int run(Session& session, RunOptions& options) {
@@ -237,8 +195,10 @@ int run(Session& session, RunOptions& options) {
   if (options.check_every == 0) options.check_every = std::max<uint64_t>(1, options.steps / 10);
   options.crowd.steps = options.steps;
   options.crowd.check_every = options.check_every;
-  return options.wander ? run_wanderers(session, *world, options, times)
-                        : run_with_goals(session, *world, options, times);
+  if (!options.wander) return run_with_goals(session, *world, options, times);
+  const auto also = read_groups(options.also);
+  if (!also) return fail(also.error());
+  return run_wanderers(session, *world, wander_run(options, *also), times);
 }
 
 }  // namespace
@@ -250,9 +210,11 @@ void add_run(CLI::App& parser, Session& session) {
                   "throng run garage.throng --avatars 200 --steps 50 --trajectories walk.csv");
   const auto options = std::make_shared<RunOptions>();
   WanderConfig& config = options->config;
-  command->add_option("world", options->world, "World folder, or a scenario file")
+  command
+      ->add_option("world", options->world,
+                   "World folder, a scenario file, or, with --wander, a file of slices")
       ->required()
-      ->type_name("WORLD|SCENARIO.toml");
+      ->type_name("WORLD|SCENARIO.toml|FILE.slices");
   command->add_option("--avatars", config.avatars, "How many")->capture_default_str();
   command->add_option("--steps", options->steps, "How many steps")->capture_default_str();
   command->add_option("--dt", config.dt, "Length of a step [s]")->capture_default_str();
@@ -284,6 +246,15 @@ void add_run(CLI::App& parser, Session& session) {
       ->excludes(labels);
   add_search_memory(*command, options->crowd.config.search_bytes);
   add_model(*command, options->crowd.config.model);
+  command
+      ->add_option("--set", options->set,
+                   "Of the model caacd: its Mass/MaxSpeed/MaxForce (2.0/0.4/0.06, its best)")
+      ->type_name("M/V/F");
+  command
+      ->add_option("--order", options->order,
+                   "Of the model caacd, most urgent: the threat that comes first (time), or "
+                   "collisions before critical threats before alerts (state)")
+      ->type_name("time|state");
   command->add_flag("--full-speed", options->full_speed,
                     "Stairs and slopes slow no avatar; without it they do");
   command->add_flag("--ignore-jams", options->ignore_jams,
@@ -316,6 +287,10 @@ void add_run(CLI::App& parser, Session& session) {
       if (path->empty()) continue;
       const std::string what = name;
       session.exit_code = fail({Errc::kBadConfig, what + " goes with a scenario file"});
+      return;
+    }
+    if (is_slice_file(options->world)) {
+      session.exit_code = run_slices(session, *command, *options);
       return;
     }
     const Result<void> fits = options->wander ? check_wander(*command) : Result<void>{};

@@ -2,41 +2,29 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "command.h"
 #include "sources.h"
 #include "throng/papers.h"
 #include "throng/picture.h"
 
-// throng slices: height slices of a model as in [ML06], for comparison.
+// throng slices: height slices of a model as in [ML06], to save, open, look at, and walk on.
 namespace throng::app {
 namespace {
 
 struct SlicesOptions {
   SourceOptions sources;
   std::string images;
+  std::string output;
   SliceConfig config;
 };
 
-// Bytes of the kept slices as [ML06] section 3.3 stores them: depths below the slice's height, 16
-// bits a cell where the deepest is at most 65.534 m (65535 mm stands for an empty cell), else 32.
-uint64_t stored_bytes(const SliceSet& set) {
-  constexpr int32_t kMaxDepth = 65534;
-  uint64_t bytes = 0;
-  for (const Slice& slice : set.kept) {
-    const bool fits = std::all_of(slice.surface.begin(), slice.surface.end(), [&](int32_t value) {
-      return value == set.far_plane || slice.height - value <= kMaxDepth;
-    });
-    bytes += slice.surface.size() * (fits ? 2 : 4);
-  }
-  return bytes;
-}
-
-Result<void> write_images(const SliceSet& set, const std::string& folder) {
+Result<void> write_images(const DepthSlices& set, const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
@@ -44,14 +32,66 @@ Result<void> write_images(const SliceSet& set, const std::string& folder) {
                  fmt::format("{}: cannot make this folder: {}; give --images another one", folder,
                              error.message())};
   }
-  for (size_t i = 0; i < set.kept.size(); ++i) {
+  for (size_t i = 0; i < set.slices.size(); ++i) {
     const std::string name = fmt::format("slice_{:03}.png", i);
     if (auto done = write_png(draw_slice(set, i), folder + "/" + name); !done) return done.error();
   }
   return {};
 }
 
-int slices(Session& session, const SlicesOptions& options) {
+// Lists the slices; `json` and `line` say how they came about.
+int print_slices(Session& session, const SlicesOptions& options, const DepthSlices& set, Json json,
+                 const std::string& line) {
+  if (!options.images.empty()) {
+    if (auto done = write_images(set, options.images); !done) return fail(done.error());
+  }
+  if (!options.output.empty()) {
+    if (auto done = save_slices(set, options.output); !done) return fail(done.error());
+  }
+  Json heights = Json::array();
+  std::string listed;
+  for (const DepthSlice& slice : set.slices) {
+    heights.push_back(slice.height / 1000.0);
+    listed += fmt::format(" {:.3f}", slice.height / 1000.0);
+  }
+  json.update({{"avatar_height", set.avatar_height / 1000.0},
+               {"resolution", set.resolution / 1000.0},
+               {"cell", set.cell},
+               {"width", set.width},
+               {"depth", set.depth},
+               {"taken", set.taken},
+               {"kept", set.slices.size() - static_cast<size_t>(set.extra)},
+               {"extra", set.extra},
+               {"heights", heights},
+               {"bytes", set.bytes()},
+               {"peak_bytes", peak_memory()}});
+  print_result(session, json,
+               fmt::format("{} slices taken, {} kept{}, {} in {} x {} cells{}\ncut at{} m\n",
+                           set.taken, set.slices.size() - static_cast<size_t>(set.extra),
+                           set.extra > 0 ? fmt::format(" and {} more for their depth", set.extra)
+                                         : std::string(),
+                           human_bytes(set.bytes()), set.width, set.depth, line, listed));
+  return kDone;
+}
+
+// Opens what -o wrote.
+int open_slices(Session& session, const CLI::App& command, const SlicesOptions& options) {
+  const std::string& file = options.sources.files.front();
+  for (const char* name :
+       {"--avatar-height", "--resolution", "--cell", "--up", "--scale", "--scene", "--output"}) {
+    if (command.count(name) == 0) continue;
+    return fail({Errc::kBadConfig,
+                 fmt::format("{}: {} is for models; these slices are already cut", file, name)});
+  }
+  const Result<DepthSlices> set = load_slices(file);
+  if (!set) return fail(set.error());
+  return print_slices(session, options, *set, {{"file", file}}, "");
+}
+
+int slices(Session& session, const CLI::App& command, const SlicesOptions& options) {
+  const std::vector<std::string>& files = options.sources.files;
+  if (files.size() == 1 && is_slice_file(files.front()))
+    return open_slices(session, command, options);
   const Result<Scene> scene = read_sources(options.sources, session.context);
   if (!scene) return fail(scene.error());
   const auto start = std::chrono::steady_clock::now();
@@ -59,41 +99,19 @@ int slices(Session& session, const SlicesOptions& options) {
   if (!set) return fail(set.error());
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (!options.images.empty()) {
-    if (auto done = write_images(*set, options.images); !done) return fail(done.error());
-  }
-
-  Json heights = Json::array();
-  std::string listed;
-  for (const Slice& slice : set->kept) {
-    heights.push_back(slice.height / 1000.0);
-    listed += fmt::format(" {:.3f}", slice.height / 1000.0);
-  }
   const Json json = {{"triangles", scene->triangles.size()},
                      {"import", report_json(scene->report)},
-                     {"avatar_height", options.config.avatar_height},
-                     {"resolution", options.config.resolution},
-                     {"cell", options.config.cell},
-                     {"width", set->width},
-                     {"depth", set->depth},
-                     {"taken", set->taken},
-                     {"kept", set->kept.size()},
-                     {"heights", heights},
-                     {"bytes", stored_bytes(*set)},
-                     {"seconds", seconds},
-                     {"peak_bytes", peak_memory()}};
-  print_result(session, json,
-               fmt::format("{} slices taken, {} kept, {} in {} x {} cells, {:.3f} s\nkept at{} m\n",
-                           set->taken, set->kept.size(), human_bytes(stored_bytes(*set)),
-                           set->width, set->depth, seconds, listed));
-  return kDone;
+                     {"seconds", seconds}};
+  return print_slices(session, options, store_depths(*set), json,
+                      fmt::format(", {:.3f} s", seconds));
 }
 
 }  // namespace
 
 void add_slices(CLI::App& parser, Session& session) {
   CLI::App* command = add_command(parser, session, "slices", "Cut models into height slices",
-                                  "throng slices builtin:garage --images slices");
+                                  "throng slices builtin:garage -o garage.slices --images slices\n"
+                                  "throng run garage.slices --wander --steps 50");
   const auto options = std::make_shared<SlicesOptions>();
   add_source_options(command, options->sources);
   SliceConfig& config = options->config;
@@ -104,8 +122,11 @@ void add_slices(CLI::App& parser, Session& session) {
   command->add_option("--cell", config.cell, "Side of a cell [m]")->capture_default_str();
   command->add_option("--images", options->images, "Folder for a picture of each kept slice")
       ->type_name("DIR");
+  add_output(*command, session, "-o,--output", options->output, "File of slices to write")
+      ->type_name("FILE.slices");
   add_threads(*command, config.workers);
-  command->callback([&session, options] { session.exit_code = slices(session, *options); });
+  command->callback(
+      [&session, options, command] { session.exit_code = slices(session, *command, *options); });
 }
 
 }  // namespace throng::app

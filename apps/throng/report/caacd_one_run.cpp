@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <vector>
 
 #include "output_file.h"
@@ -31,6 +32,27 @@ const char* word_for(Activity activity) {
   return "";
 }
 
+const char* word_for(State state) {
+  switch (state) {
+    case State::kTolerable:
+      return "tolerable";
+    case State::kAlert:
+      return "alert";
+    case State::kCritical:
+      return "critical";
+    case State::kCollision:
+      return "collision";
+  }
+  return "";
+}
+
+// The greatest threat: its state, and which avatar or obstacle it is.
+std::string text_of(const Threat& threat) {
+  if (threat.state == State::kTolerable) return std::string(word_for(threat.state)) + ",";
+  return fmt::format("{},{}", word_for(threat.state),
+                     threat.id == Threat::kObstacle ? "obstacle" : std::to_string(threat.id));
+}
+
 // What changed the velocity since the frame before: a_t and a_n of [CAACD] II.
 Curvilinear change_of(const Body& before, const Body& now, double dt) {
   return curvilinear(before.forward, (now.velocity - before.velocity) * (1 / dt));
@@ -41,10 +63,10 @@ std::string rows(const Simulation& simulation, std::span<const Body> before, dou
   for (size_t i = 0; i < simulation.bodies().size(); ++i) {
     const Body& b = simulation.bodies()[i];
     const Curvilinear change = change_of(before[i], b, dt);
-    text += fmt::format("{},{},{:.4f},{:.4f},{:.5f},{:.5f},{},{:.5f},{:.5f}\n",
+    text += fmt::format("{},{},{:.4f},{:.4f},{:.5f},{:.5f},{},{:.5f},{:.5f},{}\n",
                         simulation.counts().frames, b.id, b.position.x, b.position.z, b.velocity.x,
                         b.velocity.z, word_for(simulation.activities()[i]), change.tangential,
-                        change.centripetal);
+                        change.centripetal, text_of(simulation.threats()[i]));
   }
   return text;
 }
@@ -73,7 +95,7 @@ int run_once(Session& session, const StudyConfig& study, const OneRunFiles& file
   OutputFile record;
   if (!files.record.empty()) {
     if (auto ok = record.open(files.record); !ok) return fail(ok.error());
-    record.write("frame,id,x,z,vx,vz,activity,tangential,centripetal\n");
+    record.write("frame,id,x,z,vx,vz,activity,tangential,centripetal,state,threat\n");
     record.write(rows(*run, run->bodies(), study.dt));
   }
   std::vector<std::vector<Vec3d>> trails(run->bodies().size());

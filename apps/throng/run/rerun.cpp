@@ -26,6 +26,40 @@ Result<void> need(const Json& settings, std::initializer_list<const char*> keys,
   return {};
 }
 
+// "also": [["giant", 5], ...].
+Result<std::vector<std::pair<std::string, uint32_t>>> groups_of(const Json& settings) {
+  std::vector<std::pair<std::string, uint32_t>> groups;
+  for (const Json& group : settings.value("also", Json::array())) {
+    const bool is_right = group.is_array() && group.size() == 2 && group[0].is_string() &&
+                          group[1].is_number_unsigned();
+    if (!is_right) {
+      return Error{Errc::kBadFile,
+                   "the recording's settings have no usable 'also'; record the run "
+                   "again with this program"};
+    }
+    groups.emplace_back(group[0], group[1]);
+  }
+  return groups;
+}
+
+// "set": [mass, max speed, max force], and "by_state"; older recordings have neither.
+Result<void> read_curves(const Json& settings, CurvilinearTuning& tuning) {
+  if (!settings.contains("set")) return {};
+  if (auto ok = need(settings, {"by_state"}, [](const Json& j) { return j.is_boolean(); }); !ok)
+    return ok;
+  auto ok = need(settings, {"set"}, [](const Json& j) {
+    return j.is_array() && j.size() == 3 && j[0].is_number() && j[1].is_number() &&
+           j[2].is_number();
+  });
+  if (!ok) return ok;
+  const Json& set = settings.at("set");
+  tuning = {.mass = set[0],
+            .max_speed = set[1],
+            .max_force = set[2],
+            .by_state = settings.at("by_state")};
+  return {};
+}
+
 Result<Rerun> rerun_wanderers(const Json& settings, const World& world, int32_t workers) {
   auto ok =
       need(settings, {"avatars", "seed"}, [](const Json& j) { return j.is_number_unsigned(); });
@@ -41,6 +75,13 @@ Result<Rerun> rerun_wanderers(const Json& settings, const World& world, int32_t 
   const Result<int32_t> avatar_class = class_named(world, settings.at("class"));
   if (!avatar_class) return avatar_class.error();
   config.avatar_class = *avatar_class;
+  const auto also = groups_of(settings);
+  if (!also) return also.error();
+  for (const auto& [name, avatars] : *also) {
+    const Result<int32_t> other = class_named(world, name);
+    if (!other) return other.error();
+    config.also.push_back({*other, avatars});
+  }
   Result<Wanderers> made = Wanderers::create(world, config);
   if (!made) return made.error();
   const auto crowd = std::make_shared<Wanderers>(std::move(*made));
@@ -80,16 +121,9 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
   run.goals_text = settings.at("goals_text");
   run.near = settings.at("near");
   run.avatars = settings.at("avatars");
-  for (const Json& group : settings.value("also", Json::array())) {
-    const bool is_right = group.is_array() && group.size() == 2 && group[0].is_string() &&
-                          group[1].is_number_unsigned();
-    if (!is_right) {
-      return Error{Errc::kBadFile,
-                   "the recording's settings have no usable 'also'; record the run "
-                   "again with this program"};
-    }
-    run.also.emplace_back(group[0], group[1]);
-  }
+  auto also = groups_of(settings);
+  if (!also) return also.error();
+  run.also = *std::move(also);
   run.speed = settings.at("speed");
   run.radius = settings.at("radius");
   run.config.dt = settings.at("dt");
@@ -104,6 +138,7 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
   // The same: they pushed, and accelerated without a limit.
   run.config.tuning.queues = !settings.value("pushing", true);
   run.config.tuning.acceleration = settings.value("acceleration", 0.0);
+  if (auto set = read_curves(settings, run.config.tuning.curvilinear); !set) return set.error();
   run.config.workers = workers;
   const auto model = find_steering_model(settings.value("model", name_of(run.config.model)));
   if (!model) {
@@ -159,15 +194,17 @@ constexpr Model kModels[] = {{kWanderersModel, rerun_wanderers},
 
 }  // namespace
 
-Json wanderers_settings(const WanderConfig& config, const std::string& class_name) {
-  return {{"avatars", config.avatars},
-          {"class", class_name},
-          {"dt", config.dt},
-          {"speed", config.speed},
-          {"seed", config.seed}};
+Json wanderers_settings(const WanderRun& run) {
+  Json also = Json::array();
+  for (const AvatarGroup& group : run.also)
+    also.push_back(Json::array({group.class_name, group.avatars}));
+  return {{"avatars", run.config.avatars}, {"also", also},
+          {"class", run.class_name},       {"dt", run.config.dt},
+          {"speed", run.config.speed},     {"seed", run.config.seed}};
 }
 
 Json crowd_settings(const CrowdRun& run) {
+  const CurvilinearTuning& curves = run.config.tuning.curvilinear;
   Json also = Json::array();
   for (const auto& [name, count] : run.also) also.push_back(Json::array({name, count}));
   return {{"avatars", run.avatars},
@@ -187,7 +224,9 @@ Json crowd_settings(const CrowdRun& run) {
           {"slow_on_slopes", run.config.slow_on_slopes},
           {"avoid_jams", run.config.avoid_jams},
           {"pushing", !run.config.tuning.queues},
-          {"acceleration", run.config.tuning.acceleration}};
+          {"acceleration", run.config.tuning.acceleration},
+          {"set", Json::array({curves.mass, curves.max_speed, curves.max_force})},
+          {"by_state", curves.by_state}};
 }
 
 Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t workers) {

@@ -7,7 +7,7 @@
 
 #include "command.h"
 #include "run/run_crowd.h"
-#include "throng/papers.h"
+#include "run/run_wanderers.h"
 #include "throng/recording.h"
 #include "throng/world.h"
 
@@ -22,7 +22,7 @@ struct Rerun {
 
 inline constexpr const char* kWanderersModel = "wanderers";
 /// What a recording of wanderers keeps. Threads never change a result.
-[[nodiscard]] Json wanderers_settings(const WanderConfig& config, const std::string& class_name);
+[[nodiscard]] Json wanderers_settings(const WanderRun& run);
 
 inline constexpr const char* kCrowdModel = "crowd";
 [[nodiscard]] Json crowd_settings(const CrowdRun& run);

@@ -73,6 +73,7 @@ struct Totals {
 
 void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Totals& t,
            const RunTimes& times) {
+  const CurvilinearTuning& curves = run.config.tuning.curvilinear;
   const auto steps = std::max<double>(1, static_cast<double>(times.steps()));
   Json json = {{"world", run.world_name},
                {"class", run.class_name},
@@ -82,6 +83,8 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
                {"avoid_jams", run.config.avoid_jams},
                {"pushing", !run.config.tuning.queues},
                {"acceleration", run.config.tuning.acceleration},
+               {"set", Json::array({curves.mass, curves.max_speed, curves.max_force})},
+               {"by_state", curves.by_state},
                {"avatars", crowd.size()},
                {"steps", times.steps()},
                {"dt", run.config.dt},

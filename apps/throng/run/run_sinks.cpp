@@ -3,6 +3,7 @@
 #include "run/run_sinks.h"
 
 #include <iterator>
+#include <utility>
 
 #include "throng/recording.h"
 
@@ -11,13 +12,18 @@ namespace throng::app {
 
 Result<void> Sinks::open(const World& world, const RecordingInfo& run) {
   leans_ = run.leans;
-  for (const AvatarClass& avatar : world.summary().classes) class_names_.push_back(avatar.name);
-  if (!options_.trajectories.empty()) {
-    if (auto ok = trajectories_.open(options_.trajectories); !ok) return ok;
-    trajectories_.write(fmt::format("{}{}\n", kCsvColumns, leans_ ? kCsvUpColumns : ""));
-  }
-  if (options_.record.empty()) return {};
+  std::vector<std::string> names;
+  for (const AvatarClass& avatar : world.summary().classes) names.push_back(avatar.name);
+  if (auto ok = open(std::move(names)); !ok || options_.record.empty()) return ok;
   return recorder_.open(options_.record, run, world);
+}
+
+Result<void> Sinks::open(std::vector<std::string> class_names) {
+  class_names_ = std::move(class_names);
+  if (options_.trajectories.empty()) return {};
+  if (auto ok = trajectories_.open(options_.trajectories); !ok) return ok;
+  trajectories_.write(fmt::format("{}{}\n", kCsvColumns, leans_ ? kCsvUpColumns : ""));
+  return {};
 }
 
 void Sinks::write_trajectories(uint64_t step) {

@@ -28,6 +28,8 @@ class Sinks {
 
   /// `run`: all that is not in the world; its settings are all that rerun.h needs to repeat it.
   Result<void> open(const World& world, const RecordingInfo& run);
+  /// For a crowd that walks in no world: trajectories alone. `class_names`: by AvatarState's index.
+  Result<void> open(std::vector<std::string> class_names);
   /// Between frames, the recorder gets the hash alone.
   template <class Avatars>
   Result<void> add(uint64_t step, const Avatars& avatars) {

@@ -11,7 +11,7 @@ namespace throng::crowd {
 
 CollisionMap::CollisionMap(int32_t width, int32_t depth, PixelGrid grid, int32_t low, int32_t high,
                            int32_t body_height, Pages pages)
-    : grid_(grid), low_(low - kSlab), body_height_(body_height) {
+    : grid_(grid), low_(low - kSlab) {
   stride_ = static_cast<uint32_t>(width / grid.cells()) + 3;
   plane_size_ = uint64_t{stride_} * (static_cast<uint32_t>(depth / grid.cells()) + 3);
   const int32_t slab = std::max(kSlab, body_height / 48);

@@ -34,12 +34,14 @@ class CollisionMap {
     friend bool operator==(const Mark&, const Mark&) = default;
   };
 
-  /// A grid of width x depth cells for heights from `low` to `high`. [mm]
+  /// A grid of width x depth cells for feet from `low` to `high`, and bodies up to `body_height`.
+  /// [mm]
   CollisionMap(int32_t width, int32_t depth, PixelGrid grid, int32_t low, int32_t high,
                int32_t body_height, Pages pages = Pages::kSmall);
 
-  [[nodiscard]] Mark mark(world::GroundPoint p, int32_t feet) const {
-    return {pixels().number(grid_.pixel(p.cell_x()), grid_.pixel(p.cell_z())), slices(feet)};
+  [[nodiscard]] Mark mark(world::GroundPoint p, int32_t feet, int32_t body_height) const {
+    return {pixels().number(grid_.pixel(p.cell_x()), grid_.pixel(p.cell_z())),
+            slices(feet, body_height)};
   }
   /// How the pixels of the map are numbered, as a value that a loop keeps in registers.
   struct Pixels {
@@ -50,9 +52,9 @@ class CollisionMap {
     }
   };
   [[nodiscard]] Pixels pixels() const { return {grid_, stride_}; }
-  [[nodiscard]] Slices slices(int32_t feet) const {
+  [[nodiscard]] Slices slices(int32_t feet, int32_t body_height) const {
     const uint32_t first = slice(static_cast<uint32_t>(feet - low_));
-    const uint32_t last = slice(static_cast<uint32_t>(feet - low_ + body_height_));
+    const uint32_t last = slice(static_cast<uint32_t>(feet - low_ + body_height));
     const uint32_t begin = first % 64, count = last - first + 1;
     const uint64_t ones = ~uint64_t{0} >> (64 - count);
     return {first / 64, ones << begin, begin + count > 64 ? ones >> (64 - begin) : 0};
@@ -86,7 +88,7 @@ class CollisionMap {
   }
   /// Prefetches the words that is_free will read around a point.
   void prefetch(world::GroundPoint p, int32_t feet) const {
-    const Mark m = mark(p, feet);
+    const Mark m = mark(p, feet, 0);
     const uint64_t* w = &word(m.slices.plane, m.pixel);
     throng::prefetch(w - stride_);
     throng::prefetch(w);
@@ -146,7 +148,6 @@ class CollisionMap {
   uint32_t stride_;      // pixels a row, with a rim of one
   uint64_t plane_size_;
   int32_t low_;
-  int32_t body_height_;
   std::array<Ring, 9> rings_{};
   HugeArray<uint64_t> words_;
 };

@@ -60,7 +60,8 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
   }
   situation.has_walls = false;
   worker.waits = false;
-  situation.preferred = steer::preferred_velocity(config_.model, view, units_of(body).dt);
+  situation.preferred =
+      steer::preferred_velocity(config_.model, view, units_of(body).dt, config_.curves);
 }
 
 }  // namespace throng::crowd

@@ -26,6 +26,7 @@ struct MoveConfig {
   uint64_t seed = 1;
   int32_t workers = 0;
   SteeringModel model = SteeringModel::kSampled;  ///< Of walkers.
+  caacd::Model curves = {};                       ///< Of kCurvilinear.
   steer::SampledSettings steering = {};
   steer::DeadlockAvoidance deadlock_settings = {};
   steer::LaneSettings lanes = {};

@@ -11,9 +11,9 @@
 #include "render/text.h"
 #include "throng/papers.h"
 
-// Draws a slice as in [ML06] figures 9 and 10: darker is higher, the contrast stretched, the far
-// plane white. Cells become blocks of whole pixels, or share a pixel that shows the highest of
-// them: a wall one cell wide must stay visible.
+// Draws a slice as in [ML06] figures 9 and 10: darker is higher, the contrast stretched, cells
+// without a surface white. Cells become blocks of whole pixels, or share a pixel that shows the
+// highest of them: a wall one cell wide must stay visible.
 namespace throng {
 namespace {
 
@@ -27,13 +27,13 @@ uint8_t grey(int32_t value, int32_t low, int32_t high) {
 
 }  // namespace
 
-Image draw_slice(const SliceSet& slices, size_t index) {
-  const Slice& slice = slices.kept[index];
+Image draw_slice(const DepthSlices& slices, size_t index) {
+  const DepthSlice& slice = slices.slices[index];
   int32_t low = INT32_MAX, high = INT32_MIN;
-  for (const int32_t value : slice.surface) {
-    if (value == slices.far_plane) continue;
-    low = std::min(low, value);
-    high = std::max(high, value);
+  for (const uint16_t depth : slice.depths) {
+    if (depth == DepthSlice::kNone) continue;
+    low = std::min(low, slice.height - depth);
+    high = std::max(high, slice.height - depth);
   }
   const int32_t longest = std::max(slices.width, slices.depth);
   const int32_t block = std::clamp(kMapSide / longest, 1, 64);                // pixels a cell
@@ -46,25 +46,26 @@ Image draw_slice(const SliceSet& slices, size_t index) {
   const int32_t width = std::max(map_width + 2 * kMargin + kBar, 420);
   render::Canvas canvas(width, std::max(map_height, 160) + kHead + kMargin + 40, render::kPaper);
   render::draw_text(canvas, {kMargin, 28},
-                    fmt::format("Slice {} of {}, cut at {:.3f} m", index + 1, slices.kept.size(),
+                    fmt::format("Slice {} of {}, cut at {:.3f} m", index + 1, slices.slices.size(),
                                 slice.height / 1000.0),
                     {.size = 13, .bold = true});
-  render::draw_text(canvas, {kMargin, 47},
-                    "highest surface below the cut: darker is higher, white is nothing",
-                    {.size = 8, .colour = render::kFaintInk});
+  render::draw_text(
+      canvas, {kMargin, 47},
+      "highest surface within 65.5 m below the cut: darker is higher, white is nothing",
+      {.size = 8, .colour = render::kFaintInk});
 
   for (int32_t row = 0; row < rows; ++row) {
     for (int32_t column = 0; column < columns; ++column) {
-      int32_t value = slices.far_plane;
+      uint16_t depth = DepthSlice::kNone;  // the smallest
       for (int32_t z = row * share; z < std::min((row + 1) * share, slices.depth); ++z) {
         for (int32_t x = column * share; x < std::min((column + 1) * share, slices.width); ++x) {
           const size_t cell =
               static_cast<size_t>(z) * static_cast<size_t>(slices.width) + static_cast<size_t>(x);
-          value = std::max(value, slice.surface[cell]);
+          depth = std::min(depth, slice.depths[cell]);
         }
       }
-      if (value == slices.far_plane) continue;
-      const uint8_t g = grey(value, low, high);
+      if (depth == DepthSlice::kNone) continue;
+      const uint8_t g = grey(slice.height - depth, low, high);
       const double x = kMargin + column * block, y = kHead + row * block;
       canvas.fill({x, y, static_cast<double>(block), static_cast<double>(block)}, {g, g, g});
     }

@@ -147,6 +147,8 @@ class Sweep {
     set_.width = config.width;
     set_.depth = config.depth;
     set_.far_plane = config.far_plane;
+    set_.avatar_height = config.avatar_height;
+    set_.resolution = config.resolution;
   }
 
   Result<SliceSet> run(Context& context) {

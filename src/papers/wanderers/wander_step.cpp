@@ -243,7 +243,7 @@ void Group::prefetch_pixels() {
   const crowd::CollisionMap& map = *in_.map;
   for (; prefetched_ < proposals_size_; ++prefetched_) {
     const Proposal& c = proposals_[prefetched_];
-    slices_[prefetched_] = map.slices(avatars_[c.n].y);
+    slices_[prefetched_] = map.slices(avatars_[c.n].y, in_.body_mm);
     map.prefetch(slices_[prefetched_], c.from, c.direction_index);
   }
 }
@@ -276,10 +276,11 @@ struct LoneLevel {
 };
 
 // Puts the body at `to` if no other is there.
-bool try_move(crowd::CollisionMap& map, crowd::Avatar& a, world::GroundPoint to, uint32_t level,
+bool try_move(const StepInput& in, crowd::Avatar& a, world::GroundPoint to, uint32_t level,
               int32_t y) {
-  const crowd::CollisionMap::Mark old_mark = map.mark(a.point(), a.y);
-  const crowd::CollisionMap::Mark mark = map.mark(to, y);
+  crowd::CollisionMap& map = *in.map;
+  const crowd::CollisionMap::Mark old_mark = map.mark(a.point(), a.y, in.body_mm);
+  const crowd::CollisionMap::Mark mark = map.mark(to, y, in.body_mm);
   if (!(mark == old_mark)) {
     map.clear(old_mark);
     if (!map.is_free(mark)) {
@@ -336,7 +337,7 @@ void Group::climb(List& blocked) {
   for (const uint16_t n : slopes_.span()) {
     crowd::Avatar& a = avatars_[n];
     const world::GroundPoint to = target(a);
-    blocked.add_if(!try_move(*in_.map, a, to, a.level, in_.ground->feet(a.level, to)), n);
+    blocked.add_if(!try_move(in_, a, to, a.level, in_.ground->feet(a.level, to)), n);
   }
 }
 
@@ -353,7 +354,7 @@ void Group::walk_on(List& blocked) {
                              ? world::walk(LoneLevel{here.legal}, level, from, to, in_.step_mm)
                              : to.x >= 0 && to.z >= 0 && to.x < in_.units_x && to.z < in_.units_z &&
                                    walk(ground, level, from, to, in_.step_mm);
-    const bool moved = is_open && try_move(*in_.map, a, to, level, ground.feet(level, to));
+    const bool moved = is_open && try_move(in_, a, to, level, ground.feet(level, to));
     walls_ += !is_open;
     blocked.add_if(!moved, n);
   }

@@ -23,6 +23,7 @@ struct StepInput {
   uint64_t seed = 0;
   uint64_t step = 0;  // number of the sub-step: with seed and id, the random stream
   int32_t step_mm = 0;
+  int32_t body_mm = 0;               // height of the bodies
   bool is_short = false;             // no sub-step is longer than a block of LevelLine
   int32_t units_x = 0, units_z = 0;  // extent of the world
 };

@@ -121,8 +121,8 @@ struct CrowdTuning {
   /// An avatar that makes no progress tries a growing detour angle.
   bool deadlock_avoidance = true;
   /// Avatars on foot queue before narrow places and rest at their goals, instead of pushing and
-  /// circling: docs/design/008-engine.md, "Queues". Only with SteeringModel::kSampled. Doors of
-  /// less than 0.8 m can still jam. Takes 80 bytes an avatar.
+  /// circling: docs/design/008-engine.md, "Queues". Only with SteeringModel::kSampled. Takes 80
+  /// bytes an avatar.
   bool queues = true;
   /// Most change of velocity of an avatar on foot with a goal; to stop before others, and to keep
   /// to a lower speed at once, are exempt. It brakes before its goal. 0: no limit. Only with

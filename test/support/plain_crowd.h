@@ -109,6 +109,7 @@ class PlainCrowd {
   [[nodiscard]] float gap(uint32_t i, const Near& n) const;
   [[nodiscard]] bool pushes(const PlainBody& body) const;
   [[nodiscard]] bool is_in_stream(uint32_t i) const;
+  [[nodiscard]] bool takes_turn(uint32_t i, uint32_t asker, const crowd::QueueOrder& first) const;
   [[nodiscard]] bool has_turn(uint32_t i) const;
   [[nodiscard]] bool can_move(uint32_t i, steer::Plane velocity) const;
   [[nodiscard]] bool is_head(uint32_t i) const;

@@ -107,6 +107,22 @@ bool PlainCrowd::has_turn(uint32_t i) const {
          random_u64(config_.seed ^ 0x7ead, i, steps_ / 8) % 8 == 0;
 }
 
+// One that the first of a queue asks, while both stand, is the first itself in odd turns.
+bool PlainCrowd::takes_turn(uint32_t i, uint32_t asker, const QueueOrder& first) const {
+  const PlainBody& body = bodies_[i];
+  const long steps = std::max(std::lround(config_.queue.turn_time / config_.units.dt), 1L);
+  const bool is_odd = static_cast<long>(steps_) / steps % 2 == 1;
+  if (!is_odd || !queues(body)) return false;
+  if (asker != UINT32_MAX && first.left < 0) return false;  // it is another's turn
+  const bool had_turn = body.asks && body.request.order.slot == i && body.request.order.left < 0;
+  if (had_turn) return true;
+  if (asker == UINT32_MAX || first.slot != asker || !stands(body)) return false;
+  const Plane ahead = path_ahead(body);
+  if (first.beyond.x * ahead.x + first.beyond.z * ahead.z <= 0) return false;
+  return body.stood >= config_.queue.held_stands &&
+         bodies_[asker].stood >= config_.queue.held_stands;
+}
+
 bool PlainCrowd::is_head(uint32_t i) const {
   const PlainBody& body = bodies_[i];
   const bool asks_on = body.asks && body.request.order.slot == i &&
@@ -215,7 +231,7 @@ void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
       continue;
     }
     const QueueOrder& order = other.request.order;
-    if (!(order < own)) continue;
+    if (order.slot == i || !(order < own)) continue;
     // The shortest path that is left.
     if (asker != UINT32_MAX) {
       if (first.left < order.left) continue;
@@ -228,7 +244,8 @@ void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
     from = at;
     needs = static_cast<float>(body.radius + other.radius) * config_.units.unit;
   }
-  plan.makes_room = asker != UINT32_MAX;
+  const bool turn = takes_turn(i, asker, first);
+  plan.makes_room = asker != UINT32_MAX && !turn;
   const Plane ahead = path_ahead(body);
   const float size = size_of(ahead);
   if (plan.makes_room) {
@@ -244,6 +261,10 @@ void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
     if (plan.yields || !queues(body)) plan.away = aside_of(plan.away, from, asked, needs);
     plan.asks = true;
     plan.request = {first, plan.away};
+  } else if (turn) {
+    plan.asks = true;
+    plan.request = {own, size > 0 ? Plane{ahead.x / size, ahead.z / size} : Plane{1, 0}};
+    plan.request.order.left -= QueueOrder::kTurn;
   } else if (is_head(i) && !(may_rest(body) && is_goal_taken(i))) {
     plan.asks = true;
     plan.request = {own, size > 0 ? Plane{ahead.x / size, ahead.z / size} : Plane{1, 0}};

@@ -222,6 +222,20 @@ TEST(Motion, JamsAreMeasuredByTheSpeedAndTheRoutesThatChange) {
   EXPECT_EQ(result.passed(), speed >= 0.85);
 }
 
+// Two at the posts of a door of 0.65 or 0.7 m would hold each other for good.
+TEST(Motion, NarrowDoorsLeaveNoneBehind) {
+  for (const uint64_t seed : {1, 2, 3}) {
+    Context context;
+    const auto result = run_validation("motion.narrow", {.seed = seed, .workers = 2}, context);
+    ASSERT_TRUE(result) << result.error().message;
+    expect_no_faults(*result);
+    for (const ValidationMeasure& m : result->measures) {
+      if (!m.name.starts_with("left behind")) continue;
+      EXPECT_EQ(m.value, 0) << m.name << ", seed " << seed;
+    }
+  }
+}
+
 TEST(Motion, NarrowDoorsAreComparedWithRecordedPeople) {
   const ValidationResult result = run_brief("motion.narrow", 1);
   expect_no_faults(result);

@@ -309,6 +309,7 @@ class CrowdEngine {
                    const NeighbourGrid::Around& around, Worker& worker) const;
   [[nodiscard]] steer::Plane aside_of(const Body& body, steer::Plane away, steer::Plane from,
                                       steer::Plane asked, float room) const;
+  [[nodiscard]] bool takes_turn(const Body& body, uint32_t asker, const QueueOrder& first) const;
   [[nodiscard]] bool has_turn(const Body& body, std::span<const uint32_t> nearest) const;
   bool is_head(const Body& body, std::span<const uint32_t> nearest, Worker& worker) const;
   [[nodiscard]] static steer::Plane unless_left(const Worker& worker, steer::Plane velocity);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "core/random.h"
@@ -105,7 +106,7 @@ void CrowdEngine::query_queue(uint32_t i, std::span<const uint32_t> nearest,
     const auto key = [](const QueueOrder& order, uint32_t slot) {
       return std::tuple(order.left, order.slot, slot);
     };
-    if (!(request.order < own_order(body, worker))) continue;
+    if (request.order.slot == body.slot || !(request.order < own_order(body, worker))) continue;
     if (asker != UINT32_MAX && key(first, asker) < key(request.order, other.slot)) continue;
     first = request.order;
     asker = other.slot;
@@ -114,7 +115,11 @@ void CrowdEngine::query_queue(uint32_t i, std::span<const uint32_t> nearest,
     asked = request.ahead;
     by = j;
   }
-  if (asker != UINT32_MAX) {
+  if (takes_turn(body, asker, first)) {
+    QueueOrder order = own_order(body, worker);
+    order.left -= QueueOrder::kTurn;
+    worker.asks = RoomRequest{order, unit(path_ahead(body))};
+  } else if (asker != UINT32_MAX) {
     const Plane away = unit({-from.x, -from.z});
     worker.yields =
         queues(body) &&
@@ -149,6 +154,20 @@ Plane CrowdEngine::aside_of(const Body& body, Plane away, Plane from, Plane aske
     if (has_room(side)) return {side * right.x, side * right.z};
   }
   return away;
+}
+
+// A body and the head of a queue that asks it for room, both go the same direction and neither gets
+// on: they may hold each other, each at a post of a narrow door. For a while in every other one it is the first instead,
+// and the head makes room for it.
+bool CrowdEngine::takes_turn(const Body& body, uint32_t asker, const QueueOrder& first) const {
+  const auto steps =
+      static_cast<uint64_t>(std::max(std::lround(config_.queue.turn_time / config_.units.dt), 1L));
+  if (step_ / steps % 2 == 0 || !queues(body) || first.left < 0) return false;
+  const QueueOrder& last = requests_[(step_ + 1) % 2][body.slot].order;
+  if (body.asks && last.slot == body.slot && last.left < 0) return true;
+  return asker != UINT32_MAX && first.slot == asker && stands(body) &&
+         dot(first.beyond, path_beyond(body)) > 0 &&
+         std::min(progress_[body.slot].stood, progress_[asker].stood) >= config_.queue.held_stands;
 }
 
 // Bodies that have long stood, and of which none asks, may wait for each other in a cycle: each
@@ -314,7 +333,7 @@ bool CrowdEngine::has_sound_rows(const Body& body) const {
   return progress.stood >= 0 && progress.yields >= 0 && progress.stream >= 0 &&
          progress.rest <= Rest::kMadeRoom && progress.vain >= 0 &&
          body.at_rest == (progress.rest != Rest::kNo) && body.in_stream == (progress.stream > 0) &&
-         order.left >= 0 && is_sound(progress.onward) && is_sound(order.beyond) &&
+         order.left >= -QueueOrder::kTurn && is_sound(progress.onward) && is_sound(order.beyond) &&
          std::abs(request.ahead.x) <= 1.001f && std::abs(request.ahead.z) <= 1.001f;
 }
 

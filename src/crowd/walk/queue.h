@@ -28,11 +28,13 @@ struct QueueOrder {
   uint32_t slot = UINT32_MAX;  ///< None: behind all.
   Spot at, target;             ///< The body and its local target.
   steer::Plane beyond;         ///< From the body to its path beyond its local target. [m]
-  float left = 0;              ///< Length of the path that is left. [m]
+  float left = 0;  ///< Length of the path that is left; less kTurn: before all others. [m]
+  static constexpr float kTurn = 1e4f;
 
   friend bool operator<(const QueueOrder& a, const QueueOrder& b) {
     if (a.slot == UINT32_MAX || b.slot == UINT32_MAX) return a.slot < b.slot;
     float more = a.left - b.left;
+    if ((a.left < 0) != (b.left < 0)) return a.left < 0;
     if (a.beyond.x * b.beyond.x + a.beyond.z * b.beyond.z > 0) {
       more =
           (far(a.at, a.target) - far(b.at, a.target)) + (far(a.at, b.target) - far(b.at, b.target));
@@ -102,6 +104,8 @@ struct QueueSettings {
   float head_stands = 0.1f;  ///< The first of a queue asks after it has stood that long. [s]
   float asks_on = 0.5f;      ///< It asks on while it is slower, by its desired speed.
   float head_range = 0.4f;   ///< None that is ahead in the order lies before it within that. [m]
+  float held_stands = 1.5f;  ///< After that two at a narrow door hold each other, [s]
+  float turn_time = 0.5f;    ///< and are the first in turn for that long. [s]
   float turn_stands = 3;     ///< After that bodies of which none asks become the first in turn. [s]
   float touch_gap = 0.04f;   ///< Bodies this near touch. [m]
   float room_share = 0.2f;   ///< Speed of one that makes room, by its desired speed,

@@ -157,8 +157,8 @@ Plane CrowdEngine::aside_of(const Body& body, Plane away, Plane from, Plane aske
 }
 
 // A body and the head of a queue that asks it for room, both go the same direction and neither gets
-// on: they may hold each other, each at a post of a narrow door. For a while in every other one it is the first instead,
-// and the head makes room for it.
+// on: they may hold each other, each at a post of a narrow door. For a while in every other one it
+// is the first instead, and the head makes room for it.
 bool CrowdEngine::takes_turn(const Body& body, uint32_t asker, const QueueOrder& first) const {
   const auto steps =
       static_cast<uint64_t>(std::max(std::lround(config_.queue.turn_time / config_.units.dt), 1L));

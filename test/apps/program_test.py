@@ -325,7 +325,7 @@ class Program(ProgramCase):
             self.assertIn("all the same", check.stdout)
         self.assertEqual(len(hashes), 3)
         self.assert_refused(self.run_throng(*run, "--model", "orca"), "sampled, caacd or social-force")
-        for option in (("--model", "caacd"), ("--goals", "random"), ("--near", 5), ("--also", "adult:3"), ("--labels",)):
+        for option in (("--model", "caacd"), ("--goals", "random"), ("--near", 5), ("--set", "2/1/1"), ("--labels",)):
             self.assert_refused(self.run_throng("run", self.world, "--wander", *option), option[0], "--wander")
 
     def test_flyers_take_off_and_land_and_their_recording_is_repeated(self):
@@ -460,8 +460,8 @@ class Program(ProgramCase):
         self.assertEqual([n for n in names if n.startswith("rimea.")], [f"rimea.{k}" for k in range(1, 17)])
         self.assertEqual(sum(n.startswith("nist.") for n in names), 17)
         self.assertEqual(len(set(names)), len(names))
-        self.assertEqual({t["test"] for t in listed if t.get("in_work")}, {f"motion.{n}" for n in ("haste", "flow", "counterflow", "mazes", "jams")})
-        self.assertEqual(sum(n.startswith("motion.") for n in names), 11)
+        self.assertEqual({t["test"] for t in listed if t.get("in_work")}, {f"motion.{n}" for n in ("haste", "flow", "narrow", "counterflow", "mazes", "jams")})
+        self.assertEqual(sum(n.startswith("motion.") for n in names), 12)
         for test in listed:
             self.assertTrue(test["title"] and test["source"] and (test.get("lacks") or test["method"]), test)
         cheap = ("rimea.1", "rimea.2", "rimea.3", "rimea.5", "rimea.6", "rimea.10", "nist.2.1", "nist.2.2", "nist.2.3",
@@ -698,6 +698,10 @@ class Program(ProgramCase):
         done = subprocess.run([PROGRAM, "picture", self.world, *camera], cwd=self.path, capture_output=True, text=True, check=False, env=nothing)
         self.assert_refused(done, "EGL", "install")
         self.assertFalse((self.path / "x.png").exists())
+        (self.path / "walk.toml").write_text("builtin = { name = \"cube\" }\nseconds = 1\n")
+        for option in ("--only-seen", "--coarse-far"):
+            done = self.run_throng("film", "walk.toml", option, "--camera", "30,12,40,20,2,20", "-o", "x.mp4")
+            self.assert_refused(done, "walk.toml", option)
 
     def test_interrupting_a_bake_leaves_nothing_half_written(self):
         process = subprocess.Popen([PROGRAM, "bake", "builtin:city,size=1500", "-o", "city.throng", "--threads", "1"],

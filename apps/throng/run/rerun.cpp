@@ -195,12 +195,15 @@ constexpr Model kModels[] = {{kWanderersModel, rerun_wanderers},
 }  // namespace
 
 Json wanderers_settings(const WanderRun& run) {
-  Json also = Json::array();
-  for (const AvatarGroup& group : run.also)
-    also.push_back(Json::array({group.class_name, group.avatars}));
-  return {{"avatars", run.config.avatars}, {"also", also},
-          {"class", run.class_name},       {"dt", run.config.dt},
-          {"speed", run.config.speed},     {"seed", run.config.seed}};
+  Json settings = {{"avatars", run.config.avatars},
+                   {"class", run.class_name},
+                   {"dt", run.config.dt},
+                   {"speed", run.config.speed},
+                   {"seed", run.config.seed}};
+  for (const AvatarGroup& group : run.also) {
+    settings["also"].push_back(Json::array({group.class_name, group.avatars}));
+  }
+  return settings;
 }
 
 Json crowd_settings(const CrowdRun& run) {

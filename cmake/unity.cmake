@@ -9,6 +9,10 @@ endif()
 set(THRONG_UNITY ${unity} CACHE STRING
     "Compile files of a folder together, faster from nothing and slower after a change: OFF; PROGRAMS, tests and commands; ON")
 
+if(NOT THRONG_UNITY MATCHES "^(OFF|PROGRAMS|ON)$")
+  message(FATAL_ERROR "THRONG_UNITY is ${THRONG_UNITY}; use OFF, PROGRAMS or ON")
+endif()
+
 # The names that a file defines at the left margin, among them those of its unnamed namespace, and
 # those that it takes from another namespace.
 function(throng_names_of source defined_out used_out types_out)

@@ -94,7 +94,7 @@ Json measure(const Options& o) {
   config.workers = o.threads;
   const Result<SliceSet> cut = slice_scene(*scene, config, context);
   if (!cut) return {{"error", cut.error().message}};
-  const DepthSlices slices = store_depths(*cut);
+  const DepthSlices slices = *store_depths(*cut);
   const papers::SliceGround dense(slices);
   const papers::SparseSlices sparse(slices);
   BakeConfig bake;

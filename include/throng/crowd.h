@@ -93,11 +93,11 @@ enum class Routing {
 /// [CAACD]'s Mass, MaxSpeed and MaxForce, whose best set these are, for
 /// SteeringModel::kCurvilinear. A crowd scales lengths to the body and times to the speed of each
 /// avatar, so max_speed is its own speed; mass x max_speed by max_force is the time in which it
-/// turns or stops. [1e-6 to 1e6]
+/// turns or stops.
 struct CurvilinearTuning {
-  double mass = 2.0;
-  double max_speed = 0.4;
-  double max_force = 0.06;
+  double mass = 2.0;        ///< [0.01 to 1000]
+  double max_speed = 0.4;   ///< [0.01 to 100]
+  double max_force = 0.06;  ///< [0.001 to 1000]
   /// Of the threats, collisions come first, then what is critical, then alerts; otherwise, as
   /// printed, what comes nearest first.
   bool by_state = false;

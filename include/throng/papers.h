@@ -69,7 +69,8 @@ struct DepthSlice {
 
 /// Slices with 16 bits a cell, highest first, cells as in SliceSet. Where a floor lies deeper below
 /// a kept slice than 16 bits can say, and the next slice does not serve it, extra slices stand
-/// between the two: a body up to kMaxBody tall may make the same moves as on the SliceSet.
+/// between the two: a body whose height and two steps are at most kMaxBody may make the same moves
+/// as on the SliceSet.
 struct DepthSlices {
   static constexpr int32_t kMaxBody = 20000;  ///< [mm]
   int32_t width = 0;                          ///< Cells along X.
@@ -86,12 +87,13 @@ struct DepthSlices {
   [[nodiscard]] uint64_t bytes() const { return slices.size() * 2 * uint64_t(width) * depth; }
 };
 
-/// The slices with 16 bits a cell. Time: linear in cells x slices.
-[[nodiscard]] THRONG_API DepthSlices store_depths(const SliceSet& slices);
+/// The slices with 16 bits a cell. Time: linear in cells x slices. Fails with kLimit above 16 GiB.
+[[nodiscard]] THRONG_API Result<DepthSlices> store_depths(const SliceSet& slices);
 /// Writes `path`, whole or not at all. Fails with kIo, and kLimit above 2 GB.
 [[nodiscard]] THRONG_API Result<void> save_slices(const DepthSlices& slices,
                                                   const std::string& path);
-/// Reads what save_slices wrote. Fails with kBadFile: missing, no slices, damaged, another version.
+/// Reads what save_slices wrote. Fails with kIo (missing) or kBadFile: no slices, damaged, of
+/// another version.
 [[nodiscard]] THRONG_API Result<DepthSlices> load_slices(const std::string& path);
 /// Does the file begin as one of save_slices does?
 [[nodiscard]] THRONG_API bool is_slice_file(const std::string& path);

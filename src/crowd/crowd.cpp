@@ -86,9 +86,11 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
     return bad_config("no_progress_after must be 0 to 1000000 s");
   }
   const CurvilinearTuning& c = config.tuning.curvilinear;
-  for (const double value : {c.mass, c.max_speed, c.max_force}) {
-    if (value >= 1e-6 && value <= 1e6) continue;
-    return bad_config("mass, max_speed and max_force of curvilinear must be 1e-6 to 1e6");
+  if (!(c.mass >= 0.01 && c.mass <= 1000 && c.max_speed >= 0.01 && c.max_speed <= 100 &&
+        c.max_force >= 0.001 && c.max_force <= 1000)) {
+    return bad_config(
+        "of curvilinear, mass must be 0.01 to 1000, max_speed 0.01 to 100, max_force 0.001 to "
+        "1000");
   }
   if (!(config.slope_cost >= 0 && config.slope_cost <= 1000)) {
     return bad_config("slope_cost must be 0 to 1000");

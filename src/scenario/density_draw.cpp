@@ -4,10 +4,35 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 // Draws points by the weights of a density map: prefix sums of the pixels, and a binary search for
 // each point.
 namespace throng::scenario {
+
+Result<void> check_hours(const DensityMap& map) {
+  const auto bad = [&](const char* what) {
+    return Error{Errc::kBadInput, "density '" + map.name + "': " + what};
+  };
+  double before = -1;
+  for (const DensityHour& hour : map.hours) {
+    if (hour.weights.size() != size_t(map.width) * size_t(map.height)) {
+      return bad("an hour has not one weight a pixel");
+    }
+    if (std::all_of(hour.weights.begin(), hour.weights.end(), [](uint8_t w) { return w == 0; })) {
+      return bad("all weights of an hour are 0; give at least one pixel a weight");
+    }
+    if (!(hour.at >= 0 && hour.at > before && std::isfinite(hour.at))) {
+      return bad("give the hours in the order of their times");
+    }
+    before = hour.at;
+  }
+  if (map.hours.empty() || map.period == 0) return {};
+  if (!(map.period > before && std::isfinite(map.period))) {
+    return bad("the period must be longer than the last hour");
+  }
+  return {};
+}
 
 std::vector<uint8_t> weights_at(const DensityMap& map, double time) {
   const std::vector<DensityHour>& hours = map.hours;

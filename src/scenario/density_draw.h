@@ -11,6 +11,9 @@
 /// Random points of the plane, distributed by a density map.
 namespace throng::scenario {
 
+/// Fails with kBadInput: hours that are not in order, beyond the period, of another size or empty.
+[[nodiscard]] Result<void> check_hours(const DensityMap& map);
+
 /// The weights of a map at a time of the run: those of its hours, blended. [s]
 [[nodiscard]] std::vector<uint8_t> weights_at(const DensityMap& map, double time);
 

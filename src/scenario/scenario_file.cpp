@@ -540,8 +540,10 @@ void File::read_density(Reader& r) {
     return r.fail(*r.find("box"),
                   "give it one of: an image, a list 'images', or areas in a list 'paint'");
   }
-  if (images == nullptr && r.find("period") != nullptr) {
-    return r.fail(*r.find("period"), "period goes with a list 'images'");
+  for (const auto& [key, with] : {std::pair("period", "images"), std::pair("pixel", "paint")}) {
+    if (r.find(key) != nullptr && r.find(with) == nullptr) {
+      return r.fail(*r.find(key), fmt::format("{} goes with a list '{}'", key, with));
+    }
   }
   if (images != nullptr) {
     read_hours(r, map);

@@ -151,12 +151,7 @@ Result<void> Simulation::State::prepare(Context& context) {
   pending.resize(scenario.sources.size());
   in_transit.resize(scenario.links.size());
   for (DensityMap& map : scenario.densities) {
-    for (const DensityHour& hour : map.hours) {
-      if (hour.weights.size() == size_t(map.width) * size_t(map.height)) continue;
-      return Error{Errc::kBadInput, "density '" + map.name + "': an hour has " +
-                                        std::to_string(hour.weights.size()) +
-                                        " weights, not one a pixel"};
-    }
+    if (auto ok = scenario::check_hours(map); !ok) return ok;
     map.weights = scenario::weights_at(map, 0);
     densities.emplace_back(map);
   }

@@ -48,7 +48,7 @@ naive::Columns building(uint64_t seed) {
 
 DepthSlices cut(const naive::Columns& columns, int32_t avatar_height) {
   Context context;
-  DepthSlices slices = store_depths(*papers::sweep_slices(
+  DepthSlices slices = *store_depths(*papers::sweep_slices(
       naive::make_tiles(columns), naive::sweep_config(columns, avatar_height, 100), context));
   slices.cell = kCell;
   return slices;

@@ -41,7 +41,7 @@ uint8_t grey_at(const Image& image, int32_t x, int32_t y) {
 }
 
 TEST(SlicePicture, DarkerIsHigherAndTheFarPlaneIsWhite) {
-  const Image image = draw_slice(store_depths(steps()), 0);
+  const Image image = draw_slice(*store_depths(steps()), 0);
   ASSERT_EQ(image.rgb.size(),
             static_cast<size_t>(image.width) * static_cast<size_t>(image.height) * 3);
   const int32_t y = image.height / 2;
@@ -65,7 +65,7 @@ TEST(SlicePicture, AWallOneCellWideStaysVisibleInAWorldManyTimesWiderThanThePict
   Slice slice{.height = 5000, .surface = std::vector<int32_t>(200000, 0)};
   for (size_t z = 0; z < 40; ++z) slice.surface[z * 5000 + 2502] = 4900;
   set.kept = {slice};
-  const Image image = draw_slice(store_depths(set), 0);
+  const Image image = draw_slice(*store_depths(set), 0);
   EXPECT_LE(image.width, 1500);
   std::set<uint8_t> greys;
   for (int32_t x = 100; x < image.width - 200; ++x) greys.insert(grey_at(image, x, 60));
@@ -75,10 +75,10 @@ TEST(SlicePicture, AWallOneCellWideStaysVisibleInAWorldManyTimesWiderThanThePict
 TEST(SlicePicture, AnEmptySliceAndASingleCellCanBeDrawn) {
   SliceSet set = steps();
   set.kept[0].surface.assign(200, -100);
-  EXPECT_GT(draw_slice(store_depths(set), 0).width, 100);
+  EXPECT_GT(draw_slice(*store_depths(set), 0).width, 100);
   set.width = set.depth = 1;
   set.kept[0].surface = {700};
-  EXPECT_GT(draw_slice(store_depths(set), 0).width, 100);
+  EXPECT_GT(draw_slice(*store_depths(set), 0).width, 100);
 }
 
 TEST(Png, IsWrittenCompleteOrNotAtAll) {

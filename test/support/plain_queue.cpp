@@ -264,7 +264,7 @@ void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
   } else if (turn) {
     plan.asks = true;
     plan.request = {own, size > 0 ? Plane{ahead.x / size, ahead.z / size} : Plane{1, 0}};
-    plan.request.order.left -= QueueOrder::kTurn;
+    plan.request.order.left = std::min(own.left, QueueOrder::kTurn - 1) - QueueOrder::kTurn;
   } else if (is_head(i) && !(may_rest(body) && is_goal_taken(i))) {
     plan.asks = true;
     plan.request = {own, size > 0 ? Plane{ahead.x / size, ahead.z / size} : Plane{1, 0}};

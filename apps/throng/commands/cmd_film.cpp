@@ -51,6 +51,7 @@ int film(Session& session, const FilmOptions& options) {
   if (!viewer) return fail(viewer.error());
   const std::vector<double>& c = options.camera;
   if (!c.empty()) viewer->look_at({c[0], c[1], c[2]}, {c[3], c[4], c[5]});
+  if (auto ok = check_people(options.target); !ok) return fail(ok.error());
   viewer->load(short_name(options.target.path), stage_of(options.target));
   viewer->wait_until_loaded();
   if (const std::string error = viewer->status().error; !error.empty()) {

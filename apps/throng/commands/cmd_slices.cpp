@@ -77,8 +77,8 @@ int print_slices(Session& session, const SlicesOptions& options, const DepthSlic
 // Opens what -o wrote.
 int open_slices(Session& session, const CLI::App& command, const SlicesOptions& options) {
   const std::string& file = options.sources.files.front();
-  for (const char* name :
-       {"--avatar-height", "--resolution", "--cell", "--up", "--scale", "--scene", "--output"}) {
+  for (const char* name : {"--avatar-height", "--resolution", "--cell", "--up", "--scale",
+                           "--scene", "--threads", "--output"}) {
     if (command.count(name) == 0) continue;
     return fail({Errc::kBadConfig,
                  fmt::format("{}: {} is for models; these slices are already cut", file, name)});
@@ -102,8 +102,9 @@ int slices(Session& session, const CLI::App& command, const SlicesOptions& optio
   const Json json = {{"triangles", scene->triangles.size()},
                      {"import", report_json(scene->report)},
                      {"seconds", seconds}};
-  return print_slices(session, options, store_depths(*set), json,
-                      fmt::format(", {:.3f} s", seconds));
+  const Result<DepthSlices> stored = store_depths(*set);
+  if (!stored) return fail(stored.error());
+  return print_slices(session, options, *stored, json, fmt::format(", {:.3f} s", seconds));
 }
 
 }  // namespace

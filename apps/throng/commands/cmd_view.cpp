@@ -72,6 +72,7 @@ int take_picture(Session& session, const ViewOptions& options) {
 }
 
 int view(Session& session, const ViewOptions& options) {
+  if (auto ok = check_people(options.target); !ok) return fail(ok.error());
   if (!options.picture.empty()) return take_picture(session, options);
   WindowConfig window{.width = options.width,
                       .height = options.height,

@@ -164,7 +164,7 @@ int run_slice_wanderers(Session& session, WanderRun run) {
   for (const AvatarGroup& group : groups) {
     Result<AvatarClass> avatar = default_class(group.class_name);
     if (!avatar) return fail(avatar.error());
-    if (run.config.speed > 0) avatar->speed = run.config.speed;
+    if (run.config.speed != 0) avatar->speed = run.config.speed;
     names.push_back(avatar->name);
     config.groups.push_back({*std::move(avatar), group.avatars});
   }

@@ -228,17 +228,20 @@ void add_people_options(CLI::App* command, ViewTarget& target) {
       ->type_name("WORLD");
 }
 
+Result<void> check_people(const ViewTarget& target) {
+  const fs::path path(target.path);
+  const bool has_avatars = is_scenario(path) || path.extension() == ".replay";
+  if (!has_avatars || !(target.start.only_seen || target.start.coarse_far)) return {};
+  return Error{Errc::kBadConfig,
+               target.path +
+                   ": it has its own avatars; --only-seen and --coarse-far are for those "
+                   "of a world or model, leave them out"};
+}
+
 LoadStage stage_of(const ViewTarget& target) {
   return [target](StageParts& parts, Context& context) -> Result<void> {
     const fs::path path(target.path);
     std::error_code none;
-    const bool has_avatars = is_scenario(path) || path.extension() == ".replay";
-    if (has_avatars && (target.start.only_seen || target.start.coarse_far)) {
-      return Error{Errc::kBadConfig,
-                   target.path +
-                       ": it has its own avatars; --only-seen and --coarse-far are for "
-                       "those of a world or model, leave them out"};
-    }
     if (is_scenario(path)) return load_scenario_stage(parts, target, context);
     if (path.extension() == ".replay") return load_replay(parts, target, context);
     if (fs::exists(path / "manifest.thm", none)) return load_world(parts, target, context);

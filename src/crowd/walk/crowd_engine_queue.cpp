@@ -117,7 +117,7 @@ void CrowdEngine::query_queue(uint32_t i, std::span<const uint32_t> nearest,
   }
   if (takes_turn(body, asker, first)) {
     QueueOrder order = own_order(body, worker);
-    order.left -= QueueOrder::kTurn;
+    order.left = std::min(order.left, QueueOrder::kTurn - 1) - QueueOrder::kTurn;
     worker.asks = RoomRequest{order, unit(path_ahead(body))};
   } else if (asker != UINT32_MAX) {
     const Plane away = unit({-from.x, -from.z});

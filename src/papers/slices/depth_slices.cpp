@@ -1,6 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <set>
+#include <vector>
 
 #include "throng/papers.h"
 
@@ -12,6 +16,7 @@
 namespace throng {
 namespace {
 
+constexpr uint64_t kMaxBytes = uint64_t{16} << 30;
 constexpr int32_t kDeepest = DepthSlice::kNone - 1;  // [mm]
 // So far apart, a body of kMaxBody whose head is below one slice but above the next has its feet at
 // most kDeepest below it.
@@ -27,20 +32,26 @@ DepthSlice depths_of(const Slice& slice, int32_t height, int32_t far_plane) {
   return out;
 }
 
-// The lowest surface that a body reads from this slice, with its head above the next; `height` if
-// there is none. [mm]
-int32_t lowest_read(const Slice& slice, int32_t next, int32_t far_plane) {
-  int32_t lowest = slice.height;
+// The extra cuts between a kept slice and the `next` one, highest first. A surface that is too deep
+// below the kept slice needs the lowest cut above it, and for heads above that the one before.
+std::vector<int32_t> extra_cuts(const Slice& slice, int32_t next, int32_t far_plane) {
+  std::set<int64_t> needed;  // cuts at so many times kApart below the kept slice
   for (const int32_t value : slice.surface) {
-    const bool is_read = value != far_plane && value > next - DepthSlices::kMaxBody;
-    if (is_read) lowest = std::min(lowest, value);
+    const int64_t depth = int64_t{slice.height} - value;
+    const bool is_read = value != far_plane && value > int64_t{next} - DepthSlices::kMaxBody;
+    if (!is_read || depth <= kDeepest) continue;
+    for (const int64_t n : {depth / kApart, depth / kApart - 1}) {
+      if (n > 0 && slice.height - n * kApart > next) needed.insert(n);
+    }
   }
-  return lowest;
+  std::vector<int32_t> cuts;
+  for (const int64_t n : needed) cuts.push_back(static_cast<int32_t>(slice.height - n * kApart));
+  return cuts;
 }
 
 }  // namespace
 
-DepthSlices store_depths(const SliceSet& set) {
+Result<DepthSlices> store_depths(const SliceSet& set) {
   DepthSlices out{.width = set.width,
                   .depth = set.depth,
                   .cell = set.cell,
@@ -51,15 +62,25 @@ DepthSlices store_depths(const SliceSet& set) {
                   .resolution = set.resolution,
                   .taken = set.taken,
                   .slices = {}};
+  std::vector<std::vector<int32_t>> cuts;
+  uint64_t count = set.kept.size();
+  for (size_t i = 0; i < set.kept.size(); ++i) {
+    // Below the last slice no head is below the far plane.
+    const int32_t next = i + 1 < set.kept.size() ? set.kept[i + 1].height : set.far_plane;
+    cuts.push_back(extra_cuts(set.kept[i], next, set.far_plane));
+    count += cuts.back().size();
+  }
+  const uint64_t bytes = count * 2 * uint64_t(set.width) * uint64_t(set.depth);
+  if (bytes > kMaxBytes) {
+    return Error{Errc::kLimit,
+                 fmt::format("slices: {} slices of {} x {} cells, most of them for floors deeper "
+                             "than 65 m, pass 16 GiB; use a larger cell",
+                             count, set.width, set.depth)};
+  }
   for (size_t i = 0; i < set.kept.size(); ++i) {
     const Slice& slice = set.kept[i];
     out.slices.push_back(depths_of(slice, slice.height, set.far_plane));
-    // Below the last slice no head is below the far plane.
-    const int32_t next = i + 1 < set.kept.size() ? set.kept[i + 1].height : set.far_plane;
-    const int32_t lowest = lowest_read(slice, next, set.far_plane);
-    int32_t height = slice.height;
-    while (height - lowest > kDeepest && height - kApart > next) {
-      height -= kApart;
+    for (const int32_t height : cuts[i]) {
       out.slices.push_back(depths_of(slice, height, set.far_plane));
       ++out.extra;
     }

@@ -24,6 +24,7 @@ constexpr const char* kIdentifier = "THSL";
 constexpr uint32_t kVersion = 1;
 constexpr uint64_t kMaxBytes = (uint64_t{1} << 31) - (1 << 20);  // FlatBuffers' own limit
 constexpr int32_t kMaxSide = 1 << 27;                            // [cells]
+constexpr double kMinCell = 0.01, kMaxCell = 1000;               // [m] as SliceConfig has them
 
 uint64_t sum_of(const DepthSlices& set) {
   const std::array<uint64_t, 10> words = {
@@ -46,16 +47,28 @@ Error bad(const std::string& path, const std::string& what) {
 
 bool is_sound(const DepthSlices& set) {
   const bool grid = set.width >= 1 && set.width <= kMaxSide && set.depth >= 1 &&
-                    set.depth <= kMaxSide && std::isfinite(set.cell) && set.cell > 0 &&
+                    set.depth <= kMaxSide && set.cell >= kMinCell && set.cell <= kMaxCell &&
                     std::isfinite(set.origin_x) && std::isfinite(set.origin_z);
-  if (!grid || set.avatar_height < 1 || set.resolution < 1 || set.extra < 0 || set.slices.empty())
+  if (!grid || set.avatar_height < 1 || set.resolution < 1 || set.taken < 0 || set.slices.empty() ||
+      set.extra < 0 || static_cast<size_t>(set.extra) >= set.slices.size()) {
     return false;
+  }
   const uint64_t cells = uint64_t(set.width) * uint64_t(set.depth);
   for (size_t i = 0; i < set.slices.size(); ++i) {
     if (set.slices[i].depths.size() != cells) return false;
     if (i > 0 && set.slices[i].height >= set.slices[i - 1].height) return false;
     // Surfaces must not overflow.
     if (set.slices[i].height < INT32_MIN / 2 || set.slices[i].height > INT32_MAX / 2) return false;
+  }
+  return true;
+}
+
+// Slices may share their bytes in a forged file: do they take no more than it has?
+bool fits(const format::SlicesFile& file, uint64_t file_bytes) {
+  uint64_t bytes = 0;
+  for (const format::SliceDepths* slice : *file.slices()) {
+    bytes += uint64_t{slice->depths()->size()} * sizeof(uint16_t);
+    if (bytes > file_bytes) return false;
   }
   return true;
 }
@@ -107,6 +120,7 @@ Result<DepthSlices> load_slices(const std::string& path) {
     return bad(
         path, fmt::format("slices of version {}, this program reads {}", file.version(), kVersion));
   }
+  if (!fits(file, bytes.size())) return bad(path, "its numbers make no sense");
   DepthSlices set{.width = file.width(),
                   .depth = file.depth(),
                   .cell = file.cell(),

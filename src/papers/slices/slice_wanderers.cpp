@@ -37,7 +37,7 @@ constexpr double kUnits = 1 << kUnitBits;  // of a position, in a cell
 constexpr int32_t kColours = 4;
 constexpr int32_t kMinBlock = 64;  // [cells]
 constexpr double kMinUnits = 50;   // of a sub-step: they are whole
-constexpr uint64_t kMaxSubSteps = 10000;
+constexpr double kMaxSubSteps = 10000;
 constexpr uint64_t kRandomTries = 30;  // for a place, before the first free one is taken
 constexpr uint64_t kHeadings = 0x736c69636564, kPlaces = 0x736c696365;  // random streams
 
@@ -74,7 +74,8 @@ CellBox cells_of(int64_t x, int64_t z, int64_t radius) {
 Error bad(const std::string& what) { return {Errc::kBadConfig, "slices: " + what}; }
 
 Result<void> check(const DepthSlices& slices, const SliceWanderConfig& config) {
-  if (slices.slices.empty() || slices.width < 1 || slices.depth < 1 || !(slices.cell > 0)) {
+  if (slices.slices.empty() || slices.width < 1 || slices.depth < 1 ||
+      !(slices.cell >= 0.01 && slices.cell <= 1000)) {
     return bad("there are none to walk on");
   }
   if (config.groups.empty() || config.groups.size() > static_cast<size_t>(kMaxAvatarClasses)) {
@@ -82,8 +83,11 @@ Result<void> check(const DepthSlices& slices, const SliceWanderConfig& config) {
   }
   if (!(config.dt >= 1e-3 && config.dt <= 10)) return bad("dt must be 0.001 to 10 s");
   if (config.workers < 0) return bad("workers must be 0 (all cores) or more");
+  uint64_t sum = 0;
   for (const SliceGroup& group : config.groups) {
     const AvatarClass& c = group.avatar;
+    sum += group.count;
+    if (sum > UINT32_MAX) return bad("at most 4294967295 avatars have numbers");
     if (auto ok = check_classes({&c, 1}); !ok) return ok.error();
     const double height = c.height * 1000;
     if (height + 0.5 < slices.avatar_height) {
@@ -92,9 +96,10 @@ Result<void> check(const DepthSlices& slices, const SliceWanderConfig& config) {
                       "them with --avatar-height {}",
                       c.name, c.height, slices.avatar_height / 1000.0, c.height));
     }
-    if (height > DepthSlices::kMaxBody) {
-      return bad(fmt::format("class {} is {} m tall, slices serve bodies up to {} m", c.name,
-                             c.height, DepthSlices::kMaxBody / 1000));
+    if (height + 2000 * c.step_height > DepthSlices::kMaxBody) {
+      return bad(
+          fmt::format("class {} is {} m tall; slices serve bodies up to {} m, less two steps",
+                      c.name, c.height, DepthSlices::kMaxBody / 1000));
     }
     if (c.flies || goes_over_nodes(c)) {
       return bad(
@@ -142,9 +147,9 @@ Result<void> SliceWanderers::State::make_kinds() {
   double longest = 0;
   for (const SliceGroup& group : config.groups)
     longest = std::max(longest, group.avatar.speed * config.dt);
-  sub_steps = std::max<uint64_t>(1, static_cast<uint64_t>(std::ceil(longest / cell - 1e-9)));
-  if (sub_steps > kMaxSubSteps)
+  if (!(longest / cell <= kMaxSubSteps))
     return bad("speed times dt is over 10000 cells; take shorter steps");
+  sub_steps = std::max<uint64_t>(1, static_cast<uint64_t>(std::ceil(longest / cell - 1e-9)));
   uint32_t last = 0;
   for (const SliceGroup& group : config.groups) {
     const AvatarClass& c = group.avatar;

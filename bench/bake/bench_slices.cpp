@@ -86,8 +86,10 @@ Json measure(const Options& o) {
   BuiltinWorldConfig builtin;
   builtin.name = o.model.substr(o.model.find(':') + 1);
   const bool is_builtin = o.model.rfind("builtin:", 0) == 0;
+  SceneConfig scene_config;
+  scene_config.sources = {source};
   const Result<Scene> scene =
-      is_builtin ? create_builtin_world(builtin) : load_scene({.sources = {source}}, context);
+      is_builtin ? create_builtin_world(builtin) : load_scene(scene_config, context);
   if (!scene) return {{"error", scene.error().message}};
   SliceConfig config;
   config.cell = o.cell;

@@ -24,9 +24,11 @@ namespace throng {
 
 /// Settings for slice_scene.
 struct SliceConfig {
+  static constexpr double kMinCell = 0.01, kMaxCell = 1000;  ///< [m]
+
   double avatar_height = 1.75;  ///< Of the smallest avatar. [m, > 0]
   double resolution = 0.1;      ///< Largest loss of headroom. [m, >= 0.001]
-  double cell = 0.1;            ///< Side of a cell. [m, >= 0.01]
+  double cell = 0.1;            ///< Side of a cell. [m, kMinCell to kMaxCell]
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
 };
 

@@ -160,6 +160,8 @@ Plane CrowdEngine::aside_of(const Body& body, Plane away, Plane from, Plane aske
 // on: they may hold each other, each at a post of a narrow door. For a while in every other one it
 // is the first instead, and the head makes room for it.
 bool CrowdEngine::takes_turn(const Body& body, uint32_t asker, const QueueOrder& first) const {
+  // So it is for nearly all.
+  if (asker == UINT32_MAX && !body.asks) return false;
   const auto steps =
       static_cast<uint64_t>(std::max(std::lround(config_.queue.turn_time / config_.units.dt), 1L));
   if (step_ / steps % 2 == 0 || !queues(body) || first.left < 0) return false;

@@ -24,7 +24,6 @@ constexpr const char* kIdentifier = "THSL";
 constexpr uint32_t kVersion = 1;
 constexpr uint64_t kMaxBytes = (uint64_t{1} << 31) - (1 << 20);  // FlatBuffers' own limit
 constexpr int32_t kMaxSide = 1 << 27;                            // [cells]
-constexpr double kMinCell = 0.01, kMaxCell = 1000;               // [m] as SliceConfig has them
 
 uint64_t sum_of(const DepthSlices& set) {
   const std::array<uint64_t, 10> words = {
@@ -47,8 +46,9 @@ Error bad(const std::string& path, const std::string& what) {
 
 bool is_sound(const DepthSlices& set) {
   const bool grid = set.width >= 1 && set.width <= kMaxSide && set.depth >= 1 &&
-                    set.depth <= kMaxSide && set.cell >= kMinCell && set.cell <= kMaxCell &&
-                    std::isfinite(set.origin_x) && std::isfinite(set.origin_z);
+                    set.depth <= kMaxSide && set.cell >= SliceConfig::kMinCell &&
+                    set.cell <= SliceConfig::kMaxCell && std::isfinite(set.origin_x) &&
+                    std::isfinite(set.origin_z);
   if (!grid || set.avatar_height < 1 || set.resolution < 1 || set.taken < 0 || set.slices.empty() ||
       set.extra < 0 || static_cast<size_t>(set.extra) >= set.slices.size()) {
     return false;

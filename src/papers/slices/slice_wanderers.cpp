@@ -75,7 +75,7 @@ Error bad(const std::string& what) { return {Errc::kBadConfig, "slices: " + what
 
 Result<void> check(const DepthSlices& slices, const SliceWanderConfig& config) {
   if (slices.slices.empty() || slices.width < 1 || slices.depth < 1 ||
-      !(slices.cell >= 0.01 && slices.cell <= 1000)) {
+      !(slices.cell >= SliceConfig::kMinCell && slices.cell <= SliceConfig::kMaxCell)) {
     return bad("there are none to walk on");
   }
   if (config.groups.empty() || config.groups.size() > static_cast<size_t>(kMaxAvatarClasses)) {

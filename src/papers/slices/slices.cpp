@@ -34,7 +34,7 @@ std::optional<Error> check_config(const SliceConfig& config) {
   if (!(config.resolution >= 0.001 && config.resolution <= 1000)) {
     return bad("resolution", config.resolution, "0.001 to 1000 m");
   }
-  if (!(config.cell >= 0.01 && config.cell <= 1000)) {
+  if (!(config.cell >= SliceConfig::kMinCell && config.cell <= SliceConfig::kMaxCell)) {
     return bad("cell", config.cell, "0.01 to 1000 m");
   }
   if (config.workers < 0) return bad("workers", config.workers, "at least 0");

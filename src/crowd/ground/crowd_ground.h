@@ -183,6 +183,8 @@ class CrowdGround {
   };
   [[nodiscard]] std::optional<FloorCell> floor_beside(const FloorCell& from, int32_t x,
                                                       int32_t z) const;
+  bool read_on_level(Level level, int32_t x, int32_t z, steer::Plane direction,
+                     int32_t* middle) const;
   void join_blocks();
   void join_side(Level level, LevelLine::Side side);
   void find_open(Level level);

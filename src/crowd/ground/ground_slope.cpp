@@ -90,6 +90,33 @@ std::optional<CrowdGround::FloorCell> CrowdGround::floor_beside(const FloorCell&
   return best;
 }
 
+// The heights along a direction, if all are of one level and inside its tile, as nearly all are.
+bool CrowdGround::read_on_level(Level level, int32_t x, int32_t z, steer::Plane direction,
+                                int32_t* middle) const {
+  const int32_t reach = slope_range_.count * slope_range_.spacing;
+  const world::LevelView& view = views_[level];
+  if (view.samples == nullptr || std::min(x, z) < reach ||
+      std::max(x, z) + reach > world::kInTile) {
+    return false;
+  }
+  const auto spacing = static_cast<float>(slope_range_.spacing);
+  const int32_t start = view.samples[world::cell_index(x, z)];
+  bool is_whole = true;
+  for (const int32_t sign : {-1, 1}) {
+    int32_t last = start;
+    for (int32_t i = 1; i <= slope_range_.count; ++i) {
+      const float far = static_cast<float>(sign * i) * spacing;
+      const int32_t next =
+          view.samples[world::cell_index(x + static_cast<int32_t>(std::lrint(direction.x * far)),
+                                         z + static_cast<int32_t>(std::lrint(direction.z * far)))];
+      is_whole &= next != world::kNoValue && std::abs(next - last) <= slope_range_.max_jump;
+      middle[sign * i] = view.floor_base + next;
+      last = next;
+    }
+  }
+  return is_whole;
+}
+
 GroundSlope CrowdGround::slope_along(Level level, world::GroundPoint at,
                                      steer::Plane direction) const {
   constexpr int32_t kMiddle = SlopeRange::kMaxCount;
@@ -97,6 +124,14 @@ GroundSlope CrowdGround::slope_along(Level level, world::GroundPoint at,
   const int32_t x = at.cell_x(), z = at.cell_z();
   const FloorCell here{level, x, z, sample(level, world::in_tile(x), world::in_tile(z))};
   heights[kMiddle] = here.height;
+  const auto between = [&](int32_t behind, int32_t ahead) {
+    return slope_of(std::span(heights).subspan(static_cast<size_t>(kMiddle - behind),
+                                               static_cast<size_t>(behind + ahead + 1)),
+                    slope_range_.metres);
+  };
+  if (read_on_level(level, world::in_tile(x), world::in_tile(z), direction, &heights[kMiddle])) {
+    return between(slope_range_.count, slope_range_.count);
+  }
   // How many heights there are to one side.
   const auto read = [&](int32_t sign) {
     FloorCell last = here;
@@ -110,10 +145,8 @@ GroundSlope CrowdGround::slope_along(Level level, world::GroundPoint at,
     }
     return slope_range_.count;
   };
-  const int32_t behind = read(-1), ahead = read(1);
-  return slope_of(std::span(heights).subspan(static_cast<size_t>(kMiddle - behind),
-                                             static_cast<size_t>(behind + ahead + 1)),
-                  slope_range_.metres);
+  const int32_t behind = read(-1);
+  return between(behind, read(1));
 }
 
 // Is the square of cells that slope_along may read inside the tile, and in flat blocks? These touch

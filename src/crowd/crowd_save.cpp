@@ -24,7 +24,7 @@ namespace {
 using crowd::put_rows;
 using crowd::take_rows;
 
-constexpr uint64_t kMagic = 0x37315744574f5243;  // "CROWDW17"
+constexpr uint64_t kMagic = 0x38315744574f5243;  // "CROWDW18"
 
 struct Head {
   uint64_t magic = kMagic;

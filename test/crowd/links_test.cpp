@@ -443,8 +443,8 @@ TEST(CrowdLinks, SavedNonsenseIsRefusedOrHarmless) {
   EXPECT_GT(accepted, 100u);
   EXPECT_GT(refused, 100u);
   // A crowd of the version before.
-  ASSERT_EQ(std::memcmp(saved.data(), "CROWDW17", 8), 0);
-  std::memcpy(saved.data(), "CROWDW16", 8);
+  ASSERT_EQ(std::memcmp(saved.data(), "CROWDW18", 8), 0);
+  std::memcpy(saved.data(), "CROWDW17", 8);
   const auto old = Crowd::restore(world, {.edits = edits}, saved, context);
   ASSERT_FALSE(old);
   EXPECT_NE(old.error().message.find("no crowd of this version"), std::string::npos);

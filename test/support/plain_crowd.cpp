@@ -221,12 +221,8 @@ void PlainCrowd::steer_all() {
       }
       make_room(i, plan, choices_[i][0]);
     }
-    for (size_t c = 0; c < choices_[i].size(); ++c) {
-      const Plane wanted = choices_[i][c];
-      choices_[i][c] = reachable(body, wanted);
-      plan.repeats =
-          plan.repeats && (c > 0 || (choices_[i][c].x == wanted.x && choices_[i][c].z == wanted.z));
-    }
+    plan.choice = choices_[i][0];
+    for (Plane& choice : choices_[i]) choice = reachable(body, choice);
   }
 }
 
@@ -283,7 +279,7 @@ void PlainCrowd::resolve_conflicts() {
       };
       const auto propose = [&](Plane velocity) { return propose_move(move_of(velocity)); };
       if (keeping[i] != 0) {
-        keeps[i] = propose(bodies_[i].velocity);
+        keeps[i] = propose(reachable(bodies_[i], bodies_[i].choice));
         if (keeps[i] != 0) continue;
         keeping[i] = 0;
         if (round > 0) first[i] = 0;
@@ -292,6 +288,7 @@ void PlainCrowd::resolve_conflicts() {
         PlainBody& b = bodies_[i];
         const Plan& plan = plans_[i];
         b.follows = plan.follows;
+        b.choice = plan.choice;
         asks[i] = plan.asks;
         rest[i] = plan.rest;
         yields_[i] = plan.yields;
@@ -301,7 +298,7 @@ void PlainCrowd::resolve_conflicts() {
         decides[i] = 1;
       }
       if (first[i] != 0) first[i] = propose(choices_[i][0]);
-      keeps[i] = first[i] != 0 && !plans_[i].asks && plans_[i].repeats;
+      keeps[i] = first[i] != 0 && !plans_[i].asks;
       const Plan& plan = plans_[i];
       const bool creeps = decides[i] != 0 && plan.creeps;
       bool found = creeps ? std::any_of(plan.room.begin(), plan.room.end(), propose)

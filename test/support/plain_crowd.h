@@ -29,6 +29,7 @@ struct PlainBody {
   float speed = 1.3f;     // desired, and the maximum [m/s]
   float turn = 0;         // detour angle, of steer::DeadlockAvoidance
   bool keeps = false;     // it moves by its first choice, and goes on so until it decides again
+  steer::Plane choice;    // then: its velocity once it has accelerated
   bool follows = false;   // another so closely, when it last decided, that it could only crawl
   float stood = 0;        // for how long [s]
   float yields = 0;       // for how long it lets another pass [s]
@@ -84,9 +85,9 @@ class PlainCrowd {
   };
   // What a body that decides will be after the step.
   struct Plan {
-    bool follows = false, makes_room = false, asks = false, creeps = false, repeats = true,
-         yields = false, in_stream = false;
-    steer::Plane away;
+    bool follows = false, makes_room = false, asks = false, creeps = false, yields = false,
+         in_stream = false;
+    steer::Plane away, choice;
     std::vector<steer::Plane> room;  // if it creeps: up to 4
     crowd::RoomRequest request;
     crowd::Rest rest = crowd::Rest::kNo;

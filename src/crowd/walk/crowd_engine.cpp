@@ -9,6 +9,7 @@
 #include <mutex>
 #include <utility>
 
+#include "core/arrays/prefetch.h"
 #include "core/parallel.h"
 #include "core/random.h"
 #include "core/stopwatch.h"
@@ -264,6 +265,7 @@ void CrowdEngine::prefetch_ground(size_t i) const {
   if (i + kCellPrefetch < size_) {
     const Body& body = bodies_[i + kCellPrefetch];
     const Displacement displacement = displacement_again(body, body.velocity);
+    throng::prefetch(&choices_[body.slot]);
     grounds_[body.avatar_class].prefetch_cell(
         body.level, {int64_t{body.x} + displacement.x, int64_t{body.z} + displacement.z});
     if (config_.queues) __builtin_prefetch(&progress_[body.slot]);
@@ -408,7 +410,13 @@ void CrowdEngine::store_others(Proposal& proposal, uint16_t worker, size_t first
   others.resize(first);
 }
 
-// Proposes the place that a body reaches if it repeats its move; returns whether it could touch
+// The move of a body that keeps to the velocity that it chose when it last decided, which it may
+// still accelerate to.
+CrowdEngine::Displacement CrowdEngine::chosen_displacement(const Body& body) const {
+  return displacement_again(body, reachable(body, choices_[body.slot]));
+}
+
+// Proposes the place that a body reaches if it keeps to its choice; returns whether it could touch
 // another. None if that is not free.
 std::optional<bool> CrowdEngine::try_to_continue(uint32_t i, uint16_t w, uint32_t square) {
   Worker& worker = workers_[w];
@@ -417,7 +425,7 @@ std::optional<bool> CrowdEngine::try_to_continue(uint32_t i, uint16_t w, uint32_
   proposal = {};
   proposal.flags = Body::kContinues;
   proposal.in_counterflow = body.in_counterflow;
-  const Displacement displacement = displacement_again(body, body.velocity);
+  const Displacement displacement = chosen_displacement(body);
   if (!try_displacement(body, displacement, proposal.place)) return std::nullopt;
   const float touch = touch_of(body);
   const NeighbourGrid::Around around = grid_->around(square, touch <= grid_->width() ? 1 : 2);
@@ -491,10 +499,11 @@ bool CrowdEngine::decide(uint32_t i, uint16_t w, const NeighbourGrid::Around& ar
   bool proposed = !proposal.has_all && try_displacement(body, candidates[0], proposal.place) &&
                   is_clear(body, proposal.place, others, /*any_moved=*/false);
   if (proposed) {
-    // A body that asks looks in each step whether there is room; one that still accelerates does
-    // not repeat its move.
-    const bool repeats = !worker.asks && reached.x == best.x && reached.z == best.z;
-    proposal.flags = repeats ? Body::kContinues : 0;
+    // A body that asks looks in each step whether there is room.
+    const bool keeps =
+        !worker.asks && (!gains_little_ || (reached.x == best.x && reached.z == best.z));
+    proposal.flags = keeps ? Body::kContinues : 0;
+    choices_[body.slot] = best;
     proposal.round = others.empty() ? 0 : 1;
   } else if (!proposal.has_all) {
     if (open) query_walls(body, worker.situation);
@@ -732,7 +741,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
 uint64_t CrowdEngine::bytes() const {
   uint64_t bytes = 2 * bodies_.size() * sizeof(Body) + contests_.size() * sizeof(Contests) +
                    (grid_ ? grid_->bytes() : 0);
-  bytes += progress_.capacity() * sizeof(QueueProgress) +
+  bytes += progress_.capacity() * sizeof(QueueProgress) + choices_.capacity() * sizeof(Plane) +
            2 * requests_[0].capacity() * sizeof(RoomRequest);
   for (const Worker& worker : workers_) {
     bytes += 4 * (worker.squares.capacity() + worker.entries.capacity() +

@@ -100,22 +100,25 @@ class CrowdEngine {
   // Rows by slot.
   void reserve_rows(size_t rows) {
     progress_.reserve(rows);
+    choices_.reserve(rows);
     if (!config_.queues) return;
     for (auto& requests : requests_) requests.reserve(rows);
   }
   void fit_rows(size_t rows) {
     if (rows <= progress_.size()) return;
     progress_.resize(rows);
+    choices_.resize(rows);
     if (!config_.queues) return;
     for (auto& requests : requests_) requests.resize(rows);
   }
   void clear_rows(uint32_t slot) {
     fit_rows(slot + size_t{1});
     progress_[slot] = {};
+    choices_[slot] = {};
   }
   /// Bytes of a saved row.
   static constexpr size_t row_bytes(bool queues) {
-    return sizeof(QueueProgress) + (queues ? sizeof(RoomRequest) : 0);
+    return sizeof(QueueProgress) + sizeof(steer::Plane) + (queues ? sizeof(RoomRequest) : 0);
   }
   void save_rows(size_t rows, std::vector<uint8_t>& out) const;
   /// Could a crowd have saved the rows of a body?
@@ -395,6 +398,7 @@ class CrowdEngine {
     return {static_cast<int16_t>(units.displacement(velocity.x)),
             static_cast<int16_t>(units.displacement(velocity.z))};
   }
+  [[nodiscard]] Displacement chosen_displacement(const Body& body) const;
   void resolve_conflicts(uint64_t step);
   void settle_all(EngineCounts& counts);
   void propose(uint32_t i, Worker& scratch, uint8_t round);
@@ -434,6 +438,7 @@ class CrowdEngine {
   std::span<Orientation> orientations_;  // by slot
   bool gains_little_ = false;            // of speed in a step: all moves are rounded in turn
   std::vector<QueueProgress> progress_;  // by slot
+  std::vector<steer::Plane> choices_;    // by slot: velocities that bodies chose [m/s]
   // By slot: those of this step, which bodies write that ask, and those of the step before, which
   // all read. Valid where Body::asks is set.
   std::array<std::vector<RoomRequest>, 2> requests_;

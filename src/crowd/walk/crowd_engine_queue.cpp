@@ -312,6 +312,7 @@ bool CrowdEngine::may_turn_aside(const Body& body) const {
 // not ask hold old requests, which none reads.
 void CrowdEngine::save_rows(size_t rows, std::vector<uint8_t>& out) const {
   put_rows(out, progress_.data(), rows);
+  put_rows(out, choices_.data(), rows);
   if (!config_.queues) return;
   std::vector<RoomRequest> requests(rows);
   for (size_t i = 0; i < size_; ++i) {
@@ -325,6 +326,11 @@ bool CrowdEngine::has_sound_rows(const Body& body) const {
   const uint32_t slot = body.slot;
   const QueueProgress& progress = progress_[slot];
   if (!(progress.after >= 0)) return false;
+  // Faster than its speed it would reach what it does not look at.
+  constexpr float kRounding = 1.001f;
+  if (body.has(Body::kContinues) && !(size_of(choices_[slot]) <= body.speed * kRounding)) {
+    return false;
+  }
   if (!config_.queues) return !body.in_stream && !body.at_rest;
   const RoomRequest& request = requests_[0][slot];
   const QueueOrder& order = request.order;
@@ -340,7 +346,7 @@ bool CrowdEngine::has_sound_rows(const Body& body) const {
 }
 
 const uint8_t* CrowdEngine::restore_rows(const uint8_t* saved, size_t rows) {
-  saved = take_rows(saved, rows, progress_);
+  saved = take_rows(take_rows(saved, rows, progress_), rows, choices_);
   if (!config_.queues) return saved;
   saved = take_rows(saved, rows, requests_[0]);
   requests_[1] = requests_[0];

@@ -22,6 +22,7 @@ constexpr double kMaxSpeed = 100;      // [m/s]
 constexpr double kMaxRadius = 100;     // [m]
 constexpr double kMaxBodyHeight = 65;  // [m]
 constexpr int32_t kMaxSubSteps = 1000;
+constexpr size_t kFirstCapacity = 1024;  // avatars
 
 Error bad_config(const std::string& what) { return {Errc::kBadConfig, "crowd: " + what}; }
 
@@ -204,9 +205,11 @@ Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& 
   if (!has_places) return has_places.error();
   const crowd::Body& body = avatar->body;
   const int32_t widest = s.mode_of(body).extent_of(body, avatar->radius).widest;
-  crowd::StandingMap map(s.walk.bodies(), std::max(s.extent.widest, widest), count);
+  // A count can be far beyond what fits: memory follows those that find room.
+  const size_t capacity = std::min<size_t>(count, kFirstCapacity);
+  crowd::StandingMap map(s.walk.bodies(), std::max(s.extent.widest, widest), capacity);
   std::vector<crowd::NewAvatar> placed;
-  placed.reserve(count);
+  placed.reserve(capacity);
   // Until nine draws of ten fail over a while.
   uint64_t failed = 0, drawn = 0;
   while (placed.size() < count && *has_places) {

@@ -18,7 +18,7 @@ std::vector<Avatar> place_avatars(const CrowdGround& ground, int32_t body_height
   const StandingDraw standing(ground, seed);
   std::vector<Avatar> avatars;
   if (standing.is_empty()) return avatars;
-  avatars.reserve(count);
+  avatars.reserve(std::min<uint64_t>(count, standing.cells()));  // A count can be any.
   const auto try_place = [&](uint32_t level, world::GroundPoint p) {
     const int32_t y = ground.feet(level, p);
     const CollisionMap::Mark mark = map.mark(p, y, body_height);

@@ -24,9 +24,21 @@ size_t StandingMap::square(int64_t x, int64_t z) const {
 }
 
 void StandingMap::add(const Body& body) {
+  if (2 * entries_.size() >= first_.size()) grow();
   uint32_t& first = first_[square(body.x / width_, body.z / width_)];
   entries_.push_back({body.x, body.z, body.y, body.radius, body.height, first});
   first = static_cast<uint32_t>(entries_.size() - 1);
+}
+
+// Which bodies touch does not depend on the table's size.
+void StandingMap::grow() {
+  first_.assign(2 * first_.size(), kEnd);
+  for (size_t n = 0; n < entries_.size(); ++n) {
+    Entry& entry = entries_[n];
+    uint32_t& first = first_[square(entry.x / width_, entry.z / width_)];
+    entry.next = first;
+    first = static_cast<uint32_t>(n);
+  }
 }
 
 bool StandingMap::add_if_clear(const Body& body) {

@@ -15,7 +15,7 @@ namespace throng::crowd {
 /// Squares as wide as the widest body, hashed into a table; a list each.
 class StandingMap {
  public:
-  /// With these bodies, none wider than `widest` units, and capacity for `more`.
+  /// With these bodies, none wider than `widest` units, and capacity for `more`; it grows.
   StandingMap(std::span<const Body> bodies, int32_t widest, size_t more);
   /// Adds a body if it touches no other.
   bool add_if_clear(const Body& body);
@@ -29,6 +29,7 @@ class StandingMap {
   };
   [[nodiscard]] size_t square(int64_t x, int64_t z) const;
   void add(const Body& body);
+  void grow();
 
   int64_t width_;
   std::vector<uint32_t> first_;

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kGoalTolerance = 4;  // [m] Vertical tolerance of goals.
 constexpr uint64_t kMaxDraws = 24;    // To find a place.
+constexpr uint32_t kBatch = 65536;    // Avatars added at once.
 constexpr double kNearGround = 1;     // [m] Vertical tolerance of places on the ground.
 constexpr double kLookMargin = 10;    // [m] Beyond sight: bodies and tiles that begin within it.
 
@@ -77,23 +78,34 @@ AvatarSpawn CrowdPlayer::spawn_like(uint64_t number) const {
   return {.place = {}, .avatar_class = avatar_class, .radius = 0, .speed = speed};
 }
 
-// Draws a place for each avatar; draws again, a few times, for those that do not fit.
+// Draws a place for each avatar; draws again, a few times, for those that do not fit. In batches,
+// and until almost none of a batch fits: a count can be any number.
 Result<uint32_t> CrowdPlayer::scatter(uint32_t count, Context& context) {
   uint32_t added = 0;
   for (int32_t round = 0; round < 8 && added < count; ++round) {
-    std::vector<AvatarSpawn> spawns;
-    for (uint32_t i = added; i < count; ++i) {
-      const uint64_t number = added_++;
-      AvatarSpawn spawn = spawn_like(number);
-      spawn.place = place_of(spawn.avatar_class, start_.seed + 17, number);
-      if (spawn.place) spawns.push_back(spawn);
+    for (uint32_t left = count - added; left > 0;) {
+      const uint32_t batch = std::min(left, kBatch);
+      const Result<uint32_t> placed = scatter_batch(batch, context);
+      if (!placed) return placed.error();
+      added += *placed;
+      left -= batch;
+      if (batch == kBatch && *placed < kBatch / 64) return added;
     }
-    if (spawns.empty()) break;
-    const auto ids = crowd_.add(spawns, context);
-    if (!ids) return ids.error();
-    added += add_avatars(*ids, spawns);
   }
   return added;
+}
+
+Result<uint32_t> CrowdPlayer::scatter_batch(uint32_t count, Context& context) {
+  std::vector<AvatarSpawn> spawns;
+  for (uint32_t i = 0; i < count; ++i) {
+    const uint64_t number = added_++;
+    AvatarSpawn spawn = spawn_like(number);
+    spawn.place = place_of(spawn.avatar_class, start_.seed + 17, number);
+    if (spawn.place) spawns.push_back(spawn);
+  }
+  const auto ids = crowd_.add(spawns, context);
+  if (!ids) return ids.error();
+  return add_avatars(*ids, spawns);
 }
 
 // An avatar that did not fit has no id.

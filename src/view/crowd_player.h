@@ -91,6 +91,7 @@ class CrowdPlayer final : public TimelinePlayer {
 
   CrowdPlayer(World world, const CrowdStart& start, Vec3d origin, Crowd&& crowd);
   Result<uint32_t> scatter(uint32_t count, Context& context);
+  Result<uint32_t> scatter_batch(uint32_t count, Context& context);
   Place place_of(int32_t avatar_class, uint64_t seed, uint64_t stream) const;
   uint32_t add_avatars(const std::vector<AvatarId>& ids, const std::vector<AvatarSpawn>& spawns);
   void give_goals(std::span<const AvatarId> ids);

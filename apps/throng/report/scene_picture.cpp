@@ -39,8 +39,10 @@ void add_scene_picture_options(CLI::App* command, ScenePictureOptions& options) 
                    "With --camera: characters, made by throng atlas; may be repeated")
       ->type_name("FILE.atlas")
       ->allow_extra_args(false);
-  command->add_option("--crowd", options.crowd,
-                      "With --camera: place so many avatars, if no --avatars are given");
+  command
+      ->add_option("--crowd", options.crowd,
+                   "With --camera: place so many avatars, if no --avatars are given")
+      ->check(between(0, 1'000'000));
   command->add_option("--height", options.height, "With --camera: height of the picture [px]")
       ->check(between(0, 8192));
   command

@@ -17,6 +17,8 @@ class StandingDraw {
   StandingDraw(const CrowdGround& ground, uint64_t seed);
   /// Can the class stand nowhere?
   [[nodiscard]] bool is_empty() const { return before_.back() == 0; }
+  /// Cells where it can stand.
+  [[nodiscard]] uint64_t cells() const { return before_.back(); }
   struct Stand {
     uint32_t level;
     world::GroundPoint point;

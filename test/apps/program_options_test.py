@@ -1,0 +1,80 @@
+# SPDX-FileCopyrightText: 2026 the throng authors
+# SPDX-License-Identifier: MIT
+"""Options that a command does not obey for what it is given, folders of pictures, and crowds beyond all bounds.
+
+python3 program_options_test.py build/release/throng"""
+import json
+import os
+import struct
+import subprocess
+import unittest
+import zlib
+
+from program_case import PROGRAM, ProgramCase
+
+HALL = """seconds = 3
+[plane]
+floor = [[0, 0], [12, 0], [12, 8], [0, 8]]
+[[area]]
+name = "out"
+box = [10, 1, 11, 7]
+[[density]]
+name = "map"
+box = [0, 0, 8, 8]
+image = "map.png"
+[[journey]]
+name = "walk"
+stages = [{ leave = "out" }]
+[[source]]
+name = "start"
+density = "map"
+journey = "walk"
+count = 8
+"""
+
+
+def grey_png(pixels):
+    """A square picture of bytes, white where there are avatars."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    side = len(pixels)
+    rows = b"".join(b"\0" + bytes(row) for row in pixels)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 8, 0, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+class ProgramOptions(ProgramCase):
+    def write_hall(self):
+        (self.path / "hall.toml").write_text(HALL)
+        (self.path / "map.png").write_bytes(grey_png([[255, 0], [255, 255]]))
+
+    def test_more_avatars_than_any_world_holds_are_refused_without_memory_for_them(self):
+        huge = 2 ** 32 - 1
+        self.assertEqual(self.run_throng("slices", "builtin:cube", "--cell", 0.5, "-o", "cube.slices").returncode, 0)
+        for command in (("run", self.world, "--avatars", 5, "--also", f"adult:{huge - 5}"), ("run", self.world, "--avatars", huge),
+                        ("run", self.world, "--wander", "--avatars", huge),
+                        ("run", self.world, "--wander", "--avatars", 5, "--also", f"child:{huge - 5}"),
+                        ("run", "cube.slices", "--wander", "--avatars", huge)):
+            with self.subTest(command=command):
+                with subprocess.Popen([PROGRAM, *map(str, command)], cwd=self.path, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                      text=True) as process:
+                    err = process.stderr.read()
+                    _, status, usage = os.wait4(process.pid, 0)
+                    process.returncode = os.waitstatus_to_exitcode(status)
+                self.assertEqual(process.returncode, 2, err)
+                self.assertRegex(err, r"^throng: [a-z]+: [0-9]+ avatars .*were asked for; ask for fewer or [^\n]*\n$")
+                self.assertLess(usage.ru_maxrss, 1 << 20)  # [kB]
+        self.assert_refused(self.run_throng("picture", self.world, "--camera", "30,12,40,20,2,20", "--crowd", huge, "-o", "a.png"),
+                            "--crowd: 4294967295 is above 1000000")
+
+    def test_gl_a_view_of_more_avatars_than_fit_shows_those_that_fit(self):
+        done = self.run_throng("bake", "builtin:cube", "--cell", "0.5", "-o", "cube.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.run_throng("view", "cube.throng", "--avatars", 2 ** 32 - 1, "--after", 0, "--picture", "a.png", "--width", 160,
+                               "--height", 120, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(5 < json.loads(done.stdout)["avatars"] < 5000, done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

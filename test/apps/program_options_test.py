@@ -67,6 +67,16 @@ class ProgramOptions(ProgramCase):
         self.assert_refused(self.run_throng("picture", self.world, "--camera", "30,12,40,20,2,20", "--crowd", huge, "-o", "a.png"),
                             "--crowd: 4294967295 is above 1000000")
 
+    def test_a_recording_of_a_scenario_with_pictures_is_repeated_from_any_folder(self):
+        self.write_hall()
+        (self.path / "below").mkdir()
+        done = self.run_throng("run", "hall.toml", "--record", "hall.replay", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout)["entered"], 8)
+        for words in (("replay", "../hall.replay", "--check"), ("report", "../hall.replay", "-o", "hall.html")):
+            done = subprocess.run([PROGRAM, *words], cwd=self.path / "below", capture_output=True, text=True, check=False)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+
     def test_gl_a_view_of_more_avatars_than_fit_shows_those_that_fit(self):
         done = self.run_throng("bake", "builtin:cube", "--cell", "0.5", "-o", "cube.throng")
         self.assertEqual(done.returncode, 0, done.stderr)

@@ -256,22 +256,29 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
   if (!world) return world.error();
   auto simulation = times.measure("prepare", [&] {
     return Simulation::create(*world, *scenario, run.workers, session.context);
+  // Absolute: pictures, models and worlds of the scenario are found from any folder later.
+  const auto whole = [](const std::string& path) {
+    std::error_code failed;
+    const auto absolute = std::filesystem::absolute(path, failed);
+    return failed ? path : absolute.lexically_normal().string();
+  };
   });
   if (!simulation) return simulation.error();
   Sinks sinks(run.sinks);
   const Json settings = {{"scenario", run.text},
-                         {"file", run.file},
+                         {"file", whole(run.file)},
                          {"seed", scenario->seed},
                          {"model", name_of(scenario->steering)},
                          {"slow_on_slopes", scenario->slow_on_slopes},
                          {"avoid_jams", scenario->avoid_jams},
                          {"pushing", scenario->pushing},
                          {"acceleration", scenario->acceleration}};
-  auto ok = sinks.open(*world, {.world = scenario->world.empty() ? run.file : scenario->world,
-                                .dt = scenario->dt,
-                                .model = kScenarioModel,
-                                .settings = settings.dump(),
-                                .leans = simulation->crowd().may_lean()});
+  auto ok =
+      sinks.open(*world, {.world = scenario->world.empty() ? run.file : whole(scenario->world),
+                          .dt = scenario->dt,
+                          .model = kScenarioModel,
+                          .settings = settings.dump(),
+                          .leans = simulation->crowd().may_lean()});
   if (!ok) return ok.error();
   const auto totals = run_steps(session, run, *scenario, *simulation, sinks, times);
   if (!totals) return totals.error();

@@ -3,6 +3,7 @@
 #include "draw/crowd_pass.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -203,8 +204,7 @@ void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& co
     points_.add({crowd.atlas, crowd.clip, 0, counts.points, levels});
     blends_.add({crowd.atlas, crowd.clip, 0, counts.blends, levels});
   }
-  drawn_ = meshes_.used + views_.used + points_.used + blends_.used + leaning_meshes_.used +
-           leaning_views_.used;
+  drawn_ = count_avatars(config);
   hidden_ = 0;
   if (!config.avatar_shadows) return;
   for (const DrawnCrowd& crowd : crowds) {
@@ -247,7 +247,7 @@ void CrowdPass::pack_leaning_crowd(const DrawnCrowd& crowd, const DrawingConfig&
 }
 
 template <class Instance>
-size_t CrowdPass::Level<Instance>::drop(int32_t workers, const auto& is_hidden) {
+void CrowdPass::Level<Instance>::drop(int32_t workers, const auto& is_hidden) {
   std::vector<uint8_t> hidden(used);
   size_t kept = 0;
   for (Run& run : runs) {
@@ -265,9 +265,7 @@ size_t CrowdPass::Level<Instance>::drop(int32_t workers, const auto& is_hidden) 
     run.count = kept - first;
   }
   std::erase_if(runs, [](const Run& run) { return run.count == 0; });
-  const size_t dropped = used - kept;
   used = kept;
-  return dropped;
 }
 
 void CrowdPass::drop_hidden(const DrawingConfig& config, const DepthPyramid& depths) {
@@ -282,10 +280,10 @@ void CrowdPass::drop_hidden(const DrawingConfig& config, const DepthPyramid& dep
     return plain ? FigureExtent{static_cast<float>(std::hypot(0.3, high) + 0.01), 0}
                  : atlas.extents[word & 0xfffff];
   };
-  hidden_ = views_.drop(config.workers, [&](const Run& run, const ImpostorInstance& i) {
+  views_.drop(config.workers, [&](const Run& run, const ImpostorInstance& i) {
     return test.hides(middle(run, i), extent(run, i.view));
   });
-  hidden_ += blends_.drop(config.workers, [&](const Run& run, const BlendedInstance& b) {
+  blends_.drop(config.workers, [&](const Run& run, const BlendedInstance& b) {
     FigureExtent largest = extent(run, b.nearest_below.view);
     for (const uint32_t other : b.others) {
       largest.across = std::max(largest.across, extent(run, other).across);
@@ -293,27 +291,68 @@ void CrowdPass::drop_hidden(const DrawingConfig& config, const DepthPyramid& dep
     }
     return test.hides(middle(run, b.nearest_below), largest);
   });
-  hidden_ += meshes_.drop(config.workers, [&](const Run& run, const ImpostorInstance& i) {
+  meshes_.drop(config.workers, [&](const Run& run, const ImpostorInstance& i) {
     const auto all = static_cast<float>(
         models_[run.atlas]->extent(atlases_[run.atlas].shape.shape.centre) + 0.01);
     return test.hides(middle(run, i), {all, all});
   });
-  hidden_ += points_.drop(config.workers, [&](const Run& run, const ImpostorInstance& i) {
+  points_.drop(config.workers, [&](const Run& run, const ImpostorInstance& i) {
     return test.hides_point(middle(run, i), std::max(0.2, atlases_[run.atlas].shape.shape.centre));
   });
   const auto leaning_middle = [&](const Run& run, const LeaningInstance& i) {
     const Vec3d up{i.up_x, i.up_y, i.up_z};
     return Vec3d{i.body.x, i.body.y, i.body.z} + up * atlases_[run.atlas].shape.shape.centre;
   };
-  hidden_ += leaning_views_.drop(config.workers, [&](const Run& run, const LeaningInstance& i) {
+  leaning_views_.drop(config.workers, [&](const Run& run, const LeaningInstance& i) {
     return test.hides(leaning_middle(run, i), extent(run, i.body.view));
   });
-  hidden_ += leaning_meshes_.drop(config.workers, [&](const Run& run, const LeaningInstance& i) {
+  leaning_meshes_.drop(config.workers, [&](const Run& run, const LeaningInstance& i) {
     const auto all = static_cast<float>(
         models_[run.atlas]->extent(atlases_[run.atlas].shape.shape.centre) + 0.01);
     return test.hides(leaning_middle(run, i), {all, all});
   });
-  drawn_ -= hidden_;
+  const size_t kept = count_avatars(config);
+  hidden_ = drawn_ - kept;
+  drawn_ = kept;
+}
+
+// An avatar that fades into the next level of detail is an instance of both; its nearer level
+// counts.
+size_t CrowdPass::count_avatars(const DrawingConfig& config) const {
+  const Vec3d& eye = config.camera.eye;
+  const auto eye_x = static_cast<float>(eye.x), eye_y = static_cast<float>(eye.y),
+             eye_z = static_cast<float>(eye.z);
+  // In the same floats as the choice of the level.
+  const auto is_beyond = [&](const Run& run, const ImpostorInstance& i, double distance) {
+    const auto centre = static_cast<float>(atlases_[run.atlas].shape.shape.centre);
+    const float dx = eye_x - i.x, dy = eye_y - (i.y + centre), dz = eye_z - i.z;
+    return dx * dx + dy * dy + dz * dz >= static_cast<float>(distance * distance);
+  };
+  std::atomic<size_t> count{meshes_.used + leaning_meshes_.used};
+  const auto add = [&](const auto& level, const auto& is_first) {
+    for (const Run& run : level.runs) {
+      parallel_ranges(run.count, 2048, config.workers, [&](size_t begin, size_t end) {
+        const auto first = level.instances.begin() + static_cast<ptrdiff_t>(run.first);
+        count += static_cast<size_t>(std::count_if(
+            first + static_cast<ptrdiff_t>(begin), first + static_cast<ptrdiff_t>(end),
+            [&](const auto& instance) { return is_first(run, instance); }));
+      });
+    }
+  };
+  add(views_, [&](const Run& run, const ImpostorInstance& i) {
+    return is_beyond(run, i, run.levels.mesh_far);
+  });
+  add(blends_, [&](const Run& run, const BlendedInstance& b) {
+    return is_beyond(run, b.nearest_below, run.levels.mesh_far);
+  });
+  add(points_, [&](const Run& run, const ImpostorInstance& i) {
+    return is_beyond(run, i, run.levels.point_far);
+  });
+  add(leaning_views_, [&](const Run& run, const LeaningInstance& i) {
+    const Vec3d up{i.up_x, i.up_y, i.up_z}, feet{i.body.x, i.body.y, i.body.z};
+    return length(feet + up * atlases_[run.atlas].shape.shape.centre - eye) >= run.levels.mesh_far;
+  });
+  return count;
 }
 
 void CrowdPass::upload_shadows() {

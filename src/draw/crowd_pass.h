@@ -76,8 +76,8 @@ class CrowdPass {
     void begin(size_t max_count);
     [[nodiscard]] GLsizei rows() const;
     void upload();
-    /// Removes the instances for which is_hidden(run, instance) is true, and returns their number.
-    size_t drop(int32_t workers, const auto& is_hidden);
+    /// Removes the instances for which is_hidden(run, instance) is true.
+    void drop(int32_t workers, const auto& is_hidden);
   };
   void draw_cards(const GlProgram& program, const Runs& level) const;
   static int first_texel(const Runs& level, size_t instance);
@@ -86,6 +86,7 @@ class CrowdPass {
     act(meshes_), act(views_), act(points_), act(thrown_), act(blends_);
     act(leaning_meshes_), act(leaning_views_), act(leaning_thrown_);
   }
+  [[nodiscard]] size_t count_avatars(const DrawingConfig& config) const;
   void pack_leaning_crowd(const DrawnCrowd& crowd, const DrawingConfig& config, Vec3d to_sun);
 
   GlProgram impostor_, blended_, model_, point_, plain_, shadow_;

@@ -77,6 +77,14 @@ class ProgramOptions(ProgramCase):
             done = subprocess.run([PROGRAM, *words], cwd=self.path / "below", capture_output=True, text=True, check=False)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
 
+    def test_gl_a_picture_counts_an_avatar_once(self):
+        done = self.run_throng("view", self.world, "--avatars", 16, "--after", 0, "--picture", "a.png", "--width", 320, "--height", 180,
+                               "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)
+        self.assertEqual(said["avatars"], 16)
+        self.assertTrue(5 < said["drawn"] <= 16, said)
+
     def test_gl_a_view_of_more_avatars_than_fit_shows_those_that_fit(self):
         done = self.run_throng("bake", "builtin:cube", "--cell", "0.5", "-o", "cube.throng")
         self.assertEqual(done.returncode, 0, done.stderr)

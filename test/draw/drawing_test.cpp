@@ -486,11 +486,13 @@ TEST(GlDrawing, LevelsOfDetailLookAlike) {
   const auto [mesh, one_mesh] = seen(10, 1, 0);
   const auto [view, one_view] = seen(10, 0, 0);
   const auto [point, one_point] = seen(10, 0, 2000);
-  const auto [both, two] = seen(10, 2.5, 0);
+  const auto [both, one_of_both] = seen(10, 2.5, 0);
   EXPECT_EQ(one_mesh, 1U);
   EXPECT_EQ(one_view, 1U);
   EXPECT_EQ(one_point, 1U);
-  EXPECT_EQ(two, 2U);
+  EXPECT_EQ(one_of_both, 1U);
+  EXPECT_NE(both.rgb, mesh.rgb);
+  EXPECT_NE(both.rgb, view.rgb);
   const auto area = static_cast<double>(covered(view));
   EXPECT_GT(area, 2000);
   EXPECT_NEAR(static_cast<double>(covered(mesh)) / area, 1, 0.12);

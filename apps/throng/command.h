@@ -24,12 +24,19 @@ enum ExitCode : int { kDone = 0, kAnswerIsNo = 1, kBadUsage = 2, kInterrupted = 
 
 using Json = nlohmann::ordered_json;
 
+/// An option for a folder of pictures, and how their names begin.
+struct ImageFolder {
+  const CLI::Option* option = nullptr;
+  std::string prefix;
+};
+
 /// The state of one run of the program. There is one; commands get a reference to it.
 struct Session {
   bool json = false;  ///< --json: one object on standard output, all else on standard error.
   int exit_code = kDone;
   std::vector<std::string> words;           ///< The command line, as typed.
   std::vector<const CLI::Option*> outputs;  ///< Those of add_output.
+  std::vector<ImageFolder> folders;         ///< Those of add_image_folder.
   Context context;  ///< Draws progress on a terminal, lines elsewhere; Ctrl-C cancels.
 };
 
@@ -58,6 +65,12 @@ CLI::App* add_command(CLI::App& parser, Session& session, const std::string& nam
 /// one that another option of the command reads or writes.
 CLI::Option* add_output(CLI::App& command, Session& session, const std::string& names,
                         std::string& path, const std::string& text);
+
+/// An option for a folder to write pictures PREFIX*.png into. It is refused if it is a file or lies
+/// in a world, or if another option of the command names one of its pictures.
+CLI::Option* add_image_folder(CLI::App& command, Session& session, const std::string& names,
+                              std::string& path, const std::string& prefix,
+                              const std::string& text);
 
 /// The option --model.
 void add_model(CLI::App& command, SteeringModel& model);

@@ -43,11 +43,12 @@ bool overwrites(const std::string& output, const std::string& file) {
   return is_same(output, file) || is_same(output + ".part", file);
 }
 
-bool is_in_world(const std::string& file) {
+bool is_world(const fs::path& folder) {
   std::error_code failed;
-  const fs::path whole = whole_path(file);
-  return !whole.empty() && fs::exists(whole.parent_path() / "manifest.thm", failed);
+  return !folder.empty() && fs::exists(folder / "manifest.thm", failed);
 }
+
+bool is_in_world(const std::string& file) { return is_world(whole_path(file).parent_path()); }
 
 void refuse_output(const CLI::Option& output, const std::string& what) {
   throw CLI::ValidationError(output.get_name(), what);
@@ -61,6 +62,21 @@ void check_against(const CLI::Option& output, const std::string& path, const CLI
     const std::string what = is_output ? path + " is also what " + other.get_name() + " writes"
                                        : path + " is an input (" + other.get_name() + ")";
     refuse_output(output, what + "; name another file");
+  }
+}
+
+bool is_picture_in(const fs::path& folder, const std::string& prefix, const std::string& file) {
+  const fs::path whole = whole_path(file);
+  const std::string name = whole.filename().string();
+  return whole.parent_path() == folder && name.starts_with(prefix) && name.ends_with(".png");
+}
+
+void check_is_no_picture(const CLI::Option& other, const fs::path& whole, const std::string& prefix,
+                         const CLI::Option& folder) {
+  for (const std::string& file : other.results()) {
+    if (!is_picture_in(whole, prefix, file)) continue;
+    refuse_output(other,
+                  file + " is also a picture of " + folder.get_name() + "; name another file");
   }
 }
 
@@ -83,6 +99,29 @@ void check_outputs(const CLI::App& command, const std::vector<const CLI::Option*
       for (const CLI::Option* other : options) {
         const bool is_output = std::ranges::find(outputs, other) != outputs.end();
         if (other != output) check_against(*output, path, *other, is_output);
+      }
+    }
+  }
+}
+
+void check_image_folders(const CLI::App& command, const std::vector<ImageFolder>& folders,
+                         const std::vector<const CLI::Option*>& outputs) {
+  const auto options = command.get_options();
+  for (const auto& [folder, prefix] : folders) {
+    if (std::ranges::find(options, folder) == options.end()) continue;  // of another command
+    for (const std::string& path : folder->results()) {
+      std::error_code failed;
+      const fs::path whole = whole_path(path);
+      const fs::file_status status = fs::status(path, failed);
+      if (fs::exists(status) && !fs::is_directory(status)) {
+        refuse_output(*folder, path + " is a file; name a folder");
+      }
+      if (is_world(whole) || is_world(whole.parent_path())) {
+        refuse_output(*folder, path + " lies in a baked world; name another folder");
+      }
+      for (const CLI::Option* other : options) {
+        const bool is_output = std::ranges::find(outputs, other) != outputs.end();
+        if (is_output || takes_file(*other)) check_is_no_picture(*other, whole, prefix, *folder);
       }
     }
   }

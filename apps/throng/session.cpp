@@ -192,6 +192,7 @@ CLI::App* add_command(CLI::App& parser, Session& session, const std::string& nam
   command->parse_complete_callback([command, &session] {
     check_values(*command, session.words);
     check_outputs(*command, session.outputs);
+    check_image_folders(*command, session.folders, session.outputs);
   });
   return command;
 }
@@ -225,6 +226,14 @@ CLI::Option* add_output(CLI::App& command, Session& session, const std::string& 
   CLI::Option* output = command.add_option(names, path, text);
   session.outputs.push_back(output);
   return output;
+}
+
+CLI::Option* add_image_folder(CLI::App& command, Session& session, const std::string& names,
+                              std::string& path, const std::string& prefix,
+                              const std::string& text) {
+  CLI::Option* folder = command.add_option(names, path, text)->type_name("FOLDER");
+  session.folders.push_back({folder, prefix});
+  return folder;
 }
 
 void add_model(CLI::App& command, SteeringModel& model) {

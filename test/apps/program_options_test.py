@@ -77,6 +77,33 @@ class ProgramOptions(ProgramCase):
             done = subprocess.run([PROGRAM, *words], cwd=self.path / "below", capture_output=True, text=True, check=False)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
 
+    def test_pictures_of_slices_replace_all_of_before_and_nothing_else(self):
+        cut = ("slices", "builtin:garage,size=45,levels=2", "--cell", 0.5, "--json", "--images", "pictures")
+        done = self.run_throng(*cut, "--resolution", 0.05)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        before = len(json.loads(done.stdout)["heights"])
+        (self.path / "pictures" / "notes.txt").write_text("kept")
+        for name in (before, before + 1):
+            (self.path / "pictures" / f"slice_{name:03}.png").write_text("old")
+        done = self.run_throng(*cut)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        names = [f"slice_{n:03}.png" for n in range(len(json.loads(done.stdout)["heights"]))]
+        self.assertEqual(sorted(path.name for path in (self.path / "pictures").iterdir()), ["notes.txt", *names])
+
+    def test_a_folder_of_pictures_is_no_world_no_file_and_holds_no_other_output(self):
+        (self.path / "file").write_text("kept")
+        cube = ("slices", "builtin:cube", "--cell", 0.5)
+        before = sorted(self.world.iterdir())
+        for folder in (self.world, self.world / "nodes"):
+            self.assert_refused(self.run_throng(*cube, "--images", folder), "throng: --images: ", "lies in a baked world")
+            self.assert_refused(self.run_throng("atlas", "-o", "a.atlas", "--images", folder), "throng: --images: ", "lies in a baked world")
+            self.assert_refused(self.run_throng("validate", "rimea.1", "-o", folder), "throng: --output: ", "lies in a baked world")
+        self.assert_refused(self.run_throng(*cube, "--images", "file"), "throng: --images: file is a file; name a folder")
+        self.assert_refused(self.run_throng(*cube, "--images", "d", "-o", "d/slice_000.png"), "throng: --output: d/slice_000.png is also a picture of --images")
+        self.assertEqual(sorted(self.world.iterdir()), before)
+        self.assertEqual([path.name for path in self.path.iterdir()], ["file"])
+        self.assertEqual(self.run_throng(*cube, "--images", "d", "-o", "d/cube.slices").returncode, 0)
+
     def test_gl_a_picture_counts_an_avatar_once(self):
         done = self.run_throng("view", self.world, "--avatars", 16, "--after", 0, "--picture", "a.png", "--width", 320, "--height", 180,
                                "--json")

@@ -4,18 +4,20 @@
 
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "command.h"
+#include "report/image_folder.h"
 #include "throng/impostor.h"
 #include "throng/picture.h"
 
 // throng atlas: pictures of a walking character from all sides, for crowds.
 namespace throng::app {
 namespace {
+
+constexpr const char* kFrameImages = "frame_";
 
 struct AtlasOptions {
   std::string character;
@@ -24,21 +26,6 @@ struct AtlasOptions {
   std::string format = "bc3";
   AtlasConfig config;
 };
-
-Result<void> write_images(const Atlas& atlas, const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    return Error{Errc::kIo, fmt::format("{}: cannot make this folder: {}; give --images another "
-                                        "one",
-                                        folder, error.message())};
-  }
-  for (int32_t frame = 0; frame < atlas.shape.frames; ++frame) {
-    const std::string name = fmt::format("{}/frame_{:03}.png", folder, frame);
-    if (auto done = write_png(draw_atlas(atlas, frame), name); !done) return done.error();
-  }
-  return {};
-}
 
 // One row per format: bytes of its colours, and their PSNR against 8 bits per channel.
 struct FormatRow {
@@ -142,7 +129,11 @@ int atlas(Session& session, const AtlasOptions& options) {
     if (auto done = save_atlas(kept, options.output); !done) return fail(done.error());
   }
   if (!options.images.empty()) {
-    if (auto done = write_images(kept, options.images); !done) return fail(done.error());
+    const auto draw = [&](size_t frame) { return draw_atlas(kept, static_cast<int32_t>(frame)); };
+    const auto frames = static_cast<size_t>(kept.shape.frames);
+    if (auto done = write_images(options.images, kFrameImages, frames, draw); !done) {
+      return fail(done.error());
+    }
   }
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -196,8 +187,8 @@ void add_atlas(CLI::App& parser, Session& session) {
                    "How colours are kept; bc1 and bc3 for desktops, etc2a1 and etc2 for phones")
       ->transform(CLI::IsMember(words, CLI::ignore_case))
       ->capture_default_str();
-  command->add_option("--images", options->images, "Folder for a picture of each frame")
-      ->type_name("DIR");
+  add_image_folder(*command, session, "--images", options->images, kFrameImages,
+                   "Folder for a picture of each frame; replaces those of before");
   add_threads(*command, config.workers);
   command->callback([&session, options] { session.exit_code = atlas(session, *options); });
 }

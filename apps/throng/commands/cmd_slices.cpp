@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "command.h"
+#include "input_file.h"
+#include "report/image_folder.h"
 #include "sources.h"
 #include "throng/papers.h"
 #include "throng/picture.h"
@@ -17,6 +18,8 @@
 namespace throng::app {
 namespace {
 
+constexpr const char* kSliceImages = "slice_";
+
 struct SlicesOptions {
   SourceOptions sources;
   std::string images;
@@ -24,26 +27,14 @@ struct SlicesOptions {
   SliceConfig config;
 };
 
-Result<void> write_images(const DepthSlices& set, const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    return Error{Errc::kIo,
-                 fmt::format("{}: cannot make this folder: {}; give --images another one", folder,
-                             error.message())};
-  }
-  for (size_t i = 0; i < set.slices.size(); ++i) {
-    const std::string name = fmt::format("slice_{:03}.png", i);
-    if (auto done = write_png(draw_slice(set, i), folder + "/" + name); !done) return done.error();
-  }
-  return {};
-}
-
 // Lists the slices; `json` and `line` say how they came about.
 int print_slices(Session& session, const SlicesOptions& options, const DepthSlices& set, Json json,
                  const std::string& line) {
   if (!options.images.empty()) {
-    if (auto done = write_images(set, options.images); !done) return fail(done.error());
+    const auto draw = [&](size_t i) { return draw_slice(set, i); };
+    if (auto done = write_images(options.images, kSliceImages, set.slices.size(), draw); !done) {
+      return fail(done.error());
+    }
   }
   if (!options.output.empty()) {
     if (auto done = save_slices(set, options.output); !done) return fail(done.error());
@@ -121,8 +112,8 @@ void add_slices(CLI::App& parser, Session& session) {
   command->add_option("--resolution", config.resolution, "Headroom that may be lost [m]")
       ->capture_default_str();
   command->add_option("--cell", config.cell, "Side of a cell [m]")->capture_default_str();
-  command->add_option("--images", options->images, "Folder for a picture of each kept slice")
-      ->type_name("DIR");
+  add_image_folder(*command, session, "--images", options->images, kSliceImages,
+                   "Folder for a picture of each kept slice; replaces those of before");
   add_output(*command, session, "-o,--output", options->output, "File of slices to write")
       ->type_name("FILE.slices");
   add_threads(*command, config.workers);

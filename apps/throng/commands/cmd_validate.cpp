@@ -244,7 +244,7 @@ void add_validate(CLI::App& parser, Session& session) {
                     "Fewer points and shorter runs; not of scenario files");
   command->add_flag("--pushing", options->config.pushing,
                     "Avatars push instead of queueing, and nothing limits their acceleration");
-  command->add_option("-o,--output", options->folder, "Folder for charts, PNG");
+  add_image_folder(*command, session, "-o,--output", options->folder, "", "Folder for charts, PNG");
   command->add_option("--seed", options->config.seed)->capture_default_str();
   add_threads(*command, options->config.workers);
   command->callback([options, &session] { session.exit_code = run(*options, session); });

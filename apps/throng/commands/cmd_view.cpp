@@ -147,8 +147,8 @@ void add_view(CLI::App& parser, Session& session) {
       ->check(between(120, 8192))
       ->capture_default_str();
   add_threads(*command, options->workers);
-  command->add_option("--pictures", options->pictures, "Folder for the pictures that F12 keeps")
-      ->type_name("FOLDER");
+  add_image_folder(*command, session, "--pictures", options->pictures, "throng-",
+                   "Folder for the pictures that F12 keeps");
   command->add_flag("--forget", options->forget, "Neither read nor keep settings");
   command->add_option("--seconds", options->seconds, "Close the window after so long [s]")
       ->check(at_least(0));

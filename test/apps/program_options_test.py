@@ -67,6 +67,17 @@ class ProgramOptions(ProgramCase):
         self.assert_refused(self.run_throng("picture", self.world, "--camera", "30,12,40,20,2,20", "--crowd", huge, "-o", "a.png"),
                             "--crowd: 4294967295 is above 1000000")
 
+    def test_options_of_worlds_are_refused_for_scenarios_with_a_key_that_exists(self):
+        self.write_hall()
+        for words, *named in ((("--avatars", 3), "count of a [[source]]"), (("--dt", 0.2), "hall.toml write dt"), (("--speed", 1), "speed of a [[profile]]"),
+                              (("--class", "adult"), "class of a [[profile]]"), (("--radius", 0.2), "radius of a [[profile]]"),
+                              (("--labels",), 'paths = "labels"'), (("--search-memory", 9), "write search_memory"),
+                              (("--goals", "random"), "stages of a [[journey]]"), (("--also", "adult:3"), "another [[profile]]"),
+                              (("--order", "state"), "no scenario can have it"), (("--set", "2/1/1"), "no scenario can have it"),
+                              (("--wander",), "no scenario can have it"), (("--near", 5), "no scenario can have it")):
+            with self.subTest(words=words):
+                self.assert_refused(self.run_throng("run", "hall.toml", *words), f"throng: {words[0]} goes with a world", "hall.toml", *named)
+
     def test_a_recording_of_a_scenario_with_pictures_is_repeated_from_any_folder(self):
         self.write_hall()
         (self.path / "below").mkdir()

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
 #include <memory>
 #include <vector>
 
@@ -114,6 +115,18 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
                                    .dt = run.config.dt,
                                    .model = kCrowdModel,
                                    .settings = crowd_settings(run).dump(),
+  for (const char* name : {"--wander", "--near", "--set", "--order"}) {
+    if (command.count(name) == 0) continue;
+    return Error{Errc::kBadConfig,
+                 fmt::format("{} goes with a world, and no scenario can have it; leave it out for "
+                             "{}",
+                             name, file)};
+  }
+  return {};
+}
+
+int run_file(Session& session, const CLI::App& command, const RunOptions& options) {
+  if (auto fits = check_scenario(command, options.world); !fits) return fail(fits.error());
                                    .leans = crowd->crowd().may_lean()});
       !ok)
     return fail(ok.error());
@@ -121,14 +134,18 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
   return run_crowd(session, run, *crowd, times, shown, [&] { return sinks.finish(); });
 }
 
-int run_file(Session& session, const CLI::App& command, const RunOptions& options) {
-  // These are in the scenario file, or belong to worlds alone.
-  for (const char* name :
-       {"--avatars", "--dt", "--class", "--speed", "--goals", "--wander", "--near", "--also",
-        "--radius", "--labels", "--zones", "--search-memory", "--set", "--order"}) {
+// Fails if an option stands beside a scenario that the file has a key for, or scenarios never obey.
+Result<void> check_scenario(const CLI::App& command, const std::string& file) {
+  constexpr std::pair<const char*, const char*> kKeys[] = {
+      {"--avatars", "count of a [[source]]"},  {"--dt", "dt"},
+      {"--class", "class of a [[profile]]"},   {"--speed", "speed of a [[profile]]"},
+      {"--radius", "radius of a [[profile]]"}, {"--goals", "stages of a [[journey]]"},
+      {"--also", "another [[profile]]"},       {"--labels", "paths = \"labels\""},
+      {"--zones", "paths = \"zones\""},        {"--search-memory", "search_memory"}};
+  for (const auto& [name, key] : kKeys) {
     if (command.count(name) == 0) continue;
-    return fail({Errc::kBadConfig,
-                 fmt::format("{} goes with a world; write it into {}", name, options.world)});
+    return Error{Errc::kBadConfig,
+                 fmt::format("{} goes with a world; in {} write {}", name, file, key)};
   }
   ScenarioRun run{.file = options.world,
                   .text = {},

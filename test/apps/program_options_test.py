@@ -115,6 +115,20 @@ class ProgramOptions(ProgramCase):
         self.assertEqual([path.name for path in self.path.iterdir()], ["file"])
         self.assertEqual(self.run_throng(*cube, "--images", "d", "-o", "d/cube.slices").returncode, 0)
 
+    def test_gl_options_that_a_scenario_or_recording_does_not_obey_are_refused_by_name(self):
+        self.write_hall()
+        self.assertEqual(self.run_throng("run", "hall.toml", "--record", "hall.replay").returncode, 0)
+        view, film = ("view", "--picture", "a.png"), ("film", "-o", "a.mp4")
+        of_both = (("--avatars", 5), ("--near", 5), ("--sight", 50), ("--only-seen",), ("--coarse-far",))
+        for target in ("hall.toml", "hall.replay"):
+            for words in (*of_both, ("--speed", 2), ("--dt", 0.2), ("--zones",), ("--cell", 0.2)):
+                self.assert_refused(self.run_throng(*view, target, *words), f"{target}: {words[0]} is for", "leave it out")
+            for words in of_both:
+                self.assert_refused(self.run_throng(*film, target, *words), f"{target}: {words[0]} is for")
+        self.assert_refused(self.run_throng(*view, "hall.replay", "--seed", 2), "hall.replay: --seed")
+        self.assert_refused(self.run_throng(*view, "hall.toml", "--world", self.world), "hall.toml: --world is for recordings")
+        self.assert_refused(self.run_throng(*view, self.world, "--up", "z"), "--up is for model files; name one")
+
     def test_gl_a_picture_counts_an_avatar_once(self):
         done = self.run_throng("view", self.world, "--avatars", 16, "--after", 0, "--picture", "a.png", "--width", 320, "--height", 180,
                                "--json")

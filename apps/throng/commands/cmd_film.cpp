@@ -51,7 +51,6 @@ int film(Session& session, const FilmOptions& options) {
   if (!viewer) return fail(viewer.error());
   const std::vector<double>& c = options.camera;
   if (!c.empty()) viewer->look_at({c[0], c[1], c[2]}, {c[3], c[4], c[5]});
-  if (auto ok = check_people(options.target); !ok) return fail(ok.error());
   viewer->load(short_name(options.target.path), stage_of(options.target));
   viewer->wait_until_loaded();
   if (const std::string error = viewer->status().error; !error.empty()) {
@@ -157,7 +156,8 @@ void add_film(CLI::App& parser, Session& session) {
   add_source_options(command, target.sources, "--source");
   command->callback([&session, options, command] {
     if (command->count("--seed") > 0) options->target.seed = options->target.start.seed;
-    session.exit_code = film(session, *options);
+    const auto fits = check_options(*command, options->target);
+    session.exit_code = fits ? film(session, *options) : fail(fits.error());
   });
 }
 

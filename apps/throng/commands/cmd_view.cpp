@@ -72,7 +72,6 @@ int take_picture(Session& session, const ViewOptions& options) {
 }
 
 int view(Session& session, const ViewOptions& options) {
-  if (auto ok = check_people(options.target); !ok) return fail(ok.error());
   if (!options.picture.empty()) return take_picture(session, options);
   WindowConfig window{.width = options.width,
                       .height = options.height,
@@ -154,7 +153,8 @@ void add_view(CLI::App& parser, Session& session) {
       ->check(at_least(0));
   command->callback([&session, options, command] {
     if (command->count("--seed") > 0) options->target.seed = options->target.start.seed;
-    session.exit_code = view(session, *options);
+    const auto fits = check_options(*command, options->target);
+    session.exit_code = fits ? view(session, *options) : fail(fits.error());
   });
 }
 

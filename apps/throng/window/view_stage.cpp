@@ -228,14 +228,25 @@ void add_people_options(CLI::App* command, ViewTarget& target) {
       ->type_name("WORLD");
 }
 
-Result<void> check_people(const ViewTarget& target) {
+Result<void> check_options(const CLI::App& command, const ViewTarget& target) {
   const fs::path path(target.path);
-  const bool has_avatars = is_scenario(path) || path.extension() == ".replay";
-  if (!has_avatars || !(target.start.only_seen || target.start.coarse_far)) return {};
-  return Error{Errc::kBadConfig,
-               target.path +
-                   ": it has its own avatars; --only-seen and --coarse-far are for those "
-                   "of a world or model, leave them out"};
+  const bool is_replay = path.extension() == ".replay";
+  const auto is_given = [&](const char* name) {
+    const CLI::Option* option = command.get_option_no_throw(name);
+    return option != nullptr && option->count() > 0;
+  };
+  const auto refusal = [&](const char* name, const char* what) {
+    return Error{Errc::kBadConfig, fmt::format("{}: {} {}, leave it out", target.path, name, what)};
+  };
+  if (!is_replay && is_given("--world")) return refusal("--world", "is for recordings");
+  if (!is_replay && !is_scenario(path)) return {};
+  for (const char* name : {"--avatars", "--near", "--speed", "--dt", "--zones", "--only-seen",
+                           "--sight", "--coarse-far"}) {
+    if (is_given(name)) return refusal(name, "is for a crowd in a world or model");
+  }
+  if (is_given("--cell")) return refusal("--cell", "is for a model that is baked now");
+  if (is_replay && is_given("--seed")) return refusal("--seed", "cannot change a recording");
+  return {};
 }
 
 LoadStage stage_of(const ViewTarget& target) {

@@ -30,9 +30,10 @@ struct ViewTarget {
 /// --character, and --world.
 void add_people_options(CLI::App* command, ViewTarget& target);
 
-/// Fails with kBadConfig: options of simulated avatars for a scenario or recording, which have
-/// their own. What is dropped into a window later needs no check: there they are left out.
-[[nodiscard]] Result<void> check_people(const ViewTarget& target);
+/// Fails with kBadConfig: an option that the target does not obey, as one of simulated avatars for
+/// a scenario or recording, which have their own. What is dropped into a window later needs no
+/// check: there they are left out.
+[[nodiscard]] Result<void> check_options(const CLI::App& command, const ViewTarget& target);
 
 /// How to load it. Errors are reported on loading.
 [[nodiscard]] LoadStage stage_of(const ViewTarget& target);

@@ -115,6 +115,16 @@ class ProgramOptions(ProgramCase):
         self.assertEqual([path.name for path in self.path.iterdir()], ["file"])
         self.assertEqual(self.run_throng(*cube, "--images", "d", "-o", "d/cube.slices").returncode, 0)
 
+    def test_options_of_one_run_and_of_many_are_not_mixed(self):
+        for words, *named in ((("--figure10", "a.png", "--figure9", "b.png"), "--figure10", "--figure9"),
+                              (("--figure11", "a.png", "--record", "b.csv"), "--figure11", "--record"),
+                              (("--seeds", 3, "--record", "b.csv"), "--seeds", "--record"), (("--at", 3), "--at", "--figure9"),
+                              (("--at", -1, "--figure9", "b.png"), "--at: -1 is below 0"),
+                              (("--at", 900000, "--figure9", "b.png", "--record", "b.csv"), "--at 900000: the run ends at frame ")):
+            with self.subTest(words=words):
+                self.assert_refused(self.run_throng("caacd", "--avatars", "5,12", *words), *named)
+                self.assertEqual(list(self.path.iterdir()), [])
+
     def test_gl_options_that_a_scenario_or_recording_does_not_obey_are_refused_by_name(self):
         self.write_hall()
         self.assertEqual(self.run_throng("run", "hall.toml", "--record", "hall.replay").returncode, 0)

@@ -172,8 +172,26 @@ Result<void> draw(const Chart& chart, const std::string& path) {
   return write_png(*image, path);
 }
 
-int caacd(Session& session, CaacdOptions& options) {
+// Fails if an option of the whole experiment stands beside one of a single run, or --at alone.
+Result<void> check_one_run(const CLI::App& command, const OneRunFiles& files) {
+  if (command.count("--at") > 0 && files.picture.empty()) {
+    return Error{Errc::kBadConfig, "--at is the frame of --figure9; add that, or leave it out"};
+  }
+  if (!files.any()) return {};
+  const char* one = files.picture.empty() ? "--record" : "--figure9";
+  for (const char* name : {"--figure10", "--figure11", "--seeds"}) {
+    if (command.count(name) == 0) continue;
+    return Error{
+        Errc::kBadConfig,
+        fmt::format("{} is of many runs, and {} of one; leave one of the two out", name, one)};
+  }
+  return {};
+}
+
+int caacd(Session& session, const CLI::App& command, CaacdOptions& options) {
+  if (auto ok = check_one_run(command, options.one_run); !ok) return fail(ok.error());
   if (auto ok = complete(options); !ok) return fail(ok.error());
+  options.one_run.is_at_given = command.count("--at") > 0;
   if (options.one_run.any()) return run_once(session, options.study, options.one_run);
   if (!std::ranges::is_sorted(options.study.avatars, std::ranges::less_equal{})) {
     return fail({Errc::kBadConfig, "--avatars: write the numbers in ascending order"});
@@ -291,10 +309,15 @@ void add_caacd(CLI::App& parser, Session& session) {
   add_output(*command, session, "--figure9", options->one_run.picture,
              "One run instead, of the last set and number of avatars: its picture")
       ->type_name("FILE.png");
-  command->add_option("--at", options->one_run.at, "Frame of that picture")->capture_default_str();
+  command
+      ->add_option("--at", options->one_run.at,
+                   "Frame of that picture; if not given, the last of a shorter run")
+      ->check(at_least(0))
+      ->capture_default_str();
   add_output(*command, session, "--record", options->one_run.record, "The same run, frame by frame")
       ->type_name("FILE.csv");
-  command->callback([&session, options] { session.exit_code = caacd(session, *options); });
+  command->callback(
+      [&session, options, command] { session.exit_code = caacd(session, *command, *options); });
 }
 
 }  // namespace throng::app

@@ -116,6 +116,11 @@ int run_once(Session& session, const StudyConfig& study, const OneRunFiles& file
     if (record.is_open()) record.write(rows(*run, before, study.dt));
   }
   if (!drawn) {
+    if (files.is_at_given && run->counts().frames < files.at) {
+      return fail({Errc::kBadConfig, fmt::format("--at {}: the run ends at frame {}; name one of "
+                                                 "its frames, or leave --at out",
+                                                 files.at, run->counts().frames)});
+    }
     if (auto ok = draw(*run, trails, space, set, files.picture); !ok) return fail(ok.error());
   }
   if (record.is_open()) {

@@ -12,9 +12,10 @@
 namespace throng::app {
 
 struct OneRunFiles {
-  std::string picture;  ///< As figure 9, or empty.
-  int64_t at = 300;     ///< Frame of the picture.
-  std::string record;   ///< CSV, or empty.
+  std::string picture;       ///< As figure 9, or empty.
+  int64_t at = 300;          ///< Frame of the picture.
+  bool is_at_given = false;  ///< Then a run that ends before fails.
+  std::string record;        ///< CSV, or empty.
   [[nodiscard]] bool any() const { return !picture.empty() || !record.empty(); }
 };
 

@@ -141,6 +141,22 @@ void append_scene(Scene& scene, const Scene& other) {
                                other.report.warnings.end());
 }
 
+Result<void> check_units(const SourceOptions& options) {
+  const char* option = !options.up.empty() ? "--up" : options.scale > 0 ? "--scale" : nullptr;
+  if (option == nullptr) return {};
+  for (const std::string& file : options.files) {
+    if (!file.starts_with(kBuiltin)) return {};
+  }
+  std::string what = "is for model files; name one, or leave it out";
+  if (!options.files.empty()) {
+    what = fmt::format("is for model files; {} has metres and y up, leave it out",
+                       options.files.front());
+  } else if (!options.scene.empty()) {
+    what = fmt::format("is for files named beside --scene; write it into {}", options.scene);
+  }
+  return Error{Errc::kBadConfig, fmt::format("{} {}", option, what)};
+}
+
 Result<Scene> read_sources(const SourceOptions& options, Context& context,
                            SceneMaterials materials) {
   SceneConfig config;
@@ -166,6 +182,7 @@ Result<Scene> read_sources(const SourceOptions& options, Context& context,
   if (config.sources.empty() && builtins.empty()) {
     return Error{Errc::kBadConfig, "no model given; name a file, a scene file or builtin:garage"};
   }
+  if (auto ok = check_units(options); !ok) return ok.error();
 
   Scene scene;
   if (!config.sources.empty()) {

@@ -28,6 +28,9 @@ void add_source_options(CLI::App* command, SourceOptions& options,
 /// Reads "builtin:garage,size=60,seed=3". Fails with kBadConfig and the word that is wrong.
 Result<BuiltinWorldConfig> parse_builtin(const std::string& text);
 
+/// Fails with kBadConfig if --up or --scale is given and no file that it is of.
+Result<void> check_units(const SourceOptions& options);
+
 /// Appends `other` to `scene`, its report included.
 void append_scene(Scene& scene, const Scene& other);
 

@@ -88,6 +88,17 @@ class ProgramOptions(ProgramCase):
             done = subprocess.run([PROGRAM, *words], cwd=self.path / "below", capture_output=True, text=True, check=False)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
 
+    def test_units_are_refused_for_worlds_that_have_their_own(self):
+        for words in (("--up", "z"), ("--scale", "0.01")):
+            with self.subTest(words=words):
+                self.assert_refused(self.run_throng("bake", "builtin:cube", "-o", "x.throng", *words), f"throng: {words[0]} is for model files; builtin:cube")
+                self.assert_refused(self.run_throng("slices", "builtin:cube", *words), words[0], "builtin:cube")
+                self.assert_refused(self.run_throng("verify", self.world, "--source", "builtin:garage", *words), words[0], "builtin:garage")
+        (self.path / "scene.toml").write_text('[[source]]\npath = "a.obj"\n')
+        (self.path / "a.obj").write_text("v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n")
+        self.assert_refused(self.run_throng("bake", "--scene", "scene.toml", "--up", "z", "-o", "x.throng"), "--up", "write it into scene.toml")
+        self.assertEqual(self.run_throng("bake", "a.obj", "builtin:cube", "--up", "z", "-o", "x.throng").returncode, 0)
+
     def test_pictures_of_slices_replace_all_of_before_and_nothing_else(self):
         cut = ("slices", "builtin:garage,size=45,levels=2", "--cell", 0.5, "--json", "--images", "pictures")
         done = self.run_throng(*cut, "--resolution", 0.05)

@@ -150,6 +150,7 @@ Groups group_walkers(const std::vector<CsvWalker>& walkers, const std::vector<At
 
 Result<Scene> scene_of(Session& session, const World& world, const ScenePictureOptions& options) {
   if (options.sources.files.empty() && options.sources.scene.empty()) {
+    if (auto ok = check_units(options.sources); !ok) return ok.error();
     return walkable_surface(world, options.avatar_class, session.context);
   }
   Result<Scene> scene = read_sources(options.sources, session.context, SceneMaterials::kRead);

@@ -108,6 +108,7 @@ std::vector<double> heights_of(const std::vector<AvatarClass>& classes) {
 Result<void> set_scene(StageParts& parts, const ViewTarget& target, const World& world,
                        Context& context) {
   const bool given = has_sources(target.sources);
+  if (auto ok = check_units(target.sources); !given && !ok) return ok;
   Result<Scene> scene = given ? read_sources(target.sources, context, SceneMaterials::kRead)
                               : walkable_surface(world, 0, context);
   if (!scene) return scene.error();

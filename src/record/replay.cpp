@@ -234,6 +234,7 @@ Result<void> Replay::State::walk() {
     why = "is corrupt";
     chunks.pop_back();
   }
+  if (ended && why.empty() && at < bytes.size()) why = "goes on after its end";
   good_bytes = at;
   if (!ended || !why.empty()) {
     damage = name + " " + why + " at byte " + std::to_string(at) + "; the first " +

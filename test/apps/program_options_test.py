@@ -126,6 +126,20 @@ class ProgramOptions(ProgramCase):
         self.assertEqual([path.name for path in self.path.iterdir()], ["file"])
         self.assertEqual(self.run_throng(*cube, "--images", "d", "-o", "d/cube.slices").returncode, 0)
 
+    def test_bytes_after_the_end_of_slices_and_recordings_are_found(self):
+        self.assertEqual(self.run_throng("slices", "builtin:cube", "--cell", 0.5, "-o", "cube.slices").returncode, 0)
+        whole = (self.path / "cube.slices").read_bytes()
+        for more in (b"\0", b"\0" * 4, b"more", whole):
+            (self.path / "more.slices").write_bytes(whole + more)
+            self.assert_refused(self.run_throng("slices", "more.slices"), "more.slices: has bytes after its end")
+        done = self.run_throng("run", self.world, "--avatars", 5, "--steps", 5, "--record", "walk.replay")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        content = (self.path / "walk.replay").read_bytes()
+        (self.path / "walk.replay").write_bytes(content + b"\0")
+        done = self.run_throng("replay", "walk.replay", "--json")
+        self.assertIn(f"goes on after its end at byte {len(content)}; the first 6 frames are good", done.stderr)
+        self.assertEqual((done.returncode, json.loads(done.stdout)["complete"]), (0, False))
+
     def test_options_of_one_run_and_of_many_are_not_mixed(self):
         for words, *named in ((("--figure10", "a.png", "--figure9", "b.png"), "--figure10", "--figure9"),
                               (("--figure11", "a.png", "--record", "b.csv"), "--figure11", "--record"),

@@ -207,6 +207,11 @@ TEST(DepthSlices, AFileHoldsThemAllAndADamagedOneIsRefused) {
     EXPECT_FALSE(load_slices(folder.write("short.slices", bytes.substr(0, k))));
   }
   EXPECT_GT(found, 290);
+  for (size_t k = 1; k < 20; ++k) {
+    const auto longer = load_slices(folder.write("long.slices", bytes + std::string(k, '\0')));
+    ASSERT_FALSE(longer) << k;
+    EXPECT_NE(longer.error().message.find("after its end"), std::string::npos);
+  }
   EXPECT_FALSE(is_slice_file(folder.write("a.obj", "v 0 0 0\n")));
   EXPECT_FALSE(is_slice_file(folder.path()));
   EXPECT_FALSE(load_slices(folder.path() + "/none.slices"));

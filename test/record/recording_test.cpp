@@ -723,6 +723,22 @@ TEST(Recording, ADestroyedRecorderLeavesAllFrames) {
   EXPECT_NE(replay->damage().find("was not finished"), std::string::npos) << replay->damage();
 }
 
+TEST(Recording, BytesAfterTheEndAreNoPartOfIt) {
+  const ScratchFolder folder;
+  const std::string path = folder.path() + "/run.replay";
+  const auto run = random_run(11, 10, 6);
+  record(path, run);
+  const std::string bytes = bytes_of(path);
+  for (const size_t more : {size_t{1}, size_t{8}, bytes.size()}) {
+    auto replay = Replay::open(folder.write("long", bytes + bytes.substr(0, more)));
+    ASSERT_TRUE(replay);
+    EXPECT_EQ(replay->frame_count(), run.size());
+    EXPECT_EQ(replay->bytes(), bytes.size());
+    EXPECT_NE(replay->damage().find("goes on after its end"), std::string::npos);
+  }
+  EXPECT_EQ(Replay::open(path)->damage(), "");
+}
+
 TEST(FrameCodec, HeadingsAreTheNearestOf256) {
   for (int32_t k = 0; k < 256; ++k) {
     const Heading h = record::heading_of(static_cast<uint8_t>(k));

@@ -1,20 +1,23 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
+#include "papers/slices/slice_file.h"
+
 #include <flatbuffers/flatbuffers.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <fstream>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/files/file_map.h"
 #include "core/hash.h"
 #include "papers/slices/slices_generated.h"
-#include "throng/papers.h"
 
 // Reads and writes files of slices (FlatBuffers) and checks every number that is used as an index.
 namespace throng {
@@ -24,6 +27,35 @@ constexpr const char* kIdentifier = "THSL";
 constexpr uint32_t kVersion = 1;
 constexpr uint64_t kMaxBytes = (uint64_t{1} << 31) - (1 << 20);  // FlatBuffers' own limit
 constexpr int32_t kMaxSide = 1 << 27;                            // [cells]
+
+// Slices may share their bytes in a forged file: do they take no more than it has?
+bool fits(const format::SlicesFile& file, uint64_t file_bytes) {
+  uint64_t bytes = 0;
+  for (const format::SliceDepths* slice : *file.slices()) {
+    bytes += uint64_t{slice->depths()->size()} * sizeof(uint16_t);
+    if (bytes > file_bytes) return false;
+  }
+  return true;
+}
+
+// FlatBuffers are written from back to front: the first depths, padded to four bytes, end a file.
+bool ends_with_depths(const format::SlicesFile& file, std::span<const uint8_t> bytes) {
+  const uint8_t* end = bytes.data();
+  for (const format::SliceDepths* slice : *file.slices()) {
+    const auto& depths = *slice->depths();
+    end = std::max(end, depths.Data() + size_t{depths.size()} * sizeof(uint16_t));
+  }
+  const auto used = static_cast<size_t>(end - bytes.data());
+  return (used + 3) / 4 * 4 == bytes.size();
+}
+
+Error bad(const std::string& path, const std::string& what) {
+  return {Errc::kBadFile, path + ": " + what + "; make it again with throng slices"};
+}
+
+}  // namespace
+
+namespace papers {
 
 uint64_t sum_of(const DepthSlices& set) {
   const std::array<uint64_t, 10> words = {
@@ -38,10 +70,6 @@ uint64_t sum_of(const DepthSlices& set) {
     sum = hash_span(std::span<const uint16_t>(slice.depths), sum);
   }
   return sum;
-}
-
-Error bad(const std::string& path, const std::string& what) {
-  return {Errc::kBadFile, path + ": " + what + "; make it again with throng slices"};
 }
 
 bool is_sound(const DepthSlices& set) {
@@ -63,20 +91,42 @@ bool is_sound(const DepthSlices& set) {
   return true;
 }
 
-// Slices may share their bytes in a forged file: do they take no more than it has?
-bool fits(const format::SlicesFile& file, uint64_t file_bytes) {
-  uint64_t bytes = 0;
-  for (const format::SliceDepths* slice : *file.slices()) {
-    bytes += uint64_t{slice->depths()->size()} * sizeof(uint16_t);
-    if (bytes > file_bytes) return false;
+Result<StoredSlices> decode_slices(std::span<const uint8_t> bytes, const std::string& name) {
+  flatbuffers::Verifier verifier(bytes.data(), bytes.size());
+  if (bytes.size() < 8 || !flatbuffers::BufferHasIdentifier(bytes.data(), kIdentifier) ||
+      !verifier.VerifyBuffer<format::SlicesFile>(kIdentifier)) {
+    return bad(name, "not a file of slices, or truncated");
   }
-  return true;
+  const format::SlicesFile& file = *flatbuffers::GetRoot<format::SlicesFile>(bytes.data());
+  if (file.version() != kVersion) {
+    return bad(
+        name, fmt::format("slices of version {}, this program reads {}", file.version(), kVersion));
+  }
+  if (!fits(file, bytes.size())) return bad(name, "its numbers make no sense");
+  if (!ends_with_depths(file, bytes)) return bad(name, "has bytes after its end");
+  StoredSlices stored{.slices = {.width = file.width(),
+                                 .depth = file.depth(),
+                                 .cell = file.cell(),
+                                 .origin_x = file.origin_x(),
+                                 .origin_z = file.origin_z(),
+                                 .far_plane = file.far_plane(),
+                                 .avatar_height = file.avatar_height(),
+                                 .resolution = file.resolution(),
+                                 .taken = file.taken(),
+                                 .extra = file.extra(),
+                                 .slices = {}},
+                      .sum = file.sum()};
+  for (const format::SliceDepths* slice : *file.slices()) {
+    stored.slices.slices.push_back(
+        {.height = slice->height(), .depths = {slice->depths()->begin(), slice->depths()->end()}});
+  }
+  return stored;
 }
 
-}  // namespace
+}  // namespace papers
 
 Result<void> save_slices(const DepthSlices& set, const std::string& path) {
-  THRONG_ASSERT(is_sound(set));
+  THRONG_ASSERT(papers::is_sound(set));
   if (set.bytes() > kMaxBytes) {
     return Error{
         Errc::kLimit,
@@ -93,9 +143,9 @@ Result<void> save_slices(const DepthSlices& set, const std::string& path) {
   }
   const auto slices_at = builder.CreateVector(slices);
   builder.Finish(
-      format::CreateSlicesFile(builder, kVersion, sum_of(set), set.width, set.depth, set.cell,
-                               set.origin_x, set.origin_z, set.far_plane, set.avatar_height,
-                               set.resolution, set.taken, set.extra, slices_at),
+      format::CreateSlicesFile(builder, kVersion, papers::sum_of(set), set.width, set.depth,
+                               set.cell, set.origin_x, set.origin_z, set.far_plane,
+                               set.avatar_height, set.resolution, set.taken, set.extra, slices_at),
       kIdentifier);
   return write_file(path, {builder.GetBufferPointer(), builder.GetSize()});
 }
@@ -109,36 +159,13 @@ bool is_slice_file(const std::string& path) {
 Result<DepthSlices> load_slices(const std::string& path) {
   const Result<FileMap> map = FileMap::open(path);
   if (!map) return map.error();
-  const std::span<const uint8_t> bytes = map->bytes();
-  flatbuffers::Verifier verifier(bytes.data(), bytes.size());
-  if (bytes.size() < 8 || !flatbuffers::BufferHasIdentifier(bytes.data(), kIdentifier) ||
-      !verifier.VerifyBuffer<format::SlicesFile>(kIdentifier)) {
-    return bad(path, "not a file of slices, or truncated");
+  Result<papers::StoredSlices> stored = papers::decode_slices(map->bytes(), path);
+  if (!stored) return stored.error();
+  if (stored->sum != papers::sum_of(stored->slices)) {
+    return bad(path, "its checksum is wrong (damaged)");
   }
-  const format::SlicesFile& file = *flatbuffers::GetRoot<format::SlicesFile>(bytes.data());
-  if (file.version() != kVersion) {
-    return bad(
-        path, fmt::format("slices of version {}, this program reads {}", file.version(), kVersion));
-  }
-  if (!fits(file, bytes.size())) return bad(path, "its numbers make no sense");
-  DepthSlices set{.width = file.width(),
-                  .depth = file.depth(),
-                  .cell = file.cell(),
-                  .origin_x = file.origin_x(),
-                  .origin_z = file.origin_z(),
-                  .far_plane = file.far_plane(),
-                  .avatar_height = file.avatar_height(),
-                  .resolution = file.resolution(),
-                  .taken = file.taken(),
-                  .extra = file.extra(),
-                  .slices = {}};
-  for (const format::SliceDepths* slice : *file.slices()) {
-    set.slices.push_back(
-        {.height = slice->height(), .depths = {slice->depths()->begin(), slice->depths()->end()}});
-  }
-  if (file.sum() != sum_of(set)) return bad(path, "its checksum is wrong (damaged)");
-  if (!is_sound(set)) return bad(path, "its numbers make no sense");
-  return set;
+  if (!papers::is_sound(stored->slices)) return bad(path, "its numbers make no sense");
+  return std::move(stored->slices);
 }
 
 }  // namespace throng

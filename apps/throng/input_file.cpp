@@ -11,6 +11,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "throng/papers.h"
+
 // Reads whole files. Not with streams: one that is opened on a folder is good, and its first read
 // throws.
 namespace throng::app {
@@ -45,6 +47,12 @@ Result<std::string> read_file(const std::string& path, const std::string& remedy
   }
   if (std::ferror(file.get()) != 0) return unreadable(path, errno, remedy);
   return text;
+}
+
+bool names_slices(const std::string& path) {
+  std::error_code failed;
+  if (std::filesystem::is_directory(path, failed)) return false;
+  return path.ends_with(".slices") || is_slice_file(path);
 }
 
 Result<void> check_has_frames(const Replay& replay, const std::string& file) {

@@ -17,6 +17,11 @@ namespace throng::app {
 /// Fails as read_file does before its first byte: for files that are read line by line.
 [[nodiscard]] Result<void> check_file(const std::string& path, const std::string& remedy);
 
+/// Does a path name a file of slices, by its content or its end, ".slices"? No folder does.
+[[nodiscard]] bool names_slices(const std::string& path);
+/// What to do if it cannot be read.
+inline constexpr const char* kNoSlices = "write slices with `throng slices MODEL -o FILE.slices`";
+
 /// Fails with kBadFile if a recording holds no frame: nothing can be shown, exported or summed up.
 [[nodiscard]] Result<void> check_has_frames(const Replay& replay, const std::string& file);
 

@@ -126,6 +126,12 @@ class ProgramOptions(ProgramCase):
         self.assertEqual([path.name for path in self.path.iterdir()], ["file"])
         self.assertEqual(self.run_throng(*cube, "--images", "d", "-o", "d/cube.slices").returncode, 0)
 
+    def test_slices_that_do_not_exist_are_said_to_be_missing(self):
+        for command in (("run", "none.slices", "--wander"), ("run", "none.slices"), ("slices", "none.slices")):
+            self.assert_refused(self.run_throng(*command), "none.slices: cannot be read: No such file", "throng slices MODEL -o")
+        (self.path / "text.slices").write_text("no slices at all\n")
+        self.assert_refused(self.run_throng("run", "text.slices", "--wander"), "text.slices: not a file of slices")
+
     def test_bytes_after_the_end_of_slices_and_recordings_are_found(self):
         self.assertEqual(self.run_throng("slices", "builtin:cube", "--cell", 0.5, "-o", "cube.slices").returncode, 0)
         whole = (self.path / "cube.slices").read_bytes()

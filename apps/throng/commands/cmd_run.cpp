@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "input_file.h"
 #include "command.h"
 #include "number_checks.h"
 #include "run/caacd_options.h"
@@ -168,6 +169,7 @@ Result<void> check_scenario(const CLI::App& command, const std::string& file) {
 
 // Fails if an option of avatars with goals stands beside --wander.
 Result<void> check_wander(const CLI::App& command) {
+  if (auto ok = check_file(options.world, kNoSlices); !ok) return fail(ok.error());
   for (const char* name :
        {"--goals", "--near", "--radius", "--labels", "--zones", "--search-memory", "--model",
         "--set", "--order", "--full-speed", "--ignore-jams", "--pushing"}) {
@@ -306,7 +308,7 @@ void add_run(CLI::App& parser, Session& session) {
       session.exit_code = fail({Errc::kBadConfig, what + " goes with a scenario file"});
       return;
     }
-    if (is_slice_file(options->world)) {
+    if (names_slices(options->world)) {
       session.exit_code = run_slices(session, *command, *options);
       return;
     }

@@ -74,6 +74,7 @@ int open_slices(Session& session, const CLI::App& command, const SlicesOptions& 
     return fail({Errc::kBadConfig,
                  fmt::format("{}: {} is for models; these slices are already cut", file, name)});
   }
+  if (auto ok = check_file(file, kNoSlices); !ok) return fail(ok.error());
   const Result<DepthSlices> set = load_slices(file);
   if (!set) return fail(set.error());
   return print_slices(session, options, *set, {{"file", file}}, "");
@@ -81,7 +82,7 @@ int open_slices(Session& session, const CLI::App& command, const SlicesOptions& 
 
 int slices(Session& session, const CLI::App& command, const SlicesOptions& options) {
   const std::vector<std::string>& files = options.sources.files;
-  if (files.size() == 1 && is_slice_file(files.front()))
+  if (files.size() == 1 && names_slices(files.front())) {
     return open_slices(session, command, options);
   const Result<Scene> scene = read_sources(options.sources, session.context);
   if (!scene) return fail(scene.error());

@@ -146,6 +146,12 @@ class ProgramOptions(ProgramCase):
         self.assertIn(f"goes on after its end at byte {len(content)}; the first 6 frames are good", done.stderr)
         self.assertEqual((done.returncode, json.loads(done.stdout)["complete"]), (0, False))
 
+    def test_the_summary_of_a_run_names_all_its_classes(self):
+        run = ("run", self.world, "--avatars", 20, "--also", "giant:2", "--also", "child:3", "--steps", 3)
+        done = self.run_throng(*run)
+        self.assertIn("25 adult, giant, child avatars, 3 steps", done.stdout, done.stderr)
+        self.assertEqual(json.loads(self.run_throng(*run, "--json").stdout)["also"], [["giant", 2], ["child", 3]])
+
     def test_options_of_one_run_and_of_many_are_not_mixed(self):
         for words, *named in ((("--figure10", "a.png", "--figure9", "b.png"), "--figure10", "--figure9"),
                               (("--figure11", "a.png", "--record", "b.csv"), "--figure11", "--record"),

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <utility>
 #include <memory>
 #include <vector>
 
@@ -12,6 +10,7 @@
 #include "command.h"
 #include "number_checks.h"
 #include "run/caacd_options.h"
+#include "run/avatar_group.h"
 #include "run/rerun.h"
 #include "run/run_crowd.h"
 #include "run/run_scenario.h"
@@ -47,24 +46,6 @@ struct RunOptions {
 Result<int32_t> pick_class(const World& world, std::string& name) {
   if (name.empty()) name = world.summary().classes.front().name;
   return class_named(world, name);
-}
-
-// Of --also.
-Result<std::vector<AvatarGroup>> read_groups(const std::vector<std::string>& also) {
-  std::vector<AvatarGroup> groups;
-  for (const std::string& group : also) {
-    const size_t colon = group.rfind(':');
-    uint32_t count = 0;
-    const char* end = group.data() + group.size();
-    const bool is_right = colon != std::string::npos && colon > 0 &&
-                          std::from_chars(group.data() + colon + 1, end, count).ptr == end &&
-                          count > 0;
-    if (!is_right) {
-      return Error{Errc::kBadConfig, "--also " + group + ": write CLASS:N, as in climber:50"};
-    }
-    groups.push_back({group.substr(0, colon), count});
-  }
-  return groups;
 }
 
 // --set and --order.
@@ -107,7 +88,7 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
   if (auto ok = read_goals(run); !ok) return fail(ok.error());
   const auto also = read_groups(options.also);
   if (!also) return fail(also.error());
-  for (const AvatarGroup& group : *also) run.also.emplace_back(group.class_name, group.avatars);
+  run.also = *also;
   auto crowd =
       times.measure("prepare", [&] { return GoalCrowd::create(world, run, session.context); });
   if (!crowd) return fail(crowd.error());
@@ -168,14 +149,12 @@ Result<void> check_scenario(const CLI::App& command, const std::string& file) {
 }
 
 // Fails if an option of avatars with goals stands beside --wander.
-Result<void> check_wander(const CLI::App& command) {
-  if (auto ok = check_file(options.world, kNoSlices); !ok) return fail(ok.error());
+Result<void> check_wander(const CLI::App& command, const char* remedy = "leave out --wander") {
   for (const char* name :
        {"--goals", "--near", "--radius", "--labels", "--zones", "--search-memory", "--model",
         "--set", "--order", "--full-speed", "--ignore-jams", "--pushing"}) {
     if (command.count(name) == 0) continue;
-    return Error{Errc::kBadConfig,
-                 fmt::format("{} is for avatars with goals; leave out --wander", name)};
+    return Error{Errc::kBadConfig, fmt::format("{} is for avatars with goals; {}", name, remedy)};
   }
   return {};
 }
@@ -197,7 +176,9 @@ int run_slices(Session& session, const CLI::App& command, RunOptions& options) {
         {Errc::kBadConfig,
          options.world + ": on slices avatars have no goals; add --wander, or bake a world"});
   }
-  if (auto fits = check_wander(command); !fits) return fail(fits.error());
+  if (auto fits = check_wander(command, "on slices there are none, leave it out"); !fits) {
+    return fail(fits.error());
+  }
   const auto also = read_groups(options.also);
   if (!also) return fail(also.error());
   if (options.check_every == 0) options.check_every = std::max<uint64_t>(1, options.steps / 10);

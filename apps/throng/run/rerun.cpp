@@ -13,6 +13,9 @@
 namespace throng::app {
 namespace {
 
+// Names a class of the settings in messages: no option gives it.
+constexpr const char* kClassOfSettings = "the recording's class";
+
 // Fails if a key is missing or of another kind.
 Result<void> need(const Json& settings, std::initializer_list<const char*> keys,
                   bool (*is_right)(const Json&)) {
@@ -24,22 +27,6 @@ Result<void> need(const Json& settings, std::initializer_list<const char*> keys,
                                              key)};
   }
   return {};
-}
-
-// "also": [["giant", 5], ...].
-Result<std::vector<std::pair<std::string, uint32_t>>> groups_of(const Json& settings) {
-  std::vector<std::pair<std::string, uint32_t>> groups;
-  for (const Json& group : settings.value("also", Json::array())) {
-    const bool is_right = group.is_array() && group.size() == 2 && group[0].is_string() &&
-                          group[1].is_number_unsigned();
-    if (!is_right) {
-      return Error{Errc::kBadFile,
-                   "the recording's settings have no usable 'also'; record the run "
-                   "again with this program"};
-    }
-    groups.emplace_back(group[0], group[1]);
-  }
-  return groups;
 }
 
 // "set": [mass, max speed, max force], and "by_state"; older recordings have neither.
@@ -72,13 +59,13 @@ Result<Rerun> rerun_wanderers(const Json& settings, const World& world, int32_t 
                       .speed = settings.at("speed"),
                       .seed = settings.at("seed"),
                       .workers = workers};
-  const Result<int32_t> avatar_class = class_named(world, settings.at("class"));
+  const Result<int32_t> avatar_class = class_named(world, settings.at("class"), kClassOfSettings);
   if (!avatar_class) return avatar_class.error();
   config.avatar_class = *avatar_class;
   const auto also = groups_of(settings);
   if (!also) return also.error();
   for (const auto& [name, avatars] : *also) {
-    const Result<int32_t> other = class_named(world, name);
+    const Result<int32_t> other = class_named(world, name, kClassOfSettings);
     if (!other) return other.error();
     config.also.push_back({*other, avatars});
   }
@@ -200,18 +187,14 @@ Json wanderers_settings(const WanderRun& run) {
                    {"dt", run.config.dt},
                    {"speed", run.config.speed},
                    {"seed", run.config.seed}};
-  for (const AvatarGroup& group : run.also) {
-    settings["also"].push_back(Json::array({group.class_name, group.avatars}));
-  }
+  if (!run.also.empty()) settings["also"] = json_of(run.also);
   return settings;
 }
 
 Json crowd_settings(const CrowdRun& run) {
   const CurvilinearTuning& curves = run.config.tuning.curvilinear;
-  Json also = Json::array();
-  for (const auto& [name, count] : run.also) also.push_back(Json::array({name, count}));
   return {{"avatars", run.avatars},
-          {"also", also},
+          {"also", json_of(run.also)},
           {"class", run.class_name},
           {"goals", run.goals},
           {"goals_text", run.goals_text},

@@ -108,6 +108,7 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
                {"seconds_total", t.sum.seconds_total},
                {"crowd_bytes", crowd.memory().total()},
                {"peak_bytes", peak_memory()}};
+  if (!run.also.empty()) json["also"] = json_of(run.also);
   times.add_to(json);
   print_result(
       session, json,
@@ -117,10 +118,10 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
           "the speed\n{}"
           "{} checks: {} wall entries, {} overlaps\n"
           "state {:016x}\n",
-          crowd.size(), run.class_name, times.steps(), run.config.dt, times.text_of_steps(),
-          times.text_of_parts(), t.sum.arrived, t.sum.planned, t.sum.no_path, t.progress / steps,
-          memory_text(t.sum.out_of_memory, "--search-memory"), t.checks, t.found.wall_entries,
-          t.found.overlaps, crowd.state_hash()));
+          crowd.size(), class_names(run.class_name, run.also), times.steps(), run.config.dt,
+          times.text_of_steps(), times.text_of_parts(), t.sum.arrived, t.sum.planned, t.sum.no_path,
+          t.progress / steps, memory_text(t.sum.out_of_memory, "--search-memory"), t.checks,
+          t.found.wall_entries, t.found.overlaps, crowd.state_hash()));
 }
 
 }  // namespace
@@ -139,12 +140,12 @@ GoalCrowd::GoalCrowd(const World& world, const CrowdRun& run, Crowd&& crowd)
 Result<GoalCrowd> GoalCrowd::create(const World& world, const CrowdRun& run, Context& context) {
   CrowdRun with_nodes = run;
   const std::vector<AvatarClass> classes = world.summary().classes;
-  std::vector<std::pair<std::string, uint32_t>> groups = run.also;
+  std::vector<AvatarGroup> groups = run.also;
   groups.insert(groups.begin(), {run.class_name, run.avatars});
   bool wants_nodes = false;
   for (size_t g = 0; g < groups.size(); ++g) {
     const Result<int32_t> avatar_class =
-        class_named(world, groups[g].first, g == 0 ? "--class" : "--also");
+        class_named(world, groups[g].class_name, g == 0 ? "--class" : "--also");
     if (!avatar_class) return avatar_class.error();
     const AvatarClass& avatar = classes[static_cast<size_t>(*avatar_class)];
     // A world baked for such a class has nodes; without nodes it walks.

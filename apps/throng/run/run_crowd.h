@@ -6,10 +6,10 @@
 #include <functional>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "command.h"
+#include "run/avatar_group.h"
 #include "run/run_times.h"
 #include "throng/crowd.h"
 #include "throng/surface.h"
@@ -25,7 +25,7 @@ struct CrowdRun {
   std::string goals_text;        // content of the file
   double near = 0;               // max distance of random goals, 0: anywhere [m]
   uint32_t avatars = 1000;
-  std::vector<std::pair<std::string, uint32_t>> also;  // further classes and their counts
+  std::vector<AvatarGroup> also;  // further classes and their counts
   uint64_t steps = 100;
   uint64_t check_every = 1;
   double speed = 0, radius = 0;

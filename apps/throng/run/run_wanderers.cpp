@@ -40,13 +40,6 @@ struct RunTotals {
   }
 };
 
-// "adult, giant".
-std::string names_of(const WanderRun& run) {
-  std::string names = run.class_name;
-  for (const AvatarGroup& group : run.also) names += ", " + group.class_name;
-  return names;
-}
-
 template <class Crowd>
 Json run_json(const WanderRun& run, const Crowd& crowd, const RunTotals& totals,
               const RunTimes& times) {
@@ -69,8 +62,7 @@ Json run_json(const WanderRun& run, const Crowd& crowd, const RunTotals& totals,
                {"seconds_total", totals.seconds_total},
                {"crowd_bytes", crowd.bytes()},
                {"peak_bytes", peak_memory()}};
-  for (const AvatarGroup& group : run.also)
-    json["also"].push_back(Json::array({group.class_name, group.avatars}));
+  if (!run.also.empty()) json["also"] = json_of(run.also);
   times.add_to(json);
   return json;
 }
@@ -83,9 +75,10 @@ std::string run_text(const WanderRun& run, const Crowd& crowd, const RunTotals& 
       "blocked {} times by walls, {} by avatars; waited {} times\n"
       "{} checks: {} wall entries, {} overlaps\n"
       "state {:016x}\n",
-      crowd.size(), names_of(run), times.steps(), run.config.dt, times.text_of_steps(),
-      times.text_of_parts(), totals.blocked_by_wall, totals.blocked_by_avatar, totals.waited,
-      totals.checks, totals.found.wall_entries, totals.found.overlaps, crowd.state_hash());
+      crowd.size(), class_names(run.class_name, run.also), times.steps(), run.config.dt,
+      times.text_of_steps(), times.text_of_parts(), totals.blocked_by_wall,
+      totals.blocked_by_avatar, totals.waited, totals.checks, totals.found.wall_entries,
+      totals.found.overlaps, crowd.state_hash());
 }
 
 // Steps, checks and writes a crowd whose files are open.
@@ -118,14 +111,15 @@ int run_steps(Session& session, const WanderRun& run, Crowd& crowd, Sinks& sinks
 }
 
 // One of the default classes.
-Result<AvatarClass> default_class(const std::string& name) {
+Result<AvatarClass> default_class(const std::string& name, const char* option) {
   std::string names;
   for (AvatarClass& avatar : default_classes()) {
     if (avatar.name == name) return std::move(avatar);
     names += (names.empty() ? "" : ", ") + avatar.name;
   }
-  return Error{Errc::kNotFound,
-               fmt::format("on slices there is no class \"{}\"; there are {}", name, names)};
+  return Error{
+      Errc::kNotFound,
+      fmt::format("{} {}: on slices there is no such class; choose from {}", option, name, names)};
 }
 
 }  // namespace
@@ -162,7 +156,8 @@ int run_slice_wanderers(Session& session, WanderRun run) {
   std::vector<AvatarGroup> groups{{run.class_name, run.config.avatars}};
   groups.insert(groups.end(), run.also.begin(), run.also.end());
   for (const AvatarGroup& group : groups) {
-    Result<AvatarClass> avatar = default_class(group.class_name);
+    const char* option = config.groups.empty() ? "--class" : "--also";
+    Result<AvatarClass> avatar = default_class(group.class_name, option);
     if (!avatar) return fail(avatar.error());
     if (run.config.speed != 0) avatar->speed = run.config.speed;
     names.push_back(avatar->name);

@@ -7,18 +7,13 @@
 #include <vector>
 
 #include "command.h"
+#include "run/avatar_group.h"
 #include "run/run_sinks.h"
 #include "run/run_times.h"
 #include "throng/papers.h"
 
 /// `throng run --wander`: a crowd without goals.
 namespace throng::app {
-
-/// `--also CLASS:N`.
-struct AvatarGroup {
-  std::string class_name;
-  uint32_t avatars = 0;
-};
 
 struct WanderRun {
   std::string world;  // or a file of slices

@@ -84,6 +84,7 @@ int slices(Session& session, const CLI::App& command, const SlicesOptions& optio
   const std::vector<std::string>& files = options.sources.files;
   if (files.size() == 1 && names_slices(files.front())) {
     return open_slices(session, command, options);
+  }
   const Result<Scene> scene = read_sources(options.sources, session.context);
   if (!scene) return fail(scene.error());
   const auto start = std::chrono::steady_clock::now();
@@ -108,7 +109,9 @@ void add_slices(CLI::App& parser, Session& session) {
   const auto options = std::make_shared<SlicesOptions>();
   add_source_options(command, options->sources);
   SliceConfig& config = options->config;
-  command->add_option("--avatar-height", config.avatar_height, "Height of the smallest avatar [m]")
+  command
+      ->add_option("--avatar-height", config.avatar_height,
+                   "Height of the smallest avatar, 1.1 for children [m]")
       ->capture_default_str();
   command->add_option("--resolution", config.resolution, "Headroom that may be lost [m]")
       ->capture_default_str();

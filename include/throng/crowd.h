@@ -134,6 +134,12 @@ struct CrowdTuning {
   double no_progress_after = 0;
   /// Of SteeringModel::kCurvilinear alone.
   CurvilinearTuning curvilinear = {};
+
+  /// Avatars push instead of queueing, and nothing limits their acceleration.
+  void let_push() {
+    queues = false;
+    acceleration = 0;
+  }
 };
 
 /// How stairs slow a class: horizontal speeds divided by that on level ground, which is 1.34 m/s.

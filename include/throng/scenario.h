@@ -197,8 +197,8 @@ struct Scenario {
   SteeringModel steering = SteeringModel::kSampled;     ///< CrowdConfig::model.
   bool slow_on_slopes = true;                           ///< As in CrowdConfig.
   bool avoid_jams = true;                               ///< As in CrowdConfig.
-  bool pushing = false;     ///< Avatars do not queue: CrowdTuning::queues is false.
-  double acceleration = 4;  ///< As in CrowdTuning. [m/s2]
+  bool pushing = false;  ///< Avatars do not queue: CrowdTuning::queues is false.
+  double acceleration = CrowdTuning{}.acceleration;  ///< As in CrowdTuning. [m/s2]
 
   std::vector<ScenarioArea> areas;
   std::vector<DensityMap> densities;
@@ -208,6 +208,12 @@ struct Scenario {
   std::vector<Queue> queues;
   std::vector<Link> links;
   std::vector<ScenarioObstacle> obstacles;
+
+  /// As CrowdTuning::let_push.
+  void let_push() {
+    pushing = true;
+    acceleration = 0;
+  }
 };
 
 /// Reads a scenario file. Fails with kBadFile (missing, or the line, the key and the reason) or

@@ -14,8 +14,9 @@ Polygon box(double x0, double z0, double x1, double z1) {
 }
 
 CrowdTuning tuning_of(const ValidationConfig& config) {
-  if (!config.pushing) return {};
-  return {.queues = false, .acceleration = 0};
+  CrowdTuning tuning;
+  if (config.pushing) tuning.let_push();
+  return tuning;
 }
 
 Result<World> bake_plane(const PlaneConfig& plane, const AvatarClass& body,

@@ -291,10 +291,7 @@ Result<ValidationResult> run_trial(const Trial& trial, const ValidationConfig& c
   Scenario scenario = trial.scenario;
   scenario.seed += config.seed - 1;
   if (config.model != SteeringModel::kSampled) scenario.steering = config.model;
-  if (config.pushing) {
-    scenario.pushing = true;
-    scenario.acceleration = 0;
-  }
+  if (config.pushing) scenario.let_push();
   const auto world = open_world(scenario, context);
   if (!world) return world.error();
   auto simulation = Simulation::create(*world, scenario, config.workers, context);

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 #include <vector>
 
-#include "input_file.h"
 #include "command.h"
+#include "input_file.h"
 #include "number_checks.h"
-#include "run/caacd_options.h"
 #include "run/avatar_group.h"
+#include "run/caacd_options.h"
 #include "run/rerun.h"
 #include "run/run_crowd.h"
 #include "run/run_scenario.h"
@@ -80,10 +81,7 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
   run.config.workers = options.config.workers;
   run.config.slow_on_slopes = !options.full_speed;
   run.config.avoid_jams = !options.ignore_jams;
-  if (options.pushing) {
-    run.config.tuning.queues = false;
-    run.config.tuning.acceleration = 0;
-  }
+  if (options.pushing) run.config.tuning.let_push();
   if (auto ok = read_curves(options, run.config); !ok) return fail(ok.error());
   if (auto ok = read_goals(run); !ok) return fail(ok.error());
   const auto also = read_groups(options.also);
@@ -97,18 +95,6 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
                                    .dt = run.config.dt,
                                    .model = kCrowdModel,
                                    .settings = crowd_settings(run).dump(),
-  for (const char* name : {"--wander", "--near", "--set", "--order"}) {
-    if (command.count(name) == 0) continue;
-    return Error{Errc::kBadConfig,
-                 fmt::format("{} goes with a world, and no scenario can have it; leave it out for "
-                             "{}",
-                             name, file)};
-  }
-  return {};
-}
-
-int run_file(Session& session, const CLI::App& command, const RunOptions& options) {
-  if (auto fits = check_scenario(command, options.world); !fits) return fail(fits.error());
                                    .leans = crowd->crowd().may_lean()});
       !ok)
     return fail(ok.error());
@@ -129,6 +115,18 @@ Result<void> check_scenario(const CLI::App& command, const std::string& file) {
     return Error{Errc::kBadConfig,
                  fmt::format("{} goes with a world; in {} write {}", name, file, key)};
   }
+  for (const char* name : {"--wander", "--near", "--set", "--order"}) {
+    if (command.count(name) == 0) continue;
+    return Error{Errc::kBadConfig,
+                 fmt::format("{} goes with a world, and no scenario can have it; leave it out for "
+                             "{}",
+                             name, file)};
+  }
+  return {};
+}
+
+int run_file(Session& session, const CLI::App& command, const RunOptions& options) {
+  if (auto fits = check_scenario(command, options.world); !fits) return fail(fits.error());
   ScenarioRun run{.file = options.world,
                   .text = {},
                   .steps = {},
@@ -171,6 +169,7 @@ WanderRun wander_run(const RunOptions& options, std::vector<AvatarGroup> also) {
 
 // --wander on slices; everything but the classes as on a world.
 int run_slices(Session& session, const CLI::App& command, RunOptions& options) {
+  if (auto ok = check_file(options.world, kNoSlices); !ok) return fail(ok.error());
   if (!options.wander) {
     return fail(
         {Errc::kBadConfig,

@@ -248,23 +248,20 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
   if (run.model) scenario->steering = *run.model;
   if (run.full_speed) scenario->slow_on_slopes = false;
   if (run.ignore_jams) scenario->avoid_jams = false;
-  if (run.pushing) {
-    scenario->pushing = true;
-    scenario->acceleration = 0;
-  }
+  if (run.pushing) scenario->let_push();
   const auto world = times.measure("open", [&] { return open_world(*scenario, session.context); });
   if (!world) return world.error();
   auto simulation = times.measure("prepare", [&] {
     return Simulation::create(*world, *scenario, run.workers, session.context);
+  });
+  if (!simulation) return simulation.error();
+  Sinks sinks(run.sinks);
   // Absolute: pictures, models and worlds of the scenario are found from any folder later.
   const auto whole = [](const std::string& path) {
     std::error_code failed;
     const auto absolute = std::filesystem::absolute(path, failed);
     return failed ? path : absolute.lexically_normal().string();
   };
-  });
-  if (!simulation) return simulation.error();
-  Sinks sinks(run.sinks);
   const Json settings = {{"scenario", run.text},
                          {"file", whole(run.file)},
                          {"seed", scenario->seed},

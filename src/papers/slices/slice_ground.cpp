@@ -27,11 +27,7 @@ SliceGround::SliceGround(DepthSlices slices)
   taken_.resize(heights_.size() * stride_ * static_cast<size_t>(slices_.depth));
 }
 
-size_t SliceGround::slice_above(int32_t head) const {
-  const auto below = std::partition_point(heights_.begin(), heights_.end(),
-                                          [&](int32_t height) { return height >= head; });
-  return below == heights_.begin() ? 0 : static_cast<size_t>(below - heights_.begin()) - 1;
-}
+size_t SliceGround::slice_above(int32_t head) const { return index_above(heights_, head); }
 
 std::optional<int32_t> SliceGround::feet_after(int32_t feet, const CellBox& swept,
                                                const CellBox& to, const SliceBody& body) const {

@@ -9,9 +9,7 @@
 namespace throng::papers {
 
 size_t find_slice(const SliceSet& slices, int32_t head) {
-  size_t i = slices.kept.size() - 1;
-  while (i > 0 && slices.kept[i].height < head) --i;
-  return i;
+  return index_above(slices.kept, head, &Slice::height);
 }
 
 bool can_move(const SliceSet& slices, size_t slice, size_t from, size_t to, const SliceBody& body) {

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 #include "throng/papers.h"
 
@@ -17,8 +19,17 @@ struct SliceBody {
   int32_t step = 400;  ///< Moves must climb or drop less than this, as printed. [<= height]
 };
 
-/// The slice that a head at `head` reads: the lowest kept one at or above it. The first slice if
-/// none is (a head above it is above everything).
+/// The lowest of slices, highest first, at or above `head`; the first slice if none is (a head
+/// above it is above everything). `height` gets the height of an element. [mm]
+template <class Slices, class Height = std::identity>
+[[nodiscard]] size_t index_above(const Slices& slices, int32_t head, Height height = {}) {
+  const auto below = std::ranges::partition_point(
+      slices, [&](int32_t of_slice) { return of_slice >= head; }, height);
+  const auto above = static_cast<size_t>(below - std::ranges::begin(slices));
+  return above == 0 ? 0 : above - 1;
+}
+
+/// The slice that a head at `head` reads: see index_above. [mm]
 [[nodiscard]] size_t find_slice(const SliceSet& slices, int32_t head);
 
 /// May a body that stands in cell `from` of slice `slice` move to the neighbouring cell `to`? It

@@ -309,6 +309,24 @@ class THRONG_API Crowd {
   /// how many fit; then none is added.
   [[nodiscard]] Result<std::vector<AvatarId>> scatter(uint32_t count, const AvatarSpawn& like,
                                                       Context& context);
+  /// Makes a class of avatars that follow a density map: as a class of the world, but ground of
+  /// weight 0 is a wall to them, and a metre costs more where the weight is small: 1 for a weight
+  /// above half of the largest, half a metre more for each time that it is halved, at most 3.
+  /// Outside of the picture, and on floors above and below it, a metre costs 1. Returns the number
+  /// of the class, which AvatarSpawn::avatar_class, places() and scatter() take;
+  /// AvatarState::avatar_class stays that of the world. These avatars take no off-mesh links.
+  /// Source: [TC00] 5. Time: the ground of the class. Fails with kBadInput (the map), kNotFound
+  /// (class), kBadConfig (it flies or goes over nodes), kLimit (16 classes in all), and as `add`
+  /// does.
+  [[nodiscard]] Result<int32_t> add_density_class(int32_t avatar_class, const DensityGrid& map,
+                                                  Context& context);
+  /// Gives the map of such a class other weights. Avatars on ground that becomes weight 0 leave it
+  /// by the shortest path over it; no other enters it. All avatars of the class search their paths
+  /// again. Time: the ground of the class, and its flow fields. Fails with kNotFound (no such
+  /// class) and kBadInput (another number of pixels).
+  [[nodiscard]] Result<void> set_density(int32_t density_class, std::span<const uint8_t> weights);
+  /// May an avatar of a class in use stand at a place of the ground now, apart from others?
+  [[nodiscard]] bool may_stand(int32_t avatar_class, const Place& place) const;
   /// Removes avatars. Unknown ids are ignored.
   void remove(std::span<const AvatarId> ids);
 

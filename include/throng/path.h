@@ -111,6 +111,14 @@ struct OffMeshLink {
   NodePlace from_on_nodes = {}, to_on_nodes = {};
 };
 
+/// A picture seen from above whose brightness says how many people walk where: [TC00] 5.
+struct DensityGrid {
+  double x0 = 0, z0 = 0, x1 = 0, z1 = 0;  ///< Corners of the picture. [m, x0 < x1, z0 < z1]
+  double low = -1e6, high = 1e6;          ///< Heights of the floors to which it applies. [m]
+  int32_t width = 0, height = 0;          ///< [pixels, 1 to 16384]
+  std::vector<uint8_t> weights;           ///< Row by row, Z grows downwards; 0: none.
+};
+
 /// Names an edit; 0 names none. An id is never given twice.
 using EditId = uint32_t;
 

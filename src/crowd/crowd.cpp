@@ -46,7 +46,7 @@ Result<std::vector<SlopeFactors>> slope_factors_of(const World& world, const Cro
   }
   if (!config.slow_on_slopes) return std::vector<SlopeFactors>();
   std::vector<SlopeFactors> all = config.slope_factors;
-  all.resize(classes);
+  all.resize(kMaxAvatarClasses);
   return all;
 }
 
@@ -211,7 +211,8 @@ CrowdCheck Crowd::check() const {
   std::vector<crowd::CheckedBody> bodies;
   bodies.reserve(s.walk.bodies().size());
   for (const crowd::Body& b : s.walk.bodies()) {
-    bodies.push_back({b.x, b.z, b.y, b.level, b.avatar_class, b.radius * unit,
+    bodies.push_back({b.x, b.z, b.y, b.level,
+                      static_cast<int32_t>(s.shared.baked_class(b.avatar_class)), b.radius * unit,
                       s.mode_of(b).height_of(b), b.flies(), b.climbs, b.on_link});
   }
   CrowdCheck found =

@@ -65,12 +65,15 @@ crowd::Mode& Crowd::State::mode_of(const AvatarSpawn& spawn) {
 
 Result<void> Crowd::State::open_class(int32_t number, Context& context) {
   const world::WorldData& data = *data_of(shared.world);
-  if (auto ok = check_class(data.summary.classes, number, "crowd"); !ok) {
+  const auto c = static_cast<size_t>(number);
+  const bool follows_density = number >= 0 && c >= shared.baked_classes() &&
+                               c - shared.baked_classes() < shared.density_classes.size();
+  if (auto ok = check_class(data.summary.classes, number, "crowd"); !ok && !follows_density) {
     return Error{Errc::kNotFound, ok.error().message};
   }
-  const auto c = static_cast<size_t>(number);
   if (mode_of_class[c] != nullptr) return {};
-  auto ground = crowd::CrowdGround::create(data, number, world::step_mm(shared.body_class(c)));
+  auto ground = crowd::CrowdGround::create(data, static_cast<int32_t>(shared.baked_class(c)),
+                                           world::step_mm(shared.body_class(c)));
   if (!ground) return ground.error();
   shared.classes[c] = std::make_unique<crowd::SharedClass>();
   shared.classes[c]->ground = std::move(*ground);
@@ -79,7 +82,8 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
     if (ok) ok = mode->open_class(c, context);
   }
   if (ok) {
-    shared.obstacles.open_class(c, shared.classes[c]->ground);
+    shared.obstacles.open_class(c, shared.classes[c]->ground, shared.baked_class(c));
+    block_zero_cells(c);
     for (uint32_t slot = 0; slot < shared.obstacles.all().size(); ++slot) sync_paths(slot, c);
     ok = walk.find_flows(c, context);
     if (!ok) shared.obstacles.close_class(c);

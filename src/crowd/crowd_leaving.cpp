@@ -25,6 +25,7 @@ bool Crowd::State::is_occupied(uint32_t slot,
 void Crowd::State::mark_leaving(std::span<const std::pair<uint32_t, uint32_t>> found, bool all) {
   const std::span<crowd::Body> bodies = walk.bodies();
   std::vector<std::pair<uint32_t, uint32_t>> by_body;  // index, obstacle
+  add_on_zero(by_body);
   for (const auto& pair : found) {
     const crowd::Body& body = bodies[pair.second];
     if (mode_of(body).must_leave(body, shared.obstacles.all()[pair.first].wanted)) {
@@ -58,7 +59,11 @@ void Crowd::State::mark_leaving(std::span<const std::pair<uint32_t, uint32_t>> f
     constexpr uint8_t kAll = crowd::Body::kHasGoal | crowd::Body::kExternal |
                              crowd::Body::kArrived | crowd::Body::kNeedsPath;
     const bool has_path = (body.flags & kAll) == crowd::Body::kHasGoal;
-    if (has_path && !mode_of(body).leads_out(body, slots)) body.flags |= crowd::Body::kNeedsPath;
+    // From weight 0 by the shortest exit, whatever its path.
+    const bool is_on_zero = slots.back() == crowd::LeftCells::kZeroWeight;
+    if (has_path && (is_on_zero || !mode_of(body).leads_out(body, slots))) {
+      body.flags |= crowd::Body::kNeedsPath;
+    }
   }
 }
 

@@ -100,6 +100,7 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
                                       std::vector<AvatarId>* in_their_path) {
   if (in_their_path != nullptr) in_their_path->clear();
   const bool begins_step = in_their_path != nullptr;
+  if (begins_step) end_leaving_zero();
   if (slots.empty()) {
     if (begins_step && shared.some_leave) mark_leaving({}, begins_step);
     return 0;

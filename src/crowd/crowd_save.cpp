@@ -11,6 +11,7 @@
 #include "core/hash.h"
 #include "crowd/crowd_state.h"
 #include "crowd/mode/saved_rows.h"
+#include "crowd/saved_density.h"
 #include "path/edits/edit_list.h"
 #include "path/edits/saved_edits.h"
 #include "throng/crowd.h"
@@ -57,8 +58,9 @@ struct Head {
   uint64_t aside = 0;        // bodies that stand aside
   uint64_t slow_levels = 0;  // of the delay map
   crowd::DelayMap::SavedQuestions questions;
+  uint64_t density_bytes = 0;  // of save_densities
 };
-static_assert(sizeof(Head) == 41 * 8 && std::is_trivially_copyable_v<Head>);
+static_assert(sizeof(Head) == 42 * 8 && std::is_trivially_copyable_v<Head>);
 
 // An obstacle without its corners: those of `place`, then those of `wanted`; and without what its
 // edit holds.
@@ -152,7 +154,7 @@ uint64_t size_of(const Head& head) {
          head.climbs * crowd::ClimbMode::kRowBytes + head.link_uses * crowd::LinkMode::kRowBytes +
          head.views * sizeof(crowd::EngineDetail::View) + head.edit_bytes + head.call_bytes +
          head.slow_levels * sizeof(crowd::DelayMap::Saved) +
-         head.aside * sizeof(crowd::StandsAside) + 8;
+         head.aside * sizeof(crowd::StandsAside) + head.density_bytes + 8;
 }
 
 // A world that was never written has no hash of its own.
@@ -212,12 +214,12 @@ Error bad(const std::string& what) { return {Errc::kBadFile, "crowd: what was sa
 // No body is so large, and sums of a few such sizes fit. [units, mm]
 constexpr int32_t kMaxExtent = 1 << 28;
 
-bool is_sound(const crowd::Body& b, const world::WorldData& data) {
+bool is_sound(const crowd::Body& b, const world::WorldData& data, size_t classes) {
   const bool finite =
       std::isfinite(b.velocity.x + b.velocity.z + b.preferred.x + b.preferred.z + b.detour_angle) &&
       std::isfinite(b.speed);
   if (!finite || !(b.speed > 0) || b.radius <= 0 || b.radius > kMaxExtent ||
-      b.avatar_class >= data.summary.classes.size()) {
+      b.avatar_class >= classes) {
     return false;
   }
   if (b.x < 0 || b.z < 0 || !world::in_grid(data, b.point())) return false;
@@ -297,7 +299,8 @@ Result<Head> read_head(const World& world, const CrowdConfig& config,
       head.obstacles >= kMax || head.corners >= kMax || head.free_obstacles >= kMax ||
       head.target_values >= kMax || head.searches > head.flights || head.views >= kMax ||
       head.edit_bytes >= kMax || head.call_bytes >= kMax || head.slow_levels >= kMax ||
-      head.aside >= kMax || (head.flights != 0 && head.flights != head.slots) ||
+      head.aside >= kMax || head.density_bytes >= kMax ||
+      (head.flights != 0 && head.flights != head.slots) ||
       (head.climbs != 0 && head.climbs != head.slots) ||
       (head.link_uses != 0 && head.link_uses != head.slots) || saved.size() != size_of(head)) {
     return bad("is cut short; save the crowd again");
@@ -328,7 +331,7 @@ struct SavedArrays {
   std::vector<uint32_t> free_obstacles;
   std::vector<double> targets;
   std::vector<crowd::LongSearch> searches;
-  std::vector<uint8_t> edits, calls;
+  std::vector<uint8_t> edits, calls, densities;
   std::vector<crowd::DelayMap::Saved> delays;
 };
 
@@ -353,7 +356,8 @@ SavedArrays read_arrays(const Head& head, const uint8_t* at, State& s) {
   at = take_rows(at, head.edit_bytes, saved.edits);
   at = take_rows(at, head.call_bytes, saved.calls);
   at = take_rows(at, head.slow_levels, saved.delays);
-  take_rows(at, head.aside, s.walk.standing_aside());
+  at = take_rows(at, head.aside, s.walk.standing_aside());
+  take_rows(at, head.density_bytes, saved.densities);
   return saved;
 }
 
@@ -385,10 +389,11 @@ bool are_sound(std::span<const crowd::Body> bodies, const Head& head, const Stat
     return is_new;
   };
   const world::WorldData& data = *data_of(s.shared.world);
+  const size_t classes = s.shared.baked_classes() + s.shared.density_classes.size();
   bool sound = head.bodies + head.free_slots == head.slots;
   for (const uint32_t slot : s.free_slots) sound = sound && use_slot(slot);
   for (const crowd::Body& body : bodies) {
-    sound = sound && is_sound(body, data) && use_slot(body.slot);
+    sound = sound && is_sound(body, data, classes) && use_slot(body.slot);
     for (const crowd::Mode* mode : s.modes) sound = sound && mode->is_sound(body);
   }
   return sound;
@@ -434,6 +439,8 @@ std::vector<uint8_t> Crowd::save() const {
   }
   head.slow_levels = delays.size();
   head.aside = s.walk.standing_aside().size();
+  const std::vector<uint8_t> densities = crowd::save_densities(s.shared.density_classes);
+  head.density_bytes = densities.size();
   std::vector<uint8_t> out;
   out.reserve(size_of(head));
   put_rows(out, &head, 1);
@@ -455,6 +462,7 @@ std::vector<uint8_t> Crowd::save() const {
   put_rows(out, calls.data(), calls.size());
   put_rows(out, delays.data(), delays.size());
   put_rows(out, s.walk.standing_aside().data(), head.aside);
+  put_rows(out, densities.data(), densities.size());
   const uint64_t sum = hash_bytes(out.data(), out.size());
   put_rows(out, &sum, 1);
   return out;
@@ -478,7 +486,8 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   s.slot1_of_edit.assign(s.shared.edits().edits.size(), 0);
   s.where.assign(head.slots, kNoBody);
   s.shared.step = head.step;
-  bool sound = are_sound(bodies, head, s);
+  auto densities = crowd::restore_densities(arrays.densities, s.shared.baked_classes());
+  bool sound = densities && s.take_densities(*std::move(densities)) && are_sound(bodies, head, s);
   auto all = obstacles_of(arrays.obstacles, arrays.corners, s.shared.edits(), s.slot1_of_edit);
   sound =
       sound && all && s.shared.obstacles.restore(std::move(*all), std::move(arrays.free_obstacles));
@@ -497,6 +506,10 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
       return bad("has other settings; give the nodes that it was made with");
     }
   }
+  for (size_t i = 0; i < s.shared.density_classes.size(); ++i) {
+    const auto number = static_cast<int32_t>(s.shared.baked_classes() + i);
+    if (auto ok = s.open_class(number, context); !ok) return ok.error();
+  }
   s.fit(head.extent, head.fastest);
   s.link.fit_taking({.widest = head.taking_widest, .tallest = head.taking_tallest});
   for (const crowd::Body& body : bodies) {
@@ -509,6 +522,7 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
     s.walk.engine().add(body);
   }
   s.where_is_old = true;
+  s.find_leaving_zero();
   s.shared.some_leave =
       std::any_of(bodies.begin(), bodies.end(), [](const crowd::Body& b) { return b.leaves; });
   // (Opening a class made them from the current ground.)

@@ -85,6 +85,18 @@ struct Crowd::State {
     return body.climbs ? climb.at_feet(body) : body;
   }
 
+  // crowd_density.cpp
+  /// Blocks what the density map of a class in use, if it has one, gives weight 0.
+  void block_zero_cells(size_t number);
+  /// Bodies that stand on such ground may leave it, in the classes that have some; no others may.
+  void find_leaving_zero();
+  /// Of a saved crowd. False: a class flies or goes over nodes.
+  bool take_densities(std::vector<crowd::DensityClass> classes);
+  /// Ends the leaving of ground of weight 0 where no body is on it any more.
+  void end_leaving_zero();
+  /// Bodies on ground of weight 0, with LeftCells::kZeroWeight: (index, obstacle).
+  void add_on_zero(std::vector<std::pair<uint32_t, uint32_t>>& found) const;
+
   // crowd_edits.cpp
   /// Makes the calls that have changed the edits since it was called last.
   void follow_edits();

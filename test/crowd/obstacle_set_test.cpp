@@ -53,7 +53,7 @@ struct Fixture {
       : world(std::move(of)),
         ground(*crowd::CrowdGround::create(*data_of(world), 0, kStep)),
         obstacle_set(world, world.summary().classes.size()) {
-    obstacle_set.open_class(0, ground);
+    obstacle_set.open_class(0, ground, 0);
   }
   double draw() { return random_unit(9, 1, n++); }
   Prism random_prism() {
@@ -167,7 +167,7 @@ TEST(ObstacleSet, FreesToTheBitWhatItBlocked) {
     // What is left must equal what the same obstacles leave of a new ground.
     crowd::CrowdGround rebuilt = *crowd::CrowdGround::create(*data_of(f.world), 0, kStep);
     crowd::ObstacleSet again(f.world, f.world.summary().classes.size());
-    again.open_class(0, rebuilt);
+    again.open_class(0, rebuilt, 0);
     for (const uint32_t slot : slots) {
       again.settle(again.add(f.obstacle_set.at(slot).place, ObstacleKind::kStatic, true));
     }

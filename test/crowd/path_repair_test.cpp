@@ -34,7 +34,7 @@ struct Crated {
         book(world, world.summary().classes.size()),
         live(*path::GroundFinder::create(world, {})),
         finder(std::move(a_finder)) {
-    book.open_class(0, ground);
+    book.open_class(0, ground, 0);
   }
   void put_up(const Prism& prism) {
     book.settle(book.add(prism, ObstacleKind::kStatic, true));

@@ -17,13 +17,15 @@ class LeavingGround {
  public:
   using Level = CrowdGround::Level;
   LeavingGround(const CrowdGround& ground, Level level, int32_t x, int32_t z)
-      : ground_(&ground), from_{level, world::in_tile(x), world::in_tile(z)} {}
+      : ground_(&ground), from_{level, world::in_tile(x), world::in_tile(z)} {
+    if (ground.left().is_zero(from_)) most_steps_ = ground.left().steps_out(from_);
+  }
 
   [[nodiscard]] bool is_legal(Level level, int32_t x, int32_t z) const {
     if (ground_->is_legal(level, x, z)) return true;
     const world::CellRows* baked = ground_->baked_legal(level);
     return baked != nullptr && ((*baked)[static_cast<size_t>(z)] >> x & 1) != 0 &&
-           ground_->left().may_cross(from_, {level, x, z});
+           ground_->left().may_cross(from_, {level, x, z}) && leads_out(level, x, z);
   }
   [[nodiscard]] int32_t sample(Level level, int32_t x, int32_t z) const {
     return ground_->sample(level, x, z);
@@ -35,8 +37,16 @@ class LeavingGround {
   }
 
  private:
+  // From weight 0 it only goes outwards, or along its border.
+  [[nodiscard]] bool leads_out(Level level, int32_t x, int32_t z) const {
+    const LeftCells& left = ground_->left();
+    return most_steps_ == LeftCells::kNone || !left.is_zero({level, x, z}) ||
+           left.steps_out({level, x, z}) <= most_steps_;
+  }
+
   const CrowdGround* ground_;
   LeftCells::Cell from_;
+  uint16_t most_steps_ = LeftCells::kNone;
 };
 
 /// Does a body at this place stand on a cell which it may leave?

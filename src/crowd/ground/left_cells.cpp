@@ -76,9 +76,10 @@ bool LeftCells::enters(const Cell& cell, const AirPosition& from, const AirPosit
   if (of == nullptr) return false;
   const auto is_in = [&](const Part& part, AirPosition feet) {
     feet.y += bottom_;
-    return part.solid.holds(feet, radius_, height_ - bottom_);
+    return part.solid->holds(feet, radius_, height_ - bottom_);
   };
   return std::any_of(of->parts.begin(), of->parts.end(), [&](const Part& part) {
+    if (!part.solid) return false;
     if (!has(part.rows, cell) || is_in(part, from)) return false;
     const auto between = [](int32_t a, int32_t b, int32_t i) {
       return static_cast<int32_t>(a + (int64_t{b} - a) * i / kSamples);
@@ -90,6 +91,13 @@ bool LeftCells::enters(const Cell& cell, const AirPosition& from, const AirPosit
     }
     return false;
   });
+}
+
+bool LeftCells::is_zero(const Cell& cell) const {
+  const OfLevel* of = find(cell.level);
+  return of != nullptr && std::any_of(of->parts.begin(), of->parts.end(), [&](const Part& part) {
+           return part.obstacle == kZeroWeight && has(part.rows, cell);
+         });
 }
 
 uint16_t LeftCells::steps_out(const Cell& cell) const {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -21,11 +22,13 @@ class LeftCells {
  public:
   using Level = uint32_t;  // of the world
 
+  /// In place of an obstacle: what a density map blocks.
+  static constexpr uint32_t kZeroWeight = UINT32_MAX;
   /// An obstacle, and its cells on a level.
   struct Part {
     uint32_t obstacle = 0;
     world::CellRows rows{};
-    AirObstacle solid;
+    std::optional<AirObstacle> solid = {};  // none: its cells say all
   };
   struct Cell {
     Level level = 0;
@@ -44,7 +47,7 @@ class LeftCells {
 
   [[nodiscard]] bool is_empty() const { return levels_.empty(); }
   [[nodiscard]] bool holds(const Cell& cell) const;
-  /// Appends the obstacles whose cells contain the cell.
+  /// Appends the obstacles whose cells contain the cell, or kZeroWeight.
   void list_obstacles(const Cell& cell, std::vector<uint32_t>& obstacles) const;
   /// May a body that stands on the cell `from` cross a cell that was legal before it was blocked?
   [[nodiscard]] bool may_cross(const Cell& from, const Cell& over) const;
@@ -55,6 +58,8 @@ class LeftCells {
   /// Steps from a cell to an exit, by cells; kNone: there is none.
   static constexpr uint16_t kNone = UINT16_MAX;
   [[nodiscard]] uint16_t steps_out(const Cell& cell) const;
+  /// Is the cell of weight 0?
+  [[nodiscard]] bool is_zero(const Cell& cell) const;
 
  private:
   friend class ExitSearch;

@@ -11,8 +11,8 @@ SharedState::SharedState(const World& a_world, const CrowdConfig& a_config)
     : world(a_world),
       config(a_config),
       unit(data_of(a_world)->summary.cell / world::kUnitsPerCell),
-      classes(data_of(a_world)->summary.classes.size()),
-      obstacles(a_world, data_of(a_world)->summary.classes.size()),
+      classes(kMaxAvatarClasses),
+      obstacles(a_world, kMaxAvatarClasses),
       obstacle_grid(unit) {}
 
 bool SharedState::flies(size_t number) const {

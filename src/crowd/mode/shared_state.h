@@ -17,6 +17,7 @@
 #include "crowd/ground/target.h"
 #include "crowd/mode/orientation.h"
 #include "crowd/obstacles/obstacle_set.h"
+#include "path/edits/density_cells.h"
 #include "path/edits/edit_list.h"
 #include "throng/avatar.h"
 #include "throng/crowd.h"
@@ -33,6 +34,12 @@ struct SharedClass {
   std::vector<std::vector<Place>> landings;
 };
 
+/// A class whose avatars follow a density map. It is number `baked_classes() + index`.
+struct DensityClass {
+  size_t body = 0;  // class of the world, which it is otherwise
+  std::shared_ptr<const path::DensityCells> cells;
+};
+
 struct SharedState {
   SharedState(const World& a_world, const CrowdConfig& a_config);
 
@@ -45,7 +52,9 @@ struct SharedState {
   /// Of this sub-step, whatever the number of sub-steps in those before. [step / kTimeUnits]
   uint64_t time = 0;
   static constexpr uint64_t kTimeUnits = uint64_t{1} << 20;  // as many as sub-steps at most
-  std::vector<std::unique_ptr<SharedClass>> classes;         // null: not in use
+  /// Of the world, then those that follow density maps, to kMaxAvatarClasses; null: not in use.
+  std::vector<std::unique_ptr<SharedClass>> classes;
+  std::vector<DensityClass> density_classes;
   ObstacleSet obstacles;
   ObstacleGrid obstacle_grid;             // those that are active or close
   bool some_leave = false;                // Body::leaves is set for some
@@ -61,7 +70,17 @@ struct SharedState {
   std::mutex goal_mutex;
 
   [[nodiscard]] const AvatarClass& body_class(size_t number) const {
-    return data_of(world)->summary.classes[number];
+    return data_of(world)->summary.classes[baked_class(number)];
+  }
+  [[nodiscard]] size_t baked_classes() const { return data_of(world)->summary.classes.size(); }
+  /// The class of the world that a class in use is, whatever map it follows.
+  [[nodiscard]] size_t baked_class(size_t number) const {
+    return number < baked_classes() ? number : density_classes[number - baked_classes()].body;
+  }
+  /// Null: it follows none.
+  [[nodiscard]] const std::shared_ptr<const path::DensityCells>& density_of(size_t number) const {
+    static const std::shared_ptr<const path::DensityCells> none;
+    return number < baked_classes() ? none : density_classes[number - baked_classes()].cells;
   }
   [[nodiscard]] const CrowdGround& ground_of(const Body& body) const {
     return classes[body.avatar_class]->ground;

@@ -53,8 +53,9 @@ Prism hull_of(const Prism& a, const Prism& b) {
 ObstacleSet::ObstacleSet(World world, size_t classes)
     : world_(std::move(world)), classes_(classes) {}
 
-void ObstacleSet::open_class(size_t number, CrowdGround& ground) {
+void ObstacleSet::open_class(size_t number, CrowdGround& ground, size_t body) {
   classes_[number].ground = &ground;
+  classes_[number].body = body;
   for (uint32_t slot = 0; slot < obstacles_.size(); ++slot) {
     if (!obstacles_[slot].exists) continue;
     if (obstacles_[slot].has_cells) put_up(slot, number);
@@ -243,7 +244,7 @@ std::vector<LevelCells> ObstacleSet::cells_under(size_t number, const Prism& pri
   const CrowdGround* ground = classes_[number].ground;
   if (ground == nullptr) return found;
   const world::WorldData& world = *data_of(world_);
-  const AvatarClass& avatar = world.summary.classes[number];
+  const AvatarClass& avatar = world.summary.classes[classes_[number].body];
   const path::SquareRange tiles =
       path::tiles_near(world, prism.corners, path::taking_reach(avatar));
   for (int32_t z = tiles.first_z; z <= tiles.last_z; ++z) {
@@ -301,16 +302,43 @@ void ObstacleSet::block_cells() {
     if (of.touched.empty()) continue;
     std::sort(of.touched.begin(), of.touched.end());
     of.touched.erase(std::unique(of.touched.begin(), of.touched.end()), of.touched.end());
-    block_levels(c, of);
+    block_levels(of);
     of.touched.clear();
   }
 }
 
-void ObstacleSet::block_levels(size_t number, ClassGround& of) {
+void ObstacleSet::set_zero_cells(size_t number, std::span<const LevelCells> cells, bool may_leave) {
+  ClassGround& of = classes_[number];
+  for (const auto& [level, rows] : of.zero_cells) of.touched.push_back(level);
+  of.zero_cells.clear();
+  for (const LevelCells& here : cells) {
+    of.zero_cells[here.level] = here.rows;
+    of.touched.push_back(here.level);
+  }
+  of.may_leave_zero = may_leave;
+}
+
+void ObstacleSet::set_zero_leave(size_t number, bool may_leave) {
+  ClassGround& of = classes_[number];
+  if (of.may_leave_zero == may_leave) return;
+  of.may_leave_zero = may_leave;
+  for (const auto& [level, rows] : of.zero_cells) of.touched.push_back(level);
+}
+
+bool ObstacleSet::is_on_zero(const Body& body) const {
+  if (body.has(Body::kMovedElsewhere)) return false;
+  const auto& zero_cells = classes_[body.avatar_class].zero_cells;
+  const auto here = zero_cells.find(body.level);
+  return here != zero_cells.end() &&
+         has(here->second, body.point().cell_x(), body.point().cell_z());
+}
+
+void ObstacleSet::block_levels(ClassGround& of) {
   std::vector<std::pair<int32_t, int32_t>> tiles;
   const WorldSummary& summary = data_of(world_)->summary;
   LeftCells& left = of.ground->left();
-  left.begin(summary, summary.classes[number]);
+  const AvatarClass& avatar = summary.classes[of.body];
+  left.begin(summary, avatar);
   for (const uint32_t level : of.touched) {
     world::CellRows blocked{}, kept{};
     std::vector<LeftCells::Part> parts;
@@ -326,6 +354,14 @@ void ObstacleSet::block_levels(size_t number, ClassGround& of) {
         }
       }
     }
+    if (const auto zero = of.zero_cells.find(level); zero != of.zero_cells.end()) {
+      for (size_t z = 0; z < blocked.size(); ++z) blocked[z] |= zero->second[z];
+      if (of.may_leave_zero) {
+        parts.push_back({.obstacle = LeftCells::kZeroWeight, .rows = zero->second});
+      } else {
+        for (size_t z = 0; z < kept.size(); ++z) kept[z] |= zero->second[z];
+      }
+    }
     of.ground->set_blocked(level, blocked);
     left.set_level(level, std::move(parts), kept);
     const CrowdGround::Record& record = of.ground->records()[level];
@@ -334,7 +370,7 @@ void ObstacleSet::block_levels(size_t number, ClassGround& of) {
   std::sort(tiles.begin(), tiles.end());
   tiles.erase(std::unique(tiles.begin(), tiles.end()), tiles.end());
   for (const auto& [x, z] : tiles) of.ground->join_tile(x, z);
-  find_exits(*of.ground, world::step_mm(summary.classes[number]), of.touched);
+  find_exits(*of.ground, world::step_mm(avatar), of.touched);
 }
 
 bool ObstacleSet::restore(std::vector<CrowdObstacle> obstacles, std::vector<uint32_t> free_slots) {

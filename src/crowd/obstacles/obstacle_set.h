@@ -65,8 +65,9 @@ class ObstacleSet {
  public:
   ObstacleSet(World world, size_t classes);
 
-  /// Takes a class into use: what is active is blocked in its ground at once.
-  void open_class(size_t number, CrowdGround& ground);
+  /// Takes a class into use: what is active is blocked in its ground at once. `body`: the class of
+  /// the world that it is.
+  void open_class(size_t number, CrowdGround& ground, size_t body);
 
   /// Reverts open_class. The cells of the ground stay blocked.
   void close_class(size_t number);
@@ -99,6 +100,14 @@ class ObstacleSet {
   void close(uint32_t slot);
   /// Lets bodies on its cells leave these, or ends that. Call block_cells then.
   void set_exit_only(uint32_t slot, bool lets);
+  /// From now on a density map blocks these cells of a class in use, and no others; `may_leave`:
+  /// bodies stand on some. Call block_cells then.
+  void set_zero_cells(size_t number, std::span<const LevelCells> cells, bool may_leave);
+  /// The same cells. Call block_cells then.
+  void set_zero_leave(size_t number, bool may_leave);
+  [[nodiscard]] bool may_leave_zero(size_t number) const { return classes_[number].may_leave_zero; }
+  /// Does a body stand on such a cell of its class?
+  [[nodiscard]] bool is_on_zero(const Body& body) const;
   /// Updates the grounds to all that was settled, deactivated or removed.
   void block_cells();
 
@@ -114,12 +123,15 @@ class ObstacleSet {
     world::CellRows rows;
   };
   struct ClassGround {
-    CrowdGround* ground = nullptr;  // null: the class is not in use
+    CrowdGround* ground = nullptr;                             // null: the class is not in use
+    size_t body = 0;                                           // class of the world
+    std::unordered_map<uint32_t, world::CellRows> zero_cells;  // by level; looked up only
+    bool may_leave_zero = false;
     std::unordered_map<uint32_t, std::vector<CellBlocker>>
         cell_blockers;              // by level; looked up only
     std::vector<uint32_t> touched;  // levels, with doubles
   };
-  void block_levels(size_t number, ClassGround& of);
+  void block_levels(ClassGround& of);
   [[nodiscard]] std::vector<LevelCells> cells_under(size_t number, const Prism& prism) const;
   void find_swept(uint32_t slot);
   void take(uint32_t slot);

@@ -82,6 +82,10 @@ void CrowdEngine::set_turning_radius(size_t avatar_class, float radius) {
   if (!turning_radii_.empty()) turning_radii_[avatar_class] = radius;
 }
 
+void CrowdEngine::copy_slope_factors(size_t to, size_t from) {
+  if (!config_.slope_factors.empty()) config_.slope_factors[to] = config_.slope_factors[from];
+}
+
 void CrowdEngine::fit(int32_t widest, float fastest, float dt) {
   config_.units.dt = dt;
   widest_ = widest;

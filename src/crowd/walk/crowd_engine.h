@@ -63,6 +63,8 @@ class CrowdEngine {
   void set_ground(size_t avatar_class, const StrideGround& ground);
   /// Bounds the turns of a class. [m; 0: no bound]
   void set_turning_radius(size_t avatar_class, float radius);
+  /// Slopes slow one class as they do another.
+  void copy_slope_factors(size_t to, size_t from);
   /// No body may be wider or faster. To be called before the first such body is added.
   void fit(int32_t widest, float fastest, float dt);
   /// A body may become that tall. [mm]

@@ -110,8 +110,9 @@ bool leads_through(const Body& body, const Route& route, const PlanBox& box) {
   return false;
 }
 
-Place place_of(const world::WorldData& world, const Body& body, const PathPoint& position) {
-  const world::GroundLevel level = world::ground_level(world, position.level, body.avatar_class);
+Place place_of(const world::WorldData& world, const PathPoint& position) {
+  // The floor of a level is the same for all classes.
+  const world::GroundLevel level = world::ground_level(world, position.level, 0);
   return world::place_at(world, level, {position.x, position.z});
 }
 

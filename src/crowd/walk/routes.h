@@ -54,7 +54,7 @@ void follow(Body& body, Route& route, const StrideGround& ground, uint64_t nth, 
 void head_to_corner(Body& body, const Route& route, const StrideGround& ground, Following how);
 
 /// The place of a body that heads to `position`.
-Place place_of(const world::WorldData& world, const Body& body, const PathPoint& position);
+Place place_of(const world::WorldData& world, const PathPoint& position);
 PathPoint point_of(const world::WorldData& world, const Place& place);
 
 /// Takes the next corners of a path that was found, from where the body is. False: none was found.

@@ -123,8 +123,8 @@ WalkMode::RouteCost WalkMode::measure_route(const Body& body, const Route& route
       to.z = body.local_target_z;
     }
     const float length = distance_of(from, to) * metre;
-    const auto cost = static_cast<float>(live.delayed_length(
-        place_of(data, body, from), place_of(data, body, to), delays_->delays()));
+    const auto cost = static_cast<float>(
+        live.delayed_length(place_of(data, from), place_of(data, to), delays_->delays()));
     found.length += length;
     found.cost += std::isfinite(cost) ? cost : length;
     if (found.end >= last || found.length >= kReach) return found;
@@ -155,14 +155,14 @@ bool WalkMode::is_same_route(const Body& body, const Route& route, size_t end, b
   const world::WorldData& data = *data_of(shared_.world);
   std::array<Place, Route::kCorners + 1> own;
   size_t count = 0;
-  own[count++] = place_of(data, body, place_of_body(body));
+  own[count++] = place_of(data, place_of_body(body));
   for (size_t i = route.next; i <= end; ++i) {
     PathPoint at = route.corners[i];
     if (i == route.next) {
       at.x = body.local_target_x;
       at.z = body.local_target_z;
     }
-    own[count++] = place_of(data, body, at);
+    own[count++] = place_of(data, at);
   }
   const bool whole = !to_goal || (route.whole && end + 1 == route.count);
   return live.is_same_side({own.data(), count}, path.points, whole);
@@ -187,7 +187,7 @@ void WalkMode::avoid_jam(Body& body, size_t worker) {
   const float cost = now.cost + (to_goal ? std::max(left - now.length, 0.0f) : 0);
   const PathPoint& end = to_goal ? route.goal : route.corners[now.end];
   const bool is_found =
-      live.find_by_delays(place_of(data, body, place_of_body(body)), place_of(data, body, end),
+      live.find_by_delays(place_of(data, place_of_body(body)), place_of(data, end),
                           {.delays = &delays_->delays(),
                            .max_cost = kClearlyLess * double{cost},
                            .budget = shared_.search_budget(kMaxNodes)},

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -54,7 +55,9 @@ bool WalkMode::tries_path_again(Body& body) {
   const world::GroundPoint at = body.point();
   shared_.ground_of(body).left().list_obstacles(
       {body.level, world::in_tile(at.cell_x()), world::in_tile(at.cell_z())}, slots);
-  if (slots.empty() || !leads_out(body, slots)) return false;
+  const bool is_on_zero =
+      std::find(slots.begin(), slots.end(), LeftCells::kZeroWeight) != slots.end();
+  if (slots.empty() || is_on_zero || !leads_out(body, slots)) return false;
   const PathPoint& corner = route.corners[route.next];
   body.local_target_x = corner.x;
   body.local_target_z = corner.z;

@@ -45,17 +45,21 @@ Result<void> WalkMode::open_class(size_t number, Context& context) {
   auto made = std::make_unique<OfClass>();
   const CrowdConfig& config = shared_.config;
   const bool has_paths = config.routing == Routing::kPaths && !shared_.climbs(number);
-  if (has_paths) {
+  const auto workers = static_cast<size_t>(worker_count(config.workers));
+  made->follows_density = shared_.density_of(number) != nullptr;
+  if (has_paths && !made->follows_density) {
     auto finder = path::MeshFinder::create(shared_.world,
                                            {.avatar_class = static_cast<int32_t>(number),
                                             .workers = config.workers,
                                             .speedup = config.speedup},
                                            context);
     if (!finder) return finder.error();
-    made->finders.assign(static_cast<size_t>(worker_count(config.workers)), *finder);
-    made->paths.resize(made->finders.size());
-    made->compared.resize(made->finders.size());
-    made->repairs.resize(made->finders.size());
+    made->finders.assign(workers, *finder);
+  }
+  if (has_paths) {
+    made->paths.resize(workers);
+    made->compared.resize(workers);
+    made->repairs.resize(workers);
   }
   made->flies = shared_.flies(number);
   made->takes_links = has_paths && !made->flies;
@@ -174,6 +178,20 @@ void WalkMode::ground_changed() {
   }
 }
 
+void WalkMode::density_changed(size_t number) {
+  OfClass& parts = *classes_[number];
+  for (path::GroundFinder& live : parts.lives) live.set_density(shared_.density_of(number));
+  Context context;
+  parts.flows.clear();
+  const auto ok = find_flows(number, context);
+  THRONG_ASSERT(ok);  // Nothing cancels it.
+  for (Body& body : bodies()) {
+    const bool searches = body.avatar_class == number && body.has(Body::kHasGoal) && !body.leaves &&
+                          !body.has(Body::kMovedElsewhere);
+    if (searches && shared_.config.routing == Routing::kPaths) body.flags |= Body::kNeedsPath;
+  }
+}
+
 // All avatars on foot search again.
 void WalkMode::areas_changed(std::span<Body> bodies) {
   if (shared_.config.routing != Routing::kPaths) return;
@@ -263,7 +281,7 @@ AvatarState WalkMode::state_of(const Body& body) const {
   const double unit = shared_.unit;
   const Orientation& orientation = shared_.orientations[body.slot];
   return {.id = body.slot,
-          .avatar_class = body.avatar_class,
+          .avatar_class = static_cast<int32_t>(shared_.baked_class(body.avatar_class)),
           .position = {origin.x + (body.x + 0.5) * unit, body.y * 1e-3,
                        origin.z + (body.z + 0.5) * unit},
           .radius = body.radius * unit,

@@ -77,6 +77,9 @@ class WalkMode final : public Mode {
 
   [[nodiscard]] Route& route(uint32_t slot) { return routes_[slot]; }
 
+  /// The density map that a class in use follows has changed: all its avatars search again.
+  void density_changed(size_t number);
+
   // Flow fields to targets, and places of these for those that land or climb there.
   /// Makes those that a class lacks. Fails with kCancelled.
   Result<void> find_flows(size_t number, Context& context);
@@ -128,6 +131,7 @@ class WalkMode final : public Mode {
   struct OfClass {
     bool flies = false;                     // too: asks takes_off_
     bool takes_links = false;               // asks takes_links_
+    bool follows_density = false;           // only its `lives` know its map
     std::vector<path::MeshFinder> finders;  // one a worker
     std::vector<path::GroundFinder> lives;  // one a worker, once paths avoid obstacles or lead to
                                             // targets
@@ -139,8 +143,9 @@ class WalkMode final : public Mode {
     std::optional<StandingDraw> standing;  // none: the ground has changed since
   };
   [[nodiscard]] StrideGround stride_ground(const Body& body) const;
-  /// Do paths on foot need a search that knows costs and off-mesh links?
+  /// Do paths on foot need a search that knows costs and off-mesh links, or a density map?
   [[nodiscard]] bool plans_by_cost(const OfClass& parts) const {
+    if (parts.follows_density) return true;
     const uint64_t kinds = parts.finders.empty() ? 0 : parts.finders[0].mesh().kinds;
     return shared_.has_costs(kinds) || (parts.takes_links && shared_.has_links());
   }

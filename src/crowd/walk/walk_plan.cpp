@@ -85,7 +85,7 @@ bool WalkMode::plan_path(Body& body, Route& route, const StrideGround& ground, i
   if (route.via != 0 && plan_to_via(body, route, ground, w)) return true;
   progress_[body.slot].is_new = 1;
   if (body.target != 0) {
-    parts.flows[body.target - 1u].find_path(parts.lives[w], place_of(data, body, here), path);
+    parts.flows[body.target - 1u].find_path(parts.lives[w], place_of(data, here), path);
     route.goal = here;  // if it stands there already
   } else {
     find_path(body, here, route.goal, ground, w, path);
@@ -125,7 +125,7 @@ void WalkMode::find_path(const Body& body, const PathPoint& from, const PathPoin
                          const StrideGround& ground, size_t worker, Path& path) {
   const world::WorldData& data = *data_of(shared_.world);
   OfClass& parts = *classes_[body.avatar_class];
-  const Place start = place_of(data, body, from), goal = place_of(data, body, to);
+  const Place start = place_of(data, from), goal = place_of(data, to);
   const SearchBudget budget = shared_.search_budget();
   const bool by_cost = plans_by_cost(parts);
   if (by_cost) parts.lives[worker].find(start, goal, path, budget);
@@ -142,13 +142,16 @@ void WalkMode::make_lives(size_t number) {
   std::vector<path::GroundFinder>& lives = classes_[number]->lives;
   if (!lives.empty()) return;
   auto made = path::GroundFinder::create(
-      shared_.world,
-      {.avatar_class = static_cast<int32_t>(number), .slope_cost = shared_.config.slope_cost});
+      shared_.world, {.avatar_class = static_cast<int32_t>(shared_.baked_class(number)),
+                      .slope_cost = shared_.config.slope_cost});
   THRONG_ASSERT(made);  // The class is one of the world's.
+  made->set_density(shared_.density_of(number));
   lives.assign(static_cast<size_t>(worker_count(shared_.config.workers)), *made);
   std::vector<path::AppliedEdits>& areas = classes_[number]->areas;
-  const auto which = classes_[number]->takes_links ? path::AppliedEdits::Which::kAreasAndLinks
-                                                   : path::AppliedEdits::Which::kAreas;
+  // An off-mesh link may lead over ground of weight 0.
+  const bool takes_links = classes_[number]->takes_links && !classes_[number]->follows_density;
+  const auto which =
+      takes_links ? path::AppliedEdits::Which::kAreasAndLinks : path::AppliedEdits::Which::kAreas;
   areas.assign(lives.size(), path::AppliedEdits(which));
   for (size_t w = 0; w < lives.size(); ++w) areas[w].follow(shared_.edits(), lives[w]);
 }
@@ -196,7 +199,7 @@ void WalkMode::drop_flows() {
 
 double WalkMode::distance(const Body& body, TargetId target) {
   OfClass& parts = *classes_[body.avatar_class];
-  const Place place = place_of(*data_of(shared_.world), body, {body.x, body.z, body.level});
+  const Place place = place_of(*data_of(shared_.world), {body.x, body.z, body.level});
   return parts.flows[target - 1u].distance(parts.lives[0], place);
 }
 

@@ -136,6 +136,10 @@ Result<ChangeId> GroundFinder::add_off_mesh_link(const OffMeshLink& link) {
   return id;
 }
 
+void GroundFinder::set_density(std::shared_ptr<const DensityCells> density) {
+  state_->mesh.set_density(std::move(density));
+}
+
 bool GroundFinder::remove(ChangeId change) { return state_->mesh.set_active(change, false, true); }
 bool GroundFinder::set_active(ChangeId change, bool active) {
   return state_->mesh.set_active(change, active, false);

@@ -31,6 +31,8 @@ inline bool is_over_nodes(const OffMeshLink& link) {
 /// both.
 enum class IfUnreachable : uint8_t { kNearest, kNothing };
 
+class DensityCells;
+
 /// The ground of one class with changes. Obstacles only remove ground: an avatar can stand on a
 /// crate only if it was baked. Changes and queries are for one thread at a time; copies are
 /// independent. Results are the same on every machine.
@@ -60,6 +62,10 @@ class GroundFinder {
   /// Sets the cost of a metre on ground of an area kind; infinity closes it. All kinds begin with
   /// 1. Fails with kBadConfig. [kind 1 to 63, 0.01 to 10000 or infinity]
   [[nodiscard]] Result<void> set_area_cost(uint8_t kind, double cost);
+
+  /// From now on this map applies, or none (null): its pixels of weight 0 are no ground, and
+  /// metres cost what it says. Time: the tiles that were made.
+  void set_density(std::shared_ptr<const DensityCells> density);
 
   /// Is the place legal for the class now?
   [[nodiscard]] bool is_free(const Place& place);

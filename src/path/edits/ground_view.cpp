@@ -76,6 +76,7 @@ GroundView::GroundView(const GroundView& other)
       min_factor_(other.min_factor_),
       min_link_factor_(other.min_link_factor_),
       plain_(other.plain_),
+      density_(other.density_),
       active_links_(other.active_links_),
       levels_(other.levels_.size()),  // rebuilt when first used
       changes_(other.changes_),
@@ -92,9 +93,53 @@ void GroundView::set_area_cost(uint8_t kind, double cost) {
   const bool was_plain = plain_;
   area_cost_[kind] = cost;
   min_factor_ = *std::min_element(area_cost_.begin(), area_cost_.end());
-  plain_ = config_.slope_cost == 0 &&
-           std::all_of(area_cost_.begin(), area_cost_.end(), [](double c) { return c == 1; });
+  find_plain();
   if (min_factor_ != min_before || plain_ != was_plain || has_made(kind)) ++version_;
+}
+
+void GroundView::find_plain() {
+  plain_ = config_.slope_cost == 0 && (density_ == nullptr || density_->is_even()) &&
+           std::all_of(area_cost_.begin(), area_cost_.end(), [](double c) { return c == 1; });
+}
+
+// All levels that are rebuilt are dropped first, as for other changes.
+void GroundView::set_density(std::shared_ptr<const DensityCells> density) {
+  const std::shared_ptr<const DensityCells> before = std::exchange(density_, std::move(density));
+  find_plain();
+  ++version_;
+  touched_tiles_.clear();
+  SquareRange all;
+  if (before != nullptr && density_ != nullptr) all = density_->changed_tiles(world(), *before);
+  if (before == nullptr && density_ != nullptr) all = density_->tiles(world());
+  if (before != nullptr && density_ == nullptr) all = before->tiles(world());
+  for (int32_t z = all.first_z; z <= all.last_z; ++z) {
+    for (int32_t x = all.first_x; x <= all.last_x; ++x) {
+      if (is_seen(tile_key(x, z)) && differs_on(x, z, before.get())) {
+        touched_tiles_.push_back(tile_key(x, z));
+      }
+    }
+  }
+  for (const int64_t tile : touched_tiles_) drop_tile(tile);
+  for (const int64_t tile : touched_tiles_) drop_around(tile, all);
+  if (corner_numbers_.size() > max_corners_) drop_unused_corners();
+}
+
+// Does a map make other ground of a tile than the present one?
+bool GroundView::differs_on(int32_t tile_x, int32_t tile_z, const DensityCells* before) const {
+  const auto tile = world().tile_levels(tile_x, tile_z);
+  for (uint32_t i = tile.first; i < tile.last; ++i) {
+    const world::GroundLevel level = world::ground_level(world(), i, config_.avatar_class);
+    if (level.zone == nullptr) continue;
+    const TileFloor floor{world().summary, level.view, tile_x, tile_z};
+    const auto zero = [&](const DensityCells* map) {
+      return map == nullptr ? world::CellRows{} : map->zero_cells(floor);
+    };
+    const auto steps = [&](const DensityCells* map) {
+      return map == nullptr ? std::array<uint8_t, 4096>{} : map->steps(floor);
+    };
+    if (zero(before) != zero(density_.get()) || steps(before) != steps(density_.get())) return true;
+  }
+  return false;
 }
 
 // Is a rectangle that a search may have seen of this kind?
@@ -215,12 +260,13 @@ bool GroundView::stand(uint32_t index, world::GroundPoint at, uint16_t& rect) {
 
 // Row by row of tiles, those between the ends of the line's part in the row.
 bool GroundView::is_changed(int32_t tile_x, int32_t tile_z) const {
+  if (density_ != nullptr) return true;
   const auto found = changes_of_tile_.find(tile_key(tile_x, tile_z));
   return found != changes_of_tile_.end() && !found->second.empty();
 }
 
 bool GroundView::is_changed_on(world::GroundPoint from, world::GroundPoint to) const {
-  if (changes_of_tile_.empty()) return false;
+  if (changes_of_tile_.empty() && density_ == nullptr) return false;
   constexpr int64_t kSide = int64_t{kTileCells} << world::kUnitBits, kMargin = 2;  // units
   if (to.z < from.z) std::swap(from, to);
   const double slope =
@@ -358,6 +404,11 @@ void GroundView::make(uint32_t index, ViewLevel& level) {
 }
 
 void GroundView::block_cells(ViewLevel& level) const {
+  if (density_ != nullptr) {
+    const world::CellRows zero =
+        density_->zero_cells({world().summary, level.ground.view, level.tile_x, level.tile_z});
+    for (size_t z = 0; z < zero.size(); ++z) level.legal[z] &= ~zero[z];
+  }
   const auto found = changes_of_tile_.find(tile_key(level.tile_x, level.tile_z));
   if (found == changes_of_tile_.end()) return;
   const WorldSummary& summary = world().summary;
@@ -403,26 +454,35 @@ std::array<uint8_t, 4096> GroundView::slopes_of(const ViewLevel& level) const {
   return slopes;
 }
 
+std::array<uint8_t, 4096> GroundView::densities_of(const ViewLevel& level) const {
+  if (density_ == nullptr || density_->is_even()) return {};
+  return density_->steps({world().summary, level.ground.view, level.tile_x, level.tile_z});
+}
+
 // Rectangles of one kind of ground each.
 void GroundView::cut(ViewLevel& level) {
   const auto cuts = graph::step_cuts(level.ground, level.legal, step_);
-  const std::array<uint8_t, 4096> kinds = kinds_of(level), slopes = slopes_of(level);
-  std::array<bool, 64 * kSlopeClasses> done{};
+  const std::array<uint8_t, 4096> kinds = kinds_of(level), slopes = slopes_of(level),
+                                  densities = densities_of(level);
+  std::array<bool, size_t{64} * kSlopeClasses * DensityCells::kSteps> done{};
   new_rects_.clear();
   new_states_.clear();
   for (size_t c = 0; c < kinds.size(); ++c) {
-    const size_t sort = kinds[c] * size_t{kSlopeClasses} + slopes[c];
+    const size_t sort =
+        (kinds[c] * size_t{kSlopeClasses} + slopes[c]) * DensityCells::kSteps + densities[c];
     if (done[sort] || !level.is_legal(world::x_of_cell(c), world::z_of_cell(c))) continue;
     done[sort] = true;
     world::CellRows same{};
     for (size_t k = c; k < kinds.size(); ++k) {
-      if (kinds[k] == kinds[c] && slopes[k] == slopes[c]) same[k / 64] |= uint64_t{1} << (k % 64);
+      const bool is_same =
+          kinds[k] == kinds[c] && slopes[k] == slopes[c] && densities[k] == densities[c];
+      if (is_same) same[k / 64] |= uint64_t{1} << (k % 64);
     }
     for (size_t z = 0; z < same.size(); ++z) same[z] &= level.legal[z];
     for (const CellRect& r : tile_with_rects(same, cuts ? &*cuts : nullptr)) {
       new_rects_.push_back({level.ground.world_level, level.tile_x * kTileCells + r.x0,
                             level.tile_z * kTileCells + r.z0, r.x1 - r.x0, r.z1 - r.z0});
-      new_states_.push_back({kinds[c], slopes[c], false, false, {}});
+      new_states_.push_back({kinds[c], slopes[c], densities[c], false, false, {}});
     }
   }
   level.rect_count = static_cast<uint32_t>(new_rects_.size());

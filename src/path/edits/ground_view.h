@@ -14,6 +14,7 @@
 #include "core/access.h"
 #include "graph/ground_parts.h"
 #include "path/edits/blocked_cells.h"
+#include "path/edits/density_cells.h"
 #include "path/edits/ground_delays.h"
 #include "path/edits/index_blocks.h"
 #include "path/edits/solid.h"
@@ -96,7 +97,8 @@ class GroundView final : public PortalSource {
   }
   /// Cost of a metre on a rectangle.
   [[nodiscard]] double factor(uint32_t rect) const {
-    return area_cost_[rect_states_[rect].area] * slope_factor_[rect_states_[rect].slope];
+    const RectState& state = rect_states_[rect];
+    return area_cost_[state.area] * slope_factor_[state.slope] * DensityCells::cost(state.density);
   }
   [[nodiscard]] double factor(const ViewLevel& level, uint32_t n) const {
     return factor(level.first_rect + n);
@@ -122,6 +124,8 @@ class GroundView final : public PortalSource {
   }
   void set_area_cost(uint8_t kind, double cost);
   [[nodiscard]] double area_cost(uint8_t kind) const { return area_cost_[kind]; }
+  /// From now on this map applies, or none. Drops the tiles that differ.
+  void set_density(std::shared_ptr<const DensityCells> density);
 
   /// An off-mesh link in one direction, as long as the change is active.
   struct OffMeshLinkEnd {
@@ -190,7 +194,7 @@ class GroundView final : public PortalSource {
  private:
   /// What a rectangle has beside its cells.
   struct RectState {
-    uint8_t area = 0, slope = 0;  // its kind of ground
+    uint8_t area = 0, slope = 0, density = 0;  // its kind of ground
     bool has_portals = false, has_corners = false;
     IndexRange portals;
   };
@@ -203,6 +207,8 @@ class GroundView final : public PortalSource {
   }
   void make(uint32_t index, ViewLevel& level);
   void block_cells(ViewLevel& level) const;
+  [[nodiscard]] bool differs_on(int32_t tile_x, int32_t tile_z, const DensityCells* before) const;
+  void find_plain();
   void cut(ViewLevel& level);
   void find_portals(uint32_t rect);
   void find_corners(uint32_t rect);
@@ -221,6 +227,7 @@ class GroundView final : public PortalSource {
   void find_min_link_factor();
   [[nodiscard]] std::array<uint8_t, 4096> kinds_of(const ViewLevel& level) const;
   [[nodiscard]] std::array<uint8_t, 4096> slopes_of(const ViewLevel& level) const;
+  [[nodiscard]] std::array<uint8_t, 4096> densities_of(const ViewLevel& level) const;
 
   World world_;
   PathConfig config_;
@@ -230,7 +237,8 @@ class GroundView final : public PortalSource {
   double min_factor_ = 1;
   double min_link_factor_ = 1;  // of active off-mesh links that cost less than their length
   bool plain_ = true;
-  const GroundDelays* delays_ = nullptr;  // a copy has none
+  const GroundDelays* delays_ = nullptr;         // a copy has none
+  std::shared_ptr<const DensityCells> density_;  // null: none applies
   uint64_t version_ = 0;
   size_t active_links_ = 0;
   std::vector<std::unique_ptr<ViewLevel>> levels_;  // of the world; null: not made yet

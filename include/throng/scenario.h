@@ -174,6 +174,21 @@ struct ScenarioObstacle {
   Prism prism;
   double begin = 0, end = HUGE_VAL;                      ///< When it is requested and removed. [s]
   ObstaclePolicy policy = ObstaclePolicy::kRefuseEntry;  ///< What happens if avatars stand there.
+  /// Where it moves, as a cart or a float: its prism begins at the first of these points, and moves
+  /// with them to the last and back, again and again. It waits while avatars stand before it. Paths
+  /// do not avoid it, avatars do. Empty: it stands. [m, at least 2 points]
+  std::vector<std::array<double, 2>> line = {};
+  double speed = 1;  ///< Of one that moves. [m/s, > 0 to 100]
+};
+
+/// Draws a crowd towards something that moves: around it a density map is darker. [TC00] 5.
+struct Attractor {
+  std::string name = {};
+  int32_t density = -1;   ///< The map. Where its weight is 0, it stays 0.
+  int32_t source = -1;    ///< It is fixed to each avatar of this source, as a jogger;
+  int32_t obstacle = -1;  ///< or to this obstacle.
+  double radius = 10;     ///< Its weight falls evenly to 0 at this distance. [m, > 0 to 1000]
+  uint8_t weight = 255;   ///< In its middle. The larger one counts, of it and the map's. [1 to 255]
 };
 
 /// The name of a policy in scenario files: "shut" or "wait".
@@ -208,6 +223,7 @@ struct Scenario {
   std::vector<Queue> queues;
   std::vector<Link> links;
   std::vector<ScenarioObstacle> obstacles;
+  std::vector<Attractor> attractors = {};
 
   /// As CrowdTuning::let_push.
   void let_push() {
@@ -304,9 +320,15 @@ class THRONG_API Simulation {
   /// The times of each obstacle of the scenario, in its order.
   [[nodiscard]] std::span<const ObstacleTimes> obstacle_times() const;
 
-  /// Replaces the weights of a density map, from the next draw on, and ends its hours. Fails with
-  /// kNotFound, kBadInput (another number of pixels, or all are 0).
+  /// Replaces the weights of a density map, from the next draw on, and ends its hours. Avatars that
+  /// follow it leave what becomes 0. Fails with kNotFound, kBadInput (another number of pixels, or
+  /// all are 0).
   [[nodiscard]] Result<void> set_density(const std::string& name, std::span<const uint8_t> weights);
+  /// Fixes an attractor to an avatar (Trip::person) until it leaves; a second one replaces the
+  /// first, and weight 0 removes it. Fails with kNotFound (no such map, or the avatar is not in the
+  /// crowd) and kBadConfig (radius). [radius: m, > 0 to 1000]
+  [[nodiscard]] Result<void> attract(const std::string& density, uint64_t person, double radius,
+                                     uint8_t weight);
 
  private:
   struct State;

@@ -66,10 +66,10 @@ std::vector<uint8_t> weights_at(const DensityMap& map, double time) {
   return weights;
 }
 
-DensityDraw::DensityDraw(const DensityMap& map) : map_(&map) {
-  before_.reserve(map.weights.size() + 1);
+DensityDraw::DensityDraw(const DensityMap& map, std::span<const uint8_t> weights) : map_(&map) {
+  before_.reserve(weights.size() + 1);
   uint64_t sum = 0;
-  for (const uint8_t weight : map.weights) {
+  for (const uint8_t weight : weights) {
     before_.push_back(sum);
     sum += weight;
   }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "throng/scenario.h"
@@ -19,9 +20,13 @@ namespace throng::scenario {
 
 class DensityDraw {
  public:
-  explicit DensityDraw(const DensityMap& map);
+  explicit DensityDraw(const DensityMap& map) : DensityDraw(map, map.weights) {}
+  /// By other weights of its pixels.
+  DensityDraw(const DensityMap& map, std::span<const uint8_t> weights);
   /// From three numbers in [0, 1). [m]
   [[nodiscard]] std::array<double, 2> point(double which, double along_x, double along_z) const;
+  /// Of the weights of all pixels.
+  [[nodiscard]] uint64_t sum() const { return before_.back(); }
 
  private:
   const DensityMap* map_;

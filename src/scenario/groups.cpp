@@ -40,8 +40,10 @@ void Simulation::State::adjust_group_speeds() {
     std::vector<std::pair<AvatarId, AvatarState>> walkers;
     for (const uint64_t number : members) {
       const ScenarioAvatar* p = find_avatar(number);
-      if (p == nullptr || (p->doing != Doing::kWalking && p->doing != Doing::kToRandomPlace))
-        continue;
+      const bool walks =
+          p != nullptr && (p->doing == Doing::kWalking || p->doing == Doing::kToRandomPlace ||
+                           p->doing == Doing::kToWaypoint);
+      if (!walks) continue;
       walkers.emplace_back(p->id, *crowd.read(p->id));
       const AvatarState& at = walkers.back().second;
       middle = {middle.x + at.position.x, 0, middle.z + at.position.z};

@@ -80,7 +80,9 @@ void Simulation::State::begin_stage(ScenarioAvatar& p) {
       p.doing = Doing::kWalking;
       return;
     case Stage::Kind::kRandomPoint:
-      return walk_to(p, random_place(stage.areas, stage.density, p), Doing::kToRandomPlace);
+      walk_to(p, random_place(stage.areas, stage.density, p), Doing::kToRandomPlace);
+      if (p.doing == Doing::kToRandomPlace) go_on_trip(p);
+      return;
     case Stage::Kind::kWait:
       stand(p, Doing::kWaiting);
       p.until = time() + draw(stage.seconds, scenario.seed, p.number, 16 + p.draws++);
@@ -139,6 +141,8 @@ void Simulation::State::arrive(ScenarioAvatar& p) {
       return finish_stage(p);
     case Doing::kToRandomPlace:
       return finish_stage(p);
+    case Doing::kToWaypoint:
+      return go_on_trip(p);
     default:
       return;
   }
@@ -245,6 +249,12 @@ void Simulation::State::end_waits() {
   }
 }
 
+bool Simulation::State::is_near(const ScenarioAvatar& p, const Place& place) const {
+  const auto state = crowd.read(p.id);
+  return plan_distance(state->position, place.position) < kNearRadius &&
+         std::fabs(state->position.y - place.position.y) < kNearRadius;
+}
+
 // Ends the stage of avatars that stay near their place; lets the others compare exits again,
 // each in turn.
 void Simulation::State::review_stages() {
@@ -258,12 +268,9 @@ void Simulation::State::review_stages() {
         (review + p.number) % kChoosePeriod == 0) {
       choose_area(p);
     }
+    if (p.doing == Doing::kToWaypoint && is_near(p, p.waypoint)) go_on_trip(p);
     if (p.doing != Doing::kToRandomPlace) continue;
-    const auto state = crowd.read(p.id);
-    const Vec3d& at = state->position;
-    const bool near = plan_distance(at, p.goal.position) < kNearRadius &&
-                      std::fabs(at.y - p.goal.position.y) < kNearRadius;
-    if (!near) {
+    if (!is_near(p, p.goal)) {
       p.until = -1;
     } else if (p.until < 0) {
       p.until = time();

@@ -7,6 +7,7 @@
 
 #include "core/hash.h"
 #include "core/random.h"
+#include "scenario/attractors.h"
 #include "scenario/simulation_state.h"
 #include "throng/scenario.h"
 #include "throng/surface.h"
@@ -73,6 +74,10 @@ Result<Simulation> Simulation::create(const World& world, const Scenario& scenar
   auto state = std::make_unique<State>(world, scenario, edits, std::move(*crowd));
   for (const ScenarioObstacle& obstacle : scenario.obstacles) {
     if (auto ok = check_prism(obstacle.prism); !ok) return ok.error();
+    if (auto ok = scenario::check_line(obstacle); !ok) return ok.error();
+  }
+  for (const Attractor& attractor : scenario.attractors) {
+    if (auto ok = scenario::check_attractor(attractor, scenario); !ok) return ok.error();
   }
   if (auto ok = state->prepare(context); !ok) return ok.error();
   return Simulation(std::move(state));
@@ -92,21 +97,23 @@ Result<TargetId> Simulation::State::target_of(std::span<const int32_t> areas, Co
   return target;
 }
 
-// Lists the places of an area for a class. Fails if there are none.
-Result<void> Simulation::State::find_places(int32_t area, int32_t avatar_class,
+// Lists the places of an area for a class of the crowd. Fails if there are none.
+Result<void> Simulation::State::find_places(int32_t area, int32_t crowd_class, int32_t avatar_class,
                                             const std::string& owner, Context& context) {
   const auto target = target_of({&area, 1}, context);
   if (!target) return target.error();
-  auto found = crowd.places(*target, avatar_class, kMaxPlaces, context);
+  auto found = crowd.places(*target, crowd_class, kMaxPlaces, context);
   if (!found) return found.error();
   if (found->empty()) {
     const std::string& name = kinds[static_cast<size_t>(avatar_class)].name;
-    return Error{Errc::kBadInput, owner + ": no avatar of class '" + name +
-                                      "' can stand in area '" +
-                                      scenario.areas[static_cast<size_t>(area)].name +
-                                      "'; move it onto the floor, or make it larger"};
+    return Error{
+        Errc::kBadInput,
+        owner + ": no avatar of class '" + name + "' can stand in area '" +
+            scenario.areas[static_cast<size_t>(area)].name + "'; move it onto the floor" +
+            (crowd_class == avatar_class ? "" : " where the density that it follows is not 0") +
+            ", or make it larger"};
   }
-  places[{*target, avatar_class}] = std::move(*found);
+  places[{*target, crowd_class}] = std::move(*found);
   return {};
 }
 
@@ -154,6 +161,7 @@ Result<void> Simulation::State::prepare(Context& context) {
     if (auto ok = scenario::check_hours(map); !ok) return ok;
     map.weights = scenario::weights_at(map, 0);
     densities.emplace_back(map);
+    given.push_back({map.weights, 0});
   }
 
   for (const Journey& journey : scenario.journeys) {
@@ -163,19 +171,33 @@ Result<void> Simulation::State::prepare(Context& context) {
     }
   }
   for (size_t s = 0; s < scenario.sources.size(); ++s) {
-    const Source& source = scenario.sources[s];
-    spawn_times.emplace_back(source, scenario.seed, s);
+    spawn_times.emplace_back(scenario.sources[s], scenario.seed, s);
     spawn_counts.push_back(0);
-    std::vector<int32_t> bodies;
-    for (const Choice& choice : source.profiles) {
-      bodies.push_back(classes[static_cast<size_t>(choice.index)]);
-    }
-    if (bodies.empty()) bodies.push_back(0);
-    // All areas in which an avatar of this source may need a place.
+    if (auto ok = prepare_source(scenario.sources[s], context); !ok) return ok;
+  }
+  obstacles.resize(scenario.obstacles.size());
+  obstacle_times.resize(scenario.obstacles.size());
+  moved.resize(scenario.obstacles.size());
+  update_obstacles();
+  queue_spawns();
+  return spawn_due(pending, context);
+}
+
+// Lists the places of all areas in which an avatar of this source may need one.
+Result<void> Simulation::State::prepare_source(const Source& source, Context& context) {
+  std::vector<int32_t> bodies;
+  for (const Choice& choice : source.profiles) {
+    bodies.push_back(classes[static_cast<size_t>(choice.index)]);
+  }
+  if (bodies.empty()) bodies.push_back(0);
+  std::vector<int32_t> journeys_here;  // journeys
+  for (const Choice& choice : source.journeys) journeys_here.push_back(choice.index);
+  if (journeys_here.empty()) journeys_here.push_back(-1);
+  for (const int32_t index : journeys_here) {
     std::vector<std::pair<int32_t, std::string>> wanted;
     for (const int32_t a : source.areas) wanted.emplace_back(a, "source '" + source.name + "'");
-    for (const Choice& choice : source.journeys) {
-      const Journey& journey = scenario.journeys[static_cast<size_t>(choice.index)];
+    if (index >= 0) {
+      const Journey& journey = scenario.journeys[static_cast<size_t>(index)];
       for (const Stage& stage : journey.stages) {
         const std::string owner = "journey '" + journey.name + "'";
         for (const int32_t a : stage.areas) wanted.emplace_back(a, owner);
@@ -183,17 +205,19 @@ Result<void> Simulation::State::prepare(Context& context) {
         wanted.emplace_back(scenario.links[static_cast<size_t>(stage.link)].to, owner);
       }
     }
+    std::vector<std::pair<int32_t, int32_t>> kinds_here;  // of the crowd, of the world
+    for (const int32_t kind : bodies) {
+      const auto of_crowd = class_that_follows(map_of(source, index), kind, context);
+      if (!of_crowd) return of_crowd.error();
+      kinds_here.emplace_back(*of_crowd, kind);
+    }
     for (const auto& [area, owner] : wanted) {
-      for (const int32_t kind : bodies) {
-        if (auto ok = find_places(area, kind, owner, context); !ok) return ok;
+      for (const auto& [of_crowd, kind] : kinds_here) {
+        if (auto ok = find_places(area, of_crowd, kind, owner, context); !ok) return ok;
       }
     }
   }
-  obstacles.resize(scenario.obstacles.size());
-  obstacle_times.resize(scenario.obstacles.size());
-  update_obstacles();
-  queue_spawns();
-  return spawn_due(pending, context);
+  return {};
 }
 
 // Adds obstacles whose time begins, removes those whose time is over. The crowd follows at once:
@@ -205,7 +229,8 @@ void Simulation::State::update_obstacles() {
     const ScenarioObstacle& obstacle = scenario.obstacles[n];
     const bool wanted = time() >= obstacle.begin && time() < obstacle.end;
     if (wanted && obstacles[n] == 0) {
-      const auto added = edits.add_obstacle(obstacle.prism, ObstacleKind::kStatic, obstacle.policy);
+      const auto kind = obstacle.line.empty() ? ObstacleKind::kStatic : ObstacleKind::kKinematic;
+      const auto added = edits.add_obstacle(obstacle.prism, kind, obstacle.policy);
       THRONG_ASSERT(added);  // The prism was checked.
       obstacles[n] = *added;
       obstacle_times[n].requested_at = time();
@@ -215,7 +240,10 @@ void Simulation::State::update_obstacles() {
       obstacles[n] = 0;
       obstacle_times[n].removed_at = time();
       obstacle_times[n].waits_for = 0;
+      moved[n] = 0;
       has_opened = solids_are_old = true;
+    } else if (wanted && !obstacle.line.empty()) {
+      move_obstacle(n);
     }
   }
   if (edits.version() == before) return;
@@ -254,7 +282,10 @@ Result<SimulationReport> Simulation::step() {
   s.has_opened = false;
   s.update_obstacles();
   if (std::exchange(s.solids_are_old, false)) s.note_solids();
-  if (s.is_review) s.blend_densities();
+  if (s.is_review) {
+    s.blend_densities();
+    s.shade_densities();
+  }
   s.queue_spawns();
   s.run_links();
   s.entry_tries = 0;
@@ -262,7 +293,10 @@ Result<SimulationReport> Simulation::step() {
   if (auto ok = s.spawn_due(s.in_transit, context); !ok) return ok.error();
   s.end_waits();
   s.move_lines();
-  if (s.is_review) s.review_stages();
+  if (s.is_review) {
+    s.review_stages();
+    s.redirect_attracted();
+  }
   s.retry_goals();
   if (is_due(kGroupInterval)) s.adjust_group_speeds();
   s.apply_speed_factors();
@@ -348,6 +382,8 @@ Result<void> Simulation::set_density(const std::string& name, std::span<const ui
     map.weights.assign(weights.begin(), weights.end());
     map.hours.clear();
     s.densities[d] = scenario::DensityDraw(map);
+    s.shade(d);
+    s.give_density(d);
     return {};
   }
   return Error{Errc::kNotFound, "there is no density '" + name + "'"};

@@ -34,12 +34,14 @@ enum class Doing : uint8_t {
   kBoarding,         // stands where a link leaves from
   kGathering,        // waits for the others of its group
   kGoalUnreachable,  // no path leads there
+  kToWaypoint,       // on its trip to a random place, by one that it sampled from its density map
 };
 
 struct ScenarioAvatar {
   AvatarId id;  // null: in a link, or not yet in the crowd
   uint64_t number = 0;
   int32_t profile = -1, journey = -1;
+  int32_t follows = -1;  // the density map; -1: none
   uint32_t stage = 0;
   Doing doing = Doing::kNothing;
   bool has_started = false;   // the premovement time is over
@@ -51,7 +53,8 @@ struct ScenarioAvatar {
   int32_t area = -1;        // the exit chosen by `quickest`; -1: none
   uint32_t door_tick = 0;   // tick of DoorQueue: expected arrival if no other were there
   double speed_factor = 1;  // of the area in which it is
-  Place goal;               // kToRandomPlace, kToQueue, kInQueue
+  Place goal;               // kToRandomPlace, kToWaypoint, kToQueue, kInQueue
+  Place waypoint;           // kToWaypoint
 };
 
 // Avatars before a counter, by number.
@@ -66,6 +69,26 @@ struct WaitingLine {
 struct BoardingQueue {
   std::deque<uint64_t> members;
   double next = 0;  // next departure [s]
+};
+
+// The weights of a density map that the crowd's classes know.
+struct GivenDensity {
+  std::vector<uint8_t> weights;
+  double at = 0;  // [s]
+};
+
+// An attractor that Simulation::attract has fixed to an avatar.
+struct CarriedAttractor {
+  size_t density = 0;
+  uint64_t number = 0;  // of the avatar
+  double radius = 0;    // [m]
+  uint8_t weight = 0;
+};
+
+// What attractors add to a density map now.
+struct ShadedDensity {
+  scenario::DensityDraw extra;  // of the added weights alone
+  double share = 0;             // of these in all weights
 };
 
 // An avatar that waits to enter the crowd, from a source or out of a link.
@@ -110,7 +133,13 @@ struct Simulation::State {
   // By journey and stage: one target for the union of the areas, or with `quickest` one for each.
   std::vector<std::vector<std::vector<TargetId>>> stage_targets;
   std::vector<scenario::DensityDraw> densities;
-  std::map<std::pair<TargetId, int32_t>, std::vector<Place>> places;  // by target and class
+  // By target and class of the crowd.
+  std::map<std::pair<TargetId, int32_t>, std::vector<Place>> places;
+  // Classes of the crowd, by density map and class of the world.
+  std::map<std::pair<int32_t, int32_t>, int32_t> density_classes;
+  std::vector<GivenDensity> given;  // by density map
+  std::vector<CarriedAttractor> carried;
+  std::map<size_t, ShadedDensity> shaded;  // by density map; where attractors are
 
   std::vector<scenario::SpawnTimes> spawn_times;  // by source
   std::vector<uint64_t> spawn_counts;             // by source: avatars so far
@@ -126,7 +155,8 @@ struct Simulation::State {
   std::vector<scenario::DoorQueue> doors;         // by area: avatars that chose it
   std::vector<EditId> obstacles;  // by obstacle; 0 before it begins and after it ends
   std::vector<ObstacleTimes> obstacle_times;
-  std::vector<Prism> solids;                        // the obstacles that are up
+  std::vector<double> moved;  // by obstacle: how far along its line, and back [m]
+  std::vector<Prism> solids;  // the obstacles that are up
   std::map<int32_t, PathFinder> without_obstacles;  // by class, once needed
   bool solids_are_old = false;
   bool has_opened = false;  // an obstacle has gone in this step
@@ -136,6 +166,11 @@ struct Simulation::State {
   [[nodiscard]] double time() const { return static_cast<double>(steps) * scenario.dt; }
   [[nodiscard]] int32_t class_of(const ScenarioAvatar& p) const {
     return classes[p.profile < 0 ? classes.size() - 1 : static_cast<size_t>(p.profile)];
+  }
+  /// The class of the crowd: that of the world, or one that follows a density map.
+  [[nodiscard]] int32_t crowd_class_of(const ScenarioAvatar& p) const {
+    const auto found = density_classes.find({p.follows, class_of(p)});
+    return found == density_classes.end() ? class_of(p) : found->second;
   }
   [[nodiscard]] const Stage& stage_of(const ScenarioAvatar& p) const {
     return scenario.journeys[static_cast<size_t>(p.journey)].stages[p.stage];
@@ -160,8 +195,9 @@ struct Simulation::State {
   Result<void> prepare(Context& context);
   Result<TargetId> target_of(std::span<const int32_t> areas, Context& context);
   Result<void> prepare_stage(const Stage& stage, std::vector<TargetId>& targets, Context& context);
-  Result<void> find_places(int32_t area, int32_t avatar_class, const std::string& owner,
-                           Context& context);
+  Result<void> find_places(int32_t area, int32_t crowd_class, int32_t avatar_class,
+                           const std::string& owner, Context& context);
+  Result<void> prepare_source(const Source& source, Context& context);
 
   void update_obstacles();
   void record_obstacle_times();
@@ -179,9 +215,25 @@ struct Simulation::State {
   [[nodiscard]] AvatarSpawn spawn_of(const ScenarioAvatar& p, const Place& place) const;
   Place choose_place(PendingSpawn& one);
   Place place_in_rows(const Source& source, uint64_t nth, ScenarioAvatar& p);
-  void blend_densities();
   Place random_place(std::span<const int32_t> areas, int32_t density, ScenarioAvatar& p);
   void enter(const PendingSpawn& one, AvatarId id);
+
+  // following.cpp
+  [[nodiscard]] int32_t map_of(const Source& source, int32_t journey) const;
+  Result<int32_t> class_that_follows(int32_t density, int32_t avatar_class, Context& context);
+  void blend_densities();
+  void give_density(size_t density);
+  [[nodiscard]] Place random_place_of(int32_t density, ScenarioAvatar& p);
+  [[nodiscard]] Place random_place_of(const DensityMap& map, const scenario::DensityDraw& draw,
+                                      ScenarioAvatar& p);
+  void go_on_trip(ScenarioAvatar& p);
+
+  // attractors.cpp
+  void move_obstacle(size_t n);
+  [[nodiscard]] bool carries(const ScenarioAvatar& p) const;
+  void shade(size_t density);
+  void shade_densities();
+  void redirect_attracted();
 
   // journeys.cpp
   void begin_stage(ScenarioAvatar& p);
@@ -196,6 +248,7 @@ struct Simulation::State {
   void leave(ScenarioAvatar& p);
   void remove_from_crowd(ScenarioAvatar& p);
   void end_waits();
+  [[nodiscard]] bool is_near(const ScenarioAvatar& p, const Place& place) const;
   void review_stages();
   [[nodiscard]] int32_t area_under(const ScenarioAvatar& p) const;
 

@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kMaxRounds = 32;        // of drawing places in a step
 constexpr size_t kFirstBatch = 1024;  // avatars of a round that are tried at once
-constexpr int kMaxPixelDraws = 16;    // drawn to find one with a floor
 constexpr double kGroupRadius = 0.7;  // [m] Members of a group enter this near to the first,
 constexpr double kGroupHeight = 1.5;  // [m] and at most this much above or below.
 
@@ -52,6 +51,7 @@ void Simulation::State::queue_spawns() {
         p.profile = pick(source.profiles, unit(p));
         if (k == 0) journey = pick(source.journeys, unit(p));
         p.journey = journey;
+        p.follows = map_of(source, journey);
         p.group = group;
         if (group >= 0) groups[static_cast<size_t>(group)].push_back(p.number);
         if (k == 0) first = p.number;
@@ -61,31 +61,10 @@ void Simulation::State::queue_spawns() {
   }
 }
 
-void Simulation::State::blend_densities() {
-  for (size_t d = 0; d < densities.size(); ++d) {
-    DensityMap& map = scenario.densities[d];
-    if (map.hours.empty()) continue;
-    std::vector<uint8_t> weights = scenario::weights_at(map, time());
-    if (weights == map.weights) continue;
-    map.weights = std::move(weights);
-    densities[d] = scenario::DensityDraw(map);
-  }
-}
-
 Place Simulation::State::random_place(std::span<const int32_t> areas, int32_t density,
                                       ScenarioAvatar& p) {
-  const int32_t avatar_class = class_of(p);
-  if (density >= 0) {
-    const DensityMap& map = scenario.densities[static_cast<size_t>(density)];
-    for (int k = 0; k < kMaxPixelDraws; ++k) {
-      const double which = unit(p), along_x = unit(p), along_z = unit(p);
-      const auto [x, z] = densities[static_cast<size_t>(density)].point(which, along_x, along_z);
-      const Place place = world.find_place(avatar_class, {x, (map.low + map.high) / 2, z},
-                                           (map.high - map.low) / 2);
-      if (place) return place;
-    }
-    return {};
-  }
+  if (density >= 0) return random_place_of(density, p);
+  const int32_t avatar_class = crowd_class_of(p);
   // Each area with a probability proportional to its places.
   size_t count = 0;
   for (const int32_t a : areas) {
@@ -165,7 +144,7 @@ AvatarSpawn Simulation::State::spawn_of(const ScenarioAvatar& p, const Place& pl
     if (speed == 0) speed = draw(profile.speed, scenario.seed, p.number, 1);
     radius = draw(profile.radius, scenario.seed, p.number, 2);
   }
-  return {place, class_of(p), radius, speed};
+  return {place, crowd_class_of(p), radius, speed};
 }
 
 // Tries all that are due once, but those of sources that are full.
@@ -193,7 +172,7 @@ Result<Simulation::State::EntryTries> Simulation::State::try_entries(
       for (size_t k = 0; k < ids->size(); ++k) {
         if (!(*ids)[k]) continue;
         PendingSpawn& one = *batch[batch_index[k]];
-        const AvatarClass& kind = kinds[static_cast<size_t>(spawns[k].avatar_class)];
+        const AvatarClass& kind = kinds[static_cast<size_t>(class_of(one.avatar))];
         one.avatar.speed = spawns[k].speed > 0 ? spawns[k].speed : kind.speed;
         is_in[batch_index[k]] = true;
         ++tries.entered;

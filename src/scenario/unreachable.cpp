@@ -64,7 +64,7 @@ Place Simulation::State::goal_of(const ScenarioAvatar& p, const Vec3d& from) con
   Place nearest;
   double least = std::numeric_limits<double>::infinity();
   for (const int32_t area : stage.areas) {
-    const auto found = places.find({area_target[static_cast<size_t>(area)], class_of(p)});
+    const auto found = places.find({area_target[static_cast<size_t>(area)], crowd_class_of(p)});
     if (found == places.end()) continue;
     const size_t stride = 1 + found->second.size() / kMaxCompared;
     for (size_t i = 0; i < found->second.size(); i += stride) {

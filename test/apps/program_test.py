@@ -442,6 +442,7 @@ class Program(ProgramCase):
         text = self.scenario().read_text()
         text += '\n[[link]]\nname = "lift"\nfrom = "hall"\nto = "hall"\nseconds = 1\n[[density]]\nname = "map"\nbox = [13, 3, 20, 9]\npaint = [{ area = "hall", weight = 1 }]\n'
         text += '[[class]]\nname = "adult"\n[[obstacle]]\nname = "crate"\nbox = [15, 9, 16, 10]\n'
+        text += '[[attractor]]\nname = "crowd puller"\ndensity = "map"\nobstacle = "crate"\n'
         wrong = {name: text.replace(f"[[{name}]]", f"[[{name}]]\nnonsense = 1", 1) for name in tables}
         wrong["plane"] = text.replace("[plane]", "[plane]\nnonsense = 1")
         wrong["builtin"] = '[builtin]\nname = "cube"\nnonsense = 1\n'

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
-#include <numbers>
 #include <span>
 
 #include "core/files/classes_file.h"
 #include "core/files/config_file.h"
 #include "core/files/read_file.h"
-#include "scenario/density_image.h"
+#include "scenario/file/density_image.h"
+#include "scenario/file/scenario_reader.h"
 #include "throng/scenario.h"
 
 // Reads scenario files, TOML or JSON: one reader a table, in the order in which tables name each
@@ -21,203 +21,14 @@
 namespace throng {
 namespace {
 
-constexpr double kMaxCoordinate = 1e9;  // [m] as for models
-constexpr double kMaxHeight = 1e6;      // [m] as for worlds
-constexpr double kMaxSeconds = 1e9;     // [s]
+constexpr double kMaxHeight = 1e6;   // [m] as for worlds
+constexpr double kMaxSeconds = 1e9;  // [s]
 constexpr int kCircleSides = 32;
 constexpr double kMaxStages = 10000;  // of a journey
 
 using Kind = ConfigNode::Kind;
-
-// Reads one table of the file and resolves the names in it.
-class Reader : public ConfigReader {
- public:
-  Reader(const std::string& file, const ConfigNode& table, const std::string& what)
-      : ConfigReader(file, table, what) {}
-
-  void distribution(const char* key, Distribution& out, double low, double high);
-  void distribution_of(const ConfigNode& node, const std::string& key, Distribution& out,
-                       double low, double high);
-  template <class Thing>
-  int32_t named(const ConfigNode& node, const std::vector<Thing>& things, const char* what);
-  /// A name or a list of names.
-  template <class Thing>
-  void names(const ConfigNode& node, const std::vector<Thing>& things, const char* what,
-             std::vector<int32_t>& out);
-  /// A name, or a table of weights by name.
-  template <class Thing>
-  void choices(const char* key, const std::vector<Thing>& things, std::vector<Choice>& out);
-  bool corners(const ConfigNode& node, const char* key, std::vector<std::array<double, 2>>& out);
-  void count(const char* key, uint64_t& value, double low, double high);
-  /// The spelling of `key` in this table: `key` itself or `old`, its name in older versions.
-  const char* spelling(const char* key, const char* old);
-};
-
-bool is_number(const ConfigNode& node) {
-  return node.kind == Kind::kNumber && std::isfinite(node.number);
-}
-
-void Reader::distribution(const char* key, Distribution& out, double low, double high) {
-  if (const ConfigNode* node = find(key); node != nullptr)
-    distribution_of(*node, key, out, low, high);
-}
-
-// The percentage of draws that lie within the limits of a distribution.
-double percent_within(const Distribution& d) {
-  const auto below = [&](double x) {
-    if (d.kind == Distribution::Kind::kExponential) return x > 0 ? 1 - std::exp(-x / d.a) : 0.0;
-    return d.b > 0 ? 0.5 * std::erfc((d.a - x) / (d.b * std::numbers::sqrt2))
-                   : (x >= d.a ? 1 : 0.0);
-  };
-  return 100 * (below(d.high) - below(d.low));
-}
-
-// A number, or { uniform = [a, b] }, { normal = [mean, deviation] }, { exponential = mean }, the
-// last two with within = [low, high].
-void Reader::distribution_of(const ConfigNode& node, const std::string& key, Distribution& out,
-                             double low, double high) {
-  const auto in_limits = [&](double value) { return value >= low && value <= high; };
-  const auto limits = [&] { return fmt::format("{} must be within {} to {}", key, low, high); };
-  if (is_number(node)) {
-    out = Distribution::fixed(node.number);
-    if (!in_limits(node.number)) fail(node, limits());
-    return;
-  }
-  const std::string wrong = fmt::format(
-      "{} must be a number, {{ uniform = [low, high] }}, {{ normal = [mean, deviation] }} or "
-      "{{ exponential = mean }}",
-      key);
-  if (node.kind != Kind::kTable || node.entries.empty()) return fail(node, wrong);
-  const auto pair = [&](const ConfigNode& list, double& a, double& b) {
-    const bool good = list.kind == Kind::kArray && list.items.size() == 2 &&
-                      is_number(list.items[0]) && is_number(list.items[1]);
-    if (!good) return fail(list, fmt::format("{}: give two numbers", key));
-    a = list.items[0].number;
-    b = list.items[1].number;
-  };
-  out.low = low;
-  out.high = high;
-  bool has_kind = false, has_within = false;
-  for (const auto& [name, value] : node.entries) {
-    if (name == "within") {
-      has_within = true;
-      pair(value, out.low, out.high);
-      if (!(out.low < out.high) || !in_limits(out.low) || !in_limits(out.high)) {
-        fail(value, limits());
-      }
-      continue;
-    }
-    if (has_kind) return fail(value, wrong);
-    has_kind = true;
-    if (name == "uniform") {
-      out.kind = Distribution::Kind::kUniform;
-      pair(value, out.a, out.b);
-      if (!(out.a <= out.b) || !in_limits(out.a) || !in_limits(out.b)) fail(value, limits());
-    } else if (name == "normal") {
-      out.kind = Distribution::Kind::kNormal;
-      pair(value, out.a, out.b);
-      if (!in_limits(out.a)) fail(value, limits());
-      if (!(out.b >= 0)) fail(value, fmt::format("{}: a deviation is not below 0", key));
-    } else if (name == "exponential" && is_number(value)) {
-      out.kind = Distribution::Kind::kExponential;
-      out.a = value.number;
-      if (!in_limits(out.a) || !(out.a > 0)) fail(value, limits());
-    } else {
-      return fail(value, wrong);
-    }
-  }
-  if (!has_kind) return fail(node, wrong);
-  if (has_within && out.kind == Distribution::Kind::kUniform) {
-    fail(node, fmt::format("{}: a uniform number has its limits already", key));
-  }
-  // Draws outside are repeated, but a limited number of times; then they are set to a limit.
-  constexpr double kMinPercent = 5;
-  if (has_within && out.kind != Distribution::Kind::kUniform && percent_within(out) < kMinPercent) {
-    fail(node,
-         fmt::format("{}: under {} % of what is drawn lies within {} to {}; give wider limits "
-                     "or another mean",
-                     key, kMinPercent, out.low, out.high));
-  }
-}
-
-template <class Thing>
-int32_t Reader::named(const ConfigNode& node, const std::vector<Thing>& things, const char* what) {
-  if (node.kind != Kind::kString) {
-    fail(node, fmt::format("give the name of {} in quotes", what));
-    return 0;
-  }
-  for (size_t i = 0; i < things.size(); ++i) {
-    if (things[i].name == node.text) return static_cast<int32_t>(i);
-  }
-  std::string known;
-  for (const Thing& thing : things) known += (known.empty() ? "" : ", ") + thing.name;
-  fail(node, fmt::format("there is no {} named '{}'; there are: {}", what, node.text,
-                         known.empty() ? "none" : known));
-  return 0;
-}
-
-template <class Thing>
-void Reader::names(const ConfigNode& node, const std::vector<Thing>& things, const char* what,
-                   std::vector<int32_t>& out) {
-  if (node.kind != Kind::kArray) {
-    out.push_back(named(node, things, what));
-    return;
-  }
-  for (const ConfigNode& item : node.items) out.push_back(named(item, things, what));
-  if (out.empty())
-    fail(node, fmt::format("the list of names is empty; name at least one {}", what));
-}
-
-template <class Thing>
-void Reader::choices(const char* key, const std::vector<Thing>& things, std::vector<Choice>& out) {
-  const ConfigNode* node = find(key);
-  if (node == nullptr) return;
-  if (node->kind != Kind::kTable) {
-    out.push_back({named(*node, things, key), 1});
-    return;
-  }
-  for (const auto& [name, value] : node->entries) {
-    ConfigNode text;
-    text.kind = Kind::kString;
-    text.line = value.line;
-    text.text = name;
-    if (!is_number(value) || !(value.number > 0)) {
-      fail(value, fmt::format("{}: the weight of '{}' must be a number above 0", key, name));
-    }
-    out.push_back({named(text, things, key), value.number});
-  }
-  if (out.empty()) fail(*node, fmt::format("{}: the table is empty", key));
-}
-
-bool Reader::corners(const ConfigNode& node, const char* key,
-                     std::vector<std::array<double, 2>>& out) {
-  bool good = node.kind == Kind::kArray;
-  for (size_t i = 0; good && i < node.items.size(); ++i) {
-    const ConfigNode& p = node.items[i];
-    good = p.kind == Kind::kArray && p.items.size() == 2 && is_number(p.items[0]) &&
-           is_number(p.items[1]) && std::fabs(p.items[0].number) <= kMaxCoordinate &&
-           std::fabs(p.items[1].number) <= kMaxCoordinate;
-    if (good) out.push_back({p.items[0].number, p.items[1].number});
-  }
-  if (!good) fail(node, fmt::format("{} must be a list of [x, z]", key));
-  return good;
-}
-
-void Reader::count(const char* key, uint64_t& value, double low, double high) {
-  const ConfigNode* node = find(key);
-  double number = 0;
-  this->number(key, number, low, high);
-  if (node == nullptr || !ok()) return;
-  if (number != std::floor(number)) fail(*node, fmt::format("{} must be a whole number", key));
-  value = static_cast<uint64_t>(number);
-}
-
-const char* Reader::spelling(const char* key, const char* old) {
-  const ConfigNode* node = find(old);
-  if (node == nullptr) return key;
-  if (find(key) != nullptr) fail(*node, fmt::format("{} is the old name of {}; drop it", old, key));
-  return old;
-}
+using scenario::is_number;
+using scenario::Reader;
 
 // All tables of the file, in the order in which they refer to each other.
 class File {
@@ -235,6 +46,7 @@ class File {
     each("journey", [&](Reader& r) { read_journey(r); });
     each("source", [&](Reader& r) { read_source(r); });
     each("obstacle", [&](Reader& r) { read_obstacle(r); });
+    each("attractor", [&](Reader& r) { read_attractor(r); });
     if (!error_.message.empty()) return error_;
     return std::move(out_);
   }
@@ -277,6 +89,7 @@ class File {
   bool read_shape(Reader& r, Prism& prism);
   void read_area(Reader& r);
   void read_obstacle(Reader& r);
+  void read_attractor(Reader& r);
   void read_density(Reader& r);
   void read_hours(Reader& r, DensityMap& map);
   void read_profile(Reader& r);
@@ -298,7 +111,7 @@ void File::read_top() {
   r.only({"world", "model", "builtin", "plane", "cell", "class", "seconds", "dt", "seed", "paths",
           "ways", "search_memory", "steering", "slow_on_slopes", "avoid_jams", "pushing",
           "acceleration", "area", "density", "profile", "queue", "link", "journey", "source",
-          "obstacle",
+          "obstacle", "attractor",
           // The expected results of the run, read by load_trial.
           "trial", "measure"});
   r.text("world", out_.world);
@@ -459,7 +272,7 @@ void File::read_area(Reader& r) {
 
 void File::read_obstacle(Reader& r) {
   ScenarioObstacle obstacle;
-  r.only({"name", "box", "polygon", "circle", "y", "begin", "end", "policy"});
+  r.only({"name", "box", "polygon", "circle", "y", "begin", "end", "policy", "line", "speed"});
   name_of(r, out_.obstacles, obstacle.name);
   std::string policy = throng::name_of(obstacle.policy);
   r.text("policy", policy);
@@ -474,7 +287,35 @@ void File::read_obstacle(Reader& r) {
   if (!(obstacle.begin < obstacle.end)) {
     return r.fail(r.table(), "it must begin before it ends");
   }
+  r.number("speed", obstacle.speed, 0.01, 100);
+  const ConfigNode* line = r.find("line");
+  if (line != nullptr && r.corners(*line, "line", obstacle.line) && obstacle.line.size() < 2) {
+    return r.fail(*line, "line: give at least two points [x, z]");
+  }
+  if (line == nullptr && r.find("speed") != nullptr) {
+    return r.fail(*r.find("speed"), "speed goes with a line");
+  }
   out_.obstacles.push_back(std::move(obstacle));
+}
+
+void File::read_attractor(Reader& r) {
+  Attractor attractor;
+  r.only({"name", "density", "source", "obstacle", "radius", "weight"});
+  name_of(r, out_.attractors, attractor.name);
+  r.require("density");
+  r.number("radius", attractor.radius, 0.1, 1000);
+  double weight = attractor.weight;
+  r.number("weight", weight, 1, 255);
+  attractor.weight = static_cast<uint8_t>(std::lround(weight));
+  if (!r.ok()) return;
+  const ConfigNode *source = r.find("source"), *obstacle = r.find("obstacle");
+  if ((source == nullptr) == (obstacle == nullptr)) {
+    return r.fail(r.table(), "say what it is fixed to: a source's avatars, or an obstacle");
+  }
+  attractor.density = r.named(*r.find("density"), out_.densities, "density");
+  if (source != nullptr) attractor.source = r.named(*source, out_.sources, "source");
+  if (obstacle != nullptr) attractor.obstacle = r.named(*obstacle, out_.obstacles, "obstacle");
+  out_.attractors.push_back(std::move(attractor));
 }
 
 // `images = [{ at, image }, ...]` and `period`.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "scenario/density_image.h"
+#include "scenario/file/density_image.h"
 
 #include <algorithm>
 #include <memory>

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <vector>
+
+#include "scenario/simulation_state.h"
+
+// Source: [TC00] 5. Avatars "move and decide their paths by probabilistically sampling this map".
+// An avatar that enters by a density map, or whose journey names one, follows it: the crowd keeps
+// it off weight 0 and lets paths cost by weight (Crowd::add_density_class), and on a long trip it
+// samples the map for places to go by. Time: constant for a trip; for new weights, the ground.
+namespace throng {
+namespace {
+
+constexpr int kMaxPixelDraws = 16;  // drawn to find one with a floor
+constexpr int kMaxSamples = 8;      // of the map, for a waypoint
+constexpr double kLongTrip = 20;    // [m] A shorter one has no waypoints.
+constexpr double kMaxDetour = 1.2;  // of a trip by a waypoint, in lengths of the straight one
+constexpr double kMaxLeft = 0.8;    // of the trip after a waypoint, likewise
+constexpr double kMinWalk = 5;      // [m] to a waypoint
+constexpr double kCostPeriod = 60;  // [s] between changes of costs
+
+bool is_zero_alike(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](uint8_t x, uint8_t y) { return (x == 0) == (y == 0); });
+}
+
+}  // namespace
+
+// The map that avatars of a source follow on a journey: that by which they enter, or the first that
+// the journey names. -1: none.
+int32_t Simulation::State::map_of(const Source& source, int32_t journey) const {
+  if (source.density >= 0 || journey < 0) return source.density;
+  for (const Stage& stage : scenario.journeys[static_cast<size_t>(journey)].stages) {
+    if (stage.density >= 0) return stage.density;
+  }
+  return -1;
+}
+
+// The class of the crowd of avatars that follow a map. Those that fly or go over nodes follow none.
+Result<int32_t> Simulation::State::class_that_follows(int32_t density, int32_t avatar_class,
+                                                      Context& context) {
+  if (density < 0) return avatar_class;
+  const auto found = density_classes.find({density, avatar_class});
+  if (found != density_classes.end()) return found->second;
+  const DensityMap& map = scenario.densities[static_cast<size_t>(density)];
+  const auto made = crowd.add_density_class(avatar_class,
+                                            {.x0 = map.x0,
+                                             .z0 = map.z0,
+                                             .x1 = map.x1,
+                                             .z1 = map.z1,
+                                             .low = map.low,
+                                             .high = map.high,
+                                             .width = map.width,
+                                             .height = map.height,
+                                             .weights = map.weights},
+                                            context);
+  if (!made && made.error().code == Errc::kBadConfig) return avatar_class;
+  if (made) density_classes[{density, avatar_class}] = *made;
+  return made;
+}
+
+void Simulation::State::blend_densities() {
+  for (size_t d = 0; d < densities.size(); ++d) {
+    DensityMap& map = scenario.densities[d];
+    if (!map.hours.empty()) {
+      std::vector<uint8_t> weights = scenario::weights_at(map, time());
+      if (weights != map.weights) {
+        map.weights = std::move(weights);
+        densities[d] = scenario::DensityDraw(map);
+      }
+    }
+    give_density(d);
+  }
+}
+
+// What becomes 0 counts at once; that paths cost something else by now waits, because all search
+// again then.
+void Simulation::State::give_density(size_t density) {
+  const std::vector<uint8_t>& now = scenario.densities[density].weights;
+  GivenDensity& last = given[density];
+  const bool is_due = time() - last.at >= kCostPeriod && now != last.weights;
+  if (!is_due && is_zero_alike(now, last.weights)) return;
+  given[density] = {scenario.densities[density].weights, time()};
+  for (const auto& [key, number] : density_classes) {
+    if (key.first != static_cast<int32_t>(density)) continue;
+    const auto ok = crowd.set_density(number, given[density].weights);
+    THRONG_ASSERT(ok);  // It has as many pixels.
+  }
+}
+
+// Where the class may stand, too: not on a cell that touches weight 0.
+Place Simulation::State::random_place_of(int32_t density, ScenarioAvatar& p) {
+  const auto d = static_cast<size_t>(density);
+  return random_place_of(scenario.densities[d], densities[d], p);
+}
+
+Place Simulation::State::random_place_of(const DensityMap& map, const scenario::DensityDraw& draw,
+                                         ScenarioAvatar& p) {
+  const int32_t of_crowd = crowd_class_of(p);
+  for (int k = 0; k < kMaxPixelDraws; ++k) {
+    const double which = unit(p), along_x = unit(p), along_z = unit(p);
+    const auto [x, z] = draw.point(which, along_x, along_z);
+    const Place place =
+        world.find_place(class_of(p), {x, (map.low + map.high) / 2, z}, (map.high - map.low) / 2);
+    if (place && (of_crowd == class_of(p) || crowd.may_stand(of_crowd, place))) return place;
+  }
+  return {};
+}
+
+// To its goal, or first to a place that it samples on the trip there. Each waypoint is nearer to
+// the goal, so it comes to an end.
+void Simulation::State::go_on_trip(ScenarioAvatar& p) {
+  const auto state = crowd.read(p.id);
+  const double left = plan_distance(state->position, p.goal.position);
+  Place waypoint;
+  for (int k = 0; k < kMaxSamples && p.follows >= 0 && left > kLongTrip && !waypoint; ++k) {
+    const Place place = random_place_of(p.follows, p);
+    if (!place) break;
+    const double there = plan_distance(state->position, place.position),
+                 rest = plan_distance(place.position, p.goal.position);
+    const bool is_between =
+        there >= kMinWalk && rest <= kMaxLeft * left && there + rest <= kMaxDetour * left;
+    if (is_between) waypoint = place;
+  }
+  if (!waypoint) {
+    if (p.doing == Doing::kToWaypoint) walk_to(p, p.goal, Doing::kToRandomPlace);
+    return;
+  }
+  const Place goal = p.goal;
+  walk_to(p, waypoint, Doing::kToWaypoint);
+  p.waypoint = waypoint;
+  p.goal = goal;
+}
+
+}  // namespace throng

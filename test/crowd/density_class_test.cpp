@@ -4,12 +4,14 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "baked.h"
+#include "core/hash.h"
 #include "crowds.h"
 #include "density_picture.h"
 #include "throng/crowd.h"
@@ -195,6 +197,30 @@ TEST(DensityClass, SameBytesForAnyWorkersAndWhenRestored) {
     if (hash == 0) hash = run.crowd.state_hash();
     EXPECT_EQ(run.crowd.state_hash(), hash) << workers << " workers";
   }
+}
+
+TEST(DensityClass, SavedNonsenseIsRefusedOrHarmless) {
+  const World world = test::bake(worlds::flat(12), 0.25);
+  const DensityPicture picture(6, 6, 2, [](double x, double) { return x > 4 && x < 8 ? 0 : 9; });
+  Crowd crowd = made(world, {.workers = 1});
+  const int32_t number = density_class(crowd, 0, picture);
+  scattered(crowd, 20, {.avatar_class = number});
+  std::vector<uint8_t> saved = crowd.save();
+  // The map is at the end, before the checksum: a head of 64 bytes, 36 weights, and 4 more.
+  const size_t begin = saved.size() - 8 - 64 - 40;
+  int accepted = 0, refused = 0;
+  Context context;
+  for (size_t bit = 8 * begin; bit < 8 * (saved.size() - 8); bit += 3) {
+    std::vector<uint8_t> bad = saved;
+    bad[bit / 8] ^= static_cast<uint8_t>(1 << bit % 8);
+    const uint64_t sum = hash_bytes(bad.data(), bad.size() - 8);
+    std::memcpy(bad.data() + bad.size() - 8, &sum, 8);
+    auto restored = Crowd::restore(world, {.workers = 1}, bad, context);
+    restored ? ++accepted : ++refused;
+    if (restored) restored->step();
+  }
+  EXPECT_GT(accepted, 20);
+  EXPECT_GT(refused, 10);
 }
 
 TEST(DensityClass, PathsPreferWhereManyWalk) {

@@ -30,7 +30,9 @@ Result<void> check_density(const DensityGrid& map) {
       map.weights.size() != static_cast<size_t>(map.width) * static_cast<size_t>(map.height)) {
     return bad("it must have 1 to 16384 pixels a side, and a weight for each");
   }
-  const bool has_box = map.x0 < map.x1 && map.z0 < map.z1 && map.low <= map.high &&
+  constexpr double kMinPixel = 1e-6;  // [m]
+  const bool has_box = map.x1 - map.x0 >= kMinPixel * map.width &&
+                       map.z1 - map.z0 >= kMinPixel * map.height && map.low <= map.high &&
                        std::isfinite(map.x1 - map.x0) && std::isfinite(map.z1 - map.z0) &&
                        std::isfinite(map.high - map.low);
   return has_box ? Result<void>() : bad("its box must be finite and not empty");

@@ -451,10 +451,22 @@ class THRONG_API Crowd {
 // Avatar generators: keep a crowd populated around a viewer's eye. Only what the eye sees, and a
 // band around it, is simulated. Source: [TC00] 5.
 
+/// A class of a mix that generators add.
+struct GeneratorShare {
+  int32_t avatar_class = 0;
+  double share = 1;  ///< Of all that are added, together with the other shares. [> 0]
+};
+
 /// Settings for AvatarGenerators::create.
 struct GeneratorConfig {
-  Place home = {};  ///< Only ground that the class can reach from here is populated.
+  Place home = {};  ///< Only ground that `avatar_class` can reach from here is populated.
   int32_t avatar_class = 0;
+  /// Classes that are added, each where it can stand; empty: `avatar_class` alone.
+  std::vector<GeneratorShare> mix = {};
+  /// How avatars are spread, on both sides of the border of what is seen: `density` is the mean
+  /// over that ground, and where the weight is 0 there are none. They follow the map
+  /// (Crowd::add_density_class). Without pixels: evenly.
+  DensityGrid map = {};
   double density = 0.05;  ///< Avatars per square metre of that ground. [1/m^2, > 0, <= 1]
   /// If not 0, in place of `density`: number of avatars on all of that ground, at most one per
   /// square metre. [>= 0]
@@ -462,6 +474,9 @@ struct GeneratorConfig {
   double radius = 100;           ///< Ground farther from the eye is not populated. [m, > 0]
   double band = 16;              ///< Width of the unseen band beside what is seen. [m, > 0]
   int32_t steps_per_query = 10;  ///< Steps between two queries of what is seen. [steps, > 0]
+  /// Region of the eye: what is queried is what can be seen from the eye and from four points so
+  /// far to its sides, and the answer holds until the eye is farther away than that. [m, >= 0]
+  double region = 2;
   uint64_t seed = 1;
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
 };
@@ -469,6 +484,9 @@ struct GeneratorConfig {
 /// Returns whether anything inside a box can be seen from the eye. It may return true for a hidden
 /// box: then more is simulated. If it returns false for a visible box, avatars appear in view.
 using Sight = std::function<bool(const Box3d&)>;
+
+/// The same from any point.
+using SightFrom = std::function<bool(const Vec3d& eye, const Box3d&)>;
 
 /// State after an update.
 struct GeneratorReport {
@@ -495,6 +513,9 @@ class THRONG_API AvatarGenerators {
   AvatarGenerators& operator=(AvatarGenerators&&) noexcept;
   ~AvatarGenerators();
 
+  /// From now on cells are classified by this, from the whole region of the eye; without it, by
+  /// `can_see`, from its point alone.
+  void set_region_sight(SightFrom can_see_from);
   /// Removes all own avatars and populates what is seen and the band at once: call it first, and
   /// when the eye has jumped. Fails as Crowd::add does.
   [[nodiscard]] Result<GeneratorReport> populate(Crowd& crowd, Vec3d eye, const Sight& can_see,

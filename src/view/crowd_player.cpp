@@ -309,6 +309,19 @@ Place CrowdPlayer::place_under(Vec3d eye, int32_t avatar_class) const {
 
 // The eye moves on before this step is shown: an avatar that is added must be hidden from where the
 // eye was, is, and may be by then.
+// All classes of the mix that can walk about from a place; none if that is one alone.
+std::vector<GeneratorShare> CrowdPlayer::mix_at(const Place& home) const {
+  std::vector<GeneratorShare> mix;
+  for (size_t i = 0; i < mix_up_to_.size(); ++i) {
+    const double share = mix_up_to_[i] - (i > 0 ? mix_up_to_[i - 1] : 0);
+    const auto number = static_cast<int32_t>(i);
+    if (!(share > 0) || classes_[i].flies || goes_over_nodes(classes_[i])) continue;
+    const Place place = world_.find_place(number, home.position, 1.0);
+    if (place && graph_.component_at(number, place) >= 0) mix.push_back({number, share});
+  }
+  return mix.size() > 1 ? mix : std::vector<GeneratorShare>();
+}
+
 Result<void> CrowdPlayer::keep_populated() {
   constexpr double kMaxEyeMove = 10;  // [m] After a larger one the crowd is populated again.
   constexpr double kLookAhead = 3;    // [steps]
@@ -341,6 +354,7 @@ Result<void> CrowdPlayer::keep_populated() {
     config.seed = start_.seed;
     config.workers = workers_;
     config.people = start_.avatars;
+    config.mix = mix_at(config.home);
     Result<AvatarGenerators> made = AvatarGenerators::create(world_, config, quiet);
     if (!made) return made.error();
     s.generators = *std::move(made);
@@ -357,7 +371,8 @@ Result<void> CrowdPlayer::keep_populated() {
     if (avatars_.size() <= slot) avatars_.resize(slot + size_t{1});
     if (avatars_[slot].id == id) continue;
     AvatarSpawn like = spawn_like(added_++);
-    const int32_t avatar_class = commonest_class();
+    const auto state = crowd_.read(id);
+    const int32_t avatar_class = state ? state->avatar_class : commonest_class();
     like.speed *= start_.speed > 0 ? 1
                                    : classes_[static_cast<size_t>(avatar_class)].speed /
                                          classes_[static_cast<size_t>(like.avatar_class)].speed;

@@ -98,6 +98,7 @@ class CrowdPlayer final : public TimelinePlayer {
   [[nodiscard]] Place goal_of(uint32_t slot, uint64_t nth, const Vec3d& from) const;
   [[nodiscard]] AvatarSpawn spawn_like(uint64_t number) const;
   [[nodiscard]] int32_t commonest_class() const;
+  [[nodiscard]] std::vector<GeneratorShare> mix_at(const Place& home) const;
   [[nodiscard]] Place place_under(Vec3d eye, int32_t avatar_class) const;
   [[nodiscard]] bool is_on_large_ground(int32_t avatar_class, Place place) const;
   Result<void> keep_populated();

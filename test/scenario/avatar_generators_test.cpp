@@ -243,8 +243,84 @@ TEST(AvatarGenerators, RefuseBadSettings) {
   config.avatar_class = 7;
   EXPECT_EQ(AvatarGenerators::create(town().world, config, context).error().code, Errc::kNotFound);
   config = config_of(0.04);
+  config.mix = {{.avatar_class = 0}, {.avatar_class = 0}};
+  EXPECT_EQ(AvatarGenerators::create(town().world, config, context).error().code, Errc::kBadConfig);
+  config.mix = {{.avatar_class = 0, .share = 0}};
+  EXPECT_EQ(AvatarGenerators::create(town().world, config, context).error().code, Errc::kBadConfig);
+  config.mix = {{.avatar_class = 5}};
+  EXPECT_EQ(AvatarGenerators::create(town().world, config, context).error().code, Errc::kNotFound);
+  config = config_of(0.04);
+  config.region = -1;
+  EXPECT_EQ(AvatarGenerators::create(town().world, config, context).error().code, Errc::kBadConfig);
+  config = config_of(0.04);
+  config.map.weights = {1, 2, 3};
+  EXPECT_EQ(AvatarGenerators::create(town().world, config, context).error().code, Errc::kBadConfig);
+  config = config_of(0.04);
   config.home = {};
   EXPECT_EQ(AvatarGenerators::create(town().world, config, context).error().code, Errc::kBadInput);
+}
+
+TEST(AvatarGenerators, SpreadAMixByADensityMapOnBothSidesOfTheBorder) {
+  const World world = test::bake(town().scene, 0.25, {default_classes()[0], default_classes()[1]});
+  // The west has three times the weight of the east, and a street along X has none.
+  GeneratorConfig config;
+  config.home = world.find_place(0, {5, 0, 5}, 1);
+  config.density = 0.03;
+  config.radius = 200;
+  config.mix = {{.avatar_class = 0, .share = 3}, {.avatar_class = 1, .share = 1}};
+  config.map = {.x0 = 0, .z0 = 0, .x1 = 160, .z1 = 160, .width = 160, .height = 160, .weights = {}};
+  const auto weight_at = [](double x, double z) {
+    return z > 62 && z < 68 && x > 20 ? 0 : x < 80 ? 90 : 30;
+  };
+  for (int z = 0; z < 160; ++z) {
+    for (int x = 0; x < 160; ++x) {
+      config.map.weights.push_back(static_cast<uint8_t>(weight_at(x + 0.5, z + 0.5)));
+    }
+  }
+  Context context;
+  auto generators = AvatarGenerators::create(world, config, context);
+  ASSERT_TRUE(generators) << generators.error().message;
+  Crowd crowd = *Crowd::create(world, {.dt = 0.2, .seed = 3});
+  // The border between what is seen and what is not cuts both halves.
+  const auto can_see_from = [](const Vec3d&, const Box3d& box) { return box.min.z < 80; };
+  generators->set_region_sight(can_see_from);
+  const Vec3d eye{80, 1.7, 40};
+  const auto can_see = [&](const Box3d& box) { return can_see_from(eye, box); };
+  double west = 0, east = 0, children = 0, all = 0;
+  std::vector<AvatarState> states;
+  for (int step = 0; step < 200; ++step) {
+    ASSERT_TRUE(generators->update(crowd, eye, can_see, context));
+    crowd.step();
+    crowd.read(states);
+    for (const AvatarState& s : states) {
+      (s.position.x < 80 ? west : east) += 1;
+      children += s.avatar_class == 1 ? 1 : 0;
+      all += 1;
+      ASSERT_NE(weight_at(s.position.x, s.position.z), 0);
+    }
+  }
+  EXPECT_GT(all / 200, 150);
+  EXPECT_GT(west / east, 2.2) << "three, but paths in the east cost more";
+  EXPECT_LT(west / east, 5);
+  EXPECT_NEAR(children / all, 0.25, 0.06);
+}
+
+TEST(AvatarGenerators, QueryWhatIsSeenFromTheWholeRegionOfTheEye) {
+  GeneratorConfig config = config_of(0.04);
+  config.region = 4;
+  Context context;
+  auto generators = AvatarGenerators::create(town().world, config, context);
+  ASSERT_TRUE(generators);
+  Crowd crowd = *Crowd::create(town().world, {});
+  const Vec3d eye{35, 1.7, 65};
+  const auto sight = [&](const Box3d& box) { return can_see(eye, box); };
+  const auto of_point = generators->populate(crowd, eye, sight, context);
+  ASSERT_TRUE(of_point);
+  generators->set_region_sight(
+      [](const Vec3d& from, const Box3d& box) { return can_see(from, box); });
+  const auto of_region = generators->populate(crowd, eye, sight, context);
+  ASSERT_TRUE(of_region);
+  EXPECT_GT(of_region->seen_area, of_point->seen_area);
 }
 
 TEST(AvatarGenerators, PopulateAfterAJumpMovesOwnAvatarsAndLeavesOthers) {

@@ -156,6 +156,27 @@ TEST(OnlySeen, AStreetStaysPopulatedForAnEyeThatMoves) {
       600);
 }
 
+TEST(OnlySeen, TheWholeMixIsKept) {
+  const World world = test::bake(town().scene, 0.25, {default_classes()[0], default_classes()[1]});
+  CrowdStart start = start_with(600);
+  start.mix = {2, 1};
+  Context context;
+  auto made = view::CrowdPlayer::create(world, {}, start, 1, {},
+                                        view::occluders_of(town().scene, {}), context);
+  ASSERT_TRUE(made) << made.error().message;
+  double children = 0, all = 0;
+  for (int step = 0; step < 100; ++step) {
+    (*made)->look_from({.eye = {35, 1.7, 65}});
+    const auto now = (*made)->next();
+    ASSERT_NE(now, nullptr);
+    ASSERT_EQ(now->fault, "");
+    for (const uint8_t of : now->classes) children += of == 1 ? 1 : 0;
+    all += static_cast<double>(now->size());
+  }
+  EXPECT_GT(all, 5000);
+  EXPECT_NEAR(children / all, 1.0 / 3, 0.08);
+}
+
 LoadStage stage_of(const CrowdStart& start) {
   return [start](StageParts& parts, Context&) -> Result<void> {
     if (auto ok = parts.set_scene(town().scene); !ok) return ok;

@@ -112,15 +112,15 @@ Place Simulation::State::random_place_of(const DensityMap& map, const scenario::
 // the goal, so it comes to an end.
 void Simulation::State::go_on_trip(ScenarioAvatar& p) {
   const auto state = crowd.read(p.id);
-  const double left = plan_distance(state->position, p.goal.position);
+  const double straight = plan_distance(state->position, p.goal.position);
   Place waypoint;
-  for (int k = 0; k < kMaxSamples && p.follows >= 0 && left > kLongTrip && !waypoint; ++k) {
+  for (int k = 0; k < kMaxSamples && p.follows >= 0 && straight > kLongTrip && !waypoint; ++k) {
     const Place place = random_place_of(p.follows, p);
     if (!place) break;
     const double there = plan_distance(state->position, place.position),
                  rest = plan_distance(place.position, p.goal.position);
     const bool is_between =
-        there >= kMinWalk && rest <= kMaxLeft * left && there + rest <= kMaxDetour * left;
+        there >= kMinWalk && rest <= kMaxLeft * straight && there + rest <= kMaxDetour * straight;
     if (is_between) waypoint = place;
   }
   if (!waypoint) {

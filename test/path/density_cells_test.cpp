@@ -112,14 +112,15 @@ TEST(DensityCells, AMapThatChangesGivesThePathsOfANewFinder) {
 
 TEST(DensityCells, AMetreCostsHalfAMetreMoreEachTimeThatTheWeightIsHalved) {
   const World world = test::bake(worlds::flat(12), 0.1);
-  for (const auto& [weight, cost] : {std::pair{160, 1.0},
-                                     {81, 1.0},
-                                     {80, 1.5},
-                                     {41, 1.5},
-                                     {40, 2.0},
-                                     {20, 2.5},
-                                     {10, 3.0},
-                                     {1, 3.0}}) {
+  for (const auto& [given, cost] : {std::pair{160, 1.0},
+                                    {81, 1.0},
+                                    {80, 1.5},
+                                    {41, 1.5},
+                                    {40, 2.0},
+                                    {20, 2.5},
+                                    {10, 3.0},
+                                    {1, 3.0}}) {
+    const int weight = given;
     GroundFinder finder = finder_of(world);
     finder.set_density(cells_of(
         DensityPicture(30, 30, 1, [&](double x, double) { return x > 11 ? 160 : weight; })));

@@ -103,6 +103,13 @@ struct CurvilinearTuning {
   bool by_state = false;
 };
 
+/// How avatars in the air avoid others in a crowd of SteeringModel::kCurvilinear.
+enum class FlyerAxes : uint8_t {
+  kOurs,       ///< By trying velocities, as in the crowds of other models.
+  kSide,       ///< By [CAACD], whose eq. 11 pushes to a side alone.
+  kSideAndUp,  ///< The same, to a side and up or down.
+};
+
 /// Settings that trade quality of movement for time. The defaults were measured
 /// (docs/design/008-engine.md); only studies of the engine change them.
 struct CrowdTuning {
@@ -134,6 +141,9 @@ struct CrowdTuning {
   double no_progress_after = 0;
   /// Of SteeringModel::kCurvilinear alone.
   CurvilinearTuning curvilinear = {};
+  /// Of SteeringModel::kCurvilinear alone. By [CAACD] a flyer knows walls, floors and obstacles
+  /// only through its path and accepted moves, as its walkers do.
+  FlyerAxes flyer_axes = FlyerAxes::kOurs;
 
   /// Avatars push instead of queueing, and nothing limits their acceleration.
   void let_push() {
@@ -373,6 +383,13 @@ class THRONG_API Crowd {
   /// number, not above 0, above 100, or above 1000 of its radii per step: `add` refuses these.
   /// Unknown ids are ignored. [m/s, > 0 to 100]
   void set_speeds(std::span<const AvatarId> ids, std::span<const double> speeds);
+  /// Gives avatars a Mass, MaxSpeed and MaxForce of their own, one set for each id, from the next
+  /// step on until they are removed. Other avatars keep CrowdTuning::curvilinear. The speed in m/s
+  /// stays: call set_speeds, too, to change it. An avatar keeps what it has if a value is out of
+  /// its limits. Unknown ids are ignored. Saved with the crowd; no effect with another model.
+  void set_curvilinear(std::span<const AvatarId> ids, std::span<const CurvilinearTuning> tunings);
+  /// The values of one avatar, its own or the crowd's. Empty if the id is unknown.
+  [[nodiscard]] std::optional<CurvilinearTuning> curvilinear(AvatarId id) const;
 
   /// Sets preferred velocities in place of goals: the avatars are externally controlled until they
   /// get a goal. A velocity longer than the avatar's speed is cut to it; one that is not finite, or

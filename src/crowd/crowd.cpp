@@ -85,9 +85,7 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   if (!(config.tuning.no_progress_after >= 0 && config.tuning.no_progress_after <= 1e6)) {
     return bad_config("no_progress_after must be 0 to 1000000 s");
   }
-  const CurvilinearTuning& c = config.tuning.curvilinear;
-  if (!(c.mass >= 0.01 && c.mass <= 1000 && c.max_speed >= 0.01 && c.max_speed <= 100 &&
-        c.max_force >= 0.001 && c.max_force <= 1000)) {
+  if (!crowd::is_tuning(config.tuning.curvilinear)) {
     return bad_config(
         "of curvilinear, mass must be 0.01 to 1000, max_speed 0.01 to 100, max_force 0.001 to "
         "1000");
@@ -104,23 +102,20 @@ Result<Crowd> Crowd::create(const World& world, const CrowdConfig& config) {
   auto slope_factors = slope_factors_of(world, config);
   if (!slope_factors) return slope_factors.error();
   const double unit = data_of(world)->summary.cell / world::kUnitsPerCell;
-  const crowd::MoveConfig move{
-      .units = {static_cast<float>(unit), static_cast<float>(config.dt)},
-      .sight = static_cast<float>(config.tuning.sight),
-      .rounds = config.tuning.rounds,
-      .deadlock_avoidance = config.tuning.deadlock_avoidance,
-      .reaction = static_cast<float>(config.tuning.reaction),
-      .seed = config.seed,
-      .workers = config.workers,
-      .model = config.model,
-      .curves = {.mass = c.mass,
-                 .max_speed = c.max_speed,
-                 .max_force = c.max_force,
-                 .order = c.by_state ? caacd::Order::kState : caacd::Order::kTime},
-      .queues = config.tuning.queues,
-      .acceleration = static_cast<float>(config.tuning.acceleration),
-      .slope_factors = *std::move(slope_factors)};
-  return Crowd(std::make_unique<State>(world, config, move));
+  crowd::MoveConfig move{.units = {static_cast<float>(unit), static_cast<float>(config.dt)},
+                         .sight = static_cast<float>(config.tuning.sight),
+                         .rounds = config.tuning.rounds,
+                         .deadlock_avoidance = config.tuning.deadlock_avoidance,
+                         .reaction = static_cast<float>(config.tuning.reaction),
+                         .seed = config.seed,
+                         .workers = config.workers,
+                         .model = config.model,
+                         .curves = crowd::with_tuning({}, config.tuning.curvilinear),
+                         .flyer_axes = config.tuning.flyer_axes,
+                         .queues = config.tuning.queues,
+                         .acceleration = static_cast<float>(config.tuning.acceleration),
+                         .slope_factors = *std::move(slope_factors)};
+  return Crowd(std::make_unique<State>(world, config, std::move(move)));
 }
 
 void Crowd::set_views(std::span<const CrowdView> views) {
@@ -281,7 +276,8 @@ CrowdMemory Crowd::memory() const {
   memory.avatars =
       (s.shared.generation.capacity() + s.where.capacity() + s.free_slots.capacity()) * 4 +
       s.shared.orientations.capacity() * sizeof(crowd::Orientation) +
-      s.inside.capacity() * sizeof(uint64_t) + s.checked_at.capacity() * sizeof(s.checked_at[0]);
+      s.inside.capacity() * sizeof(uint64_t) + s.checked_at.capacity() * sizeof(s.checked_at[0]) +
+      s.own_curves.bytes();
   for (const crowd::Mode* mode : s.modes) mode->add_memory(memory);
   for (const auto& of : s.shared.classes) memory.ground += of ? of->ground.bytes() : 0;
   memory.ground += s.shared.obstacles.bytes();

@@ -250,6 +250,7 @@ void Crowd::remove(std::span<const AvatarId> ids) {
     s.where[body->slot] = kNoBody;
     ++s.shared.generation[body->slot];
     s.free_slots.push_back(body->slot);
+    s.own_curves.forget(body->slot);
     *body = last;
     s.walk.engine().shrink(s.walk.bodies().size() - 1);
   }
@@ -315,6 +316,24 @@ void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> sp
     s.walk.engine().set_level_speed(*body, speed);
     s.fit({}, speed);  // Its size is known.
   }
+}
+
+void Crowd::set_curvilinear(std::span<const AvatarId> ids,
+                            std::span<const CurvilinearTuning> tunings) {
+  THRONG_ASSERT(ids.size() == tunings.size());
+  State& s = *state_;
+  for (size_t i = 0; i < ids.size(); ++i) {
+    const crowd::Body* body = s.body(ids[i]);
+    if (body != nullptr && crowd::is_tuning(tunings[i])) s.own_curves.set(body->slot, tunings[i]);
+  }
+}
+
+std::optional<CurvilinearTuning> Crowd::curvilinear(AvatarId id) const {
+  const State& s = *state_;
+  const crowd::Body* body = s.body(id);
+  if (body == nullptr) return std::nullopt;
+  const CurvilinearTuning* own = s.own_curves.find(body->slot);
+  return own != nullptr ? *own : s.shared.config.tuning.curvilinear;
 }
 
 }  // namespace throng

@@ -53,7 +53,8 @@ struct Head {
   crowd::BodyExtent extent;
   float fastest = 0;  // [m/s]
   int32_t taking_widest = 0, taking_tallest = 0;
-  uint64_t avoids_jams = 0;
+  // (Together as wide as avoids_jams was alone: a crowd without own curves keeps its bytes.)
+  uint32_t avoids_jams = 0, own_curves = 0;
   uint64_t curves = 0;       // hash_of_curves
   uint64_t aside = 0;        // bodies that stand aside
   uint64_t slow_levels = 0;  // of the delay map
@@ -154,7 +155,8 @@ uint64_t size_of(const Head& head) {
          head.climbs * crowd::ClimbMode::kRowBytes + head.link_uses * crowd::LinkMode::kRowBytes +
          head.views * sizeof(crowd::EngineDetail::View) + head.edit_bytes + head.call_bytes +
          head.slow_levels * sizeof(crowd::DelayMap::Saved) +
-         head.aside * sizeof(crowd::StandsAside) + head.density_bytes + 8;
+         head.aside * sizeof(crowd::StandsAside) + head.density_bytes +
+         head.own_curves * sizeof(crowd::OwnCurves::Saved) + 8;
 }
 
 // A world that was never written has no hash of its own.
@@ -183,7 +185,7 @@ uint64_t hash_of_curves(const CrowdConfig& config) {
   if (config.model != SteeringModel::kCurvilinear) return 0;
   const CurvilinearTuning& t = config.tuning.curvilinear;
   const std::array<double, 4> values = {t.mass, t.max_speed, t.max_force, t.by_state ? 1.0 : 0.0};
-  return hash_bytes(values.data(), sizeof values);
+  return hash_bytes(values.data(), sizeof values, static_cast<uint64_t>(config.tuning.flyer_axes));
 }
 
 Head head_of(const World& world, const CrowdConfig& config) {
@@ -333,6 +335,7 @@ struct SavedArrays {
   std::vector<crowd::LongSearch> searches;
   std::vector<uint8_t> edits, calls, densities;
   std::vector<crowd::DelayMap::Saved> delays;
+  std::vector<crowd::OwnCurves::Saved> own_curves;
 };
 
 // Reads all arrays, in the order of Crowd::save.
@@ -357,7 +360,8 @@ SavedArrays read_arrays(const Head& head, const uint8_t* at, State& s) {
   at = take_rows(at, head.call_bytes, saved.calls);
   at = take_rows(at, head.slow_levels, saved.delays);
   at = take_rows(at, head.aside, s.walk.standing_aside());
-  take_rows(at, head.density_bytes, saved.densities);
+  at = take_rows(at, head.density_bytes, saved.densities);
+  take_rows(at, head.own_curves, saved.own_curves);
   return saved;
 }
 
@@ -391,7 +395,9 @@ bool are_sound(std::span<const crowd::Body> bodies, const Head& head, const Stat
   const world::WorldData& data = *data_of(s.shared.world);
   const size_t classes = s.shared.baked_classes() + s.shared.density_classes.size();
   bool sound = head.bodies + head.free_slots == head.slots;
-  for (const uint32_t slot : s.free_slots) sound = sound && use_slot(slot);
+  for (const uint32_t slot : s.free_slots) {
+    sound = sound && use_slot(slot) && s.own_curves.find(slot) == nullptr;
+  }
   for (const crowd::Body& body : bodies) {
     sound = sound && is_sound(body, data, classes) && use_slot(body.slot);
     for (const crowd::Mode* mode : s.modes) sound = sound && mode->is_sound(body);
@@ -441,6 +447,8 @@ std::vector<uint8_t> Crowd::save() const {
   head.aside = s.walk.standing_aside().size();
   const std::vector<uint8_t> densities = crowd::save_densities(s.shared.density_classes);
   head.density_bytes = densities.size();
+  const std::vector<crowd::OwnCurves::Saved> own_curves = s.own_curves.saved();
+  head.own_curves = static_cast<uint32_t>(own_curves.size());
   std::vector<uint8_t> out;
   out.reserve(size_of(head));
   put_rows(out, &head, 1);
@@ -463,6 +471,7 @@ std::vector<uint8_t> Crowd::save() const {
   put_rows(out, delays.data(), delays.size());
   put_rows(out, s.walk.standing_aside().data(), head.aside);
   put_rows(out, densities.data(), densities.size());
+  put_rows(out, own_curves.data(), own_curves.size());
   const uint64_t sum = hash_bytes(out.data(), out.size());
   put_rows(out, &sum, 1);
   return out;
@@ -487,7 +496,8 @@ Result<Crowd> Crowd::restore(const World& world, const CrowdConfig& config,
   s.where.assign(head.slots, kNoBody);
   s.shared.step = head.step;
   auto densities = crowd::restore_densities(arrays.densities, s.shared.baked_classes());
-  bool sound = densities && s.take_densities(*std::move(densities)) && are_sound(bodies, head, s);
+  bool sound = densities && s.take_densities(*std::move(densities)) &&
+               s.own_curves.restore(arrays.own_curves, head.slots) && are_sound(bodies, head, s);
   auto all = obstacles_of(arrays.obstacles, arrays.corners, s.shared.edits(), s.slot1_of_edit);
   sound =
       sound && all && s.shared.obstacles.restore(std::move(*all), std::move(arrays.free_obstacles));

@@ -14,6 +14,7 @@
 #include "crowd/ground/target.h"
 #include "crowd/link/link_mode.h"
 #include "crowd/mode/mode.h"
+#include "crowd/mode/own_curves.h"
 #include "crowd/mode/shared_state.h"
 #include "crowd/walk/crowd_engine.h"
 #include "crowd/walk/walk_mode.h"
@@ -29,6 +30,7 @@ inline constexpr std::array<int32_t, 3> kNeverChecked = {INT32_MIN / 2, 0, 0};
 
 struct Crowd::State {
   crowd::SharedState shared;
+  crowd::OwnCurves own_curves;  // before the modes, which read it
   crowd::WalkMode walk;
   crowd::LinkMode link;
   crowd::FlyMode fly;
@@ -53,9 +55,9 @@ struct Crowd::State {
   std::vector<uint32_t> slot1_of_edit;  // by id - 1: slot of its obstacle plus one; 0: none
   std::vector<AvatarId> blockers;
 
-  State(const World& world, const CrowdConfig& config, const crowd::MoveConfig& move)
+  State(const World& world, const CrowdConfig& config, crowd::MoveConfig move)
       : shared(world, config),
-        walk(shared, move),
+        walk(shared, (move.own_curves = &own_curves, move)),
         link(shared, walk),
         fly(shared, move, walk),
         climb(shared, move, fly),

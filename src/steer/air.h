@@ -58,6 +58,7 @@ struct AirNeighbour {
   Space at, velocity;  ///< `at`: offset of its feet.
   float radii = 0;     ///< Sum of both.
   float height = 0;    ///< Of the other.
+  uint32_t slot = 0;   ///< Of the other.
 };
 
 /// The input of steering for one body.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "steer/air.h"
 #include "steer/sampled.h"
 #include "throng/avatar.h"
 #include "throng/papers.h"
@@ -39,6 +40,23 @@ struct View {
 /// kCurvilinear]
 Plane preferred_velocity(SteeringModel model, const View& view, float dt,
                          const caacd::Model& curves = {});
+
+/// What steering in the air by [CAACD] needs beside an AirSituation.
+struct AirView {
+  Space to_target;    ///< Offset to its target. [m]
+  bool stops = true;  ///< It stops at the target.
+  float radius = 0;   ///< [m, > 0]
+  uint32_t slot = 0;
+};
+
+/// As preferred_velocity of kCurvilinear, in the air. The protection fields are spheres and bodies
+/// are upright cylinders, so heights are divided by the body's height and multiplied by its width:
+/// two like bodies then touch where their spheres do. [curves: kSide or kSideAndUp in `axes`]
+Space curvilinear_in_air(const AirSituation& situation, const AirView& view, float dt,
+                         const caacd::Model& curves);
+
+/// As candidates_about, turned in the plane.
+AirChoices candidates_in_air(Space preferred);
 
 /// Candidates for a preferred velocity, in order: the velocity itself, turned by 30, 60 and 90
 /// degrees, each to the right first, then straight on, slower.

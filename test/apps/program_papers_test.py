@@ -126,6 +126,27 @@ class ProgramPapers(ProgramCase):
             self.assertIn("all the same", check.stdout)
         self.assertEqual(len(states), 3, "the last set is the default")
 
+    def test_sets_that_change_in_a_run_are_recorded_and_others_refused_by_name(self):
+        run = ("run", self.world, "--model", "caacd", "--avatars", 80, "--steps", 50)
+        states = set()
+        for words in ((), ("--set-at", "20:1.0/0.8/0.06"), ("--set-at", "20:7:1.0/0.8/0.06"),
+                      ("--set-at", "20:7:1.0/0.8/0.06", "--set-at", "35:7:2.0/0.4/0.06"), ("--set-at", "900:1.0/0.8/0.06")):
+            done = self.run_throng(*run, *words, "--record", "walk.replay", "--json")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            said = json.loads(done.stdout)
+            self.assertEqual((said["overlaps"], said["wall_entries"]), (0, 0))
+            states.add(said["state_hash"])
+            check = self.run_throng("replay", "walk.replay", "--check", "--threads", 1)
+            self.assertEqual(check.returncode, 0, check.stderr)
+            self.assertIn("all the same", check.stdout)
+        self.assertEqual(len(states), 4, "step 900 is never made")
+        for words, *named in ((("--set-at", "20"), "--set-at 20", "STEP:AVATAR:MASS/SPEED/FORCE"), (("--set-at", "x:1/1/1"), "x:1/1/1"),
+                              (("--set-at", "2:80:1/1/1"), "--set-at 80", "80 avatars"), (("--axes", "up"), "--axes up", "side-and-up"),
+                              (("--model", "sampled", "--axes", "side"), "--axes", "--model caacd"),
+                              (("--model", "sampled", "--set-at", "1:1/1/1"), "--set-at", "--model caacd")):
+            self.assert_refused(self.run_throng(*(w for w in run if "--model" not in words or w not in ("--model", "caacd")), *words),
+                                *named)
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

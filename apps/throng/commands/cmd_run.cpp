@@ -35,11 +35,12 @@ struct RunOptions {
   uint64_t check_every = 0;
   WanderConfig config;
   CrowdRun crowd;
-  bool wander = false;            // without goals
-  bool full_speed = false;        // on stairs and slopes, too
-  bool ignore_jams = false;       // no other routes around them
-  bool pushing = false;           // no queues, no limit of accelerations
-  std::string set, order;         // of the model caacd
+  bool wander = false;       // without goals
+  bool full_speed = false;   // on stairs and slopes, too
+  bool ignore_jams = false;  // no other routes around them
+  bool pushing = false;      // no queues, no limit of accelerations
+  CurveWords curves;         // of the model caacd
+  std::vector<std::string> set_changes;
   std::vector<std::string> also;  // CLASS:N
 };
 
@@ -49,24 +50,17 @@ Result<int32_t> pick_class(const World& world, std::string& name) {
   return class_named(world, name);
 }
 
-// --set and --order.
-Result<void> read_curves(const RunOptions& options, CrowdConfig& config) {
-  if (options.set.empty() && options.order.empty()) return {};
-  if (config.model != SteeringModel::kCurvilinear) {
-    return Error{Errc::kBadConfig, "--set and --order are of [CAACD]; add --model caacd"};
+// --set-at.
+Result<void> read_set_changes(const std::vector<std::string>& texts, CrowdRun& run) {
+  if (texts.empty()) return {};
+  if (run.config.model != SteeringModel::kCurvilinear) {
+    return Error{Errc::kBadConfig, "--set-at is of [CAACD]; add --model caacd"};
   }
-  CurvilinearTuning& tuning = config.tuning.curvilinear;
-  if (!options.set.empty()) {
-    const auto set = parse_set(options.set);
-    if (!set) return set.error();
-    tuning.mass = set->mass;
-    tuning.max_speed = set->max_speed;
-    tuning.max_force = set->max_force;
+  for (const std::string& text : texts) {
+    const auto change = parse_set_change(text);
+    if (!change) return change.error();
+    run.set_changes.push_back(*change);
   }
-  if (options.order.empty()) return {};
-  const auto order = parse_order(options.order);
-  if (!order) return order.error();
-  tuning.by_state = *order == caacd::Order::kState;
   return {};
 }
 
@@ -82,7 +76,10 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
   run.config.slow_on_slopes = !options.full_speed;
   run.config.avoid_jams = !options.ignore_jams;
   if (options.pushing) run.config.tuning.let_push();
-  if (auto ok = read_curves(options, run.config); !ok) return fail(ok.error());
+  if (auto ok = read_curves(options.curves, run.config.model, run.config.tuning); !ok) {
+    return fail(ok.error());
+  }
+  if (auto ok = read_set_changes(options.set_changes, run); !ok) return fail(ok.error());
   if (auto ok = read_goals(run); !ok) return fail(ok.error());
   const auto also = read_groups(options.also);
   if (!also) return fail(also.error());
@@ -115,7 +112,7 @@ Result<void> check_scenario(const CLI::App& command, const std::string& file) {
     return Error{Errc::kBadConfig,
                  fmt::format("{} goes with a world; in {} write {}", name, file, key)};
   }
-  for (const char* name : {"--wander", "--near", "--set", "--order"}) {
+  for (const char* name : {"--wander", "--near", "--set", "--order", "--axes", "--set-at"}) {
     if (command.count(name) == 0) continue;
     return Error{Errc::kBadConfig,
                  fmt::format("{} goes with a world, and no scenario can have it; leave it out for "
@@ -150,7 +147,7 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
 Result<void> check_wander(const CLI::App& command, const char* remedy = "leave out --wander") {
   for (const char* name :
        {"--goals", "--near", "--radius", "--labels", "--zones", "--search-memory", "--model",
-        "--set", "--order", "--full-speed", "--ignore-jams", "--pushing"}) {
+        "--set", "--order", "--axes", "--set-at", "--full-speed", "--ignore-jams", "--pushing"}) {
     if (command.count(name) == 0) continue;
     return Error{Errc::kBadConfig, fmt::format("{} is for avatars with goals; {}", name, remedy)};
   }
@@ -245,15 +242,13 @@ void add_run(CLI::App& parser, Session& session) {
       ->excludes(labels);
   add_search_memory(*command, options->crowd.config.search_bytes);
   add_model(*command, options->crowd.config.model);
+  add_curve_options(*command, options->curves);
   command
-      ->add_option("--set", options->set,
-                   "Of the model caacd: its Mass/MaxSpeed/MaxForce (2.0/0.4/0.06, its best)")
-      ->type_name("M/V/F");
-  command
-      ->add_option("--order", options->order,
-                   "Of the model caacd, most urgent: the threat that comes first (time), or "
-                   "collisions before critical threats before alerts (state)")
-      ->type_name("time|state");
+      ->add_option("--set-at", options->set_changes,
+                   "Of the model caacd: another set from a step on, for all avatars or for one, "
+                   "whose speed changes with MaxSpeed; may be repeated")
+      ->type_name("STEP:[ID:]M/V/F")
+      ->allow_extra_args(false);
   command->add_flag("--full-speed", options->full_speed,
                     "Stairs and slopes slow no avatar; without it they do");
   command->add_flag("--ignore-jams", options->ignore_jams,

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -44,6 +45,33 @@ Result<void> read_curves(const Json& settings, CurvilinearTuning& tuning) {
             .max_speed = set[1],
             .max_force = set[2],
             .by_state = settings.at("by_state")};
+  return {};
+}
+
+// "axes" and "sets_at", which runs without them do not record.
+Result<void> read_changes(const Json& settings, CrowdRun& run) {
+  if (settings.contains("axes")) {
+    if (auto ok = need(settings, {"axes"}, [](const Json& j) { return j.is_string(); }); !ok)
+      return ok;
+    const auto axes = parse_axes(settings.at("axes"));
+    if (!axes) return Error{Errc::kBadFile, "the recording's settings: " + axes.error().message};
+    run.config.tuning.flyer_axes = *axes;
+  }
+  if (!settings.contains("sets_at")) return {};
+  auto ok = need(settings, {"sets_at"}, [](const Json& j) {
+    return j.is_array() && std::ranges::all_of(j, [](const Json& row) {
+             return row.is_array() && row.size() == 5 && row[0].is_number_unsigned() &&
+                    (row[1].is_null() || row[1].is_number_unsigned()) && row[2].is_number() &&
+                    row[3].is_number() && row[4].is_number();
+           });
+  });
+  if (!ok) return ok;
+  for (const Json& row : settings.at("sets_at")) {
+    SetChange& change = run.set_changes.emplace_back();
+    change.step = row[0];
+    if (!row[1].is_null()) change.avatar = row[1].get<uint32_t>();
+    change.set = {.mass = row[2], .max_speed = row[3], .max_force = row[4]};
+  }
   return {};
 }
 
@@ -126,6 +154,7 @@ Result<Rerun> rerun_crowd(const Json& settings, const World& world, int32_t work
   run.config.tuning.queues = !settings.value("pushing", true);
   run.config.tuning.acceleration = settings.value("acceleration", 0.0);
   if (auto set = read_curves(settings, run.config.tuning.curvilinear); !set) return set.error();
+  if (auto changes = read_changes(settings, run); !changes) return changes.error();
   run.config.workers = workers;
   const auto model = find_steering_model(settings.value("model", name_of(run.config.model)));
   if (!model) {
@@ -193,26 +222,34 @@ Json wanderers_settings(const WanderRun& run) {
 
 Json crowd_settings(const CrowdRun& run) {
   const CurvilinearTuning& curves = run.config.tuning.curvilinear;
-  return {{"avatars", run.avatars},
-          {"also", json_of(run.also)},
-          {"class", run.class_name},
-          {"goals", run.goals},
-          {"goals_text", run.goals_text},
-          {"near", run.near},
-          {"dt", run.config.dt},
-          {"speed", run.speed},
-          {"radius", run.radius},
-          {"labels", run.config.speedup == PathSpeedup::kLabels},
-          {"zones", run.config.speedup == PathSpeedup::kZones},
-          {"search_bytes", run.config.search_bytes},
-          {"seed", run.config.seed},
-          {"model", name_of(run.config.model)},
-          {"slow_on_slopes", run.config.slow_on_slopes},
-          {"avoid_jams", run.config.avoid_jams},
-          {"pushing", !run.config.tuning.queues},
-          {"acceleration", run.config.tuning.acceleration},
-          {"set", Json::array({curves.mass, curves.max_speed, curves.max_force})},
-          {"by_state", curves.by_state}};
+  Json settings = {{"avatars", run.avatars},
+                   {"also", json_of(run.also)},
+                   {"class", run.class_name},
+                   {"goals", run.goals},
+                   {"goals_text", run.goals_text},
+                   {"near", run.near},
+                   {"dt", run.config.dt},
+                   {"speed", run.speed},
+                   {"radius", run.radius},
+                   {"labels", run.config.speedup == PathSpeedup::kLabels},
+                   {"zones", run.config.speedup == PathSpeedup::kZones},
+                   {"search_bytes", run.config.search_bytes},
+                   {"seed", run.config.seed},
+                   {"model", name_of(run.config.model)},
+                   {"slow_on_slopes", run.config.slow_on_slopes},
+                   {"avoid_jams", run.config.avoid_jams},
+                   {"pushing", !run.config.tuning.queues},
+                   {"acceleration", run.config.tuning.acceleration},
+                   {"set", Json::array({curves.mass, curves.max_speed, curves.max_force})},
+                   {"by_state", curves.by_state}};
+  const FlyerAxes axes = run.config.tuning.flyer_axes;
+  if (axes != FlyerAxes::kOurs) settings["axes"] = word_for(axes);
+  for (const auto& [step, avatar, set] : run.set_changes) {
+    Json row = {step, nullptr, set.mass, set.max_speed, set.max_force};
+    if (avatar) row[1] = *avatar;
+    settings["sets_at"].push_back(std::move(row));
+  }
+  return settings;
 }
 
 Result<Rerun> make_rerun(const RecordingInfo& info, const World& world, int32_t workers) {

@@ -109,6 +109,9 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
                {"crowd_bytes", crowd.memory().total()},
                {"peak_bytes", peak_memory()}};
   if (!run.also.empty()) json["also"] = json_of(run.also);
+  if (run.config.tuning.flyer_axes != FlyerAxes::kOurs) {
+    json["axes"] = word_for(run.config.tuning.flyer_axes);
+  }
   times.add_to(json);
   print_result(
       session, json,
@@ -161,6 +164,11 @@ Result<GoalCrowd> GoalCrowd::create(const World& world, const CrowdRun& run, Con
   GoalCrowd made(world, with_nodes, std::move(*crowd));
   for (const auto& [name, count] : groups) {
     if (auto ok = made.scatter(name, count, context); !ok) return ok.error();
+  }
+  for (const SetChange& change : run.set_changes) {
+    if (change.avatar.value_or(0) < made.all_.size()) continue;
+    return Error{Errc::kBadConfig, fmt::format("--set-at {}: there are {} avatars, from 0 on",
+                                               *change.avatar, made.all_.size())};
   }
   if (auto ok = made.read_places(); !ok) return ok.error();
   made.given_.resize(made.class_of_.size());
@@ -302,7 +310,33 @@ void GoalCrowd::give(std::span<const AvatarId> ids) {
   crowd_.set_goals(on_nodes_, goals_on_nodes_);
 }
 
-CrowdReport GoalCrowd::step() { return crowd_.step(); }
+// [CAACD]'s MaxSpeed is a speed: the avatar's own is as many times as large as the set says. Time
+// per step: the changes, and the avatars of each that is made.
+void GoalCrowd::change_sets() {
+  const std::vector<AvatarClass> classes = world_.summary().classes;
+  const CurvilinearTuning& at_start = run_.config.tuning.curvilinear;
+  for (const SetChange& change : run_.set_changes) {
+    if (change.step != steps_) continue;
+    CurvilinearTuning tuning = at_start;
+    tuning.mass = change.set.mass;
+    tuning.max_speed = change.set.max_speed;
+    tuning.max_force = change.set.max_force;
+    for (size_t slot = 0; slot < all_.size(); ++slot) {
+      if (change.avatar && *change.avatar != slot) continue;
+      const auto avatar_class = static_cast<size_t>(class_of_[slot]);
+      const double own = run_.speed > 0 ? run_.speed : classes[avatar_class].speed;
+      const double speed = own * tuning.max_speed / at_start.max_speed;
+      crowd_.set_curvilinear({&all_[slot], 1}, {&tuning, 1});
+      crowd_.set_speeds({&all_[slot], 1}, {&speed, 1});
+    }
+  }
+}
+
+CrowdReport GoalCrowd::step() {
+  if (!run_.set_changes.empty()) change_sets();
+  ++steps_;
+  return crowd_.step();
+}
 
 void GoalCrowd::give_goals() {
   give(crowd_.goal_unreachable());

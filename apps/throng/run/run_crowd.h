@@ -10,6 +10,7 @@
 
 #include "command.h"
 #include "run/avatar_group.h"
+#include "run/caacd_options.h"
 #include "run/run_times.h"
 #include "throng/crowd.h"
 #include "throng/surface.h"
@@ -29,6 +30,7 @@ struct CrowdRun {
   uint64_t steps = 100;
   uint64_t check_every = 1;
   double speed = 0, radius = 0;
+  std::vector<SetChange> set_changes;  // in the order in which they are made
   CrowdConfig config;
 };
 
@@ -56,6 +58,7 @@ class GoalCrowd {
   [[nodiscard]] NodePlace goal_on_nodes(uint32_t slot, uint64_t nth, const Vec3d& from) const;
   [[nodiscard]] Place goal_in_air(uint32_t slot, uint64_t nth, const Vec3d& from) const;
   void give(std::span<const AvatarId> ids);
+  void change_sets();
 
   World world_;
   CrowdRun run_;
@@ -63,6 +66,7 @@ class GoalCrowd {
   std::vector<int32_t> class_of_;  // by slot
   std::vector<Place> places_;      // goals of a file
   std::vector<uint64_t> given_;    // goals, by slot
+  uint64_t steps_ = 0;
   std::vector<AvatarState> states_;
   std::vector<Place> goals_;
   std::vector<AvatarId> all_, on_ground_, on_nodes_;

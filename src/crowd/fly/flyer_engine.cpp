@@ -265,7 +265,8 @@ void FlyerEngine::sense(uint32_t f, Worker& worker, steer::AirSituation& situati
     situation.near[n] = {{apart.x, static_cast<float>(other.y - body.y) * 1e-3f, apart.z},
                          velocity,
                          static_cast<float>(body.radius + other.radius) * units.unit,
-                         static_cast<float>(other.height) * 1e-3f};
+                         static_cast<float>(other.height) * 1e-3f,
+                         other.slot};
     if (flies && gives_precedence(body, flight, other, *of_other)) {
       const Space at = situation.near[n].at;
       const float far = steer::size_of(at);
@@ -420,6 +421,36 @@ void FlyerEngine::find_candidates(const Body& body, const steer::AirSituation& s
   }
 }
 
+// The velocity by [CAACD], which replaces the preferred velocity as if that were open.
+void FlyerEngine::find_curved_candidates(const Body& body, const steer::AirSituation& situation,
+                                         Contest& contest) const {
+  const StepUnits& units = config_.units;
+  const Flight& flight = flights_[body.slot];
+  const steer::Plane level =
+      units.metres(body.local_target_x - body.x, body.local_target_z - body.z);
+  steer::AirView view{
+      .to_target = {level.x, static_cast<float>(flight.local_target_y - body.y) * 1e-3f, level.z},
+      .stops = body.has(Body::kLast),
+      .radius = static_cast<float>(body.radius) * units.unit,
+      .slot = body.slot};
+  // A body without a goal of its own keeps the given velocity.
+  if (body.has(Body::kExternal) || !body.has(Body::kHasGoal)) {
+    view.to_target = given_to(body, flight);
+    view.stops = false;
+  }
+  caacd::Model curves = config_.curves_of(body.slot);
+  curves.axes =
+      config_.flyer_axes == FlyerAxes::kSide ? caacd::Axes::kSide : caacd::Axes::kSideAndUp;
+  const Space v = steer::curvilinear_in_air(situation, view, units.dt, curves);
+  contest.candidate_count = 0;
+  for (const Space& candidate : steer::candidates_in_air(v)) {
+    contest.displacement[contest.candidate_count++] = displacement_of(body, candidate);
+  }
+  for (const float part : kShorterParts) {
+    contest.displacement[contest.candidate_count++] = displacement_of(body, part * v);
+  }
+}
+
 // Senses, steers, and takes a place at once if no other could touch it.
 void FlyerEngine::decide(uint32_t f, Worker& worker) {
   Body& body = bodies_[rounds_.movers[f]];
@@ -459,6 +490,8 @@ void FlyerEngine::decide(uint32_t f, Worker& worker) {
       const int32_t up = rise_of(body, part * situation.preferred.y);
       contest.displacement[contest.candidate_count++] = {0, 0, up};
     }
+  } else if (flies_curves() && !body.leaves) {
+    find_curved_candidates(body, situation, contest);
   } else {
     find_candidates(body, situation, query_walls(body, situation), contest);
   }

@@ -87,6 +87,11 @@ class FlyerEngine {
   [[nodiscard]] AirPosition displacement_of(const Body& body, steer::Space velocity) const;
   void find_candidates(const Body& body, const steer::AirSituation& situation, bool open,
                        Contest& contest) const;
+  void find_curved_candidates(const Body& body, const steer::AirSituation& situation,
+                              Contest& contest) const;
+  [[nodiscard]] bool flies_curves() const {
+    return config_.model == SteeringModel::kCurvilinear && config_.flyer_axes != FlyerAxes::kOurs;
+  }
   [[nodiscard]] bool wants_down(const Body& body, const Flight& flight) const;
   [[nodiscard]] bool try_place(const Body& body, const AirPosition& displacement,
                                AirPosition& place) const;

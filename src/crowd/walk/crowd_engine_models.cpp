@@ -60,8 +60,8 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
   }
   situation.has_walls = false;
   worker.waits = false;
-  situation.preferred =
-      steer::preferred_velocity(config_.model, view, units_of(body).dt, config_.curves);
+  situation.preferred = steer::preferred_velocity(config_.model, view, units_of(body).dt,
+                                                  config_.curves_of(body.slot));
 }
 
 }  // namespace throng::crowd

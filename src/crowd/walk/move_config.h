@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "crowd/mode/own_curves.h"
 #include "crowd/walk/queue.h"
 #include "crowd/walk/step_units.h"
 #include "steer/air.h"
@@ -27,6 +28,8 @@ struct MoveConfig {
   int32_t workers = 0;
   SteeringModel model = SteeringModel::kSampled;  ///< Of walkers.
   caacd::Model curves = {};                       ///< Of kCurvilinear.
+  const OwnCurves* own_curves = nullptr;          ///< Of single avatars; outlives the engines.
+  FlyerAxes flyer_axes = FlyerAxes::kOurs;        ///< Of kCurvilinear.
   steer::SampledSettings steering = {};
   steer::DeadlockAvoidance deadlock_settings = {};
   steer::LaneSettings lanes = {};
@@ -37,6 +40,11 @@ struct MoveConfig {
   steer::AirSettings air_steering = {};  ///< Of flyers and climbers.
   /// Of walkers, by class. None: stairs and slopes slow no body.
   std::vector<SlopeFactors> slope_factors = {};
+
+  /// The settings of [CAACD] of an avatar.
+  [[nodiscard]] caacd::Model curves_of(uint32_t slot) const {
+    return own_curves != nullptr ? own_curves->model_of(slot, curves) : curves;
+  }
 };
 
 }  // namespace throng::crowd

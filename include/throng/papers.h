@@ -470,6 +470,14 @@ struct Counts {
   double walked = 0;                ///< Summed over avatars. [length]
 };
 
+/// The paper's Mass/MaxSpeed/MaxForce.
+struct ParameterSet {
+  double mass = 2.0;
+  double max_speed = 0.4;
+  double max_force = 0.06;
+  friend bool operator==(const ParameterSet&, const ParameterSet&) = default;
+};
+
 /// One run of the experiment. Each frame takes all forces from the state of the frame before,
 /// applies eq. 15, and updates positions, arrivals and collisions. Movable, not copyable.
 class THRONG_API Simulation {
@@ -501,6 +509,11 @@ class THRONG_API Simulation {
   [[nodiscard]] const Counts& counts() const;
   /// The settings that it was created with.
   [[nodiscard]] const Model& model() const;
+  /// Gives an avatar a Mass, MaxSpeed and MaxForce of its own, from the next step on. Fails with
+  /// kNotFound (no such body) or kBadConfig.
+  [[nodiscard]] Result<void> set_parameters(uint32_t id, const ParameterSet& set);
+  /// The values of an avatar: its own, or those of model(). [id: of a body]
+  [[nodiscard]] ParameterSet parameters(uint32_t id) const;
   /// Hash of all positions and velocities, bit by bit.
   [[nodiscard]] uint64_t state_hash() const;
   /// Gives an avatar a new target. Fails with kNotFound (no such body) or kBadInput. Time:
@@ -511,14 +524,6 @@ class THRONG_API Simulation {
   struct Run;
   explicit Simulation(std::unique_ptr<Run> run);
   std::unique_ptr<Run> run_;
-};
-
-/// The paper's Mass/MaxSpeed/MaxForce.
-struct ParameterSet {
-  double mass = 2.0;
-  double max_speed = 0.4;
-  double max_force = 0.06;
-  friend bool operator==(const ParameterSet&, const ParameterSet&) = default;
 };
 
 /// The name of a set as the paper writes it: "2.0/0.4/0.06".

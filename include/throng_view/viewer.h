@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "throng/base.h"
+#include "throng/crowd.h"
 #include "throng/impostor.h"
+#include "throng/papers.h"
 #include "throng/recording.h"
 #include "throng/scenario.h"
 #include "throng/scene.h"
@@ -113,6 +115,19 @@ struct CrowdStart {
   bool coarse_far = false;  ///< Avatars beyond 300 m are simulated in low detail.
   /// Maps from which goals are drawn by weight; empty or all 0: see `near`.
   std::vector<DensityMap> density = {};
+  SteeringModel model = SteeringModel::kSampled;  ///< CrowdConfig::model.
+  /// Of kCurvilinear, as avatars begin: the panel and keys change it, see docs/viewer.md.
+  CurvilinearTuning curves = {};
+  FlyerAxes flyer_axes = FlyerAxes::kOurs;  ///< CrowdTuning::flyer_axes.
+};
+
+/// The experiment of [CAACD] section V to show, on its plane. A frame of it is a timeline frame.
+struct ExperimentStart {
+  static constexpr double kUnit = 0.05;           ///< Of a length of the experiment. [m]
+  static constexpr double kFramesPerSecond = 60;  ///< Of the experiment, at speed 1. [1/s]
+  static constexpr double kHeight = 1.75;         ///< Of figures. [m]
+  caacd::SpaceConfig space = {};
+  caacd::Model model = {};
 };
 
 namespace view {
@@ -142,6 +157,9 @@ class THRONG_API StageParts {
   void set_crowd(const CrowdStart& start);
   /// Runs a scenario in the world, instead of a crowd.
   void set_scenario(const Scenario& scenario);
+  /// Runs the experiment of [CAACD] section V, instead of a crowd. Needs no world. The scene is its
+  /// plane: y = 0, from (0, 0) on, a metre for each 20 units.
+  void set_experiment(const ExperimentStart& start);
   /// Shows a recording instead of a crowd.
   void set_replay(Replay replay);
   explicit StageParts(view::StageJob& job) : job_(job) {}  ///< For the viewer.
@@ -184,6 +202,10 @@ struct ViewerStatus {
   int64_t picked = -1;      ///< Id of the avatar that was picked, or -1.
   int64_t controlled = -1;  ///< Id of the avatar that the user walks as, or -1.
   EyeCamera camera;         ///< In the world's coordinates.
+  /// If [CAACD] steers the avatars: how many are in each caacd::State, by its number; else empty.
+  std::vector<size_t> states = {};
+  std::optional<caacd::Counts> experiment = {};  ///< Of the experiment of section V.
+  std::optional<CurvilinearTuning> curves = {};  ///< Of the avatar picked, or of all.
 };
 
 /// The viewer: shows a stage and its crowd, and reacts to events. Movable, not copyable; one thread

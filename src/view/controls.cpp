@@ -130,6 +130,12 @@ void Viewer::State::press(Key key) {
     panel.mode = letter('1') ? view::CameraMode::kOrbit : view::CameraMode::kFly;
   }
   if (letter('3')) begin_walk();
+  for (int32_t k = 0; k < 6 && panel.curves; ++k) {
+    if (!letter(static_cast<char>('4' + k))) continue;
+    view::follow_picked(panel);
+    view::step_curve(*panel.curves, static_cast<view::CurveValue>(k / 2), k % 2 == 0 ? -1 : 1);
+    send_curves();
+  }
   constexpr char kOverlayKeys[] = "CLNKXHPBOG";  // In the order of Overlay.
   for (size_t i = 0; i < view::kOverlays; ++i) {
     if (letter(kOverlayKeys[i])) panel.overlays[i] = !panel.overlays[i];

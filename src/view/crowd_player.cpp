@@ -28,7 +28,8 @@ CrowdPlayer::CrowdPlayer(World world, const CrowdStart& start, Vec3d origin, Cro
       origin_(origin),
       crowd_(std::move(crowd)),
       painted_(start.density),
-      classes_(world_.summary().classes) {
+      classes_(world_.summary().classes),
+      curves_(start.curves) {
   double sum = 0;
   std::vector<double> mix = start.mix;
   mix.resize(classes_.size(), 0.0);
@@ -42,11 +43,14 @@ Result<std::unique_ptr<CrowdPlayer>> CrowdPlayer::create(World world, Nodes node
                                                          Vec3d origin,
                                                          std::shared_ptr<const Occluders> occluders,
                                                          Context& context) {
-  const CrowdConfig config{.dt = start.dt,
-                           .seed = start.seed,
-                           .workers = workers,
-                           .speedup = start.speedup,
-                           .nodes = std::move(nodes)};
+  CrowdConfig config{.dt = start.dt,
+                     .seed = start.seed,
+                     .workers = workers,
+                     .model = start.model,
+                     .speedup = start.speedup,
+                     .nodes = std::move(nodes)};
+  config.tuning.curvilinear = start.curves;
+  config.tuning.flyer_axes = start.flyer_axes;
   Result<Crowd> crowd = Crowd::create(world, config);
   if (!crowd) return crowd.error();
   std::unique_ptr<CrowdPlayer> player(
@@ -119,6 +123,7 @@ uint32_t CrowdPlayer::add_avatars(const std::vector<AvatarId>& ids,
     avatars_[slot] = {
         .id = ids[i], .avatar_class = spawns[i].avatar_class, .speed = spawns[i].speed};
     there.push_back(ids[i]);
+    if (curves_changed_) set_curves_of(slot, curves_);
   }
   give_goals(there);
   return static_cast<uint32_t>(there.size());
@@ -218,6 +223,7 @@ std::shared_ptr<const TimelineFrame> CrowdPlayer::again() {
   frame->time = time_;
   frame->report = report_;
   put_states(states_, origin_, *frame);
+  if (start_.model == SteeringModel::kCurvilinear) frame->curved = curved();
   if (seen_only_) {
     frame->fault = seen_only_->fault;
     for (const AvatarState& s : states_) frame->generations.push_back(avatars_[s.id].id.generation);
@@ -387,7 +393,44 @@ Result<void> CrowdPlayer::keep_populated() {
     speeds.push_back(like.speed);
   }
   crowd_.set_speeds(new_ids, speeds);
+  if (!curves_changed_) return {};
+  for (const AvatarId id : new_ids) set_curves_of(id.slot1 - 1, curves_);
   return {};
+}
+
+// MaxSpeed is a speed: the avatar's own is as many times as large as what it began with.
+void CrowdPlayer::set_curves_of(uint32_t slot, const CurvilinearTuning& tuning) {
+  const Played& avatar = avatars_[slot];
+  if (avatar.controlled) return;  // Its speed is the user's.
+  const double speed = avatar.speed * tuning.max_speed / start_.curves.max_speed;
+  crowd_.set_curvilinear({&avatar.id, 1}, {&tuning, 1});
+  crowd_.set_speeds({&avatar.id, 1}, {&speed, 1});
+}
+
+void CrowdPlayer::set_curves(std::optional<uint64_t> id, const CurvilinearTuning& tuning) {
+  if (start_.model != SteeringModel::kCurvilinear) return;
+  if (id) {
+    if (*id < avatars_.size()) set_curves_of(static_cast<uint32_t>(*id), tuning);
+    return;
+  }
+  curves_ = tuning;
+  curves_changed_ = true;
+  crowd_.read(states_);
+  for (const AvatarState& s : states_) set_curves_of(s.id, tuning);
+}
+
+std::shared_ptr<const CurvedFrame> CrowdPlayer::curved() const {
+  std::vector<CurvedWalker> walkers;
+  for (const AvatarState& s : states_) {
+    const Played& avatar = avatars_[s.id];
+    const CurvilinearTuning tuning = crowd_.curvilinear(avatar.id).value_or(start_.curves);
+    walkers.push_back({.position = s.position,
+                       .velocity = s.velocity,
+                       .radius = s.radius,
+                       .speed = avatar.speed * tuning.max_speed / start_.curves.max_speed,
+                       .tuning = tuning});
+  }
+  return curved_frame(walkers);
 }
 
 // An avatar in low detail moves by up to half a metre at once: beyond this distance, 1.5 pixels of

@@ -67,6 +67,8 @@ class CrowdPlayer final : public TimelinePlayer {
   /// goal has weight 0 gets another one.
   void set_density(const std::vector<DensityMap>& maps);
   [[nodiscard]] std::optional<AvatarDetail> detail(uint64_t id) const;
+  /// All: those that are added later, too. An avatar's speed changes with its MaxSpeed.
+  void set_curves(std::optional<uint64_t> id, const CurvilinearTuning& tuning) override;
 
   /// Adds an externally controlled avatar at a free place near `where`, if there is one.
   std::optional<uint64_t> add_external(Vec3d where, int32_t avatar_class, double speed,
@@ -103,6 +105,8 @@ class CrowdPlayer final : public TimelinePlayer {
   [[nodiscard]] bool is_on_large_ground(int32_t avatar_class, Place place) const;
   Result<void> keep_populated();
   void set_views();
+  void set_curves_of(uint32_t slot, const CurvilinearTuning& tuning);
+  [[nodiscard]] std::shared_ptr<const CurvedFrame> curved() const;
 
   World world_;
   Graph graph_;
@@ -113,6 +117,8 @@ class CrowdPlayer final : public TimelinePlayer {
   std::vector<AvatarClass> classes_;
   std::vector<double> mix_up_to_;  // Running sums of the mix, the last is 1.
   std::vector<Played> avatars_;    // By slot.
+  CurvilinearTuning curves_;       // That all were given last.
+  bool curves_changed_ = false;    // They are not those of the start.
   std::vector<AvatarState> states_;
   std::vector<Place> goals_;
   uint64_t added_ = 0;

@@ -12,7 +12,7 @@
 
 // [CAACD] II: three concentric fields around each avatar, the probe ahead, and the state that
 // results from the other avatars, in O(n^2) for at most 300 avatars. The `sampled` model does not
-// use them.
+// use them; of a crowd that [CAACD] steers they are those that it steers by.
 namespace throng::view {
 namespace {
 
@@ -60,8 +60,8 @@ void add_circle(Marks& marks, Vec3d middle, double radius, Rgba colour) {
   }
 }
 
-void add_probe(Marks& marks, const caacd::Body& body, const caacd::Model& model, Rgba colour) {
-  const Vec3d ahead = body.forward * caacd::probe_length(body, model);
+void add_probe(Marks& marks, const caacd::Body& body, double far, Rgba colour) {
+  const Vec3d ahead = body.forward * far;
   const Vec3d side = caacd::right_of(body.forward) * body.fields.repulsive;
   const std::array<Vec3d, 4> c = {body.position + side, body.position + side + ahead,
                                   body.position - side + ahead, body.position - side};
@@ -77,6 +77,7 @@ caacd::Body body_of(const TimelineFrame& crowd, size_t i, const std::vector<doub
   body.forward = {std::sin(angle), 0, std::cos(angle)};
   body.velocity = body.forward * static_cast<double>(crowd.speed[i]);
   body.fields = {radius, radius + kPrecautionMargin, radius + kAlertMargin};
+  if (crowd.curved) body.fields = crowd.curved->avatars[i].fields;
   body.id = static_cast<uint32_t>(i);
   return body;
 }
@@ -104,7 +105,7 @@ Marks field_marks(const TimelineFrame& crowd, size_t picked, Vec3d middle,
   std::vector<std::pair<double, size_t>> near;
   for (size_t i = 0; i < crowd.size(); ++i) {
     const double away = length(Vec3d{crowd.x[i], crowd.y[i], crowd.z[i]} - middle);
-    if (!has_picked || away < kMarkRadius) near.emplace_back(away, i);
+    if (!has_picked || crowd.curved || away < kMarkRadius) near.emplace_back(away, i);
   }
   std::sort(near.begin(), near.end());
   if (near.size() > kMaxAvatars) near.resize(kMaxAvatars);
@@ -113,8 +114,10 @@ Marks field_marks(const TimelineFrame& crowd, size_t picked, Vec3d middle,
   const caacd::Model model = model_of_metres();
   Marks marks;
   for (const caacd::Body& body : bodies) {
-    const caacd::State state = state_of(body, bodies, model);
-    add_probe(marks, body, model, colour_of(state, 90));
+    const CurvedAvatar* const curved = crowd.curved ? &crowd.curved->avatars[body.id] : nullptr;
+    const caacd::State state = curved ? curved->state : state_of(body, bodies, model);
+    const double far = curved ? curved->probe : caacd::probe_length(body, model);
+    add_probe(marks, body, far, colour_of(state, 90));
     add_circle(marks, body.position, body.fields.repulsive, colour_of(state, 255));
     add_circle(marks, body.position, body.fields.precaution, colour_of(state, 190));
     add_circle(marks, body.position, body.fields.alert, colour_of(state, 110));

@@ -52,7 +52,9 @@ inline constexpr size_t kOverlays = 10;
 [[nodiscard]] Marks density_marks(const TimelineFrame& crowd);
 /// The protection fields of [CAACD] in metres: three circles and the probe ahead, green tolerable,
 /// yellow alert, orange critical, red collision. Shows avatars within 8 m of `picked`, an index; if
-/// `picked` is `crowd.size()`, the 300 nearest to a point. `radii`: of bodies, by class.
+/// `picked` is `crowd.size()`, the 300 nearest to a point. `radii`: of bodies, by class. Of avatars
+/// that [CAACD] steers, fields and states are those of the frame,
+/// and the 300 nearest are always shown.
 [[nodiscard]] Marks field_marks(const TimelineFrame& crowd, size_t picked, Vec3d middle,
                                 const std::vector<double>& radii);
 /// The weights of density maps: the larger, the more opaque. A pixel is drawn on the ground of the

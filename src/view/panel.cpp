@@ -43,7 +43,7 @@ void draw_crowd(PanelState& s) {
   tip("As many of these as fit; Ctrl-click to type");
   slide("goals within", s.crowd.near, 0, 500, s.crowd.near <= 0 ? "anywhere" : "%.0f m",
         ImGuiSliderFlags_Logarithmic);
-  slide("MaxSpeed", s.crowd.speed, 0, 4, s.crowd.speed <= 0 ? "by class" : "%.2f m/s");
+  slide("desired speed", s.crowd.speed, 0, 4, s.crowd.speed <= 0 ? "by class" : "%.2f m/s");
   slide("dt", s.crowd.dt, 0.02, 0.5, "%.2f s");
   int seed = static_cast<int>(s.crowd.seed);
   if (ImGui::InputInt("seed", &seed)) s.crowd.seed = static_cast<uint64_t>(std::max(0, seed));
@@ -224,10 +224,15 @@ void draw_main(PanelState& s, float scale, int32_t height) {
     ImGui::TextWrapped("%s", s.status.error.c_str());
     ImGui::PopStyleColor();
   }
-  if (s.has_crowd || s.replay || s.scenario) draw_transport(s);
+  if (s.has_crowd || s.replay || s.scenario || s.experiment) draw_transport(s);
   if (s.has_crowd && ImGui::CollapsingHeader("Crowd", ImGuiTreeNodeFlags_DefaultOpen)) {
     draw_crowd(s);
     draw_tools(s);
+  }
+  if (s.curves &&
+      ImGui::CollapsingHeader(s.experiment ? "[CAACD], section V" : "Curvilinear avoidance",
+                              ImGuiTreeNodeFlags_DefaultOpen)) {
+    draw_curves(s);
   }
   if (s.scenario && ImGui::CollapsingHeader("Scenario", ImGuiTreeNodeFlags_DefaultOpen)) {
     draw_scenario(s);
@@ -301,6 +306,12 @@ void draw_picked(PanelState& s, float scale, int32_t width) {
       ImGui::Text("away       %.1f m", length(*a.goal - a.position));
       ImGui::Text("its goal number %u", a.goals_given);
     }
+    if (s.picked_tuning) {
+      const CurvilinearTuning& t = *s.picked_tuning;
+      ImGui::Text("Mass       %.2f", t.mass);
+      ImGui::Text("MaxSpeed   %.2f", t.max_speed);
+      ImGui::Text("MaxForce   %.2f", t.max_force);
+    }
     if (a.controlled) ImGui::Text("controlled by you");
   }
   ImGui::TextDisabled("F looks at it, Escape lets go");
@@ -332,6 +343,7 @@ void draw_help(PanelState& s, int32_t width, int32_t height) {
         {"C, L, N, K", "clearance, levels, nodes, links"},
         {"X, H, P, B", "air, density (heat), path and neighbours of the picked avatar"},
         {"O, G", "painted goals; protection fields"},
+        {"4 5, 6 7, 8 9", "with [CAACD]: Mass, MaxSpeed, MaxForce of the picked avatar, or of all"},
         {"Tab", "panel"},
         {"F11, F12", "full screen; save a picture"},
         {"Escape", "leave Walk, let go of the avatar, close this"},

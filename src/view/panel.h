@@ -10,6 +10,7 @@
 #include "throng_view/viewer.h"
 #include "view/camera_rig.h"
 #include "view/crowd_player.h"
+#include "view/curves_panel.h"
 #include "view/overlays.h"
 #include "view/replay_player.h"
 #include "view/view_settings.h"
@@ -51,7 +52,9 @@ struct PanelState {
   double cut = 0;  ///< Height above which nothing is drawn, if `is_cut`. [m, world]
   bool is_cut = false;
   std::array<bool, kOverlays> overlays{};
-  CrowdStart crowd;  ///< The start of the next restart.
+  CrowdStart crowd;                           ///< The start of the next restart.
+  std::optional<ExperimentStart> experiment;  ///< The same, of the plane of [CAACD] section V.
+  std::optional<CurvesPanel> curves;          ///< If [CAACD] steers the avatars.
   int32_t avatars_wanted = 0;
 
   // Read only.
@@ -72,6 +75,8 @@ struct PanelState {
   CrowdReport report;
   std::optional<AvatarDetail> picked;
   double picked_speed = 0, picked_walked = 0;
+  std::optional<CurvilinearTuning> picked_tuning;  ///< If [CAACD] steers it.
+  std::shared_ptr<const CurvedFrame> curved;       ///< Of the frame shown, or null.
 
   // Requests of this frame; the owner clears them.
   bool unpaint_all = false;

@@ -47,10 +47,14 @@ void view::StageJob::run(const LoadStage& load) {
 }
 
 Result<void> view::StageJob::start_player() {
-  if (!crowd_ && !scenario_) return {};
+  if (!crowd_ && !scenario_ && !experiment_) return {};
   context_.on_progress({"paths", 0, 0});
   std::unique_ptr<view::TimelinePlayer> player;
-  if (scenario_) {
+  if (experiment_) {
+    auto made = view::PlanePlayer::create(*experiment_, before_.origin);
+    if (!made) return made.error();
+    player = *std::move(made);
+  } else if (scenario_) {
     auto made =
         view::ScenarioPlayer::create(before_.world, *scenario_, workers_, before_.origin, context_);
     if (!made) return made.error();
@@ -144,6 +148,12 @@ void StageParts::set_scenario(const Scenario& scenario) {
   const std::lock_guard lock(job_.mutex_);
   job_.scenario_ = scenario;
   job_.mail_.scenario = scenario;
+}
+
+void StageParts::set_experiment(const ExperimentStart& start) {
+  const std::lock_guard lock(job_.mutex_);
+  job_.experiment_ = start;
+  job_.mail_.experiment = start;
 }
 
 void StageParts::set_replay(Replay replay) {

@@ -12,6 +12,7 @@
 #include "throng/base.h"
 #include "throng_view/viewer.h"
 #include "view/crowd_player.h"
+#include "view/plane_player.h"
 #include "view/replay_player.h"
 #include "view/scenario_player.h"
 #include "view/side_task.h"
@@ -29,6 +30,7 @@ struct StageMail {
   std::optional<ReplaySpan> replay;
   std::optional<CrowdStart> crowd;
   std::optional<Scenario> scenario;
+  std::optional<ExperimentStart> experiment;
   std::shared_ptr<const Occluders> occluders;
   std::vector<std::string> class_names;
   std::unique_ptr<TimelineSource> source;
@@ -78,6 +80,7 @@ class StageJob {
   StageBefore before_;
   std::optional<CrowdStart> crowd_;
   std::optional<Scenario> scenario_;
+  std::optional<ExperimentStart> experiment_;
   std::optional<SideTask> task_;  // Last: it ends before the members that it uses.
 };
 

@@ -147,6 +147,7 @@ void BlendedCrowd::blend(const TimelineFrame& a, const TimelineFrame& b, double 
   now_.time = a.time + (b.time - a.time) * share;
   now_.report = b.report;
   now_.flow = b.flow;
+  now_.curved = b.curved;
   const auto s = static_cast<float>(share);
   for_each_pair(a, b, [&](size_t i, size_t j) {
     now_.ids[i] = b.ids[i];

@@ -14,6 +14,7 @@
 #include "throng/crowd.h"
 #include "throng/impostor.h"
 #include "throng_draw/draw.h"
+#include "view/curved_frame.h"
 
 /// The avatars at one time, and the blend of two such frames.
 namespace throng::view {
@@ -42,7 +43,8 @@ struct TimelineFrame {
   CrowdReport report = {};  ///< Of the step that made the frame; empty for recordings.
   std::shared_ptr<const std::vector<Prism>> obstacles = {};  ///< That are up now, or null.
   SceneFlow flow = {};                                       ///< Of scenarios.
-  std::string fault = {};  ///< Why this is the last frame, or empty.
+  std::shared_ptr<const CurvedFrame> curved = {};  ///< Of avatars that [CAACD] steers, or null.
+  std::string fault = {};                          ///< Why this is the last frame, or empty.
 
   [[nodiscard]] size_t size() const { return ids.size(); }
   void resize(size_t avatars);

@@ -25,6 +25,12 @@ class TimelinePlayer {
   virtual std::shared_ptr<const TimelineFrame> seek(double time) = 0;
   /// The last frame made again, after a change; null if the player cannot be changed.
   virtual std::shared_ptr<const TimelineFrame> again() { return nullptr; }
+  /// Gives one avatar, or all, a Mass, MaxSpeed and MaxForce of [CAACD]. Nothing happens if the
+  /// player has none that it steers.
+  virtual void set_curves(std::optional<uint64_t> id, const CurvilinearTuning& tuning) {
+    (void)id;
+    (void)tuning;
+  }
 };
 
 /// The two frames around a time, and where between them it lies.

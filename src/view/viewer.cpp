@@ -58,6 +58,9 @@ void Viewer::State::take_scene(const PreparedScene& scene,
   occluders = std::move(new_occluders);
   panel.replay.reset();
   panel.scenario.reset();
+  panel.experiment.reset();
+  panel.curves.reset();
+  panel.curved.reset();
   scenario.reset();
   painted.clear();
   if (props) keep_error(drawing.set_props({}, {}));
@@ -130,6 +133,7 @@ void Viewer::State::take_parts() {
     panel.settings.coarse_far = mail.crowd->coarse_far;
     painted = mail.crowd->density;
   }
+  if (mail.experiment) take_experiment(*mail.experiment);
   if (mail.scenario) {
     scenario = std::move(mail.scenario);
     painted = scenario->densities;
@@ -140,7 +144,8 @@ void Viewer::State::take_parts() {
   }
   if (mail.source) {
     source = std::move(mail.source);
-    panel.has_crowd = !panel.replay && !panel.scenario;
+    panel.has_crowd = !panel.replay && !panel.scenario && !panel.experiment;
+    if (panel.has_crowd) begin_curves(panel.crowd.model, panel.crowd.curves);
     time = panel.replay ? panel.replay->first : 0;
     sent_eye.reset();
     send_eye();
@@ -149,6 +154,42 @@ void Viewer::State::take_parts() {
     if (!job->error().empty()) panel.status.error = job->error();
     job.reset();
   }
+}
+
+// The plane has no world, so that the panel gets its one class here.
+void Viewer::State::take_experiment(const ExperimentStart& start) {
+  panel.experiment = start;
+  panel.crowd.dt = 1 / ExperimentStart::kFramesPerSecond;
+  panel.class_names = {"avatar"};
+  panel.class_heights = {ExperimentStart::kHeight};
+  panel.class_radii = {start.space.fields.repulsive * ExperimentStart::kUnit};
+  panel.overlays[static_cast<size_t>(view::Overlay::kFields)] = true;
+  const caacd::Model& model = start.model;
+  begin_curves(SteeringModel::kCurvilinear, {.mass = model.mass,
+                                             .max_speed = model.max_speed,
+                                             .max_force = model.max_force,
+                                             .by_state = model.order == caacd::Order::kState});
+}
+
+void Viewer::State::begin_curves(SteeringModel model, const CurvilinearTuning& start) {
+  panel.curves.reset();
+  if (model != SteeringModel::kCurvilinear) return;
+  panel.curves = view::CurvesPanel{.of = -1, .shown = start, .all = start};
+}
+
+// Sends what was changed to the avatar that it is of, or to all.
+void Viewer::State::send_curves() {
+  if (!panel.curves || !source) return;
+  view::CurvesPanel& curves = *panel.curves;
+  const bool to_all = std::exchange(curves.to_all, false) || curves.of < 0;
+  curves.changed = false;
+  curves.edited = true;
+  if (to_all) curves.all = curves.shown;
+  std::optional<uint64_t> id;
+  if (!to_all) id = static_cast<uint64_t>(curves.of);
+  source->post(
+      [id, tuning = curves.shown](view::TimelinePlayer& player) { player.set_curves(id, tuning); },
+      !panel.playing);
 }
 
 void Viewer::State::reap() {
@@ -174,7 +215,9 @@ void Viewer::State::act_on_panel() {
     painted.clear();
     send_painted();
   }
-  if (std::exchange(panel.restart, false) && (panel.has_crowd || panel.scenario)) {
+  if (panel.curves && (panel.curves->changed || panel.curves->to_all)) send_curves();
+  if (std::exchange(panel.restart, false) &&
+      (panel.has_crowd || panel.scenario || panel.experiment)) {
     panel.crowd.avatars = static_cast<uint32_t>(std::max(0, panel.avatars_wanted));
     restart_crowd();
   }
@@ -239,11 +282,18 @@ void Viewer::State::restart_crowd() {
   start.coarse_far = panel.settings.coarse_far;
   start.density = painted;
   if (scenario) scenario->densities = painted;
+  std::optional<ExperimentStart> plane = panel.experiment;
+  if (plane && panel.curves) {
+    const CurvilinearTuning& all = panel.curves->all;
+    plane->model = caacd::with_set(plane->model, {all.mass, all.max_speed, all.max_force});
+  }
   retire_job();
   job = std::make_unique<view::StageJob>(
       panel.status.name,
-      [start, again = scenario](StageParts& parts, Context&) -> Result<void> {
-        if (again) {
+      [start, again = scenario, plane](StageParts& parts, Context&) -> Result<void> {
+        if (plane) {
+          parts.set_experiment(*plane);
+        } else if (again) {
           parts.set_scenario(*again);
         } else {
           parts.set_crowd(start);
@@ -294,6 +344,7 @@ void Viewer::State::look_up_crowd() {
   crowd.blend(*pair.a, *pair.b, pair.share, figures, cut);
   panel.report = pair.b->report;
   panel.flow = pair.b->flow;
+  panel.curved = pair.b->curved;
   if (!pair.b->fault.empty()) panel.status.error = pair.b->fault;
   show_props(*pair.a);
   panel.status.avatars = crowd.now().size();
@@ -359,6 +410,7 @@ Viewer::State::Frame Viewer::State::prepare(double now, int32_t width, int32_t h
   follow_external(seconds);
   if (source) send_eye();
   look_up_picked();
+  if (panel.curves) view::follow_picked(panel);
   show_overlays();
   panel.status.time = time;
   panel.status.camera = rig.camera(aspect);
@@ -520,6 +572,12 @@ ViewerStatus Viewer::status() const {
   status.time = state_->time;
   status.playing = state_->panel.playing;
   status.last_time = state_->panel.replay ? state_->panel.replay->last : 0;
+  if (state_->panel.curved) {
+    const auto counts = state_->panel.curved->count_states();
+    status.states.assign(counts.begin(), counts.end());
+    status.experiment = state_->panel.curved->counts;
+  }
+  if (state_->panel.curves) status.curves = state_->panel.curves->shown;
   return status;
 }
 

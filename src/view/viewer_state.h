@@ -103,6 +103,8 @@ struct Viewer::State {
   void take_scene(const PreparedScene& scene, std::shared_ptr<const view::Occluders> new_occluders);
   void take_world(const World& new_world, const std::optional<Nodes>& new_nodes);
   void take_figures(const std::vector<std::vector<ViewFigure>>& of_class);
+  void take_experiment(const ExperimentStart& start);
+  void begin_curves(SteeringModel model, const CurvilinearTuning& start);
   void keep_error(const Result<void>& ok);  // in the panel's status
   void reap();
   void retire_job();
@@ -112,6 +114,7 @@ struct Viewer::State {
   void send_painted();
   void change_crowd(std::function<void(view::CrowdPlayer&, Context&)> change);
   void act_on_panel();
+  void send_curves();
   void send_eye();
   [[nodiscard]] view::StageBefore stage_before() const;
   void advance_time(double seconds);

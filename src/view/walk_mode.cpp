@@ -120,6 +120,7 @@ double Viewer::State::free_behind(Vec3d feet, int32_t avatar_class) {
 
 void Viewer::State::look_up_picked() {
   panel.picked.reset();
+  panel.picked_tuning.reset();
   if (panel.status.picked < 0) return;
   const auto id = static_cast<uint64_t>(panel.status.picked);
   const view::TimelineFrame& now = crowd.now();
@@ -141,6 +142,7 @@ void Viewer::State::look_up_picked() {
   }
   detail.position = head_of(now, i, 0, panel.class_heights) + origin;
   panel.picked = detail;
+  if (now.curved) panel.picked_tuning = now.curved->avatars[i].tuning;
   panel.picked_speed = now.speed[i];
   panel.picked_walked = now.walked[i];
   if (!panel.has_crowd || (last_asked && *last_now - *last_asked < kAsk)) return;

@@ -168,13 +168,42 @@ class ProgramOptions(ProgramCase):
         view, film = ("view", "--picture", "a.png"), ("film", "-o", "a.mp4")
         of_both = (("--avatars", 5), ("--near", 5), ("--sight", 50), ("--only-seen",), ("--coarse-far",))
         for target in ("hall.toml", "hall.replay"):
-            for words in (*of_both, ("--speed", 2), ("--dt", 0.2), ("--zones",), ("--cell", 0.2)):
+            for words in (*of_both, ("--speed", 2), ("--dt", 0.2), ("--zones",), ("--cell", 0.2), ("--model", "caacd"), ("--axes", "side")):
                 self.assert_refused(self.run_throng(*view, target, *words), f"{target}: {words[0]} is for", "leave it out")
             for words in of_both:
                 self.assert_refused(self.run_throng(*film, target, *words), f"{target}: {words[0]} is for")
         self.assert_refused(self.run_throng(*view, "hall.replay", "--seed", 2), "hall.replay: --seed")
         self.assert_refused(self.run_throng(*view, "hall.toml", "--world", self.world), "hall.toml: --world is for recordings")
         self.assert_refused(self.run_throng(*view, self.world, "--up", "z"), "--up is for model files; name one")
+
+    def test_gl_the_viewer_runs_the_experiment_of_caacd_as_the_program_does(self):
+        view = ("view", "builtin:caacd", "--picture", "a.png", "--width", 480, "--height", 320, "--json")
+        words = ("--avatars", 40, "--set", "1.0/1.0/0.06", "--seed", 3)
+        done = self.run_throng(*view, *words, "--after", 4000 / 60)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)
+        one = self.run_throng("caacd", *words, "--record", "walk.csv", "--json")
+        self.assertEqual(one.returncode, 0, one.stderr)
+        one = json.loads(one.stdout)
+        for key in ("frames", "collisions", "obstacle_collisions", "arrived", "waiting", "walked"):
+            self.assertEqual(said["experiment"][key], one[key], key)
+        self.assertEqual(sum(said["states"].values()), 40)
+        for words, *named in ((("--model", "caacd"), "builtin:caacd: --model is not for the experiment"), (("--near", 5), "--near"),
+                              (("--axes", "side"), "--axes"), (("--avatars", 0), "avatars"), (("--avatars", 4000), "avatars"),
+                              (("--set", "1/2"), "--set 1/2"), (("--order", "mass"), "--order mass")):
+            self.assert_refused(self.run_throng(*view, *words), *named)
+
+    def test_gl_the_viewer_shows_the_states_of_a_crowd_that_caacd_steers(self):
+        view = ("view", self.world, "--avatars", 60, "--after", 3, "--width", 480, "--height", 320, "--json")
+        done = self.run_throng(*view, "--model", "caacd", "--set", "1.0/0.8/0.06", "--overlay", "Fields", "--pick", 3, "--panel",
+                               "--picture", "a.png")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)
+        self.assertEqual(sum(said["states"].values()), said["avatars"])
+        done = self.run_throng(*view, "--picture", "b.png")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("states", json.loads(done.stdout))
+        self.assert_refused(self.run_throng(*view, "--set", "1.0/0.8/0.06", "--picture", "c.png"), "--set", "--model caacd")
 
     def test_gl_a_picture_counts_an_avatar_once(self):
         done = self.run_throng("view", self.world, "--avatars", 16, "--after", 0, "--picture", "a.png", "--width", 320, "--height", 180,

@@ -455,5 +455,36 @@ TEST(CaacdSimulation, AnySpaceStaysFiniteAndWithinTheSpeed) {
   }
 }
 
+TEST(CaacdSimulation, AnAvatarMayHaveAMassASpeedAndAForceOfItsOwn) {
+  Space space;
+  add(space, {0, 0, 0}, {1, 0, 0}, 0.4, {200, 0, 0});
+  add(space, {0, 0, 100}, {1, 0, 0}, 0.4, {200, 0, 100});
+  Simulation run = made(space, best());
+  const ParameterSet fast{1, 1.2, 0.06};
+  ASSERT_TRUE(run.set_parameters(1, fast));
+  EXPECT_EQ(run.parameters(0), named_sets()[2]);
+  EXPECT_EQ(run.parameters(1), fast);
+  EXPECT_EQ(run.set_parameters(2, fast).error().code, Errc::kNotFound);
+  EXPECT_EQ(run.set_parameters(0, {0, 1, 1}).error().code, Errc::kBadConfig);
+  for (int frame = 0; frame < 100; ++frame) run.step();
+  EXPECT_NEAR(length(run.bodies()[0].velocity), 0.4, 1e-9);
+  EXPECT_NEAR(length(run.bodies()[1].velocity), 1.2, 1e-9);
+  walk(run);
+  EXPECT_EQ(run.counts().arrived, 2);
+}
+
+TEST(CaacdSimulation, TheValuesOfTheModelGivenToEachChangeNothing) {
+  const Model model = best(Trigger::kThreat);
+  const auto space = random_space({.avatars = 30}, model);
+  ASSERT_TRUE(space);
+  Simulation run = made(*space, model), twin = made(*space, model);
+  for (uint32_t id = 0; id < 30; ++id) ASSERT_TRUE(run.set_parameters(id, named_sets()[2]));
+  for (int frame = 0; frame < 300; ++frame) {
+    run.step();
+    twin.step();
+  }
+  EXPECT_EQ(run.state_hash(), twin.state_hash());
+}
+
 }  // namespace
 }  // namespace throng::caacd

@@ -151,6 +151,7 @@ void add_film(CLI::App& parser, Session& session) {
   command->add_option("--near", target.start.near, "Max distance of goals, 0: anywhere [m]")
       ->check(at_least(0))
       ->capture_default_str();
+  add_curve_options(command, target);
   add_people_options(command, target);
   add_threads(*command, options->workers);
   add_source_options(command, target.sources, "--source");

@@ -33,6 +33,24 @@ ViewerConfig viewer_config(const ViewOptions& options) {
   return {.settings = {}, .font = panel_font(), .workers = options.workers};
 }
 
+// What [CAACD] says of the avatars that it steers.
+void add_curves(Json& json, const ViewerStatus& status) {
+  if (status.states.size() == 4) {
+    json["states"] = {{"tolerable", status.states[0]},
+                      {"alert", status.states[1]},
+                      {"critical", status.states[2]},
+                      {"collision", status.states[3]}};
+  }
+  if (!status.experiment) return;
+  const caacd::Counts& counts = *status.experiment;
+  json["experiment"] = {{"frames", counts.frames},
+                        {"collisions", counts.collisions},
+                        {"obstacle_collisions", counts.obstacle_collisions},
+                        {"arrived", counts.arrived},
+                        {"waiting", counts.waiting},
+                        {"walked", counts.walked}};
+}
+
 // Without a window: lets `after` seconds pass in small steps, then draws.
 int take_picture(Session& session, const ViewOptions& options) {
   Result<Drawing> drawing = Drawing::create();
@@ -58,13 +76,10 @@ int take_picture(Session& session, const ViewOptions& options) {
   if (!image) return fail(image.error());
   if (auto done = write_png(*image, options.picture); !done) return fail(done.error());
   const ViewerStatus status = viewer->status();
-  print_result(session,
-               {{"picture", options.picture},
-                {"width", image->width},
-                {"height", image->height},
-                {"time", status.time},
-                {"avatars", status.avatars},
-                {"drawn", status.drawn}},
+  Json json = {{"picture", options.picture}, {"width", image->width},     {"height", image->height},
+               {"time", status.time},        {"avatars", status.avatars}, {"drawn", status.drawn}};
+  add_curves(json, status);
+  print_result(session, json,
                fmt::format("{}: {} x {} pixels, {:.1f} s, {} of {} avatars in the picture\n",
                            options.picture, image->width, image->height, status.time, status.drawn,
                            status.avatars));
@@ -103,7 +118,8 @@ void add_view(CLI::App& parser, Session& session) {
   ViewTarget& target = options->target;
   command
       ->add_option("target", target.path,
-                   "World folder, scenario, recording, or a model (or builtin:NAME) to bake now")
+                   "World folder, scenario, recording, or a model (or builtin:NAME) to bake now; "
+                   "builtin:caacd runs the experiment of [CAACD] section V")
       ->required()
       ->type_name("WORLD|SCENARIO.toml|FILE.replay|MODEL");
   command->add_option("--avatars", target.start.avatars, "Avatars in a world")
@@ -119,6 +135,7 @@ void add_view(CLI::App& parser, Session& session) {
       ->capture_default_str();
   add_speedup(*command, "--zones", PathSpeedup::kZones, target.start.speedup,
               "Paths by zones: for large worlds");
+  add_curve_options(command, target);
   add_people_options(command, target);
   command->add_option("--cell", target.cell, "Side of a cell, to bake a model with [m]")
       ->capture_default_str();

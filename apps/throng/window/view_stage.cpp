@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -167,6 +168,20 @@ Result<void> load_replay(StageParts& parts, const ViewTarget& target, Context& c
   return {};
 }
 
+// The plane of the experiment, a little larger than the square of starts and targets.
+Result<void> load_experiment(StageParts& parts, const ViewTarget& target, Context& context) {
+  constexpr double kMargin = 2;  // [m]
+  const double side = target.experiment.space.side * ExperimentStart::kUnit;
+  Scene scene;
+  scene.add_box({-kMargin, -0.1, -kMargin}, {side + kMargin, 0, side + kMargin});
+  if (auto ok = parts.set_scene(scene); !ok) return ok;
+  auto figures = figures_of(target, {ExperimentStart::kHeight}, context);
+  if (!figures) return figures.error();
+  parts.set_figures(*std::move(figures));
+  parts.set_experiment(target.experiment);
+  return {};
+}
+
 // A file that load_scenario is for: TOML, or a JSON object that is no city of CityJSON's.
 bool is_scenario(const fs::path& path) {
   std::error_code none;
@@ -206,6 +221,25 @@ Result<void> load_scenario_stage(StageParts& parts, const ViewTarget& target, Co
   return {};
 }
 
+// --set, --order, --avatars and --seed, as of throng caacd.
+Result<void> read_experiment(ViewTarget& target, bool has_avatars) {
+  CrowdTuning tuning;
+  if (auto ok = read_curves(target.curves, SteeringModel::kCurvilinear, tuning); !ok) return ok;
+  const CurvilinearTuning& t = tuning.curvilinear;
+  ExperimentStart& experiment = target.experiment;
+  experiment.model = caacd::with_set({}, {t.mass, t.max_speed, t.max_force});
+  if (t.by_state) experiment.model.order = caacd::Order::kState;
+  if (auto ok = caacd::check_model(experiment.model); !ok) return ok;
+  experiment.space.seed = target.start.seed;
+  if (has_avatars) {
+    experiment.space.avatars = static_cast<int32_t>(std::min(target.start.avatars, 100'000U));
+  }
+  // Asked now, so that a bad number is refused before a window opens.
+  const auto space = caacd::random_space(experiment.space, experiment.model);
+  if (!space) return space.error();
+  return {};
+}
+
 }  // namespace
 
 void add_people_options(CLI::App* command, ViewTarget& target) {
@@ -229,9 +263,14 @@ void add_people_options(CLI::App* command, ViewTarget& target) {
       ->type_name("WORLD");
 }
 
-Result<void> check_options(const CLI::App& command, const ViewTarget& target) {
+void add_curve_options(CLI::App* command, ViewTarget& target) {
+  add_model(*command, target.start.model);
+  add_curve_options(*command, target.curves);
+}
+
+Result<void> check_options(const CLI::App& command, ViewTarget& target) {
   const fs::path path(target.path);
-  const bool is_replay = path.extension() == ".replay";
+  const bool is_replay = path.extension() == ".replay", is_plane = target.path == kExperiment;
   const auto is_given = [&](const char* name) {
     const CLI::Option* option = command.get_option_no_throw(name);
     return option != nullptr && option->count() > 0;
@@ -240,9 +279,22 @@ Result<void> check_options(const CLI::App& command, const ViewTarget& target) {
     return Error{Errc::kBadConfig, fmt::format("{}: {} {}, leave it out", target.path, name, what)};
   };
   if (!is_replay && is_given("--world")) return refusal("--world", "is for recordings");
-  if (!is_replay && !is_scenario(path)) return {};
+  if (is_plane) {
+    for (const char* name : {"--model", "--axes", "--near", "--speed", "--dt", "--zones",
+                             "--only-seen", "--sight", "--coarse-far", "--cell", "--source"}) {
+      if (is_given(name)) return refusal(name, "is not for the experiment of [CAACD]");
+    }
+    return read_experiment(target, is_given("--avatars"));
+  }
+  if (!is_replay && !is_scenario(path)) {
+    CrowdTuning tuning;
+    if (auto ok = read_curves(target.curves, target.start.model, tuning); !ok) return ok;
+    target.start.curves = tuning.curvilinear;
+    target.start.flyer_axes = tuning.flyer_axes;
+    return {};
+  }
   for (const char* name : {"--avatars", "--near", "--speed", "--dt", "--zones", "--only-seen",
-                           "--sight", "--coarse-far"}) {
+                           "--sight", "--coarse-far", "--model", "--set", "--order", "--axes"}) {
     if (is_given(name)) return refusal(name, "is for a crowd in a world or model");
   }
   if (is_given("--cell")) return refusal("--cell", "is for a model that is baked now");
@@ -252,6 +304,7 @@ Result<void> check_options(const CLI::App& command, const ViewTarget& target) {
 
 LoadStage stage_of(const ViewTarget& target) {
   return [target](StageParts& parts, Context& context) -> Result<void> {
+    if (target.path == kExperiment) return load_experiment(parts, target, context);
     const fs::path path(target.path);
     std::error_code none;
     if (is_scenario(path)) return load_scenario_stage(parts, target, context);

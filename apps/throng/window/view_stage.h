@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "command.h"
+#include "run/caacd_options.h"
 #include "sources.h"
 #include "throng_view/viewer.h"
 
@@ -24,16 +25,23 @@ struct ViewTarget {
   bool crowd = true;                         ///< Start one in a world.
   std::optional<uint64_t> seed;              ///< Of a scenario, in place of its own.
   CrowdStart start;
+  CurveWords curves = {};  ///< check_options reads them into `start`, or `experiment`.
+  ExperimentStart experiment = {};
 };
+
+/// The target that is no model: the experiment of [CAACD] section V.
+inline constexpr const char* kExperiment = "builtin:caacd";
 
 /// Options of simulated avatars and their look: --only-seen, --sight, --coarse-far, --atlas,
 /// --character, and --world.
 void add_people_options(CLI::App* command, ViewTarget& target);
+/// --model, --set, --order and --axes.
+void add_curve_options(CLI::App* command, ViewTarget& target);
 
 /// Fails with kBadConfig: an option that the target does not obey, as one of simulated avatars for
 /// a scenario or recording, which have their own. What is dropped into a window later needs no
-/// check: there they are left out.
-[[nodiscard]] Result<void> check_options(const CLI::App& command, const ViewTarget& target);
+/// check: there they are left out. Fills in what the options of [CAACD] say.
+[[nodiscard]] Result<void> check_options(const CLI::App& command, ViewTarget& target);
 
 /// How to load it. Errors are reported on loading.
 [[nodiscard]] LoadStage stage_of(const ViewTarget& target);

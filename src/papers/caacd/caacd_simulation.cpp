@@ -46,8 +46,9 @@ Error bad_input(const char* what, size_t index) {
 struct Simulation::Run {
   Space space;
   Model model;
+  std::vector<ParameterSet> sets;  // of each avatar
   double dt = 1;
-  double largest_alert = 0;
+  double largest_alert = 0, fastest = 0;
   std::vector<Activity> activities;
   std::vector<Threat> threats;
   std::vector<Vec3d> steer;
@@ -64,6 +65,7 @@ struct Simulation::Run {
   void sense(size_t i);
   void move(size_t i);
   void count();
+  [[nodiscard]] Model model_of(size_t i) const { return with_set(model, sets[i]); }
 };
 
 Simulation::Simulation(std::unique_ptr<Run> run) : run_(std::move(run)) {}
@@ -109,6 +111,8 @@ Result<Simulation> Simulation::create(Space space, const Model& model, double dt
     body.velocity = steered(body.velocity, {}, dt, model);
     body.forward = heading_of(body.forward, heading_of(body.velocity, {1, 0, 0}));
   }
+  run.fastest = model.max_speed;
+  run.sets.assign(n, {model.mass, model.max_speed, model.max_force});
   run.activities.assign(n, Activity::kTravelling);
   run.threats.resize(n);
   run.steer.resize(n);
@@ -150,6 +154,21 @@ Result<void> Simulation::send(uint32_t id, Vec3d target) {
   return {};
 }
 
+Result<void> Simulation::set_parameters(uint32_t id, const ParameterSet& set) {
+  if (id >= run_->sets.size()) {
+    return Error{Errc::kNotFound, "caacd: there is no body " + std::to_string(id)};
+  }
+  if (auto ok = check_model(with_set(run_->model, set)); !ok) return ok;
+  run_->sets[id] = set;
+  run_->fastest = std::max(run_->fastest, set.max_speed);
+  return {};
+}
+
+ParameterSet Simulation::parameters(uint32_t id) const {
+  THRONG_ASSERT(id < run_->sets.size());
+  return run_->sets[id];
+}
+
 // Of avatars with targets too near to each other, the first one near its target reserves it; the
 // others stop before it, outside of the precaution field.
 void Simulation::Run::negotiate() {
@@ -183,20 +202,23 @@ void Simulation::Run::negotiate() {
 
 void Simulation::Run::sense(size_t i) {
   const Body& self = space.bodies[i];
+  const Model own = model_of(i);
   threats[i] = {};
   if (activities[i] == Activity::kArrived) {
     steer[i] = {};
     return;
   }
-  const double radius = threat_radius(self, largest_alert, model);
-  const Threat greatest = greatest_threat(self, space.bodies, space.obstacles, model, radius);
+  Model of_others = own;  // how fast another may come
+  of_others.max_speed = fastest;
+  const double radius = threat_radius(self, largest_alert, of_others);
+  const Threat greatest = greatest_threat(self, space.bodies, space.obstacles, own, radius);
   threats[i] = greatest;
   if (greatest.state != State::kTolerable) {
     activities[i] = Activity::kAvoiding;
-    steer[i] = avoidance(self, greatest, model);
+    steer[i] = avoidance(self, greatest, own);
     return;
   }
-  steer[i] = path_amendment(self, space.targets[i], stop_before[i], model);
+  steer[i] = path_amendment(self, space.targets[i], stop_before[i], own);
   const double left = std::sqrt(distance2(space.targets[i], self.position)) - stop_before[i];
   activities[i] = left >= model.deceleration ? Activity::kTravelling
                   : stop_before[i] > 0       ? Activity::kWaiting
@@ -206,7 +228,7 @@ void Simulation::Run::sense(size_t i) {
 void Simulation::Run::move(size_t i) {
   if (activities[i] == Activity::kArrived) return;
   Body& body = space.bodies[i];
-  body.velocity = steered(body.velocity, steer[i], dt, model);
+  body.velocity = steered(body.velocity, steer[i], dt, model_of(i));
   body.forward = heading_of(body.velocity, body.forward);
   body.position = body.position + body.velocity * dt;
   counts.walked += length(body.velocity) * dt;
@@ -258,7 +280,7 @@ bool Simulation::finished() const {
     if (run_->activities[i] == Activity::kArrived) continue;
     if (run_->activities[i] != Activity::kWaiting) return false;
     const Body& body = run_->space.bodies[i];
-    if (length(body.velocity) > 1e-3 * run_->model.max_speed) return false;
+    if (length(body.velocity) > 1e-3 * run_->sets[i].max_speed) return false;
   }
   return true;
 }

@@ -117,5 +117,29 @@ TEST(SteeringModels, CandidatesBeginWithThePreferredVelocity) {
   for (const Plane& v : candidates_about({})) EXPECT_EQ(size_of(v), 0);
 }
 
+// In a plane, along the side axis, the air is the ground.
+TEST(SteeringModels, ACurveInTheAirIsThatOnFootIfNothingRises) {
+  const std::array<Other, 1> others{{{{1, 0.1f}, {-1.3f, 0}, 0.25f, 7}}};
+  View view = walker({1.2f, 0.1f});
+  view.others = others;
+  AirSituation situation{.velocity = {1.2f, 0, 0.1f},
+                         .preferred = {1.3f, 0, 0},
+                         .fastest = 1.3f,
+                         .height = 1.8f,
+                         .size = 1,
+                         .near = {}};
+  situation.near[0] = {{1, 0, 0.1f}, {-1.3f, 0, 0}, 0.5f, 1.8f, 7};
+  const AirView air{.to_target = {100, 0, 0}, .stops = true, .radius = 0.25f, .slot = 3};
+  const Plane on_foot = preferred_velocity(kCurves, view, 0.1f);
+  const Space in_air = curvilinear_in_air(situation, air, 0.1f, {.axes = caacd::Axes::kSide});
+  EXPECT_NEAR(in_air.x, on_foot.x, 1e-6);
+  EXPECT_NEAR(in_air.z, on_foot.z, 1e-6);
+  EXPECT_EQ(in_air.y, 0);
+  // The other comes a little higher: the up axis leads below it, the side axis does not.
+  situation.near[0].at.y = 0.5f;
+  EXPECT_EQ(curvilinear_in_air(situation, air, 0.1f, {.axes = caacd::Axes::kSide}).y, 0);
+  EXPECT_LT(curvilinear_in_air(situation, air, 0.1f, {.axes = caacd::Axes::kSideAndUp}).y, -0.1f);
+}
+
 }  // namespace
 }  // namespace throng::steer

@@ -127,6 +127,28 @@ TEST_F(ChangedNodes, ALandscapeThatIsBuiltOnKeepsWhatIsFarAway) {
   EXPECT_GT(made, 10u);
 }
 
+// A landscape that has had no object, then one: a pole of twelve triangles.
+TEST_F(ChangedNodes, APoleChangesOnlyTheNodesAroundIt) {
+  const BakeConfig config{.cell = 0.5, .zone = 32, .classes = climbers()};
+  const Scene bare = test::builtin({.name = "landscape", .size = 192});
+  const Vec3d corner = bare.patches.patches[0].bounds().min;
+  Scene scene = bare;
+  add_crate(scene, corner + Vec3d{112, -20, 112}, {0.3, 40, 0.3});
+  const NodeSummary without = bake("w", bare, config, {.size = 2}, true);
+  const Folder before = folder_bytes(at("w") + "/nodes");
+  const NodeSummary with = compare(scene, config, {.size = 2}, "pole");
+  // Of 36 zones. Those around the pole's name its nodes by other numbers.
+  EXPECT_GE(with.zones_reused, 11u);
+  EXPECT_GT(with.nodes, without.nodes * 95 / 100);
+  uint64_t same = 0, others = 0;
+  for (const auto& [name, bytes] : folder_bytes(at("w") + "/nodes")) {
+    const auto old = before.find(name);
+    (old != before.end() && old->second == bytes ? same : others) += 1;
+  }
+  EXPECT_GE(same, 27u);
+  EXPECT_LE(others, 10u);  // and the index
+}
+
 // In zones that are smaller than how far things bear on each other.
 TEST_F(ChangedNodes, PatchesThatMoveAreSeenByThoseAroundThem) {
   const BakeConfig config{

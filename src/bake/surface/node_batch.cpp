@@ -9,6 +9,7 @@
 
 #include "bake/surface/node_drops.h"
 #include "bake/surface/node_file.h"
+#include "bake/surface/object_ground.h"
 #include "bake/surface/patch_links.h"
 #include "core/access.h"
 #include "core/parallel.h"
@@ -55,6 +56,7 @@ class NodeBatch {
   Result<void> check_off_mesh_links() {
     if (auto ok = list_patches(); !ok) return ok.error();
     judge_patches();
+    find_objects();
     if (context_.cancel) return cancelled();
     return add_off_mesh_links();
   }
@@ -62,6 +64,7 @@ class NodeBatch {
   Result<NodeSlots> run() {
     if (auto ok = list_patches(); !ok) return ok.error();
     judge_patches();
+    find_objects();
     if (context_.cancel) return cancelled();
     grow_trees();
     if (forest_.size() >= graph::kFarNode) return too_many_nodes();
@@ -95,7 +98,7 @@ class NodeBatch {
         if (source.kind == PatchKind::kLevelTile) levels_.push_back(source.source);
         sources_.push_back(source);
       }
-      const int32_t slot = plan_.has_tiles ? world::slot_at(data_, zone.x, zone.z) : -1;
+      const int32_t slot = zone.has_tiles ? world::slot_at(data_, zone.x, zone.z) : -1;
       if (slot < 0) continue;
       slots_.push_back(static_cast<size_t>(slot));
       if (data_.zone(slots_.back()) == nullptr) {
@@ -126,6 +129,28 @@ class NodeBatch {
     });
   }
 
+  // The cells of level tiles that are not a patch's ground, if that is most of the ground.
+  void find_objects() {
+    if (!plan_.has_objects) return;
+    std::sort(levels_.begin(), levels_.end());
+    objects_.resize(levels_.size());
+    parallel_for(levels_.size(), config_.workers, [&](size_t i) {
+      if (context_.cancel) return;
+      objects_[i] = {levels_[i], find_object_cells(*triangles_, data_, levels_[i])};
+    });
+  }
+
+  [[nodiscard]] graph::PatchCells cells_of_level(uint32_t level) const {
+    graph::PatchCells cells = graph::tile_cells(world_, level, config_.classes, bins_);
+    if (!plan_.has_objects) return cells;
+    const world::CellRows& objects = object_cells(objects_, level);
+    for (size_t i = 0; i < cells.cells.size(); ++i) {
+      const bool is_object = (objects[i / kTileCells] >> (i % kTileCells) & 1) != 0;
+      if (!is_object) cells.cells[i].classes = 0;
+    }
+    return cells;
+  }
+
   // And links within each patch, while its cells are at hand: all of them would fill the memory.
   void grow_trees() {
     std::vector<graph::PatchTree> trees(sources_.size());
@@ -134,9 +159,7 @@ class NodeBatch {
       if (context_.cancel) return;
       const PatchSource& source = sources_[p];
       graph::PatchCells of_tile;
-      if (source.kind != PatchKind::kBezier) {
-        of_tile = graph::tile_cells(world_, source.source, config_.classes, bins_);
-      }
+      if (source.kind != PatchKind::kBezier) of_tile = cells_of_level(source.source);
       const graph::PatchCells& cells =
           source.kind == PatchKind::kBezier ? cells_[source.source].promise : of_tile;
       graph::NodeForest alone;
@@ -183,6 +206,7 @@ class NodeBatch {
       take(std::move(edges.pairs), bezier_, bezier_);
       take(link_holes(input, config_.workers), bezier_, bezier_);
       if (plan_.has_tiles) take(link_tiles(input, config_.workers), bezier_, level_);
+      if (plan_.has_objects) take(link_objects(input, objects_, config_.workers), bezier_, level_);
     }
     if (!plan_.has_tiles) return;
     std::vector<std::pair<int32_t, int32_t>> tiles;
@@ -192,7 +216,9 @@ class NodeBatch {
       const int32_t end_x = std::min((entry.x() + 1) * side, data_.summary.tiles_x);
       const int32_t end_z = std::min((entry.z() + 1) * side, data_.summary.tiles_z);
       for (int32_t z = entry.z() * side; z < end_z; ++z) {
-        for (int32_t x = entry.x() * side; x < end_x; ++x) tiles.push_back({x, z});
+        for (int32_t x = entry.x() * side; x < end_x; ++x) {
+          if (plan_.is_carrier(data_, x, z)) tiles.push_back({x, z});
+        }
       }
     }
     std::vector<std::vector<graph::CellPair>> lists(tiles.size());
@@ -219,6 +245,8 @@ class NodeBatch {
                           .edges = edges_,
                           .tiles = plan_.has_tiles,
                           .levels = levels_,
+                          .has_objects = plan_.has_objects,
+                          .objects = objects_,
                           .wanted = config_.classes};
     uint32_t wide = 1;  // [cells]
     while (wide < 8 && 2 * wide * data_.summary.cell <= 0.5) wide *= 2;
@@ -252,7 +280,7 @@ class NodeBatch {
     double nearest = kReach * kReach;
     if (plan_.has_tiles) {
       const Place place = world_.find_place(avatar_class, at, kReach);
-      if (place && level_[place.level1 - 1] != graph::kNoNode) {
+      if (place && level_[place.level1 - 1] != graph::kNoNode && is_carried(place)) {
         const world::GroundPoint p = world::to_ground(data_, place.position.x, place.position.z);
         best = {level_[place.level1 - 1],
                 static_cast<uint32_t>(
@@ -271,6 +299,15 @@ class NodeBatch {
       }
     }
     return best;
+  }
+
+  // Do nodes of its level tile hold it?
+  [[nodiscard]] bool is_carried(const Place& place) const {
+    if (!plan_.has_objects) return true;
+    const world::GroundPoint p = world::to_ground(data_, place.position.x, place.position.z);
+    const world::CellRows& cells = object_cells(objects_, place.level1 - 1);
+    return (cells[static_cast<size_t>(world::in_tile(p.cell_z()))] >> world::in_tile(p.cell_x()) &
+            1) != 0;
   }
 
   // Does an off-mesh link begin and end in or near zones none of which is made here?
@@ -582,6 +619,7 @@ class NodeBatch {
   std::vector<PatchSource> sources_;      // patches of the forest: those of zones that are seen
   std::vector<uint32_t> bezier_, level_;  // where they are in the forest, or kNoNode
   std::vector<uint32_t> levels_;          // those of the forest
+  std::vector<ObjectLevel> objects_;      // of these the cells that carry nodes, if not all do
   std::vector<size_t> slots_;             // of the world, whose levels these are
   graph::NodeForest forest_;
   std::vector<graph::Promise> promises_;        // by node

@@ -115,7 +115,7 @@ class DropFinder {
     const auto [tile_x, tile_z] = world::tile_of(world_, *ground.zone, *ground.view.record);
     for (int32_t z = 0; z < kTileCells; ++z) {
       for (int32_t x = 0; x < kTileCells; ++x) {
-        if ((legal[static_cast<size_t>(z)] >> x & 1) == 0) continue;
+        if ((legal[static_cast<size_t>(z)] >> x & 1) == 0 || !carries(level, x, z)) continue;
         const int32_t gx = world::first_cell(tile_x) + x, gz = world::first_cell(tile_z) + z;
         if (!is_edge(ground, gx, gz)) continue;
         const Spot from = spot_on(ground, gx, gz);
@@ -131,6 +131,12 @@ class DropFinder {
     int64_t far2 = 0;  // in the plane [m^2 / kNear2]: as far is as far, whatever is rounded
     Spot spot;
   };
+
+  // Does a level tile carry nodes there?
+  [[nodiscard]] bool carries(uint32_t level, int32_t x, int32_t z) const {
+    if (!input_.has_objects) return true;
+    return (object_cells(input_.objects, level)[static_cast<size_t>(z)] >> x & 1) != 0;
+  }
 
   static world::GroundPoint middle_of(int32_t x, int32_t z) {
     constexpr int64_t kMiddle = world::kUnitsPerCell / 2;
@@ -202,6 +208,7 @@ class DropFinder {
             for (int32_t x = std::max(x0, world::first_cell(tile_x));
                  x <= std::min(x1, world::last_cell(tile_x)); ++x) {
               if (!level.is_legal(world::in_tile(x), world::in_tile(z))) continue;
+              if (!carries(level.world_level, world::in_tile(x), world::in_tile(z))) continue;
               // Feet in the middle of a cell are at its sample.
               const double down =
                   from.feet.y - level.view.sample(world::in_tile(x), world::in_tile(z)) * 1e-3;

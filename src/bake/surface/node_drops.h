@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/surface/object_ground.h"
 #include "bake/surface/patch_links.h"
 
 /// One-way drops: where a class with a `max_drop` goes out over an edge of its ground and straight
@@ -44,7 +45,9 @@ struct DropInput {
       edges;                         ///< Over the edges of Bezier patches, by patch of the scene.
   bool tiles = false;                ///< Whether level tiles carry a class.
   std::span<const uint32_t> levels;  ///< Of the world: those from which drops are looked for.
-  uint16_t wanted = 0xffff;          ///< Classes.
+  bool has_objects = false;          ///< Do level tiles carry the cells of objects alone?
+  std::span<const ObjectLevel> objects;
+  uint16_t wanted = 0xffff;  ///< Classes.
 };
 
 /// For each class with a `max_drop` and each cell of its ground from which it cannot go on to one

@@ -9,11 +9,13 @@
 #include <numeric>
 
 #include "bake/surface/node_drops.h"
+#include "bake/surface/object_ground.h"
 #include "bake/surface/patch_cells.h"
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "graph/node_bins.h"
 #include "graph/node_data.h"
+#include "world/place.h"
 
 // A zone's own input is what its patches are made of: their control points and neighbours, the
 // ground's files for its level tiles, and every triangle that a body on one of them, or in a move
@@ -28,21 +30,38 @@ constexpr double kLinkEndRadius = 1;      // Places that an off-mesh link's ends
 constexpr double kMargin = 1;             // for rounding, and then some [m]
 constexpr double kHeightBound = 1e7;      // above and below all [m]
 
-// Where all ground is Bezier patches, they carry all classes. Where there is other ground too,
-// level tiles carry walkers and patches carry climbers.
+// Where most ground is Bezier patches, they carry all classes, and level tiles what lies on
+// objects. Else, as where a level made of polygons has some curved parts, level tiles carry walkers
+// and patches carry climbers.
 void choose_layers(const world::WorldData& world, const Scene& scene, const NodeConfig& config,
                    NodePlan& plan) {
   const auto& classes = world.summary.classes;
   const auto& of = scene.patch_of_triangle;
   plan.has_patches = !scene.patches.empty();
   plan.has_tiles = of.empty() || std::find(of.begin(), of.end(), kNoPatch) != of.end();
+  plan.has_objects = plan.has_patches && is_mostly_patches(scene);
   for (size_t c = 0; c < classes.size(); ++c) {
     const auto bit = static_cast<uint16_t>(1u << c);
     if ((config.classes & bit) == 0) continue;
     if (classes[c].max_drop > 0) plan.drops = true;
-    if (classes[c].climb_slope > 0 || !plan.has_tiles) plan.on_patches |= bit;
+    if (classes[c].climb_slope > 0 || plan.has_objects) plan.on_patches |= bit;
   }
-  if (plan.on_patches == 0) plan.has_patches = false;
+  if (plan.on_patches == 0) plan.has_patches = plan.has_objects = false;
+  if (plan.has_objects) plan.object_tiles = find_object_tiles(world, scene);
+}
+
+// May level tiles of a zone carry nodes?
+bool has_carriers(const world::WorldData& world, const NodePlan& plan, int32_t zone_x,
+                  int32_t zone_z) {
+  const auto side = static_cast<int32_t>(world.tiles_per_zone);
+  const int32_t end_x = std::min((zone_x + 1) * side, world.summary.tiles_x);
+  const int32_t end_z = std::min((zone_z + 1) * side, world.summary.tiles_z);
+  for (int32_t z = zone_z * side; z < end_z; ++z) {
+    for (int32_t x = zone_x * side; x < end_x; ++x) {
+      if (plan.is_carrier(world, x, z)) return true;
+    }
+  }
+  return false;
 }
 
 // Bezier patches by their middles, level tiles as the ground's zones.
@@ -61,7 +80,13 @@ void list_sources(const world::WorldData& world, const Scene& scene, NodePlan& p
   }
   for (size_t s = 0; plan.has_tiles && s < world.slots.size(); ++s) {
     const auto& slot = *world.slots[s];
+    if (!has_carriers(world, plan, slot.entry.x(), slot.entry.z())) continue;
+    const world::Zone* levels = plan.has_objects ? world.zone(s) : nullptr;
     for (uint32_t l = 0; l < slot.entry.levels(); ++l) {
+      if (levels != nullptr) {
+        const auto [x, z] = world::tile_of(world, *levels, levels->level(l));
+        if (!plan.is_carrier(world, x, z)) continue;
+      }
       plan.sources.push_back(
           {slot.entry.z(), slot.entry.x(), PatchKind::kLevelTile, slot.first_level + l});
     }
@@ -84,6 +109,7 @@ void list_zones(const world::WorldData& world, const Scene& scene, NodePlan& pla
       zone.box.add(box.min);
       zone.box.add(box.max);
     } else {
+      zone.has_tiles = true;
       const Vec3d corner = world.summary.origin + Vec3d{zone.x * side, 0, zone.z * side};
       zone.box.add(corner);
       zone.box.add(corner + Vec3d{side, 0, side});
@@ -206,7 +232,9 @@ uint64_t common_input(const world::WorldData& world, const Scene& scene, const N
   words.add(uint64_t{config.classes});
   words.add(config.size);
   words.add(uint64_t{plan.on_patches});
-  for (const bool flag : {plan.has_patches, plan.has_tiles, plan.drops, knows_parts(scene)}) {
+  // Which zones have objects is a part of their own inputs.
+  const bool tiles = plan.has_tiles && !plan.has_objects;
+  for (const bool flag : {plan.has_patches, tiles, plan.drops, knows_parts(scene)}) {
     words.add(uint64_t{flag});
   }
   words.add(world.summary.cell);
@@ -299,7 +327,7 @@ void find_node_inputs(const world::WorldData& world, const Scene& scene, const N
       }
     }
     const int32_t slot =
-        plan.has_tiles ? world.slot_of_zone[static_cast<size_t>(zone.z * world.zones_x + zone.x)]
+        zone.has_tiles ? world.slot_of_zone[static_cast<size_t>(zone.z * world.zones_x + zone.x)]
                        : -1;
     words.add(slot < 0 ? 0 : world.slots[static_cast<size_t>(slot)]->entry.hash());
     if (triangles != nullptr) add_triangles(*triangles, zone.box, reach.triangles[z], words);

@@ -28,6 +28,7 @@ struct PatchSource {
 struct NodePlanZone {
   int32_t x = 0, z = 0;
   uint32_t first = 0, last = 0;  ///< of the plan's sources
+  bool has_tiles = false;        ///< Are some of these level tiles?
   Box3d box = {};                ///< That holds its patches, heights left out.
   std::vector<uint32_t> near =
       {};  ///< Zones that its nodes depend on, itself among them; ascending.
@@ -40,8 +41,18 @@ struct NodePlan {
   bool has_tiles = false;    ///< do level tiles?
   bool drops = false;        ///< Does a class drop?
   uint16_t on_patches = 0;   ///< Classes that patches carry.
+  /// Do patches carry all classes? Then level tiles carry what lies on other ground alone.
+  bool has_objects = false;
+  std::vector<uint8_t> object_tiles = {};  ///< If so: find_object_tiles.
   std::vector<PatchSource> sources;
   std::vector<NodePlanZone> zones;  ///< By z, then x.
+
+  /// May a level tile carry nodes? By its place in the plan.
+  [[nodiscard]] bool is_carrier(const world::WorldData& world, int32_t x, int32_t z) const {
+    return !has_objects ||
+           object_tiles[static_cast<size_t>(z) * static_cast<size_t>(world.summary.tiles_x) +
+                        static_cast<size_t>(x)] != 0;
+  }
 
   /// Do nodes need triangles at all?
   [[nodiscard]] bool needs_triangles() const { return has_patches || drops; }

@@ -27,23 +27,6 @@ Vec3d middle_of(const PatchLinkInput& input, uint32_t patch, uint32_t cell) {
   return input.cells[patch].shape[cell].middle(input.cells[patch].origin);
 }
 
-// The middle of a cell of a patch, as a body stands there.
-BodyPose pose_on(const PatchLinkInput& input, const PatchBody& body, uint32_t patch,
-                 uint32_t cell) {
-  const int32_t depth = input.cells[patch].promise.depth;
-  const double side = 1 << depth;
-  const double s = ((cell & ((1u << depth) - 1)) + 0.5) / side, t = ((cell >> depth) + 0.5) / side;
-  const BezierPatch& surface = input.triangles->scene().patches.patches[patch];
-  return {surface.at(s, t), body.climbs ? surface.normal(s, t) : Vec3d{0, 1, 0}};
-}
-
-// Can a body go straight from one pose to another?
-bool goes(MotionJudge& judge, const PatchBody& body, const BodyPose& from, const BodyPose& to,
-          double step) {
-  if (!body.climbs && !judge.is_supported(from.feet, to.feet, step, kWalkSpacing)) return false;
-  return judge.is_free(body, from, to);
-}
-
 // The part of the edges that a pair touches along, as a door of its own or the end of the last one.
 void add_door(const graph::EdgePair& pair, uint16_t classes, std::vector<PatchDoor>& doors) {
   const auto along = [](double at) {
@@ -78,6 +61,21 @@ std::vector<graph::CellPair> merged(std::vector<std::vector<graph::CellPair>>& l
 }
 
 }  // namespace
+
+BodyPose pose_on(const PatchLinkInput& input, const PatchBody& body, uint32_t patch,
+                 uint32_t cell) {
+  const int32_t depth = input.cells[patch].promise.depth;
+  const double side = 1 << depth;
+  const double s = ((cell & ((1u << depth) - 1)) + 0.5) / side, t = ((cell >> depth) + 0.5) / side;
+  const BezierPatch& surface = input.triangles->scene().patches.patches[patch];
+  return {surface.at(s, t), body.climbs ? surface.normal(s, t) : Vec3d{0, 1, 0}};
+}
+
+bool goes_straight(MotionJudge& judge, const PatchBody& body, const BodyPose& from,
+                   const BodyPose& to, double step) {
+  if (!body.climbs && !judge.is_supported(from.feet, to.feet, step, kWalkSpacing)) return false;
+  return judge.is_free(body, from, to);
+}
 
 EdgeLinks link_edges(const PatchLinkInput& input, int32_t workers) {
   const PatchSet& set = input.triangles->scene().patches;
@@ -241,8 +239,8 @@ class HoleLinker {
     const BodyPose start = pose_on(input_, body, patch_, a);
     for (size_t k = 0; k < std::min(kMaxCandidates, nearest_.size()); ++k) {
       const uint32_t b = nearest_[k].second;
-      if (!goes(judge_, body, start, pose_on(input_, body, target.maker, b),
-                input_.classes[target.avatar_class].step_height)) {
+      if (!goes_straight(judge_, body, start, pose_on(input_, body, target.maker, b),
+                         input_.classes[target.avatar_class].step_height)) {
         continue;
       }
       pairs_.push_back({.patch_a = patch_,

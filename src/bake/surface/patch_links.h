@@ -43,6 +43,15 @@ struct EdgeLinks {
   return 3 * size + 2 * radius;
 }
 
+/// The middle of a cell of a patch, as a body stands there.
+[[nodiscard]] BodyPose pose_on(const PatchLinkInput& input, const PatchBody& body, uint32_t patch,
+                               uint32_t cell);
+
+/// Can a body go straight from one pose to another? A walker also needs ground within a step under
+/// all of its move. [m]
+[[nodiscard]] bool goes_straight(MotionJudge& judge, const PatchBody& body, const BodyPose& from,
+                                 const BodyPose& to, double step);
+
 /// Pairs of cells over all edges that patches share, and where exactly they touch. Where the
 /// surface has a crease, a climber must be able to turn over it.
 [[nodiscard]] EdgeLinks link_edges(const PatchLinkInput& input, int32_t workers);

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/surface/body_sweep.h"
+#include "bake/surface/patch_links.h"
+#include "world/cell_blocks.h"
+#include "world/zone_data.h"
+
+/// Objects on, in, over and under ground of Bezier patches: which level tiles carry them, and how
+/// bodies get from there to the patches and back.
+namespace throng::bake {
+
+/// By level tiles as seen from above, row by row: may a level there carry ground that is not of a
+/// patch? Linear in the triangles.
+[[nodiscard]] std::vector<uint8_t> find_object_tiles(const world::WorldData& world,
+                                                     const Scene& scene);
+
+/// Is most of the ground, as seen from above, of Bezier patches? Then these carry walkers, too.
+/// Linear in the triangles.
+[[nodiscard]] bool is_mostly_patches(const Scene& scene);
+
+/// The cells of a level whose floor is not a patch's. Linear in the triangles in the tile and the
+/// cells under them.
+[[nodiscard]] world::CellRows find_object_cells(const TriangleSquares& triangles,
+                                                const world::WorldData& world, uint32_t level);
+
+/// A level whose nodes lie on objects alone.
+struct ObjectLevel {
+  uint32_t level = 0;  ///< Of the world.
+  world::CellRows cells{};
+};
+
+/// The cells of a level, of those sorted by their levels; none of a level that is not among them.
+[[nodiscard]] const world::CellRows& object_cells(std::span<const ObjectLevel> objects,
+                                                  uint32_t level);
+
+/// From cells of objects beside which a class steps down, or up, to ground of a patch, to the
+/// nearest of the patch's cells to which its body can go straight: one for each half metre.
+/// `patch_b` counts levels of the world.
+[[nodiscard]] std::vector<graph::CellPair> link_objects(const PatchLinkInput& input,
+                                                        std::span<const ObjectLevel> objects,
+                                                        int32_t workers);
+
+}  // namespace throng::bake

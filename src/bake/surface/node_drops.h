@@ -46,7 +46,7 @@ struct DropInput {
   bool tiles = false;                ///< Whether level tiles carry a class.
   std::span<const uint32_t> levels;  ///< Of the world: those from which drops are looked for.
   bool has_objects = false;          ///< Do level tiles carry the cells of objects alone?
-  std::span<const ObjectLevel> objects;
+  std::span<const ObjectLevel> objects = {};
   uint16_t wanted = 0xffff;  ///< Classes.
 };
 

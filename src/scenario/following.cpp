@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "scenario/simulation_state.h"
@@ -20,6 +21,38 @@ constexpr double kMaxLeft = 0.8;    // of the trip after a waypoint, likewise
 constexpr double kMinWalk = 5;      // [m] to a waypoint
 constexpr double kCostPeriod = 60;  // [s] between changes of costs
 
+// Has some of the ground under an area a weight, at any time, or lies it beside the picture?
+bool has_weight(const DensityMap& map, const ScenarioArea& area) {
+  Box3d box;
+  for (const Prism& prism : area.prisms) {
+    for (const auto& [x, z] : prism.corners) box.add({x, 0, z});
+  }
+  if (box.min.x < map.x0 || box.max.x > map.x1 || box.min.z < map.z0 || box.max.z > map.z1) {
+    return true;
+  }
+  const auto pixel = [](double at, double low, double high, int32_t count) {
+    const double n = std::floor((at - low) / (high - low) * count);
+    return static_cast<int32_t>(std::clamp(n, 0.0, count - 1.0));
+  };
+  const int32_t first = pixel(box.min.x, map.x0, map.x1, map.width);
+  const int32_t last = pixel(box.max.x, map.x0, map.x1, map.width);
+  const int32_t end = pixel(box.max.z, map.z0, map.z1, map.height);
+  const auto any = [&](const std::vector<uint8_t>& weights) {
+    for (int32_t row = pixel(box.min.z, map.z0, map.z1, map.height); row <= end; ++row) {
+      for (int32_t column = first; column <= last; ++column) {
+        if (weights[static_cast<size_t>(row) * static_cast<size_t>(map.width) +
+                    static_cast<size_t>(column)] != 0) {
+          return true;
+        }
+      }
+    }
+    return false;
+  };
+  return any(map.weights) ||
+         std::any_of(map.hours.begin(), map.hours.end(),
+                     [&](const DensityHour& hour) { return any(hour.weights); });
+}
+
 bool is_zero_alike(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](uint8_t x, uint8_t y) { return (x == 0) == (y == 0); });
@@ -31,10 +64,26 @@ bool is_zero_alike(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b)
 // the journey names. -1: none.
 int32_t Simulation::State::map_of(const Source& source, int32_t journey) const {
   if (source.density >= 0 || journey < 0) return source.density;
+  const auto number = static_cast<size_t>(&source - scenario.sources.data());
   for (const Stage& stage : scenario.journeys[static_cast<size_t>(journey)].stages) {
-    if (stage.density >= 0) return stage.density;
+    if (stage.density < 0) continue;
+    return from_outside[number][static_cast<size_t>(stage.density)] != 0 ? -1 : stage.density;
   }
   return -1;
+}
+
+// Avatars of a source all of whose areas have weight 0 cannot follow that map: they visit what it
+// shows from outside, as where only destinations are painted. Found once, so that it stays so.
+void Simulation::State::find_sources_outside() {
+  for (const Source& source : scenario.sources) {
+    std::vector<uint8_t>& outside = from_outside.emplace_back();
+    for (const DensityMap& map : scenario.densities) {
+      const bool has_ground = std::any_of(
+          source.areas.begin(), source.areas.end(),
+          [&](int32_t area) { return has_weight(map, scenario.areas[static_cast<size_t>(area)]); });
+      outside.push_back(!source.areas.empty() && !has_ground ? 1 : 0);
+    }
+  }
 }
 
 // The class of the crowd of avatars that follow a map. Those that fly or go over nodes follow none.

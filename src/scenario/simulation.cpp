@@ -136,6 +136,7 @@ Result<void> Simulation::State::prepare_stage(const Stage& stage, std::vector<Ta
 
 Result<void> Simulation::State::prepare(Context& context) {
   kinds = world.summary().classes;
+  find_sources_outside();
   for (const Profile& profile : scenario.profiles) {
     int32_t index = 0;
     if (!profile.avatar_class.empty()) {

@@ -137,7 +137,8 @@ struct Simulation::State {
   std::map<std::pair<TargetId, int32_t>, std::vector<Place>> places;
   // Classes of the crowd, by density map and class of the world.
   std::map<std::pair<int32_t, int32_t>, int32_t> density_classes;
-  std::vector<GivenDensity> given;  // by density map
+  std::vector<std::vector<uint8_t>> from_outside;  // by source and map: find_sources_outside
+  std::vector<GivenDensity> given;                 // by density map
   std::vector<CarriedAttractor> carried;
   std::map<size_t, ShadedDensity> shaded;  // by density map; where attractors are
 
@@ -219,6 +220,7 @@ struct Simulation::State {
   void enter(const PendingSpawn& one, AvatarId id);
 
   // following.cpp
+  void find_sources_outside();
   [[nodiscard]] int32_t map_of(const Source& source, int32_t journey) const;
   Result<int32_t> class_that_follows(int32_t density, int32_t avatar_class, Context& context);
   void blend_densities();

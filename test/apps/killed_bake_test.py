@@ -83,7 +83,7 @@ def main():
         before = content(old)
         killed = resumed = in_graph = in_nodes = opened = refused = without_nodes = 0
         # On a busy machine few points may fall where it matters: then there are more of them.
-        for point in range(4 * POINTS):
+        for point in range(12 * POINTS):
             if point >= POINTS and killed >= POINTS // 4 and resumed >= 2 and in_graph >= 1:
                 break
             points = point + 1

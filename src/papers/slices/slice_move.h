@@ -23,9 +23,9 @@ struct SliceBody {
 /// above it is above everything). `height` gets the height of an element. [mm]
 template <class Slices, class Height = std::identity>
 [[nodiscard]] size_t index_above(const Slices& slices, int32_t head, Height height = {}) {
-  const auto below = std::ranges::partition_point(
-      slices, [&](int32_t of_slice) { return of_slice >= head; }, height);
-  const auto above = static_cast<size_t>(below - std::ranges::begin(slices));
+  const auto is_above = [&](const auto& slice) { return std::invoke(height, slice) >= head; };
+  const auto below = std::partition_point(std::begin(slices), std::end(slices), is_above);
+  const auto above = static_cast<size_t>(below - std::begin(slices));
   return above == 0 ? 0 : above - 1;
 }
 

@@ -69,7 +69,8 @@ std::optional<std::vector<DensityClass>> restore_densities(std::span<const uint8
                     .weights = {saved.data(), saved.data() + pixels}};
     saved = saved.subspan(padded(pixels));
     if (!path::check_density(map)) return {};
-    classes.push_back({head.body, std::make_shared<const path::DensityCells>(std::move(map))});
+    classes.push_back({static_cast<size_t>(head.body),
+                       std::make_shared<const path::DensityCells>(std::move(map))});
   }
   return classes;
 }

@@ -262,8 +262,8 @@ void Simulation::Run::count() {
       counts.obstacle_collisions += enter(inside_obstacle[pair++], now);
     }
   }
-  counts.arrived = std::ranges::count(activities, Activity::kArrived);
-  counts.waiting = std::ranges::count(activities, Activity::kWaiting);
+  counts.arrived = std::count(activities.begin(), activities.end(), Activity::kArrived);
+  counts.waiting = std::count(activities.begin(), activities.end(), Activity::kWaiting);
 }
 
 void Simulation::step() {
@@ -293,7 +293,8 @@ uint64_t Simulation::state_hash() const {
     }
   }
   std::vector<uint64_t> bits(state.size());
-  std::ranges::transform(state, bits.begin(), [](double x) { return std::bit_cast<uint64_t>(x); });
+  std::transform(state.begin(), state.end(), bits.begin(),
+                 [](double x) { return std::bit_cast<uint64_t>(x); });
   return hash_span(std::span<const uint64_t>(bits));
 }
 

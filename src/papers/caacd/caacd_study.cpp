@@ -153,7 +153,8 @@ Result<Study> run_study(const StudyConfig& config, Context& context) {
         sum_up(std::span(outcomes).subspan(cell * seeds, seeds), config.avatars[cell % counts]));
   }
   std::vector<uint64_t> hashes(total);
-  std::ranges::transform(outcomes, hashes.begin(), &Outcome::hash);
+  std::transform(outcomes.begin(), outcomes.end(), hashes.begin(),
+                 [](const Outcome& outcome) { return outcome.hash; });
   study.hash = hash_span(std::span<const uint64_t>(hashes));
   return study;
 }

@@ -143,10 +143,10 @@ class NodeBatch {
   [[nodiscard]] graph::PatchCells cells_of_level(uint32_t level) const {
     graph::PatchCells cells = graph::tile_cells(world_, level, config_.classes, bins_);
     if (!plan_.has_objects) return cells;
-    const world::CellRows& objects = object_cells(objects_, level);
     for (size_t i = 0; i < cells.cells.size(); ++i) {
-      const bool is_object = (objects[i / kTileCells] >> (i % kTileCells) & 1) != 0;
-      if (!is_object) cells.cells[i].classes = 0;
+      if (!is_object_cell(objects_, level, world::x_of_cell(i), world::z_of_cell(i))) {
+        cells.cells[i].classes = 0;
+      }
     }
     return cells;
   }
@@ -205,7 +205,10 @@ class NodeBatch {
       if (plan_.drops) edges_ = edges.pairs;
       take(std::move(edges.pairs), bezier_, bezier_);
       take(link_holes(input, config_.workers), bezier_, bezier_);
-      if (plan_.has_tiles) take(link_tiles(input, config_.workers), bezier_, level_);
+      if (plan_.has_tiles) {
+        const auto carries = [&](const Place& place) { return is_carried(place); };
+        take(link_tiles(input, carries, config_.workers), bezier_, level_);
+      }
       if (plan_.has_objects) take(link_objects(input, objects_, config_.workers), bezier_, level_);
     }
     if (!plan_.has_tiles) return;
@@ -305,9 +308,8 @@ class NodeBatch {
   [[nodiscard]] bool is_carried(const Place& place) const {
     if (!plan_.has_objects) return true;
     const world::GroundPoint p = world::to_ground(data_, place.position.x, place.position.z);
-    const world::CellRows& cells = object_cells(objects_, place.level1 - 1);
-    return (cells[static_cast<size_t>(world::in_tile(p.cell_z()))] >> world::in_tile(p.cell_x()) &
-            1) != 0;
+    return is_object_cell(objects_, place.level1 - 1, world::in_tile(p.cell_x()),
+                          world::in_tile(p.cell_z()));
   }
 
   // Does an off-mesh link begin and end in or near zones none of which is made here?

@@ -134,8 +134,7 @@ class DropFinder {
 
   // Does a level tile carry nodes there?
   [[nodiscard]] bool carries(uint32_t level, int32_t x, int32_t z) const {
-    if (!input_.has_objects) return true;
-    return (object_cells(input_.objects, level)[static_cast<size_t>(z)] >> x & 1) != 0;
+    return !input_.has_objects || is_object_cell(input_.objects, level, x, z);
   }
 
   static world::GroundPoint middle_of(int32_t x, int32_t z) {

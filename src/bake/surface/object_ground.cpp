@@ -134,12 +134,12 @@ world::CellRows find_object_cells(const TriangleSquares& triangles, const world:
   return cells;
 }
 
-const world::CellRows& object_cells(std::span<const ObjectLevel> objects, uint32_t level) {
-  static constexpr world::CellRows kNone{};
+bool is_object_cell(std::span<const ObjectLevel> objects, uint32_t level, int32_t x, int32_t z) {
   const auto found = std::lower_bound(
       objects.begin(), objects.end(), level,
       [](const ObjectLevel& object, uint32_t number) { return object.level < number; });
-  return found != objects.end() && found->level == level ? found->cells : kNone;
+  return found != objects.end() && found->level == level &&
+         (found->cells[static_cast<size_t>(z)] >> x & 1) != 0;
 }
 
 namespace {
@@ -201,10 +201,6 @@ class ObjectLinker {
   }
 
  private:
-  [[nodiscard]] bool is_object(uint32_t level, int32_t x, int32_t z) const {
-    return (object_cells(objects_, level)[static_cast<size_t>(z)] >> x & 1) != 0;
-  }
-
   // Does the class step from a cell to ground that is not of an object?
   [[nodiscard]] bool is_at_patch(const world::WorldGround& ground, const world::GroundLevel& level,
                                  int32_t x, int32_t z, int32_t step) const {
@@ -213,7 +209,7 @@ class ObjectLinker {
       const int32_t i = x + d[0], j = z + d[1];
       if (i < 0 || j < 0 || i >= world_.width || j >= world_.depth) return false;
       const auto to = world::step_to(ground, level, x, z, i, j, step);
-      return to && !is_object(to->world_level, world::in_tile(i), world::in_tile(j));
+      return to && !is_object_cell(objects_, to->world_level, world::in_tile(i), world::in_tile(j));
     });
   }
 

@@ -35,9 +35,10 @@ struct ObjectLevel {
   world::CellRows cells{};
 };
 
-/// The cells of a level, of those sorted by their levels; none of a level that is not among them.
-[[nodiscard]] const world::CellRows& object_cells(std::span<const ObjectLevel> objects,
-                                                  uint32_t level);
+/// Is a cell of a level's tile one of an object? `objects`: sorted by level; levels that are not
+/// among them have none.
+[[nodiscard]] bool is_object_cell(std::span<const ObjectLevel> objects, uint32_t level, int32_t x,
+                                  int32_t z);
 
 /// From cells of objects beside which a class steps down, or up, to ground of a patch, to the
 /// nearest of the patch's cells to which its body can go straight: one for each half metre.

@@ -277,7 +277,9 @@ std::vector<graph::CellPair> link_holes(const PatchLinkInput& input, int32_t wor
   return merged(lists);
 }
 
-std::vector<graph::CellPair> link_tiles(const PatchLinkInput& input, int32_t workers) {
+std::vector<graph::CellPair> link_tiles(const PatchLinkInput& input,
+                                        const std::function<bool(const Place&)>& carries,
+                                        int32_t workers) {
   const std::vector<PatchBody> bodies = patch_bodies(input.classes);
   const world::WorldData& data = *data_of(*input.world);
   std::vector<std::vector<graph::CellPair>> lists(input.cells.size());
@@ -290,7 +292,8 @@ std::vector<graph::CellPair> link_tiles(const PatchLinkInput& input, int32_t wor
         const BodyPose on = pose_on(input, body, static_cast<uint32_t>(p), a);
         const double step = input.classes[c].step_height;
         const Place place = input.world->find_place(static_cast<int32_t>(c), on.feet, step);
-        if (!place || !judge.is_free(body, {place.position, {0, 1, 0}}, on)) continue;
+        if (!place || !carries(place)) continue;
+        if (!judge.is_free(body, {place.position, {0, 1, 0}}, on)) continue;
         const world::GroundPoint at = world::to_ground(data, place.position.x, place.position.z);
         lists[p].push_back({.patch_a = static_cast<uint32_t>(p),
                             .cell_a = a,

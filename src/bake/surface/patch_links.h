@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -61,7 +62,8 @@ struct EdgeLinks {
 [[nodiscard]] std::vector<graph::CellPair> link_holes(const PatchLinkInput& input, int32_t workers);
 
 /// Cells on which a climber also finds a place on a level tile, and can straighten up there.
-/// `patch_b` counts levels of the world.
-[[nodiscard]] std::vector<graph::CellPair> link_tiles(const PatchLinkInput& input, int32_t workers);
+/// `patch_b` counts levels of the world; `carries`: do nodes of level tiles hold a place?
+[[nodiscard]] std::vector<graph::CellPair> link_tiles(
+    const PatchLinkInput& input, const std::function<bool(const Place&)>& carries, int32_t workers);
 
 }  // namespace throng::bake

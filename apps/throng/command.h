@@ -80,6 +80,9 @@ CLI::Option* add_speedup(CLI::App& command, const std::string& flag, PathSpeedup
 /// --threads, 0 for all cores, with its limit.
 CLI::Option* add_threads(CLI::App& command, int32_t& threads,
                          const std::string& text = "Threads, 0 for all cores");
+/// --part: two corners of a district as seen from above, for box_of_part. [m]
+void add_part(CLI::App& command, std::vector<double>& part);
+[[nodiscard]] Box3d box_of_part(const std::vector<double>& part);
 /// --search-memory, in MiB.
 void add_search_memory(CLI::App& command, uint64_t& bytes);
 

@@ -210,6 +210,22 @@ CLI::Option* add_threads(CLI::App& command, int32_t& threads, const std::string&
       ->check(between(0, std::max(kMaxThreads, std::thread::hardware_concurrency())));
 }
 
+void add_part(CLI::App& command, std::vector<double>& part) {
+  command
+      .add_option("--part", part,
+                  "A district, by two opposite corners as seen from above: only the world's zones "
+                  "that touch it are there [m]")
+      ->delimiter(',')
+      ->expected(4)
+      ->type_name("X,Z,X,Z");
+}
+
+Box3d box_of_part(const std::vector<double>& part) {
+  const auto [x0, x1] = std::minmax(part[0], part[2]);
+  const auto [z0, z1] = std::minmax(part[1], part[3]);
+  return {.min = {x0, 0, z0}, .max = {x1, 0, z1}};
+}
+
 void add_search_memory(CLI::App& command, uint64_t& bytes) {
   command
       .add_option_function<double>(

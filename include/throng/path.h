@@ -221,6 +221,9 @@ struct PathConfig {
   bool overlay = true;
   int32_t workers = 0;  ///< Threads for making the finder, 0 for all cores. [>= 0]
   PathSpeedup speedup = PathSpeedup::kNone;
+  /// With kOnDemand: ground that queries have made counts to SearchBudget::max_bytes as well. What
+  /// takes more than half of that is forgotten before the next query.
+  bool counts_ground = false;
   PathSpace space = PathSpace::kOfClass;
   Nodes nodes = {};  ///< Over nodes: the ones to use. Empty: those in the world's folder.
   Edits edits = {};  ///< Changes of the world that paths follow.

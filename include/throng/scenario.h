@@ -197,7 +197,8 @@ struct Attractor {
 /// A whole scenario. Members refer to each other by index.
 struct Scenario {
   // The world: the first of these that is given.
-  std::string world;  ///< A folder; relative paths start at the scenario file's folder.
+  std::string world;          ///< A folder; relative paths start at the scenario file's folder.
+  std::optional<Box3d> part;  ///< Of the folder's world: WorldConfig::part.
   std::vector<std::string> models;           ///< Files to bake.
   std::vector<BuiltinWorldConfig> builtins;  ///< Built-in worlds to bake.
   std::vector<PlaneConfig> planes;           ///< A plane with obstacles; one or none.

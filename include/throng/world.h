@@ -78,6 +78,10 @@ struct WorldConfig {
   /// Limit of the memory of zones. Beyond it, the least recently used zones are given back to the
   /// system, and read again at their next use. 0: no limit. Never changes a result. [bytes]
   uint64_t resident_bytes = 0;
+  /// A district: only zones that touch this box, seen from above, are there, as if nothing else had
+  /// been baked; so what is made of the world takes memory for these alone. Levels have other
+  /// numbers than in the whole world. Its components and nodes cannot be opened. None: all. [m]
+  std::optional<Box3d> part = {};
 };
 
 /// The part of a world that is in memory. Counted only with WorldConfig::resident_bytes.
@@ -94,10 +98,14 @@ class THRONG_API World {
   [[nodiscard]] explicit operator bool() const { return state_ != nullptr; }
 
   /// Opens a folder written by bake_world_to. Reads only the manifest: zones are mapped and checked
-  /// when they are first used. Fails with kBadFile (by name) or kIo.
+  /// when they are first used. Fails with kBadFile (by name), kIo or kBadConfig (no zone is in the
+  /// part).
   [[nodiscard]] static Result<World> open(const std::string& path, const WorldConfig& config = {});
   /// Checks every zone against the manifest's checksums. Fails with kBadFile and the zone's name.
   [[nodiscard]] Result<void> check_ground() const;
+  /// Fails with kBadFile and a zone's name if a zone that something came to since the world was
+  /// opened could not be used. Reads no file. Not while others read. Time: linear in zones.
+  [[nodiscard]] Result<void> check_touched() const;
   /// Checks the ground as check_ground does, and the files of the air, if there are any.
   [[nodiscard]] Result<void> check_all() const;
 

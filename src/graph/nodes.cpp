@@ -88,6 +88,10 @@ Result<Nodes> Nodes::open(const World& world) {
     return Error{Errc::kBadFile,
                  "this world was not opened from a folder, so it has no nodes there"};
   }
+  if (data_of(world)->part) {
+    return Error{Errc::kBadConfig,
+                 world_path + ": nodes know only the whole world, and it was opened in part"};
+  }
   const std::string name = index_of(world_path);
   const auto map = FileMap::open(name);
   if (!map) {

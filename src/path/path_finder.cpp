@@ -62,7 +62,8 @@ bool needs_mesh(const PathConfig& config) {
 PathConfig live_config(const PathConfig& config) {
   return {.avatar_class = config.avatar_class,
           .slope_cost = config.slope_cost,
-          .workers = config.workers};
+          .workers = config.workers,
+          .counts_ground = config.counts_ground};
 }
 
 }  // namespace

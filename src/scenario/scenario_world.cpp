@@ -31,7 +31,7 @@ Result<World> bake_world(const Scenario& scenario, const Scene& scene, Context& 
 }
 
 Result<World> open_world(const Scenario& scenario, Context& context) {
-  if (!scenario.world.empty()) return World::open(scenario.world);
+  if (!scenario.world.empty()) return World::open(scenario.world, {.part = scenario.part});
   const Result<Scene> scene = load_scene(scenario, context);
   if (!scene) return scene.error();
   return bake_world(scenario, *scene, context);

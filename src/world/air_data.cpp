@@ -68,6 +68,7 @@ Result<void> AirZone::attach(const std::string& name) {
 
 AirData::ZoneAir AirData::zone(int32_t x, int32_t z) const {
   const int32_t slot = slot_of_zone[static_cast<size_t>(z * zones_x + x)];
+  if (slot == kNotThere) return {};
   if (slot < 0) return {true, nullptr};
   const Slot& entry = *slots[static_cast<size_t>(slot)];
   std::call_once(entry.once, [&] {

@@ -18,6 +18,7 @@
 #include "world/place.h"
 #include "world/sealed_file.h"
 #include "world/tile_grid.h"
+#include "world/world_part.h"
 #include "world/zone_data.h"
 
 // The public queries of a world: places, moves, levels, random places.
@@ -63,6 +64,9 @@ Result<World> World::open(const std::string& path, const WorldConfig& config) {
   if (!world) return world.error();
   (*world)->path = path;
   (*world)->budget = config.resident_bytes;
+  if (config.part) {
+    if (auto ok = world::keep_part(**world, *config.part); !ok) return ok.error();
+  }
   const auto manifest = world::unsealed(map->bytes(), name);
   if (!manifest) return manifest.error();
   (*world)->manifest_hash = hash_span(*manifest);
@@ -75,6 +79,7 @@ Result<World> World::open(const std::string& path, const WorldConfig& config) {
     if (const auto whole = world::unsealed(air_map->bytes(), air_name); !whole)
       return whole.error();
     (*air)->path = path;
+    if ((*world)->part) world::keep_part(**air, *(*world)->part);
     for (size_t c = 0; c < (*world)->summary.classes.size(); ++c) {
       (*world)->summary.classes[c].flies = ((*air)->shape.flies >> c & 1) != 0;
     }
@@ -87,6 +92,14 @@ Result<void> World::check_ground() const {
   THRONG_ASSERT(state_);
   for (size_t s = 0; s < state_->slots.size(); ++s) {
     if (state_->zone(s) == nullptr) return Error{Errc::kBadFile, state_->slots[s]->error};
+  }
+  return {};
+}
+
+Result<void> World::check_touched() const {
+  THRONG_ASSERT(state_);
+  for (const auto& slot : state_->slots) {
+    if (!slot->error.empty()) return Error{Errc::kBadFile, slot->error};
   }
   return {};
 }

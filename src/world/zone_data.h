@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -67,6 +68,14 @@ struct ClassIndex {
 
 struct AirData;
 
+/// Zones [x0, x1) x [z0, z1).
+struct ZoneRect {
+  int32_t x0 = 0, z0 = 0, x1 = 0, z1 = 0;
+  [[nodiscard]] bool contains(int32_t x, int32_t z) const {
+    return x >= x0 && x < x1 && z >= z0 && z < z1;
+  }
+};
+
 /// What World points to.
 struct WorldData {
   // Of a zone's memory: not there, or given back; there, but not used since the hand last came by;
@@ -83,6 +92,7 @@ struct WorldData {
   uint32_t tiles_per_zone = 0;
   int32_t zones_x = 0, zones_z = 0;
   std::string path;                   // empty: baked in memory
+  std::optional<ZoneRect> part;       // WorldConfig::part; none: all zones are there
   uint64_t manifest_hash = 0;         // XXH3 of the manifest, if it was read from a folder
   std::vector<int32_t> slot_of_zone;  // zones_x * zones_z, -1: no levels there
   std::vector<std::unique_ptr<Slot>> slots;

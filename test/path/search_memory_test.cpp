@@ -145,6 +145,41 @@ TEST(SearchMemory, GroundWithEditsSaysThatItHadTooLittle) {
   EXPECT_GT(budget_exhausted, 5u);
 }
 
+TEST(SearchMemory, GroundThatIsMadeOnDemandCountsIfAsked) {
+  const auto make = [](bool counts) {
+    auto made = PathFinder::create(
+        maze(), {.speedup = PathSpeedup::kOnDemand, .counts_ground = counts});
+    EXPECT_TRUE(made);
+    return *std::move(made);
+  };
+  PathFinder free = make(false), counted = make(true);
+  int lacked = 0, found = 0;
+  for (uint64_t n = 0; n < 60; ++n) {
+    const Place from = maze().random_place(0, 5, 2 * n), to = maze().random_place(0, 5, 2 * n + 1);
+    Path all, path;
+    free.find(from, to, all);
+    // Each budget is asked of the same finder, so what it has made is forgotten in between.
+    for (const uint64_t bytes : {uint64_t{20} << 10, uint64_t{200} << 10, uint64_t{64} << 20}) {
+      counted.find(from, to, path, {UINT64_MAX, nullptr, bytes});
+      if (path.end == PathEnd::kBudgetExhausted) {
+        EXPECT_EQ(path.spent, SpentBudget::kMemory);
+        EXPECT_LT(bytes, uint64_t{64} << 20);
+        ++lacked;
+        continue;
+      }
+      EXPECT_EQ(path.end, all.end);
+      if (bytes == uint64_t{64} << 20) {
+        EXPECT_EQ(path.length, all.length);
+        ++found;
+      } else {  // Over points, which takes less memory, it may be a little longer.
+        EXPECT_LE(path.length, all.length * 1.05 + 0.01);
+      }
+    }
+  }
+  EXPECT_EQ(found, 60);
+  EXPECT_GT(lacked, 30);
+}
+
 TEST(SearchMemory, ACrowdRefusesLessThanOneMebibyteAndCountsWhatItLacked) {
   auto refused = Crowd::create(maze(), {.search_bytes = 1000});
   ASSERT_FALSE(refused);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -46,12 +47,18 @@ void add_summary(const PathSummary& summary, PathSpace space, Json& json) {
 }
 
 // What is printed of a path that was found in so many seconds.
+uint64_t search_bytes(const PathOptions& options) {
+  return options.memory ? std::min(options.memory.search(), options.search_bytes)
+                        : options.search_bytes;
+}
+
 PathRun run_of(const PathOptions& options, const Vec3d& goal, double seconds) {
   return {.world = options.world,
           .avatar_class = options.avatar_class,
           .goal = goal,
           .seconds = seconds,
-          .search_bytes = options.search_bytes};
+          .search_bytes = search_bytes(options),
+          .memory_option = options.memory ? "--memory" : "--search-memory"};
 }
 
 template <class Find>
@@ -108,16 +115,25 @@ int find(Session& session, const PathStage& stage) {
   const PathOptions& options = stage.options;
   const PathSpace space = stage.space;
   const bool on_ground = space == PathSpace::kGround;
+  if (options.memory && !on_ground) {
+    return fail({Errc::kBadConfig,
+                 fmt::format("--memory bounds paths on level ground alone; add --on-foot for class "
+                             "{}, or leave it out",
+                             options.avatar_class)});
+  }
   if (on_ground) {
-    // Data that is made on demand takes a damaged zone for empty: check all first.
-    if (auto ok = world.check_ground(); !ok) return fail(ok.error());
+    // Data that is made on demand takes a damaged zone for empty: check all first. Where memory is
+    // bounded, those that the search came to are known in the end.
+    if (!options.memory) {
+      if (auto ok = world.check_ground(); !ok) return fail(ok.error());
+    }
     for (const auto& [at, option] :
          {std::pair{&options.from, "--from"}, std::pair{&options.to, "--to"}}) {
       if (auto place = place_of(stage, *at, option); !place) return fail(place.error());
     }
   }
   Edits edits;
-  const bool on_demand = on_ground && options.is_live();
+  const bool on_demand = on_ground && (options.is_live() || options.memory);
   auto finder =
       PathFinder::create(world,
                          {.avatar_class = stage.avatar_class,
@@ -125,6 +141,7 @@ int find(Session& session, const PathStage& stage) {
                           .overlay = false,  // One query does not repay its time.
                           .workers = options.threads,
                           .speedup = on_demand ? PathSpeedup::kOnDemand : PathSpeedup::kNone,
+                          .counts_ground = static_cast<bool>(options.memory),
                           .space = space,
                           .edits = edits},
                          session.context);
@@ -155,10 +172,16 @@ int find(Session& session, const PathStage& stage) {
                   .tolerance = options.tolerance,
                   .spacing = options.spacing,
                   .nearest = true,
-                  .budget = {UINT64_MAX, &session.context.cancel, options.search_bytes}},
+                  .budget = {UINT64_MAX, &session.context.cancel, search_bytes(options)}},
                  found);
   });
   if (found.spent == SpentBudget::kCancelled) return fail({Errc::kCancelled, "path: interrupted"});
+  if (options.memory) {
+    if (auto ok = world.check_touched(); !ok) return fail(ok.error());
+    if (auto ok = options.memory.check("the path was searched", "give more"); !ok) {
+      return fail(ok.error());
+    }
+  }
   const PathRun run = run_of(options, feet_of(*to), seconds);
   Json json = path_json(run, found);
   std::string text = path_text(run, found);
@@ -172,7 +195,8 @@ int find(Session& session, const PathStage& stage) {
 }
 
 int path(Session& session, const PathOptions& options) {
-  const Result<World> world = World::open(options.world);
+  const Result<World> world =
+      World::open(options.world, {.resident_bytes = options.memory.zones()});
   if (!world) return fail(world.error());
   const Result<int32_t> avatar_class = class_named(*world, options.avatar_class);
   if (!avatar_class) return fail(avatar_class.error());

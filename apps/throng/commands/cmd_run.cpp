@@ -9,6 +9,7 @@
 
 #include "command.h"
 #include "input_file.h"
+#include "memory_bound.h"
 #include "number_checks.h"
 #include "run/avatar_group.h"
 #include "run/caacd_options.h"
@@ -35,6 +36,8 @@ struct RunOptions {
   uint64_t check_every = 0;
   WanderConfig config;
   CrowdRun crowd;
+  std::vector<double> part;  // --part: x0, z0, x1, z1
+  MemoryBound memory;
   bool wander = false;       // without goals
   bool full_speed = false;   // on stairs and slopes, too
   bool ignore_jams = false;  // no other routes around them
@@ -64,6 +67,12 @@ Result<void> read_set_changes(const std::vector<std::string>& texts, CrowdRun& r
   return {};
 }
 
+Result<void> check_memory(const RunOptions& options, const std::string& when) {
+  return options.memory.check(when, options.part.empty()
+                                        ? "give more, or --part for a district of the world"
+                                        : "give more, or a smaller --part");
+}
+
 int run_with_goals(Session& session, const World& world, RunOptions& options, RunTimes& times) {
   CrowdRun& run = options.crowd;
   run.world_name = options.world;
@@ -75,6 +84,10 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
   run.config.workers = options.config.workers;
   run.config.slow_on_slopes = !options.full_speed;
   run.config.avoid_jams = !options.ignore_jams;
+  run.part = options.part;
+  if (options.memory) {
+    run.config.search_bytes = std::min(run.config.search_bytes, options.memory.search());
+  }
   if (options.pushing) run.config.tuning.let_push();
   if (auto ok = read_curves(options.curves, run.config.model, run.config.tuning); !ok) {
     return fail(ok.error());
@@ -87,6 +100,9 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
   auto crowd =
       times.measure("prepare", [&] { return GoalCrowd::create(world, run, session.context); });
   if (!crowd) return fail(crowd.error());
+  if (auto ok = check_memory(options, "the crowd and its paths were made"); !ok) {
+    return fail(ok.error());
+  }
   Sinks sinks(options.sinks);
   if (auto ok = sinks.open(world, {.world = options.world,
                                    .dt = run.config.dt,
@@ -95,24 +111,33 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
                                    .leans = crowd->crowd().may_lean()});
       !ok)
     return fail(ok.error());
-  const auto shown = [&](uint64_t step) { return sinks.add(step, crowd->crowd()); };
+  const auto shown = [&](uint64_t step) {
+    if (auto ok = check_memory(options, fmt::format("step {} was made", step)); !ok) return ok;
+    return sinks.add(step, crowd->crowd());
+  };
   return run_crowd(session, run, *crowd, times, shown, [&] { return sinks.finish(); });
 }
 
 // Fails if an option stands beside a scenario that the file has a key for, or scenarios never obey.
 Result<void> check_scenario(const CLI::App& command, const std::string& file) {
-  constexpr std::pair<const char*, const char*> kKeys[] = {
-      {"--avatars", "count of a [[source]]"},  {"--dt", "dt"},
-      {"--class", "class of a [[profile]]"},   {"--speed", "speed of a [[profile]]"},
-      {"--radius", "radius of a [[profile]]"}, {"--goals", "stages of a [[journey]]"},
-      {"--also", "another [[profile]]"},       {"--labels", "paths = \"labels\""},
-      {"--zones", "paths = \"zones\""},        {"--search-memory", "search_memory"}};
+  constexpr std::pair<const char*, const char*> kKeys[] = {{"--avatars", "count of a [[source]]"},
+                                                           {"--dt", "dt"},
+                                                           {"--class", "class of a [[profile]]"},
+                                                           {"--speed", "speed of a [[profile]]"},
+                                                           {"--radius", "radius of a [[profile]]"},
+                                                           {"--goals", "stages of a [[journey]]"},
+                                                           {"--also", "another [[profile]]"},
+                                                           {"--labels", "paths = \"labels\""},
+                                                           {"--zones", "paths = \"zones\""},
+                                                           {"--search-memory", "search_memory"},
+                                                           {"--part", "part"}};
   for (const auto& [name, key] : kKeys) {
     if (command.count(name) == 0) continue;
     return Error{Errc::kBadConfig,
                  fmt::format("{} goes with a world; in {} write {}", name, file, key)};
   }
-  for (const char* name : {"--wander", "--near", "--set", "--order", "--axes", "--set-at"}) {
+  for (const char* name :
+       {"--wander", "--near", "--set", "--order", "--axes", "--set-at", "--memory"}) {
     if (command.count(name) == 0) continue;
     return Error{Errc::kBadConfig,
                  fmt::format("{} goes with a world, and no scenario can have it; leave it out for "
@@ -145,9 +170,9 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
 
 // Fails if an option of avatars with goals stands beside --wander.
 Result<void> check_wander(const CLI::App& command, const char* remedy = "leave out --wander") {
-  for (const char* name :
-       {"--goals", "--near", "--radius", "--labels", "--zones", "--search-memory", "--model",
-        "--set", "--order", "--axes", "--set-at", "--full-speed", "--ignore-jams", "--pushing"}) {
+  for (const char* name : {"--goals", "--near", "--radius", "--labels", "--zones",
+                           "--search-memory", "--model", "--memory", "--set", "--order", "--axes",
+                           "--set-at", "--full-speed", "--ignore-jams", "--pushing"}) {
     if (command.count(name) == 0) continue;
     return Error{Errc::kBadConfig, fmt::format("{} is for avatars with goals; {}", name, remedy)};
   }
@@ -159,6 +184,7 @@ WanderRun wander_run(const RunOptions& options, std::vector<AvatarGroup> also) {
           .class_name = options.class_name,
           .also = std::move(also),
           .config = options.config,
+          .part = options.part,
           .steps = options.steps,
           .check_every = options.check_every,
           .sinks = options.sinks};
@@ -175,6 +201,9 @@ int run_slices(Session& session, const CLI::App& command, RunOptions& options) {
   if (auto fits = check_wander(command, "on slices there are none, leave it out"); !fits) {
     return fail(fits.error());
   }
+  if (!options.part.empty()) {
+    return fail({Errc::kBadConfig, "--part is for worlds; on slices leave it out"});
+  }
   const auto also = read_groups(options.also);
   if (!also) return fail(also.error());
   if (options.check_every == 0) options.check_every = std::max<uint64_t>(1, options.steps / 10);
@@ -183,7 +212,10 @@ int run_slices(Session& session, const CLI::App& command, RunOptions& options) {
 
 int run(Session& session, RunOptions& options) {
   RunTimes times;
-  const Result<World> world = times.measure("open", [&] { return World::open(options.world); });
+  WorldConfig opened{.resident_bytes = options.memory.zones()};
+  if (!options.part.empty()) opened.part = box_of_part(options.part);
+  const Result<World> world =
+      times.measure("open", [&] { return World::open(options.world, opened); });
   if (!world) return fail(world.error());
   const Result<int32_t> avatar_class = pick_class(*world, options.class_name);
   if (!avatar_class) return fail(avatar_class.error());
@@ -241,6 +273,9 @@ void add_run(CLI::App& parser, Session& session) {
   add_speedup(*command, "--zones", PathSpeedup::kZones, speedup, "Paths by zones: for large worlds")
       ->excludes(labels);
   add_search_memory(*command, options->crowd.config.search_bytes);
+  add_memory(*command, options->memory,
+             "Max memory of the run; it ends where it would need more [MiB]");
+  add_part(*command, options->part);
   add_model(*command, options->crowd.config.model);
   add_curve_options(*command, options->curves);
   command

@@ -44,7 +44,9 @@ Result<Place> place_of(const PathStage& stage, const std::vector<double>& at, co
   if (!position) return position.error();
   const Place place = stage.world.find_place(stage.avatar_class, *position, options.tolerance);
   if (!place) {
-    if (auto ok = stage.world.check_ground(); !ok) return ok.error();  // Its zone may be damaged.
+    // Its zone may be damaged.
+    const auto ok = options.memory ? stage.world.check_touched() : stage.world.check_ground();
+    if (!ok) return ok.error();
     return bad_end(options, *position, option,
                    fmt::format("is no place where class {} can stand, within {} m up or down; see "
                                "`throng picture`, or give a larger --tolerance{}",

@@ -64,6 +64,9 @@ void add_path_options(CLI::App& command, PathOptions& options) {
       ->check(between(0.0, 1000.0))
       ->capture_default_str();
   add_search_memory(command, options.search_bytes);
+  add_memory(command, options.memory,
+             "Max memory of the command, on level ground: only what the search comes to is read "
+             "[MiB]");
   add_threads(command, options.threads,
               "Threads for what is made before the search, 0 for all cores")
       ->capture_default_str();
@@ -82,6 +85,11 @@ Result<void> check_options(const PathOptions& options) {
     return Error{Errc::kBadConfig,
                  "--off-mesh-link, --area, --area-cost and --slope-cost change the ground; paths "
                  "through the air (--fly) take only --block"};
+  }
+  if (options.memory && (options.fly || options.nodes)) {
+    return Error{Errc::kBadConfig,
+                 "--memory bounds paths on level ground alone; leave out --fly and --nodes, or "
+                 "--memory"};
   }
   return {};
 }

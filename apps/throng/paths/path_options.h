@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "memory_bound.h"
 #include "throng/path.h"
 #include "throng/world.h"
 
@@ -29,6 +30,7 @@ struct PathOptions {
   std::vector<double> area_costs;      // a kind and its cost
   double slope_cost = 0;
   uint64_t search_bytes = SearchBudget::kDefaultBytes;
+  MemoryBound memory = {};
 
   /// The first option that changes the ground, but not the air; or nothing.
   [[nodiscard]] std::string ground_option() const {

@@ -180,8 +180,8 @@ std::string path_text(const PathRun& run, const Path& path) {
   } else {
     text = fmt::format("no path for {}: {}\n", run.avatar_class, path_word(path.end));
     if (path.spent == SpentBudget::kMemory) {
-      text += fmt::format("  the search needs more than {} MiB of memory; raise --search-memory\n",
-                          run.search_bytes >> 20);
+      text += fmt::format("  the search needs more than {} MiB of memory; raise {}\n",
+                          run.search_bytes >> 20, run.memory_option);
     }
     if (path.end != PathEnd::kUnreachable || path.points.empty()) return text;
     const Vec3d& nearest = path.points.back().position;

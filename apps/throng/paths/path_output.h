@@ -13,9 +13,10 @@ namespace throng::app {
 /// What was asked for, beside the path that was found.
 struct PathRun {
   std::string world, avatar_class;
-  Vec3d goal;                 ///< Feet. [m]
-  double seconds = 0;         ///< That the search took.
-  uint64_t search_bytes = 0;  ///< Limit of its memory.
+  Vec3d goal;                                     ///< Feet. [m]
+  double seconds = 0;                             ///< That the search took.
+  uint64_t search_bytes = 0;                      ///< Limit of its memory.
+  const char* memory_option = "--search-memory";  ///< Raises it.
 };
 
 /// A path of any finder as JSON, and as text: a line of sums and a line a point.

@@ -198,6 +198,24 @@ Result<World> own_world(const RecordingInfo& info) {
   return open_world(*scenario, context);
 }
 
+// "part" of the settings: a district of the world. Those of scenarios are in their text.
+Result<WorldConfig> world_config(const RecordingInfo& info) {
+  const Json settings = Json::parse(info.settings, nullptr, /*allow_exceptions=*/false);
+  if (!settings.is_object()) return WorldConfig{};
+  if (info.model == kScenarioModel) {
+    const auto scenario = recorded_scenario(settings);
+    if (!scenario) return scenario.error();
+    return WorldConfig{.part = scenario->part};
+  }
+  if (!settings.contains("part")) return WorldConfig{};
+  auto ok = need(settings, {"part"}, [](const Json& j) {
+    return j.is_array() && j.size() == 4 &&
+           std::ranges::all_of(j, [](const Json& number) { return number.is_number(); });
+  });
+  if (!ok) return ok.error();
+  return WorldConfig{.part = box_of_part(settings.at("part").get<std::vector<double>>())};
+}
+
 struct Model {
   const char* name;
   Result<Rerun> (*rerun)(const Json& settings, const World& world, int32_t workers);
@@ -217,6 +235,7 @@ Json wanderers_settings(const WanderRun& run) {
                    {"speed", run.config.speed},
                    {"seed", run.config.seed}};
   if (!run.also.empty()) settings["also"] = json_of(run.also);
+  if (!run.part.empty()) settings["part"] = run.part;
   return settings;
 }
 
@@ -242,6 +261,7 @@ Json crowd_settings(const CrowdRun& run) {
                    {"acceleration", run.config.tuning.acceleration},
                    {"set", Json::array({curves.mass, curves.max_speed, curves.max_force})},
                    {"by_state", curves.by_state}};
+  if (!run.part.empty()) settings["part"] = run.part;
   const FlyerAxes axes = run.config.tuning.flyer_axes;
   if (axes != FlyerAxes::kOurs) settings["axes"] = word_for(axes);
   for (const auto& [step, avatar, set] : run.set_changes) {
@@ -271,7 +291,10 @@ Result<World> world_of(const RecordingInfo& info, const std::string& folder) {
     if (!world || *world) return world;
   }
   const std::string& name = folder.empty() ? info.world : folder;
-  Result<World> world = World::open(name);
+  const Result<WorldConfig> opened = world_config(info);
+  if (!opened) return opened.error();
+  Result<World> world = World::open(name, *opened);
+  if (!world && world.error().code == Errc::kBadConfig) return world;
   if (!world) {
     return Error{
         Errc::kBadFile,

@@ -20,6 +20,7 @@ struct WanderRun {
   std::string class_name;
   std::vector<AvatarGroup> also;
   WanderConfig config;
+  std::vector<double> part = {};  // x0, z0, x1, z1 of a district; empty: the whole world [m]
   uint64_t steps = 100;
   uint64_t check_every = 10;  // steps [> 0]
   SinkOptions sinks;

@@ -328,6 +328,7 @@ void GroundView::drop_tile(int64_t key) {
     if (levels_[i] == nullptr) continue;
     drop(*levels_[i]);
     levels_[i].reset();
+    --made_levels_;
   }
 }
 
@@ -385,9 +386,41 @@ const ViewLevel* GroundView::level(uint32_t index) {
   std::unique_ptr<ViewLevel>& level = levels_[index];
   if (level == nullptr) {
     level = std::make_unique<ViewLevel>();
+    ++made_levels_;
     make(index, *level);
   }
   return level.get();
+}
+
+// The vectors hold up to twice what they need, and the old array beside the new one as they grow.
+uint64_t GroundView::made_bytes() const {
+  constexpr uint64_t kGrowth = 3, kInMap = 64;
+  return made_levels_ * (sizeof(ViewLevel) + 16) +
+         kGrowth *
+             (mesh_.rects.size() * sizeof(MeshRect) + rect_states_.size() * sizeof(RectState) +
+              mesh_.portals.size() * sizeof(MeshPortal) +
+              mesh_.corners.size() * sizeof(MeshCorner) +
+              mesh_.corner_rects.size() * sizeof(uint32_t) +
+              corner_keys_.size() * sizeof(CornerKey)) +
+         corner_numbers_.size() * kInMap;
+}
+
+void GroundView::trim(uint64_t max_bytes) {
+  if (counted_bytes() <= max_bytes) return;
+  for (std::unique_ptr<ViewLevel>& level : levels_) level.reset();
+  made_levels_ = 0;
+  mesh_ = {};
+  mesh_.avatar_class = config_.avatar_class;
+  mesh_.step = step_;
+  mesh_.source = this;
+  rect_states_ = {};
+  rect_blocks_ = {};
+  portal_blocks_ = {};
+  corner_numbers_ = {};
+  corner_keys_ = {};
+  free_corners_ = {};
+  max_corners_ = 0;
+  ++version_;
 }
 
 void GroundView::make(uint32_t index, ViewLevel& level) {

@@ -73,6 +73,12 @@ class GroundView final : public PortalSource {
   [[nodiscard]] uint64_t version() const { return version_; }
   /// Without legal cells if its zone cannot be used.
   const ViewLevel* level(uint32_t index);
+  /// Of the ground that was made, if PathConfig::counts_ground; else 0. [bytes]
+  [[nodiscard]] uint64_t counted_bytes() const override {
+    return config_.counts_ground ? made_bytes() : 0;
+  }
+  /// Forgets all ground that was made if that takes more. It is made again when it is needed.
+  void trim(uint64_t max_bytes);
   /// The rectangles of the levels that were made, of one area kind and one class of inclination
   /// each. Their numbers are valid until the next change.
   [[nodiscard]] const PathMesh& rects() const { return mesh_; }
@@ -206,6 +212,7 @@ class GroundView final : public PortalSource {
     return (int64_t{z} << 32) | static_cast<uint32_t>(x);
   }
   void make(uint32_t index, ViewLevel& level);
+  [[nodiscard]] uint64_t made_bytes() const;
   void block_cells(ViewLevel& level) const;
   [[nodiscard]] bool differs_on(int32_t tile_x, int32_t tile_z, const DensityCells* before) const;
   void find_plain();
@@ -242,6 +249,7 @@ class GroundView final : public PortalSource {
   uint64_t version_ = 0;
   size_t active_links_ = 0;
   std::vector<std::unique_ptr<ViewLevel>> levels_;  // of the world; null: not made yet
+  uint64_t made_levels_ = 0;                        // since all were forgotten
 
   PathMesh mesh_;
   std::vector<RectState> rect_states_;  // by rectangle

@@ -284,7 +284,9 @@ void PointSearch::give_back() {
 PointSearch::State PointSearch::advance(GroundView& mesh, uint64_t max_nodes, uint64_t max_bytes) {
   for (uint64_t n = 0; n < max_nodes;) {
     if (open_.empty()) return State::kNone;
-    if (nodes_.used_bytes() + open_.used_bytes() > max_bytes) return State::kFull;
+    if (mesh.counted_bytes() + nodes_.used_bytes() + open_.used_bytes() > max_bytes) {
+      return State::kFull;
+    }
     const Open next = open_.pop();
     if (next.bound > max_cost_) return State::kNone;  // All others cost as much or more.
     const uint32_t index = next.node;

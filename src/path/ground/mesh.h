@@ -75,6 +75,8 @@ class PortalSource {
  public:
   /// Of a rectangle. Rectangles may move, their numbers stay. Valid until the next call.
   virtual std::span<const MeshPortal> portals_of(uint32_t rect) = 0;
+  /// What a search has to count as memory of its own. [bytes]
+  [[nodiscard]] virtual uint64_t counted_bytes() const = 0;
 
  protected:
   PortalSource() = default;

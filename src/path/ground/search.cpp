@@ -93,7 +93,9 @@ SearchResult PathSearch::run(const SearchBudget& budget) {
 // The vectors hold up to twice what they need, and the old array beside the new one as they grow.
 uint64_t PathSearch::used_bytes() const {
   constexpr uint64_t kGrowth = 3;
-  return roots_.size() * sizeof(Root) + nodes_.size() * sizeof(Node) + open_.used_bytes() +
+  const uint64_t ground =
+      mesh_ == nullptr || mesh_->source == nullptr ? 0 : mesh_->source->counted_bytes();
+  return ground + roots_.size() * sizeof(Root) + nodes_.size() * sizeof(Node) + open_.used_bytes() +
          kGrowth * free_.size() * sizeof(uint32_t);
 }
 

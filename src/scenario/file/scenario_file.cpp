@@ -108,14 +108,21 @@ class File {
 
 void File::read_top() {
   Reader r(name_, root_, "scenario");
-  r.only({"world", "model", "builtin", "plane", "cell", "class", "seconds", "dt", "seed", "paths",
-          "ways", "search_memory", "steering", "slow_on_slopes", "avoid_jams", "pushing",
+  r.only({"world", "part", "model", "builtin", "plane", "cell", "class", "seconds", "dt", "seed",
+          "paths", "ways", "search_memory", "steering", "slow_on_slopes", "avoid_jams", "pushing",
           "acceleration", "area", "density", "profile", "queue", "link", "journey", "source",
           "obstacle", "attractor",
           // The expected results of the run, read by load_trial.
           "trial", "measure"});
   r.text("world", out_.world);
   if (!out_.world.empty()) out_.world = path(out_.world);
+  if (const ConfigNode* part = r.find("part"); part != nullptr && out_.world.empty()) {
+    r.fail(*part, "part is a district of a baked world; name its folder with world");
+  } else if (std::array<double, 4> v{}; r.numbers("part", v.data(), v.size())) {
+    const auto [x0, x1] = std::minmax(v[0], v[2]);
+    const auto [z0, z1] = std::minmax(v[1], v[3]);
+    out_.part = Box3d{.min = {x0, 0, z0}, .max = {x1, 0, z1}};
+  }
   if (const ConfigNode* model = r.find("model"); model != nullptr) {
     std::vector<const ConfigNode*> files = {model};
     if (model->kind == Kind::kArray) {

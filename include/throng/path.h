@@ -424,6 +424,14 @@ class THRONG_API PathFinder {
   std::unique_ptr<State> state_;
 };
 
+/// What a class may rely on all along a path over nodes: the worst of what they promise at its
+/// places. Every class in `classes` may stand everywhere on it. On links between places that do not
+/// touch, and on off-mesh links, which are not tested, only the class's own body counts, and the
+/// width is 0. Run-time obstacles do not count. Nothing if the path has no places on nodes. Time:
+/// linear in the segments times the nodes and cells of their patches.
+[[nodiscard]] THRONG_API NodeClearance clearance_along(const Nodes& nodes, int32_t avatar_class,
+                                                       const Path& path);
+
 // ----
 // Paths through the air of a baked world, from the ground and back to it.
 

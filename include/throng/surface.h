@@ -168,6 +168,18 @@ struct NodePlace {
   [[nodiscard]] explicit operator bool() const { return node1 != 0; }
 };
 
+/// What a class may rely on at a place, or all along a path, from what nodes promise: always on the
+/// safe side. By default nothing. Source: [PACS00] 1.2.3.
+struct NodeClearance {
+  uint16_t classes = 0;      ///< Bit per class: its body may stand there.
+  double inclination = 180;  ///< The ground is no steeper. [degrees]
+  /// Free height along the ground's normal, above what any class steps over; on level tiles
+  /// straight up. [m]
+  double height = 0;
+  double headroom = 0;  ///< The same straight up; 0 where it is too steep to walk. [m]
+  double width = 0;     ///< The class may stand wherever ground is no farther off. [m]
+};
+
 /// The nodes of a world. Cheap to copy (shared, immutable); safe to read from many threads.
 class THRONG_API Nodes {
  public:
@@ -229,6 +241,16 @@ class THRONG_API Nodes {
   /// The n-th of a reproducible stream of places of a class, about uniform over its area. Nowhere
   /// only if the class has no node.
   [[nodiscard]] NodePlace random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const;
+
+  /// What the nodes around a place promise a class. Nothing if the class may not stand there. The
+  /// largest height and width that can be promised are the last edges of NodeBins, a width within
+  /// one patch also the distance to its borders. Time: linear in the nodes and cells of the patch.
+  [[nodiscard]] NodeClearance clearance(int32_t avatar_class, const NodePlace& place) const;
+  /// Do the nodes promise that a body fits at a place, whose size need not be that of a class? Its
+  /// radius, height, step height and slopes count. True if it lies inside the body of a class that
+  /// may stand there, or inside those around the place and the headroom above them. False: not
+  /// promised; the body may still fit. Time: linear in the nodes and cells of the patch.
+  [[nodiscard]] bool fits(const NodePlace& place, const AvatarClass& body) const;
 
   /// The connected components of a class, largest first. If given, `of_node` gets the component of
   /// each node, UINT32_MAX for nodes where the class cannot stand. Linear in nodes and arcs.

@@ -122,6 +122,35 @@ class ProgramPath(ProgramCase):
         self.assert_refused(self.run_throng(*verify, *box), "--block", "--paths")
         self.assert_refused(self.run_throng(*verify, "--paths", *box), "--block", "--nodes")
 
+    def test_nodes_promise_how_tall_and_how_wide_a_body_passes(self):
+        done = self.run_throng("bake", "builtin:garage", "--cell", "0.2", "--nodes", "-o", "n.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+        def query(*options):
+            done = self.run_throng("query", "n.throng", "--nodes", "--at", "14,0,8", *options, "--json")
+            return done.returncode, json.loads(done.stdout)
+
+        code, here = query()
+        self.assertEqual(code, 0)
+        self.assertEqual(here["clearance"]["classes"], ["adult", "child", "wheelchair"])  # Two of three metres are free.
+        self.assertGreaterEqual(here["clearance"]["headroom"], 1.75)
+        self.assertGreater(here["clearance"]["width"], 0.3)
+        for body, fits in (("0.1,1", True), ("0.3,1.75", True), ("0.3,2.9", False), ("5,1", False), ("0.1,1,0.4,1", False)):
+            code, answer = query("--body", body)
+            self.assertEqual((code, answer["body"]["fits"]), (0 if fits else 1, fits), body)
+        nowhere = self.run_throng("query", "n.throng", "--nodes", "--at", "14,1.5,8", "--radius", "0.2", "--json")
+        self.assertEqual((nowhere.returncode, json.loads(nowhere.stdout)["place"]), (1, None))
+        query_here = ("query", "n.throng", "--at", "14,0,8")
+        self.assert_refused(self.run_throng(*query_here, "--body", "0.3,1"), "--body", "--nodes")
+        self.assert_refused(self.run_throng(*query_here, "--nodes", "--random", "2"), "--nodes", "--random")
+        self.assert_refused(self.run_throng(*query_here, "--nodes", "--body", "0,1"), "--body", "radius")
+        self.assert_refused(self.run_throng("query", self.world, "--at", "14,0,8", "--nodes"), "no nodes", "--nodes")
+        path = ("path", "n.throng", "--nodes", "--from", "14,0,8", "--to", "20,0,8")
+        along = json.loads(self.run_throng(*path, "--json").stdout)["clearance"]
+        self.assertIn("adult", along["classes"])
+        self.assertLessEqual(along["width"], here["clearance"]["width"])
+        self.assertIn("all along the ground is at most", self.run_throng(*path).stdout)
+
     def test_links_and_areas_hold_over_nodes_too(self):
         (self.path / "classes.toml").write_text(
             '[[class]]\nname = "adult"\n[[class]]\nname = "climber"\nclimb_slope = 90\n')

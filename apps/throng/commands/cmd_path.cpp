@@ -12,10 +12,12 @@
 
 #include "command.h"
 #include "in_world.h"
+#include "paths/clearance_output.h"
 #include "paths/path_ground.h"
 #include "paths/path_options.h"
 #include "paths/path_output.h"
 #include "throng/path.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 
 // throng path: the shortest path of an avatar class between two places, on foot, over nodes or
@@ -110,6 +112,16 @@ void add_offset(const End& end, const char* name, Json& json, std::string& text)
   text += fmt::format("  --{} is {:.3f} m beside, at ({})\n", name, offset, where(feet));
 }
 
+// What nodes promise all along a path.
+void add_clearance(const PathStage& stage, const Nodes& nodes, const Path& found, Json& json,
+                   std::string& text) {
+  if (found.node_places.empty()) return;
+  const std::vector<AvatarClass> classes = stage.world.summary().classes;
+  const NodeClearance clearance = clearance_along(nodes, stage.avatar_class, found);
+  json["clearance"] = clearance_json(clearance, classes);
+  text += clearance_text(clearance, classes, "all along");
+}
+
 int find(Session& session, const PathStage& stage) {
   const World& world = stage.world;
   const PathOptions& options = stage.options;
@@ -132,6 +144,12 @@ int find(Session& session, const PathStage& stage) {
       if (auto place = place_of(stage, *at, option); !place) return fail(place.error());
     }
   }
+  Nodes nodes;
+  if (space == PathSpace::kNodes) {
+    const Result<Nodes> opened = Nodes::open(world);
+    if (!opened) return fail(opened.error());
+    nodes = *opened;
+  }
   Edits edits;
   const bool on_demand = on_ground && (options.is_live() || options.memory);
   auto finder =
@@ -143,6 +161,7 @@ int find(Session& session, const PathStage& stage) {
                           .speedup = on_demand ? PathSpeedup::kOnDemand : PathSpeedup::kNone,
                           .counts_ground = static_cast<bool>(options.memory),
                           .space = space,
+                          .nodes = nodes,
                           .edits = edits},
                          session.context);
   if (!finder) return fail(finder.error());
@@ -189,6 +208,7 @@ int find(Session& session, const PathStage& stage) {
   if (space == PathSpace::kNodes) {
     add_offset(*from, "from", json, text);
     add_offset(*to, "to", json, text);
+    add_clearance(stage, nodes, found, json, text);
   }
   print_result(session, json, text);
   return found.end == PathEnd::kReached ? kDone : kAnswerIsNo;

@@ -11,10 +11,13 @@
 #include "command.h"
 #include "in_world.h"
 #include "number_checks.h"
+#include "paths/clearance_output.h"
+#include "throng/path.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 
 // throng query: the nearest place of a class to a position, its wall, a ray from it, places near
-// it.
+// it; over nodes, how steep it is there, and how tall and how wide a body passes.
 namespace throng::app {
 namespace {
 
@@ -26,6 +29,8 @@ struct QueryOptions {
   double radius = 5;
   uint64_t random = 0;
   uint64_t seed = 1;
+  bool nodes = false;
+  std::vector<double> body;  // radius, height, and if given step height and steepest slope
 };
 
 void describe_wall(GroundQuery& query, const Place& place, double radius, Json& json,
@@ -60,11 +65,77 @@ void describe_ray(GroundQuery& query, const Place& place, const std::vector<doub
   text += "\n";
 }
 
+// The body of an option. Fails with a sentence if no class could have it.
+Result<AvatarClass> body_of(const std::vector<double>& given) {
+  AvatarClass body{.name = "body", .height = given[1], .radius = given[0]};
+  if (given.size() > 2) body.step_height = given[2];
+  if (given.size() > 3) body.max_slope = given[3];
+  if (auto ok = check_classes({&body, 1}); !ok) {
+    return Error{ok.error().code, "--body: " + ok.error().message};
+  }
+  return body;
+}
+
+// Nothing but what nodes promise.
+int query_nodes(Session& session, const QueryOptions& options, const World& world,
+                int32_t avatar_class) {
+  const Result<Nodes> nodes = Nodes::open(world);
+  if (!nodes) return fail(nodes.error());
+  if (auto ok = nodes->check_all(); !ok) return fail(ok.error());
+  const Result<Vec3d> at = position_in(world, options.world, "--at", options.at);
+  if (!at) return fail(at.error());
+  AvatarClass body;
+  if (!options.body.empty()) {
+    const Result<AvatarClass> given = body_of(options.body);
+    if (!given) return fail(given.error());
+    body = *given;
+  }
+  Result<PathFinder> finder = PathFinder::create(
+      world,
+      {.avatar_class = avatar_class, .overlay = false, .space = PathSpace::kNodes, .nodes = *nodes},
+      session.context);
+  if (!finder) return fail(finder.error());
+  const NodePlace place = finder->find_node_place(*at, options.radius);
+  Json json = {{"world", options.world}, {"class", options.avatar_class}};
+  if (!place) {
+    json["place"] = nullptr;
+    print_result(session, json,
+                 fmt::format("no place on nodes for {} within {} m of ({})\n", options.avatar_class,
+                             options.radius, where(*at)));
+    return kAnswerIsNo;
+  }
+  const std::vector<AvatarClass> classes = world.summary().classes;
+  const NodeClearance clearance = nodes->clearance(avatar_class, place);
+  json["place"] = numbers(place.feet);
+  json["distance"] = length(place.feet - *at);
+  json["normal"] = numbers(place.normal);
+  json["node"] = place.node1 - 1;
+  json["clearance"] = clearance_json(clearance, classes);
+  std::string text =
+      fmt::format("{} can stand at ({}), {:.3f} m away, on node {}\n", options.avatar_class,
+                  where(place.feet), length(place.feet - *at), place.node1 - 1) +
+      clearance_text(clearance, classes, "here");
+  bool fits = true;
+  if (!options.body.empty()) {
+    fits = nodes->fits(place, body);
+    json["body"] = {{"radius", body.radius},
+                    {"height", body.height},
+                    {"step_height", body.step_height},
+                    {"max_slope", body.max_slope},
+                    {"fits", fits}};
+    text += fmt::format("  a body with a radius of {:g} m, {:g} m tall: {}\n", body.radius,
+                        body.height, fits ? "fits" : "nothing promises that it fits");
+  }
+  print_result(session, json, text);
+  return fits ? kDone : kAnswerIsNo;
+}
+
 int query_place(Session& session, const QueryOptions& options) {
   const Result<World> world = World::open(options.world);
   if (!world) return fail(world.error());
   const Result<int32_t> avatar_class = class_named(*world, options.avatar_class);
   if (!avatar_class) return fail(avatar_class.error());
+  if (options.nodes) return query_nodes(session, options, *world, *avatar_class);
   Result<GroundQuery> query = GroundQuery::create(*world, *avatar_class);
   if (!query) return fail(query.error());
   const Vec3d at{options.at[0], options.at[1], options.at[2]};
@@ -120,7 +191,9 @@ void add_query(CLI::App& parser, Session& session) {
   CLI::App* command = add_command(
       parser, session, "query", "Find the nearest place to stand, and what is around it",
       "throng bake builtin:garage -o garage.throng\n"
-      "throng query garage.throng --at 14,0,8 --toward 30,0 --random 3");
+      "throng query garage.throng --at 14,0,8 --toward 30,0 --random 3\n"
+      "throng bake builtin:garage -o garage.throng --nodes\n"
+      "throng query garage.throng --at 14,0,8 --nodes --body 0.4,1.5");
   const auto options = std::make_shared<QueryOptions>();
   command->add_option("world", options->world, "World folder")->required()->type_name("WORLD");
   command->add_option("--at", options->at, "Near where [m]")
@@ -133,13 +206,28 @@ void add_query(CLI::App& parser, Session& session) {
   command->add_option("--radius", options->radius, "How far around to look [m]")
       ->check(between(0.0, 1000.0))
       ->capture_default_str();
-  command->add_option("--toward", options->toward, "Also cast a ray by this vector [m]")
+  CLI::Option* nodes = command->add_flag(
+      "--nodes", options->nodes,
+      "Instead: what the world's nodes promise at the nearest place on any surface, how steep it "
+      "is, and how tall and how wide a body passes");
+  command
+      ->add_option("--body", options->body,
+                   "Of a world with --nodes: also whether a body of this size fits there; step "
+                   "height and steepest slope are those of an adult if left out [m, m, m, degrees]")
       ->delimiter(',')
-      ->expected(2)
-      ->type_name("DX,DZ");
-  command->add_option("--random", options->random, "Also this many random places around it")
-      ->check(between(0, 1000000))
-      ->capture_default_str();
+      ->expected(2, 4)
+      ->needs(nodes)
+      ->type_name("RADIUS,HEIGHT[,STEP[,SLOPE]]");
+  CLI::Option* toward =
+      command->add_option("--toward", options->toward, "Also cast a ray by this vector [m]")
+          ->delimiter(',')
+          ->expected(2)
+          ->type_name("DX,DZ");
+  CLI::Option* random =
+      command->add_option("--random", options->random, "Also this many random places around it")
+          ->check(between(0, 1000000))
+          ->capture_default_str();
+  nodes->excludes(toward)->excludes(random);
   command->add_option("--seed", options->seed, "Of the random places")->capture_default_str();
   command->callback([&session, options] { session.exit_code = query_place(session, *options); });
 }

@@ -205,8 +205,8 @@ class THRONG_API Edits {
   std::shared_ptr<path::EditList> state_;
 };
 
-/// Settings of a PathFinder. A speedup or a slope cost that its space does not have is refused with
-/// kBadConfig; other settings of another space are ignored.
+/// Settings of a PathFinder. A speedup or a cost (of slopes, narrow or low ground) that its space
+/// does not have is refused with kBadConfig; other settings of another space are ignored.
 struct PathConfig {
   int32_t avatar_class = 0;
   /// On the ground, cost of a metre on level tiles: 1 + slope_cost * rise. Rises are rounded up to
@@ -215,6 +215,13 @@ struct PathConfig {
   /// inclination a: 1 + slope_cost * (1 - cos a), so level ground 1, a wall 1 + slope_cost, a
   /// ceiling 1 + 2 slope_cost. Not in the air. [0 to 1000]
   double slope_cost = 0;
+  /// Over nodes: additional cost of a metre where nodes promise no more width than the body's
+  /// radius; less where they promise more, in proportion, to 0 at their largest width, the last
+  /// edge of NodeBins. Avatars then keep to wide ground. [0 to 1000]
+  double narrow_cost = 0;
+  /// Over nodes: the same for the free height, between the body's own and that of the tallest class
+  /// (the last edge of NodeBins). [0 to 1000]
+  double low_cost = 0;
   /// Over nodes, if there are 2^15 crossings or more: makes an overlay, which has the costs of
   /// crossing squares of ground, and searches long paths over it. Such a path is seldom much longer
   /// than the best. Making the overlay takes as long as a few searches of the whole world.

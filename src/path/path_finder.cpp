@@ -114,6 +114,9 @@ Result<PathFinder> PathFinder::create(const World& world, const PathConfig& conf
   s.world = world;
   s.config = config;
   s.config.space = space_of(classes[static_cast<size_t>(config.avatar_class)], config.space);
+  if (s.config.space != PathSpace::kNodes && !(config.narrow_cost == 0 && config.low_cost == 0)) {
+    return Error{Errc::kBadConfig, "path: narrow_cost and low_cost are for paths over nodes"};
+  }
   if (s.config.space == PathSpace::kAir) {
     auto made = path::FlightFinder::create(world, config, context);
     if (!made) return made.error();

@@ -150,6 +150,13 @@ class ProgramPath(ProgramCase):
         self.assertIn("adult", along["classes"])
         self.assertLessEqual(along["width"], here["clearance"]["width"])
         self.assertIn("all along the ground is at most", self.run_throng(*path).stdout)
+        plain, dear = (json.loads(self.run_throng(*path, *more, "--json").stdout) for more in ((), ("--narrow-cost", "9", "--low-cost", "9")))
+        self.assertAlmostEqual(plain["cost"], plain["length"], places=6)
+        self.assertGreater(dear["cost"], 2 * dear["length"])  # The garage has no room for giants.
+        for option in ("--narrow-cost", "--low-cost"):
+            self.assert_refused(self.run_throng(*path, option, "-1"), option)
+            on_foot = ("path", "n.throng", "--from", "14,0,8", "--to", "20,0,8", option, "1")
+            self.assert_refused(self.run_throng(*on_foot), option, "--nodes")
 
     def test_links_and_areas_hold_over_nodes_too(self):
         (self.path / "classes.toml").write_text(

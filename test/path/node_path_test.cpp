@@ -45,10 +45,18 @@ Nodes make(const Scene& scene, double cell, double size) {
   return nodes ? *nodes : Nodes{};
 }
 
-path::NodeFinder finder(const Nodes& nodes, int32_t avatar_class, double slope_cost = 0) {
+struct Costs {
+  double slope = 0, narrow = 0, low = 0;
+};
+
+path::NodeFinder finder(const Nodes& nodes, int32_t avatar_class, const Costs& costs = {}) {
   Context context;
-  auto made = path::NodeFinder::create(
-      nodes, {.avatar_class = avatar_class, .slope_cost = slope_cost}, context);
+  auto made = path::NodeFinder::create(nodes,
+                                       {.avatar_class = avatar_class,
+                                        .slope_cost = costs.slope,
+                                        .narrow_cost = costs.narrow,
+                                        .low_cost = costs.low},
+                                       context);
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
@@ -107,14 +115,15 @@ TEST(NodePath, NoPointOnASurfaceRepeatsTheOneBefore) {
 // Dijkstra's algorithm with a plain queue over the same crossings, without a bound or a goal.
 TEST(NodePath, SearchFindsTheCheapestCrossings) {
   Context context;
-  for (const double slope_cost : {0.0, 3.0}) {
-    const Nodes nodes = make(net_scene(7), 0.25, 1);
+  const Nodes nodes = make(net_scene(7), 0.25, 1);
+  for (const Costs& costs : {Costs{}, {3, 0, 0}, {0, 4, 0}, {1, 5, 7}}) {
     for (const int32_t c : {0, 4}) {
       const auto mesh = graph::NodeMesh::create(nodes, c, 1, context);
       ASSERT_TRUE(mesh);
       const path::NodeView view(*mesh);
-      const path::PieceCost piece(view, slope_cost);
-      path::NodeFinder found = finder(nodes, c, slope_cost);
+      const std::vector<double> added = path::added_costs(*mesh, costs.narrow, costs.low);
+      const path::PieceCost piece(view, costs.slope, added);
+      path::NodeFinder found = finder(nodes, c, costs);
       for (uint64_t n = 0; n < 20; ++n) {
         const NodePlace from = nodes.random_place(c, 3, 2 * n),
                         to = nodes.random_place(c, 3, 2 * n + 1);
@@ -317,7 +326,7 @@ TEST(NodePath, OffMeshLinksLeadOnlyWhereTheyAreGiven) {
 
 TEST(NodePath, SteepGroundIsAvoidedForACost) {
   const Nodes nodes = make(net_scene(8), 0.25, 0.7);
-  path::NodeFinder straight = finder(nodes, 4), level = finder(nodes, 4, 20);
+  path::NodeFinder straight = finder(nodes, 4), level = finder(nodes, 4, {.slope = 20});
   const auto rise = [](const Path& path) {
     double sum = 0;
     for (size_t i = 1; i < path.points.size(); ++i) {
@@ -341,6 +350,93 @@ TEST(NodePath, SteepGroundIsAvoidedForACost) {
   }
   EXPECT_LT(gentle, 0.9 * steep);
   EXPECT_GT(length_gentle, length_straight);
+}
+
+// Metres of a path, each times what nodes promise along it, by the public queries alone.
+TEST(NodePath, AMetreCostsWhatIsPromisedThere) {
+  const Costs costs{2, 5, 7};
+  size_t paths = 0, dearer = 0;
+  for (const char* name : {"garage", "bridge", "church"}) {
+    const Nodes nodes = make(builtin({.name = name}), 0.2, 1);
+    const NodeSummary summary = nodes.summary();
+    const NodeBins& bins = summary.bins;
+    for (const int32_t c : {0, 1}) {
+      const AvatarClass& avatar = summary.classes[static_cast<size_t>(c)];
+      path::NodeFinder found = finder(nodes, c, costs);
+      Path path;
+      for (uint64_t n = 0; n < 40; ++n) {
+        found.find(nodes.random_place(c, 13, 2 * n), nodes.random_place(c, 13, 2 * n + 1), path,
+                   1e9);
+        if (path.end != PathEnd::kReached) continue;
+        double expected = 0;
+        bool is_flat = true;
+        for (size_t i = 0; i < path.segments.size(); ++i) {
+          const double metres = length(path.node_places[i + 1].feet - path.node_places[i].feet);
+          if (path.segments[i] != SegmentKind::kWalk) {
+            expected += metres;
+            continue;
+          }
+          const NodeInfo info = nodes.node(path.node_places[i].node1 - 1);
+          is_flat = is_flat && info.kind == PatchKind::kLevelTile;
+          const double slope = bins.inclination_of(info.inclination) * 3.14159265358979 / 180;
+          const double width = std::max(bins.width_of(info.width), avatar.radius);
+          const double height = bins.height_of(info.headroom);
+          expected +=
+              metres *
+              (1 + costs.slope * (1 - std::cos(slope)) +
+               costs.narrow * (bins.width.back() - width) / (bins.width.back() - avatar.radius) +
+               costs.low * (bins.height.back() - height) / (bins.height.back() - avatar.height));
+        }
+        if (!is_flat) continue;
+        ++paths;
+        dearer += path.cost > 2 * path.length;
+        // From one block to the next of a tile it may step up or down.
+        EXPECT_NEAR(path.cost, expected, 1e-2 * expected) << name << ", class " << c << ", " << n;
+      }
+    }
+  }
+  EXPECT_GT(paths, 100u);
+  EXPECT_GT(dearer, 20u);
+}
+
+TEST(NodePath, NarrowAndLowGroundIsAvoidedForACost) {
+  const auto wall = [](Scene& scene, double z0, double z1, double bottom) {
+    scene.add_box({8, bottom, z0}, {12, 4, z1});
+  };
+  Scene narrow, low;  // A hall, and a wall across with a wide passage at its end and another one.
+  for (Scene* scene : {&narrow, &low}) {
+    scene->add_quad({0, 0, 0}, {0, 0, 24}, {20, 0, 24}, {20, 0, 0});
+    wall(*scene, 7, 11, 0);
+    wall(*scene, 14, 24, 0);
+  }
+  wall(narrow, 11, 12, 0);  // A metre is left of the nearer passage.
+  wall(narrow, 13, 14, 0);
+  wall(low, 11, 14, 1.9);
+  for (const bool is_low : {false, true}) {
+    const Nodes nodes = make(is_low ? low : narrow, 0.2, 1);
+    path::NodeFinder straight = finder(nodes, 0),
+                     free = finder(nodes, 0, {0, is_low ? 0.0 : 9, is_low ? 9.0 : 0});
+    const NodePlace from = straight.find_place({2, 0, 12.5}, 0.5);
+    const NodePlace to = straight.find_place({18, 0, 12.5}, 0.5);
+    Path path;
+    straight.find(from, to, path);
+    ASSERT_EQ(path.end, PathEnd::kReached);
+    EXPECT_NEAR(path.length, 16, 0.5);
+    EXPECT_NEAR(path.cost, path.length, 1e-5);
+    free.find(from, to, path);
+    ASSERT_EQ(path.end, PathEnd::kReached);
+    EXPECT_GT(path.length, 18) << is_low;
+    double lowest = 24;
+    for (const NodePlace& place : path.node_places) lowest = std::min(lowest, place.feet.z);
+    EXPECT_LT(lowest, 7) << is_low;
+    // Where there is no other passage, it is taken whatever it costs.
+    Scene shut = is_low ? low : narrow;
+    shut.add_box({8, 0, 0}, {12, 4, 8});
+    const Nodes one = make(shut, 0.2, 1);
+    path::NodeFinder dear = finder(one, 0, {0, 1000, 1000});
+    dear.find(dear.find_place({2, 0, 12.5}, 0.5), dear.find_place({18, 0, 12.5}, 0.5), path);
+    EXPECT_EQ(path.end, PathEnd::kReached);
+  }
 }
 
 TEST(NodePath, TheNearestPlaceIsFound) {
@@ -426,6 +522,10 @@ TEST(NodePath, BadInputIsRefusedAndNamed) {
   EXPECT_EQ(message({}, {}), "path: there are no nodes");
   EXPECT_EQ(message(nodes, {.avatar_class = 9}), "path: the world has no avatar class 9; it has 6");
   EXPECT_EQ(message(nodes, {.slope_cost = -1}), "path: slope_cost must be 0 to 1000");
+  for (const PathConfig& config :
+       {PathConfig{.narrow_cost = -1}, {.low_cost = 1001}, {.narrow_cost = std::nan("")}}) {
+    EXPECT_EQ(message(nodes, config), "path: narrow_cost and low_cost must be 0 to 1000");
+  }
   EXPECT_EQ(message(nodes, {.workers = -1}), "path: workers must be 0 or more");
   EXPECT_EQ(message(nodes, {.speedup = PathSpeedup::kLabels}),
             "path: a speedup is only for paths on the ground");

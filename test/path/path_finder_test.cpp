@@ -307,6 +307,8 @@ TEST(PathFinder, RefusesWhatItsSpaceDoesNotHave) {
   refused({.slope_cost = -1}, Errc::kBadConfig);
   refused({.slope_cost = std::nan("")}, Errc::kBadConfig);
   refused({.slope_cost = 1, .speedup = PathSpeedup::kLabels}, Errc::kBadConfig);
+  refused({.narrow_cost = 1}, Errc::kBadConfig);  // Only nodes promise a width or a height.
+  refused({.low_cost = std::nan("")}, Errc::kBadConfig);
   for (const PathSpeedup speedup :
        {PathSpeedup::kNone, PathSpeedup::kLabels, PathSpeedup::kZones, PathSpeedup::kOnDemand}) {
     refused({.workers = -1, .speedup = speedup}, Errc::kBadConfig);

@@ -156,6 +156,8 @@ int find(Session& session, const PathStage& stage) {
       PathFinder::create(world,
                          {.avatar_class = stage.avatar_class,
                           .slope_cost = options.slope_cost,
+                          .narrow_cost = options.narrow_cost,
+                          .low_cost = options.low_cost,
                           .overlay = false,  // One query does not repay its time.
                           .workers = options.threads,
                           .speedup = on_demand ? PathSpeedup::kOnDemand : PathSpeedup::kNone,

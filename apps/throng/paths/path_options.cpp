@@ -63,6 +63,17 @@ void add_path_options(CLI::App& command, PathOptions& options) {
                   "Additional cost of a metre per metre of rise")
       ->check(between(0.0, 1000.0))
       ->capture_default_str();
+  command
+      .add_option("--narrow-cost", options.narrow_cost,
+                  "Over nodes: additional cost of a metre where no more width is promised than the "
+                  "body's radius; less where it is more")
+      ->check(between(0.0, 1000.0))
+      ->capture_default_str();
+  command
+      .add_option("--low-cost", options.low_cost,
+                  "Over nodes: the same where no more height is promised than the body's")
+      ->check(between(0.0, 1000.0))
+      ->capture_default_str();
   add_search_memory(command, options.search_bytes);
   add_memory(command, options.memory,
              "Max memory of the command, on level ground: only what the search comes to is read "
@@ -116,6 +127,10 @@ Result<PathSpace> space_of(const PathOptions& options, const World& world,
   const bool by_class = !options.fly && !options.nodes && !options.on_foot;
   const bool over_nodes = options.nodes || (by_class && !avatar.flies && goes_over_nodes(avatar));
   if (auto ok = check_options(options); !ok) return ok.error();
+  if (!over_nodes && (options.narrow_cost > 0 || options.low_cost > 0)) {
+    return Error{Errc::kBadConfig,
+                 "--narrow-cost and --low-cost are what nodes promise: add --nodes"};
+  }
   if (options.fly) {
     if (auto ok = check_fly(options, world, avatar); !ok) return ok.error();
     return PathSpace::kAir;

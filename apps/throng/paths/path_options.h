@@ -29,6 +29,7 @@ struct PathOptions {
   std::vector<double> areas;           // six numbers a box, and a kind
   std::vector<double> area_costs;      // a kind and its cost
   double slope_cost = 0;
+  double narrow_cost = 0, low_cost = 0;  // over nodes
   uint64_t search_bytes = SearchBudget::kDefaultBytes;
   MemoryBound memory = {};
 

@@ -48,6 +48,7 @@ struct NodeFinder::Shared {
   Shared(graph::NodeMesh made, const PathConfig& config)
       : mesh(std::move(made)),
         slope_cost(config.slope_cost),
+        added(added_costs(mesh, config.narrow_cost, config.low_cost)),
         squares(mesh),
         parts(mesh, config.workers) {
     for (size_t p = 0; p < mesh.portals().size(); ++p) {
@@ -59,13 +60,14 @@ struct NodeFinder::Shared {
     }
     if (config.overlay && mesh.portals().size() >= kMinOverlayCrossings) {
       const NodeView baked(mesh);
-      overlay = Overlay(mesh, PieceCost(baked, slope_cost), config.workers);
+      overlay = Overlay(mesh, PieceCost(baked, slope_cost, added), config.workers);
     }
   }
   Shared(const Shared&) = delete;  // `squares` may point to `mesh`
   Shared& operator=(const Shared&) = delete;
   graph::NodeMesh mesh;
   double slope_cost;
+  std::vector<double> added;  // to what a metre costs, by block
   BlockSquares squares;
   NodeParts parts;
   Overlay overlay;
@@ -82,7 +84,7 @@ struct NodeFinder::Scratch {
       : shared(of),
         changes(std::move(made)),
         view(of.mesh, &changes),
-        cost(view, of.slope_cost),
+        cost(view, of.slope_cost, of.added),
         search(view, cost),
         far_search(view, cost, of.overlay),
         pull(view, cost) {}
@@ -492,6 +494,10 @@ Result<NodeFinder> NodeFinder::create(const Nodes& nodes, const PathConfig& conf
   if (!(config.slope_cost >= 0 && config.slope_cost <= 1000)) {
     return Error{Errc::kBadConfig, "path: slope_cost must be 0 to 1000"};
   }
+  if (!(config.narrow_cost >= 0 && config.narrow_cost <= 1000 && config.low_cost >= 0 &&
+        config.low_cost <= 1000)) {
+    return Error{Errc::kBadConfig, "path: narrow_cost and low_cost must be 0 to 1000"};
+  }
   if (config.workers < 0) return Error{Errc::kBadConfig, "path: workers must be 0 or more"};
   if (auto ok = refuse_settings(config, "path", true); !ok) return ok.error();
   auto mesh = graph::NodeMesh::create(nodes, config.avatar_class, config.workers, context);
@@ -506,7 +512,7 @@ PathSummary NodeFinder::summary() const {
   return {.blocks = mesh.blocks().size(),
           .crossings = mesh.portals().size(),
           .bytes = mesh.bytes() + state_->squares.bytes() + state_->parts.bytes() +
-                   state_->overlay.bytes(),
+                   state_->overlay.bytes() + state_->added.size() * sizeof(double),
           .seconds = state_->seconds};
 }
 

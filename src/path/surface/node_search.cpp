@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/access.h"
+#include "world/zone_data.h"
 
 // A* over the crossings of portals: Hart, Nilsson, Raphael. A formal basis for the heuristic
 // determination of minimum cost paths. 1968. A path leads from the middle of one portal to the
@@ -20,10 +21,41 @@ namespace {
 
 constexpr double kMaxStraightPiece = 1;  // Pieces up to here count as straight. [m]
 
+// From 1, where no more is promised than the body takes, to 0, where it is the most that nodes can
+// promise.
+double shortage(double promised, double own, double most) {
+  return most > own ? std::clamp((most - promised) / (most - own), 0.0, 1.0) : 0;
+}
+
 }  // namespace
 
-PieceCost::PieceCost(const NodeView& view, double slope_cost)
-    : view_(&view), slope_cost_(slope_cost) {
+std::vector<double> added_costs(const graph::NodeMesh& mesh, double narrow_cost, double low_cost) {
+  std::vector<double> added;
+  if (narrow_cost == 0 && low_cost == 0) return added;
+  const Nodes& nodes = mesh.nodes();
+  const NodeBins& bins = data_of(nodes)->summary.bins;
+  const world::WorldData& world = *data_of(data_of(nodes)->world);
+  const AvatarClass& avatar = world.summary.classes[static_cast<size_t>(mesh.avatar_class())];
+  const double widest = bins.width.empty() ? 0 : bins.width.back();
+  const double tallest = bins.height.empty() ? 0 : bins.height.back();
+  added.reserve(mesh.blocks().size());
+  uint32_t last = graph::kNoNode;
+  for (const graph::NodeBlock& block : mesh.blocks()) {
+    if (block.node == last) {  // Most blocks of a node follow each other.
+      added.push_back(added.back());
+      continue;
+    }
+    last = block.node;
+    const NodeInfo info = nodes.node(block.node);
+    const uint8_t height = avatar.climb_slope > 0 ? info.height : info.headroom;
+    added.push_back(narrow_cost * shortage(bins.width_of(info.width), avatar.radius, widest) +
+                    low_cost * shortage(bins.height_of(height), avatar.height, tallest));
+  }
+  return added;
+}
+
+PieceCost::PieceCost(const NodeView& view, double slope_cost, std::span<const double> added)
+    : view_(&view), slope_cost_(slope_cost), added_(added) {
   const NodeBins& bins = data_of(view.mesh().nodes())->summary.bins;
   for (uint8_t code = 0; code < 16; ++code) {
     const double degrees = bins.inclination_of(code);
@@ -37,8 +69,9 @@ PieceCost::Piece PieceCost::operator()(uint32_t block, double s0, double t0, Vec
                                        double t1, Vec3d to) const {
   const graph::NodeSurface& surface = view_->surface(block);
   const double straight = length(to - from), factor = view_->factor(block);
+  const double added = added_.empty() ? 0 : added_[view_->base_of(block)];
   if (surface.points == nullptr) {
-    return {straight, straight * by_code_[view_->block(block).inclination] * factor};
+    return {straight, straight * (by_code_[view_->block(block).inclination] + added) * factor};
   }
   const double s = (s0 + s1) / 2, t = (t0 + t1) / 2;
   double along = straight;
@@ -46,8 +79,8 @@ PieceCost::Piece PieceCost::operator()(uint32_t block, double s0, double t0, Vec
     const Vec3d middle = surface.at(s, t);
     along = length(middle - from) + length(to - middle);
   }
-  if (slope_cost_ == 0) return {along, along * factor};
-  return {along, along * (1 + slope_cost_ * (1 - surface.normal(s, t).y)) * factor};
+  if (slope_cost_ == 0) return {along, along * (1 + added) * factor};
+  return {along, along * (1 + slope_cost_ * (1 - surface.normal(s, t).y) + added) * factor};
 }
 
 void NodeSearch::push(double estimate, uint32_t state) { open_.push({estimate, state}); }

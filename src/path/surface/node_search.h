@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "path/ground/open_list.h"
@@ -16,10 +17,16 @@
 /// A* over the portals between blocks of nodes.
 namespace throng::path {
 
+/// What a metre costs in each block of a mesh, beside its length and slope, where nodes promise
+/// little width (PathConfig::narrow_cost) or height (low_cost). Empty if both are 0.
+[[nodiscard]] std::vector<double> added_costs(const graph::NodeMesh& mesh, double narrow_cost,
+                                              double low_cost);
+
 /// The cost of a straight piece within a block.
 class PieceCost {
  public:
-  PieceCost(const NodeView& view, double slope_cost);
+  /// `added`: added_costs of the mesh, which must live as long.
+  PieceCost(const NodeView& view, double slope_cost, std::span<const double> added = {});
 
   /// Length over the surface in metres, and its cost. Both ends lie in the patch's block.
   struct Piece {
@@ -31,7 +38,8 @@ class PieceCost {
  private:
   const NodeView* view_;
   double slope_cost_;
-  std::vector<double> by_code_;  // cost of a metre on level tiles, by inclination
+  std::span<const double> added_;  // by block of the mesh
+  std::vector<double> by_code_;    // cost of a metre on level tiles, by inclination
 };
 
 /// Which overlay cell each block of the mesh lies in, and which of them a search stays in.

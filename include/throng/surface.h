@@ -150,6 +150,12 @@ struct NodeSummary {
   std::vector<AvatarClass> classes;
 };
 
+/// How much ground of a class promises what: areas by the codes of NodeBins. Each adds up to the
+/// class's area. [m^2]
+struct NodeDistribution {
+  std::array<double, 16> inclination{}, height{}, headroom{}, width{};
+};
+
 /// A connected component: nodes between which a class can move in both directions.
 struct NodeComponent {
   double area = 0;  ///< [m^2]
@@ -251,6 +257,10 @@ class THRONG_API Nodes {
   /// may stand there, or inside those around the place and the headroom above them. False: not
   /// promised; the body may still fit. Time: linear in the nodes and cells of the patch.
   [[nodiscard]] bool fits(const NodePlace& place, const AvatarClass& body) const;
+
+  /// The ground of a class by what the smallest node around it that holds the class promises.
+  /// Linear in the nodes.
+  [[nodiscard]] NodeDistribution distribution(int32_t avatar_class) const;
 
   /// The connected components of a class, largest first. If given, `of_node` gets the component of
   /// each node, UINT32_MAX for nodes where the class cannot stand. Linear in nodes and arcs.

@@ -443,6 +443,46 @@ NodeClearance Nodes::clearance(int32_t avatar_class, const NodePlace& place) con
                                               {place.s, place.t, place.s, place.t});
 }
 
+// A node's area less that of the nodes inside it that hold the class, too.
+NodeDistribution Nodes::distribution(int32_t avatar_class) const {
+  THRONG_ASSERT(state_);
+  NodeDistribution found;
+  const auto& classes = data_of(state_->world)->summary.classes;
+  if (avatar_class < 0 || static_cast<size_t>(avatar_class) >= classes.size()) return found;
+  const AvatarClass& avatar = classes[static_cast<size_t>(avatar_class)];
+  for (size_t s = 0; s < state_->slots.size(); ++s) {
+    const graph::NodeZone* zone = state_->zone(s);
+    if (zone == nullptr) continue;
+    const auto nodes = zone->nodes();
+    std::vector<double> own(nodes.size(), 0);
+    for (uint32_t n = 0; n < nodes.size(); ++n) {
+      if ((nodes[n].classes() >> avatar_class & 1) == 0) continue;
+      const double area = state_->area_of(*zone, n, avatar_class);
+      own[n] += area;
+      const uint32_t parent = nodes[n].parent();
+      if (parent == UINT32_MAX || (nodes[parent].classes() >> avatar_class & 1) == 0) continue;
+      own[parent] -= area;
+    }
+    for (uint32_t n = 0; n < nodes.size(); ++n) {
+      if (own[n] == 0) continue;
+      const bool is_curved = zone->patch_of(n).kind() == static_cast<uint8_t>(PatchKind::kBezier);
+      const bool climbs = is_curved && avatar.climb_slope > 0;
+      const uint8_t limit =
+          state_->summary.bins.inclination_code(climbs ? avatar.climb_slope : avatar.max_slope);
+      const auto code = static_cast<uint8_t>(nodes[n].surface() >> 4);
+      found.inclination[std::min(code, limit)] += own[n];
+      // The class's own body is free along its axis.
+      const uint8_t own_code = state_->summary.bins.height_code(avatar.height);
+      const auto height = static_cast<uint8_t>(nodes[n].surface() & 15);
+      const auto headroom = static_cast<uint8_t>(nodes[n].room() >> 4);
+      found.height[climbs || !is_curved ? std::max(height, own_code) : height] += own[n];
+      found.headroom[climbs ? headroom : std::max(headroom, own_code)] += own[n];
+      found.width[nodes[n].room() & 15] += own[n];
+    }
+  }
+  return found;
+}
+
 bool Nodes::fits(const NodePlace& place, const AvatarClass& body) const {
   THRONG_ASSERT(state_);
   if (!place || place.node1 > node_count()) return false;

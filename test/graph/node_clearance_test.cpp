@@ -243,6 +243,48 @@ TEST(NodeClearance, IsThatOfAllNodesAroundAPlace) {
   }
 }
 
+// Shares of random places, by what the nodes around each promise; and sums, by the components.
+TEST(NodeDistribution, IsThatOfRandomPlacesAndAddsUpToTheArea) {
+  constexpr uint64_t kPlaces = 4000;
+  for (const Made& made : worlds()) {
+    const NodeBins bins = made.nodes.summary().bins;
+    const NaiveNodes naive(made.nodes);
+    for (int32_t c = 0; c < 5; ++c) {
+      const NodeDistribution found = made.nodes.distribution(c);
+      double area = 0;
+      for (const NodeComponent& one : made.nodes.components(c)) area += one.area;
+      std::array<double, 16> inclination{}, height{}, headroom{};
+      for (uint64_t n = 0; n < kPlaces; ++n) {
+        const NodePlace place = made.nodes.random_place(c, 12, n);
+        const NodeClearance here = naive.at(c, place.node1 - 1, place.s, place.t, true);
+        // Codes of equal edges are one code.
+        inclination[bins.inclination_code(here.inclination)] += area / kPlaces;
+        height[bins.height_code(here.height)] += area / kPlaces;
+        headroom[bins.height_code(here.headroom)] += area / kPlaces;
+      }
+      const auto compare = [&](const std::array<double, 16>& areas,
+                               const std::array<double, 16>& expected, const char* what) {
+        double sum = 0;
+        for (size_t code = 0; code < 16; ++code) {
+          sum += areas[code];
+          EXPECT_GT(areas[code], -1e-6);
+          // Places are uniform in parameters, not over the ground.
+          EXPECT_NEAR(areas[code] / area, expected[code] / area, 0.04)
+              << made.name << ", class " << c << ", " << what << ", code " << code;
+        }
+        EXPECT_NEAR(sum, area, 1e-6 * area) << made.name << ", class " << c << ", " << what;
+      };
+      compare(found.inclination, inclination, "inclination");
+      compare(found.height, height, "height");
+      compare(found.headroom, headroom, "headroom");
+      double sum = 0;
+      for (const double one : found.width) sum += one;
+      EXPECT_NEAR(sum, area, 1e-6 * area) << made.name << ", class " << c;
+    }
+    EXPECT_EQ(made.nodes.distribution(-1).width[0], 0);
+  }
+}
+
 // Of worlds of one sheet of ground, all ground near is ground that is connected.
 TEST(NodeClearance, NoClosedCellIsNearerThanTheWidth) {
   Scene yard;

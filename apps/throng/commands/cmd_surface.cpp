@@ -3,14 +3,60 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "command.h"
 #include "throng/surface.h"
 
-// throng surface: how many nodes and arcs a world has, and their connected components per class.
+// throng surface: how many nodes and arcs a world has, their connected components per class, and
+// how much of a class's ground is how steep, high and wide.
 namespace throng::app {
 namespace {
+
+// Areas by what is promised, without those of rounding.
+struct Promised {
+  const char* name;
+  const char* limit;  // "at_least" or "at_most"
+  const char* unit;
+  std::array<double, 16> areas;
+  std::vector<double> values;  // by code
+};
+
+std::vector<Promised> promised(const NodeDistribution& found, const NodeBins& bins) {
+  std::vector<double> slopes, heights, widths;
+  for (uint8_t code = 0; code < 16; ++code) {
+    slopes.push_back(bins.inclination_of(code));
+    heights.push_back(bins.height_of(code));
+    widths.push_back(bins.width_of(code));
+  }
+  return {{"inclination", "at_most", "deg", found.inclination, slopes},
+          {"height", "at_least", "m", found.height, heights},
+          {"headroom", "at_least", "m", found.headroom, heights},
+          {"width", "at_least", "m", found.width, widths}};
+}
+
+void add_distribution(const NodeDistribution& found, const NodeBins& bins, Json& json,
+                      std::string& text) {
+  constexpr double kNothing = 1e-6;  // [m^2]
+  for (const Promised& one : promised(found, bins)) {
+    Json list = Json::array();
+    std::string line;
+    for (size_t code = 0; code < one.areas.size(); ++code) {
+      if (one.areas[code] < kNothing) continue;
+      list.push_back({{one.limit, one.values[code]}, {"area", one.areas[code]}});
+      line += fmt::format("{}{:g} {}: {:.1f} m2", line.empty() ? "" : ", ", one.values[code],
+                          one.unit, one.areas[code]);
+    }
+    json[one.name] = std::move(list);
+    if (line.empty()) continue;
+    text += fmt::format("    {:<11} {} {}\n", one.name,
+                        one.limit == std::string("at_most") ? "at most " : "at least", line);
+  }
+}
 
 int print_surface(Session& session, const std::string& path) {
   const Result<Nodes> nodes = Nodes::open(path);
@@ -42,13 +88,15 @@ int print_surface(Session& session, const std::string& path) {
       stands += component.nodes;
     }
     const double largest = components.empty() ? 0 : components[0].area;
-    json["classes"].push_back({{"class", summary.classes[c].name},
-                               {"nodes", stands},
-                               {"area", area},
-                               {"components", components.size()},
-                               {"largest", largest}});
+    Json of_class = {{"class", summary.classes[c].name},
+                     {"nodes", stands},
+                     {"area", area},
+                     {"components", components.size()},
+                     {"largest", largest}};
     text += fmt::format("  {:<12} {:9} nodes {:12.1f} m2, {} components, the largest {:.1f} m2\n",
                         summary.classes[c].name, stands, area, components.size(), largest);
+    add_distribution(nodes->distribution(static_cast<int32_t>(c)), summary.bins, of_class, text);
+    json["classes"].push_back(std::move(of_class));
   }
   print_result(session, json, text);
   return kDone;
@@ -57,10 +105,12 @@ int print_surface(Session& session, const std::string& path) {
 }  // namespace
 
 void add_surface(CLI::App& parser, Session& session) {
-  CLI::App* command = add_command(
-      parser, session, "surface", "Show what each class can reach over the nodes of a world",
-      "throng bake builtin:landscape,size=160 -o hills.throng --cell 0.5 --nodes\n"
-      "throng surface hills.throng");
+  CLI::App* command =
+      add_command(parser, session, "surface",
+                  "Show what each class can reach over the nodes of a world, and how steep, high "
+                  "and wide it is",
+                  "throng bake builtin:landscape,size=160 -o hills.throng --cell 0.5 --nodes\n"
+                  "throng surface hills.throng");
   const auto path = std::make_shared<std::string>();
   command->add_option("world", *path, "World folder with nodes")
       ->required()

@@ -457,6 +457,13 @@ struct AirSummary {
 /// without air) or kBadFile.
 [[nodiscard]] THRONG_API Result<AirSummary> air_summary(const World& world);
 
+/// The free air boxes of the octree, for all classes together, between the lowest height of feet
+/// and the ceiling; of zones without solids there are none. Of `area`, if it has an extent in x,
+/// those whose middle lies over it. Source: [PACS00] 1.2.3.7. Reads every air file once. Fails with
+/// kNotFound (the world was baked without air) or kBadFile. [m]
+[[nodiscard]] THRONG_API Result<std::vector<Box3d>> air_boxes(const World& world,
+                                                              const Box3d& area = {});
+
 // ----
 // Flow fields: the distance to the nearest of some goals from everywhere, by one search for all
 // avatars that share these goals.

@@ -36,8 +36,10 @@ struct PictureConfig {
 struct NodePictureConfig {
   int32_t width = 1600;  ///< Of the whole picture. [px, 200 to 16000]
   bool links = false;
-  bool air = false;     ///< Links of the air, and between air and ground; the world must have air.
-  int32_t storey = -1;  ///< Only level tiles of this storey, or all nodes (-1).
+  bool air = false;  ///< Links of the air, and between air and ground; the world must have air.
+  bool cylinders = false;     ///< Those of terminal nodes, see Nodes::cylinder.
+  bool boxes = false;         ///< Free boxes of the air's octree; the world must have air.
+  int32_t storey = -1;        ///< Only level tiles of this storey, or all nodes (-1).
   int32_t avatar_class = -1;  ///< Only nodes and links of this class, or all (-1).
   Box3d area;                 ///< Only nodes whose middle lies in its x and z; empty: all. [m]
   std::vector<Vec3d> path;    ///< A path to draw over the nodes. [m]

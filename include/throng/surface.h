@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -150,6 +151,15 @@ struct NodeSummary {
   std::vector<AvatarClass> classes;
 };
 
+/// The cylinder of a node: as wide and as high as it promises, in its middle along the ground's
+/// normal. Source: [PACS00] 1.2.3.1.
+struct NodeCylinder {
+  Vec3d feet;           ///< [m]
+  Vec3d axis{0, 1, 0};  ///< Unit vector; straight up on level tiles.
+  double radius = 0;    ///< [m]
+  double height = 0;    ///< [m]
+};
+
 /// How much ground of a class promises what: areas by the codes of NodeBins. Each adds up to the
 /// class's area. [m^2]
 struct NodeDistribution {
@@ -248,6 +258,8 @@ class THRONG_API Nodes {
   /// only if the class has no node.
   [[nodiscard]] NodePlace random_place(int32_t avatar_class, uint64_t seed, uint64_t n) const;
 
+  /// The cylinder of a node; nothing of one that promises no width or no height.
+  [[nodiscard]] std::optional<NodeCylinder> cylinder(uint32_t node) const;
   /// What the nodes around a place promise a class. Nothing if the class may not stand there. The
   /// largest height and width that can be promised are the last edges of NodeBins, a width within
   /// one patch also the distance to its borders. Time: linear in the nodes and cells of the patch.

@@ -443,6 +443,20 @@ NodeClearance Nodes::clearance(int32_t avatar_class, const NodePlace& place) con
                                               {place.s, place.t, place.s, place.t});
 }
 
+std::optional<NodeCylinder> Nodes::cylinder(uint32_t node) const {
+  const NodeInfo info = this->node(node);
+  const NodeBins& bins = state_->summary.bins;
+  NodeCylinder cylinder{.feet = middle(node),
+                        .radius = bins.width_of(info.width),
+                        .height = bins.height_of(info.height)};
+  const auto [zone, local] = state_->find(node);
+  if (zone == nullptr || !(cylinder.radius > 0 && cylinder.height > 0)) return {};
+  const double side = 1.0 / (1 << info.block_level);
+  cylinder.axis = graph::surface_of(*state_, *zone, zone->patch_of(local))
+                      .normal((info.s + 0.5) * side, (info.t + 0.5) * side);
+  return cylinder;
+}
+
 // A node's area less that of the nodes inside it that hold the class, too.
 NodeDistribution Nodes::distribution(int32_t avatar_class) const {
   THRONG_ASSERT(state_);

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
+#include <optional>
 #include <vector>
 
 #include "core/access.h"
@@ -16,6 +18,7 @@
 #include "render/canvas.h"
 #include "render/text.h"
 #include "render/tile_slopes.h"
+#include "throng/path.h"
 #include "throng/picture.h"
 #include "throng/surface.h"
 
@@ -195,6 +198,18 @@ class NodePicture {
         include(view_(line.b));
       }
     }
+    if (config_.boxes) {
+      auto boxes = air_boxes(nodes_.world(), config_.area);
+      if (!boxes) {
+        return Error{boxes.error().code,
+                     "picture: " + boxes.error().message + "; bake it with --fly"};
+      }
+      boxes_ = *std::move(boxes);
+      for (const Box3d& box : boxes_) {
+        for (int32_t k = 0; k < 8; ++k) include(view_(corner_of(box, k)));
+      }
+    }
+    if (config_.cylinders) list_cylinders();
     fit();
     find_links();
     DepthCanvas large(static_cast<int32_t>(width_) * kPatchSamples,
@@ -207,6 +222,8 @@ class NodePicture {
       large.line(at(line.a), at(line.b, line.to_ground ? 0.3 : 0), line.to_ground ? 4 : 2,
                  line.to_ground ? kGroundAirLink : kAirLink);
     }
+    for (const Shown& one : cylinders_) cylinder(large, one);
+    for (const Box3d& box : boxes_) outline(large, box);
     if (!config_.path.empty()) path(large, ground);
     render::Canvas sheet(config_.width, static_cast<int32_t>(kHeader + height_ + kFooter),
                          render::kPaper);
@@ -269,6 +286,63 @@ class NodePicture {
       plan_.add(box.max);
       terminal_ += info.terminal ? 1 : 0;
       if (whole && info.kind == PatchKind::kBezier) first_of_patch_.try_emplace(info.source, n);
+    }
+  }
+
+  // A cylinder and the code of its node's inclination.
+  struct Shown {
+    NodeCylinder cylinder;
+    uint8_t inclination = 0;
+  };
+
+  static constexpr int32_t kSides = 24;
+
+  // A point of a cylinder's rim, at the ground (0) or the top (1).
+  static Vec3d rim_of(const NodeCylinder& c, int32_t side, double up) {
+    const Vec3d other = std::fabs(c.axis.y) < 0.9 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
+    Vec3d right = cross(other, c.axis);
+    right = right * (1 / length(right));
+    const double angle = 2 * std::numbers::pi * side / kSides;
+    return c.feet + (right * std::cos(angle) + cross(right, c.axis) * std::sin(angle)) * c.radius +
+           c.axis * (up * c.height);
+  }
+
+  static Vec3d corner_of(const Box3d& box, int32_t k) {
+    return {(k & 1) != 0 ? box.max.x : box.min.x, (k & 2) != 0 ? box.max.y : box.min.y,
+            (k & 4) != 0 ? box.max.z : box.min.z};
+  }
+
+  // Of the terminal nodes that are drawn.
+  void list_cylinders() {
+    for (const uint32_t n : shown_) {
+      const NodeInfo info = nodes_.node(n);
+      const auto found = info.terminal ? nodes_.cylinder(n) : std::nullopt;
+      if (!found) continue;
+      cylinders_.push_back({*found, inclination(n, info)});
+      for (int32_t k = 0; k < kSides; ++k) include(view_(rim_of(*found, k, 1)));
+    }
+  }
+
+  void cylinder(DepthCanvas& canvas, const Shown& one) const {
+    const render::Rgb colour =
+        render::shade(inclination_colour(summary_.bins.inclination_of(one.inclination)), 0.55);
+    for (int32_t k = 0; k < kSides; ++k) {
+      for (const double up : {0.0, 1.0}) {
+        canvas.line(at(rim_of(one.cylinder, k, up), 0.05),
+                    at(rim_of(one.cylinder, k + 1, up), 0.05), 2, colour);
+      }
+      if (k % 6 != 0) continue;
+      canvas.line(at(rim_of(one.cylinder, k, 0), 0.05), at(rim_of(one.cylinder, k, 1), 0.05), 2,
+                  colour);
+    }
+  }
+
+  void outline(DepthCanvas& canvas, const Box3d& box) const {
+    for (int32_t k = 0; k < 8; ++k) {
+      for (const int32_t axis : {1, 2, 4}) {
+        if ((k & axis) != 0) continue;
+        canvas.line(at(corner_of(box, k)), at(corner_of(box, k | axis)), 1, kAirLink);
+      }
     }
   }
 
@@ -555,6 +629,7 @@ class NodePicture {
       key(kAirLink, "air");
       key(kGroundAirLink, "air to ground");
     }
+    if (config_.boxes) key(kAirLink, "boxes of the air");
   }
 
   // A length of 1, 2 or 5 times a power of ten, along the slanted x axis. Returns what it takes.
@@ -581,6 +656,8 @@ class NodePicture {
   Box3d plan_;  // around what is drawn
   render::TileSlopes slopes_;
   std::vector<render::AirLine> air_;
+  std::vector<Box3d> boxes_;  // of the air
+  std::vector<Shown> cylinders_;
   std::map<uint32_t, uint32_t> first_of_patch_;  // a node of each Bezier patch
   uint64_t terminal_ = 0;
   double low_x_ = 1e30, high_x_ = -1e30, low_y_ = 1e30, high_y_ = -1e30;

@@ -158,6 +158,23 @@ class ProgramPath(ProgramCase):
             on_foot = ("path", "n.throng", "--from", "14,0,8", "--to", "20,0,8", option, "1")
             self.assert_refused(self.run_throng(*on_foot), option, "--nodes")
 
+    def test_what_nodes_promise_is_summed_up_and_drawn(self):
+        done = self.run_throng("bake", "builtin:cube", "--cell", "0.2", "--nodes", "--fly", "-o", "n.throng")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        surface = json.loads(self.run_throng("surface", "n.throng", "--json").stdout)
+        for of_class in surface["classes"]:
+            for name in ("inclination", "height", "headroom", "width"):
+                self.assertAlmostEqual(sum(one["area"] for one in of_class[name]), of_class["area"], places=3)
+        self.assertIn("    headroom    at least", self.run_throng("surface", "n.throng").stdout)
+        pictures = set()
+        for more in ((), ("--cylinders",), ("--boxes",)):
+            done = self.run_throng("picture", "n.throng", "--nodes", *more, "-o", "nodes.png")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            pictures.add((self.path / "nodes.png").read_bytes())
+        self.assertEqual(len(pictures), 3)
+        self.assert_refused(self.run_throng("picture", "n.throng", "--cylinders", "-o", "x.png"), "--cylinders", "--nodes")
+        self.assert_refused(self.run_throng("picture", self.world, "--boxes", "-o", "x.png"), "--boxes", "--nodes")
+
     def test_links_and_areas_hold_over_nodes_too(self):
         (self.path / "classes.toml").write_text(
             '[[class]]\nname = "adult"\n[[class]]\nname = "climber"\nclimb_slope = 90\n')

@@ -112,8 +112,10 @@ int picture(Session& session, PictureOptions& options) {
   }
   show_progress(session, "draw", 0, 0);
   if (!options.nodes &&
-      (options.node_config.links || options.node_config.air || !options.area.empty())) {
-    return fail({Errc::kBadConfig, "--links, --air and --area draw nodes: add --nodes"});
+      (options.node_config.links || options.node_config.air || options.node_config.cylinders ||
+       options.node_config.boxes || !options.area.empty())) {
+    return fail({Errc::kBadConfig,
+                 "--links, --air, --cylinders, --boxes and --area draw nodes: add --nodes"});
   }
   if (!options.path.empty()) {
     Result<std::vector<Vec3d>> read = read_path(options.path);
@@ -162,6 +164,11 @@ void add_picture(CLI::App& parser, Session& session) {
   command->add_flag("--links", options->node_config.links, "With --nodes: also their links");
   command->add_flag("--air", options->node_config.air,
                     "With --nodes: also the links of the air, and between air and ground");
+  command->add_flag("--cylinders", options->node_config.cylinders,
+                    "With --nodes: also the cylinders of terminal nodes, as wide and as high as "
+                    "these promise");
+  command->add_flag("--boxes", options->node_config.boxes,
+                    "With --nodes: also the free boxes of the air's octree");
   command->add_option("--area", options->area, "With --nodes: only this part of the ground [m]")
       ->expected(4)
       ->delimiter(',')

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <bit>
+#include <vector>
 
 #include "core/access.h"
 #include "throng/path.h"
 #include "world/air_data.h"
 #include "world/zone_data.h"
 
-// Counts the nodes of a world's air, octree by octree. Linear in the air files.
+// Counts and lists the nodes of a world's air, octree by octree. Linear in the air files.
 namespace throng {
 
 Result<AirSummary> air_summary(const World& world) {
@@ -46,6 +47,36 @@ Result<AirSummary> air_summary(const World& world) {
     });
   }
   return summary;
+}
+
+Result<std::vector<Box3d>> air_boxes(const World& world, const Box3d& area) {
+  if (const auto sound = air_summary(world); !sound) return sound.error();
+  const world::AirData& air = *data_of(world)->air;
+  const world::AirShape& shape = air.shape;
+  const Vec3d origin = data_of(world)->summary.origin;
+  const auto metres = [&](int32_t x, int32_t y, int32_t z) {
+    const double cell = shape.cell * 1e-3;
+    return Vec3d{origin.x + x * cell, (static_cast<double>(y) * shape.cell + shape.origin_y) * 1e-3,
+                 origin.z + z * cell};
+  };
+  std::vector<Box3d> boxes;
+  for (const auto& slot : air.slots) {
+    const int32_t x0 = slot->entry.x() * air.zone_side, z0 = slot->entry.z() * air.zone_side;
+    const world::AirData::ZoneAir zone = air.zone(slot->entry.x(), slot->entry.z());
+    zone.tree->for_each([&](const world::AirCube& cube, uint32_t word) {
+      const int32_t low = std::max(cube.y, shape.floor);
+      const int32_t high = std::min(cube.y + cube.side, shape.ceiling);
+      if (world::air_kind(word) != world::AirKind::kFree || low >= high) return;
+      const int32_t x = x0 + cube.x, z = z0 + cube.z;
+      const Box3d box{metres(x, low, z), metres(x + cube.side, high, z + cube.side)};
+      const Vec3d middle = (box.min + box.max) * 0.5;
+      const bool is_wanted =
+          area.max.x <= area.min.x || (middle.x >= area.min.x && middle.x <= area.max.x &&
+                                       middle.z >= area.min.z && middle.z <= area.max.z);
+      if (is_wanted) boxes.push_back(box);
+    });
+  }
+  return boxes;
 }
 
 }  // namespace throng

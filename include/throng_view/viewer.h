@@ -191,17 +191,18 @@ struct ViewerRequests {
 
 /// The state of the viewer, for titles and tests.
 struct ViewerStatus {
-  std::string name;         ///< Of the stage that was loaded last.
-  bool loading = false;     ///< A stage is being loaded.
-  std::string error;        ///< Why the last load failed, or empty.
-  bool playing = false;     ///< Time passes; false: paused.
-  double time = 0;          ///< That is shown. [s]
-  double last_time = 0;     ///< Of a recording's last frame, or 0. [s]
-  size_t avatars = 0;       ///< In the world.
-  size_t drawn = 0;         ///< In the last frame.
-  int64_t picked = -1;      ///< Id of the avatar that was picked, or -1.
-  int64_t controlled = -1;  ///< Id of the avatar that the user walks as, or -1.
-  EyeCamera camera;         ///< In the world's coordinates.
+  std::string name;          ///< Of the stage that was loaded last.
+  bool loading = false;      ///< A stage is being loaded.
+  std::string error;         ///< Why the last load failed, or empty.
+  bool playing = false;      ///< Time passes; false: paused.
+  double time = 0;           ///< That is shown. [s]
+  double last_time = 0;      ///< Of a recording's last frame, or 0. [s]
+  size_t avatars = 0;        ///< In the world.
+  size_t drawn = 0;          ///< In the last frame.
+  int64_t picked = -1;       ///< Id of the avatar that was picked, or -1.
+  int64_t picked_node = -1;  ///< The node that was picked, or -1.
+  int64_t controlled = -1;   ///< Id of the avatar that the user walks as, or -1.
+  EyeCamera camera;          ///< In the world's coordinates.
   /// If [CAACD] steers the avatars: how many are in each caacd::State, by its number; else empty.
   std::vector<size_t> states = {};
   std::optional<caacd::Counts> experiment = {};  ///< Of the experiment of section V.

@@ -136,7 +136,7 @@ void Viewer::State::press(Key key) {
     view::step_curve(*panel.curves, static_cast<view::CurveValue>(k / 2), k % 2 == 0 ? -1 : 1);
     send_curves();
   }
-  constexpr char kOverlayKeys[] = "CLNKXHPBOG";  // In the order of Overlay.
+  constexpr char kOverlayKeys[] = "CLNKXHPBOGYU";  // In the order of Overlay.
   for (size_t i = 0; i < view::kOverlays; ++i) {
     if (letter(kOverlayKeys[i])) panel.overlays[i] = !panel.overlays[i];
   }
@@ -162,7 +162,7 @@ void Viewer::State::press(Key key) {
     } else if (panel.mode == view::CameraMode::kWalk) {
       leave_walk();
     } else {
-      panel.status.picked = -1;
+      panel.status.picked = panel.status.picked_node = -1;
     }
   }
 }
@@ -213,6 +213,12 @@ void Viewer::State::click() {
   const size_t i = view::avatar_on(crowd.now(), panel.class_heights, line, cut, farthest);
   panel.status.picked =
       i < crowd.now().size() ? static_cast<int64_t>(crowd.now().ids[i]) : int64_t{-1};
+  // An avatar stands before the node that it stands on.
+  panel.status.picked_node = -1;
+  if (panel.status.picked >= 0 || !drawn_nodes || !nodes) return;
+  const view::SightLine in_world{line.eye + origin, line.direction};
+  const auto node = drawn_nodes->first_on(*nodes, in_world, cut + origin.y, kFarthestPick);
+  if (node) panel.status.picked_node = *node;
 }
 
 void Viewer::State::move_eye(double seconds) {

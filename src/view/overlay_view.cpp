@@ -58,6 +58,20 @@ Result<std::vector<Vec3d>> OverlayMaker::find_path(const Order& order) {
   return points;
 }
 
+void OverlayMaker::make_of_nodes(Made& made) {
+  if (!nodes_) {
+    made.fault = "nodes: this world has none; bake it with --nodes";
+  } else if (made.overlay == Overlay::kLinks) {
+    made.marks = link_marks(*nodes_, origin_, context_);
+  } else if (made.overlay == Overlay::kCylinders) {
+    made.marks = cylinder_marks(*nodes_, origin_, context_);
+  } else {
+    const auto drawn = std::make_shared<DrawnNodes>(nodes_->summary().bins);
+    made.marks = node_marks(*nodes_, origin_, *drawn, context_);
+    made.nodes = drawn;
+  }
+}
+
 OverlayMaker::Made OverlayMaker::make(const Order& order) {
   Made made{.overlay = order.overlay, .marks = {}, .fault = {}};
   switch (order.overlay) {
@@ -69,18 +83,21 @@ OverlayMaker::Made OverlayMaker::make(const Order& order) {
       break;
     case Overlay::kNodes:
     case Overlay::kLinks:
-      if (!nodes_) {
-        made.fault = "nodes: this world has none; bake it with --nodes";
-      } else {
-        made.marks = order.overlay == Overlay::kNodes ? node_marks(*nodes_, origin_, context_)
-                                                      : link_marks(*nodes_, origin_, context_);
-      }
+    case Overlay::kCylinders:
+      make_of_nodes(made);
       break;
     case Overlay::kAir:
       if (auto marks = air_marks(world_, order.height, origin_, context_)) {
         made.marks = *std::move(marks);
       } else {
         made.fault = marks.error().message;
+      }
+      break;
+    case Overlay::kBoxes:
+      if (auto marks = box_marks(world_, origin_)) {
+        made.marks = *std::move(marks);
+      } else {
+        made.fault = "boxes: " + marks.error().message + "; bake it with --fly";
       }
       break;
     case Overlay::kPath:
@@ -105,6 +122,21 @@ OverlayMaker::Made OverlayMaker::make(const Order& order) {
 
 namespace throng {
 
+// The node that was picked, as long as the overlay of nodes is on.
+void Viewer::State::show_picked_node() {
+  if (!drawn_nodes) panel.status.picked_node = -1;
+  const int64_t picked = panel.status.picked_node;
+  if (picked == shown_node) return;
+  shown_node = picked;
+  panel.picked_node.reset();
+  Marks marks;
+  if (picked >= 0 && nodes) {
+    panel.picked_node = view::detail_of(*nodes, drawn_nodes->bins, static_cast<uint32_t>(picked));
+    marks = view::picked_node_marks(*nodes, static_cast<uint32_t>(picked), origin);
+  }
+  keep_error(drawing.set_marks(kPickedNodeSlot, marks));
+}
+
 // Orders the overlays that are on and not made, and shows those that have been made.
 void Viewer::State::show_overlays() {
   const auto slot = [](view::Overlay overlay) { return static_cast<size_t>(overlay); };
@@ -126,6 +158,7 @@ void Viewer::State::show_overlays() {
         panel.overlays[slot(made->overlay)] = false;
       } else if (panel.overlays[slot(made->overlay)]) {
         set(made->overlay, made->marks);
+        if (made->nodes) drawn_nodes = made->nodes;
       }
     }
   }
@@ -134,6 +167,7 @@ void Viewer::State::show_overlays() {
     if (!panel.overlays[i]) {
       if (shown[i]) set(overlay, {});
       ordered[i] = false;
+      if (overlay == view::Overlay::kNodes) drawn_nodes.reset();
       continue;
     }
     if (overlay == view::Overlay::kDensity) {
@@ -170,6 +204,7 @@ void Viewer::State::show_overlays() {
       overlay_maker->start(order);
     }
   }
+  show_picked_node();
 }
 
 }  // namespace throng

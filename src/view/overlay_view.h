@@ -34,7 +34,8 @@ class OverlayMaker {
   struct Made {
     Overlay overlay = Overlay::kClearance;
     Marks marks;
-    std::string fault;  ///< Why the marks are missing, or empty.
+    std::string fault;                             ///< Why the marks are missing, or empty.
+    std::shared_ptr<const DrawnNodes> nodes = {};  ///< With kNodes: what can be picked.
   };
   [[nodiscard]] bool is_busy() const { return busy_; }
   /// Call only while it is not busy.
@@ -47,6 +48,7 @@ class OverlayMaker {
 
  private:
   Made make(const Order& order);
+  void make_of_nodes(Made& made);
   Result<std::vector<Vec3d>> find_path(const Order& order);
 
   World world_;

@@ -91,8 +91,8 @@ void add_tile(Marks& marks, const LevelTileContent& tile, const WorldSummary& su
 
 const char* word_for(Overlay overlay) {
   static constexpr std::array<const char*, kOverlays> kWords = {
-      "Clearance", "Levels", "Nodes",      "Links",   "Air",
-      "Density",   "Path",   "Neighbours", "Painted", "Fields"};
+      "Clearance", "Levels",     "Nodes",   "Links",  "Air",       "Density",
+      "Path",      "Neighbours", "Painted", "Fields", "Cylinders", "Boxes"};
   return kWords[static_cast<size_t>(overlay)];
 }
 
@@ -109,7 +109,11 @@ const char* legend_of(Overlay overlay) {
       "The avatars within 5 m of the picked avatar",
       "Weights of goals, painted with the brush or by the scenario; the larger, the more opaque",
       "Protection fields of [CAACD] and the probe ahead: green tolerable, yellow alert, orange "
-      "critical, red collision"};
+      "critical, red collision",
+      "Cylinders of terminal nodes: as wide and as high as these promise; green level, red steep",
+      "Free boxes of the air's octree: red small, blue large. A world baked with a flying class "
+      "has "
+      "them"};
   return kLegends[static_cast<size_t>(overlay)];
 }
 
@@ -157,36 +161,74 @@ double inclination_of(const std::array<Vec3d, 4>& c) {
 
 }  // namespace
 
-Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context) {
+Marks node_marks(const Nodes& nodes, Vec3d origin, DrawnNodes& drawn, Context& context) {
   Marks marks;
-  const NodeBins bins = nodes.summary().bins;
+  const NodeBins& bins = drawn.bins;
   const Vec3d lift{0, kOverlayHeight, 0};
+  std::vector<std::array<Vec3d, 4>> squares;
   for (uint32_t n = 0; n < nodes.node_count() && !context.cancel; ++n) {
     const NodeInfo info = nodes.node(n);
     if (!info.terminal || info.classes == 0 || marks.triangles.size() > kMaxVertices) continue;
-    // The inclination of a node of a level tile is a limit of a class: the floor may be less steep.
-    const auto add = [&](const std::array<Vec3d, 4>& c) {
+    squares.clear();
+    // A partial node is drawn row by row.
+    for_node_squares(nodes, n, info, [&](std::array<Vec3d, 4> c) {
+      squares.push_back(c);
+      for (Vec3d& p : c) p = p - origin + lift;
+      // The inclination of a node of a level tile is a limit of a class: the floor may be less
+      // steep.
       double steep = bins.inclination_of(info.inclination);
       if (info.kind == PatchKind::kLevelTile) steep = std::min(steep, inclination_of(c));
       const Rgba colour = ramp(0.5 - 0.5 * std::min(1.0, steep / 90), 110);
       add_quad(marks, c[0], c[1], c[2], c[3], colour);
-    };
-    auto c = nodes.corners(n);
-    for (Vec3d& p : c) p = p - origin + lift;
-    if (info.cells == 0) {
-      add(c);
+      if (info.cells != 0) return;
       const Rgba rim = rgba(255, 255, 255, 150);
       for (size_t k = 0; k < 4; ++k) add_line(marks, c[k], c[(k + 1) % 4], rim);
-      continue;
-    }
-    // A partial node is drawn row by row: its block's corners may have no floor.
-    constexpr double kCell = 1.0 / 64, kSide = kCell - 1e-5;
-    for_partial_runs(info.cells, [&](int32_t first, int32_t row, int32_t count) {
-      const double s = (info.s * 8 + first) * kCell, t = (info.t * 8 + row) * kCell;
-      const auto at = [&](double u, double v) { return nodes.point(n, u, v) - origin + lift; };
-      const double end = s + (count - 1) * kCell + kSide;
-      add({at(s, t), at(s, t + kSide), at(end, t + kSide), at(end, t)});
     });
+    drawn.add(n, squares);
+  }
+  marks.line_width = 1;
+  return marks;
+}
+
+Marks cylinder_marks(const Nodes& nodes, Vec3d origin, Context& context) {
+  Marks marks;
+  const NodeBins bins = nodes.summary().bins;
+  for (uint32_t n = 0; n < nodes.node_count() && !context.cancel; ++n) {
+    const NodeInfo info = nodes.node(n);
+    if (!info.terminal || marks.triangles.size() > kMaxVertices / 2) continue;
+    const auto cylinder = nodes.cylinder(n);
+    if (!cylinder) continue;
+    const double steep = info.kind == PatchKind::kLevelTile
+                             ? 0
+                             : std::min(1.0, bins.inclination_of(info.inclination) / 90);
+    const double share = 0.5 - 0.5 * steep;
+    add_cylinder(marks, *cylinder, origin, ramp(share, 45), ramp(share, 190));
+  }
+  marks.line_width = 1;
+  return marks;
+}
+
+Result<Marks> box_marks(const World& world, Vec3d origin) {
+  const Result<std::vector<Box3d>> boxes = air_boxes(world);
+  if (!boxes) return boxes.error();
+  Marks marks;
+  for (const Box3d& box : *boxes) {
+    if (marks.lines.size() > kMaxVertices) break;
+    const double side = box.max.x - box.min.x;
+    // Neighbours' edges lie beside each other.
+    const double in = 0.04 * side;
+    const Vec3d inset{in, std::min(in, 0.2 * (box.max.y - box.min.y)), in};
+    const Vec3d low = box.min + inset - origin, high = box.max - inset - origin;
+    const Rgba colour = ramp(std::log2(side / 0.25) / 6, 200);
+    const auto corner = [&](int32_t k) {
+      return Vec3d{(k & 1) != 0 ? high.x : low.x, (k & 2) != 0 ? high.y : low.y,
+                   (k & 4) != 0 ? high.z : low.z};
+    };
+    for (int32_t k = 0; k < 8; ++k) {
+      for (const int32_t axis : {1, 2, 4}) {
+        if ((k & axis) == 0) add_line(marks, corner(k), corner(k | axis), colour);
+      }
+    }
   }
   marks.line_width = 1;
   return marks;

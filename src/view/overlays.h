@@ -11,6 +11,7 @@
 #include "throng/surface.h"
 #include "throng/world.h"
 #include "throng_draw/draw.h"
+#include "view/node_pick.h"
 #include "view/timeline_frame.h"
 
 /// Marks that are drawn over the scene to explain it. All are relative to `origin`.
@@ -28,8 +29,10 @@ enum class Overlay : uint8_t {
   kNeighbours,
   kPainted,
   kFields,
+  kCylinders,
+  kBoxes,
 };
-inline constexpr size_t kOverlays = 10;
+inline constexpr size_t kOverlays = 12;
 /// The name: "Clearance", ...
 [[nodiscard]] const char* word_for(Overlay overlay);
 /// The meaning of its colours, one sentence.
@@ -41,8 +44,15 @@ inline constexpr size_t kOverlays = 10;
                                     Context& context);
 /// Every level in a colour of its own; level tiles of one storey share it.
 [[nodiscard]] Marks level_marks(const World& world, Vec3d origin, Context& context);
-/// Terminal nodes by inclination: from green (level) over yellow to red (steep).
-[[nodiscard]] Marks node_marks(const Nodes& nodes, Vec3d origin, Context& context);
+/// Terminal nodes by inclination: from green (level) over yellow to red (steep). `drawn` gets those
+/// that are drawn.
+[[nodiscard]] Marks node_marks(const Nodes& nodes, Vec3d origin, DrawnNodes& drawn,
+                               Context& context);
+/// The cylinders of terminal nodes [PACS00]: as wide and as high as these promise, by inclination.
+[[nodiscard]] Marks cylinder_marks(const Nodes& nodes, Vec3d origin, Context& context);
+/// The free boxes of the air's octree [PACS00], by size: from red (small) to blue. Fails as
+/// air_boxes does.
+[[nodiscard]] Result<Marks> box_marks(const World& world, Vec3d origin);
 /// Arcs between nodes: white walk, orange step, magenta climb, blue off-mesh link, red drop link.
 [[nodiscard]] Marks link_marks(const Nodes& nodes, Vec3d origin, Context& context);
 /// Where a flyer's feet may be at one height [m, world]. Fails as PathFinder::create does.

@@ -318,6 +318,30 @@ void draw_picked(PanelState& s, float scale, int32_t width) {
   ImGui::End();
 }
 
+void draw_picked_node(PanelState& s, float scale, int32_t width) {
+  if (!s.picked_node || s.status.picked >= 0) return;
+  const NodeDetail& d = *s.picked_node;
+  ImGui::SetNextWindowPos({static_cast<float>(width) - 12 * scale, 12 * scale}, ImGuiCond_Always,
+                          {1, 0});
+  ImGui::SetNextWindowSize({290 * scale, 0});
+  ImGui::Begin("##node", nullptr, kFixed);
+  ImGui::Text("Node %lld", static_cast<long long>(s.status.picked_node));
+  ImGui::Text("%s %u, level %d%s", d.info.kind == PatchKind::kBezier ? "patch" : "level tile",
+              d.info.source, static_cast<int>(d.info.block_level),
+              d.info.cells != 0 ? ", partial" : "");
+  ImGui::Text("middle      %.2f, %.2f, %.2f", d.middle.x, d.middle.y, d.middle.z);
+  ImGui::Text("inclination at most %.4g deg", d.inclination);
+  ImGui::Text("height      %.2f m", d.height);
+  ImGui::Text("headroom    %.2f m", d.headroom);
+  ImGui::Text("width       %.2f m", d.width);
+  ImGui::Text("area        %.2f m2", static_cast<double>(d.info.area));
+  for (size_t c = 0; c < s.class_names.size(); ++c) {
+    if ((d.info.classes >> c & 1) != 0) ImGui::Text("for         %s", s.class_names[c].c_str());
+  }
+  ImGui::TextDisabled("Escape lets go");
+  ImGui::End();
+}
+
 void draw_help(PanelState& s, int32_t width, int32_t height) {
   if (!s.help) return;
   ImGui::SetNextWindowPos({0.5F * static_cast<float>(width), 0.5F * static_cast<float>(height)},
@@ -330,7 +354,8 @@ void draw_help(PanelState& s, int32_t width, int32_t height) {
         {"Left drag", "turn around the middle; in Fly and Walk: look around"},
         {"Right or middle drag", "move sideways; with Shift, also the left"},
         {"Wheel", "nearer to what is under the pointer, or away"},
-        {"Click", "pick an avatar, or spawn, erase, paint goals (panel: Crowd)"},
+        {"Click",
+         "pick an avatar, or a node of the overlay; spawn, erase, paint goals (panel: Crowd)"},
         {"W A S D, arrows", "go; Q down, E up; Shift: faster"},
         {"1, 2, 3", "Orbit, Fly, Walk as an avatar"},
         {"V", "in Walk: through its eyes, or from behind"},
@@ -343,6 +368,7 @@ void draw_help(PanelState& s, int32_t width, int32_t height) {
         {"C, L, N, K", "clearance, levels, nodes, links"},
         {"X, H, P, B", "air, density (heat), path and neighbours of the picked avatar"},
         {"O, G", "painted goals; protection fields"},
+        {"Y, U", "cylinders of nodes; boxes of the air"},
         {"4 5, 6 7, 8 9", "with [CAACD]: Mass, MaxSpeed, MaxForce of the picked avatar, or of all"},
         {"Tab", "panel"},
         {"F11, F12", "full screen; save a picture"},
@@ -380,6 +406,7 @@ void draw_hint(const PanelState& s, float scale, int32_t width, int32_t height) 
 void draw_panel(PanelState& s, float scale, int32_t width, int32_t height) {
   if (s.settings.panel) draw_main(s, scale, height);
   draw_picked(s, scale, width);
+  draw_picked_node(s, scale, width);
   draw_timeline(s, scale, width, height);
   draw_progress(s, scale, width, height);
   draw_hint(s, scale, width, height);

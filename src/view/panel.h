@@ -11,6 +11,7 @@
 #include "view/camera_rig.h"
 #include "view/crowd_player.h"
 #include "view/curves_panel.h"
+#include "view/node_pick.h"
 #include "view/overlays.h"
 #include "view/replay_player.h"
 #include "view/view_settings.h"
@@ -75,6 +76,7 @@ struct PanelState {
   CrowdReport report;
   std::optional<AvatarDetail> picked;
   double picked_speed = 0, picked_walked = 0;
+  std::optional<NodeDetail> picked_node;
   std::optional<CurvilinearTuning> picked_tuning;  ///< If [CAACD] steers it.
   std::shared_ptr<const CurvedFrame> curved;       ///< Of the frame shown, or null.
 

@@ -71,7 +71,8 @@ void Viewer::State::take_scene(const PreparedScene& scene,
   panel.class_heights.clear();
   panel.class_radii.clear();
   panel.is_cut = false;
-  panel.status.picked = panel.status.controlled = -1;
+  panel.status.picked = panel.status.picked_node = panel.status.controlled = -1;
+  drawn_nodes.reset();
   origin = scene.origin();
   bounds = scene.bounds();
   panel.bounds = {bounds.min + origin, bounds.max + origin};

@@ -24,6 +24,7 @@
 namespace throng {
 
 inline constexpr size_t kBrushSlot = kMarkSlots - 1;  // Of the drawing's marks.
+inline constexpr size_t kPickedNodeSlot = kMarkSlots - 2;
 
 /// The state of a viewer. Frames are in viewer.cpp, keys and mouse in controls.cpp, the controlled
 /// avatar in walk_mode.cpp, brushes in brush_mode.cpp, overlays in overlay_view.cpp.
@@ -60,7 +61,9 @@ struct Viewer::State {
   std::array<bool, view::kOverlays> shown{},
       ordered{};  // In the drawing; ordered since switched on.
   double air_height = 0;
-  std::shared_ptr<const std::vector<Prism>> props;  // In the drawing.
+  std::shared_ptr<const view::DrawnNodes> drawn_nodes;  // While their overlay is on.
+  int64_t shown_node = -1;                              // In the drawing.
+  std::shared_ptr<const std::vector<Prism>> props;      // In the drawing.
   std::optional<Scenario> scenario;
   std::vector<DensityMap> painted;        // Of the scenario, or by the brush for the crowd.
   bool paints = false;                    // The brush is down.
@@ -122,6 +125,7 @@ struct Viewer::State {
   void look_up_crowd();
   void look_up_picked();
   void show_overlays();
+  void show_picked_node();
   [[nodiscard]] DrawingConfig drawing_config(int32_t width, int32_t height) const;
   Frame prepare(double now, int32_t width, int32_t height);
   void note(const DrawingReport& report);

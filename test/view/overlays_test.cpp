@@ -113,6 +113,103 @@ TEST_P(Overlays, LooksAsItDid) {
 INSTANTIATE_TEST_SUITE_P(All, Overlays, testing::ValuesIn(Viewer::overlay_names()),
                          [](const auto& test) { return test.param; });
 
+// Looks down at a point from a little beside it and clicks on it.
+int64_t node_picked_at(Viewer& viewer, Vec3d point, double& now) {
+  viewer.look_at(point + Vec3d{0.4, 9, 1.1}, point);
+  EXPECT_TRUE(viewer.picture(now += 0.1, 320, 200));
+  for (const ViewEventKind kind : {ViewEventKind::kMouseDown, ViewEventKind::kMouseUp}) {
+    ViewEvent event{.kind = kind};
+    event.x = 160;
+    event.y = 100;
+    viewer.handle(event);
+  }
+  EXPECT_TRUE(viewer.picture(now += 0.1, 320, 200));
+  return viewer.status().picked_node;
+}
+
+TEST(Overlays, AClickPicksTheNodeThatIsDrawnThere) {
+  Result<Drawing> drawing = Drawing::create();
+  ASSERT_TRUE(drawing) << drawing.error().message;
+  Result<Viewer> made =
+      Viewer::create(*std::move(drawing), {.settings = {}, .font = {}, .panel = false});
+  ASSERT_TRUE(made) << made.error().message;
+  Viewer viewer = *std::move(made);
+  viewer.load("hall", [](StageParts& parts, Context&) -> Result<void> {
+    if (auto ok = parts.set_scene(hall().scene); !ok) return ok;
+    parts.set_world(hall().world, hall().nodes);
+    return {};
+  });
+  viewer.wait_until_loaded();
+  double now = 0;
+  EXPECT_EQ(node_picked_at(viewer, {3, 0, 9}, now), -1) << "the overlay is off";
+  viewer.show_overlay("Nodes");
+  viewer.wait_for_overlays();
+  const Nodes& nodes = hall().nodes;
+  const Vec3d points[] = {
+      {3.1, 0, 9.2}, {10.4, 0, 10.3}, {8.2, 3, 2.1}, {14.1, 1.5, 7.5}, {0.3, 0, 6.2}};
+  for (const Vec3d& point : points) {
+    const int64_t picked = node_picked_at(viewer, point, now);
+    ASSERT_GE(picked, 0) << point.x << ", " << point.z;
+    EXPECT_TRUE(nodes.node(static_cast<uint32_t>(picked)).terminal);
+    // Of all terminal nodes, one whose ground lies under the point.
+    bool is_there = false;
+    const NodeInfo info = nodes.node(static_cast<uint32_t>(picked));
+    view::for_node_squares(nodes, static_cast<uint32_t>(picked), info, [&](const auto& c) {
+      Box3d box;
+      for (const Vec3d& p : c) box.add(p);
+      constexpr double kNear = 0.06;  // The picture has pixels.
+      is_there = is_there || (point.x > box.min.x - kNear && point.x < box.max.x + kNear &&
+                              point.z > box.min.z - kNear && point.z < box.max.z + kNear &&
+                              point.y > box.min.y - 0.3 && point.y < box.max.y + 0.3);
+    });
+    EXPECT_TRUE(is_there) << point.x << ", " << point.z;
+  }
+  const Image with = picture(viewer);
+  EXPECT_EQ(node_picked_at(viewer, {40, 0, 6}, now), -1) << "there is no ground";
+  (void)node_picked_at(viewer, points[0], now);
+  const Image first = picture(viewer);
+  ViewEvent escape{.kind = ViewEventKind::kKeyDown};
+  escape.key = Key::kEscape;
+  viewer.handle(escape);
+  const Image without = picture(viewer);
+  EXPECT_EQ(viewer.status().picked_node, -1);
+  EXPECT_GT(pixels_that_differ(first, without), 40U);
+  EXPECT_EQ(node_picked_at(viewer, points[2], now) == node_picked_at(viewer, points[0], now),
+            false);
+  ViewEvent off{.kind = ViewEventKind::kKeyDown};
+  off.key = key_of('N');
+  viewer.handle(off);
+  (void)picture(viewer);
+  EXPECT_EQ(viewer.status().picked_node, -1) << "what is not drawn is not picked";
+}
+
+TEST(NodePick, CylindersAndDetailsAreThoseOfTheNode) {
+  const Nodes& nodes = hall().nodes;
+  const NodeBins bins = nodes.summary().bins;
+  size_t cylinders = 0;
+  for (uint32_t n = 0; n < nodes.node_count(); ++n) {
+    const NodeInfo info = nodes.node(n);
+    const view::NodeDetail detail = view::detail_of(nodes, bins, n);
+    EXPECT_EQ(detail.width, bins.width_of(info.width));
+    EXPECT_EQ(detail.headroom, bins.height_of(info.headroom));
+    EXPECT_EQ(detail.inclination, bins.inclination_of(info.inclination));
+    const auto cylinder = nodes.cylinder(n);
+    EXPECT_EQ(cylinder.has_value(), detail.width > 0 && detail.height > 0) << n;
+    if (!cylinder) continue;
+    ++cylinders;
+    // The ground is open in it, for each class of the node.
+    for (int32_t c = 0; c < 2; ++c) {
+      if ((info.classes >> c & 1) == 0) continue;
+      for (int32_t k = 0; k < 8; ++k) {
+        const double angle = 0.785 * k, far = 0.85 * cylinder->radius;
+        const Vec3d at = cylinder->feet + Vec3d{far * std::cos(angle), 0, far * std::sin(angle)};
+        EXPECT_TRUE(hall().world.find_place(c, at, 1 + far)) << n << ", class " << c;
+      }
+    }
+  }
+  EXPECT_GT(cylinders, 20U);
+}
+
 TEST(OverlayNames, UnknownOnesAreIgnored) {
   Viewer viewer = made_viewer("");
   const Image without = picture(viewer);
@@ -179,6 +276,32 @@ TEST(OverlayMarks, ClearanceCoversWhatAClassCanWalkOnAndNothingElse) {
   }
 }
 
+TEST(OverlayMarks, CylindersAreAsWideAndHighAsTheirNodesPromise) {
+  Context context;
+  const Nodes& nodes = hall().nodes;
+  const NodeBins bins = nodes.summary().bins;
+  const Marks marks = view::cylinder_marks(nodes, {}, context);
+  size_t v = 0;
+  constexpr size_t kVertices = 16 * 6;
+  for (uint32_t n = 0; n < nodes.node_count(); ++n) {
+    const NodeInfo info = nodes.node(n);
+    const double width = bins.width_of(info.width), height = bins.height_of(info.height);
+    if (!info.terminal || width == 0 || height == 0) continue;
+    ASSERT_LE(v + kVertices, marks.triangles.size());
+    const Vec3d middle = nodes.middle(n);
+    double top = 0;
+    for (size_t i = v; i < v + kVertices; ++i) {
+      const MarkVertex& p = marks.triangles[i];
+      EXPECT_NEAR(std::hypot(p.x - middle.x, p.z - middle.z), width, 1e-4) << n;
+      top = std::max(top, p.y - middle.y);
+    }
+    EXPECT_NEAR(top, height, 1e-4) << n;
+    v += kVertices;
+  }
+  EXPECT_EQ(v, marks.triangles.size());
+  EXPECT_GT(v, 20 * kVertices);
+}
+
 TEST(OverlayMarks, DensityCountsHeadsByStorey) {
   view::TimelineFrame crowd;
   crowd.resize(9);
@@ -220,7 +343,10 @@ TEST(OverlayMarks, MissingPartsOfAWorldAreReported) {
     return {};
   });
   viewer->wait_until_loaded();
-  for (const auto& [name, says] : {std::pair{"Nodes", "--nodes"}, {"Air", "flies"}}) {
+  for (const auto& [name, says] : {std::pair{"Nodes", "--nodes"},
+                                   {"Air", "flies"},
+                                   {"Cylinders", "--nodes"},
+                                   {"Boxes", "--fly"}}) {
     viewer->show_overlay(name);
     viewer->wait_for_overlays();
     EXPECT_NE(viewer->status().error.find(says), std::string::npos) << viewer->status().error;

@@ -96,12 +96,11 @@ std::optional<AirPoint> FlightEndpoints::take_off(const Place& place) const {
   const AirPoint feet = to_air(place.position);
   const double head = feet.y + avatar_.height / cell_;
   const AirPoint column{off_faces(feet.x), 0, off_faces(feet.z)};
-  for (double y = std::floor(feet.y); y <= head; y += 1) {
-    const AirPoint p{column.x, std::max(y + kAirSkin, off_faces(feet.y)), column.z};
-    if (p.y > head) break;
-    if (air_.box_at(AirPoint{p.x, y + 0.5, p.z}) != kNoBox) return p;
-  }
-  return {};
+  const auto up = world::take_off_height(feet.y, head, [&](double y) {
+    return air_.box_at(AirPoint{column.x, y + 0.5, column.z}) != kNoBox;
+  });
+  if (!up) return {};
+  return AirPoint{column.x, *up, column.z};
 }
 
 bool FlightEndpoints::may_stand(const Place& place) const {

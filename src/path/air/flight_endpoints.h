@@ -31,9 +31,7 @@ class FlightEndpoints {
 
   /// May a body stand at a place of the class, as far as active obstacles permit?
   [[nodiscard]] bool may_stand(const Place& place) const;
-  /// Straight up from feet on the ground. The body on the ground is clear from its bottom to its
-  /// height, the body in the air from its feet to its height: if the feet in the air are not above
-  /// the head on the ground, so is everything between the two.
+  /// Straight up from feet on the ground (world::take_off_height).
   [[nodiscard]] std::optional<AirPoint> take_off(const Place& place) const;
   /// A flood in parts.
   struct FloodPart {

@@ -11,7 +11,7 @@
 
 #include "throng/base.h"
 #include "world/air_data.h"
-#include "world/air_rows.h"
+#include "world/take_off.h"
 #include "world/zone_data.h"
 
 /// Where one class may fly, as boxes: what flight search runs on.
@@ -46,11 +46,8 @@ struct AirRange {
   int32_t first[3] = {0, 0, 0}, last[3] = {-1, -1, -1};  // x, y, z
 };
 
-/// Points keep so far off the faces of boxes, so that a line between two never runs along one.
-/// [voxels]
-inline constexpr double kAirSkin = 1.0 / 1024;
-/// The nearest such coordinates in the same cell.
-double off_faces(double v);
+using world::kAirSkin;
+using world::off_faces;
 AirPoint off_faces(AirPoint p);
 
 struct FlightSpace {
@@ -100,10 +97,6 @@ struct FlightSpace {
 /// workers.
 Result<FlightSpace> build_flight_space(const world::AirData& air, const world::AirBody& body,
                                        int32_t largest, int32_t workers, Context& context);
-
-/// Clears every voxel of `free` around which the body is not free; layers over the rows count as
-/// free, voxels beside them do not. Word by word.
-void erode_air(const world::AirBody& body, const world::AirRows& free, world::AirRows& legal);
 
 namespace flight_detail {
 /// Bits of the 2 x 2 x 2 octant that holds bit b of a leaf, and the lowest of them.

@@ -15,7 +15,7 @@
 #include "throng/world.h"
 
 /// Surfaces: the nodes on which bodies stand on Bezier patches, overhangs included, and on level
-/// tiles.
+/// tiles, and their links to the air.
 namespace throng {
 
 // ----
@@ -24,8 +24,9 @@ namespace throng {
 
 struct Scene;
 namespace graph {
-struct NodeData;  // Internal: zones of nodes.
-}
+struct NodeData;      // Internal: zones of nodes.
+struct LeafLinkData;  // Internal: zones of links to the air.
+}  // namespace graph
 
 /// How a body moves from one node to another.
 enum class LinkKind : uint8_t {
@@ -297,5 +298,76 @@ void for_partial_runs(uint64_t cells, Visit visit) {
     }
   }
 }
+
+// ----
+// Links between the air of a world and its nodes: where what flies comes to the ground.
+
+/// Names a leaf of the octree of the air: a free cube, or a connected piece of the free voxels of a
+/// block of 4 x 4 x 4. The sky over the octree of a zone is one leaf.
+struct AirLeafId {
+  int32_t zone_x = 0, zone_z = 0;  ///< Zone of the world.
+  uint32_t node = 0;               ///< Word of the zone's octree; UINT32_MAX: the sky.
+  uint32_t piece = 0;              ///< Of a block: the lowest voxel of the piece.
+
+  friend bool operator==(const AirLeafId&, const AirLeafId&) = default;
+};
+
+/// A link between a leaf of the air and a node under it, the best for some classes: the node on
+/// which most of them can land, then the one that promises the greatest height and width, then the
+/// place nearest to the leaf's axis. From there a body rises straight into the leaf, and it lands
+/// there again by the same segment. Source: [PACS00] 1.2.3.7.
+struct AirLink {
+  uint32_t node = 0;     ///< The node.
+  uint16_t classes = 0;  ///< Bit per class that can use it, in both directions.
+  double s = 0, t = 0;   ///< Where they land, on the node's patch. [0 to 1]
+  Vec3d feet = {};       ///< The same place. [m]
+  Box3d leaf = {};       ///< Where the leaf lies: its cube, or the cube that it is a piece of. [m]
+  AirLeafId leaf_id = {};
+};
+
+/// Sizes of the links between the air and the nodes.
+struct AirLinkSummary {
+  uint64_t links = 0;
+  uint64_t leaves = 0;      ///< That links lead from.
+  uint64_t nodes = 0;       ///< That links lead to.
+  uint64_t leaf_sinks = 0;  ///< Leaves into which some class rises from a node, without a link: 0.
+  uint64_t bytes = 0;       ///< Of their files.
+};
+
+/// The links between the air and the nodes of a world, which a bake makes that makes nodes and air
+/// (docs/design/005-air.md). They are for the classes that fly; if none does, for all classes. Each
+/// leads in both directions. Cheap to copy (shared, immutable); safe to read from many threads.
+class THRONG_API AirLinks {
+ public:
+  AirLinks() = default;
+  /// False for a handle without links, made by default.
+  [[nodiscard]] explicit operator bool() const { return state_ != nullptr; }
+
+  /// Opens the links in the folder that nodes were opened from: reads the index alone. Fails with
+  /// kNotFound (there are none), kBadFile (by name: damaged, or of other air or nodes) or kIo.
+  [[nodiscard]] static Result<AirLinks> open(const Nodes& nodes);
+  /// Are there links in the folder that a world was opened from?
+  [[nodiscard]] static bool exist(const World& world);
+
+  // For a handle that is not empty. A zone that cannot be used counts as empty: see check_all.
+
+  /// Checks every zone against the index. Fails with kBadFile and the zone's name.
+  [[nodiscard]] Result<void> check_all() const;
+  /// The links of a node: from the leaves that have elected it. Time: linear in them, and
+  /// logarithmic in those of its zone. [node < Nodes::node_count]
+  [[nodiscard]] std::vector<AirLink> of_node(uint32_t node) const;
+  /// The links of the leaf that holds a point of the air, each class in at most one; none if no
+  /// class rises into it from a node. Time: logarithmic in the links of its zone. [m]
+  [[nodiscard]] std::vector<AirLink> of_leaf(const Vec3d& position) const;
+  /// The n-th of all, none if its zone cannot be used or there are fewer. Linear in the zones.
+  [[nodiscard]] std::optional<AirLink> link(uint64_t n) const;
+  /// Sizes of all. Linear in the zones.
+  [[nodiscard]] AirLinkSummary summary() const;
+
+ private:
+  friend struct Access;
+  explicit AirLinks(std::shared_ptr<const graph::LeafLinkData> state) : state_(std::move(state)) {}
+  std::shared_ptr<const graph::LeafLinkData> state_;
+};
 
 }  // namespace throng

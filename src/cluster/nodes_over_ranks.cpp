@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "bake/surface/leaf_link_bake.h"
 #include "bake/surface/node_bake.h"
 #include "cluster/job_assignment.h"
 #include "core/access.h"
@@ -61,8 +62,9 @@ cluster::RankJobs jobs_of(bake::NodeBaker& baker, const std::string& path) {
 }
 
 Result<NodeSummary> assign_nodes(cluster::Ranks& ranks, bake::NodeBaker& baker,
-                                 const NodeConfig& config, const std::string& path,
+                                 const NodeConfig& config, const World& world,
                                  bake::NodeFolder& folder, Context& context) {
+  const std::string& path = data_of(world)->path;
   const auto batches = choose_batches(baker, config, ranks.size());
   cluster::JobsToAssign to_assign;
   for (const auto& zones : batches) to_assign.jobs.push_back(cluster::bytes_of(zones));
@@ -81,6 +83,10 @@ Result<NodeSummary> assign_nodes(cluster::Ranks& ranks, bake::NodeBaker& baker,
   }
   const auto nodes = baker.finish();
   if (!nodes) return nodes.error();
+  if (auto ok = bake::link_to_air(world, **nodes, config, folder, context); !ok) {
+    if (ok.error().code == Errc::kCancelled) folder.leave();
+    return ok.error();
+  }
   if (auto ok = folder.finish(**nodes); !ok) return ok.error();
   (*nodes)->path = path + "/" + graph::kNodeFolder;
   return Access::create<Nodes>(*nodes).summary();
@@ -123,7 +129,7 @@ Result<NodeSummary> nodes_over_ranks(const World& world, const Scene& scene,
       return ok.error();
     return NodeSummary{};
   }
-  auto made = assign_nodes(ranks, baker, config, path, *folder, context);
+  auto made = assign_nodes(ranks, baker, config, world, *folder, context);
   if (made) made->seconds = seconds_since(start);
   return made;
 }

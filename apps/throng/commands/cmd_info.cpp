@@ -124,6 +124,11 @@ int info(const Session& session, const InfoOptions& options) {
       const Result<Nodes> nodes = Nodes::open(*world);
       if (!nodes) return fail(nodes.error());
       if (auto intact = nodes->check_all(); !intact) return fail(intact.error());
+      if (AirLinks::exist(*world)) {
+        const Result<AirLinks> links = AirLinks::open(*nodes);
+        if (!links) return fail(links.error());
+        if (auto intact = links->check_all(); !intact) return fail(intact.error());
+      }
     }
   }
   const WorldSummary summary = world->summary();

@@ -12,8 +12,8 @@
 #include "command.h"
 #include "throng/surface.h"
 
-// throng surface: how many nodes and arcs a world has, their connected components per class, and
-// how much of a class's ground is how steep, high and wide.
+// throng surface: how many nodes and arcs a world has, their links to the air, their connected
+// components per class, and how much of a class's ground is how steep, high and wide.
 namespace throng::app {
 namespace {
 
@@ -78,6 +78,21 @@ int print_surface(Session& session, const std::string& path) {
       counted(summary.nodes, "node"), summary.terminal, summary.partial,
       counted(summary.arcs, "arc"), summary.patches, counted(summary.zones, "zone"),
       human_bytes(summary.bytes), static_cast<double>(summary.bytes) / count);
+  if (AirLinks::exist(nodes->world())) {
+    const Result<AirLinks> links = AirLinks::open(*nodes);
+    if (!links) return fail(links.error());
+    if (auto ok = links->check_all(); !ok) return fail(ok.error());
+    const AirLinkSummary air = links->summary();
+    json["air_links"] = {{"links", air.links},
+                         {"leaves", air.leaves},
+                         {"nodes", air.nodes},
+                         {"leaf_sinks", air.leaf_sinks},
+                         {"bytes", air.bytes}};
+    text +=
+        fmt::format("  leaves of the air: {} linked to {} by {} in both directions, {} not, {}\n",
+                    air.leaves, counted(air.nodes, "node"), counted(air.links, "link"),
+                    air.leaf_sinks, human_bytes(air.bytes));
+  }
   json["classes"] = Json::array();
   for (size_t c = 0; c < summary.classes.size(); ++c) {
     const auto components = nodes->components(static_cast<int32_t>(c));

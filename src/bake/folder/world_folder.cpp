@@ -302,7 +302,11 @@ Result<void> WorldFolder::complete(const world::WorldData& world, const world::G
   if (carry_nodes && old_ != nullptr) {
     const auto before = FileMap::open((fs::path(path_) / kManifest).string());
     const bool is_same = before && std::ranges::equal(before->bytes(), whole);
-    throng::bake::carry_nodes(path_, part_.string(), is_same);
+    const auto old_air = FileMap::open((fs::path(path_) / world::kAirManifest).string());
+    const auto air = FileMap::open((part_ / world::kAirManifest).string());
+    const bool is_same_air =
+        bool(old_air) == bool(air) && (!air || std::ranges::equal(old_air->bytes(), air->bytes()));
+    throng::bake::carry_nodes(path_, part_.string(), is_same, is_same_air);
   }
   return {};
 }

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "bake/surface/leaf_link_bake.h"
 #include "bake/surface/node_file.h"
 #include "core/access.h"
 #include "core/hash.h"
@@ -256,6 +257,7 @@ Result<Nodes> Nodes::create_in_folder(const World& world, const Scene& scene,
   if (data_of(world)->path.empty()) {
     return Error{Errc::kBadInput, "nodes: the world is in no folder"};
   }
+  const auto start = Clock::now();
   auto folder = bake::NodeFolder::begin(data_of(world)->path);
   if (!folder) return folder.error();
   const auto made = make_all(world, scene, config, context, &*folder);
@@ -263,7 +265,12 @@ Result<Nodes> Nodes::create_in_folder(const World& world, const Scene& scene,
     if (made.error().code == Errc::kCancelled) folder->leave();
     return made.error();
   }
+  if (auto ok = bake::link_to_air(world, **made, config, *folder, context); !ok) {
+    if (ok.error().code == Errc::kCancelled) folder->leave();
+    return ok.error();
+  }
   if (auto ok = folder->finish(**made); !ok) return ok.error();
+  (*made)->summary.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   (*made)->path = data_of(world)->path + "/" + graph::kNodeFolder;
   return Nodes(*made);
 }
@@ -288,6 +295,9 @@ Result<void> Nodes::write(const std::string& world_path, int32_t workers) const 
     }
   });
   if (auto ok = first_failure(failed); !ok) return ok;
+  Context context;
+  const NodeConfig config{.workers = workers, .rebuild = true};
+  if (auto ok = bake::link_to_air(*world, *state_, config, *folder, context); !ok) return ok;
   return folder->finish(*state_);
 }
 

@@ -39,7 +39,34 @@ OldNodes::OldNodes(const std::string& world_path) {
     if (!index || !world::unsealed(map->bytes(), name)) continue;
     (*index)->path = path;
     folders_.push_back(std::move(*index));
+    const std::string links_name = path + "/" + graph::kLeafLinkIndexName;
+    const auto links_map = FileMap::open(links_name);
+    if (!links_map) continue;
+    const auto content = world::unsealed(links_map->bytes(), links_name);
+    if (!content) continue;
+    auto links = graph::read_leaf_link_index(*content, links_name);
+    if (links) links_.push_back({path, *std::move(links)});
   }
+}
+
+OldNodes::ReusedLinks OldNodes::reuse_links(int32_t x, int32_t z, uint64_t input) const {
+  for (const OldLinks& old : links_) {
+    const auto& zones = old.index.zones;
+    const auto found =
+        std::lower_bound(zones.begin(), zones.end(), std::pair{z, x},
+                         [](const format::LeafLinkEntry& entry, std::pair<int32_t, int32_t> at) {
+                           return std::pair{entry.z(), entry.x()} < at;
+                         });
+    if (found == zones.end() || found->x() != x || found->z() != z || found->input() != input) {
+      continue;
+    }
+    const std::string file = old.path + "/" + graph::leaf_link_file_name(x, z);
+    auto zone = world::open_listed<graph::LeafLinkZone>(
+        {.name = file, .bytes = found->bytes(), .hash = found->hash(), .whose = "the index's"});
+    if (!zone || (*zone)->input() != input || (*zone)->links().size() != found->links()) continue;
+    return {std::move(*zone), *found, file};
+  }
+  return {};
 }
 
 std::optional<OldNodes::Reused> OldNodes::reuse(int32_t x, int32_t z, uint64_t input) const {
@@ -75,6 +102,7 @@ NodeFolder::NodeFolder(NodeFolder&& other) noexcept
     : world_path_(std::move(other.world_path_)),
       part_(std::exchange(other.part_, {})),
       is_own_(other.is_own_),
+      links_(std::move(other.links_)),
       world_lock_(std::move(other.world_lock_)),
       part_lock_(std::move(other.part_lock_)) {}
 
@@ -106,12 +134,30 @@ Result<void> NodeFolder::write(const graph::NodeZone& zone) const {
   return write_file((part_ / graph::node_file_name(zone.x(), zone.z())).string(), zone.bytes());
 }
 
-Result<void> NodeFolder::take_over(const graph::NodeZone& zone, const std::string& file) const {
-  const fs::path to = part_ / graph::node_file_name(zone.x(), zone.z());
-  if (fs::path(file) == to) return {};
+namespace {
+
+// Has the file been put under its new name?
+bool took_over(const std::string& file, const fs::path& to) {
+  if (fs::path(file) == to) return true;
   std::error_code error;
   fs::remove(to, error);
-  if (link_or_copy(file, to)) return {};
+  return link_or_copy(file, to);
+}
+
+}  // namespace
+
+Result<void> NodeFolder::take_over(const graph::NodeZone& zone, const std::string& file) const {
+  if (took_over(file, part_ / graph::node_file_name(zone.x(), zone.z()))) return {};
+  return write(zone);
+}
+
+Result<void> NodeFolder::write(const graph::LeafLinkZone& zone) const {
+  return write_file((part_ / graph::leaf_link_file_name(zone.x(), zone.z())).string(),
+                    zone.bytes());
+}
+
+Result<void> NodeFolder::take_over(const graph::LeafLinkZone& zone, const std::string& file) const {
+  if (took_over(file, part_ / graph::leaf_link_file_name(zone.x(), zone.z()))) return {};
   return write(zone);
 }
 
@@ -125,6 +171,12 @@ Result<void> NodeFolder::finish(const graph::NodeData& nodes) {
   for (const auto& slot : nodes.slots) {
     names.insert(graph::node_file_name(slot->entry.x(), slot->entry.z()));
   }
+  if (links_) {
+    names.insert(graph::kLeafLinkIndexName);
+    for (const format::LeafLinkEntry& entry : links_->zones) {
+      names.insert(graph::leaf_link_file_name(entry.x(), entry.z()));
+    }
+  }
   std::error_code error;
   std::vector<fs::path>
       stale;  // Of killed bakes of something else, and what they left half written.
@@ -133,6 +185,10 @@ Result<void> NodeFolder::finish(const graph::NodeData& nodes) {
   }
   for (const fs::path& file : stale) fs::remove_all(file, error);
   if (auto ok = list(nodes); !ok) return ok;
+  if (links_) {
+    const auto index = world::sealed(graph::write_leaf_link_index(*links_));
+    if (auto ok = write_file((part_ / graph::kLeafLinkIndexName).string(), index); !ok) return ok;
+  }
   const fs::path target = fs::path(world_path_) / graph::kNodeFolder;
   fs::remove_all(target, error);
   fs::rename(part_, target, error);
@@ -143,6 +199,18 @@ Result<void> NodeFolder::finish(const graph::NodeData& nodes) {
 }
 
 namespace {
+
+// Of nodes that are a world's own: links to air that is another's by now would be refused.
+void remove_links(const fs::path& folder) {
+  std::error_code error;
+  const fs::path index = folder / graph::kLeafLinkIndexName;
+  if (!fs::exists(index, error)) return;
+  std::vector<fs::path> files{index};
+  for (const auto& file : fs::directory_iterator(folder, error)) {
+    if (file.path().extension() == index.extension()) files.push_back(file.path());
+  }
+  for (const fs::path& file : files) fs::remove(file, error);
+}
 
 // If it has any nodes.
 bool reuse_folder(const fs::path& source, const fs::path& target) {
@@ -158,11 +226,13 @@ bool reuse_folder(const fs::path& source, const fs::path& target) {
 
 }  // namespace
 
-void carry_nodes(const std::string& from, const std::string& to, bool is_same_world) {
+void carry_nodes(const std::string& from, const std::string& to, bool is_same_world,
+                 bool is_same_air) {
   const fs::path source(from), target(to);
   reuse_folder(source / graph::kPartNodeFolder, target / graph::kPartNodeFolder);
   if (reuse_folder(source / graph::kNodeFolder,
                    target / (is_same_world ? graph::kNodeFolder : graph::kOldNodeFolder))) {
+    if (is_same_world && !is_same_air) remove_links(target / graph::kNodeFolder);
     return;
   }
   reuse_folder(source / graph::kOldNodeFolder, target / graph::kOldNodeFolder);

@@ -416,9 +416,10 @@ class THRONG_API PathFinder {
   /// a take-off ends. Empty if a solid blocks the take-off, or the finder is not for the air.
   [[nodiscard]] std::optional<Vec3d> take_off(const Place& place);
   /// In the air: the place on the ground where a flyer at `feet` lands. The descent is straight
-  /// down to the lowest air box; of the places below this box, the one with the largest clearance
-  /// is taken, of several the nearest to the box's axis [PACS00]. Nowhere if there is none, or the
-  /// finder is not for the air.
+  /// down to the lowest air box, and leads to the place to which the leaf there is linked, if the
+  /// world has such links (AirLinks) and no edit blocks it. Else, of the places below this box, the
+  /// one with the largest clearance is taken, of several the nearest to the box's axis [PACS00].
+  /// Nowhere if there is none, or the finder is not for the air.
   [[nodiscard]] Place landing(const Vec3d& feet);
 
   /// Sizes of what was made, and the time that it took. Time: constant.

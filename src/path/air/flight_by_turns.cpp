@@ -12,9 +12,10 @@
 namespace throng::path {
 
 // From part to part of the ground and the air. The take-off or landing between two of them is at
-// the place nearest to where the path stands, or to the goal, else at the one that is known of the
-// two. Parts are those of the world as it was baked: where an obstacle blocks the path from one to
-// the next, another path that does without that pair is searched for.
+// the place nearest to where the path stands, or to the goal, else at the one to which the leaf
+// under the path is linked, or that is known of the two. Parts are those of the world as it was
+// baked: where an obstacle blocks the path from one to the next, another path that does without
+// that pair is searched for.
 void FlightFinder::find_by_turns(const FlightQuery& query, Path& path) {
   Scratch& scratch = *scratch_;
   End from, to;
@@ -114,8 +115,11 @@ size_t FlightFinder::follow_route(const FlightQuery& query, const End& from, con
       air = *up;
       add(ends.to_metres(air), SegmentKind::kTakeOff, path);
     } else {
-      const Place ground_air_link =
-          link_near(last ? to.ground : Place{}, next, here, view.component(view.box_at(air)));
+      Place ground_air_link = last ? Place{} : state_->linked_from(view, air);
+      if (!ground_air_link || state_->ground_of(ground_air_link) != next.component) {
+        ground_air_link =
+            link_near(last ? to.ground : Place{}, next, here, view.component(view.box_at(air)));
+      }
       const auto up = ends.take_off(ground_air_link);
       if (!up) {
         end = nowhere();

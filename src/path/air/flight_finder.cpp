@@ -154,6 +154,14 @@ Result<FlightFinder> FlightFinder::create(const World& world, const PathConfig& 
     shared->ground_air_links =
         GroundAirLinks(data, shared->walker->mesh(), shared->space, config.workers);
   }
+  if (AirLinks::exist(world)) {
+    const auto nodes = Nodes::open(world);
+    if (!nodes) return nodes.error();
+    auto links = AirLinks::open(*nodes);
+    if (!links) return links.error();
+    if (auto ok = links->check_all(); !ok) return ok.error();
+    shared->links = *std::move(links);
+  }
   shared->summary.boxes = shared->space.boxes.size();
   shared->summary.bytes = shared->space.bytes() + shared->cells_before.size() * sizeof(uint64_t) +
                           shared->ground_air_links.bytes() +
@@ -246,9 +254,11 @@ std::optional<Vec3d> FlightFinder::take_off(const Place& place) const {
 }
 
 Place FlightFinder::landing(Vec3d feet) const {
-  const FlightEndpoints ends = state_->ends(scratch_->air(*state_));
+  const AirView air = scratch_->air(*state_);
+  const FlightEndpoints ends = state_->ends(air);
   const auto point = ends.in_air(feet);
   if (!point) return {};
+  if (const Place linked = state_->linked_from(air, *point)) return linked;
   return ends.best_landing(ends.lowest_box(*point));
 }
 

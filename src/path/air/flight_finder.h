@@ -87,9 +87,10 @@ class FlightFinder {
   /// The end of the take-off from a place on the ground: where the feet come into the air, straight
   /// up. Empty if a solid blocks it.
   [[nodiscard]] std::optional<Vec3d> take_off(const Place& place) const;
-  /// The place of a landing from a point of the air: straight down to the lowest air box, and there
-  /// the best place: the one with the largest clearance, then the nearest to the box's axis
-  /// [PACS00]. Nowhere if there is none.
+  /// The place of a landing from a point of the air, straight down to the lowest air box: the one
+  /// to which a link that the bake has stored leads from there (AirLinks), else the best under the
+  /// box: the one with the largest clearance, then the nearest to the box's axis [PACS00]. Nowhere
+  /// if there is none.
   [[nodiscard]] Place landing(Vec3d feet) const;
 
   [[nodiscard]] PathSummary summary() const;

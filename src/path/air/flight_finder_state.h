@@ -18,6 +18,7 @@
 #include "path/air/flight_path.h"
 #include "path/air/flight_search.h"
 #include "path/air/ground_air_links.h"
+#include "path/air/linked_landing.h"
 #include "path/edits/ground_finder.h"
 #include "path/edits/solid.h"
 #include "path/ground/mesh.h"
@@ -48,10 +49,15 @@ struct FlightFinder::Shared {
   std::vector<uint64_t> cells_before;  // per box, and of all
   std::optional<MeshFinder> walker;    // none where the class has no ground
   GroundAirLinks ground_air_links;
+  AirLinks links;  // that the bake has stored; empty: none
   PathSummary summary;
 
   [[nodiscard]] FlightEndpoints ends(const AirView& air) const {
     return {*data_of(world), air, avatar_class};
+  }
+  // Where a stored link leads down from a point; nowhere if none can be used.
+  [[nodiscard]] Place linked_from(const AirView& air, AirPoint at) const {
+    return linked_landing(links, ends(air), air, avatar_class, at);
   }
   // The component of the ground at a place.
   [[nodiscard]] uint32_t ground_of(const Place& place) const {

@@ -81,6 +81,29 @@ struct NodeVerifyReport {
                                                                const VerifyConfig& config,
                                                                Context& context);
 
+/// Results of verify_air_links. All counts but the first two must be 0.
+struct AirLinkReport {
+  uint64_t links = 0;    ///< Links of the class that were tested.
+  uint64_t places = 0;   ///< Places on nodes that were tested, from which the class takes off.
+  uint64_t blocked = 0;  ///< Links at whose place the class cannot stand, or not take off.
+  uint64_t entered =
+      0;  ///< Links on which the body meets a triangle between the node and the leaf.
+  uint64_t one_way = 0;  ///< Links that do not lead back from where the take-off ends.
+  uint64_t sinks = 0;    ///< Places whose take-off ends in a leaf that has no link for the class.
+  std::vector<VerifyFault> faults;  ///< The first few.
+  double seconds = 0;
+};
+
+/// Tests links between the air and nodes for a class that flies: at half of `config.samples` random
+/// links the exact body rises from the node into the leaf, which is its landing, too; from as many
+/// random places on nodes the leaf above must lead back to the ground. Fails with kBadConfig,
+/// kNotFound (no air), kBadInput, kCancelled.
+[[nodiscard]] THRONG_API Result<AirLinkReport> verify_air_links(const AirLinks& links,
+                                                                const Nodes& nodes,
+                                                                const Scene& source,
+                                                                const VerifyConfig& config,
+                                                                Context& context);
+
 /// Results of verify_node_paths.
 struct NodePathReport {
   uint64_t pairs = 0;         ///< Random pairs of places of the class.

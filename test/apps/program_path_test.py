@@ -175,6 +175,27 @@ class ProgramPath(ProgramCase):
         self.assert_refused(self.run_throng("picture", "n.throng", "--cylinders", "-o", "x.png"), "--cylinders", "--nodes")
         self.assert_refused(self.run_throng("picture", self.world, "--boxes", "-o", "x.png"), "--boxes", "--nodes")
 
+    def test_links_between_the_air_and_nodes_are_counted_and_verified(self):
+        model = ("builtin:garage", "--cell", "0.25")
+        self.assertEqual(self.run_throng("bake", *model, "--nodes", "--fly", "-o", "w.throng").returncode, 0)
+        done = self.run_throng("surface", "w.throng", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        links = json.loads(done.stdout)["air_links"]
+        self.assertGreater(links["leaves"], 200)
+        self.assertGreaterEqual(links["links"], links["leaves"])
+        self.assertEqual(links["leaf_sinks"], 0)
+        self.assertIn(f"leaves of the air: {links['leaves']} linked", self.run_throng("surface", "w.throng").stdout)
+        done = self.run_throng("verify", "w.throng", "--source", "builtin:garage", "--nodes", "--class", "flyer",
+                               "--samples", "4000", "--json")
+        self.assertEqual(done.returncode, 0, done.stdout)
+        found = json.loads(done.stdout)["classes"][0]["air_links"]
+        self.assertGreater(min(found["links"], found["places"]), 500)
+        self.assertEqual([found[key] for key in ("blocked", "entered", "one_way", "sinks")], [0] * 4)
+        done = self.run_throng("bake", *model, "--nodes", "-o", "w.throng")  # Without air there are none.
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("air_links", json.loads(self.run_throng("surface", "w.throng", "--json").stdout))
+        self.assertEqual(list((self.path / "w.throng").rglob("*.thg")), [])
+
     def test_links_and_areas_hold_over_nodes_too(self):
         (self.path / "classes.toml").write_text(
             '[[class]]\nname = "adult"\n[[class]]\nname = "climber"\nclimb_slope = 90\n')

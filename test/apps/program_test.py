@@ -82,8 +82,8 @@ class Program(ProgramCase):
         done = self.run_throng("bake", "builtin:cube", "--cell", "0.2", "--fly", "--nodes", "-o", "w.throng")
         self.assertEqual(done.returncode, 0, done.stderr)
         files = sorted(p for p in (self.path / "w.throng").rglob("*") if p.is_file())
-        self.assertEqual({p.name for p in files} & {"manifest.thm", "air.thm", "graph.thm", "index.thn"},
-                         {"manifest.thm", "air.thm", "graph.thm", "index.thn"})
+        indexes = {"manifest.thm", "air.thm", "graph.thm", "index.thn", "index.thg"}
+        self.assertEqual({p.name for p in files} & indexes, indexes)
         self.assertEqual(self.run_throng("info", "w.throng", "--check").returncode, 0)
         for path in files:
             content = path.read_bytes()

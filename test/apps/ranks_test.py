@@ -187,13 +187,14 @@ def kill_amid_nodes(world, rank, ranks, options):
 
 def test_nodes(folder):
     """Batches of zones are assigned to all ranks."""
-    options = ["--nodes", "--node-memory", "1"]  # MiB: many batches even of so small a world
+    options = ["--nodes", "--node-memory", "1", "--fly"]  # MiB: many batches even of so small a world
     world = folder / "nodes.throng"
     done = run(bake_words(world, options=options))
     assert done.returncode == 0, done.stderr
     report, one = json.loads(done.stdout), content(world)
     made = report["node_zones_made"]
     assert made > 100 and report["node_zones_reused"] == 0, report
+    assert sum(name.endswith(".thg") for name in one) > 100, "there are no links between the air and the nodes"
     shutil.rmtree(world)
     same = ("nodes", "node_arcs", "node_bytes", "node_zones_made", "node_zones_reused")
     for ranks in (2, 3):

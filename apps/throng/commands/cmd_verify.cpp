@@ -192,6 +192,10 @@ bool passes(const NodeVerifyReport& report) {
   return report.entered + report.unsupported + report.steeper + report.lower + report.one_way == 0;
 }
 
+bool passes(const AirLinkReport& report) {
+  return report.blocked + report.entered + report.one_way + report.sinks == 0;
+}
+
 std::string fault_lines(const std::vector<VerifyFault>& faults) {
   std::string text;
   for (const VerifyFault& fault : faults) {
@@ -199,6 +203,21 @@ std::string fault_lines(const std::vector<VerifyFault>& faults) {
                         fault.position.y, fault.position.z);
   }
   return text;
+}
+
+Json air_links_json(const AirLinkReport& report) {
+  return {{"links", report.links},     {"places", report.places},   {"blocked", report.blocked},
+          {"entered", report.entered}, {"one_way", report.one_way}, {"sinks", report.sinks},
+          {"seconds", report.seconds}};
+}
+
+std::string air_links_text(const AirLinkReport& report) {
+  return fmt::format(
+             "  to the air: {} links, {} places that take off in {:.1f} s; blocked {}, entered {}, "
+             "one-way {}, sinks {}\n",
+             report.links, report.places, report.seconds, report.blocked, report.entered,
+             report.one_way, report.sinks) +
+         fault_lines(report.faults);
 }
 
 // Prints the classes and the verdict. Returns the exit code.
@@ -220,6 +239,12 @@ int verify_all_nodes(Session& session, VerifyOptions& options, const std::vector
   const Result<Nodes> nodes = Nodes::open(options.world);
   if (!nodes) return fail(nodes.error());
   if (auto ok = nodes->check_all(); !ok) return fail(ok.error());
+  std::optional<AirLinks> links;
+  if (AirLinks::exist(nodes->world())) {
+    auto opened = AirLinks::open(*nodes);
+    if (!opened) return fail(opened.error());
+    links = *std::move(opened);
+  }
   const std::vector<AvatarClass> classes = nodes->summary().classes;
   Json list = Json::array();
   std::string text;
@@ -246,6 +271,12 @@ int verify_all_nodes(Session& session, VerifyOptions& options, const std::vector
         name, report->places, report->arcs, report->hole_links, report->seconds, report->entered,
         report->unsupported, report->steeper, report->lower, report->one_way);
     text += fault_lines(report->faults);
+    if (!links || !classes[static_cast<size_t>(index)].flies) continue;
+    const auto air = verify_air_links(*links, *nodes, scene, options.config, session.context);
+    if (!air) return fail(air.error());
+    passed = passed && passes(*air);
+    list.back()["air_links"] = air_links_json(*air);
+    text += air_links_text(*air);
   }
   return print_verdict(session, options, list, passed, std::move(text));
 }

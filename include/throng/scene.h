@@ -381,9 +381,9 @@ struct PlaneConfig {
 
 /// Which world to generate. Zero means the world's own default.
 struct BuiltinWorldConfig {
-  std::string name = "garage";  ///< cube stairs garage bridge church powerplant city maze landscape
+  std::string name = "garage";  ///< One that builtin_worlds() lists.
   double size = 0;              ///< Side of the footprint. [m, >= 0]
-  uint64_t triangles = 0;       ///< Grows the world to about this many (powerplant, city).
+  uint64_t triangles = 0;       ///< About so many (powerplant, city), exactly (blocks).
   int32_t levels = 0;           ///< Storeys, where the world has storeys. [>= 0]
   uint64_t seed = 1;
 };

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/hash.h"
+#include "throng/bake.h"
 #include "throng/papers.h"
 #include "throng/scene.h"
 
@@ -61,8 +62,8 @@ void expect_sound(const Scene& scene, const std::string& name) {
 
 TEST(BuiltinWorlds, EveryWorldIsASoundMeshAtItsDefaultAndAnotherSize) {
   const std::map<std::string, double> other = {
-      {"cube", 3},        {"stairs", 100}, {"garage", 130}, {"bridge", 300},   {"church", 60},
-      {"powerplant", 48}, {"city", 730},   {"maze", 71},    {"landscape", 140}};
+      {"cube", 3},        {"stairs", 100}, {"garage", 130}, {"bridge", 300},    {"church", 60},
+      {"powerplant", 48}, {"city", 730},   {"maze", 71},    {"landscape", 140}, {"blocks", 200}};
   for (const BuiltinWorldInfo& info : builtin_worlds()) {
     const std::string name(info.name);
     expect_sound(make({.name = name}), name);
@@ -72,11 +73,11 @@ TEST(BuiltinWorlds, EveryWorldIsASoundMeshAtItsDefaultAndAnotherSize) {
 
 TEST(BuiltinWorlds, SameNameSizeAndSeedGiveTheSameBytesOnEveryMachine) {
   const std::map<std::string, uint64_t> golden = {
-      {"cube", 0xa0538b85755696c5},     {"stairs", 0x3970f7f303cc7892},
-      {"garage", 0xa22dff081f8ea3e2},   {"bridge", 0x7cd053ff056e2b41},
-      {"church", 0xdbc7e7e137d0053},    {"powerplant", 0xa304e56f53c60dad},
-      {"city", 0xc77e908054dab80a},     {"maze", 0xbcea4911f4a653bb},
-      {"landscape", 0x79d7c965a55df67c}};
+      {"cube", 0xa0538b85755696c5},      {"stairs", 0x3970f7f303cc7892},
+      {"garage", 0xa22dff081f8ea3e2},    {"bridge", 0x7cd053ff056e2b41},
+      {"church", 0xdbc7e7e137d0053},     {"powerplant", 0xa304e56f53c60dad},
+      {"city", 0xc77e908054dab80a},      {"maze", 0xbcea4911f4a653bb},
+      {"landscape", 0x79d7c965a55df67c}, {"blocks", 0x1ac65d9c4d7878b6}};
   for (const BuiltinWorldInfo& info : builtin_worlds()) {
     const std::string name(info.name);
     const uint64_t hash = hash_of(make({.name = name}));
@@ -156,7 +157,7 @@ TEST(BuiltinWorlds, LimitsAreThoseThatTheListStates) {
     growing += info.max_triangles > 0 ? 1 : 0;
   }
   EXPECT_EQ(with_levels, 3u);  // garage, powerplant, maze
-  EXPECT_EQ(growing, 2u);      // powerplant, city
+  EXPECT_EQ(growing, 3u);      // powerplant, city, blocks
 }
 
 TEST(BuiltinWorlds, LevelsSetTheStoreys) {
@@ -238,7 +239,7 @@ TEST(BuiltinWorlds, WhatCannotBeBuiltIsRefusedWithASentence) {
   EXPECT_EQ(
       unknown.message,
       "world: there is no built-in world \"castle\"; use one of cube, stairs, garage, bridge, "
-      "church, powerplant, city, maze, landscape");
+      "church, powerplant, city, maze, landscape, blocks");
   EXPECT_EQ(refusal({.name = "garage", .size = 5}).message,
             "world garage: size is 5 m, use 45 to 2000");
   EXPECT_EQ(refusal({.name = "maze", .size = NAN}).code, Errc::kBadConfig);
@@ -251,6 +252,55 @@ TEST(BuiltinWorlds, WhatCannotBeBuiltIsRefusedWithASentence) {
   EXPECT_EQ(refusal({.name = "city", .size = 500, .triangles = 100000}).code, Errc::kBadConfig);
   EXPECT_EQ(refusal({.name = "powerplant", .triangles = 10}).code, Errc::kBadConfig);
   EXPECT_EQ(refusal({.name = "powerplant", .triangles = 1ull << 40}).code, Errc::kBadConfig);
+}
+
+TEST(BuiltinWorlds, BlocksHaveExactlyAsManyTrianglesAsAreAskedFor) {
+  for (const uint64_t polygons : {2, 3, 13, 14, 15, 193, 194, 195, 267, 2368, 32'128}) {
+    const Scene scene = make({.name = "blocks", .triangles = polygons});
+    EXPECT_EQ(scene.triangles.size(), polygons);
+    expect_sound(scene, "blocks");
+    const Box3d box = scene.bounds();
+    EXPECT_NEAR(box.max.x - box.min.x, 316, 1e-9);
+    EXPECT_NEAR(box.max.z - box.min.z, 316, 1e-9);
+    // The ground is covered once, however it is cut.
+    double ground = 0;
+    for (const ScenePart& part : scene.parts) {
+      if (part.material != "road") continue;
+      for (uint32_t t = 0; t < part.triangle_count; ++t) {
+        ground += doubled_area(scene, scene.triangles[part.first_triangle + t]) / 2;
+      }
+    }
+    EXPECT_NEAR(ground, 316.0 * 316, 1);
+  }
+  const Scene large = make({.name = "blocks", .size = 3160, .triangles = 236'800});
+  EXPECT_EQ(large.triangles.size(), 236'800u);
+}
+
+TEST(BuiltinWorlds, BlocksRefuseWhatTheyCannotHold) {
+  const auto fault = [](const BuiltinWorldConfig& config) {
+    const auto scene = create_builtin_world(config);
+    return scene ? std::string() : scene.error().message;
+  };
+  EXPECT_EQ(fault({.name = "blocks", .triangles = 1}),
+            "world blocks: triangles is 1, use 2 to 69314 for a size of 316 m");
+  EXPECT_EQ(fault({.name = "blocks", .triangles = 69'314}), "");
+  EXPECT_EQ(fault({.name = "blocks", .triangles = 69'315}),
+            "world blocks: triangles is 69315, use 2 to 69314 for a size of 316 m");
+}
+
+// In the streets, and there alone: no roof and no bay window holds an avatar.
+TEST(BuiltinWorlds, AvatarsAmongBlocksAreInTheStreets) {
+  Context context;
+  const auto world = bake_world(make({.name = "blocks"}),
+                                {.cell = 0.5, .classes = {AvatarClass{}}, .workers = 1}, context);
+  ASSERT_TRUE(world) << world.error().message;
+  const double pitch = 316.0 / 4, half = 0.35 * pitch;
+  for (uint64_t n = 0; n < 1000; ++n) {
+    const Vec3d at = world->random_place(0, 1, n).position;
+    EXPECT_EQ(at.y, 0);
+    const double x = std::fmod(at.x, pitch) - pitch / 2, z = std::fmod(at.z, pitch) - pitch / 2;
+    EXPECT_GT(std::max(std::fabs(x), std::fabs(z)), half);
+  }
 }
 
 }  // namespace

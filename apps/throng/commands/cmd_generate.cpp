@@ -99,7 +99,7 @@ void add_generate(CLI::App& parser, Session& session) {
       ->type_name("N");
   command
       ->add_option("--triangles", config.triangles,
-                   "Grow the world to about this many (powerplant, city)")
+                   "Grow the world to about this many (powerplant, city); exactly so many (blocks)")
       ->check(at_least(0))
       ->type_name("N");
   command->add_option("--seed", config.seed, "Another seed, another world")

@@ -16,6 +16,10 @@ void build_bridge(WorldBuilder& b, const BuiltinWorldConfig& config);
 void build_church(WorldBuilder& b, const BuiltinWorldConfig& config);
 void build_powerplant(WorldBuilder& b, const BuiltinWorldConfig& config);
 void build_city(WorldBuilder& b, const BuiltinWorldConfig& config);
+/// Exactly `triangles` of them, at least 2.
+void build_blocks(WorldBuilder& b, const BuiltinWorldConfig& config);
+/// The most that blocks of this size have.
+uint64_t max_block_triangles(double size);
 /// The only world of patches: cut into triangles when it is made.
 PatchSet build_landscape(const BuiltinWorldConfig& config);
 /// The curve tolerance at which a landscape of this size still fits. [m]

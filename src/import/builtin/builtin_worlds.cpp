@@ -18,11 +18,14 @@ struct Entry {
   double (*size_for)(uint64_t triangles, int32_t levels) = nullptr;  // Null: does not grow.
   void (*build)(importer::WorldBuilder&, const BuiltinWorldConfig&) = nullptr;
   PatchSet (*build_patches)(const BuiltinWorldConfig&) = nullptr;  // Instead of `build`.
+  // For a world that has exactly as many triangles as are asked for: the most of a size.
+  uint64_t (*max_triangles)(double size) = nullptr;
+  uint64_t default_triangles = 0;
 };
 
 constexpr uint64_t kMaxTriangles = 100'000'000;  // Corners must stay below 2^32 with room.
 
-const std::array<Entry, 9> kWorlds = {{
+const std::array<Entry, 10> kWorlds = {{
     {{"cube", "a hollow cube: floor, roof and four walls without thickness", 5.8, 0.5, 10000},
      nullptr,
      importer::builtin::build_cube},
@@ -57,6 +60,13 @@ const std::array<Entry, 9> kWorlds = {{
      nullptr,
      nullptr,
      importer::builtin::build_landscape},
+    {{"blocks", "closed houses in plain streets: as many triangles as you ask for", 316, 100, 4000,
+      0, 0, kMaxTriangles},
+     nullptr,
+     importer::builtin::build_blocks,
+     nullptr,
+     importer::builtin::max_block_triangles,
+     2368},
 }};
 
 const Entry* find_entry(const std::string& name) {
@@ -104,9 +114,12 @@ Result<Scene> create_builtin_world(const BuiltinWorldConfig& config) {
     return refuse(fmt::format("levels is {}, use 1 to {}", config.levels, entry->info.max_levels));
   }
   if (config.levels == 0) full.levels = entry->info.default_levels;
-  if (config.triangles != 0) {
+  if (entry->max_triangles != nullptr) {
+    if (config.triangles == 0) full.triangles = entry->default_triangles;
+    if (config.size == 0) full.size = entry->info.default_size;
+  } else if (config.triangles != 0) {
     if (entry->size_for == nullptr) {
-      return refuse("does not grow by triangles; use size (only powerplant and city grow)");
+      return refuse("does not grow by triangles; use size (only powerplant, city and blocks grow)");
     }
     if (config.size != 0) return refuse("takes either size or triangles; leave one out");
     if (config.triangles > entry->info.max_triangles) {
@@ -124,6 +137,13 @@ Result<Scene> create_builtin_world(const BuiltinWorldConfig& config) {
   if (!(full.size >= entry->info.min_size && full.size <= entry->info.max_size)) {
     return refuse(fmt::format("size is {} m, use {} to {}", full.size, entry->info.min_size,
                               entry->info.max_size));
+  }
+  if (entry->max_triangles != nullptr) {
+    const uint64_t most = entry->max_triangles(full.size);
+    if (full.triangles < 2 || full.triangles > most) {
+      return refuse(fmt::format("triangles is {}, use 2 to {} for a size of {} m", full.triangles,
+                                most, full.size));
+    }
   }
   if (entry->build_patches != nullptr) {
     Scene scene;

@@ -37,6 +37,7 @@ constexpr std::array<MaterialInfo, static_cast<size_t>(Mat::kCount)> kMaterialTa
     {"trunk", kAreaBlocked},
     {"crown", kAreaBlocked},
     {"water", kAreaBlocked},
+    {"tiles", kAreaBlocked},
 }};
 
 // The small shift keeps products such as 0.025 * cos(60 degrees) off the tie, where the last bit

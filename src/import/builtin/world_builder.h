@@ -44,6 +44,7 @@ enum class Mat : uint8_t {
   kTrunk,
   kCrown,
   kWater,
+  kTiles,
   kCount
 };
 

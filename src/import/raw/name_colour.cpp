@@ -16,7 +16,7 @@ struct Named {
 };
 
 // The materials of built-in worlds.
-constexpr std::array<Named, 26> kWhole = {{
+constexpr std::array<Named, 27> kWhole = {{
     {"floor", 0.50F, 0.49F, 0.46F, 1},     {"slab", 0.38F, 0.38F, 0.38F, 1},
     {"wall", 0.72F, 0.66F, 0.56F, 1},      {"roof", 0.42F, 0.14F, 0.09F, 1},
     {"ramp", 0.62F, 0.47F, 0.22F, 1},      {"stairs", 0.68F, 0.52F, 0.32F, 1},
@@ -30,6 +30,7 @@ constexpr std::array<Named, 26> kWhole = {{
     {"car light", 0.70F, 0.71F, 0.73F, 1}, {"tyre", 0.02F, 0.02F, 0.02F, 1},
     {"glass", 0.06F, 0.12F, 0.16F, 1},     {"trunk", 0.16F, 0.09F, 0.04F, 1},
     {"crown", 0.10F, 0.26F, 0.06F, 1},     {"water", 0.05F, 0.18F, 0.26F, 1},
+    {"tiles", 0.36F, 0.13F, 0.09F, 1},
 }};
 
 // Words that may stand anywhere in a name; the first that is found counts:

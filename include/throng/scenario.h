@@ -239,6 +239,9 @@ struct Scenario {
 /// The same for a text. `name` is used in messages; relative paths start at its folder.
 [[nodiscard]] THRONG_API Result<Scenario> parse_scenario(const std::string& text,
                                                          const std::string& name);
+/// Reads a density map from a PNG, a picture seen from above whose brightness is the weight. Its
+/// corners are not in the file: they stay 0. Fails with kBadFile, also if all weights are 0.
+[[nodiscard]] THRONG_API Result<DensityGrid> load_density(const std::string& path);
 /// Opens the scenario's world, or bakes it in memory.
 [[nodiscard]] THRONG_API Result<World> open_world(const Scenario& scenario, Context& context);
 /// Reads the triangles that a scenario's world is baked from. Fails as load_scene does, and with

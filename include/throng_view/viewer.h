@@ -111,7 +111,12 @@ struct CrowdStart {
   /// The density is that of `avatars` spread over all ground that is reachable from below the eye.
   /// No avatar appears or disappears in sight. All are of the class with the largest share.
   bool only_seen = false;
-  double sight = 150;       ///< [m, > 0]
+  double sight = 150;  ///< [m, > 0]
+  /// With only_seen: GeneratorConfig::map. Corners that are all 0 stand for those of the world.
+  DensityGrid map = {};
+  /// With only_seen, if not 0: ground is populated for the whole region of the eye, so far to its
+  /// sides (GeneratorConfig::region). [m, >= 0]
+  double region = 0;
   bool coarse_far = false;  ///< Avatars beyond 300 m are simulated in low detail.
   /// Maps from which goals are drawn by weight; empty or all 0: see `near`.
   std::vector<DensityMap> density = {};

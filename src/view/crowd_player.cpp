@@ -328,6 +328,56 @@ std::vector<GeneratorShare> CrowdPlayer::mix_at(const Place& home) const {
   return mix.size() > 1 ? mix : std::vector<GeneratorShare>();
 }
 
+Result<void> CrowdPlayer::make_generators(const EyePlace& now) {
+  GeneratorConfig config;
+  config.avatar_class = commonest_class();
+  config.home = place_under(now.eye, config.avatar_class);
+  config.radius = start_.sight;
+  config.seed = start_.seed;
+  config.workers = workers_;
+  config.people = start_.avatars;
+  config.mix = mix_at(config.home);
+  config.map = start_.map;
+  DensityGrid& map = config.map;
+  if (map.x0 == 0 && map.z0 == 0 && map.x1 == 0 && map.z1 == 0) {
+    const Box3d bounds = world_.summary().bounds;
+    map.x0 = bounds.min.x, map.z0 = bounds.min.z;
+    map.x1 = bounds.max.x, map.z1 = bounds.max.z;
+  }
+  if (start_.region > 0) config.region = start_.region;
+  Context quiet;
+  Result<AvatarGenerators> made = AvatarGenerators::create(world_, config, quiet);
+  if (!made) return made.error();
+  SeenOnly& s = *seen_only_;
+  s.generators = *std::move(made);
+  if (start_.region > 0) {
+    s.generators->set_region_sight(
+        [this](const Vec3d& eye, const Box3d& box) { return sees_in_region(eye, box); });
+  }
+  return {};
+}
+
+// The generators ask box by box from each of five points, so a few depth images serve them all.
+bool CrowdPlayer::sees_in_region(const Vec3d& eye, const Box3d& box) {
+  constexpr size_t kPoints = 5;
+  SeenOnly& s = *seen_only_;
+  EyePlace place = *place_;
+  place.eye = eye;
+  for (const SeenOnly::RegionSight& known : s.region) {
+    if (known.place == place) return known.sight.sees(box);
+  }
+  if (s.region.size() < kPoints) {
+    s.region.push_back({place, s.sights[0]});
+    s.oldest = s.region.size() - 1;
+  } else {
+    s.oldest = (s.oldest + 1) % kPoints;
+  }
+  SeenOnly::RegionSight& made = s.region[s.oldest];
+  made.place = place;
+  made.sight.look_from(place, start_.sight + kLookMargin);
+  return made.sight.sees(box);
+}
+
 Result<void> CrowdPlayer::keep_populated() {
   constexpr double kMaxEyeMove = 10;  // [m] After a larger one the crowd is populated again.
   constexpr double kLookAhead = 3;    // [steps]
@@ -353,17 +403,7 @@ Result<void> CrowdPlayer::keep_populated() {
                        [&box](const EyeSight& sight) { return sight.sees(box); });
   };
   if (!s.generators) {
-    GeneratorConfig config;
-    config.avatar_class = commonest_class();
-    config.home = place_under(now.eye, config.avatar_class);
-    config.radius = start_.sight;
-    config.seed = start_.seed;
-    config.workers = workers_;
-    config.people = start_.avatars;
-    config.mix = mix_at(config.home);
-    Result<AvatarGenerators> made = AvatarGenerators::create(world_, config, quiet);
-    if (!made) return made.error();
-    s.generators = *std::move(made);
+    if (auto ok = make_generators(now); !ok) return ok;
   }
   const Result<GeneratorReport> done = jumped
                                            ? s.generators->populate(crowd_, now.eye, can_see, quiet)

@@ -37,6 +37,13 @@ struct SeenOnly {
   std::optional<AvatarGenerators> generators;
   std::optional<EyePlace> looked;
   std::string fault;
+  // From the points of CrowdStart::region: the oldest is replaced.
+  struct RegionSight {
+    EyePlace place;
+    EyeSight sight;
+  };
+  std::vector<RegionSight> region;
+  size_t oldest = 0;
 };
 
 /// Steps a crowd in which each avatar gets one goal after the other. The same start gives the same
@@ -104,6 +111,8 @@ class CrowdPlayer final : public TimelinePlayer {
   [[nodiscard]] Place place_under(Vec3d eye, int32_t avatar_class) const;
   [[nodiscard]] bool is_on_large_ground(int32_t avatar_class, Place place) const;
   Result<void> keep_populated();
+  Result<void> make_generators(const EyePlace& now);
+  bool sees_in_region(const Vec3d& eye, const Box3d& box);
   void set_views();
   void set_curves_of(uint32_t slot, const CurvilinearTuning& tuning);
   [[nodiscard]] std::shared_ptr<const CurvedFrame> curved() const;

@@ -166,7 +166,7 @@ class ProgramOptions(ProgramCase):
         self.write_hall()
         self.assertEqual(self.run_throng("run", "hall.toml", "--record", "hall.replay").returncode, 0)
         view, film = ("view", "--picture", "a.png"), ("film", "-o", "a.mp4")
-        of_both = (("--avatars", 5), ("--near", 5), ("--sight", 50), ("--only-seen",), ("--coarse-far",))
+        of_both = (("--avatars", 5), ("--near", 5), ("--sight", 50), ("--only-seen",), ("--coarse-far",), ("--density", "map.png"), ("--region", 2))
         for target in ("hall.toml", "hall.replay"):
             for words in (*of_both, ("--speed", 2), ("--dt", 0.2), ("--zones",), ("--cell", 0.2), ("--model", "caacd"), ("--axes", "side")):
                 self.assert_refused(self.run_throng(*view, target, *words), f"{target}: {words[0]} is for", "leave it out")
@@ -175,6 +175,20 @@ class ProgramOptions(ProgramCase):
         self.assert_refused(self.run_throng(*view, "hall.replay", "--seed", 2), "hall.replay: --seed")
         self.assert_refused(self.run_throng(*view, "hall.toml", "--world", self.world), "hall.toml: --world is for recordings")
         self.assert_refused(self.run_throng(*view, self.world, "--up", "z"), "--up is for model files; name one")
+
+    def test_gl_a_density_map_of_the_viewer_is_refused_by_name_where_it_says_nothing(self):
+        view, film = ("view", self.world, "--picture", "a.png"), ("film", self.world, "-o", "a.mp4")
+        (self.path / "map.png").write_bytes(grey_png([[0, 255], [0, 255]]))
+        for command in (view, film):
+            self.assert_refused(self.run_throng(*command, "--density", "map.png"), "--density goes with --only-seen")
+            self.assert_refused(self.run_throng(*command, "--region", 2), "--region goes with --only-seen")
+            self.assert_refused(self.run_throng(*command, "--only-seen", "--density-box", "0,0,9,9"), "--density-box goes with --density")
+            self.assert_refused(self.run_throng(*command, "--only-seen", "--density", "none.png"), "none.png")
+            self.assert_refused(self.run_throng(*command, "--only-seen", "--density", "map.png", "--density-box", "9,0,0,9"), "--density-box", "low corner")
+        (self.path / "black.png").write_bytes(grey_png([[0]]))
+        self.assert_refused(self.run_throng(*view, "--only-seen", "--density", "black.png"), "black.png", "weights are all 0")
+        self.assert_refused(self.run_throng("run", self.world, "--density", "map.png"), "--density")
+        self.assertFalse((self.path / "a.png").exists())
 
     def test_gl_the_viewer_runs_the_experiment_of_caacd_as_the_program_does(self):
         view = ("view", "builtin:caacd", "--picture", "a.png", "--width", 480, "--height", 320, "--json")

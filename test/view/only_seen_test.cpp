@@ -177,6 +177,61 @@ TEST(OnlySeen, TheWholeMixIsKept) {
   EXPECT_NEAR(children / all, 1.0 / 3, 0.08);
 }
 
+// Streets are black west of x = 50, grey to x = 110 and white beyond. Seen from a crossing, with
+// and without the region around the eye.
+TEST(OnlySeen, AvatarsAreWhereTheMapIsBright) {
+  CrowdStart start = start_with(600);
+  start.sight = 200;
+  start.map.width = 16, start.map.height = 1;
+  for (int32_t column = 0; column < 16; ++column) {
+    start.map.weights.push_back(column < 5 ? 0 : column < 11 ? 60 : 240);
+  }
+  for (const double region : {0.0, 2.0}) {
+    start.region = region;
+    Context context;
+    auto made = view::CrowdPlayer::create(town().world, {}, start, 1, {},
+                                          view::occluders_of(town().scene, {}), context);
+    ASSERT_TRUE(made) << made.error().message;
+    double grey = 0, white = 0;
+    for (int step = 0; step < 100; ++step) {
+      (*made)->look_from({.eye = {95 + 0.02 * step, 1.7, 65}});
+      const auto now = (*made)->next();
+      ASSERT_NE(now, nullptr);
+      ASSERT_EQ(now->fault, "");
+      for (const float x : now->x) {
+        ASSERT_GE(x, 50);
+        ASSERT_LE(x, 160);
+        grey += x < 110 ? 1 : 0;
+        white += x >= 110 ? 1 : 0;
+      }
+    }
+    EXPECT_GT(grey, 500);
+    EXPECT_GT(white, 2 * grey);  // A quarter of the weight.
+  }
+}
+
+// A picture of its own corners: beyond it there are none.
+TEST(OnlySeen, TheMapHasCorners) {
+  CrowdStart start = start_with(600);
+  start.map = {.x0 = 60, .z0 = 60, .x1 = 100, .z1 = 100, .width = 1, .height = 1, .weights = {9}};
+  Context context;
+  auto made = view::CrowdPlayer::create(town().world, {}, start, 1, {},
+                                        view::occluders_of(town().scene, {}), context);
+  ASSERT_TRUE(made) << made.error().message;
+  size_t all = 0;
+  for (int step = 0; step < 30; ++step) {
+    (*made)->look_from({.eye = {65, 1.7, 65}});
+    const auto now = (*made)->next();
+    ASSERT_NE(now, nullptr);
+    ASSERT_EQ(now->fault, "");
+    for (size_t i = 0; i < now->size(); ++i) {
+      ASSERT_TRUE(now->x[i] >= 60 && now->x[i] <= 100 && now->z[i] >= 60 && now->z[i] <= 100);
+    }
+    all += now->size();
+  }
+  EXPECT_GT(all, 300U);
+}
+
 LoadStage stage_of(const CrowdStart& start) {
   return [start](StageParts& parts, Context&) -> Result<void> {
     if (auto ok = parts.set_scene(town().scene); !ok) return ok;

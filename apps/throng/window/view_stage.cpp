@@ -240,6 +240,27 @@ Result<void> read_experiment(ViewTarget& target, bool has_avatars) {
   return {};
 }
 
+// --density and --density-box: read now, so that a bad picture is refused before a window opens.
+Result<void> read_density(ViewTarget& target, bool has_box) {
+  if (target.density.empty()) {
+    if (!has_box) return {};
+    return Error{Errc::kBadConfig,
+                 target.path + ": --density-box goes with --density; add that, or leave it out"};
+  }
+  Result<DensityGrid> map = load_density(target.density);
+  if (!map) return map.error();
+  target.start.map = *std::move(map);
+  if (!has_box) return {};
+  const std::vector<double>& box = target.density_box;
+  if (!(box[0] < box[2] && box[1] < box[3])) {
+    return Error{Errc::kBadConfig,
+                 target.path + ": --density-box is X0,Z0,X1,Z1, low corner first"};
+  }
+  DensityGrid& grid = target.start.map;
+  grid.x0 = box[0], grid.z0 = box[1], grid.x1 = box[2], grid.z1 = box[3];
+  return {};
+}
+
 }  // namespace
 
 void add_people_options(CLI::App* command, ViewTarget& target) {
@@ -248,6 +269,21 @@ void add_people_options(CLI::App* command, ViewTarget& target) {
   command->add_option("--sight", target.start.sight, "With --only-seen: max distance [m]")
       ->check(between(1.0, 2000.0))
       ->capture_default_str();
+  command
+      ->add_option("--density", target.density,
+                   "With --only-seen: picture from above; the brighter, the more avatars, which "
+                   "walk where it is bright and never where it is black")
+      ->type_name("FILE.png");
+  command
+      ->add_option("--density-box", target.density_box,
+                   "With --density: corners of the picture, the world's if not given [m]")
+      ->expected(4)
+      ->delimiter(',')
+      ->type_name("X0,Z0,X1,Z1");
+  command
+      ->add_option("--region", target.start.region,
+                   "With --only-seen: also what is seen from so far beside the camera [m]")
+      ->check(between(0.0, 100.0));
   command->add_flag("--coarse-far", target.start.coarse_far,
                     "Simulate avatars more than 300 m away in longer steps");
   command
@@ -280,8 +316,9 @@ Result<void> check_options(const CLI::App& command, ViewTarget& target) {
   };
   if (!is_replay && is_given("--world")) return refusal("--world", "is for recordings");
   if (is_plane) {
-    for (const char* name : {"--model", "--axes", "--near", "--speed", "--dt", "--zones",
-                             "--only-seen", "--sight", "--coarse-far", "--cell", "--source"}) {
+    for (const char* name :
+         {"--model", "--axes", "--near", "--speed", "--dt", "--zones", "--only-seen", "--sight",
+          "--coarse-far", "--cell", "--source", "--density", "--density-box", "--region"}) {
       if (is_given(name)) return refusal(name, "is not for the experiment of [CAACD]");
     }
     return read_experiment(target, is_given("--avatars"));
@@ -291,10 +328,16 @@ Result<void> check_options(const CLI::App& command, ViewTarget& target) {
     if (auto ok = read_curves(target.curves, target.start.model, tuning); !ok) return ok;
     target.start.curves = tuning.curvilinear;
     target.start.flyer_axes = tuning.flyer_axes;
-    return {};
+    for (const char* name : {"--density", "--region"}) {
+      if (is_given(name) && !target.start.only_seen) {
+        return refusal(name, "goes with --only-seen; add that, or");
+      }
+    }
+    return read_density(target, is_given("--density-box"));
   }
   for (const char* name : {"--avatars", "--near", "--speed", "--dt", "--zones", "--only-seen",
-                           "--sight", "--coarse-far", "--model", "--set", "--order", "--axes"}) {
+                           "--sight", "--coarse-far", "--model", "--set", "--order", "--axes",
+                           "--density", "--density-box", "--region"}) {
     if (is_given(name)) return refusal(name, "is for a crowd in a world or model");
   }
   if (is_given("--cell")) return refusal("--cell", "is for a model that is baked now");

@@ -25,6 +25,8 @@ struct ViewTarget {
   bool crowd = true;                         ///< Start one in a world.
   std::optional<uint64_t> seed;              ///< Of a scenario, in place of its own.
   CrowdStart start;
+  std::string density = {};              ///< A picture: check_options reads it into `start`.
+  std::vector<double> density_box = {};  ///< Its corners x0, z0, x1, z1; empty: the world's. [m]
   CurveWords curves = {};  ///< check_options reads them into `start`, or `experiment`.
   ExperimentStart experiment = {};
 };
@@ -32,8 +34,8 @@ struct ViewTarget {
 /// The target that is no model: the experiment of [CAACD] section V.
 inline constexpr const char* kExperiment = "builtin:caacd";
 
-/// Options of simulated avatars and their look: --only-seen, --sight, --coarse-far, --atlas,
-/// --character, and --world.
+/// Options of simulated avatars and their look: --only-seen, --sight, --density, --density-box,
+/// --region, --coarse-far, --atlas, --character, and --world.
 void add_people_options(CLI::App* command, ViewTarget& target);
 /// --model, --set, --order and --axes.
 void add_curve_options(CLI::App* command, ViewTarget& target);

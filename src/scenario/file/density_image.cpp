@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "core/files/read_file.h"
 
@@ -61,3 +62,19 @@ void paint_density(DensityMap& map, std::span<const Prism> prisms, uint8_t weigh
 }
 
 }  // namespace throng::scenario
+
+namespace throng {
+
+Result<DensityGrid> load_density(const std::string& path) {
+  DensityMap picture;
+  if (auto ok = scenario::read_density_image(path, picture); !ok) return ok.error();
+  DensityGrid map;
+  map.width = picture.width, map.height = picture.height;
+  map.weights = std::move(picture.weights);
+  if (std::all_of(map.weights.begin(), map.weights.end(), [](uint8_t w) { return w == 0; })) {
+    return Error{Errc::kBadFile, path + ": its weights are all 0; paint where avatars may be"};
+  }
+  return map;
+}
+
+}  // namespace throng

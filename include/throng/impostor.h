@@ -32,6 +32,24 @@ inline constexpr int32_t kBodyParts = 6;
 /// The name of a body part: "other", "skin", "hair", "shirt", "pants", "shoes".
 [[nodiscard]] THRONG_API const char* word_for(BodyPart part);
 
+/// What an avatar may wear over its body. Avatars of one body wear different parts.
+enum class WornKind : uint8_t { kHair, kHat, kCoat, kBag, kSkirt };
+/// Number of WornKind values.
+inline constexpr int32_t kWornKinds = 5;
+/// The name of a kind: "hair", "hat", "coat", "bag", "skirt".
+[[nodiscard]] THRONG_API const char* word_for(WornKind kind);
+
+/// A part that avatars wear or not, as triangles of Character: they follow the same skeleton. An
+/// avatar wears at most one of a kind.
+struct WornPart {
+  std::string name;
+  WornKind kind = WornKind::kHair;
+  uint32_t first_triangle = 0;  ///< Into Character::triangles.
+  uint32_t triangle_count = 0;
+};
+/// Maximum number of parts of a character.
+inline constexpr size_t kMaxWorn = 16;
+
 /// A joint of the skeleton: a frame of reference that clips move. Parents come before their
 /// children.
 struct Joint {
@@ -86,6 +104,13 @@ struct Character {
   std::vector<uint8_t> material;  ///< One per triangle.
   std::vector<CharacterMaterial> materials;
   std::vector<Clip> clips;
+  /// What not all avatars wear, in order: the triangles from the first one's on are these parts',
+  /// all before are the body. No vertex is of two of them.
+  std::vector<WornPart> worn = {};
+  /// The number of triangles of the body.
+  [[nodiscard]] size_t body_triangles() const {
+    return worn.empty() ? triangles.size() : worn[0].first_triangle;
+  }
 };
 
 /// Maximum number of bones of a character.
@@ -99,6 +124,16 @@ inline constexpr size_t kMaxBones = 256;
 
 /// A generated character of 1.75 m with the clips "Walk" and "Idle". Left and right are alike.
 [[nodiscard]] THRONG_API Character built_in_character();
+
+/// The same with parts to wear: long hair, a bun, a hat, a cap, a coat, a rucksack, a skirt.
+[[nodiscard]] THRONG_API Character built_in_character_with_parts();
+
+/// Puts a part of one character on another: the triangles of `from` whose material is of
+/// `part`, or, if `from` wears parts, those of its worn ones of `kind`. They follow the joints of
+/// `onto` that have the same names. Fails with kNotFound: `from` has no such triangles, or `onto`
+/// lacks a joint that moves them; with kLimit: bones, materials or parts.
+[[nodiscard]] THRONG_API Result<void> wear_part(Character& onto, const Character& from,
+                                                BodyPart part, WornKind kind);
 
 /// The index of the clip with a name: the whole name or its last word ("Walk" finds
 /// "Armature|Man_Walk"); case is ignored. Fails with kNotFound and the names of the clips.
@@ -154,6 +189,12 @@ struct AtlasClip {
   double stride = 0;   ///< Distance walked in one cycle; 0 if it stands. [m]
 };
 
+/// A part of an atlas that avatars wear or not. Its views are those of what is not behind the body.
+struct AtlasPart {
+  std::string name;
+  WornKind kind = WornKind::kHair;
+};
+
 /// The place of a view in the atlas: `width` x `height` texels at (x, y) of `page` are the part at
 /// (left, top) of a square of AtlasShape::pixels, the rest of which is empty. Texel rows go down.
 struct AtlasView {
@@ -187,7 +228,8 @@ struct AtlasShape {
 struct Atlas {
   AtlasShape shape;
   std::vector<AtlasClip> clips;
-  std::vector<AtlasView> views;  ///< See AtlasShape::view.
+  /// See AtlasShape::view. Behind those of the body there are as many of each part.
+  std::vector<AtlasView> views;
   AtlasFormat format = AtlasFormat::kRgba8;
   int32_t width = 0, height = 0;  ///< Of a page. [texels, multiples of 4]
   int32_t pages = 0;
@@ -198,7 +240,12 @@ struct Atlas {
   std::vector<uint8_t> mask;
   /// Mean albedo of each BodyPart, stored like colours: the reference of a tint.
   std::array<std::array<uint8_t, 3>, kBodyParts> part_colour{};
+  std::vector<AtlasPart> parts = {};  ///< What avatars may wear. [at most kMaxWorn]
 };
+
+/// Which parts an avatar of an appearance wears: bit i for parts[i]. Of each kind it wears one or
+/// none, each chosen by a hash of its own, so that all exchange with all.
+[[nodiscard]] THRONG_API uint32_t worn_by(std::span<const AtlasPart> parts, uint32_t appearance);
 
 /// Makes an atlas: poses and draws a character from all sides. Linear in views and triangles. Fails
 /// with kBadConfig, kNotFound (clip), kBadInput (a character without height), kLimit (too many
@@ -380,6 +427,8 @@ struct FigureModel {
   std::vector<ModelPaint> paint;   ///< One per vertex.
   std::vector<std::array<uint32_t, 3>> triangles;
   Vec3d low, high;  ///< Bounds of all poses; feet at 0, facing +Z. [m]
+  /// As Character::worn: their triangles are behind those of the body.
+  std::vector<WornPart> worn = {};
 };
 
 /// Poses a character as create_atlas does; uses only `clips`, `frames` and `height` of the

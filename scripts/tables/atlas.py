@@ -53,8 +53,8 @@ def main():
     argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
     WORK.mkdir(parents=True, exist_ok=True)
     rows, met = [], True
-    for path in [None, *sorted(CHARACTERS.glob("*.*"))]:
-        name = path.name if path else "built-in figure"
+    for path in [None, "--parts", *sorted(CHARACTERS.glob("*.*"))]:
+        name = {None: "built-in figure", "--parts": "with seven parts to wear"}.get(path) or path.name
         report = run_json(PROGRAM, "atlas", *([path] if path else []), "-o", WORK / "figure.atlas", "--json")
         formats = {row["format"]: row for row in report["formats"]}
         sheet = formats["rgb5a1"]["sheet_bytes"] <= MAX_SQUARE * MIB

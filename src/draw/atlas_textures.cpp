@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "draw/wardrobe.h"
+
 // Uploads an atlas: colours as blocks where the card reads them, else unpacked; details; views.
 namespace throng::draw {
 namespace {
@@ -149,6 +151,11 @@ Result<AtlasTextures> AtlasTextures::create(const Atlas& packed) {
   out.shape.shape = atlas.shape;
   out.extents = extents_of(atlas);
   out.shape.clips = atlas.clips;
+  out.shape.parts = atlas.parts;
+  out.shape.views = atlas.views;
+  for (uint32_t look = 0; look < kLooks && !atlas.parts.empty(); ++look) {
+    out.worn.push_back(worn_by(atlas.parts, look));
+  }
   out.shape.width = atlas.width;
   out.shape.height = atlas.height;
   for (size_t part = 0; part < out.part_bright.size(); ++part) {

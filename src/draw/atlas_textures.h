@@ -25,6 +25,7 @@ struct AtlasTextures {
   std::array<float, kBodyParts> part_bright{};  ///< On the mean, of linear light.
   size_t colour_bytes = 0;  ///< Of the largest level: blocks stay blocks where the card reads them.
   GlTexture colour, detail, views;
+  std::vector<uint32_t> worn;  ///< By look: worn_by(). Empty if the atlas has no parts.
 };
 
 }  // namespace throng::draw

@@ -23,21 +23,38 @@ constexpr int kLooksUnit = 5;
 constexpr size_t kCardsADraw = 16384;  // Their corners have numbers of 16 bits.
 
 // The outfit of each look: the three colours of an avatar that is drawn as a point (head, chest,
-// legs), and which of its twelve colours each part has, in four bits each.
-GlTexture make_looks() {
+// legs), and which of its twelve colours each part has, in four bits each. In the next row, which
+// colours its worn parts have.
+GlTexture make_looks(const std::vector<AtlasPart>& worn) {
   const auto all = wardrobe();
-  std::vector<uint32_t> words(size_t{4} * kLooks);
+  std::vector<uint32_t> words(size_t{2} * 4 * kLooks);
   for (uint32_t look = 0; look < kLooks; ++look) {
-    const uint32_t outfit = outfit_of(look);
+    const uint32_t outfit = outfit_of(look), colours = worn_colours_of(look);
+    const uint32_t wears = worn_by(worn, look);
+    const auto wears_a = [&](WornKind kind) {
+      for (size_t i = 0; i < worn.size(); ++i) {
+        if ((wears >> i & 1) != 0 && worn[i].kind == kind) return true;
+      }
+      return false;
+    };
     const auto cloth = [&](BodyPart part, size_t channel) {
       const auto p = static_cast<uint32_t>(part);
       return all[(p * kColoursAPart + (outfit >> 4 * p & 15)) * 3 + channel];
     };
+    // Its own colour of this part, or that of what is worn over it, of the colours of `as`.
+    const auto seen = [&](BodyPart part, WornKind over, BodyPart as, size_t channel) {
+      if (!wears_a(over)) return cloth(part, channel);
+      const uint32_t colour = colours >> 4 * static_cast<uint32_t>(over) & 15;
+      return all[(static_cast<uint32_t>(as) * kColoursAPart + colour) * 3 + channel];
+    };
     words[look * size_t{4} + 3] = outfit;
+    words[(kLooks + look) * size_t{4}] = colours;
     for (size_t channel = 0; channel < 3; ++channel) {
       const float parts[] = {
-          0.5F * (cloth(BodyPart::kSkin, channel) + cloth(BodyPart::kHair, channel)),
-          cloth(BodyPart::kShirt, channel), cloth(BodyPart::kPants, channel)};
+          0.5F * (cloth(BodyPart::kSkin, channel) +
+                  seen(BodyPart::kHair, WornKind::kHat, BodyPart::kPants, channel)),
+          seen(BodyPart::kShirt, WornKind::kCoat, BodyPart::kShirt, channel),
+          seen(BodyPart::kPants, WornKind::kSkirt, BodyPart::kPants, channel)};
       for (size_t i = 0; i < 3; ++i) {
         const auto root = static_cast<uint32_t>(std::lround(std::sqrt(parts[i]) * 255));
         words[look * size_t{4} + i] |= root << 8 * channel;
@@ -46,8 +63,8 @@ GlTexture make_looks() {
   }
   GlTexture texture = make_texture();
   glBindTexture(GL_TEXTURE_2D, texture.get());
-  glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA32UI, kLooks, 1);
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kLooks, 1, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
+  glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA32UI, kLooks, 2);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, kLooks, 2, GL_RGBA_INTEGER, GL_UNSIGNED_INT,
                   words.data());
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
@@ -97,7 +114,6 @@ Result<void> CrowdPass::make_programs() {
   glBindVertexArray(cards_.get());
   card_corners_ = make_card_corners();
   glBindVertexArray(0);
-  looks_ = make_looks();
   return check_linked({&impostor_, &blended_, &model_, &point_, &shadow_, &leaning_impostor_,
                        &leaning_model_, &leaning_shadow_});
 }
@@ -107,6 +123,7 @@ Result<size_t> CrowdPass::add_atlas(const Atlas& atlas) {
   if (!made) return made.error();
   atlases_.push_back(*std::move(made));
   models_.emplace_back();
+  looks_.push_back(make_looks(atlas.parts));
   return atlases_.size() - 1;
 }
 
@@ -132,6 +149,68 @@ void CrowdPass::Runs::add(const Run& run) {
   runs.push_back(run);
   runs.back().first = used;
   used += run.count;
+}
+
+namespace {
+
+// The view, or the heading and phase, and the look.
+uint32_t word_of(const ImpostorInstance& instance) { return instance.view; }
+uint32_t word_of(const BlendedInstance& instance) { return instance.nearest_below.view; }
+uint32_t word_of(const LeaningInstance& instance) { return instance.body.view; }
+
+// Shows a part's views in place of the body's.
+void shift_views(ImpostorInstance& instance, uint32_t by) { instance.view += by; }
+void shift_views(BlendedInstance& instance, uint32_t by) {
+  instance.nearest_below.view += by;
+  for (uint32_t& other : instance.others) other += by;
+}
+void shift_views(LeaningInstance& instance, uint32_t by) { instance.body.view += by; }
+
+// Does a view show nothing, as that of a rucksack from the front?
+bool shows_nothing(const std::vector<AtlasView>& views, uint32_t word) {
+  const AtlasView& view = views[word & 0xfffff];
+  return view.width == 4 && view.height == 4 && view.left == 0 && view.top == 0;
+}
+bool shows_nothing(const std::vector<AtlasView>& views, const BlendedInstance& instance) {
+  return shows_nothing(views, instance.nearest_below.view) &&
+         std::all_of(instance.others.begin(), instance.others.end(),
+                     [&](uint32_t other) { return shows_nothing(views, other); });
+}
+bool shows_nothing(const std::vector<AtlasView>& views, const ImpostorInstance& instance) {
+  return shows_nothing(views, instance.view);
+}
+bool shows_nothing(const std::vector<AtlasView>& views, const LeaningInstance& instance) {
+  return shows_nothing(views, instance.body.view);
+}
+
+}  // namespace
+
+template <class Instance>
+void CrowdPass::add_runs(Level<Instance>& level, const Run& bodies, size_t layers) {
+  const size_t begin = level.used;
+  level.add(bodies);
+  const AtlasTextures& atlas = atlases_[bodies.atlas];
+  if (atlas.worn.empty()) return;
+  const AtlasShape& shape = atlas.shape.shape;
+  // Meshes name no view.
+  const bool has_views = static_cast<const void*>(&level) != &meshes_ &&
+                         static_cast<const void*>(&level) != &leaning_meshes_;
+  for (size_t layer = 1; layer < layers; ++layer) {
+    const auto shift =
+        has_views ? static_cast<uint32_t>(layer * shape.view(shape.frames, 0, 0)) : 0;
+    Run run = bodies;
+    run.layer = layer;
+    run.count = 0;
+    for (size_t i = begin; i < begin + bodies.count; ++i) {
+      if ((atlas.worn[word_of(level.instances[i]) >> 21] >> (layer - 1) & 1) == 0) continue;
+      level.reserve(run.count + 1);
+      Instance& instance = level.instances[level.used + run.count];
+      instance = level.instances[i];
+      shift_views(instance, shift);
+      if (!has_views || !shows_nothing(atlas.shape.views, instance)) ++run.count;
+    }
+    level.add(run);
+  }
 }
 
 template <class Instance>
@@ -194,15 +273,19 @@ void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& co
                                models_[crowd.atlas] ? config.mesh_texel : 0, config.point_pixels);
       levels.blend_share = config.view_blend;
     }
+    const size_t count = crowd.avatars.x.size();
+    meshes_.reserve(count), views_.reserve(count), points_.reserve(count), blends_.reserve(count);
     const LevelCounts counts = pack_levels(shape, crowd.avatars, pack_config, levels,
                                            {.meshes = meshes_.rest(),
                                             .views = views_.rest(),
                                             .points = points_.rest(),
                                             .blends = blends_.rest()});
-    meshes_.add({crowd.atlas, crowd.clip, 0, counts.meshes, levels});
-    views_.add({crowd.atlas, crowd.clip, 0, counts.views, levels});
+    const size_t layers = plain ? 1 : 1 + shape.parts.size();
+    add_runs(meshes_, {crowd.atlas, crowd.clip, 0, counts.meshes, levels},
+             models_[crowd.atlas] ? std::min(layers, models_[crowd.atlas]->layers()) : 1);
+    add_runs(views_, {crowd.atlas, crowd.clip, 0, counts.views, levels}, layers);
     points_.add({crowd.atlas, crowd.clip, 0, counts.points, levels});
-    blends_.add({crowd.atlas, crowd.clip, 0, counts.blends, levels});
+    add_runs(blends_, {crowd.atlas, crowd.clip, 0, counts.blends, levels}, layers);
   }
   drawn_ = count_avatars(config);
   hidden_ = 0;
@@ -213,12 +296,10 @@ void CrowdPass::pack(std::span<const DrawnCrowd> crowds, const DrawingConfig& co
                                  .clip = crowd.clip,
                                  .from_direction = to_sun,
                                  .workers = config.workers};
-    thrown_.add(
-        {crowd.atlas,
-         crowd.clip,
-         0,
-         pack_impostors(atlases_[crowd.atlas].shape, crowd.avatars, pack_config, thrown_.rest()),
-         {}});
+    const Atlas& shape = atlases_[crowd.atlas].shape;
+    thrown_.reserve(crowd.avatars.x.size());
+    const size_t count = pack_impostors(shape, crowd.avatars, pack_config, thrown_.rest());
+    add_runs(thrown_, {crowd.atlas, crowd.clip, 0, count, {}}, 1 + shape.parts.size());
   }
 }
 
@@ -231,19 +312,19 @@ void CrowdPass::pack_leaning_crowd(const DrawnCrowd& crowd, const DrawingConfig&
   const LevelDistances levels =
       level_distances(shape.shape, config.camera, config.height * config.samples,
                       models_[crowd.atlas] ? config.mesh_texel : 0, 0);
-  for (auto* level : {&leaning_meshes_, &leaning_views_, &leaning_thrown_}) {
-    if (level->instances.size() < level->used + count) level->instances.resize(level->used + count);
-  }
+  for (auto* level : {&leaning_meshes_, &leaning_views_, &leaning_thrown_}) level->reserve(count);
   const LevelCounts counts =
       pack_leaning(shape, crowd, pack_config, levels,
                    {.meshes = leaning_meshes_.rest(), .views = leaning_views_.rest()});
-  leaning_meshes_.add({crowd.atlas, crowd.clip, 0, counts.meshes, levels});
-  leaning_views_.add({crowd.atlas, crowd.clip, 0, counts.views, levels});
+  const size_t layers = 1 + shape.parts.size();
+  add_runs(leaning_meshes_, {crowd.atlas, crowd.clip, 0, counts.meshes, levels},
+           models_[crowd.atlas] ? std::min(layers, models_[crowd.atlas]->layers()) : 1);
+  add_runs(leaning_views_, {crowd.atlas, crowd.clip, 0, counts.views, levels}, layers);
   if (!config.avatar_shadows) return;
   pack_config.from_direction = to_sun;
   const LevelCounts thrown =
       pack_leaning(shape, crowd, pack_config, {}, {.meshes = {}, .views = leaning_thrown_.rest()});
-  leaning_thrown_.add({crowd.atlas, crowd.clip, 0, thrown.views, {}});
+  add_runs(leaning_thrown_, {crowd.atlas, crowd.clip, 0, thrown.views, {}}, layers);
 }
 
 template <class Instance>
@@ -328,9 +409,14 @@ size_t CrowdPass::count_avatars(const DrawingConfig& config) const {
     const float dx = eye_x - i.x, dy = eye_y - (i.y + centre), dz = eye_z - i.z;
     return dx * dx + dy * dy + dz * dz >= static_cast<float>(distance * distance);
   };
-  std::atomic<size_t> count{meshes_.used + leaning_meshes_.used};
+  std::atomic<size_t> count{0};
+  for (const Runs* meshes :
+       {static_cast<const Runs*>(&meshes_), static_cast<const Runs*>(&leaning_meshes_)}) {
+    for (const Run& run : meshes->runs) count += run.layer == 0 ? run.count : 0;
+  }
   const auto add = [&](const auto& level, const auto& is_first) {
     for (const Run& run : level.runs) {
+      if (run.layer > 0) continue;
       parallel_ranges(run.count, 2048, config.workers, [&](size_t begin, size_t end) {
         const auto first = level.instances.begin() + static_cast<ptrdiff_t>(run.first);
         count += static_cast<size_t>(std::count_if(
@@ -399,7 +485,18 @@ int CrowdPass::first_texel(const Runs& level, size_t instance) {
 }
 
 void CrowdPass::use_run(const GlProgram& program, const Runs& level, const Run& run) const {
-  atlases_[run.atlas].bind(program);
+  const AtlasTextures& atlas = atlases_[run.atlas];
+  atlas.bind(program);
+  glActiveTexture(GL_TEXTURE0 + kLooksUnit);
+  glBindTexture(GL_TEXTURE_2D, looks_[run.atlas].get());
+  if (run.layer == 0) {
+    program.set("worn", 0);
+    program.set("worn_ahead", 0.0F);
+  } else {
+    const WornKind kind = atlas.shape.parts[run.layer - 1].kind;
+    program.set("worn", static_cast<int>(kind) + 1);
+    program.set("worn_ahead", static_cast<float>(worn_ahead(kind)));
+  }
   program.set("first", first_texel(level, run.first));
   const auto number = [](double metres) { return static_cast<float>(std::min(metres, 1e9)); };
   program.set_size("mesh_range", number(run.levels.mesh_near), number(run.levels.mesh_far));
@@ -439,8 +536,6 @@ void CrowdPass::draw(const DrawingConfig& config, FunctionRef<void(const GlProgr
     program.set("looks", kLooksUnit);
     program.set_colours("wardrobe", kWardrobe.data(), kColoursAPart * kBodyParts);
   };
-  glActiveTexture(GL_TEXTURE0 + kLooksUnit);
-  glBindTexture(GL_TEXTURE_2D, looks_.get());
   if (!views_.runs.empty()) {
     begin_dressed(impostor_);
     draw_cards(impostor_, views_);
@@ -458,7 +553,7 @@ void CrowdPass::draw(const DrawingConfig& config, FunctionRef<void(const GlProgr
     begin_dressed(program);
     for (const Run& run : level.runs) {
       use_run(program, level, run);
-      models_[run.atlas]->draw(program, run.clip, run.count);
+      models_[run.atlas]->draw(program, run.clip, run.layer, run.count);
     }
   };
   draw_meshes(model_, meshes_);

@@ -31,6 +31,7 @@ class CrowdPass {
   void clear_atlases() {
     atlases_.clear();
     models_.clear();
+    looks_.clear();
   }
   /// Fails with kBadInput (other clips than the atlas), kLimit.
   [[nodiscard]] Result<void> set_model(size_t atlas, const FigureModel& model);
@@ -59,6 +60,7 @@ class CrowdPass {
     size_t atlas = 0, clip = 0;
     size_t first = 0, count = 0;
     LevelDistances levels = {};
+    size_t layer = 0;  // 0: bodies; else what they wear: a part's number plus one.
   };
   // The instances of one level of detail, in rows of their own in the instances' texture.
   struct Runs {
@@ -73,6 +75,10 @@ class CrowdPass {
     Level() { texels = sizeof(Instance) / sizeof(ImpostorInstance); }
     std::vector<Instance> instances;
     [[nodiscard]] std::span<Instance> rest() { return std::span(instances).subspan(used); }
+    /// Makes room for so many more.
+    void reserve(size_t count) {
+      if (instances.size() < used + count) instances.resize(used + count);
+    }
     void begin(size_t max_count);
     [[nodiscard]] GLsizei rows() const;
     void upload();
@@ -87,6 +93,9 @@ class CrowdPass {
     act(leaning_meshes_), act(leaning_views_), act(leaning_thrown_);
   }
   [[nodiscard]] size_t count_avatars(const DrawingConfig& config) const;
+  // Adds a run of bodies, and one for each part that some of them wear.
+  template <class Instance>
+  void add_runs(Level<Instance>& level, const Run& bodies, size_t layers);
   void pack_leaning_crowd(const DrawnCrowd& crowd, const DrawingConfig& config, Vec3d to_sun);
 
   GlProgram impostor_, blended_, model_, point_, plain_, shadow_;
@@ -96,11 +105,12 @@ class CrowdPass {
   GlBuffer card_corners_;
   std::vector<AtlasTextures> atlases_;
   std::vector<std::optional<ModelMesh>> models_;  // By atlas.
+  std::vector<GlTexture> looks_;                  // By atlas.
   Level<ImpostorInstance> meshes_, views_, points_, thrown_;
   Level<BlendedInstance> blends_;
   Level<LeaningInstance> leaning_meshes_, leaning_views_, leaning_thrown_;
   size_t drawn_ = 0, hidden_ = 0;
-  GlTexture instance_texture_, looks_;
+  GlTexture instance_texture_;
   GLsizei instance_rows_ = 0;
 };
 

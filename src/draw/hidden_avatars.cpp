@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "draw/wardrobe.h"
+
 // Tests whether all that could be drawn of a figure lies behind the depths of the picture.
 namespace throng::draw {
 
@@ -25,9 +27,11 @@ std::vector<FigureExtent> extents_of(const Atlas& atlas) {
         front = std::max<uint8_t>(front, atlas.mask[first + column] & 31);
       }
     }
+    const size_t layer = i / shape.view(shape.frames, 0, 0);
+    const double ahead = layer == 0 ? 0 : worn_ahead(atlas.parts[layer - 1].kind);
     // As in the shader 5 cm nearer than the texel's depth, and 1 cm more for rounding.
     out[i] = {static_cast<float>(std::hypot(x, y) * texel + 0.01),
-              static_cast<float>((front - 16.0) / 30 * shape.side + 0.06)};
+              static_cast<float>((front - 16.0) / 30 * shape.side + 0.06 + ahead)};
   }
   return out;
 }

@@ -49,12 +49,16 @@ Result<ModelMesh> ModelMesh::create(const FigureModel& model) {
   glBufferData(GL_ELEMENT_ARRAY_BUFFER,
                static_cast<GLsizeiptr>(model.triangles.size() * sizeof model.triangles[0]),
                model.triangles.data(), GL_STATIC_DRAW);
-  out.indices_ = static_cast<GLsizei>(3 * model.triangles.size());
+  out.first_index_ = {0};
+  for (const WornPart& part : model.worn) {
+    out.first_index_.push_back(size_t{3} * part.first_triangle);
+  }
+  out.first_index_.push_back(3 * model.triangles.size());
   glBindVertexArray(0);
   return out;
 }
 
-void ModelMesh::draw(const GlProgram& program, size_t clip, size_t instances) const {
+void ModelMesh::draw(const GlProgram& program, size_t clip, size_t layer, size_t instances) const {
   const AtlasClip& moves = clips_[clip];
   program.set("poses", static_cast<int>(kPoseUnit));
   program.set("vertices", static_cast<int>(vertices_));
@@ -65,7 +69,9 @@ void ModelMesh::draw(const GlProgram& program, size_t clip, size_t instances) co
   glActiveTexture(GL_TEXTURE0 + kPoseUnit);
   glBindTexture(GL_TEXTURE_2D, poses_.get());
   glBindVertexArray(array_.get());
-  glDrawElementsInstanced(GL_TRIANGLES, indices_, GL_UNSIGNED_INT, nullptr,
+  const size_t first = first_index_[layer];
+  glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(first_index_[layer + 1] - first),
+                          GL_UNSIGNED_INT, reinterpret_cast<const void*>(first * sizeof(uint32_t)),
                           static_cast<GLsizei>(instances));
 }
 

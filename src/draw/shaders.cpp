@@ -103,10 +103,16 @@ float threshold() {
 }
 )";
 
-// The outfit of an avatar: one of twelve colours for each part, by four bits.
+// The outfit of an avatar: one of twelve colours for each part, by four bits. What it wears over
+// its body has a colour of its own.
 constexpr const char* kOutfit = R"(
-uniform usampler2D looks;  // By look: head, chest and legs of a point, and the outfit.
-uint outfit_of(uint look) { return texelFetch(looks, ivec2(int(look), 0), 0).w; }
+uniform usampler2D looks;  // By look: head, chest and legs of a point, the outfit; below, parts.
+uniform int worn;          // 0: the body; else a WornKind plus one.
+uint outfit_of(uint look) {
+  if (worn < 2) return texelFetch(looks, ivec2(int(look), 0), 0).w;  // Hair is as the body's.
+  uint colours = texelFetch(looks, ivec2(int(look), 1), 0).x;
+  return (colours >> uint(4 * (worn - 1)) & 15u) * 0x11111111u;
+}
 )";
 constexpr const char* kClothes = R"(
 uniform vec3 wardrobe[72];
@@ -168,6 +174,7 @@ flat out uint outfit;
 flat out float in_sun;
 flat out float shown_from, shown_to;  // The thresholds between which it is shown.
 uniform float haze;
+uniform float worn_ahead;  // Of what is worn: nearer than where it is [m].
 flat out float haze_share;
 out vec2 depth;             // z and w of where the card is,
 flat out vec2 depth_ahead;  // and of a metre towards the eye.
@@ -193,8 +200,8 @@ void stand(vec3 feet, vec2 offset, uint look) {
   shown_to = 1.0 - share_beyond(point_range, far);
   haze_share = 1.0 - exp(-haze * far);
   gl_Position = clip_from_world * vec4(world, 1.0);
-  depth = gl_Position.zw;
   depth_ahead = (clip_from_world * vec4(towards, 0.0)).zw;
+  depth = gl_Position.zw + depth_ahead * worn_ahead;
 }
 )";
 
@@ -214,7 +221,8 @@ uniform float side;          // Of a view [m].
 out vec4 colour;
 void show(vec3 texel, vec3 right_of_texels) {
   // Not filtered: a texel is of one part, and its colour is not that of the part beside it.
-  ivec3 at = ivec3(vec2(textureSize(detail, 0).xy) * texel.xy, int(texel.z));
+  // The page is rounded, because a number that all corners share can come out a little smaller.
+  ivec3 at = ivec3(vec2(textureSize(detail, 0).xy) * texel.xy, int(texel.z + 0.5));
   vec4 stored = texelFetch(albedo, at, 0);
   vec4 d = texelFetch(detail, at, 0);
   // The depth of the body, not of the card, so that it is cut where it meets a wall or a stair. A

@@ -50,4 +50,26 @@ uint32_t outfit_of(uint32_t look) {
   return outfit;
 }
 
+uint32_t worn_colours_of(uint32_t look) {
+  constexpr uint64_t kWorn = 0x776f726e;
+  uint32_t colours = 0;
+  for (uint32_t kind = 0; kind < kWornKinds; ++kind) {
+    const uint64_t choice = random_below(kWorn, look, kind, kColoursAPart);
+    colours |= static_cast<uint32_t>(choice) << 4 * kind;
+  }
+  return colours;
+}
+
+double worn_ahead(WornKind kind) {
+  switch (kind) {
+    case WornKind::kHair:
+    case WornKind::kSkirt:
+      return 0.02;
+    case WornKind::kCoat:
+      return 0.04;
+    default:
+      return 0.06;
+  }
+}
+
 }  // namespace throng::draw

@@ -23,4 +23,12 @@ inline constexpr int32_t kLooks = 2048;
 /// drawn by a hash of its own, so nearly all looks have different outfits.
 [[nodiscard]] uint32_t outfit_of(uint32_t look);
 
+/// Which of its twelve colours each kind of worn part has, four bits each, by a hash of its own.
+/// Hair has none: its colour is that of the outfit.
+[[nodiscard]] uint32_t worn_colours_of(uint32_t look);
+
+/// How much nearer than where it is a worn part is drawn, so that it covers what it is on: depths
+/// of texels are steps of 7 cm. [m]
+[[nodiscard]] double worn_ahead(WornKind kind);
+
 }  // namespace throng::draw

@@ -22,10 +22,14 @@ namespace throng {
 namespace {
 
 constexpr const char* kIdentifier = "THIA";
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kVersion = 3;
 
-// Programs of version 1 know no ETC2; they refuse a file of version 2 by its version.
-uint32_t version_of(AtlasFormat format) { return format >= AtlasFormat::kEtc2a1 ? kVersion : 1; }
+// Programs of version 1 know no ETC2, those of version 2 no parts; they refuse newer files by
+// their version.
+uint32_t version_of(AtlasFormat format, bool has_parts) {
+  if (has_parts) return kVersion;
+  return format >= AtlasFormat::kEtc2a1 ? 2 : 1;
+}
 
 // A checksum over all fields and texels of an atlas.
 uint64_t sum_of(const Atlas& atlas) {
@@ -53,6 +57,10 @@ uint64_t sum_of(const Atlas& atlas) {
   for (const auto& colour : atlas.part_colour) {
     for (const uint8_t value : colour) add_number(value);
   }
+  for (const AtlasPart& part : atlas.parts) {
+    words.push_back(hash_bytes(part.name.data(), part.name.size()));
+    add_number(part.kind);
+  }
   uint64_t sum = hash_span(std::span<const uint64_t>(words));
   for (const auto* bytes : {&atlas.colour, &atlas.normal, &atlas.mask}) {
     sum = hash_span(std::span<const uint8_t>(*bytes), sum);
@@ -75,7 +83,13 @@ bool is_sound(const Atlas& atlas) {
                      atlas.width % 4 == 0 && atlas.height >= 4 &&
                      atlas.height <= impostor::kPageHeight && atlas.height % 4 == 0 &&
                      atlas.pages >= 1 && atlas.pages <= impostor::kMaxPages;
-  if (!shape || !pages || atlas.views.size() != s.view(s.frames, 0, 0)) return false;
+  const size_t layers = 1 + atlas.parts.size();
+  if (!shape || !pages || layers > 1 + kMaxWorn) return false;
+  if (atlas.views.size() != layers * s.view(s.frames, 0, 0)) return false;
+  if (layers > 1 && atlas.views.size() > impostor::kMaxViews) return false;
+  for (const AtlasPart& part : atlas.parts) {
+    if (static_cast<int32_t>(part.kind) >= kWornKinds) return false;
+  }
   for (const AtlasView& v : atlas.views) {
     const bool inside = v.page < atlas.pages && v.x + v.width <= atlas.width &&
                         v.y + v.height <= atlas.height && v.left < s.pixels && v.top < s.pixels &&
@@ -118,17 +132,24 @@ Result<void> save_atlas(const Atlas& atlas, const std::string& path) {
   for (const auto& colour : atlas.part_colour)
     parts.insert(parts.end(), colour.begin(), colour.end());
   const AtlasShape& s = atlas.shape;
+  std::vector<flatbuffers::Offset<format::AtlasPart>> worn;
+  for (const AtlasPart& part : atlas.parts) {
+    worn.push_back(format::CreateAtlasPart(builder, builder.CreateString(part.name),
+                                           static_cast<uint8_t>(part.kind)));
+  }
+  // Without parts the bytes are those of before.
+  const auto worn_at = worn.empty() ? 0 : builder.CreateVector(worn);
   const auto clips_at = builder.CreateVector(clips);
   const auto views_at = builder.CreateVectorOfStructs(views);
   const auto parts_at = builder.CreateVector(parts);
   const auto colour_at = builder.CreateVector(atlas.colour);
   const auto normal_at = builder.CreateVector(atlas.normal);
   const auto mask_at = builder.CreateVector(atlas.mask);
-  builder.Finish(format::CreateAtlasFile(builder, version_of(atlas.format), sum_of(atlas), s.pixels,
-                                         s.directions, s.elevations, s.frames, s.side, s.centre,
-                                         s.height, static_cast<uint8_t>(atlas.format), atlas.width,
-                                         atlas.height, atlas.pages, clips_at, views_at, parts_at,
-                                         colour_at, normal_at, mask_at),
+  builder.Finish(format::CreateAtlasFile(
+                     builder, version_of(atlas.format, !worn.empty()), sum_of(atlas), s.pixels,
+                     s.directions, s.elevations, s.frames, s.side, s.centre, s.height,
+                     static_cast<uint8_t>(atlas.format), atlas.width, atlas.height, atlas.pages,
+                     clips_at, views_at, parts_at, colour_at, normal_at, mask_at, worn_at),
                  kIdentifier);
   return write_file(path, {builder.GetBufferPointer(), builder.GetSize()});
 }
@@ -151,7 +172,8 @@ Result<Atlas> impostor::read_atlas(std::span<const uint8_t> bytes, const std::st
                          ", this program reads 1 to " + std::to_string(kVersion));
   }
   if (file.format() >= kAtlasFormats ||
-      file.version() != version_of(static_cast<AtlasFormat>(file.format())) ||
+      file.version() != version_of(static_cast<AtlasFormat>(file.format()),
+                                   file.parts() != nullptr && file.parts()->size() > 0) ||
       file.part_colour()->size() != 3 * kBodyParts) {
     return bad(path, "its numbers make no sense");
   }
@@ -177,6 +199,12 @@ Result<Atlas> impostor::read_atlas(std::span<const uint8_t> bytes, const std::st
   for (const format::AtlasView* v : *file.views()) {
     atlas.views.push_back(
         {v->page(), v->x(), v->y(), v->width(), v->height(), v->left(), v->top()});
+  }
+  if (file.parts() != nullptr) {
+    for (const format::AtlasPart* part : *file.parts()) {
+      atlas.parts.push_back(
+          {.name = part->name()->str(), .kind = static_cast<WornKind>(part->kind())});
+    }
   }
   for (size_t i = 0; i < 3 * kBodyParts; ++i) {
     atlas.part_colour[i / 3][i % 3] = file.part_colour()->Get(static_cast<uint32_t>(i));

@@ -198,6 +198,7 @@ Atlas convert_atlas(const Atlas& atlas, AtlasFormat format, int32_t workers) {
   out.shape = atlas.shape;
   out.clips = atlas.clips;
   out.views = atlas.views;
+  out.parts = atlas.parts;
   out.format = format;
   out.width = atlas.width;
   out.height = atlas.height;

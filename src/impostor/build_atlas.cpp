@@ -13,6 +13,7 @@
 #include "impostor/figure_raster.h"
 #include "impostor/srgb.h"
 #include "impostor/view_packer.h"
+#include "impostor/worn_parts.h"
 #include "throng/impostor.h"
 
 // [TC00] keeps views as equal squares, most of which are empty. Here a view keeps its own rectangle
@@ -20,6 +21,60 @@
 // share pages, as its section 5 proposes.
 namespace throng {
 namespace {
+
+bool is_first_of_clip(const Atlas& atlas, size_t frame) {
+  return std::any_of(atlas.clips.begin(), atlas.clips.end(), [&](const AtlasClip& clip) {
+    return static_cast<size_t>(clip.first_frame) == frame;
+  });
+}
+
+// Packs the views that were drawn, and shows rigid parts in the other frames by the view of the
+// first one, moved by whole texels.
+impostor::PageSize pack_drawn_views(const Character& character, const impostor::FigureFrames& poses,
+                                    Atlas& atlas) {
+  const AtlasShape& shape = atlas.shape;
+  const size_t count = shape.view(shape.frames, 0, 0), a_frame = shape.view(1, 0, 0);
+  std::vector<size_t> drawn;
+  const auto is_drawn = [&](size_t view) {
+    const size_t layer = view / count, frame = view % count / a_frame;
+    return layer == 0 || !impostor::is_rigid(character.worn[layer - 1].kind) ||
+           is_first_of_clip(atlas, frame);
+  };
+  for (size_t v = 0; v < atlas.views.size(); ++v) {
+    if (is_drawn(v)) drawn.push_back(v);
+  }
+  std::vector<AtlasView> packed;
+  for (const size_t v : drawn) packed.push_back(atlas.views[v]);
+  const impostor::PageSize size = impostor::pack_views(packed);
+  for (size_t i = 0; i < drawn.size(); ++i) atlas.views[drawn[i]] = packed[i];
+  for (size_t layer = 1; layer <= character.worn.size(); ++layer) {
+    if (!impostor::is_rigid(character.worn[layer - 1].kind)) continue;
+    for (const AtlasClip& clip : atlas.clips) {
+      const auto first = static_cast<size_t>(clip.first_frame);
+      for (size_t frame = first + 1; frame < first + static_cast<size_t>(clip.frames); ++frame) {
+        const Vec3d moved = impostor::movement_of(character, character.worn[layer - 1],
+                                                  poses.frames[first], poses.frames[frame]);
+        for (size_t v = 0; v < a_frame; ++v) {
+          const auto column = static_cast<int32_t>(v) % shape.directions;
+          const auto row = static_cast<int32_t>(v) / shape.directions;
+          const impostor::FigureCamera camera =
+              impostor::figure_camera(column, shape.directions, row, shape.elevations);
+          const auto shifted = [&](uint16_t from, double metres) {
+            const double texels = std::floor(metres * shape.pixels / shape.side + 0.5);
+            return static_cast<uint16_t>(std::clamp(from + texels, 0.0, shape.pixels - 1.0));
+          };
+          AtlasView view = atlas.views[layer * count + first * a_frame + v];
+          if (view.width > 4 || view.height > 4) {  // Else it shows nothing.
+            view.left = shifted(view.left, dot(moved, camera.right));
+            view.top = shifted(view.top, -dot(moved, camera.up));
+          }
+          atlas.views[layer * count + frame * a_frame + v] = view;
+        }
+      }
+    }
+  }
+  return size;
+}
 
 // A view without its empty rows and columns, with one empty texel around.
 AtlasView trim(const impostor::FigureView& view) {
@@ -118,9 +173,18 @@ void paste(const Texels& texels, const AtlasView& view, Atlas& atlas) {
 void find_part_colours(Atlas& atlas) {
   std::array<Vec3d, kBodyParts> sum;
   std::array<uint64_t, kBodyParts> count{};
+  // Of the body alone: its tints must not depend on what it wears.
+  std::vector<uint8_t> worn(atlas.mask.size());
+  for (size_t v = atlas.shape.view(atlas.shape.frames, 0, 0); v < atlas.views.size(); ++v) {
+    const AtlasView& view = atlas.views[v];
+    for (size_t y = 0; y < view.height; ++y) {
+      const size_t row = size_t{view.page} * static_cast<size_t>(atlas.height) + view.y + y;
+      std::fill_n(&worn[row * static_cast<size_t>(atlas.width) + view.x], view.width, uint8_t{1});
+    }
+  }
   for (size_t i = 0; i < atlas.mask.size(); ++i) {
     const uint8_t* texel = &atlas.colour[i * 4];
-    if (texel[3] < 128) continue;
+    if (texel[3] < 128 || worn[i] != 0) continue;
     const auto part = static_cast<size_t>(atlas.mask[i] >> 5);
     sum[part] =
         sum[part] + Vec3d{impostor::decode_colour(texel[0]), impostor::decode_colour(texel[1]),
@@ -155,8 +219,15 @@ Result<Atlas> create_atlas(const Character& character, const AtlasConfig& config
                  .centre = 0.5 * poses->height,
                  .height = poses->height};
   const size_t count = atlas.shape.view(atlas.shape.frames, 0, 0);
-  atlas.views.resize(count);
-  std::vector<Texels> texels(count);
+  for (const WornPart& part : character.worn) atlas.parts.push_back({part.name, part.kind});
+  const size_t all = count * (1 + character.worn.size());  // The body, then part by part.
+  if (all > impostor::kMaxViews) {
+    return Error{Errc::kLimit, "atlas: " + std::to_string(all) + " views, more than " +
+                                   std::to_string(impostor::kMaxViews) +
+                                   "; take fewer clips, frames or parts"};
+  }
+  atlas.views.resize(all);
+  std::vector<Texels> texels(all);
   const auto workers = static_cast<size_t>(worker_count(config.workers));
   std::vector<impostor::FigureRaster> rasters(workers,
                                               impostor::FigureRaster(character, config.pixels));
@@ -173,9 +244,17 @@ Result<Atlas> create_atlas(const Character& character, const AtlasConfig& config
         impostor::figure_camera(column, config.directions, row, config.elevations);
     camera.centre = {0, atlas.shape.centre, 0};
     camera.side = side;
+    const auto keep = [&](size_t view) {
+      atlas.views[view] = trim(views[w]);
+      texels[view] = cut_out(views[w], atlas.views[view]);
+    };
     rasters[w].draw(poses->frames[frame], camera, views[w]);
-    atlas.views[index] = trim(views[w]);
-    texels[index] = cut_out(views[w], atlas.views[index]);
+    keep(index);
+    for (size_t p = 0; p < character.worn.size(); ++p) {
+      if (impostor::is_rigid(character.worn[p].kind) && !is_first_of_clip(atlas, frame)) continue;
+      rasters[w].draw_worn(character.worn[p], poses->frames[frame], camera, views[w]);
+      keep((1 + p) * count + index);
+    }
     if (++done % 64 == 0 && context.on_progress) {
       const std::lock_guard lock(telling);
       context.on_progress({.stage = "draw", .done = done, .total = count});
@@ -183,7 +262,7 @@ Result<Atlas> create_atlas(const Character& character, const AtlasConfig& config
   });
   if (context.cancel) return Error{Errc::kCancelled, "atlas: cancelled"};
 
-  const impostor::PageSize size = impostor::pack_views(atlas.views);
+  const impostor::PageSize size = pack_drawn_views(character, *poses, atlas);
   if (size.pages > impostor::kMaxPages) {
     return Error{Errc::kLimit, "atlas: " + std::to_string(size.pages) + " pages, more than " +
                                    std::to_string(impostor::kMaxPages) +
@@ -197,7 +276,9 @@ Result<Atlas> create_atlas(const Character& character, const AtlasConfig& config
   atlas.colour.assign(texel_count * 4, 0);
   atlas.normal.assign(texel_count * 2, 128);
   atlas.mask.assign(texel_count, 0);
-  for (size_t i = 0; i < count; ++i) paste(texels[i], atlas.views[i], atlas);
+  for (size_t i = 0; i < all; ++i) {
+    if (!texels[i].colour.empty()) paste(texels[i], atlas.views[i], atlas);
+  }
   find_part_colours(atlas);
   return atlas;
 }

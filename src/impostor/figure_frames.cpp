@@ -6,6 +6,7 @@
 #include <string>
 
 #include "impostor/gait.h"
+#include "impostor/worn_parts.h"
 
 // Poses all frames of all clips of a figure, on the spot, and measures them.
 namespace throng::impostor {
@@ -37,21 +38,26 @@ Result<void> check_atlas_config(const AtlasConfig& config) {
 
 Result<FigureFrames> pose_frames(const Character& character, const AtlasConfig& config) {
   FigureFrames poses;
+  if (auto sound = check_worn(character); !sound) return sound.error();
+  // The gait and the height are the body's, whatever it wears.
+  const Character body = body_of(character);
+  poses.body_vertices = body.positions.size();
   Box3d first_clip;
   for (const std::string& word : config.clips) {
     const Result<size_t> clip = find_clip(character, word);
     if (!clip) return clip.error();
-    const ClipPlace place = place_of_clip(character, *clip);
+    const ClipPlace place = place_of_clip(body, *clip);
     poses.clips.push_back({.name = character.clips[*clip].name,
                            .first_frame = static_cast<int32_t>(poses.frames.size()),
                            .frames = config.frames,
                            .seconds = character.clips[*clip].seconds,
-                           .stride = stride_of_clip(character, *clip, place)});
+                           .stride = stride_of_clip(body, *clip, place)});
     for (int32_t f = 0; f < config.frames; ++f) {
       pose_in_place(character, *clip, place, static_cast<double>(f) / config.frames,
                     poses.frames.emplace_back());
-      for (const Vec3d& p : poses.frames.back().positions) {
-        if (poses.clips.size() == 1) first_clip.add(p);
+      const std::vector<Vec3d>& positions = poses.frames.back().positions;
+      for (size_t v = 0; v < poses.body_vertices && poses.clips.size() == 1; ++v) {
+        first_clip.add(positions[v]);
       }
     }
   }
@@ -63,12 +69,17 @@ Result<FigureFrames> pose_frames(const Character& character, const AtlasConfig& 
   }
   const double scale = config.height > 0 ? config.height / own_height : 1;
   poses.height = own_height * scale;
+  double worn_radius = 0;
   for (PosedMesh& mesh : poses.frames) {
-    for (Vec3d& p : mesh.positions) {
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+      Vec3d& p = mesh.positions[v];
       p = Vec3d{p.x, p.y - first_clip.min.y, p.z} * scale;
-      poses.radius = std::max(poses.radius, length(p - Vec3d{0, 0.5 * poses.height, 0}));
+      double& radius = v < poses.body_vertices ? poses.radius : worn_radius;
+      radius = std::max(radius, length(p - Vec3d{0, 0.5 * poses.height, 0}));
     }
   }
+  // A view has an empty texel more around the body than it needs: what is worn may reach into it.
+  poses.radius = std::max(poses.radius, worn_radius * (1 - 2.0 / config.pixels));
   for (AtlasClip& clip : poses.clips) clip.stride *= scale;
   return poses;
 }

@@ -16,6 +16,7 @@ namespace throng::impostor {
 struct FigureFrames {
   std::vector<PosedMesh> frames;
   std::vector<AtlasClip> clips;
+  size_t body_vertices = 0;       ///< The first ones of each frame; the others are worn.
   double height = 0, radius = 0;  ///< Radius of a ball around (0, height / 2, 0) that holds all.
 };
 

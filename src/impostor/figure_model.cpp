@@ -66,6 +66,7 @@ Result<FigureModel> create_figure_model(const Character& character, const AtlasC
     }
     model.triangles.push_back(corners);
   }
+  model.worn = character.worn;
   model.vertices = static_cast<uint32_t>(position_of.size());
   const size_t posed = position_of.size() * frames->frames.size();
   if (posed > kMaxPosed) {

@@ -53,11 +53,24 @@ void FigureRaster::draw(const PosedMesh& mesh, const FigureCamera& camera, Figur
     projected_[v] = {half + dot(p, camera.right) * scale, half - dot(p, camera.up) * scale,
                      dot(p, camera.towards)};
   }
-  for (uint32_t t = 0; t < character_.triangles.size(); ++t) {
+  draw_triangles(0, character_.body_triangles());
+  resolve(mesh, camera, 0, out);
+  if (!character_.worn.empty()) body_ = grid_;
+}
+
+void FigureRaster::draw_worn(const WornPart& part, const PosedMesh& mesh,
+                             const FigureCamera& camera, FigureView& out) {
+  grid_ = body_;
+  draw_triangles(part.first_triangle, part.triangle_count);
+  resolve(mesh, camera, part.first_triangle, out);
+}
+
+void FigureRaster::draw_triangles(size_t first, size_t count) {
+  for (size_t t = first; t < first + count; ++t) {
     const auto& corners = character_.triangles[t];
-    draw_triangle(t, {projected_[corners[0]], projected_[corners[1]], projected_[corners[2]]});
+    draw_triangle(static_cast<uint32_t>(t),
+                  {projected_[corners[0]], projected_[corners[1]], projected_[corners[2]]});
   }
-  resolve(mesh, camera, out);
 }
 
 void FigureRaster::draw_triangle(uint32_t index, const std::array<Vec3d, 3>& p) {
@@ -86,9 +99,10 @@ void FigureRaster::draw_triangle(uint32_t index, const std::array<Vec3d, 3>& p) 
   }
 }
 
-// A texel belongs to the part that most of its samples show, and its colour and normal are the
-// means of those samples alone, so that a tint leaves no fringe of another part.
-void FigureRaster::resolve(const PosedMesh& mesh, const FigureCamera& camera,
+// Triangles before `first` only hide. A texel belongs to the part that most of its samples show,
+// and its colour and normal are the means of those samples alone, so that a tint leaves no fringe
+// of another part.
+void FigureRaster::resolve(const PosedMesh& mesh, const FigureCamera& camera, size_t first,
                            FigureView& out) const {
   const auto count = static_cast<size_t>(pixels_) * static_cast<size_t>(pixels_);
   out.pixels = pixels_;
@@ -101,13 +115,16 @@ void FigureRaster::resolve(const PosedMesh& mesh, const FigureCamera& camera,
     const auto sample_at = [&](int32_t i) -> const Sample& {
       return grid_[corner + static_cast<size_t>(i / kSub) * samples_ + i % kSub];
     };
+    const auto is_shown = [&](const Sample& sample) {
+      return sample.triangle != kNothing && sample.triangle >= first;
+    };
     const auto material_of = [&](const Sample& sample) -> const CharacterMaterial& {
       return character_.materials[character_.material[sample.triangle]];
     };
     std::array<int32_t, kBodyParts> votes{};
     int32_t covered = 0;
     for (int32_t i = 0; i < kSub * kSub; ++i) {
-      if (sample_at(i).triangle == kNothing) continue;
+      if (!is_shown(sample_at(i))) continue;
       ++votes[static_cast<size_t>(material_of(sample_at(i)).part)];
       ++covered;
     }
@@ -118,7 +135,7 @@ void FigureRaster::resolve(const PosedMesh& mesh, const FigureCamera& camera,
     double depth = 0;
     for (int32_t i = 0; i < kSub * kSub; ++i) {
       const Sample& sample = sample_at(i);
-      if (sample.triangle == kNothing) continue;
+      if (!is_shown(sample)) continue;
       const CharacterMaterial& material = material_of(sample);
       if (static_cast<size_t>(material.part) != part) continue;
       const auto& corners = character_.triangles[sample.triangle];

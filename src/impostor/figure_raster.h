@@ -36,8 +36,12 @@ struct FigureView {
 class FigureRaster {
  public:
   FigureRaster(const Character& character, int32_t pixels);
-  /// `positions` and `normals` have one entry for each vertex of the character.
+  /// Draws the body. `positions` and `normals` have one entry for each vertex of the character.
   void draw(const PosedMesh& mesh, const FigureCamera& camera, FigureView& out);
+  /// Draws what is not behind the body of a part that it wears. After draw() with the same mesh and
+  /// camera.
+  void draw_worn(const WornPart& part, const PosedMesh& mesh, const FigureCamera& camera,
+                 FigureView& out);
 
  private:
   struct Sample {
@@ -45,12 +49,14 @@ class FigureRaster {
     uint32_t triangle = 0;
     float u = 0, v = 0;  // Weights of the second and third corner.
   };
+  void draw_triangles(size_t first, size_t count);
   void draw_triangle(uint32_t index, const std::array<Vec3d, 3>& corners);
-  void resolve(const PosedMesh& mesh, const FigureCamera& camera, FigureView& out) const;
+  void resolve(const PosedMesh& mesh, const FigureCamera& camera, size_t first,
+               FigureView& out) const;
 
   const Character& character_;
   int32_t pixels_ = 0, samples_ = 0;  // Along a side.
-  std::vector<Sample> grid_;
+  std::vector<Sample> grid_, body_;
   std::vector<Vec3d> projected_;
 };
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -13,6 +14,7 @@ namespace throng::impostor {
 inline constexpr int32_t kPageWidth = 1024;
 inline constexpr int32_t kPageHeight = 2048;  ///< Every WebGL 2 implementation allows it.
 inline constexpr int32_t kMaxPages = 64;
+inline constexpr size_t kMaxViews = size_t{1} << 20;  ///< What an instance can name.
 
 struct PageSize {
   int32_t width = 0, height = 0, pages = 0;

@@ -176,6 +176,18 @@ class ProgramOptions(ProgramCase):
         self.assert_refused(self.run_throng(*view, "hall.toml", "--world", self.world), "hall.toml: --world is for recordings")
         self.assert_refused(self.run_throng(*view, self.world, "--up", "z"), "--up is for model files; name one")
 
+    def test_an_atlas_has_parts_to_wear_and_refuses_what_does_not_fit(self):
+        small = ("--frames", 2, "--directions", 2, "--elevations", 2, "--pixels", 16)
+        done = self.run_throng("atlas", "--parts", *small, "-o", "a.atlas", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        said = json.loads(done.stdout)
+        self.assertEqual({part["kind"] for part in said["worn"]}, {"hair", "hat", "coat", "bag", "skirt"})
+        self.assertEqual(said["views"], (1 + len(said["worn"])) * 2 * 2 * 2)
+        self.assert_refused(self.run_throng("atlas", "--wear", "cape=b.glb", "-o", "c.atlas"), "--wear", "cape=b.glb", "hair, hat, coat, bag or skirt")
+        self.assert_refused(self.run_throng("atlas", "--wear", "hat=none.glb", "-o", "c.atlas"), "none.glb")
+        self.assert_refused(self.run_throng("atlas", "b.glb", "--parts", "-o", "c.atlas"), "--parts")
+        self.assertFalse((self.path / "c.atlas").exists())
+
     def test_gl_a_density_map_of_the_viewer_is_refused_by_name_where_it_says_nothing(self):
         view, film = ("view", self.world, "--picture", "a.png"), ("film", self.world, "-o", "a.mp4")
         (self.path / "map.png").write_bytes(grey_png([[0, 255], [0, 255]]))

@@ -97,9 +97,9 @@ Tally compare(const std::string& name, const Result<Scene>& scene, size_t avatar
   Context context;
   AtlasConfig atlas_config;
   atlas_config.frames = 2;
-  const auto atlas = create_atlas(built_in_character(), atlas_config, context);
+  const auto atlas = create_atlas(built_in_character_with_parts(), atlas_config, context);
   EXPECT_TRUE(drawing->add_atlas(*atlas));
-  const auto model = create_figure_model(built_in_character(), atlas_config, context);
+  const auto model = create_figure_model(built_in_character_with_parts(), atlas_config, context);
   EXPECT_TRUE(drawing->set_model(0, *model));
   const Box3d box = scene->bounds();
   EXPECT_TRUE(drawing->set_scene(*scene, {}));

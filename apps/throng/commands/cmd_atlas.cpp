@@ -24,6 +24,8 @@ struct AtlasOptions {
   std::string output;
   std::string images;
   std::string format = "bc3";
+  bool parts = false;
+  std::vector<std::string> wear;
   AtlasConfig config;
 };
 
@@ -59,6 +61,10 @@ Json json_of(const Atlas& atlas, const std::vector<FormatRow>& rows) {
                        {"packed_bytes", row.packed},
                        {"psnr", std::isfinite(row.psnr) ? Json(row.psnr) : Json(nullptr)}});
   }
+  Json worn = Json::array();
+  for (const AtlasPart& part : atlas.parts) {
+    worn.push_back({{"name", part.name}, {"kind", word_for(part.kind)}});
+  }
   for (int32_t p = 0; p < kBodyParts; ++p) {
     const auto& colour = atlas.part_colour[static_cast<size_t>(p)];
     parts[word_for(static_cast<BodyPart>(p))] = {colour[0], colour[1], colour[2]};
@@ -78,6 +84,7 @@ Json json_of(const Atlas& atlas, const std::vector<FormatRow>& rows) {
           {"mask_bytes", atlas.mask.size()},
           {"clips", clips},
           {"part_colours", parts},
+          {"worn", worn},
           {"formats", formats}};
 }
 
@@ -92,6 +99,9 @@ std::string text_of(const Atlas& atlas, const std::vector<FormatRow>& rows) {
   for (const AtlasClip& clip : atlas.clips) {
     text +=
         fmt::format("clip {}: {:.2f} s, {:.2f} m a cycle\n", clip.name, clip.seconds, clip.stride);
+  }
+  for (const AtlasPart& part : atlas.parts) {
+    text += fmt::format("{}: {}, worn by some\n", word_for(part.kind), part.name);
   }
   text += "colour and alpha   equal squares   packed   PSNR\n";
   for (const FormatRow& row : rows) {
@@ -109,15 +119,44 @@ AtlasFormat format_called(const std::string& word) {
   return static_cast<AtlasFormat>(format);
 }
 
+// "hair=FILE": the hair of another character, over the body of this one.
+Result<void> wear(Character& character, const std::string& word, Context& context) {
+  struct Named {
+    const char* kind;
+    WornKind worn;
+    BodyPart part;
+  };
+  constexpr Named kNamed[] = {{"hair", WornKind::kHair, BodyPart::kHair},
+                              {"hat", WornKind::kHat, BodyPart::kOther},
+                              {"coat", WornKind::kCoat, BodyPart::kShirt},
+                              {"bag", WornKind::kBag, BodyPart::kOther},
+                              {"skirt", WornKind::kSkirt, BodyPart::kPants}};
+  const size_t equals = word.find('=');
+  for (const Named& named : kNamed) {
+    if (equals == std::string::npos || word.substr(0, equals) != named.kind) continue;
+    const std::string path = word.substr(equals + 1);
+    const Result<Character> from = load_character(path, context);
+    if (!from) return from.error();
+    const auto done = wear_part(character, *from, named.part, named.worn);
+    if (!done) return Error{done.error().code, path + ": " + done.error().message};
+    return {};
+  }
+  return Error{Errc::kBadConfig, "--wear: cannot use '" + word +
+                                     "'; write hair, hat, coat, bag or skirt=CHARACTER.glb"};
+}
+
 int atlas(Session& session, const AtlasOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Character character;
   if (options.character.empty()) {
-    character = built_in_character();
+    character = options.parts ? built_in_character_with_parts() : built_in_character();
   } else {
     Result<Character> loaded = load_character(options.character, session.context);
     if (!loaded) return fail(loaded.error());
     character = *std::move(loaded);
+  }
+  for (const std::string& word : options.wear) {
+    if (auto done = wear(character, word, session.context); !done) return fail(done.error());
   }
   const Result<Atlas> exact = create_atlas(character, options.config, session.context);
   if (!exact) {
@@ -178,6 +217,17 @@ void add_atlas(CLI::App& parser, Session& session) {
   command->add_option("--pixels", config.pixels, "Side of a view [texels]")->capture_default_str();
   command->add_option("--height", config.height, "Height of the figure, 0: the file's own [m]")
       ->capture_default_str();
+  auto* parts = command->add_flag("--parts", options->parts,
+                                  "With the built-in figure: hair, hats, a coat, a rucksack and a "
+                                  "skirt, which avatars exchange");
+  command
+      ->add_option("--wear", options->wear,
+                   "A part of another character with the same skeleton, which some avatars wear: "
+                   "hair, coat (its shirt), skirt (its trousers), hat or bag (what is no body part "
+                   "by its material's name); may be repeated")
+      ->type_name("KIND=CHARACTER.glb")
+      ->allow_extra_args(false);
+  command->get_option("character")->excludes(parts);
   std::vector<std::string> words;
   for (int32_t f = 0; f < kAtlasFormats; ++f) {
     words.emplace_back(word_for(static_cast<AtlasFormat>(f)));

@@ -47,11 +47,11 @@ AtlasConfig figure_config(double height) {
 Result<Atlas> atlas_of(double height, Context& context) {
   const AtlasConfig config = figure_config(height);
   const std::string kept =
-      user_file(UserFolder::kCache, fmt::format("figure-1-{:.0f}mm.atlas", height * 1000));
+      user_file(UserFolder::kCache, fmt::format("figure-2-{:.0f}mm.atlas", height * 1000));
   if (!kept.empty()) {
     if (Result<Atlas> atlas = load_atlas(kept)) return atlas;
   }
-  Result<Atlas> atlas = create_atlas(built_in_character(), config, context);
+  Result<Atlas> atlas = create_atlas(built_in_character_with_parts(), config, context);
   // A cache that cannot be written costs time, nothing else.
   if (atlas && !kept.empty() && make_folder_of(kept)) (void)save_atlas(*atlas, kept);
   return atlas;
@@ -88,7 +88,7 @@ Result<std::vector<std::vector<ViewFigure>>> figures_of(const ViewTarget& target
     }
     return of_class;
   }
-  const Character character = built_in_character();
+  const Character character = built_in_character_with_parts();
   for (const double height : heights) {
     Result<Atlas> atlas = atlas_of(height, context);
     if (!atlas) return atlas.error();

@@ -164,6 +164,7 @@ TEST_F(GraphOnDisk, AreTheGraphOfTheWholeWorldOnAllBuiltinWorlds) {
     BuiltinWorldConfig config{.name = std::string(info.name)};
     if (info.name == "city") config.size = 250;
     if (info.name == "landscape") config.size = 120;
+    if (info.name == "blocks") config.size = 100;
     if (info.name == "garage" || info.name == "maze") config.levels = 2;
     if (info.name == "maze") config.size = 40;
     const World world = bake(builtin(config), {.cell = 0.25, .zone = 16});

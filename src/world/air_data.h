@@ -84,8 +84,8 @@ struct AirData {
   int32_t zone_side = 0;         // air cells
   int32_t width = 0, depth = 0;  // of the world [air cells]
   int32_t zones_x = 0, zones_z = 0;
-  std::string path;                   // empty: baked in memory
-  uint64_t bytes = 0;                 // of all files
+  std::string path;                         // empty: baked in memory
+  uint64_t bytes = 0;                       // of all files
   static constexpr int32_t kNotThere = -2;  // WorldConfig::part leaves it out
   std::vector<int32_t> slot_of_zone;        // -1: nothing but air
   std::vector<std::unique_ptr<Slot>> slots;

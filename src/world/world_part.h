@@ -10,7 +10,7 @@
 namespace throng::world {
 
 /// Takes out all zones that do not touch a box, seen from above, before any was opened; levels are
-/// numbered anew, and WorldData::part is set. Fails with kBadConfig if none is left. Time: linear
+/// numbered again, and WorldData::part is set. Fails with kBadConfig if none is left. Time: linear
 /// in zones.
 Result<void> keep_part(WorldData& world, const Box3d& part);
 /// The same of its air. What is outside cannot be flown in.

@@ -147,8 +147,8 @@ TEST(SearchMemory, GroundWithEditsSaysThatItHadTooLittle) {
 
 TEST(SearchMemory, GroundThatIsMadeOnDemandCountsIfAsked) {
   const auto make = [](bool counts) {
-    auto made = PathFinder::create(
-        maze(), {.speedup = PathSpeedup::kOnDemand, .counts_ground = counts});
+    auto made =
+        PathFinder::create(maze(), {.speedup = PathSpeedup::kOnDemand, .counts_ground = counts});
     EXPECT_TRUE(made);
     return *std::move(made);
   };

@@ -22,7 +22,7 @@
 namespace throng {
 namespace {
 
-constexpr double kZone = 48;                                 // [m] 3 tiles of 64 cells
+constexpr double kZone = 48;                                     // [m] 3 tiles of 64 cells
 constexpr Box3d kPart{.min = {60, 0, 70}, .max = {90, 0, 120}};  // zones 1 x (1, 2)
 
 class WorldPart : public testing::Test {
@@ -117,8 +117,8 @@ TEST_F(WorldPart, AirBeyondItIsNotFree) {
       EXPECT_FALSE(some.is_free(at, 0)) << at.x << " " << at.y << " " << at.z;
       continue;
     }
-    const bool is_near_border = !is_inside(whole, at + Vec3d{1, 0, 1}) ||
-                                !is_inside(whole, at - Vec3d{1, 0, 1});
+    const bool is_near_border =
+        !is_inside(whole, at + Vec3d{1, 0, 1}) || !is_inside(whole, at - Vec3d{1, 0, 1});
     if (!is_inside(whole, at)) {
       EXPECT_FALSE(some.is_free(at, 0)) << at.x << " " << at.y << " " << at.z;
       ++outside;

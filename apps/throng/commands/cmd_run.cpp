@@ -9,10 +9,10 @@
 
 #include "command.h"
 #include "input_file.h"
-#include "memory_bound.h"
 #include "number_checks.h"
 #include "run/avatar_group.h"
 #include "run/caacd_options.h"
+#include "run/memory_bound.h"
 #include "run/rerun.h"
 #include "run/run_crowd.h"
 #include "run/run_scenario.h"

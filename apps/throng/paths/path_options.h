@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "memory_bound.h"
+#include "run/memory_bound.h"
 #include "throng/path.h"
 #include "throng/world.h"
 

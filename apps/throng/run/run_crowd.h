@@ -30,7 +30,7 @@ struct CrowdRun {
   uint64_t steps = 100;
   uint64_t check_every = 1;
   double speed = 0, radius = 0;
-  std::vector<double> part = {};  // x0, z0, x1, z1 of a district; empty: the whole world [m]
+  std::vector<double> part = {};       // x0, z0, x1, z1 of a district; empty: the whole world [m]
   std::vector<SetChange> set_changes;  // in the order in which they are made
   CrowdConfig config;
 };

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
-#include "memory_bound.h"
+#include "run/memory_bound.h"
 
 #include <fmt/format.h>
 

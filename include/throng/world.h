@@ -79,8 +79,8 @@ struct WorldConfig {
   /// system, and read again at their next use. 0: no limit. Never changes a result. [bytes]
   uint64_t resident_bytes = 0;
   /// A district: only zones that touch this box, seen from above, are there, as if nothing else had
-  /// been baked; so what is made of the world takes memory for these alone. Levels have other
-  /// numbers than in the whole world. Its components and nodes cannot be opened. None: all. [m]
+  /// been baked; so what is made of the world takes memory for these alone. Levels have numbers of
+  /// their own, components are the part's, and there are no nodes. None: all. [m]
   std::optional<Box3d> part = {};
 };
 

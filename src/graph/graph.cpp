@@ -17,9 +17,9 @@
 namespace throng {
 namespace {
 
-// Null where the bake has left none.
+// Null where the bake has left none, or of a world in part.
 Result<std::shared_ptr<world::GraphData>> read_index(const world::WorldData& world) {
-  if (world.path.empty()) return std::shared_ptr<world::GraphData>();
+  if (world.path.empty() || world.part) return std::shared_ptr<world::GraphData>();
   const std::string name = world.path + "/" + world::kGraphIndexName;
   const auto map = FileMap::open(name);
   if (!map) return std::shared_ptr<world::GraphData>();

@@ -96,6 +96,10 @@ struct AirData {
     const AirTree* tree = nullptr;  // null: all of it is free
   };
   [[nodiscard]] ZoneAir zone(int32_t x, int32_t z) const;
+  /// False: WorldConfig::part leaves the zone out; none of it is free.
+  [[nodiscard]] bool is_there(int32_t x, int32_t z) const {
+    return slot_of_zone[static_cast<size_t>(z * zones_x + x)] != kNotThere;
+  }
   /// Is a cell of the world free? Sky is; what lies under the floor or beside the world is not.
   [[nodiscard]] bool is_free(int32_t x, int32_t y, int32_t z) const;
   /// May a body's feet be anywhere in this cell?

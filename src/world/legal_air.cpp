@@ -38,6 +38,7 @@ bool fill_window(const AirData& air, int32_t first_x, int32_t first_z, int32_t b
   const int32_t zz1 = std::min((first_z + rows.depth - 1) / side, air.zones_z - 1);
   for (int32_t zz = zz0; zz <= zz1; ++zz) {
     for (int32_t zx = zx0; zx <= zx1; ++zx) {
+      if (!air.is_there(zx, zz)) continue;
       const AirData::ZoneAir zone = air.zone(zx, zz);
       if (!zone.usable) return false;
       const int32_t x0 = zx * side - first_x, z0 = zz * side - first_z;

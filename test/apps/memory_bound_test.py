@@ -81,9 +81,10 @@ box = [205, 205, 275, 275]
 name = "adult"
 [[journey]]
 name = "stroll"
-[[journey.stage]]
-area = "street"
+repeat = true
+stages = [{{ random_point = "street" }}]
 [[source]]
+name = "people"
 area = "street"
 profile = "adult"
 journey = "stroll"

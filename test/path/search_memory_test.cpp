@@ -147,20 +147,22 @@ TEST(SearchMemory, GroundWithEditsSaysThatItHadTooLittle) {
 
 TEST(SearchMemory, GroundThatIsMadeOnDemandCountsIfAsked) {
   const auto make = [](bool counts) {
-    auto made =
-        PathFinder::create(maze(), {.speedup = PathSpeedup::kOnDemand, .counts_ground = counts});
+    Context context;
+    auto made = PathFinder::create(
+        maze(), {.speedup = PathSpeedup::kOnDemand, .counts_ground = counts}, context);
     EXPECT_TRUE(made);
     return *std::move(made);
   };
-  PathFinder free = make(false), counted = make(true);
+  PathFinder plain = make(false), counted = make(true);
   int lacked = 0, found = 0;
   for (uint64_t n = 0; n < 60; ++n) {
     const Place from = maze().random_place(0, 5, 2 * n), to = maze().random_place(0, 5, 2 * n + 1);
     Path all, path;
-    free.find(from, to, all);
+    plain.find({.from = from, .to = to, .nearest = true}, all);
     // Each budget is asked of the same finder, so what it has made is forgotten in between.
     for (const uint64_t bytes : {uint64_t{20} << 10, uint64_t{200} << 10, uint64_t{64} << 20}) {
-      counted.find(from, to, path, {UINT64_MAX, nullptr, bytes});
+      counted.find(
+          {.from = from, .to = to, .nearest = true, .budget = {UINT64_MAX, nullptr, bytes}}, path);
       if (path.end == PathEnd::kBudgetExhausted) {
         EXPECT_EQ(path.spent, SpentBudget::kMemory);
         EXPECT_LT(bytes, uint64_t{64} << 20);

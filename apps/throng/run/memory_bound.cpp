@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "command.h"
+#include "number_checks.h"
 
 // --memory: bounds what a command takes, or ends it.
 namespace throng::app {

@@ -248,7 +248,7 @@ class ProgramPath(ProgramCase):
         text = self.run_throng(*ends).stdout
         self.assertNotIn("beside", text)
         # A point each --spacing: the text has the first and the last, --json has all.
-        lines = [line for line in text.splitlines() if " deg" in line]
+        lines = [line for line in text.splitlines() if line.endswith(" deg")]
         self.assertEqual((len(lines), len(path["points"]) > 400), (16, True))
         self.assertIn(f"  ... {len(path['points']) - 16} more points: --json has all\n", text)
         for point, line in ((path["points"][7], lines[7]), (path["points"][-8], lines[8])):

@@ -221,9 +221,10 @@ void add_part(CLI::App& command, std::vector<double>& part) {
 }
 
 Box3d box_of_part(const std::vector<double>& part) {
-  const auto [x0, x1] = std::minmax(part[0], part[2]);
-  const auto [z0, z1] = std::minmax(part[1], part[3]);
-  return {.min = {x0, 0, z0}, .max = {x1, 0, z1}};
+  Box3d box;
+  box.add({part[0], 0, part[1]});
+  box.add({part[2], 0, part[3]});
+  return box;
 }
 
 void add_search_memory(CLI::App& command, uint64_t& bytes) {

@@ -26,6 +26,15 @@ constexpr uint32_t kColours[kBodyParts][kColoursAPart] = {
     {0x17181a, 0x2a2522, 0x4a3426, 0x6d4f38, 0xe2e0db, 0x8c8f94, 0x2c3444, 0x141414, 0x7a2a26,
      0x3a3a3a, 0xb9b3a6, 0x232323}};
 
+// One of twelve colours for each of `count` things, in four bits each.
+uint32_t colours_of(uint64_t seed, uint32_t look, uint32_t count) {
+  uint32_t colours = 0;
+  for (uint32_t thing = 0; thing < count; ++thing) {
+    colours |= static_cast<uint32_t>(random_below(seed, look, thing, kColoursAPart)) << 4 * thing;
+  }
+  return colours;
+}
+
 }  // namespace
 
 std::array<float, 3 * kColoursAPart * kBodyParts> wardrobe() {
@@ -40,25 +49,9 @@ std::array<float, 3 * kColoursAPart * kBodyParts> wardrobe() {
   return out;
 }
 
-uint32_t outfit_of(uint32_t look) {
-  constexpr uint64_t kOutfits = 0x6f7574666974;
-  uint32_t outfit = 0;
-  for (uint32_t part = 0; part < kBodyParts; ++part) {
-    const uint64_t choice = random_below(kOutfits, look, part, kColoursAPart);
-    outfit |= static_cast<uint32_t>(choice) << 4 * part;
-  }
-  return outfit;
-}
+uint32_t outfit_of(uint32_t look) { return colours_of(0x6f7574666974, look, kBodyParts); }
 
-uint32_t worn_colours_of(uint32_t look) {
-  constexpr uint64_t kWorn = 0x776f726e;
-  uint32_t colours = 0;
-  for (uint32_t kind = 0; kind < kWornKinds; ++kind) {
-    const uint64_t choice = random_below(kWorn, look, kind, kColoursAPart);
-    colours |= static_cast<uint32_t>(choice) << 4 * kind;
-  }
-  return colours;
-}
+uint32_t worn_colours_of(uint32_t look) { return colours_of(0x776f726e, look, kWornKinds); }
 
 double worn_ahead(WornKind kind) {
   switch (kind) {

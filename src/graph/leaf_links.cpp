@@ -216,7 +216,8 @@ std::string index_of(const world::WorldData& world) {
 }  // namespace
 
 bool AirLinks::exist(const World& world) {
-  if (!world || data_of(world)->path.empty()) return false;
+  // Nodes, and so their links, are of whole worlds.
+  if (!world || data_of(world)->path.empty() || data_of(world)->part) return false;
   std::error_code failure;
   return std::filesystem::exists(index_of(*data_of(world)), failure);
 }

@@ -164,6 +164,7 @@ NodePlace PathFinder::State::node_place_of(const PathPoint& point, double tolera
 void PathFinder::State::find_on_ground(const Place& from, const Place& to,
                                        path::IfUnreachable otherwise, const SearchBudget& budget,
                                        Path& path) {
+  trim_ground(budget);
   if (!is_apart(from, to)) return find_connected(from, to, otherwise, budget, path);
   path::reset(path);
   if (!are_free(from, to)) return;
@@ -414,7 +415,13 @@ bool PathFinder::State::advance(path::Slice& slice, Path& path) {
   return advance_on_ground(slice, path);
 }
 
+// Here, where every query begins that may make ground: in parts or at once.
+void PathFinder::State::trim_ground(const SearchBudget& budget) {
+  if (live) live->state().mesh.trim(budget.max_bytes / 2);
+}
+
 void PathFinder::State::begin_on_ground() {
+  trim_ground(begun.budget);
   begun_from = place_of(begun.from, begun.tolerance);
   begun_to = place_of(begun.to, begun.tolerance);
   nodes_before = 0;

@@ -77,6 +77,7 @@ struct PathFinder::State {
   void begin_over_nodes(const PathQuery& query);
   void begin_in_air(const PathQuery& query);
   void begin_on_ground();
+  void trim_ground(const SearchBudget& budget);
   /// Applies edits to the finder that searches.
   void follow_edits();
   /// The same for what is no query, such as is_free: not if that would keep a query in parts from

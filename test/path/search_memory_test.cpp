@@ -182,6 +182,41 @@ TEST(SearchMemory, GroundThatIsMadeOnDemandCountsIfAsked) {
   EXPECT_GT(lacked, 30);
 }
 
+TEST(SearchMemory, AQueryInPartsBeginsWithoutTheGroundOfThoseBefore) {
+  const auto make = [] {
+    Context context;
+    auto made = PathFinder::create(
+        maze(), {.speedup = PathSpeedup::kOnDemand, .counts_ground = true}, context);
+    EXPECT_TRUE(made);
+    return *std::move(made);
+  };
+  const auto find_in_parts = [](PathFinder& finder, const Place& from, const Place& to,
+                                uint64_t bytes) {
+    Path path;
+    finder.begin({.from = from, .to = to, .budget = {UINT64_MAX, nullptr, bytes}});
+    while (!finder.advance(100, path)) {
+    }
+    return path;
+  };
+  int near = 0;
+  PathFinder used = make();
+  for (uint64_t n = 0; n < 40; ++n) {
+    const Place from = maze().random_place(0, 9, n), far = maze().random_place(0, 10, n);
+    const Place to = maze().move(0, from, 1, 1).place;
+    PathFinder fresh = make();
+    constexpr uint64_t kLittle = uint64_t{200} << 10;
+    const Path alone = find_in_parts(fresh, from, to, kLittle);
+    if (alone.end != PathEnd::kReached) continue;
+    ++near;
+    Path path;
+    used.find({.from = from, .to = far, .budget = {UINT64_MAX, nullptr, uint64_t{64} << 20}}, path);
+    const Path after = find_in_parts(used, from, to, kLittle);
+    EXPECT_EQ(after.end, PathEnd::kReached);
+    EXPECT_EQ(after.length, alone.length);
+  }
+  EXPECT_GT(near, 20);
+}
+
 TEST(SearchMemory, ACrowdRefusesLessThanOneMebibyteAndCountsWhatItLacked) {
   auto refused = Crowd::create(maze(), {.search_bytes = 1000});
   ASSERT_FALSE(refused);

@@ -32,10 +32,15 @@ class WorldPart : public testing::Test {
     AvatarClass flyer{.name = "flyer", .height = 0.8, .radius = 0.4, .speed = 3};
     flyer.flies = true;
     Context context;
+    const Scene scene = test::builtin({.name = "city", .size = 200});
     const auto report = bake_world_to(
-        path(), test::builtin({.name = "city", .size = 200}),
-        {.cell = 0.25, .zone = kZone, .classes = {default_classes().front(), flyer}}, context);
+        path(), scene, {.cell = 0.25, .zone = kZone, .classes = {default_classes().front(), flyer}},
+        context);
     ASSERT_TRUE(report) << report.error().message;
+    // With links between the air and nodes, which a part does without.
+    const auto nodes = Nodes::create_in_folder(open(), scene, {}, context);
+    ASSERT_TRUE(nodes) << nodes.error().message;
+    ASSERT_TRUE(AirLinks::exist(open()));
   }
   static void TearDownTestSuite() {
     delete folder_;
@@ -150,6 +155,7 @@ TEST_F(WorldPart, HasComponentsOfItsOwnAndNoNodes) {
   const auto nodes = Nodes::open(part);
   ASSERT_FALSE(nodes);
   EXPECT_EQ(nodes.error().code, Errc::kBadConfig);
+  EXPECT_FALSE(AirLinks::exist(part));
 }
 
 TEST_F(WorldPart, RefusesABoxWithoutGround) {

@@ -112,7 +112,7 @@ int run_with_goals(Session& session, const World& world, RunOptions& options, Ru
       !ok)
     return fail(ok.error());
   const auto shown = [&](uint64_t step) {
-    if (auto ok = check_memory(options, fmt::format("step {} was made", step)); !ok) return ok;
+    if (auto ok = check_memory(options, "steps were made"); !ok) return ok;
     return sinks.add(step, crowd->crowd());
   };
   return run_crowd(session, run, *crowd, times, shown, [&] { return sinks.finish(); });

@@ -11,8 +11,9 @@
 namespace throng::app {
 
 Result<void> MemoryBound::check(const std::string& when, const std::string& remedy) const {
+  if (bytes == 0) return {};
   const uint64_t peak = peak_memory();
-  if (bytes == 0 || peak <= bytes) return {};
+  if (peak <= bytes) return {};
   return Error{Errc::kBadConfig, fmt::format("--memory: {} MiB are not enough, {} MiB were needed "
                                              "when {}; {}",
                                              bytes >> 20, (peak >> 20) + 1, when, remedy)};

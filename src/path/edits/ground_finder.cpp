@@ -340,7 +340,6 @@ bool GroundFinder::advance(uint64_t max_nodes, Path& path) {
 
 void GroundFinder::find(const Place& from, const Place& to, Path& path, const SearchBudget& budget,
                         IfUnreachable otherwise) {
-  state_->mesh.trim(budget.max_bytes / 2);
   begin(from, to, otherwise);
   Slice all;
   state_->advance(budget, all, path);

@@ -62,9 +62,7 @@ GroundView::GroundView(World world, const PathConfig& config)
     slope_factor_[s] = 1 + (s == 0 ? 0 : config.slope_cost * kSteepestOf[s]);
   }
   plain_ = config.slope_cost == 0;
-  mesh_.avatar_class = config.avatar_class;
-  mesh_.step = step_;
-  mesh_.source = this;
+  begin_mesh();
 }
 
 GroundView::GroundView(const GroundView& other)
@@ -82,6 +80,11 @@ GroundView::GroundView(const GroundView& other)
       changes_(other.changes_),
       changes_of_tile_(other.changes_of_tile_),
       off_mesh_links_(other.off_mesh_links_) {
+  begin_mesh();
+}
+
+void GroundView::begin_mesh() {
+  mesh_ = {};
   mesh_.avatar_class = config_.avatar_class;
   mesh_.step = step_;
   mesh_.source = this;
@@ -409,10 +412,7 @@ void GroundView::trim(uint64_t max_bytes) {
   if (counted_bytes() <= max_bytes) return;
   for (std::unique_ptr<ViewLevel>& level : levels_) level.reset();
   made_levels_ = 0;
-  mesh_ = {};
-  mesh_.avatar_class = config_.avatar_class;
-  mesh_.step = step_;
-  mesh_.source = this;
+  begin_mesh();
   rect_states_ = {};
   rect_blocks_ = {};
   portal_blocks_ = {};

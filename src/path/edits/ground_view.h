@@ -211,6 +211,7 @@ class GroundView final : public PortalSource {
   static int64_t tile_key(int32_t x, int32_t z) {
     return (int64_t{z} << 32) | static_cast<uint32_t>(x);
   }
+  void begin_mesh();
   void make(uint32_t index, ViewLevel& level);
   [[nodiscard]] uint64_t made_bytes() const;
   void block_cells(ViewLevel& level) const;

@@ -119,9 +119,9 @@ void File::read_top() {
   if (const ConfigNode* part = r.find("part"); part != nullptr && out_.world.empty()) {
     r.fail(*part, "part is a district of a baked world; name its folder with world");
   } else if (std::array<double, 4> v{}; r.numbers("part", v.data(), v.size())) {
-    const auto [x0, x1] = std::minmax(v[0], v[2]);
-    const auto [z0, z1] = std::minmax(v[1], v[3]);
-    out_.part = Box3d{.min = {x0, 0, z0}, .max = {x1, 0, z1}};
+    out_.part.emplace();
+    out_.part->add({v[0], 0, v[1]});
+    out_.part->add({v[2], 0, v[3]});
   }
   if (const ConfigNode* model = r.find("model"); model != nullptr) {
     std::vector<const ConfigNode*> files = {model};

@@ -84,63 +84,6 @@ Result<BuiltinWorldConfig> parse_builtin(const std::string& text) {
   return config;
 }
 
-void append_scene(Scene& scene, const Scene& other) {
-  const auto first_vertex = static_cast<uint32_t>(scene.positions.size());
-  const auto first_triangle = static_cast<uint32_t>(scene.triangles.size());
-  scene.positions.insert(scene.positions.end(), other.positions.begin(), other.positions.end());
-  scene.triangles.reserve(scene.triangles.size() + other.triangles.size());
-  for (const auto& [a, b, c] : other.triangles) {
-    scene.triangles.push_back({first_vertex + a, first_vertex + b, first_vertex + c});
-  }
-  scene.area.insert(scene.area.end(), other.area.begin(), other.area.end());
-  for (ScenePart part : other.parts) {
-    part.first_triangle += first_triangle;
-    if (part.material1 != 0) part.material1 += static_cast<uint32_t>(scene.materials.size());
-    scene.parts.push_back(std::move(part));
-  }
-  for (Material material : other.materials) {
-    if (material.texture1 != 0) material.texture1 += static_cast<uint32_t>(scene.textures.size());
-    scene.materials.push_back(std::move(material));
-  }
-  scene.textures.insert(scene.textures.end(), other.textures.begin(), other.textures.end());
-  if (!scene.texture_corners.empty() || !other.texture_corners.empty()) {
-    scene.texture_corners.resize(first_triangle);
-    scene.texture_corners.insert(scene.texture_corners.end(), other.texture_corners.begin(),
-                                 other.texture_corners.end());
-    scene.texture_corners.resize(scene.triangles.size());
-  }
-  if (!scene.patches.empty() || !other.patches.empty()) {
-    const auto first_patch = static_cast<uint32_t>(scene.patches.size());
-    scene.patch_of_triangle.resize(first_triangle, kNoPatch);
-    for (const uint32_t patch : other.patch_of_triangle) {
-      scene.patch_of_triangle.push_back(patch == kNoPatch ? kNoPatch : first_patch + patch);
-    }
-    scene.patch_of_triangle.resize(scene.triangles.size(), kNoPatch);
-    const bool known = scene.patch_off.size() == scene.patches.size() &&
-                       other.patch_off.size() == other.patches.size();
-    scene.patches.append(other.patches);
-    if (known) {
-      scene.patch_part.resize(first_triangle);
-      scene.patch_part.insert(scene.patch_part.end(), other.patch_part.begin(),
-                              other.patch_part.end());
-      scene.patch_part.resize(scene.triangles.size());
-      scene.patch_off.insert(scene.patch_off.end(), other.patch_off.begin(), other.patch_off.end());
-    } else {
-      scene.patch_part.clear();
-      scene.patch_off.clear();
-    }
-  }
-  scene.report.triangles_read += other.report.triangles_read;
-  scene.report.non_finite += other.report.non_finite;
-  scene.report.bad_index += other.report.bad_index;
-  scene.report.degenerate += other.report.degenerate;
-  scene.report.duplicate += other.report.duplicate;
-  scene.report.ignored += other.report.ignored;
-  scene.report.spikes += other.report.spikes;
-  scene.report.warnings.insert(scene.report.warnings.end(), other.report.warnings.begin(),
-                               other.report.warnings.end());
-}
-
 Result<void> check_units(const SourceOptions& options) {
   const char* option = !options.up.empty() ? "--up" : options.scale > 0 ? "--scale" : nullptr;
   if (option == nullptr) return {};
@@ -157,50 +100,74 @@ Result<void> check_units(const SourceOptions& options) {
   return Error{Errc::kBadConfig, fmt::format("{} {}", option, what)};
 }
 
-Result<Scene> read_sources(const SourceOptions& options, Context& context,
-                           SceneMaterials materials) {
+namespace {
+
+// What the options name: models, then built-in worlds.
+struct Models {
   SceneConfig config;
+  std::vector<BuiltinWorldConfig> builtins;
+};
+
+Result<Models> list_models(const SourceOptions& options) {
+  Models models;
   if (!options.scene.empty()) {
     Result<SceneConfig> loaded = load_scene_config(options.scene);
     if (!loaded) return loaded.error();
-    config = *std::move(loaded);
+    models.config = *std::move(loaded);
   }
-  config.materials = materials;
-  std::vector<BuiltinWorldConfig> builtins;
   for (const std::string& file : options.files) {
     if (file.starts_with(kBuiltin)) {
       Result<BuiltinWorldConfig> builtin = parse_builtin(file);
       if (!builtin) return builtin.error();
-      builtins.push_back(*std::move(builtin));
+      models.builtins.push_back(*std::move(builtin));
       continue;
     }
     SceneSource source{.path = file, .up = {}, .scale = {}, .transform = {}};
     if (!options.up.empty()) source.up = options.up.front();
     if (options.scale > 0) source.scale = options.scale;
-    config.sources.push_back(std::move(source));
+    models.config.sources.push_back(std::move(source));
   }
-  if (config.sources.empty() && builtins.empty()) {
+  if (models.config.sources.empty() && models.builtins.empty()) {
     return Error{Errc::kBadConfig, "no model given; name a file, a scene file or builtin:garage"};
   }
   if (auto ok = check_units(options); !ok) return ok.error();
+  return models;
+}
 
+}  // namespace
+
+Result<Scene> read_sources(const SourceOptions& options, Context& context,
+                           SceneMaterials materials) {
+  Result<Models> models = list_models(options);
+  if (!models) return models.error();
+  models->config.materials = materials;
   Scene scene;
-  if (!config.sources.empty()) {
-    Result<Scene> loaded = load_scene(config, context);
+  if (!models->config.sources.empty()) {
+    Result<Scene> loaded = load_scene(models->config, context);
     if (!loaded) return loaded.error();
     scene = *std::move(loaded);
   }
-  for (const BuiltinWorldConfig& builtin : builtins) {
+  for (const BuiltinWorldConfig& builtin : models->builtins) {
     Result<Scene> made = create_builtin_world(builtin);
     if (!made) return made.error();
     if (scene.triangles.empty() && scene.report.triangles_read == 0) {
       scene = *std::move(made);
     } else {
-      append_scene(scene, *made);
+      scene.append(*made);
     }
   }
   for (const std::string& warning : scene.report.warnings) note(warning);
   return scene;
+}
+
+Result<std::unique_ptr<SceneRegions>> read_regions(const SourceOptions& options,
+                                                   const std::string& folder, Context& context) {
+  const Result<Models> models = list_models(options);
+  if (!models) return models.error();
+  auto regions = load_scene_regions(models->config, models->builtins, folder, context);
+  if (!regions) return regions.error();
+  for (const std::string& warning : (*regions)->facts().report.warnings) note(warning);
+  return regions;
 }
 
 void note_if_elsewhere(const Scene& scene, const Box3d& world) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -31,13 +32,14 @@ Result<BuiltinWorldConfig> parse_builtin(const std::string& text);
 /// Fails with kBadConfig if --up or --scale is given and no file that it is of.
 Result<void> check_units(const SourceOptions& options);
 
-/// Appends `other` to `scene`, its report included.
-void append_scene(Scene& scene, const Scene& other);
-
 /// Reads everything that the options name: the scene file's sources, then the files, then the
 /// built-in worlds. Prints the report's warnings as notes.
 Result<Scene> read_sources(const SourceOptions& options, Context& context,
                            SceneMaterials materials = SceneMaterials::kLeaveOut);
+
+/// The same, to be taken district by district; `folder` is for a temporary file.
+Result<std::unique_ptr<SceneRegions>> read_regions(const SourceOptions& options,
+                                                   const std::string& folder, Context& context);
 
 /// Prints a note if a model to draw or test with a world has another position or size than it: as
 /// one read in other units, or with another axis up. [world: WorldSummary::bounds]

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -287,6 +288,8 @@ struct THRONG_API Scene {
   void add_quad(Vec3d a, Vec3d b, Vec3d c, Vec3d d, AreaKind kind = kAreaWalkable);
   /// The six sides of an axis-aligned box, facing out.
   void add_box(Vec3d low, Vec3d high, AreaKind kind = kAreaWalkable);
+  /// All of `other` behind what is there, with its report.
+  void append(const Scene& other);
   [[nodiscard]] Box3d bounds() const;
 };
 
@@ -404,5 +407,48 @@ struct BuiltinWorldInfo {
 
 /// Fails with kNotFound (unknown name) or kBadConfig (size out of limits). Linear in the triangles.
 [[nodiscard]] THRONG_API Result<Scene> create_builtin_world(const BuiltinWorldConfig& config);
+
+// ----
+// Scenes district by district, for bakes of worlds that are larger than memory.
+
+/// What is known of a scene that is not in memory.
+struct SceneFacts {
+  Box3d bounds;                  ///< Of all triangles. [m]
+  uint64_t triangles = 0;        ///< Of the whole scene.
+  uint64_t patches = 0;          ///< Likewise.
+  uint64_t patch_triangles = 0;  ///< Triangles of patches, among `triangles`.
+  SceneReport report;            ///< Of the import.
+};
+
+/// A district of a scene.
+struct SceneRegion {
+  /// All triangles and patches of the district, and others near by, in the order of the whole
+  /// scene. Its patches are numbered from 0; edges whose neighbours are not in it are open.
+  Scene scene;
+  std::vector<uint32_t> patch_number;  ///< In the whole scene, of each patch; ascending.
+};
+
+/// A scene that is read district by district and never held as a whole. Its functions may be called
+/// from several threads.
+class THRONG_API SceneRegions {
+ public:
+  virtual ~SceneRegions();
+  [[nodiscard]] virtual const SceneFacts& facts() const = 0;
+  /// About how many triangles region() gives. Fast. `box` is seen from above. [m]
+  [[nodiscard]] virtual uint64_t estimate(const Box3d& box) const = 0;
+  /// At least all triangles whose boxes touch `box`, seen from above, and all patches whose bounds
+  /// do, with the patches around these. Fails with kIo or kCancelled.
+  [[nodiscard]] virtual Result<SceneRegion> region(const Box3d& box, Context& context) const = 0;
+};
+
+/// Reads a scene as load_scene does, and built-in worlds behind it, to be taken district by
+/// district: the same triangles in the same order. Files are read one after the other; their
+/// triangles go to a temporary file in `folder`, which is removed with the object. Curved patches
+/// stay in memory, and their triangles are made again for each district. Memory: the largest file
+/// while it is read, and 600 bytes a patch. Fails as load_scene does, with kIo, and with kBadConfig
+/// if the config has volumes or reads materials.
+[[nodiscard]] THRONG_API Result<std::unique_ptr<SceneRegions>> load_scene_regions(
+    const SceneConfig& config, std::span<const BuiltinWorldConfig> builtin,
+    const std::string& folder, Context& context);
 
 }  // namespace throng

@@ -3,107 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <utility>
 
-#include "core/files/read_file.h"
-#include "import/formats/assimp_reader.h"
-#include "import/formats/bpt.h"
-#include "import/formats/bsp.h"
-#include "import/formats/city.h"
-#include "import/formats/obj.h"
-#include "import/formats/patch_json.h"
-#include "import/formats/plan.h"
-#include "import/formats/ply.h"
-#include "import/formats/texture_reader.h"
 #include "import/formats/zonel.h"
 #include "import/patches/patch_scene.h"
-#include "import/raw/area_rules.h"
 #include "import/raw/clean.h"
 #include "import/raw/name_colour.h"
 #include "import/raw/raw_scene.h"
+#include "import/source_files.h"
 
-// The one entry for all formats: reads each file as it is, places it in metres with Y up, sets area
-// kinds, joins the files and cleans the result.
+// The one entry for all formats: reads and places each file, joins the files and cleans the result.
 namespace throng {
 namespace {
-
-using Reader = Result<importer::RawScene> (*)(std::string_view, const importer::ReadOptions&,
-                                              Context&);
-
-std::string lower_case(std::string text) {
-  for (char& c : text) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return text;
-}
-
-// A .json file may hold patches, a city or a plan. Patches and cities are recognised by a key or by
-// the file's name; all else is a plan.
-Reader json_reader(const std::string& path, std::string_view bytes) {
-  if (lower_case(path).ends_with(".patches.json") ||
-      bytes.find("\"throng-patches\"") != std::string_view::npos)
-    return &importer::read_patch_json;
-  return bytes.find("\"CityJSON\"") != std::string_view::npos ? &importer::read_cityjson
-                                                              : &importer::read_geojson;
-}
-
-Result<importer::RawScene> read_source(const SceneSource& source,
-                                       const importer::ReadOptions& options, Context& context) {
-  const std::string extension = lower_case(std::filesystem::path(source.path).extension().string());
-  for (const char* known : {".gltf", ".glb", ".fbx", ".stl", ".dae", ".ifc", ".3ds"}) {
-    if (extension != known) continue;
-    // The child reads the file itself; here only the message for a missing file is made.
-    std::error_code failure;
-    if (!std::filesystem::is_regular_file(source.path, failure)) break;
-    return importer::read_with_assimp(source.path, options, context);
-  }
-  const bool known = extension == ".obj" || extension == ".ply" || extension == ".json" ||
-                     extension == ".gml" || extension == ".bsp" || extension == ".wkt" ||
-                     extension == ".geojson" || extension == ".bpt" || extension == ".zonel";
-  const auto bytes = read_file(source.path);
-  if (!bytes) return bytes.error();
-  if (!known) {
-    return Error{Errc::kBadFile,
-                 fmt::format("{}: unknown kind of file '{}'; readable are obj gltf glb fbx ply stl "
-                             "dae ifc 3ds city.json gml bsp wkt geojson bpt zonel patches.json",
-                             source.path, extension)};
-  }
-  Reader reader = nullptr;
-  if (extension == ".obj")
-    reader = &importer::read_obj;
-  else if (extension == ".ply")
-    reader = &importer::read_ply;
-  else if (extension == ".json")
-    reader = json_reader(source.path, *bytes);
-  else if (extension == ".gml")
-    reader = &importer::read_citygml;
-  else if (extension == ".bsp")
-    reader = &importer::read_bsp;
-  else if (extension == ".wkt")
-    reader = &importer::read_wkt;
-  else if (extension == ".bpt")
-    reader = &importer::read_bpt;
-  else if (extension == ".zonel")
-    reader = &importer::read_zonel;
-  else
-    reader = &importer::read_geojson;
-  return reader(*bytes, options, context);
-}
-
-// Into metres with Y up, then the source's own transform, as one matrix.
-Transform placement(const SceneSource& source, const importer::RawScene& raw) {
-  const double s = source.scale.value_or(raw.metres_per_unit);
-  const bool z_up = source.up.value_or(raw.up) == 'z';
-  Transform out;
-  for (size_t row = 0; row < 3; ++row) {
-    const auto& m = source.transform.m[row];
-    // Z up: (x, y, z) lies at (x, z, -y).
-    out.m[row] = {m[0] * s, (z_up ? -m[2] : m[1]) * s, (z_up ? m[1] : m[2]) * s, m[3]};
-  }
-  return out;
-}
 
 void append(Scene& all, Scene&& one) {
   if (all.triangles.empty() && all.positions.empty() && all.patches.empty()) {
@@ -152,63 +63,11 @@ void append(Scene& all, Scene&& one) {
             std::back_inserter(all.report.warnings));
 }
 
-// A folder stands for the landscape zones in it, in order of their names.
-Result<std::vector<SceneSource>> open_folders(const std::vector<SceneSource>& sources) {
-  std::vector<SceneSource> files;
-  for (const SceneSource& source : sources) {
-    std::error_code failure;
-    if (!std::filesystem::is_directory(source.path, failure)) {
-      files.push_back(source);
-      continue;
-    }
-    std::vector<std::string> paths;
-    for (const auto& entry : std::filesystem::directory_iterator(source.path, failure)) {
-      if (lower_case(entry.path().extension().string()) == ".zonel") {
-        paths.push_back(entry.path().string());
-      }
-    }
-    if (failure) return Error{Errc::kIo, source.path + ": cannot be listed; check its permissions"};
-    if (paths.empty()) {
-      return Error{Errc::kBadFile,
-                   source.path + ": is a folder without .zonel files; name a file inside it"};
-    }
-    std::sort(paths.begin(), paths.end());
-    for (std::string& path : paths) {
-      files.push_back(source);
-      files.back().path = std::move(path);
-    }
-  }
-  return files;
-}
-
-Result<void> check(const SceneConfig& config) {
-  const auto bad = [](std::string what) { return Error{Errc::kBadConfig, "scene: " + what}; };
-  if (config.sources.empty()) return bad("no source; name at least one file");
-  if (!(config.plan_height > 0 && config.plan_height <= 1e6)) return bad("need plan_height > 0");
-  if (!(config.curve_tolerance > 0 && config.curve_tolerance <= 1e6)) {
-    return bad("need curve_tolerance > 0");
-  }
-  for (const SceneSource& source : config.sources) {
-    if (source.up && *source.up != 'y' && *source.up != 'z') {
-      return bad(source.path + ": up must be y or z");
-    }
-    if (source.scale && !(*source.scale > 0 && *source.scale <= 1e9)) {
-      return bad(source.path + ": need scale > 0");
-    }
-    for (const auto& row : source.transform.m) {
-      for (const double value : row) {
-        if (!std::isfinite(value)) return bad(source.path + ": the transform is not finite");
-      }
-    }
-  }
-  return {};
-}
-
 }  // namespace
 
 Result<Scene> load_scene(const SceneConfig& config, Context& context) {
-  if (const auto checked = check(config); !checked) return checked.error();
-  const auto sources = open_folders(config.sources);
+  if (const auto checked = importer::check_config(config); !checked) return checked.error();
+  const auto sources = importer::open_folders(config.sources);
   if (!sources) return sources.error();
   Scene all;
   std::vector<importer::PatchZone> zones;
@@ -216,25 +75,12 @@ Result<Scene> load_scene(const SceneConfig& config, Context& context) {
     const SceneSource& source = (*sources)[i];
     if (context.on_progress) context.on_progress({"read", i, sources->size()});
     if (context.cancel) return Error{Errc::kCancelled, "cancelled while reading"};
-    importer::ReadOptions options;
-    options.name = source.path;
-    options.curve_tolerance = config.curve_tolerance;
-    options.plan_height = config.plan_height;
-    options.metres_per_unit = source.scale;
-    options.materials = config.materials;
-    auto raw = read_source(source, options, context);
+    auto raw = importer::read_placed(source, config, context);
     if (!raw) return raw.error();
-    if (auto ok = importer::read_textures(*raw, source.path, context); !ok) return ok.error();
-    const Transform place = placement(source, *raw);
-    for (Vec3d& p : raw->scene.positions) p = place(p);
-    for (BezierPatch& patch : raw->scene.patches.patches) {
-      for (Vec3d& p : patch.points) p = place(p);
-    }
     if (raw->zone) {
       raw->zone->first_patch = static_cast<uint32_t>(all.patches.size());
       zones.push_back(*std::move(raw->zone));
     }
-    importer::apply_rules(raw->scene, config.rules);
     if (raw->scene.patches.size() + all.patches.size() >= kNoPatch / 4) {
       return Error{Errc::kLimit,
                    "scene: more than 1.07 thousand million patches; bake it in parts"};

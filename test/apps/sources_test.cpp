@@ -58,7 +58,7 @@ TEST(Sources, AppendingAScenePointsItsTrianglesAtItsOwnCorners) {
   second.report.non_finite = 2;
   second.report.warnings = {"b is odd"};
 
-  append_scene(first, second);
+  first.append(second);
   ASSERT_EQ(first.triangles.size(), 2u);
   EXPECT_EQ(first.positions[first.triangles[1][0]], (Vec3d{5, 1, 0}));
   EXPECT_EQ(first.area, (std::vector<AreaKind>{kAreaWalkable, kAreaBlocked}));

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <utility>
 
 #include "import/builtin/builtin_table.h"
+#include "import/builtin/patch_world.h"
 #include "import/patches/patch_scene.h"
 #include "import/raw/name_colour.h"
 #include "throng/scene.h"
@@ -96,17 +98,28 @@ std::span<const BuiltinWorldInfo> builtin_worlds() {
   return infos;
 }
 
-Result<Scene> create_builtin_world(const BuiltinWorldConfig& config) {
-  const Entry* entry = find_entry(config.name);
+namespace {
+
+// An entry and what is asked of it, with its defaults.
+struct Order {
+  const Entry* entry = nullptr;
+  BuiltinWorldConfig config;
+
+  [[nodiscard]] Error refuse(const std::string& what) const {
+    return {Errc::kBadConfig, fmt::format("world {}: {}", config.name, what)};
+  }
+};
+
+Result<Order> check(const BuiltinWorldConfig& config) {
+  Order order{.entry = find_entry(config.name), .config = config};
+  const Entry* entry = order.entry;
   if (entry == nullptr) {
     return Error{Errc::kNotFound,
                  fmt::format("world: there is no built-in world \"{}\"; use one of {}", config.name,
                              all_names())};
   }
-  const auto refuse = [&](const std::string& what) {
-    return Error{Errc::kBadConfig, fmt::format("world {}: {}", config.name, what)};
-  };
-  BuiltinWorldConfig full = config;
+  const auto refuse = [&](const std::string& what) { return order.refuse(what); };
+  BuiltinWorldConfig& full = order.config;
   if (config.levels != 0 && entry->info.default_levels == 0) {
     return refuse("has no levels to count; leave levels out");
   }
@@ -145,21 +158,41 @@ Result<Scene> create_builtin_world(const BuiltinWorldConfig& config) {
                                 most, full.size));
     }
   }
-  if (entry->build_patches != nullptr) {
-    Scene scene;
-    scene.patches = entry->build_patches(full);
+  return order;
+}
+
+}  // namespace
+
+Result<importer::builtin::PatchWorld> importer::builtin::create_patch_world(
+    const BuiltinWorldConfig& config) {
+  const auto order = check(config);
+  if (!order) return order.error();
+  PatchWorld world;
+  if (order->entry->build_patches == nullptr) return world;
+  world.patches = order->entry->build_patches(order->config);
+  world.tolerance = landscape_tolerance(order->config.size);
+  return world;
+}
+
+Result<Scene> create_builtin_world(const BuiltinWorldConfig& config) {
+  const auto order = check(config);
+  if (!order) return order.error();
+  Scene scene;
+  if (order->entry->build_patches != nullptr) {
+    auto world = importer::builtin::create_patch_world(config);
+    if (!world) return world.error();
+    scene.patches = std::move(world->patches);
     Context context;
     SceneConfig how;
-    how.curve_tolerance = importer::builtin::landscape_tolerance(full.size);
+    how.curve_tolerance = world->tolerance;
     if (const auto cut = importer::cut_patches(scene, how, context); !cut) {
-      return refuse(cut.error().message);
+      return order->refuse(cut.error().message);
     }
-    importer::add_named_materials(scene);
-    return scene;
+  } else {
+    importer::WorldBuilder builder;
+    order->entry->build(builder, order->config);
+    scene = builder.finish();
   }
-  importer::WorldBuilder builder;
-  entry->build(builder, full);
-  Scene scene = builder.finish();
   importer::add_named_materials(scene);
   return scene;
 }

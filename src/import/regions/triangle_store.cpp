@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "import/regions/triangle_store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <climits>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+// Triangles wait in memory by square and are written together, so that the file has few runs for
+// each square: models list what lies together together. A triangle belongs to the square of its
+// box's middle, and is no longer than a square on either axis; longer ones have a list of their
+// own, which every query reads.
+namespace throng::importer {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double kSide = 64;               // of a square [m]
+constexpr uint64_t kMaxWaiting = 1 << 16;  // triangles
+constexpr int32_t kLarge = INT32_MIN;      // the square of large triangles
+constexpr double kFarthest = 2e9;          // squares from the origin
+
+int32_t square_of(double at) {
+  return static_cast<int32_t>(std::clamp(std::floor(at / kSide), -kFarthest, kFarthest));
+}
+
+Box3d box_of(const std::array<Vec3d, 3>& corners) {
+  Box3d box;
+  for (const Vec3d& p : corners) box.add(p);
+  return box;
+}
+
+int seek(std::FILE* file, uint64_t byte) {
+#ifdef _WIN32
+  return _fseeki64(file, static_cast<int64_t>(byte), SEEK_SET);
+#else
+  return fseeko(file, static_cast<off_t>(byte), SEEK_SET);
+#endif
+}
+
+}  // namespace
+
+Error TriangleStore::failure(const char* what) const {
+  return {Errc::kIo, path_ + ": " + what + ": " + std::strerror(errno) +
+                         "; is there room for 80 bytes a triangle?"};
+}
+
+Result<std::unique_ptr<TriangleStore>> TriangleStore::create(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  for (int n = 0;; ++n) {
+    std::string path = (fs::path(folder) / fmt::format("triangles.{}.tmp", n)).string();
+    errno = 0;
+    std::FILE* file = std::fopen(path.c_str(), "w+bx");
+    if (file == nullptr && errno == EEXIST && n < 1000) continue;
+    if (file == nullptr) {
+      return Error{Errc::kIo, path + ": cannot be written: " + std::strerror(errno)};
+    }
+#ifndef _WIN32
+    fs::remove(path, error);  // The open file remains, and a killed process leaves nothing behind.
+#endif
+    return std::unique_ptr<TriangleStore>(new TriangleStore(std::move(path), file));
+  }
+}
+
+TriangleStore::~TriangleStore() {
+  std::fclose(file_);
+#ifdef _WIN32
+  std::error_code ignored;
+  fs::remove(path_, ignored);
+#endif
+}
+
+Result<void> TriangleStore::add(const Scene& scene) {
+  if (count_ + scene.triangles.size() > UINT32_MAX) {
+    return Error{Errc::kLimit,
+                 "scene: more than 4.29 thousand million triangles; bake it in parts"};
+  }
+  for (size_t t = 0; t < scene.triangles.size(); ++t) {
+    Record record{.corners = {}, .number = static_cast<uint32_t>(count_++), .area = scene.area[t]};
+    for (size_t k = 0; k < 3; ++k) record.corners[k] = scene.positions[scene.triangles[t][k]];
+    const Box3d box = box_of(record.corners);
+    bounds_.add(box.min);
+    bounds_.add(box.max);
+    const bool is_large = box.max.x - box.min.x > kSide || box.max.z - box.min.z > kSide;
+    const Vec3d middle = (box.min + box.max) * 0.5;
+    Square& square = squares_[is_large ? Place{kLarge, kLarge}
+                                       : Place{square_of(middle.z), square_of(middle.x)}];
+    ++square.count;
+    square.waiting.push_back(record);
+    if (++waiting_ < kMaxWaiting) continue;
+    if (auto ok = write_waiting(); !ok) return ok;
+  }
+  return {};
+}
+
+Result<void> TriangleStore::write_waiting() {
+  for (auto& [place, square] : squares_) {
+    const size_t count = square.waiting.size();
+    if (count == 0) continue;
+    if (std::fwrite(square.waiting.data(), sizeof(Record), count, file_) != count) {
+      return failure("cannot be written");
+    }
+    if (!square.runs.empty() && square.runs.back().first + square.runs.back().count == written_) {
+      square.runs.back().count += count;
+    } else {
+      square.runs.push_back({.first = written_, .count = count});
+    }
+    written_ += count;
+    square.waiting = {};
+  }
+  waiting_ = 0;
+  return {};
+}
+
+Result<void> TriangleStore::finish() {
+  if (auto ok = write_waiting(); !ok) return ok;
+  if (std::fflush(file_) != 0) return failure("cannot be written");
+  return {};
+}
+
+template <class Visit>
+void TriangleStore::for_each_square(const Box3d& box, Visit visit) const {
+  const auto large = squares_.find({kLarge, kLarge});
+  if (large != squares_.end()) visit(large->second);
+  const int32_t x0 = square_of(box.min.x - kSide / 2), x1 = square_of(box.max.x + kSide / 2);
+  const int32_t z0 = square_of(box.min.z - kSide / 2), z1 = square_of(box.max.z + kSide / 2);
+  for (auto at = squares_.lower_bound({z0, x0}); at != squares_.end() && at->first.first <= z1;) {
+    const auto [z, x] = at->first;
+    if (x < x0) {
+      at = squares_.lower_bound({z, x0});
+    } else if (x > x1) {
+      at = squares_.lower_bound({z + 1, x0});
+    } else {
+      visit(at->second);
+      ++at;
+    }
+  }
+}
+
+uint64_t TriangleStore::estimate(const Box3d& box) const {
+  uint64_t count = 0;
+  for_each_square(box, [&](const Square& square) { count += square.count; });
+  return count;
+}
+
+Result<void> TriangleStore::append(const Box3d& box, uint32_t /*first_patch*/, SceneRegion& out,
+                                   Context& context) const {
+  std::vector<Record> found, read;
+  bool is_read = true;
+  for_each_square(box, [&](const Square& square) {
+    for (const Run& run : square.runs) {
+      constexpr uint64_t kAtOnce = 1 << 14;
+      for (uint64_t done = 0; is_read && !context.cancel && done < run.count;) {
+        read.resize(std::min(kAtOnce, run.count - done));
+        const std::lock_guard lock(mutex_);
+        is_read = seek(file_, (run.first + done) * sizeof(Record)) == 0 &&
+                  std::fread(read.data(), sizeof(Record), read.size(), file_) == read.size();
+        done += read.size();
+        for (const Record& record : read) {
+          if (touch(box_of(record.corners), box)) found.push_back(record);
+        }
+      }
+    }
+  });
+  if (!is_read) return failure("cannot be read again");
+  if (context.cancel) return Error{Errc::kCancelled, "cancelled while reading"};
+  std::sort(found.begin(), found.end(),
+            [](const Record& a, const Record& b) { return a.number < b.number; });
+  Scene& scene = out.scene;
+  scene.positions.reserve(scene.positions.size() + 3 * found.size());
+  scene.triangles.reserve(scene.triangles.size() + found.size());
+  for (const Record& record : found) {
+    scene.add_triangle(record.corners[0], record.corners[1], record.corners[2], record.area);
+  }
+  if (!scene.patch_of_triangle.empty()) {
+    scene.patch_of_triangle.resize(scene.triangles.size(), kNoPatch);
+    scene.patch_part.resize(scene.triangles.size());
+  }
+  return {};
+}
+
+}  // namespace throng::importer

@@ -81,7 +81,7 @@ CLI::Option* add_speedup(CLI::App& command, const std::string& flag, PathSpeedup
 CLI::Option* add_threads(CLI::App& command, int32_t& threads,
                          const std::string& text = "Threads, 0 for all cores");
 /// --part: two corners of a district as seen from above, for box_of_part. [m]
-void add_part(CLI::App& command, std::vector<double>& part);
+void add_part(CLI::App& command, std::vector<double>& part, const std::string& text);
 [[nodiscard]] Box3d box_of_part(const std::vector<double>& part);
 /// --search-memory, in MiB.
 void add_search_memory(CLI::App& command, uint64_t& bytes);
@@ -119,6 +119,7 @@ void add_export(CLI::App& parser, Session& session);
 void add_film(CLI::App& parser, Session& session);
 void add_generate(CLI::App& parser, Session& session);
 void add_info(CLI::App& parser, Session& session);
+void add_join(CLI::App& parser, Session& session);
 void add_path(CLI::App& parser, Session& session);
 void add_picture(CLI::App& parser, Session& session);
 void add_query(CLI::App& parser, Session& session);

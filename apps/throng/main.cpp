@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
     add_film(parser, session);
     add_generate(parser, session);
     add_info(parser, session);
+    add_join(parser, session);
     add_path(parser, session);
     add_picture(parser, session);
     add_query(parser, session);

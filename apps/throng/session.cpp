@@ -210,14 +210,8 @@ CLI::Option* add_threads(CLI::App& command, int32_t& threads, const std::string&
       ->check(between(0, std::max(kMaxThreads, std::thread::hardware_concurrency())));
 }
 
-void add_part(CLI::App& command, std::vector<double>& part) {
-  command
-      .add_option("--part", part,
-                  "A district, by two opposite corners as seen from above: only the world's zones "
-                  "that touch it are there [m]")
-      ->delimiter(',')
-      ->expected(4)
-      ->type_name("X,Z,X,Z");
+void add_part(CLI::App& command, std::vector<double>& part, const std::string& text) {
+  command.add_option("--part", part, text)->delimiter(',')->expected(4)->type_name("X,Z,X,Z");
 }
 
 Box3d box_of_part(const std::vector<double>& part) {

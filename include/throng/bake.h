@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,13 @@ struct BakeConfig {
   /// others still block. False: windings are ignored, so the upper side of a ceiling without
   /// thickness is floor, too. Nodes on patches ignore this setting.
   bool one_sided = false;
+  /// A district: only zones that touch this box, seen from above, are baked. Others are in the
+  /// world if that in the folder has them, from the same input; a world is completed district by
+  /// district, with the bytes of one bake. The scene is the whole one. None: all. [m]
+  std::optional<Box3d> part = {};
+  /// Of a scene that is read district by district: about how much memory the triangles of a block
+  /// of zones may take. Less is slower. Never changes the result. [bytes, > 0]
+  uint64_t block_bytes = uint64_t{256} << 20;
   double zone = 160;  ///< Side of a zone, rounded to whole tiles (64 cells). [m, > 0]
   std::vector<AvatarClass> classes = default_classes();
   int32_t workers = 0;  ///< Threads to use, 0 for all cores. Never changes the result. [>= 0]
@@ -108,6 +116,27 @@ struct BakeReport {
                                                           const Scene& scene,
                                                           const BakeConfig& config,
                                                           Context& context);
+
+/// The same of a scene that is never in memory as a whole: zones are baked in blocks, nearly
+/// square, whose triangles take config.block_bytes at most, or are those of one zone. The
+/// same bytes as from the whole scene into an empty folder. The grid begins where the scene does,
+/// whatever the old world's. Memory: a block, a few zones, and about 300 bytes for each zone of
+/// the world. Fails as bake_world_to does, as SceneRegions::region, and with kBadConfig if the
+/// config has off-mesh links.
+[[nodiscard]] THRONG_API Result<BakeReport> bake_world_to(const std::string& path,
+                                                          const SceneRegions& scene,
+                                                          const BakeConfig& config,
+                                                          Context& context);
+
+/// Joins worlds whose zones were baked of parts of one scene (BakeConfig::part), with the same
+/// settings: zones that several of them have are the same. Makes the graph over the borders again;
+/// nodes are not taken over. A world of all parts has the bytes of one bake. Reads the zones'
+/// files, links or copies them, and leaves the worlds as they are; `path` may be one of them. Fails
+/// with kBadFile, with kBadInput where they do not fit together, with kIo or kCancelled; then
+/// `path` keeps its old content.
+[[nodiscard]] THRONG_API Result<BakeReport> join_worlds(const std::vector<std::string>& worlds,
+                                                        const std::string& path, int32_t workers,
+                                                        Context& context);
 
 /// Makes a world in memory from flat cells, with one class, "point", that is legal on every
 /// passable cell; feet are at height 0. Fails with kBadConfig (cell, workers) or kBadInput.

@@ -3,7 +3,6 @@
 #include "throng/bake.h"
 
 #include <memory>
-#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -11,7 +10,7 @@
 #include "bake/folder/graph_bake.h"
 #include "bake/folder/world_bake.h"
 #include "bake/folder/world_folder.h"
-#include "bake/folder/zone_bake.h"
+#include "bake/folder/zone_baker.h"
 #include "core/access.h"
 #include "core/parallel.h"
 #include "core/side_by_side.h"
@@ -23,94 +22,6 @@
 namespace throng {
 namespace {
 
-// Bakes zones, several at a time where there are many workers: within one of them more than a few
-// wait for each other. They go into the folder, which may have some of them already, or, if it is
-// null, into memory.
-class ZoneBaker {
- public:
-  ZoneBaker(const bake::WorldBake& bake, const BakeConfig& config, Context& context,
-            bake::WorldFolder* folder)
-      : bake_(bake),
-        context_(context),
-        folder_(folder),
-        groups_(assign_workers(bake.zones().size(), config.workers)),
-        scratch_(static_cast<size_t>(groups_.groups)),
-        facts_(bake.zones().size()),
-        zones_(folder == nullptr ? facts_.size() : 0) {}
-
-  Result<void> run() {
-    const auto baked = side_by_side(
-        facts_.size(), groups_, context_,
-        [&](size_t i) {
-          if (context_.on_progress) {
-            context_.on_progress({"bake", bake_.place(i), bake_.place_count()});
-          }
-        },
-        [&](size_t i, int32_t group) {
-          auto& scratch = scratch_[static_cast<size_t>(group)];
-          if (!scratch) scratch = std::make_unique<bake::ZoneScratch>(groups_.workers);
-          return bake(i, *scratch);
-        });
-    if (!baked) return baked.error();
-    if (context_.cancel) return cancelled();
-    return {};
-  }
-
-  [[nodiscard]] const std::vector<bake::ZoneFacts>& facts() const { return facts_; }
-  // In memory: in order of z, then x.
-  [[nodiscard]] std::vector<std::unique_ptr<world::Zone>> take_zones() {
-    std::erase(zones_, nullptr);
-    return std::move(zones_);
-  }
-
- private:
-  static Error cancelled() { return {Errc::kCancelled, "bake: cancelled; nothing was written"}; }
-
-  Result<void> bake(size_t i, bake::ZoneScratch& scratch) {
-    const format::ZoneInput& input = bake_.zones()[i];
-    if (folder_ != nullptr) {
-      if (const auto reused = folder_->reuse(input.x(), input.z(), input.hash())) {
-        facts_[i] = bake_.facts_of(*reused);
-        return {};
-      }
-    }
-    flatbuffers::DetachedBuffer bytes;
-    if (!bake_.bake(i, scratch, context_, facts_[i], bytes)) return cancelled();
-    const auto start = Clock::now();
-    if (auto ok = put(i, std::move(bytes)); !ok) return ok;
-    facts_[i].seconds_write = seconds_since(start);
-    return {};
-  }
-
-  Result<void> put(size_t i, flatbuffers::DetachedBuffer bytes) {
-    const format::ZoneEntry& entry = facts_[i].entry;
-    if (folder_ != nullptr) {
-      if (auto ok =
-              bake::WorldFolder::write_zone(folder_->path(), entry, {bytes.data(), bytes.size()});
-          !ok) {
-        return ok;
-      }
-      const std::lock_guard lock(mutex_);
-      return folder_->add(entry, bake_.zones()[i].hash());
-    }
-    if (entry.levels() == 0) return {};
-    auto zone =
-        world::Zone::from_bytes(std::move(bytes), world::zone_file_name(entry.x(), entry.z()));
-    if (!zone) return zone.error();
-    zones_[i] = std::move(*zone);
-    return {};
-  }
-
-  const bake::WorldBake& bake_;
-  Context& context_;
-  bake::WorldFolder* folder_;
-  WorkerGroups groups_;
-  std::vector<std::unique_ptr<bake::ZoneScratch>> scratch_;  // by group
-  std::vector<bake::ZoneFacts> facts_;
-  std::vector<std::unique_ptr<world::Zone>> zones_;
-  std::mutex mutex_;  // of the folder's journal
-};
-
 Result<std::shared_ptr<world::WorldData>> bake_zones(
     const Scene& scene, const BakeConfig& config, Context& context, BakeReport& report,
     bake::WorldFolder* folder, std::vector<std::unique_ptr<world::Zone>>& in_memory) {
@@ -119,7 +30,7 @@ Result<std::shared_ptr<world::WorldData>> bake_zones(
   const auto begun = bake::WorldBake::begin(scene, config, old_world, folder != nullptr);
   if (!begun) return begun.error();
   const bake::WorldBake& bake = *begun;
-  ZoneBaker zones(bake, config, context, folder);
+  bake::ZoneBaker zones(bake, config, context, folder);
   if (auto ok = zones.run(); !ok) return ok.error();
   in_memory = zones.take_zones();
   const std::vector<bake::ZoneFacts>& facts = zones.facts();

@@ -51,21 +51,26 @@ void keep_slots(const ZoneRect& part, int32_t zones_x, int32_t outside, Slots& s
 
 }  // namespace
 
-Result<void> keep_part(WorldData& world, const Box3d& part) {
+Result<ZoneRect> zones_in(const Box3d& box, const Vec3d& origin, double side, int32_t zones_x,
+                          int32_t zones_z) {
   const auto is_ordered = [](double low, double high) {
     return std::isfinite(low) && std::isfinite(high) && low <= high;
   };
-  if (!is_ordered(part.min.x, part.max.x) || !is_ordered(part.min.z, part.max.z)) {
+  if (!is_ordered(box.min.x, box.max.x) || !is_ordered(box.min.z, box.max.z)) {
     return Error{Errc::kBadConfig,
                  "part: the box must have a lower and an upper corner, in metres"};
   }
+  const auto [x0, x1] = zones_between(box.min.x, box.max.x, origin.x, side, zones_x);
+  const auto [z0, z1] = zones_between(box.min.z, box.max.z, origin.z, side, zones_z);
+  return ZoneRect{.x0 = x0, .z0 = z0, .x1 = x1, .z1 = z1};
+}
+
+Result<void> keep_part(WorldData& world, const Box3d& part) {
   WorldSummary& summary = world.summary;
   const double side = summary.cell * kTileCells * world.tiles_per_zone;
-  const auto [x0, x1] =
-      zones_between(part.min.x, part.max.x, summary.origin.x, side, world.zones_x);
-  const auto [z0, z1] =
-      zones_between(part.min.z, part.max.z, summary.origin.z, side, world.zones_z);
-  world.part = ZoneRect{.x0 = x0, .z0 = z0, .x1 = x1, .z1 = z1};
+  const auto zones = zones_in(part, summary.origin, side, world.zones_x, world.zones_z);
+  if (!zones) return zones.error();
+  world.part = *zones;
   keep_slots(*world.part, world.zones_x, -1, world.slots, world.slot_of_zone);
   if (world.slots.empty()) {
     return Error{Errc::kBadConfig, "part: there is no ground in " + metres(part) +

@@ -9,6 +9,10 @@
 /// A district of a large world as a world of its own.
 namespace throng::world {
 
+/// The zones of a grid that touch a box, seen from above. `origin` is of the grid, `side` of a
+/// zone. Fails with kBadConfig if the box has no lower and upper corner. [m]
+Result<ZoneRect> zones_in(const Box3d& box, const Vec3d& origin, double side, int32_t zones_x,
+                          int32_t zones_z);
 /// Takes out all zones that do not touch a box, seen from above, before any was opened; levels are
 /// numbered again, and WorldData::part is set. Fails with kBadConfig if none is left. Time: linear
 /// in zones.

@@ -35,7 +35,7 @@ void add_sheet(Scene& scene, double x0, double z0, double x1, double z1, double 
   add_quad(scene, {x0, y, z0}, {x1, y, z0}, {x1, y, z1}, {x0, y, z1});
 }
 
-void add_box(Scene& scene, Vec3d low, Vec3d high) {
+void add_tower(Scene& scene, Vec3d low, Vec3d high) {
   add_sheet(scene, low.x, low.z, high.x, high.z, low.y);
   add_sheet(scene, low.x, low.z, high.x, high.z, high.y);
   for (const double x : {low.x, high.x}) {
@@ -110,7 +110,7 @@ void expect_equal(const SliceSet& set, const naive::SliceRun& expected) {
 
 TEST(Slices, AHollowCubeOf5800mmTakes42AndKeepsTwoAsInTable2) {
   Scene scene;
-  add_box(scene, {-2.9, 0, -2.9}, {2.9, 5.8, 2.9});
+  add_tower(scene, {-2.9, 0, -2.9}, {2.9, 5.8, 2.9});
   const SliceSet set = slice(scene, {.avatar_height = 1.75, .resolution = 0.1, .cell = 0.1});
   EXPECT_EQ(set.width, 58);
   EXPECT_EQ(set.depth, 58);
@@ -123,9 +123,9 @@ TEST(Slices, AHollowCubeOf5800mmTakes42AndKeepsTwoAsInTable2) {
 
 TEST(Slices, TheSeedsWorkedExampleTakes32AndKeepsTwo) {
   Scene scene;
-  add_sheet(scene, 0, 0, 6, 1, 1);                      // region 1 and 3
-  add_box(scene, {2, 1, 0}, {4, 4, 1});                 // region 2
-  add_box(scene, {1.05, 5.95, 0.05}, {4.95, 9, 0.95});  // the block above
+  add_sheet(scene, 0, 0, 6, 1, 1);                        // region 1 and 3
+  add_tower(scene, {2, 1, 0}, {4, 4, 1});                 // region 2
+  add_tower(scene, {1.05, 5.95, 0.05}, {4.95, 9, 0.95});  // the block above
   const SliceSet set = slice(scene, {.avatar_height = 4.5, .resolution = 0.1, .cell = 0.1});
   EXPECT_EQ(set.taken, 32);
   EXPECT_EQ(kept_heights(set), (Ints{13600, 5900}));
@@ -160,7 +160,7 @@ TEST(Slices, EqualTheNaiveOnesOnRandomBoxesThatNeverTouchACellBorder) {
     add_sheet(scene, 0, 0, 20, 5, 0);
     for (int i = 0; i < 25; ++i) {
       const Vec3d low{inside(60), mm(8000) / 1000, inside(12)};
-      add_box(scene, low, low + Vec3d{mm(18) * 0.25, mm(2000) / 1000, mm(7) * 0.25});
+      add_tower(scene, low, low + Vec3d{mm(18) * 0.25, mm(2000) / 1000, mm(7) * 0.25});
     }
     const auto columns =
         naive::make_columns(scene, {.origin = {}, .cell = 0.25, .width = 80, .depth = 20});
@@ -251,7 +251,7 @@ TEST(Slices, AGridThatIsTooLargeIsRefusedWithACellThatFits) {
 
 TEST(Slices, CancelStopsBeforeAnythingIsReturned) {
   Scene scene;
-  add_box(scene, {0, 0, 0}, {20, 30, 20});
+  add_tower(scene, {0, 0, 0}, {20, 30, 20});
   Context context;
   context.on_progress = [&](const Progress& progress) {
     if (progress.stage == "columns") context.cancel = true;

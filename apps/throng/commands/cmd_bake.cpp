@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "command.h"
 #include "input_file.h"
 #include "number_checks.h"
+#include "run/memory_bound.h"
 #include "scene_hints.h"
 #include "sources.h"
 #include "throng/bake.h"
@@ -24,6 +26,8 @@ struct BakeOptions {
   SourceOptions sources;
   std::string output;
   std::string classes;
+  std::vector<double> part;  // --part: x0, z0, x1, z1
+  MemoryBound memory;
   bool coarse = false;
   bool rebuild = false;
   bool nodes = false;
@@ -102,17 +106,31 @@ Result<NodeSummary> bake_nodes(BakeOptions& options, const Scene& scene, Context
   return nodes_over_ranks(*world, scene, options.node_config, context);
 }
 
-Json bake_json(const BakeOptions& options, const Scene& scene, const BakeReport& report,
+// What is said of the models.
+struct Models {
+  SceneFacts facts;
+  std::vector<std::string> hints;
+};
+
+Models models_of(const Scene& scene) {
+  return {.facts = {.bounds = scene.bounds(),
+                    .triangles = scene.triangles.size(),
+                    .patches = scene.patches.size(),
+                    .report = scene.report},
+          .hints = scene_hints(scene)};
+}
+
+Json bake_json(const BakeOptions& options, const Models& models, const BakeReport& report,
                uint64_t peak_read) {
   Json areas = Json::object();
   for (size_t i = 0; i < report.walkable_area.size(); ++i) {
     areas[options.config.classes[i].name] = report.walkable_area[i];
   }
   return {{"world", options.output},
-          {"triangles", scene.triangles.size()},
-          {"patches", scene.patches.size()},
-          {"import", report_json(scene.report)},
-          {"hints", scene_hints(scene)},
+          {"triangles", models.facts.triangles},
+          {"patches", models.facts.patches},
+          {"import", report_json(models.facts.report)},
+          {"hints", models.hints},
           {"cell", options.config.cell},
           {"resolution", options.config.resolution},
           {"zones", report.zones},
@@ -146,13 +164,13 @@ bool stands_nowhere(const BakeReport& report) {
                      [](double area) { return area == 0; });
 }
 
-std::string bake_text(const BakeOptions& options, const Scene& scene, const BakeReport& report) {
+std::string bake_text(const BakeOptions& options, const Models& models, const BakeReport& report) {
   std::string text = fmt::format("{}: {} in {:.2f} s, {} ({} reused), {} ({} of them flat), {}\n",
-                                 options.output, counted(scene.triangles.size(), "triangle"),
+                                 options.output, counted(models.facts.triangles, "triangle"),
                                  report.seconds_total, counted(report.zones, "zone"),
                                  report.zones_reused, counted(report.level_tiles, "level tile"),
                                  report.constant_level_tiles, human_bytes(report.bytes));
-  text += fmt::format("  {}\n", size_text(scene.bounds()));
+  text += fmt::format("  {}\n", size_text(models.facts.bounds));
   for (size_t i = 0; i < report.walkable_area.size(); ++i) {
     text += fmt::format("  {:<12} {:12.1f} m2 walkable\n", options.config.classes[i].name,
                         report.walkable_area[i]);
@@ -164,7 +182,7 @@ std::string bake_text(const BakeOptions& options, const Scene& scene, const Bake
         options.config.one_sided ? ", and whether all triangles are wound backwards (--one-sided)"
                                  : "");
   }
-  for (const std::string& hint : scene_hints(scene)) text += fmt::format("  {}\n", hint);
+  for (const std::string& hint : models.hints) text += fmt::format("  {}\n", hint);
   if (report.air_zones > 0) {
     text += fmt::format("  air over {} ({} reused), {}, in {:.2f} s of the above\n",
                         counted(report.air_zones, "zone"), report.air_zones_reused,
@@ -190,7 +208,13 @@ Result<void> prepare(BakeOptions& options) {
   if (options.fly) options.config.classes.push_back(flyer_class());
   options.config.fine = !options.coarse;
   if (options.rebuild) options.config.old_zones = OldZones::kBakeAgain;
+  if (!options.part.empty()) options.config.part = box_of_part(options.part);
   if (!wants_nodes(options)) return {};
+  if (options.config.part) {
+    return Error{Errc::kBadConfig,
+                 "--part: nodes are made of whole worlds; bake all parts without --nodes and "
+                 "classes that climb or drop, then the whole with them"};
+  }
   options.node_config.workers = options.config.workers;
   options.node_config.working_bytes = options.node_memory << 20;
   options.node_config.rebuild = options.rebuild;
@@ -213,7 +237,47 @@ std::string after_the_ground(const std::string& path) {
                                       : "; the world is baked, but it has no nodes yet";
 }
 
+void add_nodes(const NodeSummary& nodes, Json& json, std::string& text) {
+  json["node_zones_made"] = nodes.zones_made;
+  json["node_zones_reused"] = nodes.zones_reused;
+  json["nodes"] = nodes.nodes;
+  json["node_arcs"] = nodes.arcs;
+  json["node_bytes"] = nodes.bytes;
+  json["seconds_nodes"] = nodes.seconds;
+  json["peak_bytes"] = peak_memory();
+  text +=
+      fmt::format("  {}, {} in {:.2f} s, {}, over {} ({} reused)\n", counted(nodes.nodes, "node"),
+                  counted(nodes.arcs, "arc"), nodes.seconds, human_bytes(nodes.bytes),
+                  counted(nodes.zones_made + nodes.zones_reused, "zone"), nodes.zones_reused);
+}
+
+// With --memory: district by district, by this process alone.
+int bake_by_block(Session& session, BakeOptions& options) {
+  if (rank_info().size > 1) {
+    return fail({Errc::kBadConfig, "--memory: is for one process; leave it out under mpirun"});
+  }
+  if (auto ok = prepare(options); !ok) return fail(ok.error());
+  if (wants_nodes(options)) {
+    return fail({Errc::kBadConfig,
+                 "--memory: nodes are made of scenes in memory; leave --memory out, or --nodes and "
+                 "classes that climb or drop"});
+  }
+  options.config.block_bytes = options.memory.blocks();
+  const auto folder = std::filesystem::path(options.output).parent_path();
+  const auto scene = read_regions(options.sources, folder.string(), session.context);
+  if (!scene) return fail(scene.error());
+  const uint64_t peak_read = peak_memory();
+  const Result<BakeReport> report =
+      bake_world_to(options.output, **scene, options.config, session.context);
+  if (!report) return fail(report.error());
+  const Models models{.facts = (*scene)->facts(), .hints = {}};
+  print_result(session, bake_json(options, models, *report, peak_read),
+               bake_text(options, models, *report));
+  return kDone;
+}
+
 int bake(Session& session, BakeOptions& options) {
+  if (options.memory) return bake_by_block(session, options);
   const auto ready = agree_over_ranks(prepare(options));
   if (!ready) return fail(ready.error());
   const Result<Scene> scene = read_sources(options.sources, session.context);
@@ -241,21 +305,10 @@ int bake(Session& session, BakeOptions& options) {
     nodes = *made;
   }
   if (rank_info().rank > 0) return kDone;
-  Json json = bake_json(options, *scene, *report, peak_read);
-  std::string text = bake_text(options, *scene, *report);
-  if (nodes) {
-    json["node_zones_made"] = nodes->zones_made;
-    json["node_zones_reused"] = nodes->zones_reused;
-    json["nodes"] = nodes->nodes;
-    json["node_arcs"] = nodes->arcs;
-    json["node_bytes"] = nodes->bytes;
-    json["seconds_nodes"] = nodes->seconds;
-    json["peak_bytes"] = peak_memory();
-    text += fmt::format(
-        "  {}, {} in {:.2f} s, {}, over {} ({} reused)\n", counted(nodes->nodes, "node"),
-        counted(nodes->arcs, "arc"), nodes->seconds, human_bytes(nodes->bytes),
-        counted(nodes->zones_made + nodes->zones_reused, "zone"), nodes->zones_reused);
-  }
+  const Models models = models_of(*scene);
+  Json json = bake_json(options, models, *report, peak_read);
+  std::string text = bake_text(options, models, *report);
+  if (nodes) add_nodes(*nodes, json, text);
   print_result(session, json, text);
   return kDone;
 }
@@ -283,9 +336,15 @@ void add_bake(CLI::App& parser, Session& session) {
                    "Headroom that `throng verify` allows the bake to lose; the ground is the same "
                    "for any [m]")
       ->capture_default_str();
+  add_part(*command, options->part,
+           "Bake a district alone, by two opposite corners as seen from above; zones beside it are "
+           "kept as the folder has them [m]");
   command->add_option("--zone", config.zone, "Side of a zone [m]")->capture_default_str();
   command->add_option("--classes", options->classes, "Avatar classes (TOML or JSON)")
       ->type_name("FILE");
+  add_memory(*command, options->memory,
+             "Approximate max memory: models are read and baked district by district; none: as "
+             "much as the models take [MiB]");
   add_threads(*command, config.workers,
               "Threads, 0 for all cores (under mpirun: of each rank, and its share)");
   command->add_flag("--coarse", options->coarse,

@@ -275,7 +275,9 @@ void add_run(CLI::App& parser, Session& session) {
   add_search_memory(*command, options->crowd.config.search_bytes);
   add_memory(*command, options->memory,
              "Max memory of the run; it ends where it would need more [MiB]");
-  add_part(*command, options->part);
+  add_part(*command, options->part,
+           "A district, by two opposite corners as seen from above: only the world's zones that "
+           "touch it are there [m]");
   add_model(*command, options->crowd.config.model);
   add_curve_options(*command, options->curves);
   command

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -19,6 +20,12 @@ struct MemoryBound {
   [[nodiscard]] uint64_t zones() const { return left() / 3; }
   /// For one search, with the ground that it makes. [bytes]
   [[nodiscard]] uint64_t search() const { return left() / 2; }
+  /// For the triangles of the block of zones that is baked: a zone in the making takes the rest.
+  /// [bytes]
+  [[nodiscard]] uint64_t blocks() const {
+    constexpr uint64_t kZones = uint64_t{120} << 20;
+    return std::max(bytes / 4, bytes - std::min(bytes, kZones));
+  }
   /// Fails with kBadConfig if the process has taken more. `when`: as in "its crowd is made".
   [[nodiscard]] Result<void> check(const std::string& when, const std::string& remedy) const;
 

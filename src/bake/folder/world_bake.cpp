@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -17,6 +18,7 @@
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "core/side_by_side.h"
+#include "world/world_part.h"
 #include "world/zone_data.h"
 
 // Plans a bake: checks it, lays the grid, sorts triangles into zones, hashes each zone's input, and
@@ -36,6 +38,9 @@ Result<void> check_config(const BakeConfig& config) {
     return bad("the zone must be above 0 m, and 10000 m at most");
   }
   if (config.workers < 0) return bad("workers must be 0 (all cores) or more");
+  if (config.part && config.nodes != nullptr) {
+    return bad("nodes are made of whole worlds; bake them when all parts are there");
+  }
   if (auto ok = check_classes(config.classes); !ok) return ok.error();
   if (auto ok = check_air(config); !ok) return ok.error();
   for (const AvatarClass& avatar : config.classes) {
@@ -48,7 +53,6 @@ Result<void> check_config(const BakeConfig& config) {
 
 Result<void> check_scene(const Scene& scene) {
   const auto bad = [](const std::string& what) { return Error{Errc::kBadInput, "bake: " + what}; };
-  if (scene.triangles.empty()) return bad("the scene has no triangles");
   if (!scene.area.empty() && scene.area.size() != scene.triangles.size()) {
     return bad("the scene has " + std::to_string(scene.triangles.size()) + " triangles but " +
                std::to_string(scene.area.size()) + " area kinds");
@@ -129,11 +133,12 @@ struct ZoneInputs {
   }
 };
 
-// In memory no zone is ever reused, so the hashes are not needed: they are left 0.
-ZoneInputs find_inputs(const BakePlan& plan, bool hashed) {
+// Of the zones in a rectangle. In memory no zone is ever reused, so the hashes are not needed: they
+// are left 0.
+ZoneInputs find_inputs(const BakePlan& plan, const world::ZoneRect& zones, bool hashed) {
   ZoneInputs found{.bins = bin_zones(plan), .inputs = {}};
-  for (int32_t z = 0; z < plan.zones_z; ++z) {
-    for (int32_t x = 0; x < plan.zones_x; ++x) {
+  for (int32_t z = zones.z0; z < zones.z1; ++z) {
+    for (int32_t x = zones.x0; x < zones.x1; ++x) {
       const auto items = found.triangles(static_cast<size_t>(z * plan.zones_x + x));
       if (items.empty()) continue;
       found.inputs.emplace_back(x, z, 0);
@@ -145,6 +150,10 @@ ZoneInputs find_inputs(const BakePlan& plan, bool hashed) {
     input = {input.x(), input.z(), zone_input(plan, input.x(), input.z(), items)};
   });
   return found;
+}
+
+ZoneInputs find_inputs(const BakePlan& plan, bool hashed) {
+  return find_inputs(plan, {.x0 = 0, .z0 = 0, .x1 = plan.zones_x, .z1 = plan.zones_z}, hashed);
 }
 
 bool have_a_zone_in_common(std::span<const format::ZoneInput> a,
@@ -194,12 +203,50 @@ ZoneInputs choose_grid(BakePlan& plan, const Box3d& bounds, const world::WorldDa
   return find_inputs(plan, hashed);
 }
 
+// The zones of BakeConfig::part, or all.
+Result<world::ZoneRect> part_of(const BakePlan& plan) {
+  const auto& part = plan.config->part;
+  if (!part) return world::ZoneRect{.x0 = 0, .z0 = 0, .x1 = plan.zones_x, .z1 = plan.zones_z};
+  auto zones =
+      world::zones_in(*part, {plan.grid.origin_x, 0, plan.grid.origin_z},
+                      plan.grid.cell * kTileSide * plan.tiles_per_zone, plan.zones_x, plan.zones_z);
+  if (!zones) return Error{zones.error().code, "bake: " + zones.error().message};
+  return zones;
+}
+
+// Of the zones beside BakeConfig::part, leaves those that the old world has from the same input.
+// Fails if it has another.
+Result<void> keep_part(const BakePlan& plan, const world::WorldData* old, ZoneInputs& zones) {
+  const auto part = part_of(plan);
+  if (!part) return part.error();
+  const bool is_baked_again = plan.config->old_zones == OldZones::kBakeAgain;
+  std::map<std::pair<int32_t, int32_t>, uint64_t> known;
+  if (old != nullptr && !is_baked_again) {
+    for (const format::ZoneInput& input : old->inputs) known[{input.x(), input.z()}] = input.hash();
+  }
+  std::vector<format::ZoneInput> kept;
+  for (const format::ZoneInput& input : zones.inputs) {
+    const auto found = known.find({input.x(), input.z()});
+    const bool is_own = part->contains(input.x(), input.z());
+    if (!is_own && found != known.end() && found->second != input.hash()) {
+      return Error{
+          Errc::kBadConfig,
+          "bake: the world in the folder was baked from other input or with other settings "
+          "beside the part, in zone " +
+              std::to_string(input.x()) + ", " + std::to_string(input.z()) +
+              "; leave the part out, or give one that holds that zone"};
+    }
+    if (is_own || found != known.end()) kept.push_back(input);
+  }
+  zones.inputs = std::move(kept);
+  return {};
+}
+
 }  // namespace
 
 struct WorldBake::Plan {
-  Plan(const Scene& scene, const BakeConfig& config)
-      : bounds(corner_box(scene.positions, scene.triangles, config.workers)),
-        coder(scene, config.classes, config.one_sided, config.workers) {}
+  Plan(const Scene& scene, const BakeConfig& config, const Box3d& box)
+      : bounds(box), coder(scene, config.classes, config.one_sided, config.workers) {}
 
   Box3d bounds;
   SurfaceCoder coder;
@@ -214,13 +261,77 @@ WorldBake::~WorldBake() = default;
 
 Result<WorldBake> WorldBake::begin(const Scene& scene, const BakeConfig& config,
                                    const world::WorldData* old_world, bool hashed) {
-  auto plan = std::make_unique<Plan>(scene, config);
+  auto plan = std::make_unique<Plan>(scene, config,
+                                     corner_box(scene.positions, scene.triangles, config.workers));
   auto made = make_plan(scene, config, plan->bounds, plan->coder);
   if (!made) return made.error();
   plan->plan = *std::move(made);
   plan->zones = choose_grid(plan->plan, plan->bounds, old_world, hashed);
+  if (config.part) {
+    if (auto ok = keep_part(plan->plan, old_world, plan->zones); !ok) return ok.error();
+    const auto& inputs = plan->zones.inputs;
+    const auto part = part_of(plan->plan);
+    if (std::none_of(inputs.begin(), inputs.end(), [&](const format::ZoneInput& input) {
+          return part->contains(input.x(), input.z());
+        })) {
+      return no_triangles_in_part();
+    }
+  }
   plan->hashed = hashed;
   return WorldBake(std::move(plan));
+}
+
+Result<WorldBake> WorldBake::begin_block(const Scene& scene, const BakeConfig& config,
+                                         const world::WorldData* old_world, const Box3d& bounds,
+                                         const world::ZoneRect& zones) {
+  auto plan = std::make_unique<Plan>(scene, config, bounds);
+  auto made = make_plan(scene, config, bounds, plan->coder);
+  if (!made) return made.error();
+  plan->plan = *std::move(made);
+  plan->zones = find_inputs(plan->plan, zones, true);
+  if (config.part) {
+    if (auto ok = keep_part(plan->plan, old_world, plan->zones); !ok) return ok.error();
+  }
+  plan->hashed = true;
+  return WorldBake(std::move(plan));
+}
+
+Result<WorldBake> WorldBake::begin_join(const Scene& none, const BakeConfig& config,
+                                        const world::WorldData& like,
+                                        std::vector<format::ZoneInput> inputs) {
+  auto plan = std::make_unique<Plan>(none, config, like.summary.bounds);
+  auto made = make_plan(none, config, plan->bounds, plan->coder);
+  if (!made) return made.error();
+  plan->plan = *std::move(made);
+  Grid grid = plan->plan.grid;
+  grid.origin_x = like.summary.origin.x;
+  grid.origin_z = like.summary.origin.z;
+  grid.width = like.width;
+  grid.depth = like.depth;
+  plan->plan.put_on(grid);
+  plan->zones = {.bins = bin_zones(plan->plan), .inputs = std::move(inputs)};
+  plan->hashed = true;
+  return WorldBake(std::move(plan));
+}
+
+Error WorldBake::no_triangles_in_part() {
+  return {Errc::kBadConfig, "bake: the scene has no triangle in the part"};
+}
+
+world::ZoneRect WorldBake::all_zones() const {
+  return {.x0 = 0, .z0 = 0, .x1 = plan_->plan.zones_x, .z1 = plan_->plan.zones_z};
+}
+
+Result<world::ZoneRect> WorldBake::part() const { return part_of(plan_->plan); }
+
+Box3d WorldBake::box(const world::ZoneRect& zones) const {
+  const Grid& grid = plan_->plan.grid;
+  const double side = grid.cell * kTileSide * plan_->plan.tiles_per_zone;
+  const double apron = (plan_->plan.apron() + 1) * grid.cell;
+  return {.min = {grid.origin_x + zones.x0 * side - apron, plan_->bounds.min.y,
+                  grid.origin_z + zones.z0 * side - apron},
+          .max = {grid.origin_x + zones.x1 * side + apron, plan_->bounds.max.y,
+                  grid.origin_z + zones.z1 * side + apron}};
 }
 
 std::span<const format::ZoneInput> WorldBake::zones() const { return plan_->zones.inputs; }
@@ -229,8 +340,9 @@ uint64_t WorldBake::place_count() const {
   return static_cast<uint64_t>(plan_->plan.zones_x) * static_cast<uint64_t>(plan_->plan.zones_z);
 }
 
-uint64_t WorldBake::place(size_t zone) const {
-  const format::ZoneInput& input = plan_->zones.inputs[zone];
+uint64_t WorldBake::place(size_t zone) const { return place_of(plan_->zones.inputs[zone]); }
+
+uint64_t WorldBake::place_of(const format::ZoneInput& input) const {
   return static_cast<uint64_t>(input.z()) * static_cast<uint64_t>(plan_->plan.zones_x) +
          static_cast<uint64_t>(input.x());
 }
@@ -286,6 +398,12 @@ ZoneFacts WorldBake::facts_of(const WorldFolder::Reused& reused) const {
 
 Result<std::shared_ptr<world::WorldData>> WorldBake::world(std::span<const ZoneFacts> facts,
                                                            BakeReport& report) const {
+  return world(zones(), facts, plan_->plan.scene->triangles.size(), report);
+}
+
+Result<std::shared_ptr<world::WorldData>> WorldBake::world(
+    std::span<const format::ZoneInput> inputs, std::span<const ZoneFacts> facts, uint64_t triangles,
+    BakeReport& report) const {
   const BakePlan& plan = plan_->plan;
   const BakeConfig& config = *plan.config;
   auto world = std::make_shared<world::WorldData>();
@@ -296,7 +414,7 @@ Result<std::shared_ptr<world::WorldData>> WorldBake::world(std::span<const ZoneF
   summary.bounds = plan_->bounds;
   summary.tiles_x = plan.grid.tiles_x();
   summary.tiles_z = plan.grid.tiles_z();
-  summary.source_triangles = plan.scene->triangles.size();
+  summary.source_triangles = triangles;
   summary.classes = config.classes;
   world->width = plan.grid.width;
   world->depth = plan.grid.depth;
@@ -332,10 +450,10 @@ Result<std::shared_ptr<world::WorldData>> WorldBake::world(std::span<const ZoneF
       return Error{Errc::kLimit, "bake: more than 2^32 level tiles; use a larger cell"};
     }
     world->level_count += levels;
-    world->slot_of_zone[place(zone)] = static_cast<int32_t>(world->slots.size());
+    world->slot_of_zone[place_of(inputs[zone])] = static_cast<int32_t>(world->slots.size());
     world->slots.push_back(std::move(slot));
   }
-  if (plan_->hashed) world->inputs = plan_->zones.inputs;
+  if (plan_->hashed) world->inputs.assign(inputs.begin(), inputs.end());
   for (const uint64_t cells : legal_cells) {
     summary.walkable_area.push_back(static_cast<double>(cells) * config.cell * config.cell);
     world->class_index.push_back(std::make_unique<world::ClassIndex>());
@@ -347,10 +465,11 @@ Result<std::shared_ptr<world::WorldData>> WorldBake::world(std::span<const ZoneF
   return world;
 }
 
-Result<void> WorldBake::add_air(WorldFolder* folder, world::WorldData& world, Context& context,
-                                BakeReport& report) const {
+Result<AirSlots> WorldBake::bake_air(WorldFolder* folder, Context& context,
+                                     BakeReport& report) const {
   const BakePlan& plan = plan_->plan;
-  if (!wants_air(*plan.config)) return {};
+  AirSlots slots;
+  if (!wants_air(*plan.config)) return slots;
   const auto start = std::chrono::steady_clock::now();
   const world::AirShape shape = air_shape(plan, plan_->bounds);
   const WorkerGroups assigned = assign_workers(zones().size(), plan.config->workers);
@@ -358,7 +477,7 @@ Result<void> WorldBake::add_air(WorldFolder* folder, world::WorldData& world, Co
   for (int32_t group = 0; group < assigned.groups; ++group) {
     air.emplace_back(plan, shape, folder, assigned.workers);
   }
-  std::vector<std::unique_ptr<world::AirData::Slot>> slots(zones().size());
+  slots.resize(zones().size());
   const auto baked = side_by_side(
       zones().size(), assigned, context,
       [&](size_t zone) {
@@ -374,17 +493,36 @@ Result<void> WorldBake::add_air(WorldFolder* folder, world::WorldData& world, Co
       });
   if (!baked) return baked.error();
   if (context.cancel) return Error{Errc::kCancelled, "bake: cancelled; nothing was written"};
-  world.air = gather_air(shape, world, std::move(slots));
-  report.air_zones = world.air->slots.size();
   for (const AirBaker& baker : air) report.air_zones_reused += baker.reused();
-  report.air_bytes = world.air->bytes;
-  report.seconds_air =
+  report.seconds_air +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return slots;
+}
+
+void WorldBake::set_air(AirSlots slots, world::WorldData& world, BakeReport& report) const {
+  if (!wants_air(*plan_->plan.config)) return;
+  world.air = gather_air(air_shape(plan_->plan, plan_->bounds), world, std::move(slots));
+  report.air_zones = world.air->slots.size();
+  report.air_bytes = world.air->bytes;
+}
+
+Result<void> WorldBake::add_air(WorldFolder* folder, world::WorldData& world, Context& context,
+                                BakeReport& report) const {
+  auto slots = bake_air(folder, context, report);
+  if (!slots) return slots.error();
+  set_air(*std::move(slots), world, report);
   return {};
 }
 
+Result<void> check_settings(const BakeConfig& config) { return check_config(config); }
+
+Result<void> check_triangles(const Scene& scene) { return check_scene(scene); }
+
 Result<void> check_bake(const Scene& scene, const BakeConfig& config) {
-  if (auto ok = check_config(config); !ok) return ok.error();
+  if (auto ok = check_config(config); !ok) return ok;
+  if (scene.triangles.empty()) {
+    return Error{Errc::kBadInput, "bake: the scene has no triangles"};
+  }
   return check_scene(scene);
 }
 

@@ -225,6 +225,31 @@ Result<void> WorldFolder::add(const format::ZoneEntry& entry, uint64_t input) {
   return {};
 }
 
+Result<void> WorldFolder::take_over(const std::string& from, const format::ZoneEntry& entry,
+                                    uint64_t input) {
+  const int32_t x = entry.x(), z = entry.z();
+  const std::string zone = world::zone_file_name(x, z);
+  for (const std::string& name : {zone, world::air_file_name(x, z), world::region_file_name(x, z),
+                                  world::link_file_name(x, z)}) {
+    const fs::path file = fs::path(from) / name;
+    std::error_code error;
+    if (!fs::exists(file, error)) {
+      if (name != zone || entry.bytes() == 0) continue;
+      return Error{Errc::kBadFile, file.string() + ": is missing; bake that world again"};
+    }
+    fs::remove(part_ / name, error);
+    fs::create_hard_link(file, part_ / name, error);
+    if (error) fs::copy_file(file, part_ / name, fs::copy_options::overwrite_existing, error);
+    if (error) {
+      return Error{Errc::kIo, file.string() + ": cannot be copied to " + part_.string() + ": " +
+                                  error.message()};
+    }
+  }
+  if (auto ok = add(entry, input); !ok) return ok;
+  sources_.insert({{z, x}, {.is_part = true, .input = input, .entry = entry}});
+  return {};
+}
+
 template <class File>
 std::unique_ptr<File> WorldFolder::reuse_file(const std::string& name, uint64_t input) const {
   for (const bool is_part : {true, false}) {

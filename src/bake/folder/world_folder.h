@@ -41,6 +41,9 @@ class WorldFolder {
                                  std::span<const uint8_t> bytes);
   /// Adds a zone whose file is written. From one thread at a time. Fails with kIo.
   Result<void> add(const format::ZoneEntry& entry, uint64_t input);
+  /// Adds a zone of another world with its files: links them where that can be done, else copies
+  /// them. From one thread at a time. Fails with kIo or kBadFile.
+  Result<void> take_over(const std::string& from, const format::ZoneEntry& entry, uint64_t input);
   /// Leaves what was begun for the next bake.
   void leave() { part_.clear(); }
 

@@ -39,7 +39,9 @@ void choose_layers(const world::WorldData& world, const Scene& scene, const Node
   const auto& of = scene.patch_of_triangle;
   plan.has_patches = !scene.patches.empty();
   plan.has_tiles = of.empty() || std::find(of.begin(), of.end(), kNoPatch) != of.end();
-  plan.has_objects = plan.has_patches && is_mostly_patches(scene);
+  ObjectSurvey survey(world);
+  for (size_t t = 0; plan.has_patches && t < scene.triangles.size(); ++t) survey.add(scene, t);
+  plan.has_objects = plan.has_patches && survey.is_mostly_patches();
   for (size_t c = 0; c < classes.size(); ++c) {
     const auto bit = static_cast<uint16_t>(1u << c);
     if ((config.classes & bit) == 0) continue;
@@ -47,7 +49,7 @@ void choose_layers(const world::WorldData& world, const Scene& scene, const Node
     if (classes[c].climb_slope > 0 || plan.has_objects) plan.on_patches |= bit;
   }
   if (plan.on_patches == 0) plan.has_patches = plan.has_objects = false;
-  if (plan.has_objects) plan.object_tiles = find_object_tiles(world, scene);
+  if (plan.has_objects) plan.object_tiles = survey.tiles();
 }
 
 // May level tiles of a zone carry nodes?

@@ -43,7 +43,7 @@ struct NodePlan {
   uint16_t on_patches = 0;   ///< Classes that patches carry.
   /// Do patches carry all classes? Then level tiles carry what lies on other ground alone.
   bool has_objects = false;
-  std::vector<uint8_t> object_tiles = {};  ///< If so: find_object_tiles.
+  std::vector<uint8_t> object_tiles = {};  ///< If so: ObjectSurvey::tiles.
   std::vector<PatchSource> sources;
   std::vector<NodePlanZone> zones;  ///< By z, then x.
 

@@ -57,39 +57,48 @@ class PlanTriangle {
 
 }  // namespace
 
-bool is_mostly_patches(const Scene& scene) {
-  double patches = 0, others = 0;
-  for (size_t t = 0; t < scene.triangles.size(); ++t) {
-    const auto [a, b, c] = corners_of(scene, t);
-    const double seen = std::abs((b.x - a.x) * (c.z - a.z) - (b.z - a.z) * (c.x - a.x));
-    (is_of_patch(scene, t) ? patches : others) += seen;
-  }
-  return patches >= others;
+ObjectSurvey::ObjectSurvey(const world::WorldData& world)
+    : world_(world),
+      tiles_(
+          static_cast<size_t>(world.summary.tiles_x) * static_cast<size_t>(world.summary.tiles_z),
+          0) {}
+
+void ObjectSurvey::Sum::add(double area) {
+  constexpr double kUnits = 1 << 20, kMax = 1e18;  // in a square metre; of a triangle
+  const auto units = static_cast<uint64_t>(std::min(area * kUnits, kMax));
+  low += units & 0xffffffff;
+  high += (units >> 32) + (low >> 32);
+  low &= 0xffffffff;
 }
 
-std::vector<uint8_t> find_object_tiles(const world::WorldData& world, const Scene& scene) {
-  const int32_t across = world.summary.tiles_x, along = world.summary.tiles_z;
-  std::vector<uint8_t> tiles(static_cast<size_t>(across) * static_cast<size_t>(along), 0);
-  const double side = world.summary.cell * kTileCells;
+void ObjectSurvey::add(const Scene& scene, size_t triangle) {
+  const auto [a, b, c] = corners_of(scene, triangle);
+  const double seen = std::abs((b.x - a.x) * (c.z - a.z) - (b.z - a.z) * (c.x - a.x));
+  if (is_of_patch(scene, triangle)) {
+    patches_.add(seen);
+    return;
+  }
+  others_.add(seen);
+  const int32_t across = world_.summary.tiles_x, along = world_.summary.tiles_z;
+  const double side = world_.summary.cell * kTileCells;
   const auto range = [&](std::array<double, 3> at, double origin, int32_t count) {
     const auto [low, high] = std::minmax_element(at.begin(), at.end());
     const auto tile = [&](double v) {
       return static_cast<int32_t>(std::clamp(std::floor((v - origin) / side), 0.0, count - 1.0));
     };
-    return std::pair{tile(*low - world.summary.cell), tile(*high + world.summary.cell)};
+    return std::pair{tile(*low - world_.summary.cell), tile(*high + world_.summary.cell)};
   };
-  for (size_t t = 0; t < scene.triangles.size(); ++t) {
-    if (is_of_patch(scene, t)) continue;
-    const auto [a, b, c] = corners_of(scene, t);
-    const auto columns = range({a.x, b.x, c.x}, world.summary.origin.x, across);
-    const auto rows = range({a.z, b.z, c.z}, world.summary.origin.z, along);
-    for (int32_t z = rows.first; z <= rows.second; ++z) {
-      for (int32_t x = columns.first; x <= columns.second; ++x) {
-        tiles[static_cast<size_t>(z) * static_cast<size_t>(across) + static_cast<size_t>(x)] = 1;
-      }
+  const auto columns = range({a.x, b.x, c.x}, world_.summary.origin.x, across);
+  const auto rows = range({a.z, b.z, c.z}, world_.summary.origin.z, along);
+  for (int32_t z = rows.first; z <= rows.second; ++z) {
+    for (int32_t x = columns.first; x <= columns.second; ++x) {
+      tiles_[static_cast<size_t>(z) * static_cast<size_t>(across) + static_cast<size_t>(x)] = 1;
     }
   }
-  return tiles;
+}
+
+bool ObjectSurvey::is_mostly_patches() const {
+  return std::pair(patches_.high, patches_.low) >= std::pair(others_.high, others_.low);
 }
 
 world::CellRows find_object_cells(const TriangleSquares& triangles, const world::WorldData& world,

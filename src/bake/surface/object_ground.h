@@ -15,14 +15,30 @@
 /// bodies get from there to the patches and back.
 namespace throng::bake {
 
-/// By level tiles as seen from above, row by row: may a level there carry ground that is not of a
-/// patch? Linear in the triangles.
-[[nodiscard]] std::vector<uint8_t> find_object_tiles(const world::WorldData& world,
-                                                     const Scene& scene);
+/// Adds up where a scene has patches and where it has other ground, triangle by triangle. The
+/// result does not depend on their order.
+class ObjectSurvey {
+ public:
+  explicit ObjectSurvey(const world::WorldData& world);
+  void add(const Scene& scene, size_t triangle);
 
-/// Is most of the ground, as seen from above, of Bezier patches? Then these carry walkers, too.
-/// Linear in the triangles.
-[[nodiscard]] bool is_mostly_patches(const Scene& scene);
+  /// Is most of the ground, as seen from above, of Bezier patches? Then these carry walkers, too.
+  [[nodiscard]] bool is_mostly_patches() const;
+  /// By level tiles as seen from above, row by row: may a level there carry ground that is not of a
+  /// patch?
+  [[nodiscard]] const std::vector<uint8_t>& tiles() const { return tiles_; }
+
+ private:
+  /// Areas as whole numbers, so that a sum is exact.
+  struct Sum {
+    uint64_t high = 0, low = 0;  ///< In 2^12 m^2, and what is left in 2^-20 m^2.
+    void add(double area);
+  };
+
+  const world::WorldData& world_;
+  Sum patches_, others_;
+  std::vector<uint8_t> tiles_;
+};
 
 /// The cells of a level whose floor is not a patch's. Linear in the triangles in the tile and the
 /// cells under them.

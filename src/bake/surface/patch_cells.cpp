@@ -40,6 +40,13 @@ BodySweep surface_sweep(const SurfaceBound& surface) {
   return {.radius = surface.radius, .low = surface.low, .high = surface.high};
 }
 
+bool overlaps(const LocalTriangle& triangle, const Box3d& box) {
+  const auto& [a, b, c] = triangle;
+  return std::min({a.x, b.x, c.x}) <= box.max.x && std::max({a.x, b.x, c.x}) >= box.min.x &&
+         std::min({a.y, b.y, c.y}) <= box.max.y && std::max({a.y, b.y, c.y}) >= box.min.y &&
+         std::min({a.z, b.z, c.z}) <= box.max.z && std::max({a.z, b.z, c.z}) >= box.min.z;
+}
+
 // To 9 digits: the last bits of cos() differ between machines' libraries.
 double rounded_cosine(double degrees) {
   return std::round(std::cos(degrees * std::numbers::pi / 180) * 1e9) / 1e9;
@@ -384,8 +391,13 @@ void PatchJudge::gather(const Box3d& box, const SelfSupport& own) {
     if (patch == patch_ && known) {
       const PatchPart& part = scene.patch_part[triangle];
       if (own.holds(part)) {
-        span_s = std::max(span_s, part.s1 + 1 - part.s0);
-        span_t = std::max(span_t, part.t1 + 1 - part.t0);
+        const int32_t along_s = part.s1 + 1 - part.s0, along_t = part.t1 + 1 - part.t0;
+        // Which others are found with it depends on the scene far from here.
+        if ((along_s > span_s || along_t > span_t) &&
+            overlaps(triangles_->corners(triangle), box)) {
+          span_s = std::max(span_s, along_s);
+          span_t = std::max(span_t, along_t);
+        }
         continue;
       }
     }

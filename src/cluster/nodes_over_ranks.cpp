@@ -116,7 +116,7 @@ Result<NodeSummary> nodes_over_ranks(const World& world, const Scene& scene,
   if (!folder) begun = folder.error();
   if (auto ok = agree_over_ranks(begun); !ok) return ok.error();
   bake::NodeBaker baker(world, scene, own, &*folder);
-  baker.plan();
+  if (auto ok = cluster::agree(ranks, baker.plan(context)); !ok) return ok.error();
   if (auto ok = cluster::same_over_ranks(ranks, baker.input(), "nodes", "opened another world");
       !ok) {
     return ok.error();

@@ -33,48 +33,58 @@ Result<void> first_failure(std::span<const std::optional<Error>> failed) {
 
 }  // namespace
 
-bake::NodeBaker::NodeBaker(const World& world, const Scene& scene, const NodeConfig& config,
+bake::NodeBaker::NodeBaker(const World& world, NodeScene scene, const NodeConfig& config,
                            const bake::NodeFolder* folder)
     : world_(world),
       data_(*data_of(world)),
-      scene_(scene),
+      scene_(std::move(scene)),
       config_(config),
       folder_(folder),
       bins_(graph::make_bins(data_.summary.classes)) {}
 
-Result<void> bake::NodeBaker::check(const World& world, const Scene& scene,
+Result<void> bake::NodeBaker::check(const World& world, const NodeScene& scene,
                                     const NodeConfig& config) {
   if (data_of(world) == nullptr) return Error{Errc::kBadInput, "nodes: the world is empty"};
   if (auto ok = check_node_config(config); !ok) return ok.error();
-  if (scene.triangles.size() != world.summary().source_triangles) {
+  if (scene.triangles() != world.summary().source_triangles) {
     return Error{Errc::kBadInput, "nodes: the world was not baked from this scene: it has " +
                                       std::to_string(world.summary().source_triangles) +
                                       " source triangles, the scene has " +
-                                      std::to_string(scene.triangles.size())};
+                                      std::to_string(scene.triangles())};
   }
   return {};
 }
 
-Result<void> bake::NodeBaker::check_off_mesh_links(const World& world, const Scene& scene,
+Result<void> bake::NodeBaker::check_off_mesh_links(const World& world, const NodeScene& scene,
                                                    const NodeConfig& config, Context& context) {
   bake::NodeBaker baker(world, scene, config, nullptr);
-  baker.plan();
-  std::vector<uint32_t> zones;
+  auto plan = bake::plan_nodes(baker.data_, scene, config, context);
+  if (!plan) return plan.error();
+  baker.plan_ = *std::move(plan);
+  std::vector<uint32_t> linked;
   for (uint32_t z = 0; z < baker.plan_.zones.size(); ++z) {
-    if (!baker.plan_.zones[z].off_mesh_links.empty()) zones.push_back(z);
+    if (!baker.plan_.zones[z].off_mesh_links.empty()) linked.push_back(z);
   }
-  return bake::check_batch_links(baker.batch_input(true, context), zones);
+  // A whole scene is there anyway.
+  const uint64_t bytes = scene.is_whole() ? UINT64_MAX : config.working_bytes;
+  for (const auto& zones : bake::node_batches(baker.plan_, scene, std::move(linked), bytes)) {
+    const auto region = baker.region_of(zones, context);
+    if (!region) return region.error();
+    const auto input = baker.batch_input(**region, true, context);
+    if (auto ok = bake::check_batch_links(input, zones); !ok) return ok;
+  }
+  return {};
 }
 
 // A world in memory does not know what it was made from.
-void bake::NodeBaker::plan() {
-  plan_ = bake::plan_nodes(data_, scene_, config_);
-  if (plan_.needs_triangles()) triangles_.emplace(scene_, config_.workers);
+Result<void> bake::NodeBaker::plan(Context& context) {
+  auto plan = bake::plan_nodes(data_, scene_, config_, context);
+  if (!plan) return plan.error();
+  plan_ = *std::move(plan);
   is_done_.assign(plan_.zones.size(), 0);
   slots_.resize(plan_.zones.size());
-  if (!data_.path.empty()) {
-    bake::find_node_inputs(data_, scene_, config_, triangles_ ? &*triangles_ : nullptr, plan_);
-  }
+  if (data_.path.empty()) return {};
+  return bake::find_node_inputs(data_, scene_, config_, context, plan_);
 }
 
 uint64_t bake::NodeBaker::input() const {
@@ -110,23 +120,33 @@ std::vector<std::vector<uint32_t>> bake::NodeBaker::batches(uint64_t max_bytes) 
   for (uint32_t z = 0; z < is_done_.size(); ++z) {
     if (is_done_[z] == 0) left.push_back(z);
   }
-  return bake::node_batches(scene_, config_, plan_, std::move(left), max_bytes);
+  return bake::node_batches(plan_, scene_, std::move(left), max_bytes);
 }
 
-bake::NodeBatchInput bake::NodeBaker::batch_input(bool is_last, Context& context) {
+Result<std::shared_ptr<bake::NodeRegion>> bake::NodeBaker::region_of(
+    std::span<const uint32_t> zones, Context& context) const {
+  if (!plan_.needs_triangles()) return scene_.region({}, context);
+  return scene_.region(bake::box_around(plan_, bake::with_near_zones(plan_, zones)), context);
+}
+
+bake::NodeBatchInput bake::NodeBaker::batch_input(NodeRegion& region, bool is_last,
+                                                  Context& context) const {
   return {.world = world_,
-          .scene = scene_,
+          .region = region,
           .config = config_,
           .bins = bins_,
           .plan = plan_,
-          .triangles = triangles_,
           .is_last = is_last,
           .context = context};
 }
 
+// A region is made for its batch alone.
 Result<bake::NodeSlots> bake::NodeBaker::make_nodes(std::span<const uint32_t> zones, bool is_last,
                                                     Context& context) {
-  return bake::make_node_batch(batch_input(is_last, context), zones);
+  const auto region = region_of(zones, context);
+  if (!region) return region.error();
+  return bake::make_node_batch(batch_input(**region, is_last || !scene_.is_whole(), context),
+                               zones);
 }
 
 Result<std::vector<bake::NodeBaker::Made>> bake::NodeBaker::write(std::span<const uint32_t> zones,
@@ -175,7 +195,7 @@ std::shared_ptr<graph::NodeData> bake::NodeBaker::gather() {
   nodes->world_hash = bake::world_hash(data_);
   nodes->size = config_.size;
   nodes->summary.bins = bins_;
-  nodes->summary.bezier_patches = scene_.patches.size();
+  nodes->summary.bezier_patches = scene_.patches();
   uint64_t count = 0;
   for (size_t z = 0; z < slots_.size(); ++z) {
     if (is_done_[z] == 0) continue;
@@ -201,12 +221,12 @@ std::shared_ptr<graph::NodeData> bake::NodeBaker::gather() {
 namespace {
 
 // By this process alone.
-Result<std::shared_ptr<graph::NodeData>> make_all(const World& world, const Scene& scene,
+Result<std::shared_ptr<graph::NodeData>> make_all(const World& world, const bake::NodeScene& scene,
                                                   const NodeConfig& config, Context& context,
                                                   const bake::NodeFolder* folder) {
   const auto start = Clock::now();
   bake::NodeBaker baker(world, scene, config, folder);
-  baker.plan();
+  if (auto ok = baker.plan(context); !ok) return ok.error();
   if (auto ok = baker.reuse_zones(); !ok) return ok.error();
   // Off-mesh links are checked even if nothing has to be made.
   const auto batches = baker.batches(config.working_bytes);

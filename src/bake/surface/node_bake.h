@@ -4,13 +4,13 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "bake/surface/node_batch.h"
 #include "bake/surface/node_folder.h"
 #include "bake/surface/node_plan.h"
+#include "bake/surface/node_scene.h"
 
 /// Which zones' nodes have to be made, in which batches, and where they go; by one process or by
 /// several of which each makes batches of its own.
@@ -26,19 +26,19 @@ class NodeBaker {
   };
 
   /// Without a folder nodes stay in memory. All is kept by reference.
-  NodeBaker(const World& world, const Scene& scene, const NodeConfig& config,
+  NodeBaker(const World& world, NodeScene scene, const NodeConfig& config,
             const NodeFolder* folder);
 
   /// Can nodes be made of this at all?
-  [[nodiscard]] static Result<void> check(const World& world, const Scene& scene,
+  [[nodiscard]] static Result<void> check(const World& world, const NodeScene& scene,
                                           const NodeConfig& config);
   /// Do all off-mesh links begin and end at places of the world? Reads the zones around them only.
   /// Fails with kBadInput, kBadFile or kCancelled.
-  [[nodiscard]] static Result<void> check_off_mesh_links(const World& world, const Scene& scene,
+  [[nodiscard]] static Result<void> check_off_mesh_links(const World& world, const NodeScene& scene,
                                                          const NodeConfig& config,
                                                          Context& context);
-  /// Finds the zones and what each depends on.
-  void plan();
+  /// Finds the zones and what each depends on. Fails as NodeScene::region does.
+  Result<void> plan(Context& context);
   /// Of all that zones depend on: processes that make nodes together have the same.
   [[nodiscard]] uint64_t input() const;
   /// Takes over zones of earlier bakes.
@@ -46,9 +46,9 @@ class NodeBaker {
   /// Those that are left, in batches of at most about so much memory each. [bytes] At least one.
   [[nodiscard]] std::vector<std::vector<uint32_t>> batches(uint64_t max_bytes) const;
   /// What all of them would take at once, about, and a batch with what lies near it. [bytes]
-  [[nodiscard]] uint64_t working_bytes() const { return all_working_bytes(scene_, config_, plan_); }
+  [[nodiscard]] uint64_t working_bytes() const { return all_working_bytes(plan_); }
   [[nodiscard]] uint64_t working_bytes(std::span<const uint32_t> batch) const {
-    return batch_working_bytes(scene_, config_, plan_, batch);
+    return batch_working_bytes(plan_, batch);
   }
   [[nodiscard]] uint64_t zones() const { return plan_.zones.size(); }
   [[nodiscard]] uint64_t zones_done() const;
@@ -65,17 +65,19 @@ class NodeBaker {
   Result<std::shared_ptr<graph::NodeData>> finish();
 
  private:
-  [[nodiscard]] NodeBatchInput batch_input(bool is_last, Context& context);
+  [[nodiscard]] Result<std::shared_ptr<NodeRegion>> region_of(std::span<const uint32_t> zones,
+                                                              Context& context) const;
+  [[nodiscard]] NodeBatchInput batch_input(NodeRegion& region, bool is_last,
+                                           Context& context) const;
   [[nodiscard]] std::shared_ptr<graph::NodeData> gather();
 
   const World& world_;
   const world::WorldData& data_;
-  const Scene& scene_;
+  const NodeScene scene_;
   const NodeConfig& config_;
   const NodeFolder* folder_;  // may be null
   NodeBins bins_;
   NodePlan plan_;
-  std::optional<TriangleSquares> triangles_;
   std::vector<uint8_t> is_done_;  // by zone of the plan
   NodeSlots slots_;               // likewise
   uint64_t reused_ = 0;

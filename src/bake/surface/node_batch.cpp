@@ -38,20 +38,16 @@ class NodeBatch {
   NodeBatch(const NodeBatchInput& input, std::span<const uint32_t> zones)
       : world_(input.world),
         data_(*data_of(input.world)),
-        scene_(input.scene),
+        region_(input.region),
+        scene_(region_.scene()),
         config_(input.config),
         context_(input.context),
         bins_(input.bins),
         plan_(input.plan),
-        triangles_(input.triangles),
+        triangles_(plan_.needs_triangles() ? &region_.triangles(config_.workers) : nullptr),
         is_last_(input.is_last),
         made_(zones),
-        is_seen_(plan_.zones.size(), 0) {
-    for (const uint32_t z : made_) {
-      is_seen_[z] = 1;
-      for (const uint32_t near : plan_.zones[z].near) is_seen_[near] = 1;
-    }
-  }
+        zone_places_(with_near_zones(plan_, zones)) {}
 
   Result<void> check_off_mesh_links() {
     if (auto ok = list_patches(); !ok) return ok.error();
@@ -73,7 +69,10 @@ class NodeBatch {
     add_drops();
     if (auto ok = add_off_mesh_links(); !ok) return ok.error();
     if (context_.cancel) return cancelled();
-    if (is_last_) triangles_.reset();  // They are not needed again, and links need the memory.
+    if (is_last_) {  // They are not needed again, and links need the memory.
+      triangles_ = nullptr;
+      region_.release_triangles();
+    }
     link();
     measure();
     if (context_.cancel) return cancelled();
@@ -86,13 +85,15 @@ class NodeBatch {
   Result<void> list_patches() {
     bezier_.assign(plan_.has_patches ? scene_.patches.size() : 0, graph::kNoNode);
     level_.assign(plan_.has_tiles ? data_.level_count : 0, graph::kNoNode);
-    for (uint32_t z = 0; z < plan_.zones.size(); ++z) {
-      if (is_seen_[z] == 0) continue;
+    for (const uint32_t z : zone_places_) {
       const NodePlanZone& zone = plan_.zones[z];
-      zone_places_.push_back(z);
       begins_.push_back(sources_.size());
       for (uint32_t s = zone.first; s < zone.last; ++s) {
-        const PatchSource& source = plan_.sources[s];
+        PatchSource source = plan_.sources[s];
+        if (source.kind == PatchKind::kBezier) {
+          source.source = region_.patch_of(source.source);
+          if (source.source == kNoPatch) return region_lacks_patch(plan_.sources[s].source);
+        }
         const auto place = static_cast<uint32_t>(sources_.size());
         (source.kind == PatchKind::kBezier ? bezier_ : level_)[source.source] = place;
         if (source.kind == PatchKind::kLevelTile) levels_.push_back(source.source);
@@ -113,7 +114,7 @@ class NodeBatch {
     if (!plan_.has_patches) return;
     cells_.resize(scene_.patches.size());
     std::vector<uint8_t> blocked(cells_.size(), 0);
-    for (size_t t = 0; t < scene_.triangles.size(); ++t) {
+    for (size_t t = 0; t < scene_.patch_of_triangle.size(); ++t) {
       const uint32_t p = scene_.patch_of_triangle[t];
       if (p != kNoPatch && scene_.area[t] == kAreaBlocked) blocked[p] = 1;
     }
@@ -235,7 +236,7 @@ class NodeBatch {
   }
 
   [[nodiscard]] PatchLinkInput link_input() const {
-    return {.triangles = &*triangles_,
+    return {.triangles = triangles_,
             .world = &world_,
             .classes = data_.summary.classes,
             .cells = cells_,
@@ -530,11 +531,11 @@ class NodeBatch {
       if (tree.nodes.empty()) continue;
       const uint32_t first = forest_.first[p] - zone.first;
       const bool bezier = source.kind == PatchKind::kBezier;
-      content.patches.emplace_back(static_cast<uint8_t>(source.kind),
-                                   static_cast<uint8_t>(tree.depth), first,
-                                   static_cast<uint32_t>(tree.nodes.size()),
-                                   bezier ? source.source : source.source - first_level,
-                                   bezier ? static_cast<uint32_t>(content.points.size()) : 0);
+      content.patches.emplace_back(
+          static_cast<uint8_t>(source.kind), static_cast<uint8_t>(tree.depth), first,
+          static_cast<uint32_t>(tree.nodes.size()),
+          bezier ? region_.number_of(source.source) : source.source - first_level,
+          bezier ? static_cast<uint32_t>(content.points.size()) : 0);
       if (bezier) {
         for (const Vec3d& point : scene_.patches.patches[source.source].points) {
           content.points.insert(content.points.end(), {point.x, point.y, point.z});
@@ -608,32 +609,32 @@ class NodeBatch {
 
   const World& world_;
   const world::WorldData& data_;
-  const Scene& scene_;
+  NodeRegion& region_;
+  const Scene& scene_;  // the region's
   const NodeConfig& config_;
   Context& context_;
   const NodeBins& bins_;
   const NodePlan& plan_;
-  std::optional<TriangleSquares>& triangles_;
+  const TriangleSquares* triangles_;  // null: not needed, or not again
   const bool is_last_;
-  const std::span<const uint32_t> made_;  // zones of the plan, ascending
-  std::vector<uint8_t> is_seen_;          // by zone of the plan
-  std::vector<BezierCells> cells_;        // by Bezier patch
-  std::vector<PatchSource> sources_;      // patches of the forest: those of zones that are seen
-  std::vector<uint32_t> bezier_, level_;  // where they are in the forest, or kNoNode
-  std::vector<uint32_t> levels_;          // those of the forest
-  std::vector<ObjectLevel> objects_;      // of these the cells that carry nodes, if not all do
-  std::vector<size_t> slots_;             // of the world, whose levels these are
+  const std::span<const uint32_t> made_;     // zones of the plan, ascending
+  const std::vector<uint32_t> zone_places_;  // zones that are seen: these and those near
+  std::vector<BezierCells> cells_;           // by Bezier patch of the region
+  std::vector<PatchSource> sources_;         // patches of the forest, by numbers of the region
+  std::vector<uint32_t> bezier_, level_;     // where they are in the forest, or kNoNode
+  std::vector<uint32_t> levels_;             // those of the forest
+  std::vector<ObjectLevel> objects_;         // of these the cells that carry nodes, if not all do
+  std::vector<size_t> slots_;                // of the world, whose levels these are
   graph::NodeForest forest_;
   std::vector<graph::Promise> promises_;        // by node
   std::vector<graph::CellPair> pairs_, edges_;  // (those over Bezier edges again, for drops)
-  std::vector<PatchDoor> doors_;                // by patch of the scene
+  std::vector<PatchDoor> doors_;                // by patch of the region
   std::vector<HoleLink> hole_links_;
   std::vector<std::vector<graph::NodeLink>> inside_;  // links by patch of the forest
   std::vector<graph::NodeLink> across_;               // all others
   std::vector<std::vector<double>> widths_;
-  std::vector<ZoneRange> zones_;       // that are seen
-  std::vector<uint32_t> zone_places_;  // where they are in the plan
-  std::vector<size_t> begins_;         // first patch of each, and the end
+  std::vector<ZoneRange> zones_;  // that are seen
+  std::vector<size_t> begins_;    // first patch of each, and the end
   std::vector<std::vector<size_t>> from_before_;
 };
 

@@ -4,15 +4,14 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "bake/columns/triangles.h"
 #include "bake/surface/node_plan.h"
+#include "bake/surface/node_scene.h"
 #include "graph/node_data.h"
 #include "throng/base.h"
-#include "throng/scene.h"
 #include "throng/surface.h"
 
 /// From patches and level tiles to nodes, links and widths, so many zones at a time as fit in
@@ -21,12 +20,11 @@ namespace throng::bake {
 
 struct NodeBatchInput {
   const World& world;
-  const Scene& scene;
+  NodeRegion& region;  ///< That holds the box around the zones and those near them.
   const NodeConfig& config;
   const NodeBins& bins;
   const NodePlan& plan;
-  std::optional<TriangleSquares>& triangles;  ///< If the plan needs them.
-  bool is_last = false;                       ///< The triangles are let go as soon as may be.
+  bool is_last = false;  ///< The triangles are let go as soon as may be.
   Context& context;
 };
 

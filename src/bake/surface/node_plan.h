@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "bake/surface/body_sweep.h"
-#include "throng/scene.h"
+#include "bake/surface/node_scene.h"
+#include "throng/base.h"
 #include "throng/surface.h"
 #include "world/zone_data.h"
 
@@ -19,7 +19,7 @@ namespace throng::bake {
 struct PatchSource {
   int32_t zone_z = 0, zone_x = 0;
   PatchKind kind = PatchKind::kBezier;
-  uint32_t source = 0;  ///< Patch of the scene, or level of the world.
+  uint32_t source = 0;  ///< Patch of the whole scene, or level of the world.
 
   friend auto operator<=>(const PatchSource&, const PatchSource&) = default;
 };
@@ -30,9 +30,12 @@ struct NodePlanZone {
   uint32_t first = 0, last = 0;  ///< of the plan's sources
   bool has_tiles = false;        ///< Are some of these level tiles?
   Box3d box = {};                ///< That holds its patches, heights left out.
+  double reach = 0;              ///< How far around it triangles bear on its nodes. [m]
+  uint64_t bytes = 0;            ///< What its nodes take while they are made, about.
   std::vector<uint32_t> near =
       {};  ///< Zones that its nodes depend on, itself among them; ascending.
   std::vector<uint32_t> off_mesh_links = {};  ///< That begin or end in or near it, ascending.
+  uint64_t own = 0;                           ///< XXH3 of what its trees depend on.
   uint64_t input = 0;                         ///< XXH3 of all that its nodes depend on.
 };
 
@@ -41,6 +44,7 @@ struct NodePlan {
   bool has_tiles = false;    ///< do level tiles?
   bool drops = false;        ///< Does a class drop?
   uint16_t on_patches = 0;   ///< Classes that patches carry.
+  bool knows_parts = false;  ///< Does the scene state which part of its patch a triangle covers?
   /// Do patches carry all classes? Then level tiles carry what lies on other ground alone.
   bool has_objects = false;
   std::vector<uint8_t> object_tiles = {};  ///< If so: ObjectSurvey::tiles.
@@ -58,28 +62,33 @@ struct NodePlan {
   [[nodiscard]] bool needs_triangles() const { return has_patches || drops; }
 };
 
-/// Lists patches and zones, by zones, then kinds, then sources.
-[[nodiscard]] NodePlan plan_nodes(const world::WorldData& world, const Scene& scene,
-                                  const NodeConfig& config);
+/// Lists patches and zones, by zones, then kinds, then sources, and finds which zones depend on
+/// which: a zone that has to be made reads its `near` zones. Fails as NodeScene::region does.
+[[nodiscard]] Result<NodePlan> plan_nodes(const world::WorldData& world, const NodeScene& scene,
+                                          const NodeConfig& config, Context& context);
 
-/// Finds which zones depend on which, and `input` of each: equal inputs give equal bytes. Needs the
-/// triangles if the plan does. A zone that has to be made reads its `near` zones.
-void find_node_inputs(const world::WorldData& world, const Scene& scene, const NodeConfig& config,
-                      const TriangleSquares* triangles, NodePlan& plan);
+/// Finds `input` of each zone: equal inputs give equal bytes. Fails as NodeScene::region does.
+[[nodiscard]] Result<void> find_node_inputs(const world::WorldData& world, const NodeScene& scene,
+                                            const NodeConfig& config, Context& context,
+                                            NodePlan& plan);
+
+/// The box of all on which the nodes of some zones depend, without the zones near them.
+[[nodiscard]] Box3d box_around(const NodePlan& plan, std::span<const uint32_t> zones);
+
+/// Zones and those near them, ascending.
+[[nodiscard]] std::vector<uint32_t> with_near_zones(const NodePlan& plan,
+                                                    std::span<const uint32_t> zones);
 
 /// Splits zones, given in ascending order, into batches whose nodes are made together: nearly
 /// square, of about `max_bytes` each, because zones near a batch are made for it too. At least one;
 /// only a single batch may be empty.
-[[nodiscard]] std::vector<std::vector<uint32_t>> node_batches(const Scene& scene,
-                                                              const NodeConfig& config,
-                                                              const NodePlan& plan,
+[[nodiscard]] std::vector<std::vector<uint32_t>> node_batches(const NodePlan& plan,
+                                                              const NodeScene& scene,
                                                               std::vector<uint32_t> zones,
                                                               uint64_t max_bytes);
 /// What the nodes of all zones would take while they are made, about. [bytes]
-[[nodiscard]] uint64_t all_working_bytes(const Scene& scene, const NodeConfig& config,
-                                         const NodePlan& plan);
+[[nodiscard]] uint64_t all_working_bytes(const NodePlan& plan);
 /// The same of a batch, with what lies near its zones and is made for it too.
-[[nodiscard]] uint64_t batch_working_bytes(const Scene& scene, const NodeConfig& config,
-                                           const NodePlan& plan, std::span<const uint32_t> batch);
+[[nodiscard]] uint64_t batch_working_bytes(const NodePlan& plan, std::span<const uint32_t> batch);
 
 }  // namespace throng::bake

@@ -29,6 +29,7 @@ namespace throng::bake {
 namespace {
 
 constexpr uint64_t kLeafLinkBakeVersion = 1;
+constexpr size_t kZonesAtOnce = 64;  // and the rest of their row
 
 class LeafLinkBaker {
  public:
@@ -44,8 +45,7 @@ class LeafLinkBaker {
 
   Result<graph::LeafLinkIndex> make() {
     if (auto ok = plan(); !ok) return ok.error();
-    if (auto ok = elect_all(); !ok) return ok.error();
-    if (auto ok = write_all(); !ok) return ok.error();
+    if (auto ok = make_zones(); !ok) return ok.error();
     graph::LeafLinkIndex index{.air = graph::air_index_hash(air_, world_.manifest_hash),
                                .nodes = graph::node_index_hash(nodes_),
                                .zones = {}};
@@ -171,11 +171,47 @@ class LeafLinkBaker {
     }
   }
 
-  Result<void> elect_all() {
-    std::vector<uint8_t> failed(zones_.size(), 0);
-    parallel_for(zones_.size(), workers_, [&](size_t i) {
+  // By rows of zones: what was elected in one is let go once no row that is left reads it.
+  Result<void> make_zones() {
+    int32_t far = 0;  // Rows over which nodes of a zone reach.
+    for (const Zone& zone : zones_) {
+      if (zone.reach) far = std::max({far, zone.reach->z1 - zone.z, zone.z - zone.reach->z0});
+    }
+    size_t elected = 0, written = 0, released = 0;
+    while (written < zones_.size()) {
+      size_t end = std::min(written + kZonesAtOnce, zones_.size());
+      while (end < zones_.size() && zones_[end].z == zones_[end - 1].z) ++end;
+      const int32_t last = zones_[end - 1].z;
+      size_t read = std::max(elected, end);
+      while (read < zones_.size() && zones_[read].z <= last + far) ++read;
+      if (auto ok = elect(elected, read); !ok) return ok;
+      elected = read;
+      if (auto ok = write(written, end); !ok) return ok;
+      written = end;
+      for (; released < written && zones_[released].z <= last - far; ++released) {
+        release(zones_[released]);
+      }
+    }
+    return {};
+  }
+
+  // Only sizes are left.
+  void release(Zone& zone) const {
+    zone.elected.links = {};
+    zone.old.reset();
+    const int32_t slot =
+        air_.slot_of_zone[static_cast<size_t>(zone.z) * static_cast<size_t>(air_.zones_x) +
+                          static_cast<size_t>(zone.x)];
+    if (slot < 0) return;
+    const auto& air = air_.slots[static_cast<size_t>(slot)]->zone;
+    if (air != nullptr) air->give_back();
+  }
+
+  Result<void> elect(size_t begin, size_t end) {
+    std::vector<uint8_t> failed(end - begin, 0);
+    parallel_for(failed.size(), workers_, [&](size_t i) {
       if (context_.cancel) return;
-      Zone& zone = zones_[i];
+      Zone& zone = zones_[begin + i];
       auto reused = old_.reuse_links(zone.x, zone.z, zone.input);
       if (reused.zone != nullptr) {
         zone.old = std::move(reused.zone);
@@ -186,13 +222,18 @@ class LeafLinkBaker {
       auto elected = elect_links(nodes_, zone.from, zone.x, zone.z);
       failed[i] = elected ? 0 : 1;
       if (elected) zone.elected = *std::move(elected);
+      // Those beside it read the files again.
+      for (const uint32_t slot : zone.from) {
+        if (const graph::NodeZone* nodes = nodes_.zone(slot)) nodes->give_back();
+      }
     });
     if (context_.cancel) return Error{Errc::kCancelled, "nodes: cancelled"};
     for (size_t i = 0; i < failed.size(); ++i) {
       if (failed[i] == 0) continue;
-      return Error{Errc::kBadFile,
-                   "nodes: the air or the nodes of zone " + std::to_string(zones_[i].x) + ", " +
-                       std::to_string(zones_[i].z) + " cannot be used; bake the world again"};
+      const Zone& zone = zones_[begin + i];
+      return Error{Errc::kBadFile, "nodes: the air or the nodes of zone " + std::to_string(zone.x) +
+                                       ", " + std::to_string(zone.z) +
+                                       " cannot be used; bake the world again"};
     }
     return {};
   }
@@ -291,25 +332,23 @@ class LeafLinkBaker {
   }
 
   // Of other zones each reads what was elected, or is in old files, and nothing that is made here.
-  Result<void> write_all() {
-    std::vector<std::optional<Error>> failed(zones_.size());
-    std::vector<std::optional<format::LeafLinkEntry>> made(zones_.size());
-    parallel_for(zones_.size(), workers_, [&](size_t i) {
-      const Zone& zone = zones_[i];
+  Result<void> write(size_t begin, size_t end) {
+    std::vector<std::optional<Error>> failed(end - begin);
+    parallel_for(failed.size(), workers_, [&](size_t i) {
+      Zone& zone = zones_[begin + i];
       if (zone.old != nullptr) {
         if (auto ok = folder_.take_over(*zone.old, zone.file); !ok) failed[i] = ok.error();
         return;
       }
       auto entry = pack(zone);
       if (entry) {
-        made[i] = *entry;
+        zone.entry = *entry;
       } else {
         failed[i] = entry.error();
       }
     });
-    for (size_t i = 0; i < zones_.size(); ++i) {
-      if (failed[i]) return *failed[i];
-      if (zones_[i].old == nullptr) zones_[i].entry = made[i];
+    for (const auto& failure : failed) {
+      if (failure) return *failure;
     }
     return {};
   }

@@ -23,6 +23,7 @@ namespace throng {
 // graph for all avatar classes. Source: [PACS00] 1.2.3; docs/design/006-nodes.md.
 
 struct Scene;
+class SceneRegions;
 namespace graph {
 struct NodeData;      // Internal: zones of nodes.
 struct LeafLinkData;  // Internal: zones of links to the air.
@@ -62,8 +63,9 @@ struct NodeConfig {
   int32_t workers = 0;  ///< Threads, 0 for all cores. Never changes the result. [>= 0]
   /// Rebuild all zones, also those whose nodes in the world's folder are up to date.
   bool rebuild = false;
-  /// Approximate memory limit while nodes are made: zones are made in as many batches as it takes,
-  /// each with its surroundings. Never changes the result. [bytes]
+  /// Approximate memory limit while nodes are made, without the scene if it is in memory: zones are
+  /// made in as many batches as it takes, each with its surroundings. Never changes the result.
+  /// [bytes]
   uint64_t working_bytes = uint64_t{1} << 30;
 };
 
@@ -215,6 +217,14 @@ class THRONG_API Nodes {
   /// made; if the call is cancelled or killed before, the next call reuses what was made. Also
   /// fails with kIo.
   [[nodiscard]] static Result<Nodes> create_in_folder(const World& world, const Scene& scene,
+                                                      const NodeConfig& config, Context& context);
+  /// The same nodes, byte for byte, of a scene that is never in memory as a whole: it is read twice
+  /// to find what zones depend on, and then around each batch. `working_bytes` counts triangles,
+  /// too; more is taken where a single zone and what lies near it need more, and by off-mesh links
+  /// over long distances, whose batches hold all in between. Besides, 16 bytes a patch and 500 a
+  /// zone are in memory, and of the world's files what WorldConfig::resident_bytes lets stay. Also
+  /// fails as SceneRegions::region does, and with kBadInput if its regions contradict each other.
+  [[nodiscard]] static Result<Nodes> create_in_folder(const World& world, const SceneRegions& scene,
                                                       const NodeConfig& config, Context& context);
   /// Opens the nodes in a world's folder. Fails with kBadFile (by name) or kIo.
   [[nodiscard]] static Result<Nodes> open(const std::string& world_path);

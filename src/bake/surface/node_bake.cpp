@@ -271,8 +271,12 @@ Result<Nodes> Nodes::create(const World& world, const Scene& scene, const NodeCo
   return Nodes(*std::move(nodes));
 }
 
-Result<Nodes> Nodes::create_in_folder(const World& world, const Scene& scene,
-                                      const NodeConfig& config, Context& context) {
+namespace {
+
+Result<std::shared_ptr<graph::NodeData>> make_in_folder(const World& world,
+                                                        const bake::NodeScene& scene,
+                                                        const NodeConfig& config,
+                                                        Context& context) {
   if (auto ok = bake::NodeBaker::check(world, scene, config); !ok) return ok.error();
   if (data_of(world)->path.empty()) {
     return Error{Errc::kBadInput, "nodes: the world is in no folder"};
@@ -292,7 +296,23 @@ Result<Nodes> Nodes::create_in_folder(const World& world, const Scene& scene,
   if (auto ok = folder->finish(**made); !ok) return ok.error();
   (*made)->summary.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   (*made)->path = data_of(world)->path + "/" + graph::kNodeFolder;
-  return Nodes(*made);
+  return *made;
+}
+
+}  // namespace
+
+Result<Nodes> Nodes::create_in_folder(const World& world, const Scene& scene,
+                                      const NodeConfig& config, Context& context) {
+  auto made = make_in_folder(world, scene, config, context);
+  if (!made) return made.error();
+  return Nodes(*std::move(made));
+}
+
+Result<Nodes> Nodes::create_in_folder(const World& world, const SceneRegions& scene,
+                                      const NodeConfig& config, Context& context) {
+  auto made = make_in_folder(world, scene, config, context);
+  if (!made) return made.error();
+  return Nodes(*std::move(made));
 }
 
 Result<void> Nodes::write(const std::string& world_path, int32_t workers) const {

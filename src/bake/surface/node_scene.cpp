@@ -12,7 +12,7 @@ namespace throng::bake {
 namespace {
 
 // Of a triangle: corners of its own, indices, kinds, parts, and its share of the squares.
-constexpr uint64_t kTriangleBytes = 160;
+constexpr uint64_t kTriangleBytes = 120;
 constexpr uint64_t kPatchBytes = sizeof(BezierPatch) + 4 * sizeof(PatchEdge) + 16;
 
 }  // namespace

@@ -190,6 +190,17 @@ TEST_F(NodesByRegion, OfALandscapeWithObjectsAndAir) {
   EXPECT_TRUE(AirLinks::exist(*World::open(at("w"))));
 }
 
+// So large that regions cut edges with several neighbours.
+TEST_F(NodesByRegion, HashAllNeighboursOfAPatch) {
+  const Scene scene = test::patch_scene(
+      test::make_net({.side = 20, .cell = 8, .relief = 1, .sideways = 1, .split_some = true}));
+  bake(scene, {.cell = 0.5, .zone = 32, .classes = {climbers()[0], climbers()[2]}});
+  const RegionsOf regions(scene);
+  compare_plans(*World::open(at("w")), scene, regions, {.size = 1, .working_bytes = 1});
+  EXPECT_GT(regions.count(), 45u);
+  EXPECT_LT(regions.largest(), scene.triangles.size() / 2);
+}
+
 TEST_F(NodesByRegion, OfPatchesWithSeveralNeighboursOnAnEdge) {
   compare(net(), {.cell = 0.1, .zone = 6.4, .classes = {climbers()[0], climbers()[2]}},
           {.size = 1});

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "baked.h"
 #include "core/random.h"
@@ -233,6 +234,37 @@ TEST(PatchCells, NoBodyMeetsTheGroundThatItWasNotTestedAgainst) {
   EXPECT_EQ(entered, 0u);
   EXPECT_GT(posed, 5000u);
   EXPECT_GT(more, 5000u);
+}
+
+// The same triangles in another order, among which others are found with those near a cell.
+Scene shuffled(const Scene& scene) {
+  Scene out = scene;
+  for (size_t t = scene.triangles.size() - 1; t > 0; --t) {
+    const auto other = static_cast<size_t>(random_unit(5, t, 0) * static_cast<double>(t + 1));
+    std::swap(out.triangles[t], out.triangles[other]);
+    std::swap(out.area[t], out.area[other]);
+    std::swap(out.patch_of_triangle[t], out.patch_of_triangle[other]);
+    std::swap(out.patch_part[t], out.patch_part[other]);
+  }
+  return out;
+}
+
+TEST(PatchCells, DoNotDependOnTheOrderOfTriangles) {
+  const std::vector<AvatarClass> classes = four_classes();
+  const NodeBins bins = graph::make_bins(classes);
+  // Patches so large that bodies on a part of one come near to a part of its triangles only.
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
+    const Scene scene = test::net_scene(
+        {.side = 3, .cell = 64, .relief = 3.0 * static_cast<double>(seed), .seed = seed});
+    const Scene other = shuffled(scene);
+    const bake::TriangleSquares triangles(scene, 1), others(other, 1);
+    bake::PatchJudge judge(triangles, classes, bins, 1), again(others, classes, bins, 1);
+    for (uint32_t p = 0; p < scene.patches.size(); p += 3) {
+      const bake::BezierCells a = judge.judge(p), b = again.judge(p);
+      EXPECT_TRUE(a.promise.cells == b.promise.cells) << seed << " " << p;
+      EXPECT_EQ(a.makers, b.makers);
+    }
+  }
 }
 
 // Bodies begin above their feet, but makers are whatever comes into the surface.

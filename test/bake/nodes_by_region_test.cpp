@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/surface/node_bake.h"
 #include "bake/surface/node_plan.h"
 #include "baked.h"
 #include "core/access.h"
@@ -217,6 +218,40 @@ TEST_F(NodesByRegion, OfLevelTiles) {
   compare(field(), {.cell = 0.2, .zone = 12.8, .classes = walkers()}, config);
   // Walkers that drop nowhere need no triangles.
   compare(field(), {.cell = 0.2, .zone = 12.8, .classes = {walkers()[0]}}, config);
+}
+
+TEST_F(NodesByRegion, OffMeshLinksAreCheckedAsInTheWholeScene) {
+  const Scene scene = landscape(160);
+  const RegionsOf regions(scene);
+  bake(scene, {.cell = 0.5, .zone = 32, .classes = climbers()});
+  const auto world = World::open(at("w"));
+  Context context;
+  NodeConfig config{.size = 2, .rebuild = true, .working_bytes = 4 << 20};
+  const auto plain = Nodes::create_in_folder(*world, scene, config, context);
+  ASSERT_TRUE(plain);
+  uint64_t good = 0, bad = 0;
+  for (uint64_t i = 0; i < 4; ++i) {
+    const auto place = [&](uint64_t n) {
+      return plain->random_place(static_cast<int32_t>(i), 7, n).feet;
+    };
+    // Every other link begins in the air.
+    config.off_mesh_links = {{place(2 * i), place(2 * i + 1), static_cast<int32_t>(i), true}};
+    if (i % 2 == 1) config.off_mesh_links[0].from.y += 50;
+    const auto whole = bake::NodeBaker::check_off_mesh_links(*world, scene, config, context);
+    const auto parts = bake::NodeBaker::check_off_mesh_links(*world, regions, config, context);
+    ASSERT_EQ(static_cast<bool>(whole), static_cast<bool>(parts)) << i;
+    ++(whole ? good : bad);
+    if (!whole) {
+      EXPECT_EQ(whole.error().message, parts.error().message);
+      continue;
+    }
+    ASSERT_TRUE(Nodes::create_in_folder(*world, scene, config, context));
+    const auto reference = folder_bytes(at("w") + "/nodes");
+    ASSERT_TRUE(Nodes::create_in_folder(*world, regions, config, context));
+    EXPECT_TRUE(folder_bytes(at("w") + "/nodes") == reference) << i;
+  }
+  EXPECT_GT(good, 0u);
+  EXPECT_GT(bad, 0u);
 }
 
 TEST_F(NodesByRegion, ReuseWhatIsThereWhetherItWasMadeByRegionsOrNot) {

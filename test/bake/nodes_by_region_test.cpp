@@ -271,9 +271,15 @@ TEST_F(NodesByRegion, ReuseWhatIsThereWhetherItWasMadeByRegionsOrNot) {
     EXPECT_GT(made->summary().zones_reused, 8u);
     EXPECT_GT(made->summary().zones_made, 1u);
     const auto bytes = folder_bytes(at("w") + "/nodes");
-    const auto again = Nodes::create_in_folder(*world, scene, nodes, context);
-    ASSERT_TRUE(again);
-    EXPECT_EQ(again->summary().zones_made, 0u);
+    // Nothing is left to be made.
+    for (const bool by_region : {false, true}) {
+      const auto again = by_region
+                             ? Nodes::create_in_folder(*world, RegionsOf(scene), nodes, context)
+                             : Nodes::create_in_folder(*world, scene, nodes, context);
+      ASSERT_TRUE(again);
+      EXPECT_EQ(again->summary().zones_made, 0u);
+      EXPECT_TRUE(folder_bytes(at("w") + "/nodes") == bytes);
+    }
     const NodeConfig all{.size = 2, .rebuild = true};
     ASSERT_TRUE(Nodes::create_in_folder(*world, scene, all, context));
     EXPECT_TRUE(folder_bytes(at("w") + "/nodes") == bytes);

@@ -59,5 +59,13 @@ TEST(TriangleSquares, FindEachTriangleWhoseBoxOverlapsOnceWhateverTheOrder) {
   }
 }
 
+TEST(TriangleSquares, OfNoTrianglesFindNone) {
+  const Scene scene;
+  const bake::TriangleSquares triangles(scene, 2);
+  std::vector<uint32_t> found;
+  triangles.find({{-1e7, -1e7, -1e7}, {1e7, 1e7, 1e7}}, found);
+  EXPECT_TRUE(found.empty());
+}
+
 }  // namespace
 }  // namespace throng

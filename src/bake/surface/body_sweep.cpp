@@ -141,6 +141,7 @@ TriangleSquares::TriangleSquares(const Scene& scene, int32_t workers) : scene_(&
     bounds.add({b[0], b[1], b[2]});
     bounds.add({b[3], b[4], b[5]});
   }
+  if (clusters.empty()) bounds.add({});
   origin_x_ = bounds.min.x;
   origin_z_ = bounds.min.z;
   const double width = bounds.max.x - bounds.min.x, depth = bounds.max.z - bounds.min.z;

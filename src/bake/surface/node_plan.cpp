@@ -29,7 +29,7 @@
 namespace throng::bake {
 namespace {
 
-constexpr uint64_t kNodeBakeVersion = 2;  // To be raised when equal inputs give other nodes.
+constexpr uint64_t kNodeBakeVersion = 3;  // To be raised when equal inputs give other nodes.
 constexpr double kLinkEndRadius = 1;      // Places that an off-mesh link's ends may be at. [m]
 constexpr double kMargin = 1;             // for rounding, and then some [m]
 constexpr double kFar = 1e7;              // above, below and beside all [m]

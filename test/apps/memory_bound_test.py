@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the throng authors
 # SPDX-License-Identifier: MIT
-"""--memory of throng path and throng run, and --part: bounds are kept, answers are those without a bound.
+"""--memory and --part of throng path, throng run and throng bake: bounds are kept, answers are those without a bound.
 
 memory_bound_test.py THRONG"""
 import json
@@ -106,6 +106,48 @@ count = 60
     assert code == 2 and "--part" in err, (code, out, err)
 
 
+def files(folder):
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def check_bake(throng, folder):
+    large = ("bake", "builtin:landscape,size=1000", "--cell", 0.5, "--fly")
+    code, _, err, peak = run(throng, *large, "-o", folder / "large.throng")
+    assert code == 0, err
+    code, _, err, least = run(throng, *large, "--memory", 100, "-o", folder / "bounded.throng")
+    assert code == 0, err
+    print(f"memory_bound_test: a bake with air: {peak / MIB:.0f} MiB, {least / MIB:.0f} with --memory 100")
+    assert least < 0.7 * peak and least <= 100 * MIB, (peak, least)
+    assert files(folder / "bounded.throng") == files(folder / "large.throng")
+    scene = ("bake", "builtin:landscape,size=300", "--cell", 0.5, "--fly")
+    code, _, err, _ = run(throng, *scene, "--nodes", "-o", folder / "whole.throng")
+    assert code == 0, err
+    code, _, err, _ = run(throng, *scene, "--nodes", "--memory", 60, "-o", folder / "small.throng")
+    assert code == 0, err
+    whole = files(folder / "whole.throng")
+    assert files(folder / "small.throng") == whole
+    # Two halves, one of them within a bound, joined; then nodes of all.
+    code, _, err, _ = run(throng, *scene, "--part", "0,0,150,300", "--memory", 64, "-o", folder / "west.throng")
+    assert code == 0, err
+    code, _, err, _ = run(throng, *scene, "--part", "150,0,300,300", "-o", folder / "east.throng")
+    assert code == 0, err
+    code, _, err, _ = run(throng, "join", folder / "west.throng", folder / "east.throng", "-o", folder / "joined.throng")
+    assert code == 0, err
+    ground = {name: data for name, data in whole.items() if not name.startswith("nodes")}
+    assert files(folder / "joined.throng") == ground
+    assert not list(folder.glob("*.tmp")) and not list(folder.glob("*.part")), list(folder.iterdir())
+    # What cannot be done is said, and the world stays.
+    cube = folder / "cube.throng"
+    code, _, err, _ = run(throng, "bake", "builtin:cube", "--memory", 64, "-o", cube)
+    assert code == 0, err
+    for arguments, word in (((*scene, "--part", "0,0,9,9", "--nodes"), "--part"), ((*scene, "--memory", 8), "--memory"),
+                            ((*scene, "--part", "900,900,999,999"), "no triangle"),
+                            (("join", folder / "west.throng", cube), "join parts of one scene")):
+        code, out, err, _ = run(throng, *arguments, "-o", folder / "joined.throng")
+        assert code == 2 and word in err and not out, (arguments, code, out, err)
+        assert files(folder / "joined.throng") == ground
+
+
 def main():
     throng = sys.argv[1]
     with tempfile.TemporaryDirectory() as temporary:
@@ -116,6 +158,7 @@ def main():
         check_path(throng, world)
         check_run(throng, world, folder)
         check_scenario(throng, world, folder)
+        check_bake(throng, folder)
     return 0
 
 

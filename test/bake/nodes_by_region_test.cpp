@@ -41,7 +41,7 @@ std::vector<AvatarClass> climbers() {
   return classes;
 }
 
-void add_box(Scene& scene, Vec3d low, Vec3d size) {
+void add_solid(Scene& scene, Vec3d low, Vec3d size) {
   const bool parts = scene.patch_part.size() == scene.triangles.size();
   scene.add_box(low, low + size);
   if (scene.patches.empty()) return;
@@ -57,11 +57,11 @@ Scene built_on(double size) {
   const Vec3d corner = scene.patches.patches[0].bounds().min;
   for (int i = 0; i < 14; ++i) {
     const double x = corner.x + size * (0.05 + 0.066 * i), z = corner.z + size * (i * 5 % 14) / 14;
-    add_box(scene, {x, corner.y - 5, z}, {0.3, 60, 0.3});
-    add_box(scene, {x + 4, corner.y + i, z + 3}, {2.5, 1.0 + i % 3, 2.5});
+    add_solid(scene, {x, corner.y - 5, z}, {0.3, 60, 0.3});
+    add_solid(scene, {x + 4, corner.y + i, z + 3}, {2.5, 1.0 + i % 3, 2.5});
   }
-  add_box(scene, corner + Vec3d{size / 3, 0, size / 2}, {size / 3, 30, 0.5});
-  add_box(scene, corner + Vec3d{size / 4, 14, size / 4}, {40, 0.3, 25});
+  add_solid(scene, corner + Vec3d{size / 3, 0, size / 2}, {size / 3, 30, 0.5});
+  add_solid(scene, corner + Vec3d{size / 4, 14, size / 4}, {40, 0.3, 25});
   return scene;
 }
 
@@ -263,7 +263,7 @@ TEST_F(NodesByRegion, ReuseWhatIsThereWhetherItWasMadeByRegionsOrNot) {
   ASSERT_TRUE(Nodes::create_in_folder(*World::open(at("w")), scene, nodes, context));
   const Vec3d corner = scene.patches.patches[0].bounds().min;
   for (int i = 0; i < 2; ++i) {
-    add_box(scene, corner + Vec3d{30 + 110.0 * i, 3, 40}, {2, 9, 2});
+    add_solid(scene, corner + Vec3d{30 + 110.0 * i, 3, 40}, {2, 9, 2});
     bake(scene, config);
     const auto world = World::open(at("w"));
     const auto made = Nodes::create_in_folder(*world, RegionsOf(scene), nodes, context);
@@ -351,7 +351,7 @@ TEST_F(NodesByRegion, AFailureLeavesTheOldNodes) {
     }
   }
   Scene other = scene;
-  add_box(other, {0, 0, 0}, {1, 1, 1});
+  add_solid(other, {0, 0, 0}, {1, 1, 1});
   EXPECT_EQ(Nodes::create_in_folder(*world, RegionsOf(other), nodes, context).error().code,
             Errc::kBadInput);
 }

@@ -33,7 +33,7 @@ Scene flat_ground() {
   return test::patch_scene(net);
 }
 
-void add_box(Scene& scene, Vec3d low, Vec3d high) {
+void add_object(Scene& scene, Vec3d low, Vec3d high) {
   scene.add_box(low, high);
   scene.patch_of_triangle.resize(scene.triangles.size(), kNoPatch);
   if (!scene.patch_part.empty()) scene.patch_part.resize(scene.triangles.size());
@@ -86,9 +86,9 @@ TEST(ObjectNodes, LevelTilesCarryWhatLiesOnObjectsAlone) {
   const Made bare = make(scene);
   EXPECT_EQ(bare.area(PatchKind::kLevelTile), 0);
   EXPECT_GT(bare.area(PatchKind::kBezier), 0.8 * kSide * kSide);
-  add_box(scene, {6, -1, 6}, {10, 0.3, 10});    // a slab, a step high
-  add_box(scene, {20, -1, 20}, {22, 5, 22});    // a tower
-  add_box(scene, {20, 2.5, 6}, {26, 2.8, 12});  // a roof without posts
+  add_object(scene, {6, -1, 6}, {10, 0.3, 10});    // a slab, a step high
+  add_object(scene, {20, -1, 20}, {22, 5, 22});    // a tower
+  add_object(scene, {20, 2.5, 6}, {26, 2.8, 12});  // a roof without posts
   const Made made = make(scene);
   // The slab, the tower's top and the roof, less a body's radius at their edges.
   EXPECT_GT(made.area(PatchKind::kLevelTile), 3.4 * 3.4 + 1.4 * 1.4 + 5.4 * 5.4);
@@ -115,7 +115,7 @@ TEST(ObjectNodes, PathsLeadOverObjectsThatBridgeAGap) {
   scene = test::patch_scene(both);
   const Made cut = make(scene);
   EXPECT_NE(cut.component_at({16, 0, 16}), cut.component_at({kSide + 17, 0, 16}));
-  add_box(scene, {kSide - 2, -0.1, 14}, {kSide + 3, 0.1, 18});
+  add_object(scene, {kSide - 2, -0.1, 14}, {kSide + 3, 0.1, 18});
   const Made made = make(scene);
   EXPECT_EQ(made.component_at({16, 0, 16}), made.component_at({kSide + 17, 0, 16}));
 }
@@ -123,7 +123,7 @@ TEST(ObjectNodes, PathsLeadOverObjectsThatBridgeAGap) {
 // Where polygons make up most of the ground, walkers stay on level tiles.
 TEST(ObjectNodes, CurvedPartsOfALevelOfPolygonsCarryNoWalkers) {
   Scene scene = flat_ground();
-  add_box(scene, {-200, -2, -200}, {200, -1, 200});
+  add_object(scene, {-200, -2, -200}, {200, -1, 200});
   const Made made = make(scene);
   EXPECT_EQ(made.area(PatchKind::kBezier), 0);
   EXPECT_GT(made.area(PatchKind::kLevelTile), 0.9 * 400 * 400);

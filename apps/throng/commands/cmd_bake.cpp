@@ -38,6 +38,9 @@ struct BakeOptions {
   uint64_t node_memory = node_config.working_bytes >> 20;  // [MiB]
 };
 
+// Of the world's zones, while nodes are made.
+constexpr uint64_t kResidentBytes = uint64_t{256} << 20;
+
 // Nodes are made on request, and if a class climbs or drops: it moves over nodes alone.
 bool wants_nodes(const BakeOptions& options) {
   return options.nodes || !options.off_mesh_links.empty() ||
@@ -99,11 +102,19 @@ Result<std::vector<NodeOffMeshLink>> read_off_mesh_links(const std::string& name
 }
 
 Result<NodeSummary> bake_nodes(BakeOptions& options, const Scene& scene, Context& context) {
-  constexpr uint64_t kResidentBytes = uint64_t{256} << 20;
   const Result<World> world = World::open(options.output, {.resident_bytes = kResidentBytes});
   const auto opened = meet_over_ranks(world ? Result<void>() : world.error(), context);
   if (!opened) return opened.error();
   return nodes_over_ranks(*world, scene, options.node_config, context);
+}
+
+Result<NodeSummary> bake_nodes(BakeOptions& options, const SceneRegions& scene, Context& context) {
+  const Result<World> world =
+      World::open(options.output, {.resident_bytes = options.memory.bytes / 8});
+  if (!world) return world.error();
+  const Result<Nodes> nodes = Nodes::create_in_folder(*world, scene, options.node_config, context);
+  if (!nodes) return nodes.error();
+  return nodes->summary();
 }
 
 // What is said of the models.
@@ -237,6 +248,11 @@ std::string after_the_ground(const std::string& path) {
                                       : "; the world is baked, but it has no nodes yet";
 }
 
+int fail_after_ground(const BakeOptions& options, const Error& error) {
+  const std::string& what = error.message;  // Empty: another rank says it.
+  return fail({error.code, what.empty() ? "" : what + after_the_ground(options.output)});
+}
+
 void add_nodes(const NodeSummary& nodes, Json& json, std::string& text) {
   json["node_zones_made"] = nodes.zones_made;
   json["node_zones_reused"] = nodes.zones_reused;
@@ -257,12 +273,9 @@ int bake_by_block(Session& session, BakeOptions& options) {
     return fail({Errc::kBadConfig, "--memory: is for one process; leave it out under mpirun"});
   }
   if (auto ok = prepare(options); !ok) return fail(ok.error());
-  if (wants_nodes(options)) {
-    return fail({Errc::kBadConfig,
-                 "--memory: nodes are made of scenes in memory; leave --memory out, or --nodes and "
-                 "classes that climb or drop"});
-  }
   options.config.block_bytes = options.memory.blocks();
+  options.node_config.working_bytes =
+      std::min(options.node_config.working_bytes, options.memory.blocks());
   const auto folder = std::filesystem::path(options.output).parent_path();
   const auto scene = read_regions(options.sources, folder.string(), session.context);
   if (!scene) return fail(scene.error());
@@ -271,8 +284,14 @@ int bake_by_block(Session& session, BakeOptions& options) {
       bake_world_to(options.output, **scene, options.config, session.context);
   if (!report) return fail(report.error());
   const Models models{.facts = (*scene)->facts(), .hints = {}};
-  print_result(session, bake_json(options, models, *report, peak_read),
-               bake_text(options, models, *report));
+  Json json = bake_json(options, models, *report, peak_read);
+  std::string text = bake_text(options, models, *report);
+  if (wants_nodes(options)) {
+    const Result<NodeSummary> nodes = bake_nodes(options, **scene, session.context);
+    if (!nodes) return fail_after_ground(options, nodes.error());
+    add_nodes(*nodes, json, text);
+  }
+  print_result(session, json, text);
   return kDone;
 }
 
@@ -296,12 +315,7 @@ int bake(Session& session, BakeOptions& options) {
   std::optional<NodeSummary> nodes;
   if (nodes_follow) {
     const Result<NodeSummary> made = bake_nodes(options, *scene, session.context);
-    if (!made) {
-      return fail(
-          {made.error().code, made.error().message.empty()
-                                  ? ""
-                                  : made.error().message + after_the_ground(options.output)});
-    }
+    if (!made) return fail_after_ground(options, made.error());
     nodes = *made;
   }
   if (rank_info().rank > 0) return kDone;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/arrays/release.h"
 #include "import/formats/zonel.h"
 #include "import/patches/patch_scene.h"
 #include "import/raw/clean.h"
@@ -30,7 +31,7 @@ void append(Scene& all, Scene&& one) {
   const auto first_vertex = static_cast<uint32_t>(all.positions.size());
   const auto first_triangle = static_cast<uint32_t>(all.triangles.size());
   all.positions.insert(all.positions.end(), one.positions.begin(), one.positions.end());
-  one.positions = {};
+  release(one.positions);
   for (const auto& corners : one.triangles) {
     auto& moved = all.triangles.emplace_back(corners);
     for (uint32_t& corner : moved)

@@ -14,6 +14,7 @@
 
 #include "bake/surface/leaf_election.h"
 #include "core/access.h"
+#include "core/arrays/release.h"
 #include "core/files/file_map.h"
 #include "core/hash.h"
 #include "core/parallel.h"
@@ -197,7 +198,7 @@ class LeafLinkBaker {
 
   // Only sizes are left.
   void release(Zone& zone) const {
-    zone.elected.links = {};
+    throng::release(zone.elected.links);
     zone.old.reset();
     const int32_t slot =
         air_.slot_of_zone[static_cast<size_t>(zone.z) * static_cast<size_t>(air_.zones_x) +

@@ -136,6 +136,7 @@ bake::NodeBatchInput bake::NodeBaker::batch_input(NodeRegion& region, bool is_la
           .config = config_,
           .bins = bins_,
           .plan = plan_,
+          .store = cells_.get(),
           .is_last = is_last,
           .context = context};
 }
@@ -145,8 +146,33 @@ Result<bake::NodeSlots> bake::NodeBaker::make_nodes(std::span<const uint32_t> zo
                                                     Context& context) {
   const auto region = region_of(zones, context);
   if (!region) return region.error();
-  return bake::make_node_batch(batch_input(**region, is_last || !scene_.is_whole(), context),
-                               zones);
+  auto made =
+      bake::make_node_batch(batch_input(**region, is_last || !scene_.is_whole(), context), zones);
+  if (made) drop_cells(zones);
+  return made;
+}
+
+void bake::NodeBaker::keep_cells(std::span<const std::vector<uint32_t>> batches) {
+  if (folder_ == nullptr || batches.size() < 2 || !plan_.has_patches) return;
+  auto made = bake::CellStore::create(folder_->part());
+  if (!made) return;  // They are judged as often as they are needed.
+  cells_ = *std::move(made);
+  batches_near_.assign(plan_.zones.size(), 0);
+  for (const std::vector<uint32_t>& batch : batches) {
+    for (const uint32_t zone : bake::with_near_zones(plan_, batch)) ++batches_near_[zone];
+  }
+}
+
+// Of zones that no further batch is near.
+void bake::NodeBaker::drop_cells(std::span<const uint32_t> zones) {
+  if (cells_ == nullptr) return;
+  for (const uint32_t z : bake::with_near_zones(plan_, zones)) {
+    if (--batches_near_[z] > 0) continue;
+    for (uint32_t s = plan_.zones[z].first; s < plan_.zones[z].last; ++s) {
+      const bake::PatchSource& source = plan_.sources[s];
+      if (source.kind == PatchKind::kBezier) cells_->drop(source.source);
+    }
+  }
 }
 
 Result<std::vector<bake::NodeBaker::Made>> bake::NodeBaker::write(std::span<const uint32_t> zones,
@@ -230,6 +256,7 @@ Result<std::shared_ptr<graph::NodeData>> make_all(const World& world, const bake
   if (auto ok = baker.reuse_zones(); !ok) return ok.error();
   // Off-mesh links are checked even if nothing has to be made.
   const auto batches = baker.batches(config.working_bytes);
+  baker.keep_cells(batches);
   for (size_t b = 0; b < batches.size(); ++b) {
     if (context.on_progress) context.on_progress({"nodes", baker.zones_done(), baker.zones()});
     // The journal names what is there before the rest is begun.

@@ -53,6 +53,9 @@ class NodeBaker {
   [[nodiscard]] uint64_t zones() const { return plan_.zones.size(); }
   [[nodiscard]] uint64_t zones_done() const;
 
+  /// Before batches are made in this order: keeps what several of them judge, in a file of the
+  /// folder, if there is one. Changes no node.
+  void keep_cells(std::span<const std::vector<uint32_t>> batches);
   /// `is_last`: triangles are let go as soon as may be.
   Result<NodeSlots> make_nodes(std::span<const uint32_t> zones, bool is_last, Context& context);
   /// Writes what was made into the folder, if there is one, and lets it go.
@@ -65,6 +68,7 @@ class NodeBaker {
   Result<std::shared_ptr<graph::NodeData>> finish();
 
  private:
+  void drop_cells(std::span<const uint32_t> zones);
   [[nodiscard]] Result<std::shared_ptr<NodeRegion>> region_of(std::span<const uint32_t> zones,
                                                               Context& context) const;
   [[nodiscard]] NodeBatchInput batch_input(NodeRegion& region, bool is_last,
@@ -78,8 +82,10 @@ class NodeBaker {
   const NodeFolder* folder_;  // may be null
   NodeBins bins_;
   NodePlan plan_;
-  std::vector<uint8_t> is_done_;  // by zone of the plan
-  NodeSlots slots_;               // likewise
+  std::vector<uint8_t> is_done_;        // by zone of the plan
+  NodeSlots slots_;                     // likewise
+  std::vector<uint32_t> batches_near_;  // by zone: batches left that judge its patches
+  std::unique_ptr<CellStore> cells_;    // null: nothing is kept
   uint64_t reused_ = 0;
 };
 

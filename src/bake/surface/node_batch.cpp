@@ -12,6 +12,7 @@
 #include "bake/surface/object_ground.h"
 #include "bake/surface/patch_links.h"
 #include "core/access.h"
+#include "core/arrays/release.h"
 #include "core/parallel.h"
 #include "graph/node_bins.h"
 #include "graph/node_width.h"
@@ -45,6 +46,7 @@ class NodeBatch {
         bins_(input.bins),
         plan_(input.plan),
         triangles_(plan_.needs_triangles() ? &region_.triangles(config_.workers) : nullptr),
+        store_(input.store),
         is_last_(input.is_last),
         made_(zones),
         zone_places_(with_near_zones(plan_, zones)) {}
@@ -123,10 +125,13 @@ class NodeBatch {
         PatchJudge(*triangles_, data_.summary.classes, bins_, config_.size));
     parallel_for_worker(cells_.size(), config_.workers, [&](size_t p, int32_t worker) {
       if (context_.cancel || bezier_[p] == graph::kNoNode) return;
-      cells_[p] = judges[static_cast<size_t>(worker)].judge(static_cast<uint32_t>(p));
+      const auto patch = static_cast<uint32_t>(p);
+      if (store_ != nullptr && store_->read(region_, patch, cells_[p])) return;
+      cells_[p] = judges[static_cast<size_t>(worker)].judge(patch);
       for (graph::Promise& cell : cells_[p].promise.cells) {
         cell.classes = blocked[p] != 0 ? uint16_t{0} : cell.classes & plan_.on_patches;
       }
+      if (store_ != nullptr) store_->keep(region_, patch, cells_[p]);
     });
   }
 
@@ -396,7 +401,7 @@ class NodeBatch {
         const size_t low = 2 * step * k, high = low + step;
         if (high >= runs.size()) return;
         runs[low].insert(runs[low].end(), runs[high].begin(), runs[high].end());
-        runs[high] = {};
+        release(runs[high]);
         graph::merge_node_links(runs[low]);
       });
     }
@@ -616,6 +621,7 @@ class NodeBatch {
   const NodeBins& bins_;
   const NodePlan& plan_;
   const TriangleSquares* triangles_;  // null: not needed, or not again
+  CellStore* const store_;            // may be null
   const bool is_last_;
   const std::span<const uint32_t> made_;     // zones of the plan, ascending
   const std::vector<uint32_t> zone_places_;  // zones that are seen: these and those near

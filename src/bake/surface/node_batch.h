@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bake/columns/triangles.h"
+#include "bake/surface/cell_store.h"
 #include "bake/surface/node_plan.h"
 #include "bake/surface/node_scene.h"
 #include "graph/node_data.h"
@@ -24,7 +25,8 @@ struct NodeBatchInput {
   const NodeConfig& config;
   const NodeBins& bins;
   const NodePlan& plan;
-  bool is_last = false;  ///< The triangles are let go as soon as may be.
+  CellStore* store = nullptr;  ///< Of cells that other batches have judged, or will need.
+  bool is_last = false;        ///< The triangles are let go as soon as may be.
   Context& context;
 };
 

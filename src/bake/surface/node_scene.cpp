@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "core/arrays/release.h"
+
 // A region's patches are numbered from 0 in the order of the whole scene, so what is sorted by them
 // comes in the same order, and only what is stored or hashed needs their numbers there.
 namespace throng::bake {
@@ -34,12 +36,12 @@ void NodeRegion::release_triangles() {
   triangles_.reset();
   if (!part_) return;
   Scene& scene = part_->scene;
-  scene.positions = {};
-  scene.triangles = {};
-  scene.area = {};
-  scene.patch_of_triangle = {};
-  scene.patch_part = {};
-  scene.texture_corners = {};
+  release(scene.positions);
+  release(scene.triangles);
+  release(scene.area);
+  release(scene.patch_of_triangle);
+  release(scene.patch_part);
+  release(scene.texture_corners);
 }
 
 NodeScene::NodeScene(const Scene& whole)

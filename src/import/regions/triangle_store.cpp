@@ -9,15 +9,14 @@
 #include <climits>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <system_error>
+
+#include "core/arrays/release.h"
 
 // Triangles wait in memory by square and are written together, so that the file has few runs for
 // each square: models list what lies together together. A triangle belongs to the square of its
 // box's middle, and is no longer than a square on either axis; longer ones have a list of their
 // own, which every query reads.
 namespace throng::importer {
-namespace fs = std::filesystem;
 namespace {
 
 constexpr double kSide = 64;               // of a square [m]
@@ -35,51 +34,22 @@ Box3d box_of(const std::array<Vec3d, 3>& corners) {
   return box;
 }
 
-int seek(std::FILE* file, uint64_t byte) {
-#ifdef _WIN32
-  return _fseeki64(file, static_cast<int64_t>(byte), SEEK_SET);
-#else
-  return fseeko(file, static_cast<off_t>(byte), SEEK_SET);
-#endif
-}
-
 }  // namespace
 
-Error TriangleStore::failure(const char* what) const {
-  return {Errc::kIo, path_ + ": " + what + ": " + std::strerror(errno) +
-                         "; is there room for 80 bytes a triangle?"};
+Error TriangleStore::failure(const std::string& what) const {
+  const std::string why = errno != 0 ? std::strerror(errno) : "it was cut short";
+  return {Errc::kIo, file_.path() + ": " + what + ": " + why};
 }
 
 Result<std::unique_ptr<TriangleStore>> TriangleStore::create(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  for (int n = 0;; ++n) {
-    std::string path = (fs::path(folder) / fmt::format("triangles.{}.tmp", n)).string();
-    errno = 0;
-    std::FILE* file = std::fopen(path.c_str(), "w+bx");
-    if (file == nullptr && errno == EEXIST && n < 1000) continue;
-    if (file == nullptr) {
-      return Error{Errc::kIo, path + ": cannot be written: " + std::strerror(errno)};
-    }
-#ifndef _WIN32
-    fs::remove(path, error);  // The open file remains, and a killed process leaves nothing behind.
-#endif
-    return std::unique_ptr<TriangleStore>(new TriangleStore(std::move(path), file));
-  }
-}
-
-TriangleStore::~TriangleStore() {
-  std::fclose(file_);
-#ifdef _WIN32
-  std::error_code ignored;
-  fs::remove(path_, ignored);
-#endif
+  auto file = ScratchFile::create(folder, "triangles");
+  if (!file) return file.error();
+  return std::unique_ptr<TriangleStore>(new TriangleStore(*std::move(file)));
 }
 
 Result<void> TriangleStore::add(const Scene& scene) {
   if (count_ + scene.triangles.size() > UINT32_MAX) {
-    return Error{Errc::kLimit,
-                 "scene: more than 4.29 thousand million triangles; bake it in parts"};
+    return Error{Errc::kLimit, "scene: more than 4.29 thousand million triangles"};
   }
   for (size_t t = 0; t < scene.triangles.size(); ++t) {
     Record record{.corners = {}, .number = static_cast<uint32_t>(count_++), .area = scene.area[t]};
@@ -103,8 +73,8 @@ Result<void> TriangleStore::write_waiting() {
   for (auto& [place, square] : squares_) {
     const size_t count = square.waiting.size();
     if (count == 0) continue;
-    if (std::fwrite(square.waiting.data(), sizeof(Record), count, file_) != count) {
-      return failure("cannot be written");
+    if (!file_.write(written_ * sizeof(Record), square.waiting.data(), count * sizeof(Record))) {
+      return failure("cannot be written (80 bytes a triangle)");
     }
     if (!square.runs.empty() && square.runs.back().first + square.runs.back().count == written_) {
       square.runs.back().count += count;
@@ -112,17 +82,13 @@ Result<void> TriangleStore::write_waiting() {
       square.runs.push_back({.first = written_, .count = count});
     }
     written_ += count;
-    square.waiting = {};
+    release(square.waiting);
   }
   waiting_ = 0;
   return {};
 }
 
-Result<void> TriangleStore::finish() {
-  if (auto ok = write_waiting(); !ok) return ok;
-  if (std::fflush(file_) != 0) return failure("cannot be written");
-  return {};
-}
+Result<void> TriangleStore::finish() { return write_waiting(); }
 
 template <class Visit>
 void TriangleStore::for_each_square(const Box3d& box, Visit visit) const {
@@ -158,9 +124,8 @@ Result<void> TriangleStore::append(const Box3d& box, uint32_t /*first_patch*/, S
       constexpr uint64_t kAtOnce = 1 << 14;
       for (uint64_t done = 0; is_read && !context.cancel && done < run.count;) {
         read.resize(std::min(kAtOnce, run.count - done));
-        const std::lock_guard lock(mutex_);
-        is_read = seek(file_, (run.first + done) * sizeof(Record)) == 0 &&
-                  std::fread(read.data(), sizeof(Record), read.size(), file_) == read.size();
+        is_read = file_.read((run.first + done) * sizeof(Record), read.data(),
+                             read.size() * sizeof(Record));
         done += read.size();
         for (const Record& record : read) {
           if (touch(box_of(record.corners), box)) found.push_back(record);

@@ -4,14 +4,13 @@
 
 #include <array>
 #include <cstdint>
-#include <cstdio>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/files/scratch_file.h"
 #include "import/regions/region_part.h"
 
 /// Triangles in a temporary file, by squares of the ground.
@@ -21,11 +20,6 @@ class TriangleStore : public RegionPart {
  public:
   /// The file lies in `folder`, which is made if it is not there. Fails with kIo.
   static Result<std::unique_ptr<TriangleStore>> create(const std::string& folder);
-  /// Removes the file.
-  ~TriangleStore() override;
-  TriangleStore(const TriangleStore&) = delete;
-  TriangleStore& operator=(const TriangleStore&) = delete;
-
   /// The triangles of a scene, behind those that are here. Not of patches. Fails with kIo or
   /// kLimit. Memory: 5 MiB, and 16 bytes for every run of triangles of one square.
   Result<void> add(const Scene& scene);
@@ -56,16 +50,14 @@ class TriangleStore : public RegionPart {
   };
   using Place = std::pair<int32_t, int32_t>;  // z, x
 
-  TriangleStore(std::string path, std::FILE* file) : path_(std::move(path)), file_(file) {}
+  explicit TriangleStore(ScratchFile file) : file_(std::move(file)) {}
   Result<void> write_waiting();
-  [[nodiscard]] Error failure(const char* what) const;
+  [[nodiscard]] Error failure(const std::string& what) const;
   // All squares that may have triangles in a box, the one of large triangles among them.
   template <class Visit>
   void for_each_square(const Box3d& box, Visit visit) const;
 
-  std::string path_;
-  std::FILE* file_ = nullptr;
-  mutable std::mutex mutex_;  // of the file's position
+  ScratchFile file_;
   std::map<Place, Square> squares_;
   Box3d bounds_;
   uint64_t count_ = 0, waiting_ = 0, written_ = 0;  // records

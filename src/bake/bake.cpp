@@ -61,6 +61,7 @@ Result<BakeReport> bake_world_to(const std::string& path, const Scene& scene,
   if (auto ok = bake::check_bake(scene, config); !ok) return ok.error();
   auto folder = bake::WorldFolder::begin(path, config.old_zones);
   if (!folder) return folder.error();
+  if (auto ok = folder->check_part(config); !ok) return ok.error();
   std::vector<std::unique_ptr<world::Zone>> none;
   BakeReport report;
   const auto start = Clock::now();

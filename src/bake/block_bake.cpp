@@ -105,7 +105,6 @@ class BlockBaker {
     auto region = scene_.region(grid_->box(zones), context_);
     if (!region) return region.error();
     const Scene& scene = region->scene;
-    region->patch_number = {};
     if (auto ok = bake::check_triangles(scene); !ok) return ok;
     if (!scene.triangles.empty()) {
       auto begun = bake::WorldBake::begin_block(scene, config_, folder_.old_world(),
@@ -190,6 +189,7 @@ Result<BakeReport> bake_world_to(const std::string& path, const SceneRegions& sc
   if (auto ok = check(scene, config); !ok) return ok.error();
   auto folder = bake::WorldFolder::begin(path, config.old_zones);
   if (!folder) return folder.error();
+  if (auto ok = folder->check_part(config); !ok) return ok.error();
   BakeReport report;
   const auto start = Clock::now();
   BlockBaker baker(scene, config, *folder, context, report);

@@ -13,6 +13,8 @@
 #include "bake/folder/world_folder.h"
 #include "bake/folder/zone_baker.h"
 #include "core/access.h"
+#include "core/files/file_map.h"
+#include "core/hash.h"
 #include "core/stopwatch.h"
 #include "throng/bake.h"
 #include "world/air_data.h"
@@ -34,6 +36,8 @@ bool is_same(const AvatarClass& a, const AvatarClass& b) {
 
 // What two parts of one scene cannot differ in, or nothing.
 std::string difference(const world::WorldData& a, const world::WorldData& b) {
+  const int32_t air = a.air ? a.air->shape.multiple : 0, others = b.air ? b.air->shape.multiple : 0;
+  if (air != others) return "have other air, or one of them has none";
   const WorldSummary &one = a.summary, &other = b.summary;
   if (one.cell != other.cell || one.resolution != other.resolution) {
     return "have other cells or another resolution";
@@ -48,8 +52,7 @@ std::string difference(const world::WorldData& a, const world::WorldData& b) {
                   other.classes.end(), is_same)) {
     return "have other classes";
   }
-  const int32_t air = a.air ? a.air->shape.multiple : 0, others = b.air ? b.air->shape.multiple : 0;
-  return air == others ? "" : "have other air";
+  return "";
 }
 
 struct Part {
@@ -104,6 +107,23 @@ Result<JoinedZones> list_zones(const std::vector<Part>& parts) {
   return zones;
 }
 
+// Without its air file a zone would be free air. Others are made again if they are damaged.
+Result<void> check_air(const Part& part, const Joined& zone) {
+  const world::WorldData& data = *data_of(part.world);
+  if (data.air == nullptr) return {};
+  const int32_t x = zone.entry.x(), z = zone.entry.z();
+  const int32_t slot = data.air->slot_of_zone[static_cast<size_t>(z * data.zones_x + x)];
+  if (slot < 0) return {};
+  const format::AirEntry& entry = data.air->slots[static_cast<size_t>(slot)]->entry;
+  const std::string name = part.path + "/" + world::air_file_name(x, z);
+  const auto map = FileMap::open(name);
+  if (map && map->bytes().size() == entry.bytes() &&
+      hash_bytes(map->bytes().data(), map->bytes().size()) == entry.hash()) {
+    return {};
+  }
+  return Error{Errc::kBadFile, name + ": is missing or damaged; bake that world again"};
+}
+
 BakeConfig config_of(const world::WorldData& world, int32_t workers) {
   BakeConfig config;
   config.cell = world.summary.cell;
@@ -134,6 +154,7 @@ Result<BakeReport> join_worlds(const std::vector<std::string>& worlds, const std
     if (context.cancel) return Error{Errc::kCancelled, "join: cancelled; nothing was written"};
     if (context.on_progress) context.on_progress({"join", inputs.size(), zones->size()});
     inputs.emplace_back(place.second, place.first, zone.input);
+    if (auto ok = check_air((*parts)[zone.part], zone); !ok) return ok.error();
     if (auto ok = folder->take_over((*parts)[zone.part].path, zone.entry, zone.input); !ok) {
       return ok.error();
     }

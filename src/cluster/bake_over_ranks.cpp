@@ -128,6 +128,7 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
     auto opened = bake::WorldFolder::begin(path, config.old_zones);
     if (opened) {
       folder.emplace(*std::move(opened));
+      begun = folder->check_part(config);
     } else {
       begun = opened.error();
     }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -30,6 +32,9 @@ class StoredScene : public SceneRegions {
 
   [[nodiscard]] Result<SceneRegion> region(const Box3d& box, Context& context) const override {
     SceneRegion out;
+    for (const double value : {box.min.x, box.min.z, box.max.x, box.max.z}) {
+      if (std::isnan(value)) return Error{Errc::kBadConfig, "scene: the box is no box"};
+    }
     uint32_t first_patch = 0;
     for (const auto& part : parts_) {
       if (auto ok = part->append(box, first_patch, out, context); !ok) return ok.error();
@@ -51,6 +56,11 @@ class StoredScene : public SceneRegions {
     }
     parts_.push_back(std::move(part));
     return {};
+  }
+
+  void warn_of_size(const std::string& name) {
+    const Vec3d size = facts_.bounds.max - facts_.bounds.min;
+    importer::warn_of_size(facts_.report, name, std::max({size.x, size.y, size.z}));
   }
 
   void count(const SceneReport& report) {
@@ -87,7 +97,13 @@ class FileReader {
     if ((*store)->triangles() > 0) {
       if (auto ok = out_.add(*std::move(store)); !ok) return ok;
     }
-    return add_patches(context);
+    if (auto ok = add_patches(context); !ok) return ok;
+    const std::string name = sources->size() == 1
+                                 ? sources->front().path
+                                 : fmt::format("scene of {} files", sources->size());
+    if (out_.facts().triangles == 0) return importer::nothing_left(out_.facts().report, name);
+    out_.warn_of_size(name);
+    return {};
   }
 
  private:
@@ -104,11 +120,8 @@ class FileReader {
       return Error{Errc::kLimit, "scene: more than 1.07 thousand million patches"};
     }
     patches_.append(scene.patches);
-    const bool has_patches = !scene.patches.empty();
     scene.patches = {};
-    if (!scene.triangles.empty() || !has_patches) {
-      if (auto ok = importer::clean_scene(scene, source.path, context); !ok) return ok;
-    }
+    if (auto ok = importer::clean_part(scene, source.path, context); !ok) return ok;
     out_.count(scene.report);
     return store.add(scene);
   }

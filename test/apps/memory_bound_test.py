@@ -110,6 +110,22 @@ def files(folder):
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
+def check_files(throng, folder):
+    """Many files, each of one place: what was read of the others is on disk. Before this process takes memory, which a child's peak includes."""
+    names = []
+    for n in range(60):
+        names.append(folder / f"place{n}.obj")
+        with open(names[-1], "w", encoding="ascii") as file:
+            for t in range(4000):
+                x, z = 300 * (n % 8) + t % 64, 300 * (n // 8) + t // 64
+                file.write(f"v {x} 0 {z}\nv {x + 1} 0 {z}\nv {x + 1} 0 {z + 1}\nv {x} 0 {z + 1}\nf -1 -2 -3\nf -1 -3 -4\n")
+    code, out, err, _ = run(throng, "bake", *names, "--cell", 1, "--memory", 40, "-o", folder / "places.throng", "--json")
+    assert code == 0, err
+    report = json.loads(out)
+    print(f"memory_bound_test: 60 files are read within {report['peak_bytes_read'] / MIB:.0f} MiB")
+    assert report["peak_bytes_read"] <= 40 * MIB and report["zones"] >= 60, out
+
+
 def check_bake(throng, folder):
     large = ("bake", "builtin:landscape,size=1000", "--cell", 0.5, "--fly")
     code, _, err, peak = run(throng, *large, "-o", folder / "large.throng")
@@ -153,6 +169,7 @@ def main():
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
         world = folder / "city.throng"
+        check_files(throng, folder)
         code, _, err, _ = run(throng, "bake", "builtin:city,size=800", "--cell", 0.2, "-o", world)
         assert code == 0, err
         check_path(throng, world)

@@ -184,6 +184,43 @@ TEST_F(BakePart, RefusesAWorldOfOtherInputBesideIt) {
   EXPECT_TRUE(test::folder_bytes(path("/w")) == test::folder_bytes(path("/again")));
 }
 
+TEST_F(BakePart, AJoinDoesWithoutNoAirFile) {
+  const Scene scene = test::builtin({.name = "city", .size = 200});
+  ASSERT_TRUE(bake("/a", scene, square(-10, -10, 100, 210)));
+  ASSERT_TRUE(bake("/b", scene, square(100, -10, 210, 210)));
+  Context context;
+  const std::string file = path("/a/zone_0_0.tha");
+  ASSERT_TRUE(std::filesystem::exists(file));
+  for (const bool is_there : {true, false}) {
+    if (is_there) std::filesystem::resize_file(file, std::filesystem::file_size(file) - 8);
+    if (!is_there) std::filesystem::remove(file);
+    const auto joined = join_worlds({path("/a"), path("/b")}, path("/c"), 0, context);
+    ASSERT_FALSE(joined);
+    EXPECT_EQ(joined.error().code, Errc::kBadFile);
+    EXPECT_NE(joined.error().message.find("zone_0_0.tha"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(path("/c")));
+  }
+}
+
+// Zones beside a part are never lost.
+TEST_F(BakePart, RefusesToTakeTheOtherZonesAway) {
+  const Scene scene = test::builtin({.name = "city", .size = 200});
+  ASSERT_TRUE(bake("/w", scene, {}));
+  const Folder before = test::folder_bytes(path("/w"));
+  BakeConfig config = config_of(square(10, 10, 20, 20));
+  config.old_zones = OldZones::kBakeAgain;
+  Context context;
+  const auto again = bake_world_to(path("/w"), scene, config, context);
+  ASSERT_FALSE(again);
+  EXPECT_EQ(again.error().code, Errc::kBadConfig);
+  EXPECT_TRUE(test::folder_bytes(path("/w")) == before);
+  std::filesystem::resize_file(path("/w/manifest.thm"), 100);
+  const auto unread = bake("/w", scene, square(10, 10, 20, 20));
+  ASSERT_FALSE(unread);
+  EXPECT_EQ(unread.error().code, Errc::kBadFile);
+  EXPECT_EQ(test::folder_bytes(path("/w")).size(), before.size());
+}
+
 TEST_F(BakePart, RefusesBoxesWithoutGroundAndNodes) {
   const Scene scene = test::builtin({.name = "cube"});
   for (const Box3d& box : {square(1000, 0, 1010, 10), square(5, 5, 2, 2), Box3d{}}) {

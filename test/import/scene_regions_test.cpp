@@ -206,6 +206,34 @@ TEST(SharedWorlds, RegionsOfARealLandscapeHaveTheTrianglesOfTheWhole) {
   expect_regions(**regions, *whole, 25);
 }
 
+// One of several files may have nothing that can be used, as in a scene in memory.
+TEST(SceneRegions, OfFilesOfWhichSomeAreEmptyHaveTheRest) {
+  test::ScratchFolder folder;
+  SceneConfig config;
+  for (const auto& [name, text] :
+       {std::pair{"floor.obj", "v 0 0 0\nv 9 0 0\nv 0 0 9\nf 1 2 3\n"},
+        {"empty.obj", ""},
+        {"nan.obj", "v nan 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n"},
+        {"glass.obj", "usemtl glass\nv 0 1 0\nv 9 1 0\nv 0 1 9\nf 1 2 3\n"}}) {
+    config.sources.push_back(
+        {.path = folder.write(name, text), .up = {}, .scale = {}, .transform = {}});
+  }
+  config.rules.push_back({.material = "glass", .node = "", .kind = kAreaIgnored});
+  Context context;
+  const auto whole = load_scene(config, context);
+  ASSERT_TRUE(whole) << whole.error().message;
+  const auto regions = load_scene_regions(config, {}, folder.path(), context);
+  ASSERT_TRUE(regions) << regions.error().message;
+  expect_regions(**regions, *whole, 10);
+  EXPECT_EQ((*regions)->facts().report.non_finite, 1u);
+  EXPECT_EQ((*regions)->facts().report.ignored, 1u);
+  config.sources.erase(config.sources.begin());
+  const auto none = load_scene_regions(config, {}, folder.path(), context);
+  const auto none_whole = load_scene(config, context);
+  ASSERT_FALSE(none || none_whole);
+  EXPECT_EQ(none.error().message, none_whole.error().message);
+}
+
 TEST(SceneRegions, RefuseWhatTheyCannotKeep) {
   test::ScratchFolder folder;
   Context context;

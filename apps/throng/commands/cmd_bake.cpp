@@ -220,6 +220,12 @@ Result<void> prepare(BakeOptions& options) {
   options.config.fine = !options.coarse;
   if (options.rebuild) options.config.old_zones = OldZones::kBakeAgain;
   if (!options.part.empty()) options.config.part = box_of_part(options.part);
+  options.config.carry_nodes = options.config.part.has_value();
+  if (options.config.part && options.rebuild) {
+    return Error{
+        Errc::kBadConfig,
+        "--rebuild: bakes all zones again, and a part keeps those beside it; leave one out"};
+  }
   if (!wants_nodes(options)) return {};
   if (options.config.part) {
     return Error{Errc::kBadConfig,
@@ -275,8 +281,11 @@ int bake_by_block(Session& session, BakeOptions& options) {
   if (auto ok = prepare(options); !ok) return fail(ok.error());
   options.config.block_bytes = options.memory.blocks();
   options.node_config.working_bytes =
-      std::min(options.node_config.working_bytes, options.memory.blocks());
-  const auto folder = std::filesystem::path(options.output).parent_path();
+      std::min(options.node_config.working_bytes, options.memory.nodes());
+  // Beside the world, not in it.
+  std::string output = options.output;
+  while (output.size() > 1 && (output.back() == '/' || output.back() == '\\')) output.pop_back();
+  const auto folder = std::filesystem::path(output).parent_path();
   const auto scene = read_regions(options.sources, folder.string(), session.context);
   if (!scene) return fail(scene.error());
   const uint64_t peak_read = peak_memory();

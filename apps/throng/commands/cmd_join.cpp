@@ -21,14 +21,14 @@ struct JoinOptions {
 };
 
 int join(Session& session, const JoinOptions& options) {
-  const Result<BakeReport> report =
-      join_worlds(options.worlds, options.output, options.threads, session.context);
-  if (!report) return fail(report.error());
   bool had_nodes = false;
   for (const std::string& world : options.worlds) {
     std::error_code ignored;
     had_nodes = had_nodes || std::filesystem::exists(world + "/nodes", ignored);
   }
+  const Result<BakeReport> report =
+      join_worlds(options.worlds, options.output, options.threads, session.context);
+  if (!report) return fail(report.error());
   if (had_nodes) note("nodes are not joined; make them with throng bake --nodes");
   Json json = {{"world", options.output},
                {"worlds", options.worlds},

@@ -26,6 +26,11 @@ struct MemoryBound {
     constexpr uint64_t kZones = uint64_t{120} << 20;
     return std::max(bytes / 4, bytes - std::min(bytes, kZones));
   }
+  /// For a batch of zones whose nodes are made. [bytes]
+  [[nodiscard]] uint64_t nodes() const {
+    constexpr uint64_t kRest = uint64_t{80} << 20;
+    return std::max(bytes / 2, bytes - std::min(bytes, kRest));
+  }
   /// Fails with kBadConfig if the process has taken more. `when`: as in "its crowd is made".
   [[nodiscard]] Result<void> check(const std::string& when, const std::string& remedy) const;
 

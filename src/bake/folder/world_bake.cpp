@@ -38,6 +38,9 @@ Result<void> check_config(const BakeConfig& config) {
     return bad("the zone must be above 0 m, and 10000 m at most");
   }
   if (config.workers < 0) return bad("workers must be 0 (all cores) or more");
+  if (config.part && config.old_zones == OldZones::kBakeAgain) {
+    return bad("a part keeps the zones beside it; bake all again, or the part without that");
+  }
   if (config.part && config.nodes != nullptr) {
     return bad("nodes are made of whole worlds; bake them when all parts are there");
   }
@@ -219,9 +222,8 @@ Result<world::ZoneRect> part_of(const BakePlan& plan) {
 Result<void> keep_part(const BakePlan& plan, const world::WorldData* old, ZoneInputs& zones) {
   const auto part = part_of(plan);
   if (!part) return part.error();
-  const bool is_baked_again = plan.config->old_zones == OldZones::kBakeAgain;
   std::map<std::pair<int32_t, int32_t>, uint64_t> known;
-  if (old != nullptr && !is_baked_again) {
+  if (old != nullptr) {
     for (const format::ZoneInput& input : old->inputs) known[{input.x(), input.z()}] = input.hash();
   }
   std::vector<format::ZoneInput> kept;

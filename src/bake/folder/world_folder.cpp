@@ -135,6 +135,16 @@ std::shared_ptr<world::WorldData> WorldFolder::read_world(const std::string& pat
   return world ? std::move(*world) : nullptr;
 }
 
+Result<void> WorldFolder::check_part(const BakeConfig& config) const {
+  std::error_code ignored;
+  const bool is_there = fs::exists(fs::path(path_) / kManifest, ignored);
+  if (!config.part || !is_there || (old_ != nullptr && !old_->inputs.empty())) return {};
+  return Error{Errc::kBadFile,
+               path_ +
+                   ": cannot be read, so its zones beside the part cannot be kept; bake all of "
+                   "it, or choose another name"};
+}
+
 void WorldFolder::read_old() {
   old_ = read_world(path_);
   if (old_ == nullptr) return;

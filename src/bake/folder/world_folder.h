@@ -50,6 +50,10 @@ class WorldFolder {
   /// The world that is there, without its zones; null if there is none that can be read.
   [[nodiscard]] const world::WorldData* old_world() const { return old_.get(); }
 
+  /// Fails with kBadFile if a part is to be baked into a world that cannot be read, or that does
+  /// not say what it was baked from: its other zones would be lost.
+  [[nodiscard]] Result<void> check_part(const BakeConfig& config) const;
+
   // Reused zones and files of zones: from several threads, of different zones.
 
   /// A zone that need not be baked; it is then in the new world. `zone` is null where no class

@@ -280,28 +280,9 @@ void warn_of_dropped(Scene& scene, const std::string& name) {
       name, dropped, report.triangles_read, report.non_finite, report.bad_index));
 }
 
-void warn_of_size(Scene& scene, const std::string& name, double side) {
-  std::string what;
-  if (side < 0.5) what = fmt::format("only {:.3g} m across", side);
-  if (side > 200'000) what = fmt::format("{:.4g} km across", side / 1000);
-  if (what.empty()) return;
-  scene.report.warnings.push_back(
-      fmt::format("{}: the model is {}; if its unit is not the metre, give its scale", name, what));
-}
-
-}  // namespace
-
-Result<void> clean_scene(Scene& scene, const std::string& name, Context& context) {
-  drop_broken(scene);
+// `side`: of the model without its spikes. Not called for an empty scene. [m]
+Result<void> clean(Scene& scene, const std::string& name, Context& context, double& side) {
   const SceneReport& report = scene.report;
-  if (scene.triangles.empty()) {
-    return Error{
-        Errc::kBadInput,
-        fmt::format("{}: no triangle is left of {} ({} ignored, {} not finite, {} with bad "
-                    "indices); check the file and the rules",
-                    name, report.triangles_read, report.ignored, report.non_finite,
-                    report.bad_index)};
-  }
   warn_of_dropped(scene, name);
   drop_unused_vertices(scene);
   if (context.cancel) return Error{Errc::kCancelled, "cancelled while cleaning"};
@@ -340,8 +321,46 @@ Result<void> clean_scene(Scene& scene, const std::string& name, Context& context
         fmt::format("{}: {} triangles lie more than {:.4g} km away from the rest; they are kept",
                     name, outside, margin / 1000));
   }
-  warn_of_size(scene, name, spikes > 0 ? largest_side(box) : largest_side(all));
+  side = spikes > 0 ? largest_side(box) : largest_side(all);
   return {};
+}
+
+}  // namespace
+
+Error nothing_left(const SceneReport& report, const std::string& name) {
+  return {Errc::kBadInput,
+          fmt::format("{}: no triangle is left of {} ({} ignored, {} not finite, {} with bad "
+                      "indices); check the file and the rules",
+                      name, report.triangles_read, report.ignored, report.non_finite,
+                      report.bad_index)};
+}
+
+void warn_of_size(SceneReport& report, const std::string& name, double side) {
+  std::string what;
+  if (side < 0.5) what = fmt::format("only {:.3g} m across", side);
+  if (side > 200'000) what = fmt::format("{:.4g} km across", side / 1000);
+  if (what.empty()) return;
+  report.warnings.push_back(
+      fmt::format("{}: the model is {}; if its unit is not the metre, give its scale", name, what));
+}
+
+Result<void> clean_scene(Scene& scene, const std::string& name, Context& context) {
+  drop_broken(scene);
+  if (scene.triangles.empty()) return nothing_left(scene.report, name);
+  double side = 0;
+  if (auto ok = clean(scene, name, context, side); !ok) return ok;
+  warn_of_size(scene.report, name, side);
+  return {};
+}
+
+Result<void> clean_part(Scene& scene, const std::string& name, Context& context) {
+  drop_broken(scene);
+  if (scene.triangles.empty()) {
+    warn_of_dropped(scene, name);
+    return {};
+  }
+  double side = 0;
+  return clean(scene, name, context, side);
 }
 
 }  // namespace throng::importer

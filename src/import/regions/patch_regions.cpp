@@ -19,9 +19,8 @@
 namespace throng::importer {
 namespace {
 
-constexpr double kSquare = 64;        // least side of a square of the index [m]
-constexpr double kMaxSquares = 4096;  // along a side
-constexpr double kStray = 0.2;        // of triangles beyond the bounds of their patch, at most [m]
+constexpr double kSquare = 64;  // least side of a square of the index [m]
+constexpr double kStray = 0.2;  // of triangles beyond the bounds of their patch, at most [m]
 
 template <class Value>
 void sort_and_unite(std::vector<Value>& values) {
@@ -76,10 +75,12 @@ void PatchRegions::index() {
   reach_ += 2 * kStray;
   x0_ = all.min.x;
   z0_ = all.min.z;
-  const double longest = std::max(all.max.x - all.min.x, all.max.z - all.min.z);
-  side_ = std::max(kSquare, longest / kMaxSquares);
-  squares_x_ = static_cast<int32_t>((all.max.x - x0_) / side_) + 1;
-  squares_z_ = static_cast<int32_t>((all.max.z - z0_) / side_) + 1;
+  // Few patches far apart need few squares.
+  const double most = 16 + 4.0 * count;
+  const double width = all.max.x - x0_, depth = all.max.z - z0_;
+  for (side_ = kSquare; (width / side_ + 1) * (depth / side_ + 1) > most;) side_ *= 2;
+  squares_x_ = static_cast<int32_t>(width / side_) + 1;
+  squares_z_ = static_cast<int32_t>(depth / side_) + 1;
   const auto square_of = [&](Vec3d at) {
     const auto x = std::min(squares_x_ - 1, static_cast<int32_t>((at.x - x0_) / side_));
     const auto z = std::min(squares_z_ - 1, static_cast<int32_t>((at.z - z0_) / side_));

@@ -121,8 +121,8 @@ struct BakeReport {
 /// square, whose triangles take config.block_bytes at most, or are those of one zone. The
 /// same bytes as from the whole scene into an empty folder. The grid begins where the scene does,
 /// whatever the old world's. Memory: a block, a few zones, and about 300 bytes for each zone of
-/// the world. Fails as bake_world_to does, as SceneRegions::region, and with kBadConfig if the
-/// config has off-mesh links.
+/// the world. Off-mesh links are checked as there. Fails as bake_world_to does and as
+/// SceneRegions::region.
 [[nodiscard]] THRONG_API Result<BakeReport> bake_world_to(const std::string& path,
                                                           const SceneRegions& scene,
                                                           const BakeConfig& config,

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 #include <numeric>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -18,7 +17,6 @@
 #include "bake/folder/zone_baker.h"
 #include "core/stopwatch.h"
 #include "throng/bake.h"
-#include "throng/surface.h"
 #include "world/zone_data.h"
 
 // A bake of a scene that is never in memory as a whole: the ground and the air of one block
@@ -171,11 +169,6 @@ Result<void> check(const SceneRegions& scene, const BakeConfig& config) {
   if (config.block_bytes == 0) {
     return Error{Errc::kBadConfig, "bake: block_bytes must be above 0"};
   }
-  if (config.nodes != nullptr && !config.nodes->off_mesh_links.empty()) {
-    return Error{Errc::kBadConfig,
-                 "bake: off-mesh links are checked against a scene in memory; leave them out, or "
-                 "bake without a bound of memory"};
-  }
   if (scene.facts().triangles == 0) {
     return Error{Errc::kBadInput, "bake: the scene has no triangles"};
   }
@@ -197,8 +190,7 @@ Result<BakeReport> bake_world_to(const std::string& path, const SceneRegions& sc
   if (!world) return world.error();
   const auto graph = bake::bake_graph(*folder, **world, config.workers, context, report);
   if (!graph) return graph.error();
-  const Scene none;
-  if (auto ok = bake::finish_bake(*folder, **world, **graph, none, config, context, report); !ok) {
+  if (auto ok = bake::finish_bake(*folder, **world, **graph, scene, config, context, report); !ok) {
     return ok.error();
   }
   report.seconds_total = seconds_since(start);

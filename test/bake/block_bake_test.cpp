@@ -10,6 +10,7 @@
 #include "folder_bytes.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
+#include "throng/surface.h"
 #include "throng/world.h"
 
 // Bakes of scenes that are read block by block give the bytes of bakes of the whole.
@@ -131,11 +132,17 @@ TEST_F(BlockBake, LeavesTheOldWorldWhenItFailsOrIsCancelled) {
   Context other;
   BakeConfig none = config_of(0, 1);
   EXPECT_EQ(bake_world_to(path("/w"), **scene, none, other).error().code, Errc::kBadConfig);
+  // Links that lead nowhere are found before the world is written, as in a whole scene.
   NodeConfig nodes;
-  nodes.off_mesh_links.emplace_back();
+  nodes.off_mesh_links.push_back({{60, 500, 60}, {80, 500, 80}, 0, true});
   BakeConfig links = config_of(1, 1);
   links.nodes = &nodes;
-  EXPECT_EQ(bake_world_to(path("/w"), **scene, links, other).error().code, Errc::kBadConfig);
+  const auto by_block = bake_world_to(path("/w"), **scene, links, other);
+  const auto whole = create_builtin_world({.name = "landscape", .size = 200, .seed = 2});
+  const auto at_once = bake_world_to(path("/w"), *whole, links, other);
+  ASSERT_FALSE(by_block || at_once);
+  EXPECT_EQ(by_block.error().code, Errc::kBadInput);
+  EXPECT_EQ(by_block.error().message, at_once.error().message);
   EXPECT_FALSE(std::filesystem::exists(path("/w")));
 }
 

@@ -9,6 +9,7 @@
 #include "baked.h"
 #include "core/random.h"
 #include "folder_bytes.h"
+#include "node_scenes.h"
 #include "patch_nets.h"
 #include "scratch_folder.h"
 #include "throng/bake.h"
@@ -21,32 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using Folder = test::FolderBytes;
+using test::climbers;
 using test::folder_bytes;
-
-// Walkers, one of which drops, and climbers.
-std::vector<AvatarClass> walkers() {
-  std::vector<AvatarClass> classes = {{.name = "adult"}, {.name = "diver"}};
-  classes[1].max_drop = 3;
-  return classes;
-}
-
-std::vector<AvatarClass> climbers() {
-  std::vector<AvatarClass> classes = walkers();
-  classes.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step_height = 0.2});
-  classes.back().climb_slope = 180;
-  classes.push_back({.name = "spider", .height = 1, .radius = 0.5, .step_height = 0.3});
-  classes.back().climb_slope = 100;
-  classes.back().max_drop = 2;
-  return classes;
-}
-
-void add_crate(Scene& scene, Vec3d low, Vec3d size) {
-  const bool parts = scene.patch_part.size() == scene.triangles.size();
-  scene.add_box(low, low + size);
-  if (scene.patches.empty()) return;
-  scene.patch_of_triangle.resize(scene.triangles.size(), kNoPatch);
-  if (parts) scene.patch_part.resize(scene.triangles.size());
-}
+using test::walkers;
 
 // Numbers drawn from a seed.
 class Draw {
@@ -110,15 +88,16 @@ TEST_F(ChangedNodes, ALandscapeThatIsBuiltOnKeepsWhatIsFarAway) {
   const BakeConfig config{.cell = 0.5, .zone = 32, .classes = climbers()};
   Scene bare = test::builtin({.name = "landscape", .size = 192});
   const Vec3d corner = bare.patches.patches[0].bounds().min;
-  add_crate(bare, corner + Vec3d{40, 10, 40}, {2, 2, 2});  // There are level tiles, from now on.
+  test::add_solid(bare, corner + Vec3d{40, 10, 40},
+                  {2, 2, 2});  // There are level tiles, from now on.
   Draw draw(1);
   uint64_t reused = 0, made = 0;
   compare(bare, config, {.size = 2}, "bare");
   Scene scene = bare;
   for (int i = 0; i < 6; ++i) {
     if (i % 4 == 3) scene = bare;  // All that was built goes again.
-    add_crate(scene, {corner.x + draw(5, 180), draw(-5, 12), corner.z + draw(5, 180)},
-              {draw(0.3, 6), draw(0.3, 6), draw(0.3, 6)});
+    test::add_solid(scene, {corner.x + draw(5, 180), draw(-5, 12), corner.z + draw(5, 180)},
+                    {draw(0.3, 6), draw(0.3, 6), draw(0.3, 6)});
     const NodeSummary summary = compare(scene, config, {.size = 2}, std::to_string(i));
     reused += summary.zones_reused;
     made += summary.zones_made;
@@ -133,7 +112,7 @@ TEST_F(ChangedNodes, APoleChangesOnlyTheNodesAroundIt) {
   const Scene bare = test::builtin({.name = "landscape", .size = 192});
   const Vec3d corner = bare.patches.patches[0].bounds().min;
   Scene scene = bare;
-  add_crate(scene, corner + Vec3d{112, -20, 112}, {0.3, 40, 0.3});
+  test::add_solid(scene, corner + Vec3d{112, -20, 112}, {0.3, 40, 0.3});
   const NodeSummary without = bake("w", bare, config, {.size = 2}, true);
   const Folder before = folder_bytes(at("w") + "/nodes");
   const NodeSummary with = compare(scene, config, {.size = 2}, "pole");
@@ -202,8 +181,8 @@ TEST_F(ChangedNodes, LevelTilesAndLinksAreMadeWhereAChangeAffectsThem) {
                                       .avatar_class = i % 2,
                                       .two_way = i % 4 == 0});
     } else {
-      add_crate(scene, {draw(16, 60), draw(0, 2.5), draw(10, 28)},
-                {draw(0.2, 3), draw(0.2, 2), draw(0.2, 3)});
+      test::add_solid(scene, {draw(16, 60), draw(0, 2.5), draw(10, 28)},
+                      {draw(0.2, 3), draw(0.2, 2), draw(0.2, 3)});
     }
     const NodeSummary summary = compare(scene, config, nodes, std::to_string(i));
     reused += summary.zones_reused;
@@ -311,7 +290,7 @@ TEST_F(ChangedNodes, WhatCannotBeMadeLeavesNothingBehind) {
 TEST_F(ChangedNodes, AnOffMeshLinkWithoutAPlaceIsFoundWhileTheOldWorldIsThere) {
   Scene hills = test::builtin({.name = "landscape", .size = 64});
   Scene both = hills;
-  add_crate(both, hills.patches.patches[0].bounds().min + Vec3d{40, 10, 40}, {2, 2, 2});
+  test::add_solid(both, hills.patches.patches[0].bounds().min + Vec3d{40, 10, 40}, {2, 2, 2});
   for (const Scene& scene : {field(), hills, both}) {
     BakeConfig config{.cell = 0.25, .zone = 16, .classes = climbers()};
     NodeConfig wanted{.size = 2};

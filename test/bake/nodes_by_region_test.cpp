@@ -11,6 +11,7 @@
 #include "baked.h"
 #include "core/access.h"
 #include "folder_bytes.h"
+#include "node_scenes.h"
 #include "patch_nets.h"
 #include "scene_regions.h"
 #include "scratch_folder.h"
@@ -22,32 +23,10 @@ namespace throng {
 namespace {
 
 namespace fs = std::filesystem;
+using test::climbers;
 using test::folder_bytes;
 using test::RegionsOf;
-
-std::vector<AvatarClass> walkers() {
-  std::vector<AvatarClass> classes = {{.name = "adult"}, {.name = "diver"}};
-  classes[1].max_drop = 3;
-  return classes;
-}
-
-std::vector<AvatarClass> climbers() {
-  std::vector<AvatarClass> classes = walkers();
-  classes.push_back({.name = "gecko", .height = 0.5, .radius = 0.15, .step_height = 0.2});
-  classes.back().climb_slope = 180;
-  classes.push_back({.name = "spider", .height = 1, .radius = 0.5, .step_height = 0.3});
-  classes.back().climb_slope = 100;
-  classes.back().max_drop = 2;
-  return classes;
-}
-
-void add_solid(Scene& scene, Vec3d low, Vec3d size) {
-  const bool parts = scene.patch_part.size() == scene.triangles.size();
-  scene.add_box(low, low + size);
-  if (scene.patches.empty()) return;
-  scene.patch_of_triangle.resize(scene.triangles.size(), kNoPatch);
-  if (parts) scene.patch_part.resize(scene.triangles.size());
-}
+using test::walkers;
 
 Scene landscape(double size) { return test::builtin({.name = "landscape", .size = size}); }
 
@@ -57,11 +36,11 @@ Scene built_on(double size) {
   const Vec3d corner = scene.patches.patches[0].bounds().min;
   for (int i = 0; i < 14; ++i) {
     const double x = corner.x + size * (0.05 + 0.066 * i), z = corner.z + size * (i * 5 % 14) / 14;
-    add_solid(scene, {x, corner.y - 5, z}, {0.3, 60, 0.3});
-    add_solid(scene, {x + 4, corner.y + i, z + 3}, {2.5, 1.0 + i % 3, 2.5});
+    test::add_solid(scene, {x, corner.y - 5, z}, {0.3, 60, 0.3});
+    test::add_solid(scene, {x + 4, corner.y + i, z + 3}, {2.5, 1.0 + i % 3, 2.5});
   }
-  add_solid(scene, corner + Vec3d{size / 3, 0, size / 2}, {size / 3, 30, 0.5});
-  add_solid(scene, corner + Vec3d{size / 4, 14, size / 4}, {40, 0.3, 25});
+  test::add_solid(scene, corner + Vec3d{size / 3, 0, size / 2}, {size / 3, 30, 0.5});
+  test::add_solid(scene, corner + Vec3d{size / 4, 14, size / 4}, {40, 0.3, 25});
   return scene;
 }
 
@@ -263,7 +242,7 @@ TEST_F(NodesByRegion, ReuseWhatIsThereWhetherItWasMadeByRegionsOrNot) {
   ASSERT_TRUE(Nodes::create_in_folder(*World::open(at("w")), scene, nodes, context));
   const Vec3d corner = scene.patches.patches[0].bounds().min;
   for (int i = 0; i < 2; ++i) {
-    add_solid(scene, corner + Vec3d{30 + 110.0 * i, 3, 40}, {2, 9, 2});
+    test::add_solid(scene, corner + Vec3d{30 + 110.0 * i, 3, 40}, {2, 9, 2});
     bake(scene, config);
     const auto world = World::open(at("w"));
     const auto made = Nodes::create_in_folder(*world, RegionsOf(scene), nodes, context);
@@ -351,7 +330,7 @@ TEST_F(NodesByRegion, AFailureLeavesTheOldNodes) {
     }
   }
   Scene other = scene;
-  add_solid(other, {0, 0, 0}, {1, 1, 1});
+  test::add_solid(other, {0, 0, 0}, {1, 1, 1});
   EXPECT_EQ(Nodes::create_in_folder(*world, RegionsOf(other), nodes, context).error().code,
             Errc::kBadInput);
 }

@@ -14,7 +14,7 @@
 namespace throng::bake {
 
 Result<void> finish_bake(WorldFolder& folder, const world::WorldData& world,
-                         const world::GraphData& graph, const Scene& scene,
+                         const world::GraphData& graph, const NodeScene& scene,
                          const BakeConfig& config, Context& context, BakeReport& report) {
   if (auto ok = folder.complete(world, graph, config.carry_nodes); !ok) return ok;
   if (config.nodes != nullptr && !config.nodes->off_mesh_links.empty()) {

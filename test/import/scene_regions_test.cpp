@@ -160,7 +160,7 @@ TEST(SceneRegions, OfTrianglesAndPatchesKeepTheirOrder) {
 TEST(SceneRegions, OfFilesHaveTheTrianglesOfLoadScene) {
   test::ScratchFolder folder;
   std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> place(-900, 900), exponent(-3, 2);
+  std::uniform_real_distribution<double> place(-900, 900), exponent(-3, 3.5);
   SceneConfig config;
   for (int file = 0; file < 3; ++file) {
     std::string text;
@@ -190,6 +190,35 @@ TEST(SceneRegions, OfFilesHaveTheTrianglesOfLoadScene) {
   const auto regions = load_scene_regions(config, {}, folder.path(), context);
   ASSERT_TRUE(regions) << regions.error().message;
   expect_regions(**regions, *whole, 25);
+}
+
+// Each block of a bake reads what is near it, however long the triangles are.
+TEST(SceneRegions, OfLongTrianglesAreFoundWithoutReadingAll) {
+  test::ScratchFolder folder;
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> place(0, 20'000), length(70, 200);
+  std::string text;
+  constexpr uint64_t kTriangles = 20'000;
+  for (uint64_t t = 0; t < kTriangles; ++t) {
+    const double x = place(random), z = place(random), size = length(random);
+    char lines[200];
+    std::snprintf(lines, sizeof lines, "v %.3f 0 %.3f\nv %.3f 0 %.3f\nv %.3f 1 %.3f\nf -3 -2 -1\n",
+                  x, z, x + size, z, x, z + size);
+    text += lines;
+  }
+  SceneConfig config;
+  config.sources.push_back(
+      {.path = folder.write("long.obj", text), .up = {}, .scale = {}, .transform = {}});
+  Context context;
+  const auto regions = load_scene_regions(config, {}, folder.path(), context);
+  ASSERT_TRUE(regions) << regions.error().message;
+  for (const double at : {0.0, 9'000.0, 19'000.0}) {
+    const Box3d box{.min = {at, 0, at}, .max = {at + 256, 0, at + 256}};
+    EXPECT_LT((*regions)->estimate(box), kTriangles / 100);
+    const auto region = (*regions)->region(box, context);
+    ASSERT_TRUE(region) << region.error().message;
+    EXPECT_GT(region->scene.triangles.size(), 0u);
+  }
 }
 
 TEST(SharedWorlds, RegionsOfARealLandscapeHaveTheTrianglesOfTheWhole) {

@@ -9,23 +9,26 @@
 #include <climits>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "core/arrays/release.h"
 
 // Triangles wait in memory by square and are written together, so that the file has few runs for
 // each square: models list what lies together together. A triangle belongs to the square of its
-// box's middle, and is no longer than a square on either axis; longer ones have a list of their
-// own, which every query reads.
+// box's middle, on the lowest level whose squares are as long as it is on both axes. So it reaches
+// no farther than half a square beyond its own.
 namespace throng::importer {
 namespace {
 
-constexpr double kSide = 64;               // of a square [m]
+constexpr double kSide = 64;  // of a square of the lowest level [m]
+constexpr int32_t kLevels = 32;
 constexpr uint64_t kMaxWaiting = 1 << 16;  // triangles
-constexpr int32_t kLarge = INT32_MIN;      // the square of large triangles
 constexpr double kFarthest = 2e9;          // squares from the origin
 
-int32_t square_of(double at) {
-  return static_cast<int32_t>(std::clamp(std::floor(at / kSide), -kFarthest, kFarthest));
+double side_of(int32_t level) { return std::ldexp(kSide, level); }
+
+int32_t square_of(double at, double side) {
+  return static_cast<int32_t>(std::clamp(std::floor(at / side), -kFarthest, kFarthest));
 }
 
 Box3d box_of(const std::array<Vec3d, 3>& corners) {
@@ -57,10 +60,7 @@ Result<void> TriangleStore::add(const Scene& scene) {
     const Box3d box = box_of(record.corners);
     bounds_.add(box.min);
     bounds_.add(box.max);
-    const bool is_large = box.max.x - box.min.x > kSide || box.max.z - box.min.z > kSide;
-    const Vec3d middle = (box.min + box.max) * 0.5;
-    Square& square = squares_[is_large ? Place{kLarge, kLarge}
-                                       : Place{square_of(middle.z), square_of(middle.x)}];
+    Square& square = squares_[place_of(box)];
     ++square.count;
     square.waiting.push_back(record);
     if (++waiting_ < kMaxWaiting) continue;
@@ -90,22 +90,36 @@ Result<void> TriangleStore::write_waiting() {
 
 Result<void> TriangleStore::finish() { return write_waiting(); }
 
+TriangleStore::Place TriangleStore::place_of(const Box3d& triangle) {
+  const Vec3d size = triangle.max - triangle.min;
+  int32_t level = 0;
+  while (level < kLevels && std::max(size.x, size.z) > side_of(level)) ++level;
+  const Vec3d middle = (triangle.min + triangle.max) * 0.5;
+  const double side = side_of(level);
+  return {level, square_of(middle.z, side), square_of(middle.x, side)};
+}
+
 template <class Visit>
 void TriangleStore::for_each_square(const Box3d& box, Visit visit) const {
-  const auto large = squares_.find({kLarge, kLarge});
-  if (large != squares_.end()) visit(large->second);
-  const int32_t x0 = square_of(box.min.x - kSide / 2), x1 = square_of(box.max.x + kSide / 2);
-  const int32_t z0 = square_of(box.min.z - kSide / 2), z1 = square_of(box.max.z + kSide / 2);
-  for (auto at = squares_.lower_bound({z0, x0}); at != squares_.end() && at->first.first <= z1;) {
-    const auto [z, x] = at->first;
-    if (x < x0) {
-      at = squares_.lower_bound({z, x0});
-    } else if (x > x1) {
-      at = squares_.lower_bound({z + 1, x0});
-    } else {
-      visit(at->second);
-      ++at;
+  for (auto at = squares_.begin(); at != squares_.end();) {
+    const int32_t level = at->first.level;
+    const double side = side_of(level);
+    const double reach = level < kLevels ? side / 2 : std::numeric_limits<double>::infinity();
+    const int32_t x0 = square_of(box.min.x - reach, side), x1 = square_of(box.max.x + reach, side);
+    const int32_t z0 = square_of(box.min.z - reach, side), z1 = square_of(box.max.z + reach, side);
+    at = squares_.lower_bound({level, z0, x0});
+    while (at != squares_.end() && at->first.level == level && at->first.z <= z1) {
+      const auto [_, z, x] = at->first;
+      if (x < x0) {
+        at = squares_.lower_bound({level, z, x0});
+      } else if (x > x1) {
+        at = squares_.lower_bound({level, z + 1, x0});
+      } else {
+        visit(at->second);
+        ++at;
+      }
     }
+    at = squares_.lower_bound({level + 1, INT32_MIN, INT32_MIN});
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -48,12 +49,17 @@ class TriangleStore : public RegionPart {
     std::vector<Run> runs;
     std::vector<Record> waiting;
   };
-  using Place = std::pair<int32_t, int32_t>;  // z, x
+  // Squares of a level are twice as long as those of the level below.
+  struct Place {
+    int32_t level = 0, z = 0, x = 0;
+    auto operator<=>(const Place&) const = default;
+  };
 
   explicit TriangleStore(ScratchFile file) : file_(std::move(file)) {}
   Result<void> write_waiting();
   [[nodiscard]] Error failure(const std::string& what) const;
-  // All squares that may have triangles in a box, the one of large triangles among them.
+  static Place place_of(const Box3d& triangle);
+  // All squares that may have triangles in a box.
   template <class Visit>
   void for_each_square(const Box3d& box, Visit visit) const;
 

@@ -64,6 +64,7 @@ class NodeBatch {
     judge_patches();
     find_objects();
     if (context_.cancel) return cancelled();
+    find_linked();
     grow_trees();
     if (forest_.size() >= graph::kFarNode) return too_many_nodes();
     find_pairs();
@@ -109,6 +110,12 @@ class NodeBatch {
       }
     }
     begins_.push_back(sources_.size());
+    is_made_.assign(sources_.size(), 0);
+    for (size_t z = 0; z < zone_places_.size(); ++z) {
+      if (!std::binary_search(made_.begin(), made_.end(), zone_places_[z])) continue;
+      std::fill(is_made_.begin() + static_cast<ptrdiff_t>(begins_[z]),
+                is_made_.begin() + static_cast<ptrdiff_t>(begins_[z + 1]), uint8_t{1});
+    }
     return {};
   }
 
@@ -132,6 +139,27 @@ class NodeBatch {
         cell.classes = blocked[p] != 0 ? uint16_t{0} : cell.classes & plan_.on_patches;
       }
       if (store_ != nullptr) store_->keep(region_, patch, cells_[p]);
+    });
+  }
+
+  // Of a zone that is only near, the links count of those patches alone that lie near made zones.
+  void find_linked() {
+    is_linked_.assign(cells_.size(), 0);
+    parallel_for(cells_.size(), config_.workers, [&](size_t p) {
+      if (bezier_[p] == graph::kNoNode) return;
+      Box3d box;
+      for (const graph::CellShape& cell : cells_[p].shape) {
+        const Vec3d middle = cell.middle(cells_[p].origin);
+        const Vec3d out = Vec3d{1, 0, 1} * (double{cell.radius} + plan_.near_reach);
+        box.add(middle - out);
+        box.add(middle + out);
+      }
+      const bool is_near = std::any_of(made_.begin(), made_.end(), [&](uint32_t z) {
+        const Box3d& zone = plan_.zones[z].box;
+        return box.min.x <= zone.max.x && box.max.x >= zone.min.x && box.min.z <= zone.max.z &&
+               box.max.z >= zone.min.z;
+      });
+      is_linked_[p] = is_near || is_made_[bezier_[p]] != 0 ? 1 : 0;
     });
   }
 
@@ -170,9 +198,11 @@ class NodeBatch {
           source.kind == PatchKind::kBezier ? cells_[source.source].promise : of_tile;
       graph::NodeForest alone;
       alone.add(graph::build_tree(cells));
-      graph::NodeLinker linker(alone);
-      linker.link_inside(0, cells);
-      inside_[p] = linker.take();
+      if (is_made_[p] != 0) {
+        graph::NodeLinker linker(alone);
+        linker.link_inside(0, cells);
+        inside_[p] = linker.take();
+      }
       trees[p] = std::move(alone.trees[0]);
     });
     forest_.first = {0};
@@ -245,7 +275,8 @@ class NodeBatch {
             .world = &world_,
             .classes = data_.summary.classes,
             .cells = cells_,
-            .size = config_.size};
+            .size = config_.size,
+            .is_linked = is_linked_};
   }
 
   void add_drops() {
@@ -438,7 +469,7 @@ class NodeBatch {
     const double max_width = bins_.width.back();
     widths_.resize(forest_.trees.size());
     parallel_for(widths_.size(), config_.workers, [&](size_t p) {
-      if (context_.cancel) return;
+      if (context_.cancel || is_made_[p] == 0) return;
       widths_[p] = graph::node_widths(forest_, static_cast<uint32_t>(p), cross, max_width, balls);
     });
   }
@@ -627,6 +658,8 @@ class NodeBatch {
   const std::vector<uint32_t> zone_places_;  // zones that are seen: these and those near
   std::vector<BezierCells> cells_;           // by Bezier patch of the region
   std::vector<PatchSource> sources_;         // patches of the forest, by numbers of the region
+  std::vector<uint8_t> is_made_;             // by patch of the forest: of a zone that is made
+  std::vector<uint8_t> is_linked_;           // by Bezier patch: near such a zone
   std::vector<uint32_t> bezier_, level_;     // where they are in the forest, or kNoNode
   std::vector<uint32_t> levels_;             // those of the forest
   std::vector<ObjectLevel> objects_;         // of these the cells that carry nodes, if not all do

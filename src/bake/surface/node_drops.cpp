@@ -340,6 +340,7 @@ std::vector<NodeDrop> find_drops(const DropInput& input, int32_t workers) {
         return;
       }
       const Spot& from = patches.all()[i];
+      if (!input.links.links(from.end.source)) return;
       if (is_patch_edge(input, cross, from.end, bodies[c].bit)) {
         finder.drop_from_patch(from, lists[i]);
       }

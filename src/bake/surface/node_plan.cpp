@@ -531,7 +531,8 @@ Result<NodePlan> plan_nodes(const world::WorldData& world, const NodeScene& scen
   choose_layers(world, scene, survey, config, plan);
   list_sources(world, survey, plan);
   list_zones(world, survey, plan);
-  find_near(find_reaches(world, survey, config, plan), plan.zones);
+  plan.near_reach = find_reaches(world, survey, config, plan);
+  find_near(plan.near_reach, plan.zones);
   find_off_mesh_links(config, plan.zones);
   return plan;
 }

@@ -47,6 +47,7 @@ struct NodePlan {
   bool knows_parts = false;  ///< Does the scene state which part of its patch a triangle covers?
   /// Do patches carry all classes? Then level tiles carry what lies on other ground alone.
   bool has_objects = false;
+  double near_reach = 0;  ///< How far from each other nodes are linked, or bear on widths. [m]
   std::vector<uint8_t> object_tiles = {};  ///< If so: ObjectSurvey::tiles.
   std::vector<PatchSource> sources;
   std::vector<NodePlanZone> zones;  ///< By z, then x.

@@ -90,6 +90,7 @@ EdgeLinks link_edges(const PatchLinkInput& input, int32_t workers) {
     for (const graph::EdgePair& pair : graph::edge_pairs(set, depth, static_cast<uint32_t>(p))) {
       graph::CellPair cells = pair.cells;
       if (!input.is_judged(cells.patch_b)) continue;
+      if (!input.links(cells.patch_a) && !input.links(cells.patch_b)) continue;
       const uint16_t both = input.cells[cells.patch_a].promise.cells[cells.cell_a].classes &
                             input.cells[cells.patch_b].promise.cells[cells.cell_b].classes;
       if (both == 0) continue;
@@ -167,7 +168,9 @@ class HoleLinker {
       farthest_ = std::max(farthest_, motion_reach(body, input.size));
     }
     for (size_t c = 0; c < bodies.size(); ++c) {
-      for (const uint32_t maker : here_.makers) add_target(c, maker);
+      for (const uint32_t maker : here_.makers) {
+        if (input.links(patch) || input.links(maker)) add_target(c, maker);
+      }
     }
     Box3d box;
     for (const graph::CellShape& cell : here_.shape) box.add(cell.middle(here_.origin));
@@ -271,8 +274,11 @@ std::vector<graph::CellPair> link_holes(const PatchLinkInput& input, int32_t wor
   const std::vector<PatchBody> bodies = patch_bodies(input.classes);
   std::vector<std::vector<graph::CellPair>> lists(input.cells.size());
   parallel_for(input.cells.size(), workers, [&](size_t p) {
-    if (input.cells[p].makers.empty()) return;
-    lists[p] = HoleLinker(input, bodies, static_cast<uint32_t>(p)).link();
+    const auto patch = static_cast<uint32_t>(p);
+    const auto& makers = input.cells[p].makers;
+    const auto is_linked = [&](uint32_t maker) { return input.links(patch) || input.links(maker); };
+    if (!std::any_of(makers.begin(), makers.end(), is_linked)) return;
+    lists[p] = HoleLinker(input, bodies, patch).link();
   });
   return merged(lists);
 }
@@ -284,6 +290,7 @@ std::vector<graph::CellPair> link_tiles(const PatchLinkInput& input,
   const world::WorldData& data = *data_of(*input.world);
   std::vector<std::vector<graph::CellPair>> lists(input.cells.size());
   parallel_for(input.cells.size(), workers, [&](size_t p) {
+    if (!input.links(static_cast<uint32_t>(p))) return;
     MotionJudge judge(*input.triangles);
     for (size_t c = 0; c < bodies.size(); ++c) {
       const PatchBody& body = bodies[c];

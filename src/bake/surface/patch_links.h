@@ -21,8 +21,13 @@ struct PatchLinkInput {
   std::span<const AvatarClass> classes;
   std::span<const BezierCells> cells;  ///< By patch of the scene; none of those not judged.
   double size = 1;                     ///< Of cells. [m]
+  /// By patch of the scene: are its links of interest? Empty: those of all.
+  std::span<const uint8_t> is_linked = {};
 
   [[nodiscard]] bool is_judged(uint32_t patch) const { return !cells[patch].promise.cells.empty(); }
+  [[nodiscard]] bool links(uint32_t patch) const {
+    return is_linked.empty() || is_linked[patch] != 0;
+  }
 };
 
 /// A part of an edge over which the same classes go to the patch beyond and back, in 256ths of the

@@ -243,7 +243,7 @@ Result<void> same_over_ranks(Ranks& ranks, uint64_t input, const char* stage, co
                                     "files"};
 }
 
-Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context) {
+Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context, RankBytes* shared) {
   constexpr auto kMeetings = Ranks::Channel::kMeetings;
   const RankJobs what{.stage = "bake", .work = {}, .finished = [](bool) {
                         return "what was finished is kept, and the next bake goes on from there";
@@ -260,14 +260,22 @@ Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context) {
     }
   };
   const auto say = [&](int32_t to, const Result<void>& what_is) {
-    ranks.send(to, what_is ? kDone : kFail, what_is ? RankBytes() : packed(what_is.error()),
-               kMeetings);
+    if (!what_is) {
+      ranks.send(to, kFail, packed(what_is.error()), kMeetings);
+    } else if (shared != nullptr && ranks.rank() == 0) {
+      ranks.send(to, kDone, *shared, kMeetings);
+    } else {
+      ranks.send(to, kDone, {}, kMeetings);
+    }
   };
   if (ranks.rank() != 0) {
     say(0, mine);
-    const auto verdict = wait();
+    auto verdict = wait();
     if (!verdict) return verdict.error();
-    if (verdict->tag == kDone) return {};
+    if (verdict->tag == kDone) {
+      if (shared != nullptr) *shared = std::move(verdict->bytes);
+      return {};
+    }
     return Error{Errc::kCancelled, ""};  // Rank 0 says it.
   }
   Result<void> all = mine;

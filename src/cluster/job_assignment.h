@@ -51,8 +51,9 @@ Result<void> do_assigned_jobs(Ranks& ranks, const RankJobs& what, Context& conte
 /// another scene>, or other options".
 Result<void> same_over_ranks(Ranks& ranks, uint64_t input, const char* stage, const char* other);
 
-/// meet_over_ranks, for several ranks.
-Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context);
+/// meet_over_ranks, for several ranks. `shared`, if it is not null: rank 0's, which all have then.
+Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context,
+                  RankBytes* shared = nullptr);
 /// agree_over_ranks, for several ranks.
 Result<void> agree(Ranks& ranks, const Result<void>& mine);
 

@@ -62,7 +62,7 @@ def child_of_rank(parent, rank):
 
 
 def kill_a_rank(folder, rank, ranks, files=0, kind="tha", options=()):
-    """Bakes until some zones are done, or some files of a kind that rank 0 makes alone, and kills one rank. Returns
+    """Bakes until some zones are done, or some files of a kind that is made after them, and kills one rank. Returns
     standard error and the zones in the journal. Open MPI stops rank 0 only after it has made all files: stop it here."""
     world = folder / "killed.throng"
     part = folder / "killed.throng.part"
@@ -124,7 +124,7 @@ def test_death(folder, reference):
 
 
 def test_air(folder):
-    """The air is made after the ground, by rank 0: the others wait for it, and may die."""
+    """The air is made after the ground, by all ranks."""
     fly = ["--fly", "--air", "0.4"]
     world = folder / "air.throng"
     done = run(bake_words(world, options=fly))
@@ -150,7 +150,7 @@ def test_air(folder):
 
 
 def test_graph(folder, reference):
-    """Regions and links are made last, by rank 0."""
+    """Regions and links are made last, by all ranks."""
     total = reference["report"]["zones_baked"]
     for rank, kind in ((1, "thr"), (0, "thr"), (1, "thl"), (0, "thl")):
         err, finished = kill_a_rank(folder, rank, 2, files=3, kind=kind)

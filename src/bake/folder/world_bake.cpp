@@ -467,17 +467,29 @@ Result<std::shared_ptr<world::WorldData>> WorldBake::world(
   return world;
 }
 
+bool WorldBake::has_air() const { return wants_air(*plan_->plan.config); }
+
+AirBaker WorldBake::air_baker(const WorldFolder* folder, int32_t workers) const {
+  return {plan_->plan, air_shape(plan_->plan, plan_->bounds), folder, workers};
+}
+
+Result<std::unique_ptr<world::AirData::Slot>> WorldBake::bake_air(size_t zone, AirBaker& baker,
+                                                                  Context& context) const {
+  const format::ZoneInput& input = zones()[zone];
+  return baker.bake(input.x(), input.z(), plan_->zones.triangles(place(zone)), input.hash(),
+                    context);
+}
+
 Result<AirSlots> WorldBake::bake_air(WorldFolder* folder, Context& context,
                                      BakeReport& report) const {
   const BakePlan& plan = plan_->plan;
   AirSlots slots;
   if (!wants_air(*plan.config)) return slots;
   const auto start = std::chrono::steady_clock::now();
-  const world::AirShape shape = air_shape(plan, plan_->bounds);
   const WorkerGroups assigned = assign_workers(zones().size(), plan.config->workers);
   std::vector<AirBaker> air;
   for (int32_t group = 0; group < assigned.groups; ++group) {
-    air.emplace_back(plan, shape, folder, assigned.workers);
+    air.push_back(air_baker(folder, assigned.workers));
   }
   slots.resize(zones().size());
   const auto baked = side_by_side(
@@ -486,9 +498,7 @@ Result<AirSlots> WorldBake::bake_air(WorldFolder* folder, Context& context,
         if (context.on_progress) context.on_progress({"air", zone, zones().size()});
       },
       [&](size_t zone, int32_t group) -> Result<void> {
-        const format::ZoneInput& input = zones()[zone];
-        auto made = air[static_cast<size_t>(group)].bake(
-            input.x(), input.z(), plan_->zones.triangles(place(zone)), input.hash(), context);
+        auto made = bake_air(zone, air[static_cast<size_t>(group)], context);
         if (!made) return made.error();
         slots[zone] = *std::move(made);
         return {};

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/folder/air_bake.h"
 #include "bake/folder/world_folder.h"
 #include "bake/folder/zone_bake.h"
 #include "throng/bake.h"
@@ -93,6 +94,13 @@ class WorldBake {
   /// The same of all zones of this bake.
   [[nodiscard]] Result<std::shared_ptr<world::WorldData>> world(std::span<const ZoneFacts> facts,
                                                                 BakeReport& report) const;
+  /// Does the config require air?
+  [[nodiscard]] bool has_air() const;
+  /// For the air of zones: one at a time, of several by as many of these.
+  [[nodiscard]] AirBaker air_baker(const WorldFolder* folder, int32_t workers) const;
+  /// The air of one zone; null: there is nothing but air. Fails with kIo, kLimit or kCancelled.
+  [[nodiscard]] Result<std::unique_ptr<world::AirData::Slot>> bake_air(size_t zone, AirBaker& baker,
+                                                                       Context& context) const;
   /// The air of the zones, in their order, if the config requires any: into the folder, or into
   /// memory if it is null. Fails with kIo, kLimit or kCancelled.
   [[nodiscard]] Result<AirSlots> bake_air(WorldFolder* folder, Context& context,

@@ -81,7 +81,8 @@ WorldFolder::WorldFolder(std::string path) : path_(std::move(path)), part_(path_
 
 WorldFolder::WorldFolder(WorldFolder&& other) noexcept
     : path_(std::move(other.path_)),
-      part_(std::exchange(other.part_, {})),
+      part_(std::move(other.part_)),
+      is_owner_(std::exchange(other.is_owner_, false)),
       part_lock_(std::move(other.part_lock_)),
       old_lock_(std::move(other.old_lock_)),
       old_(std::move(other.old_)),
@@ -89,7 +90,7 @@ WorldFolder::WorldFolder(WorldFolder&& other) noexcept
 
 WorldFolder::~WorldFolder() {
   std::error_code ignored;
-  if (!part_.empty()) fs::remove_all(part_, ignored);
+  if (is_owner_) fs::remove_all(part_, ignored);
 }
 
 Result<WorldFolder> WorldFolder::begin(std::string path, OldZones old_zones) {
@@ -123,6 +124,13 @@ Result<WorldFolder> WorldFolder::begin(std::string path, OldZones old_zones) {
   if (old_zones == OldZones::kBakeAgain) empty_folder(folder.part_);
   if (old_zones == OldZones::kKeep) folder.read_old();
   if (auto ok = folder.read_part(); !ok) return ok.error();
+  return folder;
+}
+
+WorldFolder WorldFolder::join(const std::string& path, OldZones old_zones) {
+  WorldFolder folder(without_slash(path));
+  folder.is_owner_ = false;
+  if (old_zones == OldZones::kKeep) folder.read_old();
   return folder;
 }
 
@@ -350,7 +358,7 @@ Result<FolderLock> WorldFolder::finish() {
   if (!exchange(part_, path_, path_ + ".old")) {
     return Error{Errc::kIo, path_ + ": cannot be written: " + std::strerror(errno)};
   }
-  part_.clear();
+  is_owner_ = false;
   std::error_code error;
   fs::remove(fs::path(path_) / kJournal, error);
   part_lock_.share();

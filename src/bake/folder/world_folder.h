@@ -28,9 +28,11 @@ class WorldFolder {
   /// Begins NAME.part beside the world `path`, and holds both against other bakes. Fails with kIo,
   /// also if `path` is something else or another bake is at work there; then all is as it was.
   static Result<WorldFolder> begin(std::string path, OldZones old_zones);
+  /// The folder that another process has begun: only for files of zones.
+  static WorldFolder join(const std::string& path, OldZones old_zones);
   WorldFolder(WorldFolder&& other) noexcept;
   WorldFolder& operator=(WorldFolder&&) = delete;
-  /// Removes what was begun and not finished.
+  /// Removes what was begun and not finished, but for one that was joined.
   ~WorldFolder();
 
   /// The world at `path`, without its zones; null if there is none that can be read. For ranks that
@@ -45,7 +47,7 @@ class WorldFolder {
   /// them. From one thread at a time. Fails with kIo or kBadFile.
   Result<void> take_over(const std::string& from, const format::ZoneEntry& entry, uint64_t input);
   /// Leaves what was begun for the next bake.
-  void leave() { part_.clear(); }
+  void leave() { is_owner_ = false; }
 
   /// The world that is there, without its zones; null if there is none that can be read.
   [[nodiscard]] const world::WorldData* old_world() const { return old_.get(); }
@@ -99,7 +101,8 @@ class WorldFolder {
   std::unique_ptr<File> reuse_file(const std::string& name, uint64_t input) const;
 
   std::string path_;
-  std::filesystem::path part_;  // empty: finished or moved from
+  std::filesystem::path part_;
+  bool is_owner_ = true;  // not: finished, left, joined or moved from
   FolderLock part_lock_, old_lock_;
   std::shared_ptr<world::WorldData> old_;
   std::multimap<std::pair<int32_t, int32_t>, Source> sources_;  // by zone, the newest last

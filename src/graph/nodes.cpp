@@ -131,6 +131,7 @@ NodeSummary Nodes::summary() const {
       summary.partial += (node.flags() & graph::kPartialFlag) != 0;
     }
     for (uint32_t n = 0; n < zone->nodes().size(); ++n) summary.arcs += zone->arcs(n).size();
+    zone->give_back();  // All zones together may be far more than fits.
   }
   return summary;
 }

@@ -39,11 +39,6 @@ Result<bake::ZoneFacts> bake_and_write(const bake::WorldBake& bake, const std::s
   return facts;
 }
 
-// What is said of a bake that ends before all is done.
-std::string to_be_continued(const std::string& what, const std::string& path) {
-  return what + " in " + path + ".part, and the next bake of " + path + " goes on from there";
-}
-
 // Zones' ground as jobs, and what rank 0 knows of it.
 class GroundJobs {
  public:
@@ -64,11 +59,11 @@ class GroundJobs {
             },
             .finished =
                 [this](bool knows) {
-                  return to_be_continued(knows ? std::to_string(done_) + " of " +
-                                                     std::to_string(facts_.size()) +
-                                                     " zones are finished"
-                                               : std::string("finished zones are"),
-                                         path_);
+                  return cluster::to_be_continued(knows ? std::to_string(done_) + " of " +
+                                                              std::to_string(facts_.size()) +
+                                                              " zones are finished"
+                                                        : std::string("finished zones are"),
+                                                  path_ + ".part", path_);
                 }};
   }
 
@@ -133,7 +128,8 @@ class ZoneStage {
             },
             .finished =
                 [this](bool knows) {
-                  return to_be_continued(knows ? finished_ : "finished zones are", path_);
+                  return cluster::to_be_continued(knows ? finished_ : "finished zones are",
+                                                  path_ + ".part", path_);
                 }};
   }
   [[nodiscard]] cluster::JobsToAssign to_assign(bake::WorldFolder& folder, Context& context) {
@@ -312,10 +308,11 @@ class RankBake {
     if (ok) return report_;
     if (ok.error().code != Errc::kCancelled) return ok.error();
     ranks_.abandon();
-    return cluster::stopped_error(
-        ranks_, {.stage = "bake", .work = {}, .finished = [&](bool) {
-                   return to_be_continued("all zones and their graph are finished", folder_.path());
-                 }});
+    return cluster::stopped_error(ranks_, {.stage = "bake", .work = {}, .finished = [&](bool) {
+                                             return cluster::to_be_continued(
+                                                 "all zones and their graph are finished",
+                                                 folder_.path() + ".part", folder_.path());
+                                           }});
   }
 
   [[nodiscard]] bool is_first() const { return ranks_.rank() == 0; }

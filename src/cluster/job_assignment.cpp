@@ -188,6 +188,11 @@ Result<void> JobAssigner::run() {
 
 }  // namespace
 
+std::string to_be_continued(const std::string& what, const std::string& folder,
+                            const std::string& world) {
+  return what + " in " + folder + ", and the next bake of " + world + " goes on from there";
+}
+
 Error stopped_error(const Ranks& ranks, const RankJobs& what) {
   return {Errc::kCancelled,
           std::string(what.stage) + ": rank " + std::to_string(ranks.rank()) + " of " +

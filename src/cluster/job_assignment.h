@@ -60,6 +60,10 @@ Result<void> agree(Ranks& ranks, const Result<void>& mine);
 /// Threads of a rank: the cores of its machine, shared among its ranks, unless a number is given.
 int32_t workers_of_rank(int32_t asked, const Ranks& ranks);
 
+/// What RankJobs::finished says: what is finished, in which folder, of the bake of which world.
+[[nodiscard]] std::string to_be_continued(const std::string& what, const std::string& folder,
+                                          const std::string& world);
+
 /// The error of a rank whose context is cancelled.
 Error stopped_error(const Ranks& ranks, const RankJobs& what);
 

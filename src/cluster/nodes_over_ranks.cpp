@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "bake/surface/leaf_link_bake.h"
 #include "bake/surface/node_bake.h"
@@ -40,6 +43,8 @@ std::vector<std::vector<uint32_t>> choose_batches(const bake::NodeBaker& baker,
   return best;
 }
 
+std::string part_of(const std::string& path) { return path + "/" + graph::kPartNodeFolder; }
+
 cluster::RankJobs jobs_of(bake::NodeBaker& baker, const std::string& path) {
   return {
       .stage = "nodes",
@@ -53,18 +58,19 @@ cluster::RankJobs jobs_of(bake::NodeBaker& baker, const std::string& path) {
       },
       .finished =
           [&](bool knows) {
-            return (knows ? std::to_string(baker.zones_done()) + " of " +
-                                std::to_string(baker.zones()) + " zones are finished"
-                          : std::string("finished zones are")) +
-                   " in " + path + "/" + graph::kPartNodeFolder + ", and the next bake of " + path +
-                   " goes on from there";
+            return cluster::to_be_continued(knows ? std::to_string(baker.zones_done()) + " of " +
+                                                        std::to_string(baker.zones()) +
+                                                        " zones are finished"
+                                                  : std::string("finished zones are"),
+                                            part_of(path), path);
           }};
 }
 
-Result<NodeSummary> assign_nodes(cluster::Ranks& ranks, bake::NodeBaker& baker,
-                                 const NodeConfig& config, const World& world,
-                                 bake::NodeFolder& folder, Context& context) {
-  const std::string& path = data_of(world)->path;
+// Of rank 0: all nodes, in the folder.
+Result<std::shared_ptr<graph::NodeData>> assign_nodes(cluster::Ranks& ranks, bake::NodeBaker& baker,
+                                                      const NodeConfig& config,
+                                                      const std::string& path,
+                                                      bake::NodeFolder& folder, Context& context) {
   const auto batches = choose_batches(baker, config, ranks.size());
   cluster::JobsToAssign to_assign;
   for (const auto& zones : batches) to_assign.jobs.push_back(cluster::bytes_of(zones));
@@ -81,15 +87,54 @@ Result<NodeSummary> assign_nodes(cluster::Ranks& ranks, bake::NodeBaker& baker,
       !ok) {
     return ok.error();
   }
-  const auto nodes = baker.finish();
+  auto nodes = baker.finish();
   if (!nodes) return nodes.error();
-  if (auto ok = bake::link_to_air(world, **nodes, config, folder, context); !ok) {
-    if (ok.error().code == Errc::kCancelled) folder.leave();
-    return ok.error();
-  }
-  if (auto ok = folder.finish(**nodes); !ok) return ok.error();
-  (*nodes)->path = path + "/" + graph::kNodeFolder;
-  return Access::create<Nodes>(*nodes).summary();
+  if (auto ok = folder.list(**nodes); !ok) return ok.error();
+  return nodes;
+}
+
+// Rows of zones as jobs, a few for each rank: what lies beside them is elected again.
+Result<void> link_to_air(cluster::Ranks& ranks, const World& world, const NodeConfig& config,
+                         bake::NodeFolder& folder, Context& context) {
+  const std::string& path = data_of(world)->path;
+  auto bake = bake::LeafLinkBake::begin(world, config, folder, context);
+  Result<void> begun;
+  if (!bake) begun = bake.error();
+  if (auto ok = cluster::meet(ranks, begun, context); !ok) return ok;
+  const cluster::RankJobs jobs{
+      .stage = "nodes",
+      .work = [&](std::span<const uint8_t> job, Context& own) -> Result<cluster::RankBytes> {
+        const auto made = bake->make(cluster::value_of<bake::LeafLinkBake::Rows>(job), own);
+        if (!made) return made.error();
+        return cluster::bytes_of(*made);
+      },
+      .finished =
+          [&](bool knows) {
+            return cluster::to_be_continued(
+                knows ? "all nodes and some of their links to the air are finished"
+                      : "finished zones are",
+                part_of(path), path);
+          }};
+  if (ranks.rank() != 0) return cluster::do_assigned_jobs(ranks, jobs, context);
+  const auto parts = bake->parts(4 * static_cast<size_t>(ranks.size()));
+  std::vector<std::vector<format::LeafLinkEntry>> made(parts.size());
+  size_t done = 0;
+  cluster::JobsToAssign to_assign;
+  for (const auto& rows : parts) to_assign.jobs.push_back(cluster::bytes_of(rows));
+  to_assign.enter = [&](size_t job, std::span<const uint8_t> result) -> Result<void> {
+    made[job] = cluster::values_of<format::LeafLinkEntry>(result);
+    ++done;
+    return {};
+  };
+  to_assign.on_progress = [&] {
+    if (context.on_progress) context.on_progress({"links to the air", done, parts.size()});
+  };
+  to_assign.on_cancel = [&] { folder.leave(); };
+  if (auto ok = cluster::assign_jobs(ranks, jobs, std::move(to_assign), context); !ok) return ok;
+  std::vector<format::LeafLinkEntry> all;
+  for (const auto& of_part : made) all.insert(all.end(), of_part.begin(), of_part.end());
+  folder.set_links(bake->index(std::move(all)));
+  return {};
 }
 
 }  // namespace
@@ -124,14 +169,36 @@ Result<NodeSummary> nodes_over_ranks(const World& world, const Scene& scene,
   // Rank 0 looks through what is there.
   const Result<void> reused = ranks.rank() == 0 ? baker.reuse_zones() : Result<void>();
   if (auto ok = cluster::meet(ranks, reused, context); !ok) return ok.error();
-  if (ranks.rank() != 0) {
-    if (auto ok = cluster::do_assigned_jobs(ranks, jobs_of(baker, path), context); !ok)
-      return ok.error();
-    return NodeSummary{};
+  const bool is_first = ranks.rank() == 0;
+  Result<void> mine;
+  std::shared_ptr<graph::NodeData> nodes;  // rank 0's
+  if (is_first) {
+    auto all = assign_nodes(ranks, baker, own, path, *folder, context);
+    if (!all) {
+      mine = all.error();
+    } else {
+      nodes = *std::move(all);
+    }
+  } else {
+    mine = cluster::do_assigned_jobs(ranks, jobs_of(baker, path), context);
   }
-  auto made = assign_nodes(ranks, baker, config, world, *folder, context);
-  if (made) made->seconds = seconds_since(start);
-  return made;
+  const auto left = [&](const Error& error) {
+    if (is_first && context.cancel) folder->leave();
+    return error;
+  };
+  if (!mine && context.cancel) return left(mine.error());
+  if (auto ok = cluster::meet(ranks, mine, context); !ok) return left(ok.error());
+  if (data_of(world)->air != nullptr) {
+    mine = link_to_air(ranks, world, own, *folder, context);
+    if (!mine && context.cancel) return left(mine.error());
+    if (auto ok = cluster::meet(ranks, mine, context); !ok) return left(ok.error());
+  }
+  if (!is_first) return NodeSummary{};
+  if (auto ok = folder->finish(*nodes); !ok) return ok.error();
+  nodes->path = path + "/" + graph::kNodeFolder;
+  NodeSummary summary = Access::create<Nodes>(nodes).summary();
+  summary.seconds = seconds_since(start);
+  return summary;
 }
 
 }  // namespace throng

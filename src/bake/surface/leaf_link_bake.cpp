@@ -32,28 +32,28 @@ namespace {
 constexpr uint64_t kLeafLinkBakeVersion = 1;
 constexpr size_t kZonesAtOnce = 64;  // and the rest of their row
 
-class LeafLinkBaker {
+}  // namespace
+
+class LeafLinkBake::Baker {
  public:
-  LeafLinkBaker(const graph::NodeData& nodes, int32_t workers, const OldNodes& old,
-                const NodeFolder& folder, Context& context)
-      : nodes_(nodes),
-        workers_(workers),
-        old_(old),
+  Baker(std::shared_ptr<const graph::NodeData> nodes, const NodeConfig& config,
+        const NodeFolder& folder)
+      : nodes_data_(std::move(nodes)),
+        nodes_(*nodes_data_),
+        workers_(config.workers),
+        old_(config.rebuild ? std::string() : data_of(nodes_.world)->path),
         folder_(folder),
-        context_(context),
-        world_(*data_of(nodes.world)),
+        world_(*data_of(nodes_.world)),
         air_(*world_.air) {}
 
-  Result<graph::LeafLinkIndex> make() {
-    if (auto ok = plan(); !ok) return ok.error();
-    if (auto ok = make_zones(); !ok) return ok.error();
-    graph::LeafLinkIndex index{.air = graph::air_index_hash(air_, world_.manifest_hash),
-                               .nodes = graph::node_index_hash(nodes_),
-                               .zones = {}};
-    for (const Zone& zone : zones_) {
-      if (zone.entry) index.zones.push_back(*zone.entry);
-    }
-    return index;
+  Result<void> plan();
+  [[nodiscard]] size_t zones() const { return zones_.size(); }
+  [[nodiscard]] std::vector<Rows> parts(size_t most) const;
+  Result<std::vector<format::LeafLinkEntry>> make(const Rows& rows, const Context& context);
+  [[nodiscard]] graph::LeafLinkIndex index(std::vector<format::LeafLinkEntry> made) const {
+    return {.air = graph::air_index_hash(air_, world_.manifest_hash),
+            .nodes = graph::node_index_hash(nodes_),
+            .zones = std::move(made)};
   }
 
  private:
@@ -68,42 +68,6 @@ class LeafLinkBaker {
     std::string file;                            // from which it is reused
     std::optional<format::LeafLinkEntry> entry;  // none: it has no links, nor do its nodes
   };
-
-  Result<void> plan() {
-    std::vector<ZoneRect> reach(nodes_.slots.size());
-    std::vector<uint8_t> failed(reach.size(), 0);
-    parallel_for(reach.size(), workers_, [&](size_t s) {
-      const graph::NodeZone* zone = nodes_.zone(s);
-      failed[s] = zone == nullptr ? 1 : 0;
-      if (zone == nullptr) return;
-      reach[s] = zones_under(nodes_, *zone);
-      zone->give_back();
-    });
-    for (size_t s = 0; s < failed.size(); ++s) {
-      if (failed[s] != 0) return Error{Errc::kBadFile, nodes_.slots[s]->error};
-    }
-    std::map<std::pair<int32_t, int32_t>, Zone> zones;  // by z, then x
-    for (size_t s = 0; s < reach.size(); ++s) {
-      const format::NodeZoneEntry& entry = nodes_.slots[s]->entry;
-      for (int32_t z = reach[s].z0; z <= reach[s].z1; ++z) {
-        for (int32_t x = reach[s].x0; x <= reach[s].x1; ++x) {
-          zones[{z, x}].from.push_back(static_cast<uint32_t>(s));
-        }
-      }
-      zones[{entry.z(), entry.x()}].reach = reach[s];
-    }
-    place_.assign(static_cast<size_t>(world_.zones_x) * static_cast<size_t>(world_.zones_z),
-                  UINT32_MAX);
-    for (auto& [at, zone] : zones) {
-      zone.z = at.first;
-      zone.x = at.second;
-      place_[static_cast<size_t>(zone.z * world_.zones_x + zone.x)] =
-          static_cast<uint32_t>(zones_.size());
-      zones_.push_back(std::move(zone));
-    }
-    find_inputs();
-    return {};
-  }
 
   void find_inputs() {
     std::vector<uint64_t> shared{kLeafLinkBakeVersion,
@@ -172,30 +136,6 @@ class LeafLinkBaker {
     }
   }
 
-  // By rows of zones: what was elected in one is let go once no row that is left reads it.
-  Result<void> make_zones() {
-    int32_t far = 0;  // Rows over which nodes of a zone reach.
-    for (const Zone& zone : zones_) {
-      if (zone.reach) far = std::max({far, zone.reach->z1 - zone.z, zone.z - zone.reach->z0});
-    }
-    size_t elected = 0, written = 0, released = 0;
-    while (written < zones_.size()) {
-      size_t end = std::min(written + kZonesAtOnce, zones_.size());
-      while (end < zones_.size() && zones_[end].z == zones_[end - 1].z) ++end;
-      const int32_t last = zones_[end - 1].z;
-      size_t read = std::max(elected, end);
-      while (read < zones_.size() && zones_[read].z <= last + far) ++read;
-      if (auto ok = elect(elected, read); !ok) return ok;
-      elected = read;
-      if (auto ok = write(written, end); !ok) return ok;
-      written = end;
-      for (; released < written && zones_[released].z <= last - far; ++released) {
-        release(zones_[released]);
-      }
-    }
-    return {};
-  }
-
   // Only sizes are left.
   void release(Zone& zone) const {
     throng::release(zone.elected.links);
@@ -208,10 +148,10 @@ class LeafLinkBaker {
     if (air != nullptr) air->give_back();
   }
 
-  Result<void> elect(size_t begin, size_t end) {
+  Result<void> elect(size_t begin, size_t end, const Context& context) {
     std::vector<uint8_t> failed(end - begin, 0);
     parallel_for(failed.size(), workers_, [&](size_t i) {
-      if (context_.cancel) return;
+      if (context.cancel) return;
       Zone& zone = zones_[begin + i];
       auto reused = old_.reuse_links(zone.x, zone.z, zone.input);
       if (reused.zone != nullptr) {
@@ -228,7 +168,7 @@ class LeafLinkBaker {
         if (const graph::NodeZone* nodes = nodes_.zone(slot)) nodes->give_back();
       }
     });
-    if (context_.cancel) return Error{Errc::kCancelled, "nodes: cancelled"};
+    if (context.cancel) return Error{Errc::kCancelled, "nodes: cancelled"};
     for (size_t i = 0; i < failed.size(); ++i) {
       if (failed[i] == 0) continue;
       const Zone& zone = zones_[begin + i];
@@ -354,25 +294,108 @@ class LeafLinkBaker {
     return {};
   }
 
+  std::shared_ptr<const graph::NodeData> nodes_data_;
   const graph::NodeData& nodes_;
   int32_t workers_;
-  const OldNodes& old_;
+  OldNodes old_;
   const NodeFolder& folder_;
-  Context& context_;
   const world::WorldData& world_;
   const world::AirData& air_;
   std::vector<Zone> zones_;      // by z, then x
   std::vector<uint32_t> place_;  // by zone of the world: index into zones_
+  int32_t far_ = 0;              // rows over which nodes of a zone reach
 };
 
-}  // namespace
+Result<void> LeafLinkBake::Baker::plan() {
+  std::vector<ZoneRect> reach(nodes_.slots.size());
+  std::vector<uint8_t> failed(reach.size(), 0);
+  parallel_for(reach.size(), workers_, [&](size_t s) {
+    const graph::NodeZone* zone = nodes_.zone(s);
+    failed[s] = zone == nullptr ? 1 : 0;
+    if (zone == nullptr) return;
+    reach[s] = zones_under(nodes_, *zone);
+    zone->give_back();
+  });
+  for (size_t s = 0; s < failed.size(); ++s) {
+    if (failed[s] != 0) return Error{Errc::kBadFile, nodes_.slots[s]->error};
+  }
+  std::map<std::pair<int32_t, int32_t>, Zone> zones;  // by z, then x
+  for (size_t s = 0; s < reach.size(); ++s) {
+    const format::NodeZoneEntry& entry = nodes_.slots[s]->entry;
+    for (int32_t z = reach[s].z0; z <= reach[s].z1; ++z) {
+      for (int32_t x = reach[s].x0; x <= reach[s].x1; ++x) {
+        zones[{z, x}].from.push_back(static_cast<uint32_t>(s));
+      }
+    }
+    zones[{entry.z(), entry.x()}].reach = reach[s];
+  }
+  place_.assign(static_cast<size_t>(world_.zones_x) * static_cast<size_t>(world_.zones_z),
+                UINT32_MAX);
+  for (auto& [at, zone] : zones) {
+    zone.z = at.first;
+    zone.x = at.second;
+    place_[static_cast<size_t>(zone.z * world_.zones_x + zone.x)] =
+        static_cast<uint32_t>(zones_.size());
+    zones_.push_back(std::move(zone));
+  }
+  for (const Zone& zone : zones_) {
+    if (zone.reach) far_ = std::max({far_, zone.reach->z1 - zone.z, zone.z - zone.reach->z0});
+  }
+  find_inputs();
+  return {};
+}
 
-Result<void> link_to_air(const World& world, const graph::NodeData& nodes, const NodeConfig& config,
-                         NodeFolder& folder, Context& context) {
-  const world::WorldData& data = *data_of(world);
-  if (data.air == nullptr) return {};
-  // The nodes as they are in the folder by now: zones that were written are no longer in memory.
-  if (auto ok = folder.list(nodes); !ok) return ok;
+std::vector<LeafLinkBake::Rows> LeafLinkBake::Baker::parts(size_t most) const {
+  std::vector<Rows> parts;
+  const size_t of_part = zones_.size() / std::max<size_t>(most, 1) + 1;
+  for (size_t begin = 0; begin < zones_.size();) {
+    // Rows that are elected twice should be few.
+    const int32_t least = zones_[begin].z + 4 * far_;
+    size_t end = std::min(begin + of_part, zones_.size());
+    while (end < zones_.size() && (zones_[end].z == zones_[end - 1].z || zones_[end].z < least)) {
+      ++end;
+    }
+    parts.push_back({begin, end});
+    begin = end;
+  }
+  return parts;
+}
+
+// What was elected in a row is let go once no row that is left reads it.
+Result<std::vector<format::LeafLinkEntry>> LeafLinkBake::Baker::make(const Rows& rows,
+                                                                     const Context& context) {
+  std::vector<format::LeafLinkEntry> made;
+  if (rows.begin == rows.end) return made;
+  size_t written = rows.begin, elected = rows.begin;
+  while (elected > 0 && zones_[elected - 1].z >= zones_[written].z - far_) --elected;
+  size_t released = elected;
+  while (written < rows.end) {
+    size_t end = std::min<size_t>(written + kZonesAtOnce, rows.end);
+    while (end < rows.end && zones_[end].z == zones_[end - 1].z) ++end;
+    const int32_t last = zones_[end - 1].z;
+    size_t read = std::max(elected, end);
+    while (read < zones_.size() && zones_[read].z <= last + far_) ++read;
+    if (auto ok = elect(elected, read, context); !ok) return ok.error();
+    elected = read;
+    if (auto ok = write(written, end); !ok) return ok.error();
+    written = end;
+    for (; released < written && zones_[released].z <= last - far_; ++released) {
+      release(zones_[released]);
+    }
+  }
+  for (; released < elected; ++released) release(zones_[released]);
+  for (size_t z = rows.begin; z < rows.end; ++z) {
+    if (zones_[z].entry) made.push_back(*zones_[z].entry);
+  }
+  return made;
+}
+
+LeafLinkBake::LeafLinkBake(std::unique_ptr<Baker> baker) : baker_(std::move(baker)) {}
+LeafLinkBake::LeafLinkBake(LeafLinkBake&&) noexcept = default;
+LeafLinkBake::~LeafLinkBake() = default;
+
+Result<LeafLinkBake> LeafLinkBake::begin(const World& world, const NodeConfig& config,
+                                         const NodeFolder& folder, const Context& context) {
   const std::string name = folder.part() + "/" + graph::kNodeIndexName;
   const auto map = FileMap::open(name);
   if (!map) return map.error();
@@ -380,10 +403,37 @@ Result<void> link_to_air(const World& world, const graph::NodeData& nodes, const
   if (!written) return written.error();
   (*written)->world = world;
   (*written)->path = folder.part();
-  const OldNodes old(config.rebuild ? std::string() : data.path);
-  auto links = LeafLinkBaker(**written, config.workers, old, folder, context).make();
-  if (!links) return links.error();
-  folder.set_links(*std::move(links));
+  LeafLinkBake bake(std::make_unique<Baker>(*std::move(written), config, folder));
+  if (auto ok = bake.baker_->plan(); !ok) return ok.error();
+  if (context.cancel) return Error{Errc::kCancelled, "nodes: cancelled"};
+  return bake;
+}
+
+size_t LeafLinkBake::zones() const { return baker_->zones(); }
+
+std::vector<LeafLinkBake::Rows> LeafLinkBake::parts(size_t most) const {
+  return baker_->parts(most);
+}
+
+Result<std::vector<format::LeafLinkEntry>> LeafLinkBake::make(const Rows& rows,
+                                                              const Context& context) {
+  return baker_->make(rows, context);
+}
+
+graph::LeafLinkIndex LeafLinkBake::index(std::vector<format::LeafLinkEntry> made) const {
+  return baker_->index(std::move(made));
+}
+
+Result<void> link_to_air(const World& world, const graph::NodeData& nodes, const NodeConfig& config,
+                         NodeFolder& folder, Context& context) {
+  if (data_of(world)->air == nullptr) return {};
+  // The nodes as they are in the folder by now: zones that were written are no longer in memory.
+  if (auto ok = folder.list(nodes); !ok) return ok;
+  auto bake = LeafLinkBake::begin(world, config, folder, context);
+  if (!bake) return bake.error();
+  auto made = bake->make({0, bake->zones()}, context);
+  if (!made) return made.error();
+  folder.set_links(bake->index(*std::move(made)));
   return {};
 }
 

@@ -186,6 +186,14 @@ struct RankInfo {
                                                             const BakeConfig& config,
                                                             Context& context);
 
+/// The same of a scene that no rank holds as a whole: each idle rank gets the next block of zones.
+/// Every rank has its own SceneRegions of the same files; config.block_bytes is per rank. Fails as
+/// above and as SceneRegions::region.
+[[nodiscard]] THRONG_API Result<BakeReport> bake_over_ranks(const std::string& path,
+                                                            const SceneRegions& scene,
+                                                            const BakeConfig& config,
+                                                            Context& context);
+
 /// Nodes::create_in_folder by all ranks, of a world that each has opened from the same folder. Each
 /// idle rank gets the next batch of zones; a batch takes config.working_bytes at most, and is small
 /// enough that each rank gets some. The bytes do not depend on the number of ranks. The summary is
@@ -193,6 +201,11 @@ struct RankInfo {
 /// the folder's nodes.part, which the next call reuses.
 [[nodiscard]] THRONG_API Result<NodeSummary> nodes_over_ranks(const World& world,
                                                               const Scene& scene,
+                                                              const NodeConfig& config,
+                                                              Context& context);
+/// The same of a scene that no rank holds as a whole. Fails as SceneRegions::region, too.
+[[nodiscard]] THRONG_API Result<NodeSummary> nodes_over_ranks(const World& world,
+                                                              const SceneRegions& scene,
                                                               const NodeConfig& config,
                                                               Context& context);
 

@@ -1,25 +1,19 @@
 // SPDX-FileCopyrightText: 2026 the throng authors
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "bake/folder/finish_bake.h"
-#include "bake/folder/graph_bake.h"
 #include "bake/folder/world_bake.h"
 #include "bake/folder/world_folder.h"
+#include "cluster/bake_stages.h"
 #include "cluster/job_assignment.h"
 #include "core/stopwatch.h"
-#include "graph/graph_passes.h"
 #include "throng/bake.h"
 
-// Rank 0 owns the folder. Ground, air, regions and links are made one after the other, each zone as
-// a job: a rank writes the zone's file and sends what the world needs of it, which rank 0 collects
-// and, where the next stage reads it, gives to all. Every file carries what it was made of, so the
-// next bake can continue from those that are there.
+// A bake of a scene that every rank holds: ground and air, each zone as a job.
 namespace throng {
 namespace {
 
@@ -112,55 +106,7 @@ cluster::JobsToAssign GroundJobs::to_assign(bake::WorldFolder& folder, Context& 
   return to_assign;
 }
 
-// What the stages after the ground have in common: one job for each zone, by its number, whatever
-// is reused, and files that no journal names.
-class ZoneStage {
- public:
-  ZoneStage(const char* stage, size_t zones, const std::string& path, const char* finished)
-      : stage_(stage), zones_(zones), path_(path), finished_(finished) {}
-  virtual ~ZoneStage() = default;
-
-  [[nodiscard]] cluster::RankJobs jobs() {
-    return {.stage = "bake",
-            .work = [this](std::span<const uint8_t> job,
-                           Context& context) -> Result<cluster::RankBytes> {
-              return work(static_cast<size_t>(cluster::value_of<uint64_t>(job)), context);
-            },
-            .finished =
-                [this](bool knows) {
-                  return cluster::to_be_continued(knows ? finished_ : "finished zones are",
-                                                  path_ + ".part", path_);
-                }};
-  }
-  [[nodiscard]] cluster::JobsToAssign to_assign(bake::WorldFolder& folder, Context& context) {
-    cluster::JobsToAssign to_assign;
-    for (uint64_t zone = 0; zone < zones_; ++zone) {
-      to_assign.jobs.push_back(cluster::bytes_of(zone));
-    }
-    to_assign.enter = [this](size_t job, std::span<const uint8_t> result) -> Result<void> {
-      ++done_;
-      enter(job, result);
-      return {};
-    };
-    to_assign.on_progress = [this, &context] {
-      if (context.on_progress) context.on_progress({stage_, done_, zones_});
-    };
-    to_assign.on_cancel = [&folder] { folder.leave(); };
-    return to_assign;
-  }
-
- private:
-  virtual Result<cluster::RankBytes> work(size_t zone, Context& context) = 0;
-  virtual void enter(size_t zone, std::span<const uint8_t> result) = 0;
-
-  const char* stage_;
-  size_t zones_;
-  const std::string& path_;
-  const char* finished_;
-  size_t done_ = 0;
-};
-
-class AirJobs : public ZoneStage {
+class AirJobs : public cluster::ZoneStage {
  public:
   AirJobs(const bake::WorldBake& bake, const bake::WorldFolder& folder, int32_t workers)
       : ZoneStage("air", bake.zones().size(), folder.path(),
@@ -188,188 +134,19 @@ class AirJobs : public ZoneStage {
     if (air.is_there) air.entry = (*slot)->entry;
     return cluster::bytes_of(air);
   }
-  void enter(size_t zone, std::span<const uint8_t> result) override {
+  Result<void> enter(size_t zone, std::span<const uint8_t> result) override {
     const auto air = cluster::value_of<Air>(result);
     reused_ += air.is_reused ? 1 : 0;
-    if (!air.is_there) return;
+    if (!air.is_there) return {};
     slots_[zone] = std::make_unique<world::AirData::Slot>();
     slots_[zone]->entry = air.entry;
+    return {};
   }
 
   const bake::WorldBake& bake_;
   bake::AirBaker baker_;
   bake::AirSlots slots_;
   uint64_t reused_ = 0;
-};
-
-constexpr const char* kSomeOfGraph = "all zones and some of their regions and links are finished";
-
-class RegionJobs : public ZoneStage {
- public:
-  RegionJobs(graph::GraphPasses& passes, size_t zones, const std::string& path, int32_t workers)
-      : ZoneStage("regions", zones, path, kSomeOfGraph),
-        passes_(passes),
-        workers_(workers),
-        found_(zones) {}
-
-  // Of all zones: rank 0's are given to the others.
-  [[nodiscard]] const std::vector<graph::RegionsOfZone>& found() const { return found_; }
-
- private:
-  Result<cluster::RankBytes> work(size_t zone, Context& context) override {
-    const auto found = passes_.find_regions(zone, workers_, context);
-    if (!found) return found.error();
-    return cluster::bytes_of(*found);
-  }
-  void enter(size_t zone, std::span<const uint8_t> result) override {
-    found_[zone] = cluster::value_of<graph::RegionsOfZone>(result);
-  }
-
-  graph::GraphPasses& passes_;
-  int32_t workers_;
-  std::vector<graph::RegionsOfZone> found_;
-};
-
-class LinkJobs : public ZoneStage {
- public:
-  LinkJobs(graph::GraphPasses& passes, size_t zones, const std::string& path, int32_t workers)
-      : ZoneStage("links", zones, path, kSomeOfGraph), passes_(passes), workers_(workers) {}
-
- private:
-  using Pair = std::array<uint32_t, 2>;  // (std::pair is not trivial)
-
-  Result<cluster::RankBytes> work(size_t zone, Context& context) override {
-    const auto found = passes_.find_links(zone, workers_, context);
-    if (!found) return found.error();
-    std::vector<Pair> pairs;
-    for (const auto& [a, b] : found->joined) pairs.push_back({a, b});
-    const cluster::RankBytes own = cluster::bytes_of(found->links);
-    const cluster::RankBytes more = cluster::bytes_of(pairs);
-    cluster::RankBytes bytes(own.size() + more.size());
-    std::copy(more.begin(), more.end(), std::copy(own.begin(), own.end(), bytes.begin()));
-    return bytes;
-  }
-  void enter(size_t /*zone*/, std::span<const uint8_t> result) override {
-    graph::GraphPasses::Joined joined;
-    for (const Pair& pair : cluster::values_of<Pair>(result.subspan(sizeof(graph::LinksOfZone)))) {
-      joined.emplace_back(pair[0], pair[1]);
-    }
-    passes_.enter(cluster::value_of<graph::LinksOfZone>(result), joined);
-  }
-
-  graph::GraphPasses& passes_;
-  int32_t workers_;
-};
-
-// Every rank does jobs until there are none; all fail if one does. `shared`: see cluster::meet.
-template <class Jobs>
-Result<void> do_stage(cluster::Ranks& ranks, Jobs& jobs, bake::WorldFolder& folder,
-                      Context& context) {
-  const Result<void> mine =
-      ranks.rank() == 0
-          ? cluster::assign_jobs(ranks, jobs.jobs(), jobs.to_assign(folder, context), context)
-          : cluster::do_assigned_jobs(ranks, jobs.jobs(), context);
-  if (!mine && context.cancel) return mine;  // No other rank may be left to be met.
-  return cluster::meet(ranks, mine, context);
-}
-
-// What rank 0 has, for all.
-template <class T>
-Result<std::vector<T>> share(cluster::Ranks& ranks, const std::vector<T>& values,
-                             Context& context) {
-  cluster::RankBytes bytes;
-  if (ranks.rank() == 0) bytes = cluster::bytes_of(values);
-  if (auto ok = cluster::meet(ranks, {}, context, &bytes); !ok) return ok.error();
-  return cluster::values_of<T>(bytes);
-}
-
-// The stages of a bake, in their order.
-class RankBake {
- public:
-  RankBake(cluster::Ranks& ranks, const bake::WorldBake& bake, bake::WorldFolder& folder,
-           const BakeConfig& config, Context& context)
-      : ranks_(ranks), bake_(bake), folder_(folder), config_(config), context_(context) {}
-
-  // The report is rank 0's.
-  Result<BakeReport> run(const Scene& scene) {
-    auto report = run_stages(scene);
-    if (!report && context_.cancel) folder_.leave();
-    return report;
-  }
-
- private:
-  Result<BakeReport> run_stages(const Scene& scene) {
-    if (auto ok = bake_ground(); !ok) return ok.error();
-    if (auto ok = bake_air(); !ok) return ok.error();
-    const auto graph = make_graph();
-    if (!graph) return graph.error();
-    if (!is_first()) return BakeReport{};
-    auto ok = bake::finish_bake(folder_, *world_, **graph, scene, config_, context_, report_);
-    if (ok) return report_;
-    if (ok.error().code != Errc::kCancelled) return ok.error();
-    ranks_.abandon();
-    return cluster::stopped_error(ranks_, {.stage = "bake", .work = {}, .finished = [&](bool) {
-                                             return cluster::to_be_continued(
-                                                 "all zones and their graph are finished",
-                                                 folder_.path() + ".part", folder_.path());
-                                           }});
-  }
-
-  [[nodiscard]] bool is_first() const { return ranks_.rank() == 0; }
-
-  Result<void> bake_ground() {
-    GroundJobs ground(bake_, folder_.path(), config_.workers);
-    if (auto ok = do_stage(ranks_, ground, folder_, context_); !ok) return ok;
-    ground.let_go();
-    const auto facts = share(ranks_, ground.facts(), context_);
-    if (!facts) return facts.error();
-    auto world = bake_.world(*facts, report_);
-    if (!world) return world.error();  // On all ranks alike.
-    world_ = *std::move(world);
-    return {};
-  }
-
-  Result<void> bake_air() {
-    if (!bake_.has_air()) return {};
-    const auto start = Clock::now();
-    AirJobs air(bake_, folder_, config_.workers);
-    if (auto ok = do_stage(ranks_, air, folder_, context_); !ok) return ok;
-    if (!is_first()) return {};
-    bake_.set_air(air.take_slots(), *world_, report_);
-    report_.air_zones_reused += air.reused();
-    report_.seconds_air += seconds_since(start);
-    return {};
-  }
-
-  // Of rank 0; null for others.
-  Result<std::shared_ptr<world::GraphData>> make_graph() {
-    const auto start = Clock::now();
-    bake::read_zones_in(folder_, *world_);
-    bake::GraphFilesInFolder files(folder_);
-    graph::GraphPasses passes(*world_, &files);
-    const size_t zones = world_->slots.size();
-    RegionJobs regions(passes, zones, folder_.path(), config_.workers);
-    if (auto ok = do_stage(ranks_, regions, folder_, context_); !ok) return ok.error();
-    const auto found = share(ranks_, regions.found(), context_);
-    if (!found) return found.error();
-    for (const graph::RegionsOfZone& of_zone : *found) passes.enter(of_zone);
-    if (auto ok = passes.end_regions(); !ok) return ok.error();  // On all ranks alike.
-    LinkJobs links(passes, zones, folder_.path(), config_.workers);
-    if (auto ok = do_stage(ranks_, links, folder_, context_); !ok) return ok.error();
-    if (!is_first()) return std::shared_ptr<world::GraphData>();
-    auto made = passes.finish();
-    bake::report_graph(made, report_);
-    report_.seconds_graph = seconds_since(start);
-    return std::move(made.graph);
-  }
-
-  cluster::Ranks& ranks_;
-  const bake::WorldBake& bake_;
-  bake::WorldFolder& folder_;
-  const BakeConfig& config_;
-  Context& context_;
-  BakeReport report_;
-  std::shared_ptr<world::WorldData> world_;
 };
 
 }  // namespace
@@ -386,19 +163,8 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
   BakeConfig own = config;
   own.workers = cluster::workers_of_rank(config.workers, ranks);
   // The folder first: what is there decides on the grid.
-  std::optional<bake::WorldFolder> folder;
-  Result<void> begun;
-  if (ranks.rank() == 0) {
-    auto opened = bake::WorldFolder::begin(path, config.old_zones);
-    if (opened) {
-      folder.emplace(*std::move(opened));
-      begun = folder->check_part(config);
-    } else {
-      begun = opened.error();
-    }
-  }
-  if (auto ok = agree_over_ranks(begun); !ok) return ok.error();
-  if (!folder) folder.emplace(bake::WorldFolder::join(path, config.old_zones));
+  auto folder = cluster::open_folder(ranks, path, own);
+  if (!folder) return folder.error();
   const auto bake = bake::WorldBake::begin(scene, own, folder->old_world(), true);
   Result<void> planned;
   if (!bake) planned = bake.error();
@@ -407,7 +173,23 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
       !ok) {
     return ok.error();
   }
-  auto report = RankBake(ranks, *bake, *folder, own, context).run(scene);
+  const auto make_world = [&](BakeReport& out) -> Result<std::shared_ptr<world::WorldData>> {
+    GroundJobs ground(*bake, folder->path(), own.workers);
+    if (auto ok = cluster::do_stage(ranks, ground, *folder, context); !ok) return ok.error();
+    ground.let_go();
+    const auto facts = cluster::share(ranks, ground.facts(), context);
+    if (!facts) return facts.error();
+    auto world = bake->world(*facts, out);
+    if (!world || !bake->has_air()) return world;  // It fails on all ranks alike.
+    const auto air_start = Clock::now();
+    AirJobs air(*bake, *folder, own.workers);
+    if (auto ok = cluster::do_stage(ranks, air, *folder, context); !ok) return ok.error();
+    if (ranks.rank() == 0) bake->set_air(air.take_slots(), **world, out);
+    out.air_zones_reused += air.reused();
+    out.seconds_air += seconds_since(air_start);
+    return world;
+  };
+  auto report = cluster::bake_in_stages(ranks, *folder, scene, own, context, make_world);
   if (report && ranks.rank() == 0) report->seconds_total = seconds_since(start);
   return report;
 }

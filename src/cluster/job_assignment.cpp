@@ -290,6 +290,13 @@ Result<void> meet(Ranks& ranks, const Result<void>& mine, Context& context, Rank
     if (message->tag == kFail && all) all = unpacked(*message);
   }
   for (int32_t rank = 1; rank < ranks.size(); ++rank) say(rank, all);
+  while (!ranks.has_sent_all()) {
+    if (context.cancel) {
+      ranks.abandon();
+      return stopped_error(ranks, what);
+    }
+    nap();
+  }
   return all;
 }
 

@@ -137,15 +137,8 @@ Result<void> link_to_air(cluster::Ranks& ranks, const World& world, const NodeCo
   return {};
 }
 
-}  // namespace
-
-Result<NodeSummary> nodes_over_ranks(const World& world, const Scene& scene,
-                                     const NodeConfig& config, Context& context) {
-  if (rank_info().size == 1) {
-    const auto nodes = Nodes::create_in_folder(world, scene, config, context);
-    if (!nodes) return nodes.error();
-    return nodes->summary();
-  }
+Result<NodeSummary> make_nodes(const World& world, const bake::NodeScene& scene,
+                               const NodeConfig& config, Context& context) {
   const auto start = Clock::now();
   auto joined = cluster::Ranks::join();
   if (!joined) return joined.error();
@@ -199,6 +192,28 @@ Result<NodeSummary> nodes_over_ranks(const World& world, const Scene& scene,
   NodeSummary summary = Access::create<Nodes>(nodes).summary();
   summary.seconds = seconds_since(start);
   return summary;
+}
+
+// With one rank: what one process does.
+template <class AnyScene>
+Result<NodeSummary> nodes_of(const World& world, const AnyScene& scene, const NodeConfig& config,
+                             Context& context) {
+  if (rank_info().size > 1) return make_nodes(world, scene, config, context);
+  const auto nodes = Nodes::create_in_folder(world, scene, config, context);
+  if (!nodes) return nodes.error();
+  return nodes->summary();
+}
+
+}  // namespace
+
+Result<NodeSummary> nodes_over_ranks(const World& world, const Scene& scene,
+                                     const NodeConfig& config, Context& context) {
+  return nodes_of(world, scene, config, context);
+}
+
+Result<NodeSummary> nodes_over_ranks(const World& world, const SceneRegions& scene,
+                                     const NodeConfig& config, Context& context) {
+  return nodes_of(world, scene, config, context);
 }
 
 }  // namespace throng

@@ -35,8 +35,12 @@ class Ranks {
 
   /// Messages of one channel are not seen on another.
   enum class Channel : uint8_t { kJobs, kMeetings };
+  /// Does not wait: a rank that has died takes no message. What is large goes while this rank
+  /// polls.
   void send(int32_t to, int32_t tag, std::span<const uint8_t> bytes,
             Channel channel = Channel::kJobs);
+  /// Has all that was sent gone?
+  [[nodiscard]] bool has_sent_all();
   /// A message if one has come. Does not wait.
   std::optional<RankMessage> poll(Channel channel = Channel::kJobs);
 

@@ -3,6 +3,8 @@
 #include <mpi.h>
 
 #include <cstdlib>
+#include <list>
+#include <vector>
 
 #include "cluster/ranks.h"
 
@@ -11,6 +13,20 @@ namespace throng::cluster {
 namespace {
 
 bool g_abandoned = false;
+
+struct Sent {
+  MPI_Request request = MPI_REQUEST_NULL;
+  std::vector<uint8_t> bytes;
+};
+std::list<Sent> g_sent;  // not yet gone
+
+void forget_those_gone() {
+  std::erase_if(g_sent, [](Sent& sent) {
+    int done = 0;
+    MPI_Test(&sent.request, &done, MPI_STATUS_IGNORE);
+    return done != 0;
+  });
+}
 
 // MPI is begun once in a process. What has begun it ends it.
 MPI_Comm g_meetings = MPI_COMM_NULL;
@@ -22,7 +38,9 @@ MPI_Comm comm_of(Ranks::Channel channel) {
 void part() {
   int over = 0;
   MPI_Finalized(&over);
-  if (over == 0 && !g_abandoned) MPI_Finalize();
+  if (over != 0 || g_abandoned) return;
+  for (Sent& sent : g_sent) MPI_Wait(&sent.request, MPI_STATUS_IGNORE);
+  MPI_Finalize();
 }
 
 }  // namespace
@@ -59,10 +77,20 @@ std::vector<uint64_t> Ranks::gather(uint64_t mine) {
 }
 
 void Ranks::send(int32_t to, int32_t tag, std::span<const uint8_t> bytes, Channel channel) {
-  MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, tag, comm_of(channel));
+  Sent& sent = g_sent.emplace_back();
+  sent.bytes.assign(bytes.begin(), bytes.end());
+  MPI_Isend(sent.bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, to, tag, comm_of(channel),
+            &sent.request);
+  forget_those_gone();
+}
+
+bool Ranks::has_sent_all() {
+  forget_those_gone();
+  return g_sent.empty();
 }
 
 std::optional<RankMessage> Ranks::poll(Channel channel) {
+  forget_those_gone();
   const MPI_Comm comm = comm_of(channel);
   int found = 0;
   MPI_Status status;

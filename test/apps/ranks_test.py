@@ -61,13 +61,13 @@ def child_of_rank(parent, rank):
     return None
 
 
-def kill_a_rank(folder, rank, ranks, files=0, kind="tha", options=()):
+def kill_a_rank(folder, rank, ranks, files=0, kind="tha", options=(), model=MODEL):
     """Bakes until some zones are done, or some files of a kind that is made after them, and kills one rank. Returns
     standard error and the zones in the journal. Open MPI stops rank 0 only after it has made all files: stop it here."""
     world = folder / "killed.throng"
     part = folder / "killed.throng.part"
     journal = part / "journal"
-    words = bake_words(world, options=["--threads", "1", *options])
+    words = bake_words(world, model, ["--threads", "1", *options])
     with subprocess.Popen([*MPIRUN, "-n", str(ranks), *words], env=environment(),
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         while process.poll() is None:
@@ -224,6 +224,40 @@ def test_nodes(folder):
     assert resumed > 0, f"{resumed} of 3 bakes were killed amid their nodes and gone on with"
 
 
+def test_blocks(folder):
+    """With --memory no rank holds the scene: blocks of zones, and batches of nodes, are assigned."""
+    model, options = "builtin:landscape,size=300", ["--cell", "0.25", "--nodes", "--fly"]
+    world = folder / "blocks.throng"
+    done = run(bake_words(world, model, options))
+    assert done.returncode == 0, done.stderr
+    report, one = json.loads(done.stdout), content(world)
+    assert report["zones"] >= 100 and report["air_zones"] >= 100, report
+    shutil.rmtree(world)
+    bounded = [*options, "--memory", "40"]
+    same = ("zones", "triangles", "walkable_area", "air_zones", "nodes", "node_arcs")
+    for ranks in (1, 2, 3):
+        words = [*MPIRUN, "-n", str(ranks), *bake_words(world, model, bounded)]
+        done = run(words)
+        assert done.returncode == 0 and not ours(done.stderr), done.stderr
+        assert [json.loads(done.stdout)[key] for key in same] == [report[key] for key in same], done.stdout
+        assert content(world) == one, f"{ranks} ranks: other bytes in blocks than of the whole scene"
+        again = json.loads(run(words).stdout)
+        assert again["zones_baked"] == again["zones_relinked"] == again["node_zones_made"] == 0, again
+        assert content(world) == one, f"{ranks} ranks: other bytes when all is reused"
+        shutil.rmtree(world)
+    for rank, ranks in ((1, 2), (0, 2), (2, 3)):
+        err, finished = kill_a_rank(folder, rank, ranks, options=bounded, model=model)
+        said = ours(err)
+        assert said and all("another rank has died" in line and "goes on from there" in line for line in said), err
+        killed = folder / "killed.throng"
+        words = bake_words(killed, model, bounded)
+        done = run(words if rank == 0 else [*MPIRUN, "-n", "2", *words])
+        assert done.returncode == 0, done.stderr
+        assert json.loads(done.stdout)["zones_reused"] >= finished, done.stdout
+        assert content(killed) == one, "other bytes in blocks than undisturbed"
+        shutil.rmtree(killed)
+
+
 def test_refusals(folder):
     world = folder / "refused.throng"
 
@@ -267,7 +301,7 @@ def test_all(folder):
     assert done.returncode == 0, done.stderr
     reference = {"report": json.loads(done.stdout), "content": content(world)}
     parts = {test_bytes: [reference], test_death: [reference], test_air: [], test_graph: [reference], test_nodes: [],
-             test_refusals: []}
+             test_blocks: [], test_refusals: []}
     with concurrent.futures.ThreadPoolExecutor(3) as at_once:
         for part in parts:
             (folder / part.__name__).mkdir()

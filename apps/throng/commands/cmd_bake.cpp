@@ -101,20 +101,13 @@ Result<std::vector<NodeOffMeshLink>> read_off_mesh_links(const std::string& name
   return links;
 }
 
-Result<NodeSummary> bake_nodes(BakeOptions& options, const Scene& scene, Context& context) {
-  const Result<World> world = World::open(options.output, {.resident_bytes = kResidentBytes});
+template <class AnyScene>
+Result<NodeSummary> bake_nodes(BakeOptions& options, const AnyScene& scene, Context& context) {
+  const uint64_t resident = options.memory ? options.memory.bytes / 8 : kResidentBytes;
+  const Result<World> world = World::open(options.output, {.resident_bytes = resident});
   const auto opened = meet_over_ranks(world ? Result<void>() : world.error(), context);
   if (!opened) return opened.error();
   return nodes_over_ranks(*world, scene, options.node_config, context);
-}
-
-Result<NodeSummary> bake_nodes(BakeOptions& options, const SceneRegions& scene, Context& context) {
-  const Result<World> world =
-      World::open(options.output, {.resident_bytes = options.memory.bytes / 8});
-  if (!world) return world.error();
-  const Result<Nodes> nodes = Nodes::create_in_folder(*world, scene, options.node_config, context);
-  if (!nodes) return nodes.error();
-  return nodes->summary();
 }
 
 // What is said of the models.
@@ -273,12 +266,36 @@ void add_nodes(const NodeSummary& nodes, Json& json, std::string& text) {
                   counted(nodes.zones_made + nodes.zones_reused, "zone"), nodes.zones_reused);
 }
 
-// With --memory: district by district, by this process alone.
-int bake_by_block(Session& session, BakeOptions& options) {
-  if (rank_info().size > 1) {
-    return fail({Errc::kBadConfig, "--memory: is for one process; leave it out under mpirun"});
+// What the ranks have in common, whether each holds the scene or only parts of it.
+template <class AnyScene>
+int bake_scene(Session& session, BakeOptions& options, const AnyScene& scene,
+               const Models& models) {
+  const uint64_t peak_read = peak_memory();
+  const Result<BakeReport> report =
+      bake_over_ranks(options.output, scene, options.config, session.context);
+  const bool nodes_follow = wants_nodes(options);
+  if (nodes_follow) {
+    // Rank 0 still puts the world into its place when the others have parted.
+    const auto baked = meet_over_ranks(report ? Result<void>() : report.error(), session.context);
+    if (!baked) return fail(report ? baked.error() : report.error());
   }
-  if (auto ok = prepare(options); !ok) return fail(ok.error());
+  if (!report) return fail(report.error());
+  std::optional<NodeSummary> nodes;
+  if (nodes_follow) {
+    const Result<NodeSummary> made = bake_nodes(options, scene, session.context);
+    if (!made) return fail_after_ground(options, made.error());
+    nodes = *made;
+  }
+  if (rank_info().rank > 0) return kDone;
+  Json json = bake_json(options, models, *report, peak_read);
+  std::string text = bake_text(options, models, *report);
+  if (nodes) add_nodes(*nodes, json, text);
+  print_result(session, json, text);
+  return kDone;
+}
+
+// With --memory.
+int bake_by_block(Session& session, BakeOptions& options) {
   options.config.block_bytes = options.memory.blocks();
   options.node_config.working_bytes =
       std::min(options.node_config.working_bytes, options.memory.nodes());
@@ -287,53 +304,19 @@ int bake_by_block(Session& session, BakeOptions& options) {
   while (output.size() > 1 && (output.back() == '/' || output.back() == '\\')) output.pop_back();
   const auto folder = std::filesystem::path(output).parent_path();
   const auto scene = read_regions(options.sources, folder.string(), session.context);
-  if (!scene) return fail(scene.error());
-  const uint64_t peak_read = peak_memory();
-  const Result<BakeReport> report =
-      bake_world_to(options.output, **scene, options.config, session.context);
-  if (!report) return fail(report.error());
-  const Models models{.facts = (*scene)->facts(), .hints = {}};
-  Json json = bake_json(options, models, *report, peak_read);
-  std::string text = bake_text(options, models, *report);
-  if (wants_nodes(options)) {
-    const Result<NodeSummary> nodes = bake_nodes(options, **scene, session.context);
-    if (!nodes) return fail_after_ground(options, nodes.error());
-    add_nodes(*nodes, json, text);
-  }
-  print_result(session, json, text);
-  return kDone;
+  const auto read = agree_over_ranks(scene ? Result<void>() : scene.error());
+  if (!read) return fail(read.error());
+  return bake_scene(session, options, **scene, {.facts = (*scene)->facts(), .hints = {}});
 }
 
 int bake(Session& session, BakeOptions& options) {
-  if (options.memory) return bake_by_block(session, options);
   const auto ready = agree_over_ranks(prepare(options));
   if (!ready) return fail(ready.error());
+  if (options.memory) return bake_by_block(session, options);
   const Result<Scene> scene = read_sources(options.sources, session.context);
   const auto read = agree_over_ranks(scene ? Result<void>() : scene.error());
   if (!read) return fail(read.error());
-  const uint64_t peak_read = peak_memory();
-  const Result<BakeReport> report =
-      bake_over_ranks(options.output, *scene, options.config, session.context);
-  const bool nodes_follow = wants_nodes(options);
-  if (nodes_follow) {
-    // Rank 0 still makes the graph when the others have baked their last zone.
-    const auto baked = meet_over_ranks(report ? Result<void>() : report.error(), session.context);
-    if (!baked) return fail(report ? baked.error() : report.error());
-  }
-  if (!report) return fail(report.error());
-  std::optional<NodeSummary> nodes;
-  if (nodes_follow) {
-    const Result<NodeSummary> made = bake_nodes(options, *scene, session.context);
-    if (!made) return fail_after_ground(options, made.error());
-    nodes = *made;
-  }
-  if (rank_info().rank > 0) return kDone;
-  const Models models = models_of(*scene);
-  Json json = bake_json(options, models, *report, peak_read);
-  std::string text = bake_text(options, models, *report);
-  if (nodes) add_nodes(*nodes, json, text);
-  print_result(session, json, text);
-  return kDone;
+  return bake_scene(session, options, *scene, models_of(*scene));
 }
 
 }  // namespace

@@ -83,6 +83,7 @@ WorldFolder::WorldFolder(WorldFolder&& other) noexcept
     : path_(std::move(other.path_)),
       part_(std::move(other.part_)),
       is_owner_(std::exchange(other.is_owner_, false)),
+      is_joined_(other.is_joined_),
       part_lock_(std::move(other.part_lock_)),
       old_lock_(std::move(other.old_lock_)),
       old_(std::move(other.old_)),
@@ -123,14 +124,21 @@ Result<WorldFolder> WorldFolder::begin(std::string path, OldZones old_zones) {
   folder.old_lock_ = *std::move(old_lock);
   if (old_zones == OldZones::kBakeAgain) empty_folder(folder.part_);
   if (old_zones == OldZones::kKeep) folder.read_old();
-  if (auto ok = folder.read_part(); !ok) return ok.error();
+  // Without what a killed bake wrote in part, so that further records are aligned.
+  const std::vector<Done> records = folder.read_part();
+  const auto written =
+      write_file((folder.part_ / kJournal).string(),
+                 {reinterpret_cast<const uint8_t*>(records.data()), records.size() * sizeof(Done)});
+  if (!written) return written.error();
   return folder;
 }
 
 WorldFolder WorldFolder::join(const std::string& path, OldZones old_zones) {
   WorldFolder folder(without_slash(path));
   folder.is_owner_ = false;
+  folder.is_joined_ = true;
   if (old_zones == OldZones::kKeep) folder.read_old();
+  folder.read_part();
   return folder;
 }
 
@@ -168,26 +176,23 @@ void WorldFolder::read_old() {
   }
 }
 
-// The journal is rewritten with its whole records, so that further ones are aligned.
-Result<void> WorldFolder::read_part() {
-  const std::string name = (part_ / kJournal).string();
+// The whole records of the journal, which are sources from then on.
+std::vector<WorldFolder::Done> WorldFolder::read_part() {
   std::vector<Done> records;
-  if (const auto map = FileMap::open(name)) {
-    const auto bytes = map->bytes();
-    for (size_t at = 0; at + sizeof(Done) <= bytes.size(); at += sizeof(Done)) {
-      Done done;
-      std::memcpy(&done, bytes.data() + at, sizeof done);
-      if (done.check != done.sum()) break;
-      records.push_back(done);
-      sources_.insert(
-          {{done.z, done.x},
-           {.is_part = true,
-            .input = done.input,
-            .entry = {done.x, done.z, done.levels, done.tiles, done.bytes, done.hash}}});
-    }
+  const auto map = FileMap::open((part_ / kJournal).string());
+  if (!map) return records;
+  const auto bytes = map->bytes();
+  for (size_t at = 0; at + sizeof(Done) <= bytes.size(); at += sizeof(Done)) {
+    Done done;
+    std::memcpy(&done, bytes.data() + at, sizeof done);
+    if (done.check != done.sum()) break;
+    records.push_back(done);
+    sources_.insert({{done.z, done.x},
+                     {.is_part = true,
+                      .input = done.input,
+                      .entry = {done.x, done.z, done.levels, done.tiles, done.bytes, done.hash}}});
   }
-  return write_file(
-      name, {reinterpret_cast<const uint8_t*>(records.data()), records.size() * sizeof(Done)});
+  return records;
 }
 
 std::optional<WorldFolder::Reused> WorldFolder::reuse(int32_t x, int32_t z, uint64_t input) const {
@@ -225,6 +230,7 @@ Result<void> WorldFolder::write_zone(const std::string& path, const format::Zone
 }
 
 Result<void> WorldFolder::add(const format::ZoneEntry& entry, uint64_t input) {
+  if (is_joined_) return {};
   Done done{.x = entry.x(),
             .z = entry.z(),
             .levels = entry.levels(),

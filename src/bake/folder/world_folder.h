@@ -28,7 +28,8 @@ class WorldFolder {
   /// Begins NAME.part beside the world `path`, and holds both against other bakes. Fails with kIo,
   /// also if `path` is something else or another bake is at work there; then all is as it was.
   static Result<WorldFolder> begin(std::string path, OldZones old_zones);
-  /// The folder that another process has begun: only for files of zones.
+  /// The folder that another process has begun: zones can be reused and their files written, what
+  /// is added counts once that process adds it.
   static WorldFolder join(const std::string& path, OldZones old_zones);
   WorldFolder(WorldFolder&& other) noexcept;
   WorldFolder& operator=(WorldFolder&&) = delete;
@@ -96,13 +97,14 @@ class WorldFolder {
 
   explicit WorldFolder(std::string path);
   void read_old();
-  Result<void> read_part();
+  std::vector<Done> read_part();
   template <class File>
   std::unique_ptr<File> reuse_file(const std::string& name, uint64_t input) const;
 
   std::string path_;
   std::filesystem::path part_;
   bool is_owner_ = true;  // not: finished, left, joined or moved from
+  bool is_joined_ = false;
   FolderLock part_lock_, old_lock_;
   std::shared_ptr<world::WorldData> old_;
   std::multimap<std::pair<int32_t, int32_t>, Source> sources_;  // by zone, the newest last

@@ -217,6 +217,64 @@ TEST(CrowdEngine, OtherModelsDoWhatThePlainStepDoes) {
   }
 }
 
+// Several processes that share a crowd have its bodies in different orders.
+void expect_any_order(const LevelGround& ground, const std::vector<test::PlainBody>& bodies,
+                      const test::PlainConfig& config, int steps, const std::string& name) {
+  Pair kept = ground.pair(bodies, config, 2), shuffled = ground.pair(bodies, config, 2);
+  const auto step = [](crowd::CrowdEngine& engine, int number) {
+    crowd::EngineCounts counts;
+    crowd::EngineTimes times;
+    engine.step(
+        static_cast<uint64_t>(number), [](std::span<crowd::Body>, int32_t) {}, counts, times);
+    std::vector<crowd::Body> by_slot(engine.bodies().size());
+    for (const crowd::Body& body : engine.bodies()) by_slot[body.slot] = body;
+    return by_slot;
+  };
+  for (int number = 0; number < steps; ++number) {
+    const std::span<crowd::Body> order = shuffled.engine.bodies();
+    for (size_t i = order.size(); i > 1; --i) {
+      std::swap(order[i - 1], order[random_below(9, static_cast<uint64_t>(number), i, i)]);
+    }
+    const auto a = step(kept.engine, number), b = step(shuffled.engine, number);
+    for (size_t i = 0; i < a.size(); ++i) {
+      ASSERT_TRUE(a[i].x == b[i].x && a[i].z == b[i].z && a[i].velocity.x == b[i].velocity.x &&
+                  a[i].velocity.z == b[i].velocity.z && a[i].detour_angle == b[i].detour_angle &&
+                  a[i].flags == b[i].flags && a[i].asks == b[i].asks &&
+                  a[i].at_rest == b[i].at_rest)
+          << name << ": body " << i << " in step " << number;
+    }
+  }
+}
+
+TEST(CrowdEngine, TheOrderOfBodiesDoesNotMatter) {
+  const LevelGround ground(60);
+  test::PlainConfig config;
+  const test::Spot first{config.to_units(15), config.to_units(15)};
+  for (const bool queues : {false, true}) {
+    config.queues = queues;
+    for (const float acceleration : {0.0f, 4.0f}) {
+      config.acceleration = acceleration;
+      for (const double area : {4.0, 1.0, 0.7}) {
+        std::vector<test::PlainBody> bodies = scattered(config, 300, area, 5, first);
+        const std::string name = std::to_string(queues) + ' ' + std::to_string(acceleration) + ' ' +
+                                 std::to_string(area);
+        expect_any_order(ground, bodies, config, 80, name);
+        for (size_t i = 0; i < bodies.size(); i += 3) bodies[i].goal = bodies[0].goal;
+        expect_any_order(ground, bodies, config, 150, name + ", one goal");
+      }
+    }
+  }
+  config = {};
+  config.deadlock_avoidance = false;
+  config.reaction = 0;
+  config.steering.neighbours = steer::kMaxNear;
+  for (const SteeringModel model : {SteeringModel::kCurvilinear, SteeringModel::kSocialForce}) {
+    config.model = model;
+    expect_any_order(ground, scattered(config, 300, 0.7, 6, first), config, 100,
+                     std::string(name_of(model)));
+  }
+}
+
 TEST(CrowdEngine, EveryMachineDoesTheSame) {
   const LevelGround ground(40);
   const test::PlainConfig config;

@@ -5,8 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <barrier>
+#include <cmath>
+#include <cstring>
 #include <span>
 #include <string>
+#include <thread>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "baked.h"
@@ -272,6 +278,204 @@ TEST(CrowdEngine, TheOrderOfBodiesDoesNotMatter) {
     config.model = model;
     expect_any_order(ground, scattered(config, 300, 0.7, 6, first), config, 100,
                      std::string(name_of(model)));
+  }
+}
+
+// Engines of one crowd, a thread each, that own stripes of the plane and write to each other's
+// boxes.
+class Stripes {
+ public:
+  Stripes(std::vector<int32_t> borders, int32_t far)
+      : borders_(std::move(borders)),
+        far_(far),
+        ranks_(borders_.size() + 1),
+        together_(static_cast<ptrdiff_t>(ranks_)),
+        bodies_(ranks_ * ranks_),
+        moved_(ranks_ * ranks_),
+        moves_(ranks_),
+        accepted_(ranks_) {}
+
+  [[nodiscard]] size_t ranks() const { return ranks_; }
+  [[nodiscard]] size_t owner(const crowd::Body& body) const {
+    return static_cast<size_t>(std::upper_bound(borders_.begin(), borders_.end(), body.x) -
+                               borders_.begin());
+  }
+  [[nodiscard]] bool sees(size_t rank, const crowd::Body& body) const {
+    return (rank == 0 || body.x >= borders_[rank - 1] - far_) &&
+           (rank + 1 == ranks_ || body.x < borders_[rank] + far_);
+  }
+
+  class Exchange : public crowd::StepExchange {
+   public:
+    Exchange(Stripes& all, size_t rank) : all_(all), rank_(rank) {}
+    uint64_t step = 0;
+    uint64_t ghosts = 0;  // of all steps
+
+    // Bodies that have left the stripe go to the engine that owns where they are.
+    void migrate(crowd::CrowdEngine& engine) {
+      for (size_t to = 0; to < all_.ranks_; ++to) box(all_.moved_, to).clear();
+      const std::span<crowd::Body> bodies = engine.bodies();
+      size_t kept = 0;
+      for (size_t n = 0; n < bodies.size(); ++n) {
+        const size_t to = all_.owner(bodies[n]);
+        if (to == rank_) {
+          bodies[kept++] = bodies[n];
+        } else {
+          box(all_.moved_, to).push_back({engine.ghost_of(n, step), engine.choice(bodies[n].slot)});
+        }
+      }
+      engine.shrink(kept);
+      all_.together_.arrive_and_wait();
+      for (size_t from = 0; from < all_.ranks_; ++from) {
+        if (from == rank_) continue;
+        for (const auto& [ghost, choice] : all_.moved_[from * all_.ranks_ + rank_]) {
+          engine.take_over(ghost, choice, step);
+        }
+      }
+      all_.together_.arrive_and_wait();
+    }
+
+    std::span<const crowd::Ghost> exchange_bodies(crowd::CrowdEngine& engine) override {
+      for (size_t to = 0; to < all_.ranks_; ++to) box(all_.bodies_, to).clear();
+      for (size_t n = 0; n < engine.bodies().size(); ++n) {
+        for (size_t to = 0; to < all_.ranks_; ++to) {
+          if (to == rank_ || !all_.sees(to, engine.bodies()[n])) continue;
+          engine.show_to_others(n);
+          box(all_.bodies_, to).push_back(engine.ghost_of(n, step));
+        }
+      }
+      return collect<crowd::Ghost>(
+          [&](size_t from) { return std::span(all_.bodies_[from * all_.ranks_ + rank_]); },
+          ghosts_);
+    }
+    std::span<const crowd::GhostMove> exchange_moves(
+        std::span<const crowd::GhostMove> shown) override {
+      all_.moves_[rank_].assign(shown.begin(), shown.end());
+      return collect<crowd::GhostMove>([&](size_t from) { return std::span(all_.moves_[from]); },
+                                       moves_);
+    }
+    std::span<const uint32_t> exchange_accepted(std::span<const uint32_t> shown) override {
+      all_.accepted_[rank_].assign(shown.begin(), shown.end());
+      return collect<uint32_t>([&](size_t from) { return std::span(all_.accepted_[from]); },
+                               accepted_);
+    }
+
+   private:
+    template <class Box>
+    Box& box(std::vector<Box>& boxes, size_t to) {
+      return boxes[rank_ * all_.ranks_ + to];
+    }
+    template <class T, class From>
+    std::span<const T> collect(From from, std::vector<T>& into) {
+      all_.together_.arrive_and_wait();
+      into.clear();
+      for (size_t other = 0; other < all_.ranks_; ++other) {
+        if (other == rank_) continue;
+        const auto box = from(other);
+        into.insert(into.end(), box.begin(), box.end());
+      }
+      ghosts += std::is_same_v<T, crowd::Ghost> ? into.size() : 0;
+      all_.together_.arrive_and_wait();
+      return into;
+    }
+
+    Stripes& all_;
+    size_t rank_;
+    std::vector<crowd::Ghost> ghosts_;
+    std::vector<crowd::GhostMove> moves_;
+    std::vector<uint32_t> accepted_;
+  };
+
+ private:
+  std::vector<int32_t> borders_;  // x, ascending [units]
+  int32_t far_;                   // beyond its borders a stripe sees bodies [units]
+  size_t ranks_;
+  std::barrier<> together_;
+  // From each to each, and from each to all.
+  std::vector<std::vector<crowd::Ghost>> bodies_;
+  std::vector<std::vector<std::pair<crowd::Ghost, steer::Plane>>> moved_;
+  std::vector<std::vector<crowd::GhostMove>> moves_;
+  std::vector<std::vector<uint32_t>> accepted_;
+};
+
+// Steps a crowd by one engine and by as many as there are stripes; all bodies are the same.
+void expect_shared(const LevelGround& ground, const std::vector<test::PlainBody>& bodies,
+                   const test::PlainConfig& config, const std::vector<int32_t>& borders, int steps,
+                   const std::string& name) {
+  Pair alone = ground.pair(bodies, config, 1);
+  std::vector<Pair> shared;
+  for (size_t rank = 0; rank <= borders.size(); ++rank) {
+    shared.push_back(ground.pair(bodies, config, 1));
+  }
+  Stripes stripes(borders, alone.engine.sight());
+  std::vector<Stripes::Exchange> exchanges;
+  for (size_t rank = 0; rank < shared.size(); ++rank) {
+    exchanges.emplace_back(stripes, rank);
+    const std::span<crowd::Body> own = shared[rank].engine.bodies();
+    const auto end = std::remove_if(own.begin(), own.end(), [&](const crowd::Body& body) {
+      return stripes.owner(body) != rank;
+    });
+    shared[rank].engine.shrink(static_cast<size_t>(end - own.begin()));
+  }
+  const auto nothing = [](std::span<crowd::Body>, int32_t) {};
+  for (int number = 0; number < steps; ++number) {
+    crowd::EngineCounts counts;
+    crowd::EngineTimes times;
+    const auto step = static_cast<uint64_t>(number);
+    alone.engine.step(step, nothing, counts, times);
+    std::vector<std::thread> threads;
+    for (size_t rank = 0; rank < shared.size(); ++rank) {
+      threads.emplace_back([&, rank] {
+        crowd::EngineCounts own_counts;
+        crowd::EngineTimes own_times;
+        exchanges[rank].step = step;
+        exchanges[rank].migrate(shared[rank].engine);
+        shared[rank].engine.step(step, nothing, own_counts, own_times, &exchanges[rank]);
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    std::vector<const crowd::Body*> by_slot(bodies.size(), nullptr);
+    for (const Pair& pair : shared) {
+      for (const crowd::Body& body : pair.engine.bodies()) {
+        ASSERT_EQ(by_slot[body.slot], nullptr) << name << ": two engines have " << body.slot;
+        by_slot[body.slot] = &body;
+      }
+    }
+    for (const crowd::Body& a : alone.engine.bodies()) {
+      const crowd::Body* const b = by_slot[a.slot];
+      ASSERT_NE(b, nullptr) << name << ": no engine has " << a.slot;
+      ASSERT_EQ(std::memcmp(&a, b, sizeof a), 0)
+          << name << ": body " << a.slot << " in step " << number;
+    }
+  }
+  uint64_t ghosts = 0;
+  for (const auto& exchange : exchanges) ghosts += exchange.ghosts;
+  EXPECT_GT(ghosts, static_cast<uint64_t>(steps)) << name << ": there was nothing to share";
+}
+
+TEST(CrowdEngine, SharedByEnginesDoesWhatOneDoes) {
+  const LevelGround ground(60);
+  test::PlainConfig config;
+  const test::Spot corner{config.to_units(15), config.to_units(15)};
+  const auto at = [&](double x) { return config.to_units(x); };
+  for (const bool queues : {false, true}) {
+    config.queues = queues;
+    config.acceleration = queues ? 4.0f : 0.0f;
+    for (const double area : {4.0, 1.0, 0.7}) {
+      const double side = std::sqrt(300 * area);
+      std::vector<test::PlainBody> bodies = scattered(config, 300, area, 8, corner);
+      for (const std::vector<double>& shares :
+           {std::vector<double>{0.5}, {0.3, 0.6}, {0.2, 0.25, 0.5, 0.8}}) {
+        std::vector<int32_t> borders;
+        for (const double share : shares) borders.push_back(at(15 + share * side));
+        const std::string name = std::to_string(queues) + ' ' + std::to_string(area) + ' ' +
+                                 std::to_string(borders.size() + 1);
+        expect_shared(ground, bodies, config, borders, 80, name);
+      }
+      for (size_t i = 0; i < bodies.size(); i += 3) bodies[i].goal = bodies[0].goal;
+      expect_shared(ground, bodies, config, {at(15 + 0.5 * side)}, 120,
+                    "one goal, " + std::to_string(queues) + ' ' + std::to_string(area));
+    }
   }
 }
 

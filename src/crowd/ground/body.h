@@ -55,6 +55,8 @@ struct Body {
   uint8_t avatar_class : 4 = 0;  // at most kMaxAvatarClasses
   bool in_stream : 1 = false;    // it meets a stream, or follows one that does
   bool at_rest : 1 = false;      // at the end of its path, see Rest
+  bool is_ghost : 1 = false;     // another process moves it
+  bool is_shown : 1 = false;     // another process has it as a ghost
   uint8_t flags = 0;
   uint16_t height = 0;  // [mm, at most 65 m]
   uint16_t target = 0;  // TargetId: its goal is a target

@@ -139,9 +139,11 @@ void CrowdEngine::add(const Body& body) {
   fit_rows(body.slot + size_t{1});
 }
 
-void CrowdEngine::step(uint64_t step, Before before, EngineCounts& counts, EngineTimes& times) {
-  if (size_ == 0) return;
+void CrowdEngine::step(uint64_t step, Before before, EngineCounts& counts, EngineTimes& times,
+                       StepExchange* exchange) {
+  if (size_ == 0 && exchange == nullptr) return;
   step_ = step;
+  exchange_ = exchange;
   auto start = Clock::now();
   const auto lap = [&](double& seconds) {
     seconds += seconds_since(start);
@@ -149,14 +151,17 @@ void CrowdEngine::step(uint64_t step, Before before, EngineCounts& counts, Engin
   };
   prefer_all(step, before);
   lap(times.plan);
+  if (exchange != nullptr) add_ghosts(exchange->exchange_bodies(*this));
   grid_->sort({bodies_.data(), size_}, {spare_.data(), size_}, config_.workers);
   std::swap(bodies_, spare_);
+  if (exchange != nullptr) list_shared();
   lap(times.sort);
   decide_all(counts);
   lap(times.steer);
   resolve_conflicts(step);
   lap(times.resolve);
   settle_all(counts);
+  if (exchange != nullptr) drop_ghosts();
   lap(times.settle);
 }
 
@@ -233,7 +238,7 @@ void CrowdEngine::decide_all(EngineCounts& counts) {
       Contests& contests = contests_[i / kBits];
       if (i % kBits == 0) contests = {};
       prefetch_ground(i);
-      if (bodies_[i].steps == 0) {
+      if (bodies_[i].steps == 0 || bodies_[i].is_ghost) {
         proposals()[i] = {};
         bodies_[i].state = Body::kEnclosed;
         continue;
@@ -590,11 +595,13 @@ void CrowdEngine::resolve_conflicts(uint64_t step) {
                    propose(i, scratch, round);
                    return false;
                  });
+    if (exchange_ != nullptr) exchange_moves();
     for_contests(&Contests::open, [&](uint32_t i, Worker&) {
       const bool decided = proposals()[i].round == round && is_accepted(i, step);
       if (decided) bodies_[i].state = Body::kDecided;
       return decided;
     });
+    if (exchange_ != nullptr && r < config_.rounds) exchange_accepted(round);
   }
 }
 
@@ -674,7 +681,7 @@ void CrowdEngine::settle_all(EngineCounts& counts) {
         turning.prefetch(slot);
         if (config_.queues) __builtin_prefetch(&progress_[slot]);
       }
-      if (b.has(Body::kMovedElsewhere)) continue;
+      if (b.has(Body::kMovedElsewhere) || b.is_ghost) continue;
       here.low_detail += b.has(Body::kLowDetail) ? 1 : 0;
       const Plane displacement =
           b.has(Body::kExternal)

@@ -21,6 +21,7 @@
 #include "crowd/walk/move_config.h"
 #include "crowd/walk/neighbour_grid.h"
 #include "crowd/walk/queue.h"
+#include "crowd/walk/step_exchange.h"
 #include "crowd/walk/step_units.h"
 #include "steer/lanes.h"
 #include "steer/models.h"
@@ -96,7 +97,22 @@ class CrowdEngine {
   /// One step. `step`: its number, for the order of proposed moves. `before` is called first for
   /// all bodies, some at a time, on any worker.
   using Before = FunctionRef<void(std::span<Body>, int32_t worker)>;
-  void step(uint64_t step, Before before, EngineCounts& counts, EngineTimes& times);
+  /// With an exchange the crowd is shared with other engines of the same settings.
+  void step(uint64_t step, Before before, EngineCounts& counts, EngineTimes& times,
+            StepExchange* exchange = nullptr);
+
+  // crowd_engine_ghosts.cpp, for StepExchange::exchange_bodies.
+  /// Others see the n-th of bodies() in this step.
+  void show_to_others(size_t n) { bodies_[n].is_shown = true; }
+  /// The n-th of bodies() as others see it in this step.
+  [[nodiscard]] Ghost ghost_of(size_t n, uint64_t step) const;
+  /// What it chose when it last decided: a body that another engine moves from now on takes it
+  /// along. [m/s]
+  [[nodiscard]] steer::Plane choice(uint32_t slot) const { return choices_[slot]; }
+  /// Moves a body from now on, as it was before a step, that another engine has moved.
+  void take_over(const Ghost& ghost, steer::Plane choice, uint64_t step);
+  /// How far bodies see, at most. [units]
+  [[nodiscard]] int32_t sight() const { return sight_; }
   /// After how many steps a body that continues decides again.
   [[nodiscard]] uint64_t steps_of_reaction(const Body& body) const;
   // Rows by slot.
@@ -401,6 +417,16 @@ class CrowdEngine {
             static_cast<int16_t>(units.displacement(velocity.z))};
   }
   [[nodiscard]] Displacement chosen_displacement(const Body& body) const;
+  void add_ghosts(std::span<const Ghost> ghosts);
+  void add_with_rows(const Body& body, const Ghost& ghost, uint64_t step);
+  void list_shared();
+  struct Shared {
+    uint32_t slot = 0, body = 0;
+  };
+  [[nodiscard]] const Shared* find_ghost(uint32_t slot) const;
+  void exchange_moves();
+  void exchange_accepted(uint8_t round);
+  void drop_ghosts();
   void resolve_conflicts(uint64_t step);
   void settle_all(EngineCounts& counts);
   void propose(uint32_t i, Worker& scratch, uint8_t round);
@@ -444,6 +470,10 @@ class CrowdEngine {
   // By slot: those of this step, which bodies write that ask, and those of the step before, which
   // all read. Valid where Body::asks is set.
   std::array<std::vector<RoomRequest>, 2> requests_;
+  StepExchange* exchange_ = nullptr;    // of the current step; null: no other has bodies
+  std::vector<Shared> ghosts_, shown_;  // by slot, once bodies are sorted
+  std::vector<GhostMove> moves_;        // of those shown
+  std::vector<uint32_t> accepted_;      // likewise
 };
 
 }  // namespace throng::crowd

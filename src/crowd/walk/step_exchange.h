@@ -9,7 +9,7 @@
 #include "crowd/ground/body.h"
 #include "crowd/walk/queue.h"
 
-/// What engines that share a crowd tell each other in a step. Each moves bodies of its own and
+/// What engines that share a crowd give each other in a step. Each moves bodies of its own and
 /// knows those near them that others move, its ghosts: docs/design/019-ranks.md.
 namespace throng::crowd {
 

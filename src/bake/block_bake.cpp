@@ -58,10 +58,7 @@ Result<std::shared_ptr<world::WorldData>> bake_blocks(bake::BlockBake& blocks,
 
 Result<BakeReport> bake_world_to(const std::string& path, const SceneRegions& scene,
                                  const BakeConfig& config, Context& context) {
-  // What cannot be baked leaves the folder as it is.
-  if (auto checked = bake::BlockBake::begin(scene, config, nullptr); !checked) {
-    return checked.error();
-  }
+  if (auto ok = bake::BlockBake::check(scene, config); !ok) return ok.error();
   auto folder = bake::WorldFolder::begin(path, config.old_zones);
   if (!folder) return folder.error();
   if (auto ok = folder->check_part(config); !ok) return ok.error();

@@ -15,10 +15,6 @@ namespace throng {
 namespace {
 
 // As the bytes of a message.
-struct AirOfZone {
-  bool is_there = false;  // not: nothing but air
-  format::AirEntry entry;
-};
 struct Counts {
   uint64_t zones = 0, air = 0, air_reused = 0;
   double seconds_air = 0;
@@ -40,11 +36,8 @@ std::vector<T> take_values(size_t count, std::span<const uint8_t>& bytes) {
 }
 
 cluster::RankBytes packed(const bake::BlockMade& made) {
-  std::vector<AirOfZone> air;
-  for (const auto& slot : made.air) {
-    air.push_back({.is_there = slot != nullptr, .entry = {}});
-    if (slot != nullptr) air.back().entry = slot->entry;
-  }
+  std::vector<cluster::AirOfZone> air;
+  for (const auto& slot : made.air) air.push_back(cluster::AirOfZone::of(slot.get()));
   cluster::RankBytes bytes = cluster::bytes_of(Counts{.zones = made.inputs.size(),
                                                       .air = air.size(),
                                                       .air_reused = made.air_reused,
@@ -61,11 +54,8 @@ bake::BlockMade unpacked(std::span<const uint8_t> bytes) {
   bake::BlockMade made;
   made.inputs = take_values<format::ZoneInput>(counts.zones, bytes);
   made.facts = take_values<bake::ZoneFacts>(counts.zones, bytes);
-  for (const AirOfZone& of_zone : take_values<AirOfZone>(counts.air, bytes)) {
-    made.air.emplace_back();
-    if (!of_zone.is_there) continue;
-    made.air.back() = std::make_unique<world::AirData::Slot>();
-    made.air.back()->entry = of_zone.entry;
+  for (const auto& of_zone : take_values<cluster::AirOfZone>(counts.air, bytes)) {
+    made.air.push_back(of_zone.slot());
   }
   made.air_reused = counts.air_reused;
   made.seconds_air = counts.seconds_air;
@@ -114,22 +104,12 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const SceneRegions& 
   cluster::Ranks& ranks = **joined;
   BakeConfig own = config;
   own.workers = cluster::workers_of_rank(config.workers, ranks);
-  // What cannot be baked leaves the folder as it is.
-  const auto checked = bake::BlockBake::begin(scene, own, nullptr);
-  if (auto ok = agree_over_ranks(checked ? Result<void>() : checked.error()); !ok) {
-    return ok.error();
-  }
+  if (auto ok = agree_over_ranks(bake::BlockBake::check(scene, own)); !ok) return ok.error();
   auto folder = cluster::open_folder(ranks, path, own);
   if (!folder) return folder.error();
   bake::WorldFolder files = bake::WorldFolder::join(path, own.old_zones);
   auto blocks = bake::BlockBake::begin(scene, own, files.old_world());
-  if (auto ok = agree_over_ranks(blocks ? Result<void>() : blocks.error()); !ok) {
-    return ok.error();
-  }
-  if (auto ok = cluster::same_over_ranks(ranks, blocks->input_hash(), "bake", "read another scene");
-      !ok) {
-    return ok.error();
-  }
+  if (auto ok = cluster::agree_on_plan(ranks, blocks); !ok) return ok.error();
   const auto make_world = [&](BakeReport& out) -> Result<std::shared_ptr<world::WorldData>> {
     BlockJobs jobs(*blocks, files, *folder);
     if (auto ok = cluster::do_stage(ranks, jobs, *folder, context); !ok) return ok.error();
@@ -143,8 +123,7 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const SceneRegions& 
         finished = found.error();
       }
     }
-    if (auto ok = cluster::meet(ranks, finished, context); !ok) return ok.error();
-    auto inputs = cluster::share(ranks, whole.inputs, context);
+    auto inputs = cluster::share(ranks, whole.inputs, context, finished);
     if (!inputs) return inputs.error();
     auto facts = cluster::share(ranks, whole.facts, context);
     if (!facts) return facts.error();

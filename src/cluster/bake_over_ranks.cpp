@@ -121,25 +121,21 @@ class AirJobs : public cluster::ZoneStage {
 
  private:
   struct Air {
-    bool is_there = false;  // not: nothing but air
+    cluster::AirOfZone air;
     bool is_reused = false;
-    format::AirEntry entry;
   };
 
   Result<cluster::RankBytes> work(size_t zone, Context& context) override {
     const uint64_t before = baker_.reused();
     const auto slot = bake_.bake_air(zone, baker_, context);
     if (!slot) return slot.error();
-    Air air{.is_there = *slot != nullptr, .is_reused = baker_.reused() > before, .entry = {}};
-    if (air.is_there) air.entry = (*slot)->entry;
+    const Air air{cluster::AirOfZone::of(slot->get()), baker_.reused() > before};
     return cluster::bytes_of(air);
   }
   Result<void> enter(size_t zone, std::span<const uint8_t> result) override {
     const auto air = cluster::value_of<Air>(result);
     reused_ += air.is_reused ? 1 : 0;
-    if (!air.is_there) return {};
-    slots_[zone] = std::make_unique<world::AirData::Slot>();
-    slots_[zone]->entry = air.entry;
+    slots_[zone] = air.air.slot();
     return {};
   }
 
@@ -166,13 +162,7 @@ Result<BakeReport> bake_over_ranks(const std::string& path, const Scene& scene,
   auto folder = cluster::open_folder(ranks, path, own);
   if (!folder) return folder.error();
   const auto bake = bake::WorldBake::begin(scene, own, folder->old_world(), true);
-  Result<void> planned;
-  if (!bake) planned = bake.error();
-  if (auto ok = agree_over_ranks(planned); !ok) return ok.error();
-  if (auto ok = cluster::same_over_ranks(ranks, bake->input_hash(), "bake", "read another scene");
-      !ok) {
-    return ok.error();
-  }
+  if (auto ok = cluster::agree_on_plan(ranks, bake); !ok) return ok.error();
   const auto make_world = [&](BakeReport& out) -> Result<std::shared_ptr<world::WorldData>> {
     GroundJobs ground(*bake, folder->path(), own.workers);
     if (auto ok = cluster::do_stage(ranks, ground, *folder, context); !ok) return ok.error();

@@ -13,6 +13,7 @@
 #include "bake/surface/node_scene.h"
 #include "cluster/job_assignment.h"
 #include "throng/bake.h"
+#include "world/air_data.h"
 #include "world/region_data.h"
 
 /// What all bakes over ranks have in common: the folder, stages of jobs, and the graph.
@@ -28,17 +29,17 @@ Result<void> do_stage(Ranks& ranks, Jobs& jobs, bake::WorldFolder& folder, Conte
   return meet(ranks, mine, context);
 }
 
-/// What rank 0 has, for all.
+/// What rank 0 has, for all, if it has it: `mine` is its success.
 template <class T>
-Result<std::vector<T>> share(Ranks& ranks, const std::vector<T>& values, Context& context) {
+Result<std::vector<T>> share(Ranks& ranks, const std::vector<T>& values, Context& context,
+                             const Result<void>& mine = {}) {
   RankBytes bytes;
   if (ranks.rank() == 0) bytes = bytes_of(values);
-  if (auto ok = meet(ranks, {}, context, &bytes); !ok) return ok.error();
+  if (auto ok = meet(ranks, mine, context, &bytes); !ok) return ok.error();
   return values_of<T>(bytes);
 }
 
-// What the stages after the ground have in common: one job for each zone, by its number, whatever
-// is reused, and files that no journal names.
+/// One job for each zone, or block of zones, by its number, whatever is reused.
 class ZoneStage {
  public:
   ZoneStage(const char* stage, size_t zones, const std::string& path, const char* finished)
@@ -81,6 +82,29 @@ class ZoneStage {
   const std::string& path_;
   const char* finished_;
   size_t done_ = 0;
+};
+
+/// Fails on all ranks if the plan of a bake failed on one, or is another than rank 0's.
+template <class Bake>
+Result<void> agree_on_plan(Ranks& ranks, const Result<Bake>& bake) {
+  if (auto ok = agree(ranks, bake ? Result<void>() : bake.error()); !ok) return ok;
+  return same_over_ranks(ranks, bake->input_hash(), "bake", "read another scene");
+}
+
+/// The air of a zone as a message has it.
+struct AirOfZone {
+  bool is_there = false;  ///< Not: nothing but air.
+  format::AirEntry entry;
+
+  static AirOfZone of(const world::AirData::Slot* slot) {
+    return slot == nullptr ? AirOfZone() : AirOfZone{true, slot->entry};
+  }
+  [[nodiscard]] std::unique_ptr<world::AirData::Slot> slot() const {
+    if (!is_there) return nullptr;
+    auto slot = std::make_unique<world::AirData::Slot>();
+    slot->entry = entry;
+    return slot;
+  }
 };
 
 /// Of rank 0 the folder that it begins, of others the same, joined. Fails on all if it fails.

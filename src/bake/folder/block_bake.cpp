@@ -45,15 +45,19 @@ BlockBake::BlockBake(const SceneRegions& scene, const BakeConfig& config,
       none_(std::move(none)),
       grid_(std::move(grid)) {}
 
-Result<BlockBake> BlockBake::begin(const SceneRegions& scene, const BakeConfig& config,
-                                   const world::WorldData* old_world) {
-  if (auto ok = check_settings(config); !ok) return ok.error();
+Result<void> BlockBake::check(const SceneRegions& scene, const BakeConfig& config) {
+  if (auto ok = check_settings(config); !ok) return ok;
   if (config.block_bytes == 0) {
     return Error{Errc::kBadConfig, "bake: block_bytes must be above 0"};
   }
   if (scene.facts().triangles == 0) {
     return Error{Errc::kBadInput, "bake: the scene has no triangles"};
   }
+  return {};
+}
+
+Result<BlockBake> BlockBake::begin(const SceneRegions& scene, const BakeConfig& config,
+                                   const world::WorldData* old_world) {
   auto none = std::make_unique<Scene>();
   auto grid = WorldBake::begin_block(*none, config, nullptr, scene.facts().bounds, {});
   if (!grid) return grid.error();

@@ -29,7 +29,9 @@ struct BlockMade {
 /// is given, and one of them collects what all have made.
 class BlockBake {
  public:
-  /// All is kept by reference; `old_world` may be null. Fails with kBadConfig, kBadInput or kLimit.
+  /// Can it be baked at all? Fails with kBadConfig or kBadInput.
+  static Result<void> check(const SceneRegions& scene, const BakeConfig& config);
+  /// All is kept by reference; `old_world` may be null. Fails with kBadConfig or kLimit. [checked]
   static Result<BlockBake> begin(const SceneRegions& scene, const BakeConfig& config,
                                  const world::WorldData* old_world);
 

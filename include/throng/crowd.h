@@ -281,6 +281,10 @@ struct CrowdReport {
   /// 163 840 a simulated second, but up to 4096 in each sub-step. A search that needs more goes on
   /// in the next step.
   uint64_t flight_boxes = 0;
+  // Of crowd_over_ranks.
+  int32_t ranks = 1;          ///< That share the crowd.
+  uint64_t most_avatars = 0;  ///< Avatars that one rank moves, at most.
+  uint64_t sent_bytes = 0;    ///< To neighbours in this step, by the rank that sent most. [bytes]
   /// Mean speed towards the next corner, divided by the desired speed, on stairs and slopes by what
   /// that is there. [-1 to 1]
   double progress = 0;
@@ -412,8 +416,8 @@ class THRONG_API Crowd {
 
   /// Counts overlaps and wall entries by exact tests that share nothing with the step.
   [[nodiscard]] CrowdCheck check() const;
-  /// XXH3 of all avatars in order of slot: position, level, velocity, state, but not orientation,
-  /// on which no step depends. Same for any workers.
+  /// The sum over all avatars of the XXH3 of slot, position, level, velocity and state, but not
+  /// orientation, on which no step depends. Same for any workers.
   [[nodiscard]] uint64_t state_hash() const;
   /// Reads all avatars in order of slot into `out` (resized). AvatarState::id is the slot.
   void read(std::vector<AvatarState>& out) const;
@@ -459,10 +463,24 @@ class THRONG_API Crowd {
   [[nodiscard]] CrowdMemory memory() const;
 
  private:
+  friend struct Access;
   struct State;
   explicit Crowd(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
+
+/// An empty crowd of all ranks that mpirun has started together; of one process, what Crowd::create
+/// makes. Every rank has opened the same world, gives the same settings and makes the same calls
+/// with the same arguments in the same order. Each moves the avatars on its part of the plane, and
+/// keeps only them. All that a crowd returns but memory() is as in one process, bit for bit, on all
+/// ranks and for any number of them; what reads states gathers those of all avatars, once between
+/// two steps. config.workers is per rank; 0 shares the cores of a machine among its
+/// ranks. Classes that fly or go over nodes, off-mesh links, and save() are for one process. Fails
+/// as Crowd::create, with kBadConfig if the edits have off-mesh links, or if there are several
+/// ranks and the library was built without MPI. If a rank dies, mpirun ends the others.
+/// docs/design/019-ranks.md.
+[[nodiscard]] THRONG_API Result<Crowd> crowd_over_ranks(const World& world,
+                                                        const CrowdConfig& config);
 
 // ----
 // Avatar generators: keep a crowd populated around a viewer's eye. Only what the eye sees, and a

@@ -302,6 +302,11 @@ class THRONG_API Simulation {
   /// Nodes::create, Nodes::open, Crowd::create, add and add_target do.
   [[nodiscard]] static Result<Simulation> create(const World& world, const Scenario& scenario,
                                                  int32_t workers, Context& context);
+  /// The same by all ranks that mpirun has started together, which share its crowd: see
+  /// crowd_over_ranks. Every rank makes the same calls with the same arguments in the same order.
+  [[nodiscard]] static Result<Simulation> create_over_ranks(const World& world,
+                                                            const Scenario& scenario,
+                                                            int32_t workers, Context& context);
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();

@@ -18,8 +18,6 @@
 /// Jobs handed out one by one to whichever rank is free.
 namespace throng::cluster {
 
-using RankBytes = std::vector<uint8_t>;
-
 /// What all ranks were started for.
 struct RankJobs {
   const char* stage = "";  ///< As progress and errors name it.

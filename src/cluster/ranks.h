@@ -7,11 +7,14 @@
 #include <span>
 #include <vector>
 
+#include "core/rank_group.h"
 #include "throng/base.h"
 
-/// What a bake needs of MPI, and the only place that knows it. Calls come from the thread that made
-/// the first one.
+/// What bakes and crowds need of MPI, and the only place that knows it. Calls come from the thread
+/// that made the first one.
 namespace throng::cluster {
+
+using RankBytes = std::vector<uint8_t>;
 
 struct RankMessage {
   int32_t from = 0;
@@ -32,6 +35,13 @@ class Ranks {
 
   /// Of all ranks, by rank. All call it.
   [[nodiscard]] std::vector<uint64_t> gather(uint64_t mine);
+
+  // What ranks that share a crowd need: see RankGroup. They wait for each other.
+  [[nodiscard]] std::vector<RankBytes> gather(std::span<const uint8_t> mine);
+  [[nodiscard]] std::vector<RankBytes> exchange(std::span<const int32_t> ranks,
+                                                std::span<const RankBytes> to);
+  /// By recursive bisection. On this rank alone.
+  [[nodiscard]] std::vector<int32_t> divide(std::span<const RankGroup::Weight> points) const;
 
   /// Messages of one channel are not seen on another.
   enum class Channel : uint8_t { kJobs, kMeetings };

@@ -3,8 +3,10 @@
 #include "throng/crowd.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "core/access.h"
 #include "core/hash.h"
@@ -132,10 +134,12 @@ void Crowd::set_views(std::span<const CrowdView> views) {
 CrowdReport Crowd::step() {
   const auto start = Clock::now();
   State& s = *state_;
+  s.everywhere.clear();
   s.follow_edits();
   CrowdReport report;
   report.step = ++s.shared.step;
-  report.avatars = s.walk.bodies().size();
+  report.avatars = s.count();
+  report.most_avatars = report.avatars;
   s.shared.arrived.clear();
   s.shared.goal_unreachable.clear();
   s.shared.planned = 0;
@@ -160,6 +164,7 @@ CrowdReport Crowd::step() {
     s.shared.time = s.shared.step * crowd::SharedState::kTimeUnits +
                     static_cast<uint64_t>(i) * crowd::SharedState::kTimeUnits /
                         static_cast<uint64_t>(s.shared.sub_steps);
+    if (s.shared.share) s.migrate();
     for (crowd::Mode* mode : s.modes) mode->step(s.walk.bodies(), counts, times);
   }
   s.where_is_old = true;
@@ -173,6 +178,7 @@ CrowdReport Crowd::step() {
   const auto events_start = Clock::now();
   s.arrive_in_targets();
   s.find_events();
+  if (s.shared.share) s.gather_events(counts, report);
   for (std::vector<AvatarId>* ids : {&s.shared.arrived, &s.shared.goal_unreachable}) {
     std::sort(ids->begin(), ids->end(), [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; });
   }
@@ -202,38 +208,56 @@ CrowdReport Crowd::step() {
 
 CrowdCheck Crowd::check() const {
   const State& s = *state_;
-  const double unit = s.shared.unit;
+  if (s.shared.share) return s.check_shared();
   std::vector<crowd::CheckedBody> bodies;
   bodies.reserve(s.walk.bodies().size());
-  for (const crowd::Body& b : s.walk.bodies()) {
-    bodies.push_back({b.x, b.z, b.y, b.level,
-                      static_cast<int32_t>(s.shared.baked_class(b.avatar_class)), b.radius * unit,
-                      s.mode_of(b).height_of(b), b.flies(), b.climbs, b.on_link});
-  }
+  for (const crowd::Body& b : s.walk.bodies()) bodies.push_back(s.checked(b));
   CrowdCheck found =
       crowd::check_bodies(s.shared.world, bodies, obstacles(), s.shared.config.workers);
   for (const crowd::Mode* mode : s.modes) mode->check(s.walk.bodies(), found);
   return found;
 }
 
+// A sum over the avatars, so that neither their order matters nor which rank has which of them.
+crowd::CheckedBody Crowd::State::checked(const crowd::Body& b) const {
+  return {b.x,
+          b.z,
+          b.y,
+          b.level,
+          static_cast<int32_t>(shared.baked_class(b.avatar_class)),
+          b.radius * shared.unit,
+          mode_of(b).height_of(b),
+          b.flies(),
+          b.climbs,
+          b.on_link};
+}
+
 uint64_t Crowd::state_hash() const {
   const State& s = *state_;
-  s.find_bodies();
-  std::vector<crowd::Body> by_slot;
-  for (const uint32_t i : s.where) {
-    if (i == kNoBody) continue;
-    crowd::Body body = s.walk.bodies()[i];
-    body.state = crowd::Body::kFree;  // of the step, not of the avatar
-    body.steps = 0;
-    by_slot.push_back(body);
-  }
-  uint64_t hash = hash_bytes(by_slot.data(), by_slot.size() * sizeof(crowd::Body));
-  for (const crowd::Mode* mode : s.modes) hash = mode->hash(by_slot, hash);
-  return hash;
+  const std::span<const crowd::Body> bodies = s.walk.bodies();
+  std::atomic<uint64_t> sum{0};
+  parallel_ranges(bodies.size(), 4096, s.shared.config.workers, [&](size_t begin, size_t end) {
+    uint64_t here = 0;
+    for (crowd::Body body : bodies.subspan(begin, end - begin)) {
+      body.state = crowd::Body::kFree;  // of the step, not of the avatar
+      body.steps = 0;
+      const uint32_t slot = std::exchange(body.slot, s.shared.name_of(body));
+      uint64_t hash = hash_bytes(&body, sizeof body);
+      body.slot = slot;
+      for (const crowd::Mode* mode : s.modes) hash = mode->hash(body, hash);
+      here += hash;
+    }
+    sum += here;
+  });
+  return s.shared.share ? s.shared.share->sum(sum) : sum.load();
 }
 
 void Crowd::read(std::vector<AvatarState>& out) const {
   const State& s = *state_;
+  if (s.shared.share) {
+    out = s.states_everywhere();
+    return;
+  }
   s.find_bodies();
   out.clear();
   for (const uint32_t i : s.where) {
@@ -244,6 +268,7 @@ void Crowd::read(std::vector<AvatarState>& out) const {
 }
 
 std::optional<AvatarState> Crowd::read(AvatarId id) const {
+  if (state_->shared.share) return state_->state_everywhere(id);
   const crowd::Body* body = state_->body(id);
   if (body == nullptr) return std::nullopt;
   return state_->mode_of(*body).state_of(*body);
@@ -267,17 +292,18 @@ std::optional<Vec3d> Crowd::random_air_point(int32_t avatar_class, uint64_t seed
   return finder == nullptr ? std::nullopt : finder->random_point(seed, n);
 }
 
-bool Crowd::is_alive(AvatarId id) const { return state_->body(id) != nullptr; }
-uint32_t Crowd::size() const { return static_cast<uint32_t>(state_->walk.bodies().size()); }
+bool Crowd::is_alive(AvatarId id) const {
+  return state_->shared.share ? state_->shared.names.is_alive(id) : state_->body(id) != nullptr;
+}
+uint32_t Crowd::size() const { return static_cast<uint32_t>(state_->count()); }
 
 CrowdMemory Crowd::memory() const {
   const State& s = *state_;
   CrowdMemory memory;
-  memory.avatars =
-      (s.shared.generation.capacity() + s.where.capacity() + s.free_slots.capacity()) * 4 +
-      s.shared.orientations.capacity() * sizeof(crowd::Orientation) +
-      s.inside.capacity() * sizeof(uint64_t) + s.checked_at.capacity() * sizeof(s.checked_at[0]) +
-      s.own_curves.bytes();
+  memory.avatars = s.shared.names.bytes() + s.where.capacity() * 4 +
+                   s.shared.orientations.capacity() * sizeof(crowd::Orientation) +
+                   s.inside.capacity() * sizeof(uint64_t) +
+                   s.checked_at.capacity() * sizeof(s.checked_at[0]) + s.own_curves.bytes();
   for (const crowd::Mode* mode : s.modes) mode->add_memory(memory);
   for (const auto& of : s.shared.classes) memory.ground += of ? of->ground.bytes() : 0;
   memory.ground += s.shared.obstacles.bytes();

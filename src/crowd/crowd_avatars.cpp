@@ -49,12 +49,11 @@ void Crowd::State::find_bodies() const {
 }
 
 crowd::Body* Crowd::State::body(AvatarId id) const {
-  const std::vector<uint32_t>& generation = shared.generation;
-  if (!id || id.slot1 > generation.size() || generation[id.slot1 - 1] != id.generation) {
-    return nullptr;
-  }
+  if (!shared.names.is_known(id)) return nullptr;
+  const uint32_t slot = shared.names.slot_of(id.slot1 - 1);
+  if (slot == crowd::AvatarNames::kNowhere) return nullptr;
   find_bodies();
-  const uint32_t i = where[id.slot1 - 1];
+  const uint32_t i = where[slot];
   return i == kNoBody ? nullptr : &walk.bodies()[i];
 }
 
@@ -72,6 +71,11 @@ Result<void> Crowd::State::open_class(int32_t number, Context& context) {
     return Error{Errc::kNotFound, ok.error().message};
   }
   if (mode_of_class[c] != nullptr) return {};
+  if (shared.share && (shared.flies(c) || shared.climbs(c))) {
+    return bad_config("class " + shared.body_class(c).name +
+                      (shared.flies(c) ? " flies" : " goes over nodes") +
+                      "; ranks share only avatars that walk: take another class or one process");
+  }
   auto ground = crowd::CrowdGround::create(data, static_cast<int32_t>(shared.baked_class(c)),
                                            world::step_mm(shared.body_class(c)));
   if (!ground) return ground.error();
@@ -142,10 +146,14 @@ void Crowd::State::fit(const crowd::BodyExtent& of_body, float speed) {
 }
 
 void Crowd::State::reserve(size_t more) {
-  std::vector<uint32_t>& generation = shared.generation;
-  const size_t slots = generation.size() + more - std::min(more, free_slots.size());
-  const size_t room = crowd::grown(generation.capacity(), slots);
-  generation.reserve(room);
+  crowd::AvatarNames& names = shared.names;
+  if (shared.share) {  // What a rank needs, it knows only as avatars come.
+    walk.reserve(walk.bodies().size() + more, 0);
+    return;
+  }
+  const size_t slots = names.names() + more - std::min(more, names.names() - names.alive());
+  const size_t room = crowd::grown(names.generations().capacity(), slots);
+  names.reserve(room);
   shared.orientations.reserve(room);
   where.reserve(room);
   walk.reserve(walk.bodies().size() + more, room);
@@ -154,16 +162,11 @@ void Crowd::State::reserve(size_t more) {
 AvatarId Crowd::State::add(crowd::NewAvatar avatar) {
   find_bodies();
   crowd::Body& body = avatar.body;
-  if (free_slots.empty()) {
-    body.slot = static_cast<uint32_t>(shared.generation.size());
-    shared.generation.push_back(1);
-    shared.orientations.emplace_back();
-    where.push_back(kNoBody);
-  } else {
-    body.slot = free_slots.back();
-    free_slots.pop_back();
-    shared.orientations[body.slot] = {};
-  }
+  if (shared.share && !shared.share->is_own(body)) return add_elsewhere(avatar);
+  body.slot = shared.names.take_slot(shared.names.add());
+  shared.orientations.resize(shared.names.slots());
+  where.resize(shared.names.slots(), kNoBody);
+  shared.orientations[body.slot] = {};
   for (crowd::Mode* mode : modes) mode->add(avatar);
   where[body.slot] = static_cast<uint32_t>(walk.bodies().size());
   if (body.slot < inside.size()) inside[body.slot] = 0;
@@ -173,9 +176,16 @@ AvatarId Crowd::State::add(crowd::NewAvatar avatar) {
   return shared.id_of(body.slot);
 }
 
+AvatarId Crowd::State::add_elsewhere(const crowd::NewAvatar& like) {
+  fit(mode_of(like.body).extent_of(like.body, like.radius), like.body.speed);
+  return shared.names.id_of_name(shared.names.add());
+}
+
 Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Context& context) {
   State& s = *state_;
+  s.everywhere.clear();
   s.follow_edits();
+  if (auto ok = s.check_links(); !ok) return ok.error();
   if (spawns.empty()) return std::vector<AvatarId>();
   std::vector<crowd::NewAvatar> avatars;
   int32_t widest = s.extent.widest;
@@ -187,11 +197,16 @@ Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Co
     const crowd::Body& body = avatar->body;
     widest = std::max(widest, s.mode_of(body).extent_of(body, avatar->radius).widest);
   }
-  crowd::StandingMap map(s.walk.bodies(), widest, spawns.size());
+  std::vector<uint8_t> is_there(spawns.size());
+  for (size_t i = 0; i < spawns.size(); ++i) {
+    is_there[i] = s.mode_of(spawns[i]).put(avatars[i], spawns[i]) ? 1 : 0;
+  }
+  const auto blocked = s.find_blocked(avatars, widest);
+  crowd::StandingMap map({}, widest, spawns.size());
   s.reserve(spawns.size());
   std::vector<AvatarId> ids(spawns.size());
   for (size_t i = 0; i < spawns.size(); ++i) {
-    if (!s.mode_of(spawns[i]).put(avatars[i], spawns[i])) continue;
+    if (is_there[i] == 0 || blocked[i] != 0) continue;
     if (map.add_if_clear(avatars[i].body)) ids[i] = s.add(avatars[i]);
   }
   return ids;
@@ -200,7 +215,9 @@ Result<std::vector<AvatarId>> Crowd::add(std::span<const AvatarSpawn> spawns, Co
 Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& like,
                                              Context& context) {
   State& s = *state_;
+  s.everywhere.clear();
   s.follow_edits();
+  if (auto ok = s.check_links(); !ok) return ok.error();
   if (auto ok = s.open_class(like.avatar_class, context); !ok) return ok.error();
   const auto avatar = s.avatar_of(like);
   if (!avatar) return avatar.error();
@@ -211,46 +228,70 @@ Result<std::vector<AvatarId>> Crowd::scatter(uint32_t count, const AvatarSpawn& 
   const int32_t widest = s.mode_of(body).extent_of(body, avatar->radius).widest;
   // A count can be far beyond what fits: memory follows those that find room.
   const size_t capacity = std::min<size_t>(count, kFirstCapacity);
-  crowd::StandingMap map(s.walk.bodies(), std::max(s.extent.widest, widest), capacity);
-  std::vector<crowd::NewAvatar> placed;
+  const bool is_apart = s.shared.share && s.count() > 0;  // Other ranks have avatars already.
+  crowd::StandingMap map(is_apart ? std::span<const crowd::Body>() : s.walk.bodies(),
+                         std::max(s.extent.widest, widest), capacity);
+  std::vector<crowd::NewAvatar> placed;  // of this rank
+  std::vector<bool> is_own;              // by number: is it this rank's?
   placed.reserve(capacity);
   // Until nine draws of ten fail over a while.
+  constexpr size_t kWhile = 4096;
+  std::vector<crowd::NewAvatar> draws;
+  std::vector<uint8_t> is_there, blocked;
   uint64_t failed = 0, drawn = 0;
-  while (placed.size() < count && *has_places) {
-    crowd::NewAvatar here = *avatar;
-    if (mode.draw(here, like, s.scattered++) && map.add_if_clear(here.body)) {
-      placed.push_back(here);
-    } else {
-      ++failed;
+  while (is_own.size() < count && *has_places) {
+    // One by one; but ranks ask each other for many at once.
+    const size_t many =
+        is_apart ? std::min(kWhile - drawn % kWhile, 4 * (count - is_own.size()) + 16) : size_t{1};
+    draws.assign(many, *avatar);
+    is_there.resize(many);
+    for (size_t n = 0; n < many; ++n) {
+      is_there[n] = mode.draw(draws[n], like, s.scattered + n) ? 1 : 0;
     }
-    if (++drawn % 4096 != 0) continue;
-    if (failed > 4096 * 99 / 100) break;
+    if (is_apart) blocked = s.find_blocked(draws, map.widest());
+    for (size_t n = 0; n < many && is_own.size() < count; ++n, ++drawn) {
+      ++s.scattered;
+      const bool is_free = is_there[n] != 0 && !(is_apart && blocked[n] != 0);
+      if (is_free && map.add_if_clear(draws[n].body)) {
+        is_own.push_back(!s.shared.share || s.shared.share->is_own(draws[n].body));
+        if (is_own.back()) placed.push_back(draws[n]);
+      } else {
+        ++failed;
+      }
+    }
+    if (drawn % kWhile != 0) continue;
+    if (failed > kWhile * 99 / 100) break;
     failed = 0;
   }
-  if (placed.size() < count) {
-    return Error{Errc::kLimit, "crowd: " + std::to_string(placed.size()) + " avatars of class " +
+  if (is_own.size() < count) {
+    return Error{Errc::kLimit, "crowd: " + std::to_string(is_own.size()) + " avatars of class " +
                                    s.shared.body_class(body.avatar_class).name +
                                    " find room at random places, " + std::to_string(count) +
                                    " were asked for; ask for fewer or take a larger world"};
   }
-  s.reserve(count);
+  s.reserve(placed.size());
   std::vector<AvatarId> ids;
   ids.reserve(count);
-  for (const crowd::NewAvatar& one : placed) ids.push_back(s.add(one));
+  auto next = placed.begin();
+  for (const bool own : is_own) ids.push_back(own ? s.add(*next++) : s.add_elsewhere(*avatar));
   return ids;
 }
 
 void Crowd::remove(std::span<const AvatarId> ids) {
   State& s = *state_;
+  s.everywhere.clear();
   for (const AvatarId id : ids) {
-    crowd::Body* body = s.body(id);
-    if (body == nullptr) continue;
+    crowd::Body* body = s.commanded(id);
+    if (body == nullptr) {
+      if (s.shared.share && s.shared.names.is_alive(id)) s.shared.names.remove(id.slot1 - 1);
+      continue;
+    }
     crowd::Body& last = s.walk.bodies().back();
     s.where[last.slot] = s.where[body->slot];
     s.where[body->slot] = kNoBody;
-    ++s.shared.generation[body->slot];
-    s.free_slots.push_back(body->slot);
     s.own_curves.forget(body->slot);
+    s.shared.names.give_slot_back(body->slot);
+    s.shared.names.remove(id.slot1 - 1);
     *body = last;
     s.walk.engine().shrink(s.walk.bodies().size() - 1);
   }
@@ -260,7 +301,7 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const Place> goal
   THRONG_ASSERT(ids.size() == goals.size());
   State& s = *state_;
   for (size_t i = 0; i < ids.size(); ++i) {
-    crowd::Body* body = s.body(ids[i]);
+    crowd::Body* body = s.commanded(ids[i]);
     if (body == nullptr) continue;
     forget_goal(*body);
     s.mode_of(*body).set_goal(*body, goals[i]);
@@ -271,7 +312,7 @@ void Crowd::set_goals(std::span<const AvatarId> ids, std::span<const NodePlace> 
   THRONG_ASSERT(ids.size() == goals.size());
   State& s = *state_;
   for (size_t i = 0; i < ids.size(); ++i) {
-    crowd::Body* body = s.body(ids[i]);
+    crowd::Body* body = s.commanded(ids[i]);
     if (body == nullptr || !body->climbs) continue;
     forget_goal(*body);
     s.climb.set_goal(*body, goals[i]);
@@ -282,7 +323,7 @@ void Crowd::set_targets(std::span<const AvatarId> ids, TargetId target) {
   State& s = *state_;
   if (!s.has_target(target)) return;
   for (const AvatarId id : ids) {
-    crowd::Body* body = s.body(id);
+    crowd::Body* body = s.commanded(id);
     if (body == nullptr) continue;
     body->detour_angle = 0;
     body->target = target;
@@ -296,7 +337,7 @@ void Crowd::set_velocities(std::span<const AvatarId> ids, std::span<const Vec3d>
   THRONG_ASSERT(ids.size() == velocities.size());
   State& s = *state_;
   for (size_t i = 0; i < ids.size(); ++i) {
-    crowd::Body* body = s.body(ids[i]);
+    crowd::Body* body = s.commanded(ids[i]);
     if (body == nullptr) continue;
     forget_goal(*body);
     s.walk.engine().end_slowing(*body);
@@ -308,7 +349,7 @@ void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> sp
   THRONG_ASSERT(ids.size() == speeds.size());
   State& s = *state_;
   for (size_t i = 0; i < ids.size(); ++i) {
-    crowd::Body* body = s.body(ids[i]);
+    crowd::Body* body = s.commanded(ids[i]);
     if (body == nullptr) continue;
     const double radius = s.mode_of(*body).state_of(*body).radius;
     if (!is_speed(speeds[i], radius, s.shared.config.dt)) continue;
@@ -316,6 +357,7 @@ void Crowd::set_speeds(std::span<const AvatarId> ids, std::span<const double> sp
     s.walk.engine().set_level_speed(*body, speed);
     s.fit({}, speed);  // Its size is known.
   }
+  if (s.shared.share) s.fit({}, s.shared.share->largest(s.fastest));
 }
 
 void Crowd::set_curvilinear(std::span<const AvatarId> ids,
@@ -323,7 +365,7 @@ void Crowd::set_curvilinear(std::span<const AvatarId> ids,
   THRONG_ASSERT(ids.size() == tunings.size());
   State& s = *state_;
   for (size_t i = 0; i < ids.size(); ++i) {
-    const crowd::Body* body = s.body(ids[i]);
+    const crowd::Body* body = s.commanded(ids[i]);
     if (body != nullptr && crowd::is_tuning(tunings[i])) s.own_curves.set(body->slot, tunings[i]);
   }
 }
@@ -331,9 +373,12 @@ void Crowd::set_curvilinear(std::span<const AvatarId> ids,
 std::optional<CurvilinearTuning> Crowd::curvilinear(AvatarId id) const {
   const State& s = *state_;
   const crowd::Body* body = s.body(id);
-  if (body == nullptr) return std::nullopt;
-  const CurvilinearTuning* own = s.own_curves.find(body->slot);
-  return own != nullptr ? *own : s.shared.config.tuning.curvilinear;
+  std::optional<CurvilinearTuning> found;
+  if (body != nullptr) {
+    const CurvilinearTuning* own = s.own_curves.find(body->slot);
+    found = own != nullptr ? *own : s.shared.config.tuning.curvilinear;
+  }
+  return s.shared.share ? s.shared.share->find_on_any(found) : found;
 }
 
 }  // namespace throng

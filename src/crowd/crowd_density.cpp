@@ -122,6 +122,13 @@ void Crowd::State::find_leaving_zero() {
   for (const crowd::Body& body : walk.bodies()) {
     if (shared.obstacles.is_on_zero(body)) some[body.avatar_class] = true;
   }
+  if (shared.share) {
+    const std::vector<std::array<bool, kMaxAvatarClasses>> all =
+        shared.share->gather(std::span<const std::array<bool, kMaxAvatarClasses>>(&some, 1));
+    for (const auto& of_rank : all) {
+      for (size_t c = 0; c < some.size(); ++c) some[c] = some[c] || of_rank[c];
+    }
+  }
   for (size_t c = shared.baked_classes(); c < shared.classes.size(); ++c) {
     shared.obstacles.set_zero_leave(c, some[c]);
   }

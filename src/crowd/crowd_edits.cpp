@@ -18,7 +18,7 @@ void Crowd::State::follow_edits() {
   if (edits_version == list.version()) return;
   slot1_of_edit.resize(std::max(slot1_of_edit.size(), list.edits.size()), 0);
   // What was called before the first avatar came would change nothing that is there now.
-  const bool is_first = edits_version == 0 && walk.bodies().empty();
+  const bool is_first = edits_version == 0 && count() == 0;
   const bool by_calls = list.knows_calls_since(edits_version) && !is_first;
   bool areas_changed = false, links_changed = false;
   list.for_changed(edits_version, [&](const path::EditList::Changed& what) {
@@ -33,9 +33,9 @@ void Crowd::State::follow_edits() {
   // Links change no path of a crowd in which none takes them.
   const std::span<crowd::Body> all = walk.bodies();
   const bool some_change =
-      areas_changed || std::any_of(all.begin(), all.end(), [&](const crowd::Body& body) {
+      areas_changed || any(std::any_of(all.begin(), all.end(), [&](const crowd::Body& body) {
         return &mode_of(body) == &link;
-      });
+      }));
   for (crowd::Mode* mode : modes) {
     mode->areas_changed(some_change ? all : std::span<crowd::Body>());
   }

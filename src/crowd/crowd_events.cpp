@@ -44,7 +44,7 @@ void Crowd::State::find_events() {
 }
 
 void Crowd::State::find_entries() {
-  inside.resize(shared.generation.size(), 0);
+  inside.resize(shared.names.slots(), 0);
   std::mutex adding;
   parallel_ranges(
       walk.bodies().size(), kEventGrain, shared.config.workers, [&](size_t begin, size_t end) {
@@ -70,7 +70,7 @@ void Crowd::State::find_entries() {
 }
 
 void Crowd::State::find_no_progress() {
-  checked_at.resize(shared.generation.size(), kNeverChecked);
+  checked_at.resize(shared.names.slots(), kNeverChecked);
   const double min_progress = kNoProgress / shared.unit;
   for (const crowd::Body& body : walk.bodies()) {
     auto& [x, z, y] = checked_at[body.slot];

@@ -19,6 +19,15 @@ ObstaclePhase phase_of(const crowd::CrowdObstacle& obstacle) {
   return obstacle.waits() ? ObstaclePhase::kWaitsToComeUp : ObstaclePhase::kOff;
 }
 
+// Those of one obstacle, of sorted ones.
+std::span<const std::pair<uint32_t, uint32_t>> pairs_of(
+    std::span<const std::pair<uint32_t, uint32_t>> found, uint32_t slot) {
+  const auto first = std::lower_bound(found.begin(), found.end(), std::pair(slot, uint32_t{0}));
+  const auto last = std::lower_bound(found.begin(), found.end(), std::pair(slot + 1, uint32_t{0}));
+  // (Of pointers: the page's standard library makes no span of two iterators.)
+  return {found.data() + (first - found.begin()), static_cast<size_t>(last - first)};
+}
+
 }  // namespace
 
 Result<ObstacleState> Crowd::obstacle(EditId edit) const {
@@ -51,9 +60,11 @@ Result<ObstacleState> Crowd::obstacle(EditId edit) const {
                        found.occupants};
 }
 
-std::vector<Prism> Crowd::obstacles() const {
+std::vector<Prism> Crowd::obstacles() const { return state_->up_obstacles(); }
+
+std::vector<Prism> Crowd::State::up_obstacles() const {
   std::vector<Prism> prisms;
-  for (const crowd::CrowdObstacle& obstacle : state_->shared.obstacles.all()) {
+  for (const crowd::CrowdObstacle& obstacle : shared.obstacles.all()) {
     if (obstacle.exists && obstacle.is_up) prisms.push_back(obstacle.place);
   }
   return prisms;
@@ -96,6 +107,34 @@ void Crowd::State::remove_obstacle(uint32_t slot) {
   shared.obstacles.remove(slot);
 }
 
+// Of each of these obstacles.
+std::vector<Crowd::State::Blocked> Crowd::State::find_blocked_obstacles(
+    std::span<const uint32_t> slots, std::span<const std::pair<uint32_t, uint32_t>> found) const {
+  std::vector<Blocked> all;
+  for (const uint32_t slot : slots) {
+    const crowd::CrowdObstacle& obstacle = shared.obstacles.all()[slot];
+    const auto here = pairs_of(found, slot);
+    Blocked& by = all.emplace_back();
+    by.bodies = static_cast<uint32_t>(here.size());
+    for (const auto& pair : here) {
+      by.walkers += walk.bodies()[pair.second].has(crowd::Body::kMovedElsewhere) ? 0 : 1;
+    }
+    const bool refuses = obstacle.policy == ObstaclePolicy::kRefuseEntry && !obstacle.is_up;
+    by.inside = refuses && is_occupied(slot, here) ? 1 : 0;
+  }
+  if (!shared.share) return all;
+  const std::vector<Blocked> of_ranks = shared.share->gather(std::span<const Blocked>(all));
+  for (size_t n = 0; n < all.size(); ++n) {
+    all[n] = {};
+    for (size_t at = n; at < of_ranks.size(); at += slots.size()) {
+      all[n].bodies += of_ranks[at].bodies;
+      all[n].walkers += of_ranks[at].walkers;
+      all[n].inside += of_ranks[at].inside;
+    }
+  }
+  return all;
+}
+
 size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
                                       std::vector<AvatarId>* in_their_path) {
   if (in_their_path != nullptr) in_their_path->clear();
@@ -109,34 +148,28 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
   crowd::BlockerPairs found;
   for (const crowd::Mode* mode : modes) mode->add_blockers(slots, bodies, found);
   std::sort(found.begin(), found.end());
-  size_t waiting = 0;
+  const std::vector<Blocked> blocked = find_blocked_obstacles(slots, found);
+  size_t waiting = 0, nth = 0;
   std::vector<uint32_t> cut;
   std::vector<std::pair<uint32_t, uint32_t>> leaving;
   bool changed = false;
   for (const uint32_t slot : slots) {
     const crowd::CrowdObstacle& obstacle = shared.obstacles.at(slot);
-    const auto first = std::lower_bound(found.begin(), found.end(), std::pair(slot, uint32_t{0}));
-    const auto last =
-        std::lower_bound(found.begin(), found.end(), std::pair(slot + 1, uint32_t{0}));
+    const Blocked by = blocked[nth++];
     const bool refuses = obstacle.policy == ObstaclePolicy::kRefuseEntry && !obstacle.is_up;
-    // (Of pointers: the page's standard library makes no span of two iterators.)
-    const std::span<const std::pair<uint32_t, uint32_t>> here(
-        found.data() + (first - found.begin()), static_cast<size_t>(last - first));
+    const std::span<const std::pair<uint32_t, uint32_t>> here = pairs_of(found, slot);
     if (!obstacle.waits() && !obstacle.is_exit_only) continue;
     const bool had_cells = obstacle.has_cells && !obstacle.is_elsewhere;
     const bool was_exit_only = obstacle.is_exit_only, waited = obstacle.waits();
-    bool comes = here.empty();
-    if (!here.empty() && (refuses || obstacle.is_exit_only)) {
+    bool comes = by.bodies == 0;
+    if (by.bodies > 0 && (refuses || obstacle.is_exit_only)) {
       leaving.insert(leaving.end(), here.begin(), here.end());
-      const auto walks = [&](const auto& pair) {
-        return !bodies[pair.second].has(crowd::Body::kMovedElsewhere);
-      };
-      shared.obstacles.set_exit_only(slot, std::any_of(here.begin(), here.end(), walks));
+      shared.obstacles.set_exit_only(slot, by.walkers > 0);
       if (refuses) {
         shared.obstacles.close(slot);
-        comes = !is_occupied(slot, here);
+        comes = by.inside == 0;
       }
-    } else if (here.empty()) {
+    } else if (by.bodies == 0) {
       shared.obstacles.set_exit_only(slot, false);
     }
     if (waited && comes) {
@@ -148,7 +181,7 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
     changed = changed || (waited && comes) || was_exit_only != obstacle.is_exit_only ||
               had_cells != obstacle.has_cells;
     if (obstacle.has_cells && !had_cells) cut.push_back(slot);
-    shared.obstacles.at(slot).occupants = obstacle.waits() ? static_cast<uint32_t>(here.size()) : 0;
+    shared.obstacles.at(slot).occupants = obstacle.waits() ? by.bodies : 0;
     if (!obstacle.waits()) continue;
     ++waiting;
     if (!begins_step) continue;
@@ -157,6 +190,9 @@ size_t Crowd::State::settle_obstacles(std::span<const uint32_t> slots,
     }
   }
   if (begins_step) {
+    if (shared.share) {
+      *in_their_path = shared.share->gather(std::span<const AvatarId>(*in_their_path));
+    }
     const auto before = [](AvatarId a, AvatarId b) { return a.slot1 < b.slot1; };
     std::sort(in_their_path->begin(), in_their_path->end(), before);
     in_their_path->erase(std::unique(in_their_path->begin(), in_their_path->end()),

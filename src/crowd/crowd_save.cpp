@@ -343,10 +343,10 @@ template <class State>
 SavedArrays read_arrays(const Head& head, const uint8_t* at, State& s) {
   SavedArrays saved;
   at = take_rows(at, head.bodies, saved.bodies);
-  at = take_rows(at, head.slots, s.shared.generation);
+  at = take_rows(at, head.slots, s.shared.names.generations());
   at = take_rows(at, head.slots, s.shared.orientations);
   at = s.walk.restore(at, head.slots);
-  at = take_rows(at, head.free_slots, s.free_slots);
+  at = take_rows(at, head.free_slots, s.shared.names.free_names());
   at = take_rows(at, head.obstacles, saved.obstacles);
   at = take_rows(at, head.corners, saved.corners);
   at = take_rows(at, head.free_obstacles, saved.free_obstacles);
@@ -395,7 +395,7 @@ bool are_sound(std::span<const crowd::Body> bodies, const Head& head, const Stat
   const world::WorldData& data = *data_of(s.shared.world);
   const size_t classes = s.shared.baked_classes() + s.shared.density_classes.size();
   bool sound = head.bodies + head.free_slots == head.slots;
-  for (const uint32_t slot : s.free_slots) {
+  for (const uint32_t slot : s.shared.names.free_names()) {
     sound = sound && use_slot(slot) && s.own_curves.find(slot) == nullptr;
   }
   for (const crowd::Body& body : bodies) {
@@ -415,8 +415,8 @@ std::vector<uint8_t> Crowd::save() const {
   head.sub_step = s.shared.sub_step;
   head.scattered = s.scattered;
   head.bodies = s.walk.bodies().size();
-  head.slots = s.shared.generation.size();
-  head.free_slots = s.free_slots.size();
+  head.slots = s.shared.names.names();
+  head.free_slots = s.shared.names.free_names().size();
   std::vector<std::array<double, 2>> corners;
   const std::vector<SavedObstacle> obstacles = saved_obstacles(s.shared.obstacles.all(), corners);
   head.obstacles = obstacles.size();
@@ -453,10 +453,10 @@ std::vector<uint8_t> Crowd::save() const {
   out.reserve(size_of(head));
   put_rows(out, &head, 1);
   put_rows(out, s.walk.bodies().data(), head.bodies);
-  put_rows(out, s.shared.generation.data(), head.slots);
+  put_rows(out, s.shared.names.generations().data(), head.slots);
   put_rows(out, s.shared.orientations.data(), head.slots);
   s.walk.save(out);
-  put_rows(out, s.free_slots.data(), head.free_slots);
+  put_rows(out, s.shared.names.free_names().data(), head.free_slots);
   put_rows(out, obstacles.data(), head.obstacles);
   put_rows(out, corners.data(), head.corners);
   put_rows(out, s.shared.obstacles.free_slots().data(), head.free_obstacles);

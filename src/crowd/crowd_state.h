@@ -5,10 +5,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "crowd/climb/climb_mode.h"
+#include "crowd/crowd_check.h"
 #include "crowd/fly/fly_mode.h"
 #include "crowd/ground/body.h"
 #include "crowd/ground/target.h"
@@ -41,7 +43,6 @@ struct Crowd::State {
   float fastest = 0;                        // of all bodies [m/s]
   uint64_t scattered = 0;                   // draws of `scatter`
 
-  std::vector<uint32_t> free_slots;
   mutable std::vector<uint32_t> where;  // by slot: which of the bodies; kNoBody: none
   mutable bool where_is_old = false;
   // Events: what is watched, and by slot where each avatar was.
@@ -55,6 +56,13 @@ struct Crowd::State {
   std::vector<uint32_t> slot1_of_edit;  // by id - 1: slot of its obstacle plus one; 0: none
   std::vector<AvatarId> blockers;
 
+  // Of a crowd that ranks share: avatars of all of them, by id; with how many its columns were
+  // assigned, and in which step.
+  mutable std::vector<AvatarState> everywhere;  // since the last step, once they were asked for
+  size_t assigned_for = 0;
+  uint64_t assigned_at = 0;
+  bool is_uneven = false;  // They are assigned again.
+
   State(const World& world, const CrowdConfig& config, crowd::MoveConfig move)
       : shared(world, config),
         walk(shared, (move.own_curves = &own_curves, move)),
@@ -62,6 +70,33 @@ struct Crowd::State {
         fly(shared, move, walk),
         climb(shared, move, fly),
         mode_of_class(shared.classes.size(), nullptr) {}
+
+  // crowd_share.cpp: a crowd that ranks share.
+  /// It has no avatars and classes yet. Fails with kBadConfig.
+  Result<void> share_with(RankGroup& group);
+  /// Ranks share no crowd that takes off-mesh links.
+  [[nodiscard]] Result<void> check_links() const;
+  /// Avatars on all ranks.
+  [[nodiscard]] size_t count() const {
+    return shared.share ? shared.names.alive() : walk.bodies().size();
+  }
+  /// Is it true on any rank?
+  [[nodiscard]] bool any(bool mine) const { return shared.share ? shared.share->any(mine) : mine; }
+  /// Which of these would overlap an avatar of any rank?
+  [[nodiscard]] std::vector<uint8_t> find_blocked(std::span<const crowd::NewAvatar> avatars,
+                                                  int32_t widest) const;
+  /// Avatars go to the ranks that own where they are. Before a sub-step.
+  void migrate();
+  /// What ranks found in a step becomes what all found.
+  void gather_events(crowd::EngineCounts& counts, CrowdReport& report);
+  /// Is its body on this rank? Where not, it forgets what all ranks know of the avatar's path.
+  [[nodiscard]] crowd::Body* commanded(AvatarId id);
+  [[nodiscard]] std::vector<AvatarState> own_states() const;
+  [[nodiscard]] const std::vector<AvatarState>& states_everywhere() const;
+  [[nodiscard]] std::optional<AvatarState> state_everywhere(AvatarId id) const;
+  /// Counts what bodies of this rank and of others do to each other, once.
+  [[nodiscard]] CrowdCheck check_shared() const;
+  [[nodiscard]] crowd::CheckedBody checked(const crowd::Body& body) const;
 
   // crowd_avatars.cpp
   [[nodiscard]] crowd::Mode& mode_of(const crowd::Body& body) const {
@@ -77,6 +112,8 @@ struct Crowd::State {
   /// Reserves memory for so many more avatars.
   void reserve(size_t more);
   AvatarId add(crowd::NewAvatar avatar);
+  /// Names one like it that another rank has.
+  AvatarId add_elsewhere(const crowd::NewAvatar& like);
   [[nodiscard]] crowd::Body* body(AvatarId id) const;
   [[nodiscard]] bool has_target(TargetId target) const {
     return target >= 1 && target <= shared.targets.size();
@@ -108,11 +145,19 @@ struct Crowd::State {
   void follow_state(EditId id);
 
   // crowd_obstacles.cpp
+  [[nodiscard]] std::vector<Prism> up_obstacles() const;
   /// Requests the obstacle of an edit at once, and returns its slot. [check_prism]
   uint32_t add_obstacle(EditId edit, const Prism& prism);
   void move_obstacle(uint32_t slot, const Prism& prism);
   void set_obstacle_active(uint32_t slot, bool active);
   void remove_obstacle(uint32_t slot);
+  /// Bodies of all ranks that block an obstacle.
+  struct Blocked {
+    uint32_t bodies = 0, walkers = 0;
+    uint32_t inside = 0;  // of those that may not enter: not 0 if some are where it closes
+  };
+  [[nodiscard]] std::vector<Blocked> find_blocked_obstacles(
+      std::span<const uint32_t> slots, std::span<const std::pair<uint32_t, uint32_t>> found) const;
   /// Activates or moves the waiting obstacles that no avatar blocks. Returns how many still wait.
   size_t settle_obstacles(std::span<const uint32_t> slots, std::vector<AvatarId>* in_their_path);
   /// Updates the grounds to the obstacles.

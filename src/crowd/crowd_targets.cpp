@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "core/access.h"
@@ -46,10 +47,12 @@ double Crowd::distance(AvatarId id, TargetId target) const {
   if (!s.has_target(target)) return std::numeric_limits<double>::infinity();
   s.renew_flows();
   const crowd::Body* body = s.body(id);
-  if (body == nullptr || body->has(crowd::Body::kMovedElsewhere)) {
-    return std::numeric_limits<double>::infinity();
+  std::optional<double> found;
+  if (body != nullptr && !body->has(crowd::Body::kMovedElsewhere)) {
+    found = s.walk.distance(*body, target);
   }
-  return s.walk.distance(*body, target);
+  if (s.shared.share) found = s.shared.share->find_on_any(found);
+  return found.value_or(std::numeric_limits<double>::infinity());
 }
 
 Result<std::vector<Place>> Crowd::places(TargetId target, int32_t avatar_class, size_t max_count,

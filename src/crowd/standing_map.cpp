@@ -41,7 +41,7 @@ void StandingMap::grow() {
   }
 }
 
-bool StandingMap::add_if_clear(const Body& body) {
+bool StandingMap::is_clear(const Body& body) const {
   for (int64_t dz = -1; dz <= 1; ++dz) {
     for (int64_t dx = -1; dx <= 1; ++dx) {
       uint32_t n = first_[square(body.x / width_ + dx, body.z / width_ + dz)];
@@ -54,6 +54,11 @@ bool StandingMap::add_if_clear(const Body& body) {
       }
     }
   }
+  return true;
+}
+
+bool StandingMap::add_if_clear(const Body& body) {
+  if (!is_clear(body)) return false;
   add(body);
   return true;
 }

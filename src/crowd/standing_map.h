@@ -17,6 +17,10 @@ class StandingMap {
  public:
   /// With these bodies, none wider than `widest` units, and capacity for `more`; it grows.
   StandingMap(std::span<const Body> bodies, int32_t widest, size_t more);
+  /// No body that is added is wider. [units]
+  [[nodiscard]] int32_t widest() const { return static_cast<int32_t>(width_ / 2); }
+  /// Does it touch none?
+  [[nodiscard]] bool is_clear(const Body& body) const;
   /// Adds a body if it touches no other.
   bool add_if_clear(const Body& body);
 

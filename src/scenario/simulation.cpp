@@ -55,10 +55,21 @@ Result<Nodes> Simulation::State::nodes_for(const World& world, const Scenario& s
 
 Result<Simulation> Simulation::create(const World& world, const Scenario& scenario, int32_t workers,
                                       Context& context) {
-  auto nodes = State::nodes_for(world, scenario, workers, context);
+  return State::create(world, scenario, workers, Crowd::create, context);
+}
+
+Result<Simulation> Simulation::create_over_ranks(const World& world, const Scenario& scenario,
+                                                 int32_t workers, Context& context) {
+  return State::create(world, scenario, workers, crowd_over_ranks, context);
+}
+
+Result<Simulation> Simulation::State::create(const World& world, const Scenario& scenario,
+                                             int32_t workers, MakeCrowd make_crowd,
+                                             Context& context) {
+  auto nodes = nodes_for(world, scenario, workers, context);
   if (!nodes) return nodes.error();
   const Edits edits;
-  auto crowd = Crowd::create(
+  auto crowd = make_crowd(
       world, {.dt = scenario.dt,
               .seed = scenario.seed,
               .workers = workers,

@@ -189,6 +189,9 @@ struct Simulation::State {
   /// The avatar's next random number, [0, 1).
   double unit(ScenarioAvatar& p) const;
 
+  using MakeCrowd = Result<Crowd> (*)(const World&, const CrowdConfig&);
+  static Result<Simulation> create(const World& world, const Scenario& scenario, int32_t workers,
+                                   MakeCrowd make_crowd, Context& context);
   static Result<Nodes> nodes_for(const World& world, const Scenario& scenario, int32_t workers,
                                  Context& context);
 

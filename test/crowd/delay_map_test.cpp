@@ -18,7 +18,7 @@ constexpr int kWhole = PathProgress::kWhole;
 
 // A second of steps of 0.1 s.
 void pass_second(DelayMap& map, uint64_t& step, size_t bodies = 1) {
-  for (int i = 0; i < 10; ++i) map.begin_step(step++, bodies, 1);
+  for (int i = 0; i < 10; ++i) map.begin_step(step++, bodies, 1, nullptr);
 }
 
 TEST(DelayMap, AveragesExponentiallyAndForgets) {

@@ -15,7 +15,7 @@ QueueOrder random_order(uint64_t seed, uint32_t slot) {
     return static_cast<int32_t>(2e5 * (random_unit(seed, slot, n) - 0.5));
   };
   QueueOrder order;
-  order.slot = slot;
+  order.name = slot;
   order.at = {number(1), number(2)};
   order.target = {number(3), number(4)};
   order.beyond = {static_cast<float>(number(5)), static_cast<float>(number(6))};

@@ -364,7 +364,7 @@ void PlainCrowd::settle(const std::vector<Spot>& now, const std::vector<uint8_t>
       const bool alone = std::none_of(near_[i].begin(), near_[i].end(), [&](const Near& n) {
         return can_touch(static_cast<uint32_t>(i), n);
       });
-      const bool turns_aside = pushes(body) || (body.asks && body.request.order.slot == i &&
+      const bool turns_aside = pushes(body) || (body.asks && body.request.order.name == i &&
                                                 body.stood >= config_.queue.detour_stands);
       const float content =
           left > 1 && !alone && turns_aside

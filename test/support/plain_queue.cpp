@@ -114,9 +114,9 @@ bool PlainCrowd::takes_turn(uint32_t i, uint32_t asker, const QueueOrder& first)
   const bool is_odd = static_cast<long>(steps_) / steps % 2 == 1;
   if (!is_odd || !queues(body)) return false;
   if (asker != UINT32_MAX && first.left < 0) return false;  // it is another's turn
-  const bool had_turn = body.asks && body.request.order.slot == i && body.request.order.left < 0;
+  const bool had_turn = body.asks && body.request.order.name == i && body.request.order.left < 0;
   if (had_turn) return true;
-  if (asker == UINT32_MAX || first.slot != asker || !stands(body)) return false;
+  if (asker == UINT32_MAX || first.name != asker || !stands(body)) return false;
   const Plane ahead = path_ahead(body);
   if (first.beyond.x * ahead.x + first.beyond.z * ahead.z <= 0) return false;
   return body.stood >= config_.queue.held_stands &&
@@ -125,7 +125,7 @@ bool PlainCrowd::takes_turn(uint32_t i, uint32_t asker, const QueueOrder& first)
 
 bool PlainCrowd::is_head(uint32_t i) const {
   const PlainBody& body = bodies_[i];
-  const bool asks_on = body.asks && body.request.order.slot == i &&
+  const bool asks_on = body.asks && body.request.order.name == i &&
                        size_of(body.velocity) < config_.queue.asks_on * body.speed;
   const bool has_stood = stands(body) && body.stood >= config_.queue.head_stands;
   if (!queues(body) || (!has_stood && !asks_on)) return false;
@@ -231,12 +231,12 @@ void PlainCrowd::queue_up(uint32_t i, Plan& plan) const {
       continue;
     }
     const QueueOrder& order = other.request.order;
-    if (order.slot == i || !(order < own)) continue;
+    if (order.name == i || !(order < own)) continue;
     // The shortest path that is left.
     if (asker != UINT32_MAX) {
       if (first.left < order.left) continue;
-      if (first.left == order.left && first.slot < order.slot) continue;
-      if (first.left == order.left && first.slot == order.slot && asker < n.other) continue;
+      if (first.left == order.left && first.name < order.name) continue;
+      if (first.left == order.left && first.name == order.name && asker < n.other) continue;
     }
     first = order;
     asker = n.other;

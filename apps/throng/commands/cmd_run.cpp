@@ -19,6 +19,7 @@
 #include "run/run_sinks.h"
 #include "run/run_times.h"
 #include "run/run_wanderers.h"
+#include "throng/bake.h"
 #include "throng/papers.h"
 #include "throng/world.h"
 
@@ -170,6 +171,9 @@ int run_file(Session& session, const CLI::App& command, const RunOptions& option
 
 // Fails if an option of avatars with goals stands beside --wander.
 Result<void> check_wander(const CLI::App& command, const char* remedy = "leave out --wander") {
+  if (rank_info().size > 1) {
+    return Error{Errc::kBadConfig, "--wander is for one process; start it without mpirun"};
+  }
   for (const char* name : {"--goals", "--near", "--radius", "--labels", "--zones",
                            "--search-memory", "--model", "--memory", "--set", "--order", "--axes",
                            "--set-at", "--full-speed", "--ignore-jams", "--pushing"}) {

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "input_file.h"
+#include "throng/bake.h"
 #include "throng/path.h"
 #include "throng/world.h"
 
@@ -49,8 +50,13 @@ struct Totals {
   double progress = 0;
   uint64_t checks = 0;
   CrowdCheck found;
+  uint64_t ranks = 1, most_avatars = 0, sent_bytes = 0;  // of all steps, by the rank that sent most
 
   void add(const CrowdReport& r) {
+    ranks = static_cast<uint64_t>(r.ranks);
+    most_avatars = r.most_avatars;  // at the end
+    sent_bytes += r.sent_bytes;
+    sum.step = r.step;
     sum.stood += r.stood;
     sum.contested += r.contested;
     sum.arrived += r.arrived;
@@ -71,6 +77,15 @@ struct Totals {
   }
 };
 
+std::string rank_text(const Totals& t) {
+  if (t.ranks <= 1) return {};
+  return fmt::format("{} ranks, at most {} avatars on one; {:.1f} kB sent by one in a step\n",
+                     t.ranks, t.most_avatars,
+                     static_cast<double>(t.sent_bytes) * 1e-3 /
+                         std::max<double>(1, static_cast<double>(t.sum.step)));
+}
+
+// What all ranks know; rank 0 prints it.
 void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Totals& t,
            const RunTimes& times) {
   const CurvilinearTuning& curves = run.config.tuning.curvilinear;
@@ -104,7 +119,7 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
                {"checks", t.checks},
                {"wall_entries", t.found.wall_entries},
                {"overlaps", t.found.overlaps},
-               {"state_hash", fmt::format("{:016x}", crowd.state_hash())},
+               {"state_hash", ""},
                {"seconds_total", t.sum.seconds_total},
                {"crowd_bytes", crowd.memory().total()},
                {"peak_bytes", peak_memory()}};
@@ -112,7 +127,15 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
   if (run.config.tuning.flyer_axes != FlyerAxes::kOurs) {
     json["axes"] = word_for(run.config.tuning.flyer_axes);
   }
+  if (t.ranks > 1) {
+    json["ranks"] = t.ranks;
+    json["most_avatars"] = t.most_avatars;
+    json["sent_bytes"] = static_cast<double>(t.sent_bytes) / steps;
+  }
+  const uint64_t hash = crowd.state_hash();
+  json["state_hash"] = fmt::format("{:016x}", hash);
   times.add_to(json);
+  if (rank_info().rank > 0) return;
   print_result(
       session, json,
       fmt::format(
@@ -124,7 +147,8 @@ void print(Session& session, const CrowdRun& run, const Crowd& crowd, const Tota
           crowd.size(), class_names(run.class_name, run.also), times.steps(), run.config.dt,
           times.text_of_steps(), times.text_of_parts(), t.sum.arrived, t.sum.planned, t.sum.no_path,
           t.progress / steps, memory_text(t.sum.out_of_memory, "--search-memory"), t.checks,
-          t.found.wall_entries, t.found.overlaps, crowd.state_hash()));
+          t.found.wall_entries, t.found.overlaps, hash) +
+          rank_text(t));
 }
 
 }  // namespace
@@ -159,7 +183,7 @@ Result<GoalCrowd> GoalCrowd::create(const World& world, const CrowdRun& run, Con
     if (!nodes) return nodes.error();
     with_nodes.config.nodes = *std::move(nodes);
   }
-  auto crowd = Crowd::create(world, with_nodes.config);
+  auto crowd = crowd_over_ranks(world, with_nodes.config);
   if (!crowd) return crowd.error();
   GoalCrowd made(world, with_nodes, std::move(*crowd));
   for (const auto& [name, count] : groups) {

@@ -13,6 +13,7 @@
 #include "output_file.h"
 #include "run/run_crowd.h"
 #include "run/run_times.h"
+#include "throng/bake.h"
 
 // Runs a scenario file and writes its trips, obstacles and counts.
 namespace throng::app {
@@ -130,6 +131,7 @@ struct ScenarioTotals {
 void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
            const Simulation& simulation, const ScenarioTotals& t, const RunTimes& times) {
   const Outcome outcome = outcome_of(scenario, simulation);
+  const uint64_t hash = simulation.state_hash();
   const double progress = t.avatar_steps > 0 ? t.progress / t.avatar_steps : 0;
   Json exits = Json::object();
   std::string lines;
@@ -170,9 +172,11 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
                {"wall_entries", t.found.wall_entries},
                {"overlaps", t.found.overlaps},
                {"obstacle_entries", t.found.obstacle_entries},
-               {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
+               {"state_hash", fmt::format("{:016x}", hash)},
                {"peak_bytes", peak_memory()}};
+  if (t.last.crowd.ranks > 1) json["ranks"] = t.last.crowd.ranks;
   times.add_to(json);
+  if (rank_info().rank > 0) return;  // All know the same.
   print_result(
       session, json,
       fmt::format("{}: {:.1f} s, {} avatars came, {} left, {} are still here\n{}"
@@ -183,7 +187,7 @@ void print(Session& session, const ScenarioRun& run, const Scenario& scenario,
                   lines, outcome.last, outcome.mean_time, t.last.goal_unreachable, t.last.outside,
                   times.text_of_steps(), times.text_of_parts(),
                   memory_text(t.out_of_memory, "search_memory"), t.checks, t.found.wall_entries,
-                  t.found.overlaps, t.found.obstacle_entries, simulation.state_hash()));
+                  t.found.overlaps, t.found.obstacle_entries, hash));
 }
 
 Result<ScenarioTotals> run_steps(Session& session, const ScenarioRun& run, const Scenario& scenario,
@@ -252,7 +256,7 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
   const auto world = times.measure("open", [&] { return open_world(*scenario, session.context); });
   if (!world) return world.error();
   auto simulation = times.measure("prepare", [&] {
-    return Simulation::create(*world, *scenario, run.workers, session.context);
+    return Simulation::create_over_ranks(*world, *scenario, run.workers, session.context);
   });
   if (!simulation) return simulation.error();
   Sinks sinks(run.sinks);
@@ -279,12 +283,11 @@ Result<int> try_run(Session& session, ScenarioRun& run) {
   if (!ok) return ok.error();
   const auto totals = run_steps(session, run, *scenario, *simulation, sinks, times);
   if (!totals) return totals.error();
-  if (!run.trips.empty()) {
-    if (ok = write_trips(run.trips, *scenario, *simulation); !ok) return ok.error();
+  if (rank_info().rank == 0) {
+    if (!run.trips.empty()) ok = write_trips(run.trips, *scenario, *simulation);
+    if (ok && !run.obstacles.empty()) ok = write_obstacles(run.obstacles, *scenario, *simulation);
   }
-  if (!run.obstacles.empty()) {
-    if (ok = write_obstacles(run.obstacles, *scenario, *simulation); !ok) return ok.error();
-  }
+  if (ok = agree_over_ranks(ok); !ok) return ok.error();
   print(session, run, *scenario, *simulation, *totals, times);
   const CrowdCheck& found = totals->found;
   const bool sound = found.wall_entries + found.overlaps + found.obstacle_entries == 0;

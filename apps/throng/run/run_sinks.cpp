@@ -14,13 +14,16 @@ Result<void> Sinks::open(const World& world, const RecordingInfo& run) {
   leans_ = run.leans;
   std::vector<std::string> names;
   for (const AvatarClass& avatar : world.summary().classes) names.push_back(avatar.name);
-  if (auto ok = open(std::move(names)); !ok || options_.record.empty()) return ok;
-  return recorder_.open(options_.record, run, world);
+  Result<void> ok = open(std::move(names));
+  if (ok && !options_.record.empty() && rank_info().rank == 0) {
+    ok = recorder_.open(options_.record, run, world);
+  }
+  return agree_over_ranks(ok);
 }
 
 Result<void> Sinks::open(std::vector<std::string> class_names) {
   class_names_ = std::move(class_names);
-  if (options_.trajectories.empty()) return {};
+  if (options_.trajectories.empty() || rank_info().rank > 0) return {};
   if (auto ok = trajectories_.open(options_.trajectories); !ok) return ok;
   trajectories_.write(fmt::format("{}{}\n", kCsvColumns, leans_ ? kCsvUpColumns : ""));
   return {};

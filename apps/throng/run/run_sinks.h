@@ -11,9 +11,11 @@
 #include "output_file.h"
 #include "run/run_recorder.h"
 #include "throng/avatar.h"
+#include "throng/bake.h"
 #include "throng/world.h"
 
-/// The files that a run writes, step by step.
+/// The files that a run writes, step by step. Of several ranks rank 0 writes them; all call the
+/// same.
 namespace throng::app {
 
 struct SinkOptions {
@@ -34,11 +36,15 @@ class Sinks {
   template <class Avatars>
   Result<void> add(uint64_t step, const Avatars& avatars) {
     const bool is_due = step % options_.every == 0;
-    if (is_due && (trajectories_.is_open() || recorder_.is_open())) avatars.read(states_);
+    const bool records = !options_.record.empty();
+    if (is_due && (records || !options_.trajectories.empty())) avatars.read(states_);
+    const uint64_t hash = records ? avatars.state_hash() : 0;
     if (trajectories_.is_open() && is_due) write_trajectories(step);
-    if (!recorder_.is_open()) return {};
-    if (!is_due) return recorder_.add_hash(step, avatars.state_hash());
-    return recorder_.add(step, avatars.state_hash(), states_);
+    Result<void> written;
+    if (recorder_.is_open()) {
+      written = is_due ? recorder_.add(step, hash, states_) : recorder_.add_hash(step, hash);
+    }
+    return records ? agree_over_ranks(written) : written;
   }
   /// `outcome`: what the recording keeps of it, as JSON, or nothing.
   Result<void> finish(const std::string& outcome = {});

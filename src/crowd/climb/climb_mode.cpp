@@ -42,7 +42,7 @@ Result<void> ClimbMode::open_class(size_t number, Context& context) {
       shared_.world, config.nodes, *finder, static_cast<size_t>(worker_count(config.workers)), of);
   follow_areas(*classes_[number]);
   engine_.set_ground(number, &classes_[number]->ground);
-  climbs_.resize(shared_.generation.size());
+  climbs_.resize(shared_.names.slots());
   return {};
 }
 
@@ -106,7 +106,7 @@ bool ClimbMode::draw(NewAvatar& avatar, const AvatarSpawn& like, uint64_t n) con
 
 void ClimbMode::add(const NewAvatar& avatar) {
   if (climbs_.empty() && !avatar.body.climbs) return;
-  climbs_.resize(shared_.generation.size());
+  climbs_.resize(shared_.names.slots());
   climbs_[avatar.body.slot] = avatar.body.climbs ? climb_at(avatar) : Climb{};
 }
 
@@ -260,7 +260,7 @@ bool ClimbMode::must_leave(const Body& body, const Prism& obstacle) const {
 AvatarState ClimbMode::state_of(const Body& body) const {
   const Climb& climb = climbs_[body.slot];
   const Orientation& orientation = shared_.orientations[body.slot];
-  return {.id = body.slot,
+  return {.id = shared_.name_of(body),
           .avatar_class = body.avatar_class,
           .position = climb.feet,
           .radius = climb.radius,
@@ -281,8 +281,8 @@ Body ClimbMode::at_feet(const Body& body) const {
   return there;
 }
 
-uint64_t ClimbMode::hash(std::span<const Body> by_slot, uint64_t hash) const {
-  return hash_rows(by_slot, climbs_, hash);
+uint64_t ClimbMode::hash(const Body& body, uint64_t hash) const {
+  return hash_row(climbs_, body.slot, hash);
 }
 
 void ClimbMode::add_memory(CrowdMemory& memory) const {

@@ -58,7 +58,7 @@ class ClimbMode final : public Mode {
   [[nodiscard]] AvatarState state_of(const Body& body) const override;
   [[nodiscard]] double height_of(const Body& body) const override { return body.height * 1e-3; }
   void check(std::span<const Body> bodies, CrowdCheck& found) const override;
-  [[nodiscard]] uint64_t hash(std::span<const Body> by_slot, uint64_t hash) const override;
+  [[nodiscard]] uint64_t hash(const Body& body, uint64_t hash) const override;
   void add_memory(CrowdMemory& memory) const override;
   [[nodiscard]] size_t row_count() const override { return climbs_.size(); }
   void save(std::vector<uint8_t>& out) const override;

@@ -50,7 +50,7 @@ Result<void> FlyMode::open_class(size_t number, Context& context) {
       std::make_unique<OfClass>(shared_.world, *finder, static_cast<size_t>(worker_count(workers)),
                                 shared_.classes[number]->ground, of);
   engine_.set_air(number, &classes_[number]->air, shared_.body_class(number).radius);
-  flights_.resize(shared_.generation.size());
+  flights_.resize(shared_.names.slots());
   return {};
 }
 
@@ -93,7 +93,7 @@ bool FlyMode::draw(NewAvatar& avatar, const AvatarSpawn& like, uint64_t n) const
 
 void FlyMode::add(const NewAvatar& avatar) {
   if (flights_.empty() && !classes_[avatar.body.avatar_class]) return;
-  flights_.resize(shared_.generation.size());
+  flights_.resize(shared_.names.slots());
   flights_[avatar.body.slot] = {};
 }
 
@@ -242,10 +242,15 @@ AvatarState FlyMode::state_of(const Body& body) const {
   return state;
 }
 
-uint64_t FlyMode::hash(std::span<const Body> by_slot, uint64_t hash) const {
-  hash = hash_rows(by_slot, flights_, hash);
-  if (searches_.empty()) return hash;
-  return hash_bytes(searches_.data(), searches_.size() * sizeof(LongSearch), hash);
+uint64_t FlyMode::hash(const Body& body, uint64_t hash) const {
+  if (flights_.empty()) return hash;
+  hash = hash_row(flights_, body.slot, hash);
+  if (flights_[body.slot].search != kListed) return hash;
+  for (size_t nth = 0; nth < searches_.size(); ++nth) {
+    if (searches_[nth].slot != body.slot) continue;
+    hash = hash_bytes(&searches_[nth], sizeof searches_[nth], hash + nth);
+  }
+  return hash;
 }
 
 void FlyMode::add_memory(CrowdMemory& memory) const {

@@ -67,7 +67,7 @@ class FlyMode final : public Mode, public TakesOff {
   [[nodiscard]] bool leads_out(const Body& body, std::span<const uint32_t> slots) const override;
   void end_leaving(Body& body) override;
   [[nodiscard]] AvatarState state_of(const Body& body) const override;
-  [[nodiscard]] uint64_t hash(std::span<const Body> by_slot, uint64_t hash) const override;
+  [[nodiscard]] uint64_t hash(const Body& body, uint64_t hash) const override;
   void add_memory(CrowdMemory& memory) const override;
   [[nodiscard]] size_t row_count() const override { return flights_.size(); }
   void save(std::vector<uint8_t>& out) const override;

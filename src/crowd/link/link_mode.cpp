@@ -175,7 +175,7 @@ void LinkMode::add(const NewAvatar& avatar) {
     fit_taking({body.radius, body.radius, body.height});
   }
   if (uses_.empty()) return;
-  uses_.resize(shared_.generation.size());
+  uses_.resize(shared_.names.slots());
   uses_[body.slot] = {};
 }
 
@@ -268,8 +268,8 @@ void LinkMode::check(std::span<const Body> bodies, CrowdCheck& found) const {
   }
 }
 
-uint64_t LinkMode::hash(std::span<const Body> by_slot, uint64_t hash) const {
-  return hash_rows(by_slot, uses_, hash);
+uint64_t LinkMode::hash(const Body& body, uint64_t hash) const {
+  return hash_row(uses_, body.slot, hash);
 }
 
 void LinkMode::add_memory(CrowdMemory& memory) const {

@@ -71,7 +71,7 @@ class LinkMode final : public Mode, public TakesLinks {
   void end_leaving(Body& body) override;
   [[nodiscard]] AvatarState state_of(const Body& body) const override;
   void check(std::span<const Body> bodies, CrowdCheck& found) const override;
-  [[nodiscard]] uint64_t hash(std::span<const Body> by_slot, uint64_t hash) const override;
+  [[nodiscard]] uint64_t hash(const Body& body, uint64_t hash) const override;
   void add_memory(CrowdMemory& memory) const override;
   [[nodiscard]] size_t row_count() const override { return uses_.size(); }
   void save(std::vector<uint8_t>& out) const override;

@@ -39,7 +39,7 @@ void LinkMode::add_users() {
 void LinkMode::find_users(std::span<Body> bodies) {
   constexpr uint32_t kNone = UINT32_MAX;
   add_users();
-  is_user_.assign(shared_.generation.size(), false);
+  is_user_.assign(shared_.names.slots(), false);
   for (const uint32_t slot : users_) is_user_[slot] = true;
   bodies_.assign(users_.size(), kNone);
   for (uint32_t i = 0; i < bodies.size(); ++i) {

@@ -40,7 +40,7 @@ int32_t LinkMode::room_of(int32_t radius) const {
 }
 
 bool LinkMode::begin_step() {
-  if (!links_.empty()) uses_.resize(shared_.generation.size());
+  if (!links_.empty()) uses_.resize(shared_.names.slots());
   for (Link& link : links_) link.waiting = {};
   lines_.clear();
   for (const uint32_t slot : users_) {

@@ -23,7 +23,7 @@ double Mode::height_of(const Body& body) const {
 
 void Mode::check(std::span<const Body> /*bodies*/, CrowdCheck& /*found*/) const {}
 
-uint64_t Mode::hash(std::span<const Body> /*by_slot*/, uint64_t hash) const { return hash; }
+uint64_t Mode::hash(const Body& /*body*/, uint64_t hash) const { return hash; }
 
 bool Mode::is_in_place(const Body& /*body*/) const { return true; }
 

@@ -131,8 +131,8 @@ class Mode {
   [[nodiscard]] virtual double height_of(const Body& body) const;
   /// Counts what check_bodies cannot know.
   virtual void check(std::span<const Body> bodies, CrowdCheck& found) const;
-  /// Continues the hash of a state with the rows of these bodies.
-  [[nodiscard]] virtual uint64_t hash(std::span<const Body> by_slot, uint64_t hash) const;
+  /// Continues the hash of a body, which is of any class, with its row.
+  [[nodiscard]] virtual uint64_t hash(const Body& body, uint64_t hash) const;
   virtual void add_memory(CrowdMemory& memory) const = 0;
 
   // Saved crowds: the rows of all slots, or none if no class in use ever had this mode.

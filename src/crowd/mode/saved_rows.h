@@ -5,14 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <span>
 #include <type_traits>
 #include <vector>
 
 #include "core/hash.h"
-#include "crowd/ground/body.h"
 
-/// Arrays as the bytes of a saved crowd, and as what a state's hash is of.
+/// Arrays as the bytes of a saved crowd, and their rows as what a state's hash is of.
 namespace throng::crowd {
 
 template <class T>
@@ -33,15 +31,11 @@ const uint8_t* take_rows(const uint8_t* saved, size_t count, std::vector<T>& val
   return saved + bytes;
 }
 
-/// Continues a hash with the rows of these bodies, in their order; with none if there are no rows.
+/// Continues a hash with a row, if there are rows.
 template <class T>
-uint64_t hash_rows(std::span<const Body> bodies, const std::vector<T>& by_slot, uint64_t hash) {
+uint64_t hash_row(const std::vector<T>& by_slot, uint32_t slot, uint64_t hash) {
   static_assert(std::is_trivially_copyable_v<T>);
-  if (by_slot.empty()) return hash;
-  std::vector<T> rows;
-  rows.reserve(bodies.size());
-  for (const Body& body : bodies) rows.push_back(by_slot[body.slot]);
-  return hash_bytes(rows.data(), rows.size() * sizeof(T), hash);
+  return by_slot.empty() ? hash : hash_bytes(&by_slot[slot], sizeof(T), hash);
 }
 
 }  // namespace throng::crowd

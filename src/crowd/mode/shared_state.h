@@ -15,8 +15,10 @@
 #include "crowd/ground/crowd_ground.h"
 #include "crowd/ground/obstacle_grid.h"
 #include "crowd/ground/target.h"
+#include "crowd/mode/avatar_names.h"
 #include "crowd/mode/orientation.h"
 #include "crowd/obstacles/obstacle_set.h"
+#include "crowd/share/rank_share.h"
 #include "path/edits/density_cells.h"
 #include "path/edits/edit_list.h"
 #include "throng/avatar.h"
@@ -56,9 +58,10 @@ struct SharedState {
   std::vector<std::unique_ptr<SharedClass>> classes;
   std::vector<DensityClass> density_classes;
   ObstacleSet obstacles;
-  ObstacleGrid obstacle_grid;             // those that are active or close
-  bool some_leave = false;                // Body::leaves is set for some
-  std::vector<uint32_t> generation;       // by slot
+  ObstacleGrid obstacle_grid;  // those that are active or close
+  bool some_leave = false;     // Body::leaves is set for some
+  AvatarNames names;
+  std::unique_ptr<RankShare> share;       // null: no other rank has avatars of the crowd
   std::vector<Orientation> orientations;  // by slot
   std::vector<Target> targets;            // TargetId less one
 
@@ -91,7 +94,8 @@ struct SharedState {
   /// Does a class walk over nodes? It never flies.
   [[nodiscard]] bool climbs(size_t number) const;
 
-  [[nodiscard]] AvatarId id_of(uint32_t slot) const { return {slot + 1, generation[slot]}; }
+  [[nodiscard]] uint32_t name_of(const Body& body) const { return names.name_of(body.slot); }
+  [[nodiscard]] AvatarId id_of(uint32_t slot) const { return names.id_of(slot); }
   [[nodiscard]] const path::EditList& edits() const { return *Access::state(config.edits); }
   /// Do paths on foot need a search that knows costs, over ground of these baked area kinds?
   [[nodiscard]] bool has_costs(uint64_t baked_kinds) const {

@@ -102,7 +102,7 @@ void CrowdEngine::fit(int32_t widest, float fastest, float dt) {
 void CrowdEngine::set_detail(const EngineDetail& detail) {
   detail_ = detail;
   detail_.narrowest = std::min(detail.narrowest, kLongestStep);
-  if (size_ > 0) fit_grid();
+  if (size_ > 0 || names_ != nullptr) fit_grid();  // Ranks that share a crowd see equally far.
 }
 
 void CrowdEngine::fit_grid() {
@@ -172,7 +172,7 @@ bool CrowdEngine::continues(const Body& body, uint64_t step) const {
     return false;
   }
   const uint64_t every = steps_of_reaction(body);
-  if (decides(every, step, body.slot)) return false;
+  if (decides(every, step, name_of(body))) return false;
   const int32_t x = body.local_target_x - body.x, z = body.local_target_z - body.z;
   return !is_before({x, z}, stride_of(body)) &&
          !(body.has(Body::kLast) && must_brake(config_.units.metres(x, z), body.speed,
@@ -202,7 +202,7 @@ void CrowdEngine::prefer_all(uint64_t step, Before before) {
     if (size_of(config_.units.metres(b.local_target_x - b.x, b.local_target_z - b.z)) <
         kCornerRadius)
       return 0.0f;
-    const bool left = (random_u64(config_.seed ^ kSides, b.slot, window) & 1) != 0;
+    const bool left = (random_u64(config_.seed ^ kSides, name_of(b), window) & 1) != 0;
     return left ? -b.detour_angle : b.detour_angle;
   };
   const size_t pieces = (size_ + kGrain - 1) / kGrain;
@@ -657,7 +657,8 @@ bool CrowdEngine::is_accepted(uint32_t i, uint64_t step) const {
   const Body& body = bodies_[i];
   const Proposal& proposal = proposals()[i];
   const auto order = [&](const Body& b) {
-    return std::pair(random_u64(config_.seed, b.slot, step), b.slot);
+    const uint32_t name = name_of(b);
+    return std::pair(random_u64(config_.seed, name, step), name);
   };
   const auto mine = order(body);
   const std::span<const uint32_t> others = others_of(proposal);

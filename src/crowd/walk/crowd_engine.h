@@ -15,6 +15,7 @@
 #include "core/function_ref.h"
 #include "crowd/ground/body.h"
 #include "crowd/ground/stride_ground.h"
+#include "crowd/mode/avatar_names.h"
 #include "crowd/mode/engine_counts.h"
 #include "crowd/mode/given_moves.h"
 #include "crowd/mode/orientation.h"
@@ -74,6 +75,12 @@ class CrowdEngine {
   void set_detail(const EngineDetail& detail);
   /// Steps turn these, by slot; they must stay until the next call. At first there are none.
   void set_orientations(std::span<Orientation> by_slot) { orientations_ = by_slot; }
+  /// What avatars are called, where it is not their slot; it must stay.
+  void set_names(const AvatarNames& names) { names_ = &names; }
+  /// What a body does may depend on it.
+  [[nodiscard]] uint32_t name_of(const Body& body) const {
+    return names_ == nullptr ? body.slot : names_->name_of(body.slot);
+  }
   /// Reserves memory for so many bodies. The bodies stay.
   void reserve(size_t bodies);
   [[nodiscard]] std::span<Body> bodies() const { return {bodies_.data(), size_}; }
@@ -330,7 +337,7 @@ class CrowdEngine {
                    const NeighbourGrid::Around& around, Worker& worker) const;
   [[nodiscard]] steer::Plane aside_of(const Body& body, steer::Plane away, steer::Plane from,
                                       steer::Plane asked, float room) const;
-  [[nodiscard]] bool takes_turn(const Body& body, uint32_t asker, const QueueOrder& first) const;
+  [[nodiscard]] bool takes_turn(const Body& body, const Body* asker, const QueueOrder& first) const;
   [[nodiscard]] bool has_turn(const Body& body, std::span<const uint32_t> nearest) const;
   bool is_head(const Body& body, std::span<const uint32_t> nearest, Worker& worker) const;
   [[nodiscard]] static steer::Plane unless_left(const Worker& worker, steer::Plane velocity);
@@ -392,7 +399,7 @@ class CrowdEngine {
       return {static_cast<int16_t>(given.x.units), static_cast<int16_t>(given.z.units)};
     }
     const steer::Plane cut = cut_to(velocity, size_of(body.preferred));
-    const uint64_t n = step_ + body.slot;
+    const uint64_t n = step_ + name_of(body);
     return {static_cast<int16_t>(units.displacement_within(cut.x, n)),
             static_cast<int16_t>(units.displacement_within(cut.z, n))};
   }
@@ -404,7 +411,7 @@ class CrowdEngine {
     }
     if (body.has(Body::kExternal)) return given_displacement(body, velocity);
     if (has_short_moves(body) || gains_little_) {
-      const uint64_t n = step_ + body.slot;
+      const uint64_t n = step_ + name_of(body);
       return {static_cast<int16_t>(units.small_displacement(velocity.x, n)),
               static_cast<int16_t>(units.small_displacement(velocity.z, n))};
     }
@@ -421,9 +428,9 @@ class CrowdEngine {
   void add_with_rows(const Body& body, const Ghost& ghost, uint64_t step);
   void list_shared();
   struct Shared {
-    uint32_t slot = 0, body = 0;
+    uint32_t name = 0, body = 0;
   };
-  [[nodiscard]] const Shared* find_ghost(uint32_t slot) const;
+  [[nodiscard]] const Shared* find_ghost(uint32_t name) const;
   void exchange_moves();
   void exchange_accepted(uint8_t round);
   void drop_ghosts();
@@ -463,6 +470,7 @@ class CrowdEngine {
   std::vector<Worker> workers_;
   std::vector<uint32_t> arrived_;
   std::vector<float> level_speeds_;
+  const AvatarNames* names_ = nullptr;   // null: names are slots
   std::span<Orientation> orientations_;  // by slot
   bool gains_little_ = false;            // of speed in a step: all moves are rounded in turn
   std::vector<QueueProgress> progress_;  // by slot
@@ -471,7 +479,7 @@ class CrowdEngine {
   // all read. Valid where Body::asks is set.
   std::array<std::vector<RoomRequest>, 2> requests_;
   StepExchange* exchange_ = nullptr;    // of the current step; null: no other has bodies
-  std::vector<Shared> ghosts_, shown_;  // by slot, once bodies are sorted
+  std::vector<Shared> ghosts_, shown_;  // by name, once bodies are sorted
   std::vector<GhostMove> moves_;        // of those shown
   std::vector<uint32_t> accepted_;      // likewise
 };

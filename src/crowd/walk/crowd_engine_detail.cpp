@@ -47,7 +47,7 @@ void CrowdEngine::choose_detail(Body& body, uint64_t step) const {
   }
   body.flags |= Body::kLowDetail;
   const uint64_t steps = steps_in_low_detail(body);
-  body.steps = ((step + body.slot) % steps == 0 ? steps : 0) & 31;
+  body.steps = ((step + name_of(body)) % steps == 0 ? steps : 0) & 31;
 }
 
 }  // namespace throng::crowd

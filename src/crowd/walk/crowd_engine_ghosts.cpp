@@ -47,30 +47,30 @@ void CrowdEngine::list_shared() {
   shown_.clear();
   for (uint32_t i = 0; i < size_; ++i) {
     const Body& body = bodies_[i];
-    if (body.is_ghost) ghosts_.push_back({body.slot, i});
-    if (body.is_shown) shown_.push_back({body.slot, i});
+    if (body.is_ghost) ghosts_.push_back({name_of(body), i});
+    if (body.is_shown) shown_.push_back({name_of(body), i});
   }
   for (auto* list : {&ghosts_, &shown_}) {
     std::sort(list->begin(), list->end(),
-              [](const Shared& a, const Shared& b) { return a.slot < b.slot; });
+              [](const Shared& a, const Shared& b) { return a.name < b.name; });
   }
 }
 
-const CrowdEngine::Shared* CrowdEngine::find_ghost(uint32_t slot) const {
-  const auto found = std::lower_bound(ghosts_.begin(), ghosts_.end(), slot,
-                                      [](const Shared& a, uint32_t of) { return a.slot < of; });
-  return found != ghosts_.end() && found->slot == slot ? &*found : nullptr;
+const CrowdEngine::Shared* CrowdEngine::find_ghost(uint32_t name) const {
+  const auto found = std::lower_bound(ghosts_.begin(), ghosts_.end(), name,
+                                      [](const Shared& a, uint32_t of) { return a.name < of; });
+  return found != ghosts_.end() && found->name == name ? &*found : nullptr;
 }
 
 void CrowdEngine::exchange_moves() {
   moves_.clear();
-  for (const auto& [slot, i] : shown_) {
+  for (const auto& [name, i] : shown_) {
     if (bodies_[i].state != Body::kUndecided) continue;
     const Proposal& proposal = proposals()[i];
-    moves_.push_back({.slot = slot, .round = proposal.round, .place = proposal.place});
+    moves_.push_back({.name = name, .round = proposal.round, .place = proposal.place});
   }
   for (const GhostMove& move : exchange_->exchange_moves(moves_)) {
-    const Shared* const ghost = find_ghost(move.slot);
+    const Shared* const ghost = find_ghost(move.name);
     if (ghost == nullptr) continue;  // Only others see it.
     bodies_[ghost->body].state = Body::kUndecided;
     Proposal& proposal = proposals()[ghost->body];
@@ -81,13 +81,13 @@ void CrowdEngine::exchange_moves() {
 
 void CrowdEngine::exchange_accepted(uint8_t round) {
   accepted_.clear();
-  for (const auto& [slot, i] : shown_) {
+  for (const auto& [name, i] : shown_) {
     if (bodies_[i].state == Body::kDecided && proposals()[i].round == round) {
-      accepted_.push_back(slot);
+      accepted_.push_back(name);
     }
   }
-  for (const uint32_t slot : exchange_->exchange_accepted(accepted_)) {
-    const Shared* const ghost = find_ghost(slot);
+  for (const uint32_t name : exchange_->exchange_accepted(accepted_)) {
+    const Shared* const ghost = find_ghost(name);
     if (ghost != nullptr) bodies_[ghost->body].state = Body::kDecided;
   }
 }

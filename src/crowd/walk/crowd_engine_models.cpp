@@ -17,7 +17,8 @@ using steer::Plane;
 void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker) const {
   const Body& body = bodies_[i];
   const auto key = [&](uint32_t j) {
-    return std::pair(near_square(bodies_[j].x - body.x, bodies_[j].z - body.z), bodies_[j].slot);
+    return std::pair(near_square(bodies_[j].x - body.x, bodies_[j].z - body.z),
+                     name_of(bodies_[j]));
   };
   std::sort(nearest.begin(), nearest.end(),
             [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
@@ -28,7 +29,7 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
     others[n] = {.at = config_.units.metres(other.x - body.x, other.z - body.z),
                  .velocity = other.velocity,
                  .radius = static_cast<float>(other.radius) * config_.units.unit,
-                 .slot = other.slot};
+                 .slot = name_of(other)};
   }
   steer::View view{
       .velocity = body.velocity,
@@ -37,7 +38,7 @@ void CrowdEngine::prefer(uint32_t i, std::span<uint32_t> nearest, Worker& worker
       .stops = body.has(Body::kLast) && body.target == 0,
       .fastest = speed_limit(body),
       .radius = static_cast<float>(body.radius) * config_.units.unit,
-      .slot = body.slot,
+      .slot = name_of(body),
       .others = {others.data(), count}};
   // A body without a goal of its own keeps the given velocity.
   if (body.has(Body::kExternal) || !body.has(Body::kHasGoal)) {

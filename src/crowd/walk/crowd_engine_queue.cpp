@@ -38,7 +38,7 @@ bool CrowdEngine::queues(const Body& body) const {
 QueueOrder CrowdEngine::order_of(const Body& body) const {
   const Plane ahead = path_ahead(body);
   const float left = size_of(ahead) + progress_[body.slot].after;
-  return {body.slot,
+  return {name_of(body),
           {body.x, body.z},
           {body.local_target_x, body.local_target_z},
           path_beyond(body),
@@ -47,7 +47,7 @@ QueueOrder CrowdEngine::order_of(const Body& body) const {
 
 // Its order, which few need: it is found once.
 const QueueOrder& CrowdEngine::own_order(const Body& body, Worker& worker) const {
-  if (worker.own.slot == UINT32_MAX && queues(body)) worker.own = order_of(body);
+  if (worker.own.name == UINT32_MAX && queues(body)) worker.own = order_of(body);
   return worker.own;
 }
 
@@ -84,9 +84,8 @@ void CrowdEngine::query_queue(uint32_t i, std::span<const uint32_t> nearest,
   const std::vector<RoomRequest>& requests = requests_[(step_ + 1) % 2];
   QueueOrder first;
   const bool is_at_rest = rests(body);
-  uint32_t asker = UINT32_MAX;
+  const Body* asker = nullptr;
   Plane asked, from;
-  uint32_t by = 0;
   float needs = 0;
   for (const uint32_t j : nearest) {
     const Body& other = bodies_[j];
@@ -103,28 +102,27 @@ void CrowdEngine::query_queue(uint32_t i, std::span<const uint32_t> nearest,
         is_at_rest && other.has(Body::kLast) &&
         nearer_than(other.local_target_x - body.x, other.local_target_z - body.z, reach);
     if (is_wanted) continue;
-    const auto key = [](const QueueOrder& order, uint32_t slot) {
-      return std::tuple(order.left, order.slot, slot);
+    const auto key = [&](const QueueOrder& order, const Body& of) {
+      return std::tuple(order.left, order.name, name_of(of));
     };
-    if (request.order.slot == body.slot || !(request.order < own_order(body, worker))) continue;
-    if (asker != UINT32_MAX && key(first, asker) < key(request.order, other.slot)) continue;
+    if (request.order.name == name_of(body) || !(request.order < own_order(body, worker))) continue;
+    if (asker != nullptr && key(first, *asker) < key(request.order, other)) continue;
     first = request.order;
-    asker = other.slot;
+    asker = &other;
     from = apart;
     needs = room;
     asked = request.ahead;
-    by = j;
   }
   if (takes_turn(body, asker, first)) {
     QueueOrder order = own_order(body, worker);
     order.left = std::min(order.left, QueueOrder::kTurn - 1) - QueueOrder::kTurn;
     worker.asks = RoomRequest{order, unit(path_ahead(body))};
-  } else if (asker != UINT32_MAX) {
+  } else if (asker != nullptr) {
     const Plane away = unit({-from.x, -from.z});
     worker.yields =
         queues(body) &&
-        dot(unit(path_ahead(bodies_[by])), unit(path_ahead(body))) < -config_.queue.oncoming &&
-        !go_on_alike(body, bodies_[by]);
+        dot(unit(path_ahead(*asker)), unit(path_ahead(body))) < -config_.queue.oncoming &&
+        !go_on_alike(body, *asker);
     const bool steps_aside = worker.yields || !queues(body);
     worker.makes_room = steps_aside ? aside_of(body, away, from, asked, needs) : away;
     worker.asks = RoomRequest{first, *worker.makes_room};
@@ -159,17 +157,18 @@ Plane CrowdEngine::aside_of(const Body& body, Plane away, Plane from, Plane aske
 // A body and the head of a queue that asks it for room, both go the same direction and neither gets
 // on: they may hold each other, each at a post of a narrow door. For a while in every other one it
 // is the first instead, and the head makes room for it.
-bool CrowdEngine::takes_turn(const Body& body, uint32_t asker, const QueueOrder& first) const {
+bool CrowdEngine::takes_turn(const Body& body, const Body* asker, const QueueOrder& first) const {
   // So it is for nearly all.
-  if (asker == UINT32_MAX && !body.asks) return false;
+  if (asker == nullptr && !body.asks) return false;
   const auto steps =
       static_cast<uint64_t>(std::max(std::lround(config_.queue.turn_time / config_.units.dt), 1L));
   if (step_ / steps % 2 == 0 || !queues(body) || first.left < 0) return false;
   const QueueOrder& last = requests_[(step_ + 1) % 2][body.slot].order;
-  if (body.asks && last.slot == body.slot && last.left < 0) return true;
-  return asker != UINT32_MAX && first.slot == asker && stands(body) &&
+  if (body.asks && last.name == name_of(body) && last.left < 0) return true;
+  return asker != nullptr && first.name == name_of(*asker) && stands(body) &&
          dot(first.beyond, path_beyond(body)) > 0 &&
-         std::min(progress_[body.slot].stood, progress_[asker].stood) >= config_.queue.held_stands;
+         std::min(progress_[body.slot].stood, progress_[asker->slot].stood) >=
+             config_.queue.held_stands;
 }
 
 // Bodies that have long stood, and of which none asks, may wait for each other in a cycle: each
@@ -177,7 +176,7 @@ bool CrowdEngine::takes_turn(const Body& body, uint32_t asker, const QueueOrder&
 bool CrowdEngine::has_turn(const Body& body, std::span<const uint32_t> nearest) const {
   constexpr uint64_t kSteps = 8, kShare = 8;  // for so many steps; one of so many bodies
   return progress_[body.slot].stood >= config_.queue.turn_stands &&
-         random_u64(config_.seed ^ kTurns, body.slot, step_ / kSteps) % kShare == 0 &&
+         random_u64(config_.seed ^ kTurns, name_of(body), step_ / kSteps) % kShare == 0 &&
          std::none_of(nearest.begin(), nearest.end(), [&](uint32_t j) { return bodies_[j].asks; });
 }
 
@@ -186,7 +185,7 @@ bool CrowdEngine::is_head(const Body& body, std::span<const uint32_t> nearest,
                           Worker& worker) const {
   // One that follows a body which makes room for it asks on.
   const bool asks_on = body.asks && size_of(body.velocity) < config_.queue.asks_on * body.speed &&
-                       requests_[(step_ + 1) % 2][body.slot].order.slot == body.slot;
+                       requests_[(step_ + 1) % 2][body.slot].order.name == name_of(body);
   const bool has_stood = stands(body) && progress_[body.slot].stood >= config_.queue.head_stands;
   if (!has_stood && !asks_on) return false;
   if (has_turn(body, nearest)) return true;
@@ -304,8 +303,9 @@ bool CrowdEngine::is_paused(const Body& body) const {
 
 // Where bodies queue, the detour angle is the last resort of those at their heads: others wait.
 bool CrowdEngine::may_turn_aside(const Body& body) const {
-  return pushes(body) || (body.asks && requests_[step_ % 2][body.slot].order.slot == body.slot &&
-                          progress_[body.slot].stood >= config_.queue.detour_stands);
+  return pushes(body) ||
+         (body.asks && requests_[step_ % 2][body.slot].order.name == name_of(body) &&
+          progress_[body.slot].stood >= config_.queue.detour_stands);
 }
 
 // Requests count for one step: those of the last one are read in the next. Rows of bodies that do

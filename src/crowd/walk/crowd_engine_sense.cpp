@@ -52,8 +52,8 @@ bool leads(Plane apart, Plane preferred, Plane others) {
   return (is_ahead & (same > 0 ? 1 : 0) & (2 * same * same > both ? 1 : 0)) != 0;
 }
 
-Contender contender(const Body& body) {
-  return {body.x, body.z, body.local_target_x, body.local_target_z, body.radius, body.slot};
+Contender contender(const Body& body, uint32_t name) {
+  return {body.x, body.z, body.local_target_x, body.local_target_z, body.radius, name};
 }
 
 }  // namespace
@@ -122,7 +122,8 @@ std::span<uint32_t> CrowdEngine::find_nearest(uint32_t i, const NeighbourGrid::A
   size_t nearest = keep_nearest(lists, wanted);
   if (nearest > wanted) {  // Some are equally far: of these the first slots.
     const auto key = [&](uint32_t j) {
-      return std::pair(near_square(bodies_[j].x - body.x, bodies_[j].z - body.z), bodies_[j].slot);
+      return std::pair(near_square(bodies_[j].x - body.x, bodies_[j].z - body.z),
+                       name_of(bodies_[j]));
     };
     std::sort(lists.entries, lists.entries + nearest,
               [&](uint32_t a, uint32_t b) { return key(a) < key(b); });
@@ -160,18 +161,20 @@ void CrowdEngine::sense(uint32_t i, Worker& worker, const NeighbourGrid::Around&
   std::pair<float, uint32_t> nearest_first(HUGE_VALF, 0);
   Plane backward;
   Informed informed;
+  const auto contender_of = [this](const Body& of) { return contender(of, name_of(of)); };
   for (const uint32_t j : nearest) {
     const Body& other = bodies_[j];
     const Plane apart = config_.units.metres(other.x - body.x, other.z - body.z);
     informed.add(other, leads(apart, body.preferred, other.preferred));
     const float room = static_cast<float>(body.radius + other.radius) * config_.units.unit;
-    if (may_wait && is_on_last_segment(other) && goes_first(contender(other), contender(body))) {
+    if (may_wait && is_on_last_segment(other) &&
+        goes_first(contender_of(other), contender_of(body))) {
       waiting_room = std::max(waiting_room, room);
     }
     if (pushes && turns && turns_corner(other) &&
-        gives_precedence(contender(other), contender(body), size_of(apart), room,
+        gives_precedence(contender_of(other), contender_of(body), size_of(apart), room,
                          size_of(other.velocity) / other.speed)) {
-      const std::pair distance(size_of(apart), other.slot);
+      const std::pair distance(size_of(apart), name_of(other));
       if (distance < nearest_first) {
         nearest_first = distance;
         const float back = -0.5f * body.speed / distance.first;

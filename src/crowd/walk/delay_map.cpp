@@ -3,6 +3,7 @@
 #include "crowd/walk/delay_map.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "core/parallel.h"
 #include "core/random.h"
@@ -53,14 +54,49 @@ void DelayMap::note(uint32_t level, world::GroundPoint at, int64_t dx, int64_t d
   is_live_[level].store(1, std::memory_order_relaxed);
 }
 
-void DelayMap::begin_step(uint64_t step, size_t bodies, int32_t workers) {
+// Of each level that has some: its number, which bins, and the sums of these.
+void DelayMap::gather_sums(uint64_t first, uint64_t last, RankShare& share) {
+  static_assert(kBins <= 64);
+  std::vector<uint32_t> words;
+  for (uint64_t level = first; level < last; ++level) {
+    if (is_live_[level].load(std::memory_order_relaxed) == 0) continue;
+    const size_t begin = words.size();
+    uint64_t bins = 0;
+    words.insert(words.end(), {static_cast<uint32_t>(level), 0, 0});
+    for (size_t bin = 0; bin < kBins; ++bin) {
+      const uint32_t sum = sums_[level * kBins + bin].exchange(0, std::memory_order_relaxed);
+      if (sum == 0) continue;
+      bins |= uint64_t{1} << bin;
+      words.push_back(sum);
+    }
+    if (bins == 0) words.resize(begin);
+    if (bins == 0) continue;
+    words[begin + 1] = static_cast<uint32_t>(bins);
+    words[begin + 2] = static_cast<uint32_t>(bins >> 32);
+  }
+  const std::vector<uint32_t> all = share.gather(std::span<const uint32_t>(words));
+  for (size_t at = 0; at + 3 <= all.size();) {
+    const size_t level = all[at];
+    uint64_t bins = uint64_t{all[at + 2]} << 32 | all[at + 1];
+    at += 3;
+    is_live_[level].store(1, std::memory_order_relaxed);
+    for (; bins != 0; bins &= bins - 1) {
+      const auto bin = static_cast<size_t>(std::countr_zero(bins));
+      sums_[level * kBins + bin].fetch_add(all[at++], std::memory_order_relaxed);
+    }
+  }
+}
+
+void DelayMap::begin_step(uint64_t step, size_t bodies, int32_t workers, RankShare* share) {
   const uint64_t part = step % steps_;
   if (part == 0) {
     asked_ = asking_.exchange(0, std::memory_order_relaxed);
+    if (share != nullptr) asked_ = static_cast<uint32_t>(share->sum(asked_));
     limit_ = kMinSearches + static_cast<uint32_t>(bodies / kBodiesPerSearch);
   }
   const uint64_t levels = delays_.levels();
   const uint64_t first = levels * part / steps_, last = levels * (part + 1) / steps_;
+  if (share != nullptr) gather_sums(first, last, *share);
   parallel_ranges(last - first, kGrain, workers, [&](size_t begin, size_t end) {
     for (uint64_t level = first + begin; level < first + end; ++level) {
       if (is_live_[level].load(std::memory_order_relaxed) != 0) fold(static_cast<uint32_t>(level));
@@ -96,10 +132,10 @@ void DelayMap::fold(uint32_t level) {
 }
 
 // The second before says how many want to search: in its first second none may.
-bool DelayMap::ask(uint64_t seed, uint32_t slot, uint64_t step) {
+bool DelayMap::ask(uint64_t seed, uint32_t name, uint64_t step) {
   asking_.fetch_add(1, std::memory_order_relaxed);
   return asked_ > 0 &&
-         (asked_ <= limit_ || random_u64(seed ^ kAsking, slot, step) % asked_ < limit_);
+         (asked_ <= limit_ || random_u64(seed ^ kAsking, name, step) % asked_ < limit_);
 }
 
 std::vector<DelayMap::Saved> DelayMap::saved() const {

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "crowd/share/rank_share.h"
 #include "path/edits/ground_delays.h"
 #include "world/walk.h"
 
@@ -47,13 +48,14 @@ class DelayMap {
   /// Each body is sampled once in so many steps.
   [[nodiscard]] uint32_t steps_between() const { return steps_; }
   [[nodiscard]] float seconds_between() const { return seconds_; }
-  [[nodiscard]] bool is_turn_of(uint32_t slot, uint32_t step) const {
-    return (step + slot) % steps_ == 0;
+  [[nodiscard]] bool is_turn_of(uint32_t name, uint32_t step) const {
+    return (step + name) % steps_ == 0;
   }
 
   /// Takes what was noted on some of the levels into the average. Before a step of `bodies`; step:
   /// its number. Time: linear in these levels, a few bytes for those where no body walks slowly.
-  void begin_step(uint64_t step, size_t bodies, int32_t workers);
+  /// Ranks that share a crowd take what all of them noted.
+  void begin_step(uint64_t step, size_t bodies, int32_t workers, RankShare* share);
   [[nodiscard]] const path::GroundDelays& delays() const { return delays_; }
 
   /// On any worker: a body at a point of a level, which heads in a direction, got on at a share of
@@ -62,7 +64,7 @@ class DelayMap {
 
   // Searches are few in each second: of all that want one, some are chosen by chance.
   /// On any worker: a body wants to search. True: it may.
-  bool ask(uint64_t seed, uint32_t slot, uint64_t step);
+  bool ask(uint64_t seed, uint32_t name, uint64_t step);
   /// Did any body want to search in the second before?
   [[nodiscard]] bool is_asked() const { return asked_ > 0; }
 
@@ -84,6 +86,7 @@ class DelayMap {
 
  private:
   void fold(uint32_t level);
+  void gather_sums(uint64_t first, uint64_t last, RankShare& share);
 
   path::GroundDelays delays_;
   uint32_t steps_ = 1;

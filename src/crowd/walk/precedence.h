@@ -14,7 +14,7 @@ struct Contender {
   int32_t x = 0, z = 0;                            // [units]
   int32_t local_target_x = 0, local_target_z = 0;  // [units]
   int32_t radius = 0;                              // [units]
-  uint32_t slot = 0;
+  uint32_t name = 0;
 
   [[nodiscard]] int64_t left() const {  // square of the distance [units^2]
     const int64_t dx = int64_t{local_target_x} - x, dz = int64_t{local_target_z} - z;
@@ -32,7 +32,7 @@ inline bool goes_first(const Contender& other, const Contender& self) {
     return false;
   const int64_t theirs = other.left(), mine = self.left();
   if (mine > kRangeFactor * kRangeFactor * room * room) return false;
-  return theirs < mine || (theirs == mine && other.slot < self.slot);
+  return theirs < mine || (theirs == mine && other.name < self.name);
 }
 
 /// The preferred velocity of a body that waits for another: back off, then stand. `displacement`:

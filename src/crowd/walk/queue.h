@@ -25,21 +25,21 @@ struct QueueOrder {
   struct Spot {
     int32_t x = 0, z = 0;  // [units]
   };
-  uint32_t slot = UINT32_MAX;  ///< None: behind all.
+  uint32_t name = UINT32_MAX;  ///< Of the body; none: behind all.
   Spot at, target;             ///< The body and its local target.
   steer::Plane beyond;         ///< From the body to its path beyond its local target. [m]
   float left = 0;  ///< Length of the path that is left; less kTurn: before all others. [m]
   static constexpr float kTurn = 1e4f;
 
   friend bool operator<(const QueueOrder& a, const QueueOrder& b) {
-    if (a.slot == UINT32_MAX || b.slot == UINT32_MAX) return a.slot < b.slot;
+    if (a.name == UINT32_MAX || b.name == UINT32_MAX) return a.name < b.name;
     float more = a.left - b.left;
     if ((a.left < 0) != (b.left < 0)) return a.left < 0;
     if (a.beyond.x * b.beyond.x + a.beyond.z * b.beyond.z > 0) {
       more =
           (far(a.at, a.target) - far(b.at, a.target)) + (far(a.at, b.target) - far(b.at, b.target));
     }
-    return more < 0 || (more == 0 && a.slot < b.slot);
+    return more < 0 || (more == 0 && a.name < b.name);
   }
   /// [units]
   static float far(Spot from, Spot to) {

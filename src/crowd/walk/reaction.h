@@ -20,8 +20,8 @@ inline uint64_t steps_of_reaction(float reaction, float dt) {
 }
 
 /// Decisions are spread over the steps of a reaction.
-inline bool decides(uint64_t every, uint64_t step, uint32_t slot) {
-  return (step + slot) % every == 0;
+inline bool decides(uint64_t every, uint64_t step, uint32_t name) {
+  return (step + name) % every == 0;
 }
 
 /// Just before its local target, where it must not overshoot. `displacement`: to the target.

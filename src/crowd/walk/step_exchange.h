@@ -15,7 +15,8 @@ namespace throng::crowd {
 
 class CrowdEngine;
 
-/// A body that another engine moves, with all that its neighbours read of it.
+/// A body that another engine moves, with all that its neighbours read of it. What this engine
+/// returns has slots of this engine.
 struct Ghost {
   Body body;
   QueueProgress progress;
@@ -25,7 +26,7 @@ struct Ghost {
 
 /// Where a body would move, or stays, in a round of conflict resolution.
 struct GhostMove {
-  uint32_t slot = 0;
+  uint32_t name = 0;
   uint32_t round = 0;
   Stand place;
 };
@@ -42,7 +43,7 @@ class StepExchange {
   virtual std::span<const Ghost> exchange_bodies(CrowdEngine& engine) = 0;
   /// What those shown propose in a round, and which ghosts propose what.
   virtual std::span<const GhostMove> exchange_moves(std::span<const GhostMove> shown) = 0;
-  /// Slots of those whose moves were accepted in a round.
+  /// Names of those whose moves were accepted in a round.
   virtual std::span<const uint32_t> exchange_accepted(std::span<const uint32_t> shown) = 0;
 };
 

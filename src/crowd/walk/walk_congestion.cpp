@@ -36,7 +36,8 @@ float distance_of(const PathPoint& a, const PathPoint& b) {  // [units]
 // Before a step: what was noted, and finders for those that want to search.
 void WalkMode::begin_watching() {
   if (shared_.time % SharedState::kTimeUnits != 0) return;
-  delays_->begin_step(shared_.step, engine_.bodies().size(), shared_.config.workers);
+  const size_t bodies = shared_.share ? shared_.names.alive() : engine_.bodies().size();
+  delays_->begin_step(shared_.step, bodies, shared_.config.workers, shared_.share.get());
   if (!delays_->is_asked()) return;
   for (size_t c = 0; c < classes_.size(); ++c) {
     if (classes_[c] && classes_[c]->takes_links) make_lives(c);
@@ -47,7 +48,8 @@ void WalkMode::watch_routes(std::span<Body> bodies, int32_t worker) {
   if (shared_.time % SharedState::kTimeUnits != 0) return;  // once in a step
   const auto step = static_cast<uint32_t>(shared_.step);
   for (Body& body : bodies) {
-    if (delays_->is_turn_of(body.slot, step)) watch_route(body, static_cast<size_t>(worker));
+    if (delays_->is_turn_of(shared_.name_of(body), step))
+      watch_route(body, static_cast<size_t>(worker));
   }
 }
 
@@ -89,7 +91,8 @@ void WalkMode::watch_route(Body& body, size_t worker) {
   if (row.wait > 0) return;
   const bool wants = row.share < kHeldUp || (row.is_new != 0 && leads_into_jam(body, route));
   row.is_new = 0;
-  if (wants && delays_->ask(shared_.config.seed, body.slot, shared_.step)) avoid_jam(body, worker);
+  if (wants && delays_->ask(shared_.config.seed, shared_.name_of(body), shared_.step))
+    avoid_jam(body, worker);
 }
 
 // Jams are before doors and bends: does one of its next corners lie in one?

@@ -73,7 +73,8 @@ void WalkMode::plan_exit(Body& body) {
   const StrideGround ground(cells, step_height);
   if (follows_path(body)) {
     if (shared_.config.routing == Routing::kPaths && !body.has(Body::kContinues)) {
-      const uint64_t nth = (shared_.sub_step - 1 + body.slot) / engine_.steps_of_reaction(body);
+      const uint64_t nth =
+          (shared_.sub_step - 1 + shared_.name_of(body)) / engine_.steps_of_reaction(body);
       follow(body, routes_[body.slot], ground, nth, following());
     }
     if (std::fabs(body.detour_angle) > kMaxDetourAngle) {

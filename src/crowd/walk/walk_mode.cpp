@@ -109,10 +109,15 @@ bool WalkMode::draw(NewAvatar& avatar, const AvatarSpawn& /*like*/, uint64_t n) 
 
 // A row that was another avatar's stays until a goal replaces it.
 void WalkMode::add(const NewAvatar& avatar) {
-  routes_.resize(shared_.generation.size());
-  progress_.resize(shared_.generation.size());
-  engine_.level_speeds().resize(shared_.generation.size());
+  fit_rows();
   engine_.clear_rows(avatar.body.slot);
+}
+
+void WalkMode::fit_rows() {
+  routes_.resize(shared_.names.slots());
+  progress_.resize(shared_.names.slots());
+  engine_.level_speeds().resize(shared_.names.slots());
+  engine_.fit_rows(shared_.names.slots());
 }
 
 void WalkMode::fit(const BodyExtent& all, float fastest) {
@@ -128,7 +133,7 @@ void WalkMode::set_goal(Body& body, const Place& goal) {
   engine_.set_path_after(body.slot, 0);
   engine_.set_onward(body.slot, {});
   engine_.wake(body);
-  yielding_.erase(body.slot);
+  yielding_.erase(shared_.name_of(body));
   progress_[body.slot] = {};
   route = {};
   route.goal = {static_cast<int32_t>(point->x), static_cast<int32_t>(point->z), goal.level1 - 1};
@@ -144,13 +149,13 @@ void WalkMode::set_target(Body& body) {
   engine_.set_path_after(body.slot, 0);
   engine_.set_onward(body.slot, {});
   engine_.wake(body);
-  yielding_.erase(body.slot);
+  yielding_.erase(shared_.name_of(body));
   body.local_target_x = body.x;
   body.local_target_z = body.z;
 }
 
 void WalkMode::set_velocity(Body& body, const Vec3d& velocity) {
-  yielding_.erase(body.slot);
+  yielding_.erase(shared_.name_of(body));
   control(body, {velocity.x, 0, velocity.z});
 }
 
@@ -164,9 +169,11 @@ void WalkMode::step(std::span<Body> /*bodies: its engine's*/, EngineCounts& coun
   engine_.set_orientations(shared_.orientations);
   const bool has_plans =
       shared_.config.routing == Routing::kPaths || some_fly_ || shared_.some_leave;
-  engine_.step(shared_.sub_step - 1,
+  if (exchange_) exchange_->begin();
+  engine_.step(next_step(),
                has_plans ? CrowdEngine::Before(plan_all) : CrowdEngine::Before(plan_none), counts,
-               times);
+               times, exchange_.get());
+  if (exchange_) exchange_->end();
   for (const uint32_t slot : engine_.arrived()) {
     if (!takes_off_->is_at_link(slot)) shared_.arrived.push_back(shared_.id_of(slot));
   }
@@ -280,7 +287,7 @@ AvatarState WalkMode::state_of(const Body& body) const {
   const Vec3d& origin = shared_.origin();
   const double unit = shared_.unit;
   const Orientation& orientation = shared_.orientations[body.slot];
-  return {.id = body.slot,
+  return {.id = shared_.name_of(body),
           .avatar_class = static_cast<int32_t>(shared_.baked_class(body.avatar_class)),
           .position = {origin.x + (body.x + 0.5) * unit, body.y * 1e-3,
                        origin.z + (body.z + 0.5) * unit},

@@ -17,6 +17,7 @@
 #include "crowd/walk/crowd_engine.h"
 #include "crowd/walk/delay_map.h"
 #include "crowd/walk/routes.h"
+#include "crowd/walk/walk_share.h"
 #include "crowd/walk/yielding.h"
 #include "path/edits/flow_points.h"
 #include "path/edits/ground_finder.h"
@@ -93,11 +94,21 @@ class WalkMode final : public Mode {
   [[nodiscard]] DelayMap* delays() const { return delays_.get(); }
   [[nodiscard]] bool flows_are_old() const { return flows_are_old_; }
   void set_flows_old(bool old) { flows_are_old_ = old; }
-  /// Those that stand aside, by slot. Saved apart from rows.
+  /// Those that stand aside, by name. Saved apart from rows.
   [[nodiscard]] std::vector<StandsAside>& standing_aside() { return yielding_.all; }
   [[nodiscard]] const std::vector<StandsAside>& standing_aside() const { return yielding_.all; }
   /// Could a crowd have saved them?
   [[nodiscard]] bool aside_is_sound() const;
+
+  // walk_share.cpp: a crowd that ranks share.
+  /// Of a crowd without avatars: from now on they do.
+  void share();
+  /// What another rank needs to go on with the n-th of bodies().
+  [[nodiscard]] MovedWalker moved(size_t n) const;
+  /// Goes on with it, in a slot of its own.
+  void take_over(const MovedWalker& walker, uint32_t slot);
+  /// Another rank has the body: what all ranks know of its path is out of date.
+  void forget_path(uint32_t name) { yielding_.erase(name); }
 
   Result<void> open_class(size_t number, Context& context) override;
   void close_class(size_t number) override;
@@ -189,13 +200,20 @@ class WalkMode final : public Mode {
 
   // walk_yielding.cpp
   void order_aside();
-  [[nodiscard]] std::pair<uint32_t, int> precedence_of(uint32_t slot);
+  [[nodiscard]] std::pair<uint32_t, int> precedence_of(uint32_t name);
+  [[nodiscard]] std::pair<std::pair<uint32_t, int>, uint32_t> precedence_and_name(
+      const Body& body) {
+    return {precedence_of(shared_.name_of(body)), shared_.name_of(body)};
+  }
   [[nodiscard]] bool may_stand_aside(const Body& body) const;
   void write_line(const Body& body, PathLine& line) const;
   void end_standing_aside(std::span<Body> bodies);
   void find_on_line(std::span<const Body> bodies, uint32_t asker);
   [[nodiscard]] bool block_each_other(const Body& asker, const Body& body);
   void sort_on_line(std::span<const Body> bodies, uint32_t asker);
+  void order_aside_among(std::span<Body> bodies);
+  [[nodiscard]] static bool is_slow(const Body& body);
+  void find_blocked(std::span<const Body> bodies);
   [[nodiscard]] bool is_in_crowd(std::span<const Body> bodies, const Body& body) const;
   void ask_aside(std::span<Body> bodies, uint32_t asker, int& searches);
   bool send_aside(std::span<Body> bodies, uint32_t which, uint32_t asker, size_t lines);
@@ -206,7 +224,18 @@ class WalkMode final : public Mode {
   void plan_exit(Body& body);
   [[nodiscard]] bool tries_path_again(Body& body);
 
+  // walk_share.cpp
+  /// The number of the next step of the engine.
+  [[nodiscard]] uint64_t next_step() const { return shared_.sub_step - 1; }
+  /// Makes rows for all slots.
+  void fit_rows();
+  /// Adds the bodies of other ranks that matter to those which stand aside, behind its own.
+  /// Returns how many are its own.
+  size_t gather_aside();
+  void drop_gathered(size_t own);
+
   CrowdEngine engine_;
+  std::unique_ptr<RankExchange> exchange_;  // null: no rank shares the crowd
   TakesOff* takes_off_ = nullptr;
   TakesLinks* takes_links_ = nullptr;
   bool links_are_used_ = false;                    // in this step

@@ -37,7 +37,7 @@ void WalkMode::plan(std::span<Body> bodies, int32_t worker) {
       continue;
     Route& route = routes_[body.slot];
     const StrideGround ground = stride_ground(body);
-    const uint64_t nth = (step_now + body.slot) / engine_.steps_of_reaction(body);
+    const uint64_t nth = (step_now + shared_.name_of(body)) / engine_.steps_of_reaction(body);
     const bool takes_links = links_are_used_ && parts.takes_links;
     if (!body.has(Body::kNeedsPath)) {
       if (takes_links && takes_links_->plan_at_start(body, route, ground, nth)) continue;

@@ -9,7 +9,7 @@
 #include "world/tile_grid.h"
 
 // Bodies that do not get on ask those in their path to stand aside, once in a second: the last
-// resort where corridors are as wide as one body. The lower slot has precedence, and those that
+// resort where corridors are as wide as one body. The lower name has precedence, and those that
 // stand aside ask on with the precedence of the one for which they do, as in the priority
 // inheritance of [Okumura19]. Time: linear in all bodies, and a bounded number of searches.
 namespace throng::crowd {
@@ -41,15 +41,15 @@ bool is_level(const Body& body, double y) { return std::fabs(body.y - y) < body.
 
 }  // namespace
 
-// Its precedence: the slot for which it stands aside in the end, and over how many others.
-std::pair<uint32_t, int> WalkMode::precedence_of(uint32_t slot) {
+// Its precedence: the name of that for which it stands aside in the end, and over how many others.
+std::pair<uint32_t, int> WalkMode::precedence_of(uint32_t name) {
   int depth = 0;
   for (; depth < kMaxDepth; ++depth) {
-    const StandsAside* one = yielding_.find(slot);
+    const StandsAside* one = yielding_.find(name);
     if (one == nullptr) break;
-    slot = one->for_slot;
+    name = one->for_name;
   }
-  return {slot, depth};
+  return {name, depth};
 }
 
 bool WalkMode::may_stand_aside(const Body& body) const {
@@ -79,18 +79,18 @@ void WalkMode::write_line(const Body& body, PathLine& line) const {
 void WalkMode::end_standing_aside(std::span<Body> bodies) {
   Yielding& y = yielding_;
   const auto has_ended = [&](StandsAside& one) {
-    if (shared_.generation[one.slot] != one.generation) return true;
-    const uint32_t index = y.index_of[one.slot];
+    if (shared_.names.generation(one.name) != one.generation) return true;
+    const uint32_t index = y.index_of[one.name];
     if (index == kNoBody) return true;
     Body& body = bodies[index];
     if (!body.has(Body::kArrived) || !body.has(Body::kHasGoal))
       return true;  // It got another goal.
-    const uint32_t other = one.for_slot < y.index_of.size() ? y.index_of[one.for_slot] : kNoBody;
+    const uint32_t other = one.for_name < y.index_of.size() ? y.index_of[one.for_name] : kNoBody;
     bool goes_on = one.has_ended != 0 || ++one.seconds > kLongest || other == kNoBody ||
-                   shared_.generation[one.for_slot] != one.for_generation;
+                   shared_.names.generation(one.for_name) != one.for_generation;
     if (!goes_on) {
       const Body& first = bodies[other];
-      const bool has_come = first.has(Body::kArrived) && y.find(one.for_slot) == nullptr;
+      const bool has_come = first.has(Body::kArrived) && y.find(one.for_name) == nullptr;
       goes_on = has_come || !first.has(Body::kHasGoal);
       if (!goes_on && !first.has(Body::kNeedsPath)) {
         write_line(first, y.lines[0]);
@@ -110,9 +110,9 @@ void WalkMode::end_standing_aside(std::span<Body> bodies) {
   // Whether one has ended may depend on others that are there still.
   y.asked.clear();
   for (StandsAside& one : y.all) {
-    if (has_ended(one)) y.asked.push_back(one.slot);
+    if (has_ended(one)) y.asked.push_back(one.name);
   }
-  for (const uint32_t slot : y.asked) y.erase(slot);
+  for (const uint32_t name : y.asked) y.erase(name);
 }
 
 // Once in a second, before bodies plan.
@@ -121,43 +121,56 @@ void WalkMode::order_aside() {
       shared_.step % delays_->steps_between() != 0) {
     return;
   }
-  Yielding& y = yielding_;
-  const std::span<Body> bodies = engine_.bodies();
-  y.blocked.clear();
+  find_blocked(engine_.bodies());
+  if (!exchange_) return order_aside_among(engine_.bodies());
+  const size_t own = gather_aside();
+  find_blocked(engine_.bodies());
+  order_aside_among(engine_.bodies());
+  drop_gathered(own);
+}
+
+bool WalkMode::is_slow(const Body& body) {
+  const float slow = kSlowShare * body.speed;
+  return body.velocity.x * body.velocity.x + body.velocity.z * body.velocity.z < slow * slow;
+}
+
+void WalkMode::find_blocked(std::span<const Body> bodies) {
+  yielding_.blocked.clear();
   for (size_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
     if (progress_[body.slot].share < kBlockedShare && progress_[body.slot].left >= 0 &&
         may_change_route(body, routes_[body.slot])) {
-      y.blocked.push_back(static_cast<uint32_t>(i));
+      yielding_.blocked.push_back(static_cast<uint32_t>(i));
     }
   }
+}
+
+// With those that are blocked.
+void WalkMode::order_aside_among(std::span<Body> bodies) {
+  Yielding& y = yielding_;
   if (y.blocked.empty() && y.all.empty()) return;
-  y.index_of.assign(shared_.generation.size(), kNoBody);
+  y.index_of.assign(shared_.names.names(), kNoBody);
   for (size_t i = 0; i < bodies.size(); ++i) {
-    y.index_of[bodies[i].slot] = static_cast<uint32_t>(i);
+    y.index_of[shared_.name_of(bodies[i])] = static_cast<uint32_t>(i);
   }
   y.reserve(kMaxDepth + 1, bodies.size());
   end_standing_aside(bodies);
   for (const StandsAside& one : y.all) {
-    const Body& body = bodies[y.index_of[one.slot]];
+    const Body& body = bodies[y.index_of[one.name]];
     const bool is_there =
         square_between(body, one.place.x, one.place.z) < double{1} * body.radius * body.radius;
-    if (!is_there && engine_.stood(one.slot) >= kBlocked && !body.has(Body::kNeedsPath)) {
-      y.blocked.push_back(y.index_of[one.slot]);
+    if (!is_there && engine_.stood(body.slot) >= kBlocked && !body.has(Body::kNeedsPath)) {
+      y.blocked.push_back(y.index_of[one.name]);
     }
   }
   std::sort(y.blocked.begin(), y.blocked.end(), [&](uint32_t a, uint32_t b) {
-    return std::pair(precedence_of(bodies[a].slot), bodies[a].slot) <
-           std::pair(precedence_of(bodies[b].slot), bodies[b].slot);
+    return precedence_and_name(bodies[a]) < precedence_and_name(bodies[b]);
   });
   y.slow.clear();
   const double square = kSquare / shared_.unit;
   for (size_t i = 0; i < bodies.size() && !y.blocked.empty(); ++i) {
     const Body& body = bodies[i];
-    const float slow = kSlowShare * body.speed;
-    if (body.velocity.x * body.velocity.x + body.velocity.z * body.velocity.z >= slow * slow) {
-      continue;
-    }
+    if (!is_slow(body)) continue;
     y.slow.emplace_back(Yielding::square_key(static_cast<int64_t>(body.x / square),
                                              static_cast<int64_t>(body.z / square)),
                         static_cast<uint32_t>(i));
@@ -204,7 +217,8 @@ void WalkMode::find_on_line(std::span<const Body> bodies, uint32_t asker) {
     });
   }
   std::sort(y.on_line.begin(), y.on_line.end(), [&](const auto& a, const auto& b) {
-    return std::pair(a.first, bodies[a.second].slot) < std::pair(b.first, bodies[b.second].slot);
+    return std::pair(a.first, shared_.name_of(bodies[a.second])) <
+           std::pair(b.first, shared_.name_of(bodies[b.second]));
   });
 }
 
@@ -221,7 +235,7 @@ bool WalkMode::block_each_other(const Body& asker, const Body& body) {
 // Of those in its path, which walk ahead of it, and which come towards it or stand and are to go?
 void WalkMode::sort_on_line(std::span<const Body> bodies, uint32_t asker) {
   Yielding& y = yielding_;
-  const auto own = std::pair(precedence_of(bodies[asker].slot), bodies[asker].slot);
+  const auto own = precedence_and_name(bodies[asker]);
   y.column.assign(1, asker);
   y.asked.clear();
   double reached = 0;
@@ -231,8 +245,9 @@ void WalkMode::sort_on_line(std::span<const Body> bodies, uint32_t asker) {
     if (along - reached > kChain / shared_.unit + last + body.radius) break;
     reached = along;
     last = body.radius;
-    const auto theirs = std::pair(precedence_of(body.slot), body.slot);
-    if (yielding_.find(body.slot) != nullptr && theirs < own) continue;  // It is about to go.
+    const auto theirs = precedence_and_name(body);
+    if (yielding_.find(shared_.name_of(body)) != nullptr && theirs < own)
+      continue;  // It is about to go.
     // Does its next corner lie farther along this path?
     const auto target =
         y.lines[0].nearest(body.local_target_x, body.local_target_z, body.y, body.height);
@@ -290,11 +305,11 @@ void WalkMode::ask_aside(std::span<Body> bodies, uint32_t asker, int& searches) 
   }
   // Also the paths of those for which it stands aside itself.
   size_t lines = 1;
-  for (uint32_t slot = body.slot; lines < kMaxDepth; ++lines) {
-    const StandsAside* one = y.find(slot);
-    if (one == nullptr || y.index_of[one->for_slot] == kNoBody) break;
-    slot = one->for_slot;
-    write_line(bodies[y.index_of[slot]], y.lines[lines]);
+  for (uint32_t name = shared_.name_of(body); lines < kMaxDepth; ++lines) {
+    const StandsAside* one = y.find(name);
+    if (one == nullptr || y.index_of[one->for_name] == kNoBody) break;
+    name = one->for_name;
+    write_line(bodies[y.index_of[name]], y.lines[lines]);
   }
   // The farthest first: it must go for the nearer ones.
   bool went = false;
@@ -302,11 +317,11 @@ void WalkMode::ask_aside(std::span<Body> bodies, uint32_t asker, int& searches) 
     --searches;
     went = send_aside(bodies, y.asked[k], asker, lines) || went;
   }
-  if (went || searches <= 0 || y.find(body.slot) != nullptr) return;
+  if (went || searches <= 0 || y.find(shared_.name_of(body)) != nullptr) return;
   // None of them can: it stands aside itself, for the nearest.
   --searches;
   const uint32_t nearest = y.asked[0];
-  if (y.find(bodies[nearest].slot) != nullptr) return;
+  if (y.find(shared_.name_of(bodies[nearest])) != nullptr) return;
   write_line(bodies[nearest], y.lines[0]);
   y.column.assign(1, nearest);
   (void)send_aside(bodies, asker, nearest, 1);
@@ -323,8 +338,8 @@ bool WalkMode::send_aside(std::span<Body> bodies, uint32_t which, uint32_t asker
       if (y.lines[i].nearest(at.x, at.z, at.y, body.height).square < range * range) return false;
     }
     for (const StandsAside& one : y.all) {
-      const Body& other = bodies[y.index_of[one.slot]];
-      if (one.slot == body.slot || !is_level(other, at.y)) continue;
+      const Body& other = bodies[y.index_of[one.name]];
+      if (one.name == shared_.name_of(body) || !is_level(other, at.y)) continue;
       const double range = other.radius + body.radius + kGap * metre;
       const double dx = one.place.x - at.x, dz = one.place.z - at.z;
       if (dx * dx + dz * dz < range * range) return false;
@@ -343,7 +358,7 @@ bool WalkMode::send_aside(std::span<Body> bodies, uint32_t which, uint32_t asker
     return true;
   };
   // One that goes already to a good place keeps it.
-  const StandsAside* old = y.find(body.slot);
+  const StandsAside* old = y.find(shared_.name_of(body));
   const auto feet = [&](const PathPoint& at) {
     return Stand{at.x, at.z, shared_.ground_of(body).feet(at.level, {at.x, at.z}), at.level};
   };
@@ -352,10 +367,10 @@ bool WalkMode::send_aside(std::span<Body> bodies, uint32_t which, uint32_t asker
   if (!y.search.find(ground, body, is_free, is_beside, y.corners)) return false;
   const Body& first = bodies[asker];
   const bool has_arrived = old != nullptr ? old->has_arrived != 0 : body.has(Body::kArrived);
-  y.put({.slot = body.slot,
-         .generation = shared_.generation[body.slot],
-         .for_slot = first.slot,
-         .for_generation = shared_.generation[first.slot],
+  y.put({.name = shared_.name_of(body),
+         .generation = shared_.names.generation(shared_.name_of(body)),
+         .for_name = shared_.name_of(first),
+         .for_generation = shared_.names.generation(shared_.name_of(first)),
          .place = y.corners.back(),
          .has_arrived = static_cast<uint8_t>(has_arrived ? 1 : 0)});
   Route& route = routes_[body.slot];
@@ -377,13 +392,13 @@ bool WalkMode::send_aside(std::span<Body> bodies, uint32_t which, uint32_t asker
 
 bool WalkMode::aside_is_sound() const {
   const world::WorldData& data = *data_of(shared_.world);
-  const size_t slots = shared_.generation.size();
+  const size_t names = shared_.names.names();
   const std::vector<StandsAside>& all = yielding_.all;
   for (size_t i = 0; i < all.size(); ++i) {
     const StandsAside& one = all[i];
     const world::GroundPoint at{one.place.x, one.place.z};
-    if (one.slot >= slots || one.for_slot >= slots || one.for_slot == one.slot || at.x < 0 ||
-        at.z < 0 || !world::in_grid(data, at) || (i > 0 && one.slot <= all[i - 1].slot)) {
+    if (one.name >= names || one.for_name >= names || one.for_name == one.name || at.x < 0 ||
+        at.z < 0 || !world::in_grid(data, at) || (i > 0 && one.name <= all[i - 1].name)) {
       return false;
     }
     const auto tile =
@@ -396,7 +411,7 @@ bool WalkMode::aside_is_sound() const {
 // One that stands aside and has lost its path. False: it does not.
 bool WalkMode::plan_aside(Body& body, Route& route, const StrideGround& ground, size_t worker) {
   if (!body.has(Body::kArrived)) return false;
-  StandsAside* one = yielding_.find(body.slot);
+  StandsAside* one = yielding_.find(shared_.name_of(body));
   if (one == nullptr || one->has_ended != 0) return false;
   Path& path = classes_[body.avatar_class]->paths[worker];
   find_path(body, {body.x, body.z, body.level}, one->place, ground, worker, path);

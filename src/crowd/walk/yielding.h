@@ -16,8 +16,8 @@ namespace throng::crowd {
 
 /// A body that walks to a place, and waits there until another has passed.
 struct StandsAside {
-  uint32_t slot = 0, generation = 0;
-  uint32_t for_slot = 0, for_generation = 0;
+  uint32_t name = 0, generation = 0;
+  uint32_t for_name = 0, for_generation = 0;
   PathPoint place;
   uint16_t seconds = 0;     ///< For so long.
   uint8_t has_arrived = 0;  ///< It had come to its goal before.
@@ -25,11 +25,11 @@ struct StandsAside {
 };
 static_assert(sizeof(StandsAside) == 32);
 
-/// All of them, by slot, and what is found once in a second.
+/// All of them, by name, and what is found once in a second.
 struct Yielding {
   std::vector<StandsAside> all;
   AsideSearch search;
-  std::vector<uint32_t> index_of;                    // of a body, by slot
+  std::vector<uint32_t> index_of;                    // of a body, by name
   std::vector<uint32_t> blocked;                     // bodies
   std::vector<std::pair<uint64_t, uint32_t>> slow;   // square and body, sorted
   std::vector<uint64_t> squares;                     // around a line
@@ -63,24 +63,24 @@ struct Yielding {
     auto at = std::lower_bound(slow.begin(), slow.end(), std::pair(square, 0U));
     for (; at != slow.end() && at->first == square; ++at) f(at->second);
   }
-  [[nodiscard]] StandsAside* find(uint32_t slot) {
+  [[nodiscard]] StandsAside* find(uint32_t name) {
     const auto found =
-        std::lower_bound(all.begin(), all.end(), slot,
-                         [](const StandsAside& one, uint32_t wanted) { return one.slot < wanted; });
-    return found != all.end() && found->slot == slot ? &*found : nullptr;
+        std::lower_bound(all.begin(), all.end(), name,
+                         [](const StandsAside& one, uint32_t wanted) { return one.name < wanted; });
+    return found != all.end() && found->name == name ? &*found : nullptr;
   }
   void put(const StandsAside& one) {
-    if (StandsAside* old = find(one.slot); old != nullptr) {
+    if (StandsAside* old = find(one.name); old != nullptr) {
       *old = one;
       return;
     }
     all.insert(std::upper_bound(
                    all.begin(), all.end(), one,
-                   [](const StandsAside& a, const StandsAside& b) { return a.slot < b.slot; }),
+                   [](const StandsAside& a, const StandsAside& b) { return a.name < b.name; }),
                one);
   }
-  void erase(uint32_t slot) {
-    if (StandsAside* one = find(slot); one != nullptr) all.erase(all.begin() + (one - all.data()));
+  void erase(uint32_t name) {
+    if (StandsAside* one = find(name); one != nullptr) all.erase(all.begin() + (one - all.data()));
   }
 };
 

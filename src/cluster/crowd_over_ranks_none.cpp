@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: 2026 the throng authors
+// SPDX-License-Identifier: MIT
+#include "throng/crowd.h"
+
+// In a browser a page is one process.
+namespace throng {
+
+Result<Crowd> crowd_over_ranks(const World& world, const CrowdConfig& config) {
+  return Crowd::create(world, config);
+}
+
+}  // namespace throng
